@@ -1,0 +1,143 @@
+#include "experiment/airframe.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace mascot {
+namespace {
+
+// The body published with MASCOT: mass, inertia, total thrust and four of the gains are the paper's. Not published are
+// arm, b, k, B and size, chosen so that they fit what is:
+//  * arm: Jz = 0.218 kg m^2 needs mass at sqrt(Jz / m) = 0.38 m from the axis at least; 0.5 m puts 60 % of it into the
+//    motors. It leaves 0.5 m * 7.2 N / Jx = 31 rad/s^2 of roll acceleration at hover, which bounds the attitude gains.
+//  * b, k: a 10 inch propeller, 7.5 N at 790 rad/s, k / b = 0.02 m.
+//  * B: 0.1 kg/s, a terminal velocity of 145 m/s in free fall and 0.7 % of the weight at 1 m/s.
+//  * size: the square whose corners are the rotors, so that a tilted body does not hit what its rotors would miss.
+// The paper prints its roll/pitch and yaw gains only; the altitude loop is ours, and position = 0 leaves the reference
+// loop out, as the paper does.
+Airframe Published() {
+  Airframe body;
+  body.name = "mascot_published";
+  body.mass_kg = 1.477;
+  body.inertia_kg_m2 = {0.1152, 0.1152, 0.218};
+  body.arm_m = 0.5;
+  body.lift_n_s2 = 1.2e-5;
+  body.drag_n_m_s2 = 2.4e-7;
+  body.linear_drag_kg_per_s = 0.1;
+  body.max_thrust_n = 30;
+  body.rotor_time_constant_s = 0;
+  body.size_m = {0.7, 0.7, 0.12};
+  body.tilt_limit_rad = 0.1;
+  body.altitude = {20, 8};
+  body.heading = {2, 1};
+  body.attitude = {20, 5};
+  body.position = {0, 0};
+  return body;
+}
+
+// The same body with gains tuned so that agents move as double integrators do. Attitude: 25 rad/s, damping 0.6, as
+// fast as a control rate of 100 Hz and the rotors' torque allow a bang-bang law; faster ones saturate and swing.
+// Position: 1 rad/s, well below it.
+Airframe Mascot() {
+  Airframe body = Published();
+  body.name = "mascot";
+  body.tilt_limit_rad = 0.35;
+  body.altitude = {25, 10};
+  body.heading = {4, 4};
+  body.attitude = {625, 30};
+  body.position = {1, 2};
+  return body;
+}
+
+// Bitcraze Crazyflie 2. Inertia and drag: Foerster, "System Identification of the Crazyflie 2.0 Nano Quadrocopter"
+// (ETH Zurich 2015); b and k: Luis & Le Ny, "Design of a Trajectory Tracking Controller for a Nanoquadcopter" (2016).
+// Its rotors are flown here as a plus; their lag is an estimate, and bounds the attitude gains.
+Airframe Crazyflie() {
+  Airframe body;
+  body.name = "crazyflie";
+  body.mass_kg = 0.027;
+  body.inertia_kg_m2 = {1.657e-5, 1.666e-5, 2.926e-5};
+  body.arm_m = 0.046;
+  body.lift_n_s2 = 2.88e-8;
+  body.drag_n_m_s2 = 7.24e-10;
+  body.linear_drag_kg_per_s = 5.6e-3;
+  body.max_thrust_n = 0.6;
+  body.rotor_time_constant_s = 0.03;
+  body.size_m = {0.065, 0.065, 0.03};
+  body.tilt_limit_rad = 0.35;
+  body.altitude = {10, 6};
+  body.heading = {4, 4};
+  body.attitude = {100, 16};
+  body.position = {2, 2.5};
+  return body;
+}
+
+PdGains ReadGains(Section& table, std::string_view key, const PdGains& base) {
+  constexpr double kMaxGain = 1e4;
+  Section gains = table.Child(key);
+  PdGains read;
+  read.kp = gains.Number("kp", 0, kMaxGain, base.kp);
+  read.kd = gains.Number("kd", 0, kMaxGain, base.kd);
+  gains.Done();
+  return read;
+}
+
+// Of any rigid body, each moment of inertia is at most the sum of the other two, and none is zero.
+bool IsPossibleInertia(const Eigen::Vector3d& moments) {
+  return moments.minCoeff() > 0 && 2 * moments.maxCoeff() <= moments.sum() * (1 + 1e-12);
+}
+
+Airframe ReadTable(Section table, std::span<const std::string_view> names) {
+  const std::string base_name = table.OneOf("base", names, "mascot");
+  Airframe body = *std::ranges::find(Airframes(), base_name, &Airframe::name);
+  body.name = table.Text("name", body.name);
+  body.mass_kg = table.Positive("mass_kg", 1e4, body.mass_kg);
+  body.inertia_kg_m2 = table.Vector3("inertia_kg_m2", 0, 1e6, body.inertia_kg_m2);
+  if (const Eigen::Vector3d& j = body.inertia_kg_m2; !IsPossibleInertia(j))
+    table.Fail("inertia_kg_m2", "expected positive moments, each at most the sum of the other two, got [" +
+                                    ShortestFloat(j.x()) + ", " + ShortestFloat(j.y()) + ", " + ShortestFloat(j.z()) +
+                                    "]");
+  body.arm_m = table.Positive("arm_m", 100, body.arm_m);
+  body.lift_n_s2 = table.Positive("lift_n_s2", 1, body.lift_n_s2);
+  body.drag_n_m_s2 = table.Positive("drag_n_m_s2", 1, body.drag_n_m_s2);
+  body.linear_drag_kg_per_s = table.Number("linear_drag_kg_per_s", 0, 1e3, body.linear_drag_kg_per_s);
+  body.max_thrust_n = table.Positive("max_thrust_n", 1e6, body.max_thrust_n);
+  body.rotor_time_constant_s = table.Number("rotor_time_constant_s", 0, 10, body.rotor_time_constant_s);
+  body.size_m = table.Vector3("size_m", 1e-3, 100, body.size_m);
+  body.tilt_limit_rad = table.Positive("tilt_limit_rad", 1.5, body.tilt_limit_rad);
+  body.altitude = ReadGains(table, "altitude", body.altitude);
+  body.heading = ReadGains(table, "heading", body.heading);
+  body.attitude = ReadGains(table, "attitude", body.attitude);
+  body.position = ReadGains(table, "position", body.position);
+  table.Done();
+  return body;
+}
+
+}  // namespace
+
+Eigen::Matrix4d Airframe::Allocation() const {
+  const double b = lift_n_s2, bd = lift_n_s2 * arm_m, k = drag_n_m_s2;
+  return Eigen::Matrix4d{{b, b, b, b}, {0, bd, 0, -bd}, {-bd, 0, bd, 0}, {k, -k, k, -k}};
+}
+
+double Airframe::MaxRotorSpeed() const { return std::sqrt(max_thrust_n / (4 * lift_n_s2)); }
+
+double Airframe::HoverRotorSpeed(double gravity_m_per_s2) const {
+  return std::sqrt(mass_kg * gravity_m_per_s2 / (4 * lift_n_s2));
+}
+
+std::span<const Airframe> Airframes() {
+  static const std::array airframes = {Mascot(), Published(), Crazyflie()};
+  return airframes;
+}
+
+Airframe ReadAirframe(Section& agents, std::string_view key) {
+  std::vector<std::string_view> names;
+  for (const Airframe& airframe : Airframes()) names.push_back(airframe.name);
+  if (agents.Kind(key) == "table") return ReadTable(agents.Child(key), names);
+  return *std::ranges::find(Airframes(), agents.OneOf(key, names, "mascot"), &Airframe::name);
+}
+
+}  // namespace mascot

@@ -1,0 +1,194 @@
+#include "experiment/experiment.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "experiment/agents.h"
+
+namespace mascot {
+namespace {
+
+using Names2 = std::array<std::string_view, 2>;
+
+constexpr double kMaxDuration_s = 1e6;
+constexpr double kMaxTicks = 1e9;  // recordings number their samples with 32 bits
+constexpr double kMaxTimeout_s = 3600;
+constexpr int kMaxDomain = 100;  // above, DDS's ports meet those that Linux hands out
+
+bool IsNameCharacter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
+         c == '-' || c == ' ';
+}
+
+bool IsName(std::string_view name) {
+  constexpr std::size_t kLongest = 100;
+  return !name.empty() && name.size() <= kLongest && std::string_view("._- ").find(name.front()) == name.npos &&
+         std::all_of(name.begin(), name.end(), IsNameCharacter);
+}
+
+/// A name made of a file's: what a name cannot hold becomes '_'.
+std::string NameFrom(std::string text) {
+  for (char& c : text)
+    if (!IsNameCharacter(c)) c = '_';
+  return IsName(text) ? text : "experiment";
+}
+
+void ReadRun(Section& section, const std::string& default_name, Experiment& experiment) {
+  constexpr Names2 kModes = {"lockstep", "realtime"};
+  auto& run = experiment.run;
+  run.name = section.Text("name", NameFrom(default_name));
+  if (!section.Wrong("name") && !IsName(run.name))
+    section.Fail("name",
+                 "expected a letter or digit, then letters, digits, '.', '_', '-' and spaces, got '" + run.name + "'");
+  run.duration_s = section.Positive("duration_s", kMaxDuration_s);
+  run.mode = section.OneOf("mode", kModes, "lockstep") == "realtime" ? Mode::kRealtime : Mode::kLockstep;
+  run.seed = static_cast<std::uint64_t>(section.Integer("seed", 0, INT64_MAX, 1));
+  run.agent_timeout_s = section.Positive("agent_timeout_s", kMaxTimeout_s, 5.0);
+  run.start_timeout_s = section.Positive("start_timeout_s", kMaxTimeout_s, 60.0);
+  run.speed = section.Positive("speed", 1000, 1.0);
+  section.Done();
+}
+
+void ReadPhysics(Section& section, Experiment& experiment) {
+  auto& physics = experiment.physics;
+  physics.rate_hz = static_cast<int>(section.Integer("rate_hz", 1, 100000, 1000));
+  physics.gravity_m_per_s2 = section.Number("gravity_m_per_s2", 0, 100, 9.81);
+  physics.collisions = section.Boolean("collisions", true);
+  physics.ground = section.Boolean("ground", true);
+  section.Done();
+}
+
+void ReadLaw(Section& section, int count, const Vocabulary& vocabulary, Experiment& experiment) {
+  constexpr Names2 kAxes = {"xy", "xyz"};
+  auto& law = experiment.law;
+  law.name = section.OneOf("name", vocabulary.laws, "consensus");
+  law.leader = static_cast<int>(section.Integer("leader", 0, count > 0 ? count : kMaxAgents, 0));
+  const bool is_xyz = std::ranges::find(vocabulary.xyz_laws, law.name) != vocabulary.xyz_laws.end();
+  law.axes = section.OneOf("axes", kAxes, is_xyz ? "xyz" : "xy") == "xyz" ? Axes::kXyz : Axes::kXy;
+  law.section = section;
+}
+
+/// Gains given for one loop of every agent, in place of its airframe's.
+void ReadGains(Section& control, std::string_view key, PdGains Airframe::*loop, Experiment& experiment) {
+  if (!control.Has(key)) return;
+  constexpr double kMaxGain = 1e4;
+  Section section = control.Child(key);
+  PdGains gains;
+  gains.kp = section.Number("kp", 0, kMaxGain);
+  gains.kd = section.Number("kd", 0, kMaxGain);
+  section.Done();
+  for (AgentConfig& agent : experiment.agents) agent.airframe.*loop = gains;
+}
+
+void ReadControl(Section& section, Experiment& experiment) {
+  constexpr Names2 kInversions = {"small_angle", "exact"};
+  auto& control = experiment.control;
+  control.rate_hz = static_cast<int>(section.Integer("rate_hz", 1, 100000, 100));
+  ReadGains(section, "altitude", &Airframe::altitude, experiment);
+  ReadGains(section, "heading", &Airframe::heading, experiment);
+  ReadGains(section, "attitude", &Airframe::attitude, experiment);
+  ReadGains(section, "position", &Airframe::position, experiment);
+  control.heading_rad = section.Number("heading_rad", -10, 10, 0.0);
+  control.max_acceleration_m_per_s2 = section.Positive("max_acceleration_m_per_s2", 1000, 3.0);
+  if (section.Has("tilt_limit_rad")) {
+    const double tilt_limit_rad = section.Positive("tilt_limit_rad", 1.5);
+    for (AgentConfig& agent : experiment.agents) agent.airframe.tilt_limit_rad = tilt_limit_rad;
+  }
+  control.inversion =
+      section.OneOf("inversion", kInversions, "small_angle") == "exact" ? Inversion::kExact : Inversion::kSmallAngle;
+  control.drag_compensation = section.Boolean("drag_compensation", true);
+  section.Done();
+}
+
+/// A tick is a whole number of physics steps, a run a whole number of ticks.
+void CheckTime(Section& run, Section& physics, Section& control, const Experiment& experiment) {
+  const int rate_hz = experiment.control.rate_hz;
+  if (control.Wrong("rate_hz")) return;
+  if (!physics.Wrong("rate_hz") && experiment.physics.rate_hz % rate_hz != 0)
+    control.Fail("rate_hz", "expected a divisor of physics.rate_hz (" + std::to_string(experiment.physics.rate_hz) +
+                                "), got " + std::to_string(rate_hz));
+  if (run.Wrong("duration_s") || control.Wrong("rate_hz")) return;
+  constexpr double kTolerance = 1e-9;  // relative: 0.1 s at 30 Hz is 3 ticks although 0.1 is not a binary fraction
+  const double ticks = experiment.run.duration_s * rate_hz;
+  const std::string got = ", got " + ShortestFloat(experiment.run.duration_s);
+  if (ticks > kMaxTicks)
+    run.Fail("duration_s", "expected at most 1000000000 periods of control.rate_hz" + got);
+  else if (std::round(ticks) < 1 || std::abs(ticks - std::round(ticks)) > kTolerance * ticks)
+    run.Fail("duration_s",
+             "expected a whole number of periods of control.rate_hz (" + std::to_string(rate_hz) + ")" + got);
+}
+
+void ReadRecord(Section& section, Experiment& experiment) {
+  auto& record = experiment.record;
+  record.file = section.Text("file", "run.mcap");
+  const bool plain = record.file.find('/') == std::string::npos && record.file.find('\0') == std::string::npos;
+  if (!section.Wrong("file") && (!plain || !record.file.ends_with(".mcap") || record.file.size() > 200))
+    section.Fail("file", "expected a file name ending in .mcap, without folders, got '" + record.file + "'");
+  record.topics = section.Texts("topics", {"*"});
+  section.Done();
+}
+
+void ReadOutput(Section& section, Experiment& experiment) {
+  auto& output = experiment.output;
+  output.position_plot = section.Boolean("position_plot", true);
+  output.velocity_plot = section.Boolean("velocity_plot", true);
+  output.save_plot = section.Boolean("save_plot", true);
+  output.show_plot = section.Boolean("show_plot", false);
+  output.save_data = section.Boolean("save_data", true);
+  section.Done();
+}
+
+void ReadNetwork(Section& section, std::span<const std::string_view> transports, Experiment& experiment) {
+  auto& network = experiment.network;
+  if (const std::string kind = section.Kind("domain"); kind.empty() || kind == "string") {
+    const std::string domain = section.Text("domain", "auto");
+    if (domain != "auto")
+      section.Fail("domain",
+                   "expected \"auto\" or an integer in [0, " + std::to_string(kMaxDomain) + "], got '" + domain + "'");
+  } else {
+    network.domain = static_cast<int>(section.Integer("domain", 0, kMaxDomain));
+  }
+  network.transport = section.OneOf("transport", transports, "auto");
+  section.Done();
+}
+
+}  // namespace
+
+std::int64_t Experiment::ticks() const { return std::llround(run.duration_s * control.rate_hz); }
+
+Experiment ReadExperiment(Section document, const Vocabulary& vocabulary, const std::string& default_name) {
+  // In the order of the resolved file; read below in the order in which one needs the other.
+  Section run = document.Child("run"), physics = document.Child("physics"), agents = document.Child("agents"),
+          control = document.Child("control"), graph = document.Child("graph"), law = document.Child("law"),
+          record = document.Child("record"), output = document.Child("output"), network = document.Child("network");
+  document.Done();
+
+  Experiment experiment;
+  experiment.document = document;
+  ReadRun(run, default_name, experiment);
+  ReadPhysics(physics, experiment);
+  int count = static_cast<int>(agents.Integer("count", 1, kMaxAgents));
+  if (agents.Wrong("count")) count = 0;
+  ReadLaw(law, count, vocabulary, experiment);
+  ReadAgents(agents, count, vocabulary.models, experiment);
+  ReadControl(control, experiment);
+  CheckTime(run, physics, control, experiment);
+  experiment.graph = ReadGraph(graph, count, experiment.run.seed);
+  graph.Done();
+  ReadRecord(record, experiment);
+  ReadOutput(output, experiment);
+  ReadNetwork(network, vocabulary.transports, experiment);
+
+  // What a law would say of these would only follow from the mistake.
+  if (graph.Wrong("")) experiment.graph = Graph({});
+  if (law.Wrong("name") || law.Wrong("leader")) experiment.agents.clear();
+  return experiment;
+}
+
+void Finish(Experiment& experiment) {
+  if (!experiment.agents.empty()) experiment.law.section.Done();
+  experiment.law.section.ThrowIfWrong();
+}
+
+}  // namespace mascot

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "experiment/airframe.h"
+#include "experiment/graph.h"
+#include "experiment/section.h"
+
+namespace mascot {
+
+inline constexpr int kMaxAgents = 10000;
+
+enum class Mode { kLockstep, kRealtime };
+enum class Axes { kXy, kXyz };
+enum class Inversion { kSmallAngle, kExact };
+
+struct AgentConfig {
+  int id = 0;             ///< 1..N
+  std::string model;      ///< a name of the models' table
+  Airframe airframe;      ///< with [control]'s gains and limits already applied
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< initial position (m)
+  Eigen::Vector3d v_W = Eigen::Vector3d::Zero();  ///< initial velocity (m/s)
+  bool external = false;  ///< started by hand and waited for
+};
+
+/// One experiment: everything that processes of a run must agree on. Field names are the TOML keys.
+struct Experiment {
+  /// The file it was read from; Resolved() writes it out with all defaults.
+  Section document = Section::FromText("", "");
+  struct {
+    std::string name;
+    double duration_s = 0;
+    Mode mode = Mode::kLockstep;
+    std::uint64_t seed = 1;
+    double agent_timeout_s = 5;
+    double start_timeout_s = 60;
+    double speed = 1;
+  } run;
+  struct {
+    int rate_hz = 1000;
+    double gravity_m_per_s2 = 9.81;
+    bool collisions = true;
+    bool ground = true;
+  } physics;
+  std::vector<AgentConfig> agents;
+  struct {
+    int rate_hz = 100;
+    double heading_rad = 0;
+    double max_acceleration_m_per_s2 = 3;
+    Inversion inversion = Inversion::kSmallAngle;
+    bool drag_compensation = true;  ///< adds the known drag B v / m to the wanted acceleration
+  } control;
+  Graph graph{{}};
+  struct {
+    std::string name;
+    int leader = 0;  ///< 0 = none
+    Axes axes = Axes::kXy;
+    /// The [law] table, for the law to read its own parameters from (agent/laws.h).
+    Section section = Section::FromText("", "");
+  } law;
+  struct {
+    std::string file;
+    std::vector<std::string> topics;
+  } record;
+  struct {
+    bool position_plot = true;
+    bool velocity_plot = true;
+    bool save_plot = true;
+    bool show_plot = false;
+    bool save_data = true;
+  } output;
+  struct {
+    int domain = -1;  ///< -1 = "auto"
+    std::string transport;
+  } network;
+
+  int size() const { return static_cast<int>(agents.size()); }
+  const AgentConfig& agent(int id) const { return agents[static_cast<std::size_t>(id - 1)]; }
+  /// K: ticks run from 0 to K.
+  std::int64_t ticks() const;
+  double period_s() const { return 1.0 / control.rate_hz; }
+  /// Simulated time of tick k: divided, never accumulated.
+  double time_s(std::int64_t tick) const { return static_cast<double>(tick) / control.rate_hz; }
+  int steps_per_tick() const { return physics.rate_hz / control.rate_hz; }
+};
+
+/// The names that the experiment file may use, from tables that live above this library.
+struct Vocabulary {
+  std::span<const std::string_view> models;
+  std::span<const std::string_view> laws;
+  std::span<const std::string_view> transports;
+  std::span<const std::string_view> xyz_laws = {};  ///< those of `laws` whose default for law.axes is "xyz"
+};
+
+/// Reads an experiment, all of it but the law's own parameters: those are read when a law is made
+/// (agent/laws.h), whose caller then calls Finish(). Throws ConfigError at once only for what cannot be
+/// parsed at all; other mistakes are noted in the document. If they are in the graph, it is empty; if they leave no
+/// law to be made, there are no agents.
+Experiment ReadExperiment(Section document, const Vocabulary& vocabulary, const std::string& default_name);
+/// After the law has read its parameters: reports unknown keys of [law], throws every mistake noted.
+void Finish(Experiment& experiment);
+
+}  // namespace mascot

@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+#include "experiment/graph.h"
+#include "experiment/random.h"
+
+namespace mascot {
+namespace {
+
+/// Edges of weight 1, collected in any order.
+class Edges {
+ public:
+  explicit Edges(int count) : heard_(static_cast<std::size_t>(count)) {}
+
+  void Hears(int i, int j) {
+    if (i != j) heard_[static_cast<std::size_t>(i - 1)].push_back({j, 1});
+  }
+  void Both(int i, int j) {
+    Hears(i, j);
+    Hears(j, i);
+  }
+  /// The two edges of a ring of two are one.
+  Graph Build() && {
+    for (auto& row : heard_) {
+      std::sort(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+      row.erase(std::unique(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.id == b.id; }),
+                row.end());
+    }
+    return Graph(std::move(heard_));
+  }
+
+ private:
+  std::vector<std::vector<Graph::Neighbour>> heard_;
+};
+
+// --- families: `count` agents, numbered 1..count ------------------------------------------------------
+
+void Complete(int count, Edges& edges) {
+  for (int i = 1; i <= count; ++i)
+    for (int j = 1; j <= count; ++j) edges.Hears(i, j);
+}
+
+void Path(int count, Edges& edges) {
+  for (int i = 2; i <= count; ++i) edges.Both(i, i - 1);
+}
+
+void Ring(int count, Edges& edges) {
+  Path(count, edges);
+  edges.Both(count, 1);
+}
+
+void DirectedPath(int count, Edges& edges) {
+  for (int i = 2; i <= count; ++i) edges.Hears(i, i - 1);
+}
+
+void DirectedRing(int count, Edges& edges) {
+  DirectedPath(count, edges);
+  edges.Hears(1, count);
+}
+
+void Star(int count, Edges& edges) {
+  for (int i = 2; i <= count; ++i) edges.Both(1, i);
+}
+
+void DirectedStar(int count, Edges& edges) {
+  for (int i = 2; i <= count; ++i) edges.Hears(i, 1);
+}
+
+void BinaryTree(int count, Edges& edges) {
+  for (int i = 2; i <= count; ++i) edges.Both(i, i / 2);
+}
+
+void DirectedTree(int count, Edges& edges) {
+  for (int i = 2; i <= count; ++i) edges.Hears(i, i / 2);
+}
+
+void Wheel(int count, Edges& edges) {
+  Star(count, edges);
+  for (int i = 3; i <= count; ++i) edges.Both(i, i - 1);
+  if (count > 3) edges.Both(2, count);
+}
+
+struct Family {
+  std::string_view name;
+  void (*add)(int count, Edges& edges);
+};
+
+constexpr std::array kFamilies = {
+    Family{"complete", Complete},           // everybody hears everybody
+    Family{"ring", Ring},                   // i hears i - 1 and i + 1, 1 and N hear each other
+    Family{"path", Path},                   // i hears i - 1 and i + 1
+    Family{"star", Star},                   // 1 hears everybody, everybody hears 1
+    Family{"wheel", Wheel},                 // a star whose rim 2..N is a ring
+    Family{"binary_tree", BinaryTree},      // i and i / 2 (rounded down) hear each other
+    Family{"directed_ring", DirectedRing},  // i hears i - 1, 1 hears N
+    Family{"directed_path", DirectedPath},  // i hears i - 1
+    Family{"directed_star", DirectedStar},  // everybody hears 1
+    Family{"directed_tree", DirectedTree},  // i hears i / 2 (rounded down)
+};
+
+constexpr auto kNames = [] {
+  std::array<std::string_view, kFamilies.size()> names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kFamilies[i].name;
+  return names;
+}();
+
+}  // namespace
+
+std::span<const std::string_view> TopologyNames() { return kNames; }
+
+Graph MakeTopology(std::string_view name, int count) {
+  const auto family = std::find_if(kFamilies.begin(), kFamilies.end(), [&](const Family& f) { return f.name == name; });
+  assert(family != kFamilies.end());
+  Edges edges(count);
+  family->add(count, edges);
+  return std::move(edges).Build();
+}
+
+Graph MakeErdosRenyi(int count, double p, std::uint64_t seed) {
+  Random random(seed, Random::Stream::kGraph);
+  Edges edges(count);
+  for (int i = 1; i <= count; ++i)
+    for (int j = i + 1; j <= count; ++j)
+      if (random.Unit() < p) edges.Both(i, j);
+  return std::move(edges).Build();
+}
+
+}  // namespace mascot

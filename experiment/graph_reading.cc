@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "experiment/graph.h"
+
+namespace mascot {
+namespace {
+
+using Heard = std::vector<std::vector<Graph::Neighbour>>;
+using Rows = std::vector<std::vector<double>>;
+
+constexpr double kMaxWeight = 1e6;
+
+std::string Number(double value) {
+  const std::string text = ShortestFloat(value);
+  return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
+}
+
+/// Notes what keeps `rows` from being a count x count matrix. True if nothing does.
+bool IsSquare(Section& graph, std::string_view key, const Rows& rows, int count) {
+  const auto size = static_cast<std::size_t>(count);
+  if (graph.Wrong(key) || count == 0) return false;
+  if (rows.size() != size)
+    graph.Fail(key, "expected " + std::to_string(count) + " rows, one per agent, got a list of " +
+                        std::to_string(rows.size()));
+  for (std::size_t i = 0; i < rows.size() && rows.size() == size; ++i)
+    if (rows[i].size() != size)
+      graph.FailRow(key, i,
+                    "expected " + std::to_string(count) + " numbers, got a list of " + std::to_string(rows[i].size()));
+  return !graph.Wrong(key);
+}
+
+Heard FromAdjacency(Section& graph, int count) {
+  const Rows rows = graph.Rows("adjacency", 0, kMaxWeight);
+  Heard heard(static_cast<std::size_t>(count));
+  if (!IsSquare(graph, "adjacency", rows, count)) return heard;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i][i] != 0) graph.FailRow("adjacency", i, "expected 0 on the diagonal, got " + Number(rows[i][i]));
+    for (std::size_t j = 0; j < rows.size(); ++j)
+      if (i != j && rows[i][j] > 0) heard[i].push_back({static_cast<int>(j) + 1, rows[i][j]});
+  }
+  return heard;
+}
+
+Heard FromLaplacian(Section& graph, int count) {
+  const Rows rows = graph.Rows("laplacian", -kMaxWeight * 1e4, kMaxWeight * 1e4);
+  Heard heard(static_cast<std::size_t>(count));
+  if (!IsSquare(graph, "laplacian", rows, count)) return heard;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    double sum = 0, size = 1;
+    for (std::size_t j = 0; j < rows.size(); ++j) {
+      sum += rows[i][j];
+      size = std::max(size, std::abs(rows[i][j]));
+      if (i != j && rows[i][j] < 0) heard[i].push_back({static_cast<int>(j) + 1, -rows[i][j]});
+      if (i != j && rows[i][j] > 0)
+        graph.FailRow("laplacian", i,
+                      "expected no positive number off the diagonal, got " + Number(rows[i][j]) + " for agent " +
+                          std::to_string(j + 1));
+    }
+    constexpr double kTolerance = 1e-9;
+    if (std::abs(sum) > kTolerance * size)
+      graph.FailRow("laplacian", i, "expected a row that sums to 0, got a sum of " + Number(sum));
+  }
+  return heard;
+}
+
+/// What is wrong with the edge `row`, or nothing.
+std::string EdgeMistake(const std::vector<double>& row, int count) {
+  if (row.size() != 2 && row.size() != 3)
+    return "expected [i, j] or [i, j, weight], got a list of " + std::to_string(row.size());
+  for (const double id : {row[0], row[1]})
+    if (id < 1 || (count > 0 && id > count) || id != std::floor(id))
+      return "expected agents' numbers from 1" + (count > 0 ? " to " + std::to_string(count) : "") + ", got " +
+             Number(id);
+  if (row[0] == row[1]) return "expected two different agents, got " + Number(row[0]) + " twice";
+  if (row.size() == 3 && row[2] <= 0) return "expected a weight in (0, 1e+06], got " + Number(row[2]);
+  return "";
+}
+
+Heard FromEdges(Section& graph, int count) {
+  const Rows rows = graph.Rows("edges", 0, kMaxWeight);
+  Heard heard(static_cast<std::size_t>(count));
+  if (graph.Wrong("edges")) return heard;
+  std::set<std::pair<double, double>> seen;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const std::vector<double>& row = rows[k];
+    std::string mistake = EdgeMistake(row, count);
+    if (mistake.empty() && !seen.insert({row[0], row[1]}).second)
+      mistake = "expected each edge once, got [" + Number(row[0]) + ", " + Number(row[1]) + "] again";
+    if (!mistake.empty())
+      graph.FailRow("edges", k, mistake);
+    else if (count > 0)
+      heard[static_cast<std::size_t>(row[0]) - 1].push_back({static_cast<int>(row[1]), row.size() == 3 ? row[2] : 1});
+  }
+  for (auto& list : heard)
+    std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  return heard;
+}
+
+Graph FromRandom(Section& graph, int count, std::uint64_t seed) {
+  constexpr std::array<std::string_view, 1> kKinds = {"erdos_renyi"};
+  Section random = graph.Child("random");
+  random.OneOf("kind", kKinds);
+  const double p = random.Number("p", 0, 1);
+  random.Done();
+  return MakeErdosRenyi(count, p, seed);
+}
+
+}  // namespace
+
+Graph ReadGraph(Section& graph, int count, std::uint64_t seed) {
+  std::string given, last;
+  for (const std::string_view source : {"topology", "laplacian", "adjacency", "edges", "random"}) {
+    if (!graph.Has(source)) continue;
+    given += (given.empty() ? "" : " and ") + std::string(source);
+    last = source;
+  }
+  if (given.find(' ') != std::string::npos) {
+    graph.Fail(last, "expected one of topology, laplacian, adjacency, edges, random, got " + given);
+    return Graph(Heard(static_cast<std::size_t>(count)));
+  }
+  if (last == "laplacian") return Graph(FromLaplacian(graph, count));
+  if (last == "adjacency") return Graph(FromAdjacency(graph, count));
+  if (last == "edges") return Graph(FromEdges(graph, count));
+  if (last == "random") return FromRandom(graph, count, seed);
+  return MakeTopology(graph.OneOf("topology", TopologyNames(), "complete"), count);
+}
+
+}  // namespace mascot

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+
+namespace mascot {
+
+/// Motion of one body at one tick. W is the world (x east, y north, z up), B the body (x forward, y left,
+/// z up); SI units.
+struct Motion {
+  Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();              ///< position in W (m)
+  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();    ///< takes B components to W; w, x, y, z
+  Eigen::Vector3d v_WB = Eigen::Vector3d::Zero();              ///< velocity in W (m/s)
+  Eigen::Vector3d w_WB_B = Eigen::Vector3d::Zero();            ///< angular velocity expressed in B (rad/s)
+  Eigen::Vector3d a_WB = Eigen::Vector3d::Zero();              ///< (v(k) - v(k-1)) * control rate, in W; 0 at tick 0
+};
+
+/// What an agent's actuators get: rotor speeds 1..4 (rad/s) for a quadrotor; the model's own inputs
+/// otherwise (double integrator: force in W in newton, then 0).
+using Actuation = std::array<double, 4>;
+
+/// Of the double integrator model, so that its force is its acceleration.
+inline constexpr double kDoubleIntegratorMass_kg = 1.0;
+
+/// Bits of Command::flags.
+enum CommandFlag : std::uint32_t {
+  kAccelerationLimited = 1u << 0,  ///< the law asked for more than control.max_acceleration_m_per_s2
+  kTiltLimited = 1u << 1,          ///< roll or pitch target cut at the airframe's tilt limit
+  kRotorLimited = 1u << 2,         ///< a rotor speed cut to what the rotor can do
+};
+
+/// An agent's answer to one tick.
+struct Command {
+  Actuation actuator{};
+  Eigen::Vector3d a_law_W = Eigen::Vector3d::Zero();      ///< the law's acceleration before limits (m/s^2)
+  Eigen::Vector3d a_limited_W = Eigen::Vector3d::Zero();  ///< after limits
+  std::uint32_t flags = 0;                                ///< CommandFlag bits
+};
+
+}  // namespace mascot

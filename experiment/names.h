@@ -1,0 +1,13 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace mascot {
+
+/// Names that an experiment file may use for things whose tables live in libraries above this one: the
+/// models' in physics_server/models.cc, the transports' in idl/qos.cc. Tests hold them against those tables.
+inline constexpr std::array<std::string_view, 2> kModelNames = {"quadrotor", "double_integrator"};
+inline constexpr std::array<std::string_view, 3> kTransportNames = {"auto", "udp", "shm"};
+
+}  // namespace mascot

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace mascot {
+
+/// One or more mistakes in an experiment file, each as `file:line:column: key: expected ..., got ...`.
+class ConfigError : public std::runtime_error {
+ public:
+  explicit ConfigError(std::vector<std::string> mistakes);
+  const std::vector<std::string>& mistakes() const { return mistakes_; }
+
+ private:
+  std::vector<std::string> mistakes_;
+};
+
+/// A key given on the command line, which replaces the file's.
+struct Override {
+  std::string key;    ///< dotted: "law.p_gain"
+  std::string value;  ///< a TOML value: "0.5", "[1, 2]", "'ring'"
+};
+
+/// One table of a TOML file, read strictly. Each reader checks type and range; a mistake is noted (not
+/// thrown) and the fallback or the nearest legal value is returned, so that one pass finds them all.
+/// Every value read, defaults included, is remembered: Resolved() writes them out as the file that
+/// reproduces the run. Copies share their state. The only place that knows toml++.
+class Section {
+ public:
+  /// Parses a file, or text that goes by the name `name` in messages. `overrides` replace or add keys.
+  /// Throws ConfigError for what cannot be opened (a folder, a dangling link, ...), decoded or parsed.
+  static Section FromFile(const std::string& path, std::span<const Override> overrides = {});
+  static Section FromText(const std::string& text, const std::string& name, std::span<const Override> overrides = {});
+
+  bool Has(std::string_view key) const;
+  /// A mistake was noted at `key` ("": anywhere in this table) or inside it: what follows from its value is not
+  /// worth a second complaint.
+  bool Wrong(std::string_view key) const;
+
+  // Without a fallback the key is required. Numbers are finite; an integer is accepted as a number.
+  double Number(std::string_view key, double min, double max, std::optional<double> fallback = {});
+  /// As Number, but `min` itself is refused.
+  double Positive(std::string_view key, double max, std::optional<double> fallback = {});
+  std::int64_t Integer(std::string_view key, std::int64_t min, std::int64_t max,
+                       std::optional<std::int64_t> fallback = {});
+  bool Boolean(std::string_view key, bool fallback);
+  std::string Text(std::string_view key, std::optional<std::string> fallback = {});
+  /// One of `names`; the message lists them and offers the nearest.
+  std::string OneOf(std::string_view key, std::span<const std::string_view> names,
+                    std::optional<std::string> fallback = {});
+  std::vector<std::string> Texts(std::string_view key, std::vector<std::string> fallback);
+  Eigen::Vector3d Vector3(std::string_view key, double min, double max, std::optional<Eigen::Vector3d> fallback = {});
+  /// A list of numbers of any length (empty if absent).
+  std::vector<double> Numbers(std::string_view key, double min, double max);
+  /// A list of lists of numbers, row lengths as they stand (empty if absent). Laplacians, edges, points.
+  std::vector<std::vector<double>> Rows(std::string_view key, double min, double max);
+  /// Rows() of exactly three numbers each.
+  std::vector<Eigen::Vector3d> Points(std::string_view key, double min, double max);
+
+  /// What kind of value stands there: "number", "string", "list", "table", ..., or "" if absent.
+  std::string Kind(std::string_view key) const;
+  /// A table inside this one; an absent one reads as empty.
+  Section Child(std::string_view key);
+  /// An array of tables ([[key]]); absent reads as none.
+  std::vector<Section> Children(std::string_view key);
+
+  /// Notes a mistake at the place of `key` (or of this table if absent): message = "expected ..., got ...".
+  void Fail(std::string_view key, const std::string& message);
+  /// As Fail, at row `row` (from 0) of the list `key`: "graph.laplacian[2]: ...".
+  void FailRow(std::string_view key, std::size_t row, const std::string& message);
+  /// Notes every key of this table that nobody asked for as unknown, with "did you mean".
+  void Done();
+  /// Throws ConfigError if any section of this document noted a mistake; in order of line and column.
+  void ThrowIfWrong() const;
+  /// TOML text of everything read so far, in reading order, defaults included, shortest round-trip floats.
+  std::string Resolved() const;
+
+ private:
+  struct Document;
+  struct Table;
+  Section(std::shared_ptr<Document> document, std::shared_ptr<Table> table);
+  std::shared_ptr<Document> document_;
+  std::shared_ptr<Table> table_;
+};
+
+/// The name among `names` that is closest to `word`, if it is close enough to be a slip of the finger.
+std::optional<std::string> DidYouMean(std::string_view word, std::span<const std::string_view> names);
+
+/// Shortest decimal text that reads back as exactly `value`; always with a point or exponent ("40.0").
+std::string ShortestFloat(double value);
+
+}  // namespace mascot

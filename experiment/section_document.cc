@@ -1,0 +1,209 @@
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "experiment/section_internal.h"
+
+namespace mascot {
+namespace {
+
+constexpr std::size_t kLargestFile = 16u << 20;  // ten thousand agents with their edges need about 1 MiB
+constexpr std::size_t kDeepestKey = 32;
+constexpr std::size_t kMostMistakes = 100;
+
+class File {
+ public:
+  // Non-blocking: opening a FIFO that nobody writes to would wait for ever.
+  explicit File(const std::string& path) : fd_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
+  ~File() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  int fd() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+std::string ReadFile(const std::string& path) {
+  const auto refuse = [&](const std::string& why) -> std::string { throw ConfigError({OneLine(path) + ": " + why}); };
+  const auto unreadable = [&] { return refuse(std::string("cannot be read: ") + std::strerror(errno)); };
+  const auto too_large = [&] { return refuse("is larger than 16 MiB"); };
+  const File file(path);
+  struct stat status {};
+  if (file.fd() < 0 || ::fstat(file.fd(), &status) != 0) return unreadable();
+  if (S_ISDIR(status.st_mode)) return refuse("is a directory");
+  if (!S_ISREG(status.st_mode)) return refuse("is not a regular file");
+  if (static_cast<std::size_t>(status.st_size) > kLargestFile) return too_large();
+  std::string text;
+  char buffer[1 << 16];
+  for (;;) {
+    const ssize_t got = ::read(file.fd(), buffer, sizeof buffer);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return unreadable();
+    if (got == 0) return text;
+    text.append(buffer, static_cast<std::size_t>(got));
+    if (text.size() > kLargestFile) return too_large();  // it grew while we read
+  }
+}
+
+/// Refuses keys of more than kDeepestKey parts: toml++ makes and frees one table per part recursively, and a
+/// key of a million parts would run it out of stack. Walks over strings and comments as TOML does.
+void RefuseDeepKeys(std::string_view text, const std::string& name) {
+  unsigned line = 1;
+  std::size_t parts = 1;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '#') {
+      i = std::min(text.find('\n', i), text.size()) - 1;
+    } else if (c == '"' || c == '\'') {
+      const std::string triple(3, c);
+      const bool multiline = text.substr(i, 3) == triple;
+      const std::string_view closing = multiline ? std::string_view(triple) : std::string_view(triple).substr(0, 1);
+      for (i += closing.size(); i < text.size() && text.substr(i, closing.size()) != closing; ++i) {
+        if (text[i] == '\n' && !multiline) return;  // not TOML: the parser stops here, and says why
+        if (text[i] == '\\' && c == '"') ++i;
+        if (i < text.size() && text[i] == '\n') ++line;
+      }
+      i += closing.size() - 1;
+      for (int extra = 0; multiline && extra < 2 && i + 1 < text.size() && text[i + 1] == c; ++extra) ++i;
+    } else if (c == '.') {
+      if (++parts > kDeepestKey)
+        throw ConfigError({name + ":" + std::to_string(line) + ":1: expected a key of at most " +
+                           std::to_string(kDeepestKey) + " parts, got more"});
+    } else if (c == '\n' || c == '=' || c == ',' || c == '[' || c == '{') {
+      parts = 1;
+      if (c == '\n') ++line;
+    }
+  }
+}
+
+std::string PlaceText(const toml::source_region& place, const std::string& name) {
+  if (place.path && *place.path != name) return *place.path;  // a value given on the command line
+  return name + ":" + std::to_string(std::max(place.begin.line, 1u)) + ":" +
+         std::to_string(std::max(place.begin.column, 1u));
+}
+
+/// The words of toml++, where they help; a hint where they alone would not.
+std::string Why(std::string_view description) {
+  constexpr std::string_view kPrefix = "Error ";
+  std::string why(description.starts_with(kPrefix) ? description.substr(kPrefix.size()) : description);
+  if (why.find("invalid utf-8") != std::string::npos) return "expected UTF-8 text, got other bytes";
+  if (why.ends_with("could not determine value type")) why += " (a string needs quotes)";
+  if (why.find("unescaped control characters") != std::string::npos) why += " (does the string end on its line?)";
+  return why;
+}
+
+toml::table Parse(std::string_view text, const std::string& name) {
+  RefuseDeepKeys(text, name);
+  try {
+    return toml::parse(text, std::string_view(name));
+  } catch (const toml::parse_error& error) {
+    throw ConfigError({PlaceText(error.source(), name) + ": " + Why(error.description())});
+  }
+}
+
+/// The value of an override, in a table of its own under the key "value". A word that is no TOML value
+/// (`--set graph.topology=ring`) stands for itself: a shell would eat its quotes.
+toml::table ParseValue(const Override& override, const std::string& name) {
+  const bool word = !override.value.empty() && std::isalpha(static_cast<unsigned char>(override.value[0])) &&
+                    override.value.find('\n') == std::string::npos;
+  try {
+    toml::table table = Parse("value = " + override.value, name);
+    if (table.size() == 1) return table;
+    throw ConfigError({name + ": expected one TOML value"});
+  } catch (const ConfigError&) {
+    if (word) return Parse("value = " + QuotedToml(override.value), name);
+    throw ConfigError(
+        {name + ": " + override.key + ": expected a TOML value, got '" + Printable(override.value) + "'"});
+  }
+}
+
+std::vector<std::string> KeyParts(const Override& override, const std::string& name) {
+  const auto is_bare = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-'; };
+  std::vector<std::string> parts(1);
+  bool good = true;
+  for (const char c : override.key) {
+    if (c == '.') {
+      good = good && !parts.back().empty();
+      parts.emplace_back();
+    } else {
+      good = good && is_bare(c);
+      parts.back() += c;
+    }
+  }
+  if (good && !parts.back().empty() && parts.size() <= kDeepestKey) return parts;
+  throw ConfigError({name + ": expected a dotted key such as law.p_gain, got '" + Printable(override.key) + "'"});
+}
+
+void Apply(const Override& override, toml::table& root) {
+  const std::string name = "--set " + Printable(override.key + "=" + override.value);
+  const std::vector<std::string> parts = KeyParts(override, name);
+  toml::table value = ParseValue(override, name);
+  const toml::source_region place = value.get("value")->source();
+  toml::table* table = &root;
+  std::string path;
+  for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
+    path += (i == 0 ? "" : ".") + parts[i];
+    if (!table->contains(parts[i])) table->insert(toml::key(parts[i], place), toml::table());
+    table = table->get_as<toml::table>(parts[i]);
+    if (table == nullptr)
+      throw ConfigError({name + ": " + path + ": expected a table to set " + parts[i + 1] + " in, got a value"});
+  }
+  table->erase(parts.back());  // with its key, whose place is the file's
+  table->insert(toml::key(parts.back(), place), std::move(*value.get("value")));
+}
+
+}  // namespace
+
+ConfigError::ConfigError(std::vector<std::string> mistakes)
+    : std::runtime_error([&] {
+        std::string text;
+        for (const std::string& mistake : mistakes) text += (text.empty() ? "" : "\n") + mistake;
+        return text;
+      }()),
+      mistakes_(std::move(mistakes)) {}
+
+Section::Document::Document(std::string_view text, const std::string& document_name,
+                            std::span<const Override> overrides)
+    : name(OneLine(document_name)), root(Parse(text, name)) {
+  for (const Override& override : overrides) Apply(override, root);
+}
+
+void Section::Document::Note(const toml::source_region& place, const std::string& path, const std::string& message) {
+  const bool overridden = place.path && *place.path != name;
+  Mistake mistake{overridden, overridden ? 0 : place.begin.line, overridden ? 0 : place.begin.column,
+                  PlaceText(place, name) + ": " + (path.empty() ? "" : path + ": ") + message};
+  if (mistakes_.size() < kMostMistakes) {
+    mistakes_.insert(std::move(mistake));
+  } else if (!mistakes_.contains(mistake)) {
+    left_out_ = true;
+  }
+}
+
+void Section::Document::ThrowIfWrong() const {
+  if (mistakes_.empty()) return;
+  std::vector<std::string> texts;
+  for (const Mistake& mistake : mistakes_) texts.push_back(mistake.text);
+  if (left_out_) texts.push_back(name + ": too many mistakes: these are the first found");
+  throw ConfigError(std::move(texts));
+}
+
+Section Section::FromFile(const std::string& path, std::span<const Override> overrides) {
+  return FromText(ReadFile(path), path, overrides);
+}
+
+Section Section::FromText(const std::string& text, const std::string& name, std::span<const Override> overrides) {
+  auto document = std::make_shared<Document>(text, name, overrides);
+  document->top = std::make_shared<Table>();
+  document->top->toml = &document->root;
+  document->top->place = document->root.source();
+  document->top->document = document.get();
+  return {document, document->top};
+}
+
+}  // namespace mascot
