@@ -1,0 +1,195 @@
+#include "idl/bus.h"
+
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/topic/TopicDataType.hpp>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
+
+#include <utility>
+
+#include "idl/wire.h"
+
+namespace mascot {
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+using eprosima::fastrtps::rtps::SerializedPayload_t;
+using eprosima::fastrtps::types::ReturnCode_t;
+
+/// Takes over what Fast DDS made; nothing downstream needs to test for null.
+template <class Entity>
+Handle<Entity> Own(Entity* entity, const std::string& what, std::function<void(Entity*)> give_back) {
+  if (entity == nullptr) throw BusError("Fast DDS refused to make the " + what);
+  return Handle<Entity>(entity, std::move(give_back));
+}
+
+/// Delivery inside one process would run a reader's callback in the thread that writes, under its locks.
+void TurnOffDeliveryInOneProcess() {
+  eprosima::fastrtps::LibrarySettingsAttributes settings;
+  settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+  eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
+}
+
+}  // namespace
+
+// --- Domain -------------------------------------------------------------------------------------------
+
+Domain::Domain(const DomainOptions& options, std::function<void()> wake, dds::DomainParticipantListener* discovery)
+    : wake_(std::move(wake)) {
+  TurnOffDeliveryInOneProcess();
+  auto* factory = dds::DomainParticipantFactory::get_instance();
+  const auto domain_id = static_cast<dds::DomainId_t>(options.domain);
+  participant_ = Own<dds::DomainParticipant>(
+      factory->create_participant(domain_id, ParticipantQos(options), discovery, dds::StatusMask::none()),
+      "participant in domain " + std::to_string(options.domain), [factory](auto* participant) {
+        participant->set_listener(nullptr);
+        factory->delete_participant(participant);
+      });
+  auto* participant = participant_.get();
+  publisher_ = Own<dds::Publisher>(participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT), "publisher",
+                                   [participant](auto* publisher) { participant->delete_publisher(publisher); });
+  subscriber_ = Own<dds::Subscriber>(participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT), "subscriber",
+                                     [participant](auto* subscriber) { participant->delete_subscriber(subscriber); });
+}
+
+void Domain::Fail(std::exception_ptr failure) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!failure_) failure_ = std::move(failure);
+  }
+  wake_();
+}
+
+void Domain::RethrowFailure() const {
+  const std::lock_guard lock(mutex_);
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+Handle<dds::Topic> Domain::MakeTopic(const Topic& topic, dds::TypeSupport type) {
+  auto* participant = participant_.get();
+  const std::string name = topic.DdsName();
+  if (participant->find_type(type.get_type_name()).empty()) type.register_type(participant);
+  // A process that both reads and writes a topic needs it twice: the second time it is found, not made.
+  auto* existing = participant->lookup_topicdescription(name);
+  if (existing != nullptr) return Handle<dds::Topic>(static_cast<dds::Topic*>(existing), [](dds::Topic*) {});
+  return Own<dds::Topic>(participant->create_topic(name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT), "topic " + name,
+                         [participant](auto* made) { participant->delete_topic(made); });
+}
+
+// --- writers ------------------------------------------------------------------------------------------
+
+class WriterBase::Listener : public dds::DataWriterListener {
+ public:
+  explicit Listener(Domain& domain) : domain_(domain) {}
+  void on_publication_matched(dds::DataWriter*, const dds::PublicationMatchedStatus&) override { domain_.Wake(); }
+
+ private:
+  Domain& domain_;
+};
+
+WriterBase::WriterBase(Domain& domain, const Topic& topic, dds::TypeSupport type)
+    : name_(topic.Name()), listener_(std::make_unique<Listener>(domain)), topic_(domain.MakeTopic(topic, type)) {
+  auto* publisher = domain.publisher_.get();
+  writer_ = Own<dds::DataWriter>(publisher->create_datawriter(topic_.get(), WriterQos(topic.kind), listener_.get(),
+                                                              dds::StatusMask::publication_matched()),
+                                 "writer for " + name_, [publisher](auto* writer) {
+                                   writer->set_listener(nullptr);
+                                   publisher->delete_datawriter(writer);
+                                 });
+}
+
+WriterBase::~WriterBase() = default;
+
+int WriterBase::matched() const {
+  dds::PublicationMatchedStatus status;
+  writer_->get_publication_matched_status(status);
+  return status.current_count;
+}
+
+void WriterBase::WriteAny(void* sample) {
+  if (!writer_->write(sample)) throw BusError("Fast DDS did not take a sample of " + name_);
+}
+
+// --- readers ------------------------------------------------------------------------------------------
+
+class ReaderBase::Listener : public dds::DataReaderListener {
+ public:
+  Listener(Domain& domain, void* sample, std::function<void(std::int64_t)> on_sample)
+      : domain_(domain), sample_(sample), on_sample_(std::move(on_sample)) {}
+
+  void on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus&) override { domain_.Wake(); }
+
+  void on_data_available(dds::DataReader* reader) override try {
+    dds::SampleInfo info;
+    while (reader->take_next_sample(sample_, &info) == ReturnCode_t::RETCODE_OK)
+      if (info.valid_data) on_sample_(info.sample_identity.sequence_number().to64long());
+  } catch (...) {
+    domain_.Fail(std::current_exception());
+  }
+
+ private:
+  Domain& domain_;
+  void* sample_;
+  std::function<void(std::int64_t)> on_sample_;
+};
+
+ReaderBase::ReaderBase(Domain& domain, const Topic& topic, dds::TypeSupport type, const dds::DataReaderQos& qos,
+                       void* sample, std::function<void(std::int64_t)> on_sample)
+    : listener_(std::make_unique<Listener>(domain, sample, std::move(on_sample))),
+      topic_(domain.MakeTopic(topic, type)) {
+  auto* subscriber = domain.subscriber_.get();
+  const dds::StatusMask mask = dds::StatusMask::subscription_matched() << dds::StatusMask::data_available();
+  reader_ = Own<dds::DataReader>(subscriber->create_datareader(topic_.get(), qos, listener_.get(), mask),
+                                 "reader for " + topic.Name(), [subscriber](auto* reader) {
+                                   reader->set_listener(nullptr);
+                                   subscriber->delete_datareader(reader);
+                                 });
+}
+
+ReaderBase::~ReaderBase() = default;
+
+int ReaderBase::matched() const {
+  dds::SubscriptionMatchedStatus status;
+  reader_->get_subscription_matched_status(status);
+  return status.current_count;
+}
+
+// --- raw bytes ----------------------------------------------------------------------------------------
+
+namespace {
+
+/// Goes by the name of a generated type, so that its writers match, and keeps the bytes as they came.
+class RawType : public dds::TopicDataType {
+ public:
+  explicit RawType(const std::string& name) {
+    setName(name.c_str());
+    m_typeSize = 256;  // a first guess for preallocation; histories grow with what comes
+    m_isGetKeyDefined = false;
+  }
+  bool serialize(void*, SerializedPayload_t*) override { return false; }  // read only
+  bool deserialize(SerializedPayload_t* payload, void* data) override {
+    static_cast<RawReader::Bytes*>(data)->assign(payload->data, payload->data + payload->length);
+    return true;
+  }
+  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
+    return [data] { return static_cast<std::uint32_t>(static_cast<RawReader::Bytes*>(data)->size()); };
+  }
+  void* createData() override { return new RawReader::Bytes; }
+  void deleteData(void* data) override { delete static_cast<RawReader::Bytes*>(data); }
+  bool getKey(void*, eprosima::fastrtps::rtps::InstanceHandle_t*, bool) override { return false; }
+};
+
+}  // namespace
+
+RawReader::RawReader(Domain& domain, const Topic& topic, Callback on_sample)
+    : RawReader(domain, topic, std::move(on_sample), std::make_shared<Bytes>()) {}
+
+RawReader::RawReader(Domain& domain, const Topic& topic, Callback on_sample, std::shared_ptr<Bytes> bytes)
+    : ReaderBase(domain, topic, dds::TypeSupport(new RawType(WireTypeName(topic.kind))), RecorderQos(topic.kind),
+                 bytes.get(), [bytes, on_sample = std::move(on_sample)](std::int64_t sequence) {
+                   on_sample(*bytes, sequence);
+                 }) {}
+
+}  // namespace mascot

@@ -1,0 +1,96 @@
+#include "idl/lifecycle.h"
+
+#include <signal.h>
+
+#include <utility>
+
+namespace mascot {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+Lifecycle::Lifecycle(Domain& domain, StopSignal& stop, std::string process, int agent)
+    : stop_(stop),
+      domain_(domain),
+      status_writer_(domain, Topic::Status()),
+      request_writer_(domain, Topic::Request()),
+      experiment_reader_(domain, Topic::Experiment(),
+                         [this](const mascot_msgs::msg::Experiment& experiment) {
+                           const std::lock_guard lock(mutex_);
+                           experiment_ = experiment;
+                           domain_.Wake();
+                         }),
+      request_reader_(domain, Topic::Request(), [this](const mascot_msgs::msg::Request& request) { OnRequest(request); }) {
+  status_.process(std::move(process));
+  status_.agent(static_cast<std::uint32_t>(agent));
+}
+
+mascot_msgs::msg::Experiment Lifecycle::AwaitExperiment(std::chrono::seconds timeout) {
+  const auto deadline = Clock::now() + timeout;
+  while (Clock::now() < deadline) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (experiment_) return *experiment_;
+    }
+    Set(Life::kWaiting);
+    Wait(200ms);
+  }
+  throw std::runtime_error("no experiment came within " + std::to_string(timeout.count()) +
+                           " s: is an orchestrator running in this domain?");
+}
+
+void Lifecycle::Set(Life life, const std::string& reason) {
+  {
+    const std::lock_guard lock(mutex_);
+    status_.state(static_cast<std::uint8_t>(life));
+    status_.reason(reason.substr(0, 1024));
+  }
+  Publish();
+}
+
+void Lifecycle::Report(std::uint64_t tick, std::uint64_t misses, std::uint64_t collisions) {
+  {
+    const std::lock_guard lock(mutex_);
+    status_.tick(tick);
+    status_.misses(misses);
+    status_.collisions(collisions);
+  }
+  Publish();
+}
+
+void Lifecycle::Wait(std::chrono::nanoseconds timeout) {
+  const int signal = stop_.Within(timeout);
+  domain_.RethrowFailure();
+  if (signal != 0 && signal != SIGCHLD) throw Ended(signal);
+  if (end_requested_) throw Ended(0);
+  if (report_requested_.exchange(false)) Publish();
+  // The experiment's only writer is the orchestrator's.
+  if (experiment_reader_.matched() > 0) joined_ = true;
+  else if (joined_) throw std::runtime_error("the orchestrator has gone");
+}
+
+void Lifecycle::AskForReports() {
+  mascot_msgs::msg::Request request;
+  request.kind(static_cast<std::uint8_t>(Ask::kReport));
+  request_writer_.Write(request);
+}
+
+void Lifecycle::OnRequest(const mascot_msgs::msg::Request& request) {
+  switch (static_cast<Ask>(request.kind())) {
+    case Ask::kReport: report_requested_ = true; break;
+    case Ask::kStop: stop_requested_ = true; break;
+    case Ask::kEnd: end_requested_ = true; break;
+  }
+  domain_.Wake();
+}
+
+void Lifecycle::Publish() {
+  mascot_msgs::msg::Status status;
+  {
+    const std::lock_guard lock(mutex_);
+    status = status_;
+  }
+  status_writer_.Write(status);
+}
+
+}  // namespace mascot

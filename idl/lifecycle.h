@@ -1,0 +1,68 @@
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "idl/bus.h"
+#include "idl/stop_signal.h"
+#include "idl/wire.h"
+
+namespace mascot {
+
+/// How a loop that waits was ended from outside, in an orderly way.
+class Ended : public std::exception {
+ public:
+  explicit Ended(int signal) : signal_(signal) {}
+  int signal() const { return signal_; }  ///< 0: the run asked this process to end
+  const char* what() const noexcept override { return "ended from outside"; }
+
+ private:
+  int signal_;
+};
+
+/// The part that every process of a run but the orchestrator plays on /status, /request and /experiment:
+/// it says what it is doing, says it again when asked, and ends when asked. Nothing here relies on a match
+/// event or a single delivery: who lacks something keeps asking.
+class Lifecycle {
+ public:
+  Lifecycle(Domain& domain, StopSignal& stop, std::string process, int agent);
+
+  /// Asks for the experiment until it comes. Throws std::runtime_error after `timeout`, naming what was
+  /// missing; throws Ended as Wait does.
+  mascot_msgs::msg::Experiment AwaitExperiment(std::chrono::seconds timeout);
+  /// Publishes a new state.
+  void Set(Life life, const std::string& reason = {});
+  /// Publishes the counters with the state as it is. Any thread.
+  void Report(std::uint64_t tick, std::uint64_t misses = 0, std::uint64_t collisions = 0);
+  /// Waits for a wake-up, at most `timeout`. Throws Ended when a signal or an END came, and whatever a
+  /// callback of the domain threw; throws std::runtime_error when the orchestrator has left the domain.
+  void Wait(std::chrono::nanoseconds timeout);
+  /// Ends a Wait of the loop's thread. Any thread.
+  void Wake() { stop_.Wake(); }
+  /// Asks everybody to report again.
+  void AskForReports();
+  /// A STOP was requested.
+  bool stop_requested() const { return stop_requested_; }
+
+ private:
+  void OnRequest(const mascot_msgs::msg::Request& request);
+  void Publish();
+
+  StopSignal& stop_;
+  Domain& domain_;
+  std::mutex mutex_;  // guards status_ and experiment_
+  mascot_msgs::msg::Status status_;
+  std::optional<mascot_msgs::msg::Experiment> experiment_;
+  std::atomic<bool> stop_requested_ = false;
+  std::atomic<bool> end_requested_ = false;
+  std::atomic<bool> report_requested_ = false;
+  bool joined_ = false;  // the orchestrator was here once
+  Writer<StatusType> status_writer_;
+  Writer<RequestType> request_writer_;
+  Reader<ExperimentType> experiment_reader_;
+  Reader<RequestType> request_reader_;
+};
+
+}  // namespace mascot

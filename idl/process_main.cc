@@ -1,0 +1,74 @@
+#include "idl/process_main.h"
+
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <iostream>
+
+#include "idl/shared_memory.h"
+
+namespace mascot {
+namespace {
+
+using Run = std::function<void(Domain&, Lifecycle&, const mascot_msgs::msg::Experiment&)>;
+
+/// Joins, runs, and reports a failure to the run before it leaves. Returns the exit code.
+int Join(const ProcessArgs& args, StopSignal& stop, const Run& run) {
+  Domain domain(args.options, [&stop] { stop.Wake(); });
+  Lifecycle lifecycle(domain, stop, args.options.name, args.agent);
+  try {
+    run(domain, lifecycle, lifecycle.AwaitExperiment(std::chrono::seconds(args.wait_s)));
+    return 0;
+  } catch (const Ended& ended) {
+    return ended.signal() == 0 ? 0 : 128 + ended.signal();
+  } catch (const std::exception& failure) {
+    std::cerr << "error: " << failure.what() << std::endl;
+    lifecycle.Set(Life::kFailed, failure.what());
+    return 1;
+  }
+}
+
+}  // namespace
+
+void ProcessArgs::AddTo(CLI::App& app) {
+  if (is_agent) app.add_option("--id", agent, "This agent's number, 1..N")->required()->check(CLI::Range(1, 10000));
+  app.add_option("--domain", options.domain, "DDS domain of the run; `orchestrator up` prints it")
+      ->required()
+      ->check(CLI::Range(0, 232));
+  app.add_option("--discovery", options.server, "IP-ADDRESS:PORT of the run's discovery server, if it has one");
+  app.add_option("--transport", options.transport, "auto (shared memory on one host, UDP between hosts), udp or shm");
+  app.add_option("--wait-s", wait_s, "How long to wait for an orchestrator")->check(CLI::Range(1, 86400));
+  app.add_flag("--loopback", options.loopback, "Use only 127.0.0.1: everything runs on this host");
+  app.add_option("--participants", options.participants, "How many processes this one talks to, about; sizes buffers")
+      ->check(CLI::Range(1, 10001));
+  app.add_option("--parent", parent, "Process id of the orchestrator that spawned this process: end when it dies");
+}
+
+int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSignal& stop, const Run& run) {
+  args.AddTo(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error, std::cout, std::cerr) == 0 ? 0 : 2;
+  }
+  std::signal(SIGPIPE, SIG_IGN);  // an orchestrator that died must not keep us from cleaning up
+  if (args.parent != 0) {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != args.parent) return 1;  // it died before this line
+  }
+  args.options.name = args.is_agent ? "agent_" + std::to_string(args.agent) : "physics_server";
+  if (!args.options.server.empty()) args.options.role = DiscoveryRole::kClient;
+  int code = 1;
+  try {
+    code = Join(args, stop, run);
+  } catch (const std::exception& failure) {
+    std::cerr << "error: " << failure.what() << std::endl;
+  }
+  // An orchestrator that was killed cannot remove its own shared memory any more.
+  if (args.parent != 0 && getppid() != args.parent) SweepSharedMemory();
+  return code;
+}
+
+}  // namespace mascot

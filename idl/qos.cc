@@ -1,0 +1,196 @@
+#include "idl/qos.h"
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+
+#include <algorithm>
+#include <charconv>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+namespace mascot {
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastdds::rtps;
+using eprosima::fastrtps::Duration_t;
+using eprosima::fastrtps::rtps::DiscoveryProtocol;
+using eprosima::fastrtps::rtps::IPLocator;
+using eprosima::fastrtps::rtps::Locator_t;
+
+// --- profiles: one row a topic kind -------------------------------------------------------------------
+
+struct Profile {
+  TopicKind kind;
+  int writer_depth;
+  int reader_depth;
+  bool per_tick;  // small fixed-size samples, tuned for the lockstep's round trip
+  bool late_joiners;
+};
+
+constexpr Profile kProfiles[] = {
+    {TopicKind::kState, kHistoryDepth, 8, true, false},   {TopicKind::kCommand, kHistoryDepth, 8, true, false},
+    {TopicKind::kClock, kHistoryDepth, 8, true, false},   {TopicKind::kStatus, 256, 256, false, false},
+    {TopicKind::kRequest, 32, 32, false, false},          {TopicKind::kExperiment, 1, 1, false, true},
+};
+
+const Profile& ProfileOf(TopicKind kind) {
+  return *std::find_if(std::begin(kProfiles), std::end(kProfiles), [&](const Profile& row) { return row.kind == kind; });
+}
+
+template <class Qos>
+void SetCommon(Qos& qos, const Profile& profile, int depth) {
+  qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
+  qos.durability().kind = profile.late_joiners ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+  qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+  qos.history().depth = depth;
+  qos.resource_limits().max_samples = 0;  // unlimited: the depth limits
+  qos.resource_limits().max_instances = 1;
+  qos.resource_limits().max_samples_per_instance = depth;
+  qos.resource_limits().allocated_samples = std::min(depth, 16);
+  qos.data_sharing().off();  // gains nothing at this size and leaves files behind
+  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+}
+
+// --- transports: one row each -------------------------------------------------------------------------
+
+std::shared_ptr<rtps::TransportDescriptorInterface> SharedMemory(const DomainOptions& options) {
+  auto transport = std::make_shared<rtps::SharedMemTransportDescriptor>();
+  const auto peers = static_cast<std::uint32_t>(options.participants);
+  transport->segment_size(512 * 1024 + 32 * 1024 * peers);
+  transport->port_queue_capacity(std::max<std::uint32_t>(512, 64 * peers));
+  return transport;
+}
+
+std::shared_ptr<rtps::TransportDescriptorInterface> Udp(const DomainOptions& options) {
+  auto transport = std::make_shared<rtps::UDPv4TransportDescriptor>();
+  if (options.loopback) transport->interfaceWhiteList.push_back("127.0.0.1");
+  // The kernel's default of about 200 KB drops bursts of a hundred agents' commands; it gives what it may.
+  transport->receiveBufferSize = transport->sendBufferSize = 4 * 1024 * 1024;
+  transport->maxInitialPeersRange = 120;  // as many participants as a domain's ports can hold
+  return transport;
+}
+
+struct Transport {
+  std::string_view name;
+  bool shared_memory;
+  bool udp;
+};
+
+constexpr Transport kTransports[] = {
+    {"auto", true, true},   // shared memory on one host, UDP between hosts
+    {"udp", false, true},   // UDP even on one host: for peers whose shared memory does not fit ours
+    {"shm", true, false},   // never leaves this host
+};
+
+// --- discovery ----------------------------------------------------------------------------------------
+
+Locator_t ServerLocator(const std::string& address) {
+  const std::size_t colon = address.rfind(':');
+  std::uint16_t port = 0;
+  Locator_t locator;
+  if (colon != std::string::npos) {
+    const char* end = address.data() + address.size();
+    const auto [rest, error] = std::from_chars(address.data() + colon + 1, end, port);
+    if (error != std::errc{} || rest != end) port = 0;
+  }
+  if (port == 0 || !IPLocator::setIPv4(locator, address.substr(0, colon)))
+    throw std::invalid_argument("--discovery: expected IP-ADDRESS:PORT, got '" + address + "'");
+  IPLocator::setPhysicalPort(locator, port);
+  return locator;
+}
+
+/// A discovery server's GUID prefix: any constant will do, but it must differ between runs of one host.
+eprosima::fastrtps::rtps::GuidPrefix_t ServerPrefix(const Locator_t& server) {
+  eprosima::fastrtps::rtps::GuidPrefix_t prefix;
+  std::ostringstream text;
+  const unsigned port = IPLocator::getPhysicalPort(server);
+  text << "44.53.4d.41.53.43.4f.54.00.00." << std::hex << (port >> 8) << "." << (port & 255);
+  std::istringstream(text.str()) >> prefix;
+  return prefix;
+}
+
+void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) {
+  auto& builtin = qos.wire_protocol().builtin;
+  builtin.mutation_tries = 1000;  // the default of 100 leaves the 101st participant of a host silently deaf
+  builtin.typelookup_config.use_client = false;
+  builtin.typelookup_config.use_server = false;
+  if (options.role == DiscoveryRole::kPeer) {
+    // Announce often at first: a start-up must not wait for the regular period of seconds.
+    builtin.discovery_config.initial_announcements.count = 20;
+    builtin.discovery_config.initial_announcements.period = Duration_t(0, 100'000'000);
+    return;
+  }
+  const Locator_t locator = ServerLocator(options.server);
+  if (options.role == DiscoveryRole::kServer) {
+    builtin.discovery_config.discoveryProtocol = DiscoveryProtocol::SERVER;
+    qos.wire_protocol().prefix = ServerPrefix(locator);
+    builtin.metatrafficUnicastLocatorList.push_back(locator);
+    return;
+  }
+  const bool client = options.role == DiscoveryRole::kClient;
+  builtin.discovery_config.discoveryProtocol = client ? DiscoveryProtocol::CLIENT : DiscoveryProtocol::SUPER_CLIENT;
+  eprosima::fastdds::rtps::RemoteServerAttributes server;
+  server.guidPrefix = ServerPrefix(locator);
+  server.metatrafficUnicastLocatorList.push_back(locator);
+  builtin.discovery_config.m_DiscoveryServers.push_back(server);
+}
+
+}  // namespace
+
+std::span<const std::string_view> TransportNames() {
+  static const std::vector<std::string_view> names = [] {
+    std::vector<std::string_view> all;
+    for (const Transport& row : kTransports) all.push_back(row.name);
+    return all;
+  }();
+  return names;
+}
+
+dds::DomainParticipantQos ParticipantQos(const DomainOptions& options) {
+  const auto row = std::find_if(std::begin(kTransports), std::end(kTransports),
+                                [&](const Transport& transport) { return transport.name == options.transport; });
+  if (row == std::end(kTransports)) throw std::invalid_argument("--transport: unknown transport '" + options.transport + "'");
+  dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
+  qos.name(options.name);
+  qos.transport().use_builtin_transports = false;
+  if (row->shared_memory) qos.transport().user_transports.push_back(SharedMemory(options));
+  if (row->udp || options.role != DiscoveryRole::kPeer) qos.transport().user_transports.push_back(Udp(options));
+  SetDiscovery(qos, options);
+  return qos;
+}
+
+dds::DataWriterQos WriterQos(TopicKind kind) {
+  const Profile& profile = ProfileOf(kind);
+  dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
+  SetCommon(qos, profile, profile.writer_depth);
+  qos.publish_mode().kind = profile.late_joiners ? dds::ASYNCHRONOUS_PUBLISH_MODE  // may be large: fragments
+                                                 : dds::SYNCHRONOUS_PUBLISH_MODE;
+  auto& reliable = qos.reliable_writer_qos();
+  reliable.times.heartbeatPeriod = Duration_t(0, 200'000'000);  // repairs a lost last sample within 0.2 s
+  if (profile.per_tick) {
+    reliable.times.nackSupressionDuration = Duration_t(1, 0);  // 0 wakes the event thread at every write
+    reliable.disable_heartbeat_piggyback = true;
+  }
+  return qos;
+}
+
+dds::DataReaderQos ReaderQos(TopicKind kind) {
+  const Profile& profile = ProfileOf(kind);
+  dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
+  SetCommon(qos, profile, profile.reader_depth);
+  return qos;
+}
+
+dds::DataReaderQos RecorderQos(TopicKind kind) {
+  const Profile& profile = ProfileOf(kind);
+  dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
+  SetCommon(qos, profile, profile.writer_depth);
+  return qos;
+}
+
+int WriterDepth(TopicKind kind) { return ProfileOf(kind).writer_depth; }
+
+}  // namespace mascot

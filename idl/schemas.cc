@@ -1,0 +1,33 @@
+#include "idl/schemas.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace mascot {
+namespace {
+
+constexpr TypeSchema kSchemas[] = {
+#include "schemas.inc"  // made of idl/mascot_msgs/msg/*.msg by idl/make_schemas.py
+};
+
+}  // namespace
+
+std::span<const TypeSchema> Schemas() { return kSchemas; }
+
+const TypeSchema& SchemaOf(std::string_view name) {
+  const auto* row =
+      std::find_if(std::begin(kSchemas), std::end(kSchemas), [&](const auto& s) { return s.name == name; });
+  if (row == std::end(kSchemas)) throw std::out_of_range("no schema for the type " + std::string(name));
+  return *row;
+}
+
+std::string OfferedQos(int depth) {
+  // keep last, reliable, volatile, automatic liveliness; infinite durations are this number of seconds in rmw.
+  constexpr std::string_view kInfinite = "{sec: 9223372036, nsec: 854775807}\n";
+  std::string yaml = "- history: 1\n  depth: " + std::to_string(depth) + "\n  reliability: 1\n  durability: 2\n";
+  yaml.append("  deadline: ").append(kInfinite).append("  lifespan: ").append(kInfinite);
+  yaml.append("  liveliness: 1\n  liveliness_lease_duration: ").append(kInfinite);
+  return yaml + "  avoid_ros_namespace_conventions: false\n";
+}
+
+}  // namespace mascot

@@ -1,0 +1,60 @@
+#include "idl/stop_signal.h"
+
+#include <poll.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/eventfd.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+namespace mascot {
+namespace {
+
+sigset_t Signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (int signal : {SIGINT, SIGTERM, SIGHUP, SIGCHLD}) sigaddset(&set, signal);
+  return set;
+}
+
+int Checked(int fd, const char* what) {
+  if (fd < 0) throw std::system_error(errno, std::generic_category(), what);
+  return fd;
+}
+
+}  // namespace
+
+StopSignal::StopSignal() {
+  const sigset_t set = Signals();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  signals_ = Checked(signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK), "signalfd");
+  wakeups_ = Checked(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK), "eventfd");
+}
+
+StopSignal::~StopSignal() {
+  close(wakeups_);
+  close(signals_);
+  const sigset_t set = Signals();
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
+int StopSignal::Within(std::chrono::nanoseconds timeout) {
+  pollfd fds[] = {{signals_, POLLIN, 0}, {wakeups_, POLLIN, 0}};
+  const auto left = std::max(timeout, std::chrono::nanoseconds::zero());
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(left);
+  const timespec limit{seconds.count(), (left - seconds).count()};
+  if (ppoll(fds, 2, &limit, nullptr) <= 0) return 0;
+  signalfd_siginfo info;
+  if ((fds[0].revents & POLLIN) && read(signals_, &info, sizeof info) == sizeof info) return static_cast<int>(info.ssi_signo);
+  eventfd_t count;
+  eventfd_read(wakeups_, &count);
+  return 0;
+}
+
+void StopSignal::Wake() { eventfd_write(wakeups_, 1); }
+
+}  // namespace mascot

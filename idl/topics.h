@@ -1,0 +1,35 @@
+#pragma once
+
+#include <compare>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace mascot {
+
+/// What a topic carries. The order is the order of topics of one agent in a recording: by name.
+enum class TopicKind { kCommand, kState, kClock, kExperiment, kRequest, kStatus };
+
+/// Every topic of a run. `agent` is 1..N for the per-agent kinds, else 0.
+struct Topic {
+  TopicKind kind = TopicKind::kClock;
+  int agent = 0;
+
+  static Topic State(int agent) { return {TopicKind::kState, agent}; }
+  static Topic Command(int agent) { return {TopicKind::kCommand, agent}; }
+  static Topic Clock() { return {TopicKind::kClock, 0}; }
+  static Topic Experiment() { return {TopicKind::kExperiment, 0}; }
+  static Topic Request() { return {TopicKind::kRequest, 0}; }
+  static Topic Status() { return {TopicKind::kStatus, 0}; }
+
+  /// The ROS name: "/agent_3/state", "/clock".
+  std::string Name() const;
+  /// The DDS name that ROS 2 maps it to: "rt/agent_3/state".
+  std::string DdsName() const { return "rt" + Name(); }
+  /// The topic of a ROS or DDS name, if it is one of ours.
+  static std::optional<Topic> Parse(std::string_view name);
+
+  auto operator<=>(const Topic&) const = default;
+};
+
+}  // namespace mascot

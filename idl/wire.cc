@@ -1,0 +1,141 @@
+#include "idl/wire.h"
+
+#include <stdexcept>
+
+#include "idl/bus.h"
+
+namespace mascot {
+namespace {
+
+using eprosima::fastrtps::rtps::SerializedPayload_t;
+
+geometry_msgs::msg::Vector3 ToVector3(const Eigen::Vector3d& v) {
+  geometry_msgs::msg::Vector3 wire;
+  wire.x(v.x());
+  wire.y(v.y());
+  wire.z(v.z());
+  return wire;
+}
+
+Eigen::Vector3d FromVector3(const geometry_msgs::msg::Vector3& wire) { return {wire.x(), wire.y(), wire.z()}; }
+
+builtin_interfaces::msg::Time ToTime(std::int64_t tick, int rate_hz) {
+  const std::uint64_t ns = StampNs(tick, rate_hz);
+  builtin_interfaces::msg::Time stamp;
+  stamp.sec(static_cast<std::int32_t>(ns / 1'000'000'000));
+  stamp.nanosec(static_cast<std::uint32_t>(ns % 1'000'000'000));
+  return stamp;
+}
+
+template <class PubSub>
+void SerializeAs(typename PubSub::type& sample, std::vector<std::uint8_t>& bytes) {
+  thread_local ZeroPadded<PubSub> type;
+  thread_local SerializedPayload_t payload(type.m_typeSize);
+  payload.length = 0;
+  if (!type.serialize(&sample, &payload)) throw std::logic_error("a sample did not fit its own type");
+  bytes.assign(payload.data, payload.data + payload.length);
+}
+
+template <class PubSub>
+void DeserializeAs(std::span<const std::uint8_t> bytes, typename PubSub::type& sample) {
+  thread_local PubSub type;
+  SerializedPayload_t payload;  // borrows the bytes: given back before it can free them
+  payload.data = const_cast<std::uint8_t*>(bytes.data());
+  payload.length = payload.max_size = static_cast<std::uint32_t>(bytes.size());
+  const bool ok = bytes.size() == type.m_typeSize && type.deserialize(&payload, &sample);
+  payload.data = nullptr;
+  payload.length = payload.max_size = 0;
+  if (!ok) throw std::runtime_error("a sample of " + std::to_string(bytes.size()) + " bytes is no " + type.getName());
+}
+
+}  // namespace
+
+std::string WireTypeName(TopicKind kind) {
+  switch (kind) {
+    case TopicKind::kCommand: return CommandType().getName();
+    case TopicKind::kState: return StateType().getName();
+    case TopicKind::kClock: return ClockType().getName();
+    case TopicKind::kExperiment: return ExperimentType().getName();
+    case TopicKind::kRequest: return RequestType().getName();
+    case TopicKind::kStatus: return StatusType().getName();
+  }
+  return {};
+}
+
+std::uint64_t StampNs(std::int64_t tick, int rate_hz) {
+  const auto rate = static_cast<std::uint64_t>(rate_hz);
+  const auto k = static_cast<std::uint64_t>(tick);
+  return (k / rate) * 1'000'000'000 + ((k % rate) * 1'000'000'000 + rate / 2) / rate;
+}
+
+void ToWire(std::int64_t tick, int rate_hz, int agent, const Motion& motion, mascot_msgs::msg::AgentState& sample) {
+  sample.stamp(ToTime(tick, rate_hz));
+  sample.tick(static_cast<std::uint64_t>(tick));
+  sample.agent(static_cast<std::uint32_t>(agent));
+  auto& position = sample.pose().position();
+  position.x(motion.p_WB.x());
+  position.y(motion.p_WB.y());
+  position.z(motion.p_WB.z());
+  auto& orientation = sample.pose().orientation();
+  orientation.x(motion.q_WB.x());
+  orientation.y(motion.q_WB.y());
+  orientation.z(motion.q_WB.z());
+  orientation.w(motion.q_WB.w());
+  sample.twist().linear(ToVector3(motion.v_WB));
+  sample.twist().angular(ToVector3(motion.w_WB_B));
+  sample.acceleration(ToVector3(motion.a_WB));
+}
+
+void ToWire(std::int64_t tick, int rate_hz, int agent, const Command& command, mascot_msgs::msg::AgentCommand& sample) {
+  sample.stamp(ToTime(tick, rate_hz));
+  sample.tick(static_cast<std::uint64_t>(tick));
+  sample.agent(static_cast<std::uint32_t>(agent));
+  sample.flags(command.flags);
+  sample.actuator(command.actuator);
+  sample.acceleration_wanted(ToVector3(command.a_law_W));
+  sample.acceleration_limited(ToVector3(command.a_limited_W));
+}
+
+void ToWire(std::int64_t tick, int rate_hz, rosgraph_msgs::msg::Clock& sample) { sample.clock(ToTime(tick, rate_hz)); }
+
+Motion FromWire(const mascot_msgs::msg::AgentState& sample) {
+  const auto& position = sample.pose().position();
+  const auto& orientation = sample.pose().orientation();
+  Motion motion;
+  motion.p_WB = {position.x(), position.y(), position.z()};
+  motion.q_WB = Eigen::Quaterniond(orientation.w(), orientation.x(), orientation.y(), orientation.z());
+  motion.v_WB = FromVector3(sample.twist().linear());
+  motion.w_WB_B = FromVector3(sample.twist().angular());
+  motion.a_WB = FromVector3(sample.acceleration());
+  return motion;
+}
+
+Command FromWire(const mascot_msgs::msg::AgentCommand& sample) {
+  Command command;
+  command.actuator = sample.actuator();
+  command.a_law_W = FromVector3(sample.acceleration_wanted());
+  command.a_limited_W = FromVector3(sample.acceleration_limited());
+  command.flags = sample.flags();
+  return command;
+}
+
+void Serialize(mascot_msgs::msg::AgentState& sample, std::vector<std::uint8_t>& bytes) {
+  SerializeAs<StateType>(sample, bytes);
+}
+void Serialize(mascot_msgs::msg::AgentCommand& sample, std::vector<std::uint8_t>& bytes) {
+  SerializeAs<CommandType>(sample, bytes);
+}
+void Serialize(rosgraph_msgs::msg::Clock& sample, std::vector<std::uint8_t>& bytes) {
+  SerializeAs<ClockType>(sample, bytes);
+}
+void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentState& sample) {
+  DeserializeAs<StateType>(bytes, sample);
+}
+void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentCommand& sample) {
+  DeserializeAs<CommandType>(bytes, sample);
+}
+void Deserialize(std::span<const std::uint8_t> bytes, rosgraph_msgs::msg::Clock& sample) {
+  DeserializeAs<ClockType>(bytes, sample);
+}
+
+}  // namespace mascot

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <mascotPubSubTypes.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "experiment/motion.h"
+#include "idl/topics.h"
+
+namespace mascot {
+
+using StateType = mascot_msgs::msg::AgentStatePubSubType;
+using CommandType = mascot_msgs::msg::AgentCommandPubSubType;
+using ClockType = rosgraph_msgs::msg::ClockPubSubType;
+using StatusType = mascot_msgs::msg::StatusPubSubType;
+using RequestType = mascot_msgs::msg::RequestPubSubType;
+using ExperimentType = mascot_msgs::msg::ExperimentPubSubType;
+
+/// What processes say of themselves in Status::state.
+enum class Life : std::uint8_t { kWaiting = 0, kMatching, kReady, kRunning, kDone, kFailed };
+/// What Request::kind asks for.
+enum class Ask : std::uint8_t { kReport = 0, kStop, kEnd };
+
+/// The DDS type name that a topic of this kind carries: "mascot_msgs::msg::dds_::AgentState_".
+std::string WireTypeName(TopicKind kind);
+
+/// Simulated time of tick k in nanoseconds: rounded from k / rate, never accumulated.
+std::uint64_t StampNs(std::int64_t tick, int rate_hz);
+
+// The one place where our types become wire types (quaternions x, y, z, w there) and back.
+void ToWire(std::int64_t tick, int rate_hz, int agent, const Motion& motion, mascot_msgs::msg::AgentState& sample);
+void ToWire(std::int64_t tick, int rate_hz, int agent, const Command& command, mascot_msgs::msg::AgentCommand& sample);
+void ToWire(std::int64_t tick, int rate_hz, rosgraph_msgs::msg::Clock& sample);
+Motion FromWire(const mascot_msgs::msg::AgentState& sample);
+Command FromWire(const mascot_msgs::msg::AgentCommand& sample);
+
+/// Bytes of a sample as the bus sends them: 4 bytes of encapsulation, then CDR with zeroed padding.
+/// `bytes` keeps its capacity from call to call.
+void Serialize(mascot_msgs::msg::AgentState& sample, std::vector<std::uint8_t>& bytes);
+void Serialize(mascot_msgs::msg::AgentCommand& sample, std::vector<std::uint8_t>& bytes);
+void Serialize(rosgraph_msgs::msg::Clock& sample, std::vector<std::uint8_t>& bytes);
+/// The reverse. Throws std::runtime_error for bytes that are no such sample.
+void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentState& sample);
+void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentCommand& sample);
+void Deserialize(std::span<const std::uint8_t> bytes, rosgraph_msgs::msg::Clock& sample);
+
+}  // namespace mascot
