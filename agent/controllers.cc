@@ -1,0 +1,33 @@
+#include <algorithm>
+#include <stdexcept>
+#include <string_view>
+
+#include "agent/controller.h"
+
+namespace mascot {
+
+using ControllerFactory = std::unique_ptr<Controller>(const Experiment& experiment, int id);
+ControllerFactory MakeQuadrotorController, MakeDoubleIntegratorController;  // each in agent/controllers/<model>.cc
+
+namespace {
+
+struct ControllerEntry {
+  std::string_view model;
+  ControllerFactory* make;
+};
+
+constexpr ControllerEntry kControllers[] = {
+    {"quadrotor", MakeQuadrotorController},
+    {"double_integrator", MakeDoubleIntegratorController},
+};
+
+}  // namespace
+
+std::unique_ptr<Controller> MakeController(const Experiment& experiment, int id) {
+  const std::string& model = experiment.agent(id).model;
+  const ControllerEntry* entry = std::ranges::find(kControllers, model, &ControllerEntry::model);
+  if (entry == std::end(kControllers)) throw std::invalid_argument("no controller for the model: " + model);
+  return entry->make(experiment, id);
+}
+
+}  // namespace mascot

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "agent/law.h"
+#include "experiment/experiment.h"
+
+namespace mascot {
+
+/// A key of [law] that one law reads.
+struct LawParameter {
+  std::string_view name;
+  std::string_view fallback;  ///< the default, as a TOML value; "" if absent by default, "*" if required
+  std::string_view range;     ///< legal values, with their unit
+  std::string_view meaning;
+};
+
+/// A row of the table of laws. `orchestrator laws` prints these.
+struct LawEntry {
+  std::string_view name;
+  std::string_view summary;
+  std::string_view equation;
+  std::string_view theory;  ///< what is known about it
+  std::string_view source;  ///< paper
+  std::span<const LawParameter> parameters;
+  Axes axes;  ///< default of law.axes
+  /// Makes the law of agent `id`. Reads and checks the parameters of all agents, not of `id` alone, from
+  /// experiment.law.section.
+  std::unique_ptr<Law> (*make)(Experiment& experiment, int id);
+};
+
+std::span<const LawEntry> Laws();
+std::span<const std::string_view> LawNames();
+/// The law of agent `id`. Mistakes in its parameters are noted in the experiment's document.
+std::unique_ptr<Law> MakeLaw(Experiment& experiment, int id);
+
+/// Reads a complete experiment: ReadExperiment, then the law's parameters, then Finish. What `check`,
+/// `up`, the server and the agents all call. Throws ConfigError.
+Experiment LoadExperiment(Section document, const std::string& default_name);
+
+}  // namespace mascot

@@ -1,0 +1,124 @@
+// PD flight through waypoints, the paper's first experiment:
+//   a_i = p_gain (w - p_i) - d_gain v_i
+// The target w moves to the next waypoint by arrival or by time, and stays at the last one.
+#include "agent/laws/waypoint.h"
+
+#include <array>
+#include <utility>
+
+namespace mascot {
+namespace {
+
+// Times are ticks divided by the rate, and their differences are off by a rounding error.
+constexpr double kRounding_s = 1e-9;
+
+void CheckTimes(Section& law, const std::string& key, const WaypointParams& params) {
+  const auto& times_s = params.times_s;
+  if (law.Wrong(key)) return;
+  if (times_s.size() != params.waypoints_W.size()) {
+    law.Fail(key, "expected " + std::to_string(params.waypoints_W.size()) + " times, one per waypoint, got " +
+                      std::to_string(times_s.size()));
+  }
+  for (std::size_t n = 1; n < times_s.size(); ++n) {
+    if (times_s[n] <= times_s[n - 1]) {
+      law.FailRow(key, n,
+                  "expected a time after " + ShortestFloat(times_s[n - 1]) + ", got " + ShortestFloat(times_s[n]));
+    }
+  }
+}
+
+class Waypoint final : public Law {
+ public:
+  explicit Waypoint(WaypointFlight flight) : flight_(std::move(flight)) {}
+
+  Eigen::Vector3d Accel_W(double t_s, const Motion& self, std::span<const Heard> /*heard*/) override {
+    return flight_.Accel_W(t_s, self);
+  }
+
+ private:
+  WaypointFlight flight_;
+};
+
+}  // namespace
+
+WaypointParams ReadWaypoints(Section& law, const std::string& prefix) {
+  const auto key = [&prefix](const char* name) { return prefix + name; };
+  WaypointParams params;
+  params.waypoints_W = law.Points(key("waypoints_m"), -1e6, 1e6);
+  if (params.waypoints_W.empty() && !law.Wrong(key("waypoints_m"))) {
+    law.Fail(key("waypoints_m"), "expected a list of points [x, y, z], got nothing");
+  }
+  params.p_gain = law.Number(key("p_gain"), 0, 1000, 1.0);
+  params.d_gain = law.Number(key("d_gain"), 0, 1000, 1.0);
+  if (law.Has(key("times_s"))) {
+    params.times_s = law.Numbers(key("times_s"), 0, 1e6);
+    CheckTimes(law, key("times_s"), params);
+    for (const char* name : {"arrival_radius_m", "dwell_s"}) {
+      if (law.Has(key(name)))
+        law.Fail(key(name), "expected only one of " + key("times_s") + " and " + key(name) + ", got both");
+    }
+  } else {
+    params.arrival_radius_m = law.Positive(key("arrival_radius_m"), 1000, 0.2);
+    params.dwell_s = law.Number(key("dwell_s"), 0, 1e6, 1.0);
+  }
+  return params;
+}
+
+std::optional<WaypointParams> ReadLeaderWaypoints(Experiment& experiment) {
+  Section& law = experiment.law.section;
+  const bool has_waypoints = law.Has("leader_waypoints_m");
+  if (experiment.law.leader > 0 && has_waypoints) return ReadWaypoints(law, "leader_");
+  for (const LawParameter& parameter : kWaypointParameters) {
+    const std::string key = "leader_" + std::string(parameter.name);
+    if (!law.Has(key) || law.Wrong("leader")) continue;
+    law.Fail(key, experiment.law.leader == 0 ? "expected law.leader to name the agent that this is for, got no leader"
+                                             : "expected leader_waypoints_m beside it, got none");
+  }
+  return std::nullopt;
+}
+
+WaypointFlight::WaypointFlight(WaypointParams params, Axes axes, const Eigen::Vector3d& start_W)
+    : params_(std::move(params)), axes_(axes), start_W_(start_W) {}
+
+Eigen::Vector3d WaypointFlight::Accel_W(double t_s, const Motion& self) {
+  if (params_.waypoints_W.empty()) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d& target_W = params_.times_s.empty() ? TargetByArrival(t_s, self.p_WB) : TargetByTime(t_s);
+  return params_.p_gain * (target_W - self.p_WB) - params_.d_gain * self.v_WB;
+}
+
+const Eigen::Vector3d& WaypointFlight::TargetByTime(double t_s) {
+  std::size_t begun = 0;
+  while (begun < params_.times_s.size() && t_s >= params_.times_s[begun]) ++begun;
+  return begun == 0 ? start_W_ : params_.waypoints_W[begun - 1];
+}
+
+const Eigen::Vector3d& WaypointFlight::TargetByArrival(double t_s, const Eigen::Vector3d& p_WB) {
+  while (next_ + 1 < params_.waypoints_W.size()) {
+    if (Distance(p_WB) > params_.arrival_radius_m) {
+      arrived_at_s_.reset();
+      break;
+    }
+    if (!arrived_at_s_) arrived_at_s_ = t_s;
+    if (t_s - *arrived_at_s_ < params_.dwell_s - kRounding_s) break;
+    arrived_at_s_.reset();
+    ++next_;
+  }
+  return params_.waypoints_W[next_];
+}
+
+double WaypointFlight::Distance(const Eigen::Vector3d& p_WB) const {
+  const Eigen::Vector3d to_target = params_.waypoints_W[next_] - p_WB;
+  return axes_ == Axes::kXyz ? to_target.norm() : to_target.head<2>().norm();
+}
+
+std::unique_ptr<Law> MakeWaypoint(Experiment& experiment, int id) {
+  Section& law = experiment.law.section;
+  if (experiment.law.leader != 0) {
+    law.Fail("leader",
+             "expected 0 (every agent flies the waypoints itself), got " + std::to_string(experiment.law.leader));
+  }
+  return std::make_unique<Waypoint>(
+      WaypointFlight(ReadWaypoints(law, ""), experiment.law.axes, experiment.agent(id).p_W));
+}
+
+}  // namespace mascot

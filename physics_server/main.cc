@@ -1,0 +1,25 @@
+#include <CLI/CLI.hpp>
+
+#include "agent/laws.h"
+#include "idl/process_main.h"
+#include "physics_server/server.h"
+
+namespace {
+
+void RunServer(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot_msgs::msg::Experiment& message) {
+  const auto document = mascot::Section::FromText(message.toml(), message.name());
+  const mascot::Experiment experiment = mascot::LoadExperiment(document, message.name());
+  mascot::Server server(domain, lifecycle, experiment);
+  server.Run();
+  lifecycle.Set(mascot::Life::kDone);
+  for (;;) lifecycle.Wait(std::chrono::seconds(1));  // stay until everybody has heard the last sample
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  mascot::StopSignal stop;  // first: threads that libraries start must inherit the blocked mask
+  CLI::App app("MASCOT physics server: publishes every agent's state, gathers every command, steps the world.");
+  mascot::ProcessArgs args(/*agent_process=*/false);
+  return mascot::ProcessMain(app, argc, argv, args, stop, RunServer);
+}

@@ -1,0 +1,54 @@
+// Quadrotor of the paper, with our axes (z_B up):
+//   m dv/dt = m g_W + R_WB [0, 0, T] - B v,   [T, Gamma] = A [w1^2 .. w4^2],   J dw/dt = -w x J w + Gamma
+// Rotor speeds follow the command between 0 and their maximum, with a first-order lag if the airframe has one. Gravity
+// and the gyroscopic term -w x J w are the world's.
+#include <algorithm>
+#include <cmath>
+
+#include "physics_server/model.h"
+
+namespace mascot {
+namespace {
+
+class Quadrotor final : public Model {
+ public:
+  Quadrotor(const Airframe& airframe, double gravity_m_per_s2)
+      : airframe_(airframe),
+        allocation_(airframe.Allocation()),
+        max_rotor_speed_(airframe.MaxRotorSpeed()),
+        rotor_speed_(
+            Eigen::Vector4d::Constant(std::min(airframe.HoverRotorSpeed(gravity_m_per_s2), max_rotor_speed_))) {}
+
+  double mass_kg() const override { return airframe_.mass_kg; }
+  Eigen::Vector3d inertia_kg_m2() const override { return airframe_.inertia_kg_m2; }
+  Eigen::Vector3d half_size_m() const override { return airframe_.size_m / 2; }
+  bool feels_gravity() const override { return true; }
+
+  Wrench Apply(const Actuation& command, const Motion& self, double dt_s) override {
+    const Eigen::Vector4d wanted = Eigen::Vector4d::Map(command.data()).cwiseMax(0).cwiseMin(max_rotor_speed_);
+    rotor_speed_ += Followed(dt_s) * (wanted - rotor_speed_);
+    const Eigen::Vector4d thrust_torque = allocation_ * rotor_speed_.cwiseAbs2();
+    const Eigen::Vector3d thrust_B(0, 0, thrust_torque[0]);
+    return {.f_W = self.q_WB * thrust_B - airframe_.linear_drag_kg_per_s * self.v_WB, .tau_B = thrust_torque.tail<3>()};
+  }
+
+ private:
+  // Which part of the way to a constant command a rotor goes in dt: exact for a first-order lag.
+  double Followed(double dt_s) const {
+    const double lag_s = airframe_.rotor_time_constant_s;
+    return lag_s > 0 ? -std::expm1(-dt_s / lag_s) : 1;
+  }
+
+  Airframe airframe_;
+  Eigen::Matrix4d allocation_;   // A
+  double max_rotor_speed_;       // rad/s
+  Eigen::Vector4d rotor_speed_;  // rad/s; starts at hover
+};
+
+}  // namespace
+
+std::unique_ptr<Model> MakeQuadrotor(const Experiment& experiment, int id) {
+  return std::make_unique<Quadrotor>(experiment.agent(id).airframe, experiment.physics.gravity_m_per_s2);
+}
+
+}  // namespace mascot

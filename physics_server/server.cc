@@ -1,0 +1,210 @@
+#include "physics_server/server.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace mascot {
+
+using namespace std::chrono_literals;
+using WallClock = std::chrono::steady_clock;
+
+namespace {
+
+std::string Join(const std::vector<int>& ids) {
+  std::string text;
+  for (int id : ids) text += (text.empty() ? "" : ", ") + std::to_string(id);
+  return text;
+}
+
+std::string Agents(const std::vector<int>& ids) { return (ids.size() == 1 ? "agent " : "agents ") + Join(ids); }
+
+std::chrono::nanoseconds Seconds(double s) { return std::chrono::nanoseconds(static_cast<std::int64_t>(s * 1e9)); }
+
+std::string Shortest(double s) { return ShortestFloat(s) + " s"; }
+
+}  // namespace
+
+Server::Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment)
+    : lifecycle_(lifecycle),
+      experiment_(experiment),
+      last_tick_(experiment.ticks()),
+      realtime_(experiment.run.mode == Mode::kRealtime),
+      world_(experiment),
+      barrier_(experiment.size()),
+      commands_(static_cast<std::size_t>(experiment.size())),
+      command_tick_(static_cast<std::size_t>(experiment.size()), -1),
+      ready_(static_cast<std::size_t>(experiment.size()), false),
+      clock_(domain, Topic::Clock()),
+      status_reader_(domain, Topic::Status(), [this](const mascot_msgs::msg::Status& status) { OnStatus(status); }) {
+  for (int id = 1; id <= experiment.size(); ++id) {
+    states_.push_back(std::make_unique<Writer<StateType>>(domain, Topic::State(id)));
+    command_readers_.push_back(std::make_unique<Reader<CommandType>>(
+        domain, Topic::Command(id), [this, id](const mascot_msgs::msg::AgentCommand& command) { OnCommand(id, command); }));
+  }
+}
+
+void Server::Run() {
+  AwaitEveryone();
+  realtime_ ? RunRealtime() : RunLockstep();
+  const std::lock_guard lock(mutex_);
+  lifecycle_.Report(static_cast<std::uint64_t>(published_), misses_, static_cast<std::uint64_t>(world_.collisions()));
+}
+
+// --- start ----------------------------------------------------------------------------------------------
+
+void Server::AwaitEveryone() {
+  const auto deadline = WallClock::now() + Seconds(experiment_.run.start_timeout_s);
+  auto ask_again = WallClock::now();
+  lifecycle_.Set(Life::kMatching);
+  while (WallClock::now() < deadline) {
+    lifecycle_.Wait(50ms);
+    {
+      const std::lock_guard lock(mutex_);
+      if (Matched() && Missing().empty()) return;
+    }
+    if (WallClock::now() < ask_again) continue;
+    lifecycle_.AskForReports();
+    ask_again = WallClock::now() + 250ms;
+  }
+  const std::lock_guard lock(mutex_);
+  const std::string missing = Missing();
+  throw std::runtime_error("not ready within run.start_timeout_s = " + Shortest(experiment_.run.start_timeout_s) + ": " +
+                           (missing.empty() ? "the wire (readers or writers that have not found each other)" : missing));
+}
+
+bool Server::Matched() const {
+  if (clock_.matched() < 1) return false;
+  std::vector<int> readers(states_.size(), 2);  // the agent itself and the recorder
+  for (int id = 1; id <= experiment_.size(); ++id)
+    for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(id)) ++readers[static_cast<std::size_t>(heard.id - 1)];
+  for (std::size_t i = 0; i < states_.size(); ++i)
+    if (states_[i]->matched() < readers[i] || command_readers_[i]->matched() < 1) return false;
+  return true;
+}
+
+std::string Server::Missing() const {
+  std::vector<int> ids;
+  for (std::size_t i = 0; i < ready_.size(); ++i)
+    if (!ready_[i]) ids.push_back(static_cast<int>(i) + 1);
+  std::string missing = ids.empty() ? "" : Agents(ids);
+  if (!recorder_ready_) missing += missing.empty() ? "the recorder" : " and the recorder";
+  return missing;
+}
+
+void Server::OnStatus(const mascot_msgs::msg::Status& status) {
+  const std::lock_guard lock(mutex_);
+  const auto life = static_cast<Life>(status.state());
+  if (status.process() == "recorder") {
+    recorder_ready_ = life == Life::kReady || life == Life::kRunning;
+    recorded_rows_ = static_cast<std::int64_t>(status.tick());
+    if (running_) PublishIfRecorded();
+  } else if (status.agent() >= 1 && status.agent() <= ready_.size()) {
+    ready_[status.agent() - 1] = life == Life::kReady || life == Life::kRunning;
+  }
+}
+
+// --- ticks ----------------------------------------------------------------------------------------------
+
+void Server::PublishIfRecorded() {
+  const std::int64_t tick = world_.tick();
+  if (published_ < tick && recorded_rows_ > tick - kRecorderWindow) Publish();
+}
+
+void Server::Publish() {
+  const std::int64_t tick = world_.tick();
+  const int rate = experiment_.control.rate_hz;
+  published_ = tick;
+  barrier_.Open(tick);
+  rosgraph_msgs::msg::Clock clock;
+  ToWire(tick, rate, clock);
+  clock_.Write(clock);
+  mascot_msgs::msg::AgentState sample;
+  for (int id = 1; id <= experiment_.size(); ++id) {
+    ToWire(tick, rate, id, world_.State(id), sample);
+    states_[static_cast<std::size_t>(id - 1)]->Write(sample);
+  }
+}
+
+void Server::OnCommand(int id, const mascot_msgs::msg::AgentCommand& command) {
+  const std::lock_guard lock(mutex_);
+  const auto i = static_cast<std::size_t>(id - 1);
+  const auto tick = static_cast<std::int64_t>(command.tick());
+  if (!running_ || done_ || tick > published_ || tick <= command_tick_[i]) return;
+  commands_[i] = command.actuator();
+  command_tick_[i] = tick;
+  if (!barrier_.Answer(id, tick)) return;
+  if (!realtime_) Advance();
+  else if (tick == 0 || tick == last_tick_) Finish();  // in between the clock leads
+}
+
+void Server::Advance() {
+  if (world_.tick() == last_tick_ || lifecycle_.stop_requested()) return Finish();
+  world_.Step(commands_);
+  PublishIfRecorded();
+}
+
+void Server::Finish() {
+  done_ = true;
+  lifecycle_.Wake();
+}
+
+void Server::Start() {
+  const std::lock_guard lock(mutex_);
+  running_ = true;
+  lifecycle_.Set(Life::kRunning);
+  PublishIfRecorded();
+}
+
+void Server::RunLockstep() {
+  Start();
+  WatchProgress();
+}
+
+void Server::WatchProgress() {
+  const auto limit = Seconds(experiment_.run.agent_timeout_s);
+  auto deadline = WallClock::now() + limit;
+  std::int64_t seen = -1;
+  while (!done_) {
+    lifecycle_.Wait(50ms);
+    const std::lock_guard lock(mutex_);
+    if (const std::int64_t tick = world_.tick(); tick != seen) {
+      seen = tick;
+      deadline = WallClock::now() + limit;
+    } else if (WallClock::now() > deadline && !done_) {
+      throw std::runtime_error("tick " + std::to_string(seen) + ": " + Late() + " within run.agent_timeout_s = " +
+                               Shortest(experiment_.run.agent_timeout_s));
+    }
+  }
+}
+
+std::string Server::Late() const {
+  if (published_ < world_.tick()) return "the recorder has confirmed only " + std::to_string(recorded_rows_) + " ticks";
+  return "no command from " + Agents(barrier_.Late());
+}
+
+void Server::RunRealtime() {
+  Start();
+  WatchProgress();  // tick 0 is waited for, so that every agent has a command that can be held
+  done_ = false;
+  const double period_s = experiment_.period_s() / experiment_.run.speed;
+  auto start = WallClock::now();
+  for (std::int64_t tick = 0; tick < last_tick_ && !lifecycle_.stop_requested(); ++tick) {
+    const auto due = start + Seconds(static_cast<double>(tick + 1) * period_s);
+    while (WallClock::now() < due || !Published(tick)) lifecycle_.Wait(Published(tick) ? due - WallClock::now() : 50ms);
+    // A machine that cannot keep up falls behind as a whole: hurrying after the clock would only leave the
+    // agents still less time.
+    if (const auto behind = WallClock::now() - due; behind > Seconds(period_s)) start += behind;
+    const std::lock_guard lock(mutex_);
+    misses_ += barrier_.Late().size();
+    world_.Step(commands_);
+    PublishIfRecorded();
+  }
+  if (!lifecycle_.stop_requested()) WatchProgress();
+}
+
+bool Server::Published(std::int64_t tick) {
+  const std::lock_guard lock(mutex_);
+  return published_ >= tick;
+}
+
+}  // namespace mascot

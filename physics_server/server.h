@@ -1,0 +1,73 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "idl/lifecycle.h"
+#include "physics_server/tick_barrier.h"
+#include "physics_server/world.h"
+
+namespace mascot {
+
+/// The tick loop on the wire: publish every agent's state, gather every agent's command, step the world.
+/// In lockstep the last command of a tick to arrive carries the world to the next, in the thread that
+/// received it; in real time the calling thread paces the ticks and commands are held when late.
+class Server {
+ public:
+  Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment);
+
+  /// Waits until every endpoint is matched and every agent and the recorder are ready; runs all ticks;
+  /// returns when the last command is gathered or a STOP came. Throws std::runtime_error naming who was
+  /// late, or Ended.
+  void Run();
+
+ private:
+  void AwaitEveryone();
+  void Start();
+  void RunLockstep();
+  void RunRealtime();
+  /// Until Finish(); throws if nothing moves for run.agent_timeout_s.
+  void WatchProgress();
+  bool Published(std::int64_t tick);
+
+  void OnCommand(int id, const mascot_msgs::msg::AgentCommand& command);
+  void OnStatus(const mascot_msgs::msg::Status& status);
+  // All below with mutex_ held.
+  void PublishIfRecorded();
+  void Publish();
+  void Advance();
+  void Finish();
+  bool Matched() const;
+  std::string Missing() const;
+  std::string Late() const;
+
+  Lifecycle& lifecycle_;
+  const Experiment& experiment_;
+  const std::int64_t last_tick_;
+  const bool realtime_;
+
+  std::mutex mutex_;
+  World world_;
+  TickBarrier barrier_;
+  std::vector<Actuation> commands_;         // by id - 1: what the world is stepped with
+  std::vector<std::int64_t> command_tick_;  // the tick that each of them answered
+  std::vector<bool> ready_;
+  bool recorder_ready_ = false;
+  std::int64_t recorded_rows_ = 0;  // rows 0 .. recorded_rows_ - 1 are safe
+  std::int64_t published_ = -1;     // newest tick published
+  std::uint64_t misses_ = 0;
+  bool running_ = false;
+  std::atomic<bool> done_ = false;
+
+  std::vector<std::unique_ptr<Writer<StateType>>> states_;
+  Writer<ClockType> clock_;
+  std::vector<std::unique_ptr<Reader<CommandType>>> command_readers_;
+  Reader<StatusType> status_reader_;
+};
+
+}  // namespace mascot

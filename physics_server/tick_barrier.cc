@@ -1,0 +1,29 @@
+#include "physics_server/tick_barrier.h"
+
+#include <cassert>
+
+namespace mascot {
+
+TickBarrier::TickBarrier(int agents) : answered_(static_cast<std::size_t>(agents), -1) {}
+
+void TickBarrier::Open(std::int64_t tick) {
+  assert(tick > tick_);
+  tick_ = tick;
+  missing_ = static_cast<int>(answered_.size());
+}
+
+bool TickBarrier::Answer(int id, std::int64_t tick) {
+  std::int64_t& last = answered_.at(static_cast<std::size_t>(id - 1));
+  if (tick != tick_ || last == tick) return false;
+  last = tick;
+  return --missing_ == 0;
+}
+
+std::vector<int> TickBarrier::Late() const {
+  std::vector<int> late;
+  for (std::size_t i = 0; i < answered_.size(); ++i)
+    if (answered_[i] != tick_) late.push_back(static_cast<int>(i) + 1);
+  return late;
+}
+
+}  // namespace mascot

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace mascot {
+
+/// Who has answered the current tick, and who is late. No DDS, no clock.
+class TickBarrier {
+ public:
+  explicit TickBarrier(int agents);
+  /// Starts waiting for the answers to `tick`.
+  void Open(std::int64_t tick);
+  /// Agent `id` answered `tick`. True if this was the last answer that the open tick waited for; an answer
+  /// to another tick, or a second one, changes nothing.
+  bool Answer(int id, std::int64_t tick);
+  bool Complete() const { return missing_ == 0; }
+  std::int64_t tick() const { return tick_; }
+  /// Agents that have not answered the open tick, in increasing id.
+  std::vector<int> Late() const;
+
+ private:
+  std::int64_t tick_ = -1;
+  int missing_ = 0;
+  std::vector<std::int64_t> answered_;  // last tick answered, by id - 1
+};
+
+}  // namespace mascot

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "experiment/experiment.h"
+#include "experiment/motion.h"
+
+namespace mascot {
+
+/// All bodies of an experiment in one Bullet world (double precision). Deterministic: the same experiment
+/// and commands give the same bits. No clock, no DDS.
+class World {
+ public:
+  /// Bodies at their configured state, exactly.
+  explicit World(const Experiment& experiment);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  /// State at the current tick. a_WB is (v(k) - v(k-1)) * control rate, 0 at tick 0.
+  Motion State(int id) const;
+  /// Runs exactly one tick (physics rate / control rate steps) with `commands[id - 1]` held.
+  /// Throws std::runtime_error naming agent and tick if a command or a resulting state is not finite.
+  void Step(std::span<const Actuation> commands);
+  std::int64_t tick() const;
+  /// Contacts begun so far between two agents, or an agent and the ground; a lasting contact counts once.
+  std::int64_t collisions() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mascot

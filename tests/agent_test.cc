@@ -1,0 +1,97 @@
+#include "agent/agent.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "agent/laws.h"
+
+namespace mascot {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+/// Two double integrators; agent 1 hears agent 2.
+Experiment Two(const std::string& law, const std::string& control = "") {
+  return LoadExperiment(
+      Section::FromText("[run]\nduration_s = 1.0\n[agents]\ncount = 2\nmodel = 'double_integrator'\n"
+                        "position_m = [[0, 0, 1], [10, 0, 2]]\n[graph]\nedges = [[1, 2]]\n[control]\n" +
+                            control + "\n[law]\n" + law,
+                        "test.toml"),
+      "test");
+}
+
+Motion At(double x, double y, double z) {
+  Motion motion;
+  motion.p_WB = {x, y, z};
+  return motion;
+}
+
+TEST(Agent, LimitsTheLawPerAxisAndSaysSo) {
+  Experiment experiment = Two("name = 'consensus'", "max_acceleration_m_per_s2 = 2.0");
+  Agent agent(experiment, 1);
+  const std::vector<Heard> heard = {{2, 1.0, At(10, -1, 0)}};
+  const Command command = agent.Want(0, At(0, 0, 0), heard);
+  EXPECT_EQ(command.a_law_W, Eigen::Vector3d(10, -1, 0));
+  EXPECT_EQ(command.a_limited_W, Eigen::Vector3d(2, -1, 0));
+  EXPECT_EQ(command.flags, kAccelerationLimited);
+}
+
+TEST(Agent, LeavesAnAccelerationAtTheLimitAloneAndUnflagged) {
+  Experiment experiment = Two("name = 'consensus'", "max_acceleration_m_per_s2 = 2.0");
+  Agent agent(experiment, 1);
+  const std::vector<Heard> heard = {{2, 1.0, At(2, -2, 0)}};
+  const Command command = agent.Want(0, At(0, 0, 0), heard);
+  EXPECT_EQ(command.a_limited_W, Eigen::Vector3d(2, -2, 0));
+  EXPECT_EQ(command.flags, 0u);
+}
+
+TEST(Agent, IgnoresWhatTheLawSaysOfZWhereTheAltitudeIsHeld) {
+  Experiment flat = Two("name = 'consensus'");
+  Experiment full = Two("name = 'consensus'\naxes = 'xyz'");
+  const std::vector<Heard> heard = {{2, 1.0, At(1, 0, 1)}};
+  EXPECT_EQ(Agent(flat, 1).Want(0, At(0, 0, 0), heard).a_law_W, Eigen::Vector3d(1, 0, 0));
+  EXPECT_EQ(Agent(full, 1).Want(0, At(0, 0, 0), heard).a_law_W, Eigen::Vector3d(1, 0, 1));
+}
+
+TEST(Agent, GivesTheLawTheTimeOfTheTick) {
+  Experiment experiment =
+      Two("name = 'waypoint'\nwaypoints_m = [[1, 0, 1], [-1, 0, 1]]\ntimes_s = [0.0, 0.5]", "rate_hz = 50");
+  Agent agent(experiment, 1);
+  EXPECT_EQ(agent.Want(24, At(0, 0, 1), {}).a_law_W.x(), 1);
+  EXPECT_EQ(agent.Want(25, At(0, 0, 1), {}).a_law_W.x(), -1);
+}
+
+TEST(Agent, DecidesWhatItWantsAndActuatesIt) {
+  Experiment experiment = Two("name = 'consensus'");
+  const std::vector<Heard> heard = {{2, 1.0, At(1, -0.5, 2)}};
+  const Command wanted = Agent(experiment, 1).Want(0, At(0, 0, 1), heard);
+  const Command command = Agent(experiment, 1).Decide(0, At(0, 0, 1), heard);
+  EXPECT_EQ(command.a_law_W, wanted.a_law_W);
+  EXPECT_EQ(command.a_limited_W, wanted.a_limited_W);
+  EXPECT_GT(command.actuator[0], 0);
+  EXPECT_LT(command.actuator[1], 0);
+}
+
+TEST(Agent, EndsTheRunNamingTickAndAgentWhenTheLawIsNotFinite) {
+  Experiment experiment = Two("name = 'consensus'");
+  Agent agent(experiment, 1);
+  EXPECT_EQ(agent.id(), 1);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  const auto want = [&agent](double x, double y) {
+    const std::vector<Heard> heard = {{2, 1.0, At(x, y, 0)}};
+    agent.Decide(4, At(0, 0, 1), heard);
+  };
+  EXPECT_THAT([&] { want(nan, 0); },
+              ThrowsMessage<std::runtime_error>("tick 4: agent 1: the law's acceleration is not finite (nan, 0, 0)"));
+  EXPECT_THAT([&] { want(-nan, 0.5); },
+              ThrowsMessage<std::runtime_error>("tick 4: agent 1: the law's acceleration is not finite (nan, 0.5, 0)"));
+  EXPECT_THAT([&] { want(1, -infinity); },
+              ThrowsMessage<std::runtime_error>("tick 4: agent 1: the law's acceleration is not finite (1, -inf, 0)"));
+}
+
+}  // namespace
+}  // namespace mascot

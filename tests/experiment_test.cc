@@ -1,0 +1,362 @@
+#include "experiment/experiment.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "agent/laws.h"
+#include "experiment/placement.h"
+
+namespace mascot {
+namespace {
+
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+/// The smallest experiment, and `text` after it.
+std::string Config(const std::string& text = "") { return "run.duration_s = 10\nagents.count = 4\n" + text; }
+
+Experiment Load(const std::string& text, const std::string& default_name = "e") {
+  return LoadExperiment(Section::FromText(text, "e.toml"), default_name);
+}
+
+std::vector<std::string> Mistakes(const std::string& text) {
+  try {
+    Load(text);
+  } catch (const ConfigError& error) {
+    return error.mistakes();
+  }
+  return {};
+}
+
+// --- defaults ---------------------------------------------------------------------------------------
+
+TEST(Experiment, NeedsADurationAndACountOnly) {
+  const Experiment e = Load(Config(), "stem");
+  EXPECT_EQ(e.run.name, "stem");
+  EXPECT_EQ(e.run.duration_s, 10);
+  EXPECT_EQ(e.run.mode, Mode::kLockstep);
+  EXPECT_EQ(e.run.seed, 1u);
+  EXPECT_EQ(e.run.agent_timeout_s, 5);
+  EXPECT_EQ(e.run.start_timeout_s, 60);
+  EXPECT_EQ(e.run.speed, 1);
+  EXPECT_EQ(e.physics.rate_hz, 1000);
+  EXPECT_EQ(e.physics.gravity_m_per_s2, 9.81);
+  EXPECT_TRUE(e.physics.collisions);
+  EXPECT_TRUE(e.physics.ground);
+  EXPECT_EQ(e.size(), 4);
+  EXPECT_EQ(e.agent(4).id, 4);
+  EXPECT_EQ(e.agent(1).model, "quadrotor");
+  EXPECT_EQ(e.agent(1).airframe.name, "mascot");
+  EXPECT_EQ(e.agent(1).v_W, Eigen::Vector3d::Zero());
+  EXPECT_FALSE(e.agent(1).external);
+  EXPECT_EQ(e.control.rate_hz, 100);
+  EXPECT_EQ(e.control.heading_rad, 0);
+  EXPECT_EQ(e.control.max_acceleration_m_per_s2, 3);
+  EXPECT_EQ(e.control.inversion, Inversion::kSmallAngle);
+  EXPECT_TRUE(e.control.drag_compensation);
+  EXPECT_EQ(e.graph.edges(), 12u);
+  EXPECT_EQ(e.law.name, "consensus");
+  EXPECT_EQ(e.law.leader, 0);
+  EXPECT_EQ(e.law.axes, Axes::kXy);
+  EXPECT_EQ(e.record.file, "run.mcap");
+  EXPECT_THAT(e.record.topics, ElementsAre("*"));
+  EXPECT_TRUE(e.output.position_plot && e.output.velocity_plot && e.output.save_plot && e.output.save_data);
+  EXPECT_FALSE(e.output.show_plot);
+  EXPECT_EQ(e.network.domain, -1);
+  EXPECT_EQ(e.network.transport, "auto");
+}
+
+// --- every key changes what is read -----------------------------------------------------------------
+
+TEST(Experiment, TakesEveryKeyOfTheFile) {
+  const Experiment e = Load(R"(
+    [run]
+    name = "my run"
+    duration_s = 2.5
+    mode = "realtime"
+    seed = 9223372036854775807
+    agent_timeout_s = 1.5
+    start_timeout_s = 2.5
+    speed = 0.5
+    [physics]
+    rate_hz = 400
+    gravity_m_per_s2 = 1.62
+    collisions = false
+    ground = false
+    [agents]
+    count = 2
+    model = "double_integrator"
+    airframe = "crazyflie"
+    position_m = [[1, 2, 3], [4, 5, -6]]
+    velocity_m_per_s = [[0.5, 0, 0], [0, 0, -0.5]]
+    [control]
+    rate_hz = 200
+    heading_rad = 0.5
+    max_acceleration_m_per_s2 = 0.6
+    inversion = "exact"
+    drag_compensation = false
+    [graph]
+    topology = "directed_path"
+    [law]
+    name = "consensus"
+    leader = 2
+    axes = "xyz"
+    [record]
+    file = "other.mcap"
+    topics = ["/clock"]
+    [output]
+    position_plot = false
+    velocity_plot = false
+    save_plot = false
+    show_plot = true
+    save_data = false
+    [network]
+    domain = 7
+    transport = "udp"
+  )");
+  EXPECT_EQ(e.run.name, "my run");
+  EXPECT_EQ(e.run.duration_s, 2.5);
+  EXPECT_EQ(e.run.mode, Mode::kRealtime);
+  EXPECT_EQ(e.run.seed, 9223372036854775807u);
+  EXPECT_EQ(e.run.agent_timeout_s, 1.5);
+  EXPECT_EQ(e.run.start_timeout_s, 2.5);
+  EXPECT_EQ(e.run.speed, 0.5);
+  EXPECT_EQ(e.physics.rate_hz, 400);
+  EXPECT_EQ(e.physics.gravity_m_per_s2, 1.62);
+  EXPECT_FALSE(e.physics.collisions);
+  EXPECT_FALSE(e.physics.ground);
+  EXPECT_EQ(e.agent(2).model, "double_integrator");
+  EXPECT_EQ(e.agent(2).airframe.name, "crazyflie");
+  EXPECT_EQ(e.agent(2).p_W, Eigen::Vector3d(4, 5, -6));
+  EXPECT_EQ(e.agent(2).v_W, Eigen::Vector3d(0, 0, -0.5));
+  EXPECT_EQ(e.control.rate_hz, 200);
+  EXPECT_EQ(e.control.heading_rad, 0.5);
+  EXPECT_EQ(e.control.max_acceleration_m_per_s2, 0.6);
+  EXPECT_EQ(e.control.inversion, Inversion::kExact);
+  EXPECT_FALSE(e.control.drag_compensation);
+  EXPECT_EQ(e.graph.edges(), 1u);
+  EXPECT_EQ(e.law.leader, 2);
+  EXPECT_EQ(e.law.axes, Axes::kXyz);
+  EXPECT_EQ(e.record.file, "other.mcap");
+  EXPECT_THAT(e.record.topics, ElementsAre("/clock"));
+  EXPECT_FALSE(e.output.position_plot || e.output.velocity_plot || e.output.save_plot || e.output.save_data);
+  EXPECT_TRUE(e.output.show_plot);
+  EXPECT_EQ(e.network.domain, 7);
+  EXPECT_EQ(e.network.transport, "udp");
+}
+
+TEST(Experiment, ControlGainsReplaceThoseOfEveryAirframe) {
+  const Experiment e = Load(Config(R"(
+    [control]
+    altitude = { kp = 1, kd = 2 }
+    heading = { kp = 3, kd = 4 }
+    attitude = { kp = 5, kd = 6 }
+    position = { kp = 7, kd = 8 }
+    tilt_limit_rad = 0.2
+    [[agents.override]]
+    id = 3
+    airframe = "crazyflie"
+  )"));
+  for (const AgentConfig& agent : e.agents) {
+    EXPECT_EQ(agent.airframe.altitude.kp, 1);
+    EXPECT_EQ(agent.airframe.altitude.kd, 2);
+    EXPECT_EQ(agent.airframe.heading.kp, 3);
+    EXPECT_EQ(agent.airframe.attitude.kd, 6);
+    EXPECT_EQ(agent.airframe.position.kp, 7);
+    EXPECT_EQ(agent.airframe.tilt_limit_rad, 0.2);
+  }
+  EXPECT_EQ(e.agent(3).airframe.name, "crazyflie");
+}
+
+TEST(Experiment, GainsComeInPairs) {
+  EXPECT_THAT(Mistakes(Config("[control]\naltitude = { kp = 1 }\n")),
+              ElementsAre("e.toml:4:12: control.altitude.kd: expected a number in [0, 10000], got nothing"));
+}
+
+TEST(Experiment, OverridesAreForOneAgent) {
+  const Experiment e = Load(Config(R"(
+    [[agents.override]]
+    id = 2
+    model = "double_integrator"
+    [[agents.override]]
+    id = 4
+    host = "external"
+    airframe = { base = "crazyflie", mass_kg = 0.03 }
+  )"));
+  EXPECT_EQ(e.agent(1).model, "quadrotor");
+  EXPECT_EQ(e.agent(2).model, "double_integrator");
+  EXPECT_FALSE(e.agent(2).external);
+  EXPECT_TRUE(e.agent(4).external);
+  EXPECT_EQ(e.agent(4).model, "quadrotor");
+  EXPECT_EQ(e.agent(4).airframe.mass_kg, 0.03);
+  EXPECT_EQ(e.agent(3).airframe.name, "mascot");
+}
+
+TEST(Experiment, LawsChooseTheAxesTheyMoveAgentsAlong) {
+  EXPECT_EQ(Load(Config("[law]\nname = 'waypoint'\nwaypoints_m = [[0, 0, 1]]\n")).law.axes, Axes::kXyz);
+  EXPECT_EQ(Load(Config("[law]\nname = 'waypoint'\nwaypoints_m = [[0, 0, 1]]\naxes = 'xy'\n")).law.axes, Axes::kXy);
+}
+
+// --- time -------------------------------------------------------------------------------------------
+
+TEST(Experiment, CountsTicksWithoutRoundingThemAway) {
+  const Experiment e = Load("run.duration_s = 0.1\nagents.count = 1\ncontrol.rate_hz = 30\nphysics.rate_hz = 960\n");
+  EXPECT_EQ(e.ticks(), 3);
+  EXPECT_EQ(e.steps_per_tick(), 32);
+  EXPECT_EQ(e.time_s(3), 0.1);
+}
+
+TEST(Experiment, RefusesTimesThatDoNotFitTogether) {
+  EXPECT_THAT(Mistakes("run.duration_s = 0.015\nagents.count = 1\n"),
+              ElementsAre("e.toml:1:18: run.duration_s: expected a whole number of periods of control.rate_hz (100), "
+                          "got 0.015"));
+  EXPECT_THAT(Mistakes("run.duration_s = 1e-12\nagents.count = 1\n"), ElementsAre(HasSubstr("a whole number")));
+  EXPECT_THAT(Mistakes(Config("control.rate_hz = 300\n")),
+              ElementsAre("e.toml:3:19: control.rate_hz: expected a divisor of physics.rate_hz (1000), got 300"));
+}
+
+// --- names ------------------------------------------------------------------------------------------
+
+TEST(Experiment, MakesItsNameOfTheFilesEvenIfThatHasOtherCharacters) {
+  EXPECT_EQ(Load(Config(), "ring of 6").run.name, "ring of 6");
+  EXPECT_EQ(Load(Config(), "a(1)").run.name, "a_1_");
+  EXPECT_EQ(Load(Config(), "..").run.name, "experiment");
+  EXPECT_EQ(Load(Config(), "").run.name, "experiment");
+}
+
+TEST(Experiment, RefusesNamesThatLeaveTheirFolder) {
+  EXPECT_THAT(Mistakes(Config("run.name = '../x'\n")), ElementsAre(HasSubstr("e.toml:3:12: run.name: expected")));
+  EXPECT_THAT(Mistakes(Config("run.name = ''\n")), SizeIs(1));
+  EXPECT_THAT(Mistakes(Config("record.file = '../run.mcap'\n")), ElementsAre(HasSubstr("without folders")));
+}
+
+// --- starts -----------------------------------------------------------------------------------------
+
+TEST(RandomStart, KeepsAgentsApartInHeightWheneverThereIsRoom) {
+  for (int seed = 0; seed < 50; ++seed) {
+    const Experiment e = Load("run = { duration_s = 1, seed = " + std::to_string(seed) +
+                              " }\nagents = { count = 7, random = { max_m = [10, 10, 4] } }\n");
+    std::vector<double> heights_m;
+    for (const AgentConfig& agent : e.agents) {
+      EXPECT_THAT(agent.p_W.cwiseAbs().head<2>().maxCoeff(), testing::Le(10));
+      heights_m.push_back(agent.p_W.z());
+    }
+    std::sort(heights_m.begin(), heights_m.end());
+    EXPECT_GE(heights_m.front(), 1);
+    EXPECT_LE(heights_m.back(), 4);
+    for (std::size_t i = 1; i < heights_m.size(); ++i) EXPECT_GE(heights_m[i] - heights_m[i - 1], 0.5 - 1e-12);
+  }
+}
+
+TEST(RandomStart, KeepsAgentsApartInSpaceWhenTheyMoveInSpace) {
+  const Experiment e =
+      Load("run.duration_s = 1\nagents = { count = 50, random = { min_separation_m = 2 } }\nlaw.axes = 'xyz'\n");
+  for (int i = 1; i <= e.size(); ++i)
+    for (int j = 1; j < i; ++j) EXPECT_GE((e.agent(i).p_W - e.agent(j).p_W).norm(), 2);
+}
+
+TEST(RandomStart, HasRoomForAnyNumberByDefault) {
+  for (const int count : {1, 2, 6, 7, 100, 1000}) {
+    const std::string text = "run.duration_s = 1\ngraph.topology = 'path'\nagents.count = " + std::to_string(count);
+    EXPECT_THAT(Mistakes(text + "\n"), IsEmpty()) << count;
+    EXPECT_THAT(Mistakes(text + "\nlaw.axes = 'xyz'\n"), IsEmpty()) << count;
+  }
+}
+
+TEST(RandomStart, NeverHasAgentsTouch) {
+  const Experiment e = Load(
+      "run.duration_s = 1\nlaw.axes = 'xyz'\n"
+      "agents = { count = 40, random = { min_m = [0, 0, 1], max_m = [5, 5, 3], min_separation_m = 0 } }\n");
+  EXPECT_EQ(FirstTouching(e.agents), std::nullopt);
+}
+
+TEST(RandomStart, DependsOnTheSeedAlone) {
+  const auto start = [](const std::string& text) { return Load(text).agent(3).p_W; };
+  EXPECT_EQ(start(Config()), start(Config("graph.topology = 'ring'\ncontrol.rate_hz = 200\n")));
+  EXPECT_NE(start(Config()), start(Config("run.seed = 2\n")));
+}
+
+TEST(RandomStart, GivesUpAfterABoundedNumberOfTries) {
+  EXPECT_THAT(
+      Mistakes("run.duration_s = 1\nlaw.axes = 'xyz'\n"
+               "agents = { count = 9, random = { min_m = [0, 0, 0], max_m = [1, 1, 1], min_separation_m = 2 } }\n"),
+      ElementsAre("e.toml:3:32: agents.random: expected room for 9 agents 2.0 m apart, got too small a box"));
+}
+
+TEST(GivenStart, MayNotTouchUnlessNobodyCollides) {
+  const std::string touching = "agents.position_m = [[0, 0, 1], [9, 0, 1], [0, 5, 1], [0.1, 0.1, 1.1]]\n";
+  EXPECT_THAT(Mistakes(Config(touching)),
+              ElementsAre("e.toml:3:55: agents.position_m[3]: expected agents apart (physics.collisions), "
+                          "got agent 4 touching agent 1"));
+  EXPECT_THAT(Mistakes(Config(touching + "physics.collisions = false\n")), IsEmpty());
+}
+
+TEST(GivenStart, MayBeBelowZeroOnlyWithoutGround) {
+  const std::string below = "agents.position_m = [[0, 0, 1], [9, 0, 1], [0, 5, -1], [5, 5, 0]]\n";
+  EXPECT_THAT(Mistakes(Config(below)),
+              ElementsAre("e.toml:3:44: agents.position_m[2]: expected z >= 0 (physics.ground), got -1.0"));
+  EXPECT_THAT(Mistakes(Config(below + "physics.ground = false\n")), IsEmpty());
+}
+
+// --- one mistake, one message -----------------------------------------------------------------------
+
+TEST(Experiment, SaysNothingThatFollowsFromAnotherMistake) {
+  const std::string rest =
+      "agents.position_m = [[0, 0, 1]]\ngraph.adjacency = [[0, 1], [1, 0]]\n"
+      "law = { name = 'minmax', leader = 7, beta = [1, 2] }\n";
+  EXPECT_THAT(Mistakes("run.duration_s = 1\nagents.count = 'four'\n" + rest), SizeIs(1));
+  EXPECT_THAT(Mistakes(Config("graph.laplacian = [[1]]\nlaw = { name = 'minmax', leader = 1, beta = [1, 2, 3, 4] }\n")),
+              ElementsAre(HasSubstr("graph.laplacian: expected 4 rows")));
+  EXPECT_THAT(Mistakes(Config("law = { name = 'minmaxx', beta = 'x', boundary_layer = 'y' }\n")),
+              ElementsAre(HasSubstr("law.name: expected one of")));
+  EXPECT_THAT(Mistakes("run.duration_s = 'x'\nagents.count = 1\nphysics.rate_hz = 0\ncontrol.rate_hz = 300\n"),
+              SizeIs(2));
+}
+
+TEST(Experiment, FindsMistakesOfDifferentTablesAtOnce) {
+  EXPECT_THAT(Mistakes(Config("graph.topology = 'cube'\nlaw.p_gain = 'fast'\noutput.save_plot = 1\nrun.spee = 2\n")),
+              ElementsAre(HasSubstr(":3:18: graph.topology: "), HasSubstr(":4:14: law.p_gain: "),
+                          HasSubstr(":5:20: output.save_plot: "),
+                          "e.toml:6:5: run.spee: unknown key (did you mean \"speed\"?)"));
+}
+
+TEST(Experiment, KnowsOnlyKeysThatDoSomething) {
+  for (const std::string later : {"run.on_agent_loss = 'hold'", "physics.wind = {}", "graph.range_m = 1.0",
+                                  "link.loss = 0.5", "network.delivery = 'topics'", "law.file = 'x.py'"})
+    EXPECT_THAT(Mistakes(Config(later + "\n")), ElementsAre(HasSubstr("unknown key"))) << later;
+}
+
+// --- the resolved file ------------------------------------------------------------------------------
+
+TEST(ResolvedExperiment, IsTheSameAgainWhenRead) {
+  std::vector<std::string> texts = {
+      Config(), Config("graph.random = { kind = 'erdos_renyi', p = 0.5 }\nagents.random.min_separation_m = 0.3\n"),
+      Config(
+          "control.altitude = { kp = 1, kd = 2 }\n[agents.airframe]\nbase = 'crazyflie'\nposition = { kp = 3 }\n"
+          "[[agents.override]]\nid = 2\nairframe = { mass_kg = 2 }\n[[agents.override]]\nid = 3\nhost = 'external'\n")};
+  for (const auto& entry : std::filesystem::directory_iterator(MASCOT_SOURCE_DIR "/configs")) {
+    std::ifstream file(entry.path());
+    texts.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  }
+  for (const std::string& text : texts) {
+    const Experiment experiment = Load(text);
+    const std::string resolved = experiment.law.section.Resolved();
+    const Experiment again = Load(resolved, "another name");
+    EXPECT_EQ(again.law.section.Resolved(), resolved);
+    ASSERT_EQ(again.size(), experiment.size());
+    for (int id = 1; id <= again.size(); ++id) {
+      EXPECT_EQ(again.agent(id).p_W, experiment.agent(id).p_W);
+      EXPECT_EQ(again.agent(id).airframe.mass_kg, experiment.agent(id).airframe.mass_kg);
+    }
+    EXPECT_EQ(again.graph.Laplacian(), experiment.graph.Laplacian());
+  }
+}
+
+}  // namespace
+}  // namespace mascot

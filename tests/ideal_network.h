@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "agent/laws.h"
+#include "experiment/experiment.h"
+
+namespace mascot {
+
+/// The agents of an experiment as ideal double integrators whose acceleration is held for one tick:
+///   p+ = p + h v + h^2 u / 2,  v+ = v + h u
+/// Nothing but the law: no limits, no body, no delay.
+class IdealNetwork {
+ public:
+  explicit IdealNetwork(const std::string& toml)
+      : experiment(LoadExperiment(Section::FromText(toml, "test.toml"), "test")) {
+    for (const AgentConfig& agent : experiment.agents) {
+      laws.push_back(MakeLaw(experiment, agent.id));
+      motions.emplace_back();
+      motions.back().p_WB = agent.p_W;
+      motions.back().v_WB = agent.v_W;
+    }
+  }
+
+  double h() const { return experiment.period_s(); }
+  double time_s() const { return experiment.time_s(tick); }
+  Motion& agent(int id) { return motions[static_cast<std::size_t>(id - 1)]; }
+
+  /// What each agent's law wants now, over law.axes.
+  std::vector<Eigen::Vector3d> Accelerations() {
+    std::vector<Eigen::Vector3d> a_W;
+    for (int id = 1; id <= experiment.size(); ++id) {
+      std::vector<Heard> heard;
+      for (const Graph::Neighbour& j : experiment.graph.HeardBy(id)) heard.push_back({j.id, j.weight, agent(j.id)});
+      a_W.push_back(laws[static_cast<std::size_t>(id - 1)]->Accel_W(time_s(), agent(id), heard));
+      if (experiment.law.axes == Axes::kXy) a_W.back().z() = 0;
+    }
+    return a_W;
+  }
+
+  void Step() {
+    const std::vector<Eigen::Vector3d> a_W = Accelerations();
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      motions[i].p_WB += h() * motions[i].v_WB + h() * h() / 2 * a_W[i];
+      motions[i].v_WB += h() * a_W[i];
+    }
+    ++tick;
+  }
+
+  void RunUntil(double end_s) {
+    while (time_s() < end_s) Step();
+  }
+
+  Experiment experiment;
+  std::vector<std::unique_ptr<Law>> laws;
+  std::vector<Motion> motions;
+  std::int64_t tick = 0;
+};
+
+}  // namespace mascot

@@ -1,0 +1,391 @@
+#include "physics_server/world.h"
+
+#include <gmock/gmock.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "physics_server/model.h"
+#include "tests/one_body.h"
+
+namespace mascot {
+namespace {
+
+using Eigen::Vector3d;
+using ::testing::ThrowsMessage;
+
+constexpr double kG = 9.81;
+
+Actuation Rotors(double all) { return {all, all, all, all}; }
+
+/// Steps a world of one body `ticks` times with one command.
+void Fly(World& world, const Actuation& command, int ticks) {
+  for (int i = 0; i < ticks; ++i) world.Step(std::array<Actuation, 1>{command});
+}
+
+// --- how it starts ----------------------------------------------------------------------------------
+
+TEST(World, StartsExactlyAsConfigured) {
+  for (const ModelEntry& model : Models()) {
+    Experiment e = Bodies(model.name, {{0.1, 0.2, 1.3}, {1.0 / 3, -7, 2}});
+    e.agents[1].v_W = {0.7, -0.1, 1e-9};
+    const World world(e);
+    EXPECT_EQ(world.tick(), 0);
+    EXPECT_EQ(world.collisions(), 0);
+    for (const AgentConfig& agent : e.agents) {
+      const Motion state = world.State(agent.id);
+      EXPECT_EQ(state.p_WB, agent.p_W);
+      EXPECT_EQ(state.v_WB, agent.v_W);
+      EXPECT_EQ(state.q_WB.coeffs(), Eigen::Quaterniond::Identity().coeffs());
+      EXPECT_EQ(state.w_WB_B, Vector3d::Zero().eval());
+      EXPECT_EQ(state.a_WB, Vector3d::Zero().eval());
+    }
+  }
+}
+
+// --- translation ------------------------------------------------------------------------------------
+
+TEST(World, LetsABodyFallAsGalileoSays) {
+  World world(Bodies("quadrotor", {{0, 0, 100}}, WithoutDrag()));
+  Fly(world, Rotors(0), 200);
+  const double t = 2.0;
+  EXPECT_NEAR(world.State(1).p_WB.z(), 100 - kG * t * t / 2, 1e-9);
+  EXPECT_NEAR(world.State(1).v_WB.z(), -kG * t, 1e-9);
+  EXPECT_NEAR(world.State(1).a_WB.z(), -kG, 1e-9);
+}
+
+TEST(World, KeepsAQuadrotorWhereItHoversForAMinute) {
+  World world(Bodies("quadrotor", {{1, 2, 3}}));
+  Fly(world, Rotors(Built("mascot").HoverRotorSpeed(kG)), 6000);
+  EXPECT_LT((world.State(1).p_WB - Vector3d(1, 2, 3)).norm(), 1e-9);
+  EXPECT_LT(world.State(1).v_WB.norm(), 1e-10);
+}
+
+TEST(World, FallsNoFasterThanWeightOverDrag) {
+  Airframe body = Built("mascot");
+  body.linear_drag_kg_per_s = 2;
+  Experiment e = Bodies("quadrotor", {{0, 0, 1000}}, body);
+  e.agents[0].v_W = {10, 0, 0};
+  World world(e);
+  Fly(world, Rotors(0), 3000);
+  EXPECT_NEAR(world.State(1).v_WB.z(), -body.mass_kg * kG / 2, 1e-6);
+  EXPECT_NEAR(world.State(1).v_WB.x(), 0, 1e-6);
+}
+
+TEST(World, MovesADoubleIntegratorByTheZeroOrderHoldRecursion) {
+  Experiment e = Bodies("double_integrator", {{1, -2, 3}});
+  e.agents[0].v_W = {0.5, 0.25, 0};
+  World world(e);
+  std::mt19937_64 random(1);
+  Vector3d p = e.agents[0].p_W, v = e.agents[0].v_W;
+  const double h = e.period_s();
+  for (int tick = 0; tick < 4000; ++tick) {
+    Vector3d u;
+    for (double& component : u) component = static_cast<double>(random() >> 11) * 0x1p-52 - 1;  // in [-1, 1)
+    p += h * v + h * h / 2 * u;
+    v += h * u;
+    Fly(world, {u.x(), u.y(), u.z() + 0.5 * (3 - p.z()) - v.z(), 0}, 1);  // z: kept off the ground
+    p.z() = world.State(1).p_WB.z();
+    v.z() = world.State(1).v_WB.z();
+    ASSERT_LT((world.State(1).p_WB - p).norm(), 1e-9) << "tick " << tick;
+    ASSERT_LT((world.State(1).v_WB - v).norm(), 1e-10) << "tick " << tick;
+  }
+}
+
+TEST(World, PullsOnlyWhatFeelsGravity) {
+  Experiment e = Bodies("double_integrator", {{0, 0, 1}, {5, 0, 50}});
+  e.agents[1].model = "quadrotor";
+  World world(e);
+  for (int i = 0; i < 100; ++i) world.Step(std::array<Actuation, 2>{Rotors(0), Rotors(0)});
+  EXPECT_EQ(world.State(1).p_WB, Vector3d(0, 0, 1));
+  EXPECT_LT(world.State(2).v_WB.z(), -9);
+}
+
+TEST(World, MovesABodyThatRestedForLong) {
+  World world(Bodies("double_integrator", {{0, 0, 1}}));
+  Fly(world, Rotors(0), 1000);
+  Fly(world, {1e-3, 0, 0, 0}, 100);
+  EXPECT_NEAR(world.State(1).v_WB.x(), 1e-3, 1e-12);
+}
+
+TEST(World, GivesTheMeanAccelerationOfTheLastTick) {
+  World world(Bodies("double_integrator", {{0, 0, 1}}));
+  Fly(world, {2, 0, 0, 0}, 1);
+  EXPECT_NEAR(world.State(1).a_WB.x(), 2, 1e-12);
+  Fly(world, {-1, 0.5, 0, 0}, 1);
+  EXPECT_NEAR(world.State(1).a_WB.x(), -1, 1e-12);
+  EXPECT_NEAR(world.State(1).a_WB.y(), 0.5, 1e-12);
+}
+
+// --- rotation ---------------------------------------------------------------------------------------
+
+/// Angular velocity after 50 ms in which only rotor `fast` (1..4) turned faster than at hover.
+Vector3d TurnedBy(int fast) {
+  World world(Bodies("quadrotor", {{0, 0, 10}}));
+  const double hover = Built("mascot").HoverRotorSpeed(kG);
+  Actuation command = Rotors(hover);
+  command[static_cast<std::size_t>(fast - 1)] = 1.02 * hover;
+  Fly(world, command, 5);
+  return world.State(1).w_WB_B;
+}
+
+TEST(World, FrontRotorLiftsTheNoseAndTurnsTheBodyLeft) {
+  const Vector3d w = TurnedBy(1);
+  EXPECT_NEAR(w.x(), 0, 1e-4);
+  EXPECT_LT(w.y(), -1e-2);
+  EXPECT_GT(w.z(), 1e-4);
+}
+
+TEST(World, LeftRotorLiftsTheLeftSideAndTurnsTheBodyRight) {
+  const Vector3d w = TurnedBy(2);
+  EXPECT_GT(w.x(), 1e-2);
+  EXPECT_NEAR(w.y(), 0, 1e-4);
+  EXPECT_LT(w.z(), -1e-4);
+}
+
+TEST(World, BackRotorDropsTheNoseAndTurnsTheBodyLeft) {
+  const Vector3d w = TurnedBy(3);
+  EXPECT_NEAR(w.x(), 0, 1e-4);
+  EXPECT_GT(w.y(), 1e-2);
+  EXPECT_GT(w.z(), 1e-4);
+}
+
+TEST(World, RightRotorDropsTheLeftSideAndTurnsTheBodyRight) {
+  const Vector3d w = TurnedBy(4);
+  EXPECT_LT(w.x(), -1e-2);
+  EXPECT_NEAR(w.y(), 0, 1e-4);
+  EXPECT_LT(w.z(), -1e-4);
+}
+
+TEST(World, TurnsWithTorqueOverInertia) {
+  const Airframe body = Built("mascot");
+  World world(Bodies("quadrotor", {{0, 0, 10}}));
+  const double hover = body.HoverRotorSpeed(kG);
+  Fly(world, {1.1 * hover, 0.9 * hover, 1.1 * hover, 0.9 * hover}, 100);
+  const double torque = body.drag_n_m_s2 * hover * hover * 2 * (1.1 * 1.1 - 0.9 * 0.9);
+  EXPECT_NEAR(world.State(1).w_WB_B.z(), torque / body.inertia_kg_m2.z(), 1e-9);
+  const Eigen::Quaterniond q = world.State(1).q_WB;
+  EXPECT_NEAR(2 * std::atan2(q.z(), q.w()), torque / body.inertia_kg_m2.z() / 2, 1e-3) << "angle after 1 s";
+}
+
+TEST(World, DrivesABodyThatLeansForwardForward) {
+  const double hover = Built("mascot").HoverRotorSpeed(kG);
+  World world(Bodies("quadrotor", {{0, 0, 10}}));
+  Fly(world, {0.99 * hover, hover, 1.01 * hover, hover}, 20);  // nose down
+  EXPECT_GT(world.State(1).v_WB.x(), 1e-3);
+  EXPECT_NEAR(world.State(1).v_WB.y(), 0, 1e-6);
+}
+
+TEST(World, KeepsAngularMomentumAndEnergyOfABodyThatTumblesFreely) {
+  Airframe body = WithoutDrag();
+  body.inertia_kg_m2 = {0.08, 0.12, 0.18};  // three different axes, so that it does tumble
+  Experiment e = Bodies("quadrotor", {{0, 0, 1000}}, body);
+  World world(e);
+  Fly(world, {700, 600, 500, 400}, 30);
+  const auto momentum_W = [&](const Motion& s) -> Vector3d {
+    return s.q_WB * body.inertia_kg_m2.cwiseProduct(s.w_WB_B);
+  };
+  const auto energy_j = [&](const Motion& s) { return s.w_WB_B.dot(body.inertia_kg_m2.cwiseProduct(s.w_WB_B)) / 2; };
+  Fly(world, Rotors(0), 1);
+  const Motion start = world.State(1);
+  ASSERT_GT(start.w_WB_B.norm(), 1.0);
+  Fly(world, Rotors(0), 200);
+  const Motion end = world.State(1);
+  EXPECT_GT((end.w_WB_B - start.w_WB_B).norm(), 0.1 * start.w_WB_B.norm()) << "it did tumble";
+  EXPECT_LT((momentum_W(end) - momentum_W(start)).norm(), 0.01 * momentum_W(start).norm());
+  EXPECT_NEAR(energy_j(end), energy_j(start), 0.01 * energy_j(start));
+}
+
+TEST(World, GivesUnitQuaternionsThatNeverJump) {
+  const double hover = Built("mascot").HoverRotorSpeed(kG);
+  World world(Bodies("quadrotor", {{0, 0, 10}}));
+  double turned_rad = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const Eigen::Quaterniond before = world.State(1).q_WB;
+    Fly(world, {1.1 * hover, 0.9 * hover, 1.1 * hover, 0.9 * hover}, 1);
+    EXPECT_NEAR(world.State(1).q_WB.norm(), 1, 1e-12);
+    ASSERT_GT(before.dot(world.State(1).q_WB), 0.99);
+    turned_rad += world.State(1).w_WB_B.z() * 0.01;
+  }
+  EXPECT_GT(turned_rad, 4 * std::numbers::pi) << "two turns: the quaternion went through its other sign";
+}
+
+// --- rotors -----------------------------------------------------------------------------------------
+
+TEST(World, TurnsRotorsNoFasterThanTheyCanAndNotBackwards) {
+  World above(Bodies("quadrotor", {{0, 0, 50}})), at_most(Bodies("quadrotor", {{0, 0, 50}}));
+  Fly(above, Rotors(1e4), 20);
+  Fly(at_most, Rotors(Built("mascot").MaxRotorSpeed()), 20);
+  EXPECT_EQ(above.State(1).v_WB, at_most.State(1).v_WB);
+  World below(Bodies("quadrotor", {{0, 0, 50}})), still(Bodies("quadrotor", {{0, 0, 50}}));
+  Fly(below, Rotors(-500), 20);
+  Fly(still, Rotors(0), 20);
+  EXPECT_EQ(below.State(1).v_WB, still.State(1).v_WB);
+}
+
+TEST(World, LetsLaggedRotorsFollowExponentiallyFromHover) {
+  Airframe body = WithoutDrag();
+  body.rotor_time_constant_s = 0.1;
+  World world(Bodies("quadrotor", {{0, 0, 50}}, body));
+  const double hover = body.HoverRotorSpeed(kG), wanted = 1.2 * hover;
+  double v = 0;
+  for (int step = 1; step <= 100; ++step) {
+    const double w = wanted + (hover - wanted) * std::exp(-step * 0.001 / 0.1);
+    v += 0.001 * (4 * body.lift_n_s2 * w * w / body.mass_kg - kG);
+  }
+  Fly(world, Rotors(wanted), 10);
+  EXPECT_NEAR(world.State(1).v_WB.z(), v, 1e-9);
+}
+
+TEST(World, KeepsLaggedRotorsAtHoverWhenToldToHover) {
+  Airframe body = Built("crazyflie");
+  World world(Bodies("quadrotor", {{0, 0, 2}}, body));
+  Fly(world, Rotors(body.HoverRotorSpeed(kG)), 1000);
+  EXPECT_LT((world.State(1).p_WB - Vector3d(0, 0, 2)).norm(), 1e-9);
+}
+
+// --- contacts ---------------------------------------------------------------------------------------
+
+/// Two double integrators 2 m apart that fly at each other, each at 1 m/s.
+Experiment HeadOn() {
+  Experiment e = Bodies("double_integrator", {{-1, 0, 1}, {1, 0, 1}});
+  e.agents[0].v_W = {1, 0, 0};
+  e.agents[1].v_W = {-1, 0, 0};
+  return e;
+}
+
+void Drift(World& world, int bodies, int ticks) {
+  const std::vector<Actuation> still(static_cast<std::size_t>(bodies), Rotors(0));
+  for (int i = 0; i < ticks; ++i) world.Step(still);
+}
+
+TEST(World, ExchangesMomentumInACollisionAndLosesNone) {
+  Experiment e = HeadOn();
+  e.agents[0].v_W.x() = 2;
+  World world(e);
+  Drift(world, 2, 200);
+  EXPECT_EQ(world.collisions(), 1);
+  EXPECT_NEAR(world.State(1).v_WB.x() + world.State(2).v_WB.x(), 1.0, 1e-9);
+  EXPECT_LE(world.State(1).v_WB.x(), world.State(2).v_WB.x() + 1e-9) << "they no longer approach";
+  EXPECT_GT(world.State(2).p_WB.x() - world.State(1).p_WB.x(), 0.199) << "spheres of 0.1 m stay outside each other";
+}
+
+TEST(World, LetsBodiesPassThroughEachOtherWithoutCollisions) {
+  Experiment e = HeadOn();
+  e.physics.collisions = false;
+  World world(e);
+  Drift(world, 2, 200);
+  EXPECT_EQ(world.collisions(), 0);
+  EXPECT_NEAR(world.State(1).p_WB.x(), 1, 1e-9);
+  EXPECT_NEAR(world.State(2).p_WB.x(), -1, 1e-9);
+}
+
+TEST(World, CountsACollisionEachTimeBodiesMeet) {
+  World world(HeadOn());
+  Drift(world, 2, 110);
+  EXPECT_EQ(world.collisions(), 1);
+  for (int i = 0; i < 50; ++i) world.Step(std::array<Actuation, 2>{{{-1, 0, 0, 0}, {1, 0, 0, 0}}});   // apart
+  for (int i = 0; i < 200; ++i) world.Step(std::array<Actuation, 2>{{{1, 0, 0, 0}, {-1, 0, 0, 0}}});  // and back
+  EXPECT_EQ(world.collisions(), 2);
+  for (int i = 0; i < 300; ++i)
+    world.Step(std::array<Actuation, 2>{{{1, 0, 0, 0}, {-1, 0, 0, 0}}});  // pressed together
+  EXPECT_EQ(world.collisions(), 2);
+}
+
+TEST(World, LandsABodyOnTheGroundWhereItRests) {
+  for (const bool collisions : {true, false}) {
+    Experiment e = Bodies("quadrotor", {{0, 0, 1}});
+    e.physics.collisions = collisions;
+    World world(e);
+    Fly(world, Rotors(0), 500);
+    const Motion rest = world.State(1);
+    EXPECT_NEAR(rest.p_WB.z(), Built("mascot").size_m.z() / 2, 1e-3);
+    EXPECT_LT(rest.v_WB.norm(), 1e-6);
+    EXPECT_LT(rest.w_WB_B.norm(), 1e-6);
+    EXPECT_EQ(world.collisions(), 1) << "resting is one contact";
+    Fly(world, Rotors(1.1 * Built("mascot").HoverRotorSpeed(kG)), 100);
+    EXPECT_GT(world.State(1).p_WB.z(), 0.5) << "and it takes off again";
+  }
+}
+
+TEST(World, HasNoGroundWhenToldSo) {
+  Experiment e = Bodies("quadrotor", {{0, 0, 1}});
+  e.physics.ground = false;
+  World world(e);
+  Fly(world, Rotors(0), 200);
+  EXPECT_LT(world.State(1).p_WB.z(), -10);
+  EXPECT_EQ(world.collisions(), 0);
+}
+
+// --- determinism ------------------------------------------------------------------------------------
+
+TEST(World, GivesTheSameBitsAgain) {
+  std::vector<Vector3d> places;
+  for (int i = 0; i < 8; ++i) places.push_back({0.3 * (i % 3), 0.3 * (i / 3), 0.2 + 0.1 * i});  // a heap: many contacts
+  const auto run = [&] {
+    Experiment e = Bodies("quadrotor", places);
+    e.agents[3].model = e.agents[5].model = "double_integrator";
+    World world(e);
+    std::mt19937_64 random(5);
+    std::vector<double> bits;
+    for (int tick = 0; tick < 200; ++tick) {
+      std::vector<Actuation> commands(places.size());
+      for (Actuation& command : commands)
+        for (double& value : command) value = static_cast<double>(random() >> 11) * 0x1p-53 * 10;
+      world.Step(commands);
+      for (int id = 1; id <= e.size(); ++id) {
+        const Motion s = world.State(id);
+        bits.insert(bits.end(), s.p_WB.begin(), s.p_WB.end());
+        bits.insert(bits.end(), s.v_WB.begin(), s.v_WB.end());
+        bits.insert(bits.end(), s.q_WB.coeffs().begin(), s.q_WB.coeffs().end());
+        bits.insert(bits.end(), s.w_WB_B.begin(), s.w_WB_B.end());
+      }
+    }
+    EXPECT_GT(world.collisions(), 8);
+    return bits;
+  };
+  const std::vector<double> once = run();
+  const World moves_the_heap(Bodies("quadrotor", {{0, 0, 1}, {9, 0, 1}}));
+  const std::vector<double> again = run();
+  ASSERT_EQ(once.size(), again.size());
+  EXPECT_EQ(std::memcmp(once.data(), again.data(), once.size() * sizeof(double)), 0);
+}
+
+// --- refusals ---------------------------------------------------------------------------------------
+
+TEST(World, RefusesACommandThatIsNotFinite) {
+  World world(Bodies("double_integrator", {{0, 0, 1}, {5, 0, 1}, {10, 0, 1}}));
+  Drift(world, 3, 12);
+  std::vector<Actuation> commands(3, Rotors(0));
+  commands[2][1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT([&] { world.Step(commands); }, ThrowsMessage<std::runtime_error>("tick 12: agent 3: actuator[1] is nan"));
+  commands[2][1] = -std::numeric_limits<double>::infinity();
+  EXPECT_THAT([&] { world.Step(commands); },
+              ThrowsMessage<std::runtime_error>("tick 12: agent 3: actuator[1] is -inf"));
+  commands[0][3] = std::numeric_limits<double>::infinity();
+  EXPECT_THAT([&] { world.Step(commands); }, ThrowsMessage<std::runtime_error>("tick 12: agent 1: actuator[3] is inf"));
+  EXPECT_EQ(world.tick(), 12) << "nothing moved";
+}
+
+TEST(World, RefusesAStateThatIsNotFinite) {
+  World world(Bodies("double_integrator", {{0, 0, 1}, {5, 0, 1}}));
+  const std::array<Actuation, 2> commands = {{{0, 0, 0, 0}, {1e308, 0, 0, 0}}};
+  EXPECT_THAT(
+      [&] {
+        for (int i = 0; i < 1000; ++i) world.Step(commands);
+      },
+      ThrowsMessage<std::runtime_error>(::testing::MatchesRegex("tick [0-9]+: agent 2: its state is not finite")));
+}
+
+TEST(World, WantsOneCommandPerAgent) {
+  World world(Bodies("double_integrator", {{0, 0, 1}, {5, 0, 1}}));
+  EXPECT_THAT([&] { world.Step(std::array<Actuation, 1>{Rotors(0)}); },
+              ThrowsMessage<std::invalid_argument>("World::Step: one command per agent"));
+}
+
+}  // namespace
+}  // namespace mascot
