@@ -1,0 +1,46 @@
+#pragma once
+
+#include <zlib.h>
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace mascot {
+
+// Our file formats (MCAP, zip, npy, CDR) are little endian, and so is every machine that we run on.
+static_assert(std::endian::native == std::endian::little);
+
+using Bytes = std::vector<std::uint8_t>;
+using ByteSpan = std::span<const std::uint8_t>;
+
+inline ByteSpan AsBytes(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+/// The bytes of numbers as they lie in memory.
+template <class T>
+requires std::is_arithmetic_v<T> ByteSpan AsBytes(std::span<const T> numbers) {
+  return {reinterpret_cast<const std::uint8_t*>(numbers.data()), numbers.size_bytes()};
+}
+
+inline void Append(Bytes& out, ByteSpan bytes) {
+  if (bytes.empty()) return;
+  out.resize(out.size() + bytes.size());
+  std::memcpy(out.data() + out.size() - bytes.size(), bytes.data(), bytes.size());
+}
+
+template <class T>
+requires std::is_arithmetic_v<T>
+void Append(Bytes& out, T number) { Append(out, AsBytes(std::span<const T>(&number, 1))); }
+
+/// CRC-32 (ISO-HDLC: that of zip and MCAP) of what `crc` covers, followed by `bytes`. Begins with 0.
+inline std::uint32_t Crc32(std::uint32_t crc, ByteSpan bytes) {
+  return static_cast<std::uint32_t>(::crc32_z(crc, bytes.data(), bytes.size()));
+}
+
+}  // namespace mascot

@@ -1,0 +1,330 @@
+#include "orchestrator/dds_engine.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <mutex>
+#include <optional>
+
+#include "idl/bus.h"
+#include "idl/shared_memory.h"
+#include "idl/wire.h"
+#include "orchestrator/domain_lock.h"
+#include "orchestrator/process.h"
+#include "orchestrator/progress.h"
+#include "orchestrator/recorder.h"
+#include "orchestrator/wire_audit.h"
+
+namespace mascot {
+namespace {
+
+using namespace std::chrono_literals;
+using WallClock = std::chrono::steady_clock;
+
+/// Above this everybody finding everybody takes longer than asking a server (50: 5 s against 2 s).
+constexpr int kMostPeers = 20;
+/// How long an orderly end may take before it is made disorderly.
+constexpr auto kGrace = 5s;
+
+std::string NameOf(int agent) { return "agent_" + std::to_string(agent); }
+
+/// One run, from the domain's lock to the last process gone.
+class DdsRun {
+ public:
+  DdsRun(const Experiment& experiment, const std::string& resolved, const RunFolder& folder, RunWriter& writer,
+         Console& console, StopSignal& stop);
+  EngineResult Run();
+
+ private:
+  using Deadline = std::optional<WallClock::time_point>;
+
+  DomainOptions Options(const std::string& name, DiscoveryRole role) const;
+  void Spawn();
+  void Loop();
+  void HandleSignal(int signal);
+  void CheckChildren();
+  void HandOutExperiment();
+  void SayReady();
+  void Record();
+  void CheckWire();
+  void CheckDeadlines();
+  void ShowProgress();
+  void End();
+  void Fail(const std::string& why);
+  void Ask(mascot::Ask ask, const std::string& reason);
+  void OnStatus(const mascot_msgs::msg::Status& status);
+  std::optional<mascot_msgs::msg::Status> StatusOf(const std::string& process) const;
+  std::string Unheard() const;
+
+  const Experiment& experiment_;
+  Console& console_;
+  StopSignal& stop_;
+  const WallClock::time_point launched_ = WallClock::now();
+  const bool external_;
+  EngineResult result_;
+  bool finished_ = false;
+  Deadline stop_deadline_, drain_deadline_;
+  WallClock::time_point next_hello_ = launched_;
+  std::int64_t confirmed_ = 0;
+  bool ready_ = false;
+
+  DomainLock lock_;
+  const bool with_server_;
+  ChildLogs logs_;
+  Children children_;
+  WireAudit audit_;
+  mutable std::mutex mutex_;  // guards statuses_ and experiment_wanted_
+  std::map<std::string, mascot_msgs::msg::Status> statuses_;
+  bool experiment_wanted_ = false;
+  std::optional<Domain> discovery_server_;
+  std::optional<Domain> domain_;
+  mascot_msgs::msg::Experiment experiment_message_;
+  std::optional<Writer<ExperimentType>> experiments_;
+  std::optional<Writer<RequestType>> requests_;
+  std::optional<Writer<StatusType>> status_writer_;
+  std::optional<Reader<StatusType>> status_reader_;
+  std::optional<Recorder> recorder_;
+  Progress progress_;
+};
+
+DdsRun::DdsRun(const Experiment& experiment, const std::string& resolved, const RunFolder& folder, RunWriter& writer,
+               Console& console, StopSignal& stop)
+    : experiment_(experiment),
+      console_(console),
+      stop_(stop),
+      external_(std::any_of(experiment.agents.begin(), experiment.agents.end(), [](const auto& a) { return a.external; })),
+      lock_(experiment.network.domain),
+      with_server_(experiment.size() + 2 > kMostPeers),
+      logs_(folder, console),
+      children_(logs_),
+      progress_(experiment, writer, console) {
+  SweepSharedMemory();  // of runs that were killed
+  Spawn();
+  auto wake = [this] { stop_.Wake(); };
+  if (with_server_) discovery_server_.emplace(Options("discovery_server", DiscoveryRole::kServer), [] {});
+  domain_.emplace(Options("orchestrator", with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake, &audit_);
+  experiment_message_.name(experiment.run.name);
+  experiment_message_.toml(resolved);
+  experiments_.emplace(*domain_, Topic::Experiment());
+  requests_.emplace(*domain_, Topic::Request());
+  status_writer_.emplace(*domain_, Topic::Status());
+  status_reader_.emplace(*domain_, Topic::Status(), [this](const mascot_msgs::msg::Status& status) { OnStatus(status); });
+  recorder_.emplace(*domain_, experiment, writer);
+}
+
+DomainOptions DdsRun::Options(const std::string& name, DiscoveryRole role) const {
+  DomainOptions options;
+  options.domain = lock_.domain();
+  options.transport = experiment_.network.transport;
+  options.name = name;
+  options.role = role;
+  options.loopback = !external_;
+  options.participants = experiment_.size() + 2;
+  const std::string host = role == DiscoveryRole::kServer && external_ ? "0.0.0.0" : "127.0.0.1";
+  if (with_server_) options.server = host + ":" + std::to_string(lock_.discovery_port());
+  return options;
+}
+
+void DdsRun::Spawn() {
+  const DomainOptions options = Options("", DiscoveryRole::kClient);
+  std::vector<std::string> common{"--domain",    std::to_string(options.domain), "--transport", options.transport,
+                                  "--parent",    std::to_string(getpid()),       "--wait-s",
+                                  std::to_string(static_cast<int>(experiment_.run.start_timeout_s) + 1)};
+  if (options.loopback) common.push_back("--loopback");
+  if (with_server_) common.insert(common.end(), {"--discovery", options.server});
+  console_.Line("domain " + std::to_string(options.domain) + (with_server_ ? ", discovery server " + options.server : ""));
+
+  auto server = common;
+  server.insert(server.end(), {"--participants", std::to_string(options.participants)});
+  children_.Spawn("physics_server", ProgramFolder() / "physics_server", server);
+  for (const AgentConfig& agent : experiment_.agents) {
+    auto arguments = common;
+    arguments.insert(arguments.end(), {"--id", std::to_string(agent.id)});
+    if (!agent.external) children_.Spawn(NameOf(agent.id), ProgramFolder() / "agent", arguments);
+    else console_.Line("waiting for: agent --id " + std::to_string(agent.id) + " --domain " + std::to_string(options.domain) +
+                       (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_.discovery_port()) : ""));
+  }
+}
+
+EngineResult DdsRun::Run() {
+  try {
+    Loop();
+  } catch (const std::exception& failure) {
+    Fail(failure.what());
+  }
+  result_.lost = recorder_->lost();
+  result_.wire_matches_graph = audit_.IsComplete(experiment_.graph) && audit_.Violation(experiment_.graph).empty();
+  if (recorder_->newest_tick() >= 0) {
+    result_.wall_s = recorder_->wall_s();
+    result_.startup_s = std::chrono::duration<double>(recorder_->started() - launched_).count();
+  }
+  if (const auto server = StatusOf("physics_server")) {
+    result_.collisions = static_cast<std::int64_t>(server->collisions());
+    result_.misses = server->misses();
+  }
+  End();
+  return result_;
+}
+
+void DdsRun::Loop() {
+  while (!finished_) {
+    HandleSignal(stop_.Within(50ms));
+    domain_->RethrowFailure();
+    CheckChildren();
+    HandOutExperiment();
+    CheckWire();
+    SayReady();
+    Record();
+    CheckDeadlines();
+    ShowProgress();
+  }
+}
+
+void DdsRun::HandleSignal(int signal) {
+  if (signal == 0 || signal == SIGCHLD) return;
+  if (result_.signal != 0) {  // the second time: at once
+    children_.Kill();
+    finished_ = true;
+    return;
+  }
+  result_.signal = signal;
+  console_.Line("stopping (once more to kill)");
+  Ask(Ask::kStop, strsignal(signal));
+  stop_deadline_ = WallClock::now() + kGrace;
+  if (recorder_->newest_tick() < 0) finished_ = true;  // nothing flies yet
+}
+
+void DdsRun::CheckChildren() {
+  std::string failure;
+  for (const Exit& exit : children_.Reap()) {
+    failure += (failure.empty() ? "" : "\n") + exit.process + " " + exit.Text();
+    for (const std::string& line : logs_.LastLines(exit.process)) failure += "\n  " + exit.process + " | " + line;
+  }
+  if (!failure.empty()) Fail(failure);
+}
+
+void DdsRun::Fail(const std::string& why) {
+  if (result_.failure.empty()) result_.failure = why;
+  finished_ = true;
+}
+
+void DdsRun::HandOutExperiment() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!std::exchange(experiment_wanted_, false)) return;
+  }
+  experiments_->Write(experiment_message_);
+}
+
+void DdsRun::CheckWire() {
+  if (const std::string violation = audit_.Violation(experiment_.graph); !violation.empty())
+    Fail("the wire differs from the graph: " + violation);
+}
+
+void DdsRun::SayReady() {
+  if (recorder_->newest_tick() >= 0 || WallClock::now() < next_hello_) return;
+  if (!recorder_->Matched() || !audit_.IsComplete(experiment_.graph)) return;
+  next_hello_ = WallClock::now() + 200ms;
+  mascot_msgs::msg::Status status;
+  status.process("recorder");
+  status.state(static_cast<std::uint8_t>(Life::kReady));
+  status_writer_->Write(status);
+}
+
+void DdsRun::Record() {
+  const auto server = StatusOf("physics_server");
+  const bool done = server && static_cast<Life>(server->state()) == Life::kDone;
+  const bool give_up = drain_deadline_ && WallClock::now() > *drain_deadline_;
+  const std::int64_t rows = recorder_->Drain(give_up);
+  if (rows > confirmed_) {
+    mascot_msgs::msg::Status status;
+    status.process("recorder");
+    status.state(static_cast<std::uint8_t>(Life::kRunning));
+    status.tick(static_cast<std::uint64_t>(rows));
+    status_writer_->Write(status);
+    confirmed_ = rows;
+  }
+  if (!done) return;
+  if (rows == static_cast<std::int64_t>(server->tick()) + 1) finished_ = true;
+  else if (give_up) Fail("the recording is not complete: " + std::to_string(rows) + " of " + std::to_string(server->tick() + 1) + " ticks");
+  else if (!drain_deadline_) drain_deadline_ = WallClock::now() + (experiment_.run.mode == Mode::kRealtime ? 1s : kGrace);
+}
+
+void DdsRun::CheckDeadlines() {
+  if (stop_deadline_ && WallClock::now() > *stop_deadline_) finished_ = true;  // what there is is recorded
+  const auto start_limit = std::chrono::duration<double>(experiment_.run.start_timeout_s) + kGrace;
+  if (recorder_->newest_tick() < 0 && WallClock::now() - launched_ > start_limit)
+    Fail("not started within run.start_timeout_s = " + ShortestFloat(experiment_.run.start_timeout_s) + " s: " + Unheard());
+}
+
+std::string DdsRun::Unheard() const {
+  std::string names;
+  auto check = [&](const std::string& process) {
+    if (!StatusOf(process)) names += (names.empty() ? "nothing was heard of " : ", ") + process;
+  };
+  check("physics_server");
+  for (const AgentConfig& agent : experiment_.agents) check(NameOf(agent.id));
+  return names.empty() ? "not everybody has found everybody" : names;
+}
+
+void DdsRun::ShowProgress() {
+  if (confirmed_ > 0) progress_.Show(confirmed_ - 1);
+}
+
+void DdsRun::End() {
+  if (result_.failure.empty() && result_.signal == 0) {
+    Ask(Ask::kEnd, "done");
+    children_.WaitAll(kGrace);
+  } else {
+    Ask(Ask::kEnd, result_.failure.substr(0, 1000));
+  }
+  children_.Stop(2s);
+  // Those started by hand are not ours to reap, only to be told.
+  for (const auto deadline = WallClock::now() + 2s; external_ && requests_->matched() > 0 && WallClock::now() < deadline;)
+    stop_.Within(20ms);
+  recorder_.reset();
+  status_reader_.reset();
+  status_writer_.reset();
+  requests_.reset();
+  experiments_.reset();
+  domain_.reset();
+  discovery_server_.reset();
+  SweepSharedMemory();
+}
+
+void DdsRun::Ask(mascot::Ask ask, const std::string& reason) {
+  mascot_msgs::msg::Request request;
+  request.kind(static_cast<std::uint8_t>(ask));
+  request.reason(reason);
+  requests_->Write(request);
+}
+
+void DdsRun::OnStatus(const mascot_msgs::msg::Status& status) {
+  const auto life = static_cast<Life>(status.state());
+  const std::lock_guard lock(mutex_);
+  statuses_[status.process().to_string()] = status;
+  experiment_wanted_ |= life == Life::kWaiting;
+  const bool external = status.agent() >= 1 && status.agent() <= experiment_.agents.size() &&
+                        experiment_.agent(static_cast<int>(status.agent())).external;
+  if (life == Life::kFailed && external) throw std::runtime_error(status.process().to_string() + " failed: " + status.reason().to_string());
+  if (life == Life::kWaiting || life == Life::kDone) stop_.Wake();
+}
+
+std::optional<mascot_msgs::msg::Status> DdsRun::StatusOf(const std::string& process) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = statuses_.find(process);
+  if (found == statuses_.end()) return std::nullopt;
+  return found->second;
+}
+
+}  // namespace
+
+EngineResult RunOverDds(const Experiment& experiment, const std::string& resolved, const RunFolder& folder,
+                        RunWriter& writer, Console& console, StopSignal& stop) {
+  return DdsRun(experiment, resolved, folder, writer, console, stop).Run();
+}
+
+}  // namespace mascot

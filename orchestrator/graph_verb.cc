@@ -1,0 +1,117 @@
+// `orchestrator graph CONFIG`: who hears whom, as matrices and as what they imply.
+#include <spdlog/fmt/fmt.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "orchestrator/config_args.h"
+#include "orchestrator/graph_facts.h"
+#include "orchestrator/theory.h"
+#include "orchestrator/verb.h"
+
+namespace mascot {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kLargestPrinted = 40;  // agents; wider matrices do not fit on a screen
+
+Eigen::MatrixXd Adjacency(const Graph& graph) {
+  Eigen::MatrixXd a = -graph.Laplacian();
+  a.diagonal().setZero();
+  return a.array() + 0.0;  // -0 becomes 0
+}
+
+Json Rows(const Eigen::MatrixXd& matrix) {
+  Json rows = Json::array();
+  for (const auto& row : matrix.rowwise()) rows.push_back(std::vector<double>(row.begin(), row.end()));
+  return rows;
+}
+
+Json ToJson(const Graph& graph, const GraphFacts& facts) {
+  Json json = {{"agents", graph.size()}, {"edges", facts.edges}, {"symmetric", facts.symmetric}};
+  if (graph.size() <= kLargestSpectrum) {
+    json["adjacency"] = Rows(Adjacency(graph));
+    json["laplacian"] = Rows(graph.Laplacian());
+    json["eigenvalues"] = Json::array();
+    for (const auto& lambda : graph.Eigenvalues()) json["eigenvalues"].push_back({lambda.real(), lambda.imag()});
+    json["lambda_2"] = *facts.lambda_2;
+  }
+  json["components"] = facts.components;
+  json["roots"] = facts.roots;
+  json["tree_root"] = facts.tree_root;
+  json["spanning_tree"] = facts.tree;
+  return json;
+}
+
+void PrintMatrix(std::string_view title, const Eigen::MatrixXd& matrix) {
+  std::size_t width = 1;
+  for (const double value : matrix.reshaped()) width = std::max(width, fmt::format("{:.4g}", value).size());
+  std::cout << title << "\n";
+  for (const auto& row : matrix.rowwise()) {
+    std::cout << " ";
+    for (const double value : row) std::cout << fmt::format(" {:>{}}", fmt::format("{:.4g}", value), width);
+    std::cout << "\n";
+  }
+}
+
+void PrintSpectrum(const Graph& graph) {
+  std::cout << "eigenvalues of the laplacian\n ";
+  for (const auto& lambda : graph.Eigenvalues()) {
+    std::cout << " " << fmt::format("{:.6g}", std::abs(lambda.real()) < 1e-12 ? 0.0 : lambda.real());
+    if (lambda.imag() != 0) std::cout << fmt::format("{:+.6g}i", lambda.imag());
+  }
+  std::cout << "\n";
+}
+
+void PrintTree(const GraphFacts& facts) {
+  if (facts.tree_root == 0) {
+    std::cout << "spanning tree  none\n";
+    return;
+  }
+  std::cout << "spanning tree  root " << facts.tree_root << "; follows:";
+  for (std::size_t i = 0; i < facts.tree.size(); ++i) {
+    if (facts.tree[i] != 0) std::cout << " " << i + 1 << "->" << facts.tree[i];
+  }
+  std::cout << "\n";
+}
+
+void Print(const Graph& graph, const GraphFacts& facts) {
+  std::cout << fmt::format("{} agents, {} edges, {}\n", graph.size(), facts.edges,
+                           facts.symmetric ? "symmetric" : "directed");
+  if (graph.size() <= kLargestPrinted) {
+    PrintMatrix("adjacency (row i: whom agent i hears)", Adjacency(graph));
+    PrintMatrix("laplacian", graph.Laplacian());
+    PrintSpectrum(graph);
+  }
+  if (facts.lambda_2) std::cout << fmt::format("lambda_2       {:.6g}\n", *facts.lambda_2);
+  std::cout << "components    ";
+  for (const auto& component : facts.components) std::cout << " {" << IdRanges(component) << "}";
+  std::cout << "\nroots          " << (facts.roots.empty() ? "none" : IdRanges(facts.roots)) << "\n";
+  PrintTree(facts);
+}
+
+int ShowGraph(const ConfigArgs& args, bool json) {
+  const Experiment experiment = args.Load();
+  const GraphFacts facts = FactsOf(experiment.graph, experiment.law.leader);
+  if (json) {
+    std::cout << ToJson(experiment.graph, facts).dump(2) << "\n";
+  } else {
+    Print(experiment.graph, facts);
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::function<int()> SetUpGraph(CLI::App& command) {
+  const auto args = std::make_shared<ConfigArgs>();
+  const auto json = std::make_shared<bool>(false);
+  args->AddTo(command);
+  command.add_flag("--json", *json, "print JSON and nothing else");
+  return [args, json] { return ShowGraph(*args, *json); };
+}
+
+}  // namespace mascot

@@ -1,0 +1,74 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <iostream>
+#include <vector>
+
+#include "experiment/section.h"
+#include "orchestrator/verb.h"
+
+namespace mascot {
+namespace {
+
+// Every verb there is; `orchestrator --help` prints this table.
+constexpr VerbEntry kVerbs[] = {
+    {"up", "run an experiment: spawn, record, measure, plot", SetUpUp},
+    {"check", "validate an experiment and say what theory predicts; starts nothing", SetUpCheck},
+    {"graph", "matrix, lambda_2, components and roots of an experiment's graph", SetUpGraph},
+    {"laws", "the control laws: equation, source, parameters", SetUpLaws},
+    {"models", "the agent models", SetUpModels},
+    {"info", "what a recording holds, and the proof that it is complete", SetUpInfo},
+    {"plot", "the pictures of a run again", SetUpPlot},
+};
+
+constexpr int kUsageError = 2;
+
+/// CLI11 only says that a verb is required; people want to know what they mistyped.
+int UnknownVerb(const std::string& word) {
+  std::vector<std::string_view> names;
+  for (const VerbEntry& verb : kVerbs) names.push_back(verb.name);
+  const auto near = DidYouMean(word, names);
+  std::cerr << "error: unknown verb '" << word << "'";
+  if (near) std::cerr << " (did you mean \"" << *near << "\"?)";
+  std::cerr << "; expected one of";
+  for (std::string_view name : names) std::cerr << (name == names.front() ? " " : ", ") << name;
+  std::cerr << "\n";
+  return kUsageError;
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app("MASCOT: a testbed for decentralised control of multi-agent systems.", "orchestrator");
+  app.set_version_flag("--version", std::string("mascot ") + MASCOT_VERSION);
+  app.require_subcommand(1);
+  std::function<int()> action;
+  for (const VerbEntry& verb : kVerbs) {
+    CLI::App& command = *app.add_subcommand(std::string(verb.name), std::string(verb.summary));
+    command.callback([&action, run = verb.set_up(command)] { action = run; });
+  }
+  const bool is_verb = argc < 2 || argv[1][0] == '-' ||
+                       std::any_of(std::begin(kVerbs), std::end(kVerbs), [&](const auto& verb) { return verb.name == argv[1]; });
+  if (!is_verb) return UnknownVerb(argv[1]);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked_for_help) {
+    return app.exit(asked_for_help);
+  } catch (const CLI::ParseError& error) {
+    std::cerr << "error: " << error.what() << "\n";
+    return kUsageError;
+  }
+  return action();
+}
+
+}  // namespace
+}  // namespace mascot
+
+int main(int argc, char** argv) try {
+  std::signal(SIGPIPE, SIG_IGN);  // a closed terminal or pager must not cut a recording short
+  return mascot::Main(argc, argv);
+} catch (const mascot::ConfigError& error) {
+  for (const std::string& mistake : error.mistakes()) std::cerr << "error: " << mistake << "\n";
+  return mascot::kUsageError;
+} catch (const std::exception& error) {
+  std::cerr << "error: " << error.what() << "\n";
+  return 1;
+}

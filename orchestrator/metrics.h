@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "orchestrator/ideal_team.h"
+
+namespace mascot {
+
+/// What a run's rows say, in SI units; definitions as in docs/recording.md.
+struct Measured {
+  std::int64_t rows = 0;
+  Eigen::Vector3d value_m = Eigen::Vector3d::Zero();  ///< mean position at the end
+  double final_disagreement_m = 0;                    ///< largest distance from the mean, or the leader, over law.axes
+  double final_speed_m_per_s = 0;                     ///< largest over agents, over law.axes
+  std::optional<double> settling_time_s;
+  double effort_m2_per_s3 = 0;                        ///< mean over agents of the integral of |acceleration command|^2
+  double saturated_fraction = 0;
+  std::optional<double> min_separation_m;             ///< absent for one agent
+  double fidelity_rms_m = 0;
+  double fidelity_max_m = 0;
+  double travelled_m = 0;
+};
+
+/// Measures a run row by row, in memory that does not grow with it.
+class Metrics {
+ public:
+  explicit Metrics(Experiment& experiment);
+  /// One tick's motions and commands, by id - 1.
+  void Add(std::span<const Motion> motions, std::span<const Command> commands);
+  Measured Result() const;
+  /// Of the newest row, for the progress line.
+  double disagreement_m() const { return disagreement_m_; }
+
+ private:
+  void MeasureAgreement(std::span<const Motion> motions);
+  void MeasureControl(std::span<const Command> commands);
+  void MeasureSeparation(std::span<const Motion> motions);
+  void MeasureFidelity(std::span<const Motion> motions);
+
+  const Experiment& experiment_;
+  IdealTeam ideal_;
+  std::int64_t rows_ = 0;
+  Eigen::Vector3d mean_W_ = Eigen::Vector3d::Zero();
+  double disagreement_m_ = 0;
+  double speed_m_per_s_ = 0;
+  double first_disagreement_m_ = 0;
+  std::int64_t last_unsettled_ = -1;  // newest row above 2 % of the first disagreement
+  double effort_ = 0;
+  std::int64_t saturated_ = 0;
+  double min_separation2_;
+  double squared_deviation_ = 0;
+  double max_deviation2_ = 0;
+  double path_m_ = 0;
+  std::vector<Eigen::Vector3d> last_p_W_;
+  std::vector<Eigen::Vector3d> by_x_;  // scratch
+};
+
+}  // namespace mascot

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace mascot {
+
+/// A file being written. Every call is checked: failures throw std::runtime_error with the file's name and
+/// the system's reason. After a failure every further write fails too, so that nothing lands behind a hole.
+class OutputFile {
+ public:
+  /// Creates `path`, or truncates what is there.
+  explicit OutputFile(std::string path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void Write(std::span<const std::uint8_t> bytes);
+  /// Waits until the disk has everything, then closes. Delayed write errors show up here.
+  void SyncAndClose();
+  /// Bytes written so far.
+  std::uint64_t size() const { return size_; }
+  const std::string& path() const { return path_; }
+
+ private:
+  [[noreturn]] void Fail(const std::string& what, int error);
+
+  std::string path_;
+  int fd_ = -1;
+  int error_ = 0;  // errno of the first failure
+  std::uint64_t size_ = 0;
+};
+
+}  // namespace mascot

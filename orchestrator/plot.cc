@@ -1,0 +1,77 @@
+#include "orchestrator/plot.h"
+
+#include <spawn.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <CLI/CLI.hpp>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "experiment/section.h"
+#include "orchestrator/process.h"
+#include "orchestrator/verb.h"
+
+extern char** environ;
+
+namespace mascot {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Installed, or in the source tree that this program was configured in.
+fs::path PlotScript() {
+  for (const fs::path& path : {ProgramFolder() / "../share/mascot/plot.py", fs::path(MASCOT_SOURCE_DIR) / "scripts/plot.py"})
+    if (fs::exists(path)) return path;
+  throw std::runtime_error("plot.py is missing: neither beside this program (../share/mascot) nor in its source tree");
+}
+
+/// Waits for a program that shares our terminal. Returns its exit code, or 128 + signal.
+int RunProgram(std::vector<std::string> words) {
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  pid_t pid = 0;
+  const int error = posix_spawn(&pid, argv[0], nullptr, &attributes, argv.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  if (error != 0) throw std::runtime_error("cannot start " + words[0] + ": " + std::strerror(error));
+  int status = 0;
+  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+struct PlotArgs {
+  std::string run;
+  bool show = false;
+};
+
+}  // namespace
+
+int PlotRun(const fs::path& folder, bool show) {
+  // Debian's own Python, which has Debian's matplotlib; another may be first in PATH.
+  std::vector<std::string> words{"/usr/bin/python3", PlotScript(), folder};
+  if (show) words.push_back("--show");
+  return RunProgram(words);
+}
+
+std::function<int()> SetUpPlot(CLI::App& command) {
+  auto args = std::make_shared<PlotArgs>();
+  command.add_option("run", args->run, "run folder")->required()->type_name("RUN");
+  command.add_flag("--show", args->show, "open windows too");
+  return [args] {
+    if (!fs::is_directory(args->run)) throw ConfigError({args->run + ": expected a run folder"});
+    return PlotRun(args->run, args->show);
+  };
+}
+
+}  // namespace mascot

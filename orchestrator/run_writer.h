@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "idl/topics.h"
+#include "orchestrator/mcap.h"
+#include "orchestrator/metrics.h"
+#include "orchestrator/npz.h"
+#include "orchestrator/row.h"
+#include "orchestrator/run_folder.h"
+
+namespace mascot {
+
+/// Writes a run's rows, in order of tick: run.mcap, states.npz, and what is measured on the way. Both
+/// engines end here, so their files are the same bytes. Failures throw std::runtime_error.
+class RunWriter {
+ public:
+  /// `resolved` is the resolved experiment, attached to the recording.
+  RunWriter(Experiment& experiment, const RunFolder& folder, const std::string& resolved);
+
+  /// The next tick. A command that was not sent is written as held: the one before (zero at first).
+  void Add(const Row& row);
+  /// Completes the files. Without it they are left readable up to the last whole chunk.
+  void Close();
+
+  std::int64_t rows() const { return rows_; }
+  std::uint64_t samples() const { return mcap_.messages(); }
+  std::size_t topics() const { return topics_; }
+  Measured Result() const { return metrics_.Result(); }
+  double disagreement_m() const { return metrics_.disagreement_m(); }
+
+ private:
+  /// The recording's channel of a topic; nothing if record.topics leaves it out.
+  std::optional<std::uint16_t> AddChannel(const Topic& topic);
+  void WriteSample(std::optional<std::uint16_t> channel, std::uint64_t time_ns, const Row::Bytes& bytes);
+  void WriteArrays(double t_s);
+
+  const Experiment& experiment_;
+  McapWriter mcap_;
+  std::optional<NpzWriter> npz_;
+  Metrics metrics_;
+  std::vector<std::optional<std::uint16_t>> commands_, states_;  // channels by id - 1
+  std::optional<std::uint16_t> clock_;
+  std::size_t topics_ = 0;
+  std::int64_t rows_ = 0;
+  std::vector<Motion> motion_;
+  std::vector<Command> command_;
+  struct Array {
+    int handle;
+    std::vector<double> row;
+  };
+  std::vector<Array> arrays_;
+};
+
+}  // namespace mascot

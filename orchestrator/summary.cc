@@ -1,0 +1,108 @@
+#include "orchestrator/summary.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace mascot {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json OrNull(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json Vector(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Json OrNull(const std::optional<Eigen::Vector3d>& v) { return v ? Vector(*v) : Json(nullptr); }
+
+Json EdgesOf(const Graph& graph) {
+  Json edges = Json::array();
+  for (int id = 1; id <= graph.size(); ++id)
+    for (const Graph::Neighbour& heard : graph.HeardBy(id)) edges.push_back({id, heard.id, heard.weight});
+  return edges;
+}
+
+Json Consensus(const Measured& measured, const Prediction& prediction) {
+  Json predicted;
+  predicted["value_m"] = OrNull(prediction.value_m);
+  predicted["settling_time_s"] = OrNull(prediction.settling_time_s);
+  predicted["minmax_time_s"] = OrNull(prediction.minmax_time_s);
+  Json edges = Json::array();
+  for (const MinmaxEdge& edge : prediction.minmax_edges)
+    edges.push_back({{"child", edge.child}, {"parent", edge.parent}, {"time_s", edge.time_s}, {"exact", edge.exact}});
+  if (!edges.empty()) predicted["minmax_edges"] = edges;
+  Json consensus;
+  consensus["value_m"] = Vector(measured.value_m);
+  consensus["final_disagreement_m"] = measured.final_disagreement_m;
+  consensus["final_speed_m_per_s"] = measured.final_speed_m_per_s;
+  consensus["settling_time_s"] = OrNull(measured.settling_time_s);
+  consensus["predicted"] = predicted;
+  return consensus;
+}
+
+template <class... Values>
+std::string Line(const char* format, Values... values) {
+  char text[200];
+  std::snprintf(text, sizeof text, format, values...);
+  return std::string(text) + "\n";
+}
+
+}  // namespace
+
+std::string SummaryJson(const Experiment& experiment, const Prediction& prediction, const RunWriter& writer,
+                        const EngineResult& engine, const RunFacts& facts) {
+  const Measured measured = writer.Result();
+  const double sim_s = measured.rows > 0 ? experiment.time_s(measured.rows - 1) : 0;
+  Json json;
+  json["experiment"] = experiment.run.name;
+  json["seed"] = experiment.run.seed;
+  json["engine"] = facts.engine;
+  json["mode"] = experiment.run.mode == Mode::kRealtime ? "realtime" : "lockstep";
+  json["agents"] = experiment.size();
+  json["ticks"] = measured.rows;
+  json["sim_s"] = sim_s;
+  json["wall_s"] = engine.wall_s;
+  json["real_time_factor"] = engine.wall_s > 0 ? Json(sim_s / engine.wall_s) : Json(nullptr);
+  json["ticks_per_s"] = engine.wall_s > 0 ? Json(static_cast<double>(measured.rows) / engine.wall_s) : Json(nullptr);
+  json["exit"] = facts.exit;
+  json["failure"] = engine.failure.empty() ? Json(nullptr) : Json(engine.failure);
+  json["samples"] = {{"topics", writer.topics()}, {"recorded", writer.samples()}, {"lost", engine.lost}};
+  json["wire"] = {{"matches_graph", engine.wire_matches_graph}};
+  json["graph"] = {{"edges", EdgesOf(experiment.graph)}};
+  json["consensus"] = Consensus(measured, prediction);
+  json["control"] = {{"effort", measured.effort_m2_per_s3}, {"saturated_fraction", measured.saturated_fraction}};
+  json["safety"] = {{"min_separation_m", OrNull(measured.min_separation_m)}, {"collisions", engine.collisions}};
+  json["fidelity"] = {{"rms_m", measured.fidelity_rms_m}, {"max_m", measured.fidelity_max_m}, {"travelled_m", measured.travelled_m}};
+  if (experiment.run.mode == Mode::kRealtime) json["realtime"] = {{"misses", engine.misses}};
+  json["startup_s"] = engine.startup_s;
+  json["total_s"] = facts.total_s;
+  return json.dump(2) + "\n";
+}
+
+std::string SummaryText(const Experiment& experiment, const Prediction& prediction, const RunWriter& writer,
+                        const EngineResult& engine) {
+  const Measured m = writer.Result();
+  if (m.rows == 0) return "nothing was recorded\n";
+  const double sim_s = experiment.time_s(m.rows - 1);
+  std::string text;
+  text += Line("simulated      %.2f s in %.2f s: %.1f x real time", sim_s, engine.wall_s, sim_s / engine.wall_s);
+  text += Line("recorded       %lld ticks, %llu samples on %zu topics, %llu lost", static_cast<long long>(m.rows),
+               static_cast<unsigned long long>(writer.samples()), writer.topics(), static_cast<unsigned long long>(engine.lost));
+  text += Line("mean position  %.4f, %.4f, %.4f m", m.value_m.x(), m.value_m.y(), m.value_m.z());
+  if (const auto& value = prediction.value_m)
+    text += Line("  predicted    %.4f, %.4f, %.4f m", value->x(), value->y(), value->z());
+  text += Line("disagreement   %.2g m, speed %.2g m/s at the end", m.final_disagreement_m, m.final_speed_m_per_s);
+  if (m.settling_time_s) text += Line("settled        after %.2f s (2 %%)", *m.settling_time_s);
+  if (prediction.settling_time_s) text += Line("  predicted    %.2f s (slowest mode)", *prediction.settling_time_s);
+  if (prediction.minmax_time_s) text += Line("  predicted    %.2f s (min-max, latest edge)", *prediction.minmax_time_s);
+  text += Line("saturated      %.2g %% of commands", 100 * m.saturated_fraction);
+  if (m.min_separation_m) text += Line("separation     %.3f m at least, %lld collisions", *m.min_separation_m, static_cast<long long>(engine.collisions));
+  if (m.travelled_m > 0)
+    text += Line("fidelity       %.4f m rms from ideal double integrators: %.2f %% of %.1f m travelled", m.fidelity_rms_m,
+                 100 * m.fidelity_rms_m / m.travelled_m, m.travelled_m);
+  return text;
+}
+
+}  // namespace mascot

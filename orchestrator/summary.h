@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "experiment/experiment.h"
+#include "orchestrator/engine.h"
+#include "orchestrator/run_writer.h"
+#include "orchestrator/theory.h"
+
+namespace mascot {
+
+/// What only the orchestrator knows of a run.
+struct RunFacts {
+  std::string engine;  ///< "dds" | "inprocess"
+  int exit = 0;
+  double total_s = 0;  ///< from `up` to the last file but summary.json
+};
+
+/// summary.json: keys and definitions in docs/recording.md.
+std::string SummaryJson(const Experiment& experiment, const Prediction& prediction, const RunWriter& writer,
+                        const EngineResult& engine, const RunFacts& facts);
+/// The same for people: predicted beside measured, in a few lines.
+std::string SummaryText(const Experiment& experiment, const Prediction& prediction, const RunWriter& writer,
+                        const EngineResult& engine);
+
+}  // namespace mascot

@@ -1,0 +1,85 @@
+// `orchestrator laws` and `orchestrator models`: the tables behind the names that an experiment may use.
+#include <spdlog/fmt/fmt.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "agent/laws.h"
+#include "orchestrator/verb.h"
+#include "physics_server/model.h"
+
+namespace mascot {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string_view AxesName(Axes axes) { return axes == Axes::kXyz ? "xyz" : "xy"; }
+
+Json ToJson(const LawEntry& law) {
+  Json parameters = Json::array();
+  for (const LawParameter& parameter : law.parameters) {
+    const bool required = parameter.fallback == "*";
+    parameters.push_back(
+        {{"name", parameter.name},
+         {"required", required},
+         {"default", required || parameter.fallback.empty() ? Json(nullptr) : Json(parameter.fallback)},
+         {"range", parameter.range},
+         {"meaning", parameter.meaning}});
+  }
+  return {{"name", law.name},     {"summary", law.summary},     {"equation", law.equation}, {"theory", law.theory},
+          {"source", law.source}, {"axes", AxesName(law.axes)}, {"parameters", parameters}};
+}
+
+void Print(const LawEntry& law) {
+  std::cout << fmt::format("{}\n  {}\n  equation  {}\n  theory    {}\n  source    {}\n", law.name, law.summary,
+                           law.equation, law.theory, law.source);
+  std::cout << fmt::format("  keys of [law]; axes = \"{}\" unless said otherwise; * required\n", AxesName(law.axes));
+  for (const LawParameter& parameter : law.parameters) {
+    const bool has_value = parameter.fallback != "*" && !parameter.fallback.empty();
+    const std::string key = fmt::format("{}{}{}", parameter.name, has_value ? " = " : "", parameter.fallback);
+    std::cout << fmt::format("    {:<30}{:<26}{}\n", key, parameter.range, parameter.meaning);
+  }
+}
+
+int ShowLaws(bool json) {
+  Json table = Json::array();
+  for (const LawEntry& law : Laws()) {
+    if (json) {
+      table.push_back(ToJson(law));
+    } else {
+      std::cout << (law.name == Laws().front().name ? "" : "\n");
+      Print(law);
+    }
+  }
+  if (json) std::cout << table.dump(2) << "\n";
+  return 0;
+}
+
+int ShowModels(bool json) {
+  Json table = Json::array();
+  for (const ModelEntry& model : Models()) {
+    if (json) {
+      table.push_back({{"name", model.name}, {"summary", model.summary}, {"actuator", model.actuator}});
+    } else {
+      std::cout << fmt::format("{}\n  {}\n  actuator  {}\n", model.name, model.summary, model.actuator);
+    }
+  }
+  if (json) std::cout << table.dump(2) << "\n";
+  return 0;
+}
+
+std::function<int()> SetUpTable(CLI::App& command, int (*show)(bool json)) {
+  const auto json = std::make_shared<bool>(false);
+  command.add_flag("--json", *json, "print JSON and nothing else");
+  return [json, show] { return show(*json); };
+}
+
+}  // namespace
+
+std::function<int()> SetUpLaws(CLI::App& command) { return SetUpTable(command, ShowLaws); }
+
+std::function<int()> SetUpModels(CLI::App& command) { return SetUpTable(command, ShowModels); }
+
+}  // namespace mascot

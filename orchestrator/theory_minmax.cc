@@ -1,0 +1,75 @@
+// Min-max time consensus: how long every edge of the tree takes.
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+#include "agent/laws/minmax.h"
+#include "agent/laws/reach.h"
+#include "orchestrator/minmax_time.h"
+#include "orchestrator/theory_parts.h"
+
+namespace mascot {
+namespace {
+
+/// The slowest axis of the edge from `child` to its parent, if theory knows it.
+std::optional<MinmaxEdge> PredictEdge(const Experiment& experiment, const MinmaxParams& law, int child) {
+  const auto c = static_cast<std::size_t>(child - 1);
+  const int parent = law.parent[c];
+  const double alpha = law.beta[c] - law.parent_beta[c];
+  const double limit = experiment.control.max_acceleration_m_per_s2;
+  const bool exact = parent == experiment.law.leader && !law.root_flight;
+  // The limits leave a child that has less than the law counts on: against an idle parent it may still do.
+  if (exact ? limit <= alpha : limit < law.beta[c]) return std::nullopt;
+
+  MinmaxEdge edge{child, parent, 0, exact};
+  const Eigen::Vector3d z_W = experiment.agent(child).p_W - experiment.agent(parent).p_W;
+  const Eigen::Vector3d w_W = experiment.agent(child).v_W - experiment.agent(parent).v_W;
+  for (int axis = 0; axis < AxisCount(experiment); ++axis) {
+    edge.time_s = std::max(edge.time_s, exact ? MinmaxTime(z_W(axis), w_W(axis), alpha, std::min(law.beta[c], limit))
+                                              : MinmaxBound(z_W(axis), w_W(axis), alpha));
+  }
+  return edge;
+}
+
+void WarnOfCutBeta(const Experiment& experiment, const MinmaxParams& law, Prediction& prediction) {
+  std::vector<int> cut;
+  const double limit = experiment.control.max_acceleration_m_per_s2;
+  for (const AgentConfig& agent : experiment.agents) {
+    const bool idle = agent.id == experiment.law.leader && !law.root_flight;
+    if (!idle && law.beta[static_cast<std::size_t>(agent.id - 1)] > limit) cut.push_back(agent.id);
+  }
+  if (cut.empty()) return;
+  prediction.warnings.push_back(
+      fmt::format("law.beta: beta of {} is above control.max_acceleration_m_per_s2 = {:.4g}, which cuts it",
+                  AgentList(cut), limit));
+}
+
+void WarnOfWeakEdges(const MinmaxParams& law, Prediction& prediction) {
+  std::vector<int> weak;
+  for (std::size_t i = 0; i < law.parent.size(); ++i) {
+    if (law.parent[i] != 0 && law.beta[i] <= law.beta[static_cast<std::size_t>(law.parent[i] - 1)])
+      weak.push_back(static_cast<int>(i) + 1);
+  }
+  if (weak.empty()) return;
+  prediction.warnings.push_back(
+      fmt::format("law.weak_edges: {} {} no stronger than the parent, who must keep within the root's bound",
+                  AgentList(weak), weak.size() == 1 ? "is" : "are"));
+}
+
+}  // namespace
+
+void PredictMinmax(Experiment& experiment, Prediction& prediction) {
+  const MinmaxParams law = ReadMinmax(experiment);
+  prediction.value_m = RestingLeader(experiment, law.root_flight.has_value());
+  for (const AgentConfig& agent : experiment.agents) {
+    if (agent.id == experiment.law.leader) continue;
+    if (const auto edge = PredictEdge(experiment, law, agent.id)) prediction.minmax_edges.push_back(*edge);
+  }
+  for (const MinmaxEdge& edge : prediction.minmax_edges) {
+    prediction.minmax_time_s = std::max(edge.time_s, prediction.minmax_time_s.value_or(0));
+  }
+  WarnOfCutBeta(experiment, law, prediction);
+  WarnOfWeakEdges(law, prediction);
+}
+
+}  // namespace mascot

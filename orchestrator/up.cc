@@ -1,0 +1,129 @@
+#include <signal.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "agent/laws.h"
+#include "idl/stop_signal.h"
+#include "orchestrator/config_args.h"
+#include "orchestrator/console.h"
+#include "orchestrator/dds_engine.h"
+#include "orchestrator/inprocess.h"
+#include "orchestrator/plot.h"
+#include "orchestrator/progress.h"
+#include "orchestrator/run_folder.h"
+#include "orchestrator/run_writer.h"
+#include "orchestrator/summary.h"
+#include "orchestrator/theory.h"
+#include "orchestrator/verb.h"
+
+namespace mascot {
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+
+struct UpArgs {
+  ConfigArgs config;
+  std::optional<std::string> out;
+  std::string engine = "dds";
+  std::optional<std::string> duration_s, seed;
+  bool force = false, json = false, quiet = false;
+};
+
+EngineResult RunInThisProcess(Experiment& experiment, RunWriter& writer, Console& console, StopSignal& stop) {
+  Progress progress(experiment, writer, console);
+  int signal = 0;
+  EngineResult result = RunInProcess(experiment, writer, [&](std::int64_t tick) {
+    constexpr std::int64_t kLookEvery = 32;  // ticks
+    if (tick % kLookEvery == 0) {
+      signal = stop.Within(std::chrono::nanoseconds::zero());
+      if (tick > 0) progress.Show(tick - 1);
+    }
+    return signal == 0 || signal == SIGCHLD;
+  });
+  result.signal = signal == SIGCHLD ? 0 : signal;
+  return result;
+}
+
+/// The resolved experiment as it is attached to the recording: two runs that only flew in different domains
+/// have the same recording.
+std::string WithoutDomain(const std::string& resolved, const Experiment& experiment) {
+  if (experiment.network.domain < 0) return resolved;
+  const Override automatic{"network.domain", "\"auto\""};
+  return LoadExperiment(Section::FromText(resolved, "config.toml", {&automatic, 1}), experiment.run.name).document.Resolved();
+}
+
+int ExitCode(const EngineResult& result) {
+  if (!result.failure.empty()) return 1;
+  return result.signal == 0 ? 0 : 128 + result.signal;
+}
+
+/// Pictures and data files as [output] wants them. Returns false if pictures were wanted and failed.
+bool MakeOutput(const Experiment& experiment, const RunFolder& folder, bool has_rows) {
+  const auto& output = experiment.output;
+  bool ok = true;
+  if (has_rows && (output.save_plot || output.show_plot) && (output.position_plot || output.velocity_plot))
+    ok = PlotRun(folder.path(), output.show_plot) == 0;
+  if (!output.save_data) std::filesystem::remove(folder.File("states.npz"));
+  if (!ok) std::cerr << "error: the pictures could not be made; the data are complete (output.save_plot = false skips them)\n";
+  return ok;
+}
+
+int Up(UpArgs& args) {
+  const auto launched = WallClock::now();
+  StopSignal stop;
+  if (args.duration_s) args.config.overrides.push_back({"run.duration_s", *args.duration_s});
+  if (args.seed) args.config.overrides.push_back({"run.seed", *args.seed});
+  Experiment experiment = args.config.Load();
+  const Prediction prediction = Predict(experiment);
+  const std::string resolved = experiment.document.Resolved();
+
+  const RunFolder folder(args.out, experiment.run.name, args.force);
+  folder.Write("config.toml", resolved);
+  Console console(args.quiet || args.json);
+  for (const std::string& warning : prediction.warnings) console.Line("warning: " + warning);
+  RunWriter writer(experiment, folder, WithoutDomain(resolved, experiment));
+  EngineResult result = args.engine == "dds" ? RunOverDds(experiment, resolved, folder, writer, console, stop)
+                                             : RunInThisProcess(experiment, writer, console, stop);
+  try {
+    writer.Close();
+  } catch (const std::exception& failure) {
+    if (result.failure.empty()) result.failure = failure.what();
+  }
+  if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
+
+  RunFacts facts{args.engine, ExitCode(result), 0};
+  auto write_summary = [&] {
+    facts.total_s = std::chrono::duration<double>(WallClock::now() - launched).count();
+    folder.Write("summary.json", SummaryJson(experiment, prediction, writer, result, facts));
+  };
+  write_summary();  // the pictures read it
+  if (!MakeOutput(experiment, folder, writer.rows() > 1) && facts.exit == 0) facts.exit = 1;
+  write_summary();
+  if (args.json) std::cout << SummaryJson(experiment, prediction, writer, result, facts);
+  else if (!args.quiet) std::cout << SummaryText(experiment, prediction, writer, result) << "results        " << folder.path().string() << std::endl;
+  return facts.exit;
+}
+
+}  // namespace
+
+std::function<int()> SetUpUp(CLI::App& command) {
+  auto args = std::make_shared<UpArgs>();
+  args->config.AddTo(command);
+  command.add_option("--out", args->out, "folder for the results (default: runs/NAME/TIME)")->type_name("DIR");
+  command.add_option("--engine", args->engine, "dds: processes on a bus; inprocess: the same in one thread")
+      ->check(CLI::IsMember({"dds", "inprocess"}));
+  command.add_option("--duration-s", args->duration_s, "instead of run.duration_s")->type_name("S");
+  command.add_option("--seed", args->seed, "instead of run.seed")->type_name("N");
+  command.add_flag("--force", args->force, "write into a folder that is not empty");
+  command.add_flag("--json", args->json, "print the summary as JSON on stdout, and nothing else");
+  command.add_flag("--quiet", args->quiet, "print errors only");
+  return [args] { return Up(*args); };
+}
+
+}  // namespace mascot

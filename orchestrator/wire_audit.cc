@@ -1,0 +1,134 @@
+#include "orchestrator/wire_audit.h"
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
+#include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
+#include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <utility>
+
+namespace mascot {
+namespace {
+
+namespace rtps = eprosima::fastrtps::rtps;
+using eprosima::fastdds::dds::DomainParticipant;
+
+/// The number of a participant that says it is an agent.
+std::optional<int> AgentOf(const std::string& participant) {
+  constexpr std::string_view kPrefix = "agent_";
+  int id = 0;
+  if (!participant.starts_with(kPrefix)) return std::nullopt;
+  const char* end = participant.data() + participant.size();
+  const auto [rest, error] = std::from_chars(participant.data() + kPrefix.size(), end, id);
+  if (error != std::errc{} || rest != end) return std::nullopt;
+  return id;
+}
+
+bool Hears(const Graph& graph, int id, int other) {
+  const auto& heard = graph.HeardBy(id);
+  return std::any_of(heard.begin(), heard.end(), [&](const Graph::Neighbour& neighbour) { return neighbour.id == other; });
+}
+
+/// What agent `id` may have an endpoint on.
+bool MayHave(const Graph& graph, int id, const Topic& topic, bool reads) {
+  switch (topic.kind) {
+    case TopicKind::kState: return reads && (topic.agent == id || Hears(graph, id, topic.agent));
+    case TopicKind::kCommand: return !reads && topic.agent == id;
+    case TopicKind::kClock: return reads;
+    case TopicKind::kExperiment: return reads;
+    case TopicKind::kRequest: return true;
+    case TopicKind::kStatus: return !reads;
+  }
+  return false;
+}
+
+/// The process whose word on a topic the run goes by; empty: anybody may write there.
+std::string RightfulWriter(const Topic& topic) {
+  switch (topic.kind) {
+    case TopicKind::kState:
+    case TopicKind::kClock: return "physics_server";
+    case TopicKind::kCommand: return "agent_" + std::to_string(topic.agent);
+    case TopicKind::kExperiment: return "orchestrator";
+    case TopicKind::kRequest:
+    case TopicKind::kStatus: return {};
+  }
+  return {};
+}
+
+}  // namespace
+
+void WireAudit::on_participant_discovery(DomainParticipant*,
+                                         rtps::ParticipantDiscoveryInfo&& info) {
+  const std::lock_guard lock(mutex_);
+  // Who has left keeps its name: its endpoints are still judged if their removal is heard later.
+  participants_[info.info.m_guid.guidPrefix] = info.info.m_participantName.to_string();
+}
+
+void WireAudit::on_subscriber_discovery(DomainParticipant* self, rtps::ReaderDiscoveryInfo&& info) {
+  Note(self, info.info.guid(), {info.info.topicName().to_string(), true},
+       info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER);
+}
+
+void WireAudit::on_publisher_discovery(DomainParticipant* self, rtps::WriterDiscoveryInfo&& info) {
+  Note(self, info.info.guid(), {info.info.topicName().to_string(), false},
+       info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER);
+}
+
+void WireAudit::Note(DomainParticipant* self, const Guid& guid, Endpoint endpoint, bool removed) {
+  if (guid.guidPrefix == self->guid().guidPrefix) return;  // the auditor's own
+  const std::lock_guard lock(mutex_);
+  if (removed) endpoints_.erase(guid);
+  else endpoints_[guid] = std::move(endpoint);
+}
+
+std::string WireAudit::OwnerOf(const Guid& endpoint) const {
+  const auto found = participants_.find(endpoint.guidPrefix);
+  return found == participants_.end() ? "" : found->second;
+}
+
+std::string WireAudit::ViolationOf(const Guid& guid, const Endpoint& endpoint, const Graph& graph) const {
+  const auto topic = Topic::Parse(endpoint.topic);
+  if (!topic) return {};
+  const std::string owner = OwnerOf(guid);
+  const std::string what = owner + (endpoint.reads ? " reads " : " writes ") + topic->Name();
+  if (const auto id = AgentOf(owner)) {
+    if (*id < 1 || *id > graph.size()) return what + ", but there are only agents 1 to " + std::to_string(graph.size());
+    if (!MayHave(graph, *id, *topic, endpoint.reads)) return what + ", which the graph does not let it";
+  }
+  if (const std::string rightful = RightfulWriter(*topic); !endpoint.reads && !rightful.empty() && owner != rightful)
+    return "'" + owner + "' writes " + topic->Name() + ", which only " + rightful + " may";
+  return {};
+}
+
+std::string WireAudit::Violation(const Graph& graph) const {
+  const std::lock_guard lock(mutex_);
+  std::set<std::pair<std::string, std::string>> writers;
+  for (const auto& [guid, endpoint] : endpoints_) {
+    if (std::string violation = ViolationOf(guid, endpoint, graph); !violation.empty()) return violation;
+    const auto topic = Topic::Parse(endpoint.topic);
+    if (topic && !endpoint.reads && topic->kind == TopicKind::kCommand && !writers.emplace(OwnerOf(guid), endpoint.topic).second)
+      return "two processes say that they are " + OwnerOf(guid);
+  }
+  return {};
+}
+
+bool WireAudit::IsComplete(const Graph& graph) const {
+  const std::lock_guard lock(mutex_);
+  std::set<std::pair<int, Topic>> seen;
+  for (const auto& [guid, endpoint] : endpoints_) {
+    const auto id = AgentOf(OwnerOf(guid));
+    const auto topic = Topic::Parse(endpoint.topic);
+    if (id && topic) seen.emplace(*id, *topic);
+  }
+  for (int id = 1; id <= graph.size(); ++id) {
+    if (!seen.contains({id, Topic::State(id)}) || !seen.contains({id, Topic::Command(id)})) return false;
+    for (const Graph::Neighbour& neighbour : graph.HeardBy(id))
+      if (!seen.contains({id, Topic::State(neighbour.id)})) return false;
+  }
+  return true;
+}
+
+}  // namespace mascot

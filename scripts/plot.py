@@ -1,0 +1,368 @@
+#!/usr/bin/python3
+"""Draws the pictures of one run, from its states.npz, config.toml and (where there is one) summary.json.
+
+The figures are those of the MASCOT paper: paths in the x-y plane, position, velocity, error and acceleration against
+time. The same run always gives the same bytes. Exit codes: 0 done, 1 the run cannot be read, 2 wrong use.
+"""
+
+import argparse
+import os
+import pathlib
+import sys
+from dataclasses import dataclass
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import LineCollection
+
+sys.dont_write_bytecode = True  # the scripts may stand where nobody may write
+from run_folder import RunError, disagreement, read_run, spanning_tree, waypoint_targets
+
+# Okabe and Ito's colours, which colour-blind readers can tell apart; the palest ones last.
+OKABE_ITO = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442"]
+# Beyond those, viridis without its palest end.
+MANY = matplotlib.colors.ListedColormap(plt.get_cmap("viridis")(np.linspace(0, 0.95, 256)), "many")
+LEGEND_MAX = 10  # more agents than this share a colour bar
+DRAWN_MAX = 200  # more lines than this are a blot: every n-th agent is drawn
+LEAST_RANGE = 0.02  # m, m/s or m/s²: no axis zooms in further, so that a held height is a flat line
+FLOOR_M = 1e-6  # bottom of log axes
+SMOOTHING_S = 0.5  # of an acceleration that switches all the time
+AXIS_NAMES = "xyz"
+STYLE = {
+    "axes.axisbelow": True,
+    "axes.edgecolor": "0.4",
+    "axes.grid": True,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlelocation": "left",
+    "axes.titlesize": 10,
+    "figure.constrained_layout.use": True,
+    "figure.dpi": 120,
+    "font.size": 9,
+    "grid.color": "0.9",
+    "legend.fontsize": 8,
+    "legend.frameon": False,
+    "lines.linewidth": 1.2,
+}
+
+
+# --- drawing --------------------------------------------------------------------------------------------
+
+
+def colours(run):
+    if run.size <= len(OKABE_ITO):
+        return OKABE_ITO[: run.size]
+    return [MANY(k / (run.size - 1)) for k in range(run.size)]
+
+
+def drawn(run):
+    return np.unique(np.linspace(0, run.size - 1, min(run.size, DRAWN_MAX)).astype(int))
+
+
+def agent_label(run, index):
+    role = {"minmax": " (root)"}.get(run.law.get("name"), " (leader)") if index == run.leader else ""
+    return f"agent {run.id[index]}{role}"
+
+
+def titled(figure, run, what):
+    some = f" ({len(drawn(run))} of {run.size} agents drawn)" if run.size > DRAWN_MAX else ""
+    figure.suptitle(f"{run.name}: {what}{some}" if run.name else f"{what}{some}", x=0.01, ha="left", fontsize=11)
+
+
+def name_agents(figure, axes, run):
+    """A legend beside the first panel; a colour bar beside all of them where there are many agents."""
+    first = axes[0]
+    handles, labels = first.get_legend_handles_labels()
+    if run.size > LEGEND_MAX:
+        scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(run.id[0], run.id[-1]), MANY)
+        figure.colorbar(scale, ax=list(axes), label="agent", pad=0.02, aspect=40)
+        kept = [k for k, label in enumerate(labels) if not label.startswith("agent ") or label.endswith(")")]
+        handles, labels = [handles[k] for k in kept], [labels[k] for k in kept]
+        if handles:
+            first.legend(handles, labels, loc="upper right", ncols=len(handles), frameon=True, framealpha=0.8)
+    elif handles:
+        first.legend(handles, labels, loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0)
+
+
+def plot_agents(axis, run, x, y, indices=None):
+    """One line per agent; y is (T, N). The leader's is thicker and on top."""
+    palette = colours(run)
+    for k in drawn(run) if indices is None else indices:
+        leads = k == run.leader
+        axis.plot(
+            x if x.ndim == 1 else x[:, k], y[:, k], color=palette[k], label=agent_label(run, k),
+            linewidth=2.2 if leads else 1.2 if run.size <= LEGEND_MAX else 0.8, zorder=3 if leads else 2,
+        )
+
+
+def widen(axis, least):
+    """Makes the y range at least `least`, around its middle."""
+    low, high = axis.get_ylim()
+    if high - low < least:
+        axis.set_ylim((low + high - least) / 2, (low + high + least) / 2)
+
+
+def time_axis(axis, run):
+    axis.set_xlabel("time (s)")
+    axis.set_xlim(run.t[0], run.t[-1] if run.t.size > 1 else run.t[0] + 1)
+
+
+def panels(run, values, symbol, unit, what, axes):
+    """A panel per axis, `values` (T, N, 3) against time."""
+    figure, grid = plt.subplots(len(axes), 1, sharex=True, figsize=(8, 1.2 + 1.9 * len(axes)), squeeze=False)
+    for panel, k in zip(grid[:, 0], axes):
+        plot_agents(panel, run, run.t, values[:, :, k])
+        panel.set_ylabel(f"{symbol.format(AXIS_NAMES[k])} ({unit})")
+        widen(panel, LEAST_RANGE)
+    time_axis(grid[-1, 0], run)
+    figure.align_ylabels()
+    titled(figure, run, what)
+    return figure, grid[:, 0]
+
+
+def draw_graph(axis, run, p):
+    """The graph's edges, lightly: at the start if the agents end up together, else at the end."""
+    spread = [np.ptp(p[row], axis=0).max() for row in (0, -1)]
+    at = p[-1] if spread[1] > 0.3 * spread[0] else p[0]
+    pairs = sorted({(min(e), max(e)) for e in run.edges})
+    axis.add_collection(LineCollection([at[list(e)] for e in pairs], colors="0.6", linewidths=0.8,
+                                       alpha=max(0.1, min(0.8, 40 / max(1, len(pairs)))), zorder=1,
+                                       label="hears" if pairs else None))
+
+
+def draw_places(axis, run):
+    """Waypoints, and where theory says that the agents meet."""
+    points = np.asarray(run.law.get("waypoints_m", run.law.get("leader_waypoints_m", [])), dtype=float).reshape(-1, 3)
+    if len(points):
+        axis.plot(points[:, 0], points[:, 1], "D", color="0.35", ms=5, mfc="none", zorder=1.5, label="waypoints")
+    for n, point in enumerate(points, start=1):
+        axis.annotate(str(n), point[:2], xytext=(6, 6), textcoords="offset points", color="0.35")
+    value_m = ((run.summary.get("consensus") or {}).get("predicted") or {}).get("value_m")
+    if value_m:
+        axis.plot(*value_m[:2], "*", color="0.2", ms=13, mfc="none", mew=1.2, zorder=5, label="predicted")
+
+
+def paths(run):
+    figure, axis = plt.subplots(figsize=(7.5, 6))
+    p = run.position[:, :, :2]
+    draw_graph(axis, run, p)
+    plot_agents(axis, run, p[:, :, 0], p[:, :, 1])
+    shown, palette = drawn(run), colours(run)
+    marks = {"s": 45 if run.size <= LEGEND_MAX else 22, "zorder": 4}
+    edges = [palette[k] for k in shown]
+    axis.scatter(*p[0, shown].T, marker="o", facecolors="white", edgecolors=edges, **marks)
+    axis.scatter(*p[-1, shown].T, marker="x", c=edges, **marks)
+    draw_places(axis, run)
+    axis.plot([], [], "o", color="0.3", mfc="white", label="start")
+    axis.plot([], [], "x", color="0.3", label="end")
+    axis.set(xlabel="x, east (m)", ylabel="y, north (m)")
+    axis.margins(0.06)
+    axis.set_aspect("equal", adjustable="datalim")
+    widen(axis, 1.0)
+    titled(figure, run, "paths seen from above")
+    name_agents(figure, [axis], run)
+    return figure
+
+
+def position(run):
+    figure, grid = panels(run, run.position, "{}", "m", "position", [0, 1, 2])
+    name_agents(figure, grid, run)
+    return figure
+
+
+def velocity(run):
+    figure, grid = panels(run, run.velocity, "$v_{}$", "m/s", "velocity", [0, 1, 2])
+    name_agents(figure, grid, run)
+    return figure
+
+
+def moving_mean(t, values, span_s):
+    """Mean over the last `span_s` of every row (fewer at the start)."""
+    total = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)])
+    begin = np.searchsorted(t, t - span_s, side="right")
+    end = np.arange(1, t.size + 1)
+    return (total[end] - total[begin]) / (end - begin)[:, None, None]
+
+
+def acceleration(run):
+    """What the law asked for, after the limit: the paper's force, per mass."""
+    values, what = run.acceleration_command, "commanded acceleration"
+    switches = run.law.get("name") == "minmax"  # between full throttle and full brake: single lines would be a blot
+    if switches:
+        values, what = moving_mean(run.t, values, SMOOTHING_S), f"{what} (bold: mean over {SMOOTHING_S:g} s)"
+    figure, grid = panels(run, values, "$a_{}$", "m/s²", what, run.axes)
+    for k, panel in zip(run.axes, grid) if switches else ():
+        colors = [colours(run)[n] for n in drawn(run)]
+        lines = [np.stack([run.t, run.acceleration_command[:, n, k]], axis=1) for n in drawn(run)]
+        panel.add_collection(LineCollection(lines, colors=colors, linewidths=0.5, alpha=0.2, zorder=1))
+        panel.autoscale_view()
+    limit = run.config.get("control", {}).get("max_acceleration_m_per_s2", 3.0)
+    label = f"limit ±{limit:g} m/s²"
+    for k, panel in zip(run.axes, grid):
+        peak = np.abs(run.acceleration_command[:, :, k]).max()
+        if peak >= 0.25 * limit:
+            for side in (-limit, limit):
+                panel.axhline(side, color="0.3", linestyle="--", linewidth=1, label=label if side > 0 else None)
+        else:
+            panel.set_title(f"{label}, out of view", fontsize=8, color="0.3", loc="right")
+    name_agents(figure, grid, run)
+    return figure
+
+
+def log_panel(run, distance_m, what, ylabel):
+    """Distances (T, N) against time on a log axis."""
+    figure, axis = plt.subplots(figsize=(8, 4.2))
+    visible = [k for k in drawn(run) if distance_m[:, k].max() > FLOOR_M] or [0]
+    plot_agents(axis, run, run.t, np.maximum(distance_m, FLOOR_M), visible)
+    axis.set_yscale("log")
+    axis.set_ylabel(ylabel)
+    time_axis(axis, run)
+    titled(figure, run, what)
+    return figure, axis
+
+
+def mark_time(axis, t_s, label):
+    if t_s is not None:
+        axis.axvline(t_s, color="0.3", linestyle=":", linewidth=1.2, label=f"{label} {t_s:.2f} s")
+
+
+def disagreement_figure(run):
+    distance_m = disagreement(run)
+    to = "the mean" if run.leader is None else f"agent {run.id[run.leader]}"
+    figure, axis = log_panel(run, distance_m, f"disagreement (distance to {to})", f"distance to {to} (m)")
+    largest_m = np.maximum(distance_m.max(axis=1), FLOOR_M)
+    axis.plot(run.t, largest_m, color="0.1", linewidth=3, alpha=0.25, zorder=1, label="largest")
+    axis.axhline(0.02 * largest_m[0], color="0.3", linestyle="--", linewidth=1, label="2 % of the start")
+    mark_time(axis, (run.summary.get("consensus") or {}).get("settling_time_s"), "settled at")
+    name_agents(figure, [axis], run)
+    return figure
+
+
+def error(run):
+    targets = np.stack([waypoint_targets(run, agent) for agent in range(run.size)], axis=1)
+    distance_m = np.linalg.norm((targets - run.position)[:, :, run.axes], axis=2)
+    figure, axis = log_panel(run, distance_m, "error (distance to the current waypoint)", "distance (m)")
+    if not run.law.get("times_s"):
+        radius_m = run.law.get("arrival_radius_m", 0.2)
+        axis.axhline(radius_m, color="0.3", linestyle="--", linewidth=1, label=f"arrival radius {radius_m:g} m")
+    name_agents(figure, [axis], run)
+    return figure
+
+
+def tracking(run):
+    """Position and speed of every agent relative to its parent in the tree: z and w of the min-max law."""
+    tree = dict(spanning_tree(run))
+    parent = np.array([tree.get(k, k) for k in range(run.size)])
+    figure, grid = plt.subplots(2, len(run.axes), sharex=True, figsize=(5 * len(run.axes), 5.4), squeeze=False)
+    rows = [(run.position, "{} relative to parent (m)"), (run.velocity, "$v_{}$ relative to parent (m/s)")]
+    bound_s = ((run.summary.get("consensus") or {}).get("predicted") or {}).get("minmax_time_s")
+    for row, (values, label) in zip(grid, rows):
+        relative = values - values[:, parent]
+        for panel, k in zip(row, run.axes):
+            plot_agents(panel, run, run.t, relative[:, :, k], [c for c in drawn(run) if c in tree])
+            panel.set_ylabel(label.format(AXIS_NAMES[k]))
+            mark_time(panel, bound_s, "predicted")
+    for panel in grid[-1]:
+        time_axis(panel, run)
+    figure.align_ylabels()
+    titled(figure, run, "tracking of the parent in the spanning tree")
+    name_agents(figure, [grid[0, -1], *[p for p in grid.flat if p is not grid[0, -1]]], run)
+    return figure
+
+
+# --- which figures a run gets ---------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Picture:
+    draw: object
+    switch: str  # the key of [output] that turns it off
+    applies: object  # run -> None, or why there is no such picture of it
+
+
+def only_if(condition, reason):
+    return lambda run: None if condition(run) else reason
+
+
+ALWAYS = only_if(lambda run: True, "")
+PICTURES = {
+    "paths": Picture(paths, "position_plot", ALWAYS),
+    "position": Picture(position, "position_plot", ALWAYS),
+    "velocity": Picture(velocity, "velocity_plot", ALWAYS),
+    "disagreement": Picture(disagreement_figure, "position_plot", only_if(
+        lambda run: run.size > 1 and run.law.get("name") != "waypoint", "it needs several agents and a law of agreement")),
+    "acceleration": Picture(acceleration, "velocity_plot", ALWAYS),
+    "tracking": Picture(tracking, "position_plot", only_if(
+        lambda run: run.law.get("name") == "minmax" and run.edges, "it needs the min-max law and the graph in summary.json")),
+    "error": Picture(error, "position_plot", only_if(
+        lambda run: run.law.get("name") == "waypoint", "it needs the waypoint law")),
+}
+
+
+def choose(run, only):
+    """Names of the pictures to draw."""
+    if only and PICTURES[only].applies(run):
+        raise RunError(f"--only {only}: {PICTURES[only].applies(run)}", code=2)
+    names = [only] if only else [name for name, picture in PICTURES.items() if not picture.applies(run)]
+    return [name for name in names if run.output(PICTURES[name].switch)]
+
+
+def can_open_windows():
+    if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        return False
+    for backend in ("TkAgg", "QtAgg", "GTK3Agg"):
+        try:
+            plt.switch_backend(backend)
+            plt.close(plt.figure())
+            return True
+        except Exception:  # each toolkit has errors of its own for "not installed" and "no display"
+            plt.switch_backend("Agg")
+    return False
+
+
+def draw_all(folder, run, only, show):
+    if show and not can_open_windows():
+        print("no display: no window is opened", file=sys.stderr)
+        show = False
+    matplotlib.rcParams.update(matplotlib.rcParamsDefault | STYLE | {"backend": plt.get_backend()})
+    names = choose(run, only) if show or run.output("save_plot") else []
+    if not names:
+        print(f"{folder}: no picture drawn: config.toml's [output] switches them off", file=sys.stderr)
+    for name in names:
+        figure = PICTURES[name].draw(run)
+        if run.output("save_plot"):
+            figure.savefig(folder / f"{name}.png", metadata={"Software": None})
+        if not show:
+            plt.close(figure)
+    if show:
+        plt.show()
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise RunError(message, code=2)
+
+
+def main(arguments):
+    parser = Parser(description="Draws the pictures of a run into its folder.")
+    parser.add_argument("run", metavar="RUN_FOLDER", type=pathlib.Path)
+    parser.add_argument("--show", action="store_true", help="open windows, too")
+    parser.add_argument("--only", metavar="NAME", choices=PICTURES, help="one of " + ", ".join(PICTURES))
+    try:
+        options = parser.parse_args(arguments)
+        run = read_run(options.run)
+        draw_all(options.run, run, options.only, options.show or run.output("show_plot"))
+    except RunError as error_:
+        print(f"error: {error_}", file=sys.stderr)
+        return error_.code
+    except OSError as error_:
+        print(f"error: {error_.filename}: {error_.strerror}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

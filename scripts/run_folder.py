@@ -1,0 +1,148 @@
+"""One run, as read from its folder, and what can be computed from it: what scripts/plot.py draws."""
+
+import json
+import tomllib
+import zipfile
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+
+ARRAYS = {"position": 3, "velocity": 3, "acceleration_command": 3}  # name -> numbers per agent and row
+
+
+class RunError(Exception):
+    """What went wrong, in one line, and the exit code it deserves."""
+
+    def __init__(self, message, code=1):
+        super().__init__(message)
+        self.code = code
+
+
+@dataclass
+class Run:
+    t: np.ndarray
+    id: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    acceleration_command: np.ndarray
+    config: dict
+    summary: dict
+
+    @property
+    def size(self):
+        return len(self.id)
+
+    @property
+    def name(self):
+        return self.config.get("run", {}).get("name", "")
+
+    @property
+    def law(self):
+        return self.config.get("law", {})
+
+    @property
+    def leader(self):
+        """Index of the leader (or root), or None."""
+        number = self.law.get("leader", 0)
+        return number - 1 if 1 <= number <= self.size else None
+
+    @property
+    def axes(self):
+        """The axes that the law decides about."""
+        return [0, 1, 2] if self.law.get("axes", "xy") == "xyz" else [0, 1]
+
+    @property
+    def edges(self):
+        """Pairs (i, j): the agent of index i hears the one of index j."""
+        return [(int(e[0]) - 1, int(e[1]) - 1) for e in self.summary.get("graph", {}).get("edges", [])]
+
+    def output(self, key):
+        return self.config.get("output", {}).get(key, key != "show_plot")
+
+
+def read_text(path, parse):
+    try:
+        return parse(path.read_text(encoding="utf-8"))
+    except (ValueError, RecursionError) as error:  # tomllib's and json's errors are ValueErrors
+        raise RunError(f"{path}: {error}") from None
+    except OSError as error:
+        raise RunError(f"{path}: {error.strerror}") from None
+
+
+def read_states(path):
+    try:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as states:
+            arrays = {name: states[name] for name in ["t", "id", *ARRAYS]}
+    except KeyError as error:
+        raise RunError(f"{path}: {str(error.args[0]).split(' is not')[0]}: no such array") from None
+    except FileNotFoundError:
+        raise RunError(f"{path}: no such file (output.save_data = false writes none)") from None
+    except OSError as error:
+        raise RunError(f"{path}: {error.strerror or 'cannot be read'}") from None
+    except (ValueError, TypeError, EOFError, RuntimeError, SyntaxError, zipfile.BadZipFile, zlib.error):
+        raise RunError(f"{path}: damaged, or not an .npz file of numbers") from None
+    rows, agents = arrays["t"].size, arrays["id"].size
+    arrays["t"], arrays["id"] = arrays["t"].ravel(), arrays["id"].ravel()
+    for name, width in ARRAYS.items():
+        if arrays[name].shape != (rows, agents, width):
+            raise RunError(f"{path}: {name}: expected shape ({rows}, {agents}, {width}), got {arrays[name].shape}")
+    if rows == 0 or agents == 0:
+        raise RunError(f"{path}: holds no tick")
+    return arrays
+
+
+def read_run(folder):
+    if not folder.is_dir():
+        raise RunError(f"{folder}: no such folder", code=2)
+    states = read_states(folder / "states.npz")
+    config = read_text(folder / "config.toml", tomllib.loads)
+    summary = folder / "summary.json"
+    return Run(**states, config=config, summary=read_text(summary, json.loads) if summary.exists() else {})
+
+
+def disagreement(run):
+    """(T, N): distance of every agent to the leader, or to the mean, over the law's axes."""
+    p = run.position[:, :, run.axes]
+    reference = p.mean(axis=1, keepdims=True) if run.leader is None else p[:, [run.leader]]
+    return np.linalg.norm(p - reference, axis=2)
+
+
+def spanning_tree(run):
+    """Edges (child, parent) of the breadth-first tree from the root along "hears"; parent = lowest one level up."""
+    parent = {run.leader: None}
+    level = [run.leader]
+    while level:
+        found = {}
+        for i, j in sorted(run.edges, key=lambda edge: edge[1]):
+            if j in level and i not in parent:
+                found.setdefault(i, j)
+        parent.update(found)
+        level = list(found)
+    return sorted((child, up) for child, up in parent.items() if up is not None)
+
+
+def target_by_time(times_s, run, agent, waypoints):
+    begun = np.searchsorted(times_s, run.t, side="right")
+    return np.vstack([run.position[:1, agent], waypoints])[begun]
+
+
+def waypoint_targets(run, agent):
+    """(T, 3): where the waypoint law sends this agent, row by row, by its own rule (arrival and dwell, or times)."""
+    waypoints = np.asarray(run.law["waypoints_m"], dtype=float)
+    if run.law.get("times_s"):
+        return target_by_time(run.law["times_s"], run, agent, waypoints)
+    radius_m, dwell_s = run.law.get("arrival_radius_m", 0.2), run.law.get("dwell_s", 1.0)
+    chosen = np.empty(run.t.size, dtype=int)
+    at, arrived_s = 0, None
+    for k, t_s in enumerate(run.t):
+        while at + 1 < len(waypoints):
+            if np.linalg.norm((waypoints[at] - run.position[k, agent])[run.axes]) > radius_m:
+                arrived_s = None
+                break
+            arrived_s = t_s if arrived_s is None else arrived_s
+            if t_s - arrived_s < dwell_s - 1e-9:
+                break
+            at, arrived_s = at + 1, None
+        chosen[k] = at
+    return waypoints[chosen]

@@ -1,0 +1,207 @@
+// The two engines, and repetition: same file, same bytes.
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <thread>
+
+#include "tests/orchestrator.h"
+
+namespace mascot::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::vector<std::string> kConfigs = {"waypoint", "leaderless", "leader_follower", "minmax", "published"};
+
+void ExpectSameBytes(const Up& a, const Up& b) {
+  EXPECT_FALSE(a.File("run.mcap").empty());
+  EXPECT_TRUE(a.File("run.mcap") == b.File("run.mcap")) << "run.mcap differs";
+  EXPECT_TRUE(a.File("states.npz") == b.File("states.npz")) << "states.npz differs";
+  EXPECT_EQ(a.File("config.toml"), b.File("config.toml"));
+}
+
+/// What a run measured, without what belongs to the machine and the engine.
+nlohmann::json Measurements(const Up& up) {
+  nlohmann::json summary = up.Summary();
+  for (const char* key : {"engine", "wall_s", "real_time_factor", "ticks_per_s", "startup_s", "total_s"}) summary.erase(key);
+  return summary;
+}
+
+class Shipped : public testing::TestWithParam<std::string> {};
+
+TEST_P(Shipped, FliesOverDdsAsInOneProcess) {
+  ScratchFolder folder;
+  Up dds(folder, "dds", Config(GetParam()), {"--duration-s", "3"});
+  EXPECT_EQ(dds.Wait(), 0) << dds.err();
+  Up inprocess(folder, "inprocess", Config(GetParam()), {"--duration-s", "3", "--engine", "inprocess"});
+  EXPECT_EQ(inprocess.Wait(), 0) << inprocess.err();
+  ExpectSameBytes(dds, inprocess);
+  EXPECT_EQ(Measurements(dds), Measurements(inprocess));
+  EXPECT_EQ(dds.Summary()["wire"]["matches_graph"], true);
+  EXPECT_EQ(dds.Summary()["samples"]["lost"], 0);
+  const Ran check = Shell("node '" MASCOT_SOURCE_DIR "/tests/mcapcheck/mcapcheck.mjs' '" + (dds.path() / "run.mcap").string() + "' --all --strict --quiet");
+  EXPECT_EQ(check.exit_code, 0) << check.output;
+}
+
+TEST_P(Shipped, StartsTenTimesOutOfTen) {
+  for (int start = 1; start <= 10; ++start) {
+    ScratchFolder folder;
+    Up up(folder, "run", Config(GetParam()), {"--duration-s", "0.1"});
+    ASSERT_EQ(up.Wait(), 0) << "start " << start << ": " << up.err();
+  }
+}
+
+TEST_P(Shipped, IsReproducedByItsResolvedFile) {
+  ScratchFolder folder;
+  Up first(folder, "first", Config(GetParam()), {"--duration-s", "2", "--engine", "inprocess"});
+  ASSERT_EQ(first.Wait(), 0) << first.err();
+  Up again(folder, "again", first.path() / "config.toml", {"--engine", "inprocess"});
+  ASSERT_EQ(again.Wait(), 0) << again.err();
+  ExpectSameBytes(first, again);
+}
+
+INSTANTIATE_TEST_SUITE_P(Configs, Shipped, testing::ValuesIn(kConfigs), [](const auto& row) { return row.param; });
+
+/// Keeps every core busy for as long as it lives.
+class Load {
+ public:
+  Load() {
+    for (unsigned i = 0; i < 2 * std::thread::hardware_concurrency(); ++i)
+      threads_.emplace_back([this] {
+        while (!over_) {
+        }
+      });
+  }
+  ~Load() {
+    over_ = true;
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+ private:
+  std::atomic<bool> over_ = false;
+  std::vector<std::thread> threads_;
+};
+
+TEST(Engines, LoadDoesNotChangeABit) {
+  ScratchFolder folder;
+  Up quiet(folder, "quiet", Config("leaderless"), {"--duration-s", "5"});
+  ASSERT_EQ(quiet.Wait(), 0) << quiet.err();
+  const Load load;
+  Up loaded(folder, "loaded", Config("leaderless"), {"--duration-s", "5"});
+  ASSERT_EQ(loaded.Wait(), 0) << loaded.err();
+  ExpectSameBytes(quiet, loaded);
+}
+
+TEST(Engines, TwoRunsAtOnceDoNotDisturbEachOther) {
+  ScratchFolder folder;
+  Up one(folder, "one", Config("leaderless"), {"--duration-s", "5"});
+  Up two(folder, "two", Config("leaderless"), {"--duration-s", "5"});
+  ASSERT_EQ(one.Wait(), 0) << one.err();
+  ASSERT_EQ(two.Wait(), 0) << two.err();
+  ExpectSameBytes(one, two);
+  Up alone(folder, "alone", Config("leaderless"), {"--duration-s", "5"});
+  ASSERT_EQ(alone.Wait(), 0) << alone.err();
+  ExpectSameBytes(one, alone);
+}
+
+TEST(Engines, FiftyAgentsFlyThroughADiscoveryServer) {
+  ScratchFolder folder;
+  const std::vector<std::string> fifty = {"--duration-s", "0.5",           "--set", "agents.count=50",
+                                          "--set",        "graph.topology=ring", "--set", "agents.random={}"};
+  Up dds(folder, "dds", Config("leaderless"), fifty);
+  EXPECT_EQ(dds.Wait(), 0) << dds.err();
+  EXPECT_THAT(dds.err(), HasSubstr("discovery server 127.0.0.1:"));
+  auto inprocess_words = fifty;
+  inprocess_words.insert(inprocess_words.end(), {"--engine", "inprocess"});
+  Up inprocess(folder, "inprocess", Config("leaderless"), inprocess_words);
+  EXPECT_EQ(inprocess.Wait(), 0) << inprocess.err();
+  ExpectSameBytes(dds, inprocess);
+}
+
+TEST(Engines, AnExplicitDomainAndTransportDoNotChangeTheRecording) {
+  ScratchFolder folder;
+  Up automatic(folder, "automatic", Config("leaderless"), {"--duration-s", "1"});
+  EXPECT_EQ(automatic.Wait(), 0) << automatic.err();
+  Up by_udp(folder, "by_udp", Config("leaderless"),
+            {"--duration-s", "1", "--set", "network.domain=99", "--set", "network.transport=udp"});
+  EXPECT_EQ(by_udp.Wait(), 0) << by_udp.err();
+  EXPECT_THAT(by_udp.err(), HasSubstr("domain 99"));
+  // The transport is part of the experiment and so of the attached file; the samples are the same.
+  EXPECT_TRUE(automatic.File("states.npz") == by_udp.File("states.npz"));
+  Up elsewhere(folder, "elsewhere", Config("leaderless"), {"--duration-s", "1", "--set", "network.domain=97"});
+  EXPECT_EQ(elsewhere.Wait(), 0) << elsewhere.err();
+  EXPECT_TRUE(automatic.File("run.mcap") == elsewhere.File("run.mcap"));
+}
+
+TEST(Realtime, IsPacedByTheWallClock) {
+  ScratchFolder folder;
+  const std::vector<std::string> realtime = {"--duration-s", "1", "--set", "run.mode=realtime"};
+  Up up(folder, "once", Config("leaderless"), realtime);
+  ASSERT_EQ(up.Wait(), 0) << up.err();
+  EXPECT_EQ(up.Summary()["mode"], "realtime");
+  EXPECT_EQ(up.Summary()["ticks"], 101);
+  EXPECT_GE(up.Summary()["wall_s"].get<double>(), 0.99);  // it cannot be faster, whatever the machine does
+  EXPECT_TRUE(up.Summary()["realtime"]["misses"].is_number_unsigned());
+  auto slowly = realtime;
+  slowly.insert(slowly.end(), {"--set", "run.speed=0.5"});
+  Up half(folder, "half", Config("leaderless"), slowly);
+  ASSERT_EQ(half.Wait(), 0) << half.err();
+  EXPECT_GE(half.Summary()["wall_s"].get<double>(), 1.98);
+}
+
+TEST(Up, SaysWhatItRunsAndWhereTheResultsAre) {
+  ScratchFolder folder;
+  Up up(folder, "run", Config("leaderless"), {"--duration-s", "1"});
+  ASSERT_EQ(up.Wait(), 0) << up.err();
+  EXPECT_THAT(up.err(), testing::ContainsRegex("^domain [0-9]+\n"));
+  EXPECT_THAT(up.err(), HasSubstr("[agent_3] "));
+  EXPECT_THAT(up.err(), HasSubstr("t = 1.00 of 1 s | "));
+  EXPECT_THAT(up.out(), HasSubstr("results        " + up.path().string()));
+  EXPECT_THAT(ReadFile((up.path() / "logs/agent_3.log").string()), HasSubstr("hears 1 2 4"));
+}
+
+TEST(Up, PrintsTheSummaryAndNothingElseAsJson) {
+  ScratchFolder folder;
+  Up up(folder, "run", Config("leaderless"), {"--duration-s", "1", "--json", "--engine", "inprocess"});
+  ASSERT_EQ(up.Wait(), 0) << up.err();
+  EXPECT_EQ(up.err(), "");
+  const auto printed = nlohmann::json::parse(up.out());
+  EXPECT_EQ(printed["experiment"], "leaderless");
+  EXPECT_EQ(printed, up.Summary());
+}
+
+TEST(Up, RefusesAFolderThatHoldsSomethingUnlessForced) {
+  ScratchFolder folder;
+  std::filesystem::create_directory(folder.File("run"));
+  WriteFile(folder.File("run/summary.json"), "of an earlier run");
+  WriteFile(folder.File("run/notes.txt"), "a person's own");
+  const std::vector<std::string> words = {"--duration-s", "0.1", "--engine", "inprocess"};
+  Up refused(folder, "run", Config("leaderless"), words);
+  EXPECT_EQ(refused.Wait(), 2);
+  EXPECT_EQ(refused.err(), "error: --out " + folder.File("run") +
+                               ": expected a new or empty folder, got one with files in it (--force writes there all the same)\n");
+  auto forced_words = words;
+  forced_words.push_back("--force");
+  Up forced(folder, "run", Config("leaderless"), forced_words);
+  EXPECT_EQ(forced.Wait(), 0) << forced.err();
+  EXPECT_EQ(forced.Summary()["ticks"], 11);
+  EXPECT_EQ(ReadFile(folder.File("run/notes.txt")), "a person's own");
+}
+
+TEST(Up, SaysWhatIsWrongWithItsArguments) {
+  ScratchFolder folder;
+  auto refusal = [&](std::vector<std::string> words) {
+    Running up(std::string(MASCOT_BINARY_DIR) + "/orchestrator", std::move(words), folder.File("refusal"));
+    EXPECT_EQ(up.Wait(), 2);
+    return up.err();
+  };
+  EXPECT_THAT(refusal({"upp"}), HasSubstr("error: unknown verb 'upp' (did you mean \"up\"?); expected one of up, check"));
+  EXPECT_THAT(refusal({"up"}), HasSubstr("error: config is required"));
+  EXPECT_THAT(refusal({"up", Config("leaderless"), "--engine", "ros"}), HasSubstr("error: --engine: ros not in {dds,inprocess}"));
+  EXPECT_THAT(refusal({"up", Config("leaderless"), "--duration-s", "soon"}), HasSubstr("run.duration_s: expected"));
+  EXPECT_THAT(refusal({"up", Config("leaderless"), "--out", "/proc/nowhere/run"}), HasSubstr("error: --out: cannot make the run folder"));
+}
+
+}  // namespace
+}  // namespace mascot::test

@@ -1,0 +1,183 @@
+// What may go wrong in a run over DDS, with the real processes: each is noticed, named, and cleaned up after.
+
+#include <gmock/gmock.h>
+
+#include "idl/bus.h"
+#include "idl/shared_memory.h"
+#include "idl/wire.h"
+#include "tests/orchestrator.h"
+#include "orchestrator/mcap.h"
+
+namespace mascot::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A run that would last longer than any test.
+Up Endless(const ScratchFolder& folder, std::vector<std::string> more = {}) {
+  more.insert(more.end(), {"--duration-s", "100000"});
+  return Up(folder, "run", Config("leaderless"), more);
+}
+
+/// Nothing of any dead process is left, or will not be in a moment: another test's leftovers may just be
+/// being removed.
+testing::AssertionResult NothingIsLeft() {
+  if (Until([] { return StaleSharedMemory().empty(); })) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << StaleSharedMemory().front() << " was left";
+}
+
+bool IsGone(pid_t pid) {
+  return Until([&] { return kill(pid, 0) != 0 || ReadFile("/proc/" + std::to_string(pid) + "/stat").find(") Z ") != std::string::npos; });
+}
+
+TEST(Faults, ADyingAgentEndsTheRunByNameAndSignal) {
+  ScratchFolder folder;
+  Up up = Endless(folder);
+  ASSERT_TRUE(Flies(up));
+  kill(up.Child("agent_3"), SIGKILL);
+  EXPECT_EQ(up.Wait(), 1);
+  EXPECT_THAT(up.err(), HasSubstr("error: agent_3 was killed by signal 9 (Killed)"));
+  EXPECT_EQ(up.Summary()["exit"], 1);
+  EXPECT_THAT(up.Summary()["failure"].get<std::string>(), HasSubstr("agent_3 was killed"));
+  EXPECT_TRUE(NothingIsLeft());
+}
+
+TEST(Faults, ADyingServerEndsTheRunByName) {
+  ScratchFolder folder;
+  Up up = Endless(folder);
+  ASSERT_TRUE(Flies(up));
+  kill(up.Child("physics_server"), SIGSEGV);
+  EXPECT_EQ(up.Wait(), 1);
+  EXPECT_THAT(up.err(), HasSubstr("error: physics_server was killed by signal 11 (Segmentation fault)"));
+  EXPECT_TRUE(NothingIsLeft());
+}
+
+TEST(Faults, ASilentAgentIsNamedAfterTheTimeout) {
+  ScratchFolder folder;
+  Up up = Endless(folder, {"--set", "run.agent_timeout_s=0.5"});
+  ASSERT_TRUE(Flies(up));
+  kill(up.Child("agent_2"), SIGSTOP);
+  EXPECT_EQ(up.Wait(), 1);
+  EXPECT_THAT(up.err(), HasSubstr(": no command from agent 2 within run.agent_timeout_s = 0.5 s"));
+  EXPECT_TRUE(NothingIsLeft());
+}
+
+TEST(Faults, NobodyOutlivesAKilledOrchestrator) {
+  ScratchFolder folder;
+  Up up = Endless(folder);
+  ASSERT_TRUE(Flies(up));
+  const pid_t server = up.Child("physics_server"), agent = up.Child("agent_1");
+  ASSERT_GT(server, 0);
+  ASSERT_GT(agent, 0);
+  up.Signal(SIGKILL);
+  EXPECT_EQ(up.Wait(), 128 + SIGKILL);
+  EXPECT_TRUE(IsGone(server));
+  EXPECT_TRUE(IsGone(agent));
+  EXPECT_TRUE(NothingIsLeft());
+  const McapContents recording = ReadMcap(up.path() / "run.mcap");  // what was recorded is readable
+  EXPECT_FALSE(recording.complete);
+}
+
+struct Interruption {
+  int signal;
+  int exit;
+};
+
+class Interrupted : public testing::TestWithParam<Interruption> {};
+
+TEST_P(Interrupted, RunsEndInOrderWithACompleteRecording) {
+  ScratchFolder folder;
+  Up up = Endless(folder);
+  ASSERT_TRUE(Flies(up));
+  up.Signal(GetParam().signal);
+  EXPECT_EQ(up.Wait(), GetParam().exit);
+  const McapContents recording = ReadMcap(up.path() / "run.mcap");
+  EXPECT_TRUE(recording.complete) << recording.damage;
+  EXPECT_EQ(recording.messages, 9 * up.Summary()["ticks"].get<std::uint64_t>());
+  EXPECT_EQ(up.Summary()["samples"]["lost"], 0);
+  EXPECT_TRUE(NothingIsLeft());
+}
+
+INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted,
+                         testing::Values(Interruption{SIGINT, 130}, Interruption{SIGTERM, 143}),
+                         [](const auto& row) { return row.param.signal == SIGINT ? "CtrlC" : "Terminate"; });
+
+TEST(Faults, ASecondCtrlCKillsWhatDoesNotStop) {
+  ScratchFolder folder;
+  Up up = Endless(folder, {"--set", "run.agent_timeout_s=1000"});
+  ASSERT_TRUE(Flies(up));
+  kill(up.Child("agent_2"), SIGSTOP);  // now nobody can stop in order
+  up.Signal(SIGINT);
+  ASSERT_TRUE(Until([&] { return up.Said("once more to kill"); }));
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130);
+  EXPECT_TRUE(NothingIsLeft());
+}
+
+TEST(Faults, ACtrlCBeforeTheFirstTickEndsToo) {
+  ScratchFolder folder;
+  Up up = Endless(folder, {"--set", "agents.override=[{id = 1, host = \"external\"}]"});
+  ASSERT_TRUE(Until([&] { return up.Said("waiting for: agent --id 1"); }));
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130);
+  EXPECT_TRUE(NothingIsLeft());
+}
+
+TEST(Faults, AnAgentThatNeverComesIsNamedAfterTheStartTimeout) {
+  ScratchFolder folder;
+  Up up = Endless(folder, {"--set", "agents.override=[{id = 2, host = \"external\"}]", "--set", "run.start_timeout_s=2.0"});
+  EXPECT_EQ(up.Wait(), 1);
+  EXPECT_THAT(up.err(), HasSubstr("not ready within run.start_timeout_s = 2.0 s: agent 2"));
+  EXPECT_TRUE(NothingIsLeft());
+}
+
+/// The domain that `up` says it runs in.
+int DomainOf(const Running& up) {
+  const std::string text = up.err();
+  return std::stoi(text.substr(text.find("domain ") + 7));
+}
+
+DomainOptions Intruder(const Up& up, const std::string& name) {
+  DomainOptions options;
+  options.domain = DomainOf(up);
+  options.name = name;
+  options.loopback = true;
+  return options;
+}
+
+TEST(Faults, AnAgentThatHearsMoreThanTheGraphAllowsEndsTheRun) {
+  ScratchFolder folder;
+  Up up = Endless(folder, {"--set", "graph.topology=path"});
+  ASSERT_TRUE(Flies(up));
+  Domain domain(Intruder(up, "agent_1"), [] {});
+  Reader<StateType> peeking(domain, Topic::State(4), [](const auto&) {});
+  EXPECT_EQ(up.Wait(), 1);
+  EXPECT_THAT(up.err(), HasSubstr("the wire differs from the graph: agent_1 reads /agent_4/state, which the graph does not let it"));
+  EXPECT_EQ(up.Summary()["wire"]["matches_graph"], false);
+}
+
+TEST(Faults, AStrangerMayListenButNotFly) {
+  ScratchFolder folder;
+  Up up = Endless(folder);
+  ASSERT_TRUE(Flies(up));
+  Domain domain(Intruder(up, "rviz"), [] {});
+  std::atomic<int> heard = 0;
+  Reader<StateType> listening(domain, Topic::State(4), [&](const auto&) { ++heard; });
+  ASSERT_TRUE(Until([&] { return heard > 10; }));
+  Writer<CommandType> flying(domain, Topic::Command(4));
+  EXPECT_EQ(up.Wait(), 1);
+  EXPECT_THAT(up.err(), HasSubstr("'rviz' writes /agent_4/command, which only agent_4 may"));
+}
+
+TEST(Faults, ADomainInUseIsRefused) {
+  ScratchFolder folder;
+  Up up = Endless(folder);
+  ASSERT_TRUE(Until([&] { return up.Said("domain "); }));
+  const std::string domain = std::to_string(DomainOf(up));
+  Up second(folder, "second", Config("leaderless"), {"--set", "network.domain=" + domain});
+  EXPECT_EQ(second.Wait(), 1);
+  EXPECT_THAT(second.err(), HasSubstr("error: network.domain = " + domain + " is in use by another run on this machine"));
+}
+
+}  // namespace
+}  // namespace mascot::test

@@ -1,0 +1,178 @@
+#include <gmock/gmock.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "orchestrator/bytes.h"
+#include "orchestrator/mcap.h"
+#include "orchestrator/mcap_records.h"
+#include "orchestrator/verb.h"
+#include "tests/scratch.h"
+
+namespace mascot {
+namespace {
+
+using testing::ContainsRegex;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+struct Said {
+  int exit_code = -1;
+  std::string out, err;
+};
+
+/// `orchestrator info`, in this process.
+Said Info(const std::vector<std::string>& arguments) {
+  CLI::App app;
+  const std::function<int()> run = SetUpInfo(app);
+  app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  Said said;
+  said.exit_code = run();
+  said.out = testing::internal::GetCapturedStdout();
+  said.err = testing::internal::GetCapturedStderr();
+  return said;
+}
+
+/// Ten seconds of one agent at 10 Hz; `commands` of its 101 ticks answered.
+void WriteRun(const std::string& path, int commands, const std::string& config = "[run]\n") {
+  McapWriter writer(path);
+  writer.Attach("config.toml", "application/toml", config);
+  writer.Metadata("mascot", {{"seed", "7"}});
+  const auto command = writer.AddChannel({"/agent_1/command", "mascot_msgs/msg/AgentCommand", "uint64 n\n", {}});
+  const auto state = writer.AddChannel({"/agent_1/state", "mascot_msgs/msg/AgentState", "uint64 n\n", {}});
+  for (std::uint64_t k = 0; k <= 100; ++k) {
+    if (static_cast<int>(k) < commands) writer.Write(command, k * 100'000'000, Bytes(20));
+    writer.Write(state, k * 100'000'000, Bytes(200));
+    writer.EndTick();
+  }
+  writer.Close();
+}
+
+TEST(Info, DescribesARunAndProvesItComplete) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.File("run.mcap");
+  WriteRun(path, 101);
+  const Said said = Info({scratch.path().string()});
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_EQ(said.err, "");
+  const std::string size = std::to_string(ReadFile(path).size());
+  EXPECT_THAT(said.out, StartsWith("file:         " + path + "\nsize:         " + size +
+                                   " bytes\n"
+                                   "profile:      ros2 (written by mascot)\nduration:     10.000 s\n"
+                                   "messages:     202\nchunks:       10\ncompression:  "));
+  EXPECT_THAT(said.out, HasSubstr("  topic             type                               count          Hz\n"
+                                  "  /agent_1/command  mascot_msgs/msg/AgentCommand         101       10.00\n"
+                                  "  /agent_1/state    mascot_msgs/msg/AgentState           101       10.00\n"));
+  EXPECT_THAT(said.out, HasSubstr("attachment:   config.toml, 6 bytes\n"));
+  EXPECT_THAT(said.out, HasSubstr("metadata:     mascot\n              seed = 7\n"));
+  EXPECT_THAT(said.out, EndsWith("ticks:        101, recorded without a gap\ncomplete: yes\n"));
+}
+
+TEST(Info, JsonIsOneObjectWithTheSameFacts) {
+  const ScratchFolder scratch;
+  WriteRun(scratch.File("run.mcap"), 101);
+  const Said said = Info({"--json", scratch.File("run.mcap")});
+  EXPECT_EQ(said.exit_code, 0);
+  const nlohmann::json report = nlohmann::json::parse(said.out);
+  EXPECT_EQ(report.at("file"), scratch.File("run.mcap"));
+  EXPECT_EQ(report.at("messages"), 202);
+  EXPECT_EQ(report.at("duration_s"), 10.0);
+  EXPECT_EQ(report.at("ticks"), 101);
+  EXPECT_EQ(report.at("complete"), true);
+  EXPECT_EQ(report.at("reason"), "");
+  EXPECT_GT(report.at("compression_ratio"), 2.0);
+  EXPECT_EQ(report.at("topics")[1], nlohmann::json::parse(R"({"topic": "/agent_1/state", "count": 101, "hz": 10.0,
+    "type": "mascot_msgs/msg/AgentState", "bytes": 20200, "gaps": 0, "first_ns": 0, "last_ns": 10000000000})"));
+  EXPECT_EQ(report.at("attachments"), nlohmann::json::parse(R"([{"name": "config.toml", "bytes": 6}])"));
+  EXPECT_EQ(report.at("metadata"), nlohmann::json::parse(R"({"mascot": {"seed": "7"}})"));
+}
+
+TEST(Info, ATickThatWasNotAnsweredMakesARunIncomplete) {
+  const ScratchFolder scratch;
+  WriteRun(scratch.File("run.mcap"), 100);
+  const Said said = Info({scratch.File("run.mcap")});
+  EXPECT_EQ(said.exit_code, 1);
+  EXPECT_THAT(said.out, EndsWith("complete: no (/agent_1/state has 101 messages, /agent_1/command has 100)\n"));
+}
+
+TEST(Info, InRealTimeALateCommandIsNoLoss) {
+  const ScratchFolder scratch;
+  WriteRun(scratch.File("run.mcap"), 100, "[run]\nmode = \"realtime\"\n");
+  const Said said = Info({scratch.File("run.mcap")});
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_THAT(said.out, EndsWith("ticks:        101, recorded without a gap\ncomplete: yes\n"));
+}
+
+/// A closed file, without CRCs, with a channel whose sequence goes 0, 2.
+void WriteGap(const std::string& path) {
+  using mcap::Op;
+  using mcap::Record;
+  Bytes file;
+  Append(file, ByteSpan(mcap::kMagic));
+  Record(file, Op::kHeader).String("ros2").String("hand").End();
+  Record(file, Op::kChannel).U16(1).U16(0).String("/n").String("cdr").Map({}).End();
+  for (const std::uint32_t sequence : {0u, 2u}) Record(file, Op::kMessage).U16(1).U32(sequence).U64(0).U64(0).End();
+  Record(file, Op::kDataEnd).U32(0).End();
+  const std::uint64_t summary = file.size();
+  Record statistics(file, Op::kStatistics);
+  statistics.U64(2).U16(0).U32(1).U32(0).U32(0).U32(0).U64(0).U64(0).U32(10).U16(1).U64(2).End();
+  Record(file, Op::kFooter).U64(summary).U64(0).U32(0).End();
+  Append(file, ByteSpan(mcap::kMagic));
+  WriteFile(path, {file.begin(), file.end()});
+}
+
+TEST(Info, AGapMakesARecordingIncomplete) {
+  const ScratchFolder scratch;
+  WriteGap(scratch.File("run.mcap"));
+  const Said said = Info({scratch.File("run.mcap")});
+  EXPECT_EQ(said.exit_code, 1);
+  EXPECT_THAT(said.out, EndsWith("\ncomplete: no (/n: gaps in its sequence numbers: 1)\n"));
+}
+
+TEST(Info, AFileThatWasCutIsDescribedUpToTheCut) {
+  const ScratchFolder scratch;
+  WriteRun(scratch.File("run.mcap"), 101);
+  std::filesystem::resize_file(scratch.File("run.mcap"), std::filesystem::file_size(scratch.File("run.mcap")) / 2);
+  const Said said = Info({scratch.File("run.mcap")});
+  EXPECT_EQ(said.exit_code, 1);
+  EXPECT_THAT(said.out, ContainsRegex("\ncomplete: no \\(the file ends .*record at byte [0-9]+\\)\\)\n$"));
+  const nlohmann::json report = nlohmann::json::parse(Info({scratch.File("run.mcap"), "--json"}).out);
+  EXPECT_EQ(report.at("complete"), false);
+  EXPECT_EQ(report.at("ticks"), nullptr);
+  EXPECT_GT(report.at("messages"), 0);
+}
+
+TEST(Info, AnEmptyFileIsACutOne) {
+  const ScratchFolder scratch;
+  WriteFile(scratch.File("run.mcap"), "");
+  const Said said = Info({scratch.File("run.mcap")});
+  EXPECT_EQ(said.exit_code, 1);
+  EXPECT_THAT(said.out, EndsWith("complete: no (the file ends inside its first magic bytes (record at byte 0))\n"));
+}
+
+TEST(Info, ARecordingByAnotherNameIsFoundInItsRunFolder) {
+  const ScratchFolder scratch;
+  WriteRun(scratch.File("flight.mcap"), 101);
+  EXPECT_EQ(Info({scratch.path().string()}).exit_code, 0);
+  WriteRun(scratch.File("second.mcap"), 101);
+  const Said said = Info({scratch.path().string()});
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_EQ(said.err, "error: " + scratch.path().string() + ": expected a run folder with one .mcap file, got 2\n");
+}
+
+TEST(Info, WhatCannotBeOpenedIsAnErrorAndPrintsNothingElse) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.File("none.mcap");
+  const Said said = Info({path, "--json"});
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_EQ(said.out, "");
+  EXPECT_EQ(said.err, "error: cannot open " + path + ": No such file or directory\n");
+  WriteFile(path, "no recording");
+  EXPECT_EQ(Info({path}).err, "error: " + path + ": is no MCAP file: it does not begin with MCAP's magic bytes\n");
+}
+
+}  // namespace
+}  // namespace mascot

@@ -1,0 +1,466 @@
+#include "orchestrator/mcap.h"
+
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <new>
+#include <random>
+#include <tuple>
+
+#include "orchestrator/mcap_records.h"
+#include "tests/scratch.h"
+
+namespace {
+
+std::size_t g_allocations = 0;
+std::size_t g_largest_bytes = 0;
+
+}  // namespace
+
+// Counted, to show that a message costs none and that no file makes its reader ask for much. Not inlined: g++ 12
+// would then take malloc and delete for a mismatch.
+[[gnu::noinline]] void* operator new(std::size_t bytes) {
+  ++g_allocations;
+  g_largest_bytes = std::max(g_largest_bytes, bytes);
+  if (void* memory = std::malloc(bytes)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace mascot {
+namespace {
+
+using mcap::Op;
+using mcap::Record;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Pair;
+using testing::StartsWith;
+using testing::ThrowsMessage;
+
+constexpr std::uint64_t kMs = 1'000'000;
+
+McapWriter::Channel Numbers(const std::string& topic) {
+  return {topic, "test_msgs/msg/Number", "uint64 n\n", {{"a", "b"}}};
+}
+
+/// Bytes that zstd cannot make fewer.
+Bytes Noise(std::mt19937_64& random, std::size_t bytes) {
+  Bytes noise(bytes);
+  for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(random());
+  return noise;
+}
+
+std::vector<McapContents::Message> Messages(const std::string& path) {
+  std::vector<McapContents::Message> messages;
+  ReadMcap(path, [&](const auto& message) { messages.push_back(message); });
+  return messages;
+}
+
+/// A file with header, then whatever `records` holds.
+std::string Handmade(const Bytes& records) {
+  Bytes file;
+  Append(file, ByteSpan(mcap::kMagic));
+  Record(file, Op::kHeader).String("ros2").String("hand").End();
+  Append(file, ByteSpan(records));
+  return {file.begin(), file.end()};
+}
+
+Bytes ChunkRecord(std::uint64_t claimed, const std::string& compression, ByteSpan stored) {
+  Bytes out;
+  Record record(out, Op::kChunk);
+  record.U64(0).U64(0).U64(claimed).U32(0).String(compression).U64(stored.size()).Raw(stored).End();
+  return out;
+}
+
+/// Two channels; chunks compressed, stored, stored, compressed; an attachment and metadata between them.
+std::string WriteSmallFile(const std::string& path) {
+  std::mt19937_64 random(1);
+  McapWriter writer(path);
+  const auto one = writer.AddChannel(Numbers("/one"));
+  const auto two = writer.AddChannel(Numbers("/two"));
+  for (std::uint64_t k = 0; k < 4; ++k) {
+    writer.Write(one, k * kMs, Bytes(40));
+    writer.Write(two, k * kMs, Bytes(40));
+  }
+  writer.Attach("config.toml", "application/toml", "[run]\n");
+  writer.Write(one, 4 * kMs + 77, Noise(random, 40));
+  writer.Metadata("mascot", {{"seed", "1"}});
+  writer.Write(two, 5 * kMs + 77, Noise(random, 40));
+  writer.Metadata("more", {});
+  for (std::uint64_t k = 0; k < 4; ++k) writer.Write(one, (6 + k) * kMs, Bytes(40));
+  writer.Close();
+  return ReadFile(path);
+}
+
+TEST(Mcap, ReadsBackWhatItWrote) {
+  const ScratchFolder scratch;
+  WriteSmallFile(scratch.File("run.mcap"));
+  std::vector<McapContents::Message> messages;
+  const McapContents contents =
+      ReadMcap(scratch.File("run.mcap"), [&](const auto& message) { messages.push_back(message); });
+  EXPECT_TRUE(contents.complete);
+  EXPECT_EQ(contents.damage, "");
+  EXPECT_EQ(contents.profile, "ros2");
+  EXPECT_EQ(contents.library, "mascot");
+  EXPECT_EQ(contents.messages, 14u);
+  EXPECT_EQ(contents.chunks, 4u);
+  EXPECT_THAT(contents.attachments, ElementsAre(Pair("config.toml", "[run]\n")));
+  EXPECT_THAT(contents.metadata, ElementsAre(Pair("mascot", ElementsAre(Pair("seed", "1"))), Pair("more", IsEmpty())));
+
+  ASSERT_EQ(contents.channels.size(), 2u);
+  const auto& one = contents.channels.at(1);
+  EXPECT_EQ(one.topic, "/one");
+  EXPECT_EQ(one.schema_name, "test_msgs/msg/Number");
+  EXPECT_EQ(one.schema_encoding, "ros2msg");
+  EXPECT_EQ(one.schema_text, "uint64 n\n");
+  EXPECT_EQ(one.message_encoding, "cdr");
+  EXPECT_THAT(one.metadata, ElementsAre(Pair("a", "b")));
+  EXPECT_EQ(one.messages, 9u);
+  EXPECT_EQ(one.bytes, 9 * 40u);
+  EXPECT_EQ(one.first_time, 0u);
+  EXPECT_EQ(one.last_time, 9 * kMs);
+  EXPECT_EQ(one.gaps, 0u);
+
+  std::mt19937_64 random(1);
+  EXPECT_EQ(messages[8].channel, 1u);
+  EXPECT_EQ(messages[8].sequence, 4u);
+  EXPECT_EQ(messages[8].log_time, 4 * kMs + 77);
+  EXPECT_EQ(messages[8].data, Noise(random, 40));
+}
+
+TEST(Mcap, EqualCallsGiveEqualBytes) {
+  const ScratchFolder scratch;
+  EXPECT_EQ(WriteSmallFile(scratch.File("a.mcap")), WriteSmallFile(scratch.File("b.mcap")));
+}
+
+TEST(Mcap, CountsWhatWasWritten) {
+  const ScratchFolder scratch;
+  McapWriter writer(scratch.File("run.mcap"));
+  const auto channel = writer.AddChannel(Numbers("/n"));
+  writer.Write(channel, 0, Bytes(8));
+  EXPECT_EQ(writer.messages(), 1u);
+  writer.Close();
+  EXPECT_EQ(writer.bytes(), ReadFile(scratch.File("run.mcap")).size());
+}
+
+TEST(Mcap, AnEmptyRecordingIsComplete) {
+  const ScratchFolder scratch;
+  McapWriter writer(scratch.File("run.mcap"));
+  writer.AddChannel(Numbers("/never_used"));
+  writer.EndTick();
+  writer.Close();
+  const McapContents contents = ReadMcap(scratch.File("run.mcap"));
+  EXPECT_TRUE(contents.complete) << contents.damage;
+  EXPECT_EQ(contents.chunks, 0u);
+  EXPECT_THAT(contents.channels, IsEmpty());
+}
+
+TEST(Mcap, AChunkClosesAtTheFirstTickBoundaryWithOneMebibyte) {
+  const ScratchFolder scratch;
+  McapWriter writer(scratch.File("run.mcap"));
+  const auto channel = writer.AddChannel(Numbers("/n"));
+  const auto tick = [&](std::uint64_t time_ns, std::size_t bytes) {
+    writer.Write(channel, time_ns, Bytes(bytes));
+    const std::uint64_t before = writer.bytes();
+    writer.EndTick();
+    return writer.bytes() > before;
+  };
+  const std::size_t overhead = 31;  // of a message record
+  EXPECT_FALSE(tick(0, 1000));
+  const std::size_t announced = (9 + 2 + 4 + 20 + 4 + 7 + 4 + 9) + (9 + 2 + 2 + 4 + 2 + 4 + 3 + 4 + 4 + 1 + 4 + 1);
+  const std::size_t so_far = announced + overhead + 1000;
+  EXPECT_FALSE(tick(1, (1u << 20) - so_far - overhead - 1)) << "one byte less";
+  EXPECT_TRUE(tick(2, 0));
+  EXPECT_FALSE(tick(3, 0));
+  EXPECT_TRUE(tick(4, (1u << 20) - 2 * overhead)) << "exactly one mebibyte";
+}
+
+TEST(Mcap, AChunkClosesAtTheFirstTickBoundaryThatSpansOneSecond) {
+  const ScratchFolder scratch;
+  McapWriter writer(scratch.File("run.mcap"));
+  const auto channel = writer.AddChannel(Numbers("/n"));
+  for (std::uint64_t k = 0; k <= 300; ++k) {  // chunks end at ticks 100, 201 and with the file
+    writer.Write(channel, k * 10 * kMs, Bytes(8));
+    writer.EndTick();
+  }
+  writer.Close();
+  EXPECT_EQ(ReadMcap(scratch.File("run.mcap")).chunks, 3u);
+}
+
+TEST(Mcap, NeverWritesAChunkThatItWouldRefuseToRead) {
+  const ScratchFolder scratch;
+  McapWriter writer(scratch.File("run.mcap"));
+  const auto channel = writer.AddChannel(Numbers("/n"));
+  const Bytes eight_mebibyte(std::size_t{8} << 20);
+  for (std::uint64_t k = 0; k < 10; ++k) writer.Write(channel, k, eight_mebibyte);  // one tick
+  writer.Close();
+  const McapContents contents = ReadMcap(scratch.File("run.mcap"));
+  EXPECT_TRUE(contents.complete) << contents.damage;
+  EXPECT_EQ(contents.messages, 10u);
+  EXPECT_EQ(contents.chunks, 4u);
+}
+
+TEST(Mcap, AMessageAllocatesNothingOnceTheChunkHasFoundItsSize) {
+  const ScratchFolder scratch;
+  McapWriter writer(scratch.File("run.mcap"));
+  const auto channel = writer.AddChannel(Numbers("/n"));
+  const Bytes sample(208);
+  std::uint64_t time_ns = 0;
+  const auto second = [&] {
+    for (int i = 0; i < 1001; ++i) writer.Write(channel, time_ns += kMs, sample);
+  };
+  second();
+  writer.EndTick();
+  const std::size_t before = g_allocations;
+  second();
+  EXPECT_EQ(g_allocations, before);
+}
+
+/// Where each message of `file` is wholly there: with its last byte, or its chunk's if that is compressed.
+std::vector<std::size_t> MessageEnds(const std::string& file) {
+  std::vector<std::size_t> ends;
+  for (std::size_t offset = mcap::kMagic.size(); offset + mcap::kFrameBytes < file.size();) {
+    mcap::Fields record(AsBytes(file).subspan(offset));
+    const auto op = static_cast<Op>(record.U8());
+    mcap::Fields body(record.Raw(record.U64()));
+    offset = file.size() - record.rest().size();
+    if (op != Op::kChunk) continue;
+    body.Raw(2 * sizeof(std::uint64_t));  // times
+    Bytes raw(body.U64());
+    body.U32();  // CRC
+    const bool compressed = body.String() == "zstd";
+    const ByteSpan stored = body.Raw(body.U64());
+    if (compressed) ZSTD_decompress(raw.data(), raw.size(), stored.data(), stored.size());
+    if (!compressed) raw.assign(stored.begin(), stored.end());
+    for (mcap::Fields chunk(raw); !chunk.rest().empty();) {
+      const bool message = static_cast<Op>(chunk.U8()) == Op::kMessage;
+      chunk.Raw(chunk.U64());
+      if (message) ends.push_back(offset - (compressed ? 0 : chunk.rest().size()));
+    }
+  }
+  return ends;
+}
+
+void CutAtEveryByte(const std::string& path) {
+  const std::string file = ReadFile(path);
+  const std::vector<McapContents::Message> all = Messages(path);
+  const std::vector<std::size_t> ends = MessageEnds(file);
+  ASSERT_EQ(ends.size(), all.size());
+  for (std::size_t cut = file.size(); cut-- > 0;) {
+    std::filesystem::resize_file(path, cut);
+    std::vector<McapContents::Message> read;
+    const McapContents contents = ReadMcap(path, [&](const auto& message) { read.push_back(message); });
+    const auto whole = std::count_if(ends.begin(), ends.end(), [cut](std::size_t end) { return end <= cut; });
+    ASSERT_FALSE(contents.complete) << "cut at " << cut;
+    ASSERT_THAT(contents.damage, AllOf(HasSubstr("the file "), HasSubstr("byte "))) << "cut at " << cut;
+    ASSERT_GE(read.size(), static_cast<std::size_t>(whole)) << "cut at " << cut;  // a cut zstd frame may give more
+    for (std::size_t i = 0; i < read.size(); ++i)
+      ASSERT_EQ(std::tie(read[i].channel, read[i].sequence, read[i].data),
+                std::tie(all[i].channel, all[i].sequence, all[i].data))
+          << "cut at " << cut;
+  }
+}
+
+TEST(Mcap, AFileCutAtAnyByteStillGivesEveryWholeMessageBeforeTheCut) {
+  const ScratchFolder scratch;
+  WriteSmallFile(scratch.File("run.mcap"));
+  CutAtEveryByte(scratch.File("run.mcap"));
+}
+
+TEST(Mcap, AnUncompressedChunkCutAtAnyByteStillGivesEveryWholeMessageBeforeTheCut) {
+  const ScratchFolder scratch;
+  Bytes records;
+  Record(records, Op::kChannel).U16(1).U16(0).String("/n").String("cdr").Map({}).End();
+  for (std::uint32_t k = 0; k < 10; ++k) Record(records, Op::kMessage).U16(1).U32(k).U64(k).U64(k).U64(k).End();
+  WriteFile(scratch.File("run.mcap"), Handmade(ChunkRecord(records.size(), "", records)));
+  CutAtEveryByte(scratch.File("run.mcap"));
+}
+
+TEST(Mcap, OfAChunkThatWasCutEveryBlockThatIsThereIsRead) {
+  const ScratchFolder scratch;
+  std::mt19937_64 random(1);
+  McapWriter writer(scratch.File("run.mcap"));
+  const auto channel = writer.AddChannel(Numbers("/n"));
+  for (std::uint64_t k = 0; k < 500; ++k) {
+    Bytes half_noise = Noise(random, 1000);
+    half_noise.resize(2000);
+    writer.Write(channel, k, half_noise);
+  }
+  writer.Close();  // one chunk of 1 MB: eight blocks of zstd
+  const std::string whole = ReadFile(scratch.File("run.mcap"));
+  WriteFile(scratch.File("cut.mcap"), whole.substr(0, whole.size() / 2));
+  const std::size_t rescued = Messages(scratch.File("cut.mcap")).size();
+  EXPECT_GT(rescued, 100u);
+  EXPECT_LT(rescued, 300u);
+}
+
+TEST(Mcap, AFileWithAnyByteChangedIsNeverComplete) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.File("bad.mcap");
+  const std::string file = WriteSmallFile(path);
+  std::fstream bad(path, std::ios::in | std::ios::out | std::ios::binary);
+  const auto put = [&bad](std::size_t at, char byte) { bad.seekp(static_cast<std::streamoff>(at)).put(byte).flush(); };
+  for (std::size_t at = mcap::kMagic.size(); at < file.size(); ++at) {
+    put(at, static_cast<char>(file[at] ^ 0x41));
+    const McapContents contents = ReadMcap(path);
+    put(at, file[at]);
+    ASSERT_FALSE(contents.complete) << "byte " << at;
+    ASSERT_NE(contents.damage, "") << "byte " << at;
+  }
+  EXPECT_TRUE(ReadMcap(path).complete);
+}
+
+TEST(Mcap, OfAChunkWithAWrongCrcNoMessageIsRead) {
+  const ScratchFolder scratch;
+  std::mt19937_64 random(1);
+  McapWriter writer(scratch.File("run.mcap"));
+  writer.Write(writer.AddChannel(Numbers("/n")), 0, Noise(random, 100));
+  writer.Close();
+  std::string file = ReadFile(scratch.File("run.mcap"));
+  std::mt19937_64 again(1);
+  const Bytes noise = Noise(again, 100);
+  file[file.find(std::string(noise.begin(), noise.end()))] ^= 1;
+  WriteFile(scratch.File("bad.mcap"), file);
+  const McapContents contents = ReadMcap(scratch.File("bad.mcap"));
+  EXPECT_THAT(contents.damage, StartsWith("the CRC of a chunk is wrong (record at byte "));
+  EXPECT_EQ(contents.messages, 0u);
+}
+
+struct Hostile {
+  std::string name;
+  Bytes records;
+  std::string damage;
+};
+
+std::vector<Hostile> HostileFiles() {
+  Bytes zeros(1 << 20), zstd(1 << 20);
+  zstd.resize(ZSTD_compress(zstd.data(), zstd.size(), zeros.data(), zeros.size(), 3));
+  Bytes endless, unknown_channel, no_schema, stray(3), loose_footer;
+  Record(endless, Op::kAttachment).U64(0).End(/*beyond=*/std::uint64_t{1} << 62);
+  Record(unknown_channel, Op::kMessage).U16(7).U32(0).U64(0).U64(0).End();
+  Record(no_schema, Op::kChannel).U16(1).U16(5).String("/n").String("cdr").Map({}).End();
+  Record(loose_footer, Op::kFooter).U64(0).U64(0).U32(0).End();
+  Bytes long_string;
+  Record(long_string, Op::kMetadata).U32(0xFFFFFFFF).End();
+  return {
+      {"HugeClaim", ChunkRecord(std::uint64_t{1} << 62, "zstd", zstd),
+       "a chunk of 4611686018427387904 bytes, above the limit of 67108864"},
+      {"Bomb", ChunkRecord(1000, "zstd", zstd), "a chunk holds more than the 1000 bytes it claims"},
+      {"ClaimsTooMuch", ChunkRecord(mcap::kMaxChunkBytes, "zstd", zstd), "a chunk holds 1048576 bytes, not 67108864"},
+      {"NoZstd", ChunkRecord(10, "zstd", zeros), "zstd: Unknown frame descriptor"},
+      {"UnknownCompression", ChunkRecord(10, "lz4", zeros), "unknown compression 'lz4'"},
+      {"StoredTooShort", ChunkRecord(10, "", stray), "a chunk holds 3 bytes, not 10"},
+      {"StrayBytes", ChunkRecord(3, "", stray), "a field runs past the end of its record"},
+      {"EndlessRecord", endless, "the file ends inside a record"},
+      {"LongString", long_string, "a field runs past the end of its record"},
+      {"UnknownChannel", unknown_channel, "a message on the unknown channel 7"},
+      {"UnknownSchema", no_schema, "channel /n has an unknown schema"},
+      {"LooseFooter", loose_footer, "a footer without the end of the data section"},
+  };
+}
+
+TEST(Mcap, HostileFilesAreDescribedAndCostLittleMemory) {
+  const ScratchFolder scratch;
+  for (const Hostile& hostile : HostileFiles()) {
+    WriteFile(scratch.File("bad.mcap"), Handmade(hostile.records));
+    g_largest_bytes = 0;
+    const McapContents contents = ReadMcap(scratch.File("bad.mcap"));
+    EXPECT_FALSE(contents.complete) << hostile.name;
+    EXPECT_EQ(contents.damage, hostile.damage + " (record at byte 33)") << hostile.name;
+    EXPECT_LT(g_largest_bytes, std::size_t{4} << 20) << hostile.name;
+  }
+}
+
+TEST(Mcap, CountsAGapWhereverTheSequenceDoesNotRiseByOne) {
+  const ScratchFolder scratch;
+  Bytes records;
+  Record(records, Op::kChannel).U16(1).U16(0).String("/n").String("cdr").Map({}).End();
+  for (const std::uint32_t sequence : {1u, 2u, 4u, 4u, 5u})
+    Record(records, Op::kMessage).U16(1).U32(sequence).U64(0).U64(0).End();
+  WriteFile(scratch.File("gaps.mcap"), Handmade(records));
+  EXPECT_EQ(ReadMcap(scratch.File("gaps.mcap")).channels.at(1).gaps, 3u);
+}
+
+TEST(Mcap, StatisticsThatDoNotMatchAreDamage) {
+  const ScratchFolder scratch;
+  McapWriter writer(scratch.File("run.mcap"));
+  writer.Close();
+  std::string file = ReadFile(scratch.File("run.mcap"));
+  // One message more than there is, and the summary's CRC marked absent.
+  const std::string statistics = std::string(1, '\x0b') + std::string("\x2e\0\0\0\0\0\0\0", 8);
+  file[file.find(statistics) + 9] = 1;
+  file.replace(file.size() - 12, 4, 4, '\0');
+  WriteFile(scratch.File("run.mcap"), file);
+  EXPECT_THAT(ReadMcap(scratch.File("run.mcap")).damage, StartsWith("the statistics do not count what the file holds"));
+}
+
+TEST(Mcap, BytesBehindTheFileAreDamage) {
+  const ScratchFolder scratch;
+  WriteFile(scratch.File("long.mcap"), WriteSmallFile(scratch.File("run.mcap")) + "x");
+  EXPECT_THAT(ReadMcap(scratch.File("long.mcap")).damage,
+              StartsWith("the file does not end with MCAP's magic bytes behind its footer"));
+}
+
+TEST(Mcap, AFileThatCannotBeOpenedOrIsNoMcapIsAnError) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.File("x.mcap");
+  const auto read = [&] { ReadMcap(path); };
+  EXPECT_THAT(read, ThrowsMessage<std::runtime_error>("cannot open " + path + ": No such file or directory"));
+  WriteFile(path, "PK\x03\x04, surely");
+  EXPECT_THAT(read,
+              ThrowsMessage<std::runtime_error>(path + ": is no MCAP file: it does not begin with MCAP's magic bytes"));
+  EXPECT_THAT([&] { ReadMcap(scratch.path().string()); },
+              ThrowsMessage<std::runtime_error>("cannot open " + scratch.path().string() + ": Is a directory"));
+  EXPECT_THAT([&] { ReadMcap("/dev/zero"); },
+              ThrowsMessage<std::runtime_error>("cannot open /dev/zero: not a regular file"));
+}
+
+TEST(Mcap, AFullDiskIsAnErrorThatNamesTheFile) {
+  const auto write = [] { McapWriter writer("/dev/full"); };
+  EXPECT_THAT(write, ThrowsMessage<std::runtime_error>("cannot write /dev/full: No space left on device"));
+}
+
+TEST(Mcap, AFileThatCannotBeCreatedIsAnErrorThatNamesIt) {
+  EXPECT_THAT([] { McapWriter writer("/nowhere/run.mcap"); },
+              ThrowsMessage<std::runtime_error>("cannot create /nowhere/run.mcap: No such file or directory"));
+}
+
+TEST(Mcap, AfterAFailedWriteEveryFurtherOneFailsAndWhatWasThereIsReadable) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.File("run.mcap");
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{20'000, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  {
+    std::mt19937_64 random(1);
+    McapWriter writer(path);
+    const auto channel = writer.AddChannel(Numbers("/n"));
+    const auto tick = [&](std::uint64_t second) {
+      writer.Write(channel, 2 * second * 1000 * kMs, Noise(random, 3000));
+      writer.Write(channel, (2 * second + 1) * 1000 * kMs, Noise(random, 3000));
+      writer.EndTick();
+    };
+    const std::string error = "cannot write " + path + ": File too large";
+    EXPECT_THAT(([&] {
+                  for (std::uint64_t k = 0; k < 10; ++k) tick(k);
+                }),
+                ThrowsMessage<std::runtime_error>(error));
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_THAT([&] { writer.Close(); }, ThrowsMessage<std::runtime_error>(error));
+  }
+  EXPECT_EQ(ReadFile(path).size(), 20'000u);
+  EXPECT_EQ(Messages(path).size(), 6u);  // three whole chunks and nothing whole of the fourth's
+}
+
+}  // namespace
+}  // namespace mascot

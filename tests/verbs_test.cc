@@ -1,0 +1,168 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "agent/laws.h"
+#include "experiment/names.h"
+#include "idl/qos.h"
+#include "orchestrator/verb.h"
+#include "physics_server/model.h"
+
+namespace mascot {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAreArray;
+using ::testing::HasSubstr;
+using ::testing::Throws;
+using Json = nlohmann::json;
+using SetUpVerb = std::function<int()>(CLI::App& command);
+
+/// What a verb prints; checks that it returns 0.
+std::string Printed(SetUpVerb* set_up, std::vector<std::string> args) {
+  CLI::App app;
+  const auto run = set_up(app);
+  std::reverse(args.begin(), args.end());  // CLI11 takes them from the back
+  app.parse(args);
+  ::testing::internal::CaptureStdout();
+  EXPECT_EQ(run(), 0);
+  return ::testing::internal::GetCapturedStdout();
+}
+
+class Verbs : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        std::filesystem::temp_directory_path() /
+        ("mascot-" + std::to_string(getpid()) + "-" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+    std::ofstream(path()) << "[run]\nduration_s = 40.0\n[agents]\ncount = 4\n"
+                             "position_m = [[-1, 1, 1], [-1, -1, 2], [1, -1, 3], [1, 1, 4]]\n"
+                             "[graph]\ntopology = 'path'\n[law]\nname = 'consensus'\n";
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string path() const { return (folder_ / "four agents.toml").string(); }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+TEST_F(Verbs, CheckSaysWhatTheExperimentIsAndWhatTheoryExpects) {
+  const std::string text = Printed(SetUpCheck, {path()});
+  EXPECT_THAT(text, AllOf(HasSubstr(path() + ": valid\n"), HasSubstr("  experiment     four agents\n"),
+                          HasSubstr("  agents         4 quadrotor\n"),
+                          HasSubstr("  law            consensus, no leader, axes xy\n"),
+                          HasSubstr("  duration       40 s, 4000 ticks at 100 Hz\n")));
+  EXPECT_THAT(text, AllOf(HasSubstr("  graph          6 edges, symmetric\n"), HasSubstr("  lambda_2       0.585786\n"),
+                          HasSubstr("  components     1 strongly connected\n"), HasSubstr("  roots          1-4\n"),
+                          HasSubstr("  stable         yes\n"), HasSubstr("  first command  2 m/s^2 of 3 allowed\n"),
+                          HasSubstr("  settles in     ")));
+}
+
+TEST_F(Verbs, CheckPrintsWarningsAfterItsFacts) {
+  EXPECT_THAT(Printed(SetUpCheck, {path(), "--set", "law.beta=0.0"}),
+              HasSubstr("\nwarning: law.beta: unstable, it must be above 0, got 0\n"));
+}
+
+TEST_F(Verbs, CheckTellsProgramsTheSame) {
+  const Json json = Json::parse(Printed(SetUpCheck, {path(), "--json"}));
+  EXPECT_EQ(json["experiment"], "four agents");
+  EXPECT_EQ(json["ticks"], 4000);
+  EXPECT_EQ(json["models"]["quadrotor"], 4);
+  EXPECT_EQ(json["graph"]["edges"], 6);
+  EXPECT_NEAR(json["graph"]["lambda_2"].get<double>(), 2 - std::sqrt(2), 1e-12);
+  EXPECT_EQ(json["graph"]["spanning_tree"], (std::vector<int>{0, 1, 2, 3}));
+  EXPECT_NEAR(json["predicted"]["value_m"][2].get<double>(), 2.5, 1e-12);
+  EXPECT_TRUE(json["predicted"]["minmax_time_s"].is_null());
+  EXPECT_TRUE(json["warnings"].empty());
+}
+
+TEST_F(Verbs, CheckTimesTheEdgesOfMinMax) {
+  const std::string text = Printed(SetUpCheck, {path(), "--set", "law.name='minmax'", "--set", "law.leader=1", "--set",
+                                                "law.beta=[0.5, 1, 2, 2.5]"});
+  EXPECT_THAT(
+      text, AllOf(HasSubstr("  edge 2 -> 1    meets in 3.464 s\n"), HasSubstr("  edge 4 -> 3    meets within 4 s\n")));
+}
+
+TEST_F(Verbs, SetReplacesKeysAndLeavesTheNextArgumentAlone) {
+  EXPECT_THAT(Printed(SetUpCheck, {"--set", "run.duration_s=1.0", path()}), HasSubstr("1 s, 100 ticks"));
+}
+
+TEST_F(Verbs, SetWithoutAKeyOrValueIsAMistake) {
+  for (const std::string wrong : {"law.beta", "=3", "law.beta="}) {
+    try {
+      Printed(SetUpGraph, {path(), "--set", wrong});
+      ADD_FAILURE() << wrong;
+    } catch (const ConfigError& error) {
+      EXPECT_EQ(error.what(), "--set: expected key=value (such as law.p_gain=0.5), got '" + wrong + "'");
+    }
+    (void)::testing::internal::GetCapturedStdout();
+  }
+}
+
+TEST_F(Verbs, GraphPrintsMatricesAndWhatTheyImply) {
+  const std::string text = Printed(SetUpGraph, {path(), "--set", "graph.topology='directed_ring'"});
+  EXPECT_THAT(text, AllOf(HasSubstr("4 agents, 4 edges, directed\n"), HasSubstr("laplacian\n"),
+                          HasSubstr("components     {1-4}\n"), HasSubstr("roots          1-4\n"),
+                          HasSubstr("spanning tree  root 1; follows:")));
+  EXPECT_THAT(Printed(SetUpGraph, {path()}),
+              AllOf(HasSubstr("adjacency (row i: whom agent i hears)\n  0 1 0 0\n  1 0 1 0\n  0 1 0 1\n  0 0 1 0\n"),
+                    HasSubstr("laplacian\n   1 -1  0  0\n  -1  2 -1  0\n   0 -1  2 -1\n   0  0 -1  1\n"),
+                    HasSubstr("eigenvalues of the laplacian\n  0 0.585786 2 3.41421\n"),
+                    HasSubstr("lambda_2       0.585786\n"), HasSubstr("follows: 2->1 3->2 4->3\n")));
+}
+
+TEST_F(Verbs, GraphSaysWhatIsMissingInADisconnectedGraph) {
+  // The override would contradict the file's topology, so the file is rewritten.
+  std::ofstream(path()) << "[run]\nduration_s = 1.0\n[agents]\ncount = 4\n"
+                           "[graph]\nedges = [[1, 2], [2, 1], [4, 3]]\n";
+  EXPECT_THAT(Printed(SetUpGraph, {path()}),
+              AllOf(HasSubstr("components     {1-2} {3} {4}\n"), HasSubstr("roots          none\n"),
+                    HasSubstr("spanning tree  none\n")));
+}
+
+TEST_F(Verbs, GraphTellsProgramsTheSame) {
+  const Json json = Json::parse(Printed(SetUpGraph, {path(), "--json"}));
+  EXPECT_EQ(json["laplacian"][1], (std::vector<double>{-1, 2, -1, 0}));
+  EXPECT_EQ(json["adjacency"][1], (std::vector<double>{1, 0, 1, 0}));
+  EXPECT_NEAR(json["eigenvalues"][3][0].get<double>(), 2 + std::sqrt(2), 1e-12);
+  EXPECT_EQ(json["components"], Json({{1, 2, 3, 4}}));
+  EXPECT_EQ(json["tree_root"], 1);
+}
+
+TEST(Tables, LawsShowEveryLawWithEquationAndEveryParameter) {
+  const std::string text = Printed(SetUpLaws, {});
+  for (const LawEntry& law : Laws()) {
+    EXPECT_THAT(text, AllOf(HasSubstr(std::string(law.name)), HasSubstr(std::string(law.equation))));
+    for (const LawParameter& parameter : law.parameters) EXPECT_THAT(text, HasSubstr(std::string(parameter.meaning)));
+  }
+  EXPECT_THAT(text, AllOf(HasSubstr("    waypoints_m*  "), HasSubstr("    p_gain = 1.0  ")));
+  const Json json = Json::parse(Printed(SetUpLaws, {"--json"}));
+  ASSERT_EQ(json.size(), Laws().size());
+  EXPECT_EQ(json[1]["name"], "waypoint");
+  EXPECT_EQ(json[1]["axes"], "xyz");
+  EXPECT_EQ(json[1]["parameters"][0]["required"], true);
+  EXPECT_EQ(json[1]["parameters"][1]["default"], "1.0");
+}
+
+TEST(Tables, ModelsShowEveryModelWithItsActuators) {
+  const std::string text = Printed(SetUpModels, {});
+  for (const ModelEntry& model : Models())
+    EXPECT_THAT(text, AllOf(HasSubstr(std::string(model.name)), HasSubstr(std::string(model.actuator))));
+  EXPECT_EQ(Json::parse(Printed(SetUpModels, {"--json"})).size(), Models().size());
+}
+
+TEST(Names, ThatAnExperimentMayUseAreThoseOfTheTables) {
+  std::vector<std::string_view> models;
+  for (const ModelEntry& model : Models()) models.push_back(model.name);
+  EXPECT_THAT(models, ElementsAreArray(kModelNames));
+  EXPECT_THAT(TransportNames(), ElementsAreArray(kTransportNames));
+}
+
+}  // namespace
+}  // namespace mascot
