@@ -34,7 +34,7 @@ constexpr LawEntry kLaws[] = {
      "waypoints",
      "a child meets a resting parent after sqrt(2 z (1/alpha + 1/beta_c)), any parent within 2 sqrt(z / alpha), from "
      "rest, alpha = beta_c - beta_p > 0",
-     "Mulla, Patil & Chakraborty (2017)", kMinmaxParameters, Axes::kXy, MakeMinmax},
+     "Mulla et al. (2017)", kMinmaxParameters, Axes::kXy, MakeMinmax},
 };
 
 constexpr auto kLawNames = [] {

@@ -41,7 +41,7 @@ bool Touch(const AgentConfig& a, const AgentConfig& b) {
 }  // namespace
 
 bool Place(std::vector<AgentConfig>& agents, const Box& box, std::uint64_t seed) {
-  constexpr int kTries = 10000;  // per agent
+  std::size_t tries = 10000 + 20 * agents.size();  // for all of them: ten thousand agents give up in seconds
   Random random(seed, Random::Stream::kPositions);
   std::optional<std::vector<double>> heights;
   if (box.in_z_alone) {
@@ -56,9 +56,8 @@ bool Place(std::vector<AgentConfig>& agents, const Box& box, std::uint64_t seed)
                            return apart && (box.may_touch || !Touch(agents[i], other));
                          });
     };
-    int tries = 0;
     do {
-      if (++tries > kTries) return false;
+      if (tries-- == 0) return false;
       agents[i].p_W = PointIn(box, random);
       if (heights) agents[i].p_W.z() = (*heights)[i];
     } while (!is_free());

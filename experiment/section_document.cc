@@ -103,7 +103,7 @@ toml::table Parse(std::string_view text, const std::string& name) {
   try {
     return toml::parse(text, std::string_view(name));
   } catch (const toml::parse_error& error) {
-    throw ConfigError({PlaceText(error.source(), name) + ": " + Why(error.description())});
+    throw ConfigError({PlaceText(error.source(), name) + ": " + OneLine(Why(error.description()))});
   }
 }
 

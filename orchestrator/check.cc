@@ -82,13 +82,15 @@ void PrintGraph(const GraphFacts& facts) {
 }
 
 void PrintPrediction(const Experiment& experiment, const Prediction& prediction) {
+  const bool chains = !experiment.graph.IsSymmetric();  // their modes do not stay apart
   if (const auto& value_m = prediction.value_m) {
     PrintLine("meeting point", fmt::format("({:.4g}, {:.4g}, {:.4g}) m{}", value_m->x(), value_m->y(), value_m->z(),
                                            experiment.law.axes == Axes::kXy ? ", heights held" : ""));
   }
   if (prediction.stable) PrintLine("stable", *prediction.stable ? "yes" : "no");
   if (prediction.settling_time_s)
-    PrintLine("settles in", fmt::format("{:.4g} s (2 %, slowest mode)", *prediction.settling_time_s));
+    PrintLine("settles in", fmt::format("{:.4g} s (2 %, slowest mode{})", *prediction.settling_time_s,
+                                        chains ? "; later along chains" : ""));
   for (const MinmaxEdge& edge : prediction.minmax_edges) {
     PrintLine(fmt::format("edge {} -> {}", edge.child, edge.parent),
               fmt::format("{} {:.4g} s", edge.exact ? "meets in" : "meets within", edge.time_s));

@@ -64,6 +64,7 @@ int Main(int argc, char** argv) {
 
 int main(int argc, char** argv) try {
   std::signal(SIGPIPE, SIG_IGN);  // a closed terminal or pager must not cut a recording short
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like any other, with a text
   return mascot::Main(argc, argv);
 } catch (const mascot::ConfigError& error) {
   for (const std::string& mistake : error.mistakes()) std::cerr << "error: " << mistake << "\n";

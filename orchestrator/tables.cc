@@ -2,6 +2,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -32,14 +33,35 @@ Json ToJson(const LawEntry& law) {
           {"source", law.source}, {"axes", AxesName(law.axes)}, {"parameters", parameters}};
 }
 
+/// Prints `label`, then `text` from column `indent` on, broken between words at column 110.
+void PrintWrapped(std::string_view label, std::string_view text, std::size_t indent) {
+  constexpr std::size_t kWidth = 110;
+  std::string line = fmt::format("{:<{}}", label, indent);
+  for (std::size_t start = 0; start < text.size();) {
+    const std::size_t end = std::min(text.find(' ', start), text.size());
+    const std::string_view word = text.substr(start, end - start);
+    if (line.size() + word.size() > kWidth && line.size() > indent) {
+      std::cout << line.substr(0, line.size() - 1) << "\n";
+      line = std::string(indent, ' ');
+    }
+    line.append(word).append(" ");
+    start = end + 1;
+  }
+  line.pop_back();
+  std::cout << line << "\n";
+}
+
 void Print(const LawEntry& law) {
-  std::cout << fmt::format("{}\n  {}\n  equation  {}\n  theory    {}\n  source    {}\n", law.name, law.summary,
-                           law.equation, law.theory, law.source);
+  std::cout << law.name << "\n";
+  PrintWrapped("  ", law.summary, 2);
+  PrintWrapped("  equation", law.equation, 12);
+  PrintWrapped("  theory", law.theory, 12);
+  PrintWrapped("  source", law.source, 12);
   std::cout << fmt::format("  keys of [law]; axes = \"{}\" unless said otherwise; * required\n", AxesName(law.axes));
   for (const LawParameter& parameter : law.parameters) {
     const bool has_value = parameter.fallback != "*" && !parameter.fallback.empty();
     const std::string key = fmt::format("{}{}{}", parameter.name, has_value ? " = " : "", parameter.fallback);
-    std::cout << fmt::format("    {:<30}{:<26}{}\n", key, parameter.range, parameter.meaning);
+    PrintWrapped(fmt::format("    {:<31}{:<22}", key, parameter.range), parameter.meaning, 58);
   }
 }
 

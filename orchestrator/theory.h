@@ -19,9 +19,11 @@ struct MinmaxEdge {
 
 /// What theory says about an experiment before it runs. Absent where theory is silent.
 struct Prediction {
-  std::optional<Eigen::Vector3d> value_m;        ///< where agents meet (z: mean start height where held)
-  std::optional<bool> stable;                    ///< all modes decay, in continuous time and sampled
-  std::optional<double> settling_time_s;         ///< of the slowest mode, from rest, to 2 %
+  std::optional<Eigen::Vector3d> value_m;  ///< where agents meet (z: mean start height where held)
+  std::optional<bool> stable;              ///< all modes decay, in continuous time and sampled
+  /// Of the slowest mode, from rest, to 2 %. Agents that only follow along a chain settle later: the modes of a
+  /// directed graph do not stay apart.
+  std::optional<double> settling_time_s;
   std::optional<double> minmax_time_s;           ///< latest of `minmax_edges`
   std::vector<MinmaxEdge> minmax_edges;          ///< by child; only edges of which theory knows the time
   std::optional<double> first_command_m_per_s2;  ///< largest component any agent's law asks for at tick 0

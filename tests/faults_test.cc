@@ -131,6 +131,17 @@ TEST(Faults, AnAgentThatNeverComesIsNamedAfterTheStartTimeout) {
   EXPECT_TRUE(NothingIsLeft());
 }
 
+TEST(Faults, AFullDiskFailsTheRun) {
+  ScratchFolder folder;
+  for (const std::string engine : {"dds", "inprocess"}) {
+    const Ran run = Shell("ulimit -f 200; '" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") +
+                          " --set output.save_plot=false --engine " + engine + " --out " + folder.File(engine));
+    EXPECT_EQ(run.exit_code, 1) << run.output;
+    EXPECT_THAT(run.output, HasSubstr("File too large"));
+  }
+  EXPECT_TRUE(NothingIsLeft());
+}
+
 /// The domain that `up` says it runs in.
 int DomainOf(const Running& up) {
   const std::string text = up.err();

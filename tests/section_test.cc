@@ -288,6 +288,8 @@ TEST(Section, LocatesWhatIsNoToml) {
   EXPECT_THAT(SyntaxMistakes("a = ring\n"),
               ElementsAre("a.toml:1:5: while parsing value: could not determine value type (a string needs quotes)"));
   EXPECT_THAT(SyntaxMistakes("a = 1\nb = \"\xff\"\n"), ElementsAre("a.toml:2:5: expected UTF-8 text, got other bytes"));
+  EXPECT_THAT(SyntaxMistakes("a = in\n"),
+              ElementsAre("a.toml:1:7: while parsing floating-point: expected 'inf', saw 'in\\n'"));
   EXPECT_THAT(SyntaxMistakes(std::string("a = 1\n\0", 7)), ElementsAre(HasSubstr("a.toml:2:1: ")));
 }
 

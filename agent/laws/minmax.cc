@@ -1,4 +1,4 @@
-// Min-max time consensus tracking, Mulla, Patil & Chakraborty (2017), on a directed spanning tree. Per axis, child c of
+// Min-max time consensus tracking, Mulla et al. (2017), on a directed spanning tree. Per axis, child c of
 // parent p, with z = p_c - p_p, w = v_c - v_p and alpha = beta_c - beta_p > 0:
 //   a_c = -beta_c sgn(2 alpha z + w |w|),  sgn(0) = 0
 // It meets the parent in the least time that no motion of the parent within its bound beta_p can prolong.

@@ -1,0 +1,91 @@
+// An agent started by hand on another host: two network namespaces joined by a cable (veth), as root.
+
+#include <gmock/gmock.h>
+
+#include "tests/orchestrator.h"
+
+namespace mascot::test {
+namespace {
+
+/// Two hosts of a test's own: ours has 10.77.0.1, the other 10.77.0.2. Named by this process's id, removed with it.
+class TwoHosts {
+ public:
+  TwoHosts() : here_("mascot-a" + std::to_string(getpid())), there_("mascot-b" + std::to_string(getpid())) {
+    for (const std::string& command :
+         {"ip netns add " + here_, "ip netns add " + there_,
+          "ip -n " + here_ + " link add veth0 type veth peer name veth0 netns " + there_,
+          "ip -n " + here_ + " addr add 10.77.0.1/24 dev veth0", "ip -n " + there_ + " addr add 10.77.0.2/24 dev veth0",
+          "ip -n " + here_ + " link set veth0 up", "ip -n " + there_ + " link set veth0 up",
+          "ip -n " + here_ + " link set lo up", "ip -n " + there_ + " link set lo up",
+          "ip -n " + here_ + " route add 239.0.0.0/8 dev veth0", "ip -n " + there_ + " route add 239.0.0.0/8 dev veth0"}) {
+      const Ran ran = Shell(command);
+      if (ran.exit_code != 0 && trouble_.empty()) trouble_ = command + ": " + ran.output;
+    }
+  }
+  ~TwoHosts() {
+    Shell("ip netns del " + here_);
+    Shell("ip netns del " + there_);
+  }
+  TwoHosts(const TwoHosts&) = delete;
+  TwoHosts& operator=(const TwoHosts&) = delete;
+
+  const std::string& trouble() const { return trouble_; }
+  std::vector<std::string> Here(std::vector<std::string> words) const { return In(here_, std::move(words)); }
+  std::vector<std::string> There(std::vector<std::string> words) const { return In(there_, std::move(words)); }
+
+ private:
+  static std::vector<std::string> In(const std::string& host, std::vector<std::string> words) {
+    std::vector<std::string> all{"netns", "exec", host};
+    all.insert(all.end(), words.begin(), words.end());
+    return all;
+  }
+  std::string here_, there_, trouble_;
+};
+
+class Hosts : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (geteuid() != 0) GTEST_SKIP() << "making network namespaces takes root";
+    ASSERT_EQ(hosts_.trouble(), "");
+  }
+
+  /// Runs with agent 2 on the other host; `more` adds to the experiment.
+  void FlyTogether(const std::vector<std::string>& more, int external_id) {
+    const std::string bin = MASCOT_BINARY_DIR;
+    std::vector<std::string> up_words{bin + "/orchestrator", "up", Config("leaderless"), "--out", folder_.File("run"),
+                                      "--set", "output.save_plot=false", "--set",
+                                      "agents.override=[{ id = " + std::to_string(external_id) + ", host = \"external\" }]"};
+    up_words.insert(up_words.end(), more.begin(), more.end());
+    Running up("ip", hosts_.Here(up_words), folder_.File("up"));
+    ASSERT_TRUE(Until([&] { return up.Said("waiting for: agent --id"); })) << up.err();
+    const std::string said = up.err();
+    std::vector<std::string> agent_words{bin + "/agent", "--id", std::to_string(external_id), "--domain",
+                                         std::to_string(std::stoi(said.substr(said.find("domain ") + 7)))};
+    if (const auto at = said.find("THIS-HOST:"); at != std::string::npos)
+      agent_words.insert(agent_words.end(), {"--discovery", "10.77.0.1:" + std::to_string(std::stoi(said.substr(at + 10)))});
+    Running agent("ip", hosts_.There(agent_words), folder_.File("agent"));
+    EXPECT_EQ(up.Wait(), 0) << up.err() << agent.err();
+    EXPECT_EQ(agent.Wait(), 0) << agent.err();
+
+    Up inprocess(folder_, "inprocess", Config("leaderless"), [&] {
+      auto words = more;
+      words.insert(words.end(), {"--engine", "inprocess", "--set",
+                                 "agents.override=[{ id = " + std::to_string(external_id) + ", host = \"external\" }]"});
+      return words;
+    }());
+    EXPECT_EQ(inprocess.Wait(), 0) << inprocess.err();
+    EXPECT_TRUE(inprocess.File("run.mcap") == ReadFile(folder_.File("run/run.mcap"))) << "run.mcap differs";
+  }
+
+  ScratchFolder folder_;
+  TwoHosts hosts_;
+};
+
+TEST_F(Hosts, AnAgentOnAnotherHostJoinsAndTheRecordingIsTheSame) { FlyTogether({"--duration-s", "1"}, 2); }
+
+TEST_F(Hosts, AnAgentOnAnotherHostJoinsThroughTheDiscoveryServer) {
+  FlyTogether({"--duration-s", "0.2", "--set", "agents.count=20", "--set", "agents.random={}", "--set", "graph.topology=ring"}, 7);
+}
+
+}  // namespace
+}  // namespace mascot::test

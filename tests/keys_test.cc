@@ -1,0 +1,148 @@
+// Every key of an experiment file is read for something: changing it changes a result. Keys of the wire and of real
+// time are in engines_test.cc and faults_test.cc, parameters of laws in laws_test.cc too.
+
+#include <gmock/gmock.h>
+
+#include "orchestrator/mcap.h"
+#include "tests/orchestrator.h"
+
+namespace mascot::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A short run in one process; what `sets` say of the base configuration.
+struct Flown {
+  Flown(const ScratchFolder& folder, const std::string& name, const std::string& config, std::vector<std::string> sets)
+      : up(folder, name, Config(config), Words(std::move(sets))) {
+    EXPECT_EQ(up.Wait(), 0) << up.err();
+  }
+  static std::vector<std::string> Words(std::vector<std::string> sets) {
+    std::vector<std::string> words{"--engine", "inprocess"};
+    for (std::string& set : sets) words.insert(words.end(), {"--set", std::move(set)});
+    return words;
+  }
+  Up up;
+};
+
+/// `key` set to `value`, on top of `base`, changes what the agents do.
+struct Row {
+  std::string key, value;
+  std::vector<std::string> base = {};
+  std::string config = "leaderless";
+};
+
+void PrintTo(const Row& row, std::ostream* out) { *out << row.key << "=" << row.value; }
+
+class Key : public testing::TestWithParam<Row> {};
+
+TEST_P(Key, ChangesTheStates) {
+  ScratchFolder folder;
+  const Row& row = GetParam();
+  std::vector<std::string> base = row.base;
+  if (row.key != "run.duration_s") base.insert(base.begin(), "run.duration_s=1.0");
+  auto changed = base;
+  changed.push_back(row.key + "=" + row.value);
+  const Flown before(folder, "before", row.config, base);
+  const Flown after(folder, "after", row.config, changed);
+  EXPECT_FALSE(before.up.File("states.npz") == after.up.File("states.npz"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, Key,
+    testing::Values(
+        Row{"run.duration_s", "1.5", {"run.duration_s=1.0"}}, Row{"run.seed", "2"}, Row{"physics.rate_hz", "500"},
+        Row{"physics.gravity_m_per_s2", "1.62"},
+        Row{"physics.collisions", "false", {"agents={ count = 2, position_m = [[0, 0, 1], [1, 0, 1]], velocity_m_per_s = [[1, 0, 0], [-1, 0, 0]] }"}},
+        Row{"physics.ground", "false", {"agents.velocity_m_per_s=[[0,0,-8],[0,0,0],[0,0,0],[0,0,0]]"}},
+        Row{"agents.count", "5"}, Row{"agents.model", "double_integrator"}, Row{"agents.airframe", "mascot_published"},
+        Row{"agents.airframe", "{ mass_kg = 2.0 }"}, Row{"agents.random", "{ max_m = [5, 5, 4] }"},
+        Row{"agents.random", "{ min_m = [0, 0, 2] }"}, Row{"agents.random", "{ min_separation_m = 1.0 }"},
+        Row{"agents.velocity_m_per_s", "[[1,0,0],[0,0,0],[0,0,0],[0,0,0]]"},
+        Row{"agents.override", "[{ id = 2, model = \"double_integrator\" }]"},
+        Row{"agents.override", "[{ id = 2, airframe = \"crazyflie\" }]"}, Row{"control.rate_hz", "50"},
+        Row{"control.altitude", "{ kp = 1.0, kd = 1.0 }", {"agents.velocity_m_per_s=[[0,0,1],[0,0,0],[0,0,0],[0,0,0]]"}},
+        Row{"control.heading", "{ kp = 1.0, kd = 1.0 }", {"control.heading_rad=0.5"}},
+        Row{"control.attitude", "{ kp = 50.0, kd = 10.0 }"}, Row{"control.heading_rad", "0.5"},
+        Row{"control.max_acceleration_m_per_s2", "0.5"}, Row{"control.tilt_limit_rad", "0.01"},
+        Row{"control.inversion", "exact"}, Row{"control.drag_compensation", "false"}, Row{"graph.topology", "path"},
+        Row{"graph", "{ laplacian = [[1,-1,0,0],[0,1,-1,0],[0,0,1,-1],[-1,0,0,1]] }"},
+        Row{"graph", "{ adjacency = [[0,1,0,0],[0,0,2,0],[0,0,0,1],[1,0,0,0]] }"},
+        Row{"graph", "{ edges = [[1, 2], [2, 1, 0.5]] }"},
+        Row{"graph", "{ random = { kind = \"erdos_renyi\", p = 0.1 } }"},
+        Row{"graph.random.p", "0.9", {"graph={ random = { kind = \"erdos_renyi\", p = 0.1 } }"}},
+        Row{"agents", "{ count = 4, position_m = [[0,0,1],[1,0,2],[2,0,3],[3,0,4]] }"},
+        Row{"law", "{ name = \"waypoint\", waypoints_m = [[5, 0, 1]] }"}, Row{"law.leader", "2"},
+        Row{"law.axes", "xyz"}, Row{"law.p_gain", "0.02"}, Row{"law.beta", "0.5"},
+        Row{"law.leader_waypoints_m", "[[5,5,1]]", {"law.leader=1"}}),
+    [](const auto& row) {
+      std::string name = row.param.key + std::to_string(row.index);
+      for (char& c : name)
+        if (c == '.') c = '_';
+      return name;
+    });
+
+std::vector<std::string> TopicsOf(const Flown& run, const std::string& file) {
+  std::vector<std::string> topics;
+  for (const auto& [id, channel] : ReadMcap(run.up.path() / file).channels) topics.push_back(channel.topic);
+  return topics;
+}
+
+TEST(Key, RecordFileNamesTheRecording) {
+  ScratchFolder folder;
+  const Flown run(folder, "run", "leaderless", {"run.duration_s=0.1", "record.file=flight.mcap"});
+  EXPECT_TRUE(fs::exists(run.up.path() / "flight.mcap"));
+  EXPECT_FALSE(fs::exists(run.up.path() / "run.mcap"));
+}
+
+TEST(Key, RecordTopicsChooses) {
+  ScratchFolder folder;
+  const Flown run(folder, "run", "leaderless", {"run.duration_s=0.1", "record.topics=[\"/agent_[12]/state\", \"/clock\"]"});
+  EXPECT_THAT(TopicsOf(run, "run.mcap"), testing::ElementsAre("/agent_1/state", "/agent_2/state", "/clock"));
+  EXPECT_EQ(run.up.Summary()["samples"]["topics"], 3);
+  EXPECT_TRUE(fs::exists(run.up.path() / "states.npz"));  // it does not depend on what is recorded
+}
+
+TEST(Key, OutputSaveDataKeepsOrDropsTheArrays) {
+  ScratchFolder folder;
+  const Flown run(folder, "run", "leaderless", {"run.duration_s=0.1", "output.save_data=false"});
+  EXPECT_FALSE(fs::exists(run.up.path() / "states.npz"));
+}
+
+std::vector<std::string> Pictures(const Flown& run) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(run.up.path()))
+    if (entry.path().extension() == ".png") names.push_back(entry.path().stem());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+TEST(Key, OutputPlotsAreMadeAsAskedFor) {
+  ScratchFolder folder;
+  const std::vector<std::string> base = {"run.duration_s=0.5", "output.save_plot=true"};
+  auto with = [&](const std::string& set) {
+    auto sets = base;
+    sets.push_back(set);
+    return sets;
+  };
+  const Flown all(folder, "all", "leaderless", base);
+  EXPECT_THAT(Pictures(all), testing::IsSupersetOf({"disagreement", "paths", "position", "velocity"}));
+  const Flown no_position(folder, "no_position", "leaderless", with("output.position_plot=false"));
+  EXPECT_THAT(Pictures(no_position), testing::Not(testing::Contains("position")));
+  EXPECT_THAT(Pictures(no_position), testing::Contains("velocity"));
+  const Flown no_velocity(folder, "no_velocity", "leaderless", with("output.velocity_plot=false"));
+  EXPECT_THAT(Pictures(no_velocity), testing::Not(testing::Contains("velocity")));
+  EXPECT_THAT(Pictures(no_velocity), testing::Contains("position"));
+  const Flown arrays_for_pictures_only(folder, "only", "leaderless", with("output.save_data=false"));
+  EXPECT_THAT(Pictures(arrays_for_pictures_only), testing::Contains("paths"));
+  EXPECT_FALSE(fs::exists(arrays_for_pictures_only.up.path() / "states.npz"));
+}
+
+TEST(Key, RunNameNamesTheRunFolder) {
+  ScratchFolder folder;
+  const Flown run(folder, "run", "leaderless", {"run.duration_s=0.1", "run.name=meeting"});
+  EXPECT_EQ(run.up.Summary()["experiment"], "meeting");
+}
+
+}  // namespace
+}  // namespace mascot::test
