@@ -9,6 +9,9 @@
 #include <mutex>
 #include <optional>
 
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/spdlog.h>
+
 #include "idl/bus.h"
 #include "idl/shared_memory.h"
 #include "idl/wire.h"
@@ -28,6 +31,27 @@ using WallClock = std::chrono::steady_clock;
 constexpr int kMostPeers = 20;
 /// How long an orderly end may take before it is made disorderly.
 constexpr auto kGrace = 5s;
+
+const char* Text(Life life) {
+  switch (life) {
+    case Life::kWaiting: return "waits for the experiment";
+    case Life::kMatching: return "looks for its peers";
+    case Life::kReady: return "is ready";
+    case Life::kRunning: return "runs";
+    case Life::kDone: return "is done";
+    case Life::kFailed: return "has failed";
+  }
+  return "says something unknown";
+}
+
+const char* Text(Ask ask) {
+  switch (ask) {
+    case Ask::kReport: return "report";
+    case Ask::kStop: return "stop";
+    case Ask::kEnd: return "end";
+  }
+  return "unknown";
+}
 
 std::string NameOf(int agent) { return "agent_" + std::to_string(agent); }
 
@@ -74,6 +98,7 @@ class DdsRun {
   DomainLock lock_;
   const bool with_server_;
   ChildLogs logs_;
+  spdlog::logger log_;  // logs/orchestrator.log: what was said on /status, /request and /experiment
   Children children_;
   WireAudit audit_;
   mutable std::mutex mutex_;  // guards statuses_ and experiment_wanted_
@@ -99,8 +124,10 @@ DdsRun::DdsRun(const Experiment& experiment, const std::string& resolved, const 
       lock_(experiment.network.domain),
       with_server_(experiment.size() + 2 > kMostPeers),
       logs_(folder, console),
+      log_("orchestrator", std::make_shared<spdlog::sinks::basic_file_sink_mt>(folder.Log("orchestrator").string())),
       children_(logs_),
       progress_(experiment, writer, console) {
+  log_.flush_on(spdlog::level::info);
   SweepSharedMemory();  // of runs that were killed
   Spawn();
   auto wake = [this] { stop_.Wake(); };
@@ -217,6 +244,7 @@ void DdsRun::HandOutExperiment() {
     if (!std::exchange(experiment_wanted_, false)) return;
   }
   experiments_->Write(experiment_message_);
+  log_.info("experiment '{}' handed out", experiment_message_.name());
 }
 
 void DdsRun::CheckWire() {
@@ -300,12 +328,16 @@ void DdsRun::Ask(mascot::Ask ask, const std::string& reason) {
   request.kind(static_cast<std::uint8_t>(ask));
   request.reason(reason);
   requests_->Write(request);
+  log_.info("request: {} ({})", Text(ask), reason);
 }
 
 void DdsRun::OnStatus(const mascot_msgs::msg::Status& status) {
   const auto life = static_cast<Life>(status.state());
   const std::lock_guard lock(mutex_);
-  statuses_[status.process().to_string()] = status;
+  auto& known = statuses_[status.process().to_string()];
+  if (known.process().size() == 0 || known.state() != status.state())
+    log_.info("{} {}, tick {} {}", status.process().to_string(), Text(life), status.tick(), status.reason().to_string());
+  known = status;
   experiment_wanted_ |= life == Life::kWaiting;
   const bool external = status.agent() >= 1 && status.agent() <= experiment_.agents.size() &&
                         experiment_.agent(static_cast<int>(status.agent())).external;

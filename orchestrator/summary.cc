@@ -1,5 +1,6 @@
 #include "orchestrator/summary.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -54,18 +55,19 @@ std::string Line(const char* format, Values... values) {
 std::string SummaryJson(const Experiment& experiment, const Prediction& prediction, const RunWriter& writer,
                         const EngineResult& engine, const RunFacts& facts) {
   const Measured measured = writer.Result();
-  const double sim_s = measured.rows > 0 ? experiment.time_s(measured.rows - 1) : 0;
+  const std::int64_t ticks = std::max<std::int64_t>(measured.rows - 1, 0);  // periods flown: rows are 0 .. ticks
+  const double sim_s = experiment.time_s(ticks);
   Json json;
   json["experiment"] = experiment.run.name;
   json["seed"] = experiment.run.seed;
   json["engine"] = facts.engine;
   json["mode"] = experiment.run.mode == Mode::kRealtime ? "realtime" : "lockstep";
   json["agents"] = experiment.size();
-  json["ticks"] = measured.rows;
+  json["ticks"] = ticks;
   json["sim_s"] = sim_s;
   json["wall_s"] = engine.wall_s;
   json["real_time_factor"] = engine.wall_s > 0 ? Json(sim_s / engine.wall_s) : Json(nullptr);
-  json["ticks_per_s"] = engine.wall_s > 0 ? Json(static_cast<double>(measured.rows) / engine.wall_s) : Json(nullptr);
+  json["ticks_per_s"] = engine.wall_s > 0 ? Json(static_cast<double>(ticks) / engine.wall_s) : Json(nullptr);
   json["exit"] = facts.exit;
   json["failure"] = engine.failure.empty() ? Json(nullptr) : Json(engine.failure);
   json["samples"] = {{"topics", writer.topics()}, {"recorded", writer.samples()}, {"lost", engine.lost}};
@@ -88,7 +90,7 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
   const double sim_s = experiment.time_s(m.rows - 1);
   std::string text;
   text += Line("simulated      %.2f s in %.2f s: %.1f x real time", sim_s, engine.wall_s, sim_s / engine.wall_s);
-  text += Line("recorded       %lld ticks, %llu samples on %zu topics, %llu lost", static_cast<long long>(m.rows),
+  text += Line("recorded       %lld rows, %llu samples on %zu topics, %llu lost", static_cast<long long>(m.rows),
                static_cast<unsigned long long>(writer.samples()), writer.topics(), static_cast<unsigned long long>(engine.lost));
   text += Line("mean position  %.4f, %.4f, %.4f m", m.value_m.x(), m.value_m.y(), m.value_m.z());
   if (const auto& value = prediction.value_m)

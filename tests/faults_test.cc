@@ -93,8 +93,9 @@ TEST_P(Interrupted, RunsEndInOrderWithACompleteRecording) {
   EXPECT_EQ(up.Wait(), GetParam().exit);
   const McapContents recording = ReadMcap(up.path() / "run.mcap");
   EXPECT_TRUE(recording.complete) << recording.damage;
-  EXPECT_EQ(recording.messages, 9 * up.Summary()["ticks"].get<std::uint64_t>());
+  EXPECT_EQ(recording.messages, 9 * (up.Summary()["ticks"].get<std::uint64_t>() + 1));
   EXPECT_EQ(up.Summary()["samples"]["lost"], 0);
+  EXPECT_THAT(ReadFile(up.path() / "logs/orchestrator.log"), HasSubstr("physics_server is done, tick"));
   EXPECT_TRUE(NothingIsLeft());
 }
 
