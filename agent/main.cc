@@ -7,7 +7,8 @@
 
 namespace {
 
-void RunAgent(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot_msgs::msg::Experiment& message, int id) {
+void RunAgent(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot_msgs::msg::Experiment& message,
+              int id) {
   const auto document = mascot::Section::FromText(message.toml(), message.name());
   mascot::Experiment experiment = mascot::LoadExperiment(document, message.name());
   if (id > experiment.size())

@@ -1,5 +1,5 @@
-// Bullet alone, the yardstick for the engines: ten free boxes at 1 kHz, one force and one torque each per step, no ground,
-// no agents, no recording. Prints one line of JSON: steps per second, and simulated over wall time.
+// Bullet alone, the yardstick for the engines: ten free boxes at 1 kHz, one force and one torque each per step, no
+// ground, no agents, no recording. Prints one line of JSON: steps per second, and simulated over wall time.
 #include <btBulletDynamicsCommon.h>
 
 #include <chrono>

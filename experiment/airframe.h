@@ -18,8 +18,8 @@ struct PdGains {
 /// A quadrotor's body, rotors, default gains and limits. Shared by physics and controller, so that both
 /// mean the same machine.
 ///
-/// Rotors i = 1..4 ("plus" layout, seen from above): 1 front (+x), 2 left (+y), 3 back (-x), 4 right (-y); 1 and 3 spin so
-/// that their drag torque on the body is +z, 2 and 4 -z. With b = lift, k = drag, d = arm:
+/// Rotors i = 1..4 ("plus" layout, seen from above): 1 front (+x), 2 left (+y), 3 back (-x), 4 right (-y); 1 and 3 spin
+/// so that their drag torque on the body is +z, 2 and 4 -z. With b = lift, k = drag, d = arm:
 ///   T      =  b (w1^2 + w2^2 + w3^2 + w4^2)     thrust along +z_B (N)
 ///   Gx     =  b d (w2^2 - w4^2)                 roll torque (N m)
 ///   Gy     =  b d (w3^2 - w1^2)                 pitch torque (N m)
@@ -37,8 +37,8 @@ struct Airframe {
   double rotor_time_constant_s = 0;                         ///< first-order lag of the rotor speed; 0 = none
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();         ///< collision box, full lengths
   double tilt_limit_rad = 0;                                ///< on each of roll and pitch targets
-  PdGains altitude;  ///< m/s^2 per m and per m/s (times the mass)
-  PdGains heading;   ///< rad/s^2 per rad and per rad/s (times J)
+  PdGains altitude;                                         ///< m/s^2 per m and per m/s (times the mass)
+  PdGains heading;                                          ///< rad/s^2 per rad and per rad/s (times J)
   PdGains attitude;  ///< roll and pitch alike; rad/s^2 per rad and per rad/s (times J)
   PdGains position;  ///< m/s^2 per m and per m/s; tracks, in x and y, the ideal double integrator under the same law
 

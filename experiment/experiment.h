@@ -19,12 +19,12 @@ enum class Axes { kXy, kXyz };
 enum class Inversion { kSmallAngle, kExact };
 
 struct AgentConfig {
-  int id = 0;             ///< 1..N
-  std::string model;      ///< a name of the models' table
-  Airframe airframe;      ///< with [control]'s gains and limits already applied
+  int id = 0;                                     ///< 1..N
+  std::string model;                              ///< a name of the models' table
+  Airframe airframe;                              ///< with [control]'s gains and limits already applied
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< initial position (m)
   Eigen::Vector3d v_W = Eigen::Vector3d::Zero();  ///< initial velocity (m/s)
-  bool external = false;  ///< started by hand and waited for
+  bool external = false;                          ///< started by hand and waited for
 };
 
 /// One experiment: everything that processes of a run must agree on. Field names are the TOML keys.

@@ -10,11 +10,11 @@ namespace mascot {
 /// Motion of one body at one tick. W is the world (x east, y north, z up), B the body (x forward, y left,
 /// z up); SI units.
 struct Motion {
-  Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();              ///< position in W (m)
-  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();    ///< takes B components to W; w, x, y, z
-  Eigen::Vector3d v_WB = Eigen::Vector3d::Zero();              ///< velocity in W (m/s)
-  Eigen::Vector3d w_WB_B = Eigen::Vector3d::Zero();            ///< angular velocity expressed in B (rad/s)
-  Eigen::Vector3d a_WB = Eigen::Vector3d::Zero();              ///< (v(k) - v(k-1)) * control rate, in W; 0 at tick 0
+  Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();            ///< position in W (m)
+  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();  ///< takes B components to W; w, x, y, z
+  Eigen::Vector3d v_WB = Eigen::Vector3d::Zero();            ///< velocity in W (m/s)
+  Eigen::Vector3d w_WB_B = Eigen::Vector3d::Zero();          ///< angular velocity expressed in B (rad/s)
+  Eigen::Vector3d a_WB = Eigen::Vector3d::Zero();            ///< (v(k) - v(k-1)) * control rate, in W; 0 at tick 0
 };
 
 /// What an agent's actuators get: rotor speeds 1..4 (rad/s) for a quadrotor; the model's own inputs

@@ -1,12 +1,12 @@
 #include "idl/bus.h"
 
+#include <fastrtps/xmlparser/XMLProfileManager.h>
+
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
-#include <fastrtps/xmlparser/XMLProfileManager.h>
-
 #include <utility>
 
 #include "idl/wire.h"
@@ -188,8 +188,7 @@ RawReader::RawReader(Domain& domain, const Topic& topic, Callback on_sample)
 
 RawReader::RawReader(Domain& domain, const Topic& topic, Callback on_sample, std::shared_ptr<Bytes> bytes)
     : ReaderBase(domain, topic, dds::TypeSupport(new RawType(WireTypeName(topic.kind))), RecorderQos(topic.kind),
-                 bytes.get(), [bytes, on_sample = std::move(on_sample)](std::int64_t sequence) {
-                   on_sample(*bytes, sequence);
-                 }) {}
+                 bytes.get(),
+                 [bytes, on_sample = std::move(on_sample)](std::int64_t sequence) { on_sample(*bytes, sequence); }) {}
 
 }  // namespace mascot

@@ -20,20 +20,24 @@ Lifecycle::Lifecycle(Domain& domain, StopSignal& stop, std::string process, int 
                            experiment_ = experiment;
                            domain_.Wake();
                          }),
-      request_reader_(domain, Topic::Request(), [this](const mascot_msgs::msg::Request& request) { OnRequest(request); }) {
+      request_reader_(domain, Topic::Request(),
+                      [this](const mascot_msgs::msg::Request& request) { OnRequest(request); }) {
   status_.process(std::move(process));
   status_.agent(static_cast<std::uint32_t>(agent));
 }
 
 mascot_msgs::msg::Experiment Lifecycle::AwaitExperiment(std::chrono::seconds timeout) {
   const auto deadline = Clock::now() + timeout;
-  while (Clock::now() < deadline) {
+  for (auto ask_again = Clock::now(); Clock::now() < deadline;) {
     {
       const std::lock_guard lock(mutex_);
       if (experiment_) return *experiment_;
     }
-    Set(Life::kWaiting);
-    Wait(200ms);
+    if (Clock::now() >= ask_again) {
+      Set(Life::kWaiting);
+      ask_again = Clock::now() + 200ms;
+    }
+    Wait(ask_again - Clock::now());
   }
   throw std::runtime_error("no experiment came within " + std::to_string(timeout.count()) +
                            " s: is an orchestrator running in this domain?");
@@ -65,8 +69,10 @@ void Lifecycle::Wait(std::chrono::nanoseconds timeout) {
   if (end_requested_) throw Ended(0);
   if (report_requested_.exchange(false)) Publish();
   // The experiment's only writer is the orchestrator's.
-  if (experiment_reader_.matched() > 0) joined_ = true;
-  else if (joined_) throw std::runtime_error("the orchestrator has gone");
+  if (experiment_reader_.matched() > 0)
+    joined_ = true;
+  else if (joined_)
+    throw std::runtime_error("the orchestrator has gone");
 }
 
 void Lifecycle::AskForReports() {
@@ -77,9 +83,15 @@ void Lifecycle::AskForReports() {
 
 void Lifecycle::OnRequest(const mascot_msgs::msg::Request& request) {
   switch (static_cast<Ask>(request.kind())) {
-    case Ask::kReport: report_requested_ = true; break;
-    case Ask::kStop: stop_requested_ = true; break;
-    case Ask::kEnd: end_requested_ = true; break;
+    case Ask::kReport:
+      report_requested_ = true;
+      break;
+    case Ask::kStop:
+      stop_requested_ = true;
+      break;
+    case Ask::kEnd:
+      end_requested_ = true;
+      break;
   }
   domain_.Wake();
 }

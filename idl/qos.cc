@@ -31,13 +31,14 @@ struct Profile {
 };
 
 constexpr Profile kProfiles[] = {
-    {TopicKind::kState, kHistoryDepth, 8, true, false},   {TopicKind::kCommand, kHistoryDepth, 8, true, false},
-    {TopicKind::kClock, kHistoryDepth, 8, true, false},   {TopicKind::kStatus, 256, 256, false, false},
-    {TopicKind::kRequest, 32, 32, false, false},          {TopicKind::kExperiment, 1, 1, false, true},
+    {TopicKind::kState, kHistoryDepth, 8, true, false}, {TopicKind::kCommand, kHistoryDepth, 8, true, false},
+    {TopicKind::kClock, kHistoryDepth, 8, true, false}, {TopicKind::kStatus, 256, 256, false, false},
+    {TopicKind::kRequest, 32, 32, false, false},        {TopicKind::kExperiment, 1, 1, false, true},
 };
 
 const Profile& ProfileOf(TopicKind kind) {
-  return *std::find_if(std::begin(kProfiles), std::end(kProfiles), [&](const Profile& row) { return row.kind == kind; });
+  return *std::find_if(std::begin(kProfiles), std::end(kProfiles),
+                       [&](const Profile& row) { return row.kind == kind; });
 }
 
 template <class Qos>
@@ -80,9 +81,9 @@ struct Transport {
 };
 
 constexpr Transport kTransports[] = {
-    {"auto", true, true},   // shared memory on one host, UDP between hosts
-    {"udp", false, true},   // UDP even on one host: for peers whose shared memory does not fit ours
-    {"shm", true, false},   // never leaves this host
+    {"auto", true, true},  // shared memory on one host, UDP between hosts
+    {"udp", false, true},  // UDP even on one host: for peers whose shared memory does not fit ours
+    {"shm", true, false},  // never leaves this host
 };
 
 // --- discovery ----------------------------------------------------------------------------------------
@@ -152,7 +153,8 @@ std::span<const std::string_view> TransportNames() {
 dds::DomainParticipantQos ParticipantQos(const DomainOptions& options) {
   const auto row = std::find_if(std::begin(kTransports), std::end(kTransports),
                                 [&](const Transport& transport) { return transport.name == options.transport; });
-  if (row == std::end(kTransports)) throw std::invalid_argument("--transport: unknown transport '" + options.transport + "'");
+  if (row == std::end(kTransports))
+    throw std::invalid_argument("--transport: unknown transport '" + options.transport + "'");
   dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
   qos.name(options.name);
   qos.transport().use_builtin_transports = false;

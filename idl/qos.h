@@ -30,9 +30,9 @@ struct DomainOptions {
   std::string transport = "auto";  ///< a name of the transports' table
   std::string name;                ///< participant name: "agent_3"
   DiscoveryRole role = DiscoveryRole::kPeer;
-  std::string server;              ///< "HOST:PORT" of the discovery server, for all roles but kPeer
-  bool loopback = false;           ///< use 127.0.0.1 only; off where agents sit on other hosts
-  int participants = 2;            ///< how many join the run, about; sizes buffers
+  std::string server;     ///< "HOST:PORT" of the discovery server, for all roles but kPeer
+  bool loopback = false;  ///< use 127.0.0.1 only; off where agents sit on other hosts
+  int participants = 2;   ///< how many join the run, about; sizes buffers
 };
 
 std::span<const std::string_view> TransportNames();

@@ -52,12 +52,18 @@ void DeserializeAs(std::span<const std::uint8_t> bytes, typename PubSub::type& s
 
 std::string WireTypeName(TopicKind kind) {
   switch (kind) {
-    case TopicKind::kCommand: return CommandType().getName();
-    case TopicKind::kState: return StateType().getName();
-    case TopicKind::kClock: return ClockType().getName();
-    case TopicKind::kExperiment: return ExperimentType().getName();
-    case TopicKind::kRequest: return RequestType().getName();
-    case TopicKind::kStatus: return StatusType().getName();
+    case TopicKind::kCommand:
+      return CommandType().getName();
+    case TopicKind::kState:
+      return StateType().getName();
+    case TopicKind::kClock:
+      return ClockType().getName();
+    case TopicKind::kExperiment:
+      return ExperimentType().getName();
+    case TopicKind::kRequest:
+      return RequestType().getName();
+    case TopicKind::kStatus:
+      return StatusType().getName();
   }
   return {};
 }

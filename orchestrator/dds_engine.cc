@@ -1,6 +1,8 @@
 #include "orchestrator/dds_engine.h"
 
 #include <signal.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,9 +10,6 @@
 #include <map>
 #include <mutex>
 #include <optional>
-
-#include <spdlog/sinks/basic_file_sink.h>
-#include <spdlog/spdlog.h>
 
 #include "idl/bus.h"
 #include "idl/shared_memory.h"
@@ -34,21 +33,30 @@ constexpr auto kGrace = 5s;
 
 const char* Text(Life life) {
   switch (life) {
-    case Life::kWaiting: return "waits for the experiment";
-    case Life::kMatching: return "looks for its peers";
-    case Life::kReady: return "is ready";
-    case Life::kRunning: return "runs";
-    case Life::kDone: return "is done";
-    case Life::kFailed: return "has failed";
+    case Life::kWaiting:
+      return "waits for the experiment";
+    case Life::kMatching:
+      return "looks for its peers";
+    case Life::kReady:
+      return "is ready";
+    case Life::kRunning:
+      return "runs";
+    case Life::kDone:
+      return "is done";
+    case Life::kFailed:
+      return "has failed";
   }
   return "says something unknown";
 }
 
 const char* Text(Ask ask) {
   switch (ask) {
-    case Ask::kReport: return "report";
-    case Ask::kStop: return "stop";
-    case Ask::kEnd: return "end";
+    case Ask::kReport:
+      return "report";
+    case Ask::kStop:
+      return "stop";
+    case Ask::kEnd:
+      return "end";
   }
   return "unknown";
 }
@@ -91,7 +99,7 @@ class DdsRun {
   EngineResult result_;
   bool finished_ = false;
   Deadline stop_deadline_, drain_deadline_;
-  WallClock::time_point next_hello_ = launched_;
+  WallClock::time_point next_hello_ = launched_, next_hand_out_ = launched_;
   std::int64_t confirmed_ = 0;
   bool ready_ = false;
 
@@ -120,7 +128,8 @@ DdsRun::DdsRun(const Experiment& experiment, const std::string& resolved, const 
     : experiment_(experiment),
       console_(console),
       stop_(stop),
-      external_(std::any_of(experiment.agents.begin(), experiment.agents.end(), [](const auto& a) { return a.external; })),
+      external_(
+          std::any_of(experiment.agents.begin(), experiment.agents.end(), [](const auto& a) { return a.external; })),
       lock_(experiment.network.domain),
       with_server_(experiment.size() + 2 > kMostPeers),
       logs_(folder, console),
@@ -132,13 +141,15 @@ DdsRun::DdsRun(const Experiment& experiment, const std::string& resolved, const 
   Spawn();
   auto wake = [this] { stop_.Wake(); };
   if (with_server_) discovery_server_.emplace(Options("discovery_server", DiscoveryRole::kServer), [] {});
-  domain_.emplace(Options("orchestrator", with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake, &audit_);
+  domain_.emplace(Options("orchestrator", with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake,
+                  &audit_);
   experiment_message_.name(experiment.run.name);
   experiment_message_.toml(resolved);
   experiments_.emplace(*domain_, Topic::Experiment());
   requests_.emplace(*domain_, Topic::Request());
   status_writer_.emplace(*domain_, Topic::Status());
-  status_reader_.emplace(*domain_, Topic::Status(), [this](const mascot_msgs::msg::Status& status) { OnStatus(status); });
+  status_reader_.emplace(*domain_, Topic::Status(),
+                         [this](const mascot_msgs::msg::Status& status) { OnStatus(status); });
   recorder_.emplace(*domain_, experiment, writer);
 }
 
@@ -157,12 +168,14 @@ DomainOptions DdsRun::Options(const std::string& name, DiscoveryRole role) const
 
 void DdsRun::Spawn() {
   const DomainOptions options = Options("", DiscoveryRole::kClient);
-  std::vector<std::string> common{"--domain",    std::to_string(options.domain), "--transport", options.transport,
-                                  "--parent",    std::to_string(getpid()),       "--wait-s",
-                                  std::to_string(static_cast<int>(experiment_.run.start_timeout_s) + 1)};
+  std::vector<std::string> common{"--domain",    std::to_string(options.domain),
+                                  "--transport", options.transport,
+                                  "--parent",    std::to_string(getpid()),
+                                  "--wait-s",    std::to_string(static_cast<int>(experiment_.run.start_timeout_s) + 1)};
   if (options.loopback) common.push_back("--loopback");
   if (with_server_) common.insert(common.end(), {"--discovery", options.server});
-  console_.Line("domain " + std::to_string(options.domain) + (with_server_ ? ", discovery server " + options.server : ""));
+  console_.Line("domain " + std::to_string(options.domain) +
+                (with_server_ ? ", discovery server " + options.server : ""));
 
   auto server = common;
   server.insert(server.end(), {"--participants", std::to_string(options.participants)});
@@ -170,9 +183,12 @@ void DdsRun::Spawn() {
   for (const AgentConfig& agent : experiment_.agents) {
     auto arguments = common;
     arguments.insert(arguments.end(), {"--id", std::to_string(agent.id)});
-    if (!agent.external) children_.Spawn(NameOf(agent.id), ProgramFolder() / "agent", arguments);
-    else console_.Line("waiting for: agent --id " + std::to_string(agent.id) + " --domain " + std::to_string(options.domain) +
-                       (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_.discovery_port()) : ""));
+    if (!agent.external)
+      children_.Spawn(NameOf(agent.id), ProgramFolder() / "agent", arguments);
+    else
+      console_.Line("waiting for: agent --id " + std::to_string(agent.id) + " --domain " +
+                    std::to_string(options.domain) +
+                    (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_.discovery_port()) : ""));
   }
 }
 
@@ -239,11 +255,14 @@ void DdsRun::Fail(const std::string& why) {
 }
 
 void DdsRun::HandOutExperiment() {
+  // Everybody hears it each time: not once for each of a hundred agents that ask at once.
+  if (WallClock::now() < next_hand_out_) return;
   {
     const std::lock_guard lock(mutex_);
     if (!std::exchange(experiment_wanted_, false)) return;
   }
   experiments_->Write(experiment_message_);
+  next_hand_out_ = WallClock::now() + 100ms;
   log_.info("experiment '{}' handed out", experiment_message_.name());
 }
 
@@ -276,16 +295,21 @@ void DdsRun::Record() {
     confirmed_ = rows;
   }
   if (!done) return;
-  if (rows == static_cast<std::int64_t>(server->tick()) + 1) finished_ = true;
-  else if (give_up) Fail("the recording is not complete: " + std::to_string(rows) + " of " + std::to_string(server->tick() + 1) + " ticks");
-  else if (!drain_deadline_) drain_deadline_ = WallClock::now() + (experiment_.run.mode == Mode::kRealtime ? 1s : kGrace);
+  if (rows == static_cast<std::int64_t>(server->tick()) + 1)
+    finished_ = true;
+  else if (give_up)
+    Fail("the recording is not complete: " + std::to_string(rows) + " of " + std::to_string(server->tick() + 1) +
+         " ticks");
+  else if (!drain_deadline_)
+    drain_deadline_ = WallClock::now() + (experiment_.run.mode == Mode::kRealtime ? 1s : kGrace);
 }
 
 void DdsRun::CheckDeadlines() {
   if (stop_deadline_ && WallClock::now() > *stop_deadline_) finished_ = true;  // what there is is recorded
   const auto start_limit = std::chrono::duration<double>(experiment_.run.start_timeout_s) + kGrace;
   if (recorder_->newest_tick() < 0 && WallClock::now() - launched_ > start_limit)
-    Fail("not started within run.start_timeout_s = " + ShortestFloat(experiment_.run.start_timeout_s) + " s: " + Unheard());
+    Fail("not started within run.start_timeout_s = " + ShortestFloat(experiment_.run.start_timeout_s) +
+         " s: " + Unheard());
 }
 
 std::string DdsRun::Unheard() const {
@@ -311,7 +335,8 @@ void DdsRun::End() {
   }
   children_.Stop(2s);
   // Those started by hand are not ours to reap, only to be told.
-  for (const auto deadline = WallClock::now() + 2s; external_ && requests_->matched() > 0 && WallClock::now() < deadline;)
+  for (const auto deadline = WallClock::now() + 2s;
+       external_ && requests_->matched() > 0 && WallClock::now() < deadline;)
     stop_.Within(20ms);
   recorder_.reset();
   status_reader_.reset();
@@ -336,12 +361,14 @@ void DdsRun::OnStatus(const mascot_msgs::msg::Status& status) {
   const std::lock_guard lock(mutex_);
   auto& known = statuses_[status.process().to_string()];
   if (known.process().size() == 0 || known.state() != status.state())
-    log_.info("{} {}, tick {} {}", status.process().to_string(), Text(life), status.tick(), status.reason().to_string());
+    log_.info("{} {}, tick {} {}", status.process().to_string(), Text(life), status.tick(),
+              status.reason().to_string());
   known = status;
   experiment_wanted_ |= life == Life::kWaiting;
   const bool external = status.agent() >= 1 && status.agent() <= experiment_.agents.size() &&
                         experiment_.agent(static_cast<int>(status.agent())).external;
-  if (life == Life::kFailed && external) throw std::runtime_error(status.process().to_string() + " failed: " + status.reason().to_string());
+  if (life == Life::kFailed && external)
+    throw std::runtime_error(status.process().to_string() + " failed: " + status.reason().to_string());
   if (life == Life::kWaiting || life == Life::kDone) stop_.Wake();
 }
 

@@ -70,7 +70,8 @@ DomainLock::DomainLock(int wanted) {
     domain_ = wanted;
     descriptor_ = TryLock(wanted);
     if (descriptor_ < 0)
-      throw std::runtime_error("network.domain = " + std::to_string(wanted) + " is in use by another run on this machine");
+      throw std::runtime_error("network.domain = " + std::to_string(wanted) +
+                               " is in use by another run on this machine");
     return;
   }
   const std::set<int> busy = UdpPortsInUse();

@@ -7,13 +7,13 @@ namespace mascot {
 
 /// How a run went, from whichever engine ran it.
 struct EngineResult {
-  std::string failure;          ///< empty: it ran to its end, or was stopped in order
-  int signal = 0;               ///< the signal that stopped it early, if one did
-  double wall_s = 0;            ///< from publishing tick 0 to the last command gathered
-  double startup_s = 0;         ///< from the start to tick 0
+  std::string failure;   ///< empty: it ran to its end, or was stopped in order
+  int signal = 0;        ///< the signal that stopped it early, if one did
+  double wall_s = 0;     ///< from publishing tick 0 to the last command gathered
+  double startup_s = 0;  ///< from the start to tick 0
   std::int64_t collisions = 0;
-  std::uint64_t misses = 0;     ///< realtime: commands that came too late for their tick
-  std::uint64_t lost = 0;       ///< samples that the recorder knows to have missed
+  std::uint64_t misses = 0;  ///< realtime: commands that came too late for their tick
+  std::uint64_t lost = 0;    ///< samples that the recorder knows to have missed
   bool wire_matches_graph = true;
 };
 

@@ -23,7 +23,8 @@ class Team {
         motions_(static_cast<std::size_t>(experiment.size())),
         actuation_(static_cast<std::size_t>(experiment.size())),
         row_(experiment.size()) {
-    for (const AgentConfig& config : experiment.agents) agents_.push_back(std::make_unique<Agent>(experiment, config.id));
+    for (const AgentConfig& config : experiment.agents)
+      agents_.push_back(std::make_unique<Agent>(experiment, config.id));
   }
 
   /// States and commands of the current tick, on "the wire".
@@ -67,7 +68,8 @@ class Team {
 
 }  // namespace
 
-EngineResult RunInProcess(Experiment& experiment, RunWriter& writer, const std::function<bool(std::int64_t tick)>& go_on) {
+EngineResult RunInProcess(Experiment& experiment, RunWriter& writer,
+                          const std::function<bool(std::int64_t tick)>& go_on) {
   EngineResult result;
   const auto launched = WallClock::now();
   Team team(experiment);

@@ -45,8 +45,9 @@ int Main(int argc, char** argv) {
     CLI::App& command = *app.add_subcommand(std::string(verb.name), std::string(verb.summary));
     command.callback([&action, run = verb.set_up(command)] { action = run; });
   }
-  const bool is_verb = argc < 2 || argv[1][0] == '-' ||
-                       std::any_of(std::begin(kVerbs), std::end(kVerbs), [&](const auto& verb) { return verb.name == argv[1]; });
+  const bool is_verb =
+      argc < 2 || argv[1][0] == '-' ||
+      std::any_of(std::begin(kVerbs), std::end(kVerbs), [&](const auto& verb) { return verb.name == argv[1]; });
   if (!is_verb) return UnknownVerb(argv[1]);
   try {
     app.parse(argc, argv);

@@ -17,9 +17,9 @@ namespace mascot {
 class McapWriter {
  public:
   struct Channel {
-    std::string topic;         ///< "/agent_1/state"
-    std::string schema_name;   ///< "mascot_msgs/msg/AgentState"
-    std::string schema_text;   ///< ros2msg: the .msg text and its dependencies
+    std::string topic;        ///< "/agent_1/state"
+    std::string schema_name;  ///< "mascot_msgs/msg/AgentState"
+    std::string schema_text;  ///< ros2msg: the .msg text and its dependencies
     std::map<std::string, std::string> metadata;
   };
 

@@ -18,9 +18,9 @@ struct Measured {
   double final_disagreement_m = 0;                    ///< largest distance from the mean, or the leader, over law.axes
   double final_speed_m_per_s = 0;                     ///< largest over agents, over law.axes
   std::optional<double> settling_time_s;
-  double effort_m2_per_s3 = 0;                        ///< mean over agents of the integral of |acceleration command|^2
+  double effort_m2_per_s3 = 0;  ///< mean over agents of the integral of |acceleration command|^2
   double saturated_fraction = 0;
-  std::optional<double> min_separation_m;             ///< absent for one agent
+  std::optional<double> min_separation_m;  ///< absent for one agent
   double fidelity_rms_m = 0;
   double fidelity_max_m = 0;
   double travelled_m = 0;

@@ -1,7 +1,7 @@
 #include "orchestrator/plot.h"
 
-#include <spawn.h>
 #include <signal.h>
+#include <spawn.h>
 #include <sys/wait.h>
 
 #include <CLI/CLI.hpp>
@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 
 /// Installed, or in the source tree that this program was configured in.
 fs::path PlotScript() {
-  for (const fs::path& path : {ProgramFolder() / "../share/mascot/plot.py", fs::path(MASCOT_SOURCE_DIR) / "scripts/plot.py"})
+  for (const fs::path& path :
+       {ProgramFolder() / "../share/mascot/plot.py", fs::path(MASCOT_SOURCE_DIR) / "scripts/plot.py"})
     if (fs::exists(path)) return path;
   throw std::runtime_error("plot.py is missing: neither beside this program (../share/mascot) nor in its source tree");
 }

@@ -138,7 +138,8 @@ std::string Exit::Text() const {
 
 Children::~Children() { Stop(0ms); }
 
-void Children::Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments) {
+void Children::Spawn(const std::string& process, const std::string& program,
+                     const std::vector<std::string>& arguments) {
   const int output = logs_.Open(process);
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));

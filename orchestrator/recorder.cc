@@ -22,7 +22,8 @@ constexpr std::int64_t kBatch = 8;
 template <class T>
 T ReadAt(const RawReader::Bytes& bytes, std::size_t offset) {
   T value;
-  if (bytes.size() < offset + sizeof value) throw std::runtime_error("a sample of only " + std::to_string(bytes.size()) + " bytes");
+  if (bytes.size() < offset + sizeof value)
+    throw std::runtime_error("a sample of only " + std::to_string(bytes.size()) + " bytes");
   std::memcpy(&value, bytes.data() + offset, sizeof value);
   return value;
 }

@@ -46,7 +46,9 @@ fs::path MakeGiven(const std::string& out, bool force) {
     throw ConfigError({"--out " + out + ": expected a folder, got a file"});
   if (fs::exists(path) && !fs::is_empty(path)) {
     if (!force)
-      throw ConfigError({"--out " + out + ": expected a new or empty folder, got one with files in it (--force writes there all the same)"});
+      throw ConfigError(
+          {"--out " + out +
+           ": expected a new or empty folder, got one with files in it (--force writes there all the same)"});
     RemoveEarlierRun(path);
   }
   fs::create_directories(path);

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "idl/qos.h"
 #include "idl/schemas.h"
 #include "idl/topics.h"
-#include "idl/qos.h"
 #include "idl/wire.h"
 
 namespace mascot {
@@ -14,9 +14,12 @@ namespace {
 
 std::string_view SchemaName(TopicKind kind) {
   switch (kind) {
-    case TopicKind::kCommand: return "mascot_msgs/msg/AgentCommand";
-    case TopicKind::kState: return "mascot_msgs/msg/AgentState";
-    default: return "rosgraph_msgs/msg/Clock";
+    case TopicKind::kCommand:
+      return "mascot_msgs/msg/AgentCommand";
+    case TopicKind::kState:
+      return "mascot_msgs/msg/AgentState";
+    default:
+      return "rosgraph_msgs/msg/Clock";
   }
 }
 
@@ -32,8 +35,9 @@ struct ArrayRow {
   std::size_t width;  // 0: one number a row
 };
 constexpr ArrayRow kArrays[] = {
-    {"t", 0},           {"position", 3},         {"velocity", 3}, {"orientation", 4}, {"angular_velocity", 3},
-    {"acceleration_command", 3}, {"actuator", 4},
+    {"t", 0},           {"position", 3},         {"velocity", 3},
+    {"orientation", 4}, {"angular_velocity", 3}, {"acceleration_command", 3},
+    {"actuator", 4},
 };
 
 }  // namespace

@@ -76,7 +76,8 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   json["consensus"] = Consensus(measured, prediction);
   json["control"] = {{"effort", measured.effort_m2_per_s3}, {"saturated_fraction", measured.saturated_fraction}};
   json["safety"] = {{"min_separation_m", OrNull(measured.min_separation_m)}, {"collisions", engine.collisions}};
-  json["fidelity"] = {{"rms_m", measured.fidelity_rms_m}, {"max_m", measured.fidelity_max_m}, {"travelled_m", measured.travelled_m}};
+  json["fidelity"] = {
+      {"rms_m", measured.fidelity_rms_m}, {"max_m", measured.fidelity_max_m}, {"travelled_m", measured.travelled_m}};
   if (experiment.run.mode == Mode::kRealtime) json["realtime"] = {{"misses", engine.misses}};
   json["startup_s"] = engine.startup_s;
   json["total_s"] = facts.total_s;
@@ -91,7 +92,8 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
   std::string text;
   text += Line("simulated      %.2f s in %.2f s: %.1f x real time", sim_s, engine.wall_s, sim_s / engine.wall_s);
   text += Line("recorded       %lld rows, %llu samples on %zu topics, %llu lost", static_cast<long long>(m.rows),
-               static_cast<unsigned long long>(writer.samples()), writer.topics(), static_cast<unsigned long long>(engine.lost));
+               static_cast<unsigned long long>(writer.samples()), writer.topics(),
+               static_cast<unsigned long long>(engine.lost));
   text += Line("mean position  %.4f, %.4f, %.4f m", m.value_m.x(), m.value_m.y(), m.value_m.z());
   if (const auto& value = prediction.value_m)
     text += Line("  predicted    %.4f, %.4f, %.4f m", value->x(), value->y(), value->z());
@@ -100,10 +102,12 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
   if (prediction.settling_time_s) text += Line("  predicted    %.2f s (slowest mode)", *prediction.settling_time_s);
   if (prediction.minmax_time_s) text += Line("  predicted    %.2f s (min-max, latest edge)", *prediction.minmax_time_s);
   text += Line("saturated      %.2g %% of commands", 100 * m.saturated_fraction);
-  if (m.min_separation_m) text += Line("separation     %.3f m at least, %lld collisions", *m.min_separation_m, static_cast<long long>(engine.collisions));
+  if (m.min_separation_m)
+    text += Line("separation     %.3f m at least, %lld collisions", *m.min_separation_m,
+                 static_cast<long long>(engine.collisions));
   if (m.travelled_m > 0)
-    text += Line("fidelity       %.4f m rms from ideal double integrators: %.2f %% of %.1f m travelled", m.fidelity_rms_m,
-                 100 * m.fidelity_rms_m / m.travelled_m, m.travelled_m);
+    text += Line("fidelity       %.4f m rms from ideal double integrators: %.2f %% of %.1f m travelled",
+                 m.fidelity_rms_m, 100 * m.fidelity_rms_m / m.travelled_m, m.travelled_m);
   return text;
 }
 

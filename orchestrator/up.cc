@@ -55,7 +55,8 @@ EngineResult RunInThisProcess(Experiment& experiment, RunWriter& writer, Console
 std::string WithoutDomain(const std::string& resolved, const Experiment& experiment) {
   if (experiment.network.domain < 0) return resolved;
   const Override automatic{"network.domain", "\"auto\""};
-  return LoadExperiment(Section::FromText(resolved, "config.toml", {&automatic, 1}), experiment.run.name).document.Resolved();
+  return LoadExperiment(Section::FromText(resolved, "config.toml", {&automatic, 1}), experiment.run.name)
+      .document.Resolved();
 }
 
 int ExitCode(const EngineResult& result) {
@@ -70,7 +71,8 @@ bool MakeOutput(const Experiment& experiment, const RunFolder& folder, bool has_
   if (has_rows && (output.save_plot || output.show_plot) && (output.position_plot || output.velocity_plot))
     ok = PlotRun(folder.path(), output.show_plot) == 0;
   if (!output.save_data) std::filesystem::remove(folder.File("states.npz"));
-  if (!ok) std::cerr << "error: the pictures could not be made; the data are complete (output.save_plot = false skips them)\n";
+  if (!ok)
+    std::cerr << "error: the pictures could not be made; the data are complete (output.save_plot = false skips them)\n";
   return ok;
 }
 
@@ -105,8 +107,11 @@ int Up(UpArgs& args) {
   write_summary();  // the pictures read it
   if (!MakeOutput(experiment, folder, writer.rows() > 1) && facts.exit == 0) facts.exit = 1;
   write_summary();
-  if (args.json) std::cout << SummaryJson(experiment, prediction, writer, result, facts);
-  else if (!args.quiet) std::cout << SummaryText(experiment, prediction, writer, result) << "results        " << folder.path().string() << std::endl;
+  if (args.json)
+    std::cout << SummaryJson(experiment, prediction, writer, result, facts);
+  else if (!args.quiet)
+    std::cout << SummaryText(experiment, prediction, writer, result) << "results        " << folder.path().string()
+              << std::endl;
   return facts.exit;
 }
 

@@ -1,12 +1,12 @@
 #include "orchestrator/wire_audit.h"
 
-#include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
 #include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
 #include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
 
 #include <algorithm>
 #include <charconv>
+#include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <optional>
 #include <utility>
 
@@ -29,18 +29,25 @@ std::optional<int> AgentOf(const std::string& participant) {
 
 bool Hears(const Graph& graph, int id, int other) {
   const auto& heard = graph.HeardBy(id);
-  return std::any_of(heard.begin(), heard.end(), [&](const Graph::Neighbour& neighbour) { return neighbour.id == other; });
+  return std::any_of(heard.begin(), heard.end(),
+                     [&](const Graph::Neighbour& neighbour) { return neighbour.id == other; });
 }
 
 /// What agent `id` may have an endpoint on.
 bool MayHave(const Graph& graph, int id, const Topic& topic, bool reads) {
   switch (topic.kind) {
-    case TopicKind::kState: return reads && (topic.agent == id || Hears(graph, id, topic.agent));
-    case TopicKind::kCommand: return !reads && topic.agent == id;
-    case TopicKind::kClock: return reads;
-    case TopicKind::kExperiment: return reads;
-    case TopicKind::kRequest: return true;
-    case TopicKind::kStatus: return !reads;
+    case TopicKind::kState:
+      return reads && (topic.agent == id || Hears(graph, id, topic.agent));
+    case TopicKind::kCommand:
+      return !reads && topic.agent == id;
+    case TopicKind::kClock:
+      return reads;
+    case TopicKind::kExperiment:
+      return reads;
+    case TopicKind::kRequest:
+      return true;
+    case TopicKind::kStatus:
+      return !reads;
   }
   return false;
 }
@@ -49,19 +56,22 @@ bool MayHave(const Graph& graph, int id, const Topic& topic, bool reads) {
 std::string RightfulWriter(const Topic& topic) {
   switch (topic.kind) {
     case TopicKind::kState:
-    case TopicKind::kClock: return "physics_server";
-    case TopicKind::kCommand: return "agent_" + std::to_string(topic.agent);
-    case TopicKind::kExperiment: return "orchestrator";
+    case TopicKind::kClock:
+      return "physics_server";
+    case TopicKind::kCommand:
+      return "agent_" + std::to_string(topic.agent);
+    case TopicKind::kExperiment:
+      return "orchestrator";
     case TopicKind::kRequest:
-    case TopicKind::kStatus: return {};
+    case TopicKind::kStatus:
+      return {};
   }
   return {};
 }
 
 }  // namespace
 
-void WireAudit::on_participant_discovery(DomainParticipant*,
-                                         rtps::ParticipantDiscoveryInfo&& info) {
+void WireAudit::on_participant_discovery(DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) {
   const std::lock_guard lock(mutex_);
   // Who has left keeps its name: its endpoints are still judged if their removal is heard later.
   participants_[info.info.m_guid.guidPrefix] = info.info.m_participantName.to_string();
@@ -80,8 +90,10 @@ void WireAudit::on_publisher_discovery(DomainParticipant* self, rtps::WriterDisc
 void WireAudit::Note(DomainParticipant* self, const Guid& guid, Endpoint endpoint, bool removed) {
   if (guid.guidPrefix == self->guid().guidPrefix) return;  // the auditor's own
   const std::lock_guard lock(mutex_);
-  if (removed) endpoints_.erase(guid);
-  else endpoints_[guid] = std::move(endpoint);
+  if (removed)
+    endpoints_.erase(guid);
+  else
+    endpoints_[guid] = std::move(endpoint);
 }
 
 std::string WireAudit::OwnerOf(const Guid& endpoint) const {
@@ -109,7 +121,8 @@ std::string WireAudit::Violation(const Graph& graph) const {
   for (const auto& [guid, endpoint] : endpoints_) {
     if (std::string violation = ViolationOf(guid, endpoint, graph); !violation.empty()) return violation;
     const auto topic = Topic::Parse(endpoint.topic);
-    if (topic && !endpoint.reads && topic->kind == TopicKind::kCommand && !writers.emplace(OwnerOf(guid), endpoint.topic).second)
+    if (topic && !endpoint.reads && topic->kind == TopicKind::kCommand &&
+        !writers.emplace(OwnerOf(guid), endpoint.topic).second)
       return "two processes say that they are " + OwnerOf(guid);
   }
   return {};

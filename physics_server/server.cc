@@ -39,7 +39,8 @@ Server::Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experimen
   for (int id = 1; id <= experiment.size(); ++id) {
     states_.push_back(std::make_unique<Writer<StateType>>(domain, Topic::State(id)));
     command_readers_.push_back(std::make_unique<Reader<CommandType>>(
-        domain, Topic::Command(id), [this, id](const mascot_msgs::msg::AgentCommand& command) { OnCommand(id, command); }));
+        domain, Topic::Command(id),
+        [this, id](const mascot_msgs::msg::AgentCommand& command) { OnCommand(id, command); }));
   }
 }
 
@@ -68,15 +69,17 @@ void Server::AwaitEveryone() {
   }
   const std::lock_guard lock(mutex_);
   const std::string missing = Missing();
-  throw std::runtime_error("not ready within run.start_timeout_s = " + Shortest(experiment_.run.start_timeout_s) + ": " +
-                           (missing.empty() ? "the wire (readers or writers that have not found each other)" : missing));
+  throw std::runtime_error(
+      "not ready within run.start_timeout_s = " + Shortest(experiment_.run.start_timeout_s) + ": " +
+      (missing.empty() ? "the wire (readers or writers that have not found each other)" : missing));
 }
 
 bool Server::Matched() const {
   if (clock_.matched() < 1) return false;
   std::vector<int> readers(states_.size(), 2);  // the agent itself and the recorder
   for (int id = 1; id <= experiment_.size(); ++id)
-    for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(id)) ++readers[static_cast<std::size_t>(heard.id - 1)];
+    for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(id))
+      ++readers[static_cast<std::size_t>(heard.id - 1)];
   for (std::size_t i = 0; i < states_.size(); ++i)
     if (states_[i]->matched() < readers[i] || command_readers_[i]->matched() < 1) return false;
   return true;
@@ -133,8 +136,10 @@ void Server::OnCommand(int id, const mascot_msgs::msg::AgentCommand& command) {
   commands_[i] = command.actuator();
   command_tick_[i] = tick;
   if (!barrier_.Answer(id, tick)) return;
-  if (!realtime_) Advance();
-  else if (tick == 0 || tick == last_tick_) Finish();  // in between the clock leads
+  if (!realtime_)
+    Advance();
+  else if (tick == 0 || tick == last_tick_)
+    Finish();  // in between the clock leads
 }
 
 void Server::Advance() {
@@ -171,8 +176,8 @@ void Server::WatchProgress() {
       seen = tick;
       deadline = WallClock::now() + limit;
     } else if (WallClock::now() > deadline && !done_) {
-      throw std::runtime_error("tick " + std::to_string(seen) + ": " + Late() + " within run.agent_timeout_s = " +
-                               Shortest(experiment_.run.agent_timeout_s));
+      throw std::runtime_error("tick " + std::to_string(seen) + ": " + Late() +
+                               " within run.agent_timeout_s = " + Shortest(experiment_.run.agent_timeout_s));
     }
   }
 }

@@ -24,7 +24,8 @@ void ExpectSameBytes(const Up& a, const Up& b) {
 /// What a run measured, without what belongs to the machine and the engine.
 nlohmann::json Measurements(const Up& up) {
   nlohmann::json summary = up.Summary();
-  for (const char* key : {"engine", "wall_s", "real_time_factor", "ticks_per_s", "startup_s", "total_s"}) summary.erase(key);
+  for (const char* key : {"engine", "wall_s", "real_time_factor", "ticks_per_s", "startup_s", "total_s"})
+    summary.erase(key);
   return summary;
 }
 
@@ -40,7 +41,8 @@ TEST_P(Shipped, FliesOverDdsAsInOneProcess) {
   EXPECT_EQ(Measurements(dds), Measurements(inprocess));
   EXPECT_EQ(dds.Summary()["wire"]["matches_graph"], true);
   EXPECT_EQ(dds.Summary()["samples"]["lost"], 0);
-  const Ran check = Shell("node '" MASCOT_SOURCE_DIR "/tests/mcapcheck/mcapcheck.mjs' '" + (dds.path() / "run.mcap").string() + "' --all --strict --quiet");
+  const Ran check = Shell("node '" MASCOT_SOURCE_DIR "/tests/mcapcheck/mcapcheck.mjs' '" +
+                          (dds.path() / "run.mcap").string() + "' --all --strict --quiet");
   EXPECT_EQ(check.exit_code, 0) << check.output;
 }
 
@@ -107,8 +109,8 @@ TEST(Engines, TwoRunsAtOnceDoNotDisturbEachOther) {
 
 TEST(Engines, FiftyAgentsFlyThroughADiscoveryServer) {
   ScratchFolder folder;
-  const std::vector<std::string> fifty = {"--duration-s", "0.5",           "--set", "agents.count=50",
-                                          "--set",        "graph.topology=ring", "--set", "agents.random={}"};
+  const std::vector<std::string> fifty = {"--duration-s",        "0.5",   "--set",           "agents.count=50", "--set",
+                                          "graph.topology=ring", "--set", "agents.random={}"};
   Up dds(folder, "dds", Config("leaderless"), fifty);
   EXPECT_EQ(dds.Wait(), 0) << dds.err();
   EXPECT_THAT(dds.err(), HasSubstr("discovery server 127.0.0.1:"));
@@ -179,8 +181,9 @@ TEST(Up, RefusesAFolderThatHoldsSomethingUnlessForced) {
   const std::vector<std::string> words = {"--duration-s", "0.1", "--engine", "inprocess"};
   Up refused(folder, "run", Config("leaderless"), words);
   EXPECT_EQ(refused.Wait(), 2);
-  EXPECT_EQ(refused.err(), "error: --out " + folder.File("run") +
-                               ": expected a new or empty folder, got one with files in it (--force writes there all the same)\n");
+  EXPECT_EQ(refused.err(),
+            "error: --out " + folder.File("run") +
+                ": expected a new or empty folder, got one with files in it (--force writes there all the same)\n");
   auto forced_words = words;
   forced_words.push_back("--force");
   Up forced(folder, "run", Config("leaderless"), forced_words);
@@ -196,11 +199,14 @@ TEST(Up, SaysWhatIsWrongWithItsArguments) {
     EXPECT_EQ(up.Wait(), 2);
     return up.err();
   };
-  EXPECT_THAT(refusal({"upp"}), HasSubstr("error: unknown verb 'upp' (did you mean \"up\"?); expected one of up, check"));
+  EXPECT_THAT(refusal({"upp"}),
+              HasSubstr("error: unknown verb 'upp' (did you mean \"up\"?); expected one of up, check"));
   EXPECT_THAT(refusal({"up"}), HasSubstr("error: config is required"));
-  EXPECT_THAT(refusal({"up", Config("leaderless"), "--engine", "ros"}), HasSubstr("error: --engine: ros not in {dds,inprocess}"));
+  EXPECT_THAT(refusal({"up", Config("leaderless"), "--engine", "ros"}),
+              HasSubstr("error: --engine: ros not in {dds,inprocess}"));
   EXPECT_THAT(refusal({"up", Config("leaderless"), "--duration-s", "soon"}), HasSubstr("run.duration_s: expected"));
-  EXPECT_THAT(refusal({"up", Config("leaderless"), "--out", "/proc/nowhere/run"}), HasSubstr("error: --out: cannot make the run folder"));
+  EXPECT_THAT(refusal({"up", Config("leaderless"), "--out", "/proc/nowhere/run"}),
+              HasSubstr("error: --out: cannot make the run folder"));
 }
 
 }  // namespace

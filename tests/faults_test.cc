@@ -5,8 +5,8 @@
 #include "idl/bus.h"
 #include "idl/shared_memory.h"
 #include "idl/wire.h"
-#include "tests/orchestrator.h"
 #include "orchestrator/mcap.h"
+#include "tests/orchestrator.h"
 
 namespace mascot::test {
 namespace {
@@ -27,7 +27,9 @@ testing::AssertionResult NothingIsLeft() {
 }
 
 bool IsGone(pid_t pid) {
-  return Until([&] { return kill(pid, 0) != 0 || ReadFile("/proc/" + std::to_string(pid) + "/stat").find(") Z ") != std::string::npos; });
+  return Until([&] {
+    return kill(pid, 0) != 0 || ReadFile("/proc/" + std::to_string(pid) + "/stat").find(") Z ") != std::string::npos;
+  });
 }
 
 TEST(Faults, ADyingAgentEndsTheRunByNameAndSignal) {
@@ -99,8 +101,7 @@ TEST_P(Interrupted, RunsEndInOrderWithACompleteRecording) {
   EXPECT_TRUE(NothingIsLeft());
 }
 
-INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted,
-                         testing::Values(Interruption{SIGINT, 130}, Interruption{SIGTERM, 143}),
+INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted, testing::Values(Interruption{SIGINT, 130}, Interruption{SIGTERM, 143}),
                          [](const auto& row) { return row.param.signal == SIGINT ? "CtrlC" : "Terminate"; });
 
 TEST(Faults, ASecondCtrlCKillsWhatDoesNotStop) {
@@ -126,7 +127,8 @@ TEST(Faults, ACtrlCBeforeTheFirstTickEndsToo) {
 
 TEST(Faults, AnAgentThatNeverComesIsNamedAfterTheStartTimeout) {
   ScratchFolder folder;
-  Up up = Endless(folder, {"--set", "agents.override=[{id = 2, host = \"external\"}]", "--set", "run.start_timeout_s=2.0"});
+  Up up =
+      Endless(folder, {"--set", "agents.override=[{id = 2, host = \"external\"}]", "--set", "run.start_timeout_s=2.0"});
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(up.err(), HasSubstr("not ready within run.start_timeout_s = 2.0 s: agent 2"));
   EXPECT_TRUE(NothingIsLeft());
@@ -164,7 +166,9 @@ TEST(Faults, AnAgentThatHearsMoreThanTheGraphAllowsEndsTheRun) {
   Domain domain(Intruder(up, "agent_1"), [] {});
   Reader<StateType> peeking(domain, Topic::State(4), [](const auto&) {});
   EXPECT_EQ(up.Wait(), 1);
-  EXPECT_THAT(up.err(), HasSubstr("the wire differs from the graph: agent_1 reads /agent_4/state, which the graph does not let it"));
+  EXPECT_THAT(
+      up.err(),
+      HasSubstr("the wire differs from the graph: agent_1 reads /agent_4/state, which the graph does not let it"));
   EXPECT_EQ(up.Summary()["wire"]["matches_graph"], false);
 }
 
@@ -188,7 +192,8 @@ TEST(Faults, ADomainInUseIsRefused) {
   const std::string domain = std::to_string(DomainOf(up));
   Up second(folder, "second", Config("leaderless"), {"--set", "network.domain=" + domain});
   EXPECT_EQ(second.Wait(), 1);
-  EXPECT_THAT(second.err(), HasSubstr("error: network.domain = " + domain + " is in use by another run on this machine"));
+  EXPECT_THAT(second.err(),
+              HasSubstr("error: network.domain = " + domain + " is in use by another run on this machine"));
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ class TwoHosts {
           "ip -n " + here_ + " addr add 10.77.0.1/24 dev veth0", "ip -n " + there_ + " addr add 10.77.0.2/24 dev veth0",
           "ip -n " + here_ + " link set veth0 up", "ip -n " + there_ + " link set veth0 up",
           "ip -n " + here_ + " link set lo up", "ip -n " + there_ + " link set lo up",
-          "ip -n " + here_ + " route add 239.0.0.0/8 dev veth0", "ip -n " + there_ + " route add 239.0.0.0/8 dev veth0"}) {
+          "ip -n " + here_ + " route add 239.0.0.0/8 dev veth0",
+          "ip -n " + there_ + " route add 239.0.0.0/8 dev veth0"}) {
       const Ran ran = Shell(command);
       if (ran.exit_code != 0 && trouble_.empty()) trouble_ = command + ": " + ran.output;
     }
@@ -52,9 +53,16 @@ class Hosts : public testing::Test {
   /// Runs with agent 2 on the other host; `more` adds to the experiment.
   void FlyTogether(const std::vector<std::string>& more, int external_id) {
     const std::string bin = MASCOT_BINARY_DIR;
-    std::vector<std::string> up_words{bin + "/orchestrator", "up", Config("leaderless"), "--out", folder_.File("run"),
-                                      "--set", "output.save_plot=false", "--set",
-                                      "agents.override=[{ id = " + std::to_string(external_id) + ", host = \"external\" }]"};
+    std::vector<std::string> up_words{
+        bin + "/orchestrator",
+        "up",
+        Config("leaderless"),
+        "--out",
+        folder_.File("run"),
+        "--set",
+        "output.save_plot=false",
+        "--set",
+        "agents.override=[{ id = " + std::to_string(external_id) + ", host = \"external\" }]"};
     up_words.insert(up_words.end(), more.begin(), more.end());
     Running up("ip", hosts_.Here(up_words), folder_.File("up"));
     ASSERT_TRUE(Until([&] { return up.Said("waiting for: agent --id"); })) << up.err();
@@ -62,15 +70,17 @@ class Hosts : public testing::Test {
     std::vector<std::string> agent_words{bin + "/agent", "--id", std::to_string(external_id), "--domain",
                                          std::to_string(std::stoi(said.substr(said.find("domain ") + 7)))};
     if (const auto at = said.find("THIS-HOST:"); at != std::string::npos)
-      agent_words.insert(agent_words.end(), {"--discovery", "10.77.0.1:" + std::to_string(std::stoi(said.substr(at + 10)))});
+      agent_words.insert(agent_words.end(),
+                         {"--discovery", "10.77.0.1:" + std::to_string(std::stoi(said.substr(at + 10)))});
     Running agent("ip", hosts_.There(agent_words), folder_.File("agent"));
     EXPECT_EQ(up.Wait(), 0) << up.err() << agent.err();
     EXPECT_EQ(agent.Wait(), 0) << agent.err();
 
     Up inprocess(folder_, "inprocess", Config("leaderless"), [&] {
       auto words = more;
-      words.insert(words.end(), {"--engine", "inprocess", "--set",
-                                 "agents.override=[{ id = " + std::to_string(external_id) + ", host = \"external\" }]"});
+      words.insert(words.end(),
+                   {"--engine", "inprocess", "--set",
+                    "agents.override=[{ id = " + std::to_string(external_id) + ", host = \"external\" }]"});
       return words;
     }());
     EXPECT_EQ(inprocess.Wait(), 0) << inprocess.err();
@@ -84,7 +94,9 @@ class Hosts : public testing::Test {
 TEST_F(Hosts, AnAgentOnAnotherHostJoinsAndTheRecordingIsTheSame) { FlyTogether({"--duration-s", "1"}, 2); }
 
 TEST_F(Hosts, AnAgentOnAnotherHostJoinsThroughTheDiscoveryServer) {
-  FlyTogether({"--duration-s", "0.2", "--set", "agents.count=20", "--set", "agents.random={}", "--set", "graph.topology=ring"}, 7);
+  FlyTogether(
+      {"--duration-s", "0.2", "--set", "agents.count=20", "--set", "agents.random={}", "--set", "graph.topology=ring"},
+      7);
 }
 
 }  // namespace

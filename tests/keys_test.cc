@@ -53,7 +53,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Row{"run.duration_s", "1.5", {"run.duration_s=1.0"}}, Row{"run.seed", "2"}, Row{"physics.rate_hz", "500"},
         Row{"physics.gravity_m_per_s2", "1.62"},
-        Row{"physics.collisions", "false", {"agents={ count = 2, position_m = [[0, 0, 1], [1, 0, 1]], velocity_m_per_s = [[1, 0, 0], [-1, 0, 0]] }"}},
+        Row{"physics.collisions",
+            "false",
+            {"agents={ count = 2, position_m = [[0, 0, 1], [1, 0, 1]], velocity_m_per_s = [[1, 0, 0], [-1, 0, 0]] }"}},
         Row{"physics.ground", "false", {"agents.velocity_m_per_s=[[0,0,-8],[0,0,0],[0,0,0],[0,0,0]]"}},
         Row{"agents.count", "5"}, Row{"agents.model", "double_integrator"}, Row{"agents.airframe", "mascot_published"},
         Row{"agents.airframe", "{ mass_kg = 2.0 }"}, Row{"agents.random", "{ max_m = [5, 5, 4] }"},
@@ -61,7 +63,9 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"agents.velocity_m_per_s", "[[1,0,0],[0,0,0],[0,0,0],[0,0,0]]"},
         Row{"agents.override", "[{ id = 2, model = \"double_integrator\" }]"},
         Row{"agents.override", "[{ id = 2, airframe = \"crazyflie\" }]"}, Row{"control.rate_hz", "50"},
-        Row{"control.altitude", "{ kp = 1.0, kd = 1.0 }", {"agents.velocity_m_per_s=[[0,0,1],[0,0,0],[0,0,0],[0,0,0]]"}},
+        Row{"control.altitude",
+            "{ kp = 1.0, kd = 1.0 }",
+            {"agents.velocity_m_per_s=[[0,0,1],[0,0,0],[0,0,0],[0,0,0]]"}},
         Row{"control.heading", "{ kp = 1.0, kd = 1.0 }", {"control.heading_rad=0.5"}},
         Row{"control.attitude", "{ kp = 50.0, kd = 10.0 }"}, Row{"control.heading_rad", "0.5"},
         Row{"control.max_acceleration_m_per_s2", "0.5"}, Row{"control.tilt_limit_rad", "0.01"},
@@ -97,7 +101,8 @@ TEST(Key, RecordFileNamesTheRecording) {
 
 TEST(Key, RecordTopicsChooses) {
   ScratchFolder folder;
-  const Flown run(folder, "run", "leaderless", {"run.duration_s=0.1", "record.topics=[\"/agent_[12]/state\", \"/clock\"]"});
+  const Flown run(folder, "run", "leaderless",
+                  {"run.duration_s=0.1", "record.topics=[\"/agent_[12]/state\", \"/clock\"]"});
   EXPECT_THAT(TopicsOf(run, "run.mcap"), testing::ElementsAre("/agent_1/state", "/agent_2/state", "/clock"));
   EXPECT_EQ(run.up.Summary()["samples"]["topics"], 3);
   EXPECT_TRUE(fs::exists(run.up.path() / "states.npz"));  // it does not depend on what is recorded

@@ -25,7 +25,9 @@ extern char** environ;
 
 namespace mascot::test {
 
-inline std::string Config(const std::string& name) { return std::string(MASCOT_SOURCE_DIR) + "/configs/" + name + ".toml"; }
+inline std::string Config(const std::string& name) {
+  return std::string(MASCOT_SOURCE_DIR) + "/configs/" + name + ".toml";
+}
 
 /// Waits until `condition` holds, at most 60 s. Returns whether it came to hold.
 inline bool Until(const std::function<bool()>& condition) {
@@ -81,8 +83,10 @@ class Running {
 /// `orchestrator up` of one configuration into folder/name, without pictures.
 class Up : public Running {
  public:
-  Up(const ScratchFolder& folder, const std::string& name, const std::string& config, std::vector<std::string> more = {})
-      : Running(std::string(MASCOT_BINARY_DIR) + "/orchestrator", Words(folder, name, config, std::move(more)), folder.File(name)),
+  Up(const ScratchFolder& folder, const std::string& name, const std::string& config,
+     std::vector<std::string> more = {})
+      : Running(std::string(MASCOT_BINARY_DIR) + "/orchestrator", Words(folder, name, config, std::move(more)),
+                folder.File(name)),
         path_(folder.File(name)) {}
 
   const std::filesystem::path& path() const { return path_; }

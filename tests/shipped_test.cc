@@ -108,7 +108,8 @@ TEST(Leaderless, AnInitialVelocityMovesTheMeetingPointByItsMeanOverBeta) {
 
 TEST(LeaderFollower, AllTenGatherAtTheLeader) {
   const Flight flight("leader_follower");
-  for (int id = 1; id <= 10; ++id) EXPECT_LT(Distance2d(flight.At(flight.last(), id), flight.At(flight.last(), 4)), 0.01);
+  for (int id = 1; id <= 10; ++id)
+    EXPECT_LT(Distance2d(flight.At(flight.last(), id), flight.At(flight.last(), 4)), 0.01);
   EXPECT_LT((flight.At(flight.last(), 4).p_WB - flight.At(0, 4).p_WB).norm(), 1e-3);  // who has not moved
 }
 
@@ -132,7 +133,8 @@ TEST(Waypoint, EveryWaypointIsReached) {
   const Flight flight("waypoint");
   for (const Eigen::Vector3d& waypoint : {Eigen::Vector3d(20, 0, 1), {20, 20, 3}, {0, 20, 3}, {0, 0, 1}}) {
     double nearest = 1e9;
-    for (std::size_t k = 0; k <= flight.last(); ++k) nearest = std::min(nearest, (flight.At(k, 1).p_WB - waypoint).norm());
+    for (std::size_t k = 0; k <= flight.last(); ++k)
+      nearest = std::min(nearest, (flight.At(k, 1).p_WB - waypoint).norm());
     EXPECT_LT(nearest, 0.2) << waypoint.transpose();
   }
   EXPECT_LT((flight.At(flight.last(), 1).p_WB - Eigen::Vector3d(0, 0, 1)).norm(), 0.02);
@@ -190,7 +192,8 @@ TEST(Minmax, ShippedQuadrotorsStayTogetherAfterwards) {
   const double predicted_s = flight.summary["consensus"]["predicted"]["minmax_time_s"];
   double latest_s = 0;
   for (int child = 2; child <= 4; ++child)
-    for (int axis = 0; axis < 2; ++axis) latest_s = std::max(latest_s, TimeToStay(flight, child, child - 1, axis, 0.05));
+    for (int axis = 0; axis < 2; ++axis)
+      latest_s = std::max(latest_s, TimeToStay(flight, child, child - 1, axis, 0.05));
   EXPECT_LT(latest_s, 1.15 * predicted_s);
 }
 
@@ -205,7 +208,8 @@ TEST(Published, FliesTheSetUpOfThePublishedTestbed) {
 // --- check's warnings -----------------------------------------------------------------------------------
 
 TEST(Check, WarnsWhenTheFirstCommandWouldSaturate) {
-  const Ran run = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("leaderless") + " --set law.p_gain=1.0");
+  const Ran run =
+      Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("leaderless") + " --set law.p_gain=1.0");
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_THAT(run.output, testing::HasSubstr("control.max_acceleration_m_per_s2"));
   const Ran quiet = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("leaderless"));
