@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <stdexcept>
 #include <csignal>
 #include <iostream>
 
@@ -63,6 +64,9 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
   int code = 1;
   try {
     code = Join(args, stop, run);
+  } catch (const std::invalid_argument& usage) {
+    std::cerr << "error: " << usage.what() << std::endl;
+    code = 2;
   } catch (const std::exception& failure) {
     std::cerr << "error: " << failure.what() << std::endl;
   }

@@ -153,8 +153,11 @@ std::span<const std::string_view> TransportNames() {
 dds::DomainParticipantQos ParticipantQos(const DomainOptions& options) {
   const auto row = std::find_if(std::begin(kTransports), std::end(kTransports),
                                 [&](const Transport& transport) { return transport.name == options.transport; });
-  if (row == std::end(kTransports))
-    throw std::invalid_argument("--transport: unknown transport '" + options.transport + "'");
+  if (row == std::end(kTransports)) {
+    std::string names;
+    for (const Transport& transport : kTransports) names += std::string(transport.name) + ", ";
+    throw std::invalid_argument("--transport: expected one of " + names + "got '" + options.transport + "'");
+  }
   dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
   qos.name(options.name);
   qos.transport().use_builtin_transports = false;

@@ -172,6 +172,26 @@ TEST(Faults, AnAgentThatHearsMoreThanTheGraphAllowsEndsTheRun) {
   EXPECT_EQ(up.Summary()["wire"]["matches_graph"], false);
 }
 
+TEST(Faults, ASecondAgentOfTheSameNumberEndsTheRun) {
+  ScratchFolder folder;
+  Up up = Endless(folder);
+  ASSERT_TRUE(Flies(up));
+  Running twin(std::string(MASCOT_BINARY_DIR) + "/agent",
+               {"--id", "2", "--loopback", "--domain", std::to_string(DomainOf(up))}, folder.File("twin"));
+  EXPECT_EQ(up.Wait(), 1);
+  EXPECT_THAT(up.err(), HasSubstr("two processes say that they are agent_2"));
+}
+
+TEST(Faults, AnAgentWithANumberThatNobodyHasIsToldSo) {
+  ScratchFolder folder;
+  Up up = Endless(folder);
+  ASSERT_TRUE(Flies(up));
+  Running ninth(std::string(MASCOT_BINARY_DIR) + "/agent",
+                {"--id", "9", "--loopback", "--domain", std::to_string(DomainOf(up))}, folder.File("ninth"));
+  EXPECT_EQ(ninth.Wait(), 1);
+  EXPECT_THAT(ninth.err(), HasSubstr("error: --id 9: the experiment has only agents 1 to 4"));
+}
+
 TEST(Faults, AStrangerMayListenButNotFly) {
   ScratchFolder folder;
   Up up = Endless(folder);

@@ -1,0 +1,199 @@
+// The bus: names, bytes, and what happens around a sample, between two domains in one process.
+
+#include "idl/bus.h"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+
+#include "idl/stop_signal.h"
+#include "idl/wire.h"
+#include "orchestrator/domain_lock.h"
+#include "tests/orchestrator.h"
+
+namespace mascot::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+TEST(Topic, IsMadeAndParsedAlike) {
+  for (const Topic& topic : {Topic::State(1), Topic::State(123), Topic::Command(7), Topic::Clock(), Topic::Status(),
+                             Topic::Request(), Topic::Experiment()}) {
+    EXPECT_EQ(Topic::Parse(topic.Name()), topic);
+    EXPECT_EQ(Topic::Parse(topic.DdsName()), topic);
+  }
+  EXPECT_EQ(Topic::State(3).DdsName(), "rt/agent_3/state");
+  EXPECT_EQ(Topic::Clock().DdsName(), "rt/clock");
+}
+
+TEST(Topic, IsNotParsedFromWhatIsNotOurs) {
+  for (const char* name : {"", "rt", "rt/", "/", "/agent_/state", "/agent_0/state", "/agent_-1/state", "/agent_3",
+                           "/agent_3/", "/agent_3/clock", "/state", "/agent_3/state2", "/tf", "rt/agent_x/state"})
+    EXPECT_EQ(Topic::Parse(name), std::nullopt) << name;
+}
+
+TEST(Wire, TypesHaveTheNamesThatRos2GivesThem) {
+  EXPECT_EQ(WireTypeName(TopicKind::kState), "mascot_msgs::msg::dds_::AgentState_");
+  EXPECT_EQ(WireTypeName(TopicKind::kCommand), "mascot_msgs::msg::dds_::AgentCommand_");
+  EXPECT_EQ(WireTypeName(TopicKind::kClock), "rosgraph_msgs::msg::dds_::Clock_");
+}
+
+TEST(Wire, StampsAreDividedAndNeverAccumulated) {
+  EXPECT_EQ(StampNs(0, 100), 0u);
+  EXPECT_EQ(StampNs(1, 3), 333'333'333u);
+  EXPECT_EQ(StampNs(2, 3), 666'666'667u);
+  EXPECT_EQ(StampNs(3'000'000'001, 3), 1'000'000'000'333'333'333u);
+}
+
+Motion SomeMotion() {
+  Motion motion;
+  motion.p_WB = {1, 2, 3};
+  motion.q_WB = Eigen::Quaterniond(0.5, 0.1, 0.2, 0.3);
+  motion.v_WB = {4, 5, 6};
+  motion.w_WB_B = {7, 8, 9};
+  motion.a_WB = {10, 11, 12};
+  return motion;
+}
+
+TEST(Wire, AMotionComesBackAsItWent) {
+  mascot_msgs::msg::AgentState sample, received;
+  ToWire(17, 100, 3, SomeMotion(), sample);
+  std::vector<std::uint8_t> bytes;
+  Serialize(sample, bytes);
+  Deserialize(bytes, received);
+  const Motion motion = FromWire(received), sent = SomeMotion();
+  EXPECT_EQ(motion.p_WB, sent.p_WB);
+  EXPECT_EQ(motion.q_WB.coeffs(), sent.q_WB.coeffs());
+  EXPECT_EQ(motion.v_WB, sent.v_WB);
+  EXPECT_EQ(motion.w_WB_B, sent.w_WB_B);
+  EXPECT_EQ(motion.a_WB, sent.a_WB);
+  EXPECT_EQ(received.pose().orientation().w(), 0.5);  // ROS: x, y, z, w, by name
+}
+
+TEST(Wire, BytesOfAnotherLengthAreRefused) {
+  mascot_msgs::msg::AgentState sample;
+  EXPECT_THAT([&] { Deserialize(std::vector<std::uint8_t>(3), sample); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("a sample of 3 bytes is no mascot_msgs::msg::dds_::AgentState_")));
+}
+
+/// Two participants in a domain of the test's own.
+class Bus : public testing::Test {
+ protected:
+  DomainOptions Options(const std::string& name) const {
+    DomainOptions options;
+    options.domain = lock_.domain();
+    options.name = name;
+    options.loopback = true;
+    return options;
+  }
+
+  DomainLock lock_{-1};
+  Domain here_{Options("here"), [] {}};
+  Domain there_{Options("there"), [] {}};
+};
+
+TEST_F(Bus, RawBytesAreThoseOfTheSerialiserWithZeroedPadding) {
+  Writer<StateType> writer(here_, Topic::State(1));
+  std::mutex mutex;
+  std::vector<std::pair<RawReader::Bytes, std::int64_t>> heard;
+  RawReader reader(there_, Topic::State(1), [&](const RawReader::Bytes& bytes, std::int64_t sequence) {
+    const std::lock_guard lock(mutex);
+    heard.emplace_back(bytes, sequence);
+  });
+  ASSERT_TRUE(Until([&] { return writer.matched() == 1 && reader.matched() == 1; }));
+  mascot_msgs::msg::AgentState sample;
+  for (int tick = 0; tick < 3; ++tick) {
+    ToWire(tick, 100, 1, SomeMotion(), sample);
+    writer.Write(sample);
+  }
+  ASSERT_TRUE(Until([&] {
+    const std::lock_guard lock(mutex);
+    return heard.size() == 3;
+  }));
+  for (int tick = 0; tick < 3; ++tick) {
+    ToWire(tick, 100, 1, SomeMotion(), sample);
+    std::vector<std::uint8_t> bytes;
+    Serialize(sample, bytes);
+    EXPECT_EQ(heard[static_cast<std::size_t>(tick)].first, bytes);
+    EXPECT_EQ(heard[static_cast<std::size_t>(tick)].second, tick + 1);
+    for (int padding = 24; padding < 28; ++padding) EXPECT_EQ(bytes[static_cast<std::size_t>(padding)], 0);
+  }
+}
+
+TEST_F(Bus, AnExceptionInACallbackBecomesTheDomainsFailure) {
+  Writer<ClockType> writer(here_, Topic::Clock());
+  Reader<ClockType> reader(there_, Topic::Clock(), [](const auto&) { throw std::runtime_error("no such luck"); });
+  ASSERT_TRUE(Until([&] { return writer.matched() == 1 && reader.matched() == 1; }));
+  rosgraph_msgs::msg::Clock sample;
+  writer.Write(sample);
+  ASSERT_TRUE(Until([&] {
+    try {
+      there_.RethrowFailure();
+      return false;
+    } catch (const std::runtime_error& failure) {
+      return failure.what() == std::string("no such luck");
+    }
+  }));
+  EXPECT_NO_THROW(here_.RethrowFailure());
+}
+
+TEST_F(Bus, OneEndpointOfAKindPerTopicAndProcess) {
+  Writer<ClockType> first(here_, Topic::Clock());
+  Reader<ClockType> reader(here_, Topic::Clock(), [](const auto&) {});  // both kinds at once are fine
+  EXPECT_NO_THROW(Writer<ClockType>(there_, Topic::Clock()));
+}
+
+TEST(DomainLock, GivesEachRunADomainOfItsOwn) {
+  const DomainLock one(-1), two(-1);
+  EXPECT_NE(one.domain(), two.domain());
+  EXPECT_NE(one.discovery_port(), two.discovery_port());
+  EXPECT_THAT([&] { DomainLock third(one.domain()); },
+              ThrowsMessage<std::runtime_error>("network.domain = " + std::to_string(one.domain()) +
+                                                " is in use by another run on this machine"));
+}
+
+TEST(DomainLock, IsFreeAgainWhenItsRunIsOver) {
+  int domain = 0;
+  {
+    const DomainLock lock(-1);
+    domain = lock.domain();
+  }
+  EXPECT_EQ(DomainLock(domain).domain(), domain);
+}
+
+// --- the programs, by hand ------------------------------------------------------------------------------
+
+Ran Agent(const std::string& arguments) { return Shell("'" MASCOT_BINARY_DIR "/agent' " + arguments); }
+
+TEST(AgentProcess, SaysThatNobodyGaveItAnExperiment) {
+  const DomainLock lock(-1);
+  const Ran ran = Agent("--id 1 --loopback --wait-s 1 --domain " + std::to_string(lock.domain()));
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_EQ(ran.output, "error: no experiment came within 1 s: is an orchestrator running in this domain?\n");
+}
+
+TEST(AgentProcess, RefusesWrongArguments) {
+  EXPECT_EQ(Agent("").exit_code, 2);
+  EXPECT_THAT(Agent("--domain 1").output, HasSubstr("--id is required"));
+  EXPECT_THAT(Agent("--id 0 --domain 1").output, HasSubstr("--id"));
+  EXPECT_EQ(Agent("--id 0 --domain 1").exit_code, 2);
+  const Ran transport = Agent("--id 1 --domain 1 --transport pigeon");
+  EXPECT_EQ(transport.exit_code, 2);
+  EXPECT_EQ(transport.output, "error: --transport: expected one of auto, udp, shm, got 'pigeon'\n");
+  const Ran discovery = Agent("--id 1 --domain 1 --discovery somewhere");
+  EXPECT_EQ(discovery.exit_code, 2);
+  EXPECT_EQ(discovery.output, "error: --discovery: expected IP-ADDRESS:PORT, got 'somewhere'\n");
+}
+
+TEST(StopSignal, IsWokenByOthersAndBySignals) {
+  StopSignal stop;
+  stop.Wake();
+  EXPECT_EQ(stop.Within(std::chrono::hours(1)), 0);
+  raise(SIGTERM);  // to this thread: those that Fast DDS started earlier do not block it
+  EXPECT_EQ(stop.Within(std::chrono::hours(1)), SIGTERM);
+  EXPECT_EQ(stop.Within(std::chrono::nanoseconds(1)), 0);
+}
+
+}  // namespace
+}  // namespace mascot::test
