@@ -24,8 +24,10 @@ int ColourOf(const std::string& process) {
 
 Console::Console(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO)), colour_(WantsColour()) {}
 
-Console::~Console() {
+void Console::EndProgress() {
+  const std::lock_guard lock(mutex_);
   if (!progress_.empty()) std::cerr << std::endl;
+  progress_.clear();
 }
 
 void Console::EraseProgress() {

@@ -12,7 +12,7 @@ class Console {
  public:
   /// `quiet`: errors only.
   explicit Console(bool quiet);
-  ~Console();  ///< leaves the cursor on a line of its own
+  ~Console() { EndProgress(); }
 
   /// An ordinary line.
   void Line(const std::string& text);
@@ -20,6 +20,8 @@ class Console {
   void ChildLine(const std::string& process, const std::string& text);
   /// `fraction` of the run is done; `text` says more. Cheap to call often.
   void Progress(double fraction, const std::string& text);
+  /// Leaves the progress line as it stands, and the cursor on the next.
+  void EndProgress();
 
  private:
   void Print(const std::string& line);

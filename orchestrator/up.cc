@@ -92,6 +92,7 @@ int Up(UpArgs& args) {
   RunWriter writer(experiment, folder, WithoutDomain(resolved, experiment));
   EngineResult result = args.engine == "dds" ? RunOverDds(experiment, resolved, folder, writer, console, stop)
                                              : RunInThisProcess(experiment, writer, console, stop);
+  console.EndProgress();
   try {
     writer.Close();
   } catch (const std::exception& failure) {
