@@ -1,20 +1,16 @@
 #include "orchestrator/dds_engine.h"
 
 #include <signal.h>
-#include <spdlog/sinks/basic_file_sink.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
-#include <map>
-#include <mutex>
 #include <optional>
 
 #include "idl/bus.h"
 #include "idl/shared_memory.h"
-#include "idl/wire.h"
 #include "orchestrator/domain_lock.h"
+#include "orchestrator/hub.h"
 #include "orchestrator/process.h"
 #include "orchestrator/progress.h"
 #include "orchestrator/recorder.h"
@@ -31,38 +27,6 @@ constexpr int kMostPeers = 20;
 /// How long an orderly end may take before it is made disorderly.
 constexpr auto kGrace = 5s;
 
-const char* Text(Life life) {
-  switch (life) {
-    case Life::kWaiting:
-      return "waits for the experiment";
-    case Life::kMatching:
-      return "looks for its peers";
-    case Life::kReady:
-      return "is ready";
-    case Life::kRunning:
-      return "runs";
-    case Life::kDone:
-      return "is done";
-    case Life::kFailed:
-      return "has failed";
-  }
-  return "says something unknown";
-}
-
-const char* Text(Ask ask) {
-  switch (ask) {
-    case Ask::kReport:
-      return "report";
-    case Ask::kStop:
-      return "stop";
-    case Ask::kEnd:
-      return "end";
-  }
-  return "unknown";
-}
-
-std::string NameOf(int agent) { return "agent_" + std::to_string(agent); }
-
 /// One run, from the domain's lock to the last process gone.
 class DdsRun {
  public:
@@ -78,7 +42,6 @@ class DdsRun {
   void Loop();
   void HandleSignal(int signal);
   void CheckChildren();
-  void HandOutExperiment();
   void SayReady();
   void Record();
   void CheckWire();
@@ -86,10 +49,6 @@ class DdsRun {
   void ShowProgress();
   void End();
   void Fail(const std::string& why);
-  void Ask(mascot::Ask ask, const std::string& reason);
-  void OnStatus(const mascot_msgs::msg::Status& status);
-  std::optional<mascot_msgs::msg::Status> StatusOf(const std::string& process) const;
-  std::string Unheard() const;
 
   const Experiment& experiment_;
   Console& console_;
@@ -99,26 +58,16 @@ class DdsRun {
   EngineResult result_;
   bool finished_ = false;
   Deadline stop_deadline_, drain_deadline_;
-  WallClock::time_point next_hello_ = launched_, next_hand_out_ = launched_;
   std::int64_t confirmed_ = 0;
-  bool ready_ = false;
 
   DomainLock lock_;
   const bool with_server_;
   ChildLogs logs_;
-  spdlog::logger log_;  // logs/orchestrator.log: what was said on /status, /request and /experiment
   Children children_;
   WireAudit audit_;
-  mutable std::mutex mutex_;  // guards statuses_ and experiment_wanted_
-  std::map<std::string, mascot_msgs::msg::Status> statuses_;
-  bool experiment_wanted_ = false;
   std::optional<Domain> discovery_server_;
   std::optional<Domain> domain_;
-  mascot_msgs::msg::Experiment experiment_message_;
-  std::optional<Writer<ExperimentType>> experiments_;
-  std::optional<Writer<RequestType>> requests_;
-  std::optional<Writer<StatusType>> status_writer_;
-  std::optional<Reader<StatusType>> status_reader_;
+  std::optional<Hub> hub_;
   std::optional<Recorder> recorder_;
   Progress progress_;
 };
@@ -133,23 +82,15 @@ DdsRun::DdsRun(const Experiment& experiment, const std::string& resolved, const 
       lock_(experiment.network.domain),
       with_server_(experiment.size() + 2 > kMostPeers),
       logs_(folder, console),
-      log_("orchestrator", std::make_shared<spdlog::sinks::basic_file_sink_mt>(folder.Log("orchestrator").string())),
       children_(logs_),
       progress_(experiment, writer, console) {
-  log_.flush_on(spdlog::level::info);
   SweepSharedMemory();  // of runs that were killed
   Spawn();
   auto wake = [this] { stop_.Wake(); };
   if (with_server_) discovery_server_.emplace(Options("discovery_server", DiscoveryRole::kServer), [] {});
   domain_.emplace(Options("orchestrator", with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake,
                   &audit_);
-  experiment_message_.name(experiment.run.name);
-  experiment_message_.toml(resolved);
-  experiments_.emplace(*domain_, Topic::Experiment());
-  requests_.emplace(*domain_, Topic::Request());
-  status_writer_.emplace(*domain_, Topic::Status());
-  status_reader_.emplace(*domain_, Topic::Status(),
-                         [this](const mascot_msgs::msg::Status& status) { OnStatus(status); });
+  hub_.emplace(*domain_, experiment, resolved, folder, wake);
   recorder_.emplace(*domain_, experiment, writer);
 }
 
@@ -184,7 +125,7 @@ void DdsRun::Spawn() {
     auto arguments = common;
     arguments.insert(arguments.end(), {"--id", std::to_string(agent.id)});
     if (!agent.external)
-      children_.Spawn(NameOf(agent.id), ProgramFolder() / "agent", arguments);
+      children_.Spawn(ProcessName(agent.id), ProgramFolder() / "agent", arguments);
     else
       console_.Line("waiting for: agent --id " + std::to_string(agent.id) + " --domain " +
                     std::to_string(options.domain) +
@@ -204,7 +145,7 @@ EngineResult DdsRun::Run() {
     result_.wall_s = recorder_->wall_s();
     result_.startup_s = std::chrono::duration<double>(recorder_->started() - launched_).count();
   }
-  if (const auto server = StatusOf("physics_server")) {
+  if (const auto server = hub_->StatusOf("physics_server")) {
     result_.collisions = static_cast<std::int64_t>(server->collisions());
     result_.misses = server->misses();
   }
@@ -217,7 +158,7 @@ void DdsRun::Loop() {
     HandleSignal(stop_.Within(50ms));
     domain_->RethrowFailure();
     CheckChildren();
-    HandOutExperiment();
+    hub_->HandOutExperiment();
     CheckWire();
     SayReady();
     Record();
@@ -235,7 +176,7 @@ void DdsRun::HandleSignal(int signal) {
   }
   result_.signal = signal;
   console_.Line("stopping (once more to kill)");
-  Ask(Ask::kStop, strsignal(signal));
+  hub_->Ask(Ask::kStop, strsignal(signal));
   stop_deadline_ = WallClock::now() + kGrace;
   if (recorder_->newest_tick() < 0) finished_ = true;  // nothing flies yet
 }
@@ -254,46 +195,22 @@ void DdsRun::Fail(const std::string& why) {
   finished_ = true;
 }
 
-void DdsRun::HandOutExperiment() {
-  // Everybody hears it each time: not once for each of a hundred agents that ask at once.
-  if (WallClock::now() < next_hand_out_) return;
-  {
-    const std::lock_guard lock(mutex_);
-    if (!std::exchange(experiment_wanted_, false)) return;
-  }
-  experiments_->Write(experiment_message_);
-  next_hand_out_ = WallClock::now() + 100ms;
-  log_.info("experiment '{}' handed out", experiment_message_.name());
-}
-
 void DdsRun::CheckWire() {
   if (const std::string violation = audit_.Violation(experiment_.graph); !violation.empty())
     Fail("the wire differs from the graph: " + violation);
 }
 
 void DdsRun::SayReady() {
-  if (recorder_->newest_tick() >= 0 || WallClock::now() < next_hello_) return;
-  if (!recorder_->Matched() || !audit_.IsComplete(experiment_.graph)) return;
-  next_hello_ = WallClock::now() + 200ms;
-  mascot_msgs::msg::Status status;
-  status.process("recorder");
-  status.state(static_cast<std::uint8_t>(Life::kReady));
-  status_writer_->Write(status);
+  if (recorder_->newest_tick() < 0 && recorder_->Matched() && audit_.IsComplete(experiment_.graph)) hub_->SayReady();
 }
 
 void DdsRun::Record() {
-  const auto server = StatusOf("physics_server");
+  const auto server = hub_->StatusOf("physics_server");
   const bool done = server && static_cast<Life>(server->state()) == Life::kDone;
   const bool give_up = drain_deadline_ && WallClock::now() > *drain_deadline_;
   const std::int64_t rows = recorder_->Drain(give_up);
-  if (rows > confirmed_) {
-    mascot_msgs::msg::Status status;
-    status.process("recorder");
-    status.state(static_cast<std::uint8_t>(Life::kRunning));
-    status.tick(static_cast<std::uint64_t>(rows));
-    status_writer_->Write(status);
-    confirmed_ = rows;
-  }
+  if (rows > confirmed_) hub_->Confirm(rows);
+  confirmed_ = rows;
   if (!done) return;
   if (rows == static_cast<std::int64_t>(server->tick()) + 1)
     finished_ = true;
@@ -309,17 +226,7 @@ void DdsRun::CheckDeadlines() {
   const auto start_limit = std::chrono::duration<double>(experiment_.run.start_timeout_s) + kGrace;
   if (recorder_->newest_tick() < 0 && WallClock::now() - launched_ > start_limit)
     Fail("not started within run.start_timeout_s = " + ShortestFloat(experiment_.run.start_timeout_s) +
-         " s: " + Unheard());
-}
-
-std::string DdsRun::Unheard() const {
-  std::string names;
-  auto check = [&](const std::string& process) {
-    if (!StatusOf(process)) names += (names.empty() ? "nothing was heard of " : ", ") + process;
-  };
-  check("physics_server");
-  for (const AgentConfig& agent : experiment_.agents) check(NameOf(agent.id));
-  return names.empty() ? "not everybody has found everybody" : names;
+         " s: " + hub_->Unheard());
 }
 
 void DdsRun::ShowProgress() {
@@ -328,55 +235,20 @@ void DdsRun::ShowProgress() {
 
 void DdsRun::End() {
   if (result_.failure.empty() && result_.signal == 0) {
-    Ask(Ask::kEnd, "done");
+    hub_->Ask(Ask::kEnd, "done");
     children_.WaitAll(kGrace);
   } else {
-    Ask(Ask::kEnd, result_.failure.substr(0, 1000));
+    hub_->Ask(Ask::kEnd, result_.failure.substr(0, 1000));
   }
   children_.Stop(2s);
   // Those started by hand are not ours to reap, only to be told.
-  for (const auto deadline = WallClock::now() + 2s;
-       external_ && requests_->matched() > 0 && WallClock::now() < deadline;)
+  for (const auto deadline = WallClock::now() + 2s; external_ && hub_->listeners() > 0 && WallClock::now() < deadline;)
     stop_.Within(20ms);
   recorder_.reset();
-  status_reader_.reset();
-  status_writer_.reset();
-  requests_.reset();
-  experiments_.reset();
+  hub_.reset();
   domain_.reset();
   discovery_server_.reset();
   SweepSharedMemory();
-}
-
-void DdsRun::Ask(mascot::Ask ask, const std::string& reason) {
-  mascot_msgs::msg::Request request;
-  request.kind(static_cast<std::uint8_t>(ask));
-  request.reason(reason);
-  requests_->Write(request);
-  log_.info("request: {} ({})", Text(ask), reason);
-}
-
-void DdsRun::OnStatus(const mascot_msgs::msg::Status& status) {
-  const auto life = static_cast<Life>(status.state());
-  const std::lock_guard lock(mutex_);
-  auto& known = statuses_[status.process().to_string()];
-  if (known.process().size() == 0 || known.state() != status.state())
-    log_.info("{} {}, tick {} {}", status.process().to_string(), Text(life), status.tick(),
-              status.reason().to_string());
-  known = status;
-  experiment_wanted_ |= life == Life::kWaiting;
-  const bool external = status.agent() >= 1 && status.agent() <= experiment_.agents.size() &&
-                        experiment_.agent(static_cast<int>(status.agent())).external;
-  if (life == Life::kFailed && external)
-    throw std::runtime_error(status.process().to_string() + " failed: " + status.reason().to_string());
-  if (life == Life::kWaiting || life == Life::kDone) stop_.Wake();
-}
-
-std::optional<mascot_msgs::msg::Status> DdsRun::StatusOf(const std::string& process) const {
-  const std::lock_guard lock(mutex_);
-  const auto found = statuses_.find(process);
-  if (found == statuses_.end()) return std::nullopt;
-  return found->second;
 }
 
 }  // namespace
