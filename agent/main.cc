@@ -4,6 +4,7 @@
 #include "agent/laws.h"
 #include "agent/node.h"
 #include "idl/process_main.h"
+#include "idl/standard_streams.h"
 
 namespace {
 
@@ -23,7 +24,8 @@ void RunAgent(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot
 }  // namespace
 
 int main(int argc, char** argv) {
-  mascot::StopSignal stop;  // first: threads that libraries start must inherit the blocked mask
+  mascot::OpenStandardStreams();
+  mascot::StopSignal stop;  // before all else: threads that libraries start must inherit the blocked mask
   CLI::App app("MASCOT agent: hears its neighbours, runs its law and its low-level stack, commands its actuators.");
   mascot::ProcessArgs args(/*agent_process=*/true);
   return mascot::ProcessMain(app, argc, argv, args, stop, [&args](auto& domain, auto& lifecycle, const auto& message) {

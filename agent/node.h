@@ -35,7 +35,7 @@ class Node {
   const Experiment& experiment_;
   const int id_;
 
-  std::mutex mutex_;  // guards all below but the endpoints: samples may come by two transports at once
+  std::mutex mutex_;  // guards all below but the endpoints: different readers may be served at once
   Agent agent_;
   Latest self_;
   std::vector<Latest> neighbours_;  // in the order of graph.HeardBy(id)

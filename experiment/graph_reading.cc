@@ -125,7 +125,8 @@ Graph ReadGraph(Section& graph, int count, std::uint64_t seed) {
   if (last == "adjacency") return Graph(FromAdjacency(graph, count));
   if (last == "edges") return Graph(FromEdges(graph, count));
   if (last == "random") return FromRandom(graph, count, seed);
-  return MakeTopology(graph.OneOf("topology", TopologyNames(), "complete"), count);
+  const std::string topology = graph.OneOf("topology", TopologyNames(), "complete");
+  return count > 0 ? MakeTopology(topology, count) : Graph(Heard{});  // 0: the count is wrong, and that is noted
 }
 
 }  // namespace mascot

@@ -13,7 +13,6 @@ Lifecycle::Lifecycle(Domain& domain, StopSignal& stop, std::string process, int 
     : stop_(stop),
       domain_(domain),
       status_writer_(domain, Topic::Status()),
-      request_writer_(domain, Topic::Request()),
       experiment_reader_(domain, Topic::Experiment(),
                          [this](const mascot_msgs::msg::Experiment& experiment) {
                            const std::lock_guard lock(mutex_);
@@ -73,12 +72,6 @@ void Lifecycle::Wait(std::chrono::nanoseconds timeout) {
     joined_ = true;
   else if (joined_)
     throw std::runtime_error("the orchestrator has gone");
-}
-
-void Lifecycle::AskForReports() {
-  mascot_msgs::msg::Request request;
-  request.kind(static_cast<std::uint8_t>(Ask::kReport));
-  request_writer_.Write(request);
 }
 
 void Lifecycle::OnRequest(const mascot_msgs::msg::Request& request) {

@@ -41,8 +41,6 @@ class Lifecycle {
   void Wait(std::chrono::nanoseconds timeout);
   /// Ends a Wait of the loop's thread. Any thread.
   void Wake() { stop_.Wake(); }
-  /// Asks everybody to report again.
-  void AskForReports();
   /// A STOP was requested.
   bool stop_requested() const { return stop_requested_; }
 
@@ -60,7 +58,6 @@ class Lifecycle {
   std::atomic<bool> report_requested_ = false;
   bool joined_ = false;  // the orchestrator was here once
   Writer<StatusType> status_writer_;
-  Writer<RequestType> request_writer_;
   Reader<ExperimentType> experiment_reader_;
   Reader<RequestType> request_reader_;
 };

@@ -4,9 +4,10 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <stdexcept>
 #include <csignal>
 #include <iostream>
+#include <stdexcept>
+#include <string_view>
 
 #include "idl/shared_memory.h"
 
@@ -14,6 +15,8 @@ namespace mascot {
 namespace {
 
 using Run = std::function<void(Domain&, Lifecycle&, const mascot_msgs::msg::Experiment&)>;
+
+constexpr const char* kSweep = "--sweep-shared-memory";
 
 /// Joins, runs, and reports a failure to the run before it leaves. Returns the exit code.
 int Join(const ProcessArgs& args, StopSignal& stop, const Run& run) {
@@ -31,6 +34,10 @@ int Join(const ProcessArgs& args, StopSignal& stop, const Run& run) {
   }
 }
 
+/// An orchestrator that was killed cannot remove its own shared memory any more: its children do. Fast DDS still
+/// maps what they have read of it, so each starts afresh first, or two would each take the other for a user of it.
+void SweepAfterParent() { execl("/proc/self/exe", "sweep", kSweep, nullptr); }
+
 }  // namespace
 
 void ProcessArgs::AddTo(CLI::App& app) {
@@ -43,11 +50,15 @@ void ProcessArgs::AddTo(CLI::App& app) {
   app.add_option("--wait-s", wait_s, "How long to wait for an orchestrator")->check(CLI::Range(1, 86400));
   app.add_flag("--loopback", options.loopback, "Use only 127.0.0.1: everything runs on this host");
   app.add_option("--participants", options.participants, "How many processes this one talks to, about; sizes buffers")
-      ->check(CLI::Range(1, 10001));
+      ->check(CLI::Range(1, 20000));
   app.add_option("--parent", parent, "Process id of the orchestrator that spawned this process: end when it dies");
 }
 
 int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSignal& stop, const Run& run) {
+  if (argc == 2 && std::string_view(argv[1]) == kSweep) {
+    SweepSharedMemory();
+    return 0;
+  }
   args.AddTo(app);
   try {
     app.parse(argc, argv);
@@ -70,8 +81,7 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
   } catch (const std::exception& failure) {
     std::cerr << "error: " << failure.what() << std::endl;
   }
-  // An orchestrator that was killed cannot remove its own shared memory any more.
-  if (args.parent != 0 && getppid() != args.parent) SweepSharedMemory();
+  if (args.parent != 0 && getppid() != args.parent) SweepAfterParent();
   return code;
 }
 

@@ -28,7 +28,7 @@ struct ProcessArgs {
 };
 
 /// What `main` of the physics server and of an agent have in common: parse, join the domain, await the
-/// experiment, `run` (which returns never: it ends by an exception), report a failure to the run, print it,
+/// experiment, `run` (which never returns: it ends by an exception), report a failure to the run, print it,
 /// clean up. Returns the exit code: 0 ended by the run, 1 failed, 2 usage, 130 / 143 by signal.
 int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSignal& stop,
                 const std::function<void(Domain&, Lifecycle&, const mascot_msgs::msg::Experiment&)>& run);

@@ -131,6 +131,12 @@ void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) 
     builtin.metatrafficUnicastLocatorList.push_back(locator);
     return;
   }
+  // Fast DDS 2.9 makes the means to send by shared memory when it first hears of a peer that has it, and aborts
+  // (an assertion of its statistics) if another thread is sending then. An initial peer makes them exist from the
+  // start; nobody listens there, and clients announce themselves to their server only.
+  Locator_t nobody(LOCATOR_KIND_SHM, 7400);
+  nobody.address[0] = 'U';
+  builtin.initialPeersList.push_back(nobody);
   const bool client = options.role == DiscoveryRole::kClient;
   builtin.discovery_config.discoveryProtocol = client ? DiscoveryProtocol::CLIENT : DiscoveryProtocol::SUPER_CLIENT;
   eprosima::fastdds::rtps::RemoteServerAttributes server;
@@ -161,7 +167,8 @@ dds::DomainParticipantQos ParticipantQos(const DomainOptions& options) {
   dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
   qos.name(options.name);
   qos.transport().use_builtin_transports = false;
-  if (row->shared_memory) qos.transport().user_transports.push_back(SharedMemory(options));
+  const bool server = options.role == DiscoveryRole::kServer;  // only tells who is there: has no use for shared memory
+  if (row->shared_memory && !server) qos.transport().user_transports.push_back(SharedMemory(options));
   if (row->udp || options.role != DiscoveryRole::kPeer) qos.transport().user_transports.push_back(Udp(options));
   SetDiscovery(qos, options);
   return qos;

@@ -65,10 +65,12 @@ std::set<std::string> MappedNames() {
   return names;
 }
 
+/// Owners hold X_el exclusively and X_sl shared: the weakest lock that still meets theirs, so that two who look at
+/// once do not take each other for the owner.
 bool IsLocked(const std::string& path) {
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return false;
-  const bool locked = flock(fd, LOCK_EX | LOCK_NB) != 0;
+  const bool locked = flock(fd, (path.ends_with("_sl") ? LOCK_EX : LOCK_SH) | LOCK_NB) != 0;
   close(fd);
   return locked;
 }

@@ -38,6 +38,7 @@ class DdsRun {
   using Deadline = std::optional<WallClock::time_point>;
 
   DomainOptions Options(const std::string& name, DiscoveryRole role) const;
+  void Join();
   void Spawn();
   void Loop();
   void HandleSignal(int signal);
@@ -47,6 +48,7 @@ class DdsRun {
   void CheckWire();
   void CheckDeadlines();
   void ShowProgress();
+  void Collect();
   void End();
   void Fail(const std::string& why);
 
@@ -60,8 +62,11 @@ class DdsRun {
   Deadline stop_deadline_, drain_deadline_;
   std::int64_t confirmed_ = 0;
 
-  DomainLock lock_;
   const bool with_server_;
+  const RunFolder& folder_;
+  RunWriter& writer_;
+  const std::string& resolved_;
+  std::optional<DomainLock> lock_;
   ChildLogs logs_;
   Children children_;
   WireAudit audit_;
@@ -79,31 +84,36 @@ DdsRun::DdsRun(const Experiment& experiment, const std::string& resolved, const 
       stop_(stop),
       external_(
           std::any_of(experiment.agents.begin(), experiment.agents.end(), [](const auto& a) { return a.external; })),
-      lock_(experiment.network.domain),
       with_server_(experiment.size() + 2 > kMostPeers),
+      folder_(folder),
+      writer_(writer),
+      resolved_(resolved),
       logs_(folder, console),
       children_(logs_),
-      progress_(experiment, writer, console) {
+      progress_(experiment, writer, console) {}
+
+void DdsRun::Join() {
+  lock_.emplace(experiment_.network.domain);
   SweepSharedMemory();  // of runs that were killed
   Spawn();
   auto wake = [this] { stop_.Wake(); };
   if (with_server_) discovery_server_.emplace(Options("discovery_server", DiscoveryRole::kServer), [] {});
   domain_.emplace(Options("orchestrator", with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake,
                   &audit_);
-  hub_.emplace(*domain_, experiment, resolved, folder, wake);
-  recorder_.emplace(*domain_, experiment, writer);
+  hub_.emplace(*domain_, experiment_, resolved_, folder_, wake);
+  recorder_.emplace(*domain_, experiment_, writer_);
 }
 
 DomainOptions DdsRun::Options(const std::string& name, DiscoveryRole role) const {
   DomainOptions options;
-  options.domain = lock_.domain();
+  options.domain = lock_->domain();
   options.transport = experiment_.network.transport;
   options.name = name;
   options.role = role;
   options.loopback = !external_;
   options.participants = experiment_.size() + 2;
   const std::string host = role == DiscoveryRole::kServer && external_ ? "0.0.0.0" : "127.0.0.1";
-  if (with_server_) options.server = host + ":" + std::to_string(lock_.discovery_port());
+  if (with_server_) options.server = host + ":" + std::to_string(lock_->discovery_port());
   return options;
 }
 
@@ -129,18 +139,31 @@ void DdsRun::Spawn() {
     else
       console_.Line("waiting for: agent --id " + std::to_string(agent.id) + " --domain " +
                     std::to_string(options.domain) +
-                    (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_.discovery_port()) : ""));
+                    (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_->discovery_port()) : ""));
   }
 }
 
 EngineResult DdsRun::Run() {
   try {
+    Join();
     Loop();
   } catch (const std::exception& failure) {
     Fail(failure.what());
   }
+  if (recorder_) Collect();
+  End();
+  return result_;
+}
+
+void DdsRun::Collect() {
+  try {
+    recorder_->Drain(/*give_up=*/true);
+  } catch (const std::exception& failure) {
+    Fail(failure.what());
+  }
   result_.lost = recorder_->lost();
-  result_.wire_matches_graph = audit_.IsComplete(experiment_.graph) && audit_.Violation(experiment_.graph).empty();
+  const bool violated = !audit_.Violation(experiment_.graph).empty();
+  if (violated || audit_.IsComplete(experiment_.graph)) result_.wire_matches_graph = !violated;
   if (recorder_->newest_tick() >= 0) {
     result_.wall_s = recorder_->wall_s();
     result_.startup_s = std::chrono::duration<double>(recorder_->started() - launched_).count();
@@ -149,8 +172,6 @@ EngineResult DdsRun::Run() {
     result_.collisions = static_cast<std::int64_t>(server->collisions());
     result_.misses = server->misses();
   }
-  End();
-  return result_;
 }
 
 void DdsRun::Loop() {
@@ -234,16 +255,13 @@ void DdsRun::ShowProgress() {
 }
 
 void DdsRun::End() {
-  if (result_.failure.empty() && result_.signal == 0) {
-    hub_->Ask(Ask::kEnd, "done");
-    children_.WaitAll(kGrace);
-  } else {
-    hub_->Ask(Ask::kEnd, result_.failure.substr(0, 1000));
-  }
+  const bool in_order = result_.failure.empty() && result_.signal == 0;
+  if (hub_) hub_->Ask(Ask::kEnd, in_order ? "done" : result_.failure.substr(0, 1000));
+  if (in_order) children_.WaitAll(kGrace);
   children_.Stop(2s);
   // Those started by hand are not ours to reap, only to be told.
-  for (const auto deadline = WallClock::now() + 2s; external_ && hub_->listeners() > 0 && WallClock::now() < deadline;)
-    stop_.Within(20ms);
+  const auto deadline = WallClock::now() + 2s;
+  while (external_ && hub_ && hub_->listeners() > 0 && WallClock::now() < deadline) stop_.Within(20ms);
   recorder_.reset();
   hub_.reset();
   domain_.reset();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace mascot {
@@ -12,9 +13,9 @@ struct EngineResult {
   double wall_s = 0;     ///< from publishing tick 0 to the last command gathered
   double startup_s = 0;  ///< from the start to tick 0
   std::int64_t collisions = 0;
-  std::uint64_t misses = 0;  ///< realtime: commands that came too late for their tick
-  std::uint64_t lost = 0;    ///< samples that the recorder knows to have missed
-  bool wire_matches_graph = true;
+  std::uint64_t misses = 0;                ///< realtime: commands that came too late for their tick
+  std::uint64_t lost = 0;                  ///< samples that the recorder knows to have missed
+  std::optional<bool> wire_matches_graph;  ///< absent: ended before everybody was discovered
 };
 
 }  // namespace mascot

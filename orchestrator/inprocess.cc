@@ -71,6 +71,7 @@ class Team {
 EngineResult RunInProcess(Experiment& experiment, RunWriter& writer,
                           const std::function<bool(std::int64_t tick)>& go_on) {
   EngineResult result;
+  result.wire_matches_graph = true;  // there is none: what an agent hears is made from the graph
   const auto launched = WallClock::now();
   Team team(experiment);
   const auto start = WallClock::now();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiment/section.h"
+#include "idl/standard_streams.h"
 #include "orchestrator/verb.h"
 
 namespace mascot {
@@ -64,6 +65,8 @@ int Main(int argc, char** argv) {
 }  // namespace mascot
 
 int main(int argc, char** argv) try {
+  mascot::OpenStandardStreams();
+  std::signal(SIGCHLD, SIG_DFL);  // ignored, as some supervisors leave it, it would hide how children end
   std::signal(SIGPIPE, SIG_IGN);  // a closed terminal or pager must not cut a recording short
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like any other, with a text
   return mascot::Main(argc, argv);

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
@@ -30,8 +31,8 @@ fs::path PlotScript() {
   throw std::runtime_error("plot.py is missing: neither beside this program (../share/mascot) nor in its source tree");
 }
 
-/// Waits for a program that shares our terminal. Returns its exit code, or 128 + signal.
-int RunProgram(std::vector<std::string> words) {
+/// Runs a program that shares our terminal. Returns its exit code, or 128 + signal: its own, or one that `stop` heard.
+int RunProgram(std::vector<std::string> words, StopSignal& stop) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
@@ -45,9 +46,14 @@ int RunProgram(std::vector<std::string> words) {
   const int error = posix_spawn(&pid, argv[0], nullptr, &attributes, argv.data(), environ);
   posix_spawnattr_destroy(&attributes);
   if (error != 0) throw std::runtime_error("cannot start " + words[0] + ": " + std::strerror(error));
-  int status = 0;
-  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  int status = 0, heard = 0;
+  while (waitpid(pid, &status, WNOHANG) == 0) {
+    const int signal = stop.Within(std::chrono::milliseconds(100));
+    if (signal == 0 || signal == SIGCHLD) continue;
+    heard = signal;
+    kill(pid, SIGTERM);
   }
+  if (heard != 0) return 128 + heard;
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
@@ -58,11 +64,11 @@ struct PlotArgs {
 
 }  // namespace
 
-int PlotRun(const fs::path& folder, bool show) {
+int PlotRun(const fs::path& folder, bool show, StopSignal& stop) {
   // Debian's own Python, which has Debian's matplotlib; another may be first in PATH.
   std::vector<std::string> words{"/usr/bin/python3", PlotScript(), folder};
   if (show) words.push_back("--show");
-  return RunProgram(words);
+  return RunProgram(words, stop);
 }
 
 std::function<int()> SetUpPlot(CLI::App& command) {
@@ -71,7 +77,8 @@ std::function<int()> SetUpPlot(CLI::App& command) {
   command.add_flag("--show", args->show, "open windows too");
   return [args] {
     if (!fs::is_directory(args->run)) throw ConfigError({args->run + ": expected a run folder"});
-    return PlotRun(args->run, args->show);
+    StopSignal stop;
+    return PlotRun(args->run, args->show, stop);
   };
 }
 

@@ -66,6 +66,8 @@ int ChildLogs::Open(const std::string& process) {
   stream->process = process;
   stream->descriptor = ends[0];
   stream->file.open(folder_.Log(process), std::ios::binary);
+  if (!stream->file)
+    throw std::runtime_error("cannot write " + folder_.Log(process).string() + ": " + std::strerror(errno));
   {
     const std::lock_guard lock(mutex_);
     streams_.push_back(std::move(stream));
@@ -117,7 +119,7 @@ void ChildLogs::TakeLine(Stream& stream, const std::string& line) {
 }
 
 std::vector<std::string> ChildLogs::LastLines(const std::string& process) {
-  for (const auto deadline = WallClock::now() + kPipeIsDry;; std::this_thread::yield()) {
+  for (const auto deadline = WallClock::now() + kPipeIsDry;; poll(nullptr, 0, 1)) {
     const std::lock_guard lock(mutex_);
     for (const auto& stream : streams_)
       if (stream->process == process && (stream->descriptor < 0 || WallClock::now() > deadline))
@@ -127,8 +129,6 @@ std::vector<std::string> ChildLogs::LastLines(const std::string& process) {
 }
 
 // --- children -------------------------------------------------------------------------------------------
-
-bool Exit::Failed() const { return !WIFEXITED(status) || WEXITSTATUS(status) != 0; }
 
 std::string Exit::Text() const {
   if (WIFSIGNALED(status))
@@ -173,7 +173,7 @@ std::vector<Exit> Children::Reap() {
   std::vector<Exit> exits;
   for (auto child = running_.begin(); child != running_.end();) {
     int status = 0;
-    if (waitpid(child->first, &status, WNOHANG) == child->first) {
+    if (const pid_t gone = waitpid(child->first, &status, WNOHANG); gone != 0) {  // < 0: somebody else reaped it
       exits.push_back({child->second, status});
       child = running_.erase(child);
     } else {

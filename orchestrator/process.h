@@ -51,7 +51,6 @@ class ChildLogs {
 struct Exit {
   std::string process;
   int status = 0;  ///< of waitpid
-  bool Failed() const;
   /// "exited with code 3", "was killed by signal 11 (Segmentation fault)"
   std::string Text() const;
 };
@@ -69,7 +68,6 @@ class Children {
   void Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments);
   /// Children that have ended since the last call.
   std::vector<Exit> Reap();
-  bool Empty() const { return running_.empty(); }
   /// Waits until all have ended, at most `grace`. Returns whether they have.
   bool WaitAll(std::chrono::milliseconds grace);
   /// SIGTERM, and SIGKILL to what is left after `grace`. Reaps all. Twice is not an error.

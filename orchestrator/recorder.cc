@@ -103,9 +103,9 @@ void Recorder::OnSample(const Topic& topic, const RawReader::Bytes& bytes, std::
   if (topic.kind != TopicKind::kCommand) ++slot.states;
   if (newest_ < 0) started_ = WallClock::now();
   newest_ = std::max(newest_, tick);
-  if (slot.samples < std::ssize(sequences_)) return;
-  last_command_ = WallClock::now();
-  if (++complete_ >= kBatch || tick == experiment_.ticks()) domain_.Wake();
+  if (topic.kind == TopicKind::kCommand) last_command_ = WallClock::now();
+  if (slot.samples == std::ssize(sequences_)) ++complete_;
+  if (complete_ >= kBatch || tick == experiment_.ticks() || newest_ - written_ == kPatience) domain_.Wake();
 }
 
 bool Recorder::IsReady(const Slot& slot, bool give_up) const {
@@ -139,7 +139,7 @@ std::uint64_t Recorder::lost() const {
 
 double Recorder::wall_s() const {
   const std::lock_guard lock(mutex_);
-  return std::chrono::duration<double>(last_command_ - started_).count();
+  return std::max(0.0, std::chrono::duration<double>(last_command_ - started_).count());
 }
 
 std::chrono::steady_clock::time_point Recorder::started() const {

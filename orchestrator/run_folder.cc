@@ -1,5 +1,6 @@
 #include "orchestrator/run_folder.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <ctime>
@@ -31,12 +32,15 @@ fs::path MakeNew(const fs::path& parent) {
       return path;
 }
 
+/// What runs write, but for a recording of another name: that is its owner's business.
+constexpr std::string_view kFiles[] = {
+    "logs",         "config.toml",  "summary.json",     "states.npz",       "run.mcap",     "paths.png",
+    "position.png", "velocity.png", "acceleration.png", "disagreement.png", "tracking.png", "error.png"};
+
 void RemoveEarlierRun(const fs::path& path) {
   for (const auto& entry : fs::directory_iterator(path)) {
     const fs::path name = entry.path().filename();
-    const bool ours = name == "logs" || name == "config.toml" || name == "summary.json" || name == "states.npz" ||
-                      name.extension() == ".mcap" || name.extension() == ".png";
-    if (ours) fs::remove_all(entry.path());
+    if (std::find(std::begin(kFiles), std::end(kFiles), name) != std::end(kFiles)) fs::remove_all(entry.path());
   }
 }
 

@@ -71,7 +71,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   json["exit"] = facts.exit;
   json["failure"] = engine.failure.empty() ? Json(nullptr) : Json(engine.failure);
   json["samples"] = {{"topics", writer.topics()}, {"recorded", writer.samples()}, {"lost", engine.lost}};
-  json["wire"] = {{"matches_graph", engine.wire_matches_graph}};
+  json["wire"] = {{"matches_graph", OrNull(engine.wire_matches_graph)}};
   json["graph"] = {{"edges", EdgesOf(experiment.graph)}};
   json["consensus"] = Consensus(measured, prediction);
   json["control"] = {{"effort", measured.effort_m2_per_s3}, {"saturated_fraction", measured.saturated_fraction}};
@@ -102,6 +102,9 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
   if (prediction.settling_time_s) text += Line("  predicted    %.2f s (slowest mode)", *prediction.settling_time_s);
   if (prediction.minmax_time_s) text += Line("  predicted    %.2f s (min-max, latest edge)", *prediction.minmax_time_s);
   text += Line("saturated      %.2g %% of commands", 100 * m.saturated_fraction);
+  if (experiment.run.mode == Mode::kRealtime)
+    text += Line("late           %llu commands came after their tick; the last one was held",
+                 static_cast<unsigned long long>(engine.misses));
   if (m.min_separation_m)
     text += Line("separation     %.3f m at least, %lld collisions", *m.min_separation_m,
                  static_cast<long long>(engine.collisions));

@@ -64,16 +64,22 @@ int ExitCode(const EngineResult& result) {
   return result.signal == 0 ? 0 : 128 + result.signal;
 }
 
-/// Pictures and data files as [output] wants them. Returns false if pictures were wanted and failed.
-bool MakeOutput(const Experiment& experiment, const RunFolder& folder, bool has_rows) {
+/// Pictures and data files as [output] wants them. Returns the exit code that this adds to a run that went well.
+int MakeOutput(const Experiment& experiment, const RunFolder& folder, bool has_rows, StopSignal& stop) {
   const auto& output = experiment.output;
-  bool ok = true;
+  int code = 0;
   if (has_rows && (output.save_plot || output.show_plot) && (output.position_plot || output.velocity_plot))
-    ok = PlotRun(folder.path(), output.show_plot) == 0;
+    code = PlotRun(folder.path(), output.show_plot, stop);
   if (!output.save_data) std::filesystem::remove(folder.File("states.npz"));
-  if (!ok)
-    std::cerr << "error: the pictures could not be made; the data are complete (output.save_plot = false skips them)\n";
-  return ok;
+  if (code == 0 || code > 128) return code;
+  std::cerr << "error: the pictures could not be made; the data are complete (output.save_plot = false skips them)\n";
+  return 1;
+}
+
+/// What flies in one thread has no clock to keep.
+void RefuseRealtimeInOneProcess(const Experiment& experiment, const std::string& engine) {
+  if (engine == "inprocess" && experiment.run.mode == Mode::kRealtime)
+    throw ConfigError({"--engine inprocess: expected run.mode = \"lockstep\", got \"realtime\""});
 }
 
 int Up(UpArgs& args) {
@@ -82,6 +88,7 @@ int Up(UpArgs& args) {
   if (args.duration_s) args.config.overrides.push_back({"run.duration_s", *args.duration_s});
   if (args.seed) args.config.overrides.push_back({"run.seed", *args.seed});
   Experiment experiment = args.config.Load();
+  RefuseRealtimeInOneProcess(experiment, args.engine);
   const Prediction prediction = Predict(experiment);
   const std::string resolved = experiment.document.Resolved();
 
@@ -106,13 +113,15 @@ int Up(UpArgs& args) {
     folder.Write("summary.json", SummaryJson(experiment, prediction, writer, result, facts));
   };
   write_summary();  // the pictures read it
-  if (!MakeOutput(experiment, folder, writer.rows() > 1) && facts.exit == 0) facts.exit = 1;
+  const int output = MakeOutput(experiment, folder, writer.rows() > 1, stop);
+  if (facts.exit == 0) facts.exit = output;
   write_summary();
   if (args.json)
     std::cout << SummaryJson(experiment, prediction, writer, result, facts);
   else if (!args.quiet)
     std::cout << SummaryText(experiment, prediction, writer, result) << "results        " << folder.path().string()
               << std::endl;
+  if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
   return facts.exit;
 }
 
@@ -126,7 +135,7 @@ std::function<int()> SetUpUp(CLI::App& command) {
       ->check(CLI::IsMember({"dds", "inprocess"}));
   command.add_option("--duration-s", args->duration_s, "instead of run.duration_s")->type_name("S");
   command.add_option("--seed", args->seed, "instead of run.seed")->type_name("N");
-  command.add_flag("--force", args->force, "write into a folder that is not empty");
+  command.add_flag("--force", args->force, "write into a folder that is not empty; an earlier run's files are removed");
   command.add_flag("--json", args->json, "print the summary as JSON on stdout, and nothing else");
   command.add_flag("--quiet", args->quiet, "print errors only");
   return [args] { return Up(*args); };

@@ -107,8 +107,9 @@ std::string WireAudit::ViolationOf(const Guid& guid, const Endpoint& endpoint, c
   const std::string owner = OwnerOf(guid);
   const std::string what = owner + (endpoint.reads ? " reads " : " writes ") + topic->Name();
   if (const auto id = AgentOf(owner)) {
-    if (*id < 1 || *id > graph.size()) return what + ", but there are only agents 1 to " + std::to_string(graph.size());
-    if (!MayHave(graph, *id, *topic, endpoint.reads)) return what + ", which the graph does not let it";
+    const bool known = *id >= 1 && *id <= graph.size();
+    if (!known && topic->agent > 0) return what + ", but there are only agents 1 to " + std::to_string(graph.size());
+    if (known && !MayHave(graph, *id, *topic, endpoint.reads)) return what + ", which the graph does not let it";
   }
   if (const std::string rightful = RightfulWriter(*topic); !endpoint.reads && !rightful.empty() && owner != rightful)
     return "'" + owner + "' writes " + topic->Name() + ", which only " + rightful + " may";
@@ -121,8 +122,8 @@ std::string WireAudit::Violation(const Graph& graph) const {
   for (const auto& [guid, endpoint] : endpoints_) {
     if (std::string violation = ViolationOf(guid, endpoint, graph); !violation.empty()) return violation;
     const auto topic = Topic::Parse(endpoint.topic);
-    if (topic && !endpoint.reads && topic->kind == TopicKind::kCommand &&
-        !writers.emplace(OwnerOf(guid), endpoint.topic).second)
+    const bool exclusive = topic && !endpoint.reads && !RightfulWriter(*topic).empty();
+    if (exclusive && !writers.emplace(OwnerOf(guid), endpoint.topic).second)
       return "two processes say that they are " + OwnerOf(guid);
   }
   return {};

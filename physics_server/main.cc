@@ -2,6 +2,7 @@
 
 #include "agent/laws.h"
 #include "idl/process_main.h"
+#include "idl/standard_streams.h"
 #include "physics_server/server.h"
 
 namespace {
@@ -18,7 +19,8 @@ void RunServer(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const masco
 }  // namespace
 
 int main(int argc, char** argv) {
-  mascot::StopSignal stop;  // first: threads that libraries start must inherit the blocked mask
+  mascot::OpenStandardStreams();
+  mascot::StopSignal stop;  // before all else: threads that libraries start must inherit the blocked mask
   CLI::App app("MASCOT physics server: publishes every agent's state, gathers every command, steps the world.");
   mascot::ProcessArgs args(/*agent_process=*/false);
   return mascot::ProcessMain(app, argc, argv, args, stop, RunServer);

@@ -1,5 +1,6 @@
 #include "physics_server/server.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -35,6 +36,7 @@ Server::Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experimen
       command_tick_(static_cast<std::size_t>(experiment.size()), -1),
       ready_(static_cast<std::size_t>(experiment.size()), false),
       clock_(domain, Topic::Clock()),
+      requests_(domain, Topic::Request()),
       status_reader_(domain, Topic::Status(), [this](const mascot_msgs::msg::Status& status) { OnStatus(status); }) {
   for (int id = 1; id <= experiment.size(); ++id) {
     states_.push_back(std::make_unique<Writer<StateType>>(domain, Topic::State(id)));
@@ -46,9 +48,19 @@ Server::Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experimen
 
 void Server::Run() {
   AwaitEveryone();
-  realtime_ ? RunRealtime() : RunLockstep();
+  try {
+    realtime_ ? RunRealtime() : RunLockstep();
+  } catch (...) {
+    Report();
+    throw;
+  }
+  Report();
+}
+
+void Server::Report() {
   const std::lock_guard lock(mutex_);
-  lifecycle_.Report(static_cast<std::uint64_t>(published_), misses_, static_cast<std::uint64_t>(world_.collisions()));
+  lifecycle_.Report(static_cast<std::uint64_t>(std::max<std::int64_t>(published_, 0)), misses_,
+                    static_cast<std::uint64_t>(world_.collisions()));
 }
 
 // --- start ----------------------------------------------------------------------------------------------
@@ -59,12 +71,12 @@ void Server::AwaitEveryone() {
   lifecycle_.Set(Life::kMatching);
   while (WallClock::now() < deadline) {
     lifecycle_.Wait(50ms);
-    {
+    if (Matched()) {  // asked before the lock: it takes those of the readers
       const std::lock_guard lock(mutex_);
-      if (Matched() && Missing().empty()) return;
+      if (Missing().empty()) return;
     }
     if (WallClock::now() < ask_again) continue;
-    lifecycle_.AskForReports();
+    AskForReports();
     ask_again = WallClock::now() + 250ms;
   }
   const std::lock_guard lock(mutex_);
@@ -72,6 +84,12 @@ void Server::AwaitEveryone() {
   throw std::runtime_error(
       "not ready within run.start_timeout_s = " + Shortest(experiment_.run.start_timeout_s) + ": " +
       (missing.empty() ? "the wire (readers or writers that have not found each other)" : missing));
+}
+
+void Server::AskForReports() {
+  mascot_msgs::msg::Request request;
+  request.kind(static_cast<std::uint8_t>(Ask::kReport));
+  requests_.Write(request);
 }
 
 bool Server::Matched() const {
@@ -176,8 +194,7 @@ void Server::WatchProgress() {
       seen = tick;
       deadline = WallClock::now() + limit;
     } else if (WallClock::now() > deadline && !done_) {
-      throw std::runtime_error("tick " + std::to_string(seen) + ": " + Late() +
-                               " within run.agent_timeout_s = " + Shortest(experiment_.run.agent_timeout_s));
+      throw Overdue(seen);
     }
   }
 }
@@ -194,17 +211,38 @@ void Server::RunRealtime() {
   const double period_s = experiment_.period_s() / experiment_.run.speed;
   auto start = WallClock::now();
   for (std::int64_t tick = 0; tick < last_tick_ && !lifecycle_.stop_requested(); ++tick) {
+    AwaitRecorder(tick);
     const auto due = start + Seconds(static_cast<double>(tick + 1) * period_s);
-    while (WallClock::now() < due || !Published(tick)) lifecycle_.Wait(Published(tick) ? due - WallClock::now() : 50ms);
+    while (WallClock::now() < due) lifecycle_.Wait(due - WallClock::now());
     // A machine that cannot keep up falls behind as a whole: hurrying after the clock would only leave the
     // agents still less time.
     if (const auto behind = WallClock::now() - due; behind > Seconds(period_s)) start += behind;
     const std::lock_guard lock(mutex_);
     misses_ += barrier_.Late().size();
+    CheckForDeadAgents(period_s);
     world_.Step(commands_);
     PublishIfRecorded();
   }
   if (!lifecycle_.stop_requested()) WatchProgress();
+}
+
+void Server::AwaitRecorder(std::int64_t tick) {
+  const auto deadline = WallClock::now() + Seconds(experiment_.run.agent_timeout_s);
+  while (!Published(tick) && !lifecycle_.stop_requested()) {
+    lifecycle_.Wait(50ms);
+    if (WallClock::now() > deadline) throw Overdue(tick);
+  }
+}
+
+void Server::CheckForDeadAgents(double period_s) const {
+  for (const std::int64_t answered : command_tick_)
+    if (static_cast<double>(published_ - answered) * period_s > experiment_.run.agent_timeout_s)
+      throw Overdue(published_);
+}
+
+std::runtime_error Server::Overdue(std::int64_t tick) const {
+  return std::runtime_error("tick " + std::to_string(tick) + ": " + Late() +
+                            " within run.agent_timeout_s = " + Shortest(experiment_.run.agent_timeout_s));
 }
 
 bool Server::Published(std::int64_t tick) {

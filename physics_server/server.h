@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "experiment/experiment.h"
@@ -28,12 +30,18 @@ class Server {
 
  private:
   void AwaitEveryone();
+  /// So that whoever was not heard says it again.
+  void AskForReports();
   void Start();
   void RunLockstep();
   void RunRealtime();
+  bool Matched() const;
   /// Until Finish(); throws if nothing moves for run.agent_timeout_s.
   void WatchProgress();
   bool Published(std::int64_t tick);
+  /// Until tick is published; it waits for the recorder only.
+  void AwaitRecorder(std::int64_t tick);
+  void Report();
 
   void OnCommand(int id, const mascot_msgs::msg::AgentCommand& command);
   void OnStatus(const mascot_msgs::msg::Status& status);
@@ -42,9 +50,11 @@ class Server {
   void Publish();
   void Advance();
   void Finish();
-  bool Matched() const;
   std::string Missing() const;
   std::string Late() const;
+  /// Realtime, where commands are held: throws if one has been held for longer than run.agent_timeout_s.
+  void CheckForDeadAgents(double period_s) const;
+  std::runtime_error Overdue(std::int64_t tick) const;
 
   Lifecycle& lifecycle_;
   const Experiment& experiment_;
@@ -66,6 +76,7 @@ class Server {
 
   std::vector<std::unique_ptr<Writer<StateType>>> states_;
   Writer<ClockType> clock_;
+  Writer<RequestType> requests_;
   std::vector<std::unique_ptr<Reader<CommandType>>> command_readers_;
   Reader<StatusType> status_reader_;
 };

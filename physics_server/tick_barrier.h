@@ -14,8 +14,6 @@ class TickBarrier {
   /// Agent `id` answered `tick`. True if this was the last answer that the open tick waited for; an answer
   /// to another tick, or a second one, changes nothing.
   bool Answer(int id, std::int64_t tick);
-  bool Complete() const { return missing_ == 0; }
-  std::int64_t tick() const { return tick_; }
   /// Agents that have not answered the open tick, in increasing id.
   std::vector<int> Late() const;
 

@@ -152,6 +152,14 @@ TEST(Realtime, IsPacedByTheWallClock) {
   EXPECT_GE(half.Summary()["wall_s"].get<double>(), 1.98);
 }
 
+TEST(Realtime, IsRefusedInOneProcess) {
+  ScratchFolder folder;
+  Up up(folder, "run", Config("leaderless"), {"--engine", "inprocess", "--set", "run.mode=realtime"});
+  EXPECT_EQ(up.Wait(), 2);
+  EXPECT_EQ(up.err(), "error: --engine inprocess: expected run.mode = \"lockstep\", got \"realtime\"\n");
+  EXPECT_FALSE(std::filesystem::exists(up.path()));
+}
+
 TEST(Up, SaysWhatItRunsAndWhereTheResultsAre) {
   ScratchFolder folder;
   Up up(folder, "run", Config("leaderless"), {"--duration-s", "1"});

@@ -190,6 +190,50 @@ TEST(Faults, AnAgentWithANumberThatNobodyHasIsToldSo) {
                 {"--id", "9", "--loopback", "--domain", std::to_string(DomainOf(up))}, folder.File("ninth"));
   EXPECT_EQ(ninth.Wait(), 1);
   EXPECT_THAT(ninth.err(), HasSubstr("error: --id 9: the experiment has only agents 1 to 4"));
+  up.Signal(SIGINT);  // the others fly on
+  EXPECT_EQ(up.Wait(), 130) << up.err();
+}
+
+TEST(Faults, ASecondServerEndsTheRun) {
+  ScratchFolder folder;
+  Up up = Endless(folder);
+  ASSERT_TRUE(Flies(up));
+  Running twin(std::string(MASCOT_BINARY_DIR) + "/physics_server",
+               {"--loopback", "--domain", std::to_string(DomainOf(up))}, folder.File("twin"));
+  EXPECT_EQ(up.Wait(), 1);
+  EXPECT_THAT(up.err(), HasSubstr("two processes say that they are physics_server"));
+}
+
+TEST(Faults, AnAgentThatFallsSilentEndsARealtimeRunToo) {
+  ScratchFolder folder;
+  Up up = Endless(folder, {"--set", "run.mode=realtime", "--set", "run.agent_timeout_s=0.5"});
+  ASSERT_TRUE(Flies(up));
+  kill(up.Child("agent_2"), SIGSTOP);
+  EXPECT_EQ(up.Wait(), 1);
+  EXPECT_THAT(up.err(), HasSubstr(": no command from agent 2 within run.agent_timeout_s = 0.5 s"));
+  EXPECT_GT(up.Summary()["realtime"]["misses"], 10);
+  EXPECT_GT(up.Summary()["wall_s"].get<double>(), 0.0);
+}
+
+TEST(Faults, HowAProgramWasStartedDoesNotMatter) {
+  ScratchFolder folder;
+  const std::string up = "'" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") +
+                         " --duration-s 0.5 --set output.save_plot=false --out ";
+  // Ignored SIGCHLD, as some supervisors leave it; no standard streams, as daemons are started.
+  EXPECT_EQ(Shell("trap '' CHLD; " + up + folder.File("ignored")).exit_code, 0);
+  EXPECT_EQ(Shell("(" + up + folder.File("closed") + " 0<&- 1>&- 2>&-)").exit_code, 0);
+  EXPECT_TRUE(ReadMcap(folder.File("closed/run.mcap")).complete);
+  EXPECT_EQ(ReadFile(folder.File("closed/run.mcap")), ReadFile(folder.File("ignored/run.mcap")));
+}
+
+TEST(Faults, AnAgentProgramThatIsMissingIsNamed) {
+  ScratchFolder folder;
+  std::filesystem::copy(std::string(MASCOT_BINARY_DIR) + "/orchestrator", folder.File("orchestrator"));
+  const Ran run = Shell(folder.File("orchestrator") + " up " + Config("leaderless") + " --out " + folder.File("run"));
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.output,
+              HasSubstr("error: cannot start " + folder.File("physics_server") + ": No such file or directory"));
+  EXPECT_TRUE(std::filesystem::exists(folder.File("run/summary.json")));
 }
 
 TEST(Faults, AStrangerMayListenButNotFly) {
