@@ -28,6 +28,8 @@ void Node::Run() {
   lifecycle_.Set(Life::kMatching);
   while (!Matched()) lifecycle_.Wait(50ms);
   lifecycle_.Set(Life::kReady);
+  while (!flies_) lifecycle_.Wait(1s);
+  lifecycle_.Set(Life::kRunning);
   for (;;) lifecycle_.Wait(1s);
 }
 
@@ -57,6 +59,7 @@ void Node::Answer(std::int64_t tick) {
   answered_ = tick;
   ToWire(tick, experiment_.control.rate_hz, id_, command, command_);
   commands_.Write(command_);
+  if (!flies_.exchange(true)) lifecycle_.Wake();
 }
 
 }  // namespace mascot

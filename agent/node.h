@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -41,6 +42,7 @@ class Node {
   std::vector<Latest> neighbours_;  // in the order of graph.HeardBy(id)
   std::vector<Heard> heard_;        // the same, as the law sees them
   std::int64_t answered_ = -1;
+  std::atomic<bool> flies_ = false;  // has answered a tick
   mascot_msgs::msg::AgentCommand command_;
 
   Writer<CommandType> commands_;

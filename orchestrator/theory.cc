@@ -43,6 +43,13 @@ void PredictFirstCommand(Experiment& experiment, Prediction& prediction) {
       of, largest, limit));
 }
 
+void WarnOfShortRun(const Experiment& experiment, Prediction& prediction) {
+  for (const auto& time_s : {prediction.settling_time_s, prediction.minmax_time_s})
+    if (time_s && *time_s > experiment.run.duration_s)
+      prediction.warnings.push_back(fmt::format("run.duration_s: {:.4g} s end before what theory expects at {:.4g} s",
+                                                experiment.run.duration_s, *time_s));
+}
+
 }  // namespace
 
 Eigen::Vector3d AtHeldHeight(const Experiment& experiment, Eigen::Vector3d value_m) {
@@ -64,6 +71,7 @@ Prediction Predict(Experiment& experiment) {
   if (experiment.law.name == "waypoint") PredictWaypoint(experiment, prediction);
   if (experiment.law.name == "minmax") PredictMinmax(experiment, prediction);
   PredictFirstCommand(experiment, prediction);
+  WarnOfShortRun(experiment, prediction);
   for (std::string& warning : CrowdingWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
   return prediction;
 }

@@ -26,6 +26,12 @@ Airframe Read(const std::string& text) {
   return airframe;
 }
 
+}  // namespace
+
+void PrintTo(const Airframe& airframe, std::ostream* out) { *out << airframe.name; }  // in failures and test names
+
+namespace {
+
 class EveryAirframe : public ::testing::TestWithParam<Airframe> {};
 INSTANTIATE_TEST_SUITE_P(Airframes, EveryAirframe, ::testing::ValuesIn(Airframes().begin(), Airframes().end()),
                          [](const auto& param_info) { return param_info.param.name; });

@@ -85,6 +85,8 @@ struct Interruption {
   int exit;
 };
 
+void PrintTo(const Interruption& interruption, std::ostream* out) { *out << strsignal(interruption.signal); }
+
 class Interrupted : public testing::TestWithParam<Interruption> {};
 
 TEST_P(Interrupted, RunsEndInOrderWithACompleteRecording) {

@@ -154,6 +154,10 @@ struct Case {
   double z0_m, beta_c, beta_p;
 };
 
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.z0_m << " m, " << c.beta_c << " and " << c.beta_p << " m/s^2";
+}
+
 std::vector<std::string> TwoAgents(const Case& c, const std::string& model) {
   return {"agents.count=2", "graph.topology=path", "agents.model=" + model,
           "agents.position_m=[[0,0,1],[" + ShortestFloat(c.z0_m) + ",0,2]]",
@@ -217,6 +221,14 @@ TEST(Check, WarnsWhenTheFirstCommandWouldSaturate) {
 }
 
 // --- bad configurations ---------------------------------------------------------------------------------
+
+TEST(Check, WarnsWhenTheRunIsTooShort) {
+  const Ran run = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("leaderless") +
+                        " --set run.duration_s=10.0");
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.output,
+              testing::HasSubstr("warning: run.duration_s: 10 s end before what theory expects at 15.33 s"));
+}
 
 TEST(BadConfig, StartsNothingAndWritesNothing) {
   for (const auto& entry : std::filesystem::directory_iterator(MASCOT_SOURCE_DIR "/tests/bad_configs")) {

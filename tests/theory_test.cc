@@ -306,7 +306,7 @@ TEST(Theory, ForeseesThePublishedMinMaxRun) {
 
 TEST(Theory, WarnsOfBodiesThatWillTouch) {
   const auto agents = [](const std::string& positions, const std::string& rest) {
-    return "[run]\nduration_s = 1.0\n[agents]\ncount = 2\nmodel = 'double_integrator'\nposition_m = " + positions +
+    return "[run]\nduration_s = 40.0\n[agents]\ncount = 2\nmodel = 'double_integrator'\nposition_m = " + positions +
            "\n[control]\nmax_acceleration_m_per_s2 = 100.0\n" + rest;
   };
   EXPECT_THAT(Of(agents("[[0, 0, 0.05], [5, 0, 1]]", "")).warnings,
