@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <future>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -58,7 +59,7 @@ struct McapWriter::Impl {
   Record ChannelRecord(Bytes& out, std::uint16_t id);
   void Announce(std::uint16_t channel);
   void CloseChunk();
-  void WriteChunk();
+  void WriteClosed();
   void IndexChunk(std::uint64_t offset, std::uint64_t length, std::string_view compression, std::uint64_t stored_bytes);
   void WriteSummary();
   SummaryGroup Statistics();
@@ -71,6 +72,16 @@ struct McapWriter::Impl {
   std::vector<SchemaState> schemas;
   std::vector<ChannelState> channels;
 
+  /// A chunk that is full. It is compressed in a thread of its own while the next one fills, and written, by the
+  /// caller's thread, when that one is full or something else is to be written.
+  struct Closed {
+    Bytes raw;
+    std::uint64_t start_ns = 0;
+    std::uint64_t end_ns = 0;
+    std::vector<Bytes> index;  // by channel - 1
+    std::future<ByteSpan> compressed;
+  };
+  Closed full;
   Bytes chunk;  // the open chunk, uncompressed
   std::uint64_t chunk_messages = 0;
   std::uint64_t chunk_start_ns = 0;
@@ -90,7 +101,12 @@ McapWriter::McapWriter(const std::string& path) : impl_(std::make_unique<Impl>(p
   impl_->FlushRecord();
 }
 
-McapWriter::~McapWriter() = default;
+McapWriter::~McapWriter() {
+  try {
+    impl_->WriteClosed();
+  } catch (const std::exception&) {  // who did not Close() does not ask what became of the rest
+  }
+}
 
 std::uint16_t McapWriter::AddChannel(const Channel& channel) {
   assert(!impl_->closed);
@@ -132,6 +148,7 @@ void McapWriter::EndTick() {
 void McapWriter::Attach(const std::string& name, const std::string& media_type, std::string_view data) {
   Impl& m = *impl_;
   m.CloseChunk();
+  m.WriteClosed();
   const std::uint64_t offset = m.file.size();
   Record attachment(m.record, Op::kAttachment);
   attachment.U64(0).U64(0).String(name).String(media_type).U64(data.size()).Raw(AsBytes(data));
@@ -144,6 +161,7 @@ void McapWriter::Attach(const std::string& name, const std::string& media_type, 
 void McapWriter::Metadata(const std::string& name, const std::map<std::string, std::string>& entries) {
   Impl& m = *impl_;
   m.CloseChunk();
+  m.WriteClosed();
   const std::uint64_t offset = m.file.size();
   Record(m.record, Op::kMetadata).String(name).Map(entries).End();
   m.FlushRecord();
@@ -153,6 +171,7 @@ void McapWriter::Metadata(const std::string& name, const std::map<std::string, s
 void McapWriter::Close() {
   if (impl_->closed) return;
   impl_->CloseChunk();
+  impl_->WriteClosed();
   Record(impl_->record, Op::kDataEnd).U32(impl_->data_crc).End();
   impl_->FlushRecord();
   impl_->WriteSummary();
@@ -195,7 +214,13 @@ void McapWriter::Impl::Announce(std::uint16_t channel) {
 
 void McapWriter::Impl::CloseChunk() {
   if (chunk_messages == 0) return;  // readers take the times of an empty chunk for real
-  WriteChunk();
+  WriteClosed();                    // the one before
+  full.index.resize(channels.size());
+  for (std::size_t i = 0; i < channels.size(); ++i) full.index[i].swap(channels[i].index);
+  full.raw.swap(chunk);
+  full.start_ns = chunk_start_ns;
+  full.end_ns = chunk_end_ns;
+  full.compressed = std::async(std::launch::async, [this] { return compressor.Compress(full.raw); });
   start_ns = messages == 0 ? chunk_start_ns : std::min(start_ns, chunk_start_ns);
   end_ns = messages == 0 ? chunk_end_ns : std::max(end_ns, chunk_end_ns);
   messages += chunk_messages;
@@ -203,14 +228,15 @@ void McapWriter::Impl::CloseChunk() {
   chunk_messages = chunk_start_ns = chunk_end_ns = 0;
 }
 
-void McapWriter::Impl::WriteChunk() {
-  const ByteSpan compressed = compressor.Compress(chunk);
-  const ByteSpan stored = compressed.empty() ? ByteSpan(chunk) : compressed;
+void McapWriter::Impl::WriteClosed() {
+  if (!full.compressed.valid()) return;
+  const ByteSpan compressed = full.compressed.get();
+  const ByteSpan stored = compressed.empty() ? ByteSpan(full.raw) : compressed;
   const std::string_view compression = compressed.empty() ? "" : "zstd";
   const std::uint64_t offset = file.size();
   Record head(record, Op::kChunk);
-  head.U64(chunk_start_ns).U64(chunk_end_ns).U64(chunk.size());
-  head.U32(Crc32(0, chunk)).String(compression).U64(stored.size()).End(/*beyond=*/stored.size());
+  head.U64(full.start_ns).U64(full.end_ns).U64(full.raw.size());
+  head.U32(Crc32(0, full.raw)).String(compression).U64(stored.size()).End(/*beyond=*/stored.size());
   FlushRecord();
   WriteData(stored);
   IndexChunk(offset, file.size() - offset, compression, stored.size());
@@ -219,21 +245,21 @@ void McapWriter::Impl::WriteChunk() {
 /// The message index of each channel that occurs in the chunk, and the chunk's own index for the summary.
 void McapWriter::Impl::IndexChunk(std::uint64_t offset, std::uint64_t length, std::string_view compression,
                                   std::uint64_t stored_bytes) {
-  const auto occurs = [](const ChannelState& channel) { return !channel.index.empty(); };
-  const auto occurring = std::count_if(channels.begin(), channels.end(), occurs);
-  Record index = chunk_indexes.Add().U64(chunk_start_ns).U64(chunk_end_ns).U64(offset).U64(length);
+  const auto occurs = [](const Bytes& entries) { return !entries.empty(); };
+  const auto occurring = std::count_if(full.index.begin(), full.index.end(), occurs);
+  Record index = chunk_indexes.Add().U64(full.start_ns).U64(full.end_ns).U64(offset).U64(length);
   index.U32(static_cast<std::uint32_t>(occurring * 10));
   const std::uint64_t message_indexes = file.size();
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (!occurs(channels[i])) continue;
+  for (std::size_t i = 0; i < full.index.size(); ++i) {
+    if (!occurs(full.index[i])) continue;
     const auto id = static_cast<std::uint16_t>(i + 1);
     index.U16(id).U64(message_indexes + record.size());
-    Bytes& entries = channels[i].index;
+    Bytes& entries = full.index[i];
     Record(record, Op::kMessageIndex).U16(id).U32(static_cast<std::uint32_t>(entries.size())).Raw(entries).End();
     entries.clear();
   }
   FlushRecord();
-  index.U64(file.size() - message_indexes).String(compression).U64(stored_bytes).U64(chunk.size()).End();
+  index.U64(file.size() - message_indexes).String(compression).U64(stored_bytes).U64(full.raw.size()).End();
 }
 
 SummaryGroup McapWriter::Impl::Statistics() {
