@@ -217,6 +217,7 @@ void DdsRun::Fail(const std::string& why) {
 }
 
 void DdsRun::CheckWire() {
+  if (!audit_.HasNews()) return;
   if (const std::string violation = audit_.Violation(experiment_.graph); !violation.empty())
     Fail("the wire differs from the graph: " + violation);
 }

@@ -75,6 +75,7 @@ void WireAudit::on_participant_discovery(DomainParticipant*, rtps::ParticipantDi
   const std::lock_guard lock(mutex_);
   // Who has left keeps its name: its endpoints are still judged if their removal is heard later.
   participants_[info.info.m_guid.guidPrefix] = info.info.m_participantName.to_string();
+  news_ = true;
 }
 
 void WireAudit::on_subscriber_discovery(DomainParticipant* self, rtps::ReaderDiscoveryInfo&& info) {
@@ -94,6 +95,7 @@ void WireAudit::Note(DomainParticipant* self, const Guid& guid, Endpoint endpoin
     endpoints_.erase(guid);
   else
     endpoints_[guid] = std::move(endpoint);
+  news_ = true;
 }
 
 std::string WireAudit::OwnerOf(const Guid& endpoint) const {

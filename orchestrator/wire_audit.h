@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <map>
 #include <mutex>
@@ -15,6 +16,8 @@ namespace mascot {
 /// run was decentralised: made from what is on the wire, not from what our code means to do.
 class WireAudit : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
+  /// Something was discovered or has left since the last call.
+  bool HasNews() { return news_.exchange(false); }
   /// What is wrong: an agent that reads or writes what it must not, or somebody else who writes in its
   /// place. Empty if nothing is.
   std::string Violation(const Graph& graph) const;
@@ -39,6 +42,7 @@ class WireAudit : public eprosima::fastdds::dds::DomainParticipantListener {
   std::string OwnerOf(const Guid& endpoint) const;
   std::string ViolationOf(const Guid& guid, const Endpoint& endpoint, const Graph& graph) const;
 
+  std::atomic<bool> news_ = false;
   mutable std::mutex mutex_;
   std::map<GuidPrefix, std::string> participants_;
   std::map<Guid, Endpoint> endpoints_;

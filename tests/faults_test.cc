@@ -54,13 +54,19 @@ TEST(Faults, ADyingServerEndsTheRunByName) {
   EXPECT_TRUE(NothingIsLeft());
 }
 
+/// Agent 2 is named. Others may be, too: one that is stopped just when it holds a lock of shared memory, on the way
+/// into the server's queue, keeps those behind it from answering.
+auto NamesAgentTwo() {
+  return testing::ContainsRegex(": no command from agents? ([0-9]+, )*2(, [0-9]+)* within run.agent_timeout_s = 0.5 s");
+}
+
 TEST(Faults, ASilentAgentIsNamedAfterTheTimeout) {
   ScratchFolder folder;
   Up up = Endless(folder, {"--set", "run.agent_timeout_s=0.5"});
   ASSERT_TRUE(Flies(up));
   kill(up.Child("agent_2"), SIGSTOP);
   EXPECT_EQ(up.Wait(), 1);
-  EXPECT_THAT(up.err(), HasSubstr(": no command from agent 2 within run.agent_timeout_s = 0.5 s"));
+  EXPECT_THAT(up.err(), NamesAgentTwo());
   EXPECT_TRUE(NothingIsLeft());
 }
 
@@ -212,7 +218,7 @@ TEST(Faults, AnAgentThatFallsSilentEndsARealtimeRunToo) {
   ASSERT_TRUE(Flies(up));
   kill(up.Child("agent_2"), SIGSTOP);
   EXPECT_EQ(up.Wait(), 1);
-  EXPECT_THAT(up.err(), HasSubstr(": no command from agent 2 within run.agent_timeout_s = 0.5 s"));
+  EXPECT_THAT(up.err(), NamesAgentTwo());
   EXPECT_GT(up.Summary()["realtime"]["misses"], 10);
   EXPECT_GT(up.Summary()["wall_s"].get<double>(), 0.0);
 }
