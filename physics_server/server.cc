@@ -230,7 +230,9 @@ void Server::AwaitRecorder(std::int64_t tick) {
   const auto deadline = WallClock::now() + Seconds(experiment_.run.agent_timeout_s);
   while (!Published(tick) && !lifecycle_.stop_requested()) {
     lifecycle_.Wait(50ms);
-    if (WallClock::now() > deadline) throw Overdue(tick);
+    if (WallClock::now() < deadline) continue;
+    const std::lock_guard lock(mutex_);  // Overdue reads what callbacks write
+    throw Overdue(tick);
   }
 }
 
