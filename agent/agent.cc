@@ -17,35 +17,93 @@ std::string Component(double value) {
   return text.str();
 }
 
-[[noreturn]] void ThrowNotFinite(std::int64_t tick, int id, const Eigen::Vector3d& a_W) {
-  throw std::runtime_error("tick " + std::to_string(tick) + ": agent " + std::to_string(id) +
-                           ": the law's acceleration is not finite (" + Component(a_W.x()) + ", " + Component(a_W.y()) +
-                           ", " + Component(a_W.z()) + ")");
+[[noreturn]] void ThrowNotFinite(std::int64_t tick, int id, Wanted wanted, const Eigen::Vector3d& w) {
+  throw std::runtime_error("tick " + std::to_string(tick) + ": agent " + std::to_string(id) + ": the law's " +
+                           (wanted == Wanted::kVelocity ? "velocity" : "acceleration") + " is not finite (" +
+                           Component(w.x()) + ", " + Component(w.y()) + ", " + Component(w.z()) + ")");
 }
+
+Eigen::Vector3d Clamped(const Eigen::Vector3d& v, double limit) { return v.cwiseMin(limit).cwiseMax(-limit); }
 
 }  // namespace
 
 Agent::Agent(Experiment& experiment, int id)
-    : id_(id),
+    : config_(experiment.agent(id)),
+      id_(id),
       rate_hz_(experiment.control.rate_hz),
-      limit_(experiment.control.max_acceleration_m_per_s2),
-      hold_altitude_(experiment.law.axes == Axes::kXy),
+      holds_altitude_(config_.law.axes == Axes::kXy),
       law_(MakeLaw(experiment, id)),
-      controller_(MakeController(experiment, id)) {}
+      controller_(MakeController(experiment, id)),
+      driven_by_(DrivenBy(config_.model)),
+      neighbours_(experiment, id),
+      sensor_(experiment.sensors, experiment.control.rate_hz, experiment.run.seed, id),
+      v_integrated_W_(config_.v_W) {}
 
-Command Agent::Want(std::int64_t tick, const Motion& self, std::span<const Heard> heard) {
+Eigen::Vector3d Agent::AskLaw(std::int64_t tick, const Motion& measured, std::span<const Heard> heard) {
+  const double t_s = static_cast<double>(tick) / rate_hz_;
+  message_ = {};
+  if (!IsOn(config_, t_s)) {
+    wanted_ = Wanted::kVelocity;
+    return Eigen::Vector3d::Zero();
+  }
+  wanted_ = law_->wanted();
+  Eigen::Vector3d w_W = law_->Want_W(t_s, measured, heard);
+  if (holds_altitude_) w_W.z() = 0;
+  if (!w_W.allFinite()) ThrowNotFinite(tick, id_, wanted_, w_W);
+  if (config_.sends_messages) message_ = law_->Message();
+  return w_W;
+}
+
+// A wanted acceleration; one that drives a velocity is integrated over the tick.
+void Agent::LimitAcceleration(const Eigen::Vector3d& a_W, Command& command) const {
+  const double limit = config_.control.max_acceleration_m_per_s2;
+  command.a_law_W = a_W;
+  command.a_limited_W = Clamped(a_W, limit);
+  if (command.a_limited_W != a_W) command.flags |= kAccelerationLimited;
+}
+
+// A wanted velocity, and the acceleration that it means: over one tick for a model driven by velocity, else
+// k_v (v* - v).
+void Agent::LimitVelocity(const Eigen::Vector3d& v_W, Command& command) const {
+  command.v_limited_W = Clamped(v_W, config_.control.max_speed_m_per_s);
+  if (command.v_limited_W != v_W) command.flags |= kSpeedLimited;
+  const bool at_once = driven_by_ == Wanted::kVelocity;
+  const double gain = at_once ? rate_hz_ : config_.control.velocity_gain;
+  const auto accelerate = [&](const Eigen::Vector3d& to_W) {
+    Eigen::Vector3d a_W = gain * (to_W - measured_.v_WB);
+    if (holds_altitude_) a_W.z() = 0;
+    return a_W;
+  };
+  if (at_once) {
+    command.a_law_W = accelerate(v_W);
+    command.a_limited_W = accelerate(command.v_limited_W);
+  } else {
+    LimitAcceleration(accelerate(command.v_limited_W), command);
+  }
+}
+
+Command Agent::Want(std::int64_t tick, const Motion& self, std::span<const Sample> samples) {
+  const std::span<const Heard> heard = neighbours_.Hear(tick, self, samples);
+  measured_ = sensor_.Measure(tick, self);
+  const Eigen::Vector3d w_W = AskLaw(tick, measured_, heard);
   Command command;
-  command.a_law_W = law_->Accel_W(static_cast<double>(tick) / rate_hz_, self, heard);
-  if (hold_altitude_) command.a_law_W.z() = 0;
-  if (!command.a_law_W.allFinite()) ThrowNotFinite(tick, id_, command.a_law_W);
-  command.a_limited_W = command.a_law_W.cwiseMin(limit_).cwiseMax(-limit_);
-  if (command.a_limited_W != command.a_law_W) command.flags |= kAccelerationLimited;
+  if (wanted_ == Wanted::kVelocity) {
+    LimitVelocity(w_W, command);
+  } else {
+    LimitAcceleration(w_W, command);
+    if (driven_by_ != Wanted::kVelocity) return command;
+    const Eigen::Vector3d v_W = v_integrated_W_ + command.a_limited_W / rate_hz_;
+    command.v_limited_W = Clamped(v_W, config_.control.max_speed_m_per_s);
+    if (command.v_limited_W != v_W) command.flags |= kSpeedLimited;
+  }
+  v_integrated_W_ = command.v_limited_W;
   return command;
 }
 
-Command Agent::Decide(std::int64_t tick, const Motion& self, std::span<const Heard> heard) {
-  Command command = Want(tick, self, heard);
-  const Controller::Output output = controller_->Actuate(self, command.a_limited_W);
+Command Agent::Decide(std::int64_t tick, const Motion& self, std::span<const Sample> samples) {
+  Command command = Want(tick, self, samples);
+  const Controller::Output output =
+      controller_->Actuate(measured_, driven_by_ == Wanted::kVelocity ? command.v_limited_W : command.a_limited_W);
   command.actuator = output.actuator;
   command.flags |= output.flags;
   return command;

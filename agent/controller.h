@@ -2,12 +2,13 @@
 
 #include <memory>
 
+#include "agent/law.h"
 #include "experiment/experiment.h"
 #include "experiment/motion.h"
 
 namespace mascot {
 
-/// Low-level stack of one agent: wanted acceleration -> actuators of its model.
+/// Low-level stack of one agent: wanted acceleration or velocity -> actuators of its model.
 class Controller {
  public:
   struct Output {
@@ -15,11 +16,13 @@ class Controller {
     std::uint32_t flags = 0;  ///< kTiltLimited, kRotorLimited
   };
   virtual ~Controller() = default;
-  /// `a_W`: acceleration wanted in W, already limited (m/s^2). With law.axes = "xy" its z is ignored and
-  /// the altitude loop holds the initial height.
-  virtual Output Actuate(const Motion& self, const Eigen::Vector3d& a_W) = 0;
+  /// `wanted_W`: what the model is driven by (DrivenBy), already limited, in W (m/s^2 or m/s). With law.axes = "xy" its
+  /// z is ignored and the altitude loop holds the initial height.
+  virtual Output Actuate(const Motion& self, const Eigen::Vector3d& wanted_W) = 0;
 };
 
+/// What the stack of a model turns into actuator values.
+Wanted DrivenBy(const std::string& model);
 /// The stack for the model of agent `id`.
 std::unique_ptr<Controller> MakeController(const Experiment& experiment, int id);
 

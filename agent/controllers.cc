@@ -7,27 +7,36 @@
 namespace mascot {
 
 using ControllerFactory = std::unique_ptr<Controller>(const Experiment& experiment, int id);
-ControllerFactory MakeQuadrotorController, MakeDoubleIntegratorController;  // each in agent/controllers/<model>.cc
+ControllerFactory MakeQuadrotorController, MakeDoubleIntegratorController, MakeSingleIntegratorController,
+    MakeUnicycleController;  // each in agent/controllers/<model>.cc
 
 namespace {
 
 struct ControllerEntry {
   std::string_view model;
+  Wanted driven_by;
   ControllerFactory* make;
 };
 
 constexpr ControllerEntry kControllers[] = {
-    {"quadrotor", MakeQuadrotorController},
-    {"double_integrator", MakeDoubleIntegratorController},
+    {"quadrotor", Wanted::kAcceleration, MakeQuadrotorController},
+    {"double_integrator", Wanted::kAcceleration, MakeDoubleIntegratorController},
+    {"single_integrator", Wanted::kVelocity, MakeSingleIntegratorController},
+    {"unicycle", Wanted::kVelocity, MakeUnicycleController},
 };
+
+const ControllerEntry& Entry(const std::string& model) {
+  const ControllerEntry* entry = std::ranges::find(kControllers, model, &ControllerEntry::model);
+  if (entry == std::end(kControllers)) throw std::invalid_argument("no controller for the model: " + model);
+  return *entry;
+}
 
 }  // namespace
 
+Wanted DrivenBy(const std::string& model) { return Entry(model).driven_by; }
+
 std::unique_ptr<Controller> MakeController(const Experiment& experiment, int id) {
-  const std::string& model = experiment.agent(id).model;
-  const ControllerEntry* entry = std::ranges::find(kControllers, model, &ControllerEntry::model);
-  if (entry == std::end(kControllers)) throw std::invalid_argument("no controller for the model: " + model);
-  return entry->make(experiment, id);
+  return Entry(experiment.agent(id).model).make(experiment, id);
 }
 
 }  // namespace mascot

@@ -27,8 +27,10 @@ struct LawEntry {
   std::string_view source;  ///< paper
   std::span<const LawParameter> parameters;
   Axes axes;  ///< default of law.axes
-  /// Makes the law of agent `id`. Reads and checks the parameters of all agents, not of `id` alone, from
-  /// experiment.law.section.
+  /// Reads and checks the parameters of all agents that share `law`, a law of this name, from law.section. Returns
+  /// whether it sends messages.
+  bool (*read)(Experiment& experiment, LawConfig& law);
+  /// Makes the law of agent `id`, which is of this name.
   std::unique_ptr<Law> (*make)(Experiment& experiment, int id);
 };
 
@@ -37,8 +39,8 @@ std::span<const std::string_view> LawNames();
 /// The law of agent `id`. Mistakes in its parameters are noted in the experiment's document.
 std::unique_ptr<Law> MakeLaw(Experiment& experiment, int id);
 
-/// Reads a complete experiment: ReadExperiment, then the law's parameters, then Finish. What `check`,
-/// `up`, the server and the agents all call. Throws ConfigError.
-Experiment LoadExperiment(Section document, const std::string& default_name);
+/// Reads a complete experiment: ReadExperiment, then the laws' parameters, then Finish. What `check`,
+/// `up`, the server and the agents all call. `checked`: it was read before, without a mistake. Throws ConfigError.
+Experiment LoadExperiment(Section document, const std::string& default_name, bool checked = false);
 
 }  // namespace mascot

@@ -11,7 +11,7 @@ namespace {
 void RunAgent(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot_msgs::msg::Experiment& message,
               int id) {
   const auto document = mascot::Section::FromText(message.toml(), message.name());
-  mascot::Experiment experiment = mascot::LoadExperiment(document, message.name());
+  mascot::Experiment experiment = mascot::LoadExperiment(document, message.name(), /*checked=*/true);
   if (id > experiment.size())
     throw std::runtime_error("--id " + std::to_string(id) + ": the experiment has only agents 1 to " +
                              std::to_string(experiment.size()));

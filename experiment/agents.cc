@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 
 #include "experiment/placement.h"
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kFarthest_m = 1e6;
 constexpr double kFastest_m_per_s = 1000;
+constexpr double kLatest_s = 1e6;
 
 /// One vector for each agent; notes a list of another length.
 std::vector<Eigen::Vector3d> OnePerAgent(Section& agents, std::string_view key, std::size_t count, double limit) {
@@ -35,17 +37,35 @@ void ReadPositions(Section& agents, Experiment& experiment) {
     agents.FailRow("position_m", static_cast<std::size_t>(pair->second - 1),
                    "expected agents apart (physics.collisions), got agent " + std::to_string(pair->second) +
                        " touching agent " + std::to_string(pair->first));
+  const auto hit =
+      experiment.physics.collisions ? FirstInObstacle(experiment.agents, experiment.physics.obstacles) : std::nullopt;
+  if (hit)
+    agents.FailRow("position_m", static_cast<std::size_t>(hit->first - 1),
+                   "expected agents apart from obstacles (physics.obstacles), got agent " + std::to_string(hit->first) +
+                       " inside obstacle " + std::to_string(hit->second));
 }
 
-/// The default box grows in height with the agents, so that they have room above each other.
+/// How many stand on the ground.
+double Standing(const Experiment& experiment) {
+  if (!experiment.physics.ground) return 0;
+  return static_cast<double>(std::ranges::count(experiment.agents, "unicycle", &AgentConfig::model));
+}
+
+/// The default box grows with the agents: in height, so that those that fly have room above each other, and in length
+/// and width, so that those that stand leave four fifths of it free.
 Box ReadBox(Section& random, const Experiment& experiment) {
   Box box;
   box.in_z_alone = experiment.law.axes == Axes::kXy;
   box.may_touch = !experiment.physics.collisions;
+  box.has_ground = experiment.physics.ground;
+  box.obstacles = experiment.physics.obstacles;
   box.min_m = random.Vector3("min_m", -kFarthest_m, kFarthest_m, Eigen::Vector3d(-10, -10, 1));
   box.separation_m = random.Number("min_separation_m", 0, kFarthest_m, 0.5);
   const double height_m = std::max(3.0, 1.2 * box.separation_m * (experiment.size() - 1));
-  box.max_m = random.Vector3("max_m", -kFarthest_m, kFarthest_m, Eigen::Vector3d(10, 10, box.min_m.z() + height_m));
+  const double side_m = 2 * box.separation_m * std::sqrt(Standing(experiment));
+  box.max_m = random.Vector3("max_m", -kFarthest_m, kFarthest_m,
+                             Eigen::Vector3d(std::max(10.0, box.min_m.x() + side_m),
+                                             std::max(10.0, box.min_m.y() + side_m), box.min_m.z() + height_m));
   random.Done();
   if (random.Wrong("")) return box;
   if (experiment.physics.ground && box.min_m.z() < 0)
@@ -61,13 +81,16 @@ void ReadRandom(Section& agents, Experiment& experiment) {
   Section random = agents.Child("random");
   const Box box = ReadBox(random, experiment);
   if (random.Wrong("") || Place(experiment.agents, box, experiment.run.seed)) return;
+  const std::string in_z =
+      Standing(experiment) > 0 ? " in z (law.axes = \"xy\"; unicycles in x, y)" : " in z (law.axes = \"xy\")";
   agents.Fail("random", "expected room for " + std::to_string(experiment.size()) + " agents " +
-                            ShortestFloat(box.separation_m) + " m apart" +
-                            (box.in_z_alone ? " in z (law.axes = \"xy\")" : "") + ", got too small a box");
+                            ShortestFloat(box.separation_m) + " m apart" + (box.in_z_alone ? in_z : "") +
+                            (box.obstacles.empty() ? "" : ", clear of obstacles (physics.obstacles)") +
+                            ", got too small a box");
 }
 
-void ReadOverride(Section& section, std::span<const std::string_view> models, std::vector<AgentConfig>& agents,
-                  std::set<std::int64_t>& seen) {
+AgentOverride ReadOverride(Section& section, std::span<const std::string_view> models, std::vector<AgentConfig>& agents,
+                           std::set<std::int64_t>& seen) {
   constexpr std::array<std::string_view, 2> kHosts = {"local", "external"};
   const auto last = agents.empty() ? kMaxAgents : static_cast<std::int64_t>(agents.size());
   const std::int64_t id = section.Integer("id", 1, last);
@@ -77,21 +100,43 @@ void ReadOverride(Section& section, std::span<const std::string_view> models, st
   AgentConfig& agent = agents.empty() ? unknown : agents[static_cast<std::size_t>(id - 1)];
   if (section.Has("model")) agent.model = section.OneOf("model", models);
   if (section.Has("airframe")) agent.airframe = ReadAirframe(section, "airframe");
+  agent.start_s = section.Number("start_s", 0, kLatest_s, 0.0);
+  if (section.Has("stop_s")) {
+    agent.stop_s = section.Number("stop_s", 0, kLatest_s);
+    if (!section.Wrong("stop_s") && !section.Wrong("start_s") && agent.stop_s <= agent.start_s)
+      section.Fail("stop_s", "expected a time after start_s (" + ShortestFloat(agent.start_s) + "), got " +
+                                 ShortestFloat(agent.stop_s));
+  }
   agent.external = section.OneOf("host", kHosts, "local") == "external";
-  section.Done();
+  return {agents.empty() || section.Wrong("id") ? 0 : static_cast<int>(id), section};
+}
+
+/// Initial yaws, one per agent.
+void ReadHeadings(Section& agents, std::vector<AgentConfig>& team) {
+  if (!agents.Has("heading_rad")) return;
+  const std::vector<double> headings = agents.Numbers("heading_rad", -10, 10);
+  if (!team.empty() && !agents.Wrong("heading_rad") && headings.size() != team.size())
+    agents.Fail("heading_rad", "expected " + std::to_string(team.size()) + " numbers, one per agent, got a list of " +
+                                   std::to_string(headings.size()));
+  for (std::size_t i = 0; i < std::min(headings.size(), team.size()); ++i) team[i].heading_rad = headings[i];
 }
 
 }  // namespace
 
-void ReadAgents(Section& agents, int count, std::span<const std::string_view> models, Experiment& experiment) {
+std::vector<AgentOverride> ReadAgents(Section& agents, int count, std::span<const std::string_view> models,
+                                      Experiment& experiment) {
   AgentConfig common;
   common.model = agents.OneOf("model", models, "quadrotor");
   common.airframe = ReadAirframe(agents, "airframe");
+  common.law = experiment.law;
   experiment.agents.assign(static_cast<std::size_t>(count), common);
   for (int id = 1; id <= count; ++id) experiment.agents[static_cast<std::size_t>(id - 1)].id = id;
   std::set<std::int64_t> seen;
-  for (Section& section : agents.Children("override")) ReadOverride(section, models, experiment.agents, seen);
+  std::vector<AgentOverride> overrides;
+  for (Section& section : agents.Children("override"))
+    overrides.push_back(ReadOverride(section, models, experiment.agents, seen));
 
+  ReadHeadings(agents, experiment.agents);
   if (agents.Has("position_m") && agents.Has("random"))
     agents.Fail("random", "expected one of position_m, random, got both");
   else if (agents.Has("position_m"))
@@ -103,6 +148,7 @@ void ReadAgents(Section& agents, int count, std::span<const std::string_view> mo
     for (std::size_t i = 0; i < velocities.size(); ++i) experiment.agents[i].v_W = velocities[i];
   }
   agents.Done();
+  return overrides;
 }
 
 }  // namespace mascot

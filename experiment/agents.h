@@ -4,8 +4,16 @@
 
 namespace mascot {
 
+/// What one [[agents.override]] is about.
+struct AgentOverride {
+  int id = 0;  ///< 0: not known for a mistake
+  Section section;
+};
+
 /// Reads [agents], all but its count, into experiment.agents; [run], [physics] and [law] are read already.
-/// With `count` = 0, not known for a mistake, sizes are not checked and there are no agents.
-void ReadAgents(Section& agents, int count, std::span<const std::string_view> models, Experiment& experiment);
+/// With `count` = 0, not known for a mistake, sizes are not checked and there are no agents. Returns the overrides,
+/// whose tables of other sections (control, law) are still to be read, and Done() to be called.
+std::vector<AgentOverride> ReadAgents(Section& agents, int count, std::span<const std::string_view> models,
+                                      Experiment& experiment);
 
 }  // namespace mascot

@@ -50,27 +50,19 @@ void ReadRun(Section& section, const std::string& default_name, Experiment& expe
   section.Done();
 }
 
-void ReadPhysics(Section& section, Experiment& experiment) {
-  auto& physics = experiment.physics;
-  physics.rate_hz = static_cast<int>(section.Integer("rate_hz", 1, 100000, 1000));
-  physics.gravity_m_per_s2 = section.Number("gravity_m_per_s2", 0, 100, 9.81);
-  physics.collisions = section.Boolean("collisions", true);
-  physics.ground = section.Boolean("ground", true);
-  section.Done();
-}
-
-void ReadLaw(Section& section, int count, const Vocabulary& vocabulary, Experiment& experiment) {
+LawConfig ReadLaw(Section section, int count, const Vocabulary& vocabulary) {
   constexpr Names2 kAxes = {"xy", "xyz"};
-  auto& law = experiment.law;
+  LawConfig law;
   law.name = section.OneOf("name", vocabulary.laws, "consensus");
   law.leader = static_cast<int>(section.Integer("leader", 0, count > 0 ? count : kMaxAgents, 0));
   const bool is_xyz = std::ranges::find(vocabulary.xyz_laws, law.name) != vocabulary.xyz_laws.end();
   law.axes = section.OneOf("axes", kAxes, is_xyz ? "xyz" : "xy") == "xyz" ? Axes::kXyz : Axes::kXy;
   law.section = section;
+  return law;
 }
 
-/// Gains given for one loop of every agent, in place of its airframe's.
-void ReadGains(Section& control, std::string_view key, PdGains Airframe::*loop, Experiment& experiment) {
+/// Gains given for one loop, in place of the airframe's.
+void ReadGains(Section& control, std::string_view key, PdGains Airframe::*loop, std::span<AgentConfig> agents) {
   if (!control.Has(key)) return;
   constexpr double kMaxGain = 1e4;
   Section section = control.Child(key);
@@ -78,27 +70,64 @@ void ReadGains(Section& control, std::string_view key, PdGains Airframe::*loop, 
   gains.kp = section.Number("kp", 0, kMaxGain);
   gains.kd = section.Number("kd", 0, kMaxGain);
   section.Done();
-  for (AgentConfig& agent : experiment.agents) agent.airframe.*loop = gains;
+  for (AgentConfig& agent : agents) agent.airframe.*loop = gains;
 }
 
-void ReadControl(Section& section, Experiment& experiment) {
+/// All of [control] that may differ from agent to agent.
+void ReadControl(Section& section, std::span<AgentConfig> agents) {
   constexpr Names2 kInversions = {"small_angle", "exact"};
-  auto& control = experiment.control;
-  control.rate_hz = static_cast<int>(section.Integer("rate_hz", 1, 100000, 100));
-  ReadGains(section, "altitude", &Airframe::altitude, experiment);
-  ReadGains(section, "heading", &Airframe::heading, experiment);
-  ReadGains(section, "attitude", &Airframe::attitude, experiment);
-  ReadGains(section, "position", &Airframe::position, experiment);
+  ControlConfig control;
+  ReadGains(section, "altitude", &Airframe::altitude, agents);
+  ReadGains(section, "heading", &Airframe::heading, agents);
+  ReadGains(section, "attitude", &Airframe::attitude, agents);
+  ReadGains(section, "position", &Airframe::position, agents);
   control.heading_rad = section.Number("heading_rad", -10, 10, 0.0);
   control.max_acceleration_m_per_s2 = section.Positive("max_acceleration_m_per_s2", 1000, 3.0);
+  control.max_speed_m_per_s = section.Positive("max_speed_m_per_s", 1000, 100.0);
+  control.velocity_gain = section.Positive("velocity_gain", 1000, 2.0);
+  control.look_ahead_m = section.Positive("look_ahead_m", 100, 0.1);
   if (section.Has("tilt_limit_rad")) {
     const double tilt_limit_rad = section.Positive("tilt_limit_rad", 1.5);
-    for (AgentConfig& agent : experiment.agents) agent.airframe.tilt_limit_rad = tilt_limit_rad;
+    for (AgentConfig& agent : agents) agent.airframe.tilt_limit_rad = tilt_limit_rad;
   }
   control.inversion =
       section.OneOf("inversion", kInversions, "small_angle") == "exact" ? Inversion::kExact : Inversion::kSmallAngle;
   control.drag_compensation = section.Boolean("drag_compensation", true);
   section.Done();
+  for (AgentConfig& agent : agents) agent.control = control;
+}
+
+/// The parts of an override that stand in place of [control] and [law], or of some of their keys.
+void FinishOverride(AgentOverride& override, Section& control, int count, const Vocabulary& vocabulary,
+                    Experiment& experiment) {
+  Section& section = override.section;
+  AgentConfig unknown;
+  AgentConfig& agent = override.id > 0 ? experiment.agents[static_cast<std::size_t>(override.id - 1)] : unknown;
+  if (section.Has("control")) {
+    Section own = section.Child("control");
+    own.InheritFrom(control);
+    ReadControl(own, {&agent, 1});
+  }
+  if (section.Has("law")) {
+    Section own = section.Child("law");
+    const bool same_law = !own.Has("name") || own.Text("name") == experiment.law.name;
+    if (same_law) own.InheritFrom(experiment.law.section);
+    agent.law = ReadLaw(own, count, vocabulary);
+    agent.has_own_law = true;
+  }
+  section.Done();
+}
+
+/// Rotors that fail are those of quadrotors.
+void CheckRotorFailures(Section& physics, const Experiment& experiment) {
+  if (experiment.agents.empty() || physics.Wrong("rotor_failures")) return;
+  const auto& failures = experiment.physics.rotor_failures;
+  for (std::size_t k = 0; k < failures.size(); ++k) {
+    const AgentConfig& agent = experiment.agent(failures[k].agent);
+    if (agent.model != "quadrotor")
+      physics.FailRow("rotor_failures", k,
+                      "expected a quadrotor, got agent " + std::to_string(agent.id) + ", a " + agent.model);
+  }
 }
 
 /// A tick is a whole number of physics steps, a run a whole number of ticks.
@@ -160,34 +189,50 @@ std::int64_t Experiment::ticks() const { return std::llround(run.duration_s * co
 Experiment ReadExperiment(Section document, const Vocabulary& vocabulary, const std::string& default_name) {
   // In the order of the resolved file; read below in the order in which one needs the other.
   Section run = document.Child("run"), physics = document.Child("physics"), agents = document.Child("agents"),
-          control = document.Child("control"), graph = document.Child("graph"), law = document.Child("law"),
-          record = document.Child("record"), output = document.Child("output"), network = document.Child("network");
+          control = document.Child("control"), sensors = document.Child("sensors"), graph = document.Child("graph"),
+          link = document.Child("link"), law = document.Child("law"), record = document.Child("record"),
+          output = document.Child("output"), network = document.Child("network");
   document.Done();
 
   Experiment experiment;
   experiment.document = document;
   ReadRun(run, default_name, experiment);
-  ReadPhysics(physics, experiment);
   int count = static_cast<int>(agents.Integer("count", 1, kMaxAgents));
   if (agents.Wrong("count")) count = 0;
-  ReadLaw(law, count, vocabulary, experiment);
-  ReadAgents(agents, count, vocabulary.models, experiment);
-  ReadControl(control, experiment);
+  experiment.physics = ReadPhysics(physics, count);
+  experiment.law = ReadLaw(law, count, vocabulary);
+  std::vector<AgentOverride> overrides = ReadAgents(agents, count, vocabulary.models, experiment);
+  CheckRotorFailures(physics, experiment);
+  experiment.control.rate_hz = static_cast<int>(control.Integer("rate_hz", 1, 100000, 100));
+  ReadControl(control, experiment.agents);
+  for (AgentOverride& override : overrides) FinishOverride(override, control, count, vocabulary, experiment);
   CheckTime(run, physics, control, experiment);
-  experiment.graph = ReadGraph(graph, count, experiment.run.seed);
+  experiment.sensors = ReadSensors(sensors);
+  std::vector<Eigen::Vector3d> p_W;
+  for (const AgentConfig& agent : experiment.agents) p_W.push_back(agent.p_W);
+  experiment.schedule = ReadSchedule(graph, p_W, experiment.run.seed);
   graph.Done();
+  experiment.graph = experiment.schedule.Union();
+  experiment.links = ReadLinks(link, experiment.graph);
   ReadRecord(record, experiment);
   ReadOutput(output, experiment);
   ReadNetwork(network, vocabulary.transports, experiment);
 
   // What a law would say of these would only follow from the mistake.
-  if (graph.Wrong("")) experiment.graph = Graph({});
-  if (law.Wrong("name") || law.Wrong("leader")) experiment.agents.clear();
+  if (graph.Wrong("")) {
+    experiment.schedule = Schedule();
+    experiment.graph = Graph({});
+  }
+  const bool unknown =
+      std::ranges::any_of(overrides, [](const auto& override) { return override.section.Wrong("law"); });
+  if (unknown || law.Wrong("name") || law.Wrong("leader")) experiment.agents.clear();
   return experiment;
 }
 
 void Finish(Experiment& experiment) {
   if (!experiment.agents.empty()) experiment.law.section.Done();
+  for (AgentConfig& agent : experiment.agents)
+    if (agent.has_own_law) agent.law.section.Done();
   experiment.law.section.ThrowIfWrong();
 }
 

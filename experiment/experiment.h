@@ -2,13 +2,18 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "experiment/airframe.h"
 #include "experiment/graph.h"
+#include "experiment/link.h"
+#include "experiment/physics.h"
+#include "experiment/schedule.h"
 #include "experiment/section.h"
+#include "experiment/sensors.h"
 
 namespace mascot {
 
@@ -18,19 +23,49 @@ enum class Mode { kLockstep, kRealtime };
 enum class Axes { kXy, kXyz };
 enum class Inversion { kSmallAngle, kExact };
 
+/// [control], or what an agent has in its place.
+struct ControlConfig {
+  double heading_rad = 0;
+  double max_acceleration_m_per_s2 = 3;
+  double max_speed_m_per_s = 100;  ///< on wanted velocities; nothing limits the speed that accelerations add up to
+  double velocity_gain = 2;   ///< k_v (1/s): a wanted velocity v* asks a model driven by acceleration for k_v (v* - v)
+  double look_ahead_m = 0.1;  ///< of a unicycle: how far ahead the point lies that does what is wanted
+  Inversion inversion = Inversion::kSmallAngle;
+  bool drag_compensation = true;  ///< adds the known drag B v / m to the wanted acceleration
+};
+
+/// [law], or what an agent has in its place.
+struct LawConfig {
+  std::string name;
+  int leader = 0;  ///< 0 = none
+  Axes axes = Axes::kXy;
+  /// The table, for the law to read its own parameters from (agent/laws.h). Copies share it.
+  Section section = Section::FromText("", "");
+};
+
 struct AgentConfig {
   int id = 0;                                     ///< 1..N
   std::string model;                              ///< a name of the models' table
-  Airframe airframe;                              ///< with [control]'s gains and limits already applied
+  Airframe airframe;                              ///< with the gains and limits of `control` already applied
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< initial position (m)
   Eigen::Vector3d v_W = Eigen::Vector3d::Zero();  ///< initial velocity (m/s)
-  bool external = false;                          ///< started by hand and waited for
+  double heading_rad = 0;                         ///< initial yaw
+  ControlConfig control;
+  LawConfig law;
+  bool has_own_law = false;     ///< `law` is not the team's
+  bool sends_messages = false;  ///< its law sends messages: it has a topic for them
+  /// From start_s up to stop_s its law is on and others may hear it; before and after, it stands still.
+  double start_s = 0;
+  double stop_s = std::numeric_limits<double>::infinity();
+  bool external = false;  ///< started by hand and waited for
 };
 
 /// One experiment: everything that processes of a run must agree on. Field names are the TOML keys.
 struct Experiment {
   /// The file it was read from; Resolved() writes it out with all defaults.
   Section document = Section::FromText("", "");
+  /// Somebody read it before and found no mistake: what takes long to check (a law's own code) need not be again.
+  bool checked = false;
   struct {
     std::string name;
     double duration_s = 0;
@@ -40,28 +75,18 @@ struct Experiment {
     double start_timeout_s = 60;
     double speed = 1;
   } run;
-  struct {
-    int rate_hz = 1000;
-    double gravity_m_per_s2 = 9.81;
-    bool collisions = true;
-    bool ground = true;
-  } physics;
+  PhysicsConfig physics;
   std::vector<AgentConfig> agents;
   struct {
     int rate_hz = 100;
-    double heading_rad = 0;
-    double max_acceleration_m_per_s2 = 3;
-    Inversion inversion = Inversion::kSmallAngle;
-    bool drag_compensation = true;  ///< adds the known drag B v / m to the wanted acceleration
   } control;
+  /// Who may ever hear whom: every edge that some phase of `schedule` has. Readers exist for these.
   Graph graph{{}};
-  struct {
-    std::string name;
-    int leader = 0;  ///< 0 = none
-    Axes axes = Axes::kXy;
-    /// The [law] table, for the law to read its own parameters from (agent/laws.h).
-    Section section = Section::FromText("", "");
-  } law;
+  /// Who hears whom when.
+  Schedule schedule;
+  LinkTable links;
+  SensorConfig sensors;
+  LawConfig law;  ///< the team's; each agent has its own copy
   struct {
     std::string file;
     std::vector<std::string> topics;

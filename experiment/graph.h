@@ -58,9 +58,14 @@ std::span<const std::string_view> TopologyNames();
 Graph MakeTopology(std::string_view name, int count);
 /// Each pair of agents hears each other with probability `p` (Erdos & Renyi, Publ. Math. Debrecen 6, 1959).
 Graph MakeErdosRenyi(int count, double p, std::uint64_t seed);
-/// Reads [graph] for `count` agents: exactly one of topology, laplacian, adjacency, edges, random.
-/// `seed` feeds random graphs. With `count` = 0, not known for a mistake elsewhere, sizes are not checked and
-/// the graph is empty.
-Graph ReadGraph(Section& graph, int count, std::uint64_t seed);
+/// Agents hear each other that are closer than `radius_m` at `p_W` (Gilbert, J. SIAM 9, 1961).
+Graph MakeGeometric(std::span<const Eigen::Vector3d> p_W, double radius_m);
+/// A ring in which everybody hears its `k` nearest (k even, below `count`), each edge of which is replaced with
+/// probability `p` by one to an agent drawn at random (Watts & Strogatz, Nature 393, 1998).
+Graph MakeSmallWorld(int count, int k, double p, std::uint64_t seed);
+/// Reads exactly one of topology, laplacian, adjacency, edges, random of [graph], or of one of its schedule, for agents
+/// that start at `p_W`. `seed` feeds random graphs. With no agents, not known for a mistake elsewhere, sizes are not
+/// checked and the graph is empty.
+Graph ReadGraph(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint64_t seed);
 
 }  // namespace mascot

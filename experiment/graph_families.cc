@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <set>
 
 #include "experiment/graph.h"
 #include "experiment/random.h"
@@ -123,6 +124,36 @@ Graph MakeErdosRenyi(int count, double p, std::uint64_t seed) {
   for (int i = 1; i <= count; ++i)
     for (int j = i + 1; j <= count; ++j)
       if (random.Unit() < p) edges.Both(i, j);
+  return std::move(edges).Build();
+}
+
+Graph MakeGeometric(std::span<const Eigen::Vector3d> p_W, double radius_m) {
+  const int count = static_cast<int>(p_W.size());
+  Edges edges(count);
+  for (int i = 1; i <= count; ++i)
+    for (int j = i + 1; j <= count; ++j)
+      if ((p_W[static_cast<std::size_t>(i - 1)] - p_W[static_cast<std::size_t>(j - 1)]).norm() < radius_m)
+        edges.Both(i, j);
+  return std::move(edges).Build();
+}
+
+Graph MakeSmallWorld(int count, int k, double p, std::uint64_t seed) {
+  Random random(seed, Random::Stream::kGraph);
+  std::set<std::pair<int, int>> pairs;  // lower id first
+  const auto hear = [&](int i, int j) { return pairs.emplace(std::minmax(i, j)); };
+  const auto ahead = [count](int i, int steps) { return (i - 1 + steps) % count + 1; };
+  for (int steps = 1; steps <= k / 2; ++steps)
+    for (int i = 1; i <= count; ++i) hear(i, ahead(i, steps));
+  for (int steps = 1; steps <= k / 2; ++steps)
+    for (int i = 1; i <= count; ++i) {
+      const auto old = pairs.find(std::minmax(i, ahead(i, steps)));
+      const bool rewired = random.Unit() < p;
+      const int other = static_cast<int>(random.Below(static_cast<std::size_t>(count))) + 1;
+      if (!rewired || old == pairs.end() || other == i || !hear(i, other).second) continue;  // taken: it stays
+      pairs.erase(old);
+    }
+  Edges edges(count);
+  for (const auto& [i, j] : pairs) edges.Both(i, j);
   return std::move(edges).Build();
 }
 

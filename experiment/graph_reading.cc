@@ -99,18 +99,31 @@ Heard FromEdges(Section& graph, int count) {
   return heard;
 }
 
-Graph FromRandom(Section& graph, int count, std::uint64_t seed) {
-  constexpr std::array<std::string_view, 1> kKinds = {"erdos_renyi"};
+Graph FromRandom(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint64_t seed) {
+  constexpr std::array<std::string_view, 3> kKinds = {"erdos_renyi", "geometric", "small_world"};
+  const int count = static_cast<int>(p_W.size());
   Section random = graph.Child("random");
-  random.OneOf("kind", kKinds);
+  const std::string kind = random.OneOf("kind", kKinds);
+  if (kind == "geometric") {
+    const double radius_m = random.Positive("radius_m", 1e6);
+    random.Done();
+    return MakeGeometric(p_W, radius_m);
+  }
   const double p = random.Number("p", 0, 1);
+  if (kind == "erdos_renyi") {
+    random.Done();
+    return MakeErdosRenyi(count, p, seed);
+  }
+  const auto k = static_cast<int>(random.Integer("k", 2, std::max(2, count > 0 ? count - 1 : 10000)));
   random.Done();
-  return MakeErdosRenyi(count, p, seed);
+  if (!random.Wrong("k") && k % 2 != 0) random.Fail("k", "expected an even number, got " + std::to_string(k));
+  return random.Wrong("") ? Graph(Heard(p_W.size())) : MakeSmallWorld(count, k, p, seed);
 }
 
 }  // namespace
 
-Graph ReadGraph(Section& graph, int count, std::uint64_t seed) {
+Graph ReadGraph(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint64_t seed) {
+  const int count = static_cast<int>(p_W.size());
   std::string given, last;
   for (const std::string_view source : {"topology", "laplacian", "adjacency", "edges", "random"}) {
     if (!graph.Has(source)) continue;
@@ -124,7 +137,7 @@ Graph ReadGraph(Section& graph, int count, std::uint64_t seed) {
   if (last == "laplacian") return Graph(FromLaplacian(graph, count));
   if (last == "adjacency") return Graph(FromAdjacency(graph, count));
   if (last == "edges") return Graph(FromEdges(graph, count));
-  if (last == "random") return FromRandom(graph, count, seed);
+  if (last == "random") return FromRandom(graph, p_W, seed);
   const std::string topology = graph.OneOf("topology", TopologyNames(), "complete");
   return count > 0 ? MakeTopology(topology, count) : Graph(Heard{});  // 0: the count is wrong, and that is noted
 }

@@ -23,12 +23,15 @@ using Actuation = std::array<double, 4>;
 
 /// Of the double integrator model, so that its force is its acceleration.
 inline constexpr double kDoubleIntegratorMass_kg = 1.0;
+/// Of the sphere that every model but the quadrotor is.
+inline constexpr double kBallRadius_m = 0.1;
 
 /// Bits of Command::flags.
 enum CommandFlag : std::uint32_t {
   kAccelerationLimited = 1u << 0,  ///< the law asked for more than control.max_acceleration_m_per_s2
   kTiltLimited = 1u << 1,          ///< roll or pitch target cut at the airframe's tilt limit
   kRotorLimited = 1u << 2,         ///< a rotor speed cut to what the rotor can do
+  kSpeedLimited = 1u << 3,         ///< the law asked for more than control.max_speed_m_per_s
 };
 
 /// An agent's answer to one tick.
@@ -37,6 +40,7 @@ struct Command {
   Eigen::Vector3d a_law_W = Eigen::Vector3d::Zero();      ///< the law's acceleration before limits (m/s^2)
   Eigen::Vector3d a_limited_W = Eigen::Vector3d::Zero();  ///< after limits
   std::uint32_t flags = 0;                                ///< CommandFlag bits
+  Eigen::Vector3d v_limited_W = Eigen::Vector3d::Zero();  ///< velocity wanted of a model driven by it; not on the wire
 };
 
 }  // namespace mascot

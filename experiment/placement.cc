@@ -1,8 +1,10 @@
 #include "experiment/placement.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 
+#include "experiment/motion.h"
 #include "experiment/random.h"
 
 namespace mascot {
@@ -14,28 +16,84 @@ Eigen::Vector3d PointIn(const Box& box, Random& random) {
   return point;
 }
 
-/// Heights at least `separation_m` apart, in random order: sorted offsets share what the separations leave over.
-std::optional<std::vector<double>> Heights(int count, const Box& box, Random& random) {
+bool Stands(const AgentConfig& agent, const Box& box) { return box.has_ground && agent.model == "unicycle"; }
+
+/// Heights from `min_m` to `max_m`, at least `separation_m` apart, in random order: sorted offsets share what the
+/// separations leave over.
+std::optional<std::vector<double>> Heights(std::size_t count, double min_m, double max_m, double separation_m,
+                                           Random& random) {
   constexpr double kRounding_m = 1e-9;  // [1, 1.3] has room for four agents 0.1 m apart
-  const double min_m = box.min_m.z(), max_m = box.max_m.z();
-  const double spare_m = max_m - min_m - (count - 1) * box.separation_m;
+  std::vector<double> heights(count);
+  if (count == 0) return heights;
+  const double spare_m = max_m - min_m - static_cast<double>(count - 1) * separation_m;
   if (spare_m < -kRounding_m) return std::nullopt;
-  std::vector<double> heights(static_cast<std::size_t>(count));
   for (double& height : heights) height = random.In(0, std::max(spare_m, 0.0));
   std::sort(heights.begin(), heights.end());
   for (std::size_t k = 0; k < heights.size(); ++k)
-    heights[k] = std::min(min_m + heights[k] + static_cast<double>(k) * box.separation_m, max_m);
+    heights[k] = std::min(min_m + heights[k] + static_cast<double>(k) * separation_m, max_m);
   for (std::size_t k = heights.size(); k > 1; --k) std::swap(heights[k - 1], heights[random.Below(k)]);
   return heights;
 }
 
-/// What a body takes up along x, y, z: the airframe's box, or the sphere of 0.1 m of the other models.
-Eigen::Vector3d Size_m(const AgentConfig& agent) {
-  return agent.model == "quadrotor" ? agent.airframe.size_m : Eigen::Vector3d::Constant(0.2);
+/// Sets the heights that are not drawn together with x and y: of those that stand, and of all if they keep apart in z
+/// alone. Then those that fly also fly that far above those that stand.
+bool SetHeights(std::vector<AgentConfig>& agents, const Box& box, Random& random) {
+  std::vector<AgentConfig*> flying;
+  for (AgentConfig& agent : agents) {
+    if (Stands(agent, box))
+      agent.p_W.z() = kBallRadius_m;
+    else
+      flying.push_back(&agent);
+  }
+  if (!box.in_z_alone) return true;
+  const double clear_m = flying.size() < agents.size() ? kBallRadius_m + box.separation_m : box.min_m.z();
+  const auto heights =
+      Heights(flying.size(), std::max(box.min_m.z(), clear_m), box.max_m.z(), box.separation_m, random);
+  if (!heights) return false;
+  for (std::size_t k = 0; k < flying.size(); ++k) flying[k]->p_W.z() = (*heights)[k];
+  return true;
 }
+
+/// What a body that is turned by `yaw_rad` takes up along x, y, z: the airframe's box, or the sphere of other models.
+Eigen::Vector3d Size_m(const AgentConfig& agent, double yaw_rad) {
+  if (agent.model != "quadrotor") return Eigen::Vector3d::Constant(2 * kBallRadius_m);
+  const Eigen::Vector3d& size_m = agent.airframe.size_m;
+  const double c = std::abs(std::cos(yaw_rad)), s = std::abs(std::sin(yaw_rad));
+  return {c * size_m.x() + s * size_m.y(), s * size_m.x() + c * size_m.y(), size_m.z()};
+}
+
+Eigen::Vector3d Size_m(const AgentConfig& agent) { return Size_m(agent, agent.heading_rad); }
 
 bool Touch(const AgentConfig& a, const AgentConfig& b) {
   return ((a.p_W - b.p_W).cwiseAbs().array() < (Size_m(a) + Size_m(b)).array() / 2).all();
+}
+
+/// Seen from the obstacle, along its own axes.
+bool Touch(const AgentConfig& agent, const Obstacle& obstacle) {
+  const Eigen::AngleAxisd from_W(-obstacle.heading_rad, Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d offset = from_W * (agent.p_W - obstacle.p_W);
+  const Eigen::Vector3d agent_half_m = Size_m(agent, agent.heading_rad - obstacle.heading_rad) / 2;
+  const Eigen::Vector3d nearest = (offset.cwiseAbs() - agent_half_m).cwiseMax(0);  // of the agent's box
+  const Eigen::Vector3d half_m = obstacle.size_m / 2;
+  switch (obstacle.shape) {
+    case Shape::kBox:
+      return (nearest.array() < half_m.array()).all();
+    case Shape::kSphere:
+      return nearest.norm() < half_m.x();
+    case Shape::kCylinder:
+      return nearest.head<2>().norm() < half_m.x() && nearest.z() < half_m.z();
+  }
+  return false;
+}
+
+bool TouchesAny(const AgentConfig& agent, const std::vector<Obstacle>& obstacles) {
+  return std::ranges::any_of(obstacles, [&](const Obstacle& obstacle) { return Touch(agent, obstacle); });
+}
+
+/// Whether the agent may start where it is, as far as one who is there already is concerned.
+bool Apart(const AgentConfig& agent, const AgentConfig& other, const Box& box) {
+  const bool in_z = box.in_z_alone && !(Stands(agent, box) && Stands(other, box));
+  return (in_z || (agent.p_W - other.p_W).norm() >= box.separation_m) && (box.may_touch || !Touch(agent, other));
 }
 
 }  // namespace
@@ -43,23 +101,17 @@ bool Touch(const AgentConfig& a, const AgentConfig& b) {
 bool Place(std::vector<AgentConfig>& agents, const Box& box, std::uint64_t seed) {
   std::size_t tries = 10000 + 20 * agents.size();  // for all of them: ten thousand agents give up in seconds
   Random random(seed, Random::Stream::kPositions);
-  std::optional<std::vector<double>> heights;
-  if (box.in_z_alone) {
-    heights = Heights(static_cast<int>(agents.size()), box, random);
-    if (!heights) return false;
-  }
-  for (std::size_t i = 0; i < agents.size(); ++i) {
+  if (!SetHeights(agents, box, random)) return false;
+  for (auto agent = agents.begin(); agent != agents.end(); ++agent) {
     const auto is_free = [&] {
-      return std::all_of(agents.begin(), agents.begin() + static_cast<std::ptrdiff_t>(i),
-                         [&](const AgentConfig& other) {
-                           const bool apart = heights || (agents[i].p_W - other.p_W).norm() >= box.separation_m;
-                           return apart && (box.may_touch || !Touch(agents[i], other));
-                         });
+      return (box.may_touch || !TouchesAny(*agent, box.obstacles)) &&
+             std::all_of(agents.begin(), agent, [&](const AgentConfig& other) { return Apart(*agent, other, box); });
     };
     do {
       if (tries-- == 0) return false;
-      agents[i].p_W = PointIn(box, random);
-      if (heights) agents[i].p_W.z() = (*heights)[i];
+      const Eigen::Vector3d point = PointIn(box, random);
+      agent->p_W.head<2>() = point.head<2>();
+      if (!box.in_z_alone && !Stands(*agent, box)) agent->p_W.z() = point.z();
     } while (!is_free());
   }
   return true;
@@ -83,6 +135,14 @@ std::optional<std::pair<int, int>> FirstTouching(const std::vector<AgentConfig>&
   }
   if (first) std::swap(first->first, first->second);
   return first;
+}
+
+std::optional<std::pair<int, int>> FirstInObstacle(const std::vector<AgentConfig>& agents,
+                                                   const std::vector<Obstacle>& obstacles) {
+  for (const AgentConfig& agent : agents)
+    for (std::size_t k = 0; k < obstacles.size(); ++k)
+      if (Touch(agent, obstacles[k])) return std::pair(agent.id, static_cast<int>(k) + 1);
+  return std::nullopt;
 }
 
 }  // namespace mascot

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "experiment/section_internal.h"
 
@@ -96,14 +97,23 @@ std::string Section::Table::PathOf(std::string_view key) const {
   return path.empty() || name.empty() ? path + name : path + "." + name;
 }
 
-toml::source_region Section::Table::PlaceOf(std::string_view key) const {
+const toml::node* Section::Table::Get(std::string_view key) const {
   const toml::node* node = toml != nullptr ? toml->get(key) : nullptr;
+  return node == nullptr && base ? base->Get(key) : node;
+}
+
+bool Section::Table::Inherits(std::string_view key) const {
+  return base && (toml == nullptr || toml->get(key) == nullptr) && base->Get(key) != nullptr;
+}
+
+toml::source_region Section::Table::PlaceOf(std::string_view key) const {
+  const toml::node* node = Get(key);
   return node != nullptr ? node->source() : place;
 }
 
 const toml::node* Section::Table::Find(std::string_view key) {
   known.emplace(key);
-  return toml != nullptr ? toml->get(key) : nullptr;
+  return Get(key);
 }
 
 bool Section::Table::Wrong(std::string_view key) const {
@@ -139,7 +149,8 @@ std::shared_ptr<Section::Table> Section::Table::MakeChild(const toml::node* node
 void Section::Table::Expected(std::string_view key, const std::string& where, const toml::node* node,
                               const std::string& expected) {
   wrong.emplace(key);
-  if (node == nullptr && broken) return;  // what stands in place of this table was complained about already
+  // What stands in place of this table was complained about already; what it inherits, where it stands.
+  if ((node == nullptr && broken) || inherited || Inherits(key)) return;
   document->Note(node != nullptr ? node->source() : place, where,
                  "expected " + expected + ", got " + (node != nullptr ? Got(*node) : "nothing"));
 }
@@ -156,7 +167,7 @@ T Section::Table::Read(std::string_view key, const std::string& expected, const 
 }
 
 double Section::Table::Number(std::string_view key, const NumberRange& range, std::optional<double> fallback) {
-  const std::string expected = ExpectedNumber(toml != nullptr ? toml->get(key) : nullptr, range);
+  const std::string expected = ExpectedNumber(Get(key), range);
   const double value = Read<double>(key, expected, fallback, range.Legal(),
                                     [&](const toml::node& node) { return NumberIn(node, range); });
   Record(key, ShortestFloat(value));
@@ -236,8 +247,39 @@ bool Section::Boolean(std::string_view key, bool fallback) {
 std::string Section::Text(std::string_view key, std::optional<std::string> fallback) {
   std::string value = table_->Read<std::string>(key, "a string", fallback, "",
                                                 [](const toml::node& node) { return node.value_exact<std::string>(); });
-  table_->Record(key, QuotedToml(value));
+  table_->Record(key, StringToml(value));
   return value;
+}
+
+Section::Place Section::PlaceOfText(std::string_view key) const {
+  const toml::node* node = table_->Get(key);
+  const toml::source_region place = table_->PlaceOf(key);
+  const bool overridden = place.path && *place.path != document_->name;
+  const std::filesystem::path file(overridden ? "" : document_->name);
+  Place text{overridden ? *place.path : file.filename().string(), file.parent_path().string(),
+             overridden ? 1 : static_cast<int>(place.begin.line)};
+  const auto value = node != nullptr ? node->value_exact<std::string>() : std::nullopt;
+  if (!value || overridden) return text;
+  // TOML drops a line break right after the opening quotes; what is left of it is one line more than the text has.
+  const auto breaks = std::count(value->begin(), value->end(), '\n');
+  if (static_cast<std::ptrdiff_t>(place.end.line - place.begin.line) == breaks + 1) ++text.line;
+  return text;
+}
+
+Section::FileText Section::TextOfFile(std::string_view key, std::string_view text_key) {
+  const std::string path =
+      table_->Read<std::string>(key, "the path of a file", std::nullopt, "",
+                                [](const toml::node& node) { return node.value_exact<std::string>(); });
+  std::string text;
+  if (!table_->Wrong(key)) {
+    try {
+      text = ReadRegularFile((std::filesystem::path(PlaceOfText(key).folder) / path).string());
+    } catch (const ConfigError& error) {
+      Fail(key, std::string("expected a readable file, got ") + error.what());
+    }
+  }
+  table_->Record(text_key, StringToml(text));
+  return {text, std::filesystem::path(path).filename().string()};
 }
 
 std::string Section::OneOf(std::string_view key, std::span<const std::string_view> names,
@@ -328,6 +370,7 @@ Section Section::Child(std::string_view key) {
   if (const Table::Entry* entry = table_->Recorded(key)) return {document_, entry->tables.front()};
   if (node != nullptr && !node->is_table()) table_->Expected(key, table_->PathOf(key), node, "a table");
   auto child = table_->MakeChild(node, table_->PathOf(key));
+  child->inherited = table_->inherited || table_->Inherits(key);
   table_->entries.push_back({std::string(key), "", {child}, false});
   return {document_, child};
 }
@@ -348,6 +391,15 @@ std::vector<Section> Section::Children(std::string_view key) {
   return children;
 }
 
+void Section::InheritFrom(const Section& base) { table_->base = base.table_; }
+
+Value Section::Free(std::string_view key) {
+  const toml::node* node = table_->Find(key);
+  Value value = node != nullptr ? ToValue(*node) : Value{};
+  table_->Record(key, ToToml(value));
+  return value;
+}
+
 // --- mistakes ---------------------------------------------------------------------------------------
 
 void Section::Fail(std::string_view key, const std::string& message) {
@@ -357,15 +409,20 @@ void Section::Fail(std::string_view key, const std::string& message) {
 
 void Section::FailRow(std::string_view key, std::size_t row, const std::string& message) {
   table_->wrong.emplace(key);
-  const toml::node* node = table_->toml != nullptr ? table_->toml->get(key) : nullptr;
+  const toml::node* node = table_->Get(key);
   const toml::array* list = node != nullptr ? node->as_array() : nullptr;
   const toml::node* element = list != nullptr ? list->get(row) : nullptr;
   document_->Note(element != nullptr ? element->source() : table_->PlaceOf(key), Indexed(table_->PathOf(key), row),
                   message);
 }
 
+void Section::FailInText(std::string_view key, const std::string& place, const std::string& message) {
+  table_->wrong.emplace(key);
+  document_->NoteText(table_->PlaceOf(key), place + ": " + table_->PathOf(key) + ": " + message);
+}
+
 void Section::Done() {
-  if (table_->toml == nullptr) return;
+  if (table_->toml == nullptr || table_->inherited) return;
   const std::vector<std::string_view> known(table_->known.begin(), table_->known.end());
   for (const auto& [key, node] : *table_->toml) {
     if (table_->known.contains(key.str())) continue;

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "experiment/value.h"
+
 namespace mascot {
 
 /// One or more mistakes in an experiment file, each as `file:line:column: key: expected ..., got ...`.
@@ -53,6 +55,20 @@ class Section {
                        std::optional<std::int64_t> fallback = {});
   bool Boolean(std::string_view key, bool fallback);
   std::string Text(std::string_view key, std::optional<std::string> fallback = {});
+  /// Where the text of `key` begins, for those who have messages about what is in it.
+  struct Place {
+    std::string file;    ///< the file's name alone
+    std::string folder;  ///< the folder that the file was opened in, as given; "" for the current one
+    int line = 1;        ///< of the text's first line
+  };
+  Place PlaceOfText(std::string_view key) const;
+  /// The text of the file that `key` names, which is looked for beside this document. Resolved() has the text itself,
+  /// under `text_key`.
+  struct FileText {
+    std::string text;
+    std::string name;  ///< the file's, without its folders
+  };
+  FileText TextOfFile(std::string_view key, std::string_view text_key);
   /// One of `names`; the message lists them and offers the nearest.
   std::string OneOf(std::string_view key, std::span<const std::string_view> names,
                     std::optional<std::string> fallback = {});
@@ -72,10 +88,17 @@ class Section {
   /// An array of tables ([[key]]); absent reads as none.
   std::vector<Section> Children(std::string_view key);
 
+  /// Keys that this table lacks are from now on read from `base`; mistakes in them are left to its own reader.
+  void InheritFrom(const Section& base);
+  /// Anything a TOML value can be (an absent table reads as an empty one).
+  Value Free(std::string_view key);
+
   /// Notes a mistake at the place of `key` (or of this table if absent): message = "expected ..., got ...".
   void Fail(std::string_view key, const std::string& message);
   /// As Fail, at row `row` (from 0) of the list `key`: "graph.laplacian[2]: ...".
   void FailRow(std::string_view key, std::size_t row, const std::string& message);
+  /// As Fail, but the mistake is in the text of `key`, at this place: "FILE:LINE:COLUMN: law.python: ...".
+  void FailInText(std::string_view key, const std::string& place, const std::string& message);
   /// Notes every key of this table that nobody asked for as unknown, with "did you mean".
   void Done();
   /// Throws ConfigError if any section of this document noted a mistake; in order of line and column.

@@ -29,28 +29,6 @@ class File {
   int fd_;
 };
 
-std::string ReadFile(const std::string& path) {
-  const auto refuse = [&](const std::string& why) -> std::string { throw ConfigError({OneLine(path) + ": " + why}); };
-  const auto unreadable = [&] { return refuse(std::string("cannot be read: ") + std::strerror(errno)); };
-  const auto too_large = [&] { return refuse("is larger than 16 MiB"); };
-  const File file(path);
-  struct stat status {};
-  if (file.fd() < 0 || ::fstat(file.fd(), &status) != 0) return unreadable();
-  if (S_ISDIR(status.st_mode)) return refuse("is a directory");
-  if (!S_ISREG(status.st_mode)) return refuse("is not a regular file");
-  if (static_cast<std::size_t>(status.st_size) > kLargestFile) return too_large();
-  std::string text;
-  char buffer[1 << 16];
-  for (;;) {
-    const ssize_t got = ::read(file.fd(), buffer, sizeof buffer);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return unreadable();
-    if (got == 0) return text;
-    text.append(buffer, static_cast<std::size_t>(got));
-    if (text.size() > kLargestFile) return too_large();  // it grew while we read
-  }
-}
-
 /// Refuses keys of more than kDeepestKey parts: toml++ makes and frees one table per part recursively, and a
 /// key of a million parts would run it out of stack. Walks over strings and comments as TOML does.
 void RefuseDeepKeys(std::string_view text, const std::string& name) {
@@ -160,6 +138,28 @@ void Apply(const Override& override, toml::table& root) {
 
 }  // namespace
 
+std::string ReadRegularFile(const std::string& path) {
+  const auto refuse = [&](const std::string& why) -> std::string { throw ConfigError({OneLine(path) + ": " + why}); };
+  const auto unreadable = [&] { return refuse(std::string("cannot be read: ") + std::strerror(errno)); };
+  const auto too_large = [&] { return refuse("is larger than 16 MiB"); };
+  const File file(path);
+  struct stat status {};
+  if (file.fd() < 0 || ::fstat(file.fd(), &status) != 0) return unreadable();
+  if (S_ISDIR(status.st_mode)) return refuse("is a directory");
+  if (!S_ISREG(status.st_mode)) return refuse("is not a regular file");
+  if (static_cast<std::size_t>(status.st_size) > kLargestFile) return too_large();
+  std::string text;
+  char buffer[1 << 16];
+  for (;;) {
+    const ssize_t got = ::read(file.fd(), buffer, sizeof buffer);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return unreadable();
+    if (got == 0) return text;
+    text.append(buffer, static_cast<std::size_t>(got));
+    if (text.size() > kLargestFile) return too_large();  // it grew while we read
+  }
+}
+
 ConfigError::ConfigError(std::vector<std::string> mistakes)
     : std::runtime_error([&] {
         std::string text;
@@ -175,9 +175,12 @@ Section::Document::Document(std::string_view text, const std::string& document_n
 }
 
 void Section::Document::Note(const toml::source_region& place, const std::string& path, const std::string& message) {
+  NoteText(place, PlaceText(place, name) + ": " + (path.empty() ? "" : path + ": ") + message);
+}
+
+void Section::Document::NoteText(const toml::source_region& place, const std::string& text) {
   const bool overridden = place.path && *place.path != name;
-  Mistake mistake{overridden, overridden ? 0 : place.begin.line, overridden ? 0 : place.begin.column,
-                  PlaceText(place, name) + ": " + (path.empty() ? "" : path + ": ") + message};
+  Mistake mistake{overridden, overridden ? 0 : place.begin.line, overridden ? 0 : place.begin.column, text};
   if (mistakes_.size() < kMostMistakes) {
     mistakes_.insert(std::move(mistake));
   } else if (!mistakes_.contains(mistake)) {
@@ -194,7 +197,7 @@ void Section::Document::ThrowIfWrong() const {
 }
 
 Section Section::FromFile(const std::string& path, std::span<const Override> overrides) {
-  return FromText(ReadFile(path), path, overrides);
+  return FromText(ReadRegularFile(path), path, overrides);
 }
 
 Section Section::FromText(const std::string& text, const std::string& name, std::span<const Override> overrides) {

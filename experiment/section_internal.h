@@ -28,6 +28,8 @@ struct Section::Document {
 
   /// Remembers a mistake once, however often it is noted: laws are made, and complain, once per agent.
   void Note(const toml::source_region& place, const std::string& path, const std::string& message);
+  /// Likewise, where the text has its place already; listed as if at `place`.
+  void NoteText(const toml::source_region& place, const std::string& text);
   void ThrowIfWrong() const;
 
   std::string name;  ///< as the user typed it
@@ -59,15 +61,21 @@ struct Section::Table {
   std::string path;                   ///< as in messages: "agents.override[0]"; "" for the root
   const toml::table* toml = nullptr;  ///< null if the file has no such table
   toml::source_region place;          ///< of the table, or of the nearest one around it that exists
+  bool inherited = false;             ///< stands in the base of the table around it, whose reader complains
   bool broken = false;                ///< something else stands where the table should: no complaints about its keys
   Document* document = nullptr;
+  std::shared_ptr<Table> base;               ///< where keys are looked for that this table lacks
   std::set<std::string, std::less<>> known;  ///< keys that somebody asked for
   std::set<std::string, std::less<>> wrong;  ///< keys with a mistake noted
   std::vector<Entry> entries;                ///< in reading order
 
   std::string PathOf(std::string_view key) const;
   toml::source_region PlaceOf(std::string_view key) const;
-  /// The value of `key`, which from now on is a known key; null if absent.
+  /// The value of `key`, here or in the base; null if absent.
+  const toml::node* Get(std::string_view key) const;
+  /// `key` is not here but in the base, whose reader it is that complains.
+  bool Inherits(std::string_view key) const;
+  /// As Get; from now on `key` is a known key.
   const toml::node* Find(std::string_view key);
   bool Wrong(std::string_view key) const;
   Entry* Recorded(std::string_view key);
@@ -94,8 +102,17 @@ struct Section::Table {
   std::optional<std::string> ResolvedInline() const;
 };
 
+/// The whole of a regular file. Throws ConfigError: "PATH: is a directory".
+std::string ReadRegularFile(const std::string& path);
+
+/// A node as a Value, and that as TOML text on one line. Dates and times become text.
+Value ToValue(const toml::node& node);
+std::string ToToml(const Value& value);
+
 /// TOML basic string, quoted and escaped.
 std::string QuotedToml(std::string_view text);
+/// TOML string; text of several lines keeps them, if it can.
+std::string StringToml(std::string_view text);
 /// `text` for a one-line message: control characters escaped.
 std::string OneLine(std::string_view text);
 /// `text`, or its first 60 bytes and "...".

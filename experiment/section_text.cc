@@ -72,6 +72,13 @@ std::string QuotedToml(std::string_view text) {
   return quoted + "\"";
 }
 
+std::string StringToml(std::string_view text) {
+  const bool is_plain =
+      std::none_of(text.begin(), text.end(), [](char c) { return IsControl(c) && c != '\n' && c != '\t'; });
+  const bool fits = text.find('\n') != text.npos && text.find("'''") == text.npos && !text.ends_with('\'');
+  return is_plain && fits ? "'''\n" + std::string(text) + "'''" : QuotedToml(text);
+}
+
 std::string OneLine(std::string_view text) {
   std::string line;
   for (const char c : text) line += IsControl(c) ? Escaped(c) : std::string(1, c);

@@ -51,12 +51,14 @@ void Lifecycle::Set(Life life, const std::string& reason) {
   Publish();
 }
 
-void Lifecycle::Report(std::uint64_t tick, std::uint64_t misses, std::uint64_t collisions) {
+void Lifecycle::Report(std::uint64_t tick, std::uint64_t misses, const Contacts& contacts) {
   {
     const std::lock_guard lock(mutex_);
     status_.tick(tick);
     status_.misses(misses);
-    status_.collisions(collisions);
+    status_.agent_contacts(static_cast<std::uint64_t>(contacts.agents));
+    status_.ground_contacts(static_cast<std::uint64_t>(contacts.ground));
+    status_.obstacle_contacts(static_cast<std::uint64_t>(contacts.obstacles));
   }
   Publish();
 }

@@ -32,7 +32,8 @@ struct Profile {
 
 constexpr Profile kProfiles[] = {
     {TopicKind::kState, kHistoryDepth, 8, true, false}, {TopicKind::kCommand, kHistoryDepth, 8, true, false},
-    {TopicKind::kClock, kHistoryDepth, 8, true, false}, {TopicKind::kStatus, 256, 256, false, false},
+    {TopicKind::kClock, kHistoryDepth, 8, true, false}, {TopicKind::kMessage, kHistoryDepth, 8, true, false},
+    {TopicKind::kStatus, 256, 256, false, false},
     {TopicKind::kRequest, 32, 32, false, false},        {TopicKind::kExperiment, 1, 1, false, true},
 };
 

@@ -12,9 +12,10 @@ struct KindName {
 };
 
 constexpr KindName kKinds[] = {
-    {TopicKind::kCommand, "command", true},  {TopicKind::kState, "state", true},
-    {TopicKind::kClock, "clock", false},     {TopicKind::kExperiment, "experiment", false},
-    {TopicKind::kRequest, "request", false}, {TopicKind::kStatus, "status", false},
+    {TopicKind::kCommand, "command", true},        {TopicKind::kMessage, "message", true},
+    {TopicKind::kState, "state", true},            {TopicKind::kClock, "clock", false},
+    {TopicKind::kExperiment, "experiment", false}, {TopicKind::kRequest, "request", false},
+    {TopicKind::kStatus, "status", false},
 };
 constexpr std::string_view kAgentPrefix = "/agent_";
 

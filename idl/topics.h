@@ -8,7 +8,7 @@
 namespace mascot {
 
 /// What a topic carries. The order is the order of topics of one agent in a recording: by name.
-enum class TopicKind { kCommand, kState, kClock, kExperiment, kRequest, kStatus };
+enum class TopicKind { kCommand, kMessage, kState, kClock, kExperiment, kRequest, kStatus };
 
 /// Every topic of a run. `agent` is 1..N for the per-agent kinds, else 0.
 struct Topic {
@@ -17,6 +17,7 @@ struct Topic {
 
   static Topic State(int agent) { return {TopicKind::kState, agent}; }
   static Topic Command(int agent) { return {TopicKind::kCommand, agent}; }
+  static Topic Message(int agent) { return {TopicKind::kMessage, agent}; }
   static Topic Clock() { return {TopicKind::kClock, 0}; }
   static Topic Experiment() { return {TopicKind::kExperiment, 0}; }
   static Topic Request() { return {TopicKind::kRequest, 0}; }

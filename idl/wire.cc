@@ -37,12 +37,13 @@ void SerializeAs(typename PubSub::type& sample, std::vector<std::uint8_t>& bytes
 }
 
 template <class PubSub>
-void DeserializeAs(std::span<const std::uint8_t> bytes, typename PubSub::type& sample) {
+void DeserializeAs(std::span<const std::uint8_t> bytes, typename PubSub::type& sample, bool fixed_size = true) {
   thread_local PubSub type;
   SerializedPayload_t payload;  // borrows the bytes: given back before it can free them
   payload.data = const_cast<std::uint8_t*>(bytes.data());
   payload.length = payload.max_size = static_cast<std::uint32_t>(bytes.size());
-  const bool ok = bytes.size() == type.m_typeSize && type.deserialize(&payload, &sample);
+  const bool fits = fixed_size ? bytes.size() == type.m_typeSize : bytes.size() <= type.m_typeSize;
+  const bool ok = fits && type.deserialize(&payload, &sample);
   payload.data = nullptr;
   payload.length = payload.max_size = 0;
   if (!ok) throw std::runtime_error("a sample of " + std::to_string(bytes.size()) + " bytes is no " + type.getName());
@@ -54,6 +55,8 @@ std::string WireTypeName(TopicKind kind) {
   switch (kind) {
     case TopicKind::kCommand:
       return CommandType().getName();
+    case TopicKind::kMessage:
+      return MessageType().getName();
     case TopicKind::kState:
       return StateType().getName();
     case TopicKind::kClock:
@@ -102,6 +105,14 @@ void ToWire(std::int64_t tick, int rate_hz, int agent, const Command& command, m
   sample.acceleration_limited(ToVector3(command.a_limited_W));
 }
 
+void ToWire(std::int64_t tick, int rate_hz, int agent, std::span<const double> message,
+            mascot_msgs::msg::AgentMessage& sample) {
+  sample.stamp(ToTime(tick, rate_hz));
+  sample.tick(static_cast<std::uint64_t>(tick));
+  sample.agent(static_cast<std::uint32_t>(agent));
+  sample.data().assign(message.begin(), message.end());
+}
+
 void ToWire(std::int64_t tick, int rate_hz, rosgraph_msgs::msg::Clock& sample) { sample.clock(ToTime(tick, rate_hz)); }
 
 Motion FromWire(const mascot_msgs::msg::AgentState& sample) {
@@ -131,6 +142,9 @@ void Serialize(mascot_msgs::msg::AgentState& sample, std::vector<std::uint8_t>& 
 void Serialize(mascot_msgs::msg::AgentCommand& sample, std::vector<std::uint8_t>& bytes) {
   SerializeAs<CommandType>(sample, bytes);
 }
+void Serialize(mascot_msgs::msg::AgentMessage& sample, std::vector<std::uint8_t>& bytes) {
+  SerializeAs<MessageType>(sample, bytes);
+}
 void Serialize(rosgraph_msgs::msg::Clock& sample, std::vector<std::uint8_t>& bytes) {
   SerializeAs<ClockType>(sample, bytes);
 }
@@ -139,6 +153,9 @@ void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentSta
 }
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentCommand& sample) {
   DeserializeAs<CommandType>(bytes, sample);
+}
+void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentMessage& sample) {
+  DeserializeAs<MessageType>(bytes, sample, /*fixed_size=*/false);
 }
 void Deserialize(std::span<const std::uint8_t> bytes, rosgraph_msgs::msg::Clock& sample) {
   DeserializeAs<ClockType>(bytes, sample);

@@ -14,6 +14,7 @@ namespace mascot {
 
 using StateType = mascot_msgs::msg::AgentStatePubSubType;
 using CommandType = mascot_msgs::msg::AgentCommandPubSubType;
+using MessageType = mascot_msgs::msg::AgentMessagePubSubType;
 using ClockType = rosgraph_msgs::msg::ClockPubSubType;
 using StatusType = mascot_msgs::msg::StatusPubSubType;
 using RequestType = mascot_msgs::msg::RequestPubSubType;
@@ -33,6 +34,8 @@ std::uint64_t StampNs(std::int64_t tick, int rate_hz);
 // The one place where our types become wire types (quaternions x, y, z, w there) and back.
 void ToWire(std::int64_t tick, int rate_hz, int agent, const Motion& motion, mascot_msgs::msg::AgentState& sample);
 void ToWire(std::int64_t tick, int rate_hz, int agent, const Command& command, mascot_msgs::msg::AgentCommand& sample);
+void ToWire(std::int64_t tick, int rate_hz, int agent, std::span<const double> message,
+            mascot_msgs::msg::AgentMessage& sample);
 void ToWire(std::int64_t tick, int rate_hz, rosgraph_msgs::msg::Clock& sample);
 Motion FromWire(const mascot_msgs::msg::AgentState& sample);
 Command FromWire(const mascot_msgs::msg::AgentCommand& sample);
@@ -41,10 +44,12 @@ Command FromWire(const mascot_msgs::msg::AgentCommand& sample);
 /// `bytes` keeps its capacity from call to call.
 void Serialize(mascot_msgs::msg::AgentState& sample, std::vector<std::uint8_t>& bytes);
 void Serialize(mascot_msgs::msg::AgentCommand& sample, std::vector<std::uint8_t>& bytes);
+void Serialize(mascot_msgs::msg::AgentMessage& sample, std::vector<std::uint8_t>& bytes);
 void Serialize(rosgraph_msgs::msg::Clock& sample, std::vector<std::uint8_t>& bytes);
 /// The reverse. Throws std::runtime_error for bytes that are no such sample.
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentState& sample);
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentCommand& sample);
+void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentMessage& sample);
 void Deserialize(std::span<const std::uint8_t> bytes, rosgraph_msgs::msg::Clock& sample);
 
 }  // namespace mascot

@@ -97,7 +97,7 @@ void PrintPrediction(const Experiment& experiment, const Prediction& prediction)
   }
   if (prediction.first_command_m_per_s2) {
     PrintLine("first command", fmt::format("{:.4g} m/s^2 of {:g} allowed", *prediction.first_command_m_per_s2,
-                                           experiment.control.max_acceleration_m_per_s2));
+                                           *prediction.first_command_limit_m_per_s2));
   }
 }
 

@@ -9,13 +9,11 @@
 namespace mascot {
 namespace {
 
-constexpr double kSphereRadius_m = 0.1;  // the body of models that have no box (physics_server/model.h)
-
 std::vector<Eigen::Vector3d> HalfSizes(const Experiment& experiment) {
   std::vector<Eigen::Vector3d> half_m;
   for (const AgentConfig& agent : experiment.agents) {
     half_m.push_back(MakeModel(experiment, agent.id)->half_size_m());
-    if (half_m.back().isZero()) half_m.back().setConstant(kSphereRadius_m);
+    if (half_m.back().isZero()) half_m.back().setConstant(kBallRadius_m);
   }
   return half_m;
 }
@@ -26,8 +24,9 @@ std::string Pair(int i, int j) {
 
 std::optional<std::string> StartInGround(const Experiment& experiment, const std::vector<Eigen::Vector3d>& half_m) {
   for (std::size_t i = 0; i < half_m.size(); ++i) {
-    if (experiment.agents[i].p_W.z() < half_m[i].z()) {
-      return "agents.position_m: agent " + std::to_string(experiment.agents[i].id) + " starts in the ground";
+    const AgentConfig& agent = experiment.agents[i];
+    if (agent.p_W.z() < half_m[i].z() && MakeModel(experiment, agent.id)->touches_ground()) {
+      return "agents.position_m: agent " + std::to_string(agent.id) + " starts in the ground";
     }
   }
   return std::nullopt;

@@ -169,7 +169,9 @@ void DdsRun::Collect() {
     result_.startup_s = std::chrono::duration<double>(recorder_->started() - launched_).count();
   }
   if (const auto server = hub_->StatusOf("physics_server")) {
-    result_.collisions = static_cast<std::int64_t>(server->collisions());
+    result_.contacts = {.agents = static_cast<std::int64_t>(server->agent_contacts()),
+                        .ground = static_cast<std::int64_t>(server->ground_contacts()),
+                        .obstacles = static_cast<std::int64_t>(server->obstacle_contacts())};
     result_.misses = server->misses();
   }
 }

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "experiment/contacts.h"
+
 namespace mascot {
 
 /// How a run went, from whichever engine ran it.
@@ -12,7 +14,7 @@ struct EngineResult {
   int signal = 0;        ///< the signal that stopped it early, if one did
   double wall_s = 0;     ///< from publishing tick 0 to the last command gathered
   double startup_s = 0;  ///< from the start to tick 0
-  std::int64_t collisions = 0;
+  Contacts contacts;
   std::uint64_t misses = 0;                ///< realtime: commands that came too late for their tick
   std::uint64_t lost = 0;                  ///< samples that the recorder knows to have missed
   std::optional<bool> wire_matches_graph;  ///< absent: ended before everybody was discovered

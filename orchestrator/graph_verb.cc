@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "orchestrator/config_args.h"
+#include "orchestrator/dot.h"
 #include "orchestrator/graph_facts.h"
 #include "orchestrator/theory.h"
 #include "orchestrator/verb.h"
@@ -93,8 +94,12 @@ void Print(const Graph& graph, const GraphFacts& facts) {
   PrintTree(facts);
 }
 
-int ShowGraph(const ConfigArgs& args, bool json) {
+int ShowGraph(const ConfigArgs& args, bool json, bool dot) {
   const Experiment experiment = args.Load();
+  if (dot) {
+    std::cout << ToDot(experiment.graph, experiment.law.leader);
+    return 0;
+  }
   const GraphFacts facts = FactsOf(experiment.graph, experiment.law.leader);
   if (json) {
     std::cout << ToJson(experiment.graph, facts).dump(2) << "\n";
@@ -108,10 +113,11 @@ int ShowGraph(const ConfigArgs& args, bool json) {
 
 std::function<int()> SetUpGraph(CLI::App& command) {
   const auto args = std::make_shared<ConfigArgs>();
-  const auto json = std::make_shared<bool>(false);
+  const auto json = std::make_shared<bool>(false), dot = std::make_shared<bool>(false);
   args->AddTo(command);
   command.add_flag("--json", *json, "print JSON and nothing else");
-  return [args, json] { return ShowGraph(*args, *json); };
+  command.add_flag("--dot", *dot, "print the graph for Graphviz and nothing else")->excludes("--json");
+  return [args, json, dot] { return ShowGraph(*args, *json, *dot); };
 }
 
 }  // namespace mascot

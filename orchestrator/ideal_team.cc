@@ -1,15 +1,27 @@
 #include "orchestrator/ideal_team.h"
 
-#include "agent/hear.h"
-
 namespace mascot {
+namespace {
+
+void Move(Wanted driven_by, const Command& command, double h, Motion& motion) {
+  const Eigen::Vector3d v_W =
+      driven_by == Wanted::kVelocity ? command.v_limited_W : motion.v_WB + h * command.a_limited_W;
+  if (driven_by == Wanted::kVelocity)
+    motion.p_WB += h * v_W;
+  else
+    motion.p_WB += h * motion.v_WB + 0.5 * h * h * command.a_limited_W;
+  motion.a_WB = driven_by == Wanted::kVelocity ? (v_W - motion.v_WB) / h : command.a_limited_W;
+  motion.v_WB = v_W;
+}
+
+}  // namespace
 
 IdealTeam::IdealTeam(Experiment& experiment)
     : experiment_(experiment),
+      team_(experiment),
       motions_(static_cast<std::size_t>(experiment.size())),
-      u_W_(static_cast<std::size_t>(experiment.size())) {
+      commands_(static_cast<std::size_t>(experiment.size())) {
   for (const AgentConfig& config : experiment.agents) {
-    agents_.push_back(std::make_unique<Agent>(experiment, config.id));
     Motion& motion = motions_[static_cast<std::size_t>(config.id - 1)];
     motion.p_WB = config.p_W;
     motion.v_WB = config.v_W;
@@ -17,15 +29,15 @@ IdealTeam::IdealTeam(Experiment& experiment)
 }
 
 void IdealTeam::Step() {
-  for (std::size_t i = 0; i < agents_.size(); ++i) {
-    HearAll(experiment_.graph, agents_[i]->id(), motions_, heard_);
-    u_W_[i] = agents_[i]->Want(tick_, motions_[i], heard_).a_limited_W;
+  for (const AgentConfig& config : experiment_.agents) {
+    const auto i = static_cast<std::size_t>(config.id - 1);
+    commands_[i] = team_.agent(config.id).Want(tick_, motions_[i], team_.SamplesFor(config.id, motions_));
+    team_.KeepMessage(config.id);
   }
-  const double h = experiment_.period_s();
-  for (std::size_t i = 0; i < motions_.size(); ++i) {
-    motions_[i].p_WB += h * motions_[i].v_WB + 0.5 * h * h * u_W_[i];
-    motions_[i].v_WB += h * u_W_[i];
-    motions_[i].a_WB = u_W_[i];
+  team_.EndTick();
+  for (const AgentConfig& config : experiment_.agents) {
+    const auto i = static_cast<std::size_t>(config.id - 1);
+    Move(DrivenBy(config.model), commands_[i], experiment_.period_s(), motions_[i]);
   }
   ++tick_;
 }

@@ -1,16 +1,16 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <vector>
 
-#include "agent/agent.h"
 #include "experiment/experiment.h"
+#include "orchestrator/team.h"
 
 namespace mascot {
 
-/// The same experiment on ideal double integrators: same law, graph, limits and hold, but bodies that do
-/// exactly what they are told, p+ = p + h v + h^2 u / 2, v+ = v + h u. What fidelity is measured against.
+/// The same experiment on ideal bodies: same laws, graph, links, sensors, limits and hold, but bodies that do exactly
+/// what they are told. Of models driven by acceleration, double integrators: p+ = p + h v + h^2 u / 2, v+ = v + h u; of
+/// models driven by velocity, single integrators: p+ = p + h u. What fidelity is measured against.
 class IdealTeam {
  public:
   explicit IdealTeam(Experiment& experiment);
@@ -21,10 +21,9 @@ class IdealTeam {
 
  private:
   const Experiment& experiment_;
-  std::vector<std::unique_ptr<Agent>> agents_;
+  Team team_;
   std::vector<Motion> motions_;
-  std::vector<Eigen::Vector3d> u_W_;
-  std::vector<Heard> heard_;
+  std::vector<Command> commands_;
   std::int64_t tick_ = 0;
 };
 

@@ -6,12 +6,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "experiment/section.h"
 #include "orchestrator/mcap.h"
+#include "orchestrator/recording.h"
 #include "orchestrator/verb.h"
 
 namespace mascot {
@@ -53,20 +53,6 @@ double DurationSeconds(const McapContents& contents) {
   return first ? Seconds(*last - *first) : 0;
 }
 
-/// The file itself, or a run folder's recording: run.mcap, or the only one if record.file named it otherwise.
-std::string RecordingOf(const std::string& run) {
-  namespace fs = std::filesystem;
-  if (!fs::is_directory(run)) return run;
-  const fs::path usual = fs::path(run) / "run.mcap";
-  if (fs::exists(usual)) return usual.string();
-  std::vector<std::string> found;
-  for (const fs::directory_entry& entry : fs::directory_iterator(run))
-    if (entry.path().extension() == ".mcap") found.push_back(entry.path().string());
-  if (found.size() != 1)
-    throw std::runtime_error(run + ": expected a run folder with one .mcap file, got " + std::to_string(found.size()));
-  return found.front();
-}
-
 bool IsRealtime(const McapContents& contents) {
   const auto config = contents.attachments.find("config.toml");
   if (config == contents.attachments.end()) return false;
@@ -104,7 +90,7 @@ std::string Prove(const McapContents& contents, std::optional<std::uint64_t>& ti
 
 Findings Inspect(const std::string& run) {
   Findings findings;
-  findings.file = RecordingOf(run);
+  findings.file = FindRecording(run);
   findings.contents = ReadMcap(findings.file);
   findings.size_bytes = std::filesystem::file_size(findings.file);
   findings.reason = Prove(findings.contents, findings.ticks);

@@ -18,8 +18,10 @@ constexpr VerbEntry kVerbs[] = {
     {"graph", "matrix, lambda_2, components and roots of an experiment's graph", SetUpGraph},
     {"laws", "the control laws: equation, source, parameters", SetUpLaws},
     {"models", "the agent models", SetUpModels},
+    {"airframes", "the built-in quadrotors: parameters, gains, limits", SetUpAirframes},
     {"info", "what a recording holds, and the proof that it is complete", SetUpInfo},
     {"plot", "the pictures of a run again", SetUpPlot},
+    {"export", "a recording as NumPy arrays, as CSV or as a MATLAB file", SetUpExport},
 };
 
 constexpr int kUsageError = 2;

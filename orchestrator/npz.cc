@@ -6,7 +6,6 @@
 
 #include <cassert>
 #include <cerrno>
-#include <cstdio>
 #include <functional>
 #include <numeric>
 #include <stdexcept>
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include "orchestrator/bytes.h"
+#include "orchestrator/part_file.h"
 #include "orchestrator/zip.h"
 
 namespace mascot {
@@ -140,16 +140,10 @@ void NpzWriter::AddConstant(const std::string& name, std::span<const std::int64_
   impl_->arrays[static_cast<std::size_t>(array)].spool->Append(AsBytes(values));
 }
 
-/// Under another name first, so that a file at `path` is always a whole one.
 void NpzWriter::Close() {
-  const std::string part = impl_->path + ".part";
-  try {
-    impl_->Join(part);
-  } catch (...) {
-    ::unlink(part.c_str());
-    throw;
-  }
-  if (std::rename(part.c_str(), impl_->path.c_str()) != 0) Fail("create", impl_->path);
+  PartFile part(impl_->path);
+  impl_->Join(part.name());
+  part.Commit();
 }
 
 void NpzWriter::Impl::Join(const std::string& target) {

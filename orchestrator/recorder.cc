@@ -36,19 +36,21 @@ Recorder::Recorder(Domain& domain, const Experiment& experiment, RunWriter& writ
       writer_(writer),
       realtime_(experiment.run.mode == Mode::kRealtime),
       slots_(kHistoryDepth),
-      sequences_(2 * static_cast<std::size_t>(experiment.size()) + 1, 0),
       taken_(experiment.size()) {
   for (Slot& slot : slots_) slot.row = Row(experiment.size());
-  auto record = [&](const Topic& topic) {
-    readers_.push_back(std::make_unique<RawReader>(
-        domain, topic,
-        [this, topic](const RawReader::Bytes& bytes, std::int64_t sequence) { OnSample(topic, bytes, sequence); }));
-  };
-  for (int id = 1; id <= experiment.size(); ++id) {
-    record(Topic::State(id));
-    record(Topic::Command(id));
+  std::vector<Topic> topics{Topic::Clock()};
+  for (const AgentConfig& agent : experiment.agents) {
+    topics.push_back(Topic::State(agent.id));
+    topics.push_back(Topic::Command(agent.id));
+    if (agent.sends_messages) topics.push_back(Topic::Message(agent.id));
   }
-  record(Topic::Clock());
+  sequences_.assign(topics.size(), 0);
+  for (std::size_t index = 0; index < topics.size(); ++index)
+    readers_.push_back(std::make_unique<RawReader>(
+        domain, topics[index],
+        [this, index, topic = topics[index]](const RawReader::Bytes& bytes, std::int64_t sequence) {
+          OnSample(index, topic, bytes, sequence);
+        }));
 }
 
 bool Recorder::Matched() const {
@@ -64,23 +66,20 @@ std::int64_t Recorder::TickOf(const Topic& topic, const RawReader::Bytes& bytes)
   return static_cast<std::int64_t>(seconds * rate + (nanoseconds * rate + 500'000'000) / 1'000'000'000);
 }
 
-void Recorder::CheckSequence(const Topic& topic, std::int64_t sequence) {
-  const std::size_t row = topic.kind == TopicKind::kClock ? sequences_.size() - 1
-                                                          : 2 * static_cast<std::size_t>(topic.agent - 1) +
-                                                                (topic.kind == TopicKind::kState ? 0 : 1);
-  const std::int64_t missing = sequence - sequences_[row] - 1;
+void Recorder::CheckSequence(std::size_t index, const Topic& topic, std::int64_t sequence) {
+  const std::int64_t missing = sequence - sequences_[index] - 1;
   if (missing != 0) {
     lost_ += static_cast<std::uint64_t>(std::max<std::int64_t>(missing, 1));
     throw std::runtime_error("the recording is not complete: " + topic.Name() + ": sample " + std::to_string(sequence) +
-                             " came after sample " + std::to_string(sequences_[row]));
+                             " came after sample " + std::to_string(sequences_[index]));
   }
-  sequences_[row] = sequence;
+  sequences_[index] = sequence;
 }
 
-void Recorder::OnSample(const Topic& topic, const RawReader::Bytes& bytes, std::int64_t sequence) {
+void Recorder::OnSample(std::size_t index, const Topic& topic, const RawReader::Bytes& bytes, std::int64_t sequence) {
   const std::int64_t tick = TickOf(topic, bytes);
   const std::lock_guard lock(mutex_);
-  CheckSequence(topic, sequence);
+  CheckSequence(index, topic, sequence);
   if (tick < written_) {  // its row is closed: only in real time, after kPatience
     ++lost_;
     return;
@@ -93,14 +92,11 @@ void Recorder::OnSample(const Topic& topic, const RawReader::Bytes& bytes, std::
     slot.tick = tick;
     slot.samples = slot.states = 0;
     for (auto& command : slot.row.commands) command.clear();
+    for (auto& message : slot.row.messages) message.clear();
   }
-  const auto agent = static_cast<std::size_t>(std::max(topic.agent - 1, 0));
-  auto& place = topic.kind == TopicKind::kState     ? slot.row.states[agent]
-                : topic.kind == TopicKind::kCommand ? slot.row.commands[agent]
-                                                    : slot.row.clock;
-  place.assign(bytes.begin(), bytes.end());
+  slot.row.Of(topic).assign(bytes.begin(), bytes.end());
   ++slot.samples;
-  if (topic.kind != TopicKind::kCommand) ++slot.states;
+  if (topic.kind == TopicKind::kState || topic.kind == TopicKind::kClock) ++slot.states;
   if (newest_ < 0) started_ = WallClock::now();
   newest_ = std::max(newest_, tick);
   if (topic.kind == TopicKind::kCommand) last_command_ = WallClock::now();
@@ -126,6 +122,7 @@ std::int64_t Recorder::Drain(bool give_up) {
       std::swap(taken_.clock, slot.row.clock);
       std::swap(taken_.states, slot.row.states);
       std::swap(taken_.commands, slot.row.commands);
+      std::swap(taken_.messages, slot.row.messages);
       ++written_;
     }
     writer_.Add(taken_);

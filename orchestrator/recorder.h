@@ -41,10 +41,11 @@ class Recorder {
     Row row;
   };
 
-  void OnSample(const Topic& topic, const RawReader::Bytes& bytes, std::int64_t sequence);
+  /// `index`: the topic's place among the readers.
+  void OnSample(std::size_t index, const Topic& topic, const RawReader::Bytes& bytes, std::int64_t sequence);
   std::int64_t TickOf(const Topic& topic, const RawReader::Bytes& bytes) const;
   Slot& SlotOf(std::int64_t tick) { return slots_[static_cast<std::size_t>(tick) % slots_.size()]; }
-  void CheckSequence(const Topic& topic, std::int64_t sequence);
+  void CheckSequence(std::size_t index, const Topic& topic, std::int64_t sequence);
   bool IsReady(const Slot& slot, bool give_up) const;
 
   Domain& domain_;
@@ -53,7 +54,7 @@ class Recorder {
   const bool realtime_;
   mutable std::mutex mutex_;
   std::vector<Slot> slots_;
-  std::vector<std::int64_t> sequences_;  // newest of each topic: 2 an agent, then the clock
+  std::vector<std::int64_t> sequences_;  // newest of each topic, by place among the readers
   std::int64_t written_ = 0;             // rows handed to the writer
   std::int64_t complete_ = 0;            // rows complete since the loop was last woken
   std::int64_t newest_ = -1;

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "idl/topics.h"
+
 namespace mascot {
 
 /// Everything that was on the wire about one tick, as bytes (idl/wire.h). By id - 1; empty: was not sent
@@ -13,8 +15,21 @@ struct Row {
   Bytes clock;
   std::vector<Bytes> states;
   std::vector<Bytes> commands;
+  std::vector<Bytes> messages;  ///< only of agents that send any
 
-  explicit Row(int agents = 0) : states(static_cast<std::size_t>(agents)), commands(static_cast<std::size_t>(agents)) {}
+  explicit Row(int agents = 0)
+      : states(static_cast<std::size_t>(agents)),
+        commands(static_cast<std::size_t>(agents)),
+        messages(static_cast<std::size_t>(agents)) {}
+
+  /// The place of a per-tick topic's sample.
+  Bytes& Of(const Topic& topic) {
+    const auto agent = static_cast<std::size_t>(topic.agent - 1);
+    return topic.kind == TopicKind::kState     ? states[agent]
+           : topic.kind == TopicKind::kCommand ? commands[agent]
+           : topic.kind == TopicKind::kMessage ? messages[agent]
+                                               : clock;
+  }
 };
 
 }  // namespace mascot

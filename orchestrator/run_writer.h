@@ -7,11 +7,13 @@
 
 #include "experiment/experiment.h"
 #include "idl/topics.h"
+#include "orchestrator/decoded_row.h"
 #include "orchestrator/mcap.h"
 #include "orchestrator/metrics.h"
-#include "orchestrator/npz.h"
 #include "orchestrator/row.h"
 #include "orchestrator/run_folder.h"
+#include "orchestrator/state_arrays.h"
+#include "orchestrator/states_npz.h"
 
 namespace mascot {
 
@@ -37,23 +39,17 @@ class RunWriter {
   /// The recording's channel of a topic; nothing if record.topics leaves it out.
   std::optional<std::uint16_t> AddChannel(const Topic& topic);
   void WriteSample(std::optional<std::uint16_t> channel, std::uint64_t time_ns, const Row::Bytes& bytes);
-  void WriteArrays(double t_s);
 
   const Experiment& experiment_;
   McapWriter mcap_;
-  std::optional<NpzWriter> npz_;
+  std::optional<StatesNpz> npz_;
   Metrics metrics_;
-  std::vector<std::optional<std::uint16_t>> commands_, states_;  // channels by id - 1
+  std::vector<std::optional<std::uint16_t>> commands_, messages_, states_;  // channels by id - 1
   std::optional<std::uint16_t> clock_;
   std::size_t topics_ = 0;
   std::int64_t rows_ = 0;
-  std::vector<Motion> motion_;
-  std::vector<Command> command_;
-  struct Array {
-    int handle;
-    std::vector<double> row;
-  };
-  std::vector<Array> arrays_;
+  DecodedRow decoded_;
+  StateRow arrays_;
 };
 
 }  // namespace mascot

@@ -43,6 +43,14 @@ Json Consensus(const Measured& measured, const Prediction& prediction) {
   return consensus;
 }
 
+Json Safety(const Measured& measured, const Contacts& contacts) {
+  Json safety;
+  safety["min_separation_m"] = OrNull(measured.min_separation_m);
+  safety["collisions"] = contacts.total();
+  safety["contacts"] = {{"agents", contacts.agents}, {"ground", contacts.ground}, {"obstacles", contacts.obstacles}};
+  return safety;
+}
+
 template <class... Values>
 std::string Line(const char* format, Values... values) {
   char text[200];
@@ -75,7 +83,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   json["graph"] = {{"edges", EdgesOf(experiment.graph)}};
   json["consensus"] = Consensus(measured, prediction);
   json["control"] = {{"effort", measured.effort_m2_per_s3}, {"saturated_fraction", measured.saturated_fraction}};
-  json["safety"] = {{"min_separation_m", OrNull(measured.min_separation_m)}, {"collisions", engine.collisions}};
+  json["safety"] = Safety(measured, engine.contacts);
   json["fidelity"] = {
       {"rms_m", measured.fidelity_rms_m}, {"max_m", measured.fidelity_max_m}, {"travelled_m", measured.travelled_m}};
   if (experiment.run.mode == Mode::kRealtime) json["realtime"] = {{"misses", engine.misses}};
@@ -107,7 +115,7 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
                  static_cast<unsigned long long>(engine.misses));
   if (m.min_separation_m)
     text += Line("separation     %.3f m at least, %lld collisions", *m.min_separation_m,
-                 static_cast<long long>(engine.collisions));
+                 static_cast<long long>(engine.contacts.total()));
   if (m.travelled_m > 0)
     text += Line("fidelity       %.4f m rms from ideal double integrators: %.2f %% of %.1f m travelled",
                  m.fidelity_rms_m, 100 * m.fidelity_rms_m / m.travelled_m, m.travelled_m);

@@ -4,43 +4,44 @@
 
 #include "agent/laws.h"
 #include "orchestrator/crowding.h"
+#include "orchestrator/team.h"
 #include "orchestrator/theory_parts.h"
 
 namespace mascot {
 namespace {
 
-/// What agent `id` hears at tick 0.
-std::vector<Heard> HeardAtStart(const Experiment& experiment, int id) {
-  std::vector<Heard> heard;
-  for (const Graph::Neighbour& neighbour : experiment.graph.HeardBy(id)) {
-    heard.push_back({neighbour.id, neighbour.weight, {}});
-    heard.back().motion.p_WB = experiment.agent(neighbour.id).p_W;
-    heard.back().motion.v_WB = experiment.agent(neighbour.id).v_W;
+/// Everybody at tick 0.
+std::vector<Motion> Start(const Experiment& experiment) {
+  std::vector<Motion> motions(experiment.agents.size());
+  for (const AgentConfig& agent : experiment.agents) {
+    Motion& motion = motions[static_cast<std::size_t>(agent.id - 1)];
+    motion.p_WB = agent.p_W;
+    motion.v_WB = agent.v_W;
   }
-  return heard;
+  return motions;
 }
 
 void PredictFirstCommand(Experiment& experiment, Prediction& prediction) {
-  double largest = 0;
-  int of = 1;
+  Team team(experiment);
+  const std::vector<Motion> motions = Start(experiment);
+  const AgentConfig* of = nullptr;
   for (const AgentConfig& agent : experiment.agents) {
-    Motion self;
-    self.p_WB = agent.p_W;
-    self.v_WB = agent.v_W;
-    const Eigen::Vector3d a_W = MakeLaw(experiment, agent.id)->Accel_W(0, self, HeardAtStart(experiment, agent.id));
-    const double asked = a_W.head(AxisCount(experiment)).cwiseAbs().maxCoeff();
-    if (asked > largest) {
-      largest = asked;
-      of = agent.id;
-    }
+    if (DrivenBy(agent.model) == Wanted::kVelocity) continue;  // has no acceleration to limit
+    const auto& self = motions[static_cast<std::size_t>(agent.id - 1)];
+    const Eigen::Vector3d a_W = team.agent(agent.id).Want(0, self, team.SamplesFor(agent.id, motions)).a_law_W;
+    const double asked = a_W.cwiseAbs().maxCoeff();
+    if (asked <= prediction.first_command_m_per_s2.value_or(-1)) continue;
+    prediction.first_command_m_per_s2 = asked;
+    of = &agent;
   }
-  prediction.first_command_m_per_s2 = largest;
-  const double limit = experiment.control.max_acceleration_m_per_s2;
-  if (largest <= limit || experiment.law.name == "minmax") return;  // minmax: WarnOfCutBeta has said so
+  if (of == nullptr) return;
+  const double limit = of->control.max_acceleration_m_per_s2;
+  prediction.first_command_limit_m_per_s2 = limit;
+  if (*prediction.first_command_m_per_s2 <= limit || experiment.law.name == "minmax") return;  // WarnOfCutBeta has said so
   prediction.warnings.push_back(fmt::format(
       "control.max_acceleration_m_per_s2: the first command would already saturate: agent {} asks for {:.4g} m/s^2, "
       "the limit is {:.4g}",
-      of, largest, limit));
+      of->id, *prediction.first_command_m_per_s2, limit));
 }
 
 void WarnOfShortRun(const Experiment& experiment, Prediction& prediction) {

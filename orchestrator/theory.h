@@ -27,6 +27,7 @@ struct Prediction {
   std::optional<double> minmax_time_s;           ///< latest of `minmax_edges`
   std::vector<MinmaxEdge> minmax_edges;          ///< by child; only edges of which theory knows the time
   std::optional<double> first_command_m_per_s2;  ///< largest component any agent's law asks for at tick 0
+  std::optional<double> first_command_limit_m_per_s2;  ///< of that agent
   std::vector<std::string> warnings;             ///< "key: text": what will not work, or not as the user may think
 };
 

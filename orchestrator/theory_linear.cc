@@ -17,7 +17,7 @@ namespace {
 std::optional<double> CommonDamping(const Experiment& experiment, double beta) {
   std::optional<double> common;
   for (const AgentConfig& agent : experiment.agents) {
-    const bool drag = agent.model == "quadrotor" && !experiment.control.drag_compensation;
+    const bool drag = agent.model == "quadrotor" && !agent.control.drag_compensation;
     const double damping = beta + (drag ? agent.airframe.linear_drag_kg_per_s / agent.airframe.mass_kg : 0);
     if (common && *common != damping) return std::nullopt;
     common = damping;
@@ -113,7 +113,7 @@ void WarnOfLag(const Experiment& experiment, double p_gain, double damping, Pred
 }  // namespace
 
 void PredictConsensus(Experiment& experiment, Prediction& prediction) {
-  const ConsensusParams law = ReadConsensus(experiment);
+  const ConsensusParams law = ReadConsensus(experiment.law);
   const std::optional<double> damping = CommonDamping(experiment, law.beta);
   const int leader = experiment.law.leader;
   if (!Connected(experiment, prediction) || !damping || experiment.size() > kLargestSpectrum) return;

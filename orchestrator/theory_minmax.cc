@@ -16,7 +16,7 @@ std::optional<MinmaxEdge> PredictEdge(const Experiment& experiment, const Minmax
   const auto c = static_cast<std::size_t>(child - 1);
   const int parent = law.parent[c];
   const double alpha = law.beta[c] - law.parent_beta[c];
-  const double limit = experiment.control.max_acceleration_m_per_s2;
+  const double limit = experiment.agent(child).control.max_acceleration_m_per_s2;
   const bool exact = parent == experiment.law.leader && !law.root_flight;
   // The limits leave a child that has less than the law counts on: against an idle parent it may still do.
   if (exact ? limit <= alpha : limit < law.beta[c]) return std::nullopt;
@@ -33,10 +33,13 @@ std::optional<MinmaxEdge> PredictEdge(const Experiment& experiment, const Minmax
 
 void WarnOfCutBeta(const Experiment& experiment, const MinmaxParams& law, Prediction& prediction) {
   std::vector<int> cut;
-  const double limit = experiment.control.max_acceleration_m_per_s2;
+  double limit = 0;  // the largest of theirs
   for (const AgentConfig& agent : experiment.agents) {
     const bool idle = agent.id == experiment.law.leader && !law.root_flight;
-    if (!idle && law.beta[static_cast<std::size_t>(agent.id - 1)] > limit) cut.push_back(agent.id);
+    const double allowed = agent.control.max_acceleration_m_per_s2;
+    if (idle || law.beta[static_cast<std::size_t>(agent.id - 1)] <= allowed) continue;
+    cut.push_back(agent.id);
+    limit = std::max(limit, allowed);
   }
   if (cut.empty()) return;
   prediction.warnings.push_back(
@@ -59,7 +62,7 @@ void WarnOfWeakEdges(const MinmaxParams& law, Prediction& prediction) {
 }  // namespace
 
 void PredictMinmax(Experiment& experiment, Prediction& prediction) {
-  const MinmaxParams law = ReadMinmax(experiment);
+  const MinmaxParams law = ReadMinmax(experiment, experiment.law);
   prediction.value_m = RestingLeader(experiment, law.root_flight.has_value());
   for (const AgentConfig& agent : experiment.agents) {
     if (agent.id == experiment.law.leader) continue;

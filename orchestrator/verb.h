@@ -17,12 +17,14 @@ struct VerbEntry {
   std::function<int()> (*set_up)(CLI::App& command);
 };
 
-std::function<int()> SetUpUp(CLI::App& command);      // up.cc
-std::function<int()> SetUpCheck(CLI::App& command);   // check.cc
-std::function<int()> SetUpGraph(CLI::App& command);   // graph_verb.cc
-std::function<int()> SetUpLaws(CLI::App& command);    // tables.cc
-std::function<int()> SetUpModels(CLI::App& command);  // tables.cc
-std::function<int()> SetUpInfo(CLI::App& command);    // info.cc
-std::function<int()> SetUpPlot(CLI::App& command);    // plot.cc
+std::function<int()> SetUpUp(CLI::App& command);         // up.cc
+std::function<int()> SetUpCheck(CLI::App& command);      // check.cc
+std::function<int()> SetUpGraph(CLI::App& command);      // graph_verb.cc
+std::function<int()> SetUpLaws(CLI::App& command);       // tables.cc
+std::function<int()> SetUpModels(CLI::App& command);     // tables.cc
+std::function<int()> SetUpAirframes(CLI::App& command);  // airframes.cc
+std::function<int()> SetUpInfo(CLI::App& command);       // info.cc
+std::function<int()> SetUpPlot(CLI::App& command);       // plot.cc
+std::function<int()> SetUpExport(CLI::App& command);     // export.cc
 
 }  // namespace mascot

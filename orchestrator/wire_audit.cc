@@ -40,6 +40,8 @@ bool MayHave(const Graph& graph, int id, const Topic& topic, bool reads) {
       return reads && (topic.agent == id || Hears(graph, id, topic.agent));
     case TopicKind::kCommand:
       return !reads && topic.agent == id;
+    case TopicKind::kMessage:
+      return reads ? Hears(graph, id, topic.agent) : topic.agent == id;
     case TopicKind::kClock:
       return reads;
     case TopicKind::kExperiment:
@@ -59,6 +61,7 @@ std::string RightfulWriter(const Topic& topic) {
     case TopicKind::kClock:
       return "physics_server";
     case TopicKind::kCommand:
+    case TopicKind::kMessage:
       return "agent_" + std::to_string(topic.agent);
     case TopicKind::kExperiment:
       return "orchestrator";

@@ -9,7 +9,7 @@ namespace {
 
 void RunServer(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot_msgs::msg::Experiment& message) {
   const auto document = mascot::Section::FromText(message.toml(), message.name());
-  const mascot::Experiment experiment = mascot::LoadExperiment(document, message.name());
+  const mascot::Experiment experiment = mascot::LoadExperiment(document, message.name(), /*checked=*/true);
   mascot::Server server(domain, lifecycle, experiment);
   server.Run();
   lifecycle.Set(mascot::Life::kDone);

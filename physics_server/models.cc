@@ -6,7 +6,8 @@
 namespace mascot {
 
 using ModelFactory = std::unique_ptr<Model>(const Experiment& experiment, int id);
-ModelFactory MakeQuadrotor, MakeDoubleIntegrator;  // each in physics_server/models/<name>.cc
+// Each in physics_server/models/<name>.cc.
+ModelFactory MakeQuadrotor, MakeDoubleIntegrator, MakeSingleIntegrator, MakeUnicycle;
 
 namespace {
 
@@ -15,6 +16,10 @@ constexpr ModelEntry kModels[] = {
      MakeQuadrotor},
     {"double_integrator", "point of 1 kg without gravity: p'' = u", "force x, y, z in W (N), unused",
      MakeDoubleIntegrator},
+    {"single_integrator", "point with the velocity it is told: p' = u", "velocity x, y, z in W (m/s), unused",
+     MakeSingleIntegrator},
+    {"unicycle", "rolls forward and turns in a horizontal plane: x' = v cos a, y' = v sin a, a' = w",
+     "forward speed (m/s), turning speed (rad/s), unused, unused", MakeUnicycle},
 };
 
 }  // namespace

@@ -59,8 +59,7 @@ void Server::Run() {
 
 void Server::Report() {
   const std::lock_guard lock(mutex_);
-  lifecycle_.Report(static_cast<std::uint64_t>(std::max<std::int64_t>(published_, 0)), misses_,
-                    static_cast<std::uint64_t>(world_.collisions()));
+  lifecycle_.Report(static_cast<std::uint64_t>(std::max<std::int64_t>(published_, 0)), misses_, world_.contacts());
 }
 
 // --- start ----------------------------------------------------------------------------------------------

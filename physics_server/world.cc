@@ -4,6 +4,8 @@
 // back dt/2 (v+ - v) after each step, the trapezoidal rule: exact for a constant force, and no change for a body that
 // rests on the ground. The gyroscopic term is Bullet's implicit one (on by default for a rigid body); turning is first
 // order in dt. Bullet turns a body by at most pi/4 in a step: 785 rad/s at 1 kHz.
+//
+// A body driven by velocity has no acceleration to correct for: p+ = p + dt v is what its model asks for.
 #include "physics_server/world.h"
 
 #include <btBulletDynamicsCommon.h>
@@ -15,13 +17,15 @@
 #include <vector>
 
 #include "physics_server/model.h"
+#include "physics_server/wind.h"
 
 namespace mascot {
 namespace {
 
-constexpr double kSphereRadius_m = 0.1;
-constexpr int kGroundIndex = 0;  // Bullet's user index of the ground; agents have their id.
-enum CollisionGroup { kGround = 1, kAgents = 2 };
+// Bullet's user index of what is no agent; agents have their id.
+constexpr int kGroundIndex = 0;
+constexpr int kObstacleIndex = -1;  // of the first obstacle; of the next one less, and so on
+enum CollisionGroup { kGround = 1, kAgents = 2, kObstacles = 4 };
 
 btVector3 ToBullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Eigen::Vector3d ToEigen(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
@@ -44,11 +48,43 @@ struct Body {
   std::unique_ptr<btRigidBody> rigid;
   Motion state;          // at the current tick
   btVector3 v_before_W;  // before the running step
+  bool driven_by_velocity = false;
 };
 
+struct FixedBody {
+  std::unique_ptr<btCollisionShape> shape;
+  std::unique_ptr<btRigidBody> rigid;
+};
+
+btTransform Upright(const Eigen::Vector3d& p_W, double heading_rad) {
+  return btTransform(btQuaternion(btVector3(0, 0, 1), heading_rad), ToBullet(p_W));
+}
+
 std::unique_ptr<btCollisionShape> MakeShape(const Model& model) {
-  if (model.half_size_m().isZero()) return std::make_unique<btSphereShape>(kSphereRadius_m);
+  if (model.half_size_m().isZero()) return std::make_unique<btSphereShape>(kBallRadius_m);
   return std::make_unique<btBoxShape>(ToBullet(model.half_size_m()));
+}
+
+std::unique_ptr<btCollisionShape> MakeShape(const Obstacle& obstacle) {
+  const btVector3 half_m = ToBullet(obstacle.size_m / 2);
+  switch (obstacle.shape) {
+    case Shape::kBox:
+      return std::make_unique<btBoxShape>(half_m);
+    case Shape::kSphere:
+      return std::make_unique<btSphereShape>(half_m.x());
+    case Shape::kCylinder:
+      return std::make_unique<btCylinderShapeZ>(half_m);
+  }
+  throw std::invalid_argument("no such shape");
+}
+
+FixedBody MakeFixed(const Obstacle& obstacle, int user_index) {
+  FixedBody body;
+  body.shape = MakeShape(obstacle);
+  body.rigid = std::make_unique<btRigidBody>(0, nullptr, body.shape.get());
+  body.rigid->setWorldTransform(Upright(obstacle.p_W, obstacle.heading_rad));
+  body.rigid->setUserIndex(user_index);
+  return body;
 }
 
 Body MakeBody(const Experiment& experiment, const AgentConfig& agent) {
@@ -57,14 +93,19 @@ Body MakeBody(const Experiment& experiment, const AgentConfig& agent) {
   body.shape = MakeShape(*body.model);
   btRigidBody::btRigidBodyConstructionInfo info(body.model->mass_kg(), nullptr, body.shape.get(),
                                                 ToBullet(body.model->inertia_kg_m2()));
-  info.m_startWorldTransform = btTransform(btQuaternion::getIdentity(), ToBullet(agent.p_W));
+  info.m_startWorldTransform = Upright(agent.p_W, agent.heading_rad);
   body.rigid = std::make_unique<btRigidBody>(info);
   body.rigid->setLinearVelocity(ToBullet(agent.v_W));
   body.rigid->setDamping(0, 0);
   body.rigid->setActivationState(DISABLE_DEACTIVATION);
   body.rigid->setUserIndex(agent.id);
   if (!body.model->feels_gravity()) body.rigid->setFlags(body.rigid->getFlags() | BT_DISABLE_WORLD_GRAVITY);
+  if (!body.model->touches_ground()) {
+    body.rigid->setLinearFactor({1, 1, 0});
+    body.rigid->setAngularFactor({0, 0, 1});
+  }
   body.state.p_WB = agent.p_W;
+  body.state.q_WB = Eigen::AngleAxisd(agent.heading_rad, Eigen::Vector3d::UnitZ());
   body.state.v_WB = agent.v_W;
   return body;
 }
@@ -78,6 +119,19 @@ Motion Now(const btRigidBody& rigid) {
   now.v_WB = ToEigen(rigid.getLinearVelocity());
   now.w_WB_B = ToEigen(rigid.getAngularVelocity() * X_WB.getBasis());  // v * M is M^T v
   return now;
+}
+
+/// Has `push` move the body during the step that follows.
+void Apply(const Push& push, Body& body) {
+  const btMatrix3x3& R_WB = body.rigid->getWorldTransform().getBasis();
+  body.driven_by_velocity = push.velocity.has_value();
+  if (push.velocity) {
+    body.rigid->setLinearVelocity(ToBullet(push.velocity->v_W));
+    body.rigid->setAngularVelocity(R_WB * ToBullet(push.velocity->w_B));
+  }
+  body.rigid->applyCentralForce(ToBullet(push.f_W));
+  body.rigid->applyTorque(R_WB * ToBullet(push.tau_B));
+  body.v_before_W = body.rigid->getLinearVelocity();
 }
 
 bool IsFinite(const Motion& motion) {
@@ -112,24 +166,31 @@ class ContactCounter {
       const bool lasts = std::ranges::binary_search(lasting_, pair);
       if (!lasts && !Touches(manifold)) continue;
       now_.push_back(pair);
-      if (!lasts) ++begun_;
+      if (!lasts) ++Begun(pair);
     }
     std::ranges::sort(now_);
     lasting_.swap(now_);
   }
-  std::int64_t begun() const { return begun_; }
+  const Contacts& begun() const { return begun_; }
 
  private:
-  using Pair = std::pair<int, int>;
+  using Pair = std::pair<int, int>;  // of user indices, in order; one of them at least is an agent's
 
+  std::int64_t& Begun(const Pair& pair) {
+    if (pair.first <= kObstacleIndex) return begun_.obstacles;
+    return pair.first == kGroundIndex ? begun_.ground : begun_.agents;
+  }
+
+  // The solver stops a body driven by velocity just before it is inside: by how much, its path's curvature decides.
   static bool Touches(const btPersistentManifold& manifold) {
+    constexpr double kTouching_m = 1e-4;
     for (int i = 0; i < manifold.getNumContacts(); ++i)
-      if (manifold.getContactPoint(i).getDistance() <= 0) return true;
+      if (manifold.getContactPoint(i).getDistance() <= kTouching_m) return true;
     return false;
   }
 
   std::vector<Pair> lasting_, now_;  // sorted; two buffers, so that a step allocates nothing
-  std::int64_t begun_ = 0;
+  Contacts begun_;
 };
 
 }  // namespace
@@ -139,15 +200,19 @@ struct World::Impl {
   void Step(std::span<const Actuation> commands);
   void EndTick();
 
+  int rate_hz;
   double dt_s;
   double control_rate_hz;
   int steps_per_tick;
+  std::int64_t steps = 0;
   std::int64_t tick = 0;
+  Wind wind;
   ContactCounter contacts;
 
   // Bodies outlive the world that holds them, so they come first.
   Ground ground_shape;
   btRigidBody ground{0, nullptr, &ground_shape};
+  std::vector<FixedBody> obstacles;
   std::vector<Body> bodies;
   btDefaultCollisionConfiguration collision;
   btCollisionDispatcher dispatcher{&collision};
@@ -157,34 +222,44 @@ struct World::Impl {
 };
 
 World::Impl::Impl(const Experiment& experiment)
-    : dt_s(1.0 / experiment.physics.rate_hz),
+    : rate_hz(experiment.physics.rate_hz),
+      dt_s(1.0 / rate_hz),
       control_rate_hz(experiment.control.rate_hz),
-      steps_per_tick(experiment.steps_per_tick()) {
+      steps_per_tick(experiment.steps_per_tick()),
+      wind(experiment.physics.wind, experiment.run.seed, dt_s) {
   collision.setPlaneConvexMultipointIterations();  // a box then stands on four points at once
+  // Bullet's own for two spheres forgets a contact as soon as they are apart: those that slide along each other would
+  // begin one again and again.
+  dispatcher.registerCollisionCreateFunc(
+      SPHERE_SHAPE_PROXYTYPE, SPHERE_SHAPE_PROXYTYPE,
+      collision.getCollisionAlgorithmCreateFunc(CONVEX_HULL_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE));
   world.getDispatchInfo().m_deterministicOverlappingPairs = true;
   world.getSolverInfo().m_splitImpulsePenetrationThreshold = 0;  // overlap is pushed apart without giving it speed
   world.setForceUpdateAllAabbs(false);
   world.setGravity({0, 0, -experiment.physics.gravity_m_per_s2});
   ground.setUserIndex(kGroundIndex);
   if (experiment.physics.ground) world.addRigidBody(&ground, kGround, kAgents);
+  for (const Obstacle& obstacle : experiment.physics.obstacles) {
+    obstacles.push_back(MakeFixed(obstacle, kObstacleIndex - static_cast<int>(obstacles.size())));
+    world.addRigidBody(obstacles.back().rigid.get(), kObstacles, kAgents);
+  }
   bodies.reserve(experiment.agents.size());
   for (const AgentConfig& agent : experiment.agents) {
     bodies.push_back(MakeBody(experiment, agent));
-    world.addRigidBody(bodies.back().rigid.get(), kAgents, experiment.physics.collisions ? kGround | kAgents : kGround);
+    const int ground_if_touched = bodies.back().model->touches_ground() ? kGround : 0;
+    const int others = experiment.physics.collisions ? kAgents | kObstacles : 0;
+    world.addRigidBody(bodies.back().rigid.get(), kAgents, ground_if_touched | others);
   }
 }
 
 void World::Impl::Step(std::span<const Actuation> commands) {
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Body& body = bodies[i];
-    const Wrench wrench = body.model->Apply(commands[i], Now(*body.rigid), dt_s);
-    body.rigid->applyCentralForce(ToBullet(wrench.f_W));
-    body.rigid->applyTorque(body.rigid->getWorldTransform().getBasis() * ToBullet(wrench.tau_B));
-    body.v_before_W = body.rigid->getLinearVelocity();
-  }
+  const Surroundings around{.t_s = static_cast<double>(steps++) / rate_hz, .dt_s = dt_s, .wind_W = wind.Next()};
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    Apply(bodies[i].model->Apply(commands[i], Now(*bodies[i].rigid), around), bodies[i]);
   world.stepSimulation(dt_s, 0);
   for (Body& body : bodies)
-    body.rigid->getWorldTransform().getOrigin() -= (dt_s / 2) * (body.rigid->getLinearVelocity() - body.v_before_W);
+    if (!body.driven_by_velocity)
+      body.rigid->getWorldTransform().getOrigin() -= (dt_s / 2) * (body.rigid->getLinearVelocity() - body.v_before_W);
   contacts.Look(dispatcher);
 }
 
@@ -214,6 +289,6 @@ void World::Step(std::span<const Actuation> commands) {
 
 std::int64_t World::tick() const { return impl_->tick; }
 
-std::int64_t World::collisions() const { return impl_->contacts.begun(); }
+Contacts World::contacts() const { return impl_->contacts.begun(); }
 
 }  // namespace mascot

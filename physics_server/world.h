@@ -4,13 +4,14 @@
 #include <memory>
 #include <span>
 
+#include "experiment/contacts.h"
 #include "experiment/experiment.h"
 #include "experiment/motion.h"
 
 namespace mascot {
 
-/// All bodies of an experiment in one Bullet world (double precision). Deterministic: the same experiment
-/// and commands give the same bits. No clock, no DDS.
+/// All bodies of an experiment, its obstacles and its wind in one Bullet world (double precision). Deterministic: the
+/// same experiment and commands give the same bits. No clock, no DDS.
 class World {
  public:
   /// Bodies at their configured state, exactly.
@@ -25,8 +26,8 @@ class World {
   /// Throws std::runtime_error naming agent and tick if a command or a resulting state is not finite.
   void Step(std::span<const Actuation> commands);
   std::int64_t tick() const;
-  /// Contacts begun so far between two agents, or an agent and the ground; a lasting contact counts once.
-  std::int64_t collisions() const;
+  Contacts contacts() const;
+  std::int64_t collisions() const { return contacts().total(); }
 
  private:
   struct Impl;

@@ -23,6 +23,9 @@ Experiment Two(const std::string& law, const std::string& control = "") {
       "test");
 }
 
+/// What agent 1 hears: agent 2 being at `motion`.
+std::vector<Sample> Other(const Motion& motion) { return {{&motion}}; }
+
 Motion At(double x, double y, double z) {
   Motion motion;
   motion.p_WB = {x, y, z};
@@ -32,7 +35,8 @@ Motion At(double x, double y, double z) {
 TEST(Agent, LimitsTheLawPerAxisAndSaysSo) {
   Experiment experiment = Two("name = 'consensus'", "max_acceleration_m_per_s2 = 2.0");
   Agent agent(experiment, 1);
-  const std::vector<Heard> heard = {{2, 1.0, At(10, -1, 0)}};
+  const Motion other = At(10, -1, 0);
+  const std::vector<Sample> heard = Other(other);
   const Command command = agent.Want(0, At(0, 0, 0), heard);
   EXPECT_EQ(command.a_law_W, Eigen::Vector3d(10, -1, 0));
   EXPECT_EQ(command.a_limited_W, Eigen::Vector3d(2, -1, 0));
@@ -42,7 +46,8 @@ TEST(Agent, LimitsTheLawPerAxisAndSaysSo) {
 TEST(Agent, LeavesAnAccelerationAtTheLimitAloneAndUnflagged) {
   Experiment experiment = Two("name = 'consensus'", "max_acceleration_m_per_s2 = 2.0");
   Agent agent(experiment, 1);
-  const std::vector<Heard> heard = {{2, 1.0, At(2, -2, 0)}};
+  const Motion other = At(2, -2, 0);
+  const std::vector<Sample> heard = Other(other);
   const Command command = agent.Want(0, At(0, 0, 0), heard);
   EXPECT_EQ(command.a_limited_W, Eigen::Vector3d(2, -2, 0));
   EXPECT_EQ(command.flags, 0u);
@@ -51,7 +56,8 @@ TEST(Agent, LeavesAnAccelerationAtTheLimitAloneAndUnflagged) {
 TEST(Agent, IgnoresWhatTheLawSaysOfZWhereTheAltitudeIsHeld) {
   Experiment flat = Two("name = 'consensus'");
   Experiment full = Two("name = 'consensus'\naxes = 'xyz'");
-  const std::vector<Heard> heard = {{2, 1.0, At(1, 0, 1)}};
+  const Motion other = At(1, 0, 1);
+  const std::vector<Sample> heard = Other(other);
   EXPECT_EQ(Agent(flat, 1).Want(0, At(0, 0, 0), heard).a_law_W, Eigen::Vector3d(1, 0, 0));
   EXPECT_EQ(Agent(full, 1).Want(0, At(0, 0, 0), heard).a_law_W, Eigen::Vector3d(1, 0, 1));
 }
@@ -60,13 +66,15 @@ TEST(Agent, GivesTheLawTheTimeOfTheTick) {
   Experiment experiment =
       Two("name = 'waypoint'\nwaypoints_m = [[1, 0, 1], [-1, 0, 1]]\ntimes_s = [0.0, 0.5]", "rate_hz = 50");
   Agent agent(experiment, 1);
-  EXPECT_EQ(agent.Want(24, At(0, 0, 1), {}).a_law_W.x(), 1);
-  EXPECT_EQ(agent.Want(25, At(0, 0, 1), {}).a_law_W.x(), -1);
+  const Motion here = At(0, 0, 1);
+  EXPECT_EQ(agent.Want(24, here, Other(here)).a_law_W.x(), 1);
+  EXPECT_EQ(agent.Want(25, here, Other(here)).a_law_W.x(), -1);
 }
 
 TEST(Agent, DecidesWhatItWantsAndActuatesIt) {
   Experiment experiment = Two("name = 'consensus'");
-  const std::vector<Heard> heard = {{2, 1.0, At(1, -0.5, 2)}};
+  const Motion other = At(1, -0.5, 2);
+  const std::vector<Sample> heard = Other(other);
   const Command wanted = Agent(experiment, 1).Want(0, At(0, 0, 1), heard);
   const Command command = Agent(experiment, 1).Decide(0, At(0, 0, 1), heard);
   EXPECT_EQ(command.a_law_W, wanted.a_law_W);
@@ -82,7 +90,8 @@ TEST(Agent, EndsTheRunNamingTickAndAgentWhenTheLawIsNotFinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   const auto want = [&agent](double x, double y) {
-    const std::vector<Heard> heard = {{2, 1.0, At(x, y, 0)}};
+    const Motion other = At(x, y, 0);
+    const std::vector<Sample> heard = Other(other);
     agent.Decide(4, At(0, 0, 1), heard);
   };
   EXPECT_THAT([&] { want(nan, 0); },

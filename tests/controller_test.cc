@@ -85,7 +85,7 @@ TEST(DoubleIntegratorController, TurnsAccelerationIntoForceAndHoldsItsHeight) {
   self.v_WB.z() = 0.1;
   const PdGains gains = e.agents[0].airframe.altitude;
   EXPECT_NEAR(First(e, self, {0, 0, 0}).actuator[2], gains.kp * 0.5 - gains.kd * 0.1, 1e-12);
-  e.law.axes = Axes::kXyz;
+  e.agents[0].law.axes = Axes::kXyz;
   EXPECT_EQ(First(e, self, {1, -2, 3}).actuator, (Actuation{1, -2, 3, 0}));
 }
 
@@ -95,7 +95,7 @@ TEST(QuadrotorController, HoversWithHoverRotorSpeeds) {
   for (const Airframe& airframe : Airframes())
     for (const Inversion inversion : {Inversion::kSmallAngle, Inversion::kExact}) {
       Experiment e = One(airframe);
-      e.control.inversion = inversion;
+      e.agents[0].control.inversion = inversion;
       const Controller::Output output = First(e, AtStart(e));
       for (const double speed : output.actuator) EXPECT_NEAR(speed, airframe.HoverRotorSpeed(kG), 1e-9);
       EXPECT_EQ(output.flags, 0u);
@@ -112,7 +112,7 @@ TEST(QuadrotorController, GoesEastWhicheverWayItLooks) {
   const Experiment e = One(Soft());
   const Motion looks_north = Tilted(e, 0, 0, std::numbers::pi / 2);
   Experiment north = e;
-  north.control.heading_rad = std::numbers::pi / 2;
+  north.agents[0].control.heading_rad = std::numbers::pi / 2;
   const Eigen::Vector4d wrung = Wrung(e, First(north, looks_north, {0.1, 0, 0}));
   EXPECT_GT(wrung[1], 1e-3) << "east is to its right: it rolls right";
   EXPECT_NEAR(wrung[2], 0, 1e-9);
@@ -127,7 +127,7 @@ TEST(QuadrotorController, InvertsForSmallAnglesAsThePaperDoes) {
 
 TEST(QuadrotorController, InvertsExactlyWhenAsked) {
   Experiment e = One(Soft());
-  e.control.inversion = Inversion::kExact;
+  e.agents[0].control.inversion = Inversion::kExact;
   const Vector3d a_W(1.5, -0.8, 0);
   const Eigen::Vector2d target = Target(e, a_W);
   const Vector3d z_B = Tilted(e, target[0], target[1], 0).q_WB * Vector3d::UnitZ();
@@ -139,7 +139,7 @@ TEST(QuadrotorController, ExactInversionCarriesTheWeightOfATiltedBodyAndThePaper
   const Motion tilted = Tilted(e, 0.2, -0.3, 0);
   const double weight_n = e.agents[0].airframe.mass_kg * kG;
   EXPECT_NEAR(Wrung(e, First(e, tilted))[0], weight_n, 1e-9);
-  e.control.inversion = Inversion::kExact;
+  e.agents[0].control.inversion = Inversion::kExact;
   EXPECT_NEAR(Wrung(e, First(e, tilted))[0], weight_n / (std::cos(0.2) * std::cos(0.3)), 1e-9);
 }
 
@@ -155,14 +155,14 @@ TEST(QuadrotorController, HoldsItsInitialHeightAndIgnoresTheLawInZ) {
 
 TEST(QuadrotorController, TakesTheLawsVerticalAccelerationWhenItSteersXyz) {
   Experiment e = One();
-  e.law.axes = Axes::kXyz;
+  e.agents[0].law.axes = Axes::kXyz;
   EXPECT_NEAR(Wrung(e, First(e, AtStart(e), {0, 0, 2}))[0], e.agents[0].airframe.mass_kg * (kG + 2), 1e-9);
 }
 
 TEST(QuadrotorController, TurnsToItsHeadingTheShortWay) {
   Experiment e = One(Soft());
   e.agents[0].airframe.heading = {0.1, 0};  // within the rotors' small yaw torque
-  e.control.heading_rad = 3.0;
+  e.agents[0].control.heading_rad = 3.0;
   const double left_rad = 2 * std::numbers::pi - 6.0;  // from -3 to 3 rad, turning right
   const double tau_z = Wrung(e, First(e, Tilted(e, 0, 0, -3.0)))[3];
   EXPECT_NEAR(tau_z, -0.1 * left_rad * e.agents[0].airframe.inertia_kg_m2.z(), 1e-9);
@@ -183,7 +183,7 @@ TEST(QuadrotorController, AddsTheDragItKnowsOfUnlessToldNotTo) {
   Experiment e = One(body);
   e.agents[0].v_W = {2, 0, 0};
   EXPECT_NEAR(Target(e, {0, 0, 0})[1], 0.3 * 2 / body.mass_kg / kG, 1e-12);
-  e.control.drag_compensation = false;
+  e.agents[0].control.drag_compensation = false;
   EXPECT_NEAR(Target(e, {0, 0, 0})[1], 0, 1e-12);
 }
 
@@ -309,7 +309,7 @@ Flight Fly(const Experiment& e, double duration_s, double limit, const LawOfAll&
   }
   ideal = all;
   const auto limited = [&](Vector3d a_W) {
-    if (e.law.axes == Axes::kXy) a_W.z() = 0;
+    if (e.agents[0].law.axes == Axes::kXy) a_W.z() = 0;
     return Vector3d(a_W.cwiseMax(-limit).cwiseMin(limit));
   };
   Flight flight{{all}};
@@ -348,7 +348,7 @@ LawOfAll Towards(const Vector3d& goal, double p_gain, double d_gain) {
 TEST(ClosedLoop, StepsTwentyMetresWithoutOvershootAndWithoutError) {
   for (const Inversion inversion : {Inversion::kSmallAngle, Inversion::kExact}) {
     Experiment e = Bodies("quadrotor", {{0, 0, 1}});
-    e.control.inversion = inversion;
+    e.agents[0].control.inversion = inversion;
     const Flight flight = Fly(e, 40, 2, Towards({20, 0, 1}, 0.6, 1.5));
     double highest = 0, settled_s = 0;
     for (std::size_t k = 0; k < flight.rows.size(); ++k) {
@@ -365,7 +365,7 @@ TEST(ClosedLoop, StepsTwentyMetresWithoutOvershootAndWithoutError) {
 TEST(ClosedLoop, AcceleratesAsToldWhileThePapersInversionSagsLittle) {
   for (const Inversion inversion : {Inversion::kSmallAngle, Inversion::kExact}) {
     Experiment e = Bodies("quadrotor", {{0, 0, 5}});
-    e.control.inversion = inversion;
+    e.agents[0].control.inversion = inversion;
     const Flight flight = Fly(e, 4, 3, [](std::size_t, const auto&) { return Vector3d(2, -1, 0); });
     EXPECT_NEAR(flight.rows.back()[0].a_WB.x(), 2, 0.01);
     EXPECT_NEAR(flight.rows.back()[0].a_WB.y(), -1, 0.01);
@@ -377,7 +377,7 @@ TEST(ClosedLoop, AcceleratesAsToldWhileThePapersInversionSagsLittle) {
 TEST(ClosedLoop, EveryAirframeFliesToItsGoalInThreeDimensions) {
   for (const Airframe& airframe : Airframes()) {
     Experiment e = Bodies("quadrotor", {{0, 0, 1}}, airframe);
-    e.law.axes = Axes::kXyz;
+    e.agents[0].law.axes = Axes::kXyz;
     const Flight flight = Fly(e, 60, 0.6, Towards({4, -3, 3}, 0.25, 1.0));
     EXPECT_LT((flight.rows.back()[0].p_WB - Vector3d(4, -3, 3)).norm(), 1e-3) << airframe.name;
     EXPECT_LT(flight.rows.back()[0].v_WB.norm(), 1e-3) << airframe.name;
@@ -386,7 +386,7 @@ TEST(ClosedLoop, EveryAirframeFliesToItsGoalInThreeDimensions) {
 
 TEST(ClosedLoop, TurnsToItsHeadingAndStillFliesStraight) {
   Experiment e = Bodies("quadrotor", {{0, 0, 1}});
-  e.control.heading_rad = 2.0;
+  e.agents[0].control.heading_rad = 2.0;
   const Flight flight = Fly(e, 40, 2, Towards({10, 0, 1}, 0.25, 1.0));
   double sideways_m = 0;
   for (const auto& row : flight.rows) sideways_m = std::max(sideways_m, std::abs(row[0].p_WB.y()));

@@ -122,6 +122,29 @@ TEST(Engines, FiftyAgentsFlyThroughADiscoveryServer) {
   ExpectSameBytes(dds, inprocess);
 }
 
+TEST(Engines, ReportContactsByKindAlike) {
+  ScratchFolder folder;
+  const std::vector<std::string> crowd = {
+      "--duration-s",
+      "1",
+      "--set",
+      "agents={ count = 4, model = 'double_integrator', position_m = [[0, 0, 1], [1, 0, 1], [0, 9, 0.2], [9, 9, 5]], "
+      "velocity_m_per_s = [[2, 0, 0], [-2, 0, 0], [0, 0, -5], [3, 0, 0]] }",
+      "--set",
+      "physics.obstacles=[{ shape = 'box', position_m = [10.2, 9, 5], size_m = [1, 1, 1] }]"};
+  Up dds(folder, "dds", Config("leaderless"), crowd);
+  EXPECT_EQ(dds.Wait(), 0) << dds.err();
+  auto inprocess_words = crowd;
+  inprocess_words.insert(inprocess_words.end(), {"--engine", "inprocess"});
+  Up inprocess(folder, "inprocess", Config("leaderless"), inprocess_words);
+  EXPECT_EQ(inprocess.Wait(), 0) << inprocess.err();
+  ExpectSameBytes(dds, inprocess);
+  const nlohmann::json safety = dds.Summary()["safety"];
+  EXPECT_EQ(safety["contacts"], nlohmann::json({{"agents", 1}, {"ground", 1}, {"obstacles", 1}}));
+  EXPECT_EQ(safety["collisions"], 3);
+  EXPECT_EQ(inprocess.Summary()["safety"], safety);
+}
+
 /// A domain that nobody uses, of those that `up` does not pick by itself; another suite may be running.
 int FreeOddDomain() {
   for (int k = 0;; ++k) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -56,10 +57,10 @@ TEST(Experiment, NeedsADurationAndACountOnly) {
   EXPECT_EQ(e.agent(1).v_W, Eigen::Vector3d::Zero());
   EXPECT_FALSE(e.agent(1).external);
   EXPECT_EQ(e.control.rate_hz, 100);
-  EXPECT_EQ(e.control.heading_rad, 0);
-  EXPECT_EQ(e.control.max_acceleration_m_per_s2, 3);
-  EXPECT_EQ(e.control.inversion, Inversion::kSmallAngle);
-  EXPECT_TRUE(e.control.drag_compensation);
+  EXPECT_EQ(e.agent(1).control.heading_rad, 0);
+  EXPECT_EQ(e.agent(1).control.max_acceleration_m_per_s2, 3);
+  EXPECT_EQ(e.agent(1).control.inversion, Inversion::kSmallAngle);
+  EXPECT_TRUE(e.agent(1).control.drag_compensation);
   EXPECT_EQ(e.graph.edges(), 12u);
   EXPECT_EQ(e.law.name, "consensus");
   EXPECT_EQ(e.law.leader, 0);
@@ -136,10 +137,10 @@ TEST(Experiment, TakesEveryKeyOfTheFile) {
   EXPECT_EQ(e.agent(2).p_W, Eigen::Vector3d(4, 5, -6));
   EXPECT_EQ(e.agent(2).v_W, Eigen::Vector3d(0, 0, -0.5));
   EXPECT_EQ(e.control.rate_hz, 200);
-  EXPECT_EQ(e.control.heading_rad, 0.5);
-  EXPECT_EQ(e.control.max_acceleration_m_per_s2, 0.6);
-  EXPECT_EQ(e.control.inversion, Inversion::kExact);
-  EXPECT_FALSE(e.control.drag_compensation);
+  EXPECT_EQ(e.agent(1).control.heading_rad, 0.5);
+  EXPECT_EQ(e.agent(1).control.max_acceleration_m_per_s2, 0.6);
+  EXPECT_EQ(e.agent(1).control.inversion, Inversion::kExact);
+  EXPECT_FALSE(e.agent(1).control.drag_compensation);
   EXPECT_EQ(e.graph.edges(), 1u);
   EXPECT_EQ(e.law.leader, 2);
   EXPECT_EQ(e.law.axes, Axes::kXyz);
@@ -149,6 +150,64 @@ TEST(Experiment, TakesEveryKeyOfTheFile) {
   EXPECT_TRUE(e.output.show_plot);
   EXPECT_EQ(e.network.domain, 7);
   EXPECT_EQ(e.network.transport, "udp");
+}
+
+TEST(Experiment, TakesWindObstaclesAndFailuresOfPhysics) {
+  const Experiment e = Load(Config(R"(
+    agents.heading_rad = [0, 1, -1, 10]
+    [physics]
+    wind = { mean_m_per_s = [4, 0, -1], gust_std_m_per_s = 1.5, gust_time_s = 2 }
+    [[physics.obstacles]]
+    shape = "box"
+    position_m = [20, 0, 5]
+    size_m = [1, 2, 3]
+    heading_rad = 0.5
+    [[physics.obstacles]]
+    shape = "sphere"
+    position_m = [30, 0, 5]
+    size_m = [2, 2, 2]
+    [[physics.obstacles]]
+    shape = "cylinder"
+    position_m = [40, 0, 5]
+    size_m = [1, 1, 10]
+    [[physics.rotor_failures]]
+    agent = 3
+    rotor = 4
+    at_s = 2.5
+    remaining = 0.75
+    [[physics.rotor_failures]]
+    agent = 1
+    rotor = 1
+    at_s = 0
+  )"));
+  EXPECT_EQ(e.physics.wind.mean_m_per_s, Eigen::Vector3d(4, 0, -1));
+  EXPECT_EQ(e.physics.wind.gust_std_m_per_s, 1.5);
+  EXPECT_EQ(e.physics.wind.gust_time_s, 2);
+  ASSERT_THAT(e.physics.obstacles, SizeIs(3));
+  EXPECT_EQ(e.physics.obstacles[0].shape, Shape::kBox);
+  EXPECT_EQ(e.physics.obstacles[0].p_W, Eigen::Vector3d(20, 0, 5));
+  EXPECT_EQ(e.physics.obstacles[0].size_m, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(e.physics.obstacles[0].heading_rad, 0.5);
+  EXPECT_EQ(e.physics.obstacles[1].shape, Shape::kSphere);
+  EXPECT_EQ(e.physics.obstacles[2].shape, Shape::kCylinder);
+  EXPECT_EQ(e.physics.obstacles[2].heading_rad, 0);
+  ASSERT_THAT(e.physics.rotor_failures, SizeIs(2));
+  EXPECT_EQ(e.physics.rotor_failures[0].agent, 3);
+  EXPECT_EQ(e.physics.rotor_failures[0].rotor, 4);
+  EXPECT_EQ(e.physics.rotor_failures[0].at_s, 2.5);
+  EXPECT_EQ(e.physics.rotor_failures[0].remaining, 0.75);
+  EXPECT_EQ(e.physics.rotor_failures[1].remaining, 0);
+  EXPECT_EQ(e.agent(3).heading_rad, -1);
+}
+
+TEST(Experiment, HasStillAirAndNothingInTheWayByDefault) {
+  const Experiment e = Load(Config());
+  EXPECT_EQ(e.physics.wind.mean_m_per_s, Eigen::Vector3d::Zero());
+  EXPECT_EQ(e.physics.wind.gust_std_m_per_s, 0);
+  EXPECT_EQ(e.physics.wind.gust_time_s, 1);
+  EXPECT_THAT(e.physics.obstacles, IsEmpty());
+  EXPECT_THAT(e.physics.rotor_failures, IsEmpty());
+  EXPECT_EQ(e.agent(4).heading_rad, 0);
 }
 
 TEST(Experiment, ControlGainsReplaceThoseOfEveryAirframe) {
@@ -289,6 +348,122 @@ TEST(RandomStart, GivesUpAfterABoundedNumberOfTries) {
       ElementsAre("e.toml:3:32: agents.random: expected room for 9 agents 2.0 m apart, got too small a box"));
 }
 
+/// Two unicycles and two quadrotors, and `text`.
+std::string Mixed(const std::string& text) {
+  return Config(
+             "agents.override = [{ id = 2, model = 'unicycle' }, { id = 4, model = 'unicycle' }]\n"
+             "agents.random.min_separation_m = 3\n") +
+         text;
+}
+
+TEST(RandomStart, PutsUnicyclesOnTheGroundApartInXAndY) {
+  for (int seed = 0; seed < 50; ++seed) {
+    const Experiment e = Load(Mixed("run.seed = " + std::to_string(seed) + "\n"));
+    EXPECT_EQ(e.agent(2).p_W.z(), kBallRadius_m);
+    EXPECT_EQ(e.agent(4).p_W.z(), kBallRadius_m);
+    EXPECT_GE((e.agent(2).p_W - e.agent(4).p_W).head<2>().norm(), 3);
+    EXPECT_GE(std::abs(e.agent(1).p_W.z() - e.agent(3).p_W.z()), 3 - 1e-12) << "those that fly, in z";
+    EXPECT_GE(std::min(e.agent(1).p_W.z(), e.agent(3).p_W.z()), kBallRadius_m + 3) << "and above those that stand";
+  }
+}
+
+TEST(RandomStart, PutsUnicyclesAnywhereWhereThereIsNoGround) {
+  const Experiment e = Load(Mixed("physics.ground = false\n"));
+  for (const AgentConfig& agent : e.agents) EXPECT_GE(agent.p_W.z(), 1);
+}
+
+TEST(RandomStart, HasRoomForAnyNumberOfUnicyclesByDefault) {
+  for (const int count : {1, 10, 1000})
+    EXPECT_THAT(Mistakes("run.duration_s = 1\ngraph.topology = 'path'\nagents.model = 'unicycle'\nagents.count = " +
+                         std::to_string(count) + "\n"),
+                IsEmpty())
+        << count;
+}
+
+TEST(RandomStart, AvoidsObstaclesUnlessNobodyCollides) {
+  const std::string wall =
+      "physics.obstacles = [{ shape = 'box', position_m = [0, 0, 0], size_m = [19, 19, 40], heading_rad = 0.1 }]\n";
+  const auto inside = [&](const std::string& text) {
+    const Experiment e = Load("run.duration_s = 1\nagents.count = 20\n" + text + wall);
+    return FirstInObstacle(e.agents, e.physics.obstacles).has_value();
+  };
+  EXPECT_FALSE(inside(""));
+  EXPECT_FALSE(inside("law.axes = 'xyz'\n"));
+  EXPECT_FALSE(inside("agents.model = 'unicycle'\nagents.random.min_separation_m = 0.1\n"));
+  EXPECT_TRUE(inside("physics.collisions = false\n"));
+}
+
+TEST(RandomStart, SaysWhatThereIsNoRoomFor) {
+  EXPECT_THAT(Mistakes(Mixed("agents.random.max_m = [10, 10, 3]\nagents.random.min_m = [-10, -10, 1]\n")),
+              ElementsAre("e.toml:4:8: agents.random: expected room for 4 agents 3.0 m apart in z "
+                          "(law.axes = \"xy\"; unicycles in x, y), got too small a box"));
+  EXPECT_THAT(Mistakes(Config("law.axes = 'xyz'\nagents.random.min_separation_m = 0.0\n"
+                              "physics.obstacles = [{ shape = 'sphere', position_m = [0, 0, 0], "
+                              "size_m = [99, 99, 99] }]\n")),
+              ElementsAre("e.toml:4:8: agents.random: expected room for 4 agents 0.0 m apart, clear of obstacles "
+                          "(physics.obstacles), got too small a box"));
+}
+
+TEST(GivenStart, OfAUnicycleIsTakenAsItIs) {
+  EXPECT_EQ(Load("run.duration_s = 1\n"
+                 "agents = { count = 1, model = 'unicycle', position_m = [[1, 2, 0.7]] }\n")
+                .agent(1)
+                .p_W,
+            Eigen::Vector3d(1, 2, 0.7));
+}
+
+/// What is wrong with two agents of a model, the second `place`, beside an obstacle.
+std::vector<std::string> Beside(const std::string& obstacle, const std::string& place,
+                                const std::string& more = "agents.model = 'double_integrator'\n") {
+  return Mistakes("run.duration_s = 1\nagents.count = 2\nagents.position_m = [[50, 0, 5], " + place + "]\n" +
+                  "physics.obstacles = [{ shape = 'sphere', position_m = [-50, 0, 5], size_m = [1, 1, 1] }, " +
+                  obstacle + "]\n" + more);
+}
+
+TEST(GivenStart, MayNotBeInsideAnObstacleUnlessNobodyCollides) {
+  const std::string box = "{ shape = 'box', position_m = [0, 0, 5], size_m = [2, 4, 6] }";
+  EXPECT_THAT(
+      Beside(box, "[1.09, 0, 5]"),
+      ElementsAre("e.toml:3:34: agents.position_m[1]: expected agents apart from obstacles (physics.obstacles), "
+                  "got agent 2 inside obstacle 2"));
+  EXPECT_THAT(Beside(box, "[1.09, 0, 5]", "agents.model = 'double_integrator'\nphysics.collisions = false\n"),
+              IsEmpty());
+}
+
+TEST(GivenStart, MayBeJustOutsideAnObstacleOfAnyShape) {
+  const std::string box = "{ shape = 'box', position_m = [0, 0, 5], size_m = [2, 4, 6] }";
+  const std::string turned = "{ shape = 'box', position_m = [0, 0, 5], size_m = [2, 4, 6], heading_rad = 1.5707963 }";
+  const std::string sphere = "{ shape = 'sphere', position_m = [0, 0, 5], size_m = [2, 2, 2] }";
+  const std::string cylinder = "{ shape = 'cylinder', position_m = [0, 0, 5], size_m = [2, 2, 6] }";
+  EXPECT_THAT(Beside(box, "[1.11, 0, 5]"), IsEmpty());
+  EXPECT_THAT(Beside(box, "[0, 2.09, 5]"), SizeIs(1));
+  EXPECT_THAT(Beside(box, "[0, 2.11, 5]"), IsEmpty());
+  EXPECT_THAT(Beside(box, "[0, 0, 8.09]"), SizeIs(1));
+  EXPECT_THAT(Beside(box, "[0, 0, 8.11]"), IsEmpty());
+  EXPECT_THAT(Beside(turned, "[2.09, 0, 5]"), SizeIs(1));
+  EXPECT_THAT(Beside(turned, "[2.11, 0, 5]"), IsEmpty());
+  EXPECT_THAT(Beside(sphere, "[1.09, 0, 5]"), SizeIs(1));
+  EXPECT_THAT(Beside(sphere, "[0.9, 0.9, 5]"), IsEmpty()) << "beside the sphere, inside the box about it";
+  EXPECT_THAT(Beside(cylinder, "[0, 1.09, 7.9]"), SizeIs(1));
+  EXPECT_THAT(Beside(cylinder, "[0.9, 0.9, 5]"), IsEmpty());
+  EXPECT_THAT(Beside(cylinder, "[0, 0, 8.11]"), IsEmpty());
+}
+
+TEST(GivenStart, CountsTheYawOfABody) {
+  const std::string wide = "agents.airframe = { size_m = [2, 0.2, 0.2] }\n";
+  const std::string wall = "{ shape = 'box', position_m = [0, 0, 5], size_m = [2, 2, 2] }";
+  EXPECT_THAT(Beside(wall, "[0, 1.5, 5]", wide), IsEmpty());
+  EXPECT_THAT(Beside(wall, "[0, 1.5, 5]", wide + "agents.heading_rad = [0, 1.5]\n"), SizeIs(1));
+  const std::string abreast = Config("agents.position_m = [[0, 0, 5], [0, 1, 5], [0, 2, 5], [0, 3, 5]]\n") + wide;
+  EXPECT_THAT(Mistakes(abreast), IsEmpty());
+  EXPECT_THAT(Mistakes(abreast + "agents.heading_rad = [1.5, 1.5, 0, 0]\n"), SizeIs(1));
+}
+
+TEST(GivenStart, IsNotHeldAgainstAnObstacleThatIsAMistake) {
+  EXPECT_THAT(Beside("{ shape = 'box', size_m = [2, 2, 2] }", "[0, 0, 0]"),
+              ElementsAre(HasSubstr("physics.obstacles[1].position_m: expected")));
+}
+
 TEST(GivenStart, MayNotTouchUnlessNobodyCollides) {
   const std::string touching = "agents.position_m = [[0, 0, 1], [9, 0, 1], [0, 5, 1], [0.1, 0.1, 1.1]]\n";
   EXPECT_THAT(Mistakes(Config(touching)),
@@ -327,8 +502,7 @@ TEST(Experiment, FindsMistakesOfDifferentTablesAtOnce) {
 }
 
 TEST(Experiment, KnowsOnlyKeysThatDoSomething) {
-  for (const std::string later : {"run.on_agent_loss = 'hold'", "physics.wind = {}", "graph.range_m = 1.0",
-                                  "link.loss = 0.5", "network.delivery = 'topics'", "law.file = 'x.py'"})
+  for (const std::string later : {"run.on_agent_loss = 'hold'", "network.delivery = 'topics'", "law.file = 'x.py'"})
     EXPECT_THAT(Mistakes(Config(later + "\n")), ElementsAre(HasSubstr("unknown key"))) << later;
 }
 

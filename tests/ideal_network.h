@@ -11,6 +11,7 @@ namespace mascot {
 
 /// The agents of an experiment as ideal double integrators whose acceleration is held for one tick:
 ///   p+ = p + h v + h^2 u / 2,  v+ = v + h u
+/// or, where their law wants a velocity, as single integrators: p+ = p + h u.
 /// Nothing but the law: no limits, no body, no delay.
 class IdealNetwork {
  public:
@@ -29,22 +30,27 @@ class IdealNetwork {
   Motion& agent(int id) { return motions[static_cast<std::size_t>(id - 1)]; }
 
   /// What each agent's law wants now, over law.axes.
-  std::vector<Eigen::Vector3d> Accelerations() {
-    std::vector<Eigen::Vector3d> a_W;
+  std::vector<Eigen::Vector3d> Wants() {
+    std::vector<Eigen::Vector3d> wants_W;
     for (int id = 1; id <= experiment.size(); ++id) {
       std::vector<Heard> heard;
       for (const Graph::Neighbour& j : experiment.graph.HeardBy(id)) heard.push_back({j.id, j.weight, agent(j.id)});
-      a_W.push_back(laws[static_cast<std::size_t>(id - 1)]->Accel_W(time_s(), agent(id), heard));
-      if (experiment.law.axes == Axes::kXy) a_W.back().z() = 0;
+      wants_W.push_back(laws[static_cast<std::size_t>(id - 1)]->Want_W(time_s(), agent(id), heard));
+      if (experiment.law.axes == Axes::kXy) wants_W.back().z() = 0;
     }
-    return a_W;
+    return wants_W;
   }
 
   void Step() {
-    const std::vector<Eigen::Vector3d> a_W = Accelerations();
+    const std::vector<Eigen::Vector3d> wants_W = Wants();
     for (std::size_t i = 0; i < motions.size(); ++i) {
-      motions[i].p_WB += h() * motions[i].v_WB + h() * h() / 2 * a_W[i];
-      motions[i].v_WB += h() * a_W[i];
+      if (laws[i]->wanted() == Wanted::kVelocity) {
+        motions[i].v_WB = wants_W[i];
+        motions[i].p_WB += h() * motions[i].v_WB;
+        continue;
+      }
+      motions[i].p_WB += h() * motions[i].v_WB + h() * h() / 2 * wants_W[i];
+      motions[i].v_WB += h() * wants_W[i];
     }
     ++tick;
   }

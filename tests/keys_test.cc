@@ -48,6 +48,67 @@ TEST_P(Key, ChangesTheStates) {
   EXPECT_FALSE(before.up.File("states.npz") == after.up.File("states.npz"));
 }
 
+std::string NameOf(const testing::TestParamInfo<Row>& row) {
+  std::string name = row.param.key + std::to_string(row.index);
+  for (char& c : name)
+    if (c == '.') c = '_';
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Wind, Key,
+                         testing::Values(Row{"physics.wind.mean_m_per_s", "[1, 0, 0]"},
+                                         Row{"physics.wind.gust_std_m_per_s", "1.0"},
+                                         Row{"physics.wind.gust_time_s", "3.0", {"physics.wind.gust_std_m_per_s=1.0"}}),
+                         NameOf);
+
+/// One obstacle: a box of 1 m at [1.2, 0, 1] but for what `more` says.
+std::string Block(const std::string& shape = "box", const std::string& place = "[1.2, 0, 1]",
+                  const std::string& size = "[1, 1, 1]", const std::string& more = "") {
+  return "[{ shape = '" + shape + "', position_m = " + place + ", size_m = " + size + more + " }]";
+}
+
+/// `key` set to `value` for an agent that passes `obstacle` closely.
+Row Passing(const std::string& obstacle, const std::string& key, const std::string& value) {
+  return {key,
+          value,
+          {"agents={ count = 2, position_m = [[0, 0.2, 1], [9, 0, 3]], velocity_m_per_s = [[3, 0, 0], [0, 0, 0]] }",
+           "physics.obstacles=" + obstacle}};
+}
+
+INSTANTIATE_TEST_SUITE_P(Obstacles, Key,
+                         testing::Values(Passing("[]", "physics.obstacles", Block()),
+                                         Passing(Block(), "physics.obstacles", Block("cylinder")),
+                                         Passing(Block(), "physics.obstacles", Block("sphere")),
+                                         Passing(Block(), "physics.obstacles", Block("box", "[1.3, 0, 1]")),
+                                         Passing(Block(), "physics.obstacles",
+                                                 Block("box", "[1.2, 0, 1]", "[1.1, 1, 1]")),
+                                         Passing(Block(), "physics.obstacles",
+                                                 Block("box", "[1.2, 0, 1]", "[1, 1, 1]", ", heading_rad = 0.1")),
+                                         Passing(Block(), "physics.collisions", "false")),
+                         NameOf);
+
+/// One rotor failure, in place of that of rotor 1 of agent 1 at 0.5 s.
+Row Failing(int agent, int rotor, const std::string& at_s, const std::string& more = "") {
+  return {
+      "physics.rotor_failures",
+      "[{ agent = " + std::to_string(agent) + ", rotor = " + std::to_string(rotor) + ", at_s = " + at_s + more + "}]",
+      {"physics.rotor_failures=[{ agent = 1, rotor = 1, at_s = 0.5 }]"}};
+}
+
+INSTANTIATE_TEST_SUITE_P(RotorFailures, Key,
+                         testing::Values(Row{"physics.rotor_failures", "[{ agent = 1, rotor = 1, at_s = 0.5 }]"},
+                                         Failing(2, 1, "0.5"), Failing(1, 2, "0.5"), Failing(1, 1, "0.6"),
+                                         Failing(1, 1, "0.5", ", remaining = 0.5")),
+                         NameOf);
+
+INSTANTIATE_TEST_SUITE_P(Models, Key,
+                         testing::Values(Row{"agents.heading_rad", "[0, 0, 1, 0]"},
+                                         Row{"agents.heading_rad", "[0, 0, 1, 0]", {"agents.model=unicycle"}},
+                                         Row{"agents.model", "single_integrator", {"agents.model=double_integrator"}},
+                                         Row{"agents.model", "unicycle", {"agents.model=single_integrator"}},
+                                         Row{"agents.override", "[{ id = 2, model = \"unicycle\" }]"}),
+                         NameOf);
+
 INSTANTIATE_TEST_SUITE_P(
     All, Key,
     testing::Values(
@@ -79,12 +140,7 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"law", "{ name = \"waypoint\", waypoints_m = [[5, 0, 1]] }"}, Row{"law.leader", "2"},
         Row{"law.axes", "xyz"}, Row{"law.p_gain", "0.02"}, Row{"law.beta", "0.5"},
         Row{"law.leader_waypoints_m", "[[5,5,1]]", {"law.leader=1"}}),
-    [](const auto& row) {
-      std::string name = row.param.key + std::to_string(row.index);
-      for (char& c : name)
-        if (c == '.') c = '_';
-      return name;
-    });
+    NameOf);
 
 std::vector<std::string> TopicsOf(const Flown& run, const std::string& file) {
   std::vector<std::string> topics;

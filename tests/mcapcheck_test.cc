@@ -58,7 +58,11 @@ mascot_msgs::msg::AgentState SomeState() {
 mascot_msgs::msg::AgentCommand SomeCommand() {
   mascot_msgs::msg::AgentCommand sample;
   ToWire(/*tick=*/123, /*rate_hz=*/100, /*agent=*/3,
-         Command{{1.5, 2.5, 3.5, 4.5}, {5.5, 6.5, 7.5}, {8.5, 9.5, 10.5}, kTiltLimited | kRotorLimited}, sample);
+         {.actuator = {1.5, 2.5, 3.5, 4.5},
+          .a_law_W = {5.5, 6.5, 7.5},
+          .a_limited_W = {8.5, 9.5, 10.5},
+          .flags = kTiltLimited | kRotorLimited},
+         sample);
   return sample;
 }
 
@@ -146,7 +150,9 @@ TEST(Schemas, SayWhatIsOnTheWire) {
   status.state(5);
   status.tick(6);
   status.misses(7);
-  status.collisions(8);
+  status.agent_contacts(8);
+  status.ground_contacts(9);
+  status.obstacle_contacts(10);
   status.reason("none");
   mascot_msgs::msg::Request request;
   request.kind(2);
@@ -171,8 +177,8 @@ TEST(Schemas, SayWhatIsOnTheWire) {
       "actuator": [1.5, 2.5, 3.5, 4.5], "acceleration_wanted": {"x": 5.5, "y": 6.5, "z": 7.5},
       "acceleration_limited": {"x": 8.5, "y": 9.5, "z": 10.5}},
     "/clock": {"clock": {"sec": 1, "nanosec": 230000000}},
-    "/status": {"process": "agent_3", "agent": 3, "state": 5, "tick": 6, "misses": 7, "collisions": 8,
-      "reason": "none"},
+    "/status": {"process": "agent_3", "agent": 3, "state": 5, "tick": 6, "misses": 7,
+      "agent_contacts": 8, "ground_contacts": 9, "obstacle_contacts": 10, "reason": "none"},
     "/request": {"kind": 2, "reason": "over"},
     "/experiment": {"name": "n", "toml": "[run]"}})"));
 }

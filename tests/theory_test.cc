@@ -311,6 +311,9 @@ TEST(Theory, WarnsOfBodiesThatWillTouch) {
   };
   EXPECT_THAT(Of(agents("[[0, 0, 0.05], [5, 0, 1]]", "")).warnings,
               ElementsAre("agents.position_m: agent 1 starts in the ground"));
+  EXPECT_THAT(Of(agents("[[0, 0, 0.05], [5, 0, 1]]", "[[agents.override]]\nid = 1\nmodel = 'unicycle'")).warnings,
+              IsEmpty())
+      << "a unicycle stands on the ground at any height";
   EXPECT_THAT(Of(agents("[[0, 0, 1.1], [5, 0, 1]]", "")).warnings,
               ElementsAre("agents.position_m: agents 1 and 2 fly less than the 0.2 m of their bodies apart in height "
                           "and will touch where they meet"));

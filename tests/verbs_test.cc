@@ -7,8 +7,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
+#include <sstream>
 
 #include "agent/laws.h"
+#include "experiment/airframe.h"
 #include "experiment/names.h"
 #include "idl/qos.h"
 #include "orchestrator/verb.h"
@@ -142,6 +145,19 @@ TEST_F(Verbs, GraphTellsProgramsTheSame) {
   EXPECT_EQ(json["tree_root"], 1);
 }
 
+TEST_F(Verbs, GraphDrawsItselfForGraphviz) {
+  EXPECT_THAT(Printed(SetUpGraph, {path(), "--dot", "--set", "law.leader=2"}),
+              AllOf(HasSubstr("\ngraph {\n"), HasSubstr("\n  2 [shape=doublecircle]\n"),
+                    HasSubstr("\n  1 -- 2\n  2 -- 3\n  3 -- 4\n}\n")));
+  EXPECT_THAT(Printed(SetUpGraph, {path(), "--dot", "--set", "graph.topology='directed_ring'"}),
+              HasSubstr("\ndigraph {\n"));
+  EXPECT_THAT(
+      [&] {
+        Printed(SetUpGraph, {path(), "--dot", "--json"});
+      },
+      ::testing::ThrowsMessage<CLI::ParseError>("--json excludes --dot"));
+}
+
 TEST(Tables, LawsShowEveryLawWithEquationAndEveryParameter) {
   // Long texts are broken into lines: their words must be there.
   const auto words = [](const std::string& text) { return std::regex_replace(text, std::regex("\\s+"), " "); };
@@ -164,6 +180,52 @@ TEST(Tables, ModelsShowEveryModelWithItsActuators) {
   for (const ModelEntry& model : Models())
     EXPECT_THAT(text, AllOf(HasSubstr(std::string(model.name)), HasSubstr(std::string(model.actuator))));
   EXPECT_EQ(Json::parse(Printed(SetUpModels, {"--json"})).size(), Models().size());
+}
+
+TEST(Tables, AirframesShowEveryAirframeWithItsKeysAndWhatFollowsFromThem) {
+  const std::string text = Printed(SetUpAirframes, {});
+  for (const Airframe& airframe : Airframes())
+    EXPECT_THAT(text, HasSubstr(airframe.name + "\n  keys of an airframe table of your own: airframe = { base = \"" +
+                                airframe.name + "\", ... }\n"));
+  EXPECT_THAT(text, AllOf(HasSubstr("    mass_kg = 1.477 "), HasSubstr("    size_m = [0.7, 0.7, 0.12] "),
+                          HasSubstr("    altitude = { kp = 25.0, kd = 10.0 } "),
+                          HasSubstr("    hover_rotor_speed_rad_per_s = 549.4 ")));
+  const Json json = Json::parse(Printed(SetUpAirframes, {"--json"}));
+  ASSERT_EQ(json.size(), Airframes().size());
+  EXPECT_EQ(json[2]["name"], "crazyflie");
+  EXPECT_EQ(json[2]["attitude"]["kp"], 100.0);
+  // Four rotors at that speed carry the weight.
+  const double hover_rad_per_s = json[2]["derived"]["hover_rotor_speed_rad_per_s"], lift_n_s2 = json[2]["lift_n_s2"];
+  EXPECT_NEAR(4 * lift_n_s2 * hover_rad_per_s * hover_rad_per_s, 0.027 * 9.81, 1e-12);
+  EXPECT_NEAR(json[2]["derived"]["thrust_to_weight"].get<double>(), 0.6 / (0.027 * 9.81), 1e-12);
+}
+
+TEST(Tables, EveryKeyThatAirframesShowsIsOneThatATableMayHave) {
+  const Json json = Json::parse(Printed(SetUpAirframes, {"--json"}));
+  std::string table = "[agents.airframe]\nbase = 'crazyflie'\n";
+  std::set<std::string> keys;
+  for (const auto& [key, value] : json[0].items()) {
+    if (key == "derived") continue;
+    keys.insert(key);
+    if (value.is_object())
+      table += key + " = { kp = " + value["kp"].dump() + ", kd = " + value["kd"].dump() + " }\n";
+    else
+      table += key + " = " + value.dump() + "\n";
+  }
+  Section document = Section::FromText(table, "x.toml");
+  Section agents = document.Child("agents");
+  const Airframe body = ReadAirframe(agents, "airframe");
+  agents.Done();
+  document.ThrowIfWrong();
+  EXPECT_EQ(body.name, json[0]["name"]);
+  EXPECT_EQ(body.attitude.kd, json[0]["attitude"]["kd"]);
+  // And none is missing: reading asks for every key that there is, and remembers it.
+  std::istringstream resolved(document.Resolved());
+  for (std::string line; std::getline(resolved, line);) {
+    const std::string key = line.substr(0, line.find(" = "));
+    if (key == line || key == "base" || key == "kp" || key == "kd") continue;
+    EXPECT_TRUE(keys.contains(key)) << line;
+  }
 }
 
 TEST(Names, ThatAnExperimentMayUseAreThoseOfTheTables) {

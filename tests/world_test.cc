@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <tuple>
 
 #include "physics_server/model.h"
 #include "tests/one_body.h"
@@ -27,12 +28,16 @@ void Fly(World& world, const Actuation& command, int ticks) {
   for (int i = 0; i < ticks; ++i) world.Step(std::array<Actuation, 1>{command});
 }
 
+/// Orientation of a body with this yaw.
+Eigen::Quaterniond Turned(double yaw_rad) { return Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ())); }
+
 // --- how it starts ----------------------------------------------------------------------------------
 
 TEST(World, StartsExactlyAsConfigured) {
   for (const ModelEntry& model : Models()) {
     Experiment e = Bodies(model.name, {{0.1, 0.2, 1.3}, {1.0 / 3, -7, 2}});
     e.agents[1].v_W = {0.7, -0.1, 1e-9};
+    e.agents[1].heading_rad = -2.5;
     const World world(e);
     EXPECT_EQ(world.tick(), 0);
     EXPECT_EQ(world.collisions(), 0);
@@ -40,11 +45,21 @@ TEST(World, StartsExactlyAsConfigured) {
       const Motion state = world.State(agent.id);
       EXPECT_EQ(state.p_WB, agent.p_W);
       EXPECT_EQ(state.v_WB, agent.v_W);
-      EXPECT_EQ(state.q_WB.coeffs(), Eigen::Quaterniond::Identity().coeffs());
+      EXPECT_EQ(state.q_WB.coeffs(), Turned(agent.heading_rad).coeffs());
       EXPECT_EQ(state.w_WB_B, Vector3d::Zero().eval());
       EXPECT_EQ(state.a_WB, Vector3d::Zero().eval());
     }
   }
+}
+
+TEST(World, LetsABodyDriveTheWayItWasTurnedAtTheStart) {
+  Experiment e = Bodies("quadrotor", {{0, 0, 10}});
+  e.agents[0].heading_rad = std::numbers::pi / 2;
+  World world(e);
+  const double hover = Built("mascot").HoverRotorSpeed(kG);
+  Fly(world, {0.99 * hover, hover, 1.01 * hover, hover}, 20);  // nose down, and the nose points north
+  EXPECT_GT(world.State(1).v_WB.y(), 1e-3);
+  EXPECT_NEAR(world.State(1).v_WB.x(), 0, 1e-6);
 }
 
 // --- translation ------------------------------------------------------------------------------------
@@ -119,6 +134,82 @@ TEST(World, GivesTheMeanAccelerationOfTheLastTick) {
   Fly(world, {-1, 0.5, 0, 0}, 1);
   EXPECT_NEAR(world.State(1).a_WB.x(), -1, 1e-12);
   EXPECT_NEAR(world.State(1).a_WB.y(), 0.5, 1e-12);
+}
+
+// --- driven by velocity -----------------------------------------------------------------------------
+
+TEST(World, MovesASingleIntegratorByExactlyItsVelocityInEveryTick) {
+  for (const int physics_rate_hz : {100, 1000, 3000}) {
+    Experiment e = Bodies("single_integrator", {{1, -2, 3}});
+    e.physics.rate_hz = physics_rate_hz;
+    e.agents[0].v_W = {9, 9, 9};  // what it had before it was told anything
+    World world(e);
+    std::mt19937_64 random(1);
+    Vector3d p = e.agents[0].p_W;
+    for (int tick = 0; tick < 1000; ++tick) {
+      Vector3d v;
+      for (double& component : v) component = static_cast<double>(random() >> 11) * 0x1p-52 - 1;  // in [-1, 1)
+      v.z() += 3 - p.z();                                                                         // off the ground
+      p += e.period_s() * v;
+      Fly(world, {v.x(), v.y(), v.z(), 0}, 1);
+      ASSERT_LT((world.State(1).p_WB - p).norm(), 1e-12) << "tick " << tick << " at " << physics_rate_hz << " Hz";
+      ASSERT_EQ(world.State(1).v_WB, v);
+    }
+    EXPECT_EQ(world.State(1).q_WB.coeffs(), Turned(0).coeffs());
+  }
+}
+
+/// Where a unicycle is that started at `start` and held v and w.
+Vector3d OnArc(const AgentConfig& start, double v, double w, double t_s) {
+  const double a = start.heading_rad, b = a + w * t_s;
+  return start.p_W + v / w * Vector3d(std::sin(b) - std::sin(a), std::cos(a) - std::cos(b), 0);
+}
+
+TEST(World, RollsAUnicycleAlongTheArcOfItsSpeedsWhateverTheStep) {
+  for (const int physics_rate_hz : {100, 1000}) {
+    Experiment e = Bodies("unicycle", {{1, 2, 0.1}});
+    e.physics.rate_hz = physics_rate_hz;
+    e.agents[0].heading_rad = 0.7;
+    const double v = 2, w = -3;
+    World world(e);
+    for (int tick = 1; tick <= 1000; ++tick) {
+      Fly(world, {v, w, 0, 0}, 1);
+      const Motion state = world.State(1);
+      const double t = e.time_s(tick);
+      ASSERT_LT((state.p_WB - OnArc(e.agents[0], v, w, t)).norm(), 1e-9) << "t " << t << " at " << physics_rate_hz;
+      ASSERT_GT(std::abs(state.q_WB.dot(Turned(0.7 + w * t))), 1 - 1e-9);
+      ASSERT_EQ(state.p_WB.z(), 0.1);
+      ASSERT_NEAR(state.w_WB_B.z(), w, 1e-12);
+    }
+  }
+}
+
+TEST(World, GivesAUnicycleTheVelocityOfTheChordOfTheLastStep) {
+  World world(Bodies("unicycle", {{0, 0, 0.1}}));
+  Fly(world, {2, -3, 0, 0}, 1);
+  const double half_turn = 3 * 0.001 / 2, heading = -3 * 0.01 + half_turn;  // in the middle of the tick's last step
+  const Vector3d expected = 2 * std::sin(half_turn) / half_turn * Vector3d(std::cos(heading), std::sin(heading), 0);
+  EXPECT_LT((world.State(1).v_WB - expected).norm(), 1e-12);
+}
+
+TEST(World, RollsAUnicycleStraightOrTurnsItOnTheSpot) {
+  Experiment e = Bodies("unicycle", {{0, 0, 0.1}});
+  e.agents[0].heading_rad = std::numbers::pi / 2;
+  World straight(e), turning(e);
+  Fly(straight, {1.5, 0, 7, 7}, 200);
+  EXPECT_LT((straight.State(1).p_WB - Vector3d(0, 3, 0.1)).norm(), 1e-12);
+  Fly(turning, {0, 1, 7, 7}, 100);
+  EXPECT_EQ(turning.State(1).p_WB, Vector3d(0, 0, 0.1));
+  EXPECT_GT(std::abs(turning.State(1).q_WB.dot(Turned(std::numbers::pi / 2 + 1))), 1 - 1e-12);
+}
+
+TEST(World, LetsAUnicycleRollOnTheGroundWithoutTouchingIt) {
+  for (const double height_m : {0.0, 0.05, 0.1}) {
+    World world(Bodies("unicycle", {{0, 0, height_m}}));
+    Fly(world, {1, 0.5, 0, 0}, 500);
+    EXPECT_EQ(world.contacts().ground, 0);
+    EXPECT_EQ(world.State(1).p_WB.z(), height_m);
+  }
 }
 
 // --- rotation ---------------------------------------------------------------------------------------
@@ -248,6 +339,128 @@ TEST(World, KeepsLaggedRotorsAtHoverWhenToldToHover) {
   EXPECT_LT((world.State(1).p_WB - Vector3d(0, 0, 2)).norm(), 1e-9);
 }
 
+/// A world whose ticks are single steps, with one quadrotor, some of whose rotors fail.
+Experiment Failing(std::vector<RotorFailure> failures) {
+  Experiment e = Bodies("quadrotor", {{0, 0, 50}}, WithoutDrag());
+  e.control.rate_hz = e.physics.rate_hz;
+  e.physics.rotor_failures = std::move(failures);
+  return e;
+}
+
+TEST(World, TakesWhatAFailedRotorLacksFromThrustAndTorque) {
+  const Airframe body = WithoutDrag();
+  const double hover = body.HoverRotorSpeed(kG), dt = 0.001, lost = 0.75 * hover * hover;
+  World world(Failing({{.agent = 1, .rotor = 1, .at_s = 0, .remaining = 0.25}}));
+  Fly(world, Rotors(hover), 1);
+  EXPECT_NEAR(world.State(1).v_WB.z(), -dt * body.lift_n_s2 * lost / body.mass_kg, 1e-12) << "it loses height";
+  const Vector3d torque(0, body.lift_n_s2 * body.arm_m * lost, -body.drag_n_m_s2 * lost);
+  EXPECT_LT((world.State(1).w_WB_B - dt * torque.cwiseQuotient(body.inertia_kg_m2)).norm(), 1e-9) << "nose down, right";
+}
+
+TEST(World, DropsTheSideWhoseRotorFails) {
+  const double hover = Built("mascot").HoverRotorSpeed(kG);
+  const std::array<Vector3d, 4> turns = {{{0, 1, -1}, {-1, 0, 1}, {0, -1, -1}, {1, 0, 1}}};  // signs of w_WB_B
+  for (int rotor = 1; rotor <= 4; ++rotor) {
+    World world(Failing({{.agent = 1, .rotor = rotor, .at_s = 0}}));
+    Fly(world, Rotors(hover), 20);
+    const Vector3d w = world.State(1).w_WB_B;
+    const Vector3d& turn = turns[static_cast<std::size_t>(rotor - 1)];
+    for (int axis = 0; axis < 3; ++axis) {
+      if (turn[axis] == 0)
+        EXPECT_NEAR(w[axis], 0, 1e-3) << "rotor " << rotor;
+      else
+        EXPECT_GT(turn[axis] * w[axis], 1e-3) << "rotor " << rotor << " axis " << axis;
+    }
+  }
+}
+
+TEST(World, LetsARotorFailInTheStepThatBeginsAtItsTime) {
+  const double hover = Built("mascot").HoverRotorSpeed(kG);
+  World world(Failing({{.agent = 1, .rotor = 2, .at_s = 0.3}}));
+  Fly(world, Rotors(hover), 300);
+  EXPECT_LT(world.State(1).v_WB.norm() + world.State(1).w_WB_B.norm(), 1e-12) << "0.3 s: until now it hovers";
+  Fly(world, Rotors(hover), 1);
+  EXPECT_LT(world.State(1).v_WB.z(), -1e-3);
+}
+
+TEST(World, LetsTheLatestFailureOfARotorCountWhateverTheirOrder) {
+  const double hover = Built("mascot").HoverRotorSpeed(kG);
+  World world(Failing({{.agent = 1, .rotor = 3, .at_s = 0.002, .remaining = 0},
+                       {.agent = 1, .rotor = 3, .at_s = 0.001, .remaining = 0.5},
+                       {.agent = 1, .rotor = 3, .at_s = 0.003, .remaining = 1}}));
+  const std::array<double, 4> lost_parts = {0, 0.5, 1, 0};  // of a quarter of the thrust
+  for (const double lost : lost_parts) {
+    const double v_before = world.State(1).v_WB.z();
+    Fly(world, Rotors(hover), 1);
+    EXPECT_NEAR(world.State(1).v_WB.z() - v_before, -lost * kG / 4 * 0.001, 1e-7);
+  }
+}
+
+TEST(World, LetsOnlyTheRotorsOfTheAgentNamedFail) {
+  Experiment e = Bodies("quadrotor", {{0, 0, 50}, {9, 0, 50}});
+  e.physics.rotor_failures = {{.agent = 2, .rotor = 1, .at_s = 0}};
+  World world(e);
+  const Actuation hover = Rotors(Built("mascot").HoverRotorSpeed(kG));
+  for (int i = 0; i < 100; ++i) world.Step(std::array<Actuation, 2>{hover, hover});
+  EXPECT_LT((world.State(1).p_WB - e.agents[0].p_W).norm(), 1e-9);
+  EXPECT_LT(world.State(2).p_WB.z(), 49.5);
+}
+
+// --- wind -------------------------------------------------------------------------------------------
+
+TEST(World, BlowsAQuadrotorAwayAsDragSays) {
+  const Airframe body = Built("mascot");
+  const double kept = 1 - 0.001 * body.linear_drag_kg_per_s / body.mass_kg;  // of the airspeed, from step to step
+  ASSERT_LT(kept, 1);
+  Experiment e = Bodies("quadrotor", {{0, 0, 50}});
+  e.physics.wind.mean_m_per_s = {4, -2, 0.5};
+  World world(e);
+  const auto v_after = [&](int steps) -> Vector3d { return (1 - std::pow(kept, steps)) * e.physics.wind.mean_m_per_s; };
+  Fly(world, Rotors(body.HoverRotorSpeed(kG)), 1);
+  EXPECT_LT((world.State(1).v_WB - v_after(10)).norm(), 1e-12) << "first B wind / m";
+  Fly(world, Rotors(body.HoverRotorSpeed(kG)), 999);
+  EXPECT_LT((world.State(1).v_WB - v_after(10000)).norm(), 1e-9);
+}
+
+TEST(World, DriftsWithTheWindInTheEnd) {
+  Airframe body = Built("mascot");
+  body.linear_drag_kg_per_s = 2;
+  Experiment e = Bodies("quadrotor", {{0, 0, 50}}, body);
+  e.physics.wind.mean_m_per_s = {4, -2, 0.5};
+  World world(e);
+  Fly(world, Rotors(body.HoverRotorSpeed(kG)), 3000);
+  EXPECT_LT((world.State(1).v_WB - e.physics.wind.mean_m_per_s).norm(), 1e-6);
+}
+
+TEST(World, BlowsOnAllQuadrotorsAlikeAndOnNothingElse) {
+  Experiment e = Bodies("quadrotor", {{0, 0, 50}, {10, 0, 50}, {20, 0, 50}, {30, 0, 50}, {40, 0, 50}});
+  e.agents[2].model = "double_integrator";
+  e.agents[3].model = "single_integrator";
+  e.agents[4].model = "unicycle";
+  e.physics.wind = {.mean_m_per_s = {3, 0, 0}, .gust_std_m_per_s = 2, .gust_time_s = 0.5};
+  World world(e);
+  const Actuation hover = Rotors(Built("mascot").HoverRotorSpeed(kG));
+  for (int i = 0; i < 200; ++i) world.Step(std::array<Actuation, 5>{hover, hover, Rotors(0), Rotors(0), Rotors(0)});
+  EXPECT_GT(world.State(1).v_WB.norm(), 0.1);
+  EXPECT_EQ(world.State(1).v_WB, world.State(2).v_WB);
+  for (const int id : {3, 4, 5}) EXPECT_EQ(world.State(id).p_WB, e.agent(id).p_W) << e.agent(id).model;
+}
+
+TEST(World, HasTheGustsOfItsSeed) {
+  const auto blown = [](std::uint64_t seed, double gust_std_m_per_s, double gust_time_s) {
+    Experiment e = Bodies("quadrotor", {{0, 0, 50}});
+    e.run.seed = seed;
+    e.physics.wind = {.gust_std_m_per_s = gust_std_m_per_s, .gust_time_s = gust_time_s};
+    World world(e);
+    Fly(world, Rotors(Built("mascot").HoverRotorSpeed(kG)), 100);
+    return world.State(1).v_WB;
+  };
+  EXPECT_EQ(blown(1, 2, 1), blown(1, 2, 1));
+  EXPECT_NE(blown(1, 2, 1), blown(2, 2, 1));
+  EXPECT_NE(blown(1, 2, 1), blown(1, 2, 2));
+  EXPECT_LT(blown(1, 0, 1).norm(), 1e-10);
+}
+
 // --- contacts ---------------------------------------------------------------------------------------
 
 /// Two double integrators 2 m apart that fly at each other, each at 1 m/s.
@@ -296,6 +509,17 @@ TEST(World, CountsACollisionEachTimeBodiesMeet) {
   EXPECT_EQ(world.collisions(), 2);
 }
 
+TEST(World, CountsBodiesThatSlideAlongEachOtherOnce) {
+  for (const std::string_view model : {"double_integrator", "single_integrator", "unicycle"}) {
+    Experiment e = Bodies(model, {{-1, 0, 1}, {1, 0.05, 1}});
+    e.agents[1].heading_rad = std::numbers::pi;
+    World world(e);
+    const double forward = model == "unicycle" ? 1 : -1;
+    for (int i = 0; i < 500; ++i) world.Step(std::array<Actuation, 2>{{{1, 0, 0, 0}, {forward, 0, 0, 0}}});
+    EXPECT_EQ(world.contacts().agents, 1) << model;
+  }
+}
+
 TEST(World, LandsABodyOnTheGroundWhereItRests) {
   for (const bool collisions : {true, false}) {
     Experiment e = Bodies("quadrotor", {{0, 0, 1}});
@@ -319,6 +543,89 @@ TEST(World, HasNoGroundWhenToldSo) {
   Fly(world, Rotors(0), 200);
   EXPECT_LT(world.State(1).p_WB.z(), -10);
   EXPECT_EQ(world.collisions(), 0);
+}
+
+// --- obstacles --------------------------------------------------------------------------------------
+
+/// A ball with this velocity at the start, and one obstacle at the origin of x and y.
+Experiment Towards(const Obstacle& obstacle, const Vector3d& from, const Vector3d& v_W) {
+  Experiment e = Bodies("double_integrator", {from});
+  e.agents[0].v_W = v_W;
+  e.physics.obstacles = {obstacle};
+  return e;
+}
+
+TEST(World, StopsABodyAtTheSurfaceOfAnObstacle) {
+  constexpr double kYaw = std::numbers::pi / 4;
+  constexpr double kRounded_m = 0.04;  // Bullet's edges are: so the edge of the turned box is this much further in
+  const double edge = -std::sqrt(2) * (1 - kRounded_m) - kRounded_m - 0.1;
+  const Vector3d from(-3, 0, 5), east(1, 0, 0), above(0, 0, 8), down(0, 0, -1), at(0, 0, 5);
+  const std::array cases = {
+      std::tuple(Obstacle{Shape::kBox, at, {2, 8, 4}, 0}, from, east, Vector3d(-1.1, 0, 5)),
+      std::tuple(Obstacle{Shape::kBox, at, {2, 8, 4}, 2 * kYaw}, Vector3d(-9, 0, 5), east, Vector3d(-4.1, 0, 5)),
+      std::tuple(Obstacle{Shape::kBox, at, {2, 8, 4}, 0}, above, down, Vector3d(0, 0, 7.1)),
+      std::tuple(Obstacle{Shape::kBox, at, {2, 2, 4}, kYaw}, from, east, Vector3d(edge, 0, 5)),
+      std::tuple(Obstacle{Shape::kSphere, at, {3, 3, 3}, 0}, from, east, Vector3d(-1.6, 0, 5)),
+      std::tuple(Obstacle{Shape::kSphere, at, {3, 3, 3}, 0}, above, down, Vector3d(0, 0, 6.6)),
+      std::tuple(Obstacle{Shape::kCylinder, at, {2, 2, 4}, 0}, from, east, Vector3d(-1.1, 0, 5)),
+      std::tuple(Obstacle{Shape::kCylinder, at, {2, 2, 4}, 0}, above, down, Vector3d(0, 0, 7.1)),
+  };
+  for (const auto& [obstacle, start, v_W, end] : cases) {
+    World world(Towards(obstacle, start, v_W));
+    Drift(world, 1, 1000);
+    EXPECT_LT((world.State(1).p_WB - end).norm(), 3e-3) << end.transpose() << "\n" << world.State(1).p_WB.transpose();
+    EXPECT_EQ(world.contacts().obstacles, 1);
+    EXPECT_EQ(world.collisions(), 1);
+  }
+}
+
+TEST(World, HoldsABodyDrivenByVelocityOutsideAnObstacle) {
+  Experiment e = Bodies("single_integrator", {{-3, 0, 1}, {-3, 9, 1}});
+  e.agents[1].model = "unicycle";
+  e.physics.obstacles = {{Shape::kBox, {0, 0, 1}, {2, 30, 2}, 0}};
+  World world(e);
+  for (int i = 0; i < 1000; ++i) world.Step(std::array<Actuation, 2>{{{1, 0, 0, 0}, {1, 0, 0, 0}}});
+  for (const int id : {1, 2}) {
+    EXPECT_NEAR(world.State(id).p_WB.x(), -1.1, 2e-3);
+    EXPECT_NEAR(world.State(id).v_WB.x(), 0, 1e-9);
+  }
+  EXPECT_EQ(world.contacts().obstacles, 2);
+}
+
+TEST(World, LetsBodiesPassThroughObstaclesWithoutCollisions) {
+  Experiment e = Towards({Shape::kBox, {0, 0, 5}, {2, 2, 2}, 0}, {-3, 0, 5}, {1, 0, 0});
+  e.physics.collisions = false;
+  World world(e);
+  Drift(world, 1, 600);
+  EXPECT_NEAR(world.State(1).p_WB.x(), 3, 1e-9);
+  EXPECT_EQ(world.contacts().obstacles, 0);
+}
+
+TEST(World, KeepsAUnicycleUprightAtItsHeightWhateverHitsIt) {
+  Experiment e = Bodies("unicycle", {{0, 0, 0.1}, {-1, 0.05, 0.2}});
+  e.agents[1].model = "double_integrator";
+  e.agents[1].v_W = {2, 0, 0};
+  World world(e);
+  for (int i = 0; i < 200; ++i) {
+    world.Step(std::array<Actuation, 2>{{{0, 0, 0, 0}, {1, 0, 0, 0}}});
+    ASSERT_EQ(world.State(1).p_WB.z(), 0.1);
+    ASSERT_NEAR((world.State(1).q_WB * Vector3d::UnitZ()).z(), 1, 1e-12);
+  }
+  EXPECT_GE(world.contacts().agents, 1);
+}
+
+TEST(World, CountsContactsByWhatWasTouched) {
+  Experiment e = Bodies("double_integrator", {{-1, 0, 5}, {1, 0, 5}, {0, 9, 0.5}, {9, 9, 5}, {20, 0, 5}});
+  e.agents[0].v_W = {1, 0, 0};   // hits agent 2
+  e.agents[2].v_W = {0, 0, -1};  // hits the ground
+  e.agents[3].v_W = {1, 0, 0};   // hits the second obstacle
+  e.physics.obstacles = {{Shape::kSphere, {50, 50, 5}, {1, 1, 1}, 0}, {Shape::kBox, {11, 9, 5}, {1, 1, 1}, 0}};
+  World world(e);
+  Drift(world, 5, 300);
+  EXPECT_EQ(world.contacts().agents, 1);
+  EXPECT_EQ(world.contacts().ground, 1);
+  EXPECT_EQ(world.contacts().obstacles, 1);
+  EXPECT_EQ(world.collisions(), 3);
 }
 
 // --- determinism ------------------------------------------------------------------------------------

@@ -28,7 +28,7 @@ class DoubleIntegratorController final : public Controller {
 std::unique_ptr<Controller> MakeDoubleIntegratorController(const Experiment& experiment, int id) {
   const AgentConfig& agent = experiment.agent(id);
   return std::make_unique<DoubleIntegratorController>(agent.airframe.altitude, agent.p_W.z(),
-                                                      experiment.law.axes == Axes::kXy);
+                                                      agent.law.axes == Axes::kXy);
 }
 
 }  // namespace mascot

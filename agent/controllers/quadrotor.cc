@@ -74,10 +74,10 @@ class QuadrotorController final : public Controller {
         mixer_(agent.airframe),
         gravity_(experiment.physics.gravity_m_per_s2),
         period_s_(experiment.period_s()),
-        heading_rad_(experiment.control.heading_rad),
-        drag_per_s_(experiment.control.drag_compensation ? airframe_.linear_drag_kg_per_s / airframe_.mass_kg : 0),
-        exact_(experiment.control.inversion == Inversion::kExact),
-        holds_altitude_(experiment.law.axes == Axes::kXy),
+        heading_rad_(agent.control.heading_rad),
+        drag_per_s_(agent.control.drag_compensation ? airframe_.linear_drag_kg_per_s / airframe_.mass_kg : 0),
+        exact_(agent.control.inversion == Inversion::kExact),
+        holds_altitude_(agent.law.axes == Axes::kXy),
         p_ref_W_(agent.p_W),
         v_ref_W_(agent.v_W) {
     if (holds_altitude_) v_ref_W_.z() = 0;

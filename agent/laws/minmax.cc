@@ -32,7 +32,7 @@ class Child final : public Law {
   Child(int parent, double beta, double parent_beta, double boundary_layer_m)
       : parent_(parent), beta_(beta), alpha_(beta - parent_beta), layer_m_(boundary_layer_m) {}
 
-  Eigen::Vector3d Accel_W(double /*t_s*/, const Motion& self, std::span<const Heard> heard) override {
+  Eigen::Vector3d Want_W(double /*t_s*/, const Motion& self, std::span<const Heard> heard) override {
     const auto parent = std::find_if(heard.begin(), heard.end(), [this](const Heard& j) { return j.id == parent_; });
     if (parent == heard.end()) return Eigen::Vector3d::Zero();
     const Eigen::Vector3d z = self.p_WB - parent->motion.p_WB;
@@ -60,7 +60,7 @@ class Root final : public Law {
  public:
   Root(std::optional<WaypointFlight> flight, double beta) : flight_(std::move(flight)), beta_(beta) {}
 
-  Eigen::Vector3d Accel_W(double t_s, const Motion& self, std::span<const Heard> /*heard*/) override {
+  Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> /*heard*/) override {
     if (!flight_) return Eigen::Vector3d::Zero();
     return flight_->Accel_W(t_s, self).cwiseMin(beta_).cwiseMax(-beta_);
   }
@@ -87,24 +87,23 @@ std::vector<double> ReadBeta(Section& law, int agents) {
 }
 
 /// Parents by id - 1, all 0 where there is no tree to follow.
-std::vector<int> ReadTree(Experiment& experiment) {
+std::vector<int> ReadTree(const Experiment& experiment, LawConfig& law) {
   const std::vector<int> nobody(static_cast<std::size_t>(experiment.size()), 0);
-  const int root = experiment.law.leader;
+  const int root = law.leader;
   // A graph or a leader that was refused already is not worth a second complaint.
-  if (experiment.law.section.Wrong("leader") || experiment.graph.size() != experiment.size()) return nobody;
+  if (law.section.Wrong("leader") || experiment.graph.size() != experiment.size()) return nobody;
   if (root == 0) {
-    experiment.law.section.Fail("leader", "expected the root of the tree in 1..N, got 0");
+    law.section.Fail("leader", "expected the root of the tree in 1..N, got 0");
     return nobody;
   }
   if (const auto tree = experiment.graph.SpanningTree(root)) return *tree;
-  experiment.law.section.Fail("leader", "expected a root whom everyone hears, directly or not, got " +
-                                            std::to_string(root) + ", who does not reach " +
-                                            AgentList(NotReached(experiment.graph, root)));
+  law.section.Fail("leader", "expected a root whom everyone hears, directly or not, got " + std::to_string(root) +
+                                 ", who does not reach " + AgentList(NotReached(experiment.graph, root)));
   return nobody;
 }
 
 /// beta_c > beta_p on every edge, or the law promises nothing.
-void CheckEdges(Experiment& experiment, const MinmaxParams& params, bool root_bound) {
+void CheckEdges(LawConfig& law, const MinmaxParams& params, bool root_bound) {
   std::string first;
   int others = 0;
   for (std::size_t i = 0; i < params.parent.size(); ++i) {
@@ -115,45 +114,50 @@ void CheckEdges(Experiment& experiment, const MinmaxParams& params, bool root_bo
     }
     const std::string child = std::to_string(i + 1);
     const std::string parent = std::to_string(params.parent[i]);
-    const std::string bound_of =
-        root_bound ? "the root " + std::to_string(experiment.law.leader) : "its parent " + parent;
+    const std::string bound_of = root_bound ? "the root " + std::to_string(law.leader) : "its parent " + parent;
     first = "expected beta of agent " + child + " above that of " + bound_of + " (edge " + child + " -> " + parent +
             "), got " + ShortestFloat(params.beta[i]) + " and " + ShortestFloat(params.parent_beta[i]);
   }
   if (first.empty()) return;
   if (others > 0) first += " (and " + std::to_string(others) + (others == 1 ? " more edge)" : " more edges)");
-  experiment.law.section.Fail("beta", first);
+  law.section.Fail("beta", first);
 }
 
 }  // namespace
 
-MinmaxParams ReadMinmax(Experiment& experiment) {
-  Section& law = experiment.law.section;
+MinmaxParams ReadMinmax(const Experiment& experiment, LawConfig& config) {
+  Section& law = config.section;
   MinmaxParams params;
-  params.parent = ReadTree(experiment);
+  params.parent = ReadTree(experiment, config);
   params.beta = ReadBeta(law, experiment.size());
   const bool root_bound = law.OneOf("weak_edges", kWeakEdges, "refuse") == "root";
   params.boundary_layer_m = law.Number("boundary_layer", 0, 1000, 0.0);
-  params.root_flight = ReadLeaderWaypoints(experiment);
+  params.root_flight = ReadLeaderWaypoints(config);
 
   params.parent_beta.resize(params.beta.size(), 0.0);
   for (std::size_t i = 0; i < params.parent.size(); ++i) {
     if (params.parent[i] == 0) continue;
-    const int bound_of = root_bound ? experiment.law.leader : params.parent[i];
+    const int bound_of = root_bound ? config.leader : params.parent[i];
     params.parent_beta[i] = params.beta[static_cast<std::size_t>(bound_of - 1)];
   }
-  if (!law.Wrong("beta")) CheckEdges(experiment, params, root_bound);
+  if (!law.Wrong("beta")) CheckEdges(config, params, root_bound);
   return params;
 }
 
+bool CheckMinmax(Experiment& experiment, LawConfig& law) {
+  ReadMinmax(experiment, law);
+  return false;
+}
+
 std::unique_ptr<Law> MakeMinmax(Experiment& experiment, int id) {
-  const MinmaxParams params = ReadMinmax(experiment);
+  LawConfig law = experiment.agent(id).law;
+  const MinmaxParams params = ReadMinmax(experiment, law);
   const auto i = static_cast<std::size_t>(id - 1);
   if (params.parent[i] != 0) {
     return std::make_unique<Child>(params.parent[i], params.beta[i], params.parent_beta[i], params.boundary_layer_m);
   }
   std::optional<WaypointFlight> flight;
-  if (params.root_flight) flight.emplace(*params.root_flight, experiment.law.axes, experiment.agent(id).p_W);
+  if (params.root_flight) flight.emplace(*params.root_flight, law.axes, experiment.agent(id).p_W);
   return std::make_unique<Root>(std::move(flight), params.beta[i]);
 }
 

@@ -31,6 +31,6 @@ inline constexpr LawParameter kMinmaxParameters[] = {
     {"leader_times_s", "", "increasing, >= 0, s", "likewise times_s"},
 };
 
-MinmaxParams ReadMinmax(Experiment& experiment);
+MinmaxParams ReadMinmax(const Experiment& experiment, LawConfig& law);
 
 }  // namespace mascot

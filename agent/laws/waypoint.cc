@@ -31,7 +31,7 @@ class Waypoint final : public Law {
  public:
   explicit Waypoint(WaypointFlight flight) : flight_(std::move(flight)) {}
 
-  Eigen::Vector3d Accel_W(double t_s, const Motion& self, std::span<const Heard> /*heard*/) override {
+  Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> /*heard*/) override {
     return flight_.Accel_W(t_s, self);
   }
 
@@ -64,15 +64,15 @@ WaypointParams ReadWaypoints(Section& law, const std::string& prefix) {
   return params;
 }
 
-std::optional<WaypointParams> ReadLeaderWaypoints(Experiment& experiment) {
-  Section& law = experiment.law.section;
+std::optional<WaypointParams> ReadLeaderWaypoints(LawConfig& config) {
+  Section& law = config.section;
   const bool has_waypoints = law.Has("leader_waypoints_m");
-  if (experiment.law.leader > 0 && has_waypoints) return ReadWaypoints(law, "leader_");
+  if (config.leader > 0 && has_waypoints) return ReadWaypoints(law, "leader_");
   for (const LawParameter& parameter : kWaypointParameters) {
     const std::string key = "leader_" + std::string(parameter.name);
     if (!law.Has(key) || law.Wrong("leader")) continue;
-    law.Fail(key, experiment.law.leader == 0 ? "expected law.leader to name the agent that this is for, got no leader"
-                                             : "expected leader_waypoints_m beside it, got none");
+    law.Fail(key, config.leader == 0 ? "expected law.leader to name the agent that this is for, got no leader"
+                                     : "expected leader_waypoints_m beside it, got none");
   }
   return std::nullopt;
 }
@@ -111,14 +111,19 @@ double WaypointFlight::Distance(const Eigen::Vector3d& p_WB) const {
   return axes_ == Axes::kXyz ? to_target.norm() : to_target.head<2>().norm();
 }
 
-std::unique_ptr<Law> MakeWaypoint(Experiment& experiment, int id) {
-  Section& law = experiment.law.section;
-  if (experiment.law.leader != 0) {
-    law.Fail("leader",
-             "expected 0 (every agent flies the waypoints itself), got " + std::to_string(experiment.law.leader));
+bool CheckWaypoint(Experiment& /*experiment*/, LawConfig& law) {
+  if (law.leader != 0) {
+    law.section.Fail("leader",
+                     "expected 0 (every agent flies the waypoints itself), got " + std::to_string(law.leader));
   }
-  return std::make_unique<Waypoint>(
-      WaypointFlight(ReadWaypoints(law, ""), experiment.law.axes, experiment.agent(id).p_W));
+  ReadWaypoints(law.section, "");
+  return false;
+}
+
+std::unique_ptr<Law> MakeWaypoint(Experiment& experiment, int id) {
+  const AgentConfig& agent = experiment.agent(id);
+  LawConfig law = agent.law;
+  return std::make_unique<Waypoint>(WaypointFlight(ReadWaypoints(law.section, ""), law.axes, agent.p_W));
 }
 
 }  // namespace mascot

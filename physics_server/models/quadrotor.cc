@@ -1,9 +1,13 @@
 // Quadrotor of the paper, with our axes (z_B up):
-//   m dv/dt = m g_W + R_WB [0, 0, T] - B v,   [T, Gamma] = A [w1^2 .. w4^2],   J dw/dt = -w x J w + Gamma
-// Rotor speeds follow the command between 0 and their maximum, with a first-order lag if the airframe has one. Gravity
-// and the gyroscopic term -w x J w are the world's.
+//   m dv/dt = m g_W + R_WB [0, 0, T] - B (v - wind),   [T, Gamma] = A [w1^2 .. w4^2],   J dw/dt = -w x J w + Gamma
+// Rotor speeds follow the command between 0 and their maximum, with a first-order lag if the airframe has one. A rotor
+// that failed turns as told, but only a part of its w^2 counts. Gravity and the gyroscopic term -w x J w are the
+// world's.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
+#include <vector>
 
 #include "physics_server/model.h"
 
@@ -12,8 +16,9 @@ namespace {
 
 class Quadrotor final : public Model {
  public:
-  Quadrotor(const Airframe& airframe, double gravity_m_per_s2)
+  Quadrotor(const Airframe& airframe, double gravity_m_per_s2, std::vector<RotorFailure> failures)
       : airframe_(airframe),
+        failures_(std::move(failures)),
         allocation_(airframe.Allocation()),
         max_rotor_speed_(airframe.MaxRotorSpeed()),
         rotor_speed_(
@@ -24,12 +29,13 @@ class Quadrotor final : public Model {
   Eigen::Vector3d half_size_m() const override { return airframe_.size_m / 2; }
   bool feels_gravity() const override { return true; }
 
-  Wrench Apply(const Actuation& command, const Motion& self, double dt_s) override {
+  Push Apply(const Actuation& command, const Motion& self, const Surroundings& around) override {
     const Eigen::Vector4d wanted = Eigen::Vector4d::Map(command.data()).cwiseMax(0).cwiseMin(max_rotor_speed_);
-    rotor_speed_ += Followed(dt_s) * (wanted - rotor_speed_);
-    const Eigen::Vector4d thrust_torque = allocation_ * rotor_speed_.cwiseAbs2();
+    rotor_speed_ += Followed(around.dt_s) * (wanted - rotor_speed_);
+    const Eigen::Vector4d thrust_torque = allocation_ * Remaining(around.t_s).cwiseProduct(rotor_speed_.cwiseAbs2());
     const Eigen::Vector3d thrust_B(0, 0, thrust_torque[0]);
-    return {.f_W = self.q_WB * thrust_B - airframe_.linear_drag_kg_per_s * self.v_WB, .tau_B = thrust_torque.tail<3>()};
+    const Eigen::Vector3d drag_W = -airframe_.linear_drag_kg_per_s * (self.v_WB - around.wind_W);
+    return {.f_W = self.q_WB * thrust_B + drag_W, .tau_B = thrust_torque.tail<3>()};
   }
 
  private:
@@ -39,16 +45,31 @@ class Quadrotor final : public Model {
     return lag_s > 0 ? -std::expm1(-dt_s / lag_s) : 1;
   }
 
+  /// Which part of each rotor's thrust and torque is left.
+  Eigen::Vector4d Remaining(double t_s) const {
+    constexpr double kRounding_s = 1e-9;
+    Eigen::Vector4d remaining = Eigen::Vector4d::Ones();
+    for (const RotorFailure& failure : failures_)
+      if (failure.at_s <= t_s + kRounding_s) remaining[failure.rotor - 1] = failure.remaining;
+    return remaining;
+  }
+
   Airframe airframe_;
-  Eigen::Matrix4d allocation_;   // A
-  double max_rotor_speed_;       // rad/s
-  Eigen::Vector4d rotor_speed_;  // rad/s; starts at hover
+  std::vector<RotorFailure> failures_;  // in order of time: the latest that began counts
+  Eigen::Matrix4d allocation_;          // A
+  double max_rotor_speed_;              // rad/s
+  Eigen::Vector4d rotor_speed_;         // rad/s; starts at hover
 };
 
 }  // namespace
 
 std::unique_ptr<Model> MakeQuadrotor(const Experiment& experiment, int id) {
-  return std::make_unique<Quadrotor>(experiment.agent(id).airframe, experiment.physics.gravity_m_per_s2);
+  std::vector<RotorFailure> failures;
+  std::ranges::copy_if(experiment.physics.rotor_failures, std::back_inserter(failures),
+                       [id](const RotorFailure& failure) { return failure.agent == id; });
+  std::ranges::stable_sort(failures, {}, &RotorFailure::at_s);
+  return std::make_unique<Quadrotor>(experiment.agent(id).airframe, experiment.physics.gravity_m_per_s2,
+                                     std::move(failures));
 }
 
 }  // namespace mascot

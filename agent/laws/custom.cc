@@ -1,0 +1,364 @@
+// A law written by the user in Python: control(t, me, neighbours) -> acceleration or velocity in W.
+#include "agent/laws/custom.h"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "agent/python_internal.h"
+
+namespace mascot {
+namespace {
+
+constexpr std::string_view kStyles[] = {"standard", "mascot"};
+constexpr std::string_view kOutputs[] = {"acceleration", "velocity"};
+
+// What `me` and each of `neighbours` are. `me` lasts as long as the law does, so that it can keep what the law wants to
+// remember; neighbours are made anew at each call.
+constexpr const char* kClasses = R"(
+class Agent:
+    """One agent, as this one knows it. Positions and velocities are in the world frame (x east, y north, z up)."""
+
+    def __repr__(self):
+        return f"agent {self.id} at {self.position}"
+)";
+
+/// Numbers as a NumPy array of their own.
+py::array_t<double> Array(std::span<const double> values) {
+  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+py::array_t<double> Array(const Eigen::Vector3d& v) { return Array(std::span<const double>(v.data(), 3)); }
+
+/// Names of attributes, made once.
+struct Names {
+  py::str id{"id"}, position{"position"}, velocity{"velocity"}, acceleration{"acceleration"},
+      orientation{"orientation"}, angular_velocity{"angular_velocity"}, weight{"weight"}, message{"message"},
+      age_s{"age_s"};
+};
+
+/// What came back, for a message.
+std::string Shown(const py::handle& value) {
+  constexpr std::size_t kLongest = 200;
+  const std::string text = py::repr(value).cast<std::string>();
+  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+}
+
+/// The numbers of what a function returned, or nothing if it is not a flat sequence of numbers.
+std::optional<std::vector<double>> Numbers(const py::object& value) {
+  std::vector<double> numbers;
+  if (PyTuple_Check(value.ptr()) || PyList_Check(value.ptr())) {  // the usual case, and the fastest
+    for (const py::handle& item : py::reinterpret_borrow<py::sequence>(value)) {
+      const double number = PyFloat_AsDouble(item.ptr());
+      if (number == -1 && PyErr_Occurred() != nullptr) {
+        PyErr_Clear();
+        return std::nullopt;
+      }
+      numbers.push_back(number);
+    }
+    return numbers;
+  }
+  if (!py::isinstance<py::array>(value) || value.attr("dtype").attr("kind").cast<std::string>() == "c")
+    return std::nullopt;
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
+  if (!array) {
+    PyErr_Clear();
+    return std::nullopt;
+  }
+  if (array.ndim() != 1) return std::nullopt;
+  numbers.assign(array.data(), array.data() + array.size());
+  return numbers;
+}
+
+/// One agent's module of Python: the user's text, run in a namespace of its own.
+class Module {
+ public:
+  explicit Module(const CustomParams& params) : space_(RunPython(params.text, params.file, params.line)) {}
+
+  /// A function that the text defines; none if it defines none of this name.
+  py::object Function(const char* name) const {
+    const py::object function = space_.contains(name) ? py::object(space_[name]) : py::none();
+    return PyCallable_Check(function.ptr()) != 0 ? function : py::none();
+  }
+
+ private:
+  py::dict space_;
+};
+
+/// What both styles share: errors that say whose law it was and what came back.
+class PythonLaw : public Law {
+ public:
+  PythonLaw(int id, const CustomParams& params, const char* function)
+      : id_(id), wanted_(params.wanted), file_(params.file), function_(function) {}
+  Wanted wanted() const override { return wanted_; }
+
+ protected:
+  int id() const { return id_; }
+
+  template <class Call>
+  auto Guarded(Call call) const {
+    try {
+      return call();
+    } catch (py::error_already_set& error) {
+      throw std::runtime_error("the law of agent " + std::to_string(id_) + " failed at t = " + ShortestFloat(t_s_) +
+                               " s\n" + Explain(error, file_).what());
+    }
+  }
+  void SetTime(double t_s) { t_s_ = t_s; }
+
+  /// Two or three finite numbers. `hint`: what a NaN may come from.
+  Eigen::Vector3d ToVector(const py::object& value, const std::string& hint) const {
+    const auto numbers = Numbers(value);
+    if (!numbers || numbers->size() < 2 || numbers->size() > 3)
+      Refuse(value,
+             value.is_none() ? ", expected 3 numbers or 2 (has it no return?)" : ", expected 3 numbers or 2 (x, y)");
+    const Eigen::Vector3d vector((*numbers)[0], (*numbers)[1], numbers->size() == 3 ? (*numbers)[2] : 0);
+    if (!vector.allFinite()) Refuse(value, ", expected finite numbers" + hint);
+    return vector;
+  }
+
+  [[noreturn]] void Refuse(const py::object& value, const std::string& why) const {
+    throw std::runtime_error("the law of agent " + std::to_string(id_) + " failed at t = " + ShortestFloat(t_s_) +
+                             " s: " + function_ + " returned " + Shown(value) + why);
+  }
+
+ private:
+  int id_;
+  Wanted wanted_;
+  std::string file_;
+  std::string function_;
+  double t_s_ = 0;
+};
+
+/// control(t, me, neighbours), start(me, params), message(me).
+class Standard final : public PythonLaw {
+ public:
+  Standard(const CustomParams& params, std::uint64_t seed, int id) : PythonLaw(id, params, "control") {
+    const PythonLock lock;
+    objects_.emplace(params);
+    Objects& o = *objects_;
+    if (!o.start.is_none()) o.params = ToPython(params.params);
+    o.me = o.agent_class();
+    o.me.attr("id") = id;
+    o.me.attr("weight") = 0.0;
+    o.me.attr("age_s") = 0.0;
+    o.me.attr("message") = py::none();
+    o.me.attr("random") = py::module_::import("numpy").attr("random").attr("default_rng")(py::make_tuple(seed, id));
+  }
+  ~Standard() override {
+    const PythonLock lock;
+    objects_.reset();
+  }
+
+  Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> heard) override {
+    const PythonLock lock;
+    Objects& o = *objects_;
+    SetTime(t_s);
+    SetMotion(o.me, self);
+    return Guarded([&] {
+      if (!o.start.is_none()) {
+        o.start(o.me, o.params);
+        o.start = py::none();
+      }
+      py::list neighbours(heard.size());
+      for (std::size_t k = 0; k < heard.size(); ++k) neighbours[k] = Neighbour(heard[k]);
+      return ToVector(o.control(t_s, o.me, neighbours), "");
+    });
+  }
+
+  std::span<const double> Message() override {
+    const PythonLock lock;
+    Objects& o = *objects_;
+    const py::object said = Guarded([&]() -> py::object { return o.message(o.me); });
+    message_.clear();
+    o.me.attr("message") = py::none();
+    if (said.is_none()) return message_;
+    auto numbers = Numbers(said);
+    if (!numbers || numbers->size() > kMaxMessage)
+      throw std::runtime_error("the law of agent " + std::to_string(id()) + " failed: message returned " + Shown(said) +
+                               ", expected None or at most " + std::to_string(kMaxMessage) + " numbers");
+    message_ = std::move(*numbers);
+    o.me.attr("message") = Array(message_);
+    return message_;
+  }
+
+ private:
+  struct Objects {
+    explicit Objects(const CustomParams& law) : module(law) {
+      py::dict space;
+      py::exec(kClasses, space);
+      agent_class = space["Agent"];
+      py::module_::import("numpy");  // before the first tick, which need not wait for it
+    }
+    Module module;
+    py::object control = module.Function("control"), start = module.Function("start"),
+               message = module.Function("message"), agent_class, me, params = py::dict();
+    Names names;
+  };
+
+  void SetMotion(const py::object& agent, const Motion& motion) const {
+    const Names& names = objects_->names;
+    const double wxyz[] = {motion.q_WB.w(), motion.q_WB.x(), motion.q_WB.y(), motion.q_WB.z()};
+    py::setattr(agent, names.position, Array(motion.p_WB));
+    py::setattr(agent, names.velocity, Array(motion.v_WB));
+    py::setattr(agent, names.acceleration, Array(motion.a_WB));
+    py::setattr(agent, names.orientation, Array(wxyz));
+    py::setattr(agent, names.angular_velocity, Array(motion.w_WB_B));
+  }
+
+  py::object Neighbour(const Heard& heard) const {
+    const Names& names = objects_->names;
+    py::object neighbour = objects_->agent_class();
+    SetMotion(neighbour, heard.motion);
+    py::setattr(neighbour, names.id, py::int_(heard.id));
+    py::setattr(neighbour, names.weight, py::float_(heard.weight));
+    py::setattr(neighbour, names.age_s, py::float_(heard.age_s));
+    py::setattr(neighbour, names.message,
+                heard.message.empty() ? py::object(py::none()) : py::object(Array(heard.message)));
+    return neighbour;
+  }
+
+  std::optional<Objects> objects_;  // made and destroyed with the interpreter locked
+  std::vector<double> message_;
+};
+
+/// control_user(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, leader) of the published testbed, which counts
+/// agents from 0. It has places for all agents; those that this agent does not hear hold NaN.
+class Published final : public PythonLaw {
+ public:
+  Published(const CustomParams& params, int id, int agents, int leader)
+      : PythonLaw(id, params, "control_user"),
+        agents_(static_cast<std::size_t>(agents)),
+        leader_(leader - 1),
+        columns_(6, std::vector<double>(agents_)) {
+    const PythonLock lock;
+    control_user_.emplace(Module(params).Function("control_user"));
+    py::module_::import("numpy");
+  }
+  ~Published() override {
+    const PythonLock lock;
+    control_user_.reset();
+  }
+
+  Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> heard) override {
+    const PythonLock lock;
+    SetTime(t_s);
+    for (auto& column : columns_) std::fill(column.begin(), column.end(), std::numeric_limits<double>::quiet_NaN());
+    Enter(id(), self);
+    std::string known;
+    for (const Heard& j : heard) {
+      Enter(j.id, j.motion);
+      known += (known.empty() ? "" : ", ") + std::to_string(j.id - 1);
+    }
+    return Guarded([&] {
+      const py::object force =
+          (*control_user_)(Array(columns_[0]), Array(columns_[1]), Array(columns_[2]), Array(columns_[3]),
+                           Array(columns_[4]), Array(columns_[5]), id() - 1, agents_, leader_);
+      return ToVector(force, "; entries of agents that i = " + std::to_string(id() - 1) +
+                                 " does not hear are NaN, and it hears " + (known.empty() ? "nobody" : known) +
+                                 " (counted from 0)");
+    });
+  }
+
+ private:
+  void Enter(int id, const Motion& motion) {
+    const auto i = static_cast<std::size_t>(id - 1);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const auto a = static_cast<Eigen::Index>(axis);
+      columns_[3 * axis][i] = motion.p_WB[a];
+      columns_[3 * axis + 1][i] = motion.v_WB[a];
+      columns_[3 * axis + 2][i] = motion.a_WB[a];
+    }
+  }
+
+  std::size_t agents_;
+  int leader_;                                // counted from 0; -1: none
+  std::vector<std::vector<double>> columns_;  // pos_x, vel_x, acc_x, pos_y, vel_y, acc_y
+  std::optional<py::object> control_user_;
+};
+
+const char* MainFunction(PythonStyle style) { return style == PythonStyle::kMascot ? "control_user" : "control"; }
+
+const char* TextKey(const Section& law) { return law.Has("file") ? "file" : "python"; }
+
+/// The text of the law and what it goes by.
+void ReadText(Section& law, CustomParams& params) {
+  if (law.Has("python") == law.Has("file")) {
+    law.Fail(law.Has("file") ? "file" : "",
+             std::string("expected one of python, file, got ") + (law.Has("file") ? "both" : "none"));
+    return;
+  }
+  Section::FileText text;
+  int line = 1;
+  if (law.Has("file")) {
+    text = law.TextOfFile("file", "python");
+  } else {
+    const Section::Place place = law.PlaceOfText("python");
+    text = {law.Text("python"), place.file};
+    line = place.line;
+  }
+  params.text = text.text;
+  params.file = law.Text("python_file", text.name);
+  params.line = static_cast<int>(law.Integer("python_line", 1, 1'000'000, line));
+  if (params.text.find('\0') != std::string::npos) law.Fail(TextKey(law), "expected text, got a NUL byte");
+}
+
+CustomParams ReadCustom(LawConfig& config) {
+  Section& law = config.section;
+  CustomParams params;
+  ReadText(law, params);
+  params.style = law.OneOf("style", kStyles, "standard") == "mascot" ? PythonStyle::kMascot : PythonStyle::kStandard;
+  params.wanted =
+      law.OneOf("output", kOutputs, "acceleration") == "velocity" ? Wanted::kVelocity : Wanted::kAcceleration;
+  if (law.Has("params") && law.Kind("params") != "table")
+    law.Fail("params", "expected a table, got a " + law.Kind("params"));
+  else
+    params.params = law.Free("params");
+  return params;
+}
+
+/// Runs the text once, to find mistakes in it, and what it defines. Returns whether it can send messages.
+bool Try(Section& law, const CustomParams& params) {
+  const MutedPython muted;
+  const PythonLock lock;
+  const char* key = TextKey(law);
+  try {
+    const Module module(params);
+    const char* function = MainFunction(params.style);
+    if (module.Function(function).is_none())
+      law.FailInText(key, params.file + ":" + std::to_string(params.line) + ":1",
+                     std::string("expected a function ") + function + ", got none");
+    return params.style == PythonStyle::kStandard && !module.Function("message").is_none();
+  } catch (const PythonError& error) {
+    law.FailInText(key,
+                   params.file + ":" + std::to_string(std::max(error.line(), 1)) + ":" +
+                       std::to_string(std::max(error.column(), 1)),
+                   "expected Python, got " + error.summary());
+    return false;
+  }
+}
+
+}  // namespace
+
+bool CheckCustom(Experiment& experiment, LawConfig& config) {
+  Section& law = config.section;
+  const CustomParams params = ReadCustom(config);
+  // What was checked says whether messages are sent; who reads it need not start Python to know.
+  if ((experiment.checked && law.Has("messages")) || law.Wrong("")) return law.Boolean("messages", false);
+  const bool can_send = Try(law, params);
+  const bool sends = law.Boolean("messages", can_send);
+  if (sends && !can_send && !law.Wrong("")) law.Fail("messages", "expected a law that defines message(me), got none");
+  return sends;
+}
+
+std::unique_ptr<Law> MakeCustom(Experiment& experiment, int id) {
+  LawConfig law = experiment.agent(id).law;
+  const CustomParams params = ReadCustom(law);
+  if (params.style == PythonStyle::kMascot)
+    return std::make_unique<Published>(params, id, experiment.size(), law.leader);
+  return std::make_unique<Standard>(params, experiment.run.seed, id);
+}
+
+}  // namespace mascot

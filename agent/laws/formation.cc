@@ -1,0 +1,102 @@
+// Displacement-based formation of double integrators; Oh, Park & Ahn, "A survey of multi-agent formation control",
+// Automatica 53 (2015), section 4; Ren & Atkins, Int. J. Robust Nonlinear Control 17 (2007):
+//   a_i = -sum_j a_ij [ p_gain ((p_i - p_j) - (d_i - d_j)) + v_gain (v_i - v_j) ] - beta v_i
+// It is consensus on p_i - d_i. A leader listens to nobody: it keeps its velocity (a = 0), or flies waypoints.
+#include "agent/laws/formation.h"
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "agent/laws/leader.h"
+
+namespace mascot {
+namespace {
+
+constexpr std::string_view kShapes[] = {"circle", "line", "grid", "vee"};
+
+class Formation final : public Law {
+ public:
+  Formation(FormationParams params, int id) : params_(std::move(params)), id_(id) {}
+
+  Eigen::Vector3d Want_W(double /*t_s*/, const Motion& self, std::span<const Heard> heard) override {
+    Eigen::Vector3d a_W = -params_.beta * self.v_WB;
+    for (const Heard& j : heard) {
+      const Eigen::Vector3d place_W = (self.p_WB - j.motion.p_WB) - (d_W(id_) - d_W(j.id));
+      a_W -= j.weight * (params_.p_gain * place_W + params_.v_gain * (self.v_WB - j.motion.v_WB));
+    }
+    return a_W;
+  }
+
+ private:
+  const Eigen::Vector3d& d_W(int id) const { return params_.d_W[static_cast<std::size_t>(id - 1)]; }
+
+  FormationParams params_;
+  int id_;
+};
+
+/// Place `i` of `count`, neighbours one unit apart.
+Eigen::Vector3d PlaceOf(std::string_view shape, int i, int count) {
+  if (shape == "line") return {static_cast<double>(i), 0, 0};
+  if (shape == "vee") {  // agent 1 at the tip, ranks behind it to both sides
+    const int rank = (i + 1) / 2;
+    const double side = std::numbers::sqrt2 / 2 * rank;
+    return {-side, i % 2 == 1 ? side : -side, 0};
+  }
+  if (shape == "grid") {
+    const int width = static_cast<int>(std::ceil(std::sqrt(count)));
+    return {static_cast<double>(i % width), static_cast<double>(i / width), 0};
+  }
+  const double angle = 2 * std::numbers::pi * i / count;
+  const double radius = count > 1 ? 0.5 / std::sin(std::numbers::pi / count) : 0;
+  return {radius * std::cos(angle), radius * std::sin(angle), 0};
+}
+
+std::vector<Eigen::Vector3d> ReadPlaces(Section& law, int agents) {
+  const auto count = static_cast<std::size_t>(agents);
+  if (law.Has("offsets_m") == law.Has("shape")) {
+    law.Fail(law.Has("shape") ? "shape" : "",
+             std::string("expected one of offsets_m, shape, got ") + (law.Has("shape") ? "both" : "none"));
+    return std::vector<Eigen::Vector3d>(count, Eigen::Vector3d::Zero());
+  }
+  std::vector<Eigen::Vector3d> places;
+  if (law.Has("shape")) {
+    const std::string shape = law.OneOf("shape", kShapes);
+    const double spacing_m = law.Positive("spacing_m", 1e4, 2.0);
+    for (int i = 0; i < agents; ++i) places.push_back(spacing_m * PlaceOf(shape, i, agents));
+    return places;
+  }
+  places = law.Points("offsets_m", -1e6, 1e6);
+  if (!law.Wrong("offsets_m") && places.size() != count)
+    law.Fail("offsets_m", "expected " + std::to_string(count) + " points, one per agent, got a list of " +
+                              std::to_string(places.size()));
+  places.resize(count, Eigen::Vector3d::Zero());
+  return places;
+}
+
+}  // namespace
+
+FormationParams ReadFormation(const Experiment& experiment, LawConfig& law) {
+  FormationParams params;
+  params.d_W = ReadPlaces(law.section, experiment.size());
+  params.p_gain = law.section.Number("p_gain", 0, 1000, 1.0);
+  params.v_gain = law.section.Number("v_gain", 0, 1000, 0.0);
+  params.beta = law.section.Number("beta", 0, 1000, 1.0);
+  params.leader_flight = ReadLeaderWaypoints(law);
+  return params;
+}
+
+bool CheckFormation(Experiment& experiment, LawConfig& law) {
+  ReadFormation(experiment, law);
+  return false;
+}
+
+std::unique_ptr<Law> MakeFormation(Experiment& experiment, int id) {
+  LawConfig law = experiment.agent(id).law;
+  FormationParams params = ReadFormation(experiment, law);
+  if (id == law.leader) return MakeLeader(params.leader_flight, law, experiment.agent(id));
+  return std::make_unique<Formation>(std::move(params), id);
+}
+
+}  // namespace mascot

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "agent/laws/waypoint.h"
+#include "experiment/experiment.h"
+
+namespace mascot {
+
+/// A leader listens to nobody: it keeps its velocity (a = 0), or flies waypoints.
+std::unique_ptr<Law> MakeLeader(const std::optional<WaypointParams>& flight, const LawConfig& law,
+                                const AgentConfig& agent);
+
+}  // namespace mascot

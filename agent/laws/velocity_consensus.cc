@@ -1,0 +1,41 @@
+// Consensus of single integrators; Olfati-Saber & Murray, "Consensus problems in networks of agents with switching
+// topology and time-delays", IEEE Trans. Automatic Control 49 (2004):
+//   v_i = p_gain sum_j a_ij (p_j - p_i)
+// A leader listens to nobody and stands still.
+#include "agent/laws/velocity_consensus.h"
+
+#include <memory>
+
+namespace mascot {
+namespace {
+
+class VelocityConsensus final : public Law {
+ public:
+  VelocityConsensus(double p_gain, bool leads) : p_gain_(leads ? 0 : p_gain) {}
+  Wanted wanted() const override { return Wanted::kVelocity; }
+
+  Eigen::Vector3d Want_W(double /*t_s*/, const Motion& self, std::span<const Heard> heard) override {
+    Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();
+    for (const Heard& j : heard) pull_W += j.weight * (j.motion.p_WB - self.p_WB);
+    return p_gain_ * pull_W;
+  }
+
+ private:
+  double p_gain_;
+};
+
+}  // namespace
+
+double ReadVelocityConsensus(LawConfig& law) { return law.section.Number("p_gain", 0, 1000, 1.0); }
+
+bool CheckVelocityConsensus(Experiment& /*experiment*/, LawConfig& law) {
+  ReadVelocityConsensus(law);
+  return false;
+}
+
+std::unique_ptr<Law> MakeVelocityConsensus(Experiment& experiment, int id) {
+  LawConfig law = experiment.agent(id).law;
+  return std::make_unique<VelocityConsensus>(ReadVelocityConsensus(law), id == law.leader);
+}
+
+}  // namespace mascot

@@ -1,0 +1,77 @@
+#include "agent/link.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace mascot {
+namespace {
+
+constexpr double kRounding = 1e-6;  // of a tick
+
+Dice DiceOf(const LinkConfig& config, std::uint64_t seed, int hearer, int heard) {
+  const bool swapped = config.symmetric && hearer > heard;
+  const auto [a, b] = swapped ? std::pair(heard, hearer) : std::pair(hearer, heard);
+  return Dice(seed, Dice::Stream::kLink, static_cast<std::uint64_t>(a), static_cast<std::uint64_t>(b));
+}
+
+}  // namespace
+
+Link::Link(const LinkConfig& config, int rate_hz, std::uint64_t seed, int hearer, int heard)
+    : config_(config),
+      rate_hz_(rate_hz),
+      hold_ticks_(std::llround(std::floor(config.hold_s * rate_hz + kRounding))),
+      dice_(DiceOf(config, seed, hearer, heard)),
+      arrivals_(static_cast<std::size_t>(Ticks(config.delay_s + config.jitter_s)) + 1) {}
+
+// The first tick at or after a time; a time that is a whole number of ticks but for rounding is that number.
+std::int64_t Link::Ticks(double time_s) const {
+  return std::max<std::int64_t>(0, std::llround(std::ceil(time_s * rate_hz_ - kRounding)));
+}
+
+bool Link::Loses(std::int64_t tick) {
+  if (!config_.bursts) return dice_.Unit(tick, kLoss) < config_.loss;
+  for (; changed_ < tick; ++changed_) {  // the state goes on through ticks at which nothing was sent
+    const double change = bad_ ? config_.bursts->bad_to_good : config_.bursts->good_to_bad;
+    if (dice_.Unit(changed_ + 1, kChange) < change) bad_ = !bad_;
+  }
+  return dice_.Unit(tick, kLoss) < (bad_ ? config_.bursts->loss_bad : config_.bursts->loss_good);
+}
+
+std::int64_t Link::DelayTicks(std::int64_t tick) const {
+  if (config_.reordering > 0 && dice_.Unit(tick, kReordering) < config_.reordering) return 0;
+  if (config_.jitter_s == 0) return Ticks(config_.delay_s);
+  return Ticks(config_.delay_s + config_.jitter_s * (2 * dice_.Unit(tick, kDelay) - 1));
+}
+
+void Link::Send(std::int64_t tick, double weight, const Sample& sample) {
+  ++count_.sent;
+  count_.numbers += sample.message.size();
+  if (Loses(tick)) {
+    ++count_.lost;
+    return;
+  }
+  Packet& packet = ArrivalAt(tick + DelayTicks(tick));
+  if (packet.sent >= 0) ++count_.late;  // an older one arrives at the same tick
+  packet.sent = tick;
+  packet.weight = weight;
+  packet.motion = *sample.motion;
+  packet.message.assign(sample.message.begin(), sample.message.end());
+}
+
+const Link::Packet* Link::Receive(std::int64_t tick) {
+  for (std::int64_t t = std::max(looked_ + 1, tick - std::ssize(arrivals_) + 1); t <= tick; ++t) {
+    Packet& packet = ArrivalAt(t);
+    if (packet.sent > newest_.sent) {
+      std::swap(packet, newest_);
+      newest_since_ = t;
+    } else if (packet.sent >= 0) {
+      ++count_.late;
+    }
+    packet.sent = -1;
+  }
+  looked_ = tick;
+  return newest_.sent >= 0 && tick - newest_since_ <= hold_ticks_ ? &newest_ : nullptr;
+}
+
+}  // namespace mascot

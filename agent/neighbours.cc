@@ -1,0 +1,88 @@
+#include "agent/neighbours.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace mascot {
+
+bool IsOn(const AgentConfig& agent, double t_s) {
+  constexpr double kRounding_s = 1e-9;  // times are ticks divided by the rate
+  return t_s >= agent.start_s - kRounding_s && t_s < agent.stop_s - kRounding_s;
+}
+
+Neighbours::Neighbours(const Experiment& experiment, int id)
+    : experiment_(experiment), config_(experiment.agent(id)), may_hear_(experiment.graph.HeardBy(id)) {
+  for (const Graph::Neighbour& neighbour : may_hear_) {
+    links_.emplace_back(experiment.links.Of(id, neighbour.id), experiment.control.rate_hz, experiment.run.seed, id,
+                        neighbour.id);
+    noises_.emplace_back(experiment.sensors.heard,
+                         Dice(experiment.run.seed, Dice::Stream::kHeardSensor, static_cast<std::uint64_t>(id),
+                              static_cast<std::uint64_t>(neighbour.id)));
+  }
+  heard_.reserve(may_hear_.size());
+  plain_ = IsPlain();
+  plain_counts_.resize(may_hear_.size());
+}
+
+bool Neighbours::IsPlain() const {
+  const auto always_on = [](const AgentConfig& agent) { return agent.start_s == 0 && std::isinf(agent.stop_s); };
+  return experiment_.schedule.IsConstant() && experiment_.sensors.heard.IsNone() && always_on(config_) &&
+         std::ranges::all_of(may_hear_, [&](const Graph::Neighbour& neighbour) {
+           return experiment_.links.Of(config_.id, neighbour.id).IsPerfect() &&
+                  always_on(experiment_.agent(neighbour.id));
+         });
+}
+
+void Neighbours::HearPlain(std::span<const Sample> samples) {
+  for (std::size_t k = 0; k < may_hear_.size(); ++k) {
+    heard_.push_back({may_hear_[k].id, may_hear_[k].weight, *samples[k].motion, 0, samples[k].message});
+    ++plain_counts_[k].sent;
+    plain_counts_[k].numbers += samples[k].message.size();
+  }
+}
+
+double Neighbours::WeightOf(const Graph& graph, double t_s, int source) const {
+  if (!IsOn(experiment_.agent(source), t_s) || !IsOn(config_, t_s)) return 0;
+  const auto& heard = graph.HeardBy(config_.id);
+  const auto edge = std::ranges::lower_bound(heard, source, {}, &Graph::Neighbour::id);
+  return edge != heard.end() && edge->id == source ? edge->weight : 0;
+}
+
+std::span<const Heard> Neighbours::Hear(std::int64_t tick, const Motion& self, std::span<const Sample> samples) {
+  assert(samples.size() == may_hear_.size());
+  heard_.clear();
+  if (plain_) {
+    HearPlain(samples);
+    return heard_;
+  }
+  const double t_s = experiment_.time_s(tick), range_m = experiment_.schedule.range_m();
+  const Graph& graph = experiment_.schedule.At(t_s);
+  for (std::size_t k = 0; k < may_hear_.size(); ++k) {
+    const double weight = WeightOf(graph, t_s, may_hear_[k].id);
+    const bool in_range = range_m == 0 || (samples[k].motion->p_WB - self.p_WB).norm() < range_m;
+    if (weight > 0 && in_range) links_[k].Send(tick, weight, samples[k]);
+    Deliver(k, tick);
+  }
+  return heard_;
+}
+
+void Neighbours::Deliver(std::size_t k, std::int64_t tick) {
+  const Link::Packet* packet = links_[k].Receive(tick);
+  if (packet == nullptr) return;
+  heard_.push_back({.id = may_hear_[k].id,
+                    .weight = packet->weight,
+                    .motion = packet->motion,
+                    .age_s = experiment_.time_s(tick - packet->sent),
+                    .message = packet->message});
+  noises_[k].AddTo(heard_.back().motion, packet->sent);
+}
+
+std::vector<EdgeCount> Neighbours::counts() const {
+  if (plain_) return plain_counts_;
+  std::vector<EdgeCount> counts;
+  for (const Link& link : links_) counts.push_back(link.count());
+  return counts;
+}
+
+}  // namespace mascot

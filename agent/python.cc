@@ -1,0 +1,152 @@
+#include "agent/python.h"
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <mutex>
+
+#include "agent/python_internal.h"
+
+namespace mascot {
+namespace {
+
+std::atomic<int> muted = 0;
+
+/// What Python code prints goes to stderr, in whole lines: stdout belongs to the program.
+class Output {
+ public:
+  void Write(const std::string& text) {
+    if (muted > 0) return;
+    line_ += text;
+    const auto end = line_.rfind('\n');
+    if (end == std::string::npos) return;
+    std::fwrite(line_.data(), 1, end + 1, stderr);
+    std::fflush(stderr);
+    line_.erase(0, end + 1);
+  }
+  void Flush() {}
+
+ private:
+  std::string line_;
+};
+
+PYBIND11_EMBEDDED_MODULE(mascot_output, module) {
+  py::class_<Output>(module, "Output").def(py::init<>()).def("write", &Output::Write).def("flush", &Output::Flush);
+}
+
+void StartInterpreter() {
+  // One thread for linear algebra: its results then do not depend on how many cores there are, nor do a hundred agents
+  // start a thread for each.
+  for (const char* variable : {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"})
+    setenv(variable, "1", /*overwrite=*/0);
+  PyConfig config;
+  PyConfig_InitPythonConfig(&config);
+  PyConfig_SetBytesString(&config, &config.program_name, "/usr/bin/python3");  // Debian's, whatever comes first in PATH
+  config.parse_argv = 0;
+  config.install_signal_handlers = 0;
+  config.write_bytecode = 0;
+  config.use_hash_seed = 1;  // the order of sets of strings is the same in every run
+  config.hash_seed = 0;
+  py::initialize_interpreter(&config);
+  py::module_::import("sys").attr("stdout") = py::module_::import("mascot_output").attr("Output")();
+  PyEval_SaveThread();
+}
+
+/// A thread keeps its state between locks: making one each time takes longer than a law.
+void KeepThreadState() {
+  thread_local const bool kept = [] {
+    PyGILState_Ensure();
+    PyEval_SaveThread();
+    return true;
+  }();
+  (void)kept;
+}
+
+/// The innermost line of `file` that the exception came through; 0: none.
+int LineOf(const py::error_already_set& error, const std::string& file) {
+  int line = 0;
+  for (py::object trace = error.trace(); trace && !trace.is_none(); trace = trace.attr("tb_next"))
+    if (trace.attr("tb_frame").attr("f_code").attr("co_filename").cast<std::string>() == file)
+      line = trace.attr("tb_lineno").cast<int>();
+  return line;
+}
+
+int IntOr0(const py::handle& object, const char* attribute) {
+  const py::object value = py::getattr(object, attribute, py::none());
+  return py::isinstance<py::int_>(value) ? value.cast<int>() : 0;
+}
+
+/// So that a traceback can show the lines of a text that is in no file.
+void TellLines(const std::string& text, const std::string& file) {
+  const py::object lines = py::str(text).attr("splitlines")(true);
+  py::module_::import("linecache").attr("cache")[py::str(file)] = py::make_tuple(text.size(), py::none(), lines, file);
+}
+
+}  // namespace
+
+MutedPython::MutedPython() { ++muted; }
+MutedPython::~MutedPython() { --muted; }
+
+PythonLock::PythonLock() {
+  static std::once_flag started;
+  std::call_once(started, StartInterpreter);
+  KeepThreadState();
+  state_ = PyGILState_Ensure();
+}
+
+PythonLock::~PythonLock() { PyGILState_Release(state_); }
+
+PythonError Explain(py::error_already_set& error, const std::string& file) {
+  const py::object traceback = py::module_::import("traceback");
+  const bool is_syntax = error.matches(PyExc_SyntaxError);
+  const auto text = [&](const py::object& lines) {
+    std::string joined = py::str("").attr("join")(lines).cast<std::string>();
+    while (joined.ends_with('\n')) joined.pop_back();
+    return joined;
+  };
+  const std::string only = text(traceback.attr("format_exception_only")(error.type(), error.value()));
+  const std::string summary = only.substr(only.rfind('\n') + 1);
+  const py::object trace = error.trace() ? error.trace() : py::none();  // a SyntaxError has none
+  const std::string full = text(traceback.attr("format_exception")(error.type(), error.value(), trace));
+  return PythonError(full, summary, is_syntax ? IntOr0(error.value(), "lineno") : LineOf(error, file),
+                     is_syntax ? IntOr0(error.value(), "offset") : 0);
+}
+
+py::dict RunPython(const std::string& text, const std::string& file, int line) {
+  const std::string padded = std::string(static_cast<std::size_t>(line - 1), '\n') + text;
+  try {
+    TellLines(padded, file);
+    const py::object code = py::module_::import("builtins").attr("compile")(padded, file, "exec");
+    py::dict space;
+    space["__name__"] = "law";
+    space["__file__"] = file;
+    space["__builtins__"] = py::module_::import("builtins");
+    const auto result = py::reinterpret_steal<py::object>(PyEval_EvalCode(code.ptr(), space.ptr(), space.ptr()));
+    if (!result) throw py::error_already_set();
+    return space;
+  } catch (py::error_already_set& error) {
+    throw Explain(error, file);
+  }
+}
+
+py::object ToPython(const Value& value) {
+  struct Converter {
+    py::object operator()(bool boolean) const { return py::bool_(boolean); }
+    py::object operator()(std::int64_t integer) const { return py::int_(integer); }
+    py::object operator()(double number) const { return py::float_(number); }
+    py::object operator()(const std::string& text) const { return py::str(text); }
+    py::object operator()(const Value::List& list) const {
+      py::list items;
+      for (const Value& item : list) items.append(ToPython(item));
+      return items;
+    }
+    py::object operator()(const Value::Table& table) const {
+      py::dict items;
+      for (const auto& [key, item] : table) items[py::str(key)] = ToPython(item);
+      return items;
+    }
+  };
+  return std::visit(Converter{}, value.data);
+}
+
+}  // namespace mascot

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace mascot {
+
+/// While one lives, Python code in this process prints to nowhere: for laws that run a second time, for comparison.
+class MutedPython {
+ public:
+  MutedPython();
+  ~MutedPython();
+  MutedPython(const MutedPython&) = delete;
+  MutedPython& operator=(const MutedPython&) = delete;
+};
+
+/// A mistake in somebody's Python code.
+class PythonError : public std::runtime_error {
+ public:
+  /// `traceback` as Python prints it; `line`, `column` of the user's file (0: not known); `summary`: its last line.
+  PythonError(const std::string& traceback, std::string summary, int line, int column)
+      : std::runtime_error(traceback), summary_(std::move(summary)), line_(line), column_(column) {}
+  const std::string& summary() const { return summary_; }
+  int line() const { return line_; }
+  int column() const { return column_; }
+
+ private:
+  std::string summary_;
+  int line_;
+  int column_;
+};
+
+}  // namespace mascot

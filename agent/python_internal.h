@@ -1,0 +1,37 @@
+#pragma once
+
+// What python.cc and the laws written in Python share; nobody else includes this, or pybind11.
+
+#include <pybind11/embed.h>
+#include <pybind11/numpy.h>
+
+#include <string>
+
+#include "agent/python.h"
+#include "experiment/value.h"
+
+namespace mascot {
+
+namespace py = pybind11;
+
+/// Holds the process's one interpreter, which is started by the first and lives as long as the process. Every use of a
+/// Python object, its destruction too, happens with one of these alive. Cheap from the second time on in each thread.
+class PythonLock {
+ public:
+  PythonLock();
+  ~PythonLock();
+  PythonLock(const PythonLock&) = delete;
+  PythonLock& operator=(const PythonLock&) = delete;
+
+ private:
+  PyGILState_STATE state_;
+};
+
+/// Runs `text`, which goes by `file` and begins at `line` of it in messages, in a namespace of its own. Throws
+/// PythonError.
+py::dict RunPython(const std::string& text, const std::string& file, int line);
+/// What Python says of an exception that left the user's code, which goes by `file`.
+PythonError Explain(py::error_already_set& error, const std::string& file);
+py::object ToPython(const Value& value);
+
+}  // namespace mascot

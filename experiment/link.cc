@@ -1,0 +1,85 @@
+#include "experiment/link.h"
+
+#include <algorithm>
+
+namespace mascot {
+namespace {
+
+GilbertElliott ReadBursts(Section section) {
+  GilbertElliott bursts;
+  bursts.good_to_bad = section.Number("good_to_bad", 0, 1);
+  bursts.bad_to_good = section.Number("bad_to_good", 0, 1);
+  bursts.loss_good = section.Number("loss_good", 0, 1, 0.0);
+  bursts.loss_bad = section.Number("loss_bad", 0, 1, 1.0);
+  section.Done();
+  return bursts;
+}
+
+LinkConfig ReadLink(Section& section) {
+  LinkConfig link;
+  link.loss = section.Number("loss", 0, 1, 0.0);
+  if (section.Has("gilbert_elliott")) {
+    if (link.loss > 0) section.Fail("gilbert_elliott", "expected only one of loss, gilbert_elliott, got both");
+    link.bursts = ReadBursts(section.Child("gilbert_elliott"));
+  }
+  link.delay_s = section.Number("delay_s", 0, kLongestDelay_s, 0.0);
+  link.jitter_s = section.Number("jitter_s", 0, kLongestDelay_s, 0.0);
+  if (!section.Wrong("delay_s") && !section.Wrong("jitter_s") && link.jitter_s > link.delay_s)
+    section.Fail("jitter_s",
+                 "expected at most delay_s (" + ShortestFloat(link.delay_s) + "), got " + ShortestFloat(link.jitter_s));
+  link.reordering = section.Number("reordering", 0, 1, 0.0);
+  link.symmetric = section.Boolean("symmetric", false);
+  link.hold_s = section.Number("hold_s", 0, 1e6, 0.0);
+  return link;
+}
+
+bool Hears(const Graph& graph, int hearer, int heard) {
+  const auto& neighbours = graph.HeardBy(hearer);
+  return std::ranges::find(neighbours, heard, &Graph::Neighbour::id) != neighbours.end();
+}
+
+/// The edges [i, j] (i hears j) that an override is for.
+std::vector<std::pair<int, int>> ReadEdges(Section& section, const Graph& graph) {
+  std::vector<std::pair<int, int>> edges;
+  const auto rows = section.Rows("edges", 1, 10000);
+  if (rows.empty() && !section.Wrong("edges"))
+    section.Fail("edges", "expected a list of [i, j] (i hears j), got nothing");
+  for (std::size_t k = 0; k < rows.size() && !section.Wrong("edges") && graph.size() > 0; ++k) {
+    const auto is_agent = [&](double id) { return id == static_cast<int>(id) && id <= graph.size(); };
+    const bool is_edge = rows[k].size() == 2 && is_agent(rows[k][0]) && is_agent(rows[k][1]) &&
+                         Hears(graph, static_cast<int>(rows[k][0]), static_cast<int>(rows[k][1]));
+    if (is_edge)
+      edges.emplace_back(static_cast<int>(rows[k][0]), static_cast<int>(rows[k][1]));
+    else
+      section.FailRow("edges", k, "expected an edge [i, j] of the graph (i hears j), got another");
+  }
+  return edges;
+}
+
+}  // namespace
+
+bool LinkTable::ArePerfect(const Graph& graph) const {
+  for (int id = 1; id <= graph.size(); ++id)
+    for (const Graph::Neighbour& heard : graph.HeardBy(id))
+      if (!Of(id, heard.id).IsPerfect()) return false;
+  return true;
+}
+
+LinkTable ReadLinks(Section& link, const Graph& graph) {
+  const LinkConfig common = ReadLink(link);
+  std::map<std::pair<int, int>, LinkConfig> special;
+  for (Section& section : link.Children("override")) {
+    section.InheritFrom(link);
+    const auto edges = ReadEdges(section, graph);
+    const LinkConfig config = ReadLink(section);
+    section.Done();
+    for (const auto& edge : edges)
+      if (!special.emplace(edge, config).second)
+        section.Fail("edges", "expected each edge in one override, got [" + std::to_string(edge.first) + ", " +
+                                  std::to_string(edge.second) + "] again");
+  }
+  link.Done();
+  return LinkTable(common, std::move(special));
+}
+
+}  // namespace mascot

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "experiment/graph.h"
+#include "experiment/section.h"
+
+namespace mascot {
+
+inline constexpr double kLongestDelay_s = 60;
+
+/// Loss in bursts: a link that changes between a good and a bad state from sample to sample. Gilbert (Bell Syst. Tech.
+/// J. 39, 1960), Elliott (42, 1963).
+struct GilbertElliott {
+  double good_to_bad = 0;  ///< probability per sample
+  double bad_to_good = 1;
+  double loss_good = 0;  ///< probability of a loss in each state
+  double loss_bad = 1;
+};
+
+/// What happens to samples on the way from one agent to another, in simulated time.
+struct LinkConfig {
+  double loss = 0;  ///< probability, independent from sample to sample; not used with `bursts`
+  std::optional<GilbertElliott> bursts;
+  double delay_s = 0;
+  double jitter_s = 0;     ///< the delay of each sample lies within delay_s -+ jitter_s, uniformly
+  double reordering = 0;   ///< probability that a sample skips the delay and so overtakes others
+  bool symmetric = false;  ///< i -> j and j -> i lose and delay the same samples
+  double hold_s = 0;       ///< how old the last sample may grow while no newer one comes, beyond its delay
+
+  bool IsPerfect() const { return loss == 0 && !bursts && delay_s == 0 && jitter_s == 0; }
+};
+
+/// [link]: what all links are like, and those that differ.
+class LinkTable {
+ public:
+  LinkTable() = default;
+  LinkTable(LinkConfig common, std::map<std::pair<int, int>, LinkConfig> special)
+      : common_(common), special_(std::move(special)) {}
+
+  /// The link on which agent `hearer` hears agent `heard`.
+  const LinkConfig& Of(int hearer, int heard) const {
+    const auto special = special_.find({hearer, heard});
+    return special == special_.end() ? common_ : special->second;
+  }
+  /// Every link of `graph` delivers every sample at once.
+  bool ArePerfect(const Graph& graph) const;
+
+ private:
+  LinkConfig common_;
+  std::map<std::pair<int, int>, LinkConfig> special_;  // by hearer, heard
+};
+
+/// Reads [link] for the edges of `graph` (no agents: not known for a mistake elsewhere).
+LinkTable ReadLinks(Section& link, const Graph& graph);
+
+}  // namespace mascot

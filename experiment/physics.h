@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "experiment/section.h"
+
+namespace mascot {
+
+/// Air that moves, the same for all bodies: a mean and gusts about it, each component a first-order Gauss-Markov
+/// process (the Dryden spectrum's simplest form) with this standard deviation and correlation time.
+struct WindConfig {
+  Eigen::Vector3d mean_m_per_s = Eigen::Vector3d::Zero();  ///< in W
+  double gust_std_m_per_s = 0;
+  double gust_time_s = 1;
+};
+
+enum class Shape { kBox, kSphere, kCylinder };
+
+/// Something solid that does not move.
+struct Obstacle {
+  Shape shape = Shape::kBox;
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< its centre (m)
+  Eigen::Vector3d size_m =
+      Eigen::Vector3d::Ones();  ///< full lengths; of a cylinder, which stands on end, diameter twice, height
+  double heading_rad = 0;       ///< yaw
+};
+
+/// A quadrotor's rotor loses thrust at a given time.
+struct RotorFailure {
+  int agent = 0;
+  int rotor = 0;  ///< 1..4
+  double at_s = 0;
+  double remaining = 0;  ///< part of its thrust and torque that is left, 0..1
+};
+
+struct PhysicsConfig {
+  int rate_hz = 1000;
+  double gravity_m_per_s2 = 9.81;
+  bool collisions = true;
+  bool ground = true;
+  WindConfig wind;
+  std::vector<Obstacle> obstacles;
+  std::vector<RotorFailure> rotor_failures;
+};
+
+/// Reads [physics]. Whether a rotor failure's agent is a quadrotor is known, and checked, later.
+PhysicsConfig ReadPhysics(Section& physics, int agents);
+
+}  // namespace mascot

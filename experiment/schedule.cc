@@ -1,0 +1,51 @@
+#include "experiment/schedule.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mascot {
+
+const Graph& Schedule::At(double t_s) const {
+  constexpr double kRounding_s = 1e-9;  // far below a physics step
+  double t = t_s + kRounding_s;
+  if (repeat_s_ > 0) t = std::fmod(t, repeat_s_);
+  const auto next = std::upper_bound(phases_.begin() + 1, phases_.end(), t,
+                                     [](double at, const Phase& phase) { return at < phase.at_s; });
+  return std::prev(next)->graph;
+}
+
+Graph Schedule::Union() const {
+  std::vector<std::vector<Graph::Neighbour>> heard(static_cast<std::size_t>(phases_.front().graph.size()));
+  for (const Phase& phase : phases_)
+    for (std::size_t i = 0; i < heard.size(); ++i)
+      for (const Graph::Neighbour& neighbour : phase.graph.HeardBy(static_cast<int>(i) + 1)) {
+        const auto place = std::ranges::lower_bound(heard[i], neighbour.id, {}, &Graph::Neighbour::id);
+        if (place == heard[i].end() || place->id != neighbour.id) heard[i].insert(place, neighbour);
+      }
+  return Graph(std::move(heard));
+}
+
+Schedule ReadSchedule(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint64_t seed) {
+  std::vector<Schedule::Phase> phases;
+  phases.push_back({0, ReadGraph(graph, p_W, seed)});
+  std::uint64_t stage = 0;
+  for (Section& section : graph.Children("schedule")) {
+    const double at_s = section.Positive("at_s", 1e6);
+    if (!section.Wrong("at_s") && at_s <= phases.back().at_s)
+      section.Fail("at_s",
+                   "expected a time after " + ShortestFloat(phases.back().at_s) + ", got " + ShortestFloat(at_s));
+    phases.push_back({at_s, ReadGraph(section, p_W, seed + ++stage)});
+    section.Done();
+  }
+  double repeat_s = 0;
+  if (graph.Has("repeat_s")) {
+    repeat_s = graph.Positive("repeat_s", 1e6);
+    if (!graph.Wrong("repeat_s") && repeat_s <= phases.back().at_s)
+      graph.Fail("repeat_s", "expected a time after the last of graph.schedule (" + ShortestFloat(phases.back().at_s) +
+                                 "), got " + ShortestFloat(repeat_s));
+  }
+  const double range_m = graph.Has("range_m") ? graph.Positive("range_m", 1e6) : 0;
+  return Schedule(std::move(phases), repeat_s, range_m);
+}
+
+}  // namespace mascot

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "experiment/section.h"
+
+namespace mascot {
+
+/// How wrong a measured motion is: white noise at every tick, and a bias drawn once; per axis, zero-mean, Gaussian.
+struct NoiseConfig {
+  double position_std_m = 0;
+  double velocity_std_m_per_s = 0;
+  double position_bias_std_m = 0;
+  double velocity_bias_std_m_per_s = 0;
+
+  bool IsNone() const {
+    return position_std_m == 0 && velocity_std_m_per_s == 0 && position_bias_std_m == 0 &&
+           velocity_bias_std_m_per_s == 0;
+  }
+};
+
+/// [sensors]: what an agent measures of itself, and of those it hears.
+struct SensorConfig {
+  NoiseConfig own;         ///< a bias per agent; law and low-level stack both get the measured motion
+  double own_delay_s = 0;  ///< its position and velocity are known this late (a localisation's); attitude at once
+  NoiseConfig heard;       ///< noise and bias per directed edge
+};
+
+SensorConfig ReadSensors(Section& sensors);
+
+}  // namespace mascot

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "experiment/graph.h"
+
+namespace mascot {
+
+/// `graph` as Graphviz text. Arrows point the way that information flows: from the one who is heard to the one who
+/// hears. A symmetric graph is drawn without arrows. `leader` (0: none) has a double circle.
+std::string ToDot(const Graph& graph, int leader);
+
+}  // namespace mascot

@@ -1,0 +1,20 @@
+// A point that moves as it is told: dp/dt = u. What first-order theory is about.
+#include "physics_server/models/ball.h"
+
+namespace mascot {
+namespace {
+
+class SingleIntegrator final : public Ball {
+ public:
+  Push Apply(const Actuation& command, const Motion& /*self*/, const Surroundings& /*around*/) override {
+    return {.velocity = Push::Velocity{{command[0], command[1], command[2]}, Eigen::Vector3d::Zero()}};
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Model> MakeSingleIntegrator(const Experiment& /*experiment*/, int /*id*/) {
+  return std::make_unique<SingleIntegrator>();
+}
+
+}  // namespace mascot

@@ -1,0 +1,32 @@
+// A vehicle that rolls forward and turns in the horizontal plane of its start, without slipping sideways:
+//   dx/dt = v cos theta,   dy/dt = v sin theta,   d theta/dt = w
+// With v and w held for dt it rolls along an arc, whose chord is v dt sin(a)/a long, a = w dt/2, in the direction
+// theta + a. A body of the world moves straight during a step: along that chord, so that it ends on the arc.
+#include <cmath>
+
+#include "physics_server/models/ball.h"
+
+namespace mascot {
+namespace {
+
+class Unicycle final : public Ball {
+ public:
+  bool touches_ground() const override { return false; }
+
+  Push Apply(const Actuation& command, const Motion& self, const Surroundings& around) override {
+    const double v = command[0], w = command[1];
+    const Eigen::Vector3d forward_W = self.q_WB * Eigen::Vector3d::UnitX();
+    const double half_turn = w * around.dt_s / 2;
+    const double chord = std::atan2(forward_W.y(), forward_W.x()) + half_turn;
+    const double speed = half_turn == 0 ? v : v * std::sin(half_turn) / half_turn;
+    return {.velocity = Push::Velocity{{speed * std::cos(chord), speed * std::sin(chord), 0}, {0, 0, w}}};
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Model> MakeUnicycle(const Experiment& /*experiment*/, int /*id*/) {
+  return std::make_unique<Unicycle>();
+}
+
+}  // namespace mascot

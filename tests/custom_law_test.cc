@@ -1,0 +1,340 @@
+// Laws written in Python.
+#include <gmock/gmock.h>
+
+#include "agent/agent.h"
+#include "agent/laws.h"
+#include "agent/python.h"
+#include "tests/scratch.h"
+
+namespace mascot {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+/// Three double integrators; agent 1 hears 2 and 3. `lines` of [law], which start at line 10.
+std::string Three(const std::string& lines) {
+  return "[run]\nduration_s = 1.0\n[agents]\ncount = 3\nmodel = 'double_integrator'\n"
+         "position_m = [[0, 0, 1], [1, 0, 2], [0, 2, 3]]\n[graph]\nedges = [[1, 2, 0.5], [1, 3]]\n[law]\n" +
+         lines;
+}
+
+Experiment Load(const std::string& lines) {
+  return LoadExperiment(Section::FromText(Three(lines), "folder/test.toml"), "test");
+}
+
+Experiment Custom(const std::string& python, const std::string& lines = "") {
+  return Load("name = 'custom'\n" + lines + "python = '''\n" + python + "'''\n");
+}
+
+std::string Refusal(const std::string& lines) {
+  try {
+    Load(lines);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// What agent 1 hears: 2 and 3, and what 3 said.
+struct Others {
+  Motion two, three;
+  std::vector<double> said;
+  std::vector<Sample> samples() const { return {{&two, {}}, {&three, said}}; }
+};
+
+Others Standing() {
+  Others others;
+  others.two.p_WB = {1, 0, 2};
+  others.three.p_WB = {0, 2, 3};
+  others.three.v_WB = {0.5, 0, 0};
+  return others;
+}
+
+/// What the law of agent 1 wants at tick 0.
+Eigen::Vector3d Wants(const std::string& python, const std::string& lines = "") {
+  Experiment experiment = Custom(python, lines);
+  Agent agent(experiment, 1);
+  const Others others = Standing();
+  Motion self;
+  self.p_WB = {0, 0, 1};
+  self.v_WB = {0, 0.25, 0};
+  return agent.Want(0, self, others.samples()).a_law_W;
+}
+
+/// The text with which the law of agent 1 fails at tick 3.
+std::string Failure(const std::string& python, const std::string& lines = "") {
+  Experiment experiment = Custom(python, lines);
+  Agent agent(experiment, 1);
+  const Others others = Standing();
+  try {
+    agent.Want(3, Motion{}, others.samples());
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// --- what it gets -----------------------------------------------------------------------------------
+
+TEST(CustomLaw, ReturnsTwoOrThreeNumbersInAnyUsualForm) {
+  const Eigen::Vector3d wanted(1, -2, 0);
+  for (const char* value : {"(1, -2)", "[1.0, -2.0]", "(1, -2, 7)", "np.array([1, -2])", "np.array([1, -2, 3.5])",
+                            "np.array([1, -2], dtype=np.float32)", "[np.float64(1), np.int64(-2)]"})
+    EXPECT_EQ(Wants(std::string("import numpy as np\ndef control(t, me, neighbours):\n  return ") + value + "\n"),
+              wanted)
+        << value;
+  EXPECT_EQ(Wants("def control(t, me, neighbours):\n  return 1, -2, 7\n", "axes = 'xyz'\n"), Eigen::Vector3d(1, -2, 7));
+}
+
+TEST(CustomLaw, SeesItselfAndItsNeighbours) {
+  EXPECT_EQ(Wants(R"(
+import numpy as np
+def control(t, me, neighbours):
+    assert t == 0.0 and isinstance(t, float)
+    assert me.id == 1 and [j.id for j in neighbours] == [2, 3]
+    assert [j.weight for j in neighbours] == [0.5, 1.0]
+    assert all(isinstance(x, np.ndarray) and x.dtype == float for j in [me, *neighbours] for x in
+               (j.position, j.velocity, j.acceleration, j.orientation, j.angular_velocity))
+    assert list(me.position) == [0, 0, 1] and list(me.velocity) == [0, 0.25, 0]
+    assert list(me.orientation) == [1, 0, 0, 0]
+    assert list(neighbours[1].position) == [0, 2, 3] and list(neighbours[1].velocity) == [0.5, 0, 0]
+    assert neighbours[0].age_s == 0.0 and me.age_s == 0.0
+    assert neighbours[0].message is None and me.message is None
+    assert "agent 3 at [0. 2. 3.]" == repr(neighbours[1])
+    return sum(j.weight * (j.position - me.position) for j in neighbours)
+)"),
+            Eigen::Vector3d(0.5, 2, 0));
+}
+
+TEST(CustomLaw, MayChangeItsArraysWithoutChangingTheWorld) {
+  Experiment experiment =
+      Custom("def control(t, me, neighbours):\n  me.position += 5\n  neighbours[0].position[:] = 7\n  return 0, 0\n");
+  Agent agent(experiment, 1);
+  const Others others = Standing();
+  Motion self;
+  for (std::int64_t tick = 0; tick < 3; ++tick) agent.Want(tick, self, others.samples());
+  EXPECT_EQ(self.p_WB, Eigen::Vector3d::Zero());
+  EXPECT_EQ(others.two.p_WB, Eigen::Vector3d(1, 0, 2));
+}
+
+TEST(CustomLaw, StartsOnceWithItsParametersAndRemembersWhatItKeepsInMe) {
+  Experiment experiment = Custom(R"(
+def start(me, params):
+    assert params == {"gain": 2.5, "names": ["a", "b"], "deep": {"on": True, "n": 3}}, params
+    assert type(params["deep"]["n"]) is int
+    me.count = params["gain"]
+def control(t, me, neighbours):
+    me.count += 1
+    return me.count, 0
+)",
+                                 "params = { gain = 2.5, names = ['a', 'b'], deep = { on = true, n = 3 } }\n");
+  Agent agent(experiment, 1);
+  const Others others = Standing();
+  EXPECT_EQ(agent.Want(0, Motion{}, others.samples()).a_law_W.x(), 3.5);
+  EXPECT_EQ(agent.Want(1, Motion{}, others.samples()).a_law_W.x(), 4.5);
+}
+
+TEST(CustomLaw, SharesNothingBetweenAgentsOfOneProcess) {
+  Experiment experiment =
+      Custom("calls = []\ndef control(t, me, neighbours):\n  calls.append(me.id)\n  return len(calls), 0\n");
+  Agent one(experiment, 1), two(experiment, 2);
+  const Others others = Standing();
+  one.Want(0, Motion{}, others.samples());
+  EXPECT_EQ(one.Want(1, Motion{}, others.samples()).a_law_W.x(), 2);
+  EXPECT_EQ(two.Want(0, Motion{}, {}).a_law_W.x(), 1);
+}
+
+TEST(CustomLaw, HasRandomNumbersOfItsOwnFromTheSeed) {
+  const auto draw = [](const std::string& seed, int id) {
+    Experiment experiment =
+        LoadExperiment(Section::FromText("[run]\nduration_s = 1.0\nseed = " + seed +
+                                             "\n[agents]\ncount = 3\n[graph]\nedges = []\n[law]\nname = 'custom'\n"
+                                             "python = 'def control(t, me, neighbours): return me.random.random(2)'\n",
+                                         "test.toml"),
+                       "test");
+    return Agent(experiment, id).Want(0, Motion{}, {}).a_law_W;
+  };
+  EXPECT_EQ(draw("1", 1), draw("1", 1));
+  EXPECT_NE(draw("1", 1), draw("1", 2));
+  EXPECT_NE(draw("1", 1), draw("2", 1));
+}
+
+TEST(CustomLaw, MayWantAVelocity) {
+  const std::string law = "def control(t, me, neighbours):\n  return 1.0, 0.5\n";
+  Experiment experiment = Custom(law, "output = 'velocity'\n");
+  const Others others = Standing();
+  const Command command = Agent(experiment, 1).Want(0, Motion{}, others.samples());
+  EXPECT_EQ(command.a_law_W, Eigen::Vector3d(2, 1, 0)) << "k_v = 2 times what is missing";
+}
+
+// --- messages ---------------------------------------------------------------------------------------
+
+TEST(CustomLaw, SendsWhatMessageReturnsAndHearsWhatOthersSent) {
+  Experiment experiment = Custom(R"(
+import numpy as np
+def control(t, me, neighbours):
+    heard = [j.message for j in neighbours]
+    assert heard[0] is None and list(heard[1]) == [4, 5]
+    if t > 0:
+        assert list(me.message) == [1, 2, 3]
+    return 0, 0
+def message(me):
+    return np.array([1, 2, 3])
+)");
+  EXPECT_TRUE(experiment.agent(1).sends_messages);
+  Agent agent(experiment, 1);
+  Others others = Standing();
+  others.said = {4, 5};
+  agent.Want(0, Motion{}, others.samples());
+  EXPECT_THAT(std::vector(agent.message().begin(), agent.message().end()), ElementsAre(1, 2, 3));
+  agent.Want(1, Motion{}, others.samples());
+}
+
+TEST(CustomLaw, SendsNothingUnlessItDefinesMessageAndMaySayNothing) {
+  EXPECT_FALSE(Custom("def control(t, me, neighbours): return 0, 0\n").agent(1).sends_messages);
+  Experiment silent = Custom("def control(t, me, neighbours): return 0, 0\ndef message(me): return None\n");
+  EXPECT_TRUE(silent.agent(1).sends_messages);
+  Agent agent(silent, 1);
+  agent.Want(0, Motion{}, Standing().samples());
+  EXPECT_TRUE(agent.message().empty());
+}
+
+TEST(CustomLaw, IsRefusedIfItSaysTooMuchOrSomethingElse) {
+  const std::string control = "def control(t, me, neighbours): return 0, 0\n";
+  EXPECT_EQ(Failure(control + "def message(me): return [0] * 65\n").substr(0, 62),
+            "the law of agent 1 failed: message returned [0, 0, 0, 0, 0, 0,");
+  EXPECT_THAT(Failure(control + "def message(me): return 'hello'\n"),
+              HasSubstr("message returned 'hello', expected None or at most 64 numbers"));
+}
+
+// --- mistakes at check ------------------------------------------------------------------------------
+
+TEST(CustomLaw, SyntaxErrorsNameFileLineAndColumn) {
+  EXPECT_EQ(Refusal("name = 'custom'\npython = '''\ndef control(t, me, neighbours):\n  return (1, 2\n'''\n"),
+            "test.toml:13:10: law.python: expected Python, got SyntaxError: '(' was never closed");
+  EXPECT_EQ(Refusal("name = 'custom'\npython = '''def control(t, me, neighbours) return 1, 2'''\n"),
+            "test.toml:11:32: law.python: expected Python, got SyntaxError: expected ':'");
+}
+
+TEST(CustomLaw, ErrorsOfItsTopLevelNameTheLine) {
+  EXPECT_EQ(
+      Refusal("name = 'custom'\npython = '''\nimport numpy as np\nx = np.nothing\n'''\n"),
+      "test.toml:13:1: law.python: expected Python, got AttributeError: module 'numpy' has no attribute 'nothing'");
+}
+
+TEST(CustomLaw, MustDefineControl) {
+  EXPECT_EQ(Refusal("name = 'custom'\npython = 'x = 1'\n"),
+            "test.toml:11:1: law.python: expected a function control, got none");
+  EXPECT_EQ(Refusal("name = 'custom'\nstyle = 'mascot'\npython = 'def control(t, me, neighbours): return 0, 0'\n"),
+            "test.toml:12:1: law.python: expected a function control_user, got none");
+}
+
+TEST(CustomLaw, ComesFromOnePlace) {
+  EXPECT_EQ(Refusal("name = 'custom'\n"), "folder/test.toml:9:1: law: expected one of python, file, got none");
+  EXPECT_EQ(Refusal("name = 'custom'\npython = 'x'\nfile = 'law.py'\n"),
+            "folder/test.toml:12:8: law.file: expected one of python, file, got both");
+  EXPECT_EQ(
+      Refusal("name = 'custom'\nfile = 'nowhere.py'\n"),
+      "folder/test.toml:11:8: law.file: expected a readable file, got folder/nowhere.py: cannot be read: No such file "
+      "or directory");
+}
+
+TEST(CustomLaw, RefusesParametersThatAreNoTableAndMessagesItCannotSend) {
+  const std::string python = "python = 'def control(t, me, neighbours): return 0, 0'\n";
+  EXPECT_EQ(Refusal("name = 'custom'\nparams = 3\n" + python),
+            "folder/test.toml:11:10: law.params: expected a table, got a number");
+  EXPECT_EQ(Refusal("name = 'custom'\nmessages = true\n" + python),
+            "folder/test.toml:11:12: law.messages: expected a law that defines message(me), got none");
+}
+
+// --- mistakes while it runs -------------------------------------------------------------------------
+
+TEST(CustomLaw, ExceptionsShowTheTracebackAgentAndTime) {
+  const std::string text =
+      Failure("def help(x):\n  return 1 / x\ndef control(t, me, neighbours):\n  return help(0), 1\n");
+  EXPECT_THAT(text, AllOf(HasSubstr("the law of agent 1 failed at t = 0.03 s\nTraceback (most recent call last):\n"),
+                          HasSubstr("File \"test.toml\", line 15, in control\n    return help(0), 1"),
+                          HasSubstr("File \"test.toml\", line 13, in help\n    return 1 / x"),
+                          ::testing::EndsWith("ZeroDivisionError: division by zero")));
+}
+
+TEST(CustomLaw, WhatCameBackIsShownIfItIsWrong) {
+  const auto returning = [](const std::string& value) {
+    return Failure("import numpy as np\ndef control(t, me, neighbours):\n  return " + value + "\n");
+  };
+  const std::string start = "the law of agent 1 failed at t = 0.03 s: control returned ";
+  EXPECT_EQ(returning("None"), start + "None, expected 3 numbers or 2 (has it no return?)");
+  EXPECT_EQ(returning("(1, 2, 3, 4)"), start + "(1, 2, 3, 4), expected 3 numbers or 2 (x, y)");
+  EXPECT_EQ(returning("5.0"), start + "5.0, expected 3 numbers or 2 (x, y)");
+  EXPECT_EQ(returning("'ab'"), start + "'ab', expected 3 numbers or 2 (x, y)");
+  EXPECT_EQ(returning("np.zeros((3, 1))"),
+            start + "array([[0.],\n       [0.],\n       [0.]]), expected 3 numbers or 2 (x, y)");
+  EXPECT_EQ(returning("(1j, 0)"), start + "(1j, 0), expected 3 numbers or 2 (x, y)");
+  EXPECT_EQ(returning("(float('nan'), 0)"), start + "(nan, 0), expected finite numbers");
+  EXPECT_EQ(returning("np.array([0, np.inf, 0])"), start + "array([ 0., inf,  0.]), expected finite numbers");
+}
+
+// --- the published testbed's laws -------------------------------------------------------------------
+
+const char* kPublished = R"(
+import numpy as np
+def control_user(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, leader):
+    assert num_agent == 3 and len(pos_x) == 3
+    if i == leader:
+        return 0.0, 0.0
+    return pos_x[i + 1] - pos_x[i] - vel_x[i], pos_y[i + 1] - pos_y[i] - vel_y[i]
+)";
+
+TEST(CustomLaw, OfThePublishedTestbedCountsAgentsFromZero) {
+  EXPECT_EQ(Wants(kPublished, "style = 'mascot'\n"), Eigen::Vector3d(1, -0.25, 0));
+  EXPECT_EQ(Wants(kPublished, "style = 'mascot'\nleader = 1\n"), Eigen::Vector3d(0, 0, 0));
+}
+
+TEST(CustomLaw, OfThePublishedTestbedThatPeeksIsExposed) {
+  Experiment experiment = Custom(kPublished, "style = 'mascot'\n");
+  Agent two(experiment, 2);  // hears nobody
+  EXPECT_THAT([&] { two.Want(7, Motion{}, {}); },
+              ThrowsMessage<std::runtime_error>(
+                  "the law of agent 2 failed at t = 0.07 s: control_user returned (nan, nan), expected finite numbers; "
+                  "entries of agents that i = 1 does not hear are NaN, and it hears nobody (counted from 0)"));
+}
+
+// --- where its text stands --------------------------------------------------------------------------
+
+TEST(CustomLaw, InAFileIsInlinedAndGoesByTheFilesName) {
+  ScratchFolder folder;
+  WriteFile(folder.File("law.py"), "gain = 2\ndef control(t, me, neighbours):\n  return gain / me.id, undefined\n");
+  WriteFile(folder.File("run.toml"), Three("name = 'custom'\nfile = 'law.py'\n"));
+  Section document = Section::FromFile(folder.File("run.toml"));
+  LoadExperiment(document, "run");
+  const std::string resolved = document.Resolved();
+  EXPECT_THAT(resolved,
+              AllOf(HasSubstr("python = '''\ngain = 2\n"), HasSubstr("python_file = \"law.py\"\npython_line = 1"),
+                    HasSubstr("messages = false"), ::testing::Not(HasSubstr("\nfile = \"law.py\""))));
+  Experiment again = LoadExperiment(Section::FromText(resolved, "elsewhere.toml"), "run", /*checked=*/true);
+  const Others others = Standing();
+  EXPECT_THAT([&] { Agent(again, 1).Want(0, Motion{}, others.samples()); },
+              ThrowsMessage<std::runtime_error>(AllOf(HasSubstr("File \"law.py\", line 3, in control"),
+                                                      HasSubstr("NameError: name 'undefined' is not defined"))));
+}
+
+TEST(CustomLaw, PrintsToStandardErrorInWholeLinesAndNotIfMuted) {
+  Experiment experiment =
+      Custom("def control(t, me, neighbours):\n  print('at', t, end='')\n  print(' s')\n  return 0, 0\n");
+  Agent agent(experiment, 2);
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  agent.Want(5, Motion{}, {});
+  {
+    const MutedPython muted;
+    agent.Want(6, Motion{}, {});
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "at 0.05 s\n");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
+}  // namespace
+}  // namespace mascot
