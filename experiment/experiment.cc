@@ -165,6 +165,7 @@ void ReadOutput(Section& section, Experiment& experiment) {
   output.save_plot = section.Boolean("save_plot", true);
   output.show_plot = section.Boolean("show_plot", false);
   output.save_data = section.Boolean("save_data", true);
+  output.fidelity = section.Boolean("fidelity", true);
   section.Done();
 }
 

@@ -97,6 +97,7 @@ struct Experiment {
     bool save_plot = true;
     bool show_plot = false;
     bool save_data = true;
+    bool fidelity = true;  ///< compare with ideal bodies; their laws run in the orchestrator too
   } output;
   struct {
     int domain = -1;  ///< -1 = "auto"

@@ -31,8 +31,7 @@ IdealTeam::IdealTeam(Experiment& experiment)
 void IdealTeam::Step() {
   for (const AgentConfig& config : experiment_.agents) {
     const auto i = static_cast<std::size_t>(config.id - 1);
-    commands_[i] = team_.agent(config.id).Want(tick_, motions_[i], team_.SamplesFor(config.id, motions_));
-    team_.KeepMessage(config.id);
+    commands_[i] = team_.Want(config.id, tick_, motions_);
   }
   team_.EndTick();
   for (const AgentConfig& config : experiment_.agents) {

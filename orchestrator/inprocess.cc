@@ -37,13 +37,12 @@ class Flight {
     }
     for (std::size_t i = 0; i < motions_.size(); ++i) {
       const int id = static_cast<int>(i) + 1;
-      const Command command = team_.agent(id).Decide(tick, motions_[i], team_.SamplesFor(id, motions_));
+      const Command command = team_.Decide(id, tick, motions_);
       actuation_[i] = command.actuator;
       ToWire(tick, rate, id, command, command_);
       Serialize(command_, row_.commands[i]);
       if (!experiment_.agents[i].sends_messages) continue;
-      team_.KeepMessage(id);
-      ToWire(tick, rate, id, team_.agent(id).message(), message_);
+      ToWire(tick, rate, id, team_.message(id), message_);
       Serialize(message_, row_.messages[i]);
     }
     team_.EndTick();

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "agent/laws/formation.h"
+#include "agent/python.h"
+
 namespace mascot {
 namespace {
 
@@ -18,30 +21,40 @@ Eigen::Vector3d Along(Axes axes, Eigen::Vector3d v) {
 }  // namespace
 
 Metrics::Metrics(Experiment& experiment)
-    : experiment_(experiment), ideal_(experiment), min_separation2_(std::numeric_limits<double>::infinity()) {}
+    : experiment_(experiment), min_separation2_(std::numeric_limits<double>::infinity()) {
+  const MutedPython muted;  // the laws run a second time
+  if (experiment.output.fidelity) ideal_.emplace(experiment);
+  if (experiment.law.name == "formation") d_W_ = ReadFormation(experiment, experiment.law).d_W;
+}
 
-void Metrics::Add(std::span<const Motion> motions, std::span<const Command> commands) {
-  MeasureAgreement(motions);
-  MeasureControl(commands);
-  MeasureSeparation(motions);
-  MeasureFidelity(motions);
+void Metrics::Add(const DecodedRow& row) {
+  MeasureAgreement(row.motions);
+  MeasureControl(row.commands);
+  MeasureSeparation(row.motions);
+  MeasureFidelity(row.motions);
+  MeasurePath(row.motions);
+  MeasureFormation(row.motions);
   ++rows_;
 }
 
+Eigen::Vector3d Metrics::Agreed(std::size_t i, const Motion& motion) const {
+  return d_W_.empty() ? motion.p_WB : motion.p_WB - d_W_[i];
+}
+
 void Metrics::MeasureAgreement(std::span<const Motion> motions) {
-  Motion centre;
-  for (const Motion& motion : motions) {
-    centre.p_WB += motion.p_WB;
-    centre.v_WB += motion.v_WB;
+  mean_W_.setZero();
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    mean_W_ += Agreed(i, motions[i]) / static_cast<double>(motions.size());
+  Eigen::Vector3d centre_W = mean_W_;
+  if (const int leader = experiment_.law.leader; leader > 0) {
+    const auto l = static_cast<std::size_t>(leader - 1);
+    centre_W = Agreed(l, motions[l]);
   }
-  centre.p_WB /= static_cast<double>(motions.size());
-  centre.v_WB /= static_cast<double>(motions.size());
-  mean_W_ = centre.p_WB;
-  if (const int leader = experiment_.law.leader; leader > 0) centre = motions[static_cast<std::size_t>(leader - 1)];
   disagreement_m_ = speed_m_per_s_ = 0;
-  for (const Motion& motion : motions) {
-    disagreement_m_ = std::max(disagreement_m_, Along(experiment_.law.axes, motion.p_WB - centre.p_WB).norm());
-    speed_m_per_s_ = std::max(speed_m_per_s_, Along(experiment_.law.axes, motion.v_WB).norm());
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const Eigen::Vector3d off_W = Along(experiment_.law.axes, Agreed(i, motions[i]) - centre_W);
+    disagreement_m_ = std::max(disagreement_m_, off_W.norm());
+    speed_m_per_s_ = std::max(speed_m_per_s_, Along(experiment_.law.axes, motions[i].v_WB).norm());
   }
   if (rows_ == 0) first_disagreement_m_ = disagreement_m_;
   if (disagreement_m_ > kSettledFraction * first_disagreement_m_) last_unsettled_ = rows_;
@@ -68,15 +81,36 @@ void Metrics::MeasureSeparation(std::span<const Motion> motions) {
 }
 
 void Metrics::MeasureFidelity(std::span<const Motion> motions) {
-  if (rows_ > 0) ideal_.Step();
-  last_p_W_.resize(motions.size());
+  if (!ideal_) return;
+  const MutedPython muted;
+  if (rows_ > 0) ideal_->Step();
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    const double deviation2 = (motions[i].p_WB - ideal_.p_W(static_cast<int>(i) + 1)).squaredNorm();
+    const double deviation2 = (motions[i].p_WB - ideal_->p_W(static_cast<int>(i) + 1)).squaredNorm();
     squared_deviation_ += deviation2;
     max_deviation2_ = std::max(max_deviation2_, deviation2);
-    if (rows_ > 0) path_m_ += (motions[i].p_WB - last_p_W_[i]).norm();
-    last_p_W_[i] = motions[i].p_WB;
   }
+}
+
+void Metrics::MeasurePath(std::span<const Motion> motions) {
+  for (std::size_t i = 0; i < last_p_W_.size(); ++i) path_m_ += (motions[i].p_WB - last_p_W_[i]).norm();
+  last_p_W_.resize(motions.size());
+  for (std::size_t i = 0; i < motions.size(); ++i) last_p_W_[i] = motions[i].p_WB;
+}
+
+void Metrics::MeasureFormation(std::span<const Motion> motions) {
+  if (d_W_.empty()) return;
+  double squares = 0;
+  for (int id = 1; id <= experiment_.size(); ++id) {
+    const auto i = static_cast<std::size_t>(id - 1);
+    for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(id)) {
+      const auto j = static_cast<std::size_t>(heard.id - 1);
+      squares += Along(experiment_.law.axes, Agreed(i, motions[i]) - Agreed(j, motions[j])).squaredNorm();
+    }
+  }
+  formation_.final_rms_m =
+      std::sqrt(squares / static_cast<double>(std::max<std::size_t>(experiment_.graph.edges(), 1)));
+  if (2 * rows_ >= experiment_.ticks())
+    formation_.worst_rms_m = std::max(formation_.worst_rms_m, formation_.final_rms_m);
 }
 
 Measured Metrics::Result() const {
@@ -92,8 +126,8 @@ Measured Metrics::Result() const {
   result.effort_m2_per_s3 = effort_ / agents;
   result.saturated_fraction = static_cast<double>(saturated_) / samples;
   if (experiment_.size() > 1) result.min_separation_m = std::sqrt(min_separation2_);
-  result.fidelity_rms_m = std::sqrt(squared_deviation_ / samples);
-  result.fidelity_max_m = std::sqrt(max_deviation2_);
+  if (ideal_) result.fidelity = {.rms_m = std::sqrt(squared_deviation_ / samples), .max_m = std::sqrt(max_deviation2_)};
+  if (!d_W_.empty()) result.formation = formation_;
   result.travelled_m = path_m_ / agents;
   return result;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
+#include "orchestrator/decoded_row.h"
 #include "orchestrator/ideal_team.h"
 
 namespace mascot {
@@ -15,23 +16,33 @@ namespace mascot {
 struct Measured {
   std::int64_t rows = 0;
   Eigen::Vector3d value_m = Eigen::Vector3d::Zero();  ///< mean position at the end
-  double final_disagreement_m = 0;                    ///< largest distance from the mean, or the leader, over law.axes
+  double final_disagreement_m = 0;                    ///< largest distance from the mean, or the leader, over law.axes;
+                                                      ///< of a formation: of p - d
   double final_speed_m_per_s = 0;                     ///< largest over agents, over law.axes
   std::optional<double> settling_time_s;
   double effort_m2_per_s3 = 0;  ///< mean over agents of the integral of |acceleration command|^2
   double saturated_fraction = 0;
   std::optional<double> min_separation_m;  ///< absent for one agent
-  double fidelity_rms_m = 0;
-  double fidelity_max_m = 0;
   double travelled_m = 0;
+  struct Fidelity {
+    double rms_m = 0;
+    double max_m = 0;
+  };
+  std::optional<Fidelity> fidelity;  ///< absent without output.fidelity
+  /// Of the formation law: rms over edges of |(p_i - p_j) - (d_i - d_j)|, over law.axes.
+  struct Formation {
+    double final_rms_m = 0;
+    double worst_rms_m = 0;  ///< from half of run.duration_s on
+  };
+  std::optional<Formation> formation;
 };
 
 /// Measures a run row by row, in memory that does not grow with it.
 class Metrics {
  public:
   explicit Metrics(Experiment& experiment);
-  /// One tick's motions and commands, by id - 1.
-  void Add(std::span<const Motion> motions, std::span<const Command> commands);
+  /// The next tick.
+  void Add(const DecodedRow& row);
   Measured Result() const;
   /// Of the newest row, for the progress line.
   double disagreement_m() const { return disagreement_m_; }
@@ -41,9 +52,14 @@ class Metrics {
   void MeasureControl(std::span<const Command> commands);
   void MeasureSeparation(std::span<const Motion> motions);
   void MeasureFidelity(std::span<const Motion> motions);
+  void MeasurePath(std::span<const Motion> motions);
+  void MeasureFormation(std::span<const Motion> motions);
+  /// The part of a position that agents agree on: of a formation, without their places in it.
+  Eigen::Vector3d Agreed(std::size_t i, const Motion& motion) const;
 
   const Experiment& experiment_;
-  IdealTeam ideal_;
+  std::optional<IdealTeam> ideal_;
+  std::vector<Eigen::Vector3d> d_W_;  // of a formation, by id - 1; else empty
   std::int64_t rows_ = 0;
   Eigen::Vector3d mean_W_ = Eigen::Vector3d::Zero();
   double disagreement_m_ = 0;
@@ -56,6 +72,7 @@ class Metrics {
   double squared_deviation_ = 0;
   double max_deviation2_ = 0;
   double path_m_ = 0;
+  Measured::Formation formation_;
   std::vector<Eigen::Vector3d> last_p_W_;
   std::vector<Eigen::Vector3d> by_x_;  // scratch
 };

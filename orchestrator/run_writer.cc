@@ -28,6 +28,7 @@ RunWriter::RunWriter(Experiment& experiment, const RunFolder& folder, const std:
     : experiment_(experiment),
       mcap_(folder.File(experiment.record.file)),
       metrics_(experiment),
+      links_(experiment),
       decoded_(experiment.size()),
       arrays_(experiment.size()) {
   mcap_.Attach("config.toml", "application/toml", resolved);
@@ -71,7 +72,8 @@ void RunWriter::Add(const Row& row) {
     arrays_.Set(experiment_.time_s(row.tick), decoded_);
     npz_->Append(arrays_);
   }
-  metrics_.Add(decoded_.motions, decoded_.commands);
+  metrics_.Add(decoded_);
+  links_.Add(row.tick, decoded_);
   ++rows_;
 }
 

@@ -8,6 +8,7 @@
 #include "experiment/experiment.h"
 #include "idl/topics.h"
 #include "orchestrator/decoded_row.h"
+#include "orchestrator/link_meter.h"
 #include "orchestrator/mcap.h"
 #include "orchestrator/metrics.h"
 #include "orchestrator/row.h"
@@ -33,6 +34,7 @@ class RunWriter {
   std::uint64_t samples() const { return mcap_.messages(); }
   std::size_t topics() const { return topics_; }
   Measured Result() const { return metrics_.Result(); }
+  std::vector<EdgeTraffic> Traffic() const { return links_.Result(); }
   double disagreement_m() const { return metrics_.disagreement_m(); }
 
  private:
@@ -44,6 +46,7 @@ class RunWriter {
   McapWriter mcap_;
   std::optional<StatesNpz> npz_;
   Metrics metrics_;
+  LinkMeter links_;
   std::vector<std::optional<std::uint16_t>> commands_, messages_, states_;  // channels by id - 1
   std::optional<std::uint16_t> clock_;
   std::size_t topics_ = 0;

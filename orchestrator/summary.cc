@@ -51,6 +51,29 @@ Json Safety(const Measured& measured, const Contacts& contacts) {
   return safety;
 }
 
+Json Links(const std::vector<EdgeTraffic>& traffic) {
+  EdgeTraffic all;
+  Json edges = Json::array();
+  for (const EdgeTraffic& edge : traffic) {
+    const EdgeCount& count = edge.count;
+    edges.push_back({{"hearer", edge.hearer}, {"heard", edge.heard}, {"sent", count.sent}, {"lost", count.lost},
+                     {"late", count.late}, {"bytes", edge.bytes}});
+    all.count.sent += count.sent;
+    all.count.lost += count.lost;
+    all.count.late += count.late;
+    all.bytes += edge.bytes;
+  }
+  return {{"sent", all.count.sent}, {"lost", all.count.lost}, {"late", all.count.late}, {"bytes", all.bytes},
+          {"edges", edges}};
+}
+
+Json Fidelity(const Measured& measured) {
+  const auto& fidelity = measured.fidelity;
+  return {{"rms_m", fidelity ? Json(fidelity->rms_m) : Json(nullptr)},
+          {"max_m", fidelity ? Json(fidelity->max_m) : Json(nullptr)},
+          {"travelled_m", measured.travelled_m}};
+}
+
 template <class... Values>
 std::string Line(const char* format, Values... values) {
   char text[200];
@@ -84,8 +107,10 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   json["consensus"] = Consensus(measured, prediction);
   json["control"] = {{"effort", measured.effort_m2_per_s3}, {"saturated_fraction", measured.saturated_fraction}};
   json["safety"] = Safety(measured, engine.contacts);
-  json["fidelity"] = {
-      {"rms_m", measured.fidelity_rms_m}, {"max_m", measured.fidelity_max_m}, {"travelled_m", measured.travelled_m}};
+  if (const auto& formation = measured.formation)
+    json["formation"] = {{"final_rms_m", formation->final_rms_m}, {"worst_rms_m", formation->worst_rms_m}};
+  json["links"] = Links(writer.Traffic());
+  json["fidelity"] = Fidelity(measured);
   if (experiment.run.mode == Mode::kRealtime) json["realtime"] = {{"misses", engine.misses}};
   json["startup_s"] = engine.startup_s;
   json["total_s"] = facts.total_s;
@@ -116,9 +141,22 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
   if (m.min_separation_m)
     text += Line("separation     %.3f m at least, %lld collisions", *m.min_separation_m,
                  static_cast<long long>(engine.contacts.total()));
-  if (m.travelled_m > 0)
+  if (const auto& formation = m.formation)
+    text += Line("formation      %.4f m rms off at the end, %.4f m at worst in the second half", formation->final_rms_m,
+                 formation->worst_rms_m);
+  std::uint64_t sent = 0, lost = 0, late = 0;
+  for (const EdgeTraffic& edge : writer.Traffic()) {
+    sent += edge.count.sent;
+    lost += edge.count.lost;
+    late += edge.count.late;
+  }
+  if (lost + late > 0)
+    text += Line("links          %llu samples sent, %.2f %% lost, %.2f %% late", static_cast<unsigned long long>(sent),
+                 100.0 * static_cast<double>(lost) / static_cast<double>(sent),
+                 100.0 * static_cast<double>(late) / static_cast<double>(sent));
+  if (m.fidelity && m.travelled_m > 0)
     text += Line("fidelity       %.4f m rms from ideal double integrators: %.2f %% of %.1f m travelled",
-                 m.fidelity_rms_m, 100 * m.fidelity_rms_m / m.travelled_m, m.travelled_m);
+                 m.fidelity->rms_m, 100 * m.fidelity->rms_m / m.travelled_m, m.travelled_m);
   return text;
 }
 

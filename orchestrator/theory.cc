@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "agent/laws.h"
+#include "agent/python.h"
 #include "orchestrator/crowding.h"
 #include "orchestrator/team.h"
 #include "orchestrator/theory_parts.h"
@@ -22,13 +23,13 @@ std::vector<Motion> Start(const Experiment& experiment) {
 }
 
 void PredictFirstCommand(Experiment& experiment, Prediction& prediction) {
+  const MutedPython muted;
   Team team(experiment);
   const std::vector<Motion> motions = Start(experiment);
   const AgentConfig* of = nullptr;
   for (const AgentConfig& agent : experiment.agents) {
     if (DrivenBy(agent.model) == Wanted::kVelocity) continue;  // has no acceleration to limit
-    const auto& self = motions[static_cast<std::size_t>(agent.id - 1)];
-    const Eigen::Vector3d a_W = team.agent(agent.id).Want(0, self, team.SamplesFor(agent.id, motions)).a_law_W;
+    const Eigen::Vector3d a_W = team.Want(agent.id, 0, motions).a_law_W;
     const double asked = a_W.cwiseAbs().maxCoeff();
     if (asked <= prediction.first_command_m_per_s2.value_or(-1)) continue;
     prediction.first_command_m_per_s2 = asked;

@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <atomic>
+#include <filesystem>
 #include <thread>
 
 #include "orchestrator/domain_lock.h"
@@ -13,7 +15,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::vector<std::string> kConfigs = {"waypoint", "leaderless", "leader_follower", "minmax", "published"};
+std::vector<std::string> ShippedConfigs() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(MASCOT_SOURCE_DIR "/configs"))
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
 
 void ExpectSameBytes(const Up& a, const Up& b) {
   EXPECT_FALSE(a.File("run.mcap").empty());
@@ -64,7 +72,100 @@ TEST_P(Shipped, IsReproducedByItsResolvedFile) {
   ExpectSameBytes(first, again);
 }
 
-INSTANTIATE_TEST_SUITE_P(Configs, Shipped, testing::ValuesIn(kConfigs), [](const auto& row) { return row.param; });
+INSTANTIATE_TEST_SUITE_P(Configs, Shipped, testing::ValuesIn(ShippedConfigs()),
+                         [](const auto& row) { return row.param; });
+
+// A law that sends messages, over links that lose and delay them, on a graph that changes, in Python: agent i counts
+// what it heard of whom, and passes it on.
+const std::string kTalkers = R"([run]
+duration_s = 2.0
+[agents]
+count = 5
+model = "double_integrator"
+[[agents.override]]
+id = 4
+start_s = 0.5
+stop_s = 1.5
+[sensors.own]
+position_std_m = 0.01
+[sensors.heard]
+velocity_std_m_per_s = 0.01
+[graph]
+topology = "directed_ring"
+repeat_s = 1.0
+range_m = 25.0
+[[graph.schedule]]
+at_s = 0.4
+topology = "complete"
+[link]
+gilbert_elliott = { good_to_bad = 0.1, bad_to_good = 0.3 }
+delay_s = 0.03
+jitter_s = 0.02
+[[link.override]]
+edges = [[2, 1]]
+delay_s = 0.0
+jitter_s = 0.0
+[law]
+name = "custom"
+python = '''
+def start(me, params):
+    me.heard = 0.0
+def control(t, me, neighbours):
+    for j in neighbours:
+        if j.message is not None:
+            me.heard += 0.001 * j.message[0] + j.age_s
+    return 0.1 * me.heard, me.random.normal()
+def message(me):
+    return None if me.heard % 2 > 1.5 else [me.id + me.heard] * me.id
+'''
+)";
+
+TEST(Messages, ReachThoseWhoHearTheSenderTheSameInBothEngines) {
+  ScratchFolder folder;
+  WriteFile(folder.File("talkers.toml"), kTalkers);
+  Up dds(folder, "dds", folder.File("talkers.toml"), {});
+  ASSERT_EQ(dds.Wait(), 0) << dds.err();
+  Up inprocess(folder, "inprocess", folder.File("talkers.toml"), {"--engine", "inprocess"});
+  ASSERT_EQ(inprocess.Wait(), 0) << inprocess.err();
+  ExpectSameBytes(dds, inprocess);
+  EXPECT_EQ(Measurements(dds), Measurements(inprocess));
+  EXPECT_EQ(dds.Summary()["wire"]["matches_graph"], true);
+  EXPECT_EQ(dds.Summary()["samples"]["topics"], 3 * 5 + 1);
+  EXPECT_GT(dds.Summary()["links"]["lost"], 0);
+  EXPECT_GT(dds.Summary()["links"]["late"], 0);
+  Up muffled(folder, "muffled", folder.File("talkers.toml"), {"--engine", "inprocess", "--set", "law.messages=false"});
+  ASSERT_EQ(muffled.Wait(), 0) << muffled.err();
+  EXPECT_FALSE(muffled.File("states.npz") == inprocess.File("states.npz")) << "what they say matters";
+  const Ran check = Shell("node '" MASCOT_SOURCE_DIR "/tests/mcapcheck/mcapcheck.mjs' '" +
+                          (dds.path() / "run.mcap").string() + "' --all --strict --quiet");
+  EXPECT_EQ(check.exit_code, 0) << check.output;
+}
+
+TEST(CustomLaw, ThatFailsEndsTheRunWithItsTracebackAgentAndTime) {
+  ScratchFolder folder;
+  WriteFile(folder.File("bad.toml"),
+            "[run]\nduration_s = 2.0\n[agents]\ncount = 3\n[law]\nname = 'custom'\npython = '''\n"
+            "def control(t, me, neighbours):\n  if t > 0.5 and me.id == 2:\n    return neighbours[7].position\n"
+            "  return 0, 0\n'''\n");
+  for (const std::string engine : {"dds", "inprocess"}) {
+    Up up(folder, engine, folder.File("bad.toml"), {"--engine", engine});
+    EXPECT_EQ(up.Wait(), 1);
+    EXPECT_THAT(up.err(), HasSubstr("the law of agent 2 failed at t = 0.51 s"));
+    EXPECT_THAT(up.err(), HasSubstr("File \"bad.toml\", line 10, in control"));
+    EXPECT_THAT(up.err(), HasSubstr("IndexError: list index out of range"));
+    EXPECT_EQ(up.Summary()["exit"], 1);
+  }
+}
+
+TEST(CustomLaw, WithASyntaxErrorStartsNothing) {
+  ScratchFolder folder;
+  WriteFile(folder.File("bad.toml"),
+            "[run]\nduration_s = 2.0\n[agents]\ncount = 3\n[law]\nname = 'custom'\npython = 'def control(:'\n");
+  Up up(folder, "run", folder.File("bad.toml"), {});
+  EXPECT_EQ(up.Wait(), 2);
+  EXPECT_THAT(up.err(), HasSubstr("bad.toml:7:13: law.python: expected Python, got SyntaxError: "));
+  EXPECT_FALSE(std::filesystem::exists(up.path()));
+}
 
 /// Keeps every core busy for as long as it lives.
 class Load {

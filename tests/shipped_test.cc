@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <numbers>
 
 #include "agent/laws.h"
 #include "idl/wire.h"
@@ -249,6 +250,57 @@ TEST(BadConfig, StartsNothingAndWritesNothing) {
     EXPECT_EQ(got, expected) << path;
     EXPECT_FALSE(std::filesystem::exists(out)) << path;
   }
+}
+
+// --- formation, switching, custom, mixed ----------------------------------------------------------------
+
+TEST(FormationInWind, KeepsItsDisplacementsOverABadNetwork) {
+  const Flight flight("formation");
+  const double radius = 2.0 / std::sin(std::numbers::pi / 12);
+  double worst = 0;
+  for (std::size_t tick = 2000; tick <= flight.last(); ++tick) {
+    double squares = 0;
+    for (int i = 0; i < 12; ++i) {
+      const auto place = [&](int k) {
+        const double angle = 2 * std::numbers::pi * k / 12;
+        return Eigen::Vector2d(flight.At(tick, k + 1).p_WB.head<2>() -
+                               radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+      };
+      squares += (place(i) - place((i + 1) % 12)).squaredNorm() / 12;
+    }
+    worst = std::max(worst, std::sqrt(squares));
+  }
+  EXPECT_LT(worst, 0.15);
+  EXPECT_NEAR(flight.summary["links"]["lost"].get<double>() / flight.summary["links"]["sent"].get<double>(), 0.2, 0.01);
+  EXPECT_LT(flight.summary["formation"]["worst_rms_m"].get<double>(), 0.15);
+  EXPECT_EQ(flight.summary["safety"]["collisions"], 0);
+}
+
+TEST(SwitchingGraph, StillMeetsAtTheMean) {
+  const Flight flight("switching");
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (int id = 1; id <= 6; ++id) mean += flight.At(0, id).p_WB.head<2>() / 6;
+  for (int id = 1; id <= 6; ++id) EXPECT_LT((flight.At(flight.last(), id).p_WB.head<2>() - mean).norm(), 1e-3);
+  EXPECT_LT(flight.summary["fidelity"]["rms_m"].get<double>(), 1e-9) << "single integrators are what they should be";
+}
+
+TEST(CustomLawInPython, ChasesAroundTheCircle) {
+  const Flight flight("custom");
+  for (int id = 1; id <= 6; ++id) {
+    const double radius = flight.At(flight.last(), id).p_WB.head<2>().norm();
+    EXPECT_GT(radius, 5.0);
+    EXPECT_LT(radius, 6.5);
+    EXPECT_GT(flight.At(flight.last(), id).v_WB.norm(), 0.5);
+  }
+}
+
+TEST(MixedTeam, FollowsItsLeaderPastTheObstacle) {
+  const Flight flight("mixed");
+  EXPECT_EQ(flight.summary["safety"]["collisions"], 0);
+  EXPECT_GT(flight.At(flight.last(), 1).p_WB.x(), 18);
+  for (int id = 2; id <= 6; ++id) EXPECT_GT(flight.At(flight.last(), id).p_WB.x(), 8) << id;
+  EXPECT_NEAR(flight.At(flight.last(), 4).p_WB.z(), 0.1, 1e-9) << "rolls on the ground";
+  EXPECT_GT(flight.summary["links"]["lost"], 0);
 }
 
 }  // namespace

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "agent/link.h"
+#include "experiment/experiment.h"
+
+namespace mascot {
+
+/// What all agents send each other, where one process knows it all: brings to each what those sent that the graph may
+/// let it hear.
+class Exchange {
+ public:
+  explicit Exchange(const Experiment& experiment)
+      : experiment_(experiment), messages_(experiment.agents.size()), next_messages_(experiment.agents.size()) {}
+
+  /// What agent `id` may hear at this tick: where they are by `motions` (by id - 1), and their messages of the tick
+  /// before. Valid until the next call.
+  std::span<const Sample> SamplesFor(int id, std::span<const Motion> motions) {
+    samples_.clear();
+    for (const Graph::Neighbour& neighbour : experiment_.graph.HeardBy(id)) {
+      const auto i = static_cast<std::size_t>(neighbour.id - 1);
+      samples_.push_back({&motions[i], messages_[i]});
+    }
+    return samples_;
+  }
+  /// Agent `id` said this at this tick; it is heard from the next one on.
+  void Say(int id, std::span<const double> message) {
+    next_messages_[static_cast<std::size_t>(id - 1)].assign(message.begin(), message.end());
+  }
+  void EndTick() { messages_.swap(next_messages_); }
+
+ private:
+  const Experiment& experiment_;
+  std::vector<std::vector<double>> messages_, next_messages_;  // by id - 1
+  std::vector<Sample> samples_;
+};
+
+}  // namespace mascot

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "agent/laws.h"
+#include "orchestrator/team.h"
+#include "physics_server/world.h"
+
+namespace mascot {
+
+/// An experiment flown as the engines fly it, without a wire or files: links, laws, limits, low-level stacks and
+/// bodies.
+class FlownNetwork {
+ public:
+  explicit FlownNetwork(const std::string& toml)
+      : experiment(LoadExperiment(Section::FromText(toml, "test.toml"), "test")),
+        world(experiment),
+        team(experiment),
+        motions(experiment.agents.size()),
+        actuation(experiment.agents.size()) {
+    Look();
+  }
+
+  void Step() {
+    for (const AgentConfig& agent : experiment.agents)
+      actuation[static_cast<std::size_t>(agent.id - 1)] = team.Decide(agent.id, world.tick(), motions).actuator;
+    team.EndTick();
+    world.Step(actuation);
+    Look();
+  }
+  void RunUntil(double end_s) {
+    while (experiment.time_s(world.tick()) < end_s - 1e-9) Step();
+  }
+
+  const Motion& agent(int id) const { return motions[static_cast<std::size_t>(id - 1)]; }
+  /// x of all agents.
+  Eigen::VectorXd x() const {
+    Eigen::VectorXd x(std::ssize(motions));
+    for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = motions[static_cast<std::size_t>(i)].p_WB.x();
+    return x;
+  }
+
+  Experiment experiment;
+  World world;
+  Team team;
+  std::vector<Motion> motions;
+  std::vector<Actuation> actuation;
+
+ private:
+  void Look() {
+    for (const AgentConfig& agent : experiment.agents)
+      motions[static_cast<std::size_t>(agent.id - 1)] = world.State(agent.id);
+  }
+};
+
+}  // namespace mascot
