@@ -1,9 +1,12 @@
 #include "agent/python.h"
 
 #include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <mutex>
+#include <thread>
 
 #include "agent/python_internal.h"
 
@@ -71,6 +74,48 @@ int LineOf(const py::error_already_set& error, const std::string& file) {
   return line;
 }
 
+/// Ends the one piece of Python code that runs, if it runs too long. A thread looks now and then; the code itself pays
+/// for two atomic stores.
+class Watchdog {
+ public:
+  static Watchdog& Get() {
+    static Watchdog& watchdog = *new Watchdog;  // its thread lives as long as the process
+    return watchdog;
+  }
+  void Begin(double limit_s) {
+    thread_ = PyThread_get_thread_ident();
+    deadline_ = Now() + static_cast<std::int64_t>(limit_s * 1e9);
+  }
+  void End() { deadline_ = kNever; }
+
+ private:
+  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+  static constexpr auto kLook = std::chrono::milliseconds(50);
+
+  static std::int64_t Now() {
+    return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+  }
+
+  Watchdog() {
+    std::thread([this] {
+      for (;; std::this_thread::sleep_for(kLook))
+        if (Now() > deadline_) Interrupt();
+    }).detach();
+  }
+
+  void Interrupt() {
+    const PyGILState_STATE state = PyGILState_Ensure();  // the code that hangs gives way every few milliseconds
+    if (Now() > deadline_) {                             // it has not ended while we waited
+      deadline_ = kNever;
+      PyThreadState_SetAsyncExc(thread_, PyExc_TimeoutError);
+    }
+    PyGILState_Release(state);
+  }
+
+  std::atomic<std::int64_t> deadline_ = kNever;
+  std::atomic<unsigned long> thread_ = 0;
+};
+
 int IntOr0(const py::handle& object, const char* attribute) {
   const py::object value = py::getattr(object, attribute, py::none());
   return py::isinstance<py::int_>(value) ? value.cast<int>() : 0;
@@ -95,6 +140,9 @@ PythonLock::PythonLock() {
 }
 
 PythonLock::~PythonLock() { PyGILState_Release(state_); }
+
+PythonTimeLimit::PythonTimeLimit(double limit_s) { Watchdog::Get().Begin(limit_s); }
+PythonTimeLimit::~PythonTimeLimit() { Watchdog::Get().End(); }
 
 PythonError Explain(py::error_already_set& error, const std::string& file) {
   const py::object traceback = py::module_::import("traceback");

@@ -27,6 +27,16 @@ class PythonLock {
   PyGILState_STATE state_;
 };
 
+/// Python code that runs longer than this while one lives is ended by a TimeoutError, at the line where it is. (Not a
+/// call that does not come back to Python.) Made with the interpreter locked; one at a time in a thread.
+class PythonTimeLimit {
+ public:
+  explicit PythonTimeLimit(double limit_s);
+  ~PythonTimeLimit();
+  PythonTimeLimit(const PythonTimeLimit&) = delete;
+  PythonTimeLimit& operator=(const PythonTimeLimit&) = delete;
+};
+
 /// Runs `text`, which goes by `file` and begins at `line` of it in messages, in a namespace of its own. Throws
 /// PythonError.
 py::dict RunPython(const std::string& text, const std::string& file, int line);

@@ -24,7 +24,7 @@ Metrics::Metrics(Experiment& experiment)
     : experiment_(experiment), min_separation2_(std::numeric_limits<double>::infinity()) {
   const MutedPython muted;  // the laws run a second time
   if (experiment.output.fidelity) ideal_.emplace(experiment);
-  if (experiment.law.name == "formation") d_W_ = ReadFormation(experiment, experiment.law).d_W;
+  if (experiment.law.name == "formation") formation_.offsets_m = ReadFormation(experiment, experiment.law).d_W;
 }
 
 void Metrics::Add(const DecodedRow& row) {
@@ -38,7 +38,7 @@ void Metrics::Add(const DecodedRow& row) {
 }
 
 Eigen::Vector3d Metrics::Agreed(std::size_t i, const Motion& motion) const {
-  return d_W_.empty() ? motion.p_WB : motion.p_WB - d_W_[i];
+  return formation_.offsets_m.empty() ? motion.p_WB : motion.p_WB - formation_.offsets_m[i];
 }
 
 void Metrics::MeasureAgreement(std::span<const Motion> motions) {
@@ -98,7 +98,7 @@ void Metrics::MeasurePath(std::span<const Motion> motions) {
 }
 
 void Metrics::MeasureFormation(std::span<const Motion> motions) {
-  if (d_W_.empty()) return;
+  if (formation_.offsets_m.empty()) return;
   double squares = 0;
   for (int id = 1; id <= experiment_.size(); ++id) {
     const auto i = static_cast<std::size_t>(id - 1);
@@ -127,7 +127,7 @@ Measured Metrics::Result() const {
   result.saturated_fraction = static_cast<double>(saturated_) / samples;
   if (experiment_.size() > 1) result.min_separation_m = std::sqrt(min_separation2_);
   if (ideal_) result.fidelity = {.rms_m = std::sqrt(squared_deviation_ / samples), .max_m = std::sqrt(max_deviation2_)};
-  if (!d_W_.empty()) result.formation = formation_;
+  if (!formation_.offsets_m.empty()) result.formation = formation_;
   result.travelled_m = path_m_ / agents;
   return result;
 }

@@ -31,6 +31,7 @@ struct Measured {
   std::optional<Fidelity> fidelity;  ///< absent without output.fidelity
   /// Of the formation law: rms over edges of |(p_i - p_j) - (d_i - d_j)|, over law.axes.
   struct Formation {
+    std::vector<Eigen::Vector3d> offsets_m;  ///< d_i, by id - 1
     double final_rms_m = 0;
     double worst_rms_m = 0;  ///< from half of run.duration_s on
   };
@@ -59,7 +60,6 @@ class Metrics {
 
   const Experiment& experiment_;
   std::optional<IdealTeam> ideal_;
-  std::vector<Eigen::Vector3d> d_W_;  // of a formation, by id - 1; else empty
   std::int64_t rows_ = 0;
   Eigen::Vector3d mean_W_ = Eigen::Vector3d::Zero();
   double disagreement_m_ = 0;

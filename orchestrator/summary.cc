@@ -67,6 +67,12 @@ Json Links(const std::vector<EdgeTraffic>& traffic) {
           {"edges", edges}};
 }
 
+Json Formation(const Measured::Formation& formation) {
+  Json offsets = Json::array();
+  for (const Eigen::Vector3d& d_W : formation.offsets_m) offsets.push_back(Vector(d_W));
+  return {{"final_rms_m", formation.final_rms_m}, {"worst_rms_m", formation.worst_rms_m}, {"offsets_m", offsets}};
+}
+
 Json Fidelity(const Measured& measured) {
   const auto& fidelity = measured.fidelity;
   return {{"rms_m", fidelity ? Json(fidelity->rms_m) : Json(nullptr)},
@@ -107,8 +113,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   json["consensus"] = Consensus(measured, prediction);
   json["control"] = {{"effort", measured.effort_m2_per_s3}, {"saturated_fraction", measured.saturated_fraction}};
   json["safety"] = Safety(measured, engine.contacts);
-  if (const auto& formation = measured.formation)
-    json["formation"] = {{"final_rms_m", formation->final_rms_m}, {"worst_rms_m", formation->worst_rms_m}};
+  if (const auto& formation = measured.formation) json["formation"] = Formation(*formation);
   json["links"] = Links(writer.Traffic());
   json["fidelity"] = Fidelity(measured);
   if (experiment.run.mode == Mode::kRealtime) json["realtime"] = {{"misses", engine.misses}};

@@ -17,6 +17,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection
+from matplotlib.patches import Circle, Rectangle
 
 sys.dont_write_bytecode = True  # the scripts may stand where nobody may write
 from run_folder import RunError, disagreement, read_run, spanning_tree, waypoint_targets
@@ -133,6 +134,18 @@ def draw_graph(axis, run, p):
                                        label="hears" if pairs else None))
 
 
+def draw_obstacles(axis, run):
+    """Seen from above."""
+    look = {"facecolor": "0.85", "edgecolor": "0.6", "zorder": 0.5}
+    for obstacle in run.obstacles:
+        (x, y), (width, depth) = obstacle["position_m"][:2], obstacle["size_m"][:2]
+        if obstacle["shape"] == "box":
+            axis.add_patch(Rectangle((x - width / 2, y - depth / 2), width, depth, rotation_point="center",
+                                     angle=np.degrees(obstacle.get("heading_rad", 0)), **look))
+        else:
+            axis.add_patch(Circle((x, y), width / 2, **look))
+
+
 def draw_places(axis, run):
     """Waypoints, and where theory says that the agents meet."""
     points = np.asarray(run.law.get("waypoints_m", run.law.get("leader_waypoints_m", [])), dtype=float).reshape(-1, 3)
@@ -149,6 +162,7 @@ def paths(run):
     figure, axis = plt.subplots(figsize=(7.5, 6))
     p = run.position[:, :, :2]
     draw_graph(axis, run, p)
+    draw_obstacles(axis, run)
     plot_agents(axis, run, p[:, :, 0], p[:, :, 1])
     shown, palette = drawn(run), colours(run)
     marks = {"s": 45 if run.size <= LEGEND_MAX else 22, "zorder": 4}

@@ -57,6 +57,16 @@ class Run:
         """Pairs (i, j): the agent of index i hears the one of index j."""
         return [(int(e[0]) - 1, int(e[1]) - 1) for e in self.summary.get("graph", {}).get("edges", [])]
 
+    @property
+    def places(self):
+        """(N, 3): the agents' places in their formation; zero for other laws."""
+        offsets = self.summary.get("formation", {}).get("offsets_m")
+        return np.zeros((self.size, 3)) if offsets is None else np.asarray(offsets, dtype=float).reshape(self.size, 3)
+
+    @property
+    def obstacles(self):
+        return self.config.get("physics", {}).get("obstacles", [])
+
     def output(self, key):
         return self.config.get("output", {}).get(key, key != "show_plot")
 
@@ -102,8 +112,9 @@ def read_run(folder):
 
 
 def disagreement(run):
-    """(T, N): distance of every agent to the leader, or to the mean, over the law's axes."""
-    p = run.position[:, :, run.axes]
+    """(T, N): distance of every agent to the leader, or to the mean, over the law's axes; of a formation, of what is left
+    of their positions without their places in it."""
+    p = (run.position - run.places)[:, :, run.axes]
     reference = p.mean(axis=1, keepdims=True) if run.leader is None else p[:, [run.leader]]
     return np.linalg.norm(p - reference, axis=2)
 

@@ -277,6 +277,19 @@ TEST(CustomLaw, WhatCameBackIsShownIfItIsWrong) {
   EXPECT_EQ(returning("np.array([0, np.inf, 0])"), start + "array([ 0., inf,  0.]), expected finite numbers");
 }
 
+TEST(CustomLaw, ThatHangsIsEndedAtTheLineWhereItHangs) {
+  Experiment experiment = LoadExperiment(
+      Section::FromText("[run]\nduration_s = 1.0\nagent_timeout_s = 0.1\n[agents]\ncount = 1\n[law]\nname = 'custom'\n"
+                        "python = '''\ndef control(t, me, neighbours):\n  while True:\n    pass\n'''\n",
+                        "test.toml"),
+      "test");
+  Agent agent(experiment, 1);
+  EXPECT_THAT([&] { agent.Want(0, Motion{}, {}); },
+              ThrowsMessage<std::runtime_error>(AllOf(HasSubstr("the law of agent 1 failed at t = 0.0 s\n"),
+                                                      ::testing::ContainsRegex("line (10|11), in control"),
+                                                      ::testing::EndsWith("TimeoutError"))));
+}
+
 // --- the published testbed's laws -------------------------------------------------------------------
 
 const char* kPublished = R"(

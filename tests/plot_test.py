@@ -172,6 +172,22 @@ class WhatIsInThem(PlotTest):
         self.assertEqual((axis.get_yscale(), axis.get_ylabel()), ("log", "distance to the mean (m)"))
         np.testing.assert_allclose(self.lines(axis)["largest"].get_ydata(), 5 * np.exp(-arrays()["t"]), rtol=1e-12)
 
+    def test_disagreement_of_a_formation_leaves_the_places_out(self):
+        config = '[law]\nname = "formation"\n'
+        states = arrays()
+        offsets = [[0, 0, 0], [3, 0, 0], [0, 4, 0]]
+        states["position"] = states["position"] + np.array(offsets)
+        summary = {"formation": {"offsets_m": offsets}}
+        axis = self.figure("disagreement", config=config, summary=summary, states=states).axes[0]
+        np.testing.assert_allclose(self.lines(axis)["largest"].get_ydata(), 5 * np.exp(-arrays()["t"]), rtol=1e-12)
+
+    def test_obstacles_are_drawn_where_they_stand(self):
+        config = CONSENSUS + ('[[physics.obstacles]]\nshape = "box"\nposition_m = [1, 2, 0]\nsize_m = [2, 4, 1]\n'
+                              '[[physics.obstacles]]\nshape = "sphere"\nposition_m = [5, 0, 1]\nsize_m = [2, 2, 2]\n')
+        box, sphere = self.figure("paths", config=config).axes[0].patches[:2]
+        self.assertEqual((box.get_x(), box.get_y(), box.get_width(), box.get_height()), (0, 0, 2, 4))
+        self.assertEqual((tuple(sphere.center), sphere.radius), ((5, 0), 1))
+
     def test_disagreement_with_a_leader_is_the_distance_to_it(self):
         axis = self.figure("disagreement", config=LEADER).axes[0]
         self.assertEqual(axis.get_ylabel(), "distance to agent 2 (m)")

@@ -21,7 +21,8 @@ struct CustomParams {
   int line = 1;      ///< of `file`, at which `text` begins
   PythonStyle style = PythonStyle::kStandard;
   Wanted wanted = Wanted::kAcceleration;
-  Value params;  ///< a table
+  Value params;             ///< a table
+  double time_limit_s = 0;  ///< that one call may take
 };
 
 inline constexpr LawParameter kCustomParameters[] = {
