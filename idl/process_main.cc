@@ -70,7 +70,7 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != args.parent) return 1;  // it died before this line
   }
-  args.options.name = args.is_agent ? "agent_" + std::to_string(args.agent) : "physics_server";
+  args.options.name = args.is_agent ? AgentName(args.agent) : "physics_server";
   if (!args.options.server.empty()) args.options.role = DiscoveryRole::kClient;
   int code = 1;
   try {

@@ -7,6 +7,11 @@
 
 namespace mascot {
 
+/// What an agent's process and its topics go by: "agent_3".
+std::string AgentName(int agent);
+/// The reverse; nothing for other names.
+std::optional<int> AgentNumber(std::string_view name);
+
 /// What a topic carries. The order is the order of topics of one agent in a recording: by name.
 enum class TopicKind { kCommand, kMessage, kState, kClock, kExperiment, kRequest, kStatus };
 

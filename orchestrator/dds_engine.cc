@@ -135,7 +135,7 @@ void DdsRun::Spawn() {
     auto arguments = common;
     arguments.insert(arguments.end(), {"--id", std::to_string(agent.id)});
     if (!agent.external)
-      children_.Spawn(ProcessName(agent.id), ProgramFolder() / "agent", arguments);
+      children_.Spawn(AgentName(agent.id), ProgramFolder() / "agent", arguments);
     else
       console_.Line("waiting for: agent --id " + std::to_string(agent.id) + " --domain " +
                     std::to_string(options.domain) +
@@ -162,8 +162,8 @@ void DdsRun::Collect() {
     Fail(failure.what());
   }
   result_.lost = recorder_->lost();
-  const bool violated = !audit_.Violation(experiment_.graph).empty();
-  if (violated || audit_.IsComplete(experiment_.graph)) result_.wire_matches_graph = !violated;
+  const bool violated = !audit_.Violation(experiment_).empty();
+  if (violated || audit_.IsComplete(experiment_)) result_.wire_matches_graph = !violated;
   if (recorder_->newest_tick() >= 0) {
     result_.wall_s = recorder_->wall_s();
     result_.startup_s = std::chrono::duration<double>(recorder_->started() - launched_).count();
@@ -220,12 +220,12 @@ void DdsRun::Fail(const std::string& why) {
 
 void DdsRun::CheckWire() {
   if (!audit_.HasNews()) return;
-  if (const std::string violation = audit_.Violation(experiment_.graph); !violation.empty())
+  if (const std::string violation = audit_.Violation(experiment_); !violation.empty())
     Fail("the wire differs from the graph: " + violation);
 }
 
 void DdsRun::SayReady() {
-  if (recorder_->newest_tick() < 0 && recorder_->Matched() && audit_.IsComplete(experiment_.graph)) hub_->SayReady();
+  if (recorder_->newest_tick() < 0 && recorder_->Matched() && audit_.IsComplete(experiment_)) hub_->SayReady();
 }
 
 void DdsRun::Record() {

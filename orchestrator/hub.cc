@@ -42,8 +42,6 @@ const char* Text(Ask ask) {
 
 }  // namespace
 
-std::string ProcessName(int agent) { return "agent_" + std::to_string(agent); }
-
 Hub::Hub(Domain& domain, const Experiment& experiment, const std::string& resolved, const RunFolder& folder,
          std::function<void()> wake)
     : experiment_(experiment),
@@ -124,7 +122,7 @@ std::string Hub::Unheard() const {
     if (!StatusOf(process)) names += (names.empty() ? "nothing was heard of " : ", ") + process;
   };
   check("physics_server");
-  for (const AgentConfig& agent : experiment_.agents) check(ProcessName(agent.id));
+  for (const AgentConfig& agent : experiment_.agents) check(AgentName(agent.id));
   return names.empty() ? "not everybody has found everybody" : names;
 }
 

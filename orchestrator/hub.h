@@ -60,7 +60,4 @@ class Hub {
   Reader<StatusType> status_;  // last: it calls what is above
 };
 
-/// "agent_3"
-std::string ProcessName(int agent);
-
 }  // namespace mascot

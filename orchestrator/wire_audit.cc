@@ -5,7 +5,6 @@
 #include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
 
 #include <algorithm>
-#include <charconv>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <optional>
 #include <utility>
@@ -16,32 +15,22 @@ namespace {
 namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastdds::dds::DomainParticipant;
 
-/// The number of a participant that says it is an agent.
-std::optional<int> AgentOf(const std::string& participant) {
-  constexpr std::string_view kPrefix = "agent_";
-  int id = 0;
-  if (!participant.starts_with(kPrefix)) return std::nullopt;
-  const char* end = participant.data() + participant.size();
-  const auto [rest, error] = std::from_chars(participant.data() + kPrefix.size(), end, id);
-  if (error != std::errc{} || rest != end) return std::nullopt;
-  return id;
-}
-
-bool Hears(const Graph& graph, int id, int other) {
-  const auto& heard = graph.HeardBy(id);
+bool Hears(const Experiment& experiment, int id, int other) {
+  const auto& heard = experiment.graph.HeardBy(id);
   return std::any_of(heard.begin(), heard.end(),
                      [&](const Graph::Neighbour& neighbour) { return neighbour.id == other; });
 }
 
 /// What agent `id` may have an endpoint on.
-bool MayHave(const Graph& graph, int id, const Topic& topic, bool reads) {
+bool MayHave(const Experiment& experiment, int id, const Topic& topic, bool reads) {
   switch (topic.kind) {
     case TopicKind::kState:
-      return reads && (topic.agent == id || Hears(graph, id, topic.agent));
+      return reads && (topic.agent == id || Hears(experiment, id, topic.agent));
     case TopicKind::kCommand:
       return !reads && topic.agent == id;
     case TopicKind::kMessage:
-      return reads ? Hears(graph, id, topic.agent) : topic.agent == id;
+      return (reads ? Hears(experiment, id, topic.agent) : topic.agent == id) &&
+             experiment.agent(topic.agent).sends_messages;
     case TopicKind::kClock:
       return reads;
     case TopicKind::kExperiment:
@@ -62,7 +51,7 @@ std::string RightfulWriter(const Topic& topic) {
       return "physics_server";
     case TopicKind::kCommand:
     case TopicKind::kMessage:
-      return "agent_" + std::to_string(topic.agent);
+      return AgentName(topic.agent);
     case TopicKind::kExperiment:
       return "orchestrator";
     case TopicKind::kRequest:
@@ -106,26 +95,27 @@ std::string WireAudit::OwnerOf(const Guid& endpoint) const {
   return found == participants_.end() ? "" : found->second;
 }
 
-std::string WireAudit::ViolationOf(const Guid& guid, const Endpoint& endpoint, const Graph& graph) const {
+std::string WireAudit::ViolationOf(const Guid& guid, const Endpoint& endpoint, const Experiment& experiment) const {
   const auto topic = Topic::Parse(endpoint.topic);
   if (!topic) return {};
   const std::string owner = OwnerOf(guid);
   const std::string what = owner + (endpoint.reads ? " reads " : " writes ") + topic->Name();
-  if (const auto id = AgentOf(owner)) {
-    const bool known = *id >= 1 && *id <= graph.size();
-    if (!known && topic->agent > 0) return what + ", but there are only agents 1 to " + std::to_string(graph.size());
-    if (known && !MayHave(graph, *id, *topic, endpoint.reads)) return what + ", which the graph does not let it";
+  if (const auto id = AgentNumber(owner)) {
+    const bool known = *id >= 1 && *id <= experiment.size();
+    if (!known && topic->agent > 0)
+      return what + ", but there are only agents 1 to " + std::to_string(experiment.size());
+    if (known && !MayHave(experiment, *id, *topic, endpoint.reads)) return what + ", which the graph does not let it";
   }
   if (const std::string rightful = RightfulWriter(*topic); !endpoint.reads && !rightful.empty() && owner != rightful)
     return "'" + owner + "' writes " + topic->Name() + ", which only " + rightful + " may";
   return {};
 }
 
-std::string WireAudit::Violation(const Graph& graph) const {
+std::string WireAudit::Violation(const Experiment& experiment) const {
   const std::lock_guard lock(mutex_);
   std::set<std::pair<std::string, std::string>> writers;
   for (const auto& [guid, endpoint] : endpoints_) {
-    if (std::string violation = ViolationOf(guid, endpoint, graph); !violation.empty()) return violation;
+    if (std::string violation = ViolationOf(guid, endpoint, experiment); !violation.empty()) return violation;
     const auto topic = Topic::Parse(endpoint.topic);
     const bool exclusive = topic && !endpoint.reads && !RightfulWriter(*topic).empty();
     if (exclusive && !writers.emplace(OwnerOf(guid), endpoint.topic).second)
@@ -134,18 +124,23 @@ std::string WireAudit::Violation(const Graph& graph) const {
   return {};
 }
 
-bool WireAudit::IsComplete(const Graph& graph) const {
+bool WireAudit::IsComplete(const Experiment& experiment) const {
   const std::lock_guard lock(mutex_);
   std::set<std::pair<int, Topic>> seen;
   for (const auto& [guid, endpoint] : endpoints_) {
-    const auto id = AgentOf(OwnerOf(guid));
+    const auto id = AgentNumber(OwnerOf(guid));
     const auto topic = Topic::Parse(endpoint.topic);
     if (id && topic) seen.emplace(*id, *topic);
   }
-  for (int id = 1; id <= graph.size(); ++id) {
-    if (!seen.contains({id, Topic::State(id)}) || !seen.contains({id, Topic::Command(id)})) return false;
-    for (const Graph::Neighbour& neighbour : graph.HeardBy(id))
-      if (!seen.contains({id, Topic::State(neighbour.id)})) return false;
+  const auto has = [&](int id, const Topic& topic) { return seen.contains({id, topic}); };
+  for (const AgentConfig& agent : experiment.agents) {
+    const int id = agent.id;
+    if (!has(id, Topic::State(id)) || !has(id, Topic::Command(id))) return false;
+    if (agent.sends_messages && !has(id, Topic::Message(id))) return false;
+    for (const Graph::Neighbour& neighbour : experiment.graph.HeardBy(id)) {
+      if (!has(id, Topic::State(neighbour.id))) return false;
+      if (experiment.agent(neighbour.id).sends_messages && !has(id, Topic::Message(neighbour.id))) return false;
+    }
   }
   return true;
 }

@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "experiment/graph.h"
+#include "experiment/experiment.h"
 #include "idl/topics.h"
 
 namespace mascot {
@@ -20,9 +20,9 @@ class WireAudit : public eprosima::fastdds::dds::DomainParticipantListener {
   bool HasNews() { return news_.exchange(false); }
   /// What is wrong: an agent that reads or writes what it must not, or somebody else who writes in its
   /// place. Empty if nothing is.
-  std::string Violation(const Graph& graph) const;
-  /// Every reader that the graph asks for is there, and every agent's command writer.
-  bool IsComplete(const Graph& graph) const;
+  std::string Violation(const Experiment& experiment) const;
+  /// Every reader that the graph asks for is there, and every agent's writers.
+  bool IsComplete(const Experiment& experiment) const;
 
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*,
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
@@ -40,7 +40,7 @@ class WireAudit : public eprosima::fastdds::dds::DomainParticipantListener {
   };
   void Note(eprosima::fastdds::dds::DomainParticipant* self, const Guid& guid, Endpoint endpoint, bool removed);
   std::string OwnerOf(const Guid& endpoint) const;
-  std::string ViolationOf(const Guid& guid, const Endpoint& endpoint, const Graph& graph) const;
+  std::string ViolationOf(const Guid& guid, const Endpoint& endpoint, const Experiment& experiment) const;
 
   std::atomic<bool> news_ = false;
   mutable std::mutex mutex_;

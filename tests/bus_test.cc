@@ -18,13 +18,20 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 TEST(Topic, IsMadeAndParsedAlike) {
-  for (const Topic& topic : {Topic::State(1), Topic::State(123), Topic::Command(7), Topic::Clock(), Topic::Status(),
-                             Topic::Request(), Topic::Experiment()}) {
+  for (const Topic& topic : {Topic::State(1), Topic::State(123), Topic::Command(7), Topic::Message(12), Topic::Clock(),
+                             Topic::Status(), Topic::Request(), Topic::Experiment()}) {
     EXPECT_EQ(Topic::Parse(topic.Name()), topic);
     EXPECT_EQ(Topic::Parse(topic.DdsName()), topic);
   }
   EXPECT_EQ(Topic::State(3).DdsName(), "rt/agent_3/state");
   EXPECT_EQ(Topic::Clock().DdsName(), "rt/clock");
+}
+
+TEST(Topic, AgentsAreNamedAndNumberedAlike) {
+  EXPECT_EQ(AgentName(12), "agent_12");
+  EXPECT_EQ(AgentNumber("agent_12"), 12);
+  for (const char* name : {"agent_", "agent_x", "agent_1x", "recorder", ""})
+    EXPECT_EQ(AgentNumber(name), std::nullopt) << name;
 }
 
 TEST(Topic, IsNotParsedFromWhatIsNotOurs) {
@@ -73,8 +80,9 @@ TEST(Wire, AMotionComesBackAsItWent) {
 
 TEST(Wire, BytesOfAnotherLengthAreRefused) {
   mascot_msgs::msg::AgentState sample;
-  EXPECT_THAT([&] { Deserialize(std::vector<std::uint8_t>(3), sample); },
-              ThrowsMessage<std::runtime_error>(HasSubstr("a sample of 3 bytes is no mascot_msgs::msg::dds_::AgentState_")));
+  EXPECT_THAT(
+      [&] { Deserialize(std::vector<std::uint8_t>(3), sample); },
+      ThrowsMessage<std::runtime_error>(HasSubstr("a sample of 3 bytes is no mascot_msgs::msg::dds_::AgentState_")));
 }
 
 /// Two participants in a domain of the test's own.
