@@ -79,11 +79,18 @@ const LawEntry& Entry(const std::string& name) {
   return *entry;
 }
 
+/// Reads the keys of `law`, a law of some agents. Returns whether it sends messages.
+bool ReadParameters(Experiment& experiment, LawConfig& law) {
+  const LawEntry& entry = Entry(law.name);
+  law.section.Use(entry.parameters);
+  return entry.read(experiment, law);
+}
+
 /// Each agent's law, and with it whether the agent sends messages.
 void ReadLaws(Experiment& experiment) {
-  const bool team_sends = Entry(experiment.law.name).read(experiment, experiment.law);
+  const bool team_sends = ReadParameters(experiment, experiment.law);
   for (AgentConfig& agent : experiment.agents)
-    agent.sends_messages = agent.has_own_law ? Entry(agent.law.name).read(experiment, agent.law) : team_sends;
+    agent.sends_messages = agent.has_own_law ? ReadParameters(experiment, agent.law) : team_sends;
 }
 
 }  // namespace
@@ -98,7 +105,7 @@ std::unique_ptr<Law> MakeLaw(Experiment& experiment, int id) {
 
 Experiment LoadExperiment(Section document, const std::string& default_name, bool checked) {
   const std::vector<std::string_view> xyz_laws = XyzLaws();
-  const Vocabulary vocabulary{kModelNames, LawNames(), kTransportNames, xyz_laws};
+  const Vocabulary vocabulary{LawNames(), xyz_laws};
   Experiment experiment = ReadExperiment(document, vocabulary, default_name);
   experiment.checked = checked;
   if (experiment.size() > 0) ReadLaws(experiment);

@@ -10,23 +10,15 @@
 
 namespace mascot {
 
-/// A key of [law] that one law reads.
-struct LawParameter {
-  std::string_view name;
-  std::string_view fallback;  ///< the default, as a TOML value; "" if absent by default, "*" if required
-  std::string_view range;     ///< legal values, with their unit
-  std::string_view meaning;
-};
-
 /// A row of the table of laws. `orchestrator laws` prints these.
 struct LawEntry {
   std::string_view name;
   std::string_view summary;
   std::string_view equation;
-  std::string_view theory;  ///< what is known about it
-  std::string_view source;  ///< paper
-  std::span<const LawParameter> parameters;
-  Axes axes;  ///< default of law.axes
+  std::string_view theory;          ///< what is known about it
+  std::string_view source;          ///< paper
+  std::span<const Key> parameters;  ///< its keys of [law], besides those that all laws have
+  Axes axes;                        ///< default of law.axes
   /// Reads and checks the parameters of all agents that share `law`, a law of this name, from law.section. Returns
   /// whether it sends messages.
   bool (*read)(Experiment& experiment, LawConfig& law);

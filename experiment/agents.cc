@@ -1,22 +1,37 @@
 #include "experiment/agents.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 
+#include "experiment/control.h"
+#include "experiment/names.h"
 #include "experiment/placement.h"
 
 namespace mascot {
 namespace {
 
-constexpr double kFarthest_m = 1e6;
-constexpr double kFastest_m_per_s = 1000;
-constexpr double kLatest_s = 1e6;
+constexpr Range kPlace_m = {-1e6, 1e6};
+constexpr Range kTime_s = {0, 1e6};
+constexpr std::string_view kHosts[] = {"local", "external"};
+
+constexpr Key kRandomKeys[] = {
+    key::Vector3("min_m", kPlace_m, "a corner of the box that they start in").Default("[-10, -10, 1]"),
+    key::Vector3("max_m", kPlace_m, "the corner opposite").Otherwise("[10, 10, 4], larger for many agents"),
+    key::Number("min_separation_m", {0, 1e6}, "at least between any two; in z alone where `law.axes = \"xy\"`")
+        .Default("0.5"),
+};
+
+Key AirframeKey() {
+  Key row =
+      key::OneOf("airframe", AirframeNames(), "a built-in airframe, or a table of one's own").Or(ValueKind::kTable);
+  row.keys = AirframeKeys();
+  return row;
+}
 
 /// One vector for each agent; notes a list of another length.
-std::vector<Eigen::Vector3d> OnePerAgent(Section& agents, std::string_view key, std::size_t count, double limit) {
-  std::vector<Eigen::Vector3d> points = agents.Points(key, -limit, limit);
+std::vector<Eigen::Vector3d> OnePerAgent(Section& agents, std::string_view key, std::size_t count) {
+  std::vector<Eigen::Vector3d> points = agents.Points(key);
   if (count > 0 && !agents.Wrong(key) && points.size() != count)
     agents.Fail(key, "expected " + std::to_string(count) + " points, one per agent, got a list of " +
                          std::to_string(points.size()));
@@ -25,7 +40,7 @@ std::vector<Eigen::Vector3d> OnePerAgent(Section& agents, std::string_view key, 
 }
 
 void ReadPositions(Section& agents, Experiment& experiment) {
-  const std::vector<Eigen::Vector3d> points = OnePerAgent(agents, "position_m", experiment.agents.size(), kFarthest_m);
+  const std::vector<Eigen::Vector3d> points = OnePerAgent(agents, "position_m", experiment.agents.size());
   if (agents.Wrong("position_m")) return;
   for (std::size_t i = 0; i < points.size(); ++i) {
     experiment.agents[i].p_W = points[i];
@@ -59,13 +74,13 @@ Box ReadBox(Section& random, const Experiment& experiment) {
   box.may_touch = !experiment.physics.collisions;
   box.has_ground = experiment.physics.ground;
   box.obstacles = experiment.physics.obstacles;
-  box.min_m = random.Vector3("min_m", -kFarthest_m, kFarthest_m, Eigen::Vector3d(-10, -10, 1));
-  box.separation_m = random.Number("min_separation_m", 0, kFarthest_m, 0.5);
+  box.min_m = random.Vector3("min_m");
+  box.separation_m = random.Number("min_separation_m");
   const double height_m = std::max(3.0, 1.2 * box.separation_m * (experiment.size() - 1));
   const double side_m = 2 * box.separation_m * std::sqrt(Standing(experiment));
-  box.max_m = random.Vector3("max_m", -kFarthest_m, kFarthest_m,
-                             Eigen::Vector3d(std::max(10.0, box.min_m.x() + side_m),
-                                             std::max(10.0, box.min_m.y() + side_m), box.min_m.z() + height_m));
+  box.max_m =
+      random.Vector3("max_m", Eigen::Vector3d(std::max(10.0, box.min_m.x() + side_m),
+                                              std::max(10.0, box.min_m.y() + side_m), box.min_m.z() + height_m));
   random.Done();
   if (random.Wrong("")) return box;
   if (experiment.physics.ground && box.min_m.z() < 0)
@@ -89,32 +104,30 @@ void ReadRandom(Section& agents, Experiment& experiment) {
                             ", got too small a box");
 }
 
-AgentOverride ReadOverride(Section& section, std::span<const std::string_view> models, std::vector<AgentConfig>& agents,
-                           std::set<std::int64_t>& seen) {
-  constexpr std::array<std::string_view, 2> kHosts = {"local", "external"};
+AgentOverride ReadOverride(Section& section, std::vector<AgentConfig>& agents, std::set<std::int64_t>& seen) {
   const auto last = agents.empty() ? kMaxAgents : static_cast<std::int64_t>(agents.size());
   const std::int64_t id = section.Integer("id", 1, last);
   if (!section.Wrong("id") && !seen.insert(id).second)
     section.Fail("id", "expected each agent once, got " + std::to_string(id) + " again");
   AgentConfig unknown;
   AgentConfig& agent = agents.empty() ? unknown : agents[static_cast<std::size_t>(id - 1)];
-  if (section.Has("model")) agent.model = section.OneOf("model", models);
+  if (section.Has("model")) agent.model = section.OneOf("model");
   if (section.Has("airframe")) agent.airframe = ReadAirframe(section, "airframe");
-  agent.start_s = section.Number("start_s", 0, kLatest_s, 0.0);
+  agent.start_s = section.Number("start_s");
   if (section.Has("stop_s")) {
-    agent.stop_s = section.Number("stop_s", 0, kLatest_s);
+    agent.stop_s = section.Number("stop_s");
     if (!section.Wrong("stop_s") && !section.Wrong("start_s") && agent.stop_s <= agent.start_s)
       section.Fail("stop_s", "expected a time after start_s (" + ShortestFloat(agent.start_s) + "), got " +
                                  ShortestFloat(agent.stop_s));
   }
-  agent.external = section.OneOf("host", kHosts, "local") == "external";
+  agent.external = section.OneOf("host") == "external";
   return {agents.empty() || section.Wrong("id") ? 0 : static_cast<int>(id), section};
 }
 
 /// Initial yaws, one per agent.
 void ReadHeadings(Section& agents, std::vector<AgentConfig>& team) {
   if (!agents.Has("heading_rad")) return;
-  const std::vector<double> headings = agents.Numbers("heading_rad", -10, 10);
+  const std::vector<double> headings = agents.Numbers("heading_rad");
   if (!team.empty() && !agents.Wrong("heading_rad") && headings.size() != team.size())
     agents.Fail("heading_rad", "expected " + std::to_string(team.size()) + " numbers, one per agent, got a list of " +
                                    std::to_string(headings.size()));
@@ -123,10 +136,35 @@ void ReadHeadings(Section& agents, std::vector<AgentConfig>& team) {
 
 }  // namespace
 
-std::vector<AgentOverride> ReadAgents(Section& agents, int count, std::span<const std::string_view> models,
-                                      Experiment& experiment) {
+std::span<const Key> AgentsKeys() {
+  static const Key override_keys[] = {
+      key::Integer("id", 1, kMaxAgents, "whom this is for").Required(),
+      key::OneOf("model", kModelNames, "").Otherwise("the team's"),
+      AirframeKey().Otherwise("the team's"),
+      key::Table("control", AgentControlKeys(), "what is left out is as in `[control]`"),
+      key::Table("law", LawKeys(),
+                 "a law of its own; what is left out is as in `[law]`, if that is of the same name, or none is given"),
+      key::Number("start_s", kTime_s, "before, its law is off: it stands still, and nobody hears it").Default("0.0"),
+      key::Number("stop_s", kTime_s, "from then on likewise").Otherwise("never"),
+      key::OneOf("host", kHosts, "external: started by hand, on this host or another, and waited for")
+          .Default("\"local\""),
+  };
+  static const Key keys[] = {
+      key::Integer("count", 1, kMaxAgents, "how many; they are numbered from 1").Required(),
+      key::OneOf("model", kModelNames, "see `orchestrator models`").Default("\"quadrotor\""),
+      AirframeKey().Default("\"mascot\""),
+      key::Points("position_m", kPlace_m, "where each starts, in W"),
+      key::Table("random", kRandomKeys, "places drawn by `run.seed`; used without `position_m`"),
+      key::Points("velocity_m_per_s", {-1000, 1000}, "with which each starts, in W").Otherwise("all zero"),
+      key::Numbers("heading_rad", {-10, 10}, "yaw with which each starts").Otherwise("all zero"),
+      key::Tables("override", override_keys, "what is different about one agent"),
+  };
+  return keys;
+}
+
+std::vector<AgentOverride> ReadAgents(Section& agents, int count, Experiment& experiment) {
   AgentConfig common;
-  common.model = agents.OneOf("model", models, "quadrotor");
+  common.model = agents.OneOf("model");
   common.airframe = ReadAirframe(agents, "airframe");
   common.law = experiment.law;
   experiment.agents.assign(static_cast<std::size_t>(count), common);
@@ -134,7 +172,7 @@ std::vector<AgentOverride> ReadAgents(Section& agents, int count, std::span<cons
   std::set<std::int64_t> seen;
   std::vector<AgentOverride> overrides;
   for (Section& section : agents.Children("override"))
-    overrides.push_back(ReadOverride(section, models, experiment.agents, seen));
+    overrides.push_back(ReadOverride(section, experiment.agents, seen));
 
   ReadHeadings(agents, experiment.agents);
   if (agents.Has("position_m") && agents.Has("random"))
@@ -144,7 +182,7 @@ std::vector<AgentOverride> ReadAgents(Section& agents, int count, std::span<cons
   else
     ReadRandom(agents, experiment);
   if (agents.Has("velocity_m_per_s")) {
-    const auto velocities = OnePerAgent(agents, "velocity_m_per_s", experiment.agents.size(), kFastest_m_per_s);
+    const auto velocities = OnePerAgent(agents, "velocity_m_per_s", experiment.agents.size());
     for (std::size_t i = 0; i < velocities.size(); ++i) experiment.agents[i].v_W = velocities[i];
   }
   agents.Done();

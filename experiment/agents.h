@@ -10,10 +10,11 @@ struct AgentOverride {
   Section section;
 };
 
+/// The keys of [agents].
+std::span<const Key> AgentsKeys();
 /// Reads [agents], all but its count, into experiment.agents; [run], [physics] and [law] are read already.
 /// With `count` = 0, not known for a mistake, sizes are not checked and there are no agents. Returns the overrides,
 /// whose tables of other sections (control, law) are still to be read, and Done() to be called.
-std::vector<AgentOverride> ReadAgents(Section& agents, int count, std::span<const std::string_view> models,
-                                      Experiment& experiment);
+std::vector<AgentOverride> ReadAgents(Section& agents, int count, Experiment& experiment);
 
 }  // namespace mascot

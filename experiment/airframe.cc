@@ -19,7 +19,6 @@ namespace {
 // loop out, as the paper does.
 Airframe Published() {
   Airframe body;
-  body.name = "mascot_published";
   body.mass_kg = 1.477;
   body.inertia_kg_m2 = {0.1152, 0.1152, 0.218};
   body.arm_m = 0.5;
@@ -42,7 +41,6 @@ Airframe Published() {
 // Position: 1 rad/s, well below it.
 Airframe Mascot() {
   Airframe body = Published();
-  body.name = "mascot";
   body.tilt_limit_rad = 0.35;
   body.altitude = {25, 10};
   body.heading = {4, 4};
@@ -56,7 +54,6 @@ Airframe Mascot() {
 // Its rotors are flown here as a plus; their lag is an estimate, and bounds the attitude gains.
 Airframe Crazyflie() {
   Airframe body;
-  body.name = "crazyflie";
   body.mass_kg = 0.027;
   body.inertia_kg_m2 = {1.657e-5, 1.666e-5, 2.926e-5};
   body.arm_m = 0.046;
@@ -74,12 +71,51 @@ Airframe Crazyflie() {
   return body;
 }
 
+struct Entry {
+  std::string_view name;
+  Airframe (*make)();
+};
+// Every built-in airframe.
+constexpr Entry kAirframes[] = {{"mascot", Mascot}, {"mascot_published", Published}, {"crazyflie", Crazyflie}};
+
+constexpr auto kNames = [] {
+  std::array<std::string_view, std::size(kAirframes)> names{};
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kAirframes[i].name;
+  return names;
+}();
+
+constexpr Range kGain = {0, 1e4};
+constexpr std::string_view kOfBase = "that of `base`";
+constexpr Key kGainKeys[] = {
+    key::Number("kp", kGain, "proportional").Otherwise(kOfBase),
+    key::Number("kd", kGain, "derivative").Otherwise(kOfBase),
+};
+
+constexpr Key kKeys[] = {
+    key::OneOf("base", kNames, "a built-in airframe, from which everything comes that this table leaves out")
+        .Default("\"mascot\""),
+    key::Text("name", "").Otherwise(kOfBase),
+    key::Number("mass_kg", Above(0, 1e4), "mass").Otherwise(kOfBase),
+    key::Vector3("inertia_kg_m2", {0, 1e6}, "moments of inertia about x, y, z of B").Otherwise(kOfBase),
+    key::Number("arm_m", Above(0, 100), "d: centre to rotor").Otherwise(kOfBase),
+    key::Number("lift_n_s2", Above(0, 1), "b: thrust of a rotor per squared speed").Otherwise(kOfBase),
+    key::Number("drag_n_m_s2", Above(0, 1), "k: torque of a rotor per squared speed").Otherwise(kOfBase),
+    key::Number("linear_drag_kg_per_s", {0, 1e3}, "B: force per airspeed").Otherwise(kOfBase),
+    key::Number("max_thrust_n", Above(0, 1e6), "of all four rotors together").Otherwise(kOfBase),
+    key::Number("rotor_time_constant_s", {0, 10}, "lag of the rotor speed; 0: none").Otherwise(kOfBase),
+    key::Vector3("size_m", {1e-3, 100}, "collision box, full lengths").Otherwise(kOfBase),
+    key::Number("tilt_limit_rad", Above(0, 1.5), "of roll and of pitch").Otherwise(kOfBase),
+    key::Table("altitude", kGainKeys, "m/s^2 per m and per m/s"),
+    key::Table("heading", kGainKeys, "rad/s^2 per rad and per rad/s"),
+    key::Table("attitude", kGainKeys, "roll and pitch: rad/s^2 per rad and per rad/s"),
+    key::Table("position", kGainKeys, "m/s^2 per m and per m/s, in x and y"),
+};
+
 PdGains ReadGains(Section& table, std::string_view key, const PdGains& base) {
-  constexpr double kMaxGain = 1e4;
   Section gains = table.Child(key);
   PdGains read;
-  read.kp = gains.Number("kp", 0, kMaxGain, base.kp);
-  read.kd = gains.Number("kd", 0, kMaxGain, base.kd);
+  read.kp = gains.Number("kp", base.kp);
+  read.kd = gains.Number("kd", base.kd);
   gains.Done();
   return read;
 }
@@ -89,24 +125,24 @@ bool IsPossibleInertia(const Eigen::Vector3d& moments) {
   return moments.minCoeff() > 0 && 2 * moments.maxCoeff() <= moments.sum() * (1 + 1e-12);
 }
 
-Airframe ReadTable(Section table, std::span<const std::string_view> names) {
-  const std::string base_name = table.OneOf("base", names, "mascot");
+Airframe ReadTable(Section table) {
+  const std::string base_name = table.OneOf("base");
   Airframe body = *std::ranges::find(Airframes(), base_name, &Airframe::name);
   body.name = table.Text("name", body.name);
-  body.mass_kg = table.Positive("mass_kg", 1e4, body.mass_kg);
-  body.inertia_kg_m2 = table.Vector3("inertia_kg_m2", 0, 1e6, body.inertia_kg_m2);
+  body.mass_kg = table.Number("mass_kg", body.mass_kg);
+  body.inertia_kg_m2 = table.Vector3("inertia_kg_m2", body.inertia_kg_m2);
   if (const Eigen::Vector3d& j = body.inertia_kg_m2; !IsPossibleInertia(j))
     table.Fail("inertia_kg_m2", "expected positive moments, each at most the sum of the other two, got [" +
                                     ShortestFloat(j.x()) + ", " + ShortestFloat(j.y()) + ", " + ShortestFloat(j.z()) +
                                     "]");
-  body.arm_m = table.Positive("arm_m", 100, body.arm_m);
-  body.lift_n_s2 = table.Positive("lift_n_s2", 1, body.lift_n_s2);
-  body.drag_n_m_s2 = table.Positive("drag_n_m_s2", 1, body.drag_n_m_s2);
-  body.linear_drag_kg_per_s = table.Number("linear_drag_kg_per_s", 0, 1e3, body.linear_drag_kg_per_s);
-  body.max_thrust_n = table.Positive("max_thrust_n", 1e6, body.max_thrust_n);
-  body.rotor_time_constant_s = table.Number("rotor_time_constant_s", 0, 10, body.rotor_time_constant_s);
-  body.size_m = table.Vector3("size_m", 1e-3, 100, body.size_m);
-  body.tilt_limit_rad = table.Positive("tilt_limit_rad", 1.5, body.tilt_limit_rad);
+  body.arm_m = table.Number("arm_m", body.arm_m);
+  body.lift_n_s2 = table.Number("lift_n_s2", body.lift_n_s2);
+  body.drag_n_m_s2 = table.Number("drag_n_m_s2", body.drag_n_m_s2);
+  body.linear_drag_kg_per_s = table.Number("linear_drag_kg_per_s", body.linear_drag_kg_per_s);
+  body.max_thrust_n = table.Number("max_thrust_n", body.max_thrust_n);
+  body.rotor_time_constant_s = table.Number("rotor_time_constant_s", body.rotor_time_constant_s);
+  body.size_m = table.Vector3("size_m", body.size_m);
+  body.tilt_limit_rad = table.Number("tilt_limit_rad", body.tilt_limit_rad);
   body.altitude = ReadGains(table, "altitude", body.altitude);
   body.heading = ReadGains(table, "heading", body.heading);
   body.attitude = ReadGains(table, "attitude", body.attitude);
@@ -129,15 +165,24 @@ double Airframe::HoverRotorSpeed(double gravity_m_per_s2) const {
 }
 
 std::span<const Airframe> Airframes() {
-  static const std::array airframes = {Mascot(), Published(), Crazyflie()};
+  static const std::vector<Airframe> airframes = [] {
+    std::vector<Airframe> all;
+    for (const Entry& entry : kAirframes) {
+      all.push_back(entry.make());
+      all.back().name = entry.name;
+    }
+    return all;
+  }();
   return airframes;
 }
 
+std::span<const Key> AirframeKeys() { return kKeys; }
+
+std::span<const std::string_view> AirframeNames() { return kNames; }
+
 Airframe ReadAirframe(Section& agents, std::string_view key) {
-  std::vector<std::string_view> names;
-  for (const Airframe& airframe : Airframes()) names.push_back(airframe.name);
-  if (agents.Kind(key) == "table") return ReadTable(agents.Child(key), names);
-  return *std::ranges::find(Airframes(), agents.OneOf(key, names, "mascot"), &Airframe::name);
+  if (agents.Kind(key) == "table") return ReadTable(agents.Child(key));
+  return *std::ranges::find(Airframes(), agents.OneOf(key), &Airframe::name);
 }
 
 }  // namespace mascot

@@ -49,6 +49,9 @@ struct Airframe {
 
 /// Every built-in airframe: `mascot`, `mascot_published`, `crazyflie`.
 std::span<const Airframe> Airframes();
+std::span<const std::string_view> AirframeNames();
+/// The keys of a table that describes one.
+std::span<const Key> AirframeKeys();
 /// Reads `key` of `agents`: a name, or a table whose keys are the fields above (defaults: those of
 /// `base`, a built-in name, itself by default "mascot").
 Airframe ReadAirframe(Section& agents, std::string_view key);

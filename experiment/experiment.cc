@@ -1,20 +1,61 @@
 #include "experiment/experiment.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "experiment/agents.h"
+#include "experiment/control.h"
+#include "experiment/names.h"
 
 namespace mascot {
 namespace {
 
-using Names2 = std::array<std::string_view, 2>;
-
-constexpr double kMaxDuration_s = 1e6;
 constexpr double kMaxTicks = 1e9;  // recordings number their samples with 32 bits
-constexpr double kMaxTimeout_s = 3600;
-constexpr int kMaxDomain = 100;  // above, DDS's ports meet those that Linux hands out
+constexpr int kMaxDomain = 100;    // above, DDS's ports meet those that Linux hands out
+
+constexpr std::string_view kModes[] = {"lockstep", "realtime"};
+constexpr std::string_view kAxes[] = {"xy", "xyz"};
+constexpr std::string_view kAutomatic[] = {"auto"};
+
+constexpr Key kRunKeys[] = {
+    key::Text("name", "names the run's folder, and the run").Otherwise("the file's"),
+    key::Number("duration_s", Above(0, 1e6), "simulated time; a whole number of ticks").Required(),
+    key::OneOf("mode", kModes,
+               "lockstep: as fast as it goes, deterministic; realtime: paced by the wall clock, late commands held")
+        .Default("\"lockstep\""),
+    key::Integer("seed", 0, INT64_MAX, "of everything random").Default("1"),
+    key::Number("agent_timeout_s", Above(0, 3600), "how long a command may keep the server waiting, wall clock")
+        .Default("5.0"),
+    key::Number("start_timeout_s", Above(0, 3600), "how long the start may take, wall clock").Default("60.0"),
+    key::Number("speed", Above(0, 1000), "of realtime: simulated seconds per second").Default("1.0"),
+};
+
+constexpr Key kLawKeys[] = {
+    key::Text("name", "see `orchestrator laws`").Default("\"consensus\""),
+    key::Integer("leader", 0, kMaxAgents, "agent that leads; 0: none").Default("0"),
+    key::OneOf("axes", kAxes, "what the law governs; with xy heights are held").Otherwise("xy; xyz for waypoint"),
+};
+
+constexpr Key kRecordKeys[] = {
+    key::Text("file", "name of the recording in the run's folder, ending in .mcap").Default("\"run.mcap\""),
+    key::Texts("topics", "which topics it holds; shell patterns").Default("[\"*\"]"),
+};
+
+constexpr Key kOutputKeys[] = {
+    key::Boolean("position_plot", "pictures of positions").Default("true"),
+    key::Boolean("velocity_plot", "pictures of velocities").Default("true"),
+    key::Boolean("save_plot", "pictures as files").Default("true"),
+    key::Boolean("show_plot", "pictures in windows, at the end").Default("false"),
+    key::Boolean("save_data", "states.npz").Default("true"),
+    key::Boolean("fidelity", "compares with ideal bodies; their laws run in the orchestrator too").Default("true"),
+};
+
+Key DomainKey() {
+  Key row =
+      key::OneOf("domain", kAutomatic, "DDS domain; auto: a free one").Or(ValueKind::kInteger).Default("\"auto\"");
+  row.max_integer = kMaxDomain;
+  return row;
+}
 
 bool IsNameCharacter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
@@ -35,66 +76,28 @@ std::string NameFrom(std::string text) {
 }
 
 void ReadRun(Section& section, const std::string& default_name, Experiment& experiment) {
-  constexpr Names2 kModes = {"lockstep", "realtime"};
   auto& run = experiment.run;
   run.name = section.Text("name", NameFrom(default_name));
   if (!section.Wrong("name") && !IsName(run.name))
     section.Fail("name",
                  "expected a letter or digit, then letters, digits, '.', '_', '-' and spaces, got '" + run.name + "'");
-  run.duration_s = section.Positive("duration_s", kMaxDuration_s);
-  run.mode = section.OneOf("mode", kModes, "lockstep") == "realtime" ? Mode::kRealtime : Mode::kLockstep;
-  run.seed = static_cast<std::uint64_t>(section.Integer("seed", 0, INT64_MAX, 1));
-  run.agent_timeout_s = section.Positive("agent_timeout_s", kMaxTimeout_s, 5.0);
-  run.start_timeout_s = section.Positive("start_timeout_s", kMaxTimeout_s, 60.0);
-  run.speed = section.Positive("speed", 1000, 1.0);
+  run.duration_s = section.Number("duration_s");
+  run.mode = section.OneOf("mode") == "realtime" ? Mode::kRealtime : Mode::kLockstep;
+  run.seed = static_cast<std::uint64_t>(section.Integer("seed"));
+  run.agent_timeout_s = section.Number("agent_timeout_s");
+  run.start_timeout_s = section.Number("start_timeout_s");
+  run.speed = section.Number("speed");
   section.Done();
 }
 
 LawConfig ReadLaw(Section section, int count, const Vocabulary& vocabulary) {
-  constexpr Names2 kAxes = {"xy", "xyz"};
   LawConfig law;
-  law.name = section.OneOf("name", vocabulary.laws, "consensus");
-  law.leader = static_cast<int>(section.Integer("leader", 0, count > 0 ? count : kMaxAgents, 0));
+  law.name = section.OneOf("name", vocabulary.laws);
+  law.leader = static_cast<int>(section.Integer("leader", 0, count > 0 ? count : kMaxAgents));
   const bool is_xyz = std::ranges::find(vocabulary.xyz_laws, law.name) != vocabulary.xyz_laws.end();
   law.axes = section.OneOf("axes", kAxes, is_xyz ? "xyz" : "xy") == "xyz" ? Axes::kXyz : Axes::kXy;
   law.section = section;
   return law;
-}
-
-/// Gains given for one loop, in place of the airframe's.
-void ReadGains(Section& control, std::string_view key, PdGains Airframe::*loop, std::span<AgentConfig> agents) {
-  if (!control.Has(key)) return;
-  constexpr double kMaxGain = 1e4;
-  Section section = control.Child(key);
-  PdGains gains;
-  gains.kp = section.Number("kp", 0, kMaxGain);
-  gains.kd = section.Number("kd", 0, kMaxGain);
-  section.Done();
-  for (AgentConfig& agent : agents) agent.airframe.*loop = gains;
-}
-
-/// All of [control] that may differ from agent to agent.
-void ReadControl(Section& section, std::span<AgentConfig> agents) {
-  constexpr Names2 kInversions = {"small_angle", "exact"};
-  ControlConfig control;
-  ReadGains(section, "altitude", &Airframe::altitude, agents);
-  ReadGains(section, "heading", &Airframe::heading, agents);
-  ReadGains(section, "attitude", &Airframe::attitude, agents);
-  ReadGains(section, "position", &Airframe::position, agents);
-  control.heading_rad = section.Number("heading_rad", -10, 10, 0.0);
-  control.max_acceleration_m_per_s2 = section.Positive("max_acceleration_m_per_s2", 1000, 3.0);
-  control.max_speed_m_per_s = section.Positive("max_speed_m_per_s", 1000, 100.0);
-  control.velocity_gain = section.Positive("velocity_gain", 1000, 2.0);
-  control.look_ahead_m = section.Positive("look_ahead_m", 100, 0.1);
-  if (section.Has("tilt_limit_rad")) {
-    const double tilt_limit_rad = section.Positive("tilt_limit_rad", 1.5);
-    for (AgentConfig& agent : agents) agent.airframe.tilt_limit_rad = tilt_limit_rad;
-  }
-  control.inversion =
-      section.OneOf("inversion", kInversions, "small_angle") == "exact" ? Inversion::kExact : Inversion::kSmallAngle;
-  control.drag_compensation = section.Boolean("drag_compensation", true);
-  section.Done();
-  for (AgentConfig& agent : agents) agent.control = control;
 }
 
 /// The parts of an override that stand in place of [control] and [law], or of some of their keys.
@@ -150,44 +153,71 @@ void CheckTime(Section& run, Section& physics, Section& control, const Experimen
 
 void ReadRecord(Section& section, Experiment& experiment) {
   auto& record = experiment.record;
-  record.file = section.Text("file", "run.mcap");
+  record.file = section.Text("file");
   const bool plain = record.file.find('/') == std::string::npos && record.file.find('\0') == std::string::npos;
   if (!section.Wrong("file") && (!plain || !record.file.ends_with(".mcap") || record.file.size() > 200))
     section.Fail("file", "expected a file name ending in .mcap, without folders, got '" + record.file + "'");
-  record.topics = section.Texts("topics", {"*"});
+  record.topics = section.Texts("topics");
   section.Done();
 }
 
 void ReadOutput(Section& section, Experiment& experiment) {
   auto& output = experiment.output;
-  output.position_plot = section.Boolean("position_plot", true);
-  output.velocity_plot = section.Boolean("velocity_plot", true);
-  output.save_plot = section.Boolean("save_plot", true);
-  output.show_plot = section.Boolean("show_plot", false);
-  output.save_data = section.Boolean("save_data", true);
-  output.fidelity = section.Boolean("fidelity", true);
+  output.position_plot = section.Boolean("position_plot");
+  output.velocity_plot = section.Boolean("velocity_plot");
+  output.save_plot = section.Boolean("save_plot");
+  output.show_plot = section.Boolean("show_plot");
+  output.save_data = section.Boolean("save_data");
+  output.fidelity = section.Boolean("fidelity");
   section.Done();
 }
 
-void ReadNetwork(Section& section, std::span<const std::string_view> transports, Experiment& experiment) {
+void ReadNetwork(Section& section, Experiment& experiment) {
   auto& network = experiment.network;
   if (const std::string kind = section.Kind("domain"); kind.empty() || kind == "string") {
-    const std::string domain = section.Text("domain", "auto");
+    const std::string domain = section.Text("domain");
     if (domain != "auto")
       section.Fail("domain",
                    "expected \"auto\" or an integer in [0, " + std::to_string(kMaxDomain) + "], got '" + domain + "'");
   } else {
-    network.domain = static_cast<int>(section.Integer("domain", 0, kMaxDomain));
+    network.domain = static_cast<int>(section.Integer("domain"));
   }
-  network.transport = section.OneOf("transport", transports, "auto");
+  network.transport = section.OneOf("transport");
   section.Done();
 }
 
 }  // namespace
 
+std::span<const Key> LawKeys() { return kLawKeys; }
+
+std::span<const Key> ExperimentKeys() {
+  static const Key network_keys[] = {
+      DomainKey(),
+      key::OneOf("transport", kTransportNames, "auto: shared memory on one host, UDP between hosts")
+          .Default("\"auto\""),
+  };
+  static const Key keys[] = {
+      key::Table("run", kRunKeys, ""),
+      key::Table("physics", PhysicsKeys(), "the world"),
+      key::Table("agents", AgentsKeys(), "who flies"),
+      key::Table("control", ControlKeys(), "the low-level stack under the law"),
+      key::Table("sensors", SensorKeys(), "what agents measure: standard deviations of zero-mean Gaussian errors"),
+      key::Table("graph", ScheduleKeys(),
+                 "who hears whom: one of `topology`, `laplacian`, `adjacency`, `edges`, `random`"),
+      key::Table("link", LinkKeys(),
+                 "the network between agents: seeded, in simulated time, each directed edge by itself"),
+      key::Table("law", LawKeys(), "what agents want"),
+      key::Table("record", kRecordKeys, "the recording"),
+      key::Table("output", kOutputKeys, "what else a run leaves behind"),
+      key::Table("network", network_keys, "DDS"),
+  };
+  return keys;
+}
+
 std::int64_t Experiment::ticks() const { return std::llround(run.duration_s * control.rate_hz); }
 
 Experiment ReadExperiment(Section document, const Vocabulary& vocabulary, const std::string& default_name) {
+  document.Use(ExperimentKeys());
   // In the order of the resolved file; read below in the order in which one needs the other.
   Section run = document.Child("run"), physics = document.Child("physics"), agents = document.Child("agents"),
           control = document.Child("control"), sensors = document.Child("sensors"), graph = document.Child("graph"),
@@ -198,13 +228,13 @@ Experiment ReadExperiment(Section document, const Vocabulary& vocabulary, const 
   Experiment experiment;
   experiment.document = document;
   ReadRun(run, default_name, experiment);
-  int count = static_cast<int>(agents.Integer("count", 1, kMaxAgents));
+  int count = static_cast<int>(agents.Integer("count"));
   if (agents.Wrong("count")) count = 0;
   experiment.physics = ReadPhysics(physics, count);
   experiment.law = ReadLaw(law, count, vocabulary);
-  std::vector<AgentOverride> overrides = ReadAgents(agents, count, vocabulary.models, experiment);
+  std::vector<AgentOverride> overrides = ReadAgents(agents, count, experiment);
   CheckRotorFailures(physics, experiment);
-  experiment.control.rate_hz = static_cast<int>(control.Integer("rate_hz", 1, 100000, 100));
+  experiment.control.rate_hz = static_cast<int>(control.Integer("rate_hz"));
   ReadControl(control, experiment.agents);
   for (AgentOverride& override : overrides) FinishOverride(override, control, count, vocabulary, experiment);
   CheckTime(run, physics, control, experiment);
@@ -217,7 +247,7 @@ Experiment ReadExperiment(Section document, const Vocabulary& vocabulary, const 
   experiment.links = ReadLinks(link, experiment.graph);
   ReadRecord(record, experiment);
   ReadOutput(output, experiment);
-  ReadNetwork(network, vocabulary.transports, experiment);
+  ReadNetwork(network, experiment);
 
   // What a law would say of these would only follow from the mistake.
   if (graph.Wrong("")) {

@@ -114,11 +114,14 @@ struct Experiment {
   int steps_per_tick() const { return physics.rate_hz / control.rate_hz; }
 };
 
-/// The names that the experiment file may use, from tables that live above this library.
+/// Every key that an experiment file may have, but for the parameters of single laws (agent/laws.h).
+std::span<const Key> ExperimentKeys();
+/// Those of [law] that all laws have.
+std::span<const Key> LawKeys();
+
+/// The names that the experiment file may use, from the table of laws, which lives above this library.
 struct Vocabulary {
-  std::span<const std::string_view> models;
   std::span<const std::string_view> laws;
-  std::span<const std::string_view> transports;
   std::span<const std::string_view> xyz_laws = {};  ///< those of `laws` whose default for law.axes is "xyz"
 };
 

@@ -52,7 +52,13 @@ class Graph {
   std::vector<std::vector<Neighbour>> heard_;
 };
 
-/// Names of the families that `graph.topology` knows, as in the table in graph_families.cc.
+/// A family that `graph.topology` knows.
+struct Topology {
+  std::string_view name;
+  std::string_view meaning;
+};
+/// Every one, from the table in graph_families.cc.
+std::vector<Topology> Topologies();
 std::span<const std::string_view> TopologyNames();
 /// A family of that table for `count` agents, all weights 1.
 Graph MakeTopology(std::string_view name, int count);
@@ -63,6 +69,8 @@ Graph MakeGeometric(std::span<const Eigen::Vector3d> p_W, double radius_m);
 /// A ring in which everybody hears its `k` nearest (k even, below `count`), each edge of which is replaced with
 /// probability `p` by one to an agent drawn at random (Watts & Strogatz, Nature 393, 1998).
 Graph MakeSmallWorld(int count, int k, double p, std::uint64_t seed);
+/// The keys that say what one graph is, of [graph] or of one of its schedule.
+std::span<const Key> GraphKeys();
 /// Reads exactly one of topology, laplacian, adjacency, edges, random of [graph], or of one of its schedule, for agents
 /// that start at `p_W`. `seed` feeds random graphs. With no agents, not known for a mistake elsewhere, sizes are not
 /// checked and the graph is empty.

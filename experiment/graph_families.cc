@@ -82,22 +82,21 @@ void Wheel(int count, Edges& edges) {
   if (count > 3) edges.Both(2, count);
 }
 
-struct Family {
-  std::string_view name;
+struct Family : Topology {
   void (*add)(int count, Edges& edges);
 };
 
 constexpr std::array kFamilies = {
-    Family{"complete", Complete},           // everybody hears everybody
-    Family{"ring", Ring},                   // i hears i - 1 and i + 1, 1 and N hear each other
-    Family{"path", Path},                   // i hears i - 1 and i + 1
-    Family{"star", Star},                   // 1 hears everybody, everybody hears 1
-    Family{"wheel", Wheel},                 // a star whose rim 2..N is a ring
-    Family{"binary_tree", BinaryTree},      // i and i / 2 (rounded down) hear each other
-    Family{"directed_ring", DirectedRing},  // i hears i - 1, 1 hears N
-    Family{"directed_path", DirectedPath},  // i hears i - 1
-    Family{"directed_star", DirectedStar},  // everybody hears 1
-    Family{"directed_tree", DirectedTree},  // i hears i / 2 (rounded down)
+    Family{{"complete", "everybody hears everybody"}, Complete},
+    Family{{"ring", "i hears i - 1 and i + 1, 1 and N hear each other"}, Ring},
+    Family{{"path", "i hears i - 1 and i + 1"}, Path},
+    Family{{"star", "1 hears everybody, everybody hears 1"}, Star},
+    Family{{"wheel", "a star whose rim 2..N is a ring"}, Wheel},
+    Family{{"binary_tree", "i and i / 2 (rounded down) hear each other"}, BinaryTree},
+    Family{{"directed_ring", "i hears i - 1, 1 hears N"}, DirectedRing},
+    Family{{"directed_path", "i hears i - 1"}, DirectedPath},
+    Family{{"directed_star", "everybody hears 1"}, DirectedStar},
+    Family{{"directed_tree", "i hears i / 2 (rounded down)"}, DirectedTree},
 };
 
 constexpr auto kNames = [] {
@@ -109,6 +108,8 @@ constexpr auto kNames = [] {
 }  // namespace
 
 std::span<const std::string_view> TopologyNames() { return kNames; }
+
+std::vector<Topology> Topologies() { return {kFamilies.begin(), kFamilies.end()}; }
 
 Graph MakeTopology(std::string_view name, int count) {
   const auto family = std::find_if(kFamilies.begin(), kFamilies.end(), [&](const Family& f) { return f.name == name; });

@@ -11,7 +11,20 @@ namespace {
 using Heard = std::vector<std::vector<Graph::Neighbour>>;
 using Rows = std::vector<std::vector<double>>;
 
-constexpr double kMaxWeight = 1e6;
+constexpr Range kWeight = {0, 1e6};
+constexpr std::string_view kKinds[] = {"erdos_renyi", "geometric", "small_world"};
+
+constexpr Key kRandomKeys[] = {
+    key::OneOf("kind", kKinds,
+               "Erdos & Renyi: each pair of agents with probability p; geometric: pairs closer than "
+               "radius_m at their starts; Watts & Strogatz: a ring with rewired edges")
+        .Required(),
+    key::Number("p", {0, 1}, "of erdos_renyi: of an edge; of small_world: of an edge to be rewired")
+        .Otherwise("needed there"),
+    key::Number("radius_m", Above(0, 1e6), "of geometric").Otherwise("needed there"),
+    key::Integer("k", 2, 10000, "of small_world: how many nearest neighbours each has on the ring; even")
+        .Otherwise("needed there"),
+};
 
 std::string Number(double value) {
   const std::string text = ShortestFloat(value);
@@ -33,7 +46,7 @@ bool IsSquare(Section& graph, std::string_view key, const Rows& rows, int count)
 }
 
 Heard FromAdjacency(Section& graph, int count) {
-  const Rows rows = graph.Rows("adjacency", 0, kMaxWeight);
+  const Rows rows = graph.Rows("adjacency");
   Heard heard(static_cast<std::size_t>(count));
   if (!IsSquare(graph, "adjacency", rows, count)) return heard;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -45,7 +58,7 @@ Heard FromAdjacency(Section& graph, int count) {
 }
 
 Heard FromLaplacian(Section& graph, int count) {
-  const Rows rows = graph.Rows("laplacian", -kMaxWeight * 1e4, kMaxWeight * 1e4);
+  const Rows rows = graph.Rows("laplacian");
   Heard heard(static_cast<std::size_t>(count));
   if (!IsSquare(graph, "laplacian", rows, count)) return heard;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -80,7 +93,7 @@ std::string EdgeMistake(const std::vector<double>& row, int count) {
 }
 
 Heard FromEdges(Section& graph, int count) {
-  const Rows rows = graph.Rows("edges", 0, kMaxWeight);
+  const Rows rows = graph.Rows("edges");
   Heard heard(static_cast<std::size_t>(count));
   if (graph.Wrong("edges")) return heard;
   std::set<std::pair<double, double>> seen;
@@ -100,16 +113,15 @@ Heard FromEdges(Section& graph, int count) {
 }
 
 Graph FromRandom(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint64_t seed) {
-  constexpr std::array<std::string_view, 3> kKinds = {"erdos_renyi", "geometric", "small_world"};
   const int count = static_cast<int>(p_W.size());
   Section random = graph.Child("random");
-  const std::string kind = random.OneOf("kind", kKinds);
+  const std::string kind = random.OneOf("kind");
   if (kind == "geometric") {
-    const double radius_m = random.Positive("radius_m", 1e6);
+    const double radius_m = random.Number("radius_m");
     random.Done();
     return MakeGeometric(p_W, radius_m);
   }
-  const double p = random.Number("p", 0, 1);
+  const double p = random.Number("p");
   if (kind == "erdos_renyi") {
     random.Done();
     return MakeErdosRenyi(count, p, seed);
@@ -121,6 +133,17 @@ Graph FromRandom(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint
 }
 
 }  // namespace
+
+std::span<const Key> GraphKeys() {
+  static const Key keys[] = {
+      key::OneOf("topology", TopologyNames(), "a family: see below").Default("\"complete\""),
+      key::Rows("laplacian", {-1e10, 1e10}, "N x N: row i is what agent i needs; rows sum to 0 (the paper's L-mat)"),
+      key::Rows("adjacency", kWeight, "N x N: a_ij, with which agent i hears agent j"),
+      key::Rows("edges", kWeight, "`[i, j]` or `[i, j, weight]`, ...: i hears j"),
+      key::Table("random", kRandomKeys, "drawn by `run.seed`; undirected"),
+  };
+  return keys;
+}
 
 Graph ReadGraph(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint64_t seed) {
   const int count = static_cast<int>(p_W.size());
@@ -138,7 +161,7 @@ Graph ReadGraph(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint6
   if (last == "adjacency") return Graph(FromAdjacency(graph, count));
   if (last == "edges") return Graph(FromEdges(graph, count));
   if (last == "random") return FromRandom(graph, p_W, seed);
-  const std::string topology = graph.OneOf("topology", TopologyNames(), "complete");
+  const std::string topology = graph.OneOf("topology");
   return count > 0 ? MakeTopology(topology, count) : Graph(Heard{});  // 0: the count is wrong, and that is noted
 }
 

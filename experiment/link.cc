@@ -1,35 +1,65 @@
 #include "experiment/link.h"
 
 #include <algorithm>
+#include <array>
 
 namespace mascot {
 namespace {
 
+constexpr Key kBurstKeys[] = {
+    key::Number("good_to_bad", {0, 1}, "probability per sample that a good link turns bad").Required(),
+    key::Number("bad_to_good", {0, 1}, "probability per sample that a bad one turns good").Required(),
+    key::Number("loss_good", {0, 1}, "probability of a loss while it is good").Default("0.0"),
+    key::Number("loss_bad", {0, 1}, "probability of a loss while it is bad").Default("1.0"),
+};
+
+constexpr std::array kCommonKeys = {
+    key::Number("loss", {0, 1}, "probability that a sample is lost, independent of all others").Default("0.0"),
+    key::Table("gilbert_elliott", kBurstKeys, "loss in bursts, instead of `loss` (Gilbert 1960, Elliott 1963)"),
+    key::Number("delay_s", {0, kLongestDelay_s}, "how late samples are").Default("0.0"),
+    key::Number("jitter_s", {0, kLongestDelay_s},
+                "the delay of each sample lies within `delay_s` -+ this, uniformly; at most `delay_s`")
+        .Default("0.0"),
+    key::Number("reordering", {0, 1}, "probability that a sample skips the delay, and so overtakes others")
+        .Default("0.0"),
+    key::Boolean("symmetric", "i -> j and j -> i lose and delay the same samples").Default("false"),
+    key::Number("hold_s", {0, 1e6}, "how old the last sample may grow, beyond its delay, while no newer one comes")
+        .Default("0.0"),
+};
+
+constexpr auto kOverrideKeys = Joined(
+    std::array{key::Rows("edges", {1, 10000}, "`[i, j]`, ...: the edges that this is for (i hears j)").Required()},
+    kCommonKeys);
+
+constexpr auto kKeys =
+    Joined(kCommonKeys, std::array{key::Tables("override", kOverrideKeys,
+                                               "other links for some edges; what is left out is as in `[link]`")});
+
 GilbertElliott ReadBursts(Section section) {
   GilbertElliott bursts;
-  bursts.good_to_bad = section.Number("good_to_bad", 0, 1);
-  bursts.bad_to_good = section.Number("bad_to_good", 0, 1);
-  bursts.loss_good = section.Number("loss_good", 0, 1, 0.0);
-  bursts.loss_bad = section.Number("loss_bad", 0, 1, 1.0);
+  bursts.good_to_bad = section.Number("good_to_bad");
+  bursts.bad_to_good = section.Number("bad_to_good");
+  bursts.loss_good = section.Number("loss_good");
+  bursts.loss_bad = section.Number("loss_bad");
   section.Done();
   return bursts;
 }
 
 LinkConfig ReadLink(Section& section) {
   LinkConfig link;
-  link.loss = section.Number("loss", 0, 1, 0.0);
+  link.loss = section.Number("loss");
   if (section.Has("gilbert_elliott")) {
     if (link.loss > 0) section.Fail("gilbert_elliott", "expected only one of loss, gilbert_elliott, got both");
     link.bursts = ReadBursts(section.Child("gilbert_elliott"));
   }
-  link.delay_s = section.Number("delay_s", 0, kLongestDelay_s, 0.0);
-  link.jitter_s = section.Number("jitter_s", 0, kLongestDelay_s, 0.0);
+  link.delay_s = section.Number("delay_s");
+  link.jitter_s = section.Number("jitter_s");
   if (!section.Wrong("delay_s") && !section.Wrong("jitter_s") && link.jitter_s > link.delay_s)
     section.Fail("jitter_s",
                  "expected at most delay_s (" + ShortestFloat(link.delay_s) + "), got " + ShortestFloat(link.jitter_s));
-  link.reordering = section.Number("reordering", 0, 1, 0.0);
-  link.symmetric = section.Boolean("symmetric", false);
-  link.hold_s = section.Number("hold_s", 0, 1e6, 0.0);
+  link.reordering = section.Number("reordering");
+  link.symmetric = section.Boolean("symmetric");
+  link.hold_s = section.Number("hold_s");
   return link;
 }
 
@@ -41,7 +71,7 @@ bool Hears(const Graph& graph, int hearer, int heard) {
 /// The edges [i, j] (i hears j) that an override is for.
 std::vector<std::pair<int, int>> ReadEdges(Section& section, const Graph& graph) {
   std::vector<std::pair<int, int>> edges;
-  const auto rows = section.Rows("edges", 1, 10000);
+  const auto rows = section.Rows("edges");
   if (rows.empty() && !section.Wrong("edges"))
     section.Fail("edges", "expected a list of [i, j] (i hears j), got nothing");
   for (std::size_t k = 0; k < rows.size() && !section.Wrong("edges") && graph.size() > 0; ++k) {
@@ -57,6 +87,8 @@ std::vector<std::pair<int, int>> ReadEdges(Section& section, const Graph& graph)
 }
 
 }  // namespace
+
+std::span<const Key> LinkKeys() { return kKeys; }
 
 bool LinkTable::ArePerfect(const Graph& graph) const {
   for (int id = 1; id <= graph.size(); ++id)

@@ -53,6 +53,8 @@ class LinkTable {
   std::map<std::pair<int, int>, LinkConfig> special_;  // by hearer, heard
 };
 
+/// The keys of [link].
+std::span<const Key> LinkKeys();
 /// Reads [link] for the edges of `graph` (no agents: not known for a mistake elsewhere).
 LinkTable ReadLinks(Section& link, const Graph& graph);
 

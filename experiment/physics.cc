@@ -1,31 +1,62 @@
 #include "experiment/physics.h"
 
-#include <array>
-
 namespace mascot {
 namespace {
 
-constexpr double kFarthest_m = 1e6;
+constexpr Range kPlace_m = {-1e6, 1e6};
+constexpr Range kAirspeed_m_per_s = {-200, 200};
+constexpr std::string_view kShapes[] = {"box", "sphere", "cylinder"};
+
+constexpr Key kWindKeys[] = {
+    key::Vector3("mean_m_per_s", kAirspeed_m_per_s, "in W").Default("[0, 0, 0]"),
+    key::Number("gust_std_m_per_s", {0, 200}, "standard deviation of the gusts, per axis").Default("0.0"),
+    key::Number("gust_time_s", Above(0, 1e4), "correlation time of the gusts, a first-order Gauss-Markov process")
+        .Default("1.0"),
+};
+
+constexpr Key kObstacleKeys[] = {
+    key::OneOf("shape", kShapes, "").Required(),
+    key::Vector3("position_m", kPlace_m, "its centre").Required(),
+    key::Vector3("size_m", {1e-3, 1e4},
+                 "full lengths; of a sphere its diameter three times; of a cylinder, which stands on end, its diameter "
+                 "twice, then its height")
+        .Required(),
+    key::Number("heading_rad", {-10, 10}, "yaw").Default("0.0"),
+};
+
+constexpr Key kRotorFailureKeys[] = {
+    key::Integer("agent", 1, 10000, "a quadrotor's number").Required(),
+    key::Integer("rotor", 1, 4, "1 front, 2 left, 3 back, 4 right").Required(),
+    key::Number("at_s", {0, 1e6}, "when").Required(),
+    key::Number("remaining", {0, 1}, "part of its thrust and torque that is left").Default("0.0"),
+};
+
+constexpr Key kKeys[] = {
+    key::Integer("rate_hz", 1, 100000, "steps of the physics per simulated second").Default("1000"),
+    key::Number("gravity_m_per_s2", {0, 100}, "downwards; integrators feel none").Default("9.81"),
+    key::Boolean("collisions", "bodies touch each other, the ground and obstacles").Default("true"),
+    key::Boolean("ground", "a plane at z = 0").Default("true"),
+    key::Table("wind", kWindKeys, "air that moves, the same for all quadrotors"),
+    key::Tables("obstacles", kObstacleKeys, "solid things that do not move"),
+    key::Tables("rotor_failures", kRotorFailureKeys, "rotors that lose thrust"),
+};
 
 WindConfig ReadWind(Section wind) {
-  constexpr double kStrongest_m_per_s = 200;
   WindConfig config;
-  config.mean_m_per_s =
-      wind.Vector3("mean_m_per_s", -kStrongest_m_per_s, kStrongest_m_per_s, Eigen::Vector3d::Zero().eval());
-  config.gust_std_m_per_s = wind.Number("gust_std_m_per_s", 0, kStrongest_m_per_s, 0.0);
-  config.gust_time_s = wind.Positive("gust_time_s", 1e4, 1.0);
+  config.mean_m_per_s = wind.Vector3("mean_m_per_s");
+  config.gust_std_m_per_s = wind.Number("gust_std_m_per_s");
+  config.gust_time_s = wind.Number("gust_time_s");
   wind.Done();
   return config;
 }
 
 Obstacle ReadObstacle(Section& section) {
-  constexpr std::array<std::string_view, 3> kShapes = {"box", "sphere", "cylinder"};
   Obstacle obstacle;
-  const std::string shape = section.OneOf("shape", kShapes);
+  const std::string shape = section.OneOf("shape");
   obstacle.shape = shape == "sphere" ? Shape::kSphere : shape == "cylinder" ? Shape::kCylinder : Shape::kBox;
-  obstacle.p_W = section.Vector3("position_m", -kFarthest_m, kFarthest_m);
-  obstacle.size_m = section.Vector3("size_m", 1e-3, 1e4);
-  obstacle.heading_rad = section.Number("heading_rad", -10, 10, 0.0);
+  obstacle.p_W = section.Vector3("position_m");
+  obstacle.size_m = section.Vector3("size_m");
+  obstacle.heading_rad = section.Number("heading_rad");
   section.Done();
   const Eigen::Vector3d& size = obstacle.size_m;
   const bool round = size.x() == size.y() && (obstacle.shape == Shape::kCylinder || size.y() == size.z());
@@ -42,21 +73,23 @@ Obstacle ReadObstacle(Section& section) {
 RotorFailure ReadRotorFailure(Section& section, int agents) {
   RotorFailure failure;
   failure.agent = static_cast<int>(section.Integer("agent", 1, agents > 0 ? agents : 10000));
-  failure.rotor = static_cast<int>(section.Integer("rotor", 1, 4));
-  failure.at_s = section.Number("at_s", 0, 1e6);
-  failure.remaining = section.Number("remaining", 0, 1, 0.0);
+  failure.rotor = static_cast<int>(section.Integer("rotor"));
+  failure.at_s = section.Number("at_s");
+  failure.remaining = section.Number("remaining");
   section.Done();
   return failure;
 }
 
 }  // namespace
 
+std::span<const Key> PhysicsKeys() { return kKeys; }
+
 PhysicsConfig ReadPhysics(Section& physics, int agents) {
   PhysicsConfig config;
-  config.rate_hz = static_cast<int>(physics.Integer("rate_hz", 1, 100000, 1000));
-  config.gravity_m_per_s2 = physics.Number("gravity_m_per_s2", 0, 100, 9.81);
-  config.collisions = physics.Boolean("collisions", true);
-  config.ground = physics.Boolean("ground", true);
+  config.rate_hz = static_cast<int>(physics.Integer("rate_hz"));
+  config.gravity_m_per_s2 = physics.Number("gravity_m_per_s2");
+  config.collisions = physics.Boolean("collisions");
+  config.ground = physics.Boolean("ground");
   config.wind = ReadWind(physics.Child("wind"));
   for (Section& obstacle : physics.Children("obstacles")) config.obstacles.push_back(ReadObstacle(obstacle));
   if (physics.Wrong("obstacles")) config.obstacles.clear();  // who starts inside would only follow from the mistake

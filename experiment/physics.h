@@ -44,6 +44,8 @@ struct PhysicsConfig {
   std::vector<RotorFailure> rotor_failures;
 };
 
+/// The keys of [physics].
+std::span<const Key> PhysicsKeys();
 /// Reads [physics]. Whether a rotor failure's agent is a quadrotor is known, and checked, later.
 PhysicsConfig ReadPhysics(Section& physics, int agents);
 

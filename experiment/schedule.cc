@@ -5,6 +5,17 @@
 
 namespace mascot {
 
+namespace {
+
+/// A graph's own keys, and `more`.
+std::vector<Key> WithGraphKeys(std::initializer_list<Key> more) {
+  std::vector<Key> keys(GraphKeys().begin(), GraphKeys().end());
+  keys.insert(keys.end(), more);
+  return keys;
+}
+
+}  // namespace
+
 const Graph& Schedule::At(double t_s) const {
   constexpr double kRounding_s = 1e-9;  // far below a physics step
   double t = t_s + kRounding_s;
@@ -25,12 +36,24 @@ Graph Schedule::Union() const {
   return Graph(std::move(heard));
 }
 
+std::span<const Key> ScheduleKeys() {
+  static const std::vector<Key> phase_keys =
+      WithGraphKeys({key::Number("at_s", Above(0, 1e6), "from then on; later than the one before").Required()});
+  static const std::vector<Key> keys = WithGraphKeys({
+      key::Tables("schedule", phase_keys, "graphs that take over later, in order of time"),
+      key::Number("repeat_s", Above(0, 1e6), "after this time it starts over").Otherwise("never"),
+      key::Number("range_m", Above(0, 1e6), "an edge works only while its agents are closer than this")
+          .Otherwise("at any distance"),
+  });
+  return keys;
+}
+
 Schedule ReadSchedule(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint64_t seed) {
   std::vector<Schedule::Phase> phases;
   phases.push_back({0, ReadGraph(graph, p_W, seed)});
   std::uint64_t stage = 0;
   for (Section& section : graph.Children("schedule")) {
-    const double at_s = section.Positive("at_s", 1e6);
+    const double at_s = section.Number("at_s");
     if (!section.Wrong("at_s") && at_s <= phases.back().at_s)
       section.Fail("at_s",
                    "expected a time after " + ShortestFloat(phases.back().at_s) + ", got " + ShortestFloat(at_s));
@@ -39,12 +62,12 @@ Schedule ReadSchedule(Section& graph, std::span<const Eigen::Vector3d> p_W, std:
   }
   double repeat_s = 0;
   if (graph.Has("repeat_s")) {
-    repeat_s = graph.Positive("repeat_s", 1e6);
+    repeat_s = graph.Number("repeat_s");
     if (!graph.Wrong("repeat_s") && repeat_s <= phases.back().at_s)
       graph.Fail("repeat_s", "expected a time after the last of graph.schedule (" + ShortestFloat(phases.back().at_s) +
                                  "), got " + ShortestFloat(repeat_s));
   }
-  const double range_m = graph.Has("range_m") ? graph.Positive("range_m", 1e6) : 0;
+  const double range_m = graph.Has("range_m") ? graph.Number("range_m") : 0;
   return Schedule(std::move(phases), repeat_s, range_m);
 }
 

@@ -40,6 +40,8 @@ class Schedule {
   double range_m_;
 };
 
+/// The keys of [graph].
+std::span<const Key> ScheduleKeys();
 /// Reads [graph] for agents that start at `p_W`: exactly one of topology, laplacian, adjacency, edges, random; then the
 /// same in every [[graph.schedule]], repeat_s and range_m. `seed` feeds random graphs. With no agents, not known for a
 /// mistake elsewhere, sizes are not checked and the graphs are empty.

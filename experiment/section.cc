@@ -1,7 +1,6 @@
 #include "experiment/section.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "experiment/section_internal.h"
@@ -9,199 +8,19 @@
 namespace mascot {
 namespace {
 
-std::string KindOf(const toml::node& node) {
-  switch (node.type()) {
-    case toml::node_type::string:
-      return "string";
-    case toml::node_type::integer:
-    case toml::node_type::floating_point:
-      return "number";
-    case toml::node_type::boolean:
-      return "boolean";
-    case toml::node_type::array:
-      return "list";
-    case toml::node_type::table:
-      return "table";
-    default:
-      return "date or time";
+std::optional<Eigen::Vector3d> VectorIn(const toml::node& node, const Range& range) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->size() != 3) return std::nullopt;
+  Eigen::Vector3d vector;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto number = NumberIn((*list)[axis], range);
+    if (!number) return std::nullopt;
+    vector[static_cast<Eigen::Index>(axis)] = *number;
   }
-}
-
-/// What the user wrote, for "got ...".
-std::string Got(const toml::node& node) {
-  if (const auto text = node.value_exact<std::string>()) return "'" + Printable(*text) + "'";
-  if (const auto integer = node.value_exact<std::int64_t>()) return std::to_string(*integer);
-  if (const auto number = node.value_exact<double>()) return ShortestFloat(*number);
-  if (const auto boolean = node.value_exact<bool>()) return *boolean ? "true" : "false";
-  if (const toml::array* list = node.as_array()) return "a list of " + std::to_string(list->size());
-  return "a " + KindOf(node);
-}
-
-/// The number in `node` if it is one that `range` holds and a double holds exactly.
-std::optional<double> NumberIn(const toml::node& node, const NumberRange& range) {
-  if (const auto integer = node.value_exact<std::int64_t>()) {
-    constexpr std::int64_t kExact = std::int64_t{1} << 53;
-    if (*integer < -kExact || *integer > kExact) return std::nullopt;
-  }
-  const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-  return value && range.Holds(*value) ? value : std::nullopt;
-}
-
-/// "a number in [0, 1]"; says "finite" to those who wrote nan or inf.
-std::string ExpectedNumber(const toml::node* node, const NumberRange& range) {
-  const auto value = node != nullptr ? node->value_exact<double>() : std::nullopt;
-  return (value && !std::isfinite(*value) ? "a finite number in " : "a number in ") + range.Text();
-}
-
-std::string Indexed(std::string_view path, std::size_t index) {
-  return std::string(path) + "[" + std::to_string(index) + "]";
-}
-
-std::vector<std::string> NumberTexts(std::span<const double> values) {
-  std::vector<std::string> texts;
-  for (const double value : values) texts.push_back(ShortestFloat(value));
-  return texts;
-}
-
-/// As the user wrote them: an agent's id in a list of edges stays an integer.
-std::vector<std::string> AsWritten(const toml::array& list, const std::vector<double>& values) {
-  std::vector<std::string> texts;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto integer = list[i].value_exact<std::int64_t>();
-    texts.push_back(integer ? std::to_string(*integer) : ShortestFloat(values[i]));
-  }
-  return texts;
-}
-
-/// "[a, b]", or one item per line where that would be too long to read.
-std::string ListText(const std::vector<std::string>& items) {
-  constexpr std::size_t kLongestLine = 100;
-  const std::string line = "[" + Joined(items) + "]";
-  if (line.size() <= kLongestLine || !items.front().starts_with('[')) return line;
-  std::string lines = "[\n";
-  for (const std::string& item : items) lines += "  " + item + ",\n";
-  return lines + "]";
-}
-
-bool IsBareKey(std::string_view key) {
-  return !key.empty() &&
-         std::all_of(key.begin(), key.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
+  return vector;
 }
 
 }  // namespace
-
-// --- one table --------------------------------------------------------------------------------------
-
-std::string Section::Table::PathOf(std::string_view key) const {
-  const std::string name = IsBareKey(key) || key.empty() ? std::string(key) : QuotedToml(CutShort(key));
-  return path.empty() || name.empty() ? path + name : path + "." + name;
-}
-
-const toml::node* Section::Table::Get(std::string_view key) const {
-  const toml::node* node = toml != nullptr ? toml->get(key) : nullptr;
-  return node == nullptr && base ? base->Get(key) : node;
-}
-
-bool Section::Table::Inherits(std::string_view key) const {
-  return base && (toml == nullptr || toml->get(key) == nullptr) && base->Get(key) != nullptr;
-}
-
-toml::source_region Section::Table::PlaceOf(std::string_view key) const {
-  const toml::node* node = Get(key);
-  return node != nullptr ? node->source() : place;
-}
-
-const toml::node* Section::Table::Find(std::string_view key) {
-  known.emplace(key);
-  return Get(key);
-}
-
-bool Section::Table::Wrong(std::string_view key) const {
-  if (broken || (key.empty() ? !wrong.empty() : wrong.contains(key))) return true;
-  return std::any_of(entries.begin(), entries.end(), [&](const Entry& entry) {
-    return (key.empty() || entry.key == key) &&
-           std::any_of(entry.tables.begin(), entry.tables.end(), [](const auto& table) { return table->Wrong(""); });
-  });
-}
-
-Section::Table::Entry* Section::Table::Recorded(std::string_view key) {
-  const auto entry = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == key; });
-  return entry != entries.end() ? &*entry : nullptr;
-}
-
-void Section::Table::Record(std::string_view key, std::string value) {
-  if (Entry* entry = Recorded(key))
-    entry->value = std::move(value);
-  else
-    entries.push_back({std::string(key), std::move(value), {}, false});
-}
-
-std::shared_ptr<Section::Table> Section::Table::MakeChild(const toml::node* node, const std::string& child_path) {
-  auto child = std::make_shared<Table>();
-  child->path = child_path;
-  child->toml = node != nullptr ? node->as_table() : nullptr;
-  child->place = child->toml != nullptr && node->source().begin ? node->source() : place;
-  child->broken = broken || (node != nullptr && child->toml == nullptr);
-  child->document = document;
-  return child;
-}
-
-void Section::Table::Expected(std::string_view key, const std::string& where, const toml::node* node,
-                              const std::string& expected) {
-  wrong.emplace(key);
-  // What stands in place of this table was complained about already; what it inherits, where it stands.
-  if ((node == nullptr && broken) || inherited || Inherits(key)) return;
-  document->Note(node != nullptr ? node->source() : place, where,
-                 "expected " + expected + ", got " + (node != nullptr ? Got(*node) : "nothing"));
-}
-
-template <class T, class Accept>
-T Section::Table::Read(std::string_view key, const std::string& expected, const std::optional<T>& fallback, T legal,
-                       Accept accept) {
-  const toml::node* node = Find(key);
-  if (node == nullptr && fallback) return *fallback;
-  if (node != nullptr)
-    if (std::optional<T> value = accept(*node)) return *value;
-  Expected(key, PathOf(key), node, expected);
-  return fallback.value_or(legal);
-}
-
-double Section::Table::Number(std::string_view key, const NumberRange& range, std::optional<double> fallback) {
-  const std::string expected = ExpectedNumber(Get(key), range);
-  const double value = Read<double>(key, expected, fallback, range.Legal(),
-                                    [&](const toml::node& node) { return NumberIn(node, range); });
-  Record(key, ShortestFloat(value));
-  return value;
-}
-
-std::vector<double> Section::Table::Numbers(std::string_view key, const std::string& where, const toml::array& list,
-                                            const NumberRange& range) {
-  std::vector<double> values;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const auto value = NumberIn(list[i], range);
-    if (!value) Expected(key, Indexed(where, i), list.get(i), ExpectedNumber(list.get(i), range));
-    values.push_back(value.value_or(range.Legal()));
-  }
-  return values;
-}
-
-Eigen::Vector3d Section::Table::Vector3(std::string_view key, const std::string& where, const toml::node* node,
-                                        const NumberRange& range) {
-  const toml::array* list = node != nullptr ? node->as_array() : nullptr;
-  if (list == nullptr || list->size() != 3) {
-    Expected(key, where, node, "three numbers in " + range.Text());
-    return Eigen::Vector3d::Constant(range.Legal());
-  }
-  const std::vector<double> values = Numbers(key, where, *list, range);
-  return {values[0], values[1], values[2]};
-}
-
-const toml::array* Section::Table::List(std::string_view key, const std::string& expected) {
-  const toml::node* node = Find(key);
-  if (node == nullptr) return nullptr;
-  if (!node->is_array()) Expected(key, PathOf(key), node, expected);
-  return node->as_array();
-}
 
 // --- readers ----------------------------------------------------------------------------------------
 
@@ -217,12 +36,26 @@ std::string Section::Kind(std::string_view key) const {
   return node != nullptr ? KindOf(*node) : "";
 }
 
+void Section::Use(std::span<const Key> rows) {
+  const auto same = [&](std::span<const Key> known) { return known.data() == rows.data(); };
+  if (std::ranges::none_of(table_->rows, same)) table_->rows.push_back(rows);
+}
+
+double Section::Number(std::string_view key, std::optional<double> fallback) {
+  return table_->Number(key, table_->RowOf(key).range, fallback);
+}
+
 double Section::Number(std::string_view key, double min, double max, std::optional<double> fallback) {
   return table_->Number(key, {min, max}, fallback);
 }
 
 double Section::Positive(std::string_view key, double max, std::optional<double> fallback) {
   return table_->Number(key, {0, max, true}, fallback);
+}
+
+std::int64_t Section::Integer(std::string_view key) {
+  const Key& row = table_->RowOf(key);
+  return Integer(key, row.min_integer, row.max_integer);
 }
 
 std::int64_t Section::Integer(std::string_view key, std::int64_t min, std::int64_t max,
@@ -237,16 +70,15 @@ std::int64_t Section::Integer(std::string_view key, std::int64_t min, std::int64
   return value;
 }
 
-bool Section::Boolean(std::string_view key, bool fallback) {
-  const bool value = table_->Read<bool>(key, "true or false", fallback, fallback,
+bool Section::Boolean(std::string_view key, std::optional<bool> fallback) {
+  const bool value = table_->Read<bool>(key, "true or false", fallback, false,
                                         [](const toml::node& node) { return node.value_exact<bool>(); });
   table_->Record(key, value ? "true" : "false");
   return value;
 }
 
 std::string Section::Text(std::string_view key, std::optional<std::string> fallback) {
-  std::string value = table_->Read<std::string>(key, "a string", fallback, "",
-                                                [](const toml::node& node) { return node.value_exact<std::string>(); });
+  std::string value = table_->Read<std::string>(key, "a string", fallback, "", TextIn);
   table_->Record(key, StringToml(value));
   return value;
 }
@@ -267,9 +99,7 @@ Section::Place Section::PlaceOfText(std::string_view key) const {
 }
 
 Section::FileText Section::TextOfFile(std::string_view key, std::string_view text_key) {
-  const std::string path =
-      table_->Read<std::string>(key, "the path of a file", std::nullopt, "",
-                                [](const toml::node& node) { return node.value_exact<std::string>(); });
+  const std::string path = table_->Read<std::string>(key, "the path of a file", std::nullopt, "", TextIn);
   std::string text;
   if (!table_->Wrong(key)) {
     try {
@@ -282,10 +112,13 @@ Section::FileText Section::TextOfFile(std::string_view key, std::string_view tex
   return {text, std::filesystem::path(path).filename().string()};
 }
 
+std::string Section::OneOf(std::string_view key) { return OneOf(key, table_->RowOf(key).names); }
+
 std::string Section::OneOf(std::string_view key, std::span<const std::string_view> names,
                            std::optional<std::string> fallback) {
   const toml::node* node = table_->Find(key);
   const auto text = node != nullptr ? node->value_exact<std::string>() : std::nullopt;
+  if (!fallback) fallback = table_->RowDefault<std::string>(key, TextIn);
   std::string value = fallback.value_or(names.empty() ? "" : std::string(names.front()));
   if (text && std::find(names.begin(), names.end(), *text) != names.end()) {
     value = *text;
@@ -300,76 +133,49 @@ std::string Section::OneOf(std::string_view key, std::span<const std::string_vie
   return value;
 }
 
-std::vector<std::string> Section::Texts(std::string_view key, std::vector<std::string> fallback) {
-  std::vector<std::string> values, quoted;
-  if (const toml::array* list = table_->List(key, "a list of strings")) {
-    for (std::size_t i = 0; i < list->size(); ++i) {
-      const auto text = (*list)[i].value_exact<std::string>();
-      if (!text) table_->Expected(key, Indexed(table_->PathOf(key), i), list->get(i), "a string");
-      values.push_back(text.value_or(""));
-    }
-  } else {
-    values = std::move(fallback);
-  }
-  for (const std::string& value : values) quoted.push_back(QuotedToml(value));
-  table_->Record(key, ListText(quoted));
-  return values;
+std::vector<std::string> Section::Texts(std::string_view key, std::optional<std::vector<std::string>> fallback) {
+  return table_->Texts(key, std::move(fallback));
+}
+
+Eigen::Vector3d Section::Vector3(std::string_view key, std::optional<Eigen::Vector3d> fallback) {
+  const Range& range = table_->RowOf(key).range;
+  if (!fallback)
+    fallback = table_->RowDefault<Eigen::Vector3d>(key, [&](const toml::node& node) { return VectorIn(node, range); });
+  return table_->Vector3(key, range, fallback);
 }
 
 Eigen::Vector3d Section::Vector3(std::string_view key, double min, double max,
                                  std::optional<Eigen::Vector3d> fallback) {
-  const toml::node* node = table_->Find(key);
-  const Eigen::Vector3d value =
-      node == nullptr && fallback ? *fallback : table_->Vector3(key, table_->PathOf(key), node, {min, max});
-  table_->Record(key, ListText(NumberTexts({value.data(), 3})));
-  return value;
+  return table_->Vector3(key, {min, max}, fallback);
 }
 
+std::vector<double> Section::Numbers(std::string_view key) { return table_->Numbers(key, table_->RowOf(key).range); }
+
 std::vector<double> Section::Numbers(std::string_view key, double min, double max) {
-  const toml::array* list = table_->List(key, "a list of numbers");
-  if (list == nullptr) return {};
-  const std::vector<double> values = table_->Numbers(key, table_->PathOf(key), *list, {min, max});
-  table_->Record(key, ListText(NumberTexts(values)));
-  return values;
+  return table_->Numbers(key, {min, max});
+}
+
+std::vector<std::vector<double>> Section::Rows(std::string_view key) {
+  return table_->Lists(key, table_->RowOf(key).range);
 }
 
 std::vector<std::vector<double>> Section::Rows(std::string_view key, double min, double max) {
-  const toml::array* list = table_->List(key, "a list of lists of numbers");
-  if (list == nullptr) return {};
-  std::vector<std::vector<double>> rows(list->size());
-  std::vector<std::string> texts;
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    const std::string path = Indexed(table_->PathOf(key), i);
-    const toml::array* row = (*list)[i].as_array();
-    if (row == nullptr) {
-      table_->Expected(key, path, list->get(i), "a list of numbers");
-      continue;
-    }
-    rows[i] = table_->Numbers(key, path, *row, {min, max});
-    texts.push_back(ListText(AsWritten(*row, rows[i])));
-  }
-  table_->Record(key, ListText(texts));
-  return rows;
+  return table_->Lists(key, {min, max});
+}
+
+std::vector<Eigen::Vector3d> Section::Points(std::string_view key) {
+  return table_->Points(key, table_->RowOf(key).range);
 }
 
 std::vector<Eigen::Vector3d> Section::Points(std::string_view key, double min, double max) {
-  const toml::array* list = table_->List(key, "a list of points [x, y, z]");
-  if (list == nullptr) return {};
-  std::vector<Eigen::Vector3d> points;
-  std::vector<std::string> texts;
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    points.push_back(table_->Vector3(key, Indexed(table_->PathOf(key), i), list->get(i), {min, max}));
-    texts.push_back(ListText(NumberTexts({points.back().data(), 3})));
-  }
-  table_->Record(key, ListText(texts));
-  return points;
+  return table_->Points(key, {min, max});
 }
 
 Section Section::Child(std::string_view key) {
   const toml::node* node = table_->Find(key);
   if (const Table::Entry* entry = table_->Recorded(key)) return {document_, entry->tables.front()};
   if (node != nullptr && !node->is_table()) table_->Expected(key, table_->PathOf(key), node, "a table");
-  auto child = table_->MakeChild(node, table_->PathOf(key));
+  auto child = table_->MakeChild(key, node, table_->PathOf(key));
   child->inherited = table_->inherited || table_->Inherits(key);
   table_->entries.push_back({std::string(key), "", {child}, false});
   return {document_, child};
@@ -383,7 +189,7 @@ std::vector<Section> Section::Children(std::string_view key) {
     for (std::size_t i = 0; i < list->size(); ++i) {
       const std::string path = Indexed(table_->PathOf(key), i);
       if (!(*list)[i].is_table()) table_->Expected(key, path, list->get(i), "a table");
-      entry.tables.push_back(table_->MakeChild(list->get(i), path));
+      entry.tables.push_back(table_->MakeChild(key, list->get(i), path));
       children.push_back({document_, entry.tables.back()});
     }
     table_->entries.push_back(std::move(entry));
@@ -433,37 +239,6 @@ void Section::Done() {
 }
 
 void Section::ThrowIfWrong() const { document_->ThrowIfWrong(); }
-
-// --- what was read ----------------------------------------------------------------------------------
-
-std::optional<std::string> Section::Table::ResolvedInline() const {
-  constexpr std::size_t kLongestInline = 100;
-  std::vector<std::string> items;
-  for (const Entry& entry : entries) {
-    if (!entry.tables.empty() || entry.value.find('\n') != std::string::npos) return std::nullopt;
-    items.push_back(entry.key + " = " + entry.value);
-  }
-  const std::string text = "{ " + Joined(items) + " }";
-  return text.size() <= kLongestInline ? std::optional(text) : std::nullopt;
-}
-
-std::string Section::Table::Resolved(const std::string& header, bool in_list) const {
-  // TOML wants the keys of a table before the tables inside it.
-  std::string keys, tables;
-  for (const Entry& entry : entries) {
-    const std::string inner = header.empty() ? entry.key : header + "." + entry.key;
-    for (const std::shared_ptr<Table>& table : entry.tables) {
-      const bool may_be_inline = !header.empty() && !entry.is_list && !table->entries.empty();
-      if (const auto text = may_be_inline ? table->ResolvedInline() : std::nullopt)
-        keys += entry.key + " = " + *text + "\n";
-      else
-        tables += table->Resolved(inner, entry.is_list);
-    }
-    if (entry.tables.empty() && !entry.is_list) keys += entry.key + " = " + entry.value + "\n";
-  }
-  if (header.empty() || (keys.empty() && !in_list)) return keys + tables;
-  return "\n" + (in_list ? "[[" + header + "]]" : "[" + header + "]") + "\n" + keys + tables;
-}
 
 std::string Section::Resolved() const {
   const std::string text = document_->top->Resolved("", false);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "experiment/key.h"
 #include "experiment/value.h"
 
 namespace mascot {
@@ -47,13 +48,20 @@ class Section {
   /// worth a second complaint.
   bool Wrong(std::string_view key) const;
 
-  // Without a fallback the key is required. Numbers are finite; an integer is accepted as a number.
+  /// From now on keys of this table are read by these rows, and keys of tables inside it by those of their rows.
+  void Use(std::span<const Key> rows);
+
+  // Readers. A key's row says its range and its default; those with a range or a fallback of their own are for what
+  // only the reader can know. Without any default the key is required. Numbers are finite; an integer is accepted as a
+  // number.
+  double Number(std::string_view key, std::optional<double> fallback = {});
   double Number(std::string_view key, double min, double max, std::optional<double> fallback = {});
-  /// As Number, but `min` itself is refused.
+  /// As Number, but `min` = 0 itself is refused.
   double Positive(std::string_view key, double max, std::optional<double> fallback = {});
+  std::int64_t Integer(std::string_view key);
   std::int64_t Integer(std::string_view key, std::int64_t min, std::int64_t max,
                        std::optional<std::int64_t> fallback = {});
-  bool Boolean(std::string_view key, bool fallback);
+  bool Boolean(std::string_view key, std::optional<bool> fallback = {});
   std::string Text(std::string_view key, std::optional<std::string> fallback = {});
   /// Where the text of `key` begins, for those who have messages about what is in it.
   struct Place {
@@ -70,15 +78,20 @@ class Section {
   };
   FileText TextOfFile(std::string_view key, std::string_view text_key);
   /// One of `names`; the message lists them and offers the nearest.
+  std::string OneOf(std::string_view key);
   std::string OneOf(std::string_view key, std::span<const std::string_view> names,
                     std::optional<std::string> fallback = {});
-  std::vector<std::string> Texts(std::string_view key, std::vector<std::string> fallback);
+  std::vector<std::string> Texts(std::string_view key, std::optional<std::vector<std::string>> fallback = {});
+  Eigen::Vector3d Vector3(std::string_view key, std::optional<Eigen::Vector3d> fallback = {});
   Eigen::Vector3d Vector3(std::string_view key, double min, double max, std::optional<Eigen::Vector3d> fallback = {});
   /// A list of numbers of any length (empty if absent).
+  std::vector<double> Numbers(std::string_view key);
   std::vector<double> Numbers(std::string_view key, double min, double max);
   /// A list of lists of numbers, row lengths as they stand (empty if absent). Laplacians, edges, points.
+  std::vector<std::vector<double>> Rows(std::string_view key);
   std::vector<std::vector<double>> Rows(std::string_view key, double min, double max);
   /// Rows() of exactly three numbers each.
+  std::vector<Eigen::Vector3d> Points(std::string_view key);
   std::vector<Eigen::Vector3d> Points(std::string_view key, double min, double max);
 
   /// What kind of value stands there: "number", "string", "list", "table", ..., or "" if absent.

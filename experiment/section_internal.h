@@ -10,18 +10,6 @@
 
 namespace mascot {
 
-/// What a number may be.
-struct NumberRange {
-  double min;
-  double max;
-  bool open_min = false;  ///< `min` itself is refused
-
-  bool Holds(double value) const { return (open_min ? value > min : value >= min) && value <= max; }
-  /// A legal value to go on with where a mistake was noted.
-  double Legal() const { return Holds(0) ? 0 : max < 0 ? max : open_min ? max : min; }
-  std::string Text() const;  ///< "[0, 100]" or "(0, 100]"
-};
-
 /// A parsed TOML document and the mistakes noted in it so far.
 struct Section::Document {
   Document(std::string_view text, const std::string& document_name, std::span<const Override> overrides);
@@ -68,7 +56,15 @@ struct Section::Table {
   std::set<std::string, std::less<>> known;  ///< keys that somebody asked for
   std::set<std::string, std::less<>> wrong;  ///< keys with a mistake noted
   std::vector<Entry> entries;                ///< in reading order
+  std::vector<std::span<const Key>> rows;    ///< what keys of this table may be
 
+  /// The row of `key`, or null.
+  const Key* Row(std::string_view key) const;
+  /// Likewise; a key without one is a mistake of ours.
+  const Key& RowOf(std::string_view key) const;
+  /// What `accept` takes out of the default in the row of `key`, if there is one.
+  template <class T, class Accept>
+  std::optional<T> RowDefault(std::string_view key, Accept accept) const;
   std::string PathOf(std::string_view key) const;
   toml::source_region PlaceOf(std::string_view key) const;
   /// The value of `key`, here or in the base; null if absent.
@@ -80,22 +76,28 @@ struct Section::Table {
   bool Wrong(std::string_view key) const;
   Entry* Recorded(std::string_view key);
   void Record(std::string_view key, std::string value);
-  std::shared_ptr<Table> MakeChild(const toml::node* node, const std::string& child_path);
+  /// The table that stands, or would stand, at `key`, or in its list.
+  std::shared_ptr<Table> MakeChild(std::string_view key, const toml::node* node, const std::string& child_path);
   /// Notes "expected `expected`, got (the node)" at the node, or at the table if `node` is null.
   void Expected(std::string_view key, const std::string& path, const toml::node* node, const std::string& expected);
 
   /// The value of `key` as `accept` takes it out of its node (nullopt: not what is `expected`).
   template <class T, class Accept>
   T Read(std::string_view key, const std::string& expected, const std::optional<T>& fallback, T legal, Accept accept);
-  double Number(std::string_view key, const NumberRange& range, std::optional<double> fallback);
+  double Number(std::string_view key, const Range& range, std::optional<double> fallback);
   /// The elements of the list `key`; null if there is none.
   const toml::array* List(std::string_view key, const std::string& expected);
+  // The values of lists that stand at `key`, or its default.
+  std::vector<std::string> Texts(std::string_view key, std::optional<std::vector<std::string>> fallback);
+  Eigen::Vector3d Vector3(std::string_view key, const Range& range, const std::optional<Eigen::Vector3d>& fallback);
+  std::vector<double> Numbers(std::string_view key, const Range& range);
+  std::vector<std::vector<double>> Lists(std::string_view key, const Range& range);
+  std::vector<Eigen::Vector3d> Points(std::string_view key, const Range& range);
   /// The numbers of a list that goes by `path` in messages: `key` or a row of it.
   std::vector<double> Numbers(std::string_view key, const std::string& path, const toml::array& list,
-                              const NumberRange& range);
+                              const Range& range);
   /// Likewise three numbers; `node` null: absent.
-  Eigen::Vector3d Vector3(std::string_view key, const std::string& path, const toml::node* node,
-                          const NumberRange& range);
+  Eigen::Vector3d Vector3(std::string_view key, const std::string& path, const toml::node* node, const Range& range);
   /// TOML text of all entries, under [header] if that is not empty.
   std::string Resolved(const std::string& header, bool in_list) const;
   /// As an inline table, if it is small enough for that.
@@ -104,6 +106,14 @@ struct Section::Table {
 
 /// The whole of a regular file. Throws ConfigError: "PATH: is a directory".
 std::string ReadRegularFile(const std::string& path);
+
+/// "number", "string", "list", ...
+std::string KindOf(const toml::node& node);
+/// The number in `node` if it is one that `range` holds and a double holds exactly.
+std::optional<double> NumberIn(const toml::node& node, const Range& range);
+std::optional<std::string> TextIn(const toml::node& node);
+/// "graph.edges[2]"
+std::string Indexed(std::string_view path, std::size_t index);
 
 /// A node as a Value, and that as TOML text on one line. Dates and times become text.
 Value ToValue(const toml::node& node);
@@ -125,6 +135,29 @@ std::string Joined(const Names& names) {
   std::string text;
   for (const auto& name : names) text.append(text.empty() ? "" : ", ").append(name);
   return text;
+}
+
+template <class T, class Accept>
+std::optional<T> Section::Table::RowDefault(std::string_view key, Accept accept) const {
+  const Key* row = Row(key);
+  if (row == nullptr || row->fallback.empty()) return std::nullopt;
+  const toml::table table = toml::parse("value = " + std::string(row->fallback));
+  const std::optional<T> value = accept(*table.get("value"));
+  if (!value && row->or_kind == ValueKind::kNone)
+    throw std::logic_error("the row of the key " + PathOf(key) + " has an impossible default");
+  return value;
+}
+
+template <class T, class Accept>
+T Section::Table::Read(std::string_view key, const std::string& expected, const std::optional<T>& fallback, T legal,
+                       Accept accept) {
+  const toml::node* node = Find(key);
+  if (node != nullptr)
+    if (std::optional<T> value = accept(*node)) return *value;
+  const std::optional<T> otherwise = fallback ? fallback : RowDefault<T>(key, accept);
+  if (node == nullptr && otherwise) return *otherwise;
+  Expected(key, PathOf(key), node, expected);
+  return otherwise.value_or(legal);
 }
 
 }  // namespace mascot

@@ -64,7 +64,7 @@ std::string ShortestFloat(double value) {
   return text;
 }
 
-std::string NumberRange::Text() const { return (open_min ? "(" : "[") + Shortest(min) + ", " + Shortest(max) + "]"; }
+std::string Range::Text() const { return (open_min ? "(" : "[") + Shortest(min) + ", " + Shortest(max) + "]"; }
 
 std::string QuotedToml(std::string_view text) {
   std::string quoted = "\"";

@@ -24,6 +24,8 @@ struct SensorConfig {
   NoiseConfig heard;       ///< noise and bias per directed edge
 };
 
+/// The keys of [sensors].
+std::span<const Key> SensorKeys();
 SensorConfig ReadSensors(Section& sensors);
 
 }  // namespace mascot

@@ -2,6 +2,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -15,8 +16,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A number of an airframe, and what it is. A parameter's name is its key in a table agents.airframe.
-struct Entry {
+/// A number of an airframe, by its key in a table agents.airframe.
+struct Parameter {
+  std::string_view name;
+  Json (*value)(const Airframe& airframe);
+};
+
+/// A number that follows from those.
+struct Derived {
   std::string_view name;
   std::string_view meaning;
   Json (*value)(const Airframe& airframe);
@@ -25,27 +32,30 @@ struct Entry {
 Json Gains(const PdGains& gains) { return {{"kp", gains.kp}, {"kd", gains.kd}}; }
 Json List(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
-constexpr Entry kParameters[] = {
-    {"mass_kg", "mass", [](const Airframe& a) { return Json(a.mass_kg); }},
-    {"inertia_kg_m2", "moments of inertia about x, y, z of B", [](const Airframe& a) { return List(a.inertia_kg_m2); }},
-    {"arm_m", "d: centre to rotor", [](const Airframe& a) { return Json(a.arm_m); }},
-    {"lift_n_s2", "b: thrust of a rotor per squared speed", [](const Airframe& a) { return Json(a.lift_n_s2); }},
-    {"drag_n_m_s2", "k: torque of a rotor per squared speed", [](const Airframe& a) { return Json(a.drag_n_m_s2); }},
-    {"linear_drag_kg_per_s", "B: force per airspeed", [](const Airframe& a) { return Json(a.linear_drag_kg_per_s); }},
-    {"max_thrust_n", "of all four rotors together", [](const Airframe& a) { return Json(a.max_thrust_n); }},
-    {"rotor_time_constant_s", "lag of the rotor speed; 0: none",
-     [](const Airframe& a) { return Json(a.rotor_time_constant_s); }},
-    {"size_m", "collision box, full lengths", [](const Airframe& a) { return List(a.size_m); }},
-    {"tilt_limit_rad", "of roll and of pitch", [](const Airframe& a) { return Json(a.tilt_limit_rad); }},
-    {"altitude", "m/s^2 per m and per m/s", [](const Airframe& a) { return Gains(a.altitude); }},
-    {"heading", "rad/s^2 per rad and per rad/s", [](const Airframe& a) { return Gains(a.heading); }},
-    {"attitude", "roll and pitch: rad/s^2 per rad and per rad/s", [](const Airframe& a) { return Gains(a.attitude); }},
-    {"position", "m/s^2 per m and per m/s, in x and y", [](const Airframe& a) { return Gains(a.position); }},
+constexpr Parameter kParameters[] = {
+    {"mass_kg", [](const Airframe& a) { return Json(a.mass_kg); }},
+    {"inertia_kg_m2", [](const Airframe& a) { return List(a.inertia_kg_m2); }},
+    {"arm_m", [](const Airframe& a) { return Json(a.arm_m); }},
+    {"lift_n_s2", [](const Airframe& a) { return Json(a.lift_n_s2); }},
+    {"drag_n_m_s2", [](const Airframe& a) { return Json(a.drag_n_m_s2); }},
+    {"linear_drag_kg_per_s", [](const Airframe& a) { return Json(a.linear_drag_kg_per_s); }},
+    {"max_thrust_n", [](const Airframe& a) { return Json(a.max_thrust_n); }},
+    {"rotor_time_constant_s", [](const Airframe& a) { return Json(a.rotor_time_constant_s); }},
+    {"size_m", [](const Airframe& a) { return List(a.size_m); }},
+    {"tilt_limit_rad", [](const Airframe& a) { return Json(a.tilt_limit_rad); }},
+    {"altitude", [](const Airframe& a) { return Gains(a.altitude); }},
+    {"heading", [](const Airframe& a) { return Gains(a.heading); }},
+    {"attitude", [](const Airframe& a) { return Gains(a.attitude); }},
+    {"position", [](const Airframe& a) { return Gains(a.position); }},
 };
+
+std::string_view MeaningOf(std::string_view name) {
+  return std::ranges::find(AirframeKeys(), name, &Key::name)->meaning;
+}
 
 double Gravity() { return Experiment().physics.gravity_m_per_s2; }
 
-constexpr Entry kDerived[] = {
+constexpr Derived kDerived[] = {
     {"hover_rotor_speed_rad_per_s", "of each rotor",
      [](const Airframe& a) { return Json(a.HoverRotorSpeed(Gravity())); }},
     {"max_rotor_speed_rad_per_s", "at max_thrust_n", [](const Airframe& a) { return Json(a.MaxRotorSpeed()); }},
@@ -55,9 +65,9 @@ constexpr Entry kDerived[] = {
 
 Json ToJson(const Airframe& airframe) {
   Json json = {{"name", airframe.name}};
-  for (const Entry& parameter : kParameters) json[parameter.name] = parameter.value(airframe);
+  for (const Parameter& parameter : kParameters) json[parameter.name] = parameter.value(airframe);
   json["derived"]["gravity_m_per_s2"] = Gravity();
-  for (const Entry& derived : kDerived) json["derived"][derived.name] = derived.value(airframe);
+  for (const Derived& derived : kDerived) json["derived"][derived.name] = derived.value(airframe);
   return json;
 }
 
@@ -81,10 +91,10 @@ void PrintEntry(std::string_view name, const std::string& value, std::string_vie
 void Print(const Airframe& airframe) {
   std::cout << fmt::format("{0}\n  keys of an airframe table of your own: airframe = {{ base = \"{0}\", ... }}\n",
                            airframe.name);
-  for (const Entry& parameter : kParameters)
-    PrintEntry(parameter.name, ToToml(parameter.value(airframe)), parameter.meaning);
+  for (const Parameter& parameter : kParameters)
+    PrintEntry(parameter.name, ToToml(parameter.value(airframe)), MeaningOf(parameter.name));
   std::cout << fmt::format("  derived, at {:g} m/s^2\n", Gravity());
-  for (const Entry& derived : kDerived)
+  for (const Derived& derived : kDerived)
     PrintEntry(derived.name, fmt::format("{:.4g}", derived.value(airframe).get<double>()), derived.meaning);
 }
 

@@ -44,12 +44,13 @@ void Recording::ReadConfig() {
     throw ConfigError({path_ + ": expected a run's recording, with its config.toml attached, got none" +
                        (damage().empty() ? "" : ": " + damage())});
   Section config = Section::FromText(attached->second, path_ + " (config.toml)");
+  config.Use(ExperimentKeys());
   Section run = config.Child("run");
   name_ = run.Text("name");
-  realtime_ = run.Text("mode", "lockstep") == "realtime";
-  agents_ = static_cast<int>(config.Child("agents").Integer("count", 1, kMaxAgents));
-  rate_hz_ = static_cast<int>(config.Child("control").Integer("rate_hz", 1, 100000));
-  patterns_ = config.Child("record").Texts("topics", {"*"});
+  realtime_ = run.OneOf("mode") == "realtime";
+  agents_ = static_cast<int>(config.Child("agents").Integer("count"));
+  rate_hz_ = static_cast<int>(config.Child("control").Integer("rate_hz"));
+  patterns_ = config.Child("record").Texts("topics");
   config.ThrowIfWrong();
 }
 

@@ -20,14 +20,12 @@ std::string_view AxesName(Axes axes) { return axes == Axes::kXyz ? "xyz" : "xy";
 
 Json ToJson(const LawEntry& law) {
   Json parameters = Json::array();
-  for (const LawParameter& parameter : law.parameters) {
-    const bool required = parameter.fallback == "*";
-    parameters.push_back(
-        {{"name", parameter.name},
-         {"required", required},
-         {"default", required || parameter.fallback.empty() ? Json(nullptr) : Json(parameter.fallback)},
-         {"range", parameter.range},
-         {"meaning", parameter.meaning}});
+  for (const Key& parameter : law.parameters) {
+    parameters.push_back({{"name", parameter.name},
+                          {"required", parameter.required},
+                          {"default", parameter.fallback.empty() ? Json(nullptr) : Json(parameter.fallback)},
+                          {"range", ValueText(parameter)},
+                          {"meaning", parameter.meaning}});
   }
   return {{"name", law.name},     {"summary", law.summary},     {"equation", law.equation}, {"theory", law.theory},
           {"source", law.source}, {"axes", AxesName(law.axes)}, {"parameters", parameters}};
@@ -58,10 +56,10 @@ void Print(const LawEntry& law) {
   PrintWrapped("  theory", law.theory, 12);
   PrintWrapped("  source", law.source, 12);
   std::cout << fmt::format("  keys of [law]; axes = \"{}\" unless said otherwise; * required\n", AxesName(law.axes));
-  for (const LawParameter& parameter : law.parameters) {
-    const bool has_value = parameter.fallback != "*" && !parameter.fallback.empty();
-    const std::string key = fmt::format("{}{}{}", parameter.name, has_value ? " = " : "", parameter.fallback);
-    PrintWrapped(fmt::format("    {:<31}{:<22}", key, parameter.range), parameter.meaning, 58);
+  for (const Key& parameter : law.parameters) {
+    const std::string_view mark = parameter.required ? "*" : parameter.fallback.empty() ? "" : " = ";
+    const std::string key = fmt::format("{}{}{}", parameter.name, mark, parameter.fallback);
+    PrintWrapped(fmt::format("    {:<31}{:<22}", key, ValueText(parameter)), parameter.meaning, 58);
   }
 }
 

@@ -4,6 +4,8 @@
 
 #include <Eigen/LU>
 
+#include "experiment/agents.h"
+
 namespace mascot {
 namespace {
 
@@ -20,6 +22,7 @@ const Airframe& Named(std::string_view name) {
 /// What a file with this text gives; throws ConfigError with its mistakes.
 Airframe Read(const std::string& text) {
   Section agents = Section::FromText(text, "a.toml");
+  agents.Use(AgentsKeys());
   const Airframe airframe = ReadAirframe(agents, "airframe");
   agents.Done();
   agents.ThrowIfWrong();

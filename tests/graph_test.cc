@@ -24,6 +24,7 @@ std::vector<int> Ids(const std::vector<Graph::Neighbour>& heard) {
 /// [graph] with the lines `text`, for `count` agents.
 Graph Read(const std::string& text, int count, std::uint64_t seed = 1) {
   Section graph = Section::FromText("[graph]\n" + text, "g.toml").Child("graph");
+  graph.Use(GraphKeys());
   const std::vector<Eigen::Vector3d> p_W(static_cast<std::size_t>(count), Eigen::Vector3d::Zero());
   Graph read = ReadGraph(graph, p_W, seed);
   graph.Done();

@@ -558,7 +558,7 @@ TEST(LawTable, NamesOnlyParametersWhoseChangeChangesTheResultAndAllOfThem) {
     // Tested in custom_law_test.cc: what files hold, what is sent, what messages say.
     const std::vector<std::string_view> elsewhere = {"file", "messages", "python_file", "python_line"};
     std::vector<std::string> named;
-    for (const LawParameter& parameter : law.parameters)
+    for (const Key& parameter : law.parameters)
       if (std::ranges::find(elsewhere, parameter.name) == elsewhere.end()) named.emplace_back(parameter.name);
     EXPECT_THAT(tried, ::testing::UnorderedElementsAreArray(named)) << law.name;
   }
@@ -566,8 +566,8 @@ TEST(LawTable, NamesOnlyParametersWhoseChangeChangesTheResultAndAllOfThem) {
 
 TEST(LawTable, TellsTheTruthAboutDefaults) {
   for (const LawEntry& law : Laws()) {
-    for (const LawParameter& parameter : law.parameters) {
-      if (parameter.fallback.empty() || parameter.fallback == "*") continue;
+    for (const Key& parameter : law.parameters) {
+      if (parameter.fallback.empty()) continue;
       std::string lines;  // in which the parameter has its default
       for (const Setting& setting : SettingsOf(law.name)) {
         if (setting.parameter == parameter.name) lines = setting.base;
@@ -583,8 +583,8 @@ TEST(LawTable, TellsTheTruthAboutDefaults) {
 TEST(LawTable, TellsTheTruthAboutWhatIsRequired) {
   for (const LawEntry& law : Laws()) {
     std::vector<std::string> required;
-    for (const LawParameter& parameter : law.parameters) {
-      if (parameter.fallback == "*") required.push_back("law." + std::string(parameter.name) + ": ");
+    for (const Key& parameter : law.parameters) {
+      if (parameter.required) required.push_back("law." + std::string(parameter.name) + ": ");
     }
     std::vector<std::string> mistakes = Mistakes(FiveOnAPath(law.name, ""));
     std::erase_if(mistakes, [](const std::string& mistake) {  // which of two keys is up to the user

@@ -85,7 +85,7 @@ TEST(Section, GivesTheFallbackOfAnAbsentKey) {
   EXPECT_EQ(root.Integer("i", 0, 9, 4), 4);
   EXPECT_TRUE(root.Boolean("b", true));
   EXPECT_EQ(root.Text("s", "default"), "default");
-  EXPECT_THAT(root.Texts("l", {"*"}), ElementsAre("*"));
+  EXPECT_THAT(root.Texts("l", std::vector<std::string>{"*"}), ElementsAre("*"));
   EXPECT_THAT(root.Points("p", 0, 1), IsEmpty());
   EXPECT_THAT(root.Children("t"), IsEmpty());
   EXPECT_EQ(root.Child("c").Number("n", 0, 1, 0.5), 0.5);
@@ -102,6 +102,101 @@ TEST(Section, SaysWhatKindOfValueStandsThere) {
   EXPECT_EQ(root.Kind("f"), "table");
   EXPECT_EQ(root.Kind("g"), "date or time");
   EXPECT_EQ(root.Kind("h"), "");
+}
+
+// --- rows -------------------------------------------------------------------------------------------
+
+constexpr std::string_view kColours[] = {"red", "green"};
+constexpr Key kInnerRows[] = {key::Number("depth_m", Above(0, 5), "").Required()};
+constexpr Key kRows[] = {
+    key::Number("gain", {0, 10}, "").Default("2.5"),
+    key::Integer("count", 1, 9, "").Default("3"),
+    key::Boolean("flag", "").Default("true"),
+    key::Text("word", "").Default("\"hello\""),
+    key::OneOf("colour", kColours, "").Default("\"green\""),
+    key::Texts("names", "").Default("[\"a\", \"b\"]"),
+    key::Vector3("place_m", {-1, 1}, "").Default("[0, 0.5, 1]"),
+    key::Numbers("times_s", {0, 1}, ""),
+    key::Rows("rows", {0, 1}, ""),
+    key::Points("points_m", {0, 1}, ""),
+    key::Table("inner", kInnerRows, ""),
+    key::Tables("many", kInnerRows, ""),
+    key::OneOf("domain", kColours, "").Or(ValueKind::kInteger).Default("\"red\""),
+    key::Number("broken", {0, 1}, "").Default("\"no number\""),
+};
+
+Section TextWithRows(const std::string& text) {
+  Section section = Text(text);
+  section.Use(kRows);
+  return section;
+}
+
+TEST(SectionRows, SayTheDefaults) {
+  Section root = TextWithRows("");
+  EXPECT_EQ(root.Number("gain"), 2.5);
+  EXPECT_EQ(root.Integer("count"), 3);
+  EXPECT_TRUE(root.Boolean("flag"));
+  EXPECT_EQ(root.Text("word"), "hello");
+  EXPECT_EQ(root.OneOf("colour"), "green");
+  EXPECT_THAT(root.Texts("names"), ElementsAre("a", "b"));
+  EXPECT_EQ(root.Vector3("place_m"), Eigen::Vector3d(0, 0.5, 1));
+  EXPECT_THAT(root.Numbers("times_s"), IsEmpty());
+  EXPECT_THAT(root.Rows("rows"), IsEmpty());
+  EXPECT_THAT(root.Points("points_m"), IsEmpty());
+  EXPECT_NO_THROW(root.ThrowIfWrong());
+  EXPECT_THAT(root.Resolved(), HasSubstr("gain = 2.5\ncount = 3\nflag = true\nword = \"hello\"\ncolour = \"green\"\n"
+                                         "names = [\"a\", \"b\"]\nplace_m = [0.0, 0.5, 1.0]\n"));
+}
+
+TEST(SectionRows, SayTheRanges) {
+  const auto read = [](Section& root) {
+    root.Use(kRows);
+    root.Number("gain");
+    root.Integer("count");
+    root.OneOf("colour");
+    root.Vector3("place_m");
+    root.Numbers("times_s");
+    root.Rows("rows");
+    root.Points("points_m");
+    root.Child("inner").Number("depth_m");
+  };
+  EXPECT_THAT(Mistakes("gain = 11\ncount = 0\ncolour = 'gren'\nplace_m = [0, 0, 2]\ntimes_s = [2]\nrows = [[2]]\n"
+                       "points_m = [[0, 0, 2]]\ninner.depth_m = 0\n",
+                       read),
+              ElementsAre("a.toml:1:8: gain: expected a number in [0, 10], got 11",
+                          "a.toml:2:9: count: expected an integer in [1, 9], got 0",
+                          "a.toml:3:10: colour: expected one of red, green, got 'gren' (did you mean \"green\"?)",
+                          "a.toml:4:18: place_m[2]: expected a number in [-1, 1], got 2",
+                          "a.toml:5:12: times_s[0]: expected a number in [0, 1], got 2",
+                          "a.toml:6:10: rows[0][0]: expected a number in [0, 1], got 2",
+                          "a.toml:7:20: points_m[0][2]: expected a number in [0, 1], got 2",
+                          "a.toml:8:17: inner.depth_m: expected a number in (0, 5], got 0"));
+}
+
+TEST(SectionRows, ReachIntoTablesAndTheirLists) {
+  Section root = TextWithRows("inner.depth_m = 1\n[[many]]\ndepth_m = 2\n[[many]]\n");
+  EXPECT_EQ(root.Child("inner").Number("depth_m"), 1);
+  std::vector<Section> many = root.Children("many");
+  EXPECT_EQ(many[0].Number("depth_m"), 2);
+  many[1].Number("depth_m");  // required
+  EXPECT_THROW(root.ThrowIfWrong(), ConfigError);
+}
+
+TEST(SectionRows, LeaveADefaultThatOnlyTheReaderKnowsToIt) {
+  Section root = TextWithRows("");
+  EXPECT_EQ(root.Number("gain", 7.0), 7);
+  EXPECT_EQ(root.Text("word", "other"), "other");
+}
+
+TEST(SectionRows, MayNameTwoKindsOfValue) {
+  EXPECT_EQ(TextWithRows("domain = 7\n").Integer("domain", 0, 9), 7);
+  EXPECT_EQ(TextWithRows("").OneOf("domain"), "red");
+}
+
+TEST(SectionRows, ThatAreMissingOrImpossibleAreMistakesOfOurs) {
+  Section root = TextWithRows("");
+  EXPECT_THROW(root.Number("unheard_of"), std::logic_error);
+  EXPECT_THROW(root.Number("broken"), std::logic_error);
 }
 
 // --- mistakes ---------------------------------------------------------------------------------------
@@ -382,7 +477,7 @@ std::string ReadAll(Section root) {
   }
   Section graph = root.Child("graph");
   graph.Rows("edges", 0, 9);
-  root.Child("record").Texts("topics", {"*"});
+  root.Child("record").Texts("topics", std::vector<std::string>{"*"});
   root.ThrowIfWrong();
   return root.Resolved();
 }

@@ -164,7 +164,7 @@ TEST(Tables, LawsShowEveryLawWithEquationAndEveryParameter) {
   const std::string text = words(Printed(SetUpLaws, {}));
   for (const LawEntry& law : Laws()) {
     EXPECT_THAT(text, AllOf(HasSubstr(std::string(law.name)), HasSubstr(words(std::string(law.equation)))));
-    for (const LawParameter& parameter : law.parameters) EXPECT_THAT(text, HasSubstr(std::string(parameter.meaning)));
+    for (const Key& parameter : law.parameters) EXPECT_THAT(text, HasSubstr(std::string(parameter.meaning)));
   }
   EXPECT_THAT(text, AllOf(HasSubstr(" waypoints_m* "), HasSubstr(" p_gain = 1.0 ")));
   const Json json = Json::parse(Printed(SetUpLaws, {"--json"}));
@@ -213,6 +213,7 @@ TEST(Tables, EveryKeyThatAirframesShowsIsOneThatATableMayHave) {
       table += key + " = " + value.dump() + "\n";
   }
   Section document = Section::FromText(table, "x.toml");
+  document.Use(ExperimentKeys());
   Section agents = document.Child("agents");
   const Airframe body = ReadAirframe(agents, "airframe");
   agents.Done();

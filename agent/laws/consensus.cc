@@ -37,9 +37,9 @@ class Consensus final : public Law {
 
 ConsensusParams ReadConsensus(LawConfig& law) {
   ConsensusParams params;
-  params.p_gain = law.section.Number("p_gain", 0, 1000, 1.0);
-  params.v_gain = law.section.Number("v_gain", 0, 1000, 0.0);
-  params.beta = law.section.Number("beta", 0, 1000, 1.0);
+  params.p_gain = law.section.Number("p_gain");
+  params.v_gain = law.section.Number("v_gain");
+  params.beta = law.section.Number("beta");
   params.leader_flight = ReadLeaderWaypoints(law);
   return params;
 }

@@ -15,8 +15,6 @@ namespace {
 
 // Of run.agent_timeout_s, that a law may take: it then can say itself where it hangs.
 constexpr double kTimeShare = 0.8;
-constexpr std::string_view kStyles[] = {"standard", "mascot"};
-constexpr std::string_view kOutputs[] = {"acceleration", "velocity"};
 
 // What `me` and each of `neighbours` are. `me` lasts as long as the law does, so that it can keep what the law wants to
 // remember; neighbours are made anew at each call.
@@ -316,9 +314,8 @@ CustomParams ReadCustom(LawConfig& config) {
   Section& law = config.section;
   CustomParams params;
   ReadText(law, params);
-  params.style = law.OneOf("style", kStyles, "standard") == "mascot" ? PythonStyle::kMascot : PythonStyle::kStandard;
-  params.wanted =
-      law.OneOf("output", kOutputs, "acceleration") == "velocity" ? Wanted::kVelocity : Wanted::kAcceleration;
+  params.style = law.OneOf("style") == "mascot" ? PythonStyle::kMascot : PythonStyle::kStandard;
+  params.wanted = law.OneOf("output") == "velocity" ? Wanted::kVelocity : Wanted::kAcceleration;
   if (law.Has("params") && law.Kind("params") != "table")
     law.Fail("params", "expected a table, got a " + law.Kind("params"));
   else

@@ -25,18 +25,27 @@ struct CustomParams {
   double time_limit_s = 0;  ///< that one call may take
 };
 
-inline constexpr LawParameter kCustomParameters[] = {
-    {"python", "", "text",
-     "the law itself: defines control(t, me, neighbours), may define start(me, params), message(me)"},
-    {"file", "", "a path, from the folder of this file", "a file that holds the law, instead of python"},
-    {"params", "{}", "any table", "goes to start(me, params) as a dict"},
-    {"style", "\"standard\"", "standard | mascot",
-     "mascot: the published testbed's control_user(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, leader)"},
-    {"output", "\"acceleration\"", "acceleration | velocity", "what control returns, 3 numbers or 2 (x, y), in W"},
-    {"messages", "", "true | false", "whether it sends messages; by default: whether it defines message"},
-    {"leader", "0", "0..N", "for control_user, which counts agents from 0: given as leader - 1, -1 if there is none"},
-    {"python_file", "", "text", "what python goes by in messages; by default this file"},
-    {"python_line", "", ">= 1", "the line of python_file at which python begins"},
+inline constexpr std::string_view kPythonStyles[] = {"standard", "mascot"};
+inline constexpr std::string_view kPythonOutputs[] = {"acceleration", "velocity"};
+
+inline constexpr Key kCustomParameters[] = {
+    key::Text("python",
+              "the law itself: defines control(t, me, neighbours), may define start(me, params), message(me)"),
+    key::Text("file", "a file that holds the law, instead of python; its path from the folder of this file"),
+    key::Any("params", "goes to start(me, params) as a dict").Default("{}"),
+    key::OneOf("style", kPythonStyles,
+               "mascot: the published testbed's control_user(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, "
+               "leader)")
+        .Default("\"standard\""),
+    key::OneOf("output", kPythonOutputs, "what control returns, 3 numbers or 2 (x, y), in W")
+        .Default("\"acceleration\""),
+    key::Boolean("messages", "whether it sends messages").Otherwise("whether it defines message"),
+    key::Integer("leader", 0, kMaxAgents,
+                 "for control_user, which counts agents from 0: given as leader - 1, -1 if there is none")
+        .Default("0"),
+    key::Text("python_file", "what python goes by in messages").Otherwise("this file"),
+    key::Integer("python_line", 1, 1'000'000, "the line of python_file at which python begins")
+        .Otherwise("where it stands"),
 };
 
 }  // namespace mascot

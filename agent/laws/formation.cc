@@ -14,8 +14,6 @@
 namespace mascot {
 namespace {
 
-constexpr std::string_view kShapes[] = {"circle", "line", "grid", "vee"};
-
 class Formation final : public Law {
  public:
   Formation(FormationParams params, int id) : params_(std::move(params)), id_(id) {}
@@ -62,12 +60,12 @@ std::vector<Eigen::Vector3d> ReadPlaces(Section& law, int agents) {
   }
   std::vector<Eigen::Vector3d> places;
   if (law.Has("shape")) {
-    const std::string shape = law.OneOf("shape", kShapes);
-    const double spacing_m = law.Positive("spacing_m", 1e4, 2.0);
+    const std::string shape = law.OneOf("shape");
+    const double spacing_m = law.Number("spacing_m");
     for (int i = 0; i < agents; ++i) places.push_back(spacing_m * PlaceOf(shape, i, agents));
     return places;
   }
-  places = law.Points("offsets_m", -1e6, 1e6);
+  places = law.Points("offsets_m");
   if (!law.Wrong("offsets_m") && places.size() != count)
     law.Fail("offsets_m", "expected " + std::to_string(count) + " points, one per agent, got a list of " +
                               std::to_string(places.size()));
@@ -80,9 +78,9 @@ std::vector<Eigen::Vector3d> ReadPlaces(Section& law, int agents) {
 FormationParams ReadFormation(const Experiment& experiment, LawConfig& law) {
   FormationParams params;
   params.d_W = ReadPlaces(law.section, experiment.size());
-  params.p_gain = law.section.Number("p_gain", 0, 1000, 1.0);
-  params.v_gain = law.section.Number("v_gain", 0, 1000, 0.0);
-  params.beta = law.section.Number("beta", 0, 1000, 1.0);
+  params.p_gain = law.section.Number("p_gain");
+  params.v_gain = law.section.Number("v_gain");
+  params.beta = law.section.Number("beta");
   params.leader_flight = ReadLeaderWaypoints(law);
   return params;
 }

@@ -17,22 +17,23 @@ struct FormationParams {
   std::optional<WaypointParams> leader_flight;  ///< absent: the leader's acceleration is 0
 };
 
-inline constexpr LawParameter kFormationParameters[] = {
-    {"offsets_m", "", "[[x, y, z], ...], m", "d_i: each agent's place, relative to a point that all agents share"},
-    {"shape", "", "circle | line | grid | vee", "places of a family, instead of offsets_m; in x and y"},
-    {"spacing_m", "2.0", "(0, 1e4], m", "with shape: between neighbouring places"},
-    {"p_gain", "1.0", "[0, 1000], 1/s^2",
-     "pull towards the place that each neighbour's position means, times its weight"},
-    {"v_gain", "0.0", "[0, 1000], 1/s", "pull towards each neighbour's velocity, times its weight"},
-    {"beta", "1.0", "[0, 1000], 1/s", "damping of the agent's own velocity"},
-    {"leader", "0", "0..N", "agent that leads and listens to nobody; 0: none"},
-    {"leader_waypoints_m", "", "[[x, y, z], ...], m", "the leader flies these, as the waypoint law does"},
-    {"leader_p_gain", "1.0", "[0, 1000], 1/s^2", "with leader_waypoints_m, as the waypoint law's p_gain"},
-    {"leader_d_gain", "1.0", "[0, 1000], 1/s", "likewise d_gain"},
-    {"leader_arrival_radius_m", "0.2", "(0, 1000], m", "likewise arrival_radius_m"},
-    {"leader_dwell_s", "1.0", "[0, 1e6], s", "likewise dwell_s"},
-    {"leader_times_s", "", "increasing, >= 0, s", "likewise times_s"},
-};
+inline constexpr std::string_view kFormationShapes[] = {"circle", "line", "grid", "vee"};
+
+inline constexpr auto kFormationParameters = Joined(
+    std::array{
+        key::Points("offsets_m", {-1e6, 1e6}, "d_i: each agent's place, relative to a point that all agents share"),
+        key::OneOf("shape", kFormationShapes, "places of a family, instead of offsets_m; in x and y"),
+        key::Number("spacing_m", Above(0, 1e4), "with shape: between neighbouring places").Default("2.0"),
+        key::Number("p_gain", kGain, "pull towards the place that each neighbour's position means, times its weight")
+            .Default("1.0")
+            .Unit("1/s^2"),
+        key::Number("v_gain", kGain, "pull towards each neighbour's velocity, times its weight")
+            .Default("0.0")
+            .Unit("1/s"),
+        key::Number("beta", kGain, "damping of the agent's own velocity").Default("1.0").Unit("1/s"),
+        key::Integer("leader", 0, kMaxAgents, "agent that leads and listens to nobody, 1..N; 0: none").Default("0"),
+    },
+    kLeaderFlightParameters);
 
 FormationParams ReadFormation(const Experiment& experiment, LawConfig& law);
 

@@ -22,8 +22,6 @@
 namespace mascot {
 namespace {
 
-constexpr std::string_view kWeakEdges[] = {"refuse", "root"};
-
 double Sign(double x) { return (x > 0) - (x < 0); }
 
 /// Follows the parent on every axis.
@@ -73,11 +71,8 @@ class Root final : public Law {
 /// One bound per agent, whatever the file says.
 std::vector<double> ReadBeta(Section& law, int agents) {
   const auto count = static_cast<std::size_t>(agents);
-  if (law.Kind("beta") != "list") return std::vector<double>(count, law.Positive("beta", 1000));
-  std::vector<double> beta = law.Numbers("beta", 0, 1000);
-  for (std::size_t i = 0; i < beta.size() && !law.Wrong("beta"); ++i) {
-    if (beta[i] == 0) law.FailRow("beta", i, "expected a number in (0, 1000], got 0.0");
-  }
+  if (law.Kind("beta") != "list") return std::vector<double>(count, law.Number("beta"));
+  std::vector<double> beta = law.Numbers("beta");
   if (beta.size() != count && !law.Wrong("beta")) {
     law.Fail("beta",
              "expected " + std::to_string(count) + " numbers, one per agent, got " + std::to_string(beta.size()));
@@ -130,8 +125,8 @@ MinmaxParams ReadMinmax(const Experiment& experiment, LawConfig& config) {
   MinmaxParams params;
   params.parent = ReadTree(experiment, config);
   params.beta = ReadBeta(law, experiment.size());
-  const bool root_bound = law.OneOf("weak_edges", kWeakEdges, "refuse") == "root";
-  params.boundary_layer_m = law.Number("boundary_layer", 0, 1000, 0.0);
+  const bool root_bound = law.OneOf("weak_edges") == "root";
+  params.boundary_layer_m = law.Number("boundary_layer");
   params.root_flight = ReadLeaderWaypoints(config);
 
   params.parent_beta.resize(params.beta.size(), 0.0);

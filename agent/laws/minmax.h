@@ -17,19 +17,25 @@ struct MinmaxParams {
   std::optional<WaypointParams> root_flight;  ///< absent: the root's acceleration is 0
 };
 
-inline constexpr LawParameter kMinmaxParameters[] = {
-    {"leader", "*", "1..N", "root of the spanning tree"},
-    {"beta", "*", "(0, 1000], m/s^2", "largest acceleration per axis: one number, or a list by id"},
-    {"weak_edges", "\"refuse\"", "refuse | root",
-     "an edge whose child is not stronger than its parent: refuse, or expect the root's bound of every parent"},
-    {"boundary_layer", "0.0", "[0, 1000], m", "distance to the parent within which sgn gives way to a smooth function"},
-    {"leader_waypoints_m", "", "[[x, y, z], ...], m", "the root flies these as the waypoint law does, within its beta"},
-    {"leader_p_gain", "1.0", "[0, 1000], 1/s^2", "with leader_waypoints_m, as the waypoint law's p_gain"},
-    {"leader_d_gain", "1.0", "[0, 1000], 1/s", "likewise d_gain"},
-    {"leader_arrival_radius_m", "0.2", "(0, 1000], m", "likewise arrival_radius_m"},
-    {"leader_dwell_s", "1.0", "[0, 1e6], s", "likewise dwell_s"},
-    {"leader_times_s", "", "increasing, >= 0, s", "likewise times_s"},
-};
+inline constexpr std::string_view kWeakEdges[] = {"refuse", "root"};
+
+inline constexpr auto kMinmaxParameters = Joined(
+    std::array{
+        key::Integer("leader", 1, kMaxAgents, "root of the spanning tree, 1..N").Required(),
+        key::Number("beta", Above(0, 1000), "largest acceleration per axis: one number, or a list by id")
+            .Or(ValueKind::kNumbers)
+            .Unit("m/s^2")
+            .Required(),
+        key::OneOf("weak_edges", kWeakEdges,
+                   "an edge whose child is not stronger than its parent: refuse, or expect the root's bound of every "
+                   "parent")
+            .Default("\"refuse\""),
+        key::Number("boundary_layer", {0, 1000},
+                    "distance to the parent within which sgn gives way to a smooth function")
+            .Default("0.0")
+            .Unit("m"),
+    },
+    kLeaderFlightParameters);
 
 MinmaxParams ReadMinmax(const Experiment& experiment, LawConfig& law);
 

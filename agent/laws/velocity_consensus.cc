@@ -26,7 +26,7 @@ class VelocityConsensus final : public Law {
 
 }  // namespace
 
-double ReadVelocityConsensus(LawConfig& law) { return law.section.Number("p_gain", 0, 1000, 1.0); }
+double ReadVelocityConsensus(LawConfig& law) { return law.section.Number("p_gain"); }
 
 bool CheckVelocityConsensus(Experiment& /*experiment*/, LawConfig& law) {
   ReadVelocityConsensus(law);

@@ -5,9 +5,9 @@
 
 namespace mascot {
 
-inline constexpr LawParameter kVelocityConsensusParameters[] = {
-    {"p_gain", "1.0", "[0, 1000], 1/s", "pull towards each neighbour, times its weight"},
-    {"leader", "0", "0..N", "agent that leads and stands still; 0: none"},
+inline constexpr Key kVelocityConsensusParameters[] = {
+    key::Number("p_gain", {0, 1000}, "pull towards each neighbour, times its weight").Default("1.0").Unit("1/s"),
+    key::Integer("leader", 0, kMaxAgents, "agent that leads and stands still, 1..N; 0: none").Default("0"),
 };
 
 /// Reads p_gain.

@@ -44,22 +44,22 @@ class Waypoint final : public Law {
 WaypointParams ReadWaypoints(Section& law, const std::string& prefix) {
   const auto key = [&prefix](const char* name) { return prefix + name; };
   WaypointParams params;
-  params.waypoints_W = law.Points(key("waypoints_m"), -1e6, 1e6);
+  params.waypoints_W = law.Points(key("waypoints_m"));
   if (params.waypoints_W.empty() && !law.Wrong(key("waypoints_m"))) {
     law.Fail(key("waypoints_m"), "expected a list of points [x, y, z], got nothing");
   }
-  params.p_gain = law.Number(key("p_gain"), 0, 1000, 1.0);
-  params.d_gain = law.Number(key("d_gain"), 0, 1000, 1.0);
+  params.p_gain = law.Number(key("p_gain"));
+  params.d_gain = law.Number(key("d_gain"));
   if (law.Has(key("times_s"))) {
-    params.times_s = law.Numbers(key("times_s"), 0, 1e6);
+    params.times_s = law.Numbers(key("times_s"));
     CheckTimes(law, key("times_s"), params);
     for (const char* name : {"arrival_radius_m", "dwell_s"}) {
       if (law.Has(key(name)))
         law.Fail(key(name), "expected only one of " + key("times_s") + " and " + key(name) + ", got both");
     }
   } else {
-    params.arrival_radius_m = law.Positive(key("arrival_radius_m"), 1000, 0.2);
-    params.dwell_s = law.Number(key("dwell_s"), 0, 1e6, 1.0);
+    params.arrival_radius_m = law.Number(key("arrival_radius_m"));
+    params.dwell_s = law.Number(key("dwell_s"));
   }
   return params;
 }
@@ -68,11 +68,11 @@ std::optional<WaypointParams> ReadLeaderWaypoints(LawConfig& config) {
   Section& law = config.section;
   const bool has_waypoints = law.Has("leader_waypoints_m");
   if (config.leader > 0 && has_waypoints) return ReadWaypoints(law, "leader_");
-  for (const LawParameter& parameter : kWaypointParameters) {
-    const std::string key = "leader_" + std::string(parameter.name);
-    if (!law.Has(key) || law.Wrong("leader")) continue;
-    law.Fail(key, config.leader == 0 ? "expected law.leader to name the agent that this is for, got no leader"
-                                     : "expected leader_waypoints_m beside it, got none");
+  for (const Key& parameter : kLeaderFlightParameters) {
+    if (!law.Has(parameter.name) || law.Wrong("leader")) continue;
+    law.Fail(parameter.name, config.leader == 0
+                                 ? "expected law.leader to name the agent that this is for, got no leader"
+                                 : "expected leader_waypoints_m beside it, got none");
   }
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,16 +21,34 @@ struct WaypointParams {
   double d_gain = 0;
 };
 
-inline constexpr LawParameter kWaypointParameters[] = {
-    {"waypoints_m", "*", "[[x, y, z], ...], m", "targets, flown in this order by every agent; the last one is held"},
-    {"p_gain", "1.0", "[0, 1000], 1/s^2", "pull towards the target"},
-    {"d_gain", "1.0", "[0, 1000], 1/s", "damping"},
-    {"arrival_radius_m", "0.2", "(0, 1000], m", "a target counts as reached this close to it, over law.axes"},
-    {"dwell_s", "1.0", "[0, 1e6], s", "time to stay that close before the next target"},
-    {"times_s", "", "increasing, >= 0, s", "when each waypoint becomes the target, instead of by arrival"},
+inline constexpr Range kWaypoint_m = {-1e6, 1e6};
+inline constexpr Range kGain = {0, 1000};
+inline constexpr Range kTime_s = {0, 1e6};
+
+inline constexpr Key kWaypointParameters[] = {
+    key::Points("waypoints_m", kWaypoint_m, "targets, flown in this order by every agent; the last one is held")
+        .Required(),
+    key::Number("p_gain", kGain, "pull towards the target").Default("1.0").Unit("1/s^2"),
+    key::Number("d_gain", kGain, "damping").Default("1.0").Unit("1/s"),
+    key::Number("arrival_radius_m", Above(0, 1000), "a target counts as reached this close to it, over law.axes")
+        .Default("0.2"),
+    key::Number("dwell_s", kTime_s, "time to stay that close before the next target").Default("1.0"),
+    key::Numbers("times_s", kTime_s, "when each waypoint becomes the target, instead of by arrival; increasing"),
 };
 
-/// Reads the keys above, each with `prefix` before its name.
+/// The same for a leader, of the laws that may have one.
+inline constexpr std::array kLeaderFlightParameters = {
+    key::Points("leader_waypoints_m", kWaypoint_m, "the leader flies these, as the waypoint law does"),
+    key::Number("leader_p_gain", kGain, "with leader_waypoints_m, as the waypoint law's p_gain")
+        .Default("1.0")
+        .Unit("1/s^2"),
+    key::Number("leader_d_gain", kGain, "likewise d_gain").Default("1.0").Unit("1/s"),
+    key::Number("leader_arrival_radius_m", Above(0, 1000), "likewise arrival_radius_m").Default("0.2"),
+    key::Number("leader_dwell_s", kTime_s, "likewise dwell_s").Default("1.0"),
+    key::Numbers("leader_times_s", kTime_s, "likewise times_s"),
+};
+
+/// Reads the keys of either table above, `prefix` being what stands before their names.
 WaypointParams ReadWaypoints(Section& law, const std::string& prefix);
 /// Reads `leader_waypoints_m` and its companions; none: the leader has no waypoints. Refuses them where
 /// there is no leader.

@@ -1,0 +1,82 @@
+#include "experiment/control.h"
+
+#include <array>
+
+namespace mascot {
+namespace {
+
+constexpr std::string_view kInversions[] = {"small_angle", "exact"};
+constexpr std::string_view kOfAirframe = "the airframe's";
+
+constexpr Range kGain = {0, 1e4};
+constexpr Key kGainKeys[] = {
+    key::Number("kp", kGain, "proportional").Required(),
+    key::Number("kd", kGain, "derivative").Required(),
+};
+
+constexpr std::array kAgentKeys = {
+    key::Table("altitude", kGainKeys, "gains of that loop: m/s^2 per m and per m/s").Otherwise(kOfAirframe),
+    key::Table("heading", kGainKeys, "rad/s^2 per rad and per rad/s").Otherwise(kOfAirframe),
+    key::Table("attitude", kGainKeys, "roll and pitch: rad/s^2 per rad and per rad/s").Otherwise(kOfAirframe),
+    key::Table("position", kGainKeys, "x and y: m/s^2 per m and per m/s").Otherwise(kOfAirframe),
+    key::Number("heading_rad", {-10, 10}, "wanted yaw").Default("0.0"),
+    key::Number("max_acceleration_m_per_s2", Above(0, 1000), "limit on what the law wants, per axis; cuts are counted")
+        .Default("3.0"),
+    key::Number("max_speed_m_per_s", Above(0, 1000), "likewise, where the law wants a velocity").Default("100.0"),
+    key::Number("velocity_gain", Above(0, 1000),
+                "k_v: a wanted velocity v* asks a model driven by acceleration for k_v (v* - v)")
+        .Default("2.0")
+        .Unit("1/s"),
+    key::Number("look_ahead_m", Above(0, 100), "of a unicycle: how far ahead the point lies that does what is wanted")
+        .Default("0.1"),
+    key::Number("tilt_limit_rad", Above(0, 1.5), "of roll and of pitch").Otherwise(kOfAirframe),
+    key::OneOf("inversion", kInversions,
+               "how a wanted acceleration becomes roll, pitch and thrust; the paper's is small_angle")
+        .Default("\"small_angle\""),
+    key::Boolean("drag_compensation", "adds the known drag to the wanted acceleration").Default("true"),
+};
+
+constexpr auto kKeys = Joined(
+    std::array{
+        key::Integer("rate_hz", 1, 100000, "ticks per simulated second; divides `physics.rate_hz`").Default("100")},
+    kAgentKeys);
+
+/// Gains given for one loop, in place of the airframe's.
+void ReadGains(Section& control, std::string_view key, PdGains Airframe::*loop, std::span<AgentConfig> agents) {
+  if (!control.Has(key)) return;
+  Section section = control.Child(key);
+  PdGains gains;
+  gains.kp = section.Number("kp");
+  gains.kd = section.Number("kd");
+  section.Done();
+  for (AgentConfig& agent : agents) agent.airframe.*loop = gains;
+}
+
+}  // namespace
+
+std::span<const Key> ControlKeys() { return kKeys; }
+
+std::span<const Key> AgentControlKeys() { return kAgentKeys; }
+
+void ReadControl(Section& section, std::span<AgentConfig> agents) {
+  ControlConfig control;
+  ReadGains(section, "altitude", &Airframe::altitude, agents);
+  ReadGains(section, "heading", &Airframe::heading, agents);
+  ReadGains(section, "attitude", &Airframe::attitude, agents);
+  ReadGains(section, "position", &Airframe::position, agents);
+  control.heading_rad = section.Number("heading_rad");
+  control.max_acceleration_m_per_s2 = section.Number("max_acceleration_m_per_s2");
+  control.max_speed_m_per_s = section.Number("max_speed_m_per_s");
+  control.velocity_gain = section.Number("velocity_gain");
+  control.look_ahead_m = section.Number("look_ahead_m");
+  if (section.Has("tilt_limit_rad")) {
+    const double tilt_limit_rad = section.Number("tilt_limit_rad");
+    for (AgentConfig& agent : agents) agent.airframe.tilt_limit_rad = tilt_limit_rad;
+  }
+  control.inversion = section.OneOf("inversion") == "exact" ? Inversion::kExact : Inversion::kSmallAngle;
+  control.drag_compensation = section.Boolean("drag_compensation");
+  section.Done();
+  for (AgentConfig& agent : agents) agent.control = control;
+}
+
+}  // namespace mascot
