@@ -139,7 +139,7 @@ void ReadHeadings(Section& agents, std::vector<AgentConfig>& team) {
 std::span<const Key> AgentsKeys() {
   static const Key override_keys[] = {
       key::Integer("id", 1, kMaxAgents, "whom this is for").Required(),
-      key::OneOf("model", kModelNames, "").Otherwise("the team's"),
+      key::OneOf("model", kModelNames, "what it is").Otherwise("the team's"),
       AirframeKey().Otherwise("the team's"),
       key::Table("control", AgentControlKeys(), "what is left out is as in `[control]`"),
       key::Table("law", LawKeys(),

@@ -94,7 +94,7 @@ constexpr Key kGainKeys[] = {
 constexpr Key kKeys[] = {
     key::OneOf("base", kNames, "a built-in airframe, from which everything comes that this table leaves out")
         .Default("\"mascot\""),
-    key::Text("name", "").Otherwise(kOfBase),
+    key::Text("name", "what it is called").Otherwise(kOfBase),
     key::Number("mass_kg", Above(0, 1e4), "mass").Otherwise(kOfBase),
     key::Vector3("inertia_kg_m2", {0, 1e6}, "moments of inertia about x, y, z of B").Otherwise(kOfBase),
     key::Number("arm_m", Above(0, 100), "d: centre to rotor").Otherwise(kOfBase),

@@ -31,7 +31,7 @@ constexpr Key kRunKeys[] = {
 };
 
 constexpr Key kLawKeys[] = {
-    key::Text("name", "see `orchestrator laws`").Default("\"consensus\""),
+    key::Text("name", "one of the laws below").Default("\"consensus\""),
     key::Integer("leader", 0, kMaxAgents, "agent that leads; 0: none").Default("0"),
     key::OneOf("axes", kAxes, "what the law governs; with xy heights are held").Otherwise("xy; xyz for waypoint"),
 };
@@ -197,7 +197,7 @@ std::span<const Key> ExperimentKeys() {
           .Default("\"auto\""),
   };
   static const Key keys[] = {
-      key::Table("run", kRunKeys, ""),
+      key::Table("run", kRunKeys, "how long, how fast, from which seed"),
       key::Table("physics", PhysicsKeys(), "the world"),
       key::Table("agents", AgentsKeys(), "who flies"),
       key::Table("control", ControlKeys(), "the low-level stack under the law"),

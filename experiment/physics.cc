@@ -15,7 +15,7 @@ constexpr Key kWindKeys[] = {
 };
 
 constexpr Key kObstacleKeys[] = {
-    key::OneOf("shape", kShapes, "").Required(),
+    key::OneOf("shape", kShapes, "its form").Required(),
     key::Vector3("position_m", kPlace_m, "its centre").Required(),
     key::Vector3("size_m", {1e-3, 1e4},
                  "full lengths; of a sphere its diameter three times; of a cylinder, which stands on end, its diameter "

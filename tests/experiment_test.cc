@@ -515,6 +515,7 @@ TEST(ResolvedExperiment, IsTheSameAgainWhenRead) {
           "control.altitude = { kp = 1, kd = 2 }\n[agents.airframe]\nbase = 'crazyflie'\nposition = { kp = 3 }\n"
           "[[agents.override]]\nid = 2\nairframe = { mass_kg = 2 }\n[[agents.override]]\nid = 3\nhost = 'external'\n")};
   for (const auto& entry : std::filesystem::directory_iterator(MASCOT_SOURCE_DIR "/configs")) {
+    if (entry.path().extension() != ".toml") continue;
     std::ifstream file(entry.path());
     texts.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
   }

@@ -1,0 +1,181 @@
+// docs/configuration.md and configs/mascot.schema.json, which are made from the tables of keys, against those who read
+// experiment files (LoadExperiment) and against taplo, which editors use.
+#include "orchestrator/reference.h"
+
+#include <gmock/gmock.h>
+#include <toml++/toml.h>
+
+#include <filesystem>
+#include <set>
+#include <sstream>
+
+#include "agent/laws.h"
+#include "tests/scratch.h"
+
+namespace mascot {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const fs::path kSource = MASCOT_SOURCE_DIR;
+
+std::vector<fs::path> TomlFiles(const fs::path& folder, const std::vector<std::string>& prefixes = {""}) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename();
+    const auto begins = [&](const std::string& prefix) { return name.starts_with(prefix); };
+    if (entry.path().extension() == ".toml" && std::ranges::any_of(prefixes, begins)) files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+// --- current ----------------------------------------------------------------------------------------
+
+constexpr const char* kHowTo = "run: cmake --build build/release --target reference";
+
+TEST(Reference, OfKeysIsCurrent) {
+  EXPECT_EQ(ReadFile(kSource / "docs/configuration.md"), ConfigurationReference()) << kHowTo;
+}
+
+TEST(Reference, SchemaIsCurrent) {
+  EXPECT_EQ(ReadFile(kSource / "configs/mascot.schema.json"), ConfigurationSchema()) << kHowTo;
+}
+
+TEST(Reference, SaysRangeDefaultAndMeaning) {
+  const std::string text = ConfigurationReference();
+  EXPECT_THAT(text, HasSubstr("| `loss` | [0, 1] | `0.0` | probability that a sample is lost"));
+  EXPECT_THAT(text, HasSubstr("| `duration_s` | (0, 1e+06] | *required* | "));
+  EXPECT_THAT(text, HasSubstr("| `mode` | lockstep \\| realtime | `\"lockstep\"` | "));
+  EXPECT_THAT(text, HasSubstr("\n### [[link.override]]\n"));
+  EXPECT_THAT(text, HasSubstr("\nKeys as in `[control]`, but for `rate_hz`.\n"));
+  for (const LawEntry& law : Laws()) EXPECT_THAT(text, HasSubstr("law.name = \"" + std::string(law.name) + "\""));
+}
+
+// --- complete and true ------------------------------------------------------------------------------
+
+/// Calls `visit` with the path of every key, and what stands there: "link.override.loss".
+template <class Visit>
+void Walk(std::span<const Key> rows, const toml::table& table, const std::string& path, const Visit& visit) {
+  for (const Key& key : rows) {
+    const toml::node* node = table.get(key.name);
+    if (node == nullptr) continue;
+    const std::string inner = path + "." + std::string(key.name);
+    visit(inner);
+    if (const toml::table* child = node->as_table()) Walk(key.keys, *child, inner, visit);
+    const toml::array* list = key.kind == ValueKind::kTables ? node->as_array() : nullptr;
+    for (std::size_t i = 0; list != nullptr && i < list->size(); ++i)
+      Walk(key.keys, *(*list)[i].as_table(), inner, visit);
+  }
+}
+
+void AddAll(std::span<const Key> rows, const std::string& path, std::set<std::string>& all) {
+  for (const Key& key : rows) {
+    all.insert(path + "." + std::string(key.name));
+    AddAll(key.keys, path + "." + std::string(key.name), all);
+  }
+}
+
+TEST(GoodConfigs, HoldEveryKeyThereIs) {
+  std::set<std::string> missing;
+  AddAll(ExperimentKeys(), "", missing);
+  for (const LawEntry& law : Laws()) AddAll(law.parameters, std::string(law.name), missing);
+  for (const fs::path& path : TomlFiles(kSource / "tests/good_configs")) {
+    const toml::table file = toml::parse_file(path.string());
+    const auto visit = [&](const std::string& key) { missing.erase(key); };
+    Walk(ExperimentKeys(), file, "", visit);
+    const std::string name = file["law"]["name"].value_or(std::string("consensus"));
+    if (const toml::table* law = file["law"].as_table())
+      for (const LawEntry& entry : Laws())
+        if (entry.name == name) Walk(entry.parameters, *law, name, visit);
+  }
+  EXPECT_THAT(missing, IsEmpty()) << "tests/good_configs needs a file with each of these";
+}
+
+TEST(GoodConfigs, AreRead) {
+  for (const fs::path& path : TomlFiles(kSource / "tests/good_configs"))
+    EXPECT_NO_THROW(LoadExperiment(Section::FromFile(path), path.stem())) << path;
+}
+
+// --- the schema -------------------------------------------------------------------------------------
+
+struct Verdict {
+  std::string output;
+  /// The files of which taplo says that the schema refuses them.
+  std::set<std::string> refused;
+};
+
+/// What taplo says of these files; of all by our schema, or of each by the one that it names.
+Verdict Taplo(const std::vector<fs::path>& files, bool by_our_schema) {
+  const std::string program = MASCOT_SOURCE_DIR "/tests/taplo/node_modules/.bin/taplo";
+  if (!fs::exists(program))
+    throw std::runtime_error("tests/taplo/node_modules is missing: run scripts/test, which installs it with `npm ci`");
+  std::string command = "'" + program + "' check --colors never";
+  if (by_our_schema) command += " --schema 'file://" + (kSource / "configs/mascot.schema.json").string() + "'";
+  for (const fs::path& path : files) command += " '" + path.string() + "'";
+  const Ran ran = Shell(command);
+  Verdict verdict{ran.output, {}};
+  EXPECT_THAT(ran.output, HasSubstr("found files total=" + std::to_string(files.size())));
+  std::istringstream lines(ran.output);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("schema validation failed") == std::string::npos) continue;
+    const std::size_t begin = line.find("path=\"") + 6;
+    verdict.refused.insert(fs::path(line.substr(begin, line.rfind('"') - begin)).filename());
+  }
+  EXPECT_EQ(ran.exit_code == 0, verdict.refused.empty()) << ran.output;
+  return verdict;
+}
+
+TEST(Schema, IsNamedByTheShippedExperimentsAndAcceptsThem) {
+  const std::vector<fs::path> files = TomlFiles(kSource / "configs");
+  for (const fs::path& path : files)
+    EXPECT_THAT(ReadFile(path), testing::StartsWith("#:schema ./mascot.schema.json\n"));
+  const Verdict verdict = Taplo(files, false);
+  EXPECT_THAT(verdict.refused, IsEmpty()) << verdict.output;
+}
+
+TEST(Schema, IsFoundByWhatTheShippedExperimentsSay) {
+  ScratchFolder folder;
+  fs::copy(kSource / "configs/mascot.schema.json", folder.path());
+  WriteFile(folder.File("wrong.toml"), "#:schema ./mascot.schema.json\nrun.duration_s = 'long'\nagents.count = 1\n");
+  const Verdict verdict = Taplo({folder.File("wrong.toml")}, false);
+  EXPECT_EQ(verdict.refused.size(), 1u) << verdict.output;
+}
+
+TEST(Schema, AcceptsEveryKey) {
+  const Verdict verdict = Taplo(TomlFiles(kSource / "tests/good_configs"), true);
+  EXPECT_THAT(verdict.refused, IsEmpty()) << verdict.output;
+}
+
+TEST(Schema, AcceptsResolvedExperiments) {
+  ScratchFolder folder;
+  std::vector<fs::path> resolved;
+  for (const char* from : {"tests/good_configs", "configs"})
+    for (const fs::path& path : TomlFiles(kSource / from)) {
+      Section document = Section::FromFile(path);
+      LoadExperiment(document, path.stem());
+      resolved.push_back(folder.path() / (std::to_string(resolved.size()) + path.filename().string()));
+      WriteFile(resolved.back(), document.Resolved());
+    }
+  const Verdict verdict = Taplo(resolved, true);
+  EXPECT_THAT(verdict.refused, IsEmpty()) << verdict.output;
+}
+
+TEST(Schema, RefusesUnknownKeysNamesAndTypes) {
+  std::vector<fs::path> files = TomlFiles(kSource / "tests/bad_configs", {"unknown_", "type_", "range_"});
+  const std::set<std::string> beyond = {
+      "type_count_float.toml",        // in JSON, 4.0 is an integer
+      "range_airframe_inertia.toml",  // three numbers that do not fit each other
+      "range_leader.toml",            // more than there are agents
+  };
+  std::erase_if(files, [&](const fs::path& path) { return beyond.contains(path.filename()); });
+  EXPECT_GE(files.size(), 40u);
+  const Verdict verdict = Taplo(files, true);
+  for (const fs::path& path : files)
+    EXPECT_TRUE(verdict.refused.contains(path.filename())) << path << "\n" << verdict.output;
+}
+
+}  // namespace
+}  // namespace mascot
