@@ -30,6 +30,12 @@ struct Surroundings {
   Eigen::Vector3d wind_W = Eigen::Vector3d::Zero();  ///< m/s
 };
 
+/// What a body does when a physics step begins.
+struct BodyNow {
+  Eigen::Matrix3d R_WB;  ///< takes B components to W
+  Eigen::Vector3d v_WB;  ///< m/s, in W
+};
+
 /// How actuators move one body. One object per agent; may own internal state (rotor speeds).
 class Model {
  public:
@@ -41,7 +47,7 @@ class Model {
   /// False: rolls on it, which is no contact, and stays at its height and upright, whatever hits it.
   virtual bool touches_ground() const { return true; }
   /// What moves the body during one physics step.
-  virtual Push Apply(const Actuation& command, const Motion& self, const Surroundings& around) = 0;
+  virtual Push Apply(const Actuation& command, const BodyNow& self, const Surroundings& around) = 0;
 };
 
 struct ModelEntry {

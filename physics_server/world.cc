@@ -6,16 +6,21 @@
 // order in dt. Bullet turns a body by at most pi/4 in a step: 785 rad/s at 1 kHz.
 //
 // A body driven by velocity has no acceleration to correct for: p+ = p + dt v is what its model asks for.
+//
+// Most steps touch nothing, but Bullet's broadphase, islands and solver cost most of a step even so. While the boxes
+// around all bodies are apart (Clearance), we do to each body just what a whole step would have done, to the bit.
 #include "physics_server/world.h"
 
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "physics_server/clearance.h"
 #include "physics_server/model.h"
 #include "physics_server/wind.h"
 
@@ -29,6 +34,10 @@ enum CollisionGroup { kGround = 1, kAgents = 2, kObstacles = 4 };
 
 btVector3 ToBullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Eigen::Vector3d ToEigen(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+Eigen::Matrix3d ToEigen(const btMatrix3x3& m) {
+  return Eigen::Matrix3d{
+      {m[0].x(), m[0].y(), m[0].z()}, {m[1].x(), m[1].y(), m[1].z()}, {m[2].x(), m[2].y(), m[2].z()}};
+}
 // Bullet's quaternions are x, y, z, w; the constructor of Eigen's takes w, x, y, z.
 Eigen::Quaterniond ToEigen(const btQuaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
@@ -49,6 +58,7 @@ struct Body {
   Motion state;          // at the current tick
   btVector3 v_before_W;  // before the running step
   bool driven_by_velocity = false;
+  double reach_of_contacts_m = 0;
 };
 
 struct FixedBody {
@@ -87,6 +97,11 @@ FixedBody MakeFixed(const Obstacle& obstacle, int user_index) {
   return body;
 }
 
+/// How far apart two surfaces may be for Bullet to make a contact point of them, as far as `shape` is concerned.
+double ReachOfContacts_m(const btCollisionShape& shape) {
+  return std::max(gContactBreakingThreshold, shape.getContactBreakingThreshold(gContactBreakingThreshold));
+}
+
 Body MakeBody(const Experiment& experiment, const AgentConfig& agent) {
   Body body;
   body.model = MakeModel(experiment, agent.id);
@@ -99,6 +114,7 @@ Body MakeBody(const Experiment& experiment, const AgentConfig& agent) {
   body.rigid->setDamping(0, 0);
   body.rigid->setActivationState(DISABLE_DEACTIVATION);
   body.rigid->setUserIndex(agent.id);
+  body.reach_of_contacts_m = ReachOfContacts_m(*body.shape);
   if (!body.model->feels_gravity()) body.rigid->setFlags(body.rigid->getFlags() | BT_DISABLE_WORLD_GRAVITY);
   if (!body.model->touches_ground()) {
     body.rigid->setLinearFactor({1, 1, 0});
@@ -119,6 +135,33 @@ Motion Now(const btRigidBody& rigid) {
   now.v_WB = ToEigen(rigid.getLinearVelocity());
   now.w_WB_B = ToEigen(rigid.getAngularVelocity() * X_WB.getBasis());  // v * M is M^T v
   return now;
+}
+
+BodyNow AtStep(const btRigidBody& rigid) {
+  return {ToEigen(rigid.getWorldTransform().getBasis()), ToEigen(rigid.getLinearVelocity())};
+}
+
+/// Around all points from which the body could get a contact point.
+Clearance::Box BoxAround(const btRigidBody& rigid, double reach_m) {
+  btVector3 low, high;
+  rigid.getAabb(low, high);
+  return {ToEigen(low).array() - reach_m, ToEigen(high).array() + reach_m};
+}
+
+/// One step of a body that touches nothing: gravity, forces, torques, the gyroscopic term, then the move, in the order
+/// and with the roundings of btDiscreteDynamicsWorld and its solver.
+void StepFreely(btRigidBody& rigid, double dt_s) {
+  const btVector3 of_contacts(0, 0, 0);  // the solver adds it too: -0 + 0 is 0
+  rigid.applyGravity();
+  const btVector3 dv_W = rigid.getTotalForce() * rigid.getInvMass() * dt_s;
+  btVector3 dw_W = rigid.getTotalTorque() * rigid.getInvInertiaTensorWorld() * dt_s;
+  dw_W += rigid.computeGyroscopicImpulseImplicit_Body(dt_s);
+  rigid.setLinearVelocity(rigid.getLinearVelocity() + of_contacts + dv_W);
+  rigid.setAngularVelocity(rigid.getAngularVelocity() + of_contacts + dw_W);
+  btTransform next;
+  rigid.predictIntegratedTransform(dt_s, next);
+  rigid.proceedToTransform(next);
+  rigid.clearForces();
 }
 
 /// Has `push` move the body during the step that follows.
@@ -157,11 +200,14 @@ void CheckFinite(std::span<const Actuation> commands, std::int64_t tick) {
 /// some millimetres apart (20 at most): so resting, sliding and rattling count once.
 class ContactCounter {
  public:
-  void Look(btDispatcher& dispatcher) {
+  /// Returns whether any two bodies are so close that Bullet remembers points of theirs.
+  bool Look(btDispatcher& dispatcher) {
+    bool any = false;
     now_.clear();
     for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
       const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
       if (manifold.getNumContacts() == 0) continue;
+      any = true;
       const Pair pair = std::minmax(manifold.getBody0()->getUserIndex(), manifold.getBody1()->getUserIndex());
       const bool lasts = std::ranges::binary_search(lasting_, pair);
       if (!lasts && !Touches(manifold)) continue;
@@ -170,6 +216,7 @@ class ContactCounter {
     }
     std::ranges::sort(now_);
     lasting_.swap(now_);
+    return any;
   }
   const Contacts& begun() const { return begun_; }
 
@@ -196,8 +243,9 @@ class ContactCounter {
 }  // namespace
 
 struct World::Impl {
-  explicit Impl(const Experiment& experiment);
+  Impl(const Experiment& experiment, LookForContacts look_for_contacts);
   void Step(std::span<const Actuation> commands);
+  bool MayTouch();
   void EndTick();
 
   int rate_hz;
@@ -207,7 +255,10 @@ struct World::Impl {
   std::int64_t steps = 0;
   std::int64_t tick = 0;
   Wind wind;
+  LookForContacts look;
   ContactCounter contacts;
+  bool any_contact = false;  // Bullet remembers contact points
+  std::int64_t steps_with_contacts = 0;
 
   // Bodies outlive the world that holds them, so they come first.
   Ground ground_shape;
@@ -219,14 +270,17 @@ struct World::Impl {
   btDbvtBroadphase broadphase;
   btSequentialImpulseConstraintSolver solver;
   btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &collision};
+  std::optional<Clearance> clearance;
+  std::vector<Clearance::Box> boxes;  // by body, at this step
 };
 
-World::Impl::Impl(const Experiment& experiment)
+World::Impl::Impl(const Experiment& experiment, LookForContacts look_for_contacts)
     : rate_hz(experiment.physics.rate_hz),
       dt_s(1.0 / rate_hz),
       control_rate_hz(experiment.control.rate_hz),
       steps_per_tick(experiment.steps_per_tick()),
-      wind(experiment.physics.wind, experiment.run.seed, dt_s) {
+      wind(experiment.physics.wind, experiment.run.seed, dt_s),
+      look(look_for_contacts) {
   collision.setPlaneConvexMultipointIterations();  // a box then stands on four points at once
   // Bullet's own for two spheres forgets a contact as soon as they are apart: those that slide along each other would
   // begin one again and again.
@@ -243,24 +297,44 @@ World::Impl::Impl(const Experiment& experiment)
     obstacles.push_back(MakeFixed(obstacle, kObstacleIndex - static_cast<int>(obstacles.size())));
     world.addRigidBody(obstacles.back().rigid.get(), kObstacles, kAgents);
   }
+  Clearance::Scene scene;
+  scene.heeds_each_other = experiment.physics.collisions;
+  for (const FixedBody& obstacle : obstacles)
+    if (experiment.physics.collisions)
+      scene.fixed.push_back(BoxAround(*obstacle.rigid, ReachOfContacts_m(*obstacle.shape)));
   bodies.reserve(experiment.agents.size());
   for (const AgentConfig& agent : experiment.agents) {
     bodies.push_back(MakeBody(experiment, agent));
     const int ground_if_touched = bodies.back().model->touches_ground() ? kGround : 0;
     const int others = experiment.physics.collisions ? kAgents | kObstacles : 0;
     world.addRigidBody(bodies.back().rigid.get(), kAgents, ground_if_touched | others);
+    scene.heeds_floor.push_back(experiment.physics.ground && ground_if_touched != 0);
   }
+  clearance.emplace(std::move(scene));
+  boxes.resize(bodies.size());
 }
 
 void World::Impl::Step(std::span<const Actuation> commands) {
   const Surroundings around{.t_s = static_cast<double>(steps++) / rate_hz, .dt_s = dt_s, .wind_W = wind.Next()};
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    Apply(bodies[i].model->Apply(commands[i], Now(*bodies[i].rigid), around), bodies[i]);
-  world.stepSimulation(dt_s, 0);
+    Apply(bodies[i].model->Apply(commands[i], AtStep(*bodies[i].rigid), around), bodies[i]);
+  if (MayTouch()) {
+    world.stepSimulation(dt_s, 0);
+    any_contact = contacts.Look(dispatcher);
+    ++steps_with_contacts;
+  } else {
+    for (Body& body : bodies) StepFreely(*body.rigid, dt_s);
+  }
   for (Body& body : bodies)
     if (!body.driven_by_velocity)
       body.rigid->getWorldTransform().getOrigin() -= (dt_s / 2) * (body.rigid->getLinearVelocity() - body.v_before_W);
-  contacts.Look(dispatcher);
+}
+
+/// Whether Bullet could make a contact of where bodies are now, or still has one.
+bool World::Impl::MayTouch() {
+  if (look == LookForContacts::kAlways || any_contact) return true;
+  for (std::size_t i = 0; i < bodies.size(); ++i) boxes[i] = BoxAround(*bodies[i].rigid, bodies[i].reach_of_contacts_m);
+  return !clearance->IsClear(boxes);
 }
 
 void World::Impl::EndTick() {
@@ -275,7 +349,7 @@ void World::Impl::EndTick() {
   }
 }
 
-World::World(const Experiment& experiment) : impl_(std::make_unique<Impl>(experiment)) {}
+World::World(const Experiment& experiment, LookForContacts look) : impl_(std::make_unique<Impl>(experiment, look)) {}
 World::~World() = default;
 
 Motion World::State(int id) const { return impl_->bodies[static_cast<std::size_t>(id - 1)].state; }
@@ -290,5 +364,7 @@ void World::Step(std::span<const Actuation> commands) {
 std::int64_t World::tick() const { return impl_->tick; }
 
 Contacts World::contacts() const { return impl_->contacts.begun(); }
+
+std::int64_t World::steps_with_contacts() const { return impl_->steps_with_contacts; }
 
 }  // namespace mascot

@@ -14,8 +14,11 @@ namespace mascot {
 /// same experiment and commands give the same bits. No clock, no DDS.
 class World {
  public:
+  /// When Bullet looks for contacts and solves them: at steps at which bodies are close enough to touch, or at all.
+  /// The states are the same bits as long as nothing touches.
+  enum class LookForContacts { kWhenClose, kAlways };
   /// Bodies at their configured state, exactly.
-  explicit World(const Experiment& experiment);
+  explicit World(const Experiment& experiment, LookForContacts look = LookForContacts::kWhenClose);
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
@@ -28,6 +31,8 @@ class World {
   std::int64_t tick() const;
   Contacts contacts() const;
   std::int64_t collisions() const { return contacts().total(); }
+  /// Physics steps so far at which Bullet looked for contacts.
+  std::int64_t steps_with_contacts() const;
 
  private:
   struct Impl;

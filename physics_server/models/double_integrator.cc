@@ -6,7 +6,7 @@ namespace {
 
 class DoubleIntegrator final : public Ball {
  public:
-  Push Apply(const Actuation& command, const Motion& /*self*/, const Surroundings& /*around*/) override {
+  Push Apply(const Actuation& command, const BodyNow& /*self*/, const Surroundings& /*around*/) override {
     return {.f_W = {command[0], command[1], command[2]}};
   }
 };

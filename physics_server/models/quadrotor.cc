@@ -29,13 +29,12 @@ class Quadrotor final : public Model {
   Eigen::Vector3d half_size_m() const override { return airframe_.size_m / 2; }
   bool feels_gravity() const override { return true; }
 
-  Push Apply(const Actuation& command, const Motion& self, const Surroundings& around) override {
+  Push Apply(const Actuation& command, const BodyNow& self, const Surroundings& around) override {
     const Eigen::Vector4d wanted = Eigen::Vector4d::Map(command.data()).cwiseMax(0).cwiseMin(max_rotor_speed_);
     rotor_speed_ += Followed(around.dt_s) * (wanted - rotor_speed_);
     const Eigen::Vector4d thrust_torque = allocation_ * Remaining(around.t_s).cwiseProduct(rotor_speed_.cwiseAbs2());
-    const Eigen::Vector3d thrust_B(0, 0, thrust_torque[0]);
     const Eigen::Vector3d drag_W = -airframe_.linear_drag_kg_per_s * (self.v_WB - around.wind_W);
-    return {.f_W = self.q_WB * thrust_B + drag_W, .tau_B = thrust_torque.tail<3>()};
+    return {.f_W = thrust_torque[0] * self.R_WB.col(2) + drag_W, .tau_B = thrust_torque.tail<3>()};
   }
 
  private:

@@ -6,7 +6,7 @@ namespace {
 
 class SingleIntegrator final : public Ball {
  public:
-  Push Apply(const Actuation& command, const Motion& /*self*/, const Surroundings& /*around*/) override {
+  Push Apply(const Actuation& command, const BodyNow& /*self*/, const Surroundings& /*around*/) override {
     return {.velocity = Push::Velocity{{command[0], command[1], command[2]}, Eigen::Vector3d::Zero()}};
   }
 };

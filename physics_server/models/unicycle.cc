@@ -13,9 +13,9 @@ class Unicycle final : public Ball {
  public:
   bool touches_ground() const override { return false; }
 
-  Push Apply(const Actuation& command, const Motion& self, const Surroundings& around) override {
+  Push Apply(const Actuation& command, const BodyNow& self, const Surroundings& around) override {
     const double v = command[0], w = command[1];
-    const Eigen::Vector3d forward_W = self.q_WB * Eigen::Vector3d::UnitX();
+    const Eigen::Vector3d forward_W = self.R_WB.col(0);
     const double half_turn = w * around.dt_s / 2;
     const double chord = std::atan2(forward_W.y(), forward_W.x()) + half_turn;
     const double speed = half_turn == 0 ? v : v * std::sin(half_turn) / half_turn;
