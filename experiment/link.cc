@@ -68,6 +68,15 @@ bool Hears(const Graph& graph, int hearer, int heard) {
   return std::ranges::find(neighbours, heard, &Graph::Neighbour::id) != neighbours.end();
 }
 
+std::string ListOf(const std::vector<double>& numbers) {
+  std::string text;
+  for (const double number : numbers) {
+    const std::string written = ShortestFloat(number);
+    text += (text.empty() ? "" : ", ") + (written.ends_with(".0") ? written.substr(0, written.size() - 2) : written);
+  }
+  return "[" + text + "]";
+}
+
 /// The edges [i, j] (i hears j) that an override is for.
 std::vector<std::pair<int, int>> ReadEdges(Section& section, const Graph& graph) {
   std::vector<std::pair<int, int>> edges;
@@ -81,7 +90,7 @@ std::vector<std::pair<int, int>> ReadEdges(Section& section, const Graph& graph)
     if (is_edge)
       edges.emplace_back(static_cast<int>(rows[k][0]), static_cast<int>(rows[k][1]));
     else
-      section.FailRow("edges", k, "expected an edge [i, j] of the graph (i hears j), got another");
+      section.FailRow("edges", k, "expected an edge [i, j] of the graph (i hears j), got " + ListOf(rows[k]));
   }
   return edges;
 }

@@ -142,6 +142,143 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"law.leader_waypoints_m", "[[5,5,1]]", {"law.leader=1"}}),
     NameOf);
 
+// --- [link] -----------------------------------------------------------------------------------------
+
+const std::string kBursts = "link.gilbert_elliott={ good_to_bad = 0.2, bad_to_good = 0.3 }";
+
+INSTANTIATE_TEST_SUITE_P(
+    Link, Key,
+    testing::Values(
+        Row{"link.loss", "0.3"}, Row{"link.delay_s", "0.05"}, Row{"link.jitter_s", "0.03", {"link.delay_s=0.05"}},
+        Row{"link.reordering", "0.3", {"link.delay_s=0.05"}}, Row{"link.symmetric", "true", {"link.loss=0.3"}},
+        Row{"link.hold_s", "0.1", {"link.loss=0.3"}},
+        Row{"link.gilbert_elliott", "{ good_to_bad = 0.2, bad_to_good = 0.3 }"},
+        Row{"link.gilbert_elliott.good_to_bad", "0.4", {kBursts}},
+        Row{"link.gilbert_elliott.bad_to_good", "0.6", {kBursts}},
+        Row{"link.gilbert_elliott.loss_good", "0.2", {kBursts}}, Row{"link.gilbert_elliott.loss_bad", "0.8", {kBursts}},
+        Row{"run.seed", "2", {"link.loss=0.3", "agents={ count = 2, position_m = [[0, 0, 1], [5, 0, 2]] }"}}),
+    NameOf);
+
+/// The one override of links, in place of that of agent 1 hearing agent 2 late.
+Row OtherLinks(const std::string& value) {
+  return {"link.override", "[{ " + value + " }]", {"link.override=[{ edges = [[1, 2]], delay_s = 0.05 }]"}};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    LinkOverride, Key,
+    testing::Values(
+        Row{"link.override", "[{ edges = [[1, 2]], delay_s = 0.05 }]"}, OtherLinks("edges = [[2, 1]], delay_s = 0.05"),
+        OtherLinks("edges = [[1, 2], [2, 1]], delay_s = 0.05"), OtherLinks("edges = [[1, 2]], delay_s = 0.06"),
+        OtherLinks("edges = [[1, 2]], delay_s = 0.05, loss = 0.3"),
+        OtherLinks("edges = [[1, 2]], delay_s = 0.05, jitter_s = 0.03"),
+        OtherLinks("edges = [[1, 2]], delay_s = 0.05, reordering = 0.3"),
+        OtherLinks("edges = [[1, 2]], delay_s = 0.05, gilbert_elliott = { good_to_bad = 0.2, bad_to_good = 0.3 }"),
+        Row{"link.override", "[{ edges = [[1, 2]], hold_s = 0.1 }]", {"link.loss=0.3"}},
+        Row{"link.override", "[{ edges = [[2, 1]], symmetric = true }]", {"link.loss=0.3"}}),
+    NameOf);
+
+// --- [sensors] --------------------------------------------------------------------------------------
+
+INSTANTIATE_TEST_SUITE_P(Sensors, Key,
+                         testing::Values(Row{"sensors.own.position_std_m", "0.1"},
+                                         Row{"sensors.own.velocity_std_m_per_s", "0.1"},
+                                         Row{"sensors.own.position_bias_std_m", "0.1"},
+                                         Row{"sensors.own.velocity_bias_std_m_per_s", "0.1"},
+                                         Row{"sensors.own.delay_s", "0.05"}, Row{"sensors.heard.position_std_m", "0.1"},
+                                         Row{"sensors.heard.velocity_std_m_per_s", "0.1", {"law.v_gain=0.5"}},
+                                         Row{"sensors.heard.position_bias_std_m", "0.1"},
+                                         Row{"sensors.heard.velocity_bias_std_m_per_s", "0.1", {"law.v_gain=0.5"}},
+                                         Row{"run.seed",
+                                             "2",
+                                             {"sensors.own.position_std_m=0.1",
+                                              "agents={ count = 2, position_m = [[0, 0, 1], [5, 0, 2]] }"}}),
+                         NameOf);
+
+// --- [graph] ----------------------------------------------------------------------------------------
+
+/// A graph of the kind `was`, in place of which stands that of `is`.
+Row OtherRandomGraph(const std::string& was, const std::string& is) {
+  return {"graph", "{ random = { " + is + " } }", {"agents={ count = 8 }", "graph={ random = { " + was + " } }"}};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    RandomGraphs, Key,
+    testing::Values(OtherRandomGraph("kind = 'erdos_renyi', p = 0.4", "kind = 'small_world', k = 2, p = 0.4"),
+                    OtherRandomGraph("kind = 'erdos_renyi', p = 0.4", "kind = 'geometric', radius_m = 8.0"),
+                    OtherRandomGraph("kind = 'geometric', radius_m = 8.0", "kind = 'geometric', radius_m = 12.0"),
+                    OtherRandomGraph("kind = 'small_world', k = 2, p = 0.1", "kind = 'small_world', k = 4, p = 0.1"),
+                    OtherRandomGraph("kind = 'small_world', k = 2, p = 0.0", "kind = 'small_world', k = 2, p = 0.9")),
+    NameOf);
+
+const std::string kSwitch = "graph.schedule=[{ at_s = 0.4, topology = 'path' }]";
+
+INSTANTIATE_TEST_SUITE_P(
+    Schedule, Key,
+    testing::Values(
+        Row{"graph.schedule", "[{ at_s = 0.4, topology = 'path' }]"},
+        Row{"graph.schedule", "[{ at_s = 0.41, topology = 'path' }]", {kSwitch}},
+        Row{"graph.schedule", "[{ at_s = 0.4, topology = 'star' }]", {kSwitch}},
+        Row{"graph.schedule", "[{ at_s = 0.4, edges = [[1, 2]] }]", {kSwitch}},
+        Row{"graph.schedule", "[{ at_s = 0.4, random = { kind = 'erdos_renyi', p = 0.3 } }]", {kSwitch}},
+        Row{"graph.schedule", "[{ at_s = 0.4, topology = 'path' }, { at_s = 0.6, topology = 'star' }]", {kSwitch}},
+        Row{"graph.repeat_s", "0.8", {kSwitch}}, Row{"graph.range_m", "8.0"},
+        Row{"graph.range_m", "12.0", {"graph.range_m=8.0"}}),
+    NameOf);
+
+// --- [control] --------------------------------------------------------------------------------------
+
+/// Agents of `model` that fly at a velocity of their own.
+std::vector<std::string> DrivenByVelocity(const std::string& model) {
+  return {"agents.model=" + model, "law={ name = 'velocity_consensus' }"};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Control, Key,
+    testing::Values(
+        Row{"control.max_speed_m_per_s", "0.5", DrivenByVelocity("single_integrator")},
+        Row{"control.max_speed_m_per_s", "0.5", DrivenByVelocity("quadrotor")},
+        Row{"control.max_speed_m_per_s", "0.05", {"agents.model=single_integrator"}},
+        Row{"control.velocity_gain", "1.0", DrivenByVelocity("double_integrator")},
+        Row{"control.look_ahead_m", "0.2", DrivenByVelocity("unicycle")},
+        Row{"control.position", "{ kp = 2.0, kd = 2.0 }"},
+        Row{"control.position.kp", "1.0", {"control.position={ kp = 2.0, kd = 2.0 }"}},
+        Row{"control.position.kd", "1.0", {"control.position={ kp = 2.0, kd = 2.0 }"}},
+        Row{"control.attitude.kp", "60.0", {"control.attitude={ kp = 50.0, kd = 10.0 }"}},
+        Row{"control.attitude.kd", "11.0", {"control.attitude={ kp = 50.0, kd = 10.0 }"}},
+        Row{"control.altitude.kp",
+            "2.0",
+            {"control.altitude={ kp = 1.0, kd = 1.0 }", "agents.velocity_m_per_s=[[0,0,1],[0,0,0],[0,0,0],[0,0,0]]"}},
+        Row{"control.altitude.kd",
+            "2.0",
+            {"control.altitude={ kp = 1.0, kd = 1.0 }", "agents.velocity_m_per_s=[[0,0,1],[0,0,0],[0,0,0],[0,0,0]]"}},
+        Row{"control.heading.kp", "2.0", {"control.heading={ kp = 1.0, kd = 1.0 }", "control.heading_rad=0.5"}},
+        Row{"control.heading.kd", "2.0", {"control.heading={ kp = 1.0, kd = 1.0 }", "control.heading_rad=0.5"}}),
+    NameOf);
+
+// --- [[agents.override]] ----------------------------------------------------------------------------
+
+/// An override of agent 2 that says `more`.
+Row Override(const std::string& more, std::vector<std::string> base = {}) {
+  return {"agents.override", "[{ id = 2, " + more + " }]", std::move(base)};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    AgentsOverride, Key,
+    testing::Values(
+        Override("start_s = 0.5"), Override("start_s = 0.6", {"agents.override=[{ id = 2, start_s = 0.5 }]"}),
+        Override("stop_s = 0.5"), Override("stop_s = 0.6", {"agents.override=[{ id = 2, stop_s = 0.5 }]"}),
+        Row{"agents.override", "[{ id = 3, stop_s = 0.5 }]", {"agents.override=[{ id = 2, stop_s = 0.5 }]"}},
+        Override("law = { p_gain = 0.1 }"), Override("law = { axes = 'xyz' }"), Override("law = { leader = 2 }"),
+        Override("law = { name = 'velocity_consensus' }"), Override("control = { max_acceleration_m_per_s2 = 0.3 }"),
+        Override("control = { tilt_limit_rad = 0.01 }"), Override("control = { inversion = 'exact' }"),
+        Override("control = { drag_compensation = false }"), Override("control = { heading_rad = 0.5 }"),
+        Override("control = { attitude = { kp = 50.0, kd = 10.0 } }"),
+        Override("control = { position = { kp = 2.0, kd = 2.0 } }"),
+        Override("control = { max_speed_m_per_s = 0.5 }", DrivenByVelocity("single_integrator")),
+        Override("control = { velocity_gain = 1.0 }", DrivenByVelocity("double_integrator")),
+        Override("control = { look_ahead_m = 0.2 }", DrivenByVelocity("unicycle"))),
+    NameOf);
+
 std::vector<std::string> TopicsOf(const Flown& run, const std::string& file) {
   std::vector<std::string> topics;
   for (const auto& [id, channel] : ReadMcap(run.up.path() / file).channels) topics.push_back(channel.topic);
@@ -197,6 +334,26 @@ TEST(Key, OutputPlotsAreMadeAsAskedFor) {
   const Flown arrays_for_pictures_only(folder, "only", "leaderless", with("output.save_data=false"));
   EXPECT_THAT(Pictures(arrays_for_pictures_only), testing::Contains("paths"));
   EXPECT_FALSE(fs::exists(arrays_for_pictures_only.up.path() / "states.npz"));
+}
+
+TEST(Key, OutputShowPlotWithoutADisplaySaysSoAndDrawsAsWell) {
+  ScratchFolder folder;
+  const Ran run = Shell("env -u DISPLAY -u WAYLAND_DISPLAY '" MASCOT_BINARY_DIR "/orchestrator' up '" +
+                        Config("leaderless") + "' --engine inprocess --duration-s 0.5 --set output.show_plot=true " +
+                        "--out '" + folder.File("run") + "'");
+  EXPECT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_THAT(run.output, testing::HasSubstr("no display: no window is opened\n"));
+  EXPECT_TRUE(fs::exists(folder.File("run/paths.png")));
+}
+
+TEST(Key, OutputFidelityComparesWithIdealIntegratorsOrNot) {
+  ScratchFolder folder;
+  const Flown with(folder, "with", "leaderless", {"run.duration_s=0.1"});
+  EXPECT_TRUE(with.up.Summary()["fidelity"]["rms_m"].is_number());
+  const Flown without(folder, "without", "leaderless", {"run.duration_s=0.1", "output.fidelity=false"});
+  EXPECT_TRUE(without.up.Summary()["fidelity"]["rms_m"].is_null());
+  EXPECT_TRUE(without.up.Summary()["fidelity"]["max_m"].is_null());
+  EXPECT_EQ(without.up.Summary()["fidelity"]["travelled_m"], with.up.Summary()["fidelity"]["travelled_m"]);
 }
 
 TEST(Key, RunNameNamesTheRunFolder) {
