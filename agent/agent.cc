@@ -23,6 +23,16 @@ std::string Component(double value) {
                            Component(w.x()) + ", " + Component(w.y()) + ", " + Component(w.z()) + ")");
 }
 
+/// What `call` of a law returns; what it throws says at which tick.
+template <class Call>
+auto AtTick(std::int64_t tick, Call call) {
+  try {
+    return call();
+  } catch (const std::exception& failure) {
+    throw std::runtime_error("tick " + std::to_string(tick) + ": " + failure.what());
+  }
+}
+
 Eigen::Vector3d Clamped(const Eigen::Vector3d& v, double limit) { return v.cwiseMin(limit).cwiseMax(-limit); }
 
 }  // namespace
@@ -47,10 +57,10 @@ Eigen::Vector3d Agent::AskLaw(std::int64_t tick, const Motion& measured, std::sp
     return Eigen::Vector3d::Zero();
   }
   wanted_ = law_->wanted();
-  Eigen::Vector3d w_W = law_->Want_W(t_s, measured, heard);
+  Eigen::Vector3d w_W = AtTick(tick, [&] { return law_->Want_W(t_s, measured, heard); });
   if (holds_altitude_) w_W.z() = 0;
   if (!w_W.allFinite()) ThrowNotFinite(tick, id_, wanted_, w_W);
-  if (config_.sends_messages) message_ = law_->Message();
+  if (config_.sends_messages) message_ = AtTick(tick, [&] { return law_->Message(); });
   return w_W;
 }
 

@@ -6,7 +6,9 @@
 #include <cstdlib>
 #include <limits>
 #include <mutex>
+#include <sstream>
 #include <thread>
+#include <utility>
 
 #include "agent/python_internal.h"
 
@@ -74,6 +76,23 @@ int LineOf(const py::error_already_set& error, const std::string& file) {
   return line;
 }
 
+/// A class of exceptions, as they are raised in other threads: by class. No Exception, because loops that try something
+/// until it works catch those.
+py::object TimeoutErrorSaying(const TimeLimit& limit) {
+  py::dict space;
+  std::ostringstream text;
+  text << "took longer than " << limit.source << " = " << limit.limit_s << " s";
+  space["text"] = text.str();
+  py::exec(R"(
+class TimeoutError(BaseException):
+    __module__ = "builtins"
+    def __str__(self):
+        return text
+)",
+           space);
+  return space["TimeoutError"];
+}
+
 /// Ends the one piece of Python code that runs, if it runs too long. A thread looks now and then; the code itself pays
 /// for two atomic stores.
 class Watchdog {
@@ -82,11 +101,15 @@ class Watchdog {
     static Watchdog& watchdog = *new Watchdog;  // its thread lives as long as the process
     return watchdog;
   }
-  void Begin(double limit_s) {
+  void Begin(const TimeLimit& limit) {
+    limit_ = limit;
     thread_ = PyThread_get_thread_ident();
-    deadline_ = Now() + static_cast<std::int64_t>(limit_s * 1e9);
+    deadline_ = Now() + LimitNs();
   }
-  void End() { deadline_ = kNever; }
+  void End() {
+    deadline_ = kNever;
+    if (std::exchange(interrupted_, false)) PyThreadState_SetAsyncExc(thread_, nullptr);  // if it is still to come
+  }
 
  private:
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
@@ -106,14 +129,20 @@ class Watchdog {
   void Interrupt() {
     const PyGILState_STATE state = PyGILState_Ensure();  // the code that hangs gives way every few milliseconds
     if (Now() > deadline_) {                             // it has not ended while we waited
-      deadline_ = kNever;
-      PyThreadState_SetAsyncExc(thread_, PyExc_TimeoutError);
+      deadline_ = Now() + LimitNs();
+      interrupted_ = true;
+      PyThreadState_SetAsyncExc(thread_, TimeoutErrorSaying(limit_).ptr());
     }
     PyGILState_Release(state);
   }
 
+  std::int64_t LimitNs() const { return static_cast<std::int64_t>(limit_.limit_s * 1e9); }
+
   std::atomic<std::int64_t> deadline_ = kNever;
-  std::atomic<unsigned long> thread_ = 0;
+  // The rest is used with the interpreter locked.
+  TimeLimit limit_;
+  unsigned long thread_ = 0;
+  bool interrupted_ = false;
 };
 
 int IntOr0(const py::handle& object, const char* attribute) {
@@ -141,7 +170,7 @@ PythonLock::PythonLock() {
 
 PythonLock::~PythonLock() { PyGILState_Release(state_); }
 
-PythonTimeLimit::PythonTimeLimit(double limit_s) { Watchdog::Get().Begin(limit_s); }
+PythonTimeLimit::PythonTimeLimit(const TimeLimit& limit) { Watchdog::Get().Begin(limit); }
 PythonTimeLimit::~PythonTimeLimit() { Watchdog::Get().End(); }
 
 PythonError Explain(py::error_already_set& error, const std::string& file) {

@@ -2,8 +2,15 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace mascot {
+
+/// How long a piece of Python code may take, and what of the experiment says so.
+struct TimeLimit {
+  double limit_s = 0;
+  std::string_view source;
+};
 
 /// While one lives, Python code in this process prints to nowhere: for laws that run a second time, for comparison.
 class MutedPython {

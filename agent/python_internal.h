@@ -27,11 +27,12 @@ class PythonLock {
   PyGILState_STATE state_;
 };
 
-/// Python code that runs longer than this while one lives is ended by a TimeoutError, at the line where it is. (Not a
-/// call that does not come back to Python.) Made with the interpreter locked; one at a time in a thread.
+/// Python code that runs longer than `limit` while one lives is ended by a TimeoutError, at the line where it is; one
+/// that catches it (it is no Exception, so only a bare except does) gets another. (Not a call that does not come back
+/// to Python.) Made with the interpreter locked; one at a time in a process.
 class PythonTimeLimit {
  public:
-  explicit PythonTimeLimit(double limit_s);
+  explicit PythonTimeLimit(const TimeLimit& limit);
   ~PythonTimeLimit();
   PythonTimeLimit(const PythonTimeLimit&) = delete;
   PythonTimeLimit& operator=(const PythonTimeLimit&) = delete;

@@ -204,8 +204,8 @@ TEST(CustomLaw, SendsNothingUnlessItDefinesMessageAndMaySayNothing) {
 
 TEST(CustomLaw, IsRefusedIfItSaysTooMuchOrSomethingElse) {
   const std::string control = "def control(t, me, neighbours): return 0, 0\n";
-  EXPECT_EQ(Failure(control + "def message(me): return [0] * 65\n").substr(0, 62),
-            "the law of agent 1 failed: message returned [0, 0, 0, 0, 0, 0,");
+  EXPECT_EQ(Failure(control + "def message(me): return [0] * 65\n").substr(0, 70),
+            "tick 3: the law of agent 1 failed: message returned [0, 0, 0, 0, 0, 0,");
   EXPECT_THAT(Failure(control + "def message(me): return 'hello'\n"),
               HasSubstr("message returned 'hello', expected None or at most 64 numbers"));
 }
@@ -252,20 +252,21 @@ TEST(CustomLaw, RefusesParametersThatAreNoTableAndMessagesItCannotSend) {
 
 // --- mistakes while it runs -------------------------------------------------------------------------
 
-TEST(CustomLaw, ExceptionsShowTheTracebackAgentAndTime) {
+TEST(CustomLaw, ExceptionsShowTheTracebackAgentTickAndTime) {
   const std::string text =
       Failure("def help(x):\n  return 1 / x\ndef control(t, me, neighbours):\n  return help(0), 1\n");
-  EXPECT_THAT(text, AllOf(HasSubstr("the law of agent 1 failed at t = 0.03 s\nTraceback (most recent call last):\n"),
-                          HasSubstr("File \"test.toml\", line 15, in control\n    return help(0), 1"),
-                          HasSubstr("File \"test.toml\", line 13, in help\n    return 1 / x"),
-                          ::testing::EndsWith("ZeroDivisionError: division by zero")));
+  EXPECT_THAT(text,
+              AllOf(HasSubstr("tick 3: the law of agent 1 failed at t = 0.03 s\nTraceback (most recent call last):\n"),
+                    HasSubstr("File \"test.toml\", line 15, in control\n    return help(0), 1"),
+                    HasSubstr("File \"test.toml\", line 13, in help\n    return 1 / x"),
+                    ::testing::EndsWith("ZeroDivisionError: division by zero")));
 }
 
 TEST(CustomLaw, WhatCameBackIsShownIfItIsWrong) {
   const auto returning = [](const std::string& value) {
     return Failure("import numpy as np\ndef control(t, me, neighbours):\n  return " + value + "\n");
   };
-  const std::string start = "the law of agent 1 failed at t = 0.03 s: control returned ";
+  const std::string start = "tick 3: the law of agent 1 failed at t = 0.03 s: control returned ";
   EXPECT_EQ(returning("None"), start + "None, expected 3 numbers or 2 (has it no return?)");
   EXPECT_EQ(returning("(1, 2, 3, 4)"), start + "(1, 2, 3, 4), expected 3 numbers or 2 (x, y)");
   EXPECT_EQ(returning("5.0"), start + "5.0, expected 3 numbers or 2 (x, y)");
@@ -273,8 +274,66 @@ TEST(CustomLaw, WhatCameBackIsShownIfItIsWrong) {
   EXPECT_EQ(returning("np.zeros((3, 1))"),
             start + "array([[0.],\n       [0.],\n       [0.]]), expected 3 numbers or 2 (x, y)");
   EXPECT_EQ(returning("(1j, 0)"), start + "(1j, 0), expected 3 numbers or 2 (x, y)");
+  EXPECT_EQ(returning("np.array(['1', '2'])"),
+            start + "array(['1', '2'], dtype='<U1'), expected 3 numbers or 2 (x, y)");
+  EXPECT_EQ(returning("np.zeros(2, dtype='datetime64[s]')"),
+            start +
+                "array(['1970-01-01T00:00:00', '1970-01-01T00:00:00'],\n      dtype='datetime64[s]'), expected 3 "
+                "numbers or 2 (x, y)");
   EXPECT_EQ(returning("(float('nan'), 0)"), start + "(nan, 0), expected finite numbers");
   EXPECT_EQ(returning("np.array([0, np.inf, 0])"), start + "array([ 0., inf,  0.]), expected finite numbers");
+}
+
+TEST(CustomLaw, WhatCannotShowItselfIsShownByItsType) {
+  const std::string bad = "class Bad:\n  def __repr__(self): return 1 / 0\n";
+  EXPECT_EQ(
+      Failure(bad + "def control(t, me, neighbours): return Bad()\n"),
+      "tick 3: the law of agent 1 failed at t = 0.03 s: control returned an object of type Bad, expected 3 numbers "
+      "or 2 (x, y)");
+  EXPECT_EQ(Failure(bad + "def control(t, me, neighbours): return 0, 0\ndef message(me): return Bad()\n"),
+            "tick 3: the law of agent 1 failed: message returned an object of type Bad, expected None or at most 64 "
+            "numbers");
+}
+
+TEST(CustomLaw, ThatTriesUntilItWorksIsEndedToo) {
+  for (const std::string except : {"except Exception", "except"}) {
+    Experiment experiment = LoadExperiment(
+        Section::FromText(
+            "[run]\nduration_s = 1.0\nagent_timeout_s = 0.1\n[agents]\ncount = 1\n[law]\nname = 'custom'\n"
+            "python = '''\ncaught = 0\ndef control(t, me, neighbours):\n  global caught\n"
+            "  while caught < 3:\n    try:\n      me.x = 0\n      while True: me.x += 1\n    " +
+                except + ":\n      caught += 1\n  return caught, 0\n'''\n",
+            "test.toml"),
+        "test");
+    Agent agent(experiment, 1);
+    if (except == "except")
+      EXPECT_EQ(agent.Want(0, Motion{}, {}).a_law_W.x(), 3) << "each of them is told again";
+    else
+      EXPECT_THAT([&] { agent.Want(0, Motion{}, {}); }, ThrowsMessage<std::runtime_error>(HasSubstr("TimeoutError: ")));
+  }
+}
+
+TEST(CustomLaw, WhoseTextHangsIsRefused) {
+  EXPECT_EQ(
+      [] {
+        try {
+          LoadExperiment(
+              Section::FromText("[run]\nduration_s = 1.0\nstart_timeout_s = 0.1\n[agents]\ncount = 1\n[law]\nname = "
+                                "'custom'\npython = '''\nwhile True: pass\n'''\n",
+                                "test.toml"),
+              "test");
+        } catch (const ConfigError& error) {
+          return std::string(error.what());
+        }
+        return std::string();
+      }(),
+      "test.toml:9:1: law.python: expected Python, got TimeoutError: took longer than run.start_timeout_s = 0.1 s");
+}
+
+TEST(CustomLaw, OfOneAgentIsRefusedByItsOwnKey) {
+  EXPECT_EQ(Refusal("[[agents.override]]\nid = 2\n[agents.override.law]\nname = 'custom'\npython = '''\n"
+                    "def control(t, me, neighbours):\n  return me.position +\n'''\n"),
+            "test.toml:16:23: agents.override[0].law.python: expected Python, got SyntaxError: invalid syntax");
 }
 
 TEST(CustomLaw, ThatHangsIsEndedAtTheLineWhereItHangs) {
@@ -285,9 +344,10 @@ TEST(CustomLaw, ThatHangsIsEndedAtTheLineWhereItHangs) {
       "test");
   Agent agent(experiment, 1);
   EXPECT_THAT([&] { agent.Want(0, Motion{}, {}); },
-              ThrowsMessage<std::runtime_error>(AllOf(HasSubstr("the law of agent 1 failed at t = 0.0 s\n"),
-                                                      ::testing::ContainsRegex("line (10|11), in control"),
-                                                      ::testing::EndsWith("TimeoutError"))));
+              ThrowsMessage<std::runtime_error>(
+                  AllOf(HasSubstr("tick 0: the law of agent 1 failed at t = 0.0 s\n"),
+                        ::testing::ContainsRegex("line (10|11), in control"),
+                        ::testing::EndsWith("TimeoutError: took longer than 0.8 run.agent_timeout_s = 0.08 s"))));
 }
 
 // --- the published testbed's laws -------------------------------------------------------------------
@@ -309,10 +369,11 @@ TEST(CustomLaw, OfThePublishedTestbedCountsAgentsFromZero) {
 TEST(CustomLaw, OfThePublishedTestbedThatPeeksIsExposed) {
   Experiment experiment = Custom(kPublished, "style = 'mascot'\n");
   Agent two(experiment, 2);  // hears nobody
-  EXPECT_THAT([&] { two.Want(7, Motion{}, {}); },
-              ThrowsMessage<std::runtime_error>(
-                  "the law of agent 2 failed at t = 0.07 s: control_user returned (nan, nan), expected finite numbers; "
-                  "entries of agents that i = 1 does not hear are NaN, and it hears nobody (counted from 0)"));
+  EXPECT_THAT(
+      [&] { two.Want(7, Motion{}, {}); },
+      ThrowsMessage<std::runtime_error>(
+          "tick 7: the law of agent 2 failed at t = 0.07 s: control_user returned (nan, nan), expected finite numbers; "
+          "entries of agents that i = 1 does not hear are NaN, and it hears nobody (counted from 0)"));
 }
 
 // --- where its text stands --------------------------------------------------------------------------

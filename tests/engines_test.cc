@@ -141,7 +141,7 @@ TEST(Messages, ReachThoseWhoHearTheSenderTheSameInBothEngines) {
   EXPECT_EQ(check.exit_code, 0) << check.output;
 }
 
-TEST(CustomLaw, ThatFailsEndsTheRunWithItsTracebackAgentAndTime) {
+TEST(CustomLaw, ThatFailsEndsTheRunWithItsTracebackAgentTickAndTime) {
   ScratchFolder folder;
   WriteFile(folder.File("bad.toml"),
             "[run]\nduration_s = 2.0\n[agents]\ncount = 3\n[law]\nname = 'custom'\npython = '''\n"
@@ -150,7 +150,7 @@ TEST(CustomLaw, ThatFailsEndsTheRunWithItsTracebackAgentAndTime) {
   for (const std::string engine : {"dds", "inprocess"}) {
     Up up(folder, engine, folder.File("bad.toml"), {"--engine", engine});
     EXPECT_EQ(up.Wait(), 1);
-    EXPECT_THAT(up.err(), HasSubstr("the law of agent 2 failed at t = 0.51 s"));
+    EXPECT_THAT(up.err(), HasSubstr("tick 51: the law of agent 2 failed at t = 0.51 s"));
     EXPECT_THAT(up.err(), HasSubstr("File \"bad.toml\", line 10, in control"));
     EXPECT_THAT(up.err(), HasSubstr("IndexError: list index out of range"));
     EXPECT_EQ(up.Summary()["exit"], 1);

@@ -41,11 +41,13 @@ struct Names {
       age_s{"age_s"};
 };
 
-/// What came back, for a message.
-std::string Shown(const py::handle& value) {
+/// What came back, for a message; its type, if its own code cannot say.
+std::string Shown(const py::handle& value) try {
   constexpr std::size_t kLongest = 200;
   const std::string text = py::repr(value).cast<std::string>();
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+} catch (py::error_already_set&) {
+  return "an object of type " + py::type::of(value).attr("__name__").cast<std::string>();
 }
 
 /// The numbers of what a function returned, or nothing if it is not a flat sequence of numbers.
@@ -62,7 +64,9 @@ std::optional<std::vector<double>> Numbers(const py::object& value) {
     }
     return numbers;
   }
-  if (!py::isinstance<py::array>(value) || value.attr("dtype").attr("kind").cast<std::string>() == "c")
+  constexpr std::string_view kReal = "biufO";  // NumPy would also make numbers of text, dates and complex numbers
+  if (!py::isinstance<py::array>(value) ||
+      kReal.find(value.attr("dtype").attr("kind").cast<std::string>()) == std::string_view::npos)
     return std::nullopt;
   const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
   if (!array) {
@@ -93,7 +97,7 @@ class Module {
 class PythonLaw : public Law {
  public:
   PythonLaw(int id, const CustomParams& params, const char* function)
-      : id_(id), time_limit_s_(params.time_limit_s), wanted_(params.wanted), file_(params.file), function_(function) {}
+      : id_(id), time_limit_(params.time_limit), wanted_(params.wanted), file_(params.file), function_(function) {}
   Wanted wanted() const override { return wanted_; }
 
  protected:
@@ -102,8 +106,8 @@ class PythonLaw : public Law {
   /// `call`, which runs the user's code, within the time it may take.
   template <class Call>
   auto Guarded(Call call) const {
-    const PythonTimeLimit limit(time_limit_s_);
     try {
+      const PythonTimeLimit limit(time_limit_);
       return call();
     } catch (py::error_already_set& error) {
       throw std::runtime_error("the law of agent " + std::to_string(id_) + " failed at t = " + ShortestFloat(t_s_) +
@@ -130,7 +134,7 @@ class PythonLaw : public Law {
 
  private:
   int id_;
-  double time_limit_s_;
+  TimeLimit time_limit_;
   Wanted wanted_;
   std::string file_;
   std::string function_;
@@ -324,11 +328,12 @@ CustomParams ReadCustom(LawConfig& config) {
 }
 
 /// Runs the text once, to find mistakes in it, and what it defines. Returns whether it can send messages.
-bool Try(Section& law, const CustomParams& params) {
+bool Try(Section& law, const CustomParams& params, const TimeLimit& time_limit) {
   const MutedPython muted;
   const PythonLock lock;
   const char* key = TextKey(law);
   try {
+    const PythonTimeLimit limit(time_limit);
     const Module module(params);
     const char* function = MainFunction(params.style);
     if (module.Function(function).is_none())
@@ -351,7 +356,7 @@ bool CheckCustom(Experiment& experiment, LawConfig& config) {
   const CustomParams params = ReadCustom(config);
   // What was checked says whether messages are sent; who reads it need not start Python to know.
   if ((experiment.checked && law.Has("messages")) || law.Wrong("")) return law.Boolean("messages", false);
-  const bool can_send = Try(law, params);
+  const bool can_send = Try(law, params, {experiment.run.start_timeout_s, "run.start_timeout_s"});
   const bool sends = law.Boolean("messages", can_send);
   if (sends && !can_send && !law.Wrong("")) law.Fail("messages", "expected a law that defines message(me), got none");
   return sends;
@@ -360,7 +365,7 @@ bool CheckCustom(Experiment& experiment, LawConfig& config) {
 std::unique_ptr<Law> MakeCustom(Experiment& experiment, int id) {
   LawConfig law = experiment.agent(id).law;
   CustomParams params = ReadCustom(law);
-  params.time_limit_s = kTimeShare * experiment.run.agent_timeout_s;
+  params.time_limit = {kTimeShare * experiment.run.agent_timeout_s, "0.8 run.agent_timeout_s"};
   if (params.style == PythonStyle::kMascot)
     return std::make_unique<Published>(params, id, experiment.size(), law.leader);
   return std::make_unique<Standard>(params, experiment.run.seed, id);

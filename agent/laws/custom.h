@@ -3,6 +3,7 @@
 #include <string>
 
 #include "agent/laws.h"
+#include "agent/python.h"
 #include "experiment/experiment.h"
 #include "experiment/value.h"
 
@@ -21,8 +22,8 @@ struct CustomParams {
   int line = 1;      ///< of `file`, at which `text` begins
   PythonStyle style = PythonStyle::kStandard;
   Wanted wanted = Wanted::kAcceleration;
-  Value params;             ///< a table
-  double time_limit_s = 0;  ///< that one call may take
+  Value params;          ///< a table
+  TimeLimit time_limit;  ///< of one call
 };
 
 inline constexpr std::string_view kPythonStyles[] = {"standard", "mascot"};
