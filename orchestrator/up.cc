@@ -1,6 +1,3 @@
-#include <signal.h>
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
@@ -14,6 +11,7 @@
 #include "orchestrator/console.h"
 #include "orchestrator/dds_engine.h"
 #include "orchestrator/inprocess.h"
+#include "orchestrator/interruptions.h"
 #include "orchestrator/plot.h"
 #include "orchestrator/progress.h"
 #include "orchestrator/run_folder.h"
@@ -37,16 +35,13 @@ struct UpArgs {
 
 EngineResult RunInThisProcess(Experiment& experiment, RunWriter& writer, Console& console, StopSignal& stop) {
   Progress progress(experiment, writer, console);
-  int signal = 0;
+  const Interruptions interruptions(stop, console);
   EngineResult result = RunInProcess(experiment, writer, [&](std::int64_t tick) {
-    constexpr std::int64_t kLookEvery = 32;  // ticks
-    if (tick % kLookEvery == 0) {
-      signal = stop.Within(std::chrono::nanoseconds::zero());
-      if (tick > 0) progress.Show(tick - 1);
-    }
-    return signal == 0 || signal == SIGCHLD;
+    constexpr std::int64_t kShowEvery = 32;  // ticks
+    if (tick > 0 && tick % kShowEvery == 0) progress.Show(tick - 1);
+    return interruptions.signal() == 0;
   });
-  result.signal = signal == SIGCHLD ? 0 : signal;
+  result.signal = interruptions.signal();
   return result;
 }
 

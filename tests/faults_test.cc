@@ -124,6 +124,21 @@ TEST(Faults, ASecondCtrlCKillsWhatDoesNotStop) {
   EXPECT_TRUE(NothingIsLeft());
 }
 
+TEST(Faults, ASecondCtrlCKillsALawThatHangsInOneProcess) {
+  ScratchFolder folder;
+  WriteFile(folder.File("hangs.toml"),
+            "[run]\nduration_s = 4.0\n[agents]\ncount = 2\n[law]\nname = 'custom'\npython = '''\nimport time\n"
+            "def control(t, me, neighbours):\n  if t > 2.5:\n    print('asleep')\n    time.sleep(1000)\n"
+            "  return 0, 0\n'''\n");
+  Up up(folder, "run", folder.File("hangs.toml"), {"--engine", "inprocess", "--set", "output.fidelity=false"});
+  ASSERT_TRUE(Until([&] { return up.Said("asleep"); })) << up.err();
+  up.Signal(SIGINT);
+  ASSERT_TRUE(Until([&] { return up.Said("once more to kill"); }));
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130);
+  EXPECT_GT(ReadMcap(up.path() / "run.mcap").messages, 0u) << "what was written before is readable";
+}
+
 TEST(Faults, ACtrlCBeforeTheFirstTickEndsToo) {
   ScratchFolder folder;
   Up up = Endless(folder, {"--set", "agents.override=[{id = 1, host = \"external\"}]"});
