@@ -45,6 +45,7 @@ std::int64_t Link::DelayTicks(std::int64_t tick) const {
 }
 
 void Link::Send(std::int64_t tick, double weight, const Sample& sample) {
+  Collect(tick - 1);  // makes room: in real time a tick may have been missed
   ++count_.sent;
   count_.numbers += sample.message.size();
   if (Loses(tick)) {
@@ -59,8 +60,9 @@ void Link::Send(std::int64_t tick, double weight, const Sample& sample) {
   packet.message.assign(sample.message.begin(), sample.message.end());
 }
 
-const Link::Packet* Link::Receive(std::int64_t tick) {
-  for (std::int64_t t = std::max(looked_ + 1, tick - std::ssize(arrivals_) + 1); t <= tick; ++t) {
+void Link::Collect(std::int64_t tick) {
+  const std::int64_t last = std::min(tick, looked_ + std::ssize(arrivals_));
+  for (std::int64_t t = looked_ + 1; t <= last; ++t) {
     Packet& packet = ArrivalAt(t);
     if (packet.sent > newest_.sent) {
       std::swap(packet, newest_);
@@ -71,6 +73,10 @@ const Link::Packet* Link::Receive(std::int64_t tick) {
     packet.sent = -1;
   }
   looked_ = tick;
+}
+
+const Link::Packet* Link::Receive(std::int64_t tick) {
+  Collect(tick);
   return newest_.sent >= 0 && tick - newest_since_ <= hold_ticks_ ? &newest_ : nullptr;
 }
 

@@ -48,6 +48,7 @@ class Link {
   enum Draw : std::uint64_t { kLoss, kChange, kDelay, kReordering };
 
   bool Loses(std::int64_t tick);
+  void Collect(std::int64_t tick);  // takes in what arrived up to then
   std::int64_t DelayTicks(std::int64_t tick) const;
   std::int64_t Ticks(double time_s) const;
   Packet& ArrivalAt(std::int64_t tick) { return arrivals_[static_cast<std::size_t>(tick) % arrivals_.size()]; }

@@ -150,6 +150,18 @@ TEST(Link, SymmetricLosesTheSameSamplesBothWays) {
   EXPECT_EQ(Pass(there, 200), Pass(back, 200));
 }
 
+TEST(Link, DelaysWhatIsSentAfterATickWasMissedAsLongAsEverythingElse) {
+  Link link(Config(0, 0.03), kRate, 1, 1, 2);
+  std::vector<std::pair<std::int64_t, std::int64_t>> used;
+  const Motion motion;
+  for (const std::int64_t tick : {0, 1, 2, 3, 4, 6, 7, 8, 20, 21, 22, 23}) {  // in real time a tick may be missed
+    link.Send(tick, 1.0, {&motion});
+    if (const Link::Packet* packet = link.Receive(tick)) used.emplace_back(tick, packet->sent);
+  }
+  EXPECT_THAT(used, ElementsAre(std::pair(3, 0), std::pair(4, 1), std::pair(6, 3), std::pair(7, 4), std::pair(23, 20)));
+  EXPECT_EQ(link.count().lost, 0u);
+}
+
 TEST(Link, CarriesWeightAndMessageOfTheTickAtWhichTheSampleWasSent) {
   Link link(Config(0, 0.01), kRate, 1, 1, 2);
   const Motion motion;
