@@ -22,11 +22,11 @@ Link::Link(const LinkConfig& config, int rate_hz, std::uint64_t seed, int hearer
       rate_hz_(rate_hz),
       hold_ticks_(std::llround(std::floor(config.hold_s * rate_hz + kRounding))),
       dice_(DiceOf(config, seed, hearer, heard)),
-      arrivals_(static_cast<std::size_t>(Ticks(config.delay_s + config.jitter_s)) + 1) {}
+      arrivals_(static_cast<std::size_t>(Ticks(config.delay_s + config.jitter_s, rate_hz)) + 1) {}
 
 // The first tick at or after a time; a time that is a whole number of ticks but for rounding is that number.
-std::int64_t Link::Ticks(double time_s) const {
-  return std::max<std::int64_t>(0, std::llround(std::ceil(time_s * rate_hz_ - kRounding)));
+std::int64_t Link::Ticks(double time_s, int rate_hz) {
+  return std::max<std::int64_t>(0, std::llround(std::ceil(time_s * rate_hz - kRounding)));
 }
 
 bool Link::Loses(std::int64_t tick) {
@@ -40,8 +40,8 @@ bool Link::Loses(std::int64_t tick) {
 
 std::int64_t Link::DelayTicks(std::int64_t tick) const {
   if (config_.reordering > 0 && dice_.Unit(tick, kReordering) < config_.reordering) return 0;
-  if (config_.jitter_s == 0) return Ticks(config_.delay_s);
-  return Ticks(config_.delay_s + config_.jitter_s * (2 * dice_.Unit(tick, kDelay) - 1));
+  if (config_.jitter_s == 0) return Ticks(config_.delay_s, rate_hz_);
+  return Ticks(config_.delay_s + config_.jitter_s * (2 * dice_.Unit(tick, kDelay) - 1), rate_hz_);
 }
 
 void Link::Send(std::int64_t tick, double weight, const Sample& sample) {

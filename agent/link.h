@@ -43,6 +43,8 @@ class Link {
   /// none.
   const Packet* Receive(std::int64_t tick);
   const EdgeCount& count() const { return count_; }
+  /// After how many ticks a sample arrives that is `time_s` on its way.
+  static std::int64_t Ticks(double time_s, int rate_hz);
 
  private:
   enum Draw : std::uint64_t { kLoss, kChange, kDelay, kReordering };
@@ -50,7 +52,6 @@ class Link {
   bool Loses(std::int64_t tick);
   void Collect(std::int64_t tick);  // takes in what arrived up to then
   std::int64_t DelayTicks(std::int64_t tick) const;
-  std::int64_t Ticks(double time_s) const;
   Packet& ArrivalAt(std::int64_t tick) { return arrivals_[static_cast<std::size_t>(tick) % arrivals_.size()]; }
 
   LinkConfig config_;

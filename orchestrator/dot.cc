@@ -4,11 +4,12 @@
 
 namespace mascot {
 
-std::string ToDot(const Graph& graph, int leader) {
+std::string ToDot(const Graph& graph, int leader, const std::string& caption) {
   const bool directed = !graph.IsSymmetric();
   std::string dot = directed
                         ? "// An arrow j -> i: agent i hears agent j. Its label: the weight, unless 1.\ndigraph {\n"
                         : "// A line: both hear each other. Its label: the weight, unless 1.\ngraph {\n";
+  if (!caption.empty()) dot += fmt::format("  label=\"{}\"\n", caption);
   dot += "  node [shape=circle]\n";
   for (int id = 1; id <= graph.size(); ++id)
     dot += fmt::format("  {}{}\n", id, id == leader ? " [shape=doublecircle]" : "");

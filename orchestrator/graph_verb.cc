@@ -31,7 +31,22 @@ Json Rows(const Eigen::MatrixXd& matrix) {
   return rows;
 }
 
-Json ToJson(const Graph& graph, const GraphFacts& facts) {
+/// Edges as [[graph.schedule]] has them: [i, j, weight], i hears j.
+Json Phases(const Schedule& schedule) {
+  Json phases = Json::array();
+  for (const Schedule::Phase& phase : schedule.phases()) {
+    Json edges = Json::array();
+    for (int id = 1; id <= phase.graph.size(); ++id)
+      for (const Graph::Neighbour& heard : phase.graph.HeardBy(id)) edges.push_back({id, heard.id, heard.weight});
+    phases.push_back({{"at_s", phase.at_s}, {"edges", edges}});
+  }
+  return phases;
+}
+
+Json OrNull(double value) { return value > 0 ? Json(value) : Json(nullptr); }
+
+Json ToJson(const Experiment& experiment, const GraphFacts& facts) {
+  const Graph& graph = experiment.graph;
   Json json = {{"agents", graph.size()}, {"edges", facts.edges}, {"symmetric", facts.symmetric}};
   if (graph.size() <= kLargestSpectrum) {
     json["adjacency"] = Rows(Adjacency(graph));
@@ -44,6 +59,9 @@ Json ToJson(const Graph& graph, const GraphFacts& facts) {
   json["roots"] = facts.roots;
   json["tree_root"] = facts.tree_root;
   json["spanning_tree"] = facts.tree;
+  json["schedule"] = Phases(experiment.schedule);
+  json["repeat_s"] = OrNull(experiment.schedule.repeat_s());
+  json["range_m"] = OrNull(experiment.schedule.range_m());
   return json;
 }
 
@@ -79,9 +97,25 @@ void PrintTree(const GraphFacts& facts) {
   std::cout << "\n";
 }
 
-void Print(const Graph& graph, const GraphFacts& facts) {
+/// What keeps edges from working all the time; empty: nothing.
+std::string WhenEdgesWork(const Schedule& schedule) {
+  std::string text;
+  if (schedule.phases().size() > 1) {
+    text = fmt::format("union of {} graphs that take turns, from", schedule.phases().size());
+    for (const Schedule::Phase& phase : schedule.phases())
+      text += fmt::format("{} {}", &phase == schedule.phases().data() ? "" : ",", phase.at_s);
+    text += " s";
+    if (schedule.repeat_s() > 0) text += fmt::format(", again every {} s", schedule.repeat_s());
+  }
+  if (schedule.range_m() > 0)
+    text += fmt::format("{}edges work within {} m", text.empty() ? "" : "; ", schedule.range_m());
+  return text;
+}
+
+void Print(const Graph& graph, const GraphFacts& facts, const Schedule& schedule) {
   std::cout << fmt::format("{} agents, {} edges, {}\n", graph.size(), facts.edges,
                            facts.symmetric ? "symmetric" : "directed");
+  if (const std::string when = WhenEdgesWork(schedule); !when.empty()) std::cout << when << "\n";
   if (graph.size() <= kLargestPrinted) {
     PrintMatrix("adjacency (row i: whom agent i hears)", Adjacency(graph));
     PrintMatrix("laplacian", graph.Laplacian());
@@ -97,14 +131,14 @@ void Print(const Graph& graph, const GraphFacts& facts) {
 int ShowGraph(const ConfigArgs& args, bool json, bool dot) {
   const Experiment experiment = args.Load();
   if (dot) {
-    std::cout << ToDot(experiment.graph, experiment.law.leader);
+    std::cout << ToDot(experiment.graph, experiment.law.leader, WhenEdgesWork(experiment.schedule));
     return 0;
   }
   const GraphFacts facts = FactsOf(experiment.graph, experiment.law.leader);
   if (json) {
-    std::cout << ToJson(experiment.graph, facts).dump(2) << "\n";
+    std::cout << ToJson(experiment, facts).dump(2) << "\n";
   } else {
-    Print(experiment.graph, facts);
+    Print(experiment.graph, facts, experiment.schedule);
   }
   return 0;
 }

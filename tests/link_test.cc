@@ -284,6 +284,19 @@ TEST(OwnSensor, KnowsPositionAndVelocityLateButAttitudeAtOnce) {
   }
 }
 
+TEST(OwnSensor, IsLateByWholeTicksRoundedUpAsLinksAre) {
+  for (const auto& [delay_s, ticks] : {std::pair(0.004, 1), {0.01, 1}, {0.011, 2}, {0.07, 7}}) {
+    SensorConfig config;
+    config.own_delay_s = delay_s;
+    OwnSensor sensor(config, kRate, 1, 1);
+    for (std::int64_t tick = 0; tick < 20; ++tick) {
+      Motion self;
+      self.p_WB.x() = static_cast<double>(tick);
+      EXPECT_EQ(sensor.Measure(tick, self).p_WB.x(), std::max<double>(0, static_cast<double>(tick) - ticks)) << delay_s;
+    }
+  }
+}
+
 TEST(OwnSensor, ErrorsDependOnSeedAgentAndTickAlone) {
   SensorConfig config;
   config.own.position_std_m = 0.1;

@@ -145,6 +145,22 @@ TEST_F(Verbs, GraphTellsProgramsTheSame) {
   EXPECT_EQ(json["tree_root"], 1);
 }
 
+TEST_F(Verbs, GraphThatChangesSaysWhenItsEdgesWork) {
+  std::ofstream(path()) << "[run]\nduration_s = 1.0\n[agents]\ncount = 3\n"
+                           "[graph]\nedges = [[1, 2, 0.5]]\nrepeat_s = 1.0\nrange_m = 15.0\n"
+                           "[[graph.schedule]]\nat_s = 0.5\nedges = [[2, 3]]\n";
+  const std::string when = "union of 2 graphs that take turns, from 0, 0.5 s, again every 1 s; edges work within 15 m";
+  EXPECT_THAT(Printed(SetUpGraph, {path()}), HasSubstr("3 agents, 2 edges, directed\n" + when + "\nadjacency"));
+  EXPECT_THAT(Printed(SetUpGraph, {path(), "--dot"}), HasSubstr("\n  label=\"" + when + "\"\n"));
+  const Json json = Json::parse(Printed(SetUpGraph, {path(), "--json"}));
+  EXPECT_EQ(json["schedule"], Json::parse(R"([{"at_s": 0.0, "edges": [[1, 2, 0.5]]},
+                                              {"at_s": 0.5, "edges": [[2, 3, 1.0]]}])"));
+  EXPECT_EQ(json["repeat_s"], 1.0);
+  EXPECT_EQ(json["range_m"], 15.0);
+  EXPECT_THAT(Printed(SetUpGraph, {path(), "--set", "graph={ range_m = 2.5 }"}),
+              HasSubstr("symmetric\nedges work within 2.5 m\n"));
+}
+
 TEST_F(Verbs, GraphDrawsItselfForGraphviz) {
   EXPECT_THAT(Printed(SetUpGraph, {path(), "--dot", "--set", "law.leader=2"}),
               AllOf(HasSubstr("\ngraph {\n"), HasSubstr("\n  2 [shape=doublecircle]\n"),
