@@ -51,13 +51,13 @@ class Hosts : public testing::Test {
     ASSERT_EQ(hosts_.trouble(), "");
   }
 
-  /// Runs with agent 2 on the other host; `more` adds to the experiment.
-  void FlyTogether(const std::vector<std::string>& more, int external_id) {
+  /// Runs `config` with one agent on the other host, which has no copy of it; `more` adds to the experiment.
+  void FlyTogether(const std::string& config, const std::vector<std::string>& more, int external_id) {
     const std::string bin = MASCOT_BINARY_DIR;
     std::vector<std::string> up_words{
         bin + "/orchestrator",
         "up",
-        Config("leaderless"),
+        config,
         "--out",
         folder_.File("run"),
         "--set",
@@ -77,7 +77,7 @@ class Hosts : public testing::Test {
     EXPECT_EQ(up.Wait(), 0) << up.err() << agent.err();
     EXPECT_EQ(agent.Wait(), 0) << agent.err();
 
-    Up inprocess(folder_, "inprocess", Config("leaderless"), [&] {
+    Up inprocess(folder_, "inprocess", config, [&] {
       auto words = more;
       words.insert(words.end(),
                    {"--engine", "inprocess", "--set",
@@ -92,10 +92,23 @@ class Hosts : public testing::Test {
   TwoHosts hosts_;
 };
 
-TEST_F(Hosts, AnAgentOnAnotherHostJoinsAndTheRecordingIsTheSame) { FlyTogether({"--duration-s", "1"}, 2); }
+TEST_F(Hosts, AnAgentOnAnotherHostJoinsAndTheRecordingIsTheSame) {
+  FlyTogether(Config("leaderless"), {"--duration-s", "1"}, 2);
+}
+
+TEST_F(Hosts, ALawInPythonTravelsToAnotherHostAsTextOrFromAFile) {
+  FlyTogether(Config("custom"), {"--duration-s", "1"}, 3);
+  WriteFile(folder_.File("law.py"),
+            "def control(t, me, neighbours):\n  return sum((0.1 * (j.position - me.position) for j in neighbours))\n"
+            "def message(me):\n  return me.position\n");
+  WriteFile(folder_.File("from_file.toml"),
+            "[run]\nduration_s = 1.0\n[agents]\ncount = 3\n[law]\nname = \"custom\"\nfile = \"law.py\"\n");
+  FlyTogether(folder_.File("from_file.toml"), {"--force"}, 2);
+}
 
 TEST_F(Hosts, AnAgentOnAnotherHostJoinsThroughTheDiscoveryServer) {
   FlyTogether(
+      Config("leaderless"),
       {"--duration-s", "0.2", "--set", "agents.count=20", "--set", "agents.random={}", "--set", "graph.topology=ring"},
       7);
 }
