@@ -156,6 +156,13 @@ void TellLines(const std::string& text, const std::string& file) {
   py::module_::import("linecache").attr("cache")[py::str(file)] = py::make_tuple(text.size(), py::none(), lines, file);
 }
 
+/// Its signature, unless it is one of those that cannot say.
+py::object SignatureOf(const py::object& function) try {
+  return py::module_::import("inspect").attr("signature")(function);
+} catch (py::error_already_set&) {
+  return py::none();
+}
+
 }  // namespace
 
 MutedPython::MutedPython() { ++muted; }
@@ -204,6 +211,21 @@ py::dict RunPython(const std::string& text, const std::string& file, int line) {
   } catch (py::error_already_set& error) {
     throw Explain(error, file);
   }
+}
+
+std::string OtherSignature(const py::object& function, std::size_t count) {
+  const py::object signature = SignatureOf(function);
+  if (signature.is_none()) return "";
+  try {
+    signature.attr("bind")(*py::tuple(py::make_tuple(py::none()) * py::int_(count)));
+    return "";
+  } catch (py::error_already_set&) {
+    return py::str(signature).cast<std::string>();
+  }
+}
+
+int LineOf(const py::object& function) {
+  return IntOr0(py::getattr(function, "__code__", py::none()), "co_firstlineno");
 }
 
 py::object ToPython(const Value& value) {

@@ -44,5 +44,10 @@ py::dict RunPython(const std::string& text, const std::string& file, int line);
 /// What Python says of an exception that left the user's code, which goes by `file`.
 PythonError Explain(py::error_already_set& error, const std::string& file);
 py::object ToPython(const Value& value);
+/// How a function wants to be called, "(t, me)", if that is with another number of arguments than `count`; else
+/// nothing.
+std::string OtherSignature(const py::object& function, std::size_t count);
+/// The line at which a function is defined; 0: not known.
+int LineOf(const py::object& function);
 
 }  // namespace mascot

@@ -104,6 +104,8 @@ Section::FileText Section::TextOfFile(std::string_view key, std::string_view tex
   if (!table_->Wrong(key)) {
     try {
       text = ReadRegularFile((std::filesystem::path(PlaceOfText(key).folder) / path).string());
+      constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // put there by some editors
+      if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
     } catch (const ConfigError& error) {
       Fail(key, std::string("expected a readable file, got ") + error.what());
     }

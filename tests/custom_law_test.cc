@@ -232,6 +232,28 @@ TEST(CustomLaw, MustDefineControl) {
             "test.toml:12:1: law.python: expected a function control_user, got none");
 }
 
+TEST(CustomLaw, MustTakeTheArgumentsThatItWillBeGiven) {
+  const auto refusal = [](const std::string& python, const std::string& lines = "") {
+    return Refusal("name = 'custom'\n" + lines + "python = '''\n\n" + python + "\n'''\n");
+  };
+  EXPECT_EQ(refusal("def control(t, me): return 0, 0"),
+            "test.toml:13:1: law.python: expected control(t, me, neighbours), got control(t, me)");
+  EXPECT_EQ(refusal("control = lambda: 0"),
+            "test.toml:13:1: law.python: expected control(t, me, neighbours), got control()");
+  EXPECT_EQ(refusal("def control(t, me, neighbours, *, gain): return 0, 0"),
+            "test.toml:13:1: law.python: expected control(t, me, neighbours), got control(t, me, neighbours, *, gain)");
+  const std::string control = "control = lambda t, me, neighbours: (0, 0)\n";
+  EXPECT_EQ(refusal(control + "def start(me): pass"),
+            "test.toml:14:1: law.python: expected start(me, params), got start(me)");
+  EXPECT_EQ(refusal(control + "def message(): return None"),
+            "test.toml:14:1: law.python: expected message(me), got message()");
+  EXPECT_EQ(refusal("def control_user(pos_x, vel_x, i): return 0, 0", "style = 'mascot'\n"),
+            "test.toml:14:1: law.python: expected control_user(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, "
+            "leader), got control_user(pos_x, vel_x, i)");
+  EXPECT_EQ(refusal("def control(*everything): return 0, 0"), "");
+  EXPECT_EQ(refusal("def control(t, me, neighbours, gain=1): return 0, 0"), "");
+}
+
 TEST(CustomLaw, ComesFromOnePlace) {
   EXPECT_EQ(Refusal("name = 'custom'\n"), "folder/test.toml:9:1: law: expected one of python, file, got none");
   EXPECT_EQ(Refusal("name = 'custom'\npython = 'x'\nfile = 'law.py'\n"),
@@ -376,6 +398,11 @@ TEST(CustomLaw, OfThePublishedTestbedThatPeeksIsExposed) {
           "entries of agents that i = 1 does not hear are NaN, and it hears nobody (counted from 0)"));
 }
 
+TEST(CustomLaw, OfThePublishedTestbedIsToldOfPeekingOnlyIfItsNumbersAreMissing) {
+  EXPECT_EQ(Failure("def control_user(px, vx, ax, py, vy, ay, i, n, leader): return 1e400, 0\n", "style = 'mascot'\n"),
+            "tick 3: the law of agent 1 failed at t = 0.03 s: control_user returned (inf, 0), expected finite numbers");
+}
+
 // --- where its text stands --------------------------------------------------------------------------
 
 TEST(CustomLaw, InAFileIsInlinedAndGoesByTheFilesName) {
@@ -393,6 +420,15 @@ TEST(CustomLaw, InAFileIsInlinedAndGoesByTheFilesName) {
   EXPECT_THAT([&] { Agent(again, 1).Want(0, Motion{}, others.samples()); },
               ThrowsMessage<std::runtime_error>(AllOf(HasSubstr("File \"law.py\", line 3, in control"),
                                                       HasSubstr("NameError: name 'undefined' is not defined"))));
+}
+
+TEST(CustomLaw, InAFileMayBeginWithAByteOrderMark) {
+  ScratchFolder folder;
+  WriteFile(folder.File("law.py"),
+            "\xEF\xBB\xBF"
+            "def control(t, me, neighbours):\r\n  return 0, 0\r\n");
+  WriteFile(folder.File("run.toml"), Three("name = 'custom'\nfile = 'law.py'\n"));
+  EXPECT_NO_THROW(LoadExperiment(Section::FromFile(folder.File("run.toml")), "run"));
 }
 
 TEST(CustomLaw, PrintsToStandardErrorInWholeLinesAndNotIfMuted) {

@@ -123,7 +123,7 @@ class PythonLaw : public Law {
       Refuse(value,
              value.is_none() ? ", expected 3 numbers or 2 (has it no return?)" : ", expected 3 numbers or 2 (x, y)");
     const Eigen::Vector3d vector((*numbers)[0], (*numbers)[1], numbers->size() == 3 ? (*numbers)[2] : 0);
-    if (!vector.allFinite()) Refuse(value, ", expected finite numbers" + hint);
+    if (!vector.allFinite()) Refuse(value, ", expected finite numbers" + (vector.hasNaN() ? hint : ""));
     return vector;
   }
 
@@ -288,7 +288,23 @@ class Published final : public PythonLaw {
   std::optional<py::object> control_user_;
 };
 
-const char* MainFunction(PythonStyle style) { return style == PythonStyle::kMascot ? "control_user" : "control"; }
+/// A function that the text may define.
+struct Callback {
+  const char* name;
+  const char* arguments;
+  std::size_t count;
+  bool required;
+};
+
+constexpr Callback kStandardCallbacks[] = {
+    {"control", "(t, me, neighbours)", 3, true}, {"start", "(me, params)", 2, false}, {"message", "(me)", 1, false}};
+constexpr Callback kPublishedCallbacks[] = {
+    {"control_user", "(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, leader)", 9, true}};
+
+std::span<const Callback> CallbacksOf(PythonStyle style) {
+  if (style == PythonStyle::kMascot) return kPublishedCallbacks;
+  return kStandardCallbacks;
+}
 
 const char* TextKey(const Section& law) { return law.Has("file") ? "file" : "python"; }
 
@@ -327,6 +343,22 @@ CustomParams ReadCustom(LawConfig& config) {
   return params;
 }
 
+/// Notes a function that is missing, or that cannot be called as it will be.
+void CheckCallback(Section& law, const CustomParams& params, const Module& module, const Callback& callback) {
+  const py::object function = module.Function(callback.name);
+  const auto fail = [&](int line, const std::string& message) {
+    law.FailInText(TextKey(law), params.file + ":" + std::to_string(line) + ":1", message);
+  };
+  if (function.is_none()) {
+    if (callback.required) fail(params.line, std::string("expected a function ") + callback.name + ", got none");
+    return;
+  }
+  const std::string other = OtherSignature(function, callback.count);
+  if (!other.empty())
+    fail(std::max(LineOf(function), 1),
+         std::string("expected ") + callback.name + callback.arguments + ", got " + callback.name + other);
+}
+
 /// Runs the text once, to find mistakes in it, and what it defines. Returns whether it can send messages.
 bool Try(Section& law, const CustomParams& params, const TimeLimit& time_limit) {
   const MutedPython muted;
@@ -335,10 +367,7 @@ bool Try(Section& law, const CustomParams& params, const TimeLimit& time_limit) 
   try {
     const PythonTimeLimit limit(time_limit);
     const Module module(params);
-    const char* function = MainFunction(params.style);
-    if (module.Function(function).is_none())
-      law.FailInText(key, params.file + ":" + std::to_string(params.line) + ":1",
-                     std::string("expected a function ") + function + ", got none");
+    for (const Callback& callback : CallbacksOf(params.style)) CheckCallback(law, params, module, callback);
     return params.style == PythonStyle::kStandard && !module.Function("message").is_none();
   } catch (const PythonError& error) {
     law.FailInText(key,
