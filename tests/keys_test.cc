@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <map>
+
 #include "orchestrator/mcap.h"
 #include "tests/orchestrator.h"
 
@@ -354,6 +356,46 @@ TEST(Key, OutputFidelityComparesWithIdealIntegratorsOrNot) {
   EXPECT_TRUE(without.up.Summary()["fidelity"]["rms_m"].is_null());
   EXPECT_TRUE(without.up.Summary()["fidelity"]["max_m"].is_null());
   EXPECT_EQ(without.up.Summary()["fidelity"]["travelled_m"], with.up.Summary()["fidelity"]["travelled_m"]);
+}
+
+/// What the summary counts on each edge: {sent, lost, late, bytes} by [hearer, heard].
+std::map<std::pair<int, int>, std::vector<std::int64_t>> EdgesOf(const Flown& run) {
+  std::map<std::pair<int, int>, std::vector<std::int64_t>> edges;
+  const nlohmann::json summary = run.up.Summary();
+  for (const auto& edge : summary["links"]["edges"])
+    edges[{edge["hearer"], edge["heard"]}] = {edge["sent"], edge["lost"], edge["late"], edge["bytes"]};
+  return edges;
+}
+
+const std::vector<std::string> kLossyTriangle = {
+    "run.duration_s=2.0", "agents={ count = 3, position_m = [[0, 0, 1], [9, 0, 2], [0, 9, 3]] }",
+    "graph={ edges = [[1, 2], [2, 3], [3, 1]] }", "link={ loss = 0.3, delay_s = 0.05, jitter_s = 0.05 }"};
+
+TEST(LinkCounts, OfAnEdgeDoNotDependOnWhoElseThereIs) {
+  ScratchFolder folder;
+  const Flown three(folder, "three", "leaderless", kLossyTriangle);
+  auto sets = kLossyTriangle;
+  sets[1] = "agents={ count = 4, position_m = [[0, 0, 1], [9, 0, 2], [0, 9, 3], [9, 9, 4]] }";
+  sets[2] = "graph={ edges = [[4, 1], [1, 4], [1, 2], [2, 3], [3, 1]] }";
+  const Flown four(folder, "four", "leaderless", sets);
+  const auto before = EdgesOf(three), after = EdgesOf(four);
+  EXPECT_EQ(before.size(), 3u);
+  EXPECT_EQ(after.size(), 5u);
+  for (const auto& [edge, counts] : before) EXPECT_EQ(after.at(edge), counts) << edge.first << " hears " << edge.second;
+}
+
+TEST(LinkCounts, OfAllEdgesAddUp) {
+  ScratchFolder folder;
+  const Flown run(folder, "run", "leaderless", kLossyTriangle);
+  const auto links = run.up.Summary()["links"];
+  std::vector<std::int64_t> sums(4, 0);
+  for (const auto& [edge, counts] : EdgesOf(run)) {
+    EXPECT_EQ(counts[0], 201) << "one a tick, from 0 to 200";
+    for (std::size_t k = 0; k < 4; ++k) sums[k] += counts[k];
+  }
+  EXPECT_EQ(sums, (std::vector<std::int64_t>{links["sent"], links["lost"], links["late"], links["bytes"]}));
+  EXPECT_GT(sums[1], 0);
+  EXPECT_GT(sums[2], 0);
 }
 
 TEST(Key, RunNameNamesTheRunFolder) {
