@@ -51,13 +51,14 @@ std::span<const Key> ScheduleKeys() {
 Schedule ReadSchedule(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint64_t seed) {
   std::vector<Schedule::Phase> phases;
   phases.push_back({0, ReadGraph(graph, p_W, seed)});
-  std::uint64_t stage = 0;
+  constexpr std::uint64_t kNextStage = std::uint64_t{1} << 40;  // runs are seeded 1, 2, 3...: none has another's graphs
+  std::uint64_t stage_seed = seed;
   for (Section& section : graph.Children("schedule")) {
     const double at_s = section.Number("at_s");
     if (!section.Wrong("at_s") && at_s <= phases.back().at_s)
       section.Fail("at_s",
                    "expected a time after " + ShortestFloat(phases.back().at_s) + ", got " + ShortestFloat(at_s));
-    phases.push_back({at_s, ReadGraph(section, p_W, seed + ++stage)});
+    phases.push_back({at_s, ReadGraph(section, p_W, stage_seed += kNextStage)});
     section.Done();
   }
   double repeat_s = 0;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "experiment/schedule.h"
+
 namespace mascot {
 namespace {
 
@@ -224,6 +226,29 @@ TEST(ReadGraph, ForgivesRoundingInRowSums) {
 TEST(ReadGraph, SeedsRandomGraphs) {
   const std::string text = "random = { kind = 'erdos_renyi', p = 0.5 }";
   EXPECT_EQ(Read(text, 9, 3).Laplacian(), MakeErdosRenyi(9, 0.5, 3).Laplacian());
+}
+
+TEST(ReadSchedule, SeedsEveryRandomGraphAnew) {
+  const auto phases = [](std::uint64_t seed) {
+    const std::string random = "random = { kind = 'erdos_renyi', p = 0.5 }\n";
+    std::string text = "[graph]\n" + random;
+    for (const char* at_s : {"1.0", "2.0"}) text += "[[graph.schedule]]\nat_s = " + std::string(at_s) + "\n" + random;
+    Section graph = Section::FromText(text, "g.toml").Child("graph");
+    graph.Use(ScheduleKeys());
+    const std::vector<Eigen::Vector3d> p_W(20, Eigen::Vector3d::Zero());
+    std::vector<Eigen::MatrixXd> laplacians;
+    const Schedule schedule = ReadSchedule(graph, p_W, seed);
+    for (const Schedule::Phase& phase : schedule.phases()) laplacians.push_back(phase.graph.Laplacian());
+    return laplacians;
+  };
+  std::vector<Eigen::MatrixXd> all;
+  for (const std::uint64_t seed : {1, 2, 3})
+    for (const Eigen::MatrixXd& laplacian : phases(seed)) {
+      EXPECT_THAT(all, ::testing::Not(::testing::Contains(laplacian))) << "seed " << seed;
+      all.push_back(laplacian);
+    }
+  EXPECT_THAT(all, SizeIs(9));
+  EXPECT_EQ(phases(2), phases(2));
 }
 
 TEST(ReadGraph, NamesTheOffendingRow) {
