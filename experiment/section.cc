@@ -199,7 +199,7 @@ std::vector<Section> Section::Children(std::string_view key) {
   return children;
 }
 
-void Section::InheritFrom(const Section& base) { table_->base = base.table_; }
+void Section::InheritFrom(const Section& base) { table_->base = base.table_.get(); }
 
 Value Section::Free(std::string_view key) {
   const toml::node* node = table_->Find(key);

@@ -52,7 +52,7 @@ struct Section::Table {
   bool inherited = false;             ///< stands in the base of the table around it, whose reader complains
   bool broken = false;                ///< something else stands where the table should: no complaints about its keys
   Document* document = nullptr;
-  std::shared_ptr<Table> base;               ///< where keys are looked for that this table lacks
+  const Table* base = nullptr;               ///< where keys are looked for that this table lacks; of the same document
   std::set<std::string, std::less<>> known;  ///< keys that somebody asked for
   std::set<std::string, std::less<>> wrong;  ///< keys with a mistake noted
   std::vector<Entry> entries;                ///< in reading order
