@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "experiment/experiment.h"
@@ -29,6 +30,7 @@ struct Measured {
     double max_m = 0;
   };
   std::optional<Fidelity> fidelity;  ///< absent without output.fidelity
+  std::string fidelity_failure;      ///< what the law said that failed on ideal bodies, and so ended the comparison
   /// Of the formation law: rms over edges of |(p_i - p_j) - (d_i - d_j)|, over law.axes.
   struct Formation {
     std::vector<Eigen::Vector3d> offsets_m;  ///< d_i, by id - 1
@@ -53,6 +55,7 @@ class Metrics {
   void MeasureControl(std::span<const Command> commands);
   void MeasureSeparation(std::span<const Motion> motions);
   void MeasureFidelity(std::span<const Motion> motions);
+  void StepIdeal();
   void MeasurePath(std::span<const Motion> motions);
   void MeasureFormation(std::span<const Motion> motions);
   /// The part of a position that agents agree on: of a formation, without their places in it.
@@ -60,6 +63,7 @@ class Metrics {
 
   const Experiment& experiment_;
   std::optional<IdealTeam> ideal_;
+  std::string ideal_failure_;
   std::int64_t rows_ = 0;
   Eigen::Vector3d mean_W_ = Eigen::Vector3d::Zero();
   double disagreement_m_ = 0;

@@ -56,14 +56,21 @@ Json Links(const std::vector<EdgeTraffic>& traffic) {
   Json edges = Json::array();
   for (const EdgeTraffic& edge : traffic) {
     const EdgeCount& count = edge.count;
-    edges.push_back({{"hearer", edge.hearer}, {"heard", edge.heard}, {"sent", count.sent}, {"lost", count.lost},
-                     {"late", count.late}, {"bytes", edge.bytes}});
+    edges.push_back({{"hearer", edge.hearer},
+                     {"heard", edge.heard},
+                     {"sent", count.sent},
+                     {"lost", count.lost},
+                     {"late", count.late},
+                     {"bytes", edge.bytes}});
     all.count.sent += count.sent;
     all.count.lost += count.lost;
     all.count.late += count.late;
     all.bytes += edge.bytes;
   }
-  return {{"sent", all.count.sent}, {"lost", all.count.lost}, {"late", all.count.late}, {"bytes", all.bytes},
+  return {{"sent", all.count.sent},
+          {"lost", all.count.lost},
+          {"late", all.count.late},
+          {"bytes", all.bytes},
           {"edges", edges}};
 }
 
@@ -77,7 +84,8 @@ Json Fidelity(const Measured& measured) {
   const auto& fidelity = measured.fidelity;
   return {{"rms_m", fidelity ? Json(fidelity->rms_m) : Json(nullptr)},
           {"max_m", fidelity ? Json(fidelity->max_m) : Json(nullptr)},
-          {"travelled_m", measured.travelled_m}};
+          {"travelled_m", measured.travelled_m},
+          {"failure", measured.fidelity_failure.empty() ? Json(nullptr) : Json(measured.fidelity_failure)}};
 }
 
 template <class... Values>
@@ -159,6 +167,8 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
     text += Line("links          %llu samples sent, %.2f %% lost, %.2f %% late", static_cast<unsigned long long>(sent),
                  100.0 * static_cast<double>(lost) / static_cast<double>(sent),
                  100.0 * static_cast<double>(late) / static_cast<double>(sent));
+  if (!m.fidelity_failure.empty())
+    text += "fidelity       not measured, the law failed on ideal double integrators: " + m.fidelity_failure + "\n";
   if (m.fidelity && m.travelled_m > 0)
     text += Line("fidelity       %.4f m rms from ideal double integrators: %.2f %% of %.1f m travelled",
                  m.fidelity->rms_m, 100 * m.fidelity->rms_m / m.travelled_m, m.travelled_m);

@@ -157,6 +157,27 @@ TEST(CustomLaw, ThatFailsEndsTheRunWithItsTracebackAgentTickAndTime) {
   }
 }
 
+TEST(CustomLaw, ThatFailsOnIdealBodiesOnlyFliesAndSaysThatFidelityIsNotMeasured) {
+  ScratchFolder folder;
+  WriteFile(folder.File("exact.toml"),
+            "[run]\nduration_s = 1.0\n[agents]\ncount = 2\n[law]\nname = 'custom'\npython = '''\n"
+            "def control(t, me, neighbours):\n  if t > 0.5 and me.orientation[0] == 1:\n"
+            "    raise ValueError('too good to be true')\n  return 1, 0.5\n'''\n");
+  const std::string failure =
+      "tick 51: the law of agent 1 failed at t = 0.51 s\nTraceback (most recent call last):\n"
+      "  File \"exact.toml\", line 10, in control\n    raise ValueError('too good to be true')\n"
+      "ValueError: too good to be true";
+  for (const std::string engine : {"dds", "inprocess"}) {
+    Up up(folder, engine, folder.File("exact.toml"), {"--engine", engine});
+    EXPECT_EQ(up.Wait(), 0) << up.err();
+    EXPECT_THAT(up.out(),
+                HasSubstr("fidelity       not measured, the law failed on ideal double integrators: " + failure));
+    EXPECT_EQ(up.Summary()["ticks"], 100);
+    EXPECT_TRUE(up.Summary()["fidelity"]["rms_m"].is_null());
+    EXPECT_EQ(up.Summary()["fidelity"]["failure"], failure);
+  }
+}
+
 TEST(CustomLaw, WithASyntaxErrorStartsNothing) {
   ScratchFolder folder;
   WriteFile(folder.File("bad.toml"),
