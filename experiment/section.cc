@@ -114,6 +114,23 @@ Section::FileText Section::TextOfFile(std::string_view key, std::string_view tex
   return {text, std::filesystem::path(path).filename().string()};
 }
 
+std::string Section::PathOfFile(std::string_view key) {
+  namespace fs = std::filesystem;
+  const std::string given = table_->Read<std::string>(
+      key, "the path of a file", std::nullopt, "", [](const toml::node& node) -> std::optional<std::string> {
+        const std::optional<std::string> text = TextIn(node);
+        return text && !text->empty() && OneLine(*text) == *text ? text : std::nullopt;
+      });
+  if (table_->Wrong(key)) return "";
+  // Symbolic links to folders are followed, so that ".." means what it means to the system; the file keeps its name.
+  const fs::path beside = fs::absolute(fs::path(PlaceOfText(key).folder) / given);
+  std::error_code error;
+  const fs::path folder = fs::weakly_canonical(beside.parent_path(), error);
+  const std::string path = (error ? beside : folder / beside.filename()).string();
+  table_->Record(key, QuotedToml(path));
+  return path;
+}
+
 std::string Section::OneOf(std::string_view key) { return OneOf(key, table_->RowOf(key).names); }
 
 std::string Section::OneOf(std::string_view key, std::span<const std::string_view> names,
@@ -212,7 +229,7 @@ Value Section::Free(std::string_view key) {
 
 void Section::Fail(std::string_view key, const std::string& message) {
   table_->wrong.emplace(key);
-  document_->Note(table_->PlaceOf(key), table_->PathOf(key), message);
+  document_->Note(table_->PlaceOf(key), table_->PathOf(key), OneLine(message));
 }
 
 void Section::FailRow(std::string_view key, std::size_t row, const std::string& message) {
@@ -222,6 +239,15 @@ void Section::FailRow(std::string_view key, std::size_t row, const std::string& 
   const toml::node* element = list != nullptr ? list->get(row) : nullptr;
   document_->Note(element != nullptr ? element->source() : table_->PlaceOf(key), Indexed(table_->PathOf(key), row),
                   message);
+}
+
+void Section::FailInside(std::string_view key, const std::string& inner, const std::string& message) {
+  table_->wrong.emplace(key);
+  const toml::node* node = table_->Get(key);
+  const toml::table* values = node != nullptr ? node->as_table() : nullptr;
+  const toml::node* value = values != nullptr ? values->get(inner.substr(0, inner.find_first_of(".["))) : nullptr;
+  document_->Note(value != nullptr ? value->source() : table_->PlaceOf(key), table_->PathOf(key) + "." + OneLine(inner),
+                  OneLine(message));
 }
 
 void Section::FailInText(std::string_view key, const std::string& place, const std::string& message) {

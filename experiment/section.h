@@ -77,6 +77,9 @@ class Section {
     std::string name;  ///< the file's, without its folders
   };
   FileText TextOfFile(std::string_view key, std::string_view text_key);
+  /// The absolute path of the file that `key` names, which is looked for beside this document; whether there is one is
+  /// not looked at. Resolved() has the absolute path. "" for a mistake.
+  std::string PathOfFile(std::string_view key);
   /// One of `names`; the message lists them and offers the nearest.
   std::string OneOf(std::string_view key);
   std::string OneOf(std::string_view key, std::span<const std::string_view> names,
@@ -110,6 +113,8 @@ class Section {
   void Fail(std::string_view key, const std::string& message);
   /// As Fail, at row `row` (from 0) of the list `key`: "graph.laplacian[2]: ...".
   void FailRow(std::string_view key, std::size_t row, const std::string& message);
+  /// As Fail, inside the value of `key`, which Free() read: `inner` = "gain" or "limits[2].max".
+  void FailInside(std::string_view key, const std::string& inner, const std::string& message);
   /// As Fail, but the mistake is in the text of `key`, at this place: "FILE:LINE:COLUMN: law.python: ...".
   void FailInText(std::string_view key, const std::string& place, const std::string& message);
   /// Notes every key of this table that nobody asked for as unknown, with "did you mean".

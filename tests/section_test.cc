@@ -377,6 +377,20 @@ TEST(Section, KeepsMessagesOnOneReadableLine) {
 
 // --- text that is no TOML ---------------------------------------------------------------------------
 
+TEST(Section, PlacesMistakesInsideAFreeValue) {
+  const auto fail = [](const std::string& inner) {
+    return Mistakes("[law]\nparams = { gain = 'fast', limits = [1, 2] }\n", [&](Section& root) {
+      Section law = root.Child("law");
+      law.Free("params");
+      law.FailInside("params", inner, "expected\tsense, got none");
+      EXPECT_TRUE(law.Wrong("params"));
+    });
+  };
+  EXPECT_THAT(fail("gain"), ElementsAre("a.toml:2:19: law.params.gain: expected\\tsense, got none"));
+  EXPECT_THAT(fail("limits[1]"), ElementsAre("a.toml:2:36: law.params.limits[1]: expected\\tsense, got none"));
+  EXPECT_THAT(fail("absent"), ElementsAre("a.toml:2:10: law.params.absent: expected\\tsense, got none"));
+}
+
 TEST(Section, LocatesWhatIsNoToml) {
   EXPECT_THAT(SyntaxMistakes("a = 1\nb 2\n"),
               ElementsAre("a.toml:2:3: while parsing key-value pair: expected '=', saw '2'"));
@@ -557,6 +571,39 @@ TEST_F(SectionFile, NamesThePathAsItWasTyped) {
   } catch (const ConfigError& error) {
     EXPECT_STREQ(error.what(), "./a file.toml:1:5: x: expected a number in [0, 1], got 2");
   }
+}
+
+/// Path of `key` as a file in `folder` says it: "key = value".
+std::string PathSaidIn(const std::string& folder, const std::string& line) {
+  Section section = Section::FromText(line, folder + "/a.toml");
+  const std::string path = section.PathOfFile("key");
+  EXPECT_THAT(section.Resolved(), ::testing::Eq("key = \"" + path + "\"\n"));
+  return path;
+}
+
+TEST_F(SectionFile, LooksForFilesBesideItselfAndKeepsAbsolutePaths) {
+  std::filesystem::create_directory(folder_ / "sub");
+  std::filesystem::create_directory_symlink("sub", folder_ / "link");
+  const std::string folder = std::filesystem::canonical(folder_).string();
+  EXPECT_EQ(PathSaidIn(folder, "key = 'law.so'"), folder + "/law.so");
+  EXPECT_EQ(PathSaidIn(folder + "/sub", "key = '../none/./law.so'"), folder + "/none/law.so");
+  EXPECT_EQ(PathSaidIn(folder, "key = 'link/law.so'"), folder + "/sub/law.so") << "found at its own place";
+  EXPECT_EQ(PathSaidIn(folder, "key = '/nowhere/law.so'"), "/nowhere/law.so");
+}
+
+TEST_F(SectionFile, LooksForFilesOfTheCommandLineInTheCurrentFolder) {
+  const Override given{"key", "'law.so'"};
+  Section section = Section::FromText("", "/nowhere/a.toml", {&given, 1});
+  EXPECT_EQ(section.PathOfFile("key"), (std::filesystem::current_path() / "law.so").string());
+}
+
+TEST(Section, RefusesPathsThatAreNone) {
+  const auto read = [](Section& root) { root.PathOfFile("key"); };
+  EXPECT_THAT(Mistakes("", read), ElementsAre("a.toml:1:1: key: expected the path of a file, got nothing"));
+  EXPECT_THAT(Mistakes("key = ''", read), ElementsAre("a.toml:1:7: key: expected the path of a file, got ''"));
+  EXPECT_THAT(Mistakes("key = 3", read), ElementsAre("a.toml:1:7: key: expected the path of a file, got 3"));
+  EXPECT_THAT(Mistakes("key = \"a\\nb\"", read),
+              ElementsAre("a.toml:1:7: key: expected the path of a file, got 'a\\nb'"));
 }
 
 TEST_F(SectionFile, RefusesWhatIsNoFileToRead) {
