@@ -10,6 +10,7 @@
 #include "agent/laws/custom.h"
 #include "agent/laws/formation.h"
 #include "agent/laws/minmax.h"
+#include "agent/laws/plugin.h"
 #include "agent/laws/velocity_consensus.h"
 #include "agent/laws/waypoint.h"
 #include "experiment/names.h"
@@ -18,9 +19,9 @@ namespace mascot {
 
 using LawReader = bool(Experiment& experiment, LawConfig& law);
 using LawFactory = std::unique_ptr<Law>(Experiment& experiment, int id);
-LawReader CheckConsensus, CheckWaypoint, CheckMinmax, CheckCustom, CheckFormation,
-    CheckVelocityConsensus;  // each in agent/laws/<name>.cc
-LawFactory MakeConsensus, MakeWaypoint, MakeMinmax, MakeCustom, MakeFormation, MakeVelocityConsensus;
+LawReader CheckConsensus, CheckWaypoint, CheckMinmax, CheckCustom, CheckFormation, CheckVelocityConsensus,
+    CheckPlugin;  // each in agent/laws/<name>.cc
+LawFactory MakeConsensus, MakeWaypoint, MakeMinmax, MakeCustom, MakeFormation, MakeVelocityConsensus, MakePlugin;
 
 namespace {
 
@@ -57,6 +58,9 @@ constexpr LawEntry kLaws[] = {
      "your own law, in Python: what one agent wants, from what it knows of itself and heard of its neighbours",
      "control(t, me, neighbours) -> [a_x, a_y, a_z] or [a_x, a_y]", "none: check knows only built-in laws",
      "docs/laws.md", kCustomParameters, Axes::kXy, CheckCustom, MakeCustom},
+    {"plugin", "your own law, in C++: a shared library that is loaded when the experiment is read",
+     "Want_W(t_s, self, heard) -> acceleration or velocity", "none: check knows only built-in laws",
+     "docs/plugin_law.md", kPluginParameters, Axes::kXy, CheckPlugin, MakePlugin},
 };
 
 constexpr auto kLawNames = [] {

@@ -59,7 +59,7 @@ void Print(const LawEntry& law) {
   for (const Key& parameter : law.parameters) {
     const std::string_view mark = parameter.required ? "*" : parameter.fallback.empty() ? "" : " = ";
     const std::string key = fmt::format("{}{}{}", parameter.name, mark, parameter.fallback);
-    PrintWrapped(fmt::format("    {:<31}{:<22}", key, ValueText(parameter)), parameter.meaning, 58);
+    PrintWrapped(fmt::format("    {:<30} {:<21} ", key, ValueText(parameter)), parameter.meaning, 58);
   }
 }
 

@@ -465,7 +465,8 @@ TEST(MinmaxBoundaryLayer, FollowsAParentThatAcceleratesAtItsBoundFromWithinTheLa
 // --- the table --------------------------------------------------------------------------------------
 
 TEST(LawTable, IsKnownByItsNames) {
-  EXPECT_THAT(LawNames(), ElementsAre("consensus", "waypoint", "minmax", "formation", "velocity_consensus", "custom"));
+  EXPECT_THAT(LawNames(),
+              ElementsAre("consensus", "waypoint", "minmax", "formation", "velocity_consensus", "custom", "plugin"));
 }
 
 /// An experiment in which every parameter of a law matters, but for those of `without`.
@@ -493,6 +494,17 @@ std::vector<Setting> CustomSettings() {
           {"output", law("1.0"), law("1.0") + "output = 'velocity'\n"}};
 }
 
+/// Of laws in shared libraries, those of tests/plugins.
+std::vector<Setting> PluginSettings() {
+  const auto library = [](const std::string& name) {
+    return "library = '" MASCOT_BINARY_DIR "/tests/plugins/lib" + name + ".so'\n";
+  };
+  const std::string base = library("mirror");
+  return {{"library", base, library("talker")},
+          {"params", base, base + "params = { gain = 0.5 }\n"},
+          {"leader", base, base + "leader = 2\n"}};
+}
+
 std::vector<Setting> SettingsOf(std::string_view law) {
   const std::string way = "waypoints_m = [[3, 1, 2], [-2, 0, 1]]\n";
   const std::string lead = "leader = 1\nleader_" + way;
@@ -506,6 +518,7 @@ std::vector<Setting> SettingsOf(std::string_view law) {
   }
   if (law == "velocity_consensus") return {{"p_gain", "", "p_gain = 1.1\n"}, {"leader", "", "leader = 2\n"}};
   if (law == "custom") return CustomSettings();
+  if (law == "plugin") return PluginSettings();
   const std::string places = "offsets_m = [[0, 0, 0], [1, 2, 0], [2, 0, 0], [0, 3, 0], [1, 1, 1]]\n";
   const std::string base = law == "minmax"      ? "leader = 1\nbeta = [0.5, 1.0, 1.5, 2.0, 2.5]\n"
                            : law == "formation" ? places
@@ -555,7 +568,7 @@ TEST(LawTable, NamesOnlyParametersWhoseChangeChangesTheResultAndAllOfThem) {
       EXPECT_GT(difference, 1e-4) << law.name << " " << setting.parameter;
       tried.push_back(setting.parameter);
     }
-    // Tested in custom_law_test.cc: what files hold, what is sent, what messages say.
+    // Tested in custom_law_test.cc and plugin_law_test.cc: what files hold, what is sent, what messages say.
     const std::vector<std::string_view> elsewhere = {"file", "messages", "python_file", "python_line"};
     std::vector<std::string> named;
     for (const Key& parameter : law.parameters)

@@ -32,6 +32,13 @@ std::vector<fs::path> TomlFiles(const fs::path& folder, const std::vector<std::s
   return files;
 }
 
+/// Files that hold every key between them. That of a law in C++ stands beside the library that it names.
+std::vector<fs::path> GoodConfigs() {
+  std::vector<fs::path> files = TomlFiles(kSource / "tests/good_configs");
+  files.push_back(MASCOT_BINARY_DIR "/tests/plugins/plugin.toml");
+  return files;
+}
+
 // --- current ----------------------------------------------------------------------------------------
 
 constexpr const char* kHowTo = "run: cmake --build build/release --target reference";
@@ -82,7 +89,7 @@ TEST(GoodConfigs, HoldEveryKeyThereIs) {
   std::set<std::string> missing;
   AddAll(ExperimentKeys(), "", missing);
   for (const LawEntry& law : Laws()) AddAll(law.parameters, std::string(law.name), missing);
-  for (const fs::path& path : TomlFiles(kSource / "tests/good_configs")) {
+  for (const fs::path& path : GoodConfigs()) {
     const toml::table file = toml::parse_file(path.string());
     const auto visit = [&](const std::string& key) { missing.erase(key); };
     Walk(ExperimentKeys(), file, "", visit);
@@ -95,7 +102,7 @@ TEST(GoodConfigs, HoldEveryKeyThereIs) {
 }
 
 TEST(GoodConfigs, AreRead) {
-  for (const fs::path& path : TomlFiles(kSource / "tests/good_configs"))
+  for (const fs::path& path : GoodConfigs())
     EXPECT_NO_THROW(LoadExperiment(Section::FromFile(path), path.stem())) << path;
 }
 
@@ -145,20 +152,21 @@ TEST(Schema, IsFoundByWhatTheShippedExperimentsSay) {
 }
 
 TEST(Schema, AcceptsEveryKey) {
-  const Verdict verdict = Taplo(TomlFiles(kSource / "tests/good_configs"), true);
+  const Verdict verdict = Taplo(GoodConfigs(), true);
   EXPECT_THAT(verdict.refused, IsEmpty()) << verdict.output;
 }
 
 TEST(Schema, AcceptsResolvedExperiments) {
   ScratchFolder folder;
   std::vector<fs::path> resolved;
-  for (const char* from : {"tests/good_configs", "configs"})
-    for (const fs::path& path : TomlFiles(kSource / from)) {
-      Section document = Section::FromFile(path);
-      LoadExperiment(document, path.stem());
-      resolved.push_back(folder.path() / (std::to_string(resolved.size()) + path.filename().string()));
-      WriteFile(resolved.back(), document.Resolved());
-    }
+  std::vector<fs::path> files = GoodConfigs();
+  std::ranges::copy(TomlFiles(kSource / "configs"), std::back_inserter(files));
+  for (const fs::path& path : files) {
+    Section document = Section::FromFile(path);
+    LoadExperiment(document, path.stem());
+    resolved.push_back(folder.path() / (std::to_string(resolved.size()) + path.filename().string()));
+    WriteFile(resolved.back(), document.Resolved());
+  }
   const Verdict verdict = Taplo(resolved, true);
   EXPECT_THAT(verdict.refused, IsEmpty()) << verdict.output;
 }

@@ -1,0 +1,175 @@
+// A law written by the user in C++, in a shared library of its own (agent/plugin.h).
+#include "agent/laws/plugin.h"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "agent/law_library.h"
+
+namespace mascot {
+namespace {
+
+struct PluginConfig {
+  std::string library;  ///< absolute path; "" for a mistake
+  Value params;         ///< a table
+};
+
+PluginConfig ReadPlugin(LawConfig& config) {
+  Section& law = config.section;
+  PluginConfig plugin;
+  plugin.library = law.PathOfFile("library");
+  if (law.Has("params") && law.Kind("params") != "table")
+    law.Fail("params", "expected a table, got a " + law.Kind("params"));
+  else
+    plugin.params = law.Free("params");
+  return plugin;
+}
+
+PluginSetup SetupOf(const Experiment& experiment, int id, PluginParams& params) {
+  return {.id = id,
+          .agents = experiment.size(),
+          .leader = experiment.agent(id).law.leader,
+          .rate_hz = static_cast<double>(experiment.control.rate_hz),
+          .seed = experiment.run.seed,
+          .params = params};
+}
+
+// --- in flight --------------------------------------------------------------------------------------
+
+/// What was thrown, in words. To be called while it is handled.
+std::string WordsOfException() {
+  try {
+    throw;
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "it threw something that is no std::exception";
+  }
+}
+
+/// The user's law, whose failures say whose law it was and when.
+class PluginLaw final : public Law {
+ public:
+  PluginLaw(int id, std::unique_ptr<Law> law) : id_(id), law_(std::move(law)) {}
+
+  Wanted wanted() const override {
+    return Guarded([&] { return law_->wanted(); });
+  }
+  Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> heard) override {
+    t_s_ = t_s;
+    return Guarded([&] { return law_->Want_W(t_s, self, heard); });
+  }
+  std::span<const double> Message() override {
+    return Guarded([&] {
+      const std::span<const double> message = law_->Message();
+      if (message.size() > kMaxMessage)
+        throw std::length_error("Message() returned " + std::to_string(message.size()) + " numbers, expected at most " +
+                                std::to_string(kMaxMessage));
+      return message;
+    });
+  }
+
+ private:
+  template <class Call>
+  std::invoke_result_t<Call> Guarded(Call call) const {
+    try {
+      return call();
+    } catch (...) {
+      throw std::runtime_error("the law of agent " + std::to_string(id_) + " failed at t = " + ShortestFloat(t_s_) +
+                               " s: " + WordsOfException());
+    }
+  }
+
+  int id_;
+  std::unique_ptr<Law> law_;
+  double t_s_ = 0;
+};
+
+// --- before it --------------------------------------------------------------------------------------
+
+/// Notes a mistake that the law found in its parameters. "params.gain: expected ..." has its place there.
+void NoteRefusal(Section& law, const std::string& words) {
+  constexpr std::string_view kInside = "params.";
+  const auto colon = words.find(": ");
+  if (words.starts_with(kInside) && colon != words.npos && colon > kInside.size())
+    law.FailInside("params", words.substr(kInside.size(), colon - kInside.size()), words.substr(colon + 2));
+  else
+    law.Fail("params", "expected what the law takes, got: " + words);
+}
+
+/// Notes the keys of [law.params] that the law has not asked for.
+void NoteUnknown(Section& law, const Value& params, const PluginParams& read) {
+  const std::vector<std::string_view> asked(read.asked().begin(), read.asked().end());
+  for (const auto& [key, value] : std::get<Value::Table>(params.data)) {
+    if (read.asked().contains(key)) continue;
+    const auto nearest = DidYouMean(key, asked);
+    law.FailInside("params", key, "unknown key" + (nearest ? " (did you mean \"" + *nearest + "\"?)" : std::string()));
+  }
+}
+
+/// Makes the law of agent `id`, to see whether it takes its parameters.
+void Try(const LawLibrary& library, const Experiment& experiment, int id, const PluginConfig& plugin, Section& law) {
+  PluginParams params(plugin.params);
+  try {
+    library.Make(SetupOf(experiment, id, params));
+    NoteUnknown(law, plugin.params, params);
+  } catch (const std::invalid_argument& refusal) {
+    NoteRefusal(law, refusal.what());
+  } catch (...) {
+    law.Fail("library", "expected a law of agent " + std::to_string(id) + ", got an exception: " + WordsOfException());
+  }
+}
+
+/// The agents that `law` is for.
+std::vector<int> AgentsOf(const Experiment& experiment, const LawConfig& law) {
+  std::vector<int> ids;
+  for (const AgentConfig& agent : experiment.agents)
+    if (agent.has_own_law ? &agent.law == &law : &experiment.law == &law) ids.push_back(agent.id);
+  return ids;
+}
+
+/// Opens the library and lets it make a law for each agent. Returns whether it can send messages.
+bool TryAll(const Experiment& experiment, const LawConfig& config, const PluginConfig& plugin, Section& law) {
+  try {
+    const LawLibrary library(plugin.library);
+    for (const int id : AgentsOf(experiment, config)) {
+      if (law.Wrong("")) break;  // the other agents' laws would say the same
+      Try(library, experiment, id, plugin, law);
+    }
+    return library.sends_messages();
+  } catch (const std::runtime_error& error) {
+    law.Fail("library", error.what());
+    return false;
+  }
+}
+
+}  // namespace
+
+bool CheckPlugin(Experiment& experiment, LawConfig& config) {
+  Section& law = config.section;
+  const PluginConfig plugin = ReadPlugin(config);
+  // What was checked says whether messages are sent; only who flies the law needs the library then.
+  if ((experiment.checked && law.Has("messages")) || law.Wrong("")) return law.Boolean("messages", false);
+  const bool can_send = TryAll(experiment, config, plugin, law);
+  const bool sends = law.Boolean("messages", can_send);
+  if (sends && !can_send && !law.Wrong("")) law.Fail("messages", "expected a law that overrides Message(), got none");
+  return sends;
+}
+
+std::unique_ptr<Law> MakePlugin(Experiment& experiment, int id) {
+  LawConfig law = experiment.agent(id).law;
+  const PluginConfig plugin = ReadPlugin(law);
+  try {
+    PluginParams params(plugin.params);
+    return std::make_unique<PluginLaw>(id, LawLibrary(plugin.library).Make(SetupOf(experiment, id, params)));
+  } catch (...) {
+    throw std::runtime_error("cannot make the law of agent " + std::to_string(id) + ": " + WordsOfException() +
+                             " (every host that flies it needs the same library at the same path)");
+  }
+}
+
+}  // namespace mascot
