@@ -14,14 +14,17 @@
 //
 // Frames and units are those of agent/law.h and experiment/motion.h: SI, world frame (x east, y north, z up).
 //
-// Life: `orchestrator check` and `up` make the law of every agent once, to see whether it takes its parameters, and let
-// it go again. In flight there is one object per agent, made before the first tick and gone after the last. All agents
-// may live in one process, and one agent may have two objects in it (the second flies the ideal bodies of the fidelity
-// figure): keep what a law remembers in its members, never in globals.
+// Life: `orchestrator check` and `up` make the law of every agent, to see whether it takes its parameters, ask it for
+// its first command, and let it go again. In flight there is one object per agent, made before the first tick and gone
+// after the last. All agents may live in one process, and one agent may have two objects in it (the second flies the
+// ideal bodies of the fidelity figure): keep what a law remembers in its members, never in globals.
+//
 // Threads: one object is called by one thread at a time, two objects perhaps at once.
+//
 // Exceptions: the constructor may throw std::invalid_argument, as setup.params does, for parameters that it refuses;
-// that is a mistake in the configuration. Any exception in flight ends the run, naming the agent and the time. The same
-// run must give the same bytes: no clock, no file that changes, random numbers from setup.seed and setup.id.
+// that is a mistake in the configuration. Any exception in flight ends the run, naming the agent and the time.
+//
+// The same run must give the same bytes: no clock, no file that changes, random numbers from setup.seed and setup.id.
 
 #include <cstdint>
 #include <string>

@@ -120,6 +120,58 @@ def message(me):
 '''
 )";
 
+/// Agents that wander at random and pass on what they heard, by a law in C++.
+const std::string kPluginTalkers = R"([run]
+duration_s = 2.0
+[agents]
+count = 4
+model = "double_integrator"
+[[agents.override]]
+id = 3
+law = { name = "consensus" }
+[graph]
+topology = "ring"
+[link]
+loss = 0.2
+[law]
+name = "plugin"
+library = ")" MASCOT_BINARY_DIR "/tests/plugins/libtalker.so\"\n";
+
+TEST(PluginLaw, GivesTheSameBytesInBothEnginesMessagesIncluded) {
+  ScratchFolder folder;
+  WriteFile(folder.File("talkers.toml"), kPluginTalkers);
+  Up dds(folder, "dds", folder.File("talkers.toml"), {});
+  ASSERT_EQ(dds.Wait(), 0) << dds.err();
+  Up inprocess(folder, "inprocess", folder.File("talkers.toml"), {"--engine", "inprocess"});
+  ASSERT_EQ(inprocess.Wait(), 0) << inprocess.err();
+  ExpectSameBytes(dds, inprocess);
+  EXPECT_EQ(Measurements(dds), Measurements(inprocess));
+  EXPECT_EQ(dds.Summary()["wire"]["matches_graph"], true);
+  EXPECT_EQ(dds.Summary()["samples"]["topics"], 3 * 4 + 1 - 1) << "agent 3 sends no messages";
+  Up muffled(folder, "muffled", folder.File("talkers.toml"), {"--engine", "inprocess", "--set", "law.messages=false"});
+  ASSERT_EQ(muffled.Wait(), 0) << muffled.err();
+  EXPECT_FALSE(muffled.File("states.npz") == inprocess.File("states.npz")) << "what they say matters";
+}
+
+TEST(PluginLaw, ThatFailsInFlightEndsTheRunInBothEngines) {
+  ScratchFolder folder;
+  const auto fly = [&](const std::string& engine, const std::string& does) {
+    const std::string law = "law={ name = 'plugin', library = '" MASCOT_BINARY_DIR
+                            "/tests/plugins/libmirror.so', params = { from_s = 0.5, does = '" +
+                            does + "' } }";
+    Up up(folder, engine + does, Config("leaderless"), {"--engine", engine, "--duration-s", "1", "--set", law});
+    EXPECT_EQ(up.Wait(), 1);
+    EXPECT_EQ(up.Summary()["exit"], 1);
+    return up.err();
+  };
+  for (const std::string engine : {"dds", "inprocess"}) {
+    EXPECT_THAT(fly(engine, "throw"),
+                testing::ContainsRegex("error: .*the law of agent [1-4] failed at t = 0.5 s: the map ends here\n"));
+    EXPECT_THAT(fly(engine, "nan"),
+                testing::ContainsRegex("error: .*tick 50: agent [1-4]: the law's acceleration is not finite"));
+  }
+}
+
 TEST(Messages, ReachThoseWhoHearTheSenderTheSameInBothEngines) {
   ScratchFolder folder;
   WriteFile(folder.File("talkers.toml"), kTalkers);

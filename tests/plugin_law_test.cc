@@ -72,6 +72,7 @@ TEST(PluginLaw, SeesItselfAndItsNeighbours) {
 
 TEST(PluginLaw, GetsItsParameters) {
   EXPECT_EQ(Wants(Mirror("gain = 2")).a_law_W, Eigen::Vector3d(1, 4 - 0.25, 0));
+  EXPECT_EQ(Wants(Mirror("bonus = 1")).a_law_W, Eigen::Vector3d(1, 4 - 0.25, 0));
   EXPECT_EQ(Wants(Mirror("gain = 0.5, more_gains = [1, 0.5], times = 2")).a_law_W, Eigen::Vector3d(2, 8 - 0.25, 0));
 }
 

@@ -13,9 +13,11 @@ class Mirror final : public mascot::Law {
       : made_for_(setup.id + 10 * setup.agents + 100 * setup.leader, setup.rate_hz, static_cast<double>(setup.seed)),
         leader_(setup.leader),
         does_(setup.params.String("does", "consensus")),
+        from_s_(setup.params.Number("from_s", 0, 1000, 0.0)),
         gain_(setup.params.Number("gain", 0, 10, 1.0)),
         velocity_(setup.params.Boolean("velocity", false)) {
     for (const double gain : setup.params.Numbers("more_gains", 0, 10)) gain_ += gain;
+    if (const mascot::Value* bonus = setup.params.Find("bonus")) gain_ += bonus->Number();
     gain_ *= static_cast<double>(setup.params.Integer("times", 1, 9, 1));
     if (does_ == "refuse") throw std::invalid_argument("gains and\nmass do not fit");
     if (does_ == "refuse 2" && setup.id == 2) mascot::PluginParams::Fail("does", "expected a law for 2, got none");
@@ -27,11 +29,12 @@ class Mirror final : public mascot::Law {
     return velocity_ ? mascot::Wanted::kVelocity : mascot::Wanted::kAcceleration;
   }
 
-  Eigen::Vector3d Want_W(double /*t_s*/, const mascot::Motion& self, std::span<const mascot::Heard> heard) override {
+  Eigen::Vector3d Want_W(double t_s, const mascot::Motion& self, std::span<const mascot::Heard> heard) override {
     if (does_ == "tell") return made_for_;
-    if (does_ == "nan") return {0, std::numeric_limits<double>::quiet_NaN(), 0};
-    if (does_ == "throw") throw std::domain_error("the map ends here");
-    if (does_ == "throw oddly") throw 42;
+    const bool fails = t_s >= from_s_;
+    if (fails && does_ == "nan") return {0, std::numeric_limits<double>::quiet_NaN(), 0};
+    if (fails && does_ == "throw") throw std::domain_error("the map ends here");
+    if (fails && does_ == "throw oddly") throw 42;
     Eigen::Vector3d want_W(0.1 * leader_, 0, 0);
     if (!velocity_) want_W -= self.v_WB;
     for (const mascot::Heard& j : heard) want_W += gain_ * j.weight * (j.motion.p_WB - self.p_WB);
@@ -42,6 +45,7 @@ class Mirror final : public mascot::Law {
   Eigen::Vector3d made_for_;
   int leader_;
   std::string does_;
+  double from_s_;  // from when on it fails, if that is what it does
   double gain_;
   bool velocity_;
 };
