@@ -111,15 +111,27 @@ Eigen::MatrixXd Graph::Laplacian() const {
   return laplacian;
 }
 
+// In the order of its components, each of which hears only those before it, L is block triangular. Each block by itself
+// keeps the digits of eigenvalues that the others repeat: all of a long chain are 1, which no solver finds in the
+// whole.
 Eigen::VectorXcd Graph::Eigenvalues() const {
-  if (size() == 0) return {};
   const Eigen::MatrixXd laplacian = Laplacian();
-  if (IsSymmetric()) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(laplacian, Eigen::EigenvaluesOnly);
-    return solver.eigenvalues().cast<std::complex<double>>();
+  const bool symmetric = IsSymmetric();
+  Eigen::VectorXcd values(size());
+  Eigen::Index found = 0;
+  for (const std::vector<int>& component : Components()) {
+    std::vector<Eigen::Index> places;
+    for (const int id : component) places.push_back(id - 1);
+    const Eigen::MatrixXd block = laplacian(places, places);
+    auto some = values.segment(found, block.rows());
+    if (symmetric)
+      some = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(block, Eigen::EigenvaluesOnly)
+                 .eigenvalues()
+                 .cast<std::complex<double>>();
+    else
+      some = Eigen::EigenSolver<Eigen::MatrixXd>(block, /*computeEigenvectors=*/false).eigenvalues();
+    found += block.rows();
   }
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(laplacian, /*computeEigenvectors=*/false);
-  Eigen::VectorXcd values = solver.eigenvalues();
   std::sort(values.begin(), values.end(), [](const auto& a, const auto& b) {
     return a.real() != b.real() ? a.real() < b.real() : a.imag() < b.imag();
   });

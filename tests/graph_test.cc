@@ -101,6 +101,15 @@ TEST(GraphFamilies, DirectedPathHearsItsPredecessor) {
   EXPECT_THAT(path.Roots(), ElementsAre(1));
 }
 
+TEST(GraphFamilies, DirectedPathHasAllItsEigenvaluesButZeroAtOneToTheLastDigit) {
+  // Forty times the same: a solver of the whole matrix would scatter them by a tenth and more.
+  std::vector<std::vector<Graph::Neighbour>> chain(41);  // numbered in an order that is not its own
+  for (int i = 1; i < 41; ++i) chain[static_cast<std::size_t>(i * 5 % 41)] = {{(i - 1) * 5 % 41 + 1, 1.0}};
+  const Eigen::VectorXcd values = Graph(chain).Eigenvalues();
+  EXPECT_EQ(values(0), 0.0);
+  for (int i = 1; i < 41; ++i) EXPECT_EQ(values(i), 1.0);
+}
+
 TEST(GraphFamilies, TreesHangOnHalfTheirNumber) {
   EXPECT_THAT(Ids(MakeTopology("directed_tree", 7).HeardBy(7)), ElementsAre(3));
   EXPECT_THAT(Ids(MakeTopology("binary_tree", 7).HeardBy(3)), ElementsAre(1, 6, 7));
