@@ -32,9 +32,13 @@ std::optional<std::string> StartInGround(const Experiment& experiment, const std
   return std::nullopt;
 }
 
-/// Every law of ours brings all agents to one place; only held heights keep them apart there.
+/// Laws that bring all agents to one place, where only held heights keep them apart.
+bool Gathers(const std::string& law) {
+  return law == "consensus" || law == "velocity_consensus" || law == "minmax" || law == "waypoint";
+}
+
 std::optional<std::string> MeetingPoint(const Experiment& experiment, const std::vector<Eigen::Vector3d>& half_m) {
-  if (experiment.size() < 2) return std::nullopt;
+  if (experiment.size() < 2 || !Gathers(experiment.law.name)) return std::nullopt;
   if (experiment.law.axes == Axes::kXyz) {
     return "physics.collisions: all agents head for the same place in x, y and z and will touch there";
   }
