@@ -9,6 +9,7 @@
 
 #include "orchestrator/config_args.h"
 #include "orchestrator/graph_facts.h"
+#include "orchestrator/prediction_report.h"
 #include "orchestrator/theory.h"
 #include "orchestrator/verb.h"
 
@@ -34,27 +35,19 @@ Json ToJson(const GraphFacts& facts) {
           {"spanning_tree", facts.tree}};
 }
 
-Json ToJson(const Prediction& prediction) {
-  Json edges = Json::array();
-  for (const MinmaxEdge& edge : prediction.minmax_edges) {
-    edges.push_back({{"child", edge.child}, {"parent", edge.parent}, {"time_s", edge.time_s}, {"exact", edge.exact}});
-  }
-  const auto& value_m = prediction.value_m;
-  return {{"value_m", value_m ? Json{value_m->x(), value_m->y(), value_m->z()} : Json(nullptr)},
-          {"stable", OrNull(prediction.stable)},
-          {"settling_time_s", OrNull(prediction.settling_time_s)},
-          {"minmax_time_s", OrNull(prediction.minmax_time_s)},
-          {"minmax_edges", edges},
-          {"first_command_m_per_s2", OrNull(prediction.first_command_m_per_s2)}};
-}
-
 Json ToJson(const Experiment& experiment, const GraphFacts& facts, const Prediction& prediction) {
-  return {{"experiment", experiment.run.name}, {"duration_s", experiment.run.duration_s},
-          {"ticks", experiment.ticks()},       {"control_rate_hz", experiment.control.rate_hz},
-          {"agents", experiment.size()},       {"models", CountModels(experiment)},
-          {"law", experiment.law.name},        {"axes", experiment.law.axes == Axes::kXyz ? "xyz" : "xy"},
-          {"leader", experiment.law.leader},   {"graph", ToJson(facts)},
-          {"predicted", ToJson(prediction)},   {"warnings", prediction.warnings}};
+  return {{"experiment", experiment.run.name},
+          {"duration_s", experiment.run.duration_s},
+          {"ticks", experiment.ticks()},
+          {"control_rate_hz", experiment.control.rate_hz},
+          {"agents", experiment.size()},
+          {"models", CountModels(experiment)},
+          {"law", experiment.law.name},
+          {"axes", experiment.law.axes == Axes::kXyz ? "xyz" : "xy"},
+          {"leader", experiment.law.leader},
+          {"graph", ToJson(facts)},
+          {"predicted", PredictionJson(prediction)},
+          {"warnings", prediction.warnings}};
 }
 
 void PrintLine(std::string_view label, std::string_view text) { std::cout << fmt::format("  {:<15}{}\n", label, text); }
@@ -74,31 +67,15 @@ void PrintExperiment(const Experiment& experiment) {
                                     experiment.control.rate_hz));
 }
 
-void PrintGraph(const GraphFacts& facts) {
-  PrintLine("graph", fmt::format("{} edges, {}", facts.edges, facts.symmetric ? "symmetric" : "directed"));
+/// Of a graph that changes: of the union of all that it ever is.
+void PrintGraph(const GraphFacts& facts, const Schedule& schedule) {
+  const std::size_t graphs = schedule.phases().size();
+  PrintLine("graph", fmt::format("{} edges, {}{}{}", facts.edges, facts.symmetric ? "symmetric" : "directed",
+                                 graphs > 1 ? fmt::format(", in the union of {} graphs", graphs) : "",
+                                 schedule.range_m() > 0 ? fmt::format(", within {:g} m", schedule.range_m()) : ""));
   if (facts.lambda_2) PrintLine("lambda_2", fmt::format("{:.6g}", *facts.lambda_2));
   PrintLine("components", fmt::format("{} strongly connected", facts.components.size()));
   PrintLine("roots", facts.roots.empty() ? "none: no spanning tree" : IdRanges(facts.roots));
-}
-
-void PrintPrediction(const Experiment& experiment, const Prediction& prediction) {
-  const bool chains = !experiment.graph.IsSymmetric();  // their modes do not stay apart
-  if (const auto& value_m = prediction.value_m) {
-    PrintLine("meeting point", fmt::format("({:.4g}, {:.4g}, {:.4g}) m{}", value_m->x(), value_m->y(), value_m->z(),
-                                           experiment.law.axes == Axes::kXy ? ", heights held" : ""));
-  }
-  if (prediction.stable) PrintLine("stable", *prediction.stable ? "yes" : "no");
-  if (prediction.settling_time_s)
-    PrintLine("settles in", fmt::format("{:.4g} s (2 %, slowest mode{})", *prediction.settling_time_s,
-                                        chains ? "; later along chains" : ""));
-  for (const MinmaxEdge& edge : prediction.minmax_edges) {
-    PrintLine(fmt::format("edge {} -> {}", edge.child, edge.parent),
-              fmt::format("{} {:.4g} s", edge.exact ? "meets in" : "meets within", edge.time_s));
-  }
-  if (prediction.first_command_m_per_s2) {
-    PrintLine("first command", fmt::format("{:.4g} m/s^2 of {:g} allowed", *prediction.first_command_m_per_s2,
-                                           *prediction.first_command_limit_m_per_s2));
-  }
 }
 
 int Check(const ConfigArgs& args, bool json) {
@@ -111,8 +88,8 @@ int Check(const ConfigArgs& args, bool json) {
   }
   std::cout << args.path << ": valid\n";
   PrintExperiment(experiment);
-  PrintGraph(facts);
-  PrintPrediction(experiment, prediction);
+  PrintGraph(facts, experiment.schedule);
+  for (const auto& [label, text] : PredictionLines(experiment, prediction)) PrintLine(label, text);
   for (const std::string& warning : prediction.warnings) std::cout << "warning: " << warning << "\n";
   return 0;
 }

@@ -1,8 +1,11 @@
 #include "orchestrator/modes.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 namespace mascot {
 namespace {
@@ -10,79 +13,171 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kSettled = 0.02;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Roots of s^2 + b s + c; the smaller one from the product, which keeps its digits when it is tiny.
+/// Roots of s^2 + b s + c, the smaller in magnitude first: from the product, which keeps its digits when it is tiny.
 std::array<Complex, 2> Roots(Complex b, Complex c) {
   const Complex root = std::sqrt(b * b - 4.0 * c);
   const Complex larger = -0.5 * (std::abs(b + root) > std::abs(b - root) ? b + root : b - root);
   return {larger == 0.0 ? 0.0 : c / larger, larger};
 }
 
-double Rate(const LinearMode& mode) {
-  const auto roots = Roots(mode.damping, mode.stiffness);
-  return -std::max(roots[0].real(), roots[1].real());
+/// Above this a x^2 + b x + c is positive, for x >= 0, a > 0, b >= 0.
+double PositiveRoot(double a, double b, double c) { return c >= 0 ? 0 : -2 * c / (b + std::sqrt(b * b - 4 * a * c)); }
+
+/// The sampled mode's poles z as (z - 1) / h, which keeps their digits however short the period: from
+/// x+ = x + h v + hold h^2 u, v+ = v + h u, u = -stiffness x - damping v; for h = 0 those of continuous time.
+std::array<Complex, 2> Poles(const LinearMode& mode, double h) {
+  if (mode.order == 1) return {-mode.stiffness, -mode.stiffness};
+  return Roots(mode.damping + mode.hold * h * mode.stiffness, mode.stiffness);
 }
 
-/// x(t) from x = 1 at rest.
-Complex FromRest(Complex s1, Complex s2, double t) {
-  const Complex gap = (s2 - s1) * t;
-  if (std::abs(gap) < 1e-4) return (1.0 - s1 * t * (1.0 + gap / 2.0)) * std::exp(s1 * t);  // s1 = s2, to first order
-  return (s2 * std::exp(s1 * t) - s1 * std::exp(s2 * t)) / (s2 - s1);
+/// ln z of a pole, as above.
+Complex Log(Complex pole, double h) {
+  return {0.5 * std::log1p(h * (2 * pole.real() + h * std::norm(pole))),
+          std::atan2(h * pole.imag(), 1 + h * pole.real())};
 }
 
-}  // namespace
-
-bool Decays(const LinearMode& mode) { return mode.stiffness.real() > 0 && mode.damping > LeastDamping(mode.stiffness); }
-
-double LeastDamping(std::complex<double> stiffness) {
-  // s = i y on the edge of stability: y^2 = Re k and damping y = -Im k.
-  return std::abs(stiffness.imag()) / std::sqrt(stiffness.real());
+double Rate(const LinearMode& mode, double h) {
+  const auto poles = Poles(mode, h);
+  return -std::max(Log(poles[0], h).real(), Log(poles[1], h).real()) / h;
 }
 
-bool DecaysSampled(const LinearMode& mode, double period_s) {
-  // p+ = p + h v + h^2 u / 2, v+ = v + h u, u = -stiffness p - damping v: characteristic z^2 - trace z + determinant.
-  const double h = period_s;
-  const Complex pull = h * h * mode.stiffness / 2.0;
-  const Complex trace = 2.0 - h * mode.damping - pull;
-  const Complex determinant = 1.0 - h * mode.damping + pull;
-  const auto z = Roots(-trace, determinant);
-  return std::abs(z[0]) < 1 && std::abs(z[1]) < 1;
+/// x after n ticks, from x = 1 at rest.
+class FromRest {
+ public:
+  FromRest(const LinearMode& mode, double h) : poles_(Poles(mode, h)), h_(h) {
+    if (Log(poles_[0], h).real() < Log(poles_[1], h).real()) std::swap(poles_[0], poles_[1]);
+    first_ = poles_[0] + mode.hold * h * mode.stiffness;
+  }
+
+  Complex At(double n) const {
+    const Complex slow = std::exp(n * Log(poles_[0], h_));
+    const Complex gap = poles_[0] - poles_[1];
+    if (std::abs(gap) * n * h_ < 1e-4) return slow * (1.0 - first_ * n * h_ / (1.0 + h_ * poles_[0]));  // a double pole
+    return slow - first_ * (slow - std::exp(n * Log(poles_[1], h_))) / gap;
+  }
+  /// What |At(n)| cannot exceed; falls for n h > 1 / rate.
+  double Bound(double n) const {
+    return (1 + std::abs(first_) * n * h_ / std::abs(1.0 + h_ * poles_[0])) * std::exp(n * Log(poles_[0], h_).real());
+  }
+
+ private:
+  std::array<Complex, 2> poles_;  // the slower one first
+  double h_;
+  Complex first_;  // (At(1) - z of the slower) / -h
+};
+
+/// Of real damping and stiffness: |det| < 1 and 1 + trace + det > 0 (Jury).
+double LongestPeriodOfReal(const LinearMode& mode) {
+  const double d = mode.damping.real(), k = mode.stiffness.real();
+  const double by_determinant = mode.hold < 1 ? d / ((1 - mode.hold) * k) : kInfinity;
+  return std::min(by_determinant, 4 / (d + std::sqrt(d * d - 4 * (1 - 2 * mode.hold) * k)));
 }
 
-double LongestPeriod(std::span<const LinearMode> modes, double period_s) {
-  const auto decay = [modes](double h) {
-    return std::all_of(modes.begin(), modes.end(), [h](const LinearMode& mode) { return DecaysSampled(mode, h); });
-  };
-  if (decay(period_s)) return period_s;
-  double good = 0;
-  double bad = period_s;
-  for (int halving = 0; halving < 50; ++halving) (decay((good + bad) / 2) ? good : bad) = (good + bad) / 2;
+/// The first period at which the mode does not decay: stability may come back for longer ones.
+double LongestPeriod(const LinearMode& mode) {
+  if (mode.order == 1) return 2 * mode.stiffness.real() / std::norm(mode.stiffness);
+  if (mode.damping.imag() == 0 && mode.stiffness.imag() == 0) return LongestPeriodOfReal(mode);
+  double bad = 1e-6 / std::abs(Poles(mode, 0)[1]);
+  while (DecaysSampled(mode, bad)) bad *= 2;
+  constexpr int kSteps = 500;
+  int step = 1;
+  while (DecaysSampled(mode, bad * step / kSteps)) ++step;
+  double good = bad * (step - 1) / kSteps;
+  bad = bad * step / kSteps;
+  for (int halving = 0; halving < 50; ++halving) {
+    const double middle = (good + bad) / 2;
+    (DecaysSampled(mode, middle) ? good : bad) = middle;
+  }
   return good;
 }
 
-double SettlingTime(const LinearMode& mode) {
-  const auto [s1, s2] = Roots(mode.damping, mode.stiffness);
-  const double rate = Rate(mode);
-  // |x| <= (1 + |s1| t) e^(-rate t), and the right side falls from t = 1 / rate on.
-  double horizon = 1 / rate;
-  while ((1 + std::abs(s1) * horizon) * std::exp(-rate * horizon) > kSettled) horizon *= 1.1;
-  constexpr int kSteps = 4000;
-  for (int step = kSteps; step > 0; --step) {
-    const double t = horizon * step / kSteps;
-    if (std::abs(FromRest(s1, s2, t)) > kSettled) return t;
-  }
-  return 0;
+/// The least positive angle that differs from `angle` by whole turns.
+double PositiveAngle(double angle) { return angle > 0 ? angle : angle + 2 * std::numbers::pi; }
+
+}  // namespace
+
+// For s^2 + (a + i b) s + (c + i d): a > 0 and a (a c + b d) > d^2.
+bool Decays(const LinearMode& mode) {
+  const Complex d = mode.damping, k = mode.stiffness;
+  if (mode.order == 1) return k.real() > 0;
+  return d.real() > 0 && d.real() * (d.real() * k.real() + d.imag() * k.imag()) > k.imag() * k.imag();
 }
 
-double SettlingTime(std::span<const LinearMode> modes) {
-  double slowest = 0;
-  for (const LinearMode& mode : modes) slowest = slowest == 0 ? Rate(mode) : std::min(slowest, Rate(mode));
+bool DecaysSampled(const LinearMode& mode, double period_s) {
+  return std::ranges::all_of(Poles(mode, period_s),
+                             [&](Complex pole) { return 2 * pole.real() + period_s * std::norm(pole) < 0; });
+}
+
+// The condition of Decays, with lambda = x + i y: x b^2 + g (2 x^2 + y^2) b + g^2 x |lambda|^2 - p y^2 > 0.
+double LeastDamping(double p, double g, std::complex<double> lambda) {
+  const double x = lambda.real(), y2 = lambda.imag() * lambda.imag();
+  return PositiveRoot(x, g * (2 * x * x + y2), g * g * x * std::norm(lambda) - p * y2);
+}
+
+// The same as a condition on g: x |lambda|^2 g^2 + b (2 x^2 + y^2) g + x b^2 - p y^2 > 0.
+double LeastRelativeDamping(double p, double b, std::complex<double> lambda) {
+  const double x = lambda.real(), y2 = lambda.imag() * lambda.imag();
+  return PositiveRoot(x * std::norm(lambda), b * (2 * x * x + y2), x * b * b - p * y2);
+}
+
+double LongestPeriod(std::span<const LinearMode> modes) {
+  double longest_s = kInfinity;
+  for (const LinearMode& mode : modes) longest_s = std::min(longest_s, LongestPeriod(mode));
+  return longest_s;
+}
+
+double DecayRate(std::span<const LinearMode> modes, double period_s) {
+  double slowest = kInfinity;
+  for (const LinearMode& mode : modes) slowest = std::min(slowest, Rate(mode, period_s));
+  return slowest;
+}
+
+double SettlingTime(const LinearMode& mode, double period_s) {
+  if (mode.order == 1) return std::ceil(std::log(1 / kSettled) / (Rate(mode, period_s) * period_s)) * period_s;
+  const FromRest x(mode, period_s);
+  double horizon = std::max(1.0, std::ceil(1 / (Rate(mode, period_s) * period_s)));
+  while (x.Bound(horizon) > kSettled) horizon = std::ceil(horizon * 1.1);
+  constexpr double kSteps = 4000;
+  const double stride = std::max(1.0, std::floor(horizon / kSteps));
+  double settled = horizon;
+  while (settled > 0 && std::abs(x.At(settled - stride)) <= kSettled) settled -= stride;
+  double unsettled = settled - stride;
+  while (settled - unsettled > 1) {
+    const double middle = std::floor((settled + unsettled) / 2);
+    (std::abs(x.At(middle)) > kSettled ? unsettled : settled) = middle;
+  }
+  return settled * period_s;
+}
+
+double SettlingTime(std::span<const LinearMode> modes, double period_s) {
+  const double slowest = DecayRate(modes, period_s);
   // From rest a mode of rate r settles between 3.9 / r and 5.9 / r: faster ones than these cannot be the last.
   double settling_s = 0;
   for (const LinearMode& mode : modes) {
-    if (Rate(mode) <= 1.6 * slowest) settling_s = std::max(settling_s, SettlingTime(mode));
+    if (Rate(mode, period_s) <= 1.6 * slowest) settling_s = std::max(settling_s, SettlingTime(mode, period_s));
   }
   return settling_s;
+}
+
+// A root s = i w of s^n + (stiffness + damping s) e^(-s tau), n the order: |i w|^n = |stiffness + i w damping|, then
+// tau from the angles. Negative w too: the modes of a directed graph are complex.
+double OwnDelayMargin(const LinearMode& mode) {
+  const Complex d = mode.damping, k = mode.stiffness, i(0, 1);
+  if (mode.order == 1) return (std::numbers::pi / 2 - std::abs(std::arg(k))) / std::abs(k);
+  // w^4 - |d|^2 w^2 + 2 (Re(k) Im(d) - Im(k) Re(d)) w - |k|^2 = 0
+  Eigen::Matrix4d companion = Eigen::Matrix4d::Zero();
+  companion.diagonal<-1>().setOnes();
+  companion.col(3) << std::norm(k), -2 * (k.real() * d.imag() - k.imag() * d.real()), std::norm(d), 0;
+  double margin_s = kInfinity;
+  for (const Complex w : companion.eigenvalues()) {
+    if (std::abs(w.imag()) > 1e-9 * std::abs(w)) continue;
+    // (i w)^2 = -(stiffness + i w damping) e^(-i w tau)
+    const double angle = std::arg((k + i * w.real() * d) / (w.real() * w.real()));
+    margin_s = std::min(margin_s, PositiveAngle(w.real() > 0 ? angle : -angle) / std::abs(w.real()));
+  }
+  return margin_s;
 }
 
 }  // namespace mascot

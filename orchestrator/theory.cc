@@ -2,9 +2,13 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "agent/laws.h"
 #include "agent/python.h"
 #include "orchestrator/crowding.h"
+#include "orchestrator/links_on_average.h"
 #include "orchestrator/team.h"
 #include "orchestrator/theory_parts.h"
 
@@ -22,27 +26,42 @@ std::vector<Motion> Start(const Experiment& experiment) {
   return motions;
 }
 
+/// What an agent's answer to tick 0 asks for, before limits: an acceleration, or a velocity of a model driven by it.
+double Asked(const Command& command, const Motion& start, bool velocity, double period_s) {
+  const Eigen::Vector3d asked_W = velocity ? start.v_WB + command.a_law_W * period_s : command.a_law_W;
+  return asked_W.cwiseAbs().maxCoeff();
+}
+
 void PredictFirstCommand(Experiment& experiment, Prediction& prediction) {
   const MutedPython muted;
-  Team team(experiment);
+  Experiment prompt = experiment;  // delays and losses only put off the moment at which agents hear all their neighbours
+  prompt.links = {};
+  Team team(prompt);
   const std::vector<Motion> motions = Start(experiment);
-  const AgentConfig* of = nullptr;
   for (const AgentConfig& agent : experiment.agents) {
-    if (DrivenBy(agent.model) == Wanted::kVelocity) continue;  // has no acceleration to limit
-    const Eigen::Vector3d a_W = team.Want(agent.id, 0, motions).a_law_W;
-    const double asked = a_W.cwiseAbs().maxCoeff();
-    if (asked <= prediction.first_command_m_per_s2.value_or(-1)) continue;
-    prediction.first_command_m_per_s2 = asked;
-    of = &agent;
+    const Command command = team.Want(agent.id, 0, motions);
+    const bool velocity =
+        DrivenBy(agent.model) == Wanted::kVelocity && MakeLaw(prompt, agent.id)->wanted() == Wanted::kVelocity;
+    const Motion& start = motions[static_cast<std::size_t>(agent.id - 1)];
+    const double asked = Asked(command, start, velocity, experiment.period_s());
+    const double limit = velocity ? agent.control.max_speed_m_per_s : agent.control.max_acceleration_m_per_s2;
+    auto& first = velocity ? prediction.first_speed : prediction.first_acceleration;
+    if (!first || asked > first->asked) first = FirstCommand{agent.id, asked, limit};
   }
-  if (of == nullptr) return;
-  const double limit = of->control.max_acceleration_m_per_s2;
-  prediction.first_command_limit_m_per_s2 = limit;
-  if (*prediction.first_command_m_per_s2 <= limit || experiment.law.name == "minmax") return;  // WarnOfCutBeta has said so
-  prediction.warnings.push_back(fmt::format(
-      "control.max_acceleration_m_per_s2: the first command would already saturate: agent {} asks for {:.4g} m/s^2, "
-      "the limit is {:.4g}",
-      of->id, *prediction.first_command_m_per_s2, limit));
+}
+
+void WarnOfFirstCommand(const std::optional<FirstCommand>& first, std::string_view key, std::string_view unit,
+                        Prediction& prediction) {
+  if (!first || first->asked <= first->limit) return;
+  prediction.warnings.push_back(
+      fmt::format("{}: the first command would already saturate: agent {} asks for {:.4g} {}, the limit is {:.4g}", key,
+                  first->agent, first->asked, unit, first->limit));
+}
+
+void WarnOfFirstCommands(const Experiment& experiment, Prediction& prediction) {
+  if (experiment.law.name != "minmax")  // there WarnOfCutBeta has said so
+    WarnOfFirstCommand(prediction.first_acceleration, "control.max_acceleration_m_per_s2", "m/s^2", prediction);
+  WarnOfFirstCommand(prediction.first_speed, "control.max_speed_m_per_s", "m/s", prediction);
 }
 
 void WarnOfShortRun(const Experiment& experiment, Prediction& prediction) {
@@ -52,27 +71,48 @@ void WarnOfShortRun(const Experiment& experiment, Prediction& prediction) {
                                                 experiment.run.duration_s, *time_s));
 }
 
+struct Predictor {
+  std::string_view law;
+  void (*predict)(Experiment& experiment, const Timeline& timeline, Prediction& prediction);
+  bool meets;  ///< its agents want to: a spanning tree matters
+};
+
+constexpr Predictor kPredictors[] = {
+    {"consensus", PredictLinear, true},
+    {"formation", PredictLinear, true},
+    {"velocity_consensus", PredictLinear, true},
+    {"waypoint", PredictWaypoint, false},
+    {"minmax", PredictMinmax, true},
+};
+
+void PredictLaw(Experiment& experiment, Prediction& prediction) {
+  const std::optional<Timeline> timeline = TimelineOf(experiment);
+  if (timeline) prediction.persistence = PersistenceOf(experiment, *timeline);
+  const auto* predictor = std::ranges::find(kPredictors, experiment.law.name, &Predictor::law);
+  if (predictor == std::end(kPredictors)) {
+    prediction.silent = "theory does not know the law " + experiment.law.name;
+  } else if (!timeline) {
+    prediction.silent =
+        fmt::format("graph.repeat_s: the schedule is not back at the same tick soon, or changes more than {} times",
+                    kMostIntervals);
+  } else {
+    if (predictor->meets) {
+      for (std::string& warning : PersistenceWarnings(experiment, *timeline, *prediction.persistence))
+        prediction.warnings.push_back(std::move(warning));
+    }
+    predictor->predict(experiment, *timeline, prediction);
+  }
+}
+
 }  // namespace
-
-Eigen::Vector3d AtHeldHeight(const Experiment& experiment, Eigen::Vector3d value_m) {
-  if (experiment.law.axes == Axes::kXyz) return value_m;
-  value_m.z() = 0;
-  for (const AgentConfig& agent : experiment.agents) value_m.z() += agent.p_W.z() / experiment.size();
-  return value_m;
-}
-
-std::optional<Eigen::Vector3d> RestingLeader(const Experiment& experiment, bool flies) {
-  const AgentConfig& leader = experiment.agent(experiment.law.leader);
-  if (flies || !leader.v_W.head(AxisCount(experiment)).isZero(0)) return std::nullopt;
-  return AtHeldHeight(experiment, leader.p_W);
-}
 
 Prediction Predict(Experiment& experiment) {
   Prediction prediction;
-  if (experiment.law.name == "consensus") PredictConsensus(experiment, prediction);
-  if (experiment.law.name == "waypoint") PredictWaypoint(experiment, prediction);
-  if (experiment.law.name == "minmax") PredictMinmax(experiment, prediction);
+  prediction.on_average =
+      LosesSome(experiment) || !experiment.sensors.own.IsNone() || !experiment.sensors.heard.IsNone();
+  PredictLaw(experiment, prediction);
   PredictFirstCommand(experiment, prediction);
+  WarnOfFirstCommands(experiment, prediction);
   WarnOfShortRun(experiment, prediction);
   for (std::string& warning : CrowdingWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
   return prediction;

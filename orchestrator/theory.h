@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "experiment/experiment.h"
+#include "orchestrator/delay_margin.h"
+#include "orchestrator/persistence.h"
 
 namespace mascot {
 
@@ -17,18 +19,34 @@ struct MinmaxEdge {
   bool exact = false;  ///< a closed form from the initial condition; else a bound that holds whatever the parent does
 };
 
-/// What theory says about an experiment before it runs. Absent where theory is silent.
+/// The largest component that any agent's law asks for at tick 0, if it hears all its neighbours at once, and what that
+/// agent is allowed.
+struct FirstCommand {
+  int agent = 0;
+  double asked = 0;
+  double limit = 0;
+};
+
+/// What theory says about an experiment before it runs; docs/theory.md has the formulas. Absent where theory is silent.
 struct Prediction {
-  std::optional<Eigen::Vector3d> value_m;  ///< where agents meet (z: mean start height where held)
-  std::optional<bool> stable;              ///< all modes decay, in continuous time and sampled
+  std::optional<Eigen::Vector3d>
+      value_m;                       ///< where agents meet (z: mean start height where held); of a formation: p - d
+  std::optional<bool> stable;        ///< all modes decay, sampled and with the delays that there are
+  std::optional<double> rate_per_s;  ///< of the slowest mode
   /// Of the slowest mode, from rest, to 2 %. Agents that only follow along a chain settle later: the modes of a
   /// directed graph do not stay apart.
   std::optional<double> settling_time_s;
-  std::optional<double> minmax_time_s;           ///< latest of `minmax_edges`
-  std::vector<MinmaxEdge> minmax_edges;          ///< by child; only edges of which theory knows the time
-  std::optional<double> first_command_m_per_s2;  ///< largest component any agent's law asks for at tick 0
-  std::optional<double> first_command_limit_m_per_s2;  ///< of that agent
-  std::vector<std::string> warnings;             ///< "key: text": what will not work, or not as the user may think
+  std::optional<double> control_period_bound_s;    ///< from this control period on the loop is unstable, without delays
+  std::optional<DelayMargin> delay_margin;         ///< of what is heard
+  std::optional<double> own_delay_margin_s;        ///< of what is heard and what is measured, both as late
+  std::optional<double> minmax_time_s;             ///< latest of `minmax_edges`
+  std::vector<MinmaxEdge> minmax_edges;            ///< by child; only edges of which theory knows the time
+  std::optional<FirstCommand> first_acceleration;  ///< m/s^2
+  std::optional<FirstCommand> first_speed;         ///< m/s: where a law wants a velocity of a model driven by it
+  std::optional<Persistence> persistence;
+  bool on_average = false;            ///< samples are lost, or measured with noise: the above holds on average
+  std::string silent;                 ///< why theory says less than it could; empty: it does not
+  std::vector<std::string> warnings;  ///< "key: text": what will not work, or not as the user may think
 };
 
 /// For an experiment that LoadExperiment returned. Eigenvalues are left out above kLargestSpectrum agents.

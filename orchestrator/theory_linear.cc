@@ -1,147 +1,226 @@
-// Consensus and waypoint flight: linear laws, whose modes tell everything.
+// Laws that are linear: consensus, formation, velocity consensus, and teams that mix them.
 #include <spdlog/fmt/fmt.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
-#include <complex>
+#include <cmath>
 
 #include "agent/laws/consensus.h"
 #include "agent/laws/reach.h"
-#include "orchestrator/modes.h"
+#include "orchestrator/linear_team.h"
+#include "orchestrator/links_on_average.h"
+#include "orchestrator/meeting_point.h"
+#include "orchestrator/period_bound.h"
+#include "orchestrator/sampled_team.h"
 #include "orchestrator/theory_parts.h"
 
 namespace mascot {
 namespace {
 
-/// What damps every agent alike, or nothing if it differs: beta, and drag where nobody compensates it.
-std::optional<double> CommonDamping(const Experiment& experiment, double beta) {
-  std::optional<double> common;
-  for (const AgentConfig& agent : experiment.agents) {
-    const bool drag = agent.model == "quadrotor" && !agent.control.drag_compensation;
-    const double damping = beta + (drag ? agent.airframe.linear_drag_kg_per_s / agent.airframe.mass_kg : 0);
-    if (common && *common != damping) return std::nullopt;
-    common = damping;
-  }
-  return common;
-}
+/// One experiment that is linear, and what is found out about it.
+class LinearCase {
+ public:
+  LinearCase(const Experiment& experiment, const LinearTeam& team, const Timeline& timeline, Prediction& prediction)
+      : experiment_(experiment),
+        team_(team),
+        timeline_(timeline),
+        prediction_(prediction),
+        graph_(team.Followed(timeline.intervals.back().graph)),
+        common_(team.Common()) {}
 
-/// Eigenvalues that must decay: of L without its one zero, or of L without the leader's row and column.
-std::vector<std::complex<double>> Spectrum(const Graph& graph, int leader) {
-  std::vector<std::complex<double>> spectrum;
-  if (leader == 0) {
-    const Eigen::VectorXcd all = graph.Eigenvalues();
-    spectrum.assign(all.begin() + 1, all.end());
-    return spectrum;
-  }
-  std::vector<Eigen::Index> followers;
-  for (int id = 1; id <= graph.size(); ++id) {
-    if (id != leader) followers.push_back(id - 1);
-  }
-  if (followers.empty()) return spectrum;
-  const Eigen::MatrixXd grounded = graph.Laplacian()(followers, followers);
-  if (graph.IsSymmetric()) {
-    const Eigen::VectorXd real =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(grounded, Eigen::EigenvaluesOnly).eigenvalues();
-    spectrum.assign(real.begin(), real.end());
-  } else {
-    const Eigen::VectorXcd complex = Eigen::EigenSolver<Eigen::MatrixXd>(grounded, false).eigenvalues();
-    spectrum.assign(complex.begin(), complex.end());
-  }
-  return spectrum;
-}
+  void Predict();
 
-/// Whether the graph lets the law work at all; says why not.
-bool Connected(const Experiment& experiment, Prediction& prediction) {
-  const Graph& graph = experiment.graph;
-  const int leader = experiment.law.leader;
-  if (leader == 0 && graph.Roots().empty()) {
-    prediction.warnings.push_back(
-        "graph: nobody is heard by everyone, directly or not (no spanning tree), so agents will not all meet");
+ private:
+  const AgentConfig& agent(int id) const { return experiment_.agent(id); }
+  bool IsModal() const { return timeline_.IsConstant() && common_.has_value(); }
+  bool IsDelayed() const { return LongestDelay(experiment_) > 0 || experiment_.sensors.own_delay_s > 0; }
+  bool MayCoast() const;
+  void FindModes();
+  GainBound Gain() const;
+  bool JudgeGains();
+  bool JudgeDelays();
+  bool PredictMotion();
+  bool PredictSampled();
+  void PredictValue();
+  void WarnOfLag(int leader) const;
+  bool Silent(const std::string& why) const {
+    prediction_.silent = why;
     return false;
   }
-  const std::vector<int> astray = leader == 0 ? std::vector<int>{} : NotReached(graph, leader);
-  if (astray.empty()) return true;
-  prediction.warnings.push_back(fmt::format(
-      "law.leader: leader {} is not heard, directly or not, by {}, who will not follow", leader, AgentList(astray)));
-  return false;
-}
+  bool Warn(const std::string& warning) const {
+    prediction_.warnings.push_back(warning);
+    prediction_.stable = false;
+    return false;
+  }
 
-/// The two gains of a linear law, and what the file calls them.
-struct Gains {
-  double p = 0;
-  double d = 0;
-  std::string_view d_key;
+  const Experiment& experiment_;
+  const LinearTeam& team_;
+  const Timeline& timeline_;
+  Prediction& prediction_;
+  Graph graph_;  // of the last interval
+  std::optional<LinearAgent> common_;
+  std::vector<LinearMode> modes_;  // of a team that IsModal
 };
 
-/// Whether every mode decays, in continuous time and sampled; says what would make it so.
-bool Stable(const Experiment& experiment, const Gains& law, const std::vector<LinearMode>& modes,
-            Prediction& prediction) {
-  if (law.p == 0) {
-    prediction.warnings.push_back("law.p_gain: 0 means that nothing pulls an agent anywhere");
-    return false;
+void LinearCase::Predict() {
+  if (IsModal()) FindModes();
+  if (JudgeGains() && JudgeDelays() && PredictMotion()) PredictValue();
+}
+
+/// Of the eigenvalues of L, all but its one zero: that of agreement, or of a leader.
+void LinearCase::FindModes() {
+  const Eigen::VectorXcd lambda = graph_.Eigenvalues();
+  for (Eigen::Index i = 1; i < lambda.size(); ++i) modes_.push_back(common_->Mode(lambda(i)));
+}
+
+/// The gain that would have to be larger if modes do not decay, and how large.
+GainBound LinearCase::Gain() const {
+  const LinearAgent& all = *common_;
+  const Eigen::VectorXcd lambda = graph_.Eigenvalues();
+  const bool relative = all.g > 0, velocity = experiment_.law.name == "velocity_consensus";
+  double least = 0;
+  for (Eigen::Index i = 1; i < lambda.size(); ++i)
+    least =
+        std::max(least, relative ? LeastRelativeDamping(all.p, all.b, lambda(i)) : LeastDamping(all.p, 0, lambda(i)));
+  if (relative) return {"law.v_gain", least, all.g};
+  const double own = all.b - all.drag_b;
+  if (velocity) {
+    // There own = k_v and p = k_v p_gain: (k_v + drag)^2 > k_v p_gain (Im lambda)^2 / Re lambda.
+    const double half = least * least / own / 2 - all.drag_b;
+    const double root = half * half - all.drag_b * all.drag_b;
+    return {"control.velocity_gain", half > 0 && root >= 0 ? half + std::sqrt(root) : 0, own};
   }
-  if (!std::all_of(modes.begin(), modes.end(), Decays)) {
-    double least = 0;
-    for (const LinearMode& mode : modes) least = std::max(least, LeastDamping(mode.stiffness));
-    const double drag = modes.front().damping - law.d;
-    prediction.warnings.push_back(fmt::format("law.{}: unstable, it must be above {:.4g}, got {:.4g}", law.d_key,
-                                              std::max(0.0, least - drag), law.d));
-    return false;
+  return {"law.beta", std::max(0.0, least - all.drag_b), own};
+}
+
+/// Nobody leads, and some do not brake: agents who have met may go on for ever, if nobody who counts brakes.
+bool LinearCase::MayCoast() const {
+  return team_.Leaders().empty() &&
+         std::ranges::any_of(team_.agents, [](const LinearAgent& moves) { return moves.order == 2 && moves.b == 0; });
+}
+
+bool LinearCase::JudgeGains() {
+  std::vector<int> idle;
+  for (const AgentConfig& a : experiment_.agents)
+    if (team_.agent(a.id).listens && team_.agent(a.id).p == 0) idle.push_back(a.id);
+  if (!idle.empty())
+    return Warn(
+        fmt::format("law.p_gain: 0 means that nothing pulls {} anywhere", common_ ? "an agent" : AgentList(idle)));
+  if (!timeline_.IsConstant()) return true;
+  if (common_) {
+    const bool stable = JudgeModes(experiment_, modes_, Gain(), prediction_);
+    if (!stable) prediction_.stable = false;
+    return stable;
   }
-  const double longest_s = LongestPeriod(modes, experiment.period_s());
-  if (longest_s >= experiment.period_s()) return true;
-  prediction.warnings.push_back(fmt::format("control.rate_hz: unstable at this rate, it must be above {:.4g}, got {}",
-                                            1 / longest_s, experiment.control.rate_hz));
+  if (MayCoast() || !PeriodBoundIsKnown(experiment_)) return true;
+  const double longest_s = PeriodBound(experiment_, team_, timeline_);
+  if (longest_s == 0) return Warn("law: the gains of these agents are unstable together");
+  if (JudgePeriod(experiment_, longest_s, prediction_)) return true;
+  prediction_.stable = false;
   return false;
 }
 
-/// A leader at constant velocity v is followed at p_L - p = (damping / p_gain) v L_FF^-1 1.
-void WarnOfLag(const Experiment& experiment, double p_gain, double damping, Prediction& prediction) {
-  const double speed = experiment.agent(experiment.law.leader).v_W.head(AxisCount(experiment)).norm();
-  Eigen::MatrixXd pinned = experiment.graph.Laplacian();
-  const Eigen::Index leader = experiment.law.leader - 1;
-  pinned.row(leader).setZero();
-  pinned(leader, leader) = 1;
+/// Margins, and whether there is more delay than they allow.
+bool LinearCase::JudgeDelays() {
+  if (!timeline_.IsConstant()) return true;
+  const double link_s = LongestDelay(experiment_), own_s = experiment_.sensors.own_delay_s;
+  prediction_.delay_margin = LinkDelayMargin(team_, graph_);
+  if (common_ && common_->drag_b == 0)
+    for (const LinearMode& mode : modes_)
+      prediction_.own_delay_margin_s =
+          std::min(prediction_.own_delay_margin_s.value_or(OwnDelayMargin(mode)), OwnDelayMargin(mode));
+  const auto exceeds = [](double delay_s, std::optional<double> margin_s) { return margin_s && delay_s >= *margin_s; };
+  const auto margin_s = prediction_.delay_margin ? prediction_.delay_margin->margin_s : std::nullopt;
+  if (own_s == 0 && exceeds(link_s, margin_s))
+    return Warn(fmt::format("link.delay_s: unstable, it must be below {:.4g}, got {:.4g}", *margin_s, link_s));
+  if (own_s == link_s && exceeds(own_s, prediction_.own_delay_margin_s))
+    return Warn(fmt::format("sensors.own.delay_s: unstable, it must be below {:.4g}, got {:.4g}",
+                            *prediction_.own_delay_margin_s, own_s));
+  return true;
+}
+
+/// Rate and settling time; whether there is more to say.
+bool LinearCase::PredictMotion() {
+  if (const std::string random = RandomAge(experiment_); !random.empty()) return Silent(random);
+  if (!IsModal() || IsDelayed()) return PredictSampled();
+  prediction_.stable = true;
+  if (modes_.empty()) return true;
+  prediction_.rate_per_s = DecayRate(modes_, experiment_.period_s());
+  prediction_.settling_time_s = SettlingTime(modes_, experiment_.period_s());
+  return true;
+}
+
+bool LinearCase::PredictSampled() {
+  if (!SampledTeam::IsSmall(experiment_))
+    return Silent("so many agents, different or with so long delays, are more than its eigenvalues are computed for");
+  if (MayCoast() && !(IsModal() && IsDelayed())) return Silent("law.beta is 0: agents who have met may go on together");
+  const SampledTeam sampled(experiment_, team_, timeline_, experiment_.period_s());
+  prediction_.stable = sampled.Decays();
+  if (!*prediction_.stable) {
+    const double own_s = experiment_.sensors.own_delay_s, link_s = LongestDelay(experiment_);
+    if (own_s > 0) return Warn(fmt::format("sensors.own.delay_s: unstable with this delay, got {:.4g}", own_s));
+    if (link_s > 0) return Warn(fmt::format("link.delay_s: unstable with this delay, got {:.4g}", link_s));
+    return Warn("law: unstable with these gains on these graphs");
+  }
+  if (sampled.radius() == 0) return true;  // nobody follows
+  prediction_.rate_per_s = sampled.rate_per_s();
+  prediction_.settling_time_s = std::log(50) / sampled.rate_per_s();
+  return true;
+}
+
+void LinearCase::PredictValue() {
+  const std::vector<int> leaders = team_.Leaders();
+  if (leaders.empty()) {
+    prediction_.value_m = timeline_.IsConstant() ? MeetingPoint(experiment_, team_, graph_) : std::nullopt;
+    if (!prediction_.value_m && SampledTeam::IsSmall(experiment_) && (!IsModal() || IsDelayed()))
+      prediction_.value_m = SampledTeam(experiment_, team_, timeline_, experiment_.period_s()).MeetingPoint();
+  } else {
+    prediction_.value_m = RestingPlace(experiment_, team_, leaders.front());
+    const bool moves = !agent(leaders.front()).v_W.head(AxisCount(experiment_)).isZero(0);
+    if (moves || !prediction_.value_m) prediction_.settling_time_s.reset();  // they settle after the leader
+    if (!prediction_.value_m && !team_.agent(leaders.front()).flies) WarnOfLag(leaders.front());
+  }
+  if (prediction_.value_m && experiment_.law.axes == Axes::kXy)
+    prediction_.value_m->z() = HeldHeight(experiment_, team_);
+}
+
+/// A leader at constant velocity v is followed at p_L - p = (b / p) v L_FF^-1 1.
+void LinearCase::WarnOfLag(int leader) const {
+  if (!IsModal()) return;
+  Eigen::MatrixXd pinned = graph_.Laplacian();
+  pinned(leader - 1, leader - 1) = 1;
   Eigen::VectorXd ones = Eigen::VectorXd::Ones(pinned.rows());
-  ones(leader) = 0;
+  ones(leader - 1) = 0;
+  const double speed = agent(leader).v_W.head(AxisCount(experiment_)).norm();
   const double farthest = pinned.partialPivLu().solve(ones).maxCoeff();
-  prediction.warnings.push_back(
+  prediction_.warnings.push_back(
       fmt::format("law.leader: the leader keeps its {:.4g} m/s, so followers stay up to {:.4g} m behind", speed,
-                  farthest * damping / p_gain * speed));
+                  farthest * common_->b / common_->p * speed));
+}
+
+/// Why not even the linear theory of the team applies; empty: it does.
+std::string WhyNot(const Experiment& experiment, const Linearity& linearity, const Timeline& timeline) {
+  if (!linearity.team) return linearity.why_not;
+  if (experiment.schedule.range_m() > 0) return "graph.range_m: who hears whom depends on where they go";
+  if (experiment.size() > kLargestSpectrum) return fmt::format("there are more than {} agents", kLargestSpectrum);
+  for (const AgentConfig& agent : experiment.agents)
+    if (agent.stop_s < experiment.run.duration_s)
+      return fmt::format("agents.override.stop_s: agent {} stays behind", agent.id);
+  const std::vector<int> leaders = linearity.team->Leaders();
+  if (leaders.size() > 1) return AgentList(leaders) + " all lead";
+  if (leaders.empty() || !timeline.IsConstant()) return "";
+  const std::vector<int> astray =
+      NotReached(linearity.team->Followed(timeline.intervals.back().graph), leaders.front());
+  return astray.empty() ? "" : fmt::format("agent {} leads, but {} do not hear it", leaders.front(), AgentList(astray));
 }
 
 }  // namespace
 
-void PredictConsensus(Experiment& experiment, Prediction& prediction) {
-  const ConsensusParams law = ReadConsensus(experiment.law);
-  const std::optional<double> damping = CommonDamping(experiment, law.beta);
-  const int leader = experiment.law.leader;
-  if (!Connected(experiment, prediction) || !damping || experiment.size() > kLargestSpectrum) return;
-
-  std::vector<LinearMode> modes;
-  for (const auto& lambda : Spectrum(experiment.graph, leader)) modes.push_back({*damping, law.p_gain * lambda});
-  prediction.stable = Stable(experiment, {law.p_gain, law.beta, "beta"}, modes, prediction);
-  if (!*prediction.stable) return;
-
-  if (leader > 0) {
-    prediction.value_m = RestingLeader(experiment, law.leader_flight.has_value());
-    if (!prediction.value_m && !law.leader_flight) WarnOfLag(experiment, law.p_gain, *damping, prediction);
-  } else if (const auto gamma = experiment.graph.LeftNullVector(); gamma && *damping > 0) {
-    Eigen::Vector3d meeting_m = Eigen::Vector3d::Zero();
-    for (const AgentConfig& agent : experiment.agents)
-      meeting_m += (*gamma)(agent.id - 1) * (agent.p_W + agent.v_W / *damping);
-    prediction.value_m = AtHeldHeight(experiment, meeting_m);
-  }
-  if (prediction.value_m && !modes.empty()) prediction.settling_time_s = SettlingTime(modes);
-}
-
-void PredictWaypoint(Experiment& experiment, Prediction& prediction) {
-  const WaypointParams law = ReadWaypoints(experiment.law.section, "");
-  const std::optional<double> damping = CommonDamping(experiment, law.d_gain);
-  if (!damping) return;
-  const std::vector<LinearMode> modes = {{*damping, law.p_gain}};
-  prediction.stable = Stable(experiment, {law.p_gain, law.d_gain, "d_gain"}, modes, prediction);
-  if (*prediction.stable) prediction.settling_time_s = SettlingTime(modes);
+void PredictLinear(Experiment& experiment, const Timeline& timeline, Prediction& prediction) {
+  if (!prediction.persistence->joint) return;  // as the warnings say
+  const Linearity linearity = LinearTeamOf(experiment);
+  prediction.silent = WhyNot(experiment, linearity, timeline);
+  if (prediction.silent.empty()) LinearCase(experiment, *linearity.team, timeline, prediction).Predict();
 }
 
 }  // namespace mascot

@@ -59,14 +59,41 @@ void WarnOfWeakEdges(const MinmaxParams& law, Prediction& prediction) {
                   AgentList(weak), weak.size() == 1 ? "is" : "are"));
 }
 
+/// Where everyone gathers, at a root that rests: in z at the mean of the heights that they hold.
+std::optional<Eigen::Vector3d> RestingRoot(const Experiment& experiment, const MinmaxParams& law) {
+  const AgentConfig& root = experiment.agent(experiment.law.leader);
+  if (law.root_flight || !root.v_W.head(AxisCount(experiment)).isZero(0)) return std::nullopt;
+  Eigen::Vector3d value_m = root.p_W;
+  if (experiment.law.axes == Axes::kXyz) return value_m;
+  value_m.z() = 0;
+  for (const AgentConfig& agent : experiment.agents) value_m.z() += agent.p_W.z() / experiment.size();
+  return value_m;
+}
+
+/// Why the closed forms do not hold: they are about children who see their parents as they are, at every tick.
+std::string WhyNot(const Experiment& experiment, const Timeline& timeline) {
+  for (const AgentConfig& agent : experiment.agents) {
+    if (agent.has_own_law) return fmt::format("agents.override: agent {} has a law of its own", agent.id);
+    if (agent.model == "unicycle") return fmt::format("agent {} is a unicycle, which turns before it goes", agent.id);
+  }
+  if (!timeline.IsConstant()) return "the graph changes, and a child that does not hear its parent drifts";
+  if (experiment.schedule.range_m() > 0) return "graph.range_m: a child that does not hear its parent drifts";
+  if (!experiment.links.ArePerfect(experiment.graph)) return "link: children see their parents late, or not always";
+  if (experiment.sensors.own_delay_s > 0) return "sensors.own.delay_s: agents know late where they are";
+  return "";
+}
+
 }  // namespace
 
-void PredictMinmax(Experiment& experiment, Prediction& prediction) {
+void PredictMinmax(Experiment& experiment, const Timeline& timeline, Prediction& prediction) {
   const MinmaxParams law = ReadMinmax(experiment, experiment.law);
-  prediction.value_m = RestingLeader(experiment, law.root_flight.has_value());
-  for (const AgentConfig& agent : experiment.agents) {
-    if (agent.id == experiment.law.leader) continue;
-    if (const auto edge = PredictEdge(experiment, law, agent.id)) prediction.minmax_edges.push_back(*edge);
+  prediction.silent = WhyNot(experiment, timeline);
+  if (prediction.silent.empty()) {
+    prediction.value_m = RestingRoot(experiment, law);
+    for (const AgentConfig& agent : experiment.agents) {
+      if (agent.id == experiment.law.leader) continue;
+      if (const auto edge = PredictEdge(experiment, law, agent.id)) prediction.minmax_edges.push_back(*edge);
+    }
   }
   for (const MinmaxEdge& edge : prediction.minmax_edges) {
     prediction.minmax_time_s = std::max(edge.time_s, prediction.minmax_time_s.value_or(0));

@@ -4,21 +4,35 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
+#include <string>
 
 #include "experiment/experiment.h"
+#include "orchestrator/modes.h"
 #include "orchestrator/theory.h"
+#include "orchestrator/timeline.h"
 
 namespace mascot {
 
 /// Axes that the law moves: x and y, or z too.
 inline int AxisCount(const Experiment& experiment) { return experiment.law.axes == Axes::kXyz ? 3 : 2; }
-/// With law.axes = "xy" every agent keeps its own height, and the mean of them is what a meeting point has.
-Eigen::Vector3d AtHeldHeight(const Experiment& experiment, Eigen::Vector3d value_m);
-/// Where everyone gathers at the leader, if it rests; `flies`: it has waypoints.
-std::optional<Eigen::Vector3d> RestingLeader(const Experiment& experiment, bool flies);
 
-void PredictConsensus(Experiment& experiment, Prediction& prediction);  // theory_linear.cc
-void PredictWaypoint(Experiment& experiment, Prediction& prediction);   // theory_linear.cc
-void PredictMinmax(Experiment& experiment, Prediction& prediction);     // theory_minmax.cc
+/// What would make unstable modes stable.
+struct GainBound {
+  std::string key;
+  double least = 0;  ///< it must be above
+  double got = 0;
+};
+
+/// Whether all modes decay in continuous time, and sampled; says what would make it so, and notes the period's bound.
+bool JudgeModes(const Experiment& experiment, std::span<const LinearMode> modes, const GainBound& gain,
+                Prediction& prediction);
+/// Notes the longest control period, and whether ours is shorter; warns if not.
+bool JudgePeriod(const Experiment& experiment, double longest_s, Prediction& prediction);
+
+// Each adds to what is known of persistence.
+void PredictLinear(Experiment& experiment, const Timeline& timeline, Prediction& prediction);    // theory_linear.cc
+void PredictWaypoint(Experiment& experiment, const Timeline& timeline, Prediction& prediction);  // theory_waypoint.cc
+void PredictMinmax(Experiment& experiment, const Timeline& timeline, Prediction& prediction);    // theory_minmax.cc
 
 }  // namespace mascot

@@ -228,7 +228,7 @@ TEST(Check, WarnsWhenTheRunIsTooShort) {
                         " --set run.duration_s=10.0");
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_THAT(run.output,
-              testing::HasSubstr("warning: run.duration_s: 10 s end before what theory expects at 15.33 s"));
+              testing::HasSubstr("warning: run.duration_s: 10 s end before what theory expects at 15.34 s"));
 }
 
 TEST(BadConfig, StartsNothingAndWritesNothing) {

@@ -4,9 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-#include <array>
 #include <cmath>
-#include <complex>
 
 #include "orchestrator/minmax_time.h"
 #include "orchestrator/modes.h"
@@ -20,90 +18,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
-
-// --- modes ------------------------------------------------------------------------------------------
-
-TEST(Modes, OfRealStiffnessDecayWithAnyDamping) {
-  EXPECT_TRUE(Decays({0.1, 4.0}));
-  EXPECT_FALSE(Decays({0.0, 4.0}));
-  EXPECT_FALSE(Decays({1.0, 0.0}));
-  EXPECT_FALSE(Decays({1.0, -1.0}));
-}
-
-TEST(Modes, OfComplexStiffnessNeedDampingAboveItsImaginaryPartOverTheRootOfItsRealPart) {
-  EXPECT_DOUBLE_EQ(LeastDamping({4.0, 3.0}), 1.5);
-  EXPECT_TRUE(Decays({1.51, {4.0, 3.0}}));
-  EXPECT_FALSE(Decays({1.49, {4.0, 3.0}}));
-}
-
-TEST(Modes, SampledDecayExactlyWhileStiffnessTimesPeriodIsBelowTwiceTheDamping) {
-  // And damping times period below 2, both from the Jury test.
-  EXPECT_TRUE(DecaysSampled({1.0, 20.0}, 0.0999));
-  EXPECT_FALSE(DecaysSampled({1.0, 20.0}, 0.1001));
-  EXPECT_TRUE(DecaysSampled({10.0, 1.0}, 0.1999));
-  EXPECT_FALSE(DecaysSampled({10.0, 1.0}, 0.2001));
-  const std::array<LinearMode, 2> modes = {{{1.0, 2.0}, {1.0, 20.0}}};
-  EXPECT_NEAR(LongestPeriod(modes, 1.0), 0.1, 1e-9);
-  EXPECT_EQ(LongestPeriod(modes, 0.05), 0.05);
-}
-
-/// |x| of a mode from rest, integrated in small steps: an independent witness.
-double SettlingByIntegration(const LinearMode& mode, double end_s) {
-  std::complex<double> x = 1, v = 0;
-  const double h = 1e-5;
-  double last_s = 0;
-  for (double t = 0; t < end_s; t += h) {
-    v += h * (-mode.stiffness * x - mode.damping * v);
-    x += h * v;
-    if (std::abs(x) > 0.02) last_s = t;
-  }
-  return last_s;
-}
-
-TEST(Modes, SettleWhenTheirFreeResponseFromRestStaysWithinTwoPercent) {
-  for (const LinearMode& mode : {LinearMode{2.0, 1.0}, {1.0, 4.0}, {5.0, 1.0}, {0.6, 3.0}, {2.0, {2.0, 1.5}}}) {
-    const double witness_s = SettlingByIntegration(mode, 60);
-    EXPECT_NEAR(SettlingTime(mode), witness_s, 2e-3 * witness_s) << mode.damping << " " << mode.stiffness;
-  }
-  EXPECT_NEAR(SettlingTime({2.0, 1.0}), 5.834, 0.01);                              // (1 + t) e^-t = 0.02
-  EXPECT_NEAR(SettlingTime({1000.0, 1.0}), 1000 * std::log(50), 0.01 * 1000 * 4);  // stiff: one slow root
-}
-
-TEST(Modes, SettleTogetherWithTheLastOfThem) {
-  const std::array<LinearMode, 3> modes = {{{1.0, 9.0}, {1.0, 0.1}, {1.0, 1.0}}};
-  EXPECT_EQ(SettlingTime(modes), SettlingTime(modes[1]));
-}
-
-// --- min-max times ----------------------------------------------------------------------------------
-
-TEST(MinmaxTimes, FromRestAreThePublishedClosedForms) {
-  EXPECT_NEAR(MinmaxTime(10, 0, 0.5, 1), 7.746, 1e-3);
-  EXPECT_NEAR(MinmaxTime(-10, 0, 0.5, 1), 7.746, 1e-3);
-  EXPECT_NEAR(MinmaxBound(10, 0, 0.5), 8.944, 1e-3);
-  EXPECT_NEAR(MinmaxTime(20, 0, 0.05, 1), 28.98, 5e-3);
-  EXPECT_NEAR(MinmaxTime(20, 0, 0.05, 0.6), 29.44, 5e-3);  // what the published force limit leaves
-  EXPECT_EQ(MinmaxTime(0, 0, 0.5, 1), 0);
-  EXPECT_EQ(MinmaxBound(0, 0, 0.5), 0);
-}
-
-TEST(MinmaxTimes, HoldFromAnyRelativeSpeed) {
-  const double alpha = 0.5, beta = 2, h = 1e-5;
-  for (const double z0 : {-6.0, -1.0, 0.0, 3.0}) {
-    for (const double w0 : {-3.0, -1.0, 0.0, 0.5, 2.0, 4.0}) {
-      double z = z0, w = w0, t = 0;
-      while (std::abs(z) > 1e-4 || std::abs(w) > 0.01) {
-        const double side = 2 * alpha * z + w * std::abs(w);
-        w -= h * beta * ((side > 0) - (side < 0));
-        z += h * w;
-        t += h;
-      }
-      EXPECT_NEAR(MinmaxTime(z0, w0, alpha, beta), t, 0.03) << z0 << " " << w0;
-      EXPECT_LE(MinmaxTime(z0, w0, alpha, beta), MinmaxBound(z0, w0, alpha) + 1e-9) << z0 << " " << w0;
-    }
-  }
-}
-
-// --- whole experiments ------------------------------------------------------------------------------
 
 const std::string kFour =
     "[run]\nduration_s = 40.0\n[agents]\ncount = 4\nmodel = 'double_integrator'\n"
@@ -157,13 +71,21 @@ TEST(Theory, CountsDragAsDampingWhereNobodyCompensatesIt) {
   EXPECT_NEAR(Of(text + "true\n").value_m->x(), 1.5, 1e-9);
 }
 
-TEST(Theory, IsSilentWhereAgentsAreDampedDifferently) {
-  const Prediction prediction =
-      Of("[run]\nduration_s = 40.0\n[agents]\ncount = 2\nposition_m = [[0, 0, 1], [1, 0, 3]]\n"
-         "override = [{ id = 2, model = 'double_integrator' }]\n[control]\ndrag_compensation = false\n"
-         "[law]\nname = 'consensus'\n");
-  EXPECT_FALSE(prediction.value_m);
-  EXPECT_FALSE(prediction.settling_time_s);
+TEST(Theory, WeighsAgentsThatAreDampedDifferently) {
+  // Without the drag of its neighbour, a double integrator brakes less and so counts less: b q is what is kept.
+  const std::string text =
+      "[run]\nduration_s = 40.0\n[agents]\ncount = 2\nposition_m = [[0, 0, 1], [1, 0, 3]]\n"
+      "override = [{ id = 2, model = 'double_integrator' }]\n[control]\ndrag_compensation = false\n"
+      "[law]\nname = 'consensus'\nbeta = 1.5\n";
+  Experiment experiment = LoadExperiment(Section::FromText(text, "test.toml"), "test");
+  const Airframe& airframe = experiment.agent(1).airframe;
+  const double b = 1.5 + airframe.linear_drag_kg_per_s / airframe.mass_kg;
+  const Prediction prediction = Predict(experiment);
+  ASSERT_TRUE(prediction.value_m);
+  EXPECT_NEAR(prediction.value_m->x(), 1.5 / (b + 1.5), 1e-12);
+  EXPECT_EQ(prediction.stable, true);
+  EXPECT_TRUE(prediction.settling_time_s);
+  EXPECT_EQ(prediction.silent, "");
 }
 
 TEST(Theory, PredictsWhenTheSlowestModeHasSettled) {
@@ -190,7 +112,7 @@ TEST(Theory, PredictsThatFollowersGatherAtALeaderThatRests) {
   ASSERT_TRUE(prediction.settling_time_s);
   // Grounded path of three: eigenvalues 2 - 2 cos((2 k - 1) pi / 7).
   const LinearMode slowest{1.0, 2 - 2 * std::cos(std::acos(-1.0) / 7)};
-  EXPECT_NEAR(*prediction.settling_time_s, SettlingTime(slowest), 0.01);
+  EXPECT_NEAR(*prediction.settling_time_s, SettlingTime(slowest, 0.01), 1e-9);
 }
 
 TEST(Theory, PredictsHowFarFollowersOfAMovingLeaderStayBehind) {
@@ -243,7 +165,7 @@ TEST(Theory, WarnsWhenTheFirstCommandWouldAlreadySaturate) {
   const std::string law = kFour + "[law]\nname = 'consensus'\np_gain = 2.0\n[control]\nmax_acceleration_m_per_s2 = ";
   // Agent 4 at (1, 2): 2 * ((1 - 2) + (-1 - 2) + (-1 - 2)) = -14 in y.
   const Prediction cut = Of(law + "3.0\n");
-  EXPECT_NEAR(*cut.first_command_m_per_s2, 14, 1e-12);
+  EXPECT_NEAR(cut.first_acceleration->asked, 14, 1e-12);
   EXPECT_THAT(cut.warnings,
               ElementsAre("control.max_acceleration_m_per_s2: the first command would already saturate: agent 4 asks "
                           "for 14 m/s^2, the limit is 3"));
@@ -274,7 +196,7 @@ TEST(Theory, TimesEveryEdgeOfTheMinMaxTree) {
   EXPECT_EQ(prediction.minmax_edges[2].parent, 3);
   EXPECT_EQ(prediction.minmax_time_s, prediction.minmax_edges[2].time_s);
   EXPECT_EQ(*prediction.value_m, Eigen::Vector3d(-1, 1, 2.5));
-  EXPECT_EQ(*prediction.first_command_m_per_s2, 2.0);
+  EXPECT_EQ(prediction.first_acceleration->asked, 2.0);
   EXPECT_THAT(prediction.warnings, IsEmpty());
 }
 
@@ -323,12 +245,269 @@ TEST(Theory, WarnsOfBodiesThatWillTouch) {
               IsEmpty());
 }
 
+TEST(Theory, SaysThatAFormationDoesNotGather) {
+  // Places, not heights, keep its agents apart.
+  EXPECT_THAT(Of("[run]\nduration_s = 40.0\n[agents]\ncount = 2\nmodel = 'double_integrator'\nposition_m = [[0, 0, 1], "
+                 "[2, 0, 1]]\n[law]\nname = 'formation'\nshape = 'line'\n")
+                  .warnings,
+              IsEmpty());
+}
+
 TEST(Theory, SaysOneAgentAloneIsStable) {
   const Prediction prediction =
       Of("[run]\nduration_s = 1.0\n[agents]\ncount = 1\nposition_m = [[1, 2, 3]]\n[law]\nname = 'consensus'\n");
   EXPECT_EQ(prediction.stable, true);
   EXPECT_EQ(*prediction.value_m, Eigen::Vector3d(1, 2, 3));
   EXPECT_FALSE(prediction.settling_time_s);
+}
+
+// --- gains, delays, periods ----------------------------------------------------------------------------
+
+/// A team on a cycle of ten, each hearing the one before it.
+std::string Cycle(const std::string& rest) {
+  return "[run]\nduration_s = 400.0\n[physics]\ncollisions = false\n[agents]\ncount = 10\nmodel = "
+         "'double_integrator'\n[graph]\ntopology = 'directed_ring'\n" +
+         rest;
+}
+
+TEST(Theory, NamesTheLeastRelativeDampingOfADirectedCycle) {
+  const std::string law = "[law]\nname = 'consensus'\nbeta = 0.0\nv_gain = ";
+  EXPECT_THAT(Of(Cycle(law + "2.0\n")).warnings, Contains("law.v_gain: unstable, it must be above 2.1763, got 2"));
+  EXPECT_EQ(Of(Cycle(law + "2.2\n[control]\nrate_hz = 1000\n")).stable, true);  // a slower one would not do
+}
+
+TEST(Theory, NamesTheLeastVelocityGainWhereItMakesAVelocityAnAcceleration) {
+  // k_v > p_gain (Im lambda)^2 / Re lambda = 1 + cos(2 pi / 10) for the lambda nearest to 0 of the cycle.
+  const std::string law = "[law]\nname = 'velocity_consensus'\n[control]\nvelocity_gain = ";
+  EXPECT_THAT(Of(Cycle(law + "1.8\n")).warnings,
+              Contains("control.velocity_gain: unstable, it must be above 1.809, got 1.8"));
+  EXPECT_EQ(Of(Cycle(law + "1.82\n")).stable, true);
+}
+
+const std::string kFive =
+    "[run]\nduration_s = 100.0\n[physics]\ncollisions = false\n[agents]\ncount = 5\nposition_m = [[3, 0, 1], [-1, 0, "
+    "1], [4, 0, 1], [1, 0, 1], [-5, 0, 1]]\n";
+const std::string kSingles = "model = 'single_integrator'\n";
+const std::string kPath = "[graph]\ntopology = 'path'\n";
+
+TEST(Theory, KnowsTheLongestPeriodOfSingleIntegrators) {
+  const std::string law = kFive + kSingles + kPath + "[law]\nname = 'velocity_consensus'\np_gain = 4.0\n[control]\n";
+  EXPECT_NEAR(*Of(law).control_period_bound_s, 0.55279 / 4, 1e-5);
+  EXPECT_THAT(Of(law + "rate_hz = 5\n").warnings,
+              Contains("control.rate_hz: unstable at this rate, it must be above 7.236, got 5"));
+}
+
+TEST(Theory, KnowsBothMarginsOfDelayOfSingleIntegrators) {
+  const Prediction prediction = Of(kFive + kSingles + kPath + "[law]\nname = 'velocity_consensus'\n");
+  ASSERT_TRUE(prediction.delay_margin);
+  EXPECT_TRUE(prediction.delay_margin->independent);
+  EXPECT_NEAR(*prediction.own_delay_margin_s, 0.43416, 1e-5);
+}
+
+TEST(Theory, WarnsOfMoreDelayThanAgentsBear) {
+  const std::string law = kFive + kSingles + kPath + "[law]\nname = 'velocity_consensus'\n";
+  EXPECT_THAT(Of(law + "[link]\ndelay_s = 0.45\n[sensors.own]\ndelay_s = 0.45\n").warnings,
+              Contains("sensors.own.delay_s: unstable, it must be below 0.4342, got 0.45"));
+  EXPECT_EQ(Of(law + "[link]\ndelay_s = 0.1\n[sensors.own]\ndelay_s = 0.1\n").stable, true);
+  // Late about themselves alone: no closed form, but eigenvalues.
+  EXPECT_THAT(Of(law + "[control]\nrate_hz = 10\n[sensors.own]\ndelay_s = 1.2\n").warnings,
+              Contains("sensors.own.delay_s: unstable with this delay, got 1.2"));
+
+  const std::string doubles =
+      kFive + "model = 'double_integrator'\n" + kPath + "[law]\nname = 'consensus'\nbeta = 0.5\np_gain = 2.0\n[link]\n";
+  const double margin_s = *Of(doubles).delay_margin->margin_s;
+  EXPECT_THAT(Of(doubles + "delay_s = 0.9\njitter_s = 0.1\n").warnings,
+              Contains("link.delay_s: unstable, it must be below " + ShortestFloat(std::round(margin_s * 1e4) / 1e4) +
+                       ", got 1"));
+}
+
+TEST(Theory, MovesTheMeetingPointWithTheDelay) {
+  const std::string delay = kPath + "[link]\ndelay_s = 0.1\n";
+  const Prediction prediction = Of(kFive + kSingles + delay + "[law]\nname = 'velocity_consensus'\n");
+  EXPECT_NEAR(prediction.value_m->x(), 0.448275862, 1e-9);
+  // Double integrators: sum q (b + p d tau) / sum (b + p d tau), whose delay is whole ticks: 0.095 s are 10 of them.
+  const Prediction doubles = Of(kFive + "model = 'double_integrator'\n" + kPath +
+                                "[link]\ndelay_s = 0.095\n[law]\nname = 'consensus'\np_gain = 3.0\nbeta = 4.0\n");
+  const double weights[] = {4.3, 4.6, 4.6, 4.6, 4.3}, starts[] = {3, -1, 4, 1, -5};
+  double sum = 0, total = 0;
+  for (int i = 0; i < 5; ++i) sum += weights[i] * starts[i], total += weights[i];
+  EXPECT_NEAR(doubles.value_m->x(), sum / total, 1e-12);
+  EXPECT_EQ(doubles.stable, true);
+}
+
+TEST(Theory, SpeaksOfAFormationWithoutItsPlaces) {
+  const Prediction prediction = Of(
+      kFive + "model = 'double_integrator'\n" + kPath +
+      "[law]\nname = 'formation'\nbeta = 4.0\noffsets_m = [[0, 0, 0], [1, 1, 0], [2, 0, 0], [3, -1, 0], [4, 5, 0]]\n");
+  EXPECT_NEAR(prediction.value_m->x(), 0.4 - 2, 1e-12);
+  EXPECT_NEAR(prediction.value_m->y(), -1, 1e-12);
+}
+
+TEST(Theory, SaysWhereALeaderStopsThatWantsToStandStill) {
+  const Prediction prediction =
+      Of("[run]\nduration_s = 60.0\n[agents]\ncount = 2\nmodel = 'double_integrator'\nposition_m = [[0, 0, 1], [1, 0, "
+         "3]]\nvelocity_m_per_s = [[1, 0, 0], [0, 0, 0]]\n[control]\nvelocity_gain = 4.0\n"
+         "[law]\nname = 'velocity_consensus'\nleader = 1\n");
+  EXPECT_NEAR(prediction.value_m->x(), 0.25, 1e-12);
+  EXPECT_FALSE(prediction.settling_time_s) << "they settle after it";
+}
+
+TEST(Theory, ScaledGainsScaleTheRateAndRenamedAgentsChangeNothing) {
+  const std::string law = "[law]\nname = 'velocity_consensus'\np_gain = ";
+  const Prediction one = Of(kFive + kSingles + kPath + law + "0.001\n");
+  EXPECT_NEAR(*Of(kFive + kSingles + kPath + law + "0.003\n").rate_per_s, 3 * *one.rate_per_s, 1e-8);
+  const Prediction renamed = Of(
+      "[run]\nduration_s = 100.0\n[physics]\ncollisions = false\n[agents]\ncount = 5\nposition_m = [[-1, 0, 1], [4, 0, "
+      "1], [-5, 0, 1], [3, 0, 1], [1, 0, 1]]\n" +
+      kSingles + "[graph]\nedges = [[4, 1], [1, 4], [1, 2], [2, 1], [2, 5], [5, 2], [5, 3], [3, 5]]\n" + law +
+      "0.001\n");
+  EXPECT_NEAR(*renamed.rate_per_s, *one.rate_per_s, 1e-12);
+  EXPECT_LT((*renamed.value_m - *one.value_m).norm(), 1e-12);
+}
+
+TEST(Theory, IsOnAverageWhereSamplesAreLost) {
+  const std::string law = kFive + kSingles + kPath + "[law]\nname = 'velocity_consensus'\n[link]\nloss = ";
+  EXPECT_FALSE(Of(law + "0.0\n").on_average);
+  EXPECT_TRUE(Of(law + "0.5\n").on_average);
+  // Half the samples: half the Laplacian.
+  EXPECT_NEAR(*Of(law + "0.5\n").rate_per_s, -100 * std::log(1 - 0.01 * 0.5 * 0.381966), 1e-6);
+}
+
+// --- where theory is silent ----------------------------------------------------------------------------
+
+TEST(Theory, SaysWhyItIsSilent) {
+  const std::string consensus = kFive + kSingles + kPath + "[law]\nname = 'velocity_consensus'\n";
+  EXPECT_EQ(Of(consensus).silent, "");
+  EXPECT_EQ(Of(consensus + "[link]\ndelay_s = 0.2\njitter_s = 0.1\n").silent, "link.jitter_s: delays are random");
+  EXPECT_EQ(Of(consensus + "[link]\ndelay_s = 0.2\nreordering = 0.1\n").silent, "link.reordering: delays are random");
+  EXPECT_EQ(Of(consensus + "[link]\nloss = 0.2\nhold_s = 0.1\n").silent,
+            "link.hold_s: what is heard in place of a lost sample is of a random age");
+  EXPECT_EQ(Of(consensus + "[link]\ndelay_s = 0.5\n").silent,
+            "so many agents, different or with so long delays, are more than its eigenvalues are computed for");
+  EXPECT_EQ(Of(kFive + "[graph]\ntopology = 'path'\nrange_m = 10.0\n[law]\nname = 'consensus'\n").silent,
+            "graph.range_m: who hears whom depends on where they go");
+  EXPECT_EQ(Of(consensus + "[[agents.override]]\nid = 5\nstop_s = 3.0\n").silent,
+            "agents.override.stop_s: agent 5 stays behind");
+  EXPECT_EQ(Of(kFive + "[law]\nname = 'custom'\npython = 'def control(t, me, neighbours): return 0, 0'\n").silent,
+            "theory does not know the law custom");
+  EXPECT_EQ(Of(kFive + "[graph]\nedges = [[1, 2]]\nrepeat_s = 0.1234567\n[[graph.schedule]]\nat_s = 0.1\n"
+                       "topology = 'path'\n[law]\nname = 'consensus'\n")
+                .silent,
+            "graph.repeat_s: the schedule is not back at the same tick soon, or changes more than 1000 times");
+  EXPECT_EQ(
+      Of(kFive + "[[agents.override]]\nid = 1\nlaw = { leader = 1 }\n[[agents.override]]\nid = 5\nlaw = { leader = "
+                 "5 }\n[law]\nname = 'consensus'\n")
+          .silent,
+      "agents 1 and 5 all lead");
+}
+
+TEST(Theory, PromisesNoMinMaxTimeWhereChildrenMayMissTheirParents) {
+  const std::string law = kFour +
+                          "[graph]\ntopology = 'path'\n[law]\nname = 'minmax'\nleader = 1\nbeta = [0.5, 1.0, 1.5, "
+                          "2.0]\n";
+  const Prediction lossy = Of(law + "[link]\nloss = 0.1\n");
+  EXPECT_EQ(lossy.silent, "link: children see their parents late, or not always");
+  EXPECT_FALSE(lossy.minmax_time_s);
+  EXPECT_FALSE(lossy.value_m);
+  EXPECT_THAT(lossy.minmax_edges, IsEmpty());
+  EXPECT_EQ(Of(law + "[sensors.own]\ndelay_s = 0.1\n").silent, "sensors.own.delay_s: agents know late where they are");
+  EXPECT_EQ(Of(law + "[[agents.override]]\nid = 2\nstart_s = 1.0\n").silent,
+            "the graph changes, and a child that does not hear its parent drifts");
+  EXPECT_EQ(Of(law + "[[agents.override]]\nid = 2\nmodel = 'unicycle'\n").silent,
+            "agent 2 is a unicycle, which turns before it goes");
+  EXPECT_EQ(Of(law + "[[agents.override]]\nid = 2\nlaw = { boundary_layer = 0.1 }\n").silent,
+            "agents.override: agent 2 has a law of its own");
+}
+
+// --- teams of different agents, graphs that change -----------------------------------------------------
+
+TEST(Theory, JudgesAgentsWithGainsOfTheirOwnTogether) {
+  const std::string text =
+      kFive + "model = 'double_integrator'\n" + kPath +
+      "[[agents.override]]\nid = 2\nlaw = { p_gain = 2.0, beta = 3.0 }\n"
+      "[[agents.override]]\nid = 4\nlaw = { p_gain = 0.5 }\n[law]\nname = 'consensus'\nbeta = 1.5\n";
+  const Prediction prediction = Of(text);
+  EXPECT_EQ(prediction.stable, true);
+  IdealNetwork network(text);
+  network.RunUntil(100);
+  for (const Motion& motion : network.motions) EXPECT_NEAR(motion.p_WB.x(), prediction.value_m->x(), 1e-6);
+  // p, b of each: sum of b q / p.
+  const double share[] = {1.5, 1.5, 1.5, 3.0, 1.5}, starts[] = {3, -1, 4, 1, -5};
+  double sum = 0, total = 0;
+  for (int i = 0; i < 5; ++i) sum += share[i] * starts[i], total += share[i];
+  EXPECT_NEAR(prediction.value_m->x(), sum / total, 1e-9);
+  EXPECT_THAT(Of(text + "[control]\nrate_hz = 1\n").warnings,
+              Contains(StartsWith("control.rate_hz: unstable at this rate, it must be above ")));
+}
+
+TEST(Theory, KnowsTheLongestPeriodOfAgentsThatDiffer) {
+  const std::string text =
+      kFive + "model = 'double_integrator'\n" + kPath +
+      "[[agents.override]]\nid = 2\nlaw = { p_gain = 2.0 }\n[law]\nname = 'consensus'\nbeta = 1.5\n";
+  const double bound_s = *Of(text).control_period_bound_s;
+  for (const auto& [part, decays] : {std::pair(0.97, true), {1.03, false}}) {
+    const double h = part * bound_s;
+    Eigen::VectorXd q(5), v = Eigen::VectorXd::Zero(5), p = Eigen::VectorXd::Ones(5);
+    q << 3, -1, 4, 1, -5;
+    p(1) = 2;
+    const Eigen::MatrixXd l = LoadExperiment(Section::FromText(text, "test.toml"), "test").graph.Laplacian();
+    for (int k = 0; k < 4000; ++k) {
+      const Eigen::VectorXd u = -p.cwiseProduct(l * q) - 1.5 * v;
+      q += h * v + h * h / 2 * u;
+      v += h * u;
+    }
+    EXPECT_EQ(q.maxCoeff() - q.minCoeff() < 1, decays) << part;
+  }
+}
+
+TEST(Theory, WarnsOfGainsThatAreUnstableTogether) {
+  EXPECT_THAT(
+      Of(Cycle("[[agents.override]]\nid = 2\nlaw = { beta = 0.3 }\n[law]\nname = 'consensus'\nbeta = 0.2\n")).warnings,
+      Contains("law: the gains of these agents are unstable together"));
+  EXPECT_THAT(Of(Cycle("[[agents.override]]\nid = 2\nlaw = { p_gain = 0.0 }\n[law]\nname = 'consensus'\n")).warnings,
+              Contains("law.p_gain: 0 means that nothing pulls agent 2 anywhere"));
+}
+
+TEST(Theory, PredictsWhatASwitchingGraphDoesPerRepetition) {
+  const std::string text = kFive + kSingles +
+                           "[graph]\nedges = [[1, 2], [2, 1], [4, 5], [5, 4]]\nrepeat_s = 1.0\n"
+                           "[[graph.schedule]]\nat_s = 0.5\nedges = [[2, 3], [3, 2], [3, 4], [4, 3]]\n"
+                           "[law]\nname = 'velocity_consensus'\n";
+  const Prediction prediction = Of(text);
+  EXPECT_EQ(prediction.stable, true);
+  EXPECT_NEAR(prediction.value_m->x(), 0.4, 1e-12);
+  EXPECT_NEAR(*prediction.settling_time_s, std::log(50) / *prediction.rate_per_s, 1e-9);
+  EXPECT_FALSE(prediction.control_period_bound_s);
+  EXPECT_FALSE(prediction.delay_margin);
+  EXPECT_TRUE(prediction.persistence->joint);
+}
+
+TEST(Theory, IsSilentOfAgentsThatMayGoOnForEver) {
+  EXPECT_EQ(Of(kFive + "model = 'double_integrator'\n[[agents.override]]\nid = 2\nlaw = { v_gain = 3.0 }\n" + kPath +
+               "[law]\nname = 'consensus'\nbeta = 0.0\nv_gain = 2.0\n")
+                .silent,
+            "law.beta is 0: agents who have met may go on together");
+  // All alike, from rest: they meet at the mean and stay.
+  const Prediction alike =
+      Of(kFive + "model = 'double_integrator'\n" + kPath + "[law]\nname = 'consensus'\nbeta = 0.0\nv_gain = 2.0\n");
+  EXPECT_EQ(alike.stable, true);
+  EXPECT_NEAR(alike.value_m->x(), 0.4, 1e-12);
+}
+
+TEST(Theory, WarnsWhenTheFirstVelocityWouldAlreadySaturate) {
+  const Prediction prediction =
+      Of(kFive + kSingles + kPath + "[law]\nname = 'velocity_consensus'\n[control]\nmax_speed_m_per_s = 5.0\n");
+  EXPECT_EQ(prediction.first_speed->asked, 9);  // agent 2: 3 + 4 - 2 (-1)
+  EXPECT_FALSE(prediction.first_acceleration);
+  EXPECT_THAT(prediction.warnings,
+              Contains("control.max_speed_m_per_s: the first command would already saturate: agent 2 asks for 9 m/s, "
+                       "the limit is 5"));
+}
+
+TEST(Theory, CountsTheFirstCommandAsIfNothingWereLateOrLost) {
+  const std::string law = kFour + "[law]\nname = 'consensus'\n[link]\n";
+  EXPECT_GT(Of(law).first_acceleration->asked, 0);
+  EXPECT_EQ(Of(law + "delay_s = 0.1\nloss = 0.5\n").first_acceleration->asked, Of(law).first_acceleration->asked);
 }
 
 }  // namespace

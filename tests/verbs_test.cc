@@ -92,6 +92,44 @@ TEST_F(Verbs, CheckTellsProgramsTheSame) {
   EXPECT_TRUE(json["warnings"].empty());
 }
 
+TEST_F(Verbs, CheckSaysHowLongPeriodsAndDelaysMayBe) {
+  EXPECT_THAT(Printed(SetUpCheck, {path()}), AllOf(HasSubstr("  decays         at 0.4939 1/s (slowest mode)\n"),
+                                                   HasSubstr("  control period below 0.5858 s (now 0.01 s)\n"),
+                                                   HasSubstr("  delay          of neighbours' samples: below "),
+                                                   HasSubstr("; of these and the own: below ")));
+  const Json json = Json::parse(Printed(SetUpCheck, {path(), "--json"}))["predicted"];
+  EXPECT_NEAR(json["control_period_bound_s"].get<double>(), 2 / (2 + std::sqrt(2)), 1e-9);
+  EXPECT_EQ(json["delay_independent"], false);
+  EXPECT_GT(json["delay_margin_s"], 0);
+  EXPECT_GT(json["own_delay_margin_s"], 0);
+  EXPECT_TRUE(json["silent"].is_null());
+  EXPECT_EQ(json["on_average"], false);
+}
+
+TEST_F(Verbs, CheckSaysWhenTheGraphHasASpanningTree) {
+  const std::vector<std::string> turns = {path(), "--set", "graph.repeat_s=1.0", "--set",
+                                          "graph.schedule=[{ at_s = 0.4, edges = [] }]"};
+  EXPECT_THAT(Printed(SetUpCheck, turns),
+              AllOf(HasSubstr("  graph          6 edges, symmetric, in the union of 2 graphs\n"),
+                    HasSubstr("  spanning tree  in the union of any 0.61 s\n")));
+  std::vector<std::string> as_json = turns;
+  as_json.push_back("--json");
+  const Json json = Json::parse(Printed(SetUpCheck, as_json))["predicted"]["persistence"];
+  EXPECT_EQ(json["joint"], true);
+  EXPECT_EQ(json["always"], false);
+  EXPECT_EQ(json["never_alone"], false);
+  EXPECT_NEAR(json["window_s"].get<double>(), 0.61, 1e-12);
+  EXPECT_TRUE(json["from_s"].is_null());
+  EXPECT_TRUE(json["in_range_at_start"].is_null());
+}
+
+TEST_F(Verbs, CheckSaysWhyTheoryIsSilent) {
+  EXPECT_THAT(
+      Printed(SetUpCheck, {path(), "--set", "graph.range_m=100.0"}),
+      AllOf(HasSubstr("  spanning tree  at every time, and within range at the start\n"),
+            HasSubstr("  theory         silent, because graph.range_m: who hears whom depends on where they go\n")));
+}
+
 TEST_F(Verbs, CheckTimesTheEdgesOfMinMax) {
   const std::string text = Printed(SetUpCheck, {path(), "--set", "law.name='minmax'", "--set", "law.leader=1", "--set",
                                                 "law.beta=[0.5, 1, 2, 2.5]"});

@@ -1,0 +1,184 @@
+#include "orchestrator/sampled_team.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "orchestrator/links_on_average.h"
+
+namespace mascot {
+namespace {
+
+constexpr Eigen::Index kLargestState = 200;  // its eigenvalues take 0.1 s
+
+/// How late an agent knows its own position and velocity, in ticks.
+std::int64_t OwnTicks(const Experiment& experiment) {
+  return std::llround(experiment.sensors.own_delay_s * experiment.control.rate_hz);
+}
+
+/// The longest delay of all (ticks).
+std::int64_t Reach(const Experiment& experiment) {
+  std::int64_t reach = OwnTicks(experiment);
+  for (int id = 1; id <= experiment.size(); ++id)
+    for (const Graph::Neighbour& heard : experiment.graph.HeardBy(id))
+      if (Delivered(experiment.links.Of(id, heard.id)) > 0)
+        reach = std::max(reach, DelayTicks(experiment, id, heard.id));
+  return reach;
+}
+
+Eigen::MatrixXd Power(Eigen::MatrixXd base, std::int64_t exponent) {
+  Eigen::MatrixXd power = Eigen::MatrixXd::Identity(base.rows(), base.cols());
+  for (; exponent > 0; exponent /= 2) {
+    if (exponent % 2 == 1) power = power * base;
+    base = base * base;
+  }
+  return power;
+}
+
+}  // namespace
+
+bool SampledTeam::IsSmall(const Experiment& experiment) {
+  return 2 * experiment.size() * (Reach(experiment) + 1) <= kLargestState;
+}
+
+SampledTeam::SampledTeam(const Experiment& experiment, const LinearTeam& team, const Timeline& timeline,
+                         double period_s)
+    : experiment_(experiment),
+      team_(team),
+      timeline_(timeline),
+      h_(period_s),
+      n_(experiment.size()),
+      own_ticks_(OwnTicks(experiment)),
+      reach_(Reach(experiment)) {
+  if (!team.Leaders().empty()) leader_ = team.Leaders().front();
+  // Edges work at a tick as they did when its samples were sent.
+  steady_ = timeline.cycle_from + reach_;
+  cycle_ = Over(steady_, steady_ + timeline.cycle_ticks);
+  radius_ = SecondLargest();
+}
+
+Eigen::Index SampledTeam::Place(int id, std::int64_t ticks_ago) const {
+  return 2 * n_ * static_cast<Eigen::Index>(ticks_ago) + id - 1;
+}
+
+// The rows of one agent's next q and v: u = sum_j a_ij [p (q_j - q_i) + g (v_j - v_i)] - b v_i, heard and measured
+// late.
+void SampledTeam::MoveAgent(int id, const Timeline::Interval& now, std::int64_t tick, Matrix& map) const {
+  const LinearAgent& agent = team_.agent(id);
+  const Eigen::Index q = Place(id, 0), v = q + n_, q_known = Place(id, own_ticks_), v_known = q_known + n_;
+  Eigen::RowVectorXd u = Eigen::RowVectorXd::Zero(map.cols());
+  const bool on = now.on[static_cast<std::size_t>(id - 1)];
+  if (on && agent.listens) {
+    for (const Graph::Neighbour& edge : experiment_.graph.HeardBy(id)) {
+      const std::int64_t ago = DelayTicks(experiment_, id, edge.id);
+      if (ago > tick) continue;  // nothing has arrived yet
+      const auto& sent = timeline_.At(tick - ago).graph.HeardBy(id);
+      const auto then = std::ranges::lower_bound(sent, edge.id, {}, &Graph::Neighbour::id);
+      if (then == sent.end() || then->id != edge.id) continue;
+      const Eigen::Index q_heard = Place(edge.id, ago), v_heard = q_heard + n_;
+      u(q_heard) += then->weight * agent.p;
+      u(q_known) -= then->weight * agent.p;
+      u(v_heard) += then->weight * agent.g;
+      u(v_known) -= then->weight * agent.g;
+    }
+  }
+  u(v_known) -= on ? agent.b - agent.drag_b : agent.off_b - agent.drag_b;
+  u(v) -= agent.drag_b;
+  if (agent.order == 2 && (on || agent.hold < 1)) {
+    map.row(v) = h_ * u;
+    map(v, v) += 1;
+    map.row(q) = agent.hold * h_ * h_ * u;
+    map(q, v) += h_;
+  } else {  // driven by a velocity, which is 0 while the law is off
+    map.row(v) = u;
+    map.row(q) = h_ * u;
+  }
+  map(q, q) += 1;
+}
+
+SampledTeam::Matrix SampledTeam::Map(std::int64_t tick) const {
+  const Eigen::Index size = 2 * n_ * static_cast<Eigen::Index>(reach_ + 1);
+  Matrix map = Matrix::Zero(size, size);
+  const Timeline::Interval& now = timeline_.At(tick);
+  for (const AgentConfig& agent : experiment_.agents) MoveAgent(agent.id, now, tick, map);
+  if (reach_ > 0) map.bottomLeftCorner(size - 2 * n_, size - 2 * n_).setIdentity();
+  return map;
+}
+
+/// Ticks within [from, to) at which the map may change, and both ends.
+std::vector<std::int64_t> SampledTeam::Changes(std::int64_t from, std::int64_t to) const {
+  std::set<std::int64_t> delays = {0};
+  for (int id = 1; id <= experiment_.size(); ++id)
+    for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(id)) {
+      const std::int64_t ticks = DelayTicks(experiment_, id, heard.id);
+      if (ticks <= reach_) delays.insert(ticks);
+    }
+  std::set<std::int64_t> changes = {from, to};
+  const auto add = [&](std::int64_t tick) {
+    if (tick > from && tick < to) changes.insert(tick);
+  };
+  for (const std::int64_t delay : delays)
+    for (const Timeline::Interval& interval : timeline_.intervals)
+      for (std::int64_t tick = interval.from + delay; tick < to; tick += timeline_.cycle_ticks) {
+        add(tick);
+        if (interval.from < timeline_.cycle_from || timeline_.cycle_ticks == 1) break;
+      }
+  return {changes.begin(), changes.end()};
+}
+
+SampledTeam::Matrix SampledTeam::Over(std::int64_t from, std::int64_t to) const {
+  const std::vector<std::int64_t> changes = Changes(from, to);
+  Matrix over = Power(Map(changes[0]), changes[1] - changes[0]);
+  for (std::size_t i = 1; i + 1 < changes.size(); ++i)
+    over = Power(Map(changes[i]), changes[i + 1] - changes[i]) * over;
+  return over;
+}
+
+// Of agents who hear each other, one way or another, and nobody else's doing matters to how they decay: the map is
+// block triangular in the order of these components. Each by itself keeps the digits of eigenvalues that chains repeat.
+// The leader moves as it likes; else one eigenvalue is that of agreement, 1.
+double SampledTeam::SecondLargest() const {
+  std::vector<std::complex<double>> values;
+  for (const std::vector<int>& component : team_.Followed(experiment_.graph).Components()) {
+    if (component.front() == leader_) continue;
+    std::vector<Eigen::Index> places;
+    for (std::int64_t ago = 0; ago <= reach_; ++ago)
+      for (const int id : component) places.insert(places.end(), {Place(id, ago), Place(id, ago) + n_});
+    const Eigen::VectorXcd own = Matrix(cycle_(places, places)).eigenvalues();
+    values.insert(values.end(), own.begin(), own.end());
+  }
+  if (leader_ == 0) {
+    const auto distance = [](std::complex<double> value) { return std::abs(value - 1.0); };
+    values.erase(std::ranges::min_element(values, {}, distance));
+  }
+  double largest = 0;
+  for (const std::complex<double> value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+double SampledTeam::rate_per_s() const {
+  return -std::log(radius_) / (static_cast<double>(timeline_.cycle_ticks) * h_);
+}
+
+// What a cycle keeps: the left eigenvector w of its eigenvalue 1. It says where the state after the transient leads,
+// agreement being its right eigenvector: q = 1, v = 0.
+Eigen::Vector3d SampledTeam::MeetingPoint() const {
+  const Eigen::Index size = cycle_.rows();
+  Eigen::VectorXd agreement = Eigen::VectorXd::Zero(size);
+  Matrix state(size, 3);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const bool is_q = i % (2 * n_) < n_;
+    const AgentConfig& agent = experiment_.agent(static_cast<int>(i % n_) + 1);
+    agreement(i) = is_q;
+    state.row(i) = is_q ? agent.p_W - team_.place_W[static_cast<std::size_t>(i % n_)] : agent.v_W;
+  }
+  Matrix keeps(size + 1, size);
+  keeps << cycle_.transpose() - Matrix::Identity(size, size), agreement.transpose();
+  const Eigen::VectorXd kept = Eigen::ColPivHouseholderQR<Matrix>(keeps).solve(Eigen::VectorXd::Unit(size + 1, size));
+  if (steady_ > 0) state = Over(0, steady_) * state;
+  return (kept.transpose() * state).transpose();
+}
+
+}  // namespace mascot

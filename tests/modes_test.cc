@@ -1,0 +1,185 @@
+#include "orchestrator/modes.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace mascot {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// x of a mode from rest, tick by tick, as its recursion is written: an independent witness.
+std::vector<Complex> FromRest(const LinearMode& mode, double h, int ticks) {
+  std::vector<Complex> x = {1};
+  Complex v = 0;
+  for (int k = 0; k < ticks; ++k) {
+    const Complex u = -mode.stiffness * x.back() - mode.damping * v;
+    if (mode.order == 1) {
+      x.push_back(x.back() + h * u);
+    } else {
+      x.push_back(x.back() + h * v + mode.hold * h * h * u);
+      v += h * u;
+    }
+  }
+  return x;
+}
+
+/// The tick from which on |x| is within 2 %.
+int Settled(const std::vector<Complex>& x) {
+  int settled = 0;
+  for (std::size_t k = 0; k < x.size(); ++k)
+    if (std::abs(x[k]) > 0.02) settled = static_cast<int>(k) + 1;
+  return settled;
+}
+
+const std::vector<LinearMode> kModes = {
+    {2.0, 1.0},         {1.0, 4.0},
+    {5.0, 1.0},         {0.6, 3.0},
+    {2.0, {2.0, 1.5}},  {{1.0, 0.4}, {2.0, 0.5}},
+    {1.5, 1.0, 2, 1.0}, {{0.7, -0.3}, {1.5, 0.2}, 2, 1.0},
+    {0.0, 1.3, 1},      {0.0, {1.0, 2.0}, 1},
+};
+
+TEST(Modes, OfRealStiffnessDecayWithAnyDamping) {
+  EXPECT_TRUE(Decays({0.1, 4.0}));
+  EXPECT_FALSE(Decays({0.0, 4.0}));
+  EXPECT_FALSE(Decays({1.0, 0.0}));
+  EXPECT_FALSE(Decays({1.0, -1.0}));
+}
+
+TEST(Modes, OfComplexStiffnessNeedDampingAboveItsImaginaryPartOverTheRootOfItsRealPart) {
+  EXPECT_DOUBLE_EQ(LeastDamping(1, 0, {4.0, 3.0}), 1.5);
+  EXPECT_DOUBLE_EQ(LeastDamping(4, 0, {1.0, 0.75}), 1.5);
+  EXPECT_TRUE(Decays({1.51, {4.0, 3.0}}));
+  EXPECT_FALSE(Decays({1.49, {4.0, 3.0}}));
+}
+
+TEST(Modes, OfADirectedCycleOfTenNeedTheRelativeDampingOfRenAndAtkins) {
+  double least = 0;
+  for (int k = 1; k < 10; ++k)
+    least = std::max(least, LeastRelativeDamping(1, 0, 1.0 - std::polar(1.0, 2 * std::numbers::pi * k / 10)));
+  EXPECT_NEAR(least, 2.1763, 5e-5);
+}
+
+TEST(Modes, DecayIffEitherGainIsAboveItsLeastValue) {
+  for (const Complex lambda : {Complex(1.0, 0.9), {0.2, -0.6}, {3.0, 0.0}, {0.5, 2.0}}) {
+    for (const double p : {0.3, 1.0, 4.0}) {
+      for (const double other : {0.0, 0.2, 1.0}) {
+        const double g = LeastRelativeDamping(p, other, lambda), b = LeastDamping(p, other, lambda);
+        EXPECT_TRUE(Decays({other + (g + 1e-6) * lambda, p * lambda}));
+        EXPECT_TRUE(Decays({b + 1e-6 + other * lambda, p * lambda}));
+        if (g > 0) EXPECT_FALSE(Decays({other + g * (1 - 1e-6) * lambda, p * lambda}));
+        if (b > 0) EXPECT_FALSE(Decays({b * (1 - 1e-6) + other * lambda, p * lambda}));
+      }
+    }
+  }
+}
+
+TEST(Modes, SampledDecayExactlyWhileStiffnessTimesPeriodIsBelowTwiceTheDamping) {
+  // And damping times period below 2, both from the Jury test.
+  EXPECT_TRUE(DecaysSampled({1.0, 20.0}, 0.0999));
+  EXPECT_FALSE(DecaysSampled({1.0, 20.0}, 0.1001));
+  EXPECT_TRUE(DecaysSampled({10.0, 1.0}, 0.1999));
+  EXPECT_FALSE(DecaysSampled({10.0, 1.0}, 0.2001));
+  const std::array<LinearMode, 2> modes = {{{1.0, 2.0}, {1.0, 20.0}}};
+  EXPECT_NEAR(LongestPeriod(modes), 0.1, 1e-9);
+  EXPECT_EQ(LongestPeriod(std::span<const LinearMode>()), std::numeric_limits<double>::infinity());
+}
+
+TEST(Modes, OfOrderOneDecayUpToTwiceTheRealPartOverTheSquaredMagnitude) {
+  const LinearMode mode{0.0, {1.0, 2.0}, 1};
+  EXPECT_DOUBLE_EQ(LongestPeriod({&mode, 1}), 2.0 / 5.0);
+}
+
+TEST(Modes, DecayBelowTheirLongestPeriodAndNotJustAboveIt) {
+  for (const LinearMode& mode : kModes) {
+    const double longest_s = LongestPeriod({&mode, 1});
+    for (const double part : {0.01, 0.1, 0.5, 0.9, 0.99}) {
+      const auto x = FromRest(mode, part * longest_s, 20000);
+      EXPECT_LT(std::abs(x.back()), 1e-3) << mode.damping << " " << mode.stiffness << " " << part;
+    }
+    EXPECT_GT(std::abs(FromRest(mode, 1.01 * longest_s, 20000).back()), 1e3) << mode.damping << " " << mode.stiffness;
+  }
+}
+
+TEST(Modes, SettleInTheTickInWhichTheirRecursionFromRestStaysWithinTwoPercent) {
+  for (const LinearMode& mode : kModes) {
+    for (const double part : {0.002, 0.05, 0.3}) {
+      const double h = part * LongestPeriod({&mode, 1});
+      const int witness = Settled(FromRest(mode, h, 60000));
+      EXPECT_NEAR(SettlingTime(mode, h), witness * h, 1e-3 * witness * h + 1e-9)
+          << mode.damping << " " << mode.stiffness << " " << part;
+    }
+  }
+  EXPECT_NEAR(SettlingTime({2.0, 1.0}, 1e-4), 5.834, 0.01);                              // (1 + t) e^-t = 0.02
+  EXPECT_NEAR(SettlingTime({1000.0, 1.0}, 1e-3), 1000 * std::log(50), 0.01 * 1000 * 4);  // stiff: one slow root
+}
+
+TEST(Modes, SettleTogetherWithTheLastOfThem) {
+  const std::array<LinearMode, 3> modes = {{{1.0, 9.0}, {1.0, 0.1}, {1.0, 1.0}}};
+  EXPECT_EQ(SettlingTime(modes, 0.01), SettlingTime(modes[1], 0.01));
+}
+
+TEST(Modes, DecayAtTheRateAtWhichTheirRecursionDoes) {
+  for (const LinearMode& mode : kModes) {
+    const double h = 0.1 * LongestPeriod({&mode, 1});
+    const double rate = DecayRate({&mode, 1}, h);
+    // Over whole lobes: the largest |x| about two times far apart.
+    const auto x = FromRest(mode, h, 4000);
+    const auto largest = [&](int from) {
+      double most = 0;
+      for (int k = from; k < from + 200; ++k) most = std::max(most, std::abs(x[static_cast<std::size_t>(k)]));
+      return most;
+    };
+    EXPECT_NEAR(std::log(largest(100) / largest(500)) / (400 * h), rate, 0.05 * rate)
+        << mode.damping << " " << mode.stiffness;
+  }
+}
+
+TEST(Modes, ScaledGainsScaleTheRate) {
+  // Time in units of 1 / c: damping times c, stiffness times c^2.
+  const LinearMode mode{{1.0, 0.4}, {2.0, 0.5}}, fast{{3.0, 1.2}, {18.0, 4.5}};
+  EXPECT_NEAR(DecayRate({&fast, 1}, 0.001), 3 * DecayRate({&mode, 1}, 0.003), 1e-9);
+  EXPECT_NEAR(OwnDelayMargin(fast), OwnDelayMargin(mode) / 3, 1e-9);
+}
+
+TEST(Modes, OfOrderOneBearADelayOfPiOverTwiceTheirStiffness) {
+  EXPECT_NEAR(OwnDelayMargin({0.0, 3.618034, 1}), 0.43416, 1e-5);
+}
+
+/// Whether x' (or x'') = -stiffness x - damping x', all of it `delay_s` late, decays: in steps of 1 ms.
+bool DecaysDelayed(const LinearMode& mode, double delay_s) {
+  constexpr double h = 1e-3;
+  constexpr int kTicks = 240000;
+  const int late = static_cast<int>(delay_s / h);
+  std::vector<Complex> x = {1}, v = {0};
+  for (int k = 0; k < kTicks; ++k) {
+    const auto then = static_cast<std::size_t>(std::max(0, k - late));
+    const Complex u = -mode.stiffness * x[then] - (mode.order == 1 ? 0.0 : mode.damping * v[then]);
+    x.push_back(x.back() + h * (mode.order == 1 ? u : v.back() + 0.5 * h * u));
+    v.push_back(mode.order == 1 ? u : v.back() + h * u);
+  }
+  const auto largest = [&x](std::size_t from, std::size_t to) {
+    double most = 0;
+    for (std::size_t k = from; k < to; ++k) most = std::max(most, std::abs(x[k]));
+    return most;
+  };
+  return largest(3 * kTicks / 4, kTicks) < largest(kTicks / 4, kTicks / 2);
+}
+
+TEST(Modes, BearADelayOfEverythingUpToTheirMargin) {
+  for (const LinearMode& mode : kModes) {
+    const double margin_s = OwnDelayMargin(mode);
+    EXPECT_TRUE(DecaysDelayed(mode, 0.97 * margin_s - 1e-3)) << mode.damping << " " << mode.stiffness;
+    EXPECT_FALSE(DecaysDelayed(mode, 1.03 * margin_s + 1e-3)) << mode.damping << " " << mode.stiffness;
+  }
+}
+
+}  // namespace
+}  // namespace mascot
