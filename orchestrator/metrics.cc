@@ -21,7 +21,7 @@ Eigen::Vector3d Along(Axes axes, Eigen::Vector3d v) {
 }  // namespace
 
 Metrics::Metrics(Experiment& experiment)
-    : experiment_(experiment), min_separation2_(std::numeric_limits<double>::infinity()) {
+    : experiment_(experiment), pursuit_(experiment), min_separation2_(std::numeric_limits<double>::infinity()) {
   const MutedPython muted;  // the laws run a second time
   if (experiment.output.fidelity) ideal_.emplace(experiment);
   if (experiment.law.name == "formation") formation_.offsets_m = ReadFormation(experiment, experiment.law).d_W;
@@ -34,6 +34,7 @@ void Metrics::Add(const DecodedRow& row) {
   MeasureFidelity(row.motions);
   MeasurePath(row.motions);
   MeasureFormation(row.motions);
+  pursuit_.Add(row.motions);
   ++rows_;
 }
 
@@ -56,6 +57,7 @@ void Metrics::MeasureAgreement(std::span<const Motion> motions) {
     disagreement_m_ = std::max(disagreement_m_, off_W.norm());
     speed_m_per_s_ = std::max(speed_m_per_s_, Along(experiment_.law.axes, motions[i].v_WB).norm());
   }
+  decay_.Add(experiment_.time_s(rows_), disagreement_m_);
   if (rows_ == 0) first_disagreement_m_ = disagreement_m_;
   if (disagreement_m_ > kSettledFraction * first_disagreement_m_) last_unsettled_ = rows_;
 }
@@ -131,7 +133,10 @@ Measured Metrics::Result() const {
   result.value_m = mean_W_;
   result.final_disagreement_m = disagreement_m_;
   result.final_speed_m_per_s = speed_m_per_s_;
-  if (last_unsettled_ < rows_ - 1) result.settling_time_s = experiment_.time_s(last_unsettled_ + 1);
+  if (first_disagreement_m_ > 0 && last_unsettled_ < rows_ - 1)
+    result.settling_time_s = experiment_.time_s(last_unsettled_ + 1);
+  result.rate_per_s = decay_.rate_per_s();
+  result.minmax_edges = pursuit_.Result();
   result.effort_m2_per_s3 = effort_ / agents;
   result.saturated_fraction = static_cast<double>(saturated_) / samples;
   if (experiment_.size() > 1) result.min_separation_m = std::sqrt(min_separation2_);

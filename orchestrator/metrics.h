@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "experiment/experiment.h"
+#include "orchestrator/decay_meter.h"
 #include "orchestrator/decoded_row.h"
 #include "orchestrator/ideal_team.h"
+#include "orchestrator/pursuit_meter.h"
 
 namespace mascot {
 
@@ -21,7 +23,9 @@ struct Measured {
                                                       ///< of a formation: of p - d
   double final_speed_m_per_s = 0;                     ///< largest over agents, over law.axes
   std::optional<double> settling_time_s;
-  double effort_m2_per_s3 = 0;  ///< mean over agents of the integral of |acceleration command|^2
+  std::optional<double> rate_per_s;              ///< at which the disagreement decays; decay_meter.h has the definition
+  std::vector<PursuitMeter::Edge> minmax_edges;  ///< of min-max consensus
+  double effort_m2_per_s3 = 0;                   ///< mean over agents of the integral of |acceleration command|^2
   double saturated_fraction = 0;
   std::optional<double> min_separation_m;  ///< absent for one agent
   double travelled_m = 0;
@@ -69,6 +73,8 @@ class Metrics {
   double disagreement_m_ = 0;
   double speed_m_per_s_ = 0;
   double first_disagreement_m_ = 0;
+  DecayMeter decay_;
+  PursuitMeter pursuit_;
   std::int64_t last_unsettled_ = -1;  // newest row above 2 % of the first disagreement
   double effort_ = 0;
   std::int64_t saturated_ = 0;

@@ -4,6 +4,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "orchestrator/deviation.h"
+#include "orchestrator/prediction_report.h"
+
 namespace mascot {
 namespace {
 
@@ -25,21 +28,30 @@ Json EdgesOf(const Graph& graph) {
   return edges;
 }
 
-Json Consensus(const Measured& measured, const Prediction& prediction) {
-  Json predicted;
-  predicted["value_m"] = OrNull(prediction.value_m);
-  predicted["settling_time_s"] = OrNull(prediction.settling_time_s);
-  predicted["minmax_time_s"] = OrNull(prediction.minmax_time_s);
+Json Edges(const std::vector<PursuitMeter::Edge>& measured) {
   Json edges = Json::array();
-  for (const MinmaxEdge& edge : prediction.minmax_edges)
-    edges.push_back({{"child", edge.child}, {"parent", edge.parent}, {"time_s", edge.time_s}, {"exact", edge.exact}});
-  if (!edges.empty()) predicted["minmax_edges"] = edges;
+  for (const PursuitMeter::Edge& edge : measured)
+    edges.push_back({{"child", edge.child}, {"parent", edge.parent}, {"time_s", OrNull(edge.time_s)}});
+  return edges;
+}
+
+Json ToJson(const Deviation& deviation) {
+  return {{"value_m", OrNull(deviation.value_m)},
+          {"settling_time_s", OrNull(deviation.settling_time_s)},
+          {"rate_per_s", OrNull(deviation.rate_per_s)},
+          {"minmax_time_s", OrNull(deviation.minmax_time_s)}};
+}
+
+Json Consensus(const Experiment& experiment, const Measured& measured, const Prediction& prediction) {
   Json consensus;
   consensus["value_m"] = Vector(measured.value_m);
   consensus["final_disagreement_m"] = measured.final_disagreement_m;
   consensus["final_speed_m_per_s"] = measured.final_speed_m_per_s;
   consensus["settling_time_s"] = OrNull(measured.settling_time_s);
-  consensus["predicted"] = predicted;
+  consensus["rate_per_s"] = OrNull(measured.rate_per_s);
+  if (!measured.minmax_edges.empty()) consensus["minmax_edges"] = Edges(measured.minmax_edges);
+  consensus["predicted"] = PredictionJson(prediction);
+  consensus["deviation"] = ToJson(Compare(experiment, measured, prediction));
   return consensus;
 }
 
@@ -95,6 +107,44 @@ std::string Line(const char* format, Values... values) {
   return std::string(text) + "\n";
 }
 
+/// ": 1.2 % off", or nothing where there is no deviation.
+std::string Off(std::optional<double> deviation, std::optional<double> predicted) {
+  if (!deviation || *predicted == 0) return "";
+  char text[40];
+  std::snprintf(text, sizeof text, ": %+.3g %%", 100 * *deviation / *predicted);
+  return text;
+}
+
+/// "at most ", if one of the times is a bound.
+const char* AtMost(const std::vector<MinmaxEdge>& edges) {
+  return std::ranges::all_of(edges, &MinmaxEdge::exact) ? "" : "at most ";
+}
+
+/// What agents agreed on, how fast, and what theory says of it.
+std::string ConsensusText(const Experiment& experiment, const Measured& m, const Prediction& prediction) {
+  const Deviation deviation = Compare(experiment, m, prediction);
+  const char* chains = experiment.graph.IsSymmetric() ? "" : "; later along chains";
+  std::string text = Line("mean position  %.4f, %.4f, %.4f m", m.value_m.x(), m.value_m.y(), m.value_m.z());
+  if (const auto& value = prediction.value_m)
+    text += Line("  predicted    %.4f, %.4f, %.4f m%s: %.2g m off", value->x(), value->y(), value->z(),
+                 prediction.on_average ? " on average" : "", *deviation.value_m);
+  text += Line("disagreement   %.2g m, speed %.2g m/s at the end", m.final_disagreement_m, m.final_speed_m_per_s);
+  if (m.rate_per_s && m.minmax_edges.empty()) text += Line("decayed        at %.4f 1/s", *m.rate_per_s);
+  if (prediction.rate_per_s && prediction.of_agreement)
+    text += Line("  predicted    %.4f 1/s (slowest mode)%s", *prediction.rate_per_s,
+                 Off(deviation.rate_per_s, prediction.rate_per_s).c_str());
+  if (m.settling_time_s) text += Line("settled        after %.2f s (2 %%)", *m.settling_time_s);
+  if (prediction.settling_time_s && prediction.of_agreement)
+    text += Line("  predicted    %.2f s (slowest mode%s)%s", *prediction.settling_time_s, chains,
+                 Off(deviation.settling_time_s, prediction.settling_time_s).c_str());
+  if (const auto caught_up_s = MinmaxTime(m, prediction))
+    text += Line("caught up      after %.2f s (latest edge, within %g m)", *caught_up_s, kCaughtUp_m);
+  if (prediction.minmax_time_s)
+    text += Line("  predicted    %s%.2f s (min-max, latest edge)%s", AtMost(prediction.minmax_edges),
+                 *prediction.minmax_time_s, Off(deviation.minmax_time_s, prediction.minmax_time_s).c_str());
+  return text;
+}
+
 }  // namespace
 
 std::string SummaryJson(const Experiment& experiment, const Prediction& prediction, const RunWriter& writer,
@@ -118,7 +168,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   json["samples"] = {{"topics", writer.topics()}, {"recorded", writer.samples()}, {"lost", engine.lost}};
   json["wire"] = {{"matches_graph", OrNull(engine.wire_matches_graph)}};
   json["graph"] = {{"edges", EdgesOf(experiment.graph)}};
-  json["consensus"] = Consensus(measured, prediction);
+  json["consensus"] = Consensus(experiment, measured, prediction);
   json["control"] = {{"effort", measured.effort_m2_per_s3}, {"saturated_fraction", measured.saturated_fraction}};
   json["safety"] = Safety(measured, engine.contacts);
   if (const auto& formation = measured.formation) json["formation"] = Formation(*formation);
@@ -140,13 +190,7 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
   text += Line("recorded       %lld rows, %llu samples on %zu topics, %llu lost", static_cast<long long>(m.rows),
                static_cast<unsigned long long>(writer.samples()), writer.topics(),
                static_cast<unsigned long long>(engine.lost));
-  text += Line("mean position  %.4f, %.4f, %.4f m", m.value_m.x(), m.value_m.y(), m.value_m.z());
-  if (const auto& value = prediction.value_m)
-    text += Line("  predicted    %.4f, %.4f, %.4f m", value->x(), value->y(), value->z());
-  text += Line("disagreement   %.2g m, speed %.2g m/s at the end", m.final_disagreement_m, m.final_speed_m_per_s);
-  if (m.settling_time_s) text += Line("settled        after %.2f s (2 %%)", *m.settling_time_s);
-  if (prediction.settling_time_s) text += Line("  predicted    %.2f s (slowest mode)", *prediction.settling_time_s);
-  if (prediction.minmax_time_s) text += Line("  predicted    %.2f s (min-max, latest edge)", *prediction.minmax_time_s);
+  text += ConsensusText(experiment, m, prediction);
   text += Line("saturated      %.2g %% of commands", 100 * m.saturated_fraction);
   if (experiment.run.mode == Mode::kRealtime)
     text += Line("late           %llu commands came after their tick; the last one was held",

@@ -44,6 +44,7 @@ struct Prediction {
   std::optional<FirstCommand> first_acceleration;  ///< m/s^2
   std::optional<FirstCommand> first_speed;         ///< m/s: where a law wants a velocity of a model driven by it
   std::optional<Persistence> persistence;
+  bool of_agreement = true;           ///< false: rate and settling time are of each agent's own flight to a waypoint
   bool on_average = false;            ///< samples are lost, or measured with noise: the above holds on average
   std::string silent;                 ///< why theory says less than it could; empty: it does not
   std::vector<std::string> warnings;  ///< "key: text": what will not work, or not as the user may think

@@ -6,6 +6,7 @@
 namespace mascot {
 
 void PredictWaypoint(Experiment& experiment, const Timeline& /*timeline*/, Prediction& prediction) {
+  prediction.of_agreement = false;
   LawConfig law = experiment.law;
   const WaypointParams params = ReadWaypoints(law.section, "");
   const LinearAgent first = WaypointAgent(experiment.agents.front(), params.p_gain, params.d_gain);

@@ -9,7 +9,6 @@
 #include "agent/laws.h"
 #include "idl/wire.h"
 #include "orchestrator/mcap.h"
-#include "orchestrator/minmax_time.h"
 #include "tests/orchestrator.h"
 
 namespace mascot::test {
@@ -88,6 +87,18 @@ TEST(Leaderless, QuadrotorsMeetAtThePredictedPoint) {
     EXPECT_LT(consensus["final_speed_m_per_s"].get<double>(), 0.01);
     EXPECT_EQ(flight.summary["safety"]["collisions"], 0);
   }
+}
+
+TEST(Leaderless, DecaysAndSettlesAsPredicted) {
+  const auto consensus = Flight("leaderless").summary["consensus"];
+  const double rate_per_s = consensus["predicted"]["rate_per_s"],
+               settling_s = consensus["predicted"]["settling_time_s"];
+  EXPECT_NEAR(rate_per_s, 0.3, 0.001);  // s^2 + 0.9 s + 0.18 = (s + 0.3) (s + 0.6)
+  EXPECT_NEAR(consensus["rate_per_s"].get<double>(), rate_per_s, 0.01 * rate_per_s);
+  EXPECT_NEAR(consensus["settling_time_s"].get<double>(), settling_s, 0.01 * settling_s);
+  EXPECT_NEAR(consensus["deviation"]["settling_time_s"].get<double>(),
+              consensus["settling_time_s"].get<double>() - settling_s, 1e-9);
+  EXPECT_LT(consensus["deviation"]["value_m"].get<double>(), 0.001);
 }
 
 TEST(Leaderless, QuadrotorsBehaveAsDoubleIntegratorsDo) {
@@ -178,6 +189,10 @@ TEST_P(Minmax, AChildMeetsARestingParentInTheClosedFormsTime) {
   EXPECT_NEAR(ideal_s + std::sqrt(2e-3 / a), expected_s, 0.03 * expected_s);
   const Flight quadrotors("minmax", TwoAgents(c, "quadrotor"));
   EXPECT_NEAR(TimeToStay(quadrotors, 2, 1, 0, 0.05), expected_s, 0.15 * expected_s);
+  const auto consensus = quadrotors.summary["consensus"];
+  EXPECT_NEAR(consensus["minmax_edges"][0]["time_s"].get<double>(), TimeToStay(quadrotors, 2, 1, 0, 0.05), 1e-9);
+  EXPECT_NEAR(consensus["deviation"]["minmax_time_s"].get<double>(),
+              consensus["minmax_edges"][0]["time_s"].get<double>() - expected_s, 1e-6);
 }
 
 TEST_P(Minmax, AMovingParentIsMetWithinTheBound) {
@@ -219,6 +234,25 @@ TEST(Check, WarnsWhenTheFirstCommandWouldSaturate) {
   EXPECT_THAT(run.output, testing::HasSubstr("control.max_acceleration_m_per_s2"));
   const Ran quiet = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("leaderless"));
   EXPECT_THAT(quiet.output, testing::Not(testing::HasSubstr("warning")));
+}
+
+TEST(Check, PredictsOfEveryShippedExperimentWhatIsFinite) {
+  for (const auto& entry : std::filesystem::directory_iterator(MASCOT_SOURCE_DIR "/configs")) {
+    const Ran run = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check --json " + entry.path().string());
+    ASSERT_EQ(run.exit_code, 0) << entry.path();
+    const auto predicted = nlohmann::json::parse(run.output)["predicted"];
+    for (const char* key : {"rate_per_s", "settling_time_s", "control_period_bound_s", "delay_margin_s",
+                            "own_delay_margin_s", "minmax_time_s", "first_command_m_per_s2"}) {
+      const auto& value = predicted.at(key);
+      if (!value.is_null()) EXPECT_TRUE(std::isfinite(value.get<double>()) && value >= 0) << entry.path() << " " << key;
+    }
+    EXPECT_NE(predicted["stable"], false) << entry.path();
+    EXPECT_EQ(predicted["persistence"]["joint"],
+              predicted["persistence"]["always"].get<bool>() || !predicted["persistence"]["window_s"].is_null())
+        << entry.path();
+    const bool says_something = predicted["stable"] == true || !predicted["minmax_time_s"].is_null();
+    EXPECT_NE(says_something, !predicted["silent"].is_null()) << entry.path();
+  }
 }
 
 // --- bad configurations ---------------------------------------------------------------------------------
@@ -276,12 +310,29 @@ TEST(FormationInWind, KeepsItsDisplacementsOverABadNetwork) {
   EXPECT_EQ(flight.summary["safety"]["collisions"], 0);
 }
 
+TEST(FormationInWind, DecaysAsFastAsItsLossyLinksAllowOnAverage) {
+  double rate_per_s = 0, predicted_per_s = 0;
+  constexpr int kSeeds = 5;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const auto consensus = Flight("formation", {"run.seed=" + std::to_string(seed)}).summary["consensus"];
+    EXPECT_EQ(consensus["predicted"]["on_average"], true);
+    rate_per_s += consensus["rate_per_s"].get<double>() / kSeeds;
+    predicted_per_s = consensus["predicted"]["rate_per_s"];
+  }
+  EXPECT_NEAR(rate_per_s, predicted_per_s, 0.2 * predicted_per_s);  // its slowest mode swings, once while it decays
+}
+
 TEST(SwitchingGraph, StillMeetsAtTheMean) {
   const Flight flight("switching");
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (int id = 1; id <= 6; ++id) mean += flight.At(0, id).p_WB.head<2>() / 6;
   for (int id = 1; id <= 6; ++id) EXPECT_LT((flight.At(flight.last(), id).p_WB.head<2>() - mean).norm(), 1e-3);
   EXPECT_LT(flight.summary["fidelity"]["rms_m"].get<double>(), 1e-9) << "single integrators are what they should be";
+  const auto consensus = flight.summary["consensus"];
+  const double rate_per_s = consensus["predicted"]["rate_per_s"];
+  EXPECT_NEAR(consensus["rate_per_s"].get<double>(), rate_per_s, 0.01 * rate_per_s);
+  EXPECT_EQ(consensus["predicted"]["persistence"]["never_alone"], true);
+  EXPECT_LT(consensus["deviation"]["value_m"].get<double>(), 1e-9);
 }
 
 TEST(CustomLawInPython, ChasesAroundTheCircle) {
