@@ -59,7 +59,8 @@ class LinearCase {
   Prediction& prediction_;
   Graph graph_;  // of the last interval
   std::optional<LinearAgent> common_;
-  std::vector<LinearMode> modes_;  // of a team that IsModal
+  Eigen::VectorXcd lambda_;        // of a team that IsModal: of L, that of agreement or of a leader first
+  std::vector<LinearMode> modes_;  // likewise, without that one
 };
 
 void LinearCase::Predict() {
@@ -67,21 +68,19 @@ void LinearCase::Predict() {
   if (JudgeGains() && JudgeDelays() && PredictMotion()) PredictValue();
 }
 
-/// Of the eigenvalues of L, all but its one zero: that of agreement, or of a leader.
 void LinearCase::FindModes() {
-  const Eigen::VectorXcd lambda = graph_.Eigenvalues();
-  for (Eigen::Index i = 1; i < lambda.size(); ++i) modes_.push_back(common_->Mode(lambda(i)));
+  lambda_ = graph_.Eigenvalues();
+  for (Eigen::Index i = 1; i < lambda_.size(); ++i) modes_.push_back(common_->Mode(lambda_(i)));
 }
 
 /// The gain that would have to be larger if modes do not decay, and how large.
 GainBound LinearCase::Gain() const {
   const LinearAgent& all = *common_;
-  const Eigen::VectorXcd lambda = graph_.Eigenvalues();
   const bool relative = all.g > 0, velocity = experiment_.law.name == "velocity_consensus";
   double least = 0;
-  for (Eigen::Index i = 1; i < lambda.size(); ++i)
+  for (Eigen::Index i = 1; i < lambda_.size(); ++i)
     least =
-        std::max(least, relative ? LeastRelativeDamping(all.p, all.b, lambda(i)) : LeastDamping(all.p, 0, lambda(i)));
+        std::max(least, relative ? LeastRelativeDamping(all.p, all.b, lambda_(i)) : LeastDamping(all.p, 0, lambda_(i)));
   if (relative) return {"law.v_gain", least, all.g};
   const double own = all.b - all.drag_b;
   if (velocity) {
@@ -164,7 +163,8 @@ bool LinearCase::PredictSampled() {
   }
   if (sampled.radius() == 0) return true;  // nobody follows
   prediction_.rate_per_s = sampled.rate_per_s();
-  prediction_.settling_time_s = std::log(50) / sampled.rate_per_s();
+  if (timeline_.cycle_from == 0)
+    prediction_.settling_time_s = std::log(50) / sampled.rate_per_s();  // all from the start
   return true;
 }
 

@@ -482,6 +482,16 @@ TEST(Theory, PredictsWhatASwitchingGraphDoesPerRepetition) {
   EXPECT_TRUE(prediction.persistence->joint);
 }
 
+TEST(Theory, KnowsTheRateButNoSettlingTimeOfTeamsThatWaitForOneAgent) {
+  const Prediction prediction = Of(kFive + kSingles + "[[agents.override]]\nid = 5\nstart_s = 7.0\n" + kPath +
+                                   "[law]\nname = 'velocity_consensus'\n");
+  EXPECT_EQ(prediction.stable, true);
+  EXPECT_NEAR(*prediction.rate_per_s, -100 * std::log(1 - 0.01 * 0.381966), 1e-6);
+  EXPECT_TRUE(prediction.value_m);
+  EXPECT_FALSE(prediction.settling_time_s);
+  EXPECT_EQ(prediction.persistence->from_s, 7.0);
+}
+
 TEST(Theory, IsSilentOfAgentsThatMayGoOnForEver) {
   EXPECT_EQ(Of(kFive + "model = 'double_integrator'\n[[agents.override]]\nid = 2\nlaw = { v_gain = 3.0 }\n" + kPath +
                "[law]\nname = 'consensus'\nbeta = 0.0\nv_gain = 2.0\n")
