@@ -56,7 +56,7 @@ SampledTeam::SampledTeam(const Experiment& experiment, const LinearTeam& team, c
   // Edges work at a tick as they did when its samples were sent.
   steady_ = timeline.cycle_from + reach_;
   cycle_ = Over(steady_, steady_ + timeline.cycle_ticks);
-  radius_ = SecondLargest();
+  FindModes();
 }
 
 Eigen::Index SampledTeam::Place(int id, std::int64_t ticks_ago) const {
@@ -136,30 +136,53 @@ SampledTeam::Matrix SampledTeam::Over(std::int64_t from, std::int64_t to) const 
   return over;
 }
 
+/// Who hears whom at some time of the cycle.
+Graph SampledTeam::Heard() const {
+  std::vector<Schedule::Phase> phases;
+  for (const Timeline::Interval& interval : timeline_.intervals)
+    if (interval.from >= timeline_.cycle_from) phases.push_back({0, team_.Followed(interval.graph)});
+  return Schedule(std::move(phases), 0, 0).Union();
+}
+
 // Of agents who hear each other, one way or another, and nobody else's doing matters to how they decay: the map is
 // block triangular in the order of these components. Each by itself keeps the digits of eigenvalues that chains repeat.
-// The leader moves as it likes; else one eigenvalue is that of agreement, 1.
-double SampledTeam::SecondLargest() const {
-  std::vector<std::complex<double>> values;
-  for (const std::vector<int>& component : team_.Followed(experiment_.graph).Components()) {
-    if (component.front() == leader_) continue;
+// The leader moves as it likes.
+void SampledTeam::FindModes() {
+  const Graph heard = Heard();
+  const int root = leader_ > 0 ? leader_ : heard.Roots().front();
+  for (const std::vector<int>& ids : heard.Components()) {
     std::vector<Eigen::Index> places;
     for (std::int64_t ago = 0; ago <= reach_; ++ago)
-      for (const int id : component) places.insert(places.end(), {Place(id, ago), Place(id, ago) + n_});
-    const Eigen::VectorXcd own = Matrix(cycle_(places, places)).eigenvalues();
-    values.insert(values.end(), own.begin(), own.end());
+      for (const int id : ids) places.insert(places.end(), {Place(id, ago), Place(id, ago) + n_});
+    const Eigen::EigenSolver<Matrix> modes(cycle_(places, places));
+    if (!std::ranges::binary_search(ids, root))
+      slowest_ = std::max(slowest_, modes.eigenvalues().cwiseAbs().maxCoeff());
+    else if (leader_ == 0)
+      JudgeRoots(ids, modes);
   }
-  if (leader_ == 0) {
-    const auto distance = [](std::complex<double> value) { return std::abs(value - 1.0); };
-    values.erase(std::ranges::min_element(values, {}, distance));
+  radius_ = std::max(radius_, slowest_);
+}
+
+// One eigenvalue is that of agreement, 1. Others may belong to agreement too: agents at one place that slow down
+// together, or one root alone, which from rest does not move at all.
+void SampledTeam::JudgeRoots(const std::vector<int>& ids, const Eigen::EigenSolver<Matrix>& modes) {
+  const bool at_rest = experiment_.agent(ids.front()).v_W.isZero(0) || (team_.Common() && reach_ == 0);
+  Eigen::Index one = 0;
+  (modes.eigenvalues().array() - 1.0).abs().minCoeff(&one);
+  for (Eigen::Index k = 0; k < modes.eigenvalues().size(); ++k) {
+    if (k == one) continue;
+    const double magnitude = std::abs(modes.eigenvalues()(k));
+    radius_ = std::max(radius_, magnitude);
+    const Eigen::VectorXcd shape = modes.eigenvectors().col(k);
+    double apart = 0;  // the places are q, v of each agent now, then earlier
+    for (std::size_t i = 1; i < ids.size(); ++i)
+      apart = std::max(apart, std::abs(shape(2 * static_cast<Eigen::Index>(i)) - shape(0)));
+    if (apart > 1e-6 * shape.norm() || (ids.size() == 1 && !at_rest)) slowest_ = std::max(slowest_, magnitude);
   }
-  double largest = 0;
-  for (const std::complex<double> value : values) largest = std::max(largest, std::abs(value));
-  return largest;
 }
 
 double SampledTeam::rate_per_s() const {
-  return -std::log(radius_) / (static_cast<double>(timeline_.cycle_ticks) * h_);
+  return -std::log(slowest_) / (static_cast<double>(timeline_.cycle_ticks) * h_);
 }
 
 // What a cycle keeps: the left eigenvector w of its eigenvalue 1. It says where the state after the transient leads,

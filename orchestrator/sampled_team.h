@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <optional>
 #include <string>
 
@@ -19,9 +20,11 @@ class SampledTeam {
   SampledTeam(const Experiment& experiment, const LinearTeam& team, const Timeline& timeline, double period_s);
   static bool IsSmall(const Experiment& experiment);
 
-  /// Of the disagreement over one cycle: the largest magnitude of an eigenvalue, without that of agreement itself.
-  double radius() const { return radius_; }
+  /// Agents come to rest together: all eigenvalues of one cycle's map lie within the unit circle, but the one of
+  /// agreement.
   bool Decays() const { return radius_ < 1; }
+  /// The largest magnitude of the eigenvalues that make agents disagree: over one cycle.
+  double slowest() const { return slowest_; }
   double rate_per_s() const;
   /// Where a team without leader that decays meets: q, all axes.
   Eigen::Vector3d MeetingPoint() const;
@@ -33,7 +36,9 @@ class SampledTeam {
   void MoveAgent(int id, const Timeline::Interval& now, std::int64_t tick, Matrix& map) const;
   std::vector<std::int64_t> Changes(std::int64_t from, std::int64_t to) const;
   Matrix Over(std::int64_t from, std::int64_t to) const;
-  double SecondLargest() const;
+  Graph Heard() const;
+  void FindModes();
+  void JudgeRoots(const std::vector<int>& ids, const Eigen::EigenSolver<Matrix>& modes);
 
   const Experiment& experiment_;
   const LinearTeam& team_;
@@ -45,7 +50,8 @@ class SampledTeam {
   std::int64_t reach_ = 0;   // the longest delay (ticks)
   std::int64_t steady_ = 0;  // from this tick on the maps repeat with the timeline
   Matrix cycle_;             // from steady_ over one cycle
-  double radius_ = 0;
+  double radius_ = 0;        // largest magnitude of all eigenvalues but that of agreement
+  double slowest_ = 0;
 };
 
 }  // namespace mascot

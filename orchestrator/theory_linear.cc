@@ -161,7 +161,7 @@ bool LinearCase::PredictSampled() {
     if (link_s > 0) return Warn(fmt::format("link.delay_s: unstable with this delay, got {:.4g}", link_s));
     return Warn("law: unstable with these gains on these graphs");
   }
-  if (sampled.radius() == 0) return true;  // nobody follows
+  if (sampled.slowest() == 0) return true;  // nobody follows anybody
   prediction_.rate_per_s = sampled.rate_per_s();
   if (timeline_.cycle_from == 0)
     prediction_.settling_time_s = std::log(50) / sampled.rate_per_s();  // all from the start

@@ -54,7 +54,7 @@ double Rate(DelayedRecursion& witness, double time_s) {
 
 TEST(SampledTeam, OfOrderOneIsTheSampledMapOfTheLaplacian) {
   const Case path(Five("single_integrator", kPath + "[law]\nname = 'velocity_consensus'\n"));
-  EXPECT_NEAR(path.sampled.radius(), 1 - 0.1 * 0.381966, 1e-7);
+  EXPECT_NEAR(path.sampled.slowest(), 1 - 0.1 * 0.381966, 1e-7);
   EXPECT_NEAR(path.sampled.rate_per_s(), -std::log(1 - 0.1 * 0.381966) / 0.1, 1e-6);
   EXPECT_NEAR(path.sampled.MeetingPoint().x(), 0.4, 1e-12);
 }
@@ -148,17 +148,36 @@ TEST(SampledTeam, KeepsTheDigitsOfAChainBehindItsLeader) {
   const Case c(
       "[run]\nduration_s = 100.0\n[physics]\ncollisions = false\n[agents]\ncount = 11\nmodel = 'single_integrator'\n"
       "[graph]\ntopology = 'directed_path'\n[link]\ndelay_s = 0.01\n[law]\nname = 'velocity_consensus'\nleader = 1\n");
-  EXPECT_NEAR(c.sampled.radius(), 0.99, 1e-12);
+  EXPECT_NEAR(c.sampled.slowest(), 0.99, 1e-12);
+}
+
+TEST(SampledTeam, DoesNotTakeTheBrakingOfAllForDisagreement) {
+  // s^2 + 0.3 s + lambda for those who disagree, s + 0.3 for all together, or for a root that nobody pulls: slower.
+  const std::string law = "[law]\nname = 'consensus'\nbeta = 0.3\nv_gain = 1.5\np_gain = 1.0\n";
+  const Case together(Five("double_integrator", "[graph]\ntopology = 'complete'\n[link]\ndelay_s = 0.1\n" + law));
+  const Case root(Five("double_integrator",
+                       "[[agents.override]]\nid = 3\nlaw = { p_gain = 1.2 }\n"
+                       "[graph]\nedges = [[2, 1], [3, 1], [4, 1], [5, 1]]\n" +
+                           law));
+  for (const Case* c : {&together, &root}) {
+    DelayedRecursion witness = c->Witness();
+    witness.link_ticks = c == &together ? 1 : 0;
+    if (c == &root) witness.p(2) = 1.2;
+    ASSERT_TRUE(c->sampled.Decays());
+    const double rate = Rate(witness, 12);
+    EXPECT_GT(rate, 0.4);
+    EXPECT_NEAR(c->sampled.rate_per_s(), rate, 0.1 * rate);
+  }
 }
 
 TEST(SampledTeam, WeighsLossesAsTheLinksDoInTheLongRun) {
   const Case half(Five("single_integrator", kPath + "[link]\nloss = 0.4\n[law]\nname = 'velocity_consensus'\n"));
-  EXPECT_NEAR(half.sampled.radius(), 1 - 0.06 * 0.381966, 1e-7);
+  EXPECT_NEAR(half.sampled.slowest(), 1 - 0.06 * 0.381966, 1e-7);
   const Case bursts(
       Five("single_integrator",
            kPath + "[law]\nname = 'velocity_consensus'\n[link]\ngilbert_elliott = { good_to_bad = 0.1, bad_to_good = "
                    "0.3, loss_good = 0.2, loss_bad = 1.0 }\n"));
-  EXPECT_NEAR(bursts.sampled.radius(), 1 - 0.1 * 0.75 * 0.8 * 0.381966, 1e-7);
+  EXPECT_NEAR(bursts.sampled.slowest(), 1 - 0.1 * 0.75 * 0.8 * 0.381966, 1e-7);
 }
 
 }  // namespace
