@@ -34,7 +34,8 @@ double Asked(const Command& command, const Motion& start, bool velocity, double 
 
 void PredictFirstCommand(Experiment& experiment, Prediction& prediction) {
   const MutedPython muted;
-  Experiment prompt = experiment;  // delays and losses only put off the moment at which agents hear all their neighbours
+  Experiment prompt =
+      experiment;  // delays and losses only put off the moment at which agents hear all their neighbours
   prompt.links = {};
   Team team(prompt);
   const std::vector<Motion> motions = Start(experiment);
