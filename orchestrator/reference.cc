@@ -25,7 +25,7 @@ Keys carry their unit in their name; where they cannot (gains), it stands beside
 `(a, b]` leaves out a. Points and vectors are `[x, y, z]` in the world frame: x east, y north, z up.
 
 Editors that know TOML (VS Code with Even Better TOML, or anything else on taplo) complete and check the keys while you type
-if the file begins with `#:schema` and the place of [mascot.schema.json](../configs/mascot.schema.json), as those in
+if the file begins with `#:schema` and the place of [mascot.schema.json](mascot.schema.json), as those in
 `configs/` do.
 )";
 

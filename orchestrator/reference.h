@@ -6,7 +6,7 @@ namespace mascot {
 
 /// docs/configuration.md: every table and key of an experiment file, from the rows that its readers read by.
 std::string ConfigurationReference();  // reference.cc
-/// configs/mascot.schema.json: the same as a JSON Schema (draft 7), for editors.
+/// docs/mascot.schema.json: the same as a JSON Schema (draft 7), for editors.
 std::string ConfigurationSchema();  // schema.cc
 
 }  // namespace mascot

@@ -1,4 +1,4 @@
-// write_reference FOLDER: makes docs/configuration.md and configs/mascot.schema.json in a source tree anew.
+// write_reference FOLDER: makes docs/configuration.md and docs/mascot.schema.json in a source tree anew.
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -21,7 +21,7 @@ int main(int argc, char** argv) try {
   if (argc != 2) throw std::runtime_error("expected the folder of the source tree");
   const std::filesystem::path folder = argv[1];
   Write(folder / "docs/configuration.md", mascot::ConfigurationReference());
-  Write(folder / "configs/mascot.schema.json", mascot::ConfigurationSchema());
+  Write(folder / "docs/mascot.schema.json", mascot::ConfigurationSchema());
   return 0;
 } catch (const std::exception& error) {
   std::cerr << "error: " << error.what() << "\n";

@@ -1,4 +1,4 @@
-// docs/configuration.md and configs/mascot.schema.json, which are made from the tables of keys, against those who read
+// docs/configuration.md and docs/mascot.schema.json, which are made from the tables of keys, against those who read
 // experiment files (LoadExperiment) and against taplo, which editors use.
 #include "orchestrator/reference.h"
 
@@ -48,7 +48,7 @@ TEST(Reference, OfKeysIsCurrent) {
 }
 
 TEST(Reference, SchemaIsCurrent) {
-  EXPECT_EQ(ReadFile(kSource / "configs/mascot.schema.json"), ConfigurationSchema()) << kHowTo;
+  EXPECT_EQ(ReadFile(kSource / "docs/mascot.schema.json"), ConfigurationSchema()) << kHowTo;
 }
 
 TEST(Reference, SaysRangeDefaultAndMeaning) {
@@ -120,7 +120,7 @@ Verdict Taplo(const std::vector<fs::path>& files, bool by_our_schema) {
   if (!fs::exists(program))
     throw std::runtime_error("tests/taplo/node_modules is missing: run scripts/test, which installs it with `npm ci`");
   std::string command = "'" + program + "' check --colors never";
-  if (by_our_schema) command += " --schema 'file://" + (kSource / "configs/mascot.schema.json").string() + "'";
+  if (by_our_schema) command += " --schema 'file://" + (kSource / "docs/mascot.schema.json").string() + "'";
   for (const fs::path& path : files) command += " '" + path.string() + "'";
   const Ran ran = Shell(command);
   Verdict verdict{ran.output, {}};
@@ -138,14 +138,14 @@ Verdict Taplo(const std::vector<fs::path>& files, bool by_our_schema) {
 TEST(Schema, IsNamedByTheShippedExperimentsAndAcceptsThem) {
   const std::vector<fs::path> files = TomlFiles(kSource / "configs");
   for (const fs::path& path : files)
-    EXPECT_THAT(ReadFile(path), testing::StartsWith("#:schema ./mascot.schema.json\n"));
+    EXPECT_THAT(ReadFile(path), testing::StartsWith("#:schema ../docs/mascot.schema.json\n"));
   const Verdict verdict = Taplo(files, false);
   EXPECT_THAT(verdict.refused, IsEmpty()) << verdict.output;
 }
 
 TEST(Schema, IsFoundByWhatTheShippedExperimentsSay) {
   ScratchFolder folder;
-  fs::copy(kSource / "configs/mascot.schema.json", folder.path());
+  fs::copy(kSource / "docs/mascot.schema.json", folder.path());
   WriteFile(folder.File("wrong.toml"), "#:schema ./mascot.schema.json\nrun.duration_s = 'long'\nagents.count = 1\n");
   const Verdict verdict = Taplo({folder.File("wrong.toml")}, false);
   EXPECT_EQ(verdict.refused.size(), 1u) << verdict.output;
