@@ -10,7 +10,7 @@
 #include "orchestrator/config_args.h"
 #include "orchestrator/graph_facts.h"
 #include "orchestrator/prediction_report.h"
-#include "orchestrator/theory.h"
+#include "orchestrator/theory/theory.h"
 #include "orchestrator/verb.h"
 
 namespace mascot {

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "orchestrator/metrics.h"
-#include "orchestrator/theory.h"
+#include "orchestrator/theory/theory.h"
 
 namespace mascot {
 

@@ -1,6 +1,6 @@
 #include "orchestrator/graph_facts.h"
 
-#include "orchestrator/theory.h"
+#include "orchestrator/theory/theory.h"
 
 namespace mascot {
 

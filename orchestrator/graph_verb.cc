@@ -9,7 +9,7 @@
 #include "orchestrator/config_args.h"
 #include "orchestrator/dot.h"
 #include "orchestrator/graph_facts.h"
-#include "orchestrator/theory.h"
+#include "orchestrator/theory/theory.h"
 #include "orchestrator/verb.h"
 
 namespace mascot {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "orchestrator/theory.h"
+#include "orchestrator/theory/theory.h"
 
 namespace mascot {
 

@@ -5,7 +5,7 @@
 #include "experiment/experiment.h"
 #include "orchestrator/engine.h"
 #include "orchestrator/run_writer.h"
-#include "orchestrator/theory.h"
+#include "orchestrator/theory/theory.h"
 
 namespace mascot {
 

@@ -17,7 +17,7 @@
 #include "orchestrator/run_folder.h"
 #include "orchestrator/run_writer.h"
 #include "orchestrator/summary.h"
-#include "orchestrator/theory.h"
+#include "orchestrator/theory/theory.h"
 #include "orchestrator/verb.h"
 
 namespace mascot {

@@ -1,4 +1,4 @@
-#include "orchestrator/delay_margin.h"
+#include "orchestrator/theory/delay_margin.h"
 
 #include <gtest/gtest.h>
 

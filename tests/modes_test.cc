@@ -1,4 +1,4 @@
-#include "orchestrator/modes.h"
+#include "orchestrator/theory/modes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "orchestrator/persistence.h"
+#include "orchestrator/theory/persistence.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

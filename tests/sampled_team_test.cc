@@ -1,4 +1,4 @@
-#include "orchestrator/sampled_team.h"
+#include "orchestrator/theory/sampled_team.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "orchestrator/theory.h"
+#include "orchestrator/theory/theory.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "orchestrator/minmax_time.h"
-#include "orchestrator/modes.h"
+#include "orchestrator/theory/minmax_time.h"
+#include "orchestrator/theory/modes.h"
 #include "tests/ideal_network.h"
 
 namespace mascot {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "orchestrator/linear_team.h"
-#include "orchestrator/timeline.h"
+#include "orchestrator/theory/linear_team.h"
+#include "orchestrator/theory/timeline.h"
 
 namespace mascot {
 

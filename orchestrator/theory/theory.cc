@@ -1,4 +1,4 @@
-#include "orchestrator/theory.h"
+#include "orchestrator/theory/theory.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -8,9 +8,9 @@
 #include "agent/laws.h"
 #include "agent/python.h"
 #include "orchestrator/crowding.h"
-#include "orchestrator/links_on_average.h"
 #include "orchestrator/team.h"
-#include "orchestrator/theory_parts.h"
+#include "orchestrator/theory/links_on_average.h"
+#include "orchestrator/theory/theory_parts.h"
 
 namespace mascot {
 namespace {

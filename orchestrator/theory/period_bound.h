@@ -1,7 +1,7 @@
 #pragma once
 
-#include "orchestrator/linear_team.h"
-#include "orchestrator/timeline.h"
+#include "orchestrator/theory/linear_team.h"
+#include "orchestrator/theory/timeline.h"
 
 namespace mascot {
 

@@ -1,4 +1,4 @@
-#include "orchestrator/sampled_team.h"
+#include "orchestrator/theory/sampled_team.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "orchestrator/links_on_average.h"
+#include "orchestrator/theory/links_on_average.h"
 
 namespace mascot {
 namespace {

@@ -7,12 +7,12 @@
 
 #include "agent/laws/consensus.h"
 #include "agent/laws/reach.h"
-#include "orchestrator/linear_team.h"
-#include "orchestrator/links_on_average.h"
-#include "orchestrator/meeting_point.h"
-#include "orchestrator/period_bound.h"
-#include "orchestrator/sampled_team.h"
-#include "orchestrator/theory_parts.h"
+#include "orchestrator/theory/linear_team.h"
+#include "orchestrator/theory/links_on_average.h"
+#include "orchestrator/theory/meeting_point.h"
+#include "orchestrator/theory/period_bound.h"
+#include "orchestrator/theory/sampled_team.h"
+#include "orchestrator/theory/theory_parts.h"
 
 namespace mascot {
 namespace {

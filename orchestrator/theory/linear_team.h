@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
-#include "orchestrator/modes.h"
+#include "orchestrator/theory/modes.h"
 
 namespace mascot {
 

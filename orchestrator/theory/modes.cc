@@ -1,4 +1,4 @@
-#include "orchestrator/modes.h"
+#include "orchestrator/theory/modes.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

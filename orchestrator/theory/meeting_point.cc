@@ -5,11 +5,11 @@
 //   sum_i gamma_i / p_i { (b_i + p_i d_i tau) (q_i(0) - c) + v_i(0) + g_i sum_j a_ij (q_i(0) - q_j(0)) } = 0
 // d_i = sum_j a_ij. Order 1 likewise with b_i = 1, g_i = 0 and without v_i(0): its velocity is not its own to keep.
 // tau: what a delay is in whole ticks. With v_i(0) != 0 for tau = 0 alone: agents move before they hear.
-#include "orchestrator/meeting_point.h"
+#include "orchestrator/theory/meeting_point.h"
 
 #include <algorithm>
 
-#include "orchestrator/links_on_average.h"
+#include "orchestrator/theory/links_on_average.h"
 
 namespace mascot {
 namespace {

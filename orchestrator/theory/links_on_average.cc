@@ -1,4 +1,4 @@
-#include "orchestrator/links_on_average.h"
+#include "orchestrator/theory/links_on_average.h"
 
 #include <algorithm>
 

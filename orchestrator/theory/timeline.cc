@@ -1,4 +1,4 @@
-#include "orchestrator/timeline.h"
+#include "orchestrator/theory/timeline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <set>
 
 #include "agent/neighbours.h"
-#include "orchestrator/links_on_average.h"
+#include "orchestrator/theory/links_on_average.h"
 
 namespace mascot {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "orchestrator/linear_team.h"
+#include "orchestrator/theory/linear_team.h"
 
 namespace mascot {
 

@@ -1,4 +1,4 @@
-#include "orchestrator/linear_team.h"
+#include "orchestrator/theory/linear_team.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "orchestrator/minmax_time.h"
+#include "orchestrator/theory/minmax_time.h"
 
 #include <cmath>
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "experiment/experiment.h"
-#include "orchestrator/delay_margin.h"
-#include "orchestrator/persistence.h"
+#include "orchestrator/theory/delay_margin.h"
+#include "orchestrator/theory/persistence.h"
 
 namespace mascot {
 

@@ -1,6 +1,6 @@
-#include "orchestrator/period_bound.h"
+#include "orchestrator/theory/period_bound.h"
 
-#include "orchestrator/sampled_team.h"
+#include "orchestrator/theory/sampled_team.h"
 
 namespace mascot {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "orchestrator/timeline.h"
+#include "orchestrator/theory/timeline.h"
 
 namespace mascot {
 

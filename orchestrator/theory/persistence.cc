@@ -1,4 +1,4 @@
-#include "orchestrator/persistence.h"
+#include "orchestrator/theory/persistence.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -6,7 +6,7 @@
 #include <span>
 
 #include "agent/laws/reach.h"
-#include "orchestrator/links_on_average.h"
+#include "orchestrator/theory/links_on_average.h"
 
 namespace mascot {
 namespace {

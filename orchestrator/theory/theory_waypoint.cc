@@ -1,7 +1,7 @@
 // Waypoint flight: every agent by itself, two poles each.
 #include "agent/laws/waypoint.h"
-#include "orchestrator/linear_team.h"
-#include "orchestrator/theory_parts.h"
+#include "orchestrator/theory/linear_team.h"
+#include "orchestrator/theory/theory_parts.h"
 
 namespace mascot {
 

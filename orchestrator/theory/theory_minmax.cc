@@ -5,8 +5,8 @@
 
 #include "agent/laws/minmax.h"
 #include "agent/laws/reach.h"
-#include "orchestrator/minmax_time.h"
-#include "orchestrator/theory_parts.h"
+#include "orchestrator/theory/minmax_time.h"
+#include "orchestrator/theory/theory_parts.h"
 
 namespace mascot {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "experiment/graph.h"
-#include "orchestrator/linear_team.h"
+#include "orchestrator/theory/linear_team.h"
 
 namespace mascot {
 

@@ -7,7 +7,7 @@
 //   for n = 2 where w^2 > 2 p_i d_i - b_i^2 - 2 b_i g_i d_i,
 // so that (Gershgorin) no eigenvalue can: the first delay with a root lies where the second fails for some i, or
 // nowhere.
-#include "orchestrator/delay_margin.h"
+#include "orchestrator/theory/delay_margin.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

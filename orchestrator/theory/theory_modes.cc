@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "orchestrator/theory_parts.h"
+#include "orchestrator/theory/theory_parts.h"
 
 namespace mascot {
 

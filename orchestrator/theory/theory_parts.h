@@ -8,9 +8,9 @@
 #include <string>
 
 #include "experiment/experiment.h"
-#include "orchestrator/modes.h"
-#include "orchestrator/theory.h"
-#include "orchestrator/timeline.h"
+#include "orchestrator/theory/modes.h"
+#include "orchestrator/theory/theory.h"
+#include "orchestrator/theory/timeline.h"
 
 namespace mascot {
 
