@@ -3,7 +3,6 @@
 #include <chrono>
 #include <vector>
 
-#include "idl/wire.h"
 #include "orchestrator/team.h"
 #include "physics_server/world.h"
 
@@ -19,31 +18,21 @@ class Flight {
       : experiment_(experiment),
         world_(experiment),
         team_(experiment),
-        motions_(static_cast<std::size_t>(experiment.size())),
         actuation_(static_cast<std::size_t>(experiment.size())),
         row_(experiment.size()) {}
 
-  /// States and commands of the current tick, on "the wire".
-  const Row& Exchange() {
-    const std::int64_t tick = row_.tick = world_.tick();
-    const int rate = experiment_.control.rate_hz;
-    ToWire(tick, rate, clock_);
-    Serialize(clock_, row_.clock);
-    for (std::size_t i = 0; i < motions_.size(); ++i) {
-      const int id = static_cast<int>(i) + 1;
-      motions_[i] = world_.State(id);
-      ToWire(tick, rate, id, motions_[i], state_);
-      Serialize(state_, row_.states[i]);
-    }
-    for (std::size_t i = 0; i < motions_.size(); ++i) {
-      const int id = static_cast<int>(i) + 1;
-      const Command command = team_.Decide(id, tick, motions_);
-      actuation_[i] = command.actuator;
-      ToWire(tick, rate, id, command, command_);
-      Serialize(command_, row_.commands[i]);
-      if (!experiment_.agents[i].sends_messages) continue;
-      ToWire(tick, rate, id, team_.message(id), message_);
-      Serialize(message_, row_.messages[i]);
+  /// States and commands of the current tick.
+  const DecodedRow& Exchange() {
+    const std::int64_t tick = world_.tick();
+    for (const AgentConfig& agent : experiment_.agents)
+      row_.motions[static_cast<std::size_t>(agent.id - 1)] = world_.State(agent.id);
+    for (const AgentConfig& agent : experiment_.agents) {
+      const auto i = static_cast<std::size_t>(agent.id - 1);
+      row_.commands[i] = team_.Decide(agent.id, tick, row_.motions);
+      row_.commands[i].v_limited_W.setZero();  // not on the wire
+      actuation_[i] = row_.commands[i].actuator;
+      const std::span<const double> message = team_.message(agent.id);
+      row_.messages[i].assign(message.begin(), message.end());
     }
     team_.EndTick();
     return row_;
@@ -56,18 +45,14 @@ class Flight {
   Experiment& experiment_;
   World world_;
   Team team_;
-  std::vector<Motion> motions_;
   std::vector<Actuation> actuation_;
-  Row row_;
-  rosgraph_msgs::msg::Clock clock_;
-  mascot_msgs::msg::AgentState state_;
-  mascot_msgs::msg::AgentCommand command_;
-  mascot_msgs::msg::AgentMessage message_;
+  DecodedRow row_;
 };
 
 }  // namespace
 
-EngineResult RunInProcess(Experiment& experiment, RunWriter& writer,
+EngineResult RunInProcess(Experiment& experiment,
+                          const std::function<void(std::int64_t tick, const DecodedRow& row)>& on_tick,
                           const std::function<bool(std::int64_t tick)>& go_on) {
   EngineResult result;
   result.wire_matches_graph = true;  // there is none: what an agent hears is made from the graph
@@ -76,7 +61,7 @@ EngineResult RunInProcess(Experiment& experiment, RunWriter& writer,
   const auto start = WallClock::now();
   try {
     for (std::int64_t tick = 0; go_on(tick); ++tick) {
-      writer.Add(flight.Exchange());
+      on_tick(tick, flight.Exchange());
       if (tick == experiment.ticks()) break;
       flight.Step();
     }

@@ -14,7 +14,7 @@ void Progress::Show(std::int64_t tick) {
   char text[160];
   std::snprintf(text, sizeof text, "t = %.2f of %g s | %.1f x real time | %d agent%s | disagreement %.3g m", t_s,
                 experiment_.run.duration_s, wall_s > 0 ? t_s / wall_s : 0.0, experiment_.size(),
-                experiment_.size() == 1 ? "" : "s", writer_.disagreement_m());
+                experiment_.size() == 1 ? "" : "s", writer_.meter().disagreement_m());
   console_.Progress(static_cast<double>(tick) / static_cast<double>(experiment_.ticks()), text);
 }
 

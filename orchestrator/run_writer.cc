@@ -27,9 +27,9 @@ std::string_view SchemaName(TopicKind kind) {
 RunWriter::RunWriter(Experiment& experiment, const RunFolder& folder, const std::string& resolved)
     : experiment_(experiment),
       mcap_(folder.File(experiment.record.file)),
-      metrics_(experiment),
-      links_(experiment),
+      meter_(experiment),
       decoded_(experiment.size()),
+      encoder_(experiment),
       arrays_(experiment.size()) {
   mcap_.Attach("config.toml", "application/toml", resolved);
   for (int id = 1; id <= experiment.size(); ++id) {
@@ -59,6 +59,13 @@ void RunWriter::WriteSample(std::optional<std::uint16_t> channel, std::uint64_t 
 }
 
 void RunWriter::Add(const Row& row) {
+  decoded_.Take(row);
+  Write(row, decoded_);
+}
+
+void RunWriter::Add(std::int64_t tick, const DecodedRow& decoded) { Write(encoder_.Encode(tick, decoded), decoded); }
+
+void RunWriter::Write(const Row& row, const DecodedRow& decoded) {
   const std::uint64_t time_ns = StampNs(row.tick, experiment_.control.rate_hz);
   for (std::size_t i = 0; i < row.states.size(); ++i) {
     WriteSample(commands_[i], time_ns, row.commands[i]);
@@ -67,13 +74,11 @@ void RunWriter::Add(const Row& row) {
   }
   WriteSample(clock_, time_ns, row.clock);
   mcap_.EndTick();
-  decoded_.Take(row);
   if (npz_) {
-    arrays_.Set(experiment_.time_s(row.tick), decoded_);
+    arrays_.Set(experiment_.time_s(row.tick), decoded);
     npz_->Append(arrays_);
   }
-  metrics_.Add(decoded_);
-  links_.Add(row.tick, decoded_);
+  meter_.Add(row.tick, decoded);
   ++rows_;
 }
 

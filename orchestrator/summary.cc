@@ -147,9 +147,9 @@ std::string ConsensusText(const Experiment& experiment, const Measured& m, const
 
 }  // namespace
 
-std::string SummaryJson(const Experiment& experiment, const Prediction& prediction, const RunWriter& writer,
+std::string SummaryJson(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
                         const EngineResult& engine, const RunFacts& facts) {
-  const Measured measured = writer.Result();
+  const Measured measured = meter.Result();
   const std::int64_t ticks = std::max<std::int64_t>(measured.rows - 1, 0);  // periods flown: rows are 0 .. ticks
   const double sim_s = experiment.time_s(ticks);
   Json json;
@@ -165,14 +165,14 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   json["ticks_per_s"] = engine.wall_s > 0 ? Json(static_cast<double>(ticks) / engine.wall_s) : Json(nullptr);
   json["exit"] = facts.exit;
   json["failure"] = engine.failure.empty() ? Json(nullptr) : Json(engine.failure);
-  json["samples"] = {{"topics", writer.topics()}, {"recorded", writer.samples()}, {"lost", engine.lost}};
+  json["samples"] = {{"topics", facts.topics}, {"recorded", facts.samples}, {"lost", engine.lost}};
   json["wire"] = {{"matches_graph", OrNull(engine.wire_matches_graph)}};
   json["graph"] = {{"edges", EdgesOf(experiment.graph)}};
   json["consensus"] = Consensus(experiment, measured, prediction);
   json["control"] = {{"effort", measured.effort_m2_per_s3}, {"saturated_fraction", measured.saturated_fraction}};
   json["safety"] = Safety(measured, engine.contacts);
   if (const auto& formation = measured.formation) json["formation"] = Formation(*formation);
-  json["links"] = Links(writer.Traffic());
+  json["links"] = Links(meter.Traffic());
   json["fidelity"] = Fidelity(measured);
   if (experiment.run.mode == Mode::kRealtime) json["realtime"] = {{"misses", engine.misses}};
   json["startup_s"] = engine.startup_s;
@@ -180,16 +180,16 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   return json.dump(2) + "\n";
 }
 
-std::string SummaryText(const Experiment& experiment, const Prediction& prediction, const RunWriter& writer,
-                        const EngineResult& engine) {
-  const Measured m = writer.Result();
+std::string SummaryText(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
+                        const EngineResult& engine, const RunFacts& facts) {
+  const Measured m = meter.Result();
   if (m.rows == 0) return "nothing was recorded\n";
   const double sim_s = experiment.time_s(m.rows - 1);
   std::string text;
   text += Line("simulated      %.2f s in %.2f s: %.1f x real time", sim_s, engine.wall_s, sim_s / engine.wall_s);
-  text += Line("recorded       %lld rows, %llu samples on %zu topics, %llu lost", static_cast<long long>(m.rows),
-               static_cast<unsigned long long>(writer.samples()), writer.topics(),
-               static_cast<unsigned long long>(engine.lost));
+  text +=
+      Line("recorded       %lld rows, %llu samples on %zu topics, %llu lost", static_cast<long long>(m.rows),
+           static_cast<unsigned long long>(facts.samples), facts.topics, static_cast<unsigned long long>(engine.lost));
   text += ConsensusText(experiment, m, prediction);
   text += Line("saturated      %.2g %% of commands", 100 * m.saturated_fraction);
   if (experiment.run.mode == Mode::kRealtime)
@@ -202,7 +202,7 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
     text += Line("formation      %.4f m rms off at the end, %.4f m at worst in the second half", formation->final_rms_m,
                  formation->worst_rms_m);
   std::uint64_t sent = 0, lost = 0, late = 0;
-  for (const EdgeTraffic& edge : writer.Traffic()) {
+  for (const EdgeTraffic& edge : meter.Traffic()) {
     sent += edge.count.sent;
     lost += edge.count.lost;
     late += edge.count.late;

@@ -4,7 +4,7 @@
 
 #include "experiment/experiment.h"
 #include "orchestrator/engine.h"
-#include "orchestrator/run_writer.h"
+#include "orchestrator/run_meter.h"
 #include "orchestrator/theory/theory.h"
 
 namespace mascot {
@@ -13,14 +13,16 @@ namespace mascot {
 struct RunFacts {
   std::string engine;  ///< "dds" | "inprocess"
   int exit = 0;
-  double total_s = 0;  ///< from `up` to the last file but summary.json
+  std::size_t topics = 0;     ///< recorded
+  std::uint64_t samples = 0;  ///< recorded
+  double total_s = 0;         ///< from `up` to the last file but summary.json
 };
 
 /// summary.json: keys and definitions in docs/recording.md.
-std::string SummaryJson(const Experiment& experiment, const Prediction& prediction, const RunWriter& writer,
+std::string SummaryJson(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
                         const EngineResult& engine, const RunFacts& facts);
 /// The same for people: predicted beside measured, in a few lines.
-std::string SummaryText(const Experiment& experiment, const Prediction& prediction, const RunWriter& writer,
-                        const EngineResult& engine);
+std::string SummaryText(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
+                        const EngineResult& engine, const RunFacts& facts);
 
 }  // namespace mascot

@@ -36,7 +36,8 @@ struct UpArgs {
 EngineResult RunInThisProcess(Experiment& experiment, RunWriter& writer, Console& console, StopSignal& stop) {
   Progress progress(experiment, writer, console);
   const Interruptions interruptions(stop, console);
-  EngineResult result = RunInProcess(experiment, writer, [&](std::int64_t tick) {
+  const auto record = [&](std::int64_t tick, const DecodedRow& row) { writer.Add(tick, row); };
+  EngineResult result = RunInProcess(experiment, record, [&](std::int64_t tick) {
     constexpr std::int64_t kShowEvery = 32;  // ticks
     if (tick > 0 && tick % kShowEvery == 0) progress.Show(tick - 1);
     return interruptions.signal() == 0;
@@ -102,20 +103,20 @@ int Up(UpArgs& args) {
   }
   if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
 
-  RunFacts facts{args.engine, ExitCode(result), 0};
+  RunFacts facts{args.engine, ExitCode(result), writer.topics(), writer.samples()};
   auto write_summary = [&] {
     facts.total_s = std::chrono::duration<double>(WallClock::now() - launched).count();
-    folder.Write("summary.json", SummaryJson(experiment, prediction, writer, result, facts));
+    folder.Write("summary.json", SummaryJson(experiment, prediction, writer.meter(), result, facts));
   };
   write_summary();  // the pictures read it
   const int output = MakeOutput(experiment, folder, writer.rows() > 1, stop);
   if (facts.exit == 0) facts.exit = output;
   write_summary();
   if (args.json)
-    std::cout << SummaryJson(experiment, prediction, writer, result, facts);
+    std::cout << SummaryJson(experiment, prediction, writer.meter(), result, facts);
   else if (!args.quiet)
-    std::cout << SummaryText(experiment, prediction, writer, result) << "results        " << folder.path().string()
-              << std::endl;
+    std::cout << SummaryText(experiment, prediction, writer.meter(), result, facts) << "results        "
+              << folder.path().string() << std::endl;
   if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
   return facts.exit;
 }
