@@ -11,7 +11,7 @@ namespace mascot {
 /// standard's distributions are not. Each use has a stream of its own, so that one more draw here moves nothing there.
 class Random {
  public:
-  enum class Stream : std::uint32_t { kPositions = 1, kGraph = 2 };
+  enum class Stream : std::uint32_t { kPositions = 1, kGraph = 2, kSweep = 3 };
 
   Random(std::uint64_t seed, Stream stream) : engine_(Sequence(seed, stream)) {}
 

@@ -132,6 +132,9 @@ class Section {
   std::shared_ptr<Table> table_;
 };
 
+/// The whole of a regular file of at most 16 MiB. Throws ConfigError: "PATH: is a directory".
+std::string ReadRegularFile(const std::string& path);
+
 /// The name among `names` that is closest to `word`, if it is close enough to be a slip of the finger.
 std::optional<std::string> DidYouMean(std::string_view word, std::span<const std::string_view> names);
 

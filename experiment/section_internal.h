@@ -104,9 +104,6 @@ struct Section::Table {
   std::optional<std::string> ResolvedInline() const;
 };
 
-/// The whole of a regular file. Throws ConfigError: "PATH: is a directory".
-std::string ReadRegularFile(const std::string& path);
-
 /// "number", "string", "list", ...
 std::string KindOf(const toml::node& node);
 /// The number in `node` if it is one that `range` holds and a double holds exactly.

@@ -21,6 +21,7 @@ constexpr VerbEntry kVerbs[] = {
     {"airframes", "the built-in quadrotors: parameters, gains, limits", SetUpAirframes},
     {"info", "what a recording holds, and the proof that it is complete", SetUpInfo},
     {"plot", "the pictures of a run again", SetUpPlot},
+    {"sweep", "run an experiment over values of its keys and seeds: a table, a picture", SetUpSweep},
     {"export", "a recording as NumPy arrays, as CSV or as a MATLAB file", SetUpExport},
 };
 

@@ -24,11 +24,12 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Installed, or in the source tree that this program was configured in.
-fs::path PlotScript() {
+fs::path Find(const std::string& script) {
   for (const fs::path& path :
-       {ProgramFolder() / "../share/mascot/plot.py", fs::path(MASCOT_SOURCE_DIR) / "scripts/plot.py"})
+       {ProgramFolder() / "../share/mascot" / script, fs::path(MASCOT_SOURCE_DIR) / "scripts" / script})
     if (fs::exists(path)) return path;
-  throw std::runtime_error("plot.py is missing: neither beside this program (../share/mascot) nor in its source tree");
+  throw std::runtime_error(script +
+                           " is missing: neither beside this program (../share/mascot) nor in its source tree");
 }
 
 /// Runs a program that shares our terminal. Returns its exit code, or 128 + signal: its own, or one that `stop` heard.
@@ -64,11 +65,17 @@ struct PlotArgs {
 
 }  // namespace
 
-int PlotRun(const fs::path& folder, bool show, StopSignal& stop) {
+int RunScript(const std::string& script, const std::vector<std::string>& arguments, StopSignal& stop) {
   // Debian's own Python, which has Debian's matplotlib; another may be first in PATH.
-  std::vector<std::string> words{"/usr/bin/python3", PlotScript(), folder};
-  if (show) words.push_back("--show");
+  std::vector<std::string> words{"/usr/bin/python3", Find(script)};
+  words.insert(words.end(), arguments.begin(), arguments.end());
   return RunProgram(words, stop);
+}
+
+int PlotRun(const fs::path& folder, bool show, StopSignal& stop) {
+  std::vector<std::string> arguments{folder};
+  if (show) arguments.push_back("--show");
+  return RunScript("plot.py", arguments, stop);
 }
 
 std::function<int()> SetUpPlot(CLI::App& command) {

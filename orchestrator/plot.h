@@ -1,13 +1,17 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "idl/stop_signal.h"
 
 namespace mascot {
 
-/// Makes the pictures of a run folder with scripts/plot.py, found beside this program. Returns its exit code, or
-/// 128 + the signal that `stop` heard meanwhile, which ends it.
+/// Runs a script of scripts/, found beside this program, with these arguments. Returns its exit code, or 128 + the
+/// signal that `stop` heard meanwhile, which ends it.
+int RunScript(const std::string& script, const std::vector<std::string>& arguments, StopSignal& stop);
+/// Makes the pictures of a run folder with scripts/plot.py. Returns as RunScript.
 int PlotRun(const std::filesystem::path& folder, bool show, StopSignal& stop);
 
 }  // namespace mascot

@@ -26,5 +26,6 @@ std::function<int()> SetUpAirframes(CLI::App& command);  // airframes.cc
 std::function<int()> SetUpInfo(CLI::App& command);       // info.cc
 std::function<int()> SetUpPlot(CLI::App& command);       // plot.cc
 std::function<int()> SetUpExport(CLI::App& command);     // export.cc
+std::function<int()> SetUpSweep(CLI::App& command);      // sweep.cc
 
 }  // namespace mascot

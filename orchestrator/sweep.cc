@@ -1,0 +1,248 @@
+// `orchestrator sweep CONFIG`: one experiment many times, over values of its keys and seeds, in one process each run,
+// all cores at work; a table with a row for each run, and a picture of it.
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "agent/laws.h"
+#include "idl/stop_signal.h"
+#include "orchestrator/console.h"
+#include "orchestrator/inprocess.h"
+#include "orchestrator/plot.h"
+#include "orchestrator/run_meter.h"
+#include "orchestrator/summary.h"
+#include "orchestrator/sweep_file.h"
+#include "orchestrator/sweep_metrics.h"
+#include "orchestrator/sweep_plan.h"
+#include "orchestrator/theory/theory.h"
+#include "orchestrator/verb.h"
+#include "orchestrator/worker_pool.h"
+
+namespace mascot {
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+namespace fs = std::filesystem;
+
+constexpr const char* kUsualMetric = "consensus.final_disagreement_m";
+
+struct SweepArgs {
+  std::string config;
+  SweepPlan::Words words;
+  int jobs = 0;
+  std::string out = "sweep.csv", metric = kUsualMetric;
+  bool force = false, no_plot = false, quiet = false;
+};
+
+/// What every run of a sweep is made from: the experiment's text as it was at the start, whoever edits it meanwhile.
+struct Sweep {
+  std::string name;  ///< of the file, as typed
+  std::string text;
+  SweepPlan plan;
+
+  Experiment Load(std::size_t run) const {
+    const Section document = Section::FromText(text, name, plan[run].overrides);
+    Experiment experiment = LoadExperiment(document, fs::path(name).stem().string());
+    if (experiment.run.mode == Mode::kRealtime)
+      throw ConfigError({"sweep: expected run.mode = \"lockstep\", got \"realtime\""});
+    return experiment;
+  }
+};
+
+/// One run, start to end; its summary. Throws std::runtime_error if it fails.
+std::string Fly(const Sweep& sweep, std::size_t run) {
+  Experiment experiment = sweep.Load(run);
+  const Prediction prediction = Predict(experiment);
+  RunMeter meter(experiment);
+  const EngineResult result = RunInProcess(
+      experiment, [&](std::int64_t tick, const DecodedRow& row) { meter.Add(tick, row); },
+      [](std::int64_t) { return true; });
+  if (!result.failure.empty()) throw std::runtime_error(result.failure);
+  const RunFacts facts{.engine = "inprocess"};
+  return SummaryJson(experiment, prediction, meter, result, facts);
+}
+
+/// Tasks of the pool: runs, then the same runs again, to be read and checked only.
+WorkerPool::Work WorkOf(const Sweep& sweep) {
+  return [&sweep](std::size_t task) -> std::string {
+    if (task >= sweep.plan.size()) {
+      sweep.Load(task - sweep.plan.size());
+      return "";
+    }
+    nlohmann::json cells = SweepMetrics(Fly(sweep, task));
+    return cells.dump();
+  };
+}
+
+/// Refuses a sweep none of whose runs is a valid experiment, with the mistakes of the first.
+void CheckThatSomeRunIsValid(const Sweep& sweep, WorkerPool& pool) {
+  std::string first;
+  for (std::size_t run = 0; run < sweep.plan.size(); ++run) {
+    pool.Start(sweep.plan.size() + run);
+    std::optional<WorkerPool::Done> done;
+    while (!done) done = pool.Wait(std::chrono::seconds(1));
+    if (done->failure.empty()) return;
+    if (first.empty()) first = done->failure;
+  }
+  throw ConfigError({first});
+}
+
+class Progress {
+ public:
+  Progress(std::size_t runs, std::size_t there, bool quiet) : runs_(runs), there_(there), console_(quiet) {
+    if (there > 0)
+      console_.Line("going on: " + std::to_string(there) + " of " + std::to_string(runs) + " runs are in the table");
+  }
+  void Show(std::size_t done, std::size_t failed) {
+    const double elapsed_s = std::chrono::duration<double>(WallClock::now() - start_).count();
+    const double left_s =
+        done > 0 ? elapsed_s / static_cast<double>(done) * static_cast<double>(runs_ - there_ - done) : 0;
+    char text[120];
+    std::snprintf(text, sizeof text, "%zu of %zu runs | %zu failed | %s%.0f s left", there_ + done, runs_, failed,
+                  done > 0 ? "about " : "", left_s);
+    console_.Progress(static_cast<double>(there_ + done) / static_cast<double>(runs_), text);
+  }
+  void End() { console_.EndProgress(); }
+
+ private:
+  std::size_t runs_, there_;
+  Console console_;
+  WallClock::time_point start_ = WallClock::now();
+};
+
+/// Cells of a run behind its number: what was set, its error, what was measured.
+SweepFile::Cells RowOf(const SweepPoint& point, const WorkerPool::Done& done) {
+  SweepFile::Cells cells;
+  for (const Override& override : point.overrides) cells.push_back(override.value);
+  cells.push_back(done.failure);
+  const auto measured = done.failure.empty() ? nlohmann::json::parse(done.answer).get<SweepFile::Cells>()
+                                             : SweepFile::Cells(SweepMetricNames().size());
+  cells.insert(cells.end(), measured.begin(), measured.end());
+  return cells;
+}
+
+struct Outcome {
+  std::size_t flown = 0, failed = 0;
+  int signal = 0;
+};
+
+/// Every run that the table lacks.
+Outcome WorkOff(const SweepPlan& plan, WorkerPool& pool, SweepFile& table, bool quiet, StopSignal& stop) {
+  Progress progress(plan.size(), table.rows(), quiet);
+  Outcome outcome;
+  std::size_t next = 0;
+  const auto skip_done = [&] {
+    while (next < plan.size() && table.Has(next)) ++next;
+    return next < plan.size();
+  };
+  while (skip_done() || pool.IsBusy()) {
+    while (skip_done() && pool.HasIdle()) pool.Start(next++);
+    if (const auto done = pool.Wait(std::chrono::milliseconds(100))) {
+      table.Add(done->task, RowOf(plan[done->task], *done));
+      ++outcome.flown;
+      outcome.failed += !done->failure.empty();
+    }
+    progress.Show(outcome.flown, outcome.failed);
+    const int signal = stop.Within(std::chrono::nanoseconds::zero());
+    if (signal == 0 || signal == SIGCHLD) continue;
+    outcome.signal = signal;
+    break;
+  }
+  progress.End();
+  return outcome;
+}
+
+SweepFile::Cells ColumnsOf(const SweepPlan& plan) {
+  SweepFile::Cells columns{"run"};
+  columns.insert(columns.end(), plan.keys().begin(), plan.keys().end());
+  columns.push_back("error");
+  const auto names = SweepMetricNames();
+  columns.insert(columns.end(), names.begin(), names.end());
+  return columns;
+}
+
+std::string PlanText(const Sweep& sweep) {
+  std::string text;
+  for (std::size_t run = 0; run < sweep.plan.size(); ++run) {
+    for (const Override& override : sweep.plan[run].overrides) text += override.key + "=" + override.value + " ";
+    text += "\n";
+  }
+  return sweep.text + "\n# runs of the sweep\n" + text;
+}
+
+void CheckMetric(const std::string& metric) {
+  const std::vector<std::string> names = SweepMetricNames();
+  if (std::ranges::find(names, metric) != names.end()) return;
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  const auto nearest = DidYouMean(metric, views);
+  throw ConfigError({"--plot: expected a column of the table, such as " + std::string(kUsualMetric) + ", got '" +
+                     metric + "'" + (nearest ? " (did you mean \"" + *nearest + "\"?)" : "")});
+}
+
+int Picture(const SweepArgs& args, const SweepPlan& plan, StopSignal& stop) {
+  std::vector<std::string> words{args.out, fs::path(args.out).replace_extension(".png"), args.metric};
+  words.insert(words.end(), plan.varied().begin(), plan.varied().end());
+  return RunScript("plot_sweep.py", words, stop);
+}
+
+int Run(const SweepArgs& args) {
+  StopSignal stop;
+  CheckMetric(args.metric);
+  const Sweep sweep{args.config, ReadRegularFile(args.config), SweepPlan(args.words)};
+  WorkerPool pool(args.jobs > 0 ? args.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency())),
+                  WorkOf(sweep));
+  CheckThatSomeRunIsValid(sweep, pool);
+  SweepFile table(args.out, ColumnsOf(sweep.plan), PlanText(sweep), args.force);
+  const Outcome outcome = WorkOff(sweep.plan, pool, table, args.quiet, stop);
+  if (outcome.signal != 0) {
+    std::cerr << "interrupted: " << table.rows() << " of " << sweep.plan.size()
+              << " runs are in the table; the same command goes on with the others\n";
+    return 128 + outcome.signal;
+  }
+  table.Sort();
+  const bool drawable = !args.no_plot && sweep.plan.varied().size() <= 2 && sweep.plan.size() > 1;
+  const int picture = drawable ? Picture(args, sweep.plan, stop) : 0;
+  if (!args.quiet)
+    std::cout << sweep.plan.size() << " runs, " << outcome.failed << " of those flown now failed: " << args.out << "\n";
+  if (outcome.flown > 0 && outcome.failed == outcome.flown) return 1;
+  return picture;
+}
+
+}  // namespace
+
+std::function<int()> SetUpSweep(CLI::App& command) {
+  auto args = std::make_shared<SweepArgs>();
+  command.add_option("config", args->config, "experiment file (TOML)")->required()->type_name("CONFIG");
+  command
+      .add_option("--set", args->words.sets,
+                  "a key and its values: KEY=A:STEP:B, KEY=V1,V2,..., or one value; every combination is run")
+      ->type_name("KEY=VALUES")
+      ->allow_extra_args(false);
+  command.add_option("--random", args->words.randoms, "a key and the range that its values are drawn from")
+      ->type_name("KEY=MIN:MAX[:log]")
+      ->allow_extra_args(false);
+  command.add_option("--samples", args->words.samples, "draws of all --random keys")
+      ->check(CLI::Range(1, 10'000'000))
+      ->type_name("N");
+  command.add_option("--seeds", args->words.seeds, "each combination with each of these: A..B or A,B,...")
+      ->type_name("SEEDS");
+  command.add_option("--jobs", args->jobs, "processes at work (default: one per core)")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  command.add_option("--out", args->out, "the table (default: sweep.csv)")->type_name("FILE");
+  command.add_option("--plot", args->metric, "the column that the picture shows")->type_name("COLUMN");
+  command.add_flag("--no-plot", args->no_plot, "no picture");
+  command.add_flag("--force", args->force, "begin anew where --out holds another sweep");
+  command.add_flag("--quiet", args->quiet, "print errors only");
+  return [args] { return Run(*args); };
+}
+
+}  // namespace mascot

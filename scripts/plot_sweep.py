@@ -1,0 +1,166 @@
+#!/usr/bin/python3
+"""Draws the table of a sweep: plot_sweep.py TABLE.csv PICTURE.png COLUMN [KEY [KEY]].
+
+Without a key: how often which value of COLUMN occurred. With one: COLUMN over it, the median of all seeds and the band
+between their first and ninth decile. With two: a heat map of medians, or points in colour where the keys were drawn at
+random. Runs that failed, or never reached what COLUMN says, are left out and counted in the title. Exit codes: 0 done, 1
+nothing to draw, 2 wrong use.
+"""
+
+import argparse
+import csv
+import os
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+STYLE = {
+    "axes.axisbelow": True,
+    "axes.edgecolor": "0.4",
+    "axes.grid": True,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlelocation": "left",
+    "axes.titlesize": 10,
+    "figure.constrained_layout.use": True,
+    "figure.dpi": 120,
+    "font.size": 9,
+    "grid.color": "0.9",
+    "legend.fontsize": 8,
+    "legend.frameon": False,
+}
+BLUE = "#0072B2"  # of Okabe and Ito's colours
+TICKS_MAX = 12
+DECADES = 2  # a column that spans more is drawn on a log scale
+
+
+def number(text):
+    """A cell as a number; None if it is none."""
+    if text in ("true", "false"):
+        return float(text == "true")
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def read(path, column, keys):
+    """Cells of the keys and numbers of the column, of the runs that have one; and how many have none."""
+    with open(path, newline="", encoding="utf-8") as file:
+        table = list(csv.DictReader(file))
+    rows = [([row[key] for key in keys], number(row[column])) for row in table]
+    good = [(cells, value) for cells, value in rows if value is not None]
+    return good, len(rows) - len(good)
+
+
+class Axis:
+    """Where the values of one key lie: numbers where they are, words side by side in order of appearance."""
+
+    def __init__(self, key, cells):
+        self.key = key
+        numbers = [number(cell) for cell in cells]
+        self.is_numeric = all(n is not None for n in numbers)
+        self.labels = sorted(set(cells), key=number) if self.is_numeric else list(dict.fromkeys(cells))
+        self.is_grid = False  # cells around each place, which then has its tick
+        self.places = [number(label) for label in self.labels] if self.is_numeric else list(range(len(self.labels)))
+
+    def of(self, cell):
+        return self.places[self.labels.index(cell)]
+
+    def label(self, axis):
+        axis.set_label_text(self.key)
+        if not self.is_numeric or self.is_grid and len(self.labels) <= TICKS_MAX:
+            axis.set_ticks(self.places, self.labels)
+
+
+def is_wide(values):
+    positive = [v for v in values if v > 0]
+    return len(positive) == len(values) and max(positive) / min(positive) > 10**DECADES
+
+
+def by_cells(rows):
+    groups = {}
+    for cells, value in rows:
+        groups.setdefault(tuple(cells), []).append(value)
+    return groups
+
+
+def draw_histogram(ax, rows, column):
+    ax.hist([value for _, value in rows], bins="auto", color=BLUE)
+    ax.set_xlabel(column)
+    ax.set_ylabel("runs")
+
+
+def draw_curve(ax, rows, column, key):
+    axis = Axis(key, [cells[0] for cells, _ in rows])
+    groups = by_cells(rows)
+    labels = [label for label in axis.labels if (label,) in groups]
+    x = [axis.of(label) for label in labels]
+    median, low, high = ([np.quantile(groups[(label,)], q) for label in labels] for q in (0.5, 0.1, 0.9))
+    if any(len(values) > 1 for values in groups.values()):
+        if axis.is_numeric:
+            ax.fill_between(x, low, high, color=BLUE, alpha=0.2, linewidth=0, label="first to ninth decile")
+        else:
+            ax.vlines(x, low, high, color=BLUE, alpha=0.4, linewidth=3, label="first to ninth decile")
+    ax.plot(x, median, "o-" if axis.is_numeric else "o", color=BLUE, markersize=3, label="median")
+    if is_wide(median):
+        ax.set_yscale("log")
+    axis.label(ax.xaxis)
+    ax.set_ylabel(column)
+    ax.legend()
+
+
+def draw_map(figure, ax, rows, column, keys):
+    axes = [Axis(key, [cells[k] for cells, _ in rows]) for k, key in enumerate(keys)]
+    groups = by_cells(rows)
+    points = [(axes[0].of(a), axes[1].of(b), np.median(values)) for (a, b), values in groups.items()]
+    x, y, z = (np.array(part) for part in zip(*points))
+    norm = matplotlib.colors.LogNorm() if is_wide(list(z)) else None
+    if 2 * len(groups) > len(axes[0].labels) * len(axes[1].labels):  # a grid, of which some may be missing
+        grid = np.full((len(axes[1].labels), len(axes[0].labels)), np.nan)
+        for a, b, value in points:
+            grid[axes[1].places.index(b), axes[0].places.index(a)] = value
+        ax.grid(False)
+        axes[0].is_grid = axes[1].is_grid = True
+        drawn = ax.pcolormesh(axes[0].places, axes[1].places, grid, shading="nearest", cmap="viridis", norm=norm)
+    else:
+        drawn = ax.scatter(x, y, c=z, cmap="viridis", s=12, norm=norm)
+    axes[0].label(ax.xaxis)
+    axes[1].label(ax.yaxis)
+    figure.colorbar(drawn, ax=ax, label=column)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("table")
+    parser.add_argument("picture")
+    parser.add_argument("column")
+    parser.add_argument("keys", nargs="*", metavar="KEY")
+    options = parser.parse_args()
+    if len(options.keys) > 2:
+        parser.error("expected at most two keys")
+    rows, missing = read(options.table, options.column, options.keys)
+    if not rows:
+        print(f"error: {options.table}: no run has a {options.column}", file=sys.stderr)
+        return 1
+    plt.rcParams.update(STYLE)
+    figure, ax = plt.subplots(figsize=(6.4, 4.2))
+    if not options.keys:
+        draw_histogram(ax, rows, options.column)
+    elif len(options.keys) == 1:
+        draw_curve(ax, rows, options.column, options.keys[0])
+    else:
+        draw_map(figure, ax, rows, options.column, options.keys)
+    ax.set_title(f"{len(rows)} runs" + (f", {missing} without a value" if missing else ""))
+    part = options.picture + ".part.png"
+    figure.savefig(part, metadata={"Software": None})
+    os.replace(part, options.picture)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,116 @@
+#include "orchestrator/sweep_plan.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <set>
+
+namespace mascot {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
+using Words = SweepPlan::Words;
+
+/// The runs, each as "value value ...".
+std::vector<std::string> Runs(const SweepPlan& plan) {
+  std::vector<std::string> runs;
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    std::string run;
+    for (const Override& override : plan[i].overrides) run += (run.empty() ? "" : " ") + override.value;
+    runs.push_back(run);
+  }
+  return runs;
+}
+
+Words Sets(std::vector<std::string> sets) { return {.sets = std::move(sets), .randoms = {}, .seeds = ""}; }
+
+TEST(SweepPlan, IsOneRunWithoutWords) {
+  const SweepPlan plan(Words{});
+  EXPECT_THAT(Runs(plan), ElementsAre(""));
+  EXPECT_THAT(plan.keys(), IsEmpty());
+}
+
+TEST(SweepPlan, CountsFromAByStepToB) {
+  EXPECT_THAT(Runs(SweepPlan(Sets({"law.beta=1:0.5:2"}))), ElementsAre("1.0", "1.5", "2.0"));
+  EXPECT_THAT(Runs(SweepPlan(Sets({"agents.count=4:2:9"}))), ElementsAre("4", "6", "8"));
+  EXPECT_THAT(Runs(SweepPlan(Sets({"law.beta=2:-1:0.5"}))), ElementsAre("2.0", "1.0"));
+  EXPECT_THAT(Runs(SweepPlan(Sets({"law.beta=3:1:3"}))), ElementsAre("3"));
+}
+
+TEST(SweepPlan, DoesNotAccumulateRoundingErrors) {
+  const SweepPlan plan(Sets({"law.p_gain=0:0.1:1"}));  // ten times 0.1 added up is not 1
+  ASSERT_EQ(plan.size(), 11u);
+  EXPECT_EQ(plan[10].overrides[0].value, "1.0");
+}
+
+TEST(SweepPlan, TakesListsAndSingleValues) {
+  const SweepPlan plan(
+      Sets({"graph.topology=ring,path", "law.leader_waypoints_m=[[1, 2, 3], [4, 5, 6]]", "law.leader=1"}));
+  EXPECT_THAT(Runs(plan), ElementsAre("ring [[1, 2, 3], [4, 5, 6]] 1", "path [[1, 2, 3], [4, 5, 6]] 1"));
+  EXPECT_THAT(plan.varied(), ElementsAre("graph.topology"));
+  EXPECT_THAT(Runs(SweepPlan(Sets({"run.name='a,b','c:d:e'"}))), ElementsAre("'a,b'", "'c:d:e'"));
+}
+
+TEST(SweepPlan, CombinesEveryKeyWithEveryOtherAndSeedsFastest) {
+  Words words = Sets({"a=1,2", "b=x,y"});
+  words.seeds = "7..8";
+  const SweepPlan plan(words);
+  EXPECT_THAT(plan.keys(), ElementsAre("a", "b", "run.seed"));
+  EXPECT_THAT(plan.varied(), ElementsAre("a", "b"));
+  EXPECT_THAT(Runs(plan), ElementsAre("1 x 7", "1 x 8", "1 y 7", "1 y 8", "2 x 7", "2 x 8", "2 y 7", "2 y 8"));
+  words.seeds = "3,9,1";
+  EXPECT_EQ(SweepPlan(words).size(), 12u);
+}
+
+TEST(SweepPlan, DrawsTheSameSamplesEveryTime) {
+  const Words words{
+      .sets = {}, .randoms = {"law.p_gain=0.1:0.3", "law.beta=0.01:100:log"}, .samples = 200, .seeds = ""};
+  const SweepPlan plan(words);
+  EXPECT_EQ(Runs(plan), Runs(SweepPlan(words)));
+  ASSERT_EQ(plan.size(), 200u);
+  std::set<std::string> gains;
+  int below_1 = 0;
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const double gain = std::stod(plan[i].overrides[0].value), beta = std::stod(plan[i].overrides[1].value);
+    EXPECT_GE(gain, 0.1);
+    EXPECT_LE(gain, 0.3);
+    EXPECT_GE(beta, 0.01);
+    EXPECT_LE(beta, 100);
+    gains.insert(plan[i].overrides[0].value);
+    below_1 += beta < 1;
+  }
+  EXPECT_EQ(gains.size(), 200u);
+  EXPECT_NEAR(below_1, 100, 30) << "half of the decades";
+}
+
+TEST(SweepPlan, SaysWhatItExpected) {
+  const auto of = [](Words words) { return [words] { SweepPlan plan(words); }; };
+  EXPECT_THAT(of(Sets({"law.beta"})), ThrowsMessage<ConfigError>("--set: expected key=values (such as "
+                                                                 "law.p_gain=0.1:0.1:1), got 'law.beta'"));
+  EXPECT_THAT(of(Sets({"law.beta=1:0:2"})),
+              ThrowsMessage<ConfigError>(
+                  "--set: expected a:step:b, three numbers with b on step's side of a, got 'law.beta=1:0:2'"));
+  EXPECT_THAT(of(Sets({"law.beta=1:-1:2"})),
+              ThrowsMessage<ConfigError>(
+                  "--set: expected a:step:b, three numbers with b on step's side of a, got 'law.beta=1:-1:2'"));
+  EXPECT_THAT(of(Sets({"law.beta=0:1e-9:2"})),
+              ThrowsMessage<ConfigError>("--set: expected at most 10000000 values, got 'law.beta=0:1e-9:2'"));
+  EXPECT_THAT(of(Sets({"a=1,,2"})), ThrowsMessage<ConfigError>("--set: expected values between commas, got 'a=1,,2'"));
+  EXPECT_THAT(of(Sets({"a=1,2", "a=3"})), ThrowsMessage<ConfigError>("sweep: expected each key once, got a again"));
+  EXPECT_THAT(of(Sets({"a=1:1:9999", "b=1:1:9999"})),
+              ThrowsMessage<ConfigError>("sweep: expected at most 10000000 runs, got more"));
+  EXPECT_THAT(of({.sets = {}, .randoms = {"a"}, .seeds = ""}),
+              ThrowsMessage<ConfigError>("--random: expected key=min:max[:log], got 'a'"));
+  EXPECT_THAT(
+      of({.sets = {}, .randoms = {"a=0:1:log"}, .seeds = ""}),
+      ThrowsMessage<ConfigError>("--random: expected key=min:max or key=min:max:log with 0 < min, got 'a=0:1:log'"));
+  for (const char* seeds : {"2..1", "a..b", "-1..3", "1,x"})
+    EXPECT_THAT(of({.sets = {}, .randoms = {}, .seeds = seeds}),
+                ThrowsMessage<ConfigError>("--seeds: expected a..b or a,b,... of integers from 0 on, got '" +
+                                           std::string(seeds) + "'"));
+}
+
+}  // namespace
+}  // namespace mascot

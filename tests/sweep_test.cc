@@ -1,0 +1,201 @@
+// `orchestrator sweep`, end to end.
+#include <gmock/gmock.h>
+
+#include <map>
+#include <sstream>
+
+#include "tests/orchestrator.h"
+
+namespace mascot::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+using Cells = std::vector<std::string>;
+
+/// Cells of a line without quotes that hold commas.
+Cells Split(const std::string& line) {
+  Cells cells(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      cells.emplace_back();
+    else
+      cells.back() += c;
+  }
+  return cells;
+}
+
+struct Table {
+  explicit Table(const std::string& path) {
+    std::istringstream lines(ReadFile(path));
+    std::string line;
+    std::getline(lines, line);
+    columns = Split(line);
+    while (std::getline(lines, line)) rows.push_back(Split(line));
+  }
+  std::string At(std::size_t row, const std::string& column) const {
+    const auto place = std::ranges::find(columns, column);
+    return place == columns.end() ? "no such column"
+                                  : rows.at(row).at(static_cast<std::size_t>(place - columns.begin()));
+  }
+  /// Everything but the columns of the wall clock.
+  std::vector<Cells> Repeatable() const {
+    std::vector<Cells> all = rows;
+    for (Cells& row : all) row.resize(row.size() - 2);
+    return all;
+  }
+  Cells columns;
+  std::vector<Cells> rows;
+};
+
+class SweepTest : public ::testing::Test {
+ protected:
+  SweepTest() {
+    WriteFile(config_,
+              "[run]\nduration_s = 2.0\n[agents]\ncount = 3\n[graph]\ntopology = 'ring'\n[law]\np_gain = 0.3\n");
+  }
+  std::string Words(const std::string& more) const {
+    return std::string(MASCOT_BINARY_DIR) + "/orchestrator sweep " + config_ + " --out " + out_ + " " + more;
+  }
+  Ran Sweep(const std::string& more) const { return Shell(Words(more)); }
+
+  ScratchFolder folder_;
+  std::string config_ = folder_.File("small.toml");
+  std::string out_ = folder_.File("sweep.csv");
+};
+
+TEST_F(SweepTest, HasARowForEveryCombinationWithWhatUpMeasures) {
+  const Ran ran = Sweep("--set law.p_gain=0.1:0.1:0.3 --set graph.topology=ring,path --seeds 4..5");
+  ASSERT_EQ(ran.exit_code, 0) << ran.output;
+  EXPECT_THAT(ran.output, HasSubstr("12 runs, 0 of those flown now failed: " + out_));
+  const Table table(out_);
+  ASSERT_THAT(table.rows, SizeIs(12));
+  EXPECT_EQ(table.At(7, "run"), "7");
+  EXPECT_EQ(table.At(7, "law.p_gain"), "0.2");
+  EXPECT_EQ(table.At(7, "graph.topology"), "path");
+  EXPECT_EQ(table.At(7, "run.seed"), "5");
+  EXPECT_EQ(table.At(7, "error"), "");
+  Up up(folder_, "up", config_,
+        {"--engine", "inprocess", "--set", "law.p_gain=0.2", "--set", "graph.topology=path", "--seed", "5"});
+  ASSERT_EQ(up.Wait(), 0);
+  const auto summary = up.Summary();
+  EXPECT_EQ(std::stod(table.At(7, "consensus.final_disagreement_m")), summary["consensus"]["final_disagreement_m"]);
+  EXPECT_EQ(std::stod(table.At(7, "consensus.value_m.y")), summary["consensus"]["value_m"][1]);
+  EXPECT_EQ(std::stod(table.At(7, "fidelity.rms_m")), summary["fidelity"]["rms_m"]);
+  EXPECT_EQ(table.At(7, "consensus.predicted.stable"), "true");
+  EXPECT_EQ(table.At(7, "formation.final_rms_m"), "") << "it was no formation";
+  EXPECT_TRUE(std::filesystem::exists(folder_.File("sweep.png")));
+}
+
+TEST_F(SweepTest, GivesTheSameTableWhateverTheNumberOfProcesses) {
+  const std::string words = "--random law.p_gain=0.1:1 --random law.beta=0.1:10:log --samples 12 --no-plot ";
+  ASSERT_EQ(Sweep(words + "--jobs 1").exit_code, 0);
+  const auto once = Table(out_).Repeatable();
+  ASSERT_EQ(Sweep(words + "--jobs 4 --force").exit_code, 0);
+  EXPECT_EQ(Table(out_).Repeatable(), once);
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("sweep.png")));
+}
+
+TEST_F(SweepTest, GoesOnAfterItWasKilledWithNoRowTwiceAndNoneHalf) {
+  const std::string words = "--set law.p_gain=0.01:0.01:2.0 --no-plot";
+  ASSERT_EQ(Sweep(words).exit_code, 0);
+  const auto whole = Table(out_).Repeatable();
+  ASSERT_THAT(whole, SizeIs(200));
+  std::filesystem::remove(out_);
+  {
+    Running sweep(std::string(MASCOT_BINARY_DIR) + "/orchestrator",
+                  {"sweep", config_, "--out", out_, "--set", "law.p_gain=0.01:0.01:2.0", "--no-plot"},
+                  folder_.File("killed"));
+    ASSERT_TRUE(Until([&] { return std::filesystem::exists(out_) && Table(out_).rows.size() > 5; }));
+    ::kill(sweep.pid(), SIGKILL);
+    sweep.Wait();
+  }
+  const std::size_t there = Table(out_).rows.size();
+  EXPECT_LT(there, 200u) << "it was killed on the way";
+  const Ran ran = Sweep(words);
+  ASSERT_EQ(ran.exit_code, 0) << ran.output;
+  EXPECT_THAT(ran.output, HasSubstr(" of 200 runs are in the table"));
+  EXPECT_EQ(Table(out_).Repeatable(), whole);
+}
+
+TEST_F(SweepTest, CanBeInterruptedAndSaysHowToGoOn) {
+  Running sweep(std::string(MASCOT_BINARY_DIR) + "/orchestrator",
+                {"sweep", config_, "--out", out_, "--seeds", "1..5000", "--no-plot"}, folder_.File("interrupted"));
+  ASSERT_TRUE(Until([&] { return std::filesystem::exists(out_) && Table(out_).rows.size() > 2; }));
+  ::kill(sweep.pid(), SIGINT);
+  EXPECT_EQ(sweep.Wait(), 130);
+  EXPECT_THAT(sweep.err(), HasSubstr(" of 5000 runs are in the table; the same command goes on with the others"));
+}
+
+TEST_F(SweepTest, KeepsTheErrorOfARunThatFailsAndGoesOn) {
+  WriteFile(
+      config_,
+      "[run]\nduration_s = 1.0\n[agents]\ncount = 2\n[law]\nname = 'custom'\nparams = { worst = 1.0 }\npython = '''\n"
+      "def start(me, params):\n    me.worst = params['worst']\ndef control(t, me, neighbours):\n"
+      "    return [1.0 / (me.worst - 2), 0.0]\n'''\n");
+  const Ran ran = Sweep("--set law.params.worst=1.0:1.0:3.0 --no-plot");
+  EXPECT_EQ(ran.exit_code, 0) << ran.output;
+  EXPECT_THAT(ran.output, HasSubstr("3 runs, 1 of those flown now failed"));
+  const Table table(out_);
+  ASSERT_THAT(table.rows, SizeIs(3));
+  EXPECT_EQ(table.At(0, "error"), "");
+  EXPECT_THAT(table.At(1, "error"), HasSubstr("ZeroDivisionError"));
+  EXPECT_EQ(table.At(1, "consensus.final_disagreement_m"), "");
+  EXPECT_EQ(table.At(2, "error"), "");
+}
+
+TEST_F(SweepTest, KeepsTheMistakeOfAnImpossibleRunAsItsError) {
+  const Ran ran = Sweep("--set law.p_gain=0.5,fast --no-plot");
+  EXPECT_EQ(ran.exit_code, 0) << ran.output;
+  EXPECT_THAT(Table(out_).At(1, "error"),
+              HasSubstr("--set law.p_gain=fast: law.p_gain: expected a number in [0, 1000], got 'fast'"));
+}
+
+TEST_F(SweepTest, RefusesWhatCannotBeSwept) {
+  const auto refuses = [&](const std::string& words, const std::string& text) {
+    const Ran ran = Sweep(words);
+    EXPECT_EQ(ran.exit_code, 2) << ran.output;
+    EXPECT_THAT(ran.output, HasSubstr(text));
+    EXPECT_FALSE(std::filesystem::exists(out_));
+  };
+  refuses("--set law.p_gain=slow,fast", "error: --set law.p_gain=slow: law.p_gain: expected a number in [0, 1000]");
+  refuses("--set run.mode=realtime", "error: sweep: expected run.mode = \"lockstep\", got \"realtime\"");
+  refuses("--plot consensus.final_disagreement",
+          "error: --plot: expected a column of the table, such as consensus.final_disagreement_m, got "
+          "'consensus.final_disagreement' (did you mean \"consensus.final_disagreement_m\"?)");
+  refuses("--seeds 5..1", "error: --seeds: expected a..b or a,b,... of integers from 0 on, got '5..1'");
+  refuses("--samples 0", "error: --samples: ");
+}
+
+TEST_F(SweepTest, DoesNotMixTwoSweepsInOneTable) {
+  ASSERT_EQ(Sweep("--seeds 1..2 --no-plot").exit_code, 0);
+  const std::string before = ReadFile(out_);
+  const Ran other = Sweep("--seeds 1..3 --no-plot");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.output, HasSubstr("expected a new file, or one of this very sweep, got another"));
+  EXPECT_EQ(ReadFile(out_), before);
+  EXPECT_EQ(Sweep("--seeds 1..3 --no-plot --force").exit_code, 0);
+  EXPECT_THAT(Table(out_).rows, SizeIs(3));
+}
+
+TEST_F(SweepTest, DrawsCurvesMapsAndHistograms) {
+  for (const char* words :
+       {"--seeds 1..4", "--set law.p_gain=0.1:0.1:0.4", "--set graph.topology=ring,path --seeds 1..2",
+        "--set law.p_gain=0.1:0.1:0.3 --set law.beta=0.5,1.0",
+        "--random law.p_gain=0.1:1 --random law.beta=0.5:2 --samples 6"}) {
+    std::filesystem::remove(folder_.File("sweep.png"));
+    const Ran ran = Sweep(std::string(words) + " --force");
+    EXPECT_EQ(ran.exit_code, 0) << ran.output;
+    EXPECT_THAT(ReadFile(folder_.File("sweep.png")), testing::StartsWith("\x89PNG")) << words;
+  }
+  const Ran nothing = Sweep("--seeds 1..2 --force --plot consensus.predicted.minmax_time_s");
+  EXPECT_EQ(nothing.exit_code, 1);
+  EXPECT_THAT(nothing.output, HasSubstr("error: " + out_ + ": no run has a consensus.predicted.minmax_time_s"));
+}
+
+}  // namespace
+}  // namespace mascot::test

@@ -1,0 +1,88 @@
+#include "orchestrator/worker_pool.h"
+
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <map>
+#include <set>
+#include <stdexcept>
+
+namespace mascot {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// All of `tasks` tasks, by number.
+std::map<std::size_t, WorkerPool::Done> WorkOff(WorkerPool& pool, std::size_t tasks) {
+  std::map<std::size_t, WorkerPool::Done> done;
+  std::size_t next = 0;
+  while (done.size() < tasks) {
+    while (next < tasks && pool.HasIdle()) pool.Start(next++);
+    if (auto one = pool.Wait(60s)) done.emplace(one->task, *one);
+  }
+  EXPECT_FALSE(pool.IsBusy());
+  return done;
+}
+
+TEST(WorkerPool, AnswersEveryTaskOnce) {
+  WorkerPool pool(3, [](std::size_t task) { return std::to_string(task * task); });
+  const auto done = WorkOff(pool, 100);
+  for (std::size_t task = 0; task < 100; ++task) {
+    EXPECT_EQ(done.at(task).answer, std::to_string(task * task));
+    EXPECT_EQ(done.at(task).failure, "");
+  }
+}
+
+TEST(WorkerPool, WorksInProcessesOfItsOwn) {
+  WorkerPool pool(2, [](std::size_t) { return std::to_string(::getpid()); });
+  std::set<std::string> pids;
+  for (const auto& [task, done] : WorkOff(pool, 20)) pids.insert(done.answer);
+  EXPECT_LE(pids.size(), 2u);
+  EXPECT_FALSE(pids.contains(std::to_string(::getpid())));
+}
+
+TEST(WorkerPool, PassesOnWhatATaskThrows) {
+  WorkerPool pool(1, [](std::size_t task) -> std::string {
+    if (task == 1) throw std::runtime_error("tick 7: too bad");
+    return "fine";
+  });
+  const auto done = WorkOff(pool, 3);
+  EXPECT_EQ(done.at(1).failure, "tick 7: too bad");
+  EXPECT_EQ(done.at(2).answer, "fine");
+}
+
+TEST(WorkerPool, GoesOnWithANewProcessWhenATaskTakesOneDown) {
+  WorkerPool pool(2, [](std::size_t task) -> std::string {
+    if (task % 5 == 3) ::kill(::getpid(), SIGKILL);
+    if (task % 5 == 4) ::_exit(3);
+    return "fine";
+  });
+  const auto done = WorkOff(pool, 20);
+  for (const auto& [task, one] : done) {
+    if (task % 5 == 3)
+      EXPECT_EQ(one.failure, "the process was killed by signal 9 (Killed)");
+    else if (task % 5 == 4)
+      EXPECT_EQ(one.failure, "the process exited with code 3");
+    else
+      EXPECT_EQ(one.answer, "fine");
+  }
+}
+
+TEST(WorkerPool, LeavesNobodyBehind) {
+  pid_t pid = 0;
+  {
+    WorkerPool pool(1, [](std::size_t task) {
+      if (task == 1) ::pause();
+      return std::to_string(::getpid());
+    });
+    pool.Start(0);
+    while (pid == 0)
+      if (const auto done = pool.Wait(60s)) pid = std::stoi(done->answer);
+    pool.Start(1);  // never ends by itself
+  }
+  EXPECT_EQ(::kill(pid, 0), -1);
+}
+
+}  // namespace
+}  // namespace mascot
