@@ -62,6 +62,17 @@ std::pair<std::string, std::string> SplitKey(const std::string& option, const st
   return {word.substr(0, equals), word.substr(equals + 1)};
 }
 
+/// `value` with as many decimals as the words have: 0.3 + 6 x 0.1 is meant to be 0.9.
+double Rounded(double value, const std::vector<std::string>& words) {
+  std::size_t decimals = 0;
+  for (const std::string& word : words) {
+    if (word.find_first_of("eE") != word.npos) return value;
+    if (const auto point = word.find('.'); point != word.npos) decimals = std::max(decimals, word.size() - point - 1);
+  }
+  const double scale = std::pow(10.0, static_cast<double>(decimals));
+  return std::round(value * scale) / scale;
+}
+
 /// A:STEP:B, both ends included: A + i STEP, never accumulated, and B if a rounding error misses it.
 std::vector<std::string> Range(const std::string& word, const std::vector<std::string>& parts) {
   const auto first = ToNumber(parts[0]), step = ToNumber(parts[1]), last = ToNumber(parts[2]);
@@ -74,7 +85,7 @@ std::vector<std::string> Range(const std::string& word, const std::vector<std::s
   std::vector<std::string> values;
   for (double i = 0; i <= steps; ++i) {
     const double value = *first + i * *step;
-    values.push_back(integers ? std::to_string(std::llround(value)) : ShortestFloat(value));
+    values.push_back(integers ? std::to_string(std::llround(value)) : ShortestFloat(Rounded(value, parts)));
   }
   return values;
 }

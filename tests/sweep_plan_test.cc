@@ -43,6 +43,8 @@ TEST(SweepPlan, DoesNotAccumulateRoundingErrors) {
   const SweepPlan plan(Sets({"law.p_gain=0:0.1:1"}));  // ten times 0.1 added up is not 1
   ASSERT_EQ(plan.size(), 11u);
   EXPECT_EQ(plan[10].overrides[0].value, "1.0");
+  const SweepPlan decimals(Sets({"law.beta=0.3:0.1:1"}));  // 0.3 + 6 x 0.1 is not the double nearest to 0.9
+  EXPECT_THAT(Runs(decimals), ElementsAre("0.3", "0.4", "0.5", "0.6", "0.7", "0.8", "0.9", "1.0"));
 }
 
 TEST(SweepPlan, TakesListsAndSingleValues) {
