@@ -9,16 +9,19 @@
 namespace {
 
 void RunAgent(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot_msgs::msg::Experiment& message,
-              int id) {
+              mascot::AgentRange agents) {
   const auto document = mascot::Section::FromText(message.toml(), message.name());
   mascot::Experiment experiment = mascot::LoadExperiment(document, message.name(), /*checked=*/true);
-  if (id > experiment.size())
-    throw std::runtime_error("--id " + std::to_string(id) + ": the experiment has only agents 1 to " +
+  if (agents.last > experiment.size())
+    throw std::runtime_error("--id " + std::to_string(agents.last) + ": the experiment has only agents 1 to " +
                              std::to_string(experiment.size()));
-  std::string heard;
-  for (const auto& neighbour : experiment.graph.HeardBy(id)) heard += " " + std::to_string(neighbour.id);
-  std::cerr << "hears" << (heard.empty() ? " nobody" : heard) << std::endl;
-  mascot::Node(domain, lifecycle, experiment, id).Run();
+  for (int id = agents.first; id <= agents.last; ++id) {
+    std::string heard;
+    for (const auto& neighbour : experiment.graph.HeardBy(id)) heard += " " + std::to_string(neighbour.id);
+    std::cerr << (agents.size() > 1 ? mascot::AgentName(id) + " " : "") << "hears"
+              << (heard.empty() ? " nobody" : heard) << std::endl;
+  }
+  mascot::Node(domain, lifecycle, experiment, agents).Run();
 }
 
 }  // namespace
@@ -29,6 +32,6 @@ int main(int argc, char** argv) {
   CLI::App app("MASCOT agent: hears its neighbours, runs its law and its low-level stack, commands its actuators.");
   mascot::ProcessArgs args(/*agent_process=*/true);
   return mascot::ProcessMain(app, argc, argv, args, stop, [&args](auto& domain, auto& lifecycle, const auto& message) {
-    RunAgent(domain, lifecycle, message, args.agent);
+    RunAgent(domain, lifecycle, message, args.agents);
   });
 }

@@ -16,6 +16,7 @@ constexpr int kMaxDomain = 100;    // above, DDS's ports meet those that Linux h
 constexpr std::string_view kModes[] = {"lockstep", "realtime"};
 constexpr std::string_view kAxes[] = {"xy", "xyz"};
 constexpr std::string_view kAutomatic[] = {"auto"};
+constexpr std::string_view kDeliveries[] = {"topics", "bundled"};
 
 constexpr Key kRunKeys[] = {
     key::Text("name", "names the run's folder, and the run").Otherwise("the file's"),
@@ -183,6 +184,8 @@ void ReadNetwork(Section& section, Experiment& experiment) {
     network.domain = static_cast<int>(section.Integer("domain"));
   }
   network.transport = section.OneOf("transport");
+  network.agents_per_process = static_cast<int>(section.Integer("agents_per_process"));
+  network.delivery = section.OneOf("delivery") == "bundled" ? Delivery::kBundled : Delivery::kTopics;
   section.Done();
 }
 
@@ -195,6 +198,13 @@ std::span<const Key> ExperimentKeys() {
       DomainKey(),
       key::OneOf("transport", kTransportNames, "auto: shared memory on one host, UDP between hosts")
           .Default("\"auto\""),
+      key::Integer("agents_per_process", 1, kMaxAgents, "how many agents share a process; each keeps its topics")
+          .Default("1"),
+      key::OneOf(
+          "delivery", kDeliveries,
+          "topics: a reader for each agent that is heard; bundled: one sample with all that an agent may hear, for "
+          "dense graphs")
+          .Default("\"topics\""),
   };
   static const Key keys[] = {
       key::Table("run", kRunKeys, "how long, how fast, from which seed"),

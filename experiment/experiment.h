@@ -22,6 +22,7 @@ inline constexpr int kMaxAgents = 10000;
 enum class Mode { kLockstep, kRealtime };
 enum class Axes { kXy, kXyz };
 enum class Inversion { kSmallAngle, kExact };
+enum class Delivery { kTopics, kBundled };
 
 /// [control], or what an agent has in its place.
 struct ControlConfig {
@@ -102,6 +103,8 @@ struct Experiment {
   struct {
     int domain = -1;  ///< -1 = "auto"
     std::string transport;
+    int agents_per_process = 1;
+    Delivery delivery = Delivery::kTopics;
   } network;
 
   int size() const { return static_cast<int>(agents.size()); }

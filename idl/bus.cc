@@ -187,7 +187,7 @@ RawReader::RawReader(Domain& domain, const Topic& topic, Callback on_sample)
     : RawReader(domain, topic, std::move(on_sample), std::make_shared<Bytes>()) {}
 
 RawReader::RawReader(Domain& domain, const Topic& topic, Callback on_sample, std::shared_ptr<Bytes> bytes)
-    : ReaderBase(domain, topic, dds::TypeSupport(new RawType(WireTypeName(topic.kind))), RecorderQos(topic.kind),
+    : ReaderBase(domain, topic, dds::TypeSupport(new RawType(WireTypeName(topic.kind))), RecorderQos(topic),
                  bytes.get(),
                  [bytes, on_sample = std::move(on_sample)](std::int64_t sequence) { on_sample(*bytes, sequence); }) {}
 

@@ -83,6 +83,7 @@ class WriterBase {
 /// What readers do that does not depend on the type of the sample.
 class ReaderBase {
  public:
+  virtual ~ReaderBase();
   /// Writers matched now.
   int matched() const;
 
@@ -91,7 +92,6 @@ class ReaderBase {
   ReaderBase(Domain& domain, const Topic& topic, eprosima::fastdds::dds::TypeSupport type,
              const eprosima::fastdds::dds::DataReaderQos& qos, void* sample,
              std::function<void(std::int64_t sequence)> on_sample);
-  ~ReaderBase();
 
  private:
   class Listener;
@@ -130,7 +130,7 @@ class Reader : public ReaderBase {
 
  private:
   Reader(Domain& domain, const Topic& topic, Callback on_sample, std::shared_ptr<Sample> sample)
-      : ReaderBase(domain, topic, eprosima::fastdds::dds::TypeSupport(new ZeroPadded<PubSub>), ReaderQos(topic.kind),
+      : ReaderBase(domain, topic, eprosima::fastdds::dds::TypeSupport(new ZeroPadded<PubSub>), ReaderQos(topic),
                    sample.get(), [sample, on_sample = std::move(on_sample)](std::int64_t) { on_sample(*sample); }) {}
 };
 

@@ -28,6 +28,7 @@ class Ended : public std::exception {
 /// event or a single delivery: who lacks something keeps asking.
 class Lifecycle {
  public:
+  /// `agent`: 0 where the process has none, or several.
   Lifecycle(Domain& domain, StopSignal& stop, std::string process, int agent);
 
   /// Asks for the experiment until it comes. Throws std::runtime_error after `timeout`, naming what was

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "experiment/experiment.h"
 #include "idl/shared_memory.h"
 
 namespace mascot {
@@ -18,10 +19,21 @@ using Run = std::function<void(Domain&, Lifecycle&, const mascot_msgs::msg::Expe
 
 constexpr const char* kSweep = "--sweep-shared-memory";
 
+/// "3" or "1-50".
+AgentRange ParseIds(const std::string& text) {
+  const auto dash = text.find('-');
+  const std::string name = (dash == text.npos ? "agent_" : "agents_") + text;
+  const auto agents = AgentsOf(name);
+  if (!agents || agents->first < 1 || agents->last > kMaxAgents)
+    throw CLI::ValidationError("--id", "expected a number, or two such as 1-50, in 1 to " + std::to_string(kMaxAgents) +
+                                           ", got '" + text + "'");
+  return *agents;
+}
+
 /// Joins, runs, and reports a failure to the run before it leaves. Returns the exit code.
 int Join(const ProcessArgs& args, StopSignal& stop, const Run& run) {
   Domain domain(args.options, [&stop] { stop.Wake(); });
-  Lifecycle lifecycle(domain, stop, args.options.name, args.agent);
+  Lifecycle lifecycle(domain, stop, args.options.name, args.agents.size() == 1 ? args.agents.first : 0);
   try {
     run(domain, lifecycle, lifecycle.AwaitExperiment(std::chrono::seconds(args.wait_s)));
     return 0;
@@ -41,7 +53,11 @@ void SweepAfterParent() { execl("/proc/self/exe", "sweep", kSweep, nullptr); }
 }  // namespace
 
 void ProcessArgs::AddTo(CLI::App& app) {
-  if (is_agent) app.add_option("--id", agent, "This agent's number, 1..N")->required()->check(CLI::Range(1, 10000));
+  if (is_agent)
+    app.add_option_function<std::string>(
+           "--id", [this](const std::string& text) { agents = ParseIds(text); },
+           "This agent's number, 1..N, or those of all agents that share this process: 1-50")
+        ->required();
   app.add_option("--domain", options.domain, "DDS domain of the run; `orchestrator up` prints it")
       ->required()
       ->check(CLI::Range(0, 232));
@@ -70,7 +86,7 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != args.parent) return 1;  // it died before this line
   }
-  args.options.name = args.is_agent ? AgentName(args.agent) : "physics_server";
+  args.options.name = args.is_agent ? ProcessName(args.agents) : "physics_server";
   if (!args.options.server.empty()) args.options.role = DiscoveryRole::kClient;
   int code = 1;
   try {

@@ -18,9 +18,9 @@ namespace mascot {
 /// Command line of a process that joins a run.
 struct ProcessArgs {
   DomainOptions options;
-  int agent = 0;    ///< 0: not an agent
-  int wait_s = 60;  ///< for an orchestrator to hand out the experiment
-  int parent = 0;   ///< pid of the orchestrator that spawned this process and with which it ends; 0: by hand
+  AgentRange agents;  ///< 0..0: not a process of agents
+  int wait_s = 60;    ///< for an orchestrator to hand out the experiment
+  int parent = 0;     ///< pid of the orchestrator that spawned this process and with which it ends; 0: by hand
   bool is_agent = false;
 
   explicit ProcessArgs(bool agent_process) : is_agent(agent_process) {}

@@ -31,10 +31,15 @@ struct Profile {
 };
 
 constexpr Profile kProfiles[] = {
-    {TopicKind::kState, kHistoryDepth, 8, true, false}, {TopicKind::kCommand, kHistoryDepth, 8, true, false},
-    {TopicKind::kClock, kHistoryDepth, 8, true, false}, {TopicKind::kMessage, kHistoryDepth, 8, true, false},
+    // those of agents first (ReaderNumber)
+    {TopicKind::kBundle, 4, 4, true, false},  // large, and nobody records it
+    {TopicKind::kState, kHistoryDepth, 8, true, false},
+    {TopicKind::kCommand, kHistoryDepth, 8, true, false},
+    {TopicKind::kMessage, kHistoryDepth, 8, true, false},
+    {TopicKind::kClock, kHistoryDepth, 8, true, false},
     {TopicKind::kStatus, 256, 256, false, false},
-    {TopicKind::kRequest, 32, 32, false, false},        {TopicKind::kExperiment, 1, 1, false, true},
+    {TopicKind::kRequest, 32, 32, false, false},
+    {TopicKind::kExperiment, 1, 1, false, true},
 };
 
 const Profile& ProfileOf(TopicKind kind) {
@@ -54,6 +59,26 @@ void SetCommon(Qos& qos, const Profile& profile, int depth) {
   qos.resource_limits().allocated_samples = std::min(depth, 16);
   qos.data_sharing().off();  // gains nothing at this size and leaves files behind
   qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+}
+
+/// The number by which a sample finds its reader, for the topics of agents: the same in every process. Fast DDS names
+/// the reader in a message if all that it is for have the same number; else the process that gets it tries every reader
+/// it has, hundreds in the recorder's.
+std::int16_t ReaderNumber(const Topic& topic) {
+  constexpr int kFirst = 256;  // below, Fast DDS numbers what has none
+  constexpr int kAgents = 8000;
+  const bool of_agents = topic.agent > 0 && topic.agent < kAgents;
+  if (!of_agents) return -1;
+  const auto row = std::find_if(std::begin(kProfiles), std::end(kProfiles),
+                                [&](const Profile& profile) { return profile.kind == topic.kind; });
+  return static_cast<std::int16_t>(kFirst + kAgents * (row - std::begin(kProfiles)) + topic.agent);
+}
+
+dds::DataReaderQos MakeReaderQos(const Topic& topic, const Profile& profile, int depth) {
+  dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
+  SetCommon(qos, profile, depth);
+  qos.endpoint().entity_id = ReaderNumber(topic);
+  return qos;
 }
 
 // --- transports: one row each -------------------------------------------------------------------------
@@ -190,18 +215,14 @@ dds::DataWriterQos WriterQos(TopicKind kind) {
   return qos;
 }
 
-dds::DataReaderQos ReaderQos(TopicKind kind) {
-  const Profile& profile = ProfileOf(kind);
-  dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
-  SetCommon(qos, profile, profile.reader_depth);
-  return qos;
+dds::DataReaderQos ReaderQos(const Topic& topic) {
+  const Profile& profile = ProfileOf(topic.kind);
+  return MakeReaderQos(topic, profile, profile.reader_depth);
 }
 
-dds::DataReaderQos RecorderQos(TopicKind kind) {
-  const Profile& profile = ProfileOf(kind);
-  dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
-  SetCommon(qos, profile, profile.writer_depth);
-  return qos;
+dds::DataReaderQos RecorderQos(const Topic& topic) {
+  const Profile& profile = ProfileOf(topic.kind);
+  return MakeReaderQos(topic, profile, profile.writer_depth);
 }
 
 int WriterDepth(TopicKind kind) { return ProfileOf(kind).writer_depth; }

@@ -40,9 +40,9 @@ std::span<const std::string_view> TransportNames();
 /// Throws std::invalid_argument for an unknown transport or an unreadable server address.
 eprosima::fastdds::dds::DomainParticipantQos ParticipantQos(const DomainOptions& options);
 eprosima::fastdds::dds::DataWriterQos WriterQos(TopicKind kind);
-eprosima::fastdds::dds::DataReaderQos ReaderQos(TopicKind kind);
+eprosima::fastdds::dds::DataReaderQos ReaderQos(const Topic& topic);
 /// As ReaderQos, with room for everything that writers still keep: for the recorder.
-eprosima::fastdds::dds::DataReaderQos RecorderQos(TopicKind kind);
+eprosima::fastdds::dds::DataReaderQos RecorderQos(const Topic& topic);
 /// Samples that a writer of this kind keeps.
 int WriterDepth(TopicKind kind);
 

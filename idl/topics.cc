@@ -12,27 +12,46 @@ struct KindName {
 };
 
 constexpr KindName kKinds[] = {
-    {TopicKind::kCommand, "command", true},
-    {TopicKind::kMessage, "message", true},
-    {TopicKind::kState, "state", true},
-    {TopicKind::kClock, "clock", false},
-    {TopicKind::kExperiment, "experiment", false},
-    {TopicKind::kRequest, "request", false},
-    {TopicKind::kStatus, "status", false},
+    {TopicKind::kBundle, "bundle", true},    {TopicKind::kCommand, "command", true},
+    {TopicKind::kMessage, "message", true},  {TopicKind::kState, "state", true},
+    {TopicKind::kClock, "clock", false},     {TopicKind::kExperiment, "experiment", false},
+    {TopicKind::kRequest, "request", false}, {TopicKind::kStatus, "status", false},
 };
 constexpr std::string_view kAgentPrefix = "agent_";
+constexpr std::string_view kAgentsPrefix = "agents_";
+
+/// All of `text` as a number from 1 on.
+std::optional<int> Number(std::string_view text) {
+  int number = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_number = error == std::errc{} && rest == text.data() + text.size() && text.front() != '-';
+  return is_number ? std::optional(number) : std::nullopt;
+}
+
+std::optional<int> AgentNumber(std::string_view name) {
+  if (!name.starts_with(kAgentPrefix)) return std::nullopt;
+  name.remove_prefix(kAgentPrefix.size());
+  return name.empty() ? std::nullopt : Number(name);
+}
 
 }  // namespace
 
 std::string AgentName(int agent) { return std::string(kAgentPrefix) + std::to_string(agent); }
 
-std::optional<int> AgentNumber(std::string_view name) {
-  if (!name.starts_with(kAgentPrefix)) return std::nullopt;
-  name.remove_prefix(kAgentPrefix.size());
-  int agent = 0;
-  const auto [rest, error] = std::from_chars(name.data(), name.data() + name.size(), agent);
-  if (error != std::errc{} || rest != name.data() + name.size()) return std::nullopt;
-  return agent;
+std::string ProcessName(AgentRange agents) {
+  if (agents.first == agents.last) return AgentName(agents.first);
+  return std::string(kAgentsPrefix) + std::to_string(agents.first) + "-" + std::to_string(agents.last);
+}
+
+std::optional<AgentRange> AgentsOf(std::string_view process) {
+  if (const auto agent = AgentNumber(process)) return AgentRange{*agent, *agent};
+  const auto dash = process.find('-');
+  if (!process.starts_with(kAgentsPrefix) || dash == process.npos || dash == kAgentsPrefix.size() ||
+      dash + 1 == process.size())
+    return std::nullopt;
+  const auto first = Number(process.substr(kAgentsPrefix.size(), dash - kAgentsPrefix.size()));
+  const auto last = Number(process.substr(dash + 1));
+  return first && last && *first < *last ? std::optional(AgentRange{*first, *last}) : std::nullopt;
 }
 
 std::string Topic::Name() const {

@@ -53,6 +53,8 @@ void DeserializeAs(std::span<const std::uint8_t> bytes, typename PubSub::type& s
 
 std::string WireTypeName(TopicKind kind) {
   switch (kind) {
+    case TopicKind::kBundle:
+      return BundleType().getName();
     case TopicKind::kCommand:
       return CommandType().getName();
     case TopicKind::kMessage:

@@ -13,6 +13,7 @@
 namespace mascot {
 
 using StateType = mascot_msgs::msg::AgentStatePubSubType;
+using BundleType = mascot_msgs::msg::AgentBundlePubSubType;
 using CommandType = mascot_msgs::msg::AgentCommandPubSubType;
 using MessageType = mascot_msgs::msg::AgentMessagePubSubType;
 using ClockType = rosgraph_msgs::msg::ClockPubSubType;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "orchestrator/config_args.h"
+#include "orchestrator/delivery.h"
 #include "orchestrator/graph_facts.h"
 #include "orchestrator/prediction_report.h"
 #include "orchestrator/theory/theory.h"
@@ -81,7 +82,8 @@ void PrintGraph(const GraphFacts& facts, const Schedule& schedule) {
 int Check(const ConfigArgs& args, bool json) {
   Experiment experiment = args.Load();
   const GraphFacts facts = FactsOf(experiment.graph, experiment.law.leader);
-  const Prediction prediction = Predict(experiment);
+  Prediction prediction = Predict(experiment);
+  for (std::string& warning : DeliveryWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
   if (json) {
     std::cout << ToJson(experiment, facts, prediction).dump(2) << "\n";
     return 0;

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <optional>
 
+#include "experiment/processes.h"
 #include "idl/bus.h"
 #include "idl/shared_memory.h"
 #include "orchestrator/domain_lock.h"
@@ -27,6 +28,11 @@ constexpr int kMostPeers = 20;
 /// How long an orderly end may take before it is made disorderly.
 constexpr auto kGrace = 5s;
 
+/// As `agent --id` takes them.
+std::string IdsText(AgentRange agents) {
+  return std::to_string(agents.first) + (agents.size() > 1 ? "-" + std::to_string(agents.last) : "");
+}
+
 /// One run, from the domain's lock to the last process gone.
 class DdsRun {
  public:
@@ -38,6 +44,8 @@ class DdsRun {
   using Deadline = std::optional<WallClock::time_point>;
 
   DomainOptions Options(const std::string& name, DiscoveryRole role) const;
+  int PeersOf(AgentRange agents) const;
+  int BundleRoom() const;
   void Join();
   void Spawn();
   void Loop();
@@ -62,6 +70,7 @@ class DdsRun {
   Deadline stop_deadline_, drain_deadline_;
   std::int64_t confirmed_ = 0;
 
+  const std::vector<AgentRange> processes_;
   const bool with_server_;
   const RunFolder& folder_;
   RunWriter& writer_;
@@ -84,7 +93,8 @@ DdsRun::DdsRun(const Experiment& experiment, const std::string& resolved, const 
       stop_(stop),
       external_(
           std::any_of(experiment.agents.begin(), experiment.agents.end(), [](const auto& a) { return a.external; })),
-      with_server_(experiment.size() + 2 > kMostPeers),
+      processes_(AgentProcesses(experiment)),
+      with_server_(std::ssize(processes_) + 2 > kMostPeers),
       folder_(folder),
       writer_(writer),
       resolved_(resolved),
@@ -111,7 +121,7 @@ DomainOptions DdsRun::Options(const std::string& name, DiscoveryRole role) const
   options.name = name;
   options.role = role;
   options.loopback = !external_;
-  options.participants = experiment_.size() + 2;
+  options.participants = experiment_.size() + 2 + BundleRoom();
   const std::string host = role == DiscoveryRole::kServer && external_ ? "0.0.0.0" : "127.0.0.1";
   if (with_server_) options.server = host + ":" + std::to_string(lock_->discovery_port());
   return options;
@@ -128,19 +138,36 @@ void DdsRun::Spawn() {
   console_.Line("domain " + std::to_string(options.domain) +
                 (with_server_ ? ", discovery server " + options.server : ""));
 
-  auto server = common;
-  server.insert(server.end(), {"--participants", std::to_string(options.participants)});
-  children_.Spawn("physics_server", ProgramFolder() / "physics_server", server);
-  for (const AgentConfig& agent : experiment_.agents) {
+  const auto spawn = [&](const std::string& process, const std::string& program, int peers,
+                         const std::vector<std::string>& more) {
     auto arguments = common;
-    arguments.insert(arguments.end(), {"--id", std::to_string(agent.id)});
-    if (!agent.external)
-      children_.Spawn(AgentName(agent.id), ProgramFolder() / "agent", arguments);
+    arguments.insert(arguments.end(), {"--participants", std::to_string(peers)});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    children_.Spawn(process, ProgramFolder() / program, arguments);
+  };
+  spawn("physics_server", "physics_server", options.participants, {});
+  for (const AgentRange& agents : processes_) {
+    if (!experiment_.agent(agents.first).external)
+      spawn(ProcessName(agents), "agent", PeersOf(agents), {"--id", IdsText(agents)});
     else
-      console_.Line("waiting for: agent --id " + std::to_string(agent.id) + " --domain " +
-                    std::to_string(options.domain) +
+      console_.Line("waiting for: agent --id " + IdsText(agents) + " --domain " + std::to_string(options.domain) +
                     (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_->discovery_port()) : ""));
   }
+}
+
+/// How many topics of others the agents' process deals with in a tick, and how many of its own.
+int DdsRun::PeersOf(AgentRange agents) const {
+  if (agents.size() == 1) return 2;
+  std::size_t topics = 2;
+  for (int id = agents.first; id <= agents.last; ++id) topics += 2 + experiment_.graph.HeardBy(id).size();
+  return static_cast<int>(std::min<std::size_t>(topics, 20000));
+}
+
+/// Bundles that are on their way at once need room beyond that of single states.
+int DdsRun::BundleRoom() const {
+  if (experiment_.network.delivery != Delivery::kBundled) return 0;
+  constexpr std::size_t kStatesPerPeer = 32 * 1024 / 176;  // idl/qos.cc reserves 32 KiB for each
+  return static_cast<int>(std::min<std::size_t>(experiment_.graph.edges() / kStatesPerPeer, 10000));
 }
 
 EngineResult DdsRun::Run() {

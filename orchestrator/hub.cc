@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "experiment/processes.h"
+
 namespace mascot {
 
 using namespace std::chrono_literals;
@@ -122,7 +124,7 @@ std::string Hub::Unheard() const {
     if (!StatusOf(process)) names += (names.empty() ? "nothing was heard of " : ", ") + process;
   };
   check("physics_server");
-  for (const AgentConfig& agent : experiment_.agents) check(AgentName(agent.id));
+  for (const AgentRange& agents : AgentProcesses(experiment_)) check(ProcessName(agents));
   return names.empty() ? "not everybody has found everybody" : names;
 }
 

@@ -10,6 +10,7 @@
 #include "orchestrator/config_args.h"
 #include "orchestrator/console.h"
 #include "orchestrator/dds_engine.h"
+#include "orchestrator/delivery.h"
 #include "orchestrator/inprocess.h"
 #include "orchestrator/interruptions.h"
 #include "orchestrator/plot.h"
@@ -46,12 +47,14 @@ EngineResult RunInThisProcess(Experiment& experiment, RunWriter& writer, Console
   return result;
 }
 
-/// The resolved experiment as it is attached to the recording: two runs that only flew in different domains
+/// The resolved experiment as it is attached to the recording: two runs of which only the way over the wire differed
 /// have the same recording.
-std::string WithoutDomain(const std::string& resolved, const Experiment& experiment) {
-  if (experiment.network.domain < 0) return resolved;
-  const Override automatic{"network.domain", "\"auto\""};
-  return LoadExperiment(Section::FromText(resolved, "config.toml", {&automatic, 1}), experiment.run.name)
+std::string WithoutDelivery(const std::string& resolved, const Experiment& experiment) {
+  const auto& network = experiment.network;
+  if (network.domain < 0 && network.agents_per_process == 1 && network.delivery == Delivery::kTopics) return resolved;
+  const Override usual[] = {
+      {"network.domain", "\"auto\""}, {"network.agents_per_process", "1"}, {"network.delivery", "\"topics\""}};
+  return LoadExperiment(Section::FromText(resolved, "config.toml", usual), experiment.run.name, /*checked=*/true)
       .document.Resolved();
 }
 
@@ -85,6 +88,8 @@ int Up(UpArgs& args) {
   if (args.seed) args.config.overrides.push_back({"run.seed", *args.seed});
   Experiment experiment = args.config.Load();
   RefuseRealtimeInOneProcess(experiment, args.engine);
+  const bool over_dds = args.engine == "dds";
+  if (over_dds) RefuseTooManyProcesses(experiment);
   const Prediction prediction = Predict(experiment);
   const std::string resolved = experiment.document.Resolved();
 
@@ -92,9 +97,11 @@ int Up(UpArgs& args) {
   folder.Write("config.toml", resolved);
   Console console(args.quiet || args.json);
   for (const std::string& warning : prediction.warnings) console.Line("warning: " + warning);
-  RunWriter writer(experiment, folder, WithoutDomain(resolved, experiment));
-  EngineResult result = args.engine == "dds" ? RunOverDds(experiment, resolved, folder, writer, console, stop)
-                                             : RunInThisProcess(experiment, writer, console, stop);
+  if (over_dds)
+    for (const std::string& warning : DeliveryWarnings(experiment)) console.Line("warning: " + warning);
+  RunWriter writer(experiment, folder, WithoutDelivery(resolved, experiment));
+  EngineResult result = over_dds ? RunOverDds(experiment, resolved, folder, writer, console, stop)
+                                 : RunInThisProcess(experiment, writer, console, stop);
   console.EndProgress();
   try {
     writer.Close();

@@ -9,28 +9,36 @@
 #include <optional>
 #include <utility>
 
+#include "experiment/processes.h"
+
 namespace mascot {
 namespace {
 
 namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastdds::dds::DomainParticipant;
 
-bool Hears(const Experiment& experiment, int id, int other) {
-  const auto& heard = experiment.graph.HeardBy(id);
-  return std::any_of(heard.begin(), heard.end(),
-                     [&](const Graph::Neighbour& neighbour) { return neighbour.id == other; });
+/// One of `agents` may hear agent `other`.
+bool Hear(const Experiment& experiment, AgentRange agents, int other) {
+  for (int id = agents.first; id <= agents.last; ++id) {
+    const auto& heard = experiment.graph.HeardBy(id);
+    if (std::ranges::find(heard, other, &Graph::Neighbour::id) != heard.end()) return true;
+  }
+  return false;
 }
 
-/// What agent `id` may have an endpoint on.
-bool MayHave(const Experiment& experiment, int id, const Topic& topic, bool reads) {
+/// What a process of `agents` may have an endpoint on.
+bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic, bool reads) {
+  const bool own = agents.Holds(topic.agent);
+  const bool bundled = experiment.network.delivery == Delivery::kBundled;
   switch (topic.kind) {
+    case TopicKind::kBundle:
+      return reads && own && bundled;
     case TopicKind::kState:
-      return reads && (topic.agent == id || Hears(experiment, id, topic.agent));
+      return reads && !bundled && (own || Hear(experiment, agents, topic.agent));
     case TopicKind::kCommand:
-      return !reads && topic.agent == id;
+      return !reads && own;
     case TopicKind::kMessage:
-      return (reads ? Hears(experiment, id, topic.agent) : topic.agent == id) &&
-             experiment.agent(topic.agent).sends_messages;
+      return (reads ? Hear(experiment, agents, topic.agent) : own) && experiment.agent(topic.agent).sends_messages;
     case TopicKind::kClock:
       return reads;
     case TopicKind::kExperiment:
@@ -44,13 +52,16 @@ bool MayHave(const Experiment& experiment, int id, const Topic& topic, bool read
 }
 
 /// The process whose word on a topic the run goes by; empty: anybody may write there.
-std::string RightfulWriter(const Topic& topic) {
+std::string RightfulWriter(const Experiment& experiment, const Topic& topic) {
   switch (topic.kind) {
+    case TopicKind::kBundle:
     case TopicKind::kState:
     case TopicKind::kClock:
       return "physics_server";
     case TopicKind::kCommand:
     case TopicKind::kMessage:
+      for (const AgentRange& agents : AgentProcesses(experiment))
+        if (agents.Holds(topic.agent)) return ProcessName(agents);
       return AgentName(topic.agent);
     case TopicKind::kExperiment:
       return "orchestrator";
@@ -100,13 +111,15 @@ std::string WireAudit::ViolationOf(const Guid& guid, const Endpoint& endpoint, c
   if (!topic) return {};
   const std::string owner = OwnerOf(guid);
   const std::string what = owner + (endpoint.reads ? " reads " : " writes ") + topic->Name();
-  if (const auto id = AgentNumber(owner)) {
-    const bool known = *id >= 1 && *id <= experiment.size();
+  if (const auto agents = AgentsOf(owner)) {
+    const bool known = agents->first >= 1 && agents->last <= experiment.size();
     if (!known && topic->agent > 0)
       return what + ", but there are only agents 1 to " + std::to_string(experiment.size());
-    if (known && !MayHave(experiment, *id, *topic, endpoint.reads)) return what + ", which the graph does not let it";
+    if (known && !MayHave(experiment, *agents, *topic, endpoint.reads))
+      return what + ", which the graph does not let it";
   }
-  if (const std::string rightful = RightfulWriter(*topic); !endpoint.reads && !rightful.empty() && owner != rightful)
+  if (const std::string rightful = RightfulWriter(experiment, *topic);
+      !endpoint.reads && !rightful.empty() && owner != rightful)
     return "'" + owner + "' writes " + topic->Name() + ", which only " + rightful + " may";
   return {};
 }
@@ -117,7 +130,7 @@ std::string WireAudit::Violation(const Experiment& experiment) const {
   for (const auto& [guid, endpoint] : endpoints_) {
     if (std::string violation = ViolationOf(guid, endpoint, experiment); !violation.empty()) return violation;
     const auto topic = Topic::Parse(endpoint.topic);
-    const bool exclusive = topic && !endpoint.reads && !RightfulWriter(*topic).empty();
+    const bool exclusive = topic && !endpoint.reads && !RightfulWriter(experiment, *topic).empty();
     if (exclusive && !writers.emplace(OwnerOf(guid), endpoint.topic).second)
       return "two processes say that they are " + OwnerOf(guid);
   }
@@ -126,20 +139,22 @@ std::string WireAudit::Violation(const Experiment& experiment) const {
 
 bool WireAudit::IsComplete(const Experiment& experiment) const {
   const std::lock_guard lock(mutex_);
-  std::set<std::pair<int, Topic>> seen;
+  std::set<std::pair<AgentRange, Topic>> seen;
   for (const auto& [guid, endpoint] : endpoints_) {
-    const auto id = AgentNumber(OwnerOf(guid));
+    const auto agents = AgentsOf(OwnerOf(guid));
     const auto topic = Topic::Parse(endpoint.topic);
-    if (id && topic) seen.emplace(*id, *topic);
+    if (agents && topic) seen.emplace(*agents, *topic);
   }
-  const auto has = [&](int id, const Topic& topic) { return seen.contains({id, topic}); };
-  for (const AgentConfig& agent : experiment.agents) {
-    const int id = agent.id;
-    if (!has(id, Topic::State(id)) || !has(id, Topic::Command(id))) return false;
-    if (agent.sends_messages && !has(id, Topic::Message(id))) return false;
-    for (const Graph::Neighbour& neighbour : experiment.graph.HeardBy(id)) {
-      if (!has(id, Topic::State(neighbour.id))) return false;
-      if (experiment.agent(neighbour.id).sends_messages && !has(id, Topic::Message(neighbour.id))) return false;
+  const bool bundled = experiment.network.delivery == Delivery::kBundled;
+  for (const AgentRange& process : AgentProcesses(experiment)) {
+    const auto has = [&](const Topic& topic) { return seen.contains({process, topic}); };
+    for (int id = process.first; id <= process.last; ++id) {
+      if (!has(bundled ? Topic::Bundle(id) : Topic::State(id)) || !has(Topic::Command(id))) return false;
+      if (experiment.agent(id).sends_messages && !has(Topic::Message(id))) return false;
+      for (const Graph::Neighbour& heard : experiment.graph.HeardBy(id)) {
+        if (!bundled && !has(Topic::State(heard.id))) return false;
+        if (experiment.agent(heard.id).sends_messages && !has(Topic::Message(heard.id))) return false;
+      }
     }
   }
   return true;

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "experiment/processes.h"
+
 namespace mascot {
 
 using namespace std::chrono_literals;
@@ -38,8 +40,14 @@ Server::Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experimen
       clock_(domain, Topic::Clock()),
       requests_(domain, Topic::Request()),
       status_reader_(domain, Topic::Status(), [this](const mascot_msgs::msg::Status& status) { OnStatus(status); }) {
+  const bool bundled = experiment.network.delivery == Delivery::kBundled;
+  const int recorder = 1;
+  for (const int processes : HearingProcesses(experiment, /*heard_only=*/false))
+    state_readers_.push_back(recorder + (bundled ? 0 : processes));
+  samples_.resize(static_cast<std::size_t>(experiment.size()));
   for (int id = 1; id <= experiment.size(); ++id) {
     states_.push_back(std::make_unique<Writer<StateType>>(domain, Topic::State(id)));
+    if (bundled) bundles_.push_back(std::make_unique<Writer<BundleType>>(domain, Topic::Bundle(id)));
     command_readers_.push_back(std::make_unique<Reader<CommandType>>(
         domain, Topic::Command(id),
         [this, id](const mascot_msgs::msg::AgentCommand& command) { OnCommand(id, command); }));
@@ -93,13 +101,9 @@ void Server::AskForReports() {
 
 bool Server::Matched() const {
   if (clock_.matched() < 1) return false;
-  std::vector<int> readers(states_.size(), 2);  // the agent itself and the recorder
-  for (int id = 1; id <= experiment_.size(); ++id)
-    for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(id))
-      ++readers[static_cast<std::size_t>(heard.id - 1)];
   for (std::size_t i = 0; i < states_.size(); ++i)
-    if (states_[i]->matched() < readers[i] || command_readers_[i]->matched() < 1) return false;
-  return true;
+    if (states_[i]->matched() < state_readers_[i] || command_readers_[i]->matched() < 1) return false;
+  return std::ranges::all_of(bundles_, [](const auto& bundle) { return bundle->matched() >= 1; });
 }
 
 std::string Server::Missing() const {
@@ -118,8 +122,9 @@ void Server::OnStatus(const mascot_msgs::msg::Status& status) {
     recorder_ready_ = life == Life::kReady || life == Life::kRunning;
     recorded_rows_ = static_cast<std::int64_t>(status.tick());
     if (running_) PublishIfRecorded();
-  } else if (status.agent() >= 1 && status.agent() <= ready_.size()) {
-    ready_[status.agent() - 1] = life == Life::kReady || life == Life::kRunning;
+  } else if (const auto agents = AgentsOf(status.process().to_string())) {
+    for (int id = std::max(agents->first, 1); id <= std::min(agents->last, experiment_.size()); ++id)
+      ready_[static_cast<std::size_t>(id - 1)] = life == Life::kReady || life == Life::kRunning;
   }
 }
 
@@ -138,10 +143,22 @@ void Server::Publish() {
   rosgraph_msgs::msg::Clock clock;
   ToWire(tick, rate, clock);
   clock_.Write(clock);
-  mascot_msgs::msg::AgentState sample;
   for (int id = 1; id <= experiment_.size(); ++id) {
-    ToWire(tick, rate, id, world_.State(id), sample);
-    states_[static_cast<std::size_t>(id - 1)]->Write(sample);
+    const auto i = static_cast<std::size_t>(id - 1);
+    ToWire(tick, rate, id, world_.State(id), samples_[i]);
+    states_[i]->Write(samples_[i]);
+  }
+  PublishBundles();
+}
+
+void Server::PublishBundles() {
+  auto& states = bundle_.states();
+  for (std::size_t i = 0; i < bundles_.size(); ++i) {
+    states.clear();
+    states.push_back(samples_[i]);
+    for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(static_cast<int>(i) + 1))
+      states.push_back(samples_[static_cast<std::size_t>(heard.id - 1)]);
+    bundles_[i]->Write(bundle_);
   }
 }
 

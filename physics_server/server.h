@@ -48,6 +48,8 @@ class Server {
   // All below with mutex_ held.
   void PublishIfRecorded();
   void Publish();
+  /// What each agent may hear, of the states in samples_.
+  void PublishBundles();
   void Advance();
   void Finish();
   std::string Missing() const;
@@ -75,6 +77,10 @@ class Server {
   std::atomic<bool> done_ = false;
 
   std::vector<std::unique_ptr<Writer<StateType>>> states_;
+  std::vector<int> state_readers_;                            // by id - 1: how many each must find
+  std::vector<std::unique_ptr<Writer<BundleType>>> bundles_;  // none: states are delivered one by one
+  std::vector<mascot_msgs::msg::AgentState> samples_;         // of the tick published last, by id - 1
+  mascot_msgs::msg::AgentBundle bundle_;
   Writer<ClockType> clock_;
   Writer<RequestType> requests_;
   std::vector<std::unique_ptr<Reader<CommandType>>> command_readers_;

@@ -18,8 +18,9 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 TEST(Topic, IsMadeAndParsedAlike) {
-  for (const Topic& topic : {Topic::State(1), Topic::State(123), Topic::Command(7), Topic::Message(12), Topic::Clock(),
-                             Topic::Status(), Topic::Request(), Topic::Experiment()}) {
+  for (const Topic& topic :
+       {Topic::State(1), Topic::State(123), Topic::Bundle(4), Topic::Command(7), Topic::Message(12), Topic::Clock(),
+        Topic::Status(), Topic::Request(), Topic::Experiment()}) {
     EXPECT_EQ(Topic::Parse(topic.Name()), topic);
     EXPECT_EQ(Topic::Parse(topic.DdsName()), topic);
   }
@@ -29,9 +30,13 @@ TEST(Topic, IsMadeAndParsedAlike) {
 
 TEST(Topic, AgentsAreNamedAndNumberedAlike) {
   EXPECT_EQ(AgentName(12), "agent_12");
-  EXPECT_EQ(AgentNumber("agent_12"), 12);
-  for (const char* name : {"agent_", "agent_x", "agent_1x", "recorder", ""})
-    EXPECT_EQ(AgentNumber(name), std::nullopt) << name;
+  EXPECT_EQ(ProcessName({12, 12}), "agent_12");
+  EXPECT_EQ(ProcessName({1, 50}), "agents_1-50");
+  for (const AgentRange agents : {AgentRange{12, 12}, AgentRange{1, 50}, AgentRange{9999, 10000}})
+    EXPECT_EQ(AgentsOf(ProcessName(agents)), agents);
+  for (const char* name : {"agent_", "agent_x", "agent_1x", "agent_-1", "agents_", "agents_3", "agents_-3", "agents_3-",
+                           "agents_3-3", "agents_5-3", "agents_1-x", "agents_1--2", "recorder", ""})
+    EXPECT_EQ(AgentsOf(name), std::nullopt) << name;
 }
 
 TEST(Topic, IsNotParsedFromWhatIsNotOurs) {
@@ -186,6 +191,12 @@ TEST(AgentProcess, RefusesWrongArguments) {
   EXPECT_THAT(Agent("--domain 1").output, HasSubstr("--id is required"));
   EXPECT_THAT(Agent("--id 0 --domain 1").output, HasSubstr("--id"));
   EXPECT_EQ(Agent("--id 0 --domain 1").exit_code, 2);
+  for (const char* ids : {"0", "x", "3-1", "1-10001", "1-"}) {
+    const Ran ran = Agent("--id " + std::string(ids) + " --domain 1");
+    EXPECT_EQ(ran.exit_code, 2);
+    EXPECT_THAT(ran.output,
+                HasSubstr("expected a number, or two such as 1-50, in 1 to 10000, got '" + std::string(ids) + "'"));
+  }
   const Ran transport = Agent("--id 1 --domain 1 --transport pigeon");
   EXPECT_EQ(transport.exit_code, 2);
   EXPECT_EQ(transport.output, "error: --transport: expected one of auto, udp, shm, got 'pigeon'\n");

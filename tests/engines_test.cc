@@ -260,6 +260,68 @@ class Load {
   std::vector<std::thread> threads_;
 };
 
+/// `more` words of [network] on top of a file.
+std::vector<std::string> Network(int agents_per_process, const std::string& delivery) {
+  return {"--set", "network.agents_per_process=" + std::to_string(agents_per_process), "--set",
+          "network.delivery=" + delivery};
+}
+
+struct Way {
+  int agents_per_process;
+  const char* delivery;
+  std::vector<std::string> processes;  ///< of five agents
+};
+
+class Delivery : public testing::TestWithParam<Way> {};
+
+TEST_P(Delivery, DoesNotChangeABitOfWhatIsFlown) {
+  ScratchFolder folder;
+  const std::string config = folder.File("talkers.toml");
+  WriteFile(config, kTalkers);
+  Up inprocess(folder, "inprocess", config, {"--engine", "inprocess"});
+  ASSERT_EQ(inprocess.Wait(), 0) << inprocess.err();
+  Up dds(folder, "dds", config, Network(GetParam().agents_per_process, GetParam().delivery));
+  ASSERT_EQ(dds.Wait(), 0) << dds.err();
+  EXPECT_TRUE(dds.File("run.mcap") == inprocess.File("run.mcap"));
+  EXPECT_TRUE(dds.File("states.npz") == inprocess.File("states.npz"));
+  EXPECT_EQ(Measurements(dds), Measurements(inprocess));
+  EXPECT_EQ(dds.Summary()["wire"]["matches_graph"], true);
+  std::vector<std::string> logs;
+  for (const auto& log : std::filesystem::directory_iterator(dds.path() / "logs")) logs.push_back(log.path().stem());
+  for (const std::string& process : GetParam().processes) EXPECT_THAT(logs, testing::Contains(process));
+  EXPECT_THAT(logs, testing::SizeIs(GetParam().processes.size() + 2)) << "and the server's and the orchestrator's";
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, Delivery,
+                         testing::Values(Way{2, "topics", {"agents_1-2", "agents_3-4", "agent_5"}},
+                                         Way{5, "topics", {"agents_1-5"}},
+                                         Way{1, "bundled", {"agent_1", "agent_2", "agent_3", "agent_4", "agent_5"}},
+                                         Way{3, "bundled", {"agents_1-3", "agents_4-5"}}),
+                         [](const auto& row) {
+                           return std::string(row.param.delivery) + std::to_string(row.param.agents_per_process);
+                         });
+
+TEST(Engines, ThreeHundredAgentsShareTenProcesses) {
+  ScratchFolder folder;
+  const std::string config = folder.File("many.toml");
+  WriteFile(
+      config,
+      "[run]\nduration_s = 0.1\n[agents]\ncount = 300\nrandom = { min_m = [-99, -99, 1], max_m = [99, 99, 400] }\n"
+      "[graph]\ntopology = 'ring'\n[law]\np_gain = 0.01\n");
+  Up dds(folder, "dds", config, Network(30, "topics"));
+  ASSERT_EQ(dds.Wait(), 0) << dds.err();
+  Up inprocess(folder, "inprocess", config, {"--engine", "inprocess"});
+  ASSERT_EQ(inprocess.Wait(), 0) << inprocess.err();
+  EXPECT_TRUE(dds.File("run.mcap") == inprocess.File("run.mcap"));
+  EXPECT_EQ(dds.Summary()["wire"]["matches_graph"], true);
+  Up too_many(folder, "too_many", config);
+  EXPECT_EQ(too_many.Wait(), 2);
+  EXPECT_THAT(too_many.err(),
+              HasSubstr("error: network.agents_per_process: expected at most 110 processes of agents on "
+                        "this host, such as by 3, got 300 processes"));
+  EXPECT_FALSE(std::filesystem::exists(too_many.path())) << "nothing was started";
+}
+
 TEST(Engines, LoadDoesNotChangeABit) {
   ScratchFolder folder;
   Up quiet(folder, "quiet", Config("leaderless"), {"--duration-s", "5"});

@@ -195,6 +195,31 @@ TEST(Faults, AnAgentThatHearsMoreThanTheGraphAllowsEndsTheRun) {
   EXPECT_EQ(up.Summary()["wire"]["matches_graph"], false);
 }
 
+TEST(Faults, AProcessOfSeveralAgentsMayHearWhatOneOfThemMayAndNoMore) {
+  ScratchFolder folder;
+  Up up = Endless(folder, {"--set", "graph.topology=path", "--set", "network.agents_per_process=2"});
+  ASSERT_TRUE(Flies(up));
+  Domain domain(Intruder(up, "agents_1-2"), [] {});
+  Reader<StateType> may(domain, Topic::State(3), [](const auto&) {});  // agent 2 hears it
+  Reader<StateType> peeking(domain, Topic::State(4), [](const auto&) {});
+  EXPECT_EQ(up.Wait(), 1);
+  EXPECT_THAT(
+      up.err(),
+      HasSubstr("the wire differs from the graph: agents_1-2 reads /agent_4/state, which the graph does not let it"));
+}
+
+TEST(Faults, AnAgentThatIsSentBundlesMayHearNothingElse) {
+  ScratchFolder folder;
+  Up up = Endless(folder, {"--set", "network.delivery=bundled"});
+  ASSERT_TRUE(Flies(up));
+  Domain domain(Intruder(up, "agent_1"), [] {});
+  Reader<BundleType> peeking(domain, Topic::Bundle(2), [](const auto&) {});
+  EXPECT_EQ(up.Wait(), 1);
+  EXPECT_THAT(
+      up.err(),
+      HasSubstr("the wire differs from the graph: agent_1 reads /agent_2/bundle, which the graph does not let it"));
+}
+
 TEST(Faults, ASecondAgentOfTheSameNumberEndsTheRun) {
   ScratchFolder folder;
   Up up = Endless(folder);

@@ -106,7 +106,9 @@ TEST(SampledTeam, OnASwitchingGraphIsTheProductOfItsPhases) {
     const Eigen::MatrixXd l = c.experiment.schedule.At(0.1 * k).Laplacian();
     x -= 0.1 * l * x;
     if (k == 119) early = x.maxCoeff() - x.minCoeff();
-    if (k == 239) EXPECT_NEAR(std::log(early / (x.maxCoeff() - x.minCoeff())) / 12, c.sampled.rate_per_s(), 1e-3);
+    if (k == 239) {
+      EXPECT_NEAR(std::log(early / (x.maxCoeff() - x.minCoeff())) / 12, c.sampled.rate_per_s(), 1e-3);
+    }
   }
   EXPECT_NEAR(c.sampled.MeetingPoint().x(), x.mean(), 1e-9);
 }

@@ -16,6 +16,7 @@
 #include "idl/qos.h"
 #include "orchestrator/verb.h"
 #include "physics_server/model.h"
+#include "tests/scratch.h"
 
 namespace mascot {
 namespace {
@@ -210,6 +211,20 @@ TEST_F(Verbs, GraphDrawsItselfForGraphviz) {
         Printed(SetUpGraph, {path(), "--dot", "--json"});
       },
       ::testing::ThrowsMessage<CLI::ParseError>("--json excludes --dot"));
+}
+
+TEST(Check, RecommendsBundlesForDenseGraphs) {
+  const auto checked = [](const std::string& more) {
+    ScratchFolder folder;
+    WriteFile(folder.File("dense.toml"), "run.duration_s = 1\nagents.count = 12\n" + more);
+    return Printed(SetUpCheck, {folder.File("dense.toml")});
+  };
+  const std::string warning =
+      "warning: network.delivery: each agent hears 11 others on average, one sample each; over DDS \"bundled\", one "
+      "sample with all of them, is faster\n";
+  EXPECT_THAT(checked(""), HasSubstr(warning));
+  EXPECT_THAT(checked("network.delivery = 'bundled'\n"), ::testing::Not(HasSubstr("network.delivery")));
+  EXPECT_THAT(checked("graph.topology = 'ring'\n"), ::testing::Not(HasSubstr("network.delivery")));
 }
 
 TEST(Tables, LawsShowEveryLawWithEquationAndEveryParameter) {

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <compare>
+
+namespace mascot {
+
+/// Agents `first` to `last`, who share a process.
+struct AgentRange {
+  int first = 0;
+  int last = 0;
+
+  bool Holds(int id) const { return id >= first && id <= last; }
+  int size() const { return last - first + 1; }
+  auto operator<=>(const AgentRange&) const = default;
+};
+
+}  // namespace mascot

@@ -1,0 +1,33 @@
+#include "experiment/processes.h"
+
+#include <set>
+
+namespace mascot {
+
+std::vector<AgentRange> AgentProcesses(const Experiment& experiment) {
+  std::vector<AgentRange> processes;
+  bool may_join = false;
+  for (const AgentConfig& agent : experiment.agents) {
+    if (may_join && !agent.external && processes.back().size() < experiment.network.agents_per_process)
+      processes.back().last = agent.id;
+    else
+      processes.push_back({agent.id, agent.id});
+    may_join = !agent.external;
+  }
+  return processes;
+}
+
+std::vector<int> HearingProcesses(const Experiment& experiment, bool heard_only) {
+  std::vector<int> count(experiment.agents.size(), 0);
+  for (const AgentRange& process : AgentProcesses(experiment)) {
+    std::set<int> heard;
+    for (int id = process.first; id <= process.last; ++id) {
+      if (!heard_only) heard.insert(id);
+      for (const Graph::Neighbour& neighbour : experiment.graph.HeardBy(id)) heard.insert(neighbour.id);
+    }
+    for (const int id : heard) ++count[static_cast<std::size_t>(id - 1)];
+  }
+  return count;
+}
+
+}  // namespace mascot
