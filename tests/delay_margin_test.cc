@@ -2,13 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <complex>
+#include <limits>
 #include <numbers>
 
 #include "tests/delayed_recursion.h"
 
 namespace mascot {
 namespace {
+
+using Complex = std::complex<double>;
 
 Graph FromAdjacency(const Eigen::MatrixXd& a) {
   std::vector<std::vector<Graph::Neighbour>> heard(static_cast<std::size_t>(a.rows()));
@@ -34,6 +39,8 @@ Eigen::MatrixXd DirectedRing(int n) {
   for (int i = 0; i < n; ++i) a(i, (i + n - 1) % n) = 1;
   return a;
 }
+
+Eigen::MatrixXd Ring(int n) { return DirectedRing(n) + DirectedRing(n).transpose(); }
 
 /// Of no symmetry at all, strongly connected.
 Eigen::MatrixXd Odd() {
@@ -87,6 +94,7 @@ TEST(LinkDelay, HarmsFromItsMarginOn) {
       {Path(5), {.p = 2.0, .b = 0.5}},         {Path(3), {.p = 1.0, .b = 0.3}},
       {Odd(), {.p = 1.0, .b = 0.9}},           {Odd(), {.p = 1.0, .g = 0.2, .b = 0.6}},
       {DirectedRing(5), {.p = 0.5, .b = 0.9}}, {Path(4), {.hold = 1, .p = 1.5, .b = 0.4}},
+      {Ring(4), {.p = 1.0, .b = 0.5}},         {Ring(5), {.p = 1.0, .g = 0.1, .b = 0.5}},
   };
   for (const Case& c : cases) {
     const auto margin = LinkDelayMargin(Alike(c.adjacency.rows(), c.agent), FromAdjacency(c.adjacency));
@@ -106,6 +114,26 @@ TEST(LinkDelay, OfAPairHasAClosedForm) {
   const auto margin = LinkDelayMargin(Alike(2, {.p = p, .b = b}), FromAdjacency(Path(2)));
   ASSERT_TRUE(margin && margin->margin_s);
   EXPECT_NEAR(*margin->margin_s, expected_s, 1e-6);
+}
+
+TEST(LinkDelay, OfTeamsWhoseWeightsAddUpToTheSameHasAClosedForm) {
+  // All d_i = d, all |mu| = d for the eigenvalues mu of A: each is of magnitude 1 at w^2 = 2 p d - b^2, and there
+  // e^(i w tau) = mu p / (p d - w^2 + i b w).
+  for (const Eigen::MatrixXd& a : {Ring(4), DirectedRing(4), DirectedRing(7)}) {
+    const double d = a.row(0).sum();
+    for (double b = 0.05; b < std::sqrt(2 * d); b += 0.05) {
+      const double w = std::sqrt(2 * d - b * b);
+      double expected_s = std::numeric_limits<double>::infinity();
+      for (const Complex mu : Eigen::VectorXcd(a.eigenvalues())) {
+        if (std::abs(mu) < d - 1e-9) continue;
+        const double angle = std::arg(mu / (d - w * w + Complex(0, b * w)));
+        expected_s = std::min(expected_s, (angle > 0 ? angle : angle + 2 * std::numbers::pi) / w);
+      }
+      const auto margin = LinkDelayMargin(Alike(a.rows(), {.p = 1, .b = b}), FromAdjacency(a));
+      ASSERT_TRUE(margin && margin->margin_s) << a << "\nb = " << b;
+      EXPECT_NEAR(*margin->margin_s, expected_s, 1e-6) << a << "\nb = " << b;
+    }
+  }
 }
 
 TEST(LinkDelay, MarginDoesNotDependOnTheNumbersOfTheAgents) {

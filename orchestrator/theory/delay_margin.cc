@@ -51,7 +51,7 @@ struct Loop {
     return heard / ((agent.order == 1 ? s : s * (s + agent.b)) + heard * d);
   }
 
-  /// Above this w no eigenvalue can have magnitude 1; 0: nowhere.
+  /// At and above this w every eigenvalue is of magnitude less than 1; 0: everywhere.
   double HighestFrequency() const {
     double highest2 = 0;
     for (std::size_t i = 0; i < agents.size(); ++i) {
@@ -59,7 +59,9 @@ struct Loop {
       const double d = degree(static_cast<Eigen::Index>(i)), b = agent.b;
       if (agent.order == 2) highest2 = std::max(highest2, 2 * agent.p * d - b * b - 2 * b * agent.g * d);
     }
-    return std::sqrt(highest2);
+    // Where agents are alike and weights add up to the same, the last crossing lies on the bound itself.
+    constexpr double kBeyond = 1.001;
+    return kBeyond * std::sqrt(highest2);
   }
 
   /// All agents are alike, and so are the sums of their weights: M is a number times A.
