@@ -45,6 +45,17 @@ std::int64_t DelayTicks(const Experiment& experiment, int hearer, int heard) {
   return Link::Ticks(experiment.links.Of(hearer, heard).delay_s, experiment.control.rate_hz);
 }
 
+std::optional<std::int64_t> CommonDelayTicks(const Experiment& experiment, const Graph& graph) {
+  std::optional<std::int64_t> common;
+  for (int id = 1; id <= graph.size(); ++id)
+    for (const Graph::Neighbour& heard : graph.HeardBy(id)) {
+      const std::int64_t ticks = DelayTicks(experiment, id, heard.id);
+      if (common && *common != ticks) return std::nullopt;
+      common = ticks;
+    }
+  return common.value_or(0);
+}
+
 double LongestDelay(const Experiment& experiment) {
   double longest_s = 0;
   AnyLink(experiment, [&](const LinkConfig& link) {

@@ -16,15 +16,9 @@ namespace {
 
 /// The delay that all edges have (s), in whole ticks; nothing if it differs, or if agents measure themselves late.
 std::optional<double> CommonDelay(const Experiment& experiment, const Graph& graph) {
-  if (experiment.sensors.own_delay_s > 0) return std::nullopt;
-  std::optional<std::int64_t> common;
-  for (int id = 1; id <= graph.size(); ++id)
-    for (const Graph::Neighbour& heard : graph.HeardBy(id)) {
-      const std::int64_t ticks = DelayTicks(experiment, id, heard.id);
-      if (common && *common != ticks) return std::nullopt;
-      common = ticks;
-    }
-  return experiment.time_s(common.value_or(0));
+  const std::optional<std::int64_t> ticks = CommonDelayTicks(experiment, graph);
+  if (!ticks || experiment.sensors.own_delay_s > 0) return std::nullopt;
+  return experiment.time_s(*ticks);
 }
 
 bool AreAtRest(const Experiment& experiment) {

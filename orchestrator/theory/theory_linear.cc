@@ -17,6 +17,8 @@
 namespace mascot {
 namespace {
 
+bool Exceeds(double delay_s, std::optional<double> margin_s) { return margin_s && delay_s >= *margin_s; }
+
 /// One experiment that is linear, and what is found out about it.
 class LinearCase {
  public:
@@ -35,10 +37,14 @@ class LinearCase {
   bool IsModal() const { return timeline_.IsConstant() && common_.has_value(); }
   bool IsDelayed() const { return LongestDelay(experiment_) > 0 || experiment_.sensors.own_delay_s > 0; }
   bool MayCoast() const;
+  std::optional<double> LinkMargin() const {
+    return prediction_.delay_margin ? prediction_.delay_margin->margin_s : std::nullopt;
+  }
   void FindModes();
   GainBound Gain() const;
   bool JudgeGains();
   bool JudgeDelays();
+  void DoubtDelays() const;
   bool PredictMotion();
   bool PredictSampled();
   void PredictValue();
@@ -65,7 +71,11 @@ class LinearCase {
 
 void LinearCase::Predict() {
   if (IsModal()) FindModes();
-  if (JudgeGains() && JudgeDelays() && PredictMotion()) PredictValue();
+  if (!JudgeGains() || !JudgeDelays()) return;
+  if (PredictMotion())
+    PredictValue();
+  else if (!prediction_.stable)
+    DoubtDelays();
 }
 
 void LinearCase::FindModes() {
@@ -128,14 +138,29 @@ bool LinearCase::JudgeDelays() {
     for (const LinearMode& mode : modes_)
       prediction_.own_delay_margin_s =
           std::min(prediction_.own_delay_margin_s.value_or(OwnDelayMargin(mode)), OwnDelayMargin(mode));
-  const auto exceeds = [](double delay_s, std::optional<double> margin_s) { return margin_s && delay_s >= *margin_s; };
-  const auto margin_s = prediction_.delay_margin ? prediction_.delay_margin->margin_s : std::nullopt;
-  if (own_s == 0 && exceeds(link_s, margin_s))
-    return Warn(fmt::format("link.delay_s: unstable, it must be below {:.4g}, got {:.4g}", *margin_s, link_s));
-  if (own_s == link_s && exceeds(own_s, prediction_.own_delay_margin_s))
+  // The margins are those of delays that are all alike. With others the team may stand more.
+  if (!RandomAge(experiment_).empty() || !CommonDelayTicks(experiment_, graph_)) return true;
+  if (own_s == 0 && Exceeds(link_s, LinkMargin()))
+    return Warn(fmt::format("link.delay_s: unstable, it must be below {:.4g}, got {:.4g}", *LinkMargin(), link_s));
+  if (own_s == link_s && Exceeds(own_s, prediction_.own_delay_margin_s))
     return Warn(fmt::format("sensors.own.delay_s: unstable, it must be below {:.4g}, got {:.4g}",
                             *prediction_.own_delay_margin_s, own_s));
   return true;
+}
+
+/// Of delays that are not all alike, where nothing else is known.
+void LinearCase::DoubtDelays() const {
+  const double link_s = LongestDelay(experiment_), own_s = experiment_.sensors.own_delay_s;
+  if (own_s == 0 && Exceeds(link_s, LinkMargin()))
+    prediction_.warnings.push_back(
+        fmt::format("link.delay_s: perhaps unstable, samples come up to {:.4g} s late; if all did, it would have to be "
+                    "below {:.4g}",
+                    link_s, *LinkMargin()));
+  if (Exceeds(own_s, prediction_.own_delay_margin_s))
+    prediction_.warnings.push_back(
+        fmt::format("sensors.own.delay_s: perhaps unstable, got {:.4g}; if neighbours' samples were as late, it would "
+                    "have to be below {:.4g}",
+                    own_s, *prediction_.own_delay_margin_s));
 }
 
 /// Rate and settling time; whether there is more to say.
