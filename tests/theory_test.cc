@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <numbers>
 
 #include "orchestrator/theory/minmax_time.h"
 #include "orchestrator/theory/modes.h"
@@ -161,6 +162,31 @@ TEST(Theory, WarnsOfControlRatesThatAreUnstable) {
   EXPECT_EQ(slow.stable, false);
   EXPECT_THAT(slow.warnings, Contains("control.rate_hz: unstable at this rate, it must be above 10, got 8"));
   EXPECT_EQ(Of(law + "20\n").stable, true);
+}
+
+TEST(Theory, CallsGainsAndPeriodsAtTheirBoundUnstableHoweverTheyRound) {
+  for (const int agents : {4, 6, 10, 12}) {
+    // Directed ring: beta must be above |Im| / sqrt(Re) of 1 - e^(i theta), sqrt(2) cos(theta / 2); theta = 2 pi / N.
+    const double least = std::sqrt(2.0) * std::cos(std::numbers::pi / agents);
+    const std::string ring = fmt::format(
+        "[run]\nduration_s = 9.0\n[agents]\ncount = {}\nmodel = 'double_integrator'\n[graph]\ntopology = "
+        "'directed_ring'\n[law]\nbeta = {:.17g}\n",
+        agents, least);
+    EXPECT_THAT(Of(ring).warnings,
+                Contains(fmt::format("law.beta: unstable, it must be above {:.5g}, got {:.5g}", least, least)));
+  }
+  // Ring of 4, lambda <= 4: h < 2 / (4 p_gain) for order 1.
+  for (const int rate_hz : {10, 20, 50, 100, 200, 500}) {
+    const Prediction prediction =
+        Of(fmt::format("[run]\nduration_s = 9.0\n[agents]\ncount = 4\nmodel = 'single_integrator'\n[graph]\ntopology = "
+                       "'ring'\n[law]\nname = 'velocity_consensus'\np_gain = {}\n[control]\nrate_hz = {}\n",
+                       rate_hz / 2.0, rate_hz));
+    EXPECT_THAT(prediction.warnings, Contains(fmt::format("control.rate_hz: unstable at this rate, it must be above "
+                                                          "{}, got {}",
+                                                          rate_hz, rate_hz)));
+    EXPECT_EQ(prediction.stable, false);
+    EXPECT_FALSE(prediction.settling_time_s);
+  }
 }
 
 TEST(Theory, WarnsWhenTheFirstCommandWouldAlreadySaturate) {

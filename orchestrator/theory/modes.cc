@@ -98,11 +98,12 @@ double PositiveAngle(double angle) { return angle > 0 ? angle : angle + 2 * std:
 
 }  // namespace
 
-// For s^2 + (a + i b) s + (c + i d): a > 0 and a (a c + b d) > d^2.
+// For s^2 + (a + i b) s + (c + i d): a > 0 and a (a c + b d) > d^2. A gain at its least value does not, rounded or not.
 bool Decays(const LinearMode& mode) {
+  constexpr double kBeyond = 1 + 1e-9;
   const Complex d = mode.damping, k = mode.stiffness;
   if (mode.order == 1) return k.real() > 0;
-  return d.real() > 0 && d.real() * (d.real() * k.real() + d.imag() * k.imag()) > k.imag() * k.imag();
+  return d.real() > 0 && d.real() * (d.real() * k.real() + d.imag() * k.imag()) > kBeyond * k.imag() * k.imag();
 }
 
 bool DecaysSampled(const LinearMode& mode, double period_s) {
