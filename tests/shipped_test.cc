@@ -261,8 +261,9 @@ TEST(Check, WarnsWhenTheRunIsTooShort) {
   const Ran run = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("leaderless") +
                         " --set run.duration_s=10.0");
   EXPECT_EQ(run.exit_code, 0);
-  EXPECT_THAT(run.output,
-              testing::HasSubstr("warning: run.duration_s: 10 s end before what theory expects at 15.34 s"));
+  EXPECT_THAT(
+      run.output,
+      testing::HasSubstr("warning: run.duration_s: the run ends after 10 s, before what theory expects at 15.34 s"));
 }
 
 TEST(BadConfig, StartsNothingAndWritesNothing) {

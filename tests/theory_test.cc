@@ -198,6 +198,10 @@ TEST(Theory, WarnsWhenTheFirstCommandWouldAlreadySaturate) {
               ElementsAre("control.max_acceleration_m_per_s2: the first command would already saturate: agent 4 asks "
                           "for 14 m/s^2, the limit is 3"));
   EXPECT_THAT(Of(law + "14.0\n").warnings, IsEmpty());
+  // Others ask for more; agent 2 at (-1, -1) asks for 2 (2 + 2 + 0) = 8 in x, 2 (2 + 0 + 3) = 10 in y, of less.
+  EXPECT_THAT(Of(law + "14.0\n[[agents.override]]\nid = 2\ncontrol = { max_acceleration_m_per_s2 = 0.5 }\n").warnings,
+              ElementsAre("control.max_acceleration_m_per_s2: the first command would already saturate: agent 2 asks "
+                          "for 10 m/s^2, the limit is 0.5"));
 }
 
 TEST(Theory, JudgesTheWaypointLawByItsTwoGains) {

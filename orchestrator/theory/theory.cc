@@ -34,9 +34,8 @@ double Asked(const Command& command, const Motion& start, bool velocity, double 
 
 void PredictFirstCommand(Experiment& experiment, Prediction& prediction) {
   const MutedPython muted;
-  Experiment prompt =
-      experiment;  // delays and losses only put off the moment at which agents hear all their neighbours
-  prompt.links = {};
+  Experiment prompt = experiment;
+  prompt.links = {};  // delays and losses only put off the moment at which agents hear all their neighbours
   Team team(prompt);
   const std::vector<Motion> motions = Start(experiment);
   for (const AgentConfig& agent : experiment.agents) {
@@ -47,7 +46,7 @@ void PredictFirstCommand(Experiment& experiment, Prediction& prediction) {
     const double asked = Asked(command, start, velocity, experiment.period_s());
     const double limit = velocity ? agent.control.max_speed_m_per_s : agent.control.max_acceleration_m_per_s2;
     auto& first = velocity ? prediction.first_speed : prediction.first_acceleration;
-    if (!first || asked > first->asked) first = FirstCommand{agent.id, asked, limit};
+    if (!first || asked / limit > first->asked / first->limit) first = FirstCommand{agent.id, asked, limit};
   }
 }
 
@@ -68,8 +67,9 @@ void WarnOfFirstCommands(const Experiment& experiment, Prediction& prediction) {
 void WarnOfShortRun(const Experiment& experiment, Prediction& prediction) {
   for (const auto& time_s : {prediction.settling_time_s, prediction.minmax_time_s})
     if (time_s && *time_s > experiment.run.duration_s)
-      prediction.warnings.push_back(fmt::format("run.duration_s: {:.4g} s end before what theory expects at {:.4g} s",
-                                                experiment.run.duration_s, *time_s));
+      prediction.warnings.push_back(
+          fmt::format("run.duration_s: the run ends after {:.4g} s, before what theory expects at {:.4g} s",
+                      experiment.run.duration_s, *time_s));
 }
 
 struct Predictor {

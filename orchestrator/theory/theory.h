@@ -19,8 +19,8 @@ struct MinmaxEdge {
   bool exact = false;  ///< a closed form from the initial condition; else a bound that holds whatever the parent does
 };
 
-/// The largest component that any agent's law asks for at tick 0, if it hears all its neighbours at once, and what that
-/// agent is allowed.
+/// The largest component that an agent's law asks for at tick 0, if it hears all its neighbours at once, and what it is
+/// allowed; of the agent for which the former is the largest part of the latter.
 struct FirstCommand {
   int agent = 0;
   double asked = 0;
@@ -29,8 +29,8 @@ struct FirstCommand {
 
 /// What theory says about an experiment before it runs; docs/theory.md has the formulas. Absent where theory is silent.
 struct Prediction {
-  std::optional<Eigen::Vector3d>
-      value_m;                       ///< where agents meet (z: mean start height where held); of a formation: p - d
+  /// Where agents meet (z: mean start height where held); of a formation: p - d.
+  std::optional<Eigen::Vector3d> value_m;
   std::optional<bool> stable;        ///< all modes decay, sampled and with the delays that there are
   std::optional<double> rate_per_s;  ///< of the slowest mode
   /// Of the slowest mode, from rest, to 2 %. Agents that only follow along a chain settle later: the modes of a
