@@ -218,6 +218,10 @@ std::vector<Section> Section::Children(std::string_view key) {
 
 void Section::InheritFrom(const Section& base) { table_->base = base.table_.get(); }
 
+void Section::Supersede(std::string_view key, std::initializer_list<std::string_view> others) {
+  if (table_->Has(key)) table_->superseded.insert(others.begin(), others.end());
+}
+
 Value Section::Free(std::string_view key) {
   const toml::node* node = table_->Find(key);
   Value value = node != nullptr ? ToValue(*node) : Value{};

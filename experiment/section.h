@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -106,6 +107,9 @@ class Section {
 
   /// Keys that this table lacks are from now on read from `base`; mistakes in them are left to its own reader.
   void InheritFrom(const Section& base);
+  /// Where this table has `key` itself, `others`, which go against it or with the one that it replaces, are not
+  /// inherited from now on.
+  void Supersede(std::string_view key, std::initializer_list<std::string_view> others);
   /// Anything a TOML value can be (an absent table reads as an empty one).
   Value Free(std::string_view key);
 

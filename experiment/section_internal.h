@@ -52,11 +52,12 @@ struct Section::Table {
   bool inherited = false;             ///< stands in the base of the table around it, whose reader complains
   bool broken = false;                ///< something else stands where the table should: no complaints about its keys
   Document* document = nullptr;
-  const Table* base = nullptr;               ///< where keys are looked for that this table lacks; of the same document
-  std::set<std::string, std::less<>> known;  ///< keys that somebody asked for
-  std::set<std::string, std::less<>> wrong;  ///< keys with a mistake noted
-  std::vector<Entry> entries;                ///< in reading order
-  std::vector<std::span<const Key>> rows;    ///< what keys of this table may be
+  const Table* base = nullptr;  ///< where keys are looked for that this table lacks; of the same document
+  std::set<std::string, std::less<>> superseded;  ///< keys that are not looked for there
+  std::set<std::string, std::less<>> known;       ///< keys that somebody asked for
+  std::set<std::string, std::less<>> wrong;       ///< keys with a mistake noted
+  std::vector<Entry> entries;                     ///< in reading order
+  std::vector<std::span<const Key>> rows;         ///< what keys of this table may be
 
   /// The row of `key`, or null.
   const Key* Row(std::string_view key) const;
@@ -67,6 +68,8 @@ struct Section::Table {
   std::optional<T> RowDefault(std::string_view key, Accept accept) const;
   std::string PathOf(std::string_view key) const;
   toml::source_region PlaceOf(std::string_view key) const;
+  /// The table has `key` itself, not from the base.
+  bool Has(std::string_view key) const { return toml != nullptr && toml->contains(key); }
   /// The value of `key`, here or in the base; null if absent.
   const toml::node* Get(std::string_view key) const;
   /// `key` is not here but in the base, whose reader it is that complains.

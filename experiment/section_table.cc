@@ -101,13 +101,11 @@ std::string Section::Table::PathOf(std::string_view key) const {
 }
 
 const toml::node* Section::Table::Get(std::string_view key) const {
-  const toml::node* node = toml != nullptr ? toml->get(key) : nullptr;
-  return node == nullptr && base ? base->Get(key) : node;
+  if (Has(key)) return toml->get(key);
+  return base && !superseded.contains(key) ? base->Get(key) : nullptr;
 }
 
-bool Section::Table::Inherits(std::string_view key) const {
-  return base && (toml == nullptr || toml->get(key) == nullptr) && base->Get(key) != nullptr;
-}
+bool Section::Table::Inherits(std::string_view key) const { return !Has(key) && Get(key) != nullptr; }
 
 toml::source_region Section::Table::PlaceOf(std::string_view key) const {
   const toml::node* node = Get(key);

@@ -257,6 +257,50 @@ TEST(Experiment, OverridesAreForOneAgent) {
   EXPECT_EQ(e.agent(3).airframe.name, "mascot");
 }
 
+/// The resolved text of `text`, which must be that of itself too.
+std::string ResolvedTwice(const std::string& text) {
+  const std::string resolved = Load(text).document.Resolved();
+  EXPECT_EQ(Load(resolved).document.Resolved(), resolved);
+  return resolved;
+}
+
+TEST(Experiment, KeysOfAnOverrideTakeThePlaceOfThoseThatTheyGoAgainst) {
+  const std::string bursts = "link.gilbert_elliott = { good_to_bad = 0.1, bad_to_good = 0.5 }\n";
+  const LinkTable some =
+      Load(ResolvedTwice(Config(bursts + "[[link.override]]\nedges = [[1, 2]]\nloss = 0.3\n"))).links;
+  EXPECT_FALSE(some.Of(1, 2).bursts);
+  EXPECT_EQ(some.Of(1, 2).loss, 0.3);
+  EXPECT_TRUE(some.Of(2, 1).bursts);
+  const LinkTable other = Load(ResolvedTwice(Config("link.loss = 0.3\n[[link.override]]\nedges = [[1, 2]]\n"
+                                                    "gilbert_elliott = { good_to_bad = 0.1, bad_to_good = 0.5 }\n")))
+                              .links;
+  EXPECT_TRUE(other.Of(1, 2).bursts);
+  EXPECT_EQ(other.Of(1, 2).loss, 0);
+  EXPECT_EQ(other.Of(2, 1).loss, 0.3);
+
+  const auto own = [](const std::string& team, const std::string& law) {
+    return ResolvedTwice(Config("[law]\n" + team + "\n[[agents.override]]\nid = 2\nlaw = { " + law + " }\n"));
+  };
+  const std::string waypoints = "name = 'waypoint'\nwaypoints_m = [[0, 0, 1], [1, 0, 1]]\n";
+  EXPECT_THAT(own(waypoints + "dwell_s = 3\narrival_radius_m = 0.7\n", "times_s = [0, 5]"),
+              HasSubstr("times_s = [0.0, 5.0]"));
+  EXPECT_THAT(own(waypoints + "times_s = [0, 5]\n", "dwell_s = 3"), HasSubstr("dwell_s = 3.0"));
+  EXPECT_THAT(own("name = 'formation'\nshape = 'vee'\nspacing_m = 3\n",
+                  "offsets_m = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]"),
+              HasSubstr("offsets_m = ["));
+  EXPECT_THAT(own("name = 'formation'\noffsets_m = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]\n", "shape = 'line'"),
+              HasSubstr("shape = \"line\""));
+}
+
+TEST(Experiment, AnotherTextOfAPythonLawDoesNotGoByTheNameOfTheTeams) {
+  const std::string resolved =
+      ResolvedTwice(Config("[law]\nname = 'custom'\npython = 'def control(t, me, n): return 1, 0'\npython_file = "
+                           "'team.py'\npython_line = 7\n"
+                           "[[agents.override]]\nid = 2\nlaw = { python = 'def control(t, me, n): return 2, 0' }\n"));
+  EXPECT_THAT(resolved, AllOf(HasSubstr("return 2, 0\"\npython_file = \"e.toml\"\npython_line = 10\n"),
+                              HasSubstr("return 1, 0\"\npython_file = \"team.py\"\npython_line = 7\n")));
+}
+
 TEST(Experiment, LawsChooseTheAxesTheyMoveAgentsAlong) {
   EXPECT_EQ(Load(Config("[law]\nname = 'waypoint'\nwaypoints_m = [[0, 0, 1]]\n")).law.axes, Axes::kXyz);
   EXPECT_EQ(Load(Config("[law]\nname = 'waypoint'\nwaypoints_m = [[0, 0, 1]]\naxes = 'xy'\n")).law.axes, Axes::kXy);

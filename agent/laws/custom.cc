@@ -310,6 +310,8 @@ const char* TextKey(const Section& law) { return law.Has("file") ? "file" : "pyt
 
 /// The text of the law and what it goes by.
 void ReadText(Section& law, CustomParams& params) {
+  law.Supersede("file", {"python", "python_file", "python_line"});
+  law.Supersede("python", {"file", "python_file", "python_line"});
   if (law.Has("python") == law.Has("file")) {
     law.Fail(law.Has("file") ? "file" : "",
              std::string("expected one of python, file, got ") + (law.Has("file") ? "both" : "none"));

@@ -53,6 +53,8 @@ Eigen::Vector3d PlaceOf(std::string_view shape, int i, int count) {
 
 std::vector<Eigen::Vector3d> ReadPlaces(Section& law, int agents) {
   const auto count = static_cast<std::size_t>(agents);
+  law.Supersede("offsets_m", {"shape", "spacing_m"});
+  law.Supersede("shape", {"offsets_m"});
   if (law.Has("offsets_m") == law.Has("shape")) {
     law.Fail(law.Has("shape") ? "shape" : "",
              std::string("expected one of offsets_m, shape, got ") + (law.Has("shape") ? "both" : "none"));

@@ -43,6 +43,8 @@ class Waypoint final : public Law {
 
 WaypointParams ReadWaypoints(Section& law, const std::string& prefix) {
   const auto key = [&prefix](const char* name) { return prefix + name; };
+  law.Supersede(key("times_s"), {key("arrival_radius_m"), key("dwell_s")});
+  for (const char* name : {"arrival_radius_m", "dwell_s"}) law.Supersede(key(name), {key("times_s")});
   WaypointParams params;
   params.waypoints_W = law.Points(key("waypoints_m"));
   if (params.waypoints_W.empty() && !law.Wrong(key("waypoints_m"))) {
