@@ -29,7 +29,7 @@ constexpr LawEntry kLaws[] = {
     {"consensus", "agents meet, or gather at a leader, by what they hear of their neighbours",
      "a_i = sum_j a_ij [p_gain (p_j - p_i) + v_gain (v_j - v_i)] - beta v_i;  leader: a = 0, or its waypoints",
      "leaderless: meets at g'p(0) + g'v(0) / beta, g the left null vector of L, if a spanning tree exists and "
-     "s^2 + beta s + p_gain lambda is stable for every eigenvalue lambda != 0 of L; "
+     "s^2 + (beta + v_gain lambda) s + p_gain lambda is stable for every eigenvalue lambda != 0 of L; "
      "a leader at constant v is followed with a constant lag",
      "Pandit, Njattuvetty, Mulla: MASCOT; Ren & Beard (2008)", kConsensusParameters, Axes::kXy, CheckConsensus,
      MakeConsensus},

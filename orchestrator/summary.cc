@@ -129,12 +129,20 @@ std::string ConsensusText(const Experiment& experiment, const Measured& m, const
     text += Line("  predicted    %.4f, %.4f, %.4f m%s: %.2g m off", value->x(), value->y(), value->z(),
                  prediction.on_average ? " on average" : "", *deviation.value_m);
   text += Line("disagreement   %.2g m, speed %.2g m/s at the end", m.final_disagreement_m, m.final_speed_m_per_s);
-  if (m.rate_per_s && m.minmax_edges.empty()) text += Line("decayed        at %.4f 1/s", *m.rate_per_s);
-  if (prediction.rate_per_s && prediction.of_agreement)
+  const bool of_rate = prediction.rate_per_s && prediction.of_agreement;
+  if (m.rate_per_s && m.minmax_edges.empty())
+    text += Line("decayed        at %.4f 1/s", *m.rate_per_s);
+  else if (of_rate)
+    text += "decayed        not far enough, or not for good, to say how fast\n";
+  if (of_rate)
     text += Line("  predicted    %.4f 1/s (slowest mode)%s", *prediction.rate_per_s,
                  Off(deviation.rate_per_s, prediction.rate_per_s).c_str());
-  if (m.settling_time_s) text += Line("settled        after %.2f s (2 %%)", *m.settling_time_s);
-  if (prediction.settling_time_s && prediction.of_agreement)
+  const bool of_settling = prediction.settling_time_s && prediction.of_agreement;
+  if (m.settling_time_s)
+    text += Line("settled        after %.2f s (2 %%)", *m.settling_time_s);
+  else if (of_settling)
+    text += "settled        not by the end (2 %)\n";
+  if (of_settling)
     text += Line("  predicted    %.2f s (slowest mode%s)%s", *prediction.settling_time_s, chains,
                  Off(deviation.settling_time_s, prediction.settling_time_s).c_str());
   if (const auto caught_up_s = MinmaxTime(m, prediction))
@@ -208,8 +216,8 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
     late += edge.count.late;
   }
   if (lost + late > 0)
-    text += Line("links          %llu samples sent, %.2f %% lost, %.2f %% late", static_cast<unsigned long long>(sent),
-                 100.0 * static_cast<double>(lost) / static_cast<double>(sent),
+    text += Line("links          %llu samples sent, %.2f %% lost, %.2f %% overtaken",
+                 static_cast<unsigned long long>(sent), 100.0 * static_cast<double>(lost) / static_cast<double>(sent),
                  100.0 * static_cast<double>(late) / static_cast<double>(sent));
   if (!m.fidelity_failure.empty())
     text += "fidelity       not measured, the law failed on ideal double integrators: " + m.fidelity_failure + "\n";

@@ -13,6 +13,7 @@
 namespace mascot::test {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 std::vector<std::string> ShippedConfigs() {
@@ -185,6 +186,7 @@ TEST(Messages, ReachThoseWhoHearTheSenderTheSameInBothEngines) {
   EXPECT_EQ(dds.Summary()["samples"]["topics"], 3 * 5 + 1);
   EXPECT_GT(dds.Summary()["links"]["lost"], 0);
   EXPECT_GT(dds.Summary()["links"]["late"], 0);
+  EXPECT_THAT(dds.out(), ContainsRegex("links          [0-9]+ samples sent, [0-9.]+ % lost, [0-9.]+ % overtaken\n"));
   Up muffled(folder, "muffled", folder.File("talkers.toml"), {"--engine", "inprocess", "--set", "law.messages=false"});
   ASSERT_EQ(muffled.Wait(), 0) << muffled.err();
   EXPECT_FALSE(muffled.File("states.npz") == inprocess.File("states.npz")) << "what they say matters";
@@ -442,6 +444,22 @@ TEST(Up, SaysWhatItRunsAndWhereTheResultsAre) {
   EXPECT_THAT(up.err(), HasSubstr("t = 1.00 of 1 s | "));
   EXPECT_THAT(up.out(), HasSubstr("results        " + up.path().string()));
   EXPECT_THAT(ReadFile((up.path() / "logs/agent_3.log").string()), HasSubstr("hears 1 2 4"));
+}
+
+TEST(Up, SaysWhatWasMeasuredAndBesideItWhatTheoryPredicted) {
+  ScratchFolder folder;
+  Up whole(folder, "whole", Config("leaderless"), {"--engine", "inprocess"});
+  ASSERT_EQ(whole.Wait(), 0) << whole.err();
+  EXPECT_THAT(whole.out(),
+              ContainsRegex("decayed        at 0\\.29.. 1/s\n  predicted    0\\.2996 1/s .slowest mode.: [+-]"));
+  EXPECT_THAT(whole.out(),
+              ContainsRegex("settled        after 15\\... s .2 %.\n  predicted    15\\.34 s .slowest mode.: [+-]"));
+  Up cut(folder, "cut", Config("leaderless"), {"--engine", "inprocess", "--duration-s", "3"});
+  ASSERT_EQ(cut.Wait(), 0) << cut.err();
+  EXPECT_THAT(cut.out(), HasSubstr("decayed        not far enough, or not for good, to say how fast\n"
+                                   "  predicted    0.2996 1/s (slowest mode)\n"
+                                   "settled        not by the end (2 %)\n"
+                                   "  predicted    15.34 s (slowest mode)\n"));
 }
 
 TEST(Up, PrintsTheSummaryAndNothingElseAsJson) {
