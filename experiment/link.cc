@@ -33,7 +33,8 @@ constexpr auto kOverrideKeys = Joined(
 
 constexpr auto kKeys =
     Joined(kCommonKeys, std::array{key::Tables("override", kOverrideKeys,
-                                               "other links for some edges; what is left out is as in `[link]`")});
+                                               "other links for some edges; what is left out is as in `[link]`, `loss` "
+                                               "and `gilbert_elliott` in place of each other")});
 
 GilbertElliott ReadBursts(Section section) {
   GilbertElliott bursts;
