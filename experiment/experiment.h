@@ -21,6 +21,8 @@ inline constexpr int kMaxAgents = 10000;
 
 enum class Mode { kLockstep, kRealtime };
 enum class Axes { kXy, kXyz };
+/// x and y, or z too: how many of a vector's first components the law moves.
+constexpr int CountOf(Axes axes) { return axes == Axes::kXyz ? 3 : 2; }
 enum class Inversion { kSmallAngle, kExact };
 enum class Delivery { kTopics, kBundled };
 

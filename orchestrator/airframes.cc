@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "experiment/airframe.h"
 #include "experiment/experiment.h"
+#include "orchestrator/json.h"
 #include "orchestrator/verb.h"
 
 namespace mascot {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// A number of an airframe, by its key in a table agents.airframe.
 struct Parameter {

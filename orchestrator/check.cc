@@ -5,11 +5,11 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "orchestrator/config_args.h"
 #include "orchestrator/delivery.h"
 #include "orchestrator/graph_facts.h"
+#include "orchestrator/json.h"
 #include "orchestrator/prediction_report.h"
 #include "orchestrator/theory/theory.h"
 #include "orchestrator/verb.h"
@@ -17,17 +17,10 @@
 namespace mascot {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::map<std::string, int> CountModels(const Experiment& experiment) {
   std::map<std::string, int> count;
   for (const AgentConfig& agent : experiment.agents) ++count[agent.model];
   return count;
-}
-
-template <class Value>
-Json OrNull(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
 }
 
 Json ToJson(const GraphFacts& facts) {

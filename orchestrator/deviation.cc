@@ -24,7 +24,7 @@ std::optional<double> MinmaxTime(const Measured& measured, const Prediction& pre
 
 Deviation Compare(const Experiment& experiment, const Measured& measured, const Prediction& prediction) {
   Deviation deviation;
-  const Eigen::Index axes = experiment.law.axes == Axes::kXyz ? 3 : 2;
+  const Eigen::Index axes = CountOf(experiment.law.axes);
   if (prediction.value_m && measured.rows > 0)
     deviation.value_m = (measured.value_m - *prediction.value_m).head(axes).norm();
   if (!prediction.of_agreement) return deviation;  // what is measured is how agents agree

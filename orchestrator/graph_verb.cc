@@ -4,18 +4,16 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "orchestrator/config_args.h"
 #include "orchestrator/dot.h"
 #include "orchestrator/graph_facts.h"
+#include "orchestrator/json.h"
 #include "orchestrator/theory/theory.h"
 #include "orchestrator/verb.h"
 
 namespace mascot {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int kLargestPrinted = 40;  // agents; wider matrices do not fit on a screen
 
@@ -43,7 +41,7 @@ Json Phases(const Schedule& schedule) {
   return phases;
 }
 
-Json OrNull(double value) { return value > 0 ? Json(value) : Json(nullptr); }
+Json PositiveOrNull(double value) { return value > 0 ? Json(value) : Json(nullptr); }
 
 Json ToJson(const Experiment& experiment, const GraphFacts& facts) {
   const Graph& graph = experiment.graph;
@@ -60,8 +58,8 @@ Json ToJson(const Experiment& experiment, const GraphFacts& facts) {
   json["tree_root"] = facts.tree_root;
   json["spanning_tree"] = facts.tree;
   json["schedule"] = Phases(experiment.schedule);
-  json["repeat_s"] = OrNull(experiment.schedule.repeat_s());
-  json["range_m"] = OrNull(experiment.schedule.range_m());
+  json["repeat_s"] = PositiveOrNull(experiment.schedule.repeat_s());
+  json["range_m"] = PositiveOrNull(experiment.schedule.range_m());
   return json;
 }
 

@@ -4,12 +4,12 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "experiment/section.h"
+#include "orchestrator/json.h"
 #include "orchestrator/mcap.h"
 #include "orchestrator/recording.h"
 #include "orchestrator/verb.h"
@@ -18,8 +18,6 @@ namespace mascot {
 namespace {
 
 using ChannelInfo = McapContents::ChannelInfo;
-using Json = nlohmann::ordered_json;
-
 /// What was found in one recording, and whether it is all there.
 struct Findings {
   std::string file;

@@ -5,15 +5,6 @@
 namespace mascot {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-template <class Value>
-Json OrNull(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
-Json OrNull(const std::optional<Eigen::Vector3d>& v) { return v ? Json{v->x(), v->y(), v->z()} : Json(nullptr); }
-
 Json ToJson(const std::optional<Persistence>& persistence) {
   if (!persistence) return nullptr;
   return {{"joint", persistence->joint},

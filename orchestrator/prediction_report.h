@@ -1,16 +1,16 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "orchestrator/json.h"
 #include "orchestrator/theory/theory.h"
 
 namespace mascot {
 
 /// "predicted" of `check --json` and of summary.json: keys in docs/theory.md.
-nlohmann::ordered_json PredictionJson(const Prediction& prediction);
+Json PredictionJson(const Prediction& prediction);
 /// The same for people: label and text of each line.
 std::vector<std::pair<std::string, std::string>> PredictionLines(const Experiment& experiment,
                                                                  const Prediction& prediction);

@@ -15,7 +15,7 @@ PursuitMeter::PursuitMeter(const Experiment& experiment) : experiment_(experimen
 }
 
 void PursuitMeter::Add(std::span<const Motion> motions) {
-  const Eigen::Index axes = experiment_.law.axes == Axes::kXyz ? 3 : 2;
+  const Eigen::Index axes = CountOf(experiment_.law.axes);
   for (Pursuit& pursuit : pursuits_) {
     const Motion& child = motions[static_cast<std::size_t>(pursuit.child - 1)];
     const Motion& parent = motions[static_cast<std::size_t>(pursuit.parent - 1)];

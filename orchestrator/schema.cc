@@ -1,16 +1,14 @@
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "agent/laws.h"
 #include "experiment/experiment.h"
 #include "experiment/key.h"
+#include "orchestrator/json.h"
 #include "orchestrator/reference.h"
 
 namespace mascot {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json SchemaOf(const Key& key);
 

@@ -2,24 +2,13 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "orchestrator/deviation.h"
+#include "orchestrator/json.h"
 #include "orchestrator/prediction_report.h"
 
 namespace mascot {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-template <class T>
-Json OrNull(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
-Json Vector(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
-Json OrNull(const std::optional<Eigen::Vector3d>& v) { return v ? Vector(*v) : Json(nullptr); }
 
 Json EdgesOf(const Graph& graph) {
   Json edges = Json::array();
@@ -44,7 +33,7 @@ Json ToJson(const Deviation& deviation) {
 
 Json Consensus(const Experiment& experiment, const Measured& measured, const Prediction& prediction) {
   Json consensus;
-  consensus["value_m"] = Vector(measured.value_m);
+  consensus["value_m"] = VectorJson(measured.value_m);
   consensus["final_disagreement_m"] = measured.final_disagreement_m;
   consensus["final_speed_m_per_s"] = measured.final_speed_m_per_s;
   consensus["settling_time_s"] = OrNull(measured.settling_time_s);
@@ -88,7 +77,7 @@ Json Links(const std::vector<EdgeTraffic>& traffic) {
 
 Json Formation(const Measured::Formation& formation) {
   Json offsets = Json::array();
-  for (const Eigen::Vector3d& d_W : formation.offsets_m) offsets.push_back(Vector(d_W));
+  for (const Eigen::Vector3d& d_W : formation.offsets_m) offsets.push_back(VectorJson(d_W));
   return {{"final_rms_m", formation.final_rms_m}, {"worst_rms_m", formation.worst_rms_m}, {"offsets_m", offsets}};
 }
 

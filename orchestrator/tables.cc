@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "agent/laws.h"
+#include "orchestrator/json.h"
 #include "orchestrator/verb.h"
 #include "physics_server/model.h"
 
 namespace mascot {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string_view AxesName(Axes axes) { return axes == Axes::kXyz ? "xyz" : "xy"; }
 

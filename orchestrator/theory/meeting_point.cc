@@ -64,7 +64,7 @@ std::optional<Eigen::Vector3d> RestingPlace(const Experiment& experiment, const 
   const LinearAgent& moves = team.agent(leader);
   const AgentConfig& agent = experiment.agent(leader);
   const Eigen::Vector3d q = Start(experiment, team, leader);
-  const Eigen::Index axes = experiment.law.axes == Axes::kXyz ? 3 : 2;
+  const Eigen::Index axes = CountOf(experiment.law.axes);
   if (moves.flies) return std::nullopt;
   if (moves.order == 1 || agent.v_W.head(axes).isZero(0)) return q;
   if (moves.b == 0) return std::nullopt;

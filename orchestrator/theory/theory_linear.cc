@@ -201,7 +201,7 @@ void LinearCase::PredictValue() {
       prediction_.value_m = SampledTeam(experiment_, team_, timeline_, experiment_.period_s()).MeetingPoint();
   } else {
     prediction_.value_m = RestingPlace(experiment_, team_, leaders.front());
-    const bool moves = !agent(leaders.front()).v_W.head(AxisCount(experiment_)).isZero(0);
+    const bool moves = !agent(leaders.front()).v_W.head(CountOf(experiment_.law.axes)).isZero(0);
     if (moves || !prediction_.value_m) prediction_.settling_time_s.reset();  // they settle after the leader
     if (!prediction_.value_m && !team_.agent(leaders.front()).flies) WarnOfLag(leaders.front());
   }
@@ -216,7 +216,7 @@ void LinearCase::WarnOfLag(int leader) const {
   pinned(leader - 1, leader - 1) = 1;
   Eigen::VectorXd ones = Eigen::VectorXd::Ones(pinned.rows());
   ones(leader - 1) = 0;
-  const double speed = agent(leader).v_W.head(AxisCount(experiment_)).norm();
+  const double speed = agent(leader).v_W.head(CountOf(experiment_.law.axes)).norm();
   const double farthest = pinned.partialPivLu().solve(ones).maxCoeff();
   prediction_.warnings.push_back(
       fmt::format("law.leader: the leader keeps its {:.4g} m/s, so followers stay up to {:.4g} m behind", speed,

@@ -24,7 +24,7 @@ std::optional<MinmaxEdge> PredictEdge(const Experiment& experiment, const Minmax
   MinmaxEdge edge{child, parent, 0, exact};
   const Eigen::Vector3d z_W = experiment.agent(child).p_W - experiment.agent(parent).p_W;
   const Eigen::Vector3d w_W = experiment.agent(child).v_W - experiment.agent(parent).v_W;
-  for (int axis = 0; axis < AxisCount(experiment); ++axis) {
+  for (int axis = 0; axis < CountOf(experiment.law.axes); ++axis) {
     edge.time_s = std::max(edge.time_s, exact ? MinmaxTime(z_W(axis), w_W(axis), alpha, std::min(law.beta[c], limit))
                                               : MinmaxBound(z_W(axis), w_W(axis), alpha));
   }
@@ -62,7 +62,7 @@ void WarnOfWeakEdges(const MinmaxParams& law, Prediction& prediction) {
 /// Where everyone gathers, at a root that rests: in z at the mean of the heights that they hold.
 std::optional<Eigen::Vector3d> RestingRoot(const Experiment& experiment, const MinmaxParams& law) {
   const AgentConfig& root = experiment.agent(experiment.law.leader);
-  if (law.root_flight || !root.v_W.head(AxisCount(experiment)).isZero(0)) return std::nullopt;
+  if (law.root_flight || !root.v_W.head(CountOf(experiment.law.axes)).isZero(0)) return std::nullopt;
   Eigen::Vector3d value_m = root.p_W;
   if (experiment.law.axes == Axes::kXyz) return value_m;
   value_m.z() = 0;

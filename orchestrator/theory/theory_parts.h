@@ -14,9 +14,6 @@
 
 namespace mascot {
 
-/// Axes that the law moves: x and y, or z too.
-inline int AxisCount(const Experiment& experiment) { return experiment.law.axes == Axes::kXyz ? 3 : 2; }
-
 /// What would make unstable modes stable.
 struct GainBound {
   std::string key;
