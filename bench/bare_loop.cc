@@ -1,0 +1,47 @@
+// The bare loop, the yardstick for the in-process engine: Bullet's whole step for each physics step, and one call of
+// the low-level stack for each control period; no law, no graph, no recording.
+//   bare_loop AGENTS SECONDS     prints one line of JSON: agent-steps per second
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "agent/controller.h"
+#include "agent/laws.h"
+#include "physics_server/world.h"
+
+namespace {
+
+using namespace mascot;
+using WallClock = std::chrono::steady_clock;
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: bare_loop AGENTS SECONDS\n");
+    return 2;
+  }
+  const int agents = std::atoi(argv[1]);
+  const std::string top = std::to_string(2 + agents);
+  const std::string text = "[run]\nduration_s = 1000.0\n[agents]\ncount = " + std::string(argv[1]) +
+                           "\nrandom = { min_m = [-99, -99, 1], max_m = [99, 99, " + top + "] }\n";
+  const Experiment experiment = LoadExperiment(Section::FromText(text, "bench.toml"), "bench");
+  World world(experiment, World::LookForContacts::kAlways);
+  std::vector<std::unique_ptr<Controller>> controllers;
+  for (int id = 1; id <= agents; ++id) controllers.push_back(MakeController(experiment, id));
+  std::vector<Actuation> commands(static_cast<std::size_t>(agents));
+  const auto start = WallClock::now();
+  const std::chrono::duration<double> limit(std::atof(argv[2]));
+  while (WallClock::now() - start < limit) {
+    for (std::size_t i = 0; i < controllers.size(); ++i)
+      commands[i] = controllers[i]->Actuate(world.State(static_cast<int>(i) + 1), Eigen::Vector3d::Zero()).actuator;
+    world.Step(commands);
+  }
+  const std::chrono::duration<double> wall = WallClock::now() - start;
+  const double steps = static_cast<double>(world.tick()) * experiment.steps_per_tick() * agents;
+  std::printf("{\"agent_steps_per_s\": %.0f}\n", steps / wall.count());
+  return 0;
+}

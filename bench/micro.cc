@@ -1,0 +1,97 @@
+// What single pieces cost: a call of a law, a step of the world, a tick of the recording. Google Benchmark.
+#include <benchmark/benchmark.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "agent/agent.h"
+#include "agent/laws.h"
+#include "orchestrator/run_writer.h"
+#include "physics_server/world.h"
+
+namespace mascot {
+namespace {
+
+Experiment Load(int agents, const std::string& more) {
+  const std::string top = std::to_string(2 + agents);
+  const std::string text = "[run]\nduration_s = 100000.0\n[agents]\ncount = " + std::to_string(agents) +
+                           "\nrandom = { min_m = [-99, -99, 1], max_m = [99, 99, " + top + "] }\n" + more;
+  return LoadExperiment(Section::FromText(text, "bench.toml"), "bench");
+}
+
+// --- laws: of an agent that hears five others -----------------------------------------------------------
+
+void CallLaw(benchmark::State& state, const std::string& law) {
+  Experiment experiment = Load(6, "[law]\n" + law);
+  Agent agent(experiment, 1);
+  std::vector<Motion> motions(6);
+  std::vector<Sample> samples;
+  for (const AgentConfig& config : experiment.agents) {
+    motions[static_cast<std::size_t>(config.id - 1)].p_WB = config.p_W;
+    if (config.id > 1) samples.push_back({&motions[static_cast<std::size_t>(config.id - 1)]});
+  }
+  std::int64_t tick = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(agent.Want(tick++, motions[0], samples));
+}
+
+constexpr const char* kNothing =
+    "name = 'custom'\npython = '''\ndef control(t, me, neighbours):\n    return 0.0, 0.0\n'''\n";
+constexpr const char* kConsensus = R"(name = 'custom'
+python = '''
+def control(t, me, neighbours):
+    a = -me.velocity
+    for j in neighbours:
+        a += j.weight * (j.position - me.position)
+    return a
+'''
+)";
+
+BENCHMARK_CAPTURE(CallLaw, cpp_consensus, std::string("name = 'consensus'\n"));
+BENCHMARK_CAPTURE(CallLaw, python_nothing, std::string(kNothing));
+BENCHMARK_CAPTURE(CallLaw, python_consensus, std::string(kConsensus));
+
+// --- physics: a tick of ten steps -----------------------------------------------------------------------
+
+void StepWorld(benchmark::State& state, World::LookForContacts look) {
+  const auto agents = static_cast<int>(state.range(0));
+  const Experiment experiment = Load(agents, "");
+  World world(experiment, look);
+  const double hover = experiment.agent(1).airframe.HoverRotorSpeed(experiment.physics.gravity_m_per_s2);
+  const std::vector<Actuation> commands(static_cast<std::size_t>(agents), Actuation{hover, hover, hover, hover});
+  for (auto _ : state) world.Step(commands);
+  state.SetItemsProcessed(state.iterations() * agents * experiment.steps_per_tick());
+}
+
+BENCHMARK_CAPTURE(StepWorld, when_close, World::LookForContacts::kWhenClose)->Arg(10)->Arg(100)->Arg(1000);
+BENCHMARK_CAPTURE(StepWorld, always, World::LookForContacts::kAlways)->Arg(10)->Arg(100)->Arg(1000);
+
+// --- recording: a row, with its measurement, to the disk ------------------------------------------------
+
+void RecordRow(benchmark::State& state) {
+  const auto agents = static_cast<int>(state.range(0));
+  Experiment experiment = Load(agents, "[output]\nfidelity = false\n");
+  std::string name = (std::filesystem::temp_directory_path() / "mascot-bench-XXXXXX").string();
+  const std::filesystem::path scratch = ::mkdtemp(name.data());
+  const RunFolder folder((scratch / "run").string(), "bench", false);
+  RunWriter writer(experiment, folder, "");
+  DecodedRow row(agents);
+  std::int64_t tick = 0;
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < row.motions.size(); ++i) row.motions[i].p_WB.x() += 1e-3 * static_cast<double>(i);
+    writer.Add(tick++, row);
+  }
+  writer.Close();
+  const auto samples = static_cast<std::int64_t>(writer.samples());
+  state.SetItemsProcessed(samples);
+  constexpr std::int64_t kSampleBytes = 144;  // of a state and of a command, on average
+  state.SetBytesProcessed(samples * kSampleBytes);
+  std::filesystem::remove_all(scratch);
+}
+
+BENCHMARK(RecordRow)->Arg(10)->Arg(100);
+
+}  // namespace
+}  // namespace mascot
+
+BENCHMARK_MAIN();
