@@ -200,6 +200,10 @@ void CheckFinite(std::span<const Actuation> commands, std::int64_t tick) {
 /// some millimetres apart (20 at most): so resting, sliding and rattling count once.
 class ContactCounter {
  public:
+  explicit ContactCounter(std::size_t bodies) {
+    lasting_.reserve(4 * bodies);
+    now_.reserve(4 * bodies);
+  }
   /// Returns whether any two bodies are so close that Bullet remembers points of theirs.
   bool Look(btDispatcher& dispatcher) {
     bool any = false;
@@ -236,7 +240,7 @@ class ContactCounter {
     return false;
   }
 
-  std::vector<Pair> lasting_, now_;  // sorted; two buffers, so that a step allocates nothing
+  std::vector<Pair> lasting_, now_;  // sorted; two buffers with room, so that a step allocates nothing
   Contacts begun_;
 };
 
@@ -280,7 +284,8 @@ World::Impl::Impl(const Experiment& experiment, LookForContacts look_for_contact
       control_rate_hz(experiment.control.rate_hz),
       steps_per_tick(experiment.steps_per_tick()),
       wind(experiment.physics.wind, experiment.run.seed, dt_s),
-      look(look_for_contacts) {
+      look(look_for_contacts),
+      contacts(experiment.agents.size()) {
   collision.setPlaneConvexMultipointIterations();  // a box then stands on four points at once
   // Bullet's own for two spheres forgets a contact as soon as they are apart: those that slide along each other would
   // begin one again and again.
