@@ -3,6 +3,7 @@
 
 #include "agent/laws.h"
 #include "agent/node.h"
+#include "idl/privileges.h"
 #include "idl/process_main.h"
 #include "idl/standard_streams.h"
 
@@ -21,7 +22,9 @@ void RunAgent(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot
     std::cerr << (agents.size() > 1 ? mascot::AgentName(id) + " " : "") << "hears"
               << (heard.empty() ? " nobody" : heard) << std::endl;
   }
-  mascot::Node(domain, lifecycle, experiment, agents).Run();
+  mascot::Node node(domain, lifecycle, experiment, agents);
+  mascot::TakePrivileges(experiment, agents.first);  // with all threads there
+  node.Run();
 }
 
 }  // namespace

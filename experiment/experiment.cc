@@ -14,6 +14,7 @@ constexpr double kMaxTicks = 1e9;  // recordings number their samples with 32 bi
 constexpr int kMaxDomain = 100;    // above, DDS's ports meet those that Linux hands out
 
 constexpr std::string_view kModes[] = {"lockstep", "realtime"};
+constexpr std::string_view kSchedulers[] = {"other", "fifo"};
 constexpr std::string_view kAxes[] = {"xy", "xyz"};
 constexpr std::string_view kAutomatic[] = {"auto"};
 constexpr std::string_view kDeliveries[] = {"topics", "bundled"};
@@ -29,6 +30,11 @@ constexpr Key kRunKeys[] = {
         .Default("5.0"),
     key::Number("start_timeout_s", Above(0, 3600), "how long the start may take, wall clock").Default("60.0"),
     key::Number("speed", Above(0, 1000), "of realtime: simulated seconds per second").Default("1.0"),
+    key::OneOf("scheduler", kSchedulers,
+               "fifo: the server and the agents run at a real-time priority (SCHED_FIFO), if the system permits it")
+        .Default("\"other\""),
+    key::Boolean("pin_cores", "each process over DDS keeps to one core").Default("false"),
+    key::Boolean("lock_memory", "their memory is never swapped out, if the system permits it").Default("false"),
 };
 
 constexpr Key kLawKeys[] = {
@@ -88,6 +94,9 @@ void ReadRun(Section& section, const std::string& default_name, Experiment& expe
   run.agent_timeout_s = section.Number("agent_timeout_s");
   run.start_timeout_s = section.Number("start_timeout_s");
   run.speed = section.Number("speed");
+  run.scheduler = section.OneOf("scheduler") == "fifo" ? Scheduler::kFifo : Scheduler::kOther;
+  run.pin_cores = section.Boolean("pin_cores");
+  run.lock_memory = section.Boolean("lock_memory");
   section.Done();
 }
 

@@ -20,6 +20,7 @@ namespace mascot {
 inline constexpr int kMaxAgents = 10000;
 
 enum class Mode { kLockstep, kRealtime };
+enum class Scheduler { kOther, kFifo };
 enum class Axes { kXy, kXyz };
 /// x and y, or z too: how many of a vector's first components the law moves.
 constexpr int CountOf(Axes axes) { return axes == Axes::kXyz ? 3 : 2; }
@@ -77,6 +78,9 @@ struct Experiment {
     double agent_timeout_s = 5;
     double start_timeout_s = 60;
     double speed = 1;
+    Scheduler scheduler = Scheduler::kOther;
+    bool pin_cores = false;
+    bool lock_memory = false;
   } run;
   PhysicsConfig physics;
   std::vector<AgentConfig> agents;

@@ -51,11 +51,13 @@ void Lifecycle::Set(Life life, const std::string& reason) {
   Publish();
 }
 
-void Lifecycle::Report(std::uint64_t tick, std::uint64_t misses, const Contacts& contacts) {
+void Lifecycle::Report(std::uint64_t tick, const Pacing& pacing, const Contacts& contacts) {
   {
     const std::lock_guard lock(mutex_);
     status_.tick(tick);
-    status_.misses(misses);
+    status_.misses(pacing.misses);
+    status_.tick_lateness_s(pacing.tick_lateness_s);
+    status_.command_age_s(pacing.command_age_s);
     status_.agent_contacts(static_cast<std::uint64_t>(contacts.agents));
     status_.ground_contacts(static_cast<std::uint64_t>(contacts.ground));
     status_.obstacle_contacts(static_cast<std::uint64_t>(contacts.obstacles));

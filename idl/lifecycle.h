@@ -6,6 +6,7 @@
 #include <string>
 
 #include "experiment/contacts.h"
+#include "experiment/pacing.h"
 #include "idl/bus.h"
 #include "idl/stop_signal.h"
 #include "idl/wire.h"
@@ -37,7 +38,7 @@ class Lifecycle {
   /// Publishes a new state.
   void Set(Life life, const std::string& reason = {});
   /// Publishes the counters with the state as it is. Any thread.
-  void Report(std::uint64_t tick, std::uint64_t misses = 0, const Contacts& contacts = {});
+  void Report(std::uint64_t tick, const Pacing& pacing, const Contacts& contacts);
   /// Waits for a wake-up, at most `timeout`. Throws Ended when a signal or an END came, and whatever a
   /// callback of the domain threw; throws std::runtime_error when the orchestrator has left the domain.
   void Wait(std::chrono::nanoseconds timeout);

@@ -1,6 +1,7 @@
 #include "orchestrator/dds_engine.h"
 
 #include <signal.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -56,6 +57,7 @@ class DdsRun {
   void CheckWire();
   void CheckDeadlines();
   void ShowProgress();
+  void AwaitLastWords();
   void Collect();
   void End();
   void Fail(const std::string& why);
@@ -67,6 +69,7 @@ class DdsRun {
   const bool external_;
   EngineResult result_;
   bool finished_ = false;
+  bool server_failed_ = false;  // it has ended, by itself
   Deadline stop_deadline_, drain_deadline_;
   std::int64_t confirmed_ = 0;
 
@@ -182,6 +185,16 @@ EngineResult DdsRun::Run() {
   return result_;
 }
 
+/// Of a server that ended by itself: that it has gone may be known before what it said last.
+void DdsRun::AwaitLastWords() {
+  const auto has_said = [&] {
+    const auto server = hub_->StatusOf("physics_server");
+    return server && static_cast<Life>(server->state()) == Life::kFailed;
+  };
+  const auto deadline = WallClock::now() + 1s;
+  while (server_failed_ && !has_said() && WallClock::now() < deadline) stop_.Within(10ms);
+}
+
 void DdsRun::Collect() {
   try {
     recorder_->Drain(/*give_up=*/true);
@@ -195,11 +208,14 @@ void DdsRun::Collect() {
     result_.wall_s = recorder_->wall_s();
     result_.startup_s = std::chrono::duration<double>(recorder_->started() - launched_).count();
   }
+  AwaitLastWords();
   if (const auto server = hub_->StatusOf("physics_server")) {
     result_.contacts = {.agents = static_cast<std::int64_t>(server->agent_contacts()),
                         .ground = static_cast<std::int64_t>(server->ground_contacts()),
                         .obstacles = static_cast<std::int64_t>(server->obstacle_contacts())};
-    result_.misses = server->misses();
+    result_.pacing = {.misses = server->misses(),
+                      .tick_lateness_s = server->tick_lateness_s(),
+                      .command_age_s = server->command_age_s()};
   }
 }
 
@@ -234,6 +250,7 @@ void DdsRun::HandleSignal(int signal) {
 void DdsRun::CheckChildren() {
   std::string failure;
   for (const Exit& exit : children_.Reap()) {
+    server_failed_ = server_failed_ || (exit.process == "physics_server" && WIFEXITED(exit.status));
     failure += (failure.empty() ? "" : "\n") + exit.process + " " + exit.Text();
     for (const std::string& line : logs_.LastLines(exit.process)) failure += "\n  " + exit.process + " | " + line;
   }

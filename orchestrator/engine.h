@@ -5,6 +5,7 @@
 #include <string>
 
 #include "experiment/contacts.h"
+#include "experiment/pacing.h"
 
 namespace mascot {
 
@@ -15,7 +16,7 @@ struct EngineResult {
   double wall_s = 0;     ///< from publishing tick 0 to the last command gathered
   double startup_s = 0;  ///< from the start to tick 0
   Contacts contacts;
-  std::uint64_t misses = 0;                ///< realtime: commands that came too late for their tick
+  Pacing pacing;                           ///< realtime
   std::uint64_t lost = 0;                  ///< samples that the recorder knows to have missed
   std::optional<bool> wire_matches_graph;  ///< absent: ended before everybody was discovered
 };

@@ -89,6 +89,13 @@ Json Fidelity(const Measured& measured) {
           {"failure", measured.fidelity_failure.empty() ? Json(nullptr) : Json(measured.fidelity_failure)}};
 }
 
+Json Realtime(const Pacing& pacing) {
+  const auto spread = [](const Pacing::Spread& s) { return Json{{"p50", s[0]}, {"p99", s[1]}, {"max", s[2]}}; };
+  return {{"misses", pacing.misses},
+          {"tick_lateness_s", spread(pacing.tick_lateness_s)},
+          {"command_age_s", spread(pacing.command_age_s)}};
+}
+
 template <class... Values>
 std::string Line(const char* format, Values... values) {
   char text[200];
@@ -171,7 +178,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   if (const auto& formation = measured.formation) json["formation"] = Formation(*formation);
   json["links"] = Links(meter.Traffic());
   json["fidelity"] = Fidelity(measured);
-  if (experiment.run.mode == Mode::kRealtime) json["realtime"] = {{"misses", engine.misses}};
+  if (experiment.run.mode == Mode::kRealtime) json["realtime"] = Realtime(engine.pacing);
   json["startup_s"] = engine.startup_s;
   json["total_s"] = facts.total_s;
   return json.dump(2) + "\n";
@@ -189,9 +196,13 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
            static_cast<unsigned long long>(facts.samples), facts.topics, static_cast<unsigned long long>(engine.lost));
   text += ConsensusText(experiment, m, prediction);
   text += Line("saturated      %.2g %% of commands", 100 * m.saturated_fraction);
-  if (experiment.run.mode == Mode::kRealtime)
-    text += Line("late           %llu commands came after their tick; the last one was held",
-                 static_cast<unsigned long long>(engine.misses));
+  if (experiment.run.mode == Mode::kRealtime) {
+    const Pacing& pacing = engine.pacing;
+    text += Line("late           %llu commands came after their tick; the last one was held, at most %.3g s old",
+                 static_cast<unsigned long long>(pacing.misses), pacing.command_age_s[2]);
+    text += Line("ticks          %.3g ms after they were due in the median, 99 %% within %.3g ms, all within %.3g ms",
+                 1e3 * pacing.tick_lateness_s[0], 1e3 * pacing.tick_lateness_s[1], 1e3 * pacing.tick_lateness_s[2]);
+  }
   if (m.min_separation_m)
     text += Line("separation     %.3f m at least, %lld collisions", *m.min_separation_m,
                  static_cast<long long>(engine.contacts.total()));

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "agent/laws.h"
+#include "idl/privileges.h"
 #include "idl/process_main.h"
 #include "idl/standard_streams.h"
 #include "physics_server/server.h"
@@ -11,6 +12,7 @@ void RunServer(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const masco
   const auto document = mascot::Section::FromText(message.toml(), message.name());
   const mascot::Experiment experiment = mascot::LoadExperiment(document, message.name(), /*checked=*/true);
   mascot::Server server(domain, lifecycle, experiment);
+  mascot::TakePrivileges(experiment, 0);  // with all threads there
   server.Run();
   lifecycle.Set(mascot::Life::kDone);
   for (;;) lifecycle.Wait(std::chrono::seconds(1));  // stay until everybody has heard the last sample

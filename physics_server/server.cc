@@ -67,7 +67,8 @@ void Server::Run() {
 
 void Server::Report() {
   const std::lock_guard lock(mutex_);
-  lifecycle_.Report(static_cast<std::uint64_t>(std::max<std::int64_t>(published_, 0)), misses_, world_.contacts());
+  lifecycle_.Report(static_cast<std::uint64_t>(std::max<std::int64_t>(published_, 0)),
+                    pace_.Result(experiment_.period_s()), world_.contacts());
 }
 
 // --- start ----------------------------------------------------------------------------------------------
@@ -234,10 +235,11 @@ void Server::RunRealtime() {
     // agents still less time.
     if (const auto behind = WallClock::now() - due; behind > Seconds(period_s)) start += behind;
     const std::lock_guard lock(mutex_);
-    misses_ += barrier_.Late().size();
+    for (const std::int64_t answered : command_tick_) pace_.AddCommand(published_ - answered);
     CheckForDeadAgents(period_s);
     world_.Step(commands_);
     PublishIfRecorded();
+    pace_.AddTick(std::chrono::duration<double>(WallClock::now() - due).count());
   }
   if (!lifecycle_.stop_requested()) WatchProgress();
 }

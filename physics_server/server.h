@@ -11,6 +11,7 @@
 
 #include "experiment/experiment.h"
 #include "idl/lifecycle.h"
+#include "physics_server/pace_meter.h"
 #include "physics_server/tick_barrier.h"
 #include "physics_server/world.h"
 
@@ -72,7 +73,7 @@ class Server {
   bool recorder_ready_ = false;
   std::int64_t recorded_rows_ = 0;  // rows 0 .. recorded_rows_ - 1 are safe
   std::int64_t published_ = -1;     // newest tick published
-  std::uint64_t misses_ = 0;
+  PaceMeter pace_;
   bool running_ = false;
   std::atomic<bool> done_ = false;
 

@@ -1,10 +1,12 @@
 // The two engines, and repetition: same file, same bytes.
 
 #include <gmock/gmock.h>
+#include <sched.h>
 
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <sstream>
 #include <thread>
 
 #include "orchestrator/domain_lock.h"
@@ -425,6 +427,60 @@ TEST(Realtime, IsPacedByTheWallClock) {
   Up half(folder, "half", Config("leaderless"), slowly);
   ASSERT_EQ(half.Wait(), 0) << half.err();
   EXPECT_GE(half.Summary()["wall_s"].get<double>(), 1.98);
+}
+
+TEST(Realtime, SaysHowItKeptToItsTimes) {
+  ScratchFolder folder;
+  Up up(folder, "run", Config("leaderless"), {"--duration-s", "1", "--set", "run.mode=realtime"});
+  ASSERT_EQ(up.Wait(), 0) << up.err();
+  const auto realtime = up.Summary()["realtime"];
+  for (const char* spread : {"tick_lateness_s", "command_age_s"}) {
+    const double p50 = realtime[spread]["p50"], p99 = realtime[spread]["p99"], max = realtime[spread]["max"];
+    EXPECT_GE(p50, 0) << spread;
+    EXPECT_LE(p50, p99) << spread;
+    EXPECT_LE(p99, max) << spread;
+  }
+  EXPECT_GT(realtime["tick_lateness_s"]["max"], 0) << "nobody wakes before it is time";
+  EXPECT_EQ(realtime["misses"] == 0, realtime["command_age_s"]["max"] == 0.0);
+  EXPECT_THAT(up.out(), HasSubstr("ms after they were due in the median"));
+}
+
+/// What the kernel says of a process's locked memory.
+bool HasLockedMemory(pid_t pid) {
+  std::istringstream status(ReadFile("/proc/" + std::to_string(pid) + "/status"));
+  for (std::string word; status >> word;)
+    if (word == "VmLck:") return status >> word && word != "0";
+  return false;
+}
+
+TEST(Realtime, TakesPrivilegesOrSaysThatItMayNot) {
+  ScratchFolder folder;
+  Up up(folder, "run", Config("leaderless"),
+        {"--duration-s", "600", "--set", "run.mode=realtime", "--set", "run.scheduler=fifo", "--set",
+         "run.pin_cores=true", "--set", "run.lock_memory=true"});
+  ASSERT_TRUE(Until([&] { return up.Said("agent_2] hears"); }));
+  const pid_t agent = up.Child("agent_2");
+  ASSERT_GT(agent, 0);
+  EXPECT_TRUE(Until([&] {
+    return ::sched_getscheduler(agent) == SCHED_FIFO || up.Said("run.scheduler: SCHED_FIFO is not permitted");
+  }));
+  cpu_set_t cores;
+  ASSERT_EQ(::sched_getaffinity(agent, sizeof cores, &cores), 0);
+  EXPECT_EQ(CPU_COUNT(&cores), 1);
+  EXPECT_TRUE(HasLockedMemory(agent) || up.Said("run.lock_memory: memory cannot be locked"));
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130) << up.err();
+}
+
+TEST(Realtime, TakesNoPrivilegesUnlessAsked) {
+  ScratchFolder folder;
+  Up up(folder, "run", Config("leaderless"), {"--duration-s", "600", "--set", "run.mode=realtime"});
+  ASSERT_TRUE(Flies(up));
+  const pid_t agent = up.Child("agent_2");
+  EXPECT_EQ(::sched_getscheduler(agent), SCHED_OTHER);
+  EXPECT_FALSE(HasLockedMemory(agent));
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130) << up.err();
 }
 
 TEST(Realtime, IsRefusedInOneProcess) {

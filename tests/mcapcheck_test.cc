@@ -150,10 +150,14 @@ TEST(Schemas, SayWhatIsOnTheWire) {
   status.state(5);
   status.tick(6);
   status.misses(7);
+  status.tick_lateness_s({0.5, 1.5, 2.5});
+  status.command_age_s({3.5, 4.5, 5.5});
   status.agent_contacts(8);
   status.ground_contacts(9);
   status.obstacle_contacts(10);
   status.reason("none");
+  mascot_msgs::msg::AgentBundle bundle;
+  bundle.states({SomeState()});
   mascot_msgs::msg::Request request;
   request.kind(2);
   request.reason("over");
@@ -161,6 +165,7 @@ TEST(Schemas, SayWhatIsOnTheWire) {
   experiment.name("n");
   experiment.toml("[run]");
   write("/state", "mascot_msgs/msg/AgentState", OnTheWire<StateType>(SomeState()));
+  write("/bundle", "mascot_msgs/msg/AgentBundle", OnTheWire<BundleType>(bundle));
   write("/command", "mascot_msgs/msg/AgentCommand", OnTheWire<CommandType>(SomeCommand()));
   write("/clock", "rosgraph_msgs/msg/Clock", OnTheWire<ClockType>(clock));
   write("/status", "mascot_msgs/msg/Status", OnTheWire<StatusType>(status));
@@ -168,7 +173,10 @@ TEST(Schemas, SayWhatIsOnTheWire) {
   write("/experiment", "mascot_msgs/msg/Experiment", OnTheWire<ExperimentType>(experiment));
   writer.Close();
 
-  EXPECT_EQ(Decoded(path), nlohmann::json::parse(R"({
+  nlohmann::json decoded = Decoded(path);
+  EXPECT_EQ(decoded["/bundle"]["states"], nlohmann::json::array({decoded["/state"]}));
+  decoded.erase("/bundle");
+  EXPECT_EQ(decoded, nlohmann::json::parse(R"({
     "/state": {"stamp": {"sec": 1, "nanosec": 230000000}, "tick": 123, "agent": 3,
       "pose": {"position": {"x": 1.5, "y": 2.5, "z": 3.5}, "orientation": {"x": 0.1, "y": 0.2, "z": 0.3, "w": 0.5}},
       "twist": {"linear": {"x": 4.5, "y": 5.5, "z": 6.5}, "angular": {"x": 7.5, "y": 8.5, "z": 9.5}},
@@ -178,6 +186,7 @@ TEST(Schemas, SayWhatIsOnTheWire) {
       "acceleration_limited": {"x": 8.5, "y": 9.5, "z": 10.5}},
     "/clock": {"clock": {"sec": 1, "nanosec": 230000000}},
     "/status": {"process": "agent_3", "agent": 3, "state": 5, "tick": 6, "misses": 7,
+      "tick_lateness_s": [0.5, 1.5, 2.5], "command_age_s": [3.5, 4.5, 5.5],
       "agent_contacts": 8, "ground_contacts": 9, "obstacle_contacts": 10, "reason": "none"},
     "/request": {"kind": 2, "reason": "over"},
     "/experiment": {"name": "n", "toml": "[run]"}})"));

@@ -1,0 +1,50 @@
+#include "idl/privileges.h"
+
+#include <sched.h>
+#include <sys/mman.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <thread>
+
+namespace mascot {
+namespace {
+
+constexpr int kPriority = 10;  // of 1 to 99: above everything ordinary, below the kernel's own threads
+
+void Warn(const char* key, const char* what) {
+  std::cerr << "warning: run." << key << ": " << what << ": " << std::strerror(errno) << "; flying on without"
+            << std::endl;
+}
+
+/// Calls `change` for every thread of this process; false, with errno, as soon as one cannot be changed.
+template <class Change>
+bool ForEachThread(const Change& change) {
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task"))
+    if (change(static_cast<pid_t>(std::stoi(entry.path().filename()))) != 0 && errno != ESRCH) return false;
+  return true;
+}
+
+}  // namespace
+
+void TakePrivileges(const Experiment& experiment, int place) {
+  const auto& run = experiment.run;
+  if (run.lock_memory && ::mlockall(MCL_CURRENT | MCL_FUTURE) != 0) Warn("lock_memory", "memory cannot be locked");
+  if (run.pin_cores) {
+    cpu_set_t core;
+    CPU_ZERO(&core);
+    CPU_SET(static_cast<std::size_t>(place) % std::max(1u, std::thread::hardware_concurrency()), &core);
+    if (!ForEachThread([&](pid_t thread) { return ::sched_setaffinity(thread, sizeof core, &core); }))
+      Warn("pin_cores", "threads cannot be pinned");
+  }
+  if (run.scheduler == Scheduler::kFifo) {
+    const sched_param parameters{.sched_priority = kPriority};
+    if (!ForEachThread([&](pid_t thread) { return ::sched_setscheduler(thread, SCHED_FIFO, &parameters); }))
+      Warn("scheduler", "SCHED_FIFO is not permitted");
+  }
+}
+
+}  // namespace mascot
