@@ -1,6 +1,7 @@
 #include "orchestrator/dds_engine.h"
 
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -32,6 +33,14 @@ constexpr auto kGrace = 5s;
 /// As `agent --id` takes them.
 std::string IdsText(AgentRange agents) {
   return std::to_string(agents.first) + (agents.size() > 1 ? "-" + std::to_string(agents.last) : "");
+}
+
+/// From now on this thread, and those that it makes, give way to the processes of the run. The recorder hears
+/// everything and may lag behind by its window; waking it must not push a process aside that the next tick waits for.
+/// (By much more than this, and it starves until the window is full.)
+void StepAside() {
+  constexpr int kNice = 5;
+  setpriority(PRIO_PROCESS, 0, kNice);
 }
 
 /// One run, from the domain's lock to the last process gone.
@@ -109,6 +118,7 @@ void DdsRun::Join() {
   lock_.emplace(experiment_.network.domain);
   SweepSharedMemory();  // of runs that were killed
   Spawn();
+  StepAside();
   auto wake = [this] { stop_.Wake(); };
   if (with_server_) discovery_server_.emplace(Options("discovery_server", DiscoveryRole::kServer), [] {});
   domain_.emplace(Options("orchestrator", with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake,
