@@ -14,9 +14,9 @@ struct ConsensusParams {
   std::optional<WaypointParams> leader_flight;  ///< absent: the leader's acceleration is 0
 };
 
-inline constexpr auto kConsensusParameters = Joined(
+/// Of consensus and of formation, which is consensus on p_i - d_i: all but the pull of the positions.
+inline constexpr auto kVelocityAndLeaderParameters = Joined(
     std::array{
-        key::Number("p_gain", kGain, "pull towards each neighbour, times its weight").Default("1.0").Unit("1/s^2"),
         key::Number("v_gain", kGain, "pull towards each neighbour's velocity, times its weight")
             .Default("0.0")
             .Unit("1/s"),
@@ -24,6 +24,12 @@ inline constexpr auto kConsensusParameters = Joined(
         key::Integer("leader", 0, kMaxAgents, "agent that leads and listens to nobody, 1..N; 0: none").Default("0"),
     },
     kLeaderFlightParameters);
+
+inline constexpr auto kConsensusParameters = Joined(
+    std::array{
+        key::Number("p_gain", kGain, "pull towards each neighbour, times its weight").Default("1.0").Unit("1/s^2"),
+    },
+    kVelocityAndLeaderParameters);
 
 ConsensusParams ReadConsensus(LawConfig& law);
 

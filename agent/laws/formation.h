@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "agent/laws/waypoint.h"
+#include "agent/laws/consensus.h"
 #include "experiment/experiment.h"
 
 namespace mascot {
@@ -27,13 +27,8 @@ inline constexpr auto kFormationParameters = Joined(
         key::Number("p_gain", kGain, "pull towards the place that each neighbour's position means, times its weight")
             .Default("1.0")
             .Unit("1/s^2"),
-        key::Number("v_gain", kGain, "pull towards each neighbour's velocity, times its weight")
-            .Default("0.0")
-            .Unit("1/s"),
-        key::Number("beta", kGain, "damping of the agent's own velocity").Default("1.0").Unit("1/s"),
-        key::Integer("leader", 0, kMaxAgents, "agent that leads and listens to nobody, 1..N; 0: none").Default("0"),
     },
-    kLeaderFlightParameters);
+    kVelocityAndLeaderParameters);
 
 FormationParams ReadFormation(const Experiment& experiment, LawConfig& law);
 
