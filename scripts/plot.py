@@ -20,10 +20,9 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Circle, Rectangle
 
 sys.dont_write_bytecode = True  # the scripts may stand where nobody may write
+from figure_style import OKABE_ITO, STYLE
 from run_folder import RunError, disagreement, read_run, spanning_tree, waypoint_targets
 
-# Okabe and Ito's colours, which colour-blind readers can tell apart; the palest ones last.
-OKABE_ITO = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442"]
 # Beyond those, viridis without its palest end.
 MANY = matplotlib.colors.ListedColormap(plt.get_cmap("viridis")(np.linspace(0, 0.95, 256)), "many")
 LEGEND_MAX = 10  # more agents than this share a colour bar
@@ -32,22 +31,7 @@ LEAST_RANGE = 0.02  # m, m/s or m/s²: no axis zooms in further, so that a held 
 FLOOR_M = 1e-6  # bottom of log axes
 SMOOTHING_S = 0.5  # of an acceleration that switches all the time
 AXIS_NAMES = "xyz"
-STYLE = {
-    "axes.axisbelow": True,
-    "axes.edgecolor": "0.4",
-    "axes.grid": True,
-    "axes.spines.right": False,
-    "axes.spines.top": False,
-    "axes.titlelocation": "left",
-    "axes.titlesize": 10,
-    "figure.constrained_layout.use": True,
-    "figure.dpi": 120,
-    "font.size": 9,
-    "grid.color": "0.9",
-    "legend.fontsize": 8,
-    "legend.frameon": False,
-    "lines.linewidth": 1.2,
-}
+LINES = {"lines.linewidth": 1.2}
 
 
 # --- drawing --------------------------------------------------------------------------------------------
@@ -341,7 +325,7 @@ def draw_all(folder, run, only, show):
     if show and not can_open_windows():
         print("no display: no window is opened", file=sys.stderr)
         show = False
-    matplotlib.rcParams.update(matplotlib.rcParamsDefault | STYLE | {"backend": plt.get_backend()})
+    matplotlib.rcParams.update(matplotlib.rcParamsDefault | STYLE | LINES | {"backend": plt.get_backend()})
     names = choose(run, only) if show or run.output("save_plot") else []
     if not names:
         print(f"{folder}: no picture drawn: config.toml's [output] switches them off", file=sys.stderr)

@@ -18,22 +18,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-STYLE = {
-    "axes.axisbelow": True,
-    "axes.edgecolor": "0.4",
-    "axes.grid": True,
-    "axes.spines.right": False,
-    "axes.spines.top": False,
-    "axes.titlelocation": "left",
-    "axes.titlesize": 10,
-    "figure.constrained_layout.use": True,
-    "figure.dpi": 120,
-    "font.size": 9,
-    "grid.color": "0.9",
-    "legend.fontsize": 8,
-    "legend.frameon": False,
-}
-BLUE = "#0072B2"  # of Okabe and Ito's colours
+sys.dont_write_bytecode = True  # the scripts may stand where nobody may write
+from figure_style import OKABE_ITO, STYLE
+
+BLUE = OKABE_ITO[0]
 TICKS_MAX = 12
 DECADES = 2  # a column that spans more is drawn on a log scale
 
