@@ -5,6 +5,7 @@
 #include "agent/laws.h"
 #include "agent/python.h"
 #include "tests/scratch.h"
+#include "tests/three_agents.h"
 
 namespace mascot {
 namespace {
@@ -14,44 +15,11 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// Three double integrators; agent 1 hears 2 and 3. `lines` of [law], which start at line 10.
-std::string Three(const std::string& lines) {
-  return "[run]\nduration_s = 1.0\n[agents]\ncount = 3\nmodel = 'double_integrator'\n"
-         "position_m = [[0, 0, 1], [1, 0, 2], [0, 2, 3]]\n[graph]\nedges = [[1, 2, 0.5], [1, 3]]\n[law]\n" +
-         lines;
-}
-
-Experiment Load(const std::string& lines) {
-  return LoadExperiment(Section::FromText(Three(lines), "folder/test.toml"), "test");
-}
-
 Experiment Custom(const std::string& python, const std::string& lines = "") {
-  return Load("name = 'custom'\n" + lines + "python = '''\n" + python + "'''\n");
+  return Load(Three("name = 'custom'\n" + lines + "python = '''\n" + python + "'''\n"));
 }
 
-std::string Refusal(const std::string& lines) {
-  try {
-    Load(lines);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-/// What agent 1 hears: 2 and 3, and what 3 said.
-struct Others {
-  Motion two, three;
-  std::vector<double> said;
-  std::vector<Sample> samples() const { return {{&two, {}}, {&three, said}}; }
-};
-
-Others Standing() {
-  Others others;
-  others.two.p_WB = {1, 0, 2};
-  others.three.p_WB = {0, 2, 3};
-  others.three.v_WB = {0.5, 0, 0};
-  return others;
-}
+std::string LawRefusal(const std::string& lines) { return Refusal(Three(lines)); }
 
 /// What the law of agent 1 wants at tick 0.
 Eigen::Vector3d Wants(const std::string& python, const std::string& lines = "") {
@@ -213,28 +181,28 @@ TEST(CustomLaw, IsRefusedIfItSaysTooMuchOrSomethingElse) {
 // --- mistakes at check ------------------------------------------------------------------------------
 
 TEST(CustomLaw, SyntaxErrorsNameFileLineAndColumn) {
-  EXPECT_EQ(Refusal("name = 'custom'\npython = '''\ndef control(t, me, neighbours):\n  return (1, 2\n'''\n"),
+  EXPECT_EQ(LawRefusal("name = 'custom'\npython = '''\ndef control(t, me, neighbours):\n  return (1, 2\n'''\n"),
             "test.toml:13:10: law.python: expected Python, got SyntaxError: '(' was never closed");
-  EXPECT_EQ(Refusal("name = 'custom'\npython = '''def control(t, me, neighbours) return 1, 2'''\n"),
+  EXPECT_EQ(LawRefusal("name = 'custom'\npython = '''def control(t, me, neighbours) return 1, 2'''\n"),
             "test.toml:11:32: law.python: expected Python, got SyntaxError: expected ':'");
 }
 
 TEST(CustomLaw, ErrorsOfItsTopLevelNameTheLine) {
   EXPECT_EQ(
-      Refusal("name = 'custom'\npython = '''\nimport numpy as np\nx = np.nothing\n'''\n"),
+      LawRefusal("name = 'custom'\npython = '''\nimport numpy as np\nx = np.nothing\n'''\n"),
       "test.toml:13:1: law.python: expected Python, got AttributeError: module 'numpy' has no attribute 'nothing'");
 }
 
 TEST(CustomLaw, MustDefineControl) {
-  EXPECT_EQ(Refusal("name = 'custom'\npython = 'x = 1'\n"),
+  EXPECT_EQ(LawRefusal("name = 'custom'\npython = 'x = 1'\n"),
             "test.toml:11:1: law.python: expected a function control, got none");
-  EXPECT_EQ(Refusal("name = 'custom'\nstyle = 'mascot'\npython = 'def control(t, me, neighbours): return 0, 0'\n"),
+  EXPECT_EQ(LawRefusal("name = 'custom'\nstyle = 'mascot'\npython = 'def control(t, me, neighbours): return 0, 0'\n"),
             "test.toml:12:1: law.python: expected a function control_user, got none");
 }
 
 TEST(CustomLaw, MustTakeTheArgumentsThatItWillBeGiven) {
   const auto refusal = [](const std::string& python, const std::string& lines = "") {
-    return Refusal("name = 'custom'\n" + lines + "python = '''\n\n" + python + "\n'''\n");
+    return LawRefusal("name = 'custom'\n" + lines + "python = '''\n\n" + python + "\n'''\n");
   };
   EXPECT_EQ(refusal("def control(t, me): return 0, 0"),
             "test.toml:13:1: law.python: expected control(t, me, neighbours), got control(t, me)");
@@ -255,20 +223,20 @@ TEST(CustomLaw, MustTakeTheArgumentsThatItWillBeGiven) {
 }
 
 TEST(CustomLaw, ComesFromOnePlace) {
-  EXPECT_EQ(Refusal("name = 'custom'\n"), "folder/test.toml:9:1: law: expected one of python, file, got none");
-  EXPECT_EQ(Refusal("name = 'custom'\npython = 'x'\nfile = 'law.py'\n"),
+  EXPECT_EQ(LawRefusal("name = 'custom'\n"), "folder/test.toml:9:1: law: expected one of python, file, got none");
+  EXPECT_EQ(LawRefusal("name = 'custom'\npython = 'x'\nfile = 'law.py'\n"),
             "folder/test.toml:12:8: law.file: expected one of python, file, got both");
   EXPECT_EQ(
-      Refusal("name = 'custom'\nfile = 'nowhere.py'\n"),
+      LawRefusal("name = 'custom'\nfile = 'nowhere.py'\n"),
       "folder/test.toml:11:8: law.file: expected a readable file, got folder/nowhere.py: cannot be read: No such file "
       "or directory");
 }
 
 TEST(CustomLaw, RefusesParametersThatAreNoTableAndMessagesItCannotSend) {
   const std::string python = "python = 'def control(t, me, neighbours): return 0, 0'\n";
-  EXPECT_EQ(Refusal("name = 'custom'\nparams = 3\n" + python),
+  EXPECT_EQ(LawRefusal("name = 'custom'\nparams = 3\n" + python),
             "folder/test.toml:11:10: law.params: expected a table, got a number");
-  EXPECT_EQ(Refusal("name = 'custom'\nmessages = true\n" + python),
+  EXPECT_EQ(LawRefusal("name = 'custom'\nmessages = true\n" + python),
             "folder/test.toml:11:12: law.messages: expected a law that defines message(me), got none");
 }
 
@@ -353,7 +321,7 @@ TEST(CustomLaw, WhoseTextHangsIsRefused) {
 }
 
 TEST(CustomLaw, OfOneAgentIsRefusedByItsOwnKey) {
-  EXPECT_EQ(Refusal("[[agents.override]]\nid = 2\n[agents.override.law]\nname = 'custom'\npython = '''\n"
+  EXPECT_EQ(LawRefusal("[[agents.override]]\nid = 2\n[agents.override.law]\nname = 'custom'\npython = '''\n"
                     "def control(t, me, neighbours):\n  return me.position +\n'''\n"),
             "test.toml:16:23: agents.override[0].law.python: expected Python, got SyntaxError: invalid syntax");
 }

@@ -4,6 +4,7 @@
 #include "agent/agent.h"
 #include "agent/laws.h"
 #include "tests/scratch.h"
+#include "tests/three_agents.h"
 
 namespace mascot {
 namespace {
@@ -16,43 +17,12 @@ using ::testing::ThrowsMessage;
 
 std::string Library(const std::string& name) { return MASCOT_BINARY_DIR "/tests/plugins/lib" + name + ".so"; }
 
-/// Three double integrators; agent 1 hears 2 and 3. `lines` of [law], which start at line 10.
-std::string Three(const std::string& lines, const std::string& agents = "") {
-  return "[run]\nduration_s = 1.0\n[agents]\ncount = 3\nmodel = 'double_integrator'\n"
-         "position_m = [[0, 0, 1], [1, 0, 2], [0, 2, 3]]\n" +
-         agents + "[graph]\nedges = [[1, 2, 0.5], [1, 3]]\n[law]\n" + lines;
-}
-
-Experiment Load(const std::string& toml) { return LoadExperiment(Section::FromText(toml, "folder/test.toml"), "test"); }
-
 /// [law] is the plugin `name`: lines 10 and 11; `lines` follow.
 std::string Plugin(const std::string& name, const std::string& lines = "") {
   return Three("name = 'plugin'\nlibrary = '" + Library(name) + "'\n" + lines);
 }
 std::string Mirror(const std::string& params, const std::string& lines = "") {
   return Plugin("mirror", "params = { " + params + " }\n" + lines);
-}
-
-std::string Refusal(const std::string& toml) {
-  try {
-    Load(toml);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-struct Others {
-  Motion two, three;
-  std::vector<double> said;
-  std::vector<Sample> samples() const { return {{&two, {}}, {&three, said}}; }
-};
-
-Others Standing() {
-  Others others;
-  others.two.p_WB = {1, 0, 2};
-  others.three.p_WB = {0, 2, 3};
-  return others;
 }
 
 /// What agent 1 does at tick 3.

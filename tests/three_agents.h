@@ -1,0 +1,48 @@
+// Agent 1 and the two that it hears, for tests of laws that users write.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "agent/agent.h"
+#include "experiment/experiment.h"
+
+namespace mascot {
+
+/// Three double integrators; agent 1 hears 2 and 3. `lines` of [law], which start at line 10 where `agents` is empty.
+inline std::string Three(const std::string& lines, const std::string& agents = "") {
+  return "[run]\nduration_s = 1.0\n[agents]\ncount = 3\nmodel = 'double_integrator'\n"
+         "position_m = [[0, 0, 1], [1, 0, 2], [0, 2, 3]]\n" +
+         agents + "[graph]\nedges = [[1, 2, 0.5], [1, 3]]\n[law]\n" + lines;
+}
+
+inline Experiment Load(const std::string& toml) {
+  return LoadExperiment(Section::FromText(toml, "folder/test.toml"), "test");
+}
+
+/// The text with which `toml` is refused; empty: it is not.
+inline std::string Refusal(const std::string& toml) {
+  try {
+    Load(toml);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// What agent 1 hears: 2 and 3, and what 3 said.
+struct Others {
+  Motion two, three;
+  std::vector<double> said;
+  std::vector<Sample> samples() const { return {{&two, {}}, {&three, said}}; }
+};
+
+inline Others Standing() {
+  Others others;
+  others.two.p_WB = {1, 0, 2};
+  others.three.p_WB = {0, 2, 3};
+  others.three.v_WB = {0.5, 0, 0};
+  return others;
+}
+
+}  // namespace mascot
