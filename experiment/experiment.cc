@@ -31,7 +31,8 @@ constexpr Key kRunKeys[] = {
     key::Number("start_timeout_s", Above(0, 3600), "how long the start may take, wall clock").Default("60.0"),
     key::Number("speed", Above(0, 1000), "of realtime: simulated seconds per second").Default("1.0"),
     key::OneOf("scheduler", kSchedulers,
-               "fifo: the server and the agents run at a real-time priority (SCHED_FIFO), if the system permits it")
+               "fifo: the server and the agents run at a real-time priority (SCHED_FIFO), if the system permits it; "
+               "other: as any process, in lockstep as a batch job (SCHED_BATCH)")
         .Default("\"other\""),
     key::Boolean("pin_cores", "each process over DDS keeps to one core").Default("false"),
     key::Boolean("lock_memory", "their memory is never swapped out, if the system permits it").Default("false"),

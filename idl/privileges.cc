@@ -28,6 +28,11 @@ bool ForEachThread(const Change& change) {
   return true;
 }
 
+bool SetPolicy(int policy, int priority) {
+  const sched_param parameters{.sched_priority = priority};
+  return ForEachThread([&](pid_t thread) { return ::sched_setscheduler(thread, policy, &parameters); });
+}
+
 }  // namespace
 
 void TakePrivileges(const Experiment& experiment, int place) {
@@ -41,9 +46,11 @@ void TakePrivileges(const Experiment& experiment, int place) {
       Warn("pin_cores", "threads cannot be pinned");
   }
   if (run.scheduler == Scheduler::kFifo) {
-    const sched_param parameters{.sched_priority = kPriority};
-    if (!ForEachThread([&](pid_t thread) { return ::sched_setscheduler(thread, SCHED_FIFO, &parameters); }))
-      Warn("scheduler", "SCHED_FIFO is not permitted");
+    if (!SetPolicy(SCHED_FIFO, kPriority)) Warn("scheduler", "SCHED_FIFO is not permitted");
+  } else if (run.mode == Mode::kLockstep) {
+    // Nobody is in a hurry, and a process that wakes would push aside the one that is just sending to it: it is woken
+    // for each sample then, in place of once for all of a tick. (6 to 50 % more ticks per second on two cores.)
+    SetPolicy(SCHED_BATCH, 0);  // always permitted
   }
 }
 

@@ -483,6 +483,16 @@ TEST(Realtime, TakesNoPrivilegesUnlessAsked) {
   EXPECT_EQ(up.Wait(), 130) << up.err();
 }
 
+TEST(Lockstep, RunsAsABatchJobUnlessAskedForMore) {
+  ScratchFolder folder;
+  Up up(folder, "run", Config("leaderless"), {"--duration-s", "600"});
+  ASSERT_TRUE(Flies(up));
+  EXPECT_EQ(::sched_getscheduler(up.Child("agent_2")), SCHED_BATCH);
+  EXPECT_EQ(::sched_getscheduler(up.Child("physics_server")), SCHED_BATCH);
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130) << up.err();
+}
+
 TEST(Realtime, IsRefusedInOneProcess) {
   ScratchFolder folder;
   Up up(folder, "run", Config("leaderless"), {"--engine", "inprocess", "--set", "run.mode=realtime"});
