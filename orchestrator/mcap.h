@@ -11,7 +11,7 @@
 
 namespace mascot {
 
-/// Writes MCAP (https://mcap.dev/spec), profile "ros2": chunks with zstd level 3, all CRCs, message and
+/// Writes MCAP (https://mcap.dev/spec), profile "ros2": chunks with zstd level 1, all CRCs, message and
 /// chunk index, statistics, summary offsets. Byte-deterministic: the file depends only on the calls made.
 /// Every write is checked; failures throw std::runtime_error naming the file and the cause.
 class McapWriter {

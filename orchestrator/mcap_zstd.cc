@@ -12,7 +12,7 @@
 namespace mascot::mcap {
 namespace {
 
-constexpr int kLevel = 3;
+constexpr int kLevel = 1;          // 2.6 times as fast as 3 on recordings, whose size differs by less than 3 %
 constexpr int kMaxWindowLog = 23;  // 8 MiB: what zstd's levels up to 19 need to be read back
 
 }  // namespace
