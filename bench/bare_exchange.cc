@@ -1,7 +1,9 @@
 // The bare exchange, the yardstick for the DDS engine: as many processes, topics, readers and messages as a run, the
 // same bus, but no physics, no law, no recording. The server publishes every agent's state; an agent that has its own
 // and its neighbours' of a tick answers with a command; with the last command the next tick begins.
-//   bare_exchange AGENTS ring|complete SECONDS     prints one line of JSON: ticks per second
+//   bare_exchange AGENTS ring|complete SECONDS [batch]     prints one line of JSON: ticks per second
+// batch: all of it as SCHED_BATCH, as lockstep runs are.
+#include <sched.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -170,10 +172,13 @@ pid_t Spawn(const Setting& setting, int id) {
 int main(int argc, char** argv) {
   if (argc == 7 && std::string(argv[1]) == "agent")
     RunAgent({std::atoi(argv[2]), argv[3], std::atoi(argv[4]), argv[5]}, std::atoi(argv[6]));
-  if (argc != 4) {
-    std::fprintf(stderr, "usage: bare_exchange AGENTS ring|complete SECONDS\n");
+  const bool batch = argc == 5 && std::string(argv[4]) == "batch";
+  if (argc != 4 && !batch) {
+    std::fprintf(stderr, "usage: bare_exchange AGENTS ring|complete SECONDS [batch]\n");
     return 2;
   }
+  const sched_param no_priority{};
+  if (batch && sched_setscheduler(0, SCHED_BATCH, &no_priority) != 0) return 1;
   const DomainLock lock(-1);
   Setting setting{std::atoi(argv[1]), argv[2], lock.domain(), ""};
   if (setting.agents + 2 > kMostPeers) setting.discovery = "127.0.0.1:" + std::to_string(lock.discovery_port());
