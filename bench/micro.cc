@@ -1,7 +1,6 @@
 // What single pieces cost: a call of a law, a step of the world, a tick of the recording. Google Benchmark.
 #include <benchmark/benchmark.h>
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include "agent/laws.h"
 #include "orchestrator/run_writer.h"
 #include "physics_server/world.h"
+#include "tests/scratch.h"
 
 namespace mascot {
 namespace {
@@ -71,9 +71,8 @@ BENCHMARK_CAPTURE(StepWorld, always, World::LookForContacts::kAlways)->Arg(10)->
 void RecordRow(benchmark::State& state) {
   const auto agents = static_cast<int>(state.range(0));
   Experiment experiment = Load(agents, "[output]\nfidelity = false\n");
-  std::string name = (std::filesystem::temp_directory_path() / "mascot-bench-XXXXXX").string();
-  const std::filesystem::path scratch = ::mkdtemp(name.data());
-  const RunFolder folder((scratch / "run").string(), "bench", false);
+  const ScratchFolder scratch;
+  const RunFolder folder(scratch.File("run"), "bench", false);
   RunWriter writer(experiment, folder, "");
   DecodedRow row(agents);
   std::int64_t tick = 0;
@@ -86,7 +85,6 @@ void RecordRow(benchmark::State& state) {
   state.SetItemsProcessed(samples);
   constexpr std::int64_t kSampleBytes = 144;  // of a state and of a command, on average
   state.SetBytesProcessed(samples * kSampleBytes);
-  std::filesystem::remove_all(scratch);
 }
 
 BENCHMARK(RecordRow)->Arg(10)->Arg(100);

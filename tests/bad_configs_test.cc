@@ -2,7 +2,6 @@
 // what must be said about it, a line per mistake, FILE standing for the path.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <sstream>
 
 #include "agent/laws.h"
+#include "tests/scratch.h"
 
 namespace mascot {
 namespace {
@@ -71,8 +71,8 @@ TEST(BadConfigs, SayWhereWhatExpectedAndGotOnEveryLine) {
 }
 
 TEST(BadConfigs, ThatAreNoFilesAreRefused) {
-  std::string name = (fs::temp_directory_path() / "mascot_bad_configs_XXXXXX").string();
-  const fs::path folder = ::mkdtemp(name.data());
+  const ScratchFolder scratch;
+  const fs::path& folder = scratch.path();
   fs::create_directory(folder / "folder.toml");
   fs::create_symlink(folder / "nowhere.toml", folder / "dangling.toml");
   ASSERT_EQ(::mkfifo((folder / "fifo.toml").c_str(), 0600), 0);
@@ -82,7 +82,6 @@ TEST(BadConfigs, ThatAreNoFilesAreRefused) {
   EXPECT_EQ(Refusal(folder / "fifo.toml"), (folder / "fifo.toml").string() + ": is not a regular file");
   EXPECT_EQ(Refusal(folder / "absent.toml"),
             (folder / "absent.toml").string() + ": cannot be read: No such file or directory");
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -2,13 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <limits>
+
+#include "tests/scratch.h"
 
 namespace mascot {
 namespace {
@@ -39,16 +39,9 @@ std::vector<std::string> SyntaxMistakes(const std::string& text) {
   return Mistakes(text, [](Section&) {});
 }
 
-/// A folder of its own that is gone afterwards.
 class SectionFile : public ::testing::Test {
  protected:
-  SectionFile() {
-    std::string name = (std::filesystem::temp_directory_path() / "mascot_section_XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
-  }
-  ~SectionFile() override { std::filesystem::remove_all(folder_); }
-
-  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string Path(const std::string& name) const { return folder_.File(name); }
   std::string Refusal(const std::string& name) const {
     try {
       Section::FromFile(Path(name));
@@ -58,7 +51,7 @@ class SectionFile : public ::testing::Test {
     return "";
   }
 
-  std::filesystem::path folder_;
+  ScratchFolder folder_;
 };
 
 // --- values -----------------------------------------------------------------------------------------
@@ -561,7 +554,7 @@ TEST(DidYouMean, KnowsSlipsOfTheFingerFromOtherWords) {
 TEST_F(SectionFile, NamesThePathAsItWasTyped) {
   std::ofstream(Path("a file.toml")) << "x = 2\n";
   const auto previous = std::filesystem::current_path();
-  std::filesystem::current_path(folder_);
+  std::filesystem::current_path(folder_.path());
   Section root = Section::FromFile("./a file.toml");
   std::filesystem::current_path(previous);
   root.Number("x", 0, 1);
@@ -582,9 +575,9 @@ std::string PathSaidIn(const std::string& folder, const std::string& line) {
 }
 
 TEST_F(SectionFile, LooksForFilesBesideItselfAndKeepsAbsolutePaths) {
-  std::filesystem::create_directory(folder_ / "sub");
-  std::filesystem::create_directory_symlink("sub", folder_ / "link");
-  const std::string folder = std::filesystem::canonical(folder_).string();
+  std::filesystem::create_directory(Path("sub"));
+  std::filesystem::create_directory_symlink("sub", Path("link"));
+  const std::string folder = std::filesystem::canonical(folder_.path()).string();
   EXPECT_EQ(PathSaidIn(folder, "key = 'law.so'"), folder + "/law.so");
   EXPECT_EQ(PathSaidIn(folder + "/sub", "key = '../none/./law.so'"), folder + "/none/law.so");
   EXPECT_EQ(PathSaidIn(folder, "key = 'link/law.so'"), folder + "/sub/law.so") << "found at its own place";
