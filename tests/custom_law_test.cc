@@ -322,7 +322,7 @@ TEST(CustomLaw, WhoseTextHangsIsRefused) {
 
 TEST(CustomLaw, OfOneAgentIsRefusedByItsOwnKey) {
   EXPECT_EQ(LawRefusal("[[agents.override]]\nid = 2\n[agents.override.law]\nname = 'custom'\npython = '''\n"
-                    "def control(t, me, neighbours):\n  return me.position +\n'''\n"),
+                       "def control(t, me, neighbours):\n  return me.position +\n'''\n"),
             "test.toml:16:23: agents.override[0].law.python: expected Python, got SyntaxError: invalid syntax");
 }
 
