@@ -66,6 +66,7 @@ class DdsRun {
   void CheckWire();
   void CheckDeadlines();
   void ShowProgress();
+  std::optional<Hub::Status> ServerReport() const;
   void AwaitLastWords();
   void Collect();
   void End();
@@ -79,6 +80,7 @@ class DdsRun {
   EngineResult result_;
   bool finished_ = false;
   bool server_failed_ = false;  // it has ended, by itself
+  bool server_killed_ = false;
   Deadline stop_deadline_, drain_deadline_;
   std::int64_t confirmed_ = 0;
 
@@ -195,14 +197,25 @@ EngineResult DdsRun::Run() {
   return result_;
 }
 
-/// Of a server that ended by itself: that it has gone may be known before what it said last.
+/// What the physics server measured, which it tells when it ends; nothing before.
+std::optional<Hub::Status> DdsRun::ServerReport() const {
+  auto server = hub_->StatusOf("physics_server");
+  if (server && server->tick() == 0 && static_cast<Life>(server->state()) != Life::kDone) server.reset();
+  return server;
+}
+
+/// Where the run failed, but not the server: it is told to end, and so to report. Of a server that ended by itself: that
+/// it has gone may be known before what it said last.
 void DdsRun::AwaitLastWords() {
+  if (result_.failure.empty() || server_killed_ || recorder_->newest_tick() < 0) return;
+  if (!server_failed_) hub_->Ask(Ask::kEnd, result_.failure.substr(0, 1000));
   const auto has_said = [&] {
+    if (!server_failed_) return ServerReport().has_value();
     const auto server = hub_->StatusOf("physics_server");
     return server && static_cast<Life>(server->state()) == Life::kFailed;
   };
   const auto deadline = WallClock::now() + 1s;
-  while (server_failed_ && !has_said() && WallClock::now() < deadline) stop_.Within(10ms);
+  while (!has_said() && WallClock::now() < deadline) stop_.Within(10ms);
 }
 
 void DdsRun::Collect() {
@@ -219,14 +232,15 @@ void DdsRun::Collect() {
     result_.startup_s = std::chrono::duration<double>(recorder_->started() - launched_).count();
   }
   AwaitLastWords();
-  if (const auto server = hub_->StatusOf("physics_server")) {
-    result_.contacts = {.agents = static_cast<std::int64_t>(server->agent_contacts()),
-                        .ground = static_cast<std::int64_t>(server->ground_contacts()),
-                        .obstacles = static_cast<std::int64_t>(server->obstacle_contacts())};
+  const auto server = ServerReport();
+  if (!server) return;
+  result_.contacts = {.agents = static_cast<std::int64_t>(server->agent_contacts()),
+                      .ground = static_cast<std::int64_t>(server->ground_contacts()),
+                      .obstacles = static_cast<std::int64_t>(server->obstacle_contacts())};
+  if (experiment_.run.mode == Mode::kRealtime)
     result_.pacing = {.misses = server->misses(),
                       .tick_lateness_s = server->tick_lateness_s(),
                       .command_age_s = server->command_age_s()};
-  }
 }
 
 void DdsRun::Loop() {
@@ -260,7 +274,7 @@ void DdsRun::HandleSignal(int signal) {
 void DdsRun::CheckChildren() {
   std::string failure;
   for (const Exit& exit : children_.Reap()) {
-    server_failed_ = server_failed_ || (exit.process == "physics_server" && WIFEXITED(exit.status));
+    if (exit.process == "physics_server") (WIFEXITED(exit.status) ? server_failed_ : server_killed_) = true;
     failure += (failure.empty() ? "" : "\n") + exit.process + " " + exit.Text();
     for (const std::string& line : logs_.LastLines(exit.process)) failure += "\n  " + exit.process + " | " + line;
   }

@@ -44,11 +44,14 @@ Json Consensus(const Experiment& experiment, const Measured& measured, const Pre
   return consensus;
 }
 
-Json Safety(const Measured& measured, const Contacts& contacts) {
+Json Safety(const Measured& measured, const std::optional<Contacts>& contacts) {
   Json safety;
   safety["min_separation_m"] = OrNull(measured.min_separation_m);
-  safety["collisions"] = contacts.total();
-  safety["contacts"] = {{"agents", contacts.agents}, {"ground", contacts.ground}, {"obstacles", contacts.obstacles}};
+  safety["collisions"] = contacts ? Json(contacts->total()) : Json(nullptr);
+  safety["contacts"] = nullptr;
+  if (contacts)
+    safety["contacts"] = {
+        {"agents", contacts->agents}, {"ground", contacts->ground}, {"obstacles", contacts->obstacles}};
   return safety;
 }
 
@@ -178,7 +181,8 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   if (const auto& formation = measured.formation) json["formation"] = Formation(*formation);
   json["links"] = Links(meter.Traffic());
   json["fidelity"] = Fidelity(measured);
-  if (experiment.run.mode == Mode::kRealtime) json["realtime"] = Realtime(engine.pacing);
+  if (experiment.run.mode == Mode::kRealtime)
+    json["realtime"] = engine.pacing ? Realtime(*engine.pacing) : Json(nullptr);
   json["startup_s"] = engine.startup_s;
   json["total_s"] = facts.total_s;
   return json.dump(2) + "\n";
@@ -196,16 +200,16 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
            static_cast<unsigned long long>(facts.samples), facts.topics, static_cast<unsigned long long>(engine.lost));
   text += ConsensusText(experiment, m, prediction);
   text += Line("saturated      %.2g %% of commands", 100 * m.saturated_fraction);
-  if (experiment.run.mode == Mode::kRealtime) {
-    const Pacing& pacing = engine.pacing;
+  if (engine.pacing) {
+    const Pacing& pacing = *engine.pacing;
     text += Line("late           %llu commands came after their tick; the last one was held, at most %.3g s old",
                  static_cast<unsigned long long>(pacing.misses), pacing.command_age_s[2]);
     text += Line("ticks          %.3g ms after they were due in the median, 99 %% within %.3g ms, all within %.3g ms",
                  1e3 * pacing.tick_lateness_s[0], 1e3 * pacing.tick_lateness_s[1], 1e3 * pacing.tick_lateness_s[2]);
   }
   if (m.min_separation_m)
-    text += Line("separation     %.3f m at least, %lld collisions", *m.min_separation_m,
-                 static_cast<long long>(engine.contacts.total()));
+    text += Line("separation     %.3f m at least, %s collisions", *m.min_separation_m,
+                 engine.contacts ? std::to_string(engine.contacts->total()).c_str() : "an unknown number of");
   if (const auto& formation = m.formation)
     text += Line("formation      %.4f m rms off at the end, %.4f m at worst in the second half", formation->final_rms_m,
                  formation->worst_rms_m);

@@ -52,6 +52,7 @@ TEST(Faults, ADyingServerEndsTheRunByName) {
   kill(up.Child("physics_server"), SIGSEGV);
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(up.err(), HasSubstr("error: physics_server was killed by signal 11 (Segmentation fault)"));
+  EXPECT_TRUE(up.Summary()["safety"]["collisions"].is_null()) << "it knew, and did not tell";
   EXPECT_TRUE(NothingIsLeft());
 }
 
@@ -290,6 +291,16 @@ TEST(Faults, AnAgentThatFallsSilentEndsARealtimeRunToo) {
   EXPECT_THAT(up.err(), NamesAgentTwo());
   EXPECT_GT(up.Summary()["realtime"]["misses"], 10);
   EXPECT_GT(up.Summary()["wall_s"].get<double>(), 0.0);
+}
+
+TEST(Faults, WhatTheServerMeasuredIsToldWhenAnAgentDies) {
+  ScratchFolder folder;
+  Up up = Endless(folder, {"--set", "run.mode=realtime"});
+  ASSERT_TRUE(Flies(up));
+  kill(up.Child("agent_2"), SIGKILL);
+  EXPECT_EQ(up.Wait(), 1);
+  EXPECT_GT(up.Summary()["realtime"]["tick_lateness_s"]["max"], 0);
+  EXPECT_EQ(up.Summary()["safety"]["collisions"], 0);
 }
 
 TEST(Faults, HowAProgramWasStartedDoesNotMatter) {
