@@ -66,6 +66,8 @@ void Metrics::MeasureControl(std::span<const Command> commands) {
   for (const Command& command : commands) {
     effort_ += command.a_limited_W.squaredNorm() * experiment_.period_s();
     saturated_ += (command.flags & kAccelerationLimited) != 0;
+    tilt_limited_ += (command.flags & kTiltLimited) != 0;
+    rotor_limited_ += (command.flags & kRotorLimited) != 0;
   }
 }
 
@@ -139,6 +141,8 @@ Measured Metrics::Result() const {
   result.minmax_edges = pursuit_.Result();
   result.effort_m2_per_s3 = effort_ / agents;
   result.saturated_fraction = static_cast<double>(saturated_) / samples;
+  result.tilt_limited_fraction = static_cast<double>(tilt_limited_) / samples;
+  result.rotor_limited_fraction = static_cast<double>(rotor_limited_) / samples;
   if (experiment_.size() > 1) result.min_separation_m = std::sqrt(min_separation2_);
   if (ideal_) result.fidelity = {.rms_m = std::sqrt(squared_deviation_ / samples), .max_m = std::sqrt(max_deviation2_)};
   result.fidelity_failure = ideal_failure_;

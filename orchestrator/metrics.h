@@ -26,7 +26,9 @@ struct Measured {
   std::optional<double> rate_per_s;              ///< at which the disagreement decays; decay_meter.h has the definition
   std::vector<PursuitMeter::Edge> minmax_edges;  ///< of min-max consensus
   double effort_m2_per_s3 = 0;                   ///< mean over agents of the integral of |acceleration command|^2
-  double saturated_fraction = 0;
+  double saturated_fraction = 0;  ///< of all commands: those that the acceleration limit cut; below, likewise
+  double tilt_limited_fraction = 0;
+  double rotor_limited_fraction = 0;
   std::optional<double> min_separation_m;  ///< absent for one agent
   double travelled_m = 0;
   struct Fidelity {
@@ -77,7 +79,7 @@ class Metrics {
   PursuitMeter pursuit_;
   std::int64_t last_unsettled_ = -1;  // newest row above 2 % of the first disagreement
   double effort_ = 0;
-  std::int64_t saturated_ = 0;
+  std::int64_t saturated_ = 0, tilt_limited_ = 0, rotor_limited_ = 0;
   double min_separation2_;
   double squared_deviation_ = 0;
   double max_deviation2_ = 0;

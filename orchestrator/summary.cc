@@ -127,7 +127,7 @@ std::string ConsensusText(const Experiment& experiment, const Measured& m, const
   if (const auto& value = prediction.value_m)
     text += Line("  predicted    %.4f, %.4f, %.4f m%s: %.2g m off", value->x(), value->y(), value->z(),
                  prediction.on_average ? " on average" : "", *deviation.value_m);
-  text += Line("disagreement   %.2g m, speed %.2g m/s at the end", m.final_disagreement_m, m.final_speed_m_per_s);
+  text += Line("disagreement   %.3g m, speed %.2g m/s at the end", m.final_disagreement_m, m.final_speed_m_per_s);
   const bool of_rate = prediction.rate_per_s && prediction.of_agreement;
   if (m.rate_per_s && m.minmax_edges.empty())
     text += Line("decayed        at %.4f 1/s", *m.rate_per_s);
@@ -149,6 +149,15 @@ std::string ConsensusText(const Experiment& experiment, const Measured& m, const
   if (prediction.minmax_time_s)
     text += Line("  predicted    %s%.2f s (min-max, latest edge)%s", AtMost(prediction.minmax_edges),
                  *prediction.minmax_time_s, Off(deviation.minmax_time_s, prediction.minmax_time_s).c_str());
+  return text;
+}
+
+/// "; tilt limited 12 %, rotors 3 %", or nothing.
+std::string AlsoLimited(const Measured& m) {
+  if (m.tilt_limited_fraction + m.rotor_limited_fraction == 0) return "";
+  char text[80];
+  std::snprintf(text, sizeof text, "; tilt limited in %.3g %%, rotors in %.3g %%", 100 * m.tilt_limited_fraction,
+                100 * m.rotor_limited_fraction);
   return text;
 }
 
@@ -176,7 +185,10 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   json["wire"] = {{"matches_graph", OrNull(engine.wire_matches_graph)}};
   json["graph"] = {{"edges", EdgesOf(experiment.graph)}};
   json["consensus"] = Consensus(experiment, measured, prediction);
-  json["control"] = {{"effort", measured.effort_m2_per_s3}, {"saturated_fraction", measured.saturated_fraction}};
+  json["control"] = {{"effort", measured.effort_m2_per_s3},
+                     {"saturated_fraction", measured.saturated_fraction},
+                     {"tilt_limited_fraction", measured.tilt_limited_fraction},
+                     {"rotor_limited_fraction", measured.rotor_limited_fraction}};
   json["safety"] = Safety(measured, engine.contacts);
   if (const auto& formation = measured.formation) json["formation"] = Formation(*formation);
   json["links"] = Links(meter.Traffic());
@@ -199,7 +211,7 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
       Line("recorded       %lld rows, %llu samples on %zu topics, %llu lost", static_cast<long long>(m.rows),
            static_cast<unsigned long long>(facts.samples), facts.topics, static_cast<unsigned long long>(engine.lost));
   text += ConsensusText(experiment, m, prediction);
-  text += Line("saturated      %.2g %% of commands", 100 * m.saturated_fraction);
+  text += Line("saturated      %.3g %% of commands%s", 100 * m.saturated_fraction, AlsoLimited(m).c_str());
   if (engine.pacing) {
     const Pacing& pacing = *engine.pacing;
     text += Line("late           %llu commands came after their tick; the last one was held, at most %.3g s old",

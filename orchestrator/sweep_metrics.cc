@@ -32,6 +32,8 @@ constexpr const char* kMetrics[] = {
     "/consensus/deviation/minmax_time_s",
     "/control/effort",
     "/control/saturated_fraction",
+    "/control/tilt_limited_fraction",
+    "/control/rotor_limited_fraction",
     "/safety/min_separation_m",
     "/safety/collisions",
     "/safety/contacts/agents",

@@ -189,6 +189,32 @@ TEST(Theory, CallsGainsAndPeriodsAtTheirBoundUnstableHoweverTheyRound) {
   }
 }
 
+const std::string kQuadrotors =
+    "[run]\nduration_s = 100.0\n[agents]\ncount = 2\nposition_m = [[0, 0, 1], [20, 0, 3]]\n[law]\nname = 'consensus'\n"
+    "p_gain = 0.1\nbeta = 0.9\n";
+
+TEST(Theory, WarnsOfAFirstCommandForWhichAQuadrotorLeansTooFar) {
+  EXPECT_THAT(Of(kQuadrotors).warnings, IsEmpty());  // 0.1 * 20 m/s^2, and leaning by 0.35 rad gives 3.58
+  EXPECT_THAT(Of(kQuadrotors + "[agents.airframe]\nbase = 'mascot'\ntilt_limit_rad = 0.1\n").warnings,
+              ElementsAre("agents.airframe: the first command is more than leaning by tilt_limit_rad gives: agent 1 is "
+                          "to accelerate sideways by 2 m/s^2, and can by 0.981"));  // 9.81 * 0.1
+  EXPECT_THAT(Of(kQuadrotors + "[control]\ninversion = 'exact'\n[agents.airframe]\ntilt_limit_rad = 0.1\n").warnings,
+              ElementsAre(HasSubstr("and can by 0.9843")));
+  EXPECT_THAT(Of(kQuadrotors + "[physics]\ngravity_m_per_s2 = 0.0\n").warnings, ElementsAre(HasSubstr("and can by 0")));
+}
+
+TEST(Theory, WarnsOfRotorsThatCannotLiftTheirQuadrotor) {
+  EXPECT_THAT(
+      Of(kQuadrotors + "[agents.airframe]\nmax_thrust_n = 14.0\n").warnings,
+      ElementsAre("agents.airframe: agent 1 cannot lift itself: its rotors give 14 N at most (max_thrust_n), its "
+                  "weight is 14.49 N (mass_kg, physics.gravity_m_per_s2)"));
+  EXPECT_THAT(Of(kQuadrotors + "[[agents.override]]\nid = 2\nairframe = { mass_kg = 50.0 }\n").warnings,
+              Contains(StartsWith("agents.airframe: agent 2 cannot lift itself")));
+  EXPECT_THAT(Of(kFour + "[law]\nname = 'consensus'\nbeta = 2.0\n[agents.airframe]\nmax_thrust_n = 14.0\n").warnings,
+              Not(Contains(HasSubstr("lift"))))
+      << "a double integrator has no rotors";
+}
+
 TEST(Theory, WarnsWhenTheFirstCommandWouldAlreadySaturate) {
   const std::string law = kFour + "[law]\nname = 'consensus'\np_gain = 2.0\n[control]\nmax_acceleration_m_per_s2 = ";
   // Agent 4 at (1, 2): 2 * ((1 - 2) + (-1 - 2) + (-1 - 2)) = -14 in y.

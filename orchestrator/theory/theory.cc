@@ -9,6 +9,7 @@
 #include "agent/python.h"
 #include "orchestrator/crowding.h"
 #include "orchestrator/team.h"
+#include "orchestrator/theory/flight_envelope.h"
 #include "orchestrator/theory/links_on_average.h"
 #include "orchestrator/theory/theory_parts.h"
 
@@ -32,6 +33,11 @@ double Asked(const Command& command, const Motion& start, bool velocity, double 
   return asked_W.cwiseAbs().maxCoeff();
 }
 
+/// Keeps, of both, that which asks for more of its limit.
+void Keep(std::optional<FirstCommand>& worst, const FirstCommand& first) {
+  if (!worst || first.asked * worst->limit > worst->asked * first.limit) worst = first;
+}
+
 void PredictFirstCommand(Experiment& experiment, Prediction& prediction) {
   const MutedPython muted;
   Experiment prompt = experiment;
@@ -45,8 +51,10 @@ void PredictFirstCommand(Experiment& experiment, Prediction& prediction) {
     const Motion& start = motions[static_cast<std::size_t>(agent.id - 1)];
     const double asked = Asked(command, start, velocity, experiment.period_s());
     const double limit = velocity ? agent.control.max_speed_m_per_s : agent.control.max_acceleration_m_per_s2;
-    auto& first = velocity ? prediction.first_speed : prediction.first_acceleration;
-    if (!first || asked / limit > first->asked / first->limit) first = FirstCommand{agent.id, asked, limit};
+    Keep(velocity ? prediction.first_speed : prediction.first_acceleration, {agent.id, asked, limit});
+    if (agent.model != "quadrotor") continue;
+    const double sideways = std::min(command.a_law_W.head<2>().cwiseAbs().maxCoeff(), limit);
+    Keep(prediction.first_lean, {agent.id, sideways, LeanLimit(agent, experiment.physics.gravity_m_per_s2)});
   }
 }
 
@@ -62,6 +70,11 @@ void WarnOfFirstCommands(const Experiment& experiment, Prediction& prediction) {
   if (experiment.law.name != "minmax")  // there WarnOfCutBeta has said so
     WarnOfFirstCommand(prediction.first_acceleration, "control.max_acceleration_m_per_s2", "m/s^2", prediction);
   WarnOfFirstCommand(prediction.first_speed, "control.max_speed_m_per_s", "m/s", prediction);
+  if (const auto& first = prediction.first_lean; first && first->asked > first->limit)
+    prediction.warnings.push_back(fmt::format(
+        "agents.airframe: the first command is more than leaning by tilt_limit_rad gives: agent {} is to accelerate "
+        "sideways by {:.4g} m/s^2, and can by {:.4g}",
+        first->agent, first->asked, first->limit));
 }
 
 void WarnOfShortRun(const Experiment& experiment, Prediction& prediction) {
@@ -115,6 +128,7 @@ Prediction Predict(Experiment& experiment) {
   PredictFirstCommand(experiment, prediction);
   WarnOfFirstCommands(experiment, prediction);
   WarnOfShortRun(experiment, prediction);
+  for (std::string& warning : LiftWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
   for (std::string& warning : CrowdingWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
   return prediction;
 }
