@@ -1,14 +1,12 @@
 #include "idl/shared_memory.h"
 
 #include <fcntl.h>
-#include <semaphore.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -50,26 +48,6 @@ std::map<std::string, std::vector<std::string>> Segments() {
   return segments;
 }
 
-/// sem_open makes a semaphore under a name of this form, to rename it when it is whole. One that nobody has mapped for
-/// a while stays for ever: its maker was killed in between. It bears no name of Fast DDS, but nobody can want it.
-bool IsHalfMadeSemaphore(const fs::directory_entry& entry) {
-  constexpr std::string_view kForm = "sem.XXXXXX";
-  constexpr auto kWhile = std::chrono::seconds(10);
-  const std::string name = entry.path().filename();
-  std::error_code gone;
-  const auto written = entry.last_write_time(gone);
-  return name.size() == kForm.size() && name.starts_with("sem.") && IsOurs(entry.path()) &&
-         entry.file_size(gone) == sizeof(sem_t) && !gone && fs::file_time_type::clock::now() - written > kWhile;
-}
-
-std::vector<fs::path> HalfMadeSemaphores() {
-  std::vector<fs::path> paths;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(kFolder, error))
-    if (IsHalfMadeSemaphore(entry)) paths.push_back(entry.path());
-  return paths;
-}
-
 /// Names of all files of the folder that some other process maps. This one has no participant any more, but
 /// Fast DDS may not have let go of the segments of peers that died.
 std::set<std::string> MappedNames() {
@@ -102,15 +80,12 @@ bool IsLocked(const std::string& path) {
 std::vector<std::string> StaleSharedMemory() {
   // In this order: a file that a starting process has just made is mapped or locked by the time we look.
   const auto segments = Segments();
-  const auto semaphores = HalfMadeSemaphores();
-  if (segments.empty() && semaphores.empty()) return {};
+  if (segments.empty()) return {};
   const std::set<std::string> mapped = MappedNames();
   std::vector<std::string> stale;
   for (const auto& [segment, files] : segments)
     if (!mapped.contains(segment) && std::none_of(files.begin(), files.end(), IsLocked))
       stale.insert(stale.end(), files.begin(), files.end());
-  for (const fs::path& semaphore : semaphores)
-    if (!mapped.contains(semaphore.filename())) stale.push_back(semaphore);
   return stale;
 }
 

@@ -1,7 +1,6 @@
 // What may go wrong in a run over DDS, with the real processes: each is noticed, named, and cleaned up after.
 
 #include <gmock/gmock.h>
-#include <semaphore.h>
 
 #include "idl/bus.h"
 #include "idl/shared_memory.h"
@@ -54,34 +53,6 @@ TEST(Faults, ADyingServerEndsTheRunByName) {
   EXPECT_THAT(up.err(), HasSubstr("error: physics_server was killed by signal 11 (Segmentation fault)"));
   EXPECT_TRUE(up.Summary()["safety"]["collisions"].is_null()) << "it knew, and did not tell";
   EXPECT_TRUE(NothingIsLeft());
-}
-
-/// What sem_open leaves of a semaphore when its process is killed before it is whole.
-class HalfMadeSemaphore {
- public:
-  HalfMadeSemaphore() : file_(::mkstemp(path_.data())) { EXPECT_EQ(::ftruncate(file_, sizeof(sem_t)), 0); }
-  ~HalfMadeSemaphore() {
-    ::close(file_);
-    ::unlink(path_.c_str());
-  }
-  const std::string& path() const { return path_; }
-  void WasMadeAgo(std::chrono::seconds ago) {
-    std::filesystem::last_write_time(path_, std::filesystem::file_time_type::clock::now() - ago);
-  }
-
- private:
-  std::string path_ = "/dev/shm/sem.XXXXXX";
-  int file_;
-};
-
-TEST(Faults, ASemaphoreThatADeadProcessWasMakingIsSweptAfterAWhile) {
-  using std::chrono::seconds;
-  HalfMadeSemaphore semaphore;
-  semaphore.WasMadeAgo(seconds(1));  // its maker may be about to map it
-  EXPECT_THAT(StaleSharedMemory(), testing::Not(testing::Contains(semaphore.path())));
-  semaphore.WasMadeAgo(seconds(60));
-  SweepSharedMemory();
-  EXPECT_FALSE(std::filesystem::exists(semaphore.path()));
 }
 
 /// Agent 2 is named. Others may be, too: one that is stopped just when it holds a lock of shared memory, on the way
