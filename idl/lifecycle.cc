@@ -1,6 +1,7 @@
 #include "idl/lifecycle.h"
 
 #include <signal.h>
+#include <unistd.h>
 
 #include <utility>
 
@@ -8,6 +9,19 @@ namespace mascot {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
+
+namespace {
+
+constexpr auto kGrace = 5s;
+
+/// Throws. To leave the domain is to wait for its threads, and a law may hang in one of them: SIGALRM comes then.
+template <class Why>
+[[noreturn]] void Leave(const Why& why) {
+  ::alarm(static_cast<unsigned>(kGrace.count()));
+  throw why;
+}
+
+}  // namespace
 
 Lifecycle::Lifecycle(Domain& domain, StopSignal& stop, std::string process, int agent)
     : stop_(stop),
@@ -68,14 +82,14 @@ void Lifecycle::Report(std::uint64_t tick, const Pacing& pacing, const Contacts&
 void Lifecycle::Wait(std::chrono::nanoseconds timeout) {
   const int signal = stop_.Within(timeout);
   domain_.RethrowFailure();
-  if (signal != 0 && signal != SIGCHLD) throw Ended(signal);
-  if (end_requested_) throw Ended(0);
+  if (signal != 0 && signal != SIGCHLD) Leave(Ended(signal));
+  if (end_requested_) Leave(Ended(0));
   if (report_requested_.exchange(false)) Publish();
   // The experiment's only writer is the orchestrator's.
   if (experiment_reader_.matched() > 0)
     joined_ = true;
   else if (joined_)
-    throw std::runtime_error("the orchestrator has gone");
+    Leave(std::runtime_error("the orchestrator has gone"));
 }
 
 void Lifecycle::OnRequest(const mascot_msgs::msg::Request& request) {

@@ -40,7 +40,8 @@ class Lifecycle {
   /// Publishes the counters with the state as it is. Any thread.
   void Report(std::uint64_t tick, const Pacing& pacing, const Contacts& contacts);
   /// Waits for a wake-up, at most `timeout`. Throws Ended when a signal or an END came, and whatever a
-  /// callback of the domain threw; throws std::runtime_error when the orchestrator has left the domain.
+  /// callback of the domain threw; throws std::runtime_error when the orchestrator has left the domain. From then on
+  /// the process has 5 s to leave, too, before SIGALRM.
   void Wait(std::chrono::nanoseconds timeout);
   /// Ends a Wait of the loop's thread. Any thread.
   void Wake() { stop_.Wake(); }

@@ -30,6 +30,14 @@ AgentRange ParseIds(const std::string& text) {
   return *agents;
 }
 
+/// An orchestrator that was killed cannot remove its own shared memory any more: its children do. Fast DDS still
+/// maps what they have read of it, so each starts afresh first, or two would each take the other for a user of it.
+/// Of one that could not leave, the locks on its own go with its files. Async-signal-safe.
+void SweepAfterParent() {
+  ::close_range(STDERR_FILENO + 1, ~0U, 0);
+  ::execl("/proc/self/exe", "sweep", kSweep, nullptr);
+}
+
 /// Joins, runs, and reports a failure to the run before it leaves. Returns the exit code.
 int Join(const ProcessArgs& args, StopSignal& stop, const Run& run) {
   Domain domain(args.options, [&stop] { stop.Wake(); });
@@ -45,10 +53,6 @@ int Join(const ProcessArgs& args, StopSignal& stop, const Run& run) {
     return 1;
   }
 }
-
-/// An orchestrator that was killed cannot remove its own shared memory any more: its children do. Fast DDS still
-/// maps what they have read of it, so each starts afresh first, or two would each take the other for a user of it.
-void SweepAfterParent() { execl("/proc/self/exe", "sweep", kSweep, nullptr); }
 
 }  // namespace
 
@@ -82,6 +86,7 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
     return app.exit(error, std::cout, std::cerr) == 0 ? 0 : 2;
   }
   std::signal(SIGPIPE, SIG_IGN);  // an orchestrator that died must not keep us from cleaning up
+  std::signal(SIGALRM, [](int) { SweepAfterParent(); });  // of one that cannot leave: Lifecycle::Wait
   if (args.parent != 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != args.parent) return 1;  // it died before this line

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 
 extern char** environ;
 
@@ -77,35 +78,36 @@ int ChildLogs::Open(const std::string& process) {
 }
 
 void ChildLogs::Copy() {
-  for (;;) {
+  for (bool closing = false;;) {
     std::vector<pollfd> polled{{wake_[0], POLLIN, 0}};
-    bool open = false;
     {
       const std::lock_guard lock(mutex_);
       for (const auto& stream : streams_) polled.push_back({stream->descriptor, POLLIN, 0});
-      for (const auto& stream : streams_) open |= stream->descriptor >= 0;
-      if (closing_ && !open) return;
+      closing = closing_;
     }
-    poll(polled.data(), polled.size(), -1);
+    // The children have gone by the time of closing; what they started may hold their pipes open for ever.
+    if (poll(polled.data(), polled.size(), closing ? 0 : -1) == 0) break;
     char buffer[256];
-    if (polled[0].revents != 0 && read(wake_[0], buffer, sizeof buffer) < 0) return;
+    if (polled[0].revents != 0 && read(wake_[0], buffer, sizeof buffer) < 0) break;
     const std::lock_guard lock(mutex_);
     for (std::size_t i = 1; i < polled.size(); ++i)
       if (polled[i].revents != 0) Read(*streams_[i - 1]);
   }
+  const std::lock_guard lock(mutex_);
+  for (const auto& stream : streams_) Close(*stream);
+}
+
+void ChildLogs::Close(Stream& stream) {
+  if (!stream.partial.empty()) TakeLine(stream, stream.partial);
+  stream.partial.clear();
+  if (stream.descriptor >= 0) close(std::exchange(stream.descriptor, -1));
 }
 
 void ChildLogs::Read(Stream& stream) {
   char buffer[4096];
   const ssize_t size = read(stream.descriptor, buffer, sizeof buffer);
   if (size < 0 && (errno == EAGAIN || errno == EINTR)) return;
-  if (size <= 0) {
-    if (!stream.partial.empty()) TakeLine(stream, stream.partial);
-    stream.partial.clear();
-    close(stream.descriptor);
-    stream.descriptor = -1;
-    return;
-  }
+  if (size <= 0) return Close(stream);
   stream.partial.append(buffer, static_cast<std::size_t>(size));
   for (std::size_t end; (end = stream.partial.find('\n')) != std::string::npos; stream.partial.erase(0, end + 1))
     TakeLine(stream, stream.partial.substr(0, end));

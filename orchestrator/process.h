@@ -23,7 +23,7 @@ std::filesystem::path ProgramFolder();
 class ChildLogs {
  public:
   ChildLogs(const RunFolder& folder, Console& console);
-  ~ChildLogs();  ///< when every child has closed its end, or has gone
+  ~ChildLogs();  ///< when what is in the pipes is copied; for after the children have gone
   ChildLogs(const ChildLogs&) = delete;
   ChildLogs& operator=(const ChildLogs&) = delete;
 
@@ -36,6 +36,7 @@ class ChildLogs {
   struct Stream;
   void Copy();
   void Read(Stream& stream);
+  void Close(Stream& stream);
   void TakeLine(Stream& stream, const std::string& line);
 
   const RunFolder& folder_;

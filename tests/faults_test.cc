@@ -87,6 +87,53 @@ TEST(Faults, NobodyOutlivesAKilledOrchestrator) {
   EXPECT_FALSE(recording.complete);
 }
 
+/// An experiment of so many agents whose law is this Python text.
+std::string Python(const ScratchFolder& folder, int agents, const std::string& text, const std::string& more = "") {
+  WriteFile(folder.File("law.toml"), "[run]\nduration_s = 1.0\n[agents]\ncount = " + std::to_string(agents) +
+                                         "\n[output]\nsave_plot = false\n" + more +
+                                         "[law]\nname = 'custom'\npython = '''\n" + text + "'''\n");
+  return folder.File("law.toml");
+}
+
+TEST(Faults, NoLawThatHangsOutlivesAKilledOrchestrator) {
+  ScratchFolder folder;
+  const std::string law =
+      "import time\ndef control(t, me, neighbours):\n  if t > 0.1:\n    print('I hang', flush=True)\n"
+      "    time.sleep(1000)\n  return [0, 0]\n";
+  Up up(folder, "run", Python(folder, 2, law));
+  ASSERT_TRUE(Until([&] { return up.Said("[agent_1] I hang"); }));
+  const pid_t agent = up.Child("agent_1");
+  ASSERT_GT(agent, 0);
+  up.Signal(SIGKILL);
+  EXPECT_EQ(up.Wait(), 128 + SIGKILL);
+  EXPECT_TRUE(IsGone(agent));
+  EXPECT_TRUE(NothingIsLeft());
+}
+
+TEST(Faults, ARunDoesNotWaitForWhatALawHasStarted) {
+  ScratchFolder folder;  // laws are made for check, too, and for what is measured beside the run
+  const std::string law =
+      "import subprocess\ndef start(me, params):\n  helper = subprocess.Popen(['sleep', '1000'])\n"
+      "  open('" +
+      folder.File("pids") +
+      "', 'a').write(f'{helper.pid}\\n')\n"
+      "def control(t, me, neighbours):\n  return [0, 0]\n";
+  Up up(folder, "run", Python(folder, 1, law));
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  int helpers = 0;
+  std::istringstream pids(ReadFile(folder.File("pids")));
+  for (pid_t pid = 0; pids >> pid; ++helpers) EXPECT_EQ(kill(pid, SIGKILL), 0) << "it lived";
+  EXPECT_GE(helpers, 1);
+}
+
+TEST(Faults, ASlowLawIsNoFault) {
+  ScratchFolder
+      folder;  // what is measured beside the run takes 64 rows' time in the law times all agents: over a second
+  const std::string law = "import time\ndef control(t, me, neighbours):\n  time.sleep(0.01)\n  return [0, 0]\n";
+  Up up(folder, "run", Python(folder, 4, law), {"--set", "run.agent_timeout_s=1.0"});
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+}
+
 struct Interruption {
   int signal;
   int exit;
