@@ -39,10 +39,11 @@ struct SweepArgs {
   SweepPlan::Words words;
   int jobs = 0;
   std::string out = "sweep.csv", metric = kUsualMetric;
-  bool force = false, no_plot = false, quiet = false;
+  bool force = false, no_plot = false, quiet = false, metric_given = false;
 };
 
 /// What every run of a sweep is made from: the experiment's text as it was at the start, whoever edits it meanwhile.
+/// (Files that it names are read for each run.)
 struct Sweep {
   std::string name;  ///< of the file, as typed
   std::string text;
@@ -70,29 +71,39 @@ std::string Fly(const Sweep& sweep, std::size_t run) {
   return SummaryJson(experiment, prediction, meter, result, facts);
 }
 
-/// Tasks of the pool: runs, then the same runs again, to be read and checked only.
+/// Tasks of the pool: runs, then the same runs again, to be read and checked only; of those the resolved experiment.
 WorkerPool::Work WorkOf(const Sweep& sweep) {
   return [&sweep](std::size_t task) -> std::string {
-    if (task >= sweep.plan.size()) {
-      sweep.Load(task - sweep.plan.size());
-      return "";
-    }
+    if (task >= sweep.plan.size()) return sweep.Load(task - sweep.plan.size()).document.Resolved();
     nlohmann::json cells = SweepMetrics(Fly(sweep, task));
     return cells.dump();
   };
 }
 
-/// Refuses a sweep none of whose runs is a valid experiment, with the mistakes of the first.
-void CheckThatSomeRunIsValid(const Sweep& sweep, WorkerPool& pool) {
-  std::string first;
+struct Interrupted {
+  int signal;
+};
+
+/// Throws Interrupted if a signal has come.
+void ThrowIfInterrupted(StopSignal& stop) {
+  const int signal = stop.Within(std::chrono::nanoseconds::zero());
+  if (signal != 0 && signal != SIGCHLD) throw Interrupted{signal};
+}
+
+/// The first run that is a valid experiment, resolved. Refuses a sweep that has none, with the mistakes of the first.
+std::string FirstValid(const Sweep& sweep, WorkerPool& pool, StopSignal& stop) {
+  std::string mistakes;
   for (std::size_t run = 0; run < sweep.plan.size(); ++run) {
     pool.Start(sweep.plan.size() + run);
     std::optional<WorkerPool::Done> done;
-    while (!done) done = pool.Wait(std::chrono::seconds(1));
-    if (done->failure.empty()) return;
-    if (first.empty()) first = done->failure;
+    while (!done) {
+      done = pool.Wait(std::chrono::milliseconds(100));
+      ThrowIfInterrupted(stop);
+    }
+    if (done->failure.empty()) return done->answer;
+    if (mistakes.empty()) mistakes = done->failure;
   }
-  throw ConfigError({first});
+  throw ConfigError({mistakes});
 }
 
 class Progress {
@@ -131,7 +142,6 @@ SweepFile::Cells RowOf(const SweepPoint& point, const WorkerPool::Done& done) {
 
 struct Outcome {
   std::size_t flown = 0, failed = 0;
-  int signal = 0;
 };
 
 /// Every run that the table lacks.
@@ -151,10 +161,7 @@ Outcome WorkOff(const SweepPlan& plan, WorkerPool& pool, SweepFile& table, bool 
       outcome.failed += !done->failure.empty();
     }
     progress.Show(outcome.flown, outcome.failed);
-    const int signal = stop.Within(std::chrono::nanoseconds::zero());
-    if (signal == 0 || signal == SIGCHLD) continue;
-    outcome.signal = signal;
-    break;
+    ThrowIfInterrupted(stop);
   }
   progress.End();
   return outcome;
@@ -169,13 +176,15 @@ SweepFile::Cells ColumnsOf(const SweepPlan& plan) {
   return columns;
 }
 
-std::string PlanText(const Sweep& sweep) {
+/// By which a table is known: the experiment as it was typed, a resolved one with the files that it names, what each
+/// run sets.
+std::string PlanText(const Sweep& sweep, const std::string& resolved) {
   std::string text;
   for (std::size_t run = 0; run < sweep.plan.size(); ++run) {
     for (const Override& override : sweep.plan[run].overrides) text += override.key + "=" + override.value + " ";
     text += "\n";
   }
-  return sweep.text + "\n# runs of the sweep\n" + text;
+  return sweep.text + "\n# its first valid run\n" + resolved + "\n# runs of the sweep\n" + text;
 }
 
 void CheckMetric(const std::string& metric) {
@@ -187,33 +196,60 @@ void CheckMetric(const std::string& metric) {
                      metric + "'" + (nearest ? " (did you mean \"" + *nearest + "\"?)" : "")});
 }
 
+/// The picture goes beside the table, under the same name.
+void CheckOut(const std::string& out) {
+  if (fs::path(out).extension() == ".png")
+    throw ConfigError({"--out: expected the table's file, such as sweep.csv, got '" + out + "', the picture's"});
+}
+
+/// Two keys can be drawn, or seeds alone.
+bool IsDrawable(const SweepArgs& args, const SweepPlan& plan) {
+  constexpr std::size_t kMostKeys = 2;
+  if (args.no_plot || plan.size() < 2) return false;
+  if (plan.varied().size() > kMostKeys && args.metric_given)
+    throw ConfigError({"--plot: expected at most 2 keys of several values to draw over, got " +
+                       std::to_string(plan.varied().size())});
+  return plan.varied().size() <= kMostKeys;
+}
+
 int Picture(const SweepArgs& args, const SweepPlan& plan, StopSignal& stop) {
   std::vector<std::string> words{args.out, fs::path(args.out).replace_extension(".png"), args.metric};
   words.insert(words.end(), plan.varied().begin(), plan.varied().end());
   return RunScript("plot_sweep.py", words, stop);
 }
 
-int Run(const SweepArgs& args) {
-  StopSignal stop;
-  CheckMetric(args.metric);
-  const Sweep sweep{args.config, ReadRegularFile(args.config), SweepPlan(args.words)};
+int FlyAll(const SweepArgs& args, const Sweep& sweep, bool drawable, StopSignal& stop) {
   WorkerPool pool(args.jobs > 0 ? args.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency())),
                   WorkOf(sweep));
-  CheckThatSomeRunIsValid(sweep, pool);
-  SweepFile table(args.out, ColumnsOf(sweep.plan), PlanText(sweep), args.force);
-  const Outcome outcome = WorkOff(sweep.plan, pool, table, args.quiet, stop);
-  if (outcome.signal != 0) {
+  const std::string plan = PlanText(sweep, FirstValid(sweep, pool, stop));
+  SweepFile table(args.out, ColumnsOf(sweep.plan), plan, args.force);
+  Outcome outcome;
+  try {
+    outcome = WorkOff(sweep.plan, pool, table, args.quiet, stop);
+  } catch (const Interrupted&) {
     std::cerr << "interrupted: " << table.rows() << " of " << sweep.plan.size()
               << " runs are in the table; the same command goes on with the others\n";
-    return 128 + outcome.signal;
+    throw;
   }
   table.Sort();
-  const bool drawable = !args.no_plot && sweep.plan.varied().size() <= 2 && sweep.plan.size() > 1;
   const int picture = drawable ? Picture(args, sweep.plan, stop) : 0;
   if (!args.quiet)
     std::cout << sweep.plan.size() << " runs, " << outcome.failed << " of those flown now failed: " << args.out << "\n";
   if (outcome.flown > 0 && outcome.failed == outcome.flown) return 1;
   return picture;
+}
+
+int Run(const SweepArgs& args) {
+  StopSignal stop;
+  CheckMetric(args.metric);
+  CheckOut(args.out);
+  const Sweep sweep{args.config, ReadRegularFile(args.config), SweepPlan(args.words)};
+  const bool drawable = IsDrawable(args, sweep.plan);
+  try {
+    return FlyAll(args, sweep, drawable, stop);
+  } catch (const Interrupted& interrupted) {
+    return 128 + interrupted.signal;
+  }
 }
 
 }  // namespace
@@ -226,19 +262,30 @@ std::function<int()> SetUpSweep(CLI::App& command) {
                   "a key and its values: KEY=A:STEP:B, KEY=V1,V2,..., or one value; every combination is run")
       ->type_name("KEY=VALUES")
       ->allow_extra_args(false);
-  command.add_option("--random", args->words.randoms, "a key and the range that its values are drawn from")
-      ->type_name("KEY=MIN:MAX[:log]")
-      ->allow_extra_args(false);
-  command.add_option("--samples", args->words.samples, "draws of all --random keys")
-      ->check(CLI::Range(1, 10'000'000))
-      ->type_name("N");
+  auto* random =
+      command.add_option("--random", args->words.randoms, "a key and the range that its values are drawn from")
+          ->type_name("KEY=MIN:MAX[:log]")
+          ->allow_extra_args(false);
+  auto* samples = command.add_option("--samples", args->words.samples, "draws of all --random keys")
+                      ->check(CLI::Range(1, 10'000'000))
+                      ->type_name("N");
+  random->needs(samples);
+  samples->needs(random);
   command.add_option("--seeds", args->words.seeds, "each combination with each of these: A..B or A,B,...")
       ->type_name("SEEDS");
   command.add_option("--jobs", args->jobs, "processes at work (default: one per core)")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
   command.add_option("--out", args->out, "the table (default: sweep.csv)")->type_name("FILE");
-  command.add_option("--plot", args->metric, "the column that the picture shows")->type_name("COLUMN");
+  command
+      .add_option_function<std::string>(
+          "--plot",
+          [args](const std::string& column) {
+            args->metric = column;
+            args->metric_given = true;
+          },
+          "the column that the picture shows")
+      ->type_name("COLUMN");
   command.add_flag("--no-plot", args->no_plot, "no picture");
   command.add_flag("--force", args->force, "begin anew where --out holds another sweep");
   command.add_flag("--quiet", args->quiet, "print errors only");

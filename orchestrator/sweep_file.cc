@@ -66,8 +66,8 @@ SweepFile::SweepFile(fs::path path, const Cells& columns, const std::string& pla
                          "(--force begins anew)"});
     ReadRows(ReadAll(path_), header_);
   }
+  WriteAll();  // first: rows never stand under another sweep's plan
   Replace(plan_path, plan);
-  WriteAll();
   fd_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (fd_ < 0) throw std::runtime_error(path_.string() + ": cannot be opened: " + std::strerror(errno));
 }
@@ -88,8 +88,9 @@ void SweepFile::ReadRows(const std::string& text, const std::string& header) {
     if (error != std::errc() || rest == line.data() + line.size() || *rest != ',')
       throw ConfigError({"--out " + path_.string() + ": expected rows that begin with a run's number, got '" +
                          line.substr(0, 40) + "'"});
-    rows_.emplace(run, line);
     begin = end + 1;
+    if (line.find(",the process ") != line.npos) continue;  // it died, of whatever: it is flown again
+    rows_.emplace(run, line);
   }
 }
 

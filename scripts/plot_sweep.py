@@ -16,6 +16,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+import matplotlib.ticker
 import numpy as np
 
 sys.dont_write_bytecode = True  # the scripts may stand where nobody may write
@@ -23,6 +24,7 @@ from figure_style import OKABE_ITO, STYLE
 
 BLUE = OKABE_ITO[0]
 TICKS_MAX = 12
+BINS_MAX = 50
 DECADES = 2  # a column that spans more is drawn on a log scale
 
 
@@ -78,9 +80,15 @@ def by_cells(rows):
 
 
 def draw_histogram(ax, rows, column):
-    ax.hist([value for _, value in rows], bins="auto", color=BLUE)
+    values = np.array([value for _, value in rows])
+    bins = min(BINS_MAX, 1 + int(np.sqrt(values.size)))
+    if is_wide(values):
+        bins = np.geomspace(values.min(), values.max(), bins + 1)
+        ax.set_xscale("log")
+    ax.hist(values, bins=bins, color=BLUE, edgecolor="white", linewidth=0.5)
     ax.set_xlabel(column)
     ax.set_ylabel("runs")
+    ax.yaxis.set_major_locator(matplotlib.ticker.MaxNLocator(integer=True))
 
 
 def draw_curve(ax, rows, column, key):

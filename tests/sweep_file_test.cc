@@ -48,6 +48,17 @@ TEST_F(SweepFileTest, GoesOnWhereItEndedAtWhateverByteItWasCut) {
   }
 }
 
+TEST_F(SweepFileTest, ForgetsRunsWhoseProcessDied) {
+  {
+    SweepFile file(path_, kColumns, "plan", false);
+    file.Add(0, {"0.5", "no such thing"});
+    file.Add(1, {"0.5", "the process was killed by signal 9 (Killed)"});
+  }
+  const SweepFile file(path_, kColumns, "plan", false);
+  EXPECT_TRUE(file.Has(0));
+  EXPECT_FALSE(file.Has(1)) << "it is flown again";
+}
+
 TEST_F(SweepFileTest, IsNotMixedWithAnotherSweep) {
   { SweepFile file(path_, kColumns, "plan", false); }
   EXPECT_THAT(

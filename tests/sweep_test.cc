@@ -131,6 +131,16 @@ TEST_F(SweepTest, CanBeInterruptedAndSaysHowToGoOn) {
   EXPECT_THAT(sweep.err(), HasSubstr(" of 5000 runs are in the table; the same command goes on with the others"));
 }
 
+TEST_F(SweepTest, CanBeInterruptedWhileItLooksForAValidRun) {
+  Running sweep(std::string(MASCOT_BINARY_DIR) + "/orchestrator",
+                {"sweep", config_, "--out", out_, "--set", "law.p_gain=-1", "--seeds", "1..1000000"},
+                folder_.File("looks"));
+  const std::string pid = std::to_string(sweep.pid());
+  ASSERT_TRUE(Until([&] { return !ReadFile("/proc/" + pid + "/task/" + pid + "/children").empty(); })) << "no worker";
+  ::kill(sweep.pid(), SIGINT);
+  EXPECT_EQ(sweep.Wait(), 130);
+}
+
 TEST_F(SweepTest, KeepsTheErrorOfARunThatFailsAndGoesOn) {
   WriteFile(
       config_,
@@ -168,7 +178,28 @@ TEST_F(SweepTest, RefusesWhatCannotBeSwept) {
           "error: --plot: expected a column of the table, such as consensus.final_disagreement_m, got "
           "'consensus.final_disagreement' (did you mean \"consensus.final_disagreement_m\"?)");
   refuses("--seeds 5..1", "error: --seeds: expected a..b or a,b,... of integers from 0 on, got '5..1'");
-  refuses("--samples 0", "error: --samples: ");
+  refuses("--random law.p_gain=0:1 --samples 0", "error: --samples: ");
+  refuses("--samples 3", "error: --samples requires --random");
+  refuses("--random law.p_gain=0:1", "error: --random requires --samples");
+  refuses("--set law.p_gain=1,2 --set law.beta=1,2 --set law.v_gain=0,1 --plot consensus.rate_per_s",
+          "error: --plot: expected at most 2 keys of several values to draw over, got 3");
+  out_ = folder_.File("a.png");
+  refuses("--seeds 1..2",
+          "error: --out: expected the table's file, such as sweep.csv, got '" + out_ + "', the picture's");
+}
+
+TEST_F(SweepTest, DoesNotGoOnWithAnotherLaw) {
+  const auto law = [&](const std::string& gain) {
+    WriteFile(folder_.File("law.py"), "def control(t, me, neighbours):\n    return [" + gain + ", 0.0]\n");
+  };
+  WriteFile(config_, "[run]\nduration_s = 1.0\n[agents]\ncount = 2\n[law]\nname = 'custom'\nfile = 'law.py'\n");
+  law("0.1");
+  ASSERT_EQ(Sweep("--seeds 1..2 --no-plot").exit_code, 0);
+  EXPECT_EQ(Sweep("--seeds 1..2 --no-plot").exit_code, 0) << "the same";
+  law("0.2");
+  const Ran other = Sweep("--seeds 1..2 --no-plot");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.output, HasSubstr("expected a new file, or one of this very sweep, got another"));
 }
 
 TEST_F(SweepTest, DoesNotMixTwoSweepsInOneTable) {
@@ -192,6 +223,11 @@ TEST_F(SweepTest, DrawsCurvesMapsAndHistograms) {
     EXPECT_EQ(ran.exit_code, 0) << ran.output;
     EXPECT_THAT(ReadFile(folder_.File("sweep.png")), testing::StartsWith("\x89PNG")) << words;
   }
+  // Values from rounding errors to metres.
+  WriteFile(config_,
+            "[run]\nduration_s = 100.0\n[agents]\ncount = 5\nmodel = 'double_integrator'\n[graph]\nrandom = { "
+            "kind = 'erdos_renyi', p = 0.8 }\n");
+  EXPECT_EQ(Sweep("--seeds 1..30 --force").exit_code, 0);
   const Ran nothing = Sweep("--seeds 1..2 --force --plot consensus.predicted.minmax_time_s");
   EXPECT_EQ(nothing.exit_code, 1);
   EXPECT_THAT(nothing.output, HasSubstr("error: " + out_ + ": no run has a consensus.predicted.minmax_time_s"));
