@@ -1,13 +1,21 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 
 #include "agent/laws.h"
 #include "agent/node.h"
+#include "experiment/processes.h"
 #include "idl/privileges.h"
 #include "idl/process_main.h"
 #include "idl/standard_streams.h"
 
 namespace {
+
+/// Among the processes of the run, of which the server is the first.
+int Place(const mascot::Experiment& experiment, mascot::AgentRange agents) {
+  const auto processes = mascot::AgentProcesses(experiment);
+  return 1 + static_cast<int>(std::ranges::find(processes, agents) - processes.begin());
+}
 
 void RunAgent(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot_msgs::msg::Experiment& message,
               mascot::AgentRange agents) {
@@ -23,7 +31,7 @@ void RunAgent(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot
               << (heard.empty() ? " nobody" : heard) << std::endl;
   }
   mascot::Node node(domain, lifecycle, experiment, agents);
-  mascot::TakePrivileges(experiment, agents.first);  // with all threads there
+  mascot::TakePrivileges(experiment, Place(experiment, agents));  // with all threads there
   node.Run();
 }
 

@@ -6,6 +6,7 @@
 #include <sched.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -65,6 +66,7 @@ void Await(const Condition& condition) {
 // --- agents -----------------------------------------------------------------------------------------
 
 [[noreturn]] void RunAgent(const Setting& setting, int id) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
   const Graph graph = MakeTopology(setting.graph, setting.agents);
   Domain domain(Options(setting, AgentName(id), 2), [] {});
   Writer<CommandType> commands(domain, Topic::Command(id));
@@ -173,7 +175,9 @@ int main(int argc, char** argv) {
   if (argc == 7 && std::string(argv[1]) == "agent")
     RunAgent({std::atoi(argv[2]), argv[3], std::atoi(argv[4]), argv[5]}, std::atoi(argv[6]));
   const bool batch = argc == 5 && std::string(argv[4]) == "batch";
-  if (argc != 4 && !batch) {
+  const bool known =
+      argc >= 4 && std::atoi(argv[1]) > 0 && (std::string(argv[2]) == "ring" || std::string(argv[2]) == "complete");
+  if (!known || (argc != 4 && !batch)) {
     std::fprintf(stderr, "usage: bare_exchange AGENTS ring|complete SECONDS [batch]\n");
     return 2;
   }

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <iostream>
 #include <string>
-#include <thread>
 
 namespace mascot {
 namespace {
@@ -28,6 +27,18 @@ bool ForEachThread(const Change& change) {
   return true;
 }
 
+/// The place-th, and round again, of the cores that this process may use.
+cpu_set_t CoreOf(int place) {
+  cpu_set_t allowed, core;
+  CPU_ZERO(&core);
+  if (::sched_getaffinity(0, sizeof allowed, &allowed) != 0 || CPU_COUNT(&allowed) == 0) return core;
+  int skip = place % CPU_COUNT(&allowed);
+  std::size_t number = 0;
+  while (!CPU_ISSET(number, &allowed) || skip-- > 0) ++number;
+  CPU_SET(number, &core);
+  return core;
+}
+
 bool SetPolicy(int policy, int priority) {
   const sched_param parameters{.sched_priority = priority};
   return ForEachThread([&](pid_t thread) { return ::sched_setscheduler(thread, policy, &parameters); });
@@ -39,9 +50,7 @@ void TakePrivileges(const Experiment& experiment, int place) {
   const auto& run = experiment.run;
   if (run.lock_memory && ::mlockall(MCL_CURRENT | MCL_FUTURE) != 0) Warn("lock_memory", "memory cannot be locked");
   if (run.pin_cores) {
-    cpu_set_t core;
-    CPU_ZERO(&core);
-    CPU_SET(static_cast<std::size_t>(place) % std::max(1u, std::thread::hardware_concurrency()), &core);
+    const cpu_set_t core = CoreOf(place);
     if (!ForEachThread([&](pid_t thread) { return ::sched_setaffinity(thread, sizeof core, &core); }))
       Warn("pin_cores", "threads cannot be pinned");
   }

@@ -139,21 +139,22 @@ std::string WireAudit::Violation(const Experiment& experiment) const {
 
 bool WireAudit::IsComplete(const Experiment& experiment) const {
   const std::lock_guard lock(mutex_);
-  std::set<std::pair<AgentRange, Topic>> seen;
+  std::set<std::pair<AgentRange, Topic>> reading, writing;
   for (const auto& [guid, endpoint] : endpoints_) {
     const auto agents = AgentsOf(OwnerOf(guid));
     const auto topic = Topic::Parse(endpoint.topic);
-    if (agents && topic) seen.emplace(*agents, *topic);
+    if (agents && topic) (endpoint.reads ? reading : writing).emplace(*agents, *topic);
   }
   const bool bundled = experiment.network.delivery == Delivery::kBundled;
   for (const AgentRange& process : AgentProcesses(experiment)) {
-    const auto has = [&](const Topic& topic) { return seen.contains({process, topic}); };
+    const auto reads = [&](const Topic& topic) { return reading.contains({process, topic}); };
+    const auto writes = [&](const Topic& topic) { return writing.contains({process, topic}); };
     for (int id = process.first; id <= process.last; ++id) {
-      if (!has(bundled ? Topic::Bundle(id) : Topic::State(id)) || !has(Topic::Command(id))) return false;
-      if (experiment.agent(id).sends_messages && !has(Topic::Message(id))) return false;
+      if (!reads(bundled ? Topic::Bundle(id) : Topic::State(id)) || !writes(Topic::Command(id))) return false;
+      if (experiment.agent(id).sends_messages && !writes(Topic::Message(id))) return false;
       for (const Graph::Neighbour& heard : experiment.graph.HeardBy(id)) {
-        if (!bundled && !has(Topic::State(heard.id))) return false;
-        if (experiment.agent(heard.id).sends_messages && !has(Topic::Message(heard.id))) return false;
+        if (!bundled && !reads(Topic::State(heard.id))) return false;
+        if (experiment.agent(heard.id).sends_messages && !reads(Topic::Message(heard.id))) return false;
       }
     }
   }

@@ -6,9 +6,11 @@
 
 #include <atomic>
 
+#include "agent/laws.h"
 #include "idl/stop_signal.h"
 #include "idl/wire.h"
 #include "orchestrator/domain_lock.h"
+#include "orchestrator/wire_audit.h"
 #include "tests/orchestrator.h"
 
 namespace mascot::test {
@@ -105,6 +107,43 @@ class Bus : public testing::Test {
   Domain here_{Options("here"), [] {}};
   Domain there_{Options("there"), [] {}};
 };
+
+TEST_F(Bus, IsAuditedForReadersAndWritersOfMessagesApart) {
+  const Experiment two = LoadExperiment(
+      Section::FromText(
+          "[run]\nduration_s = 1.0\n[agents]\ncount = 2\n[network]\nagents_per_process = 2\n[law]\nname = "
+          "'custom'\npython = '''\ndef control(t, me, heard):\n  return [0, 0]\ndef message(me):\n  "
+          "return [1]\n'''\n",
+          "a.toml"),
+      "a");
+  WireAudit audit;
+  Domain auditor(
+      Options("orchestrator"), [] {}, &audit);
+  Domain agents(Options("agents_1-2"), [] {});
+  std::vector<std::unique_ptr<Reader<StateType>>> states;
+  std::vector<std::unique_ptr<Writer<CommandType>>> commands;
+  std::vector<std::unique_ptr<Writer<MessageType>>> messages;
+  std::vector<std::unique_ptr<Reader<MessageType>>> ears;
+  for (int id : {1, 2}) {
+    states.push_back(std::make_unique<Reader<StateType>>(agents, Topic::State(id), [](const auto&) {}));
+    commands.push_back(std::make_unique<Writer<CommandType>>(agents, Topic::Command(id)));
+    messages.push_back(std::make_unique<Writer<MessageType>>(agents, Topic::Message(id)));
+  }
+  const auto hear = [&](int id) {
+    ears.push_back(std::make_unique<Reader<MessageType>>(agents, Topic::Message(id), [](const auto&) {}));
+  };
+  hear(1);
+  // What is made last is discovered last.
+  Writer<StatusType> last_writer(agents, Topic::Status());
+  Reader<RequestType> last_reader(agents, Topic::Request(), [](const auto&) {});
+  Reader<StatusType> finds_writer(auditor, Topic::Status(), [](const auto&) {});
+  Writer<RequestType> finds_reader(auditor, Topic::Request());
+  ASSERT_TRUE(Until([&] { return finds_writer.matched() > 0 && finds_reader.matched() > 0; }));
+  EXPECT_FALSE(audit.IsComplete(two)) << "nobody reads the messages of agent 2";
+  hear(2);
+  EXPECT_TRUE(Until([&] { return audit.IsComplete(two); }));
+  EXPECT_EQ(audit.Violation(two), "");
+}
 
 TEST_F(Bus, RawBytesAreThoseOfTheSerialiserWithZeroedPadding) {
   Writer<StateType> writer(here_, Topic::State(1));
