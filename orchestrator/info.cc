@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -24,6 +25,7 @@ struct Findings {
   std::uint64_t size_bytes = 0;
   McapContents contents;
   std::optional<std::uint64_t> ticks;  ///< if it is complete and has topics with a sample of every tick
+  std::optional<std::uint64_t> planned_ticks;  ///< of the experiment, if that is attached
   std::string reason;                  ///< why it is not complete; empty if it is
 
   bool complete() const { return reason.empty(); }
@@ -51,13 +53,26 @@ double DurationSeconds(const McapContents& contents) {
   return first ? Seconds(*last - *first) : 0;
 }
 
-bool IsRealtime(const McapContents& contents) {
-  const auto config = contents.attachments.find("config.toml");
-  if (config == contents.attachments.end()) return false;
+struct Planned {
+  bool realtime = false;
+  std::optional<std::uint64_t> ticks;
+};
+
+/// What the attached experiment says; nothing if there is none, or somebody else's.
+Planned PlanOf(const McapContents& contents) {
+  const auto attached = contents.attachments.find("config.toml");
+  if (attached == contents.attachments.end()) return {};
   try {
-    return Section::FromText(config->second, config->first).Child("run").Text("mode", "lockstep") == "realtime";
-  } catch (const ConfigError&) {  // somebody else's attachment
-    return false;
+    Section config = Section::FromText(attached->second, attached->first);
+    Section run = config.Child("run"), control = config.Child("control");
+    Planned planned{.realtime = run.Text("mode", "lockstep") == "realtime", .ticks = {}};
+    if (!run.Has("duration_s") || !control.Has("rate_hz")) return planned;
+    const double duration_s = run.Number("duration_s", 0, 1e9);
+    const auto rate_hz = static_cast<double>(control.Integer("rate_hz", 1, 1'000'000));
+    planned.ticks = static_cast<std::uint64_t>(std::llround(duration_s * rate_hz)) + 1;
+    return planned;
+  } catch (const ConfigError&) {
+    return {};
   }
 }
 
@@ -70,9 +85,8 @@ bool HasEveryTick(const ChannelInfo& channel, bool realtime) {
 
 /// The proof: every channel counts 0..n-1, and n is the number of ticks wherever there is a sample of each.
 /// Returns what contradicts it, or nothing.
-std::string Prove(const McapContents& contents, std::optional<std::uint64_t>& ticks) {
+std::string Prove(const McapContents& contents, bool realtime, std::optional<std::uint64_t>& ticks) {
   if (!contents.complete) return contents.damage;
-  const bool realtime = IsRealtime(contents);
   const ChannelInfo* reference = nullptr;
   for (const auto& [id, channel] : contents.channels) {
     if (channel.gaps > 0) return channel.topic + ": gaps in its sequence numbers: " + std::to_string(channel.gaps);
@@ -91,7 +105,9 @@ Findings Inspect(const std::string& run) {
   findings.file = FindRecording(run);
   findings.contents = ReadMcap(findings.file);
   findings.size_bytes = std::filesystem::file_size(findings.file);
-  findings.reason = Prove(findings.contents, findings.ticks);
+  const Planned planned = PlanOf(findings.contents);
+  findings.planned_ticks = planned.ticks;
+  findings.reason = Prove(findings.contents, planned.realtime, findings.ticks);
   return findings;
 }
 
@@ -122,7 +138,8 @@ Json ToJson(const Findings& findings) {
           {"topics", topics},
           {"attachments", attachments},
           {"metadata", contents.metadata},
-          {"ticks", findings.ticks ? Json(*findings.ticks) : Json()},
+          {"ticks", OrNull(findings.ticks)},
+          {"planned_ticks", OrNull(findings.planned_ticks)},
           {"complete", findings.complete()},
           {"reason", findings.reason}};
 }
@@ -162,7 +179,12 @@ void PrintText(std::ostream& out, const Findings& findings) {
     out << "metadata:     " << name << "\n";
     for (const auto& [key, value] : entries) out << "              " << key << " = " << value << "\n";
   }
-  if (findings.ticks) out << "ticks:        " << *findings.ticks << ", recorded without a gap\n";
+  if (findings.ticks) {
+    const bool early = findings.planned_ticks && *findings.ticks < *findings.planned_ticks;
+    out << "ticks:        " << *findings.ticks;
+    if (early) out << " of " << *findings.planned_ticks << ": the run ended early";
+    out << ", recorded without a gap\n";
+  }
   out << "complete: " << (findings.complete() ? "yes" : "no (" + findings.reason + ")") << "\n";
 }
 

@@ -106,6 +106,14 @@ TEST(Info, InRealTimeALateCommandIsNoLoss) {
   EXPECT_THAT(said.out, EndsWith("ticks:        101, recorded without a gap\ncomplete: yes\n"));
 }
 
+TEST(Info, SaysThatARunEndedEarly) {
+  const ScratchFolder scratch;
+  WriteRun(scratch.File("run.mcap"), 101, "[run]\nduration_s = 30.0\n[control]\nrate_hz = 10\n");
+  EXPECT_THAT(Info({scratch.File("run.mcap")}).out,
+              EndsWith("ticks:        101 of 301: the run ended early, recorded without a gap\ncomplete: yes\n"));
+  EXPECT_EQ(nlohmann::json::parse(Info({"--json", scratch.File("run.mcap")}).out).at("planned_ticks"), 301);
+}
+
 /// A closed file, without CRCs, with a channel whose sequence goes 0, 2.
 void WriteGap(const std::string& path) {
   using mcap::Op;
