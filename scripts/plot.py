@@ -230,7 +230,8 @@ def mark_time(axis, t_s, label):
 def disagreement_figure(run):
     distance_m = disagreement(run)
     to = "the mean" if run.leader is None else f"agent {run.id[run.leader]}"
-    figure, axis = log_panel(run, distance_m, f"disagreement (distance to {to})", f"distance to {to} (m)")
+    what = f"distance from its place, seen from {to}" if np.any(run.places) else f"distance to {to}"
+    figure, axis = log_panel(run, distance_m, f"disagreement ({what})", f"{what} (m)")
     largest_m = np.maximum(distance_m.max(axis=1), FLOOR_M)
     axis.plot(run.t, largest_m, color="0.1", linewidth=3, alpha=0.25, zorder=1, label="largest")
     axis.axhline(0.02 * largest_m[0], color="0.3", linestyle="--", linewidth=1, label="2 % of the start")

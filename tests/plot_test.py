@@ -179,6 +179,7 @@ class WhatIsInThem(PlotTest):
         states["position"] = states["position"] + np.array(offsets)
         summary = {"formation": {"offsets_m": offsets}}
         axis = self.figure("disagreement", config=config, summary=summary, states=states).axes[0]
+        self.assertEqual(axis.get_ylabel(), "distance from its place, seen from the mean (m)")
         np.testing.assert_allclose(self.lines(axis)["largest"].get_ydata(), 5 * np.exp(-arrays()["t"]), rtol=1e-12)
 
     def test_obstacles_are_drawn_where_they_stand(self):
