@@ -85,7 +85,7 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
   } catch (const CLI::ParseError& error) {
     return app.exit(error, std::cout, std::cerr) == 0 ? 0 : 2;
   }
-  std::signal(SIGPIPE, SIG_IGN);  // an orchestrator that died must not keep us from cleaning up
+  std::signal(SIGPIPE, SIG_IGN);                          // an orchestrator that died must not keep us from cleaning up
   std::signal(SIGALRM, [](int) { SweepAfterParent(); });  // of one that cannot leave: Lifecycle::Wait
   if (args.parent != 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);

@@ -204,8 +204,8 @@ std::optional<Hub::Status> DdsRun::ServerReport() const {
   return server;
 }
 
-/// Where the run failed, but not the server: it is told to end, and so to report. Of a server that ended by itself: that
-/// it has gone may be known before what it said last.
+/// Where the run failed, but not the server: it is told to end, and so to report. Of a server that ended by itself:
+/// that it has gone may be known before what it said last.
 void DdsRun::AwaitLastWords() {
   if (result_.failure.empty() || server_killed_ || recorder_->newest_tick() < 0) return;
   if (!server_failed_) hub_->Ask(Ask::kEnd, result_.failure.substr(0, 1000));

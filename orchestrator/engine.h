@@ -11,10 +11,10 @@ namespace mascot {
 
 /// How a run went, from whichever engine ran it.
 struct EngineResult {
-  std::string failure;   ///< empty: it ran to its end, or was stopped in order
-  int signal = 0;        ///< the signal that stopped it early, if one did
-  double wall_s = 0;     ///< from publishing tick 0 to the last command gathered
-  double startup_s = 0;  ///< from the start to tick 0
+  std::string failure;                     ///< empty: it ran to its end, or was stopped in order
+  int signal = 0;                          ///< the signal that stopped it early, if one did
+  double wall_s = 0;                       ///< from publishing tick 0 to the last command gathered
+  double startup_s = 0;                    ///< from the start to tick 0
   std::optional<Contacts> contacts;        ///< absent: the physics server died before it told
   std::optional<Pacing> pacing;            ///< realtime; absent as above
   std::uint64_t lost = 0;                  ///< samples that the recorder knows to have missed

@@ -24,9 +24,9 @@ struct Findings {
   std::string file;
   std::uint64_t size_bytes = 0;
   McapContents contents;
-  std::optional<std::uint64_t> ticks;  ///< if it is complete and has topics with a sample of every tick
+  std::optional<std::uint64_t> ticks;          ///< if it is complete and has topics with a sample of every tick
   std::optional<std::uint64_t> planned_ticks;  ///< of the experiment, if that is attached
-  std::string reason;                  ///< why it is not complete; empty if it is
+  std::string reason;                          ///< why it is not complete; empty if it is
 
   bool complete() const { return reason.empty(); }
 };

@@ -18,8 +18,8 @@ using WallClock = std::chrono::steady_clock;
 constexpr std::int64_t kPatience = kRecorderWindow / 2;
 /// Complete rows that are worth waking the writing thread for; well below that window.
 constexpr std::int64_t kBatch = 8;
-/// After so long the server is told what has been written. A slow law makes rows slow: what is measured beside them asks
-/// the laws of all agents, one after the other.
+/// After so long the server is told what has been written. A slow law makes rows slow: what is measured beside them
+/// asks the laws of all agents, one after the other.
 constexpr auto kLongEnough = std::chrono::milliseconds(50);
 
 template <class T>
