@@ -68,6 +68,8 @@ class DdsRun {
   void ShowProgress();
   std::optional<Hub::Status> ServerReport() const;
   void AwaitLastWords();
+  bool in_order() const;
+  void AskToEnd();
   void Collect();
   void End();
   void Fail(const std::string& why);
@@ -208,7 +210,7 @@ std::optional<Hub::Status> DdsRun::ServerReport() const {
 /// that it has gone may be known before what it said last.
 void DdsRun::AwaitLastWords() {
   if (result_.failure.empty() || server_killed_ || recorder_->newest_tick() < 0) return;
-  if (!server_failed_) hub_->Ask(Ask::kEnd, result_.failure.substr(0, 1000));
+  if (!server_failed_) AskToEnd();
   const auto has_said = [&] {
     if (!server_failed_) return ServerReport().has_value();
     const auto server = hub_->StatusOf("physics_server");
@@ -325,10 +327,13 @@ void DdsRun::ShowProgress() {
   if (confirmed_ > 0) progress_.Show(confirmed_ - 1);
 }
 
+bool DdsRun::in_order() const { return result_.failure.empty() && result_.signal == 0; }
+
+void DdsRun::AskToEnd() { hub_->Ask(Ask::kEnd, in_order() ? "done" : result_.failure.substr(0, 1000)); }
+
 void DdsRun::End() {
-  const bool in_order = result_.failure.empty() && result_.signal == 0;
-  if (hub_) hub_->Ask(Ask::kEnd, in_order ? "done" : result_.failure.substr(0, 1000));
-  if (in_order) children_.WaitAll(kGrace);
+  if (hub_) AskToEnd();
+  if (in_order()) children_.WaitAll(kGrace);
   children_.Stop(2s);
   // Those started by hand are not ours to reap, only to be told.
   const auto deadline = WallClock::now() + 2s;

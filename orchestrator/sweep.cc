@@ -38,8 +38,9 @@ struct SweepArgs {
   std::string config;
   SweepPlan::Words words;
   int jobs = 0;
-  std::string out = "sweep.csv", metric = kUsualMetric;
-  bool force = false, no_plot = false, quiet = false, metric_given = false;
+  std::string out = "sweep.csv";
+  std::optional<std::string> metric;  ///< that the picture shows; none given: kUsualMetric
+  bool force = false, no_plot = false, quiet = false;
 };
 
 /// What every run of a sweep is made from: the experiment's text as it was at the start, whoever edits it meanwhile.
@@ -112,6 +113,10 @@ class Progress {
     if (there > 0)
       console_.Line("going on: " + std::to_string(there) + " of " + std::to_string(runs) + " runs are in the table");
   }
+  ~Progress() { console_.EndProgress(); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
   void Show(std::size_t done, std::size_t failed) {
     const double elapsed_s = std::chrono::duration<double>(WallClock::now() - start_).count();
     const double left_s =
@@ -121,7 +126,6 @@ class Progress {
                   done > 0 ? "about " : "", left_s);
     console_.Progress(static_cast<double>(there_ + done) / static_cast<double>(runs_), text);
   }
-  void End() { console_.EndProgress(); }
 
  private:
   std::size_t runs_, there_;
@@ -163,7 +167,6 @@ Outcome WorkOff(const SweepPlan& plan, WorkerPool& pool, SweepFile& table, bool 
     progress.Show(outcome.flown, outcome.failed);
     ThrowIfInterrupted(stop);
   }
-  progress.End();
   return outcome;
 }
 
@@ -206,14 +209,15 @@ void CheckOut(const std::string& out) {
 bool IsDrawable(const SweepArgs& args, const SweepPlan& plan) {
   constexpr std::size_t kMostKeys = 2;
   if (args.no_plot || plan.size() < 2) return false;
-  if (plan.varied().size() > kMostKeys && args.metric_given)
+  if (plan.varied().size() > kMostKeys && args.metric)
     throw ConfigError({"--plot: expected at most 2 keys of several values to draw over, got " +
                        std::to_string(plan.varied().size())});
   return plan.varied().size() <= kMostKeys;
 }
 
 int Picture(const SweepArgs& args, const SweepPlan& plan, StopSignal& stop) {
-  std::vector<std::string> words{args.out, fs::path(args.out).replace_extension(".png"), args.metric};
+  std::vector<std::string> words{args.out, fs::path(args.out).replace_extension(".png"),
+                                 args.metric.value_or(kUsualMetric)};
   words.insert(words.end(), plan.varied().begin(), plan.varied().end());
   return RunScript("plot_sweep.py", words, stop);
 }
@@ -241,7 +245,7 @@ int FlyAll(const SweepArgs& args, const Sweep& sweep, bool drawable, StopSignal&
 
 int Run(const SweepArgs& args) {
   StopSignal stop;
-  CheckMetric(args.metric);
+  if (args.metric) CheckMetric(*args.metric);
   CheckOut(args.out);
   const Sweep sweep{args.config, ReadRegularFile(args.config), SweepPlan(args.words)};
   const bool drawable = IsDrawable(args, sweep.plan);
@@ -277,15 +281,7 @@ std::function<int()> SetUpSweep(CLI::App& command) {
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
   command.add_option("--out", args->out, "the table (default: sweep.csv)")->type_name("FILE");
-  command
-      .add_option_function<std::string>(
-          "--plot",
-          [args](const std::string& column) {
-            args->metric = column;
-            args->metric_given = true;
-          },
-          "the column that the picture shows")
-      ->type_name("COLUMN");
+  command.add_option("--plot", args->metric, "the column that the picture shows")->type_name("COLUMN");
   command.add_flag("--no-plot", args->no_plot, "no picture");
   command.add_flag("--force", args->force, "begin anew where --out holds another sweep");
   command.add_flag("--quiet", args->quiet, "print errors only");

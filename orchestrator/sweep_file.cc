@@ -14,6 +14,7 @@
 #include "orchestrator/input_file.h"
 #include "orchestrator/output_file.h"
 #include "orchestrator/part_file.h"
+#include "orchestrator/worker_pool.h"
 
 namespace mascot {
 namespace {
@@ -89,7 +90,7 @@ void SweepFile::ReadRows(const std::string& text, const std::string& header) {
       throw ConfigError({"--out " + path_.string() + ": expected rows that begin with a run's number, got '" +
                          line.substr(0, 40) + "'"});
     begin = end + 1;
-    if (line.find(",the process ") != line.npos) continue;  // it died, of whatever: it is flown again
+    if (line.find("," + std::string(kLostProcess)) != line.npos) continue;  // it is flown again
     rows_.emplace(run, line);
   }
 }

@@ -118,7 +118,7 @@ std::optional<WorkerPool::Done> WorkerPool::Wait(std::chrono::milliseconds timeo
     const std::optional<std::size_t> task = worker.task;
     const std::string how = Bury(worker);
     worker = Fork();
-    if (task) return Done{*task, "", "the process " + how};
+    if (task) return Done{*task, "", std::string(kLostProcess) + how};
   }
   return std::nullopt;
 }

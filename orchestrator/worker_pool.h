@@ -7,9 +7,13 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace mascot {
+
+/// How the failure of a task begins that took its process down.
+inline constexpr std::string_view kLostProcess = "the process ";
 
 /// Processes that work off tasks, one at a time each. A task that takes its process down is that task's failure only:
 /// the next one gets a new process. Make it before anything starts threads or an interpreter, which a fork would copy
@@ -21,7 +25,7 @@ class WorkerPool {
   struct Done {
     std::size_t task = 0;
     std::string answer;
-    std::string failure;  ///< empty: none; of a lost process "the process was killed by signal 11 (...)"
+    std::string failure;  ///< empty: none; of a lost process kLostProcess "was killed by signal 11 (...)"
   };
 
   WorkerPool(int workers, Work work);

@@ -43,8 +43,7 @@ struct Prediction {
   std::vector<MinmaxEdge> minmax_edges;            ///< by child; only edges of which theory knows the time
   std::optional<FirstCommand> first_acceleration;  ///< m/s^2
   std::optional<FirstCommand> first_speed;         ///< m/s: where a law wants a velocity of a model driven by it
-  std::optional<FirstCommand>
-      first_lean;  ///< m/s^2: sideways, after the limit, and what leaning by the tilt limit gives
+  std::optional<FirstCommand> first_lean;          ///< m/s^2: sideways, after limits; what the tilt limit gives
   std::optional<Persistence> persistence;
   bool of_agreement = true;           ///< false: rate and settling time are of each agent's own flight to a waypoint
   bool on_average = false;            ///< samples are lost, or measured with noise: the above holds on average
