@@ -108,6 +108,10 @@ int WriterBase::matched() const {
   return status.current_count;
 }
 
+void WriterBase::AwaitReaders(std::chrono::milliseconds timeout) {
+  writer_->wait_for_acknowledgments(eprosima::fastrtps::Duration_t(1e-3L * timeout.count()));
+}
+
 void WriterBase::WriteAny(void* sample) {
   if (!writer_->write(sample)) throw BusError("Fast DDS did not take a sample of " + name_);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <exception>
@@ -66,6 +67,9 @@ class WriterBase {
  public:
   /// Readers matched now.
   int matched() const;
+  /// Waits until every reader has everything that was written, at most `timeout`. Shared memory goes with the process
+  /// that wrote it, and what nobody has read by then is lost.
+  void AwaitReaders(std::chrono::milliseconds timeout);
 
  protected:
   WriterBase(Domain& domain, const Topic& topic, eprosima::fastdds::dds::TypeSupport type);

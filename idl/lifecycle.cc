@@ -65,6 +65,11 @@ void Lifecycle::Set(Life life, const std::string& reason) {
   Publish();
 }
 
+void Lifecycle::Part(Life life, const std::string& reason) {
+  Set(life, reason);
+  status_writer_.AwaitReaders(3s);
+}
+
 void Lifecycle::Report(std::uint64_t tick, const Pacing& pacing, const Contacts& contacts) {
   {
     const std::lock_guard lock(mutex_);

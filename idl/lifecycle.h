@@ -37,6 +37,9 @@ class Lifecycle {
   mascot_msgs::msg::Experiment AwaitExperiment(std::chrono::seconds timeout);
   /// Publishes a new state.
   void Set(Life life, const std::string& reason = {});
+  /// Publishes the last state of a process that leaves, and waits until everybody has it, at most 3 s: where a process
+  /// was killed while it held a lock of shared memory, the others get past it after 2 s.
+  void Part(Life life, const std::string& reason = {});
   /// Publishes the counters with the state as it is. Any thread.
   void Report(std::uint64_t tick, const Pacing& pacing, const Contacts& contacts);
   /// Waits for a wake-up, at most `timeout`. Throws Ended when a signal or an END came, and whatever a

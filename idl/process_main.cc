@@ -49,7 +49,7 @@ int Join(const ProcessArgs& args, StopSignal& stop, const Run& run) {
     return ended.signal() == 0 ? 0 : 128 + ended.signal();
   } catch (const std::exception& failure) {
     std::cerr << "error: " << failure.what() << std::endl;
-    lifecycle.Set(Life::kFailed, failure.what());
+    lifecycle.Part(Life::kFailed, failure.what());
     return 1;
   }
 }

@@ -22,7 +22,9 @@ using RequestType = mascot_msgs::msg::RequestPubSubType;
 using ExperimentType = mascot_msgs::msg::ExperimentPubSubType;
 
 /// What processes say of themselves in Status::state.
-enum class Life : std::uint8_t { kWaiting = 0, kMatching, kReady, kRunning, kDone, kFailed };
+enum class Life : std::uint8_t { kWaiting = 0, kMatching, kReady, kRunning, kDone, kFailed, kEnded };
+/// Of a process that will not run again.
+constexpr bool IsLast(Life life) { return life >= Life::kDone; }
 /// What Request::kind asks for.
 enum class Ask : std::uint8_t { kReport = 0, kStop, kEnd };
 

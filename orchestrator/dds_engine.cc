@@ -81,7 +81,7 @@ class DdsRun {
   const bool external_;
   EngineResult result_;
   bool finished_ = false;
-  bool server_failed_ = false;  // it has ended, by itself
+  bool server_ended_ = false;  // it has ended, by itself
   bool server_killed_ = false;
   Deadline stop_deadline_, drain_deadline_;
   std::int64_t confirmed_ = 0;
@@ -199,25 +199,24 @@ EngineResult DdsRun::Run() {
   return result_;
 }
 
-/// What the physics server measured, which it tells when it ends; nothing before.
+/// What the physics server measured in the run, which it tells when it ends; nothing before.
 std::optional<Hub::Status> DdsRun::ServerReport() const {
   auto server = hub_->StatusOf("physics_server");
-  if (server && server->tick() == 0 && static_cast<Life>(server->state()) != Life::kDone) server.reset();
+  if (recorder_->newest_tick() < 0 || !server || !IsLast(static_cast<Life>(server->state()))) return std::nullopt;
   return server;
 }
 
 /// Where the run failed, but not the server: it is told to end, and so to report. Of a server that ended by itself:
 /// that it has gone may be known before what it said last.
 void DdsRun::AwaitLastWords() {
-  if (result_.failure.empty() || server_killed_ || recorder_->newest_tick() < 0) return;
-  if (!server_failed_) AskToEnd();
-  const auto has_said = [&] {
-    if (!server_failed_) return ServerReport().has_value();
-    const auto server = hub_->StatusOf("physics_server");
-    return server && static_cast<Life>(server->state()) == Life::kFailed;
-  };
-  const auto deadline = WallClock::now() + 1s;
-  while (!has_said() && WallClock::now() < deadline) stop_.Within(10ms);
+  if (result_.failure.empty() || recorder_->newest_tick() < 0) return;
+  if (!server_ended_) AskToEnd();
+  auto deadline = WallClock::now() + 2 * kGrace;  // a killed agent's lock may hold up the server, and then us
+  while (!ServerReport() && !server_killed_ && WallClock::now() < deadline) {
+    if (server_ended_) deadline = std::min(deadline, WallClock::now() + 1s);
+    if (const int signal = stop_.Within(10ms); signal != 0 && signal != SIGCHLD) return;
+    CheckChildren();
+  }
 }
 
 void DdsRun::Collect() {
@@ -276,7 +275,7 @@ void DdsRun::HandleSignal(int signal) {
 void DdsRun::CheckChildren() {
   std::string failure;
   for (const Exit& exit : children_.Reap()) {
-    if (exit.process == "physics_server") (WIFEXITED(exit.status) ? server_failed_ : server_killed_) = true;
+    if (exit.process == "physics_server") (WIFEXITED(exit.status) ? server_ended_ : server_killed_) = true;
     failure += (failure.empty() ? "" : "\n") + exit.process + " " + exit.Text();
     for (const std::string& line : logs_.LastLines(exit.process)) failure += "\n  " + exit.process + " | " + line;
   }

@@ -26,6 +26,8 @@ const char* Text(Life life) {
       return "is done";
     case Life::kFailed:
       return "has failed";
+    case Life::kEnded:
+      return "has ended";
   }
   return "says something unknown";
 }

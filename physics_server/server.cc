@@ -58,6 +58,10 @@ void Server::Run() {
   AwaitEveryone();
   try {
     realtime_ ? RunRealtime() : RunLockstep();
+  } catch (const Ended& ended) {
+    Report();
+    if (ended.signal() == 0) lifecycle_.Part(Life::kEnded);  // after a signal nobody may be there to listen
+    throw;
   } catch (...) {
     Report();
     throw;
