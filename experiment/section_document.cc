@@ -11,7 +11,6 @@ namespace mascot {
 namespace {
 
 constexpr std::size_t kLargestFile = 16u << 20;  // ten thousand agents with their edges need about 1 MiB
-constexpr std::size_t kDeepestKey = 32;
 constexpr std::size_t kMostMistakes = 100;
 
 class File {
@@ -76,7 +75,9 @@ std::string Why(std::string_view description) {
   return why;
 }
 
-toml::table Parse(std::string_view text, const std::string& name) {
+}  // namespace
+
+toml::table ParseToml(std::string_view text, const std::string& name) {
   RefuseDeepKeys(text, name);
   try {
     return toml::parse(text, std::string_view(name));
@@ -84,59 +85,6 @@ toml::table Parse(std::string_view text, const std::string& name) {
     throw ConfigError({PlaceText(error.source(), name) + ": " + OneLine(Why(error.description()))});
   }
 }
-
-/// The value of an override, in a table of its own under the key "value". A word that is no TOML value
-/// (`--set graph.topology=ring`) stands for itself: a shell would eat its quotes.
-toml::table ParseValue(const Override& override, const std::string& name) {
-  const bool word = !override.value.empty() && std::isalpha(static_cast<unsigned char>(override.value[0])) &&
-                    override.value.find('\n') == std::string::npos;
-  try {
-    toml::table table = Parse("value = " + override.value, name);
-    if (table.size() == 1) return table;
-    throw ConfigError({name + ": expected one TOML value"});
-  } catch (const ConfigError&) {
-    if (word) return Parse("value = " + QuotedToml(override.value), name);
-    throw ConfigError(
-        {name + ": " + override.key + ": expected a TOML value, got '" + Printable(override.value) + "'"});
-  }
-}
-
-std::vector<std::string> KeyParts(const Override& override, const std::string& name) {
-  const auto is_bare = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-'; };
-  std::vector<std::string> parts(1);
-  bool good = true;
-  for (const char c : override.key) {
-    if (c == '.') {
-      good = good && !parts.back().empty();
-      parts.emplace_back();
-    } else {
-      good = good && is_bare(c);
-      parts.back() += c;
-    }
-  }
-  if (good && !parts.back().empty() && parts.size() <= kDeepestKey) return parts;
-  throw ConfigError({name + ": expected a dotted key such as law.p_gain, got '" + Printable(override.key) + "'"});
-}
-
-void Apply(const Override& override, toml::table& root) {
-  const std::string name = "--set " + Printable(override.key + "=" + override.value);
-  const std::vector<std::string> parts = KeyParts(override, name);
-  toml::table value = ParseValue(override, name);
-  const toml::source_region place = value.get("value")->source();
-  toml::table* table = &root;
-  std::string path;
-  for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
-    path += (i == 0 ? "" : ".") + parts[i];
-    if (!table->contains(parts[i])) table->insert(toml::key(parts[i], place), toml::table());
-    table = table->get_as<toml::table>(parts[i]);
-    if (table == nullptr)
-      throw ConfigError({name + ": " + path + ": expected a table to set " + parts[i + 1] + " in, got a value"});
-  }
-  table->erase(parts.back());  // with its key, whose place is the file's
-  table->insert(toml::key(parts.back(), place), std::move(*value.get("value")));
-}
-
-}  // namespace
 
 std::string ReadRegularFile(const std::string& path) {
   const auto refuse = [&](const std::string& why) -> std::string { throw ConfigError({OneLine(path) + ": " + why}); };
@@ -170,7 +118,7 @@ ConfigError::ConfigError(std::vector<std::string> mistakes)
 
 Section::Document::Document(std::string_view text, const std::string& document_name,
                             std::span<const Override> overrides)
-    : name(OneLine(document_name)), root(Parse(text, name)) {
+    : name(OneLine(document_name)), root(ParseToml(text, name)) {
   for (const Override& override : overrides) Apply(override, root);
 }
 

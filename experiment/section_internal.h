@@ -1,6 +1,6 @@
 #pragma once
 
-// What section.cc, section_document.cc and section_text.cc share; nobody else includes this, or toml++.
+// What the files section*.cc share; nobody else includes this, or toml++.
 
 #include <toml++/toml.h>
 
@@ -107,8 +107,17 @@ struct Section::Table {
   std::optional<std::string> ResolvedInline() const;
 };
 
+/// A key of more parts is refused.
+constexpr std::size_t kDeepestKey = 32;
+/// Throws ConfigError with the place in `name`.
+toml::table ParseToml(std::string_view text, const std::string& name);
+/// Replaces or adds a key of the document. Throws ConfigError.
+void Apply(const Override& override, toml::table& root);
+
 /// "number", "string", "list", ...
 std::string KindOf(const toml::node& node);
+/// What the user wrote, for "got ...".
+std::string Got(const toml::node& node);
 /// The number in `node` if it is one that `range` holds and a double holds exactly.
 std::optional<double> NumberIn(const toml::node& node, const Range& range);
 std::optional<std::string> TextIn(const toml::node& node);

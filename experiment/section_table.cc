@@ -7,16 +7,6 @@
 namespace mascot {
 namespace {
 
-/// What the user wrote, for "got ...".
-std::string Got(const toml::node& node) {
-  if (const auto text = node.value_exact<std::string>()) return "'" + Printable(*text) + "'";
-  if (const auto integer = node.value_exact<std::int64_t>()) return std::to_string(*integer);
-  if (const auto number = node.value_exact<double>()) return ShortestFloat(*number);
-  if (const auto boolean = node.value_exact<bool>()) return *boolean ? "true" : "false";
-  if (const toml::array* list = node.as_array()) return "a list of " + std::to_string(list->size());
-  return "a " + KindOf(node);
-}
-
 /// "a number in [0, 1]"; says "finite" to those who wrote nan or inf.
 std::string ExpectedNumber(const toml::node* node, const Range& range) {
   const auto value = node != nullptr ? node->value_exact<double>() : std::nullopt;
@@ -78,6 +68,15 @@ std::string KindOf(const toml::node& node) {
     default:
       return "date or time";
   }
+}
+
+std::string Got(const toml::node& node) {
+  if (const auto text = node.value_exact<std::string>()) return "'" + Printable(*text) + "'";
+  if (const auto integer = node.value_exact<std::int64_t>()) return std::to_string(*integer);
+  if (const auto number = node.value_exact<double>()) return ShortestFloat(*number);
+  if (const auto boolean = node.value_exact<bool>()) return *boolean ? "true" : "false";
+  if (const toml::array* list = node.as_array()) return "a list of " + std::to_string(list->size());
+  return "a " + KindOf(node);
 }
 
 std::optional<double> NumberIn(const toml::node& node, const Range& range) {

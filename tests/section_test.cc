@@ -461,9 +461,46 @@ TEST(Section, RefusesOverridesThatAreNone) {
   EXPECT_THAT(Mistakes("a = 1\n", read, {{"a", "1\nb = 2"}}),
               ElementsAre("--set a=1\\nb = 2: a: expected a TOML value, got '1\\nb = 2'"));
   EXPECT_THAT(Mistakes("a = 1\n", read, {{"a.b", "1"}}),
-              ElementsAre("--set a.b=1: a: expected a table to set b in, got a value"));
+              ElementsAre("--set a.b=1: a: expected a table to set b in, got 1"));
   EXPECT_THAT(Mistakes("a = 1\n", read, {{"a..b", "1"}}),
-              ElementsAre("--set a..b=1: expected a dotted key such as law.p_gain, got 'a..b'"));
+              ElementsAre("--set a..b=1: expected a dotted key such as law.p_gain or agents.override[0].start_s, got "
+                          "'a..b'"));
+  for (const char* key : {"[0]", "a[", "a[0", "a[0]b", "a[-1]", "a[x]", "a.[0]", "a[0].", "a[99999999999999999999]"})
+    EXPECT_THAT(Mistakes("a = [1]\n", read, {{key, "1"}}), ElementsAre(HasSubstr(": expected a dotted key"))) << key;
+}
+
+TEST(Section, OverridesReachIntoLists) {
+  const auto read = [](Section& root) {
+    EXPECT_THAT(root.Child("law").Points("waypoints_m", -100, 100),
+                ElementsAre(Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(20, 0, 3)));
+    std::vector<Section> overrides = root.Child("agents").Children("override");
+    ASSERT_EQ(overrides.size(), 2);
+    EXPECT_EQ(overrides[0].Integer("id", 1, 9), 1);
+    EXPECT_EQ(overrides[1].Integer("id", 1, 9), 2);
+    EXPECT_EQ(overrides[1].Number("start_s", 0, 9), 5);
+    EXPECT_EQ(overrides[0].Child("law").Number("p_gain", 0, 9), 0.5);
+  };
+  const std::string file =
+      "law.waypoints_m = [[0, 0, 1], [20, 0, 1]]\n[[agents.override]]\nid = 1\n[[agents.override]]\nid = 2\n"
+      "start_s = 1\n";
+  const std::vector<Override> set = {
+      {"law.waypoints_m[1][2]", "3"}, {"agents.override[1].start_s", "5"}, {"agents.override[0].law.p_gain", "0.5"}};
+  EXPECT_THAT(Mistakes(file, read, set), IsEmpty());
+}
+
+TEST(Section, RefusesPlacesThatNoListHas) {
+  const auto read = [](Section&) {};
+  const std::string file = "a = [1, 2]\n[[b]]\nc = 1\n";
+  EXPECT_THAT(Mistakes(file, read, {{"a[2]", "1"}}),
+              ElementsAre("--set a[2]=1: a: expected a place in a list of 2, got [2]"));
+  EXPECT_THAT(Mistakes(file, read, {{"b[1].c", "1"}}),
+              ElementsAre("--set b[1].c=1: b: expected a place in a list of 1, got [1]"));
+  EXPECT_THAT(Mistakes(file, read, {{"b[0].c[0]", "1"}}),
+              ElementsAre("--set b[0].c[0]=1: b[0].c: expected a list to set [0] in, got 1"));
+  EXPECT_THAT(Mistakes(file, read, {{"b.c", "1"}}),
+              ElementsAre("--set b.c=1: b: expected a table to set c in, got a list of 1"));
+  EXPECT_THAT(Mistakes(file, read, {{"d[0]", "1"}}),
+              ElementsAre("--set d[0]=1: d: expected a list to set [0] in, got nothing"));
 }
 
 // --- what was read ----------------------------------------------------------------------------------

@@ -1,0 +1,140 @@
+#include <cctype>
+#include <charconv>
+#include <variant>
+
+#include "experiment/section_internal.h"
+
+namespace mascot {
+namespace {
+
+/// The value of an override, in a table of its own under the key "value". A word that is no TOML value
+/// (`--set graph.topology=ring`) stands for itself: a shell would eat its quotes.
+toml::table ParseValue(const Override& override, const std::string& name) {
+  const bool word = !override.value.empty() && std::isalpha(static_cast<unsigned char>(override.value[0])) &&
+                    override.value.find('\n') == std::string::npos;
+  try {
+    toml::table table = ParseToml("value = " + override.value, name);
+    if (table.size() == 1) return table;
+    throw ConfigError({name + ": expected one TOML value"});
+  } catch (const ConfigError&) {
+    if (word) return ParseToml("value = " + QuotedToml(override.value), name);
+    throw ConfigError(
+        {name + ": " + override.key + ": expected a TOML value, got '" + Printable(override.value) + "'"});
+  }
+}
+
+/// A key of a table, or a place in a list.
+using Step = std::variant<std::string, std::size_t>;
+
+/// "agents.override[0].start_s" as its steps; none if it is not of that form.
+std::vector<Step> Steps(std::string_view key) {
+  const auto is_bare = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-'; };
+  std::vector<Step> steps;
+  for (std::size_t i = 0; i < key.size();) {
+    if (key[i] == '[') {
+      std::size_t index = 0;
+      const auto [end, error] = std::from_chars(key.data() + i + 1, key.data() + key.size(), index);
+      if (steps.empty() || error != std::errc() || end == key.data() + key.size() || *end != ']') return {};
+      steps.emplace_back(index);
+      i = static_cast<std::size_t>(end - key.data()) + 1;
+      if (i < key.size() && key[i] != '.' && key[i] != '[') return {};
+    } else {
+      if (!steps.empty() && key[i++] != '.') return {};
+      const std::size_t begin = i;
+      while (i < key.size() && is_bare(key[i])) ++i;
+      if (i == begin) return {};
+      steps.emplace_back(std::string(key.substr(begin, i - begin)));
+    }
+  }
+  return steps.size() <= kDeepestKey ? steps : std::vector<Step>{};
+}
+
+std::string PathOf(std::span<const Step> steps) {
+  std::string path;
+  for (const Step& step : steps) {
+    if (const auto* index = std::get_if<std::size_t>(&step))
+      path = Indexed(path, *index);
+    else
+      path += (path.empty() ? "" : ".") + std::get<std::string>(step);
+  }
+  return path;
+}
+
+/// One step of a key into the document, or onto what it sets.
+class Place {
+ public:
+  Place(toml::node& inside, std::span<const Step> steps, std::size_t step)
+      : inside_(inside), path_(PathOf(steps.first(step))), step_(steps[step]) {}
+
+  /// The node there; null where a table has no such key. Throws std::invalid_argument.
+  toml::node* Find() const {
+    if (const auto* key = std::get_if<std::string>(&step_)) return Table(*key).get(*key);
+    return &List()[std::get<std::size_t>(step_)];
+  }
+  /// `source`: where the key stands. Throws std::invalid_argument.
+  void Put(toml::node&& value, const toml::source_region& source) const {
+    if (const auto* key = std::get_if<std::string>(&step_)) {
+      toml::table& table = Table(*key);
+      table.erase(*key);  // with its key, whose place is the file's
+      table.insert(toml::key(*key, source), std::move(value));
+    } else {
+      toml::array& list = List();
+      list.replace(list.begin() + static_cast<std::ptrdiff_t>(std::get<std::size_t>(step_)), std::move(value));
+    }
+  }
+
+ private:
+  toml::table& Table(const std::string& key) const {
+    if (toml::table* table = inside_.as_table()) return *table;
+    throw std::invalid_argument(path_ + ": expected a table to set " + key + " in, got " + Got(inside_));
+  }
+  toml::array& List() const {
+    const std::size_t index = std::get<std::size_t>(step_);
+    toml::array* list = inside_.as_array();
+    if (list == nullptr)
+      throw std::invalid_argument(path_ + ": expected a list to set " + Indexed("", index) + " in, got " +
+                                  Got(inside_));
+    if (index < list->size()) return *list;
+    throw std::invalid_argument(path_ + ": expected a place in a list of " + std::to_string(list->size()) + ", got " +
+                                Indexed("", index));
+  }
+
+  toml::node& inside_;
+  std::string path_;
+  const Step& step_;
+};
+
+/// Tables that the key names and the document lacks are made.
+void Put(toml::table& root, std::span<const Step> steps, toml::node&& value) {
+  toml::node* node = &root;
+  for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
+    const Place place(*node, steps, i);
+    if (place.Find() == nullptr) {
+      if (std::holds_alternative<std::size_t>(steps[i + 1]))
+        throw std::invalid_argument(PathOf(steps.first(i + 1)) + ": expected a list to set " +
+                                    PathOf(steps.subspan(i + 1, 1)) + " in, got nothing");
+      place.Put(toml::table(), value.source());
+    }
+    node = place.Find();
+  }
+  const toml::source_region source = value.source();
+  Place(*node, steps, steps.size() - 1).Put(std::move(value), source);
+}
+
+}  // namespace
+
+void Apply(const Override& override, toml::table& root) {
+  const std::string name = "--set " + Printable(override.key + "=" + override.value);
+  const std::vector<Step> steps = Steps(override.key);
+  if (steps.empty())
+    throw ConfigError({name + ": expected a dotted key such as law.p_gain or agents.override[0].start_s, got '" +
+                       Printable(override.key) + "'"});
+  toml::table parsed = ParseValue(override, name);
+  try {
+    Put(root, steps, std::move(*parsed.get("value")));
+  } catch (const std::invalid_argument& why) {
+    throw ConfigError({name + ": " + why.what()});
+  }
+}
+
+}  // namespace mascot
