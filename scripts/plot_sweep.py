@@ -25,7 +25,7 @@ from figure_style import OKABE_ITO, STYLE
 BLUE = OKABE_ITO[0]
 TICKS_MAX = 12
 BINS_MAX = 50
-DECADES = 2  # a column that spans more is drawn on a log scale
+DECADES = 2  # what spans so many, or more, is drawn on a log scale
 
 
 def number(text):
@@ -47,6 +47,11 @@ def read(path, column, keys):
     return good, len(rows) - len(good)
 
 
+def is_wide(values):
+    positive = [v for v in values if v > 0]
+    return len(positive) == len(values) and max(positive) / min(positive) >= 10**DECADES
+
+
 class Axis:
     """Where the values of one key lie: numbers where they are, words side by side in order of appearance."""
 
@@ -57,19 +62,27 @@ class Axis:
         self.labels = sorted(set(cells), key=number) if self.is_numeric else list(dict.fromkeys(cells))
         self.is_grid = False  # cells around each place, which then has its tick
         self.places = [number(label) for label in self.labels] if self.is_numeric else list(range(len(self.labels)))
+        self.is_log = self.is_numeric and is_wide(self.places)
 
     def of(self, cell):
         return self.places[self.labels.index(cell)]
 
+    def edges(self):
+        """Of cells around the places, half-way between them."""
+        places = np.log(self.places) if self.is_log else np.array(self.places, float)
+        between = (places[1:] + places[:-1]) / 2
+        first, last = (2 * places[0] - between[0], 2 * places[-1] - between[-1]) if between.size else places[0] + [-0.5, 0.5]
+        edges = np.array([first, *between, last])
+        return np.exp(edges) if self.is_log else edges
+
     def label(self, axis):
         axis.set_label_text(self.key)
+        if self.is_log:
+            getattr(axis.axes, f"set_{axis.axis_name}scale")("log")
+            if self.is_grid:
+                axis.set_minor_locator(matplotlib.ticker.NullLocator())
         if not self.is_numeric or self.is_grid and len(self.labels) <= TICKS_MAX:
             axis.set_ticks(self.places, self.labels)
-
-
-def is_wide(values):
-    positive = [v for v in values if v > 0]
-    return len(positive) == len(values) and max(positive) / min(positive) > 10**DECADES
 
 
 def by_cells(rows):
@@ -122,7 +135,7 @@ def draw_map(figure, ax, rows, column, keys):
             grid[axes[1].places.index(b), axes[0].places.index(a)] = value
         ax.grid(False)
         axes[0].is_grid = axes[1].is_grid = True
-        drawn = ax.pcolormesh(axes[0].places, axes[1].places, grid, shading="nearest", cmap="viridis", norm=norm)
+        drawn = ax.pcolormesh(axes[0].edges(), axes[1].edges(), grid, cmap="viridis", norm=norm)
     else:
         drawn = ax.scatter(x, y, c=z, cmap="viridis", s=12, norm=norm)
     axes[0].label(ax.xaxis)

@@ -217,6 +217,8 @@ TEST_F(SweepTest, DrawsCurvesMapsAndHistograms) {
   for (const char* words :
        {"--seeds 1..4", "--set law.p_gain=0.1:0.1:0.4", "--set graph.topology=ring,path --seeds 1..2",
         "--set law.p_gain=0.1:0.1:0.3 --set law.beta=0.5,1.0",
+        "--set law.p_gain=0.01,0.1,1 --set law.beta=0.5",  // a log axis, and in the next
+        "--set law.p_gain=0.01,0.1,1 --set law.beta=0.5,1.0",
         "--random law.p_gain=0.1:1 --random law.beta=0.5:2 --samples 6"}) {
     std::filesystem::remove(folder_.File("sweep.png"));
     const Ran ran = Sweep(std::string(words) + " --force");
