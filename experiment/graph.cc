@@ -138,7 +138,8 @@ Eigen::VectorXcd Graph::Eigenvalues() const {
   return values;
 }
 
-double Graph::Lambda2() const { return size() < 2 ? 0 : Eigenvalues()(1).real(); }
+// Without a spanning tree 0 is an eigenvalue twice, which numerics would miss by a rounding error.
+double Graph::Lambda2() const { return size() < 2 || Roots().empty() ? 0 : Eigenvalues()(1).real(); }
 
 // The left null vector is zero outside the roots, who hear nobody else; there it is that of their own Laplacian L:
 // gamma' L = 0, of which one column follows from the others and makes room for sum(gamma) = 1.

@@ -11,6 +11,7 @@
 
 #include "experiment/experiment.h"
 #include "idl/shared_memory.h"
+#include "idl/usage.h"
 
 namespace mascot {
 namespace {
@@ -82,8 +83,11 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
   args.AddTo(app);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::Success& asked_for_help) {
+    return app.exit(asked_for_help);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error, std::cout, std::cerr) == 0 ? 0 : 2;
+    std::cerr << "error: " << UsageText(app, error) << std::endl;
+    return 2;
   }
   std::signal(SIGPIPE, SIG_IGN);                          // an orchestrator that died must not keep us from cleaning up
   std::signal(SIGALRM, [](int) { SweepAfterParent(); });  // of one that cannot leave: Lifecycle::Wait

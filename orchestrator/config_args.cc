@@ -23,12 +23,15 @@ void ConfigArgs::AddTo(CLI::App& command) {
   command.add_option("--set", sets, "replaces or adds a key: --set law.p_gain=0.5")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);  // so that CONFIG may follow
+  command.add_option("--duration-s", duration_s, "instead of run.duration_s")->type_name("S");
+  command.add_option("--seed", seed, "instead of run.seed")->type_name("N");
 }
 
 Experiment ConfigArgs::Load() const {
   std::vector<Override> all;
   for (const std::string& set : sets) all.push_back(ParseOverride(set));
-  all.insert(all.end(), overrides.begin(), overrides.end());
+  if (duration_s) all.push_back({"run.duration_s", *duration_s});
+  if (seed) all.push_back({"run.seed", *seed});
   return LoadExperiment(Section::FromFile(path, all), std::filesystem::path(path).stem().string());
 }
 

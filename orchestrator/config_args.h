@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,11 +12,11 @@ class App;
 
 namespace mascot {
 
-/// CONFIG [--set key=value]...: how every verb that reads an experiment is told which one.
+/// CONFIG [--set key=value]... [--duration-s S] [--seed N]: how every verb that reads an experiment is told which one.
 struct ConfigArgs {
   std::string path;
-  std::vector<std::string> sets;    ///< as typed
-  std::vector<Override> overrides;  ///< a verb's own, from options such as --seed; they win over `sets`
+  std::vector<std::string> sets;                ///< as typed
+  std::optional<std::string> duration_s, seed;  ///< they win over `sets`
 
   /// Declares the arguments. `*this` must outlive the parsing.
   void AddTo(CLI::App& command);

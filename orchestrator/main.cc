@@ -6,6 +6,7 @@
 
 #include "experiment/section.h"
 #include "idl/standard_streams.h"
+#include "idl/usage.h"
 #include "orchestrator/verb.h"
 
 namespace mascot {
@@ -49,16 +50,19 @@ int Main(int argc, char** argv) {
     CLI::App& command = *app.add_subcommand(std::string(verb.name), std::string(verb.summary));
     command.callback([&action, run = verb.set_up(command)] { action = run; });
   }
-  const bool is_verb =
-      argc < 2 || argv[1][0] == '-' ||
-      std::any_of(std::begin(kVerbs), std::end(kVerbs), [&](const auto& verb) { return verb.name == argv[1]; });
+  if (argc < 2) {
+    std::cerr << app.help();
+    return kUsageError;
+  }
+  const bool is_verb = argv[1][0] == '-' || std::any_of(std::begin(kVerbs), std::end(kVerbs),
+                                                        [&](const auto& verb) { return verb.name == argv[1]; });
   if (!is_verb) return UnknownVerb(argv[1]);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked_for_help) {
     return app.exit(asked_for_help);
   } catch (const CLI::ParseError& error) {
-    std::cerr << "error: " << error.what() << "\n";
+    std::cerr << "error: " << UsageText(app, error) << "\n";
     return kUsageError;
   }
   return action();

@@ -30,7 +30,6 @@ struct UpArgs {
   ConfigArgs config;
   std::optional<std::string> out;
   std::string engine = "dds";
-  std::optional<std::string> duration_s, seed;
   bool force = false, json = false, quiet = false;
 };
 
@@ -81,11 +80,9 @@ void RefuseRealtimeInOneProcess(const Experiment& experiment, const std::string&
     throw ConfigError({"--engine inprocess: expected run.mode = \"lockstep\", got \"realtime\""});
 }
 
-int Up(UpArgs& args) {
+int Up(const UpArgs& args) {
   const auto launched = WallClock::now();
   StopSignal stop;
-  if (args.duration_s) args.config.overrides.push_back({"run.duration_s", *args.duration_s});
-  if (args.seed) args.config.overrides.push_back({"run.seed", *args.seed});
   Experiment experiment = args.config.Load();
   RefuseRealtimeInOneProcess(experiment, args.engine);
   const bool over_dds = args.engine == "dds";
@@ -136,8 +133,6 @@ std::function<int()> SetUpUp(CLI::App& command) {
   command.add_option("--out", args->out, "folder for the results (default: runs/NAME/TIME)")->type_name("DIR");
   command.add_option("--engine", args->engine, "dds: processes on a bus; inprocess: the same in one thread")
       ->check(CLI::IsMember({"dds", "inprocess"}));
-  command.add_option("--duration-s", args->duration_s, "instead of run.duration_s")->type_name("S");
-  command.add_option("--seed", args->seed, "instead of run.seed")->type_name("N");
   command.add_flag("--force", args->force, "write into a folder that is not empty; an earlier run's files are removed");
   command.add_flag("--json", args->json, "print the summary as JSON on stdout, and nothing else");
   command.add_flag("--quiet", args->quiet, "print errors only");

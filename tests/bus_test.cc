@@ -227,8 +227,9 @@ TEST(AgentProcess, SaysThatNobodyGaveItAnExperiment) {
 
 TEST(AgentProcess, RefusesWrongArguments) {
   EXPECT_EQ(Agent("").exit_code, 2);
-  EXPECT_THAT(Agent("--domain 1").output, HasSubstr("--id is required"));
-  EXPECT_THAT(Agent("--id 0 --domain 1").output, HasSubstr("--id"));
+  EXPECT_THAT(Agent("--domain 1").output, HasSubstr("error: --id is required"));
+  EXPECT_EQ(Agent("--id 1 --domain 1 --transports udp").output,
+            "error: unknown option '--transports' (did you mean \"--transport\"?)\n");
   EXPECT_EQ(Agent("--id 0 --domain 1").exit_code, 2);
   for (const char* ids : {"0", "x", "3-1", "1-10001", "1-"}) {
     const Ran ran = Agent("--id " + std::string(ids) + " --domain 1");

@@ -566,7 +566,11 @@ TEST(Up, SaysWhatIsWrongWithItsArguments) {
   };
   EXPECT_THAT(refusal({"upp"}),
               HasSubstr("error: unknown verb 'upp' (did you mean \"up\"?); expected one of up, check"));
+  EXPECT_THAT(refusal({}), HasSubstr("Usage: "));
   EXPECT_THAT(refusal({"up"}), HasSubstr("error: config is required"));
+  EXPECT_THAT(refusal({"up", Config("leaderless"), "--duration", "5"}),
+              HasSubstr("error: unknown option '--duration' (did you mean \"--duration-s\"?)"));
+  EXPECT_THAT(refusal({"check", Config("leaderless"), "5", "6"}), HasSubstr("error: unexpected argument '5'"));
   EXPECT_THAT(refusal({"up", Config("leaderless"), "--engine", "ros"}),
               HasSubstr("error: --engine: ros not in {dds,inprocess}"));
   EXPECT_THAT(refusal({"up", Config("leaderless"), "--duration-s", "soon"}), HasSubstr("run.duration_s: expected"));

@@ -69,6 +69,17 @@ TEST_F(Verbs, CheckSaysWhatTheExperimentIsAndWhatTheoryExpects) {
                           HasSubstr("  settles in     ")));
 }
 
+TEST_F(Verbs, CheckTakesTheOptionsOfARun) {
+  EXPECT_THAT(Printed(SetUpCheck, {path(), "--duration-s", "10", "--set", "run.duration_s=20"}),
+              HasSubstr("  duration       10 s, 1000 ticks at 100 Hz\n"));
+  const auto predicted = [](const std::string& seed) {
+    const std::string config = std::string(MASCOT_SOURCE_DIR) + "/configs/leaderless.toml";
+    return Json::parse(Printed(SetUpCheck, {config, "--json", "--seed", seed}))["predicted"]["value_m"];
+  };
+  EXPECT_EQ(predicted("3"), predicted("3"));
+  EXPECT_NE(predicted("3"), predicted("4"));
+}
+
 TEST_F(Verbs, CheckPrintsWarningsAfterItsFacts) {
   EXPECT_THAT(Printed(SetUpCheck, {path(), "--set", "law.beta=0.0"}),
               HasSubstr("\nwarning: law.beta: unstable, it must be above 0, got 0\n"));

@@ -1,0 +1,26 @@
+#include "idl/usage.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <vector>
+
+#include "experiment/section.h"
+
+namespace mascot {
+
+std::string UsageText(const CLI::App& app, const CLI::ParseError& error) {
+  const auto verbs = app.get_subcommands();
+  const CLI::App& command = verbs.empty() ? app : *verbs.front();
+  const std::vector<std::string> unknown = command.remaining();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || unknown.empty()) return error.what();
+  const auto is_option = [](const std::string& word) { return word.starts_with('-'); };
+  const auto option = std::ranges::find_if(unknown, is_option);
+  if (option == unknown.end()) return "unexpected argument '" + unknown.front() + "'";
+  std::vector<std::string> names;
+  for (const CLI::Option* known : command.get_options())
+    if (!known->get_positional()) names.push_back(known->get_name());
+  const auto near = DidYouMean(*option, std::vector<std::string_view>(names.begin(), names.end()));
+  return "unknown option '" + *option + "'" + (near ? " (did you mean \"" + *near + "\"?)" : "");
+}
+
+}  // namespace mascot
