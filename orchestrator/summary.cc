@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "agent/controller.h"
 #include "orchestrator/deviation.h"
 #include "orchestrator/json.h"
 #include "orchestrator/prediction_report.h"
@@ -161,6 +162,15 @@ std::string AlsoLimited(const Measured& m) {
   return text;
 }
 
+/// What a run is compared with (docs/recording.md, fidelity).
+std::string IdealBodies(const Experiment& experiment) {
+  const auto at_once = std::ranges::count_if(
+      experiment.agents, [](const AgentConfig& agent) { return DrivenBy(agent.model) == Wanted::kVelocity; });
+  return at_once == 0                   ? "ideal double integrators"
+         : at_once == experiment.size() ? "ideal single integrators"
+                                        : "ideal single and double integrators";
+}
+
 }  // namespace
 
 std::string SummaryJson(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
@@ -236,10 +246,11 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
                  static_cast<unsigned long long>(sent), 100.0 * static_cast<double>(lost) / static_cast<double>(sent),
                  100.0 * static_cast<double>(late) / static_cast<double>(sent));
   if (!m.fidelity_failure.empty())
-    text += "fidelity       not measured, the law failed on ideal double integrators: " + m.fidelity_failure + "\n";
+    text +=
+        "fidelity       not measured, the law failed on " + IdealBodies(experiment) + ": " + m.fidelity_failure + "\n";
   if (m.fidelity && m.travelled_m > 0)
-    text += Line("fidelity       %.4f m rms from ideal double integrators: %.2f %% of %.1f m travelled",
-                 m.fidelity->rms_m, 100 * m.fidelity->rms_m / m.travelled_m, m.travelled_m);
+    text += Line("fidelity       %.4f m rms from %s: %.2f %% of %.1f m travelled", m.fidelity->rms_m,
+                 IdealBodies(experiment).c_str(), 100 * m.fidelity->rms_m / m.travelled_m, m.travelled_m);
   return text;
 }
 

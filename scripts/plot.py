@@ -186,7 +186,8 @@ def moving_mean(t, values, span_s):
 
 
 def acceleration(run):
-    """What the law asked for, after the limit: the paper's force, per mass."""
+    """What the law asked for, after the limit: the paper's force, per mass. A velocity that a model takes at once is an
+    acceleration over one tick, and not limited."""
     values, what = run.acceleration_command, "commanded acceleration"
     switches = run.law.get("name") == "minmax"  # between full throttle and full brake: single lines would be a blot
     if switches:
@@ -201,7 +202,9 @@ def acceleration(run):
     label = f"limit ±{limit:g} m/s²"
     for k, panel in zip(run.axes, grid):
         peak = np.abs(run.acceleration_command[:, :, k]).max()
-        if peak >= 0.25 * limit:
+        if peak > limit * (1 + 1e-9):
+            panel.set_title("not limited: velocities are taken at once", fontsize=8, color="0.3", loc="right")
+        elif peak >= 0.25 * limit:
             for side in (-limit, limit):
                 panel.axhline(side, color="0.3", linestyle="--", linewidth=1, label=label if side > 0 else None)
         else:

@@ -528,6 +528,20 @@ TEST(Up, SaysWhatWasMeasuredAndBesideItWhatTheoryPredicted) {
                                    "  predicted    15.34 s (slowest mode)\n"));
 }
 
+TEST(Up, SaysWithWhichIdealBodiesARunWasCompared) {
+  ScratchFolder folder;
+  const auto compared_with = [&](const std::string& config) {
+    Up up(folder, config, Config(config), {"--engine", "inprocess", "--duration-s", "1"});
+    EXPECT_EQ(up.Wait(), 0) << up.err();
+    const std::string text = up.out(), from = "m rms from ";
+    const std::size_t begin = text.find(from) + from.size();
+    return text.substr(begin, text.find(':', begin) - begin);
+  };
+  EXPECT_EQ(compared_with("leaderless"), "ideal double integrators");
+  EXPECT_EQ(compared_with("switching"), "ideal single integrators");
+  EXPECT_EQ(compared_with("mixed"), "ideal single and double integrators");
+}
+
 TEST(Up, PrintsTheSummaryAndNothingElseAsJson) {
   ScratchFolder folder;
   Up up(folder, "run", Config("leaderless"), {"--duration-s", "1", "--json", "--engine", "inprocess"});

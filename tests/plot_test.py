@@ -150,7 +150,10 @@ class WhatIsInThem(PlotTest):
     def test_acceleration_shows_the_axes_of_the_law_and_the_limit(self):
         axes = self.figure("acceleration").axes
         self.assertEqual([axis.get_ylabel() for axis in axes], ["$a_x$ (m/s²)", "$a_y$ (m/s²)"])
-        self.assertEqual(self.lines(axes[0])["limit ±3 m/s²"].get_ydata()[0], 3)
+        self.assertNotIn("limit ±3 m/s²", self.lines(axes[0]))
+        self.assertEqual(axes[0].get_title(loc="right"), "not limited: velocities are taken at once")
+        axes = self.figure("acceleration", config=CONSENSUS + "[control]\nmax_acceleration_m_per_s2 = 5\n").axes
+        self.assertEqual(self.lines(axes[0])["limit ±5 m/s²"].get_ydata()[0], 5)
         self.assertEqual(len(self.figure("acceleration", config=WAYPOINT).axes), 3)
 
     def test_a_limit_far_away_does_not_flatten_the_lines(self):
