@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "experiment/key.h"
+
 namespace mascot {
 
 /// Keys in the order in which they are put in.
@@ -16,5 +18,8 @@ Json OrNull(const std::optional<Value>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 inline Json OrNull(const std::optional<Eigen::Vector3d>& v) { return v ? VectorJson(*v) : Json(nullptr); }
+
+/// A key's default, whose TOML is JSON, too; null if it has none.
+inline Json DefaultJson(const Key& key) { return key.fallback.empty() ? Json(nullptr) : Json::parse(key.fallback); }
 
 }  // namespace mascot

@@ -76,7 +76,7 @@ Json SchemaOf(const Key& key) {
   if (!key.unit.empty()) description.append(" (").append(key.unit).append(")");
   if (!key.otherwise.empty()) description.append("; without it: ").append(key.otherwise);
   if (!description.empty()) schema["description"] = description;
-  if (!key.fallback.empty()) schema["default"] = Json::parse(key.fallback);  // the defaults' TOML is JSON too
+  if (!key.fallback.empty()) schema["default"] = DefaultJson(key);
   return schema;
 }
 

@@ -21,7 +21,7 @@ Json ToJson(const LawEntry& law) {
   for (const Key& parameter : law.parameters) {
     parameters.push_back({{"name", parameter.name},
                           {"required", parameter.required},
-                          {"default", parameter.fallback.empty() ? Json(nullptr) : Json(parameter.fallback)},
+                          {"default", DefaultJson(parameter)},
                           {"range", ValueText(parameter)},
                           {"meaning", parameter.meaning}});
   }

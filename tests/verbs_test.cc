@@ -252,7 +252,7 @@ TEST(Tables, LawsShowEveryLawWithEquationAndEveryParameter) {
   EXPECT_EQ(json[1]["name"], "waypoint");
   EXPECT_EQ(json[1]["axes"], "xyz");
   EXPECT_EQ(json[1]["parameters"][0]["required"], true);
-  EXPECT_EQ(json[1]["parameters"][1]["default"], "1.0");
+  EXPECT_EQ(json[1]["parameters"][1]["default"], 1.0);
 }
 
 TEST(Tables, ModelsShowEveryModelWithItsActuators) {
