@@ -190,10 +190,31 @@ TEST_F(Bus, AnExceptionInACallbackBecomesTheDomainsFailure) {
   EXPECT_NO_THROW(here_.RethrowFailure());
 }
 
-TEST_F(Bus, OneEndpointOfAKindPerTopicAndProcess) {
-  Writer<ClockType> first(here_, Topic::Clock());
-  Reader<ClockType> reader(here_, Topic::Clock(), [](const auto&) {});  // both kinds at once are fine
-  EXPECT_NO_THROW(Writer<ClockType>(there_, Topic::Clock()));
+TEST_F(Bus, AProcessMayReadAndWriteOneTopic) {
+  std::atomic<int> own = 0, others = 0;
+  Writer<ClockType> writer(here_, Topic::Clock());
+  Reader<ClockType> here(here_, Topic::Clock(), [&](const auto&) { ++own; });
+  Reader<ClockType> there(there_, Topic::Clock(), [&](const auto&) { ++others; });
+  ASSERT_TRUE(Until([&] { return writer.matched() == 2 && here.matched() == 1 && there.matched() == 1; }));
+  rosgraph_msgs::msg::Clock sample;
+  writer.Write(sample);
+  EXPECT_TRUE(Until([&] { return own == 1 && others == 1; }));
+}
+
+TEST_F(Bus, WhatItsReadersHaveOutlivesAWriter) {
+  for (int i = 0; i < 10; ++i) {
+    std::atomic<int> heard = 0;
+    Reader<ClockType> reader(here_, Topic::Clock(), [&](const auto&) { ++heard; });
+    {
+      Domain leaving(Options("leaving"), [] {});
+      Writer<ClockType> writer(leaving, Topic::Clock());
+      ASSERT_TRUE(Until([&] { return writer.matched() == 1 && reader.matched() == 1; }));
+      rosgraph_msgs::msg::Clock sample;
+      writer.Write(sample);
+      writer.AwaitReaders(std::chrono::seconds(10));
+    }
+    EXPECT_TRUE(Until([&] { return heard == 1; }));
+  }
 }
 
 TEST(DomainLock, GivesEachRunADomainOfItsOwn) {
