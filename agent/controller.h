@@ -23,6 +23,8 @@ class Controller {
 
 /// What the stack of a model turns into actuator values.
 Wanted DrivenBy(const std::string& model);
+/// Agents of this model turn to control.heading_rad; others keep the heading that they start with, or steer by it.
+bool TurnsToHeading(const std::string& model);
 /// The stack for the model of agent `id`.
 std::unique_ptr<Controller> MakeController(const Experiment& experiment, int id);
 

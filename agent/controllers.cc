@@ -15,14 +15,15 @@ namespace {
 struct ControllerEntry {
   std::string_view model;
   Wanted driven_by;
+  bool turns_to_heading;
   ControllerFactory* make;
 };
 
 constexpr ControllerEntry kControllers[] = {
-    {"quadrotor", Wanted::kAcceleration, MakeQuadrotorController},
-    {"double_integrator", Wanted::kAcceleration, MakeDoubleIntegratorController},
-    {"single_integrator", Wanted::kVelocity, MakeSingleIntegratorController},
-    {"unicycle", Wanted::kVelocity, MakeUnicycleController},
+    {"quadrotor", Wanted::kAcceleration, true, MakeQuadrotorController},
+    {"double_integrator", Wanted::kAcceleration, false, MakeDoubleIntegratorController},
+    {"single_integrator", Wanted::kVelocity, false, MakeSingleIntegratorController},
+    {"unicycle", Wanted::kVelocity, false, MakeUnicycleController},
 };
 
 const ControllerEntry& Entry(const std::string& model) {
@@ -34,6 +35,8 @@ const ControllerEntry& Entry(const std::string& model) {
 }  // namespace
 
 Wanted DrivenBy(const std::string& model) { return Entry(model).driven_by; }
+
+bool TurnsToHeading(const std::string& model) { return Entry(model).turns_to_heading; }
 
 std::unique_ptr<Controller> MakeController(const Experiment& experiment, int id) {
   return Entry(experiment.agent(id).model).make(experiment, id);

@@ -34,7 +34,7 @@ constexpr Key kRotorFailureKeys[] = {
 constexpr Key kKeys[] = {
     key::Integer("rate_hz", 1, 100000, "steps of the physics per simulated second").Default("1000"),
     key::Number("gravity_m_per_s2", {0, 100}, "downwards; integrators feel none").Default("9.81"),
-    key::Boolean("collisions", "bodies touch each other, the ground and obstacles").Default("true"),
+    key::Boolean("collisions", "bodies touch each other and obstacles (the ground: `ground`)").Default("true"),
     key::Boolean("ground", "a plane at z = 0").Default("true"),
     key::Table("wind", kWindKeys, "air that moves, the same for all quadrotors"),
     key::Tables("obstacles", kObstacleKeys, "solid things that do not move"),

@@ -25,6 +25,8 @@ IdealTeam::IdealTeam(Experiment& experiment)
     Motion& motion = motions_[static_cast<std::size_t>(config.id - 1)];
     motion.p_WB = config.p_W;
     motion.v_WB = config.v_W;
+    const double heading_rad = TurnsToHeading(config.model) ? config.control.heading_rad : config.heading_rad;
+    motion.q_WB = Eigen::AngleAxisd(heading_rad, Eigen::Vector3d::UnitZ());  // a law may look at it
   }
 }
 

@@ -63,8 +63,10 @@ void Metrics::MeasureAgreement(std::span<const Motion> motions) {
 }
 
 void Metrics::MeasureControl(std::span<const Command> commands) {
+  effort_m2_per_s3_ += newest_effort_m2_per_s3_;  // of the row before: that of the last row is not applied any more
+  newest_effort_m2_per_s3_ = 0;
   for (const Command& command : commands) {
-    effort_ += command.a_limited_W.squaredNorm() * experiment_.period_s();
+    newest_effort_m2_per_s3_ += command.a_limited_W.squaredNorm() * experiment_.period_s();
     saturated_ += (command.flags & kAccelerationLimited) != 0;
     tilt_limited_ += (command.flags & kTiltLimited) != 0;
     rotor_limited_ += (command.flags & kRotorLimited) != 0;
@@ -139,7 +141,7 @@ Measured Metrics::Result() const {
     result.settling_time_s = experiment_.time_s(last_unsettled_ + 1);
   result.rate_per_s = decay_.rate_per_s();
   result.minmax_edges = pursuit_.Result();
-  result.effort_m2_per_s3 = effort_ / agents;
+  result.effort_m2_per_s3 = effort_m2_per_s3_ / agents;
   result.saturated_fraction = static_cast<double>(saturated_) / samples;
   result.tilt_limited_fraction = static_cast<double>(tilt_limited_) / samples;
   result.rotor_limited_fraction = static_cast<double>(rotor_limited_) / samples;

@@ -77,8 +77,8 @@ class Metrics {
   double first_disagreement_m_ = 0;
   DecayMeter decay_;
   PursuitMeter pursuit_;
-  std::int64_t last_unsettled_ = -1;  // newest row above 2 % of the first disagreement
-  double effort_ = 0;
+  std::int64_t last_unsettled_ = -1;                           // newest row above 2 % of the first disagreement
+  double effort_m2_per_s3_ = 0, newest_effort_m2_per_s3_ = 0;  // all agents together
   std::int64_t saturated_ = 0, tilt_limited_ = 0, rotor_limited_ = 0;
   double min_separation2_;
   double squared_deviation_ = 0;

@@ -542,6 +542,43 @@ TEST(Up, SaysWithWhichIdealBodiesARunWasCompared) {
   EXPECT_EQ(compared_with("mixed"), "ideal single and double integrators");
 }
 
+/// The summary of one second of two double integrators with this Python law, flown in process.
+nlohmann::json OneSecond(const ScratchFolder& folder, const std::string& returned, std::vector<std::string> more = {}) {
+  WriteFile(folder.File("law.toml"),
+            "[run]\nduration_s = 1.0\n[agents]\ncount = 2\nmodel = 'double_integrator'\n[law]\nname = 'custom'\n"
+            "python = '''\ndef control(t, me, neighbours):\n    return " +
+                returned + "\n'''\n");
+  more.insert(more.end(), {"--engine", "inprocess"});
+  Up up(folder, "run", folder.File("law.toml"), more);
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  return up.Summary();
+}
+
+TEST(Up, IntegratesTheEffortOverThePeriodsFlown) {
+  const ScratchFolder folder;
+  EXPECT_NEAR(OneSecond(folder, "[0.5, 0]")["control"]["effort"].get<double>(), 0.25 * 1, 1e-12);
+}
+
+TEST(Up, MeasuresFidelityOfLawsThatLookAtTheirHeading) {
+  const ScratchFolder folder;  // q = w x y z: 1 - 2 z^2 is the cosine of the heading
+  const auto summary =
+      OneSecond(folder, "[1 - 2 * me.orientation[3]**2, 0]", {"--set", "agents.heading_rad=[1.5,0.3]"});
+  EXPECT_LT(summary["fidelity"]["rms_m"].get<double>(), 1e-9);
+  EXPECT_GT(summary["fidelity"]["travelled_m"].get<double>(), 0.1);
+}
+
+TEST(Up, OutlivesAHangUpThatItWasToldToIgnore) {
+  const ScratchFolder folder;
+  Running up(
+      "sh",
+      {"-c", "trap '' HUP; exec '" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") +
+                 " --engine inprocess --duration-s 500 --set output.save_plot=false --out " + folder.File("run")},
+      folder.File("up"));
+  ASSERT_TRUE(Flies(up));
+  up.Signal(SIGHUP);
+  EXPECT_EQ(up.Wait(), 0);
+}
+
 TEST(Up, PrintsTheSummaryAndNothingElseAsJson) {
   ScratchFolder folder;
   Up up(folder, "run", Config("leaderless"), {"--duration-s", "1", "--json", "--engine", "inprocess"});
