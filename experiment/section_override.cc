@@ -34,7 +34,8 @@ std::vector<Step> Steps(std::string_view key) {
     if (key[i] == '[') {
       std::size_t index = 0;
       const auto [end, error] = std::from_chars(key.data() + i + 1, key.data() + key.size(), index);
-      if (steps.empty() || error != std::errc() || end == key.data() + key.size() || *end != ']') return {};
+      const bool padded = key.substr(i).starts_with("[0") && !key.substr(i).starts_with("[0]");
+      if (steps.empty() || padded || error != std::errc() || end == key.data() + key.size() || *end != ']') return {};
       steps.emplace_back(index);
       i = static_cast<std::size_t>(end - key.data()) + 1;
       if (i < key.size() && key[i] != '.' && key[i] != '[') return {};

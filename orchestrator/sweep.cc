@@ -173,7 +173,7 @@ Outcome WorkOff(const SweepPlan& plan, WorkerPool& pool, SweepFile& table, bool 
 SweepFile::Cells ColumnsOf(const SweepPlan& plan) {
   SweepFile::Cells columns{"run"};
   columns.insert(columns.end(), plan.keys().begin(), plan.keys().end());
-  columns.push_back("error");
+  columns.push_back(kErrorColumn);
   const auto names = SweepMetricNames();
   columns.insert(columns.end(), names.begin(), names.end());
   return columns;
@@ -208,6 +208,7 @@ void CheckOut(const std::string& out) {
 /// Two keys can be drawn, or seeds alone.
 bool IsDrawable(const SweepArgs& args, const SweepPlan& plan) {
   constexpr std::size_t kMostKeys = 2;
+  if (args.metric && plan.size() < 2) throw ConfigError({"--plot: expected at least 2 runs to draw, got 1"});
   if (args.no_plot || plan.size() < 2) return false;
   if (plan.varied().size() > kMostKeys && args.metric)
     throw ConfigError({"--plot: expected at most 2 keys of several values to draw over, got " +
@@ -232,7 +233,8 @@ int FlyAll(const SweepArgs& args, const Sweep& sweep, bool drawable, StopSignal&
     outcome = WorkOff(sweep.plan, pool, table, args.quiet, stop);
   } catch (const Interrupted&) {
     std::cerr << "interrupted: " << table.rows() << " of " << sweep.plan.size()
-              << " runs are in the table; the same command goes on with the others\n";
+              << " runs are in the table; the same command" << (args.force ? ", without --force, " : " ")
+              << "goes on with the others\n";
     throw;
   }
   table.Sort();

@@ -1,8 +1,11 @@
 #include "orchestrator/sweep_plan.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 
 #include "experiment/random.h"
@@ -24,27 +27,37 @@ std::optional<double> ToNumber(std::string_view text) {
   return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-bool IsInteger(std::string_view text) { return text.find_first_not_of("+-0123456789") == text.npos; }
+std::optional<std::int64_t> ToInteger(std::string_view text) {
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+/// What TOML holds for one string at the front of `text`, quotes and all, or nothing.
+std::string_view StringAtFront(std::string_view text) {
+  if (text.empty() || (text[0] != '"' && text[0] != '\'')) return {};
+  const std::string triple(3, text[0]);
+  const std::string_view quote = text.starts_with(triple) ? text.substr(0, 3) : text.substr(0, 1);
+  for (std::size_t i = quote.size(); i < text.size(); ++i) {
+    if (text.substr(i).starts_with(quote)) return text.substr(0, i + quote.size());
+    if (text[i] == '\\' && quote[0] == '"') ++i;
+  }
+  return text;
+}
 
 /// Parts between the separators that stand outside brackets, braces and quotes.
 std::vector<std::string> Split(std::string_view text, char separator) {
   std::vector<std::string> parts(1);
   int depth = 0;
-  char quote = 0;
-  for (const char c : text) {
-    if (quote != 0) {
-      if (c == quote) quote = 0;
-    } else if (c == '"' || c == '\'') {
-      quote = c;
-    } else if (c == '[' || c == '{') {
-      ++depth;
-    } else if (c == ']' || c == '}') {
-      --depth;
-    }
-    if (c == separator && depth == 0 && quote == 0)
+  while (!text.empty()) {
+    const std::string_view string = StringAtFront(text);
+    const std::string_view token = string.empty() ? text.substr(0, 1) : string;
+    text.remove_prefix(token.size());
+    depth += (token == "[" || token == "{") - (token == "]" || token == "}");
+    if (token[0] == separator && depth == 0)
       parts.emplace_back();
     else
-      parts.back() += c;
+      parts.back() += token;
   }
   return parts;
 }
@@ -62,15 +75,19 @@ std::pair<std::string, std::string> SplitKey(const std::string& option, const st
   return {word.substr(0, equals), word.substr(equals + 1)};
 }
 
-/// `value` with as many decimals as the words have: 0.3 + 6 x 0.1 is meant to be 0.9.
-double Rounded(double value, const std::vector<std::string>& words) {
-  std::size_t decimals = 0;
-  for (const std::string& word : words) {
-    if (word.find_first_of("eE") != word.npos) return value;
-    if (const auto point = word.find('.'); point != word.npos) decimals = std::max(decimals, word.size() - point - 1);
+/// `value` to 15 digits: 0.3 + 6 x 0.1 is meant to be 0.9.
+double Rounded(double value) { return std::strtod(fmt::format("{:.15g}", value).c_str(), nullptr); }
+
+/// A:STEP:B of integers, exactly; nothing if they are none.
+std::optional<std::vector<std::string>> IntegerRange(const std::vector<std::string>& parts) {
+  const auto a = ToInteger(parts[0]), step = ToInteger(parts[1]), b = ToInteger(parts[2]);
+  if (!a || !step || !b) return std::nullopt;
+  std::vector<std::string> values;
+  for (std::int64_t value = *a; *step > 0 ? value <= *b : value >= *b;) {
+    values.push_back(std::to_string(value));
+    if (__builtin_add_overflow(value, *step, &value)) break;
   }
-  const double scale = std::pow(10.0, static_cast<double>(decimals));
-  return std::round(value * scale) / scale;
+  return values;
 }
 
 /// A:STEP:B, both ends included: A + i STEP, never accumulated, and B if a rounding error misses it.
@@ -81,12 +98,9 @@ std::vector<std::string> Range(const std::string& word, const std::vector<std::s
   constexpr double kRounding = 1e-9;
   const double steps = std::floor((*last - *first) / *step + kRounding);
   if (steps >= static_cast<double>(kMostRuns)) Refuse("--set", "at most 10000000 values", word);
-  const bool integers = std::ranges::all_of(parts, [](const std::string& part) { return IsInteger(part); });
+  if (auto integers = IntegerRange(parts)) return *integers;
   std::vector<std::string> values;
-  for (double i = 0; i <= steps; ++i) {
-    const double value = *first + i * *step;
-    values.push_back(integers ? std::to_string(std::llround(value)) : ShortestFloat(Rounded(value, parts)));
-  }
+  for (double i = 0; i <= steps; ++i) values.push_back(ShortestFloat(Rounded(*first + i * *step)));
   return values;
 }
 
@@ -107,6 +121,7 @@ Axis ParseRandom(const std::string& word, std::uint64_t place, std::int64_t samp
   const bool log = parts.size() == 3 && parts[2] == "log";
   if (!min || !max || *min > *max || (parts.size() == 3 && !log) || parts.size() > 3 || (log && *min <= 0))
     Refuse("--random", "key=min:max or key=min:max:log with 0 < min", word);
+  if (!std::isfinite(log ? *max / *min : *max - *min)) Refuse("--random", "a range that a double can span", word);
   Random random(kSamplesSeed + place, Random::Stream::kSweep);
   Axis axis{key, {}};
   for (std::int64_t i = 0; i < samples; ++i) {
@@ -117,10 +132,8 @@ Axis ParseRandom(const std::string& word, std::uint64_t place, std::int64_t samp
 }
 
 std::optional<std::int64_t> ToSeed(std::string_view text) {
-  std::int64_t seed = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole && seed >= 0 ? std::optional(seed) : std::nullopt;
+  const auto seed = ToInteger(text);
+  return seed && *seed >= 0 ? seed : std::nullopt;
 }
 
 std::vector<std::string> ParseSeeds(const std::string& text) {
@@ -159,12 +172,19 @@ std::vector<SweepPoint> ChoicesOf(const Axis& axis) {
   return choices;
 }
 
+/// `key` is `table`, or a key or place in it.
+bool IsInside(std::string_view key, std::string_view table) {
+  return key.starts_with(table) && (key.size() == table.size() || key[table.size()] == '.' || key[table.size()] == '[');
+}
+
 }  // namespace
 
 SweepPlan::SweepPlan(const Words& words) : points_(1) {
   const auto add_key = [this](const Axis& axis, bool drawn) {
-    if (std::ranges::find(keys_, axis.key) != keys_.end())
-      throw ConfigError({"sweep: expected each key once, got " + axis.key + " again"});
+    for (const std::string& key : keys_)
+      if (IsInside(key, axis.key) || IsInside(axis.key, key))
+        throw ConfigError(
+            {"sweep: expected each key once, got " + axis.key + (key == axis.key ? " again" : " and " + key)});
     keys_.push_back(axis.key);
     if (drawn && axis.values.size() > 1) varied_.push_back(axis.key);
   };

@@ -13,21 +13,47 @@
 #include <cstring>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "orchestrator/process.h"
 
 namespace mascot {
 namespace {
 
-constexpr std::size_t kLongest = std::size_t{64} << 10;  // of an answer or a failure
 constexpr char kAnswer = 'a', kFailure = 'f';
 
 [[noreturn]] void Fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
 
-std::string WordsOf(const std::exception& error) {
-  std::string words = error.what();
-  if (words.size() > kLongest / 2) words.resize(kLongest / 2);
-  return words;
+// What goes back is a length, then as many bytes: kAnswer or kFailure, and its text.
+
+bool SendReply(int socket, const std::string& reply) {
+  const std::size_t size = reply.size();
+  std::string message(reinterpret_cast<const char*>(&size), sizeof size);
+  message += reply;
+  for (std::size_t done = 0; done < message.size();) {
+    const ssize_t sent = ::send(socket, message.data() + done, message.size() - done, MSG_NOSIGNAL);
+    if (sent < 0 && errno != EINTR) return false;
+    done += static_cast<std::size_t>(std::max<ssize_t>(sent, 0));
+  }
+  return true;
+}
+
+bool Receive(int socket, void* data, std::size_t size) {
+  for (std::size_t done = 0; done < size;) {
+    const ssize_t got = ::recv(socket, static_cast<char*>(data) + done, size - done, 0);
+    if (got == 0 || (got < 0 && errno != EINTR)) return false;
+    done += static_cast<std::size_t>(std::max<ssize_t>(got, 0));
+  }
+  return true;
+}
+
+/// Nothing from a worker that has ended.
+std::optional<std::string> ReceiveReply(int socket) {
+  std::size_t size = 0;
+  if (!Receive(socket, &size, sizeof size)) return std::nullopt;
+  std::string reply(size, '\0');
+  if (!Receive(socket, reply.data(), size)) return std::nullopt;
+  return reply;
 }
 
 /// A worker's own lines would only mix with others'; errors stay.
@@ -51,7 +77,7 @@ WorkerPool::~WorkerPool() {
 
 WorkerPool::Worker WorkerPool::Fork() {
   int ends[2];
-  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) Fail("socketpair");
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) Fail("socketpair");
   const pid_t parent = ::getpid();
   const pid_t pid = ::fork();
   if (pid < 0) Fail("fork");
@@ -59,7 +85,8 @@ WorkerPool::Worker WorkerPool::Fork() {
     ::setpgid(0, 0);  // Ctrl-C is the parent's business
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(1);
-    for (const Worker& other : workers_) ::close(other.socket);
+    for (const Worker& other : workers_)
+      if (other.socket >= 0) ::close(other.socket);
     ::close(ends[0]);
     SilenceOutput();
     Serve(ends[1]);
@@ -70,15 +97,14 @@ WorkerPool::Worker WorkerPool::Fork() {
 
 void WorkerPool::Serve(int socket) const {
   std::size_t task = 0;
-  while (::recv(socket, &task, sizeof task, 0) == sizeof task) {
+  while (Receive(socket, &task, sizeof task)) {
     std::string reply;
     try {
       reply = kAnswer + work_(task);
-      if (reply.size() > kLongest) throw std::length_error("an answer of " + std::to_string(reply.size()) + " bytes");
     } catch (const std::exception& error) {
-      reply = kFailure + WordsOf(error);
+      reply = kFailure + std::string(error.what());
     }
-    if (::send(socket, reply.data(), reply.size(), MSG_NOSIGNAL) < 0) break;
+    if (!SendReply(socket, reply)) break;
   }
   ::_exit(0);
 }
@@ -106,12 +132,9 @@ std::optional<WorkerPool::Done> WorkerPool::Wait(std::chrono::milliseconds timeo
   for (std::size_t i = 0; i < workers_.size(); ++i) {
     if (sockets[i].revents == 0) continue;
     Worker& worker = workers_[i];
-    std::string reply(kLongest + 1, '\0');
-    const ssize_t got = ::recv(worker.socket, reply.data(), reply.size(), 0);
-    if (got > 0) {
-      reply.resize(static_cast<std::size_t>(got));
-      Done done{worker.task.value(), reply.substr(1), ""};
-      if (reply[0] == kFailure) std::swap(done.answer, done.failure);
+    if (const auto reply = ReceiveReply(worker.socket)) {
+      Done done{worker.task.value(), reply->substr(1), ""};
+      if (reply->front() == kFailure) std::swap(done.answer, done.failure);
       worker.task.reset();
       return done;
     }
@@ -124,7 +147,7 @@ std::optional<WorkerPool::Done> WorkerPool::Wait(std::chrono::milliseconds timeo
 }
 
 std::string WorkerPool::Bury(Worker& worker) const {
-  ::close(worker.socket);
+  ::close(std::exchange(worker.socket, -1));
   int status = 0;
   while (::waitpid(worker.pid, &status, 0) < 0 && errno == EINTR) {
   }

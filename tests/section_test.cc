@@ -465,7 +465,8 @@ TEST(Section, RefusesOverridesThatAreNone) {
   EXPECT_THAT(Mistakes("a = 1\n", read, {{"a..b", "1"}}),
               ElementsAre("--set a..b=1: expected a dotted key such as law.p_gain or agents.override[0].start_s, got "
                           "'a..b'"));
-  for (const char* key : {"[0]", "a[", "a[0", "a[0]b", "a[-1]", "a[x]", "a.[0]", "a[0].", "a[99999999999999999999]"})
+  for (const char* key :
+       {"[0]", "a[", "a[0", "a[0]b", "a[-1]", "a[x]", "a[00]", "a[01]", "a.[0]", "a[0].", "a[99999999999999999999]"})
     EXPECT_THAT(Mistakes("a = [1]\n", read, {{key, "1"}}), ElementsAre(HasSubstr(": expected a dotted key"))) << key;
 }
 

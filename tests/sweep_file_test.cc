@@ -1,6 +1,10 @@
 #include "orchestrator/sweep_file.h"
 
 #include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
 
 #include "experiment/section.h"
 #include "tests/scratch.h"
@@ -8,6 +12,7 @@
 namespace mascot {
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 const SweepFile::Cells kColumns = {"run", "law.beta", "error"};
@@ -60,7 +65,7 @@ TEST_F(SweepFileTest, ForgetsRunsWhoseProcessDied) {
 }
 
 TEST_F(SweepFileTest, IsNotMixedWithAnotherSweep) {
-  { SweepFile file(path_, kColumns, "plan", false); }
+  SweepFile(path_, kColumns, "plan", false).Add(0, {"0.5", ""});
   EXPECT_THAT(
       [&] { SweepFile(path_, kColumns, "other plan", false); },
       ThrowsMessage<ConfigError>("--out " + path_ +
@@ -69,12 +74,70 @@ TEST_F(SweepFileTest, IsNotMixedWithAnotherSweep) {
   WriteFile(path_, "something else\n");
   EXPECT_THAT([&] { SweepFile(path_, kColumns, "plan", false); },
               ThrowsMessage<ConfigError>("--out " + path_ + ": expected the columns of this sweep, got others"));
-  WriteFile(path_, "run,law.beta,error\nx,1,\n");
-  EXPECT_THAT(
-      [&] { SweepFile(path_, kColumns, "plan", false); },
-      ThrowsMessage<ConfigError>("--out " + path_ + ": expected rows that begin with a run's number, got 'x,1,\n'"));
   SweepFile anew(path_, kColumns, "plan", true);
   EXPECT_EQ(Text(), "run,law.beta,error\n");
+}
+
+TEST_F(SweepFileTest, IsNotBegunInAFileOfSomebodyElse) {
+  WriteFile(path_, "a person's own table\n");
+  EXPECT_THAT([&] { SweepFile(path_, kColumns, "plan", false); },
+              ThrowsMessage<ConfigError>(HasSubstr(": expected a new file, or one of this very sweep, got another")));
+  EXPECT_EQ(Text(), "a person's own table\n");
+  EXPECT_FALSE(std::filesystem::exists(path_ + ".plan"));
+  EXPECT_THAT([&] { SweepFile("/dev/null", kColumns, "plan", true); },
+              ThrowsMessage<ConfigError>("--out /dev/null: expected a file, got something else"));
+}
+
+TEST_F(SweepFileTest, BeginsWhereNothingWasWrittenButTheColumns) {
+  WriteFile(path_, "run,law.beta,error\n");  // killed before it wrote its plan
+  EXPECT_NO_THROW(SweepFile(path_, kColumns, "plan", false));
+}
+
+TEST_F(SweepFileTest, DropsRowsThatAreNotWhole) {
+  SweepFile(path_, kColumns, "plan", false).Add(7, {"0.5", ""});
+  WriteFile(path_, "run,law.beta,error\n0,0.5,\n1,0.5\nx,1,\n2,0.5,,3\n3,0.5,\"an error, the process too\"\n");
+  SweepFile file(path_, kColumns, "plan", false);
+  EXPECT_EQ(file.rows(), 2);
+  EXPECT_TRUE(file.Has(0));
+  EXPECT_TRUE(file.Has(3)) << "it failed by itself";
+}
+
+/// How a process of its own, which is what holds the lock, fares with the table.
+int OpenedElsewhere(const std::string& path) {
+  const pid_t pid = fork();
+  if (pid == 0) {
+    try {
+      const SweepFile other(path, kColumns, "plan", true);
+      _exit(0);
+    } catch (const ConfigError& error) {
+      const std::string expected = ": expected a table of this sweep's own, got one that another is writing";
+      _exit(error.what() == "--out " + path + expected ? 2 : 3);
+    }
+  }
+  int status = 0;
+  waitpid(pid, &status, 0);
+  return WEXITSTATUS(status);
+}
+
+TEST_F(SweepFileTest, IsWrittenByOneSweepAtATime) {
+  {
+    const SweepFile file(path_, kColumns, "plan", false);
+    EXPECT_EQ(OpenedElsewhere(path_), 2);
+  }
+  EXPECT_EQ(OpenedElsewhere(path_), 0);
+}
+
+TEST_F(SweepFileTest, FollowsLinks) {
+  WriteFile(folder_.File("table.csv"), "");
+  std::filesystem::create_symlink(folder_.File("table.csv"), path_);
+  SweepFile(path_, kColumns, "plan", false).Add(0, {"0.5", ""});
+  EXPECT_TRUE(std::filesystem::is_symlink(path_));
+  EXPECT_EQ(ReadFile(folder_.File("table.csv")), "run,law.beta,error\n0,0.5,\n");
+}
+
+TEST(Csv, CellsComeBackFromTheirLine) {
+  const std::vector<std::string> cells = {"0", "", "a, \"b\"", "\"", "", "x"};
+  EXPECT_EQ(CsvCells(CsvLine(cells)), cells);
 }
 
 TEST_F(SweepFileTest, SaysThatItCannotBeWritten) {

@@ -37,6 +37,10 @@ TEST(SweepPlan, CountsFromAByStepToB) {
   EXPECT_THAT(Runs(SweepPlan(Sets({"agents.count=4:2:9"}))), ElementsAre("4", "6", "8"));
   EXPECT_THAT(Runs(SweepPlan(Sets({"law.beta=2:-1:0.5"}))), ElementsAre("2.0", "1.0"));
   EXPECT_THAT(Runs(SweepPlan(Sets({"law.beta=3:1:3"}))), ElementsAre("3"));
+  EXPECT_THAT(Runs(SweepPlan(Sets({"run.seed=9007199254740993:1:9007199254740995"}))),
+              ElementsAre("9007199254740993", "9007199254740994", "9007199254740995"));
+  EXPECT_THAT(Runs(SweepPlan(Sets({"a=9223372036854775806:1:9223372036854775807"}))),
+              ElementsAre("9223372036854775806", "9223372036854775807"));
 }
 
 TEST(SweepPlan, DoesNotAccumulateRoundingErrors) {
@@ -45,6 +49,7 @@ TEST(SweepPlan, DoesNotAccumulateRoundingErrors) {
   EXPECT_EQ(plan[10].overrides[0].value, "1.0");
   const SweepPlan decimals(Sets({"law.beta=0.3:0.1:1"}));  // 0.3 + 6 x 0.1 is not the double nearest to 0.9
   EXPECT_THAT(Runs(decimals), ElementsAre("0.3", "0.4", "0.5", "0.6", "0.7", "0.8", "0.9", "1.0"));
+  EXPECT_THAT(Runs(SweepPlan(Sets({"law.beta=1e-1:1e-1:3e-1"}))), ElementsAre("0.1", "0.2", "0.3"));
 }
 
 TEST(SweepPlan, TakesListsAndSingleValues) {
@@ -53,6 +58,8 @@ TEST(SweepPlan, TakesListsAndSingleValues) {
   EXPECT_THAT(Runs(plan), ElementsAre("ring [[1, 2, 3], [4, 5, 6]] 1", "path [[1, 2, 3], [4, 5, 6]] 1"));
   EXPECT_THAT(plan.varied(), ElementsAre("graph.topology"));
   EXPECT_THAT(Runs(SweepPlan(Sets({"run.name='a,b','c:d:e'"}))), ElementsAre("'a,b'", "'c:d:e'"));
+  EXPECT_THAT(Runs(SweepPlan(Sets({R"(a="x\",y",'z\',"")"}))), ElementsAre(R"("x\",y")", R"('z\')", R"("")"));
+  EXPECT_THAT(Runs(SweepPlan(Sets({"a=\"\"\"x\",y\"\"\",1"}))), ElementsAre("\"\"\"x\",y\"\"\"", "1"));
 }
 
 TEST(SweepPlan, CombinesEveryKeyWithEveryOtherAndSeedsFastest) {

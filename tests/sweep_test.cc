@@ -183,6 +183,12 @@ TEST_F(SweepTest, RefusesWhatCannotBeSwept) {
   refuses("--random law.p_gain=0:1", "error: --random requires --samples");
   refuses("--set law.p_gain=1,2 --set law.beta=1,2 --set law.v_gain=0,1 --plot consensus.rate_per_s",
           "error: --plot: expected at most 2 keys of several values to draw over, got 3");
+  refuses("--plot consensus.rate_per_s", "error: --plot: expected at least 2 runs to draw, got 1");
+  refuses("--set law.p_gain=1,2 --set law.p_gain=3", "error: sweep: expected each key once, got law.p_gain again");
+  refuses("--set law.p_gain=1,2 --set 'law={name=\"consensus\"}'",
+          "error: sweep: expected each key once, got law and law.p_gain");
+  refuses("--random law.p_gain=-1e308:1e308 --samples 2",
+          "error: --random: expected a range that a double can span, got 'law.p_gain=-1e308:1e308'");
   out_ = folder_.File("a.png");
   refuses("--seeds 1..2",
           "error: --out: expected the table's file, such as sweep.csv, got '" + out_ + "', the picture's");

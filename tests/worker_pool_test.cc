@@ -34,6 +34,18 @@ TEST(WorkerPool, AnswersEveryTaskOnce) {
   }
 }
 
+TEST(WorkerPool, AnswersAtAnyLength) {
+  WorkerPool pool(2, [](std::size_t task) {
+    const std::string text(task << 20, 'x');
+    if (task % 2 == 1) throw std::runtime_error(text);
+    return text;
+  });
+  for (const auto& [task, done] : WorkOff(pool, 4)) {
+    EXPECT_EQ((task % 2 == 1 ? done.failure : done.answer).size(), task << 20);
+    EXPECT_EQ((task % 2 == 1 ? done.answer : done.failure), "");
+  }
+}
+
 TEST(WorkerPool, WorksInProcessesOfItsOwn) {
   WorkerPool pool(2, [](std::size_t) { return std::to_string(::getpid()); });
   std::set<std::string> pids;
