@@ -1,6 +1,7 @@
 #include "idl/shared_memory.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -78,7 +79,7 @@ bool IsLocked(const std::string& path) {
 }  // namespace
 
 std::vector<std::string> StaleSharedMemory() {
-  // In this order: a file that a starting process has just made is mapped or locked by the time we look.
+  // In this order: a file that a starting process has just made is mostly mapped or locked by the time we look.
   const auto segments = Segments();
   if (segments.empty()) return {};
   const std::set<std::string> mapped = MappedNames();
@@ -90,7 +91,12 @@ std::vector<std::string> StaleSharedMemory() {
 }
 
 void SweepSharedMemory() {
-  for (const std::string& file : StaleSharedMemory()) unlink(file.c_str());
+  const std::vector<std::string> once = StaleSharedMemory();
+  if (once.empty()) return;
+  poll(nullptr, 0, 50);  // milliseconds: a process that was just making one of them has mapped or locked it by then
+  const std::vector<std::string> again = StaleSharedMemory();
+  for (const std::string& file : once)
+    if (std::ranges::find(again, file) != again.end()) unlink(file.c_str());
 }
 
 }  // namespace mascot
