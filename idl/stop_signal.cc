@@ -43,6 +43,9 @@ StopSignal::StopSignal() {
 }
 
 StopSignal::~StopSignal() {
+  signalfd_siginfo unread;  // once unblocked, it would end this process
+  while (read(signals_, &unread, sizeof unread) == sizeof unread) {
+  }
   close(wakeups_);
   close(signals_);
   const sigset_t set = Signals();

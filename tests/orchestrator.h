@@ -65,11 +65,11 @@ class Running {
 
   pid_t pid() const { return pid_; }
   void Signal(int signal) const { kill(pid_, signal); }
-  /// The exit code, or 128 + signal.
+  /// The exit code; -signal where a signal ended it.
   int Wait() {
     int status = 0;
     waitpid(std::exchange(pid_, -1), &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
   std::string out() const { return ReadFile(out_); }
   std::string err() const { return ReadFile(err_); }
