@@ -60,14 +60,18 @@ class DdsRun {
   void Spawn();
   void Loop();
   void HandleSignal(int signal);
+  std::vector<Exit> Reap();
+  void AwaitSignal();
   void CheckChildren();
   void SayReady();
   void Record();
   void CheckWire();
   void CheckDeadlines();
+  void CheckProgress();
   void ShowProgress();
   std::optional<Hub::Status> ServerReport() const;
   void AwaitLastWords();
+  void DrainAll();
   bool in_order() const;
   void AskToEnd();
   void Collect();
@@ -81,10 +85,13 @@ class DdsRun {
   const bool external_;
   EngineResult result_;
   bool finished_ = false;
-  bool server_ended_ = false;  // it has ended, by itself
-  bool server_killed_ = false;
+  bool server_ended_ = false;  // by itself
+  bool server_mute_ = false;   // it was killed, or hangs: it will not say anything more
+  bool wire_was_complete_ = false;
   Deadline stop_deadline_, drain_deadline_;
   std::int64_t confirmed_ = 0;
+  std::int64_t progress_seen_ = -1;
+  WallClock::time_point progress_at_;
 
   const std::vector<AgentRange> processes_;
   const bool with_server_;
@@ -206,28 +213,37 @@ std::optional<Hub::Status> DdsRun::ServerReport() const {
   return server;
 }
 
-/// Where the run failed, but not the server: it is told to end, and so to report. Of a server that ended by itself:
-/// that it has gone may be known before what it said last.
+/// Where the run did not end in order, but the server lives: it is told to end, and so to report. Of a server that
+/// ended by itself: that it has gone may be known before what it said last.
 void DdsRun::AwaitLastWords() {
-  if (result_.failure.empty() || recorder_->newest_tick() < 0) return;
+  if (in_order() || ServerReport() || server_mute_ || recorder_->newest_tick() < 0) return;
   if (!server_ended_) AskToEnd();
   auto deadline = WallClock::now() + 2 * kGrace;  // a killed agent's lock may hold up the server, and then us
-  while (!ServerReport() && !server_killed_ && WallClock::now() < deadline) {
+  while (!ServerReport() && !server_mute_ && WallClock::now() < deadline) {
     if (server_ended_) deadline = std::min(deadline, WallClock::now() + 1s);
     if (const int signal = stop_.Within(10ms); signal != 0 && signal != SIGCHLD) return;
-    CheckChildren();
+    Reap();  // they have been asked to end
+  }
+}
+
+/// All rows there are, or those before the next signal: a slow law makes them slow.
+void DdsRun::DrainAll() {
+  for (std::int64_t rows = -1; rows != confirmed_;) {
+    rows = confirmed_;
+    confirmed_ = recorder_->Drain(/*give_up=*/true);
+    if (const int signal = stop_.Within(0ms); signal != 0 && signal != SIGCHLD) return HandleSignal(signal);
   }
 }
 
 void DdsRun::Collect() {
   try {
-    recorder_->Drain(/*give_up=*/true);
+    DrainAll();
   } catch (const std::exception& failure) {
     Fail(failure.what());
   }
   result_.lost = recorder_->lost();
   const bool violated = !audit_.Violation(experiment_).empty();
-  if (violated || audit_.IsComplete(experiment_)) result_.wire_matches_graph = !violated;
+  if (violated || wire_was_complete_) result_.wire_matches_graph = !violated;
   if (recorder_->newest_tick() >= 0) {
     result_.wall_s = recorder_->wall_s();
     result_.startup_s = std::chrono::duration<double>(recorder_->started() - launched_).count();
@@ -262,6 +278,7 @@ void DdsRun::HandleSignal(int signal) {
   if (signal == 0 || signal == SIGCHLD) return;
   if (result_.signal != 0) {  // the second time: at once
     children_.Kill();
+    server_mute_ = true;
     finished_ = true;
     return;
   }
@@ -272,10 +289,29 @@ void DdsRun::HandleSignal(int signal) {
   if (recorder_->newest_tick() < 0) finished_ = true;  // nothing flies yet
 }
 
+/// Children that have ended by themselves.
+std::vector<Exit> DdsRun::Reap() {
+  std::vector<Exit> exits = children_.Reap();
+  for (const Exit& exit : exits)
+    if (exit.process == "physics_server") (WIFEXITED(exit.status) ? server_ended_ : server_mute_) = true;
+  return exits;
+}
+
+/// Who ends a whole job (systemd, a batch system) signals all of its processes, us a little later, maybe.
+void DdsRun::AwaitSignal() {
+  const auto deadline = WallClock::now() + 100ms;
+  while (result_.signal == 0 && WallClock::now() < deadline) HandleSignal(stop_.Within(10ms));
+}
+
 void DdsRun::CheckChildren() {
+  const std::vector<Exit> exits = Reap();
+  if (exits.empty()) return;
+  const auto code = [](const Exit& exit) { return WIFEXITED(exit.status) ? WEXITSTATUS(exit.status) : 0; };
+  if (std::ranges::any_of(exits, [&](const Exit& exit) { return code(exit) > 128; })) AwaitSignal();
+  finished_ = true;
   std::string failure;
-  for (const Exit& exit : children_.Reap()) {
-    if (exit.process == "physics_server") (WIFEXITED(exit.status) ? server_ended_ : server_killed_) = true;
+  for (const Exit& exit : exits) {
+    if (result_.signal != 0 && code(exit) == 128 + result_.signal) continue;
     failure += (failure.empty() ? "" : "\n") + exit.process + " " + exit.Text();
     for (const std::string& line : logs_.LastLines(exit.process)) failure += "\n  " + exit.process + " | " + line;
   }
@@ -294,7 +330,9 @@ void DdsRun::CheckWire() {
 }
 
 void DdsRun::SayReady() {
-  if (recorder_->newest_tick() < 0 && recorder_->Matched() && audit_.IsComplete(experiment_)) hub_->SayReady();
+  if (recorder_->newest_tick() >= 0 || !recorder_->Matched() || !audit_.IsComplete(experiment_)) return;
+  wire_was_complete_ = true;
+  hub_->SayReady();
 }
 
 void DdsRun::Record() {
@@ -302,12 +340,13 @@ void DdsRun::Record() {
   const bool done = server && static_cast<Life>(server->state()) == Life::kDone;
   const bool give_up = drain_deadline_ && WallClock::now() > *drain_deadline_;
   const std::int64_t rows = recorder_->Drain(give_up);
-  if (rows > confirmed_) hub_->Confirm(rows);
+  const bool more = rows > confirmed_;
+  if (more) hub_->Confirm(rows);
   confirmed_ = rows;
   if (!done) return;
   if (rows == static_cast<std::int64_t>(server->tick()) + 1)
     finished_ = true;
-  else if (give_up)
+  else if (give_up && !more)
     Fail("the recording is not complete: " + std::to_string(rows) + " of " + std::to_string(server->tick() + 1) +
          " ticks");
   else if (!drain_deadline_)
@@ -320,6 +359,24 @@ void DdsRun::CheckDeadlines() {
   if (recorder_->newest_tick() < 0 && WallClock::now() - launched_ > start_limit)
     Fail("not started within run.start_timeout_s = " + ShortestFloat(experiment_.run.start_timeout_s) +
          " s: " + hub_->Unheard());
+  CheckProgress();
+}
+
+/// The server tells of agents that fall silent; of a silent server, we must.
+void DdsRun::CheckProgress() {
+  const auto now = WallClock::now();
+  const std::int64_t newest = recorder_->newest_tick();
+  if (newest < 0 || newest + confirmed_ != progress_seen_ || drain_deadline_) {
+    progress_seen_ = newest + confirmed_;
+    progress_at_ = now;
+    return;
+  }
+  const double period_s = experiment_.run.mode == Mode::kRealtime ? experiment_.period_s() / experiment_.run.speed : 0;
+  const double limit_s = experiment_.run.agent_timeout_s + period_s;
+  if (now - progress_at_ < std::chrono::duration<double>(limit_s) + kGrace) return;
+  server_mute_ = true;
+  Fail("nothing came from physics_server for " +
+       ShortestFloat(limit_s + std::chrono::duration<double>(kGrace).count()) + " s");
 }
 
 void DdsRun::ShowProgress() {
@@ -328,7 +385,11 @@ void DdsRun::ShowProgress() {
 
 bool DdsRun::in_order() const { return result_.failure.empty() && result_.signal == 0; }
 
-void DdsRun::AskToEnd() { hub_->Ask(Ask::kEnd, in_order() ? "done" : result_.failure.substr(0, 1000)); }
+void DdsRun::AskToEnd() try {
+  hub_->Ask(Ask::kEnd, in_order() ? "done" : result_.failure.substr(0, 1000));
+} catch (const BusError& error) {  // then signals must do
+  console_.Line(error.what());
+}
 
 void DdsRun::End() {
   if (hub_) AskToEnd();

@@ -127,6 +127,7 @@ void Server::OnStatus(const mascot_msgs::msg::Status& status) {
     recorder_ready_ = life == Life::kReady || life == Life::kRunning;
     recorded_rows_ = static_cast<std::int64_t>(status.tick());
     if (running_) PublishIfRecorded();
+    if (realtime_) lifecycle_.Wake();  // who may wait for this very row
   } else if (const auto agents = AgentsOf(status.process().to_string())) {
     for (int id = std::max(agents->first, 1); id <= std::min(agents->last, experiment_.size()); ++id)
       ready_[static_cast<std::size_t>(id - 1)] = life == Life::kReady || life == Life::kRunning;
@@ -214,15 +215,18 @@ void Server::WatchProgress() {
     if (const std::int64_t tick = world_.tick(); tick != seen) {
       seen = tick;
       deadline = WallClock::now() + limit;
-    } else if (WallClock::now() > deadline && !done_) {
+    } else if (WallClock::now() > deadline + (AwaitsRecorder() ? RecorderGrace() : 0s) && !done_) {
       throw Overdue(seen);
     }
   }
 }
 
-std::string Server::Late() const {
-  if (published_ < world_.tick()) return "the recorder has confirmed only " + std::to_string(recorded_rows_) + " ticks";
-  return "no command from " + Agents(barrier_.Late());
+/// The next tick's states wait for the recorder's window. Called under the lock.
+bool Server::AwaitsRecorder() const { return published_ < world_.tick(); }
+
+/// What it measures beside the run asks the laws of all agents, one after the other, for each row.
+std::chrono::nanoseconds Server::RecorderGrace() const {
+  return (experiment_.size() - 1) * Seconds(experiment_.run.agent_timeout_s);
 }
 
 void Server::RunRealtime() {
@@ -249,7 +253,7 @@ void Server::RunRealtime() {
 }
 
 void Server::AwaitRecorder(std::int64_t tick) {
-  const auto deadline = WallClock::now() + Seconds(experiment_.run.agent_timeout_s);
+  const auto deadline = WallClock::now() + Seconds(experiment_.run.agent_timeout_s) + RecorderGrace();
   while (!Published(tick) && !lifecycle_.stop_requested()) {
     lifecycle_.Wait(50ms);
     if (WallClock::now() < deadline) continue;
@@ -265,8 +269,12 @@ void Server::CheckForDeadAgents(double period_s) const {
 }
 
 std::runtime_error Server::Overdue(std::int64_t tick) const {
-  return std::runtime_error("tick " + std::to_string(tick) + ": " + Late() +
-                            " within run.agent_timeout_s = " + Shortest(experiment_.run.agent_timeout_s));
+  const std::string limit = "run.agent_timeout_s = " + Shortest(experiment_.run.agent_timeout_s);
+  const std::string late = AwaitsRecorder()
+                               ? "the recorder has confirmed only " + std::to_string(recorded_rows_) +
+                                     " ticks, nothing within " + std::to_string(experiment_.size()) + " times "
+                               : "no command from " + Agents(barrier_.Late()) + " within ";
+  return std::runtime_error("tick " + std::to_string(tick) + ": " + late + limit);
 }
 
 bool Server::Published(std::int64_t tick) {

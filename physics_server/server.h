@@ -54,7 +54,8 @@ class Server {
   void Advance();
   void Finish();
   std::string Missing() const;
-  std::string Late() const;
+  bool AwaitsRecorder() const;
+  std::chrono::nanoseconds RecorderGrace() const;
   /// Realtime, where commands are held: throws if one has been held for longer than run.agent_timeout_s.
   void CheckForDeadAgents(double period_s) const;
   std::runtime_error Overdue(std::int64_t tick) const;
