@@ -318,15 +318,16 @@ void DdsRun::CheckChildren() {
   if (!failure.empty()) Fail(failure);
 }
 
+/// Where somebody is on the wire who should not be, that is why, whoever stumbles over it first.
 void DdsRun::Fail(const std::string& why) {
-  if (result_.failure.empty()) result_.failure = why;
+  const std::string violation = audit_.Violation(experiment_);
+  if (result_.failure.empty())
+    result_.failure = violation.empty() ? why : "the wire differs from the graph: " + violation;
   finished_ = true;
 }
 
 void DdsRun::CheckWire() {
-  if (!audit_.HasNews()) return;
-  if (const std::string violation = audit_.Violation(experiment_); !violation.empty())
-    Fail("the wire differs from the graph: " + violation);
+  if (audit_.HasNews() && !audit_.Violation(experiment_).empty()) Fail("");
 }
 
 void DdsRun::SayReady() {
