@@ -208,15 +208,15 @@ void Server::RunLockstep() {
 void Server::WatchProgress() {
   const auto limit = Seconds(experiment_.run.agent_timeout_s);
   auto deadline = WallClock::now() + limit;
-  std::int64_t seen = -1;
+  std::int64_t seen = -1;  // ticks reached and ticks published: agents have their time from the latter on
   while (!done_) {
     lifecycle_.Wait(50ms);
     const std::lock_guard lock(mutex_);
-    if (const std::int64_t tick = world_.tick(); tick != seen) {
-      seen = tick;
+    if (const std::int64_t now = world_.tick() + published_; now != seen) {
+      seen = now;
       deadline = WallClock::now() + limit;
     } else if (WallClock::now() > deadline + (AwaitsRecorder() ? RecorderGrace() : 0s) && !done_) {
-      throw Overdue(seen);
+      throw Overdue(world_.tick());
     }
   }
 }
