@@ -493,6 +493,17 @@ TEST(Lockstep, RunsAsABatchJobUnlessAskedForMore) {
   EXPECT_EQ(up.Wait(), 130) << up.err();
 }
 
+TEST(Realtime, CountsWhatIsLostWhereTheMachineCannotKeepUp) {
+  ScratchFolder folder;  // agents that hurry write over commands that have not been read yet: no reason to end
+  for (int i = 0; i < 3; ++i) {
+    Up up(folder, "run", Config("leaderless"),
+          {"--duration-s", "30", "--set", "run.mode=realtime", "--set", "run.speed=1000", "--force"});
+    EXPECT_EQ(up.Wait(), 0) << up.err();
+    const auto samples = up.Summary()["samples"];
+    EXPECT_LE(samples["recorded"].get<int>() + samples["lost"].get<int>(), 9 * 3001);
+  }
+}
+
 TEST(Realtime, IsRefusedInOneProcess) {
   ScratchFolder folder;
   Up up(folder, "run", Config("leaderless"), {"--engine", "inprocess", "--set", "run.mode=realtime"});
