@@ -109,6 +109,8 @@ struct Section::Table {
 
 /// A key of more parts is refused.
 constexpr std::size_t kDeepestKey = 32;
+/// A character of keys that need no quotes.
+bool IsBare(char c);
 /// Throws ConfigError with the place in `name`.
 toml::table ParseToml(std::string_view text, const std::string& name);
 /// Replaces or adds a key of the document. Throws ConfigError.

@@ -28,7 +28,6 @@ using Step = std::variant<std::string, std::size_t>;
 
 /// "agents.override[0].start_s" as its steps; none if it is not of that form.
 std::vector<Step> Steps(std::string_view key) {
-  const auto is_bare = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-'; };
   std::vector<Step> steps;
   for (std::size_t i = 0; i < key.size();) {
     if (key[i] == '[') {
@@ -42,7 +41,7 @@ std::vector<Step> Steps(std::string_view key) {
     } else {
       if (!steps.empty() && key[i++] != '.') return {};
       const std::size_t begin = i;
-      while (i < key.size() && is_bare(key[i])) ++i;
+      while (i < key.size() && IsBare(key[i])) ++i;
       if (i == begin) return {};
       steps.emplace_back(std::string(key.substr(begin, i - begin)));
     }

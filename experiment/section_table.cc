@@ -45,12 +45,11 @@ std::string ListText(const std::vector<std::string>& items) {
   return lines + "]";
 }
 
-bool IsBareKey(std::string_view key) {
-  return !key.empty() &&
-         std::all_of(key.begin(), key.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
-}
+bool IsBareKey(std::string_view key) { return !key.empty() && std::ranges::all_of(key, IsBare); }
 
 }  // namespace
+
+bool IsBare(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-'; }
 
 std::string KindOf(const toml::node& node) {
   switch (node.type()) {

@@ -1,6 +1,5 @@
 #include "idl/lifecycle.h"
 
-#include <signal.h>
 #include <unistd.h>
 
 #include <utility>
@@ -87,7 +86,7 @@ void Lifecycle::Report(std::uint64_t tick, const Pacing& pacing, const Contacts&
 void Lifecycle::Wait(std::chrono::nanoseconds timeout) {
   const int signal = stop_.Within(timeout);
   domain_.RethrowFailure();
-  if (signal != 0 && signal != SIGCHLD) Leave(Ended(signal));
+  if (signal != 0) Leave(Ended(signal));
   if (end_requested_) Leave(Ended(0));
   if (report_requested_.exchange(false)) Publish();
   // The experiment's only writer is the orchestrator's.

@@ -60,7 +60,7 @@ int StopSignal::Within(std::chrono::nanoseconds timeout) {
   if (ppoll(fds, 2, &limit, nullptr) <= 0) return 0;
   signalfd_siginfo info;
   if ((fds[0].revents & POLLIN) && read(signals_, &info, sizeof info) == sizeof info)
-    return static_cast<int>(info.ssi_signo);
+    return info.ssi_signo == SIGCHLD ? 0 : static_cast<int>(info.ssi_signo);
   eventfd_t count;
   eventfd_read(wakeups_, &count);
   return 0;

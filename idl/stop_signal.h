@@ -14,7 +14,8 @@ class StopSignal {
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
-  /// Waits at most `timeout`. Returns the signal that came (one a call), or 0 after Wake() or the timeout.
+  /// Waits at most `timeout`. Returns the signal that asks to stop (one a call), or 0 after Wake(), the end of a child
+  /// or the timeout.
   int Within(std::chrono::nanoseconds timeout);
   /// Ends a Within() of another thread, or the next one. Any thread may call it.
   void Wake();

@@ -221,7 +221,7 @@ void DdsRun::AwaitLastWords() {
   auto deadline = WallClock::now() + 2 * kGrace;  // a killed agent's lock may hold up the server, and then us
   while (!ServerReport() && !server_mute_ && WallClock::now() < deadline) {
     if (server_ended_) deadline = std::min(deadline, WallClock::now() + 1s);
-    if (const int signal = stop_.Within(10ms); signal != 0 && signal != SIGCHLD) return;
+    if (stop_.Within(10ms) != 0) return;
     Reap();  // they have been asked to end
   }
 }
@@ -231,7 +231,7 @@ void DdsRun::DrainAll() {
   for (std::int64_t rows = -1; rows != confirmed_;) {
     rows = confirmed_;
     confirmed_ = recorder_->Drain(/*give_up=*/true);
-    if (const int signal = stop_.Within(0ms); signal != 0 && signal != SIGCHLD) return HandleSignal(signal);
+    if (const int signal = stop_.Within(0ms); signal != 0) return HandleSignal(signal);
   }
 }
 
@@ -275,7 +275,7 @@ void DdsRun::Loop() {
 }
 
 void DdsRun::HandleSignal(int signal) {
-  if (signal == 0 || signal == SIGCHLD) return;
+  if (signal == 0) return;
   if (result_.signal != 0) {  // the second time: at once
     children_.Kill();
     server_mute_ = true;
@@ -320,10 +320,10 @@ void DdsRun::CheckChildren() {
 
 /// Where somebody is on the wire who should not be, that is why, whoever stumbles over it first.
 void DdsRun::Fail(const std::string& why) {
-  const std::string violation = audit_.Violation(experiment_);
-  if (result_.failure.empty())
-    result_.failure = violation.empty() ? why : "the wire differs from the graph: " + violation;
   finished_ = true;
+  if (!result_.failure.empty()) return;
+  const std::string violation = audit_.Violation(experiment_);
+  result_.failure = violation.empty() ? why : "the wire differs from the graph: " + violation;
 }
 
 void DdsRun::CheckWire() {

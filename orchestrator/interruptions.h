@@ -32,7 +32,7 @@ class Interruptions {
   void Listen(const std::stop_token& over) {
     while (!over.stop_requested()) {
       const int signal = stop_.Within(std::chrono::hours(1));
-      if (signal == 0 || signal == SIGCHLD) continue;
+      if (signal == 0) continue;
       if (signal_ != 0) _exit(128 + signal);  // no destructors: they would wait for what does not end
       signal_ = signal;
       console_.Line("stopping (once more to kill)");

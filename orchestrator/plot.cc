@@ -50,7 +50,7 @@ int RunProgram(std::vector<std::string> words, StopSignal& stop) {
   int status = 0, heard = 0;
   while (waitpid(pid, &status, WNOHANG) == 0) {
     const int signal = stop.Within(std::chrono::milliseconds(100));
-    if (signal == 0 || signal == SIGCHLD) continue;
+    if (signal == 0) continue;
     heard = signal;
     kill(pid, SIGTERM);
   }

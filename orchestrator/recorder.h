@@ -22,8 +22,8 @@ class Recorder {
   /// Every reader has its writer.
   bool Matched() const;
   /// Writes the rows that are complete; in real time also those that have waited long enough for a command
-  /// that an agent never gave, or have waited at all if `give_up`. Returns the number of rows recorded so far; before
-  /// all are, after a while, unless `give_up`.
+  /// that an agent never gave, or have waited at all if `give_up`. Returns the number of rows recorded so far, after
+  /// a while also before all are: call it again.
   std::int64_t Drain(bool give_up = false);
   std::uint64_t lost() const;
   /// From the first sample of tick 0 to the newest command (s); when tick 0 came.

@@ -1,6 +1,5 @@
 // `orchestrator sweep CONFIG`: one experiment many times, over values of its keys and seeds, in one process each run,
 // all cores at work; a table with a row for each run, and a picture of it.
-#include <signal.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -87,8 +86,7 @@ struct Interrupted {
 
 /// Throws Interrupted if a signal has come.
 void ThrowIfInterrupted(StopSignal& stop) {
-  const int signal = stop.Within(std::chrono::nanoseconds::zero());
-  if (signal != 0 && signal != SIGCHLD) throw Interrupted{signal};
+  if (const int signal = stop.Within(std::chrono::nanoseconds::zero()); signal != 0) throw Interrupted{signal};
 }
 
 /// The first run that is a valid experiment, resolved. Refuses a sweep that has none, with the mistakes of the first.
