@@ -4,10 +4,10 @@
 
 #include "agent/laws.h"
 #include "agent/node.h"
+#include "bus/privileges.h"
+#include "bus/process_main.h"
+#include "bus/standard_streams.h"
 #include "experiment/processes.h"
-#include "idl/privileges.h"
-#include "idl/process_main.h"
-#include "idl/standard_streams.h"
 
 namespace {
 

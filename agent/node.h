@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "agent/seat.h"
+#include "bus/lifecycle.h"
 #include "experiment/processes.h"
-#include "idl/lifecycle.h"
 
 namespace mascot {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "agent/agent.h"
-#include "idl/bus.h"
-#include "idl/wire.h"
+#include "bus/bus.h"
+#include "bus/wire.h"
 
 namespace mascot {
 

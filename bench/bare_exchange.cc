@@ -22,10 +22,10 @@
 #include <thread>
 #include <vector>
 
+#include "bus/bus.h"
+#include "bus/shared_memory.h"
+#include "bus/wire.h"
 #include "experiment/graph.h"
-#include "idl/bus.h"
-#include "idl/shared_memory.h"
-#include "idl/wire.h"
 #include "orchestrator/domain_lock.h"
 
 extern char** environ;

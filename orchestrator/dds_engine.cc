@@ -9,9 +9,9 @@
 #include <chrono>
 #include <optional>
 
+#include "bus/bus.h"
+#include "bus/shared_memory.h"
 #include "experiment/processes.h"
-#include "idl/bus.h"
-#include "idl/shared_memory.h"
 #include "orchestrator/domain_lock.h"
 #include "orchestrator/hub.h"
 #include "orchestrator/process.h"
@@ -190,7 +190,7 @@ int DdsRun::PeersOf(AgentRange agents) const {
 /// Bundles that are on their way at once need room beyond that of single states.
 int DdsRun::BundleRoom() const {
   if (experiment_.network.delivery != Delivery::kBundled) return 0;
-  constexpr std::size_t kStatesPerPeer = 32 * 1024 / 176;  // idl/qos.cc reserves 32 KiB for each
+  constexpr std::size_t kStatesPerPeer = 32 * 1024 / 176;  // bus/qos.cc reserves 32 KiB for each
   return static_cast<int>(std::min<std::size_t>(experiment_.graph.edges() / kStatesPerPeer, 10000));
 }
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "bus/stop_signal.h"
 #include "experiment/experiment.h"
-#include "idl/stop_signal.h"
 #include "orchestrator/console.h"
 #include "orchestrator/engine.h"
 #include "orchestrator/run_folder.h"

@@ -1,6 +1,6 @@
 #include "orchestrator/decoded_row.h"
 
-#include "idl/wire.h"
+#include "bus/wire.h"
 
 namespace mascot {
 

@@ -9,14 +9,14 @@
 #include <optional>
 #include <string>
 
+#include "bus/bus.h"
+#include "bus/wire.h"
 #include "experiment/experiment.h"
-#include "idl/bus.h"
-#include "idl/wire.h"
 #include "orchestrator/run_folder.h"
 
 namespace mascot {
 
-/// The orchestrator's part on /status, /request and /experiment (the others' is idl/lifecycle.h), and the
+/// The orchestrator's part on /status, /request and /experiment (the others' is bus/lifecycle.h), and the
 /// recorder's voice there. What is said goes to logs/orchestrator.log.
 class Hub {
  public:

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <thread>
 
-#include "idl/stop_signal.h"
+#include "bus/stop_signal.h"
 #include "orchestrator/console.h"
 
 namespace mascot {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "idl/wire.h"
+#include "bus/wire.h"
 
 namespace mascot {
 namespace {

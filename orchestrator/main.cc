@@ -4,9 +4,9 @@
 #include <iostream>
 #include <vector>
 
+#include "bus/standard_streams.h"
+#include "bus/usage.h"
 #include "experiment/section.h"
-#include "idl/standard_streams.h"
-#include "idl/usage.h"
 #include "orchestrator/verb.h"
 
 namespace mascot {

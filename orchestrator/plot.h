@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "idl/stop_signal.h"
+#include "bus/stop_signal.h"
 
 namespace mascot {
 

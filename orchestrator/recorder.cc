@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "idl/wire.h"
+#include "bus/wire.h"
 
 namespace mascot {
 namespace {

@@ -6,8 +6,8 @@
 #include <mutex>
 #include <vector>
 
+#include "bus/bus.h"
 #include "experiment/experiment.h"
-#include "idl/bus.h"
 #include "orchestrator/row.h"
 #include "orchestrator/run_writer.h"
 

@@ -7,7 +7,7 @@
 
 namespace mascot {
 
-/// Everything that was on the wire about one tick, as bytes (idl/wire.h). By id - 1; empty: was not sent
+/// Everything that was on the wire about one tick, as bytes (bus/wire.h). By id - 1; empty: was not sent
 /// (only in real time, where an agent may miss a tick).
 struct Row {
   using Bytes = std::vector<std::uint8_t>;

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "idl/wire.h"
+#include "bus/wire.h"
 
 namespace mascot {
 

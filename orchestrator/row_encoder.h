@@ -1,7 +1,7 @@
 #pragma once
 
+#include "bus/wire.h"
 #include "experiment/experiment.h"
-#include "idl/wire.h"
 #include "orchestrator/decoded_row.h"
 #include "orchestrator/row.h"
 

@@ -1,9 +1,9 @@
 #include "orchestrator/run_writer.h"
 
-#include "idl/qos.h"
+#include "bus/qos.h"
+#include "bus/wire.h"
 #include "idl/schemas.h"
 #include "idl/topics.h"
-#include "idl/wire.h"
 #include "orchestrator/topic_filter.h"
 
 namespace mascot {

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "agent/laws.h"
-#include "idl/stop_signal.h"
+#include "bus/stop_signal.h"
 #include "orchestrator/console.h"
 #include "orchestrator/inprocess.h"
 #include "orchestrator/plot.h"

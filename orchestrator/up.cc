@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "agent/laws.h"
-#include "idl/stop_signal.h"
+#include "bus/stop_signal.h"
 #include "orchestrator/config_args.h"
 #include "orchestrator/console.h"
 #include "orchestrator/dds_engine.h"

@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 
 #include "agent/laws.h"
-#include "idl/privileges.h"
-#include "idl/process_main.h"
-#include "idl/standard_streams.h"
+#include "bus/privileges.h"
+#include "bus/process_main.h"
+#include "bus/standard_streams.h"
 #include "physics_server/server.h"
 
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "bus/lifecycle.h"
 #include "experiment/experiment.h"
-#include "idl/lifecycle.h"
 #include "physics_server/pace_meter.h"
 #include "physics_server/tick_barrier.h"
 #include "physics_server/world.h"

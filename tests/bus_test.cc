@@ -1,14 +1,14 @@
 // The bus: names, bytes, and what happens around a sample, between two domains in one process.
 
-#include "idl/bus.h"
+#include "bus/bus.h"
 
 #include <gmock/gmock.h>
 
 #include <atomic>
 
 #include "agent/laws.h"
-#include "idl/stop_signal.h"
-#include "idl/wire.h"
+#include "bus/stop_signal.h"
+#include "bus/wire.h"
 #include "orchestrator/domain_lock.h"
 #include "orchestrator/wire_audit.h"
 #include "tests/orchestrator.h"

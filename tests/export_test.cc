@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "agent/laws.h"
-#include "idl/wire.h"
+#include "bus/wire.h"
 #include "orchestrator/mcap_records.h"
 #include "orchestrator/run_writer.h"
 #include "orchestrator/verb.h"

@@ -2,9 +2,9 @@
 
 #include <gmock/gmock.h>
 
-#include "idl/bus.h"
-#include "idl/shared_memory.h"
-#include "idl/wire.h"
+#include "bus/bus.h"
+#include "bus/shared_memory.h"
+#include "bus/wire.h"
 #include "orchestrator/mcap.h"
 #include "tests/orchestrator.h"
 

@@ -3,10 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "idl/bus.h"
+#include "bus/bus.h"
+#include "bus/wire.h"
 #include "idl/schemas.h"
 #include "idl/topics.h"
-#include "idl/wire.h"
 #include "orchestrator/bytes.h"
 #include "orchestrator/mcap.h"
 #include "tests/scratch.h"

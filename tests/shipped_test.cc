@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "agent/laws.h"
-#include "idl/wire.h"
+#include "bus/wire.h"
 #include "orchestrator/mcap.h"
 #include "tests/orchestrator.h"
 

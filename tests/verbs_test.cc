@@ -11,9 +11,9 @@
 #include <sstream>
 
 #include "agent/laws.h"
+#include "bus/qos.h"
 #include "experiment/airframe.h"
 #include "experiment/names.h"
-#include "idl/qos.h"
 #include "orchestrator/verb.h"
 #include "physics_server/model.h"
 #include "tests/scratch.h"

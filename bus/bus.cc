@@ -1,4 +1,4 @@
-#include "idl/bus.h"
+#include "bus/bus.h"
 
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 
@@ -9,7 +9,7 @@
 #include <fastdds/dds/topic/TopicDataType.hpp>
 #include <utility>
 
-#include "idl/wire.h"
+#include "bus/wire.h"
 
 namespace mascot {
 namespace {

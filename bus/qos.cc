@@ -1,4 +1,4 @@
-#include "idl/qos.h"
+#include "bus/qos.h"
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>

@@ -1,4 +1,4 @@
-#include "idl/privileges.h"
+#include "bus/privileges.h"
 
 #include <sched.h>
 #include <sys/mman.h>

@@ -1,4 +1,4 @@
-#include "idl/lifecycle.h"
+#include "bus/lifecycle.h"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include "idl/stop_signal.h"
+#include "bus/stop_signal.h"
 
 #include <poll.h>
 #include <pthread.h>

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "idl/qos.h"
+#include "bus/qos.h"
 #include "idl/topics.h"
 
 namespace mascot {

@@ -1,4 +1,4 @@
-#include "idl/shared_memory.h"
+#include "bus/shared_memory.h"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -4,10 +4,10 @@
 #include <functional>
 #include <string>
 
+#include "bus/bus.h"
+#include "bus/lifecycle.h"
+#include "bus/stop_signal.h"
 #include "experiment/section.h"
-#include "idl/bus.h"
-#include "idl/lifecycle.h"
-#include "idl/stop_signal.h"
 
 namespace CLI {
 class App;

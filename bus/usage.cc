@@ -1,4 +1,4 @@
-#include "idl/usage.h"
+#include "bus/usage.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "idl/process_main.h"
+#include "bus/process_main.h"
 
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "bus/shared_memory.h"
+#include "bus/usage.h"
 #include "experiment/experiment.h"
-#include "idl/shared_memory.h"
-#include "idl/usage.h"
 
 namespace mascot {
 namespace {

@@ -1,8 +1,8 @@
-#include "idl/wire.h"
+#include "bus/wire.h"
 
 #include <stdexcept>
 
-#include "idl/bus.h"
+#include "bus/bus.h"
 
 namespace mascot {
 namespace {

@@ -5,11 +5,11 @@
 #include <optional>
 #include <string>
 
+#include "bus/bus.h"
+#include "bus/stop_signal.h"
+#include "bus/wire.h"
 #include "experiment/contacts.h"
 #include "experiment/pacing.h"
-#include "idl/bus.h"
-#include "idl/stop_signal.h"
-#include "idl/wire.h"
 
 namespace mascot {
 
