@@ -33,7 +33,7 @@
 #include "agent/law.h"
 #include "agent/plugin_params.h"
 #include "experiment/motion.h"
-#include "experiment/value.h"
+#include "experiment/toml/value.h"
 
 namespace mascot {
 

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "experiment/value.h"
+#include "experiment/toml/value.h"
 
 namespace mascot {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "agent/python.h"
-#include "experiment/value.h"
+#include "experiment/toml/value.h"
 
 namespace mascot {
 

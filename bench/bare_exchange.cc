@@ -25,7 +25,7 @@
 #include "bus/bus.h"
 #include "bus/shared_memory.h"
 #include "bus/wire.h"
-#include "experiment/graph.h"
+#include "experiment/graph/graph.h"
 #include "orchestrator/domain_lock.h"
 
 extern char** environ;

@@ -7,7 +7,7 @@
 #include "bus/bus.h"
 #include "bus/lifecycle.h"
 #include "bus/stop_signal.h"
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 
 namespace CLI {
 class App;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 
 namespace mascot {
 

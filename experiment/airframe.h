@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 
 namespace mascot {
 

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "experiment/airframe.h"
-#include "experiment/graph.h"
+#include "experiment/graph/graph.h"
+#include "experiment/graph/schedule.h"
 #include "experiment/link.h"
 #include "experiment/physics.h"
-#include "experiment/schedule.h"
-#include "experiment/section.h"
 #include "experiment/sensors.h"
+#include "experiment/toml/section.h"
 
 namespace mascot {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include "experiment/graph.h"
-#include "experiment/section.h"
+#include "experiment/graph/graph.h"
+#include "experiment/toml/section.h"
 
 namespace mascot {
 

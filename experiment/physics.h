@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 
 namespace mascot {
 

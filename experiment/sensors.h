@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 
 namespace mascot {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "experiment/graph.h"
+#include "experiment/graph/graph.h"
 
 namespace mascot {
 

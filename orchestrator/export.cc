@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 #include "orchestrator/exporters.h"
 #include "orchestrator/verb.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 #include "orchestrator/json.h"
 #include "orchestrator/mcap.h"
 #include "orchestrator/recording.h"

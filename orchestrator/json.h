@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "experiment/key.h"
+#include "experiment/toml/key.h"
 
 namespace mascot {
 

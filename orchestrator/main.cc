@@ -6,7 +6,7 @@
 
 #include "bus/standard_streams.h"
 #include "bus/usage.h"
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 #include "orchestrator/verb.h"
 
 namespace mascot {

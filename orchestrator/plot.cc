@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 #include "orchestrator/process.h"
 #include "orchestrator/verb.h"
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "experiment/experiment.h"
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 #include "idl/topics.h"
 #include "orchestrator/row_assembler.h"
 #include "orchestrator/topic_filter.h"

@@ -8,7 +8,7 @@
 
 #include "agent/laws.h"
 #include "experiment/experiment.h"
-#include "experiment/key.h"
+#include "experiment/toml/key.h"
 
 namespace mascot {
 namespace {

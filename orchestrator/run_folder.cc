@@ -7,7 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 
 namespace mascot {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "agent/laws.h"
 #include "experiment/experiment.h"
-#include "experiment/key.h"
+#include "experiment/toml/key.h"
 #include "orchestrator/json.h"
 #include "orchestrator/reference.h"
 

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 #include "orchestrator/bytes.h"
 #include "orchestrator/input_file.h"
 #include "orchestrator/output_file.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 
 namespace mascot {
 namespace {

@@ -1,11 +1,11 @@
-#include "experiment/graph.h"
+#include "experiment/graph/graph.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "experiment/schedule.h"
+#include "experiment/graph/schedule.h"
 
 namespace mascot {
 namespace {

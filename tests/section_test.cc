@@ -1,4 +1,4 @@
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 
 #include <gmock/gmock.h>
 #include <sys/stat.h>

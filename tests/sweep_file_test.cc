@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 #include "tests/scratch.h"
 
 namespace mascot {

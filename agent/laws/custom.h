@@ -5,7 +5,7 @@
 #include "agent/laws.h"
 #include "agent/python.h"
 #include "experiment/experiment.h"
-#include "experiment/value.h"
+#include "experiment/toml/value.h"
 
 namespace mascot {
 

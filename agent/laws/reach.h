@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "experiment/graph.h"
+#include "experiment/graph/graph.h"
 
 namespace mascot {
 

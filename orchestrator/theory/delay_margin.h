@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "experiment/graph.h"
+#include "experiment/graph/graph.h"
 #include "orchestrator/theory/linear_team.h"
 
 namespace mascot {

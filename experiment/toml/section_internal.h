@@ -6,7 +6,7 @@
 
 #include <set>
 
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 
 namespace mascot {
 

@@ -1,4 +1,4 @@
-#include "experiment/key.h"
+#include "experiment/toml/key.h"
 
 namespace mascot {
 namespace {

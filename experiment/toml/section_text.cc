@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <numeric>
 
-#include "experiment/section_internal.h"
+#include "experiment/toml/section_internal.h"
 
 namespace mascot {
 namespace {

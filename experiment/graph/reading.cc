@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "experiment/graph.h"
+#include "experiment/graph/graph.h"
 
 namespace mascot {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 
 namespace mascot {
 

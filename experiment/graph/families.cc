@@ -3,7 +3,7 @@
 #include <cassert>
 #include <set>
 
-#include "experiment/graph.h"
+#include "experiment/graph/graph.h"
 #include "experiment/random.h"
 
 namespace mascot {

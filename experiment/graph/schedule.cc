@@ -1,4 +1,4 @@
-#include "experiment/schedule.h"
+#include "experiment/graph/schedule.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include <sstream>
 
-#include "experiment/section_internal.h"
+#include "experiment/toml/section_internal.h"
 
 namespace mascot {
 

@@ -1,9 +1,9 @@
-#include "experiment/section.h"
+#include "experiment/toml/section.h"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "experiment/section_internal.h"
+#include "experiment/toml/section_internal.h"
 
 namespace mascot {
 namespace {

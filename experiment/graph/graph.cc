@@ -1,4 +1,4 @@
-#include "experiment/graph.h"
+#include "experiment/graph/graph.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>

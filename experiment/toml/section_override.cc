@@ -2,7 +2,7 @@
 #include <charconv>
 #include <variant>
 
-#include "experiment/section_internal.h"
+#include "experiment/toml/section_internal.h"
 
 namespace mascot {
 namespace {

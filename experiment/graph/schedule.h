@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "experiment/graph.h"
+#include "experiment/graph/graph.h"
 
 namespace mascot {
 
