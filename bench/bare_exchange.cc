@@ -26,7 +26,7 @@
 #include "bus/shared_memory.h"
 #include "bus/wire.h"
 #include "experiment/graph/graph.h"
-#include "orchestrator/domain_lock.h"
+#include "orchestrator/engines/dds/domain_lock.h"
 
 extern char** environ;
 
@@ -36,7 +36,7 @@ using namespace std::chrono_literals;
 using namespace mascot;
 using WallClock = std::chrono::steady_clock;
 
-constexpr int kMostPeers = 20;  // as orchestrator/dds_engine.cc
+constexpr int kMostPeers = 20;  // as orchestrator/engines/dds/engine.cc
 constexpr std::uint64_t kWarmUpTicks = 50;
 
 struct Setting {

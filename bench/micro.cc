@@ -6,7 +6,7 @@
 
 #include "agent/agent.h"
 #include "agent/laws.h"
-#include "orchestrator/run_writer.h"
+#include "orchestrator/recording/run_writer.h"
 #include "physics_server/world.h"
 #include "tests/scratch.h"
 

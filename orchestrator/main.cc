@@ -7,7 +7,7 @@
 #include "bus/standard_streams.h"
 #include "bus/usage.h"
 #include "experiment/toml/section.h"
-#include "orchestrator/verb.h"
+#include "orchestrator/verbs/verb.h"
 
 namespace mascot {
 namespace {

@@ -9,8 +9,8 @@
 #include "agent/laws.h"
 #include "bus/stop_signal.h"
 #include "bus/wire.h"
-#include "orchestrator/domain_lock.h"
-#include "orchestrator/wire_audit.h"
+#include "orchestrator/engines/dds/domain_lock.h"
+#include "orchestrator/engines/dds/wire_audit.h"
 #include "tests/orchestrator.h"
 
 namespace mascot::test {

@@ -1,4 +1,4 @@
-#include "orchestrator/csv.h"
+#include "orchestrator/formats/csv.h"
 
 #include <gmock/gmock.h>
 #include <sys/resource.h>

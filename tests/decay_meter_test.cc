@@ -1,4 +1,4 @@
-#include "orchestrator/decay_meter.h"
+#include "orchestrator/measuring/decay_meter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "orchestrator/deviation.h"
+#include "orchestrator/report/deviation.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "orchestrator/dot.h"
+#include "orchestrator/report/dot.h"
 
 #include <gmock/gmock.h>
 

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <thread>
 
-#include "orchestrator/domain_lock.h"
+#include "orchestrator/engines/dds/domain_lock.h"
 #include "tests/orchestrator.h"
 
 namespace mascot::test {

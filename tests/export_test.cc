@@ -8,9 +8,9 @@
 
 #include "agent/laws.h"
 #include "bus/wire.h"
-#include "orchestrator/mcap_records.h"
-#include "orchestrator/run_writer.h"
-#include "orchestrator/verb.h"
+#include "orchestrator/formats/mcap/records.h"
+#include "orchestrator/recording/run_writer.h"
+#include "orchestrator/verbs/verb.h"
 #include "tests/mat.h"
 #include "tests/scratch.h"
 

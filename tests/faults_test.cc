@@ -5,7 +5,7 @@
 #include "bus/bus.h"
 #include "bus/shared_memory.h"
 #include "bus/wire.h"
-#include "orchestrator/mcap.h"
+#include "orchestrator/formats/mcap/writer.h"
 #include "tests/orchestrator.h"
 
 namespace mascot::test {

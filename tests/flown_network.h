@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "agent/laws.h"
-#include "orchestrator/team.h"
+#include "orchestrator/team/team.h"
 #include "physics_server/world.h"
 
 namespace mascot {

@@ -3,10 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "orchestrator/bytes.h"
-#include "orchestrator/mcap.h"
-#include "orchestrator/mcap_records.h"
-#include "orchestrator/verb.h"
+#include "orchestrator/formats/bytes.h"
+#include "orchestrator/formats/mcap/records.h"
+#include "orchestrator/formats/mcap/writer.h"
+#include "orchestrator/verbs/verb.h"
 #include "tests/scratch.h"
 
 namespace mascot {

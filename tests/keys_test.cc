@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "orchestrator/mcap.h"
+#include "orchestrator/formats/mcap/writer.h"
 #include "tests/orchestrator.h"
 
 namespace mascot::test {

@@ -1,4 +1,4 @@
-#include "orchestrator/mat_file.h"
+#include "orchestrator/formats/mat_file.h"
 
 #include <gmock/gmock.h>
 #include <sys/resource.h>

@@ -1,5 +1,3 @@
-#include "orchestrator/mcap.h"
-
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 #include <zstd.h>
@@ -11,7 +9,8 @@
 #include <random>
 #include <tuple>
 
-#include "orchestrator/mcap_records.h"
+#include "orchestrator/formats/mcap/records.h"
+#include "orchestrator/formats/mcap/writer.h"
 #include "tests/scratch.h"
 
 namespace {

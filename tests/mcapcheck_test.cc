@@ -7,8 +7,8 @@
 #include "bus/wire.h"
 #include "idl/schemas.h"
 #include "idl/topics.h"
-#include "orchestrator/bytes.h"
-#include "orchestrator/mcap.h"
+#include "orchestrator/formats/bytes.h"
+#include "orchestrator/formats/mcap/writer.h"
 #include "tests/scratch.h"
 
 namespace mascot {

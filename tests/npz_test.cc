@@ -1,11 +1,11 @@
-#include "orchestrator/npz.h"
+#include "orchestrator/formats/npz.h"
 
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
 #include <csignal>
 
-#include "orchestrator/zip.h"
+#include "orchestrator/formats/zip.h"
 #include "tests/scratch.h"
 
 namespace mascot {

@@ -1,6 +1,6 @@
 // docs/configuration.md and docs/mascot.schema.json, which are made from the tables of keys, against those who read
 // experiment files (LoadExperiment) and against taplo, which editors use.
-#include "orchestrator/reference.h"
+#include "orchestrator/reference/reference.h"
 
 #include <gmock/gmock.h>
 #include <toml++/toml.h>

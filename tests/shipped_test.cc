@@ -8,7 +8,7 @@
 
 #include "agent/laws.h"
 #include "bus/wire.h"
-#include "orchestrator/mcap.h"
+#include "orchestrator/formats/mcap/writer.h"
 #include "tests/orchestrator.h"
 
 namespace mascot::test {

@@ -1,5 +1,3 @@
-#include "orchestrator/sweep_file.h"
-
 #include <gmock/gmock.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -7,6 +5,7 @@
 #include <filesystem>
 
 #include "experiment/toml/section.h"
+#include "orchestrator/sweeping/table.h"
 #include "tests/scratch.h"
 
 namespace mascot {

@@ -1,9 +1,9 @@
-#include "orchestrator/sweep_plan.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <set>
+
+#include "orchestrator/sweeping/plan.h"
 
 namespace mascot {
 namespace {

@@ -14,7 +14,7 @@
 #include "bus/qos.h"
 #include "experiment/airframe.h"
 #include "experiment/names.h"
-#include "orchestrator/verb.h"
+#include "orchestrator/verbs/verb.h"
 #include "physics_server/model.h"
 #include "tests/scratch.h"
 

@@ -57,7 +57,7 @@ struct Topology {
   std::string_view name;
   std::string_view meaning;
 };
-/// Every one, from the table in graph_families.cc.
+/// Every one, from the table in families.cc.
 std::vector<Topology> Topologies();
 std::span<const std::string_view> TopologyNames();
 /// A family of that table for `count` agents, all weights 1.

@@ -7,11 +7,11 @@
 
 #include "agent/laws.h"
 #include "agent/python.h"
-#include "orchestrator/crowding.h"
-#include "orchestrator/team.h"
+#include "orchestrator/team/team.h"
+#include "orchestrator/theory/crowding.h"
 #include "orchestrator/theory/flight_envelope.h"
 #include "orchestrator/theory/links_on_average.h"
-#include "orchestrator/theory/theory_parts.h"
+#include "orchestrator/theory/parts.h"
 
 namespace mascot {
 namespace {

@@ -1,0 +1,39 @@
+#include "orchestrator/engines/dds/delivery.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+#include "experiment/processes.h"
+
+namespace mascot {
+namespace {
+
+// Heard by each agent, on average, from which on one sample with all of them is faster (bench/: 2 times at 15).
+constexpr double kDense = 10;
+// Participants that the ports of one DDS domain hold on one host, less the server's, ours and the discovery server's.
+constexpr std::ptrdiff_t kMostProcesses = 110;
+
+}  // namespace
+
+std::vector<std::string> DeliveryWarnings(const Experiment& experiment) {
+  const double heard = static_cast<double>(experiment.graph.edges()) / std::max(experiment.size(), 1);
+  if (experiment.network.delivery == Delivery::kBundled || heard < kDense) return {};
+  return {
+      fmt::format("network.delivery: each agent hears {:.3g} others on average, one sample each; over DDS \"bundled\", "
+                  "one sample with all of them, is faster",
+                  heard)};
+}
+
+void RefuseTooManyProcesses(const Experiment& experiment) {
+  const std::vector<AgentRange> processes = AgentProcesses(experiment);
+  const auto local = std::ranges::count_if(
+      processes, [&](const AgentRange& agents) { return !experiment.agent(agents.first).external; });
+  if (local <= kMostProcesses) return;
+  throw ConfigError(
+      {fmt::format("network.agents_per_process: expected at most {} processes of agents on this host, such as "
+                   "by {}, got {} processes",
+                   kMostProcesses, (experiment.size() + kMostProcesses - 1) / kMostProcesses, local)});
+}
+
+}  // namespace mascot

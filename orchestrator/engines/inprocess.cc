@@ -1,0 +1,77 @@
+#include "orchestrator/engines/inprocess.h"
+
+#include <chrono>
+#include <vector>
+
+#include "orchestrator/team/team.h"
+#include "physics_server/world.h"
+
+namespace mascot {
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+
+/// Everything that one tick needs, kept from tick to tick so that nothing is allocated in between.
+class Flight {
+ public:
+  explicit Flight(Experiment& experiment)
+      : experiment_(experiment),
+        world_(experiment),
+        team_(experiment),
+        actuation_(static_cast<std::size_t>(experiment.size())),
+        row_(experiment.size()) {}
+
+  /// States and commands of the current tick.
+  const DecodedRow& Exchange() {
+    const std::int64_t tick = world_.tick();
+    for (const AgentConfig& agent : experiment_.agents)
+      row_.motions[static_cast<std::size_t>(agent.id - 1)] = world_.State(agent.id);
+    for (const AgentConfig& agent : experiment_.agents) {
+      const auto i = static_cast<std::size_t>(agent.id - 1);
+      row_.commands[i] = team_.Decide(agent.id, tick, row_.motions);
+      row_.commands[i].v_limited_W.setZero();  // not on the wire
+      actuation_[i] = row_.commands[i].actuator;
+      const std::span<const double> message = team_.message(agent.id);
+      row_.messages[i].assign(message.begin(), message.end());
+    }
+    team_.EndTick();
+    return row_;
+  }
+
+  void Step() { world_.Step(actuation_); }
+  Contacts contacts() const { return world_.contacts(); }
+
+ private:
+  Experiment& experiment_;
+  World world_;
+  Team team_;
+  std::vector<Actuation> actuation_;
+  DecodedRow row_;
+};
+
+}  // namespace
+
+EngineResult RunInProcess(Experiment& experiment,
+                          const std::function<void(std::int64_t tick, const DecodedRow& row)>& on_tick,
+                          const std::function<bool(std::int64_t tick)>& go_on) {
+  EngineResult result;
+  result.wire_matches_graph = true;  // there is none: what an agent hears is made from the graph
+  const auto launched = WallClock::now();
+  Flight flight(experiment);
+  const auto start = WallClock::now();
+  try {
+    for (std::int64_t tick = 0; go_on(tick); ++tick) {
+      on_tick(tick, flight.Exchange());
+      if (tick == experiment.ticks()) break;
+      flight.Step();
+    }
+  } catch (const std::exception& failure) {
+    result.failure = failure.what();
+  }
+  result.wall_s = std::chrono::duration<double>(WallClock::now() - start).count();
+  result.startup_s = std::chrono::duration<double>(start - launched).count();
+  result.contacts = flight.contacts();
+  return result;
+}
+
+}  // namespace mascot

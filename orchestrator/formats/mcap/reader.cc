@@ -1,0 +1,310 @@
+#include <algorithm>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "orchestrator/formats/input_file.h"
+#include "orchestrator/formats/mcap/records.h"
+#include "orchestrator/formats/mcap/writer.h"
+#include "orchestrator/formats/mcap/zstd.h"
+
+namespace mascot {
+namespace {
+
+using mcap::Fields;
+using mcap::Malformed;
+using mcap::Op;
+
+std::uint8_t Code(Op op) { return static_cast<std::uint8_t>(op); }
+
+/// Goes through one file, record by record, and collects what it holds. Whatever does not fit throws
+/// Malformed, which ends the reading in Run().
+class Reader {
+ public:
+  Reader(const std::string& path, const std::function<void(const McapContents::Message&)>& on_message)
+      : path_(path), file_(path), on_message_(on_message) {}
+
+  McapContents Run() {
+    try {
+      ReadMagic();
+      ReadHeader();
+      while (!ReadDataRecord()) {
+      }
+      ReadSummary();
+      contents_.complete = true;
+    } catch (const Malformed& damage) {
+      const std::string what = whole_ ? damage.what() : "the file ends inside a record";
+      contents_.damage = what + " (record at byte " + std::to_string(offset_) + ")";
+    }
+    return std::move(contents_);
+  }
+
+ private:
+  void ReadMagic();
+  void ReadHeader();
+  bool NextRecord();
+  bool ReadDataRecord();
+  void ReadSchema(Fields body);
+  void ReadChannel(Fields body);
+  void ReadMessage(Fields body);
+  void ReadChunk(Fields body);
+  void ReadChunkRecords(ByteSpan raw);
+  void ReadAttachment(Fields body);
+  void ReadSummary();
+  void ReadFooter(std::uint64_t summary_start, std::uint32_t crc);
+  void CompareStatistics(Fields body) const;
+
+  struct Schema {
+    std::string name, encoding, text;
+    bool operator==(const Schema&) const = default;
+  };
+
+  std::string path_;
+  InputFile file_;
+  const std::function<void(const McapContents::Message&)>& on_message_;
+  McapContents contents_;
+  std::map<std::uint16_t, Schema> schemas_;
+  std::map<std::uint16_t, std::uint32_t> next_sequence_;  // by channel, from 0
+  McapContents::Message message_;                         // reused: one allocation serves all messages
+
+  // The record at hand.
+  std::uint64_t offset_ = 0;  // where it begins
+  std::uint64_t next_ = 0;    // where the following one begins
+  std::uint8_t op_ = 0;
+  bool whole_ = true;  // all of its body is in the file
+  Bytes record_;       // frame and body
+  Bytes frame_;
+  mcap::Decompressor decompressor_;
+  std::uint32_t data_crc_ = 0;
+};
+
+void Reader::ReadMagic() {
+  file_.Read(0, mcap::kMagic.size(), record_);
+  if (!std::equal(record_.begin(), record_.end(), mcap::kMagic.begin()))
+    throw std::runtime_error(path_ + ": is no MCAP file: it does not begin with MCAP's magic bytes");
+  if (record_.size() < mcap::kMagic.size()) throw Malformed("the file ends inside its first magic bytes");
+  data_crc_ = Crc32(0, record_);
+  next_ = mcap::kMagic.size();
+}
+
+/// Reads the record at `next_`. False at the end of the file; `whole_` is false if the file ends inside it.
+bool Reader::NextRecord() {
+  offset_ = next_;
+  file_.Read(offset_, mcap::kFrameBytes, frame_);
+  if (frame_.empty()) return false;
+  if (frame_.size() < mcap::kFrameBytes) throw Malformed("the file ends inside a record's frame");
+  Fields frame(frame_);
+  op_ = frame.U8();
+  const std::uint64_t length = frame.U64();
+  const std::uint64_t available = file_.size() - offset_ - mcap::kFrameBytes;
+  whole_ = length <= available;
+  file_.Read(offset_, mcap::kFrameBytes + std::min(length, available), record_);
+  next_ = offset_ + record_.size();
+  return true;
+}
+
+void Reader::ReadHeader() {
+  if (!NextRecord() || !whole_) throw Malformed("the file ends before its header does");
+  if (op_ != Code(Op::kHeader)) throw Malformed("expected a header record, got opcode " + std::to_string(op_));
+  data_crc_ = Crc32(data_crc_, record_);
+  Fields body(ByteSpan(record_).subspan(mcap::kFrameBytes));
+  contents_.profile = body.String();
+  contents_.library = body.String();
+}
+
+/// True when DataEnd was read and its CRC is right. Opcodes that we do not need or know are skipped.
+bool Reader::ReadDataRecord() {
+  if (!NextRecord()) throw Malformed("the file ends without a summary: it was not closed");
+  const Fields body(ByteSpan(record_).subspan(mcap::kFrameBytes));
+  if (op_ == Code(Op::kChunk)) ReadChunk(body);  // whose whole messages count even if it is cut
+  if (!whole_) throw Malformed("the file ends inside a record");
+  if (op_ == Code(Op::kDataEnd)) {
+    const std::uint32_t crc = Fields(body).U32();
+    if (crc != 0 && crc != data_crc_) throw Malformed("the CRC of the data section is wrong");
+    return true;
+  }
+  if (op_ == Code(Op::kSchema)) ReadSchema(body);
+  if (op_ == Code(Op::kChannel)) ReadChannel(body);
+  if (op_ == Code(Op::kMessage)) ReadMessage(body);
+  if (op_ == Code(Op::kAttachment)) ReadAttachment(body);
+  if (op_ == Code(Op::kMetadata)) {
+    Fields fields(body);
+    const std::string name = fields.String();
+    contents_.metadata[name] = fields.Map();
+  }
+  if (op_ == Code(Op::kFooter)) throw Malformed("a footer without the end of the data section");
+  data_crc_ = Crc32(data_crc_, record_);
+  return false;
+}
+
+void Reader::ReadSchema(Fields body) {
+  const std::uint16_t id = body.U16();
+  Schema schema;
+  schema.name = body.String();
+  schema.encoding = body.String();
+  const ByteSpan text = body.Raw(body.U32());
+  schema.text.assign(text.begin(), text.end());
+  const auto [known, added] = schemas_.try_emplace(id, schema);
+  if (!added && !(known->second == schema)) throw Malformed("schema " + std::to_string(id) + " is defined twice");
+}
+
+void Reader::ReadChannel(Fields body) {
+  const std::uint16_t id = body.U16();
+  const std::uint16_t schema_id = body.U16();
+  McapContents::ChannelInfo channel;
+  channel.topic = body.String();
+  channel.message_encoding = body.String();
+  channel.metadata = body.Map();
+  if (schema_id != 0) {  // 0: has none
+    const auto schema = schemas_.find(schema_id);
+    if (schema == schemas_.end()) throw Malformed("channel " + channel.topic + " has an unknown schema");
+    channel.schema_name = schema->second.name;
+    channel.schema_encoding = schema->second.encoding;
+    channel.schema_text = schema->second.text;
+  }
+  const auto [known, added] = contents_.channels.try_emplace(id, channel);
+  const McapContents::ChannelInfo& old = known->second;
+  if (!added && std::tie(old.topic, old.schema_name, old.message_encoding, old.metadata) !=
+                    std::tie(channel.topic, channel.schema_name, channel.message_encoding, channel.metadata))
+    throw Malformed("channel " + std::to_string(id) + " is defined twice");
+}
+
+void Reader::ReadMessage(Fields body) {
+  message_.channel = body.U16();
+  message_.sequence = body.U32();
+  message_.log_time = body.U64();
+  body.U64();  // publish time
+  message_.data.assign(body.rest().begin(), body.rest().end());
+
+  const auto found = contents_.channels.find(message_.channel);
+  if (found == contents_.channels.end())
+    throw Malformed("a message on the unknown channel " + std::to_string(message_.channel));
+  McapContents::ChannelInfo& channel = found->second;
+  std::uint32_t& expected = next_sequence_[message_.channel];
+  if (message_.sequence != expected) ++channel.gaps;
+  expected = message_.sequence + 1;
+  channel.first_time = channel.messages == 0 ? message_.log_time : std::min(channel.first_time, message_.log_time);
+  channel.last_time = std::max(channel.last_time, message_.log_time);
+  channel.bytes += message_.data.size();
+  ++channel.messages;
+  ++contents_.messages;
+  if (on_message_) on_message_(message_);
+}
+
+/// A chunk that is wholly in the file counts only if size and CRC are right. Of a cut one, whatever can be
+/// decompressed counts: nothing proves it, but a cut takes bytes away and changes none.
+void Reader::ReadChunk(Fields body) {
+  body.U64();  // start and
+  body.U64();  // end time
+  const std::uint64_t size = body.U64();
+  const std::uint32_t crc = body.U32();
+  const std::string compression = body.String();
+  const std::uint64_t stored_size = body.U64();
+  const ByteSpan stored = whole_ ? body.Raw(stored_size) : body.rest();
+  if (size > mcap::kMaxChunkBytes)
+    throw Malformed("a chunk of " + std::to_string(size) + " bytes, above the limit of " +
+                    std::to_string(mcap::kMaxChunkBytes));
+  if (!compression.empty() && compression != "zstd") throw Malformed("unknown compression '" + compression + "'");
+
+  const ByteSpan raw = compression.empty() ? stored : decompressor_.Decompress(stored, static_cast<std::size_t>(size));
+  if (whole_) {
+    if (raw.size() != size)
+      throw Malformed("a chunk holds " + std::to_string(raw.size()) + " bytes, not " + std::to_string(size));
+    if (crc != 0 && crc != Crc32(0, raw)) throw Malformed("the CRC of a chunk is wrong");
+    ++contents_.chunks;
+    contents_.compressed_bytes += stored.size();
+    contents_.uncompressed_bytes += raw.size();
+  }
+  ReadChunkRecords(raw);
+}
+
+void Reader::ReadChunkRecords(ByteSpan raw) {
+  while (!raw.empty()) {
+    Fields frame(raw);
+    const std::uint8_t op = frame.U8();
+    const std::uint64_t length = frame.U64();
+    const Fields body(frame.Raw(length));  // throws at the record in which a cut chunk ends
+    if (op == Code(Op::kSchema)) ReadSchema(body);
+    if (op == Code(Op::kChannel)) ReadChannel(body);
+    if (op == Code(Op::kMessage)) ReadMessage(body);
+    raw = frame.rest();
+  }
+}
+
+void Reader::ReadAttachment(Fields body) {
+  const ByteSpan all = body.rest();
+  body.U64();  // log and
+  body.U64();  // creation time
+  const std::string name = body.String();
+  body.String();  // media type
+  const ByteSpan data = body.Raw(body.U64());
+  const ByteSpan covered = all.first(all.size() - body.rest().size());
+  const std::uint32_t crc = body.U32();
+  if (crc != 0 && crc != Crc32(0, covered)) throw Malformed("the CRC of attachment '" + name + "' is wrong");
+  contents_.attachments[name] = {data.begin(), data.end()};
+}
+
+/// The summary repeats what the data section says; what it says must agree with what was read.
+void Reader::ReadSummary() {
+  const std::uint64_t summary_start = next_;
+  std::uint32_t crc = 0;
+  std::uint64_t chunk_indexes = 0;
+  bool statistics = false;
+  while (NextRecord()) {
+    if (!whole_) throw Malformed("the file ends inside its summary");
+    const Fields body(ByteSpan(record_).subspan(mcap::kFrameBytes));
+    if (op_ == Code(Op::kFooter)) {
+      if (!statistics) throw Malformed("the summary holds no statistics");
+      if (chunk_indexes != contents_.chunks) throw Malformed("the summary does not index every chunk");
+      return ReadFooter(summary_start, crc);
+    }
+    crc = Crc32(crc, record_);
+    if (op_ == Code(Op::kSchema)) ReadSchema(body);
+    if (op_ == Code(Op::kChannel)) ReadChannel(body);
+    if (op_ == Code(Op::kChunkIndex)) ++chunk_indexes;
+    if (op_ == Code(Op::kStatistics)) {
+      CompareStatistics(body);
+      statistics = true;
+    }
+  }
+  throw Malformed("the file ends inside its summary");
+}
+
+void Reader::CompareStatistics(Fields body) const {
+  const std::uint64_t messages = body.U64();
+  body.U16();                           // schemas
+  body.U32();                           // channels
+  body.Raw(2 * sizeof(std::uint32_t));  // attachments, metadata
+  const std::uint32_t chunks = body.U32();
+  body.Raw(2 * sizeof(std::uint64_t));  // start, end
+  bool right = messages == contents_.messages && chunks == contents_.chunks;
+  for (Fields counts(body.Raw(body.U32())); !counts.rest().empty();) {
+    const auto channel = contents_.channels.find(counts.U16());
+    const std::uint64_t count = counts.U64();
+    right = right && channel != contents_.channels.end() && channel->second.messages == count;
+  }
+  if (!right) throw Malformed("the statistics do not count what the file holds");
+}
+
+/// `crc` covers the summary so far; the footer's frame and its two offsets belong to it too.
+void Reader::ReadFooter(std::uint64_t summary_start, std::uint32_t crc) {
+  Fields body(ByteSpan(record_).subspan(mcap::kFrameBytes));
+  const std::uint64_t claimed_start = body.U64();
+  body.U64();  // start of the summary offsets
+  const std::uint32_t claimed_crc = body.U32();
+  const std::size_t covered = mcap::kFrameBytes + 2 * sizeof(std::uint64_t);
+  if (claimed_start != summary_start) throw Malformed("the footer does not point at the summary");
+  if (claimed_crc != 0 && claimed_crc != Crc32(crc, ByteSpan(record_).first(covered)))
+    throw Malformed("the CRC of the summary is wrong");
+  file_.Read(next_, mcap::kMagic.size() + 1, frame_);
+  if (!std::equal(frame_.begin(), frame_.end(), mcap::kMagic.begin(), mcap::kMagic.end()))
+    throw Malformed("the file does not end with MCAP's magic bytes behind its footer");
+}
+
+}  // namespace
+
+McapContents ReadMcap(const std::string& path, const std::function<void(const McapContents::Message&)>& on_message) {
+  return Reader(path, on_message).Run();
+}
+
+}  // namespace mascot

@@ -1,0 +1,44 @@
+#include "orchestrator/formats/output_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+namespace mascot {
+
+OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
+  fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (fd_ < 0) Fail("create", errno);
+}
+
+OutputFile::~OutputFile() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+void OutputFile::Write(std::span<const std::uint8_t> bytes) {
+  if (error_ != 0) Fail("write", error_);
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) Fail("write", errno);
+    size_ += static_cast<std::uint64_t>(written);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void OutputFile::SyncAndClose() {
+  if (error_ != 0) Fail("close", error_);
+  if (::fsync(fd_) != 0) Fail("flush", errno);
+  if (::close(std::exchange(fd_, -1)) != 0) Fail("close", errno);
+}
+
+void OutputFile::Fail(const std::string& what, int error) {
+  error_ = error;
+  throw std::runtime_error("cannot " + what + " " + path_ + ": " + std::generic_category().message(error));
+}
+
+}  // namespace mascot

@@ -1,0 +1,25 @@
+#include "orchestrator/formats/part_file.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+namespace mascot {
+
+PartFile::PartFile(std::string path) : path_(std::move(path)), part_(path_ + ".part") {}
+
+PartFile::~PartFile() {
+  if (!part_.empty()) ::unlink(part_.c_str());
+}
+
+void PartFile::Commit() {
+  if (std::rename(part_.c_str(), path_.c_str()) != 0)
+    throw std::runtime_error("cannot create " + path_ + ": " + std::generic_category().message(errno));
+  part_.clear();  // nobody's to remove any more
+}
+
+}  // namespace mascot

@@ -1,0 +1,45 @@
+#include "orchestrator/measuring/decay_meter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mascot {
+namespace {
+
+constexpr double kUpperEnd = 0.1;
+constexpr std::array<double, 2> kLowerEnds = {2e-4, 1e-3};  // the first that is reached for good
+
+}  // namespace
+
+void DecayMeter::Add(double t_s, double value) {
+  if (!first_) first_ = value;
+  if (*first_ == 0) return;
+  const double part = value / *first_;
+  if (part > kUpperEnd) {
+    now_ = {};
+    declines_ = {};
+    from_s_ = t_s;
+    return;
+  }
+  constexpr double kFloor = 1e-9;  // of the start: a swing through 0 is no infinite decline
+  const double t = t_s - from_s_, y = std::log(std::max(part, kFloor));
+  ++now_.rows;
+  now_.t += t;
+  now_.y += y;
+  now_.tt += t * t;
+  now_.ty += t * y;
+  for (std::size_t i = 0; i < kLowerEnds.size(); ++i)
+    if (part > kLowerEnds[i]) declines_[i] = now_;
+}
+
+std::optional<double> DecayMeter::rate_per_s() const {
+  constexpr std::int64_t kLeast = 3;
+  for (const Sums& decline : declines_) {
+    if (decline.rows < kLeast || 10 * (now_.rows - decline.rows) < decline.rows) continue;
+    const auto n = static_cast<double>(decline.rows);
+    return (decline.t * decline.y - n * decline.ty) / (n * decline.tt - decline.t * decline.t);
+  }
+  return std::nullopt;
+}
+
+}  // namespace mascot

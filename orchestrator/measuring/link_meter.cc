@@ -1,0 +1,76 @@
+#include "orchestrator/measuring/link_meter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bus/wire.h"
+
+namespace mascot {
+namespace {
+
+/// Bytes of one sample on the wire.
+template <class Message>
+std::uint64_t WireBytes(Message sample) {
+  std::vector<std::uint8_t> bytes;
+  Serialize(sample, bytes);
+  return bytes.size();
+}
+
+bool IsPlain(const Experiment& experiment) {
+  return experiment.schedule.IsConstant() && experiment.links.ArePerfect(experiment.graph) &&
+         std::ranges::all_of(experiment.agents,
+                             [](const AgentConfig& agent) { return agent.start_s == 0 && std::isinf(agent.stop_s); });
+}
+
+}  // namespace
+
+LinkMeter::LinkMeter(const Experiment& experiment)
+    : experiment_(experiment),
+      plain_(IsPlain(experiment)),
+      said_(experiment.agents.size()),
+      sent_numbers_(experiment.agents.size()),
+      exchange_(experiment) {
+  if (plain_) return;
+  for (const AgentConfig& agent : experiment.agents) neighbours_.emplace_back(experiment, agent.id);
+}
+
+void LinkMeter::Add(std::int64_t tick, const DecodedRow& row) {
+  ++rows_;
+  for (const AgentConfig& agent : experiment_.agents) {
+    const auto i = static_cast<std::size_t>(agent.id - 1);
+    if (plain_) {  // a state goes out with the message of the tick before
+      sent_numbers_[i] += said_[i];
+      said_[i] = row.messages[i].size();
+    } else {
+      neighbours_[i].Hear(tick, row.motions[i], exchange_.SamplesFor(agent.id, row.motions));
+    }
+  }
+  if (plain_) return;
+  for (const AgentConfig& agent : experiment_.agents)
+    exchange_.Say(agent.id, row.messages[static_cast<std::size_t>(agent.id - 1)]);
+  exchange_.EndTick();
+}
+
+std::vector<EdgeTraffic> LinkMeter::Result() const {
+  const std::uint64_t state_bytes = WireBytes(mascot_msgs::msg::AgentState());
+  const std::uint64_t message_bytes = WireBytes(mascot_msgs::msg::AgentMessage());  // without data
+  std::vector<EdgeTraffic> traffic;
+  for (int id = 1; id <= experiment_.size(); ++id) {
+    const auto& may_hear = experiment_.graph.HeardBy(id);
+    const auto counts = plain_ ? std::vector<EdgeCount>() : neighbours_[static_cast<std::size_t>(id - 1)].counts();
+    for (std::size_t k = 0; k < may_hear.size(); ++k) {
+      EdgeTraffic edge{.hearer = id, .heard = may_hear[k].id, .count = {}};
+      const auto from = static_cast<std::size_t>(edge.heard - 1);
+      if (plain_)
+        edge.count = {.sent = static_cast<std::uint64_t>(rows_), .numbers = sent_numbers_[from]};
+      else
+        edge.count = counts[k];
+      const bool sends = experiment_.agents[from].sends_messages;
+      edge.bytes = edge.count.sent * (state_bytes + (sends ? message_bytes : 0)) + sizeof(double) * edge.count.numbers;
+      traffic.push_back(edge);
+    }
+  }
+  return traffic;
+}
+
+}  // namespace mascot

@@ -1,0 +1,156 @@
+#include "orchestrator/measuring/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "agent/laws/formation.h"
+#include "agent/python.h"
+
+namespace mascot {
+namespace {
+
+constexpr double kSettledFraction = 0.02;
+
+/// The part of `v` that the law governs.
+Eigen::Vector3d Along(Axes axes, Eigen::Vector3d v) {
+  if (axes == Axes::kXy) v.z() = 0;
+  return v;
+}
+
+}  // namespace
+
+Metrics::Metrics(Experiment& experiment)
+    : experiment_(experiment), pursuit_(experiment), min_separation2_(std::numeric_limits<double>::infinity()) {
+  const MutedPython muted;  // the laws run a second time
+  if (experiment.output.fidelity) ideal_.emplace(experiment);
+  if (experiment.law.name == "formation") formation_.offsets_m = ReadFormation(experiment, experiment.law).d_W;
+}
+
+void Metrics::Add(const DecodedRow& row) {
+  MeasureAgreement(row.motions);
+  MeasureControl(row.commands);
+  MeasureSeparation(row.motions);
+  MeasureFidelity(row.motions);
+  MeasurePath(row.motions);
+  MeasureFormation(row.motions);
+  pursuit_.Add(row.motions);
+  ++rows_;
+}
+
+Eigen::Vector3d Metrics::Agreed(std::size_t i, const Motion& motion) const {
+  return formation_.offsets_m.empty() ? motion.p_WB : motion.p_WB - formation_.offsets_m[i];
+}
+
+void Metrics::MeasureAgreement(std::span<const Motion> motions) {
+  mean_W_.setZero();
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    mean_W_ += Agreed(i, motions[i]) / static_cast<double>(motions.size());
+  Eigen::Vector3d centre_W = mean_W_;
+  if (const int leader = experiment_.law.leader; leader > 0) {
+    const auto l = static_cast<std::size_t>(leader - 1);
+    centre_W = Agreed(l, motions[l]);
+  }
+  disagreement_m_ = speed_m_per_s_ = 0;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const Eigen::Vector3d off_W = Along(experiment_.law.axes, Agreed(i, motions[i]) - centre_W);
+    disagreement_m_ = std::max(disagreement_m_, off_W.norm());
+    speed_m_per_s_ = std::max(speed_m_per_s_, Along(experiment_.law.axes, motions[i].v_WB).norm());
+  }
+  decay_.Add(experiment_.time_s(rows_), disagreement_m_);
+  if (rows_ == 0) first_disagreement_m_ = disagreement_m_;
+  if (disagreement_m_ > kSettledFraction * first_disagreement_m_) last_unsettled_ = rows_;
+}
+
+void Metrics::MeasureControl(std::span<const Command> commands) {
+  effort_m2_per_s3_ += newest_effort_m2_per_s3_;  // of the row before: that of the last row is not applied any more
+  newest_effort_m2_per_s3_ = 0;
+  for (const Command& command : commands) {
+    newest_effort_m2_per_s3_ += command.a_limited_W.squaredNorm() * experiment_.period_s();
+    saturated_ += (command.flags & kAccelerationLimited) != 0;
+    tilt_limited_ += (command.flags & kTiltLimited) != 0;
+    rotor_limited_ += (command.flags & kRotorLimited) != 0;
+  }
+}
+
+/// Closest pair: agents in order of x need only be compared while x alone does not already part them.
+void Metrics::MeasureSeparation(std::span<const Motion> motions) {
+  by_x_.clear();
+  for (const Motion& motion : motions) by_x_.push_back(motion.p_WB);
+  std::sort(by_x_.begin(), by_x_.end(), [](const auto& a, const auto& b) { return a.x() < b.x(); });
+  for (std::size_t i = 0; i < by_x_.size(); ++i)
+    for (std::size_t j = i + 1; j < by_x_.size(); ++j) {
+      const double dx = by_x_[j].x() - by_x_[i].x();
+      if (dx * dx >= min_separation2_) break;
+      min_separation2_ = std::min(min_separation2_, (by_x_[j] - by_x_[i]).squaredNorm());
+    }
+}
+
+// A law may fail where everything is exact, and only there: two agents at the very same place. The run is none the
+// worse.
+void Metrics::StepIdeal() try {
+  const MutedPython muted;
+  ideal_->Step();
+} catch (const std::exception& failure) {
+  ideal_failure_ = failure.what();
+  ideal_.reset();
+}
+
+void Metrics::MeasureFidelity(std::span<const Motion> motions) {
+  if (ideal_ && rows_ > 0) StepIdeal();
+  if (!ideal_) return;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const double deviation2 = (motions[i].p_WB - ideal_->p_W(static_cast<int>(i) + 1)).squaredNorm();
+    squared_deviation_ += deviation2;
+    max_deviation2_ = std::max(max_deviation2_, deviation2);
+  }
+}
+
+void Metrics::MeasurePath(std::span<const Motion> motions) {
+  for (std::size_t i = 0; i < last_p_W_.size(); ++i) path_m_ += (motions[i].p_WB - last_p_W_[i]).norm();
+  last_p_W_.resize(motions.size());
+  for (std::size_t i = 0; i < motions.size(); ++i) last_p_W_[i] = motions[i].p_WB;
+}
+
+void Metrics::MeasureFormation(std::span<const Motion> motions) {
+  if (formation_.offsets_m.empty()) return;
+  double squares = 0;
+  for (int id = 1; id <= experiment_.size(); ++id) {
+    const auto i = static_cast<std::size_t>(id - 1);
+    for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(id)) {
+      const auto j = static_cast<std::size_t>(heard.id - 1);
+      squares += Along(experiment_.law.axes, Agreed(i, motions[i]) - Agreed(j, motions[j])).squaredNorm();
+    }
+  }
+  formation_.final_rms_m =
+      std::sqrt(squares / static_cast<double>(std::max<std::size_t>(experiment_.graph.edges(), 1)));
+  if (2 * rows_ >= experiment_.ticks())
+    formation_.worst_rms_m = std::max(formation_.worst_rms_m, formation_.final_rms_m);
+}
+
+Measured Metrics::Result() const {
+  Measured result;
+  result.rows = rows_;
+  if (rows_ == 0) return result;
+  const double agents = experiment_.size();
+  const double samples = agents * static_cast<double>(rows_);
+  result.value_m = mean_W_;
+  result.final_disagreement_m = disagreement_m_;
+  result.final_speed_m_per_s = speed_m_per_s_;
+  if (first_disagreement_m_ > 0 && last_unsettled_ < rows_ - 1)
+    result.settling_time_s = experiment_.time_s(last_unsettled_ + 1);
+  result.rate_per_s = decay_.rate_per_s();
+  result.minmax_edges = pursuit_.Result();
+  result.effort_m2_per_s3 = effort_m2_per_s3_ / agents;
+  result.saturated_fraction = static_cast<double>(saturated_) / samples;
+  result.tilt_limited_fraction = static_cast<double>(tilt_limited_) / samples;
+  result.rotor_limited_fraction = static_cast<double>(rotor_limited_) / samples;
+  if (experiment_.size() > 1) result.min_separation_m = std::sqrt(min_separation2_);
+  if (ideal_) result.fidelity = {.rms_m = std::sqrt(squared_deviation_ / samples), .max_m = std::sqrt(max_deviation2_)};
+  result.fidelity_failure = ideal_failure_;
+  if (!formation_.offsets_m.empty()) result.formation = formation_;
+  result.travelled_m = path_m_ / agents;
+  return result;
+}
+
+}  // namespace mascot

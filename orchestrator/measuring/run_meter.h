@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "orchestrator/measuring/link_meter.h"
+#include "orchestrator/measuring/metrics.h"
+#include "orchestrator/recording/decoded_row.h"
+
+namespace mascot {
+
+/// All that is measured of a run, row by row.
+class RunMeter {
+ public:
+  explicit RunMeter(Experiment& experiment) : metrics_(experiment), links_(experiment) {}
+
+  /// The next tick.
+  void Add(std::int64_t tick, const DecodedRow& row) {
+    metrics_.Add(row);
+    links_.Add(tick, row);
+  }
+  Measured Result() const { return metrics_.Result(); }
+  std::vector<EdgeTraffic> Traffic() const { return links_.Result(); }
+  /// Of the newest row, for the progress line.
+  double disagreement_m() const { return metrics_.disagreement_m(); }
+
+ private:
+  Metrics metrics_;
+  LinkMeter links_;
+};
+
+}  // namespace mascot

@@ -1,0 +1,68 @@
+#include "orchestrator/processes/console.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <functional>
+#include <iostream>
+
+namespace mascot {
+namespace {
+
+constexpr int kColours[] = {36, 33, 35, 32, 34, 96, 93, 95, 92, 94};  // never red: that is for errors
+
+bool WantsColour() { return std::getenv("NO_COLOR") == nullptr && isatty(STDERR_FILENO); }
+
+/// Always the same colour for the same process: by its number where it has one.
+int ColourOf(const std::string& process) {
+  std::size_t sum = 0;
+  for (char c : process) sum = sum * 31 + static_cast<unsigned char>(c);
+  return kColours[sum % std::size(kColours)];
+}
+
+}  // namespace
+
+Console::Console(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO)), colour_(WantsColour()) {}
+
+void Console::EndProgress() {
+  const std::lock_guard lock(mutex_);
+  if (!progress_.empty()) std::cerr << std::endl;
+  progress_.clear();
+}
+
+void Console::EraseProgress() {
+  if (!progress_.empty()) std::cerr << "\r\x1b[K";
+}
+
+void Console::Print(const std::string& line) {
+  EraseProgress();
+  std::cerr << line << "\n" << progress_ << std::flush;
+}
+
+void Console::Line(const std::string& text) {
+  if (quiet_) return;
+  const std::lock_guard lock(mutex_);
+  Print(text);
+}
+
+void Console::ChildLine(const std::string& process, const std::string& text) {
+  if (quiet_) return;
+  const std::lock_guard lock(mutex_);
+  const std::string name = "[" + process + "] ";
+  Print(colour_ ? "\x1b[" + std::to_string(ColourOf(process)) + "m" + name + "\x1b[0m" + text : name + text);
+}
+
+void Console::Progress(double fraction, const std::string& text) {
+  if (quiet_) return;
+  const std::lock_guard lock(mutex_);
+  if (terminal_) {
+    EraseProgress();
+    progress_ = text;
+    std::cerr << progress_ << std::flush;
+  } else if (const int tenths = static_cast<int>(fraction * 10); tenths > tenths_) {
+    tenths_ = tenths;
+    Print(text);
+  }
+}
+
+}  // namespace mascot

@@ -1,0 +1,111 @@
+#include "orchestrator/recording/exporters.h"
+
+#include <functional>
+#include <numeric>
+#include <vector>
+
+#include "orchestrator/formats/csv.h"
+#include "orchestrator/formats/mat_file.h"
+#include "orchestrator/recording/state_arrays.h"
+#include "orchestrator/recording/states_npz.h"
+
+namespace mascot {
+namespace {
+
+bool IsExported(const StateArray& array, const Recording& recording) {
+  return recording.has_commands() || !array.of_command;
+}
+
+void ForEachStateRow(const Recording& recording, const std::function<void(std::int64_t, const StateRow&)>& on_row) {
+  DecodedRow decoded(recording.agents());
+  StateRow values(recording.agents());
+  recording.ForEachRow([&](const Row& row) {
+    decoded.Take(row);
+    values.Set(recording.time_s(row.tick), decoded);
+    on_row(row.tick, values);
+  });
+}
+
+void WriteNpz(const Recording& recording, const std::string& path) {
+  StatesNpz npz(path, recording.agents(), recording.has_commands());
+  ForEachStateRow(recording, [&](std::int64_t, const StateRow& row) { npz.Append(row); });
+  npz.Close();
+}
+
+/// The long ("tidy") form: a line per tick and agent.
+void WriteCsv(const Recording& recording, const std::string& path) {
+  std::vector<std::string> columns = {"t", "id"};
+  std::vector<std::size_t> arrays;
+  for (std::size_t a = 1; a < kStateArrays.size(); ++a) {
+    if (!IsExported(kStateArrays[a], recording)) continue;
+    arrays.push_back(a);
+    for (const char component : kStateArrays[a].components)
+      columns.push_back(std::string(kStateArrays[a].name) + "_" + component);
+  }
+  CsvWriter csv(path, columns);
+  ForEachStateRow(recording, [&](std::int64_t tick, const StateRow& row) {
+    for (int id = 1; id <= recording.agents(); ++id) {
+      csv.Add(recording.time_s(tick));
+      csv.Add(std::int64_t{id});
+      for (const std::size_t a : arrays) {
+        const std::size_t width = kStateArrays[a].components.size();
+        for (const double value : row.Values(a).subspan(static_cast<std::size_t>(id - 1) * width, width))
+          csv.Add(value);
+      }
+      csv.EndRow();
+    }
+  });
+  csv.Close();
+}
+
+/// One array on its way to MATLAB, whose first index runs fastest: it is complete at the last tick only.
+struct Transposed {
+  std::size_t array;                    // index into kStateArrays
+  std::vector<std::size_t> dimensions;  // T x N x components, or T x 1
+  std::vector<double> values;
+
+  Transposed(std::size_t a, std::size_t ticks, std::size_t agents) : array(a), dimensions{ticks, 1} {
+    const StateArray& of = kStateArrays[a];
+    if (!of.components.empty()) dimensions = {ticks, agents, of.components.size()};
+    MatWriter::RequireFits(std::string(of.name), dimensions);
+    values.resize(ticks * of.row_values(agents));
+  }
+  void Take(std::size_t tick, const StateRow& row) {
+    const std::span<const double> in = row.Values(array);
+    const std::size_t ticks = dimensions[0], agents = dimensions[1], width = in.size() / agents;
+    for (std::size_t i = 0; i < agents; ++i)
+      for (std::size_t c = 0; c < width; ++c) values[tick + ticks * (i + agents * c)] = in[i * width + c];
+  }
+};
+
+/// Takes as much memory as the file will, and as MATLAB will to load it.
+void WriteMat(const Recording& recording, const std::string& path) {
+  const auto ticks = static_cast<std::size_t>(recording.ticks()), agents = static_cast<std::size_t>(recording.agents());
+  std::vector<Transposed> arrays;
+  for (std::size_t a = 0; a < kStateArrays.size(); ++a)
+    if (IsExported(kStateArrays[a], recording)) arrays.emplace_back(a, ticks, agents);
+  ForEachStateRow(recording, [&](std::int64_t tick, const StateRow& row) {
+    for (Transposed& array : arrays) array.Take(static_cast<std::size_t>(tick), row);
+  });
+  MatWriter mat(path);
+  mat.AddText("experiment", recording.name());
+  mat.AddText("config", recording.config());
+  std::vector<double> ids(agents);
+  std::iota(ids.begin(), ids.end(), 1.0);
+  mat.Add("id", std::vector<std::size_t>{1, agents}, ids);
+  for (const Transposed& array : arrays)
+    mat.Add(std::string(kStateArrays[array.array].name), array.dimensions, array.values);
+  mat.Close();
+}
+
+constexpr Exporter kExporters[] = {
+    {"npz", WriteNpz},
+    {"csv", WriteCsv},
+    {"mat", WriteMat},
+};
+
+}  // namespace
+
+std::span<const Exporter> Exporters() { return kExporters; }
+
+}  // namespace mascot

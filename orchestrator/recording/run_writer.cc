@@ -1,0 +1,90 @@
+#include "orchestrator/recording/run_writer.h"
+
+#include "bus/qos.h"
+#include "bus/wire.h"
+#include "idl/schemas.h"
+#include "idl/topics.h"
+#include "orchestrator/recording/topic_filter.h"
+
+namespace mascot {
+namespace {
+
+std::string_view SchemaName(TopicKind kind) {
+  switch (kind) {
+    case TopicKind::kCommand:
+      return "mascot_msgs/msg/AgentCommand";
+    case TopicKind::kMessage:
+      return "mascot_msgs/msg/AgentMessage";
+    case TopicKind::kState:
+      return "mascot_msgs/msg/AgentState";
+    default:
+      return "rosgraph_msgs/msg/Clock";
+  }
+}
+
+}  // namespace
+
+RunWriter::RunWriter(Experiment& experiment, const RunFolder& folder, const std::string& resolved)
+    : experiment_(experiment),
+      mcap_(folder.File(experiment.record.file)),
+      meter_(experiment),
+      decoded_(experiment.size()),
+      encoder_(experiment),
+      arrays_(experiment.size()) {
+  mcap_.Attach("config.toml", "application/toml", resolved);
+  for (int id = 1; id <= experiment.size(); ++id) {
+    commands_.push_back(AddChannel(Topic::Command(id)));
+    messages_.push_back(experiment.agent(id).sends_messages ? AddChannel(Topic::Message(id)) : std::nullopt);
+    states_.push_back(AddChannel(Topic::State(id)));
+  }
+  clock_ = AddChannel(Topic::Clock());
+  if (experiment.output.save_data || experiment.output.save_plot)
+    npz_.emplace(folder.File("states.npz"), experiment.size());
+}
+
+std::optional<std::uint16_t> RunWriter::AddChannel(const Topic& topic) {
+  const std::string name = topic.Name();
+  if (!IsRecorded(experiment_.record.topics, topic)) return std::nullopt;
+  const TypeSchema& schema = SchemaOf(SchemaName(topic.kind));
+  ++topics_;
+  return mcap_.AddChannel({name,
+                           std::string(schema.name),
+                           std::string(schema.text),
+                           {{"offered_qos_profiles", OfferedQos(WriterDepth(topic.kind))},
+                            {"topic_type_hash", std::string(schema.type_hash)}}});
+}
+
+void RunWriter::WriteSample(std::optional<std::uint16_t> channel, std::uint64_t time_ns, const Row::Bytes& bytes) {
+  if (channel && !bytes.empty()) mcap_.Write(*channel, time_ns, bytes);
+}
+
+void RunWriter::Add(const Row& row) {
+  decoded_.Take(row);
+  Write(row, decoded_);
+}
+
+void RunWriter::Add(std::int64_t tick, const DecodedRow& decoded) { Write(encoder_.Encode(tick, decoded), decoded); }
+
+void RunWriter::Write(const Row& row, const DecodedRow& decoded) {
+  const std::uint64_t time_ns = StampNs(row.tick, experiment_.control.rate_hz);
+  for (std::size_t i = 0; i < row.states.size(); ++i) {
+    WriteSample(commands_[i], time_ns, row.commands[i]);
+    WriteSample(messages_[i], time_ns, row.messages[i]);
+    WriteSample(states_[i], time_ns, row.states[i]);
+  }
+  WriteSample(clock_, time_ns, row.clock);
+  mcap_.EndTick();
+  if (npz_) {
+    arrays_.Set(experiment_.time_s(row.tick), decoded);
+    npz_->Append(arrays_);
+  }
+  meter_.Add(row.tick, decoded);
+  ++rows_;
+}
+
+void RunWriter::Close() {
+  mcap_.Close();
+  if (npz_) npz_->Close();
+}
+
+}  // namespace mascot

@@ -1,0 +1,161 @@
+#include "orchestrator/reference/reference.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "agent/laws.h"
+#include "experiment/experiment.h"
+#include "experiment/toml/key.h"
+
+namespace mascot {
+namespace {
+
+constexpr std::string_view kIntroduction =
+    R"(# Every key of an experiment file
+
+<!-- Made from the tables in the code by `cmake --build build/release --target reference`; a test keeps it current. -->
+
+An experiment is one TOML file. Every key has a default but those marked *required*; a key that is not listed here, a value
+of another type or out of range ends `orchestrator` with exit 2 before anything starts, and the message says file, line,
+column, what was expected and what stands there. `orchestrator up FILE --set table.key=value` sets one without editing.
+Keys carry their unit in their name; where they cannot (gains), it stands beside the range. `[a, b]` includes both ends,
+`(a, b]` leaves out a. Points and vectors are `[x, y, z]` in the world frame: x east, y north, z up.
+
+Editors that know TOML (VS Code with Even Better TOML, or anything else on taplo) complete and check the keys while you type
+if the file begins with `#:schema` and the place of [mascot.schema.json](mascot.schema.json), as those in
+`configs/` do.
+)";
+
+/// Text for a cell of a table.
+std::string Cell(std::string_view text) {
+  std::string cell;
+  for (const char c : text) cell += c == '|' ? std::string("\\|") : std::string(1, c);
+  return cell;
+}
+
+std::string DefaultText(const Key& key) {
+  if (key.required) return "*required*";
+  if (!key.fallback.empty()) return "`" + std::string(key.fallback) + "`";
+  return std::string(key.otherwise);
+}
+
+std::string TableOf(std::span<const Key> rows) {
+  std::string text = "\n| key | value | default | meaning |\n|---|---|---|---|\n";
+  for (const Key& key : rows)
+    text += fmt::format("| `{}` | {} | {} | {} |\n", key.name, Cell(ValueText(key)), Cell(DefaultText(key)),
+                        Cell(key.meaning));
+  return text;
+}
+
+std::string Sentence(std::string_view words) {
+  std::string sentence(words);
+  if (!sentence.empty()) sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
+  return sentence + ".";
+}
+
+bool IsIn(std::span<const Key> rows, const Key& key) {
+  return std::ranges::any_of(rows, [&](const Key& row) {
+    return row.name == key.name && row.meaning == key.meaning && ValueText(row) == ValueText(key) &&
+           DefaultText(row) == DefaultText(key);
+  });
+}
+
+/// "`a`, `b`"
+std::string NameList(const std::vector<Key>& keys) {
+  std::string names;
+  for (const Key& key : keys) names += fmt::format("{}`{}`", names.empty() ? "" : ", ", key.name);
+  return names;
+}
+
+/// Those of `rows` that `others` have not.
+std::vector<Key> Without(std::span<const Key> others, std::span<const Key> rows) {
+  std::vector<Key> rest;
+  std::ranges::copy_if(rows, std::back_inserter(rest), [&](const Key& key) { return !IsIn(others, key); });
+  return rest;
+}
+
+/// The reference, written from top to bottom.
+class Writer {
+ public:
+  std::string Write() {
+    for (const Key& table : ExperimentKeys()) tables_.push_back({std::string(table.name), table.keys});
+    for (const Key& table : ExperimentKeys()) {
+      text_ += fmt::format("\n## [{}]\n", table.name);
+      if (!table.meaning.empty()) text_ += "\n" + Sentence(table.meaning) + "\n";
+      text_ += TableOf(table.keys);
+      if (table.name == "graph") WriteTopologies();
+      WriteInner(std::string(table.name), table.keys);
+    }
+    WriteLaws();
+    return std::string(kIntroduction) + text_;
+  }
+
+ private:
+  /// The tables inside one; those of the same keys once.
+  void WriteInner(const std::string& path, std::span<const Key> rows) {
+    for (const Key& table : rows) {
+      const auto is_same = [&](std::span<const Key> keys) { return keys.data() == table.keys.data(); };
+      if (table.keys.empty() || std::ranges::any_of(tables_, is_same, &Table::rows)) continue;
+      const std::string inner = fmt::format("{}.{}", path, table.name);
+      const bool is_list = table.kind == ValueKind::kTables;
+      text_ += fmt::format("\n### {}{}{}\n\n{}\n", is_list ? "[[" : "[", inner, is_list ? "]]" : "]",
+                           Introduction(table, rows));
+      WriteKeys(table.keys);
+      tables_.push_back({inner, table.keys});
+      WriteInner(inner, table.keys);
+    }
+  }
+
+  static std::string Introduction(const Key& table, std::span<const Key> rows) {
+    std::vector<Key> alike;
+    std::ranges::copy_if(rows, std::back_inserter(alike),
+                         [&](const Key& row) { return row.keys.data() == table.keys.data(); });
+    return alike.size() == 1 ? Sentence(table.meaning) : "The keys of " + NameList(alike) + ".";
+  }
+
+  /// A table of keys; where another table has most of them too, only what is different.
+  void WriteKeys(std::span<const Key> rows) {
+    for (const Table& other : tables_) {
+      const std::vector<Key> own = Without(other.rows, rows);
+      if (2 * own.size() > rows.size()) continue;
+      const std::vector<Key> left_out = Without(rows, other.rows);
+      if (!own.empty()) text_ += TableOf(own);
+      text_ += fmt::format("\n{} as in `[{}]`{}.\n", own.empty() ? "Keys" : "Also keys", other.path,
+                           left_out.empty() ? "" : ", but for " + NameList(left_out));
+      return;
+    }
+    text_ += TableOf(rows);
+  }
+
+  void WriteTopologies() {
+    text_ += "\n| topology | who hears whom |\n|---|---|\n";
+    for (const Topology& family : Topologies()) text_ += fmt::format("| `{}` | {} |\n", family.name, family.meaning);
+  }
+
+  void WriteLaws() {
+    text_ +=
+        "\n## Parameters of the laws\n\nFurther keys of `[law]`, by its `name`. Sources and what theory says: "
+        "`orchestrator laws`, [laws.md](laws.md).\n";
+    for (const LawEntry& law : Laws()) {
+      text_ += fmt::format("\n### law.name = \"{}\"\n\n{} Default of `axes`: `\"{}\"`.\n\n```\n{}\n```\n", law.name,
+                           Sentence(law.summary), law.axes == Axes::kXyz ? "xyz" : "xy", law.equation);
+      text_ += TableOf(law.parameters);
+    }
+  }
+
+  struct Table {
+    std::string path;
+    std::span<const Key> rows;
+  };
+  std::vector<Table> tables_;  // those of the first level, and those written so far
+  std::string text_;
+};
+
+}  // namespace
+
+std::string ConfigurationReference() { return Writer().Write(); }
+
+}  // namespace mascot

@@ -1,0 +1,95 @@
+#include "orchestrator/report/prediction_report.h"
+
+#include <spdlog/fmt/fmt.h>
+
+namespace mascot {
+namespace {
+
+Json ToJson(const std::optional<Persistence>& persistence) {
+  if (!persistence) return nullptr;
+  return {{"joint", persistence->joint},
+          {"always", persistence->always},
+          {"never_alone", persistence->never_alone},
+          {"window_s", OrNull(persistence->window_s)},
+          {"from_s", OrNull(persistence->from_s)},
+          {"in_range_at_start", OrNull(persistence->in_range_at_start)}};
+}
+
+Json ToJson(const std::vector<MinmaxEdge>& edges) {
+  Json json = Json::array();
+  for (const MinmaxEdge& edge : edges)
+    json.push_back({{"child", edge.child}, {"parent", edge.parent}, {"time_s", edge.time_s}, {"exact", edge.exact}});
+  return json;
+}
+
+std::string Lasts(double time_s) { return fmt::format("{:.4g} s", time_s); }
+
+/// Both margins of delay, as far as they are known.
+std::string DelayText(const Prediction& prediction) {
+  std::string text;
+  if (const auto& margin = prediction.delay_margin)
+    text = margin->independent ? "of neighbours' samples: any"
+                               : "of neighbours' samples: below " + Lasts(*margin->margin_s);
+  if (prediction.own_delay_margin_s)
+    text += fmt::format("{}of these and the own: below {}", text.empty() ? "" : "; ",
+                        Lasts(*prediction.own_delay_margin_s));
+  return text;
+}
+
+}  // namespace
+
+Json PredictionJson(const Prediction& prediction) {
+  const auto& margin = prediction.delay_margin;
+  const auto asked = [](const std::optional<FirstCommand>& first) {
+    return first ? Json(first->asked) : Json(nullptr);
+  };
+  return {{"value_m", OrNull(prediction.value_m)},
+          {"on_average", prediction.on_average},
+          {"stable", OrNull(prediction.stable)},
+          {"rate_per_s", OrNull(prediction.rate_per_s)},
+          {"settling_time_s", OrNull(prediction.settling_time_s)},
+          {"control_period_bound_s", OrNull(prediction.control_period_bound_s)},
+          {"delay_margin_s", margin ? OrNull(margin->margin_s) : Json(nullptr)},
+          {"delay_independent", margin ? Json(margin->independent) : Json(nullptr)},
+          {"own_delay_margin_s", OrNull(prediction.own_delay_margin_s)},
+          {"minmax_time_s", OrNull(prediction.minmax_time_s)},
+          {"minmax_edges", ToJson(prediction.minmax_edges)},
+          {"persistence", ToJson(prediction.persistence)},
+          {"first_command_m_per_s2", asked(prediction.first_acceleration)},
+          {"first_speed_m_per_s", asked(prediction.first_speed)},
+          {"silent", prediction.silent.empty() ? Json(nullptr) : Json(prediction.silent)}};
+}
+
+std::vector<std::pair<std::string, std::string>> PredictionLines(const Experiment& experiment,
+                                                                 const Prediction& prediction) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  const std::string average = prediction.on_average ? ", on average" : "";
+  if (prediction.persistence && (!experiment.schedule.IsConstant() || !prediction.persistence->always))
+    lines.emplace_back("spanning tree", Describe(*prediction.persistence));
+  if (const auto& value_m = prediction.value_m)
+    lines.emplace_back("meeting point",
+                       fmt::format("({:.4g}, {:.4g}, {:.4g}) m{}{}", value_m->x(), value_m->y(), value_m->z(),
+                                   experiment.law.axes == Axes::kXy ? ", heights held" : "", average));
+  if (prediction.stable) lines.emplace_back("stable", *prediction.stable ? "yes" : "no");
+  if (prediction.rate_per_s)
+    lines.emplace_back("decays", fmt::format("at {:.4g} 1/s (slowest mode){}", *prediction.rate_per_s, average));
+  if (prediction.settling_time_s)
+    lines.emplace_back("settles in",
+                       fmt::format("{} (2 %, slowest mode{}){}", Lasts(*prediction.settling_time_s),
+                                   experiment.graph.IsSymmetric() ? "" : "; later along chains", average));
+  if (prediction.control_period_bound_s)
+    lines.emplace_back("control period", fmt::format("below {} (now {})", Lasts(*prediction.control_period_bound_s),
+                                                     Lasts(experiment.period_s())));
+  if (const std::string delay = DelayText(prediction); !delay.empty()) lines.emplace_back("delay", delay);
+  for (const MinmaxEdge& edge : prediction.minmax_edges)
+    lines.emplace_back(fmt::format("edge {} -> {}", edge.child, edge.parent),
+                       fmt::format("{} {}", edge.exact ? "meets in" : "meets within", Lasts(edge.time_s)));
+  if (const auto& first = prediction.first_acceleration)
+    lines.emplace_back("first command", fmt::format("{:.4g} m/s^2 of {:g} allowed", first->asked, first->limit));
+  if (const auto& first = prediction.first_speed)
+    lines.emplace_back("first command", fmt::format("{:.4g} m/s of {:g} allowed", first->asked, first->limit));
+  if (!prediction.silent.empty()) lines.emplace_back("theory", "silent, because " + prediction.silent);
+  return lines;
+}
+
+}  // namespace mascot

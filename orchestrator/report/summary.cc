@@ -1,0 +1,257 @@
+#include "orchestrator/report/summary.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "agent/controller.h"
+#include "orchestrator/report/deviation.h"
+#include "orchestrator/report/json.h"
+#include "orchestrator/report/prediction_report.h"
+
+namespace mascot {
+namespace {
+
+Json EdgesOf(const Graph& graph) {
+  Json edges = Json::array();
+  for (int id = 1; id <= graph.size(); ++id)
+    for (const Graph::Neighbour& heard : graph.HeardBy(id)) edges.push_back({id, heard.id, heard.weight});
+  return edges;
+}
+
+Json Edges(const std::vector<PursuitMeter::Edge>& measured) {
+  Json edges = Json::array();
+  for (const PursuitMeter::Edge& edge : measured)
+    edges.push_back({{"child", edge.child}, {"parent", edge.parent}, {"time_s", OrNull(edge.time_s)}});
+  return edges;
+}
+
+Json ToJson(const Deviation& deviation) {
+  return {{"value_m", OrNull(deviation.value_m)},
+          {"settling_time_s", OrNull(deviation.settling_time_s)},
+          {"rate_per_s", OrNull(deviation.rate_per_s)},
+          {"minmax_time_s", OrNull(deviation.minmax_time_s)}};
+}
+
+Json Consensus(const Experiment& experiment, const Measured& measured, const Prediction& prediction) {
+  Json consensus;
+  consensus["value_m"] = VectorJson(measured.value_m);
+  consensus["final_disagreement_m"] = measured.final_disagreement_m;
+  consensus["final_speed_m_per_s"] = measured.final_speed_m_per_s;
+  consensus["settling_time_s"] = OrNull(measured.settling_time_s);
+  consensus["rate_per_s"] = OrNull(measured.rate_per_s);
+  if (!measured.minmax_edges.empty()) consensus["minmax_edges"] = Edges(measured.minmax_edges);
+  consensus["predicted"] = PredictionJson(prediction);
+  consensus["deviation"] = ToJson(Compare(experiment, measured, prediction));
+  return consensus;
+}
+
+Json Safety(const Measured& measured, const std::optional<Contacts>& contacts) {
+  Json safety;
+  safety["min_separation_m"] = OrNull(measured.min_separation_m);
+  safety["collisions"] = contacts ? Json(contacts->total()) : Json(nullptr);
+  safety["contacts"] = nullptr;
+  if (contacts)
+    safety["contacts"] = {
+        {"agents", contacts->agents}, {"ground", contacts->ground}, {"obstacles", contacts->obstacles}};
+  return safety;
+}
+
+Json Links(const std::vector<EdgeTraffic>& traffic) {
+  EdgeTraffic all;
+  Json edges = Json::array();
+  for (const EdgeTraffic& edge : traffic) {
+    const EdgeCount& count = edge.count;
+    edges.push_back({{"hearer", edge.hearer},
+                     {"heard", edge.heard},
+                     {"sent", count.sent},
+                     {"lost", count.lost},
+                     {"late", count.late},
+                     {"bytes", edge.bytes}});
+    all.count.sent += count.sent;
+    all.count.lost += count.lost;
+    all.count.late += count.late;
+    all.bytes += edge.bytes;
+  }
+  return {{"sent", all.count.sent},
+          {"lost", all.count.lost},
+          {"late", all.count.late},
+          {"bytes", all.bytes},
+          {"edges", edges}};
+}
+
+Json Formation(const Measured::Formation& formation) {
+  Json offsets = Json::array();
+  for (const Eigen::Vector3d& d_W : formation.offsets_m) offsets.push_back(VectorJson(d_W));
+  return {{"final_rms_m", formation.final_rms_m}, {"worst_rms_m", formation.worst_rms_m}, {"offsets_m", offsets}};
+}
+
+Json Fidelity(const Measured& measured) {
+  const auto& fidelity = measured.fidelity;
+  return {{"rms_m", fidelity ? Json(fidelity->rms_m) : Json(nullptr)},
+          {"max_m", fidelity ? Json(fidelity->max_m) : Json(nullptr)},
+          {"travelled_m", measured.travelled_m},
+          {"failure", measured.fidelity_failure.empty() ? Json(nullptr) : Json(measured.fidelity_failure)}};
+}
+
+Json Realtime(const Pacing& pacing) {
+  const auto spread = [](const Pacing::Spread& s) { return Json{{"p50", s[0]}, {"p99", s[1]}, {"max", s[2]}}; };
+  return {{"misses", pacing.misses},
+          {"tick_lateness_s", spread(pacing.tick_lateness_s)},
+          {"command_age_s", spread(pacing.command_age_s)}};
+}
+
+template <class... Values>
+std::string Line(const char* format, Values... values) {
+  char text[200];
+  std::snprintf(text, sizeof text, format, values...);
+  return std::string(text) + "\n";
+}
+
+/// ": 1.2 % off", or nothing where there is no deviation.
+std::string Off(std::optional<double> deviation, std::optional<double> predicted) {
+  if (!deviation || *predicted == 0) return "";
+  char text[40];
+  std::snprintf(text, sizeof text, ": %+.3g %%", 100 * *deviation / *predicted);
+  return text;
+}
+
+/// "at most ", if one of the times is a bound.
+const char* AtMost(const std::vector<MinmaxEdge>& edges) {
+  return std::ranges::all_of(edges, &MinmaxEdge::exact) ? "" : "at most ";
+}
+
+/// What agents agreed on, how fast, and what theory says of it.
+std::string ConsensusText(const Experiment& experiment, const Measured& m, const Prediction& prediction) {
+  const Deviation deviation = Compare(experiment, m, prediction);
+  const char* chains = experiment.graph.IsSymmetric() ? "" : "; later along chains";
+  std::string text = Line("mean position  %.4f, %.4f, %.4f m", m.value_m.x(), m.value_m.y(), m.value_m.z());
+  if (const auto& value = prediction.value_m)
+    text += Line("  predicted    %.4f, %.4f, %.4f m%s: %.2g m off", value->x(), value->y(), value->z(),
+                 prediction.on_average ? " on average" : "", *deviation.value_m);
+  text += Line("disagreement   %.3g m, speed %.2g m/s at the end", m.final_disagreement_m, m.final_speed_m_per_s);
+  const bool of_rate = prediction.rate_per_s && prediction.of_agreement;
+  if (m.rate_per_s && m.minmax_edges.empty())
+    text += Line("decayed        at %.4f 1/s", *m.rate_per_s);
+  else if (of_rate)
+    text += "decayed        not far enough, or not for good, to say how fast\n";
+  if (of_rate)
+    text += Line("  predicted    %.4f 1/s (slowest mode)%s", *prediction.rate_per_s,
+                 Off(deviation.rate_per_s, prediction.rate_per_s).c_str());
+  const bool of_settling = prediction.settling_time_s && prediction.of_agreement;
+  if (m.settling_time_s)
+    text += Line("settled        after %.2f s (2 %%)", *m.settling_time_s);
+  else if (of_settling)
+    text += "settled        not by the end (2 %)\n";
+  if (of_settling)
+    text += Line("  predicted    %.2f s (slowest mode%s)%s", *prediction.settling_time_s, chains,
+                 Off(deviation.settling_time_s, prediction.settling_time_s).c_str());
+  if (const auto caught_up_s = MinmaxTime(m, prediction))
+    text += Line("caught up      after %.2f s (latest edge, within %g m)", *caught_up_s, kCaughtUp_m);
+  if (prediction.minmax_time_s)
+    text += Line("  predicted    %s%.2f s (min-max, latest edge)%s", AtMost(prediction.minmax_edges),
+                 *prediction.minmax_time_s, Off(deviation.minmax_time_s, prediction.minmax_time_s).c_str());
+  return text;
+}
+
+/// "; tilt limited 12 %, rotors 3 %", or nothing.
+std::string AlsoLimited(const Measured& m) {
+  if (m.tilt_limited_fraction + m.rotor_limited_fraction == 0) return "";
+  char text[80];
+  std::snprintf(text, sizeof text, "; tilt limited in %.3g %%, rotors in %.3g %%", 100 * m.tilt_limited_fraction,
+                100 * m.rotor_limited_fraction);
+  return text;
+}
+
+/// What a run is compared with (docs/recording.md, fidelity).
+std::string IdealBodies(const Experiment& experiment) {
+  const auto at_once = std::ranges::count_if(
+      experiment.agents, [](const AgentConfig& agent) { return DrivenBy(agent.model) == Wanted::kVelocity; });
+  return at_once == 0                   ? "ideal double integrators"
+         : at_once == experiment.size() ? "ideal single integrators"
+                                        : "ideal single and double integrators";
+}
+
+}  // namespace
+
+std::string SummaryJson(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
+                        const EngineResult& engine, const RunFacts& facts) {
+  const Measured measured = meter.Result();
+  const std::int64_t ticks = std::max<std::int64_t>(measured.rows - 1, 0);  // periods flown: rows are 0 .. ticks
+  const double sim_s = experiment.time_s(ticks);
+  Json json;
+  json["experiment"] = experiment.run.name;
+  json["seed"] = experiment.run.seed;
+  json["engine"] = facts.engine;
+  json["mode"] = experiment.run.mode == Mode::kRealtime ? "realtime" : "lockstep";
+  json["agents"] = experiment.size();
+  json["ticks"] = ticks;
+  json["sim_s"] = sim_s;
+  json["wall_s"] = engine.wall_s;
+  json["real_time_factor"] = engine.wall_s > 0 ? Json(sim_s / engine.wall_s) : Json(nullptr);
+  json["ticks_per_s"] = engine.wall_s > 0 ? Json(static_cast<double>(ticks) / engine.wall_s) : Json(nullptr);
+  json["exit"] = facts.exit;
+  json["failure"] = engine.failure.empty() ? Json(nullptr) : Json(engine.failure);
+  json["samples"] = {{"topics", facts.topics}, {"recorded", facts.samples}, {"lost", engine.lost}};
+  json["wire"] = {{"matches_graph", OrNull(engine.wire_matches_graph)}};
+  json["graph"] = {{"edges", EdgesOf(experiment.graph)}};
+  json["consensus"] = Consensus(experiment, measured, prediction);
+  json["control"] = {{"effort", measured.effort_m2_per_s3},
+                     {"saturated_fraction", measured.saturated_fraction},
+                     {"tilt_limited_fraction", measured.tilt_limited_fraction},
+                     {"rotor_limited_fraction", measured.rotor_limited_fraction}};
+  json["safety"] = Safety(measured, engine.contacts);
+  if (const auto& formation = measured.formation) json["formation"] = Formation(*formation);
+  json["links"] = Links(meter.Traffic());
+  json["fidelity"] = Fidelity(measured);
+  if (experiment.run.mode == Mode::kRealtime)
+    json["realtime"] = engine.pacing ? Realtime(*engine.pacing) : Json(nullptr);
+  json["startup_s"] = engine.startup_s;
+  json["total_s"] = facts.total_s;
+  return json.dump(2) + "\n";
+}
+
+std::string SummaryText(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
+                        const EngineResult& engine, const RunFacts& facts) {
+  const Measured m = meter.Result();
+  if (m.rows == 0) return "nothing was recorded\n";
+  const double sim_s = experiment.time_s(m.rows - 1);
+  std::string text;
+  text += Line("simulated      %.2f s in %.2f s: %.1f x real time", sim_s, engine.wall_s, sim_s / engine.wall_s);
+  text +=
+      Line("recorded       %lld rows, %llu samples on %zu topics, %llu lost", static_cast<long long>(m.rows),
+           static_cast<unsigned long long>(facts.samples), facts.topics, static_cast<unsigned long long>(engine.lost));
+  text += ConsensusText(experiment, m, prediction);
+  text += Line("saturated      %.3g %% of commands%s", 100 * m.saturated_fraction, AlsoLimited(m).c_str());
+  if (engine.pacing) {
+    const Pacing& pacing = *engine.pacing;
+    text += Line("late           %llu commands came after their tick; the last one was held, at most %.3g s old",
+                 static_cast<unsigned long long>(pacing.misses), pacing.command_age_s[2]);
+    text += Line("ticks          %.3g ms after they were due in the median, 99 %% within %.3g ms, all within %.3g ms",
+                 1e3 * pacing.tick_lateness_s[0], 1e3 * pacing.tick_lateness_s[1], 1e3 * pacing.tick_lateness_s[2]);
+  }
+  if (m.min_separation_m)
+    text += Line("separation     %.3f m at least, %s collisions", *m.min_separation_m,
+                 engine.contacts ? std::to_string(engine.contacts->total()).c_str() : "an unknown number of");
+  if (const auto& formation = m.formation)
+    text += Line("formation      %.4f m rms off at the end, %.4f m at worst in the second half", formation->final_rms_m,
+                 formation->worst_rms_m);
+  std::uint64_t sent = 0, lost = 0, late = 0;
+  for (const EdgeTraffic& edge : meter.Traffic()) {
+    sent += edge.count.sent;
+    lost += edge.count.lost;
+    late += edge.count.late;
+  }
+  if (lost + late > 0)
+    text += Line("links          %llu samples sent, %.2f %% lost, %.2f %% overtaken",
+                 static_cast<unsigned long long>(sent), 100.0 * static_cast<double>(lost) / static_cast<double>(sent),
+                 100.0 * static_cast<double>(late) / static_cast<double>(sent));
+  if (!m.fidelity_failure.empty())
+    text +=
+        "fidelity       not measured, the law failed on " + IdealBodies(experiment) + ": " + m.fidelity_failure + "\n";
+  if (m.fidelity && m.travelled_m > 0)
+    text += Line("fidelity       %.4f m rms from %s: %.2f %% of %.1f m travelled", m.fidelity->rms_m,
+                 IdealBodies(experiment).c_str(), 100 * m.fidelity->rms_m / m.travelled_m, m.travelled_m);
+  return text;
+}
+
+}  // namespace mascot

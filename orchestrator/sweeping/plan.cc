@@ -1,0 +1,209 @@
+#include "orchestrator/sweeping/plan.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+
+#include "experiment/random.h"
+
+namespace mascot {
+namespace {
+
+constexpr std::size_t kMostRuns = 10'000'000;
+constexpr std::uint64_t kSamplesSeed = 1;
+
+[[noreturn]] void Refuse(const std::string& option, const std::string& expected, const std::string& got) {
+  throw ConfigError({option + ": expected " + expected + ", got '" + got + "'"});
+}
+
+std::optional<double> ToNumber(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+std::optional<std::int64_t> ToInteger(std::string_view text) {
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+/// What TOML holds for one string at the front of `text`, quotes and all, or nothing.
+std::string_view StringAtFront(std::string_view text) {
+  if (text.empty() || (text[0] != '"' && text[0] != '\'')) return {};
+  const std::string triple(3, text[0]);
+  const std::string_view quote = text.starts_with(triple) ? text.substr(0, 3) : text.substr(0, 1);
+  for (std::size_t i = quote.size(); i < text.size(); ++i) {
+    if (text.substr(i).starts_with(quote)) return text.substr(0, i + quote.size());
+    if (text[i] == '\\' && quote[0] == '"') ++i;
+  }
+  return text;
+}
+
+/// Parts between the separators that stand outside brackets, braces and quotes.
+std::vector<std::string> Split(std::string_view text, char separator) {
+  std::vector<std::string> parts(1);
+  int depth = 0;
+  while (!text.empty()) {
+    const std::string_view string = StringAtFront(text);
+    const std::string_view token = string.empty() ? text.substr(0, 1) : string;
+    text.remove_prefix(token.size());
+    depth += (token == "[" || token == "{") - (token == "]" || token == "}");
+    if (token[0] == separator && depth == 0)
+      parts.emplace_back();
+    else
+      parts.back() += token;
+  }
+  return parts;
+}
+
+struct Axis {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+/// KEY and what stands behind the equals sign.
+std::pair<std::string, std::string> SplitKey(const std::string& option, const std::string& word) {
+  const auto equals = word.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == word.size())
+    Refuse(option, option == "--set" ? "key=values (such as law.p_gain=0.1:0.1:1)" : "key=min:max[:log]", word);
+  return {word.substr(0, equals), word.substr(equals + 1)};
+}
+
+/// `value` to 15 digits: 0.3 + 6 x 0.1 is meant to be 0.9.
+double Rounded(double value) { return std::strtod(fmt::format("{:.15g}", value).c_str(), nullptr); }
+
+/// A:STEP:B of integers, exactly; nothing if they are none.
+std::optional<std::vector<std::string>> IntegerRange(const std::vector<std::string>& parts) {
+  const auto a = ToInteger(parts[0]), step = ToInteger(parts[1]), b = ToInteger(parts[2]);
+  if (!a || !step || !b) return std::nullopt;
+  std::vector<std::string> values;
+  for (std::int64_t value = *a; *step > 0 ? value <= *b : value >= *b;) {
+    values.push_back(std::to_string(value));
+    if (__builtin_add_overflow(value, *step, &value)) break;
+  }
+  return values;
+}
+
+/// A:STEP:B, both ends included: A + i STEP, never accumulated, and B if a rounding error misses it.
+std::vector<std::string> Range(const std::string& word, const std::vector<std::string>& parts) {
+  const auto first = ToNumber(parts[0]), step = ToNumber(parts[1]), last = ToNumber(parts[2]);
+  if (!first || !step || !last || *step == 0 || (*last - *first) / *step < 0)
+    Refuse("--set", "a:step:b, three numbers with b on step's side of a", word);
+  constexpr double kRounding = 1e-9;
+  const double steps = std::floor((*last - *first) / *step + kRounding);
+  if (steps >= static_cast<double>(kMostRuns)) Refuse("--set", "at most 10000000 values", word);
+  if (auto integers = IntegerRange(parts)) return *integers;
+  std::vector<std::string> values;
+  for (double i = 0; i <= steps; ++i) values.push_back(ShortestFloat(Rounded(*first + i * *step)));
+  return values;
+}
+
+Axis ParseSet(const std::string& word) {
+  const auto [key, text] = SplitKey("--set", word);
+  const std::vector<std::string> range = Split(text, ':');
+  if (range.size() == 3 && ToNumber(range[0])) return {key, Range(word, range)};
+  Axis axis{key, Split(text, ',')};
+  if (std::ranges::find(axis.values, "") != axis.values.end()) Refuse("--set", "values between commas", word);
+  return axis;
+}
+
+/// Values drawn one after the other, from a stream of the key's own place.
+Axis ParseRandom(const std::string& word, std::uint64_t place, std::int64_t samples) {
+  const auto [key, text] = SplitKey("--random", word);
+  const std::vector<std::string> parts = Split(text, ':');
+  const auto min = ToNumber(parts[0]), max = parts.size() > 1 ? ToNumber(parts[1]) : std::nullopt;
+  const bool log = parts.size() == 3 && parts[2] == "log";
+  if (!min || !max || *min > *max || (parts.size() == 3 && !log) || parts.size() > 3 || (log && *min <= 0))
+    Refuse("--random", "key=min:max or key=min:max:log with 0 < min", word);
+  if (!std::isfinite(log ? *max / *min : *max - *min)) Refuse("--random", "a range that a double can span", word);
+  Random random(kSamplesSeed + place, Random::Stream::kSweep);
+  Axis axis{key, {}};
+  for (std::int64_t i = 0; i < samples; ++i) {
+    const double part = random.Unit();
+    axis.values.push_back(ShortestFloat(log ? *min * std::pow(*max / *min, part) : *min + part * (*max - *min)));
+  }
+  return axis;
+}
+
+std::optional<std::int64_t> ToSeed(std::string_view text) {
+  const auto seed = ToInteger(text);
+  return seed && *seed >= 0 ? seed : std::nullopt;
+}
+
+std::vector<std::string> ParseSeeds(const std::string& text) {
+  std::vector<std::string> seeds;
+  if (const auto dots = text.find(".."); dots != std::string::npos) {
+    const auto first = ToSeed(text.substr(0, dots)), last = ToSeed(text.substr(dots + 2));
+    if (!first || !last || *last < *first || *last - *first >= static_cast<std::int64_t>(kMostRuns))
+      Refuse("--seeds", "a..b or a,b,... of integers from 0 on", text);
+    for (std::int64_t seed = *first; seed <= *last; ++seed) seeds.push_back(std::to_string(seed));
+    return seeds;
+  }
+  for (const std::string& part : Split(text, ',')) {
+    if (!ToSeed(part)) Refuse("--seeds", "a..b or a,b,... of integers from 0 on", text);
+    seeds.push_back(part);
+  }
+  return seeds;
+}
+
+/// Every point so far, once with each of `choices`.
+std::vector<SweepPoint> Times(const std::vector<SweepPoint>& points, const std::vector<SweepPoint>& choices) {
+  if (points.size() > kMostRuns / std::max<std::size_t>(choices.size(), 1))
+    throw ConfigError({"sweep: expected at most 10000000 runs, got more"});
+  std::vector<SweepPoint> all;
+  all.reserve(points.size() * choices.size());
+  for (const SweepPoint& point : points)
+    for (const SweepPoint& choice : choices) {
+      all.push_back(point);
+      all.back().overrides.insert(all.back().overrides.end(), choice.overrides.begin(), choice.overrides.end());
+    }
+  return all;
+}
+
+std::vector<SweepPoint> ChoicesOf(const Axis& axis) {
+  std::vector<SweepPoint> choices;
+  for (const std::string& value : axis.values) choices.push_back({{{axis.key, value}}});
+  return choices;
+}
+
+/// `key` is `table`, or a key or place in it.
+bool IsInside(std::string_view key, std::string_view table) {
+  return key.starts_with(table) && (key.size() == table.size() || key[table.size()] == '.' || key[table.size()] == '[');
+}
+
+}  // namespace
+
+SweepPlan::SweepPlan(const Words& words) : points_(1) {
+  const auto add_key = [this](const Axis& axis, bool drawn) {
+    for (const std::string& key : keys_)
+      if (IsInside(key, axis.key) || IsInside(axis.key, key))
+        throw ConfigError(
+            {"sweep: expected each key once, got " + axis.key + (key == axis.key ? " again" : " and " + key)});
+    keys_.push_back(axis.key);
+    if (drawn && axis.values.size() > 1) varied_.push_back(axis.key);
+  };
+  for (const std::string& word : words.sets) {
+    const Axis axis = ParseSet(word);
+    add_key(axis, true);
+    points_ = Times(points_, ChoicesOf(axis));
+  }
+  std::vector<SweepPoint> samples(words.randoms.empty() ? 1 : static_cast<std::size_t>(words.samples));
+  for (std::size_t k = 0; k < words.randoms.size(); ++k) {
+    const Axis axis = ParseRandom(words.randoms[k], k, words.samples);
+    add_key(axis, true);
+    for (std::size_t i = 0; i < samples.size(); ++i) samples[i].overrides.push_back({axis.key, axis.values[i]});
+  }
+  points_ = Times(points_, samples);
+  if (words.seeds.empty()) return;
+  const Axis seeds{"run.seed", ParseSeeds(words.seeds)};
+  add_key(seeds, false);
+  points_ = Times(points_, ChoicesOf(seeds));
+}
+
+}  // namespace mascot

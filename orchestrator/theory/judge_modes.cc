@@ -1,0 +1,34 @@
+// What modes say about gains and control period.
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "orchestrator/theory/parts.h"
+
+namespace mascot {
+
+bool JudgePeriod(const Experiment& experiment, double longest_s, Prediction& prediction) {
+  if (std::isfinite(longest_s)) prediction.control_period_bound_s = longest_s;
+  constexpr double kRounding = 1e-9;  // of both: at the bound itself the loop oscillates for ever
+  if (experiment.period_s() < longest_s * (1 - kRounding)) return true;
+  prediction.warnings.push_back(fmt::format("control.rate_hz: unstable at this rate, it must be above {:.4g}, got {}",
+                                            1 / longest_s, experiment.control.rate_hz));
+  return false;
+}
+
+bool JudgeModes(const Experiment& experiment, std::span<const LinearMode> modes, const GainBound& gain,
+                Prediction& prediction) {
+  if (std::ranges::any_of(modes, [](const LinearMode& mode) { return mode.stiffness == 0.0; })) {
+    prediction.warnings.push_back("law.p_gain: 0 means that nothing pulls an agent anywhere");
+    return false;
+  }
+  if (!std::ranges::all_of(modes, Decays)) {
+    prediction.warnings.push_back(
+        fmt::format("{}: unstable, it must be above {:.5g}, got {:.5g}", gain.key, gain.least, gain.got));
+    return false;
+  }
+  return JudgePeriod(experiment, LongestPeriod(modes), prediction);
+}
+
+}  // namespace mascot

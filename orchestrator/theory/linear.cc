@@ -1,0 +1,251 @@
+// Laws that are linear: consensus, formation, velocity consensus, and teams that mix them.
+#include <spdlog/fmt/fmt.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "agent/laws/consensus.h"
+#include "agent/laws/reach.h"
+#include "orchestrator/theory/linear_team.h"
+#include "orchestrator/theory/links_on_average.h"
+#include "orchestrator/theory/meeting_point.h"
+#include "orchestrator/theory/parts.h"
+#include "orchestrator/theory/period_bound.h"
+#include "orchestrator/theory/sampled_team.h"
+
+namespace mascot {
+namespace {
+
+bool Exceeds(double delay_s, std::optional<double> margin_s) { return margin_s && delay_s >= *margin_s; }
+
+/// One experiment that is linear, and what is found out about it.
+class LinearCase {
+ public:
+  LinearCase(const Experiment& experiment, const LinearTeam& team, const Timeline& timeline, Prediction& prediction)
+      : experiment_(experiment),
+        team_(team),
+        timeline_(timeline),
+        prediction_(prediction),
+        graph_(team.Followed(timeline.intervals.back().graph)),
+        common_(team.Common()) {}
+
+  void Predict();
+
+ private:
+  const AgentConfig& agent(int id) const { return experiment_.agent(id); }
+  bool IsModal() const { return timeline_.IsConstant() && common_.has_value(); }
+  bool IsDelayed() const { return LongestDelay(experiment_) > 0 || experiment_.sensors.own_delay_s > 0; }
+  bool MayCoast() const;
+  std::optional<double> LinkMargin() const {
+    return prediction_.delay_margin ? prediction_.delay_margin->margin_s : std::nullopt;
+  }
+  void FindModes();
+  GainBound Gain() const;
+  bool JudgeGains();
+  bool JudgeDelays();
+  void DoubtDelays() const;
+  bool PredictMotion();
+  bool PredictSampled();
+  void PredictValue();
+  void WarnOfLag(int leader) const;
+  bool Silent(const std::string& why) const {
+    prediction_.silent = why;
+    return false;
+  }
+  bool Warn(const std::string& warning) const {
+    prediction_.warnings.push_back(warning);
+    prediction_.stable = false;
+    return false;
+  }
+
+  const Experiment& experiment_;
+  const LinearTeam& team_;
+  const Timeline& timeline_;
+  Prediction& prediction_;
+  Graph graph_;  // of the last interval
+  std::optional<LinearAgent> common_;
+  Eigen::VectorXcd lambda_;        // of a team that IsModal: of L, that of agreement or of a leader first
+  std::vector<LinearMode> modes_;  // likewise, without that one
+};
+
+void LinearCase::Predict() {
+  if (IsModal()) FindModes();
+  if (!JudgeGains() || !JudgeDelays()) return;
+  if (PredictMotion())
+    PredictValue();
+  else if (!prediction_.stable)
+    DoubtDelays();
+}
+
+void LinearCase::FindModes() {
+  lambda_ = graph_.Eigenvalues();
+  for (Eigen::Index i = 1; i < lambda_.size(); ++i) modes_.push_back(common_->Mode(lambda_(i)));
+}
+
+/// The gain that would have to be larger if modes do not decay, and how large.
+GainBound LinearCase::Gain() const {
+  const LinearAgent& all = *common_;
+  const bool relative = all.g > 0, velocity = experiment_.law.name == "velocity_consensus";
+  double least = 0;
+  for (Eigen::Index i = 1; i < lambda_.size(); ++i)
+    least =
+        std::max(least, relative ? LeastRelativeDamping(all.p, all.b, lambda_(i)) : LeastDamping(all.p, 0, lambda_(i)));
+  if (relative) return {"law.v_gain", least, all.g};
+  const double own = all.b - all.drag_b;
+  if (velocity) {
+    // There own = k_v and p = k_v p_gain: (k_v + drag)^2 > k_v p_gain (Im lambda)^2 / Re lambda.
+    const double half = least * least / own / 2 - all.drag_b;
+    const double root = half * half - all.drag_b * all.drag_b;
+    return {"control.velocity_gain", half > 0 && root >= 0 ? half + std::sqrt(root) : 0, own};
+  }
+  return {"law.beta", std::max(0.0, least - all.drag_b), own};
+}
+
+/// Nobody leads, and some do not brake: agents who have met may go on for ever, if nobody who counts brakes.
+bool LinearCase::MayCoast() const {
+  return team_.Leaders().empty() &&
+         std::ranges::any_of(team_.agents, [](const LinearAgent& moves) { return moves.order == 2 && moves.b == 0; });
+}
+
+bool LinearCase::JudgeGains() {
+  std::vector<int> idle;
+  for (const AgentConfig& a : experiment_.agents)
+    if (team_.agent(a.id).listens && team_.agent(a.id).p == 0) idle.push_back(a.id);
+  if (!idle.empty())
+    return Warn(
+        fmt::format("law.p_gain: 0 means that nothing pulls {} anywhere", common_ ? "an agent" : AgentList(idle)));
+  if (!timeline_.IsConstant()) return true;
+  if (common_) {
+    const bool stable = JudgeModes(experiment_, modes_, Gain(), prediction_);
+    if (!stable) prediction_.stable = false;
+    return stable;
+  }
+  if (MayCoast() || !PeriodBoundIsKnown(experiment_)) return true;
+  const double longest_s = PeriodBound(experiment_, team_, timeline_);
+  if (longest_s == 0) return Warn("law: the gains of these agents are unstable together");
+  if (JudgePeriod(experiment_, longest_s, prediction_)) return true;
+  prediction_.stable = false;
+  return false;
+}
+
+/// Margins, and whether there is more delay than they allow.
+bool LinearCase::JudgeDelays() {
+  if (!timeline_.IsConstant()) return true;
+  const double link_s = LongestDelay(experiment_), own_s = experiment_.sensors.own_delay_s;
+  prediction_.delay_margin = LinkDelayMargin(team_, graph_);
+  if (common_ && common_->drag_b == 0)
+    for (const LinearMode& mode : modes_)
+      prediction_.own_delay_margin_s =
+          std::min(prediction_.own_delay_margin_s.value_or(OwnDelayMargin(mode)), OwnDelayMargin(mode));
+  // The margins are those of delays that are all alike. With others the team may stand more.
+  if (!RandomAge(experiment_).empty() || !CommonDelayTicks(experiment_, graph_)) return true;
+  if (own_s == 0 && Exceeds(link_s, LinkMargin()))
+    return Warn(fmt::format("link.delay_s: unstable, it must be below {:.4g}, got {:.4g}", *LinkMargin(), link_s));
+  if (own_s == link_s && Exceeds(own_s, prediction_.own_delay_margin_s))
+    return Warn(fmt::format("sensors.own.delay_s: unstable, it must be below {:.4g}, got {:.4g}",
+                            *prediction_.own_delay_margin_s, own_s));
+  return true;
+}
+
+/// Of delays that are not all alike, where nothing else is known.
+void LinearCase::DoubtDelays() const {
+  const double link_s = LongestDelay(experiment_), own_s = experiment_.sensors.own_delay_s;
+  if (own_s == 0 && Exceeds(link_s, LinkMargin()))
+    prediction_.warnings.push_back(
+        fmt::format("link.delay_s: perhaps unstable, samples come up to {:.4g} s late; if all did, it would have to be "
+                    "below {:.4g}",
+                    link_s, *LinkMargin()));
+  if (Exceeds(own_s, prediction_.own_delay_margin_s))
+    prediction_.warnings.push_back(
+        fmt::format("sensors.own.delay_s: perhaps unstable, got {:.4g}; if neighbours' samples were as late, it would "
+                    "have to be below {:.4g}",
+                    own_s, *prediction_.own_delay_margin_s));
+}
+
+/// Rate and settling time; whether there is more to say.
+bool LinearCase::PredictMotion() {
+  if (const std::string random = RandomAge(experiment_); !random.empty()) return Silent(random);
+  if (!IsModal() || IsDelayed()) return PredictSampled();
+  prediction_.stable = true;
+  if (modes_.empty()) return true;
+  prediction_.rate_per_s = DecayRate(modes_, experiment_.period_s());
+  prediction_.settling_time_s = SettlingTime(modes_, experiment_.period_s());
+  return true;
+}
+
+bool LinearCase::PredictSampled() {
+  if (!SampledTeam::IsSmall(experiment_))
+    return Silent("so many agents, different or with so long delays, are more than its eigenvalues are computed for");
+  if (MayCoast() && !(IsModal() && IsDelayed())) return Silent("law.beta is 0: agents who have met may go on together");
+  const SampledTeam sampled(experiment_, team_, timeline_, experiment_.period_s());
+  prediction_.stable = sampled.Decays();
+  if (!*prediction_.stable) {
+    const double own_s = experiment_.sensors.own_delay_s, link_s = LongestDelay(experiment_);
+    if (own_s > 0) return Warn(fmt::format("sensors.own.delay_s: unstable with this delay, got {:.4g}", own_s));
+    if (link_s > 0) return Warn(fmt::format("link.delay_s: unstable with this delay, got {:.4g}", link_s));
+    return Warn("law: unstable with these gains on these graphs");
+  }
+  if (sampled.slowest() == 0) return true;  // nobody follows anybody
+  prediction_.rate_per_s = sampled.rate_per_s();
+  if (timeline_.cycle_from == 0)
+    prediction_.settling_time_s = std::log(50) / sampled.rate_per_s();  // all from the start
+  return true;
+}
+
+void LinearCase::PredictValue() {
+  const std::vector<int> leaders = team_.Leaders();
+  if (leaders.empty()) {
+    prediction_.value_m = timeline_.IsConstant() ? MeetingPoint(experiment_, team_, graph_) : std::nullopt;
+    if (!prediction_.value_m && SampledTeam::IsSmall(experiment_) && (!IsModal() || IsDelayed()))
+      prediction_.value_m = SampledTeam(experiment_, team_, timeline_, experiment_.period_s()).MeetingPoint();
+  } else {
+    prediction_.value_m = RestingPlace(experiment_, team_, leaders.front());
+    const bool moves = !agent(leaders.front()).v_W.head(CountOf(experiment_.law.axes)).isZero(0);
+    if (moves || !prediction_.value_m) prediction_.settling_time_s.reset();  // they settle after the leader
+    if (!prediction_.value_m && !team_.agent(leaders.front()).flies) WarnOfLag(leaders.front());
+  }
+  if (prediction_.value_m && experiment_.law.axes == Axes::kXy)
+    prediction_.value_m->z() = HeldHeight(experiment_, team_);
+}
+
+/// A leader at constant velocity v is followed at p_L - p = (b / p) v L_FF^-1 1.
+void LinearCase::WarnOfLag(int leader) const {
+  if (!IsModal()) return;
+  Eigen::MatrixXd pinned = graph_.Laplacian();
+  pinned(leader - 1, leader - 1) = 1;
+  Eigen::VectorXd ones = Eigen::VectorXd::Ones(pinned.rows());
+  ones(leader - 1) = 0;
+  const double speed = agent(leader).v_W.head(CountOf(experiment_.law.axes)).norm();
+  const double farthest = pinned.partialPivLu().solve(ones).maxCoeff();
+  prediction_.warnings.push_back(
+      fmt::format("law.leader: the leader keeps its {:.4g} m/s, so followers stay up to {:.4g} m behind", speed,
+                  farthest * common_->b / common_->p * speed));
+}
+
+/// Why not even the linear theory of the team applies; empty: it does.
+std::string WhyNot(const Experiment& experiment, const Linearity& linearity, const Timeline& timeline) {
+  if (!linearity.team) return linearity.why_not;
+  if (experiment.schedule.range_m() > 0) return "graph.range_m: who hears whom depends on where they go";
+  if (experiment.size() > kLargestSpectrum) return fmt::format("there are more than {} agents", kLargestSpectrum);
+  for (const AgentConfig& agent : experiment.agents)
+    if (agent.stop_s < experiment.run.duration_s)
+      return fmt::format("agents.override.stop_s: agent {} stays behind", agent.id);
+  const std::vector<int> leaders = linearity.team->Leaders();
+  if (leaders.size() > 1) return AgentList(leaders) + " all lead";
+  if (leaders.empty() || !timeline.IsConstant()) return "";
+  const std::vector<int> astray =
+      NotReached(linearity.team->Followed(timeline.intervals.back().graph), leaders.front());
+  return astray.empty() ? "" : fmt::format("agent {} leads, but {} do not hear it", leaders.front(), AgentList(astray));
+}
+
+}  // namespace
+
+void PredictLinear(Experiment& experiment, const Timeline& timeline, Prediction& prediction) {
+  if (!prediction.persistence->joint) return;  // as the warnings say
+  const Linearity linearity = LinearTeamOf(experiment);
+  prediction.silent = WhyNot(experiment, linearity, timeline);
+  if (prediction.silent.empty()) LinearCase(experiment, *linearity.team, timeline, prediction).Predict();
+}
+
+}  // namespace mascot

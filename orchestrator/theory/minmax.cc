@@ -1,0 +1,106 @@
+// Min-max time consensus: how long every edge of the tree takes.
+#include "agent/laws/minmax.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+#include "agent/laws/reach.h"
+#include "orchestrator/theory/minmax_time.h"
+#include "orchestrator/theory/parts.h"
+
+namespace mascot {
+namespace {
+
+/// The slowest axis of the edge from `child` to its parent, if theory knows it.
+std::optional<MinmaxEdge> PredictEdge(const Experiment& experiment, const MinmaxParams& law, int child) {
+  const auto c = static_cast<std::size_t>(child - 1);
+  const int parent = law.parent[c];
+  const double alpha = law.beta[c] - law.parent_beta[c];
+  const double limit = experiment.agent(child).control.max_acceleration_m_per_s2;
+  const bool exact = parent == experiment.law.leader && !law.root_flight;
+  // The limits leave a child that has less than the law counts on: against an idle parent it may still do.
+  if (exact ? limit <= alpha : limit < law.beta[c]) return std::nullopt;
+
+  MinmaxEdge edge{child, parent, 0, exact};
+  const Eigen::Vector3d z_W = experiment.agent(child).p_W - experiment.agent(parent).p_W;
+  const Eigen::Vector3d w_W = experiment.agent(child).v_W - experiment.agent(parent).v_W;
+  for (int axis = 0; axis < CountOf(experiment.law.axes); ++axis) {
+    edge.time_s = std::max(edge.time_s, exact ? MinmaxTime(z_W(axis), w_W(axis), alpha, std::min(law.beta[c], limit))
+                                              : MinmaxBound(z_W(axis), w_W(axis), alpha));
+  }
+  return edge;
+}
+
+void WarnOfCutBeta(const Experiment& experiment, const MinmaxParams& law, Prediction& prediction) {
+  std::vector<int> cut;
+  double limit = 0;  // the largest of theirs
+  for (const AgentConfig& agent : experiment.agents) {
+    const bool idle = agent.id == experiment.law.leader && !law.root_flight;
+    const double allowed = agent.control.max_acceleration_m_per_s2;
+    if (idle || law.beta[static_cast<std::size_t>(agent.id - 1)] <= allowed) continue;
+    cut.push_back(agent.id);
+    limit = std::max(limit, allowed);
+  }
+  if (cut.empty()) return;
+  prediction.warnings.push_back(
+      fmt::format("law.beta: beta of {} is above control.max_acceleration_m_per_s2 = {:.4g}, which cuts it",
+                  AgentList(cut), limit));
+}
+
+void WarnOfWeakEdges(const MinmaxParams& law, Prediction& prediction) {
+  std::vector<int> weak;
+  for (std::size_t i = 0; i < law.parent.size(); ++i) {
+    if (law.parent[i] != 0 && law.beta[i] <= law.beta[static_cast<std::size_t>(law.parent[i] - 1)])
+      weak.push_back(static_cast<int>(i) + 1);
+  }
+  if (weak.empty()) return;
+  prediction.warnings.push_back(
+      fmt::format("law.weak_edges: {} {} no stronger than the parent, who must keep within the root's bound",
+                  AgentList(weak), weak.size() == 1 ? "is" : "are"));
+}
+
+/// Where everyone gathers, at a root that rests: in z at the mean of the heights that they hold.
+std::optional<Eigen::Vector3d> RestingRoot(const Experiment& experiment, const MinmaxParams& law) {
+  const AgentConfig& root = experiment.agent(experiment.law.leader);
+  if (law.root_flight || !root.v_W.head(CountOf(experiment.law.axes)).isZero(0)) return std::nullopt;
+  Eigen::Vector3d value_m = root.p_W;
+  if (experiment.law.axes == Axes::kXyz) return value_m;
+  value_m.z() = 0;
+  for (const AgentConfig& agent : experiment.agents) value_m.z() += agent.p_W.z() / experiment.size();
+  return value_m;
+}
+
+/// Why the closed forms do not hold: they are about children who see their parents as they are, at every tick.
+std::string WhyNot(const Experiment& experiment, const Timeline& timeline) {
+  for (const AgentConfig& agent : experiment.agents) {
+    if (agent.has_own_law) return fmt::format("agents.override: agent {} has a law of its own", agent.id);
+    if (agent.model == "unicycle") return fmt::format("agent {} is a unicycle, which turns before it goes", agent.id);
+  }
+  if (!timeline.IsConstant()) return "the graph changes, and a child that does not hear its parent drifts";
+  if (experiment.schedule.range_m() > 0) return "graph.range_m: a child that does not hear its parent drifts";
+  if (!experiment.links.ArePerfect(experiment.graph)) return "link: children see their parents late, or not always";
+  if (experiment.sensors.own_delay_s > 0) return "sensors.own.delay_s: agents know late where they are";
+  return "";
+}
+
+}  // namespace
+
+void PredictMinmax(Experiment& experiment, const Timeline& timeline, Prediction& prediction) {
+  const MinmaxParams law = ReadMinmax(experiment, experiment.law);
+  prediction.silent = WhyNot(experiment, timeline);
+  if (prediction.silent.empty()) {
+    prediction.value_m = RestingRoot(experiment, law);
+    for (const AgentConfig& agent : experiment.agents) {
+      if (agent.id == experiment.law.leader) continue;
+      if (const auto edge = PredictEdge(experiment, law, agent.id)) prediction.minmax_edges.push_back(*edge);
+    }
+  }
+  for (const MinmaxEdge& edge : prediction.minmax_edges) {
+    prediction.minmax_time_s = std::max(edge.time_s, prediction.minmax_time_s.value_or(0));
+  }
+  WarnOfCutBeta(experiment, law, prediction);
+  WarnOfWeakEdges(law, prediction);
+}
+
+}  // namespace mascot

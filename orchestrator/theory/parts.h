@@ -1,0 +1,35 @@
+#pragma once
+
+// What theory.cc and the files for each kind of law share; nobody else includes this.
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "experiment/experiment.h"
+#include "orchestrator/theory/modes.h"
+#include "orchestrator/theory/theory.h"
+#include "orchestrator/theory/timeline.h"
+
+namespace mascot {
+
+/// What would make unstable modes stable.
+struct GainBound {
+  std::string key;
+  double least = 0;  ///< it must be above
+  double got = 0;
+};
+
+/// Whether all modes decay in continuous time, and sampled; says what would make it so, and notes the period's bound.
+bool JudgeModes(const Experiment& experiment, std::span<const LinearMode> modes, const GainBound& gain,
+                Prediction& prediction);
+/// Notes the longest control period, and whether ours is shorter; warns if not.
+bool JudgePeriod(const Experiment& experiment, double longest_s, Prediction& prediction);
+
+// Each adds to what is known of persistence.
+void PredictLinear(Experiment& experiment, const Timeline& timeline, Prediction& prediction);    // linear.cc
+void PredictWaypoint(Experiment& experiment, const Timeline& timeline, Prediction& prediction);  // waypoint.cc
+void PredictMinmax(Experiment& experiment, const Timeline& timeline, Prediction& prediction);    // minmax.cc
+
+}  // namespace mascot

@@ -1,0 +1,121 @@
+// `orchestrator airframes`: the built-in quadrotors, with the keys that an airframe table of one's own may change.
+#include <spdlog/fmt/fmt.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "experiment/airframe.h"
+#include "experiment/experiment.h"
+#include "orchestrator/report/json.h"
+#include "orchestrator/verbs/verb.h"
+
+namespace mascot {
+namespace {
+
+/// A number of an airframe, by its key in a table agents.airframe.
+struct Parameter {
+  std::string_view name;
+  Json (*value)(const Airframe& airframe);
+};
+
+/// A number that follows from those.
+struct Derived {
+  std::string_view name;
+  std::string_view meaning;
+  Json (*value)(const Airframe& airframe);
+};
+
+Json Gains(const PdGains& gains) { return {{"kp", gains.kp}, {"kd", gains.kd}}; }
+Json List(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+constexpr Parameter kParameters[] = {
+    {"mass_kg", [](const Airframe& a) { return Json(a.mass_kg); }},
+    {"inertia_kg_m2", [](const Airframe& a) { return List(a.inertia_kg_m2); }},
+    {"arm_m", [](const Airframe& a) { return Json(a.arm_m); }},
+    {"lift_n_s2", [](const Airframe& a) { return Json(a.lift_n_s2); }},
+    {"drag_n_m_s2", [](const Airframe& a) { return Json(a.drag_n_m_s2); }},
+    {"linear_drag_kg_per_s", [](const Airframe& a) { return Json(a.linear_drag_kg_per_s); }},
+    {"max_thrust_n", [](const Airframe& a) { return Json(a.max_thrust_n); }},
+    {"rotor_time_constant_s", [](const Airframe& a) { return Json(a.rotor_time_constant_s); }},
+    {"size_m", [](const Airframe& a) { return List(a.size_m); }},
+    {"tilt_limit_rad", [](const Airframe& a) { return Json(a.tilt_limit_rad); }},
+    {"altitude", [](const Airframe& a) { return Gains(a.altitude); }},
+    {"heading", [](const Airframe& a) { return Gains(a.heading); }},
+    {"attitude", [](const Airframe& a) { return Gains(a.attitude); }},
+    {"position", [](const Airframe& a) { return Gains(a.position); }},
+};
+
+std::string_view MeaningOf(std::string_view name) {
+  return std::ranges::find(AirframeKeys(), name, &Key::name)->meaning;
+}
+
+double Gravity() { return Experiment().physics.gravity_m_per_s2; }
+
+constexpr Derived kDerived[] = {
+    {"hover_rotor_speed_rad_per_s", "of each rotor",
+     [](const Airframe& a) { return Json(a.HoverRotorSpeed(Gravity())); }},
+    {"max_rotor_speed_rad_per_s", "at max_thrust_n", [](const Airframe& a) { return Json(a.MaxRotorSpeed()); }},
+    {"thrust_to_weight", "max_thrust_n / weight",
+     [](const Airframe& a) { return Json(a.max_thrust_n / (a.mass_kg * Gravity())); }},
+};
+
+Json ToJson(const Airframe& airframe) {
+  Json json = {{"name", airframe.name}};
+  for (const Parameter& parameter : kParameters) json[parameter.name] = parameter.value(airframe);
+  json["derived"]["gravity_m_per_s2"] = Gravity();
+  for (const Derived& derived : kDerived) json["derived"][derived.name] = derived.value(airframe);
+  return json;
+}
+
+/// As it stands in a TOML file.
+std::string ToToml(const Json& value) {
+  std::string text;
+  if (value.is_object()) {
+    for (const auto& [key, inner] : value.items())
+      text += fmt::format("{}{} = {}", text.empty() ? "{ " : ", ", key, inner.dump());
+    return text + " }";
+  }
+  if (!value.is_array()) return value.dump();
+  for (const Json& inner : value) text += (text.empty() ? "[" : ", ") + inner.dump();
+  return text + "]";
+}
+
+void PrintEntry(std::string_view name, const std::string& value, std::string_view meaning) {
+  std::cout << fmt::format("    {:<52}{}\n", fmt::format("{} = {}", name, value), meaning);
+}
+
+void Print(const Airframe& airframe) {
+  std::cout << fmt::format("{0}\n  keys of an airframe table of your own: airframe = {{ base = \"{0}\", ... }}\n",
+                           airframe.name);
+  for (const Parameter& parameter : kParameters)
+    PrintEntry(parameter.name, ToToml(parameter.value(airframe)), MeaningOf(parameter.name));
+  std::cout << fmt::format("  derived, at {:g} m/s^2\n", Gravity());
+  for (const Derived& derived : kDerived)
+    PrintEntry(derived.name, fmt::format("{:.4g}", derived.value(airframe).get<double>()), derived.meaning);
+}
+
+int ShowAirframes(bool json) {
+  Json table = Json::array();
+  for (const Airframe& airframe : Airframes()) {
+    if (json) {
+      table.push_back(ToJson(airframe));
+    } else {
+      std::cout << (airframe.name == Airframes().front().name ? "" : "\n");
+      Print(airframe);
+    }
+  }
+  if (json) std::cout << table.dump(2) << "\n";
+  return 0;
+}
+
+}  // namespace
+
+std::function<int()> SetUpAirframes(CLI::App& command) {
+  const auto json = std::make_shared<bool>(false);
+  command.add_flag("--json", *json, "print JSON and nothing else");
+  return [json] { return ShowAirframes(*json); };
+}
+
+}  // namespace mascot

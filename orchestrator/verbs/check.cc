@@ -1,0 +1,102 @@
+// `orchestrator check CONFIG`: validates, and says what theory expects. Starts nothing.
+#include <spdlog/fmt/fmt.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <map>
+#include <memory>
+
+#include "orchestrator/engines/dds/delivery.h"
+#include "orchestrator/report/json.h"
+#include "orchestrator/report/prediction_report.h"
+#include "orchestrator/theory/graph_facts.h"
+#include "orchestrator/theory/theory.h"
+#include "orchestrator/verbs/config_args.h"
+#include "orchestrator/verbs/verb.h"
+
+namespace mascot {
+namespace {
+
+std::map<std::string, int> CountModels(const Experiment& experiment) {
+  std::map<std::string, int> count;
+  for (const AgentConfig& agent : experiment.agents) ++count[agent.model];
+  return count;
+}
+
+Json ToJson(const GraphFacts& facts) {
+  return {{"edges", facts.edges},           {"symmetric", facts.symmetric}, {"lambda_2", OrNull(facts.lambda_2)},
+          {"components", facts.components}, {"roots", facts.roots},         {"tree_root", facts.tree_root},
+          {"spanning_tree", facts.tree}};
+}
+
+Json ToJson(const Experiment& experiment, const GraphFacts& facts, const Prediction& prediction) {
+  return {{"experiment", experiment.run.name},
+          {"duration_s", experiment.run.duration_s},
+          {"ticks", experiment.ticks()},
+          {"control_rate_hz", experiment.control.rate_hz},
+          {"agents", experiment.size()},
+          {"models", CountModels(experiment)},
+          {"law", experiment.law.name},
+          {"axes", experiment.law.axes == Axes::kXyz ? "xyz" : "xy"},
+          {"leader", experiment.law.leader},
+          {"graph", ToJson(facts)},
+          {"predicted", PredictionJson(prediction)},
+          {"warnings", prediction.warnings}};
+}
+
+void PrintLine(std::string_view label, std::string_view text) { std::cout << fmt::format("  {:<15}{}\n", label, text); }
+
+void PrintExperiment(const Experiment& experiment) {
+  std::string models;
+  for (const auto& [model, count] : CountModels(experiment)) {
+    models += fmt::format("{}{} {}", models.empty() ? "" : ", ", count, model);
+  }
+  const int leader = experiment.law.leader;
+  PrintLine("experiment", experiment.run.name);
+  PrintLine("agents", models);
+  PrintLine("law", fmt::format("{}, {}, axes {}", experiment.law.name,
+                               leader > 0 ? fmt::format("leader {}", leader) : "no leader",
+                               experiment.law.axes == Axes::kXyz ? "xyz" : "xy"));
+  PrintLine("duration", fmt::format("{:g} s, {} ticks at {} Hz", experiment.run.duration_s, experiment.ticks(),
+                                    experiment.control.rate_hz));
+}
+
+/// Of a graph that changes: of the union of all that it ever is.
+void PrintGraph(const GraphFacts& facts, const Schedule& schedule) {
+  const std::size_t graphs = schedule.phases().size();
+  PrintLine("graph", fmt::format("{} edges, {}{}{}", facts.edges, facts.symmetric ? "symmetric" : "directed",
+                                 graphs > 1 ? fmt::format(", in the union of {} graphs", graphs) : "",
+                                 schedule.range_m() > 0 ? fmt::format(", within {:g} m", schedule.range_m()) : ""));
+  if (facts.lambda_2) PrintLine("lambda_2", fmt::format("{:.6g}", *facts.lambda_2));
+  PrintLine("components", fmt::format("{} strongly connected", facts.components.size()));
+  PrintLine("roots", facts.roots.empty() ? "none: no spanning tree" : IdRanges(facts.roots));
+}
+
+int Check(const ConfigArgs& args, bool json) {
+  Experiment experiment = args.Load();
+  const GraphFacts facts = FactsOf(experiment.graph, experiment.law.leader);
+  Prediction prediction = Predict(experiment);
+  for (std::string& warning : DeliveryWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
+  if (json) {
+    std::cout << ToJson(experiment, facts, prediction).dump(2) << "\n";
+    return 0;
+  }
+  std::cout << args.path << ": valid\n";
+  PrintExperiment(experiment);
+  PrintGraph(facts, experiment.schedule);
+  for (const auto& [label, text] : PredictionLines(experiment, prediction)) PrintLine(label, text);
+  for (const std::string& warning : prediction.warnings) std::cout << "warning: " << warning << "\n";
+  return 0;
+}
+
+}  // namespace
+
+std::function<int()> SetUpCheck(CLI::App& command) {
+  const auto args = std::make_shared<ConfigArgs>();
+  const auto json = std::make_shared<bool>(false);
+  args->AddTo(command);
+  command.add_flag("--json", *json, "print JSON and nothing else");
+  return [args, json] { return Check(*args, *json); };
+}
+
+}  // namespace mascot

@@ -1,0 +1,38 @@
+#include "orchestrator/verbs/config_args.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "agent/laws.h"
+
+namespace mascot {
+namespace {
+
+Override ParseOverride(const std::string& set) {
+  const auto equals = set.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == set.size()) {
+    throw ConfigError({"--set: expected key=value (such as law.p_gain=0.5), got '" + set + "'"});
+  }
+  return {set.substr(0, equals), set.substr(equals + 1)};
+}
+
+}  // namespace
+
+void ConfigArgs::AddTo(CLI::App& command) {
+  command.add_option("config", path, "experiment file (TOML)")->required()->type_name("CONFIG");
+  command.add_option("--set", sets, "replaces or adds a key: --set law.p_gain=0.5")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);  // so that CONFIG may follow
+  command.add_option("--duration-s", duration_s, "instead of run.duration_s")->type_name("S");
+  command.add_option("--seed", seed, "instead of run.seed")->type_name("N");
+}
+
+Experiment ConfigArgs::Load() const {
+  std::vector<Override> all;
+  for (const std::string& set : sets) all.push_back(ParseOverride(set));
+  if (duration_s) all.push_back({"run.duration_s", *duration_s});
+  if (seed) all.push_back({"run.seed", *seed});
+  return LoadExperiment(Section::FromFile(path, all), std::filesystem::path(path).stem().string());
+}
+
+}  // namespace mascot

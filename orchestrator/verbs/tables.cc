@@ -1,0 +1,103 @@
+// `orchestrator laws` and `orchestrator models`: the tables behind the names that an experiment may use.
+#include <spdlog/fmt/fmt.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "agent/laws.h"
+#include "orchestrator/report/json.h"
+#include "orchestrator/verbs/verb.h"
+#include "physics_server/model.h"
+
+namespace mascot {
+namespace {
+
+std::string_view AxesName(Axes axes) { return axes == Axes::kXyz ? "xyz" : "xy"; }
+
+Json ToJson(const LawEntry& law) {
+  Json parameters = Json::array();
+  for (const Key& parameter : law.parameters) {
+    parameters.push_back({{"name", parameter.name},
+                          {"required", parameter.required},
+                          {"default", DefaultJson(parameter)},
+                          {"range", ValueText(parameter)},
+                          {"meaning", parameter.meaning}});
+  }
+  return {{"name", law.name},     {"summary", law.summary},     {"equation", law.equation}, {"theory", law.theory},
+          {"source", law.source}, {"axes", AxesName(law.axes)}, {"parameters", parameters}};
+}
+
+/// Prints `label`, then `text` from column `indent` on, broken between words at column 110.
+void PrintWrapped(std::string_view label, std::string_view text, std::size_t indent) {
+  constexpr std::size_t kWidth = 110;
+  std::string line = fmt::format("{:<{}}", label, indent);
+  for (std::size_t start = 0; start < text.size();) {
+    const std::size_t end = std::min(text.find(' ', start), text.size());
+    const std::string_view word = text.substr(start, end - start);
+    if (line.size() + word.size() > kWidth && line.size() > indent) {
+      std::cout << line.substr(0, line.size() - 1) << "\n";
+      line = std::string(indent, ' ');
+    }
+    line.append(word).append(" ");
+    start = end + 1;
+  }
+  line.pop_back();
+  std::cout << line << "\n";
+}
+
+void Print(const LawEntry& law) {
+  std::cout << law.name << "\n";
+  PrintWrapped("  ", law.summary, 2);
+  PrintWrapped("  equation", law.equation, 12);
+  PrintWrapped("  theory", law.theory, 12);
+  PrintWrapped("  source", law.source, 12);
+  std::cout << fmt::format("  keys of [law]; axes = \"{}\" unless said otherwise; * required\n", AxesName(law.axes));
+  for (const Key& parameter : law.parameters) {
+    const std::string_view mark = parameter.required ? "*" : parameter.fallback.empty() ? "" : " = ";
+    const std::string key = fmt::format("{}{}{}", parameter.name, mark, parameter.fallback);
+    PrintWrapped(fmt::format("    {:<30} {:<21} ", key, ValueText(parameter)), parameter.meaning, 58);
+  }
+}
+
+int ShowLaws(bool json) {
+  Json table = Json::array();
+  for (const LawEntry& law : Laws()) {
+    if (json) {
+      table.push_back(ToJson(law));
+    } else {
+      std::cout << (law.name == Laws().front().name ? "" : "\n");
+      Print(law);
+    }
+  }
+  if (json) std::cout << table.dump(2) << "\n";
+  return 0;
+}
+
+int ShowModels(bool json) {
+  Json table = Json::array();
+  for (const ModelEntry& model : Models()) {
+    if (json) {
+      table.push_back({{"name", model.name}, {"summary", model.summary}, {"actuator", model.actuator}});
+    } else {
+      std::cout << fmt::format("{}\n  {}\n  actuator  {}\n", model.name, model.summary, model.actuator);
+    }
+  }
+  if (json) std::cout << table.dump(2) << "\n";
+  return 0;
+}
+
+std::function<int()> SetUpTable(CLI::App& command, int (*show)(bool json)) {
+  const auto json = std::make_shared<bool>(false);
+  command.add_flag("--json", *json, "print JSON and nothing else");
+  return [json, show] { return show(*json); };
+}
+
+}  // namespace
+
+std::function<int()> SetUpLaws(CLI::App& command) { return SetUpTable(command, ShowLaws); }
+
+std::function<int()> SetUpModels(CLI::App& command) { return SetUpTable(command, ShowModels); }
+
+}  // namespace mascot

@@ -1,0 +1,142 @@
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "agent/laws.h"
+#include "bus/stop_signal.h"
+#include "orchestrator/engines/dds/delivery.h"
+#include "orchestrator/engines/dds/engine.h"
+#include "orchestrator/engines/inprocess.h"
+#include "orchestrator/engines/progress.h"
+#include "orchestrator/processes/console.h"
+#include "orchestrator/processes/interruptions.h"
+#include "orchestrator/recording/run_folder.h"
+#include "orchestrator/recording/run_writer.h"
+#include "orchestrator/report/summary.h"
+#include "orchestrator/theory/theory.h"
+#include "orchestrator/verbs/config_args.h"
+#include "orchestrator/verbs/plot.h"
+#include "orchestrator/verbs/verb.h"
+
+namespace mascot {
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+
+struct UpArgs {
+  ConfigArgs config;
+  std::optional<std::string> out;
+  std::string engine = "dds";
+  bool force = false, json = false, quiet = false;
+};
+
+EngineResult RunInThisProcess(Experiment& experiment, RunWriter& writer, Console& console, StopSignal& stop) {
+  Progress progress(experiment, writer, console);
+  const Interruptions interruptions(stop, console);
+  const auto record = [&](std::int64_t tick, const DecodedRow& row) { writer.Add(tick, row); };
+  EngineResult result = RunInProcess(experiment, record, [&](std::int64_t tick) {
+    constexpr std::int64_t kShowEvery = 32;  // ticks
+    if (tick > 0 && tick % kShowEvery == 0) progress.Show(tick - 1);
+    return interruptions.signal() == 0;
+  });
+  result.signal = interruptions.signal();
+  return result;
+}
+
+/// The resolved experiment as it is attached to the recording: two runs of which only the way over the wire differed
+/// have the same recording.
+std::string WithoutDelivery(const std::string& resolved, const Experiment& experiment) {
+  const auto& network = experiment.network;
+  if (network.domain < 0 && network.agents_per_process == 1 && network.delivery == Delivery::kTopics) return resolved;
+  const Override usual[] = {
+      {"network.domain", "\"auto\""}, {"network.agents_per_process", "1"}, {"network.delivery", "\"topics\""}};
+  return LoadExperiment(Section::FromText(resolved, "config.toml", usual), experiment.run.name, /*checked=*/true)
+      .document.Resolved();
+}
+
+int ExitCode(const EngineResult& result) {
+  if (!result.failure.empty()) return 1;
+  return result.signal == 0 ? 0 : 128 + result.signal;
+}
+
+/// Pictures and data files as [output] wants them. Returns the exit code that this adds to a run that went well.
+int MakeOutput(const Experiment& experiment, const RunFolder& folder, bool has_rows, StopSignal& stop) {
+  const auto& output = experiment.output;
+  int code = 0;
+  if (has_rows && (output.save_plot || output.show_plot) && (output.position_plot || output.velocity_plot))
+    code = PlotRun(folder.path(), output.show_plot, stop);
+  if (!output.save_data) std::filesystem::remove(folder.File("states.npz"));
+  if (code == 0 || code > 128) return code;
+  std::cerr << "error: the pictures could not be made; the data are complete (output.save_plot = false skips them)\n";
+  return 1;
+}
+
+/// What flies in one thread has no clock to keep.
+void RefuseRealtimeInOneProcess(const Experiment& experiment, const std::string& engine) {
+  if (engine == "inprocess" && experiment.run.mode == Mode::kRealtime)
+    throw ConfigError({"--engine inprocess: expected run.mode = \"lockstep\", got \"realtime\""});
+}
+
+int Up(const UpArgs& args) {
+  const auto launched = WallClock::now();
+  StopSignal stop;
+  Experiment experiment = args.config.Load();
+  RefuseRealtimeInOneProcess(experiment, args.engine);
+  const bool over_dds = args.engine == "dds";
+  if (over_dds) RefuseTooManyProcesses(experiment);
+  const Prediction prediction = Predict(experiment);
+  const std::string resolved = experiment.document.Resolved();
+
+  const RunFolder folder(args.out, experiment.run.name, args.force);
+  folder.Write("config.toml", resolved);
+  Console console(args.quiet || args.json);
+  for (const std::string& warning : prediction.warnings) console.Line("warning: " + warning);
+  if (over_dds)
+    for (const std::string& warning : DeliveryWarnings(experiment)) console.Line("warning: " + warning);
+  RunWriter writer(experiment, folder, WithoutDelivery(resolved, experiment));
+  EngineResult result = over_dds ? RunOverDds(experiment, resolved, folder, writer, console, stop)
+                                 : RunInThisProcess(experiment, writer, console, stop);
+  console.EndProgress();
+  try {
+    writer.Close();
+  } catch (const std::exception& failure) {
+    if (result.failure.empty()) result.failure = failure.what();
+  }
+  if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
+
+  RunFacts facts{args.engine, ExitCode(result), writer.topics(), writer.samples()};
+  auto write_summary = [&] {
+    facts.total_s = std::chrono::duration<double>(WallClock::now() - launched).count();
+    folder.Write("summary.json", SummaryJson(experiment, prediction, writer.meter(), result, facts));
+  };
+  write_summary();  // the pictures read it
+  const int output = MakeOutput(experiment, folder, writer.rows() > 1, stop);
+  if (facts.exit == 0) facts.exit = output;
+  write_summary();
+  if (args.json)
+    std::cout << SummaryJson(experiment, prediction, writer.meter(), result, facts);
+  else if (!args.quiet)
+    std::cout << SummaryText(experiment, prediction, writer.meter(), result, facts) << "results        "
+              << folder.path().string() << std::endl;
+  if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
+  return facts.exit;
+}
+
+}  // namespace
+
+std::function<int()> SetUpUp(CLI::App& command) {
+  auto args = std::make_shared<UpArgs>();
+  args->config.AddTo(command);
+  command.add_option("--out", args->out, "folder for the results (default: runs/NAME/TIME)")->type_name("DIR");
+  command.add_option("--engine", args->engine, "dds: processes on a bus; inprocess: the same in one thread")
+      ->check(CLI::IsMember({"dds", "inprocess"}));
+  command.add_flag("--force", args->force, "write into a folder that is not empty; an earlier run's files are removed");
+  command.add_flag("--json", args->json, "print the summary as JSON on stdout, and nothing else");
+  command.add_flag("--quiet", args->quiet, "print errors only");
+  return [args] { return Up(*args); };
+}
+
+}  // namespace mascot

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+namespace CLI {
+class App;
+}
+
+namespace mascot {
+
+/// A row of the verb table. `set_up` declares the verb's options on `command` and returns what to do once
+/// they are parsed; that returns the exit code (0 done, 1 run failed, 2 usage or configuration).
+struct VerbEntry {
+  std::string_view name;
+  std::string_view summary;
+  std::function<int()> (*set_up)(CLI::App& command);
+};
+
+std::function<int()> SetUpUp(CLI::App& command);         // up.cc
+std::function<int()> SetUpCheck(CLI::App& command);      // check.cc
+std::function<int()> SetUpGraph(CLI::App& command);      // graph.cc
+std::function<int()> SetUpLaws(CLI::App& command);       // tables.cc
+std::function<int()> SetUpModels(CLI::App& command);     // tables.cc
+std::function<int()> SetUpAirframes(CLI::App& command);  // airframes.cc
+std::function<int()> SetUpInfo(CLI::App& command);       // info.cc
+std::function<int()> SetUpPlot(CLI::App& command);       // plot.cc
+std::function<int()> SetUpExport(CLI::App& command);     // export.cc
+std::function<int()> SetUpSweep(CLI::App& command);      // sweep.cc
+
+}  // namespace mascot
