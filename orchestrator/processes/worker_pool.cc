@@ -15,7 +15,7 @@
 #include <system_error>
 #include <utility>
 
-#include "orchestrator/processes/process.h"
+#include "orchestrator/processes/children.h"
 
 namespace mascot {
 namespace {

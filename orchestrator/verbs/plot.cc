@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "experiment/toml/section.h"
-#include "orchestrator/processes/process.h"
+#include "orchestrator/processes/children.h"
 #include "orchestrator/verbs/verb.h"
 
 extern char** environ;

@@ -17,7 +17,7 @@
 #include "orchestrator/engines/dds/recorder.h"
 #include "orchestrator/engines/dds/wire_audit.h"
 #include "orchestrator/engines/progress.h"
-#include "orchestrator/processes/process.h"
+#include "orchestrator/processes/children.h"
 
 namespace mascot {
 namespace {
@@ -121,7 +121,7 @@ DdsRun::DdsRun(const Experiment& experiment, const std::string& resolved, const 
       folder_(folder),
       writer_(writer),
       resolved_(resolved),
-      logs_(folder, console),
+      logs_([&console](const std::string& process, const std::string& line) { console.ChildLine(process, line); }),
       children_(logs_),
       progress_(experiment, writer, console) {}
 
@@ -167,7 +167,7 @@ void DdsRun::Spawn() {
     auto arguments = common;
     arguments.insert(arguments.end(), {"--participants", std::to_string(peers)});
     arguments.insert(arguments.end(), more.begin(), more.end());
-    children_.Spawn(process, ProgramFolder() / program, arguments);
+    children_.Spawn(process, ProgramFolder() / program, arguments, folder_.Log(process));
   };
   spawn("physics_server", "physics_server", options.participants, {});
   for (const AgentRange& agents : processes_) {

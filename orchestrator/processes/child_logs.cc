@@ -1,0 +1,125 @@
+#include "orchestrator/processes/child_logs.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+#include <utility>
+
+namespace mascot {
+
+using namespace std::chrono_literals;
+using WallClock = std::chrono::steady_clock;
+
+struct ChildLogs::Stream {
+  std::string process;
+  int descriptor = -1;
+  std::ofstream file;
+  std::string partial;           // what came since the last end of line
+  std::deque<std::string> last;  // kLastLines of them
+};
+
+namespace {
+
+constexpr std::size_t kLastLines = 10;
+constexpr auto kPipeIsDry = 2s;  // what a dead child printed last is in the pipe already
+
+void MakePipe(int (&ends)[2]) {
+  if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
+}
+
+}  // namespace
+
+ChildLogs::ChildLogs(LineSink on_line) : on_line_(std::move(on_line)) {
+  MakePipe(wake_);
+  thread_ = std::thread([this] { Copy(); });
+}
+
+ChildLogs::~ChildLogs() {
+  {
+    const std::lock_guard lock(mutex_);
+    closing_ = true;
+  }
+  if (write(wake_[1], "", 1) < 0) std::perror("pipe");
+  thread_.join();
+  close(wake_[0]);
+  close(wake_[1]);
+}
+
+int ChildLogs::Open(const std::string& process, const std::filesystem::path& log) {
+  int ends[2];
+  MakePipe(ends);
+  fcntl(ends[0], F_SETFL, O_NONBLOCK);
+  auto stream = std::make_unique<Stream>();
+  stream->process = process;
+  stream->descriptor = ends[0];
+  stream->file.open(log, std::ios::binary);
+  if (!stream->file) throw std::runtime_error("cannot write " + log.string() + ": " + std::strerror(errno));
+  {
+    const std::lock_guard lock(mutex_);
+    streams_.push_back(std::move(stream));
+  }
+  if (write(wake_[1], "", 1) < 0) throw std::runtime_error("cannot wake the thread that copies logs");
+  return ends[1];
+}
+
+void ChildLogs::Copy() {
+  for (bool closing = false;;) {
+    std::vector<pollfd> polled{{wake_[0], POLLIN, 0}};
+    {
+      const std::lock_guard lock(mutex_);
+      for (const auto& stream : streams_) polled.push_back({stream->descriptor, POLLIN, 0});
+      closing = closing_;
+    }
+    // The children have gone by the time of closing; what they started may hold their pipes open for ever.
+    if (poll(polled.data(), polled.size(), closing ? 0 : -1) == 0) break;
+    char buffer[256];
+    if (polled[0].revents != 0 && read(wake_[0], buffer, sizeof buffer) < 0) break;
+    const std::lock_guard lock(mutex_);
+    for (std::size_t i = 1; i < polled.size(); ++i)
+      if (polled[i].revents != 0) Read(*streams_[i - 1]);
+  }
+  const std::lock_guard lock(mutex_);
+  for (const auto& stream : streams_) Close(*stream);
+}
+
+void ChildLogs::Close(Stream& stream) {
+  if (!stream.partial.empty()) TakeLine(stream, stream.partial);
+  stream.partial.clear();
+  if (stream.descriptor >= 0) close(std::exchange(stream.descriptor, -1));
+}
+
+void ChildLogs::Read(Stream& stream) {
+  char buffer[4096];
+  const ssize_t size = read(stream.descriptor, buffer, sizeof buffer);
+  if (size < 0 && (errno == EAGAIN || errno == EINTR)) return;
+  if (size <= 0) return Close(stream);
+  stream.partial.append(buffer, static_cast<std::size_t>(size));
+  for (std::size_t end; (end = stream.partial.find('\n')) != std::string::npos; stream.partial.erase(0, end + 1))
+    TakeLine(stream, stream.partial.substr(0, end));
+}
+
+void ChildLogs::TakeLine(Stream& stream, const std::string& line) {
+  stream.file << line << std::endl;
+  stream.last.push_back(line);
+  if (stream.last.size() > kLastLines) stream.last.pop_front();
+  on_line_(stream.process, line);
+}
+
+std::vector<std::string> ChildLogs::LastLines(const std::string& process) {
+  for (const auto deadline = WallClock::now() + kPipeIsDry;; poll(nullptr, 0, 1)) {
+    const std::lock_guard lock(mutex_);
+    for (const auto& stream : streams_)
+      if (stream->process == process && (stream->descriptor < 0 || WallClock::now() > deadline))
+        return {stream->last.begin(), stream->last.end()};
+    if (WallClock::now() > deadline) return {};
+  }
+}
+
+}  // namespace mascot

@@ -1,0 +1,100 @@
+#include "orchestrator/processes/children.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <stdexcept>
+
+extern char** environ;
+
+namespace mascot {
+
+using namespace std::chrono_literals;
+using WallClock = std::chrono::steady_clock;
+
+std::filesystem::path ProgramFolder() { return std::filesystem::read_symlink("/proc/self/exe").parent_path(); }
+
+std::string Exit::Text() const {
+  if (WIFSIGNALED(status))
+    return "was killed by signal " + std::to_string(WTERMSIG(status)) + " (" + strsignal(WTERMSIG(status)) + ")";
+  return "exited with code " + std::to_string(WEXITSTATUS(status));
+}
+
+Children::~Children() { Stop(0ms); }
+
+void Children::Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments,
+                     const std::filesystem::path& log) {
+  const int output = logs_.Open(process, log);
+  std::vector<char*> argv{const_cast<char*>(program.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&files, output, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&files, output, STDERR_FILENO);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none, all;
+  sigemptyset(&none);
+  sigfillset(&all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+
+  pid_t pid = 0;
+  const int error = posix_spawn(&pid, program.c_str(), &files, &attributes, argv.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&files);
+  close(output);
+  if (error != 0) throw std::runtime_error("cannot start " + program + ": " + std::strerror(error));
+  running_[pid] = process;
+}
+
+std::vector<Exit> Children::Reap() {
+  std::vector<Exit> exits;
+  for (auto child = running_.begin(); child != running_.end();) {
+    int status = 0;
+    if (const pid_t gone = waitpid(child->first, &status, WNOHANG); gone != 0) {  // < 0: somebody else reaped it
+      exits.push_back({child->second, status});
+      child = running_.erase(child);
+    } else {
+      ++child;
+    }
+  }
+  return exits;
+}
+
+bool Children::WaitAll(std::chrono::milliseconds grace) {
+  // SIGCHLD is blocked and belongs to the run's StopSignal, which is no longer asked: look again often.
+  const auto deadline = WallClock::now() + grace;
+  for (; Reap(), !running_.empty() && WallClock::now() < deadline;) poll(nullptr, 0, 2);
+  return running_.empty();
+}
+
+void Children::Stop(std::chrono::milliseconds grace) {
+  if (running_.empty()) return;
+  if (grace > 0ms) {
+    Signal(SIGTERM);
+    if (WaitAll(grace)) return;
+  }
+  Kill();
+}
+
+void Children::Kill() {
+  Signal(SIGKILL);
+  WaitAll(10s);
+}
+
+void Children::Signal(int signal) {
+  for (const auto& [pid, process] : running_) kill(pid, signal);
+}
+
+}  // namespace mascot
