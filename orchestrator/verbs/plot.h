@@ -1,17 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "bus/stop_signal.h"
 
 namespace mascot {
 
-/// Runs a script of scripts/, found beside this program, with these arguments. Returns its exit code, or 128 + the
-/// signal that `stop` heard meanwhile, which ends it.
-int RunScript(const std::string& script, const std::vector<std::string>& arguments, StopSignal& stop);
-/// Makes the pictures of a run folder with scripts/plot.py. Returns as RunScript.
+/// Makes the pictures of a run folder with scripts/plot.py. Returns the
+/// script's exit code, or 128 + the signal that `stop` heard meanwhile.
 int PlotRun(const std::filesystem::path& folder, bool show, StopSignal& stop);
 
 }  // namespace mascot

@@ -1,0 +1,65 @@
+#include "orchestrator/processes/script.h"
+
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+
+#include "orchestrator/processes/children.h"
+
+extern char** environ;
+
+namespace mascot {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Installed, or in the source tree that this program was configured in.
+fs::path Find(const std::string& script) {
+  for (const fs::path& path :
+       {ProgramFolder() / "../share/mascot" / script, fs::path(MASCOT_SOURCE_DIR) / "scripts" / script})
+    if (fs::exists(path)) return path;
+  throw std::runtime_error(script +
+                           " is missing: neither beside this program (../share/mascot) nor in its source tree");
+}
+
+/// Runs a program that shares our terminal. Returns its exit code, or 128 + signal: its own, or one that `stop` heard.
+int RunProgram(std::vector<std::string> words, StopSignal& stop) {
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  pid_t pid = 0;
+  const int error = posix_spawn(&pid, argv[0], nullptr, &attributes, argv.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  if (error != 0) throw std::runtime_error("cannot start " + words[0] + ": " + std::strerror(error));
+  int status = 0, heard = 0;
+  while (waitpid(pid, &status, WNOHANG) == 0) {
+    const int signal = stop.Within(std::chrono::milliseconds(100));
+    if (signal == 0) continue;
+    heard = signal;
+    kill(pid, SIGTERM);
+  }
+  if (heard != 0) return 128 + heard;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+}  // namespace
+
+int RunScript(const std::string& script, const std::vector<std::string>& arguments, StopSignal& stop) {
+  // Debian's own Python, which has Debian's matplotlib; another may be first in PATH.
+  std::vector<std::string> words{"/usr/bin/python3", Find(script)};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return RunProgram(words, stop);
+}
+
+}  // namespace mascot

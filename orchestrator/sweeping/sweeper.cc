@@ -1,0 +1,193 @@
+#include "orchestrator/sweeping/sweeper.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "agent/laws.h"
+#include "orchestrator/engines/inprocess.h"
+#include "orchestrator/measuring/run_meter.h"
+#include "orchestrator/processes/console.h"
+#include "orchestrator/processes/worker_pool.h"
+#include "orchestrator/report/summary.h"
+#include "orchestrator/sweeping/metrics.h"
+#include "orchestrator/sweeping/table.h"
+#include "orchestrator/theory/theory.h"
+
+namespace mascot {
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+
+/// What every run of a sweep is made from.
+struct Sweep {
+  const std::string& name;
+  const std::string& text;
+  const SweepPlan& plan;
+
+  Experiment Load(std::size_t run) const {
+    const Section document = Section::FromText(text, name, plan[run].overrides);
+    Experiment experiment = LoadExperiment(document, std::filesystem::path(name).stem().string());
+    if (experiment.run.mode == Mode::kRealtime)
+      throw ConfigError({"sweep: expected run.mode = \"lockstep\", got \"realtime\""});
+    return experiment;
+  }
+};
+
+/// One run, start to end; its summary. Throws std::runtime_error if it fails.
+std::string FlyOne(const Sweep& sweep, std::size_t run) {
+  Experiment experiment = sweep.Load(run);
+  const Prediction prediction = Predict(experiment);
+  RunMeter meter(experiment);
+  const EngineResult result = RunInProcess(
+      experiment, [&](std::int64_t tick, const DecodedRow& row) { meter.Add(tick, row); },
+      [](std::int64_t) { return true; });
+  if (!result.failure.empty()) throw std::runtime_error(result.failure);
+  const RunFacts facts{.engine = "inprocess"};
+  return SummaryJson(experiment, prediction, meter, result, facts);
+}
+
+/// Tasks of the pool: runs, then the same runs again, to be read and checked only; of those the resolved experiment.
+WorkerPool::Work WorkOf(const Sweep& sweep) {
+  return [sweep](std::size_t task) -> std::string {
+    if (task >= sweep.plan.size()) return sweep.Load(task - sweep.plan.size()).document.Resolved();
+    nlohmann::json cells = SweepMetrics(FlyOne(sweep, task));
+    return cells.dump();
+  };
+}
+
+struct Interrupted {
+  int signal;
+};
+
+/// Throws Interrupted if a signal has come.
+void ThrowIfInterrupted(StopSignal& stop) {
+  if (const int signal = stop.Within(std::chrono::nanoseconds::zero()); signal != 0) throw Interrupted{signal};
+}
+
+/// The first run that is a valid experiment, resolved. Refuses a sweep that has none, with the mistakes of the first.
+std::string FirstValid(const Sweep& sweep, WorkerPool& pool, StopSignal& stop) {
+  std::string mistakes;
+  for (std::size_t run = 0; run < sweep.plan.size(); ++run) {
+    pool.Start(sweep.plan.size() + run);
+    std::optional<WorkerPool::Done> done;
+    while (!done) {
+      done = pool.Wait(std::chrono::milliseconds(100));
+      ThrowIfInterrupted(stop);
+    }
+    if (done->failure.empty()) return done->answer;
+    if (mistakes.empty()) mistakes = done->failure;
+  }
+  throw ConfigError({mistakes});
+}
+
+class Progress {
+ public:
+  Progress(std::size_t runs, std::size_t there, bool quiet) : runs_(runs), there_(there), console_(quiet) {
+    if (there > 0) console_.Line(fmt::format("going on: {} of {} runs are in the table", there, runs));
+  }
+  ~Progress() { console_.EndProgress(); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void Show(std::size_t done, std::size_t failed) {
+    const double elapsed_s = std::chrono::duration<double>(WallClock::now() - start_).count();
+    const double left_s =
+        done > 0 ? elapsed_s / static_cast<double>(done) * static_cast<double>(runs_ - there_ - done) : 0;
+    console_.Progress(static_cast<double>(there_ + done) / static_cast<double>(runs_),
+                      fmt::format("{} of {} runs | {} failed | {}{:.0f} s left", there_ + done, runs_, failed,
+                                  done > 0 ? "about " : "", left_s));
+  }
+
+ private:
+  std::size_t runs_, there_;
+  Console console_;
+  WallClock::time_point start_ = WallClock::now();
+};
+
+/// Cells of a run behind its number: what was set, its error, what was measured.
+SweepFile::Cells RowOf(const SweepPoint& point, const WorkerPool::Done& done) {
+  SweepFile::Cells cells;
+  for (const Override& override : point.overrides) cells.push_back(override.value);
+  cells.push_back(done.failure);
+  const auto measured = done.failure.empty() ? nlohmann::json::parse(done.answer).get<SweepFile::Cells>()
+                                             : SweepFile::Cells(SweepMetricNames().size());
+  cells.insert(cells.end(), measured.begin(), measured.end());
+  return cells;
+}
+
+/// Every run that the table lacks. Counts in `outcome` what is done, so that it holds if a signal ends this.
+void WorkOff(const SweepPlan& plan, WorkerPool& pool, SweepFile& table, bool quiet, StopSignal& stop,
+             Sweeper::Outcome& outcome) {
+  Progress progress(plan.size(), table.rows(), quiet);
+  std::size_t next = 0;
+  const auto skip_done = [&] {
+    while (next < plan.size() && table.Has(next)) ++next;
+    return next < plan.size();
+  };
+  while (skip_done() || pool.IsBusy()) {
+    while (skip_done() && pool.HasIdle()) pool.Start(next++);
+    if (const auto done = pool.Wait(std::chrono::milliseconds(100))) {
+      table.Add(done->task, RowOf(plan[done->task], *done));
+      ++outcome.flown;
+      outcome.failed += !done->failure.empty();
+    }
+    progress.Show(outcome.flown, outcome.failed);
+    ThrowIfInterrupted(stop);
+  }
+}
+
+SweepFile::Cells ColumnsOf(const SweepPlan& plan) {
+  SweepFile::Cells columns{"run"};
+  columns.insert(columns.end(), plan.keys().begin(), plan.keys().end());
+  columns.push_back(kErrorColumn);
+  const auto names = SweepMetricNames();
+  columns.insert(columns.end(), names.begin(), names.end());
+  return columns;
+}
+
+/// By which a table is known: the experiment as it was typed, a resolved one with the files that it names, what each
+/// run sets.
+std::string PlanText(const Sweep& sweep, const std::string& resolved) {
+  std::string text;
+  for (std::size_t run = 0; run < sweep.plan.size(); ++run) {
+    for (const Override& override : sweep.plan[run].overrides) text += override.key + "=" + override.value + " ";
+    text += "\n";
+  }
+  return sweep.text + "\n# its first valid run\n" + resolved + "\n# runs of the sweep\n" + text;
+}
+
+}  // namespace
+
+Sweeper::Sweeper(std::string name, std::string text, SweepPlan plan)
+    : name_(std::move(name)), text_(std::move(text)), plan_(std::move(plan)) {}
+
+Sweeper::Outcome Sweeper::Fly(const Options& options, StopSignal& stop) const {
+  const Sweep sweep{name_, text_, plan_};
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  WorkerPool pool(options.jobs > 0 ? options.jobs : cores, WorkOf(sweep));
+  Outcome outcome;
+  try {
+    const std::string plan = PlanText(sweep, FirstValid(sweep, pool, stop));
+    SweepFile table(options.out, ColumnsOf(plan_), plan, options.force);
+    try {
+      WorkOff(plan_, pool, table, options.quiet, stop, outcome);
+      table.Sort();
+    } catch (const Interrupted& interrupted) {
+      outcome.signal = interrupted.signal;
+    }
+    outcome.in_table = table.rows();
+  } catch (const Interrupted& interrupted) {  // before there was a table
+    outcome.signal = interrupted.signal;
+  }
+  return outcome;
+}
+
+}  // namespace mascot
