@@ -6,6 +6,8 @@
 
 #include "agent/agent.h"
 #include "agent/laws.h"
+#include "orchestrator/engines/row_feed.h"
+#include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/recording/run_writer.h"
 #include "physics_server/world.h"
 #include "tests/scratch.h"
@@ -74,11 +76,13 @@ void RecordRow(benchmark::State& state) {
   const ScratchFolder scratch;
   const RunFolder folder(scratch.File("run"), "bench", false);
   RunWriter writer(experiment, folder, "");
+  RunMeter meter(experiment);
+  RowFeed feed(experiment, {&writer, &meter});
   DecodedRow row(agents);
   std::int64_t tick = 0;
   for (auto _ : state) {
     for (std::size_t i = 0; i < row.motions.size(); ++i) row.motions[i].p_WB.x() += 1e-3 * static_cast<double>(i);
-    writer.Add(tick++, row);
+    feed.Add(tick++, row);
   }
   writer.Close();
   const auto samples = static_cast<std::int64_t>(writer.samples());

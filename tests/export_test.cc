@@ -8,6 +8,7 @@
 
 #include "agent/laws.h"
 #include "bus/wire.h"
+#include "orchestrator/engines/row_feed.h"
 #include "orchestrator/formats/mcap/records.h"
 #include "orchestrator/recording/run_writer.h"
 #include "orchestrator/verbs/verb.h"
@@ -212,6 +213,7 @@ void WriteLateRun(const ScratchFolder& scratch, const std::string& name) {
   Experiment experiment = LoadExperiment(Section::FromText(text, "late.toml"), "late");
   const RunFolder folder(scratch.File(name), "late", false);
   RunWriter writer(experiment, folder, experiment.document.Resolved());
+  RowFeed feed(experiment, {&writer});
   Row row(2);
   for (row.tick = 0; row.tick <= 10; ++row.tick) {
     for (int id = 1; id <= 2; ++id) {
@@ -230,7 +232,7 @@ void WriteLateRun(const ScratchFolder& scratch, const std::string& name) {
       else
         bytes.clear();
     }
-    writer.Add(row);
+    feed.Add(row);
   }
   writer.Close();
 }

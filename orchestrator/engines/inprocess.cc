@@ -1,8 +1,8 @@
 #include "orchestrator/engines/inprocess.h"
 
 #include <chrono>
-#include <vector>
 
+#include "orchestrator/engines/row_feed.h"
 #include "orchestrator/team/team.h"
 #include "physics_server/world.h"
 
@@ -51,17 +51,17 @@ class Flight {
 
 }  // namespace
 
-EngineResult RunInProcess(Experiment& experiment,
-                          const std::function<void(std::int64_t tick, const DecodedRow& row)>& on_tick,
-                          const std::function<bool(std::int64_t tick)>& go_on) {
+EngineResult RunInProcess(Experiment& experiment, const std::vector<RowSink*>& sinks,
+                          const std::function<bool()>& go_on) {
   EngineResult result;
   result.wire_matches_graph = true;  // there is none: what an agent hears is made from the graph
   const auto launched = WallClock::now();
   Flight flight(experiment);
+  RowFeed feed(experiment, sinks);
   const auto start = WallClock::now();
   try {
-    for (std::int64_t tick = 0; go_on(tick); ++tick) {
-      on_tick(tick, flight.Exchange());
+    for (std::int64_t tick = 0; go_on(); ++tick) {
+      feed.Add(tick, flight.Exchange());
       if (tick == experiment.ticks()) break;
       flight.Step();
     }

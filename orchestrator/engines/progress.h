@@ -4,23 +4,25 @@
 #include <cstdint>
 
 #include "experiment/experiment.h"
+#include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/processes/console.h"
-#include "orchestrator/recording/run_writer.h"
+#include "orchestrator/team/row_sink.h"
 
 namespace mascot {
 
 /// The progress line of a run: simulated time, real-time factor, agents, disagreement.
-class Progress {
+class Progress final : public RowSink {
  public:
-  Progress(const Experiment& experiment, const RunWriter& writer, Console& console)
-      : experiment_(experiment), writer_(writer), console_(console) {}
-  /// Rows up to `tick` are recorded. Cheap to call often.
-  void Show(std::int64_t tick);
+  /// `meter` is fed before this.
+  Progress(const Experiment& experiment, const RunMeter& meter, Console& console)
+      : experiment_(experiment), meter_(meter), console_(console) {}
+  /// Shows every tenth of a second where the run is.
+  void Add(const FlownRow& row) override;
 
  private:
   using WallClock = std::chrono::steady_clock;
   const Experiment& experiment_;
-  const RunWriter& writer_;
+  const RunMeter& meter_;
   Console& console_;
   WallClock::time_point start_{}, next_{};
 };

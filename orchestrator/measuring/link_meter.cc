@@ -3,18 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bus/wire.h"
-
 namespace mascot {
 namespace {
-
-/// Bytes of one sample on the wire.
-template <class Message>
-std::uint64_t WireBytes(Message sample) {
-  std::vector<std::uint8_t> bytes;
-  Serialize(sample, bytes);
-  return bytes.size();
-}
 
 bool IsPlain(const Experiment& experiment) {
   return experiment.schedule.IsConstant() && experiment.links.ArePerfect(experiment.graph) &&
@@ -52,21 +42,20 @@ void LinkMeter::Add(std::int64_t tick, const DecodedRow& row) {
 }
 
 std::vector<EdgeTraffic> LinkMeter::Result() const {
-  const std::uint64_t state_bytes = WireBytes(mascot_msgs::msg::AgentState());
-  const std::uint64_t message_bytes = WireBytes(mascot_msgs::msg::AgentMessage());  // without data
   std::vector<EdgeTraffic> traffic;
   for (int id = 1; id <= experiment_.size(); ++id) {
     const auto& may_hear = experiment_.graph.HeardBy(id);
     const auto counts = plain_ ? std::vector<EdgeCount>() : neighbours_[static_cast<std::size_t>(id - 1)].counts();
     for (std::size_t k = 0; k < may_hear.size(); ++k) {
-      EdgeTraffic edge{.hearer = id, .heard = may_hear[k].id, .count = {}};
-      const auto from = static_cast<std::size_t>(edge.heard - 1);
+      const auto from = static_cast<std::size_t>(may_hear[k].id - 1);
+      EdgeTraffic edge{.hearer = id,
+                       .heard = may_hear[k].id,
+                       .count = {},
+                       .sends_messages = experiment_.agents[from].sends_messages};
       if (plain_)
         edge.count = {.sent = static_cast<std::uint64_t>(rows_), .numbers = sent_numbers_[from]};
       else
         edge.count = counts[k];
-      const bool sends = experiment_.agents[from].sends_messages;
-      edge.bytes = edge.count.sent * (state_bytes + (sends ? message_bytes : 0)) + sizeof(double) * edge.count.numbers;
       traffic.push_back(edge);
     }
   }

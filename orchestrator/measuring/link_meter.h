@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "agent/neighbours.h"
-#include "orchestrator/recording/decoded_row.h"
 #include "orchestrator/team/exchange.h"
+#include "orchestrator/team/row.h"
 
 namespace mascot {
 
@@ -14,7 +14,7 @@ struct EdgeTraffic {
   int hearer = 0;
   int heard = 0;
   EdgeCount count;
-  std::uint64_t bytes = 0;  ///< of the samples sent: states and messages as they were on the wire
+  bool sends_messages = false;  ///< the one who is heard does: beside each state sent a message
 };
 
 /// Counts what links did with the samples of a run. What a link does depends on the seed, the edge, the tick and where

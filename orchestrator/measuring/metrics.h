@@ -10,8 +10,8 @@
 #include "experiment/experiment.h"
 #include "orchestrator/measuring/decay_meter.h"
 #include "orchestrator/measuring/pursuit_meter.h"
-#include "orchestrator/recording/decoded_row.h"
 #include "orchestrator/team/ideal_team.h"
+#include "orchestrator/team/row.h"
 
 namespace mascot {
 

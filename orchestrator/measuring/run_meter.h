@@ -6,19 +6,18 @@
 #include "experiment/experiment.h"
 #include "orchestrator/measuring/link_meter.h"
 #include "orchestrator/measuring/metrics.h"
-#include "orchestrator/recording/decoded_row.h"
+#include "orchestrator/team/row_sink.h"
 
 namespace mascot {
 
 /// All that is measured of a run, row by row.
-class RunMeter {
+class RunMeter final : public RowSink {
  public:
   explicit RunMeter(Experiment& experiment) : metrics_(experiment), links_(experiment) {}
 
-  /// The next tick.
-  void Add(std::int64_t tick, const DecodedRow& row) {
-    metrics_.Add(row);
-    links_.Add(tick, row);
+  void Add(const FlownRow& row) override {
+    metrics_.Add(row.decoded());
+    links_.Add(row.tick(), row.decoded());
   }
   Measured Result() const { return metrics_.Result(); }
   std::vector<EdgeTraffic> Traffic() const { return links_.Result(); }

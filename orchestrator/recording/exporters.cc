@@ -6,6 +6,7 @@
 
 #include "orchestrator/formats/csv.h"
 #include "orchestrator/formats/mat_file.h"
+#include "orchestrator/recording/row_codec.h"
 #include "orchestrator/recording/state_arrays.h"
 #include "orchestrator/recording/states_npz.h"
 
@@ -20,7 +21,7 @@ void ForEachStateRow(const Recording& recording, const std::function<void(std::i
   DecodedRow decoded(recording.agents());
   StateRow values(recording.agents());
   recording.ForEachRow([&](const Row& row) {
-    decoded.Take(row);
+    Decode(row, decoded);
     values.Set(recording.time_s(row.tick), decoded);
     on_row(row.tick, values);
   });

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "orchestrator/formats/mcap/writer.h"
-#include "orchestrator/recording/row.h"
+#include "orchestrator/team/row.h"
 
 namespace mascot {
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "bus/wire.h"
+#include "orchestrator/recording/row_codec.h"
 
 namespace mascot {
 
@@ -11,7 +12,7 @@ RowAssembler::RowAssembler(const Wanted& wanted, std::function<void(const Row&)>
   Begin(0);
 }
 
-void RowAssembler::AddChannel(std::uint16_t id, const Topic& topic) { places_[id] = &row_.Of(topic); }
+void RowAssembler::AddChannel(std::uint16_t id, const Topic& topic) { places_[id] = &SampleOf(row_, topic); }
 
 void RowAssembler::Take(const McapContents::Message& message) {
   const auto place = places_.find(message.channel);

@@ -8,7 +8,7 @@
 
 #include "idl/topics.h"
 #include "orchestrator/formats/mcap/writer.h"
-#include "orchestrator/recording/row.h"
+#include "orchestrator/team/row.h"
 
 namespace mascot {
 

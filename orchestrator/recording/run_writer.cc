@@ -24,13 +24,8 @@ std::string_view SchemaName(TopicKind kind) {
 
 }  // namespace
 
-RunWriter::RunWriter(Experiment& experiment, const RunFolder& folder, const std::string& resolved)
-    : experiment_(experiment),
-      mcap_(folder.File(experiment.record.file)),
-      meter_(experiment),
-      decoded_(experiment.size()),
-      encoder_(experiment),
-      arrays_(experiment.size()) {
+RunWriter::RunWriter(const Experiment& experiment, const RunFolder& folder, const std::string& resolved)
+    : experiment_(experiment), mcap_(folder.File(experiment.record.file)), arrays_(experiment.size()) {
   mcap_.Attach("config.toml", "application/toml", resolved);
   for (int id = 1; id <= experiment.size(); ++id) {
     commands_.push_back(AddChannel(Topic::Command(id)));
@@ -58,27 +53,20 @@ void RunWriter::WriteSample(std::optional<std::uint16_t> channel, std::uint64_t 
   if (channel && !bytes.empty()) mcap_.Write(*channel, time_ns, bytes);
 }
 
-void RunWriter::Add(const Row& row) {
-  decoded_.Take(row);
-  Write(row, decoded_);
-}
-
-void RunWriter::Add(std::int64_t tick, const DecodedRow& decoded) { Write(encoder_.Encode(tick, decoded), decoded); }
-
-void RunWriter::Write(const Row& row, const DecodedRow& decoded) {
-  const std::uint64_t time_ns = StampNs(row.tick, experiment_.control.rate_hz);
-  for (std::size_t i = 0; i < row.states.size(); ++i) {
-    WriteSample(commands_[i], time_ns, row.commands[i]);
-    WriteSample(messages_[i], time_ns, row.messages[i]);
-    WriteSample(states_[i], time_ns, row.states[i]);
+void RunWriter::Add(const FlownRow& row) {
+  const Row& bytes = row.bytes();
+  const std::uint64_t time_ns = StampNs(row.tick(), experiment_.control.rate_hz);
+  for (std::size_t i = 0; i < bytes.states.size(); ++i) {
+    WriteSample(commands_[i], time_ns, bytes.commands[i]);
+    WriteSample(messages_[i], time_ns, bytes.messages[i]);
+    WriteSample(states_[i], time_ns, bytes.states[i]);
   }
-  WriteSample(clock_, time_ns, row.clock);
+  WriteSample(clock_, time_ns, bytes.clock);
   mcap_.EndTick();
   if (npz_) {
-    arrays_.Set(experiment_.time_s(row.tick), decoded);
+    arrays_.Set(experiment_.time_s(row.tick()), row.decoded());
     npz_->Append(arrays_);
   }
-  meter_.Add(row.tick, decoded);
   ++rows_;
 }
 

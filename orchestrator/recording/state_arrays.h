@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "orchestrator/recording/decoded_row.h"
+#include "orchestrator/team/row.h"
 
 namespace mascot {
 

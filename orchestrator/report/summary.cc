@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "agent/controller.h"
+#include "orchestrator/recording/row_codec.h"
 #include "orchestrator/report/deviation.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/report/prediction_report.h"
@@ -56,27 +57,32 @@ Json Safety(const Measured& measured, const std::optional<Contacts>& contacts) {
   return safety;
 }
 
+/// Of the samples that were sent over an edge: states and messages as they are on the wire.
+std::uint64_t BytesOf(const EdgeTraffic& edge, const SampleSizes& sizes) {
+  return edge.count.sent * (sizes.state + (edge.sends_messages ? sizes.message : 0)) +
+         sizeof(double) * edge.count.numbers;
+}
+
 Json Links(const std::vector<EdgeTraffic>& traffic) {
-  EdgeTraffic all;
+  const SampleSizes sizes = SizesOfSamples();
+  EdgeCount all;
+  std::uint64_t all_bytes = 0;
   Json edges = Json::array();
   for (const EdgeTraffic& edge : traffic) {
     const EdgeCount& count = edge.count;
+    const std::uint64_t bytes = BytesOf(edge, sizes);
     edges.push_back({{"hearer", edge.hearer},
                      {"heard", edge.heard},
                      {"sent", count.sent},
                      {"lost", count.lost},
                      {"late", count.late},
-                     {"bytes", edge.bytes}});
-    all.count.sent += count.sent;
-    all.count.lost += count.lost;
-    all.count.late += count.late;
-    all.bytes += edge.bytes;
+                     {"bytes", bytes}});
+    all.sent += count.sent;
+    all.lost += count.lost;
+    all.late += count.late;
+    all_bytes += bytes;
   }
-  return {{"sent", all.count.sent},
-          {"lost", all.count.lost},
-          {"late", all.count.late},
-          {"bytes", all.bytes},
-          {"edges", edges}};
+  return {{"sent", all.sent}, {"lost", all.lost}, {"late", all.late}, {"bytes", all_bytes}, {"edges", edges}};
 }
 
 Json Formation(const Measured::Formation& formation) {

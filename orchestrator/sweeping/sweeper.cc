@@ -46,9 +46,7 @@ std::string FlyOne(const Sweep& sweep, std::size_t run) {
   Experiment experiment = sweep.Load(run);
   const Prediction prediction = Predict(experiment);
   RunMeter meter(experiment);
-  const EngineResult result = RunInProcess(
-      experiment, [&](std::int64_t tick, const DecodedRow& row) { meter.Add(tick, row); },
-      [](std::int64_t) { return true; });
+  const EngineResult result = RunInProcess(experiment, {&meter}, [] { return true; });
   if (!result.failure.empty()) throw std::runtime_error(result.failure);
   const RunFacts facts{.engine = "inprocess"};
   return SummaryJson(experiment, prediction, meter, result, facts);

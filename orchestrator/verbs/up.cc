@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "agent/laws.h"
 #include "bus/stop_signal.h"
@@ -11,6 +12,7 @@
 #include "orchestrator/engines/dds/engine.h"
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/engines/progress.h"
+#include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/processes/console.h"
 #include "orchestrator/processes/interruptions.h"
 #include "orchestrator/recording/run_folder.h"
@@ -33,15 +35,10 @@ struct UpArgs {
   bool force = false, json = false, quiet = false;
 };
 
-EngineResult RunInThisProcess(Experiment& experiment, RunWriter& writer, Console& console, StopSignal& stop) {
-  Progress progress(experiment, writer, console);
+EngineResult RunInThisProcess(Experiment& experiment, const std::vector<RowSink*>& sinks, Console& console,
+                              StopSignal& stop) {
   const Interruptions interruptions(stop, console);
-  const auto record = [&](std::int64_t tick, const DecodedRow& row) { writer.Add(tick, row); };
-  EngineResult result = RunInProcess(experiment, record, [&](std::int64_t tick) {
-    constexpr std::int64_t kShowEvery = 32;  // ticks
-    if (tick > 0 && tick % kShowEvery == 0) progress.Show(tick - 1);
-    return interruptions.signal() == 0;
-  });
+  EngineResult result = RunInProcess(experiment, sinks, [&] { return interruptions.signal() == 0; });
   result.signal = interruptions.signal();
   return result;
 }
@@ -97,8 +94,11 @@ int Up(const UpArgs& args) {
   if (over_dds)
     for (const std::string& warning : DeliveryWarnings(experiment)) console.Line("warning: " + warning);
   RunWriter writer(experiment, folder, WithoutDelivery(resolved, experiment));
-  EngineResult result = over_dds ? RunOverDds(experiment, resolved, folder, writer, console, stop)
-                                 : RunInThisProcess(experiment, writer, console, stop);
+  RunMeter meter(experiment);
+  Progress progress(experiment, meter, console);
+  const std::vector<RowSink*> sinks{&writer, &meter, &progress};
+  EngineResult result = over_dds ? RunOverDds(experiment, resolved, folder, sinks, console, stop)
+                                 : RunInThisProcess(experiment, sinks, console, stop);
   console.EndProgress();
   try {
     writer.Close();
@@ -110,16 +110,16 @@ int Up(const UpArgs& args) {
   RunFacts facts{args.engine, ExitCode(result), writer.topics(), writer.samples()};
   auto write_summary = [&] {
     facts.total_s = std::chrono::duration<double>(WallClock::now() - launched).count();
-    folder.Write("summary.json", SummaryJson(experiment, prediction, writer.meter(), result, facts));
+    folder.Write("summary.json", SummaryJson(experiment, prediction, meter, result, facts));
   };
   write_summary();  // the pictures read it
   const int output = MakeOutput(experiment, folder, writer.rows() > 1, stop);
   if (facts.exit == 0) facts.exit = output;
   write_summary();
   if (args.json)
-    std::cout << SummaryJson(experiment, prediction, writer.meter(), result, facts);
+    std::cout << SummaryJson(experiment, prediction, meter, result, facts);
   else if (!args.quiet)
-    std::cout << SummaryText(experiment, prediction, writer.meter(), result, facts) << "results        "
+    std::cout << SummaryText(experiment, prediction, meter, result, facts) << "results        "
               << folder.path().string() << std::endl;
   if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
   return facts.exit;

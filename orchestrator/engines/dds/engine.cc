@@ -16,7 +16,7 @@
 #include "orchestrator/engines/dds/hub.h"
 #include "orchestrator/engines/dds/recorder.h"
 #include "orchestrator/engines/dds/wire_audit.h"
-#include "orchestrator/engines/progress.h"
+#include "orchestrator/engines/row_feed.h"
 #include "orchestrator/processes/children.h"
 
 namespace mascot {
@@ -46,8 +46,8 @@ void StepAside() {
 /// One run, from the domain's lock to the last process gone.
 class DdsRun {
  public:
-  DdsRun(const Experiment& experiment, const std::string& resolved, const RunFolder& folder, RunWriter& writer,
-         Console& console, StopSignal& stop);
+  DdsRun(const Experiment& experiment, const std::string& resolved, const RunFolder& folder,
+         const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop);
   EngineResult Run();
 
  private:
@@ -68,7 +68,6 @@ class DdsRun {
   void CheckWire();
   void CheckDeadlines();
   void CheckProgress();
-  void ShowProgress();
   std::optional<Hub::Status> ServerReport() const;
   void AwaitLastWords();
   void DrainAll();
@@ -96,7 +95,6 @@ class DdsRun {
   const std::vector<AgentRange> processes_;
   const bool with_server_;
   const RunFolder& folder_;
-  RunWriter& writer_;
   const std::string& resolved_;
   std::optional<DomainLock> lock_;
   ChildLogs logs_;
@@ -105,12 +103,12 @@ class DdsRun {
   std::optional<Domain> discovery_server_;
   std::optional<Domain> domain_;
   std::optional<Hub> hub_;
+  RowFeed feed_;
   std::optional<Recorder> recorder_;
-  Progress progress_;
 };
 
-DdsRun::DdsRun(const Experiment& experiment, const std::string& resolved, const RunFolder& folder, RunWriter& writer,
-               Console& console, StopSignal& stop)
+DdsRun::DdsRun(const Experiment& experiment, const std::string& resolved, const RunFolder& folder,
+               const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop)
     : experiment_(experiment),
       console_(console),
       stop_(stop),
@@ -119,11 +117,10 @@ DdsRun::DdsRun(const Experiment& experiment, const std::string& resolved, const 
       processes_(AgentProcesses(experiment)),
       with_server_(std::ssize(processes_) + 2 > kMostPeers),
       folder_(folder),
-      writer_(writer),
       resolved_(resolved),
       logs_([&console](const std::string& process, const std::string& line) { console.ChildLine(process, line); }),
       children_(logs_),
-      progress_(experiment, writer, console) {}
+      feed_(experiment, sinks) {}
 
 void DdsRun::Join() {
   lock_.emplace(experiment_.network.domain);
@@ -135,7 +132,7 @@ void DdsRun::Join() {
   domain_.emplace(Options("orchestrator", with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake,
                   &audit_);
   hub_.emplace(*domain_, experiment_, resolved_, folder_, wake);
-  recorder_.emplace(*domain_, experiment_, writer_);
+  recorder_.emplace(*domain_, experiment_, feed_);
 }
 
 DomainOptions DdsRun::Options(const std::string& name, DiscoveryRole role) const {
@@ -270,7 +267,6 @@ void DdsRun::Loop() {
     SayReady();
     Record();
     CheckDeadlines();
-    ShowProgress();
   }
 }
 
@@ -380,10 +376,6 @@ void DdsRun::CheckProgress() {
        ShortestFloat(limit_s + std::chrono::duration<double>(kGrace).count()) + " s");
 }
 
-void DdsRun::ShowProgress() {
-  if (confirmed_ > 0) progress_.Show(confirmed_ - 1);
-}
-
 bool DdsRun::in_order() const { return result_.failure.empty() && result_.signal == 0; }
 
 void DdsRun::AskToEnd() try {
@@ -409,8 +401,8 @@ void DdsRun::End() {
 }  // namespace
 
 EngineResult RunOverDds(const Experiment& experiment, const std::string& resolved, const RunFolder& folder,
-                        RunWriter& writer, Console& console, StopSignal& stop) {
-  return DdsRun(experiment, resolved, folder, writer, console, stop).Run();
+                        const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop) {
+  return DdsRun(experiment, resolved, folder, sinks, console, stop).Run();
 }
 
 }  // namespace mascot

@@ -1,20 +1,21 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "bus/stop_signal.h"
 #include "experiment/experiment.h"
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/processes/console.h"
 #include "orchestrator/recording/run_folder.h"
-#include "orchestrator/recording/run_writer.h"
+#include "orchestrator/team/row_sink.h"
 
 namespace mascot {
 
 /// Runs the experiment as processes on a DDS domain of its own: one physics server, one agent each (those
-/// marked external are waited for), recorded here. `resolved` is what they are told. Returns when every
-/// process has ended and nothing of the run is left in shared memory.
+/// marked external are waited for), recorded here: `sinks` get every row. `resolved` is what they are told. Returns
+/// when every process has ended and nothing of the run is left in shared memory.
 EngineResult RunOverDds(const Experiment& experiment, const std::string& resolved, const RunFolder& folder,
-                        RunWriter& writer, Console& console, StopSignal& stop);
+                        const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop);
 
 }  // namespace mascot

@@ -33,10 +33,10 @@ T ReadAt(const RawReader::Bytes& bytes, std::size_t offset) {
 
 }  // namespace
 
-Recorder::Recorder(Domain& domain, const Experiment& experiment, RunWriter& writer)
+Recorder::Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed)
     : domain_(domain),
       experiment_(experiment),
-      writer_(writer),
+      feed_(feed),
       realtime_(experiment.run.mode == Mode::kRealtime),
       slots_(kHistoryDepth),
       taken_(experiment.size()) {
@@ -100,7 +100,7 @@ void Recorder::OnSample(std::size_t index, const Topic& topic, const RawReader::
     for (auto& command : slot.row.commands) command.clear();
     for (auto& message : slot.row.messages) message.clear();
   }
-  slot.row.Of(topic).assign(bytes.begin(), bytes.end());
+  SampleOf(slot.row, topic).assign(bytes.begin(), bytes.end());
   ++slot.samples;
   if (topic.kind == TopicKind::kState || topic.kind == TopicKind::kClock) ++slot.states;
   if (newest_ < 0) started_ = WallClock::now();
@@ -135,7 +135,7 @@ std::int64_t Recorder::Drain(bool give_up) {
       std::swap(taken_.messages, slot.row.messages);
       ++written_;
     }
-    writer_.Add(taken_);
+    feed_.Add(taken_);
   }
 }
 

@@ -8,8 +8,8 @@
 
 #include "bus/bus.h"
 #include "experiment/experiment.h"
-#include "orchestrator/recording/row.h"
-#include "orchestrator/recording/run_writer.h"
+#include "orchestrator/engines/row_feed.h"
+#include "orchestrator/team/row.h"
 
 namespace mascot {
 
@@ -17,7 +17,7 @@ namespace mascot {
 /// written by whoever calls Drain. That nothing is lost is proved by the sequence numbers of every writer.
 class Recorder {
  public:
-  Recorder(Domain& domain, const Experiment& experiment, RunWriter& writer);
+  Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed);
 
   /// Every reader has its writer.
   bool Matched() const;
@@ -51,12 +51,12 @@ class Recorder {
 
   Domain& domain_;
   const Experiment& experiment_;
-  RunWriter& writer_;
+  RowFeed& feed_;
   const bool realtime_;
   mutable std::mutex mutex_;
   std::vector<Slot> slots_;
   std::vector<std::int64_t> sequences_;  // newest of each topic, by place among the readers
-  std::int64_t written_ = 0;             // rows handed to the writer
+  std::int64_t written_ = 0;             // rows handed to the feed
   std::int64_t complete_ = 0;            // rows complete since the loop was last woken
   std::int64_t newest_ = -1;
   std::uint64_t lost_ = 0;

@@ -1,11 +1,19 @@
 #pragma once
 
+#include <cstdint>
+
 #include "bus/wire.h"
 #include "experiment/experiment.h"
-#include "orchestrator/recording/decoded_row.h"
-#include "orchestrator/recording/row.h"
+#include "orchestrator/team/row.h"
 
 namespace mascot {
+
+/// The place of a per-tick topic's sample in `row`.
+Row::Bytes& SampleOf(Row& row, const Topic& topic);
+
+/// Decodes `row` into `decoded`, which holds the row before: a command that was not sent stays as it is there. Throws
+/// std::runtime_error for bytes that are no such sample.
+void Decode(const Row& row, DecodedRow& decoded);
 
 /// Makes of what was flown in one process the bytes that processes would have sent each other.
 class RowEncoder {
@@ -22,5 +30,12 @@ class RowEncoder {
   mascot_msgs::msg::AgentCommand command_;
   mascot_msgs::msg::AgentMessage message_;
 };
+
+/// Bytes of single samples on the wire.
+struct SampleSizes {
+  std::uint64_t state = 0;
+  std::uint64_t message = 0;  ///< without its numbers, of 8 bytes each
+};
+SampleSizes SizesOfSamples();
 
 }  // namespace mascot

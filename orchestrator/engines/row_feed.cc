@@ -1,0 +1,54 @@
+#include "orchestrator/engines/row_feed.h"
+
+#include <utility>
+
+namespace mascot {
+namespace {
+
+class FromTheWire final : public FlownRow {
+ public:
+  FromTheWire(const Row& bytes, const DecodedRow& decoded) : bytes_(bytes), decoded_(decoded) {}
+  std::int64_t tick() const override { return bytes_.tick; }
+  const DecodedRow& decoded() const override { return decoded_; }
+  const Row& bytes() const override { return bytes_; }
+
+ private:
+  const Row& bytes_;
+  const DecodedRow& decoded_;
+};
+
+class FromThisProcess final : public FlownRow {
+ public:
+  FromThisProcess(std::int64_t tick, const DecodedRow& decoded, RowEncoder& encoder)
+      : tick_(tick), decoded_(decoded), encoder_(encoder) {}
+  std::int64_t tick() const override { return tick_; }
+  const DecodedRow& decoded() const override { return decoded_; }
+  const Row& bytes() const override {
+    if (bytes_ == nullptr) bytes_ = &encoder_.Encode(tick_, decoded_);
+    return *bytes_;
+  }
+
+ private:
+  std::int64_t tick_;
+  const DecodedRow& decoded_;
+  RowEncoder& encoder_;
+  mutable const Row* bytes_ = nullptr;
+};
+
+}  // namespace
+
+RowFeed::RowFeed(const Experiment& experiment, std::vector<RowSink*> sinks)
+    : sinks_(std::move(sinks)), decoded_(experiment.size()), encoder_(experiment) {}
+
+void RowFeed::Add(const Row& bytes) {
+  Decode(bytes, decoded_);
+  HandOut(FromTheWire(bytes, decoded_));
+}
+
+void RowFeed::Add(std::int64_t tick, const DecodedRow& decoded) { HandOut(FromThisProcess(tick, decoded, encoder_)); }
+
+void RowFeed::HandOut(const FlownRow& row) const {
+  for (RowSink* sink : sinks_) sink->Add(row);
+}
+
+}  // namespace mascot

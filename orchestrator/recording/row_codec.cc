@@ -1,0 +1,63 @@
+#include "orchestrator/recording/row_codec.h"
+
+namespace mascot {
+namespace {
+
+template <class Message>
+std::uint64_t BytesOf(Message sample) {
+  Row::Bytes bytes;
+  Serialize(sample, bytes);
+  return bytes.size();
+}
+
+}  // namespace
+
+Row::Bytes& SampleOf(Row& row, const Topic& topic) {
+  const auto agent = static_cast<std::size_t>(topic.agent - 1);
+  return topic.kind == TopicKind::kState     ? row.states[agent]
+         : topic.kind == TopicKind::kCommand ? row.commands[agent]
+         : topic.kind == TopicKind::kMessage ? row.messages[agent]
+                                             : row.clock;
+}
+
+void Decode(const Row& row, DecodedRow& decoded) {
+  mascot_msgs::msg::AgentState state;
+  mascot_msgs::msg::AgentCommand command;
+  mascot_msgs::msg::AgentMessage message;
+  for (std::size_t i = 0; i < decoded.motions.size(); ++i) {
+    Deserialize(row.states[i], state);
+    decoded.motions[i] = FromWire(state);
+    decoded.messages[i].clear();
+    if (!row.messages[i].empty()) {
+      Deserialize(row.messages[i], message);
+      decoded.messages[i].assign(message.data().begin(), message.data().end());
+    }
+    if (row.commands[i].empty()) continue;
+    Deserialize(row.commands[i], command);
+    decoded.commands[i] = FromWire(command);
+  }
+}
+
+const Row& RowEncoder::Encode(std::int64_t tick, const DecodedRow& decoded) {
+  const int rate = experiment_.control.rate_hz;
+  row_.tick = tick;
+  ToWire(tick, rate, clock_);
+  Serialize(clock_, row_.clock);
+  for (std::size_t i = 0; i < decoded.motions.size(); ++i) {
+    const int id = static_cast<int>(i) + 1;
+    ToWire(tick, rate, id, decoded.motions[i], state_);
+    Serialize(state_, row_.states[i]);
+    ToWire(tick, rate, id, decoded.commands[i], command_);
+    Serialize(command_, row_.commands[i]);
+    if (!experiment_.agents[i].sends_messages) continue;
+    ToWire(tick, rate, id, decoded.messages[i], message_);
+    Serialize(message_, row_.messages[i]);
+  }
+  return row_;
+}
+
+SampleSizes SizesOfSamples() {
+  return {.state = BytesOf(mascot_msgs::msg::AgentState()), .message = BytesOf(mascot_msgs::msg::AgentMessage())};
+}
+
+}  // namespace mascot
