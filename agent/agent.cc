@@ -37,14 +37,14 @@ Eigen::Vector3d Clamped(const Eigen::Vector3d& v, double limit) { return v.cwise
 
 }  // namespace
 
-Agent::Agent(Experiment& experiment, int id)
+Agent::Agent(const Experiment& experiment, int id)
     : config_(experiment.agent(id)),
       id_(id),
       rate_hz_(experiment.control.rate_hz),
       holds_altitude_(config_.law.axes == Axes::kXy),
       law_(MakeLaw(experiment, id)),
       controller_(MakeController(experiment, id)),
-      driven_by_(DrivenBy(config_.model)),
+      driven_by_(config_.traits().driven_by),
       neighbours_(experiment, id),
       sensor_(experiment.sensors, experiment.control.rate_hz, experiment.run.seed, id),
       v_integrated_W_(config_.v_W) {}

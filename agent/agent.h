@@ -15,7 +15,7 @@ namespace mascot {
 /// One agent without a wire: what it hears and measures, its law, limits, low-level stack. Both engines run this.
 class Agent {
  public:
-  Agent(Experiment& experiment, int id);
+  Agent(const Experiment& experiment, int id);
 
   int id() const { return id_; }
   /// `self` is where the agent is, `samples` what those that the graph lets it hear sent at this tick

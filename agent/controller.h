@@ -16,15 +16,11 @@ class Controller {
     std::uint32_t flags = 0;  ///< kTiltLimited, kRotorLimited
   };
   virtual ~Controller() = default;
-  /// `wanted_W`: what the model is driven by (DrivenBy), already limited, in W (m/s^2 or m/s). With law.axes = "xy" its
-  /// z is ignored and the altitude loop holds the initial height.
+  /// `wanted_W`: what the model is driven by (ModelTraits), already limited, in W (m/s^2 or m/s). With law.axes = "xy"
+  /// its z is ignored and the altitude loop holds the initial height.
   virtual Output Actuate(const Motion& self, const Eigen::Vector3d& wanted_W) = 0;
 };
 
-/// What the stack of a model turns into actuator values.
-Wanted DrivenBy(const std::string& model);
-/// Agents of this model turn to control.heading_rad; others keep the heading that they start with, or steer by it.
-bool TurnsToHeading(const std::string& model);
 /// The stack for the model of agent `id`.
 std::unique_ptr<Controller> MakeController(const Experiment& experiment, int id);
 

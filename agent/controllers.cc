@@ -14,32 +14,23 @@ namespace {
 
 struct ControllerEntry {
   std::string_view model;
-  Wanted driven_by;
-  bool turns_to_heading;
   ControllerFactory* make;
 };
 
 constexpr ControllerEntry kControllers[] = {
-    {"quadrotor", Wanted::kAcceleration, true, MakeQuadrotorController},
-    {"double_integrator", Wanted::kAcceleration, false, MakeDoubleIntegratorController},
-    {"single_integrator", Wanted::kVelocity, false, MakeSingleIntegratorController},
-    {"unicycle", Wanted::kVelocity, false, MakeUnicycleController},
+    {"quadrotor", MakeQuadrotorController},
+    {"double_integrator", MakeDoubleIntegratorController},
+    {"single_integrator", MakeSingleIntegratorController},
+    {"unicycle", MakeUnicycleController},
 };
-
-const ControllerEntry& Entry(const std::string& model) {
-  const ControllerEntry* entry = std::ranges::find(kControllers, model, &ControllerEntry::model);
-  if (entry == std::end(kControllers)) throw std::invalid_argument("no controller for the model: " + model);
-  return *entry;
-}
 
 }  // namespace
 
-Wanted DrivenBy(const std::string& model) { return Entry(model).driven_by; }
-
-bool TurnsToHeading(const std::string& model) { return Entry(model).turns_to_heading; }
-
 std::unique_ptr<Controller> MakeController(const Experiment& experiment, int id) {
-  return Entry(experiment.agent(id).model).make(experiment, id);
+  const std::string& model = experiment.agent(id).model;
+  const ControllerEntry* entry = std::ranges::find(kControllers, model, &ControllerEntry::model);
+  if (entry == std::end(kControllers)) throw std::invalid_argument("no controller for the model: " + model);
+  return entry->make(experiment, id);
 }
 
 }  // namespace mascot

@@ -19,9 +19,6 @@ struct Heard {
   std::span<const double> message = {};  ///< what the neighbour's law sent last before that; empty: nothing
 };
 
-/// What a law's answer is.
-enum class Wanted { kAcceleration, kVelocity };
-
 /// Decides where one agent wants to go, from what it alone has heard.
 /// No clock, no I/O, no DDS: a law's answers depend only on what it was given, and on what it was given before.
 class Law {

@@ -20,7 +20,7 @@ int Place(const mascot::Experiment& experiment, mascot::AgentRange agents) {
 void RunAgent(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot_msgs::msg::Experiment& message,
               mascot::AgentRange agents) {
   const auto document = mascot::Section::FromText(message.toml(), message.name());
-  mascot::Experiment experiment = mascot::LoadExperiment(document, message.name(), /*checked=*/true);
+  const mascot::Experiment experiment = mascot::LoadExperiment(document, message.name(), /*checked=*/true);
   if (agents.last > experiment.size())
     throw std::runtime_error("--id " + std::to_string(agents.last) + ": the experiment has only agents 1 to " +
                              std::to_string(experiment.size()));

@@ -6,7 +6,7 @@ namespace mascot {
 
 using namespace std::chrono_literals;
 
-Node::Node(Domain& domain, Lifecycle& lifecycle, Experiment& experiment, AgentRange agents)
+Node::Node(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment, AgentRange agents)
     : lifecycle_(lifecycle), experiment_(experiment) {
   for (int id = agents.first; id <= agents.last; ++id)
     seats_.push_back(std::make_unique<Seat>(domain, experiment, id, [this] { lifecycle_.Wake(); }));

@@ -14,7 +14,7 @@ namespace mascot {
 /// that the graph may let them hear, one for each topic, and on no others.
 class Node {
  public:
-  Node(Domain& domain, Lifecycle& lifecycle, Experiment& experiment, AgentRange agents);
+  Node(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment, AgentRange agents);
 
   /// Waits until every endpoint is matched, says READY, then answers ticks until it is ended (by Ended or a
   /// failure, which are thrown).

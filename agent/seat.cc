@@ -8,7 +8,7 @@
 
 namespace mascot {
 
-Seat::Seat(Domain& domain, Experiment& experiment, int id, std::function<void()> on_first_answer)
+Seat::Seat(Domain& domain, const Experiment& experiment, int id, std::function<void()> on_first_answer)
     : experiment_(experiment),
       id_(id),
       realtime_(experiment.run.mode == Mode::kRealtime),

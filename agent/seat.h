@@ -19,7 +19,7 @@ namespace mascot {
 class Seat {
  public:
   /// `on_first_answer` is called once, in the thread of that answer.
-  Seat(Domain& domain, Experiment& experiment, int id, std::function<void()> on_first_answer);
+  Seat(Domain& domain, const Experiment& experiment, int id, std::function<void()> on_first_answer);
 
   int id() const { return id_; }
   /// Everybody who reads what this agent writes has been found.

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "experiment/control.h"
-#include "experiment/names.h"
 #include "experiment/placement.h"
+#include "experiment/read_experiment.h"
 
 namespace mascot {
 namespace {
@@ -63,7 +63,8 @@ void ReadPositions(Section& agents, Experiment& experiment) {
 /// How many stand on the ground.
 double Standing(const Experiment& experiment) {
   if (!experiment.physics.ground) return 0;
-  return static_cast<double>(std::ranges::count(experiment.agents, "unicycle", &AgentConfig::model));
+  return static_cast<double>(
+      std::ranges::count_if(experiment.agents, [](const AgentConfig& agent) { return agent.traits().rolls; }));
 }
 
 /// The default box grows with the agents: in height, so that those that fly have room above each other, and in length
@@ -121,7 +122,7 @@ AgentOverride ReadOverride(Section& section, std::vector<AgentConfig>& agents, s
                                  ShortestFloat(agent.stop_s));
   }
   agent.external = section.OneOf("host") == "external";
-  return {agents.empty() || section.Wrong("id") ? 0 : static_cast<int>(id), section};
+  return {.id = agents.empty() || section.Wrong("id") ? 0 : static_cast<int>(id), .section = section};
 }
 
 /// Initial yaws, one per agent.
@@ -139,7 +140,7 @@ void ReadHeadings(Section& agents, std::vector<AgentConfig>& team) {
 std::span<const Key> AgentsKeys() {
   static const Key override_keys[] = {
       key::Integer("id", 1, kMaxAgents, "whom this is for").Required(),
-      key::OneOf("model", kModelNames, "what it is").Otherwise("the team's"),
+      key::OneOf("model", ModelNames(), "what it is").Otherwise("the team's"),
       AirframeKey().Otherwise("the team's"),
       key::Table("control", AgentControlKeys(), "what is left out is as in `[control]`"),
       key::Table("law", LawKeys(),
@@ -151,7 +152,7 @@ std::span<const Key> AgentsKeys() {
   };
   static const Key keys[] = {
       key::Integer("count", 1, kMaxAgents, "how many; they are numbered from 1").Required(),
-      key::OneOf("model", kModelNames, "see `orchestrator models`").Default("\"quadrotor\""),
+      key::OneOf("model", ModelNames(), "see `orchestrator models`").Default(DefaultModel()),
       AirframeKey().Default("\"mascot\""),
       key::Points("position_m", kPlace_m, "where each starts, in W"),
       key::Table("random", kRandomKeys, "places drawn by `run.seed`; used without `position_m`"),

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "experiment/experiment.h"
+#include "experiment/toml/section.h"
 
 namespace mascot {
 
@@ -8,6 +12,7 @@ namespace mascot {
 struct AgentOverride {
   int id = 0;  ///< 0: not known for a mistake
   Section section;
+  std::optional<Section> law = {};  ///< the table of a law of its own, from which its parameters are still to be read
 };
 
 /// The keys of [agents].

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "experiment/experiment.h"
+#include "experiment/toml/section.h"
 
 namespace mascot {
 

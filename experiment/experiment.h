@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
-#include <span>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,9 +11,9 @@
 #include "experiment/graph/graph.h"
 #include "experiment/graph/schedule.h"
 #include "experiment/link.h"
+#include "experiment/model_traits.h"
 #include "experiment/physics.h"
 #include "experiment/sensors.h"
-#include "experiment/toml/section.h"
 
 namespace mascot {
 
@@ -38,13 +38,19 @@ struct ControlConfig {
   bool drag_compensation = true;  ///< adds the known drag B v / m to the wanted acceleration
 };
 
+/// What a law has read from its own keys of [law]: each law derives its own (agent/laws/). Read once, then shared by
+/// all agents of that law.
+struct LawParams {
+  virtual ~LawParams() = default;
+  bool sends_messages = false;
+};
+
 /// [law], or what an agent has in its place.
 struct LawConfig {
   std::string name;
   int leader = 0;  ///< 0 = none
   Axes axes = Axes::kXy;
-  /// The table, for the law to read its own parameters from (agent/laws.h). Copies share it.
-  Section section = Section::FromText("", "");
+  std::shared_ptr<const LawParams> params;  ///< null where the experiment was read without laws (the physics server)
 };
 
 struct AgentConfig {
@@ -62,12 +68,18 @@ struct AgentConfig {
   double start_s = 0;
   double stop_s = std::numeric_limits<double>::infinity();
   bool external = false;  ///< started by hand and waited for
+
+  const ModelTraits& traits() const { return TraitsOf(model); }
+  /// Full lengths of its collision shape along the axes of B (m).
+  Eigen::Vector3d size_m() const {
+    return traits().has_airframe ? airframe.size_m : Eigen::Vector3d::Constant(2 * kBallRadius_m);
+  }
 };
 
 /// One experiment: everything that processes of a run must agree on. Field names are the TOML keys.
 struct Experiment {
-  /// The file it was read from; Resolved() writes it out with all defaults.
-  Section document = Section::FromText("", "");
+  /// TOML text with every default: the file that reproduces the run.
+  std::string resolved;
   /// Somebody read it before and found no mistake: what takes long to check (a law's own code) need not be again.
   bool checked = false;
   struct {
@@ -122,24 +134,5 @@ struct Experiment {
   double time_s(std::int64_t tick) const { return static_cast<double>(tick) / control.rate_hz; }
   int steps_per_tick() const { return physics.rate_hz / control.rate_hz; }
 };
-
-/// Every key that an experiment file may have, but for the parameters of single laws (agent/laws.h).
-std::span<const Key> ExperimentKeys();
-/// Those of [law] that all laws have.
-std::span<const Key> LawKeys();
-
-/// The names that the experiment file may use, from the table of laws, which lives above this library.
-struct Vocabulary {
-  std::span<const std::string_view> laws;
-  std::span<const std::string_view> xyz_laws = {};  ///< those of `laws` whose default for law.axes is "xyz"
-};
-
-/// Reads an experiment, all of it but the law's own parameters: those are read when a law is made
-/// (agent/laws.h), whose caller then calls Finish(). Throws ConfigError at once only for what cannot be
-/// parsed at all; other mistakes are noted in the document. If they are in the graph, it is empty; if they leave no
-/// law to be made, there are no agents.
-Experiment ReadExperiment(Section document, const Vocabulary& vocabulary, const std::string& default_name);
-/// After the law has read its parameters: reports unknown keys of [law], throws every mistake noted.
-void Finish(Experiment& experiment);
 
 }  // namespace mascot

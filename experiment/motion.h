@@ -21,6 +21,9 @@ struct Motion {
 /// otherwise (double integrator: force in W in newton, then 0).
 using Actuation = std::array<double, 4>;
 
+/// What a law's answer is, and what drives a model.
+enum class Wanted { kAcceleration, kVelocity };
+
 /// Of the double integrator model, so that its force is its acceleration.
 inline constexpr double kDoubleIntegratorMass_kg = 1.0;
 /// Of the sphere that every model but the quadrotor is.

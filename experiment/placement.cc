@@ -16,7 +16,7 @@ Eigen::Vector3d PointIn(const Box& box, Random& random) {
   return point;
 }
 
-bool Stands(const AgentConfig& agent, const Box& box) { return box.has_ground && agent.model == "unicycle"; }
+bool Stands(const AgentConfig& agent, const Box& box) { return box.has_ground && agent.traits().rolls; }
 
 /// Heights from `min_m` to `max_m`, at least `separation_m` apart, in random order: sorted offsets share what the
 /// separations leave over.
@@ -56,8 +56,8 @@ bool SetHeights(std::vector<AgentConfig>& agents, const Box& box, Random& random
 
 /// What a body that is turned by `yaw_rad` takes up along x, y, z: the airframe's box, or the sphere of other models.
 Eigen::Vector3d Size_m(const AgentConfig& agent, double yaw_rad) {
-  if (agent.model != "quadrotor") return Eigen::Vector3d::Constant(2 * kBallRadius_m);
-  const Eigen::Vector3d& size_m = agent.airframe.size_m;
+  const Eigen::Vector3d size_m = agent.size_m();
+  if (!agent.traits().has_airframe) return size_m;  // a sphere
   const double c = std::abs(std::cos(yaw_rad)), s = std::abs(std::sin(yaw_rad));
   return {c * size_m.x() + s * size_m.y(), s * size_m.x() + c * size_m.y(), size_m.z()};
 }

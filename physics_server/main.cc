@@ -1,16 +1,16 @@
 #include <CLI/CLI.hpp>
 
-#include "agent/laws.h"
 #include "bus/privileges.h"
 #include "bus/process_main.h"
 #include "bus/standard_streams.h"
+#include "experiment/read_experiment.h"
 #include "physics_server/server.h"
 
 namespace {
 
 void RunServer(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot_msgs::msg::Experiment& message) {
   const auto document = mascot::Section::FromText(message.toml(), message.name());
-  const mascot::Experiment experiment = mascot::LoadExperiment(document, message.name(), /*checked=*/true);
+  const mascot::Experiment experiment = mascot::ReadWithoutLaws(document, message.name());
   mascot::Server server(domain, lifecycle, experiment);
   mascot::TakePrivileges(experiment, 0);  // with all threads there
   server.Run();

@@ -50,15 +50,7 @@ class Model {
   virtual Push Apply(const Actuation& command, const BodyNow& self, const Surroundings& around) = 0;
 };
 
-struct ModelEntry {
-  std::string_view name;
-  std::string_view summary;
-  std::string_view actuator;  ///< what the four actuator values are, with units
-  std::unique_ptr<Model> (*make)(const Experiment& experiment, int id);
-};
-
-/// Every model there is. `orchestrator models` prints this.
-std::span<const ModelEntry> Models();
+/// The body of agent `id`, by the name of its model.
 std::unique_ptr<Model> MakeModel(const Experiment& experiment, int id);
 
 }  // namespace mascot

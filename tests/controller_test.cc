@@ -64,7 +64,7 @@ Motion Tilted(const Experiment& e, double roll, double pitch, double yaw) {
 // --- the table --------------------------------------------------------------------------------------
 
 TEST(MakeController, HasOneForEveryModel) {
-  for (const ModelEntry& model : Models()) EXPECT_NE(MakeController(Bodies(model.name, {{0, 0, 1}}), 1), nullptr);
+  for (const ModelTraits& model : Models()) EXPECT_NE(MakeController(Bodies(model.name, {{0, 0, 1}}), 1), nullptr);
 }
 
 TEST(MakeController, NamesTheModelItHasNoneFor) {

@@ -259,8 +259,8 @@ TEST(Experiment, OverridesAreForOneAgent) {
 
 /// The resolved text of `text`, which must be that of itself too.
 std::string ResolvedTwice(const std::string& text) {
-  const std::string resolved = Load(text).document.Resolved();
-  EXPECT_EQ(Load(resolved).document.Resolved(), resolved);
+  const std::string resolved = Load(text).resolved;
+  EXPECT_EQ(Load(resolved).resolved, resolved);
   return resolved;
 }
 
@@ -565,9 +565,9 @@ TEST(ResolvedExperiment, IsTheSameAgainWhenRead) {
   }
   for (const std::string& text : texts) {
     const Experiment experiment = Load(text);
-    const std::string resolved = experiment.law.section.Resolved();
+    const std::string resolved = experiment.resolved;
     const Experiment again = Load(resolved, "another name");
-    EXPECT_EQ(again.law.section.Resolved(), resolved);
+    EXPECT_EQ(again.resolved, resolved);
     ASSERT_EQ(again.size(), experiment.size());
     for (int id = 1; id <= again.size(); ++id) {
       EXPECT_EQ(again.agent(id).p_W, experiment.agent(id).p_W);

@@ -212,7 +212,7 @@ void WriteLateRun(const ScratchFolder& scratch, const std::string& name) {
       "[run]\nname = 'late'\nduration_s = 0.1\nmode = 'realtime'\n[agents]\ncount = 2\n[law]\nname = 'consensus'\n";
   Experiment experiment = LoadExperiment(Section::FromText(text, "late.toml"), "late");
   const RunFolder folder(scratch.File(name), "late", false);
-  RunWriter writer(experiment, folder, experiment.document.Resolved());
+  RunWriter writer(experiment, folder, experiment.resolved);
   RowFeed feed(experiment, {&writer});
   Row row(2);
   for (row.tick = 0; row.tick <= 10; ++row.tick) {

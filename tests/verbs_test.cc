@@ -13,7 +13,7 @@
 #include "agent/laws.h"
 #include "bus/qos.h"
 #include "experiment/airframe.h"
-#include "experiment/names.h"
+#include "experiment/read_experiment.h"
 #include "orchestrator/verbs/verb.h"
 #include "physics_server/model.h"
 #include "tests/scratch.h"
@@ -257,7 +257,7 @@ TEST(Tables, LawsShowEveryLawWithEquationAndEveryParameter) {
 
 TEST(Tables, ModelsShowEveryModelWithItsActuators) {
   const std::string text = Printed(SetUpModels, {});
-  for (const ModelEntry& model : Models())
+  for (const ModelTraits& model : Models())
     EXPECT_THAT(text, AllOf(HasSubstr(std::string(model.name)), HasSubstr(std::string(model.actuator))));
   EXPECT_EQ(Json::parse(Printed(SetUpModels, {"--json"})).size(), Models().size());
 }
@@ -309,11 +309,10 @@ TEST(Tables, EveryKeyThatAirframesShowsIsOneThatATableMayHave) {
   }
 }
 
-TEST(Names, ThatAnExperimentMayUseAreThoseOfTheTables) {
-  std::vector<std::string_view> models;
-  for (const ModelEntry& model : Models()) models.push_back(model.name);
-  EXPECT_THAT(models, ElementsAreArray(kModelNames));
-  EXPECT_THAT(TransportNames(), ElementsAreArray(kTransportNames));
+TEST(Names, OfTransportsThatAnExperimentMayUseAreThoseOfTheBus) {
+  const auto network = std::ranges::find(ExperimentKeys(), "network", &Key::name);
+  const auto transport = std::ranges::find(network->keys, "transport", &Key::name);
+  EXPECT_THAT(TransportNames(), ElementsAreArray(transport->names.begin(), transport->names.end()));
 }
 
 }  // namespace

@@ -33,8 +33,19 @@ Eigen::Quaterniond Turned(double yaw_rad) { return Eigen::Quaterniond(Eigen::Ang
 
 // --- how it starts ----------------------------------------------------------------------------------
 
+TEST(MakeModel, HasABodyForEveryModelAsItsTraitsSay) {
+  for (const ModelTraits& traits : Models()) {
+    const Experiment e = Bodies(traits.name, {{0, 0, 1}});
+    const auto model = MakeModel(e, 1);
+    EXPECT_EQ(model->feels_gravity(), traits.has_airframe) << traits.name;
+    EXPECT_EQ(model->touches_ground(), !traits.rolls) << traits.name;
+    const Vector3d box_m = traits.has_airframe ? (e.agent(1).size_m() / 2).eval() : Vector3d::Zero().eval();
+    EXPECT_EQ(model->half_size_m(), box_m) << traits.name;
+  }
+}
+
 TEST(World, StartsExactlyAsConfigured) {
-  for (const ModelEntry& model : Models()) {
+  for (const ModelTraits& model : Models()) {
     Experiment e = Bodies(model.name, {{0.1, 0.2, 1.3}, {1.0 / 3, -7, 2}});
     e.agents[1].v_W = {0.7, -0.1, 1e-9};
     e.agents[1].heading_rad = -2.5;

@@ -35,25 +35,32 @@ class Consensus final : public Law {
 
 }  // namespace
 
-ConsensusParams ReadConsensus(LawConfig& law) {
-  ConsensusParams params;
-  params.p_gain = law.section.Number("p_gain");
-  params.v_gain = law.section.Number("v_gain");
-  params.beta = law.section.Number("beta");
-  params.leader_flight = ReadLeaderWaypoints(law);
+void ReadGains(const LawConfig& law, Section& section, ConsensusParams& params) {
+  params.p_gain = section.Number("p_gain");
+  params.v_gain = section.Number("v_gain");
+  params.beta = section.Number("beta");
+  params.leader_flight = ReadLeaderWaypoints(law, section);
+}
+
+LinearForm LinearFormOf(const ConsensusParams& params) {
+  return {
+      .p = params.p_gain, .g = params.v_gain, .beta = params.beta, .leader_flies = params.leader_flight.has_value()};
+}
+
+std::shared_ptr<const LawParams> ReadConsensus(const Experiment& /*experiment*/, const LawConfig& law,
+                                               Section& section) {
+  auto params = std::make_shared<ConsensusParams>();
+  ReadGains(law, section, *params);
   return params;
 }
 
-bool CheckConsensus(Experiment& /*experiment*/, LawConfig& law) {
-  ReadConsensus(law);
-  return false;
-}
-
-std::unique_ptr<Law> MakeConsensus(Experiment& experiment, int id) {
-  LawConfig law = experiment.agent(id).law;
-  const ConsensusParams params = ReadConsensus(law);
-  if (id == law.leader) return MakeLeader(params.leader_flight, law, experiment.agent(id));
+std::unique_ptr<Law> MakeConsensus(const Experiment& experiment, int id) {
+  const AgentConfig& agent = experiment.agent(id);
+  const auto& params = ParamsOf<ConsensusParams>(agent.law);
+  if (id == agent.law.leader) return MakeLeader(params.leader_flight, agent);
   return std::make_unique<Consensus>(params);
 }
+
+LinearForm LinearConsensus(const LawConfig& law) { return LinearFormOf(ParamsOf<ConsensusParams>(law)); }
 
 }  // namespace mascot

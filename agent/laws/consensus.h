@@ -7,7 +7,7 @@
 
 namespace mascot {
 
-struct ConsensusParams {
+struct ConsensusParams : LawParams {
   double p_gain = 0;
   double v_gain = 0;
   double beta = 0;
@@ -31,6 +31,8 @@ inline constexpr auto kConsensusParameters = Joined(
     },
     kVelocityAndLeaderParameters);
 
-ConsensusParams ReadConsensus(LawConfig& law);
+/// The keys of kConsensusParameters, into `params`; those of the formation law are the same but for their meaning.
+void ReadGains(const LawConfig& law, Section& section, ConsensusParams& params);
+LinearForm LinearFormOf(const ConsensusParams& params);
 
 }  // namespace mascot

@@ -26,6 +26,22 @@ class Agent:
         return f"agent {self.id} at {self.position}"
 )";
 
+/// How the functions of a custom law look.
+enum class PythonStyle {
+  kStandard,  ///< control(t, me, neighbours), start, message
+  kMascot,    ///< control_user(...) of the published testbed
+};
+
+/// A law written in Python, and where it stands.
+struct CustomParams final : LawParams {
+  std::string text;
+  std::string file;  ///< as it goes by in messages
+  int line = 1;      ///< of `file`, at which `text` begins
+  PythonStyle style = PythonStyle::kStandard;
+  Wanted wanted = Wanted::kAcceleration;
+  Value params;  ///< a table
+};
+
 /// Numbers as a NumPy array of their own.
 py::array_t<double> Array(std::span<const double> values) {
   py::array_t<double> array(static_cast<py::ssize_t>(values.size()));  // empty, then filled: half the time of a copy
@@ -96,8 +112,8 @@ class Module {
 /// What both styles share: errors that say whose law it was and what came back.
 class PythonLaw : public Law {
  public:
-  PythonLaw(int id, const CustomParams& params, const char* function)
-      : id_(id), time_limit_(params.time_limit), wanted_(params.wanted), file_(params.file), function_(function) {}
+  PythonLaw(int id, const CustomParams& params, TimeLimit time_limit, const char* function)
+      : id_(id), time_limit_(time_limit), wanted_(params.wanted), file_(params.file), function_(function) {}
   Wanted wanted() const override { return wanted_; }
 
  protected:
@@ -144,7 +160,8 @@ class PythonLaw : public Law {
 /// control(t, me, neighbours), start(me, params), message(me).
 class Standard final : public PythonLaw {
  public:
-  Standard(const CustomParams& params, std::uint64_t seed, int id) : PythonLaw(id, params, "control") {
+  Standard(const CustomParams& params, TimeLimit time_limit, std::uint64_t seed, int id)
+      : PythonLaw(id, params, time_limit, "control") {
     const PythonLock lock;
     objects_.emplace(params);
     Objects& o = *objects_;
@@ -237,8 +254,8 @@ class Standard final : public PythonLaw {
 /// agents from 0. It has places for all agents; those that this agent does not hear hold NaN.
 class Published final : public PythonLaw {
  public:
-  Published(const CustomParams& params, int id, int agents, int leader)
-      : PythonLaw(id, params, "control_user"),
+  Published(const CustomParams& params, TimeLimit time_limit, int id, int agents, int leader)
+      : PythonLaw(id, params, time_limit, "control_user"),
         agents_(static_cast<std::size_t>(agents)),
         leader_(leader - 1),
         columns_(6, std::vector<double>(agents_)) {
@@ -332,9 +349,7 @@ void ReadText(Section& law, CustomParams& params) {
   if (params.text.find('\0') != std::string::npos) law.Fail(TextKey(law), "expected text, got a NUL byte");
 }
 
-CustomParams ReadCustom(LawConfig& config) {
-  Section& law = config.section;
-  CustomParams params;
+void ReadKeys(Section& law, CustomParams& params) {
   ReadText(law, params);
   params.style = law.OneOf("style") == "mascot" ? PythonStyle::kMascot : PythonStyle::kStandard;
   params.wanted = law.OneOf("output") == "velocity" ? Wanted::kVelocity : Wanted::kAcceleration;
@@ -342,7 +357,6 @@ CustomParams ReadCustom(LawConfig& config) {
     law.Fail("params", "expected a table, got a " + law.Kind("params"));
   else
     params.params = law.Free("params");
-  return params;
 }
 
 /// Notes a function that is missing, or that cannot be called as it will be.
@@ -380,11 +394,8 @@ bool Try(Section& law, const CustomParams& params, const TimeLimit& time_limit) 
   }
 }
 
-}  // namespace
-
-bool CheckCustom(Experiment& experiment, LawConfig& config) {
-  Section& law = config.section;
-  const CustomParams params = ReadCustom(config);
+/// Whether it sends messages, as the key says or the text shows.
+bool SendsMessages(const Experiment& experiment, const CustomParams& params, Section& law) {
   // What was checked says whether messages are sent; who reads it need not start Python to know.
   if ((experiment.checked && law.Has("messages")) || law.Wrong("")) return law.Boolean("messages", false);
   const bool can_send = Try(law, params, {experiment.run.start_timeout_s, "run.start_timeout_s"});
@@ -393,13 +404,24 @@ bool CheckCustom(Experiment& experiment, LawConfig& config) {
   return sends;
 }
 
-std::unique_ptr<Law> MakeCustom(Experiment& experiment, int id) {
-  LawConfig law = experiment.agent(id).law;
-  CustomParams params = ReadCustom(law);
-  params.time_limit = {kTimeShare * experiment.run.agent_timeout_s, "0.8 run.agent_timeout_s"};
-  if (params.style == PythonStyle::kMascot)
-    return std::make_unique<Published>(params, id, experiment.size(), law.leader);
-  return std::make_unique<Standard>(params, experiment.run.seed, id);
+}  // namespace
+
+std::shared_ptr<const LawParams> ReadCustom(const Experiment& experiment, const LawConfig& /*law*/, Section& section) {
+  auto params = std::make_shared<CustomParams>();
+  ReadKeys(section, *params);
+  params->sends_messages = SendsMessages(experiment, *params, section);
+  return params;
 }
+
+std::unique_ptr<Law> MakeCustom(const Experiment& experiment, int id) {
+  const LawConfig& law = experiment.agent(id).law;
+  const auto& params = ParamsOf<CustomParams>(law);
+  const TimeLimit time_limit{kTimeShare * experiment.run.agent_timeout_s, "0.8 run.agent_timeout_s"};
+  if (params.style == PythonStyle::kMascot)
+    return std::make_unique<Published>(params, time_limit, id, experiment.size(), law.leader);
+  return std::make_unique<Standard>(params, time_limit, experiment.run.seed, id);
+}
+
+Wanted WantedByCustom(const LawConfig& law) { return ParamsOf<CustomParams>(law).wanted; }
 
 }  // namespace mascot

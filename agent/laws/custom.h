@@ -3,28 +3,9 @@
 #include <string>
 
 #include "agent/laws.h"
-#include "agent/python.h"
 #include "experiment/experiment.h"
-#include "experiment/toml/value.h"
 
 namespace mascot {
-
-/// How the functions of a custom law look.
-enum class PythonStyle {
-  kStandard,  ///< control(t, me, neighbours), start, message
-  kMascot,    ///< control_user(...) of the published testbed
-};
-
-/// A law written in Python, and where it stands.
-struct CustomParams {
-  std::string text;
-  std::string file;  ///< as it goes by in messages
-  int line = 1;      ///< of `file`, at which `text` begins
-  PythonStyle style = PythonStyle::kStandard;
-  Wanted wanted = Wanted::kAcceleration;
-  Value params;          ///< a table
-  TimeLimit time_limit;  ///< of one call
-};
 
 inline constexpr std::string_view kPythonStyles[] = {"standard", "mascot"};
 inline constexpr std::string_view kPythonOutputs[] = {"acceleration", "velocity"};

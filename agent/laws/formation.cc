@@ -14,9 +14,13 @@
 namespace mascot {
 namespace {
 
+struct FormationParams final : ConsensusParams {
+  std::vector<Eigen::Vector3d> d_W;  ///< by id - 1: each agent's place in the formation
+};
+
 class Formation final : public Law {
  public:
-  Formation(FormationParams params, int id) : params_(std::move(params)), id_(id) {}
+  Formation(const FormationParams& params, int id) : params_(params), id_(id) {}
 
   Eigen::Vector3d Want_W(double /*t_s*/, const Motion& self, std::span<const Heard> heard) override {
     Eigen::Vector3d a_W = -params_.beta * self.v_WB;
@@ -30,7 +34,7 @@ class Formation final : public Law {
  private:
   const Eigen::Vector3d& d_W(int id) const { return params_.d_W[static_cast<std::size_t>(id - 1)]; }
 
-  FormationParams params_;
+  const FormationParams& params_;  // of the experiment
   int id_;
 };
 
@@ -77,26 +81,22 @@ std::vector<Eigen::Vector3d> ReadPlaces(Section& law, int agents) {
 
 }  // namespace
 
-FormationParams ReadFormation(const Experiment& experiment, LawConfig& law) {
-  FormationParams params;
-  params.d_W = ReadPlaces(law.section, experiment.size());
-  params.p_gain = law.section.Number("p_gain");
-  params.v_gain = law.section.Number("v_gain");
-  params.beta = law.section.Number("beta");
-  params.leader_flight = ReadLeaderWaypoints(law);
+std::shared_ptr<const LawParams> ReadFormation(const Experiment& experiment, const LawConfig& law, Section& section) {
+  auto params = std::make_shared<FormationParams>();
+  params->d_W = ReadPlaces(section, experiment.size());
+  ReadGains(law, section, *params);
   return params;
 }
 
-bool CheckFormation(Experiment& experiment, LawConfig& law) {
-  ReadFormation(experiment, law);
-  return false;
+std::unique_ptr<Law> MakeFormation(const Experiment& experiment, int id) {
+  const AgentConfig& agent = experiment.agent(id);
+  const auto& params = ParamsOf<FormationParams>(agent.law);
+  if (id == agent.law.leader) return MakeLeader(params.leader_flight, agent);
+  return std::make_unique<Formation>(params, id);
 }
 
-std::unique_ptr<Law> MakeFormation(Experiment& experiment, int id) {
-  LawConfig law = experiment.agent(id).law;
-  FormationParams params = ReadFormation(experiment, law);
-  if (id == law.leader) return MakeLeader(params.leader_flight, law, experiment.agent(id));
-  return std::make_unique<Formation>(std::move(params), id);
-}
+LinearForm LinearFormation(const LawConfig& law) { return LinearFormOf(ParamsOf<FormationParams>(law)); }
+
+std::span<const Eigen::Vector3d> FormationPlaces_W(const LawConfig& law) { return ParamsOf<FormationParams>(law).d_W; }
 
 }  // namespace mascot

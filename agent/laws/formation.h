@@ -9,14 +9,6 @@
 
 namespace mascot {
 
-struct FormationParams {
-  double p_gain = 0;
-  double v_gain = 0;
-  double beta = 0;
-  std::vector<Eigen::Vector3d> d_W;             ///< by id - 1: each agent's place in the formation
-  std::optional<WaypointParams> leader_flight;  ///< absent: the leader's acceleration is 0
-};
-
 inline constexpr std::string_view kFormationShapes[] = {"circle", "line", "grid", "vee"};
 
 inline constexpr auto kFormationParameters = Joined(
@@ -29,7 +21,5 @@ inline constexpr auto kFormationParameters = Joined(
             .Unit("1/s^2"),
     },
     kVelocityAndLeaderParameters);
-
-FormationParams ReadFormation(const Experiment& experiment, LawConfig& law);
 
 }  // namespace mascot

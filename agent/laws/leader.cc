@@ -19,10 +19,9 @@ class Leader final : public Law {
 
 }  // namespace
 
-std::unique_ptr<Law> MakeLeader(const std::optional<WaypointParams>& flight, const LawConfig& law,
-                                const AgentConfig& agent) {
+std::unique_ptr<Law> MakeLeader(const std::optional<WaypointParams>& flight, const AgentConfig& agent) {
   std::optional<WaypointFlight> flown;
-  if (flight) flown.emplace(*flight, law.axes, agent.p_W);
+  if (flight) flown.emplace(*flight, agent.law.axes, agent.p_W);
   return std::make_unique<Leader>(std::move(flown));
 }
 

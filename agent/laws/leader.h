@@ -9,7 +9,6 @@
 namespace mascot {
 
 /// A leader listens to nobody: it keeps its velocity (a = 0), or flies waypoints.
-std::unique_ptr<Law> MakeLeader(const std::optional<WaypointParams>& flight, const LawConfig& law,
-                                const AgentConfig& agent);
+std::unique_ptr<Law> MakeLeader(const std::optional<WaypointParams>& flight, const AgentConfig& agent);
 
 }  // namespace mascot

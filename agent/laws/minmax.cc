@@ -22,6 +22,12 @@
 namespace mascot {
 namespace {
 
+struct MinmaxParams final : LawParams {
+  PursuitForm tree;
+  double boundary_layer_m = 0;
+  std::optional<WaypointParams> root_flight;  ///< absent: the root's acceleration is 0
+};
+
 double Sign(double x) { return (x > 0) - (x < 0); }
 
 /// Follows the parent on every axis.
@@ -82,78 +88,75 @@ std::vector<double> ReadBeta(Section& law, int agents) {
 }
 
 /// Parents by id - 1, all 0 where there is no tree to follow.
-std::vector<int> ReadTree(const Experiment& experiment, LawConfig& law) {
+std::vector<int> ReadTree(const Experiment& experiment, int root, Section& law) {
   const std::vector<int> nobody(static_cast<std::size_t>(experiment.size()), 0);
-  const int root = law.leader;
   // A graph or a leader that was refused already is not worth a second complaint.
-  if (law.section.Wrong("leader") || experiment.graph.size() != experiment.size()) return nobody;
+  if (law.Wrong("leader") || experiment.graph.size() != experiment.size()) return nobody;
   if (root == 0) {
-    law.section.Fail("leader", "expected the root of the tree in 1..N, got 0");
+    law.Fail("leader", "expected the root of the tree in 1..N, got 0");
     return nobody;
   }
   if (const auto tree = experiment.graph.SpanningTree(root)) return *tree;
-  law.section.Fail("leader", "expected a root whom everyone hears, directly or not, got " + std::to_string(root) +
-                                 ", who does not reach " + AgentList(NotReached(experiment.graph, root)));
+  law.Fail("leader", "expected a root whom everyone hears, directly or not, got " + std::to_string(root) +
+                         ", who does not reach " + AgentList(NotReached(experiment.graph, root)));
   return nobody;
 }
 
 /// beta_c > beta_p on every edge, or the law promises nothing.
-void CheckEdges(LawConfig& law, const MinmaxParams& params, bool root_bound) {
+void CheckEdges(const PursuitForm& tree, int root, bool root_bound, Section& law) {
   std::string first;
   int others = 0;
-  for (std::size_t i = 0; i < params.parent.size(); ++i) {
-    if (params.parent[i] == 0 || params.beta[i] > params.parent_beta[i]) continue;
+  for (std::size_t i = 0; i < tree.parent.size(); ++i) {
+    if (tree.parent[i] == 0 || tree.beta[i] > tree.parent_beta[i]) continue;
     if (!first.empty()) {
       ++others;
       continue;
     }
     const std::string child = std::to_string(i + 1);
-    const std::string parent = std::to_string(params.parent[i]);
-    const std::string bound_of = root_bound ? "the root " + std::to_string(law.leader) : "its parent " + parent;
+    const std::string parent = std::to_string(tree.parent[i]);
+    const std::string bound_of = root_bound ? "the root " + std::to_string(root) : "its parent " + parent;
     first = "expected beta of agent " + child + " above that of " + bound_of + " (edge " + child + " -> " + parent +
-            "), got " + ShortestFloat(params.beta[i]) + " and " + ShortestFloat(params.parent_beta[i]);
+            "), got " + ShortestFloat(tree.beta[i]) + " and " + ShortestFloat(tree.parent_beta[i]);
   }
   if (first.empty()) return;
   if (others > 0) first += " (and " + std::to_string(others) + (others == 1 ? " more edge)" : " more edges)");
-  law.section.Fail("beta", first);
+  law.Fail("beta", first);
 }
 
 }  // namespace
 
-MinmaxParams ReadMinmax(const Experiment& experiment, LawConfig& config) {
-  Section& law = config.section;
-  MinmaxParams params;
-  params.parent = ReadTree(experiment, config);
-  params.beta = ReadBeta(law, experiment.size());
+std::shared_ptr<const LawParams> ReadMinmax(const Experiment& experiment, const LawConfig& config, Section& law) {
+  auto params = std::make_shared<MinmaxParams>();
+  PursuitForm& tree = params->tree;
+  tree.parent = ReadTree(experiment, config.leader, law);
+  tree.beta = ReadBeta(law, experiment.size());
   const bool root_bound = law.OneOf("weak_edges") == "root";
-  params.boundary_layer_m = law.Number("boundary_layer");
-  params.root_flight = ReadLeaderWaypoints(config);
+  params->boundary_layer_m = law.Number("boundary_layer");
+  params->root_flight = ReadLeaderWaypoints(config, law);
+  tree.root_flies = params->root_flight.has_value();
 
-  params.parent_beta.resize(params.beta.size(), 0.0);
-  for (std::size_t i = 0; i < params.parent.size(); ++i) {
-    if (params.parent[i] == 0) continue;
-    const int bound_of = root_bound ? config.leader : params.parent[i];
-    params.parent_beta[i] = params.beta[static_cast<std::size_t>(bound_of - 1)];
+  tree.parent_beta.resize(tree.beta.size(), 0.0);
+  for (std::size_t i = 0; i < tree.parent.size(); ++i) {
+    if (tree.parent[i] == 0) continue;
+    const int bound_of = root_bound ? config.leader : tree.parent[i];
+    tree.parent_beta[i] = tree.beta[static_cast<std::size_t>(bound_of - 1)];
   }
-  if (!law.Wrong("beta")) CheckEdges(config, params, root_bound);
+  if (!law.Wrong("beta")) CheckEdges(tree, config.leader, root_bound, law);
   return params;
 }
 
-bool CheckMinmax(Experiment& experiment, LawConfig& law) {
-  ReadMinmax(experiment, law);
-  return false;
+std::unique_ptr<Law> MakeMinmax(const Experiment& experiment, int id) {
+  const AgentConfig& agent = experiment.agent(id);
+  const auto& params = ParamsOf<MinmaxParams>(agent.law);
+  const PursuitForm& tree = params.tree;
+  const auto i = static_cast<std::size_t>(id - 1);
+  if (tree.parent[i] != 0)
+    return std::make_unique<Child>(tree.parent[i], tree.beta[i], tree.parent_beta[i], params.boundary_layer_m);
+  std::optional<WaypointFlight> flight;
+  if (params.root_flight) flight.emplace(*params.root_flight, agent.law.axes, agent.p_W);
+  return std::make_unique<Root>(std::move(flight), tree.beta[i]);
 }
 
-std::unique_ptr<Law> MakeMinmax(Experiment& experiment, int id) {
-  LawConfig law = experiment.agent(id).law;
-  const MinmaxParams params = ReadMinmax(experiment, law);
-  const auto i = static_cast<std::size_t>(id - 1);
-  if (params.parent[i] != 0) {
-    return std::make_unique<Child>(params.parent[i], params.beta[i], params.parent_beta[i], params.boundary_layer_m);
-  }
-  std::optional<WaypointFlight> flight;
-  if (params.root_flight) flight.emplace(*params.root_flight, law.axes, experiment.agent(id).p_W);
-  return std::make_unique<Root>(std::move(flight), params.beta[i]);
-}
+PursuitForm PursuitOfMinmax(const LawConfig& law) { return ParamsOf<MinmaxParams>(law).tree; }
 
 }  // namespace mascot

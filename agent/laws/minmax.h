@@ -8,15 +8,6 @@
 
 namespace mascot {
 
-/// The tree that min-max consensus runs on, and the bounds on it.
-struct MinmaxParams {
-  std::vector<double> beta;         ///< by id - 1: largest acceleration per axis (m/s^2)
-  std::vector<int> parent;          ///< by id - 1: whom the agent follows; 0 for the root
-  std::vector<double> parent_beta;  ///< by id - 1: the bound that the agent expects of its parent; 0 for the root
-  double boundary_layer_m = 0;
-  std::optional<WaypointParams> root_flight;  ///< absent: the root's acceleration is 0
-};
-
 inline constexpr std::string_view kWeakEdges[] = {"refuse", "root"};
 
 inline constexpr auto kMinmaxParameters = Joined(
@@ -36,7 +27,5 @@ inline constexpr auto kMinmaxParameters = Joined(
             .Unit("m"),
     },
     kLeaderFlightParameters);
-
-MinmaxParams ReadMinmax(const Experiment& experiment, LawConfig& law);
 
 }  // namespace mascot

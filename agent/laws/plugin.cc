@@ -13,20 +13,19 @@
 namespace mascot {
 namespace {
 
-struct PluginConfig {
+struct PluginConfig final : LawParams {
   std::string library;  ///< absolute path; "" for a mistake
   Value params;         ///< a table
+  /// What its laws wanted when they were tried; not tried: an acceleration.
+  Wanted wanted = Wanted::kAcceleration;
 };
 
-PluginConfig ReadPlugin(LawConfig& config) {
-  Section& law = config.section;
-  PluginConfig plugin;
+void ReadKeys(Section& law, PluginConfig& plugin) {
   plugin.library = law.PathOfFile("library");
   if (law.Has("params") && law.Kind("params") != "table")
     law.Fail("params", "expected a table, got a " + law.Kind("params"));
   else
     plugin.params = law.Free("params");
-  return plugin;
 }
 
 PluginSetup SetupOf(const Experiment& experiment, int id, PluginParams& params) {
@@ -111,11 +110,11 @@ void NoteUnknown(Section& law, const Value& params, const PluginParams& read) {
   }
 }
 
-/// Makes the law of agent `id`, to see whether it takes its parameters.
-void Try(const LawLibrary& library, const Experiment& experiment, int id, const PluginConfig& plugin, Section& law) {
+/// Makes the law of agent `id`, to see whether it takes its parameters, and what it wants.
+void Try(const LawLibrary& library, const Experiment& experiment, int id, PluginConfig& plugin, Section& law) {
   PluginParams params(plugin.params);
   try {
-    library.Make(SetupOf(experiment, id, params));
+    plugin.wanted = library.Make(SetupOf(experiment, id, params))->wanted();
     NoteUnknown(law, plugin.params, params);
   } catch (const std::invalid_argument& refusal) {
     NoteRefusal(law, refusal.what());
@@ -133,7 +132,7 @@ std::vector<int> AgentsOf(const Experiment& experiment, const LawConfig& law) {
 }
 
 /// Opens the library and lets it make a law for each agent. Returns whether it can send messages.
-bool TryAll(const Experiment& experiment, const LawConfig& config, const PluginConfig& plugin, Section& law) {
+bool TryAll(const Experiment& experiment, const LawConfig& config, PluginConfig& plugin, Section& law) {
   try {
     const LawLibrary library(plugin.library);
     for (const int id : AgentsOf(experiment, config)) {
@@ -147,11 +146,8 @@ bool TryAll(const Experiment& experiment, const LawConfig& config, const PluginC
   }
 }
 
-}  // namespace
-
-bool CheckPlugin(Experiment& experiment, LawConfig& config) {
-  Section& law = config.section;
-  const PluginConfig plugin = ReadPlugin(config);
+/// Whether it sends messages, as the key says or the library shows.
+bool SendsMessages(const Experiment& experiment, const LawConfig& config, PluginConfig& plugin, Section& law) {
   // What was checked says whether messages are sent; only who flies the law needs the library then.
   if ((experiment.checked && law.Has("messages")) || law.Wrong("")) return law.Boolean("messages", false);
   const bool can_send = TryAll(experiment, config, plugin, law);
@@ -160,9 +156,17 @@ bool CheckPlugin(Experiment& experiment, LawConfig& config) {
   return sends;
 }
 
-std::unique_ptr<Law> MakePlugin(Experiment& experiment, int id) {
-  LawConfig law = experiment.agent(id).law;
-  const PluginConfig plugin = ReadPlugin(law);
+}  // namespace
+
+std::shared_ptr<const LawParams> ReadPlugin(const Experiment& experiment, const LawConfig& law, Section& section) {
+  auto plugin = std::make_shared<PluginConfig>();
+  ReadKeys(section, *plugin);
+  plugin->sends_messages = SendsMessages(experiment, law, *plugin, section);
+  return plugin;
+}
+
+std::unique_ptr<Law> MakePlugin(const Experiment& experiment, int id) {
+  const auto& plugin = ParamsOf<PluginConfig>(experiment.agent(id).law);
   try {
     PluginParams params(plugin.params);
     return std::make_unique<PluginLaw>(id, LawLibrary(plugin.library).Make(SetupOf(experiment, id, params)));
@@ -171,5 +175,7 @@ std::unique_ptr<Law> MakePlugin(Experiment& experiment, int id) {
                              " (every host that flies it needs the same library at the same path)");
   }
 }
+
+Wanted WantedByPlugin(const LawConfig& law) { return ParamsOf<PluginConfig>(law).wanted; }
 
 }  // namespace mascot

@@ -9,6 +9,10 @@
 namespace mascot {
 namespace {
 
+struct Params final : LawParams {
+  double p_gain = 0;  ///< 1/s
+};
+
 class VelocityConsensus final : public Law {
  public:
   VelocityConsensus(double p_gain, bool leads) : p_gain_(leads ? 0 : p_gain) {}
@@ -26,16 +30,18 @@ class VelocityConsensus final : public Law {
 
 }  // namespace
 
-double ReadVelocityConsensus(LawConfig& law) { return law.section.Number("p_gain"); }
-
-bool CheckVelocityConsensus(Experiment& /*experiment*/, LawConfig& law) {
-  ReadVelocityConsensus(law);
-  return false;
+std::shared_ptr<const LawParams> ReadVelocityConsensus(const Experiment& /*experiment*/, const LawConfig& /*law*/,
+                                                       Section& section) {
+  auto params = std::make_shared<Params>();
+  params->p_gain = section.Number("p_gain");
+  return params;
 }
 
-std::unique_ptr<Law> MakeVelocityConsensus(Experiment& experiment, int id) {
-  LawConfig law = experiment.agent(id).law;
-  return std::make_unique<VelocityConsensus>(ReadVelocityConsensus(law), id == law.leader);
+std::unique_ptr<Law> MakeVelocityConsensus(const Experiment& experiment, int id) {
+  const LawConfig& law = experiment.agent(id).law;
+  return std::make_unique<VelocityConsensus>(ParamsOf<Params>(law).p_gain, id == law.leader);
 }
+
+LinearForm LinearVelocityConsensus(const LawConfig& law) { return {.p = ParamsOf<Params>(law).p_gain}; }
 
 }  // namespace mascot

@@ -10,7 +10,4 @@ inline constexpr Key kVelocityConsensusParameters[] = {
     key::Integer("leader", 0, kMaxAgents, "agent that leads and stands still, 1..N; 0: none").Default("0"),
 };
 
-/// Reads p_gain.
-double ReadVelocityConsensus(LawConfig& law);
-
 }  // namespace mascot

@@ -27,6 +27,10 @@ void CheckTimes(Section& law, const std::string& key, const WaypointParams& para
   }
 }
 
+struct Params final : LawParams {
+  WaypointParams flight;
+};
+
 class Waypoint final : public Law {
  public:
   explicit Waypoint(WaypointFlight flight) : flight_(std::move(flight)) {}
@@ -66,8 +70,7 @@ WaypointParams ReadWaypoints(Section& law, const std::string& prefix) {
   return params;
 }
 
-std::optional<WaypointParams> ReadLeaderWaypoints(LawConfig& config) {
-  Section& law = config.section;
+std::optional<WaypointParams> ReadLeaderWaypoints(const LawConfig& config, Section& law) {
   const bool has_waypoints = law.Has("leader_waypoints_m");
   if (config.leader > 0 && has_waypoints) return ReadWaypoints(law, "leader_");
   for (const Key& parameter : kLeaderFlightParameters) {
@@ -113,19 +116,23 @@ double WaypointFlight::Distance(const Eigen::Vector3d& p_WB) const {
   return axes_ == Axes::kXyz ? to_target.norm() : to_target.head<2>().norm();
 }
 
-bool CheckWaypoint(Experiment& /*experiment*/, LawConfig& law) {
-  if (law.leader != 0) {
-    law.section.Fail("leader",
-                     "expected 0 (every agent flies the waypoints itself), got " + std::to_string(law.leader));
-  }
-  ReadWaypoints(law.section, "");
-  return false;
+std::shared_ptr<const LawParams> ReadWaypoint(const Experiment& /*experiment*/, const LawConfig& law,
+                                              Section& section) {
+  if (law.leader != 0)
+    section.Fail("leader", "expected 0 (every agent flies the waypoints itself), got " + std::to_string(law.leader));
+  auto params = std::make_shared<Params>();
+  params->flight = ReadWaypoints(section, "");
+  return params;
 }
 
-std::unique_ptr<Law> MakeWaypoint(Experiment& experiment, int id) {
+std::unique_ptr<Law> MakeWaypoint(const Experiment& experiment, int id) {
   const AgentConfig& agent = experiment.agent(id);
-  LawConfig law = agent.law;
-  return std::make_unique<Waypoint>(WaypointFlight(ReadWaypoints(law.section, ""), law.axes, agent.p_W));
+  return std::make_unique<Waypoint>(WaypointFlight(ParamsOf<Params>(agent.law).flight, agent.law.axes, agent.p_W));
+}
+
+LinearForm LinearWaypoint(const LawConfig& law) {
+  const WaypointParams& flight = ParamsOf<Params>(law).flight;
+  return {.p = flight.p_gain, .beta = flight.d_gain, .listens = false, .leader_flies = true};
 }
 
 }  // namespace mascot

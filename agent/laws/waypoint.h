@@ -52,7 +52,7 @@ inline constexpr std::array kLeaderFlightParameters = {
 WaypointParams ReadWaypoints(Section& law, const std::string& prefix);
 /// Reads `leader_waypoints_m` and its companions; none: the leader has no waypoints. Refuses them where
 /// there is no leader.
-std::optional<WaypointParams> ReadLeaderWaypoints(LawConfig& law);
+std::optional<WaypointParams> ReadLeaderWaypoints(const LawConfig& law, Section& section);
 
 /// Flies one agent through a list of waypoints: a = p_gain (w - p) - d_gain v.
 class WaypointFlight {

@@ -14,7 +14,7 @@ using WallClock = std::chrono::steady_clock;
 /// Everything that one tick needs, kept from tick to tick so that nothing is allocated in between.
 class Flight {
  public:
-  explicit Flight(Experiment& experiment)
+  explicit Flight(const Experiment& experiment)
       : experiment_(experiment),
         world_(experiment),
         team_(experiment),
@@ -42,7 +42,7 @@ class Flight {
   Contacts contacts() const { return world_.contacts(); }
 
  private:
-  Experiment& experiment_;
+  const Experiment& experiment_;
   World world_;
   Team team_;
   std::vector<Actuation> actuation_;
@@ -51,7 +51,7 @@ class Flight {
 
 }  // namespace
 
-EngineResult RunInProcess(Experiment& experiment, const std::vector<RowSink*>& sinks,
+EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSink*>& sinks,
                           const std::function<bool()>& go_on) {
   EngineResult result;
   result.wire_matches_graph = true;  // there is none: what an agent hears is made from the graph

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "agent/laws/formation.h"
+#include "agent/laws.h"
 #include "agent/python.h"
 
 namespace mascot {
@@ -20,11 +20,12 @@ Eigen::Vector3d Along(Axes axes, Eigen::Vector3d v) {
 
 }  // namespace
 
-Metrics::Metrics(Experiment& experiment)
+Metrics::Metrics(const Experiment& experiment)
     : experiment_(experiment), pursuit_(experiment), min_separation2_(std::numeric_limits<double>::infinity()) {
   const MutedPython muted;  // the laws run a second time
   if (experiment.output.fidelity) ideal_.emplace(experiment);
-  if (experiment.law.name == "formation") formation_.offsets_m = ReadFormation(experiment, experiment.law).d_W;
+  const auto places_W = PlacesOf(experiment.law);
+  formation_.offsets_m.assign(places_W.begin(), places_W.end());
 }
 
 void Metrics::Add(const DecodedRow& row) {

@@ -49,7 +49,7 @@ struct Measured {
 /// Measures a run row by row, in memory that does not grow with it.
 class Metrics {
  public:
-  explicit Metrics(Experiment& experiment);
+  explicit Metrics(const Experiment& experiment);
   /// The next tick.
   void Add(const DecodedRow& row);
   Measured Result() const;

@@ -1,15 +1,14 @@
 #include "orchestrator/measuring/pursuit_meter.h"
 
-#include "agent/laws/minmax.h"
+#include "agent/laws.h"
 
 namespace mascot {
 
 PursuitMeter::PursuitMeter(const Experiment& experiment) : experiment_(experiment) {
-  if (experiment.law.name != "minmax") return;
-  LawConfig law = experiment.law;
-  const MinmaxParams params = ReadMinmax(experiment, law);
+  const std::optional<PursuitForm> pursuit = PursuitFormOf(experiment.law);
+  if (!pursuit) return;
   for (const AgentConfig& agent : experiment.agents) {
-    const int parent = params.parent[static_cast<std::size_t>(agent.id - 1)];
+    const int parent = pursuit->parent[static_cast<std::size_t>(agent.id - 1)];
     if (parent != 0 && !agent.has_own_law) pursuits_.push_back({agent.id, parent, -1});
   }
 }

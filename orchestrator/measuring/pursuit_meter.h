@@ -13,7 +13,8 @@ namespace mascot {
 /// A child has caught up with its parent while it is this close to it, along each axis of the law.
 inline constexpr double kCaughtUp_m = 0.05;
 
-/// Measures on each edge of min-max consensus, row by row, when the child has caught up with its parent for good.
+/// Measures on each edge of a law of pursuit (PursuitForm), row by row, when the child has caught up with its parent
+/// for good.
 class PursuitMeter {
  public:
   struct Edge {
@@ -22,7 +23,7 @@ class PursuitMeter {
     std::optional<double> time_s;  ///< absent: not by the end
   };
 
-  /// Of the team's law; without min-max consensus there are no edges.
+  /// Edges are those of the team's law; other laws have none.
   explicit PursuitMeter(const Experiment& experiment);
   /// The next row.
   void Add(std::span<const Motion> motions);

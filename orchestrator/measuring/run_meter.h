@@ -13,7 +13,7 @@ namespace mascot {
 /// All that is measured of a run, row by row.
 class RunMeter final : public RowSink {
  public:
-  explicit RunMeter(Experiment& experiment) : metrics_(experiment), links_(experiment) {}
+  explicit RunMeter(const Experiment& experiment) : metrics_(experiment), links_(experiment) {}
 
   void Add(const FlownRow& row) override {
     metrics_.Add(row.decoded());

@@ -5,7 +5,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "experiment/experiment.h"
+#include "experiment/read_experiment.h"
 #include "experiment/toml/section.h"
 #include "idl/topics.h"
 #include "orchestrator/recording/row_assembler.h"

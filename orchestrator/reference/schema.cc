@@ -90,8 +90,7 @@ Json LawCase(const LawEntry& law, bool inherits) {
   Json then = {{"propertyNames", {{"enum", std::move(names)}}}, {"properties", std::move(schema["properties"])}};
   if (!inherits && schema.contains("required")) then["required"] = std::move(schema["required"]);
   Json condition = {{"properties", {{"name", {{"const", law.name}}}}}};
-  const auto name = std::ranges::find(LawKeys(), "name", &Key::name);
-  if (inherits || Json::parse(name->fallback) != law.name) condition["required"] = Json::array({"name"});
+  if (inherits || law.name != LawNames().front()) condition["required"] = Json::array({"name"});
   return {{"if", std::move(condition)}, {"then", std::move(then)}};
 }
 
@@ -100,6 +99,7 @@ Json LawSchema(bool inherits) {
   Json schema = TableSchema(LawKeys());
   Json& properties = schema["properties"];
   properties["name"]["enum"] = std::vector<std::string_view>(LawNames().begin(), LawNames().end());
+  if (!inherits) properties["name"]["default"] = LawNames().front();
   Json cases = Json::array();
   for (const LawEntry& law : Laws()) {
     for (const Key& key : law.parameters)

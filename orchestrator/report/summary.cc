@@ -1,13 +1,11 @@
-#include "orchestrator/report/summary.h"
-
 #include <algorithm>
 #include <cstdio>
 
-#include "agent/controller.h"
 #include "orchestrator/recording/row_codec.h"
 #include "orchestrator/report/deviation.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/report/prediction_report.h"
+#include "orchestrator/report/summary.h"
 
 namespace mascot {
 namespace {
@@ -171,7 +169,7 @@ std::string AlsoLimited(const Measured& m) {
 /// What a run is compared with (docs/recording.md, fidelity).
 std::string IdealBodies(const Experiment& experiment) {
   const auto at_once = std::ranges::count_if(
-      experiment.agents, [](const AgentConfig& agent) { return DrivenBy(agent.model) == Wanted::kVelocity; });
+      experiment.agents, [](const AgentConfig& agent) { return agent.traits().driven_by == Wanted::kVelocity; });
   return at_once == 0                   ? "ideal double integrators"
          : at_once == experiment.size() ? "ideal single integrators"
                                         : "ideal single and double integrators";

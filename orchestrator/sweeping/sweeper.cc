@@ -43,7 +43,7 @@ struct Sweep {
 
 /// One run, start to end; its summary. Throws std::runtime_error if it fails.
 std::string FlyOne(const Sweep& sweep, std::size_t run) {
-  Experiment experiment = sweep.Load(run);
+  const Experiment experiment = sweep.Load(run);
   const Prediction prediction = Predict(experiment);
   RunMeter meter(experiment);
   const EngineResult result = RunInProcess(experiment, {&meter}, [] { return true; });
@@ -55,7 +55,7 @@ std::string FlyOne(const Sweep& sweep, std::size_t run) {
 /// Tasks of the pool: runs, then the same runs again, to be read and checked only; of those the resolved experiment.
 WorkerPool::Work WorkOf(const Sweep& sweep) {
   return [sweep](std::size_t task) -> std::string {
-    if (task >= sweep.plan.size()) return sweep.Load(task - sweep.plan.size()).document.Resolved();
+    if (task >= sweep.plan.size()) return sweep.Load(task - sweep.plan.size()).resolved;
     nlohmann::json cells = SweepMetrics(FlyOne(sweep, task));
     return cells.dump();
   };

@@ -16,7 +16,7 @@ void Move(Wanted driven_by, const Command& command, double h, Motion& motion) {
 
 }  // namespace
 
-IdealTeam::IdealTeam(Experiment& experiment)
+IdealTeam::IdealTeam(const Experiment& experiment)
     : experiment_(experiment),
       team_(experiment),
       motions_(static_cast<std::size_t>(experiment.size())),
@@ -25,7 +25,7 @@ IdealTeam::IdealTeam(Experiment& experiment)
     Motion& motion = motions_[static_cast<std::size_t>(config.id - 1)];
     motion.p_WB = config.p_W;
     motion.v_WB = config.v_W;
-    const double heading_rad = TurnsToHeading(config.model) ? config.control.heading_rad : config.heading_rad;
+    const double heading_rad = config.traits().turns_to_heading ? config.control.heading_rad : config.heading_rad;
     motion.q_WB = Eigen::AngleAxisd(heading_rad, Eigen::Vector3d::UnitZ());  // a law may look at it
   }
 }
@@ -38,7 +38,7 @@ void IdealTeam::Step() {
   team_.EndTick();
   for (const AgentConfig& config : experiment_.agents) {
     const auto i = static_cast<std::size_t>(config.id - 1);
-    Move(DrivenBy(config.model), commands_[i], experiment_.period_s(), motions_[i]);
+    Move(config.traits().driven_by, commands_[i], experiment_.period_s(), motions_[i]);
   }
   ++tick_;
 }

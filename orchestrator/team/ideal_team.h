@@ -13,7 +13,7 @@ namespace mascot {
 /// models driven by velocity, single integrators: p+ = p + h u. What fidelity is measured against.
 class IdealTeam {
  public:
-  explicit IdealTeam(Experiment& experiment);
+  explicit IdealTeam(const Experiment& experiment);
   /// Position of agent `id` at the current tick, in W (m).
   const Eigen::Vector3d& p_W(int id) const { return motions_[static_cast<std::size_t>(id - 1)].p_WB; }
   /// From this tick to the next.

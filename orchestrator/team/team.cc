@@ -2,7 +2,7 @@
 
 namespace mascot {
 
-Team::Team(Experiment& experiment) : exchange_(experiment) {
+Team::Team(const Experiment& experiment) : exchange_(experiment) {
   for (const AgentConfig& config : experiment.agents) agents_.push_back(std::make_unique<Agent>(experiment, config.id));
 }
 

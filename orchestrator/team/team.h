@@ -13,7 +13,7 @@ namespace mascot {
 /// All agents of an experiment in one process. At each tick every agent is asked once, then the tick ends.
 class Team {
  public:
-  explicit Team(Experiment& experiment);
+  explicit Team(const Experiment& experiment);
 
   /// Agent::Decide of agent `id`, everybody being where `motions` (by id - 1) say.
   Command Decide(int id, std::int64_t tick, std::span<const Motion> motions);

@@ -4,17 +4,14 @@
 #include <numeric>
 #include <optional>
 
-#include "physics_server/model.h"
+#include "agent/laws.h"
 
 namespace mascot {
 namespace {
 
 std::vector<Eigen::Vector3d> HalfSizes(const Experiment& experiment) {
   std::vector<Eigen::Vector3d> half_m;
-  for (const AgentConfig& agent : experiment.agents) {
-    half_m.push_back(MakeModel(experiment, agent.id)->half_size_m());
-    if (half_m.back().isZero()) half_m.back().setConstant(kBallRadius_m);
-  }
+  for (const AgentConfig& agent : experiment.agents) half_m.push_back(agent.size_m() / 2);
   return half_m;
 }
 
@@ -25,20 +22,15 @@ std::string Pair(int i, int j) {
 std::optional<std::string> StartInGround(const Experiment& experiment, const std::vector<Eigen::Vector3d>& half_m) {
   for (std::size_t i = 0; i < half_m.size(); ++i) {
     const AgentConfig& agent = experiment.agents[i];
-    if (agent.p_W.z() < half_m[i].z() && MakeModel(experiment, agent.id)->touches_ground()) {
+    if (agent.p_W.z() < half_m[i].z() && !agent.traits().rolls) {
       return "agents.position_m: agent " + std::to_string(agent.id) + " starts in the ground";
     }
   }
   return std::nullopt;
 }
 
-/// Laws that bring all agents to one place, where only held heights keep them apart.
-bool Gathers(const std::string& law) {
-  return law == "consensus" || law == "velocity_consensus" || law == "minmax" || law == "waypoint";
-}
-
 std::optional<std::string> MeetingPoint(const Experiment& experiment, const std::vector<Eigen::Vector3d>& half_m) {
-  if (experiment.size() < 2 || !Gathers(experiment.law.name)) return std::nullopt;
+  if (experiment.size() < 2 || !EntryOf(experiment.law).gathers) return std::nullopt;
   if (experiment.law.axes == Axes::kXyz) {
     return "physics.collisions: all agents head for the same place in x, y and z and will touch there";
   }

@@ -15,7 +15,7 @@ std::vector<std::string> LiftWarnings(const Experiment& experiment) {
   for (const AgentConfig& agent : experiment.agents) {
     const Airframe& airframe = agent.airframe;
     const double weight_n = airframe.mass_kg * experiment.physics.gravity_m_per_s2;
-    if (agent.model != "quadrotor" || airframe.max_thrust_n > weight_n) continue;
+    if (!agent.traits().has_airframe || airframe.max_thrust_n > weight_n) continue;
     return {
         fmt::format("agents.airframe: agent {} cannot lift itself: its rotors give {:.4g} N at most (max_thrust_n), "
                     "its weight is {:.4g} N (mass_kg, physics.gravity_m_per_s2)",

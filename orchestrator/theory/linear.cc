@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "agent/laws/consensus.h"
+#include "agent/laws.h"
 #include "agent/laws/reach.h"
 #include "orchestrator/theory/linear_team.h"
 #include "orchestrator/theory/links_on_average.h"
@@ -86,7 +86,7 @@ void LinearCase::FindModes() {
 /// The gain that would have to be larger if modes do not decay, and how large.
 GainBound LinearCase::Gain() const {
   const LinearAgent& all = *common_;
-  const bool relative = all.g > 0, velocity = experiment_.law.name == "velocity_consensus";
+  const bool relative = all.g > 0, velocity = WantedBy(experiment_.law) == Wanted::kVelocity;
   double least = 0;
   for (Eigen::Index i = 1; i < lambda_.size(); ++i)
     least =
@@ -241,7 +241,7 @@ std::string WhyNot(const Experiment& experiment, const Linearity& linearity, con
 
 }  // namespace
 
-void PredictLinear(Experiment& experiment, const Timeline& timeline, Prediction& prediction) {
+void PredictLinear(const Experiment& experiment, const Timeline& timeline, Prediction& prediction) {
   if (!prediction.persistence->joint) return;  // as the warnings say
   const Linearity linearity = LinearTeamOf(experiment);
   prediction.silent = WhyNot(experiment, linearity, timeline);

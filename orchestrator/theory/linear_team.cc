@@ -2,60 +2,28 @@
 
 #include <algorithm>
 
-#include "agent/controller.h"
-#include "agent/laws/consensus.h"
-#include "agent/laws/formation.h"
+#include "agent/laws.h"
 #include "agent/laws/reach.h"
-#include "agent/laws/velocity_consensus.h"
 
 namespace mascot {
 namespace {
 
-/// What a law contributes: its gains, and what it wants.
-struct LinearLaw {
-  Wanted wanted = Wanted::kAcceleration;
-  double p = 0;
-  double g = 0;
-  double beta = 0;
-  bool leader_flies = false;
-  std::vector<Eigen::Vector3d> place_W = {};  // by id - 1; empty: all zero
-};
-
-LinearLaw ReadLaw(const Experiment& experiment, LawConfig law) {
-  if (law.name == "velocity_consensus") return {.wanted = Wanted::kVelocity, .p = ReadVelocityConsensus(law)};
-  if (law.name == "formation") {
-    FormationParams params = ReadFormation(experiment, law);
-    return {.p = params.p_gain,
-            .g = params.v_gain,
-            .beta = params.beta,
-            .leader_flies = params.leader_flight.has_value(),
-            .place_W = std::move(params.d_W)};
-  }
-  const ConsensusParams params = ReadConsensus(law);
-  return {
-      .p = params.p_gain, .g = params.v_gain, .beta = params.beta, .leader_flies = params.leader_flight.has_value()};
-}
-
-bool IsLinear(const std::string& law) {
-  return law == "consensus" || law == "formation" || law == "velocity_consensus";
-}
-
 double Drag(const AgentConfig& agent) {
-  if (agent.model != "quadrotor" || agent.control.drag_compensation) return 0;
+  if (!agent.traits().has_airframe || agent.control.drag_compensation) return 0;
   return agent.airframe.linear_drag_kg_per_s / agent.airframe.mass_kg;
 }
 
-/// How the agent's model does what a law with these gains wants.
-LinearAgent Driven(const AgentConfig& agent, const LinearLaw& law) {
-  const bool by_velocity = DrivenBy(agent.model) == Wanted::kVelocity;
-  LinearAgent linear{.p = law.p, .g = law.g, .b = law.beta};
+/// How the agent's model does what a law of this form, which wants `wanted`, asks for.
+LinearAgent Driven(const AgentConfig& agent, const LinearForm& form, Wanted wanted) {
+  const bool by_velocity = agent.traits().driven_by == Wanted::kVelocity;
+  LinearAgent linear{.p = form.p, .g = form.g, .b = form.beta};
   if (by_velocity) {
-    linear.order = law.wanted == Wanted::kVelocity ? 1 : 2;
+    linear.order = wanted == Wanted::kVelocity ? 1 : 2;
     linear.hold = 1;
     return linear;
   }
   const double k_v = agent.control.velocity_gain;
-  if (law.wanted == Wanted::kVelocity) linear.p = k_v * law.p, linear.b = k_v;
+  if (wanted == Wanted::kVelocity) linear.p = k_v * form.p, linear.b = k_v;
   linear.drag_b = Drag(agent);
   linear.b += linear.drag_b;
   linear.off_b = k_v + linear.drag_b;
@@ -63,18 +31,18 @@ LinearAgent Driven(const AgentConfig& agent, const LinearLaw& law) {
 }
 
 /// A leader does not brake, unless it stands still by wanting the velocity 0.
-LinearAgent Leading(LinearAgent agent, const LinearLaw& law) {
+LinearAgent Leading(LinearAgent agent, bool flies, Wanted wanted) {
   agent.p = agent.g = 0;
   agent.listens = false;
-  agent.flies = law.leader_flies;
-  if (law.wanted == Wanted::kAcceleration) agent.b = agent.drag_b;
+  agent.flies = flies;
+  if (wanted == Wanted::kAcceleration) agent.b = agent.drag_b;
   return agent;
 }
 
 std::string Unicycles(const Experiment& experiment) {
   std::vector<int> ids;
   for (const AgentConfig& agent : experiment.agents)
-    if (agent.model == "unicycle") ids.push_back(agent.id);
+    if (agent.traits().rolls) ids.push_back(agent.id);
   if (ids.empty()) return "";
   return AgentList(ids) + (ids.size() == 1 ? " is a unicycle, which turns" : " are unicycles, which turn") +
          " before going where wanted";
@@ -82,7 +50,7 @@ std::string Unicycles(const Experiment& experiment) {
 
 std::string StrangeLaw(const Experiment& experiment) {
   for (const AgentConfig& agent : experiment.agents)
-    if (!IsLinear(agent.law.name) && agent.law.name != "waypoint")
+    if (!LinearFormOf(agent.law))
       return "theory does not know the law " + agent.law.name + " of agent " + std::to_string(agent.id);
   return "";
 }
@@ -117,8 +85,8 @@ Graph LinearTeam::Followed(const Graph& graph) const {
   return Graph(std::move(heard));
 }
 
-LinearAgent WaypointAgent(const AgentConfig& agent, double p_gain, double d_gain) {
-  return Driven(agent, {.p = p_gain, .beta = d_gain});
+LinearAgent FlyingAgent(const AgentConfig& agent, const LinearForm& form) {
+  return Driven(agent, form, Wanted::kAcceleration);
 }
 
 Linearity LinearTeamOf(const Experiment& experiment) {
@@ -126,19 +94,20 @@ Linearity LinearTeamOf(const Experiment& experiment) {
     if (!why_not.empty()) return {std::nullopt, std::move(why_not)};
   LinearTeam team;
   const std::vector<Eigen::Vector3d> nowhere(experiment.agents.size(), Eigen::Vector3d::Zero());
-  std::optional<LinearLaw> common;  // of all without a law of their own
   for (const AgentConfig& agent : experiment.agents) {
-    if (agent.law.name == "waypoint") {
-      team.agents.push_back(Leading(Driven(agent, {}), {.leader_flies = true}));
+    const LinearForm form = *LinearFormOf(agent.law);
+    if (!form.listens) {
+      const Wanted wanted = Wanted::kAcceleration;
+      team.agents.push_back(Leading(Driven(agent, {}, wanted), form.leader_flies, wanted));
       continue;
     }
-    if (!agent.has_own_law && !common) common = ReadLaw(experiment, agent.law);
-    const LinearLaw law = agent.has_own_law ? ReadLaw(experiment, agent.law) : *common;
-    const LinearAgent driven = Driven(agent, law);
-    team.agents.push_back(agent.id == agent.law.leader ? Leading(driven, law) : driven);
-    const auto& place_W = law.place_W.empty() ? nowhere : law.place_W;
-    if (team.place_W.empty()) team.place_W = place_W;
-    if (team.place_W != place_W) return {std::nullopt, "agents keep different formations"};
+    const Wanted wanted = WantedBy(agent.law);
+    const LinearAgent driven = Driven(agent, form, wanted);
+    team.agents.push_back(agent.id == agent.law.leader ? Leading(driven, form.leader_flies, wanted) : driven);
+    std::span<const Eigen::Vector3d> place_W = PlacesOf(agent.law);
+    if (place_W.empty()) place_W = nowhere;
+    if (team.place_W.empty()) team.place_W.assign(place_W.begin(), place_W.end());
+    if (!std::ranges::equal(team.place_W, place_W)) return {std::nullopt, "agents keep different formations"};
   }
   if (team.place_W.empty()) team.place_W = nowhere;
   return {std::move(team), ""};

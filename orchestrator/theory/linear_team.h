@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "agent/laws.h"
 #include "experiment/experiment.h"
 #include "orchestrator/theory/modes.h"
 
@@ -53,7 +54,7 @@ struct Linearity {
 };
 
 Linearity LinearTeamOf(const Experiment& experiment);
-/// Of an agent that flies the waypoint law alone: with p and b, and nobody to listen to.
-LinearAgent WaypointAgent(const AgentConfig& agent, double p_gain, double d_gain);
+/// An agent that flies to its target by itself, under a law of this form, which does not listen.
+LinearAgent FlyingAgent(const AgentConfig& agent, const LinearForm& form);
 
 }  // namespace mascot

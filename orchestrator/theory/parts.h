@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "agent/laws.h"
 #include "experiment/experiment.h"
 #include "orchestrator/theory/modes.h"
 #include "orchestrator/theory/theory.h"
@@ -28,8 +29,9 @@ bool JudgeModes(const Experiment& experiment, std::span<const LinearMode> modes,
 bool JudgePeriod(const Experiment& experiment, double longest_s, Prediction& prediction);
 
 // Each adds to what is known of persistence.
-void PredictLinear(Experiment& experiment, const Timeline& timeline, Prediction& prediction);    // linear.cc
-void PredictWaypoint(Experiment& experiment, const Timeline& timeline, Prediction& prediction);  // waypoint.cc
-void PredictMinmax(Experiment& experiment, const Timeline& timeline, Prediction& prediction);    // minmax.cc
+void PredictLinear(const Experiment& experiment, const Timeline& timeline, Prediction& prediction);  // linear.cc
+void PredictFlight(const Experiment& experiment, const LinearForm& form, Prediction& prediction);    // flight.cc
+void PredictPursuit(const Experiment& experiment, const Timeline& timeline, const PursuitForm& law,
+                    Prediction& prediction);  // pursuit.cc
 
 }  // namespace mascot

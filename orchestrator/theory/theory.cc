@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <iterator>
 
 #include "agent/laws.h"
 #include "agent/python.h"
@@ -38,7 +37,7 @@ void Keep(std::optional<FirstCommand>& worst, const FirstCommand& first) {
   if (!worst || first.asked * worst->limit > worst->asked * first.limit) worst = first;
 }
 
-void PredictFirstCommand(Experiment& experiment, Prediction& prediction) {
+void PredictFirstCommand(const Experiment& experiment, Prediction& prediction) {
   const MutedPython muted;
   Experiment prompt = experiment;
   prompt.links = {};  // delays and losses only put off the moment at which agents hear all their neighbours
@@ -46,13 +45,12 @@ void PredictFirstCommand(Experiment& experiment, Prediction& prediction) {
   const std::vector<Motion> motions = Start(experiment);
   for (const AgentConfig& agent : experiment.agents) {
     const Command command = team.Want(agent.id, 0, motions);
-    const bool velocity =
-        DrivenBy(agent.model) == Wanted::kVelocity && MakeLaw(prompt, agent.id)->wanted() == Wanted::kVelocity;
+    const bool velocity = agent.traits().driven_by == Wanted::kVelocity && WantedBy(agent.law) == Wanted::kVelocity;
     const Motion& start = motions[static_cast<std::size_t>(agent.id - 1)];
     const double asked = Asked(command, start, velocity, experiment.period_s());
     const double limit = velocity ? agent.control.max_speed_m_per_s : agent.control.max_acceleration_m_per_s2;
     Keep(velocity ? prediction.first_speed : prediction.first_acceleration, {agent.id, asked, limit});
-    if (agent.model != "quadrotor") continue;
+    if (!agent.traits().has_airframe) continue;
     const double sideways = std::min(command.a_law_W.head<2>().cwiseAbs().maxCoeff(), limit);
     Keep(prediction.first_lean, {agent.id, sideways, LeanLimit(agent, experiment.physics.gravity_m_per_s2)});
   }
@@ -67,7 +65,7 @@ void WarnOfFirstCommand(const std::optional<FirstCommand>& first, std::string_vi
 }
 
 void WarnOfFirstCommands(const Experiment& experiment, Prediction& prediction) {
-  if (experiment.law.name != "minmax")  // there WarnOfCutBeta has said so
+  if (!PursuitFormOf(experiment.law))  // of a law of pursuit WarnOfCutBeta has said so
     WarnOfFirstCommand(prediction.first_acceleration, "control.max_acceleration_m_per_s2", "m/s^2", prediction);
   WarnOfFirstCommand(prediction.first_speed, "control.max_speed_m_per_s", "m/s", prediction);
   if (const auto& first = prediction.first_lean; first && first->asked > first->limit)
@@ -85,42 +83,36 @@ void WarnOfShortRun(const Experiment& experiment, Prediction& prediction) {
                       experiment.run.duration_s, *time_s));
 }
 
-struct Predictor {
-  std::string_view law;
-  void (*predict)(Experiment& experiment, const Timeline& timeline, Prediction& prediction);
-  bool meets;  ///< its agents want to: a spanning tree matters
-};
-
-constexpr Predictor kPredictors[] = {
-    {"consensus", PredictLinear, true},
-    {"formation", PredictLinear, true},
-    {"velocity_consensus", PredictLinear, true},
-    {"waypoint", PredictWaypoint, false},
-    {"minmax", PredictMinmax, true},
-};
-
-void PredictLaw(Experiment& experiment, Prediction& prediction) {
+/// What theory says of the law, by the forms that its row gives it.
+void PredictLaw(const Experiment& experiment, Prediction& prediction) {
   const std::optional<Timeline> timeline = TimelineOf(experiment);
   if (timeline) prediction.persistence = PersistenceOf(experiment, *timeline);
-  const auto* predictor = std::ranges::find(kPredictors, experiment.law.name, &Predictor::law);
-  if (predictor == std::end(kPredictors)) {
+  const std::optional<LinearForm> linear = LinearFormOf(experiment.law);
+  const std::optional<PursuitForm> pursuit = PursuitFormOf(experiment.law);
+  if (!linear && !pursuit) {
     prediction.silent = "theory does not know the law " + experiment.law.name;
-  } else if (!timeline) {
+    return;
+  }
+  if (!timeline) {
     prediction.silent =
         fmt::format("graph.repeat_s: the schedule is not back at the same tick soon, or changes more than {} times",
                     kMostIntervals);
-  } else {
-    if (predictor->meets) {
-      for (std::string& warning : PersistenceWarnings(experiment, *timeline, *prediction.persistence))
-        prediction.warnings.push_back(std::move(warning));
-    }
-    predictor->predict(experiment, *timeline, prediction);
+    return;
   }
+  if (EntryOf(experiment.law).agrees)
+    for (std::string& warning : PersistenceWarnings(experiment, *timeline, *prediction.persistence))
+      prediction.warnings.push_back(std::move(warning));
+  if (pursuit)
+    PredictPursuit(experiment, *timeline, *pursuit, prediction);
+  else if (linear->listens)
+    PredictLinear(experiment, *timeline, prediction);
+  else
+    PredictFlight(experiment, *linear, prediction);
 }
 
 }  // namespace
 
-Prediction Predict(Experiment& experiment) {
+Prediction Predict(const Experiment& experiment) {
   Prediction prediction;
   prediction.on_average =
       LosesSome(experiment) || !experiment.sensors.own.IsNone() || !experiment.sensors.heard.IsNone();

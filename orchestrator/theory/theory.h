@@ -52,7 +52,7 @@ struct Prediction {
 };
 
 /// For an experiment that LoadExperiment returned. Eigenvalues are left out above kLargestSpectrum agents.
-Prediction Predict(Experiment& experiment);
+Prediction Predict(const Experiment& experiment);
 
 inline constexpr int kLargestSpectrum = 1000;
 

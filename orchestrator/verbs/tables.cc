@@ -7,9 +7,9 @@
 #include <memory>
 
 #include "agent/laws.h"
+#include "experiment/model_traits.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/verbs/verb.h"
-#include "physics_server/model.h"
 
 namespace mascot {
 namespace {
@@ -77,7 +77,7 @@ int ShowLaws(bool json) {
 
 int ShowModels(bool json) {
   Json table = Json::array();
-  for (const ModelEntry& model : Models()) {
+  for (const ModelTraits& model : Models()) {
     if (json) {
       table.push_back({{"name", model.name}, {"summary", model.summary}, {"actuator", model.actuator}});
     } else {

@@ -35,7 +35,7 @@ struct UpArgs {
   bool force = false, json = false, quiet = false;
 };
 
-EngineResult RunInThisProcess(Experiment& experiment, const std::vector<RowSink*>& sinks, Console& console,
+EngineResult RunInThisProcess(const Experiment& experiment, const std::vector<RowSink*>& sinks, Console& console,
                               StopSignal& stop) {
   const Interruptions interruptions(stop, console);
   EngineResult result = RunInProcess(experiment, sinks, [&] { return interruptions.signal() == 0; });
@@ -45,13 +45,15 @@ EngineResult RunInThisProcess(Experiment& experiment, const std::vector<RowSink*
 
 /// The resolved experiment as it is attached to the recording: two runs of which only the way over the wire differed
 /// have the same recording.
-std::string WithoutDelivery(const std::string& resolved, const Experiment& experiment) {
+std::string WithoutDelivery(const Experiment& experiment) {
   const auto& network = experiment.network;
-  if (network.domain < 0 && network.agents_per_process == 1 && network.delivery == Delivery::kTopics) return resolved;
+  if (network.domain < 0 && network.agents_per_process == 1 && network.delivery == Delivery::kTopics)
+    return experiment.resolved;
   const Override usual[] = {
       {"network.domain", "\"auto\""}, {"network.agents_per_process", "1"}, {"network.delivery", "\"topics\""}};
-  return LoadExperiment(Section::FromText(resolved, "config.toml", usual), experiment.run.name, /*checked=*/true)
-      .document.Resolved();
+  return LoadExperiment(Section::FromText(experiment.resolved, "config.toml", usual), experiment.run.name,
+                        /*checked=*/true)
+      .resolved;
 }
 
 int ExitCode(const EngineResult& result) {
@@ -80,24 +82,23 @@ void RefuseRealtimeInOneProcess(const Experiment& experiment, const std::string&
 int Up(const UpArgs& args) {
   const auto launched = WallClock::now();
   StopSignal stop;
-  Experiment experiment = args.config.Load();
+  const Experiment experiment = args.config.Load();
   RefuseRealtimeInOneProcess(experiment, args.engine);
   const bool over_dds = args.engine == "dds";
   if (over_dds) RefuseTooManyProcesses(experiment);
   const Prediction prediction = Predict(experiment);
-  const std::string resolved = experiment.document.Resolved();
 
   const RunFolder folder(args.out, experiment.run.name, args.force);
-  folder.Write("config.toml", resolved);
+  folder.Write("config.toml", experiment.resolved);
   Console console(args.quiet || args.json);
   for (const std::string& warning : prediction.warnings) console.Line("warning: " + warning);
   if (over_dds)
     for (const std::string& warning : DeliveryWarnings(experiment)) console.Line("warning: " + warning);
-  RunWriter writer(experiment, folder, WithoutDelivery(resolved, experiment));
+  RunWriter writer(experiment, folder, WithoutDelivery(experiment));
   RunMeter meter(experiment);
   Progress progress(experiment, meter, console);
   const std::vector<RowSink*> sinks{&writer, &meter, &progress};
-  EngineResult result = over_dds ? RunOverDds(experiment, resolved, folder, sinks, console, stop)
+  EngineResult result = over_dds ? RunOverDds(experiment, folder, sinks, console, stop)
                                  : RunInThisProcess(experiment, sinks, console, stop);
   console.EndProgress();
   try {

@@ -46,8 +46,8 @@ void StepAside() {
 /// One run, from the domain's lock to the last process gone.
 class DdsRun {
  public:
-  DdsRun(const Experiment& experiment, const std::string& resolved, const RunFolder& folder,
-         const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop);
+  DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Console& console,
+         StopSignal& stop);
   EngineResult Run();
 
  private:
@@ -95,7 +95,6 @@ class DdsRun {
   const std::vector<AgentRange> processes_;
   const bool with_server_;
   const RunFolder& folder_;
-  const std::string& resolved_;
   std::optional<DomainLock> lock_;
   ChildLogs logs_;
   Children children_;
@@ -107,8 +106,8 @@ class DdsRun {
   std::optional<Recorder> recorder_;
 };
 
-DdsRun::DdsRun(const Experiment& experiment, const std::string& resolved, const RunFolder& folder,
-               const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop)
+DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
+               Console& console, StopSignal& stop)
     : experiment_(experiment),
       console_(console),
       stop_(stop),
@@ -117,7 +116,6 @@ DdsRun::DdsRun(const Experiment& experiment, const std::string& resolved, const 
       processes_(AgentProcesses(experiment)),
       with_server_(std::ssize(processes_) + 2 > kMostPeers),
       folder_(folder),
-      resolved_(resolved),
       logs_([&console](const std::string& process, const std::string& line) { console.ChildLine(process, line); }),
       children_(logs_),
       feed_(experiment, sinks) {}
@@ -131,7 +129,7 @@ void DdsRun::Join() {
   if (with_server_) discovery_server_.emplace(Options("discovery_server", DiscoveryRole::kServer), [] {});
   domain_.emplace(Options("orchestrator", with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake,
                   &audit_);
-  hub_.emplace(*domain_, experiment_, resolved_, folder_, wake);
+  hub_.emplace(*domain_, experiment_, folder_, wake);
   recorder_.emplace(*domain_, experiment_, feed_);
 }
 
@@ -400,9 +398,9 @@ void DdsRun::End() {
 
 }  // namespace
 
-EngineResult RunOverDds(const Experiment& experiment, const std::string& resolved, const RunFolder& folder,
-                        const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop) {
-  return DdsRun(experiment, resolved, folder, sinks, console, stop).Run();
+EngineResult RunOverDds(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
+                        Console& console, StopSignal& stop) {
+  return DdsRun(experiment, folder, sinks, console, stop).Run();
 }
 
 }  // namespace mascot

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "bus/stop_signal.h"
@@ -13,9 +12,9 @@
 namespace mascot {
 
 /// Runs the experiment as processes on a DDS domain of its own: one physics server, one agent each (those
-/// marked external are waited for), recorded here: `sinks` get every row. `resolved` is what they are told. Returns
+/// marked external are waited for), recorded here: `sinks` get every row. Returns
 /// when every process has ended and nothing of the run is left in shared memory.
-EngineResult RunOverDds(const Experiment& experiment, const std::string& resolved, const RunFolder& folder,
-                        const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop);
+EngineResult RunOverDds(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
+                        Console& console, StopSignal& stop);
 
 }  // namespace mascot

@@ -46,8 +46,7 @@ const char* Text(Ask ask) {
 
 }  // namespace
 
-Hub::Hub(Domain& domain, const Experiment& experiment, const std::string& resolved, const RunFolder& folder,
-         std::function<void()> wake)
+Hub::Hub(Domain& domain, const Experiment& experiment, const RunFolder& folder, std::function<void()> wake)
     : experiment_(experiment),
       wake_(std::move(wake)),
       log_("orchestrator", std::make_shared<spdlog::sinks::basic_file_sink_mt>(folder.Log("orchestrator").string())),
@@ -57,7 +56,7 @@ Hub::Hub(Domain& domain, const Experiment& experiment, const std::string& resolv
       status_(domain, Topic::Status(), [this](const Status& status) { OnStatus(status); }) {
   log_.flush_on(spdlog::level::info);
   message_.name(experiment.run.name);
-  message_.toml(resolved);
+  message_.toml(experiment.resolved);
 }
 
 void Hub::HandOutExperiment() {

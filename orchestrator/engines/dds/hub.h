@@ -22,9 +22,8 @@ class Hub {
  public:
   using Status = mascot_msgs::msg::Status;
 
-  /// `resolved`: the experiment as it is handed out. `wake` is called, from any thread, when the loop should look.
-  Hub(Domain& domain, const Experiment& experiment, const std::string& resolved, const RunFolder& folder,
-      std::function<void()> wake);
+  /// `wake` is called, from any thread, when the loop should look.
+  Hub(Domain& domain, const Experiment& experiment, const RunFolder& folder, std::function<void()> wake);
 
   /// Hands the experiment out if somebody asked for it. Cheap to call often.
   void HandOutExperiment();

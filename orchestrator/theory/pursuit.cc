@@ -1,5 +1,4 @@
 // Min-max time consensus: how long every edge of the tree takes.
-#include "agent/laws/minmax.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -13,12 +12,12 @@ namespace mascot {
 namespace {
 
 /// The slowest axis of the edge from `child` to its parent, if theory knows it.
-std::optional<MinmaxEdge> PredictEdge(const Experiment& experiment, const MinmaxParams& law, int child) {
+std::optional<MinmaxEdge> PredictEdge(const Experiment& experiment, const PursuitForm& law, int child) {
   const auto c = static_cast<std::size_t>(child - 1);
   const int parent = law.parent[c];
   const double alpha = law.beta[c] - law.parent_beta[c];
   const double limit = experiment.agent(child).control.max_acceleration_m_per_s2;
-  const bool exact = parent == experiment.law.leader && !law.root_flight;
+  const bool exact = parent == experiment.law.leader && !law.root_flies;
   // The limits leave a child that has less than the law counts on: against an idle parent it may still do.
   if (exact ? limit <= alpha : limit < law.beta[c]) return std::nullopt;
 
@@ -32,11 +31,11 @@ std::optional<MinmaxEdge> PredictEdge(const Experiment& experiment, const Minmax
   return edge;
 }
 
-void WarnOfCutBeta(const Experiment& experiment, const MinmaxParams& law, Prediction& prediction) {
+void WarnOfCutBeta(const Experiment& experiment, const PursuitForm& law, Prediction& prediction) {
   std::vector<int> cut;
   double limit = 0;  // the largest of theirs
   for (const AgentConfig& agent : experiment.agents) {
-    const bool idle = agent.id == experiment.law.leader && !law.root_flight;
+    const bool idle = agent.id == experiment.law.leader && !law.root_flies;
     const double allowed = agent.control.max_acceleration_m_per_s2;
     if (idle || law.beta[static_cast<std::size_t>(agent.id - 1)] <= allowed) continue;
     cut.push_back(agent.id);
@@ -48,7 +47,7 @@ void WarnOfCutBeta(const Experiment& experiment, const MinmaxParams& law, Predic
                   AgentList(cut), limit));
 }
 
-void WarnOfWeakEdges(const MinmaxParams& law, Prediction& prediction) {
+void WarnOfWeakEdges(const PursuitForm& law, Prediction& prediction) {
   std::vector<int> weak;
   for (std::size_t i = 0; i < law.parent.size(); ++i) {
     if (law.parent[i] != 0 && law.beta[i] <= law.beta[static_cast<std::size_t>(law.parent[i] - 1)])
@@ -61,9 +60,9 @@ void WarnOfWeakEdges(const MinmaxParams& law, Prediction& prediction) {
 }
 
 /// Where everyone gathers, at a root that rests: in z at the mean of the heights that they hold.
-std::optional<Eigen::Vector3d> RestingRoot(const Experiment& experiment, const MinmaxParams& law) {
+std::optional<Eigen::Vector3d> RestingRoot(const Experiment& experiment, const PursuitForm& law) {
   const AgentConfig& root = experiment.agent(experiment.law.leader);
-  if (law.root_flight || !root.v_W.head(CountOf(experiment.law.axes)).isZero(0)) return std::nullopt;
+  if (law.root_flies || !root.v_W.head(CountOf(experiment.law.axes)).isZero(0)) return std::nullopt;
   Eigen::Vector3d value_m = root.p_W;
   if (experiment.law.axes == Axes::kXyz) return value_m;
   value_m.z() = 0;
@@ -75,7 +74,7 @@ std::optional<Eigen::Vector3d> RestingRoot(const Experiment& experiment, const M
 std::string WhyNot(const Experiment& experiment, const Timeline& timeline) {
   for (const AgentConfig& agent : experiment.agents) {
     if (agent.has_own_law) return fmt::format("agents.override: agent {} has a law of its own", agent.id);
-    if (agent.model == "unicycle") return fmt::format("agent {} is a unicycle, which turns before it goes", agent.id);
+    if (agent.traits().rolls) return fmt::format("agent {} is a unicycle, which turns before it goes", agent.id);
   }
   if (!timeline.IsConstant()) return "the graph changes, and a child that does not hear its parent drifts";
   if (experiment.schedule.range_m() > 0) return "graph.range_m: a child that does not hear its parent drifts";
@@ -86,8 +85,8 @@ std::string WhyNot(const Experiment& experiment, const Timeline& timeline) {
 
 }  // namespace
 
-void PredictMinmax(Experiment& experiment, const Timeline& timeline, Prediction& prediction) {
-  const MinmaxParams law = ReadMinmax(experiment, experiment.law);
+void PredictPursuit(const Experiment& experiment, const Timeline& timeline, const PursuitForm& law,
+                    Prediction& prediction) {
   prediction.silent = WhyNot(experiment, timeline);
   if (prediction.silent.empty()) {
     prediction.value_m = RestingRoot(experiment, law);

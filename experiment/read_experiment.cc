@@ -1,0 +1,312 @@
+#include "experiment/read_experiment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "experiment/agents.h"
+#include "experiment/control.h"
+
+namespace mascot {
+namespace {
+
+constexpr double kMaxTicks = 1e9;  // recordings number their samples with 32 bits
+constexpr int kMaxDomain = 100;    // above, DDS's ports meet those that Linux hands out
+
+constexpr std::string_view kModes[] = {"lockstep", "realtime"};
+constexpr std::string_view kSchedulers[] = {"other", "fifo"};
+constexpr std::string_view kAxes[] = {"xy", "xyz"};
+constexpr std::string_view kAutomatic[] = {"auto"};
+constexpr std::string_view kDeliveries[] = {"topics", "bundled"};
+constexpr std::string_view kTransports[] = {"auto", "udp", "shm"};  // bus/qos.cc has a row for each
+
+constexpr Key kRunKeys[] = {
+    key::Text("name", "names the run's folder, and the run").Otherwise("the file's"),
+    key::Number("duration_s", Above(0, 1e6), "simulated time; a whole number of ticks").Required(),
+    key::OneOf("mode", kModes,
+               "lockstep: as fast as it goes, deterministic; realtime: paced by the wall clock, late commands held")
+        .Default("\"lockstep\""),
+    key::Integer("seed", 0, INT64_MAX, "of everything random").Default("1"),
+    key::Number("agent_timeout_s", Above(0, 3600), "how long a command may keep the server waiting, wall clock")
+        .Default("5.0"),
+    key::Number("start_timeout_s", Above(0, 3600), "how long the start may take, wall clock").Default("60.0"),
+    key::Number("speed", Above(0, 1000), "of realtime: simulated seconds per second").Default("1.0"),
+    key::OneOf("scheduler", kSchedulers,
+               "fifo: the server and the agents run at a real-time priority (SCHED_FIFO), if the system permits it; "
+               "other: as any process, in lockstep as a batch job (SCHED_BATCH)")
+        .Default("\"other\""),
+    key::Boolean("pin_cores", "each process over DDS keeps to one core").Default("false"),
+    key::Boolean("lock_memory", "their memory is never swapped out, if the system permits it").Default("false"),
+};
+
+constexpr Key kLawKeys[] = {
+    key::Text("name", "one of the laws below").Otherwise("the first of them"),
+    key::Integer("leader", 0, kMaxAgents, "agent that leads; 0: none").Default("0"),
+    key::OneOf("axes", kAxes, "what the law governs; with xy heights are held").Otherwise("the law's own"),
+};
+
+constexpr Key kRecordKeys[] = {
+    key::Text("file", "name of the recording in the run's folder, ending in .mcap").Default("\"run.mcap\""),
+    key::Texts("topics", "which topics it holds; shell patterns").Default("[\"*\"]"),
+};
+
+constexpr Key kOutputKeys[] = {
+    key::Boolean("position_plot", "pictures of positions").Default("true"),
+    key::Boolean("velocity_plot", "pictures of velocities").Default("true"),
+    key::Boolean("save_plot", "pictures as files").Default("true"),
+    key::Boolean("show_plot", "pictures in windows, at the end").Default("false"),
+    key::Boolean("save_data", "states.npz").Default("true"),
+    key::Boolean("fidelity", "compares with ideal bodies; their laws run in the orchestrator too").Default("true"),
+};
+
+Key DomainKey() {
+  Key row =
+      key::OneOf("domain", kAutomatic, "DDS domain; auto: a free one").Or(ValueKind::kInteger).Default("\"auto\"");
+  row.max_integer = kMaxDomain;
+  return row;
+}
+
+bool IsNameCharacter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
+         c == '-' || c == ' ';
+}
+
+bool IsName(std::string_view name) {
+  constexpr std::size_t kLongest = 100;
+  return !name.empty() && name.size() <= kLongest && std::string_view("._- ").find(name.front()) == name.npos &&
+         std::all_of(name.begin(), name.end(), IsNameCharacter);
+}
+
+/// A name made of a file's: what a name cannot hold becomes '_'.
+std::string NameFrom(std::string text) {
+  for (char& c : text)
+    if (!IsNameCharacter(c)) c = '_';
+  return IsName(text) ? text : "experiment";
+}
+
+void ReadRun(Section& section, const std::string& default_name, Experiment& experiment) {
+  auto& run = experiment.run;
+  run.name = section.Text("name", NameFrom(default_name));
+  if (!section.Wrong("name") && !IsName(run.name))
+    section.Fail("name",
+                 "expected a letter or digit, then letters, digits, '.', '_', '-' and spaces, got '" + run.name + "'");
+  run.duration_s = section.Number("duration_s");
+  run.mode = section.OneOf("mode") == "realtime" ? Mode::kRealtime : Mode::kLockstep;
+  run.seed = static_cast<std::uint64_t>(section.Integer("seed"));
+  run.agent_timeout_s = section.Number("agent_timeout_s");
+  run.start_timeout_s = section.Number("start_timeout_s");
+  run.speed = section.Number("speed");
+  run.scheduler = section.OneOf("scheduler") == "fifo" ? Scheduler::kFifo : Scheduler::kOther;
+  run.pin_cores = section.Boolean("pin_cores");
+  run.lock_memory = section.Boolean("lock_memory");
+  section.Done();
+}
+
+/// What all laws have in common. `laws` null: the document says it all.
+LawConfig ReadLaw(Section& section, int count, const LawCatalog* laws) {
+  LawConfig law;
+  law.name =
+      laws != nullptr ? section.OneOf("name", laws->names(), std::string(laws->names().front())) : section.Text("name");
+  law.leader = static_cast<int>(section.Integer("leader", 0, count > 0 ? count : kMaxAgents));
+  const Axes usual = laws != nullptr ? laws->DefaultAxes(law.name) : Axes::kXy;
+  law.axes = section.OneOf("axes", kAxes, usual == Axes::kXyz ? "xyz" : "xy") == "xyz" ? Axes::kXyz : Axes::kXy;
+  return law;
+}
+
+/// The parts of an override that stand in place of [control] and [law], or of some of their keys. `team_law` is [law].
+void FinishOverride(AgentOverride& override, Section& control, const Section& team_law, int count,
+                    const LawCatalog* laws, Experiment& experiment) {
+  Section& section = override.section;
+  AgentConfig unknown;
+  AgentConfig& agent = override.id > 0 ? experiment.agents[static_cast<std::size_t>(override.id - 1)] : unknown;
+  if (section.Has("control")) {
+    Section own = section.Child("control");
+    own.InheritFrom(control);
+    ReadControl(own, {&agent, 1});
+  }
+  if (section.Has("law")) {
+    Section own = section.Child("law");
+    const bool same_law = !own.Has("name") || own.Text("name") == experiment.law.name;
+    if (same_law) own.InheritFrom(team_law);
+    agent.law = ReadLaw(own, count, laws);
+    agent.has_own_law = true;
+    if (override.id > 0) override.law = own;
+  }
+  section.Done();
+}
+
+/// The parameters of the team's law and of those that agents have of their own.
+void ReadLawParameters(const LawCatalog& laws, Section& team_law, std::vector<AgentOverride>& overrides,
+                       Experiment& experiment) {
+  experiment.law.params = laws.Read(experiment, experiment.law, team_law);
+  for (AgentConfig& agent : experiment.agents)
+    if (!agent.has_own_law) agent.law.params = experiment.law.params;
+  for (AgentOverride& override : overrides) {
+    if (!override.law) continue;
+    LawConfig& own = experiment.agents[static_cast<std::size_t>(override.id - 1)].law;
+    own.params = laws.Read(experiment, own, *override.law);
+  }
+  for (AgentConfig& agent : experiment.agents) agent.sends_messages = agent.law.params->sends_messages;
+  team_law.Done();
+  for (AgentOverride& override : overrides)
+    if (override.law) override.law->Done();
+}
+
+/// Rotors that fail are those of quadrotors.
+void CheckRotorFailures(Section& physics, const Experiment& experiment) {
+  if (experiment.agents.empty() || physics.Wrong("rotor_failures")) return;
+  const auto& failures = experiment.physics.rotor_failures;
+  for (std::size_t k = 0; k < failures.size(); ++k) {
+    const AgentConfig& agent = experiment.agent(failures[k].agent);
+    if (!agent.traits().has_airframe)
+      physics.FailRow("rotor_failures", k,
+                      "expected a quadrotor, got agent " + std::to_string(agent.id) + ", a " + agent.model);
+  }
+}
+
+/// A tick is a whole number of physics steps, a run a whole number of ticks.
+void CheckTime(Section& run, Section& physics, Section& control, const Experiment& experiment) {
+  const int rate_hz = experiment.control.rate_hz;
+  if (control.Wrong("rate_hz")) return;
+  if (!physics.Wrong("rate_hz") && experiment.physics.rate_hz % rate_hz != 0)
+    control.Fail("rate_hz", "expected a divisor of physics.rate_hz (" + std::to_string(experiment.physics.rate_hz) +
+                                "), got " + std::to_string(rate_hz));
+  if (run.Wrong("duration_s") || control.Wrong("rate_hz")) return;
+  constexpr double kTolerance = 1e-9;  // relative: 0.1 s at 30 Hz is 3 ticks although 0.1 is not a binary fraction
+  const double ticks = experiment.run.duration_s * rate_hz;
+  const std::string got = ", got " + ShortestFloat(experiment.run.duration_s);
+  if (ticks > kMaxTicks)
+    run.Fail("duration_s", "expected at most 1000000000 periods of control.rate_hz" + got);
+  else if (std::round(ticks) < 1 || std::abs(ticks - std::round(ticks)) > kTolerance * ticks)
+    run.Fail("duration_s",
+             "expected a whole number of periods of control.rate_hz (" + std::to_string(rate_hz) + ")" + got);
+}
+
+void ReadRecord(Section& section, Experiment& experiment) {
+  auto& record = experiment.record;
+  record.file = section.Text("file");
+  const bool plain = record.file.find('/') == std::string::npos && record.file.find('\0') == std::string::npos;
+  if (!section.Wrong("file") && (!plain || !record.file.ends_with(".mcap") || record.file.size() > 200))
+    section.Fail("file", "expected a file name ending in .mcap, without folders, got '" + record.file + "'");
+  record.topics = section.Texts("topics");
+  section.Done();
+}
+
+void ReadOutput(Section& section, Experiment& experiment) {
+  auto& output = experiment.output;
+  output.position_plot = section.Boolean("position_plot");
+  output.velocity_plot = section.Boolean("velocity_plot");
+  output.save_plot = section.Boolean("save_plot");
+  output.show_plot = section.Boolean("show_plot");
+  output.save_data = section.Boolean("save_data");
+  output.fidelity = section.Boolean("fidelity");
+  section.Done();
+}
+
+void ReadNetwork(Section& section, Experiment& experiment) {
+  auto& network = experiment.network;
+  if (const std::string kind = section.Kind("domain"); kind.empty() || kind == "string") {
+    const std::string domain = section.Text("domain");
+    if (domain != "auto")
+      section.Fail("domain",
+                   "expected \"auto\" or an integer in [0, " + std::to_string(kMaxDomain) + "], got '" + domain + "'");
+  } else {
+    network.domain = static_cast<int>(section.Integer("domain"));
+  }
+  network.transport = section.OneOf("transport");
+  network.agents_per_process = static_cast<int>(section.Integer("agents_per_process"));
+  network.delivery = section.OneOf("delivery") == "bundled" ? Delivery::kBundled : Delivery::kTopics;
+  section.Done();
+}
+
+/// `laws` null: those are not read.
+Experiment Read(Section document, const LawCatalog* laws, const std::string& default_name, bool checked) {
+  document.Use(ExperimentKeys());
+  // In the order of the resolved file; read below in the order in which one needs the other.
+  Section run = document.Child("run"), physics = document.Child("physics"), agents = document.Child("agents"),
+          control = document.Child("control"), sensors = document.Child("sensors"), graph = document.Child("graph"),
+          link = document.Child("link"), law = document.Child("law"), record = document.Child("record"),
+          output = document.Child("output"), network = document.Child("network");
+  document.Done();
+
+  Experiment experiment;
+  experiment.checked = checked;
+  ReadRun(run, default_name, experiment);
+  int count = static_cast<int>(agents.Integer("count"));
+  if (agents.Wrong("count")) count = 0;
+  experiment.physics = ReadPhysics(physics, count);
+  experiment.law = ReadLaw(law, count, laws);
+  std::vector<AgentOverride> overrides = ReadAgents(agents, count, experiment);
+  CheckRotorFailures(physics, experiment);
+  experiment.control.rate_hz = static_cast<int>(control.Integer("rate_hz"));
+  ReadControl(control, experiment.agents);
+  for (AgentOverride& override : overrides) FinishOverride(override, control, law, count, laws, experiment);
+  CheckTime(run, physics, control, experiment);
+  experiment.sensors = ReadSensors(sensors);
+  std::vector<Eigen::Vector3d> p_W;
+  for (const AgentConfig& agent : experiment.agents) p_W.push_back(agent.p_W);
+  experiment.schedule = ReadSchedule(graph, p_W, experiment.run.seed);
+  graph.Done();
+  experiment.graph = experiment.schedule.Union();
+  experiment.links = ReadLinks(link, experiment.graph);
+  ReadRecord(record, experiment);
+  ReadOutput(output, experiment);
+  ReadNetwork(network, experiment);
+
+  // What a law would say of these would only follow from the mistake.
+  if (graph.Wrong("")) {
+    experiment.schedule = Schedule();
+    experiment.graph = Graph({});
+  }
+  const bool unknown =
+      std::ranges::any_of(overrides, [](const auto& override) { return override.section.Wrong("law"); });
+  if (unknown || law.Wrong("name") || law.Wrong("leader")) experiment.agents.clear();
+  if (laws != nullptr && !experiment.agents.empty()) ReadLawParameters(*laws, law, overrides, experiment);
+  document.ThrowIfWrong();
+  experiment.resolved = document.Resolved();
+  return experiment;
+}
+
+}  // namespace
+
+std::span<const Key> LawKeys() { return kLawKeys; }
+
+std::span<const Key> ExperimentKeys() {
+  static const Key network_keys[] = {
+      DomainKey(),
+      key::OneOf("transport", kTransports, "auto: shared memory on one host, UDP between hosts").Default("\"auto\""),
+      key::Integer("agents_per_process", 1, kMaxAgents, "how many agents share a process; each keeps its topics")
+          .Default("1"),
+      key::OneOf(
+          "delivery", kDeliveries,
+          "topics: a reader for each agent that is heard; bundled: one sample with all that an agent may hear, for "
+          "dense graphs")
+          .Default("\"topics\""),
+  };
+  static const Key keys[] = {
+      key::Table("run", kRunKeys, "how long, how fast, from which seed"),
+      key::Table("physics", PhysicsKeys(), "the world"),
+      key::Table("agents", AgentsKeys(), "who flies"),
+      key::Table("control", ControlKeys(), "the low-level stack under the law"),
+      key::Table("sensors", SensorKeys(), "what agents measure: standard deviations of zero-mean Gaussian errors"),
+      key::Table("graph", ScheduleKeys(),
+                 "who hears whom: one of `topology`, `laplacian`, `adjacency`, `edges`, `random`"),
+      key::Table("link", LinkKeys(),
+                 "the network between agents: seeded, in simulated time, each directed edge by itself"),
+      key::Table("law", LawKeys(), "what agents want"),
+      key::Table("record", kRecordKeys, "the recording"),
+      key::Table("output", kOutputKeys, "what else a run leaves behind"),
+      key::Table("network", network_keys, "DDS"),
+  };
+  return keys;
+}
+
+Experiment ReadExperiment(Section document, const LawCatalog& laws, const std::string& default_name, bool checked) {
+  return Read(std::move(document), &laws, default_name, checked);
+}
+
+Experiment ReadWithoutLaws(Section document, const std::string& default_name) {
+  return Read(std::move(document), nullptr, default_name, /*checked=*/true);
+}
+
+}  // namespace mascot

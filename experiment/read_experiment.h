@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "experiment/experiment.h"
+#include "experiment/toml/section.h"
+
+namespace mascot {
+
+/// Every key that an experiment file may have, but for the parameters of single laws (agent/laws.h).
+std::span<const Key> ExperimentKeys();
+/// Those of [law] that all laws have.
+std::span<const Key> LawKeys();
+
+/// The laws that an experiment file may name. Their table lives above this library (agent/laws.h).
+class LawCatalog {
+ public:
+  virtual ~LawCatalog() = default;
+  /// The first is the default of law.name.
+  virtual std::span<const std::string_view> names() const = 0;
+  /// The default of law.axes.
+  virtual Axes DefaultAxes(std::string_view law) const = 0;
+  /// Reads and checks the parameters of all agents that share `law`, which is experiment.law or that of one of
+  /// experiment.agents, from `section`, the table it stands in. All else is read already. Mistakes are noted in
+  /// `section`.
+  virtual std::shared_ptr<const LawParams> Read(const Experiment& experiment, const LawConfig& law,
+                                                Section& section) const = 0;
+};
+
+/// Reads a complete experiment. `checked`: it was read before, without a mistake. Throws ConfigError with all mistakes.
+Experiment ReadExperiment(Section document, const LawCatalog& laws, const std::string& default_name, bool checked);
+/// Reads an experiment that was resolved and checked before, all but the parameters of laws: for those who fly none.
+/// Throws ConfigError.
+Experiment ReadWithoutLaws(Section document, const std::string& default_name);
+
+}  // namespace mascot
