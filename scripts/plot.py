@@ -48,7 +48,7 @@ def drawn(run):
 
 
 def agent_label(run, index):
-    role = {"minmax": " (root)"}.get(run.law.get("name"), " (leader)") if index == run.leader else ""
+    role = f" ({run.drawing['leader']})" if index == run.leader else ""
     return f"agent {run.id[index]}{role}"
 
 
@@ -189,7 +189,7 @@ def acceleration(run):
     """What the law asked for, after the limit: the paper's force, per mass. A velocity that a model takes at once is an
     acceleration over one tick, and not limited."""
     values, what = run.acceleration_command, "commanded acceleration"
-    switches = run.law.get("name") == "minmax"  # between full throttle and full brake: single lines would be a blot
+    switches = run.drawing["switches"]  # between full throttle and full brake: single lines would be a blot
     if switches:
         values, what = moving_mean(run.t, values, SMOOTHING_S), f"{what} (bold: mean over {SMOOTHING_S:g} s)"
     figure, grid = panels(run, values, "$a_{}$", "m/s²", what, run.axes)
@@ -295,12 +295,14 @@ PICTURES = {
     "position": Picture(position, "position_plot", ALWAYS),
     "velocity": Picture(velocity, "velocity_plot", ALWAYS),
     "disagreement": Picture(disagreement_figure, "position_plot", only_if(
-        lambda run: run.size > 1 and run.law.get("name") != "waypoint", "it needs several agents and a law of agreement")),
+        lambda run: run.size > 1 and "disagreement" in run.drawing["pictures"],
+        "it needs several agents and a law of agreement")),
     "acceleration": Picture(acceleration, "velocity_plot", ALWAYS),
     "tracking": Picture(tracking, "position_plot", only_if(
-        lambda run: run.law.get("name") == "minmax" and run.edges, "it needs the min-max law and the graph in summary.json")),
+        lambda run: "tracking" in run.drawing["pictures"] and run.edges,
+        "it needs a law of pursuit and the graph in summary.json")),
     "error": Picture(error, "position_plot", only_if(
-        lambda run: run.law.get("name") == "waypoint", "it needs the waypoint law")),
+        lambda run: "error" in run.drawing["pictures"], "it needs a law that flies to waypoints")),
 }
 
 
@@ -330,6 +332,8 @@ def draw_all(folder, run, only, show):
         print("no display: no window is opened", file=sys.stderr)
         show = False
     matplotlib.rcParams.update(matplotlib.rcParamsDefault | STYLE | LINES | {"backend": plt.get_backend()})
+    if not run.summary.get("drawing"):
+        print(f"{folder}: summary.json does not say how the law is drawn: only what all laws have is", file=sys.stderr)
     names = choose(run, only) if show or run.output("save_plot") else []
     if not names:
         print(f"{folder}: no picture drawn: config.toml's [output] switches them off", file=sys.stderr)

@@ -42,6 +42,11 @@ class Run:
         return self.config.get("law", {})
 
     @property
+    def drawing(self):
+        """How pictures show the law, as its row in the table of laws says."""
+        return {"leader": "leader", "switches": False, "pictures": []} | self.summary.get("drawing", {})
+
+    @property
     def leader(self):
         """Index of the leader (or root), or None."""
         number = self.law.get("leader", 0)

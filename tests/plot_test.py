@@ -21,6 +21,9 @@ CONSENSUS = '[run]\nname = "demo"\n[law]\nname = "consensus"\n'
 LEADER = CONSENSUS + "leader = 2\n"
 MINMAX = '[law]\nname = "minmax"\nleader = 1\n'
 WAYPOINT = '[law]\nname = "waypoint"\naxes = "xyz"\nwaypoints_m = [[4, 0, 1], [4, 4, 1]]\ndwell_s = 0.5\n'
+AGREEMENT = {"leader": "leader", "switches": False, "pictures": ["disagreement"]}
+PURSUIT = {"leader": "root", "switches": True, "pictures": ["disagreement", "tracking"]}
+FLIGHT = {"leader": "leader", "switches": False, "pictures": ["error"]}
 PATH = {"graph": {"edges": [[1, 2, 1.0], [2, 1, 1.0], [2, 3, 1.0], [3, 2, 1.0]]}}
 
 
@@ -51,8 +54,8 @@ class PlotTest(unittest.TestCase):
     def write(self, config=CONSENSUS, summary=None, states=None):
         np.savez(self.folder / "states.npz", **(arrays() if states is None else states))
         (self.folder / "config.toml").write_text(config)
-        if summary is not None:
-            (self.folder / "summary.json").write_text(json.dumps(summary))
+        drawing = PURSUIT if "minmax" in config else FLIGHT if "waypoint\"" in config else AGREEMENT
+        (self.folder / "summary.json").write_text(json.dumps({"drawing": drawing} | (summary or {})))
 
     def run_plot(self, *options):
         """Exit code, and what it wrote to stderr."""
@@ -84,6 +87,14 @@ class Pictures(PlotTest):
         self.write(WAYPOINT)
         self.assertEqual(self.run_plot(), (0, ""))
         self.assertEqual(self.pictures(), ["acceleration", "error", "paths", "position", "velocity"])
+
+    def test_without_its_summary_a_law_gets_what_all_laws_have(self):
+        self.write()
+        (self.folder / "summary.json").unlink()
+        code, errors = self.run_plot()
+        self.assertEqual(code, 0)
+        self.assertRegex(errors, r"summary\.json does not say how the law is drawn: only what all laws have is\n$")
+        self.assertEqual(self.pictures(), ["acceleration", "paths", "position", "velocity"])
 
     def test_one_agent_one_row_and_many_agents_are_drawn(self):
         for agents, rows in ((1, 51), (3, 1), (11, 5), (201, 2)):
@@ -297,8 +308,8 @@ class Errors(PlotTest):
         code, errors = self.run_plot("--only", "speed")
         self.assertEqual(code, 2)
         self.assertRegex(errors, r"^error: argument --only: invalid choice: 'speed' \(choose from 'paths', .*\)\n$")
-        self.check(2, "--only error: it needs the waypoint law", "--only", "error")
-        self.check(2, "--only tracking: it needs the min-max law and the graph in summary.json", "--only", "tracking")
+        self.check(2, "--only error: it needs a law that flies to waypoints", "--only", "error")
+        self.check(2, "--only tracking: it needs a law of pursuit and the graph in summary.json", "--only", "tracking")
         self.check(2, "unrecognized arguments: --fast", "--fast")
 
     def test_a_folder_that_cannot_be_written(self):

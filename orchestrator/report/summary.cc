@@ -1,11 +1,13 @@
+#include "orchestrator/report/summary.h"
+
 #include <algorithm>
 #include <cstdio>
 
+#include "agent/laws.h"
 #include "orchestrator/recording/row_codec.h"
 #include "orchestrator/report/deviation.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/report/prediction_report.h"
-#include "orchestrator/report/summary.h"
 
 namespace mascot {
 namespace {
@@ -87,6 +89,12 @@ Json Formation(const Measured::Formation& formation) {
   Json offsets = Json::array();
   for (const Eigen::Vector3d& d_W : formation.offsets_m) offsets.push_back(VectorJson(d_W));
   return {{"final_rms_m", formation.final_rms_m}, {"worst_rms_m", formation.worst_rms_m}, {"offsets_m", offsets}};
+}
+
+Json ToJson(const Drawing& drawing) {
+  return {{"leader", drawing.leader},
+          {"switches", drawing.switches},
+          {"pictures", std::vector<std::string_view>(drawing.pictures.begin(), drawing.pictures.end())}};
 }
 
 Json Fidelity(const Measured& measured) {
@@ -198,6 +206,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   json["samples"] = {{"topics", facts.topics}, {"recorded", facts.samples}, {"lost", engine.lost}};
   json["wire"] = {{"matches_graph", OrNull(engine.wire_matches_graph)}};
   json["graph"] = {{"edges", EdgesOf(experiment.graph)}};
+  json["drawing"] = ToJson(EntryOf(experiment.law).drawing);
   json["consensus"] = Consensus(experiment, measured, prediction);
   json["control"] = {{"effort", measured.effort_m2_per_s3},
                      {"saturated_fraction", measured.saturated_fraction},
