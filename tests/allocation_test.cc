@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/orchestrator.h"
+#include "tests/param_name.h"
 
 namespace mascot {
 namespace {
@@ -66,10 +67,20 @@ Allocations AllocationsOfTicks(const std::string& engine, const std::string& exp
   return more;
 }
 
-class AllocationsOverDds : public testing::TestWithParam<const char*> {};
+/// What is flown.
+struct Setup {
+  const char* name;
+  const char* toml;
+};
+
+void PrintTo(const Setup& setup, std::ostream* out) { *out << testing::PrintToString(std::string(setup.toml)); }
+
+std::string NameOf(const testing::TestParamInfo<Setup>& row) { return ParamName(row.param.name); }
+
+class AllocationsOverDds : public testing::TestWithParam<Setup> {};
 
 TEST_P(AllocationsOverDds, OfOursAreNoneFromTickToTick) {
-  Allocations counted = AllocationsOfTicks("dds", GetParam());
+  Allocations counted = AllocationsOfTicks("dds", GetParam().toml);
   for (const char* program : {"agent", "physics_server"})
     EXPECT_LT(counted.at(program)[program], kTolerance) << program;
   // The recorder's rows find their sizes; each batch of them is confirmed.
@@ -77,25 +88,31 @@ TEST_P(AllocationsOverDds, OfOursAreNoneFromTickToTick) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Experiments, AllocationsOverDds,
-                         testing::Values("[graph]\ntopology = 'ring'\n",
-                                         "[graph]\ntopology = 'ring'\n[network]\ndelivery = 'bundled'\n"
-                                         "agents_per_process = 2\n"));
+                         testing::Values(Setup{"topics", "[graph]\ntopology = 'ring'\n"},
+                                         Setup{"bundled in processes of 2",
+                                               "[graph]\ntopology = 'ring'\n[network]\ndelivery = 'bundled'\n"
+                                               "agents_per_process = 2\n"}),
+                         NameOf);
 
-class AllocationsInOneProcess : public testing::TestWithParam<const char*> {};
+class AllocationsInOneProcess : public testing::TestWithParam<Setup> {};
 
 TEST_P(AllocationsInOneProcess, OfOursAreNoneFromTickToTick) {
-  EXPECT_LT(AllocationsOfTicks("inprocess", GetParam()).at("orchestrator")["orchestrator"], kTolerance);
+  EXPECT_LT(AllocationsOfTicks("inprocess", GetParam().toml).at("orchestrator")["orchestrator"], kTolerance);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Experiments, AllocationsInOneProcess,
-    testing::Values("[law]\np_gain = 0.1\n",
-                    "[graph]\ntopology = 'ring'\n[link]\nloss = 0.2\ndelay_s = 0.05\njitter_s = 0.02\n",
-                    "[physics]\nwind = { gust_std_m_per_s = 1.0 }\n[sensors.own]\nposition_std_m = 0.01\n[law]\nname = "
-                    "'formation'\nshape = 'circle'\n",
-                    "[graph]\ntopology = 'path'\n[law]\nname = 'minmax'\nleader = 1\nbeta = [0.5, 1, 1.5, 2]\n",
-                    "[physics]\ncollisions = false\n[law]\nname = 'waypoint'\nwaypoints_m = [[1, 1, 1], [2, 2, "
-                    "2]]\n[graph]\nrange_m = 5.0\n"));
+    testing::Values(
+        Setup{"consensus", "[law]\np_gain = 0.1\n"},
+        Setup{"lossy late links", "[graph]\ntopology = 'ring'\n[link]\nloss = 0.2\ndelay_s = 0.05\njitter_s = 0.02\n"},
+        Setup{"formation in gusts with noisy sensors",
+              "[physics]\nwind = { gust_std_m_per_s = 1.0 }\n[sensors.own]\nposition_std_m = 0.01\n"
+              "[law]\nname = 'formation'\nshape = 'circle'\n"},
+        Setup{"minmax", "[graph]\ntopology = 'path'\n[law]\nname = 'minmax'\nleader = 1\nbeta = [0.5, 1, 1.5, 2]\n"},
+        Setup{"waypoints with links of limited range",
+              "[physics]\ncollisions = false\n[law]\nname = 'waypoint'\nwaypoints_m = [[1, 1, 1], [2, 2, 2]]\n"
+              "[graph]\nrange_m = 5.0\n"}),
+    NameOf);
 
 }  // namespace
 }  // namespace mascot

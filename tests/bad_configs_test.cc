@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "agent/laws.h"
+#include "tests/param_name.h"
 #include "tests/scratch.h"
 
 namespace mascot {
@@ -49,12 +50,8 @@ TEST_P(BadConfig, IsRefusedWithTheExpectedWords) {
   EXPECT_EQ(Anonymous(Refusal(GetParam()), GetParam().string()), expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(Corpus, BadConfig, ::testing::ValuesIn(Corpus()), [](const auto& instance) {
-  std::string name = instance.param.stem().string();
-  for (char& c : name)
-    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Corpus, BadConfig, ::testing::ValuesIn(Corpus()),
+                         [](const auto& row) { return test::ParamName(row.param.stem().string()); });
 
 TEST(BadConfigs, AreManyAndEachHasItsExpectation) {
   EXPECT_GE(Corpus().size(), 100u);

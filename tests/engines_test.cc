@@ -11,6 +11,7 @@
 
 #include "orchestrator/engines/dds/domain_lock.h"
 #include "tests/orchestrator.h"
+#include "tests/param_name.h"
 
 namespace mascot::test {
 namespace {
@@ -276,6 +277,10 @@ struct Way {
   std::vector<std::string> processes;  ///< of five agents
 };
 
+void PrintTo(const Way& way, std::ostream* out) {
+  *out << way.delivery << " in processes of " << way.agents_per_process;
+}
+
 class Delivery : public testing::TestWithParam<Way> {};
 
 TEST_P(Delivery, DoesNotChangeABitOfWhatIsFlown) {
@@ -301,9 +306,7 @@ INSTANTIATE_TEST_SUITE_P(Ways, Delivery,
                                          Way{5, "topics", {"agents_1-5"}},
                                          Way{1, "bundled", {"agent_1", "agent_2", "agent_3", "agent_4", "agent_5"}},
                                          Way{3, "bundled", {"agents_1-3", "agents_4-5"}}),
-                         [](const auto& row) {
-                           return std::string(row.param.delivery) + std::to_string(row.param.agents_per_process);
-                         });
+                         NamedAsPrinted<Way>);
 
 TEST(Engines, ThreeHundredAgentsShareTenProcesses) {
   ScratchFolder folder;

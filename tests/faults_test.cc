@@ -2,11 +2,14 @@
 
 #include <gmock/gmock.h>
 
+#include <cstring>
+
 #include "bus/bus.h"
 #include "bus/shared_memory.h"
 #include "bus/wire.h"
 #include "orchestrator/formats/mcap/writer.h"
 #include "tests/orchestrator.h"
+#include "tests/param_name.h"
 
 namespace mascot::test {
 namespace {
@@ -182,7 +185,9 @@ struct Interruption {
   int exit;
 };
 
-void PrintTo(const Interruption& interruption, std::ostream* out) { *out << strsignal(interruption.signal); }
+void PrintTo(const Interruption& interruption, std::ostream* out) {
+  *out << "SIG" << sigabbrev_np(interruption.signal);
+}
 
 class Interrupted : public testing::TestWithParam<Interruption> {};
 
@@ -201,7 +206,7 @@ TEST_P(Interrupted, RunsEndInOrderWithACompleteRecording) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted, testing::Values(Interruption{SIGINT, 130}, Interruption{SIGTERM, 143}),
-                         [](const auto& row) { return row.param.signal == SIGINT ? "CtrlC" : "Terminate"; });
+                         NamedAsPrinted<Interruption>);
 
 TEST(Faults, ASecondCtrlCKillsWhatDoesNotStop) {
   ScratchFolder folder;

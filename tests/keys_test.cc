@@ -7,6 +7,7 @@
 
 #include "orchestrator/formats/mcap/writer.h"
 #include "tests/orchestrator.h"
+#include "tests/param_name.h"
 
 namespace mascot::test {
 namespace {
@@ -27,14 +28,19 @@ struct Flown {
   Up up;
 };
 
-/// `key` set to `value`, on top of `base`, changes what the agents do.
+/// `key` set to `value`, on top of `base`, changes what the agents do. `name`, the test's, is the very key that is
+/// changed; where several rows change it, it says how, or whose.
 struct Row {
   std::string key, value;
   std::vector<std::string> base = {};
+  std::string name = key;
   std::string config = "leaderless";
 };
 
-void PrintTo(const Row& row, std::ostream* out) { *out << row.key << "=" << row.value; }
+void PrintTo(const Row& row, std::ostream* out) {
+  *out << row.key << "=" << row.value;
+  for (const std::string& set : row.base) *out << (&set == &row.base.front() ? " on top of " : ", ") << set;
+}
 
 class Key : public testing::TestWithParam<Row> {};
 
@@ -50,12 +56,7 @@ TEST_P(Key, ChangesTheStates) {
   EXPECT_FALSE(before.up.File("states.npz") == after.up.File("states.npz"));
 }
 
-std::string NameOf(const testing::TestParamInfo<Row>& row) {
-  std::string name = row.param.key + std::to_string(row.index);
-  for (char& c : name)
-    if (c == '.') c = '_';
-  return name;
-}
+std::string NameOf(const testing::TestParamInfo<Row>& row) { return ParamName(row.param.name); }
 
 INSTANTIATE_TEST_SUITE_P(Wind, Key,
                          testing::Values(Row{"physics.wind.mean_m_per_s", "[1, 0, 0]"},
@@ -77,39 +78,51 @@ Row Passing(const std::string& obstacle, const std::string& key, const std::stri
            "physics.obstacles=" + obstacle}};
 }
 
-INSTANTIATE_TEST_SUITE_P(Obstacles, Key,
-                         testing::Values(Passing("[]", "physics.obstacles", Block()),
-                                         Passing(Block(), "physics.obstacles", Block("cylinder")),
-                                         Passing(Block(), "physics.obstacles", Block("sphere")),
-                                         Passing(Block(), "physics.obstacles", Block("box", "[1.3, 0, 1]")),
-                                         Passing(Block(), "physics.obstacles",
-                                                 Block("box", "[1.2, 0, 1]", "[1.1, 1, 1]")),
-                                         Passing(Block(), "physics.obstacles",
-                                                 Block("box", "[1.2, 0, 1]", "[1, 1, 1]", ", heading_rad = 0.1")),
-                                         Passing(Block(), "physics.collisions", "false")),
-                         NameOf);
+/// Another obstacle in place of Block(); `what` is different.
+Row OtherBlock(const std::string& what, const std::string& block) {
+  Row row = Passing(Block(), "physics.obstacles", block);
+  row.name = "physics.obstacles." + what;
+  return row;
+}
 
-/// One rotor failure, in place of that of rotor 1 of agent 1 at 0.5 s.
-Row Failing(int agent, int rotor, const std::string& at_s, const std::string& more = "") {
+INSTANTIATE_TEST_SUITE_P(
+    Obstacles, Key,
+    testing::Values(Passing("[]", "physics.obstacles", Block()), OtherBlock("shape to cylinder", Block("cylinder")),
+                    OtherBlock("shape to sphere", Block("sphere")),
+                    OtherBlock("position_m", Block("box", "[1.3, 0, 1]")),
+                    OtherBlock("size_m", Block("box", "[1.2, 0, 1]", "[1.1, 1, 1]")),
+                    OtherBlock("heading_rad", Block("box", "[1.2, 0, 1]", "[1, 1, 1]", ", heading_rad = 0.1")),
+                    Passing(Block(), "physics.collisions", "false")),
+    NameOf);
+
+/// One rotor failure in place of that of rotor 1 of agent 1 at 0.5 s; `what` is different.
+Row Failing(const std::string& what, int agent, int rotor, const std::string& at_s, const std::string& more = "") {
   return {
       "physics.rotor_failures",
       "[{ agent = " + std::to_string(agent) + ", rotor = " + std::to_string(rotor) + ", at_s = " + at_s + more + "}]",
-      {"physics.rotor_failures=[{ agent = 1, rotor = 1, at_s = 0.5 }]"}};
+      {"physics.rotor_failures=[{ agent = 1, rotor = 1, at_s = 0.5 }]"},
+      "physics.rotor_failures." + what};
 }
 
 INSTANTIATE_TEST_SUITE_P(RotorFailures, Key,
                          testing::Values(Row{"physics.rotor_failures", "[{ agent = 1, rotor = 1, at_s = 0.5 }]"},
-                                         Failing(2, 1, "0.5"), Failing(1, 2, "0.5"), Failing(1, 1, "0.6"),
-                                         Failing(1, 1, "0.5", ", remaining = 0.5")),
+                                         Failing("agent", 2, 1, "0.5"), Failing("rotor", 1, 2, "0.5"),
+                                         Failing("at_s", 1, 1, "0.6"),
+                                         Failing("remaining", 1, 1, "0.5", ", remaining = 0.5")),
                          NameOf);
 
-INSTANTIATE_TEST_SUITE_P(Models, Key,
-                         testing::Values(Row{"agents.heading_rad", "[0, 0, 1, 0]"},
-                                         Row{"agents.heading_rad", "[0, 0, 1, 0]", {"agents.model=unicycle"}},
-                                         Row{"agents.model", "single_integrator", {"agents.model=double_integrator"}},
-                                         Row{"agents.model", "unicycle", {"agents.model=single_integrator"}},
-                                         Row{"agents.override", "[{ id = 2, model = \"unicycle\" }]"}),
-                         NameOf);
+INSTANTIATE_TEST_SUITE_P(
+    Models, Key,
+    testing::Values(
+        Row{"agents.heading_rad", "[0, 0, 1, 0]"},
+        Row{"agents.heading_rad", "[0, 0, 1, 0]", {"agents.model=unicycle"}, "agents.heading_rad of unicycles"},
+        Row{"agents.model",
+            "single_integrator",
+            {"agents.model=double_integrator"},
+            "agents.model to single_integrator"},
+        Row{"agents.model", "unicycle", {"agents.model=single_integrator"}, "agents.model to unicycle"},
+        Row{"agents.override", "[{ id = 2, model = \"unicycle\" }]", {}, "agents.override.model"}),
+    NameOf);
 
 INSTANTIATE_TEST_SUITE_P(
     All, Key,
@@ -121,11 +134,14 @@ INSTANTIATE_TEST_SUITE_P(
             {"agents={ count = 2, position_m = [[0, 0, 1], [1, 0, 1]], velocity_m_per_s = [[1, 0, 0], [-1, 0, 0]] }"}},
         Row{"physics.ground", "false", {"agents.velocity_m_per_s=[[0,0,-8],[0,0,0],[0,0,0],[0,0,0]]"}},
         Row{"agents.count", "5"}, Row{"agents.model", "double_integrator"}, Row{"agents.airframe", "mascot_published"},
-        Row{"agents.airframe", "{ mass_kg = 2.0 }"}, Row{"agents.random", "{ max_m = [5, 5, 4] }"},
-        Row{"agents.random", "{ min_m = [0, 0, 2] }"}, Row{"agents.random", "{ min_separation_m = 1.0 }"},
+        Row{"agents.airframe", "{ mass_kg = 2.0 }", {}, "agents.airframe.mass_kg"},
+        Row{"agents.random", "{ max_m = [5, 5, 4] }", {}, "agents.random.max_m"},
+        Row{"agents.random", "{ min_m = [0, 0, 2] }", {}, "agents.random.min_m"},
+        Row{"agents.random", "{ min_separation_m = 1.0 }", {}, "agents.random.min_separation_m"},
         Row{"agents.velocity_m_per_s", "[[1,0,0],[0,0,0],[0,0,0],[0,0,0]]"},
-        Row{"agents.override", "[{ id = 2, model = \"double_integrator\" }]"},
-        Row{"agents.override", "[{ id = 2, airframe = \"crazyflie\" }]"}, Row{"control.rate_hz", "50"},
+        Row{"agents.override", "[{ id = 2, model = \"double_integrator\" }]", {}, "agents.override.model"},
+        Row{"agents.override", "[{ id = 2, airframe = \"crazyflie\" }]", {}, "agents.override.airframe"},
+        Row{"control.rate_hz", "50"},
         Row{"control.altitude",
             "{ kp = 1.0, kd = 1.0 }",
             {"agents.velocity_m_per_s=[[0,0,1],[0,0,0],[0,0,0],[0,0,0]]"}},
@@ -133,13 +149,13 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"control.attitude", "{ kp = 50.0, kd = 10.0 }"}, Row{"control.heading_rad", "0.5"},
         Row{"control.max_acceleration_m_per_s2", "0.5"}, Row{"control.tilt_limit_rad", "0.01"},
         Row{"control.inversion", "exact"}, Row{"control.drag_compensation", "false"}, Row{"graph.topology", "path"},
-        Row{"graph", "{ laplacian = [[1,-1,0,0],[0,1,-1,0],[0,0,1,-1],[-1,0,0,1]] }"},
-        Row{"graph", "{ adjacency = [[0,1,0,0],[0,0,2,0],[0,0,0,1],[1,0,0,0]] }"},
-        Row{"graph", "{ edges = [[1, 2], [2, 1, 0.5]] }"},
-        Row{"graph", "{ random = { kind = \"erdos_renyi\", p = 0.1 } }"},
+        Row{"graph", "{ laplacian = [[1,-1,0,0],[0,1,-1,0],[0,0,1,-1],[-1,0,0,1]] }", {}, "graph.laplacian"},
+        Row{"graph", "{ adjacency = [[0,1,0,0],[0,0,2,0],[0,0,0,1],[1,0,0,0]] }", {}, "graph.adjacency"},
+        Row{"graph", "{ edges = [[1, 2], [2, 1, 0.5]] }", {}, "graph.edges"},
+        Row{"graph", "{ random = { kind = \"erdos_renyi\", p = 0.1 } }", {}, "graph.random"},
         Row{"graph.random.p", "0.9", {"graph={ random = { kind = \"erdos_renyi\", p = 0.1 } }"}},
-        Row{"agents", "{ count = 4, position_m = [[0,0,1],[1,0,2],[2,0,3],[3,0,4]] }"},
-        Row{"law", "{ name = \"waypoint\", waypoints_m = [[5, 0, 1]] }"}, Row{"law.leader", "2"},
+        Row{"agents", "{ count = 4, position_m = [[0,0,1],[1,0,2],[2,0,3],[3,0,4]] }", {}, "agents.position_m"},
+        Row{"law", "{ name = \"waypoint\", waypoints_m = [[5, 0, 1]] }", {}, "law.name"}, Row{"law.leader", "2"},
         Row{"law.axes", "xyz"}, Row{"law.p_gain", "0.02"}, Row{"law.beta", "0.5"},
         Row{"law.leader_waypoints_m", "[[5,5,1]]", {"law.leader=1"}}),
     NameOf);
@@ -161,22 +177,28 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"run.seed", "2", {"link.loss=0.3", "agents={ count = 2, position_m = [[0, 0, 1], [5, 0, 2]] }"}}),
     NameOf);
 
-/// The one override of links, in place of that of agent 1 hearing agent 2 late.
-Row OtherLinks(const std::string& value) {
-  return {"link.override", "[{ " + value + " }]", {"link.override=[{ edges = [[1, 2]], delay_s = 0.05 }]"}};
+/// The one override of links, in place of that of agent 1 hearing agent 2 late; `what` is different.
+Row OtherLinks(const std::string& what, const std::string& value) {
+  return {"link.override",
+          "[{ " + value + " }]",
+          {"link.override=[{ edges = [[1, 2]], delay_s = 0.05 }]"},
+          "link.override." + what};
 }
 
 INSTANTIATE_TEST_SUITE_P(
     LinkOverride, Key,
     testing::Values(
-        Row{"link.override", "[{ edges = [[1, 2]], delay_s = 0.05 }]"}, OtherLinks("edges = [[2, 1]], delay_s = 0.05"),
-        OtherLinks("edges = [[1, 2], [2, 1]], delay_s = 0.05"), OtherLinks("edges = [[1, 2]], delay_s = 0.06"),
-        OtherLinks("edges = [[1, 2]], delay_s = 0.05, loss = 0.3"),
-        OtherLinks("edges = [[1, 2]], delay_s = 0.05, jitter_s = 0.03"),
-        OtherLinks("edges = [[1, 2]], delay_s = 0.05, reordering = 0.3"),
-        OtherLinks("edges = [[1, 2]], delay_s = 0.05, gilbert_elliott = { good_to_bad = 0.2, bad_to_good = 0.3 }"),
-        Row{"link.override", "[{ edges = [[1, 2]], hold_s = 0.1 }]", {"link.loss=0.3"}},
-        Row{"link.override", "[{ edges = [[2, 1]], symmetric = true }]", {"link.loss=0.3"}}),
+        Row{"link.override", "[{ edges = [[1, 2]], delay_s = 0.05 }]"},
+        OtherLinks("edges turned round", "edges = [[2, 1]], delay_s = 0.05"),
+        OtherLinks("edges both ways", "edges = [[1, 2], [2, 1]], delay_s = 0.05"),
+        OtherLinks("delay_s", "edges = [[1, 2]], delay_s = 0.06"),
+        OtherLinks("loss", "edges = [[1, 2]], delay_s = 0.05, loss = 0.3"),
+        OtherLinks("jitter_s", "edges = [[1, 2]], delay_s = 0.05, jitter_s = 0.03"),
+        OtherLinks("reordering", "edges = [[1, 2]], delay_s = 0.05, reordering = 0.3"),
+        OtherLinks("gilbert_elliott",
+                   "edges = [[1, 2]], delay_s = 0.05, gilbert_elliott = { good_to_bad = 0.2, bad_to_good = 0.3 }"),
+        Row{"link.override", "[{ edges = [[1, 2]], hold_s = 0.1 }]", {"link.loss=0.3"}, "link.override.hold_s"},
+        Row{"link.override", "[{ edges = [[2, 1]], symmetric = true }]", {"link.loss=0.3"}, "link.override.symmetric"}),
     NameOf);
 
 // --- [sensors] --------------------------------------------------------------------------------------
@@ -198,33 +220,43 @@ INSTANTIATE_TEST_SUITE_P(Sensors, Key,
 
 // --- [graph] ----------------------------------------------------------------------------------------
 
-/// A graph of the kind `was`, in place of which stands that of `is`.
-Row OtherRandomGraph(const std::string& was, const std::string& is) {
-  return {"graph", "{ random = { " + is + " } }", {"agents={ count = 8 }", "graph={ random = { " + was + " } }"}};
+/// A graph of the kind `was`, in place of which stands that of `is`; `what` is different.
+Row OtherRandomGraph(const std::string& what, const std::string& was, const std::string& is) {
+  return {"graph",
+          "{ random = { " + is + " } }",
+          {"agents={ count = 8 }", "graph={ random = { " + was + " } }"},
+          "graph.random." + what};
 }
 
 INSTANTIATE_TEST_SUITE_P(
     RandomGraphs, Key,
-    testing::Values(OtherRandomGraph("kind = 'erdos_renyi', p = 0.4", "kind = 'small_world', k = 2, p = 0.4"),
-                    OtherRandomGraph("kind = 'erdos_renyi', p = 0.4", "kind = 'geometric', radius_m = 8.0"),
-                    OtherRandomGraph("kind = 'geometric', radius_m = 8.0", "kind = 'geometric', radius_m = 12.0"),
-                    OtherRandomGraph("kind = 'small_world', k = 2, p = 0.1", "kind = 'small_world', k = 4, p = 0.1"),
-                    OtherRandomGraph("kind = 'small_world', k = 2, p = 0.0", "kind = 'small_world', k = 2, p = 0.9")),
+    testing::Values(
+        OtherRandomGraph("kind to small_world", "kind = 'erdos_renyi', p = 0.4",
+                         "kind = 'small_world', k = 2, p = 0.4"),
+        OtherRandomGraph("kind to geometric", "kind = 'erdos_renyi', p = 0.4", "kind = 'geometric', radius_m = 8.0"),
+        OtherRandomGraph("radius_m", "kind = 'geometric', radius_m = 8.0", "kind = 'geometric', radius_m = 12.0"),
+        OtherRandomGraph("k", "kind = 'small_world', k = 2, p = 0.1", "kind = 'small_world', k = 4, p = 0.1"),
+        OtherRandomGraph("p", "kind = 'small_world', k = 2, p = 0.0", "kind = 'small_world', k = 2, p = 0.9")),
     NameOf);
 
 const std::string kSwitch = "graph.schedule=[{ at_s = 0.4, topology = 'path' }]";
 
 INSTANTIATE_TEST_SUITE_P(
     Schedule, Key,
-    testing::Values(
-        Row{"graph.schedule", "[{ at_s = 0.4, topology = 'path' }]"},
-        Row{"graph.schedule", "[{ at_s = 0.41, topology = 'path' }]", {kSwitch}},
-        Row{"graph.schedule", "[{ at_s = 0.4, topology = 'star' }]", {kSwitch}},
-        Row{"graph.schedule", "[{ at_s = 0.4, edges = [[1, 2]] }]", {kSwitch}},
-        Row{"graph.schedule", "[{ at_s = 0.4, random = { kind = 'erdos_renyi', p = 0.3 } }]", {kSwitch}},
-        Row{"graph.schedule", "[{ at_s = 0.4, topology = 'path' }, { at_s = 0.6, topology = 'star' }]", {kSwitch}},
-        Row{"graph.repeat_s", "0.8", {kSwitch}}, Row{"graph.range_m", "8.0"},
-        Row{"graph.range_m", "12.0", {"graph.range_m=8.0"}}),
+    testing::Values(Row{"graph.schedule", "[{ at_s = 0.4, topology = 'path' }]"},
+                    Row{"graph.schedule", "[{ at_s = 0.41, topology = 'path' }]", {kSwitch}, "graph.schedule.at_s"},
+                    Row{"graph.schedule", "[{ at_s = 0.4, topology = 'star' }]", {kSwitch}, "graph.schedule.topology"},
+                    Row{"graph.schedule", "[{ at_s = 0.4, edges = [[1, 2]] }]", {kSwitch}, "graph.schedule.edges"},
+                    Row{"graph.schedule",
+                        "[{ at_s = 0.4, random = { kind = 'erdos_renyi', p = 0.3 } }]",
+                        {kSwitch},
+                        "graph.schedule.random"},
+                    Row{"graph.schedule",
+                        "[{ at_s = 0.4, topology = 'path' }, { at_s = 0.6, topology = 'star' }]",
+                        {kSwitch},
+                        "graph.schedule of two switches"},
+                    Row{"graph.repeat_s", "0.8", {kSwitch}}, Row{"graph.range_m", "8.0"},
+                    Row{"graph.range_m", "12.0", {"graph.range_m=8.0"}, "graph.range_m from 8 to 12"}),
     NameOf);
 
 // --- [control] --------------------------------------------------------------------------------------
@@ -237,9 +269,14 @@ std::vector<std::string> DrivenByVelocity(const std::string& model) {
 INSTANTIATE_TEST_SUITE_P(
     Control, Key,
     testing::Values(
-        Row{"control.max_speed_m_per_s", "0.5", DrivenByVelocity("single_integrator")},
-        Row{"control.max_speed_m_per_s", "0.5", DrivenByVelocity("quadrotor")},
-        Row{"control.max_speed_m_per_s", "0.05", {"agents.model=single_integrator"}},
+        Row{"control.max_speed_m_per_s", "0.5", DrivenByVelocity("single_integrator"),
+            "control.max_speed_m_per_s of single_integrator with velocity_consensus"},
+        Row{"control.max_speed_m_per_s", "0.5", DrivenByVelocity("quadrotor"),
+            "control.max_speed_m_per_s of quadrotor with velocity_consensus"},
+        Row{"control.max_speed_m_per_s",
+            "0.05",
+            {"agents.model=single_integrator"},
+            "control.max_speed_m_per_s of single_integrator with consensus"},
         Row{"control.velocity_gain", "1.0", DrivenByVelocity("double_integrator")},
         Row{"control.look_ahead_m", "0.2", DrivenByVelocity("unicycle")},
         Row{"control.position", "{ kp = 2.0, kd = 2.0 }"},
@@ -259,26 +296,36 @@ INSTANTIATE_TEST_SUITE_P(
 
 // --- [[agents.override]] ----------------------------------------------------------------------------
 
-/// An override of agent 2 that says `more`.
-Row Override(const std::string& more, std::vector<std::string> base = {}) {
-  return {"agents.override", "[{ id = 2, " + more + " }]", std::move(base)};
+/// An override of agent 2 in which `key` is `value`.
+Row Override(const std::string& key, const std::string& value, std::vector<std::string> base = {}) {
+  return {"agents.override", "[{ id = 2, " + key + " = " + value + " }]", std::move(base), "agents.override." + key};
 }
 
 INSTANTIATE_TEST_SUITE_P(
     AgentsOverride, Key,
-    testing::Values(
-        Override("start_s = 0.5"), Override("start_s = 0.6", {"agents.override=[{ id = 2, start_s = 0.5 }]"}),
-        Override("stop_s = 0.5"), Override("stop_s = 0.6", {"agents.override=[{ id = 2, stop_s = 0.5 }]"}),
-        Row{"agents.override", "[{ id = 3, stop_s = 0.5 }]", {"agents.override=[{ id = 2, stop_s = 0.5 }]"}},
-        Override("law = { p_gain = 0.1 }"), Override("law = { axes = 'xyz' }"), Override("law = { leader = 2 }"),
-        Override("law = { name = 'velocity_consensus' }"), Override("control = { max_acceleration_m_per_s2 = 0.3 }"),
-        Override("control = { tilt_limit_rad = 0.01 }"), Override("control = { inversion = 'exact' }"),
-        Override("control = { drag_compensation = false }"), Override("control = { heading_rad = 0.5 }"),
-        Override("control = { attitude = { kp = 50.0, kd = 10.0 } }"),
-        Override("control = { position = { kp = 2.0, kd = 2.0 } }"),
-        Override("control = { max_speed_m_per_s = 0.5 }", DrivenByVelocity("single_integrator")),
-        Override("control = { velocity_gain = 1.0 }", DrivenByVelocity("double_integrator")),
-        Override("control = { look_ahead_m = 0.2 }", DrivenByVelocity("unicycle"))),
+    testing::Values(Override("start_s", "0.5"),
+                    Row{"agents.override",
+                        "[{ id = 2, start_s = 0.6 }]",
+                        {"agents.override=[{ id = 2, start_s = 0.5 }]"},
+                        "agents.override.start_s from 0.5 to 0.6"},
+                    Override("stop_s", "0.5"),
+                    Row{"agents.override",
+                        "[{ id = 2, stop_s = 0.6 }]",
+                        {"agents.override=[{ id = 2, stop_s = 0.5 }]"},
+                        "agents.override.stop_s from 0.5 to 0.6"},
+                    Row{"agents.override",
+                        "[{ id = 3, stop_s = 0.5 }]",
+                        {"agents.override=[{ id = 2, stop_s = 0.5 }]"},
+                        "agents.override.id"},
+                    Override("law.p_gain", "0.1"), Override("law.axes", "'xyz'"), Override("law.leader", "2"),
+                    Override("law.name", "'velocity_consensus'"), Override("control.max_acceleration_m_per_s2", "0.3"),
+                    Override("control.tilt_limit_rad", "0.01"), Override("control.inversion", "'exact'"),
+                    Override("control.drag_compensation", "false"), Override("control.heading_rad", "0.5"),
+                    Override("control.attitude", "{ kp = 50.0, kd = 10.0 }"),
+                    Override("control.position", "{ kp = 2.0, kd = 2.0 }"),
+                    Override("control.max_speed_m_per_s", "0.5", DrivenByVelocity("single_integrator")),
+                    Override("control.velocity_gain", "1.0", DrivenByVelocity("double_integrator")),
+                    Override("control.look_ahead_m", "0.2", DrivenByVelocity("unicycle"))),
     NameOf);
 
 std::vector<std::string> TopicsOf(const Flown& run, const std::string& file) {

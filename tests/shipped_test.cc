@@ -10,6 +10,7 @@
 #include "bus/wire.h"
 #include "orchestrator/formats/mcap/writer.h"
 #include "tests/orchestrator.h"
+#include "tests/param_name.h"
 
 namespace mascot::test {
 namespace {
@@ -167,7 +168,7 @@ struct Case {
 };
 
 void PrintTo(const Case& c, std::ostream* out) {
-  *out << c.z0_m << " m, " << c.beta_c << " and " << c.beta_p << " m/s^2";
+  *out << "z0 = " << c.z0_m << " m, beta_c = " << c.beta_c << ", beta_p = " << c.beta_p << " m/s^2";
 }
 
 std::vector<std::string> TwoAgents(const Case& c, const std::string& model) {
@@ -205,7 +206,7 @@ TEST_P(Minmax, AMovingParentIsMetWithinTheBound) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Minmax, testing::Values(Case{10, 1, 0.5}, Case{5, 0.6, 0.2}, Case{16, 0.8, 0.4}),
-                         [](const auto& row) { return "z0_" + std::to_string(static_cast<int>(row.param.z0_m)); });
+                         NamedAsPrinted<Case>);
 
 TEST(Minmax, ShippedQuadrotorsStayTogetherAfterwards) {
   const Flight flight("minmax");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace mascot {
@@ -51,7 +52,8 @@ TEST_P(GustsAtARate, HaveTheStatisticsOfAFirstOrderGaussMarkovProcess) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Rates, GustsAtARate, testing::Values(5, 50, 500), testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Rates, GustsAtARate, testing::Values(5, 50, 500),
+                         [](const auto& row) { return std::to_string(row.param) + "_hz"; });
 
 TEST(Wind, IsStationaryFromItsFirstStep) {
   constexpr int kSeeds = 10000;

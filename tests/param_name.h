@@ -1,0 +1,30 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cctype>
+#include <string>
+
+namespace mascot::test {
+
+/// `words` as the last part of a test's name, which may hold letters, digits and underscores only: `law.axes to xyz`
+/// becomes `law_axes_to_xyz`. GoogleTest refuses to start when two names are the same.
+inline std::string ParamName(const std::string& words) {
+  std::string name;
+  for (const char c : words) {
+    if (std::isalnum(static_cast<unsigned char>(c))) {
+      name += c;
+    } else if (!name.empty() && name.back() != '_') {
+      name += '_';
+    }
+  }
+  return name;
+}
+
+/// The name generator of parameters that print as what they test.
+template <class Param>
+std::string NamedAsPrinted(const testing::TestParamInfo<Param>& row) {
+  return ParamName(testing::PrintToString(row.param));
+}
+
+}  // namespace mascot::test
