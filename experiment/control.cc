@@ -5,7 +5,6 @@
 namespace mascot {
 namespace {
 
-constexpr std::string_view kInversions[] = {"small_angle", "exact"};
 constexpr std::string_view kOfAirframe = "the airframe's";
 
 constexpr Range kGain = {0, 1e4};
@@ -30,7 +29,7 @@ constexpr std::array kAgentKeys = {
     key::Number("look_ahead_m", Above(0, 100), "of a unicycle: how far ahead the point lies that does what is wanted")
         .Default("0.1"),
     key::Number("tilt_limit_rad", Above(0, 1.5), "of roll and of pitch").Otherwise(kOfAirframe),
-    key::OneOf("inversion", kInversions,
+    key::OneOf("inversion", kInversions.names(),
                "how a wanted acceleration becomes roll, pitch and thrust; the paper's is small_angle")
         .Default("\"small_angle\""),
     key::Boolean("drag_compensation", "adds the known drag to the wanted acceleration").Default("true"),
@@ -73,7 +72,7 @@ void ReadControl(Section& section, std::span<AgentConfig> agents) {
     const double tilt_limit_rad = section.Number("tilt_limit_rad");
     for (AgentConfig& agent : agents) agent.airframe.tilt_limit_rad = tilt_limit_rad;
   }
-  control.inversion = section.OneOf("inversion") == "exact" ? Inversion::kExact : Inversion::kSmallAngle;
+  control.inversion = kInversions.Value(section.OneOf("inversion"));
   control.drag_compensation = section.Boolean("drag_compensation");
   section.Done();
   for (AgentConfig& agent : agents) agent.control = control;

@@ -14,18 +14,25 @@
 #include "experiment/model_traits.h"
 #include "experiment/physics.h"
 #include "experiment/sensors.h"
+#include "experiment/toml/enum_names.h"
 
 namespace mascot {
 
 inline constexpr int kMaxAgents = 10000;
 
 enum class Mode { kLockstep, kRealtime };
+inline constexpr EnumNames<Mode, 2> kModes({{Mode::kLockstep, "lockstep"}, {Mode::kRealtime, "realtime"}});
 enum class Scheduler { kOther, kFifo };
+inline constexpr EnumNames<Scheduler, 2> kSchedulers({{Scheduler::kOther, "other"}, {Scheduler::kFifo, "fifo"}});
 enum class Axes { kXy, kXyz };
+inline constexpr EnumNames<Axes, 2> kAxes({{Axes::kXy, "xy"}, {Axes::kXyz, "xyz"}});
 /// x and y, or z too: how many of a vector's first components the law moves.
 constexpr int CountOf(Axes axes) { return axes == Axes::kXyz ? 3 : 2; }
 enum class Inversion { kSmallAngle, kExact };
+inline constexpr EnumNames<Inversion, 2> kInversions({{Inversion::kSmallAngle, "small_angle"},
+                                                      {Inversion::kExact, "exact"}});
 enum class Delivery { kTopics, kBundled };
+inline constexpr EnumNames<Delivery, 2> kDeliveries({{Delivery::kTopics, "topics"}, {Delivery::kBundled, "bundled"}});
 
 /// [control], or what an agent has in its place.
 struct ControlConfig {

@@ -1,11 +1,13 @@
 #include "experiment/physics.h"
 
+#include "experiment/toml/enum_names.h"
+
 namespace mascot {
 namespace {
 
 constexpr Range kPlace_m = {-1e6, 1e6};
 constexpr Range kAirspeed_m_per_s = {-200, 200};
-constexpr std::string_view kShapes[] = {"box", "sphere", "cylinder"};
+constexpr EnumNames<Shape, 3> kShapes({{Shape::kBox, "box"}, {Shape::kSphere, "sphere"}, {Shape::kCylinder, "cylinder"}});
 
 constexpr Key kWindKeys[] = {
     key::Vector3("mean_m_per_s", kAirspeed_m_per_s, "in W").Default("[0, 0, 0]"),
@@ -15,7 +17,7 @@ constexpr Key kWindKeys[] = {
 };
 
 constexpr Key kObstacleKeys[] = {
-    key::OneOf("shape", kShapes, "its form").Required(),
+    key::OneOf("shape", kShapes.names(), "its form").Required(),
     key::Vector3("position_m", kPlace_m, "its centre").Required(),
     key::Vector3("size_m", {1e-3, 1e4},
                  "full lengths; of a sphere its diameter three times; of a cylinder, which stands on end, its diameter "
@@ -52,8 +54,7 @@ WindConfig ReadWind(Section wind) {
 
 Obstacle ReadObstacle(Section& section) {
   Obstacle obstacle;
-  const std::string shape = section.OneOf("shape");
-  obstacle.shape = shape == "sphere" ? Shape::kSphere : shape == "cylinder" ? Shape::kCylinder : Shape::kBox;
+  obstacle.shape = kShapes.Value(section.OneOf("shape"));
   obstacle.p_W = section.Vector3("position_m");
   obstacle.size_m = section.Vector3("size_m");
   obstacle.heading_rad = section.Number("heading_rad");

@@ -13,17 +13,13 @@ namespace {
 constexpr double kMaxTicks = 1e9;  // recordings number their samples with 32 bits
 constexpr int kMaxDomain = 100;    // above, DDS's ports meet those that Linux hands out
 
-constexpr std::string_view kModes[] = {"lockstep", "realtime"};
-constexpr std::string_view kSchedulers[] = {"other", "fifo"};
-constexpr std::string_view kAxes[] = {"xy", "xyz"};
 constexpr std::string_view kAutomatic[] = {"auto"};
-constexpr std::string_view kDeliveries[] = {"topics", "bundled"};
 constexpr std::string_view kTransports[] = {"auto", "udp", "shm"};  // bus/qos.cc has a row for each
 
 constexpr Key kRunKeys[] = {
     key::Text("name", "names the run's folder, and the run").Otherwise("the file's"),
     key::Number("duration_s", Above(0, 1e6), "simulated time; a whole number of ticks").Required(),
-    key::OneOf("mode", kModes,
+    key::OneOf("mode", kModes.names(),
                "lockstep: as fast as it goes, deterministic; realtime: paced by the wall clock, late commands held")
         .Default("\"lockstep\""),
     key::Integer("seed", 0, INT64_MAX, "of everything random").Default("1"),
@@ -31,7 +27,7 @@ constexpr Key kRunKeys[] = {
         .Default("5.0"),
     key::Number("start_timeout_s", Above(0, 3600), "how long the start may take, wall clock").Default("60.0"),
     key::Number("speed", Above(0, 1000), "of realtime: simulated seconds per second").Default("1.0"),
-    key::OneOf("scheduler", kSchedulers,
+    key::OneOf("scheduler", kSchedulers.names(),
                "fifo: the server and the agents run at a real-time priority (SCHED_FIFO), if the system permits it; "
                "other: as any process, in lockstep as a batch job (SCHED_BATCH)")
         .Default("\"other\""),
@@ -42,7 +38,7 @@ constexpr Key kRunKeys[] = {
 constexpr Key kLawKeys[] = {
     key::Text("name", "one of the laws below").Otherwise("the first of them"),
     key::Integer("leader", 0, kMaxAgents, "agent that leads; 0: none").Default("0"),
-    key::OneOf("axes", kAxes, "what the law governs; with xy heights are held").Otherwise("the law's own"),
+    key::OneOf("axes", kAxes.names(), "what the law governs; with xy heights are held").Otherwise("the law's own"),
 };
 
 constexpr Key kRecordKeys[] = {
@@ -91,12 +87,12 @@ void ReadRun(Section& section, const std::string& default_name, Experiment& expe
     section.Fail("name",
                  "expected a letter or digit, then letters, digits, '.', '_', '-' and spaces, got '" + run.name + "'");
   run.duration_s = section.Number("duration_s");
-  run.mode = section.OneOf("mode") == "realtime" ? Mode::kRealtime : Mode::kLockstep;
+  run.mode = kModes.Value(section.OneOf("mode"));
   run.seed = static_cast<std::uint64_t>(section.Integer("seed"));
   run.agent_timeout_s = section.Number("agent_timeout_s");
   run.start_timeout_s = section.Number("start_timeout_s");
   run.speed = section.Number("speed");
-  run.scheduler = section.OneOf("scheduler") == "fifo" ? Scheduler::kFifo : Scheduler::kOther;
+  run.scheduler = kSchedulers.Value(section.OneOf("scheduler"));
   run.pin_cores = section.Boolean("pin_cores");
   run.lock_memory = section.Boolean("lock_memory");
   section.Done();
@@ -109,7 +105,7 @@ LawConfig ReadLaw(Section& section, int count, const LawCatalog* laws) {
       laws != nullptr ? section.OneOf("name", laws->names(), std::string(laws->names().front())) : section.Text("name");
   law.leader = static_cast<int>(section.Integer("leader", 0, count > 0 ? count : kMaxAgents));
   const Axes usual = laws != nullptr ? laws->DefaultAxes(law.name) : Axes::kXy;
-  law.axes = section.OneOf("axes", kAxes, usual == Axes::kXyz ? "xyz" : "xy") == "xyz" ? Axes::kXyz : Axes::kXy;
+  law.axes = kAxes.Value(section.OneOf("axes", kAxes.names(), std::string(kAxes.Name(usual))));
   return law;
 }
 
@@ -215,7 +211,7 @@ void ReadNetwork(Section& section, Experiment& experiment) {
   }
   network.transport = section.OneOf("transport");
   network.agents_per_process = static_cast<int>(section.Integer("agents_per_process"));
-  network.delivery = section.OneOf("delivery") == "bundled" ? Delivery::kBundled : Delivery::kTopics;
+  network.delivery = kDeliveries.Value(section.OneOf("delivery"));
   section.Done();
 }
 
@@ -278,7 +274,7 @@ std::span<const Key> ExperimentKeys() {
       key::Integer("agents_per_process", 1, kMaxAgents, "how many agents share a process; each keeps its topics")
           .Default("1"),
       key::OneOf(
-          "delivery", kDeliveries,
+          "delivery", kDeliveries.names(),
           "topics: a reader for each agent that is heard; bundled: one sample with all that an agent may hear, for "
           "dense graphs")
           .Default("\"topics\""),

@@ -26,12 +26,6 @@ class Agent:
         return f"agent {self.id} at {self.position}"
 )";
 
-/// How the functions of a custom law look.
-enum class PythonStyle {
-  kStandard,  ///< control(t, me, neighbours), start, message
-  kMascot,    ///< control_user(...) of the published testbed
-};
-
 /// A law written in Python, and where it stands.
 struct CustomParams final : LawParams {
   std::string text;
@@ -351,8 +345,8 @@ void ReadText(Section& law, CustomParams& params) {
 
 void ReadKeys(Section& law, CustomParams& params) {
   ReadText(law, params);
-  params.style = law.OneOf("style") == "mascot" ? PythonStyle::kMascot : PythonStyle::kStandard;
-  params.wanted = law.OneOf("output") == "velocity" ? Wanted::kVelocity : Wanted::kAcceleration;
+  params.style = kPythonStyles.Value(law.OneOf("style"));
+  params.wanted = kPythonOutputs.Value(law.OneOf("output"));
   if (law.Has("params") && law.Kind("params") != "table")
     law.Fail("params", "expected a table, got a " + law.Kind("params"));
   else

@@ -7,19 +7,27 @@
 
 namespace mascot {
 
-inline constexpr std::string_view kPythonStyles[] = {"standard", "mascot"};
-inline constexpr std::string_view kPythonOutputs[] = {"acceleration", "velocity"};
+/// How the functions of a custom law look.
+enum class PythonStyle {
+  kStandard,  ///< control(t, me, neighbours), start, message
+  kMascot,    ///< control_user(...) of the published testbed
+};
+
+inline constexpr EnumNames<PythonStyle, 2> kPythonStyles({{PythonStyle::kStandard, "standard"},
+                                                          {PythonStyle::kMascot, "mascot"}});
+inline constexpr EnumNames<Wanted, 2> kPythonOutputs({{Wanted::kAcceleration, "acceleration"},
+                                                      {Wanted::kVelocity, "velocity"}});
 
 inline constexpr Key kCustomParameters[] = {
     key::Text("python",
               "the law itself: defines control(t, me, neighbours), may define start(me, params), message(me)"),
     key::Text("file", "a file that holds the law, instead of python; its path from the folder of this file"),
     key::Any("params", "goes to start(me, params) as a dict").Default("{}"),
-    key::OneOf("style", kPythonStyles,
+    key::OneOf("style", kPythonStyles.names(),
                "mascot: the published testbed's control_user(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, "
                "leader)")
         .Default("\"standard\""),
-    key::OneOf("output", kPythonOutputs, "what control returns, 3 numbers or 2 (x, y), in W")
+    key::OneOf("output", kPythonOutputs.names(), "what control returns, 3 numbers or 2 (x, y), in W")
         .Default("\"acceleration\""),
     key::Boolean("messages", "whether it sends messages").Otherwise("whether it defines message"),
     key::Integer("leader", 0, kMaxAgents,

@@ -57,19 +57,18 @@ struct Key {
   std::string_view unit = {};                    ///< where the name does not end in it
   bool required = false;
 
-  constexpr Key Default(std::string_view toml) const { return With(&Key::fallback, toml); }
-  constexpr Key Otherwise(std::string_view words) const { return With(&Key::otherwise, words); }
-  constexpr Key Unit(std::string_view symbol) const { return With(&Key::unit, symbol); }
-  constexpr Key Required() const { return With(&Key::required, true); }
-  constexpr Key Or(ValueKind other) const { return With(&Key::or_kind, other); }
-
- private:
+  /// A copy in which one member is `value`.
   template <class Member, class Value>
   constexpr Key With(Member Key::*member, Value value) const {
     Key key = *this;
     key.*member = value;
     return key;
   }
+  constexpr Key Default(std::string_view toml) const { return With(&Key::fallback, toml); }
+  constexpr Key Otherwise(std::string_view words) const { return With(&Key::otherwise, words); }
+  constexpr Key Unit(std::string_view symbol) const { return With(&Key::unit, symbol); }
+  constexpr Key Required() const { return With(&Key::required, true); }
+  constexpr Key Or(ValueKind other) const { return With(&Key::or_kind, other); }
 };
 
 /// What its value may be, for people: "[0, 1000], 1/s^2", "ring | path".

@@ -141,7 +141,7 @@ class Writer {
         "`orchestrator laws`, [laws.md](laws.md).\n";
     for (const LawEntry& law : Laws()) {
       text_ += fmt::format("\n### law.name = \"{}\"\n\n{} Default of `axes`: `\"{}\"`.\n\n```\n{}\n```\n", law.name,
-                           Sentence(law.summary), law.axes == Axes::kXyz ? "xyz" : "xy", law.equation);
+                           Sentence(law.summary), kAxes.Name(law.axes), law.equation);
       text_ += TableOf(law.parameters);
     }
   }

@@ -194,7 +194,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   json["experiment"] = experiment.run.name;
   json["seed"] = experiment.run.seed;
   json["engine"] = facts.engine;
-  json["mode"] = experiment.run.mode == Mode::kRealtime ? "realtime" : "lockstep";
+  json["mode"] = kModes.Name(experiment.run.mode);
   json["agents"] = experiment.size();
   json["ticks"] = ticks;
   json["sim_s"] = sim_s;

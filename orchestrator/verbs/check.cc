@@ -37,7 +37,7 @@ Json ToJson(const Experiment& experiment, const GraphFacts& facts, const Predict
           {"agents", experiment.size()},
           {"models", CountModels(experiment)},
           {"law", experiment.law.name},
-          {"axes", experiment.law.axes == Axes::kXyz ? "xyz" : "xy"},
+          {"axes", kAxes.Name(experiment.law.axes)},
           {"leader", experiment.law.leader},
           {"graph", ToJson(facts)},
           {"predicted", PredictionJson(prediction)},
@@ -56,7 +56,7 @@ void PrintExperiment(const Experiment& experiment) {
   PrintLine("agents", models);
   PrintLine("law", fmt::format("{}, {}, axes {}", experiment.law.name,
                                leader > 0 ? fmt::format("leader {}", leader) : "no leader",
-                               experiment.law.axes == Axes::kXyz ? "xyz" : "xy"));
+                               kAxes.Name(experiment.law.axes)));
   PrintLine("duration", fmt::format("{:g} s, {} ticks at {} Hz", experiment.run.duration_s, experiment.ticks(),
                                     experiment.control.rate_hz));
 }

@@ -14,8 +14,6 @@
 namespace mascot {
 namespace {
 
-std::string_view AxesName(Axes axes) { return axes == Axes::kXyz ? "xyz" : "xy"; }
-
 Json ToJson(const LawEntry& law) {
   Json parameters = Json::array();
   for (const Key& parameter : law.parameters) {
@@ -26,7 +24,7 @@ Json ToJson(const LawEntry& law) {
                           {"meaning", parameter.meaning}});
   }
   return {{"name", law.name},     {"summary", law.summary},     {"equation", law.equation}, {"theory", law.theory},
-          {"source", law.source}, {"axes", AxesName(law.axes)}, {"parameters", parameters}};
+          {"source", law.source}, {"axes", kAxes.Name(law.axes)}, {"parameters", parameters}};
 }
 
 /// Prints `label`, then `text` from column `indent` on, broken between words at column 110.
@@ -53,7 +51,7 @@ void Print(const LawEntry& law) {
   PrintWrapped("  equation", law.equation, 12);
   PrintWrapped("  theory", law.theory, 12);
   PrintWrapped("  source", law.source, 12);
-  std::cout << fmt::format("  keys of [law]; axes = \"{}\" unless said otherwise; * required\n", AxesName(law.axes));
+  std::cout << fmt::format("  keys of [law]; axes = \"{}\" unless said otherwise; * required\n", kAxes.Name(law.axes));
   for (const Key& parameter : law.parameters) {
     const std::string_view mark = parameter.required ? "*" : parameter.fallback.empty() ? "" : " = ";
     const std::string key = fmt::format("{}{}{}", parameter.name, mark, parameter.fallback);
