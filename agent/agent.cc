@@ -1,7 +1,8 @@
 #include "agent/agent.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "agent/laws.h"
@@ -9,13 +10,8 @@
 namespace mascot {
 namespace {
 
-/// As C++ prints it, but without the sign of a NaN, which is not worth a user's thought.
-std::string Component(double value) {
-  if (std::isnan(value)) return "nan";
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
+/// Without the sign of a NaN, which is not worth a user's thought.
+std::string Component(double value) { return std::isnan(value) ? "nan" : fmt::format("{:g}", value); }
 
 [[noreturn]] void ThrowNotFinite(std::int64_t tick, int id, Wanted wanted, const Eigen::Vector3d& w) {
   throw std::runtime_error("tick " + std::to_string(tick) + ": agent " + std::to_string(id) + ": the law's " +

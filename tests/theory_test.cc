@@ -1,8 +1,8 @@
 #include "orchestrator/theory/theory.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <spdlog/fmt/fmt.h>
 
 #include <Eigen/Eigenvalues>
 #include <cmath>

@@ -1,8 +1,9 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 #include "experiment/toml/section_internal.h"
@@ -29,9 +30,7 @@ std::string Escaped(char c) {
     case '\t':
       return "\\t";
   }
-  std::array<char, 8> buffer;
-  std::snprintf(buffer.data(), buffer.size(), "\\u%04X", static_cast<unsigned char>(c));
-  return buffer.data();
+  return fmt::format("\\u{:04X}", static_cast<unsigned char>(c));
 }
 
 bool IsControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }

@@ -1,6 +1,6 @@
 #include "orchestrator/engines/progress.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 namespace mascot {
 

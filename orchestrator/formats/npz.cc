@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "orchestrator/formats/bytes.h"
+#include "orchestrator/formats/output_file.h"
 #include "orchestrator/formats/part_file.h"
 #include "orchestrator/formats/zip.h"
 
@@ -63,12 +64,7 @@ class Spool {
  private:
   void Flush() {
     crc_ = Crc32(crc_, buffer_);
-    for (ByteSpan rest = buffer_; !rest.empty();) {
-      const ssize_t written = ::write(fd_, rest.data(), rest.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) Fail("write", path_);
-      rest = rest.subspan(static_cast<std::size_t>(written));
-    }
+    if (!WriteFully(fd_, buffer_)) Fail("write", path_);
     buffer_.clear();
   }
 

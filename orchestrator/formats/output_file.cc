@@ -10,6 +10,16 @@
 
 namespace mascot {
 
+bool WriteFully(int fd, std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
 OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
   fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (fd_ < 0) Fail("create", errno);
@@ -21,13 +31,8 @@ OutputFile::~OutputFile() {
 
 void OutputFile::Write(std::span<const std::uint8_t> bytes) {
   if (error_ != 0) Fail("write", error_);
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(fd_, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) Fail("write", errno);
-    size_ += static_cast<std::uint64_t>(written);
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
+  if (!WriteFully(fd_, bytes)) Fail("write", errno);
+  size_ += bytes.size();
 }
 
 void OutputFile::SyncAndClose() {

@@ -6,6 +6,9 @@
 
 namespace mascot {
 
+/// Writes all of `bytes` to the open file `fd`. Returns whether that went well; if not, errno says why.
+[[nodiscard]] bool WriteFully(int fd, std::span<const std::uint8_t> bytes);
+
 /// A file being written. Every call is checked: failures throw std::runtime_error with the file's name and
 /// the system's reason. After a failure every further write fails too, so that nothing lands behind a hole.
 class OutputFile {

@@ -1,13 +1,12 @@
 #include "orchestrator/recording/run_folder.h"
 
+#include <fmt/chrono.h>
+
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <ctime>
-#include <fstream>
-#include <stdexcept>
 
 #include "experiment/toml/section.h"
+#include "orchestrator/formats/whole_file.h"
 
 namespace mascot {
 namespace {
@@ -16,11 +15,7 @@ namespace fs = std::filesystem;
 
 std::string LocalTime() {
   const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%d_%H-%M-%S", &local);
-  return text;
+  return fmt::format("{:%Y-%m-%d_%H-%M-%S}", fmt::localtime(now));
 }
 
 /// A folder that did not exist before, even if another run starts within the same second.
@@ -68,12 +63,6 @@ RunFolder::RunFolder(const std::optional<std::string>& out, const std::string& n
   throw ConfigError({"--out: cannot make the run folder " + error.path1().string() + ": " + error.code().message()});
 }
 
-void RunFolder::Write(const std::string& name, const std::string& text) const {
-  const fs::path path = File(name);
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw std::runtime_error("cannot write " + path.string() + ": " + std::strerror(errno));
-}
+void RunFolder::Write(const std::string& name, const std::string& text) const { WriteWhole(File(name).string(), text); }
 
 }  // namespace mascot

@@ -17,7 +17,7 @@ class RunFolder {
   std::filesystem::path File(const std::string& name) const { return path_ / name; }
   /// logs/<process>.log
   std::filesystem::path Log(const std::string& process) const { return path_ / "logs" / (process + ".log"); }
-  /// Writes a whole file; throws std::runtime_error if that fails.
+  /// Writes a file whole or not at all; throws std::runtime_error if that fails.
   void Write(const std::string& name, const std::string& text) const;
 
  private:

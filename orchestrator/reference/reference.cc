@@ -1,6 +1,6 @@
 #include "orchestrator/reference/reference.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <string_view>

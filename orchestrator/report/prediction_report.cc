@@ -1,6 +1,6 @@
 #include "orchestrator/report/prediction_report.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 namespace mascot {
 namespace {

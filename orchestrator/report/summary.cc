@@ -1,7 +1,9 @@
 #include "orchestrator/report/summary.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
+#include <utility>
 
 #include "agent/laws.h"
 #include "orchestrator/recording/row_codec.h"
@@ -112,19 +114,16 @@ Json Realtime(const Pacing& pacing) {
           {"command_age_s", spread(pacing.command_age_s)}};
 }
 
+/// A line of the summary for people.
 template <class... Values>
-std::string Line(const char* format, Values... values) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, values...);
-  return std::string(text) + "\n";
+std::string Line(fmt::format_string<Values...> format, Values&&... values) {
+  return fmt::format(format, std::forward<Values>(values)...) + "\n";
 }
 
 /// ": 1.2 % off", or nothing where there is no deviation.
 std::string Off(std::optional<double> deviation, std::optional<double> predicted) {
   if (!deviation || *predicted == 0) return "";
-  char text[40];
-  std::snprintf(text, sizeof text, ": %+.3g %%", 100 * *deviation / *predicted);
-  return text;
+  return fmt::format(": {:+.3g} %", 100 * *deviation / *predicted);
 }
 
 /// "at most ", if one of the times is a bound.
@@ -136,42 +135,40 @@ const char* AtMost(const std::vector<MinmaxEdge>& edges) {
 std::string ConsensusText(const Experiment& experiment, const Measured& m, const Prediction& prediction) {
   const Deviation deviation = Compare(experiment, m, prediction);
   const char* chains = experiment.graph.IsSymmetric() ? "" : "; later along chains";
-  std::string text = Line("mean position  %.4f, %.4f, %.4f m", m.value_m.x(), m.value_m.y(), m.value_m.z());
+  std::string text = Line("mean position  {:.4f}, {:.4f}, {:.4f} m", m.value_m.x(), m.value_m.y(), m.value_m.z());
   if (const auto& value = prediction.value_m)
-    text += Line("  predicted    %.4f, %.4f, %.4f m%s: %.2g m off", value->x(), value->y(), value->z(),
+    text += Line("  predicted    {:.4f}, {:.4f}, {:.4f} m{}: {:.2g} m off", value->x(), value->y(), value->z(),
                  prediction.on_average ? " on average" : "", *deviation.value_m);
-  text += Line("disagreement   %.3g m, speed %.2g m/s at the end", m.final_disagreement_m, m.final_speed_m_per_s);
+  text += Line("disagreement   {:.3g} m, speed {:.2g} m/s at the end", m.final_disagreement_m, m.final_speed_m_per_s);
   const bool of_rate = prediction.rate_per_s && prediction.of_agreement;
   if (m.rate_per_s && m.minmax_edges.empty())
-    text += Line("decayed        at %.4f 1/s", *m.rate_per_s);
+    text += Line("decayed        at {:.4f} 1/s", *m.rate_per_s);
   else if (of_rate)
     text += "decayed        not far enough, or not for good, to say how fast\n";
   if (of_rate)
-    text += Line("  predicted    %.4f 1/s (slowest mode)%s", *prediction.rate_per_s,
-                 Off(deviation.rate_per_s, prediction.rate_per_s).c_str());
+    text += Line("  predicted    {:.4f} 1/s (slowest mode){}", *prediction.rate_per_s,
+                 Off(deviation.rate_per_s, prediction.rate_per_s));
   const bool of_settling = prediction.settling_time_s && prediction.of_agreement;
   if (m.settling_time_s)
-    text += Line("settled        after %.2f s (2 %%)", *m.settling_time_s);
+    text += Line("settled        after {:.2f} s (2 %)", *m.settling_time_s);
   else if (of_settling)
     text += "settled        not by the end (2 %)\n";
   if (of_settling)
-    text += Line("  predicted    %.2f s (slowest mode%s)%s", *prediction.settling_time_s, chains,
-                 Off(deviation.settling_time_s, prediction.settling_time_s).c_str());
+    text += Line("  predicted    {:.2f} s (slowest mode{}){}", *prediction.settling_time_s, chains,
+                 Off(deviation.settling_time_s, prediction.settling_time_s));
   if (const auto caught_up_s = MinmaxTime(m, prediction))
-    text += Line("caught up      after %.2f s (latest edge, within %g m)", *caught_up_s, kCaughtUp_m);
+    text += Line("caught up      after {:.2f} s (latest edge, within {:g} m)", *caught_up_s, kCaughtUp_m);
   if (prediction.minmax_time_s)
-    text += Line("  predicted    %s%.2f s (min-max, latest edge)%s", AtMost(prediction.minmax_edges),
-                 *prediction.minmax_time_s, Off(deviation.minmax_time_s, prediction.minmax_time_s).c_str());
+    text += Line("  predicted    {}{:.2f} s (min-max, latest edge){}", AtMost(prediction.minmax_edges),
+                 *prediction.minmax_time_s, Off(deviation.minmax_time_s, prediction.minmax_time_s));
   return text;
 }
 
 /// "; tilt limited 12 %, rotors 3 %", or nothing.
 std::string AlsoLimited(const Measured& m) {
   if (m.tilt_limited_fraction + m.rotor_limited_fraction == 0) return "";
-  char text[80];
-  std::snprintf(text, sizeof text, "; tilt limited in %.3g %%, rotors in %.3g %%", 100 * m.tilt_limited_fraction,
-                100 * m.rotor_limited_fraction);
-  return text;
+  return fmt::format("; tilt limited in {:.3g} %, rotors in {:.3g} %", 100 * m.tilt_limited_fraction,
+                     100 * m.rotor_limited_fraction);
 }
 
 /// What a run is compared with (docs/recording.md, fidelity).
@@ -229,25 +226,25 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
   if (m.rows == 0) return "nothing was recorded\n";
   const double sim_s = experiment.time_s(m.rows - 1);
   std::string text;
-  text += Line("simulated      %.2f s in %.2f s: %.1f x real time", sim_s, engine.wall_s, sim_s / engine.wall_s);
-  text +=
-      Line("recorded       %lld rows, %llu samples on %zu topics, %llu lost", static_cast<long long>(m.rows),
-           static_cast<unsigned long long>(facts.samples), facts.topics, static_cast<unsigned long long>(engine.lost));
+  text += Line("simulated      {:.2f} s in {:.2f} s: {:.1f} x real time", sim_s, engine.wall_s, sim_s / engine.wall_s);
+  text += Line("recorded       {} rows, {} samples on {} topics, {} lost", m.rows, facts.samples, facts.topics,
+               engine.lost);
   text += ConsensusText(experiment, m, prediction);
-  text += Line("saturated      %.3g %% of commands%s", 100 * m.saturated_fraction, AlsoLimited(m).c_str());
+  text += Line("saturated      {:.3g} % of commands{}", 100 * m.saturated_fraction, AlsoLimited(m));
   if (engine.pacing) {
     const Pacing& pacing = *engine.pacing;
-    text += Line("late           %llu commands came after their tick; the last one was held, at most %.3g s old",
-                 static_cast<unsigned long long>(pacing.misses), pacing.command_age_s[2]);
-    text += Line("ticks          %.3g ms after they were due in the median, 99 %% within %.3g ms, all within %.3g ms",
-                 1e3 * pacing.tick_lateness_s[0], 1e3 * pacing.tick_lateness_s[1], 1e3 * pacing.tick_lateness_s[2]);
+    text += Line("late           {} commands came after their tick; the last one was held, at most {:.3g} s old",
+                 pacing.misses, pacing.command_age_s[2]);
+    text +=
+        Line("ticks          {:.3g} ms after they were due in the median, 99 % within {:.3g} ms, all within {:.3g} ms",
+             1e3 * pacing.tick_lateness_s[0], 1e3 * pacing.tick_lateness_s[1], 1e3 * pacing.tick_lateness_s[2]);
   }
   if (m.min_separation_m)
-    text += Line("separation     %.3f m at least, %s collisions", *m.min_separation_m,
-                 engine.contacts ? std::to_string(engine.contacts->total()).c_str() : "an unknown number of");
+    text += Line("separation     {:.3f} m at least, {} collisions", *m.min_separation_m,
+                 engine.contacts ? std::to_string(engine.contacts->total()) : "an unknown number of");
   if (const auto& formation = m.formation)
-    text += Line("formation      %.4f m rms off at the end, %.4f m at worst in the second half", formation->final_rms_m,
-                 formation->worst_rms_m);
+    text += Line("formation      {:.4f} m rms off at the end, {:.4f} m at worst in the second half",
+                 formation->final_rms_m, formation->worst_rms_m);
   std::uint64_t sent = 0, lost = 0, late = 0;
   for (const EdgeTraffic& edge : meter.Traffic()) {
     sent += edge.count.sent;
@@ -255,15 +252,15 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
     late += edge.count.late;
   }
   if (lost + late > 0)
-    text += Line("links          %llu samples sent, %.2f %% lost, %.2f %% overtaken",
+    text += Line("links          {} samples sent, {:.2f} % lost, {:.2f} % overtaken",
                  static_cast<unsigned long long>(sent), 100.0 * static_cast<double>(lost) / static_cast<double>(sent),
                  100.0 * static_cast<double>(late) / static_cast<double>(sent));
   if (!m.fidelity_failure.empty())
     text +=
         "fidelity       not measured, the law failed on " + IdealBodies(experiment) + ": " + m.fidelity_failure + "\n";
   if (m.fidelity && m.travelled_m > 0)
-    text += Line("fidelity       %.4f m rms from %s: %.2f %% of %.1f m travelled", m.fidelity->rms_m,
-                 IdealBodies(experiment).c_str(), 100 * m.fidelity->rms_m / m.travelled_m, m.travelled_m);
+    text += Line("fidelity       {:.4f} m rms from {}: {:.2f} % of {:.1f} m travelled", m.fidelity->rms_m,
+                 IdealBodies(experiment), 100 * m.fidelity->rms_m / m.travelled_m, m.travelled_m);
   return text;
 }
 

@@ -1,6 +1,6 @@
 #include "orchestrator/sweeping/plan.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>

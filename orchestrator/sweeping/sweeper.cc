@@ -1,6 +1,6 @@
 #include "orchestrator/sweeping/sweeper.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>

@@ -13,7 +13,7 @@
 #include "orchestrator/formats/bytes.h"
 #include "orchestrator/formats/input_file.h"
 #include "orchestrator/formats/output_file.h"
-#include "orchestrator/formats/part_file.h"
+#include "orchestrator/formats/whole_file.h"
 #include "orchestrator/processes/worker_pool.h"
 
 namespace mascot {
@@ -36,11 +36,7 @@ fs::path PlanOf(const fs::path& table) { return table.string() + ".plan"; }
 }
 
 void Write(int fd, std::string_view text, const fs::path& path) {
-  while (!text.empty()) {
-    const ssize_t wrote = ::write(fd, text.data(), text.size());
-    if (wrote < 0 && errno != EINTR) FailToWrite(path);
-    text.remove_prefix(static_cast<std::size_t>(std::max<ssize_t>(wrote, 0)));
-  }
+  if (!WriteFully(fd, AsBytes(text))) FailToWrite(path);
 }
 
 /// The plan beside the table, opened, and made if need be. Throws ConfigError if another sweep writes there. A lock of
@@ -69,18 +65,9 @@ std::string ReadWhole(int fd) {
   return text;
 }
 
-void WriteWhole(int fd, const std::string& text, const fs::path& path) {
+void Overwrite(int fd, const std::string& text, const fs::path& path) {
   if (::ftruncate(fd, 0) != 0 || ::lseek(fd, 0, SEEK_SET) != 0) FailToWrite(path);
   Write(fd, text, path);
-}
-
-/// In place of what is there, at once.
-void Replace(const fs::path& path, const std::string& text) {
-  PartFile part(path.string());
-  OutputFile file(part.name());
-  file.Write(AsBytes(text));
-  file.SyncAndClose();
-  part.Commit();
 }
 
 }  // namespace
@@ -125,7 +112,7 @@ SweepFile::SweepFile(fs::path path, const Cells& columns, const std::string& pla
       plan_fd_(LockedPlan(path_)) {
   if (fs::exists(path_) && !force) GoOn(ReadAll(path_), plan);
   WriteAll();  // first: rows never stand under another sweep's plan
-  WriteWhole(plan_fd_, plan, PlanOf(path_));
+  Overwrite(plan_fd_, plan, PlanOf(path_));
   fd_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (fd_ < 0) throw std::runtime_error(path_.string() + ": cannot be opened: " + std::strerror(errno));
 }
@@ -170,7 +157,7 @@ void SweepFile::ReadRows(const std::string& text) {
 void SweepFile::WriteAll() const {
   std::string text = header_;
   for (const auto& [run, line] : rows_) text += line;
-  Replace(path_, text);
+  WriteWhole(path_.string(), text);
 }
 
 void SweepFile::Add(std::size_t run, const Cells& cells) {

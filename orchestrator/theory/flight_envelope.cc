@@ -1,6 +1,6 @@
 #include "orchestrator/theory/flight_envelope.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <cmath>
 

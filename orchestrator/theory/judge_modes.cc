@@ -1,5 +1,5 @@
 // What modes say about gains and control period.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Laws that are linear: consensus, formation, velocity consensus, and teams that mix them.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <Eigen/LU>
 #include <algorithm>

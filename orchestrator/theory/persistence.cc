@@ -1,6 +1,6 @@
 #include "orchestrator/theory/persistence.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <span>

@@ -1,6 +1,6 @@
 // Min-max time consensus: how long every edge of the tree takes.
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 

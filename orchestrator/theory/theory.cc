@@ -1,6 +1,6 @@
 #include "orchestrator/theory/theory.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 

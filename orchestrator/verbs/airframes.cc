@@ -1,5 +1,5 @@
 // `orchestrator airframes`: the built-in quadrotors, with the keys that an airframe table of one's own may change.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

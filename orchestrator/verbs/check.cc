@@ -1,5 +1,5 @@
 // `orchestrator check CONFIG`: validates, and says what theory expects. Starts nothing.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <iostream>
@@ -54,9 +54,9 @@ void PrintExperiment(const Experiment& experiment) {
   const int leader = experiment.law.leader;
   PrintLine("experiment", experiment.run.name);
   PrintLine("agents", models);
-  PrintLine("law", fmt::format("{}, {}, axes {}", experiment.law.name,
-                               leader > 0 ? fmt::format("leader {}", leader) : "no leader",
-                               kAxes.Name(experiment.law.axes)));
+  PrintLine("law",
+            fmt::format("{}, {}, axes {}", experiment.law.name,
+                        leader > 0 ? fmt::format("leader {}", leader) : "no leader", kAxes.Name(experiment.law.axes)));
   PrintLine("duration", fmt::format("{:g} s, {} ticks at {} Hz", experiment.run.duration_s, experiment.ticks(),
                                     experiment.control.rate_hz));
 }

@@ -1,5 +1,5 @@
 // `orchestrator graph CONFIG`: who hears whom, as matrices and as what they imply.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <iostream>

@@ -1,5 +1,5 @@
 // `orchestrator laws` and `orchestrator models`: the tables behind the names that an experiment may use.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -23,7 +23,7 @@ Json ToJson(const LawEntry& law) {
                           {"range", ValueText(parameter)},
                           {"meaning", parameter.meaning}});
   }
-  return {{"name", law.name},     {"summary", law.summary},     {"equation", law.equation}, {"theory", law.theory},
+  return {{"name", law.name},     {"summary", law.summary},       {"equation", law.equation}, {"theory", law.theory},
           {"source", law.source}, {"axes", kAxes.Name(law.axes)}, {"parameters", parameters}};
 }
 

@@ -1,6 +1,6 @@
 #include "orchestrator/engines/dds/delivery.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 
