@@ -284,7 +284,7 @@ TEST(Export, WithoutCommandsTheirArraysAreLeftOutAndThatIsSaid) {
 void WriteRunWithout(const std::string& path, const Topic& leave_out, int tick, bool whole_tick, bool close) {
   McapWriter writer(path);
   writer.Attach("config.toml", "application/toml",
-                "[run]\nname = \"gap\"\n[agents]\ncount = 2\n[control]\nrate_hz = 100\n");
+                "[run]\nname = \"gap\"\nduration_s = 3.0\n[agents]\ncount = 2\n[control]\nrate_hz = 100\n");
   std::map<Topic, std::uint16_t> channels;
   for (int id = 1; id <= 2; ++id)
     for (const Topic& topic : {Topic::Command(id), Topic::State(id)})
@@ -328,7 +328,7 @@ TEST(Export, AMissingSampleIsAnErrorThatNamesIt) {
 TEST(Export, AGapInTheSequenceNumbersIsAnError) {
   using mcap::Op;
   using mcap::Record;
-  const std::string config = "[run]\nname = \"gap\"\n[agents]\ncount = 1\n[control]\nrate_hz = 100\n";
+  const std::string config = "[run]\nname = \"gap\"\nduration_s = 3.0\n[agents]\ncount = 1\n[control]\nrate_hz = 100\n";
   Bytes file;
   Append(file, ByteSpan(mcap::kMagic));
   Record(file, Op::kHeader).String("ros2").String("hand").End();
@@ -394,10 +394,11 @@ TEST(Export, WhatIsNoRunsRecordingIsAMistakeInWhatWasTyped) {
   EXPECT_EQ(ErrorOf<ConfigError>({path, "--format", "csv"}),
             path + ": expected a run's recording, with its config.toml attached, got none");
   McapWriter somebodys(path);
-  somebodys.Attach("config.toml", "application/toml", "[run]\nname = \"x\"\n[agents]\n[control]\nrate_hz = 100\n");
+  somebodys.Attach("config.toml", "application/toml",
+                   "[run]\nname = \"x\"\nduration_s = 3.0\n[agents]\n[control]\nrate_hz = 100\n");
   somebodys.Close();
   EXPECT_THAT(ErrorOf<ConfigError>({path, "--format", "csv"}),
-              StartsWith(path + " (config.toml):3:1: agents.count: expected "));
+              StartsWith(path + " (config.toml):4:1: agents.count: expected "));
 }
 
 TEST(Export, AnUnknownFormatIsAMistakeInWhatWasTyped) {

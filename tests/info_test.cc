@@ -51,6 +51,12 @@ void WriteRun(const std::string& path, int commands, const std::string& config =
   writer.Close();
 }
 
+/// The experiment of such a run, which lasts `duration_s`.
+std::string Config(const std::string& duration_s, const std::string& mode) {
+  return "[run]\nname = 'run'\nduration_s = " + duration_s + "\nmode = '" + mode +
+         "'\n[agents]\ncount = 1\n[control]\nrate_hz = 10\n[record]\ntopics = ['/agent_*']\n";
+}
+
 TEST(Info, DescribesARunAndProvesItComplete) {
   const ScratchFolder scratch;
   const std::string path = scratch.File("run.mcap");
@@ -100,7 +106,7 @@ TEST(Info, ATickThatWasNotAnsweredMakesARunIncomplete) {
 
 TEST(Info, InRealTimeALateCommandIsNoLoss) {
   const ScratchFolder scratch;
-  WriteRun(scratch.File("run.mcap"), 100, "[run]\nmode = \"realtime\"\n");
+  WriteRun(scratch.File("run.mcap"), 100, Config("10.0", "realtime"));
   const Said said = Info({scratch.File("run.mcap")});
   EXPECT_EQ(said.exit_code, 0);
   EXPECT_THAT(said.out, EndsWith("ticks:        101, recorded without a gap\ncomplete: yes\n"));
@@ -108,7 +114,7 @@ TEST(Info, InRealTimeALateCommandIsNoLoss) {
 
 TEST(Info, SaysThatARunEndedEarly) {
   const ScratchFolder scratch;
-  WriteRun(scratch.File("run.mcap"), 101, "[run]\nduration_s = 30.0\n[control]\nrate_hz = 10\n");
+  WriteRun(scratch.File("run.mcap"), 101, Config("30.0", "lockstep"));
   EXPECT_THAT(Info({scratch.File("run.mcap")}).out,
               EndsWith("ticks:        101 of 301: the run ended early, recorded without a gap\ncomplete: yes\n"));
   EXPECT_EQ(nlohmann::json::parse(Info({"--json", scratch.File("run.mcap")}).out).at("planned_ticks"), 301);

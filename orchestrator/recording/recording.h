@@ -2,11 +2,10 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <string>
-#include <vector>
 
 #include "orchestrator/formats/mcap/writer.h"
+#include "orchestrator/recording/completeness.h"
 #include "orchestrator/team/row.h"
 
 namespace mascot {
@@ -25,9 +24,9 @@ class Recording {
   const std::string& path() const { return path_; }
   /// The resolved experiment, as TOML, and its name.
   const std::string& config() const { return contents_.attachments.at("config.toml"); }
-  const std::string& name() const { return name_; }
-  int agents() const { return agents_; }
-  double time_s(std::int64_t tick) const { return static_cast<double>(tick) / rate_hz_; }
+  const std::string& name() const { return plan_.name; }
+  int agents() const { return plan_.agents; }
+  double time_s(std::int64_t tick) const { return static_cast<double>(tick) / plan_.rate_hz; }
   /// Whether record.topics wanted every agent's commands too.
   bool has_commands() const { return has_commands_; }
   /// Ticks that are wholly there: 0 to ticks() - 1.
@@ -40,16 +39,9 @@ class Recording {
   void ForEachRow(const std::function<void(const Row&)>& on_row) const;
 
  private:
-  void ReadConfig();
-  void FindSamples();
-  void CountTicks(const std::map<std::string, std::uint64_t>& messages);
-
-  std::string path_, name_;
+  std::string path_;
   McapContents contents_;
-  std::vector<std::string> patterns_;  // record.topics
-  int agents_ = 0;
-  int rate_hz_ = 0;
-  bool realtime_ = false;
+  RecordingPlan plan_;  // its topics are those that rows are made of
   bool has_commands_ = false;
   std::int64_t ticks_ = 0;
 };

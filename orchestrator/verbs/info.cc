@@ -1,8 +1,8 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <iomanip>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -11,6 +11,7 @@
 
 #include "experiment/toml/section.h"
 #include "orchestrator/formats/mcap/writer.h"
+#include "orchestrator/recording/completeness.h"
 #include "orchestrator/recording/recording.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/verbs/verb.h"
@@ -53,51 +54,11 @@ double DurationSeconds(const McapContents& contents) {
   return first ? Seconds(*last - *first) : 0;
 }
 
-struct Planned {
-  bool realtime = false;
-  std::optional<std::uint64_t> ticks;
-};
-
-/// What the attached experiment says; nothing if there is none, or somebody else's.
-Planned PlanOf(const McapContents& contents) {
-  const auto attached = contents.attachments.find("config.toml");
-  if (attached == contents.attachments.end()) return {};
-  try {
-    Section config = Section::FromText(attached->second, attached->first);
-    Section run = config.Child("run"), control = config.Child("control");
-    Planned planned{.realtime = run.Text("mode", "lockstep") == "realtime", .ticks = {}};
-    if (!run.Has("duration_s") || !control.Has("rate_hz")) return planned;
-    const double duration_s = run.Number("duration_s", 0, 1e9);
-    const auto rate_hz = static_cast<double>(control.Integer("rate_hz", 1, 1'000'000));
-    planned.ticks = static_cast<std::uint64_t>(std::llround(duration_s * rate_hz)) + 1;
-    return planned;
-  } catch (const ConfigError&) {
-    return {};
-  }
-}
-
-/// Whether a channel holds a sample of every tick. In real time a late agent's last command is held, so that
-/// commands may be fewer.
-bool HasEveryTick(const ChannelInfo& channel, bool realtime) {
-  return channel.schema_name == "mascot_msgs/msg/AgentState" || channel.schema_name == "rosgraph_msgs/msg/Clock" ||
-         (channel.schema_name == "mascot_msgs/msg/AgentCommand" && !realtime);
-}
-
-/// The proof: every channel counts 0..n-1, and n is the number of ticks wherever there is a sample of each.
-/// Returns what contradicts it, or nothing.
-std::string Prove(const McapContents& contents, bool realtime, std::optional<std::uint64_t>& ticks) {
-  if (!contents.complete) return contents.damage;
-  const ChannelInfo* reference = nullptr;
-  for (const auto& [id, channel] : contents.channels) {
-    if (channel.gaps > 0) return channel.topic + ": gaps in its sequence numbers: " + std::to_string(channel.gaps);
-    if (!HasEveryTick(channel, realtime)) continue;
-    if (reference == nullptr) reference = &channel;
-    if (channel.messages != reference->messages)
-      return channel.topic + " has " + std::to_string(channel.messages) + " messages, " + reference->topic + " has " +
-             std::to_string(reference->messages);
-  }
-  if (reference != nullptr) ticks = reference->messages;
-  return "";
+/// Nothing if no experiment is attached, or somebody else's.
+std::optional<RecordingPlan> PlanIn(const McapContents& contents, const std::string& file) try {
+  return PlanOf(contents, file);
+} catch (const ConfigError&) {
+  return std::nullopt;
 }
 
 Findings Inspect(const std::string& run) {
@@ -105,9 +66,11 @@ Findings Inspect(const std::string& run) {
   findings.file = FindRecording(run);
   findings.contents = ReadMcap(findings.file);
   findings.size_bytes = std::filesystem::file_size(findings.file);
-  const Planned planned = PlanOf(findings.contents);
-  findings.planned_ticks = planned.ticks;
-  findings.reason = Prove(findings.contents, planned.realtime, findings.ticks);
+  const std::optional<RecordingPlan> plan = PlanIn(findings.contents, findings.file);
+  if (plan) findings.planned_ticks = plan->ticks;
+  const Proof proof = Prove(findings.contents, plan);
+  findings.reason = findings.contents.complete ? proof.gap : findings.contents.damage;
+  if (findings.complete()) findings.ticks = proof.ticks;
   return findings;
 }
 
@@ -144,48 +107,46 @@ Json ToJson(const Findings& findings) {
           {"reason", findings.reason}};
 }
 
-void PrintTopics(std::ostream& out, const McapContents& contents) {
+void PrintTopics(const McapContents& contents) {
   std::size_t topic_width = 5, type_width = 4;
   for (const auto& [id, channel] : contents.channels) {
     topic_width = std::max(topic_width, channel.topic.size());
     type_width = std::max(type_width, channel.schema_name.size());
   }
-  const auto row = [&](const auto& topic, const auto& type, const auto& count, const auto& hz) {
-    out << "  " << std::left << std::setw(static_cast<int>(topic_width)) << topic << "  "
-        << std::setw(static_cast<int>(type_width)) << type << std::right << std::setw(12) << count << std::setw(12)
-        << hz << "\n";
-  };
-  row("topic", "type", "count", "Hz");
-  out << std::setprecision(2);
+  std::cout << fmt::format("  {:<{}}  {:<{}}{:>12}{:>12}\n", "topic", topic_width, "type", type_width, "count", "Hz");
   for (const auto& [id, channel] : contents.channels)
-    row(channel.topic, channel.schema_name, channel.messages, Hz(channel));
+    std::cout << fmt::format("  {:<{}}  {:<{}}{:>12}{:>12.2f}\n", channel.topic, topic_width, channel.schema_name,
+                             type_width, channel.messages, Hz(channel));
 }
 
-void PrintText(std::ostream& out, const Findings& findings) {
+void PrintText(const Findings& findings) {
   const McapContents& contents = findings.contents;
-  out << std::fixed << std::setprecision(3);
-  out << "file:         " << findings.file << "\n";
-  out << "size:         " << findings.size_bytes << " bytes\n";
-  out << "profile:      " << contents.profile << " (written by " << contents.library << ")\n";
-  out << "duration:     " << DurationSeconds(contents) << " s\n";
-  out << "messages:     " << contents.messages << "\n";
-  out << "chunks:       " << contents.chunks << "\n";
-  out << "compression:  " << Ratio(contents) << " to 1\n\n";
-  PrintTopics(out, contents);
-  out << "\n";
+  const auto print = [](std::string_view label, const std::string& text) {
+    std::cout << fmt::format("{:<14}{}\n", label, text);
+  };
+  print("file:", findings.file);
+  print("size:", fmt::format("{} bytes", findings.size_bytes));
+  print("profile:", fmt::format("{} (written by {})", contents.profile, contents.library));
+  print("duration:", fmt::format("{:.3f} s", DurationSeconds(contents)));
+  print("messages:", fmt::format("{}", contents.messages));
+  print("chunks:", fmt::format("{}", contents.chunks));
+  print("compression:", fmt::format("{:.3f} to 1", Ratio(contents)));
+  std::cout << "\n";
+  PrintTopics(contents);
+  std::cout << "\n";
   for (const auto& [name, data] : contents.attachments)
-    out << "attachment:   " << name << ", " << data.size() << " bytes\n";
+    print("attachment:", fmt::format("{}, {} bytes", name, data.size()));
   for (const auto& [name, entries] : contents.metadata) {
-    out << "metadata:     " << name << "\n";
-    for (const auto& [key, value] : entries) out << "              " << key << " = " << value << "\n";
+    print("metadata:", name);
+    for (const auto& [key, value] : entries) print("", fmt::format("{} = {}", key, value));
   }
   if (findings.ticks) {
     const bool early = findings.planned_ticks && *findings.ticks < *findings.planned_ticks;
-    out << "ticks:        " << *findings.ticks;
-    if (early) out << " of " << *findings.planned_ticks << ": the run ended early";
-    out << ", recorded without a gap\n";
+    print("ticks:",
+          fmt::format("{}{}, recorded without a gap", *findings.ticks,
+                      early ? fmt::format(" of {}: the run ended early", *findings.planned_ticks) : std::string()));
   }
-  out << "complete: " << (findings.complete() ? "yes" : "no (" + findings.reason + ")") << "\n";
+  std::cout << "complete: " << (findings.complete() ? "yes" : "no (" + findings.reason + ")") << "\n";
 }
 
 int Info(const std::string& run, bool as_json) {
@@ -200,7 +161,7 @@ int Info(const std::string& run, bool as_json) {
     // A damaged file may hold any bytes in its names.
     std::cout << ToJson(findings).dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
   else
-    PrintText(std::cout, findings);
+    PrintText(findings);
   return findings.complete() ? 0 : 1;
 }
 

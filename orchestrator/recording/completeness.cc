@@ -1,0 +1,121 @@
+#include "orchestrator/recording/completeness.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "experiment/read_experiment.h"
+#include "orchestrator/recording/topic_filter.h"
+
+namespace mascot {
+namespace {
+
+bool IsMeantEveryTick(const Topic& topic, bool realtime) {
+  switch (topic.kind) {
+    case TopicKind::kState:
+    case TopicKind::kClock:
+      return true;
+    case TopicKind::kCommand:
+    case TopicKind::kMessage:
+      return !realtime;
+    default:
+      return false;
+  }
+}
+
+/// Which agents have a law that sends messages: law.messages of the resolved experiment says it.
+std::vector<bool> SendersOf(Section& config, std::size_t agents) {
+  const auto sends = [](Section law) { return law.Boolean("messages", false); };
+  std::vector<bool> senders(agents, sends(config.Child("law")));
+  for (Section& override : config.Child("agents").Children("override")) {
+    const auto id = override.Integer("id");
+    if (override.Has("law") && id >= 1 && static_cast<std::size_t>(id) <= agents)
+      senders[static_cast<std::size_t>(id - 1)] = sends(override.Child("law"));
+  }
+  return senders;
+}
+
+/// Those that record.topics wants, command, message and state of each agent, then the clock.
+std::vector<Topic> TopicsOf(const std::vector<std::string>& patterns, const std::vector<bool>& sends_messages) {
+  std::vector<Topic> topics;
+  for (std::size_t i = 0; i < sends_messages.size(); ++i) {
+    const int id = static_cast<int>(i) + 1;
+    topics.push_back(Topic::Command(id));
+    if (sends_messages[i]) topics.push_back(Topic::Message(id));
+    topics.push_back(Topic::State(id));
+  }
+  topics.push_back(Topic::Clock());
+  std::erase_if(topics, [&](const Topic& topic) { return !IsRecorded(patterns, topic); });
+  return topics;
+}
+
+using Counts = std::map<std::string, std::uint64_t>;  // messages by topic
+
+/// Of the topics that should have a sample of every tick.
+Counts Count(const McapContents& contents, const std::optional<RecordingPlan>& plan) {
+  Counts counts;
+  if (plan)
+    for (const Topic& topic : plan->topics)
+      if (plan->HasEveryTick(topic)) counts[topic.Name()] = 0;
+  for (const auto& [id, channel] : contents.channels) {
+    const auto topic = Topic::Parse(channel.topic);
+    if (topic && (plan ? counts.contains(channel.topic) : IsMeantEveryTick(*topic, /*realtime=*/false)))
+      counts[channel.topic] = channel.messages;
+  }
+  return counts;
+}
+
+/// A gap in what a channel counts; or, of a recording that was closed, a topic that is missing whole, or has fewer
+/// samples than another.
+std::string FindGap(const McapContents& contents, const std::optional<RecordingPlan>& plan, const Counts& counts) {
+  for (const auto& [id, channel] : contents.channels)
+    if (channel.gaps > 0) return fmt::format("{}: gaps in its sequence numbers: {}", channel.topic, channel.gaps);
+  if (!contents.complete) return "";
+  const auto is_there = [&](const Topic& topic) {
+    return std::ranges::any_of(contents.channels,
+                               [&](const auto& channel) { return channel.second.topic == topic.Name(); });
+  };
+  if (plan)
+    for (const Topic& topic : plan->topics)
+      if (!is_there(topic)) return topic.Name() + " is missing, which the experiment records";
+  const auto fewest = std::ranges::min_element(counts, {}, &Counts::value_type::second);
+  const auto most = std::ranges::max_element(counts, {}, &Counts::value_type::second);
+  if (counts.empty() || fewest->second == most->second) return "";
+  return fmt::format("{} has {} messages, {} has {}", most->first, most->second, fewest->first, fewest->second);
+}
+
+}  // namespace
+
+bool RecordingPlan::HasEveryTick(const Topic& topic) const { return IsMeantEveryTick(topic, realtime); }
+
+RecordingPlan PlanOf(const McapContents& contents, const std::string& path) {
+  const auto attached = contents.attachments.find("config.toml");
+  if (attached == contents.attachments.end())
+    throw ConfigError({path + ": expected a run's recording, with its config.toml attached, got none" +
+                       (contents.damage.empty() ? "" : ": " + contents.damage)});
+  Section config = Section::FromText(attached->second, path + " (config.toml)");
+  config.Use(ExperimentKeys());
+  Section run = config.Child("run");
+  RecordingPlan plan;
+  plan.name = run.Text("name");
+  plan.realtime = kModes.Value(run.OneOf("mode")) == Mode::kRealtime;
+  plan.agents = static_cast<int>(config.Child("agents").Integer("count"));
+  plan.rate_hz = static_cast<int>(config.Child("control").Integer("rate_hz"));
+  plan.ticks = static_cast<std::uint64_t>(std::llround(run.Number("duration_s") * plan.rate_hz)) + 1;
+  const std::vector<std::string> patterns = config.Child("record").Texts("topics");
+  config.ThrowIfWrong();  // before the count is relied on
+  plan.topics = TopicsOf(patterns, SendersOf(config, static_cast<std::size_t>(plan.agents)));
+  config.ThrowIfWrong();
+  return plan;
+}
+
+Proof Prove(const McapContents& contents, const std::optional<RecordingPlan>& plan) {
+  const Counts counts = Count(contents, plan);
+  Proof proof{.gap = FindGap(contents, plan, counts), .ticks = {}};
+  if (!counts.empty()) proof.ticks = std::ranges::min_element(counts, {}, &Counts::value_type::second)->second;
+  return proof;
+}
+
+}  // namespace mascot

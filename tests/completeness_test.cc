@@ -1,0 +1,157 @@
+// The proof that a recording is complete: what is there, and what the attached experiment says should be.
+#include "orchestrator/recording/completeness.h"
+
+#include <gmock/gmock.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "agent/laws.h"
+#include "orchestrator/engines/inprocess.h"
+#include "orchestrator/formats/bytes.h"
+#include "orchestrator/recording/recording.h"
+#include "orchestrator/recording/run_folder.h"
+#include "orchestrator/recording/run_writer.h"
+#include "tests/scratch.h"
+
+namespace mascot {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// Two agents for a tenth of a second; agent 2 has a law that sends messages.
+const char* const kExperiment = R"(
+[run]
+name = "talk"
+duration_s = 0.1
+[agents]
+count = 2
+model = "double_integrator"
+[[agents.override]]
+id = 2
+law = { name = "custom", python = """
+def control(t, me, neighbours):
+    return [0, 0, 0]
+def message(me):
+    return [1.0]
+""" }
+)";
+
+/// Flies `toml` in this process and records it. Returns the recording's path.
+std::string Record(const ScratchFolder& scratch, const std::string& toml) {
+  const Experiment experiment = LoadExperiment(Section::FromText(toml, "talk.toml"), "talk");
+  const RunFolder folder(scratch.File("run"), "talk", false);
+  RunWriter writer(experiment, folder, experiment.resolved);
+  EXPECT_EQ(RunInProcess(experiment, {&writer}, [] { return true; }).failure, "");
+  writer.Close();
+  return folder.File("run.mcap").string();
+}
+
+/// The recording without one topic, closed as it should be; `fewer`: without that topic's last sample only.
+std::string Without(const std::string& path, const std::string& topic, bool fewer = false) {
+  const McapContents contents = ReadMcap(path);
+  const std::string copy = path + ".without.mcap";
+  McapWriter writer(copy);
+  for (const auto& [name, data] : contents.attachments) writer.Attach(name, "application/toml", data);
+  std::map<std::uint16_t, std::uint16_t> channels;
+  std::map<std::uint16_t, std::uint64_t> left;
+  for (const auto& [id, channel] : contents.channels) {
+    if (channel.topic == topic && !fewer) continue;
+    channels[id] = writer.AddChannel({channel.topic, channel.schema_name, "uint64 n\n", {}});
+    left[id] = channel.messages - (channel.topic == topic ? 1 : 0);
+  }
+  ReadMcap(path, [&](const McapContents::Message& message) {
+    if (channels.contains(message.channel) && left[message.channel]-- > 0)
+      writer.Write(channels[message.channel], message.log_time, message.data);
+  });
+  writer.Close();
+  return copy;
+}
+
+Proof ProofOf(const std::string& path) {
+  const McapContents contents = ReadMcap(path);
+  EXPECT_EQ(contents.damage, "");
+  return Prove(contents, PlanOf(contents, path));
+}
+
+TEST(Completeness, OfAWholeRecordingHasNoGapAndEveryTick) {
+  const ScratchFolder scratch;
+  const Proof proof = ProofOf(Record(scratch, kExperiment));
+  EXPECT_EQ(proof.gap, "");
+  EXPECT_EQ(proof.ticks, 11u);
+}
+
+TEST(Completeness, ThePlanIsThatOfTheAttachedExperiment) {
+  const ScratchFolder scratch;
+  const std::string path = Record(scratch, kExperiment);
+  const RecordingPlan plan = PlanOf(ReadMcap(path), path);
+  EXPECT_EQ(plan.name, "talk");
+  EXPECT_EQ(plan.agents, 2);
+  EXPECT_EQ(plan.rate_hz, 100);
+  EXPECT_EQ(plan.ticks, 11u);
+  EXPECT_FALSE(plan.realtime);
+  EXPECT_THAT(plan.topics, ElementsAre(Topic::Command(1), Topic::State(1), Topic::Command(2), Topic::Message(2),
+                                       Topic::State(2), Topic::Clock()));
+}
+
+TEST(Completeness, ARecordingFromWhichAWholeTopicWasTakenIsNotComplete) {
+  const ScratchFolder scratch;
+  const std::string whole = Record(scratch, kExperiment);
+  for (const Topic& topic : PlanOf(ReadMcap(whole), whole).topics) {
+    const std::string path = Without(whole, topic.Name());
+    EXPECT_EQ(ProofOf(path).gap, topic.Name() + " is missing, which the experiment records");
+    if (topic.kind != TopicKind::kState && topic.kind != TopicKind::kCommand) continue;  // exports do without
+    const std::string error = path + ": " + topic.Name() + " is missing, which the experiment records";
+    EXPECT_THAT([&] { Recording{path}; }, ThrowsMessage<std::runtime_error>(error));
+  }
+}
+
+TEST(Completeness, ARecordingThatLacksASampleOfATopicIsNotComplete) {
+  const ScratchFolder scratch;
+  const std::string whole = Record(scratch, kExperiment);
+  for (const Topic& topic : PlanOf(ReadMcap(whole), whole).topics)
+    EXPECT_THAT(ProofOf(Without(whole, topic.Name(), /*fewer=*/true)).gap, HasSubstr(topic.Name() + " has 10"));
+}
+
+TEST(Completeness, TopicsThatTheExperimentDoesNotRecordAreNotMissed) {
+  const ScratchFolder scratch;
+  const std::string toml = std::string(kExperiment) + "[record]\ntopics = ['/agent_1/*', '/agent_2/state']\n";
+  const Proof proof = ProofOf(Record(scratch, toml));
+  EXPECT_EQ(proof.gap, "");
+  EXPECT_EQ(proof.ticks, 11u);
+}
+
+TEST(Completeness, InRealTimeOnlyCommandsAndMessagesMayBeFewer) {
+  RecordingPlan plan;
+  plan.realtime = true;
+  EXPECT_TRUE(plan.HasEveryTick(Topic::State(1)));
+  EXPECT_TRUE(plan.HasEveryTick(Topic::Clock()));
+  EXPECT_FALSE(plan.HasEveryTick(Topic::Command(1)));
+  EXPECT_FALSE(plan.HasEveryTick(Topic::Message(1)));
+}
+
+TEST(Completeness, WithoutAPlanOnlyTopicsThatAreThereAreCompared) {
+  const ScratchFolder scratch;
+  const std::string path = Without(Record(scratch, kExperiment), "/agent_2/state");
+  const Proof proof = Prove(ReadMcap(path), std::nullopt);
+  EXPECT_EQ(proof.gap, "");
+  EXPECT_EQ(proof.ticks, 11u);
+}
+
+TEST(Completeness, AFileOfSomebodyElsesHasNoPlan) {
+  const ScratchFolder scratch;
+  McapWriter writer(scratch.File("other.mcap"));
+  writer.Attach("config.toml", "application/toml", "colour = 'red'\n");
+  writer.Close();
+  const McapContents contents = ReadMcap(scratch.File("other.mcap"));
+  EXPECT_THROW(PlanOf(contents, "other.mcap"), ConfigError);
+  EXPECT_THAT(
+      [&] { PlanOf(McapContents{}, "none.mcap"); },
+      ThrowsMessage<ConfigError>("none.mcap: expected a run's recording, with its config.toml attached, got none"));
+}
+
+}  // namespace
+}  // namespace mascot
