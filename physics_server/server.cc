@@ -5,6 +5,7 @@
 #include <string>
 
 #include "experiment/processes.h"
+#include "physics_server/agents_text.h"
 
 namespace mascot {
 
@@ -12,14 +13,6 @@ using namespace std::chrono_literals;
 using WallClock = std::chrono::steady_clock;
 
 namespace {
-
-std::string Join(const std::vector<int>& ids) {
-  std::string text;
-  for (int id : ids) text += (text.empty() ? "" : ", ") + std::to_string(id);
-  return text;
-}
-
-std::string Agents(const std::vector<int>& ids) { return (ids.size() == 1 ? "agent " : "agents ") + Join(ids); }
 
 std::chrono::nanoseconds Seconds(double s) { return std::chrono::nanoseconds(static_cast<std::int64_t>(s * 1e9)); }
 
@@ -32,11 +25,11 @@ Server::Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experimen
       experiment_(experiment),
       last_tick_(experiment.ticks()),
       realtime_(experiment.run.mode == Mode::kRealtime),
+      roll_(experiment.size(), experiment.run.start_timeout_s),
       world_(experiment),
       barrier_(experiment.size()),
       commands_(static_cast<std::size_t>(experiment.size())),
       command_tick_(static_cast<std::size_t>(experiment.size()), -1),
-      ready_(static_cast<std::size_t>(experiment.size()), false),
       clock_(domain, Topic::Clock()),
       requests_(domain, Topic::Request()),
       status_reader_(domain, Topic::Status(), [this](const mascot_msgs::msg::Status& status) { OnStatus(status); }) {
@@ -78,24 +71,27 @@ void Server::Report() {
 // --- start ----------------------------------------------------------------------------------------------
 
 void Server::AwaitEveryone() {
-  const auto deadline = WallClock::now() + Seconds(experiment_.run.start_timeout_s);
-  auto ask_again = WallClock::now();
+  BeginRollCall();
   lifecycle_.Set(Life::kMatching);
-  while (WallClock::now() < deadline) {
+  for (;;) {
     lifecycle_.Wait(50ms);
-    if (Matched()) {  // asked before the lock: it takes those of the readers
-      const std::lock_guard lock(mutex_);
-      if (Missing().empty()) return;
-    }
-    if (WallClock::now() < ask_again) continue;
-    AskForReports();
-    ask_again = WallClock::now() + 250ms;
+    const StartRoll::Next next = LookAtRoll();
+    if (next == StartRoll::Next::kStart) return;
+    if (next == StartRoll::Next::kAsk) AskForReports();
   }
+}
+
+void Server::BeginRollCall() {
   const std::lock_guard lock(mutex_);
-  const std::string missing = Missing();
-  throw std::runtime_error(
-      "not ready within run.start_timeout_s = " + Shortest(experiment_.run.start_timeout_s) + ": " +
-      (missing.empty() ? "the wire (readers or writers that have not found each other)" : missing));
+  roll_.Begin(WallClock::now());
+}
+
+StartRoll::Next Server::LookAtRoll() {
+  const bool matched = Matched();  // asked before the lock: it takes those of the readers
+  const std::lock_guard lock(mutex_);
+  const StartRoll::Next next = roll_.Look(WallClock::now(), matched);
+  if (next == StartRoll::Next::kFail) throw std::runtime_error(roll_.Failure());
+  return next;
 }
 
 void Server::AskForReports() {
@@ -111,26 +107,17 @@ bool Server::Matched() const {
   return std::ranges::all_of(bundles_, [](const auto& bundle) { return bundle->matched() >= 1; });
 }
 
-std::string Server::Missing() const {
-  std::vector<int> ids;
-  for (std::size_t i = 0; i < ready_.size(); ++i)
-    if (!ready_[i]) ids.push_back(static_cast<int>(i) + 1);
-  std::string missing = ids.empty() ? "" : Agents(ids);
-  if (!recorder_ready_) missing += missing.empty() ? "the recorder" : " and the recorder";
-  return missing;
-}
-
 void Server::OnStatus(const mascot_msgs::msg::Status& status) {
   const std::lock_guard lock(mutex_);
   const auto life = static_cast<Life>(status.state());
+  const bool ready = life == Life::kReady || life == Life::kRunning;
   if (status.process() == "recorder") {
-    recorder_ready_ = life == Life::kReady || life == Life::kRunning;
+    roll_.OnRecorder(ready);
     recorded_rows_ = static_cast<std::int64_t>(status.tick());
     if (running_) PublishIfRecorded();
     if (realtime_) lifecycle_.Wake();  // who may wait for this very row
   } else if (const auto agents = AgentsOf(status.process().to_string())) {
-    for (int id = std::max(agents->first, 1); id <= std::min(agents->last, experiment_.size()); ++id)
-      ready_[static_cast<std::size_t>(id - 1)] = life == Life::kReady || life == Life::kRunning;
+    roll_.OnAgents(*agents, ready);
   }
 }
 
@@ -273,7 +260,7 @@ std::runtime_error Server::Overdue(std::int64_t tick) const {
   const std::string late = AwaitsRecorder()
                                ? "the recorder has confirmed only " + std::to_string(recorded_rows_) +
                                      " ticks, nothing within " + std::to_string(experiment_.size()) + " times "
-                               : "no command from " + Agents(barrier_.Late()) + " within ";
+                               : "no command from " + AgentsText(barrier_.Late()) + " within ";
   return std::runtime_error("tick " + std::to_string(tick) + ": " + late + limit);
 }
 

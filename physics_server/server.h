@@ -6,12 +6,12 @@
 #include <memory>
 #include <mutex>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "bus/lifecycle.h"
 #include "experiment/experiment.h"
 #include "physics_server/pace_meter.h"
+#include "physics_server/start_roll.h"
 #include "physics_server/tick_barrier.h"
 #include "physics_server/world.h"
 
@@ -31,7 +31,10 @@ class Server {
 
  private:
   void AwaitEveryone();
-  /// So that whoever was not heard says it again.
+  void BeginRollCall();
+  /// Throws when the time is up.
+  StartRoll::Next LookAtRoll();
+  /// Every process says again how far it is, for those that did not hear it.
   void AskForReports();
   void Start();
   void RunLockstep();
@@ -53,7 +56,6 @@ class Server {
   void PublishBundles();
   void Advance();
   void Finish();
-  std::string Missing() const;
   bool AwaitsRecorder() const;
   std::chrono::nanoseconds RecorderGrace() const;
   /// Realtime, where commands are held: throws if one has been held for longer than run.agent_timeout_s.
@@ -66,14 +68,13 @@ class Server {
   const bool realtime_;
 
   std::mutex mutex_;
+  StartRoll roll_;
   World world_;
   TickBarrier barrier_;
   std::vector<Actuation> commands_;         // by id - 1: what the world is stepped with
   std::vector<std::int64_t> command_tick_;  // the tick that each of them answered
-  std::vector<bool> ready_;
-  bool recorder_ready_ = false;
-  std::int64_t recorded_rows_ = 0;  // rows 0 .. recorded_rows_ - 1 are safe
-  std::int64_t published_ = -1;     // newest tick published
+  std::int64_t recorded_rows_ = 0;          // rows 0 .. recorded_rows_ - 1 are safe
+  std::int64_t published_ = -1;             // newest tick published
   PaceMeter pace_;
   bool running_ = false;
   std::atomic<bool> done_ = false;

@@ -1,0 +1,126 @@
+#include "physics_server/start_roll.h"
+
+#include <gtest/gtest.h>
+
+namespace mascot {
+namespace {
+
+using namespace std::chrono_literals;
+using Next = StartRoll::Next;
+
+const StartRoll::Time kStart{1000s};
+constexpr bool kMatched = true, kReady = true;
+
+/// A roll of three agents and 60 s that was begun at kStart and has asked once.
+StartRoll Begun() {
+  StartRoll roll(3, 60.0);
+  roll.Begin(kStart);
+  EXPECT_EQ(roll.Look(kStart, kMatched), Next::kAsk);
+  return roll;
+}
+
+/// The same when everybody is ready.
+StartRoll Complete() {
+  StartRoll roll = Begun();
+  roll.OnAgents({1, 3}, kReady);
+  roll.OnRecorder(kReady);
+  return roll;
+}
+
+TEST(StartRoll, StartsWhenEveryAgentAndTheRecorderAreReady) {
+  StartRoll roll = Begun();
+  roll.OnAgents({2, 2}, kReady);
+  roll.OnAgents({3, 3}, kReady);
+  roll.OnRecorder(kReady);
+  EXPECT_EQ(roll.Look(kStart + 1ms, kMatched), Next::kWait);
+  roll.OnAgents({1, 1}, kReady);
+  EXPECT_EQ(roll.Look(kStart + 2ms, kMatched), Next::kStart);
+}
+
+TEST(StartRoll, WaitsForTheRecorder) {
+  StartRoll roll = Begun();
+  roll.OnAgents({1, 3}, kReady);
+  EXPECT_EQ(roll.Look(kStart + 1ms, kMatched), Next::kWait);
+  roll.OnRecorder(kReady);
+  EXPECT_EQ(roll.Look(kStart + 1ms, kMatched), Next::kStart);
+}
+
+TEST(StartRoll, WaitsForTheWire) {
+  StartRoll roll = Complete();
+  EXPECT_EQ(roll.Look(kStart + 1ms, !kMatched), Next::kWait);
+  EXPECT_EQ(roll.Look(kStart + 2ms, kMatched), Next::kStart);
+}
+
+TEST(StartRoll, HearsThoseWhoAreReadyBeforeItBegins) {
+  StartRoll roll(1, 60.0);
+  roll.OnAgents({1, 1}, kReady);
+  roll.OnRecorder(kReady);
+  roll.Begin(kStart);
+  EXPECT_EQ(roll.Look(kStart, kMatched), Next::kStart);
+}
+
+TEST(StartRoll, TakesASecondReadyForNothing) {
+  StartRoll roll = Begun();
+  for (int time = 0; time < 3; ++time) roll.OnAgents({1, 1}, kReady);
+  roll.OnRecorder(kReady);
+  roll.OnRecorder(kReady);
+  EXPECT_EQ(roll.Look(kStart + 1ms, kMatched), Next::kWait);
+  EXPECT_EQ(roll.Failure(), "not ready within run.start_timeout_s = 60.0 s: agents 2, 3");
+}
+
+TEST(StartRoll, WaitsAgainForWhoFallsBack) {
+  StartRoll roll = Complete();
+  roll.OnAgents({2, 2}, !kReady);
+  EXPECT_EQ(roll.Look(kStart + 1ms, kMatched), Next::kWait);
+  roll.OnAgents({2, 2}, kReady);
+  roll.OnRecorder(!kReady);
+  EXPECT_EQ(roll.Look(kStart + 2ms, kMatched), Next::kWait);
+  roll.OnRecorder(kReady);
+  EXPECT_EQ(roll.Look(kStart + 3ms, kMatched), Next::kStart);
+}
+
+TEST(StartRoll, IgnoresAgentsThatThereAreNot) {
+  StartRoll roll = Begun();
+  roll.OnRecorder(kReady);
+  for (const AgentRange strangers : {AgentRange{4, 9}, {0, 0}, {-7, 0}, {3, 2}, {5, -5}})
+    roll.OnAgents(strangers, kReady);
+  EXPECT_EQ(roll.Failure(), "not ready within run.start_timeout_s = 60.0 s: agents 1, 2, 3");
+  roll.OnAgents({-7, 99}, kReady);
+  EXPECT_EQ(roll.Look(kStart + 1ms, kMatched), Next::kStart);
+}
+
+TEST(StartRoll, AsksAgainFourTimesASecond) {
+  StartRoll roll = Begun();
+  EXPECT_EQ(roll.Look(kStart + 249ms, kMatched), Next::kWait);
+  EXPECT_EQ(roll.Look(kStart + 250ms, kMatched), Next::kAsk);
+  EXPECT_EQ(roll.Look(kStart + 251ms, kMatched), Next::kWait);
+  EXPECT_EQ(roll.Look(kStart + 499ms, kMatched), Next::kWait);
+  EXPECT_EQ(roll.Look(kStart + 510ms, kMatched), Next::kAsk);
+  EXPECT_EQ(roll.Look(kStart + 759ms, kMatched), Next::kWait) << "from when it asked last";
+}
+
+TEST(StartRoll, FailsWhenItsTimeIsUp) {
+  StartRoll roll = Begun();
+  EXPECT_NE(roll.Look(kStart + 60s - 1ns, kMatched), Next::kFail);
+  EXPECT_EQ(roll.Look(kStart + 60s, kMatched), Next::kFail);
+}
+
+TEST(StartRoll, StartsWithThoseWhoAreReadyAtTheLastMoment) {
+  StartRoll roll = Complete();
+  EXPECT_EQ(roll.Look(kStart + 61s, kMatched), Next::kStart);
+}
+
+TEST(StartRoll, NamesWhoIsMissing) {
+  const std::string failure = "not ready within run.start_timeout_s = 60.0 s: ";
+  StartRoll roll = Begun();
+  EXPECT_EQ(roll.Failure(), failure + "agents 1, 2, 3 and the recorder");
+  roll.OnAgents({1, 2}, kReady);
+  EXPECT_EQ(roll.Failure(), failure + "agent 3 and the recorder");
+  roll.OnAgents({3, 3}, kReady);
+  EXPECT_EQ(roll.Failure(), failure + "the recorder");
+  roll.OnRecorder(kReady);
+  EXPECT_EQ(roll.Failure(), failure + "the wire (readers or writers that have not found each other)");
+}
+
+}  // namespace
+}  // namespace mascot
