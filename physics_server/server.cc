@@ -27,6 +27,7 @@ Server::Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experimen
       realtime_(experiment.run.mode == Mode::kRealtime),
       roll_(experiment.size(), experiment.run.start_timeout_s),
       world_(experiment),
+      watch_(ProgressWatch::Seconds(experiment.run.agent_timeout_s)),
       barrier_(experiment.size()),
       commands_(static_cast<std::size_t>(experiment.size())),
       command_tick_(static_cast<std::size_t>(experiment.size()), -1),
@@ -193,18 +194,13 @@ void Server::RunLockstep() {
 }
 
 void Server::WatchProgress() {
-  const auto limit = Seconds(experiment_.run.agent_timeout_s);
-  auto deadline = WallClock::now() + limit;
-  std::int64_t seen = -1;  // ticks reached and ticks published: agents have their time from the latter on
   while (!done_) {
     lifecycle_.Wait(50ms);
     const std::lock_guard lock(mutex_);
-    if (const std::int64_t now = world_.tick() + published_; now != seen) {
-      seen = now;
-      deadline = WallClock::now() + limit;
-    } else if (WallClock::now() > deadline + (AwaitsRecorder() ? RecorderGrace() : 0s) && !done_) {
+    // Ticks reached and ticks published: agents have their time from the latter on.
+    const std::int64_t progress = world_.tick() + published_;
+    if (watch_.IsOverdue(progress, WallClock::now(), AwaitsRecorder() ? RecorderGrace() : 0s) && !done_)
       throw Overdue(world_.tick());
-    }
   }
 }
 

@@ -11,6 +11,7 @@
 #include "bus/lifecycle.h"
 #include "experiment/experiment.h"
 #include "physics_server/pace_meter.h"
+#include "physics_server/progress_watch.h"
 #include "physics_server/start_roll.h"
 #include "physics_server/tick_barrier.h"
 #include "physics_server/world.h"
@@ -70,6 +71,7 @@ class Server {
   std::mutex mutex_;
   StartRoll roll_;
   World world_;
+  ProgressWatch watch_;
   TickBarrier barrier_;
   std::vector<Actuation> commands_;         // by id - 1: what the world is stepped with
   std::vector<std::int64_t> command_tick_;  // the tick that each of them answered

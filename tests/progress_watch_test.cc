@@ -1,0 +1,45 @@
+#include "physics_server/progress_watch.h"
+
+#include <gtest/gtest.h>
+
+namespace mascot {
+namespace {
+
+using namespace std::chrono_literals;
+
+const ProgressWatch::Time kStart{1000s};
+
+TEST(ProgressWatch, AllowsTheLimitAndNoMore) {
+  ProgressWatch watch(5s);
+  EXPECT_FALSE(watch.IsOverdue(0, kStart));
+  EXPECT_FALSE(watch.IsOverdue(0, kStart + 5s));
+  EXPECT_TRUE(watch.IsOverdue(0, kStart + 5s + 1ns));
+}
+
+TEST(ProgressWatch, CountsFromTheFirstLook) {
+  ProgressWatch watch(5s);
+  EXPECT_FALSE(watch.IsOverdue(-1, kStart + 1h)) << "nobody looked before";
+  EXPECT_FALSE(watch.IsOverdue(-1, kStart + 1h + 5s));
+  EXPECT_TRUE(watch.IsOverdue(-1, kStart + 1h + 6s));
+}
+
+TEST(ProgressWatch, StartsAgainWithEveryChange) {
+  ProgressWatch watch(5s);
+  watch.IsOverdue(0, kStart);
+  EXPECT_FALSE(watch.IsOverdue(1, kStart + 4s));
+  EXPECT_FALSE(watch.IsOverdue(1, kStart + 9s));
+  EXPECT_TRUE(watch.IsOverdue(1, kStart + 9s + 1ns));
+  EXPECT_FALSE(watch.IsOverdue(0, kStart + 10s)) << "back is a change, too";
+  EXPECT_FALSE(watch.IsOverdue(0, kStart + 15s));
+}
+
+TEST(ProgressWatch, AddsTheGraceOfTheLookToTheLimit) {
+  ProgressWatch watch(5s);
+  watch.IsOverdue(7, kStart);
+  EXPECT_FALSE(watch.IsOverdue(7, kStart + 15s, 10s));
+  EXPECT_TRUE(watch.IsOverdue(7, kStart + 15s + 1ns, 10s));
+  EXPECT_TRUE(watch.IsOverdue(7, kStart + 6s)) << "the next look has no grace";
+}
+
+}  // namespace
+}  // namespace mascot
