@@ -6,6 +6,7 @@
 
 #include "experiment/processes.h"
 #include "physics_server/agents_text.h"
+#include "physics_server/timetable.h"
 
 namespace mascot {
 
@@ -217,14 +218,12 @@ void Server::RunRealtime() {
   WatchProgress();  // tick 0 is waited for, so that every agent has a command that can be held
   done_ = false;
   const double period_s = experiment_.period_s() / experiment_.run.speed;
-  auto start = WallClock::now();
+  Timetable timetable(period_s, WallClock::now());
   for (std::int64_t tick = 0; tick < last_tick_ && !lifecycle_.stop_requested(); ++tick) {
     AwaitRecorder(tick);
-    const auto due = start + Seconds(static_cast<double>(tick + 1) * period_s);
+    const auto due = timetable.Due(tick + 1);
     while (WallClock::now() < due) lifecycle_.Wait(due - WallClock::now());
-    // A machine that cannot keep up falls behind as a whole: hurrying after the clock would only leave the
-    // agents still less time.
-    if (const auto behind = WallClock::now() - due; behind > Seconds(period_s)) start += behind;
+    timetable.Come(tick + 1, WallClock::now());
     const std::lock_guard lock(mutex_);
     for (const std::int64_t answered : command_tick_) pace_.AddCommand(published_ - answered);
     CheckForDeadAgents(period_s);

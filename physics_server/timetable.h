@@ -1,0 +1,27 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace mascot {
+
+/// When the ticks of a run in real time are due. No clock: it is told the time.
+class Timetable {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// Tick 0 is due at `start`, each later tick `period_s` after the one before it.
+  Timetable(double period_s, Time start);
+  Time Due(std::int64_t tick) const;
+  /// `tick` comes at `now`. If that is more than a period late, all later ticks are due later by as much: a machine
+  /// that cannot keep up falls behind as a whole. Hurrying after the clock would only leave the agents still less time.
+  void Come(std::int64_t tick, Time now);
+
+ private:
+  std::chrono::nanoseconds Periods(double count) const;
+
+  const double period_s_;
+  Time start_;
+};
+
+}  // namespace mascot
