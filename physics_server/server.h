@@ -1,19 +1,15 @@
 #pragma once
 
-#include <atomic>
-#include <chrono>
-#include <cstdint>
 #include <memory>
 #include <mutex>
-#include <stdexcept>
+#include <optional>
 #include <vector>
 
 #include "bus/lifecycle.h"
 #include "experiment/experiment.h"
 #include "physics_server/pace_meter.h"
-#include "physics_server/progress_watch.h"
 #include "physics_server/start_roll.h"
-#include "physics_server/tick_barrier.h"
+#include "physics_server/tick_protocol.h"
 #include "physics_server/world.h"
 
 namespace mascot {
@@ -21,6 +17,7 @@ namespace mascot {
 /// The tick loop on the wire: publish every agent's state, gather every agent's command, step the world.
 /// In lockstep the last command of a tick to arrive carries the world to the next, in the thread that
 /// received it; in real time the calling thread paces the ticks and commands are held when late.
+/// StartRoll and TickProtocol decide what is done when; Server does it.
 class Server {
  public:
   Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment);
@@ -37,49 +34,32 @@ class Server {
   StartRoll::Next LookAtRoll();
   /// Every process says again how far it is, for those that did not hear it.
   void AskForReports();
-  void Start();
-  void RunLockstep();
-  void RunRealtime();
   bool Matched() const;
-  /// Until Finish(); throws if nothing moves for run.agent_timeout_s.
-  void WatchProgress();
-  bool Published(std::int64_t tick);
-  /// Until tick is published; it waits for the recorder only.
-  void AwaitRecorder(std::int64_t tick);
+  void RunTicks();
+  void Start();
+  /// Does what it is time for. Returns when to look again; nothing: the run is finished. Throws naming who was late.
+  std::optional<TickProtocol::Time> Look();
   void Report();
 
   void OnCommand(int id, const mascot_msgs::msg::AgentCommand& command);
   void OnStatus(const mascot_msgs::msg::Status& status);
-  // All below with mutex_ held.
-  void PublishIfRecorded();
+  // The functions below are called with mutex_ held.
+  void Do(const TickProtocol::Actions& actions);
   void Publish();
-  /// What each agent may hear, of the states in samples_.
+  /// Publishes to each agent those of samples_ that it may hear.
   void PublishBundles();
-  void Advance();
-  void Finish();
-  bool AwaitsRecorder() const;
-  std::chrono::nanoseconds RecorderGrace() const;
-  /// Realtime, where commands are held: throws if one has been held for longer than run.agent_timeout_s.
-  void CheckForDeadAgents(double period_s) const;
-  std::runtime_error Overdue(std::int64_t tick) const;
+  /// Notes how old the commands are that the world is stepped with.
+  void MeasureCommands();
 
   Lifecycle& lifecycle_;
   const Experiment& experiment_;
-  const std::int64_t last_tick_;
-  const bool realtime_;
 
-  std::mutex mutex_;
+  std::mutex mutex_;  // guards all below but the endpoints
   StartRoll roll_;
+  TickProtocol ticks_;
   World world_;
-  ProgressWatch watch_;
-  TickBarrier barrier_;
-  std::vector<Actuation> commands_;         // by id - 1: what the world is stepped with
-  std::vector<std::int64_t> command_tick_;  // the tick that each of them answered
-  std::int64_t recorded_rows_ = 0;          // rows 0 .. recorded_rows_ - 1 are safe
-  std::int64_t published_ = -1;             // newest tick published
+  std::vector<Actuation> commands_;  // by id - 1: what the world is stepped with
   PaceMeter pace_;
-  bool running_ = false;
-  std::atomic<bool> done_ = false;
 
   std::vector<std::unique_ptr<Writer<StateType>>> states_;
   std::vector<int> state_readers_;                            // by id - 1: how many each must find

@@ -1,0 +1,104 @@
+#include "physics_server/tick_protocol.h"
+
+#include <algorithm>
+
+#include "experiment/toml/section.h"
+#include "physics_server/agents_text.h"
+
+namespace mascot {
+
+namespace {
+constexpr auto kLookEvery = std::chrono::milliseconds(50);
+}  // namespace
+
+TickProtocol::TickProtocol(const Rules& rules)
+    : rules_(rules),
+      barrier_(rules.agents),
+      answered_(static_cast<std::size_t>(rules.agents), -1),
+      watch_(ProgressWatch::Seconds(rules.agent_timeout_s)) {}
+
+TickProtocol::Actions TickProtocol::Start() {
+  running_ = true;
+  return {.publish = Publish()};
+}
+
+TickProtocol::Actions TickProtocol::OnRecorded(std::int64_t rows) {
+  recorded_rows_ = rows;
+  return {.publish = running_ && Publish(), .wake = IsRealtime()};  // the loop may wait for this very row
+}
+
+TickProtocol::Actions TickProtocol::OnCommand(int id, std::int64_t tick, bool stop_requested) {
+  std::int64_t& last = answered_[static_cast<std::size_t>(id - 1)];
+  if (finished_ || tick > published_ || tick <= last) return {};
+  last = tick;
+  Actions actions;
+  if (barrier_.Answer(id, tick)) {
+    if (tick == rules_.last_tick || (stop_requested && !IsRealtime()))
+      actions.wake = finished_ = true;
+    else if (!IsRealtime())
+      actions = Step();
+    else if (tick == 0)
+      actions.wake = paced_ = true;
+  }
+  actions.take = true;
+  return actions;
+}
+
+bool TickProtocol::Publish() {
+  if (!AwaitsRecorder() || recorded_rows_ <= tick_ - rules_.recorder_window) return false;
+  published_ = tick_;
+  barrier_.Open(tick_);
+  return true;
+}
+
+TickProtocol::Actions TickProtocol::Step() {
+  ++tick_;
+  return {.step = true, .publish = Publish()};
+}
+
+TickProtocol::Turn TickProtocol::Look(Time now, bool stop_requested) {
+  if (!running_ || finished_) return {};
+  if (!paced_) return Watch(now);
+  if (!timetable_) {
+    finished_ = stop_requested;
+    if (finished_) return {};
+    timetable_.emplace(*rules_.period_s, now);
+  }
+  if (AwaitsRecorder() && !stop_requested) return Watch(now);
+  const Time due = timetable_->Due(tick_ + 1);
+  return now < due ? Turn{.look_again = due} : EndTick(due, now, stop_requested);
+}
+
+TickProtocol::Turn TickProtocol::Watch(Time now) {
+  // What is measured beside the run asks the laws of all agents, one after the other, for each row.
+  const ProgressWatch::Seconds grace(AwaitsRecorder() ? (rules_.agents - 1) * rules_.agent_timeout_s : 0);
+  const std::int64_t progress = tick_ + published_;  // agents have their time from when a tick is published
+  const bool overdue = watch_.IsOverdue(progress, now, grace);
+  return {.look_again = now + kLookEvery, .failure = overdue ? WhoIsLate() : ""};
+}
+
+TickProtocol::Turn TickProtocol::EndTick(Time due, Time now, bool stop_requested) {
+  if (HoldsTooLong()) return {.due = due, .failure = WhoIsLate()};
+  timetable_->Come(tick_ + 1, now);
+  Turn turn{.actions = Step(), .due = due};
+  paced_ = tick_ < rules_.last_tick;
+  finished_ = stop_requested;
+  if (!finished_) turn.look_again = now;
+  return turn;
+}
+
+bool TickProtocol::HoldsTooLong() const {
+  return std::ranges::any_of(answered_, [this](std::int64_t answered) {
+    return static_cast<double>(published_ - answered) * *rules_.period_s > rules_.agent_timeout_s;
+  });
+}
+
+std::string TickProtocol::WhoIsLate() const {
+  const std::string limit = "run.agent_timeout_s = " + ShortestFloat(rules_.agent_timeout_s) + " s";
+  const std::string late = AwaitsRecorder() ? "the recorder has confirmed only " + std::to_string(recorded_rows_) +
+                                                  " ticks, nothing within " + std::to_string(rules_.agents) + " times "
+                                            : "no command from " + AgentsText(barrier_.Late()) + " within ";
+  return "tick " + std::to_string(tick_) + ": " + late + limit;
+}
+
+}  // namespace mascot
