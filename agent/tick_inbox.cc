@@ -1,0 +1,79 @@
+#include "agent/tick_inbox.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace mascot {
+
+TickInbox::TickInbox(int id, const std::vector<Peer>& peers, bool realtime)
+    : realtime_(realtime), samples_(peers.size()) {
+  sources_.push_back({.agent = {.id = id}});
+  for (const Peer& peer : peers) sources_.push_back({.agent = peer});
+}
+
+std::optional<TickInbox::CompleteTick> TickInbox::OnState(std::size_t source, std::int64_t tick, const Motion& motion) {
+  Source& from = sources_[source];
+  if (tick <= from.tick) return std::nullopt;
+  from.tick = tick;
+  from.motion = motion;
+  return TakeIfComplete();
+}
+
+std::optional<TickInbox::CompleteTick> TickInbox::OnMessage(std::size_t source, std::int64_t tick,
+                                                            std::span<const double> data) {
+  Message& place = sources_[source].messages[static_cast<std::size_t>(tick % 2)];
+  if (tick <= place.tick) return std::nullopt;
+  place.tick = tick;
+  place.data.assign(data.begin(), data.end());
+  return TakeIfComplete();
+}
+
+std::optional<TickInbox::CompleteTick> TickInbox::OnBundle(std::span<const State> states) {
+  CheckBundle(states);
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    sources_[k].tick = states[k].tick;
+    sources_[k].motion = states[k].motion;
+  }
+  return TakeIfComplete();
+}
+
+void TickInbox::CheckBundle(std::span<const State> states) const {
+  const int id = sources_.front().agent.id;
+  if (states.size() != sources_.size())
+    throw std::runtime_error("a bundle of " + std::to_string(states.size()) + " states came for agent " +
+                             std::to_string(id) + ", who hears " + std::to_string(samples_.size()));
+  for (std::size_t k = 0; k < states.size(); ++k)
+    if (std::cmp_not_equal(states[k].agent, sources_[k].agent.id))
+      throw std::runtime_error("a state of agent " + std::to_string(states[k].agent) + " came for agent " +
+                               std::to_string(id) + " in place of that of agent " +
+                               std::to_string(sources_[k].agent.id));
+}
+
+bool TickInbox::IsComplete(const Source& source, std::int64_t tick) const {
+  if (source.tick != tick) return false;
+  if (!source.agent.sends_messages || tick == 0 || realtime_)
+    return true;  // in real time a peer may have missed a tick
+  return source.messages[static_cast<std::size_t>((tick - 1) % 2)].tick == tick - 1;
+}
+
+std::span<const double> TickInbox::MessageBefore(const Source& source, std::int64_t tick) {
+  const Message* last = nullptr;
+  for (const Message& message : source.messages)
+    if (message.tick < tick && (last == nullptr || message.tick > last->tick)) last = &message;
+  return last == nullptr ? std::span<const double>() : last->data;
+}
+
+std::optional<TickInbox::CompleteTick> TickInbox::TakeIfComplete() {
+  const std::int64_t tick = sources_.front().tick;
+  if (tick <= answered_) return std::nullopt;
+  if (!std::ranges::all_of(sources_, [&](const Source& source) { return IsComplete(source, tick); }))
+    return std::nullopt;
+  answered_ = tick;
+  for (std::size_t k = 0; k < samples_.size(); ++k)
+    samples_[k] = {&sources_[k + 1].motion, MessageBefore(sources_[k + 1], tick)};
+  return CompleteTick{.tick = tick, .self = &sources_.front().motion, .samples = samples_};
+}
+
+}  // namespace mascot

@@ -1,0 +1,333 @@
+#include "agent/tick_inbox.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace mascot {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using Peer = TickInbox::Peer;
+using State = TickInbox::State;
+
+constexpr std::int64_t kFirst = std::numeric_limits<std::int64_t>::min();
+constexpr bool kRealtime = true;
+
+Motion At(double x) {
+  Motion motion;
+  motion.p_WB.x() = x;
+  return motion;
+}
+
+/// The inbox of agent 1, and what a test asks of it: was a tick complete, and with what.
+class Inbox {
+ public:
+  explicit Inbox(const std::vector<Peer>& peers, bool realtime = false) : inbox_(1, peers, realtime) {}
+
+  /// The state of a source (0 is the agent itself) at `tick`, at x. Returns the tick that is complete; -1: none.
+  std::int64_t State(std::size_t source, std::int64_t tick, double x = 0) {
+    return Keep(inbox_.OnState(source, tick, At(x)));
+  }
+  /// A message of one number.
+  std::int64_t Message(std::size_t source, std::int64_t tick, double number) {
+    return Keep(inbox_.OnMessage(source, tick, std::vector<double>{number}));
+  }
+  std::int64_t Bundle(const std::vector<TickInbox::State>& states) { return Keep(inbox_.OnBundle(states)); }
+
+  // What the last complete tick consisted of.
+  double self_x() const { return complete_.value().self->p_WB.x(); }
+  std::vector<double> xs() const {
+    std::vector<double> xs;
+    for (const Sample& sample : complete_.value().samples) xs.push_back(sample.motion->p_WB.x());
+    return xs;
+  }
+  /// The message of a peer, counted from 0.
+  std::vector<double> message(std::size_t peer) const {
+    const std::span<const double> data = complete_.value().samples[peer].message;
+    return {data.begin(), data.end()};
+  }
+
+ private:
+  std::int64_t Keep(const std::optional<TickInbox::CompleteTick>& complete) {
+    if (!complete) return -1;
+    complete_ = complete;
+    return complete->tick;
+  }
+
+  TickInbox inbox_;
+  std::optional<TickInbox::CompleteTick> complete_;
+};
+
+const std::vector<Peer> kNobody = {}, kOne = {{.id = 2}}, kTwo = {{.id = 2}, {.id = 5}},
+                        kTalker = {{.id = 2, .sends_messages = true}};
+
+// --- states ---------------------------------------------------------------------------------------------
+
+TEST(TickInbox, CompletesATickWithItsLastStateInWhateverOrderTheyCome) {
+  Inbox inbox(kTwo);
+  std::vector<std::size_t> order = {0, 1, 2};
+  std::int64_t tick = 0;
+  do {
+    EXPECT_EQ(inbox.State(order[0], tick), -1);
+    EXPECT_EQ(inbox.State(order[1], tick), -1);
+    EXPECT_EQ(inbox.State(order[2], tick), tick);
+    ++tick;
+  } while (std::ranges::next_permutation(order).found);
+  EXPECT_EQ(tick, 6);
+}
+
+TEST(TickInbox, GivesTheMotionsOfThatTickInTheOrderOfThePeers) {
+  Inbox inbox(kTwo);
+  inbox.State(2, 0, 5.0);
+  inbox.State(0, 0, 1.0);
+  ASSERT_EQ(inbox.State(1, 0, 2.0), 0);
+  EXPECT_EQ(inbox.self_x(), 1.0);
+  EXPECT_THAT(inbox.xs(), ElementsAre(2.0, 5.0));
+  inbox.State(2, 1, 5.1);
+  inbox.State(1, 1, 2.1);
+  ASSERT_EQ(inbox.State(0, 1, 1.1), 1);
+  EXPECT_EQ(inbox.self_x(), 1.1);
+  EXPECT_THAT(inbox.xs(), ElementsAre(2.1, 5.1));
+}
+
+TEST(TickInbox, WaitsForNobodyWhereTheAgentHearsNobody) {
+  Inbox inbox(kNobody);
+  for (std::int64_t tick = 0; tick < 3; ++tick) EXPECT_EQ(inbox.State(0, tick), tick);
+  EXPECT_THAT(inbox.xs(), IsEmpty());
+}
+
+TEST(TickInbox, CompletesATickOnceHoweverOftenItsStatesCome) {
+  Inbox inbox(kTwo);
+  for (const std::size_t source : {0, 1, 2}) inbox.State(source, 0);
+  for (const std::size_t source : {0, 1, 2}) EXPECT_EQ(inbox.State(source, 0), -1) << source;
+}
+
+TEST(TickInbox, IgnoresADoubledState) {
+  Inbox inbox(kTwo);
+  inbox.State(0, 0, 1.0);
+  inbox.State(1, 0, 2.0);
+  EXPECT_EQ(inbox.State(1, 0, 99.0), -1) << "nor does it stand in for that of another";
+  EXPECT_EQ(inbox.State(2, 0, 5.0), 0);
+  EXPECT_THAT(inbox.xs(), ElementsAre(2.0, 5.0));
+}
+
+TEST(TickInbox, IgnoresALateState) {
+  Inbox inbox(kTwo);
+  for (const std::size_t source : {0, 1, 2}) inbox.State(source, 7);
+  inbox.State(0, 8, 1.0);
+  inbox.State(1, 8, 2.0);
+  EXPECT_EQ(inbox.State(1, 7, 99.0), -1);
+  EXPECT_EQ(inbox.State(0, 6, 99.0), -1);
+  EXPECT_EQ(inbox.State(2, 8, 5.0), 8);
+  EXPECT_EQ(inbox.self_x(), 1.0);
+  EXPECT_THAT(inbox.xs(), ElementsAre(2.0, 5.0));
+}
+
+TEST(TickInbox, KeepsAStateOfTheFutureUntilItsTick) {
+  Inbox inbox(kOne);
+  EXPECT_EQ(inbox.State(1, 1, 2.1), -1);
+  EXPECT_EQ(inbox.State(0, 0), -1) << "no state of tick 1 stands in for one of tick 0";
+  EXPECT_EQ(inbox.State(0, 1), 1);
+  EXPECT_THAT(inbox.xs(), ElementsAre(2.1));
+}
+
+TEST(TickInbox, IgnoresStatesOfTicksThatThereAreNot) {
+  Inbox inbox(kOne);
+  for (const std::int64_t tick : {std::int64_t{-1}, std::int64_t{-2}, kFirst})
+    for (const std::size_t source : {0, 1}) EXPECT_EQ(inbox.State(source, tick), -1);
+  inbox.State(0, 0);
+  EXPECT_EQ(inbox.State(1, 0), 0);
+}
+
+// --- messages -------------------------------------------------------------------------------------------
+
+TEST(TickInbox, WaitsInLockstepForTheMessageOfTheTickBefore) {
+  Inbox inbox(kTalker);
+  inbox.State(0, 0);
+  EXPECT_EQ(inbox.State(1, 0), 0) << "nobody sent any before tick 0";
+  EXPECT_THAT(inbox.message(0), IsEmpty());
+  inbox.State(0, 1);
+  EXPECT_EQ(inbox.State(1, 1), -1);
+  EXPECT_EQ(inbox.Message(1, 0, 0.5), 1);
+  EXPECT_THAT(inbox.message(0), ElementsAre(0.5));
+}
+
+TEST(TickInbox, CompletesATickWithItsStatesIfTheMessageCameFirst) {
+  Inbox inbox(kTalker);
+  inbox.State(0, 0);
+  inbox.State(1, 0);
+  EXPECT_EQ(inbox.Message(1, 0, 0.5), -1);
+  EXPECT_EQ(inbox.State(1, 1), -1);
+  EXPECT_EQ(inbox.State(0, 1), 1);
+  EXPECT_THAT(inbox.message(0), ElementsAre(0.5));
+}
+
+TEST(TickInbox, WaitsForTheMessagesOfThoseWhoSendAnyOnly) {
+  Inbox inbox({{.id = 2}, {.id = 3, .sends_messages = true}, {.id = 4}});
+  for (const std::size_t source : {0, 1, 2, 3}) inbox.State(source, 0);
+  for (const std::size_t source : {0, 1, 2, 3}) EXPECT_EQ(inbox.State(source, 1), -1);
+  EXPECT_EQ(inbox.Message(2, 0, 3.0), 1);
+  EXPECT_THAT(inbox.message(0), IsEmpty());
+  EXPECT_THAT(inbox.message(1), ElementsAre(3.0));
+  EXPECT_THAT(inbox.message(2), IsEmpty());
+}
+
+TEST(TickInbox, KeepsTheMessageOfAPeerThatIsOneAnswerAhead) {
+  Inbox inbox({{.id = 2, .sends_messages = true}, {.id = 3}});
+  for (const std::size_t source : {0, 1, 2}) inbox.State(source, 0);
+  inbox.Message(1, 0, 0.5);
+  inbox.State(0, 1);
+  inbox.State(1, 1);
+  EXPECT_EQ(inbox.Message(1, 1, 1.5), -1) << "2 has answered tick 1 already";
+  EXPECT_EQ(inbox.State(2, 1), 1);
+  EXPECT_THAT(inbox.message(0), ElementsAre(0.5)) << "what it sent before tick 1";
+  inbox.State(0, 2);
+  inbox.State(2, 2);
+  EXPECT_EQ(inbox.State(1, 2), 2);
+  EXPECT_THAT(inbox.message(0), ElementsAre(1.5));
+}
+
+TEST(TickInbox, IgnoresADoubledAndALateMessage) {
+  Inbox inbox(kTalker);
+  for (std::int64_t tick = 0; tick <= 2; ++tick) {
+    inbox.State(0, tick);
+    inbox.State(1, tick);
+    inbox.Message(1, tick, 0.5 + static_cast<double>(tick));
+  }
+  EXPECT_EQ(inbox.Message(1, 2, 99.0), -1) << "doubled";
+  EXPECT_EQ(inbox.Message(1, 0, 99.0), -1) << "late, of the same parity";
+  inbox.State(0, 3);
+  EXPECT_EQ(inbox.State(1, 3), 3);
+  EXPECT_THAT(inbox.message(0), ElementsAre(2.5));
+  EXPECT_EQ(inbox.Message(1, 2, 99.0), -1) << "no tick is complete twice";
+}
+
+TEST(TickInbox, TakesNoOtherMessageForTheOneItWaitsForInLockstep) {
+  Inbox inbox(kTalker);
+  inbox.State(0, 5);
+  inbox.State(1, 5);
+  for (const std::int64_t tick : {2, 3, 5, 6}) EXPECT_EQ(inbox.Message(1, tick, 99.0), -1) << tick;
+  Inbox other(kTalker);
+  other.State(0, 5);
+  other.State(1, 5);
+  EXPECT_EQ(other.Message(1, 4, 4.5), 5);
+}
+
+TEST(TickInbox, TakesAnEmptyMessageForAMessage) {
+  TickInbox inbox(1, kTalker, /*realtime=*/false);
+  inbox.OnState(0, 1, At(0));
+  inbox.OnState(1, 1, At(0));
+  const auto complete = inbox.OnMessage(1, 0, {});
+  ASSERT_TRUE(complete);
+  EXPECT_THAT(complete->samples[0].message, IsEmpty());
+}
+
+// --- real time ------------------------------------------------------------------------------------------
+
+TEST(TickInbox, GoesOnInRealTimeWithoutAMessage) {
+  Inbox inbox(kTalker, kRealtime);
+  for (std::int64_t tick = 0; tick < 3; ++tick) {
+    inbox.State(0, tick);
+    EXPECT_EQ(inbox.State(1, tick), tick);
+    EXPECT_THAT(inbox.message(0), IsEmpty());
+  }
+}
+
+TEST(TickInbox, GivesTheLastMessageThatWasSentBeforeTheTickInRealTime) {
+  Inbox inbox(kTalker, kRealtime);
+  EXPECT_EQ(inbox.Message(1, 0, 0.5), -1);
+  inbox.State(0, 4);
+  EXPECT_EQ(inbox.State(1, 4), 4);
+  EXPECT_THAT(inbox.message(0), ElementsAre(0.5)) << "ticks 1 to 3 were missed";
+  inbox.Message(1, 3, 3.5);
+  inbox.Message(1, 6, 6.5);
+  inbox.State(0, 5);
+  EXPECT_EQ(inbox.State(1, 5), 5);
+  EXPECT_THAT(inbox.message(0), ElementsAre(3.5)) << "what it sends at tick 6 is not known at tick 5";
+  inbox.State(0, 6);
+  EXPECT_EQ(inbox.State(1, 6), 6);
+  EXPECT_THAT(inbox.message(0), ElementsAre(3.5)) << "nor at tick 6";
+  inbox.State(0, 7);
+  EXPECT_EQ(inbox.State(1, 7), 7);
+  EXPECT_THAT(inbox.message(0), ElementsAre(6.5));
+}
+
+TEST(TickInbox, DoesNotAnswerATickThatTheNextOneOvertookInRealTime) {
+  Inbox inbox(kTwo, kRealtime);
+  inbox.State(0, 0);
+  inbox.State(1, 0);
+  inbox.State(0, 1);
+  EXPECT_EQ(inbox.State(2, 0), -1) << "the agent itself is at tick 1";
+  EXPECT_EQ(inbox.State(1, 1), -1);
+  EXPECT_EQ(inbox.State(2, 1), 1);
+}
+
+TEST(TickInbox, DoesNotAnswerWithStatesOfDifferentTicksInRealTime) {
+  Inbox inbox(kTwo, kRealtime);
+  inbox.State(0, 3);
+  inbox.State(1, 4);
+  EXPECT_EQ(inbox.State(2, 3), -1);
+  inbox.State(2, 4);
+  EXPECT_EQ(inbox.State(0, 4), 4);
+}
+
+// --- bundles --------------------------------------------------------------------------------------------
+
+TEST(TickInbox, CompletesATickWithABundle) {
+  Inbox inbox(kTwo);
+  EXPECT_EQ(inbox.Bundle({{1, 0, At(1.0)}, {2, 0, At(2.0)}, {5, 0, At(5.0)}}), 0);
+  EXPECT_EQ(inbox.self_x(), 1.0);
+  EXPECT_THAT(inbox.xs(), ElementsAre(2.0, 5.0));
+  EXPECT_EQ(inbox.Bundle({{1, 0, At(1.0)}, {2, 0, At(2.0)}, {5, 0, At(5.0)}}), -1) << "doubled";
+}
+
+TEST(TickInbox, WaitsForMessagesAfterABundleToo) {
+  Inbox inbox(kTalker);
+  EXPECT_EQ(inbox.Bundle({{1, 0, At(0)}, {2, 0, At(0)}}), 0);
+  EXPECT_EQ(inbox.Bundle({{1, 1, At(0)}, {2, 1, At(0)}}), -1);
+  EXPECT_EQ(inbox.Message(1, 0, 0.5), 1);
+}
+
+TEST(TickInbox, DoesNotAnswerABundleOfDifferentTicks) {
+  Inbox inbox(kTwo);
+  EXPECT_EQ(inbox.Bundle({{1, 1, At(0)}, {2, 0, At(0)}, {5, 1, At(0)}}), -1);
+  EXPECT_EQ(inbox.Bundle({{1, 2, At(0)}, {2, 2, At(0)}, {5, 2, At(0)}}), 2);
+}
+
+/// What is said of a bundle for agent 1, who hears 2 and 5.
+std::string Refusal(const std::vector<State>& states) {
+  Inbox inbox(kTwo);
+  try {
+    inbox.Bundle(states);
+  } catch (const std::runtime_error& refused) {
+    return refused.what();
+  }
+  return "taken";
+}
+
+TEST(TickInbox, RefusesABundleThatIsNotItsOwn) {
+  EXPECT_EQ(Refusal({}), "a bundle of 0 states came for agent 1, who hears 2");
+  EXPECT_EQ(Refusal({{1}, {2}}), "a bundle of 2 states came for agent 1, who hears 2");
+  EXPECT_EQ(Refusal({{1}, {2}, {5}, {6}}), "a bundle of 4 states came for agent 1, who hears 2");
+  EXPECT_EQ(Refusal({{1}, {5}, {2}}), "a state of agent 5 came for agent 1 in place of that of agent 2");
+  EXPECT_EQ(Refusal({{3}, {2}, {5}}), "a state of agent 3 came for agent 1 in place of that of agent 1");
+  EXPECT_EQ(Refusal({{1}, {2}, {4294967295u}}),
+            "a state of agent 4294967295 came for agent 1 in place of that of agent 5");
+}
+
+TEST(TickInbox, TakesNothingFromABundleThatItRefuses) {
+  Inbox inbox(kTwo);
+  inbox.State(0, 0);
+  inbox.State(2, 0);
+  EXPECT_THROW(inbox.Bundle({{1, 1, At(9)}, {2, 0, At(9)}, {6, 0, At(9)}}), std::runtime_error);
+  EXPECT_EQ(inbox.State(1, 0, 2.0), 0);
+  EXPECT_THAT(inbox.xs(), ElementsAre(2.0, 0.0));
+}
+
+}  // namespace
+}  // namespace mascot
