@@ -14,15 +14,12 @@ TickInbox::TickInbox(int id, const std::vector<Peer>& peers, bool realtime)
 }
 
 std::optional<TickInbox::CompleteTick> TickInbox::OnState(std::size_t source, std::int64_t tick, const Motion& motion) {
-  Source& from = sources_[source];
-  if (tick <= from.tick) return std::nullopt;
-  from.tick = tick;
-  from.motion = motion;
-  return TakeIfComplete();
+  return Take(sources_[source], tick, motion) ? TakeIfComplete() : std::nullopt;
 }
 
 std::optional<TickInbox::CompleteTick> TickInbox::OnMessage(std::size_t source, std::int64_t tick,
                                                             std::span<const double> data) {
+  if (tick < 0) return std::nullopt;
   Message& place = sources_[source].messages[static_cast<std::size_t>(tick % 2)];
   if (tick <= place.tick) return std::nullopt;
   place.tick = tick;
@@ -32,11 +29,15 @@ std::optional<TickInbox::CompleteTick> TickInbox::OnMessage(std::size_t source, 
 
 std::optional<TickInbox::CompleteTick> TickInbox::OnBundle(std::span<const State> states) {
   CheckBundle(states);
-  for (std::size_t k = 0; k < states.size(); ++k) {
-    sources_[k].tick = states[k].tick;
-    sources_[k].motion = states[k].motion;
-  }
+  for (std::size_t k = 0; k < states.size(); ++k) Take(sources_[k], states[k].tick, states[k].motion);
   return TakeIfComplete();
+}
+
+bool TickInbox::Take(Source& source, std::int64_t tick, const Motion& motion) {
+  if (tick <= source.tick) return false;
+  source.tick = tick;
+  source.motion = motion;
+  return true;
 }
 
 void TickInbox::CheckBundle(std::span<const State> states) const {

@@ -41,7 +41,8 @@ class TickInbox {
 
   TickInbox(int id, const std::vector<Peer>& peers, bool realtime);
 
-  // What comes, and the tick that is complete with it. `source`: 0 is the agent itself, then its peers in order.
+  // What comes, and the tick that is complete with it. `source`: 0 is the agent itself, then its peers in order. What
+  // is late, doubled or of a negative tick is ignored.
   std::optional<CompleteTick> OnState(std::size_t source, std::int64_t tick, const Motion& motion);
   std::optional<CompleteTick> OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data);
   /// States of all sources, in order. Throws std::runtime_error if they are others.
@@ -62,6 +63,8 @@ class TickInbox {
     std::array<Message, 2> messages = {};  ///< the last two, by tick modulo 2: a peer may be one answer ahead of us
   };
 
+  /// False: the state is not newer than what has come of its source.
+  static bool Take(Source& source, std::int64_t tick, const Motion& motion);
   void CheckBundle(std::span<const State> states) const;
   std::optional<CompleteTick> TakeIfComplete();
   /// Everything that belongs to `tick` has come of this source.

@@ -227,6 +227,19 @@ TEST(TickInbox, TakesAnEmptyMessageForAMessage) {
   EXPECT_THAT(complete->samples[0].message, IsEmpty());
 }
 
+TEST(TickInbox, IgnoresMessagesOfTicksThatThereAreNot) {
+  TickInbox inbox(1, kTalker, kRealtime);
+  Motion slowing_down;
+  slowing_down.a_WB = {-1, -2, -3};
+  EXPECT_FALSE(inbox.OnState(1, 0, slowing_down));
+  for (const std::int64_t tick : {std::int64_t{-1}, std::int64_t{-2}, std::int64_t{-3}, kFirst, kFirst + 1})
+    EXPECT_FALSE(inbox.OnMessage(1, tick, {})) << tick;
+  const auto complete = inbox.OnState(0, 0, Motion());
+  ASSERT_TRUE(complete);
+  EXPECT_EQ(complete->samples[0].motion->a_WB, slowing_down.a_WB) << "what lies before the messages";
+  EXPECT_THAT(complete->samples[0].message, IsEmpty());
+}
+
 // --- real time ------------------------------------------------------------------------------------------
 
 TEST(TickInbox, GoesOnInRealTimeWithoutAMessage) {
@@ -297,6 +310,17 @@ TEST(TickInbox, DoesNotAnswerABundleOfDifferentTicks) {
   Inbox inbox(kTwo);
   EXPECT_EQ(inbox.Bundle({{1, 1, At(0)}, {2, 0, At(0)}, {5, 1, At(0)}}), -1);
   EXPECT_EQ(inbox.Bundle({{1, 2, At(0)}, {2, 2, At(0)}, {5, 2, At(0)}}), 2);
+}
+
+TEST(TickInbox, IgnoresALateBundle) {
+  Inbox inbox(kTalker);
+  inbox.Bundle({{1, 0, At(0)}, {2, 0, At(0)}});
+  EXPECT_EQ(inbox.Bundle({{1, 1, At(1)}, {2, 1, At(2)}}), -1);
+  EXPECT_EQ(inbox.Bundle({{1, 0, At(99)}, {2, 0, At(99)}}), -1);
+  EXPECT_EQ(inbox.Bundle({{1, -5, At(99)}, {2, kFirst, At(99)}}), -1);
+  EXPECT_EQ(inbox.Message(1, 0, 0.5), 1);
+  EXPECT_EQ(inbox.self_x(), 1);
+  EXPECT_THAT(inbox.xs(), ElementsAre(2));
 }
 
 /// What is said of a bundle for agent 1, who hears 2 and 5.
