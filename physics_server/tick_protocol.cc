@@ -24,7 +24,7 @@ TickProtocol::Actions TickProtocol::Start() {
 
 TickProtocol::Actions TickProtocol::OnRecorded(std::int64_t rows) {
   recorded_rows_ = rows;
-  return {.publish = running_ && Publish(), .wake = IsRealtime()};  // the loop may wait for this very row
+  return {.publish = running_ && !finished_ && Publish(), .wake = IsRealtime()};  // the loop may wait for this very row
 }
 
 TickProtocol::Actions TickProtocol::OnCommand(int id, std::int64_t tick, bool stop_requested) {
@@ -59,12 +59,12 @@ TickProtocol::Actions TickProtocol::Step() {
 TickProtocol::Turn TickProtocol::Look(Time now, bool stop_requested) {
   if (!running_ || finished_) return {};
   if (!paced_) return Watch(now);
-  if (!timetable_) {
-    finished_ = stop_requested;
-    if (finished_) return {};
-    timetable_.emplace(*rules_.period_s, now);
+  if (stop_requested && (!timetable_ || AwaitsRecorder())) {
+    finished_ = true;
+    return {};
   }
-  if (AwaitsRecorder() && !stop_requested) return Watch(now);
+  if (AwaitsRecorder()) return Watch(now);
+  if (!timetable_) timetable_.emplace(*rules_.period_s, now);
   const Time due = timetable_->Due(tick_ + 1);
   return now < due ? Turn{.look_again = due} : EndTick(due, now, stop_requested);
 }

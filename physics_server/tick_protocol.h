@@ -59,7 +59,8 @@ class TickProtocol {
   /// The loop's part, from Start() on: ends the ticks of real time that are due, and finds out who is late.
   Turn Look(Time now, bool stop_requested);
 
-  /// The last tick is answered, or a tick at which a stop was requested. Nothing counts any more.
+  /// The last tick is answered, or a requested stop has taken effect. From then on no command counts and nothing is
+  /// published.
   bool finished() const { return finished_; }
   /// The newest tick published; -1: none.
   std::int64_t published() const { return published_; }

@@ -393,6 +393,34 @@ TEST(TickProtocol, StopsInRealTimeWhenTheNextTickIsDue) {
   EXPECT_EQ(exchange.OnCommand(1, 2, kStop), kNothing);
 }
 
+/// Real time in which the states of tick 64 have waited for the recorder since they were due.
+Exchange PacedBeyondTheWindow() {
+  Exchange exchange = Paced(1);
+  for (int tick = 1; tick <= 64; ++tick) {
+    exchange.Look(kStart + tick * 250ms);
+    exchange.OnAllCommands();
+  }
+  EXPECT_EQ(exchange.published(), 63);
+  return exchange;
+}
+
+TEST(TickProtocol, StopsInRealTimeWhereItWaitsForTheRecorderAndDoesNotStep) {
+  Exchange exchange = PacedBeyondTheWindow();
+  const Turn turn = exchange.Look(kStart + 20s, kStop);
+  EXPECT_EQ(turn.actions, kNothing) << "nobody has seen the states of tick 64";
+  EXPECT_EQ(turn.look_again, std::nullopt);
+  EXPECT_TRUE(exchange.finished());
+}
+
+TEST(TickProtocol, PublishesNothingWhenItIsFinished) {
+  Exchange exchange = PacedBeyondTheWindow();
+  exchange.OnRecorded(1);
+  EXPECT_EQ(exchange.Look(kStart + 20s, kStop).actions, (Actions{.step = true})) << "tick 65 waits for the recorder";
+  ASSERT_TRUE(exchange.finished());
+  EXPECT_EQ(exchange.OnRecorded(2), kWake);
+  EXPECT_EQ(exchange.published(), 64);
+}
+
 TEST(TickProtocol, StopsInRealTimeAtTickZeroWithoutAStep) {
   Exchange exchange = Realtime(2);
   EXPECT_EQ(exchange.OnCommand(1, 0, kStop), kTake);
