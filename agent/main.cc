@@ -11,7 +11,7 @@
 
 namespace {
 
-/// Among the processes of the run, of which the server is the first.
+/// The place of these agents' process among the processes of the run; the server's is 0.
 int Place(const mascot::Experiment& experiment, mascot::AgentRange agents) {
   const auto processes = mascot::AgentProcesses(experiment);
   return 1 + static_cast<int>(std::ranges::find(processes, agents) - processes.begin());

@@ -14,22 +14,23 @@ Node::Node(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment, A
   ListenToMessages(domain);
 }
 
-std::map<int, std::vector<Node::Ear>> Node::Ears(bool own) const {
-  std::map<int, std::vector<Ear>> ears;
+std::map<int, std::vector<Node::Listener>> Node::Listeners(bool own) const {
+  std::map<int, std::vector<Listener>> listeners;
   for (const auto& seat : seats_) {
-    if (own) ears[seat->id()].push_back({seat.get(), 0});
+    if (own) listeners[seat->id()].push_back({seat.get(), 0});
     const auto& heard = experiment_.graph.HeardBy(seat->id());
-    for (std::size_t k = 0; k < heard.size(); ++k) ears[heard[k].id].push_back({seat.get(), k + 1});
+    for (std::size_t k = 0; k < heard.size(); ++k) listeners[heard[k].id].push_back({seat.get(), k + 1});
   }
-  return ears;
+  return listeners;
 }
 
 void Node::ListenToStates(Domain& domain) {
-  for (auto& [id, ears] : Ears(/*own=*/true))
+  for (auto& [id, listeners] : Listeners(/*own=*/true))
     readers_.push_back(std::make_unique<Reader<StateType>>(
-        domain, Topic::State(id), [ears = std::move(ears)](const mascot_msgs::msg::AgentState& state) {
+        domain, Topic::State(id), [listeners = std::move(listeners)](const mascot_msgs::msg::AgentState& state) {
           const Motion motion = FromWire(state);
-          for (const Ear& ear : ears) ear.seat->OnState(ear.source, static_cast<std::int64_t>(state.tick()), motion);
+          for (const Listener& listener : listeners)
+            listener.seat->OnState(listener.source, static_cast<std::int64_t>(state.tick()), motion);
         }));
 }
 
@@ -41,12 +42,13 @@ void Node::ListenToBundles(Domain& domain) {
 }
 
 void Node::ListenToMessages(Domain& domain) {
-  for (auto& [id, ears] : Ears(/*own=*/false)) {
+  for (auto& [id, listeners] : Listeners(/*own=*/false)) {
     if (!experiment_.agent(id).sends_messages) continue;
     readers_.push_back(std::make_unique<Reader<MessageType>>(
-        domain, Topic::Message(id), [ears = std::move(ears)](const mascot_msgs::msg::AgentMessage& message) {
+        domain, Topic::Message(id), [listeners = std::move(listeners)](const mascot_msgs::msg::AgentMessage& message) {
           const std::span<const double> data(message.data().begin(), message.data().end());
-          for (const Ear& ear : ears) ear.seat->OnMessage(ear.source, static_cast<std::int64_t>(message.tick()), data);
+          for (const Listener& listener : listeners)
+            listener.seat->OnMessage(listener.source, static_cast<std::int64_t>(message.tick()), data);
         }));
   }
 }

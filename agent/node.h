@@ -10,8 +10,8 @@
 
 namespace mascot {
 
-/// The agents of one process on the wire. It has readers on their own states and on the states and messages of those
-/// that the graph may let them hear, one for each topic, and on no others.
+/// The agents of one process on the wire. It has readers on their own states and on the states and messages of the
+/// agents that the graph may let them hear, one for each topic, and on no others.
 class Node {
  public:
   Node(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment, AgentRange agents);
@@ -21,8 +21,8 @@ class Node {
   [[noreturn]] void Run();
 
  private:
-  /// Somebody in this process for whom a topic is.
-  struct Ear {
+  /// A seat that a sample is for, and its sender's place among what that seat hears.
+  struct Listener {
     Seat* seat;
     std::size_t source;
   };
@@ -31,13 +31,13 @@ class Node {
   void ListenToStates(Domain& domain);
   void ListenToBundles(Domain& domain);
   void ListenToMessages(Domain& domain);
-  /// By the id of who is heard; `own`: themselves too.
-  std::map<int, std::vector<Ear>> Ears(bool own) const;
+  /// The seats that listen to each agent, by its id. `own`: agents listen to themselves, too.
+  std::map<int, std::vector<Listener>> Listeners(bool own) const;
 
   Lifecycle& lifecycle_;
   const Experiment& experiment_;
   std::vector<std::unique_ptr<Seat>> seats_;
-  std::vector<std::unique_ptr<ReaderBase>> readers_;  // last: they call what is above
+  std::vector<std::unique_ptr<ReaderBase>> readers_;  // last: readers call what is above
 };
 
 }  // namespace mascot

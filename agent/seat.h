@@ -44,7 +44,7 @@ class Seat {
   std::mutex mutex_;  // guards all below but the endpoints: different readers may be served at once
   Agent agent_;
   TickInbox inbox_;
-  std::vector<TickInbox::State> states_;  // of the bundle that came last
+  std::vector<TickInbox::State> states_;  // what the last bundle held
   std::atomic<bool> has_answered_ = false;
   mascot_msgs::msg::AgentCommand command_;
   mascot_msgs::msg::AgentMessage message_;

@@ -64,7 +64,7 @@ class Server {
   std::vector<std::unique_ptr<Writer<StateType>>> states_;
   std::vector<int> state_readers_;                            // by id - 1: how many each must find
   std::vector<std::unique_ptr<Writer<BundleType>>> bundles_;  // none: states are delivered one by one
-  std::vector<mascot_msgs::msg::AgentState> samples_;         // of the tick published last, by id - 1
+  std::vector<mascot_msgs::msg::AgentState> samples_;         // what was published last, by id - 1
   mascot_msgs::msg::AgentBundle bundle_;
   Writer<ClockType> clock_;
   Writer<RequestType> requests_;

@@ -5,7 +5,7 @@
 
 namespace mascot {
 
-/// Who has answered the current tick, and who is late. No DDS, no clock.
+/// Keeps which agents have answered the current tick, and names those that are late. No DDS, no clock.
 class TickBarrier {
  public:
   explicit TickBarrier(int agents);

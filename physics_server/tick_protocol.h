@@ -90,7 +90,7 @@ class TickProtocol {
   std::int64_t tick_ = 0;  // the world's
   std::int64_t published_ = -1;
   std::int64_t recorded_rows_ = 0;
-  TickBarrier barrier_;                 // of the newest tick published
+  TickBarrier barrier_;                 // waits for the newest tick published
   std::vector<std::int64_t> answered_;  // by id - 1
   ProgressWatch watch_;
   std::optional<Timetable> timetable_;  // from the first Look that paces

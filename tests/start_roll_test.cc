@@ -19,7 +19,7 @@ StartRoll Begun() {
   return roll;
 }
 
-/// The same when everybody is ready.
+/// Such a roll when everybody is ready.
 StartRoll Complete() {
   StartRoll roll = Begun();
   roll.OnAgents({1, 3}, kReady);
