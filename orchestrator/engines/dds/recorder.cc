@@ -4,7 +4,6 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include "bus/wire.h"
 
@@ -31,23 +30,27 @@ T ReadAt(const RawReader::Bytes& bytes, std::size_t offset) {
   return value;
 }
 
+RowWindow::Rules RulesOf(const Experiment& experiment) {
+  RowWindow::Rules rules{.topics = {Topic::Clock()},
+                         .agents = experiment.size(),
+                         .last_tick = experiment.ticks(),
+                         .realtime = experiment.run.mode == Mode::kRealtime,
+                         .ticks = kHistoryDepth,
+                         .patience = kPatience,
+                         .batch = kBatch};
+  for (const AgentConfig& agent : experiment.agents) {
+    rules.topics.push_back(Topic::State(agent.id));
+    rules.topics.push_back(Topic::Command(agent.id));
+    if (agent.sends_messages) rules.topics.push_back(Topic::Message(agent.id));
+  }
+  return rules;
+}
+
 }  // namespace
 
 Recorder::Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed)
-    : domain_(domain),
-      experiment_(experiment),
-      feed_(feed),
-      realtime_(experiment.run.mode == Mode::kRealtime),
-      slots_(kHistoryDepth),
-      taken_(experiment.size()) {
-  for (Slot& slot : slots_) slot.row = Row(experiment.size());
-  std::vector<Topic> topics{Topic::Clock()};
-  for (const AgentConfig& agent : experiment.agents) {
-    topics.push_back(Topic::State(agent.id));
-    topics.push_back(Topic::Command(agent.id));
-    if (agent.sends_messages) topics.push_back(Topic::Message(agent.id));
-  }
-  sequences_.assign(topics.size(), 0);
+    : domain_(domain), experiment_(experiment), feed_(feed), window_(RulesOf(experiment)), taken_(experiment.size()) {
+  const std::vector<Topic> topics = RulesOf(experiment).topics;
   for (std::size_t index = 0; index < topics.size(); ++index)
     readers_.push_back(std::make_unique<RawReader>(
         domain, topics[index],
@@ -69,71 +72,23 @@ std::int64_t Recorder::TickOf(const Topic& topic, const RawReader::Bytes& bytes)
   return static_cast<std::int64_t>(seconds * rate + (nanoseconds * rate + 500'000'000) / 1'000'000'000);
 }
 
-void Recorder::CheckSequence(std::size_t index, const Topic& topic, std::int64_t sequence) {
-  const std::int64_t missing = sequence - sequences_[index] - 1;
-  const bool may_lack = realtime_ && topic.kind != TopicKind::kClock && topic.kind != TopicKind::kState;
-  if (missing > 0 && may_lack) {  // nobody waits for these: agents that hurry may write over what is not read yet
-    lost_ += static_cast<std::uint64_t>(missing);
-  } else if (missing != 0) {
-    lost_ += static_cast<std::uint64_t>(std::max<std::int64_t>(missing, 1));
-    throw std::runtime_error("the recording is not complete: " + topic.Name() + ": sample " + std::to_string(sequence) +
-                             " came after sample " + std::to_string(sequences_[index]));
-  }
-  sequences_[index] = sequence;
-}
-
 void Recorder::OnSample(std::size_t index, const Topic& topic, const RawReader::Bytes& bytes, std::int64_t sequence) {
   const std::int64_t tick = TickOf(topic, bytes);
   const std::lock_guard lock(mutex_);
-  CheckSequence(index, topic, sequence);
-  if (tick < written_) {  // its row is closed: only in real time, after kPatience
-    ++lost_;
-    return;
-  }
-  Slot& slot = SlotOf(tick);
-  if (slot.tick != tick) {
-    if (slot.tick >= written_ || tick >= written_ + std::ssize(slots_))
-      throw std::runtime_error("the recorder was overrun: tick " + std::to_string(tick) + " came while tick " +
-                               std::to_string(written_) + " was not written");
-    slot.tick = tick;
-    slot.samples = slot.states = 0;
-    for (auto& command : slot.row.commands) command.clear();
-    for (auto& message : slot.row.messages) message.clear();
-  }
-  SampleOf(slot.row, topic).assign(bytes.begin(), bytes.end());
-  ++slot.samples;
-  if (topic.kind == TopicKind::kState || topic.kind == TopicKind::kClock) ++slot.states;
-  if (newest_ < 0) started_ = WallClock::now();
-  newest_ = std::max(newest_, tick);
-  if (topic.kind == TopicKind::kCommand) last_command_ = WallClock::now();
-  if (slot.samples == std::ssize(sequences_)) ++complete_;
-  if (complete_ >= kBatch || tick == experiment_.ticks() || newest_ - written_ == kPatience) domain_.Wake();
-}
-
-bool Recorder::IsReady(const Slot& slot, bool give_up) const {
-  if (slot.tick != written_) return false;
-  if (slot.samples == std::ssize(sequences_)) return true;
-  const bool states_complete = slot.states == experiment_.size() + 1;
-  return realtime_ && states_complete && (give_up || newest_ - slot.tick >= kPatience);
+  const bool first = window_.newest_tick() < 0, in_time = tick >= window_.rows();
+  const bool wake = window_.Take(index, tick, bytes, sequence);
+  if (first && in_time) started_ = WallClock::now();
+  if (topic.kind == TopicKind::kCommand && in_time) last_command_ = WallClock::now();
+  if (wake) domain_.Wake();
 }
 
 std::int64_t Recorder::Drain(bool give_up) {
   for (const auto enough = WallClock::now() + kLongEnough;;) {
-    if (WallClock::now() > enough) {
-      domain_.Wake();  // there may be more
-      return written_;
-    }
+    const bool is_late = WallClock::now() > enough;
     {
       const std::lock_guard lock(mutex_);
-      complete_ = 0;
-      Slot& slot = SlotOf(written_);
-      if (!IsReady(slot, give_up)) return written_;
-      taken_.tick = slot.tick;
-      std::swap(taken_.clock, slot.row.clock);
-      std::swap(taken_.states, slot.row.states);
-      std::swap(taken_.commands, slot.row.commands);
-      std::swap(taken_.messages, slot.row.messages);
-      ++written_;
+      if (is_late) domain_.Wake();  // there may be more
+      if (is_late || !window_.Next(give_up, taken_)) return window_.rows();
     }
     feed_.Add(taken_);
   }
@@ -141,7 +96,7 @@ std::int64_t Recorder::Drain(bool give_up) {
 
 std::uint64_t Recorder::lost() const {
   const std::lock_guard lock(mutex_);
-  return lost_;
+  return window_.lost();
 }
 
 double Recorder::wall_s() const {
@@ -156,7 +111,7 @@ std::chrono::steady_clock::time_point Recorder::started() const {
 
 std::int64_t Recorder::newest_tick() const {
   const std::lock_guard lock(mutex_);
-  return newest_;
+  return window_.newest_tick();
 }
 
 }  // namespace mascot

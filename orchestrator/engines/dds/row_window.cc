@@ -1,0 +1,80 @@
+#include "orchestrator/engines/dds/row_window.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "orchestrator/recording/row_codec.h"
+
+namespace mascot {
+
+RowWindow::RowWindow(Rules rules)
+    : rules_(std::move(rules)), slots_(static_cast<std::size_t>(rules_.ticks)), sequences_(rules_.topics.size(), 0) {
+  for (Slot& slot : slots_) slot.row = Row(rules_.agents);
+}
+
+void RowWindow::CheckSequence(std::size_t index, std::int64_t sequence) {
+  const TopicKind kind = rules_.topics[index].kind;
+  const std::int64_t missing = sequence - sequences_[index] - 1;
+  const bool may_lack = rules_.realtime && (kind == TopicKind::kCommand || kind == TopicKind::kMessage);
+  if (missing > 0 && may_lack) {  // nobody waits for these: agents that hurry may write over what is not read yet
+    lost_ += static_cast<std::uint64_t>(missing);
+  } else if (missing != 0) {
+    lost_ += static_cast<std::uint64_t>(std::max<std::int64_t>(missing, 1));
+    throw std::runtime_error(fmt::format("the recording is not complete: {}: sample {} came after sample {}",
+                                         rules_.topics[index].Name(), sequence, sequences_[index]));
+  }
+  sequences_[index] = sequence;
+}
+
+void RowWindow::Begin(Slot& slot, std::int64_t tick) const {
+  if (slot.tick >= rows_ || tick >= rows_ + std::ssize(slots_))
+    throw std::runtime_error(
+        fmt::format("the recorder was overrun: tick {} came while tick {} was not written", tick, rows_));
+  slot.tick = tick;
+  slot.samples = 0;
+  slot.states = 0;
+  for (auto& command : slot.row.commands) command.clear();
+  for (auto& message : slot.row.messages) message.clear();
+}
+
+bool RowWindow::Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t sequence) {
+  CheckSequence(index, sequence);
+  if (tick < rows_) {  // its row is gone: only in real time, after the patience
+    ++lost_;
+    return false;
+  }
+  Slot& slot = SlotOf(tick);
+  if (slot.tick != tick) Begin(slot, tick);
+  const Topic& topic = rules_.topics[index];
+  SampleOf(slot.row, topic).assign(bytes.begin(), bytes.end());
+  ++slot.samples;
+  if (topic.kind == TopicKind::kState || topic.kind == TopicKind::kClock) ++slot.states;
+  newest_ = std::max(newest_, tick);
+  if (slot.samples == rules_.topics.size()) ++complete_;
+  return complete_ >= rules_.batch || tick == rules_.last_tick || newest_ - rows_ == rules_.patience;
+}
+
+bool RowWindow::IsReady(const Slot& slot, bool give_up) const {
+  if (slot.tick != rows_) return false;
+  if (slot.samples == rules_.topics.size()) return true;
+  const bool states_complete = slot.states == rules_.agents + 1;
+  return rules_.realtime && states_complete && (give_up || newest_ - slot.tick >= rules_.patience);
+}
+
+bool RowWindow::Next(bool give_up, Row& row) {
+  complete_ = 0;
+  Slot& slot = SlotOf(rows_);
+  if (!IsReady(slot, give_up)) return false;
+  row.tick = slot.tick;
+  std::swap(row.clock, slot.row.clock);
+  std::swap(row.states, slot.row.states);
+  std::swap(row.commands, slot.row.commands);
+  std::swap(row.messages, slot.row.messages);
+  ++rows_;
+  return true;
+}
+
+}  // namespace mascot

@@ -1,0 +1,204 @@
+// Rows of samples that come in any order, without a wire.
+#include "orchestrator/engines/dds/row_window.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "orchestrator/recording/row_codec.h"
+
+namespace mascot {
+namespace {
+
+using testing::ThrowsMessage;
+
+constexpr std::size_t kClock = 0, kState1 = 1, kCommand1 = 2, kState2 = 3, kCommand2 = 4;
+
+/// Two agents, ticks 0 to 99, a window of 16 ticks.
+RowWindow::Rules Rules(bool realtime = false) {
+  return {.topics = {Topic::Clock(), Topic::State(1), Topic::Command(1), Topic::State(2), Topic::Command(2)},
+          .agents = 2,
+          .last_tick = 99,
+          .realtime = realtime,
+          .ticks = 16,
+          .patience = 8,
+          .batch = 4};
+}
+
+/// A window, and what every topic has sent so far.
+class RowWindowTest : public testing::Test {
+ protected:
+  explicit RowWindowTest(bool realtime = false) : window_(Rules(realtime)), sent_(5, 0) {}
+
+  /// The next sample of a topic; its byte says tick and topic.
+  bool Send(std::size_t topic, std::int64_t tick) {
+    const std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(tick), static_cast<std::uint8_t>(topic)};
+    return window_.Take(topic, tick, bytes, ++sent_[topic]);
+  }
+  bool SendTick(std::int64_t tick) {
+    bool wake = false;
+    for (std::size_t topic = 0; topic < sent_.size(); ++topic) wake |= Send(topic, tick);
+    return wake;
+  }
+  bool Next(bool give_up = false) { return window_.Next(give_up, row_); }
+
+  RowWindow window_;
+  std::vector<std::int64_t> sent_;
+  Row row_{2};
+};
+
+class RealtimeRowWindowTest : public RowWindowTest {
+ protected:
+  RealtimeRowWindowTest() : RowWindowTest(/*realtime=*/true) {}
+};
+
+// --- rows ---------------------------------------------------------------------------------------------
+
+TEST_F(RowWindowTest, ARowIsThereWhenItsLastSampleIs) {
+  for (const std::size_t topic : {kCommand2, kState1, kClock, kCommand1}) {
+    Send(topic, 0);
+    EXPECT_FALSE(Next());
+  }
+  Send(kState2, 0);
+  ASSERT_TRUE(Next());
+  EXPECT_EQ(row_.tick, 0);
+  EXPECT_EQ(row_.clock, (Row::Bytes{0, kClock}));
+  EXPECT_EQ(row_.states[1], (Row::Bytes{0, kState2}));
+  EXPECT_EQ(row_.commands[0], (Row::Bytes{0, kCommand1}));
+  EXPECT_FALSE(Next());
+  EXPECT_EQ(window_.rows(), 1);
+}
+
+TEST_F(RowWindowTest, RowsComeInOrderOfTickInWhateverOrderTopicsHurryAhead) {
+  std::mt19937 random(7);
+  std::int64_t taken = 0;
+  while (window_.rows() < 100) {
+    std::vector<std::size_t> topics;
+    for (std::size_t topic = 0; topic < sent_.size(); ++topic)
+      if (sent_[topic] < std::min<std::int64_t>(window_.rows() + 16, 100)) topics.push_back(topic);
+    const std::size_t topic = topics[random() % topics.size()];
+    Send(topic, sent_[topic]);
+    while (Next()) {
+      EXPECT_EQ(row_.tick, taken);
+      EXPECT_EQ(row_.states[0], (Row::Bytes{static_cast<std::uint8_t>(taken), kState1}));
+      EXPECT_EQ(row_.commands[1], (Row::Bytes{static_cast<std::uint8_t>(taken), kCommand2}));
+      ++taken;
+    }
+  }
+  EXPECT_EQ(window_.lost(), 0u);
+  EXPECT_EQ(window_.newest_tick(), 99);
+}
+
+TEST_F(RowWindowTest, InLockstepARowWaitsForItsCommandsForEver) {
+  for (std::int64_t tick = 0; tick < 16; ++tick)
+    for (const std::size_t topic : {kClock, kState1, kState2, kCommand1}) Send(topic, tick);
+  EXPECT_FALSE(Next());
+  EXPECT_FALSE(Next(/*give_up=*/true));
+}
+
+// --- when to look -------------------------------------------------------------------------------------
+
+TEST_F(RowWindowTest, RowsAreWorthTakingByTheBatch) {
+  EXPECT_FALSE(SendTick(0));
+  EXPECT_FALSE(SendTick(1));
+  EXPECT_FALSE(SendTick(2));
+  EXPECT_TRUE(SendTick(3));
+  while (Next()) continue;
+  EXPECT_FALSE(SendTick(4)) << "taken ones do not count";
+}
+
+TEST_F(RowWindowTest, TheLastTickIsWorthTakingAtOnce) {
+  for (std::int64_t tick = 0; tick < 99; ++tick) {
+    SendTick(tick);
+    ASSERT_TRUE(Next());
+  }
+  EXPECT_TRUE(Send(kState1, 99));
+}
+
+// --- proof --------------------------------------------------------------------------------------------
+
+TEST_F(RowWindowTest, ASampleThatIsMissingFailsTheRecording) {
+  Send(kState1, 0);
+  EXPECT_THAT(
+      [&] { window_.Take(kState1, 2, {}, 3); },
+      ThrowsMessage<std::runtime_error>("the recording is not complete: /agent_1/state: sample 3 came after sample 1"));
+  EXPECT_EQ(window_.lost(), 1u);
+}
+
+TEST_F(RowWindowTest, ASampleThatComesTwiceFailsTheRecording) {
+  Send(kCommand2, 0);
+  EXPECT_THAT([&] { window_.Take(kCommand2, 0, {}, 1); },
+              ThrowsMessage<std::runtime_error>(
+                  "the recording is not complete: /agent_2/command: sample 1 came after sample 1"));
+}
+
+TEST_F(RowWindowTest, ATickAsFarAheadAsTheWindowIsTakenOneFartherFails) {
+  EXPECT_NO_THROW(Send(kState1, 15));
+  EXPECT_THAT([&] { Send(kState1, 16); },
+              ThrowsMessage<std::runtime_error>("the recorder was overrun: tick 16 came while tick 0 was not written"));
+}
+
+TEST_F(RowWindowTest, ATickWhoseRowIsGoneIsLost) {
+  SendTick(0);
+  ASSERT_TRUE(Next());
+  EXPECT_FALSE(Send(kCommand1, 0));
+  EXPECT_EQ(window_.lost(), 1u);
+}
+
+TEST_F(RowWindowTest, ATickBeforeTheFirstIsLost) {
+  EXPECT_FALSE(Send(kCommand1, -1));
+  EXPECT_EQ(window_.lost(), 1u);
+  EXPECT_EQ(window_.newest_tick(), -1);
+}
+
+// --- real time ----------------------------------------------------------------------------------------
+
+TEST_F(RealtimeRowWindowTest, ARowGoesWithoutACommandOnceItIsOlderThanThePatience) {
+  for (const std::size_t topic : {kClock, kState1, kState2, kCommand2}) Send(topic, 0);
+  for (std::int64_t tick = 1; tick < 8; ++tick) {
+    EXPECT_FALSE(SendTick(tick) && tick < 4);
+    EXPECT_FALSE(Next()) << tick;
+  }
+  EXPECT_TRUE(Send(kClock, 8)) << "worth looking";
+  ASSERT_TRUE(Next());
+  EXPECT_TRUE(row_.commands[0].empty());
+  EXPECT_FALSE(row_.commands[1].empty());
+}
+
+TEST_F(RealtimeRowWindowTest, AtTheEndARowGoesWithoutACommandAtOnce) {
+  for (const std::size_t topic : {kClock, kState1, kState2}) Send(topic, 0);
+  EXPECT_FALSE(Next());
+  ASSERT_TRUE(Next(/*give_up=*/true));
+  EXPECT_TRUE(row_.commands[0].empty());
+}
+
+TEST_F(RealtimeRowWindowTest, ARowNeverGoesWithoutAState) {
+  for (const std::size_t topic : {kClock, kState1, kCommand1, kCommand2}) Send(topic, 0);
+  EXPECT_FALSE(Next(/*give_up=*/true));
+}
+
+TEST_F(RealtimeRowWindowTest, CommandsThatWereOverwrittenAreCountedAndStatesMayNotBe) {
+  Send(kCommand1, 0);
+  EXPECT_NO_THROW(window_.Take(kCommand1, 3, {}, 4));
+  EXPECT_EQ(window_.lost(), 2u);
+  Send(kState1, 0);
+  EXPECT_THROW(window_.Take(kState1, 2, {}, 3), std::runtime_error);
+}
+
+TEST_F(RealtimeRowWindowTest, ACommandIsNotTakenForAnotherTicks) {
+  SendTick(0);
+  ASSERT_TRUE(Next());
+  for (std::int64_t tick = 1; tick < 17; ++tick)  // the slot of tick 0 is used again
+    for (const std::size_t topic : {kClock, kState1, kState2}) {
+      Send(topic, tick);
+      Next(/*give_up=*/true);
+    }
+  EXPECT_EQ(row_.tick, 16);
+  EXPECT_TRUE(row_.commands[0].empty());
+}
+
+}  // namespace
+}  // namespace mascot
