@@ -19,6 +19,8 @@ using WallClock = std::chrono::steady_clock;
 
 std::filesystem::path ProgramFolder() { return std::filesystem::read_symlink("/proc/self/exe").parent_path(); }
 
+std::optional<int> Exit::code() const { return WIFEXITED(status) ? std::optional(WEXITSTATUS(status)) : std::nullopt; }
+
 std::string Exit::Text() const {
   if (WIFSIGNALED(status))
     return "was killed by signal " + std::to_string(WTERMSIG(status)) + " (" + strsignal(WTERMSIG(status)) + ")";

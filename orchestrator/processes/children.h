@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ std::filesystem::path ProgramFolder();
 struct Exit {
   std::string process;
   int status = 0;  ///< of waitpid
+  /// Its exit code; nothing if a signal killed it.
+  std::optional<int> code() const;
   /// "exited with code 3", "was killed by signal 11 (Segmentation fault)"
   std::string Text() const;
 };

@@ -2,12 +2,13 @@
 
 #include <signal.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <optional>
+#include <utility>
 
 #include "bus/bus.h"
 #include "bus/shared_memory.h"
@@ -15,6 +16,7 @@
 #include "orchestrator/engines/dds/domain_lock.h"
 #include "orchestrator/engines/dds/hub.h"
 #include "orchestrator/engines/dds/recorder.h"
+#include "orchestrator/engines/dds/run_phases.h"
 #include "orchestrator/engines/dds/wire_audit.h"
 #include "orchestrator/engines/row_feed.h"
 #include "orchestrator/processes/children.h"
@@ -27,7 +29,7 @@ using WallClock = std::chrono::steady_clock;
 
 /// Above this everybody finding everybody takes longer than asking a server (50: 5 s against 2 s).
 constexpr int kMostPeers = 20;
-/// How long an orderly end may take before it is made disorderly.
+/// How long children may take to end by themselves.
 constexpr auto kGrace = 5s;
 
 /// As `agent --id` takes them.
@@ -43,7 +45,7 @@ void StepAside() {
   setpriority(PRIO_PROCESS, 0, kNice);
 }
 
-/// One run, from the domain's lock to the last process gone.
+/// One run, from the domain's lock to the last process gone. RunPhases decides; this does it.
 class DdsRun {
  public:
   DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Console& console,
@@ -51,31 +53,26 @@ class DdsRun {
   EngineResult Run();
 
  private:
-  using Deadline = std::optional<WallClock::time_point>;
-
   DomainOptions Options(const std::string& name, DiscoveryRole role) const;
   int PeersOf(AgentRange agents) const;
   int BundleRoom() const;
+  RunPhases::Rules Rules();
   void Join();
   void Spawn();
   void Loop();
-  void HandleSignal(int signal);
-  std::vector<Exit> Reap();
-  void AwaitSignal();
-  void CheckChildren();
-  void SayReady();
-  void Record();
+  void OnSignal(int signal);
+  void Reap();
   void CheckWire();
-  void CheckDeadlines();
-  void CheckProgress();
-  std::optional<Hub::Status> ServerReport() const;
-  void AwaitLastWords();
-  void DrainAll();
-  bool in_order() const;
+  RunPhases::View Record();
+  RunPhases::View Look() const;
+  void Do(const RunPhases::Actions& actions);
   void AskToEnd();
+  std::optional<Hub::Status> ServerReport() const;
+  void DrainAll();
+  void AwaitReport();
   void Collect();
+  void TakeReport();
   void End();
-  void Fail(const std::string& why);
 
   const Experiment& experiment_;
   Console& console_;
@@ -83,14 +80,7 @@ class DdsRun {
   const WallClock::time_point launched_ = WallClock::now();
   const bool external_;
   EngineResult result_;
-  bool finished_ = false;
-  bool server_ended_ = false;  // by itself
-  bool server_mute_ = false;   // it was killed, or hangs: it will not say anything more
-  bool wire_was_complete_ = false;
-  Deadline stop_deadline_, drain_deadline_;
-  std::int64_t confirmed_ = 0;
-  std::int64_t progress_seen_ = -1;
-  WallClock::time_point progress_at_;
+  std::int64_t confirmed_ = 0;  // rows that the server knows to be recorded
 
   const std::vector<AgentRange> processes_;
   const bool with_server_;
@@ -104,6 +94,7 @@ class DdsRun {
   std::optional<Hub> hub_;
   RowFeed feed_;
   std::optional<Recorder> recorder_;
+  RunPhases phases_;
 };
 
 DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
@@ -111,14 +102,24 @@ DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std:
     : experiment_(experiment),
       console_(console),
       stop_(stop),
-      external_(
-          std::any_of(experiment.agents.begin(), experiment.agents.end(), [](const auto& a) { return a.external; })),
+      external_(std::ranges::any_of(experiment.agents, &AgentConfig::external)),
       processes_(AgentProcesses(experiment)),
       with_server_(std::ssize(processes_) + 2 > kMostPeers),
       folder_(folder),
       logs_([&console](const std::string& process, const std::string& line) { console.ChildLine(process, line); }),
       children_(logs_),
-      feed_(experiment, sinks) {}
+      feed_(experiment, sinks),
+      phases_(Rules(), launched_) {}
+
+RunPhases::Rules DdsRun::Rules() {
+  const auto& run = experiment_.run;
+  return {.start_timeout_s = run.start_timeout_s,
+          .agent_timeout_s = run.agent_timeout_s,
+          .period_s = run.mode == Mode::kRealtime ? experiment_.period_s() / run.speed : 0,
+          .violation = [this] { return audit_.Violation(experiment_); },
+          .missing = [this] { return hub_->Missing(); },
+          .last_lines = [this](const std::string& process) { return logs_.LastLines(process); }};
+}
 
 void DdsRun::Join() {
   lock_.emplace(experiment_.network.domain);
@@ -129,7 +130,7 @@ void DdsRun::Join() {
   if (with_server_) discovery_server_.emplace(Options("discovery_server", DiscoveryRole::kServer), [] {});
   domain_.emplace(Options("orchestrator", with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake,
                   &audit_);
-  hub_.emplace(*domain_, experiment_, folder_, wake);
+  hub_.emplace(*domain_, experiment_, folder_.Log("orchestrator").string(), wake);
   recorder_.emplace(*domain_, experiment_, feed_);
 }
 
@@ -194,11 +195,81 @@ EngineResult DdsRun::Run() {
     Join();
     Loop();
   } catch (const std::exception& failure) {
-    Fail(failure.what());
+    phases_.Fail(failure.what());
   }
   if (recorder_) Collect();
   End();
+  result_.failure = phases_.failure();
+  result_.signal = phases_.signal();
   return result_;
+}
+
+void DdsRun::Loop() {
+  while (phases_.phase() < RunPhases::Phase::kCollecting) {
+    OnSignal(stop_.Within(50ms));
+    domain_->RethrowFailure();
+    Reap();
+    hub_->HandOutExperiment();
+    CheckWire();
+    const RunPhases::View view = Record();
+    Do(phases_.Look(view, WallClock::now()));
+  }
+}
+
+void DdsRun::OnSignal(int signal) {
+  if (signal == 0) return;
+  const RunPhases::Actions actions = phases_.OnSignal(signal, WallClock::now());
+  if (actions.ask_to_stop) console_.Line("stopping (once more to kill)");
+  Do(actions);
+}
+
+/// Children that have ended by themselves.
+void DdsRun::Reap() {
+  std::vector<RunPhases::Exit> exits;
+  for (const Exit& exit : children_.Reap()) exits.push_back({exit.process, exit.code(), exit.Text()});
+  phases_.OnExits(exits, WallClock::now());
+}
+
+void DdsRun::CheckWire() {
+  if (!audit_.HasNews()) return;
+  if (const std::string violation = audit_.Violation(experiment_); !violation.empty()) phases_.OnViolation(violation);
+}
+
+/// What there is, once the rows that are complete are recorded.
+RunPhases::View DdsRun::Record() {
+  const auto server =
+      hub_->StatusOf("physics_server");  // before the rows: those up to its tick are here, or on their way
+  const bool done = server && static_cast<Life>(server->state()) == Life::kDone;
+  const bool give_up = phases_.gives_up(WallClock::now());
+  const std::int64_t rows = recorder_->Drain(give_up);
+  if (rows > confirmed_) hub_->Confirm(rows);
+  confirmed_ = rows;
+  RunPhases::View view = Look();
+  view.gave_up = give_up;
+  if (done) view.last_tick = static_cast<std::int64_t>(server->tick());
+  return view;
+}
+
+RunPhases::View DdsRun::Look() const {
+  const bool starting = phases_.phase() == RunPhases::Phase::kStarting;
+  return {.everybody_found = starting && recorder_->Matched() && audit_.IsComplete(experiment_),
+          .newest_tick = recorder_->newest_tick(),
+          .rows = confirmed_,
+          .last_tick = {},
+          .reported = ServerReport().has_value()};
+}
+
+void DdsRun::Do(const RunPhases::Actions& actions) {
+  if (actions.say_ready) hub_->SayReady();
+  if (actions.ask_to_stop) hub_->Ask(Ask::kStop, strsignal(phases_.signal()));
+  if (actions.ask_to_end) AskToEnd();
+  if (actions.kill) children_.Kill();
+}
+
+void DdsRun::AskToEnd() try {
+  hub_->Ask(Ask::kEnd, phases_.in_order() ? "done" : phases_.failure().substr(0, 1000));
+} catch (const BusError& error) {  // then signals must do
+  console_.Line(error.what());
 }
 
 /// What the physics server measured in the run, which it tells when it ends; nothing before.
@@ -208,42 +279,42 @@ std::optional<Hub::Status> DdsRun::ServerReport() const {
   return server;
 }
 
-/// Where the run did not end in order, but the server lives: it is told to end, and so to report. Of a server that
-/// ended by itself: that it has gone may be known before what it said last.
-void DdsRun::AwaitLastWords() {
-  if (in_order() || ServerReport() || server_mute_ || recorder_->newest_tick() < 0) return;
-  if (!server_ended_) AskToEnd();
-  auto deadline = WallClock::now() + 2 * kGrace;  // a killed agent's lock may hold up the server, and then us
-  while (!ServerReport() && !server_mute_ && WallClock::now() < deadline) {
-    if (server_ended_) deadline = std::min(deadline, WallClock::now() + 1s);
-    if (stop_.Within(10ms) != 0) return;
-    Reap();  // they have been asked to end
-  }
-}
-
 /// All rows there are, or those before the next signal: a slow law makes them slow.
 void DdsRun::DrainAll() {
   for (std::int64_t rows = -1; rows != confirmed_;) {
     rows = confirmed_;
     confirmed_ = recorder_->Drain(/*give_up=*/true);
-    if (const int signal = stop_.Within(0ms); signal != 0) return HandleSignal(signal);
+    if (const int signal = stop_.Within(0ms); signal != 0) return OnSignal(signal);
   }
 }
 
+void DdsRun::AwaitReport() {
+  for (Do(phases_.Collected(Look(), WallClock::now())); phases_.phase() == RunPhases::Phase::kReporting;) {
+    OnSignal(stop_.Within(10ms));
+    Reap();  // they have been asked to end
+    Do(phases_.Look(Look(), WallClock::now()));
+  }
+}
+
+/// What there is of the run, in order or not.
 void DdsRun::Collect() {
   try {
     DrainAll();
   } catch (const std::exception& failure) {
-    Fail(failure.what());
+    phases_.Fail(failure.what());
   }
   result_.lost = recorder_->lost();
   const bool violated = !audit_.Violation(experiment_).empty();
-  if (violated || wire_was_complete_) result_.wire_matches_graph = !violated;
+  if (violated || phases_.found_everybody()) result_.wire_matches_graph = !violated;
   if (recorder_->newest_tick() >= 0) {
     result_.wall_s = recorder_->wall_s();
     result_.startup_s = std::chrono::duration<double>(recorder_->started() - launched_).count();
   }
-  AwaitLastWords();
+  AwaitReport();
+  TakeReport();
+}
+
+void DdsRun::TakeReport() {
   const auto server = ServerReport();
   if (!server) return;
   result_.contacts = {.agents = static_cast<std::int64_t>(server->agent_contacts()),
@@ -255,138 +326,11 @@ void DdsRun::Collect() {
                       .command_age_s = server->command_age_s()};
 }
 
-void DdsRun::Loop() {
-  while (!finished_) {
-    HandleSignal(stop_.Within(50ms));
-    domain_->RethrowFailure();
-    CheckChildren();
-    hub_->HandOutExperiment();
-    CheckWire();
-    SayReady();
-    Record();
-    CheckDeadlines();
-  }
-}
-
-void DdsRun::HandleSignal(int signal) {
-  if (signal == 0) return;
-  if (result_.signal != 0) {  // the second time: at once
-    children_.Kill();
-    server_mute_ = true;
-    finished_ = true;
-    return;
-  }
-  result_.signal = signal;
-  console_.Line("stopping (once more to kill)");
-  hub_->Ask(Ask::kStop, strsignal(signal));
-  stop_deadline_ = WallClock::now() + kGrace;
-  if (recorder_->newest_tick() < 0) finished_ = true;  // nothing flies yet
-}
-
-/// Children that have ended by themselves.
-std::vector<Exit> DdsRun::Reap() {
-  std::vector<Exit> exits = children_.Reap();
-  for (const Exit& exit : exits)
-    if (exit.process == "physics_server") (WIFEXITED(exit.status) ? server_ended_ : server_mute_) = true;
-  return exits;
-}
-
-/// Who ends a whole job (systemd, a batch system) signals all of its processes, us a little later, maybe.
-void DdsRun::AwaitSignal() {
-  const auto deadline = WallClock::now() + 100ms;
-  while (result_.signal == 0 && WallClock::now() < deadline) HandleSignal(stop_.Within(10ms));
-}
-
-void DdsRun::CheckChildren() {
-  const std::vector<Exit> exits = Reap();
-  if (exits.empty()) return;
-  const auto code = [](const Exit& exit) { return WIFEXITED(exit.status) ? WEXITSTATUS(exit.status) : 0; };
-  if (std::ranges::any_of(exits, [&](const Exit& exit) { return code(exit) > 128; })) AwaitSignal();
-  finished_ = true;
-  std::string failure;
-  for (const Exit& exit : exits) {
-    if (result_.signal != 0 && code(exit) == 128 + result_.signal) continue;
-    failure += (failure.empty() ? "" : "\n") + exit.process + " " + exit.Text();
-    for (const std::string& line : logs_.LastLines(exit.process)) failure += "\n  " + exit.process + " | " + line;
-  }
-  if (!failure.empty()) Fail(failure);
-}
-
-/// Where somebody is on the wire who should not be, that is why, whoever stumbles over it first.
-void DdsRun::Fail(const std::string& why) {
-  finished_ = true;
-  if (!result_.failure.empty()) return;
-  const std::string violation = audit_.Violation(experiment_);
-  result_.failure = violation.empty() ? why : "the wire differs from the graph: " + violation;
-}
-
-void DdsRun::CheckWire() {
-  if (audit_.HasNews() && !audit_.Violation(experiment_).empty()) Fail("");
-}
-
-void DdsRun::SayReady() {
-  if (recorder_->newest_tick() >= 0 || !recorder_->Matched() || !audit_.IsComplete(experiment_)) return;
-  wire_was_complete_ = true;
-  hub_->SayReady();
-}
-
-void DdsRun::Record() {
-  const auto server = hub_->StatusOf("physics_server");
-  const bool done = server && static_cast<Life>(server->state()) == Life::kDone;
-  const bool give_up = drain_deadline_ && WallClock::now() > *drain_deadline_;
-  const std::int64_t rows = recorder_->Drain(give_up);
-  const bool more = rows > confirmed_;
-  if (more) hub_->Confirm(rows);
-  confirmed_ = rows;
-  if (!done) return;
-  if (rows == static_cast<std::int64_t>(server->tick()) + 1)
-    finished_ = true;
-  else if (give_up && !more)
-    Fail("the recording is not complete: " + std::to_string(rows) + " of " + std::to_string(server->tick() + 1) +
-         " ticks");
-  else if (!drain_deadline_)
-    drain_deadline_ = WallClock::now() + (experiment_.run.mode == Mode::kRealtime ? 1s : kGrace);
-}
-
-void DdsRun::CheckDeadlines() {
-  if (stop_deadline_ && WallClock::now() > *stop_deadline_) finished_ = true;  // what there is is recorded
-  const auto start_limit = std::chrono::duration<double>(experiment_.run.start_timeout_s) + kGrace;
-  if (recorder_->newest_tick() < 0 && WallClock::now() - launched_ > start_limit)
-    Fail("not started within run.start_timeout_s = " + ShortestFloat(experiment_.run.start_timeout_s) +
-         " s: " + hub_->Unheard());
-  CheckProgress();
-}
-
-/// The server tells of agents that fall silent; of a silent server, we must.
-void DdsRun::CheckProgress() {
-  const auto now = WallClock::now();
-  const std::int64_t newest = recorder_->newest_tick();
-  if (newest < 0 || newest + confirmed_ != progress_seen_ || drain_deadline_) {
-    progress_seen_ = newest + confirmed_;
-    progress_at_ = now;
-    return;
-  }
-  const double period_s = experiment_.run.mode == Mode::kRealtime ? experiment_.period_s() / experiment_.run.speed : 0;
-  const double limit_s = experiment_.run.agent_timeout_s + period_s;
-  if (now - progress_at_ < std::chrono::duration<double>(limit_s) + kGrace) return;
-  server_mute_ = true;
-  Fail("nothing came from physics_server for " +
-       ShortestFloat(limit_s + std::chrono::duration<double>(kGrace).count()) + " s");
-}
-
-bool DdsRun::in_order() const { return result_.failure.empty() && result_.signal == 0; }
-
-void DdsRun::AskToEnd() try {
-  hub_->Ask(Ask::kEnd, in_order() ? "done" : result_.failure.substr(0, 1000));
-} catch (const BusError& error) {  // then signals must do
-  console_.Line(error.what());
-}
-
 void DdsRun::End() {
   if (hub_) AskToEnd();
-  if (in_order()) children_.WaitAll(kGrace);
+  if (phases_.in_order()) children_.WaitAll(kGrace);
   children_.Stop(2s);
-  // Those started by hand are not ours to reap, only to be told.
+  // Agents that were started by hand are not ours to reap, only to be told.
   const auto deadline = WallClock::now() + 2s;
   while (external_ && hub_ && hub_->listeners() > 0 && WallClock::now() < deadline) stop_.Within(20ms);
   recorder_.reset();

@@ -2,13 +2,12 @@
 
 #include <spdlog/sinks/basic_file_sink.h>
 
+#include <chrono>
 #include <utility>
 
 #include "experiment/processes.h"
 
 namespace mascot {
-
-using namespace std::chrono_literals;
 
 namespace {
 
@@ -44,12 +43,22 @@ const char* Text(Ask ask) {
   return "unknown";
 }
 
+/// Every process of the run.
+Roster::Rules RulesOf(const Experiment& experiment) {
+  Roster::Rules rules{.processes = {"physics_server"}, .external = {}};
+  for (const AgentRange& agents : AgentProcesses(experiment)) rules.processes.push_back(ProcessName(agents));
+  for (const AgentConfig& agent : experiment.agents) rules.external.push_back(agent.external);
+  return rules;
+}
+
+Roster::Time Now() { return std::chrono::steady_clock::now(); }
+
 }  // namespace
 
-Hub::Hub(Domain& domain, const Experiment& experiment, const RunFolder& folder, std::function<void()> wake)
-    : experiment_(experiment),
-      wake_(std::move(wake)),
-      log_("orchestrator", std::make_shared<spdlog::sinks::basic_file_sink_mt>(folder.Log("orchestrator").string())),
+Hub::Hub(Domain& domain, const Experiment& experiment, const std::string& log, std::function<void()> wake)
+    : wake_(std::move(wake)),
+      log_("orchestrator", std::make_shared<spdlog::sinks::basic_file_sink_mt>(log)),
+      roster_(RulesOf(experiment)),
       experiments_(domain, Topic::Experiment()),
       requests_(domain, Topic::Request()),
       recorder_(domain, Topic::Status()),
@@ -60,20 +69,19 @@ Hub::Hub(Domain& domain, const Experiment& experiment, const RunFolder& folder, 
 }
 
 void Hub::HandOutExperiment() {
-  // Everybody hears it each time: not once for each of a hundred agents that ask at once.
-  if (WallClock::now() < next_hand_out_) return;
   {
     const std::lock_guard lock(mutex_);
-    if (!std::exchange(experiment_wanted_, false)) return;
+    if (!roster_.IsTimeToHandOut(Now())) return;
   }
   experiments_.Write(message_);
-  next_hand_out_ = WallClock::now() + 100ms;
   log_.info("experiment '{}' handed out", message_.name());
 }
 
 void Hub::SayReady() {
-  if (WallClock::now() < next_hello_) return;
-  next_hello_ = WallClock::now() + 200ms;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!roster_.IsTimeForHello(Now())) return;
+  }
   Status status;
   status.process("recorder");
   status.state(static_cast<std::uint8_t>(Life::kReady));
@@ -97,36 +105,22 @@ void Hub::Ask(mascot::Ask ask, const std::string& reason) {
 }
 
 void Hub::OnStatus(const Status& status) {
-  const auto life = static_cast<Life>(status.state());
   const std::lock_guard lock(mutex_);
-  auto& known = statuses_[status.process().to_string()];
-  if (known.process().size() == 0 || known.state() != status.state())
-    log_.info("{} {}, tick {} {}", status.process().to_string(), Text(life), status.tick(),
+  const Roster::News news = roster_.OnStatus(status);
+  if (news.changed)
+    log_.info("{} {}, tick {} {}", status.process().to_string(), Text(static_cast<Life>(status.state())), status.tick(),
               status.reason().to_string());
-  known = status;
-  experiment_wanted_ |= life == Life::kWaiting;
-  const bool external = status.agent() >= 1 && status.agent() <= experiment_.agents.size() &&
-                        experiment_.agent(static_cast<int>(status.agent())).external;
-  if (life == Life::kFailed && external)
-    throw std::runtime_error(status.process().to_string() + " failed: " + status.reason().to_string());
-  if (life == Life::kWaiting || life == Life::kDone) wake_();
+  if (news.wake) wake_();
 }
 
 std::optional<Hub::Status> Hub::StatusOf(const std::string& process) const {
   const std::lock_guard lock(mutex_);
-  const auto found = statuses_.find(process);
-  if (found == statuses_.end()) return std::nullopt;
-  return found->second;
+  return roster_.Of(process);
 }
 
-std::string Hub::Unheard() const {
-  std::string names;
-  auto check = [&](const std::string& process) {
-    if (!StatusOf(process)) names += (names.empty() ? "nothing was heard of " : ", ") + process;
-  };
-  check("physics_server");
-  for (const AgentRange& agents : AgentProcesses(experiment_)) check(ProcessName(agents));
-  return names.empty() ? "not everybody has found everybody" : names;
+std::string Hub::Missing() const {
+  const std::lock_guard lock(mutex_);
+  return roster_.Missing();
 }
 
 }  // namespace mascot

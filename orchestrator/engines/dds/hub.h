@@ -2,9 +2,7 @@
 
 #include <spdlog/logger.h>
 
-#include <chrono>
 #include <functional>
-#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -12,18 +10,18 @@
 #include "bus/bus.h"
 #include "bus/wire.h"
 #include "experiment/experiment.h"
-#include "orchestrator/recording/run_folder.h"
+#include "orchestrator/engines/dds/roster.h"
 
 namespace mascot {
 
-/// The orchestrator's part on /status, /request and /experiment (the others' is bus/lifecycle.h), and the
-/// recorder's voice there. What is said goes to logs/orchestrator.log.
+/// The orchestrator's part on /status, /request and /experiment (the part of all other processes is bus/lifecycle.h),
+/// and the recorder's voice there. What is said goes to a log.
 class Hub {
  public:
-  using Status = mascot_msgs::msg::Status;
+  using Status = Roster::Status;
 
-  /// `wake` is called, from any thread, when the loop should look.
-  Hub(Domain& domain, const Experiment& experiment, const RunFolder& folder, std::function<void()> wake);
+  /// `log` is the file of the log. `wake` is called, from any thread, when the loop should look.
+  Hub(Domain& domain, const Experiment& experiment, const std::string& log, std::function<void()> wake);
 
   /// Hands the experiment out if somebody asked for it. Cheap to call often.
   void HandOutExperiment();
@@ -37,21 +35,17 @@ class Hub {
 
   /// What a process said last, if it has said anything.
   std::optional<Status> StatusOf(const std::string& process) const;
-  /// Who has not been heard of, in words.
-  std::string Unheard() const;
+  /// For whom the start still waits, in words.
+  std::string Missing() const;
 
  private:
-  using WallClock = std::chrono::steady_clock;
   void OnStatus(const Status& status);
 
-  const Experiment& experiment_;
   std::function<void()> wake_;
   spdlog::logger log_;
   mascot_msgs::msg::Experiment message_;
-  WallClock::time_point next_hello_{}, next_hand_out_{};
-  mutable std::mutex mutex_;  // guards what follows
-  std::map<std::string, Status> statuses_;
-  bool experiment_wanted_ = false;
+  mutable std::mutex mutex_;  // guards roster_
+  Roster roster_;
 
   Writer<ExperimentType> experiments_;
   Writer<RequestType> requests_;

@@ -1,0 +1,59 @@
+#include "orchestrator/engines/dds/roster.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include "bus/wire.h"
+
+namespace mascot {
+
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr auto kBetweenHandOuts = 100ms;
+constexpr auto kBetweenHellos = 200ms;
+
+}  // namespace
+
+Roster::Roster(Rules rules) : rules_(std::move(rules)) {}
+
+Roster::News Roster::OnStatus(const Status& status) {
+  const auto life = static_cast<Life>(status.state());
+  const std::string process = status.process().to_string();
+  const auto [known, is_new] = statuses_.try_emplace(process);
+  const bool changed = is_new || known->second.state() != status.state();
+  known->second = status;
+  experiment_wanted_ |= life == Life::kWaiting;
+  const bool external =
+      status.agent() >= 1 && status.agent() <= rules_.external.size() && rules_.external[status.agent() - 1];
+  if (life == Life::kFailed && external) throw std::runtime_error(process + " failed: " + status.reason().to_string());
+  return {.changed = changed, .wake = life == Life::kWaiting || life == Life::kDone};
+}
+
+bool Roster::IsTimeToHandOut(Time now) {
+  if (now < next_hand_out_ || !std::exchange(experiment_wanted_, false)) return false;
+  next_hand_out_ = now + kBetweenHandOuts;
+  return true;
+}
+
+bool Roster::IsTimeForHello(Time now) {
+  if (now < next_hello_) return false;
+  next_hello_ = now + kBetweenHellos;
+  return true;
+}
+
+std::optional<Roster::Status> Roster::Of(const std::string& process) const {
+  const auto found = statuses_.find(process);
+  if (found == statuses_.end()) return std::nullopt;
+  return found->second;
+}
+
+std::string Roster::Missing() const {
+  std::string names;
+  for (const std::string& process : rules_.processes)
+    if (!statuses_.contains(process)) names += (names.empty() ? "nothing was heard of " : ", ") + process;
+  return names.empty() ? "not everybody has found everybody" : names;
+}
+
+}  // namespace mascot

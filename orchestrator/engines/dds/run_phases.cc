@@ -1,0 +1,159 @@
+#include "orchestrator/engines/dds/run_phases.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "experiment/toml/section.h"
+
+namespace mascot {
+namespace {
+
+using namespace std::chrono_literals;
+using Seconds = std::chrono::duration<double>;
+
+/// How long an orderly end may take before it is made disorderly.
+constexpr auto kGrace = 5s;
+/// In real time, rows that lack a command are waited for no longer than this: the command may never have been given.
+constexpr auto kRealtimeDrain = 1s;
+/// The server waits for everybody for run.start_timeout_s, and can say more; this is beyond that.
+constexpr auto kStartGrace = 5s;
+/// Where a whole job is ended (by systemd, a batch system), all of its processes are signalled, the orchestrator
+/// perhaps a little later than its children.
+constexpr auto kSameSignal = 100ms;
+/// A killed process may have held a lock of shared memory, which holds up the server, and then us.
+constexpr auto kReport = 10s;
+/// What a server said that has exited is here within this time, or lost.
+constexpr auto kLateReport = 1s;
+
+RunPhases::Time After(RunPhases::Time time, Seconds span) {
+  return time + std::chrono::duration_cast<RunPhases::Time::duration>(span);
+}
+
+std::string DiffersFromTheGraph(const std::string& how) { return "the wire differs from the graph: " + how; }
+
+}  // namespace
+
+RunPhases::RunPhases(Rules rules, Time launched)
+    : rules_(std::move(rules)),
+      launched_(launched),
+      watch_(Seconds(rules_.agent_timeout_s + rules_.period_s) + kGrace) {}
+
+void RunPhases::Finish() { phase_ = std::max(phase_, Phase::kCollecting); }
+
+void RunPhases::Note(const std::string& why) {
+  if (!failure_.empty()) return;
+  const std::string violation = rules_.violation();
+  failure_ = violation.empty() ? why : DiffersFromTheGraph(violation);
+}
+
+void RunPhases::OnViolation(const std::string& violation) {
+  if (failure_.empty()) failure_ = DiffersFromTheGraph(violation);
+  Finish();
+}
+
+void RunPhases::Fail(const std::string& why) {
+  JudgeExits();  // they came first
+  Note(why);
+  Finish();
+}
+
+RunPhases::Actions RunPhases::OnSignal(int signal, Time now) {
+  if (phase_ >= Phase::kReporting) {
+    phase_ = Phase::kEnding;
+    return {};
+  }
+  if (signal_ != 0) {
+    server_silent_ = true;
+    Finish();
+    return {.kill = true};
+  }
+  signal_ = signal;
+  JudgeExits();
+  if (phase_ == Phase::kStarting) Finish();  // nothing flies yet
+  stop_deadline_ = now + kGrace;
+  return {.ask_to_stop = true};
+}
+
+void RunPhases::OnExits(const std::vector<Exit>& exits, Time now) {
+  for (const Exit& exit : exits)
+    if (exit.process == "physics_server") (exit.code ? server_exited_ : server_silent_) = true;
+  if (exits.empty() || IsOver()) return;
+  exits_.insert(exits_.end(), exits.begin(), exits.end());
+  const bool by_signal = std::ranges::any_of(exits_, [](const Exit& exit) { return exit.code.value_or(0) > 128; });
+  if (by_signal && signal_ == 0)
+    exits_deadline_ = exits_deadline_.value_or(now + kSameSignal);
+  else
+    JudgeExits();
+}
+
+/// Children that ended for the signal that ends the run have not failed.
+void RunPhases::JudgeExits() {
+  exits_deadline_.reset();
+  if (exits_.empty()) return;
+  std::string why;
+  for (const Exit& exit : std::exchange(exits_, {})) {
+    if (signal_ != 0 && exit.code == 128 + signal_) continue;
+    why += (why.empty() ? "" : "\n") + exit.process + " " + exit.text;
+    for (const std::string& line : rules_.last_lines(exit.process)) why += "\n  " + exit.process + " | " + line;
+  }
+  if (!why.empty()) Note(why);
+  Finish();
+}
+
+RunPhases::Actions RunPhases::Look(const View& view, Time now) {
+  if (phase_ == Phase::kReporting) LookAtReport(view, now);
+  if (IsOver()) return {};
+  if (exits_deadline_) {
+    if (now > *exits_deadline_) JudgeExits();
+    return {};
+  }
+  if (view.newest_tick >= 0 && phase_ == Phase::kStarting) phase_ = Phase::kFlying;
+  const bool ready = phase_ == Phase::kStarting && view.everybody_found;
+  found_everybody_ |= ready;
+  LookAtDraining(view, now);
+  if (!IsOver()) LookAtDeadlines(view, now);
+  rows_ = view.rows;
+  return {.say_ready = ready};
+}
+
+void RunPhases::LookAtDraining(const View& view, Time now) {
+  if (!view.last_tick) return;
+  const std::int64_t rows = *view.last_tick + 1;
+  if (view.rows == rows) return Finish();
+  if (view.gave_up && view.rows <= rows_)
+    return Fail(fmt::format("the recording is not complete: {} of {} ticks", view.rows, rows));
+  if (drain_deadline_) return;
+  phase_ = Phase::kDraining;
+  drain_deadline_ = rules_.period_s > 0 ? now + kRealtimeDrain : now + kGrace;
+}
+
+void RunPhases::LookAtDeadlines(const View& view, Time now) {
+  if (stop_deadline_ && now > *stop_deadline_) return Finish();  // what there is is recorded
+  if (phase_ == Phase::kStarting) {
+    if (now > After(launched_, Seconds(rules_.start_timeout_s) + kStartGrace))
+      Fail("not started within run.start_timeout_s = " + ShortestFloat(rules_.start_timeout_s) +
+           " s: " + rules_.missing());
+    return;
+  }
+  // The server tells of agents that fall silent; of a silent server, only we can.
+  if (phase_ != Phase::kFlying || !watch_.IsOverdue(view.newest_tick + view.rows, now)) return;
+  server_silent_ = true;
+  const Seconds limit = Seconds(rules_.agent_timeout_s + rules_.period_s) + kGrace;
+  Fail("nothing came from physics_server for " + ShortestFloat(limit.count()) + " s");
+}
+
+RunPhases::Actions RunPhases::Collected(const View& view, Time now) {
+  const bool wait = !in_order() && !view.reported && !server_silent_ && view.newest_tick >= 0;
+  phase_ = wait ? Phase::kReporting : Phase::kEnding;
+  report_deadline_ = now + kReport;
+  return {.ask_to_end = wait && !server_exited_};
+}
+
+void RunPhases::LookAtReport(const View& view, Time now) {
+  if (server_exited_) report_deadline_ = std::min(*report_deadline_, now + kLateReport);
+  if (view.reported || server_silent_ || now > *report_deadline_) phase_ = Phase::kEnding;
+}
+
+}  // namespace mascot

@@ -1,0 +1,85 @@
+// What the orchestrator makes of what processes say on /status, without a wire.
+#include "orchestrator/engines/dds/roster.h"
+
+#include <gmock/gmock.h>
+
+#include "bus/wire.h"
+
+namespace mascot {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ThrowsMessage;
+
+/// A physics server and two agents, the second started by hand.
+class RosterTest : public testing::Test {
+ protected:
+  Roster::News Say(const std::string& process, Life life, std::uint32_t agent = 0, const std::string& reason = "") {
+    Roster::Status status;
+    status.process(process);
+    status.agent(agent);
+    status.state(static_cast<std::uint8_t>(life));
+    status.reason(reason);
+    return roster_.OnStatus(status);
+  }
+
+  Roster roster_{{.processes = {"physics_server", "agent_1", "agent_2"}, .external = {false, true}}};
+  Roster::Time now_ = Roster::Time() + 1h;
+};
+
+TEST_F(RosterTest, NewsIsWhatAProcessHadNotSaidBefore) {
+  EXPECT_TRUE(Say("agent_1", Life::kWaiting, 1).changed);
+  EXPECT_FALSE(Say("agent_1", Life::kWaiting, 1).changed);
+  EXPECT_TRUE(Say("agent_1", Life::kReady, 1).changed);
+  EXPECT_EQ(static_cast<Life>(roster_.Of("agent_1")->state()), Life::kReady);
+  EXPECT_FALSE(roster_.Of("agent_2").has_value());
+}
+
+TEST_F(RosterTest, TheLoopIsWokenForThoseThatWaitAndForTheServersEnd) {
+  EXPECT_TRUE(Say("agent_1", Life::kWaiting, 1).wake);
+  EXPECT_FALSE(Say("agent_1", Life::kReady, 1).wake);
+  EXPECT_FALSE(Say("physics_server", Life::kRunning).wake);
+  EXPECT_TRUE(Say("physics_server", Life::kDone).wake);
+}
+
+TEST_F(RosterTest, TheExperimentIsHandedOutOnceForAllWhoAskWithinATenthOfASecond) {
+  EXPECT_FALSE(roster_.IsTimeToHandOut(now_)) << "nobody has asked";
+  Say("agent_1", Life::kWaiting, 1);
+  Say("agent_2", Life::kWaiting, 2);
+  EXPECT_TRUE(roster_.IsTimeToHandOut(now_));
+  EXPECT_FALSE(roster_.IsTimeToHandOut(now_ + 1s)) << "nobody has asked since";
+  Say("agent_2", Life::kWaiting, 2);
+  EXPECT_TRUE(roster_.IsTimeToHandOut(now_ + 1s));
+  Say("agent_2", Life::kWaiting, 2);
+  EXPECT_FALSE(roster_.IsTimeToHandOut(now_ + 1s + 99ms));
+  EXPECT_TRUE(roster_.IsTimeToHandOut(now_ + 1s + 100ms));
+}
+
+TEST_F(RosterTest, TheRecordersHelloIsSaidFiveTimesASecond) {
+  EXPECT_TRUE(roster_.IsTimeForHello(now_));
+  EXPECT_FALSE(roster_.IsTimeForHello(now_ + 199ms));
+  EXPECT_TRUE(roster_.IsTimeForHello(now_ + 200ms));
+}
+
+TEST_F(RosterTest, WhoHasNotBeenHeardOfIsNamed) {
+  EXPECT_EQ(roster_.Missing(), "nothing was heard of physics_server, agent_1, agent_2");
+  Say("physics_server", Life::kMatching);
+  Say("agent_1", Life::kWaiting, 1);
+  EXPECT_EQ(roster_.Missing(), "nothing was heard of agent_2");
+  Say("agent_2", Life::kWaiting, 2);
+  EXPECT_EQ(roster_.Missing(), "not everybody has found everybody");
+}
+
+TEST_F(RosterTest, AnAgentStartedByHandThatFailsIsTheRunsFailure) {
+  EXPECT_THAT([&] { Say("agent_2", Life::kFailed, 2, "no such law"); },
+              ThrowsMessage<std::runtime_error>("agent_2 failed: no such law"));
+}
+
+TEST_F(RosterTest, TheEndOfAChildIsSeenElsewhere) {
+  EXPECT_NO_THROW(Say("agent_1", Life::kFailed, 1, "no such law"));
+  EXPECT_NO_THROW(Say("stranger", Life::kFailed, 77, "who am I"));
+  EXPECT_NO_THROW(Say("physics_server", Life::kFailed, 0, "agent 1 is late"));
+}
+
+}  // namespace
+}  // namespace mascot

@@ -1,0 +1,386 @@
+// The orchestrator's decisions in the course of a run, without processes, wire or clock.
+#include "orchestrator/engines/dds/run_phases.h"
+
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <string>
+#include <vector>
+
+namespace mascot {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+using Phase = RunPhases::Phase;
+using Actions = RunPhases::Actions;
+using View = RunPhases::View;
+using Exit = RunPhases::Exit;
+
+constexpr auto kInstant = 1ms;
+
+/// A run of ticks 0 to 10 whose clock the test sets.
+class RunPhasesTest : public testing::Test {
+ protected:
+  explicit RunPhasesTest(double period_s = 0) : phases_(RulesOf(period_s), now_) {}
+
+  RunPhases::Rules RulesOf(double period_s) {
+    return {.start_timeout_s = 60,
+            .agent_timeout_s = 2,
+            .period_s = period_s,
+            .violation = [this] { return violation_; },
+            .missing = [] { return std::string("nothing was heard of agent_2"); },
+            .last_lines = [](const std::string& process) { return std::vector<std::string>{process + " sighs"}; }};
+  }
+
+  Actions Look() { return phases_.Look(view_, now_); }
+  Actions LookAfter(RunPhases::Time::duration span) {
+    now_ += span;
+    return Look();
+  }
+  /// The first states have come.
+  void Fly() {
+    view_.newest_tick = 0;
+    Look();
+    ASSERT_EQ(phases_.phase(), Phase::kFlying);
+  }
+  /// The server is done with tick 10; `rows` of 11 are recorded.
+  void FinishFlight(std::int64_t rows) {
+    Fly();
+    view_.newest_tick = 10;
+    view_.last_tick = 10;
+    view_.rows = rows;
+    Look();
+  }
+  Actions Collect() { return phases_.Collected(view_, now_); }
+  void Exits(const std::string& process, std::optional<int> code, const std::string& text) {
+    phases_.OnExits({{process, code, text}}, now_);
+  }
+
+  std::string violation_;
+  RunPhases::Time now_ = RunPhases::Time() + 1h;
+  View view_;
+  RunPhases phases_;
+};
+
+class RealtimeRunPhasesTest : public RunPhasesTest {
+ protected:
+  RealtimeRunPhasesTest() : RunPhasesTest(/*period_s=*/0.01) {}
+};
+
+// --- a run in order -----------------------------------------------------------------------------------
+
+TEST_F(RunPhasesTest, ARunInOrderStartsFliesIsCollectedAndEnds) {
+  EXPECT_EQ(Look(), Actions());
+  EXPECT_EQ(phases_.phase(), Phase::kStarting);
+  view_.everybody_found = true;
+  EXPECT_EQ(Look(), Actions{.say_ready = true});
+  view_.newest_tick = 3;
+  EXPECT_EQ(Look(), Actions());
+  EXPECT_EQ(phases_.phase(), Phase::kFlying);
+  view_ = {.newest_tick = 10, .rows = 11, .last_tick = 10};
+  EXPECT_EQ(Look(), Actions());
+  EXPECT_EQ(phases_.phase(), Phase::kCollecting);
+  EXPECT_EQ(Collect(), Actions());
+  EXPECT_EQ(phases_.phase(), Phase::kEnding);
+  EXPECT_TRUE(phases_.in_order());
+  EXPECT_TRUE(phases_.found_everybody());
+}
+
+TEST_F(RunPhasesTest, ReadinessIsSaidAgainUntilTheFirstStateComes) {
+  view_.everybody_found = true;
+  EXPECT_EQ(Look(), Actions{.say_ready = true});
+  EXPECT_EQ(LookAfter(50ms), Actions{.say_ready = true});
+  view_.newest_tick = 0;
+  EXPECT_EQ(LookAfter(50ms), Actions());
+}
+
+TEST_F(RunPhasesTest, TheRecorderIsNotReadyBeforeEverybodyIsFound) {
+  EXPECT_EQ(LookAfter(10s), Actions());
+  EXPECT_FALSE(phases_.found_everybody());
+}
+
+// --- deadlines ----------------------------------------------------------------------------------------
+
+TEST_F(RunPhasesTest, AStartMayTakeTheStartTimeoutAndFiveSeconds) {
+  LookAfter(65s);
+  EXPECT_EQ(phases_.phase(), Phase::kStarting);
+  LookAfter(kInstant);
+  EXPECT_EQ(phases_.phase(), Phase::kCollecting);
+  EXPECT_EQ(phases_.failure(), "not started within run.start_timeout_s = 60.0 s: nothing was heard of agent_2");
+}
+
+TEST_F(RunPhasesTest, ARunThatHasStartedIsNotHeldAgainstTheStartTimeout) {
+  Fly();
+  for (int n = 0; n < 100; ++n) {
+    ++view_.newest_tick;
+    LookAfter(1s);
+  }
+  EXPECT_EQ(phases_.phase(), Phase::kFlying);
+}
+
+TEST_F(RunPhasesTest, AServerThatSaysNothingForTheAgentTimeoutAndFiveSecondsHasFailed) {
+  Fly();
+  LookAfter(7s);
+  EXPECT_EQ(phases_.phase(), Phase::kFlying);
+  LookAfter(kInstant);
+  EXPECT_EQ(phases_.failure(), "nothing came from physics_server for 7.0 s");
+  EXPECT_EQ(Collect(), Actions()) << "it will not report";
+  EXPECT_EQ(phases_.phase(), Phase::kEnding);
+}
+
+TEST_F(RunPhasesTest, RowsThatAreStillWrittenAreProgress) {
+  Fly();
+  LookAfter(7s);
+  ++view_.rows;
+  LookAfter(kInstant);
+  LookAfter(7s);
+  EXPECT_EQ(phases_.phase(), Phase::kFlying);
+}
+
+TEST_F(RealtimeRunPhasesTest, ASilentServerHasOnePeriodMore) {
+  Fly();
+  LookAfter(7010ms);
+  EXPECT_EQ(phases_.phase(), Phase::kFlying);
+  LookAfter(kInstant);
+  EXPECT_EQ(phases_.failure(), "nothing came from physics_server for 7.01 s");
+}
+
+TEST_F(RunPhasesTest, RowsMayComeForFiveSecondsAfterTheServerIsDone) {
+  FinishFlight(/*rows=*/9);
+  EXPECT_EQ(phases_.phase(), Phase::kDraining);
+  now_ += 5s;
+  EXPECT_FALSE(phases_.gives_up(now_));
+  now_ += kInstant;
+  EXPECT_TRUE(phases_.gives_up(now_));
+  view_.rows = 11;
+  Look();
+  EXPECT_EQ(phases_.phase(), Phase::kCollecting);
+  EXPECT_TRUE(phases_.in_order());
+}
+
+TEST_F(RealtimeRunPhasesTest, RowsMayComeForASecondAfterTheServerIsDone) {
+  FinishFlight(/*rows=*/9);
+  EXPECT_FALSE(phases_.gives_up(now_ + 1s));
+  EXPECT_TRUE(phases_.gives_up(now_ + 1s + kInstant));
+}
+
+TEST_F(RunPhasesTest, ARecordingThatStaysShortFails) {
+  FinishFlight(/*rows=*/8);
+  now_ += 5s + kInstant;
+  view_.gave_up = true;
+  view_.rows = 9;
+  Look();
+  EXPECT_EQ(phases_.phase(), Phase::kDraining) << "it has grown";
+  LookAfter(50ms);
+  EXPECT_EQ(phases_.failure(), "the recording is not complete: 9 of 11 ticks");
+}
+
+TEST_F(RunPhasesTest, AServerThatIsDoneMayBeSilent) {
+  FinishFlight(/*rows=*/9);
+  LookAfter(100s);
+  EXPECT_EQ(phases_.phase(), Phase::kDraining);
+}
+
+// --- signals ------------------------------------------------------------------------------------------
+
+TEST_F(RunPhasesTest, ASignalBeforeTheFirstStateEndsTheRunAtOnce) {
+  EXPECT_EQ(phases_.OnSignal(SIGINT, now_), Actions{.ask_to_stop = true});
+  EXPECT_EQ(phases_.phase(), Phase::kCollecting);
+  EXPECT_EQ(phases_.signal(), SIGINT);
+  EXPECT_EQ(Collect(), Actions()) << "nothing flew that could be reported";
+  EXPECT_EQ(phases_.phase(), Phase::kEnding);
+}
+
+TEST_F(RunPhasesTest, ASignalInFlightIsATimelyStop) {
+  Fly();
+  EXPECT_EQ(phases_.OnSignal(SIGINT, now_), Actions{.ask_to_stop = true});
+  EXPECT_EQ(phases_.phase(), Phase::kFlying);
+  view_ = {.newest_tick = 4, .rows = 5, .last_tick = 4};
+  LookAfter(1s);
+  EXPECT_EQ(phases_.phase(), Phase::kCollecting);
+  EXPECT_EQ(phases_.failure(), "");
+  EXPECT_FALSE(phases_.in_order());
+}
+
+TEST_F(RunPhasesTest, AServerThatDoesNotStopWithinFiveSecondsIsNotWaitedFor) {
+  Fly();
+  phases_.OnSignal(SIGTERM, now_);
+  LookAfter(5s);
+  EXPECT_EQ(phases_.phase(), Phase::kFlying);
+  LookAfter(kInstant);
+  EXPECT_EQ(phases_.phase(), Phase::kCollecting);
+  EXPECT_EQ(phases_.failure(), "");
+}
+
+TEST_F(RunPhasesTest, TheSecondSignalKills) {
+  Fly();
+  phases_.OnSignal(SIGINT, now_);
+  EXPECT_EQ(phases_.OnSignal(SIGINT, now_ + 1s), Actions{.kill = true});
+  EXPECT_EQ(phases_.phase(), Phase::kCollecting);
+  EXPECT_EQ(Collect(), Actions());
+  EXPECT_EQ(phases_.phase(), Phase::kEnding) << "a killed server reports nothing";
+}
+
+TEST_F(RunPhasesTest, TheSecondSignalKillsAlsoWhileRowsAreCollected) {
+  FinishFlight(/*rows=*/11);
+  EXPECT_EQ(phases_.OnSignal(SIGINT, now_), Actions{.ask_to_stop = true});
+  EXPECT_EQ(phases_.OnSignal(SIGTERM, now_), Actions{.kill = true});
+  EXPECT_EQ(phases_.signal(), SIGINT);
+}
+
+// --- children -----------------------------------------------------------------------------------------
+
+TEST_F(RunPhasesTest, AChildThatEndsInAnyPhaseBeforeTheRunIsOverFailsItWithItsLastLines) {
+  for (const Phase phase : {Phase::kStarting, Phase::kFlying, Phase::kDraining}) {
+    RunPhases phases(RulesOf(0), now_);
+    if (phase != Phase::kStarting) phases.Look({.newest_tick = 0}, now_);
+    if (phase == Phase::kDraining) phases.Look({.newest_tick = 10, .rows = 3, .last_tick = 10}, now_);
+    ASSERT_EQ(phases.phase(), phase);
+    phases.OnExits({{"agent_2", std::nullopt, "was killed by signal 11 (Segmentation fault)"},
+                    {"agent_3", 1, "exited with code 1"}},
+                   now_);
+    EXPECT_EQ(phases.phase(), Phase::kCollecting);
+    EXPECT_EQ(phases.failure(),
+              "agent_2 was killed by signal 11 (Segmentation fault)\n  agent_2 | agent_2 sighs\n"
+              "agent_3 exited with code 1\n  agent_3 | agent_3 sighs");
+  }
+}
+
+TEST_F(RunPhasesTest, AChildThatEndsAfterTheRunIsNoFailure) {
+  FinishFlight(/*rows=*/11);
+  Exits("agent_1", 1, "exited with code 1");
+  Collect();
+  Exits("agent_2", 1, "exited with code 1");
+  EXPECT_TRUE(phases_.in_order());
+}
+
+TEST_F(RunPhasesTest, ChildrenThatEndForASignalAwaitThatSignalForATenthOfASecond) {
+  Fly();
+  Exits("agent_1", 143, "exited with code 143");
+  LookAfter(100ms);
+  EXPECT_EQ(phases_.phase(), Phase::kFlying);
+  EXPECT_EQ(phases_.OnSignal(SIGTERM, now_), Actions{.ask_to_stop = true});
+  EXPECT_EQ(phases_.phase(), Phase::kCollecting);
+  EXPECT_EQ(phases_.failure(), "") << "the whole job was ended";
+}
+
+TEST_F(RunPhasesTest, AChildThatWasSignalledAloneIsTheFailure) {
+  Fly();
+  Exits("agent_1", 143, "exited with code 143");
+  LookAfter(100ms + kInstant);
+  EXPECT_EQ(phases_.phase(), Phase::kCollecting);
+  EXPECT_THAT(phases_.failure(), HasSubstr("agent_1 exited with code 143"));
+}
+
+TEST_F(RunPhasesTest, ASignalExcusesOnlyThoseThatEndedForIt) {
+  Fly();
+  Exits("agent_1", 143, "exited with code 143");
+  Exits("agent_2", 1, "exited with code 1");
+  phases_.OnSignal(SIGTERM, now_);
+  EXPECT_EQ(phases_.failure(), "agent_2 exited with code 1\n  agent_2 | agent_2 sighs");
+}
+
+TEST_F(RunPhasesTest, AfterASignalChildrenThatEndForItAreExcusedAtOnce) {
+  Fly();
+  phases_.OnSignal(SIGINT, now_);
+  Exits("agent_1", 130, "exited with code 130");
+  EXPECT_EQ(phases_.phase(), Phase::kCollecting);
+  EXPECT_EQ(phases_.failure(), "");
+}
+
+// --- failures -----------------------------------------------------------------------------------------
+
+TEST_F(RunPhasesTest, TheFirstFailureIsWhy) {
+  Fly();
+  phases_.Fail("the disk is full");
+  phases_.Fail("something else");
+  EXPECT_EQ(phases_.failure(), "the disk is full");
+  EXPECT_EQ(phases_.phase(), Phase::kCollecting);
+}
+
+TEST_F(RunPhasesTest, AChildThatEndedBeforeTheFailureIsWhy) {
+  Fly();
+  Exits("agent_1", 139, "exited with code 139");
+  phases_.Fail("a reader has lost its writer");
+  EXPECT_THAT(phases_.failure(), HasSubstr("agent_1 exited with code 139"));
+}
+
+TEST_F(RunPhasesTest, AStrangerOnTheWireIsWhyWhoeverStumblesOverItFirst) {
+  violation_ = "agent_2 reads /agent_5/state";
+  Fly();
+  phases_.Fail("the recording is not complete");
+  EXPECT_EQ(phases_.failure(), "the wire differs from the graph: agent_2 reads /agent_5/state");
+}
+
+TEST_F(RunPhasesTest, AViolationFailsTheRunEvenIfItHasGoneBy) {
+  Fly();
+  phases_.OnViolation("a stranger writes /agent_1/command");
+  EXPECT_EQ(phases_.failure(), "the wire differs from the graph: a stranger writes /agent_1/command");
+  EXPECT_EQ(phases_.phase(), Phase::kCollecting);
+}
+
+// --- the server's report ------------------------------------------------------------------------------
+
+TEST_F(RunPhasesTest, AfterAFailureTheServerIsAskedToEndAndToReport) {
+  Fly();
+  phases_.Fail("agent_1 died");
+  EXPECT_EQ(Collect(), Actions{.ask_to_end = true});
+  EXPECT_EQ(phases_.phase(), Phase::kReporting);
+  LookAfter(3s);
+  EXPECT_EQ(phases_.phase(), Phase::kReporting);
+  view_.reported = true;
+  Look();
+  EXPECT_EQ(phases_.phase(), Phase::kEnding);
+}
+
+TEST_F(RunPhasesTest, AReportIsWaitedForNoLongerThanTenSeconds) {
+  Fly();
+  phases_.Fail("agent_1 died");
+  Collect();
+  LookAfter(10s);
+  EXPECT_EQ(phases_.phase(), Phase::kReporting);
+  LookAfter(kInstant);
+  EXPECT_EQ(phases_.phase(), Phase::kEnding);
+}
+
+TEST_F(RunPhasesTest, AServerThatReportedAlreadyIsNotAskedAgain) {
+  Fly();
+  phases_.Fail("agent_1 died");
+  view_.reported = true;
+  EXPECT_EQ(Collect(), Actions());
+  EXPECT_EQ(phases_.phase(), Phase::kEnding);
+}
+
+TEST_F(RunPhasesTest, WhatAServerSaidThatExitedIsWaitedForOneSecond) {
+  Fly();
+  Exits("physics_server", 1, "exited with code 1");
+  EXPECT_EQ(Collect(), Actions()) << "it cannot be asked any more";
+  Look();
+  LookAfter(1s);
+  EXPECT_EQ(phases_.phase(), Phase::kReporting);
+  LookAfter(kInstant);
+  EXPECT_EQ(phases_.phase(), Phase::kEnding);
+}
+
+TEST_F(RunPhasesTest, AServerThatIsKilledWhileItsReportIsAwaitedIsNotWaitedFor) {
+  Fly();
+  phases_.Fail("agent_1 died");
+  Collect();
+  Exits("physics_server", std::nullopt, "was killed by signal 9 (Killed)");
+  Look();
+  EXPECT_EQ(phases_.phase(), Phase::kEnding);
+  EXPECT_EQ(phases_.failure(), "agent_1 died");
+}
+
+TEST_F(RunPhasesTest, ASignalEndsTheWaitForTheReport) {
+  Fly();
+  phases_.Fail("agent_1 died");
+  Collect();
+  EXPECT_EQ(phases_.OnSignal(SIGINT, now_), Actions());
+  EXPECT_EQ(phases_.phase(), Phase::kEnding);
+  EXPECT_EQ(phases_.signal(), 0) << "the run had failed before";
+}
+
+}  // namespace
+}  // namespace mascot
