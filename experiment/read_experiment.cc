@@ -218,6 +218,7 @@ void ReadNetwork(Section& section, Experiment& experiment) {
 /// `laws` null: those are not read.
 Experiment Read(Section document, const LawCatalog* laws, const std::string& default_name, bool checked) {
   document.Use(ExperimentKeys());
+  CheckFormat(document);
   // In the order of the resolved file; read below in the order in which one needs the other.
   Section run = document.Child("run"), physics = document.Child("physics"), agents = document.Child("agents"),
           control = document.Child("control"), sensors = document.Child("sensors"), graph = document.Child("graph"),
@@ -265,6 +266,13 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
 
 }  // namespace
 
+void CheckFormat(Section& document) {
+  const std::int64_t format = document.Integer("format", 1, INT64_MAX, 1);
+  if (!document.Wrong("format") && format > kFormat)
+    document.Fail("format", "expected at most " + std::to_string(kFormat) + ", got " + std::to_string(format) +
+                                ": the file is of a newer version of MASCOT");
+}
+
 std::span<const Key> LawKeys() { return kLawKeys; }
 
 std::span<const Key> ExperimentKeys() {
@@ -280,6 +288,7 @@ std::span<const Key> ExperimentKeys() {
           .Default("\"topics\""),
   };
   static const Key keys[] = {
+      key::Integer("format", 1, kFormat, "version of the file's format; a run's own config.toml says it").Default("1"),
       key::Table("run", kRunKeys, "how long, how fast, from which seed"),
       key::Table("physics", PhysicsKeys(), "the world"),
       key::Table("agents", AgentsKeys(), "who flies"),

@@ -76,9 +76,20 @@ class Run:
         return self.config.get("output", {}).get(key, key != "show_plot")
 
 
+FORMAT = 1  # of config.toml and summary.json: the newest that is understood here
+
+
+def check_format(path, contents):
+    """What says no format is of version 1."""
+    if contents.get("format", 1) > FORMAT:
+        raise RunError(f"{path}: it is of format {contents['format']}, newer than the {FORMAT} that this version reads",
+                       code=2)
+    return contents
+
+
 def read_text(path, parse):
     try:
-        return parse(path.read_text(encoding="utf-8"))
+        return check_format(path, parse(path.read_text(encoding="utf-8")))
     except (ValueError, RecursionError) as error:  # tomllib's and json's errors are ValueErrors
         raise RunError(f"{path}: {error}") from None
     except OSError as error:

@@ -141,6 +141,35 @@ TEST(Completeness, WithoutAPlanOnlyTopicsThatAreThereAreCompared) {
   EXPECT_EQ(proof.ticks, 11u);
 }
 
+TEST(Completeness, ARecordingSaysItsFormat) {
+  const ScratchFolder scratch;
+  const McapContents contents = ReadMcap(Record(scratch, kExperiment));
+  EXPECT_EQ(contents.metadata.at("mascot").at("format"), "1");
+  EXPECT_THAT(contents.attachments.at("config.toml"), testing::StartsWith("format = 1\n\n[run]\n"));
+  EXPECT_EQ(TooNew(contents), "");
+}
+
+TEST(Completeness, ARecordingWithoutAFormatIsOfTheFirst) { EXPECT_EQ(TooNew(McapContents{}), ""); }
+
+TEST(Completeness, ARecordingOfANewerFormatIsRefused) {
+  McapContents contents;
+  for (const std::string format : {"2", "1.5", "next"}) {
+    contents.metadata["mascot"] = {{"format", format}};
+    EXPECT_THAT([&] { PlanOf(contents, "run.mcap"); },
+                ThrowsMessage<ConfigError>("run.mcap: it is of format " + format +
+                                           ", newer than the 1 that this version of MASCOT reads"));
+  }
+}
+
+TEST(Completeness, AnAttachedExperimentOfANewerFormatIsRefused) {
+  McapContents contents;
+  contents.attachments["config.toml"] = "format = 2\n[run]\n";
+  EXPECT_THAT(
+      [&] { PlanOf(contents, "run.mcap"); },
+      ThrowsMessage<ConfigError>("run.mcap (config.toml):1:10: format: expected at most 1, got 2: the file is of a "
+                                 "newer version of MASCOT"));
+}
+
 TEST(Completeness, AFileOfSomebodyElsesHasNoPlan) {
   const ScratchFolder scratch;
   McapWriter writer(scratch.File("other.mcap"));

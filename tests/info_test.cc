@@ -112,6 +112,18 @@ TEST(Info, InRealTimeALateCommandIsNoLoss) {
   EXPECT_THAT(said.out, EndsWith("ticks:        101, recorded without a gap\ncomplete: yes\n"));
 }
 
+TEST(Info, ANewerFormatIsDescribedButNotProved) {
+  const ScratchFolder scratch;
+  McapWriter writer(scratch.File("run.mcap"));
+  writer.Metadata("mascot", {{"format", "2"}});
+  writer.Close();
+  const Said said = Info({scratch.File("run.mcap")});
+  EXPECT_EQ(said.exit_code, 1);
+  EXPECT_THAT(said.out, HasSubstr("metadata:     mascot\n              format = 2\n"));
+  EXPECT_THAT(said.out,
+              EndsWith("complete: no (it is of format 2, newer than the 1 that this version of MASCOT reads)\n"));
+}
+
 TEST(Info, SaysThatARunEndedEarly) {
   const ScratchFolder scratch;
   WriteRun(scratch.File("run.mcap"), 101, Config("30.0", "lockstep"));

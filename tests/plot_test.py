@@ -303,6 +303,12 @@ class Errors(PlotTest):
         (self.folder / "config.toml").unlink()
         self.check(1, f"{self.folder}/config.toml: No such file or directory")
 
+    def test_a_newer_format_is_refused(self):
+        self.write(summary={"format": 2})
+        self.check(2, f"{self.folder}/summary.json: it is of format 2, newer than the 1 that this version reads")
+        self.write(config="format = 2\n" + CONSENSUS)
+        self.check(2, f"{self.folder}/config.toml: it is of format 2, newer than the 1 that this version reads")
+
     def test_wrong_use(self):
         self.write()
         code, errors = self.run_plot("--only", "speed")

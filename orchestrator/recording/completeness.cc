@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 
@@ -90,13 +91,29 @@ std::string FindGap(const McapContents& contents, const std::optional<RecordingP
 
 bool RecordingPlan::HasEveryTick(const Topic& topic) const { return IsMeantEveryTick(topic, realtime); }
 
+std::string TooNew(const McapContents& contents) {
+  const auto metadata = contents.metadata.find(kMetadata);
+  if (metadata == contents.metadata.end()) return "";
+  const auto format = metadata->second.find(kFormatKey);
+  if (format == metadata->second.end()) return "";
+  int version = 0;
+  const char* end = format->second.data() + format->second.size();
+  const auto [rest, error] = std::from_chars(format->second.data(), end, version);
+  if (error == std::errc() && rest == end && version <= kFormat) return "";
+  return fmt::format("it is of format {}, newer than the {} that this version of MASCOT reads", format->second,
+                     kFormat);
+}
+
 RecordingPlan PlanOf(const McapContents& contents, const std::string& path) {
+  if (const std::string why = TooNew(contents); !why.empty()) throw ConfigError({path + ": " + why});
   const auto attached = contents.attachments.find("config.toml");
   if (attached == contents.attachments.end())
     throw ConfigError({path + ": expected a run's recording, with its config.toml attached, got none" +
                        (contents.damage.empty() ? "" : ": " + contents.damage)});
   Section config = Section::FromText(attached->second, path + " (config.toml)");
   config.Use(ExperimentKeys());
+  CheckFormat(config);
+  config.ThrowIfWrong();
   Section run = config.Child("run");
   RecordingPlan plan;
   plan.name = run.Text("name");

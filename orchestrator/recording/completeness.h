@@ -24,8 +24,15 @@ struct RecordingPlan {
   bool HasEveryTick(const Topic& topic) const;
 };
 
-/// Reads the plan from the attached config.toml. Throws ConfigError if there is none, or if it is somebody else's;
-/// `path` is the recording's name in that message.
+/// The metadata of a recording that says which version of the format it is.
+inline constexpr const char* kMetadata = "mascot";
+inline constexpr const char* kFormatKey = "format";
+/// Why this version cannot read a recording: it is of a newer one. Empty: it can. A recording that says no format is of
+/// version 1.
+std::string TooNew(const McapContents& contents);
+
+/// Reads the plan from the attached config.toml. Throws ConfigError if the recording is of a newer format, if there is
+/// no config.toml, or if it is somebody else's; `path` is the recording's name in that message.
 RecordingPlan PlanOf(const McapContents& contents, const std::string& path);
 
 /// What a recording proves by its sequence numbers: every channel counts 0 .. n-1, and n is the number of ticks

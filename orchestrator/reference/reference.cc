@@ -81,8 +81,12 @@ std::vector<Key> Without(std::span<const Key> others, std::span<const Key> rows)
 class Writer {
  public:
   std::string Write() {
-    for (const Key& table : ExperimentKeys()) tables_.push_back({std::string(table.name), table.keys});
+    std::vector<Key> alone;  // keys of no table
+    for (const Key& key : ExperimentKeys())
+      key.keys.empty() ? alone.push_back(key) : tables_.push_back({std::string(key.name), key.keys});
+    text_ += "\n## The file\n" + TableOf(alone);
     for (const Key& table : ExperimentKeys()) {
+      if (table.keys.empty()) continue;
       text_ += fmt::format("\n## [{}]\n", table.name);
       if (!table.meaning.empty()) text_ += "\n" + Sentence(table.meaning) + "\n";
       text_ += TableOf(table.keys);

@@ -188,6 +188,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   const std::int64_t ticks = std::max<std::int64_t>(measured.rows - 1, 0);  // periods flown: rows are 0 .. ticks
   const double sim_s = experiment.time_s(ticks);
   Json json;
+  json["format"] = kFormat;
   json["experiment"] = experiment.run.name;
   json["seed"] = experiment.run.seed;
   json["engine"] = facts.engine;

@@ -69,7 +69,8 @@ Findings Inspect(const std::string& run) {
   const std::optional<RecordingPlan> plan = PlanIn(findings.contents, findings.file);
   if (plan) findings.planned_ticks = plan->ticks;
   const Proof proof = Prove(findings.contents, plan);
-  findings.reason = findings.contents.complete ? proof.gap : findings.contents.damage;
+  const std::string too_new = TooNew(findings.contents);
+  findings.reason = !too_new.empty() ? too_new : findings.contents.complete ? proof.gap : findings.contents.damage;
   if (findings.complete()) findings.ticks = proof.ticks;
   return findings;
 }
