@@ -1,0 +1,502 @@
+#!/usr/bin/python3
+"""The tree against docs/architecture.md: rooms use what its tables say, and nothing else. The name of a law or a model
+stands in its own files and rows only. The physics server links neither laws nor Python."""
+
+import collections
+import fnmatch
+import keyword
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import tokenize
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+DOCUMENT = "docs/architecture.md"
+FOLDERS = ["experiment", "idl", "bus", "agent", "physics_server", "orchestrator"]
+CPP = {".h", ".hpp", ".cc", ".cpp", ".inc"}
+
+Room = collections.namedtuple("Room", "line floor name patterns library may_use")
+Header = collections.namedtuple("Header", "line patterns where")
+Ban = collections.namedtuple("Ban", "line rooms never")
+Include = collections.namedtuple("Include", "path line name")
+
+
+# --- the tables -----------------------------------------------------------------------------------------
+
+
+def table(text, *headings):
+    """Line number and cells, by heading, of each row of the table that has these headings."""
+    rows, names = [], None
+    for number, line in enumerate(text.splitlines(), 1):
+        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
+        if not line.startswith("|"):
+            names = None
+        elif set(headings) <= set(cells):
+            names = cells
+        elif names and not set(line) <= set("|-: "):
+            rows.append((number, dict(zip(names, cells))))
+    if not rows:
+        raise ValueError(f"{DOCUMENT}: expected a table with the columns {', '.join(headings)}, got none")
+    return rows
+
+
+def quoted(cell):
+    return re.findall(r"`([^`]+)`", cell)
+
+
+class House:
+    """What the tables of the document say."""
+
+    def __init__(self, text):
+        self.rooms = [
+            Room(line, int(row["floor"]), quoted(row["room"])[0], quoted(row["files"]), quoted(row["library"])[0],
+                 quoted(row["may use"]))
+            for line, row in table(text, "floor", "room", "files", "library", "may use")
+        ]
+        self.headers = [Header(line, quoted(row["header"]), quoted(row["who may include it"]))
+                        for line, row in table(text, "header", "who may include it")]
+        self.bans = [Ban(line, quoted(row["rooms"]), quoted(row["never reach"]))
+                     for line, row in table(text, "rooms", "never reach")]
+        self.by_name = {room.name: room for room in self.rooms}
+
+    def rooms_of(self, path):
+        """Names of the rooms that claim a file, by what names it best: its own name, else a pattern, else its folder,
+        else the folder around that. One, unless the table is wrong."""
+        claims = [(rank(pattern), room.name) for room in self.rooms for pattern in room.patterns if fits(path, pattern)]
+        best = max(claims, default=(None,))[0]
+        return sorted({name for claim, name in claims if claim == best})
+
+    def way(self, start, end):
+        """The rooms from one to another along arrows of the table; none: there is no way."""
+        ways, reached = [[start]], {start}
+        for way in ways:
+            if way[-1] == end:
+                return way
+            for used in self.by_name[way[-1]].may_use if way[-1] in self.by_name else []:
+                if used not in reached:
+                    reached.add(used)
+                    ways.append([*way, used])
+        return []
+
+
+def rank(pattern):
+    return (0, pattern.count("/")) if pattern.endswith("/") else (1 if "*" in pattern else 2, 0)
+
+
+def fits(path, pattern):
+    if pattern.endswith("/"):
+        return path.startswith(pattern)
+    return pattern.count("/") == path.count("/") and fnmatch.fnmatchcase(path, pattern)
+
+
+# --- rooms and includes ---------------------------------------------------------------------------------
+
+
+def sources(root, folders, suffixes):
+    return [path.relative_to(root).as_posix() for folder in folders for path in sorted((root / folder).rglob("*"))
+            if path.suffix in suffixes and path.is_file()]
+
+
+def includes(root, paths):
+    for path in paths:
+        for number, line in enumerate((root / path).read_text().splitlines(), 1):
+            if found := re.match(r'\s*#\s*include\s*[<"]([^>"]+)[>"]', line):
+                yield Include(path, number, found[1])
+
+
+def faults_of_rooms(root, house):
+    """Of the table and of the includes that go from room to room."""
+    paths = sources(root, FOLDERS, CPP)
+    rooms = {path: house.rooms_of(path) for path in paths}
+    for path, claims in rooms.items():
+        if len(claims) != 1:
+            yield f"{path}:1: is in {'two rooms: ' + ', '.join(claims) if claims else 'no room'} ({DOCUMENT})"
+    ridden = set()
+    for include in includes(root, paths):
+        if include.name not in rooms or len(rooms[include.path]) != 1 or len(rooms[include.name]) != 1:
+            continue
+        (user,), (used,) = rooms[include.path], rooms[include.name]
+        ridden.add((user, used))
+        if user != used and used not in house.by_name[user].may_use:
+            yield f"{include.path}:{include.line}: includes {include.name}: {user} may not use {used} ({DOCUMENT})"
+    for room in house.rooms:
+        for pattern in room.patterns:
+            if not any(fits(path, pattern) for path in paths):
+                yield f"{DOCUMENT}:{room.line}: {room.name}: there is no file {pattern}"
+        if [room.name] not in rooms.values():
+            yield f"{DOCUMENT}:{room.line}: {room.name}: no file is in this room"
+        for used in room.may_use:
+            if used not in house.by_name:
+                yield f"{DOCUMENT}:{room.line}: {room.name} may use {used}: there is no such room"
+            elif house.by_name[used].floor >= room.floor:
+                yield f"{DOCUMENT}:{room.line}: {room.name} may use {used}, which is not on a lower floor"
+            elif (room.name, used) not in ridden:
+                yield f"{DOCUMENT}:{room.line}: {room.name} may use {used}, but no include does"
+
+
+def faults_of_headers(root, house):
+    """Of includes of what is not ours, and of the table about them. Standard C++ headers have no dot: all may."""
+    paths = sources(root, FOLDERS, CPP)
+    used = set()
+    for include in includes(root, paths):
+        if include.name in paths or "." not in include.name and "/" not in include.name:
+            continue
+        at = f"{include.path}:{include.line}: includes {include.name}"
+        is_about = lambda row: any(fnmatch.fnmatchcase(include.name, pattern) for pattern in row.patterns)
+        row = next(filter(is_about, house.headers), None)
+        if row is None:
+            yield f"{at}: it is not ours, and in no row of the table of headers ({DOCUMENT})"
+            continue
+        claims = house.rooms_of(include.path)
+        used |= {(row.line, name) for name in [include.path, *claims]}
+        if row.where and not {include.path, *claims} & set(row.where):
+            yield f"{at}: only {', '.join(row.where)} may ({DOCUMENT}:{row.line})"
+    for row in house.headers:
+        for name in row.where:
+            if (row.line, name) not in used:
+                yield f"{DOCUMENT}:{row.line}: {name} may include {', '.join(row.patterns)}, but does not"
+
+
+def faults_of_bans(house):
+    """Of arrows that the table may not have, whatever rides on them."""
+    for ban in house.bans:
+        for name in [*ban.rooms, *ban.never]:
+            if name not in house.by_name:
+                yield f"{DOCUMENT}:{ban.line}: {name}: there is no such room"
+        for start in ban.rooms:
+            for end in ban.never:
+                if way := house.way(start, end):
+                    yield f"{DOCUMENT}:{ban.line}: {start} must never reach {end}, and does: {' -> '.join(way)}"
+
+
+def faults_of_libraries(cmake, house):
+    """Of the column of libraries."""
+    built = {f"mascot_{name}" for name in re.findall(r"^\s*mascot_room\((\w+)", cmake, re.M)}
+    programs = set(re.findall(r"^\s*add_executable\((\w+)", cmake, re.M))
+    listed = {room.library for room in house.rooms}
+    for room in house.rooms:
+        if room.library not in built | programs:
+            yield f"{DOCUMENT}:{room.line}: {room.name}: CMakeLists.txt makes no {room.library}"
+    yield from (f"CMakeLists.txt: {name} is in no row of {DOCUMENT}" for name in sorted(built - listed))
+
+
+# --- names of laws and models ---------------------------------------------------------------------------
+
+
+def names_in_rows(root, path):
+    return re.findall(r'\.name = "(\w+)"', (root / path).read_text())
+
+
+CPP_TOKEN = re.compile(r"""//[^\n]* | /\*.*?\*/                                # comments
+                         | R"(?P<mark>[^(\s"]*)\((?P<raw>.*?)\)(?P=mark)"      # raw strings
+                         | "(?P<text>(?:\\.|[^"\\\n])*)"
+                         | \b\d[\w.']* | '(?:\\.|[^'\\\n])+'                   # 1'000 is a number, 'a' a character
+                         """, re.S | re.X)
+
+
+def cpp_literals(text):
+    """Line and text of each string literal, and whether it is a key: what json["consensus"] is asked for."""
+    for found in CPP_TOKEN.finditer(text):
+        literal = found["raw"] if found["raw"] is not None else found["text"]
+        if literal is not None:
+            is_key = re.search(r"[\w\])]\s*\[\s*$", text[: found.start()]) and re.match(r"\s*\]", text[found.end():])
+            yield text.count("\n", 0, found.start()) + 1, literal, bool(is_key)
+
+
+def python_literals(path):
+    """Likewise; a key is also what summary.get("consensus") is asked for."""
+    skipped = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT}
+    with tokenize.open(path) as file:
+        tokens = [token for token in tokenize.generate_tokens(file.readline) if token.type not in skipped]
+    words = ["", "", *(token.string for token in tokens), ""]
+    for i, token in enumerate(tokens):
+        if token.type == tokenize.STRING:
+            before, around = words[i], (words[i + 1], words[i + 3])
+            is_subscript = around == ("[", "]") and re.fullmatch(r"\w+|\)|\]", before) and not keyword.iskeyword(before)
+            is_key = bool(is_subscript) or (before, around[0]) == ("get", "(")
+            yield token.start[0], re.sub(r"^\w*", "", token.string), is_key
+
+
+def faults_of_names(root):
+    """Of string literals that are the name of a law or a model, outside its own files and rows."""
+    homes = {name: ["agent/laws.cc", f"agent/laws/{name}.*"] for name in names_in_rows(root, "agent/laws.cc")}
+    for name in names_in_rows(root, "experiment/model_traits.cc"):
+        homes[name] = ["experiment/model_traits.cc", "agent/controllers.cc", "physics_server/models.cc",
+                       f"agent/controllers/{name}.cc", f"physics_server/models/{name}.cc"]
+    for path in sources(root, [*FOLDERS, "scripts"], CPP | {".py"}):
+        literals = python_literals(root / path) if path.endswith(".py") else cpp_literals((root / path).read_text())
+        for line, text, is_key in literals:
+            name = text.strip("\\\"'")
+            if name in homes and not is_key and not any(fits(path, home) for home in homes[name]):
+                yield f"{path}:{line}: \"{name}\": ask the row of the law or model, in {homes[name][0]}"
+
+
+# --- what a program is made of --------------------------------------------------------------------------
+
+
+def output_of(*command):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=True).stdout
+
+
+def functions_of(path):
+    """Functions that others can call, of a program or library."""
+    functions = set(re.findall(r"^[0-9a-f]+ T (.+)$", output_of("nm", "-C", "--defined-only", path), re.M))
+    if not functions:
+        raise ValueError(f"{path}: expected functions, got none: stripped?")
+    return functions
+
+
+def faults_of_linking(program, libraries):
+    if "libpython" in output_of("ldd", program):
+        yield f"{program.name} links Python"
+    for library in libraries:
+        if shared := functions_of(program) & functions_of(library):
+            yield f"{program.name} holds {len(shared)} functions of {library.name}, such as {min(shared)}"
+
+
+# --- this tree ------------------------------------------------------------------------------------------
+
+
+class HouseTest(unittest.TestCase):
+    maxDiff = None
+
+    def check(self, faults, expected=()):
+        self.assertEqual("\n".join(faults), "\n".join(expected))
+
+
+class ThisTree(HouseTest):
+    def setUp(self):
+        self.house = House((ROOT / DOCUMENT).read_text())
+
+    def test_rooms_use_what_the_table_says(self):
+        self.check(faults_of_rooms(ROOT, self.house))
+
+    def test_headers_of_others_stay_where_they_belong(self):
+        self.check(faults_of_headers(ROOT, self.house))
+
+    def test_maths_never_reaches_the_wire_nor_the_wire_maths(self):
+        self.check(faults_of_bans(self.house))
+
+    def test_each_room_is_a_library(self):
+        self.check(faults_of_libraries((ROOT / "CMakeLists.txt").read_text(), self.house))
+
+    def test_laws_and_models_are_named_in_their_own_places_only(self):
+        self.assertGreater(len(names_in_rows(ROOT, "agent/laws.cc")), 1)
+        self.assertGreater(len(names_in_rows(ROOT, "experiment/model_traits.cc")), 1)
+        self.check(faults_of_names(ROOT))
+
+
+@unittest.skipUnless("MASCOT_BINARY_DIR" in os.environ, "MASCOT_BINARY_DIR does not say where the programs are")
+class Programs(HouseTest):
+    def setUp(self):
+        self.folder = pathlib.Path(os.environ["MASCOT_BINARY_DIR"])
+        self.libraries = [self.folder / "libmascot_laws.a", self.folder / "libmascot_agent.a"]
+
+    def test_the_physics_server_links_neither_laws_nor_python(self):
+        self.check(faults_of_linking(self.folder / "physics_server", self.libraries))
+
+    def test_what_links_them_is_found_out(self):
+        python, laws, agent = faults_of_linking(self.folder / "agent", self.libraries)
+        self.assertEqual(python, "agent links Python")
+        self.assertRegex(laws, r"^agent holds \d+ functions of libmascot_laws\.a, such as mascot::")
+        self.assertRegex(agent, r"^agent holds \d+ functions of libmascot_agent\.a, such as mascot::")
+
+
+# --- planted trees: every rule seen broken --------------------------------------------------------------
+
+DOCUMENT_OF_PLANTED = """
+| floor | room | files | library | may use | what |
+|---|---|---|---|---|---|
+| 0 | `base` | `experiment/` | `mascot_base` | | a |
+| 1 | `wire` | `bus/` | `mascot_wire` | `base` | b |
+| 1 | `law` | `agent/law*`, `agent/laws/` | `mascot_law` | `base` | c |
+| 2 | `agent` | `agent/` | `mascot_agent` | `base`, `law` | d |
+| 3 | `process` | `agent/main.cc` | `program` | `agent`, `wire` | e |
+
+| header | who may include it |
+|---|---|
+| `Eigen/*` | every room |
+| `fastdds/*` | `wire` |
+| `zlib.h` | `experiment/a.cc` |
+
+| rooms | never reach |
+|---|---|
+| `law`, `agent` | `wire` |
+"""
+FILES = {
+    "experiment/a.h": "#pragma once\n#include <vector>\n",
+    "experiment/a.cc": '#include "experiment/a.h"\n#include <zlib.h>\n#include <Eigen/Core>\n',
+    "bus/bus.h": '#include <fastdds/x.hpp>\n#include "experiment/a.h"\n',
+    "agent/law.h": '#include "experiment/a.h"\n',
+    "agent/laws.cc": '{.name = "chase"}, {.name = "flee"} // "chase"\n',
+    "agent/laws/chase.cc": '#include "agent/law.h"\nauto name = "chase";\n',
+    "agent/agent.h": '#include "agent/law.h"\n#include "experiment/a.h"\n//   #include "bus/bus.h"\n',
+    "agent/main.cc": '#include "agent/agent.h"\n#include "bus/bus.h"\nint n = 1\'000; char c = \'"\';\n',
+    "agent/controllers.cc": '{"ball", MakeBall}\n',
+    "experiment/model_traits.cc": '{.name = "ball"}, {.name = "cart"}\n',
+    "physics_server/models.cc": '{"ball", MakeBall}\n',
+    "physics_server/models/cart.cc": 'auto name = "cart";\n',
+    "scripts/plot.py": 'chase = summary["chase"], summary.get("flee", {})  # "ball"\n',
+}
+
+
+class Planted(HouseTest):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.root = pathlib.Path(scratch.name)
+
+    def plant(self, files=None, replace=("", ""), without=()):
+        """A tree with these files besides or instead of the sound ones, and what its document says."""
+        rooms = {path: text for path, text in FILES.items() if not path.startswith("physics_server")}
+        for path, text in (rooms | (files or {})).items():
+            if path not in without:
+                (self.root / path).parent.mkdir(parents=True, exist_ok=True)
+                (self.root / path).write_text(text)
+        self.assertIn(replace[0], DOCUMENT_OF_PLANTED)
+        return House(DOCUMENT_OF_PLANTED.replace(*replace) if replace[0] else DOCUMENT_OF_PLANTED)
+
+
+class Rooms(Planted):
+    def broken(self, *faults, **how):
+        house = self.plant(**how)
+        self.check(faults_of_rooms(self.root, house), faults)
+
+    def test_a_sound_tree_has_no_faults(self):
+        self.broken()
+
+    def test_an_include_of_a_room_that_may_not_be_used(self):
+        self.broken("agent/laws/chase.cc:2: includes bus/bus.h: law may not use wire (docs/architecture.md)",
+                    files={"agent/laws/chase.cc": '#include "agent/law.h"\n  #  include "bus/bus.h"\n'})
+
+    def test_an_include_that_runs_up(self):
+        self.broken("experiment/b.h:1: includes bus/bus.h: base may not use wire (docs/architecture.md)",
+                    files={"experiment/b.h": "#include <bus/bus.h>\n"})
+
+    def test_an_arrow_that_is_not_to_a_lower_floor(self):
+        self.broken("docs/architecture.md:4: base may use wire, which is not on a lower floor",
+                    files={"experiment/b.h": '#include "bus/bus.h"\n'},
+                    replace=("`mascot_base` | |", "`mascot_base` | `wire` |"))
+
+    def test_an_arrow_to_no_room(self):
+        self.broken("docs/architecture.md:5: wire may use cellar: there is no such room",
+                    replace=("`mascot_wire` | `base`", "`mascot_wire` | `base`, `cellar`"))
+
+    def test_an_arrow_that_no_include_rides_on(self):
+        self.broken("docs/architecture.md:8: process may use base, but no include does",
+                    replace=("`program` | `agent`", "`program` | `base`, `agent`"))
+
+    def test_a_file_in_no_room(self):
+        self.broken("orchestrator/main.cc:1: is in no room (docs/architecture.md)", files={"orchestrator/main.cc": ""})
+
+    def test_a_file_in_two_rooms(self):
+        self.broken("agent/laws/chase.cc:1: is in two rooms: agent, law (docs/architecture.md)",
+                    replace=("| `agent/` |", "| `agent/`, `agent/laws/` |"))
+
+    def test_a_room_without_files(self):
+        self.broken("docs/architecture.md:9: attic: there is no file physics_server/",
+                    "docs/architecture.md:9: attic: no file is in this room",
+                    replace=("| e |\n", "| e |\n| 4 | `attic` | `physics_server/` | `x` | | f |\n"))
+
+    def test_a_pattern_without_files(self):
+        self.broken("docs/architecture.md:5: wire: there is no file bus/wire.*",
+                    replace=("`bus/`", "`bus/`, `bus/wire.*`"))
+
+    def test_a_document_without_the_table(self):
+        with self.assertRaisesRegex(ValueError, "expected a table with the columns header, who may .*, got none"):
+            self.plant(replace=("| header |", "| head |"))
+
+
+class Headers(Planted):
+    def broken(self, *faults, **how):
+        house = self.plant(**how)
+        self.check(faults_of_headers(self.root, house), faults)
+
+    def test_a_sound_tree_has_no_faults(self):
+        self.broken()
+
+    def test_a_header_in_a_room_where_it_does_not_belong(self):
+        self.broken("agent/law.h:2: includes fastdds/x.hpp: only wire may (docs/architecture.md:13)",
+                    files={"agent/law.h": '#include "experiment/a.h"\n#include <fastdds/x.hpp>\n'})
+
+    def test_a_header_in_another_file_than_the_one_that_may(self):
+        self.broken("experiment/b.cc:1: includes zlib.h: only experiment/a.cc may (docs/architecture.md:14)",
+                    files={"experiment/b.cc": "#include <zlib.h>\n"})
+
+    def test_a_header_that_nobody_has_heard_of(self):
+        self.broken("agent/law.h:1: includes boost/any.hpp: it is not ours, and in no row of the table of headers "
+                    "(docs/architecture.md)", files={"agent/law.h": "#include <boost/any.hpp>\n"})
+
+    def test_a_permission_that_nobody_uses(self):
+        self.broken("docs/architecture.md:13: law may include fastdds/*, but does not",
+                    replace=("| `wire` |\n| `zlib", "| `wire`, `law` |\n| `zlib"))
+
+
+class BansAndLibraries(Planted):
+    CMAKE = ("mascot_room(base experiment\n  SOURCES a.cc)\nmascot_room(wire bus)\nmascot_room(law agent)\n"
+             "mascot_room(agent agent)\nadd_executable(program agent/main.cc)\n")
+
+    def test_a_sound_tree_has_no_faults(self):
+        self.check(faults_of_bans(self.plant()))
+        self.check(faults_of_libraries(self.CMAKE, self.plant()))
+
+    def test_a_way_that_may_not_be_even_through_others(self):
+        self.check(faults_of_bans(self.plant(replace=("`mascot_law` | `base`", "`mascot_law` | `base`, `wire`"))),
+                   ["docs/architecture.md:18: law must never reach wire, and does: law -> wire",
+                    "docs/architecture.md:18: agent must never reach wire, and does: agent -> law -> wire"])
+
+    def test_a_ban_on_no_room(self):
+        self.check(faults_of_bans(self.plant(replace=("| `law`, `agent` | `wire`", "| `lore`, `agent` | `wire`"))),
+                   ["docs/architecture.md:18: lore: there is no such room"])
+
+    def test_a_library_that_is_not_made(self):
+        self.check(faults_of_libraries(self.CMAKE, self.plant(replace=("`mascot_wire`", "`mascot_bus`"))),
+                   ["docs/architecture.md:5: wire: CMakeLists.txt makes no mascot_bus",
+                    "CMakeLists.txt: mascot_wire is in no row of docs/architecture.md"])
+
+
+class Names(Planted):
+    def broken(self, files, *faults):
+        self.plant(FILES | files)
+        self.check(faults_of_names(self.root), faults)
+
+    def test_a_sound_tree_has_no_faults(self):
+        self.broken({})
+
+    def test_a_law_named_by_the_agent(self):
+        self.broken({"agent/agent.cc": '// "flee"\nint n = 1\'000;\nif (law.name == "chase") n = 2;  /* "flee" */\n'},
+                    'agent/agent.cc:3: "chase": ask the row of the law or model, in agent/laws.cc')
+
+    def test_a_law_named_by_another_law(self):
+        self.broken({"agent/laws/flee.cc": 'auto own = "flee";\nauto other = R"(chase)";\n'},
+                    'agent/laws/flee.cc:2: "chase": ask the row of the law or model, in agent/laws.cc')
+
+    def test_a_model_named_as_a_toml_value(self):
+        self.broken({"experiment/agents.cc": 'auto fallback = "\\"ball\\"";\n'},
+                    'experiment/agents.cc:1: "ball": ask the row of the law or model, in experiment/model_traits.cc')
+
+    def test_a_model_named_by_another_model(self):
+        self.broken({"physics_server/models/cart.cc": 'auto own = "cart";\nauto other = "ball";\n'},
+                    'physics_server/models/cart.cc:2: "ball": ask the row of the law or model, '
+                    'in experiment/model_traits.cc')
+
+    def test_a_key_of_json_is_no_name(self):
+        self.broken({"orchestrator/summary.cc": 'json["chase"] = 1;\nin(json)["flee"] = 2;\n'})
+
+    def test_a_list_of_names_is_no_key(self):
+        self.broken({"orchestrator/a.cc": 'auto f = ["chase"] {};\n',
+                     "scripts/plot.py": 'if law in ["chase"]:\n    x = {"flee": 1}\n'},
+                    'orchestrator/a.cc:1: "chase": ask the row of the law or model, in agent/laws.cc',
+                    'scripts/plot.py:1: "chase": ask the row of the law or model, in agent/laws.cc',
+                    'scripts/plot.py:2: "flee": ask the row of the law or model, in agent/laws.cc')
+
+    def test_a_law_named_by_a_script(self):
+        self.broken({"scripts/plot.py": 'if law == "chase":  # "flee"\n    pass\n'},
+                    'scripts/plot.py:1: "chase": ask the row of the law or model, in agent/laws.cc')
+
+
+if __name__ == "__main__":
+    unittest.main()
