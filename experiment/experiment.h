@@ -124,6 +124,9 @@ struct Experiment {
     bool show_plot = false;
     bool save_data = true;
     bool fidelity = true;  ///< compare with ideal bodies; their laws run in the orchestrator too
+
+    /// As files or in windows.
+    bool wants_pictures() const { return (save_plot || show_plot) && (position_plot || velocity_plot); }
   } output;
   struct {
     int domain = -1;  ///< -1 = "auto"

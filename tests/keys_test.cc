@@ -395,6 +395,15 @@ TEST(Key, OutputShowPlotWithoutADisplaySaysSoAndDrawsAsWell) {
   EXPECT_TRUE(fs::exists(folder.File("run/paths.png")));
 }
 
+TEST(Key, OutputShowPlotNeedsNeitherPicturesNorArraysAsFiles) {
+  ScratchFolder folder;
+  const Ran run = Shell("env -u DISPLAY -u WAYLAND_DISPLAY '" MASCOT_BINARY_DIR "/orchestrator' up '" +
+                        Config("leaderless") + "' --engine inprocess --duration-s 0.5 --set output.show_plot=true " +
+                        "--set output.save_plot=false --set output.save_data=false --out '" + folder.File("run") + "'");
+  EXPECT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_FALSE(fs::exists(folder.File("run/states.npz")));
+}
+
 TEST(Key, OutputFidelityComparesWithIdealIntegratorsOrNot) {
   ScratchFolder folder;
   const Flown with(folder, "with", "leaderless", {"run.duration_s=0.1"});

@@ -36,7 +36,7 @@ RunWriter::RunWriter(const Experiment& experiment, const RunFolder& folder, cons
     states_.push_back(AddChannel(Topic::State(id)));
   }
   clock_ = AddChannel(Topic::Clock());
-  if (experiment.output.save_data || experiment.output.save_plot)
+  if (experiment.output.save_data || experiment.output.wants_pictures())  // which are made of it
     npz_.emplace(folder.File("states.npz"), experiment.size());
 }
 

@@ -65,8 +65,7 @@ int ExitCode(const EngineResult& result) {
 int MakeOutput(const Experiment& experiment, const RunFolder& folder, bool has_rows, StopSignal& stop) {
   const auto& output = experiment.output;
   int code = 0;
-  if (has_rows && (output.save_plot || output.show_plot) && (output.position_plot || output.velocity_plot))
-    code = PlotRun(folder.path(), output.show_plot, stop);
+  if (has_rows && output.wants_pictures()) code = PlotRun(folder.path(), output.show_plot, stop);
   if (!output.save_data) std::filesystem::remove(folder.File("states.npz"));
   if (code == 0 || code > 128) return code;
   std::cerr << "error: the pictures could not be made; the data are complete (output.save_plot = false skips them)\n";
