@@ -18,14 +18,17 @@ constexpr std::string_view kIntroduction =
 
 <!-- Made from the tables in the code by `cmake --build build/release --target reference`; a test keeps it current. -->
 
-An experiment is one TOML file. Every key has a default but those marked *required*; a key that is not listed here, a value
-of another type or out of range ends `orchestrator` with exit 2 before anything starts, and the message says file, line,
-column, what was expected and what stands there. `orchestrator up FILE --set table.key=value` sets one without editing.
-Keys carry their unit in their name; where they cannot (gains), it stands beside the range. `[a, b]` includes both ends,
-`(a, b]` leaves out a. Points and vectors are `[x, y, z]` in the world frame: x east, y north, z up.
+An experiment is one TOML file. Every key has a default, except those marked *required*. An unknown key, or a value of
+the wrong type or out of range, ends `orchestrator` with exit code 2 before anything starts. The message has file, line
+and column, what was expected and what was found. `orchestrator up FILE --set table.key=value` sets a key without
+editing the file.
 
-Editors that know TOML (VS Code with Even Better TOML, or anything else on taplo) complete and check the keys while you type
-if the file begins with `#:schema` and the place of [mascot.schema.json](mascot.schema.json), as those in
+The name of a key ends with its unit; the unit of a gain is beside its range. `[a, b]` includes both ends, `(a, b]`
+excludes a. Points and vectors are `[x, y, z]` in the world frame W (x east, y north, z up), unless the key says
+otherwise; B is the body frame (x forward, y left, z up). Agent i *hears* agent j if it receives the state of j.
+
+Editors with TOML support (VS Code with Even Better TOML, and others based on taplo) complete and check the keys as you
+type if the file begins with `#:schema` and the path of [mascot.schema.json](mascot.schema.json), as the files in
 `configs/` do.
 )";
 
