@@ -3,8 +3,8 @@
 //
 //   a_i = sum_j a_ij [ tanh(p_gain (p_j - p_i)) + tanh(v_gain (v_j - v_i)) ]     (tanh of each component)
 //
-// However far apart the agents start, no component exceeds 2 sum_j a_ij. On a connected undirected graph all meet: what
-// i wants for j's sake is the opposite of what j wants for i's, so that the mean position moves on as it started.
+// No component of a_i exceeds 2 sum_j a_ij, however far apart the agents start. On a connected undirected graph all
+// agents meet. The terms of each pair i, j cancel in the sum over all agents, so the mean velocity stays constant.
 
 #include "mascot/plugin.h"
 
@@ -12,14 +12,14 @@ namespace {
 
 class BoundedConsensus final : public mascot::Law {
  public:
-  // Called once per agent, before the run. A parameter that is missing, of the wrong type or out of range is refused by
-  // `orchestrator check` with file, line and column; so is one that nobody asks for here.
+  // Called once per agent before the run, and in `orchestrator check`. A parameter that is missing, of the wrong type
+  // or out of range is refused with file, line and column. A parameter that is not read here is refused, too.
   explicit BoundedConsensus(const mascot::PluginSetup& setup)
       : p_gain_(setup.params.Number("p_gain", 0, 100)),         // 1/m, required
-        v_gain_(setup.params.Number("v_gain", 0, 100, 1.0)) {}  // s/m, 1 unless the file says otherwise
+        v_gain_(setup.params.Number("v_gain", 0, 100, 1.0)) {}  // s/m, default 1
 
-  // Called at every tick: what this agent wants, knowing where it is itself and what it heard at this tick. Everything
-  // is in the world frame (x east, y north, z up): m, m/s, and m/s^2 for the answer.
+  // Called at every tick. Returns the acceleration (m/s^2) that this agent wants, from its own motion and the samples
+  // heard at this tick. Positions (m), velocities (m/s) and the result are in the world frame: x east, y north, z up.
   Eigen::Vector3d Want_W(double /*t_s*/, const mascot::Motion& self, std::span<const mascot::Heard> heard) override {
     Eigen::Vector3d a_W = Eigen::Vector3d::Zero();
     for (const mascot::Heard& j : heard) {
