@@ -18,15 +18,15 @@ namespace dds = eprosima::fastdds::dds;
 using eprosima::fastrtps::rtps::SerializedPayload_t;
 using eprosima::fastrtps::types::ReturnCode_t;
 
-/// Takes over what Fast DDS made; nothing downstream needs to test for null.
+/// Takes ownership of an entity that Fast DDS created. Throws BusError if it is null.
 template <class Entity>
 Handle<Entity> Own(Entity* entity, const std::string& what, std::function<void(Entity*)> give_back) {
   if (entity == nullptr) throw BusError("Fast DDS refused to make the " + what);
   return Handle<Entity>(entity, std::move(give_back));
 }
 
-/// Delivery inside one process would run a reader's callback in the thread that writes, under its locks.
-void TurnOffDeliveryInOneProcess() {
+/// Intraprocess delivery would call a reader's callback in the thread that writes, with the writer's locks held.
+void DisableIntraprocessDelivery() {
   eprosima::fastrtps::LibrarySettingsAttributes settings;
   settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
@@ -38,7 +38,7 @@ void TurnOffDeliveryInOneProcess() {
 
 Domain::Domain(const DomainOptions& options, std::function<void()> wake, dds::DomainParticipantListener* discovery)
     : wake_(std::move(wake)) {
-  TurnOffDeliveryInOneProcess();
+  DisableIntraprocessDelivery();
   auto* factory = dds::DomainParticipantFactory::get_instance();
   const auto domain_id = static_cast<dds::DomainId_t>(options.domain);
   participant_ = Own<dds::DomainParticipant>(
@@ -71,7 +71,7 @@ Handle<dds::Topic> Domain::MakeTopic(const Topic& topic, dds::TypeSupport type) 
   auto* participant = participant_.get();
   const std::string name = topic.DdsName();
   if (participant->find_type(type.get_type_name()).empty()) type.register_type(participant);
-  // A process that both reads and writes a topic needs it twice: the second time it is found, not made.
+  // A participant has one topic object per name: a process that both reads and writes a topic finds the first one here.
   auto* existing = participant->lookup_topicdescription(name);
   if (existing != nullptr) return Handle<dds::Topic>(static_cast<dds::Topic*>(existing), [](dds::Topic*) {});
   return Own<dds::Topic>(participant->create_topic(name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT), "topic " + name,
@@ -164,7 +164,7 @@ int ReaderBase::matched() const {
 
 namespace {
 
-/// Goes by the name of a generated type, so that its writers match, and keeps the bytes as they came.
+/// Has the name of a generated type, so that it matches that type's writers, but keeps the bytes as they came.
 class RawType : public dds::TopicDataType {
  public:
   explicit RawType(const std::string& name) {

@@ -25,28 +25,30 @@
 
 namespace mascot {
 
-/// The middleware refused something that a run cannot do without.
+/// Fast DDS refused to create an entity or to send a sample.
 class BusError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Owns one Fast DDS entity and hands it back to the parent that made it.
+/// Owns one Fast DDS entity and deletes it through the parent that created it.
 template <class Entity>
 using Handle = std::unique_ptr<Entity, std::function<void(Entity*)>>;
 
-/// One process's place in a run's DDS domain. Outlives every reader and writer made in it.
+/// A process's participant, publisher and subscriber in the DDS domain of a run. Must outlive every reader and writer
+/// made in it.
 class Domain {
  public:
-  /// `wake` is called, from any thread, whenever a loop that waits should look again: somebody was matched
-  /// or lost, or a callback failed. `discovery`, if given, hears of every endpoint and outlives this.
+  /// `wake` is called, from any thread, when a waiting loop should check again: a reader or writer was matched or
+  /// unmatched, a callback failed, or Wake() was called. `discovery`, if given, is told of every discovered participant
+  /// and endpoint; it must outlive this object. Throws BusError, and what ParticipantQos() throws.
   Domain(const DomainOptions& options, std::function<void()> wake,
          eprosima::fastdds::dds::DomainParticipantListener* discovery = nullptr);
 
-  /// Rethrows the first exception that left a callback, if any.
+  /// Rethrows the first exception given to Fail(), if any.
   void RethrowFailure() const;
   void Wake() const { wake_(); }
-  /// Notes an exception of a callback and wakes the loop.
+  /// Stores a callback's exception, if it is the first, and wakes the loop. Thread-safe.
   void Fail(std::exception_ptr failure);
 
  private:
@@ -57,18 +59,18 @@ class Domain {
   std::function<void()> wake_;
   mutable std::mutex mutex_;
   std::exception_ptr failure_;
-  Handle<eprosima::fastdds::dds::DomainParticipant> participant_;  // parents first: members die in reverse
+  Handle<eprosima::fastdds::dds::DomainParticipant> participant_;  // parents first: destroyed in reverse order
   Handle<eprosima::fastdds::dds::Publisher> publisher_;
   Handle<eprosima::fastdds::dds::Subscriber> subscriber_;
 };
 
-/// What Writer<T> does that does not depend on T.
+/// The part of Writer<PubSub> that does not depend on the type of the sample.
 class WriterBase {
  public:
-  /// Readers matched now.
+  /// Number of readers matched now.
   int matched() const;
-  /// Waits until every reader has everything that was written, at most `timeout`. Shared memory goes with the process
-  /// that wrote it, and what nobody has read by then is lost.
+  /// Waits until all matched readers have acknowledged every sample, at most `timeout`. To be called before a process
+  /// ends: its shared memory goes with it, and samples that are not read by then are lost.
   void AwaitReaders(std::chrono::milliseconds timeout);
 
  protected:
@@ -84,15 +86,16 @@ class WriterBase {
   Handle<eprosima::fastdds::dds::DataWriter> writer_;
 };
 
-/// What readers do that does not depend on the type of the sample.
+/// The part of Reader<PubSub> and RawReader that does not depend on the type of the sample.
 class ReaderBase {
  public:
   virtual ~ReaderBase();
-  /// Writers matched now.
+  /// Number of writers matched now.
   int matched() const;
 
  protected:
-  /// `on_sample(sequence)` runs in the reception thread for every sample taken into `sample`, one at a time.
+  /// For every sample, one at a time, the reception thread takes it into `sample` and calls `on_sample` with the
+  /// writer's sequence number.
   ReaderBase(Domain& domain, const Topic& topic, eprosima::fastdds::dds::TypeSupport type,
              const eprosima::fastdds::dds::DataReaderQos& qos, void* sample,
              std::function<void(std::int64_t sequence)> on_sample);
@@ -104,8 +107,8 @@ class ReaderBase {
   Handle<eprosima::fastdds::dds::DataReader> reader_;
 };
 
-/// A fastddsgen type whose padding bytes are zero on the wire: Fast CDR leaves old memory in them, which
-/// would make recordings differ from run to run.
+/// A fastddsgen type whose padding bytes are zero on the wire. Fast CDR leaves old memory in them, which would make
+/// recordings differ from run to run.
 template <class PubSub>
 class ZeroPadded : public PubSub {
  public:
@@ -118,12 +121,12 @@ class Writer : public WriterBase {
  public:
   Writer(Domain& domain, const Topic& topic)
       : WriterBase(domain, topic, eprosima::fastdds::dds::TypeSupport(new ZeroPadded<PubSub>)) {}
-  /// Throws BusError if the middleware does not take it.
+  /// Throws BusError if Fast DDS does not accept the sample.
   void Write(typename PubSub::type& sample) { WriteAny(&sample); }
 };
 
-/// Hands every sample to `on_sample`, in the reception thread: a hop to another thread would cost half a
-/// round trip. The only place where our code runs in a DDS thread: an exception becomes the domain's failure.
+/// Calls `on_sample` for every sample, in Fast DDS's reception thread: a hop to another thread would cost half a round
+/// trip. An exception that `on_sample` throws goes to Domain::Fail().
 template <class PubSub>
 class Reader : public ReaderBase {
  public:
@@ -138,8 +141,8 @@ class Reader : public ReaderBase {
                    sample.get(), [sample, on_sample = std::move(on_sample)](std::int64_t) { on_sample(*sample); }) {}
 };
 
-/// Hands over the bytes of every sample as they were on the wire (with the 4 bytes of encapsulation), and
-/// its writer's sequence number (from 1); for the recorder.
+/// Calls `on_sample` with the bytes of every sample as they were on the wire (with the 4-byte encapsulation header) and
+/// its writer's sequence number (from 1). For the recorder.
 class RawReader : public ReaderBase {
  public:
   using Bytes = std::vector<std::uint8_t>;

@@ -11,12 +11,13 @@ using Clock = std::chrono::steady_clock;
 
 namespace {
 
-constexpr auto kGrace = 5s;
+constexpr auto kTimeToLeave = 5s;
 
-/// Throws. To leave the domain is to wait for its threads, and a law may hang in one of them: SIGALRM comes then.
+/// Throws `why`, and has SIGALRM end this process if it does not leave in time: leaving the domain waits for its
+/// threads, and a law may hang in one of them.
 template <class Why>
-[[noreturn]] void Leave(const Why& why) {
-  ::alarm(static_cast<unsigned>(kGrace.count()));
+[[noreturn]] void StartAlarmAndThrow(const Why& why) {
+  ::alarm(static_cast<unsigned>(kTimeToLeave.count()));
   throw why;
 }
 
@@ -64,7 +65,7 @@ void Lifecycle::Set(Life life, const std::string& reason) {
   Publish();
 }
 
-void Lifecycle::Part(Life life, const std::string& reason) {
+void Lifecycle::SetFinal(Life life, const std::string& reason) {
   Set(life, reason);
   status_writer_.AwaitReaders(3s);
 }
@@ -86,14 +87,14 @@ void Lifecycle::Report(std::uint64_t tick, const Pacing& pacing, const Contacts&
 void Lifecycle::Wait(std::chrono::nanoseconds timeout) {
   const int signal = stop_.Within(timeout);
   domain_.RethrowFailure();
-  if (signal != 0) Leave(Ended(signal));
-  if (end_requested_) Leave(Ended(0));
+  if (signal != 0) StartAlarmAndThrow(Ended(signal));
+  if (end_requested_) StartAlarmAndThrow(Ended(0));
   if (report_requested_.exchange(false)) Publish();
-  // The experiment's only writer is the orchestrator's.
+  // Only the orchestrator writes /experiment: while no writer is matched, it is not in the domain.
   if (experiment_reader_.matched() > 0)
-    joined_ = true;
-  else if (joined_)
-    Leave(std::runtime_error("the orchestrator has gone"));
+    orchestrator_seen_ = true;
+  else if (orchestrator_seen_)
+    StartAlarmAndThrow(std::runtime_error("the orchestrator has gone"));
 }
 
 void Lifecycle::OnRequest(const mascot_msgs::msg::Request& request) {

@@ -13,42 +13,42 @@
 
 namespace mascot {
 
-/// How a loop that waits was ended from outside, in an orderly way.
+/// Thrown by Lifecycle::Wait() when a signal or an END request ends this process in an orderly way.
 class Ended : public std::exception {
  public:
   explicit Ended(int signal) : signal_(signal) {}
-  int signal() const { return signal_; }  ///< 0: the run asked this process to end
+  int signal() const { return signal_; }  ///< 0: an END request
   const char* what() const noexcept override { return "ended from outside"; }
 
  private:
   int signal_;
 };
 
-/// The part that every process of a run but the orchestrator plays on /status, /request and /experiment:
-/// it says what it is doing, says it again when asked, and ends when asked. Nothing here relies on a match
-/// event or a single delivery: who lacks something keeps asking.
+/// The lifecycle of a process of a run (the server or agents; the orchestrator has none). Publishes its state on
+/// /status, again on a REPORT request; receives the experiment on /experiment; ends on an END request or a signal.
+/// Nothing relies on a match event or a single delivery: a process that lacks something keeps asking.
 class Lifecycle {
  public:
-  /// `agent`: 0 where the process has none, or several.
+  /// `process`: its name (ProcessName). `agent`: its agent; 0 if it has none, or several.
   Lifecycle(Domain& domain, StopSignal& stop, std::string process, int agent);
 
-  /// Asks for the experiment until it comes. Throws std::runtime_error after `timeout`, naming what was
-  /// missing; throws Ended as Wait does.
+  /// Publishes WAITING every 0.2 s until the experiment comes. Throws std::runtime_error after `timeout`, and what
+  /// Wait() throws.
   mascot_msgs::msg::Experiment AwaitExperiment(std::chrono::seconds timeout);
-  /// Publishes a new state.
+  /// Publishes a new state. Thread-safe.
   void Set(Life life, const std::string& reason = {});
-  /// Publishes the last state of a process that leaves, and waits until everybody has it, at most 3 s: where a process
-  /// was killed while it held a lock of shared memory, the others get past it after 2 s.
-  void Part(Life life, const std::string& reason = {});
-  /// Publishes the counters with the state as it is. Any thread.
+  /// Publishes the last state before this process ends, and waits until all readers have acknowledged it, at most 3 s:
+  /// Fast DDS needs 2 s to get past a shared-memory lock that a killed process held.
+  void SetFinal(Life life, const std::string& reason = {});
+  /// Publishes new counters with the current state. Thread-safe.
   void Report(std::uint64_t tick, const Pacing& pacing, const Contacts& contacts);
-  /// Waits for a wake-up, at most `timeout`. Throws Ended when a signal or an END came, and whatever a
-  /// callback of the domain threw; throws std::runtime_error when the orchestrator has left the domain. From then on
-  /// the process has 5 s to leave, too, before SIGALRM.
+  /// Waits for a wake-up, at most `timeout`. Throws Ended after a signal or an END request, and std::runtime_error when
+  /// the orchestrator has left the domain; from then on this process has 5 s to leave the domain as well, or SIGALRM
+  /// ends it. Rethrows what a callback of the domain threw.
   void Wait(std::chrono::nanoseconds timeout);
-  /// Ends a Wait of the loop's thread. Any thread.
+  /// Makes the running Wait(), or the next one, return. Thread-safe.
   void Wake() { stop_.Wake(); }
-  /// A STOP was requested.
+  /// True after a STOP request.
   bool stop_requested() const { return stop_requested_; }
 
  private:
@@ -63,7 +63,7 @@ class Lifecycle {
   std::atomic<bool> stop_requested_ = false;
   std::atomic<bool> end_requested_ = false;
   std::atomic<bool> report_requested_ = false;
-  bool joined_ = false;  // the orchestrator was here once
+  bool orchestrator_seen_ = false;  // it has been in the domain
   Writer<StatusType> status_writer_;
   Reader<ExperimentType> experiment_reader_;
   Reader<RequestType> request_reader_;

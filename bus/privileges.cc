@@ -12,14 +12,15 @@
 namespace mascot {
 namespace {
 
-constexpr int kPriority = 10;  // of 1 to 99: above everything ordinary, below the kernel's own threads
+constexpr int kPriority = 10;  // in 1..99: above all ordinary processes, below the kernel's own threads
 
 void Warn(const char* key, const char* what) {
   std::cerr << "warning: run." << key << ": " << what << ": " << std::strerror(errno) << "; flying on without"
             << std::endl;
 }
 
-/// Calls `change` for every thread of this process; false, with errno, as soon as one cannot be changed.
+/// Calls `change` for every thread of this process. Returns false, with errno, as soon as one cannot be changed (one
+/// that has ended does not count).
 template <class Change>
 bool ForEachThread(const Change& change) {
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task"))
@@ -27,7 +28,7 @@ bool ForEachThread(const Change& change) {
   return true;
 }
 
-/// The place-th, and round again, of the cores that this process may use.
+/// The core number `place`, modulo their number, of those that this process may use.
 cpu_set_t CoreOf(int place) {
   cpu_set_t allowed, core;
   CPU_ZERO(&core);
@@ -57,8 +58,8 @@ void TakePrivileges(const Experiment& experiment, int place) {
   if (run.scheduler == Scheduler::kFifo) {
     if (!SetPolicy(SCHED_FIFO, kPriority)) Warn("scheduler", "SCHED_FIFO is not permitted");
   } else if (run.mode == Mode::kLockstep) {
-    // Nobody is in a hurry, and a process that wakes would push aside the one that is just sending to it: it is woken
-    // for each sample then, in place of once for all of a tick. (6 to 50 % more ticks per second on two cores.)
+    // Under SCHED_OTHER a woken process preempts the one that is just sending to it, so it wakes for each sample
+    // instead of once per tick. SCHED_BATCH gives 6 to 50 % more ticks per second on two cores.
     SetPolicy(SCHED_BATCH, 0);  // always permitted
   }
 }

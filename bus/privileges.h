@@ -4,9 +4,10 @@
 
 namespace mascot {
 
-/// Gives this process what [run] asks for it: scheduler, pin_cores, lock_memory; to all of its threads, those of the
-/// library too. In lockstep, unless asked for more, they run as SCHED_BATCH. `place`: which of the cores that it may
-/// use, round again. What is not permitted is said on stderr, with the key, and the run goes on without.
+/// Applies run.scheduler, run.pin_cores and run.lock_memory to all threads of this process, those of libraries
+/// included. In lockstep, threads run as SCHED_BATCH unless run.scheduler is "fifo". `place`: with pin_cores, which of
+/// the allowed cores, modulo their number. A setting that the system does not permit is reported on stderr with its
+/// key, and the run goes on without it.
 void TakePrivileges(const Experiment& experiment, int place);
 
 }  // namespace mascot

@@ -31,15 +31,16 @@ AgentRange ParseIds(const std::string& text) {
   return *agents;
 }
 
-/// An orchestrator that was killed cannot remove its own shared memory any more: its children do. Fast DDS still
-/// maps what they have read of it, so each starts afresh first, or two would each take the other for a user of it.
-/// Of one that could not leave, the locks on its own go with its files. Async-signal-safe.
-void SweepAfterParent() {
+/// Removes the shared memory of an orchestrator that was killed, or of this process if it cannot leave the domain. Fast
+/// DDS still maps the segments that this process has read, and another child that sweeps would take those to be in use;
+/// so this process replaces itself (exec) by a fresh one that sweeps. Closing all files releases its own locks.
+/// Async-signal-safe.
+void RestartToSweep() {
   ::close_range(STDERR_FILENO + 1, ~0U, 0);
   ::execl("/proc/self/exe", "sweep", kSweep, nullptr);
 }
 
-/// Joins, runs, and reports a failure to the run before it leaves. Returns the exit code.
+/// Joins the domain and calls `run`. Publishes a failure before it leaves. Returns the exit code.
 int Join(const ProcessArgs& args, StopSignal& stop, const Run& run) {
   Domain domain(args.options, [&stop] { stop.Wake(); });
   Lifecycle lifecycle(domain, stop, args.options.name, args.agents.size() == 1 ? args.agents.first : 0);
@@ -50,7 +51,7 @@ int Join(const ProcessArgs& args, StopSignal& stop, const Run& run) {
     return ended.signal() == 0 ? 0 : 128 + ended.signal();
   } catch (const std::exception& failure) {
     std::cerr << "error: " << failure.what() << std::endl;
-    lifecycle.Part(Life::kFailed, failure.what());
+    lifecycle.SetFinal(Life::kFailed, failure.what());
     return 1;
   }
 }
@@ -89,11 +90,11 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
     std::cerr << "error: " << UsageText(app, error) << std::endl;
     return 2;
   }
-  std::signal(SIGPIPE, SIG_IGN);                          // an orchestrator that died must not keep us from cleaning up
-  std::signal(SIGALRM, [](int) { SweepAfterParent(); });  // of one that cannot leave: Lifecycle::Wait
+  std::signal(SIGPIPE, SIG_IGN);                        // clean up even if stderr is the pipe of a dead orchestrator
+  std::signal(SIGALRM, [](int) { RestartToSweep(); });  // Lifecycle::Wait(): could not leave
   if (args.parent != 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (getppid() != args.parent) return 1;  // it died before this line
+    if (getppid() != args.parent) return 1;  // the orchestrator died before this line
   }
   args.options.name = args.is_agent ? ProcessName(args.agents) : "physics_server";
   if (!args.options.server.empty()) args.options.role = DiscoveryRole::kClient;
@@ -106,7 +107,7 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
   } catch (const std::exception& failure) {
     std::cerr << "error: " << failure.what() << std::endl;
   }
-  if (args.parent != 0 && getppid() != args.parent) SweepAfterParent();
+  if (args.parent != 0 && getppid() != args.parent) RestartToSweep();
   return code;
 }
 

@@ -15,21 +15,22 @@ class App;
 
 namespace mascot {
 
-/// Command line of a process that joins a run.
+/// Command-line options of a process that joins a run.
 struct ProcessArgs {
   DomainOptions options;
-  AgentRange agents;  ///< 0..0: not a process of agents
-  int wait_s = 60;    ///< for an orchestrator to hand out the experiment
-  int parent = 0;     ///< pid of the orchestrator that spawned this process and with which it ends; 0: by hand
+  AgentRange agents;  ///< 0..0: none (the physics server)
+  int wait_s = 60;    ///< how long to wait for the experiment
+  int parent = 0;     ///< pid of the orchestrator that spawned this process: ends with it; 0: started by hand
   bool is_agent = false;
 
   explicit ProcessArgs(bool agent_process) : is_agent(agent_process) {}
   void AddTo(CLI::App& app);
 };
 
-/// What `main` of the physics server and of an agent have in common: parse, join the domain, await the
-/// experiment, `run` (which never returns: it ends by an exception), report a failure to the run, print it,
-/// clean up. Returns the exit code: 0 ended by the run, 1 failed, 2 usage, 130 / 143 by signal.
+/// The common `main` of the physics server and the agents: parses the command line, joins the domain, waits for the
+/// experiment, calls `run` (which does not return normally: it ends by an exception, such as Ended), publishes and
+/// prints a failure, cleans up. With --sweep-shared-memory as the only argument it just calls SweepSharedMemory().
+/// Returns the exit code: 0 ended by the run, 1 failed, 2 wrong usage, 128 + signal (130, 143) ended by a signal.
 int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSignal& stop,
                 const std::function<void(Domain&, Lifecycle&, const mascot_msgs::msg::Experiment&)>& run);
 

@@ -26,13 +26,13 @@ struct Profile {
   TopicKind kind;
   int writer_depth;
   int reader_depth;
-  bool per_tick;  // small fixed-size samples, tuned for the lockstep's round trip
+  bool per_tick;  // sent at every tick: tuned for the round trip of lockstep
   bool late_joiners;
 };
 
 constexpr Profile kProfiles[] = {
-    // those of agents first (ReaderNumber)
-    {TopicKind::kBundle, 4, 4, true, false},  // large, and nobody records it
+    // topics of agents come first: ReaderNumber() counts these rows
+    {TopicKind::kBundle, 4, 4, true, false},  // large, and not recorded
     {TopicKind::kState, kHistoryDepth, 8, true, false},
     {TopicKind::kCommand, kHistoryDepth, 8, true, false},
     {TopicKind::kMessage, kHistoryDepth, 8, true, false},
@@ -53,19 +53,19 @@ void SetCommon(Qos& qos, const Profile& profile, int depth) {
   qos.durability().kind = profile.late_joiners ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = depth;
-  qos.resource_limits().max_samples = 0;  // unlimited: the depth limits
+  qos.resource_limits().max_samples = 0;  // unlimited: the depth is the limit
   qos.resource_limits().max_instances = 1;
   qos.resource_limits().max_samples_per_instance = depth;
   qos.resource_limits().allocated_samples = std::min(depth, 16);
-  qos.data_sharing().off();  // gains nothing at this size and leaves files behind
+  qos.data_sharing().off();  // no faster for samples of this size, and leaves files behind
   qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
 }
 
-/// The number by which a sample finds its reader, for the topics of agents: the same in every process. Fast DDS names
-/// the reader in a message if all that it is for have the same number; else the process that gets it tries every reader
-/// it has, hundreds in the recorder's.
+/// Entity id of the readers on an agent's topic, the same in every process; -1: Fast DDS picks one. If all matched
+/// readers have the same id, Fast DDS writes it into the message. Otherwise the receiving process tries each of its
+/// readers, hundreds in the recorder's process.
 std::int16_t ReaderNumber(const Topic& topic) {
-  constexpr int kFirst = 256;  // below, Fast DDS numbers what has none
+  constexpr int kFirst = 256;  // smaller ids are those that Fast DDS picks
   constexpr int kAgents = 8000;
   const bool of_agents = topic.agent > 0 && topic.agent < kAgents;
   if (!of_agents) return -1;
@@ -94,9 +94,10 @@ std::shared_ptr<rtps::TransportDescriptorInterface> SharedMemory(const DomainOpt
 std::shared_ptr<rtps::TransportDescriptorInterface> Udp(const DomainOptions& options) {
   auto transport = std::make_shared<rtps::UDPv4TransportDescriptor>();
   if (options.loopback) transport->interfaceWhiteList.push_back("127.0.0.1");
-  // The kernel's default of about 200 KB drops bursts of a hundred agents' commands; it gives what it may.
+  // The kernel's default of about 200 KB loses samples when a hundred agents send their commands at once. The kernel
+  // grants at most its own limit.
   transport->receiveBufferSize = transport->sendBufferSize = 4 * 1024 * 1024;
-  transport->maxInitialPeersRange = 120;  // as many participants as a domain's ports can hold
+  transport->maxInitialPeersRange = 120;  // number of participants that a domain's ports can hold
   return transport;
 }
 
@@ -108,7 +109,7 @@ struct Transport {
 
 constexpr Transport kTransports[] = {
     {"auto", true, true},  // shared memory on one host, UDP between hosts
-    {"udp", false, true},  // UDP even on one host: for peers whose shared memory does not fit ours
+    {"udp", false, true},  // UDP even on one host: for peers with an incompatible shared memory
     {"shm", true, false},  // never leaves this host
 };
 
@@ -129,7 +130,7 @@ Locator_t ServerLocator(const std::string& address) {
   return locator;
 }
 
-/// A discovery server's GUID prefix: any constant will do, but it must differ between runs of one host.
+/// GUID prefix of the discovery server at this address, made from its port: it must differ between runs on one host.
 eprosima::fastrtps::rtps::GuidPrefix_t ServerPrefix(const Locator_t& server) {
   eprosima::fastrtps::rtps::GuidPrefix_t prefix;
   std::ostringstream text;
@@ -141,11 +142,11 @@ eprosima::fastrtps::rtps::GuidPrefix_t ServerPrefix(const Locator_t& server) {
 
 void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) {
   auto& builtin = qos.wire_protocol().builtin;
-  builtin.mutation_tries = 1000;  // the default of 100 leaves the 101st participant of a host silently deaf
+  builtin.mutation_tries = 1000;  // with the default, 100, the 101st participant of a host receives nothing
   builtin.typelookup_config.use_client = false;
   builtin.typelookup_config.use_server = false;
   if (options.role == DiscoveryRole::kPeer) {
-    // Announce often at first: a start-up must not wait for the regular period of seconds.
+    // Announce often at first, so that the start does not wait for the regular period of seconds.
     builtin.discovery_config.initial_announcements.count = 20;
     builtin.discovery_config.initial_announcements.period = Duration_t(0, 100'000'000);
     return;
@@ -157,9 +158,9 @@ void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) 
     builtin.metatrafficUnicastLocatorList.push_back(locator);
     return;
   }
-  // Fast DDS 2.9 makes the means to send by shared memory when it first hears of a peer that has it, and aborts
-  // (an assertion of its statistics) if another thread is sending then. An initial peer makes them exist from the
-  // start; nobody listens there, and clients announce themselves to their server only.
+  // Fast DDS 2.9 creates its shared-memory sender when it first discovers a peer that has shared memory, and aborts (an
+  // assertion in its statistics) if another thread is sending at that moment. With this initial peer the sender exists
+  // from the start; nobody listens at that address, and clients announce themselves to their server only.
   Locator_t nobody(LOCATOR_KIND_SHM, 7400);
   nobody.address[0] = 'U';
   builtin.initialPeersList.push_back(nobody);
@@ -193,7 +194,7 @@ dds::DomainParticipantQos ParticipantQos(const DomainOptions& options) {
   dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
   qos.name(options.name);
   qos.transport().use_builtin_transports = false;
-  const bool server = options.role == DiscoveryRole::kServer;  // only tells who is there: has no use for shared memory
+  const bool server = options.role == DiscoveryRole::kServer;  // discovery data only: no use for shared memory
   if (row->shared_memory && !server) qos.transport().user_transports.push_back(SharedMemory(options));
   if (row->udp || options.role != DiscoveryRole::kPeer) qos.transport().user_transports.push_back(Udp(options));
   SetDiscovery(qos, options);
@@ -204,12 +205,12 @@ dds::DataWriterQos WriterQos(TopicKind kind) {
   const Profile& profile = ProfileOf(kind);
   dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
   SetCommon(qos, profile, profile.writer_depth);
-  qos.publish_mode().kind = profile.late_joiners ? dds::ASYNCHRONOUS_PUBLISH_MODE  // may be large: fragments
+  qos.publish_mode().kind = profile.late_joiners ? dds::ASYNCHRONOUS_PUBLISH_MODE  // may need fragments
                                                  : dds::SYNCHRONOUS_PUBLISH_MODE;
   auto& reliable = qos.reliable_writer_qos();
   reliable.times.heartbeatPeriod = Duration_t(0, 200'000'000);  // repairs a lost last sample within 0.2 s
   if (profile.per_tick) {
-    reliable.times.nackSupressionDuration = Duration_t(1, 0);  // 0 wakes the event thread at every write
+    reliable.times.nackSupressionDuration = Duration_t(1, 0);  // 0 would wake the event thread at every write
     reliable.disable_heartbeat_piggyback = true;
   }
   return qos;

@@ -22,7 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 constexpr const char* kFolder = "/dev/shm";
 
-/// Fast DDS keeps, for a segment or port X: X itself, its lock files X_el or X_sl, and sem.X_mutex.
+/// Name of the segment or port X that a file belongs to: Fast DDS keeps X itself, its lock files X_el or X_sl, and
+/// sem.X_mutex.
 std::string SegmentOf(std::string name) {
   constexpr std::string_view kSemaphore = "sem.", kMutex = "_mutex";
   if (name.starts_with(kSemaphore) && name.ends_with(kMutex))
@@ -37,7 +38,7 @@ bool IsOurs(const std::string& path) {
   return lstat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode) && info.st_uid == geteuid();
 }
 
-/// Files of each segment or port, by its name.
+/// Paths of the files of each segment or port, by its name.
 std::map<std::string, std::vector<std::string>> Segments() {
   std::map<std::string, std::vector<std::string>> segments;
   std::error_code error;
@@ -49,8 +50,8 @@ std::map<std::string, std::vector<std::string>> Segments() {
   return segments;
 }
 
-/// Names of all files of the folder that some other process maps. This one has no participant any more, but
-/// Fast DDS may not have let go of the segments of peers that died.
+/// Names of all files in /dev/shm that another process maps. This process does not count: it has no participant any
+/// more, but Fast DDS may still map segments of peers that died.
 std::set<std::string> MappedNames() {
   std::set<std::string> names;
   std::error_code error;
@@ -66,8 +67,8 @@ std::set<std::string> MappedNames() {
   return names;
 }
 
-/// Owners hold X_el exclusively and X_sl shared: the weakest lock that still meets theirs, so that two who look at
-/// once do not take each other for the owner.
+/// True if the file's owner is alive: owners lock X_el exclusively and X_sl shared. We try the weakest lock that
+/// conflicts with the owner's, so that two processes that check X_el at once do not take each other for the owner.
 bool IsLocked(const std::string& path) {
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return false;
@@ -79,7 +80,8 @@ bool IsLocked(const std::string& path) {
 }  // namespace
 
 std::vector<std::string> StaleSharedMemory() {
-  // In this order: a file that a starting process has just made is mostly mapped or locked by the time we look.
+  // First the files, then the mappings: a file that a starting process has just made is mostly mapped or locked by
+  // then.
   const auto segments = Segments();
   if (segments.empty()) return {};
   const std::set<std::string> mapped = MappedNames();
@@ -93,7 +95,7 @@ std::vector<std::string> StaleSharedMemory() {
 void SweepSharedMemory() {
   const std::vector<std::string> once = StaleSharedMemory();
   if (once.empty()) return;
-  poll(nullptr, 0, 50);  // milliseconds: a process that was just making one of them has mapped or locked it by then
+  poll(nullptr, 0, 50);  // milliseconds: a process that has just made one of the files maps or locks it in this time
   const std::vector<std::string> again = StaleSharedMemory();
   for (const std::string& file : once)
     if (std::ranges::find(again, file) != again.end()) unlink(file.c_str());

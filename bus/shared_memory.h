@@ -5,10 +5,10 @@
 
 namespace mascot {
 
-/// What dead Fast DDS processes (killed, crashed) left in /dev/shm: files of this user that no other process
-/// maps or holds a lock on. For a caller that has no participant (any more).
+/// Paths of the files that dead Fast DDS processes (killed or crashed) left in /dev/shm: files of this user that no
+/// other process maps and no process has locked. The calling process must have no DDS participant (any more).
 std::vector<std::string> StaleSharedMemory();
-/// Removes them. Safe beside running processes.
+/// Removes the files that are stale now and still stale 50 ms later. Safe while other processes run.
 void SweepSharedMemory();
 
 }  // namespace mascot

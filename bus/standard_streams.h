@@ -5,8 +5,8 @@
 
 namespace mascot {
 
-/// A program that was started with a standard stream closed would get its descriptor for its next file, and
-/// print into that: what is closed is opened on /dev/null. First thing in main.
+/// Opens /dev/null for each of stdin, stdout and stderr that is closed. Otherwise the next file that the program opens
+/// would get that descriptor, and prints would go into it. To be called first in main.
 inline void OpenStandardStreams() {
   for (int descriptor = open("/dev/null", O_RDWR); descriptor >= 0; descriptor = open("/dev/null", O_RDWR))
     if (descriptor > STDERR_FILENO) {

@@ -14,7 +14,8 @@
 namespace mascot {
 namespace {
 
-/// Blocked, also ignored signals are queued; but a program that was started to ignore a hang-up (nohup) means to.
+/// True if this process ignores `signal`. Blocked signals are queued even if ignored, so a SIGHUP that nohup made us
+/// ignore must not be blocked.
 bool IsIgnored(int signal) {
   struct sigaction action {};
   return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
@@ -43,7 +44,7 @@ StopSignal::StopSignal() {
 }
 
 StopSignal::~StopSignal() {
-  signalfd_siginfo unread;  // once unblocked, it would end this process
+  signalfd_siginfo unread;  // a pending signal would end this process once unblocked
   while (read(signals_, &unread, sizeof unread) == sizeof unread) {
   }
   close(wakeups_);

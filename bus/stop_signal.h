@@ -4,20 +4,20 @@
 
 namespace mascot {
 
-/// Takes SIGINT, SIGTERM, SIGHUP and SIGCHLD out of the ordinary way of signals, so that loops can wait for
-/// them, for a wake-up from another thread, and for time, in one call. No handlers, no globals.
-/// Make it first in main: libraries start threads, which must inherit the blocked mask.
+/// Blocks SIGINT, SIGTERM, SIGCHLD and, unless it is ignored (nohup), SIGHUP, so that a loop can wait in one call for a
+/// signal, for a wake-up from another thread, or for a timeout. No handlers, no globals. Make it first in main:
+/// libraries start threads, which must inherit the blocked mask. Throws std::system_error.
 class StopSignal {
  public:
   StopSignal();
-  ~StopSignal();  ///< restores the mask
+  ~StopSignal();  ///< discards pending signals of these kinds and unblocks them
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
-  /// Waits at most `timeout`. Returns the signal that asks to stop (one a call), or 0 after Wake(), the end of a child
-  /// or the timeout.
+  /// Waits at most `timeout`. Returns one SIGINT, SIGTERM or SIGHUP that came, or 0 after Wake(), the end of a child or
+  /// the timeout.
   int Within(std::chrono::nanoseconds timeout);
-  /// Ends a Within() of another thread, or the next one. Any thread may call it.
+  /// Makes the running Within(), or the next one, return. Thread-safe.
   void Wake();
 
  private:

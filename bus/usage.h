@@ -9,8 +9,8 @@ class ParseError;
 
 namespace mascot {
 
-/// What is wrong with the command line, on one line: the words of CLI11, but for what it does not know, where people
-/// want to know what they mistyped.
+/// One line that says what is wrong with the command line: CLI11's text, but for an unknown argument its name, and for
+/// an unknown option also the nearest known one.
 std::string UsageText(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace mascot

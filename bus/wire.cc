@@ -39,7 +39,7 @@ void SerializeAs(typename PubSub::type& sample, std::vector<std::uint8_t>& bytes
 template <class PubSub>
 void DeserializeAs(std::span<const std::uint8_t> bytes, typename PubSub::type& sample, bool fixed_size = true) {
   thread_local PubSub type;
-  SerializedPayload_t payload;  // borrows the bytes: given back before it can free them
+  SerializedPayload_t payload;  // borrows the bytes: reset below, or it would free them
   payload.data = const_cast<std::uint8_t*>(bytes.data());
   payload.length = payload.max_size = static_cast<std::uint32_t>(bytes.size());
   const bool fits = fixed_size ? bytes.size() == type.m_typeSize : bytes.size() <= type.m_typeSize;

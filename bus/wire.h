@@ -21,20 +21,20 @@ using StatusType = mascot_msgs::msg::StatusPubSubType;
 using RequestType = mascot_msgs::msg::RequestPubSubType;
 using ExperimentType = mascot_msgs::msg::ExperimentPubSubType;
 
-/// What processes say of themselves in Status::state.
+/// Values of Status::state: where a process is in its lifecycle.
 enum class Life : std::uint8_t { kWaiting = 0, kMatching, kReady, kRunning, kDone, kFailed, kEnded };
-/// Of a process that will not run again.
+/// True for the final states: done, failed, ended.
 constexpr bool IsLast(Life life) { return life >= Life::kDone; }
-/// What Request::kind asks for.
+/// Values of Request::kind.
 enum class Ask : std::uint8_t { kReport = 0, kStop, kEnd };
 
-/// The DDS type name that a topic of this kind carries: "mascot_msgs::msg::dds_::AgentState_".
+/// DDS type name of the samples on topics of this kind: "mascot_msgs::msg::dds_::AgentState_".
 std::string WireTypeName(TopicKind kind);
 
-/// Simulated time of tick k in nanoseconds: rounded from k / rate, never accumulated.
+/// Simulated time of `tick` in nanoseconds: rounded from tick / rate, never accumulated.
 std::uint64_t StampNs(std::int64_t tick, int rate_hz);
 
-// The one place where our types become wire types (quaternions x, y, z, w there) and back.
+// The only conversions between our types and the wire types (whose quaternions are x, y, z, w).
 void ToWire(std::int64_t tick, int rate_hz, int agent, const Motion& motion, mascot_msgs::msg::AgentState& sample);
 void ToWire(std::int64_t tick, int rate_hz, int agent, const Command& command, mascot_msgs::msg::AgentCommand& sample);
 void ToWire(std::int64_t tick, int rate_hz, int agent, std::span<const double> message,
@@ -43,13 +43,13 @@ void ToWire(std::int64_t tick, int rate_hz, rosgraph_msgs::msg::Clock& sample);
 Motion FromWire(const mascot_msgs::msg::AgentState& sample);
 Command FromWire(const mascot_msgs::msg::AgentCommand& sample);
 
-/// Bytes of a sample as the bus sends them: 4 bytes of encapsulation, then CDR with zeroed padding.
-/// `bytes` keeps its capacity from call to call.
+/// Replaces `bytes` by those that the bus sends for `sample`: a 4-byte encapsulation header, then CDR with zeroed
+/// padding. `bytes` keeps its capacity from call to call.
 void Serialize(mascot_msgs::msg::AgentState& sample, std::vector<std::uint8_t>& bytes);
 void Serialize(mascot_msgs::msg::AgentCommand& sample, std::vector<std::uint8_t>& bytes);
 void Serialize(mascot_msgs::msg::AgentMessage& sample, std::vector<std::uint8_t>& bytes);
 void Serialize(rosgraph_msgs::msg::Clock& sample, std::vector<std::uint8_t>& bytes);
-/// The reverse. Throws std::runtime_error for bytes that are no such sample.
+/// The inverse of Serialize(). Throws std::runtime_error for bytes that are no such sample.
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentState& sample);
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentCommand& sample);
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentMessage& sample);

@@ -7,7 +7,7 @@ namespace mascot {
 namespace {
 
 constexpr TypeSchema kSchemas[] = {
-#include "schemas.inc"  // made of idl/mascot_msgs/msg/*.msg by idl/make_schemas.py
+#include "schemas.inc"  // made from idl/mascot_msgs/msg/*.msg by idl/make_schemas.py
 };
 
 }  // namespace
@@ -22,7 +22,7 @@ const TypeSchema& SchemaOf(std::string_view name) {
 }
 
 std::string OfferedQos(int depth) {
-  // keep last, reliable, volatile, automatic liveliness; infinite durations are this number of seconds in rmw.
+  // Keep last, reliable, volatile, automatic liveliness; rmw writes an infinite duration as this number of seconds.
   constexpr std::string_view kInfinite = "{sec: 9223372036, nsec: 854775807}\n";
   std::string yaml = "- history: 1\n  depth: " + std::to_string(depth) + "\n  reliability: 1\n  durability: 2\n";
   yaml.append("  deadline: ").append(kInfinite).append("  lifespan: ").append(kInfinite);

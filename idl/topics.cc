@@ -20,7 +20,7 @@ constexpr KindName kKinds[] = {
 constexpr std::string_view kAgentPrefix = "agent_";
 constexpr std::string_view kAgentsPrefix = "agents_";
 
-/// All of `text` as a number from 1 on.
+/// All of `text` as a non-negative integer; nullopt if it is something else.
 std::optional<int> Number(std::string_view text) {
   int number = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);

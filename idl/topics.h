@@ -9,17 +9,17 @@
 
 namespace mascot {
 
-/// What an agent and its topics go by: "agent_3".
+/// Name of an agent and prefix of its topics: "agent_3".
 std::string AgentName(int agent);
-/// What a process of agents goes by: "agent_3", "agents_1-50".
+/// Name of the process of these agents: "agent_3", "agents_1-50".
 std::string ProcessName(AgentRange agents);
-/// The reverse; nothing for other names.
+/// The inverse of ProcessName(); nullopt for other names.
 std::optional<AgentRange> AgentsOf(std::string_view process);
 
-/// What a topic carries. The order is the order of topics of one agent in a recording: by name.
+/// What a topic carries. In a recording the topics of one agent are in this order, which is that of their names.
 enum class TopicKind { kBundle, kCommand, kMessage, kState, kClock, kExperiment, kRequest, kStatus };
 
-/// Every topic of a run. `agent` is 1..N for the per-agent kinds, else 0.
+/// A topic of a run. `agent` is 1..N for the per-agent kinds, else 0.
 struct Topic {
   TopicKind kind = TopicKind::kClock;
   int agent = 0;
@@ -37,7 +37,7 @@ struct Topic {
   std::string Name() const;
   /// The DDS name that ROS 2 maps it to: "rt/agent_3/state".
   std::string DdsName() const { return "rt" + Name(); }
-  /// The topic of a ROS or DDS name, if it is one of ours.
+  /// The topic with this ROS or DDS name; nullopt if it is not one of ours.
   static std::optional<Topic> Parse(std::string_view name);
 
   auto operator<=>(const Topic&) const = default;

@@ -53,7 +53,7 @@ void Server::Run() {
     RunTicks();
   } catch (const Ended& ended) {
     Report();
-    if (ended.signal() == 0) lifecycle_.Part(Life::kEnded);  // after a signal nobody may be there to listen
+    if (ended.signal() == 0) lifecycle_.SetFinal(Life::kEnded);  // after a signal there may be no readers left
     throw;
   } catch (...) {
     Report();
