@@ -10,7 +10,7 @@
 namespace mascot {
 namespace {
 
-/// Without the sign of a NaN, which is not worth a user's thought.
+/// `value` as text; a NaN without its sign.
 std::string Component(double value) { return std::isnan(value) ? "nan" : fmt::format("{:g}", value); }
 
 [[noreturn]] void ThrowNotFinite(std::int64_t tick, int id, Wanted wanted, const Eigen::Vector3d& w) {
@@ -19,7 +19,7 @@ std::string Component(double value) { return std::isnan(value) ? "nan" : fmt::fo
                            Component(w.x()) + ", " + Component(w.y()) + ", " + Component(w.z()) + ")");
 }
 
-/// What `call` of a law returns; what it throws says at which tick.
+/// Returns what `call` returns; puts the tick in front of the message of an exception.
 template <class Call>
 auto AtTick(std::int64_t tick, Call call) {
   try {
@@ -60,7 +60,7 @@ Eigen::Vector3d Agent::AskLaw(std::int64_t tick, const Motion& measured, std::sp
   return w_W;
 }
 
-// A wanted acceleration; one that drives a velocity is integrated over the tick.
+// Writes the law's acceleration and its limited value into `command`, with the flag.
 void Agent::LimitAcceleration(const Eigen::Vector3d& a_W, Command& command) const {
   const double limit = config_.control.max_acceleration_m_per_s2;
   command.a_law_W = a_W;
@@ -68,8 +68,8 @@ void Agent::LimitAcceleration(const Eigen::Vector3d& a_W, Command& command) cons
   if (command.a_limited_W != a_W) command.flags |= kAccelerationLimited;
 }
 
-// A wanted velocity, and the acceleration that it means: over one tick for a model driven by velocity, else
-// k_v (v* - v).
+// Writes the limited velocity into `command`, with the flag, and the acceleration that the wanted velocity v* means:
+// (v* - v) / T, T being the tick, for a model driven by velocity, else k_v (v* - v).
 void Agent::LimitVelocity(const Eigen::Vector3d& v_W, Command& command) const {
   command.v_limited_W = Clamped(v_W, config_.control.max_speed_m_per_s);
   if (command.v_limited_W != v_W) command.flags |= kSpeedLimited;
@@ -98,6 +98,7 @@ Command Agent::Want(std::int64_t tick, const Motion& self, std::span<const Sampl
   } else {
     LimitAcceleration(w_W, command);
     if (driven_by_ != Wanted::kVelocity) return command;
+    // The law wants an acceleration, but the model is driven by velocity: integrate over one tick.
     const Eigen::Vector3d v_W = v_integrated_W_ + command.a_limited_W / rate_hz_;
     command.v_limited_W = Clamped(v_W, config_.control.max_speed_m_per_s);
     if (command.v_limited_W != v_W) command.flags |= kSpeedLimited;

@@ -12,24 +12,26 @@
 
 namespace mascot {
 
-/// One agent without a wire: what it hears and measures, its law, limits, low-level stack. Both engines run this.
+/// One agent without its communication: what it hears and measures, its law, its limits and its low-level stack. Both
+/// engines run this class. The experiment must outlive it.
 class Agent {
  public:
   Agent(const Experiment& experiment, int id);
 
   int id() const { return id_; }
-  /// `self` is where the agent is, `samples` what those that the graph lets it hear sent at this tick
-  /// (Neighbours::Hear). The law and its limits only: a_law_W, a_limited_W, v_limited_W and their flags. Ticks
-  /// increase. Throws std::runtime_error naming agent and tick if the law's answer is not finite.
+  /// Evaluates the law and its limits: fills in a_law_W, a_limited_W, v_limited_W and their flags. `self`: the true
+  /// motion at `tick`. `samples`: what the agents in graph.HeardBy(id) sent at this tick, in that order. Ticks
+  /// increase. Throws std::runtime_error naming agent and tick if the law fails or its answer is not finite.
   Command Want(std::int64_t tick, const Motion& self, std::span<const Sample> samples);
-  /// Want, then the low-level stack: the complete command. Throws likewise.
+  /// Want() and then the low-level stack: the complete command. Throws as Want() does.
   Command Decide(std::int64_t tick, const Motion& self, std::span<const Sample> samples);
-  /// What the law sends after the last Want or Decide; empty: nothing. Valid until the next.
+  /// The message that the law sends after the last Want() or Decide(); empty: none. Valid until the next call.
   std::span<const double> message() const { return message_; }
+  /// Counters of the edges from graph.HeardBy(id), in that order.
   std::vector<EdgeCount> counts() const { return neighbours_.counts(); }
 
  private:
-  /// What the law wants, finite; an agent whose law is off wants to stand still.
+  /// What the law wants, checked to be finite; velocity 0 while the law is off (start_s, stop_s).
   Eigen::Vector3d AskLaw(std::int64_t tick, const Motion& measured, std::span<const Heard> heard);
   void LimitAcceleration(const Eigen::Vector3d& a_W, Command& command) const;
   void LimitVelocity(const Eigen::Vector3d& v_W, Command& command) const;
@@ -41,11 +43,11 @@ class Agent {
   std::unique_ptr<Law> law_;
   std::unique_ptr<Controller> controller_;
   Wanted driven_by_;
-  Wanted wanted_ = Wanted::kAcceleration;  // what the last answer of AskLaw was
+  Wanted wanted_ = Wanted::kAcceleration;  // what the last AskLaw() returned
   Neighbours neighbours_;
   OwnSensor sensor_;
   Motion measured_;
-  Eigen::Vector3d v_integrated_W_;  // of a velocity-driven model whose law wants accelerations
+  Eigen::Vector3d v_integrated_W_;  // for a velocity-driven model whose law wants accelerations
   std::span<const double> message_;
 };
 

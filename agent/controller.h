@@ -8,7 +8,7 @@
 
 namespace mascot {
 
-/// Low-level stack of one agent: wanted acceleration or velocity -> actuators of its model.
+/// The low-level stack of one agent: turns a wanted acceleration or velocity into its model's actuator commands.
 class Controller {
  public:
   struct Output {
@@ -16,12 +16,13 @@ class Controller {
     std::uint32_t flags = 0;  ///< kTiltLimited, kRotorLimited
   };
   virtual ~Controller() = default;
-  /// `wanted_W`: what the model is driven by (ModelTraits), already limited, in W (m/s^2 or m/s). With law.axes = "xy"
-  /// its z is ignored and the altitude loop holds the initial height.
+  /// Called once per tick. `self`: the measured motion. `wanted_W`: the acceleration (m/s^2) or velocity (m/s) that
+  /// drives the model (ModelTraits::driven_by), in W, already limited. With law.axes = "xy" its z is ignored, and the
+  /// initial height is held.
   virtual Output Actuate(const Motion& self, const Eigen::Vector3d& wanted_W) = 0;
 };
 
-/// The stack for the model of agent `id`.
+/// The controller for the model of agent `id`. Throws std::invalid_argument for an unknown model.
 std::unique_ptr<Controller> MakeController(const Experiment& experiment, int id);
 
 }  // namespace mascot

@@ -7,30 +7,32 @@
 
 namespace mascot {
 
-/// Numbers that a message may hold.
+/// Largest number of values in a message.
 inline constexpr std::size_t kMaxMessage = 64;
 
-/// What one agent heard from one neighbour.
+/// What one agent heard from one neighbour: the newest sample that was delivered.
 struct Heard {
   int id = 0;
-  double weight = 0;  ///< a_ij
-  Motion motion = {};
-  double age_s = 0;                      ///< since the neighbour was in this motion
-  std::span<const double> message = {};  ///< what the neighbour's law sent last before that; empty: nothing
+  double weight = 0;                     ///< a_ij when the sample was sent
+  Motion motion = {};                    ///< the neighbour's, with measurement noise
+  double age_s = 0;                      ///< simulated time since the sample was sent
+  std::span<const double> message = {};  ///< the neighbour's last message before that; empty: none
 };
 
-/// Decides where one agent wants to go, from what it alone has heard.
-/// No clock, no I/O, no DDS: a law's answers depend only on what it was given, and on what it was given before.
+/// The control law of one agent: decides what the agent wants from its own motion and from what it has heard. No clock,
+/// no I/O, no DDS: an answer depends only on the arguments of this call and of earlier ones.
 class Law {
  public:
   virtual ~Law() = default;
+  /// What Want_W() returns.
   virtual Wanted wanted() const { return Wanted::kAcceleration; }
-  /// Wanted acceleration (m/s^2) or velocity (m/s) of this agent, expressed in W. `t_s` is simulated time, increasing
-  /// from call to call. `heard` has one entry per neighbour whose sample was delivered, in increasing id. What the law
-  /// says along axes outside law.axes is ignored.
+  /// Wanted acceleration (m/s^2) or velocity (m/s) of this agent, expressed in W. `t_s`: simulated time, increasing
+  /// from call to call. `self`: the measured motion of this agent. `heard`: one entry per neighbour whose sample was
+  /// delivered, in increasing id. Components outside law.axes are ignored. An exception ends the run.
   virtual Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> heard) = 0;
-  /// What to send to those who hear this agent, after Want_W of the same tick; at most kMaxMessage numbers, valid until
-  /// the next call; empty: nothing. Called only of laws that say (agent/laws.h) that they send messages.
+  /// The message for the agents that hear this one, called after Want_W() of the same tick: at most kMaxMessage
+  /// numbers, valid until the next call; empty: no message. Called only for laws that send messages
+  /// (LawParams::sends_messages).
   virtual std::span<const double> Message() { return {}; }
 };
 

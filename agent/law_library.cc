@@ -16,8 +16,9 @@ constexpr const char* kAlignment = "EIGEN_MAX_STATIC_ALIGN_BYTES";
   throw std::runtime_error("expected " + expected + ", got " + got);
 }
 
-/// Before the loader looks: it would wait for ever for somebody to write into a pipe, and has odd words for a folder.
-void RefuseWhatIsNoFile(const std::string& path) {
+/// Throws unless `path` is a regular file. The loader would wait for ever for a writer of a pipe, and its message for a
+/// folder is odd.
+void RequireRegularFile(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -25,17 +26,17 @@ void RefuseWhatIsNoFile(const std::string& path) {
   if (!fs::is_regular_file(status)) Refuse("a shared library", path + ": not a regular file");
 }
 
-/// The loader's reason, which mostly begins with the path.
+/// The loader's reason for its last failure, with `path` in front.
 std::string Reason(const std::string& path) {
   const char* text = ::dlerror();
   const std::string reason = text != nullptr ? text : "the loader gives no reason";
   return reason.starts_with(path + ": ") ? reason : path + ": " + reason;
 }
 
-/// All symbols at once, so that one that is missing is found now and not in flight; none of them for anybody else, so
-/// that two libraries may use the same names.
+/// Loads a library. RTLD_NOW finds a missing symbol now and not during a run; RTLD_LOCAL lets two libraries use the
+/// same names.
 void* Load(const std::string& path) {
-  RefuseWhatIsNoFile(path);
+  RequireRegularFile(path);
   void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) Refuse("a shared library", Reason(path));
   return library;
@@ -46,7 +47,7 @@ const PluginFact* Find(const PluginFact* facts, std::string_view name) {
   return facts->name != nullptr ? facts : nullptr;
 }
 
-/// "alignof(Motion) = 32 (here 16), ...": what the library was compiled with, where this program was not.
+/// What differs between the compilation of the library and of this program: "alignof(Motion) = 32 (here 16), ...".
 std::string Differences(const PluginFact* theirs) {
   std::string text;
   for (const PluginFact* ours = kPluginFacts; ours->name != nullptr; ++ours) {
@@ -59,7 +60,7 @@ std::string Differences(const PluginFact* theirs) {
   return text;
 }
 
-/// What usually makes Eigen's alignment another.
+/// A hint at the usual reason if Eigen's alignment differs; else empty.
 std::string Advice(const PluginFact* theirs) {
   const PluginFact* their = Find(theirs, kAlignment);
   const PluginFact* ours = Find(kPluginFacts, kAlignment);

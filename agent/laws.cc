@@ -17,7 +17,7 @@
 
 namespace mascot {
 
-// Each in agent/laws/<name>.cc.
+// Defined in agent/laws/<name>.cc.
 using LawReader = std::shared_ptr<const LawParams>(const Experiment& experiment, const LawConfig& law,
                                                    Section& section);
 using LawFactory = std::unique_ptr<Law>(const Experiment& experiment, int id);
@@ -144,7 +144,7 @@ const LawEntry& Entry(std::string_view name) {
   return *entry;
 }
 
-/// The table, as experiment/ sees it.
+/// The table of laws, for the readers in experiment/.
 class Catalog final : public LawCatalog {
  public:
   std::span<const std::string_view> names() const override { return kLawNames; }

@@ -7,7 +7,7 @@
 namespace mascot {
 namespace {
 
-constexpr double kRounding = 1e-6;  // of a tick
+constexpr double kRounding = 1e-6;  // tolerance for rounding, in ticks
 
 Dice DiceOf(const LinkConfig& config, std::uint64_t seed, int hearer, int heard) {
   const bool swapped = config.symmetric && hearer > heard;
@@ -24,16 +24,16 @@ Link::Link(const LinkConfig& config, int rate_hz, std::uint64_t seed, int hearer
       dice_(DiceOf(config, seed, hearer, heard)),
       arrivals_(static_cast<std::size_t>(Ticks(config.delay_s + config.jitter_s, rate_hz)) + 1) {}
 
-// The first tick at or after a time; a time that is a whole number of ticks but for rounding is that number.
+// Rounds up, but a time that is a whole number of ticks except for a rounding error is that number.
 std::int64_t Link::Ticks(double time_s, int rate_hz) {
   return std::max<std::int64_t>(0, std::llround(std::ceil(time_s * rate_hz - kRounding)));
 }
 
 bool Link::Loses(std::int64_t tick) {
   if (!config_.bursts) return dice_.Unit(tick, kLoss) < config_.loss;
-  for (; changed_ < tick; ++changed_) {  // the state goes on through ticks at which nothing was sent
+  for (; state_tick_ < tick; ++state_tick_) {  // the state also changes at ticks at which nothing is sent
     const double change = bad_ ? config_.bursts->bad_to_good : config_.bursts->good_to_bad;
-    if (dice_.Unit(changed_ + 1, kChange) < change) bad_ = !bad_;
+    if (dice_.Unit(state_tick_ + 1, kChange) < change) bad_ = !bad_;
   }
   return dice_.Unit(tick, kLoss) < (bad_ ? config_.bursts->loss_bad : config_.bursts->loss_good);
 }
@@ -45,7 +45,7 @@ std::int64_t Link::DelayTicks(std::int64_t tick) const {
 }
 
 void Link::Send(std::int64_t tick, double weight, const Sample& sample) {
-  Collect(tick - 1);  // makes room: in real time a tick may have been missed
+  Collect(tick - 1);  // frees places: in real time a tick may have been skipped
   ++count_.sent;
   count_.numbers += sample.message.size();
   if (Loses(tick)) {
@@ -53,7 +53,7 @@ void Link::Send(std::int64_t tick, double weight, const Sample& sample) {
     return;
   }
   Packet& packet = ArrivalAt(tick + DelayTicks(tick));
-  if (packet.sent >= 0) ++count_.late;  // an older one arrives at the same tick
+  if (packet.sent >= 0) ++count_.late;  // the older sample that arrives at the same tick is dropped
   packet.sent = tick;
   packet.weight = weight;
   packet.motion = *sample.motion;
@@ -61,8 +61,8 @@ void Link::Send(std::int64_t tick, double weight, const Sample& sample) {
 }
 
 void Link::Collect(std::int64_t tick) {
-  const std::int64_t last = std::min(tick, looked_ + std::ssize(arrivals_));
-  for (std::int64_t t = looked_ + 1; t <= last; ++t) {
+  const std::int64_t last = std::min(tick, collected_tick_ + std::ssize(arrivals_));
+  for (std::int64_t t = collected_tick_ + 1; t <= last; ++t) {
     Packet& packet = ArrivalAt(t);
     if (packet.sent > newest_.sent) {
       std::swap(packet, newest_);
@@ -72,7 +72,7 @@ void Link::Collect(std::int64_t tick) {
     }
     packet.sent = -1;
   }
-  looked_ = tick;
+  collected_tick_ = tick;
 }
 
 const Link::Packet* Link::Receive(std::int64_t tick) {

@@ -10,47 +10,49 @@
 
 namespace mascot {
 
-/// What one agent sends at one tick: where it is, and its law's last message.
+/// What one agent sends at one tick: its motion and its law's last message.
 struct Sample {
   const Motion* motion = nullptr;
   std::span<const double> message = {};
 };
 
-/// What happened on one directed edge so far.
+/// Counters of one directed edge since the start of the run.
 struct EdgeCount {
   std::uint64_t sent = 0;
   std::uint64_t lost = 0;
-  std::uint64_t late = 0;     ///< arrived after one that was sent later, and were not used
-  std::uint64_t numbers = 0;  ///< in the messages sent
+  std::uint64_t late = 0;     ///< arrived after, or with, a newer sample and were not used
+  std::uint64_t numbers = 0;  ///< values in the messages sent
 };
 
-/// The way from one agent to one that hears it: loses and delays samples, in simulated time. The fate of the sample
-/// sent at a tick depends on the seed, the edge and the tick alone.
+/// The communication link from one agent to an agent that hears it: loses and delays samples, in simulated time. What
+/// happens to a sample depends only on the seed, the edge and the tick at which it was sent. Loss in bursts:
+/// Gilbert-Elliott (experiment/link.h).
 class Link {
  public:
-  /// A sample on its way, or arrived.
+  /// A sample in transit, or arrived.
   struct Packet {
-    std::int64_t sent = -1;  ///< tick; -1: there is none
+    std::int64_t sent = -1;  ///< tick at which it was sent; -1: no sample
     double weight = 0;       ///< a_ij when it was sent
     Motion motion;
     std::vector<double> message;
   };
 
+  /// `hearer`, `heard`: ids; `heard` sends.
   Link(const LinkConfig& config, int rate_hz, std::uint64_t seed, int hearer, int heard);
-  /// One sample, at most one per tick, ticks increasing.
+  /// Sends a sample; at most one per tick, ticks increasing. `weight`: a_ij at this tick.
   void Send(std::int64_t tick, double weight, const Sample& sample);
-  /// The newest sample that has arrived at `tick` (increasing), if it is fresh: arrived at this tick, or held. Null:
-  /// none.
+  /// The newest sample that has arrived by `tick` (increasing), if it arrived at this tick or is held (hold_s); else
+  /// null. Valid until the next call.
   const Packet* Receive(std::int64_t tick);
   const EdgeCount& count() const { return count_; }
-  /// After how many ticks a sample arrives that is `time_s` on its way.
+  /// Number of ticks after which a sample with a delay of `time_s` arrives, rounded up.
   static std::int64_t Ticks(double time_s, int rate_hz);
 
  private:
   enum Draw : std::uint64_t { kLoss, kChange, kDelay, kReordering };
 
   bool Loses(std::int64_t tick);
-  void Collect(std::int64_t tick);  // takes in what arrived up to then
+  void Collect(std::int64_t tick);  // takes the samples that arrived up to `tick`
   std::int64_t DelayTicks(std::int64_t tick) const;
   Packet& ArrivalAt(std::int64_t tick) { return arrivals_[static_cast<std::size_t>(tick) % arrivals_.size()]; }
 
@@ -59,12 +61,12 @@ class Link {
   std::int64_t hold_ticks_;
   Dice dice_;
   EdgeCount count_;
-  bool bad_ = false;               // state of a link that loses in bursts
-  std::int64_t changed_ = -1;      // tick up to which that state is known
-  std::vector<Packet> arrivals_;   // what arrives at tick t, in place t modulo its size
-  std::int64_t looked_ = -1;       // tick up to which arrivals were received
-  Packet newest_;                  // of those received
-  std::int64_t newest_since_ = 0;  // tick at which it arrived
+  bool bad_ = false;                  // state of the Gilbert-Elliott model
+  std::int64_t state_tick_ = -1;      // tick of bad_
+  std::vector<Packet> arrivals_;      // the sample that arrives at tick t is at index t modulo the size
+  std::int64_t collected_tick_ = -1;  // last tick whose arrival was taken
+  Packet newest_;                     // the newest sample that arrived
+  std::int64_t newest_since_ = 0;     // tick at which newest_ arrived
 };
 
 }  // namespace mascot

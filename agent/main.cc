@@ -11,7 +11,7 @@
 
 namespace {
 
-/// The place of these agents' process among the processes of the run; the server's is 0.
+/// Index of this process among those of the run, for TakePrivileges(); the server's is 0.
 int Place(const mascot::Experiment& experiment, mascot::AgentRange agents) {
   const auto processes = mascot::AgentProcesses(experiment);
   return 1 + static_cast<int>(std::ranges::find(processes, agents) - processes.begin());
@@ -31,7 +31,7 @@ void RunAgent(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot
               << (heard.empty() ? " nobody" : heard) << std::endl;
   }
   mascot::Node node(domain, lifecycle, experiment, agents);
-  mascot::TakePrivileges(experiment, Place(experiment, agents));  // with all threads there
+  mascot::TakePrivileges(experiment, Place(experiment, agents));  // after all threads have started
   node.Run();
 }
 
@@ -39,7 +39,7 @@ void RunAgent(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot
 
 int main(int argc, char** argv) {
   mascot::OpenStandardStreams();
-  mascot::StopSignal stop;  // before all else: threads that libraries start must inherit the blocked mask
+  mascot::StopSignal stop;  // before anything that starts threads: they must inherit the mask
   CLI::App app("MASCOT agent: hears its neighbours, runs its law and its low-level stack, commands its actuators.");
   mascot::ProcessArgs args(/*agent_process=*/true);
   return mascot::ProcessMain(app, argc, argv, args, stop, [&args](auto& domain, auto& lifecycle, const auto& message) {

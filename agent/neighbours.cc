@@ -7,7 +7,7 @@
 namespace mascot {
 
 bool IsOn(const AgentConfig& agent, double t_s) {
-  constexpr double kRounding_s = 1e-9;  // times are ticks divided by the rate
+  constexpr double kRounding_s = 1e-9;  // tolerance for rounding: times are ticks divided by the rate
   return t_s >= agent.start_s - kRounding_s && t_s < agent.stop_s - kRounding_s;
 }
 

@@ -11,37 +11,40 @@
 
 namespace mascot {
 
-/// What one agent hears of those that the graph lets it hear: applies who is there, the schedule, the range and the
-/// links, so that its law never sees a sample that it could not have heard.
+/// Decides what one agent hears of its neighbours: applies start and stop times, the schedule of graphs, the range, the
+/// links and the noise, so that its law never sees a sample that it could not have heard.
 class Neighbours {
  public:
   Neighbours(const Experiment& experiment, int id);
 
-  /// What the law hears at `tick` (increasing): `samples` are what the agents in experiment.graph.HeardBy(id), in that
-  /// order, sent at this tick; `self` is where the agent really is. Valid until the next call.
+  /// What the law hears at `tick` (increasing). `samples`: what the agents in experiment.graph.HeardBy(id) sent at this
+  /// tick, in that order. `self`: the agent's true motion, for the range. Valid until the next call, and as long as
+  /// `samples`.
   std::span<const Heard> Hear(std::int64_t tick, const Motion& self, std::span<const Sample> samples);
-  /// Of the edges to experiment.graph.HeardBy(id), in that order.
+  /// Counters of the edges from experiment.graph.HeardBy(id), in that order.
   std::vector<EdgeCount> counts() const;
 
  private:
-  /// The weight of the edge to `source` at this tick; 0: it is not there.
+  /// The weight of the edge from `source` at `t_s`; 0: there is no edge, or one of the agents is off.
   double WeightOf(const Graph& graph, double t_s, int source) const;
+  /// Adds what link `k` delivers at `tick` to heard_.
   void Deliver(std::size_t k, std::int64_t tick);
-  /// Nothing can keep a sample of these agents from being heard as it was sent.
+  /// True if every sample is heard at once as it was sent: one graph, no range, perfect links, no noise, and these
+  /// agents are on from start to end.
   bool IsPlain() const;
   void HearPlain(std::span<const Sample> samples);
 
   const Experiment& experiment_;
   const AgentConfig& config_;
   const std::vector<Graph::Neighbour>& may_hear_;
-  std::vector<Link> links_;    // by place in may_hear_
-  std::vector<Noise> noises_;  // likewise
+  std::vector<Link> links_;    // by index in may_hear_
+  std::vector<Noise> noises_;  // by index in may_hear_
   std::vector<Heard> heard_;
   bool plain_;
-  std::vector<EdgeCount> plain_counts_;  // likewise
+  std::vector<EdgeCount> plain_counts_;  // by index in may_hear_
 };
 
-/// Whether the agent's law is on at simulated time `t_s`.
+/// True from start_s until before stop_s: the agent's law is on, and others may hear it.
 bool IsOn(const AgentConfig& agent, double t_s);
 
 }  // namespace mascot

@@ -10,18 +10,19 @@
 
 namespace mascot {
 
-/// The agents of one process on the wire. It has readers on their own states and on the states and messages of the
-/// agents that the graph may let them hear, one for each topic, and on no others.
+/// The DDS side of the agents in one process. Its readers, one for each topic, are on the states of these agents and on
+/// the states and messages of the agents that the graph may let them hear, and on nothing else. (With network.delivery
+/// = "bundled", bundles take the place of states.)
 class Node {
  public:
   Node(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment, AgentRange agents);
 
-  /// Waits until every endpoint is matched, says READY, then answers ticks until it is ended (by Ended or a
-  /// failure, which are thrown).
+  /// Waits until every endpoint is matched, publishes READY, then answers ticks until Lifecycle::Wait() throws (Ended,
+  /// or a failure).
   [[noreturn]] void Run();
 
  private:
-  /// A seat that a sample is for, and its sender's place among what that seat hears.
+  /// A seat that a sample is for, and the sender's index among the sources of that seat.
   struct Listener {
     Seat* seat;
     std::size_t source;
@@ -31,13 +32,13 @@ class Node {
   void ListenToStates(Domain& domain);
   void ListenToBundles(Domain& domain);
   void ListenToMessages(Domain& domain);
-  /// The seats that listen to each agent, by its id. `own`: agents listen to themselves, too.
+  /// For each agent, by id, the seats that listen to it. `own`: agents listen to themselves, too.
   std::map<int, std::vector<Listener>> Listeners(bool own) const;
 
   Lifecycle& lifecycle_;
   const Experiment& experiment_;
   std::vector<std::unique_ptr<Seat>> seats_;
-  std::vector<std::unique_ptr<ReaderBase>> readers_;  // last: readers call what is above
+  std::vector<std::unique_ptr<ReaderBase>> readers_;  // last, so destroyed first: they call the members above
 };
 
 }  // namespace mascot

@@ -1,7 +1,7 @@
 #pragma once
 
-// What a law in a shared library of one's own is made of ([law] name = "plugin"). docs/plugin_law.md shows how; in
-// short:
+// The interface of a law in a shared library of your own ([law] name = "plugin"). In short (more in
+// docs/plugin_law.md):
 //
 //   #include "mascot/plugin.h"
 //   class MyLaw final : public mascot::Law {
@@ -14,17 +14,18 @@
 //
 // Frames and units are those of agent/law.h and experiment/motion.h: SI, world frame (x east, y north, z up).
 //
-// Life: `orchestrator check` and `up` make the law of every agent, to see whether it takes its parameters, ask it for
-// its first command, and let it go again. In flight there is one object per agent, made before the first tick and gone
-// after the last. All agents may live in one process, and one agent may have two objects in it (the second flies the
-// ideal bodies of the fidelity figure): keep what a law remembers in its members, never in globals.
+// Lifetime: `orchestrator check` and `up` make the law of every agent to check its parameters, ask it for its first
+// command and destroy it. In a run there is one object per agent, made before the first tick and destroyed after the
+// last. All agents may live in one process, and one agent may have two objects in it (the second flies the ideal bodies
+// of the fidelity figure): keep the state of a law in its members, never in globals.
 //
-// Threads: one object is called by one thread at a time, two objects perhaps at once.
+// Threads: one object is called by one thread at a time; different objects may be called at once.
 //
-// Exceptions: the constructor may throw std::invalid_argument, as setup.params does, for parameters that it refuses;
-// that is a mistake in the configuration. Any exception in flight ends the run, naming the agent and the time.
+// Exceptions: for parameters that it refuses the constructor may throw std::invalid_argument, as setup.params does;
+// that is a mistake in the configuration. Any exception during a run ends it, naming the agent and the time.
 //
-// The same run must give the same bytes: no clock, no file that changes, random numbers from setup.seed and setup.id.
+// Determinism: the same run must give the same bytes. Use no clock and no file that changes; seed random numbers with
+// setup.seed and setup.id.
 
 #include <cstdint>
 #include <string>
@@ -37,27 +38,28 @@
 
 namespace mascot {
 
-/// Counts up with every change to what stands in this header or in those that it includes.
+/// Version of the interface: goes up with every change to this header or to those that it includes.
 inline constexpr int kLawInterface = 1;
 
-/// What a law is made from.
+/// The argument of a law's constructor.
 struct PluginSetup {
-  int id = 0;              ///< of the agent whose law this is to be, 1..agents
-  int agents = 0;          ///< of the whole experiment
+  int id = 0;              ///< the agent that the law is for, 1..agents
+  int agents = 0;          ///< number of agents in the experiment
   int leader = 0;          ///< law.leader; 0: none
-  double rate_hz = 0;      ///< at which Want_W is called: control.rate_hz
+  double rate_hz = 0;      ///< calls of Want_W() per simulated second: control.rate_hz
   std::uint64_t seed = 0;  ///< run.seed
-  PluginParams& params;    ///< [law.params]; lives as long as the constructor runs
+  PluginParams& params;    ///< [law.params]; valid only while the constructor runs
 };
 
-/// One fact about how somebody compiled the types above. Plugin and program must agree on all of them, or each would
-/// look for p_WB where the other has none: -mavx alone aligns Eigen's quaternions otherwise.
+/// One fact about how the types above were compiled. Plugin and program must agree on all of them, or they would look
+/// for p_WB in different places: -mavx alone changes the alignment of Eigen's quaternions.
 struct PluginFact {
   const char* name;  ///< null: the end of a list
   long long value;
 };
 
-// Of this compilation. Not inline: the linker would keep one of two lists of the same name, and compare it with itself.
+// The facts of this compilation. Not inline: if plugin and program had a list of the same name, the linker would keep
+// one of them, and the program would compare it with itself.
 constexpr PluginFact kPluginFacts[] = {
 #ifdef __GLIBCXX__
     {"_GLIBCXX_USE_CXX11_ABI", _GLIBCXX_USE_CXX11_ABI},
@@ -79,21 +81,22 @@ constexpr PluginFact kPluginFacts[] = {
     {nullptr, 0},
 };
 
-/// The one thing that a plugin exports, as `mascot_plugin_law`. Its first member stays the first for ever.
+/// The only symbol that a plugin exports, as `mascot_plugin_law`. Its first member must stay the first.
 struct PluginExport {
-  int interface;            ///< kLawInterface; if it is another, nothing else is looked at
+  int interface;            ///< the plugin's kLawInterface; if it differs from ours, nothing else is read
   const PluginFact* facts;  ///< kPluginFacts
   bool sends_messages;
   Law* (*make)(const PluginSetup& setup);
 };
 
-/// A law that overrides Message() sends messages.
+/// True for a law that overrides Message(): it sends messages.
 template <class T>
 inline constexpr bool kSendsMessages = !std::is_same_v<decltype(&T::Message), decltype(&Law::Message)>;
 
 }  // namespace mascot
 
-/// Exports the law `Type`, which is made from a `const mascot::PluginSetup&`. Once per library, outside any namespace.
+/// Exports the law `Type`, whose constructor takes a `const mascot::PluginSetup&`. Once per library, outside any
+/// namespace.
 #define MASCOT_PLUGIN_LAW(Type)                                                                   \
   extern "C" __attribute__((visibility("default"))) const mascot::PluginExport mascot_plugin_law; \
   const mascot::PluginExport mascot_plugin_law = {                                                \

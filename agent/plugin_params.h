@@ -14,9 +14,10 @@
 
 namespace mascot {
 
-/// [law.params], read strictly: what is not as expected is refused with "params.gain: expected a number in [0, 10], got
-/// 'fast'", which MASCOT then says with file, line and column; so is a key that the law never asked for. A key without
-/// fallback is required. Complete in this header, because a plugin is linked with nothing of MASCOT.
+/// Reads [law.params] strictly: for a value that is not as expected it throws std::invalid_argument("params.gain:
+/// expected a number in [0, 10], got 'fast'"), which MASCOT reports with file, line and column. A key that the law
+/// never asked for is reported, too. A key without fallback is required. All in this header, because a plugin links
+/// nothing of MASCOT.
 class PluginParams {
  public:
   explicit PluginParams(Value table) : table_(std::move(table)) {}
@@ -61,17 +62,17 @@ class PluginParams {
     }
     return numbers;
   }
-  /// The value of `key` as it stands, for what the readers above cannot say; null if absent.
+  /// The value of `key` as it is, for what the readers above cannot read; null if absent.
   const Value* Find(const std::string& key) {
     asked_.insert(key);
     return table_.Find(key);
   }
-  /// Refuses `key`: `message` = "expected ..., got ...".
+  /// Throws std::invalid_argument for `key`: `message` = "expected ..., got ...".
   [[noreturn]] static void Fail(const std::string& key, const std::string& message) {
     throw std::invalid_argument("params." + key + ": " + message);
   }
 
-  /// Keys that somebody asked for.
+  /// Keys that were asked for.
   const std::set<std::string>& asked() const { return asked_; }
 
  private:
@@ -94,7 +95,7 @@ class PluginParams {
     char text[32];
     return {text, std::to_chars(text, text + sizeof text, number).ptr};
   }
-  /// What the user wrote.
+  /// What the user wrote, for messages.
   static std::string Got(const Value* value) {
     if (value == nullptr) return "nothing";
     struct Words {

@@ -15,13 +15,13 @@
 namespace mascot {
 namespace {
 
-std::atomic<int> muted = 0;
+std::atomic<int> suppressed = 0;
 
-/// What Python code prints goes to stderr, in whole lines: stdout belongs to the program.
+/// Python's stdout: what Python code prints goes to stderr in whole lines, because stdout belongs to the program.
 class Output {
  public:
   void Write(const std::string& text) {
-    if (muted > 0) return;
+    if (suppressed > 0) return;
     line_ += text;
     const auto end = line_.rfind('\n');
     if (end == std::string::npos) return;
@@ -40,8 +40,8 @@ PYBIND11_EMBEDDED_MODULE(mascot_output, module) {
 }
 
 void StartInterpreter() {
-  // One thread for linear algebra: its results then do not depend on how many cores there are, nor do a hundred agents
-  // start a thread for each.
+  // One thread for linear algebra: results then do not depend on the number of cores, and a hundred agents do not each
+  // start a thread per core.
   for (const char* variable : {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"})
     setenv(variable, "1", /*overwrite=*/0);
   PyConfig config;
@@ -57,7 +57,7 @@ void StartInterpreter() {
   PyEval_SaveThread();
 }
 
-/// A thread keeps its state between locks: making one each time takes longer than a law.
+/// Makes this thread's Python state once and keeps it between locks: making it each time takes longer than a law.
 void KeepThreadState() {
   thread_local const bool kept = [] {
     PyGILState_Ensure();
@@ -76,9 +76,9 @@ int LineOf(const py::error_already_set& error, const std::string& file) {
   return line;
 }
 
-/// A class of exceptions, as they are raised in other threads: by class. No Exception, because loops that try something
-/// until it works catch those.
-py::object TimeoutErrorSaying(const TimeLimit& limit) {
+/// An exception class for code that takes too long: PyThreadState_SetAsyncExc() takes a class. It is no Exception,
+/// because loops that try something until it works catch those.
+py::object MakeTimeoutError(const TimeLimit& limit) {
   py::dict space;
   std::ostringstream text;
   text << "took longer than " << limit.source << " = " << limit.limit_s << " s";
@@ -93,8 +93,8 @@ class TimeoutError(BaseException):
   return space["TimeoutError"];
 }
 
-/// Ends the one piece of Python code that runs, if it runs too long. A thread looks now and then; the code itself pays
-/// for two atomic stores.
+/// Interrupts the one piece of Python code that runs with a time limit, if it runs too long. A thread checks now and
+/// then; the code itself pays for two atomic stores.
 class Watchdog {
  public:
   static Watchdog& Get() {
@@ -108,12 +108,12 @@ class Watchdog {
   }
   void End() {
     deadline_ = kNever;
-    if (std::exchange(interrupted_, false)) PyThreadState_SetAsyncExc(thread_, nullptr);  // if it is still to come
+    if (std::exchange(interrupted_, false)) PyThreadState_SetAsyncExc(thread_, nullptr);  // cancel it if pending
   }
 
  private:
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
-  static constexpr auto kLook = std::chrono::milliseconds(50);
+  static constexpr auto kCheckEvery = std::chrono::milliseconds(50);
 
   static std::int64_t Now() {
     return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
@@ -121,17 +121,17 @@ class Watchdog {
 
   Watchdog() {
     std::thread([this] {
-      for (;; std::this_thread::sleep_for(kLook))
+      for (;; std::this_thread::sleep_for(kCheckEvery))
         if (Now() > deadline_) Interrupt();
     }).detach();
   }
 
   void Interrupt() {
-    const PyGILState_STATE state = PyGILState_Ensure();  // the code that hangs gives way every few milliseconds
-    if (Now() > deadline_) {                             // it has not ended while we waited
+    const PyGILState_STATE state = PyGILState_Ensure();  // code that hangs releases the GIL every few milliseconds
+    if (Now() > deadline_) {                             // it still runs after we waited
       deadline_ = Now() + LimitNs();
       interrupted_ = true;
-      PyThreadState_SetAsyncExc(thread_, TimeoutErrorSaying(limit_).ptr());
+      PyThreadState_SetAsyncExc(thread_, MakeTimeoutError(limit_).ptr());
     }
     PyGILState_Release(state);
   }
@@ -139,7 +139,7 @@ class Watchdog {
   std::int64_t LimitNs() const { return static_cast<std::int64_t>(limit_.limit_s * 1e9); }
 
   std::atomic<std::int64_t> deadline_ = kNever;
-  // The rest is used with the interpreter locked.
+  // The members below are used with the GIL held.
   TimeLimit limit_;
   unsigned long thread_ = 0;
   bool interrupted_ = false;
@@ -150,13 +150,13 @@ int IntOr0(const py::handle& object, const char* attribute) {
   return py::isinstance<py::int_>(value) ? value.cast<int>() : 0;
 }
 
-/// So that a traceback can show the lines of a text that is in no file.
-void TellLines(const std::string& text, const std::string& file) {
+/// Makes the lines of a text that is in no file known to tracebacks.
+void RegisterLines(const std::string& text, const std::string& file) {
   const py::object lines = py::str(text).attr("splitlines")(true);
   py::module_::import("linecache").attr("cache")[py::str(file)] = py::make_tuple(text.size(), py::none(), lines, file);
 }
 
-/// Its signature, unless it is one of those that cannot say.
+/// The signature of a function; None if Python cannot tell.
 py::object SignatureOf(const py::object& function) try {
   return py::module_::import("inspect").attr("signature")(function);
 } catch (py::error_already_set&) {
@@ -165,8 +165,8 @@ py::object SignatureOf(const py::object& function) try {
 
 }  // namespace
 
-MutedPython::MutedPython() { ++muted; }
-MutedPython::~MutedPython() { --muted; }
+SuppressedPythonOutput::SuppressedPythonOutput() { ++suppressed; }
+SuppressedPythonOutput::~SuppressedPythonOutput() { --suppressed; }
 
 PythonLock::PythonLock() {
   static std::once_flag started;
@@ -199,7 +199,7 @@ PythonError Explain(py::error_already_set& error, const std::string& file) {
 py::dict RunPython(const std::string& text, const std::string& file, int line) {
   const std::string padded = std::string(static_cast<std::size_t>(line - 1), '\n') + text;
   try {
-    TellLines(padded, file);
+    RegisterLines(padded, file);
     const py::object code = py::module_::import("builtins").attr("compile")(padded, file, "exec");
     py::dict space;
     space["__name__"] = "law";
@@ -213,7 +213,7 @@ py::dict RunPython(const std::string& text, const std::string& file, int line) {
   }
 }
 
-std::string OtherSignature(const py::object& function, std::size_t count) {
+std::string SignatureIfNotCallable(const py::object& function, std::size_t count) {
   const py::object signature = SignatureOf(function);
   if (signature.is_none()) return "";
   try {

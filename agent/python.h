@@ -6,22 +6,23 @@
 
 namespace mascot {
 
-/// How long a piece of Python code may take, and what of the experiment says so.
+/// How long a piece of Python code may take (wall clock), and the key that says so, for messages.
 struct TimeLimit {
   double limit_s = 0;
   std::string_view source;
 };
 
-/// While one lives, Python code in this process prints to nowhere: for laws that run a second time, for comparison.
-class MutedPython {
+/// While an object of this class lives, what Python code in this process prints is dropped: for laws that run a second
+/// time, for comparison.
+class SuppressedPythonOutput {
  public:
-  MutedPython();
-  ~MutedPython();
-  MutedPython(const MutedPython&) = delete;
-  MutedPython& operator=(const MutedPython&) = delete;
+  SuppressedPythonOutput();
+  ~SuppressedPythonOutput();
+  SuppressedPythonOutput(const SuppressedPythonOutput&) = delete;
+  SuppressedPythonOutput& operator=(const SuppressedPythonOutput&) = delete;
 };
 
-/// A mistake in somebody's Python code.
+/// A mistake in the user's Python code.
 class PythonError : public std::runtime_error {
  public:
   /// `traceback` as Python prints it; `line`, `column` of the user's file (0: not known); `summary`: its last line.

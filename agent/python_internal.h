@@ -1,6 +1,6 @@
 #pragma once
 
-// What python.cc and the laws written in Python share; nobody else includes this, or pybind11.
+// What python.cc and laws/custom.cc share; no other file includes this, or pybind11.
 
 #include <pybind11/embed.h>
 #include <pybind11/numpy.h>
@@ -14,8 +14,9 @@ namespace mascot {
 
 namespace py = pybind11;
 
-/// Holds the process's one interpreter, which is started by the first and lives as long as the process. Every use of a
-/// Python object, its destruction too, happens with one of these alive. Cheap from the second time on in each thread.
+/// Holds the global interpreter lock (GIL). The process has one interpreter, which the first lock starts and which
+/// lives as long as the process. Every use of a Python object, its destruction too, needs a live lock. Cheap from the
+/// second time on in each thread.
 class PythonLock {
  public:
   PythonLock();
@@ -27,9 +28,9 @@ class PythonLock {
   PyGILState_STATE state_;
 };
 
-/// Python code that runs longer than `limit` while one lives is ended by a TimeoutError, at the line where it is; one
-/// that catches it (it is no Exception, so only a bare except does) gets another. (Not a call that does not come back
-/// to Python.) Made with the interpreter locked; one at a time in a process.
+/// Python code that runs longer than `limit` while an object of this class lives gets a TimeoutError at the line where
+/// it is, and another one each time it catches that (it is no Exception: only a bare except, or one of BaseException,
+/// does). A call that does not return to Python is not interrupted. Made with the GIL held; one at a time in a process.
 class PythonTimeLimit {
  public:
   explicit PythonTimeLimit(const TimeLimit& limit);
@@ -38,15 +39,15 @@ class PythonTimeLimit {
   PythonTimeLimit& operator=(const PythonTimeLimit&) = delete;
 };
 
-/// Runs `text`, which goes by `file` and begins at `line` of it in messages, in a namespace of its own. Throws
+/// Runs `text` in a namespace of its own, which it returns. `file`, `line`: where `text` begins, for messages. Throws
 /// PythonError.
 py::dict RunPython(const std::string& text, const std::string& file, int line);
-/// What Python says of an exception that left the user's code, which goes by `file`.
+/// The PythonError for an exception that left the user's code, whose name in messages is `file`.
 PythonError Explain(py::error_already_set& error, const std::string& file);
+/// A value as dict, list, str, int, float or bool.
 py::object ToPython(const Value& value);
-/// How a function wants to be called, "(t, me)", if that is with another number of arguments than `count`; else
-/// nothing.
-std::string OtherSignature(const py::object& function, std::size_t count);
+/// The signature of a function, "(t, me)", if it cannot be called with `count` arguments; else empty.
+std::string SignatureIfNotCallable(const py::object& function, std::size_t count);
 /// The line at which a function is defined; 0: not known.
 int LineOf(const py::object& function);
 

@@ -53,7 +53,7 @@ void Seat::OnBundle(const mascot_msgs::msg::AgentBundle& bundle) {
 void Seat::Answer(const TickInbox::CompleteTick& complete) {
   const std::int64_t tick = complete.tick;
   const Command command = agent_.Decide(tick, *complete.self, complete.samples);
-  if (messages_) {  // before the command, so that it is there when the next tick is
+  if (messages_) {  // before the command: the next tick, which the command brings, needs it
     ToWire(tick, experiment_.control.rate_hz, id_, agent_.message(), message_);
     messages_->Write(message_);
   }

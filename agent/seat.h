@@ -14,44 +14,45 @@
 
 namespace mascot {
 
-/// One agent's place on the wire: what has come for it (TickInbox), and what it answers. It decides and commands in the
-/// thread that brings the last sample of a tick. Several may share a process (Node), whose readers they share.
+/// The DDS side of one agent: collects its samples (TickInbox), and answers each complete tick with a command and
+/// perhaps a message. The thread that brings the last sample of a tick decides and writes. Several seats may share a
+/// process (Node) and its readers.
 class Seat {
  public:
-  /// `on_first_answer` is called once, in the thread of that answer.
+  /// `on_first_answer` is called once, in the thread that answers first.
   Seat(Domain& domain, const Experiment& experiment, int id, std::function<void()> on_first_answer);
 
   int id() const { return id_; }
-  /// Everybody who reads what this agent writes has been found.
+  /// True when all readers of what this agent writes are matched.
   bool Matched() const;
   bool has_answered() const { return has_answered_; }
 
-  // What comes, as TickInbox takes it. `source`: 0 is the agent itself, then the agents that it may hear, in the order
-  // of graph.HeardBy(id).
+  // Samples that arrive, as TickInbox takes them. `source`: 0 is the agent itself, then the agents that it may hear, in
+  // the order of graph.HeardBy(id). Called by the readers of Node, in their threads.
   void OnState(std::size_t source, std::int64_t tick, const Motion& motion);
   void OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data);
-  /// States of all sources, in order. Throws std::runtime_error if they are others.
+  /// The bundle must hold the states of all sources, in order; else throws std::runtime_error.
   void OnBundle(const mascot_msgs::msg::AgentBundle& bundle);
 
  private:
-  /// Decides and sends what the agent answers. Called with mutex_ held.
+  /// Runs the agent on a complete tick and writes its answer. Called with mutex_ held.
   void Answer(const TickInbox::CompleteTick& complete);
 
   const Experiment& experiment_;
   const int id_;
   const std::function<void()> on_first_answer_;
 
-  std::mutex mutex_;  // guards all below but the endpoints: different readers may be served at once
+  std::mutex mutex_;  // guards what is below except the endpoints: readers may call in different threads
   Agent agent_;
   TickInbox inbox_;
-  std::vector<TickInbox::State> states_;  // what the last bundle held
+  std::vector<TickInbox::State> states_;  // states in the last bundle
   std::atomic<bool> has_answered_ = false;
   mascot_msgs::msg::AgentCommand command_;
   mascot_msgs::msg::AgentMessage message_;
 
   Writer<CommandType> commands_;
   std::optional<Writer<MessageType>> messages_;
-  int message_readers_ = 0;  // how many messages_ must find
+  int message_readers_ = 0;  // number of readers that messages_ must match
 };
 
 }  // namespace mascot

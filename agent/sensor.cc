@@ -8,7 +8,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::int64_t kOnce = -1;  // the number of what is drawn once: no tick
+constexpr std::int64_t kOnce = -1;  // in place of a tick, for what is drawn once
 
 Eigen::Vector3d Normal3(const Dice& dice, std::int64_t n, std::uint64_t first, double std) {
   if (std == 0) return Eigen::Vector3d::Zero();
@@ -43,9 +43,9 @@ Motion OwnSensor::Measure(std::int64_t tick, const Motion& self) {
 
 void OwnSensor::Delay(std::int64_t tick, Motion& motion) {
   const auto place = [this](std::int64_t t) -> Motion& { return past_[static_cast<std::size_t>(t) % past_.size()]; };
-  if (last_tick_ < 0) std::ranges::fill(past_, motion);  // it has always been where it started
+  if (last_tick_ < 0) std::ranges::fill(past_, motion);  // the agent has always been where it started
   for (std::int64_t t = std::max(last_tick_ + 1, tick - delay_ticks_); t < tick; ++t)
-    place(t) = place(last_tick_);  // not seen
+    place(t) = place(last_tick_);  // a skipped tick
   place(tick) = motion;
   last_tick_ = tick;
   const Motion& then = place(std::max<std::int64_t>(0, tick - delay_ticks_));

@@ -9,8 +9,8 @@
 
 namespace mascot {
 
-/// What measuring does to a motion: adds a bias and white noise to position and velocity. The error at a tick depends
-/// on the dice and the tick alone.
+/// Measurement errors of a motion: a constant bias and white noise on position and velocity, both Gaussian. The error
+/// at a tick depends only on the dice and the tick.
 class Noise {
  public:
   Noise(const NoiseConfig& config, Dice dice);
@@ -24,22 +24,23 @@ class Noise {
   Eigen::Vector3d bias_p_W_, bias_v_W_;
 };
 
-/// What an agent knows of itself.
+/// An agent's sensor for its own motion: adds delay and noise ([sensors.own]).
 class OwnSensor {
  public:
   OwnSensor(const SensorConfig& config, int rate_hz, std::uint64_t seed, int id);
-  /// The motion `self` at `tick` (increasing from call to call) as measured.
+  /// The true motion `self` at `tick` (increasing from call to call) as measured.
   Motion Measure(std::int64_t tick, const Motion& self);
 
  private:
-  /// Position and velocity of an earlier tick, or the first there was.
+  /// Replaces position, velocity and acceleration by those of delay_ticks_ ago; before the first tick they were those
+  /// of the first tick.
   void Delay(std::int64_t tick, Motion& motion);
 
   Noise noise_;
   bool exact_;
   std::int64_t delay_ticks_;
   std::int64_t last_tick_ = -1;
-  std::vector<Motion> past_;  // the motion at tick t in place t modulo its size
+  std::vector<Motion> past_;  // the motion at tick t is at index t modulo the size
 };
 
 }  // namespace mascot

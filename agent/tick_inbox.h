@@ -11,12 +11,12 @@
 
 namespace mascot {
 
-/// What has come for one agent, and the ticks that it can answer with that. Tick k is complete when the agent's own
-/// state and those of its peers are there, all of tick k, and in lockstep what its peers sent when they answered tick
-/// k-1. Each tick is complete once. In real time messages may be missing, and a tick that the next one overtakes never
-/// is complete: the server holds the last command.
+/// Collects the samples that arrive for one agent, and tells which ticks it can answer. Tick k is complete when the
+/// agent's own state and those of its peers have arrived, all of tick k, and in lockstep also the messages that its
+/// peers sent with their answers to tick k-1. Each tick is complete once. In real time messages may be missing, and a
+/// tick that is overtaken by the next one never becomes complete: the server holds the agent's last command.
 ///
-/// It has no law, wire, clock or lock: it is told what came.
+/// No law, DDS, clock or lock: the caller passes in what arrives.
 class TickInbox {
  public:
   /// An agent that this one may hear.
@@ -25,14 +25,14 @@ class TickInbox {
     bool sends_messages = false;
   };
 
-  /// All that an answer is made of. Valid until more comes.
+  /// The input of one answer. Valid until the next call.
   struct CompleteTick {
     std::int64_t tick = -1;
     const Motion* self = nullptr;
-    std::span<const Sample> samples = {};  ///< of the peers, in order, each with the last message that it sent before
+    std::span<const Sample> samples = {};  ///< one per peer, in order, with its last message before
   };
 
-  /// The state of one agent as a bundle has it.
+  /// The state of one agent in a bundle.
   struct State {
     std::uint32_t agent = 0;
     std::int64_t tick = -1;
@@ -41,21 +41,21 @@ class TickInbox {
 
   TickInbox(int id, const std::vector<Peer>& peers, bool realtime);
 
-  // What comes, and the tick that is complete with it. `source`: 0 is the agent itself, then its peers in order. What
-  // is late, doubled or of a negative tick is ignored.
+  // Each takes what arrives and returns the tick that becomes complete with it, if any. `source`: 0 is the agent
+  // itself, then its peers in order. What is late, doubled or of a negative tick is ignored.
   std::optional<CompleteTick> OnState(std::size_t source, std::int64_t tick, const Motion& motion);
   std::optional<CompleteTick> OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data);
-  /// States of all sources, in order. Throws std::runtime_error if they are others.
+  /// The states must be those of all sources, in order; else throws std::runtime_error.
   std::optional<CompleteTick> OnBundle(std::span<const State> states);
 
  private:
-  /// A message and the tick whose answer it came with; -1 and empty: none has come.
+  /// A message and the tick that its sender answered with it; -1 and empty: none has come.
   struct Message {
     std::int64_t tick = -1;
     std::vector<double> data;
   };
 
-  /// What has come of one agent.
+  /// The newest samples of one agent.
   struct Source {
     Peer agent = {};
     std::int64_t tick = -1;  ///< the tick of `motion`
@@ -63,18 +63,19 @@ class TickInbox {
     std::array<Message, 2> messages = {};  ///< the last two, by tick modulo 2: a peer may be one answer ahead of us
   };
 
-  /// False: the state is not newer than what has come of its source.
+  /// Stores a state. Returns false if it is not newer than the one stored.
   static bool Take(Source& source, std::int64_t tick, const Motion& motion);
+  /// Throws std::runtime_error unless the states are those of all sources, in order.
   void CheckBundle(std::span<const State> states) const;
   std::optional<CompleteTick> TakeIfComplete();
-  /// Everything that belongs to `tick` has come of this source.
+  /// True if everything that `tick` needs of this source has arrived.
   bool IsComplete(const Source& source, std::int64_t tick) const;
   /// The last message that `source` sent before `tick`; empty: it sent none.
   static std::span<const double> MessageBefore(const Source& source, std::int64_t tick);
 
   const bool realtime_;
   std::vector<Source> sources_;  // the agent itself, then its peers
-  std::vector<Sample> samples_;  // what CompleteTick shows of them
+  std::vector<Sample> samples_;  // CompleteTick::samples
   std::int64_t answered_ = -1;   // the last tick that was complete
 };
 

@@ -407,7 +407,7 @@ TEST(CustomLaw, PrintsToStandardErrorInWholeLinesAndNotIfMuted) {
   testing::internal::CaptureStdout();
   agent.Want(5, Motion{}, {});
   {
-    const MutedPython muted;
+    const SuppressedPythonOutput suppressed;
     agent.Want(6, Motion{}, {});
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "at 0.05 s\n");

@@ -8,11 +8,11 @@
 
 namespace mascot {
 
-/// Turns thrust and torques into rotor speeds within [0, max]: [w1^2 .. w4^2] = A^-1 [T, tau].
+/// Turns thrust and torques into rotor speeds within [0, max]: [w1^2 .. w4^2] = A^-1 [T, tau] (A: Airframe).
 ///
-/// When the rotors cannot give all that is asked for, thrust is first kept within 10..90 % of its range, so that the
-/// tilt never loses its authority; roll and pitch get what is left, shrunk together so that their direction stays; yaw,
-/// which a quadrotor flies well without, gets what then is left.
+/// Thrust is kept within 10..90 % of its range, so that the rotors can always give some torque. If they cannot give all
+/// of the torque, roll and pitch are scaled down together, so that their direction stays; yaw, which a quadrotor needs
+/// least, gets what is left.
 class Mixer {
  public:
   static constexpr double kMinThrustShare = 0.1;
@@ -23,6 +23,7 @@ class Mixer {
         max_thrust_n_(airframe.max_thrust_n),
         max_squared_(airframe.max_thrust_n / (4 * airframe.lift_n_s2)) {}
 
+  /// `thrust_n`: along z_B; `tau_B`: in B (N m). Sets kRotorLimited if anything was cut.
   Controller::Output Mix(double thrust_n, const Eigen::Vector3d& tau_B) const {
     const double kept_n = std::clamp(thrust_n, kMinThrustShare * max_thrust_n_, kMaxThrustShare * max_thrust_n_);
     Eigen::Vector4d squared = inverse_.col(0) * kept_n;
@@ -36,7 +37,8 @@ class Mixer {
   }
 
  private:
-  // Adds the largest part of `share` that leaves every rotor within its range. True if that is not all of it.
+  // Adds as much of `share` to `squared`, both squared rotor speeds, as keeps every rotor within its range. Returns
+  // true if that was not all of it.
   bool AddWhatFits(const Eigen::Vector4d& share, Eigen::Vector4d& squared) const {
     double part = 1;
     for (int i = 0; i < 4; ++i) {

@@ -1,12 +1,12 @@
-// The paper's low-level stack: PD loops turn a wanted acceleration into rotor speeds. With our axes (x forward, y left,
-// z up; phi, theta, psi: roll, pitch, yaw about them):
+// The low-level stack of the MASCOT paper (Pandit, Njattuvetty, Mulla): PD loops turn a wanted acceleration into rotor
+// speeds. With our axes (x forward, y left, z up; phi, theta, psi: roll, pitch, yaw about them):
 //   reference:  a   = a_W + kp (p* - p) + kd (v* - v) + B v / m    with p*'' = a_W; in z, the altitude loop
 //   thrust:     T   = m (a_z + g)
 //   inversion:  a in the heading frame -> phi*, theta*
-//   attitude:   tau = J (kp (phi* - phi) - kd phi')                theta likewise; psi towards control.heading_rad
+//   attitude:   tau = J (kp (phi* - phi) - kd phi')                the same for theta; psi goes to control.heading_rad
 //   rotors:     [w1^2 .. w4^2] = A^-1 [T, tau]
-// The reference is the double integrator that theory takes the agent for: it starts where the agent starts, and is
-// integrated with what the law wanted since. It gives back the velocity that the body lost while it was tilting. With
+// The reference p*, v* is the ideal double integrator of the theory: it starts where the agent starts, and integrates
+// the limited accelerations of the law. Tracking it gives back the velocity that the body loses while it tilts. With
 // law.axes = "xy", z* stays the initial height and v_z* = 0. Gains: airframe.position in x and y, airframe.altitude in
 // z.
 #include <algorithm>
@@ -19,12 +19,13 @@
 namespace mascot {
 namespace {
 
-// A body that would need more than this to catch up with its reference has been held or pushed (m/s^2): the reference
-// starts again from the body.
+// Largest correction towards the reference, per axis (m/s^2). A body that would need more has been held or pushed: the
+// reference restarts from the body.
 constexpr double kMaxCorrection = 1.0;
-// Roll and pitch turn no faster than the rotors can brake within the tilts flown, whatever a_W jumps to (rad/s).
+// Largest rate of roll and pitch towards a target (rad/s). The rotors can brake it within the tilts that are flown,
+// however a_W jumps.
 constexpr double kMaxTurnRate = 3.0;
-// Thrust is not raised further for a body that leans more than 60 degrees.
+// Lower limit of cos(tilt) where thrust is divided by it: beyond 60 degrees of tilt, thrust is not raised further.
 constexpr double kMinUprightness = 0.5;
 
 struct Tilt {
@@ -32,7 +33,7 @@ struct Tilt {
   double pitch_rad = 0;
 };
 
-/// A wanted acceleration seen along the body's heading.
+/// A wanted acceleration in the heading frame, which is W turned by the body's yaw (m/s^2).
 struct HeadingAccel {
   double forward, left, up;
 };
@@ -47,8 +48,8 @@ Tilt SmallAngleTilt(const HeadingAccel& a, double gravity) {
   return {.roll_rad = -a.left / gravity, .pitch_rad = a.forward / gravity};
 }
 
-// Points z_B = (cos(roll) sin(pitch), -sin(roll), cos(roll) cos(pitch)) along a + g. `min_up`: what the least thrust
-// lifts.
+// Roll and pitch that point z_B = (cos(roll) sin(pitch), -sin(roll), cos(roll) cos(pitch)) along a + g. `min_up`:
+// smallest vertical component (m/s^2), what the smallest thrust gives.
 Tilt ExactTilt(const HeadingAccel& a, double gravity, double min_up) {
   const double up = std::max(a.up + gravity, min_up);
   return {.roll_rad = std::atan2(-a.left, std::hypot(a.forward, up)), .pitch_rad = std::atan2(a.forward, up)};
@@ -61,7 +62,8 @@ double Yaw(const Eigen::Matrix3d& R_WB) { return std::atan2(R_WB(1, 0), R_WB(0, 
 
 double Pd(PdGains gains, double error, double error_rate) { return gains.kp * error + gains.kd * error_rate; }
 
-// PD, but towards the target no faster than kMaxTurnRate (without damping there is no such rate).
+// PD law with a limited proportional part, so that the rate towards the target settles at kMaxTurnRate at most (without
+// damping there is no such limit).
 double TiltAccel(PdGains gains, double error_rad, double rate) {
   const double most = gains.kd > 0 ? gains.kd * kMaxTurnRate : std::numeric_limits<double>::infinity();
   return std::clamp(gains.kp * error_rad, -most, most) - gains.kd * rate;
@@ -98,7 +100,8 @@ class QuadrotorController final : public Controller {
   }
 
  private:
-  // Where the law steers, a reference that the body cannot follow is none: it starts again.
+  // PD correction towards the reference (m/s^2). On an axis that the law steers, a reference that the body cannot
+  // follow restarts from the body.
   Eigen::Vector3d Correction_W(const Motion& self) {
     Eigen::Vector3d correction_W;
     for (int axis = 0; axis < 3; ++axis) {
@@ -113,7 +116,7 @@ class QuadrotorController final : public Controller {
     return correction_W;
   }
 
-  // Over one tick with a_W held.
+  // Integrates the reference over one tick with a_W held.
   void AdvanceReference(const Eigen::Vector3d& a_W) {
     p_ref_W_ += period_s_ * v_ref_W_ + period_s_ * period_s_ / 2 * a_W;
     v_ref_W_ += period_s_ * a_W;
@@ -124,13 +127,15 @@ class QuadrotorController final : public Controller {
     return ExactTilt(a, gravity_, Mixer::kMinThrustShare * airframe_.max_thrust_n / airframe_.mass_kg);
   }
 
-  // R_WB(2, 2) = cos(roll) cos(pitch).
+  // Thrust for the vertical acceleration a_z (N). R_WB(2, 2) = cos(roll) cos(pitch) is the part of it that points up,
+  // by which the exact inversion divides.
   double Thrust_N(double a_z, const Eigen::Matrix3d& R_WB) const {
     const double vertical_n = airframe_.mass_kg * (a_z + gravity_);
     return exact_ ? vertical_n / std::max(R_WB(2, 2), kMinUprightness) : vertical_n;
   }
 
-  // At the tilts flown, the rates of roll, pitch and yaw are those about the body's axes.
+  // Torque that turns the body to `target` and the wanted yaw (N m). At small tilts the rates of roll, pitch and yaw
+  // are those about the body's axes.
   Eigen::Vector3d Torque_B(const Tilt& target, const Eigen::Matrix3d& R_WB, const Eigen::Vector3d& w_WB_B) const {
     const double yaw_error = std::remainder(heading_rad_ - Yaw(R_WB), 2 * std::numbers::pi);
     const Eigen::Vector3d turn(TiltAccel(airframe_.attitude, target.roll_rad - Roll(R_WB), w_WB_B.x()),

@@ -1,5 +1,6 @@
-// The wanted velocity is the command. With law.axes = "xy" the altitude loop holds the initial height as fast as its PD
-// loop would in the end: v_z = (kp / kd) (z* - z), at most all of the way in one tick.
+// The wanted velocity is the command. With law.axes = "xy" the altitude loop holds the initial height:
+//   v_z = (kp / kd) (z* - z)
+// That is the velocity at which its PD law kp (z* - z) - kd v_z is 0. One tick corrects at most the whole error.
 #include <algorithm>
 
 #include "agent/controller.h"

@@ -1,9 +1,9 @@
-// A wanted velocity u of a vehicle that only rolls forward and turns, theta its heading and l = control.look_ahead_m:
+// Forward speed v and turning speed w for a wanted velocity u, with theta the heading and l = control.look_ahead_m:
 //   v = u_x cos theta + u_y sin theta
 //   w = (u_y cos theta - u_x sin theta) / l
-// The point l ahead of the centre then moves with exactly u: Lawton, Beard & Young, "A decentralized approach to
-// formation maneuvers", IEEE Trans. Robotics and Automation 19 (2003). For laws that work on the centre itself, as ours
-// do, the centre follows the projection of u on the heading, which keeps the convergence of gradient laws: Zhao,
+// The point at distance l ahead of the centre then moves with exactly u: Lawton, Beard & Young, "A decentralized
+// approach to formation maneuvers", IEEE Trans. Robotics and Automation 19 (2003). Our laws work with the centre
+// itself, which follows the projection of u on the heading; that keeps the convergence of gradient laws: Zhao,
 // Dimarogonas, Sun & Bauso, "A general approach to coordination control of mobile agents with motion constraints", IEEE
 // Trans. Automatic Control 63 (2018).
 #include <cmath>

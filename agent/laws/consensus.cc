@@ -3,7 +3,7 @@
 //   a_i = p_gain sum_j a_ij (p_j - p_i) - beta v_i
 // and with damping of relative velocities, Ren & Atkins, Int. J. Robust Nonlinear Control 17 (2007):
 //         + v_gain sum_j a_ij (v_j - v_i)
-// A leader listens to nobody: it keeps its velocity (a = 0), or flies waypoints.
+// A leader does not use what it hears: it keeps its velocity (a = 0), or flies waypoints.
 #include "agent/laws/consensus.h"
 
 #include <memory>

@@ -8,13 +8,13 @@
 namespace mascot {
 
 struct ConsensusParams : LawParams {
-  double p_gain = 0;
-  double v_gain = 0;
-  double beta = 0;
+  double p_gain = 0;                            ///< 1/s^2
+  double v_gain = 0;                            ///< 1/s
+  double beta = 0;                              ///< 1/s
   std::optional<WaypointParams> leader_flight;  ///< absent: the leader's acceleration is 0
 };
 
-/// Of consensus and of formation, which is consensus on p_i - d_i: all but the pull of the positions.
+/// The keys that consensus and formation (which is consensus on p_i - d_i) share: all but the pull of the positions.
 inline constexpr auto kVelocityAndLeaderParameters = Joined(
     std::array{
         key::Number("v_gain", kGain, "pull towards each neighbour's velocity, times its weight")
@@ -31,7 +31,7 @@ inline constexpr auto kConsensusParameters = Joined(
     },
     kVelocityAndLeaderParameters);
 
-/// The keys of kConsensusParameters, into `params`; those of the formation law are the same but for their meaning.
+/// Reads the keys of kConsensusParameters into `params`, for consensus and formation. Mistakes are noted in `section`.
 void ReadGains(const LawConfig& law, Section& section, ConsensusParams& params);
 LinearForm LinearFormOf(const ConsensusParams& params);
 

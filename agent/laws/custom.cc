@@ -13,11 +13,12 @@
 namespace mascot {
 namespace {
 
-// Of run.agent_timeout_s, that a law may take: it then can say itself where it hangs.
+// Part of run.agent_timeout_s that a call of the law may take: less than all, so that the law is interrupted first and
+// the message says where it hangs.
 constexpr double kTimeShare = 0.8;
 
-// What `me` and each of `neighbours` are. `me` lasts as long as the law does, so that it can keep what the law wants to
-// remember; neighbours are made anew at each call.
+// The class of `me` and of each of `neighbours`. `me` lives as long as the law, so that the law can keep what it wants
+// to remember in it; neighbours are made anew at each call.
 constexpr const char* kClasses = R"(
 class Agent:
     """One agent, as this one knows it. Positions and velocities are in the world frame (x east, y north, z up)."""
@@ -26,33 +27,33 @@ class Agent:
         return f"agent {self.id} at {self.position}"
 )";
 
-/// A law written in Python, and where it stands.
+/// A law written in Python, and where its text stands.
 struct CustomParams final : LawParams {
   std::string text;
-  std::string file;  ///< as it goes by in messages
-  int line = 1;      ///< of `file`, at which `text` begins
+  std::string file;  ///< the file's name in messages
+  int line = 1;      ///< line of `file` at which `text` begins
   PythonStyle style = PythonStyle::kStandard;
   Wanted wanted = Wanted::kAcceleration;
   Value params;  ///< a table
 };
 
-/// Numbers as a NumPy array of their own.
+/// A new NumPy array that holds `values`.
 py::array_t<double> Array(std::span<const double> values) {
-  py::array_t<double> array(static_cast<py::ssize_t>(values.size()));  // empty, then filled: half the time of a copy
+  py::array_t<double> array(static_cast<py::ssize_t>(values.size()));  // filled below: half the time of a copy
   std::ranges::copy(values, array.mutable_data());
   return array;
 }
 py::array_t<double> Array(const Eigen::Vector3d& v) { return Array(std::span<const double>(v.data(), 3)); }
 
-/// Names of attributes, made once.
+/// Attribute names as Python strings, made once.
 struct Names {
   py::str id{"id"}, position{"position"}, velocity{"velocity"}, acceleration{"acceleration"},
       orientation{"orientation"}, angular_velocity{"angular_velocity"}, weight{"weight"}, message{"message"},
       age_s{"age_s"};
 };
 
-/// What came back, for a message; its type, if its own code cannot say.
-std::string Shown(const py::handle& value) try {
+/// repr() of a returned value, for a message; its type if repr() fails.
+std::string Repr(const py::handle& value) try {
   constexpr std::size_t kLongest = 200;
   const std::string text = py::repr(value).cast<std::string>();
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
@@ -60,7 +61,7 @@ std::string Shown(const py::handle& value) try {
   return "an object of type " + py::type::of(value).attr("__name__").cast<std::string>();
 }
 
-/// The numbers of what a function returned, or nothing if it is not a flat sequence of numbers.
+/// The numbers in a returned value; nullopt if it is not a flat sequence of numbers.
 std::optional<std::vector<double>> Numbers(const py::object& value) {
   std::vector<double> numbers;
   if (PyTuple_Check(value.ptr()) || PyList_Check(value.ptr())) {  // the usual case, and the fastest
@@ -88,12 +89,12 @@ std::optional<std::vector<double>> Numbers(const py::object& value) {
   return numbers;
 }
 
-/// One agent's module of Python: the user's text, run in a namespace of its own.
+/// The user's text, run in a Python namespace of its own for one agent.
 class Module {
  public:
   explicit Module(const CustomParams& params) : space_(RunPython(params.text, params.file, params.line)) {}
 
-  /// A function that the text defines; none if it defines none of this name.
+  /// The function `name` that the text defines; None if it defines none.
   py::object Function(const char* name) const {
     const py::object function = space_.contains(name) ? py::object(space_[name]) : py::none();
     return PyCallable_Check(function.ptr()) != 0 ? function : py::none();
@@ -103,7 +104,7 @@ class Module {
   py::dict space_;
 };
 
-/// What both styles share: errors that say whose law it was and what came back.
+/// What both styles share: the time limit, and errors that name the agent, the time and the returned value.
 class PythonLaw : public Law {
  public:
   PythonLaw(int id, const CustomParams& params, TimeLimit time_limit, const char* function)
@@ -113,7 +114,7 @@ class PythonLaw : public Law {
  protected:
   int id() const { return id_; }
 
-  /// `call`, which runs the user's code, within the time it may take.
+  /// Runs `call`, which calls the user's code, with the time limit. Throws std::runtime_error with the traceback.
   template <class Call>
   auto Guarded(Call call) const {
     try {
@@ -126,7 +127,7 @@ class PythonLaw : public Law {
   }
   void SetTime(double t_s) { t_s_ = t_s; }
 
-  /// Two or three finite numbers. `hint`: what a NaN may come from.
+  /// `value` as a vector, from two (z = 0) or three finite numbers. `hint`: what a NaN may come from, for the message.
   Eigen::Vector3d ToVector(const py::object& value, const std::string& hint) const {
     const auto numbers = Numbers(value);
     if (!numbers || numbers->size() < 2 || numbers->size() > 3)
@@ -139,7 +140,7 @@ class PythonLaw : public Law {
 
   [[noreturn]] void Refuse(const py::object& value, const std::string& why) const {
     throw std::runtime_error("the law of agent " + std::to_string(id_) + " failed at t = " + ShortestFloat(t_s_) +
-                             " s: " + function_ + " returned " + Shown(value) + why);
+                             " s: " + function_ + " returned " + Repr(value) + why);
   }
 
  private:
@@ -151,7 +152,7 @@ class PythonLaw : public Law {
   double t_s_ = 0;
 };
 
-/// control(t, me, neighbours), start(me, params), message(me).
+/// Style "standard": control(t, me, neighbours), start(me, params), message(me).
 class Standard final : public PythonLaw {
  public:
   Standard(const CustomParams& params, TimeLimit time_limit, std::uint64_t seed, int id)
@@ -191,14 +192,14 @@ class Standard final : public PythonLaw {
   std::span<const double> Message() override {
     const PythonLock lock;
     Objects& o = *objects_;
-    const py::object said = Guarded([&]() -> py::object { return o.message(o.me); });
+    const py::object result = Guarded([&]() -> py::object { return o.message(o.me); });
     message_.clear();
     o.me.attr("message") = py::none();
-    if (said.is_none()) return message_;
-    auto numbers = Numbers(said);
+    if (result.is_none()) return message_;
+    auto numbers = Numbers(result);
     if (!numbers || numbers->size() > kMaxMessage)
-      throw std::runtime_error("the law of agent " + std::to_string(id()) + " failed: message returned " + Shown(said) +
-                               ", expected None or at most " + std::to_string(kMaxMessage) + " numbers");
+      throw std::runtime_error("the law of agent " + std::to_string(id()) + " failed: message returned " +
+                               Repr(result) + ", expected None or at most " + std::to_string(kMaxMessage) + " numbers");
     message_ = std::move(*numbers);
     o.me.attr("message") = Array(message_);
     return message_;
@@ -210,7 +211,7 @@ class Standard final : public PythonLaw {
       py::dict space;
       py::exec(kClasses, space);
       agent_class = space["Agent"];
-      py::module_::import("numpy");  // before the first tick, which need not wait for it
+      py::module_::import("numpy");  // now, so that the first tick does not wait for it
     }
     Module module;
     py::object control = module.Function("control"), start = module.Function("start"),
@@ -240,12 +241,13 @@ class Standard final : public PythonLaw {
     return neighbour;
   }
 
-  std::optional<Objects> objects_;  // made and destroyed with the interpreter locked
+  std::optional<Objects> objects_;  // made and destroyed with the GIL held
   std::vector<double> message_;
 };
 
-/// control_user(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, leader) of the published testbed, which counts
-/// agents from 0. It has places for all agents; those that this agent does not hear hold NaN.
+/// Style "mascot": control_user(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, leader) of the published
+/// testbed, which counts agents from 0. The arrays have an entry for every agent; those of agents that this one does
+/// not hear are NaN.
 class Published final : public PythonLaw {
  public:
   Published(const CustomParams& params, TimeLimit time_limit, int id, int agents, int leader)
@@ -266,10 +268,10 @@ class Published final : public PythonLaw {
     const PythonLock lock;
     SetTime(t_s);
     for (auto& column : columns_) std::fill(column.begin(), column.end(), std::numeric_limits<double>::quiet_NaN());
-    Enter(id(), self);
+    SetColumns(id(), self);
     std::string known;
     for (const Heard& j : heard) {
-      Enter(j.id, j.motion);
+      SetColumns(j.id, j.motion);
       known += (known.empty() ? "" : ", ") + std::to_string(j.id - 1);
     }
     return Guarded([&] {
@@ -283,7 +285,7 @@ class Published final : public PythonLaw {
   }
 
  private:
-  void Enter(int id, const Motion& motion) {
+  void SetColumns(int id, const Motion& motion) {
     const auto i = static_cast<std::size_t>(id - 1);
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const auto a = static_cast<Eigen::Index>(axis);
@@ -319,7 +321,7 @@ std::span<const Callback> CallbacksOf(PythonStyle style) {
 
 const char* TextKey(const Section& law) { return law.Has("file") ? "file" : "python"; }
 
-/// The text of the law and what it goes by.
+/// Reads the text of the law, and the file and line for messages.
 void ReadText(Section& law, CustomParams& params) {
   law.Supersede("file", {"python", "python_file", "python_line"});
   law.Supersede("python", {"file", "python_file", "python_line"});
@@ -353,7 +355,7 @@ void ReadKeys(Section& law, CustomParams& params) {
     params.params = law.Free("params");
 }
 
-/// Notes a function that is missing, or that cannot be called as it will be.
+/// Notes a mistake if the function is required and missing, or cannot be called with its arguments.
 void CheckCallback(Section& law, const CustomParams& params, const Module& module, const Callback& callback) {
   const py::object function = module.Function(callback.name);
   const auto fail = [&](int line, const std::string& message) {
@@ -363,15 +365,15 @@ void CheckCallback(Section& law, const CustomParams& params, const Module& modul
     if (callback.required) fail(params.line, std::string("expected a function ") + callback.name + ", got none");
     return;
   }
-  const std::string other = OtherSignature(function, callback.count);
+  const std::string other = SignatureIfNotCallable(function, callback.count);
   if (!other.empty())
     fail(std::max(LineOf(function), 1),
          std::string("expected ") + callback.name + callback.arguments + ", got " + callback.name + other);
 }
 
-/// Runs the text once, to find mistakes in it, and what it defines. Returns whether it can send messages.
+/// Runs the text once, to find mistakes in it and the functions that it defines. Returns whether it can send messages.
 bool Try(Section& law, const CustomParams& params, const TimeLimit& time_limit) {
-  const MutedPython muted;
+  const SuppressedPythonOutput suppressed;
   const PythonLock lock;
   const char* key = TextKey(law);
   try {
@@ -388,9 +390,9 @@ bool Try(Section& law, const CustomParams& params, const TimeLimit& time_limit) 
   }
 }
 
-/// Whether it sends messages, as the key says or the text shows.
+/// Whether the law sends messages: as the key says, else whether the text defines message().
 bool SendsMessages(const Experiment& experiment, const CustomParams& params, Section& law) {
-  // What was checked says whether messages are sent; who reads it need not start Python to know.
+  // A checked experiment has the key: reading it need not start Python.
   if ((experiment.checked && law.Has("messages")) || law.Wrong("")) return law.Boolean("messages", false);
   const bool can_send = Try(law, params, {experiment.run.start_timeout_s, "run.start_timeout_s"});
   const bool sends = law.Boolean("messages", can_send);

@@ -7,7 +7,7 @@
 
 namespace mascot {
 
-/// How the functions of a custom law look.
+/// Which functions a custom law defines.
 enum class PythonStyle {
   kStandard,  ///< control(t, me, neighbours), start, message
   kMascot,    ///< control_user(...) of the published testbed

@@ -1,7 +1,8 @@
 // Displacement-based formation of double integrators; Oh, Park & Ahn, "A survey of multi-agent formation control",
 // Automatica 53 (2015), section 4; Ren & Atkins, Int. J. Robust Nonlinear Control 17 (2007):
 //   a_i = -sum_j a_ij [ p_gain ((p_i - p_j) - (d_i - d_j)) + v_gain (v_i - v_j) ] - beta v_i
-// It is consensus on p_i - d_i. A leader listens to nobody: it keeps its velocity (a = 0), or flies waypoints.
+// This is consensus on p_i - d_i. A leader does not use what it hears: it keeps its velocity (a = 0), or flies
+// waypoints.
 #include "agent/laws/formation.h"
 
 #include <array>
@@ -15,7 +16,7 @@ namespace mascot {
 namespace {
 
 struct FormationParams final : ConsensusParams {
-  std::vector<Eigen::Vector3d> d_W;  ///< by id - 1: each agent's place in the formation
+  std::vector<Eigen::Vector3d> d_W;  ///< d_i by id - 1: each agent's place in the formation, in W (m)
 };
 
 class Formation final : public Law {
@@ -34,11 +35,11 @@ class Formation final : public Law {
  private:
   const Eigen::Vector3d& d_W(int id) const { return params_.d_W[static_cast<std::size_t>(id - 1)]; }
 
-  const FormationParams& params_;  // of the experiment
+  const FormationParams& params_;  // the experiment owns them
   int id_;
 };
 
-/// Place `i` of `count`, neighbours one unit apart.
+/// Place `i`, from 0, of `count` places in a shape; neighbouring places are one unit apart.
 Eigen::Vector3d PlaceOf(std::string_view shape, int i, int count) {
   if (shape == "line") return {static_cast<double>(i), 0, 0};
   if (shape == "vee") {  // agent 1 at the tip, ranks behind it to both sides

@@ -8,7 +8,7 @@
 
 namespace mascot {
 
-/// A leader listens to nobody: it keeps its velocity (a = 0), or flies waypoints.
+/// Makes the law of a leader, which does not use what it hears: it keeps its velocity (a = 0), or flies waypoints.
 std::unique_ptr<Law> MakeLeader(const std::optional<WaypointParams>& flight, const AgentConfig& agent);
 
 }  // namespace mascot

@@ -1,7 +1,8 @@
 // Min-max time consensus tracking, Mulla et al. (2017), on a directed spanning tree. Per axis, child c of
 // parent p, with z = p_c - p_p, w = v_c - v_p and alpha = beta_c - beta_p > 0:
 //   a_c = -beta_c sgn(2 alpha z + w |w|),  sgn(0) = 0
-// It meets the parent in the least time that no motion of the parent within its bound beta_p can prolong.
+// The child meets its parent in min-max time: the shortest time in which it can meet a parent that makes the best use
+// of its bound beta_p to avoid that.
 //
 // With a boundary layer l > 0 the switching curve gets a linear piece and sgn a linear zone, as in the proximate
 // time-optimal servomechanism of Workman, Kosut & Franklin (ACC 1987):
@@ -30,7 +31,7 @@ struct MinmaxParams final : LawParams {
 
 double Sign(double x) { return (x > 0) - (x < 0); }
 
-/// Follows the parent on every axis.
+/// The law of every agent but the root: follows the parent on each axis by itself.
 class Child final : public Law {
  public:
   Child(int parent, double beta, double parent_beta, double boundary_layer_m)
@@ -59,7 +60,7 @@ class Child final : public Law {
   double layer_m_;
 };
 
-/// Follows nobody: keeps its velocity, or flies waypoints within the bound that its children count on.
+/// The law of the root: keeps its velocity, or flies waypoints within its own bound, on which its children rely.
 class Root final : public Law {
  public:
   Root(std::optional<WaypointFlight> flight, double beta) : flight_(std::move(flight)), beta_(beta) {}
@@ -74,7 +75,7 @@ class Root final : public Law {
   double beta_;
 };
 
-/// One bound per agent, whatever the file says.
+/// law.beta as one bound per agent (m/s^2), also after a mistake.
 std::vector<double> ReadBeta(Section& law, int agents) {
   const auto count = static_cast<std::size_t>(agents);
   if (law.Kind("beta") != "list") return std::vector<double>(count, law.Number("beta"));
@@ -87,10 +88,10 @@ std::vector<double> ReadBeta(Section& law, int agents) {
   return beta;
 }
 
-/// Parents by id - 1, all 0 where there is no tree to follow.
+/// Each agent's parent, by id - 1; all 0 if there is no tree.
 std::vector<int> ReadTree(const Experiment& experiment, int root, Section& law) {
   const std::vector<int> nobody(static_cast<std::size_t>(experiment.size()), 0);
-  // A graph or a leader that was refused already is not worth a second complaint.
+  // A mistake in the graph or the leader has been noted already.
   if (law.Wrong("leader") || experiment.graph.size() != experiment.size()) return nobody;
   if (root == 0) {
     law.Fail("leader", "expected the root of the tree in 1..N, got 0");
@@ -102,7 +103,7 @@ std::vector<int> ReadTree(const Experiment& experiment, int root, Section& law) 
   return nobody;
 }
 
-/// beta_c > beta_p on every edge, or the law promises nothing.
+/// Checks beta_c > beta_p on every edge, without which the law promises nothing.
 void CheckEdges(const PursuitForm& tree, int root, bool root_bound, Section& law) {
   std::string first;
   int others = 0;

@@ -1,4 +1,4 @@
-// A law written by the user in C++, in a shared library of its own (agent/plugin.h).
+// A law written by the user in C++, in its own shared library (agent/plugin.h).
 #include "agent/laws/plugin.h"
 
 #include <algorithm>
@@ -14,9 +14,9 @@ namespace mascot {
 namespace {
 
 struct PluginConfig final : LawParams {
-  std::string library;  ///< absolute path; "" for a mistake
+  std::string library;  ///< absolute path; "" after a mistake
   Value params;         ///< a table
-  /// What its laws wanted when they were tried; not tried: an acceleration.
+  /// What the laws wanted when they were tried; an acceleration if they were not.
   Wanted wanted = Wanted::kAcceleration;
 };
 
@@ -37,10 +37,10 @@ PluginSetup SetupOf(const Experiment& experiment, int id, PluginParams& params) 
           .params = params};
 }
 
-// --- in flight --------------------------------------------------------------------------------------
+// --- during a run -----------------------------------------------------------------------------------
 
-/// What was thrown, in words. To be called while it is handled.
-std::string WordsOfException() {
+/// Text of the exception that is being handled.
+std::string ExceptionText() {
   try {
     throw;
   } catch (const std::exception& error) {
@@ -50,7 +50,7 @@ std::string WordsOfException() {
   }
 }
 
-/// The user's law, whose failures say whose law it was and when.
+/// The user's law; its exceptions get the agent and the time in front.
 class PluginLaw final : public Law {
  public:
   PluginLaw(int id, std::unique_ptr<Law> law) : id_(id), law_(std::move(law)) {}
@@ -79,7 +79,7 @@ class PluginLaw final : public Law {
       return call();
     } catch (...) {
       throw std::runtime_error("the law of agent " + std::to_string(id_) + " failed at t = " + ShortestFloat(t_s_) +
-                               " s: " + WordsOfException());
+                               " s: " + ExceptionText());
     }
   }
 
@@ -88,9 +88,9 @@ class PluginLaw final : public Law {
   double t_s_ = 0;
 };
 
-// --- before it --------------------------------------------------------------------------------------
+// --- when an experiment is read -----------------------------------------------------------------------
 
-/// Notes a mistake that the law found in its parameters. "params.gain: expected ..." has its place there.
+/// Notes a mistake that the law found in its parameters: at the key if `words` name it ("params.gain: expected ...").
 void NoteRefusal(Section& law, const std::string& words) {
   constexpr std::string_view kInside = "params.";
   const auto colon = words.find(": ");
@@ -110,7 +110,7 @@ void NoteUnknown(Section& law, const Value& params, const PluginParams& read) {
   }
 }
 
-/// Makes the law of agent `id`, to see whether it takes its parameters, and what it wants.
+/// Makes the law of agent `id` once, to check its parameters and to learn what it wants.
 void Try(const LawLibrary& library, const Experiment& experiment, int id, PluginConfig& plugin, Section& law) {
   PluginParams params(plugin.params);
   try {
@@ -119,11 +119,11 @@ void Try(const LawLibrary& library, const Experiment& experiment, int id, Plugin
   } catch (const std::invalid_argument& refusal) {
     NoteRefusal(law, refusal.what());
   } catch (...) {
-    law.Fail("library", "expected a law of agent " + std::to_string(id) + ", got an exception: " + WordsOfException());
+    law.Fail("library", "expected a law of agent " + std::to_string(id) + ", got an exception: " + ExceptionText());
   }
 }
 
-/// The agents that `law` is for.
+/// Ids of the agents that use `law`.
 std::vector<int> AgentsOf(const Experiment& experiment, const LawConfig& law) {
   std::vector<int> ids;
   for (const AgentConfig& agent : experiment.agents)
@@ -136,7 +136,7 @@ bool TryAll(const Experiment& experiment, const LawConfig& config, PluginConfig&
   try {
     const LawLibrary library(plugin.library);
     for (const int id : AgentsOf(experiment, config)) {
-      if (law.Wrong("")) break;  // the other agents' laws would say the same
+      if (law.Wrong("")) break;  // the other agents' laws would find the same mistake
       Try(library, experiment, id, plugin, law);
     }
     return library.sends_messages();
@@ -146,9 +146,9 @@ bool TryAll(const Experiment& experiment, const LawConfig& config, PluginConfig&
   }
 }
 
-/// Whether it sends messages, as the key says or the library shows.
+/// Whether the law sends messages: as the key says, else whether it overrides Message().
 bool SendsMessages(const Experiment& experiment, const LawConfig& config, PluginConfig& plugin, Section& law) {
-  // What was checked says whether messages are sent; only who flies the law needs the library then.
+  // A checked experiment has the key: only a process that runs the law then needs the library.
   if ((experiment.checked && law.Has("messages")) || law.Wrong("")) return law.Boolean("messages", false);
   const bool can_send = TryAll(experiment, config, plugin, law);
   const bool sends = law.Boolean("messages", can_send);
@@ -171,7 +171,7 @@ std::unique_ptr<Law> MakePlugin(const Experiment& experiment, int id) {
     PluginParams params(plugin.params);
     return std::make_unique<PluginLaw>(id, LawLibrary(plugin.library).Make(SetupOf(experiment, id, params)));
   } catch (...) {
-    throw std::runtime_error("cannot make the law of agent " + std::to_string(id) + ": " + WordsOfException() +
+    throw std::runtime_error("cannot make the law of agent " + std::to_string(id) + ": " + ExceptionText() +
                              " (every host that flies it needs the same library at the same path)");
   }
 }

@@ -4,7 +4,7 @@ namespace mascot {
 
 std::vector<int> NotReached(const Graph& graph, int root) {
   const auto count = static_cast<std::size_t>(graph.size());
-  std::vector<std::vector<int>> hearers(count);  // by id - 1: who hears this agent
+  std::vector<std::vector<int>> hearers(count);  // by id - 1: the agents that hear this one
   for (int id = 1; id <= graph.size(); ++id) {
     for (const Graph::Neighbour& heard : graph.HeardBy(id))
       hearers[static_cast<std::size_t>(heard.id - 1)].push_back(id);

@@ -7,7 +7,7 @@
 
 namespace mascot {
 
-/// Agents that do not hear `root`, not even through others; sorted.
+/// Ids of the agents that hear `root` neither directly nor through others; sorted.
 std::vector<int> NotReached(const Graph& graph, int root);
 /// "agent 3", "agents 2, 3 and 5"; long lists are cut: "agents 2, 3, 4, 5 and 96 more".
 std::string AgentList(const std::vector<int>& ids);

@@ -1,6 +1,6 @@
-// PD flight through waypoints, the paper's first experiment:
+// PD flight through waypoints, the first experiment of the MASCOT paper (Pandit, Njattuvetty, Mulla):
 //   a_i = p_gain (w - p_i) - d_gain v_i
-// The target w moves to the next waypoint by arrival or by time, and stays at the last one.
+// The target w becomes the next waypoint on arrival or at a given time; the last waypoint stays the target.
 #include "agent/laws/waypoint.h"
 
 #include <array>
@@ -9,7 +9,7 @@
 namespace mascot {
 namespace {
 
-// Times are ticks divided by the rate, and their differences are off by a rounding error.
+// Tolerance for rounding: times are ticks divided by the rate.
 constexpr double kRounding_s = 1e-9;
 
 void CheckTimes(Section& law, const std::string& key, const WaypointParams& params) {

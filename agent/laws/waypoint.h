@@ -11,14 +11,14 @@
 
 namespace mascot {
 
-/// A list of waypoints, when each of them is the target, and how firmly it pulls.
+/// A list of waypoints, what makes each of them the target, and the gains.
 struct WaypointParams {
-  std::vector<Eigen::Vector3d> waypoints_W;  ///< never empty in a valid experiment
-  std::vector<double> times_s;               ///< when each becomes the target; empty: by arrival
+  std::vector<Eigen::Vector3d> waypoints_W;  ///< in W (m); never empty in a valid experiment
+  std::vector<double> times_s;               ///< when each becomes the target; empty: on arrival
   double arrival_radius_m = 0;
   double dwell_s = 0;
-  double p_gain = 0;
-  double d_gain = 0;
+  double p_gain = 0;  ///< 1/s^2
+  double d_gain = 0;  ///< 1/s
 };
 
 inline constexpr Range kWaypoint_m = {-1e6, 1e6};
@@ -36,29 +36,34 @@ inline constexpr Key kWaypointParameters[] = {
     key::Numbers("times_s", kTime_s, "when each waypoint becomes the target, instead of by arrival; increasing"),
 };
 
-/// The same for a leader, of the laws that may have one.
+/// The same keys for the leader, in laws that may have one.
 inline constexpr std::array kLeaderFlightParameters = {
     key::Points("leader_waypoints_m", kWaypoint_m, "the leader flies these, as the waypoint law does"),
     key::Number("leader_p_gain", kGain, "with leader_waypoints_m, as the waypoint law's p_gain")
         .Default("1.0")
         .Unit("1/s^2"),
-    key::Number("leader_d_gain", kGain, "likewise d_gain").Default("1.0").Unit("1/s"),
-    key::Number("leader_arrival_radius_m", Above(0, 1000), "likewise arrival_radius_m").Default("0.2"),
-    key::Number("leader_dwell_s", kTime_s, "likewise dwell_s").Default("1.0"),
-    key::Numbers("leader_times_s", kTime_s, "likewise times_s"),
+    key::Number("leader_d_gain", kGain, "with leader_waypoints_m, as the waypoint law's d_gain")
+        .Default("1.0")
+        .Unit("1/s"),
+    key::Number("leader_arrival_radius_m", Above(0, 1000),
+                "with leader_waypoints_m, as the waypoint law's arrival_radius_m")
+        .Default("0.2"),
+    key::Number("leader_dwell_s", kTime_s, "with leader_waypoints_m, as the waypoint law's dwell_s").Default("1.0"),
+    key::Numbers("leader_times_s", kTime_s, "with leader_waypoints_m, as the waypoint law's times_s"),
 };
 
-/// Reads the keys of either table above, `prefix` being what stands before their names.
+/// Reads the keys of one of the tables above, whose names begin with `prefix`. Mistakes are noted in `law`.
 WaypointParams ReadWaypoints(Section& law, const std::string& prefix);
-/// Reads `leader_waypoints_m` and its companions; none: the leader has no waypoints. Refuses them where
-/// there is no leader.
+/// Reads the keys of kLeaderFlightParameters; nullopt: the leader has no waypoints. Notes a mistake where such a key
+/// stands without a leader, or without leader_waypoints_m.
 std::optional<WaypointParams> ReadLeaderWaypoints(const LawConfig& law, Section& section);
 
-/// Flies one agent through a list of waypoints: a = p_gain (w - p) - d_gain v.
+/// Flies one agent through a list of waypoints: a = p_gain (w - p) - d_gain v, with w the target.
 class WaypointFlight {
  public:
-  /// `start_W` is the target until the first of `times_s`.
+  /// `axes`: those that count for arrival. `start_W`: the target until the first of `times_s`.
   WaypointFlight(WaypointParams params, Axes axes, const Eigen::Vector3d& start_W);
+  /// Wanted acceleration in W (m/s^2). `t_s`: simulated time, increasing from call to call.
   Eigen::Vector3d Accel_W(double t_s, const Motion& self);
 
  private:
@@ -69,7 +74,7 @@ class WaypointFlight {
   WaypointParams params_;
   Axes axes_;
   Eigen::Vector3d start_W_;
-  std::size_t next_ = 0;                  // by arrival: index of the target
+  std::size_t next_ = 0;                  // on arrival: index of the target
   std::optional<double> arrived_at_s_{};  // since when the agent has been close to it
 };
 

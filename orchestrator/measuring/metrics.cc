@@ -22,7 +22,7 @@ Eigen::Vector3d Along(Axes axes, Eigen::Vector3d v) {
 
 Metrics::Metrics(const Experiment& experiment)
     : experiment_(experiment), pursuit_(experiment), min_separation2_(std::numeric_limits<double>::infinity()) {
-  const MutedPython muted;  // the laws run a second time
+  const SuppressedPythonOutput suppressed;  // the laws run a second time
   if (experiment.output.fidelity) ideal_.emplace(experiment);
   const auto places_W = PlacesOf(experiment.law);
   formation_.offsets_m.assign(places_W.begin(), places_W.end());
@@ -90,7 +90,7 @@ void Metrics::MeasureSeparation(std::span<const Motion> motions) {
 // A law may fail where everything is exact, and only there: two agents at the very same place. The run is none the
 // worse.
 void Metrics::StepIdeal() try {
-  const MutedPython muted;
+  const SuppressedPythonOutput suppressed;
   ideal_->Step();
 } catch (const std::exception& failure) {
   ideal_failure_ = failure.what();

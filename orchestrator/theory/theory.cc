@@ -38,7 +38,7 @@ void Keep(std::optional<FirstCommand>& worst, const FirstCommand& first) {
 }
 
 void PredictFirstCommand(const Experiment& experiment, Prediction& prediction) {
-  const MutedPython muted;
+  const SuppressedPythonOutput suppressed;
   Experiment prompt = experiment;
   prompt.links = {};  // delays and losses only put off the moment at which agents hear all their neighbours
   Team team(prompt);
