@@ -6,38 +6,43 @@
 
 namespace mascot {
 
-/// Tells when no body can touch anything. Around each body lies an upright box; a look gives every box room to move in
-/// which it meets nobody else's room, nothing fixed and not the floor. Until a box leaves its room, all are clear, and
-/// to know that costs six comparisons a body; only then is it time for the next look.
+/// Tells cheaply when no body can touch anything. Each body has an upright bounding box. A check of all pairs puts a
+/// larger free box around it, which meets no other free box, nothing fixed and not the floor. As long as every body's
+/// box stays in its free box nothing can touch, and knowing that costs six comparisons per body. When a box leaves its
+/// free box, the next check is due.
 class Clearance {
  public:
-  /// Upright; low <= high in x, y, z (m). Wide enough that bodies whose boxes are apart do not act on each other.
+  /// Aligned with the axes of W; low <= high in x, y, z (m). Wide enough that bodies whose boxes are apart do not act
+  /// on each other.
   struct Box {
     Eigen::Array3d low, high;
   };
 
-  /// What the bodies keep clear of, and how many there are.
+  /// The number of bodies, and what they can touch.
   struct Scene {
-    std::vector<bool> heeds_floor;  ///< by body: the plane z = 0 is solid for it
-    bool heeds_each_other = true;
-    std::vector<Box> fixed;  ///< heeded by all
+    std::vector<bool> can_touch_floor;  ///< by body: it can touch the plane z = 0
+    bool can_touch_each_other = true;
+    std::vector<Box> fixed;  ///< boxes that do not move; all bodies can touch them
   };
   explicit Clearance(Scene scene);
 
-  /// Whether all `boxes` (by body) are apart from each other and from what is fixed, as far as those concern them.
+  /// True if all `boxes`, by body, are apart from each other and from what is fixed, as far as the scene lets them
+  /// touch.
   bool IsClear(std::span<const Box> boxes);
 
  private:
-  bool HaveRoom(std::span<const Box> boxes) const;
-  bool Look(std::span<const Box> boxes);
-  bool LookAtFixed(std::span<const Box> boxes);
-  bool LookAtEachOther(std::span<const Box> boxes);
+  /// True if no box has left its free box.
+  bool AreInFreeBoxes(std::span<const Box> boxes) const;
+  /// Compares all boxes, and makes new free boxes. Returns true if nothing meets.
+  bool Check(std::span<const Box> boxes);
+  bool CheckFixed(std::span<const Box> boxes);
+  bool CheckPairs(std::span<const Box> boxes);
 
   Scene scene_;
-  bool looked_ = false;            // rooms_ hold
-  std::vector<Box> rooms_;         // by body
-  std::vector<double> spare_m_;    // by body: how far its room reaches beyond its box
-  std::vector<std::size_t> by_x_;  // bodies, in order of low.x at the last look
+  bool has_free_boxes_ = false;    // free_boxes_ are valid
+  std::vector<Box> free_boxes_;    // by body
+  std::vector<double> margin_m_;   // by body: how far its free box exceeds its box
+  std::vector<std::size_t> by_x_;  // bodies, in order of low.x at the last check
 };
 
 }  // namespace mascot

@@ -6,7 +6,7 @@
 namespace mascot {
 
 using ModelFactory = std::unique_ptr<Model>(const Experiment& experiment, int id);
-// Each in physics_server/models/<name>.cc.
+// Defined in physics_server/models/<name>.cc.
 ModelFactory MakeQuadrotor, MakeDoubleIntegrator, MakeSingleIntegrator, MakeUnicycle;
 
 namespace {

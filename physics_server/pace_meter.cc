@@ -8,7 +8,8 @@ namespace {
 
 constexpr double kQuantiles[] = {0.5, 0.99, 1.0};
 
-/// Place of a quantile among `count` values in order: the least that has this part of them at or below it.
+/// Index of a quantile among `count` sorted values: the smallest value that has at least this part of them at or below
+/// it.
 std::uint64_t Place(double quantile, std::uint64_t count) {
   return static_cast<std::uint64_t>(std::ceil(quantile * static_cast<double>(count))) - 1;
 }

@@ -7,11 +7,12 @@
 
 namespace mascot {
 
-/// Measures how a run in real time keeps to its times. No clock: it is told.
+/// Collects how punctual a run in real time is. No clock: the caller passes in the times.
 class PaceMeter {
  public:
+  /// The states of a tick were out `lateness_s` after the tick was due.
   void AddTick(double lateness_s) { lateness_s_.push_back(lateness_s); }
-  /// A command that answered the states of `ticks` ticks ago is used.
+  /// The world is stepped with a command that answered the states of `ticks` ticks ago.
   void AddCommand(std::int64_t ticks);
   Pacing Result(double period_s) const;
 

@@ -6,21 +6,21 @@
 
 namespace mascot {
 
-/// A limit on how long something may stand still. No clock: it is told the time.
+/// A limit on how long something may make no progress. No clock: the caller passes in the time.
 class ProgressWatch {
  public:
   using Time = std::chrono::steady_clock::time_point;
   using Seconds = std::chrono::duration<double>;
 
   explicit ProgressWatch(Seconds limit) : limit_(limit) {}
-  /// `progress` is a number that changes whenever something has moved. The time runs from the first look that saw the
-  /// number as it is. True if by `now` it has been longer than the limit and `grace`.
+  /// True if `progress` has been the same for longer than the limit and `grace`. `progress` is a number that changes
+  /// whenever something moves; the time counts from the first call with its current value.
   bool IsOverdue(std::int64_t progress, Time now, Seconds grace = Seconds::zero());
 
  private:
   const Seconds limit_;
   std::optional<std::int64_t> seen_;
-  Time since_;  // the first look that saw it
+  Time since_;  // first call with this value
 };
 
 }  // namespace mascot

@@ -87,7 +87,7 @@ void Server::BeginRollCall() {
 }
 
 StartRoll::Next Server::LookAtRoll() {
-  const bool matched = Matched();  // before our lock is taken: it takes the locks of readers and writers
+  const bool matched = Matched();  // without our lock: it takes the locks of readers and writers
   const std::lock_guard lock(mutex_);
   const StartRoll::Next next = roll_.Look(WallClock::now(), matched);
   if (next == StartRoll::Next::kFail) throw std::runtime_error(roll_.Failure());

@@ -14,30 +14,31 @@
 
 namespace mascot {
 
-/// The tick loop on the wire: publish every agent's state, gather every agent's command, step the world.
-/// In lockstep the last command of a tick to arrive carries the world to the next, in the thread that
-/// received it; in real time the calling thread paces the ticks and commands are held when late.
-/// StartRoll and TickProtocol decide what is done when; Server does it.
+/// The tick loop over DDS: publishes every agent's state, gathers every agent's command, steps the world. In lockstep
+/// the world is stepped in the reception thread that brings a tick's last command. In real time the thread that calls
+/// Run() paces the ticks, and a late agent's last command is held. StartRoll and TickProtocol decide what happens when;
+/// Server does it.
 class Server {
  public:
   Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment);
 
-  /// Waits until every endpoint is matched and every agent and the recorder are ready; runs all ticks;
-  /// returns when the last command is gathered or a STOP came. Throws std::runtime_error naming who was
-  /// late, or Ended.
+  /// Waits until every endpoint is matched and every agent and the recorder are ready; runs all ticks; returns when the
+  /// last tick is answered or a STOP request has taken effect. Throws std::runtime_error naming who was late, and what
+  /// Lifecycle::Wait() throws.
   void Run();
 
  private:
   void AwaitEveryone();
   void BeginRollCall();
-  /// Throws when the time is up.
+  /// Throws std::runtime_error if run.start_timeout_s is over.
   StartRoll::Next LookAtRoll();
-  /// Every process says again how far it is, for those that did not hear it.
+  /// Asks every process to publish its status again, in case it was missed.
   void AskForReports();
   bool Matched() const;
   void RunTicks();
   void Start();
-  /// Does what it is time for. Returns when to look again; nothing: the run is finished. Throws naming who was late.
+  /// Does what is due now. Returns when to call it again; nullopt: the run is finished. Throws std::runtime_error
+  /// naming who was late.
   std::optional<TickProtocol::Time> Look();
   void Report();
 
@@ -46,25 +47,25 @@ class Server {
   // The functions below are called with mutex_ held.
   void Do(const TickProtocol::Actions& actions);
   void Publish();
-  /// Publishes to each agent those of samples_ that it may hear.
+  /// Publishes to each agent one bundle with those of samples_ that it may hear.
   void PublishBundles();
-  /// Notes how old the commands are that the world is stepped with.
+  /// Notes the age of the commands with which the world is stepped.
   void MeasureCommands();
 
   Lifecycle& lifecycle_;
   const Experiment& experiment_;
 
-  std::mutex mutex_;  // guards all below but the endpoints
+  std::mutex mutex_;  // guards what is below except the endpoints
   StartRoll roll_;
   TickProtocol ticks_;
   World world_;
-  std::vector<Actuation> commands_;  // by id - 1: what the world is stepped with
+  std::vector<Actuation> commands_;  // by id - 1: the commands with which the world is stepped
   PaceMeter pace_;
 
   std::vector<std::unique_ptr<Writer<StateType>>> states_;
-  std::vector<int> state_readers_;                            // by id - 1: how many each must find
-  std::vector<std::unique_ptr<Writer<BundleType>>> bundles_;  // none: states are delivered one by one
-  std::vector<mascot_msgs::msg::AgentState> samples_;         // what was published last, by id - 1
+  std::vector<int> state_readers_;                            // by id - 1: how many the writer must match
+  std::vector<std::unique_ptr<Writer<BundleType>>> bundles_;  // empty: states are delivered one by one
+  std::vector<mascot_msgs::msg::AgentState> samples_;         // the last states published, by id - 1
   mascot_msgs::msg::AgentBundle bundle_;
   Writer<ClockType> clock_;
   Writer<RequestType> requests_;

@@ -8,29 +8,29 @@
 
 namespace mascot {
 
-/// The roll call before a run: who is ready, when to ask again, who was missing when the time was up. No clock: it is
-/// told the time.
+/// The roll call at the start of a run: who is ready, when to ask again, who is missing when the time is up. No clock:
+/// the caller passes in the time.
 class StartRoll {
  public:
   using Time = std::chrono::steady_clock::time_point;
   enum class Next {
     kWait,
-    kAsk,    ///< everybody must be asked to say again how far they are
+    kAsk,    ///< ask every process to publish its status again
     kStart,  ///< everybody is ready
-    kFail,   ///< the time is up, for the reason Failure()
+    kFail,   ///< the time is up; Failure() says why
   };
 
-  /// `start_timeout_s` is how long a call may take.
+  /// `start_timeout_s`: how long the roll call may take.
   StartRoll(int agents, double start_timeout_s);
-  /// These agents' process said whether it is ready; what it said last counts. Agents that there are not are ignored.
+  /// The process of these agents is ready, or not; the last call counts. Ids that do not exist are ignored.
   void OnAgents(AgentRange agents, bool ready);
-  /// The recorder said so.
+  /// The recorder is ready, or not; the last call counts.
   void OnRecorder(bool ready);
-  /// The call, and its time, begin.
+  /// Starts the roll call and its time limit.
   void Begin(Time now);
-  /// `matched`: the readers and writers of whoever calls have found all of theirs.
+  /// What to do at `now`. `matched`: all readers and writers of the caller are matched.
   Next Look(Time now, bool matched);
-  /// "not ready within run.start_timeout_s = 60.0 s: agents 2, 5 and the recorder".
+  /// The failure for kFail: "not ready within run.start_timeout_s = 60.0 s: agents 2, 5 and the recorder".
   std::string Failure() const;
 
  private:

@@ -5,14 +5,14 @@
 
 namespace mascot {
 
-/// Keeps which agents have answered the current tick, and names those that are late. No DDS, no clock.
+/// Knows which agents have answered the current tick, and which are late. No DDS, no clock.
 class TickBarrier {
  public:
   explicit TickBarrier(int agents);
   /// Starts waiting for the answers to `tick`.
   void Open(std::int64_t tick);
-  /// Agent `id` answered `tick`. True if this was the last answer that the open tick waited for; an answer
-  /// to another tick, or a second one, changes nothing.
+  /// Agent `id` (1..N) answered `tick`. Returns true if this was the last answer that the open tick waited for. An
+  /// answer to another tick, or a second one, changes nothing.
   bool Answer(int id, std::int64_t tick);
   /// Agents that have not answered the open tick, in increasing id.
   std::vector<int> Late() const;

@@ -24,7 +24,7 @@ TickProtocol::Actions TickProtocol::Start() {
 
 TickProtocol::Actions TickProtocol::OnRecorded(std::int64_t rows) {
   recorded_rows_ = rows;
-  return {.publish = running_ && !finished_ && Publish(), .wake = IsRealtime()};  // the loop may wait for this very row
+  return {.publish = running_ && !finished_ && Publish(), .wake = IsRealtime()};  // the loop may wait for this row
 }
 
 TickProtocol::Actions TickProtocol::OnCommand(int id, std::int64_t tick, bool stop_requested) {
@@ -70,16 +70,16 @@ TickProtocol::Turn TickProtocol::Look(Time now, bool stop_requested) {
 }
 
 TickProtocol::Turn TickProtocol::Watch(Time now) {
-  // What is measured beside the run asks the laws of all agents, one after the other, for each row.
+  // Before it confirms a row, the recorder may run the laws of all agents, one after the other, to measure.
   const ProgressWatch::Seconds grace(AwaitsRecorder() ? (rules_.agents - 1) * rules_.agent_timeout_s : 0);
-  const std::int64_t progress = tick_ + published_;  // agents have their time from when a tick is published
+  const std::int64_t progress = tick_ + published_;  // agents have their time from a tick's publication
   const bool overdue = watch_.IsOverdue(progress, now, grace);
   return {.look_again = now + kLookEvery, .failure = overdue ? WhoIsLate() : ""};
 }
 
 TickProtocol::Turn TickProtocol::EndTick(Time due, Time now, bool stop_requested) {
   if (HoldsTooLong()) return {.due = due, .failure = WhoIsLate()};
-  timetable_->Come(tick_ + 1, now);
+  timetable_->OnTick(tick_ + 1, now);
   Turn turn{.actions = Step(), .due = due};
   paced_ = tick_ < rules_.last_tick;
   finished_ = stop_requested;

@@ -12,12 +12,13 @@
 
 namespace mascot {
 
-/// The server's part in the exchange of a run: when states are published, which commands count, when the world steps,
-/// when nobody is waited for any longer. In lockstep a tick ends with the last agent's command. In real time it ends
-/// when the next is due, with commands held that are late; only the first and the last wait for every command.
+/// The server's side of the tick protocol: decides when states are published, which commands count, when the world
+/// steps, and when waiting has taken too long. In lockstep a tick ends with the last agent's command. In real time it
+/// ends when the next one is due, and a late agent's last command is held; only the first and the last tick wait for
+/// every command.
 ///
-/// It has no world, wire, clock or lock: it is told what came, and when it looks, what time it is. Each event is
-/// answered with what the caller does at once, before the next event.
+/// No world, DDS, clock or lock: the caller passes in what arrives, and the time when it looks. It must carry out the
+/// answer to each event at once, before the next event.
 class TickProtocol {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -25,75 +26,77 @@ class TickProtocol {
   struct Rules {
     int agents = 0;
     std::int64_t last_tick = 0;
-    std::optional<double> period_s = {};  ///< of the wall clock between two ticks in real time; none: lockstep
+    std::optional<double> period_s = {};  ///< real time: wall clock between two ticks; nullopt: lockstep
     double agent_timeout_s = 0;           ///< run.agent_timeout_s
     std::int64_t recorder_window = 0;     ///< tick k is published once the recorder has tick k - recorder_window
   };
 
-  /// What the caller does, in this order.
+  /// What the caller must do, in this order.
   struct Actions {
-    bool take = false;     ///< hold the command that came, in place of the agent's last
+    bool take = false;     ///< hold this command in place of the agent's last one
     bool step = false;     ///< step the world to its next tick, with the commands held
     bool publish = false;  ///< publish the states of the world's tick
-    bool wake = false;     ///< make the loop Look without delay
+    bool wake = false;     ///< wake the loop, so that it calls Look() at once
     bool operator==(const Actions&) const = default;
   };
 
-  /// What a look at the clock leads to.
+  /// The answer to Look().
   struct Turn {
     Actions actions = {};
-    std::optional<Time> due = {};         ///< if a tick of real time ends now: when the next was due
-    std::optional<Time> look_again = {};  ///< when to Look at the latest; none: the run is over
+    std::optional<Time> due = {};         ///< set if a tick ends in real time: when the next one was due
+    std::optional<Time> look_again = {};  ///< when to call Look() at the latest; nullopt: the run is over
     std::string failure = {};             ///< why the run has failed; empty: it has not
   };
 
   explicit TickProtocol(const Rules& rules);
 
-  /// Everybody is ready. Before this, commands are ignored and nothing is published.
+  /// Starts the ticks: everybody is ready. Before this, commands are ignored and nothing is published.
   Actions Start();
   /// The recorder has confirmed all rows before row `rows`.
   Actions OnRecorded(std::int64_t rows);
-  /// Agent `id` (1..N) answered `tick`. Only a command that answers a later tick than the agent's last counts, and none
-  /// to a tick that is not published.
+  /// Agent `id` (1..N) answered `tick`. The command counts only if `tick` is published and later than the agent's last
+  /// answer.
   Actions OnCommand(int id, std::int64_t tick, bool stop_requested);
-  /// The loop's part, from Start() on: ends the ticks of real time that are due, and finds out who is late.
+  /// To be called by the loop after Start(): ends the ticks of real time that are due, and fails if somebody is late.
   Turn Look(Time now, bool stop_requested);
 
-  /// The last tick is answered, or a requested stop has taken effect. From then on no command counts and nothing is
-  /// published.
+  /// True when the last tick is answered or a requested stop has taken effect. From then on no command counts and
+  /// nothing is published.
   bool finished() const { return finished_; }
   /// The newest tick published; -1: none.
   std::int64_t published() const { return published_; }
-  /// The tick that the command held of agent `id` answered; -1: it has given none.
+  /// The tick that agent `id`'s current command answered; -1: the agent has given none.
   std::int64_t answered(int id) const { return answered_[static_cast<std::size_t>(id - 1)]; }
 
  private:
   bool IsRealtime() const { return rules_.period_s.has_value(); }
-  /// The next states wait for the recorder.
+  /// True while the states of the world's tick wait for the recorder.
   bool AwaitsRecorder() const { return published_ < tick_; }
-  /// The world's tick counts as published, unless it is already or the recorder is too far behind.
+  /// Notes that the world's tick is published. Returns false, and does nothing, if it already is or if the recorder is
+  /// too far behind.
   bool Publish();
+  /// Moves on to the next tick.
   Actions Step();
-  /// The Turn of a tick that waits for all commands, or for the recorder: fails if nothing has moved for too long.
+  /// Look() at a tick that waits for all commands, or for the recorder: fails if nothing has moved for too long.
   Turn Watch(Time now);
-  /// The Turn of a tick of real time that ends, with the commands held.
+  /// Look() in real time when the next tick is due: ends this one with the commands held.
   Turn EndTick(Time due, Time now, bool stop_requested);
-  /// A command is older than an agent may be silent.
+  /// True if a command is older than run.agent_timeout_s.
   bool HoldsTooLong() const;
   /// "tick 12: no command from agents 2, 5 within run.agent_timeout_s = 5.0 s".
   std::string WhoIsLate() const;
 
   const Rules rules_;
   bool running_ = false;
-  bool paced_ = false;  // by the timetable: in real time, between the first tick's answers and the last tick
+  bool paced_ = false;  // real time: from the first tick's answers to the last tick, the timetable ends ticks
   bool finished_ = false;
-  std::int64_t tick_ = 0;  // the world's
+  std::int64_t tick_ = 0;  // the world's tick
   std::int64_t published_ = -1;
   std::int64_t recorded_rows_ = 0;
   TickBarrier barrier_;                 // waits for the newest tick published
-  std::vector<std::int64_t> answered_;  // by id - 1
+  std::vector<std::int64_t> answered_;  // by id - 1: the last tick answered
   ProgressWatch watch_;
-  std::optional<Timetable> timetable_;  // from the first Look that paces
+  std::optional<Timetable> timetable_;  // made by the first Look() that paces
 };
 
 }  // namespace mascot

@@ -10,7 +10,7 @@ std::chrono::nanoseconds Timetable::Periods(double count) const {
 
 Timetable::Time Timetable::Due(std::int64_t tick) const { return start_ + Periods(static_cast<double>(tick)); }
 
-void Timetable::Come(std::int64_t tick, Time now) {
+void Timetable::OnTick(std::int64_t tick, Time now) {
   if (const auto late = now - Due(tick); late > Periods(1)) start_ += late;
 }
 

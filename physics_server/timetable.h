@@ -5,7 +5,7 @@
 
 namespace mascot {
 
-/// When the ticks of a run in real time are due. No clock: it is told the time.
+/// When the ticks of a run in real time are due. No clock: the caller passes in the time.
 class Timetable {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -13,9 +13,9 @@ class Timetable {
   /// Tick 0 is due at `start`, each later tick `period_s` after the one before it.
   Timetable(double period_s, Time start);
   Time Due(std::int64_t tick) const;
-  /// `tick` comes at `now`. If that is more than a period late, all later ticks are due later by as much: a machine
-  /// that cannot keep up falls behind as a whole. Hurrying after the clock would only leave the agents still less time.
-  void Come(std::int64_t tick, Time now);
+  /// `tick` happens at `now`. If that is more than a period late, all later ticks are put off by the same delay: a
+  /// machine that cannot keep up falls behind as a whole, because catching up would leave the agents even less time.
+  void OnTick(std::int64_t tick, Time now);
 
  private:
   std::chrono::nanoseconds Periods(double count) const;

@@ -8,12 +8,12 @@
 
 namespace mascot {
 
-/// The wind of an experiment, one value per physics step, common to all bodies. The same seed and step length give the
-/// same gusts; another step length gives others with the same statistics.
+/// The wind of an experiment, one value per physics step, the same for all bodies. The same seed and step length give
+/// the same gusts; another step length gives other gusts with the same statistics.
 class Wind {
  public:
   Wind(const WindConfig& config, std::uint64_t seed, double dt_s);
-  /// In W (m/s): of step 0 when called first, then of step 1, ...
+  /// The wind of the next physics step, in W (m/s). The first call is for step 0.
   Eigen::Vector3d Next();
 
  private:
@@ -23,7 +23,7 @@ class Wind {
   double renewed_m_per_s_;  // sigma sqrt(1 - rho^2)
   Dice dice_;
   std::int64_t step_ = 0;
-  Eigen::Vector3d gust_W_ = Eigen::Vector3d::Zero();  // of the step before
+  Eigen::Vector3d gust_W_ = Eigen::Vector3d::Zero();  // the gust of the last step
 };
 
 }  // namespace mascot

@@ -1,14 +1,15 @@
 // The only file that includes Bullet; built with BT_USE_DOUBLE_PRECISION.
 //
 // Bullet integrates semi-implicitly: v+ = v + dt a, p+ = p + dt v+, which puts p ahead by dt/2 * (v - v(0)). We take
-// back dt/2 (v+ - v) after each step, the trapezoidal rule: exact for a constant force, and no change for a body that
-// rests on the ground. The gyroscopic term is Bullet's implicit one (on by default for a rigid body); turning is first
-// order in dt. Bullet turns a body by at most pi/4 in a step: 785 rad/s at 1 kHz.
+// back dt/2 (v+ - v) after each step. That is the trapezoidal rule: exact for a constant force, and no change for a
+// body that rests on the ground. The gyroscopic term is Bullet's implicit one (on by default for a rigid body);
+// rotation is first order in dt. Bullet turns a body by at most pi/4 in a step: 785 rad/s at 1 kHz.
 //
 // A body driven by velocity has no acceleration to correct for: p+ = p + dt v is what its model asks for.
 //
-// Most steps touch nothing, but Bullet's broadphase, islands and solver cost most of a step even so. While the boxes
-// around all bodies are apart (Clearance), we do to each body just what a whole step would have done, to the bit.
+// In most steps nothing touches, but Bullet's broadphase, islands and solver still cost most of the step. While the
+// boxes around all bodies are apart (Clearance), we move each body by itself, with exactly the operations of a whole
+// step, so that the bits are the same.
 #include "physics_server/world.h"
 
 #include <btBulletDynamicsCommon.h>
@@ -27,9 +28,9 @@
 namespace mascot {
 namespace {
 
-// Bullet's user index of what is no agent; agents have their id.
+// Bullet user indices of bodies that are no agents; an agent has its id.
 constexpr int kGroundIndex = 0;
-constexpr int kObstacleIndex = -1;  // of the first obstacle; of the next one less, and so on
+constexpr int kObstacleIndex = -1;  // the first obstacle; the next is one less, and so on
 enum CollisionGroup { kGround = 1, kAgents = 2, kObstacles = 4 };
 
 btVector3 ToBullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -56,7 +57,7 @@ struct Body {
   std::unique_ptr<btCollisionShape> shape;
   std::unique_ptr<btRigidBody> rigid;
   Motion state;          // at the current tick
-  btVector3 v_before_W;  // before the running step
+  btVector3 v_before_W;  // at the start of the running step
   bool driven_by_velocity = false;
   double reach_of_contacts_m = 0;
 };
@@ -97,7 +98,7 @@ FixedBody MakeFixed(const Obstacle& obstacle, int user_index) {
   return body;
 }
 
-/// How far apart two surfaces may be for Bullet to make a contact point of them, as far as `shape` is concerned.
+/// Largest distance of two surfaces at which Bullet may make a contact point of them, as far as `shape` decides (m).
 double ReachOfContacts_m(const btCollisionShape& shape) {
   return std::max(gContactBreakingThreshold, shape.getContactBreakingThreshold(gContactBreakingThreshold));
 }
@@ -126,7 +127,7 @@ Body MakeBody(const Experiment& experiment, const AgentConfig& agent) {
   return body;
 }
 
-/// What Bullet knows of a body now. a_WB is left at 0: it belongs to ticks, not to steps.
+/// The motion of a body in Bullet now. a_WB is left at 0: it is defined by ticks, not by steps.
 Motion Now(const btRigidBody& rigid) {
   const btTransform& X_WB = rigid.getWorldTransform();
   Motion now;
@@ -141,7 +142,7 @@ BodyNow AtStep(const btRigidBody& rigid) {
   return {ToEigen(rigid.getWorldTransform().getBasis()), ToEigen(rigid.getLinearVelocity())};
 }
 
-/// Around all points from which the body could get a contact point.
+/// The body's bounding box, with `reach_m` added on every side: outside of it the body gets no contact point.
 Clearance::Box BoxAround(const btRigidBody& rigid, double reach_m) {
   btVector3 low, high;
   rigid.getAabb(low, high);
@@ -149,9 +150,9 @@ Clearance::Box BoxAround(const btRigidBody& rigid, double reach_m) {
 }
 
 /// One step of a body that touches nothing: gravity, forces, torques, the gyroscopic term, then the move, in the order
-/// and with the roundings of btDiscreteDynamicsWorld and its solver.
+/// and with the rounding errors of btDiscreteDynamicsWorld and its solver.
 void StepFreely(btRigidBody& rigid, double dt_s) {
-  const btVector3 of_contacts(0, 0, 0);  // the solver adds it too: -0 + 0 is 0
+  const btVector3 of_contacts(0, 0, 0);  // the solver adds this, too: -0 + 0 is 0
   rigid.applyGravity();
   const btVector3 dv_W = rigid.getTotalForce() * rigid.getInvMass() * dt_s;
   btVector3 dw_W = rigid.getTotalTorque() * rigid.getInvInertiaTensorWorld() * dt_s;
@@ -164,7 +165,7 @@ void StepFreely(btRigidBody& rigid, double dt_s) {
   rigid.clearForces();
 }
 
-/// Has `push` move the body during the step that follows.
+/// Applies `push` to the body for the next step.
 void Apply(const Push& push, Body& body) {
   const btMatrix3x3& R_WB = body.rigid->getWorldTransform().getBasis();
   body.driven_by_velocity = push.velocity.has_value();
@@ -196,16 +197,17 @@ void CheckFinite(std::span<const Actuation> commands, std::int64_t tick) {
                                                     : "-inf"));
 }
 
-/// Counts the contacts that begin. A contact begins when two surfaces touch, and ends when Bullet drops all its points,
-/// some millimetres apart (20 at most): so resting, sliding and rattling count once.
+/// Counts contacts when they begin. A contact begins when two surfaces touch, and ends when Bullet drops all its
+/// points, some millimetres apart (20 at most). So resting, sliding and rattling count once.
 class ContactCounter {
  public:
   explicit ContactCounter(std::size_t bodies) {
     lasting_.reserve(4 * bodies);
     now_.reserve(4 * bodies);
   }
-  /// Returns whether any two bodies are so close that Bullet remembers points of theirs.
-  bool Look(btDispatcher& dispatcher) {
+  /// To be called after each step. Returns true if any two bodies are so close that Bullet keeps contact points for
+  /// them.
+  bool Update(btDispatcher& dispatcher) {
     bool any = false;
     now_.clear();
     for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
@@ -225,14 +227,15 @@ class ContactCounter {
   const Contacts& begun() const { return begun_; }
 
  private:
-  using Pair = std::pair<int, int>;  // of user indices, in order; one of them at least is an agent's
+  using Pair = std::pair<int, int>;  // user indices, in order; at least one is an agent's
 
   std::int64_t& Begun(const Pair& pair) {
     if (pair.first <= kObstacleIndex) return begun_.obstacles;
     return pair.first == kGroundIndex ? begun_.ground : begun_.agents;
   }
 
-  // The solver stops a body driven by velocity just before it is inside: by how much, its path's curvature decides.
+  // The tolerance: the solver stops a body driven by velocity slightly before it touches; how far before depends on the
+  // curvature of its path.
   static bool Touches(const btPersistentManifold& manifold) {
     constexpr double kTouching_m = 1e-4;
     for (int i = 0; i < manifold.getNumContacts(); ++i)
@@ -240,7 +243,7 @@ class ContactCounter {
     return false;
   }
 
-  std::vector<Pair> lasting_, now_;  // sorted; two buffers with room, so that a step allocates nothing
+  std::vector<Pair> lasting_, now_;  // sorted; buffers with capacity, so that a step allocates nothing
   Contacts begun_;
 };
 
@@ -261,10 +264,10 @@ struct World::Impl {
   Wind wind;
   LookForContacts look;
   ContactCounter contacts;
-  bool any_contact = false;  // Bullet remembers contact points
+  bool any_contact = false;  // Bullet keeps contact points
   std::int64_t steps_with_contacts = 0;
 
-  // Bodies outlive the world that holds them, so they come first.
+  // Bodies must outlive the world that holds them, so they come first.
   Ground ground_shape;
   btRigidBody ground{0, nullptr, &ground_shape};
   std::vector<FixedBody> obstacles;
@@ -287,8 +290,8 @@ World::Impl::Impl(const Experiment& experiment, LookForContacts look_for_contact
       look(look_for_contacts),
       contacts(experiment.agents.size()) {
   collision.setPlaneConvexMultipointIterations();  // a box then stands on four points at once
-  // Bullet's own for two spheres forgets a contact as soon as they are apart: those that slide along each other would
-  // begin one again and again.
+  // Bullet's own algorithm for two spheres drops a contact as soon as they are apart: spheres that slide along each
+  // other would count again and again.
   dispatcher.registerCollisionCreateFunc(
       SPHERE_SHAPE_PROXYTYPE, SPHERE_SHAPE_PROXYTYPE,
       collision.getCollisionAlgorithmCreateFunc(CONVEX_HULL_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE));
@@ -303,7 +306,7 @@ World::Impl::Impl(const Experiment& experiment, LookForContacts look_for_contact
     world.addRigidBody(obstacles.back().rigid.get(), kObstacles, kAgents);
   }
   Clearance::Scene scene;
-  scene.heeds_each_other = experiment.physics.collisions;
+  scene.can_touch_each_other = experiment.physics.collisions;
   for (const FixedBody& obstacle : obstacles)
     if (experiment.physics.collisions)
       scene.fixed.push_back(BoxAround(*obstacle.rigid, ReachOfContacts_m(*obstacle.shape)));
@@ -313,7 +316,7 @@ World::Impl::Impl(const Experiment& experiment, LookForContacts look_for_contact
     const int ground_if_touched = bodies.back().model->touches_ground() ? kGround : 0;
     const int others = experiment.physics.collisions ? kAgents | kObstacles : 0;
     world.addRigidBody(bodies.back().rigid.get(), kAgents, ground_if_touched | others);
-    scene.heeds_floor.push_back(experiment.physics.ground && ground_if_touched != 0);
+    scene.can_touch_floor.push_back(experiment.physics.ground && ground_if_touched != 0);
   }
   clearance.emplace(std::move(scene));
   boxes.resize(bodies.size());
@@ -325,7 +328,7 @@ void World::Impl::Step(std::span<const Actuation> commands) {
     Apply(bodies[i].model->Apply(commands[i], AtStep(*bodies[i].rigid), around), bodies[i]);
   if (MayTouch()) {
     world.stepSimulation(dt_s, 0);
-    any_contact = contacts.Look(dispatcher);
+    any_contact = contacts.Update(dispatcher);
     ++steps_with_contacts;
   } else {
     for (Body& body : bodies) StepFreely(*body.rigid, dt_s);
@@ -335,7 +338,7 @@ void World::Impl::Step(std::span<const Actuation> commands) {
       body.rigid->getWorldTransform().getOrigin() -= (dt_s / 2) * (body.rigid->getLinearVelocity() - body.v_before_W);
 }
 
-/// Whether Bullet could make a contact of where bodies are now, or still has one.
+/// True if bodies are so close that Bullet could make a contact in this step, or if it still keeps one.
 bool World::Impl::MayTouch() {
   if (look == LookForContacts::kAlways || any_contact) return true;
   for (std::size_t i = 0; i < bodies.size(); ++i) boxes[i] = BoxAround(*bodies[i].rigid, bodies[i].reach_of_contacts_m);
@@ -348,7 +351,7 @@ void World::Impl::EndTick() {
     Motion now = Now(*bodies[i].rigid);
     Motion& state = bodies[i].state;
     if (!IsFinite(now)) throw std::runtime_error(At(tick, i) + "its state is not finite");
-    if (now.q_WB.dot(state.q_WB) < 0) now.q_WB.coeffs() *= -1;  // q and -q turn alike; the nearer one is continuous
+    if (now.q_WB.dot(state.q_WB) < 0) now.q_WB.coeffs() *= -1;  // q and -q are the same rotation: take the nearer one
     now.a_WB = (now.v_WB - state.v_WB) * control_rate_hz;
     state = now;
   }

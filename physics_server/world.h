@@ -14,21 +14,24 @@ namespace mascot {
 /// same experiment and commands give the same bits. No clock, no DDS.
 class World {
  public:
-  /// When Bullet looks for contacts and solves them: at steps at which bodies are close enough to touch, or at all.
-  /// The states are the same bits as long as nothing touches.
+  /// When Bullet's contact detection and solver run: at steps at which bodies are close enough to touch, or at every
+  /// step. As long as nothing touches, both give the same bits.
   enum class LookForContacts { kWhenClose, kAlways };
-  /// Bodies at their configured state, exactly.
+  /// Bodies start exactly at their configured state.
   explicit World(const Experiment& experiment, LookForContacts look = LookForContacts::kWhenClose);
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// State at the current tick. a_WB is (v(k) - v(k-1)) * control rate, 0 at tick 0.
+  /// Motion of agent `id` (1..N) at the current tick. a_WB is (v(k) - v(k-1)) * control rate, 0 at tick 0.
   Motion State(int id) const;
-  /// Runs exactly one tick (physics rate / control rate steps) with `commands[id - 1]` held.
-  /// Throws std::runtime_error naming agent and tick if a command or a resulting state is not finite.
+  /// Runs exactly one tick (physics rate / control rate steps) with `commands[id - 1]` held. Throws std::runtime_error
+  /// naming agent and tick if a command or a resulting state is not finite, std::invalid_argument if there is not one
+  /// command per agent.
   void Step(std::span<const Actuation> commands);
+  /// The current tick: 0, then one more after each Step().
   std::int64_t tick() const;
+  /// Contacts begun so far.
   Contacts contacts() const;
   std::int64_t collisions() const { return contacts().total(); }
   /// Physics steps so far at which Bullet looked for contacts.

@@ -14,9 +14,9 @@ Box At(double x, double y, double z, double half_m = 0.5) {
   return {centre - half_m, centre + half_m};
 }
 
-Clearance Bodies(std::size_t count, std::vector<Box> fixed = {}, bool heeds_each_other = true,
-                 bool heeds_floor = true) {
-  return Clearance({std::vector<bool>(count, heeds_floor), heeds_each_other, std::move(fixed)});
+Clearance Bodies(std::size_t count, std::vector<Box> fixed = {}, bool can_touch_each_other = true,
+                 bool can_touch_floor = true) {
+  return Clearance({std::vector<bool>(count, can_touch_floor), can_touch_each_other, std::move(fixed)});
 }
 
 TEST(Clearance, SeesBoxesThatMeet) {

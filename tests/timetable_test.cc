@@ -24,23 +24,23 @@ TEST(Timetable, DoesNotAddUpWhatRoundingCutsOff) {
 
 TEST(Timetable, StaysWhenATickIsLateByAPeriodOrLess) {
   Timetable timetable(0.01, kStart);
-  timetable.Come(1, kStart + 10ms);
-  timetable.Come(2, kStart + 25ms);
-  timetable.Come(3, kStart + 40ms);
+  timetable.OnTick(1, kStart + 10ms);
+  timetable.OnTick(2, kStart + 25ms);
+  timetable.OnTick(3, kStart + 40ms);
   EXPECT_EQ(timetable.Due(4), kStart + 40ms) << "that is made up for";
 }
 
 TEST(Timetable, MovesByAllOfADelayOfMoreThanAPeriod) {
   Timetable timetable(0.01, kStart);
-  timetable.Come(1, kStart + 20ms + 1ns);
+  timetable.OnTick(1, kStart + 20ms + 1ns);
   EXPECT_EQ(timetable.Due(2), kStart + 30ms + 1ns) << "a whole period after tick 1 came";
-  timetable.Come(2, kStart + 30ms + 1ns);
+  timetable.OnTick(2, kStart + 30ms + 1ns);
   EXPECT_EQ(timetable.Due(3), kStart + 40ms + 1ns) << "and not again for the same delay";
 }
 
 TEST(Timetable, FallsBehindByAsMuchAtEveryTickThatIsTooLate) {
   Timetable timetable(0.01, kStart);
-  for (std::int64_t tick = 1; tick <= 100; ++tick) timetable.Come(tick, kStart + tick * 30ms);
+  for (std::int64_t tick = 1; tick <= 100; ++tick) timetable.OnTick(tick, kStart + tick * 30ms);
   EXPECT_EQ(timetable.Due(101), kStart + 100 * 30ms + 10ms);
 }
 

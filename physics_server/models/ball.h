@@ -4,7 +4,7 @@
 
 namespace mascot {
 
-/// The body of every model without rotors: a solid sphere that neither gravity nor air moves.
+/// The body of every model without rotors: a solid sphere (2/5 m r^2) that feels neither gravity nor air.
 class Ball : public Model {
  public:
   double mass_kg() const override { return kDoubleIntegratorMass_kg; }

@@ -1,4 +1,5 @@
-// A point that accelerates as it is told: m dv/dt = u, no gravity, no drag. What the laws' theory is about.
+// Double integrator: m dv/dt = u, the force u in W; no gravity, no drag. The model that the theory of most laws
+// assumes.
 #include "physics_server/models/ball.h"
 
 namespace mascot {

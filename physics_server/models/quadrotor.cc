@@ -1,8 +1,8 @@
-// Quadrotor of the paper, with our axes (z_B up):
+// The quadrotor of the MASCOT paper (Pandit, Njattuvetty, Mulla), with our axes (z_B up):
 //   m dv/dt = m g_W + R_WB [0, 0, T] - B (v - wind),   [T, Gamma] = A [w1^2 .. w4^2],   J dw/dt = -w x J w + Gamma
-// Rotor speeds follow the command between 0 and their maximum, with a first-order lag if the airframe has one. A rotor
-// that failed turns as told, but only a part of its w^2 counts. Gravity and the gyroscopic term -w x J w are the
-// world's.
+// Rotor speeds follow the command between 0 and their maximum, with a first-order lag if the airframe has one. A failed
+// rotor still follows its command, but only the remaining part of its thrust and torque acts. World adds gravity and
+// the gyroscopic term -w x J w.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -38,13 +38,13 @@ class Quadrotor final : public Model {
   }
 
  private:
-  // Which part of the way to a constant command a rotor goes in dt: exact for a first-order lag.
+  // Part of the way to a constant command that a rotor speed goes in dt; exact for a first-order lag.
   double Followed(double dt_s) const {
     const double lag_s = airframe_.rotor_time_constant_s;
     return lag_s > 0 ? -std::expm1(-dt_s / lag_s) : 1;
   }
 
-  /// Which part of each rotor's thrust and torque is left.
+  /// Part of each rotor's thrust and torque that is left.
   Eigen::Vector4d Remaining(double t_s) const {
     constexpr double kRounding_s = 1e-9;
     Eigen::Vector4d remaining = Eigen::Vector4d::Ones();
@@ -54,7 +54,7 @@ class Quadrotor final : public Model {
   }
 
   Airframe airframe_;
-  std::vector<RotorFailure> failures_;  // in order of time: the latest that began counts
+  std::vector<RotorFailure> failures_;  // in order of time: the last that has begun counts
   Eigen::Matrix4d allocation_;          // A
   double max_rotor_speed_;              // rad/s
   Eigen::Vector4d rotor_speed_;         // rad/s; starts at hover

@@ -1,4 +1,4 @@
-// A point that moves as it is told: dp/dt = u. What first-order theory is about.
+// Single integrator: dp/dt = u, the velocity u in W. The model that first-order theory assumes.
 #include "physics_server/models/ball.h"
 
 namespace mascot {

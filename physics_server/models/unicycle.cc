@@ -1,7 +1,8 @@
-// A vehicle that rolls forward and turns in the horizontal plane of its start, without slipping sideways:
+// Unicycle: rolls forward and turns in the horizontal plane of its start, without slipping sideways:
 //   dx/dt = v cos theta,   dy/dt = v sin theta,   d theta/dt = w
-// With v and w held for dt it rolls along an arc, whose chord is v dt sin(a)/a long, a = w dt/2, in the direction
-// theta + a. A body of the world moves straight during a step: along that chord, so that it ends on the arc.
+// With v and w held for dt it rolls along an arc. The chord of the arc is v dt sin(a)/a long, with a = w dt/2, in the
+// direction theta + a. Bullet moves a body straight during a step: we move it along the chord, so that it ends on the
+// arc.
 #include <cmath>
 
 #include "physics_server/models/ball.h"
