@@ -16,8 +16,8 @@ constexpr const char* kAlignment = "EIGEN_MAX_STATIC_ALIGN_BYTES";
   throw std::runtime_error("expected " + expected + ", got " + got);
 }
 
-/// Throws unless `path` is a regular file. The loader would wait for ever for a writer of a pipe, and its message for a
-/// folder is odd.
+/// Throws unless `path` is a regular file. The loader would wait for ever on a pipe, and its message for a folder is
+/// misleading.
 void RequireRegularFile(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;

@@ -34,14 +34,14 @@ struct PursuitForm {
   bool root_flies = false;          ///< the root flies waypoints; else its acceleration is 0
 };
 
-/// How scripts/plot.py, which reads it from summary.json, draws a run of a law.
+/// Plot settings of a law: summary.json passes them to scripts/plot.py.
 struct Drawing {
   std::string_view leader = "leader";          ///< word for the agent law.leader
   bool switches = false;                       ///< commands jump between limits: show their moving mean, too
   std::span<const std::string_view> pictures;  ///< pictures besides positions and velocities
 };
 
-/// A row of the table of laws: all that other rooms may know about a law. `orchestrator laws` prints the texts.
+/// A row of the table of laws: all that other libraries may know about a law. `orchestrator laws` prints the texts.
 struct LawEntry {
   std::string_view name;
   std::string_view summary;

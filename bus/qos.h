@@ -11,7 +11,7 @@
 
 namespace mascot {
 
-/// History depth of per-tick topics (bundles have less: nobody records them), for writers and for the recorder. The
+/// History depth of per-tick topics (bundles have less: they are not recorded), for writers and for the recorder. The
 /// server publishes tick k only after the recorder has confirmed tick k - kRecorderWindow, so no sample is overwritten
 /// before it was recorded.
 inline constexpr int kHistoryDepth = 128;
@@ -25,7 +25,7 @@ enum class DiscoveryRole {
   kServer,    ///< is the discovery server
 };
 
-/// Where and how a process joins a run.
+/// How a process joins the DDS domain of a run.
 struct DomainOptions {
   int domain = 0;
   std::string transport = "auto";  ///< one of TransportNames()

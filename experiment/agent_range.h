@@ -4,7 +4,7 @@
 
 namespace mascot {
 
-/// Agents `first` to `last`, who share a process.
+/// Agents `first` to `last`, which share a process.
 struct AgentRange {
   int first = 0;
   int last = 0;

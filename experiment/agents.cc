@@ -18,7 +18,7 @@ constexpr std::string_view kHosts[] = {"local", "external"};
 constexpr Key kRandomKeys[] = {
     key::Vector3("min_m", kPlace_m, "a corner of the box that they start in").Default("[-10, -10, 1]"),
     key::Vector3("max_m", kPlace_m, "the corner opposite").Otherwise("[10, 10, 4], larger for many agents"),
-    key::Number("min_separation_m", {0, 1e6}, "at least between any two; in z alone where `law.axes = \"xy\"`")
+    key::Number("min_separation_m", {0, 1e6}, "smallest distance between any two; in z alone where `law.axes = \"xy\"`")
         .Default("0.5"),
 };
 
@@ -29,7 +29,7 @@ Key AirframeKey() {
   return row;
 }
 
-/// One vector for each agent; notes a list of another length.
+/// The vectors of `key`, one per agent; notes a mistake if there are too many or too few.
 std::vector<Eigen::Vector3d> OnePerAgent(Section& agents, std::string_view key, std::size_t count) {
   std::vector<Eigen::Vector3d> points = agents.Points(key);
   if (count > 0 && !agents.Wrong(key) && points.size() != count)
@@ -60,15 +60,15 @@ void ReadPositions(Section& agents, Experiment& experiment) {
                        " inside obstacle " + std::to_string(hit->second));
 }
 
-/// How many stand on the ground.
+/// Number of agents that stand on the ground.
 double Standing(const Experiment& experiment) {
   if (!experiment.physics.ground) return 0;
   return static_cast<double>(
       std::ranges::count_if(experiment.agents, [](const AgentConfig& agent) { return agent.traits().rolls; }));
 }
 
-/// The default box grows with the agents: in height, so that those that fly have room above each other, and in length
-/// and width, so that those that stand leave four fifths of it free.
+/// Reads [agents.random]. The default box grows with the number of agents: in height, so that flying agents have room
+/// above each other, and in length and width, so that standing agents leave four fifths of it free.
 Box ReadBox(Section& random, const Experiment& experiment) {
   Box box;
   box.in_z_alone = experiment.law.axes == Axes::kXy;
@@ -125,7 +125,7 @@ AgentOverride ReadOverride(Section& section, std::vector<AgentConfig>& agents, s
   return {.id = agents.empty() || section.Wrong("id") ? 0 : static_cast<int>(id), .section = section};
 }
 
-/// Initial yaws, one per agent.
+/// Reads the initial yaws, one per agent.
 void ReadHeadings(Section& agents, std::vector<AgentConfig>& team) {
   if (!agents.Has("heading_rad")) return;
   const std::vector<double> headings = agents.Numbers("heading_rad");
@@ -139,14 +139,15 @@ void ReadHeadings(Section& agents, std::vector<AgentConfig>& team) {
 
 std::span<const Key> AgentsKeys() {
   static const Key override_keys[] = {
-      key::Integer("id", 1, kMaxAgents, "whom this is for").Required(),
-      key::OneOf("model", ModelNames(), "what it is").Otherwise("the team's"),
+      key::Integer("id", 1, kMaxAgents, "number of the agent that this is for").Required(),
+      key::OneOf("model", ModelNames(), "its model").Otherwise("the team's"),
       AirframeKey().Otherwise("the team's"),
       key::Table("control", AgentControlKeys(), "what is left out is as in `[control]`"),
       key::Table("law", LawKeys(),
-                 "a law of its own; what is left out is as in `[law]`, if that is of the same name, or none is given"),
-      key::Number("start_s", kTime_s, "before, its law is off: it stands still, and nobody hears it").Default("0.0"),
-      key::Number("stop_s", kTime_s, "from then on likewise").Otherwise("never"),
+                 "a law of its own; what is left out is as in `[law]`, if its name is the same or left out"),
+      key::Number("start_s", kTime_s, "before this time its law is off: it stands still, and nobody hears it")
+          .Default("0.0"),
+      key::Number("stop_s", kTime_s, "from this time on its law is off again").Otherwise("never"),
       key::OneOf("host", kHosts, "external: started by hand, on this host or another, and waited for")
           .Default("\"local\""),
   };
@@ -156,7 +157,7 @@ std::span<const Key> AgentsKeys() {
       AirframeKey().Default("\"mascot\""),
       key::Points("position_m", kPlace_m, "where each starts, in W"),
       key::Table("random", kRandomKeys, "places drawn by `run.seed`; used without `position_m`"),
-      key::Points("velocity_m_per_s", {-1000, 1000}, "with which each starts, in W").Otherwise("all zero"),
+      key::Points("velocity_m_per_s", {-1000, 1000}, "velocity with which each starts, in W").Otherwise("all zero"),
       key::Numbers("heading_rad", {-10, 10}, "yaw with which each starts").Otherwise("all zero"),
       key::Tables("override", override_keys, "what is different about one agent"),
   };

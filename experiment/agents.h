@@ -8,18 +8,18 @@
 
 namespace mascot {
 
-/// What one [[agents.override]] is about.
+/// One [[agents.override]] that is not read to its end.
 struct AgentOverride {
-  int id = 0;  ///< 0: not known for a mistake
+  int id = 0;  ///< 0: unknown because of a mistake
   Section section;
-  std::optional<Section> law = {};  ///< the table of a law of its own, from which its parameters are still to be read
+  std::optional<Section> law = {};  ///< its own law table, whose parameters are still to be read
 };
 
 /// The keys of [agents].
 std::span<const Key> AgentsKeys();
-/// Reads [agents], all but its count, into experiment.agents; [run], [physics] and [law] are read already.
-/// With `count` = 0, not known for a mistake, sizes are not checked and there are no agents. Returns the overrides,
-/// whose tables of other sections (control, law) are still to be read, and Done() to be called.
+/// Reads [agents] except its count into experiment.agents; [run], [physics] and [law] must have been read. With `count`
+/// = 0 (unknown because of a mistake) sizes are not checked and there are no agents. Returns the overrides: the caller
+/// must still read their tables of other sections (control, law) and call Done().
 std::vector<AgentOverride> ReadAgents(Section& agents, int count, Experiment& experiment);
 
 }  // namespace mascot

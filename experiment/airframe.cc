@@ -8,14 +8,15 @@
 namespace mascot {
 namespace {
 
-// The body published with MASCOT: mass, inertia, total thrust and four of the gains are the paper's. Not published are
-// arm, b, k, B and size, chosen so that they fit what is:
+// The body published with MASCOT: mass, inertia, total thrust and four of the gains are the paper's. The paper does
+// not give arm, b, k, B and size; they are chosen to fit what it gives:
 //  * arm: Jz = 0.218 kg m^2 needs mass at sqrt(Jz / m) = 0.38 m from the axis at least; 0.5 m puts 60 % of it into the
 //    motors. It leaves 0.5 m * 7.2 N / Jx = 31 rad/s^2 of roll acceleration at hover, which bounds the attitude gains.
 //  * b, k: a 10 inch propeller, 7.5 N at 790 rad/s, k / b = 0.02 m.
 //  * B: 0.1 kg/s, a terminal velocity of 145 m/s in free fall and 0.7 % of the weight at 1 m/s.
-//  * size: the square whose corners are the rotors, so that a tilted body does not hit what its rotors would miss.
-// The paper prints its roll/pitch and yaw gains only; the altitude loop is ours, and position = 0 leaves the reference
+//  * size: as large as the square with the rotors at its corners, so that a tilted body does not hit what its rotors
+//    would miss.
+// The paper prints only its roll/pitch and yaw gains; the altitude loop is ours, and position = 0 leaves the reference
 // loop out, as the paper does.
 Airframe Published() {
   Airframe body;
@@ -36,9 +37,9 @@ Airframe Published() {
   return body;
 }
 
-// The same body with gains tuned so that agents move as double integrators do. Attitude: 25 rad/s, damping 0.6, as
-// fast as a control rate of 100 Hz and the rotors' torque allow a bang-bang law; faster ones saturate and swing.
-// Position: 1 rad/s, well below it.
+// The same body with gains tuned so that agents move as double integrators do. Attitude: 25 rad/s, damping 0.6, as fast
+// as a control rate of 100 Hz and the torque of the rotors allow for a bang-bang law; faster gains saturate and
+// oscillate. Position: 1 rad/s, well below the attitude.
 Airframe Mascot() {
   Airframe body = Published();
   body.tilt_limit_rad = 0.35;
@@ -51,7 +52,7 @@ Airframe Mascot() {
 
 // Bitcraze Crazyflie 2. Inertia and drag: Foerster, "System Identification of the Crazyflie 2.0 Nano Quadrocopter"
 // (ETH Zurich 2015); b and k: Luis & Le Ny, "Design of a Trajectory Tracking Controller for a Nanoquadcopter" (2016).
-// Its rotors are flown here as a plus; their lag is an estimate, and bounds the attitude gains.
+// We put its rotors in the plus layout; their lag is an estimate, and bounds the attitude gains.
 Airframe Crazyflie() {
   Airframe body;
   body.mass_kg = 0.027;
@@ -92,19 +93,18 @@ constexpr Key kGainKeys[] = {
 };
 
 constexpr Key kKeys[] = {
-    key::OneOf("base", kNames, "a built-in airframe, from which everything comes that this table leaves out")
-        .Default("\"mascot\""),
-    key::Text("name", "what it is called").Otherwise(kOfBase),
+    key::OneOf("base", kNames, "the built-in airframe that gives what this table leaves out").Default("\"mascot\""),
+    key::Text("name", "name of the airframe").Otherwise(kOfBase),
     key::Number("mass_kg", Above(0, 1e4), "mass").Otherwise(kOfBase),
     key::Vector3("inertia_kg_m2", {0, 1e6}, "moments of inertia about x, y, z of B").Otherwise(kOfBase),
     key::Number("arm_m", Above(0, 100), "d: centre to rotor").Otherwise(kOfBase),
     key::Number("lift_n_s2", Above(0, 1), "b: thrust of a rotor per squared speed").Otherwise(kOfBase),
     key::Number("drag_n_m_s2", Above(0, 1), "k: torque of a rotor per squared speed").Otherwise(kOfBase),
     key::Number("linear_drag_kg_per_s", {0, 1e3}, "B: force per airspeed").Otherwise(kOfBase),
-    key::Number("max_thrust_n", Above(0, 1e6), "of all four rotors together").Otherwise(kOfBase),
+    key::Number("max_thrust_n", Above(0, 1e6), "thrust of all four rotors together").Otherwise(kOfBase),
     key::Number("rotor_time_constant_s", {0, 10}, "lag of the rotor speed; 0: none").Otherwise(kOfBase),
     key::Vector3("size_m", {1e-3, 100}, "collision box, full lengths").Otherwise(kOfBase),
-    key::Number("tilt_limit_rad", Above(0, 1.5), "of roll and of pitch").Otherwise(kOfBase),
+    key::Number("tilt_limit_rad", Above(0, 1.5), "limit on roll and on pitch").Otherwise(kOfBase),
     key::Table("altitude", kGainKeys, "m/s^2 per m and per m/s"),
     key::Table("heading", kGainKeys, "rad/s^2 per rad and per rad/s"),
     key::Table("attitude", kGainKeys, "roll and pitch: rad/s^2 per rad and per rad/s"),
@@ -120,7 +120,7 @@ PdGains ReadGains(Section& table, std::string_view key, const PdGains& base) {
   return read;
 }
 
-// Of any rigid body, each moment of inertia is at most the sum of the other two, and none is zero.
+// True for moments of inertia that a rigid body can have: none is zero, and each is at most the sum of the other two.
 bool IsPossibleInertia(const Eigen::Vector3d& moments) {
   return moments.minCoeff() > 0 && 2 * moments.maxCoeff() <= moments.sum() * (1 + 1e-12);
 }

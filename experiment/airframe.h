@@ -15,11 +15,11 @@ struct PdGains {
   double kd = 0;
 };
 
-/// A quadrotor's body, rotors, default gains and limits. Shared by physics and controller, so that both
-/// mean the same machine.
+/// A quadrotor's body, rotors, default gains and limits. Physics and controller share it, so that both work with the
+/// same machine.
 ///
-/// Rotors i = 1..4 ("plus" layout, seen from above): 1 front (+x), 2 left (+y), 3 back (-x), 4 right (-y); 1 and 3 spin
-/// so that their drag torque on the body is +z, 2 and 4 -z. With b = lift, k = drag, d = arm:
+/// Rotors i = 1..4 ("plus" layout, seen from above): 1 front (+x), 2 left (+y), 3 back (-x), 4 right (-y). Rotors 1 and
+/// 3 spin so that their drag torque on the body is along +z, 2 and 4 along -z. With b = lift, k = drag, d = arm:
 ///   T      =  b (w1^2 + w2^2 + w3^2 + w4^2)     thrust along +z_B (N)
 ///   Gx     =  b d (w2^2 - w4^2)                 roll torque (N m)
 ///   Gy     =  b d (w3^2 - w1^2)                 pitch torque (N m)
@@ -42,18 +42,18 @@ struct Airframe {
   PdGains attitude;  ///< roll and pitch alike; rad/s^2 per rad and per rad/s (times J)
   PdGains position;  ///< m/s^2 per m and per m/s; tracks, in x and y, the ideal double integrator under the same law
 
-  Eigen::Matrix4d Allocation() const;  ///< A above
-  double MaxRotorSpeed() const;        ///< rad/s, from max_thrust_n
-  double HoverRotorSpeed(double gravity_m_per_s2) const;
+  Eigen::Matrix4d Allocation() const;                     ///< A above
+  double MaxRotorSpeed() const;                           ///< rad/s, from max_thrust_n
+  double HoverRotorSpeed(double gravity_m_per_s2) const;  ///< rad/s, at which the thrust is the weight
 };
 
-/// Every built-in airframe: `mascot`, `mascot_published`, `crazyflie`.
+/// The built-in airframes: `mascot`, `mascot_published`, `crazyflie`.
 std::span<const Airframe> Airframes();
 std::span<const std::string_view> AirframeNames();
-/// The keys of a table that describes one.
+/// The keys of a table that describes an airframe.
 std::span<const Key> AirframeKeys();
-/// Reads `key` of `agents`: a name, or a table whose keys are the fields above (defaults: those of
-/// `base`, a built-in name, itself by default "mascot").
+/// Reads `key` of `agents`: the name of a built-in airframe, or a table whose keys are the fields above. What the table
+/// leaves out comes from the built-in airframe `base`, by default "mascot".
 Airframe ReadAirframe(Section& agents, std::string_view key);
 
 }  // namespace mascot

@@ -4,7 +4,7 @@
 
 namespace mascot {
 
-/// Contacts of agents begun so far, by what they touched; one that lasts counts once.
+/// Number of contacts begun so far, by what an agent touched; a contact that lasts counts once.
 struct Contacts {
   std::int64_t agents = 0;  ///< between two agents
   std::int64_t ground = 0;

@@ -14,21 +14,23 @@ constexpr Key kGainKeys[] = {
 };
 
 constexpr std::array kAgentKeys = {
-    key::Table("altitude", kGainKeys, "gains of that loop: m/s^2 per m and per m/s").Otherwise(kOfAirframe),
+    key::Table("altitude", kGainKeys, "gains of the altitude loop: m/s^2 per m and per m/s").Otherwise(kOfAirframe),
     key::Table("heading", kGainKeys, "rad/s^2 per rad and per rad/s").Otherwise(kOfAirframe),
     key::Table("attitude", kGainKeys, "roll and pitch: rad/s^2 per rad and per rad/s").Otherwise(kOfAirframe),
     key::Table("position", kGainKeys, "x and y: m/s^2 per m and per m/s").Otherwise(kOfAirframe),
     key::Number("heading_rad", {-10, 10}, "wanted yaw").Default("0.0"),
     key::Number("max_acceleration_m_per_s2", Above(0, 1000), "limit on what the law wants, per axis; cuts are counted")
         .Default("3.0"),
-    key::Number("max_speed_m_per_s", Above(0, 1000), "likewise, where the law wants a velocity").Default("100.0"),
+    key::Number("max_speed_m_per_s", Above(0, 1000), "limit on a wanted velocity, per axis; cuts are counted")
+        .Default("100.0"),
     key::Number("velocity_gain", Above(0, 1000),
                 "k_v: a wanted velocity v* asks a model driven by acceleration for k_v (v* - v)")
         .Default("2.0")
         .Unit("1/s"),
-    key::Number("look_ahead_m", Above(0, 100), "of a unicycle: how far ahead the point lies that does what is wanted")
+    key::Number("look_ahead_m", Above(0, 100),
+                "unicycle: distance from its centre to the point ahead of it that moves as wanted")
         .Default("0.1"),
-    key::Number("tilt_limit_rad", Above(0, 1.5), "of roll and of pitch").Otherwise(kOfAirframe),
+    key::Number("tilt_limit_rad", Above(0, 1.5), "limit on roll and on pitch").Otherwise(kOfAirframe),
     key::OneOf("inversion", kInversions.names(),
                "how a wanted acceleration becomes roll, pitch and thrust; the paper's is small_angle")
         .Default("\"small_angle\""),
@@ -40,7 +42,7 @@ constexpr auto kKeys = Joined(
         key::Integer("rate_hz", 1, 100000, "ticks per simulated second; divides `physics.rate_hz`").Default("100")},
     kAgentKeys);
 
-/// Gains given for one loop, in place of the airframe's.
+/// Reads the gains of one loop, if given, in place of the airframe's.
 void ReadGains(Section& control, std::string_view key, PdGains Airframe::*loop, std::span<AgentConfig> agents) {
   if (!control.Has(key)) return;
   Section section = control.Child(key);

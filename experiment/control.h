@@ -7,11 +7,11 @@
 
 namespace mascot {
 
-/// The keys of [control], and those that an agent may have different.
+/// The keys of [control], and those of an agent's own control table.
 std::span<const Key> ControlKeys();
 std::span<const Key> AgentControlKeys();
-/// Reads all of `control` that may differ from agent to agent, into `agents`: their ControlConfig, and what stands in
-/// place of their airframes' gains and limits.
+/// Reads from `control` what may differ from agent to agent (all but rate_hz) into `agents`: their ControlConfig, and
+/// the gains and limits that replace those of their airframes.
 void ReadControl(Section& control, std::span<AgentConfig> agents);
 
 }  // namespace mascot

@@ -26,7 +26,7 @@ enum class Scheduler { kOther, kFifo };
 inline constexpr EnumNames<Scheduler, 2> kSchedulers({{Scheduler::kOther, "other"}, {Scheduler::kFifo, "fifo"}});
 enum class Axes { kXy, kXyz };
 inline constexpr EnumNames<Axes, 2> kAxes({{Axes::kXy, "xy"}, {Axes::kXyz, "xyz"}});
-/// x and y, or z too: how many of a vector's first components the law moves.
+/// Number of a vector's first components that the law controls: x and y, or all three.
 constexpr int CountOf(Axes axes) { return axes == Axes::kXyz ? 3 : 2; }
 enum class Inversion { kSmallAngle, kExact };
 inline constexpr EnumNames<Inversion, 2> kInversions({{Inversion::kSmallAngle, "small_angle"},
@@ -34,44 +34,45 @@ inline constexpr EnumNames<Inversion, 2> kInversions({{Inversion::kSmallAngle, "
 enum class Delivery { kTopics, kBundled };
 inline constexpr EnumNames<Delivery, 2> kDeliveries({{Delivery::kTopics, "topics"}, {Delivery::kBundled, "bundled"}});
 
-/// [control], or what an agent has in its place.
+/// [control], or an agent's own control table.
 struct ControlConfig {
   double heading_rad = 0;
   double max_acceleration_m_per_s2 = 3;
-  double max_speed_m_per_s = 100;  ///< on wanted velocities; nothing limits the speed that accelerations add up to
+  double max_speed_m_per_s = 100;  ///< limit on a wanted velocity, per axis; accelerations may add up to more
   double velocity_gain = 2;   ///< k_v (1/s): a wanted velocity v* asks a model driven by acceleration for k_v (v* - v)
-  double look_ahead_m = 0.1;  ///< of a unicycle: how far ahead the point lies that does what is wanted
+  double look_ahead_m = 0.1;  ///< unicycle: distance to the point ahead that moves as wanted
   Inversion inversion = Inversion::kSmallAngle;
   bool drag_compensation = true;  ///< adds the known drag B v / m to the wanted acceleration
 };
 
-/// What a law has read from its own keys of [law]: each law derives its own (agent/laws/). Read once, then shared by
-/// all agents of that law.
+/// Parameters that a law has read from its own keys in [law]; each law derives its own type (agent/laws/). Read once,
+/// then shared by all agents with that law.
 struct LawParams {
   virtual ~LawParams() = default;
   bool sends_messages = false;
 };
 
-/// [law], or what an agent has in its place.
+/// [law], or an agent's own law table.
 struct LawConfig {
   std::string name;
   int leader = 0;  ///< 0 = none
   Axes axes = Axes::kXy;
-  std::shared_ptr<const LawParams> params;  ///< null where the experiment was read without laws (the physics server)
+  std::shared_ptr<const LawParams> params;  ///< null if the experiment was read without laws (the physics server)
 };
 
+/// What an experiment says about one agent.
 struct AgentConfig {
   int id = 0;                                     ///< 1..N
-  std::string model;                              ///< a name of the models' table
+  std::string model;                              ///< one of ModelNames()
   Airframe airframe;                              ///< with the gains and limits of `control` already applied
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< initial position (m)
   Eigen::Vector3d v_W = Eigen::Vector3d::Zero();  ///< initial velocity (m/s)
   double heading_rad = 0;                         ///< initial yaw
   ControlConfig control;
   LawConfig law;
-  bool has_own_law = false;     ///< `law` is not the team's
+  bool has_own_law = false;     ///< `law` is the agent's own, not the team's
   bool sends_messages = false;  ///< its law sends messages: it has a topic for them
-  /// From start_s up to stop_s its law is on and others may hear it; before and after, it stands still.
+  /// From start_s until before stop_s its law is on, and others may hear it; before and after, it stands still.
   double start_s = 0;
   double stop_s = std::numeric_limits<double>::infinity();
   bool external = false;  ///< started by hand and waited for
@@ -83,11 +84,11 @@ struct AgentConfig {
   }
 };
 
-/// One experiment: everything that processes of a run must agree on. Field names are the TOML keys.
+/// One experiment: everything that the processes of a run must agree on. Field names are the TOML keys.
 struct Experiment {
   /// TOML text with every default: the file that reproduces the run.
   std::string resolved;
-  /// Somebody read it before and found no mistake: what takes long to check (a law's own code) need not be again.
+  /// True if it was read before without a mistake: slow checks (which run the code of a law) are left out.
   bool checked = false;
   struct {
     std::string name;
@@ -106,9 +107,9 @@ struct Experiment {
   struct {
     int rate_hz = 100;
   } control;
-  /// Who may ever hear whom: every edge that some phase of `schedule` has. Readers exist for these.
+  /// All edges of all phases of `schedule`: who may ever hear whom. DDS readers exist for these edges.
   Graph graph{{}};
-  /// Who hears whom when.
+  /// The graph over time: who hears whom when.
   Schedule schedule;
   LinkTable links;
   SensorConfig sensors;
@@ -137,7 +138,7 @@ struct Experiment {
 
   int size() const { return static_cast<int>(agents.size()); }
   const AgentConfig& agent(int id) const { return agents[static_cast<std::size_t>(id - 1)]; }
-  /// K: ticks run from 0 to K.
+  /// The number K of the last tick: ticks run from 0 to K.
   std::int64_t ticks() const;
   double period_s() const { return 1.0 / control.rate_hz; }
   /// Simulated time of tick k: divided, never accumulated.

@@ -7,8 +7,8 @@ namespace mascot {
 namespace {
 
 constexpr Key kBurstKeys[] = {
-    key::Number("good_to_bad", {0, 1}, "probability per sample that a good link turns bad").Required(),
-    key::Number("bad_to_good", {0, 1}, "probability per sample that a bad one turns good").Required(),
+    key::Number("good_to_bad", {0, 1}, "probability per tick that a good link turns bad").Required(),
+    key::Number("bad_to_good", {0, 1}, "probability per tick that a bad link turns good").Required(),
     key::Number("loss_good", {0, 1}, "probability of a loss while it is good").Default("0.0"),
     key::Number("loss_bad", {0, 1}, "probability of a loss while it is bad").Default("1.0"),
 };

@@ -11,16 +11,16 @@ namespace mascot {
 
 inline constexpr double kLongestDelay_s = 60;
 
-/// Loss in bursts: a link that changes between a good and a bad state from sample to sample. Gilbert (Bell Syst. Tech.
-/// J. 39, 1960), Elliott (42, 1963).
+/// Loss in bursts: the link changes between a good and a bad state from tick to tick. Gilbert (Bell Syst. Tech. J. 39,
+/// 1960), Elliott (42, 1963).
 struct GilbertElliott {
-  double good_to_bad = 0;  ///< probability per sample
+  double good_to_bad = 0;  ///< probability per tick
   double bad_to_good = 1;
-  double loss_good = 0;  ///< probability of a loss in each state
-  double loss_bad = 1;
+  double loss_good = 0;  ///< probability that a sample is lost in the good state
+  double loss_bad = 1;   ///< probability that a sample is lost in the bad state
 };
 
-/// What happens to samples on the way from one agent to another, in simulated time.
+/// Loss and delay of samples on the way from one agent to another, in simulated time.
 struct LinkConfig {
   double loss = 0;  ///< probability, independent from sample to sample; not used with `bursts`
   std::optional<GilbertElliott> bursts;
@@ -33,7 +33,7 @@ struct LinkConfig {
   bool IsPerfect() const { return loss == 0 && !bursts && delay_s == 0 && jitter_s == 0; }
 };
 
-/// [link]: what all links are like, and those that differ.
+/// [link]: what the links are like, and the overrides for single edges.
 class LinkTable {
  public:
   LinkTable() = default;
@@ -45,7 +45,7 @@ class LinkTable {
     const auto special = special_.find({hearer, heard});
     return special == special_.end() ? common_ : special->second;
   }
-  /// Every link of `graph` delivers every sample at once.
+  /// True if every link of `graph` delivers every sample at once.
   bool ArePerfect(const Graph& graph) const;
 
  private:
@@ -55,7 +55,7 @@ class LinkTable {
 
 /// The keys of [link].
 std::span<const Key> LinkKeys();
-/// Reads [link] for the edges of `graph` (no agents: not known for a mistake elsewhere).
+/// Reads [link] for the edges of `graph` (no agents: unknown because of a mistake elsewhere).
 LinkTable ReadLinks(Section& link, const Graph& graph);
 
 }  // namespace mascot

@@ -17,16 +17,16 @@ struct Motion {
   Eigen::Vector3d a_WB = Eigen::Vector3d::Zero();            ///< (v(k) - v(k-1)) * control rate, in W; 0 at tick 0
 };
 
-/// What an agent's actuators get: rotor speeds 1..4 (rad/s) for a quadrotor; the model's own inputs
-/// otherwise (double integrator: force in W in newton, then 0).
+/// The inputs of an agent's actuators: rotor speeds 1..4 (rad/s) for a quadrotor, otherwise the model's own
+/// (ModelTraits::actuator; double integrator: force in W in newton, then 0).
 using Actuation = std::array<double, 4>;
 
-/// What a law's answer is, and what drives a model.
+/// A quantity that a law can want, and that can drive a model.
 enum class Wanted { kAcceleration, kVelocity };
 
-/// Of the double integrator model, so that its force is its acceleration.
+/// Mass of every model without rotors: with 1 kg the force on a double integrator is its acceleration.
 inline constexpr double kDoubleIntegratorMass_kg = 1.0;
-/// Of the sphere that every model but the quadrotor is.
+/// Radius of the sphere that is the body of every model without rotors.
 inline constexpr double kBallRadius_m = 0.1;
 
 /// Bits of Command::flags.
@@ -41,9 +41,9 @@ enum CommandFlag : std::uint32_t {
 struct Command {
   Actuation actuator{};
   Eigen::Vector3d a_law_W = Eigen::Vector3d::Zero();      ///< the law's acceleration before limits (m/s^2)
-  Eigen::Vector3d a_limited_W = Eigen::Vector3d::Zero();  ///< after limits
+  Eigen::Vector3d a_limited_W = Eigen::Vector3d::Zero();  ///< the same after limits (m/s^2)
   std::uint32_t flags = 0;                                ///< CommandFlag bits
-  Eigen::Vector3d v_limited_W = Eigen::Vector3d::Zero();  ///< velocity wanted of a model driven by it; not on the wire
+  Eigen::Vector3d v_limited_W = Eigen::Vector3d::Zero();  ///< wanted velocity after limits (m/s); not on the wire
 };
 
 }  // namespace mascot

@@ -5,13 +5,13 @@
 
 namespace mascot {
 
-/// How a run in real time kept to its times.
+/// Timing statistics of a run in real time.
 struct Pacing {
   /// Median, 99th percentile, largest.
   using Spread = std::array<double, 3>;
-  std::uint64_t misses = 0;     ///< commands that came too late for their tick
+  std::uint64_t misses = 0;     ///< commands missing when their tick ended
   Spread tick_lateness_s = {};  ///< from when a tick was due until its states were out
-  Spread command_age_s = {};    ///< how old the states were that the commands in use answered; 0: this tick's
+  Spread command_age_s = {};    ///< age of the states that the commands used answered; 0: this tick's
 };
 
 }  // namespace mascot

@@ -7,7 +7,9 @@ namespace {
 
 constexpr Range kPlace_m = {-1e6, 1e6};
 constexpr Range kAirspeed_m_per_s = {-200, 200};
-constexpr EnumNames<Shape, 3> kShapes({{Shape::kBox, "box"}, {Shape::kSphere, "sphere"}, {Shape::kCylinder, "cylinder"}});
+constexpr EnumNames<Shape, 3> kShapes({{Shape::kBox, "box"},
+                                       {Shape::kSphere, "sphere"},
+                                       {Shape::kCylinder, "cylinder"}});
 
 constexpr Key kWindKeys[] = {
     key::Vector3("mean_m_per_s", kAirspeed_m_per_s, "in W").Default("[0, 0, 0]"),
@@ -93,7 +95,7 @@ PhysicsConfig ReadPhysics(Section& physics, int agents) {
   config.ground = physics.Boolean("ground");
   config.wind = ReadWind(physics.Child("wind"));
   for (Section& obstacle : physics.Children("obstacles")) config.obstacles.push_back(ReadObstacle(obstacle));
-  if (physics.Wrong("obstacles")) config.obstacles.clear();  // who starts inside would only follow from the mistake
+  if (physics.Wrong("obstacles")) config.obstacles.clear();  // or agents inside a wrong one would be reported, too
   for (Section& failure : physics.Children("rotor_failures"))
     config.rotor_failures.push_back(ReadRotorFailure(failure, agents));
   physics.Done();

@@ -7,7 +7,7 @@
 
 namespace mascot {
 
-/// Air that moves, the same for all bodies: a mean and gusts about it, each component a first-order Gauss-Markov
+/// Wind, the same for all bodies: a mean and gusts about it. Each component of the gusts is a first-order Gauss-Markov
 /// process (the Dryden spectrum's simplest form) with this standard deviation and correlation time.
 struct WindConfig {
   Eigen::Vector3d mean_m_per_s = Eigen::Vector3d::Zero();  ///< in W
@@ -21,15 +21,15 @@ enum class Shape { kBox, kSphere, kCylinder };
 struct Obstacle {
   Shape shape = Shape::kBox;
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< its centre (m)
-  Eigen::Vector3d size_m =
-      Eigen::Vector3d::Ones();  ///< full lengths; of a cylinder, which stands on end, diameter twice, height
-  double heading_rad = 0;       ///< yaw
+  /// Full lengths. A sphere has its diameter three times; a cylinder, which stands on end, twice, then its height.
+  Eigen::Vector3d size_m = Eigen::Vector3d::Ones();
+  double heading_rad = 0;  ///< yaw
 };
 
 /// A quadrotor's rotor loses thrust at a given time.
 struct RotorFailure {
   int agent = 0;
-  int rotor = 0;  ///< 1..4
+  int rotor = 0;  ///< 1 front, 2 left, 3 back, 4 right
   double at_s = 0;
   double remaining = 0;  ///< part of its thrust and torque that is left, 0..1
 };
@@ -46,7 +46,8 @@ struct PhysicsConfig {
 
 /// The keys of [physics].
 std::span<const Key> PhysicsKeys();
-/// Reads [physics]. Whether a rotor failure's agent is a quadrotor is known, and checked, later.
+/// Reads [physics]. `agents`: their number; 0: unknown because of a mistake. Whether the agent of a rotor failure is a
+/// quadrotor is checked later.
 PhysicsConfig ReadPhysics(Section& physics, int agents);
 
 }  // namespace mascot

@@ -18,8 +18,8 @@ Eigen::Vector3d PointIn(const Box& box, Random& random) {
 
 bool Stands(const AgentConfig& agent, const Box& box) { return box.has_ground && agent.traits().rolls; }
 
-/// Heights from `min_m` to `max_m`, at least `separation_m` apart, in random order: sorted offsets share what the
-/// separations leave over.
+/// Heights from `min_m` to `max_m`, at least `separation_m` apart, in random order; nullopt: there is no room. Random
+/// offsets, sorted, share the height that the separations leave over.
 std::optional<std::vector<double>> Heights(std::size_t count, double min_m, double max_m, double separation_m,
                                            Random& random) {
   constexpr double kRounding_m = 1e-9;  // [1, 1.3] has room for four agents 0.1 m apart
@@ -35,8 +35,9 @@ std::optional<std::vector<double>> Heights(std::size_t count, double min_m, doub
   return heights;
 }
 
-/// Sets the heights that are not drawn together with x and y: of those that stand, and of all if they keep apart in z
-/// alone. Then those that fly also fly that far above those that stand.
+/// Sets the heights that are not drawn together with x and y: those of standing agents and, with separation in z alone,
+/// those of all agents. Flying agents then also keep the separation above standing ones. Returns false if there is no
+/// room.
 bool SetHeights(std::vector<AgentConfig>& agents, const Box& box, Random& random) {
   std::vector<AgentConfig*> flying;
   for (AgentConfig& agent : agents) {
@@ -54,7 +55,8 @@ bool SetHeights(std::vector<AgentConfig>& agents, const Box& box, Random& random
   return true;
 }
 
-/// What a body that is turned by `yaw_rad` takes up along x, y, z: the airframe's box, or the sphere of other models.
+/// Extent of a body along x, y, z (m) if it is turned by `yaw_rad`: of the airframe's box, or of the sphere of other
+/// models.
 Eigen::Vector3d Size_m(const AgentConfig& agent, double yaw_rad) {
   const Eigen::Vector3d size_m = agent.size_m();
   if (!agent.traits().has_airframe) return size_m;  // a sphere
@@ -68,12 +70,12 @@ bool Touch(const AgentConfig& a, const AgentConfig& b) {
   return ((a.p_W - b.p_W).cwiseAbs().array() < (Size_m(a) + Size_m(b)).array() / 2).all();
 }
 
-/// Seen from the obstacle, along its own axes.
+/// Computed along the obstacle's own axes.
 bool Touch(const AgentConfig& agent, const Obstacle& obstacle) {
   const Eigen::AngleAxisd from_W(-obstacle.heading_rad, Eigen::Vector3d::UnitZ());
   const Eigen::Vector3d offset = from_W * (agent.p_W - obstacle.p_W);
   const Eigen::Vector3d agent_half_m = Size_m(agent, agent.heading_rad - obstacle.heading_rad) / 2;
-  const Eigen::Vector3d nearest = (offset.cwiseAbs() - agent_half_m).cwiseMax(0);  // of the agent's box
+  const Eigen::Vector3d nearest = (offset.cwiseAbs() - agent_half_m).cwiseMax(0);  // nearest point of the agent's box
   const Eigen::Vector3d half_m = obstacle.size_m / 2;
   switch (obstacle.shape) {
     case Shape::kBox:
@@ -90,7 +92,7 @@ bool TouchesAny(const AgentConfig& agent, const std::vector<Obstacle>& obstacles
   return std::ranges::any_of(obstacles, [&](const Obstacle& obstacle) { return Touch(agent, obstacle); });
 }
 
-/// Whether the agent may start where it is, as far as one who is there already is concerned.
+/// True if `agent` is far enough from `other`, which has its place already.
 bool Apart(const AgentConfig& agent, const AgentConfig& other, const Box& box) {
   const bool in_z = box.in_z_alone && !(Stands(agent, box) && Stands(other, box));
   return (in_z || (agent.p_W - other.p_W).norm() >= box.separation_m) && (box.may_touch || !Touch(agent, other));
@@ -99,7 +101,7 @@ bool Apart(const AgentConfig& agent, const AgentConfig& other, const Box& box) {
 }  // namespace
 
 bool Place(std::vector<AgentConfig>& agents, const Box& box, std::uint64_t seed) {
-  std::size_t tries = 10000 + 20 * agents.size();  // for all of them: ten thousand agents give up in seconds
+  std::size_t tries = 10000 + 20 * agents.size();  // for all agents together: ten thousand give up in seconds
   Random random(seed, Random::Stream::kPositions);
   if (!SetHeights(agents, box, random)) return false;
   for (auto agent = agents.begin(); agent != agents.end(); ++agent) {
@@ -118,7 +120,7 @@ bool Place(std::vector<AgentConfig>& agents, const Box& box, std::uint64_t seed)
 }
 
 std::optional<std::pair<int, int>> FirstTouching(const std::vector<AgentConfig>& agents) {
-  std::vector<const AgentConfig*> by_x;  // so that each is compared with few
+  std::vector<const AgentConfig*> by_x;  // sorted by x, so that each is compared with few
   double longest_m = 0;
   for (const AgentConfig& agent : agents) {
     by_x.push_back(&agent);

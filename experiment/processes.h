@@ -7,11 +7,11 @@
 
 namespace mascot {
 
-/// Which agents share a process, in increasing id: network.agents_per_process of them, fewer beside those that are
-/// started by hand, each of whom has a process of its own.
+/// The processes of agents, in increasing id. Each has network.agents_per_process agents, or fewer next to agents that
+/// are started by hand, which have a process each.
 std::vector<AgentRange> AgentProcesses(const Experiment& experiment);
-/// How many processes have an agent for whom the states of agent `id` are: itself, and those that may ever hear it.
-/// By id - 1. `heard_only`: without the agent's own.
+/// By id - 1, the number of processes that need the agent's states: those with the agent itself or with one that may
+/// ever hear it. `heard_only`: only those with one that may hear it.
 std::vector<int> HearingProcesses(const Experiment& experiment, bool heard_only);
 
 }  // namespace mascot

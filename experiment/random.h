@@ -7,8 +7,8 @@
 
 namespace mascot {
 
-/// Random numbers that are the same with every C++ library: the engine is standardised bit by bit, the
-/// standard's distributions are not. Each use has a stream of its own, so that one more draw here moves nothing there.
+/// Random numbers that are the same with every C++ library: the engine is standardised bit by bit, the standard's
+/// distributions are not. Each use has a stream of its own, so that an extra draw in one does not change another.
 class Random {
  public:
   enum class Stream : std::uint32_t { kPositions = 1, kGraph = 2, kSweep = 3 };
@@ -17,6 +17,7 @@ class Random {
 
   /// Uniform in [0, 1), 53 bits.
   double Unit() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
+  /// Uniform in [min, max).
   double In(double min, double max) { return min + (max - min) * Unit(); }
   /// Uniform in 0 .. count - 1.
   std::size_t Below(std::size_t count) { return static_cast<std::size_t>(Unit() * static_cast<double>(count)); }
@@ -30,17 +31,17 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// Random numbers by name instead of by order: each is a hash of what it is for, so that it does not depend on which
-/// others were drawn, or when, or in which process.
+/// Random numbers by name instead of by order (a counter-based generator): each is a hash of what it is for, so that it
+/// does not depend on which others were drawn, or when, or in which process.
 class Dice {
  public:
   enum class Stream : std::uint64_t { kLink = 1, kOwnSensor, kHeardSensor, kWind };
 
-  /// `a`, `b`: whose they are (an agent, an edge).
+  /// `a`, `b`: the owner of the numbers, an agent or an edge.
   Dice(std::uint64_t seed, Stream stream, std::uint64_t a = 0, std::uint64_t b = 0)
       : key_(Mix(Mix(Mix(Mix(seed) + static_cast<std::uint64_t>(stream)) + a) + b)) {}
 
-  /// Uniform in [0, 1), 53 bits: draw `draw` of number `n` (a tick, a step).
+  /// Uniform in [0, 1), 53 bits: draw number `draw` at `n`, a tick or a step.
   double Unit(std::int64_t n, std::uint64_t draw) const {
     return static_cast<double>(Mix(Mix(key_ + static_cast<std::uint64_t>(n)) + draw) >> 11) * 0x1.0p-53;
   }

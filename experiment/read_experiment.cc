@@ -11,7 +11,7 @@ namespace mascot {
 namespace {
 
 constexpr double kMaxTicks = 1e9;  // recordings number their samples with 32 bits
-constexpr int kMaxDomain = 100;    // above, DDS's ports meet those that Linux hands out
+constexpr int kMaxDomain = 100;    // above, the ports of DDS overlap those that Linux hands out
 
 constexpr std::string_view kAutomatic[] = {"auto"};
 constexpr std::string_view kTransports[] = {"auto", "udp", "shm"};  // bus/qos.cc has a row for each
@@ -22,23 +22,25 @@ constexpr Key kRunKeys[] = {
     key::OneOf("mode", kModes.names(),
                "lockstep: as fast as it goes, deterministic; realtime: paced by the wall clock, late commands held")
         .Default("\"lockstep\""),
-    key::Integer("seed", 0, INT64_MAX, "of everything random").Default("1"),
+    key::Integer("seed", 0, INT64_MAX, "seed of all random numbers").Default("1"),
     key::Number("agent_timeout_s", Above(0, 3600), "how long a command may keep the server waiting, wall clock")
         .Default("5.0"),
     key::Number("start_timeout_s", Above(0, 3600), "how long the start may take, wall clock").Default("60.0"),
-    key::Number("speed", Above(0, 1000), "of realtime: simulated seconds per second").Default("1.0"),
+    key::Number("speed", Above(0, 1000), "in realtime: simulated seconds per second").Default("1.0"),
     key::OneOf("scheduler", kSchedulers.names(),
                "fifo: the server and the agents run at a real-time priority (SCHED_FIFO), if the system permits it; "
                "other: as any process, in lockstep as a batch job (SCHED_BATCH)")
         .Default("\"other\""),
     key::Boolean("pin_cores", "each process over DDS keeps to one core").Default("false"),
-    key::Boolean("lock_memory", "their memory is never swapped out, if the system permits it").Default("false"),
+    key::Boolean("lock_memory", "memory of these processes is never swapped out, if the system permits it")
+        .Default("false"),
 };
 
 constexpr Key kLawKeys[] = {
-    key::Text("name", "one of the laws below").Otherwise("the first of them"),
+    key::Text("name", "one of the laws below").Otherwise("the first of the laws"),
     key::Integer("leader", 0, kMaxAgents, "agent that leads; 0: none").Default("0"),
-    key::OneOf("axes", kAxes.names(), "what the law governs; with xy heights are held").Otherwise("the law's own"),
+    key::OneOf("axes", kAxes.names(), "the axes that the law controls; with xy the initial heights are held")
+        .Otherwise("the law's own"),
 };
 
 constexpr Key kRecordKeys[] = {
@@ -73,7 +75,7 @@ bool IsName(std::string_view name) {
          std::all_of(name.begin(), name.end(), IsNameCharacter);
 }
 
-/// A name made of a file's: what a name cannot hold becomes '_'.
+/// A run's name from that of its file: characters that are not allowed become '_'.
 std::string NameFrom(std::string text) {
   for (char& c : text)
     if (!IsNameCharacter(c)) c = '_';
@@ -98,7 +100,7 @@ void ReadRun(Section& section, const std::string& default_name, Experiment& expe
   section.Done();
 }
 
-/// What all laws have in common. `laws` null: the document says it all.
+/// Reads the keys that all laws share. `laws` null: the document is a resolved one, which has them all.
 LawConfig ReadLaw(Section& section, int count, const LawCatalog* laws) {
   LawConfig law;
   law.name =
@@ -109,7 +111,7 @@ LawConfig ReadLaw(Section& section, int count, const LawCatalog* laws) {
   return law;
 }
 
-/// The parts of an override that stand in place of [control] and [law], or of some of their keys. `team_law` is [law].
+/// Reads an override's own control and law tables; what they leave out is as in [control] and [law] (`team_law`).
 void FinishOverride(AgentOverride& override, Section& control, const Section& team_law, int count,
                     const LawCatalog* laws, Experiment& experiment) {
   Section& section = override.section;
@@ -131,7 +133,7 @@ void FinishOverride(AgentOverride& override, Section& control, const Section& te
   section.Done();
 }
 
-/// The parameters of the team's law and of those that agents have of their own.
+/// Reads the parameters of the team's law and of agents' own laws.
 void ReadLawParameters(const LawCatalog& laws, Section& team_law, std::vector<AgentOverride>& overrides,
                        Experiment& experiment) {
   experiment.law.params = laws.Read(experiment, experiment.law, team_law);
@@ -148,7 +150,7 @@ void ReadLawParameters(const LawCatalog& laws, Section& team_law, std::vector<Ag
     if (override.law) override.law->Done();
 }
 
-/// Rotors that fail are those of quadrotors.
+/// Checks that the rotors that fail are those of quadrotors.
 void CheckRotorFailures(Section& physics, const Experiment& experiment) {
   if (experiment.agents.empty() || physics.Wrong("rotor_failures")) return;
   const auto& failures = experiment.physics.rotor_failures;
@@ -160,7 +162,7 @@ void CheckRotorFailures(Section& physics, const Experiment& experiment) {
   }
 }
 
-/// A tick is a whole number of physics steps, a run a whole number of ticks.
+/// Checks that a tick is a whole number of physics steps, and a run a whole number of ticks.
 void CheckTime(Section& run, Section& physics, Section& control, const Experiment& experiment) {
   const int rate_hz = experiment.control.rate_hz;
   if (control.Wrong("rate_hz")) return;
@@ -215,11 +217,11 @@ void ReadNetwork(Section& section, Experiment& experiment) {
   section.Done();
 }
 
-/// `laws` null: those are not read.
+/// Reads everything. `laws` null: the parameters of laws are not read.
 Experiment Read(Section document, const LawCatalog* laws, const std::string& default_name, bool checked) {
   document.Use(ExperimentKeys());
   CheckFormat(document);
-  // In the order of the resolved file; read below in the order in which one needs the other.
+  // Opened in the order of the resolved file; read below in the order in which one needs another.
   Section run = document.Child("run"), physics = document.Child("physics"), agents = document.Child("agents"),
           control = document.Child("control"), sensors = document.Child("sensors"), graph = document.Child("graph"),
           link = document.Child("link"), law = document.Child("law"), record = document.Child("record"),
@@ -250,7 +252,7 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
   ReadOutput(output, experiment);
   ReadNetwork(network, experiment);
 
-  // What a law would say of these would only follow from the mistake.
+  // With a wrong graph or law, the checks of law parameters would only report the same mistake again.
   if (graph.Wrong("")) {
     experiment.schedule = Schedule();
     experiment.graph = Graph({});

@@ -11,36 +11,37 @@
 namespace mascot {
 
 /// The version of what a run leaves behind: config.toml, summary.json and the recording all say it, as `format`. It is
-/// raised when a reader of the version before would misunderstand one of them. Readers refuse a newer one; what says no
+/// raised when a reader of the version before would misunderstand one of them. Readers refuse a newer one; a file that says no
 /// format is of version 1.
 inline constexpr int kFormat = 1;
 /// Reads `format` of an experiment file; notes a mistake if it is newer than kFormat. The document uses
 /// ExperimentKeys().
 void CheckFormat(Section& document);
 
-/// Every key that an experiment file may have, but for the parameters of single laws (agent/laws.h).
+/// All keys that an experiment file may have, except the parameters of single laws (agent/laws.h).
 std::span<const Key> ExperimentKeys();
-/// Those of [law] that all laws have.
+/// The keys of [law] that all laws share.
 std::span<const Key> LawKeys();
 
-/// The laws that an experiment file may name. Their table lives above this library (agent/laws.h).
+/// The laws that an experiment file may name: an interface, because their table is in a library above this one
+/// (agent/laws.h).
 class LawCatalog {
  public:
   virtual ~LawCatalog() = default;
-  /// The first is the default of law.name.
+  /// Names of all laws; the first is the default of law.name.
   virtual std::span<const std::string_view> names() const = 0;
   /// The default of law.axes.
   virtual Axes DefaultAxes(std::string_view law) const = 0;
-  /// Reads and checks the parameters of all agents that share `law`, which is experiment.law or that of one of
-  /// experiment.agents, from `section`, the table it stands in. All else is read already. Mistakes are noted in
-  /// `section`.
+  /// Reads and checks the parameters of `law`, which is experiment.law or an agent's own, from its table `section`.
+  /// Everything else has been read. Mistakes are noted in `section`.
   virtual std::shared_ptr<const LawParams> Read(const Experiment& experiment, const LawConfig& law,
                                                 Section& section) const = 0;
 };
 
-/// Reads a complete experiment. `checked`: it was read before, without a mistake. Throws ConfigError with all mistakes.
+/// Reads a complete experiment. `default_name`: for run.name. `checked`: it was read before, without a mistake. Throws
+/// ConfigError with all mistakes.
 Experiment ReadExperiment(Section document, const LawCatalog& laws, const std::string& default_name, bool checked);
-/// Reads an experiment that was resolved and checked before, all but the parameters of laws: for those who fly none.
+/// Reads a resolved and checked experiment without the parameters of laws, for the physics server, which runs none.
 /// Throws ConfigError.
 Experiment ReadWithoutLaws(Section document, const std::string& default_name);
 

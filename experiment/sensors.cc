@@ -11,16 +11,20 @@ constexpr Range kNoise = {0, 1000};
 constexpr std::array kHeardKeys = {
     key::Number("position_std_m", kNoise, "white noise on the position, per axis and tick").Default("0.0"),
     key::Number("velocity_std_m_per_s", kNoise, "white noise on the velocity, per axis and tick").Default("0.0"),
-    key::Number("position_bias_std_m", kNoise, "of a constant error of the position, drawn once").Default("0.0"),
-    key::Number("velocity_bias_std_m_per_s", kNoise, "of a constant error of the velocity, drawn once").Default("0.0"),
+    key::Number("position_bias_std_m", kNoise, "standard deviation of a constant error of the position, drawn once")
+        .Default("0.0"),
+    key::Number("velocity_bias_std_m_per_s", kNoise,
+                "standard deviation of a constant error of the velocity, drawn once")
+        .Default("0.0"),
 };
 constexpr auto kOwnKeys = Joined(
-    kHeardKeys, std::array{key::Number("delay_s", {0, kLongestDelay_s},
-                                       "how late an agent knows its own position and velocity; its attitude at once")
-                               .Default("0.0")});
+    kHeardKeys,
+    std::array{key::Number("delay_s", {0, kLongestDelay_s},
+                           "how late an agent knows its own position and velocity; it knows its attitude at once")
+                   .Default("0.0")});
 constexpr Key kKeys[] = {
     key::Table("own", kOwnKeys, "what an agent measures of itself: law and low-level stack both get this"),
-    key::Table("heard", kHeardKeys, "what it measures of those that it hears, each by itself"),
+    key::Table("heard", kHeardKeys, "what an agent measures of each agent that it hears"),
 };
 
 NoiseConfig ReadNoise(Section& section) {

@@ -4,7 +4,7 @@
 
 namespace mascot {
 
-/// How wrong a measured motion is: white noise at every tick, and a bias drawn once; per axis, zero-mean, Gaussian.
+/// Errors of a measured motion: white noise at every tick, and a bias drawn once; per axis, zero-mean, Gaussian.
 struct NoiseConfig {
   double position_std_m = 0;
   double velocity_std_m_per_s = 0;
@@ -17,10 +17,10 @@ struct NoiseConfig {
   }
 };
 
-/// [sensors]: what an agent measures of itself, and of those it hears.
+/// [sensors]: how an agent measures its own motion, and those of the agents that it hears.
 struct SensorConfig {
   NoiseConfig own;         ///< a bias per agent; law and low-level stack both get the measured motion
-  double own_delay_s = 0;  ///< its position and velocity are known this late (a localisation's); attitude at once
+  double own_delay_s = 0;  ///< delay of position, velocity and acceleration; attitude has none
   NoiseConfig heard;       ///< noise and bias per directed edge
 };
 

@@ -7,7 +7,7 @@
 
 namespace mascot {
 
-/// Collects how punctual a run in real time is. No clock: the caller passes in the times.
+/// Collects the timing statistics of a run in real time. No clock: the caller passes in the times.
 class PaceMeter {
  public:
   /// The states of a tick were out `lateness_s` after the tick was due.

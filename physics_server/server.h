@@ -23,8 +23,8 @@ class Server {
   Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment);
 
   /// Waits until every endpoint is matched and every agent and the recorder are ready; runs all ticks; returns when the
-  /// last tick is answered or a STOP request has taken effect. Throws std::runtime_error naming who was late, and what
-  /// Lifecycle::Wait() throws.
+  /// last tick is answered or a STOP request has taken effect. Throws std::runtime_error naming the late agents or the
+  /// recorder, and what Lifecycle::Wait() throws.
   void Run();
 
  private:
@@ -38,7 +38,7 @@ class Server {
   void RunTicks();
   void Start();
   /// Does what is due now. Returns when to call it again; nullopt: the run is finished. Throws std::runtime_error
-  /// naming who was late.
+  /// naming the late agents or the recorder.
   std::optional<TickProtocol::Time> Look();
   void Report();
 

@@ -8,15 +8,15 @@
 
 namespace mascot {
 
-/// The roll call at the start of a run: who is ready, when to ask again, who is missing when the time is up. No clock:
-/// the caller passes in the time.
+/// The roll call at the start of a run: which processes are ready, when to ask again, which are missing when the time
+/// is up. No clock: the caller passes in the time.
 class StartRoll {
  public:
   using Time = std::chrono::steady_clock::time_point;
   enum class Next {
     kWait,
     kAsk,    ///< ask every process to publish its status again
-    kStart,  ///< everybody is ready
+    kStart,  ///< all are ready
     kFail,   ///< the time is up; Failure() says why
   };
 
@@ -34,7 +34,7 @@ class StartRoll {
   std::string Failure() const;
 
  private:
-  /// "agents 2, 5 and the recorder"; empty: nobody.
+  /// "agents 2, 5 and the recorder"; empty: none.
   std::string Missing() const;
   bool IsComplete() const;
 

@@ -50,14 +50,15 @@ class TickProtocol {
 
   explicit TickProtocol(const Rules& rules);
 
-  /// Starts the ticks: everybody is ready. Before this, commands are ignored and nothing is published.
+  /// Starts the ticks: all processes are ready. Before this, commands are ignored and nothing is published.
   Actions Start();
   /// The recorder has confirmed all rows before row `rows`.
   Actions OnRecorded(std::int64_t rows);
   /// Agent `id` (1..N) answered `tick`. The command counts only if `tick` is published and later than the agent's last
   /// answer.
   Actions OnCommand(int id, std::int64_t tick, bool stop_requested);
-  /// To be called by the loop after Start(): ends the ticks of real time that are due, and fails if somebody is late.
+  /// To be called by the loop after Start(): ends the ticks of real time that are due, and fails if an agent or the
+  /// recorder is late.
   Turn Look(Time now, bool stop_requested);
 
   /// True when the last tick is answered or a requested stop has taken effect. From then on no command counts and

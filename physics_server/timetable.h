@@ -5,7 +5,7 @@
 
 namespace mascot {
 
-/// When the ticks of a run in real time are due. No clock: the caller passes in the time.
+/// The timetable of a run in real time: when each tick is due. No clock: the caller passes in the time.
 class Timetable {
  public:
   using Time = std::chrono::steady_clock::time_point;

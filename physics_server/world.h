@@ -14,7 +14,7 @@ namespace mascot {
 /// same experiment and commands give the same bits. No clock, no DDS.
 class World {
  public:
-  /// When Bullet's contact detection and solver run: at steps at which bodies are close enough to touch, or at every
+  /// When to run Bullet's contact detection and solver: at steps at which bodies are close enough to touch, or at every
   /// step. As long as nothing touches, both give the same bits.
   enum class LookForContacts { kWhenClose, kAlways };
   /// Bodies start exactly at their configured state.

@@ -18,7 +18,7 @@ namespace {
 constexpr double kTimeShare = 0.8;
 
 // The class of `me` and of each of `neighbours`. `me` lives as long as the law, so that the law can keep what it wants
-// to remember in it; neighbours are made anew at each call.
+// to remember in it; the neighbours are new objects at each call.
 constexpr const char* kClasses = R"(
 class Agent:
     """One agent, as this one knows it. Positions and velocities are in the world frame (x east, y north, z up)."""
@@ -104,7 +104,7 @@ class Module {
   py::dict space_;
 };
 
-/// What both styles share: the time limit, and errors that name the agent, the time and the returned value.
+/// The base of both styles: the time limit, and errors that name the agent, the time and the returned value.
 class PythonLaw : public Law {
  public:
   PythonLaw(int id, const CustomParams& params, TimeLimit time_limit, const char* function)

@@ -9,7 +9,7 @@
 namespace mascot {
 namespace {
 
-/// Edges of weight 1, collected in any order.
+/// Edges of weight 1, added in any order.
 class Edges {
  public:
   explicit Edges(int count) : heard_(static_cast<std::size_t>(count)) {}
@@ -21,7 +21,7 @@ class Edges {
     Hears(i, j);
     Hears(j, i);
   }
-  /// The two edges of a ring of two are one.
+  /// Sorts the edges and drops repeated ones (a ring of two agents adds each twice).
   Graph Build() && {
     for (auto& row : heard_) {
       std::sort(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
@@ -150,7 +150,7 @@ Graph MakeSmallWorld(int count, int k, double p, std::uint64_t seed) {
       const auto old = pairs.find(std::minmax(i, ahead(i, steps)));
       const bool rewired = random.Unit() < p;
       const int other = static_cast<int>(random.Below(static_cast<std::size_t>(count))) + 1;
-      if (!rewired || old == pairs.end() || other == i || !hear(i, other).second) continue;  // taken: it stays
+      if (!rewired || old == pairs.end() || other == i || !hear(i, other).second) continue;  // exists: keep old
       pairs.erase(old);
     }
   Edges edges(count);

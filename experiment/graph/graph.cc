@@ -9,8 +9,8 @@
 namespace mascot {
 namespace {
 
-/// Strongly connected components by Tarjan's algorithm (SIAM J. Computing 1(2), 1972), without recursion: a
-/// path of ten thousand agents must not use up the stack.
+/// Strongly connected components by Tarjan's algorithm (SIAM J. Computing 1(2), 1972), without recursion: a path of ten
+/// thousand agents would overflow the stack.
 class Tarjan {
  public:
   explicit Tarjan(const Graph& graph) : graph_(graph), visits_(static_cast<std::size_t>(graph.size()) + 1) {
@@ -22,8 +22,8 @@ class Tarjan {
 
  private:
   struct Visit {
-    int order = 0;  ///< when it was found, from 1; 0: not yet
-    int low = 0;    ///< the earliest agent reachable from it that is still on the stack
+    int order = 0;  ///< number in the order of finding, from 1; 0: not found yet
+    int low = 0;    ///< smallest order among the agents on the stack that it reaches
     bool on_stack = false;
     std::size_t next = 0;  ///< neighbour to look at next
   };
@@ -111,9 +111,9 @@ Eigen::MatrixXd Graph::Laplacian() const {
   return laplacian;
 }
 
-// In the order of its components, each of which hears only those before it, L is block triangular. Each block by itself
-// keeps the digits of eigenvalues that the others repeat: all of a long chain are 1, which no solver finds in the
-// whole.
+// With agents ordered by components, so that each component hears only those before it, L is block triangular, and its
+// eigenvalues are those of the diagonal blocks. Each block by itself gives accurate values for eigenvalues that several
+// blocks share: in a long directed path all but one are 1, which no solver finds from the whole matrix.
 Eigen::VectorXcd Graph::Eigenvalues() const {
   const Eigen::MatrixXd laplacian = Laplacian();
   const bool symmetric = IsSymmetric();
@@ -138,11 +138,11 @@ Eigen::VectorXcd Graph::Eigenvalues() const {
   return values;
 }
 
-// Without a spanning tree 0 is an eigenvalue twice, which numerics would miss by a rounding error.
+// Without a spanning tree, 0 is an eigenvalue twice; a numerical solver would miss that by a rounding error.
 double Graph::Lambda2() const { return size() < 2 || Roots().empty() ? 0 : Eigenvalues()(1).real(); }
 
-// The left null vector is zero outside the roots, who hear nobody else; there it is that of their own Laplacian L:
-// gamma' L = 0, of which one column follows from the others and makes room for sum(gamma) = 1.
+// The left null vector gamma is zero outside the roots, which hear only each other. On the roots it solves gamma' L = 0
+// with their own Laplacian L; one of these equations follows from the others and is replaced by sum(gamma) = 1.
 std::optional<Eigen::VectorXd> Graph::LeftNullVector() const {
   const std::vector<int> roots = Roots();
   if (roots.empty()) return std::nullopt;
@@ -168,7 +168,7 @@ std::vector<std::vector<int>> Graph::Components() const {
   return components;
 }
 
-// If anybody reaches everybody, those who do are one component, and it hears nobody outside itself.
+// If some agent reaches all others, the agents that do are one component, and no agent in it hears one outside.
 std::vector<int> Graph::Roots() const {
   for (const std::vector<int>& component : Components()) {
     const bool closed = std::all_of(component.begin(), component.end(), [&](int id) {

@@ -19,10 +19,11 @@ constexpr Key kRandomKeys[] = {
                "Erdos & Renyi: each pair of agents with probability p; geometric: pairs closer than "
                "radius_m at their starts; Watts & Strogatz: a ring with rewired edges")
         .Required(),
-    key::Number("p", {0, 1}, "of erdos_renyi: of an edge; of small_world: of an edge to be rewired")
+    key::Number("p", {0, 1}, "erdos_renyi: probability of an edge; small_world: probability that an edge is rewired")
         .Otherwise("needed there"),
-    key::Number("radius_m", Above(0, 1e6), "of geometric").Otherwise("needed there"),
-    key::Integer("k", 2, 10000, "of small_world: how many nearest neighbours each has on the ring; even")
+    key::Number("radius_m", Above(0, 1e6), "geometric: distance below which two agents hear each other")
+        .Otherwise("needed there"),
+    key::Integer("k", 2, 10000, "small_world: how many nearest neighbours each agent has on the ring; even")
         .Otherwise("needed there"),
 };
 
@@ -31,7 +32,7 @@ std::string Number(double value) {
   return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
 }
 
-/// Notes what keeps `rows` from being a count x count matrix. True if nothing does.
+/// Notes mistakes if `rows` is not a count x count matrix. Returns true if it is one.
 bool IsSquare(Section& graph, std::string_view key, const Rows& rows, int count) {
   const auto size = static_cast<std::size_t>(count);
   if (graph.Wrong(key) || count == 0) return false;
@@ -79,7 +80,7 @@ Heard FromLaplacian(Section& graph, int count) {
   return heard;
 }
 
-/// What is wrong with the edge `row`, or nothing.
+/// Text of the mistake in the edge `row`; empty: none.
 std::string EdgeMistake(const std::vector<double>& row, int count) {
   if (row.size() != 2 && row.size() != 3)
     return "expected [i, j] or [i, j, weight], got a list of " + std::to_string(row.size());
@@ -162,7 +163,7 @@ Graph ReadGraph(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint6
   if (last == "edges") return Graph(FromEdges(graph, count));
   if (last == "random") return FromRandom(graph, p_W, seed);
   const std::string topology = graph.OneOf("topology");
-  return count > 0 ? MakeTopology(topology, count) : Graph(Heard{});  // 0: the count is wrong, and that is noted
+  return count > 0 ? MakeTopology(topology, count) : Graph(Heard{});  // 0: the count was wrong, which is noted
 }
 
 }  // namespace mascot

@@ -7,7 +7,7 @@ namespace mascot {
 
 namespace {
 
-/// A graph's own keys, and `more`.
+/// The keys of one graph, and `more`.
 std::vector<Key> WithGraphKeys(std::initializer_list<Key> more) {
   std::vector<Key> keys(GraphKeys().begin(), GraphKeys().end());
   keys.insert(keys.end(), more);
@@ -17,7 +17,7 @@ std::vector<Key> WithGraphKeys(std::initializer_list<Key> more) {
 }  // namespace
 
 const Graph& Schedule::At(double t_s) const {
-  constexpr double kRounding_s = 1e-9;  // far below a physics step
+  constexpr double kRounding_s = 1e-9;  // tolerance for rounding, far below a physics step
   double t = t_s + kRounding_s;
   if (repeat_s_ > 0) t = std::fmod(t, repeat_s_);
   const auto next = std::upper_bound(phases_.begin() + 1, phases_.end(), t,
@@ -37,8 +37,8 @@ Graph Schedule::Union() const {
 }
 
 std::span<const Key> ScheduleKeys() {
-  static const std::vector<Key> phase_keys =
-      WithGraphKeys({key::Number("at_s", Above(0, 1e6), "from then on; later than the one before").Required()});
+  static const std::vector<Key> phase_keys = WithGraphKeys(
+      {key::Number("at_s", Above(0, 1e6), "when this graph takes over; later than the one before").Required()});
   static const std::vector<Key> keys = WithGraphKeys({
       key::Tables("schedule", phase_keys, "graphs that take over later, in order of time"),
       key::Number("repeat_s", Above(0, 1e6), "after this time it starts over").Otherwise("never"),
@@ -51,7 +51,7 @@ std::span<const Key> ScheduleKeys() {
 Schedule ReadSchedule(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint64_t seed) {
   std::vector<Schedule::Phase> phases;
   phases.push_back({0, ReadGraph(graph, p_W, seed)});
-  constexpr std::uint64_t kNextStage = std::uint64_t{1} << 40;  // runs are seeded 1, 2, 3...: none has another's graphs
+  constexpr std::uint64_t kNextStage = std::uint64_t{1} << 40;  // runs with seeds 1, 2, 3... then share no graph
   std::uint64_t stage_seed = seed;
   for (Section& section : graph.Children("schedule")) {
     const double at_s = section.Number("at_s");

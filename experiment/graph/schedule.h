@@ -8,7 +8,7 @@
 
 namespace mascot {
 
-/// Who hears whom when: a graph until the next one takes over, from the first again if it repeats.
+/// The graph over time: each phase has a graph until the next phase begins. After the last phase it may start over.
 class Schedule {
  public:
   struct Phase {
@@ -18,7 +18,7 @@ class Schedule {
 
   /// One empty graph.
   Schedule() : Schedule({{0, Graph({})}}, 0, 0) {}
-  /// `phases`: the first from 0 s, at_s increasing. `repeat_s`: after this time it starts over; 0: never.
+  /// `phases`: the first begins at 0 s, at_s increases. `repeat_s`: after this time it starts over; 0: never.
   /// `range_m`: edges work only between agents closer than this; 0: at any distance.
   Schedule(std::vector<Phase> phases, double repeat_s, double range_m)
       : phases_(std::move(phases)), repeat_s_(repeat_s), range_m_(range_m) {}
@@ -26,12 +26,11 @@ class Schedule {
   std::span<const Phase> phases() const { return phases_; }
   double repeat_s() const { return repeat_s_; }
   double range_m() const { return range_m_; }
-  /// One graph for ever, at any distance.
+  /// True if there is one graph for the whole run, at any distance.
   bool IsConstant() const { return phases_.size() == 1 && range_m_ == 0; }
-  /// The graph at simulated time `t_s`, distance aside. A phase begins with the tick at which it begins, whatever the
-  /// rounding of its time.
+  /// The graph at simulated time `t_s`, without the range. A rounding error in `t_s` does not delay a phase by a tick.
   const Graph& At(double t_s) const;
-  /// Every edge that some phase has, with the weight it has there first.
+  /// The edges of all phases, each with the weight in its first phase.
   Graph Union() const;
 
  private:
@@ -42,9 +41,9 @@ class Schedule {
 
 /// The keys of [graph].
 std::span<const Key> ScheduleKeys();
-/// Reads [graph] for agents that start at `p_W`: exactly one of topology, laplacian, adjacency, edges, random; then the
-/// same in every [[graph.schedule]], repeat_s and range_m. `seed` feeds random graphs. With no agents, not known for a
-/// mistake elsewhere, sizes are not checked and the graphs are empty.
+/// Reads [graph]: one graph (ReadGraph), then one for each [[graph.schedule]], repeat_s and range_m. `p_W`: where the
+/// agents start, in W (m). `seed`: for random graphs. With no agents (unknown because of a mistake elsewhere) sizes are
+/// not checked and the graphs are empty.
 Schedule ReadSchedule(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint64_t seed);
 
 }  // namespace mascot

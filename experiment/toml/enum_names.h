@@ -8,8 +8,7 @@
 
 namespace mascot {
 
-/// What the values of an enum are called in experiment files and reports: one table for those who read and those who
-/// write.
+/// Names of the values of an enum in experiment files and reports: one table for reading and for writing.
 template <class Enum, std::size_t n>
 class EnumNames {
  public:
@@ -24,16 +23,16 @@ class EnumNames {
     }
   }
 
-  /// In the order of the table.
+  /// All names, in the order of the table.
   constexpr std::span<const std::string_view> names() const { return names_; }
-  /// `name` is one of names(), as Section::OneOf returns it.
+  /// The value of `name`, which must be one of names(), as Section::OneOf() returns it.
   constexpr Enum Value(std::string_view name) const {
     std::size_t i = 0;
     while (i + 1 < n && names_[i] != name) ++i;
     assert(names_[i] == name);
     return values_[i];
   }
-  /// `value` is in the table.
+  /// The name of `value`, which must be in the table.
   constexpr std::string_view Name(Enum value) const {
     std::size_t i = 0;
     while (i + 1 < n && values_[i] != value) ++i;

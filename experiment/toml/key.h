@@ -9,17 +9,18 @@
 
 namespace mascot {
 
-/// What a number may be.
+/// A range of legal numbers.
 struct Range {
   double min = 0;
   double max = 0;
   bool open_min = false;  ///< `min` itself is refused
 
   bool Holds(double value) const { return (open_min ? value > min : value >= min) && value <= max; }
-  /// A legal value to go on with where a mistake was noted.
+  /// A legal value to go on with after a mistake.
   double Legal() const { return Holds(0) ? 0 : max < 0 ? max : open_min ? max : min; }
   std::string Text() const;  ///< "[0, 100]" or "(0, 100]"
 };
+/// The range (min, max].
 constexpr Range Above(double min, double max) { return {min, max, true}; }
 
 /// What kind of value a key holds.
@@ -37,7 +38,7 @@ enum class ValueKind {
   kPoints,   ///< a list of [x, y, z]
   kTable,
   kTables,  ///< [[...]]
-  kAny,     ///< a table of the user's own
+  kAny,     ///< a table whose keys the user chooses
 };
 
 /// One key of the experiment file: what it may hold and what it means. Section reads a key by its row, and
@@ -46,15 +47,15 @@ struct Key {
   std::string_view name;
   ValueKind kind = ValueKind::kNone;
   std::string_view meaning;
-  Range range = {};  ///< of numbers, also those inside lists
+  Range range = {};  ///< range of numbers, also of those inside lists
   std::int64_t min_integer = 0;
   std::int64_t max_integer = 0;
-  std::span<const std::string_view> names = {};  ///< of kOneOf
-  std::span<const Key> keys = {};                ///< of kTable and kTables
-  ValueKind or_kind = ValueKind::kNone;          ///< may be this instead
+  std::span<const std::string_view> names = {};  ///< legal values of kOneOf
+  std::span<const Key> keys = {};                ///< keys inside kTable and kTables
+  ValueKind or_kind = ValueKind::kNone;          ///< another kind that the value may have
   std::string_view fallback = {};                ///< the default, as a TOML value; empty: none
-  std::string_view otherwise = {};               ///< in words: what holds without the key, where that is no fixed value
-  std::string_view unit = {};                    ///< where the name does not end in it
+  std::string_view otherwise = {};               ///< what holds without the key, in words, if that is no fixed value
+  std::string_view unit = {};                    ///< the unit, if the name does not end in it
   bool required = false;
 
   /// A copy in which one member is `value`.
@@ -71,7 +72,7 @@ struct Key {
   constexpr Key Or(ValueKind other) const { return With(&Key::or_kind, other); }
 };
 
-/// What its value may be, for people: "[0, 1000], 1/s^2", "ring | path".
+/// The legal values of a key as text: "[0, 1000], 1/s^2", "ring | path".
 std::string ValueText(const Key& key);
 
 /// Rows of tables of keys: key::Number("loss", {0, 1}, "probability that a sample is lost").Default("0.0").
@@ -121,7 +122,7 @@ constexpr Key Any(Name name, std::string_view meaning) {
 
 }  // namespace key
 
-/// The rows of both tables.
+/// The rows of two tables in one.
 template <std::size_t n, std::size_t m>
 constexpr std::array<Key, n + m> Joined(const std::array<Key, n>& a, const std::array<Key, m>& b) {
   std::array<Key, n + m> all;

@@ -92,7 +92,7 @@ Section::Place Section::PlaceOfText(std::string_view key) const {
              overridden ? 1 : static_cast<int>(place.begin.line)};
   const auto value = node != nullptr ? node->value_exact<std::string>() : std::nullopt;
   if (!value || overridden) return text;
-  // TOML drops a line break right after the opening quotes; what is left of it is one line more than the text has.
+  // TOML drops a line break right after the opening quotes: the node then spans one line more than the text.
   const auto breaks = std::count(value->begin(), value->end(), '\n');
   if (static_cast<std::ptrdiff_t>(place.end.line - place.begin.line) == breaks + 1) ++text.line;
   return text;
@@ -104,7 +104,7 @@ Section::FileText Section::TextOfFile(std::string_view key, std::string_view tex
   if (!table_->Wrong(key)) {
     try {
       text = ReadRegularFile((std::filesystem::path(PlaceOfText(key).folder) / path).string());
-      constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // put there by some editors
+      constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some editors write it
       if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
     } catch (const ConfigError& error) {
       Fail(key, std::string("expected a readable file, got ") + error.what());
@@ -122,7 +122,7 @@ std::string Section::PathOfFile(std::string_view key) {
         return text && !text->empty() && OneLine(*text) == *text ? text : std::nullopt;
       });
   if (table_->Wrong(key)) return "";
-  // Symbolic links to folders are followed, so that ".." means what it means to the system; the file keeps its name.
+  // Follows symbolic links to folders, so that ".." means what it means to the system; the file keeps its name.
   const fs::path beside = fs::absolute(fs::path(PlaceOfText(key).folder) / given);
   std::error_code error;
   const fs::path folder = fs::weakly_canonical(beside.parent_path(), error);

@@ -33,55 +33,57 @@ struct Override {
   std::string value;  ///< a TOML value: "0.5", "[1, 2]", "'ring'"
 };
 
-/// One table of a TOML file, read strictly. Each reader checks type and range; a mistake is noted (not
-/// thrown) and the fallback or the nearest legal value is returned, so that one pass finds them all.
-/// Every value read, defaults included, is remembered: Resolved() writes them out as the file that
-/// reproduces the run. Copies share their state. The only place that knows toml++.
+/// One table of a TOML file, read strictly. Each reader checks type and range; a mistake is noted (not thrown) and the
+/// fallback or the nearest legal value is returned, so that one pass finds all mistakes. Every value read, defaults
+/// included, is remembered: Resolved() writes them out as the file that reproduces the run. Copies share their state.
+/// Only section*.cc use toml++.
 class Section {
  public:
-  /// Parses a file, or text that goes by the name `name` in messages. `overrides` replace or add keys.
-  /// Throws ConfigError for what cannot be opened (a folder, a dangling link, ...), decoded or parsed.
+  /// Parses a file, or text whose name in messages is `name`. `overrides` replace or add keys. Throws ConfigError if it
+  /// cannot be opened (a folder, a dangling link, ...), decoded or parsed.
   static Section FromFile(const std::string& path, std::span<const Override> overrides = {});
   static Section FromText(const std::string& text, const std::string& name, std::span<const Override> overrides = {});
 
+  /// True if `key` is present, here or in the base (InheritFrom).
   bool Has(std::string_view key) const;
-  /// A mistake was noted at `key` ("": anywhere in this table) or inside it: what follows from its value is not
-  /// worth a second complaint.
+  /// True if a mistake was noted at `key` ("": anywhere in this table) or inside it. What follows from its value is
+  /// then not worth another message.
   bool Wrong(std::string_view key) const;
 
-  /// From now on keys of this table are read by these rows, and keys of tables inside it by those of their rows.
+  /// Adds `rows` that describe keys of this table. The readers below follow them; tables inside this one follow the
+  /// rows of their keys.
   void Use(std::span<const Key> rows);
 
-  // Readers. A key's row says its range and its default; those with a range or a fallback of their own are for what
-  // only the reader can know. Without any default the key is required. Numbers are finite; an integer is accepted as a
-  // number.
+  // Readers. Range and default come from the key's row (Use); std::logic_error if there is none. Overloads with a range
+  // or a fallback are for what only the caller can know. A key without any default is required. Numbers are finite; an
+  // integer is accepted as a number.
   double Number(std::string_view key, std::optional<double> fallback = {});
   double Number(std::string_view key, double min, double max, std::optional<double> fallback = {});
-  /// As Number, but `min` = 0 itself is refused.
+  /// As Number() from 0 to `max`, but 0 itself is a mistake.
   double Positive(std::string_view key, double max, std::optional<double> fallback = {});
   std::int64_t Integer(std::string_view key);
   std::int64_t Integer(std::string_view key, std::int64_t min, std::int64_t max,
                        std::optional<std::int64_t> fallback = {});
   bool Boolean(std::string_view key, std::optional<bool> fallback = {});
   std::string Text(std::string_view key, std::optional<std::string> fallback = {});
-  /// Where the text of `key` begins, for those who have messages about what is in it.
+  /// Where the text of `key` begins, for messages about what is in it.
   struct Place {
     std::string file;    ///< the file's name alone
-    std::string folder;  ///< the folder that the file was opened in, as given; "" for the current one
-    int line = 1;        ///< of the text's first line
+    std::string folder;  ///< the folder of the file, as given; "": the current one
+    int line = 1;        ///< line in `file` of the text's first line
   };
   Place PlaceOfText(std::string_view key) const;
-  /// The text of the file that `key` names, which is looked for beside this document. Resolved() has the text itself,
-  /// under `text_key`.
+  /// The text of the file that `key` names, relative to this document's folder. Resolved() has the text itself, under
+  /// `text_key`.
   struct FileText {
     std::string text;
     std::string name;  ///< the file's, without its folders
   };
   FileText TextOfFile(std::string_view key, std::string_view text_key);
-  /// The absolute path of the file that `key` names, which is looked for beside this document; whether there is one is
-  /// not looked at. Resolved() has the absolute path. "" for a mistake.
+  /// The absolute path of the file that `key` names, relative to this document's folder; the file need not exist.
+  /// Resolved() has the absolute path. "" after a mistake.
   std::string PathOfFile(std::string_view key);
-  /// One of `names`; the message lists them and offers the nearest.
+  /// One of `names`; the message of a mistake lists them and offers the nearest.
   std::string OneOf(std::string_view key);
   std::string OneOf(std::string_view key, std::span<const std::string_view> names,
                     std::optional<std::string> fallback = {});
@@ -91,26 +93,26 @@ class Section {
   /// A list of numbers of any length (empty if absent).
   std::vector<double> Numbers(std::string_view key);
   std::vector<double> Numbers(std::string_view key, double min, double max);
-  /// A list of lists of numbers, row lengths as they stand (empty if absent). Laplacians, edges, points.
+  /// A list of lists of numbers, of any lengths (empty if absent): Laplacians, edges.
   std::vector<std::vector<double>> Rows(std::string_view key);
   std::vector<std::vector<double>> Rows(std::string_view key, double min, double max);
-  /// Rows() of exactly three numbers each.
+  /// A list of points: lists of exactly three numbers (empty if absent).
   std::vector<Eigen::Vector3d> Points(std::string_view key);
   std::vector<Eigen::Vector3d> Points(std::string_view key, double min, double max);
 
-  /// What kind of value stands there: "number", "string", "list", "table", ..., or "" if absent.
+  /// The kind of the value: "number", "string", "list", "table", ..., or "" if absent.
   std::string Kind(std::string_view key) const;
   /// A table inside this one; an absent one reads as empty.
   Section Child(std::string_view key);
   /// An array of tables ([[key]]); absent reads as none.
   std::vector<Section> Children(std::string_view key);
 
-  /// Keys that this table lacks are from now on read from `base`; mistakes in them are left to its own reader.
+  /// From now on, keys that this table lacks are read from `base`. Mistakes in them are left to the reader of `base`.
   void InheritFrom(const Section& base);
-  /// Where this table has `key` itself, `others`, which go against it or with the one that it replaces, are not
-  /// inherited from now on.
+  /// If this table has `key` itself, `others` are not inherited from now on: they contradict it, or belong to what it
+  /// replaces.
   void Supersede(std::string_view key, std::initializer_list<std::string_view> others);
-  /// Anything a TOML value can be (an absent table reads as an empty one).
+  /// The value of `key`, of any kind (an absent one reads as an empty table).
   Value Free(std::string_view key);
 
   /// Notes a mistake at the place of `key` (or of this table if absent): message = "expected ..., got ...".
@@ -121,7 +123,7 @@ class Section {
   void FailInside(std::string_view key, const std::string& inner, const std::string& message);
   /// As Fail, but the mistake is in the text of `key`, at this place: "FILE:LINE:COLUMN: law.python: ...".
   void FailInText(std::string_view key, const std::string& place, const std::string& message);
-  /// Notes every key of this table that nobody asked for as unknown, with "did you mean".
+  /// Notes every key of this table that was never asked for as unknown, with "did you mean".
   void Done();
   /// Throws ConfigError if any section of this document noted a mistake; in order of line and column.
   void ThrowIfWrong() const;
@@ -136,10 +138,10 @@ class Section {
   std::shared_ptr<Table> table_;
 };
 
-/// The whole of a regular file of at most 16 MiB. Throws ConfigError: "PATH: is a directory".
+/// The content of a regular file of at most 16 MiB. Throws ConfigError, e.g. "PATH: is a directory".
 std::string ReadRegularFile(const std::string& path);
 
-/// The name among `names` that is closest to `word`, if it is close enough to be a slip of the finger.
+/// The name among `names` that is closest to `word`, if it is close enough for a typing mistake.
 std::optional<std::string> DidYouMean(std::string_view word, std::span<const std::string_view> names);
 
 /// Shortest decimal text that reads back as exactly `value`; always with a point or exponent ("40.0").

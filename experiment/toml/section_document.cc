@@ -15,7 +15,7 @@ constexpr std::size_t kMostMistakes = 100;
 
 class File {
  public:
-  // Non-blocking: opening a FIFO that nobody writes to would wait for ever.
+  // Non-blocking: opening a FIFO that has no writer would wait for ever.
   explicit File(const std::string& path) : fd_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
   ~File() {
     if (fd_ >= 0) ::close(fd_);
@@ -28,8 +28,8 @@ class File {
   int fd_;
 };
 
-/// Refuses keys of more than kDeepestKey parts: toml++ makes and frees one table per part recursively, and a
-/// key of a million parts would run it out of stack. Walks over strings and comments as TOML does.
+/// Throws ConfigError for a key of more than kDeepestKey parts: toml++ makes and frees one table per part recursively,
+/// and a key of a million parts would overflow the stack. Skips strings and comments as TOML does.
 void RefuseDeepKeys(std::string_view text, const std::string& name) {
   unsigned line = 1;
   std::size_t parts = 1;
@@ -42,7 +42,7 @@ void RefuseDeepKeys(std::string_view text, const std::string& name) {
       const bool multiline = text.substr(i, 3) == triple;
       const std::string_view closing = multiline ? std::string_view(triple) : std::string_view(triple).substr(0, 1);
       for (i += closing.size(); i < text.size() && text.substr(i, closing.size()) != closing; ++i) {
-        if (text[i] == '\n' && !multiline) return;  // not TOML: the parser stops here, and says why
+        if (text[i] == '\n' && !multiline) return;  // no TOML: the parser will stop here, and say why
         if (text[i] == '\\' && c == '"') ++i;
         if (i < text.size() && text[i] == '\n') ++line;
       }
@@ -65,7 +65,7 @@ std::string PlaceText(const toml::source_region& place, const std::string& name)
          std::to_string(std::max(place.begin.column, 1u));
 }
 
-/// The words of toml++, where they help; a hint where they alone would not.
+/// The text of an error of toml++, in our words or with a hint where it does not help.
 std::string Why(std::string_view description) {
   constexpr std::string_view kPrefix = "Error ";
   std::string why(description.starts_with(kPrefix) ? description.substr(kPrefix.size()) : description);

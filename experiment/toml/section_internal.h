@@ -1,6 +1,6 @@
 #pragma once
 
-// What the files section*.cc share; nobody else includes this, or toml++.
+// What the files section*.cc share; no other file here includes this, or toml++.
 
 #include <toml++/toml.h>
 
@@ -14,15 +14,15 @@ namespace mascot {
 struct Section::Document {
   Document(std::string_view text, const std::string& document_name, std::span<const Override> overrides);
 
-  /// Remembers a mistake once, however often it is noted: laws are made, and complain, once per agent.
+  /// Stores a mistake; noted again, it counts once (laws are made once per agent, and each may note it).
   void Note(const toml::source_region& place, const std::string& path, const std::string& message);
-  /// Likewise, where the text has its place already; listed as if at `place`.
+  /// As Note(), for a `text` that names its place already; listed as if at `place`.
   void NoteText(const toml::source_region& place, const std::string& text);
   void ThrowIfWrong() const;
 
   std::string name;  ///< as the user typed it
   toml::table root;
-  std::shared_ptr<Table> top;  ///< what was asked of the root
+  std::shared_ptr<Table> top;  ///< the table of the root
 
  private:
   struct Mistake {
@@ -36,7 +36,7 @@ struct Section::Document {
   bool left_out_ = false;
 };
 
-/// One table: where it stands, and what has been asked of it. Shared by all copies of its Section.
+/// One table: where it stands, and what was read from it. Shared by all copies of its Section.
 struct Section::Table {
   /// A value or list, already as TOML text, or the tables of a Child or of Children.
   struct Entry {
@@ -48,68 +48,71 @@ struct Section::Table {
 
   std::string path;                   ///< as in messages: "agents.override[0]"; "" for the root
   const toml::table* toml = nullptr;  ///< null if the file has no such table
-  toml::source_region place;          ///< of the table, or of the nearest one around it that exists
-  bool inherited = false;             ///< stands in the base of the table around it, whose reader complains
-  bool broken = false;                ///< something else stands where the table should: no complaints about its keys
+  toml::source_region place;          ///< place of the table, or of the nearest one around it that exists
+  bool inherited = false;             ///< stands in the base of the table around it; the base's reader notes mistakes
+  bool broken = false;  ///< another kind of value stands in its place: no mistakes are noted about its keys
   Document* document = nullptr;
-  const Table* base = nullptr;  ///< where keys are looked for that this table lacks; of the same document
-  std::set<std::string, std::less<>> superseded;  ///< keys that are not looked for there
-  std::set<std::string, std::less<>> known;       ///< keys that somebody asked for
+  const Table* base = nullptr;                    ///< gives the keys that this table lacks; of the same document
+  std::set<std::string, std::less<>> superseded;  ///< keys that the base does not give
+  std::set<std::string, std::less<>> known;       ///< keys that were asked for
   std::set<std::string, std::less<>> wrong;       ///< keys with a mistake noted
   std::vector<Entry> entries;                     ///< in reading order
-  std::vector<std::span<const Key>> rows;         ///< what keys of this table may be
+  std::vector<std::span<const Key>> rows;         ///< rows that describe the keys of this table
 
   /// The row of `key`, or null.
   const Key* Row(std::string_view key) const;
-  /// Likewise; a key without one is a mistake of ours.
+  /// The row of `key`. Throws std::logic_error if there is none.
   const Key& RowOf(std::string_view key) const;
-  /// What `accept` takes out of the default in the row of `key`, if there is one.
+  /// The default in the row of `key`, converted by `accept`; nullopt: there is none.
   template <class T, class Accept>
   std::optional<T> RowDefault(std::string_view key, Accept accept) const;
   std::string PathOf(std::string_view key) const;
   toml::source_region PlaceOf(std::string_view key) const;
-  /// The table has `key` itself, not from the base.
+  /// True if the table has `key` itself, not from the base.
   bool Has(std::string_view key) const { return toml != nullptr && toml->contains(key); }
   /// The value of `key`, here or in the base; null if absent.
   const toml::node* Get(std::string_view key) const;
-  /// `key` is not here but in the base, whose reader it is that complains.
+  /// True if `key` is not here but in the base, whose reader notes its mistakes.
   bool Inherits(std::string_view key) const;
-  /// As Get; from now on `key` is a known key.
+  /// As Get(); from now on `key` is a known key.
   const toml::node* Find(std::string_view key);
   bool Wrong(std::string_view key) const;
+  /// The entry of `key`, or null.
   Entry* Recorded(std::string_view key);
+  /// Stores `value` as the entry of `key`.
   void Record(std::string_view key, std::string value);
-  /// The table that stands, or would stand, at `key`, or in its list.
+  /// A Table for `node`, which is the value of `key` or in its list; null: absent.
   std::shared_ptr<Table> MakeChild(std::string_view key, const toml::node* node, const std::string& child_path);
-  /// Notes "expected `expected`, got (the node)" at the node, or at the table if `node` is null.
+  /// Notes "expected `expected`, got ..." at the node, or at the table if `node` is null.
   void Expected(std::string_view key, const std::string& path, const toml::node* node, const std::string& expected);
 
-  /// The value of `key` as `accept` takes it out of its node (nullopt: not what is `expected`).
+  /// Reads `key`: `accept` converts its node, or returns nullopt if that is not what is `expected`. Without a legal
+  /// value: the fallback, the default of the row, or `legal`.
   template <class T, class Accept>
   T Read(std::string_view key, const std::string& expected, const std::optional<T>& fallback, T legal, Accept accept);
   double Number(std::string_view key, const Range& range, std::optional<double> fallback);
-  /// The elements of the list `key`; null if there is none.
+  /// The list `key`; null if there is none.
   const toml::array* List(std::string_view key, const std::string& expected);
-  // The values of lists that stand at `key`, or its default.
+  // Readers of lists: the value of `key`, or its default.
   std::vector<std::string> Texts(std::string_view key, std::optional<std::vector<std::string>> fallback);
   Eigen::Vector3d Vector3(std::string_view key, const Range& range, const std::optional<Eigen::Vector3d>& fallback);
   std::vector<double> Numbers(std::string_view key, const Range& range);
   std::vector<std::vector<double>> Lists(std::string_view key, const Range& range);
   std::vector<Eigen::Vector3d> Points(std::string_view key, const Range& range);
-  /// The numbers of a list that goes by `path` in messages: `key` or a row of it.
+  /// The numbers in `list`, whose name in messages is `path`: the value of `key` or a row of it.
   std::vector<double> Numbers(std::string_view key, const std::string& path, const toml::array& list,
                               const Range& range);
-  /// Likewise three numbers; `node` null: absent.
+  /// The three numbers in `node` (null: absent), whose name in messages is `path`.
   Eigen::Vector3d Vector3(std::string_view key, const std::string& path, const toml::node* node, const Range& range);
   /// TOML text of all entries, under [header] if that is not empty.
   std::string Resolved(const std::string& header, bool in_list) const;
-  /// As an inline table, if it is small enough for that.
+  /// TOML text as an inline table; nullopt if that would be too long.
   std::optional<std::string> ResolvedInline() const;
 };
 
-/// A key of more parts is refused.
+/// Largest number of parts of a dotted key.
 constexpr std::size_t kDeepestKey = 32;
-/// A character of keys that need no quotes.
+/// True for characters of keys that need no quotes.
 bool IsBare(char c);
 /// Throws ConfigError with the place in `name`.
 toml::table ParseToml(std::string_view text, const std::string& name);
@@ -126,19 +129,20 @@ std::optional<std::string> TextIn(const toml::node& node);
 /// "graph.edges[2]"
 std::string Indexed(std::string_view path, std::size_t index);
 
-/// A node as a Value, and that as TOML text on one line. Dates and times become text.
+/// A node as a Value. Dates and times become text.
 Value ToValue(const toml::node& node);
+/// A Value as TOML text on one line.
 std::string ToToml(const Value& value);
 
 /// TOML basic string, quoted and escaped.
 std::string QuotedToml(std::string_view text);
-/// TOML string; text of several lines keeps them, if it can.
+/// TOML string; a multi-line one for text of several lines, if possible.
 std::string StringToml(std::string_view text);
 /// `text` for a one-line message: control characters escaped.
 std::string OneLine(std::string_view text);
 /// `text`, or its first 60 bytes and "...".
 std::string CutShort(std::string_view text);
-/// OneLine of CutShort: something the user wrote, in a message.
+/// OneLine() of CutShort(): text of the user, for a message.
 std::string Printable(std::string_view text);
 /// "a, b, c".
 template <class Names>

@@ -7,8 +7,8 @@
 namespace mascot {
 namespace {
 
-/// The value of an override, in a table of its own under the key "value". A word that is no TOML value
-/// (`--set graph.topology=ring`) stands for itself: a shell would eat its quotes.
+/// The value of an override, in a table of its own under the key "value". A word that is no TOML value (`--set
+/// graph.topology=ring`) is taken as a string: a shell would remove its quotes.
 toml::table ParseValue(const Override& override, const std::string& name) {
   const bool word = !override.value.empty() && std::isalpha(static_cast<unsigned char>(override.value[0])) &&
                     override.value.find('\n') == std::string::npos;
@@ -23,10 +23,10 @@ toml::table ParseValue(const Override& override, const std::string& name) {
   }
 }
 
-/// A key of a table, or a place in a list.
+/// One step of a dotted key: a key of a table, or an index in a list.
 using Step = std::variant<std::string, std::size_t>;
 
-/// "agents.override[0].start_s" as its steps; none if it is not of that form.
+/// "agents.override[0].start_s" as its steps; empty if it is not of that form.
 std::vector<Step> Steps(std::string_view key) {
   std::vector<Step> steps;
   for (std::size_t i = 0; i < key.size();) {
@@ -60,22 +60,23 @@ std::string PathOf(std::span<const Step> steps) {
   return path;
 }
 
-/// One step of a key into the document, or onto what it sets.
+/// The place to which one step of a dotted key leads, inside the node to which the steps before it lead.
 class Place {
  public:
   Place(toml::node& inside, std::span<const Step> steps, std::size_t step)
       : inside_(inside), path_(PathOf(steps.first(step))), step_(steps[step]) {}
 
-  /// The node there; null where a table has no such key. Throws std::invalid_argument.
+  /// The node there; null if a table has no such key. Throws std::invalid_argument if the step does not fit.
   toml::node* Find() const {
     if (const auto* key = std::get_if<std::string>(&step_)) return Table(*key).get(*key);
     return &List()[std::get<std::size_t>(step_)];
   }
-  /// `source`: where the key stands. Throws std::invalid_argument.
+  /// Puts a value there. `source`: the place of the key, for messages. Throws std::invalid_argument if the step does
+  /// not fit.
   void Put(toml::node&& value, const toml::source_region& source) const {
     if (const auto* key = std::get_if<std::string>(&step_)) {
       toml::table& table = Table(*key);
-      table.erase(*key);  // with its key, whose place is the file's
+      table.erase(*key);  // also the key, whose place is in the file
       table.insert(toml::key(*key, source), std::move(value));
     } else {
       toml::array& list = List();
@@ -104,7 +105,7 @@ class Place {
   const Step& step_;
 };
 
-/// Tables that the key names and the document lacks are made.
+/// Puts a value where the steps lead, and makes the tables that the document lacks.
 void Put(toml::table& root, std::span<const Step> steps, toml::node&& value) {
   toml::node* node = &root;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {

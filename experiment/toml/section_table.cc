@@ -7,7 +7,7 @@
 namespace mascot {
 namespace {
 
-/// "a number in [0, 1]"; says "finite" to those who wrote nan or inf.
+/// "a number in [0, 1]"; "a finite number in ..." if the value is nan or inf.
 std::string ExpectedNumber(const toml::node* node, const Range& range) {
   const auto value = node != nullptr ? node->value_exact<double>() : std::nullopt;
   return (value && !std::isfinite(*value) ? "a finite number in " : "a number in ") + range.Text();
@@ -25,7 +25,7 @@ std::vector<std::string> NumberTexts(std::span<const double> values) {
   return texts;
 }
 
-/// As the user wrote them: an agent's id in a list of edges stays an integer.
+/// Numbers as the user wrote them: an id in a list of edges stays an integer.
 std::vector<std::string> AsWritten(const toml::array& list, const std::vector<double>& values) {
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -35,7 +35,7 @@ std::vector<std::string> AsWritten(const toml::array& list, const std::vector<do
   return texts;
 }
 
-/// "[a, b]", or one item per line where that would be too long to read.
+/// "[a, b]"; a long list of lists has one item per line.
 std::string ListText(const std::vector<std::string>& items) {
   constexpr std::size_t kLongestLine = 100;
   const std::string line = "[" + Joined(items) + "]";
@@ -163,7 +163,8 @@ std::shared_ptr<Section::Table> Section::Table::MakeChild(std::string_view key, 
 void Section::Table::Expected(std::string_view key, const std::string& where, const toml::node* node,
                               const std::string& expected) {
   wrong.emplace(key);
-  // What stands in place of this table was complained about already; what it inherits, where it stands.
+  // A wrong value in place of this table has been noted already; mistakes in inherited keys are noted by the base's
+  // reader.
   if ((node == nullptr && broken) || inherited || Inherits(key)) return;
   document->Note(node != nullptr ? node->source() : place, where,
                  "expected " + expected + ", got " + (node != nullptr ? Got(*node) : "nothing"));

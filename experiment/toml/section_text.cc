@@ -38,7 +38,7 @@ bool IsContinuation(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0
 
 char Lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// Edit distance that counts a swap of neighbouring letters as one slip (Damerau, CACM 7(3), 1964).
+/// Edit distance in which a swap of neighbouring letters counts as one edit (Damerau, CACM 7(3), 1964).
 std::size_t Distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   std::iota(last.begin(), last.end(), std::size_t{0});

@@ -8,7 +8,7 @@
 
 namespace mascot {
 
-/// A value of a configuration whose form its user decides: what stands under [law.params].
+/// A TOML value of any kind, for tables whose keys the user chooses: [law.params].
 struct Value {
   using List = std::vector<Value>;
   using Table = std::map<std::string, Value>;
