@@ -9,16 +9,16 @@
 
 namespace mascot {
 
-/// How a run went, from whichever engine ran it.
+/// Result of a run; the same for both engines.
 struct EngineResult {
-  std::string failure;                     ///< empty: it ran to its end, or was stopped in order
-  int signal = 0;                          ///< the signal that stopped it early, if one did
-  double wall_s = 0;                       ///< from publishing tick 0 to the last command gathered
-  double startup_s = 0;                    ///< from the start to tick 0
-  std::optional<Contacts> contacts;        ///< absent: the physics server died before it told
-  std::optional<Pacing> pacing;            ///< realtime; absent as above
-  std::uint64_t lost = 0;                  ///< samples that the recorder knows to have missed
-  std::optional<bool> wire_matches_graph;  ///< absent: ended before everybody was discovered
+  std::string failure;                     ///< why the run failed; empty: it ran to its end, or was stopped in order
+  int signal = 0;                          ///< the signal that stopped the run early; 0: none
+  double wall_s = 0;                       ///< wall-clock time from tick 0 to the last command
+  double startup_s = 0;                    ///< wall-clock time from the launch to tick 0
+  std::optional<Contacts> contacts;        ///< absent: the physics server died before it reported them
+  std::optional<Pacing> pacing;            ///< in real time only; absent as contacts is
+  std::uint64_t lost = 0;                  ///< samples that the recorder missed, or that came too late
+  std::optional<bool> wire_matches_graph;  ///< absent: the run ended before every endpoint was discovered
 };
 
 }  // namespace mascot

@@ -11,7 +11,7 @@ namespace {
 
 using WallClock = std::chrono::steady_clock;
 
-/// Everything that one tick needs, kept from tick to tick so that nothing is allocated in between.
+/// World, agents and buffers of a run; the buffers are reused, so that ticks do not allocate.
 class Flight {
  public:
   explicit Flight(const Experiment& experiment)
@@ -21,7 +21,7 @@ class Flight {
         actuation_(static_cast<std::size_t>(experiment.size())),
         row_(experiment.size()) {}
 
-  /// States and commands of the current tick.
+  /// States of the current tick, and the commands and messages that answer them. Valid until the next call.
   const DecodedRow& Exchange() {
     const std::int64_t tick = world_.tick();
     for (const AgentConfig& agent : experiment_.agents)
@@ -29,7 +29,7 @@ class Flight {
     for (const AgentConfig& agent : experiment_.agents) {
       const auto i = static_cast<std::size_t>(agent.id - 1);
       row_.commands[i] = team_.Decide(agent.id, tick, row_.motions);
-      row_.commands[i].v_limited_W.setZero();  // not on the wire
+      row_.commands[i].v_limited_W.setZero();  // as over DDS, where it is not sent
       actuation_[i] = row_.commands[i].actuator;
       const std::span<const double> message = team_.message(agent.id);
       row_.messages[i].assign(message.begin(), message.end());
@@ -54,7 +54,7 @@ class Flight {
 EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSink*>& sinks,
                           const std::function<bool()>& go_on) {
   EngineResult result;
-  result.wire_matches_graph = true;  // there is none: what an agent hears is made from the graph
+  result.wire_matches_graph = true;  // no wire here: each agent gets only the samples that the graph allows
   const auto launched = WallClock::now();
   Flight flight(experiment);
   RowFeed feed(experiment, sinks);

@@ -10,9 +10,9 @@
 
 namespace mascot {
 
-/// The other engine: the same World and Agents as the processes run, in one thread, without DDS. `sinks` get the
-/// states of every tick and the commands that answered them, in their order. `go_on` is asked once a tick; the run ends
-/// early, in order, when it says no.
+/// Runs the experiment in one thread of this process, without DDS, with the same World and Agent classes as the
+/// processes of the other engine. Every sink gets every row, in tick order. `go_on` is called once per tick; the run
+/// ends early, in order, when it returns false. A failure during a tick is reported in the result.
 EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSink*>& sinks,
                           const std::function<bool()>& go_on);
 

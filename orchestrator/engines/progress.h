@@ -13,10 +13,10 @@ namespace mascot {
 /// The progress line of a run: simulated time, real-time factor, agents, disagreement.
 class Progress final : public RowSink {
  public:
-  /// `meter` is fed before this.
+  /// `meter` must get each row before this object does.
   Progress(const Experiment& experiment, const RunMeter& meter, Console& console)
       : experiment_(experiment), meter_(meter), console_(console) {}
-  /// Shows every tenth of a second where the run is.
+  /// Updates the line at most ten times a second, and at the last tick.
   void Add(const FlownRow& row) override;
 
  private:

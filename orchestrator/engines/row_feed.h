@@ -9,23 +9,23 @@
 
 namespace mascot {
 
-/// Hands the rows of a run to its sinks, in their order, each row decoded once and encoded at most once.
+/// Passes the rows of a run to its sinks, one sink after the other. Each row is decoded once and encoded at most once.
 class RowFeed {
  public:
-  /// The sinks outlive this.
+  /// The sinks must outlive this object.
   RowFeed(const Experiment& experiment, std::vector<RowSink*> sinks);
 
-  /// The next tick, as it was on the wire. Throws std::runtime_error for bytes that are no samples, and what a sink
-  /// throws.
+  /// Adds the next tick as received over DDS. Throws std::runtime_error for bytes that are not valid samples, and what
+  /// a sink throws.
   void Add(const Row& bytes);
-  /// The next tick, as it was flown in one process.
+  /// Adds the next tick of a run in one process. Throws what a sink throws.
   void Add(std::int64_t tick, const DecodedRow& decoded);
 
  private:
   void HandOut(const FlownRow& row) const;
 
   std::vector<RowSink*> sinks_;
-  DecodedRow decoded_;  // of the newest row from the wire: a command that is missing in the next is held
+  DecodedRow decoded_;  // newest row received: a command that is missing in the next row keeps its value
   RowEncoder encoder_;
 };
 

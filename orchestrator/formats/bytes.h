@@ -12,7 +12,7 @@
 
 namespace mascot {
 
-// Our file formats (MCAP, zip, npy, CDR) are little endian, and so is every machine that we run on.
+// Our file formats (MCAP, zip, npy, CDR) are little endian; integers are copied as they are in memory.
 static_assert(std::endian::native == std::endian::little);
 
 using Bytes = std::vector<std::uint8_t>;
@@ -22,7 +22,7 @@ inline ByteSpan AsBytes(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-/// The bytes of numbers as they lie in memory.
+/// Views numbers as their bytes in memory.
 template <class T>
 requires std::is_arithmetic_v<T> ByteSpan AsBytes(std::span<const T> numbers) {
   return {reinterpret_cast<const std::uint8_t*>(numbers.data()), numbers.size_bytes()};
@@ -38,7 +38,7 @@ template <class T>
 requires std::is_arithmetic_v<T>
 void Append(Bytes& out, T number) { Append(out, AsBytes(std::span<const T>(&number, 1))); }
 
-/// CRC-32 (ISO-HDLC: that of zip and MCAP) of what `crc` covers, followed by `bytes`. Begins with 0.
+/// CRC-32 (ISO-HDLC, as in zip and MCAP). Continues `crc`, the CRC of the bytes before `bytes`; start with 0.
 inline std::uint32_t Crc32(std::uint32_t crc, ByteSpan bytes) {
   return static_cast<std::uint32_t>(::crc32_z(crc, bytes.data(), bytes.size()));
 }

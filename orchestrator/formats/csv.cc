@@ -21,7 +21,7 @@ void CsvWriter::Add(std::int64_t value) { Put(value); }
 
 template <class Number>
 void CsvWriter::Put(Number value) {
-  char text[32];  // the longest double takes 24
+  char text[32];  // the longest double takes 24 characters
   const auto result = std::to_chars(std::begin(text), std::end(text), value);
   buffer_.append(text, result.ptr).push_back(',');
 }

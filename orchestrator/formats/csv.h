@@ -9,8 +9,8 @@
 
 namespace mascot {
 
-/// Writes a table of numbers as comma-separated text with one line of column names. A float is the shortest text that
-/// reads back as the same bits. Failures throw std::runtime_error; without Close() there is no file.
+/// Writes a table of numbers as comma-separated values below one line of column names. A double is written as the
+/// shortest text that reads back as the same bits. Failures throw std::runtime_error; without Close() there is no file.
 class CsvWriter {
  public:
   CsvWriter(const std::string& path, std::span<const std::string> columns);

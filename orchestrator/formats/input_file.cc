@@ -18,7 +18,7 @@ namespace {
 
 std::string Reason(int error) { return std::generic_category().message(error); }
 
-/// Nonblocking, so that a pipe in the file's place is refused and not waited for.
+/// Opens `path` without blocking: if it is a pipe, open() would otherwise wait for a writer.
 int Open(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) Fail("open", path, Reason(errno));
@@ -52,7 +52,7 @@ void InputFile::Read(std::uint64_t offset, std::uint64_t bytes, Bytes& out) cons
     const ssize_t got = ::pread(fd_, &out[done], out.size() - done, static_cast<off_t>(offset + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) Fail("read", path_, Reason(errno));
-    if (got == 0) out.resize(done);  // it has become shorter
+    if (got == 0) out.resize(done);  // the file has become shorter
     done += static_cast<std::size_t>(got);
   }
 }

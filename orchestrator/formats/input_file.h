@@ -7,7 +7,7 @@
 
 namespace mascot {
 
-/// A regular file, read at any place. Its size is taken once: a file that is still growing reads as cut.
+/// Reads a regular file at any offset. Its size is that at the opening: what is appended later is not read.
 /// Failures throw std::runtime_error with the file's name and the system's reason.
 class InputFile {
  public:
@@ -17,7 +17,8 @@ class InputFile {
   InputFile& operator=(const InputFile&) = delete;
 
   std::uint64_t size() const { return size_; }
-  /// Up to `bytes` from `offset`, fewer only at the end of the file, into `out`, which they fill exactly.
+  /// Reads up to `bytes` bytes from `offset` into `out`, which is resized to what was read: fewer only at the end of
+  /// the file.
   void Read(std::uint64_t offset, std::uint64_t bytes, Bytes& out) const;
 
  private:

@@ -15,13 +15,13 @@
 namespace mascot {
 namespace {
 
-/// With its name and tags, which take less than the 256 bytes held back here, a variable stays below 2 GiB.
+/// Most data bytes of a variable, so that it stays below 2 GiB together with its name and tags (less than 256 bytes).
 constexpr std::uint64_t kMaxDataBytes = (std::uint64_t{1} << 31) - 256;
 
 using File = std::unique_ptr<mat_t, decltype(&Mat_Close)>;
 using Var = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
 
-/// The product of `dimensions`.
+/// The product of `dimensions`. Throws std::runtime_error if so many doubles do not fit in a variable.
 std::uint64_t CountValues(const std::string& name, std::span<const std::size_t> dimensions) {
   std::uint64_t values = 1;
   for (const std::size_t extent : dimensions) {
@@ -32,7 +32,7 @@ std::uint64_t CountValues(const std::string& name, std::span<const std::size_t> 
   return values;
 }
 
-/// MATLAB's own encoding of characters. `utf8` must be valid.
+/// Converts to UTF-16, MATLAB's encoding of characters. `utf8` must be valid.
 std::u16string ToUtf16(std::string_view utf8) {
   std::u16string utf16;
   for (std::size_t i = 0; i < utf8.size();) {
@@ -51,7 +51,7 @@ std::u16string ToUtf16(std::string_view utf8) {
   return utf16;
 }
 
-/// Delayed write errors show up here.
+/// Flushes the file to disk. Throws std::runtime_error, also for delayed write errors.
 void Sync(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   const bool ok = fd >= 0 && ::fsync(fd) == 0;
@@ -62,11 +62,11 @@ void Sync(const std::string& path) {
 
 }  // namespace
 
-/// What a variable must be when it is read back.
+/// What is compared when a variable is read back.
 struct MatWriter::Variable {
   std::string name;
   std::vector<std::size_t> dimensions;
-  std::uint32_t crc = 0;  // of its data
+  std::uint32_t crc = 0;  // CRC-32 of the data
 
   explicit Variable(const matvar_t& var)
       : name(var.name),

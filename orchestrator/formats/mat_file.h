@@ -11,18 +11,18 @@
 
 namespace mascot {
 
-/// Writes a MATLAB file (MAT 5, uncompressed: load() of every MATLAB since 5, Octave, SciPy). Byte-deterministic.
+/// Writes a MATLAB file (MAT 5, uncompressed; MATLAB 5 and later, Octave and SciPy load it). Byte-deterministic.
 /// Failures throw std::runtime_error; without Close() there is no file.
 class MatWriter {
  public:
   explicit MatWriter(const std::string& path);
   ~MatWriter();
 
-  /// Throws if doubles of these dimensions do not fit a variable, which MAT 5 limits to 2 GiB.
+  /// Throws if an array of doubles of these dimensions exceeds the 2 GiB to which MAT 5 limits a variable.
   static void RequireFits(const std::string& name, std::span<const std::size_t> dimensions);
-  /// A variable of doubles, in MATLAB's order: the first index runs fastest.
+  /// Adds an array of doubles in column-major order (the first index runs fastest). Throws as RequireFits does.
   void Add(const std::string& name, std::span<const std::size_t> dimensions, std::span<const double> values);
-  /// A row of characters. `text` is UTF-8.
+  /// Adds a character row vector. `text` is UTF-8.
   void AddText(const std::string& name, std::string_view text);
   /// Completes the file and reads it back: matio (1.5.23) does not notice when the disk is full.
   void Close();

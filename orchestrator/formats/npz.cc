@@ -26,7 +26,7 @@ constexpr std::size_t kBufferBytes = std::size_t{64} << 10;
   throw std::runtime_error("cannot " + what + " " + path + ": " + std::generic_category().message(errno));
 }
 
-/// One array that grows in a file without a name: it vanishes with the process, however that ends.
+/// An array that grows in an unlinked temporary file, which is removed whenever the process ends.
 class Spool {
  public:
   explicit Spool(std::string path) : path_(std::move(path)) {
@@ -44,14 +44,14 @@ class Spool {
     size_ += bytes.size();
     if (buffer_.size() >= kBufferBytes) Flush();
   }
-  /// Hands all bytes to `sink`, in pieces.
+  /// Passes all bytes to `sink`, in pieces.
   void CopyTo(const std::function<void(ByteSpan)>& sink) {
     Flush();
     buffer_.resize(kBufferBytes);
     for (std::uint64_t done = 0; done < size_;) {
       const ssize_t got = ::pread(fd_, buffer_.data(), buffer_.size(), static_cast<off_t>(done));
       if (got < 0 && errno == EINTR) continue;
-      if (got == 0) errno = EIO;  // it was longer once
+      if (got == 0) errno = EIO;  // the file was shortened
       if (got <= 0) Fail("read", path_);
       sink(ByteSpan(buffer_).first(static_cast<std::size_t>(got)));
       done += static_cast<std::uint64_t>(got);
@@ -71,7 +71,7 @@ class Spool {
   std::string path_;
   int fd_ = -1;
   std::uint64_t size_ = 0;
-  std::uint32_t crc_ = 0;  // of what was flushed
+  std::uint32_t crc_ = 0;  // CRC of the bytes flushed
   Bytes buffer_;
 };
 
@@ -86,13 +86,13 @@ struct Array {
   }
 };
 
-/// numpy/lib/format.py, version 1.0: magic, version, u16 length, a Python dict padded with blanks so that
-/// the data begins at a multiple of 64.
+/// .npy header as in numpy/lib/format.py, version 1.0: magic, version, u16 length, a Python dict padded with spaces so
+/// that the data begins at a multiple of 64.
 Bytes NpyHeader(const Array& array) {
   const std::uint64_t rows = array.spool->size() / (array.row_values() * sizeof(double));
   std::string shape = std::to_string(rows) + ",";
   for (const std::size_t extent : array.row_shape) shape += " " + std::to_string(extent) + ",";
-  if (!array.row_shape.empty()) shape.pop_back();  // a tuple of one keeps its comma
+  if (!array.row_shape.empty()) shape.pop_back();  // a tuple with one element keeps its comma
   std::string dict = "{'descr': '" + array.dtype + "', 'fortran_order': False, 'shape': (" + shape + "), }";
   constexpr std::size_t kPrefixBytes = 10;
   dict.append(63 - (kPrefixBytes + dict.size()) % 64, ' ').push_back('\n');

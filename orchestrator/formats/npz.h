@@ -8,10 +8,10 @@
 
 namespace mascot {
 
-/// Writes a NumPy .npz (uncompressed zip of .npy, zip64 where needed) whose arrays grow row by row on
-/// disk, so that memory does not grow with the run. Byte-deterministic. np.load reads it without pickle.
-/// While open, one nameless temporary file per array takes room where `path` is; Close() joins them, in the
-/// order in which they were added. Without Close() nothing is left. Failures throw std::runtime_error.
+/// Writes a NumPy .npz (uncompressed zip of .npy, zip64 where needed) whose arrays grow row by row on disk, so that
+/// memory does not grow with the run. Byte-deterministic. np.load reads it without pickle. Until Close(), each array is
+/// an unlinked temporary file on the disk of `path`; Close() copies them into one file, in the order in which they were
+/// added. Without Close() there is no file. Failures throw std::runtime_error.
 class NpzWriter {
  public:
   explicit NpzWriter(const std::string& path);
@@ -19,12 +19,13 @@ class NpzWriter {
   NpzWriter(const NpzWriter&) = delete;
   NpzWriter& operator=(const NpzWriter&) = delete;
 
-  /// A float64 array of shape (rows, shape...), rows counted as they come. Returns its handle.
+  /// Adds a float64 array of shape (rows, row_shape...) without rows. Returns its handle for Append.
   int AddArray(const std::string& name, std::vector<std::size_t> row_shape);
-  /// Appends one row: exactly the product of row_shape values, C order.
+  /// Appends one row to an array: as many values as the product of its row_shape, in C order.
   void Append(int array, std::span<const double> row);
-  /// A complete int64 array of shape (values.size()).
+  /// Adds a complete int64 array of shape (values.size()).
   void AddConstant(const std::string& name, std::span<const std::int64_t> values);
+  /// Completes the file. No other call may follow.
   void Close();
 
  private:

@@ -6,21 +6,21 @@
 
 namespace mascot {
 
-/// Writes all of `bytes` to the open file `fd`. Returns whether that went well; if not, errno says why.
+/// Writes all of `bytes` to the open file `fd`. Returns false on failure, with errno set.
 [[nodiscard]] bool WriteFully(int fd, std::span<const std::uint8_t> bytes);
 
-/// A file being written. Every call is checked: failures throw std::runtime_error with the file's name and
-/// the system's reason. After a failure every further write fails too, so that nothing lands behind a hole.
+/// Writes a file. Every system call is checked: failures throw std::runtime_error with the file's name and the system's
+/// reason. After a failure every further write fails too, so that the file has no gaps.
 class OutputFile {
  public:
-  /// Creates `path`, or truncates what is there.
+  /// Creates or truncates `path`.
   explicit OutputFile(std::string path);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
   void Write(std::span<const std::uint8_t> bytes);
-  /// Waits until the disk has everything, then closes. Delayed write errors show up here.
+  /// Flushes the file to disk (fsync) and closes it. Throws for delayed write errors too.
   void SyncAndClose();
   /// Bytes written so far.
   std::uint64_t size() const { return size_; }

@@ -19,7 +19,7 @@ PartFile::~PartFile() {
 void PartFile::Commit() {
   if (std::rename(part_.c_str(), path_.c_str()) != 0)
     throw std::runtime_error("cannot create " + path_ + ": " + std::generic_category().message(errno));
-  part_.clear();  // nobody's to remove any more
+  part_.clear();  // nothing is left to remove
 }
 
 }  // namespace mascot

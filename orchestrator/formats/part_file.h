@@ -4,8 +4,8 @@
 
 namespace mascot {
 
-/// The name under which a file is written until it is whole, so that what stands at `path` always is: another
-/// program never sees half of it, and a failure leaves the file that was there before.
+/// Temporary name of a file until it is complete. The file at `path` is thus always complete: other programs never see
+/// half of it, and after a failure the earlier file at `path`, if any, is still there.
 class PartFile {
  public:
   explicit PartFile(std::string path);
@@ -13,9 +13,9 @@ class PartFile {
   PartFile(const PartFile&) = delete;
   PartFile& operator=(const PartFile&) = delete;
 
-  /// `path`.part: for the owner to write to.
+  /// `path`.part: the name to write to.
   const std::string& name() const { return part_; }
-  /// Gives the finished file its own name, in place of any other. Throws std::runtime_error.
+  /// Renames the finished file to `path`, replacing any earlier file. Throws std::runtime_error.
   void Commit();
 
  private:

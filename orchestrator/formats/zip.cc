@@ -20,15 +20,16 @@ constexpr std::uint16_t kSeeZip64Count = 0xFFFF;
 
 std::uint32_t Low(std::uint64_t value, bool zip64) { return zip64 ? kSeeZip64 : static_cast<std::uint32_t>(value); }
 
-/// What local header and central directory have in common, from "version needed" to "extra field length".
+/// Appends the fields that local header and central directory have in common, from "version needed" to "extra field
+/// length".
 void AppendEntry(Bytes& out, const std::string& name, std::uint64_t size, std::uint32_t crc, bool zip64,
                  std::size_t extra_bytes) {
   Append(out, zip64 ? kVersionZip64 : kVersion);
   Append(out, std::uint32_t{0});  // flags; method: stored
   Append(out, kDate1980);
   Append(out, crc);
-  Append(out, Low(size, zip64));  // compressed and
-  Append(out, Low(size, zip64));  // uncompressed
+  Append(out, Low(size, zip64));  // compressed size
+  Append(out, Low(size, zip64));  // uncompressed size
   Append(out, static_cast<std::uint16_t>(name.size()));
   Append(out, static_cast<std::uint16_t>(extra_bytes));
 }
@@ -59,7 +60,7 @@ void ZipWriter::Begin(const std::string& name, std::uint64_t size, std::uint32_t
 
   const Bytes extra = zip64 ? Zip64Extra({size, size, offset}) : Bytes();
   Append(directory_, kDirectoryHeader);
-  Append(directory_, zip64 ? kVersionZip64 : kVersion);  // made by: MS-DOS, so without file modes
+  Append(directory_, zip64 ? kVersionZip64 : kVersion);  // made by: MS-DOS, thus without file modes
   AppendEntry(directory_, name, size, crc, zip64, extra.size());
   Append(directory_, std::uint16_t{0});  // comment length
   Append(directory_, std::uint32_t{0});  // disk number; internal attributes

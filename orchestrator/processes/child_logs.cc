@@ -21,14 +21,14 @@ struct ChildLogs::Stream {
   std::string process;
   int descriptor = -1;
   std::ofstream file;
-  std::string partial;           // what came since the last end of line
-  std::deque<std::string> last;  // kLastLines of them
+  std::string partial;           // characters since the last end of line
+  std::deque<std::string> last;  // the last kLastLines lines
 };
 
 namespace {
 
 constexpr std::size_t kLastLines = 10;
-constexpr auto kPipeIsDry = 2s;  // what a dead child printed last is in the pipe already
+constexpr auto kPipeIsEmpty = 2s;  // by then, the last output of a dead child has been copied from its pipe
 
 void MakePipe(int (&ends)[2]) {
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
@@ -77,7 +77,8 @@ void ChildLogs::Copy() {
       for (const auto& stream : streams_) polled.push_back({stream->descriptor, POLLIN, 0});
       closing = closing_;
     }
-    // The children have gone by the time of closing; what they started may hold their pipes open for ever.
+    // At closing the children have ended, but processes that they started may hold the pipes open for ever: do not
+    // wait.
     if (poll(polled.data(), polled.size(), closing ? 0 : -1) == 0) break;
     char buffer[256];
     if (polled[0].revents != 0 && read(wake_[0], buffer, sizeof buffer) < 0) break;
@@ -113,7 +114,7 @@ void ChildLogs::TakeLine(Stream& stream, const std::string& line) {
 }
 
 std::vector<std::string> ChildLogs::LastLines(const std::string& process) {
-  for (const auto deadline = WallClock::now() + kPipeIsDry;; poll(nullptr, 0, 1)) {
+  for (const auto deadline = WallClock::now() + kPipeIsEmpty;; poll(nullptr, 0, 1)) {
     const std::lock_guard lock(mutex_);
     for (const auto& stream : streams_)
       if (stream->process == process && (stream->descriptor < 0 || WallClock::now() > deadline))

@@ -11,21 +11,22 @@
 
 namespace mascot {
 
-/// Copies what children print to their log files, hands every line to a sink, and keeps each child's last lines.
+/// Copies the output of children to their log files, passes every line to a sink, and keeps each child's last 10 lines.
 class ChildLogs {
  public:
-  /// Called for each whole line, in the thread that copies.
+  /// Called for each complete line, in the copying thread.
   using LineSink = std::function<void(const std::string& process, const std::string& line)>;
 
   explicit ChildLogs(LineSink on_line);
-  ~ChildLogs();  ///< when what is in the pipes is copied; for after the children have gone
+  ~ChildLogs();  ///< copies what is left in the pipes; call it after the children have ended
   ChildLogs(const ChildLogs&) = delete;
   ChildLogs& operator=(const ChildLogs&) = delete;
 
-  /// A pipe whose reading end this copies to the file `log`; returns the end to write to, which the caller closes.
-  /// Throws std::runtime_error if the file cannot be written.
+  /// Creates a pipe, whose output goes to the file `log`. Returns its write end, which the caller closes. Throws
+  /// std::runtime_error if the pipe or the file cannot be created.
   int Open(const std::string& process, const std::filesystem::path& log);
-  /// The last lines that `process` printed. Waits, briefly, for those still in the pipe of a dead child.
+  /// The last lines that `process` printed. Waits up to 2 s for the end of its output, so that the lines in the pipe of
+  /// a dead child are included.
   std::vector<std::string> LastLines(const std::string& process);
 
  private:
@@ -40,7 +41,7 @@ class ChildLogs {
   std::vector<std::unique_ptr<Stream>> streams_;
   int wake_[2];
   bool closing_ = false;
-  std::thread thread_;  // last
+  std::thread thread_;  // last: it uses the members above
 };
 
 }  // namespace mascot

@@ -64,7 +64,7 @@ std::vector<Exit> Children::Reap() {
   std::vector<Exit> exits;
   for (auto child = running_.begin(); child != running_.end();) {
     int status = 0;
-    if (const pid_t gone = waitpid(child->first, &status, WNOHANG); gone != 0) {  // < 0: somebody else reaped it
+    if (const pid_t gone = waitpid(child->first, &status, WNOHANG); gone != 0) {  // < 0: already reaped elsewhere
       exits.push_back({child->second, status});
       child = running_.erase(child);
     } else {
@@ -75,7 +75,7 @@ std::vector<Exit> Children::Reap() {
 }
 
 bool Children::WaitAll(std::chrono::milliseconds grace) {
-  // SIGCHLD is blocked and belongs to the run's StopSignal, which is no longer asked: look again often.
+  // SIGCHLD is blocked and goes to the StopSignal of the run, which is not read here: poll instead.
   const auto deadline = WallClock::now() + grace;
   for (; Reap(), !running_.empty() && WallClock::now() < deadline;) poll(nullptr, 0, 2);
   return running_.empty();

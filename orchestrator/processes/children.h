@@ -13,21 +13,21 @@
 
 namespace mascot {
 
-/// Folder of the running program.
+/// Folder of the executable of this process.
 std::filesystem::path ProgramFolder();
 
 /// How a child ended.
 struct Exit {
   std::string process;
-  int status = 0;  ///< of waitpid
-  /// Its exit code; nothing if a signal killed it.
+  int status = 0;  ///< status from waitpid
+  /// Exit code; nothing if a signal killed the child.
   std::optional<int> code() const;
   /// "exited with code 3", "was killed by signal 11 (Segmentation fault)"
   std::string Text() const;
 };
 
-/// The processes of a run, each in a process group of its own with default signals, so that a Ctrl-C
-/// reaches only the orchestrator. None outlives this object.
+/// Child processes of a run. Each has its own process group, so that Ctrl-C reaches only the orchestrator, and default
+/// signal dispositions. No child outlives this object.
 class Children {
  public:
   explicit Children(ChildLogs& logs) : logs_(logs) {}
@@ -35,16 +35,17 @@ class Children {
   Children(const Children&) = delete;
   Children& operator=(const Children&) = delete;
 
-  /// Starts `program` (a path) with `arguments`; what it prints goes to the file `log`. Throws std::runtime_error if it
-  /// cannot be started.
+  /// Starts `program` (a path) with `arguments`, under the name `process`; its output goes to the file `log`. Throws
+  /// std::runtime_error if it cannot be started.
   void Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments,
              const std::filesystem::path& log);
-  /// Children that have ended since the last call.
+  /// Reaps children. Returns those that have ended since the last call.
   std::vector<Exit> Reap();
-  /// Waits until all have ended, at most `grace`. Returns whether they have.
+  /// Waits at most `grace` until all children have ended, and reaps them. Returns whether all have.
   bool WaitAll(std::chrono::milliseconds grace);
-  /// SIGTERM, and SIGKILL to what is left after `grace`. Reaps all. Twice is not an error.
+  /// Sends SIGTERM, and after `grace` SIGKILL to the children that are left; reaps all. May be called again.
   void Stop(std::chrono::milliseconds grace);
+  /// Sends SIGKILL to all children and reaps them.
   void Kill();
 
  private:

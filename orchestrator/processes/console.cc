@@ -9,15 +9,15 @@
 namespace mascot {
 namespace {
 
-constexpr int kColours[] = {36, 33, 35, 32, 34, 96, 93, 95, 92, 94};  // never red: that is for errors
+constexpr int kColours[] = {36, 33, 35, 32, 34, 96, 93, 95, 92, 94};  // without red, which is for errors
 
 bool WantsColour() { return std::getenv("NO_COLOR") == nullptr && isatty(STDERR_FILENO); }
 
-/// Always the same colour for the same process: by its number where it has one.
+/// Terminal colour of a process, chosen by a hash of its name: always the same for the same process.
 int ColourOf(const std::string& process) {
-  std::size_t sum = 0;
-  for (char c : process) sum = sum * 31 + static_cast<unsigned char>(c);
-  return kColours[sum % std::size(kColours)];
+  std::size_t hash = 0;
+  for (char c : process) hash = hash * 31 + static_cast<unsigned char>(c);
+  return kColours[hash % std::size(kColours)];
 }
 
 }  // namespace

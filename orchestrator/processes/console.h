@@ -6,21 +6,22 @@
 
 namespace mascot {
 
-/// What a person sees of a run, on stderr: one progress line that is rewritten in place on a terminal (a
-/// line every 10 % otherwise), and lines of logs above it. Thread-safe.
+/// Prints the progress of a run on stderr: log lines, and below them one progress line that is rewritten in place on a
+/// terminal (elsewhere, a line every 10 %). Thread-safe.
 class Console {
  public:
-  /// `quiet`: errors only.
+  /// `quiet`: print nothing.
   explicit Console(bool quiet);
   ~Console() { EndProgress(); }
 
-  /// An ordinary line.
+  /// Prints a line.
   void Line(const std::string& text);
-  /// A line of a child's log, with its name in front.
+  /// Prints a line of a child's output, with the child's name in front.
   void ChildLine(const std::string& process, const std::string& text);
-  /// `fraction` of the run is done; `text` says more. Cheap to call often.
+  /// Shows `text` as the progress line; `fraction` (0 to 1) of the run is done. Without a terminal, prints only when
+  /// another 10 % are done.
   void Progress(double fraction, const std::string& text);
-  /// Leaves the progress line as it stands, and the cursor on the next.
+  /// Ends the progress line and moves to the next line.
   void EndProgress();
 
  private:
@@ -31,8 +32,8 @@ class Console {
   const bool quiet_;
   const bool terminal_;
   const bool colour_;
-  std::string progress_;  // on the screen now
-  int tenths_ = -1;       // last printed when there is no terminal
+  std::string progress_;  // text of the progress line on the terminal
+  int tenths_ = -1;       // without a terminal: tenths of the run done at the last line
 };
 
 }  // namespace mascot

@@ -12,8 +12,8 @@
 
 namespace mascot {
 
-/// Listens for signals beside a thread that a law may hold up: the first asks it to stop, the second ends the process,
-/// with a recording that is cut.
+/// Receives signals in a thread of its own, because a slow law may block the thread of the run. The first signal asks
+/// the run to stop; the second ends the process at once, which leaves the recording without its end.
 class Interruptions {
  public:
   Interruptions(StopSignal& stop, Console& console)
@@ -25,7 +25,7 @@ class Interruptions {
   Interruptions(const Interruptions&) = delete;
   Interruptions& operator=(const Interruptions&) = delete;
 
-  /// The signal that asked to stop; 0: none so far.
+  /// The first signal received; 0: none so far.
   int signal() const { return signal_; }
 
  private:
@@ -33,7 +33,7 @@ class Interruptions {
     while (!over.stop_requested()) {
       const int signal = stop_.Within(std::chrono::hours(1));
       if (signal == 0) continue;
-      if (signal_ != 0) _exit(128 + signal);  // no destructors: they would wait for what does not end
+      if (signal_ != 0) _exit(128 + signal);  // without destructors, which would wait for the blocked thread
       signal_ = signal;
       console_.Line("stopping (once more to kill)");
     }

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Installed, or in the source tree that this program was configured in.
+/// Path of a script: installed beside this program, or in the source tree that it was built from.
 fs::path Find(const std::string& script) {
   for (const fs::path& path :
        {ProgramFolder() / "../share/mascot" / script, fs::path(MASCOT_SOURCE_DIR) / "scripts" / script})
@@ -27,7 +27,7 @@ fs::path Find(const std::string& script) {
                            " is missing: neither beside this program (../share/mascot) nor in its source tree");
 }
 
-/// Runs a program that shares our terminal. Returns its exit code, or 128 + signal: its own, or one that `stop` heard.
+/// Runs a program on our terminal. Returns its exit code, or 128 + the signal that ended it or that `stop` received.
 int RunProgram(std::vector<std::string> words, StopSignal& stop) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -42,21 +42,21 @@ int RunProgram(std::vector<std::string> words, StopSignal& stop) {
   const int error = posix_spawn(&pid, argv[0], nullptr, &attributes, argv.data(), environ);
   posix_spawnattr_destroy(&attributes);
   if (error != 0) throw std::runtime_error("cannot start " + words[0] + ": " + std::strerror(error));
-  int status = 0, heard = 0;
+  int status = 0, received = 0;
   while (waitpid(pid, &status, WNOHANG) == 0) {
     const int signal = stop.Within(std::chrono::milliseconds(100));
     if (signal == 0) continue;
-    heard = signal;
+    received = signal;
     kill(pid, SIGTERM);
   }
-  if (heard != 0) return 128 + heard;
+  if (received != 0) return 128 + received;
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 }  // namespace
 
 int RunScript(const std::string& script, const std::vector<std::string>& arguments, StopSignal& stop) {
-  // Debian's own Python, which has Debian's matplotlib; another may be first in PATH.
+  // The system's Python, for which matplotlib is installed; PATH may find another one first.
   std::vector<std::string> words{"/usr/bin/python3", Find(script)};
   words.insert(words.end(), arguments.begin(), arguments.end());
   return RunProgram(words, stop);

@@ -24,7 +24,7 @@ constexpr char kAnswer = 'a', kFailure = 'f';
 
 [[noreturn]] void Fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
 
-// What goes back is a length, then as many bytes: kAnswer or kFailure, and its text.
+// Reply of a worker: its length (std::size_t), then as many bytes: kAnswer or kFailure, then the text.
 
 bool SendReply(int socket, const std::string& reply) {
   const std::size_t size = reply.size();
@@ -47,7 +47,7 @@ bool Receive(int socket, void* data, std::size_t size) {
   return true;
 }
 
-/// Nothing from a worker that has ended.
+/// Receives a reply; nothing if the worker has ended.
 std::optional<std::string> ReceiveReply(int socket) {
   std::size_t size = 0;
   if (!Receive(socket, &size, sizeof size)) return std::nullopt;
@@ -56,7 +56,7 @@ std::optional<std::string> ReceiveReply(int socket) {
   return reply;
 }
 
-/// A worker's own lines would only mix with others'; errors stay.
+/// Sends stdout to /dev/null: the lines of several workers would be mixed. stderr stays.
 void SilenceOutput() {
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere >= 0) ::dup2(nowhere, STDOUT_FILENO);
@@ -71,7 +71,7 @@ WorkerPool::WorkerPool(int workers, Work work) : work_(std::move(work)) {
 WorkerPool::~WorkerPool() {
   for (Worker& worker : workers_) {
     ::kill(worker.pid, SIGKILL);
-    Bury(worker);
+    Reap(worker);
   }
 }
 
@@ -82,7 +82,7 @@ WorkerPool::Worker WorkerPool::Fork() {
   const pid_t pid = ::fork();
   if (pid < 0) Fail("fork");
   if (pid == 0) {
-    ::setpgid(0, 0);  // Ctrl-C is the parent's business
+    ::setpgid(0, 0);  // Ctrl-C must reach the parent only
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(1);
     for (const Worker& other : workers_)
@@ -120,7 +120,7 @@ bool WorkerPool::IsBusy() const {
 void WorkerPool::Start(std::size_t task) {
   Worker& worker = *std::ranges::find_if(workers_, [](const Worker& each) { return !each.task; });
   worker.task = task;
-  // One that died meanwhile is noticed by Wait, as the end of its socket.
+  // If the worker has died meanwhile, Wait notices the closed socket.
   if (::send(worker.socket, &task, sizeof task, MSG_NOSIGNAL) < 0 && errno != EPIPE && errno != ECONNRESET)
     Fail("send to a worker");
 }
@@ -139,14 +139,14 @@ std::optional<WorkerPool::Done> WorkerPool::Wait(std::chrono::milliseconds timeo
       return done;
     }
     const std::optional<std::size_t> task = worker.task;
-    const std::string how = Bury(worker);
+    const std::string exit_text = Reap(worker);
     worker = Fork();
-    if (task) return Done{*task, "", std::string(kLostProcess) + how};
+    if (task) return Done{*task, "", std::string(kLostProcess) + exit_text};
   }
   return std::nullopt;
 }
 
-std::string WorkerPool::Bury(Worker& worker) const {
+std::string WorkerPool::Reap(Worker& worker) const {
   ::close(std::exchange(worker.socket, -1));
   int status = 0;
   while (::waitpid(worker.pid, &status, 0) < 0 && errno == EINTR) {

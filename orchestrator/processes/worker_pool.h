@@ -12,32 +12,32 @@
 
 namespace mascot {
 
-/// How the failure of a task begins that took its process down.
+/// Beginning of the failure text of a task whose process crashed, was killed or exited.
 inline constexpr std::string_view kLostProcess = "the process ";
 
-/// Processes that work off tasks, one at a time each. A task that takes its process down is that task's failure only:
-/// the next one gets a new process. Make it before anything starts threads or an interpreter, which a fork would copy
-/// badly.
+/// Pool of worker processes, each of which runs one task at a time. If a task crashes its process, only this task
+/// fails, and the process is replaced. Construct it before any threads or a Python interpreter are started: fork() does
+/// not copy them properly.
 class WorkerPool {
  public:
-  /// Runs in a worker: the answer to a task. What it throws becomes the failure.
+  /// Runs in a worker process and returns the answer to a task. An exception becomes the failure of the task.
   using Work = std::function<std::string(std::size_t task)>;
   struct Done {
     std::size_t task = 0;
     std::string answer;
-    std::string failure;  ///< empty: none; of a lost process kLostProcess "was killed by signal 11 (...)"
+    std::string failure;  ///< empty: none; if the process was lost: kLostProcess, "was killed by signal 11 (...)"
   };
 
   WorkerPool(int workers, Work work);
-  ~WorkerPool();  ///< kills those that still work
+  ~WorkerPool();  ///< kills and reaps all workers
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
   bool HasIdle() const;
   bool IsBusy() const;
-  /// Gives `task` to an idle worker.
+  /// Gives `task` to an idle worker. HasIdle() must be true.
   void Start(std::size_t task);
-  /// A finished task, or nothing within `timeout`.
+  /// Waits for a finished task; nothing if there is none within `timeout`.
   std::optional<Done> Wait(std::chrono::milliseconds timeout);
 
  private:
@@ -48,7 +48,8 @@ class WorkerPool {
   };
   Worker Fork();
   [[noreturn]] void Serve(int socket) const;
-  std::string Bury(Worker& worker) const;
+  /// Waits for the end of a worker process. Returns how it ended, as Exit::Text.
+  std::string Reap(Worker& worker) const;
 
   Work work_;
   std::vector<Worker> workers_;

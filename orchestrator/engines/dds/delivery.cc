@@ -9,9 +9,10 @@
 namespace mascot {
 namespace {
 
-// Heard by each agent, on average, from which on one sample with all of them is faster (bench/: 2 times at 15).
+// Neighbours per agent, on average, from which on bundled delivery is faster (bench/: 2 times as fast at 15).
 constexpr double kDense = 10;
-// Participants that the ports of one DDS domain hold on one host, less the server's, ours and the discovery server's.
+// Agent processes on one host. The ports of one DDS domain suffice for 120 participants, which include the physics
+// server, the orchestrator and the discovery server.
 constexpr std::ptrdiff_t kMostProcesses = 110;
 
 }  // namespace

@@ -7,9 +7,9 @@
 
 namespace mascot {
 
-/// "key: text", for keys of [network] that make a run over DDS slower than it need be.
+/// Warnings ("key: text") about keys of [network] that make a run over DDS slower than it could be.
 std::vector<std::string> DeliveryWarnings(const Experiment& experiment);
-/// Refuses more processes than one host can hold, with ConfigError.
+/// Throws ConfigError if the experiment has more agent processes on this host than one DDS domain can hold.
 void RefuseTooManyProcesses(const Experiment& experiment);
 
 }  // namespace mascot

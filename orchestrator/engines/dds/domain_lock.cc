@@ -22,9 +22,9 @@ constexpr int kPortBase = 7400, kPortsPerDomain = 250;  // RTPS 2.2, section 9.6
 
 int FirstPort(int domain) { return kPortBase + kPortsPerDomain * domain; }
 
-/// Opens the domain's lock file, making it if need be. Not close-on-exec: children keep the domain taken.
+/// Opens the domain's lock file, creating it if necessary. Without O_CLOEXEC: children inherit the lock.
 int OpenLockFile(int domain) {
-  if (mkdir(kFolder, 01777) == 0) chmod(kFolder, 01777);  // mkdir's mode went through the umask
+  if (mkdir(kFolder, 01777) == 0) chmod(kFolder, 01777);  // the umask applies to mkdir's mode
   const std::string path = std::string(kFolder) + "/" + std::to_string(domain);
   int descriptor = open(path.c_str(), O_RDONLY | O_NOFOLLOW);
   if (descriptor < 0 && errno == ENOENT) descriptor = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CREAT, 0644);
@@ -32,7 +32,7 @@ int OpenLockFile(int domain) {
   return descriptor;
 }
 
-/// The descriptor that holds the lock, or -1 if another run holds it.
+/// Locks the domain. Returns the descriptor that holds the lock, or -1 if another run holds it.
 int TryLock(int domain) {
   const int descriptor = OpenLockFile(domain);
   if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
@@ -40,7 +40,7 @@ int TryLock(int domain) {
   return -1;
 }
 
-/// Local UDP ports in use on this machine, to keep clear of other DDS programs.
+/// Local UDP ports in use on this machine, by which other DDS programs are recognised.
 std::set<int> UdpPortsInUse() {
   std::set<int> ports;
   for (const char* table : {"/proc/net/udp", "/proc/net/udp6"}) {

@@ -4,19 +4,19 @@
 
 namespace mascot {
 
-/// A DDS domain that no other run of this machine uses, for as long as this object or any child that
-/// inherited its descriptor lives: a lock on a file in /tmp.
+/// Reserves a DDS domain, so that no other run on this machine uses it: a lock on a file in /tmp. It lasts as long as
+/// this object, or any child process that inherited its descriptor.
 class DomainLock {
  public:
-  /// `wanted` < 0 picks a free domain; otherwise that one. Throws std::runtime_error if it is in use, or
-  /// if none is free.
+  /// Reserves domain `wanted`; if `wanted` < 0, any free domain. Throws std::runtime_error if it is in use or none is
+  /// free.
   explicit DomainLock(int wanted);
   ~DomainLock();
   DomainLock(const DomainLock&) = delete;
   DomainLock& operator=(const DomainLock&) = delete;
 
   int domain() const { return domain_; }
-  /// A UDP port of this domain that RTPS assigns to no participant: for the run's discovery server.
+  /// UDP port for the run's discovery server; RTPS assigns it to no participant of this domain.
   int discovery_port() const;
 
  private:

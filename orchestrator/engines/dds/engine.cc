@@ -27,25 +27,26 @@ namespace {
 using namespace std::chrono_literals;
 using WallClock = std::chrono::steady_clock;
 
-/// Above this everybody finding everybody takes longer than asking a server (50: 5 s against 2 s).
+/// Participants up to which peer-to-peer discovery is used; beyond, a discovery server is faster (50: 2 s, not 5 s).
 constexpr int kMostPeers = 20;
-/// How long children may take to end by themselves.
+/// How long children may take to exit by themselves at the end.
 constexpr auto kGrace = 5s;
 
-/// As `agent --id` takes them.
+/// Agent ids as `agent --id` takes them: "3" or "3-5".
 std::string IdsText(AgentRange agents) {
   return std::to_string(agents.first) + (agents.size() > 1 ? "-" + std::to_string(agents.last) : "");
 }
 
-/// From now on this thread, and those that it makes, give way to the processes of the run. The recorder hears
-/// everything and may lag behind by its window; waking it must not push a process aside that the next tick waits for.
-/// (By much more than this, and it starves until the window is full.)
-void StepAside() {
+/// Lowers the priority of this thread, and of those that it starts, below that of the other processes of the run. The
+/// recorder receives every sample and may lag behind by its window; it must not take the processor from a process that
+/// the next tick waits for. (With a much larger nice value it starves until the window is full.)
+void LowerPriority() {
   constexpr int kNice = 5;
   setpriority(PRIO_PROCESS, 0, kNice);
 }
 
-/// One run, from the domain's lock to the last process gone. RunPhases decides; this does it.
+/// One run, from locking the domain until the last process has ended. RunPhases makes the decisions; DdsRun carries
+/// them out.
 class DdsRun {
  public:
   DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Console& console,
@@ -80,7 +81,7 @@ class DdsRun {
   const WallClock::time_point launched_ = WallClock::now();
   const bool external_;
   EngineResult result_;
-  std::int64_t confirmed_ = 0;  // rows that the server knows to be recorded
+  std::int64_t confirmed_ = 0;  // rows recorded so far
 
   const std::vector<AgentRange> processes_;
   const bool with_server_;
@@ -123,9 +124,9 @@ RunPhases::Rules DdsRun::Rules() {
 
 void DdsRun::Join() {
   lock_.emplace(experiment_.network.domain);
-  SweepSharedMemory();  // of runs that were killed
+  SweepSharedMemory();  // left by runs that were killed
   Spawn();
-  StepAside();
+  LowerPriority();
   auto wake = [this] { stop_.Wake(); };
   if (with_server_) discovery_server_.emplace(Options("discovery_server", DiscoveryRole::kServer), [] {});
   domain_.emplace(Options("orchestrator", with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake,
@@ -175,7 +176,8 @@ void DdsRun::Spawn() {
   }
 }
 
-/// How many topics of others the agents' process deals with in a tick, and how many of its own.
+/// Value of --participants for a process of agents, which sizes its buffers: 2 for one agent; for more, about the
+/// number of topics that they read and write.
 int DdsRun::PeersOf(AgentRange agents) const {
   if (agents.size() == 1) return 2;
   std::size_t topics = 2;
@@ -183,10 +185,10 @@ int DdsRun::PeersOf(AgentRange agents) const {
   return static_cast<int>(std::min<std::size_t>(topics, 20000));
 }
 
-/// Bundles that are on their way at once need room beyond that of single states.
+/// Extra buffer space for bundles, in participants: all of a tick's bundles are in flight at once.
 int DdsRun::BundleRoom() const {
   if (experiment_.network.delivery != Delivery::kBundled) return 0;
-  constexpr std::size_t kStatesPerPeer = 32 * 1024 / 176;  // bus/qos.cc reserves 32 KiB for each
+  constexpr std::size_t kStatesPerPeer = 32 * 1024 / 176;  // bus/qos.cc reserves 32 KiB per participant
   return static_cast<int>(std::min<std::size_t>(experiment_.graph.edges() / kStatesPerPeer, 10000));
 }
 
@@ -223,7 +225,7 @@ void DdsRun::OnSignal(int signal) {
   Do(actions);
 }
 
-/// Children that have ended by themselves.
+/// Passes the exits of children to RunPhases.
 void DdsRun::Reap() {
   std::vector<RunPhases::Exit> exits;
   for (const Exit& exit : children_.Reap()) exits.push_back({exit.process, exit.code(), exit.Text()});
@@ -235,10 +237,9 @@ void DdsRun::CheckWire() {
   if (const std::string violation = audit_.Violation(experiment_); !violation.empty()) phases_.OnViolation(violation);
 }
 
-/// What there is, once the rows that are complete are recorded.
+/// Records the complete rows and confirms them to the server. Returns the state of the run afterwards.
 RunPhases::View DdsRun::Record() {
-  const auto server =
-      hub_->StatusOf("physics_server");  // before the rows: those up to its tick are here, or on their way
+  const auto server = hub_->StatusOf("physics_server");  // before draining: all samples up to its tick have been sent
   const bool done = server && static_cast<Life>(server->state()) == Life::kDone;
   const bool give_up = phases_.gives_up(WallClock::now());
   const std::int64_t rows = recorder_->Drain(give_up);
@@ -268,18 +269,18 @@ void DdsRun::Do(const RunPhases::Actions& actions) {
 
 void DdsRun::AskToEnd() try {
   hub_->Ask(Ask::kEnd, phases_.in_order() ? "done" : phases_.failure().substr(0, 1000));
-} catch (const BusError& error) {  // then signals must do
+} catch (const BusError& error) {  // End() then stops the processes with signals
   console_.Line(error.what());
 }
 
-/// What the physics server measured in the run, which it tells when it ends; nothing before.
+/// The physics server's last status, with what it measured in the run; nothing before the server has sent it.
 std::optional<Hub::Status> DdsRun::ServerReport() const {
   auto server = hub_->StatusOf("physics_server");
   if (recorder_->newest_tick() < 0 || !server || !IsLast(static_cast<Life>(server->state()))) return std::nullopt;
   return server;
 }
 
-/// All rows there are, or those before the next signal: a slow law makes them slow.
+/// Records all remaining rows, also incomplete ones; a signal stops it, since a slow law makes rows slow.
 void DdsRun::DrainAll() {
   for (std::int64_t rows = -1; rows != confirmed_;) {
     rows = confirmed_;
@@ -291,12 +292,12 @@ void DdsRun::DrainAll() {
 void DdsRun::AwaitReport() {
   for (Do(phases_.Collected(Look(), WallClock::now())); phases_.phase() == RunPhases::Phase::kReporting;) {
     OnSignal(stop_.Within(10ms));
-    Reap();  // they have been asked to end
+    Reap();  // asked to end, processes exit now
     Do(phases_.Look(Look(), WallClock::now()));
   }
 }
 
-/// What there is of the run, in order or not.
+/// Records what is left and collects the results, whether or not the run ended in order.
 void DdsRun::Collect() {
   try {
     DrainAll();
@@ -330,7 +331,7 @@ void DdsRun::End() {
   if (hub_) AskToEnd();
   if (phases_.in_order()) children_.WaitAll(kGrace);
   children_.Stop(2s);
-  // Agents that were started by hand are not ours to reap, only to be told.
+  // Agents that were started by hand are not our children: wait until they have left the domain.
   const auto deadline = WallClock::now() + 2s;
   while (external_ && hub_ && hub_->listeners() > 0 && WallClock::now() < deadline) stop_.Within(20ms);
   recorder_.reset();

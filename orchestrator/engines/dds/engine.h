@@ -11,9 +11,10 @@
 
 namespace mascot {
 
-/// Runs the experiment as processes on a DDS domain of its own: one physics server, one agent each (those
-/// marked external are waited for), recorded here: `sinks` get every row. Returns
-/// when every process has ended and nothing of the run is left in shared memory.
+/// Runs the experiment as separate processes in a DDS domain of its own: a physics server and the agent processes.
+/// External agents are waited for, not started. The calling process records: `sinks` get every row, in tick order.
+/// Returns when every child process has ended and the run's shared memory is removed. A failure
+/// is reported in the result.
 EngineResult RunOverDds(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
                         Console& console, StopSignal& stop);
 

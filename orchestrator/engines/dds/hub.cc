@@ -43,7 +43,6 @@ const char* Text(Ask ask) {
   return "unknown";
 }
 
-/// Every process of the run.
 Roster::Rules RulesOf(const Experiment& experiment) {
   Roster::Rules rules{.processes = {"physics_server"}, .external = {}};
   for (const AgentRange& agents : AgentProcesses(experiment)) rules.processes.push_back(ProcessName(agents));

@@ -14,28 +14,29 @@
 
 namespace mascot {
 
-/// The orchestrator's part on /status, /request and /experiment (the part of all other processes is bus/lifecycle.h),
-/// and the recorder's voice there. What is said goes to a log.
+/// The orchestrator's readers and writers on /status, /request and /experiment (bus/lifecycle.h has those of all other
+/// processes). Also sends the recorder's status. Logs what is received and sent.
 class Hub {
  public:
   using Status = Roster::Status;
 
-  /// `log` is the file of the log. `wake` is called, from any thread, when the loop should look.
+  /// `log` is the path of the log file. `wake` is called, from any thread, when the loop should look without delay.
   Hub(Domain& domain, const Experiment& experiment, const std::string& log, std::function<void()> wake);
 
-  /// Hands the experiment out if somebody asked for it. Cheap to call often.
+  /// Publishes the experiment if a process has asked for it. Cheap to call often.
   void HandOutExperiment();
-  /// The recorder is ready. Cheap to call often: it is repeated five times a second.
+  /// Publishes that the recorder is ready, at most five times a second. Cheap to call often.
   void SayReady();
-  /// The recorder has rows 0 .. rows - 1.
+  /// Publishes that rows 0 .. rows - 1 are recorded.
   void Confirm(std::int64_t rows);
+  /// Publishes a request to all processes.
   void Ask(mascot::Ask ask, const std::string& reason);
-  /// Processes that listen to requests.
+  /// Number of processes that listen to requests.
   int listeners() const { return requests_.matched(); }
 
-  /// What a process said last, if it has said anything.
+  /// The latest status of a process; nothing if there is none yet.
   std::optional<Status> StatusOf(const std::string& process) const;
-  /// For whom the start still waits, in words.
+  /// What the start still waits for, as text for an error message.
   std::string Missing() const;
 
  private:
@@ -50,7 +51,7 @@ class Hub {
   Writer<ExperimentType> experiments_;
   Writer<RequestType> requests_;
   Writer<StatusType> recorder_;
-  Reader<StatusType> status_;  // last: it calls what is above
+  Reader<StatusType> status_;  // last: its callback uses the members above
 };
 
 }  // namespace mascot

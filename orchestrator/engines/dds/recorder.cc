@@ -12,13 +12,13 @@ namespace {
 
 using WallClock = std::chrono::steady_clock;
 
-/// Rows a command may lag behind in real time before its row is written without it. Below the window of
-/// the server's flow control, which would otherwise wait for us.
+/// In real time, a row that lacks a command is written when the newest tick is this far ahead. Smaller than the
+/// window of the server's flow control: otherwise the server would wait for the recorder.
 constexpr std::int64_t kPatience = kRecorderWindow / 2;
-/// Complete rows that are worth waking the writing thread for; well below that window.
+/// Number of complete rows at which the writing thread is woken; well below the same window.
 constexpr std::int64_t kBatch = 8;
-/// After so long the server is told what has been written. A slow law makes rows slow: what is measured beside them
-/// asks the laws of all agents, one after the other.
+/// Longest time that Drain takes before it returns, so that the server learns what has been recorded. A row may be
+/// slow: the metrics evaluate the laws of all agents for it, one after the other.
 constexpr auto kLongEnough = std::chrono::milliseconds(50);
 
 template <class T>
@@ -87,7 +87,7 @@ std::int64_t Recorder::Drain(bool give_up) {
     const bool is_late = WallClock::now() > enough;
     {
       const std::lock_guard lock(mutex_);
-      if (is_late) domain_.Wake();  // there may be more
+      if (is_late) domain_.Wake();  // there may be more rows
       if (is_late || !window_.Next(give_up, taken_)) return window_.rows();
     }
     feed_.Add(taken_);

@@ -13,41 +13,43 @@
 
 namespace mascot {
 
-/// Hears every per-tick topic as raw bytes and makes rows of them (RowWindow). Samples arrive in DDS threads; rows go
-/// to the feed in the thread that calls Drain.
+/// Receives every per-tick topic as raw bytes and assembles rows (RowWindow). Samples arrive in DDS threads; rows go to
+/// the feed in the thread that calls Drain.
 class Recorder {
  public:
   Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed);
 
-  /// Every reader has its writer.
+  /// Whether every reader has matched a writer.
   bool Matched() const;
-  /// Feeds the rows that are complete; in real time also those that have waited long enough for a command that an agent
-  /// never gave, or have waited at all if `give_up`. Returns the number of rows fed so far, after a while also before
-  /// all are: call it again.
+  /// Feeds complete rows, in tick order; in real time also rows whose missing commands have been waited for long
+  /// enough, or at all if `give_up`. Returns the number of rows fed since the start. Returns after 50 ms even if rows
+  /// are left, and then wakes the loop to call it again. Throws what the feed throws.
   std::int64_t Drain(bool give_up = false);
+  /// Samples known to be missing, or too late for their row.
   std::uint64_t lost() const;
-  /// From the first sample of tick 0 to the newest command (s); when tick 0 came.
+  /// Wall-clock time from the first sample to the newest command (s).
   double wall_s() const;
+  /// When the first sample came.
   std::chrono::steady_clock::time_point started() const;
-  /// Newest tick of which a sample has come; -1 before the first.
+  /// Newest tick with a sample; -1 before the first sample.
   std::int64_t newest_tick() const;
 
  private:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// `index`: the topic's place among the readers.
+  /// `index`: index of the topic's reader in readers_.
   void OnSample(std::size_t index, const Topic& topic, const RawReader::Bytes& bytes, std::int64_t sequence);
   std::int64_t TickOf(const Topic& topic, const RawReader::Bytes& bytes) const;
 
   Domain& domain_;
   const Experiment& experiment_;
   RowFeed& feed_;
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards window_, started_ and last_command_
   RowWindow window_;
   Time started_{}, last_command_{};
 
-  Row taken_;                                        // of the thread that calls Drain
-  std::vector<std::unique_ptr<RawReader>> readers_;  // last: they call what is above
+  Row taken_;                                        // used only by the thread that calls Drain
+  std::vector<std::unique_ptr<RawReader>> readers_;  // last: their callbacks use the members above
 };
 
 }  // namespace mascot

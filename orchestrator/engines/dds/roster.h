@@ -10,38 +10,38 @@
 
 namespace mascot {
 
-/// What the processes of a run have said of themselves on /status, and what follows from it.
+/// The latest status of every process of a run, as published on /status, and what the orchestrator does next.
 ///
-/// It has no wire, clock, log or lock: Hub brings what was said, and says what time it is.
+/// Without DDS, clock, log or lock: Hub passes in the statuses and the time.
 class Roster {
  public:
   using Status = mascot_msgs::msg::Status;
   using Time = std::chrono::steady_clock::time_point;
 
   struct Rules {
-    std::vector<std::string> processes;  ///< that take part, the physics server first
-    std::vector<bool> external;          ///< by agent id - 1: is started by hand, so that nobody sees its process end
+    std::vector<std::string> processes;  ///< names of all processes, the physics server first
+    std::vector<bool> external;          ///< by agent id - 1: started by hand, so that its exit is not seen
   };
 
-  /// What a status means for those who wait.
+  /// What a status changes.
   struct News {
-    bool changed = false;  ///< the process is heard for the first time, or is in another state
+    bool changed = false;  ///< it is the first of its process, or its state differs from the last
     bool wake = false;     ///< the loop should look without delay
   };
 
   explicit Roster(Rules rules);
 
-  /// A process says how far it is. Throws std::runtime_error if it is an agent that was started by hand and has failed.
+  /// Takes a status. Throws std::runtime_error if an external agent reports that it has failed.
   News OnStatus(const Status& status);
-  /// Whether to hand out the experiment now: somebody has asked for it since the last time, which is a while ago.
-  /// Everybody hears it each time: it is not handed out once for each of a hundred agents that ask at once.
+  /// Whether to publish the experiment now: a process has asked for it since the last time, and that is at least 0.1 s
+  /// ago. All processes receive it each time, so that a hundred agents that ask at once need it only once.
   bool IsTimeToHandOut(Time now);
-  /// Whether to say now that the recorder is ready: five times a second.
+  /// Whether to publish now that the recorder is ready: at most five times a second.
   bool IsTimeForHello(Time now);
 
-  /// What a process said last, if it has said anything.
+  /// The latest status of a process; nothing if there is none yet.
   std::optional<Status> Of(const std::string& process) const;
-  /// For whom the start still waits, in words.
+  /// What the start still waits for, as text for an error message.
   std::string Missing() const;
 
  private:

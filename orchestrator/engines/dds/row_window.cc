@@ -19,7 +19,7 @@ void RowWindow::CheckSequence(std::size_t index, std::int64_t sequence) {
   const TopicKind kind = rules_.topics[index].kind;
   const std::int64_t missing = sequence - sequences_[index] - 1;
   const bool may_lack = rules_.realtime && (kind == TopicKind::kCommand || kind == TopicKind::kMessage);
-  if (missing > 0 && may_lack) {  // nobody waits for these: agents that hurry may write over what is not read yet
+  if (missing > 0 && may_lack) {  // no flow control here: a writer may overwrite samples that are not read yet
     lost_ += static_cast<std::uint64_t>(missing);
   } else if (missing != 0) {
     lost_ += static_cast<std::uint64_t>(std::max<std::int64_t>(missing, 1));
@@ -42,7 +42,7 @@ void RowWindow::Begin(Slot& slot, std::int64_t tick) const {
 
 bool RowWindow::Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t sequence) {
   CheckSequence(index, sequence);
-  if (tick < rows_) {  // its row is gone: only in real time, after the patience
+  if (tick < rows_) {  // its row was taken without it: only in real time
     ++lost_;
     return false;
   }

@@ -13,18 +13,19 @@ namespace {
 using namespace std::chrono_literals;
 using Seconds = std::chrono::duration<double>;
 
-/// How long an orderly end may take before it is made disorderly.
+/// How long an orderly stop may take before the run is ended by force; also how long the server may be silent beyond
+/// the agents' timeout, and, in lockstep, how long the last rows may take.
 constexpr auto kGrace = 5s;
-/// In real time, rows that lack a command are waited for no longer than this: the command may never have been given.
+/// In real time, how long the last rows wait for missing commands, which may never have been sent.
 constexpr auto kRealtimeDrain = 1s;
-/// The server waits for everybody for run.start_timeout_s, and can say more; this is beyond that.
+/// Time beyond run.start_timeout_s. The server itself fails after that timeout, with a better error message than ours.
 constexpr auto kStartGrace = 5s;
-/// Where a whole job is ended (by systemd, a batch system), all of its processes are signalled, the orchestrator
-/// perhaps a little later than its children.
+/// When systemd or a batch system ends a job, it signals all processes of the job, and the orchestrator perhaps a
+/// little later than its children. For this long, an exit by a signal may thus be part of an orderly stop.
 constexpr auto kSameSignal = 100ms;
-/// A killed process may have held a lock of shared memory, which holds up the server, and then us.
+/// How long the server's report may take: a killed process may have held a shared-memory lock that delays the server.
 constexpr auto kReport = 10s;
-/// What a server said that has exited is here within this time, or lost.
+/// How long the report of a server that has exited may take to arrive.
 constexpr auto kLateReport = 1s;
 
 RunPhases::Time After(RunPhases::Time time, Seconds span) {
@@ -54,7 +55,7 @@ void RunPhases::OnViolation(const std::string& violation) {
 }
 
 void RunPhases::Fail(const std::string& why) {
-  JudgeExits();  // they came first
+  JudgeExits();  // they happened first
   Note(why);
   Finish();
 }
@@ -71,7 +72,7 @@ RunPhases::Actions RunPhases::OnSignal(int signal, Time now) {
   }
   signal_ = signal;
   JudgeExits();
-  if (phase_ == Phase::kStarting) Finish();  // nothing flies yet
+  if (phase_ == Phase::kStarting) Finish();  // no tick yet: there is nothing to stop in order
   stop_deadline_ = now + kGrace;
   return {.ask_to_stop = true};
 }
@@ -88,7 +89,7 @@ void RunPhases::OnExits(const std::vector<Exit>& exits, Time now) {
     JudgeExits();
 }
 
-/// Children that ended for the signal that ends the run have not failed.
+/// Children that were ended by the signal that also stopped the run have not failed.
 void RunPhases::JudgeExits() {
   exits_deadline_.reset();
   if (exits_.empty()) return;
@@ -130,14 +131,14 @@ void RunPhases::LookAtDraining(const View& view, Time now) {
 }
 
 void RunPhases::LookAtDeadlines(const View& view, Time now) {
-  if (stop_deadline_ && now > *stop_deadline_) return Finish();  // what there is is recorded
+  if (stop_deadline_ && now > *stop_deadline_) return Finish();  // and record what has come
   if (phase_ == Phase::kStarting) {
     if (now > After(launched_, Seconds(rules_.start_timeout_s) + kStartGrace))
       Fail("not started within run.start_timeout_s = " + ShortestFloat(rules_.start_timeout_s) +
            " s: " + rules_.missing());
     return;
   }
-  // The server tells of agents that fall silent; of a silent server, only we can.
+  // The server reports silent agents; a silent server must be noticed here.
   if (phase_ != Phase::kFlying || !watch_.IsOverdue(view.newest_tick + view.rows, now)) return;
   server_silent_ = true;
   const Seconds limit = Seconds(rules_.agent_timeout_s + rules_.period_s) + kGrace;

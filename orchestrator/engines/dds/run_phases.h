@@ -11,32 +11,33 @@
 
 namespace mascot {
 
-/// What the orchestrator decides in the course of a run over DDS: when the recorder is ready, when the run is over and
-/// why, who is waited for and for how long.
+/// The orchestrator's decisions during a run over DDS: when the recorder is ready, when and why the run is over, which
+/// process is waited for and for how long.
 ///
-/// It has no wire, process, clock or file: it is told what happened and, when it looks, what time it is and what there
-/// is. Each answer is what the caller does at once.
+/// Without DDS, processes, clock and files: events, the time and the state of the run are passed in. The caller carries
+/// out the returned Actions at once.
 class RunPhases {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
   enum class Phase {
-    kStarting,    ///< until the first state has come
+    kStarting,    ///< until the first sample of a tick has come
     kFlying,      ///< until the physics server is done
-    kDraining,    ///< the server is done; rows may still be on their way to the recorder
-    kCollecting,  ///< the run is over, for whatever reason: what is there is written
-    kReporting,   ///< if it did not end in order, the server is waited for, to say what it measured
+    kDraining,    ///< the server is done; samples may still be on their way to the recorder
+    kCollecting,  ///< the run is over, for whatever reason; the remaining rows are recorded
+    kReporting,   ///< after a run that did not end in order: waiting for the server's report of what it measured
     kEnding,      ///< every process is told to end
   };
 
   struct Rules {
     double start_timeout_s = 0;  ///< run.start_timeout_s
     double agent_timeout_s = 0;  ///< run.agent_timeout_s
-    double period_s = 0;         ///< of the wall clock between two ticks in real time; 0: lockstep
+    double period_s = 0;         ///< wall-clock time between two ticks in real time; 0: lockstep
 
-    std::function<std::string()> violation;  ///< how the wire differs from the graph; empty: it does not
-    std::function<std::string()> missing;    ///< for whom the start still waits
-    std::function<std::vector<std::string>(const std::string& process)> last_lines;  ///< that a child printed
+    std::function<std::string()> violation;  ///< how the DDS endpoints differ from the graph; empty: they do not
+    std::function<std::string()> missing;    ///< what the start still waits for
+    /// The last lines that a child printed.
+    std::function<std::vector<std::string>(const std::string& process)> last_lines;
   };
 
   /// A child process that has ended.
@@ -46,18 +47,18 @@ class RunPhases {
     std::string text;         ///< how it ended: "exited with code 3"
   };
 
-  /// What there is at a moment.
+  /// The state of the run at one moment.
   struct View {
-    bool everybody_found = false;                ///< the wire is as the graph says, and the recorder has every writer
-    std::int64_t newest_tick = -1;               ///< of which a state has come; -1: none
-    std::int64_t rows = 0;                       ///< recorded
-    bool gave_up = false;                        ///< incomplete rows were recorded, too, as gives_up() asked
-    std::optional<std::int64_t> last_tick = {};  ///< the physics server is done, with this tick
-    bool reported = false;                       ///< the physics server has said what it measured, and will say no more
+    bool everybody_found = false;   ///< every endpoint of the graph is discovered, and the recorder has every writer
+    std::int64_t newest_tick = -1;  ///< newest tick with a sample; -1: none
+    std::int64_t rows = 0;          ///< rows recorded
+    bool gave_up = false;           ///< incomplete rows were recorded too, because gives_up()
+    std::optional<std::int64_t> last_tick = {};  ///< last tick of the physics server, once it is done
+    bool reported = false;                       ///< the physics server has sent its last status, with what it measured
   };
 
   struct Actions {
-    bool say_ready = false;    ///< tell the server that the recorder is ready; it may have been told
+    bool say_ready = false;    ///< tell the server (again) that the recorder is ready
     bool ask_to_stop = false;  ///< ask the server to stop in order
     bool ask_to_end = false;   ///< ask every process to end
     bool kill = false;         ///< kill every child
@@ -66,29 +67,30 @@ class RunPhases {
 
   RunPhases(Rules rules, Time launched);
 
-  /// SIGINT, SIGTERM, ... came. The first stops the run in order, the second at once.
+  /// SIGINT, SIGTERM or SIGHUP came. The first stops the run in order, the second kills the children; during
+  /// kReporting, a signal only ends that wait.
   Actions OnSignal(int signal, Time now);
-  /// Children have ended by themselves, which none should before the run is over.
+  /// Children have exited by themselves. Before the run is over that is a failure.
   void OnExits(const std::vector<Exit>& exits, Time now);
-  /// Something that the run cannot do without has failed. The first failure is why the run failed; where somebody is on
-  /// the wire who should not be, that is why, whoever stumbles over it first.
+  /// The run fails, because of `why`. Only the first failure is kept; if the DDS endpoints differ from the graph, that
+  /// difference is given as the reason instead.
   void Fail(const std::string& why);
-  /// The wire differs from the graph, in this way.
+  /// The DDS endpoints differ from the graph, as `violation` says: the run fails.
   void OnViolation(const std::string& violation);
-  /// Time has gone by, or something has come.
+  /// To be called regularly and whenever something has happened: goes on to the next phase when it is time.
   Actions Look(const View& view, Time now);
-  /// Every row that there is has been written.
+  /// Every row that came has been recorded: the collecting is done.
   Actions Collected(const View& view, Time now);
 
   Phase phase() const { return phase_; }
-  /// Rows that lack commands are worth recording now: nothing more will come.
+  /// Whether rows that lack commands are to be recorded now: no more samples are expected.
   bool gives_up(Time now) const { return drain_deadline_ && now > *drain_deadline_; }
-  /// Neither failed nor stopped early.
+  /// Whether the run has neither failed nor been stopped early.
   bool in_order() const { return failure_.empty() && signal_ == 0; }
   const std::string& failure() const { return failure_; }
   /// The signal that stopped the run early; 0: none.
   int signal() const { return signal_; }
-  /// Before the first state everybody was found on the wire.
+  /// Whether every endpoint was discovered before the first tick.
   bool found_everybody() const { return found_everybody_; }
 
  private:
@@ -106,10 +108,10 @@ class RunPhases {
   std::string failure_;
   int signal_ = 0;
   bool found_everybody_ = false;
-  bool server_exited_ = false;  // by itself: what it said last may still be on its way
-  bool server_silent_ = false;  // it was killed, or hangs: it will not say anything more
-  std::vector<Exit> exits_;     // not judged yet
-  std::int64_t rows_ = 0;       // recorded at the last look
+  bool server_exited_ = false;  // by itself, with an exit code: its last status may still be on its way
+  bool server_silent_ = false;  // killed, or hangs: no more statuses are expected
+  std::vector<Exit> exits_;     // not judged yet (JudgeExits)
+  std::int64_t rows_ = 0;       // rows recorded at the last Look()
   std::optional<Time> exits_deadline_, stop_deadline_, drain_deadline_, report_deadline_;
   ProgressWatch watch_;
 };

@@ -17,8 +17,8 @@ namespace {
 namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastdds::dds::DomainParticipant;
 
-/// One of `agents` may hear agent `other`.
-bool Hear(const Experiment& experiment, AgentRange agents, int other) {
+/// Whether one of `agents` may hear agent `other`.
+bool MayHear(const Experiment& experiment, AgentRange agents, int other) {
   for (int id = agents.first; id <= agents.last; ++id) {
     const auto& heard = experiment.graph.HeardBy(id);
     if (std::ranges::find(heard, other, &Graph::Neighbour::id) != heard.end()) return true;
@@ -26,7 +26,7 @@ bool Hear(const Experiment& experiment, AgentRange agents, int other) {
   return false;
 }
 
-/// What a process of `agents` may have an endpoint on.
+/// Whether the process of `agents` may have a reader (`reads`) or writer on `topic`.
 bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic, bool reads) {
   const bool own = agents.Holds(topic.agent);
   const bool bundled = experiment.network.delivery == Delivery::kBundled;
@@ -34,11 +34,11 @@ bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic
     case TopicKind::kBundle:
       return reads && own && bundled;
     case TopicKind::kState:
-      return reads && !bundled && (own || Hear(experiment, agents, topic.agent));
+      return reads && !bundled && (own || MayHear(experiment, agents, topic.agent));
     case TopicKind::kCommand:
       return !reads && own;
     case TopicKind::kMessage:
-      return (reads ? Hear(experiment, agents, topic.agent) : own) && experiment.agent(topic.agent).sends_messages;
+      return (reads ? MayHear(experiment, agents, topic.agent) : own) && experiment.agent(topic.agent).sends_messages;
     case TopicKind::kClock:
       return reads;
     case TopicKind::kExperiment:
@@ -51,7 +51,7 @@ bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic
   return false;
 }
 
-/// The process whose word on a topic the run goes by; empty: anybody may write there.
+/// Name of the only process that may write `topic`; empty: any process may.
 std::string RightfulWriter(const Experiment& experiment, const Topic& topic) {
   switch (topic.kind) {
     case TopicKind::kBundle:
@@ -76,7 +76,7 @@ std::string RightfulWriter(const Experiment& experiment, const Topic& topic) {
 
 void WireAudit::on_participant_discovery(DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) {
   const std::lock_guard lock(mutex_);
-  // Who has left keeps its name: its endpoints are still judged if their removal is heard later.
+  // The name of a participant that has left is kept: its endpoints may be removed later, and are judged until then.
   participants_[info.info.m_guid.guidPrefix] = info.info.m_participantName.to_string();
   news_ = true;
 }
@@ -92,7 +92,7 @@ void WireAudit::on_publisher_discovery(DomainParticipant* self, rtps::WriterDisc
 }
 
 void WireAudit::Note(DomainParticipant* self, const Guid& guid, Endpoint endpoint, bool removed) {
-  if (guid.guidPrefix == self->guid().guidPrefix) return;  // the auditor's own
+  if (guid.guidPrefix == self->guid().guidPrefix) return;  // our own endpoint
   const std::lock_guard lock(mutex_);
   if (removed)
     endpoints_.erase(guid);

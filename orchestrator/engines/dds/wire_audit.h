@@ -12,16 +12,16 @@
 
 namespace mascot {
 
-/// Learns from DDS discovery who reads and writes what, and holds it against the graph. The proof that a
-/// run was decentralised: made from what is on the wire, not from what our code means to do.
+/// Compares the readers and writers that DDS discovery reports with the graph. This proves that a run was
+/// decentralised: it relies on the endpoints that exist in the domain, not on what our code intends. Thread-safe.
 class WireAudit : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
-  /// Something was discovered or has left since the last call.
+  /// Whether an endpoint or participant was discovered or has left since the last call.
   bool HasNews() { return news_.exchange(false); }
-  /// What is wrong: an agent that reads or writes what it must not, or somebody else who writes in its
-  /// place. Empty if nothing is.
+  /// Describes the first violation found: an agent that reads or writes a topic that it must not, or another process
+  /// that writes in its place. Empty if there is none.
   std::string Violation(const Experiment& experiment) const;
-  /// Every reader that the graph asks for is there, and every agent's writers.
+  /// Whether every reader that the graph asks for, and every writer of the agents, has been discovered.
   bool IsComplete(const Experiment& experiment) const;
 
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*,

@@ -17,8 +17,8 @@ using mcap::Op;
 
 std::uint8_t Code(Op op) { return static_cast<std::uint8_t>(op); }
 
-/// Goes through one file, record by record, and collects what it holds. Whatever does not fit throws
-/// Malformed, which ends the reading in Run().
+/// Reads one file record by record and collects its contents. A malformed record throws Malformed, which ends the
+/// reading in Run().
 class Reader {
  public:
   Reader(const std::string& path, const std::function<void(const McapContents::Message&)>& on_message)
@@ -64,12 +64,12 @@ class Reader {
   const std::function<void(const McapContents::Message&)>& on_message_;
   McapContents contents_;
   std::map<std::uint16_t, Schema> schemas_;
-  std::map<std::uint16_t, std::uint32_t> next_sequence_;  // by channel, from 0
+  std::map<std::uint16_t, std::uint32_t> next_sequence_;  // expected next, by channel; starts at 0
   McapContents::Message message_;                         // reused: one allocation serves all messages
 
-  // The record at hand.
+  // The current record.
   std::uint64_t offset_ = 0;  // where it begins
-  std::uint64_t next_ = 0;    // where the following one begins
+  std::uint64_t next_ = 0;    // where the next record begins
   std::uint8_t op_ = 0;
   bool whole_ = true;  // all of its body is in the file
   Bytes record_;       // frame and body
@@ -87,7 +87,7 @@ void Reader::ReadMagic() {
   next_ = mcap::kMagic.size();
 }
 
-/// Reads the record at `next_`. False at the end of the file; `whole_` is false if the file ends inside it.
+/// Reads the record at `next_`. Returns false at the end of the file. `whole_` is false if the file ends inside it.
 bool Reader::NextRecord() {
   offset_ = next_;
   file_.Read(offset_, mcap::kFrameBytes, frame_);
@@ -112,11 +112,11 @@ void Reader::ReadHeader() {
   contents_.library = body.String();
 }
 
-/// True when DataEnd was read and its CRC is right. Opcodes that we do not need or know are skipped.
+/// Returns true once DataEnd was read and its CRC is right. Skips records with other or unknown opcodes.
 bool Reader::ReadDataRecord() {
   if (!NextRecord()) throw Malformed("the file ends without a summary: it was not closed");
   const Fields body(ByteSpan(record_).subspan(mcap::kFrameBytes));
-  if (op_ == Code(Op::kChunk)) ReadChunk(body);  // whose whole messages count even if it is cut
+  if (op_ == Code(Op::kChunk)) ReadChunk(body);  // even if cut: its whole messages count
   if (!whole_) throw Malformed("the file ends inside a record");
   if (op_ == Code(Op::kDataEnd)) {
     const std::uint32_t crc = Fields(body).U32();
@@ -155,7 +155,7 @@ void Reader::ReadChannel(Fields body) {
   channel.topic = body.String();
   channel.message_encoding = body.String();
   channel.metadata = body.Map();
-  if (schema_id != 0) {  // 0: has none
+  if (schema_id != 0) {  // 0: the channel has no schema
     const auto schema = schemas_.find(schema_id);
     if (schema == schemas_.end()) throw Malformed("channel " + channel.topic + " has an unknown schema");
     channel.schema_name = schema->second.name;
@@ -191,10 +191,10 @@ void Reader::ReadMessage(Fields body) {
   if (on_message_) on_message_(message_);
 }
 
-/// A chunk that is wholly in the file counts only if size and CRC are right. Of a cut one, whatever can be
-/// decompressed counts: nothing proves it, but a cut takes bytes away and changes none.
+/// A complete chunk is read only if its size and CRC are right. The CRC of a chunk that is cut off
+/// cannot be compared, but cutting changes none of the bytes before the cut: whatever can be decompressed is read.
 void Reader::ReadChunk(Fields body) {
-  body.U64();  // start and
+  body.U64();  // start time
   body.U64();  // end time
   const std::uint64_t size = body.U64();
   const std::uint32_t crc = body.U32();
@@ -223,7 +223,7 @@ void Reader::ReadChunkRecords(ByteSpan raw) {
     Fields frame(raw);
     const std::uint8_t op = frame.U8();
     const std::uint64_t length = frame.U64();
-    const Fields body(frame.Raw(length));  // throws at the record in which a cut chunk ends
+    const Fields body(frame.Raw(length));  // throws at the record in which the chunk is cut off
     if (op == Code(Op::kSchema)) ReadSchema(body);
     if (op == Code(Op::kChannel)) ReadChannel(body);
     if (op == Code(Op::kMessage)) ReadMessage(body);
@@ -233,7 +233,7 @@ void Reader::ReadChunkRecords(ByteSpan raw) {
 
 void Reader::ReadAttachment(Fields body) {
   const ByteSpan all = body.rest();
-  body.U64();  // log and
+  body.U64();  // log time
   body.U64();  // creation time
   const std::string name = body.String();
   body.String();  // media type
@@ -244,7 +244,7 @@ void Reader::ReadAttachment(Fields body) {
   contents_.attachments[name] = {data.begin(), data.end()};
 }
 
-/// The summary repeats what the data section says; what it says must agree with what was read.
+/// Reads the summary and compares its statistics and chunk count with the data section.
 void Reader::ReadSummary() {
   const std::uint64_t summary_start = next_;
   std::uint32_t crc = 0;
@@ -286,7 +286,7 @@ void Reader::CompareStatistics(Fields body) const {
   if (!right) throw Malformed("the statistics do not count what the file holds");
 }
 
-/// `crc` covers the summary so far; the footer's frame and its two offsets belong to it too.
+/// `crc` is the CRC of the summary so far; it also covers the footer's frame and its two offsets.
 void Reader::ReadFooter(std::uint64_t summary_start, std::uint32_t crc) {
   Fields body(ByteSpan(record_).subspan(mcap::kFrameBytes));
   const std::uint64_t claimed_start = body.U64();

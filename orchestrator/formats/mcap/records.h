@@ -11,13 +11,13 @@
 
 #include "orchestrator/formats/bytes.h"
 
-/// The alphabet of MCAP (https://mcap.dev/spec), shared by writer and reader: opcodes, framing, fields.
+/// The elements of MCAP (https://mcap.dev/spec) that writer and reader share: opcodes, framing, fields.
 /// Integers are little endian; a string is u32 length + UTF-8; a map is u32 byte length + entries.
 namespace mascot::mcap {
 
 inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 inline constexpr std::size_t kFrameBytes = 9;  ///< opcode and body length, before every body
-/// Largest chunk, uncompressed, that we write or agree to read.
+/// Largest chunk, uncompressed, that is written or accepted (bytes).
 inline constexpr std::size_t kMaxChunkBytes = std::size_t{64} << 20;
 
 enum class Op : std::uint8_t {
@@ -38,8 +38,7 @@ enum class Op : std::uint8_t {
   kDataEnd,
 };
 
-/// One record being appended to `out`, field by field. The frame's length is filled in by End(), to be
-/// called last.
+/// Appends one record to `out`, field by field. End(), to be called last, fills in the length.
 class Record {
  public:
   Record(Bytes& out, Op op) : out_(out), start_(out.size()) {
@@ -59,7 +58,7 @@ class Record {
     for (const auto& [key, value] : entries) String(key).String(value);
     return *this;
   }
-  /// `beyond`: bytes of the body that the caller writes itself, behind `out`.
+  /// `beyond`: number of bytes of the body that the caller writes itself, after `out`.
   void End(std::uint64_t beyond = 0) {
     const std::uint64_t length = out_.size() - start_ - kFrameBytes + beyond;
     std::memcpy(&out_[start_ + 1], &length, sizeof length);
@@ -76,12 +75,12 @@ class Record {
   std::size_t start_;
 };
 
-/// What a record claims does not fit the bytes that are there.
+/// Damage: a record does not fit the specification, a CRC or the bytes in the file.
 struct Malformed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reads the fields of one record's body, in order. Never reads beyond it: throws Malformed.
+/// Reads the fields of a record's body, in order. Throws Malformed instead of reading beyond its end.
 class Fields {
  public:
   explicit Fields(ByteSpan body) : rest_(body) {}

@@ -19,8 +19,8 @@ using mcap::Record;
 
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 constexpr std::uint64_t kChunkSpan_ns = 1'000'000'000;
-/// A chunk that would grow beyond this closes within its tick. Half of what the reader accepts: the records
-/// of schemas and channels come on top.
+/// A chunk is closed before it grows beyond this, even within a tick. Half of what the reader accepts, since schema and
+/// channel records are added to it.
 constexpr std::size_t kLargestChunkBytes = mcap::kMaxChunkBytes / 2;
 
 struct SchemaState {
@@ -33,10 +33,10 @@ struct ChannelState {
   McapWriter::Channel description;
   std::uint16_t schema = 0;
   std::uint64_t messages = 0;
-  Bytes index;  // of the open chunk: (log time, offset in the chunk) of each message, as on disk
+  Bytes index;  // message index of the open chunk: (log time, offset in the chunk) pairs, as on disk
 };
 
-/// The records of one kind that the summary will hold.
+/// Records of one kind for the summary.
 struct SummaryGroup {
   Op op;
   Bytes records;
@@ -68,17 +68,17 @@ struct McapWriter::Impl {
   std::uint32_t data_crc = 0;
   bool closed = false;
   mcap::Compressor compressor;
-  Bytes record;  // one record outside chunks, while it is made
+  Bytes record;  // scratch: a record outside chunks
   std::vector<SchemaState> schemas;
   std::vector<ChannelState> channels;
 
-  /// A chunk that is full. It is compressed in a thread of its own while the next one fills, and written, by the
-  /// caller's thread, when that one is full or something else is to be written.
+  /// A full chunk. It is compressed in a thread of its own while the next one fills. The caller's thread writes it when
+  /// the next one is full or something else is to be written.
   struct Closed {
     Bytes raw;
     std::uint64_t start_ns = 0;
     std::uint64_t end_ns = 0;
-    std::vector<Bytes> index;  // by channel - 1
+    std::vector<Bytes> index;  // message indexes, by channel - 1
     std::future<ByteSpan> compressed;
   };
   Closed full;
@@ -104,7 +104,7 @@ McapWriter::McapWriter(const std::string& path) : impl_(std::make_unique<Impl>(p
 McapWriter::~McapWriter() {
   try {
     impl_->WriteClosed();
-  } catch (const std::exception&) {  // who did not Close() does not ask what became of the rest
+  } catch (const std::exception&) {  // a destructor cannot report it; Close() would have
   }
 }
 
@@ -182,7 +182,7 @@ void McapWriter::Close() {
 std::uint64_t McapWriter::messages() const { return impl_->messages + impl_->chunk_messages; }
 std::uint64_t McapWriter::bytes() const { return impl_->file.size(); }
 
-/// Everything before DataEnd passes here, so that its CRC covers every byte from the magic on.
+/// Writes bytes of the data section and adds them to data_crc, which DataEnd holds: the CRC of all bytes before it.
 void McapWriter::Impl::WriteData(ByteSpan bytes) {
   data_crc = Crc32(data_crc, bytes);
   file.Write(bytes);
@@ -205,7 +205,7 @@ Record McapWriter::Impl::ChannelRecord(Bytes& out, std::uint16_t id) {
   return channel_record.U16(id).U16(channel.schema).String(description.topic).String("cdr").Map(description.metadata);
 }
 
-/// Schema and channel go into the chunk once, just before the channel's first message.
+/// Writes the channel's schema and channel records into the chunk, once, just before its first message.
 void McapWriter::Impl::Announce(std::uint16_t channel) {
   const std::uint16_t schema = channels[channel - 1u].schema;
   if (!std::exchange(schemas[schema - 1u].written, true)) SchemaRecord(chunk, schema).End();
@@ -213,8 +213,8 @@ void McapWriter::Impl::Announce(std::uint16_t channel) {
 }
 
 void McapWriter::Impl::CloseChunk() {
-  if (chunk_messages == 0) return;  // readers take the times of an empty chunk for real
-  WriteClosed();                    // the one before
+  if (chunk_messages == 0) return;  // readers would take the times of an empty chunk as valid
+  WriteClosed();                    // the chunk before
   full.index.resize(channels.size());
   for (std::size_t i = 0; i < channels.size(); ++i) full.index[i].swap(channels[i].index);
   full.raw.swap(chunk);
@@ -242,7 +242,7 @@ void McapWriter::Impl::WriteClosed() {
   IndexChunk(offset, file.size() - offset, compression, stored.size());
 }
 
-/// The message index of each channel that occurs in the chunk, and the chunk's own index for the summary.
+/// Writes the message index of each channel in the chunk, and adds the chunk's index to the summary.
 void McapWriter::Impl::IndexChunk(std::uint64_t offset, std::uint64_t length, std::string_view compression,
                                   std::uint64_t stored_bytes) {
   const auto occurs = [](const Bytes& entries) { return !entries.empty(); };
@@ -276,7 +276,8 @@ SummaryGroup McapWriter::Impl::Statistics() {
   return group;
 }
 
-/// Groups in the order that readers want (channels before statistics), where each group lies, footer, magic.
+/// Writes the record groups in the order that readers expect (channels before statistics), their offsets, footer and
+/// magic.
 void McapWriter::Impl::WriteSummary() {
   SummaryGroup used_schemas{Op::kSchema, {}};
   SummaryGroup used_channels{Op::kChannel, {}};

@@ -11,8 +11,8 @@
 
 namespace mascot {
 
-/// Writes MCAP (https://mcap.dev/spec), profile "ros2": chunks with zstd level 1, all CRCs, message and
-/// chunk index, statistics, summary offsets. Byte-deterministic: the file depends only on the calls made.
+/// Writes MCAP (https://mcap.dev/spec), profile "ros2": chunks with zstd level 1, all CRCs, message and chunk indexes,
+/// statistics, summary offsets. Byte-deterministic: the file depends only on the sequence of calls.
 /// Every write is checked; failures throw std::runtime_error naming the file and the cause.
 class McapWriter {
  public:
@@ -23,23 +23,25 @@ class McapWriter {
     std::map<std::string, std::string> metadata;
   };
 
-  /// Creates `path` (truncating) and writes magic and header.
+  /// Creates or truncates `path` and writes magic and header.
   explicit McapWriter(const std::string& path);
-  ~McapWriter();  ///< leaves the file as it is: without Close() it has no summary
+  ~McapWriter();  ///< without Close(), the file keeps its complete chunks but has no summary
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
-  /// Returns the channel's id (1, 2, ...). Its schema and channel records go before its first message.
-  /// Channels with equal schema_name share one schema record.
+  /// Registers a channel and returns its id (1, 2, ...). Its schema and channel records are written before its first
+  /// message. Channels with equal schema_name share one schema record, and must have equal schema_text.
   std::uint16_t AddChannel(const Channel& channel);
-  /// Adds a message to the open chunk; sequence counts 0, 1, 2 ... per channel; log_time = publish_time.
+  /// Adds a message to the open chunk. Sequence numbers count 0, 1, 2, ... per channel; log and publish time are
+  /// `time_ns`.
   void Write(std::uint16_t channel, std::uint64_t time_ns, std::span<const std::uint8_t> data);
   /// To be called between ticks: closes the chunk if it holds 1 MiB uncompressed or spans 1 s of message time.
   void EndTick();
-  /// Closes the chunk first; attachment times are 0.
+  /// Writes an attachment, after closing the open chunk. Its log and creation times are 0.
   void Attach(const std::string& name, const std::string& media_type, std::string_view data);
+  /// Writes a metadata record, after closing the open chunk.
   void Metadata(const std::string& name, const std::map<std::string, std::string>& entries);
-  /// Last chunk, DataEnd, summary, footer, flush, fsync, close.
+  /// Writes the last chunk, DataEnd, summary and footer, then syncs and closes the file.
   void Close();
   std::uint64_t messages() const;
   std::uint64_t bytes() const;  ///< written so far
@@ -49,9 +51,8 @@ class McapWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What an MCAP file holds. Reads every whole record up to the end or the first damage; never throws on a
-/// file cut short, at whatever byte. Of a chunk that was cut, what can still be decompressed counts; of one
-/// whose CRC is wrong, nothing.
+/// Contents of an MCAP file, up to its end or the first damage. A chunk that is cut off counts as far as it can be
+/// decompressed; a chunk with a wrong CRC does not count.
 struct McapContents {
   struct Message {
     std::uint16_t channel = 0;
@@ -64,19 +65,19 @@ struct McapContents {
     std::map<std::string, std::string> metadata;
     std::uint64_t messages = 0, bytes = 0;
     std::uint64_t first_time = 0, last_time = 0;
-    std::uint64_t gaps = 0;  ///< places where the sequence does not rise by one, from 0
+    std::uint64_t gaps = 0;  ///< messages whose sequence number is not the previous one + 1, or 0 at the start
   };
   std::string profile, library;
   std::map<std::uint16_t, ChannelInfo> channels;
   std::map<std::string, std::string> attachments;  ///< name -> bytes
   std::map<std::string, std::map<std::string, std::string>> metadata;
   std::uint64_t chunks = 0, messages = 0, compressed_bytes = 0, uncompressed_bytes = 0;
-  bool complete = false;  ///< has its DataEnd, summary and footer, and every CRC is right
-  std::string damage;     ///< empty, or what is wrong and at which byte
+  bool complete = false;  ///< the file has DataEnd, summary and footer, and every CRC is right
+  std::string damage;     ///< what is wrong, and at which byte; empty: nothing
 };
 
-/// Reads `path`; hands each message to `on_message` (may be empty). Throws std::runtime_error if the file
-/// cannot be opened or is no MCAP file at all.
+/// Reads `path` and passes each message to `on_message` (may be empty). Throws std::runtime_error if the file cannot be
+/// read or does not begin with the MCAP magic. Damage is reported in the contents, also for a file cut off at any byte.
 McapContents ReadMcap(const std::string& path,
                       const std::function<void(const McapContents::Message&)>& on_message = {});
 

@@ -13,7 +13,7 @@ namespace mascot::mcap {
 namespace {
 
 constexpr int kLevel = 1;          // 2.6 times as fast as 3 on recordings, whose size differs by less than 3 %
-constexpr int kMaxWindowLog = 23;  // 8 MiB: what zstd's levels up to 19 need to be read back
+constexpr int kMaxWindowLog = 23;  // 8 MiB, enough to decompress zstd levels up to 19
 
 }  // namespace
 
@@ -39,7 +39,7 @@ ByteSpan Decompressor::Decompress(ByteSpan compressed, std::size_t claimed) {
   ZSTD_inBuffer in{compressed.data(), compressed.size(), 0};
   ZSTD_outBuffer out{buffer_.data(), std::min(buffer_.size(), claimed + 1), 0};
   do {
-    if (out.pos == out.size) {  // one byte more than claimed, so that a longer frame is noticed
+    if (out.pos == out.size) {  // one byte more than claimed, to notice a longer frame
       const std::size_t size = std::min(claimed + 1, std::max(2 * out.size, ZSTD_DStreamOutSize()));
       buffer_.resize(std::max(buffer_.size(), size));
       out = {buffer_.data(), size, out.pos};

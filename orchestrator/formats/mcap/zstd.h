@@ -10,11 +10,11 @@ struct ZSTD_DCtx_s;
 
 namespace mascot::mcap {
 
-/// zstd with a fixed level and one thread: equal input gives equal output.
+/// zstd compression with a fixed level and one thread: equal input gives equal output.
 class Compressor {
  public:
   Compressor();
-  /// The compressed bytes, valid until the next call; empty if they would not be fewer.
+  /// Returns the compressed bytes, valid until the next call; empty if they would not be fewer than `raw`.
   ByteSpan Compress(ByteSpan raw);
 
  private:
@@ -22,12 +22,12 @@ class Compressor {
   Bytes buffer_;
 };
 
-/// zstd, block by block: memory follows what comes out, not what the file claims.
+/// zstd decompression, block by block. Memory grows with the output, not with the size that the file claims.
 class Decompressor {
  public:
   Decompressor();
-  /// What is there of `compressed`, whole blocks only if it was cut; valid until the next call. Throws
-  /// Malformed for what is no zstd and for more than `claimed` bytes.
+  /// Returns the decompressed bytes, valid until the next call; only the whole blocks if `compressed` is cut off.
+  /// Throws Malformed if the input is not zstd data or gives more than `claimed` bytes.
   ByteSpan Decompress(ByteSpan compressed, std::size_t claimed);
 
  private:
