@@ -12,7 +12,7 @@
 namespace mascot {
 namespace {
 
-// Every verb there is; `orchestrator --help` prints this table.
+// All verbs; `orchestrator --help` prints this table.
 constexpr VerbEntry kVerbs[] = {
     {"up", "run an experiment: spawn, record, measure, plot", SetUpUp},
     {"check", "validate an experiment and say what theory predicts; starts nothing", SetUpCheck},
@@ -28,7 +28,7 @@ constexpr VerbEntry kVerbs[] = {
 
 constexpr int kUsageError = 2;
 
-/// CLI11 only says that a verb is required; people want to know what they mistyped.
+/// Reports an unknown verb and returns the exit code. CLI11's own error only says that a subcommand is required.
 int UnknownVerb(const std::string& word) {
   std::vector<std::string_view> names;
   for (const VerbEntry& verb : kVerbs) names.push_back(verb.name);
@@ -73,9 +73,9 @@ int Main(int argc, char** argv) {
 
 int main(int argc, char** argv) try {
   mascot::OpenStandardStreams();
-  std::signal(SIGCHLD, SIG_DFL);  // ignored, as some supervisors leave it, it would hide how children end
-  std::signal(SIGPIPE, SIG_IGN);  // a closed terminal or pager must not cut a recording short
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like any other, with a text
+  std::signal(SIGCHLD, SIG_DFL);  // some supervisors leave it ignored; then waitpid cannot tell how a child ended
+  std::signal(SIGPIPE, SIG_IGN);  // a closed terminal or pager must not kill the run
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the file size limit then fails with EFBIG, which is reported
   return mascot::Main(argc, argv);
 } catch (const mascot::ConfigError& error) {
   for (const std::string& mistake : error.mistakes()) std::cerr << "error: " << mistake << "\n";

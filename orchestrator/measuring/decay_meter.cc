@@ -7,29 +7,29 @@ namespace mascot {
 namespace {
 
 constexpr double kUpperEnd = 0.1;
-constexpr std::array<double, 2> kLowerEnds = {2e-4, 1e-3};  // the first that is reached for good
+constexpr std::array<double, 2> kLowerEnds = {2e-4, 1e-3};  // the first one that the value stays below is used
 
 }  // namespace
 
 void DecayMeter::Add(double t_s, double value) {
   if (!first_) first_ = value;
   if (*first_ == 0) return;
-  const double part = value / *first_;
-  if (part > kUpperEnd) {
+  const double fraction = value / *first_;
+  if (fraction > kUpperEnd) {
     now_ = {};
     declines_ = {};
     from_s_ = t_s;
     return;
   }
-  constexpr double kFloor = 1e-9;  // of the start: a swing through 0 is no infinite decline
-  const double t = t_s - from_s_, y = std::log(std::max(part, kFloor));
+  constexpr double kFloor = 1e-9;  // least fraction used: a zero crossing must not give log(0)
+  const double t = t_s - from_s_, y = std::log(std::max(fraction, kFloor));
   ++now_.rows;
   now_.t += t;
   now_.y += y;
   now_.tt += t * t;
   now_.ty += t * y;
   for (std::size_t i = 0; i < kLowerEnds.size(); ++i)
-    if (part > kLowerEnds[i]) declines_[i] = now_;
+    if (fraction > kLowerEnds[i]) declines_[i] = now_;
 }
 
 std::optional<double> DecayMeter::rate_per_s() const {

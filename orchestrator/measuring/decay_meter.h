@@ -6,14 +6,16 @@
 
 namespace mascot {
 
-/// Measures how fast something decays, row by row: minus the slope of a straight line through its logarithm (least
-/// squares), from the last row above 10 % of its start to the last above 0.02 %, or, if it does not fall that far,
-/// above 0.1 %. From the last rows, and over so much of the way, so that what swings is measured over its swings.
+/// Measures the exponential decay rate of a value, row by row: minus the slope of a straight line fitted to its
+/// logarithm (least squares), from the last row above 10 % of its first value to the last row above 0.02 %, or, if it
+/// does not fall that far, above 0.1 %. The last crossings of so wide a range average out the oscillations of a value
+/// that oscillates.
 class DecayMeter {
  public:
-  /// The next row; times increase.
+  /// Adds a row; times increase.
   void Add(double t_s, double value);
-  /// Nothing if it does not fall that far, or not for good: if it has not stayed there for a tenth of the way down.
+  /// The rate (1/s). Nothing if the value does not fall below 0.1 %, or has not stayed below for at least a tenth of
+  /// the rows of the decline, or if these are fewer than 3.
   std::optional<double> rate_per_s() const;
 
  private:
@@ -23,9 +25,9 @@ class DecayMeter {
   };
 
   std::optional<double> first_;
-  double from_s_ = 0;               // times count from here
-  Sums now_;                        // since the last row above 10 %
-  std::array<Sums, 2> declines_{};  // of those, up to the last row above each lower end
+  double from_s_ = 0;               // time of the last row above 10 %; sums use t_s - from_s_
+  Sums now_;                        // over the rows since from_s_
+  std::array<Sums, 2> declines_{};  // the same, up to the last row above each lower end
 };
 
 }  // namespace mascot

@@ -6,6 +6,7 @@
 namespace mascot {
 namespace {
 
+/// Whether every sample of every edge arrives: perfect links, a constant graph, and every agent there all the time.
 bool IsPlain(const Experiment& experiment) {
   return experiment.schedule.IsConstant() && experiment.links.ArePerfect(experiment.graph) &&
          std::ranges::all_of(experiment.agents,
@@ -28,7 +29,7 @@ void LinkMeter::Add(std::int64_t tick, const DecodedRow& row) {
   ++rows_;
   for (const AgentConfig& agent : experiment_.agents) {
     const auto i = static_cast<std::size_t>(agent.id - 1);
-    if (plain_) {  // a state goes out with the message of the tick before
+    if (plain_) {  // the message sent at tick k - 1 travels with the state of tick k
       sent_numbers_[i] += said_[i];
       said_[i] = row.messages[i].size();
     } else {
@@ -37,7 +38,7 @@ void LinkMeter::Add(std::int64_t tick, const DecodedRow& row) {
   }
   if (plain_) return;
   for (const AgentConfig& agent : experiment_.agents)
-    exchange_.Say(agent.id, row.messages[static_cast<std::size_t>(agent.id - 1)]);
+    exchange_.Send(agent.id, row.messages[static_cast<std::size_t>(agent.id - 1)]);
   exchange_.EndTick();
 }
 

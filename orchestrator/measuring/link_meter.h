@@ -14,25 +14,26 @@ struct EdgeTraffic {
   int hearer = 0;
   int heard = 0;
   EdgeCount count;
-  bool sends_messages = false;  ///< the one who is heard does: beside each state sent a message
+  bool sends_messages = false;  ///< agent `heard` sends a message with each state
 };
 
-/// Counts what links did with the samples of a run. What a link does depends on the seed, the edge, the tick and where
-/// the agents were alone, so that it is known from the recorded rows, whichever process the hearer was in.
+/// Counts the samples sent, lost and late on each edge in a run. A link depends only on the seed, the edge,
+/// the tick and the agents' positions; the counts are therefore recomputed here from the rows, not reported by the
+/// agents.
 class LinkMeter {
  public:
   explicit LinkMeter(const Experiment& experiment);
-  /// The next tick.
+  /// Adds the next tick.
   void Add(std::int64_t tick, const DecodedRow& row);
-  /// By hearer, then by heard, both increasing.
+  /// One entry per edge, in increasing order of hearer, then of heard.
   std::vector<EdgeTraffic> Result() const;
 
  private:
   const Experiment& experiment_;
-  bool plain_;  // every sample of every edge arrives: rows say it all
+  bool plain_;  // every sample of every edge arrives: rows need only be counted
   std::int64_t rows_ = 0;
-  std::vector<std::uint64_t> said_, sent_numbers_;  // plain, by id - 1: numbers in the last message, in those sent
-  std::vector<Neighbours> neighbours_;              // else, by id - 1
+  std::vector<std::uint64_t> said_, sent_numbers_;  // if plain_, by id - 1: numbers in the last message; in all sent
+  std::vector<Neighbours> neighbours_;              // if not plain_, by id - 1
   Exchange exchange_;
 };
 

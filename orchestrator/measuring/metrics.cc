@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSettledFraction = 0.02;
 
-/// The part of `v` that the law governs.
+/// `v` projected onto the axes that the law controls.
 Eigen::Vector3d Along(Axes axes, Eigen::Vector3d v) {
   if (axes == Axes::kXy) v.z() = 0;
   return v;
@@ -22,7 +22,7 @@ Eigen::Vector3d Along(Axes axes, Eigen::Vector3d v) {
 
 Metrics::Metrics(const Experiment& experiment)
     : experiment_(experiment), pursuit_(experiment), min_separation2_(std::numeric_limits<double>::infinity()) {
-  const SuppressedPythonOutput suppressed;  // the laws run a second time
+  const SuppressedPythonOutput suppressed;  // the laws run a second time; discard what they print
   if (experiment.output.fidelity) ideal_.emplace(experiment);
   const auto places_W = PlacesOf(experiment.law);
   formation_.offsets_m.assign(places_W.begin(), places_W.end());
@@ -64,7 +64,7 @@ void Metrics::MeasureAgreement(std::span<const Motion> motions) {
 }
 
 void Metrics::MeasureControl(std::span<const Command> commands) {
-  effort_m2_per_s3_ += newest_effort_m2_per_s3_;  // of the row before: that of the last row is not applied any more
+  effort_m2_per_s3_ += newest_effort_m2_per_s3_;  // that of the previous row; the last commands are never applied
   newest_effort_m2_per_s3_ = 0;
   for (const Command& command : commands) {
     newest_effort_m2_per_s3_ += command.a_limited_W.squaredNorm() * experiment_.period_s();
@@ -74,7 +74,7 @@ void Metrics::MeasureControl(std::span<const Command> commands) {
   }
 }
 
-/// Closest pair: agents in order of x need only be compared while x alone does not already part them.
+/// Updates the smallest separation. Agents are sorted by x, so that the inner loop ends where x alone differs by more.
 void Metrics::MeasureSeparation(std::span<const Motion> motions) {
   by_x_.clear();
   for (const Motion& motion : motions) by_x_.push_back(motion.p_WB);
@@ -87,8 +87,8 @@ void Metrics::MeasureSeparation(std::span<const Motion> motions) {
     }
 }
 
-// A law may fail where everything is exact, and only there: two agents at the very same place. The run is none the
-// worse.
+// A law may fail on ideal bodies only, for example because two agents are at exactly the same position. The run goes
+// on; only the comparison ends.
 void Metrics::StepIdeal() try {
   const SuppressedPythonOutput suppressed;
   ideal_->Step();

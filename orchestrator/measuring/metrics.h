@@ -15,45 +15,46 @@
 
 namespace mascot {
 
-/// What a run's rows say, in SI units; definitions as in docs/recording.md.
+/// Metrics of a run, in SI units; docs/recording.md has the definitions.
 struct Measured {
   std::int64_t rows = 0;
   Eigen::Vector3d value_m = Eigen::Vector3d::Zero();  ///< mean position at the end
-  double final_disagreement_m = 0;                    ///< largest distance from the mean, or the leader, over law.axes;
-                                                      ///< of a formation: of p - d
-  double final_speed_m_per_s = 0;                     ///< largest over agents, over law.axes
-  std::optional<double> settling_time_s;
-  std::optional<double> rate_per_s;              ///< at which the disagreement decays; decay_meter.h has the definition
-  std::vector<PursuitMeter::Edge> minmax_edges;  ///< of min-max consensus
+  double final_disagreement_m = 0;               ///< largest distance from the mean, or the leader, along law.axes;
+                                                 ///< in a formation, of p_i - d_i
+  double final_speed_m_per_s = 0;                ///< largest speed of an agent, along law.axes
+  std::optional<double> settling_time_s;         ///< absent: not settled by the end
+  std::optional<double> rate_per_s;              ///< decay rate of the disagreement (decay_meter.h)
+  std::vector<PursuitMeter::Edge> minmax_edges;  ///< for min-max consensus
   double effort_m2_per_s3 = 0;                   ///< mean over agents of the integral of |acceleration command|^2
-  double saturated_fraction = 0;  ///< of all commands: those that the acceleration limit cut; below, likewise
-  double tilt_limited_fraction = 0;
-  double rotor_limited_fraction = 0;
-  std::optional<double> min_separation_m;  ///< absent for one agent
-  double travelled_m = 0;
+  double saturated_fraction = 0;                 ///< fraction of commands cut at the acceleration limit
+  double tilt_limited_fraction = 0;              ///< fraction of commands cut at the tilt limit
+  double rotor_limited_fraction = 0;             ///< fraction of commands cut at a rotor's limit
+  std::optional<double> min_separation_m;        ///< absent for one agent
+  double travelled_m = 0;                        ///< mean path length of the agents
+  /// Distance of the agents from ideal bodies under the same laws, over all agents and rows.
   struct Fidelity {
     double rms_m = 0;
     double max_m = 0;
   };
-  std::optional<Fidelity> fidelity;  ///< absent without output.fidelity
-  std::string fidelity_failure;      ///< what the law said that failed on ideal bodies, and so ended the comparison
-  /// Of the formation law: rms over edges of |(p_i - p_j) - (d_i - d_j)|, over law.axes.
+  std::optional<Fidelity> fidelity;  ///< absent: output.fidelity is off, or fidelity_failure
+  std::string fidelity_failure;      ///< error of a law on ideal bodies, which ended the comparison
+  /// Formation error: rms over edges of |(p_i - p_j) - (d_i - d_j)|, along law.axes.
   struct Formation {
     std::vector<Eigen::Vector3d> offsets_m;  ///< d_i, by id - 1
     double final_rms_m = 0;
-    double worst_rms_m = 0;  ///< from half of run.duration_s on
+    double worst_rms_m = 0;  ///< largest in the second half of run.duration_s
   };
-  std::optional<Formation> formation;
+  std::optional<Formation> formation;  ///< absent: the law has no formation
 };
 
-/// Measures a run row by row, in memory that does not grow with it.
+/// Measures a run row by row. Memory does not grow with the number of rows.
 class Metrics {
  public:
   explicit Metrics(const Experiment& experiment);
-  /// The next tick.
+  /// Adds the next tick.
   void Add(const DecodedRow& row);
   Measured Result() const;
-  /// Of the newest row, for the progress line.
+  /// Disagreement in the newest row, for the progress line.
   double disagreement_m() const { return disagreement_m_; }
 
  private:
@@ -64,7 +65,7 @@ class Metrics {
   void StepIdeal();
   void MeasurePath(std::span<const Motion> motions);
   void MeasureFormation(std::span<const Motion> motions);
-  /// The part of a position that agents agree on: of a formation, without their places in it.
+  /// The position on which the agents agree: p_i, or p_i - d_i in a formation.
   Eigen::Vector3d Agreed(std::size_t i, const Motion& motion) const;
 
   const Experiment& experiment_;
@@ -77,8 +78,8 @@ class Metrics {
   double first_disagreement_m_ = 0;
   DecayMeter decay_;
   PursuitMeter pursuit_;
-  std::int64_t last_unsettled_ = -1;                           // newest row above 2 % of the first disagreement
-  double effort_m2_per_s3_ = 0, newest_effort_m2_per_s3_ = 0;  // all agents together
+  std::int64_t last_unsettled_ = -1;  // newest row with more than 2 % of the first disagreement
+  double effort_m2_per_s3_ = 0, newest_effort_m2_per_s3_ = 0;  // sums over all agents
   std::int64_t saturated_ = 0, tilt_limited_ = 0, rotor_limited_ = 0;
   double min_separation2_;
   double squared_deviation_ = 0;

@@ -10,24 +10,23 @@
 
 namespace mascot {
 
-/// A child has caught up with its parent while it is this close to it, along each axis of the law.
+/// A child has caught up with its parent when they are at most this far apart along each axis of the law (m).
 inline constexpr double kCaughtUp_m = 0.05;
 
-/// Measures on each edge of a law of pursuit (PursuitForm), row by row, when the child has caught up with its parent
-/// for good.
+/// Measures, row by row, when each child of a pursuit law (PursuitForm) has caught up with its parent for good.
 class PursuitMeter {
  public:
   struct Edge {
     int child = 0;
     int parent = 0;
-    std::optional<double> time_s;  ///< absent: not by the end
+    std::optional<double> time_s;  ///< absent: the child has not caught up by the end
   };
 
-  /// Edges are those of the team's law; other laws have none.
+  /// The edges are those of the team's law. A law without a PursuitForm has no edges.
   explicit PursuitMeter(const Experiment& experiment);
-  /// The next row.
+  /// Adds the next row.
   void Add(std::span<const Motion> motions);
-  /// By child.
+  /// In increasing order of the child.
   std::vector<Edge> Result() const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace mascot {
 
-/// All that is measured of a run, row by row.
+/// Measures a run row by row: metrics and link traffic.
 class RunMeter final : public RowSink {
  public:
   explicit RunMeter(const Experiment& experiment) : metrics_(experiment), links_(experiment) {}
@@ -21,7 +21,7 @@ class RunMeter final : public RowSink {
   }
   Measured Result() const { return metrics_.Result(); }
   std::vector<EdgeTraffic> Traffic() const { return links_.Result(); }
-  /// Of the newest row, for the progress line.
+  /// Disagreement in the newest row, for the progress line.
   double disagreement_m() const { return metrics_.disagreement_m(); }
 
  private:

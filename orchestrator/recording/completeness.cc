@@ -13,7 +13,8 @@
 namespace mascot {
 namespace {
 
-bool IsMeantEveryTick(const Topic& topic, bool realtime) {
+/// Whether a topic of this kind has a sample of every tick.
+bool IsPerTick(const Topic& topic, bool realtime) {
   switch (topic.kind) {
     case TopicKind::kState:
     case TopicKind::kClock:
@@ -26,7 +27,7 @@ bool IsMeantEveryTick(const Topic& topic, bool realtime) {
   }
 }
 
-/// Which agents have a law that sends messages: law.messages of the resolved experiment says it.
+/// Which agents have a law that sends messages (law.messages of the resolved experiment), by id - 1.
 std::vector<bool> SendersOf(Section& config, std::size_t agents) {
   const auto sends = [](Section law) { return law.Boolean("messages", false); };
   std::vector<bool> senders(agents, sends(config.Child("law")));
@@ -38,7 +39,7 @@ std::vector<bool> SendersOf(Section& config, std::size_t agents) {
   return senders;
 }
 
-/// Those that record.topics wants, command, message and state of each agent, then the clock.
+/// The recorded topics (record.topics): each agent's command, message and state, then the clock.
 std::vector<Topic> TopicsOf(const std::vector<std::string>& patterns, const std::vector<bool>& sends_messages) {
   std::vector<Topic> topics;
   for (std::size_t i = 0; i < sends_messages.size(); ++i) {
@@ -54,7 +55,7 @@ std::vector<Topic> TopicsOf(const std::vector<std::string>& patterns, const std:
 
 using Counts = std::map<std::string, std::uint64_t>;  // messages by topic
 
-/// Of the topics that should have a sample of every tick.
+/// Counts the messages of the topics that should have a sample of every tick.
 Counts Count(const McapContents& contents, const std::optional<RecordingPlan>& plan) {
   Counts counts;
   if (plan)
@@ -62,14 +63,14 @@ Counts Count(const McapContents& contents, const std::optional<RecordingPlan>& p
       if (plan->HasEveryTick(topic)) counts[topic.Name()] = 0;
   for (const auto& [id, channel] : contents.channels) {
     const auto topic = Topic::Parse(channel.topic);
-    if (topic && (plan ? counts.contains(channel.topic) : IsMeantEveryTick(*topic, /*realtime=*/false)))
+    if (topic && (plan ? counts.contains(channel.topic) : IsPerTick(*topic, /*realtime=*/false)))
       counts[channel.topic] = channel.messages;
   }
   return counts;
 }
 
-/// A gap in what a channel counts; or, of a recording that was closed, a topic that is missing whole, or has fewer
-/// samples than another.
+/// Describes the first gap: a gap in the sequence numbers of a channel; in a recording that was closed, also a topic
+/// that is missing or has fewer samples than another. Empty: none.
 std::string FindGap(const McapContents& contents, const std::optional<RecordingPlan>& plan, const Counts& counts) {
   for (const auto& [id, channel] : contents.channels)
     if (channel.gaps > 0) return fmt::format("{}: gaps in its sequence numbers: {}", channel.topic, channel.gaps);
@@ -89,7 +90,7 @@ std::string FindGap(const McapContents& contents, const std::optional<RecordingP
 
 }  // namespace
 
-bool RecordingPlan::HasEveryTick(const Topic& topic) const { return IsMeantEveryTick(topic, realtime); }
+bool RecordingPlan::HasEveryTick(const Topic& topic) const { return IsPerTick(topic, realtime); }
 
 std::string TooNew(const McapContents& contents) {
   const auto metadata = contents.metadata.find(kMetadata);
@@ -122,7 +123,7 @@ RecordingPlan PlanOf(const McapContents& contents, const std::string& path) {
   plan.rate_hz = static_cast<int>(config.Child("control").Integer("rate_hz"));
   plan.ticks = static_cast<std::uint64_t>(std::llround(run.Number("duration_s") * plan.rate_hz)) + 1;
   const std::vector<std::string> patterns = config.Child("record").Texts("topics");
-  config.ThrowIfWrong();  // before the count is relied on
+  config.ThrowIfWrong();  // before `agents` is used as a size
   plan.topics = TopicsOf(patterns, SendersOf(config, static_cast<std::size_t>(plan.agents)));
   config.ThrowIfWrong();
   return plan;

@@ -10,17 +10,17 @@
 
 namespace mascot {
 
-/// What the experiment that is attached to a recording says of it.
+/// What a recording should contain, according to the experiment attached to it.
 struct RecordingPlan {
-  std::string name;  ///< of the experiment
+  std::string name;  ///< run.name
   int agents = 0;
   int rate_hz = 0;
   bool realtime = false;
-  std::uint64_t ticks = 0;    ///< rows of a run that goes to its end
-  std::vector<Topic> topics;  ///< the per-tick topics that record.topics wants in the recording
+  std::uint64_t ticks = 0;    ///< rows of a complete run
+  std::vector<Topic> topics;  ///< the per-tick topics that record.topics selects
 
-  /// Whether a recording holds a sample of every tick of this topic. In real time a late agent's last command is held,
-  /// so that its commands and messages may be fewer.
+  /// Whether the topic has a sample of every tick. In real time, agents may miss ticks: their last command is held, and
+  /// commands and messages may be fewer.
   bool HasEveryTick(const Topic& topic) const;
 };
 
@@ -35,16 +35,17 @@ std::string TooNew(const McapContents& contents);
 /// no config.toml, or if it is somebody else's; `path` is the recording's name in that message.
 RecordingPlan PlanOf(const McapContents& contents, const std::string& path);
 
-/// What a recording proves by its sequence numbers: every channel counts 0 .. n-1, and n is the number of ticks
-/// wherever there is a sample of each.
+/// Result of checking a recording by its sequence numbers: in a complete recording each channel counts 0 .. n-1, where
+/// n is the number of ticks for every topic with a sample of every tick.
 struct Proof {
-  /// What is missing where nothing should be, whether or not the file was closed; empty: nothing is.
+  /// Description of the first gap: something is missing that should be there even if the file was not closed. Empty:
+  /// none.
   std::string gap;
-  /// Ticks that are wholly there, from 0 on; nothing if no topic has a sample of every tick.
+  /// Number of complete ticks, from 0 on; nothing if no topic has a sample of every tick.
   std::optional<std::uint64_t> ticks;
 };
-/// Every topic of the plan must be there. Without a plan it is not known which should be: then only those that are
-/// there are compared.
+/// Checks a recording. Every topic of the plan must be there; without a plan, only the topics that are there are
+/// compared.
 Proof Prove(const McapContents& contents, const std::optional<RecordingPlan>& plan);
 
 }  // namespace mascot

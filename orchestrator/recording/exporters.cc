@@ -33,7 +33,7 @@ void WriteNpz(const Recording& recording, const std::string& path) {
   npz.Close();
 }
 
-/// The long ("tidy") form: a line per tick and agent.
+/// Writes the long ("tidy") form: a line per tick and agent.
 void WriteCsv(const Recording& recording, const std::string& path) {
   std::vector<std::string> columns = {"t", "id"};
   std::vector<std::size_t> arrays;
@@ -59,7 +59,8 @@ void WriteCsv(const Recording& recording, const std::string& path) {
   csv.Close();
 }
 
-/// One array on its way to MATLAB, whose first index runs fastest: it is complete at the last tick only.
+/// One array in column-major order, as MATLAB wants it. The first index (ticks) runs fastest, so that the whole array
+/// must be in memory.
 struct Transposed {
   std::size_t array;                    // index into kStateArrays
   std::vector<std::size_t> dimensions;  // T x N x components, or T x 1
@@ -79,7 +80,7 @@ struct Transposed {
   }
 };
 
-/// Takes as much memory as the file will, and as MATLAB will to load it.
+/// Writes a MATLAB file. Needs as much memory as the file has bytes.
 void WriteMat(const Recording& recording, const std::string& path) {
   const auto ticks = static_cast<std::size_t>(recording.ticks()), agents = static_cast<std::size_t>(recording.agents());
   std::vector<Transposed> arrays;

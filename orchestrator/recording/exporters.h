@@ -8,14 +8,15 @@
 
 namespace mascot {
 
-/// A format that recordings are exported to: the arrays of states.npz (docs/recording.md), or what there is of them if
+/// An export format for recordings. Exports the arrays of states.npz (docs/recording.md), without those of commands if
 /// commands were not recorded.
 struct Exporter {
   std::string_view format;  ///< also the file's extension
-  /// Writes the file at `path`, or none: failures throw std::runtime_error.
+  /// Writes the complete file at `path`. Failures throw std::runtime_error and leave no new file.
   void (*write)(const Recording& recording, const std::string& path);
 };
 
+/// All formats.
 std::span<const Exporter> Exporters();
 
 }  // namespace mascot

@@ -12,26 +12,26 @@
 
 namespace mascot {
 
-/// Puts the samples of a recording together into rows: those of one tick have its log time.
+/// Assembles rows from the samples of a recording. All samples of a tick have the same log time.
 class RowAssembler {
  public:
   struct Wanted {
-    std::string file;  ///< for messages
+    std::string file;  ///< name of the recording, for error messages
     int agents = 0;
-    int rate_hz = 0;             ///< of the ticks
-    std::int64_t ticks = 0;      ///< rows that are whole; what follows is ignored
-    bool every_command = false;  ///< whether a row without an agent's command is not whole
+    int rate_hz = 0;             ///< ticks per simulated second
+    std::int64_t ticks = 0;      ///< number of rows to assemble; later samples are ignored
+    bool every_command = false;  ///< whether a row must have every agent's command
   };
   RowAssembler(const Wanted& wanted, std::function<void(const Row&)> on_row);
   RowAssembler(const RowAssembler&) = delete;
   RowAssembler& operator=(const RowAssembler&) = delete;
 
-  /// The messages of channel `id` are samples of `topic`, an agent's state or command.
+  /// Declares that channel `id` carries samples of `topic`, an agent's state or command.
   void AddChannel(std::uint16_t id, const Topic& topic);
-  /// The file's next message, of whatever channel. Hands a row to `on_row` when one is whole; throws
-  /// std::runtime_error if one lacks a sample.
+  /// Takes the next message of the file, of any channel. Passes a row to `on_row` when the next tick begins; throws
+  /// std::runtime_error if the row lacks a sample.
   void Take(const McapContents::Message& message);
-  /// At the end of the file: the last row.
+  /// Passes the last row to `on_row`, at the end of the file. Throws std::runtime_error if a row is missing.
   void Finish();
 
  private:
@@ -43,8 +43,8 @@ class RowAssembler {
   Wanted wanted_;
   std::function<void(const Row&)> on_row_;
   Row row_;
-  std::uint64_t time_ns_ = 0;                    // of row_
-  std::map<std::uint16_t, Row::Bytes*> places_;  // in row_, by channel
+  std::uint64_t time_ns_ = 0;                    // log time of row_
+  std::map<std::uint16_t, Row::Bytes*> places_;  // where samples go in row_, by channel
 };
 
 }  // namespace mascot

@@ -18,7 +18,7 @@ std::string LocalTime() {
   return fmt::format("{:%Y-%m-%d_%H-%M-%S}", fmt::localtime(now));
 }
 
-/// A folder that did not exist before, even if another run starts within the same second.
+/// Creates a new folder named after the time; with a suffix if another run starts within the same second.
 fs::path MakeNew(const fs::path& parent) {
   fs::create_directories(parent);
   const std::string time = LocalTime();
@@ -27,7 +27,7 @@ fs::path MakeNew(const fs::path& parent) {
       return path;
 }
 
-/// What runs write, but for a recording of another name: that is its owner's business.
+/// Files that a run writes. A recording under another name (record.file) is not listed: --force keeps it.
 constexpr std::string_view kFiles[] = {
     "logs",         "config.toml",  "summary.json",     "states.npz",       "run.mcap",     "paths.png",
     "position.png", "velocity.png", "acceleration.png", "disagreement.png", "tracking.png", "error.png"};

@@ -6,18 +6,18 @@
 
 namespace mascot {
 
-/// Where one run's results go: `runs/<name>/<time>/`, or what --out says.
+/// Folder for the results of a run: `runs/<name>/<time>/`, or the folder given with --out.
 class RunFolder {
  public:
-  /// Makes the folder. Throws ConfigError if `out` exists and holds anything (unless `force`, which removes
-  /// an earlier run's files from it), or cannot be made.
+  /// Creates the folder. Throws ConfigError if that fails, or if `out` exists and is not empty; with `force`, the files
+  /// of an earlier run are removed from it instead.
   RunFolder(const std::optional<std::string>& out, const std::string& name, bool force);
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path File(const std::string& name) const { return path_ / name; }
   /// logs/<process>.log
   std::filesystem::path Log(const std::string& process) const { return path_ / "logs" / (process + ".log"); }
-  /// Writes a file whole or not at all; throws std::runtime_error if that fails.
+  /// Writes a file completely or not at all. Throws std::runtime_error if that fails.
   void Write(const std::string& name, const std::string& text) const;
 
  private:

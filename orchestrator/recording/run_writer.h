@@ -15,15 +15,16 @@
 
 namespace mascot {
 
-/// Writes a run's rows: run.mcap and states.npz. Both engines end here, so their files are the same bytes. Failures
-/// throw std::runtime_error.
+/// Writes the rows of a run to the recording (run.mcap) and states.npz. Both engines use it, so that equal rows give
+/// byte-identical files. Failures throw std::runtime_error.
 class RunWriter final : public RowSink {
  public:
-  /// `resolved` is the resolved experiment, attached to the recording.
+  /// `resolved`: the resolved experiment as TOML, to be attached to the recording.
   RunWriter(const Experiment& experiment, const RunFolder& folder, const std::string& resolved);
 
   void Add(const FlownRow& row) override;
-  /// Completes the files. Without it they are left readable up to the last whole chunk.
+  /// Completes the files. Without it the recording is readable up to its last complete chunk, and there is no
+  /// states.npz.
   void Close();
 
   std::int64_t rows() const { return rows_; }
@@ -31,7 +32,7 @@ class RunWriter final : public RowSink {
   std::size_t topics() const { return topics_; }
 
  private:
-  /// The recording's channel of a topic; nothing if record.topics leaves it out.
+  /// Adds the channel of a topic to the recording; nothing if record.topics does not select it.
   std::optional<std::uint16_t> AddChannel(const Topic& topic);
   void WriteSample(std::optional<std::uint16_t> channel, std::uint64_t time_ns, const Row::Bytes& bytes);
 

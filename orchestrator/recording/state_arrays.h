@@ -9,17 +9,17 @@
 
 namespace mascot {
 
-/// One of the arrays that a run grows by a row per tick. What each holds: docs/recording.md.
+/// One of the arrays of states.npz, which have one row per tick. docs/recording.md says what each contains.
 struct StateArray {
   std::string_view name;
-  std::string_view components;  ///< of each agent, a letter each; empty: one number a row, whoever flies
-  bool of_command = false;      ///< from what the agents commanded, not from how they moved
+  std::string_view components;  ///< per agent, one letter each; empty: one number per row, not per agent
+  bool of_command = false;      ///< taken from the commands, not from the states
 
-  /// Numbers in a row.
+  /// Number of values in a row.
   std::size_t row_values(std::size_t agents) const { return components.empty() ? 1 : agents * components.size(); }
 };
 
-/// All of them, in the order of states.npz.
+/// All arrays, in the order of states.npz.
 inline constexpr std::array<StateArray, 7> kStateArrays = {{
     {"t", ""},
     {"position", "xyz"},
@@ -30,13 +30,13 @@ inline constexpr std::array<StateArray, 7> kStateArrays = {{
     {"actuator", "1234", true},
 }};
 
-/// One tick's row of each of those arrays.
+/// One tick's row of every array of kStateArrays.
 class StateRow {
  public:
   explicit StateRow(int agents);
 
   void Set(double t_s, const DecodedRow& decoded);
-  /// Of kStateArrays[array]: agent after agent, all components of each.
+  /// The row of kStateArrays[array]: agent after agent, all components of each.
   std::span<const double> Values(std::size_t array) const { return values_[array]; }
 
  private:

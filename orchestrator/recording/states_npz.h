@@ -8,14 +8,14 @@
 
 namespace mascot {
 
-/// Writes states.npz row by row: the arrays of kStateArrays, and `id`. Failures throw std::runtime_error.
+/// Writes states.npz row by row: the arrays of kStateArrays, and `id` (1 .. N). Failures throw std::runtime_error.
 class StatesNpz {
  public:
-  /// `commands`: whether to write the arrays of what the agents commanded.
+  /// `commands`: whether to write the arrays with of_command.
   StatesNpz(const std::string& path, int agents, bool commands = true);
 
   void Append(const StateRow& row);
-  /// Puts the file at `path`; without it there is none.
+  /// Completes the file. Without it there is no file.
   void Close() { npz_.Close(); }
 
  private:

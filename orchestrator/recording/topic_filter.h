@@ -10,7 +10,7 @@
 
 namespace mascot {
 
-/// Whether record.topics, a list of shell patterns, wants a topic in the recording.
+/// Whether `topic` matches one of `patterns` (record.topics, shell patterns as in fnmatch) and is thus recorded.
 inline bool IsRecorded(const std::vector<std::string>& patterns, const Topic& topic) {
   return std::any_of(patterns.begin(), patterns.end(), [name = topic.Name()](const std::string& pattern) {
     return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0;

@@ -32,7 +32,7 @@ type if the file begins with `#:schema` and the path of [mascot.schema.json](mas
 `configs/` do.
 )";
 
-/// Text for a cell of a table.
+/// Escapes text for a cell of a Markdown table.
 std::string Cell(std::string_view text) {
   std::string cell;
   for (const char c : text) cell += c == '|' ? std::string("\\|") : std::string(1, c);
@@ -73,14 +73,14 @@ std::string NameList(const std::vector<Key>& keys) {
   return names;
 }
 
-/// Those of `rows` that `others` have not.
+/// The keys of `rows` that are not in `others`.
 std::vector<Key> Without(std::span<const Key> others, std::span<const Key> rows) {
   std::vector<Key> rest;
   std::ranges::copy_if(rows, std::back_inserter(rest), [&](const Key& key) { return !IsIn(others, key); });
   return rest;
 }
 
-/// The reference, written from top to bottom.
+/// Writes the reference from top to bottom.
 class Writer {
  public:
   std::string Write() {
@@ -101,7 +101,7 @@ class Writer {
   }
 
  private:
-  /// The tables inside one; those of the same keys once.
+  /// Writes the tables inside a table. Tables with the same keys are written once.
   void WriteInner(const std::string& path, std::span<const Key> rows) {
     for (const Key& table : rows) {
       const auto is_same = [&](std::span<const Key> keys) { return keys.data() == table.keys.data(); };
@@ -123,7 +123,7 @@ class Writer {
     return alike.size() == 1 ? Sentence(table.meaning) : "The keys of " + NameList(alike) + ".";
   }
 
-  /// A table of keys; where another table has most of them too, only what is different.
+  /// Writes a table of keys; if another table has at least half of them too, only the differences.
   void WriteKeys(std::span<const Key> rows) {
     for (const Table& other : tables_) {
       const std::vector<Key> own = Without(other.rows, rows);
@@ -157,7 +157,7 @@ class Writer {
     std::string path;
     std::span<const Key> rows;
   };
-  std::vector<Table> tables_;  // those of the first level, and those written so far
+  std::vector<Table> tables_;  // top-level tables, and the inner tables written so far
   std::string text_;
 };
 

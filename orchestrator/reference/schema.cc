@@ -80,7 +80,7 @@ Json SchemaOf(const Key& key) {
   return schema;
 }
 
-/// What holds if `name` is that of `law`. `inherits`: what is left out, the name too, may stand in another table.
+/// Schema (if/then) of [law] for one law. `inherits`: keys that are left out, `name` too, may be set in another table.
 Json LawCase(const LawEntry& law, bool inherits) {
   Json schema = TableSchema(law.parameters);
   Json names = Json::array();
@@ -94,7 +94,7 @@ Json LawCase(const LawEntry& law, bool inherits) {
   return {{"if", std::move(condition)}, {"then", std::move(then)}};
 }
 
-/// [law] of any law: every key that some law has, and for each law what holds there.
+/// Schema of [law]: every key of any law, and one if/then case per law.
 Json LawSchema(bool inherits) {
   Json schema = TableSchema(LawKeys());
   Json& properties = schema["properties"];
@@ -103,7 +103,7 @@ Json LawSchema(bool inherits) {
   Json cases = Json::array();
   for (const LawEntry& law : Laws()) {
     for (const Key& key : law.parameters)
-      if (!properties.contains(key.name)) properties[key.name] = Json::object();  // what it is, its law says
+      if (!properties.contains(key.name)) properties[key.name] = Json::object();  // the case of its law has the schema
     cases.push_back(LawCase(law, inherits));
   }
   schema["allOf"] = std::move(cases);
@@ -115,7 +115,7 @@ Json LawSchema(bool inherits) {
 std::string ConfigurationSchema() {
   Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "MASCOT experiment"}};
   schema.update(TableSchema(ExperimentKeys()));
-  schema["required"] = Json::array({"run", "agents"});  // each has a key without a default
+  schema["required"] = Json::array({"run", "agents"});  // both have a required key
   Json& tables = schema["properties"];
   tables["law"].update(LawSchema(false));
   tables["agents"]["properties"]["override"]["items"]["properties"]["law"].update(LawSchema(true));

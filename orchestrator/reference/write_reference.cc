@@ -1,4 +1,4 @@
-// write_reference FOLDER: makes docs/configuration.md and docs/mascot.schema.json in a source tree anew.
+// write_reference FOLDER: writes docs/configuration.md and docs/mascot.schema.json of the source tree FOLDER.
 #include <exception>
 #include <filesystem>
 #include <iostream>

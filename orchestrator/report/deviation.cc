@@ -27,7 +27,8 @@ Deviation Compare(const Experiment& experiment, const Measured& measured, const 
   const Eigen::Index axes = CountOf(experiment.law.axes);
   if (prediction.value_m && measured.rows > 0)
     deviation.value_m = (measured.value_m - *prediction.value_m).head(axes).norm();
-  if (!prediction.of_agreement) return deviation;  // what is measured is how agents agree
+  if (!prediction.of_agreement)
+    return deviation;  // the other predictions are then not about agreement, which is measured
   deviation.settling_time_s = Difference(measured.settling_time_s, prediction.settling_time_s);
   deviation.rate_per_s = Difference(measured.rate_per_s, prediction.rate_per_s);
   deviation.minmax_time_s = Difference(MinmaxTime(measured, prediction), prediction.minmax_time_s);

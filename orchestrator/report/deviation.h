@@ -7,16 +7,17 @@
 
 namespace mascot {
 
-/// What was measured, less what theory predicted; absent where either is.
+/// Measured minus predicted values; absent where either is absent.
 struct Deviation {
-  std::optional<double> value_m;  ///< distance of the agents' mean to the predicted point, over law.axes
+  std::optional<double> value_m;  ///< distance between mean position and predicted point, along law.axes
   std::optional<double> settling_time_s;
   std::optional<double> rate_per_s;
-  std::optional<double> minmax_time_s;  ///< of the latest of the edges that theory knows
+  std::optional<double> minmax_time_s;  ///< for the last of the edges with a predicted time
 };
 
 Deviation Compare(const Experiment& experiment, const Measured& measured, const Prediction& prediction);
-/// When the latest of the edges whose time theory knows was met; absent if one was not, or if it knows none.
+/// Time at which the last of the edges with a predicted time caught up (s). Absent if one has not, or if there are
+/// none.
 std::optional<double> MinmaxTime(const Measured& measured, const Prediction& prediction);
 
 }  // namespace mascot

@@ -15,7 +15,7 @@ std::string ToDot(const Graph& graph, int leader, const std::string& caption) {
     dot += fmt::format("  {}{}\n", id, id == leader ? " [shape=doublecircle]" : "");
   for (int i = 1; i <= graph.size(); ++i) {
     for (const Graph::Neighbour& j : graph.HeardBy(i)) {
-      if (!directed && j.id < i) continue;  // drawn from the other end
+      if (!directed && j.id < i) continue;  // already drawn
       const std::string edge = directed ? fmt::format("{} -> {}", j.id, i) : fmt::format("{} -- {}", i, j.id);
       dot += fmt::format("  {}{}\n", edge, j.weight == 1 ? "" : fmt::format(" [label=\"{}\"]", j.weight));
     }

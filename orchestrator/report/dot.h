@@ -6,9 +6,9 @@
 
 namespace mascot {
 
-/// `graph` as Graphviz text. Arrows point the way that information flows: from the one who is heard to the one who
-/// hears. A symmetric graph is drawn without arrows. `leader` (0: none) has a double circle. `caption`
-/// stands below the picture.
+/// `graph` as Graphviz text. Arrows show the flow of information: from the agent that is heard to the agent that hears.
+/// A symmetric graph is drawn without arrows. `leader` (0: none) has a double circle. `caption` is printed below the
+/// graph.
 std::string ToDot(const Graph& graph, int leader, const std::string& caption = "");
 
 }  // namespace mascot

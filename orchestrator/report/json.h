@@ -8,7 +8,7 @@
 
 namespace mascot {
 
-/// Keys in the order in which they are put in.
+/// JSON whose objects keep the insertion order of their keys.
 using Json = nlohmann::ordered_json;
 
 inline Json VectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -19,7 +19,7 @@ Json OrNull(const std::optional<Value>& value) {
 }
 inline Json OrNull(const std::optional<Eigen::Vector3d>& v) { return v ? VectorJson(*v) : Json(nullptr); }
 
-/// A key's default, whose TOML is JSON, too; null if it has none.
+/// The default of a key, null if it has none. Defaults are TOML text that is also valid JSON.
 inline Json DefaultJson(const Key& key) { return key.fallback.empty() ? Json(nullptr) : Json::parse(key.fallback); }
 
 }  // namespace mascot

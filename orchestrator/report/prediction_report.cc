@@ -22,17 +22,17 @@ Json ToJson(const std::vector<MinmaxEdge>& edges) {
   return json;
 }
 
-std::string Lasts(double time_s) { return fmt::format("{:.4g} s", time_s); }
+std::string SecondsText(double time_s) { return fmt::format("{:.4g} s", time_s); }
 
-/// Both margins of delay, as far as they are known.
+/// Text on both delay margins, as far as they are known.
 std::string DelayText(const Prediction& prediction) {
   std::string text;
   if (const auto& margin = prediction.delay_margin)
     text = margin->independent ? "of neighbours' samples: any"
-                               : "of neighbours' samples: below " + Lasts(*margin->margin_s);
+                               : "of neighbours' samples: below " + SecondsText(*margin->margin_s);
   if (prediction.own_delay_margin_s)
     text += fmt::format("{}of these and the own: below {}", text.empty() ? "" : "; ",
-                        Lasts(*prediction.own_delay_margin_s));
+                        SecondsText(*prediction.own_delay_margin_s));
   return text;
 }
 
@@ -75,15 +75,16 @@ std::vector<std::pair<std::string, std::string>> PredictionLines(const Experimen
     lines.emplace_back("decays", fmt::format("at {:.4g} 1/s (slowest mode){}", *prediction.rate_per_s, average));
   if (prediction.settling_time_s)
     lines.emplace_back("settles in",
-                       fmt::format("{} (2 %, slowest mode{}){}", Lasts(*prediction.settling_time_s),
+                       fmt::format("{} (2 %, slowest mode{}){}", SecondsText(*prediction.settling_time_s),
                                    experiment.graph.IsSymmetric() ? "" : "; later along chains", average));
   if (prediction.control_period_bound_s)
-    lines.emplace_back("control period", fmt::format("below {} (now {})", Lasts(*prediction.control_period_bound_s),
-                                                     Lasts(experiment.period_s())));
+    lines.emplace_back("control period",
+                       fmt::format("below {} (now {})", SecondsText(*prediction.control_period_bound_s),
+                                   SecondsText(experiment.period_s())));
   if (const std::string delay = DelayText(prediction); !delay.empty()) lines.emplace_back("delay", delay);
   for (const MinmaxEdge& edge : prediction.minmax_edges)
     lines.emplace_back(fmt::format("edge {} -> {}", edge.child, edge.parent),
-                       fmt::format("{} {}", edge.exact ? "meets in" : "meets within", Lasts(edge.time_s)));
+                       fmt::format("{} {}", edge.exact ? "meets in" : "meets within", SecondsText(edge.time_s)));
   if (const auto& first = prediction.first_acceleration)
     lines.emplace_back("first command", fmt::format("{:.4g} m/s^2 of {:g} allowed", first->asked, first->limit));
   if (const auto& first = prediction.first_speed)

@@ -9,9 +9,9 @@
 
 namespace mascot {
 
-/// "predicted" of `check --json` and of summary.json: keys in docs/theory.md.
+/// JSON for "predicted" in `check --json` and summary.json; docs/theory.md describes the keys.
 Json PredictionJson(const Prediction& prediction);
-/// The same for people: label and text of each line.
+/// The same as text: label and text of each line.
 std::vector<std::pair<std::string, std::string>> PredictionLines(const Experiment& experiment,
                                                                  const Prediction& prediction);
 

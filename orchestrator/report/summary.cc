@@ -59,7 +59,7 @@ Json Safety(const Measured& measured, const std::optional<Contacts>& contacts) {
   return safety;
 }
 
-/// Of the samples that were sent over an edge: states and messages as they are on the wire.
+/// Bytes of the samples sent over an edge: states and messages, as on the wire.
 std::uint64_t BytesOf(const EdgeTraffic& edge, const SampleSizes& sizes) {
   return edge.count.sent * (sizes.state + (edge.sends_messages ? sizes.message : 0)) +
          sizeof(double) * edge.count.numbers;
@@ -114,24 +114,24 @@ Json Realtime(const Pacing& pacing) {
           {"command_age_s", spread(pacing.command_age_s)}};
 }
 
-/// A line of the summary for people.
+/// A line of the text summary.
 template <class... Values>
 std::string Line(fmt::format_string<Values...> format, Values&&... values) {
   return fmt::format(format, std::forward<Values>(values)...) + "\n";
 }
 
-/// ": 1.2 % off", or nothing where there is no deviation.
-std::string Off(std::optional<double> deviation, std::optional<double> predicted) {
+/// ": +1.2 %", or empty if there is no deviation.
+std::string DeviationText(std::optional<double> deviation, std::optional<double> predicted) {
   if (!deviation || *predicted == 0) return "";
   return fmt::format(": {:+.3g} %", 100 * *deviation / *predicted);
 }
 
-/// "at most ", if one of the times is a bound.
+/// "at most " if one of the times is only a bound, else empty.
 const char* AtMost(const std::vector<MinmaxEdge>& edges) {
   return std::ranges::all_of(edges, &MinmaxEdge::exact) ? "" : "at most ";
 }
 
-/// What agents agreed on, how fast, and what theory says of it.
+/// Text on agreement: mean position, decay rate and settling time, measured and predicted.
 std::string ConsensusText(const Experiment& experiment, const Measured& m, const Prediction& prediction) {
   const Deviation deviation = Compare(experiment, m, prediction);
   const char* chains = experiment.graph.IsSymmetric() ? "" : "; later along chains";
@@ -147,7 +147,7 @@ std::string ConsensusText(const Experiment& experiment, const Measured& m, const
     text += "decayed        not far enough, or not for good, to say how fast\n";
   if (of_rate)
     text += Line("  predicted    {:.4f} 1/s (slowest mode){}", *prediction.rate_per_s,
-                 Off(deviation.rate_per_s, prediction.rate_per_s));
+                 DeviationText(deviation.rate_per_s, prediction.rate_per_s));
   const bool of_settling = prediction.settling_time_s && prediction.of_agreement;
   if (m.settling_time_s)
     text += Line("settled        after {:.2f} s (2 %)", *m.settling_time_s);
@@ -155,29 +155,29 @@ std::string ConsensusText(const Experiment& experiment, const Measured& m, const
     text += "settled        not by the end (2 %)\n";
   if (of_settling)
     text += Line("  predicted    {:.2f} s (slowest mode{}){}", *prediction.settling_time_s, chains,
-                 Off(deviation.settling_time_s, prediction.settling_time_s));
+                 DeviationText(deviation.settling_time_s, prediction.settling_time_s));
   if (const auto caught_up_s = MinmaxTime(m, prediction))
     text += Line("caught up      after {:.2f} s (latest edge, within {:g} m)", *caught_up_s, kCaughtUp_m);
   if (prediction.minmax_time_s)
     text += Line("  predicted    {}{:.2f} s (min-max, latest edge){}", AtMost(prediction.minmax_edges),
-                 *prediction.minmax_time_s, Off(deviation.minmax_time_s, prediction.minmax_time_s));
+                 *prediction.minmax_time_s, DeviationText(deviation.minmax_time_s, prediction.minmax_time_s));
   return text;
 }
 
-/// "; tilt limited 12 %, rotors 3 %", or nothing.
+/// "; tilt limited in 12 %, rotors in 3 %", or empty if neither was.
 std::string AlsoLimited(const Measured& m) {
   if (m.tilt_limited_fraction + m.rotor_limited_fraction == 0) return "";
   return fmt::format("; tilt limited in {:.3g} %, rotors in {:.3g} %", 100 * m.tilt_limited_fraction,
                      100 * m.rotor_limited_fraction);
 }
 
-/// What a run is compared with (docs/recording.md, fidelity).
+/// Name of the ideal bodies that a run is compared with (docs/recording.md, fidelity).
 std::string IdealBodies(const Experiment& experiment) {
-  const auto at_once = std::ranges::count_if(
+  const auto by_velocity = std::ranges::count_if(
       experiment.agents, [](const AgentConfig& agent) { return agent.traits().driven_by == Wanted::kVelocity; });
-  return at_once == 0                   ? "ideal double integrators"
-         : at_once == experiment.size() ? "ideal single integrators"
-                                        : "ideal single and double integrators";
+  return by_velocity == 0                   ? "ideal double integrators"
+         : by_velocity == experiment.size() ? "ideal single integrators"
+                                            : "ideal single and double integrators";
 }
 
 }  // namespace

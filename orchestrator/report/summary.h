@@ -9,19 +9,19 @@
 
 namespace mascot {
 
-/// What only the orchestrator knows of a run.
+/// Facts about a run that neither the meters nor the engine result contain.
 struct RunFacts {
   std::string engine;  ///< "dds" | "inprocess"
   int exit = 0;
-  std::size_t topics = 0;     ///< recorded
-  std::uint64_t samples = 0;  ///< recorded
-  double total_s = 0;         ///< from `up` to the last file but summary.json
+  std::size_t topics = 0;     ///< topics recorded
+  std::uint64_t samples = 0;  ///< samples recorded
+  double total_s = 0;         ///< wall-clock time from the start of `up` until summary.json is written
 };
 
-/// summary.json: keys and definitions in docs/recording.md.
+/// Text of summary.json; docs/recording.md describes the keys.
 std::string SummaryJson(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
                         const EngineResult& engine, const RunFacts& facts);
-/// The same for people: predicted beside measured, in a few lines.
+/// The same in a few lines of text, with predictions beside measurements.
 std::string SummaryText(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
                         const EngineResult& engine, const RunFacts& facts);
 

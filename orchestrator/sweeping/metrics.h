@@ -5,9 +5,9 @@
 
 namespace mascot {
 
-/// Columns of a sweep's table that hold what a run measured: the keys of summary.json, dotted, one number each.
+/// Names of the metric columns of a sweep's table: dotted keys of summary.json, each with one number.
 std::vector<std::string> SweepMetricNames();
-/// Their cells, from the text of a summary.json; empty where it has none.
+/// Cells of these columns, from the text of a summary.json; empty where it has no number.
 std::vector<std::string> SweepMetrics(const std::string& summary);
 
 }  // namespace mascot

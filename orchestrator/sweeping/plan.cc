@@ -33,7 +33,7 @@ std::optional<std::int64_t> ToInteger(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
-/// What TOML holds for one string at the front of `text`, quotes and all, or nothing.
+/// The TOML string at the front of `text`, with its quotes; empty if there is none.
 std::string_view StringAtFront(std::string_view text) {
   if (text.empty() || (text[0] != '"' && text[0] != '\'')) return {};
   const std::string triple(3, text[0]);
@@ -45,7 +45,7 @@ std::string_view StringAtFront(std::string_view text) {
   return text;
 }
 
-/// Parts between the separators that stand outside brackets, braces and quotes.
+/// Splits `text` at the separators outside brackets, braces and quotes.
 std::vector<std::string> Split(std::string_view text, char separator) {
   std::vector<std::string> parts(1);
   int depth = 0;
@@ -67,7 +67,7 @@ struct Axis {
   std::vector<std::string> values;
 };
 
-/// KEY and what stands behind the equals sign.
+/// Splits KEY=VALUES at the first equals sign.
 std::pair<std::string, std::string> SplitKey(const std::string& option, const std::string& word) {
   const auto equals = word.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == word.size())
@@ -75,10 +75,10 @@ std::pair<std::string, std::string> SplitKey(const std::string& option, const st
   return {word.substr(0, equals), word.substr(equals + 1)};
 }
 
-/// `value` to 15 digits: 0.3 + 6 x 0.1 is meant to be 0.9.
+/// Rounds to 15 significant digits, so that 0.3 + 6 x 0.1 gives 0.9.
 double Rounded(double value) { return std::strtod(fmt::format("{:.15g}", value).c_str(), nullptr); }
 
-/// A:STEP:B of integers, exactly; nothing if they are none.
+/// The values of A:STEP:B in integer arithmetic; nothing if the three are not integers.
 std::optional<std::vector<std::string>> IntegerRange(const std::vector<std::string>& parts) {
   const auto a = ToInteger(parts[0]), step = ToInteger(parts[1]), b = ToInteger(parts[2]);
   if (!a || !step || !b) return std::nullopt;
@@ -90,7 +90,8 @@ std::optional<std::vector<std::string>> IntegerRange(const std::vector<std::stri
   return values;
 }
 
-/// A:STEP:B, both ends included: A + i STEP, never accumulated, and B if a rounding error misses it.
+/// The values of A:STEP:B, both ends included: A + i STEP, without accumulation. B is included even if a rounding error
+/// would miss it.
 std::vector<std::string> Range(const std::string& word, const std::vector<std::string>& parts) {
   const auto first = ToNumber(parts[0]), step = ToNumber(parts[1]), last = ToNumber(parts[2]);
   if (!first || !step || !last || *step == 0 || (*last - *first) / *step < 0)
@@ -113,7 +114,7 @@ Axis ParseSet(const std::string& word) {
   return axis;
 }
 
-/// Values drawn one after the other, from a stream of the key's own place.
+/// Draws the values of a --random key. Each key has its own random stream, chosen by its `place` among these options.
 Axis ParseRandom(const std::string& word, std::uint64_t place, std::int64_t samples) {
   const auto [key, text] = SplitKey("--random", word);
   const std::vector<std::string> parts = Split(text, ':');
@@ -125,8 +126,9 @@ Axis ParseRandom(const std::string& word, std::uint64_t place, std::int64_t samp
   Random random(kSamplesSeed + place, Random::Stream::kSweep);
   Axis axis{key, {}};
   for (std::int64_t i = 0; i < samples; ++i) {
-    const double part = random.Unit();
-    axis.values.push_back(ShortestFloat(log ? *min * std::pow(*max / *min, part) : *min + part * (*max - *min)));
+    const double fraction = random.Unit();
+    axis.values.push_back(
+        ShortestFloat(log ? *min * std::pow(*max / *min, fraction) : *min + fraction * (*max - *min)));
   }
   return axis;
 }
@@ -152,8 +154,8 @@ std::vector<std::string> ParseSeeds(const std::string& text) {
   return seeds;
 }
 
-/// Every point so far, once with each of `choices`.
-std::vector<SweepPoint> Times(const std::vector<SweepPoint>& points, const std::vector<SweepPoint>& choices) {
+/// Combines every point with every choice.
+std::vector<SweepPoint> Combine(const std::vector<SweepPoint>& points, const std::vector<SweepPoint>& choices) {
   if (points.size() > kMostRuns / std::max<std::size_t>(choices.size(), 1))
     throw ConfigError({"sweep: expected at most 10000000 runs, got more"});
   std::vector<SweepPoint> all;
@@ -172,7 +174,7 @@ std::vector<SweepPoint> ChoicesOf(const Axis& axis) {
   return choices;
 }
 
-/// `key` is `table`, or a key or place in it.
+/// Whether `key` is `table` itself, or a key or list element in it.
 bool IsInside(std::string_view key, std::string_view table) {
   return key.starts_with(table) && (key.size() == table.size() || key[table.size()] == '.' || key[table.size()] == '[');
 }
@@ -191,7 +193,7 @@ SweepPlan::SweepPlan(const Words& words) : points_(1) {
   for (const std::string& word : words.sets) {
     const Axis axis = ParseSet(word);
     add_key(axis, true);
-    points_ = Times(points_, ChoicesOf(axis));
+    points_ = Combine(points_, ChoicesOf(axis));
   }
   std::vector<SweepPoint> samples(words.randoms.empty() ? 1 : static_cast<std::size_t>(words.samples));
   for (std::size_t k = 0; k < words.randoms.size(); ++k) {
@@ -199,11 +201,11 @@ SweepPlan::SweepPlan(const Words& words) : points_(1) {
     add_key(axis, true);
     for (std::size_t i = 0; i < samples.size(); ++i) samples[i].overrides.push_back({axis.key, axis.values[i]});
   }
-  points_ = Times(points_, samples);
+  points_ = Combine(points_, samples);
   if (words.seeds.empty()) return;
   const Axis seeds{"run.seed", ParseSeeds(words.seeds)};
   add_key(seeds, false);
-  points_ = Times(points_, ChoicesOf(seeds));
+  points_ = Combine(points_, ChoicesOf(seeds));
 }
 
 }  // namespace mascot

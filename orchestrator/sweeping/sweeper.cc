@@ -26,7 +26,7 @@ namespace {
 
 using WallClock = std::chrono::steady_clock;
 
-/// What every run of a sweep is made from.
+/// Experiment file and plan of a sweep.
 struct Sweep {
   const std::string& name;
   const std::string& text;
@@ -41,7 +41,8 @@ struct Sweep {
   }
 };
 
-/// One run, start to end; its summary. Throws std::runtime_error if it fails.
+/// Executes one run. Returns the text of its summary.json. Throws ConfigError if the experiment is not valid, and
+/// std::runtime_error if the run fails.
 std::string FlyOne(const Sweep& sweep, std::size_t run) {
   const Experiment experiment = sweep.Load(run);
   const Prediction prediction = Predict(experiment);
@@ -52,7 +53,8 @@ std::string FlyOne(const Sweep& sweep, std::size_t run) {
   return SummaryJson(experiment, prediction, meter, result, facts);
 }
 
-/// Tasks of the pool: runs, then the same runs again, to be read and checked only; of those the resolved experiment.
+/// Work of the pool for a sweep of n runs: task k < n executes run k and returns its table cells as JSON; task n + k
+/// only reads and checks the experiment of run k and returns it resolved.
 WorkerPool::Work WorkOf(const Sweep& sweep) {
   return [sweep](std::size_t task) -> std::string {
     if (task >= sweep.plan.size()) return sweep.Load(task - sweep.plan.size()).resolved;
@@ -70,7 +72,8 @@ void ThrowIfInterrupted(StopSignal& stop) {
   if (const int signal = stop.Within(std::chrono::nanoseconds::zero()); signal != 0) throw Interrupted{signal};
 }
 
-/// The first run that is a valid experiment, resolved. Refuses a sweep that has none, with the mistakes of the first.
+/// Returns the first valid experiment of the sweep, resolved. Throws ConfigError with the mistakes of the first run if
+/// no run is valid.
 std::string FirstValid(const Sweep& sweep, WorkerPool& pool, StopSignal& stop) {
   std::string mistakes;
   for (std::size_t run = 0; run < sweep.plan.size(); ++run) {
@@ -110,7 +113,7 @@ class Progress {
   WallClock::time_point start_ = WallClock::now();
 };
 
-/// Cells of a run behind its number: what was set, its error, what was measured.
+/// Cells of a row after the run number: values set, error, metrics.
 SweepFile::Cells RowOf(const SweepPoint& point, const WorkerPool::Done& done) {
   SweepFile::Cells cells;
   for (const Override& override : point.overrides) cells.push_back(override.value);
@@ -121,9 +124,10 @@ SweepFile::Cells RowOf(const SweepPoint& point, const WorkerPool::Done& done) {
   return cells;
 }
 
-/// Every run that the table lacks. Counts in `outcome` what is done, so that it holds if a signal ends this.
-void WorkOff(const SweepPlan& plan, WorkerPool& pool, SweepFile& table, bool quiet, StopSignal& stop,
-             Sweeper::Outcome& outcome) {
+/// Executes every run that is missing in the table. Updates `outcome` after each run, so that it is right even if a
+/// signal ends this.
+void ExecuteMissing(const SweepPlan& plan, WorkerPool& pool, SweepFile& table, bool quiet, StopSignal& stop,
+                    Sweeper::Outcome& outcome) {
   Progress progress(plan.size(), table.rows(), quiet);
   std::size_t next = 0;
   const auto skip_done = [&] {
@@ -151,8 +155,8 @@ SweepFile::Cells ColumnsOf(const SweepPlan& plan) {
   return columns;
 }
 
-/// By which a table is known: the experiment as it was typed, a resolved one with the files that it names, what each
-/// run sets.
+/// Text that identifies the sweep of a table: the experiment file, the first valid experiment resolved (with the files
+/// that it names), and what each run sets.
 std::string PlanText(const Sweep& sweep, const std::string& resolved) {
   std::string text;
   for (std::size_t run = 0; run < sweep.plan.size(); ++run) {
@@ -176,13 +180,13 @@ Sweeper::Outcome Sweeper::Fly(const Options& options, StopSignal& stop) const {
     const std::string plan = PlanText(sweep, FirstValid(sweep, pool, stop));
     SweepFile table(options.out, ColumnsOf(plan_), plan, options.force);
     try {
-      WorkOff(plan_, pool, table, options.quiet, stop, outcome);
+      ExecuteMissing(plan_, pool, table, options.quiet, stop, outcome);
       table.Sort();
     } catch (const Interrupted& interrupted) {
       outcome.signal = interrupted.signal;
     }
     outcome.in_table = table.rows();
-  } catch (const Interrupted& interrupted) {  // before there was a table
+  } catch (const Interrupted& interrupted) {  // before the table was opened
     outcome.signal = interrupted.signal;
   }
   return outcome;

@@ -9,28 +9,28 @@
 
 namespace mascot {
 
-/// Flies the runs of a sweep, each in one process, on several workers at once, and grows their table.
+/// Executes the runs of a sweep, each in one process, with several processes in parallel, and writes their table.
 class Sweeper {
  public:
   struct Options {
-    int jobs = 0;  ///< processes at work; 0: one per core
-    std::string out;
-    bool force = false;  ///< begin anew where `out` holds another sweep
+    int jobs = 0;        ///< number of processes; 0: one per core
+    std::string out;     ///< path of the table
+    bool force = false;  ///< overwrite the table of another sweep
     bool quiet = false;
   };
   struct Outcome {
-    std::size_t flown = 0;                ///< by this call
-    std::size_t failed = 0;               ///< of those
-    std::optional<std::size_t> in_table;  ///< rows of the table, also of earlier calls; absent: it ended before one
-    int signal = 0;                       ///< the signal that ended it early; 0: none
+    std::size_t flown = 0;                ///< runs executed by this call
+    std::size_t failed = 0;               ///< how many of these failed
+    std::optional<std::size_t> in_table;  ///< rows in the table, also from earlier calls; absent: no table was opened
+    int signal = 0;                       ///< the signal that ended the sweep early; 0: none
   };
 
-  /// `name` of the experiment file as typed, and its text as it was at the start, whoever edits it meanwhile. (Files
-  /// that it names are read for each run.)
+  /// `name`: path of the experiment file as typed. `text`: its contents, read once, so that later edits have no effect.
+  /// (Files that it names are read for each run.)
   Sweeper(std::string name, std::string text, SweepPlan plan);
 
-  /// Flies every run that the table lacks. Throws ConfigError if no run is a valid experiment, with the mistakes of the
-  /// first, and for a table that SweepFile refuses; std::runtime_error if the table cannot be written.
+  /// Executes every run that is missing in the table. Throws ConfigError if no run is a valid experiment (with the
+  /// mistakes of the first run) or if SweepFile refuses the table; std::runtime_error if the table cannot be written.
   Outcome Fly(const Options& options, StopSignal& stop) const;
   const SweepPlan& plan() const { return plan_; }
 

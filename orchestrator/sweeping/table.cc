@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A table may be long.
+/// Reads a whole file of any size (ReadRegularFile has a limit).
 std::string ReadAll(const fs::path& path) {
   const InputFile file(path.string());
   Bytes bytes;
@@ -39,8 +39,9 @@ void Write(int fd, std::string_view text, const fs::path& path) {
   if (!WriteFully(fd, AsBytes(text))) FailToWrite(path);
 }
 
-/// The plan beside the table, opened, and made if need be. Throws ConfigError if another sweep writes there. A lock of
-/// this process alone: none that its workers inherit, and hold when it has gone.
+/// Opens or creates the plan beside the table, and locks it. Returns its descriptor. Throws ConfigError if another
+/// sweep has locked it. It is a POSIX record lock: worker processes do not inherit it, so that it ends with this
+/// process.
 int LockedPlan(const fs::path& table) {
   if (fs::exists(table) && !fs::is_regular_file(table))
     throw ConfigError({"--out " + table.string() + ": expected a file, got something else"});
@@ -110,8 +111,8 @@ SweepFile::SweepFile(fs::path path, const Cells& columns, const std::string& pla
     : path_(fs::is_symlink(path) && fs::exists(path) ? fs::canonical(path) : std::move(path)),
       header_(CsvLine(columns)),
       plan_fd_(LockedPlan(path_)) {
-  if (fs::exists(path_) && !force) GoOn(ReadAll(path_), plan);
-  WriteAll();  // first: rows never stand under another sweep's plan
+  if (fs::exists(path_) && !force) Resume(ReadAll(path_), plan);
+  WriteAll();  // before the plan: rows must never be next to the plan of another sweep
   Overwrite(plan_fd_, plan, PlanOf(path_));
   fd_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (fd_ < 0) throw std::runtime_error(path_.string() + ": cannot be opened: " + std::strerror(errno));
@@ -122,12 +123,12 @@ SweepFile::~SweepFile() {
   if (plan_fd_ >= 0) ::close(plan_fd_);
 }
 
-/// With the table as it is. One without rows yet is nobody's.
-void SweepFile::GoOn(const std::string& text, const std::string& plan) {
+/// Continues an existing table, whose contents are `text`. A table without rows belongs to no sweep and is replaced.
+void SweepFile::Resume(const std::string& text, const std::string& plan) {
   if (text.empty() || text == header_) return;
   const std::string theirs = ReadWhole(plan_fd_);
   if (theirs != plan) {
-    if (theirs.empty()) fs::remove(PlanOf(path_));  // there was none
+    if (theirs.empty()) fs::remove(PlanOf(path_));  // it did not exist: LockedPlan created it
     throw ConfigError({"--out " + path_.string() + ": expected a new file, or one of this very sweep, got another " +
                        "(--force begins anew)"});
   }
@@ -136,13 +137,13 @@ void SweepFile::GoOn(const std::string& text, const std::string& plan) {
   ReadRows(text);
 }
 
-/// Those that are whole, and need not be flown again.
+/// Reads the complete rows. A run whose process was lost is left out, so that it is executed again.
 void SweepFile::ReadRows(const std::string& text) {
   const Cells columns = CsvCells(header_);
   const auto error = static_cast<std::size_t>(std::ranges::find(columns, kErrorColumn) - columns.begin());
   for (std::size_t begin = header_.size(); begin < text.size();) {
     const std::size_t end = text.find('\n', begin);
-    if (end == text.npos) break;  // cut short
+    if (end == text.npos) break;  // incomplete row
     const std::string line = text.substr(begin, end + 1 - begin);
     begin = end + 1;
     const Cells cells = CsvCells(line);

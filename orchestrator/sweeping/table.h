@@ -9,19 +9,19 @@
 
 namespace mascot {
 
-/// The column of a run's failure; empty: none.
+/// Name of the column with the error of a run; its cell is empty if the run did not fail.
 inline constexpr const char* kErrorColumn = "error";
 
-/// The table that a sweep grows: CSV (RFC 4180), a line of column names, then a line for each run that is done, the
-/// run's number first. Rows are appended whole as they come; after an interruption the next sweep of the same plan goes
-/// on where this one ended, and a row that was cut short is dropped. Failures to write throw std::runtime_error.
+/// Table of a sweep: CSV (RFC 4180) with a line of column names, then one line per finished run, which begins with the
+/// number of the run. Rows are appended as runs finish. After an interruption, the next sweep with the same plan
+/// continues the table; an incomplete last row is dropped. Failures to write throw std::runtime_error.
 class SweepFile {
  public:
   using Cells = std::vector<std::string>;
 
-  /// Opens `path`, or begins it. `plan` says what is swept; it stands beside the table, in PATH.plan, and a table with
-  /// rows of another plan is refused with ConfigError, unless `force`, which begins anew; so is one that another sweep
-  /// is writing.
+  /// Opens or creates the table at `path`. `plan` is text that identifies the sweep; it is stored beside the table, in
+  /// PATH.plan. Throws ConfigError if the table has rows of another plan (with `force`, these are replaced instead), or
+  /// if another sweep is writing it.
   SweepFile(std::filesystem::path path, const Cells& columns, const std::string& plan, bool force);
   ~SweepFile();
   SweepFile(const SweepFile&) = delete;
@@ -29,25 +29,26 @@ class SweepFile {
 
   bool Has(std::size_t run) const { return rows_.contains(run); }
   std::size_t rows() const { return rows_.size(); }
+  /// Appends the row of a run; `cells` without the run number.
   void Add(std::size_t run, const Cells& cells);
-  /// Puts the rows in order of their numbers. The file is whole at any moment.
+  /// Sorts the rows by run number. The file is replaced atomically.
   void Sort();
 
  private:
-  void GoOn(const std::string& text, const std::string& plan);
+  void Resume(const std::string& text, const std::string& plan);
   void ReadRows(const std::string& text);
   void WriteAll() const;
 
   std::filesystem::path path_;
   std::string header_;
-  std::map<std::size_t, std::string> rows_;  // lines
-  int plan_fd_ = -1;                         // locked as long as we write the table
+  std::map<std::size_t, std::string> rows_;  // line of each run
+  int plan_fd_ = -1;                         // PATH.plan, locked while this object lives
   int fd_ = -1;
 };
 
-/// Cells as one line, with its end; quoted where they must be, without line breaks inside.
+/// Joins cells to a CSV line with its line break. Cells are quoted where necessary; line breaks in them become spaces.
 std::string CsvLine(const std::vector<std::string>& cells);
-/// The cells of such a line.
+/// Splits a CSV line into its cells.
 std::vector<std::string> CsvCells(std::string_view line);
 
 }  // namespace mascot

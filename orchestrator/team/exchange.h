@@ -8,15 +8,15 @@
 
 namespace mascot {
 
-/// What all agents send each other, where one process knows it all: brings to each what those sent that the graph may
-/// let it hear.
+/// Exchange of samples between all agents in one process: gives each agent the states and messages of its neighbours in
+/// experiment.graph.
 class Exchange {
  public:
   explicit Exchange(const Experiment& experiment)
       : experiment_(experiment), messages_(experiment.agents.size()), next_messages_(experiment.agents.size()) {}
 
-  /// What agent `id` may hear at this tick: where they are by `motions` (by id - 1), and their messages of the tick
-  /// before. Valid until the next call.
+  /// Samples of the neighbours of agent `id` at this tick: their `motions` (of all agents, by id - 1) and their
+  /// messages of the previous tick. Valid until the next call.
   std::span<const Sample> SamplesFor(int id, std::span<const Motion> motions) {
     samples_.clear();
     for (const Graph::Neighbour& neighbour : experiment_.graph.HeardBy(id)) {
@@ -25,8 +25,8 @@ class Exchange {
     }
     return samples_;
   }
-  /// Agent `id` said this at this tick; it is heard from the next one on.
-  void Say(int id, std::span<const double> message) {
+  /// Agent `id` sends `message` at this tick. Its neighbours get it at the next tick.
+  void Send(int id, std::span<const double> message) {
     next_messages_[static_cast<std::size_t>(id - 1)].assign(message.begin(), message.end());
   }
   void EndTick() { messages_.swap(next_messages_); }

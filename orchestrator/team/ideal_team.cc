@@ -26,7 +26,7 @@ IdealTeam::IdealTeam(const Experiment& experiment)
     motion.p_WB = config.p_W;
     motion.v_WB = config.v_W;
     const double heading_rad = config.traits().turns_to_heading ? config.control.heading_rad : config.heading_rad;
-    motion.q_WB = Eigen::AngleAxisd(heading_rad, Eigen::Vector3d::UnitZ());  // a law may look at it
+    motion.q_WB = Eigen::AngleAxisd(heading_rad, Eigen::Vector3d::UnitZ());  // a law may use it
   }
 }
 

@@ -8,15 +8,15 @@
 
 namespace mascot {
 
-/// The same experiment on ideal bodies: same laws, graph, links, sensors, limits and hold, but bodies that do exactly
-/// what they are told. Of models driven by acceleration, double integrators: p+ = p + h v + h^2 u / 2, v+ = v + h u; of
-/// models driven by velocity, single integrators: p+ = p + h u. What fidelity is measured against.
+/// Reference for the fidelity of a run: the same laws, graph, links, sensors, limits and hold, but ideal bodies. With
+/// control period h and limited command u, a model driven by acceleration becomes a double integrator
+/// (p+ = p + h v + h^2 u / 2, v+ = v + h u), a model driven by velocity a single integrator (p+ = p + h u).
 class IdealTeam {
  public:
   explicit IdealTeam(const Experiment& experiment);
   /// Position of agent `id` at the current tick, in W (m).
   const Eigen::Vector3d& p_W(int id) const { return motions_[static_cast<std::size_t>(id - 1)].p_WB; }
-  /// From this tick to the next.
+  /// Goes on to the next tick. Throws what a law throws.
   void Step();
 
  private:

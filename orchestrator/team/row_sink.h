@@ -6,21 +6,21 @@
 
 namespace mascot {
 
-/// One tick of a run, as an engine hands it to its sinks.
+/// One tick of a run, as an engine passes it to its sinks.
 class FlownRow {
  public:
   virtual ~FlownRow() = default;
   virtual std::int64_t tick() const = 0;
   virtual const DecodedRow& decoded() const = 0;
-  /// The samples as they were on the wire; of a run in one process, as they would have been. Made when first asked for.
+  /// The samples as sent over DDS; for a run in one process, as they would have been sent. Encoded at the first call.
   virtual const Row& bytes() const = 0;
 };
 
-/// Takes every row of a run, in order of tick: the files of a run, meters, the progress line.
+/// Receives every row of a run, in tick order: the writer of the run's files, the meters, the progress line.
 class RowSink {
  public:
   virtual ~RowSink() = default;
-  /// The next row, valid during the call. What this throws fails the run.
+  /// Takes the next row, which is valid during the call. If this throws, the run fails.
   virtual void Add(const FlownRow& row) = 0;
 };
 

@@ -9,14 +9,14 @@ Team::Team(const Experiment& experiment) : exchange_(experiment) {
 Command Team::Decide(int id, std::int64_t tick, std::span<const Motion> motions) {
   const auto i = static_cast<std::size_t>(id - 1);
   Command command = agents_[i]->Decide(tick, motions[i], exchange_.SamplesFor(id, motions));
-  exchange_.Say(id, agents_[i]->message());
+  exchange_.Send(id, agents_[i]->message());
   return command;
 }
 
 Command Team::Want(int id, std::int64_t tick, std::span<const Motion> motions) {
   const auto i = static_cast<std::size_t>(id - 1);
   Command command = agents_[i]->Want(tick, motions[i], exchange_.SamplesFor(id, motions));
-  exchange_.Say(id, agents_[i]->message());
+  exchange_.Send(id, agents_[i]->message());
   return command;
 }
 

@@ -10,17 +10,18 @@
 
 namespace mascot {
 
-/// All agents of an experiment in one process. At each tick every agent is asked once, then the tick ends.
+/// All agents of an experiment in one process. At each tick, call Decide or Want once per agent, then EndTick.
 class Team {
  public:
   explicit Team(const Experiment& experiment);
 
-  /// Agent::Decide of agent `id`, everybody being where `motions` (by id - 1) say.
+  /// Calls Agent::Decide of agent `id`. `motions`: states of all agents at this tick, by id - 1.
   Command Decide(int id, std::int64_t tick, std::span<const Motion> motions);
-  /// Agent::Want, likewise.
+  /// Calls Agent::Want of agent `id` in the same way.
   Command Want(int id, std::int64_t tick, std::span<const Motion> motions);
-  /// What agent `id` said when it was last asked.
+  /// The message that agent `id` sent last.
   std::span<const double> message(int id) const { return agents_[static_cast<std::size_t>(id - 1)]->message(); }
+  /// Ends the tick: messages sent during it are received at the next one.
   void EndTick() { exchange_.EndTick(); }
 
  private:

@@ -1,4 +1,4 @@
-// `orchestrator airframes`: the built-in quadrotors, with the keys that an airframe table of one's own may change.
+// `orchestrator airframes`: prints the built-in quadrotors, with the keys that a user's airframe table may change.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -14,13 +14,13 @@
 namespace mascot {
 namespace {
 
-/// A number of an airframe, by its key in a table agents.airframe.
+/// A parameter of an airframe and its key in a table agents.airframe.
 struct Parameter {
   std::string_view name;
   Json (*value)(const Airframe& airframe);
 };
 
-/// A number that follows from those.
+/// A number that follows from the parameters.
 struct Derived {
   std::string_view name;
   std::string_view meaning;
@@ -69,7 +69,7 @@ Json ToJson(const Airframe& airframe) {
   return json;
 }
 
-/// As it stands in a TOML file.
+/// `value` as TOML.
 std::string ToToml(const Json& value) {
   std::string text;
   if (value.is_object()) {

@@ -1,4 +1,4 @@
-// `orchestrator check CONFIG`: validates, and says what theory expects. Starts nothing.
+// `orchestrator check CONFIG`: validates an experiment and prints what theory predicts. Starts nothing.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -61,7 +61,7 @@ void PrintExperiment(const Experiment& experiment) {
                                     experiment.control.rate_hz));
 }
 
-/// Of a graph that changes: of the union of all that it ever is.
+/// Prints properties of the graph; for a schedule, of the union of its graphs.
 void PrintGraph(const GraphFacts& facts, const Schedule& schedule) {
   const std::size_t graphs = schedule.phases().size();
   PrintLine("graph", fmt::format("{} edges, {}{}{}", facts.edges, facts.symmetric ? "symmetric" : "directed",

@@ -22,7 +22,7 @@ void ConfigArgs::AddTo(CLI::App& command) {
   command.add_option("config", path, "experiment file (TOML)")->required()->type_name("CONFIG");
   command.add_option("--set", sets, "replaces or adds a key: --set law.p_gain=0.5")
       ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);  // so that CONFIG may follow
+      ->allow_extra_args(false);  // otherwise it would take CONFIG as a second value
   command.add_option("--duration-s", duration_s, "instead of run.duration_s")->type_name("S");
   command.add_option("--seed", seed, "instead of run.seed")->type_name("N");
 }

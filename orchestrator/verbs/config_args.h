@@ -12,15 +12,15 @@ class App;
 
 namespace mascot {
 
-/// CONFIG [--set key=value]... [--duration-s S] [--seed N]: how every verb that reads an experiment is told which one.
+/// CONFIG [--set key=value]... [--duration-s S] [--seed N]: the arguments of every verb that reads one experiment.
 struct ConfigArgs {
   std::string path;
   std::vector<std::string> sets;                ///< as typed
-  std::optional<std::string> duration_s, seed;  ///< they win over `sets`
+  std::optional<std::string> duration_s, seed;  ///< take precedence over `sets`
 
   /// Declares the arguments. `*this` must outlive the parsing.
   void AddTo(CLI::App& command);
-  /// Reads and checks everything. Throws ConfigError.
+  /// Reads and checks the experiment. Throws ConfigError.
   Experiment Load() const;
 };
 

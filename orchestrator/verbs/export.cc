@@ -1,4 +1,4 @@
-// `orchestrator export RUN --format npz|csv|mat`: a recording as arrays for other programs.
+// `orchestrator export RUN --format npz|csv|mat`: writes a recording as arrays for other programs.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
@@ -23,7 +23,8 @@ struct ExportArgs {
   bool force = false;
 };
 
-/// Where the export goes: beside the recording, or what --out says. Throws ConfigError if something is in the way.
+/// Path of the exported file: beside the recording, or given by --out. Throws ConfigError if it cannot be written
+/// there, or if it exists and --force is not given.
 fs::path Target(const ExportArgs& args, const std::string& recording) {
   const std::string name = "states." + args.format;
   fs::path path = args.out ? fs::path(*args.out) : fs::path(recording).replace_filename(name);

@@ -1,4 +1,4 @@
-// `orchestrator graph CONFIG`: who hears whom, as matrices and as what they imply.
+// `orchestrator graph CONFIG`: prints the graph of an experiment: matrices, eigenvalues, components, spanning tree.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -29,7 +29,7 @@ Json Rows(const Eigen::MatrixXd& matrix) {
   return rows;
 }
 
-/// Edges as [[graph.schedule]] has them: [i, j, weight], i hears j.
+/// The graphs of the schedule; edges as in [[graph.schedule]]: [i, j, weight], where i hears j.
 Json Phases(const Schedule& schedule) {
   Json phases = Json::array();
   for (const Schedule::Phase& phase : schedule.phases()) {
@@ -95,7 +95,7 @@ void PrintTree(const GraphFacts& facts) {
   std::cout << "\n";
 }
 
-/// What keeps edges from working all the time; empty: nothing.
+/// Text on when edges work (schedule, range); empty: all the time.
 std::string WhenEdgesWork(const Schedule& schedule) {
   std::string text;
   if (schedule.phases().size() > 1) {

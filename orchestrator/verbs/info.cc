@@ -20,14 +20,14 @@ namespace mascot {
 namespace {
 
 using ChannelInfo = McapContents::ChannelInfo;
-/// What was found in one recording, and whether it is all there.
+/// Contents of a recording, and whether it is complete.
 struct Findings {
   std::string file;
   std::uint64_t size_bytes = 0;
   McapContents contents;
-  std::optional<std::uint64_t> ticks;          ///< if it is complete and has topics with a sample of every tick
-  std::optional<std::uint64_t> planned_ticks;  ///< of the experiment, if that is attached
-  std::string reason;                          ///< why it is not complete; empty if it is
+  std::optional<std::uint64_t> ticks;          ///< absent: not complete, or no topic has a sample of every tick
+  std::optional<std::uint64_t> planned_ticks;  ///< absent: no experiment is attached
+  std::string reason;                          ///< why the recording is not complete; empty: it is
 
   bool complete() const { return reason.empty(); }
 };
@@ -54,7 +54,7 @@ double DurationSeconds(const McapContents& contents) {
   return first ? Seconds(*last - *first) : 0;
 }
 
-/// Nothing if no experiment is attached, or somebody else's.
+/// The plan of the recording; nothing if no MASCOT experiment is attached.
 std::optional<RecordingPlan> PlanIn(const McapContents& contents, const std::string& file) try {
   return PlanOf(contents, file);
 } catch (const ConfigError&) {
@@ -154,12 +154,12 @@ int Info(const std::string& run, bool as_json) {
   Findings findings;
   try {
     findings = Inspect(run);
-  } catch (const std::exception& error) {  // no such file, no permission, no recording at all
+  } catch (const std::exception& error) {  // no such file, no permission, not a recording
     std::cerr << "error: " << error.what() << "\n";
     return 2;
   }
   if (as_json)
-    // A damaged file may hold any bytes in its names.
+    // The names in a damaged file may contain any bytes.
     std::cout << ToJson(findings).dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
   else
     PrintText(findings);

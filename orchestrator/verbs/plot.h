@@ -6,8 +6,8 @@
 
 namespace mascot {
 
-/// Makes the pictures of a run folder with scripts/plot.py. Returns the
-/// script's exit code, or 128 + the signal that `stop` heard meanwhile.
+/// Plots a run folder with scripts/plot.py. Returns the exit code of the script, or 128 + the signal that ended it (as
+/// RunScript).
 int PlotRun(const std::filesystem::path& folder, bool show, StopSignal& stop);
 
 }  // namespace mascot

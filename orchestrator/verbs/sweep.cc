@@ -1,5 +1,5 @@
-// `orchestrator sweep CONFIG`: one experiment many times, over values of its keys and seeds, in one process each run,
-// all cores at work; a table with a row for each run, and a picture of it.
+// `orchestrator sweep CONFIG`: runs one experiment many times, over values of its keys and seeds. Each run takes place
+// in one process, with one process per core. Writes a table with a row for each run, and a plot of it.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -26,7 +26,7 @@ struct SweepArgs {
   SweepPlan::Words words;
   int jobs = 0;
   std::string out = "sweep.csv";
-  std::optional<std::string> metric;  ///< that the picture shows; none given: kUsualMetric
+  std::optional<std::string> metric;  ///< the column to plot; absent: kUsualMetric
   bool force = false, no_plot = false, quiet = false;
 };
 
@@ -39,13 +39,14 @@ void CheckMetric(const std::string& metric) {
                      metric + "'" + (nearest ? " (did you mean \"" + *nearest + "\"?)" : "")});
 }
 
-/// The picture goes beside the table, under the same name.
+/// Throws ConfigError if the table has the name of the plot, which is written beside it as .png.
 void CheckOut(const std::string& out) {
   if (fs::path(out).extension() == ".png")
     throw ConfigError({"--out: expected the table's file, such as sweep.csv, got '" + out + "', the picture's"});
 }
 
-/// Two keys can be drawn, or seeds alone.
+/// Whether the sweep can be plotted: over at most two keys, or over seeds alone. Throws ConfigError if --plot asks for
+/// a plot that is not possible.
 bool IsDrawable(const SweepArgs& args, const SweepPlan& plan) {
   constexpr std::size_t kMostKeys = 2;
   if (args.metric && plan.size() < 2) throw ConfigError({"--plot: expected at least 2 runs to draw, got 1"});

@@ -1,4 +1,4 @@
-// `orchestrator laws` and `orchestrator models`: the tables behind the names that an experiment may use.
+// `orchestrator laws` and `orchestrator models`: print the laws and models that an experiment may name.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

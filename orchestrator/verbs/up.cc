@@ -43,8 +43,8 @@ EngineResult RunInThisProcess(const Experiment& experiment, const std::vector<Ro
   return result;
 }
 
-/// The resolved experiment as it is attached to the recording: two runs of which only the way over the wire differed
-/// have the same recording.
+/// The resolved experiment as attached to the recording: with the default domain, processes and delivery, so that runs
+/// that differ only in these have the same recording.
 std::string WithoutDelivery(const Experiment& experiment) {
   const auto& network = experiment.network;
   if (network.domain < 0 && network.agents_per_process == 1 && network.delivery == Delivery::kTopics)
@@ -61,7 +61,8 @@ int ExitCode(const EngineResult& result) {
   return result.signal == 0 ? 0 : 128 + result.signal;
 }
 
-/// Pictures and data files as [output] wants them. Returns the exit code that this adds to a run that went well.
+/// Makes the plots and keeps or removes the data file, as [output] says. Returns 0, or 1 or 128 + signal if plotting
+/// failed or was interrupted.
 int MakeOutput(const Experiment& experiment, const RunFolder& folder, bool has_rows, StopSignal& stop) {
   const auto& output = experiment.output;
   int code = 0;
@@ -72,7 +73,7 @@ int MakeOutput(const Experiment& experiment, const RunFolder& folder, bool has_r
   return 1;
 }
 
-/// What flies in one thread has no clock to keep.
+/// Throws ConfigError for a real-time run in one process, which has no pacing.
 void RefuseRealtimeInOneProcess(const Experiment& experiment, const std::string& engine) {
   if (engine == "inprocess" && experiment.run.mode == Mode::kRealtime)
     throw ConfigError({"--engine inprocess: expected run.mode = \"lockstep\", got \"realtime\""});
@@ -112,7 +113,7 @@ int Up(const UpArgs& args) {
     facts.total_s = std::chrono::duration<double>(WallClock::now() - launched).count();
     folder.Write("summary.json", SummaryJson(experiment, prediction, meter, result, facts));
   };
-  write_summary();  // the pictures read it
+  write_summary();  // the plots read it
   const int output = MakeOutput(experiment, folder, writer.rows() > 1, stop);
   if (facts.exit == 0) facts.exit = output;
   write_summary();

@@ -9,8 +9,9 @@ class App;
 
 namespace mascot {
 
-/// A row of the verb table. `set_up` declares the verb's options on `command` and returns what to do once
-/// they are parsed; that returns the exit code (0 done, 1 run failed, 2 usage or configuration).
+/// A row of the verb table. `set_up` declares the options of the verb on `command`, and returns a function to call
+/// after parsing, which returns the exit code (0 done, 1 run failed, 2 usage or configuration, 128 + signal if
+/// interrupted).
 struct VerbEntry {
   std::string_view name;
   std::string_view summary;
