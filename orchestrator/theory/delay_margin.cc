@@ -1,12 +1,13 @@
-// Agent i, which knows itself at once and the others by tau late, has, with d_i the sum of its weights,
+// Agent i knows its own state without delay, and its neighbours' states with delay tau. With d_i the sum of its
+// weights,
 //   [s^n + own_i(s)] q_i = sum_j a_ij (p_i + g_i s) e^(-s tau) q_j
 //   own_i(s) = p_i d_i (order n = 1)  or  (b_i + g_i d_i) s + p_i d_i (n = 2).
-// A root on s = i w, w > 0, needs an eigenvalue mu of M(w) = diag((p_i + g_i s) / (s^n + own_i(s))) A with
-// mu e^(-i w tau) = 1: of magnitude 1, and tau = arg(mu) / w. The rows of M sum up, in magnitude, to less than 1
+// A root at s = i w, w > 0, requires an eigenvalue mu of M(w) = diag((p_i + g_i s) / (s^n + own_i(s))) A with
+// mu e^(-i w tau) = 1, that is, |mu| = 1 and tau = arg(mu) / w. The absolute row sums of M are less than 1
 //   for n = 1 always, and
-//   for n = 2 where w^2 > 2 p_i d_i - b_i^2 - 2 b_i g_i d_i,
-// so that (Gershgorin) no eigenvalue can: the first delay with a root lies where the second fails for some i, or
-// nowhere.
+//   for n = 2 where w^2 > 2 p_i d_i - b_i^2 - 2 b_i g_i d_i.
+// If they are for all i, no eigenvalue has magnitude 1 (Gershgorin). The smallest delay with a root thus belongs to a
+// frequency w at which the second condition fails for some i; if there is none, no delay has a root.
 #include "orchestrator/theory/delay_margin.h"
 
 #include <Eigen/Eigenvalues>
@@ -25,8 +26,8 @@ using Complex = std::complex<double>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Agents who hear each other, one way or another: their motion, their weights d_i, and A among them. What others do is
-/// nothing that they could feed back.
+/// A strongly connected component of the graph: its agents, the sums d_i of all their weights, and the adjacency matrix
+/// A within it. Only agents of the same component form feedback loops.
 struct Loop {
   std::vector<LinearAgent> agents;
   Eigen::VectorXd degree;
@@ -51,7 +52,7 @@ struct Loop {
     return heard / ((agent.order == 1 ? s : s * (s + agent.b)) + heard * d);
   }
 
-  /// At and above this w every eigenvalue is of magnitude less than 1; 0: everywhere.
+  /// The frequency w (rad/s) from which on every eigenvalue has magnitude less than 1; 0: at every frequency.
   double HighestFrequency() const {
     double highest2 = 0;
     for (std::size_t i = 0; i < agents.size(); ++i) {
@@ -59,12 +60,12 @@ struct Loop {
       const double d = degree(static_cast<Eigen::Index>(i)), b = agent.b;
       if (agent.order == 2) highest2 = std::max(highest2, 2 * agent.p * d - b * b - 2 * b * agent.g * d);
     }
-    // Where agents are alike and weights add up to the same, the last crossing lies on the bound itself.
+    // If all agents are alike and have equal sums of weights, the last crossing lies on the bound itself.
     constexpr double kBeyond = 1.001;
     return kBeyond * std::sqrt(highest2);
   }
 
-  /// All agents are alike, and so are the sums of their weights: M is a number times A.
+  /// Whether all agents are alike and have equal sums of weights: then M is a scalar times A.
   bool IsRegular() const {
     return std::ranges::all_of(agents, [&](const LinearAgent& agent) { return agent.MovesAs(agents.front()); }) &&
            (degree.array() == degree(0)).all();
@@ -73,7 +74,7 @@ struct Loop {
 
 using Spectrum = std::function<Eigen::VectorXcd(double w)>;
 
-/// The eigenvalues of M(w), the largest first.
+/// The eigenvalues of M(w) as a function of w, sorted by decreasing magnitude.
 Spectrum SpectrumOf(const Loop& loop) {
   const auto sorted = [](Eigen::VectorXcd values) {
     std::ranges::sort(values, std::greater<>(), [](Complex value) { return std::abs(value); });
@@ -102,7 +103,7 @@ double Crossing(const Spectrum& spectrum, Eigen::Index rank, double low, double 
   return (low + high) / 2;
 }
 
-/// The smallest tau that the eigenvalues of magnitude 1 at frequency w mean, which there are up to rounding.
+/// The smallest delay tau > 0 (s) of the eigenvalues that have magnitude 1, up to rounding, at frequency w.
 double DelayAt(const Spectrum& spectrum, double w) {
   const Eigen::VectorXcd values = spectrum(w);
   const Eigen::ArrayXd off = (values.array().abs() - 1).abs();
@@ -115,11 +116,11 @@ double DelayAt(const Spectrum& spectrum, double w) {
   return tau_s;
 }
 
-/// The smallest tau of all crossings of magnitude 1 up to `highest`.
+/// The smallest delay tau (s) over all frequencies up to `highest` at which an eigenvalue has magnitude 1.
 std::optional<double> Sweep(const Spectrum& spectrum, double highest) {
   constexpr int kSteps = 150;
   std::optional<double> margin_s;
-  double low = highest / 1e4;  // at w = 0 the eigenvalue of agreement is 1 with any delay
+  double low = highest / 1e4;  // at w = 0 the eigenvalue of agreement is 1 for any delay
   Eigen::VectorXcd at_low = spectrum(low);
   for (int step = 1; step <= kSteps; ++step) {
     const double high = highest * step / kSteps;

@@ -7,15 +7,16 @@
 
 namespace mascot {
 
-/// How late what agents hear may be, all of it alike, while they know themselves at once; in continuous time.
+/// Largest delay of neighbours' samples, equal for all of them, with which a team settles. Own states are known without
+/// delay; continuous time.
 struct DelayMargin {
-  bool independent = false;        ///< no delay can do harm
-  std::optional<double> margin_s;  ///< from this delay on the team does not settle
+  bool independent = false;        ///< the team settles with any delay
+  std::optional<double> margin_s;  ///< the team does not settle from this delay on (s)
 };
 
-/// Of a team that settles without delay, on a graph that does not change. Nothing where only a sweep could tell, and
-/// too many agents hear each other for that: more than kLargestSweep, or kLargestRegular if they are all alike and hear
-/// as many.
+/// The delay margin of a team that settles without delay, on a constant graph; delay_margin.cc has the derivation.
+/// Nothing if a sweep over frequencies is needed and a strongly connected component has too many agents for it: more
+/// than kLargestSweep, or kLargestRegular if its agents are alike and have equal sums of weights.
 std::optional<DelayMargin> LinkDelayMargin(const LinearTeam& team, const Graph& graph);
 
 inline constexpr int kLargestSweep = 24;

@@ -1,4 +1,4 @@
-// Laws that do not listen: every agent flies to its target by itself, two poles each.
+// Laws that do not listen to neighbours: every agent flies to its target by itself, with two poles each.
 #include "orchestrator/theory/linear_team.h"
 #include "orchestrator/theory/parts.h"
 

@@ -7,11 +7,11 @@
 
 namespace mascot {
 
-/// The largest acceleration along x or y for which a quadrotor leans no further than its airframe may (m/s^2), while it
-/// holds its height.
+/// The largest acceleration along x or y (m/s^2) that a quadrotor reaches at constant height within the tilt limit of
+/// its airframe.
 double LeanLimit(const AgentConfig& quadrotor, double gravity_m_per_s2);
 
-/// Warnings, as "key: text", about quadrotors whose rotors cannot lift them.
+/// Warnings ("key: text") about quadrotors whose rotors cannot lift their weight.
 std::vector<std::string> LiftWarnings(const Experiment& experiment);
 
 }  // namespace mascot

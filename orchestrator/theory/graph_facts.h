@@ -8,19 +8,20 @@
 
 namespace mascot {
 
-/// What `check` and `graph` say about a graph.
+/// Properties of a graph that `check` and `graph` report.
 struct GraphFacts {
   std::size_t edges = 0;
   bool symmetric = false;
-  std::optional<double> lambda_2;            ///< left out above kLargestSpectrum agents
-  std::vector<std::vector<int>> components;  ///< strongly connected
-  std::vector<int> roots;                    ///< heard by everyone, directly or not
-  int tree_root = 0;                         ///< the leader, else the lowest root; 0: no spanning tree
+  std::optional<double> lambda_2;            ///< absent above kLargestSpectrum agents
+  std::vector<std::vector<int>> components;  ///< ids of each strongly connected component
+  std::vector<int> roots;                    ///< agents that all others hear, directly or not
+  int tree_root = 0;                         ///< root of `tree`: the leader, else the lowest root; 0: no spanning tree
   std::vector<int> tree;                     ///< parent by id - 1; empty if there is no spanning tree
 };
 
+/// `leader`: 0 for none.
 GraphFacts FactsOf(const Graph& graph, int leader);
-/// Ids with runs joined: "1-4, 7".
+/// Ids as text, with consecutive ids joined: "1-4, 7".
 std::string IdRanges(const std::vector<int>& ids);
 
 }  // namespace mascot

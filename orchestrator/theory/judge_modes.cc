@@ -1,4 +1,4 @@
-// What modes say about gains and control period.
+// Stability of modes: gains and control period.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace mascot {
 
 bool JudgePeriod(const Experiment& experiment, double longest_s, Prediction& prediction) {
   if (std::isfinite(longest_s)) prediction.control_period_bound_s = longest_s;
-  constexpr double kRounding = 1e-9;  // of both: at the bound itself the loop oscillates for ever
+  constexpr double kRounding = 1e-9;  // relative: at the bound itself the loop oscillates for ever
   if (experiment.period_s() < longest_s * (1 - kRounding)) return true;
   prediction.warnings.push_back(fmt::format("control.rate_hz: unstable at this rate, it must be above {:.4g}, got {}",
                                             1 / longest_s, experiment.control.rate_hz));

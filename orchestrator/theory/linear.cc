@@ -1,4 +1,4 @@
-// Laws that are linear: consensus, formation, velocity consensus, and teams that mix them.
+// Linear laws: consensus, formation, velocity consensus, and teams that mix them.
 #include <fmt/format.h>
 
 #include <Eigen/LU>
@@ -19,7 +19,7 @@ namespace {
 
 bool Exceeds(double delay_s, std::optional<double> margin_s) { return margin_s && delay_s >= *margin_s; }
 
-/// One experiment that is linear, and what is found out about it.
+/// Predicts an experiment with a linear team.
 class LinearCase {
  public:
   LinearCase(const Experiment& experiment, const LinearTeam& team, const Timeline& timeline, Prediction& prediction)
@@ -34,6 +34,7 @@ class LinearCase {
 
  private:
   const AgentConfig& agent(int id) const { return experiment_.agent(id); }
+  /// Whether the team has modes: a constant graph, and agents that are alike.
   bool IsModal() const { return timeline_.IsConstant() && common_.has_value(); }
   bool IsDelayed() const { return LongestDelay(experiment_) > 0 || experiment_.sensors.own_delay_s > 0; }
   bool MayCoast() const;
@@ -44,7 +45,7 @@ class LinearCase {
   GainBound Gain() const;
   bool JudgeGains();
   bool JudgeDelays();
-  void DoubtDelays() const;
+  void WarnOfDelays() const;
   bool PredictMotion();
   bool PredictSampled();
   void PredictValue();
@@ -63,10 +64,10 @@ class LinearCase {
   const LinearTeam& team_;
   const Timeline& timeline_;
   Prediction& prediction_;
-  Graph graph_;  // of the last interval
+  Graph graph_;  // graph of the last interval, without the edges on which leaders hear
   std::optional<LinearAgent> common_;
-  Eigen::VectorXcd lambda_;        // of a team that IsModal: of L, that of agreement or of a leader first
-  std::vector<LinearMode> modes_;  // likewise, without that one
+  Eigen::VectorXcd lambda_;        // if IsModal(): eigenvalues of L; the first is that of agreement or of the leader
+  std::vector<LinearMode> modes_;  // if IsModal(): modes of the other eigenvalues
 };
 
 void LinearCase::Predict() {
@@ -75,7 +76,7 @@ void LinearCase::Predict() {
   if (PredictMotion())
     PredictValue();
   else if (!prediction_.stable)
-    DoubtDelays();
+    WarnOfDelays();
 }
 
 void LinearCase::FindModes() {
@@ -83,7 +84,7 @@ void LinearCase::FindModes() {
   for (Eigen::Index i = 1; i < lambda_.size(); ++i) modes_.push_back(common_->Mode(lambda_(i)));
 }
 
-/// The gain that would have to be larger if modes do not decay, and how large.
+/// The gain that must be larger if modes do not decay, and its least value.
 GainBound LinearCase::Gain() const {
   const LinearAgent& all = *common_;
   const bool relative = all.g > 0, velocity = WantedBy(experiment_.law) == Wanted::kVelocity;
@@ -94,7 +95,7 @@ GainBound LinearCase::Gain() const {
   if (relative) return {"law.v_gain", least, all.g};
   const double own = all.b - all.drag_b;
   if (velocity) {
-    // There own = k_v and p = k_v p_gain: (k_v + drag)^2 > k_v p_gain (Im lambda)^2 / Re lambda.
+    // Here own = k_v and p = k_v p_gain: (k_v + drag)^2 > k_v p_gain (Im lambda)^2 / Re lambda.
     const double half = least * least / own / 2 - all.drag_b;
     const double root = half * half - all.drag_b * all.drag_b;
     return {"control.velocity_gain", half > 0 && root >= 0 ? half + std::sqrt(root) : 0, own};
@@ -102,7 +103,7 @@ GainBound LinearCase::Gain() const {
   return {"law.beta", std::max(0.0, least - all.drag_b), own};
 }
 
-/// Nobody leads, and some do not brake: agents who have met may go on for ever, if nobody who counts brakes.
+/// Whether agents might keep moving together after they have met: no agent leads, and some have no damping (b = 0).
 bool LinearCase::MayCoast() const {
   return team_.Leaders().empty() &&
          std::ranges::any_of(team_.agents, [](const LinearAgent& moves) { return moves.order == 2 && moves.b == 0; });
@@ -129,7 +130,7 @@ bool LinearCase::JudgeGains() {
   return false;
 }
 
-/// Margins, and whether there is more delay than they allow.
+/// Finds the delay margins. Returns false, with a warning, if the delays exceed them.
 bool LinearCase::JudgeDelays() {
   if (!timeline_.IsConstant()) return true;
   const double link_s = LongestDelay(experiment_), own_s = experiment_.sensors.own_delay_s;
@@ -138,7 +139,7 @@ bool LinearCase::JudgeDelays() {
     for (const LinearMode& mode : modes_)
       prediction_.own_delay_margin_s =
           std::min(prediction_.own_delay_margin_s.value_or(OwnDelayMargin(mode)), OwnDelayMargin(mode));
-  // The margins are those of delays that are all alike. With others the team may stand more.
+  // The margins hold for delays that are all equal. With unequal delays the team may tolerate more.
   if (!RandomAge(experiment_).empty() || !CommonDelayTicks(experiment_, graph_)) return true;
   if (own_s == 0 && Exceeds(link_s, LinkMargin()))
     return Warn(fmt::format("link.delay_s: unstable, it must be below {:.4g}, got {:.4g}", *LinkMargin(), link_s));
@@ -148,8 +149,8 @@ bool LinearCase::JudgeDelays() {
   return true;
 }
 
-/// Of delays that are not all alike, where nothing else is known.
-void LinearCase::DoubtDelays() const {
+/// Warns of unequal delays that exceed the margins for equal ones, where no eigenvalues decide about stability.
+void LinearCase::WarnOfDelays() const {
   const double link_s = LongestDelay(experiment_), own_s = experiment_.sensors.own_delay_s;
   if (own_s == 0 && Exceeds(link_s, LinkMargin()))
     prediction_.warnings.push_back(
@@ -163,7 +164,7 @@ void LinearCase::DoubtDelays() const {
                     own_s, *prediction_.own_delay_margin_s));
 }
 
-/// Rate and settling time; whether there is more to say.
+/// Predicts stability, rate and settling time. Returns false if nothing else can be predicted.
 bool LinearCase::PredictMotion() {
   if (const std::string random = RandomAge(experiment_); !random.empty()) return Silent(random);
   if (!IsModal() || IsDelayed()) return PredictSampled();
@@ -186,10 +187,10 @@ bool LinearCase::PredictSampled() {
     if (link_s > 0) return Warn(fmt::format("link.delay_s: unstable with this delay, got {:.4g}", link_s));
     return Warn("law: unstable with these gains on these graphs");
   }
-  if (sampled.slowest() == 0) return true;  // nobody follows anybody
+  if (sampled.slowest() == 0) return true;  // no agent follows another
   prediction_.rate_per_s = sampled.rate_per_s();
   if (timeline_.cycle_from == 0)
-    prediction_.settling_time_s = std::log(50) / sampled.rate_per_s();  // all from the start
+    prediction_.settling_time_s = std::log(50) / sampled.rate_per_s();  // nothing begins later
   return true;
 }
 
@@ -202,14 +203,14 @@ void LinearCase::PredictValue() {
   } else {
     prediction_.value_m = RestingPlace(experiment_, team_, leaders.front());
     const bool moves = !agent(leaders.front()).v_W.head(CountOf(experiment_.law.axes)).isZero(0);
-    if (moves || !prediction_.value_m) prediction_.settling_time_s.reset();  // they settle after the leader
+    if (moves || !prediction_.value_m) prediction_.settling_time_s.reset();  // followers settle after the leader
     if (!prediction_.value_m && !team_.agent(leaders.front()).flies) WarnOfLag(leaders.front());
   }
   if (prediction_.value_m && experiment_.law.axes == Axes::kXy)
     prediction_.value_m->z() = HeldHeight(experiment_, team_);
 }
 
-/// A leader at constant velocity v is followed at p_L - p = (b / p) v L_FF^-1 1.
+/// Warns that followers of a leader with constant velocity v stay behind by p_L - p = (b / p) v L_FF^-1 1.
 void LinearCase::WarnOfLag(int leader) const {
   if (!IsModal()) return;
   Eigen::MatrixXd pinned = graph_.Laplacian();
@@ -223,7 +224,7 @@ void LinearCase::WarnOfLag(int leader) const {
                   farthest * common_->b / common_->p * speed));
 }
 
-/// Why not even the linear theory of the team applies; empty: it does.
+/// Why the linear theory does not apply to the team; empty: it does.
 std::string WhyNot(const Experiment& experiment, const Linearity& linearity, const Timeline& timeline) {
   if (!linearity.team) return linearity.why_not;
   if (experiment.schedule.range_m() > 0) return "graph.range_m: who hears whom depends on where they go";
@@ -242,7 +243,7 @@ std::string WhyNot(const Experiment& experiment, const Linearity& linearity, con
 }  // namespace
 
 void PredictLinear(const Experiment& experiment, const Timeline& timeline, Prediction& prediction) {
-  if (!prediction.persistence->joint) return;  // as the warnings say
+  if (!prediction.persistence->joint) return;  // PersistenceWarnings has warned
   const Linearity linearity = LinearTeamOf(experiment);
   prediction.silent = WhyNot(experiment, linearity, timeline);
   if (prediction.silent.empty()) LinearCase(experiment, *linearity.team, timeline, prediction).Predict();

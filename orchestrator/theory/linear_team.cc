@@ -8,12 +8,13 @@
 namespace mascot {
 namespace {
 
+/// Uncompensated linear drag per mass (1/s).
 double Drag(const AgentConfig& agent) {
   if (!agent.traits().has_airframe || agent.control.drag_compensation) return 0;
   return agent.airframe.linear_drag_kg_per_s / agent.airframe.mass_kg;
 }
 
-/// How the agent's model does what a law of this form, which wants `wanted`, asks for.
+/// Dynamics of the agent's model under a law of this form, whose output is `wanted`.
 LinearAgent Driven(const AgentConfig& agent, const LinearForm& form, Wanted wanted) {
   const bool by_velocity = agent.traits().driven_by == Wanted::kVelocity;
   LinearAgent linear{.p = form.p, .g = form.g, .b = form.beta};
@@ -30,7 +31,8 @@ LinearAgent Driven(const AgentConfig& agent, const LinearForm& form, Wanted want
   return linear;
 }
 
-/// A leader does not brake, unless it stands still by wanting the velocity 0.
+/// Dynamics of a leader: no coupling and, except for drag, no damping; but a leader whose law wants the velocity 0
+/// slows down with the velocity gain.
 LinearAgent Leading(LinearAgent agent, bool flies, Wanted wanted) {
   agent.p = agent.g = 0;
   agent.listens = false;
@@ -39,6 +41,7 @@ LinearAgent Leading(LinearAgent agent, bool flies, Wanted wanted) {
   return agent;
 }
 
+/// Why unicycles make the team nonlinear; empty: there are none.
 std::string Unicycles(const Experiment& experiment) {
   std::vector<int> ids;
   for (const AgentConfig& agent : experiment.agents)
@@ -48,7 +51,8 @@ std::string Unicycles(const Experiment& experiment) {
          " before going where wanted";
 }
 
-std::string StrangeLaw(const Experiment& experiment) {
+/// Why theory does not apply to the law of an agent; empty: all laws are linear.
+std::string UnknownLaw(const Experiment& experiment) {
   for (const AgentConfig& agent : experiment.agents)
     if (!LinearFormOf(agent.law))
       return "theory does not know the law " + agent.law.name + " of agent " + std::to_string(agent.id);
@@ -90,7 +94,7 @@ LinearAgent FlyingAgent(const AgentConfig& agent, const LinearForm& form) {
 }
 
 Linearity LinearTeamOf(const Experiment& experiment) {
-  for (std::string why_not : {Unicycles(experiment), StrangeLaw(experiment)})
+  for (std::string why_not : {Unicycles(experiment), UnknownLaw(experiment)})
     if (!why_not.empty()) return {std::nullopt, std::move(why_not)};
   LinearTeam team;
   const std::vector<Eigen::Vector3d> nowhere(experiment.agents.size(), Eigen::Vector3d::Zero());

@@ -11,20 +11,21 @@
 
 namespace mascot {
 
-/// One agent, if law and model together are linear in q = p - d, d being its place in a formation, else 0:
+/// Dynamics of one agent whose law and model together are linear in q = p - d, where d is its place in a formation,
+/// else 0:
 ///   order 1:  v_i = p sum_j a_ij (q_j - q_i)
 ///   order 2:  dv_i/dt = sum_j a_ij [p (q_j - q_i) + g (v_j - v_i)] - b v_i
-/// A law that wants a velocity of a model driven by acceleration is of order 2: p and b are k_v p and k_v.
+/// A law that wants a velocity, on a model driven by acceleration, gives order 2 with k_v p in place of p, and b = k_v.
 struct LinearAgent {
   int order = 2;
-  double hold = 0.5;  ///< of order 2, as LinearMode has it
-  double p = 0;
-  double g = 0;
-  double b = 0;         ///< with the drag that nobody compensates
-  bool listens = true;  ///< false: it leads
-  bool flies = false;   ///< of one that leads: along waypoints
-  double off_b = 0;     ///< of order 2: what brakes it while its law is off
-  double drag_b = 0;    ///< the part of b that is drag
+  double hold = 0.5;    ///< for order 2: see LinearMode::hold
+  double p = 0;         ///< 1/s^2; for order 1: 1/s
+  double g = 0;         ///< 1/s
+  double b = 0;         ///< damping (1/s), with uncompensated drag
+  bool listens = true;  ///< false: the agent is a leader
+  bool flies = false;   ///< a leader that flies along waypoints
+  double off_b = 0;     ///< for order 2: damping while its law is off (1/s)
+  double drag_b = 0;    ///< the part of b that is drag (1/s)
 
   bool MovesAs(const LinearAgent& other) const {
     return order == other.order && hold == other.hold && p == other.p && g == other.g && b == other.b;
@@ -32,29 +33,30 @@ struct LinearAgent {
   LinearMode Mode(std::complex<double> lambda) const { return {b + g * lambda, p * lambda, order, hold}; }
 };
 
+/// The agents of an experiment as linear dynamics.
 struct LinearTeam {
   std::vector<LinearAgent> agents;       ///< by id - 1
-  std::vector<Eigen::Vector3d> place_W;  ///< d, likewise
+  std::vector<Eigen::Vector3d> place_W;  ///< d_i, by id - 1 (m)
 
   const LinearAgent& agent(int id) const { return agents[static_cast<std::size_t>(id - 1)]; }
-  /// Of those that listen, by id - 1.
+  /// Indices (id - 1) of the agents that are not leaders.
   std::vector<Eigen::Index> Listening() const;
-  /// The ids of those that lead.
+  /// Ids of the leaders.
   std::vector<int> Leaders() const;
-  /// What all that listen are alike; nothing if they differ, or if nobody listens.
+  /// The dynamics that all agents but the leaders have in common; nothing if they differ, or if all are leaders.
   std::optional<LinearAgent> Common() const;
-  /// `graph` without what leaders could hear, but do not listen to.
+  /// `graph` without the edges on which leaders hear: leaders do not listen.
   Graph Followed(const Graph& graph) const;
 };
 
-/// The experiment as a linear team, or why it is none.
+/// The experiment as a linear team, or the reason why it is not linear.
 struct Linearity {
   std::optional<LinearTeam> team;
   std::string why_not;
 };
 
 Linearity LinearTeamOf(const Experiment& experiment);
-/// An agent that flies to its target by itself, under a law of this form, which does not listen.
+/// Dynamics of an agent that flies to its target by itself, under a law of this form that does not listen.
 LinearAgent FlyingAgent(const AgentConfig& agent, const LinearForm& form);
 
 }  // namespace mascot

@@ -7,7 +7,7 @@
 namespace mascot {
 namespace {
 
-/// Of all edges that may ever be, whether `property` holds for one.
+/// Whether `property` holds for the link of at least one edge that may ever exist.
 template <class Property>
 bool AnyLink(const Experiment& experiment, Property property) {
   for (int id = 1; id <= experiment.size(); ++id)
@@ -22,7 +22,7 @@ double Delivered(const LinkConfig& link) {
   if (!link.bursts) return 1 - link.loss;
   const GilbertElliott& bursts = *link.bursts;
   const double changes = bursts.good_to_bad + bursts.bad_to_good;
-  const double bad = changes > 0 ? bursts.good_to_bad / changes : 0;  // it starts good, and stays
+  const double bad = changes > 0 ? bursts.good_to_bad / changes : 0;  // without changes, it stays good
   return 1 - (1 - bad) * bursts.loss_good - bad * bursts.loss_bad;
 }
 

@@ -1,10 +1,11 @@
-// What the law keeps constant says where agents meet. Order 2, neighbours heard tau late, own state known at once,
-// nothing heard before tau: integrate dv_i/dt = sum_j a_ij [p_i (q_j(t - tau) - q_i) + g_i (v_j(t - tau) - v_i)] - b_i
-// v_i over all time, from rest, q -> c. Weighted by gamma_i / p_i, gamma the left null vector of L, what differs from
-// agent to agent drops out, and what is left is
+// The meeting point c follows from a conserved quantity. Order 2, neighbours heard with delay tau (nothing before tau),
+// own state known without delay: integrate
+//   dv_i/dt = sum_j a_ij [p_i (q_j(t - tau) - q_i) + g_i (v_j(t - tau) - v_i)] - b_i v_i
+// over all time, with q_i -> c and v_i -> 0, and add the equations with weights gamma_i / p_i, where gamma is the left
+// null vector of L. The integrals of q drop out, and with d_i = sum_j a_ij there remains
 //   sum_i gamma_i / p_i { (b_i + p_i d_i tau) (q_i(0) - c) + v_i(0) + g_i sum_j a_ij (q_i(0) - q_j(0)) } = 0
-// d_i = sum_j a_ij. Order 1 likewise with b_i = 1, g_i = 0 and without v_i(0): its velocity is not its own to keep.
-// tau: what a delay is in whole ticks. With v_i(0) != 0 for tau = 0 alone: agents move before they hear.
+// Order 1: the same with b_i = 1, g_i = 0 and without v_i(0), since the law sets the velocity. tau is the delay in
+// whole ticks. v_i(0) != 0 is allowed for tau = 0 only: otherwise agents move before they hear anything.
 #include "orchestrator/theory/meeting_point.h"
 
 #include <algorithm>
@@ -14,7 +15,8 @@
 namespace mascot {
 namespace {
 
-/// The delay that all edges have (s), in whole ticks; nothing if it differs, or if agents measure themselves late.
+/// The common delay of all edges, in whole ticks (s); nothing if delays differ, or if own states are measured with
+/// delay.
 std::optional<double> CommonDelay(const Experiment& experiment, const Graph& graph) {
   const std::optional<std::int64_t> ticks = CommonDelayTicks(experiment, graph);
   if (!ticks || experiment.sensors.own_delay_s > 0) return std::nullopt;
@@ -25,6 +27,7 @@ bool AreAtRest(const Experiment& experiment) {
   return std::ranges::all_of(experiment.agents, [](const AgentConfig& agent) { return agent.v_W.isZero(0); });
 }
 
+/// q_i(0) of agent `id`.
 Eigen::Vector3d Start(const Experiment& experiment, const LinearTeam& team, int id) {
   return experiment.agent(id).p_W - team.place_W[static_cast<std::size_t>(id - 1)];
 }
@@ -39,7 +42,7 @@ std::optional<Eigen::Vector3d> MeetingPoint(const Experiment& experiment, const 
 
   double weights = 0;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  // Nobody brakes, nobody is late: who starts from rest keeps the mean with gamma itself for weights.
+  // Without damping and delay, a team that starts from rest keeps the mean weighted by gamma.
   const bool coast = at_rest && *tau_s == 0 && team.Common() && team.Common()->order == 2 && team.Common()->b == 0;
   for (const AgentConfig& agent : experiment.agents) {
     const LinearAgent& moves = team.agent(agent.id);

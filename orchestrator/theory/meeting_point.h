@@ -7,12 +7,13 @@
 
 namespace mascot {
 
-/// Where a linear team without leader meets, as q = p - d, on a graph that does not change: in closed form. Nothing if
-/// delays differ, or agents that do not start from rest have any, or only some agents brake.
+/// Where a linear team without leader meets on a constant graph, as q = p - d in W (m); closed form, derived in
+/// meeting_point.cc. Nothing if the graph has no spanning tree, if delays differ, if there are delays and agents do not
+/// start from rest, or if no agent with gamma_i > 0 has damping (except from rest, with agents that are alike).
 std::optional<Eigen::Vector3d> MeetingPoint(const Experiment& experiment, const LinearTeam& team, const Graph& graph);
-/// Where a leader comes to rest, likewise, if it does.
+/// Where a leader comes to rest, as q in W (m); nothing if it does not.
 std::optional<Eigen::Vector3d> RestingPlace(const Experiment& experiment, const LinearTeam& team, int leader);
-/// With law.axes = "xy" every agent keeps its own height: the mean of q's z.
+/// Mean z of all q (m). With law.axes = "xy" every agent keeps its own height.
 double HeldHeight(const Experiment& experiment, const LinearTeam& team);
 
 }  // namespace mascot

@@ -6,9 +6,9 @@ namespace mascot {
 
 double MinmaxTime(double z, double w, double alpha, double beta) {
   const double side = 2 * alpha * z + w * std::abs(w);
-  if (side == 0) return std::abs(w) / alpha;  // On the curve: z = -w |w| / (2 alpha), slowing down by alpha.
+  if (side == 0) return std::abs(w) / alpha;  // on the switching curve: slow down with alpha
   if (side < 0) return MinmaxTime(-z, -w, alpha, beta);
-  // Here a_c = -beta, so that z + w^2 / (2 beta) =: top is kept until the curve is met at w = w_curve.
+  // Here a_c = -beta, so that top = z + w^2 / (2 beta) is constant until the curve is reached at w = w_curve.
   const double top = z + w * w / (2 * beta);
   if (top >= 0) {  // beyond the turning point, on the branch z = w^2 / (2 alpha), w < 0
     const double w_curve = -std::sqrt(2 * top / (1 / alpha + 1 / beta));
@@ -22,7 +22,7 @@ double MinmaxTime(double z, double w, double alpha, double beta) {
 double MinmaxBound(double z, double w, double alpha) {
   const double side = 2 * alpha * z + w * std::abs(w);
   if (side < 0) return MinmaxBound(-z, -w, alpha);
-  // Bang-bang by alpha, once towards the parent, once back: the peak of |w| is sqrt(alpha z + w^2 / 2).
+  // Bang-bang with alpha: first towards the parent, then braking. The peak of |w| is sqrt(alpha z + w^2 / 2).
   return (w + 2 * std::sqrt(alpha * z + w * w / 2)) / alpha;
 }
 

@@ -15,35 +15,36 @@ using Complex = std::complex<double>;
 constexpr double kSettled = 0.02;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Roots of s^2 + b s + c, the smaller in magnitude first: from the product, which keeps its digits when it is tiny.
+/// Roots of s^2 + b s + c, the smaller in magnitude first. It is computed from the product c to avoid cancellation.
 std::array<Complex, 2> Roots(Complex b, Complex c) {
   const Complex root = std::sqrt(b * b - 4.0 * c);
   const Complex larger = -0.5 * (std::abs(b + root) > std::abs(b - root) ? b + root : b - root);
   return {larger == 0.0 ? 0.0 : c / larger, larger};
 }
 
-/// Above this a x^2 + b x + c is positive, for x >= 0, a > 0, b >= 0.
+/// The x >= 0 above which a x^2 + b x + c is positive, for a > 0, b >= 0.
 double PositiveRoot(double a, double b, double c) { return c >= 0 ? 0 : -2 * c / (b + std::sqrt(b * b - 4 * a * c)); }
 
-/// The sampled mode's poles z as (z - 1) / h, which keeps their digits however short the period: from
-/// x+ = x + h v + hold h^2 u, v+ = v + h u, u = -stiffness x - damping v; for h = 0 those of continuous time.
+/// The poles z of the sampled mode, as (z - 1) / h to avoid cancellation for short periods h. The mode is sampled as
+/// x+ = x + h v + hold h^2 u, v+ = v + h u, u = -stiffness x - damping v. For h = 0, the poles in continuous time.
 std::array<Complex, 2> Poles(const LinearMode& mode, double h) {
   if (mode.order == 1) return {-mode.stiffness, -mode.stiffness};
   return Roots(mode.damping + mode.hold * h * mode.stiffness, mode.stiffness);
 }
 
-/// ln z of a pole, as above.
+/// ln z of a pole that is given as (z - 1) / h.
 Complex Log(Complex pole, double h) {
   return {0.5 * std::log1p(h * (2 * pole.real() + h * std::norm(pole))),
           std::atan2(h * pole.imag(), 1 + h * pole.real())};
 }
 
+/// Decay rate of the sampled mode (1/s); h is the period.
 double Rate(const LinearMode& mode, double h) {
   const auto poles = Poles(mode, h);
   return -std::max(Log(poles[0], h).real(), Log(poles[1], h).real()) / h;
 }
 
-/// x after n ticks, from x = 1 at rest.
+/// Response of a sampled mode that starts at x = 1 from rest.
 class FromRest {
  public:
   FromRest(const LinearMode& mode, double h) : poles_(Poles(mode, h)), h_(h) {
@@ -51,31 +52,33 @@ class FromRest {
     first_ = poles_[0] + mode.hold * h * mode.stiffness;
   }
 
+  /// x after n ticks.
   Complex At(double n) const {
     const Complex slow = std::exp(n * Log(poles_[0], h_));
     const Complex gap = poles_[0] - poles_[1];
     if (std::abs(gap) * n * h_ < 1e-4) return slow * (1.0 - first_ * n * h_ / (1.0 + h_ * poles_[0]));  // a double pole
     return slow - first_ * (slow - std::exp(n * Log(poles_[1], h_))) / gap;
   }
-  /// What |At(n)| cannot exceed; falls for n h > 1 / rate.
+  /// Upper bound of |At(n)|; decreases for n h > 1 / rate.
   double Bound(double n) const {
     return (1 + std::abs(first_) * n * h_ / std::abs(1.0 + h_ * poles_[0])) * std::exp(n * Log(poles_[0], h_).real());
   }
 
  private:
-  std::array<Complex, 2> poles_;  // the slower one first
+  std::array<Complex, 2> poles_;  // the slower first, as (z - 1) / h
   double h_;
-  Complex first_;  // (At(1) - z of the slower) / -h
+  Complex first_;  // (z of the slower pole - At(1)) / h
 };
 
-/// Of real damping and stiffness: |det| < 1 and 1 + trace + det > 0 (Jury).
+/// Stability bound of the period (s) of a mode with real damping and stiffness: |det| < 1 and 1 + trace + det > 0
+/// (Jury).
 double LongestPeriodOfReal(const LinearMode& mode) {
   const double d = mode.damping.real(), k = mode.stiffness.real();
   const double by_determinant = mode.hold < 1 ? d / ((1 - mode.hold) * k) : kInfinity;
   return std::min(by_determinant, 4 / (d + std::sqrt(d * d - 4 * (1 - 2 * mode.hold) * k)));
 }
 
-/// The first period at which the mode does not decay: stability may come back for longer ones.
+/// The shortest period (s) at which the mode does not decay. It may be stable again for longer ones.
 double LongestPeriod(const LinearMode& mode) {
   if (mode.order == 1) return 2 * mode.stiffness.real() / std::norm(mode.stiffness);
   if (mode.damping.imag() == 0 && mode.stiffness.imag() == 0) return LongestPeriodOfReal(mode);
@@ -93,12 +96,13 @@ double LongestPeriod(const LinearMode& mode) {
   return good;
 }
 
-/// The least positive angle that differs from `angle` by whole turns.
+/// `angle` in [-pi, pi] as an angle in (0, 2 pi].
 double PositiveAngle(double angle) { return angle > 0 ? angle : angle + 2 * std::numbers::pi; }
 
 }  // namespace
 
-// For s^2 + (a + i b) s + (c + i d): a > 0 and a (a c + b d) > d^2. A gain at its least value does not, rounded or not.
+// Condition for s^2 + (a + i b) s + (c + i d): a > 0 and a (a c + b d) > d^2. kBeyond: with a gain exactly at its least
+// value the mode must not count as decaying, whatever the rounding.
 bool Decays(const LinearMode& mode) {
   constexpr double kBeyond = 1 + 1e-9;
   const Complex d = mode.damping, k = mode.stiffness;
@@ -111,7 +115,7 @@ bool DecaysSampled(const LinearMode& mode, double period_s) {
                              [&](Complex pole) { return 2 * pole.real() + period_s * std::norm(pole) < 0; });
 }
 
-// The condition of Decays, with lambda = x + i y: x b^2 + g (2 x^2 + y^2) b + g^2 x |lambda|^2 - p y^2 > 0.
+// The condition of Decays with lambda = x + i y: x b^2 + g (2 x^2 + y^2) b + g^2 x |lambda|^2 - p y^2 > 0.
 double LeastDamping(double p, double g, std::complex<double> lambda) {
   const double x = lambda.real(), y2 = lambda.imag() * lambda.imag();
   return PositiveRoot(x, g * (2 * x * x + y2), g * g * x * std::norm(lambda) - p * y2);
@@ -154,7 +158,8 @@ double SettlingTime(const LinearMode& mode, double period_s) {
 
 double SettlingTime(std::span<const LinearMode> modes, double period_s) {
   const double slowest = DecayRate(modes, period_s);
-  // From rest a mode of rate r settles between 3.9 / r and 5.9 / r: faster ones than these cannot be the last.
+  // From rest, a mode with rate r settles between 3.9 / r and 5.9 / r. Modes faster than 1.6 times the slowest cannot
+  // be the last to settle.
   double settling_s = 0;
   for (const LinearMode& mode : modes) {
     if (Rate(mode, period_s) <= 1.6 * slowest) settling_s = std::max(settling_s, SettlingTime(mode, period_s));
@@ -162,8 +167,8 @@ double SettlingTime(std::span<const LinearMode> modes, double period_s) {
   return settling_s;
 }
 
-// A root s = i w of s^n + (stiffness + damping s) e^(-s tau), n the order: |i w|^n = |stiffness + i w damping|, then
-// tau from the angles. Negative w too: the modes of a directed graph are complex.
+// Roots s = i w of s^n + (stiffness + damping s) e^(-s tau), with the order n: w from |i w|^n = |stiffness + i w
+// damping|, then tau from the angles. w may be negative: the modes of a directed graph are complex.
 double OwnDelayMargin(const LinearMode& mode) {
   const Complex d = mode.damping, k = mode.stiffness, i(0, 1);
   if (mode.order == 1) return (std::numbers::pi / 2 - std::abs(std::arg(k))) / std::abs(k);

@@ -6,35 +6,36 @@
 
 namespace mascot {
 
-/// One mode of a linear team: x' + stiffness x = 0 of agents that are driven by velocity, else
-/// x'' + damping x' + stiffness x = 0. Both are complex on a directed graph: damping = b + g lambda,
-/// stiffness = p lambda for an eigenvalue lambda of the Laplacian.
+/// One mode of a linear team: x'' + damping x' + stiffness x = 0, or, for order 1, x' + stiffness x = 0. For an
+/// eigenvalue lambda of the Laplacian, damping = b + g lambda and stiffness = p lambda; on a directed graph they may be
+/// complex.
 struct LinearMode {
   std::complex<double> damping = 0;    ///< 1/s
-  std::complex<double> stiffness = 0;  ///< 1/s^2; of order 1: 1/s
+  std::complex<double> stiffness = 0;  ///< 1/s^2; for order 1: 1/s
   int order = 2;
-  /// Of order 2, sampled with period h: x+ = x + h v + hold h^2 u, v+ = v + h u. An acceleration held over the tick:
-  /// 1/2; one that was added to a velocity that is held: 1.
+  /// For order 2, sampled with period h: x+ = x + h v + hold h^2 u, v+ = v + h u. 1/2 if the acceleration is held over
+  /// the period; 1 if it is added to a velocity that is held.
   double hold = 0.5;
 };
 
-/// Every root of the mode's polynomial has a negative real part.
+/// Whether all roots of the mode's polynomial have negative real parts.
 bool Decays(const LinearMode& mode);
-/// The same with the law evaluated every `period_s` and its answer held in between.
+/// Whether the mode decays if the law is evaluated every `period_s` and its output is held in between.
 bool DecaysSampled(const LinearMode& mode, double period_s);
-/// The damping b of an agent's own velocity above which s^2 + (b + g lambda) s + p lambda decays.
+/// The absolute damping b (1/s) above which s^2 + (b + g lambda) s + p lambda decays.
 double LeastDamping(double p, double g, std::complex<double> lambda);
-/// The gain g of relative velocities above which it does, given b (Ren & Atkins, 2007, for b = 0).
+/// The gain g of relative velocities (1/s) above which the same decays (for b = 0: Ren & Atkins, 2007).
 double LeastRelativeDamping(double p, double b, std::complex<double> lambda);
-/// The longest period below which all modes decay, given that they do in continuous time; infinite without modes.
+/// The control period (s) below which all modes decay. They must decay in continuous time. Infinite without modes.
 double LongestPeriod(std::span<const LinearMode> modes);
-/// 1/s: how fast the slowest mode decays when sampled.
+/// Decay rate of the slowest mode when sampled (1/s).
 double DecayRate(std::span<const LinearMode> modes, double period_s);
-/// Time after which |x| stays within 2 % of its start, from rest, for a mode that decays when sampled.
+/// Time (s) after which |x| stays within 2 % of its initial value, from rest. The mode must decay when sampled.
 double SettlingTime(const LinearMode& mode, double period_s);
-/// Of all modes the longest.
+/// The longest settling time of all modes (s).
 double SettlingTime(std::span<const LinearMode> modes, double period_s);
-/// The delay of all that the law hears and measures, at which the mode stops to decay, in continuous time.
+/// The smallest delay (s), equal for neighbours' samples and own state, at which the mode does not decay; continuous
+/// time.
 double OwnDelayMargin(const LinearMode& mode);
 
 }  // namespace mascot

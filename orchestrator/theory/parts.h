@@ -1,6 +1,6 @@
 #pragma once
 
-// What theory.cc and the files for each kind of law share; nobody else includes this.
+// Declarations shared by theory.cc and the files for each kind of law; internal to this folder.
 
 #include <Eigen/Core>
 #include <optional>
@@ -15,20 +15,22 @@
 
 namespace mascot {
 
-/// What would make unstable modes stable.
+/// The gain that makes unstable modes stable.
 struct GainBound {
   std::string key;
-  double least = 0;  ///< it must be above
-  double got = 0;
+  double least = 0;  ///< the gain must be larger than this
+  double got = 0;    ///< its value in the experiment
 };
 
-/// Whether all modes decay in continuous time, and sampled; says what would make it so, and notes the period's bound.
+/// Returns whether all modes decay, in continuous time and sampled; else adds a warning that names the gain or rate to
+/// change. Sets the bound of the control period.
 bool JudgeModes(const Experiment& experiment, std::span<const LinearMode> modes, const GainBound& gain,
                 Prediction& prediction);
-/// Notes the longest control period, and whether ours is shorter; warns if not.
+/// Sets the bound `longest_s` of the control period. Returns whether the control period is shorter; else adds a
+/// warning.
 bool JudgePeriod(const Experiment& experiment, double longest_s, Prediction& prediction);
 
-// Each adds to what is known of persistence.
+// Each adds its predictions to `prediction`, in which `persistence` is already set.
 void PredictLinear(const Experiment& experiment, const Timeline& timeline, Prediction& prediction);  // linear.cc
 void PredictFlight(const Experiment& experiment, const LinearForm& form, Prediction& prediction);    // flight.cc
 void PredictPursuit(const Experiment& experiment, const Timeline& timeline, const PursuitForm& law,

@@ -5,10 +5,10 @@
 
 namespace mascot {
 
-/// The longest control period below which a team whose agents differ decays, on a graph that does not change and
-/// without delays, by the eigenvalues of its map; 0: it does at no period.
+/// The control period (s) up to which a team of different agents decays on a constant graph without delays, from the
+/// eigenvalues of its sampled map. 0: it does not decay at any period.
 double PeriodBound(const Experiment& experiment, const LinearTeam& team, const Timeline& timeline);
-/// That many eigenvalue problems are quick enough.
+/// Whether the team is small enough to compute PeriodBound, which solves many eigenvalue problems.
 bool PeriodBoundIsKnown(const Experiment& experiment);
 
 }  // namespace mascot

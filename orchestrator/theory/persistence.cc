@@ -13,7 +13,7 @@ namespace {
 
 using Interval = Timeline::Interval;
 
-/// Those who are still there in the end.
+/// Ids of the agents that do not stop during the run.
 std::vector<int> Staying(const Experiment& experiment) {
   std::vector<int> ids;
   for (const AgentConfig& agent : experiment.agents)
@@ -21,17 +21,18 @@ std::vector<int> Staying(const Experiment& experiment) {
   return ids;
 }
 
-/// All edges of some graphs; those who leave hear one who stays, so that nobody waits for a tree to reach them.
+/// The union of graphs. An extra edge connects each agent that stops during the run to one that stays, so that a
+/// spanning tree need not reach it in another way.
 Graph Union(const Experiment& experiment, const std::vector<const Graph*>& graphs) {
   std::vector<Schedule::Phase> phases;
   for (const Graph* graph : graphs) phases.push_back({0, *graph});
   const std::vector<int> staying = Staying(experiment);
   if (!staying.empty() && std::ssize(staying) < experiment.size()) {
-    std::vector<std::vector<Graph::Neighbour>> excused(experiment.agents.size());
+    std::vector<std::vector<Graph::Neighbour>> extra_edges(experiment.agents.size());
     for (const AgentConfig& agent : experiment.agents)
       if (!std::ranges::binary_search(staying, agent.id))
-        excused[static_cast<std::size_t>(agent.id - 1)].push_back({staying.front(), 1});
-    phases.push_back({0, Graph(std::move(excused))});
+        extra_edges[static_cast<std::size_t>(agent.id - 1)].push_back({staying.front(), 1});
+    phases.push_back({0, Graph(std::move(extra_edges))});
   }
   return Schedule(std::move(phases), 0, 0).Union();
 }
@@ -54,7 +55,8 @@ std::vector<const Graph*> Graphs(std::span<const Interval> intervals) {
   return graphs;
 }
 
-/// The longest of the shortest windows that begin with each interval: one that begins later in it is shorter.
+/// The length (s) such that the union over any window of this length has a tree: the longest of the shortest windows
+/// that begin with an interval. Windows that begin later within the interval are shorter.
 double Window(const Experiment& experiment, const Timeline& timeline) {
   const std::span<const Interval> cycle = Cycle(timeline);
   std::int64_t longest = 1;
@@ -70,6 +72,7 @@ double Window(const Experiment& experiment, const Timeline& timeline) {
   return experiment.time_s(longest);
 }
 
+/// The edges between agents that are within graph.range_m of each other at the start.
 Graph WithinRange(const Experiment& experiment) {
   std::vector<std::vector<Graph::Neighbour>> heard(experiment.agents.size());
   for (const AgentConfig& agent : experiment.agents)
@@ -79,7 +82,7 @@ Graph WithinRange(const Experiment& experiment) {
   return Graph(std::move(heard));
 }
 
-/// What lacks a tree: nobody whom everybody hears, or some who do not hear the leader.
+/// Why there is no tree: no agent is heard by all others, or some agents do not hear the leader.
 std::string Lack(const Experiment& experiment, const std::vector<const Graph*>& graphs) {
   const int leader = experiment.law.leader;
   if (leader == 0) return "nobody is heard by everyone, directly or not (no spanning tree)";
@@ -87,27 +90,27 @@ std::string Lack(const Experiment& experiment, const std::vector<const Graph*>& 
                      AgentList(NotReached(Union(experiment, graphs), leader)));
 }
 
-/// "agents will not all meet", or what it means with a leader.
+/// What the lack means: ", so agents will not all meet", or the same with a leader. `may`: "will" or "may".
 std::string Consequence(const Experiment& experiment, std::string_view may) {
   return experiment.law.leader == 0 ? fmt::format(", so agents {} not all meet", may)
                                     : fmt::format(", who {} not follow", may);
 }
 
-/// Which key is to blame for a graph that lacks a tree in the end.
+/// The key that causes the lack of a tree.
 std::string Culprit(const Experiment& experiment, const Timeline& timeline) {
   const auto& phases = experiment.schedule.phases();
-  std::vector<const Graph*> loud;  // the graphs, if links and agents did nothing to them
-  for (const Schedule::Phase& phase : phases) loud.push_back(&phase.graph);
-  if (experiment.schedule.repeat_s() == 0) loud = {loud.back()};
-  if (!HasTree(experiment, loud)) {
+  std::vector<const Graph*> scheduled;  // without losses and absent agents
+  for (const Schedule::Phase& phase : phases) scheduled.push_back(&phase.graph);
+  if (experiment.schedule.repeat_s() == 0) scheduled = {scheduled.back()};
+  if (!HasTree(experiment, scheduled)) {
     if (phases.size() > 1) return "graph.schedule";
     return experiment.law.leader > 0 ? "law.leader" : "graph";
   }
-  std::vector<Graph> heard;  // what the links leave of them
-  for (const Graph* graph : loud) heard.push_back(OnAverage(*graph, experiment.links));
-  std::vector<const Graph*> left;
-  for (const Graph& graph : heard) left.push_back(&graph);
-  if (!HasTree(experiment, left)) return "link.loss";
+  std::vector<Graph> delivered;  // the same with the losses of the links
+  for (const Graph* graph : scheduled) delivered.push_back(OnAverage(*graph, experiment.links));
+  std::vector<const Graph*> delivering;
+  for (const Graph& graph : delivered) delivering.push_back(&graph);
+  if (!HasTree(experiment, delivering)) return "link.loss";
   const std::vector<bool>& on = timeline.intervals.back().on;
   const bool stopped = Staying(experiment).size() < on.size();
   return stopped ? "agents.override.stop_s" : "agents.override.start_s";

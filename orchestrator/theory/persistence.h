@@ -8,22 +8,22 @@
 
 namespace mascot {
 
-/// Whether, when and together with which other times the graph has a directed spanning tree: rooted at the leader if
-/// there is one, and reaching all agents that do not stop during the run.
+/// When the graph, or its union over several times, has a directed spanning tree. The tree is rooted at the leader if
+/// there is one, and reaches all agents that do not stop during the run.
 struct Persistence {
-  bool always = false;             ///< at every time
-  bool never_alone = false;        ///< at no time; then only the union of several times may have one
-  bool joint = false;              ///< the union over what repeats has one; without repetition: the last graph has
-  std::optional<double> window_s;  ///< of a graph that repeats: the union over any time so long has one
-  std::optional<double> from_s;    ///< of one that does not: from this time on it has one
-  std::optional<bool> in_range_at_start;  ///< with graph.range_m: that of starting positions within range has one
+  bool always = false;             ///< the graph has a tree at every time
+  bool never_alone = false;        ///< the graph has a tree at no time; a union over several times may have one
+  bool joint = false;              ///< the union over one repetition has a tree; without repetition: the last graph
+  std::optional<double> window_s;  ///< with repetition: the union over any window of this length has a tree
+  std::optional<double> from_s;    ///< without repetition: the graph has a tree from this time on
+  std::optional<bool> in_range_at_start;  ///< with graph.range_m: the graph of the initial positions has a tree
 };
 
 Persistence PersistenceOf(const Experiment& experiment, const Timeline& timeline);
-/// "key: text": what keeps agents from meeting, if something does; of those who want to meet.
+/// Warnings ("key: text") about the lack of a spanning tree, for laws by which agents agree.
 std::vector<std::string> PersistenceWarnings(const Experiment& experiment, const Timeline& timeline,
                                              const Persistence& persistence);
-/// In a few words: "in the union of any 0.51 s; at no time alone".
+/// Short text: "in the union of any 0.51 s; at no time alone".
 std::string Describe(const Persistence& persistence);
 
 }  // namespace mascot

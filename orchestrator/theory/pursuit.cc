@@ -1,4 +1,4 @@
-// Min-max time consensus: how long every edge of the tree takes.
+// Min-max time consensus: the time that each edge of the tree takes.
 
 #include <fmt/format.h>
 
@@ -11,14 +11,14 @@
 namespace mascot {
 namespace {
 
-/// The slowest axis of the edge from `child` to its parent, if theory knows it.
+/// The time of the slowest axis of the edge from `child` to its parent; nothing if there is no formula for it.
 std::optional<MinmaxEdge> PredictEdge(const Experiment& experiment, const PursuitForm& law, int child) {
   const auto c = static_cast<std::size_t>(child - 1);
   const int parent = law.parent[c];
   const double alpha = law.beta[c] - law.parent_beta[c];
   const double limit = experiment.agent(child).control.max_acceleration_m_per_s2;
   const bool exact = parent == experiment.law.leader && !law.root_flies;
-  // The limits leave a child that has less than the law counts on: against an idle parent it may still do.
+  // The acceleration limit may be less than beta. If the parent does not accelerate, anything above alpha is enough.
   if (exact ? limit <= alpha : limit < law.beta[c]) return std::nullopt;
 
   MinmaxEdge edge{child, parent, 0, exact};
@@ -33,7 +33,7 @@ std::optional<MinmaxEdge> PredictEdge(const Experiment& experiment, const Pursui
 
 void WarnOfCutBeta(const Experiment& experiment, const PursuitForm& law, Prediction& prediction) {
   std::vector<int> cut;
-  double limit = 0;  // the largest of theirs
+  double limit = 0;  // the largest limit of these agents
   for (const AgentConfig& agent : experiment.agents) {
     const bool idle = agent.id == experiment.law.leader && !law.root_flies;
     const double allowed = agent.control.max_acceleration_m_per_s2;
@@ -59,7 +59,7 @@ void WarnOfWeakEdges(const PursuitForm& law, Prediction& prediction) {
                   AgentList(weak), weak.size() == 1 ? "is" : "are"));
 }
 
-/// Where everyone gathers, at a root that rests: in z at the mean of the heights that they hold.
+/// The meeting point, if the root is at rest: its position; with axes "xy", z is the mean of the heights that are held.
 std::optional<Eigen::Vector3d> RestingRoot(const Experiment& experiment, const PursuitForm& law) {
   const AgentConfig& root = experiment.agent(experiment.law.leader);
   if (law.root_flies || !root.v_W.head(CountOf(experiment.law.axes)).isZero(0)) return std::nullopt;
@@ -70,7 +70,8 @@ std::optional<Eigen::Vector3d> RestingRoot(const Experiment& experiment, const P
   return value_m;
 }
 
-/// Why the closed forms do not hold: they are about children who see their parents as they are, at every tick.
+/// Why the closed forms do not hold; empty: they do. They assume that children receive the current state of their
+/// parents at every tick.
 std::string WhyNot(const Experiment& experiment, const Timeline& timeline) {
   for (const AgentConfig& agent : experiment.agents) {
     if (agent.has_own_law) return fmt::format("agents.override: agent {} has a law of its own", agent.id);

@@ -11,14 +11,14 @@
 namespace mascot {
 namespace {
 
-constexpr Eigen::Index kLargestState = 200;  // its eigenvalues take 0.1 s
+constexpr Eigen::Index kLargestState = 200;  // numbers; the eigenvalues take 0.1 s
 
-/// How late an agent knows its own position and velocity, in ticks.
+/// Delay of own position and velocity (ticks).
 std::int64_t OwnTicks(const Experiment& experiment) {
   return std::llround(experiment.sensors.own_delay_s * experiment.control.rate_hz);
 }
 
-/// The longest delay of all (ticks).
+/// The longest delay of own states and links (ticks).
 std::int64_t Reach(const Experiment& experiment) {
   std::int64_t reach = OwnTicks(experiment);
   for (int id = 1; id <= experiment.size(); ++id)
@@ -53,7 +53,7 @@ SampledTeam::SampledTeam(const Experiment& experiment, const LinearTeam& team, c
       own_ticks_(OwnTicks(experiment)),
       reach_(Reach(experiment)) {
   if (!team.Leaders().empty()) leader_ = team.Leaders().front();
-  // Edges work at a tick as they did when its samples were sent.
+  // A sample arrives only if the edge existed when it was sent: maps repeat one longest delay after the graph does.
   steady_ = timeline.cycle_from + reach_;
   cycle_ = Over(steady_, steady_ + timeline.cycle_ticks);
   FindModes();
@@ -63,8 +63,8 @@ Eigen::Index SampledTeam::Place(int id, std::int64_t ticks_ago) const {
   return 2 * n_ * static_cast<Eigen::Index>(ticks_ago) + id - 1;
 }
 
-// The rows of one agent's next q and v: u = sum_j a_ij [p (q_j - q_i) + g (v_j - v_i)] - b v_i, heard and measured
-// late.
+// Fills the rows of one agent's next q and v: u = sum_j a_ij [p (q_j - q_i) + g (v_j - v_i)] - b v_i, with delayed
+// neighbours' and own states.
 void SampledTeam::MoveAgent(int id, const Timeline::Interval& now, std::int64_t tick, Matrix& map) const {
   const LinearAgent& agent = team_.agent(id);
   const Eigen::Index q = Place(id, 0), v = q + n_, q_known = Place(id, own_ticks_), v_known = q_known + n_;
@@ -91,7 +91,7 @@ void SampledTeam::MoveAgent(int id, const Timeline::Interval& now, std::int64_t 
     map(v, v) += 1;
     map.row(q) = agent.hold * h_ * h_ * u;
     map(q, v) += h_;
-  } else {  // driven by a velocity, which is 0 while the law is off
+  } else {  // the law sets the velocity, which is 0 while the law is off
     map.row(v) = u;
     map.row(q) = h_ * u;
   }
@@ -107,7 +107,7 @@ SampledTeam::Matrix SampledTeam::Map(std::int64_t tick) const {
   return map;
 }
 
-/// Ticks within [from, to) at which the map may change, and both ends.
+/// `from`, the ticks in between at which the map may change, and `to`.
 std::vector<std::int64_t> SampledTeam::Changes(std::int64_t from, std::int64_t to) const {
   std::set<std::int64_t> delays = {0};
   for (int id = 1; id <= experiment_.size(); ++id)
@@ -136,7 +136,7 @@ SampledTeam::Matrix SampledTeam::Over(std::int64_t from, std::int64_t to) const 
   return over;
 }
 
-/// Who hears whom at some time of the cycle.
+/// The union of the graphs of one cycle, without the edges on which the leader hears.
 Graph SampledTeam::Heard() const {
   std::vector<Schedule::Phase> phases;
   for (const Timeline::Interval& interval : timeline_.intervals)
@@ -144,9 +144,9 @@ Graph SampledTeam::Heard() const {
   return Schedule(std::move(phases), 0, 0).Union();
 }
 
-// Of agents who hear each other, one way or another, and nobody else's doing matters to how they decay: the map is
-// block triangular in the order of these components. Each by itself keeps the digits of eigenvalues that chains repeat.
-// The leader moves as it likes.
+// Eigenvalues are computed for each strongly connected component by itself: the map is block triangular in the order of
+// the components. This keeps the accuracy of eigenvalues that repeat along chains (they are defective). Those of the
+// leader do not count.
 void SampledTeam::FindModes() {
   const Graph heard = Heard();
   const int root = leader_ > 0 ? leader_ : heard.Roots().front();
@@ -163,8 +163,8 @@ void SampledTeam::FindModes() {
   radius_ = std::max(radius_, slowest_);
 }
 
-// One eigenvalue is that of agreement, 1. Others may belong to agreement too: agents at one place that slow down
-// together, or one root alone, which from rest does not move at all.
+// One eigenvalue, 1, belongs to agreement. Others may do so too: those of agents at one place that slow down together,
+// and those of a single root, which does not move if it starts from rest.
 void SampledTeam::JudgeRoots(const std::vector<int>& ids, const Eigen::EigenSolver<Matrix>& modes) {
   const bool at_rest = experiment_.agent(ids.front()).v_W.isZero(0) || (team_.Common() && reach_ == 0);
   Eigen::Index one = 0;
@@ -174,7 +174,7 @@ void SampledTeam::JudgeRoots(const std::vector<int>& ids, const Eigen::EigenSolv
     const double magnitude = std::abs(modes.eigenvalues()(k));
     radius_ = std::max(radius_, magnitude);
     const Eigen::VectorXcd shape = modes.eigenvectors().col(k);
-    double apart = 0;  // the places are q, v of each agent now, then earlier
+    double apart = 0;  // shape holds q, v of each agent now, then of earlier ticks
     for (std::size_t i = 1; i < ids.size(); ++i)
       apart = std::max(apart, std::abs(shape(2 * static_cast<Eigen::Index>(i)) - shape(0)));
     if (apart > 1e-6 * shape.norm() || (ids.size() == 1 && !at_rest)) slowest_ = std::max(slowest_, magnitude);
@@ -185,8 +185,8 @@ double SampledTeam::rate_per_s() const {
   return -std::log(slowest_) / (static_cast<double>(timeline_.cycle_ticks) * h_);
 }
 
-// What a cycle keeps: the left eigenvector w of its eigenvalue 1. It says where the state after the transient leads,
-// agreement being its right eigenvector: q = 1, v = 0.
+// Each cycle conserves w' state, where w is the left eigenvector of the eigenvalue 1 of the cycle's map; its right
+// eigenvector is agreement (q = 1, v = 0). With w' agreement = 1, the team thus meets at w' state(steady_).
 Eigen::Vector3d SampledTeam::MeetingPoint() const {
   const Eigen::Index size = cycle_.rows();
   Eigen::VectorXd agreement = Eigen::VectorXd::Zero(size);

@@ -10,28 +10,32 @@
 
 namespace mascot {
 
-/// A linear team along one axis, as it moves from tick to tick, with everything that a timeline and delays do to it. On
-/// average where links lose samples. Eigenvalues of dense matrices: for small teams, as IsSmall says.
+/// Discrete-time model of a linear team along one axis, with its timeline and its delays; on average where links lose
+/// samples. Computes eigenvalues of dense matrices, and is thus for small teams only (IsSmall).
 ///
-/// The state is q_i, then v_i of all agents, then both as they were 1, 2, ... ticks ago, as far as delays reach.
+/// The state is q_i of all agents, then v_i of all agents, then both as of 1, 2, ... ticks ago, up to the longest
+/// delay.
 class SampledTeam {
  public:
-  /// A team without leaders, or with one, whom the others follow; all three outlive this. `period_s`: of control.
+  /// `team` has at most one leader, which all others follow. `period_s` is the control period. The first three
+  /// arguments must outlive this object.
   SampledTeam(const Experiment& experiment, const LinearTeam& team, const Timeline& timeline, double period_s);
+  /// Whether the state is small enough: at most 200 numbers.
   static bool IsSmall(const Experiment& experiment);
 
-  /// Agents come to rest together: all eigenvalues of one cycle's map lie within the unit circle, but the one of
-  /// agreement.
+  /// Whether agents come to rest together: all eigenvalues of the map over one cycle, but that of agreement, lie inside
+  /// the unit circle.
   bool Decays() const { return radius_ < 1; }
-  /// The largest magnitude of the eigenvalues that make agents disagree: over one cycle.
+  /// The largest magnitude of the eigenvalues of disagreement, over one cycle.
   double slowest() const { return slowest_; }
+  /// Decay rate of the disagreement (1/s).
   double rate_per_s() const;
-  /// Where a team without leader that decays meets: q, all axes.
+  /// Where a team without leader meets, as q in W (m). Decays() must be true.
   Eigen::Vector3d MeetingPoint() const;
 
  private:
   using Matrix = Eigen::MatrixXd;
-  Eigen::Index Place(int id, std::int64_t ticks_ago) const;  // of q; v follows n further on
+  Eigen::Index Place(int id, std::int64_t ticks_ago) const;  // index of q in the state; that of v is n_ more
   Matrix Map(std::int64_t tick) const;
   void MoveAgent(int id, const Timeline::Interval& now, std::int64_t tick, Matrix& map) const;
   std::vector<std::int64_t> Changes(std::int64_t from, std::int64_t to) const;
@@ -48,9 +52,9 @@ class SampledTeam {
   int leader_ = 0;
   std::int64_t own_ticks_;
   std::int64_t reach_ = 0;   // the longest delay (ticks)
-  std::int64_t steady_ = 0;  // from this tick on the maps repeat with the timeline
-  Matrix cycle_;             // from steady_ over one cycle
-  double radius_ = 0;        // largest magnitude of all eigenvalues but that of agreement
+  std::int64_t steady_ = 0;  // first tick from which on the maps repeat with the timeline
+  Matrix cycle_;             // map from steady_ over one cycle
+  double radius_ = 0;        // largest magnitude of all eigenvalues but the 1 of agreement and the leader's
   double slowest_ = 0;
 };
 

@@ -15,7 +15,7 @@
 namespace mascot {
 namespace {
 
-/// Everybody at tick 0.
+/// Motions of all agents at tick 0.
 std::vector<Motion> Start(const Experiment& experiment) {
   std::vector<Motion> motions(experiment.agents.size());
   for (const AgentConfig& agent : experiment.agents) {
@@ -26,13 +26,14 @@ std::vector<Motion> Start(const Experiment& experiment) {
   return motions;
 }
 
-/// What an agent's answer to tick 0 asks for, before limits: an acceleration, or a velocity of a model driven by it.
+/// The largest component of an agent's first command before limits: of the acceleration (m/s^2), or with `velocity` of
+/// the velocity (m/s).
 double Asked(const Command& command, const Motion& start, bool velocity, double period_s) {
   const Eigen::Vector3d asked_W = velocity ? start.v_WB + command.a_law_W * period_s : command.a_law_W;
   return asked_W.cwiseAbs().maxCoeff();
 }
 
-/// Keeps, of both, that which asks for more of its limit.
+/// Keeps the command that asks for more relative to its limit.
 void Keep(std::optional<FirstCommand>& worst, const FirstCommand& first) {
   if (!worst || first.asked * worst->limit > worst->asked * first.limit) worst = first;
 }
@@ -40,7 +41,7 @@ void Keep(std::optional<FirstCommand>& worst, const FirstCommand& first) {
 void PredictFirstCommand(const Experiment& experiment, Prediction& prediction) {
   const SuppressedPythonOutput suppressed;
   Experiment prompt = experiment;
-  prompt.links = {};  // delays and losses only put off the moment at which agents hear all their neighbours
+  prompt.links = {};  // delays and losses only postpone the tick at which agents hear all their neighbours
   Team team(prompt);
   const std::vector<Motion> motions = Start(experiment);
   for (const AgentConfig& agent : experiment.agents) {
@@ -65,7 +66,7 @@ void WarnOfFirstCommand(const std::optional<FirstCommand>& first, std::string_vi
 }
 
 void WarnOfFirstCommands(const Experiment& experiment, Prediction& prediction) {
-  if (!PursuitFormOf(experiment.law))  // of a law of pursuit WarnOfCutBeta has said so
+  if (!PursuitFormOf(experiment.law))  // for pursuit laws, WarnOfCutBeta has warned
     WarnOfFirstCommand(prediction.first_acceleration, "control.max_acceleration_m_per_s2", "m/s^2", prediction);
   WarnOfFirstCommand(prediction.first_speed, "control.max_speed_m_per_s", "m/s", prediction);
   if (const auto& first = prediction.first_lean; first && first->asked > first->limit)
@@ -83,7 +84,7 @@ void WarnOfShortRun(const Experiment& experiment, Prediction& prediction) {
                       experiment.run.duration_s, *time_s));
 }
 
-/// What theory says of the law, by the forms that its row gives it.
+/// Predicts the behaviour under the law, from the linear or pursuit form in its table row.
 void PredictLaw(const Experiment& experiment, Prediction& prediction) {
   const std::optional<Timeline> timeline = TimelineOf(experiment);
   if (timeline) prediction.persistence = PersistenceOf(experiment, *timeline);

@@ -11,47 +11,47 @@
 
 namespace mascot {
 
-/// One edge of the tree of min-max consensus.
+/// Prediction for one edge of the tree of min-max time consensus.
 struct MinmaxEdge {
   int child = 0;
   int parent = 0;
-  double time_s = 0;   ///< until the child moves as the parent does, the slowest axis
-  bool exact = false;  ///< a closed form from the initial condition; else a bound that holds whatever the parent does
+  double time_s = 0;   ///< until the child has the position and velocity of its parent, for the slowest axis
+  bool exact = false;  ///< exact for the initial condition; else a bound for any motion of the parent
 };
 
-/// The largest component that an agent's law asks for at tick 0, if it hears all its neighbours at once, and what it is
-/// allowed; of the agent for which the former is the largest part of the latter.
+/// The largest component of the command that a law asks for at tick 0, if all neighbours are heard without delay, and
+/// its limit; of the agent for which the ratio of the two is largest.
 struct FirstCommand {
   int agent = 0;
   double asked = 0;
   double limit = 0;
 };
 
-/// What theory says about an experiment before it runs; docs/theory.md has the formulas. Absent where theory is silent.
+/// Predictions about an experiment; docs/theory.md has the formulas and sources. Absent values cannot be predicted.
 struct Prediction {
-  /// Where agents meet (z: mean start height where held); of a formation: p - d.
+  /// Where agents meet, in W; in a formation, p - d. With axes "xy", z is the mean of the heights that are held.
   std::optional<Eigen::Vector3d> value_m;
-  std::optional<bool> stable;        ///< all modes decay, sampled and with the delays that there are
-  std::optional<double> rate_per_s;  ///< of the slowest mode
-  /// Of the slowest mode, from rest, to 2 %. Agents that only follow along a chain settle later: the modes of a
-  /// directed graph do not stay apart.
+  std::optional<bool> stable;        ///< whether all modes decay, sampled and with the delays of the experiment
+  std::optional<double> rate_per_s;  ///< decay rate of the slowest mode
+  /// Time until the slowest mode has decayed from rest to 2 %. Along directed chains agents settle later: the modes of
+  /// a directed graph are not orthogonal.
   std::optional<double> settling_time_s;
-  std::optional<double> control_period_bound_s;    ///< from this control period on the loop is unstable, without delays
-  std::optional<DelayMargin> delay_margin;         ///< of what is heard
-  std::optional<double> own_delay_margin_s;        ///< of what is heard and what is measured, both as late
+  std::optional<double> control_period_bound_s;    ///< the loop is unstable from this control period on, without delays
+  std::optional<DelayMargin> delay_margin;         ///< delay of neighbours' samples
+  std::optional<double> own_delay_margin_s;        ///< equal delay of neighbours' samples and own states
   std::optional<double> minmax_time_s;             ///< latest of `minmax_edges`
-  std::vector<MinmaxEdge> minmax_edges;            ///< by child; only edges of which theory knows the time
+  std::vector<MinmaxEdge> minmax_edges;            ///< by child; only edges whose time can be predicted
   std::optional<FirstCommand> first_acceleration;  ///< m/s^2
-  std::optional<FirstCommand> first_speed;         ///< m/s: where a law wants a velocity of a model driven by it
-  std::optional<FirstCommand> first_lean;          ///< m/s^2: sideways, after limits; what the tilt limit gives
+  std::optional<FirstCommand> first_speed;         ///< m/s: laws that want a velocity, on models driven by velocity
+  std::optional<FirstCommand> first_lean;  ///< m/s^2: horizontal, after limits; `limit` follows from the tilt limit
   std::optional<Persistence> persistence;
-  bool of_agreement = true;           ///< false: rate and settling time are of each agent's own flight to a waypoint
-  bool on_average = false;            ///< samples are lost, or measured with noise: the above holds on average
-  std::string silent;                 ///< why theory says less than it could; empty: it does not
-  std::vector<std::string> warnings;  ///< "key: text": what will not work, or not as the user may think
+  bool of_agreement = true;  ///< false: rate and settling time are those of each agent's flight to its waypoint
+  bool on_average = false;   ///< samples are lost or noisy: the above holds on average
+  std::string silent;        ///< why predictions are missing; empty: none is
+  std::vector<std::string> warnings;  ///< "key: text": what will not work, or not as expected
 };
 
-/// For an experiment that LoadExperiment returned. Eigenvalues are left out above kLargestSpectrum agents.
+/// Predicts an experiment that LoadExperiment returned. Above kLargestSpectrum agents, no eigenvalues are computed.
 Prediction Predict(const Experiment& experiment);
 
 inline constexpr int kLargestSpectrum = 1000;

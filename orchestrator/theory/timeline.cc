@@ -11,9 +11,9 @@
 namespace mascot {
 namespace {
 
-constexpr int kMostRepeats = 100;  // of repeat_s, until they are a whole number of ticks
+constexpr int kMostRepeats = 100;  // most repetitions of repeat_s that are tried to get a whole number of ticks
 
-/// Times within the run at which an agent's law goes on or off.
+/// Times within the run at which an agent's law is switched on or off (s).
 std::set<double> SwitchTimes(const Experiment& experiment) {
   std::set<double> times_s;
   for (const AgentConfig& agent : experiment.agents)
@@ -22,13 +22,13 @@ std::set<double> SwitchTimes(const Experiment& experiment) {
   return times_s;
 }
 
-/// The first ticks at which something may be different: the tick of a time, and one more for its rounding.
+/// Adds the ticks at which a change at `time_s` may take effect: two, because of rounding.
 void AddTicks(double time_s, int rate_hz, std::set<std::int64_t>& ticks) {
   const auto before = std::llround(std::floor(time_s * rate_hz));
   ticks.insert({before, before + 1});
 }
 
-/// Repetitions after which the schedule is back at the same tick; 0: it never is.
+/// Number of repetitions of the schedule that take a whole number of ticks; 0: none up to kMostRepeats does.
 int RepeatsPerCycle(const Experiment& experiment) {
   const double ticks = experiment.schedule.repeat_s() * experiment.control.rate_hz;
   for (int repeats = 1; repeats <= kMostRepeats; ++repeats)

@@ -8,26 +8,27 @@
 
 namespace mascot {
 
-/// Who hears whom when, in ticks: the schedule, who has started and not yet stopped, and what the links deliver on
-/// average. Distance aside.
+/// The graph over time, in ticks: which agent hears which, from the schedule, the agents that are there, and the
+/// average losses of the links. graph.range_m is ignored.
 struct Timeline {
-  /// From a tick up to the next interval's.
+  /// Ticks during which the graph is constant, up to the next interval.
   struct Interval {
     std::int64_t from = 0;
-    Graph graph;           ///< weights times the part of samples that arrives; edges that deliver nothing are left out
-    std::vector<bool> on;  ///< by id - 1: whose law is on
+    Graph graph;           ///< weights times the fraction of samples that arrives; without edges that deliver nothing
+    std::vector<bool> on;  ///< whether the law is on, by id - 1
   };
 
-  std::vector<Interval> intervals;  ///< the first from 0
-  std::int64_t cycle_from = 0;      ///< from this tick on, the beginning of an interval, ...
-  std::int64_t cycle_ticks = 1;     ///< ... it repeats itself after so many ticks; the last interval alone: 1
+  std::vector<Interval> intervals;  ///< in order; the first begins at tick 0
+  std::int64_t cycle_from = 0;      ///< from this tick on, at which an interval begins, the intervals repeat ...
+  std::int64_t cycle_ticks = 1;     ///< ... after this many ticks; 1: the last interval lasts for ever
 
   bool IsConstant() const { return intervals.size() == 1; }
+  /// The interval of any tick.
   const Interval& At(std::int64_t tick) const;
 };
 
-/// Nothing if graph.repeat_s is no multiple of the control period, nor a small fraction of one, or if there are more
-/// than kMostIntervals.
+/// The timeline of an experiment. Nothing if no small multiple of graph.repeat_s is a whole number of ticks, or if
+/// there are more than kMostIntervals intervals.
 std::optional<Timeline> TimelineOf(const Experiment& experiment);
 
 inline constexpr int kMostIntervals = 1000;
