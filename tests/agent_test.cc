@@ -23,7 +23,7 @@ Experiment Two(const std::string& law, const std::string& control = "") {
       "test");
 }
 
-/// What agent 1 hears: agent 2 being at `motion`.
+/// The sample that agent 1 hears: agent 2 with this motion.
 std::vector<Sample> Other(const Motion& motion) { return {{&motion}}; }
 
 Motion At(double x, double y, double z) {
@@ -53,7 +53,7 @@ TEST(Agent, LeavesAnAccelerationAtTheLimitAloneAndUnflagged) {
   EXPECT_EQ(command.flags, 0u);
 }
 
-TEST(Agent, IgnoresWhatTheLawSaysOfZWhereTheAltitudeIsHeld) {
+TEST(Agent, IgnoresTheLawInZWhereTheAltitudeIsHeld) {
   Experiment flat = Two("name = 'consensus'");
   Experiment full = Two("name = 'consensus'\naxes = 'xyz'");
   const Motion other = At(1, 0, 1);

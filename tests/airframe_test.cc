@@ -19,7 +19,7 @@ const Airframe& Named(std::string_view name) {
   throw std::out_of_range(std::string(name));
 }
 
-/// What a file with this text gives; throws ConfigError with its mistakes.
+/// Reads an airframe from the text of a file. Throws ConfigError with its mistakes.
 Airframe Read(const std::string& text) {
   Section agents = Section::FromText(text, "a.toml");
   agents.Use(AgentsKeys());
@@ -31,7 +31,7 @@ Airframe Read(const std::string& text) {
 
 }  // namespace
 
-void PrintTo(const Airframe& airframe, std::ostream* out) { *out << airframe.name; }  // in failures and test names
+void PrintTo(const Airframe& airframe, std::ostream* out) { *out << airframe.name; }  // used in failures and test names
 
 namespace {
 
@@ -137,7 +137,7 @@ TEST(ReadAirframe, ReadsEveryKeyOfATable) {
               ElementsAre(5, 6, 7, 8));
 }
 
-TEST(ReadAirframe, NamesTheAirframesThereAre) {
+TEST(ReadAirframe, ListsTheKnownAirframes) {
   EXPECT_THAT([] { Read("airframe = 'mascott'"); },
               ThrowsMessage<ConfigError>("a.toml:1:12: airframe: expected one of mascot, mascot_published, crazyflie, "
                                          "got 'mascott' (did you mean \"mascot\"?)"));

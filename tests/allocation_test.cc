@@ -1,4 +1,4 @@
-// From tick to tick nothing of ours is allocated, in the real processes; what the middleware allocates is printed.
+// Our code allocates no memory during ticks, in the real processes. The allocations of the middleware are printed.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -14,8 +14,7 @@ namespace {
 
 using namespace test;
 
-/// Calls of malloc, by the program whose processes made them ("agent": all of them together), then by the file that
-/// the calling code lies in.
+/// Number of malloc calls, by program (sum over its processes), then by the executable or library of the calling code.
 using Allocations = std::map<std::string, std::map<std::string, long>>;
 
 Allocations Read(const std::filesystem::path& folder) {
@@ -31,7 +30,7 @@ Allocations Read(const std::filesystem::path& folder) {
 
 constexpr int kAgents = 4;
 
-/// Of a whole run of so many ticks.
+/// Allocations of a whole run of `ticks` ticks.
 Allocations AllocationsOf(int ticks, const std::string& engine, const std::string& more) {
   ScratchFolder folder;
   const std::filesystem::path counts = folder.path() / "counts";
@@ -48,11 +47,11 @@ Allocations AllocationsOf(int ticks, const std::string& engine, const std::strin
 }
 
 constexpr int kFew = 500, kMore = 10500, kTicks = kMore - kFew;
-/// An allocation per tick would be kTicks. How often a process reports while it starts is chance; the recording
-/// allocates a little for each of its chunks, of 100 ticks.
+/// One allocation per tick would give kTicks. The number of reports during the start varies, and the recording
+/// allocates a little for each chunk of 100 ticks.
 constexpr int kTolerance = kTicks / 10;
 
-/// Of kTicks ticks: what a longer run takes beyond a shorter one, which has the same start and end.
+/// Allocations of kTicks ticks: the difference between a longer and a shorter run, whose start and end are the same.
 Allocations AllocationsOfTicks(const std::string& engine, const std::string& experiment) {
   const Allocations few = AllocationsOf(kFew, engine, experiment);
   Allocations more = AllocationsOf(kMore, engine, experiment);
@@ -67,7 +66,7 @@ Allocations AllocationsOfTicks(const std::string& engine, const std::string& exp
   return more;
 }
 
-/// What is flown.
+/// An experiment and its name.
 struct Setup {
   const char* name;
   const char* toml;
@@ -79,11 +78,11 @@ std::string NameOf(const testing::TestParamInfo<Setup>& row) { return ParamName(
 
 class AllocationsOverDds : public testing::TestWithParam<Setup> {};
 
-TEST_P(AllocationsOverDds, OfOursAreNoneFromTickToTick) {
+TEST_P(AllocationsOverDds, AreNeverMadeByOurCodeInATick) {
   Allocations counted = AllocationsOfTicks("dds", GetParam().toml);
   for (const char* program : {"agent", "physics_server"})
     EXPECT_LT(counted.at(program)[program], kTolerance) << program;
-  // The recorder's rows find their sizes; each batch of them is confirmed.
+  // The buffers of the recorder's rows grow at first, and each batch of rows is confirmed.
   EXPECT_LT(counted.at("orchestrator")["orchestrator"], kTicks);
 }
 
@@ -96,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(Experiments, AllocationsOverDds,
 
 class AllocationsInOneProcess : public testing::TestWithParam<Setup> {};
 
-TEST_P(AllocationsInOneProcess, OfOursAreNoneFromTickToTick) {
+TEST_P(AllocationsInOneProcess, AreNeverMadeByOurCodeInATick) {
   EXPECT_LT(AllocationsOfTicks("inprocess", GetParam().toml).at("orchestrator")["orchestrator"], kTolerance);
 }
 

@@ -1,5 +1,5 @@
-// tests/bad_configs: each `<name>.toml` has a mistake in it (a few have several), `<name>.expected` beside it holds
-// what must be said about it, a line per mistake, FILE standing for the path.
+// tests/bad_configs: each `<name>.toml` contains a mistake (a few contain several). `<name>.expected` contains the
+// expected error text, one line per mistake, with FILE in place of the path.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
@@ -34,7 +34,7 @@ std::string Refusal(const fs::path& path) {
   return "";
 }
 
-/// The refusal, as it would stand in an .expected file.
+/// The error text as in an .expected file.
 std::string Anonymous(std::string refusal, const std::string& path) {
   for (auto at = refusal.find(path); at != std::string::npos; at = refusal.find(path, at))
     refusal.replace(at, path.size(), "FILE");
@@ -67,7 +67,7 @@ TEST(BadConfigs, SayWhereWhatExpectedAndGotOnEveryLine) {
   }
 }
 
-TEST(BadConfigs, ThatAreNoFilesAreRefused) {
+TEST(BadConfigs, ThatAreNotFilesAreRefused) {
   const ScratchFolder scratch;
   const fs::path& folder = scratch.path();
   fs::create_directory(folder / "folder.toml");

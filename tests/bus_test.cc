@@ -1,4 +1,4 @@
-// The bus: names, bytes, and what happens around a sample, between two domains in one process.
+// The bus: topic names, serialised bytes, and exchange of samples between two domains in one process.
 
 #include "bus/bus.h"
 
@@ -41,7 +41,7 @@ TEST(Topic, AgentsAreNamedAndNumberedAlike) {
     EXPECT_EQ(AgentsOf(name), std::nullopt) << name;
 }
 
-TEST(Topic, IsNotParsedFromWhatIsNotOurs) {
+TEST(Topic, IsNotParsedFromForeignNames) {
   for (const char* name : {"", "rt", "rt/", "/", "/agent_/state", "/agent_0/state", "/agent_-1/state", "/agent_3",
                            "/agent_3/", "/agent_3/clock", "/state", "/agent_3/state2", "/tf", "rt/agent_x/state"})
     EXPECT_EQ(Topic::Parse(name), std::nullopt) << name;
@@ -92,7 +92,7 @@ TEST(Wire, BytesOfAnotherLengthAreRefused) {
       ThrowsMessage<std::runtime_error>(HasSubstr("a sample of 3 bytes is no mascot_msgs::msg::dds_::AgentState_")));
 }
 
-/// Two participants in a domain of the test's own.
+/// Two participants in a DDS domain that only this test uses.
 class Bus : public testing::Test {
  protected:
   DomainOptions Options(const std::string& name) const {
@@ -108,7 +108,7 @@ class Bus : public testing::Test {
   Domain there_{Options("there"), [] {}};
 };
 
-TEST_F(Bus, IsAuditedForReadersAndWritersOfMessagesApart) {
+TEST_F(Bus, AuditIsNotCompleteWithoutEveryReaderOfMessages) {
   const Experiment two = LoadExperiment(
       Section::FromText(
           "[run]\nduration_s = 1.0\n[agents]\ncount = 2\n[network]\nagents_per_process = 2\n[law]\nname = "
@@ -123,17 +123,17 @@ TEST_F(Bus, IsAuditedForReadersAndWritersOfMessagesApart) {
   std::vector<std::unique_ptr<Reader<StateType>>> states;
   std::vector<std::unique_ptr<Writer<CommandType>>> commands;
   std::vector<std::unique_ptr<Writer<MessageType>>> messages;
-  std::vector<std::unique_ptr<Reader<MessageType>>> ears;
+  std::vector<std::unique_ptr<Reader<MessageType>>> message_readers;
   for (int id : {1, 2}) {
     states.push_back(std::make_unique<Reader<StateType>>(agents, Topic::State(id), [](const auto&) {}));
     commands.push_back(std::make_unique<Writer<CommandType>>(agents, Topic::Command(id)));
     messages.push_back(std::make_unique<Writer<MessageType>>(agents, Topic::Message(id)));
   }
   const auto hear = [&](int id) {
-    ears.push_back(std::make_unique<Reader<MessageType>>(agents, Topic::Message(id), [](const auto&) {}));
+    message_readers.push_back(std::make_unique<Reader<MessageType>>(agents, Topic::Message(id), [](const auto&) {}));
   };
   hear(1);
-  // What is made last is discovered last.
+  // Endpoints are discovered in the order in which they are created.
   Writer<StatusType> last_writer(agents, Topic::Status());
   Reader<RequestType> last_reader(agents, Topic::Request(), [](const auto&) {});
   Reader<StatusType> finds_writer(auditor, Topic::Status(), [](const auto&) {});
@@ -201,7 +201,7 @@ TEST_F(Bus, AProcessMayReadAndWriteOneTopic) {
   EXPECT_TRUE(Until([&] { return own == 1 && others == 1; }));
 }
 
-TEST_F(Bus, WhatItsReadersHaveOutlivesAWriter) {
+TEST_F(Bus, ASampleReachesItsReadersBeforeItsWriterLeaves) {
   for (int i = 0; i < 10; ++i) {
     std::atomic<int> heard = 0;
     Reader<ClockType> reader(here_, Topic::Clock(), [&](const auto&) { ++heard; });
@@ -235,7 +235,7 @@ TEST(DomainLock, IsFreeAgainWhenItsRunIsOver) {
   EXPECT_EQ(DomainLock(domain).domain(), domain);
 }
 
-// --- the programs, by hand ------------------------------------------------------------------------------
+// --- programs started by hand ---------------------------------------------------------------------------
 
 Ran Agent(const std::string& arguments) { return Shell("'" MASCOT_BINARY_DIR "/agent' " + arguments); }
 
@@ -266,11 +266,11 @@ TEST(AgentProcess, RefusesWrongArguments) {
   EXPECT_EQ(discovery.output, "error: --discovery: expected IP-ADDRESS:PORT, got 'somewhere'\n");
 }
 
-TEST(StopSignal, IsWokenByOthersAndBySignals) {
+TEST(StopSignal, ReturnsAfterAWakeUpOrASignal) {
   StopSignal stop;
   stop.Wake();
   EXPECT_EQ(stop.Within(std::chrono::hours(1)), 0);
-  raise(SIGTERM);  // to this thread: those that Fast DDS started earlier do not block it
+  raise(SIGTERM);  // to this thread: earlier threads of Fast DDS do not block the signal
   EXPECT_EQ(stop.Within(std::chrono::hours(1)), SIGTERM);
   EXPECT_EQ(stop.Within(std::chrono::nanoseconds(1)), 0);
 }

@@ -1,4 +1,4 @@
-// The processes of a run and what they print, with programs that every system has.
+// Child processes and their output, tested with programs that every system has.
 #include "orchestrator/processes/children.h"
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ class ChildrenTest : public testing::Test {
     const auto deadline = std::chrono::steady_clock::now() + kPatience;
     while (lines().size() < count && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
   }
-  /// All that end within the time that a test may take.
+  /// Waits for `count` exits, at most kPatience.
   std::vector<Exit> AwaitExits(std::size_t count) {
     std::vector<Exit> exits;
     const auto deadline = std::chrono::steady_clock::now() + kPatience;
@@ -92,7 +92,7 @@ TEST_F(ChildrenTest, AnExitSaysItsCodeOrItsSignal) {
   EXPECT_EQ(killed[0].Text(), "was killed by signal 11 (Segmentation fault)");
 }
 
-TEST_F(ChildrenTest, WhoDoesNotListenToSigtermIsKilled) {
+TEST_F(ChildrenTest, AChildThatIgnoresSigtermIsKilled) {
   Spawn("deaf", "trap '' TERM; echo up; while :; do :; done");
   AwaitLines(1);
   children_.Stop(50ms);
@@ -100,7 +100,7 @@ TEST_F(ChildrenTest, WhoDoesNotListenToSigtermIsKilled) {
   EXPECT_TRUE(children_.WaitAll(0ms));
 }
 
-TEST_F(ChildrenTest, WhoListensToSigtermEndsByItself) {
+TEST_F(ChildrenTest, AChildThatHandlesSigtermEndsByItself) {
   Spawn("orderly", "trap 'echo down; exit 0' TERM; echo up; while :; do :; done");
   AwaitLines(1);
   children_.Stop(kPatience);

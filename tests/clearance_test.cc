@@ -44,8 +44,7 @@ TEST(Clearance, SeesABodyComeAndGo) {
   }
 }
 
-/// Random walks, looked at step by step: it may say "not clear" only of boxes that meet, and must say it of all of
-/// them.
+/// Random walks, checked at every step: "not clear" if and only if boxes meet each other or the floor.
 TEST(Clearance, AgreesWithComparingAllPairs) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> place(-4, 4), move(-0.05, 0.05), size(0.02, 0.4);

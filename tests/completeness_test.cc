@@ -1,4 +1,4 @@
-// The proof that a recording is complete: what is there, and what the attached experiment says should be.
+// Check that a recording is complete: compares its contents with those that the attached experiment asks for.
 #include "orchestrator/recording/completeness.h"
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ def message(me):
 """ }
 )";
 
-/// Flies `toml` in this process and records it. Returns the recording's path.
+/// Runs `toml` in this process and records it. Returns the path of the recording.
 std::string Record(const ScratchFolder& scratch, const std::string& toml) {
   const Experiment experiment = LoadExperiment(Section::FromText(toml, "talk.toml"), "talk");
   const RunFolder folder(scratch.File("run"), "talk", false);
@@ -50,7 +50,7 @@ std::string Record(const ScratchFolder& scratch, const std::string& toml) {
   return folder.File("run.mcap").string();
 }
 
-/// The recording without one topic, closed as it should be; `fewer`: without that topic's last sample only.
+/// Copies the recording without one topic and closes it properly; `fewer`: without the last sample of that topic only.
 std::string Without(const std::string& path, const std::string& topic, bool fewer = false) {
   const McapContents contents = ReadMcap(path);
   const std::string copy = path + ".without.mcap";
@@ -77,7 +77,7 @@ Proof ProofOf(const std::string& path) {
   return Prove(contents, PlanOf(contents, path));
 }
 
-TEST(Completeness, OfAWholeRecordingHasNoGapAndEveryTick) {
+TEST(Completeness, AWholeRecordingHasNoGapAndEveryTick) {
   const ScratchFolder scratch;
   const Proof proof = ProofOf(Record(scratch, kExperiment));
   EXPECT_EQ(proof.gap, "");
@@ -103,7 +103,7 @@ TEST(Completeness, ARecordingFromWhichAWholeTopicWasTakenIsNotComplete) {
   for (const Topic& topic : PlanOf(ReadMcap(whole), whole).topics) {
     const std::string path = Without(whole, topic.Name());
     EXPECT_EQ(ProofOf(path).gap, topic.Name() + " is missing, which the experiment records");
-    if (topic.kind != TopicKind::kState && topic.kind != TopicKind::kCommand) continue;  // exports do without
+    if (topic.kind != TopicKind::kState && topic.kind != TopicKind::kCommand) continue;  // not needed for exports
     const std::string error = path + ": " + topic.Name() + " is missing, which the experiment records";
     EXPECT_THAT([&] { Recording{path}; }, ThrowsMessage<std::runtime_error>(error));
   }

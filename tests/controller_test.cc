@@ -21,7 +21,7 @@ using ::testing::ThrowsMessage;
 
 constexpr double kG = 9.81;
 
-/// One hovering agent at (1, 2, 3) whose first command this is about.
+/// One quadrotor at (1, 2, 3), for tests of its first command.
 Experiment One(const Airframe& airframe = Built("mascot")) { return Bodies("quadrotor", {{1, 2, 3}}, airframe); }
 
 Motion AtStart(const Experiment& e) {
@@ -35,23 +35,24 @@ Controller::Output First(const Experiment& e, const Motion& self, const Vector3d
   return MakeController(e, 1)->Actuate(self, a_W);
 }
 
-/// Thrust (N) and torques (N m) that rotor speeds give.
-Eigen::Vector4d Wrung(const Experiment& e, const Controller::Output& output) {
+/// Thrust (N) and torques (N m) of a command.
+Eigen::Vector4d WrenchOf(const Experiment& e, const Controller::Output& output) {
   return e.agents[0].airframe.Allocation() * Eigen::Vector4d::Map(output.actuator.data()).cwiseAbs2();
 }
 
-/// Gains so low that no first command reaches a limit of the rotors: torques are then PD terms exactly.
+/// An airframe with gains so low that no first command reaches a rotor limit: torques are then exactly the PD terms.
 Airframe Soft() {
   Airframe body = WithoutDrag();
   body.attitude = {10, 5};
   return body;
 }
 
-/// Roll and pitch target that the first command of a level, resting body with Soft() gains aims at.
+/// Roll and pitch target (rad) of the first command, computed from its torques, for a level body at rest with Soft()
+/// gains.
 Eigen::Vector2d Target(const Experiment& e, const Vector3d& a_W) {
   const Airframe& body = e.agents[0].airframe;
-  const Eigen::Vector4d wrung = Wrung(e, First(e, AtStart(e), a_W));
-  return wrung.segment<2>(1).cwiseQuotient(body.inertia_kg_m2.head<2>()) / body.attitude.kp;
+  const Eigen::Vector4d wrench = WrenchOf(e, First(e, AtStart(e), a_W));
+  return wrench.segment<2>(1).cwiseQuotient(body.inertia_kg_m2.head<2>()) / body.attitude.kp;
 }
 
 Motion Tilted(const Experiment& e, double roll, double pitch, double yaw) {
@@ -89,7 +90,7 @@ TEST(DoubleIntegratorController, TurnsAccelerationIntoForceAndHoldsItsHeight) {
   EXPECT_EQ(First(e, self, {1, -2, 3}).actuator, (Actuation{1, -2, 3, 0}));
 }
 
-// --- quadrotor: what the first command says ---------------------------------------------------------
+// --- quadrotor: the first command -------------------------------------------------------------------
 
 TEST(QuadrotorController, HoversWithHoverRotorSpeeds) {
   for (const Airframe& airframe : Airframes())
@@ -113,10 +114,10 @@ TEST(QuadrotorController, GoesEastWhicheverWayItLooks) {
   const Motion looks_north = Tilted(e, 0, 0, std::numbers::pi / 2);
   Experiment north = e;
   north.agents[0].control.heading_rad = std::numbers::pi / 2;
-  const Eigen::Vector4d wrung = Wrung(e, First(north, looks_north, {0.1, 0, 0}));
-  EXPECT_GT(wrung[1], 1e-3) << "east is to its right: it rolls right";
-  EXPECT_NEAR(wrung[2], 0, 1e-9);
-  EXPECT_NEAR(wrung[3], 0, 1e-9) << "it looks where it should";
+  const Eigen::Vector4d wrench = WrenchOf(e, First(north, looks_north, {0.1, 0, 0}));
+  EXPECT_GT(wrench[1], 1e-3) << "east is to its right: it rolls right";
+  EXPECT_NEAR(wrench[2], 0, 1e-9);
+  EXPECT_NEAR(wrench[3], 0, 1e-9) << "it looks where it should";
 }
 
 TEST(QuadrotorController, InvertsForSmallAnglesAsThePaperDoes) {
@@ -138,9 +139,9 @@ TEST(QuadrotorController, ExactInversionCarriesTheWeightOfATiltedBodyAndThePaper
   Experiment e = One();
   const Motion tilted = Tilted(e, 0.2, -0.3, 0);
   const double weight_n = e.agents[0].airframe.mass_kg * kG;
-  EXPECT_NEAR(Wrung(e, First(e, tilted))[0], weight_n, 1e-9);
+  EXPECT_NEAR(WrenchOf(e, First(e, tilted))[0], weight_n, 1e-9);
   e.agents[0].control.inversion = Inversion::kExact;
-  EXPECT_NEAR(Wrung(e, First(e, tilted))[0], weight_n / (std::cos(0.2) * std::cos(0.3)), 1e-9);
+  EXPECT_NEAR(WrenchOf(e, First(e, tilted))[0], weight_n / (std::cos(0.2) * std::cos(0.3)), 1e-9);
 }
 
 TEST(QuadrotorController, HoldsItsInitialHeightAndIgnoresTheLawInZ) {
@@ -150,21 +151,21 @@ TEST(QuadrotorController, HoldsItsInitialHeightAndIgnoresTheLawInZ) {
   self.v_WB.z() = 0.05;
   const Airframe& body = e.agents[0].airframe;
   const double thrust_n = body.mass_kg * (body.altitude.kp * 0.1 - body.altitude.kd * 0.05 + kG);
-  EXPECT_NEAR(Wrung(e, First(e, self, {0, 0, 2}))[0], thrust_n + body.linear_drag_kg_per_s * 0.05, 1e-9);
+  EXPECT_NEAR(WrenchOf(e, First(e, self, {0, 0, 2}))[0], thrust_n + body.linear_drag_kg_per_s * 0.05, 1e-9);
 }
 
 TEST(QuadrotorController, TakesTheLawsVerticalAccelerationWhenItSteersXyz) {
   Experiment e = One();
   e.agents[0].law.axes = Axes::kXyz;
-  EXPECT_NEAR(Wrung(e, First(e, AtStart(e), {0, 0, 2}))[0], e.agents[0].airframe.mass_kg * (kG + 2), 1e-9);
+  EXPECT_NEAR(WrenchOf(e, First(e, AtStart(e), {0, 0, 2}))[0], e.agents[0].airframe.mass_kg * (kG + 2), 1e-9);
 }
 
 TEST(QuadrotorController, TurnsToItsHeadingTheShortWay) {
   Experiment e = One(Soft());
-  e.agents[0].airframe.heading = {0.1, 0};  // within the rotors' small yaw torque
+  e.agents[0].airframe.heading = {0.1, 0};  // small enough for the rotors' small yaw torque
   e.agents[0].control.heading_rad = 3.0;
   const double left_rad = 2 * std::numbers::pi - 6.0;  // from -3 to 3 rad, turning right
-  const double tau_z = Wrung(e, First(e, Tilted(e, 0, 0, -3.0)))[3];
+  const double tau_z = WrenchOf(e, First(e, Tilted(e, 0, 0, -3.0)))[3];
   EXPECT_NEAR(tau_z, -0.1 * left_rad * e.agents[0].airframe.inertia_kg_m2.z(), 1e-9);
 }
 
@@ -174,7 +175,7 @@ TEST(QuadrotorController, BrakesTurningOfItsBody) {
   self.w_WB_B = {0.1, -0.2, 0.01};
   const Airframe& body = e.agents[0].airframe;
   const Vector3d rates(body.attitude.kd * 0.1, body.attitude.kd * -0.2, body.heading.kd * 0.01);
-  EXPECT_LT((Wrung(e, First(e, self)).tail<3>() + body.inertia_kg_m2.cwiseProduct(rates)).norm(), 1e-9);
+  EXPECT_LT((WrenchOf(e, First(e, self)).tail<3>() + body.inertia_kg_m2.cwiseProduct(rates)).norm(), 1e-9);
 }
 
 TEST(QuadrotorController, AddsTheDragItKnowsOfUnlessToldNotTo) {
@@ -214,11 +215,11 @@ TEST(QuadrotorController, CatchesUpWithTheIdealDoubleIntegratorOfItsLaw) {
   body.position = {0.5, 0.25};
   const Experiment e = One(body);
   const auto controller = MakeController(e, 1);
-  controller->Actuate(AtStart(e), {2, 0, 0});  // from now on the reference is ahead of a body that did not move
+  controller->Actuate(AtStart(e), {2, 0, 0});  // the reference is now ahead of the body, which has not moved
   const double h = e.period_s();
-  const Eigen::Vector4d wrung = Wrung(e, controller->Actuate(AtStart(e), {0, 0, 0}));
+  const Eigen::Vector4d wrench = WrenchOf(e, controller->Actuate(AtStart(e), {0, 0, 0}));
   const double correction = 0.5 * (h * h / 2 * 2) + 0.25 * (h * 2);
-  EXPECT_NEAR(wrung[2], body.inertia_kg_m2.y() * body.attitude.kp * correction / kG, 1e-9);
+  EXPECT_NEAR(wrench[2], body.inertia_kg_m2.y() * body.attitude.kp * correction / kG, 1e-9);
 }
 
 TEST(QuadrotorController, ForgetsAReferenceThatTheBodyWasHeldBackFrom) {
@@ -226,32 +227,32 @@ TEST(QuadrotorController, ForgetsAReferenceThatTheBodyWasHeldBackFrom) {
   const auto controller = MakeController(e, 1);
   for (int tick = 0; tick < 1000; ++tick) controller->Actuate(AtStart(e), {1, 0, 0});  // held for 10 s
   const Airframe& body = e.agents[0].airframe;
-  const double pitch_torque = Wrung(e, controller->Actuate(AtStart(e), {-1, 0, 0}))[2];
+  const double pitch_torque = WrenchOf(e, controller->Actuate(AtStart(e), {-1, 0, 0}))[2];
   EXPECT_LT(pitch_torque, 0.0) << "it follows its law at once";
   Experiment soft = One(Soft());
   const auto pushed = MakeController(soft, 1);
   Motion away = AtStart(soft);
   away.p_WB.x() += 5;
-  const Eigen::Vector4d wrung = Wrung(soft, pushed->Actuate(away, {0, 0, 0}));
-  EXPECT_NEAR(wrung[2], 0, 1e-9) << "where to go after a push is the law's business";
-  EXPECT_NEAR(wrung[0], body.mass_kg * kG, 1e-9);
+  const Eigen::Vector4d wrench = WrenchOf(soft, pushed->Actuate(away, {0, 0, 0}));
+  EXPECT_NEAR(wrench[2], 0, 1e-9) << "where to go after a push is the law's business";
+  EXPECT_NEAR(wrench[0], body.mass_kg * kG, 1e-9);
 }
 
 TEST(QuadrotorController, TurnsNoFasterThanItCanBrake) {
   Airframe body = WithoutDrag();
-  body.max_thrust_n = 1000;  // rotors that would follow any torque
+  body.max_thrust_n = 1000;  // rotors that can give any torque
   Experiment e = One(body);
   const Vector3d leap(3, 0, 0);
-  const double turn = Wrung(e, First(e, AtStart(e), leap))[2] / body.inertia_kg_m2.y();
+  const double turn = WrenchOf(e, First(e, AtStart(e), leap))[2] / body.inertia_kg_m2.y();
   EXPECT_LT(turn, body.attitude.kp * 3 / kG) << "less than the PD law would ask for";
   Motion turning = AtStart(e);
   turning.w_WB_B.y() = 3.0;
-  EXPECT_NEAR(Wrung(e, First(e, turning, leap))[2], 0, 1e-9) << "3 rad/s is enough";
+  EXPECT_NEAR(WrenchOf(e, First(e, turning, leap))[2], 0, 1e-9) << "3 rad/s is enough";
 }
 
 // --- mixer ------------------------------------------------------------------------------------------
 
-/// Thrust and torques of what the mixer gives.
+/// Thrust (N) and torques (N m) of the mixed rotor speeds.
 Eigen::Vector4d Mixed(double thrust_n, const Vector3d& tau_B) {
   const Controller::Output output = Mixer(Built("mascot")).Mix(thrust_n, tau_B);
   return Built("mascot").Allocation() * Eigen::Vector4d::Map(output.actuator.data()).cwiseAbs2();
@@ -293,11 +294,11 @@ using LawOfAll = std::function<Vector3d(std::size_t i, const std::vector<Motion>
 
 struct Flight {
   std::vector<std::vector<Motion>> rows;
-  double rms_from_ideal_m = 0;  // as fidelity.rms_m of the summary
+  double rms_from_ideal_m = 0;  // like fidelity.rms_m of the summary
   double travelled_m = 0;
 };
 
-/// Flies `e` for `duration_s` under `law`, limited per axis, beside ideal double integrators under the same law.
+/// Simulates `e` for `duration_s` under `law`, limited per axis, and ideal double integrators under the same law.
 Flight Fly(const Experiment& e, double duration_s, double limit, const LawOfAll& law) {
   World world(e);
   const auto n = e.agents.size();
@@ -338,7 +339,7 @@ Flight Fly(const Experiment& e, double duration_s, double limit, const LawOfAll&
   return flight;
 }
 
-/// Waypoint PD to `goal`.
+/// PD law to the waypoint `goal`.
 LawOfAll Towards(const Vector3d& goal, double p_gain, double d_gain) {
   return [=](std::size_t i, const std::vector<Motion>& all) -> Vector3d {
     return p_gain * (goal - all[i].p_WB) - d_gain * all[i].v_WB;
@@ -395,7 +396,7 @@ TEST(ClosedLoop, TurnsToItsHeadingAndStillFliesStraight) {
   EXPECT_NEAR(std::atan2(x_B.y(), x_B.x()), 2.0, 1e-3);
 }
 
-/// Four agents that all hear each other, in random places, on heights of their own.
+/// Four quadrotors at random positions and different heights.
 Experiment Four(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<Vector3d> places;
@@ -439,7 +440,7 @@ TEST(ClosedLoop, MinMaxMeetsARestingParentInTimeAndThenStaysWithinFiveCentimetre
 
 TEST(ClosedLoop, ABangBangLawBeyondTheRotorsMeansNeverTumblesTheBody) {
   const LawOfAll chatter = [](std::size_t, const std::vector<Motion>& all) -> Vector3d {
-    return -2.5 * (all[0].p_WB + 0.1 * all[0].v_WB).cwiseSign();  // hardly damped: swings as fast as it can
+    return -2.5 * (all[0].p_WB + 0.1 * all[0].v_WB).cwiseSign();  // little damping: oscillates at the limit
   };
   const Flight flight = Fly(Bodies("quadrotor", {{3, -2, 2}}), 60, 3, chatter);
   for (const auto& row : flight.rows) ASSERT_GT((row[0].q_WB * Vector3d::UnitZ()).z(), std::cos(1.0));

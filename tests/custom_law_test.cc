@@ -21,7 +21,7 @@ Experiment Custom(const std::string& python, const std::string& lines = "") {
 
 std::string LawRefusal(const std::string& lines) { return Refusal(Three(lines)); }
 
-/// What the law of agent 1 wants at tick 0.
+/// Output of the law of agent 1 at tick 0.
 Eigen::Vector3d Wants(const std::string& python, const std::string& lines = "") {
   Experiment experiment = Custom(python, lines);
   Agent agent(experiment, 1);
@@ -32,7 +32,7 @@ Eigen::Vector3d Wants(const std::string& python, const std::string& lines = "") 
   return agent.Want(0, self, others.samples()).a_law_W;
 }
 
-/// The text with which the law of agent 1 fails at tick 3.
+/// The error of the law of agent 1 at tick 3; empty: none.
 std::string Failure(const std::string& python, const std::string& lines = "") {
   Experiment experiment = Custom(python, lines);
   Agent agent(experiment, 1);
@@ -45,7 +45,7 @@ std::string Failure(const std::string& python, const std::string& lines = "") {
   return "";
 }
 
-// --- what it gets -----------------------------------------------------------------------------------
+// --- inputs and outputs -----------------------------------------------------------------------------
 
 TEST(CustomLaw, ReturnsTwoOrThreeNumbersInAnyUsualForm) {
   const Eigen::Vector3d wanted(1, -2, 0);
@@ -358,7 +358,7 @@ TEST(CustomLaw, OfThePublishedTestbedCountsAgentsFromZero) {
 
 TEST(CustomLaw, OfThePublishedTestbedThatPeeksIsExposed) {
   Experiment experiment = Custom(kPublished, "style = 'mascot'\n");
-  Agent two(experiment, 2);  // hears nobody
+  Agent two(experiment, 2);  // has no neighbours
   EXPECT_THAT(
       [&] { two.Want(7, Motion{}, {}); },
       ThrowsMessage<std::runtime_error>(
@@ -371,7 +371,7 @@ TEST(CustomLaw, OfThePublishedTestbedIsToldOfPeekingOnlyIfItsNumbersAreMissing) 
             "tick 3: the law of agent 1 failed at t = 0.03 s: control_user returned (inf, 0), expected finite numbers");
 }
 
-// --- where its text stands --------------------------------------------------------------------------
+// --- where its source is ----------------------------------------------------------------------------
 
 TEST(CustomLaw, InAFileIsInlinedAndGoesByTheFilesName) {
   ScratchFolder folder;

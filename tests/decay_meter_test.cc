@@ -22,13 +22,13 @@ TEST(DecayMeter, FindsTheRateOfAnExponentialWhateverItsUnits) {
   }
 }
 
-TEST(DecayMeter, FindsTheSlowestOfTwoOnceTheFasterIsGone) {
-  // From rest: (2 e^(-a t) - e^(-2 a t)).
+TEST(DecayMeter, FindsTheSlowerOfTwoRatesOnceTheFasterIsGone) {
+  // Response from rest: 2 e^(-a t) - e^(-2 a t).
   const auto rate = RateOf([](double t) { return 2 * std::exp(-0.3 * t) - std::exp(-0.6 * t); }, 60);
   EXPECT_NEAR(*rate, 0.3, 0.003);
 }
 
-TEST(DecayMeter, MeasuresWhatSwingsOverItsSwings) {
+TEST(DecayMeter, AveragesOverOscillations) {
   for (const double w : {0.3, 0.7, 1.0, 3.0}) {
     const auto rate = RateOf([w](double t) { return std::abs(std::exp(-0.3 * t) * std::cos(w * t)); }, 80);
     ASSERT_TRUE(rate) << w;
@@ -36,13 +36,13 @@ TEST(DecayMeter, MeasuresWhatSwingsOverItsSwings) {
   }
 }
 
-TEST(DecayMeter, IsNotMisledByWhatNeverGoesAway) {
-  // A floor of 0.03 % of the start: measured down to 0.1 %.
+TEST(DecayMeter, IsNotMisledByAConstantFloor) {
+  // A floor of 0.03 % of the first value: the rate is measured down to 0.1 %.
   const auto noisy = [](double t) { return std::exp(-0.3 * t) + 3e-4 * std::abs(std::sin(1e4 * t)); };
   EXPECT_NEAR(*RateOf(noisy, 60), 0.3, 0.02);
 }
 
-TEST(DecayMeter, KnowsNoRateOfWhatDoesNotFallFarForGood) {
+TEST(DecayMeter, HasNoRateOfAValueThatDoesNotFallFarOrNotForGood) {
   EXPECT_FALSE(RateOf([](double t) { return std::exp(-0.3 * t); }, 20)) << "0.25 % at the end";
   EXPECT_FALSE(RateOf([](double t) { return std::exp(-0.3 * t) + 2e-3; }, 60)) << "stays above";
   EXPECT_FALSE(RateOf([](double t) { return std::exp(-0.3 * t); }, std::log(1000) / 0.3 + 0.1)) << "just arrived";

@@ -42,8 +42,8 @@ Eigen::MatrixXd DirectedRing(int n) {
 
 Eigen::MatrixXd Ring(int n) { return DirectedRing(n) + DirectedRing(n).transpose(); }
 
-/// Of no symmetry at all, strongly connected.
-Eigen::MatrixXd Odd() {
+/// Adjacency matrix of a strongly connected graph without any symmetry.
+Eigen::MatrixXd Asymmetric() {
   Eigen::MatrixXd a(4, 4);
   a << 0, 1.2, 0, 0.3, 0.5, 0, 0.9, 0, 0, 0, 0, 1.7, 0.8, 0, 0.4, 0;
   return a;
@@ -53,7 +53,7 @@ Eigen::VectorXd Start(Eigen::Index n) {
   return Eigen::VectorXd::LinSpaced(n, -1, 2).array().sin() + Eigen::VectorXd::LinSpaced(n, 1, 3).array().square();
 }
 
-/// Whether the team settles with what it hears so late, by recursion.
+/// Whether the team settles with this delay of neighbours' samples, by direct simulation.
 bool Settles(const Eigen::MatrixXd& a, const LinearAgent& agent, double delay_s, double time_s = 60) {
   DelayedRecursion witness(a, agent.p, agent.g, agent.b, Start(a.rows()));
   witness.order = agent.order;
@@ -65,7 +65,7 @@ bool Settles(const Eigen::MatrixXd& a, const LinearAgent& agent, double delay_s,
 
 TEST(LinkDelay, NeverHarmsTeamsOfOrderOne) {
   const LinearAgent agent{.order = 1, .hold = 1, .p = 2.0};
-  for (const Eigen::MatrixXd& a : {Path(5), DirectedRing(6), Odd()}) {
+  for (const Eigen::MatrixXd& a : {Path(5), DirectedRing(6), Asymmetric()}) {
     const auto margin = LinkDelayMargin(Alike(a.rows(), agent), FromAdjacency(a));
     ASSERT_TRUE(margin);
     EXPECT_TRUE(margin->independent);
@@ -75,7 +75,7 @@ TEST(LinkDelay, NeverHarmsTeamsOfOrderOne) {
 }
 
 TEST(LinkDelay, NeverHarmsTeamsOfOrderTwoThatAreDampedWell) {
-  // b^2 + 2 b g d >= 2 p d for all: on a path d <= 2.
+  // b^2 + 2 b g d >= 2 p d for all agents; on a path d <= 2.
   for (const LinearAgent& agent : {LinearAgent{.p = 1, .b = 2}, {.p = 2, .g = 0.5, .b = 2.0}}) {
     const auto margin = LinkDelayMargin(Alike(5, agent), FromAdjacency(Path(5)));
     ASSERT_TRUE(margin);
@@ -92,7 +92,7 @@ struct Case {
 TEST(LinkDelay, HarmsFromItsMarginOn) {
   const Case cases[] = {
       {Path(5), {.p = 2.0, .b = 0.5}},         {Path(3), {.p = 1.0, .b = 0.3}},
-      {Odd(), {.p = 1.0, .b = 0.9}},           {Odd(), {.p = 1.0, .g = 0.2, .b = 0.6}},
+      {Asymmetric(), {.p = 1.0, .b = 0.9}},    {Asymmetric(), {.p = 1.0, .g = 0.2, .b = 0.6}},
       {DirectedRing(5), {.p = 0.5, .b = 0.9}}, {Path(4), {.hold = 1, .p = 1.5, .b = 0.4}},
       {Ring(4), {.p = 1.0, .b = 0.5}},         {Ring(5), {.p = 1.0, .g = 0.1, .b = 0.5}},
   };
@@ -106,18 +106,18 @@ TEST(LinkDelay, HarmsFromItsMarginOn) {
 }
 
 TEST(LinkDelay, OfAPairHasAClosedForm) {
-  // Two who hear each other: M = (p / (p - w^2 + i b w)) A, A of eigenvalues 1 and -1: of magnitude 1 at
-  // w^2 = 2 p - b^2, then e^(i w tau) = +-p / (p - w^2 + i b w).
+  // Two agents that hear each other: M = (p / (p - w^2 + i b w)) A, where A has eigenvalues 1 and -1. Those of M have
+  // magnitude 1 at w^2 = 2 p - b^2, where e^(i w tau) = +-p / (p - w^2 + i b w).
   const double p = 1, b = 0.6, w = std::sqrt(2 * p - b * b);
   const double angle = -std::atan2(b * w, p - w * w);
-  const double expected_s = (angle + std::numbers::pi) / w;  // from -1: half a turn on
+  const double expected_s = (angle + std::numbers::pi) / w;  // for the eigenvalue -1: half a turn more
   const auto margin = LinkDelayMargin(Alike(2, {.p = p, .b = b}), FromAdjacency(Path(2)));
   ASSERT_TRUE(margin && margin->margin_s);
   EXPECT_NEAR(*margin->margin_s, expected_s, 1e-6);
 }
 
-TEST(LinkDelay, OfTeamsWhoseWeightsAddUpToTheSameHasAClosedForm) {
-  // All d_i = d, all |mu| = d for the eigenvalues mu of A: each is of magnitude 1 at w^2 = 2 p d - b^2, and there
+TEST(LinkDelay, OfTeamsWithEqualSumsOfWeightsHasAClosedForm) {
+  // All d_i = d. For an eigenvalue mu of A with |mu| = d, that of M has magnitude 1 at w^2 = 2 p d - b^2, where
   // e^(i w tau) = mu p / (p d - w^2 + i b w).
   for (const Eigen::MatrixXd& a : {Ring(4), DirectedRing(4), DirectedRing(7)}) {
     const double d = a.row(0).sum();
@@ -141,15 +141,15 @@ TEST(LinkDelay, MarginDoesNotDependOnTheNumbersOfTheAgents) {
   const LinearAgent agent{.p = 1.0, .g = 0.1, .b = 0.6};
   Eigen::MatrixXd renamed(4, 4);
   for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) renamed(i, j) = Odd()(order[i], order[j]);
-  const auto one = LinkDelayMargin(Alike(4, agent), FromAdjacency(Odd()));
+    for (int j = 0; j < 4; ++j) renamed(i, j) = Asymmetric()(order[i], order[j]);
+  const auto one = LinkDelayMargin(Alike(4, agent), FromAdjacency(Asymmetric()));
   const auto other = LinkDelayMargin(Alike(4, agent), FromAdjacency(renamed));
   ASSERT_TRUE(one && one->margin_s && other && other->margin_s);
   EXPECT_NEAR(*one->margin_s, *other->margin_s, 1e-6);
 }
 
-TEST(LinkDelay, OfThoseWhoFeedNothingBackDoesNoHarm) {
-  // A chain behind its head: nobody hears itself, not even through others, however little it is damped.
+TEST(LinkDelay, NeverHarmsTeamsWithoutFeedbackLoops) {
+  // A directed chain has no feedback loops, so that even with little damping no delay matters.
   Eigen::MatrixXd chain = Eigen::MatrixXd::Zero(30, 30);
   for (int i = 1; i < 30; ++i) chain(i, i - 1) = 1;
   const auto margin = LinkDelayMargin(Alike(30, {.p = 5, .b = 0.1}), FromAdjacency(chain));
@@ -157,7 +157,7 @@ TEST(LinkDelay, OfThoseWhoFeedNothingBackDoesNoHarm) {
   EXPECT_TRUE(margin->independent);
 }
 
-TEST(LinkDelay, IsNotSweptForTooManyWhoAreNotAlike) {
+TEST(LinkDelay, IsUnknownForManyAgentsThatDiffer) {
   const LinearAgent agent{.p = 5, .b = 0.1};
   EXPECT_FALSE(LinkDelayMargin(Alike(kLargestSweep + 1, agent), FromAdjacency(Path(kLargestSweep + 1))));
   EXPECT_TRUE(LinkDelayMargin(Alike(100, agent), FromAdjacency(DirectedRing(100))));

@@ -6,8 +6,8 @@
 
 namespace mascot {
 
-/// A linear team along one axis, written out as its law says, tick by tick, with everything late that the law hears and
-/// measures: an independent witness of what theory predicts.
+/// Direct simulation of a linear team along one axis, tick by tick, with delayed samples of neighbours and own state:
+/// an independent reference for the predictions of theory.
 ///   u_i = sum_j A_ij [p_i (q_j - q_i) + g_i (v_j - v_i)] - b_i v_i,  order 1: q+ = q + h u;
 ///   order 2: q+ = q + h v + hold h^2 u, v+ = v + h u
 struct DelayedRecursion {
@@ -16,8 +16,8 @@ struct DelayedRecursion {
   int order = 2;
   double hold = 0.5;
   double h = 0.01;
-  int link_ticks = 0;                 // of what is heard; before, nothing is
-  int own_ticks = 0;                  // of what is measured; before, where it started
+  int link_ticks = 0;                 // delay of neighbours' samples; nothing is heard earlier
+  int own_ticks = 0;                  // delay of own state; earlier, the initial state
   std::vector<Eigen::VectorXd> q, v;  // by tick
 
   DelayedRecursion(const Eigen::MatrixXd& a, double p_gain, double g_gain, double beta, const Eigen::VectorXd& start)
@@ -45,14 +45,14 @@ struct DelayedRecursion {
     const double end = static_cast<double>(q.size()) + time_s / h;
     while (static_cast<double>(q.size()) < end) Step();
   }
-  /// Largest disagreement over the last part of the run that `time_s` covers.
+  /// Largest disagreement in the last `time_s` of the run.
   double LateSpread(double time_s) const {
     double spread = 0;
     for (std::size_t k = q.size() - static_cast<std::size_t>(time_s / h); k < q.size(); ++k)
       spread = std::max(spread, q[k].maxCoeff() - q[k].minCoeff());
     return spread;
   }
-  /// Whether the disagreement shrinks: over windows of `time_s`, run three times.
+  /// Runs for 3 times `time_s`. Returns whether the disagreement is smaller in the third part than in the second.
   bool Settles(double time_s) {
     RunFor(time_s);
     RunFor(time_s);

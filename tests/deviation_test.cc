@@ -14,7 +14,7 @@ const std::string kThree =
 
 Experiment Load(const std::string& toml) { return LoadExperiment(Section::FromText(toml, "test.toml"), "test"); }
 
-/// Three in a row of rows, x of each; y = 0, z as it likes.
+/// A row of three agents with these x (m); y = 0, z = 1, 2, 3.
 std::vector<Motion> Row(double first, double second, double third) {
   std::vector<Motion> motions(3);
   motions[0].p_WB = {first, 0, 1};
@@ -49,11 +49,11 @@ TEST(Pursuit, LooksAlongTheAxesOfTheLawAlone) {
   EXPECT_FALSE(meter.Result()[0].time_s) << "a metre above";
 }
 
-TEST(Pursuit, IsThatOfMinMaxConsensus) {
+TEST(Pursuit, HasNoEdgesInConsensus) {
   EXPECT_TRUE(PursuitMeter(Load("[run]\nduration_s = 1.0\n[agents]\ncount = 2\n")).Result().empty());
 }
 
-TEST(Deviation, IsMeasuredLessPredictedAndTheDistanceOverTheAxes) {
+TEST(Deviation, IsMeasuredMinusPredictedAndADistanceAlongTheAxes) {
   const Experiment experiment = Load(kThree);
   Measured measured;
   measured.rows = 1;
@@ -74,7 +74,7 @@ TEST(Deviation, IsMeasuredLessPredictedAndTheDistanceOverTheAxes) {
   EXPECT_EQ(deviation.minmax_time_s, -0.5) << "of the edge that theory knows";
 }
 
-TEST(Deviation, IsAbsentWhereEitherIs) {
+TEST(Deviation, IsAbsentWhereEitherValueIsAbsent) {
   const Experiment experiment = Load(kThree);
   Measured measured;
   measured.rows = 1;
@@ -90,7 +90,7 @@ TEST(Deviation, IsAbsentWhereEitherIs) {
   EXPECT_FALSE(deviation.minmax_time_s);
 }
 
-TEST(Deviation, OfSettlingIsAbsentWherePredictedIsTheWayToAWaypoint) {
+TEST(Deviation, OfSettlingIsAbsentForFlightsToWaypoints) {
   const Experiment experiment = Load(kThree);
   Measured measured;
   measured.settling_time_s = 5;

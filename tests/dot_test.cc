@@ -8,7 +8,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(Dot, ArrowsPointFromTheOneWhoIsHeardToTheOneWhoHears) {
+TEST(Dot, ArrowsPointFromTheAgentThatIsHeardToTheAgentThatHears) {
   const Graph graph({{}, {{1, 1.0}}, {{1, 0.5}, {2, 1.0}}});  // 2 hears 1; 3 hears 1 and 2
   EXPECT_EQ(ToDot(graph, /*leader=*/1),
             "// An arrow j -> i: agent i hears agent j. Its label: the weight, unless 1.\n"

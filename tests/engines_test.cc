@@ -1,4 +1,4 @@
-// The two engines, and repetition: same file, same bytes.
+// Both engines, and repeated runs, give the same bytes for the same file.
 
 #include <gmock/gmock.h>
 #include <sched.h>
@@ -34,7 +34,7 @@ void ExpectSameBytes(const Up& a, const Up& b) {
   EXPECT_EQ(a.File("config.toml"), b.File("config.toml"));
 }
 
-/// What a run measured, without what belongs to the machine and the engine.
+/// The summary of a run without the values that depend on the machine or the engine.
 nlohmann::json Measurements(const Up& up) {
   nlohmann::json summary = up.Summary();
   for (const char* key : {"engine", "wall_s", "real_time_factor", "ticks_per_s", "startup_s", "total_s"})
@@ -79,8 +79,8 @@ TEST_P(Shipped, IsReproducedByItsResolvedFile) {
 INSTANTIATE_TEST_SUITE_P(Configs, Shipped, testing::ValuesIn(ShippedConfigs()),
                          [](const auto& row) { return row.param; });
 
-// A law that sends messages, over links that lose and delay them, on a graph that changes, in Python: agent i counts
-// what it heard of whom, and passes it on.
+// A law in Python that sends messages, over lossy and delayed links, on a graph that changes: agent i counts what it
+// has heard from each neighbour, and passes it on.
 const std::string kTalkers = R"([run]
 duration_s = 2.0
 [agents]
@@ -124,7 +124,7 @@ def message(me):
 '''
 )";
 
-/// Agents that wander at random and pass on what they heard, by a law in C++.
+/// The same kind of experiment with a law in C++: agents move at random and pass on what they have heard.
 const std::string kPluginTalkers = R"([run]
 duration_s = 2.0
 [agents]
@@ -245,7 +245,7 @@ TEST(CustomLaw, WithASyntaxErrorStartsNothing) {
   EXPECT_FALSE(std::filesystem::exists(up.path()));
 }
 
-/// Keeps every core busy for as long as it lives.
+/// Keeps every core busy until it is destroyed.
 class Load {
  public:
   Load() {
@@ -265,7 +265,7 @@ class Load {
   std::vector<std::thread> threads_;
 };
 
-/// `more` words of [network] on top of a file.
+/// Arguments that set keys of [network].
 std::vector<std::string> Network(int agents_per_process, const std::string& delivery) {
   return {"--set", "network.agents_per_process=" + std::to_string(agents_per_process), "--set",
           "network.delivery=" + delivery};
@@ -274,7 +274,7 @@ std::vector<std::string> Network(int agents_per_process, const std::string& deli
 struct Way {
   int agents_per_process;
   const char* delivery;
-  std::vector<std::string> processes;  ///< of five agents
+  std::vector<std::string> processes;  ///< names of the agent processes, for five agents
 };
 
 void PrintTo(const Way& way, std::ostream* out) {
@@ -283,7 +283,7 @@ void PrintTo(const Way& way, std::ostream* out) {
 
 class Delivery : public testing::TestWithParam<Way> {};
 
-TEST_P(Delivery, DoesNotChangeABitOfWhatIsFlown) {
+TEST_P(Delivery, DoesNotChangeABitOfTheRecording) {
   ScratchFolder folder;
   const std::string config = folder.File("talkers.toml");
   WriteFile(config, kTalkers);
@@ -388,7 +388,7 @@ TEST(Engines, ReportContactsByKindAlike) {
   EXPECT_EQ(inprocess.Summary()["safety"], safety);
 }
 
-/// A domain that nobody uses, of those that `up` does not pick by itself; another suite may be running.
+/// A free domain that `up` does not pick by itself (an odd one); another test suite may be running.
 int FreeOddDomain() {
   for (int k = 0;; ++k) {
     const int domain = 1 + 2 * ((getpid() + k) % 49);
@@ -409,7 +409,7 @@ TEST(Engines, AnExplicitDomainAndTransportDoNotChangeTheRecording) {
             {"--duration-s", "1", "--set", "network.domain=" + domain, "--set", "network.transport=udp"});
   EXPECT_EQ(by_udp.Wait(), 0) << by_udp.err();
   EXPECT_THAT(by_udp.err(), HasSubstr("domain " + domain));
-  // The transport is part of the experiment and so of the attached file; the samples are the same.
+  // The transport is part of the attached experiment, so that run.mcap differs; the samples are the same.
   EXPECT_TRUE(automatic.File("states.npz") == by_udp.File("states.npz"));
   Up elsewhere(folder, "elsewhere", Config("leaderless"), {"--duration-s", "1", "--set", "network.domain=" + domain});
   EXPECT_EQ(elsewhere.Wait(), 0) << elsewhere.err();
@@ -423,7 +423,7 @@ TEST(Realtime, IsPacedByTheWallClock) {
   ASSERT_EQ(up.Wait(), 0) << up.err();
   EXPECT_EQ(up.Summary()["mode"], "realtime");
   EXPECT_EQ(up.Summary()["ticks"], 100);
-  EXPECT_GE(up.Summary()["wall_s"].get<double>(), 0.9);  // from when the recorder hears the first tick, maybe late
+  EXPECT_GE(up.Summary()["wall_s"].get<double>(), 0.9);  // from the first tick recorded, which may be late
   EXPECT_TRUE(up.Summary()["realtime"]["misses"].is_number_unsigned());
   auto slowly = realtime;
   slowly.insert(slowly.end(), {"--set", "run.speed=0.5"});
@@ -448,7 +448,7 @@ TEST(Realtime, SaysHowItKeptToItsTimes) {
   EXPECT_THAT(up.out(), HasSubstr("ms after they were due in the median"));
 }
 
-/// What the kernel says of a process's locked memory.
+/// Whether a process has locked memory, according to the kernel.
 bool HasLockedMemory(pid_t pid) {
   std::istringstream status(ReadFile("/proc/" + std::to_string(pid) + "/status"));
   for (std::string word; status >> word;)
@@ -497,7 +497,7 @@ TEST(Lockstep, RunsAsABatchJobUnlessAskedForMore) {
 }
 
 TEST(Realtime, CountsWhatIsLostWhereTheMachineCannotKeepUp) {
-  ScratchFolder folder;  // agents that hurry write over commands that have not been read yet: no reason to end
+  ScratchFolder folder;  // writers may overwrite commands that are not read yet, which must not end the run
   for (int i = 0; i < 3; ++i) {
     Up up(folder, "run", Config("leaderless"),
           {"--duration-s", "30", "--set", "run.mode=realtime", "--set", "run.speed=1000", "--force"});
@@ -556,7 +556,7 @@ TEST(Up, SaysWithWhichIdealBodiesARunWasCompared) {
   EXPECT_EQ(compared_with("mixed"), "ideal single and double integrators");
 }
 
-/// The summary of one second of two double integrators with this Python law, flown in process.
+/// The summary of a run of 1 s in one process: two double integrators with a Python law that returns `returned`.
 nlohmann::json OneSecond(const ScratchFolder& folder, const std::string& returned, std::vector<std::string> more = {}) {
   WriteFile(folder.File("law.toml"),
             "[run]\nduration_s = 1.0\n[agents]\ncount = 2\nmodel = 'double_integrator'\n[law]\nname = 'custom'\n"

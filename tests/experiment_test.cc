@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-/// The smallest experiment, and `text` after it.
+/// The smallest experiment, followed by `text`.
 std::string Config(const std::string& text = "") { return "run.duration_s = 10\nagents.count = 4\n" + text; }
 
 Experiment Load(const std::string& text, const std::string& default_name = "e") {
@@ -73,7 +73,7 @@ TEST(Experiment, NeedsADurationAndACountOnly) {
   EXPECT_EQ(e.network.transport, "auto");
 }
 
-// --- every key changes what is read -----------------------------------------------------------------
+// --- every key is read ------------------------------------------------------------------------------
 
 TEST(Experiment, TakesEveryKeyOfTheFile) {
   const Experiment e = Load(R"(
@@ -257,14 +257,14 @@ TEST(Experiment, OverridesAreForOneAgent) {
   EXPECT_EQ(e.agent(3).airframe.name, "mascot");
 }
 
-/// The resolved text of `text`, which must be that of itself too.
+/// The resolved form of `text`; checks that resolving it again changes nothing.
 std::string ResolvedTwice(const std::string& text) {
   const std::string resolved = Load(text).resolved;
   EXPECT_EQ(Load(resolved).resolved, resolved);
   return resolved;
 }
 
-TEST(Experiment, KeysOfAnOverrideTakeThePlaceOfThoseThatTheyGoAgainst) {
+TEST(Experiment, AnOverrideReplacesTheKeysThatItContradicts) {
   const std::string bursts = "link.gilbert_elliott = { good_to_bad = 0.1, bad_to_good = 0.5 }\n";
   const LinkTable some =
       Load(ResolvedTwice(Config(bursts + "[[link.override]]\nedges = [[1, 2]]\nloss = 0.3\n"))).links;
@@ -292,7 +292,7 @@ TEST(Experiment, KeysOfAnOverrideTakeThePlaceOfThoseThatTheyGoAgainst) {
               HasSubstr("shape = \"line\""));
 }
 
-TEST(Experiment, AnotherTextOfAPythonLawDoesNotGoByTheNameOfTheTeams) {
+TEST(Experiment, APythonLawOfAnOverrideDoesNotKeepTheFileNameOfTheTeams) {
   const std::string resolved =
       ResolvedTwice(Config("[law]\nname = 'custom'\npython = 'def control(t, me, n): return 1, 0'\npython_file = "
                            "'team.py'\npython_line = 7\n"
@@ -326,7 +326,7 @@ TEST(Experiment, RefusesTimesThatDoNotFitTogether) {
 
 // --- names ------------------------------------------------------------------------------------------
 
-TEST(Experiment, MakesItsNameOfTheFilesEvenIfThatHasOtherCharacters) {
+TEST(Experiment, DerivesItsNameFromTheFileNameWhateverItsCharacters) {
   EXPECT_EQ(Load(Config(), "ring of 6").run.name, "ring of 6");
   EXPECT_EQ(Load(Config(), "a(1)").run.name, "a_1_");
   EXPECT_EQ(Load(Config(), "..").run.name, "experiment");
@@ -392,7 +392,7 @@ TEST(RandomStart, GivesUpAfterABoundedNumberOfTries) {
       ElementsAre("e.toml:3:32: agents.random: expected room for 9 agents 2.0 m apart, got too small a box"));
 }
 
-/// Two unicycles and two quadrotors, and `text`.
+/// Two unicycles and two quadrotors, followed by `text`.
 std::string Mixed(const std::string& text) {
   return Config(
              "agents.override = [{ id = 2, model = 'unicycle' }, { id = 4, model = 'unicycle' }]\n"
@@ -424,7 +424,7 @@ TEST(RandomStart, HasRoomForAnyNumberOfUnicyclesByDefault) {
         << count;
 }
 
-TEST(RandomStart, AvoidsObstaclesUnlessNobodyCollides) {
+TEST(RandomStart, AvoidsObstaclesUnlessCollisionsAreOff) {
   const std::string wall =
       "physics.obstacles = [{ shape = 'box', position_m = [0, 0, 0], size_m = [19, 19, 40], heading_rad = 0.1 }]\n";
   const auto inside = [&](const std::string& text) {
@@ -456,7 +456,7 @@ TEST(GivenStart, OfAUnicycleIsTakenAsItIs) {
             Eigen::Vector3d(1, 2, 0.7));
 }
 
-/// What is wrong with two agents of a model, the second `place`, beside an obstacle.
+/// The mistakes in an experiment with two agents, the second at `place`, and two obstacles.
 std::vector<std::string> Beside(const std::string& obstacle, const std::string& place,
                                 const std::string& more = "agents.model = 'double_integrator'\n") {
   return Mistakes("run.duration_s = 1\nagents.count = 2\nagents.position_m = [[50, 0, 5], " + place + "]\n" +
@@ -464,7 +464,7 @@ std::vector<std::string> Beside(const std::string& obstacle, const std::string& 
                   obstacle + "]\n" + more);
 }
 
-TEST(GivenStart, MayNotBeInsideAnObstacleUnlessNobodyCollides) {
+TEST(GivenStart, MayNotBeInsideAnObstacleUnlessCollisionsAreOff) {
   const std::string box = "{ shape = 'box', position_m = [0, 0, 5], size_m = [2, 4, 6] }";
   EXPECT_THAT(
       Beside(box, "[1.09, 0, 5]"),
@@ -503,12 +503,12 @@ TEST(GivenStart, CountsTheYawOfABody) {
   EXPECT_THAT(Mistakes(abreast + "agents.heading_rad = [1.5, 1.5, 0, 0]\n"), SizeIs(1));
 }
 
-TEST(GivenStart, IsNotHeldAgainstAnObstacleThatIsAMistake) {
+TEST(GivenStart, IsNotCheckedAgainstAnInvalidObstacle) {
   EXPECT_THAT(Beside("{ shape = 'box', size_m = [2, 2, 2] }", "[0, 0, 0]"),
               ElementsAre(HasSubstr("physics.obstacles[1].position_m: expected")));
 }
 
-TEST(GivenStart, MayNotTouchUnlessNobodyCollides) {
+TEST(GivenStart, MayNotTouchUnlessCollisionsAreOff) {
   const std::string touching = "agents.position_m = [[0, 0, 1], [9, 0, 1], [0, 5, 1], [0.1, 0.1, 1.1]]\n";
   EXPECT_THAT(Mistakes(Config(touching)),
               ElementsAre("e.toml:3:55: agents.position_m[3]: expected agents apart (physics.collisions), "
@@ -525,7 +525,7 @@ TEST(GivenStart, MayBeBelowZeroOnlyWithoutGround) {
 
 // --- one mistake, one message -----------------------------------------------------------------------
 
-TEST(Experiment, SaysNothingThatFollowsFromAnotherMistake) {
+TEST(Experiment, DoesNotReportMistakesThatFollowFromOthers) {
   const std::string rest =
       "agents.position_m = [[0, 0, 1]]\ngraph.adjacency = [[0, 1], [1, 0]]\n"
       "law = { name = 'minmax', leader = 7, beta = [1, 2] }\n";

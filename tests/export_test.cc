@@ -1,4 +1,4 @@
-// `orchestrator export`: what it writes, from which recordings, and what it refuses.
+// `orchestrator export`: output, accepted recordings, errors.
 
 #include <gmock/gmock.h>
 
@@ -30,7 +30,7 @@ struct Said {
   std::string out, err;
 };
 
-/// A verb, in this process.
+/// Runs a verb in this process.
 Said Call(std::function<int()> (*set_up)(CLI::App& command), const std::vector<std::string>& arguments) {
   CLI::App app;
   const std::function<int()> run = set_up(app);
@@ -52,7 +52,7 @@ Said Call(std::function<int()> (*set_up)(CLI::App& command), const std::vector<s
 
 Said Export(const std::vector<std::string>& arguments) { return Call(SetUpExport, arguments); }
 
-/// The mistake in what was typed, or what cannot be done with the recording, as text; "" if there is none.
+/// The text of the Error (ConfigError, std::runtime_error) that the export throws; "" if there is none.
 template <class Error>
 std::string ErrorOf(const std::vector<std::string>& arguments) {
   try {
@@ -63,7 +63,7 @@ std::string ErrorOf(const std::vector<std::string>& arguments) {
   }
 }
 
-/// Two quadrotors, 2.5 s at 100 Hz: 251 ticks, in three chunks.
+/// Records two quadrotors for 2.5 s at 100 Hz: 251 ticks, in three chunks.
 constexpr int kTicks = 251;
 void Fly(const ScratchFolder& scratch, const std::string& name, std::vector<std::string> more = {}) {
   const std::string config = scratch.File("two.toml");
@@ -76,7 +76,7 @@ void Fly(const ScratchFolder& scratch, const std::string& name, std::vector<std:
 
 using Table = std::vector<std::vector<double>>;
 
-/// The numbers of a CSV file, and its first line.
+/// Reads the numbers of a CSV file, and its first line into `columns`.
 Table ReadCsv(const std::string& path, std::string& columns) {
   std::istringstream lines(ReadFile(path));
   std::getline(lines, columns);
@@ -174,7 +174,7 @@ TEST(Export, MatHasTheArraysInMatlabsOrderAndTheExperiment) {
   }
 }
 
-TEST(Export, WhatWasCutIsExportedUpToTheCutWhereverThatIs) {
+TEST(Export, ACutRecordingIsExportedUpToTheCutWhereverThatIs) {
   const ScratchFolder scratch;
   Fly(scratch, "run");
   Export({scratch.File("run"), "--format", "csv"});
@@ -206,7 +206,7 @@ TEST(Export, WhatWasCutIsExportedUpToTheCutWhereverThatIs) {
   EXPECT_GT(exported, 40);
 }
 
-/// A run in real time whose agent 2 answers every third tick only, beginning with the second.
+/// Writes a run in real time in which agent 2 answers only every third tick, beginning with tick 1.
 void WriteLateRun(const ScratchFolder& scratch, const std::string& name) {
   const std::string text =
       "[run]\nname = 'late'\nduration_s = 0.1\nmode = 'realtime'\n[agents]\ncount = 2\n[law]\nname = 'consensus'\n";
@@ -260,7 +260,7 @@ TEST(Export, WithoutStatesThereIsNothingToExport) {
   EXPECT_FALSE(std::filesystem::exists(scratch.File("run/states.csv")));
 }
 
-TEST(Export, WithoutCommandsTheirArraysAreLeftOutAndThatIsSaid) {
+TEST(Export, WithoutCommandsTheirArraysAreLeftOutWithAWarning) {
   const ScratchFolder scratch;
   Fly(scratch, "run", {"--set", "record.topics=['*/state', '/agent_1/*']"});
   const Said said = Export({scratch.File("run"), "--format", "csv"});
@@ -279,8 +279,8 @@ TEST(Export, WithoutCommandsTheirArraysAreLeftOutAndThatIsSaid) {
             "t id position velocity orientation angular_velocity\n");
 }
 
-/// Two agents at 100 Hz for 3 s. The sample of `leave_out` at `tick`, or the whole tick, is not there; without `close`
-/// the file has no summary.
+/// Writes a recording of two agents at 100 Hz for 3 s, without the sample of `leave_out` at `tick`, or without the
+/// whole tick. Without `close` the file has no summary.
 void WriteRunWithout(const std::string& path, const Topic& leave_out, int tick, bool whole_tick, bool close) {
   McapWriter writer(path);
   writer.Attach("config.toml", "application/toml",
@@ -343,7 +343,7 @@ TEST(Export, AGapInTheSequenceNumbersIsAnError) {
             path + ": /agent_1/state: gaps in its sequence numbers: 1");
 }
 
-TEST(Export, AFileThatIsThereIsReplacedOnlyByForce) {
+TEST(Export, AnExistingFileIsReplacedOnlyWithForce) {
   const ScratchFolder scratch;
   Fly(scratch, "run");
   const std::string states = scratch.File("run/states.npz"), before = ReadFile(states);
@@ -381,7 +381,7 @@ TEST(Export, OutNamesAFileOrAFolderThatExists) {
             scratch.File("run/states.csv") + ": expected a file, got a folder");
 }
 
-TEST(Export, WhatIsNoRunsRecordingIsAMistakeInWhatWasTyped) {
+TEST(Export, AnythingButARecordingIsAUsageError) {
   const ScratchFolder scratch;
   const std::string path = scratch.File("run.mcap");
   EXPECT_EQ(ErrorOf<ConfigError>({path, "--format", "csv"}), "cannot open " + path + ": No such file or directory");
@@ -401,7 +401,7 @@ TEST(Export, WhatIsNoRunsRecordingIsAMistakeInWhatWasTyped) {
               StartsWith(path + " (config.toml):4:1: agents.count: expected "));
 }
 
-TEST(Export, AnUnknownFormatIsAMistakeInWhatWasTyped) {
+TEST(Export, AnUnknownFormatIsAUsageError) {
   EXPECT_THAT(
       [] {
         Export({"run", "--format", "xls"});

@@ -1,4 +1,4 @@
-// What may go wrong in a run over DDS, with the real processes: each is noticed, named, and cleaned up after.
+// Faults in runs over DDS, with the real processes: each is detected, reported by name, and cleaned up after.
 
 #include <gmock/gmock.h>
 
@@ -16,14 +16,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A run that would last longer than any test.
+/// Starts a run that would last longer than any test.
 Up Endless(const ScratchFolder& folder, std::vector<std::string> more = {}) {
   more.insert(more.end(), {"--duration-s", "100000"});
   return Up(folder, "run", Config("leaderless"), more);
 }
 
-/// Nothing of any dead process is left, or will not be in a moment: another test's leftovers may just be
-/// being removed.
+/// Waits until no shared memory of dead processes is left: those of another test may be just about to be removed.
 testing::AssertionResult NothingIsLeft() {
   if (Until([] { return StaleSharedMemory().empty(); })) return testing::AssertionSuccess();
   return testing::AssertionFailure() << StaleSharedMemory().front() << " was left";
@@ -58,8 +57,8 @@ TEST(Faults, ADyingServerEndsTheRunByName) {
   EXPECT_TRUE(NothingIsLeft());
 }
 
-/// Agent 2 is named. Others may be, too: one that is stopped just when it holds a lock of shared memory, on the way
-/// into the server's queue, keeps those behind it from answering.
+/// Matches an error that names agent 2. Others may be named too: if agent 2 is stopped while it holds a shared-memory
+/// lock of the server's queue, the agents behind it cannot answer.
 auto NamesAgentTwo() {
   return testing::ContainsRegex(": no command from agents? ([0-9]+, )*2(, [0-9]+)* within run.agent_timeout_s = 0.5 s");
 }
@@ -86,11 +85,11 @@ TEST(Faults, NobodyOutlivesAKilledOrchestrator) {
   EXPECT_TRUE(IsGone(server));
   EXPECT_TRUE(IsGone(agent));
   EXPECT_TRUE(NothingIsLeft());
-  const McapContents recording = ReadMcap(up.path() / "run.mcap");  // what was recorded is readable
+  const McapContents recording = ReadMcap(up.path() / "run.mcap");  // the recording is readable
   EXPECT_FALSE(recording.complete);
 }
 
-/// An experiment of so many agents whose law is this Python text.
+/// Writes an experiment whose law is this Python text. Returns its path.
 std::string Python(const ScratchFolder& folder, int agents, const std::string& text, const std::string& more = "") {
   WriteFile(folder.File("law.toml"), "[run]\nduration_s = 1.0\n[agents]\ncount = " + std::to_string(agents) +
                                          "\n[output]\nsave_plot = false\n" + more +
@@ -114,7 +113,7 @@ TEST(Faults, NoLawThatHangsOutlivesAKilledOrchestrator) {
 }
 
 TEST(Faults, ARunDoesNotWaitForWhatALawHasStarted) {
-  ScratchFolder folder;  // laws are made for check, too, and for what is measured beside the run
+  ScratchFolder folder;  // laws are also created by the check and the metrics, in the orchestrator
   const std::string law =
       "import subprocess\ndef start(me, params):\n  helper = subprocess.Popen(['sleep', '1000'])\n"
       "  open('" +
@@ -130,15 +129,14 @@ TEST(Faults, ARunDoesNotWaitForWhatALawHasStarted) {
 }
 
 TEST(Faults, ASlowLawIsNoFault) {
-  ScratchFolder
-      folder;  // what is measured beside the run takes 64 rows' time in the law times all agents: over a second
+  ScratchFolder folder;  // for 64 rows, the metrics spend over a second in the laws of all agents
   const std::string law = "import time\ndef control(t, me, neighbours):\n  time.sleep(0.01)\n  return [0, 0]\n";
   Up up(folder, "run", Python(folder, 4, law), {"--set", "run.agent_timeout_s=1.0"});
   EXPECT_EQ(up.Wait(), 0) << up.err();
 }
 
-TEST(Faults, ALawThatIsSlowBesideTheRunIsNoFault) {
-  ScratchFolder folder;  // a row takes 1.2 s there, while the server has long gone a window ahead
+TEST(Faults, ALawThatIsSlowInTheMetricsIsNoFault) {
+  ScratchFolder folder;  // a row takes 1.2 s in the metrics; meanwhile the server is a whole window ahead
   const std::string law =
       "import os, time\ndef control(t, me, neighbours):\n"
       "  if t < 0.015 and 'orchestrator' in os.readlink('/proc/self/exe'):\n    time.sleep(0.3)\n  return [0, 0]\n";
@@ -157,11 +155,11 @@ TEST(Faults, ASilentServerIsNamed) {
   EXPECT_TRUE(NothingIsLeft());
 }
 
-TEST(Faults, ASignalToTheWholeJobIsNobodysFailure) {
+TEST(Faults, ASignalToTheWholeJobIsNoFailure) {
   ScratchFolder folder;
   Up up = Endless(folder);
   ASSERT_TRUE(Flies(up));
-  std::vector<pid_t> others;  // found first: the run may end between two signals, and 0 is our own group
+  std::vector<pid_t> others;  // looked up first: the run may end between signals; pid 0 is our own group
   for (const char* process : {"agent_2", "agent_3", "agent_4", "physics_server"}) others.push_back(up.Child(process));
   kill(up.Child("agent_1"), SIGTERM);
   up.Signal(SIGTERM);
@@ -212,7 +210,7 @@ TEST(Faults, ASecondCtrlCKillsWhatDoesNotStop) {
   ScratchFolder folder;
   Up up = Endless(folder, {"--set", "run.agent_timeout_s=1000"});
   ASSERT_TRUE(Flies(up));
-  kill(up.Child("agent_2"), SIGSTOP);  // now nobody can stop in order
+  kill(up.Child("agent_2"), SIGSTOP);  // now the run cannot stop in order
   up.Signal(SIGINT);
   ASSERT_TRUE(Until([&] { return up.Said("once more to kill"); }));
   up.Signal(SIGINT);
@@ -220,7 +218,7 @@ TEST(Faults, ASecondCtrlCKillsWhatDoesNotStop) {
   EXPECT_TRUE(NothingIsLeft());
 }
 
-TEST(Faults, ACtrlCThatCannotBeObeyedKeepsWhatTheServerMeasured) {
+TEST(Faults, ACtrlCThatCannotStopInOrderKeepsWhatTheServerMeasured) {
   ScratchFolder folder;
   Up up = Endless(folder, {"--set", "run.agent_timeout_s=1000"});
   ASSERT_TRUE(Flies(up));
@@ -277,7 +275,7 @@ TEST(Faults, AFullDiskFailsTheRun) {
   EXPECT_TRUE(NothingIsLeft());
 }
 
-/// The domain that `up` says it runs in.
+/// The DDS domain that `up` prints.
 int DomainOf(const Running& up) {
   const std::string text = up.err();
   return std::stoi(text.substr(text.find("domain ") + 7));
@@ -309,7 +307,7 @@ TEST(Faults, AProcessOfSeveralAgentsMayHearWhatOneOfThemMayAndNoMore) {
   Up up = Endless(folder, {"--set", "graph.topology=path", "--set", "network.agents_per_process=2"});
   ASSERT_TRUE(Flies(up));
   Domain domain(Intruder(up, "agents_1-2"), [] {});
-  Reader<StateType> may(domain, Topic::State(3), [](const auto&) {});  // agent 2 hears it
+  Reader<StateType> may(domain, Topic::State(3), [](const auto&) {});  // agent 2 may hear it
   Reader<StateType> peeking(domain, Topic::State(4), [](const auto&) {});
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(
@@ -329,7 +327,7 @@ TEST(Faults, AnAgentThatIsSentBundlesMayHearNothingElse) {
       HasSubstr("the wire differs from the graph: agent_1 reads /agent_2/bundle, which the graph does not let it"));
 }
 
-TEST(Faults, ASecondAgentOfTheSameNumberEndsTheRun) {
+TEST(Faults, ASecondAgentWithTheSameIdEndsTheRun) {
   ScratchFolder folder;
   Up up = Endless(folder);
   ASSERT_TRUE(Flies(up));
@@ -339,7 +337,7 @@ TEST(Faults, ASecondAgentOfTheSameNumberEndsTheRun) {
   EXPECT_THAT(up.err(), HasSubstr("two processes say that they are agent_2"));
 }
 
-TEST(Faults, AnAgentWithANumberThatNobodyHasIsToldSo) {
+TEST(Faults, AnAgentWithAnUnknownIdIsRefused) {
   ScratchFolder folder;
   Up up = Endless(folder);
   ASSERT_TRUE(Flies(up));
@@ -347,7 +345,7 @@ TEST(Faults, AnAgentWithANumberThatNobodyHasIsToldSo) {
                 {"--id", "9", "--loopback", "--domain", std::to_string(DomainOf(up))}, folder.File("ninth"));
   EXPECT_EQ(ninth.Wait(), 1);
   EXPECT_THAT(ninth.err(), HasSubstr("error: --id 9: the experiment has only agents 1 to 4"));
-  up.Signal(SIGINT);  // the others fly on
+  up.Signal(SIGINT);  // the run continues
   EXPECT_EQ(up.Wait(), 130) << up.err();
 }
 
@@ -372,10 +370,10 @@ TEST(Faults, AnAgentThatFallsSilentEndsARealtimeRunToo) {
   EXPECT_GT(up.Summary()["wall_s"].get<double>(), 0.0);
 }
 
-TEST(Faults, WhatTheServerMeasuredIsToldWhenAnAgentDies) {
+TEST(Faults, WhatTheServerMeasuredIsReportedWhenAnAgentDies) {
   ScratchFolder folder;
   Up up(folder, "run", Config("leaderless"), {"--set", "run.mode=realtime", "--duration-s", "20"});
-  ASSERT_TRUE(Until([&] {  // a tenth of the run
+  ASSERT_TRUE(Until([&] {  // until a tenth of the run is done: the second progress line
     const std::string said = up.err(), line = "x real time";
     return said.find(line, said.find(line) + 1) < said.size();
   }));
@@ -387,8 +385,8 @@ TEST(Faults, WhatTheServerMeasuredIsToldWhenAnAgentDies) {
   EXPECT_EQ(up.Summary()["safety"]["collisions"], 0);
 }
 
-TEST(Faults, WhatTheServerMeasuredIsToldWhenAnAgentDiesInTheFirstTick) {
-  ScratchFolder folder;  // a process that leaves takes along what nobody has read yet of its shared memory
+TEST(Faults, WhatTheServerMeasuredIsReportedWhenAnAgentDiesInTheFirstTick) {
+  ScratchFolder folder;  // when a process exits, samples in its shared memory that are not read yet are lost
   for (int i = 0; i < 10; ++i) {
     Up up = Endless(folder, {"--set", "run.mode=realtime", "--force"});
     ASSERT_TRUE(Flies(up));
@@ -402,7 +400,7 @@ TEST(Faults, HowAProgramWasStartedDoesNotMatter) {
   ScratchFolder folder;
   const std::string up = "'" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") +
                          " --duration-s 0.5 --set output.save_plot=false --out ";
-  // Ignored SIGCHLD, as some supervisors leave it; no standard streams, as daemons are started.
+  // SIGCHLD ignored, as some supervisors leave it; and without standard streams, as daemons are started.
   EXPECT_EQ(Shell("trap '' CHLD; " + up + folder.File("ignored")).exit_code, 0);
   EXPECT_EQ(Shell("(" + up + folder.File("closed") + " 0<&- 1>&- 2>&-)").exit_code, 0);
   EXPECT_TRUE(ReadMcap(folder.File("closed/run.mcap")).complete);
@@ -419,7 +417,7 @@ TEST(Faults, AnAgentProgramThatIsMissingIsNamed) {
   EXPECT_TRUE(std::filesystem::exists(folder.File("run/summary.json")));
 }
 
-TEST(Faults, AStrangerMayListenButNotFly) {
+TEST(Faults, AnotherProgramMayReadButNotCommand) {
   ScratchFolder folder;
   Up up = Endless(folder);
   ASSERT_TRUE(Flies(up));

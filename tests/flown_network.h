@@ -9,8 +9,8 @@
 
 namespace mascot {
 
-/// An experiment flown as the engines fly it, without a wire or files: links, laws, limits, low-level stacks and
-/// bodies.
+/// Runs an experiment as the engines do, with links, laws, limits, low-level controllers and bodies, but without DDS
+/// and files.
 class FlownNetwork {
  public:
   explicit FlownNetwork(const std::string& toml)

@@ -1,5 +1,5 @@
-// Steps at which nothing can touch are done without Bullet's contacts: what they do must be what Bullet does, to the
-// bit, and Bullet must be there before anything touches.
+// Steps in which nothing can touch are computed without Bullet's contact detection. They must give the same bits as
+// Bullet, and Bullet must take over before anything touches.
 #include <gmock/gmock.h>
 
 #include <cstring>
@@ -30,7 +30,7 @@ bool SameBits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-/// The same experiment twice: as we run it, and with Bullet's contacts at every step.
+/// The same experiment in two worlds: as we run it, and with Bullet's contact detection at every step.
 struct Twins {
   explicit Twins(const Experiment& e) : ours(e, Look::kWhenClose), bullet(e, Look::kAlways), count(e.size()) {}
   void Step(const std::vector<Actuation>& commands) {
@@ -42,7 +42,7 @@ struct Twins {
   int count;
 };
 
-/// A swarm of all models in wind, some of it on the ground, crossing itself.
+/// Agents of all models in wind, with crossing paths, some of them on the ground.
 Experiment Swarm(unsigned seed, int count) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> place(-4, 4), height(0.5, 4), speed(-3, 3);
@@ -106,7 +106,7 @@ TEST(FreeSteps, CountTheSameContactsAsBullet) {
     const Experiment e = Swarm(seed, 8);
     Twins twins(e);
     std::mt19937_64 random(seed);
-    // Up to the first contact, which both must see at the same tick.
+    // Until the first contact, which both worlds must detect at the same tick.
     for (int tick = 0; tick < 300 && twins.bullet.collisions() == 0; ++tick) twins.Step(RandomCommands(e, random));
     EXPECT_EQ(twins.ours.contacts().agents, twins.bullet.contacts().agents) << seed;
     EXPECT_EQ(twins.ours.contacts().ground, twins.bullet.contacts().ground) << seed;
@@ -141,7 +141,7 @@ TEST(FreeSteps, LeaveStackedBodiesToBullet) {
     EXPECT_LT((twins.ours.State(id).p_WB - twins.bullet.State(id).p_WB).norm(), 1e-3) << id;
 }
 
-TEST(FreeSteps, GoOnWhenBodiesHavePartedAgain) {
+TEST(FreeSteps, AreTakenAgainWhenBodiesHaveSeparated) {
   Experiment e = Bodies("double_integrator", {{-1, 0, 10}, {1, 0, 10}});
   e.agents[0].v_W = {2, 0, 0};
   World world(e);
@@ -158,8 +158,8 @@ TEST(FreeSteps, GoOnWhenBodiesHavePartedAgain) {
   EXPECT_LT(last, 1500);
 }
 
-TEST(FreeSteps, LetHoveringTeamsAlone) {
-  World world(Bodies("quadrotor", {{0, 0, 1}, {0, 0, 1.5}, {0, 0, 2}}));  // above each other, as agents that have met
+TEST(FreeSteps, DetectNoContactsForHoveringTeams) {
+  World world(Bodies("quadrotor", {{0, 0, 1}, {0, 0, 1.5}, {0, 0, 2}}));  // above each other, as after a meeting
   const double hover = Built("mascot").HoverRotorSpeed(9.81);
   const std::vector<Actuation> commands(3, Actuation{hover, hover, hover, hover});
   for (int tick = 0; tick < 500; ++tick) world.Step(commands);

@@ -23,7 +23,7 @@ std::vector<int> Ids(const std::vector<Graph::Neighbour>& heard) {
   return ids;
 }
 
-/// [graph] with the lines `text`, for `count` agents.
+/// Reads [graph] with the lines `text`, for `count` agents.
 Graph Read(const std::string& text, int count, std::uint64_t seed = 1) {
   Section graph = Section::FromText("[graph]\n" + text, "g.toml").Child("graph");
   graph.Use(GraphKeys());
@@ -43,7 +43,7 @@ std::vector<std::string> Mistakes(const std::string& text, int count) {
   return {};
 }
 
-// --- families: eigenvalues as in any book on graphs -------------------------------------------------
+// --- families: eigenvalues from textbooks -----------------------------------------------------------
 
 TEST(GraphFamilies, AreConnectedAndOfTheRightSizeWhateverTheirNumber) {
   for (const std::string_view name : TopologyNames()) {
@@ -101,16 +101,16 @@ TEST(GraphFamilies, DirectedPathHearsItsPredecessor) {
   EXPECT_THAT(path.Roots(), ElementsAre(1));
 }
 
-TEST(GraphFamilies, DirectedPathHasAllItsEigenvaluesButZeroAtOneToTheLastDigit) {
-  // Forty times the same: a solver of the whole matrix would scatter them by a tenth and more.
-  std::vector<std::vector<Graph::Neighbour>> chain(41);  // numbered in an order that is not its own
+TEST(GraphFamilies, DirectedPathHasAllItsEigenvaluesButZeroExactlyAtOne) {
+  // The eigenvalue 1 forty times: a solver for the whole matrix would scatter them by 0.1 and more.
+  std::vector<std::vector<Graph::Neighbour>> chain(41);  // ids not in the order of the chain
   for (int i = 1; i < 41; ++i) chain[static_cast<std::size_t>(i * 5 % 41)] = {{(i - 1) * 5 % 41 + 1, 1.0}};
   const Eigen::VectorXcd values = Graph(chain).Eigenvalues();
   EXPECT_EQ(values(0), 0.0);
   for (int i = 1; i < 41; ++i) EXPECT_EQ(values(i), 1.0);
 }
 
-TEST(GraphFamilies, TreesHangOnHalfTheirNumber) {
+TEST(GraphFamilies, TreeParentsHaveHalfTheNumber) {
   EXPECT_THAT(Ids(MakeTopology("directed_tree", 7).HeardBy(7)), ElementsAre(3));
   EXPECT_THAT(Ids(MakeTopology("binary_tree", 7).HeardBy(3)), ElementsAre(1, 6, 7));
 }
@@ -126,12 +126,13 @@ TEST(GraphFamilies, ErdosRenyiIsSymmetricSeededAndAsDenseAsAsked) {
   EXPECT_EQ(MakeErdosRenyi(9, 1, 1).edges(), 72u);
 }
 
-// --- what a graph says of itself --------------------------------------------------------------------
+// --- properties of a graph --------------------------------------------------------------------------
 
-// 1 -> 2 -> 3 -> 1 hear each other in a circle, 4 hears 3, 5 hears 4 with weight 0.5.
+// A directed cycle of 1, 2, 3 (1 hears 3, 2 hears 1 with weight 2, 3 hears 2 with weight 4); 4 hears 3,
+// 5 hears 4 with weight 0.5.
 Graph CircleWithTail() { return Graph({{{3, 1}}, {{1, 2}}, {{2, 4}}, {{3, 1}}, {{4, 0.5}}}); }
 
-TEST(Graph, LaplacianRowIsWhatTheAgentNeeds) {
+TEST(Graph, LaplacianRowHasTheWeightsOfTheAgent) {
   const Eigen::MatrixXd laplacian = Graph({{}, {{1, 2}, {3, 0.5}}, {{2, 1}}}).Laplacian();
   EXPECT_EQ(laplacian, (Eigen::Matrix3d() << 0, 0, 0, -2, 2.5, -0.5, 0, -1, 1).finished());
 }
@@ -153,11 +154,11 @@ TEST(Graph, OneAgentIsAGraph) {
   EXPECT_THAT(*alone.SpanningTree(1), ElementsAre(0));
 }
 
-TEST(Graph, ComponentsAreThoseWhoHearEachOther) {
+TEST(Graph, ComponentsAreStronglyConnected) {
   EXPECT_THAT(CircleWithTail().Components(), ElementsAre(ElementsAre(1, 2, 3), ElementsAre(4), ElementsAre(5)));
 }
 
-TEST(Graph, RootsAreThoseWhomEveryoneHears) {
+TEST(Graph, RootsAreHeardByEveryone) {
   EXPECT_THAT(CircleWithTail().Roots(), ElementsAre(1, 2, 3));
   EXPECT_THAT(Graph({{}, {}}).Roots(), IsEmpty());
   EXPECT_THAT(Graph({{}, {{1, 1}, {3, 1}}, {}}).Roots(), IsEmpty());
@@ -169,14 +170,14 @@ TEST(Graph, Lambda2VanishesExactlyWithoutASpanningTree) {
   EXPECT_EQ(Graph({{{2, 1}}, {{1, 1}}, {{4, 1}}, {{3, 1}}}).Lambda2(), 0);
 }
 
-TEST(Graph, LeftNullVectorIsWhatConsensusWeighsStartsWith) {
+TEST(Graph, LeftNullVectorHasTheWeightsOfTheStarts) {
   const Graph graph = CircleWithTail();
   const Eigen::VectorXd gamma = *graph.LeftNullVector();
   EXPECT_NEAR(gamma.sum(), 1, kExact);
   EXPECT_NEAR((gamma.transpose() * graph.Laplacian()).norm(), 0, kExact);
   EXPECT_EQ(gamma(3), 0);
   EXPECT_EQ(gamma(4), 0);
-  // In a circle the weight goes with the inverse of what each hears: 1, 1/2, 1/4.
+  // In a directed cycle, gamma_i is proportional to the inverse of the weight with which i hears: 1, 1/2, 1/4.
   EXPECT_NEAR(gamma(0), 4.0 / 7, kExact);
   EXPECT_NEAR(gamma(2), 1.0 / 7, kExact);
 }
@@ -190,7 +191,7 @@ TEST(Graph, LeftNullVectorOfASymmetricGraphIsTheMean) {
 TEST(Graph, SpanningTreeIsBreadthFirstWithTheLowestParentOneLevelUp) {
   EXPECT_THAT(*MakeTopology("complete", 4).SpanningTree(3), ElementsAre(3, 3, 0, 3));
   EXPECT_THAT(*MakeTopology("ring", 6).SpanningTree(1), ElementsAre(0, 1, 2, 3, 6, 1));
-  // 6 hears 4 and 5, both two steps from the root; 5 is the first to be found, by way of 2.
+  // 6 hears 4 and 5, both two steps from the root. The search reaches 5 first, through 2; the parent is still 4.
   EXPECT_THAT(*Graph({{}, {{1, 1}}, {{1, 1}}, {{3, 1}}, {{2, 1}}, {{4, 1}, {5, 1}}}).SpanningTree(1),
               ElementsAre(0, 1, 1, 3, 2, 4));
   EXPECT_THAT(*CircleWithTail().SpanningTree(2), ElementsAre(3, 0, 2, 3, 4));
@@ -225,7 +226,7 @@ TEST(ReadGraph, RowsOfAMatrixAreWhatTheAgentHears) {
   EXPECT_EQ(Read("edges = [[3, 2, 2.5]]", 3).HeardBy(3)[0].weight, 2.5);
 }
 
-TEST(ReadGraph, TakesNoEdgesAsNobodyHearing) { EXPECT_EQ(Read("edges = []", 3).edges(), 0u); }
+TEST(ReadGraph, AcceptsAnEmptyListOfEdges) { EXPECT_EQ(Read("edges = []", 3).edges(), 0u); }
 
 TEST(ReadGraph, ForgivesRoundingInRowSums) {
   EXPECT_THAT(Mistakes("laplacian = [[0.3, -0.1, -0.2], [0, 0, 0], [0, 0, 0]]", 3), IsEmpty());
@@ -277,7 +278,7 @@ TEST(ReadGraph, RefusesMatricesOfAnotherSize) {
               ElementsAre("g.toml:2:13: graph.adjacency: expected 3 rows, one per agent, got a list of 2"));
 }
 
-TEST(ReadGraph, RefusesEdgesThatAreNone) {
+TEST(ReadGraph, RefusesInvalidEdges) {
   EXPECT_THAT(Mistakes("edges = [[1, 3]]", 2),
               ElementsAre("g.toml:2:10: graph.edges[0]: expected agents' numbers from 1 to 2, got 3"));
   EXPECT_THAT(Mistakes("edges = [[0, 1]]", 2),

@@ -1,4 +1,4 @@
-// An agent started by hand on another host: two network namespaces joined by a cable (veth), as root.
+// An agent started by hand on another host: two network namespaces connected by a veth pair. Needs root.
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,8 @@
 namespace mascot::test {
 namespace {
 
-/// Two hosts of a test's own: ours has 10.77.0.1, the other 10.77.0.2. Named by this process's id, removed with it.
+/// Two network namespaces as hosts, 10.77.0.1 (ours) and 10.77.0.2. Their names contain our pid; the destructor removes
+/// them.
 class TwoHosts {
  public:
   TwoHosts() : here_("mascot-a" + std::to_string(getpid())), there_("mascot-b" + std::to_string(getpid())) {
@@ -51,7 +52,8 @@ class Hosts : public testing::Test {
     ASSERT_EQ(hosts_.trouble(), "");
   }
 
-  /// Runs `config` with one agent on the other host, which has no copy of it; `more` adds to the experiment.
+  /// Runs `config` with agent `external_id` on the other host, where the file does not exist. `more`: further
+  /// arguments.
   void FlyTogether(const std::string& config, const std::vector<std::string>& more, int external_id) {
     const std::string bin = MASCOT_BINARY_DIR;
     std::vector<std::string> up_words{

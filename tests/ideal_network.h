@@ -12,7 +12,7 @@ namespace mascot {
 /// The agents of an experiment as ideal double integrators whose acceleration is held for one tick:
 ///   p+ = p + h v + h^2 u / 2,  v+ = v + h u
 /// or, where their law wants a velocity, as single integrators: p+ = p + h u.
-/// Nothing but the law: no limits, no body, no delay.
+/// Tests the law alone: no limits, bodies or delays.
 class IdealNetwork {
  public:
   explicit IdealNetwork(const std::string& toml)
@@ -29,7 +29,7 @@ class IdealNetwork {
   double time_s() const { return experiment.time_s(tick); }
   Motion& agent(int id) { return motions[static_cast<std::size_t>(id - 1)]; }
 
-  /// What each agent's law wants now, over law.axes.
+  /// Output of each agent's law at the current tick, along law.axes.
   std::vector<Eigen::Vector3d> Wants() {
     std::vector<Eigen::Vector3d> wants_W;
     for (int id = 1; id <= experiment.size(); ++id) {

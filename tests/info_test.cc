@@ -22,7 +22,7 @@ struct Said {
   std::string out, err;
 };
 
-/// `orchestrator info`, in this process.
+/// Runs `orchestrator info` in this process.
 Said Info(const std::vector<std::string>& arguments) {
   CLI::App app;
   const std::function<int()> run = SetUpInfo(app);
@@ -36,7 +36,7 @@ Said Info(const std::vector<std::string>& arguments) {
   return said;
 }
 
-/// Ten seconds of one agent at 10 Hz; `commands` of its 101 ticks answered.
+/// Writes a recording of one agent at 10 Hz for 10 s: 101 states and the first `commands` commands.
 void WriteRun(const std::string& path, int commands, const std::string& config = "[run]\n") {
   McapWriter writer(path);
   writer.Attach("config.toml", "application/toml", config);
@@ -51,7 +51,7 @@ void WriteRun(const std::string& path, int commands, const std::string& config =
   writer.Close();
 }
 
-/// The experiment of such a run, which lasts `duration_s`.
+/// The attached experiment of such a recording.
 std::string Config(const std::string& duration_s, const std::string& mode) {
   return "[run]\nname = 'run'\nduration_s = " + duration_s + "\nmode = '" + mode +
          "'\n[agents]\ncount = 1\n[control]\nrate_hz = 10\n[record]\ntopics = ['/agent_*']\n";
@@ -104,7 +104,7 @@ TEST(Info, ATickThatWasNotAnsweredMakesARunIncomplete) {
   EXPECT_THAT(said.out, EndsWith("complete: no (/agent_1/state has 101 messages, /agent_1/command has 100)\n"));
 }
 
-TEST(Info, InRealTimeALateCommandIsNoLoss) {
+TEST(Info, InRealTimeAMissingCommandIsNoGap) {
   const ScratchFolder scratch;
   WriteRun(scratch.File("run.mcap"), 100, Config("10.0", "realtime"));
   const Said said = Info({scratch.File("run.mcap")});
@@ -132,7 +132,7 @@ TEST(Info, SaysThatARunEndedEarly) {
   EXPECT_EQ(nlohmann::json::parse(Info({"--json", scratch.File("run.mcap")}).out).at("planned_ticks"), 301);
 }
 
-/// A closed file, without CRCs, with a channel whose sequence goes 0, 2.
+/// Writes a closed file without CRCs, with a channel whose sequence numbers are 0, 2.
 void WriteGap(const std::string& path) {
   using mcap::Op;
   using mcap::Record;
@@ -189,7 +189,7 @@ TEST(Info, ARecordingByAnotherNameIsFoundInItsRunFolder) {
   EXPECT_EQ(said.err, "error: " + scratch.path().string() + ": expected a run folder with one .mcap file, got 2\n");
 }
 
-TEST(Info, WhatCannotBeOpenedIsAnErrorAndPrintsNothingElse) {
+TEST(Info, AFileThatCannotBeOpenedIsAnErrorAndPrintsNothingElse) {
   const ScratchFolder scratch;
   const std::string path = scratch.File("none.mcap");
   const Said said = Info({path, "--json"});

@@ -1,4 +1,4 @@
-// MASCOT as its users have it: installed, with laws of their own built against it.
+// MASCOT as users have it: installed, with plug-in laws built against the installation.
 
 #include <gmock/gmock.h>
 
@@ -18,14 +18,14 @@ void ExpectDone(const std::string& command) {
 
 std::string Quoted(const fs::path& path) { return "'" + path.string() + "'"; }
 
-/// This build, installed into a folder of its own, with the example of docs/plugin_law.md copied out of it.
+/// Installs this build into a temporary folder, and copies the example of docs/plugin_law.md out of the installation.
 struct Installed {
   Installed() {
     ExpectDone(MASCOT_CMAKE " --install '" MASCOT_BINARY_DIR "' --prefix " + Quoted(prefix));
     fs::copy(prefix / "share/mascot/examples/plugin_law", example);
   }
 
-  /// `orchestrator up CONFIG --out folder/name`, of the installed programs.
+  /// Starts the installed `orchestrator up CONFIG --out folder/name`.
   std::unique_ptr<Running> Up(const fs::path& config, const std::string& name, std::vector<std::string> more) const {
     std::vector<std::string> words{"up", config.string(), "--out", folder.File(name)};
     words.insert(words.end(), more.begin(), more.end());
@@ -40,7 +40,7 @@ struct Installed {
   fs::path example = folder.path() / "example";
 };
 
-/// Configured and built as its CMakeLists.txt says, with the compiler that built the rest.
+/// Builds the example with its CMakeLists.txt and the compiler of this build.
 void BuildWithCmake(const Installed& installed) {
   const fs::path build = installed.example / "build";
   ExpectDone(MASCOT_CMAKE " -S " + Quoted(installed.example) + " -B " + Quoted(build) +
@@ -48,7 +48,7 @@ void BuildWithCmake(const Installed& installed) {
   ExpectDone(MASCOT_CMAKE " --build " + Quoted(build));
 }
 
-/// As docs/plugin_law.md does it without CMake.
+/// Builds a law without CMake, as in docs/plugin_law.md.
 void BuildByHand(const Installed& installed, const fs::path& source, const std::string& more_options,
                  const fs::path& library) {
   const fs::path include = installed.prefix / "include";
@@ -56,7 +56,7 @@ void BuildByHand(const Installed& installed, const fs::path& source, const std::
              Quoted(include / "mascot") + " -I '" MASCOT_EIGEN "' " + Quoted(source) + " -o " + Quoted(library));
 }
 
-/// The law that docs/plugin_law.md shows in its text.
+/// The source of the law in docs/plugin_law.md.
 std::string DocumentedLaw() {
   const std::string text = ReadFile(MASCOT_SOURCE_DIR "/docs/plugin_law.md");
   const std::string opening = "```cpp\n";
@@ -66,7 +66,8 @@ std::string DocumentedLaw() {
   return text.substr(begin + opening.size(), end - begin - opening.size());
 }
 
-/// The five of the example start far apart and meet at the mean of their starts, (-2, -7), within the law's own bound.
+/// The example's five agents start far apart and meet at the mean of their initial positions, (-2, -7), within the
+/// bound of the law.
 void ExpectTheyMeet(const nlohmann::json& summary) {
   EXPECT_NEAR(summary["consensus"]["value_m"][0].get<double>(), -2, 0.01);
   EXPECT_NEAR(summary["consensus"]["value_m"][1].get<double>(), -7, 0.01);

@@ -1,5 +1,5 @@
-// Every key of an experiment file is read for something: changing it changes a result. Keys of the wire and of real
-// time are in engines_test.cc and faults_test.cc, parameters of laws in laws_test.cc too.
+// Every key of an experiment file has an effect: changing it changes a result. engines_test.cc and faults_test.cc test
+// the keys for DDS and real time; laws_test.cc also tests the parameters of laws.
 
 #include <gmock/gmock.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A short run in one process; what `sets` say of the base configuration.
+/// A short run in one process of a shipped configuration, with `sets` (KEY=VALUE).
 struct Flown {
   Flown(const ScratchFolder& folder, const std::string& name, const std::string& config, std::vector<std::string> sets)
       : up(folder, name, Config(config), Words(std::move(sets))) {
@@ -28,8 +28,8 @@ struct Flown {
   Up up;
 };
 
-/// `key` set to `value`, on top of `base`, changes what the agents do. `name`, the test's, is the very key that is
-/// changed; where several rows change it, it says how, or whose.
+/// A test that setting `key` to `value`, in addition to `base`, changes the states. `name` is the name of the test: the
+/// key that is changed and, if several tests change it, how or for which agents.
 struct Row {
   std::string key, value;
   std::vector<std::string> base = {};
@@ -64,13 +64,13 @@ INSTANTIATE_TEST_SUITE_P(Wind, Key,
                                          Row{"physics.wind.gust_time_s", "3.0", {"physics.wind.gust_std_m_per_s=1.0"}}),
                          NameOf);
 
-/// One obstacle: a box of 1 m at [1.2, 0, 1] but for what `more` says.
+/// One obstacle, by default a box of 1 m at [1.2, 0, 1]; `more`: further keys.
 std::string Block(const std::string& shape = "box", const std::string& place = "[1.2, 0, 1]",
                   const std::string& size = "[1, 1, 1]", const std::string& more = "") {
   return "[{ shape = '" + shape + "', position_m = " + place + ", size_m = " + size + more + " }]";
 }
 
-/// `key` set to `value` for an agent that passes `obstacle` closely.
+/// Sets `key` to `value` for an agent that passes `obstacle` closely.
 Row Passing(const std::string& obstacle, const std::string& key, const std::string& value) {
   return {key,
           value,
@@ -78,7 +78,7 @@ Row Passing(const std::string& obstacle, const std::string& key, const std::stri
            "physics.obstacles=" + obstacle}};
 }
 
-/// Another obstacle in place of Block(); `what` is different.
+/// Replaces Block() by another obstacle; `what` names the difference.
 Row OtherBlock(const std::string& what, const std::string& block) {
   Row row = Passing(Block(), "physics.obstacles", block);
   row.name = "physics.obstacles." + what;
@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Passing(Block(), "physics.collisions", "false")),
     NameOf);
 
-/// One rotor failure in place of that of rotor 1 of agent 1 at 0.5 s; `what` is different.
+/// Replaces the failure of rotor 1 of agent 1 at 0.5 s by another rotor failure; `what` names the difference.
 Row Failing(const std::string& what, int agent, int rotor, const std::string& at_s, const std::string& more = "") {
   return {
       "physics.rotor_failures",
@@ -177,7 +177,7 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"run.seed", "2", {"link.loss=0.3", "agents={ count = 2, position_m = [[0, 0, 1], [5, 0, 2]] }"}}),
     NameOf);
 
-/// The one override of links, in place of that of agent 1 hearing agent 2 late; `what` is different.
+/// Replaces the link override that delays the edge [1, 2] by another one; `what` names the difference.
 Row OtherLinks(const std::string& what, const std::string& value) {
   return {"link.override",
           "[{ " + value + " }]",
@@ -220,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(Sensors, Key,
 
 // --- [graph] ----------------------------------------------------------------------------------------
 
-/// A graph of the kind `was`, in place of which stands that of `is`; `what` is different.
+/// Replaces the random graph `was` by `is`; `what` names the difference.
 Row OtherRandomGraph(const std::string& what, const std::string& was, const std::string& is) {
   return {"graph",
           "{ random = { " + is + " } }",
@@ -261,7 +261,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // --- [control] --------------------------------------------------------------------------------------
 
-/// Agents of `model` that fly at a velocity of their own.
+/// Agents of `model` under a law that wants velocities.
 std::vector<std::string> DrivenByVelocity(const std::string& model) {
   return {"agents.model=" + model, "law={ name = 'velocity_consensus' }"};
 }
@@ -296,7 +296,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // --- [[agents.override]] ----------------------------------------------------------------------------
 
-/// An override of agent 2 in which `key` is `value`.
+/// Overrides `key` by `value` for agent 2.
 Row Override(const std::string& key, const std::string& value, std::vector<std::string> base = {}) {
   return {"agents.override", "[{ id = 2, " + key + " = " + value + " }]", std::move(base), "agents.override." + key};
 }
@@ -347,7 +347,7 @@ TEST(Key, RecordTopicsChooses) {
                   {"run.duration_s=0.1", "record.topics=[\"/agent_[12]/state\", \"/clock\"]"});
   EXPECT_THAT(TopicsOf(run, "run.mcap"), testing::ElementsAre("/agent_1/state", "/agent_2/state", "/clock"));
   EXPECT_EQ(run.up.Summary()["samples"]["topics"], 3);
-  EXPECT_TRUE(fs::exists(run.up.path() / "states.npz"));  // it does not depend on what is recorded
+  EXPECT_TRUE(fs::exists(run.up.path() / "states.npz"));  // not affected by record.topics
 }
 
 TEST(Key, OutputSaveDataKeepsOrDropsTheArrays) {
@@ -414,7 +414,7 @@ TEST(Key, OutputFidelityComparesWithIdealIntegratorsOrNot) {
   EXPECT_EQ(without.up.Summary()["fidelity"]["travelled_m"], with.up.Summary()["fidelity"]["travelled_m"]);
 }
 
-/// What the summary counts on each edge: {sent, lost, late, bytes} by [hearer, heard].
+/// Counts of the summary for each edge: {sent, lost, late, bytes} by [hearer, heard].
 std::map<std::pair<int, int>, std::vector<std::int64_t>> EdgesOf(const Flown& run) {
   std::map<std::pair<int, int>, std::vector<std::int64_t>> edges;
   const nlohmann::json summary = run.up.Summary();
@@ -427,7 +427,7 @@ const std::vector<std::string> kLossyTriangle = {
     "run.duration_s=2.0", "agents={ count = 3, position_m = [[0, 0, 1], [9, 0, 2], [0, 9, 3]] }",
     "graph={ edges = [[1, 2], [2, 3], [3, 1]] }", "link={ loss = 0.3, delay_s = 0.05, jitter_s = 0.05 }"};
 
-TEST(LinkCounts, OfAnEdgeDoNotDependOnWhoElseThereIs) {
+TEST(LinkCounts, OfAnEdgeDoNotDependOnOtherAgents) {
   ScratchFolder folder;
   const Flown three(folder, "three", "leaderless", kLossyTriangle);
   auto sets = kLossyTriangle;

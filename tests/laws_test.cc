@@ -24,7 +24,7 @@ const std::string kPath5 =
     "[agents]\ncount = 5\nmodel = 'double_integrator'\n"
     "position_m = [[3, 0, 1], [-1, 2, 2], [4, 1, 3], [1, -3, 4], [-5, 5, 5]]\n";
 
-/// Two agents, 2 hears 1, `z_m` apart in x.
+/// Two agents at a distance of `z_m` in x; 2 hears 1.
 std::string Pair(double z_m, const std::string& law, const std::string& velocity = "[[0, 0, 0], [0, 0, 0]]") {
   return "[run]\nduration_s = 1.0\n[agents]\ncount = 2\nmodel = 'double_integrator'\nposition_m = [[0, 0, 1], [" +
          ShortestFloat(z_m) + ", 0, 2]]\nvelocity_m_per_s = " + velocity + "\n[graph]\nedges = [[2, 1]]\n[law]\n" + law;
@@ -46,7 +46,7 @@ TEST(Consensus, MeetsAtTheMeanStartPlusTheMeanVelocityOverBeta) {
                        "velocity_m_per_s = [[1, 0, 0], [0, -2, 0], [0.5, 0, 0], [0, 0, 0], [2, 1, 0]]\n"
                        "[graph]\ntopology = 'path'\n[law]\nname = 'consensus'\np_gain = 2.0\nbeta = 1.5\n");
   network.RunUntil(120);
-  // Sampled, the velocity part is v0 (1 / beta - h / 2): it tends to v0 / beta with the period.
+  // With sampling, the velocity contributes v0 (1 / beta - h / 2), which tends to v0 / beta for h -> 0.
   const double reach_s = 1 / 1.5 - network.h() / 2;
   for (const Motion& motion : network.motions) {
     EXPECT_NEAR(motion.p_WB.x(), 0.4 + 0.7 * reach_s, 1e-9);
@@ -71,8 +71,8 @@ TEST(Consensus, MeetsOnADirectedGraphAtTheMeanWeightedByTheLeftNullVector) {
   for (const Motion& motion : network.motions) EXPECT_LT((motion.p_WB - meeting).head<2>().norm(), 1e-9);
 }
 
-TEST(Consensus, KeepsEveryModeOfTheGraphToItself) {
-  // Started in an eigenvector of L, agents stay in it, and its coordinate obeys s^2 + beta s + p_gain lambda.
+TEST(Consensus, DecouplesTheModesOfTheGraph) {
+  // Agents that start in an eigenvector of L stay in it; its coordinate obeys s^2 + beta s + p_gain lambda.
   for (int mode = 1; mode < 5; ++mode) {
     IdealNetwork network(kPath5 +
                          "[control]\nrate_hz = 1000\n[graph]\ntopology = 'path'\n"
@@ -107,7 +107,7 @@ TEST(Consensus, SampledTooSlowlyDivergesExactlyFromTheTheoreticalPeriodOn) {
   EXPECT_LT(spread(20), 1e-3);  // 20 / 20 < 2
 }
 
-TEST(Consensus, GathersEveryoneAtALeaderThatRestsWhateverItsNumber) {
+TEST(Consensus, GathersEveryoneAtALeaderThatRestsWhateverItsId) {
   for (int leader = 1; leader <= 5; ++leader) {
     IdealNetwork network(kPath5 +
                          "[graph]\ntopology = 'path'\n[law]\nname = 'consensus'\np_gain = 2.0\nbeta = 2.0\nleader = " +
@@ -165,7 +165,7 @@ TEST(Consensus, DoesNotDependOnWhereTheOriginIs) {
 TEST(Consensus, DoesNotDependOnHowAgentsAreNumbered) {
   const std::string law = "[graph]\ntopology = 'ring'\n[law]\nname = 'consensus'\n";
   IdealNetwork network(kPath5 + law);
-  IdealNetwork turned(kPath5 + law);  // a ring turned by one is the same ring
+  IdealNetwork turned(kPath5 + law);  // renumbering by one leaves the ring unchanged
   for (std::size_t i = 0; i < 5; ++i) turned.motions[(i + 1) % 5] = network.motions[i];
   network.RunUntil(5);
   turned.RunUntil(5);
@@ -193,7 +193,7 @@ Motion At(const Eigen::Vector3d& p_WB, const Eigen::Vector3d& v_WB = Eigen::Vect
   return motion;
 }
 
-/// The target that the law's answer at rest at `p_WB` points to (gains 1).
+/// The target of the waypoint law, from its output at rest at `p_WB` (p_gain = 1).
 Eigen::Vector3d Target(IdealNetwork& network, double t_s, const Eigen::Vector3d& p_WB) {
   return p_WB + network.laws[0]->Want_W(t_s, At(p_WB), {});
 }
@@ -267,8 +267,8 @@ std::string Beta(double parent, double child) {
   return "name = 'minmax'\nleader = 1\nbeta = [" + ShortestFloat(parent) + ", " + ShortestFloat(child) + "]\n";
 }
 
-/// Time of the last tick at which child and parent were still apart: more than 1e-3 of the start, or faster
-/// than the two ticks' worth of acceleration that a sampled sign keeps switching by.
+/// Time of the last tick at which child and parent had not met: farther apart than 1e-3 of the initial distance, or
+/// with a relative velocity above the chatter of a sampled sign function, about two ticks of acceleration.
 double MeetingTime(IdealNetwork& network, int child, int parent, double beta, double end_s) {
   const double start_m = (network.agent(child).p_WB - network.agent(parent).p_WB).head<2>().norm();
   double last_s = 0;
@@ -307,7 +307,7 @@ TEST(Minmax, MeetsTheWorstParentAfterTheMinMaxTime) {
   for (const auto& [z0, beta_c, beta_p] : kCases) {
     IdealNetwork network(Pair(z0, Beta(beta_p, beta_c)) + "[control]\nrate_hz = 1000\n");
     const double worst_s = 2 * std::sqrt(std::abs(z0) / (beta_c - beta_p));
-    // The worst parent flees as hard as it can while the child speeds up, and comes back while it brakes.
+    // The worst parent accelerates away from the child in the first half, and towards it in the second.
     const double flight = z0 > 0 ? -beta_p : beta_p;
     double last_s = 0;
     while (network.time_s() < 1.5 * worst_s) {
@@ -323,7 +323,7 @@ TEST(Minmax, MeetsTheWorstParentAfterTheMinMaxTime) {
   EXPECT_NEAR(2 * std::sqrt(10 / 0.5), 8.944, 1e-3);
 }
 
-/// Own uniform doubles: the library's distributions are not the same everywhere.
+/// Uniform double. The distributions of the standard library differ between implementations.
 double Uniform(std::mt19937_64& bits, double min, double max) {
   return min + (max - min) * static_cast<double>(bits() >> 11) * 0x1.0p-53;
 }
@@ -406,7 +406,7 @@ TEST(Minmax, TakesTheRootsBoundForEveryParentIfToldTo) {
       "weak_edges = 'root'\n";
   IdealNetwork network(kPath5 + law);
   const std::vector<Heard> heard = {{2, 1.0, At({0, 0, 1})}};
-  // On the curve of alpha = 1.0 - 0.5, not of 1.0 - 1.0.
+  // On the switching curve for alpha = 1.0 - 0.5, not for 1.0 - 1.0.
   EXPECT_EQ(network.laws[2]->Want_W(0, At({1, 0, 1}, {-1, 0, 0}), heard).x(), 0);
   EXPECT_EQ(network.laws[2]->Want_W(0, At({1, 0, 1}, {-0.99, 0, 0}), heard).x(), -1);
 }
@@ -458,7 +458,7 @@ TEST(MinmaxBoundaryLayer, FollowsAParentThatAcceleratesAtItsBoundFromWithinTheLa
     network.agent(1).p_WB.x() += network.h() * network.h() / 2 * 0.5;
     network.agent(1).v_WB.x() += network.h() * 0.5;
   }
-  // z = -(beta_p / beta_c) l, but for the tick by which the child's acceleration is late.
+  // z = -(beta_p / beta_c) l, except that the child's acceleration is one tick late.
   EXPECT_NEAR(network.agent(2).p_WB.x() - network.agent(1).p_WB.x(), -0.5 * 0.2, 0.01);
 }
 
@@ -469,14 +469,14 @@ TEST(LawTable, IsKnownByItsNames) {
               ElementsAre("consensus", "waypoint", "minmax", "formation", "velocity_consensus", "custom", "plugin"));
 }
 
-/// An experiment in which every parameter of a law matters, but for those of `without`.
+/// A test that `parameter` of a law has an effect: two sets of keys of [law].
 struct Setting {
   std::string parameter;
   std::string base;     ///< lines of [law]
   std::string changed;  ///< lines of [law] that differ in the parameter alone
 };
 
-/// Of the law in Python; what its code may do besides is in custom_law_test.cc.
+/// Settings for the law in Python; custom_law_test.cc tests the rest.
 std::vector<Setting> CustomSettings() {
   const auto law = [](const std::string& gain) {
     return "python = '''\ndef start(me, params):\n  me.gain = params.get('gain', 1.0)\n"
@@ -494,7 +494,7 @@ std::vector<Setting> CustomSettings() {
           {"output", law("1.0"), law("1.0") + "output = 'velocity'\n"}};
 }
 
-/// Of laws in shared libraries, those of tests/plugins.
+/// Settings for laws in shared libraries, with those of tests/plugins.
 std::vector<Setting> PluginSettings() {
   const auto library = [](const std::string& name) {
     return "library = '" MASCOT_BINARY_DIR "/tests/plugins/lib" + name + ".so'\n";
@@ -568,7 +568,7 @@ TEST(LawTable, NamesOnlyParametersWhoseChangeChangesTheResultAndAllOfThem) {
       EXPECT_GT(difference, 1e-4) << law.name << " " << setting.parameter;
       tried.push_back(setting.parameter);
     }
-    // Tested in custom_law_test.cc and plugin_law_test.cc: what files hold, what is sent, what messages say.
+    // These are tested in custom_law_test.cc and plugin_law_test.cc: files, messages, places of errors.
     const std::vector<std::string_view> elsewhere = {"file", "messages", "python_file", "python_line"};
     std::vector<std::string> named;
     for (const Key& parameter : law.parameters)
@@ -577,11 +577,11 @@ TEST(LawTable, NamesOnlyParametersWhoseChangeChangesTheResultAndAllOfThem) {
   }
 }
 
-TEST(LawTable, TellsTheTruthAboutDefaults) {
+TEST(LawTable, ListsTheRightDefaults) {
   for (const LawEntry& law : Laws()) {
     for (const Key& parameter : law.parameters) {
       if (parameter.fallback.empty()) continue;
-      std::string lines;  // in which the parameter has its default
+      std::string lines;  // [law] with the parameter at its default
       for (const Setting& setting : SettingsOf(law.name)) {
         if (setting.parameter == parameter.name) lines = setting.base;
       }
@@ -593,14 +593,14 @@ TEST(LawTable, TellsTheTruthAboutDefaults) {
   }
 }
 
-TEST(LawTable, TellsTheTruthAboutWhatIsRequired) {
+TEST(LawTable, ListsTheRequiredParameters) {
   for (const LawEntry& law : Laws()) {
     std::vector<std::string> required;
     for (const Key& parameter : law.parameters) {
       if (parameter.required) required.push_back("law." + std::string(parameter.name) + ": ");
     }
     std::vector<std::string> mistakes = Mistakes(FiveOnAPath(law.name, ""));
-    std::erase_if(mistakes, [](const std::string& mistake) {  // which of two keys is up to the user
+    std::erase_if(mistakes, [](const std::string& mistake) {  // the user chooses one of two keys
       return mistake.ends_with(", got none");
     });
     ASSERT_EQ(mistakes.size(), required.size()) << law.name;
@@ -624,7 +624,7 @@ TEST(LawTable, ReproducesTheLawFromTheResolvedFile) {
 
 // --- error texts ------------------------------------------------------------------------------------
 
-/// The one mistake in a five-agent experiment on a path with these lines of [law], after its place.
+/// The mistake, without its place, in an experiment of five agents on a path with these lines of [law].
 std::string Mistake(std::string_view law, const std::string& lines, const std::string& graph = "topology = 'path'") {
   const auto mistakes = Mistakes(kPath5 + "[graph]\n" + graph + "\n[law]\nname = '" + std::string(law) + "'\n" + lines);
   if (mistakes.size() != 1) return std::to_string(mistakes.size()) + " mistakes";
@@ -689,7 +689,7 @@ TEST(LawErrors, OfMinmaxNameTheEdge) {
             "law.beta: expected beta of agent 3 above that of the root 1 (edge 3 -> 2), got 0.9 and 0.95");
 }
 
-TEST(LawErrors, OfMinmaxNameWhomTheRootDoesNotReach) {
+TEST(LawErrors, OfMinmaxNameAgentsThatTheRootDoesNotReach) {
   const std::string beta = "leader = 1\nbeta = [0.5, 1.0, 1.5, 2.0, 2.5]";
   EXPECT_EQ(
       Mistake("minmax", beta, "edges = [[2, 1], [3, 2], [4, 5], [5, 4]]"),

@@ -44,14 +44,14 @@ TEST(LinearTeam, TurnsAVelocityIntoAnAccelerationWhereThatDrivesTheModel) {
   EXPECT_EQ(First(Two("model = 'single_integrator'\n" + law)).order, 1);
 }
 
-TEST(LinearTeam, AddsTheDragThatNobodyCompensates) {
+TEST(LinearTeam, AddsUncompensatedDrag) {
   const std::string toml = Two("[law]\nname = 'consensus'\nbeta = 0.7\n[control]\ndrag_compensation = false\n");
   const Experiment experiment = LoadExperiment(Section::FromText(toml, "test.toml"), "test");
   const Airframe& airframe = experiment.agent(1).airframe;
   EXPECT_DOUBLE_EQ(First(toml).b, 0.7 + airframe.linear_drag_kg_per_s / airframe.mass_kg);
 }
 
-TEST(LinearTeam, KnowsWhoLeads) {
+TEST(LinearTeam, KnowsItsLeaders) {
   const LinearTeam team =
       Of(Two("[law]\nname = 'consensus'\nleader = 2\nleader_waypoints_m = [[1, 2, 3]]\n")).team.value();
   EXPECT_THAT(team.Leaders(), ElementsAre(2));
@@ -65,7 +65,7 @@ TEST(LinearTeam, KnowsWhoLeads) {
   EXPECT_TRUE(mixed.agent(1).flies);
 }
 
-TEST(LinearTeam, SaysWhyATeamIsNone) {
+TEST(LinearTeam, SaysWhyATeamIsNotLinear) {
   EXPECT_EQ(Of(Two("[[agents.override]]\nid = 2\nmodel = 'unicycle'\n[law]\nname = 'consensus'\n")).why_not,
             "agent 2 is a unicycle, which turns before going where wanted");
   EXPECT_EQ(Of(Two("model = 'unicycle'\n[law]\nname = 'consensus'\n")).why_not,
@@ -80,8 +80,8 @@ TEST(LinearTeam, SaysWhyATeamIsNone) {
             "agents keep different formations");
 }
 
-TEST(LinearTeam, IsWhatTheAgentsDo) {
-  // The first second of a pair, by the equations in the header, beside the agents as the engines fly them.
+TEST(LinearTeam, MatchesTheMotionOfTheAgents) {
+  // The first second of a pair of agents: the equations of linear_team.h against a full simulation.
   for (const std::string model : {"single_integrator", "double_integrator"}) {
     for (const std::string law : {"'velocity_consensus'", "'consensus'\nbeta = 0.8\nv_gain = 0.4"}) {
       const std::string toml = Two("model = '" + model + "'\n[law]\nname = " + law + "\n");

@@ -23,7 +23,8 @@ LinkConfig Config(double loss, double delay_s = 0, double jitter_s = 0) {
   return config;
 }
 
-/// The ticks at which the samples sent at ticks 0 .. count - 1 were used, by tick of arrival: {arrived, sent}.
+/// Sends a sample at each tick 0 .. count - 1. Returns {tick, tick of the sample that was used} for ticks with a
+/// sample.
 std::vector<std::pair<std::int64_t, std::int64_t>> Pass(Link& link, int count) {
   std::vector<std::pair<std::int64_t, std::int64_t>> used;
   Motion motion;
@@ -56,7 +57,7 @@ TEST(Link, DelaysByWholeTicksRoundedUp) {
   }
 }
 
-TEST(Link, LosesTheGivenPartOfTheSamples) {
+TEST(Link, LosesTheGivenFractionOfTheSamples) {
   constexpr int kSamples = 20000;
   Link link(Config(0.2), kRate, 1, 1, 2);
   const auto used = Pass(link, kSamples);
@@ -76,7 +77,7 @@ TEST(Link, LosesIndependentlyOfTheSampleBefore) {
 }
 
 TEST(Link, LosesInBurstsAsGilbertAndElliottSay) {
-  // Stationary: bad with probability g / (g + b), bursts of 1 / b samples on average.
+  // In the stationary state: bad with probability g / (g + b), bursts of 1 / b samples on average.
   constexpr int kSamples = 40000;
   LinkConfig config;
   config.bursts = GilbertElliott{.good_to_bad = 0.05, .bad_to_good = 0.25, .loss_good = 0, .loss_bad = 1};
@@ -98,7 +99,7 @@ TEST(Link, NeverGivesASampleAfterOneThatWasSentLater) {
     EXPECT_LE(arrived - sent, 20);
   }
   EXPECT_GT(link.count().late, 100u);
-  EXPECT_NEAR(static_cast<double>(used.size() + link.count().late), 2000, 20);  // all but those still on their way
+  EXPECT_NEAR(static_cast<double>(used.size() + link.count().late), 2000, 20);  // all except those still in flight
 }
 
 TEST(Link, ReordersOnlyIfToldTo) {
@@ -113,7 +114,7 @@ TEST(Link, ReordersOnlyIfToldTo) {
   EXPECT_THAT(used, ::testing::Contains(::testing::Truly([](const auto& at) { return at.first == at.second; })));
 }
 
-TEST(Link, HoldsTheLastSampleForAsLongAsItIsTold) {
+TEST(Link, HoldsTheLastSampleForTheHoldTime) {
   LinkConfig config = Config(0, 0.02);
   config.hold_s = 0.03;
   Link link(config, kRate, 1, 1, 2);
@@ -150,11 +151,11 @@ TEST(Link, SymmetricLosesTheSameSamplesBothWays) {
   EXPECT_EQ(Pass(there, 200), Pass(back, 200));
 }
 
-TEST(Link, DelaysWhatIsSentAfterATickWasMissedAsLongAsEverythingElse) {
+TEST(Link, DelaysSamplesAfterAMissedTickAsLongAsOthers) {
   Link link(Config(0, 0.03), kRate, 1, 1, 2);
   std::vector<std::pair<std::int64_t, std::int64_t>> used;
   const Motion motion;
-  for (const std::int64_t tick : {0, 1, 2, 3, 4, 6, 7, 8, 20, 21, 22, 23}) {  // in real time a tick may be missed
+  for (const std::int64_t tick : {0, 1, 2, 3, 4, 6, 7, 8, 20, 21, 22, 23}) {  // in real time an agent may miss ticks
     link.Send(tick, 1.0, {&motion});
     if (const Link::Packet* packet = link.Receive(tick)) used.emplace_back(tick, packet->sent);
   }
@@ -176,7 +177,7 @@ TEST(Link, CarriesWeightAndMessageOfTheTickAtWhichTheSampleWasSent) {
   EXPECT_EQ(link.count().numbers, 3u);
 }
 
-// --- all that an agent may hear ---------------------------------------------------------------------
+// --- Neighbours -------------------------------------------------------------------------------------
 
 Experiment Load(const std::string& rest) {
   return LoadExperiment(Section::FromText("[run]\nduration_s = 10.0\n[agents]\ncount = 3\nmodel = 'double_integrator'\n"
@@ -186,7 +187,7 @@ Experiment Load(const std::string& rest) {
                         "test");
 }
 
-/// Whom agent 1 hears at `tick`, everybody being where they start.
+/// Ids that agent 1 hears at `tick`, with all agents at their initial positions.
 std::vector<int> HeardAt(const Experiment& experiment, std::int64_t tick) {
   Neighbours neighbours(experiment, 1);
   std::vector<Motion> motions(3);
@@ -261,7 +262,7 @@ TEST(Neighbours, AreSeenWithNoiseAndBias) {
   EXPECT_LT(bias.norm(), 1);
 }
 
-// --- itself -----------------------------------------------------------------------------------------
+// --- OwnSensor --------------------------------------------------------------------------------------
 
 TEST(OwnSensor, IsExactByDefault) {
   OwnSensor sensor(SensorConfig{}, kRate, 1, 1);
@@ -270,7 +271,7 @@ TEST(OwnSensor, IsExactByDefault) {
   EXPECT_EQ(sensor.Measure(0, self).p_WB, self.p_WB);
 }
 
-TEST(OwnSensor, KnowsPositionAndVelocityLateButAttitudeAtOnce) {
+TEST(OwnSensor, DelaysPositionAndVelocityButNotAttitude) {
   SensorConfig config;
   config.own_delay_s = 0.03;
   OwnSensor sensor(config, kRate, 1, 1);

@@ -22,7 +22,7 @@ class MatVariable {
   }
 
   std::vector<std::size_t> dimensions() const { return {var_->dims, var_->dims + var_->rank}; }
-  /// Its doubles, the first index running fastest.
+  /// Its doubles in column-major order.
   std::vector<double> values() const {
     EXPECT_EQ(var_->class_type, MAT_C_DOUBLE);
     const auto* data = static_cast<const double*>(var_->data);

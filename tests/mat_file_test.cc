@@ -75,7 +75,7 @@ TEST(MatFile, AFullDiskIsFoundOutAndLeavesTheOldFile) {
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};
   ::getrlimit(RLIMIT_FSIZE, &before);
-  for (const rlim_t limit : {100, 1000, 4096, 48'000, 48'300}) {  // whole: 48'340 bytes or so
+  for (const rlim_t limit : {100, 1000, 4096, 48'000, 48'300}) {  // the whole file has about 48'340 bytes
     const rlimit small{limit, before.rlim_max};
     ::setrlimit(RLIMIT_FSIZE, &small);
     EXPECT_THAT([&] { WriteExample(path, 1000); },

@@ -20,8 +20,8 @@ std::size_t g_largest_bytes = 0;
 
 }  // namespace
 
-// Counted, to show that a message costs none and that no file makes its reader ask for much. Not inlined: g++ 12
-// would then take malloc and delete for a mismatch.
+// Counts allocations, to show that writing a message allocates nothing and that no file makes its reader allocate much.
+// Not inlined, since g++ 12 would then warn that malloc and delete do not match.
 [[gnu::noinline]] void* operator new(std::size_t bytes) {
   ++g_allocations;
   g_largest_bytes = std::max(g_largest_bytes, bytes);
@@ -50,7 +50,7 @@ McapWriter::Channel Numbers(const std::string& topic) {
   return {topic, "test_msgs/msg/Number", "uint64 n\n", {{"a", "b"}}};
 }
 
-/// Bytes that zstd cannot make fewer.
+/// Bytes that zstd cannot compress.
 Bytes Noise(std::mt19937_64& random, std::size_t bytes) {
   Bytes noise(bytes);
   for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(random());
@@ -63,7 +63,7 @@ std::vector<McapContents::Message> Messages(const std::string& path) {
   return messages;
 }
 
-/// A file with header, then whatever `records` holds.
+/// A file with magic and header, followed by `records`.
 std::string Handmade(const Bytes& records) {
   Bytes file;
   Append(file, ByteSpan(mcap::kMagic));
@@ -79,7 +79,7 @@ Bytes ChunkRecord(std::uint64_t claimed, const std::string& compression, ByteSpa
   return out;
 }
 
-/// Two channels; chunks compressed, stored, stored, compressed; an attachment and metadata between them.
+/// Writes two channels; chunks compressed, stored, stored, compressed; an attachment and metadata between them.
 std::string WriteSmallFile(const std::string& path) {
   std::mt19937_64 random(1);
   McapWriter writer(path);
@@ -162,7 +162,7 @@ TEST(Mcap, AnEmptyRecordingIsComplete) {
   EXPECT_THAT(contents.channels, IsEmpty());
 }
 
-/// Chunks of a file of ticks with one message of each size.
+/// Number of chunks of a file with one tick, of one message, for each size.
 std::uint64_t ChunksOf(const std::vector<std::size_t>& sizes) {
   const ScratchFolder scratch;
   McapWriter writer(scratch.File("run.mcap"));
@@ -177,7 +177,7 @@ std::uint64_t ChunksOf(const std::vector<std::size_t>& sizes) {
 }
 
 TEST(Mcap, AChunkClosesAtTheFirstTickBoundaryWithOneMebibyte) {
-  const std::size_t overhead = 31;  // of a message record
+  const std::size_t overhead = 31;  // bytes of a message record without its data
   const std::size_t announced = (9 + 2 + 4 + 20 + 4 + 7 + 4 + 9) + (9 + 2 + 2 + 4 + 2 + 4 + 3 + 4 + 4 + 1 + 4 + 1);
   const std::size_t rest = (1u << 20) - announced - 2 * overhead - 1000;
   EXPECT_EQ(ChunksOf({1000, rest - 1, 0}), 1u) << "one byte less: the third tick still belongs to it";
@@ -188,7 +188,7 @@ TEST(Mcap, AChunkClosesAtTheFirstTickBoundaryThatSpansOneSecond) {
   const ScratchFolder scratch;
   McapWriter writer(scratch.File("run.mcap"));
   const auto channel = writer.AddChannel(Numbers("/n"));
-  for (std::uint64_t k = 0; k <= 300; ++k) {  // chunks end at ticks 100, 201 and with the file
+  for (std::uint64_t k = 0; k <= 300; ++k) {  // chunks end at tick 100, tick 201 and the end of the file
     writer.Write(channel, k * 10 * kMs, Bytes(8));
     writer.EndTick();
   }
@@ -218,7 +218,7 @@ TEST(Mcap, AMessageAllocatesNothingOnceTheChunkHasFoundItsSize) {
   const auto second = [&] {
     for (int i = 0; i < 1001; ++i) writer.Write(channel, time_ns += kMs, sample);
   };
-  for (int warm_up = 0; warm_up < 3; ++warm_up) {  // two buffers take turns
+  for (int warm_up = 0; warm_up < 3; ++warm_up) {  // two buffers are used in turn
     second();
     writer.EndTick();
   }
@@ -227,7 +227,7 @@ TEST(Mcap, AMessageAllocatesNothingOnceTheChunkHasFoundItsSize) {
   EXPECT_EQ(g_allocations, before);
 }
 
-/// Where each message of `file` is wholly there: with its last byte, or its chunk's if that is compressed.
+/// Offset in `file` after which each message is complete: its end, or the end of its chunk if that is compressed.
 std::vector<std::size_t> MessageEnds(const std::string& file) {
   std::vector<std::size_t> ends;
   for (std::size_t offset = mcap::kMagic.size(); offset + mcap::kFrameBytes < file.size();) {
@@ -287,7 +287,7 @@ TEST(Mcap, AnUncompressedChunkCutAtAnyByteStillGivesEveryWholeMessageBeforeTheCu
   CutAtEveryByte(scratch.File("run.mcap"));
 }
 
-TEST(Mcap, OfAChunkThatWasCutEveryBlockThatIsThereIsRead) {
+TEST(Mcap, EveryWholeBlockOfACutChunkIsRead) {
   const ScratchFolder scratch;
   std::mt19937_64 random(1);
   McapWriter writer(scratch.File("run.mcap"));
@@ -321,7 +321,7 @@ TEST(Mcap, AFileWithAnyByteChangedIsNeverComplete) {
   EXPECT_TRUE(ReadMcap(path).complete);
 }
 
-TEST(Mcap, OfAChunkWithAWrongCrcNoMessageIsRead) {
+TEST(Mcap, NoMessageOfAChunkWithAWrongCrcIsRead) {
   const ScratchFolder scratch;
   std::mt19937_64 random(1);
   McapWriter writer(scratch.File("run.mcap"));
@@ -397,7 +397,7 @@ TEST(Mcap, StatisticsThatDoNotMatchAreDamage) {
   McapWriter writer(scratch.File("run.mcap"));
   writer.Close();
   std::string file = ReadFile(scratch.File("run.mcap"));
-  // One message more than there is, and the summary's CRC marked absent.
+  // Count one message too many, and mark the CRC of the summary as absent.
   const std::string statistics = std::string(1, '\x0b') + std::string("\x2e\0\0\0\0\0\0\0", 8);
   file[file.find(statistics) + 9] = 1;
   file.replace(file.size() - 12, 4, 4, '\0');
@@ -405,7 +405,7 @@ TEST(Mcap, StatisticsThatDoNotMatchAreDamage) {
   EXPECT_THAT(ReadMcap(scratch.File("run.mcap")).damage, StartsWith("the statistics do not count what the file holds"));
 }
 
-TEST(Mcap, BytesBehindTheFileAreDamage) {
+TEST(Mcap, BytesAfterTheEndAreDamage) {
   const ScratchFolder scratch;
   WriteFile(scratch.File("long.mcap"), WriteSmallFile(scratch.File("run.mcap")) + "x");
   EXPECT_THAT(ReadMcap(scratch.File("long.mcap")).damage,
@@ -462,7 +462,7 @@ TEST(Mcap, AfterAFailedWriteEveryFurtherOneFailsAndWhatWasThereIsReadable) {
     EXPECT_THAT([&] { writer.Close(); }, ThrowsMessage<std::runtime_error>(error));
   }
   EXPECT_EQ(ReadFile(path).size(), 20'000u);
-  EXPECT_EQ(Messages(path).size(), 6u);  // three whole chunks and nothing whole of the fourth's
+  EXPECT_EQ(Messages(path).size(), 6u);  // three whole chunks, and no whole message of the fourth
 }
 
 }  // namespace

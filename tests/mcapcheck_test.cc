@@ -1,4 +1,4 @@
-// Our recordings and schemas, judged by tests/mcapcheck: an independent reader on the packages that Foxglove uses.
+// Our recordings and schemas, checked by tests/mcapcheck: an independent reader that uses the packages of Foxglove.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -24,7 +24,7 @@ Ran McapCheck(const std::string& path, const std::string& options) {
   return Shell("node '" + folder + "/mcapcheck.mjs' '" + path + "' --all --strict " + options);
 }
 
-/// The bytes of a sample as they are on the wire.
+/// The serialised bytes of a sample.
 template <class PubSub>
 Bytes OnTheWire(typename PubSub::type sample) {
   ZeroPadded<PubSub> type;
@@ -42,7 +42,7 @@ std::uint16_t AddChannel(McapWriter& writer, const std::string& topic, std::stri
        {{"offered_qos_profiles", OfferedQos(128)}, {"topic_type_hash", std::string(schema.type_hash)}}});
 }
 
-/// A sample in which every number differs, so that a swapped field shows.
+/// A sample in which all numbers differ, so that swapped fields are noticed.
 mascot_msgs::msg::AgentState SomeState() {
   Motion motion;
   motion.p_WB = {1.5, 2.5, 3.5};
@@ -124,7 +124,7 @@ TEST(McapCheck, RefusesADamagedFile) {
   EXPECT_THAT(checked.output, HasSubstr("ERROR: attachment 'config.toml'"));
 }
 
-/// The first message of each topic, as the independent decoder reads it with the schema in the file.
+/// The first message of each topic, decoded by the independent reader with the schema in the file.
 nlohmann::json Decoded(const std::string& path) {
   const Ran checked = McapCheck(path, "--json");
   EXPECT_EQ(checked.exit_code, 0) << checked.output;
@@ -135,7 +135,7 @@ nlohmann::json Decoded(const std::string& path) {
   return first;
 }
 
-TEST(Schemas, SayWhatIsOnTheWire) {
+TEST(Schemas, MatchTheSerialisedBytes) {
   const ScratchFolder scratch;
   const std::string path = scratch.File("run.mcap");
   McapWriter writer(path);
@@ -202,7 +202,7 @@ TEST(Schemas, ListEachDependencyOnceBehindALineOfEightyEqualSigns) {
 TEST(Schemas, TypeHashesAreThoseThatRosPublishes) {
   EXPECT_EQ(SchemaOf("rosgraph_msgs/msg/Clock").type_hash,
             "RIHS01_692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564");
-  // Of a type with nested ones, which no topic of ours carries by itself.
+  // A type with nested types, which is not the type of any of our topics.
   const Ran ran = Shell("/usr/bin/python3 " MASCOT_SOURCE_DIR "/scripts/type_hash.py " MASCOT_SOURCE_DIR
                         "/idl/ros_interfaces -- geometry_msgs/msg/Twist");
   EXPECT_EQ(ran.output,

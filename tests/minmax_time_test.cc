@@ -12,7 +12,7 @@ TEST(MinmaxTimes, FromRestAreThePublishedClosedForms) {
   EXPECT_NEAR(MinmaxTime(-10, 0, 0.5, 1), 7.746, 1e-3);
   EXPECT_NEAR(MinmaxBound(10, 0, 0.5), 8.944, 1e-3);
   EXPECT_NEAR(MinmaxTime(20, 0, 0.05, 1), 28.98, 5e-3);
-  EXPECT_NEAR(MinmaxTime(20, 0, 0.05, 0.6), 29.44, 5e-3);  // what the published force limit leaves
+  EXPECT_NEAR(MinmaxTime(20, 0, 0.05, 0.6), 29.44, 5e-3);  // with beta cut at the published force limit
   EXPECT_EQ(MinmaxTime(0, 0, 0.5, 1), 0);
   EXPECT_EQ(MinmaxBound(0, 0, 0.5), 0);
 }

@@ -14,7 +14,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// x of a mode from rest, tick by tick, as its recursion is written: an independent witness.
+/// x of a mode from rest, by simulating its recursion tick by tick: an independent reference.
 std::vector<Complex> FromRest(const LinearMode& mode, double h, int ticks) {
   std::vector<Complex> x = {1};
   Complex v = 0;
@@ -30,7 +30,7 @@ std::vector<Complex> FromRest(const LinearMode& mode, double h, int ticks) {
   return x;
 }
 
-/// The tick from which on |x| is within 2 %.
+/// The tick from which on |x| stays within 2 %.
 int Settled(const std::vector<Complex>& x) {
   int settled = 0;
   for (std::size_t k = 0; k < x.size(); ++k)
@@ -82,7 +82,7 @@ TEST(Modes, DecayIffEitherGainIsAboveItsLeastValue) {
 }
 
 TEST(Modes, SampledDecayExactlyWhileStiffnessTimesPeriodIsBelowTwiceTheDamping) {
-  // And damping times period below 2, both from the Jury test.
+  // The second condition is damping * period < 2; both follow from the Jury test.
   EXPECT_TRUE(DecaysSampled({1.0, 20.0}, 0.0999));
   EXPECT_FALSE(DecaysSampled({1.0, 20.0}, 0.1001));
   EXPECT_TRUE(DecaysSampled({10.0, 1.0}, 0.1999));
@@ -130,7 +130,7 @@ TEST(Modes, DecayAtTheRateAtWhichTheirRecursionDoes) {
   for (const LinearMode& mode : kModes) {
     const double h = 0.1 * LongestPeriod({&mode, 1});
     const double rate = DecayRate({&mode, 1}, h);
-    // Over whole lobes: the largest |x| about two times far apart.
+    // Compare the largest |x| in two windows that are longer than an oscillation.
     const auto x = FromRest(mode, h, 4000);
     const auto largest = [&](int from) {
       double most = 0;
@@ -143,17 +143,18 @@ TEST(Modes, DecayAtTheRateAtWhichTheirRecursionDoes) {
 }
 
 TEST(Modes, ScaledGainsScaleTheRate) {
-  // Time in units of 1 / c: damping times c, stiffness times c^2.
+  // Time scaled by 1 / c: damping is multiplied by c = 3, stiffness by c^2.
   const LinearMode mode{{1.0, 0.4}, {2.0, 0.5}}, fast{{3.0, 1.2}, {18.0, 4.5}};
   EXPECT_NEAR(DecayRate({&fast, 1}, 0.001), 3 * DecayRate({&mode, 1}, 0.003), 1e-9);
   EXPECT_NEAR(OwnDelayMargin(fast), OwnDelayMargin(mode) / 3, 1e-9);
 }
 
-TEST(Modes, OfOrderOneBearADelayOfPiOverTwiceTheirStiffness) {
+TEST(Modes, OfOrderOneTolerateADelayOfPiOverTwiceTheirStiffness) {
   EXPECT_NEAR(OwnDelayMargin({0.0, 3.618034, 1}), 0.43416, 1e-5);
 }
 
-/// Whether x' (or x'') = -stiffness x - damping x', all of it `delay_s` late, decays: in steps of 1 ms.
+/// Whether x' (or x'') = -stiffness x - damping x' decays with its right side delayed by `delay_s`; simulated in steps
+/// of 1 ms.
 bool DecaysDelayed(const LinearMode& mode, double delay_s) {
   constexpr double h = 1e-3;
   constexpr int kTicks = 240000;
@@ -173,7 +174,7 @@ bool DecaysDelayed(const LinearMode& mode, double delay_s) {
   return largest(3 * kTicks / 4, kTicks) < largest(kTicks / 4, kTicks / 2);
 }
 
-TEST(Modes, BearADelayOfEverythingUpToTheirMargin) {
+TEST(Modes, TolerateADelayOfAllStatesUpToTheirMargin) {
   for (const LinearMode& mode : kModes) {
     const double margin_s = OwnDelayMargin(mode);
     EXPECT_TRUE(DecaysDelayed(mode, 0.97 * margin_s - 1e-3)) << mode.damping << " " << mode.stiffness;

@@ -14,7 +14,7 @@ namespace {
 using testing::ElementsAre;
 using testing::ThrowsMessage;
 
-/// Runs Python (Debian's, which has NumPy) on `path`, known as `path` there too.
+/// Runs code with the system's Python, which has NumPy; `path` is a variable there.
 std::string Python(const std::string& path, const std::string& code) {
   const ScratchFolder scratch;
   const std::string script = scratch.File("check.py");
@@ -46,7 +46,7 @@ std::vector<std::string> Names(const ScratchFolder& scratch) {
 
 TEST(Npz, NumpyReadsEveryArrayWithoutPickle) {
   const ScratchFolder scratch;
-  WriteExample(scratch.File("states.npz"), 20000);  // more than fits a buffer
+  WriteExample(scratch.File("states.npz"), 20000);  // more than one buffer
   EXPECT_EQ(Python(scratch.File("states.npz"), R"(
 data = np.load(path, allow_pickle=False)
 print(data.files)
@@ -89,7 +89,7 @@ TEST(Npz, EqualCallsGiveEqualBytes) {
   EXPECT_EQ(ReadFile(scratch.File("a.npz")), ReadFile(scratch.File("b.npz")));
 }
 
-TEST(Npz, OnlyTheWholeFileIsEverThere) {
+TEST(Npz, OnlyACompleteFileIsEverThere) {
   const ScratchFolder scratch;
   {
     NpzWriter writer(scratch.File("states.npz"));
@@ -112,7 +112,7 @@ TEST(Npz, AFullDiskIsAnErrorThatNamesTheFile) {
   const std::string path = scratch.File("states.npz");
   EXPECT_THAT([&] { WriteExample(path, 100'000); },
               ThrowsMessage<std::runtime_error>("cannot write " + path + ".2.part: File too large"));
-  // Each array fits, the file that joins them does not.
+  // Each array fits, but the joined file does not.
   EXPECT_THAT([&] { WriteExample(path, 2000); },
               ThrowsMessage<std::runtime_error>("cannot write " + path + ".part: File too large"));
   ::setrlimit(RLIMIT_FSIZE, &before);

@@ -9,10 +9,10 @@
 
 namespace mascot {
 
-/// A built-in airframe.
+/// The built-in airframe `name`.
 inline Airframe Built(std::string_view name) { return *std::ranges::find(Airframes(), name, &Airframe::name); }
 
-/// An experiment with agents of one model at these places, everything else by default.
+/// An experiment with agents of one model at these positions; everything else has its default.
 inline Experiment Bodies(std::string_view model, const std::vector<Eigen::Vector3d>& places,
                          const Airframe& airframe = Built("mascot")) {
   Experiment experiment;

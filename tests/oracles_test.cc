@@ -1,5 +1,6 @@
-// Known results of the field, on agents flown as the engines fly them. The case is a path of five with unit weights and
-// x0 = (3, -1, 4, 1, -5) unless said otherwise; its Laplacian has lambda_2 = 0.381966 and lambda_5 = 3.618034.
+// Known results of the literature, tested with full simulations as in the engines. Unless noted otherwise, the graph is
+// a path of five agents with unit weights and x0 = (3, -1, 4, 1, -5); its Laplacian has lambda_2 = 0.381966 and
+// lambda_5 = 3.618034.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -14,7 +15,7 @@ namespace {
 const Eigen::VectorXd kStart = (Eigen::VectorXd(5) << 3, -1, 4, 1, -5).finished();
 constexpr double kMean = 0.4;
 
-/// `rest`: lines from [control] on. Collisions are off: points pass each other.
+/// Five agents that start at kStart; `rest`: lines from [control] on. Collisions are off: agents pass each other.
 std::string Five(const std::string& model, int rate_hz, const std::string& rest) {
   return "[run]\nduration_s = 1000.0\n[physics]\nrate_hz = " + std::to_string(rate_hz) +
          "\ncollisions = false\n[agents]\ncount = 5\nmodel = '" + model +
@@ -49,7 +50,7 @@ TEST(SingleIntegrators, FollowTheSampledMapExactlyAndKeepTheirMean) {
 }
 
 TEST(SingleIntegrators, DivergeIffThePeriodIsAboveTwoOverTheLargestEigenvalue) {
-  // With T = 0.1 the bound on T p_gain, 0.55279, is one on p_gain.
+  // The bound is T p_gain < 0.55279; here T = 0.1.
   for (const auto& [p_gain, converges] : {std::pair(5.50, true), {5.56, false}}) {
     FlownNetwork network(Singles(10, kPath + kMeet + "p_gain = " + ShortestFloat(p_gain) + "\n"));
     network.RunUntil(60);
@@ -67,8 +68,8 @@ TEST(SingleIntegrators, MeetOnADigraphAtTheMeanWeightedByTheLeftNullVector) {
 
 // --- delay ------------------------------------------------------------------------------------------
 
-TEST(Delay, OfWhatIsHeardMovesTheMeetingPointByTheDegrees) {
-  // Limit: sum x0 (1 + d m T) / sum (1 + d m T), d the degrees, m the ticks of delay.
+TEST(Delay, OfNeighboursMovesTheMeetingPointByTheDegrees) {
+  // Limit: sum x0 (1 + d m T) / sum (1 + d m T), with the degrees d and a delay of m ticks.
   for (const int m : {1, 3}) {
     FlownNetwork network(Singles(10, kPath + "[link]\ndelay_s = " + ShortestFloat(0.1 * m) + "\n" + kMeet));
     const Eigen::VectorXd weight =
@@ -82,7 +83,7 @@ TEST(Delay, OfWhatIsHeardMovesTheMeetingPointByTheDegrees) {
   }
 }
 
-TEST(Delay, OfSelfAndNeighboursIsBornUpToPiOverTwiceTheLargestEigenvalue) {
+TEST(Delay, OfSelfAndNeighboursIsToleratedUpToPiOverTwiceTheLargestEigenvalue) {
   // 0.43416 s in continuous time; sampling at 200 Hz adds half a period.
   for (const auto& [delay_s, converges] : {std::pair(0.42, true), {0.445, false}}) {
     const std::string delay = "delay_s = " + ShortestFloat(delay_s) + "\n";
@@ -134,8 +135,8 @@ TEST(SymmetricLoss, SlowsTheMeanOfManyRunsAsIfTheGraphWereWeaker) {
 // --- noise ------------------------------------------------------------------------------------------
 
 TEST(Noise, OfPositionsSpreadsARingAsTheSumOverItsModesSays) {
-  // On a ring (degree 2) an error n of the own position moves an agent by 2 T n: state noise of sigma = 2 T std(n), and
-  // E|delta|^2 = sum over lambda > 0 of sigma^2 / (1 - (1 - T lambda)^2).
+  // On a ring (degree 2) an error n in its own position moves an agent by 2 T n: state noise with sigma = 2 T std(n),
+  // and E|delta|^2 = sum over lambda > 0 of sigma^2 / (1 - (1 - T lambda)^2).
   constexpr double kStd = 0.05, kT = 0.1;
   FlownNetwork network(
       Singles(10, "[sensors.own]\nposition_std_m = " + ShortestFloat(kStd) + "\n[graph]\ntopology = 'ring'\n" + kMeet));
@@ -144,7 +145,7 @@ TEST(Noise, OfPositionsSpreadsARingAsTheSumOverItsModesSays) {
     const double lambda = 2 - 2 * std::cos(2 * std::numbers::pi * mode / 5);
     expected += std::pow(2 * kT * kStd, 2) / (1 - std::pow(1 - kT * lambda, 2));
   }
-  network.RunUntil(30);  // the start is forgotten
+  network.RunUntil(30);  // until the effect of the start is gone
   constexpr int kTicks = 20000;
   double measured = 0;
   for (int k = 0; k < kTicks; ++k) {
@@ -180,8 +181,9 @@ TEST(RelativeDamping, IsEnoughOnADirectedCycleOfTenIffItsGainIsAboveItsBound) {
   }
 }
 
-TEST(Chain, StaysBehindALeaderAtConstantSpeedByItsPlaceTimesTheSpeed) {
-  // No feed-forward: single integrators lag i v0, the paper's law i beta v0.
+TEST(Chain, LagsBehindALeaderAtConstantSpeedInProportionToPlaceAndSpeed) {
+  // Without feed-forward, agent i of the chain lags by i v0 as single integrator, and by i beta v0 under the paper's
+  // law.
   constexpr double kSpeed = 0.5, kBeta = 1.5;
   const std::string chain = "[graph]\ntopology = 'directed_path'\n";
   std::string singles = Singles(100, chain + kMeet);
@@ -200,7 +202,7 @@ TEST(Chain, StaysBehindALeaderAtConstantSpeedByItsPlaceTimesTheSpeed) {
   }
 }
 
-TEST(Formation, StandsAboutTheMeanOfStartsLessPlaces) {
+TEST(Formation, IsCentredOnTheMeanOfStartsMinusPlaces) {
   FlownNetwork network(Five("double_integrator", 100,
                             kPath + "[law]\nname = 'formation'\nshape = 'circle'\nspacing_m = 3.0\nbeta = 1.5\n"));
   const double radius = 1.5 / std::sin(std::numbers::pi / 5);
@@ -236,7 +238,8 @@ TEST(Range, KeepsGroupsApartThatNeverComeCloseAndJoinsThoseThatDo) {
     network.RunUntil(60);
     return network.x();
   };
-  // At 2.5 m agents 3, 1, 4 (4, 3, 1) hear each other, and 4 and 2 (1 and -1); agent 5 at -5 nobody.
+  // Within 2.5 m, agents 3, 1, 4 (at 4, 3, 1) hear their neighbours, and so do 4 and 2 (at 1, -1); agent 5 (at -5) is
+  // alone.
   const Eigen::VectorXd apart = after(2.5);
   EXPECT_EQ(apart[4], -5);
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(apart[i], 7.0 / 4, 1e-6);
@@ -285,11 +288,11 @@ def message(me):
 }
 
 TEST(CyclicPursuit, KeepsTheCircleWhenTheAngleIsPiOverN) {
-  // v_i = k R (x_{i+1} - x_i), R turning by pi / N outwards: a regular N-gon turns on its circle at rate 2 k sin(pi /
-  // N).
+  // v_i = k R (x_{i+1} - x_i), where R rotates outwards by pi / N: a regular N-gon rotates on its circle at the rate
+  // 2 k sin(pi / N).
   constexpr int kN = 6;
   std::string positions;
-  for (int i = 0; i < kN; ++i) {  // each hears the one before it, which is ahead of it here
+  for (int i = 0; i < kN; ++i) {  // each agent hears the previous id, which is ahead of it
     const double angle = -2 * std::numbers::pi * i / kN;
     positions += (i > 0 ? ", [" : "[") + ShortestFloat(3 * std::cos(angle)) + ", " +
                  ShortestFloat(3 * std::sin(angle)) + ", 1.0]";

@@ -29,17 +29,17 @@ inline std::string Config(const std::string& name) {
   return std::string(MASCOT_SOURCE_DIR) + "/configs/" + name + ".toml";
 }
 
-/// Waits until `condition` holds, at most 60 s. Returns whether it came to hold.
+/// Waits until `condition` holds, at most 60 s. Returns whether it does.
 inline bool Until(const std::function<bool()>& condition) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   while (!condition()) {
     if (std::chrono::steady_clock::now() > deadline) return false;
-    poll(nullptr, 0, 5);  // milliseconds between looks
+    poll(nullptr, 0, 5);  // milliseconds
   }
   return true;
 }
 
-/// One program that was started; killed by its pid if the test forgets it.
+/// Starts a program; the destructor kills it if it still runs.
 class Running {
  public:
   Running(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& output)
@@ -65,7 +65,7 @@ class Running {
 
   pid_t pid() const { return pid_; }
   void Signal(int signal) const { kill(pid_, signal); }
-  /// The exit code; -signal where a signal ended it.
+  /// Waits for the end. Returns the exit code, or -signal if a signal ended the program.
   int Wait() {
     int status = 0;
     waitpid(std::exchange(pid_, -1), &status, 0);
@@ -80,7 +80,7 @@ class Running {
   pid_t pid_ = -1;
 };
 
-/// `orchestrator up` of one configuration into folder/name, without pictures.
+/// Starts `orchestrator up` for one configuration, with results in folder/name, without plots.
 class Up : public Running {
  public:
   Up(const ScratchFolder& folder, const std::string& name, const std::string& config,
@@ -92,7 +92,7 @@ class Up : public Running {
   const std::filesystem::path& path() const { return path_; }
   std::string File(const std::string& name) const { return ReadFile(path_ / name); }
   nlohmann::json Summary() const { return nlohmann::json::parse(File("summary.json")); }
-  /// The child's process id, once it has been spawned; 0 before.
+  /// Process id of a child; 0 before it has been spawned.
   pid_t Child(const std::string& process) const;
 
  private:
@@ -105,7 +105,7 @@ class Up : public Running {
   std::filesystem::path path_;
 };
 
-/// The child of `parent` whose command line holds `words`, or 0.
+/// Process id of the child of `parent` whose command line contains `words`, or 0.
 inline pid_t ChildOf(pid_t parent, const std::string& words) {
   const std::string pid = std::to_string(parent);
   std::ifstream children("/proc/" + pid + "/task/" + pid + "/children");
@@ -123,7 +123,7 @@ inline pid_t Up::Child(const std::string& process) const {
   return ChildOf(pid(), "--id " + process.substr(std::string("agent_").size()) + " ");
 }
 
-/// A run has begun to fly when its server says so; `up` without a terminal prints its first line then.
+/// Waits until the ticks of a run have begun: then `up` prints its first progress line.
 inline bool Flies(const Running& up) {
   return Until([&] { return up.Said("x real time"); });
 }

@@ -7,8 +7,8 @@
 
 namespace mascot::test {
 
-/// `words` as the last part of a test's name, which may hold letters, digits and underscores only: `law.axes to xyz`
-/// becomes `law_axes_to_xyz`. GoogleTest refuses to start when two names are the same.
+/// Converts `words` to the last part of a test name, which may contain letters, digits and underscores only: `law.axes
+/// to xyz` becomes `law_axes_to_xyz`. GoogleTest refuses to start if two names are equal.
 inline std::string ParamName(const std::string& words) {
   std::string name;
   for (const char c : words) {
@@ -21,7 +21,7 @@ inline std::string ParamName(const std::string& words) {
   return name;
 }
 
-/// The name generator of parameters that print as what they test.
+/// Name generator for test parameters whose printed text describes the test.
 template <class Param>
 std::string NamedAsPrinted(const testing::TestParamInfo<Param>& row) {
   return ParamName(testing::PrintToString(row.param));

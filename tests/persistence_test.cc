@@ -30,7 +30,7 @@ std::vector<std::string> WarningsOf(const std::string& toml) {
   return PersistenceWarnings(experiment, timeline, PersistenceOf(experiment, timeline));
 }
 
-// --- who hears whom when ------------------------------------------------------------------------------
+// --- the graph over time ------------------------------------------------------------------------------
 
 TEST(Timeline, OfOneGraphIsConstant) {
   const Timeline timeline = TimelineOf(Load(Four("[graph]\ntopology = 'path'\n"))).value();
@@ -74,8 +74,8 @@ TEST(Persistence, OfAConnectedGraphHoldsAtEveryTime) {
   EXPECT_EQ(Describe(path), "at every time");
 }
 
-TEST(Persistence, OfTurnsTakenIsThatOfTheirUnionOverAnyWindowLongEnough) {
-  // 1-2 and 3-4 for 0.3 s, 2-3 for 0.5 s: a window that begins with the longer one needs the first tick of the other.
+TEST(Persistence, OfASwitchingGraphIsThatOfItsUnionOverLongEnoughWindows) {
+  // 1-2 and 3-4 for 0.3 s, then 2-3 for 0.5 s: a window that begins with 2-3 needs the first tick of the other graph.
   const std::string turns =
       "[graph]\nedges = [[1, 2], [2, 1], [3, 4], [4, 3]]\nrepeat_s = 0.8\n"
       "[[graph.schedule]]\nat_s = 0.3\nedges = [[2, 3], [3, 2]]\n";
@@ -87,7 +87,7 @@ TEST(Persistence, OfTurnsTakenIsThatOfTheirUnionOverAnyWindowLongEnough) {
 }
 
 TEST(Persistence, WindowIsTheShortestThatEveryStartingTickNeeds) {
-  // Against all windows, tick by tick.
+  // Compare with all windows, tick by tick.
   const Experiment experiment = Load(
       Four("[graph]\nedges = [[1, 2]]\nrepeat_s = 0.4\n[[graph.schedule]]\nat_s = 0.05\nedges = [[2, 3], [4, 1]]\n"
            "[[graph.schedule]]\nat_s = 0.25\nedges = [[3, 1]]\n[[graph.schedule]]\nat_s = 0.31\nedges = [[2, 4]]\n"));
@@ -117,7 +117,7 @@ TEST(Persistence, OfAScheduleThatEndsIsThatOfItsLastGraph) {
                           "tree), so agents will not all meet"));
 }
 
-TEST(Persistence, OfALeaderIsATreeThatBeginsWithIt) {
+TEST(Persistence, WithALeaderNeedsATreeRootedAtIt) {
   const std::string turns =
       "[graph]\nedges = [[2, 1]]\nrepeat_s = 1.0\n[[graph.schedule]]\nat_s = 0.5\nedges = [[3, 2], [4, 3]]\n[law]\n";
   EXPECT_TRUE(Of(Four(turns + "leader = 1\n")).joint);
@@ -141,7 +141,7 @@ TEST(Persistence, WarnsOfLinksThatLoseEverything) {
                           "not all meet"));
 }
 
-TEST(Persistence, WaitsForThoseWhoStartLateAndNotForThoseWhoStop) {
+TEST(Persistence, IncludesAgentsThatStartLateAndNotAgentsThatStop) {
   const std::string path = "[graph]\ntopology = 'path'\n[[agents.override]]\n";
   EXPECT_EQ(Of(Four(path + "id = 2\nstart_s = 4.0\n")).from_s, 4.0);
   EXPECT_TRUE(Of(Four(path + "id = 4\nstop_s = 4.0\n")).joint) << "the others still hear each other";
@@ -151,7 +151,7 @@ TEST(Persistence, WaitsForThoseWhoStartLateAndNotForThoseWhoStop) {
                           "spanning tree), so agents will not all meet"));
 }
 
-TEST(Persistence, LooksAtWhoIsWithinRangeAtTheStart) {
+TEST(Persistence, ChecksTheRangeAtTheStart) {
   const std::string near = "[graph]\ntopology = 'path'\nrange_m = ";
   EXPECT_EQ(Of(Four(near + "25.0\n")).in_range_at_start, true);
   EXPECT_EQ(Describe(Of(Four(near + "25.0\n"))), "at every time, and within range at the start");

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""scripts/plot.py: which pictures it makes, what is in them, and what it says when it cannot."""
+"""Tests of scripts/plot.py: which plots it makes, what they contain, and its error messages."""
 
 import contextlib
 import io
@@ -28,7 +28,7 @@ PATH = {"graph": {"edges": [[1, 2, 1.0], [2, 1, 1.0], [2, 3, 1.0], [3, 2, 1.0]]}
 
 
 def arrays(agents=3, rows=51):
-    """Agents on a circle that contract exponentially to (1, 2), each at its own height."""
+    """States of agents on a circle that contract exponentially to (1, 2), each at its own height."""
     t = np.arange(rows) / 10
     angle = 2 * np.pi * np.arange(agents) / agents
     start = np.stack([5 * np.cos(angle), 5 * np.sin(angle), 1 + np.arange(agents)], axis=1)
@@ -40,7 +40,7 @@ def arrays(agents=3, rows=51):
 
 
 def setUpModule():
-    plot.STYLE |= {"figure.dpi": 30, "figure.constrained_layout.use": False}  # nobody looks at these: be quick
+    plot.STYLE |= {"figure.dpi": 30, "figure.constrained_layout.use": False}  # to be fast: nobody looks at these plots
 
 
 class PlotTest(unittest.TestCase):
@@ -58,7 +58,7 @@ class PlotTest(unittest.TestCase):
         (self.folder / "summary.json").write_text(json.dumps({"drawing": drawing} | (summary or {})))
 
     def run_plot(self, *options):
-        """Exit code, and what it wrote to stderr."""
+        """Runs plot.py. Returns its exit code and its stderr."""
         errors = io.StringIO()
         with contextlib.redirect_stderr(errors):
             code = plot.main([str(self.folder), *options])
@@ -178,7 +178,7 @@ class WhatIsInThem(PlotTest):
         axis = self.figure("acceleration", config=MINMAX, states=states).axes[0]
         smooth = self.lines(axis)["agent 2"].get_ydata()
         self.assertEqual(smooth[0], 1)
-        self.assertLess(np.abs(smooth[5:]).max(), 0.21)  # five rows of +-1
+        self.assertLess(np.abs(smooth[5:]).max(), 0.21)  # mean over five rows of +-1
         self.assertEqual(len(axis.collections[0].get_segments()), 3)
 
     def test_disagreement_is_the_distance_to_the_mean_on_a_log_axis(self):

@@ -1,4 +1,4 @@
-// Laws in shared libraries: those of tests/plugins.
+// Laws in shared libraries, with the libraries of tests/plugins.
 #include <gmock/gmock.h>
 
 #include "agent/agent.h"
@@ -17,7 +17,7 @@ using ::testing::ThrowsMessage;
 
 std::string Library(const std::string& name) { return MASCOT_BINARY_DIR "/tests/plugins/lib" + name + ".so"; }
 
-/// [law] is the plugin `name`: lines 10 and 11; `lines` follow.
+/// An experiment with the plug-in `name`: lines 10 and 11 of [law]; `lines` follow.
 std::string Plugin(const std::string& name, const std::string& lines = "") {
   return Three("name = 'plugin'\nlibrary = '" + Library(name) + "'\n" + lines);
 }
@@ -25,7 +25,7 @@ std::string Mirror(const std::string& params, const std::string& lines = "") {
   return Plugin("mirror", "params = { " + params + " }\n" + lines);
 }
 
-/// What agent 1 does at tick 3.
+/// The command of agent 1 at tick 3.
 Command Wants(const std::string& toml) {
   Experiment experiment = Load(toml);
   Motion self;
@@ -34,7 +34,7 @@ Command Wants(const std::string& toml) {
   return Agent(experiment, 1).Want(3, self, Standing().samples());
 }
 
-// --- what it gets and gives -------------------------------------------------------------------------
+// --- inputs and outputs -----------------------------------------------------------------------------
 
 TEST(PluginLaw, SeesItselfAndItsNeighbours) {
   EXPECT_EQ(Wants(Plugin("mirror")).a_law_W, Eigen::Vector3d(0.5, 2 - 0.25, 0)) << "sum a_ij (p_j - p_i) - v_i";
@@ -46,7 +46,7 @@ TEST(PluginLaw, GetsItsParameters) {
   EXPECT_EQ(Wants(Mirror("gain = 0.5, more_gains = [1, 0.5], times = 2")).a_law_W, Eigen::Vector3d(2, 8 - 0.25, 0));
 }
 
-TEST(PluginLaw, KnowsForWhomItIsMade) {
+TEST(PluginLaw, KnowsItsAgent) {
   const std::string tell = Mirror("does = 'tell'", "leader = 2\naxes = 'xyz'\n");
   EXPECT_EQ(Wants(tell).a_law_W, Eigen::Vector3d(1 + 30 + 200, 100, 1)) << "id, agents, leader; control rate; seed";
 }
@@ -78,7 +78,7 @@ TEST(PluginLaw, MayBeOneAgentsOwn) {
   EXPECT_GT(Agent(experiment, 2).Want(0, Motion{}, {}).a_law_W.x(), 0);
 }
 
-// --- where it stands --------------------------------------------------------------------------------
+// --- where its file is ------------------------------------------------------------------------------
 
 TEST(PluginLaw, IsLookedForBesideTheFileAndItsResolvedPathIsAbsolute) {
   ScratchFolder folder;
@@ -105,7 +105,7 @@ TEST(PluginLaw, ThatIsGoneWhereItIsFlownNamesAgentPathAndReason) {
 
 const std::string kAtLibrary = "folder/test.toml:11:11: law.library: ";
 
-TEST(PluginLaw, ThatIsNoFileIsRefused) {
+TEST(PluginLaw, ThatIsNotAFileIsRefused) {
   const auto with = [](const std::string& path) {
     return Refusal(Three("name = 'plugin'\nlibrary = '" + path + "'\n"));
   };
@@ -117,7 +117,7 @@ TEST(PluginLaw, ThatIsNoFileIsRefused) {
             "folder/test.toml:9:1: law.library: expected the path of a file, got nothing");
 }
 
-TEST(PluginLaw, ThatIsNoSharedLibraryIsRefused) {
+TEST(PluginLaw, ThatIsNotASharedLibraryIsRefused) {
   ScratchFolder folder;
   const auto with = [&](const std::string& bytes) {
     const std::string path = (std::filesystem::canonical(folder.path()) / "law.so").string();
@@ -129,7 +129,7 @@ TEST(PluginLaw, ThatIsNoSharedLibraryIsRefused) {
   EXPECT_EQ(with(std::string(4096, 'x')), kAtLibrary + "expected a shared library, got PATH: invalid ELF header");
 }
 
-TEST(PluginLaw, ThatNeedsWhatNobodyHasIsRefusedAtOnce) {
+TEST(PluginLaw, WithAnUndefinedSymbolIsRefusedAtOnce) {
   EXPECT_EQ(Refusal(Plugin("unfinished")), kAtLibrary + "expected a shared library, got " + Library("unfinished") +
                                                ": undefined symbol: mascot_test_gain_that_nobody_defines");
 }
@@ -146,7 +146,7 @@ TEST(PluginLaw, OfAnotherInterfaceIsRefused) {
                                           " of interface 2 (compile it against the headers of this MASCOT)");
 }
 
-TEST(PluginLaw, WhoseTypesLieOtherwiseInMemoryIsRefused) {
+TEST(PluginLaw, WithAnotherMemoryLayoutIsRefused) {
   EXPECT_EQ(
       Refusal(Plugin("mirror_aligned")),
       kAtLibrary + "expected a library compiled as this program was, got " + Library("mirror_aligned") +
@@ -204,7 +204,7 @@ TEST(PluginLaw, ThatCannotBeMadeIsAMistakeToo) {
             kAtLibrary + "expected a law of agent 1, got an exception: it threw something that is no std::exception");
 }
 
-TEST(PluginLaw, RefusesToSendMessagesThatItHasNot) {
+TEST(PluginLaw, RefusesToSendMessagesThatItDoesNotDefine) {
   EXPECT_EQ(Refusal(Plugin("mirror", "messages = true\n")),
             "folder/test.toml:12:12: law.messages: expected a law that overrides Message(), got none");
 }

@@ -1,5 +1,5 @@
-// docs/configuration.md and docs/mascot.schema.json, which are made from the tables of keys, against those who read
-// experiment files (LoadExperiment) and against taplo, which editors use.
+// docs/configuration.md and docs/mascot.schema.json, which are generated from the key tables, compared with the reader
+// of experiment files (LoadExperiment) and with taplo, which editors use.
 #include "orchestrator/reference/reference.h"
 
 #include <gmock/gmock.h>
@@ -32,7 +32,7 @@ std::vector<fs::path> TomlFiles(const fs::path& folder, const std::vector<std::s
   return files;
 }
 
-/// Files that hold every key between them. That of a law in C++ stands beside the library that it names.
+/// Files that together contain every key. The file for a law in C++ is in the build folder, next to its library.
 std::vector<fs::path> GoodConfigs() {
   std::vector<fs::path> files = TomlFiles(kSource / "tests/good_configs");
   files.push_back(MASCOT_BINARY_DIR "/tests/plugins/plugin.toml");
@@ -43,7 +43,7 @@ std::vector<fs::path> GoodConfigs() {
 
 constexpr const char* kHowTo = "run: cmake --build build/release --target reference";
 
-TEST(Reference, OfKeysIsCurrent) {
+TEST(Reference, IsCurrent) {
   EXPECT_EQ(ReadFile(kSource / "docs/configuration.md"), ConfigurationReference()) << kHowTo;
 }
 
@@ -63,7 +63,7 @@ TEST(Reference, SaysRangeDefaultAndMeaning) {
 
 // --- complete and true ------------------------------------------------------------------------------
 
-/// Calls `visit` with the path of every key, and what stands there: "link.override.loss".
+/// Calls `visit` with the path of every key in `table`, such as "link.override.loss".
 template <class Visit>
 void Walk(std::span<const Key> rows, const toml::table& table, const std::string& path, const Visit& visit) {
   for (const Key& key : rows) {
@@ -85,7 +85,7 @@ void AddAll(std::span<const Key> rows, const std::string& path, std::set<std::st
   }
 }
 
-TEST(GoodConfigs, HoldEveryKeyThereIs) {
+TEST(GoodConfigs, ContainEveryKey) {
   std::set<std::string> missing;
   AddAll(ExperimentKeys(), "", missing);
   for (const LawEntry& law : Laws()) AddAll(law.parameters, std::string(law.name), missing);
@@ -110,11 +110,11 @@ TEST(GoodConfigs, AreRead) {
 
 struct Verdict {
   std::string output;
-  /// The files of which taplo says that the schema refuses them.
+  /// Names of the files that the schema refuses.
   std::set<std::string> refused;
 };
 
-/// What taplo says of these files; of all by our schema, or of each by the one that it names.
+/// Checks files with taplo: all against our schema, or each against the schema that it names.
 Verdict Taplo(const std::vector<fs::path>& files, bool by_our_schema) {
   const std::string program = MASCOT_SOURCE_DIR "/tests/taplo/node_modules/.bin/taplo";
   if (!fs::exists(program))
@@ -143,7 +143,7 @@ TEST(Schema, IsNamedByTheShippedExperimentsAndAcceptsThem) {
   EXPECT_THAT(verdict.refused, IsEmpty()) << verdict.output;
 }
 
-TEST(Schema, IsFoundByWhatTheShippedExperimentsSay) {
+TEST(Schema, IsFoundByTheLineInTheShippedExperiments) {
   ScratchFolder folder;
   fs::copy(kSource / "docs/mascot.schema.json", folder.path());
   WriteFile(folder.File("wrong.toml"), "#:schema ./mascot.schema.json\nrun.duration_s = 'long'\nagents.count = 1\n");
@@ -174,9 +174,9 @@ TEST(Schema, AcceptsResolvedExperiments) {
 TEST(Schema, RefusesUnknownKeysNamesAndTypes) {
   std::vector<fs::path> files = TomlFiles(kSource / "tests/bad_configs", {"unknown_", "type_", "range_"});
   const std::set<std::string> beyond = {
-      "type_count_float.toml",        // in JSON, 4.0 is an integer
-      "range_airframe_inertia.toml",  // three numbers that do not fit each other
-      "range_leader.toml",            // more than there are agents
+      "type_count_float.toml",        // in JSON Schema, 4.0 is an integer
+      "range_airframe_inertia.toml",  // a rule between three numbers
+      "range_leader.toml",            // a rule between two keys
   };
   std::erase_if(files, [&](const fs::path& path) { return beyond.contains(path.filename()); });
   EXPECT_GE(files.size(), 40u);

@@ -1,4 +1,4 @@
-// What the orchestrator makes of what processes say on /status, without a wire.
+// How the orchestrator handles statuses of processes, without DDS.
 #include "orchestrator/engines/dds/roster.h"
 
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::ThrowsMessage;
 
-/// A physics server and two agents, the second started by hand.
+/// Roster of a physics server and two agents, the second started by hand.
 class RosterTest : public testing::Test {
  protected:
   Roster::News Say(const std::string& process, Life life, std::uint32_t agent = 0, const std::string& reason = "") {
@@ -27,7 +27,7 @@ class RosterTest : public testing::Test {
   Roster::Time now_ = Roster::Time() + 1h;
 };
 
-TEST_F(RosterTest, NewsIsWhatAProcessHadNotSaidBefore) {
+TEST_F(RosterTest, AStatusIsNewsIfItsStateHasChanged) {
   EXPECT_TRUE(Say("agent_1", Life::kWaiting, 1).changed);
   EXPECT_FALSE(Say("agent_1", Life::kWaiting, 1).changed);
   EXPECT_TRUE(Say("agent_1", Life::kReady, 1).changed);
@@ -35,14 +35,14 @@ TEST_F(RosterTest, NewsIsWhatAProcessHadNotSaidBefore) {
   EXPECT_FALSE(roster_.Of("agent_2").has_value());
 }
 
-TEST_F(RosterTest, TheLoopIsWokenForThoseThatWaitAndForTheServersEnd) {
+TEST_F(RosterTest, TheLoopIsWokenForWaitingProcessesAndTheServersEnd) {
   EXPECT_TRUE(Say("agent_1", Life::kWaiting, 1).wake);
   EXPECT_FALSE(Say("agent_1", Life::kReady, 1).wake);
   EXPECT_FALSE(Say("physics_server", Life::kRunning).wake);
   EXPECT_TRUE(Say("physics_server", Life::kDone).wake);
 }
 
-TEST_F(RosterTest, TheExperimentIsHandedOutOnceForAllWhoAskWithinATenthOfASecond) {
+TEST_F(RosterTest, TheExperimentIsHandedOutOnRequestAtMostTenTimesASecond) {
   EXPECT_FALSE(roster_.IsTimeToHandOut(now_)) << "nobody has asked";
   Say("agent_1", Life::kWaiting, 1);
   Say("agent_2", Life::kWaiting, 2);
@@ -55,13 +55,13 @@ TEST_F(RosterTest, TheExperimentIsHandedOutOnceForAllWhoAskWithinATenthOfASecond
   EXPECT_TRUE(roster_.IsTimeToHandOut(now_ + 1s + 100ms));
 }
 
-TEST_F(RosterTest, TheRecordersHelloIsSaidFiveTimesASecond) {
+TEST_F(RosterTest, TheRecorderSaysHelloFiveTimesASecond) {
   EXPECT_TRUE(roster_.IsTimeForHello(now_));
   EXPECT_FALSE(roster_.IsTimeForHello(now_ + 199ms));
   EXPECT_TRUE(roster_.IsTimeForHello(now_ + 200ms));
 }
 
-TEST_F(RosterTest, WhoHasNotBeenHeardOfIsNamed) {
+TEST_F(RosterTest, ProcessesWithoutAStatusAreNamed) {
   EXPECT_EQ(roster_.Missing(), "nothing was heard of physics_server, agent_1, agent_2");
   Say("physics_server", Life::kMatching);
   Say("agent_1", Life::kWaiting, 1);
@@ -75,7 +75,7 @@ TEST_F(RosterTest, AnAgentStartedByHandThatFailsIsTheRunsFailure) {
               ThrowsMessage<std::runtime_error>("agent_2 failed: no such law"));
 }
 
-TEST_F(RosterTest, TheEndOfAChildIsSeenElsewhere) {
+TEST_F(RosterTest, AFailureOfAnyOtherProcessIsLeftToItsExit) {
   EXPECT_NO_THROW(Say("agent_1", Life::kFailed, 1, "no such law"));
   EXPECT_NO_THROW(Say("stranger", Life::kFailed, 77, "who am I"));
   EXPECT_NO_THROW(Say("physics_server", Life::kFailed, 0, "agent 1 is late"));

@@ -1,4 +1,4 @@
-// Rows of samples that come in any order, without a wire.
+// Assembly of rows from samples in any order, without DDS.
 #include "orchestrator/engines/dds/row_window.h"
 
 #include <gmock/gmock.h>
@@ -28,12 +28,12 @@ RowWindow::Rules Rules(bool realtime = false) {
           .batch = 4};
 }
 
-/// A window, and what every topic has sent so far.
+/// A window, and the number of samples sent on each topic.
 class RowWindowTest : public testing::Test {
  protected:
   explicit RowWindowTest(bool realtime = false) : window_(Rules(realtime)), sent_(5, 0) {}
 
-  /// The next sample of a topic; its byte says tick and topic.
+  /// Passes the next sample of a topic; its bytes are tick and topic.
   bool Send(std::size_t topic, std::int64_t tick) {
     const std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(tick), static_cast<std::uint8_t>(topic)};
     return window_.Take(topic, tick, bytes, ++sent_[topic]);
@@ -57,7 +57,7 @@ class RealtimeRowWindowTest : public RowWindowTest {
 
 // --- rows ---------------------------------------------------------------------------------------------
 
-TEST_F(RowWindowTest, ARowIsThereWhenItsLastSampleIs) {
+TEST_F(RowWindowTest, ARowIsReadyWithItsLastSample) {
   for (const std::size_t topic : {kCommand2, kState1, kClock, kCommand1}) {
     Send(topic, 0);
     EXPECT_FALSE(Next());
@@ -72,7 +72,7 @@ TEST_F(RowWindowTest, ARowIsThereWhenItsLastSampleIs) {
   EXPECT_EQ(window_.rows(), 1);
 }
 
-TEST_F(RowWindowTest, RowsComeInOrderOfTickInWhateverOrderTopicsHurryAhead) {
+TEST_F(RowWindowTest, RowsComeInTickOrderWhicheverTopicsRunAhead) {
   std::mt19937 random(7);
   std::int64_t taken = 0;
   while (window_.rows() < 100) {
@@ -99,9 +99,9 @@ TEST_F(RowWindowTest, InLockstepARowWaitsForItsCommandsForEver) {
   EXPECT_FALSE(Next(/*give_up=*/true));
 }
 
-// --- when to look -------------------------------------------------------------------------------------
+// --- when to take rows --------------------------------------------------------------------------------
 
-TEST_F(RowWindowTest, RowsAreWorthTakingByTheBatch) {
+TEST_F(RowWindowTest, ABatchOfCompleteRowsIsToBeTaken) {
   EXPECT_FALSE(SendTick(0));
   EXPECT_FALSE(SendTick(1));
   EXPECT_FALSE(SendTick(2));
@@ -110,7 +110,7 @@ TEST_F(RowWindowTest, RowsAreWorthTakingByTheBatch) {
   EXPECT_FALSE(SendTick(4)) << "taken ones do not count";
 }
 
-TEST_F(RowWindowTest, TheLastTickIsWorthTakingAtOnce) {
+TEST_F(RowWindowTest, TheLastTickIsToBeTakenAtOnce) {
   for (std::int64_t tick = 0; tick < 99; ++tick) {
     SendTick(tick);
     ASSERT_TRUE(Next());
@@ -118,7 +118,7 @@ TEST_F(RowWindowTest, TheLastTickIsWorthTakingAtOnce) {
   EXPECT_TRUE(Send(kState1, 99));
 }
 
-// --- proof --------------------------------------------------------------------------------------------
+// --- lost samples -------------------------------------------------------------------------------------
 
 TEST_F(RowWindowTest, ASampleThatIsMissingFailsTheRecording) {
   Send(kState1, 0);
@@ -135,20 +135,20 @@ TEST_F(RowWindowTest, ASampleThatComesTwiceFailsTheRecording) {
                   "the recording is not complete: /agent_2/command: sample 1 came after sample 1"));
 }
 
-TEST_F(RowWindowTest, ATickAsFarAheadAsTheWindowIsTakenOneFartherFails) {
+TEST_F(RowWindowTest, TheLastTickOfTheWindowIsTakenAndTheNextOneFails) {
   EXPECT_NO_THROW(Send(kState1, 15));
   EXPECT_THAT([&] { Send(kState1, 16); },
               ThrowsMessage<std::runtime_error>("the recorder was overrun: tick 16 came while tick 0 was not written"));
 }
 
-TEST_F(RowWindowTest, ATickWhoseRowIsGoneIsLost) {
+TEST_F(RowWindowTest, ASampleWhoseRowWasTakenIsLost) {
   SendTick(0);
   ASSERT_TRUE(Next());
   EXPECT_FALSE(Send(kCommand1, 0));
   EXPECT_EQ(window_.lost(), 1u);
 }
 
-TEST_F(RowWindowTest, ATickBeforeTheFirstIsLost) {
+TEST_F(RowWindowTest, ASampleOfANegativeTickIsLost) {
   EXPECT_FALSE(Send(kCommand1, -1));
   EXPECT_EQ(window_.lost(), 1u);
   EXPECT_EQ(window_.newest_tick(), -1);
@@ -156,7 +156,7 @@ TEST_F(RowWindowTest, ATickBeforeTheFirstIsLost) {
 
 // --- real time ----------------------------------------------------------------------------------------
 
-TEST_F(RealtimeRowWindowTest, ARowGoesWithoutACommandOnceItIsOlderThanThePatience) {
+TEST_F(RealtimeRowWindowTest, ARowWithoutACommandIsReadyAfterThePatience) {
   for (const std::size_t topic : {kClock, kState1, kState2, kCommand2}) Send(topic, 0);
   for (std::int64_t tick = 1; tick < 8; ++tick) {
     EXPECT_FALSE(SendTick(tick) && tick < 4);
@@ -168,14 +168,14 @@ TEST_F(RealtimeRowWindowTest, ARowGoesWithoutACommandOnceItIsOlderThanThePatienc
   EXPECT_FALSE(row_.commands[1].empty());
 }
 
-TEST_F(RealtimeRowWindowTest, AtTheEndARowGoesWithoutACommandAtOnce) {
+TEST_F(RealtimeRowWindowTest, AtTheEndARowWithoutACommandIsReadyAtOnce) {
   for (const std::size_t topic : {kClock, kState1, kState2}) Send(topic, 0);
   EXPECT_FALSE(Next());
   ASSERT_TRUE(Next(/*give_up=*/true));
   EXPECT_TRUE(row_.commands[0].empty());
 }
 
-TEST_F(RealtimeRowWindowTest, ARowNeverGoesWithoutAState) {
+TEST_F(RealtimeRowWindowTest, ARowWithoutAStateIsNeverReady) {
   for (const std::size_t topic : {kClock, kState1, kCommand1, kCommand2}) Send(topic, 0);
   EXPECT_FALSE(Next(/*give_up=*/true));
 }
@@ -191,7 +191,7 @@ TEST_F(RealtimeRowWindowTest, CommandsThatWereOverwrittenAreCountedAndStatesMayN
 TEST_F(RealtimeRowWindowTest, ACommandIsNotTakenForAnotherTicks) {
   SendTick(0);
   ASSERT_TRUE(Next());
-  for (std::int64_t tick = 1; tick < 17; ++tick)  // the slot of tick 0 is used again
+  for (std::int64_t tick = 1; tick < 17; ++tick)  // the slot of tick 0 is reused for tick 16
     for (const std::size_t topic : {kClock, kState1, kState2}) {
       Send(topic, tick);
       Next(/*give_up=*/true);

@@ -1,4 +1,4 @@
-// The orchestrator's decisions in the course of a run, without processes, wire or clock.
+// The orchestrator's decisions during a run, without processes, DDS or clock.
 #include "orchestrator/engines/dds/run_phases.h"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ using Exit = RunPhases::Exit;
 
 constexpr auto kInstant = 1ms;
 
-/// A run of ticks 0 to 10 whose clock the test sets.
+/// A run of ticks 0 to 10; the test sets the time.
 class RunPhasesTest : public testing::Test {
  protected:
   explicit RunPhasesTest(double period_s = 0) : phases_(RulesOf(period_s), now_) {}
@@ -38,13 +38,13 @@ class RunPhasesTest : public testing::Test {
     now_ += span;
     return Look();
   }
-  /// The first states have come.
+  /// Lets the first sample arrive.
   void Fly() {
     view_.newest_tick = 0;
     Look();
     ASSERT_EQ(phases_.phase(), Phase::kFlying);
   }
-  /// The server is done with tick 10; `rows` of 11 are recorded.
+  /// Lets the server be done with tick 10; `rows` of 11 rows are recorded.
   void FinishFlight(std::int64_t rows) {
     Fly();
     view_.newest_tick = 10;
@@ -110,7 +110,7 @@ TEST_F(RunPhasesTest, AStartMayTakeTheStartTimeoutAndFiveSeconds) {
   EXPECT_EQ(phases_.failure(), "not started within run.start_timeout_s = 60.0 s: nothing was heard of agent_2");
 }
 
-TEST_F(RunPhasesTest, ARunThatHasStartedIsNotHeldAgainstTheStartTimeout) {
+TEST_F(RunPhasesTest, TheStartTimeoutDoesNotApplyAfterTheStart) {
   Fly();
   for (int n = 0; n < 100; ++n) {
     ++view_.newest_tick;
@@ -129,7 +129,7 @@ TEST_F(RunPhasesTest, AServerThatSaysNothingForTheAgentTimeoutAndFiveSecondsHasF
   EXPECT_EQ(phases_.phase(), Phase::kEnding);
 }
 
-TEST_F(RunPhasesTest, RowsThatAreStillWrittenAreProgress) {
+TEST_F(RunPhasesTest, RecordedRowsCountAsProgress) {
   Fly();
   LookAfter(7s);
   ++view_.rows;
@@ -138,7 +138,7 @@ TEST_F(RunPhasesTest, RowsThatAreStillWrittenAreProgress) {
   EXPECT_EQ(phases_.phase(), Phase::kFlying);
 }
 
-TEST_F(RealtimeRunPhasesTest, ASilentServerHasOnePeriodMore) {
+TEST_F(RealtimeRunPhasesTest, TheLimitOfASilentServerIsOnePeriodLonger) {
   Fly();
   LookAfter(7010ms);
   EXPECT_EQ(phases_.phase(), Phase::kFlying);
@@ -192,7 +192,7 @@ TEST_F(RunPhasesTest, ASignalBeforeTheFirstStateEndsTheRunAtOnce) {
   EXPECT_EQ(phases_.phase(), Phase::kEnding);
 }
 
-TEST_F(RunPhasesTest, ASignalInFlightIsATimelyStop) {
+TEST_F(RunPhasesTest, ASignalDuringTheTicksStopsTheRunInOrder) {
   Fly();
   EXPECT_EQ(phases_.OnSignal(SIGINT, now_), Actions{.ask_to_stop = true});
   EXPECT_EQ(phases_.phase(), Phase::kFlying);
@@ -255,7 +255,7 @@ TEST_F(RunPhasesTest, AChildThatEndsAfterTheRunIsNoFailure) {
   EXPECT_TRUE(phases_.in_order());
 }
 
-TEST_F(RunPhasesTest, ChildrenThatEndForASignalAwaitThatSignalForATenthOfASecond) {
+TEST_F(RunPhasesTest, ChildrenThatEndByASignalAreJudgedATenthOfASecondLater) {
   Fly();
   Exits("agent_1", 143, "exited with code 143");
   LookAfter(100ms);
@@ -273,7 +273,7 @@ TEST_F(RunPhasesTest, AChildThatWasSignalledAloneIsTheFailure) {
   EXPECT_THAT(phases_.failure(), HasSubstr("agent_1 exited with code 143"));
 }
 
-TEST_F(RunPhasesTest, ASignalExcusesOnlyThoseThatEndedForIt) {
+TEST_F(RunPhasesTest, ASignalExplainsOnlyExitsByThatSignal) {
   Fly();
   Exits("agent_1", 143, "exited with code 143");
   Exits("agent_2", 1, "exited with code 1");
@@ -281,7 +281,7 @@ TEST_F(RunPhasesTest, ASignalExcusesOnlyThoseThatEndedForIt) {
   EXPECT_EQ(phases_.failure(), "agent_2 exited with code 1\n  agent_2 | agent_2 sighs");
 }
 
-TEST_F(RunPhasesTest, AfterASignalChildrenThatEndForItAreExcusedAtOnce) {
+TEST_F(RunPhasesTest, AfterASignalChildrenThatEndByItHaveNotFailed) {
   Fly();
   phases_.OnSignal(SIGINT, now_);
   Exits("agent_1", 130, "exited with code 130");
@@ -291,7 +291,7 @@ TEST_F(RunPhasesTest, AfterASignalChildrenThatEndForItAreExcusedAtOnce) {
 
 // --- failures -----------------------------------------------------------------------------------------
 
-TEST_F(RunPhasesTest, TheFirstFailureIsWhy) {
+TEST_F(RunPhasesTest, TheFirstFailureIsTheReason) {
   Fly();
   phases_.Fail("the disk is full");
   phases_.Fail("something else");
@@ -299,21 +299,21 @@ TEST_F(RunPhasesTest, TheFirstFailureIsWhy) {
   EXPECT_EQ(phases_.phase(), Phase::kCollecting);
 }
 
-TEST_F(RunPhasesTest, AChildThatEndedBeforeTheFailureIsWhy) {
+TEST_F(RunPhasesTest, AChildThatEndedBeforeTheFailureIsTheReason) {
   Fly();
   Exits("agent_1", 139, "exited with code 139");
   phases_.Fail("a reader has lost its writer");
   EXPECT_THAT(phases_.failure(), HasSubstr("agent_1 exited with code 139"));
 }
 
-TEST_F(RunPhasesTest, AStrangerOnTheWireIsWhyWhoeverStumblesOverItFirst) {
+TEST_F(RunPhasesTest, AViolationIsTheReasonEvenIfAnotherFailureIsNoticedFirst) {
   violation_ = "agent_2 reads /agent_5/state";
   Fly();
   phases_.Fail("the recording is not complete");
   EXPECT_EQ(phases_.failure(), "the wire differs from the graph: agent_2 reads /agent_5/state");
 }
 
-TEST_F(RunPhasesTest, AViolationFailsTheRunEvenIfItHasGoneBy) {
+TEST_F(RunPhasesTest, AViolationFailsTheRunEvenIfItIsOver) {
   Fly();
   phases_.OnViolation("a stranger writes /agent_1/command");
   EXPECT_EQ(phases_.failure(), "the wire differs from the graph: a stranger writes /agent_1/command");
@@ -322,7 +322,7 @@ TEST_F(RunPhasesTest, AViolationFailsTheRunEvenIfItHasGoneBy) {
 
 // --- the server's report ------------------------------------------------------------------------------
 
-TEST_F(RunPhasesTest, AfterAFailureTheServerIsAskedToEndAndToReport) {
+TEST_F(RunPhasesTest, AfterAFailureTheServerIsAskedToEndAndItsReportIsAwaited) {
   Fly();
   phases_.Fail("agent_1 died");
   EXPECT_EQ(Collect(), Actions{.ask_to_end = true});
@@ -344,7 +344,7 @@ TEST_F(RunPhasesTest, AReportIsWaitedForNoLongerThanTenSeconds) {
   EXPECT_EQ(phases_.phase(), Phase::kEnding);
 }
 
-TEST_F(RunPhasesTest, AServerThatReportedAlreadyIsNotAskedAgain) {
+TEST_F(RunPhasesTest, AServerThatHasReportedIsNotAskedAgain) {
   Fly();
   phases_.Fail("agent_1 died");
   view_.reported = true;
@@ -352,7 +352,7 @@ TEST_F(RunPhasesTest, AServerThatReportedAlreadyIsNotAskedAgain) {
   EXPECT_EQ(phases_.phase(), Phase::kEnding);
 }
 
-TEST_F(RunPhasesTest, WhatAServerSaidThatExitedIsWaitedForOneSecond) {
+TEST_F(RunPhasesTest, TheReportOfAServerThatExitedIsAwaitedForOneSecond) {
   Fly();
   Exits("physics_server", 1, "exited with code 1");
   EXPECT_EQ(Collect(), Actions()) << "it cannot be asked any more";

@@ -12,7 +12,7 @@ namespace {
 
 const Eigen::VectorXd kStart = (Eigen::VectorXd(5) << 3, -1, 4, 1, -5).finished();
 
-/// Five in a row, starting at kStart. `rest`: lines from [control] on.
+/// Five agents that start at kStart. `rest`: lines from [control] on.
 std::string Five(const std::string& model, const std::string& rest) {
   return "[run]\nduration_s = 100.0\n[physics]\ncollisions = false\n[agents]\ncount = 5\nmodel = '" + model +
          "'\nposition_m = [[3, 0, 1], [-1, 0, 1], [4, 0, 1], [1, 0, 1], [-5, 0, 1]]\n[control]\nrate_hz = 10\n" + rest;
@@ -44,7 +44,7 @@ struct Case {
   }
 };
 
-/// By how much the disagreement falls per second, over `time_s` late in the run.
+/// Decay rate of the disagreement (1/s), measured after `time_s`.
 double Rate(DelayedRecursion& witness, double time_s) {
   witness.RunFor(time_s);
   const double early = witness.LateSpread(time_s / 4);
@@ -113,7 +113,7 @@ TEST(SampledTeam, OnASwitchingGraphIsTheProductOfItsPhases) {
   EXPECT_NEAR(c.sampled.MeetingPoint().x(), x.mean(), 1e-9);
 }
 
-TEST(SampledTeam, OfSwitchingDelayedEdgesHearsWhatWasSentWhileTheyWere) {
+TEST(SampledTeam, WithDelayedSwitchingEdgesUsesSamplesSentWhileTheyExisted) {
   const Case c(Five("double_integrator",
                     "[graph]\nedges = [[1, 2], [2, 1], [4, 5], [5, 4]]\nrepeat_s = 1.0\n"
                     "[[graph.schedule]]\nat_s = 0.4\nedges = [[2, 3], [3, 2], [3, 4], [4, 3]]\n"
@@ -133,7 +133,7 @@ TEST(SampledTeam, OfSwitchingDelayedEdgesHearsWhatWasSentWhileTheyWere) {
   EXPECT_NEAR(c.sampled.MeetingPoint().x(), q.back().mean(), 1e-9);
 }
 
-TEST(SampledTeam, WaitsForThoseWhoStartLate) {
+TEST(SampledTeam, TakesAgentsThatStartLateIntoAccount) {
   const Case c(Five("single_integrator", kPath + "[law]\nname = 'velocity_consensus'\n") +
                "[[agents.override]]\nid = 5\nstart_s = 2.0\n");
   Eigen::VectorXd x = kStart;
@@ -145,16 +145,17 @@ TEST(SampledTeam, WaitsForThoseWhoStartLate) {
   EXPECT_NEAR(c.sampled.MeetingPoint().x(), x.mean(), 1e-9);
 }
 
-TEST(SampledTeam, KeepsTheDigitsOfAChainBehindItsLeader) {
-  // Ten poles at the same place: a solver of the whole matrix would find them scattered.
+TEST(SampledTeam, ComputesTheEqualEigenvaluesOfAChainAccurately) {
+  // Ten equal poles: a solver for the whole matrix would scatter them.
   const Case c(
       "[run]\nduration_s = 100.0\n[physics]\ncollisions = false\n[agents]\ncount = 11\nmodel = 'single_integrator'\n"
       "[graph]\ntopology = 'directed_path'\n[link]\ndelay_s = 0.01\n[law]\nname = 'velocity_consensus'\nleader = 1\n");
   EXPECT_NEAR(c.sampled.slowest(), 0.99, 1e-12);
 }
 
-TEST(SampledTeam, DoesNotTakeTheBrakingOfAllForDisagreement) {
-  // s^2 + 0.3 s + lambda for those who disagree, s + 0.3 for all together, or for a root that nobody pulls: slower.
+TEST(SampledTeam, DoesNotCountCommonBrakingAsDisagreement) {
+  // Disagreement decays by s^2 + 0.3 s + lambda; the common velocity, or that of a root without neighbours, by s + 0.3,
+  // which is slower.
   const std::string law = "[law]\nname = 'consensus'\nbeta = 0.3\nv_gain = 1.5\np_gain = 1.0\n";
   const Case together(Five("double_integrator", "[graph]\ntopology = 'complete'\n[link]\ndelay_s = 0.1\n" + law));
   const Case root(Five("double_integrator",
@@ -172,7 +173,7 @@ TEST(SampledTeam, DoesNotTakeTheBrakingOfAllForDisagreement) {
   }
 }
 
-TEST(SampledTeam, WeighsLossesAsTheLinksDoInTheLongRun) {
+TEST(SampledTeam, ScalesWeightsByTheLongRunDeliveryOfLinks) {
   const Case half(Five("single_integrator", kPath + "[link]\nloss = 0.4\n[law]\nname = 'velocity_consensus'\n"));
   EXPECT_NEAR(half.sampled.slowest(), 1 - 0.06 * 0.381966, 1e-7);
   const Case bursts(

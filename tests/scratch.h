@@ -13,7 +13,7 @@
 
 namespace mascot {
 
-/// A folder of a test's own, removed with all it holds.
+/// A temporary folder for a test; the destructor removes it with its contents.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -43,7 +43,7 @@ inline void WriteFile(const std::string& path, const std::string& bytes) {
 
 struct Ran {
   int exit_code = -1;
-  std::string output;  ///< of stdout and stderr
+  std::string output;  ///< stdout and stderr
 };
 
 inline Ran Shell(const std::string& command) {

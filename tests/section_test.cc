@@ -22,7 +22,7 @@ Section Text(const std::string& text, std::vector<Override> overrides = {}) {
   return Section::FromText(text, "a.toml", overrides);
 }
 
-/// The mistakes that `read` makes of `text`.
+/// The mistakes that `read` finds in `text`.
 std::vector<std::string> Mistakes(const std::string& text, const std::function<void(Section&)>& read,
                                   std::vector<Override> overrides = {}) {
   try {
@@ -175,7 +175,7 @@ TEST(SectionRows, ReachIntoTablesAndTheirLists) {
   EXPECT_THROW(root.ThrowIfWrong(), ConfigError);
 }
 
-TEST(SectionRows, LeaveADefaultThatOnlyTheReaderKnowsToIt) {
+TEST(SectionRows, LeaveUnstatedDefaultsToTheReader) {
   Section root = TextWithRows("");
   EXPECT_EQ(root.Number("gain", 7.0), 7);
   EXPECT_EQ(root.Text("word", "other"), "other");
@@ -186,7 +186,7 @@ TEST(SectionRows, MayNameTwoKindsOfValue) {
   EXPECT_EQ(TextWithRows("").OneOf("domain"), "red");
 }
 
-TEST(SectionRows, ThatAreMissingOrImpossibleAreMistakesOfOurs) {
+TEST(SectionRows, ThatAreMissingOrImpossibleAreProgrammingErrors) {
   Section root = TextWithRows("");
   EXPECT_THROW(root.Number("unheard_of"), std::logic_error);
   EXPECT_THROW(root.Number("broken"), std::logic_error);
@@ -264,7 +264,7 @@ TEST(Section, OffersTheNearestOfTheNamesItListsOrNone) {
               ElementsAre("a.toml:1:12: topology: expected one of complete, ring, got 3"));
 }
 
-TEST(Section, PointsAtKeysThatNobodyAskedFor) {
+TEST(Section, PointsAtUnknownKeys) {
   const auto read = [](Section& root) {
     Section graph = root.Child("graph");
     graph.Has("neighbours");
@@ -305,7 +305,7 @@ TEST(Section, StopsListingMistakesAtAHundred) {
   EXPECT_EQ(mistakes.back(), "a.toml: too many mistakes: these are the first found");
 }
 
-TEST(Section, SaysNothingAboutTheKeysOfWhatIsNoTable) {
+TEST(Section, SaysNothingAboutTheKeysOfAValueThatIsNotATable) {
   const auto read = [](Section& root) {
     Section run = root.Child("run");
     run.Positive("duration_s", 10);
@@ -342,7 +342,7 @@ TEST(Section, GoesOnWithALegalValueAfterAMistake) {
   EXPECT_EQ(root.Vector3("a", 0, 1), Eigen::Vector3d::Zero());
 }
 
-TEST(Section, NotesWhatItsReadersFindOut) {
+TEST(Section, ReportsMistakesFoundByItsReaders) {
   const auto read = [](Section& root) {
     Section graph = root.Child("graph");
     graph.Rows("laplacian", -9, 9);
@@ -368,7 +368,7 @@ TEST(Section, KeepsMessagesOnOneReadableLine) {
               ElementsAre("a.toml:1:5: x: expected a number in [0, 1], got '" + std::string(60, 'y') + "...'"));
 }
 
-// --- text that is no TOML ---------------------------------------------------------------------------
+// --- text that is not TOML --------------------------------------------------------------------------
 
 TEST(Section, PlacesMistakesInsideAFreeValue) {
   const auto fail = [](const std::string& inner) {
@@ -384,7 +384,7 @@ TEST(Section, PlacesMistakesInsideAFreeValue) {
   EXPECT_THAT(fail("absent"), ElementsAre("a.toml:2:10: law.params.absent: expected\\tsense, got none"));
 }
 
-TEST(Section, LocatesWhatIsNoToml) {
+TEST(Section, LocatesSyntaxErrors) {
   EXPECT_THAT(SyntaxMistakes("a = 1\nb 2\n"),
               ElementsAre("a.toml:2:3: while parsing key-value pair: expected '=', saw '2'"));
   EXPECT_THAT(SyntaxMistakes("a = ring\n"),
@@ -454,7 +454,7 @@ TEST(Section, NamesTheCommandLineInItsMistakes) {
               ElementsAre("a.toml:1:1: run.duration_s: expected a number in (0, 10], got nothing"));
 }
 
-TEST(Section, RefusesOverridesThatAreNone) {
+TEST(Section, RefusesMalformedOverrides) {
   const auto read = [](Section&) {};
   EXPECT_THAT(Mistakes("a = 1\n", read, {{"a", "[1"}}), ElementsAre("--set a=[1: a: expected a TOML value, got '[1'"));
   EXPECT_THAT(Mistakes("a = 1\n", read, {{"a", ""}}), ElementsAre("--set a=: a: expected a TOML value, got ''"));
@@ -489,7 +489,7 @@ TEST(Section, OverridesReachIntoLists) {
   EXPECT_THAT(Mistakes(file, read, set), IsEmpty());
 }
 
-TEST(Section, RefusesPlacesThatNoListHas) {
+TEST(Section, RefusesPlacesOutsideAList) {
   const auto read = [](Section&) {};
   const std::string file = "a = [1, 2]\n[[b]]\nc = 1\n";
   EXPECT_THAT(Mistakes(file, read, {{"a[2]", "1"}}),
@@ -577,7 +577,7 @@ TEST(ShortestFloat, ReadsBackAsTheSameNumberAndIsAFloat) {
     EXPECT_EQ(std::strtod(ShortestFloat(value).c_str(), nullptr), value);
 }
 
-TEST(DidYouMean, KnowsSlipsOfTheFingerFromOtherWords) {
+TEST(DidYouMean, OffersOnlySimilarWords) {
   constexpr std::string_view kNames[] = {"position_m", "topology", "seed"};
   EXPECT_EQ(DidYouMean("positoin_m", kNames), "position_m");
   EXPECT_EQ(DidYouMean("Topology", kNames), "topology");
@@ -604,7 +604,7 @@ TEST_F(SectionFile, NamesThePathAsItWasTyped) {
   }
 }
 
-/// Path of `key` as a file in `folder` says it: "key = value".
+/// Resolved path of `key` in a file in `folder` with this line, "key = value".
 std::string PathSaidIn(const std::string& folder, const std::string& line) {
   Section section = Section::FromText(line, folder + "/a.toml");
   const std::string path = section.PathOfFile("key");
@@ -628,7 +628,7 @@ TEST_F(SectionFile, LooksForFilesOfTheCommandLineInTheCurrentFolder) {
   EXPECT_EQ(section.PathOfFile("key"), (std::filesystem::current_path() / "law.so").string());
 }
 
-TEST(Section, RefusesPathsThatAreNone) {
+TEST(Section, RefusesInvalidPaths) {
   const auto read = [](Section& root) { root.PathOfFile("key"); };
   EXPECT_THAT(Mistakes("", read), ElementsAre("a.toml:1:1: key: expected the path of a file, got nothing"));
   EXPECT_THAT(Mistakes("key = ''", read), ElementsAre("a.toml:1:7: key: expected the path of a file, got ''"));
@@ -637,7 +637,7 @@ TEST(Section, RefusesPathsThatAreNone) {
               ElementsAre("a.toml:1:7: key: expected the path of a file, got 'a\\nb'"));
 }
 
-TEST_F(SectionFile, RefusesWhatIsNoFileToRead) {
+TEST_F(SectionFile, RefusesAnythingButAReadableFile) {
   std::filesystem::create_directory(Path("folder"));
   std::filesystem::create_symlink(Path("nowhere"), Path("dangling"));
   ASSERT_EQ(::mkfifo(Path("fifo").c_str(), 0600), 0);
@@ -647,7 +647,7 @@ TEST_F(SectionFile, RefusesWhatIsNoFileToRead) {
   EXPECT_EQ(Refusal("fifo"), Path("fifo") + ": is not a regular file");
 }
 
-TEST_F(SectionFile, RefusesFilesThatNobodyWroteByHand) {
+TEST_F(SectionFile, RefusesVeryLargeFiles) {
   std::ofstream(Path("large.toml")) << "# large\n";
   std::filesystem::resize_file(Path("large.toml"), (16u << 20) + 1);
   EXPECT_EQ(Refusal("large.toml"), Path("large.toml") + ": is larger than 16 MiB");

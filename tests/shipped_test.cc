@@ -1,4 +1,4 @@
-// What the shipped experiments show, each flown to its end in one process, held against theory.
+// The shipped experiments, each run to its end in one process, compared with theory.
 
 #include <gmock/gmock.h>
 
@@ -18,7 +18,7 @@ namespace {
 /// All rows of a run, read back from its recording.
 struct Flight {
   std::vector<std::vector<Motion>> motions;    // by tick, then by id - 1
-  std::vector<std::vector<Command>> commands;  // likewise
+  std::vector<std::vector<Command>> commands;  // by tick, then by id - 1
   nlohmann::json summary;
   double rate_hz = 100;
 
@@ -35,7 +35,7 @@ struct Flight {
     ReadMcap(up.path() / "run.mcap", [&](const McapContents::Message& message) { Take(message); });
   }
 
-  /// Channels are numbered in the order command 1, state 1, command 2, ..., clock.
+  /// Takes a message. Channels are numbered in the order command 1, state 1, command 2, ..., clock.
   void Take(const McapContents::Message& message) {
     const std::size_t agent = (message.channel - 1u) / 2u;
     if (agent == motions[0].size()) return;  // the clock
@@ -123,7 +123,7 @@ TEST(LeaderFollower, AllTenGatherAtTheLeader) {
   const Flight flight("leader_follower");
   for (int id = 1; id <= 10; ++id)
     EXPECT_LT(Distance2d(flight.At(flight.last(), id), flight.At(flight.last(), 4)), 0.01);
-  EXPECT_LT((flight.At(flight.last(), 4).p_WB - flight.At(0, 4).p_WB).norm(), 1e-3);  // who has not moved
+  EXPECT_LT((flight.At(flight.last(), 4).p_WB - flight.At(0, 4).p_WB).norm(), 1e-3);  // the leader has not moved
 }
 
 // --- waypoint -------------------------------------------------------------------------------------------
@@ -155,7 +155,7 @@ TEST(Waypoint, EveryWaypointIsReached) {
 
 // --- min-max --------------------------------------------------------------------------------------------
 
-/// First time from which |z| of the child to the parent stays within `within_m` along `axis`.
+/// Time (s) from which on the distance between child and parent along `axis` stays within `within_m`.
 double TimeToStay(const Flight& flight, int child, int parent, int axis, double within_m) {
   std::size_t since = 0;
   for (std::size_t k = 0; k <= flight.last(); ++k)
@@ -185,7 +185,7 @@ TEST_P(Minmax, AChildMeetsARestingParentInTheClosedFormsTime) {
   const double expected_s = std::sqrt(2 * c.z0_m * (1 / a + 1 / c.beta_c));
   const Flight ideal("minmax", TwoAgents(c, "double_integrator"));
   EXPECT_NEAR(ideal.summary["consensus"]["predicted"]["minmax_time_s"].get<double>(), expected_s, 1e-6);
-  // Until within 1 mm: the last of the way, at a m/s^2, takes another sqrt(2 mm / a).
+  // TimeToStay is measured to 1 mm; the last 1 mm, braking with a, takes another sqrt(2 mm / a).
   const double ideal_s = TimeToStay(ideal, 2, 1, 0, 1e-3);
   EXPECT_NEAR(ideal_s + std::sqrt(2e-3 / a), expected_s, 0.03 * expected_s);
   const Flight quadrotors("minmax", TwoAgents(c, "quadrotor"));
@@ -199,7 +199,7 @@ TEST_P(Minmax, AChildMeetsARestingParentInTheClosedFormsTime) {
 TEST_P(Minmax, AMovingParentIsMetWithinTheBound) {
   const Case c = GetParam();
   auto sets = TwoAgents(c, "double_integrator");
-  sets.push_back("law.leader_waypoints_m=[[-30,0,1]]");  // flees as fast as it may
+  sets.push_back("law.leader_waypoints_m=[[-30,0,1]]");  // accelerates away with its full beta
   const Flight ideal("minmax", sets);
   const double bound_s = 2 * std::sqrt(c.z0_m / (c.beta_c - c.beta_p));
   EXPECT_LE(TimeToStay(ideal, 2, 1, 0, 0.02), 1.03 * bound_s);
@@ -222,7 +222,7 @@ TEST(Published, FliesTheSetUpOfThePublishedTestbed) {
   const Flight flight("published");
   EXPECT_EQ(flight.summary["ticks"], 6000);
   EXPECT_EQ(flight.summary["safety"]["collisions"], 0);
-  // Its root rests and all end near it; theirs is left with 0.3 m and 0.15 m/s of chatter.
+  // The root rests and all agents end near it; the published run ends with chatter of 0.3 m and 0.15 m/s.
   EXPECT_LT(flight.summary["consensus"]["final_disagreement_m"].get<double>(), 0.3);
 }
 
@@ -237,7 +237,7 @@ TEST(Check, WarnsWhenTheFirstCommandWouldSaturate) {
   EXPECT_THAT(quiet.output, testing::Not(testing::HasSubstr("warning")));
 }
 
-TEST(Check, PredictsOfEveryShippedExperimentWhatIsFinite) {
+TEST(Check, PredictsFiniteValuesForEveryShippedExperiment) {
   for (const auto& entry : std::filesystem::directory_iterator(MASCOT_SOURCE_DIR "/configs")) {
     const Ran run = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check --json " + entry.path().string());
     ASSERT_EQ(run.exit_code, 0) << entry.path();
@@ -321,7 +321,7 @@ TEST(FormationInWind, DecaysAsFastAsItsLossyLinksAllowOnAverage) {
     rate_per_s += consensus["rate_per_s"].get<double>() / kSeeds;
     predicted_per_s = consensus["predicted"]["rate_per_s"];
   }
-  EXPECT_NEAR(rate_per_s, predicted_per_s, 0.2 * predicted_per_s);  // its slowest mode swings, once while it decays
+  EXPECT_NEAR(rate_per_s, predicted_per_s, 0.2 * predicted_per_s);  // its slowest mode swings once as it decays
 }
 
 TEST(SwitchingGraph, StillMeetsAtTheMean) {

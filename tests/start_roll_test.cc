@@ -11,7 +11,7 @@ using Next = StartRoll::Next;
 const StartRoll::Time kStart{1000s};
 constexpr bool kMatched = true, kReady = true;
 
-/// A roll of three agents and 60 s that was begun at kStart and has asked once.
+/// A roll for three agents and a timeout of 60 s; it began at kStart and has asked once.
 StartRoll Begun() {
   StartRoll roll(3, 60.0);
   roll.Begin(kStart);
@@ -19,7 +19,7 @@ StartRoll Begun() {
   return roll;
 }
 
-/// Such a roll when everybody is ready.
+/// A roll that has begun, with all agents and the recorder ready.
 StartRoll Complete() {
   StartRoll roll = Begun();
   roll.OnAgents({1, 3}, kReady);
@@ -45,13 +45,13 @@ TEST(StartRoll, WaitsForTheRecorder) {
   EXPECT_EQ(roll.Look(kStart + 1ms, kMatched), Next::kStart);
 }
 
-TEST(StartRoll, WaitsForTheWire) {
+TEST(StartRoll, WaitsForTheMatchingOfAllEndpoints) {
   StartRoll roll = Complete();
   EXPECT_EQ(roll.Look(kStart + 1ms, !kMatched), Next::kWait);
   EXPECT_EQ(roll.Look(kStart + 2ms, kMatched), Next::kStart);
 }
 
-TEST(StartRoll, HearsThoseWhoAreReadyBeforeItBegins) {
+TEST(StartRoll, CountsAgentsThatAreReadyBeforeItBegins) {
   StartRoll roll(1, 60.0);
   roll.OnAgents({1, 1}, kReady);
   roll.OnRecorder(kReady);
@@ -59,7 +59,7 @@ TEST(StartRoll, HearsThoseWhoAreReadyBeforeItBegins) {
   EXPECT_EQ(roll.Look(kStart, kMatched), Next::kStart);
 }
 
-TEST(StartRoll, TakesASecondReadyForNothing) {
+TEST(StartRoll, IgnoresASecondReady) {
   StartRoll roll = Begun();
   for (int time = 0; time < 3; ++time) roll.OnAgents({1, 1}, kReady);
   roll.OnRecorder(kReady);
@@ -68,7 +68,7 @@ TEST(StartRoll, TakesASecondReadyForNothing) {
   EXPECT_EQ(roll.Failure(), "not ready within run.start_timeout_s = 60.0 s: agents 2, 3");
 }
 
-TEST(StartRoll, WaitsAgainForWhoFallsBack) {
+TEST(StartRoll, WaitsAgainForAProcessThatIsNoLongerReady) {
   StartRoll roll = Complete();
   roll.OnAgents({2, 2}, !kReady);
   EXPECT_EQ(roll.Look(kStart + 1ms, kMatched), Next::kWait);
@@ -79,7 +79,7 @@ TEST(StartRoll, WaitsAgainForWhoFallsBack) {
   EXPECT_EQ(roll.Look(kStart + 3ms, kMatched), Next::kStart);
 }
 
-TEST(StartRoll, IgnoresAgentsThatThereAreNot) {
+TEST(StartRoll, IgnoresUnknownAgents) {
   StartRoll roll = Begun();
   roll.OnRecorder(kReady);
   for (const AgentRange strangers : {AgentRange{4, 9}, {0, 0}, {-7, 0}, {3, 2}, {5, -5}})
@@ -105,12 +105,12 @@ TEST(StartRoll, FailsWhenItsTimeIsUp) {
   EXPECT_EQ(roll.Look(kStart + 60s, kMatched), Next::kFail);
 }
 
-TEST(StartRoll, StartsWithThoseWhoAreReadyAtTheLastMoment) {
+TEST(StartRoll, StartsIfAllAreReadyAtTheLastMoment) {
   StartRoll roll = Complete();
   EXPECT_EQ(roll.Look(kStart + 61s, kMatched), Next::kStart);
 }
 
-TEST(StartRoll, NamesWhoIsMissing) {
+TEST(StartRoll, NamesTheProcessesThatAreMissing) {
   const std::string failure = "not ready within run.start_timeout_s = 60.0 s: ";
   StartRoll roll = Begun();
   EXPECT_EQ(roll.Failure(), failure + "agents 1, 2, 3 and the recorder");

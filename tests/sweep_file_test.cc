@@ -23,7 +23,7 @@ class SweepFileTest : public ::testing::Test {
   std::string path_ = folder_.File("sweep.csv");
 };
 
-TEST_F(SweepFileTest, HoldsRowsAsTheyCome) {
+TEST_F(SweepFileTest, ContainsRowsInTheOrderInWhichTheyCome) {
   SweepFile file(path_, kColumns, "plan", false);
   file.Add(2, {"0.5", ""});
   EXPECT_EQ(Text(), "run,law.beta,error\n2,0.5,\n") << "on the disk at once";
@@ -77,7 +77,7 @@ TEST_F(SweepFileTest, IsNotMixedWithAnotherSweep) {
   EXPECT_EQ(Text(), "run,law.beta,error\n");
 }
 
-TEST_F(SweepFileTest, IsNotBegunInAFileOfSomebodyElse) {
+TEST_F(SweepFileTest, DoesNotReplaceAFileThatIsNotItsTable) {
   WriteFile(path_, "a person's own table\n");
   EXPECT_THAT([&] { SweepFile(path_, kColumns, "plan", false); },
               ThrowsMessage<ConfigError>(HasSubstr(": expected a new file, or one of this very sweep, got another")));
@@ -87,12 +87,12 @@ TEST_F(SweepFileTest, IsNotBegunInAFileOfSomebodyElse) {
               ThrowsMessage<ConfigError>("--out /dev/null: expected a file, got something else"));
 }
 
-TEST_F(SweepFileTest, BeginsWhereNothingWasWrittenButTheColumns) {
-  WriteFile(path_, "run,law.beta,error\n");  // killed before it wrote its plan
+TEST_F(SweepFileTest, ReplacesATableWithoutRows) {
+  WriteFile(path_, "run,law.beta,error\n");  // as after a kill before the plan is written
   EXPECT_NO_THROW(SweepFile(path_, kColumns, "plan", false));
 }
 
-TEST_F(SweepFileTest, DropsRowsThatAreNotWhole) {
+TEST_F(SweepFileTest, DropsIncompleteRows) {
   SweepFile(path_, kColumns, "plan", false).Add(7, {"0.5", ""});
   WriteFile(path_, "run,law.beta,error\n0,0.5,\n1,0.5\nx,1,\n2,0.5,,3\n3,0.5,\"an error, the process too\"\n");
   SweepFile file(path_, kColumns, "plan", false);
@@ -101,7 +101,7 @@ TEST_F(SweepFileTest, DropsRowsThatAreNotWhole) {
   EXPECT_TRUE(file.Has(3)) << "it failed by itself";
 }
 
-/// How a process of its own, which is what holds the lock, fares with the table.
+/// Opens the table in another process, since locks are held by processes. Returns 0 if it opens, 2 if it is locked.
 int OpenedElsewhere(const std::string& path) {
   const pid_t pid = fork();
   if (pid == 0) {
@@ -134,7 +134,7 @@ TEST_F(SweepFileTest, FollowsLinks) {
   EXPECT_EQ(ReadFile(folder_.File("table.csv")), "run,law.beta,error\n0,0.5,\n");
 }
 
-TEST(Csv, CellsComeBackFromTheirLine) {
+TEST(Csv, CellsAreReadBackFromTheirLine) {
   const std::vector<std::string> cells = {"0", "", "a, \"b\"", "\"", "", "x"};
   EXPECT_EQ(CsvCells(CsvLine(cells)), cells);
 }

@@ -13,7 +13,7 @@ using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 using Words = SweepPlan::Words;
 
-/// The runs, each as "value value ...".
+/// The runs of a plan, each as "value value ...".
 std::vector<std::string> Runs(const SweepPlan& plan) {
   std::vector<std::string> runs;
   for (std::size_t i = 0; i < plan.size(); ++i) {
@@ -26,7 +26,7 @@ std::vector<std::string> Runs(const SweepPlan& plan) {
 
 Words Sets(std::vector<std::string> sets) { return {.sets = std::move(sets), .randoms = {}, .seeds = ""}; }
 
-TEST(SweepPlan, IsOneRunWithoutWords) {
+TEST(SweepPlan, IsOneRunWithoutOptions) {
   const SweepPlan plan(Words{});
   EXPECT_THAT(Runs(plan), ElementsAre(""));
   EXPECT_THAT(plan.keys(), IsEmpty());
@@ -44,10 +44,10 @@ TEST(SweepPlan, CountsFromAByStepToB) {
 }
 
 TEST(SweepPlan, DoesNotAccumulateRoundingErrors) {
-  const SweepPlan plan(Sets({"law.p_gain=0:0.1:1"}));  // ten times 0.1 added up is not 1
+  const SweepPlan plan(Sets({"law.p_gain=0:0.1:1"}));  // the sum of ten times 0.1 is not 1
   ASSERT_EQ(plan.size(), 11u);
   EXPECT_EQ(plan[10].overrides[0].value, "1.0");
-  const SweepPlan decimals(Sets({"law.beta=0.3:0.1:1"}));  // 0.3 + 6 x 0.1 is not the double nearest to 0.9
+  const SweepPlan decimals(Sets({"law.beta=0.3:0.1:1"}));  // in doubles, 0.3 + 6 x 0.1 is not 0.9
   EXPECT_THAT(Runs(decimals), ElementsAre("0.3", "0.4", "0.5", "0.6", "0.7", "0.8", "0.9", "1.0"));
   EXPECT_THAT(Runs(SweepPlan(Sets({"law.beta=1e-1:1e-1:3e-1"}))), ElementsAre("0.1", "0.2", "0.3"));
 }

@@ -14,7 +14,7 @@ using ::testing::SizeIs;
 
 using Cells = std::vector<std::string>;
 
-/// Cells of a line without quotes that hold commas.
+/// Splits a CSV line at the commas outside quotes.
 Cells Split(const std::string& line) {
   Cells cells(1);
   bool quoted = false;
@@ -42,7 +42,7 @@ struct Table {
     return place == columns.end() ? "no such column"
                                   : rows.at(row).at(static_cast<std::size_t>(place - columns.begin()));
   }
-  /// Everything but the columns of the wall clock.
+  /// The rows without the columns that depend on wall-clock time.
   std::vector<Cells> Repeatable() const {
     std::vector<Cells> all = rows;
     for (Cells& row : all) row.resize(row.size() - 2);
@@ -223,7 +223,7 @@ TEST_F(SweepTest, DrawsCurvesMapsAndHistograms) {
   for (const char* words :
        {"--seeds 1..4", "--set law.p_gain=0.1:0.1:0.4", "--set graph.topology=ring,path --seeds 1..2",
         "--set law.p_gain=0.1:0.1:0.3 --set law.beta=0.5,1.0",
-        "--set law.p_gain=0.01,0.1,1 --set law.beta=0.5",  // a log axis, and in the next
+        "--set law.p_gain=0.01,0.1,1 --set law.beta=0.5",  // with a log axis, as the next one
         "--set law.p_gain=0.01,0.1,1 --set law.beta=0.5,1.0",
         "--random law.p_gain=0.1:1 --random law.beta=0.5:2 --samples 6"}) {
     std::filesystem::remove(folder_.File("sweep.png"));
@@ -231,7 +231,7 @@ TEST_F(SweepTest, DrawsCurvesMapsAndHistograms) {
     EXPECT_EQ(ran.exit_code, 0) << ran.output;
     EXPECT_THAT(ReadFile(folder_.File("sweep.png")), testing::StartsWith("\x89PNG")) << words;
   }
-  // Values from rounding errors to metres.
+  // Values range from rounding errors to metres.
   WriteFile(config_,
             "[run]\nduration_s = 100.0\n[agents]\ncount = 5\nmodel = 'double_integrator'\n[graph]\nrandom = { "
             "kind = 'erdos_renyi', p = 0.8 }\n");

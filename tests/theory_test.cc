@@ -43,11 +43,11 @@ TEST(Theory, PredictsWhereALeaderlessGroupMeets) {
   IdealNetwork network(text);
   network.RunUntil(100);
   for (const Motion& motion : network.motions)
-    EXPECT_LT((motion.p_WB - *prediction.value_m).head<2>().norm(), 0.002);  // sampled: off by v0 h / 2
+    EXPECT_LT((motion.p_WB - *prediction.value_m).head<2>().norm(), 0.002);  // sampling shifts it by v0 h / 2
 }
 
 TEST(Theory, WeighsTheMeetingPointByTheLeftNullVectorOnADirectedGraph) {
-  // 1 and 2 hear each other, 1 twice as strongly; 3 and 4 only listen.
+  // 1 and 2 hear each other, 1 with weight 2; 3 and 4 are not heard by them.
   const Prediction prediction =
       Of(kFour + "[graph]\nedges = [[1, 2, 2.0], [2, 1, 1.0], [3, 1], [4, 3]]\n[law]\nname = 'consensus'\n");
   ASSERT_TRUE(prediction.value_m);
@@ -62,7 +62,7 @@ TEST(Theory, PredictsAllThreeAxesWhereTheLawFliesThem) {
   EXPECT_NEAR(prediction.value_m->z(), 2.5 + 1, 1e-9);
 }
 
-TEST(Theory, CountsDragAsDampingWhereNobodyCompensatesIt) {
+TEST(Theory, CountsUncompensatedDragAsDamping) {
   const std::string text =
       "[run]\nduration_s = 40.0\n[agents]\ncount = 2\nposition_m = [[0, 0, 1], [1, 0, 3]]\n"
       "velocity_m_per_s = [[2, 0, 0], [0, 0, 0]]\n[law]\nname = 'consensus'\n[control]\ndrag_compensation = ";
@@ -75,7 +75,7 @@ TEST(Theory, CountsDragAsDampingWhereNobodyCompensatesIt) {
 }
 
 TEST(Theory, WeighsAgentsThatAreDampedDifferently) {
-  // Without the drag of its neighbour, a double integrator brakes less and so counts less: b q is what is kept.
+  // The sum of b q is conserved. A double integrator has no drag, thus less damping and less weight than its neighbour.
   const std::string text =
       "[run]\nduration_s = 40.0\n[agents]\ncount = 2\nposition_m = [[0, 0, 1], [1, 0, 3]]\n"
       "override = [{ id = 2, model = 'double_integrator' }]\n[control]\ndrag_compensation = false\n"
@@ -96,7 +96,7 @@ TEST(Theory, PredictsWhenTheSlowestModeHasSettled) {
   const Prediction prediction = Of(text);
   ASSERT_TRUE(prediction.settling_time_s);
   IdealNetwork network(text);
-  // Started in the slowest mode's shape, the network settles when that mode does.
+  // A network that starts in the shape of the slowest mode settles when that mode does.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(network.experiment.graph.Laplacian());
   for (int i = 0; i < 4; ++i) network.motions[i].p_WB = {solver.eigenvectors()(i, 1), 0, 0};
   const double start_m = std::abs(network.agent(1).p_WB.x());
@@ -113,7 +113,7 @@ TEST(Theory, PredictsThatFollowersGatherAtALeaderThatRests) {
   ASSERT_TRUE(prediction.value_m);
   EXPECT_EQ(*prediction.value_m, Eigen::Vector3d(1, 2, 2.5));
   ASSERT_TRUE(prediction.settling_time_s);
-  // Grounded path of three: eigenvalues 2 - 2 cos((2 k - 1) pi / 7).
+  // Grounded Laplacian of a path with three followers: eigenvalues 2 - 2 cos((2 k - 1) pi / 7).
   const LinearMode slowest{1.0, 2 - 2 * std::cos(std::acos(-1.0) / 7)};
   EXPECT_NEAR(*prediction.settling_time_s, SettlingTime(slowest, 0.01), 1e-9);
 }
@@ -129,7 +129,7 @@ TEST(Theory, PredictsHowFarFollowersOfAMovingLeaderStayBehind) {
               ElementsAre("law.leader: the leader keeps its 0.5 m/s, so followers stay up to 3 m behind"));
 }
 
-TEST(Theory, WarnsOfGraphsOnWhichNotEverybodyHears) {
+TEST(Theory, WarnsOfGraphsWithoutASpanningTree) {
   const Prediction leaderless = Of(kFour + "[graph]\nedges = [[1, 2], [2, 1], [3, 4], [4, 3]]\n");
   EXPECT_FALSE(leaderless.value_m);
   EXPECT_FALSE(leaderless.stable);
@@ -194,7 +194,7 @@ const std::string kQuadrotors =
     "p_gain = 0.1\nbeta = 0.9\n";
 
 TEST(Theory, WarnsOfAFirstCommandForWhichAQuadrotorLeansTooFar) {
-  EXPECT_THAT(Of(kQuadrotors).warnings, IsEmpty());  // 0.1 * 20 m/s^2, and leaning by 0.35 rad gives 3.58
+  EXPECT_THAT(Of(kQuadrotors).warnings, IsEmpty());  // asks for 0.1 * 20 m/s^2; a tilt of 0.35 rad gives 3.58
   EXPECT_THAT(Of(kQuadrotors + "[agents.airframe]\nbase = 'mascot'\ntilt_limit_rad = 0.1\n").warnings,
               ElementsAre("agents.airframe: the first command is more than leaning by tilt_limit_rad gives: agent 1 is "
                           "to accelerate sideways by 2 m/s^2, and can by 0.981"));  // 9.81 * 0.1
@@ -224,7 +224,8 @@ TEST(Theory, WarnsWhenTheFirstCommandWouldAlreadySaturate) {
               ElementsAre("control.max_acceleration_m_per_s2: the first command would already saturate: agent 4 asks "
                           "for 14 m/s^2, the limit is 3"));
   EXPECT_THAT(Of(law + "14.0\n").warnings, IsEmpty());
-  // Others ask for more; agent 2 at (-1, -1) asks for 2 (2 + 2 + 0) = 8 in x, 2 (2 + 0 + 3) = 10 in y, of less.
+  // Other agents ask for more, but agent 2 at (-1, -1) has the lowest limit: 2 (2 + 2 + 0) = 8 in x, 2 (2 + 0 + 3) = 10
+  // in y.
   EXPECT_THAT(Of(law + "14.0\n[[agents.override]]\nid = 2\ncontrol = { max_acceleration_m_per_s2 = 0.5 }\n").warnings,
               ElementsAre("control.max_acceleration_m_per_s2: the first command would already saturate: agent 2 asks "
                           "for 10 m/s^2, the limit is 0.5"));
@@ -268,13 +269,13 @@ TEST(Theory, KnowsOnlyABoundWhereTheRootFliesWaypoints) {
   EXPECT_DOUBLE_EQ(prediction.minmax_edges[0].time_s, MinmaxBound(2, 0, 0.5));
 }
 
-TEST(Theory, ForeseesThePublishedMinMaxRun) {
+TEST(Theory, PredictsThePublishedMinMaxRun) {
   const Prediction prediction =
       Of("[run]\nduration_s = 80.0\n[agents]\ncount = 4\nairframe = 'mascot_published'\n"
          "position_m = [[-10, 10, 1], [-10, -10, 2], [10, -10, 3], [10, 10, 4]]\n"
          "[control]\nmax_acceleration_m_per_s2 = 0.6\n[graph]\ntopology = 'path'\n"
          "[law]\nname = 'minmax'\nleader = 1\nbeta = [0.95, 1.0, 1.0, 1.0]\nweak_edges = 'root'\n");
-  ASSERT_EQ(prediction.minmax_edges.size(), 1u);  // limited agents promise nothing to a parent that moves
+  ASSERT_EQ(prediction.minmax_edges.size(), 1u);  // no bound for limited agents whose parent moves
   EXPECT_TRUE(prediction.minmax_edges[0].exact);
   EXPECT_NEAR(*prediction.minmax_time_s, 29.44, 5e-3);
   EXPECT_THAT(
@@ -304,7 +305,7 @@ TEST(Theory, WarnsOfBodiesThatWillTouch) {
 }
 
 TEST(Theory, SaysThatAFormationDoesNotGather) {
-  // Places, not heights, keep its agents apart.
+  // Its places keep agents apart, so that equal heights are no problem.
   EXPECT_THAT(Of("[run]\nduration_s = 40.0\n[agents]\ncount = 2\nmodel = 'double_integrator'\nposition_m = [[0, 0, 1], "
                  "[2, 0, 1]]\n[law]\nname = 'formation'\nshape = 'line'\n")
                   .warnings,
@@ -321,7 +322,7 @@ TEST(Theory, SaysOneAgentAloneIsStable) {
 
 // --- gains, delays, periods ----------------------------------------------------------------------------
 
-/// A team on a cycle of ten, each hearing the one before it.
+/// A team of ten on a directed cycle.
 std::string Cycle(const std::string& rest) {
   return "[run]\nduration_s = 400.0\n[physics]\ncollisions = false\n[agents]\ncount = 10\nmodel = "
          "'double_integrator'\n[graph]\ntopology = 'directed_ring'\n" +
@@ -331,11 +332,11 @@ std::string Cycle(const std::string& rest) {
 TEST(Theory, NamesTheLeastRelativeDampingOfADirectedCycle) {
   const std::string law = "[law]\nname = 'consensus'\nbeta = 0.0\nv_gain = ";
   EXPECT_THAT(Of(Cycle(law + "2.0\n")).warnings, Contains("law.v_gain: unstable, it must be above 2.1763, got 2"));
-  EXPECT_EQ(Of(Cycle(law + "2.2\n[control]\nrate_hz = 1000\n")).stable, true);  // a slower one would not do
+  EXPECT_EQ(Of(Cycle(law + "2.2\n[control]\nrate_hz = 1000\n")).stable, true);  // at lower rates it would be unstable
 }
 
 TEST(Theory, NamesTheLeastVelocityGainWhereItMakesAVelocityAnAcceleration) {
-  // k_v > p_gain (Im lambda)^2 / Re lambda = 1 + cos(2 pi / 10) for the lambda nearest to 0 of the cycle.
+  // k_v > p_gain (Im lambda)^2 / Re lambda = 1 + cos(2 pi / 10) for the eigenvalue of the cycle that is nearest to 0.
   const std::string law = "[law]\nname = 'velocity_consensus'\n[control]\nvelocity_gain = ";
   EXPECT_THAT(Of(Cycle(law + "1.8\n")).warnings,
               Contains("control.velocity_gain: unstable, it must be above 1.809, got 1.8"));
@@ -362,12 +363,12 @@ TEST(Theory, KnowsBothMarginsOfDelayOfSingleIntegrators) {
   EXPECT_NEAR(*prediction.own_delay_margin_s, 0.43416, 1e-5);
 }
 
-TEST(Theory, WarnsOfMoreDelayThanAgentsBear) {
+TEST(Theory, WarnsOfDelaysAboveTheMargin) {
   const std::string law = kFive + kSingles + kPath + "[law]\nname = 'velocity_consensus'\n";
   EXPECT_THAT(Of(law + "[link]\ndelay_s = 0.45\n[sensors.own]\ndelay_s = 0.45\n").warnings,
               Contains("sensors.own.delay_s: unstable, it must be below 0.4342, got 0.45"));
   EXPECT_EQ(Of(law + "[link]\ndelay_s = 0.1\n[sensors.own]\ndelay_s = 0.1\n").stable, true);
-  // Late about themselves alone: no closed form, but eigenvalues.
+  // Delay of own state only: there is no closed form, but eigenvalues decide.
   EXPECT_THAT(Of(law + "[control]\nrate_hz = 10\n[sensors.own]\ndelay_s = 1.2\n").warnings,
               Contains("sensors.own.delay_s: unstable with this delay, got 1.2"));
 
@@ -379,7 +380,7 @@ TEST(Theory, WarnsOfMoreDelayThanAgentsBear) {
   EXPECT_EQ(late.stable, false);
 }
 
-TEST(Theory, DoesNotCondemnATeamForDelaysThatOnlySomeSamplesHave) {
+TEST(Theory, DoesNotCallATeamUnstableForDelaysOfSomeSamples) {
   const std::string doubles = kFour + "[graph]\ntopology = 'ring'\n[law]\nname = 'consensus'\nbeta = 0.8\n[link]\n";
   const std::string one = "[[link.override]]\nedges = [[1, 2]]\ndelay_s = 1.0\n";
   for (const std::string& some : {one, std::string("delay_s = 0.9\njitter_s = 0.1\n")}) {
@@ -392,7 +393,7 @@ TEST(Theory, DoesNotCondemnATeamForDelaysThatOnlySomeSamplesHave) {
                              "have to be below {:.4g}",
                              *prediction.delay_margin->margin_s)));
   }
-  // Where eigenvalues can be had they decide, and nothing is left to doubt: one edge so late does no harm.
+  // If eigenvalues can be computed they decide: here one edge with this delay does no harm, and there is no warning.
   const Prediction known = Of(doubles + one + "[control]\nrate_hz = 20\n");
   EXPECT_EQ(known.stable, true);
   EXPECT_THAT(known.warnings, Not(Contains(HasSubstr("delay_s"))));
@@ -408,7 +409,7 @@ TEST(Theory, MovesTheMeetingPointWithTheDelay) {
   const std::string delay = kPath + "[link]\ndelay_s = 0.1\n";
   const Prediction prediction = Of(kFive + kSingles + delay + "[law]\nname = 'velocity_consensus'\n");
   EXPECT_NEAR(prediction.value_m->x(), 0.448275862, 1e-9);
-  // Double integrators: sum q (b + p d tau) / sum (b + p d tau), whose delay is whole ticks: 0.095 s are 10 of them.
+  // Double integrators: sum q (b + p d tau) / sum (b + p d tau), with tau in whole ticks: 0.095 s are 10 ticks.
   const Prediction doubles = Of(kFive + "model = 'double_integrator'\n" + kPath +
                                 "[link]\ndelay_s = 0.095\n[law]\nname = 'consensus'\np_gain = 3.0\nbeta = 4.0\n");
   const double weights[] = {4.3, 4.6, 4.6, 4.6, 4.3}, starts[] = {3, -1, 4, 1, -5};
@@ -418,7 +419,7 @@ TEST(Theory, MovesTheMeetingPointWithTheDelay) {
   EXPECT_EQ(doubles.stable, true);
 }
 
-TEST(Theory, SpeaksOfAFormationWithoutItsPlaces) {
+TEST(Theory, PredictsAFormationWithoutItsPlaces) {
   const Prediction prediction = Of(
       kFive + "model = 'double_integrator'\n" + kPath +
       "[law]\nname = 'formation'\nbeta = 4.0\noffsets_m = [[0, 0, 0], [1, 1, 0], [2, 0, 0], [3, -1, 0], [4, 5, 0]]\n");
@@ -426,7 +427,7 @@ TEST(Theory, SpeaksOfAFormationWithoutItsPlaces) {
   EXPECT_NEAR(prediction.value_m->y(), -1, 1e-12);
 }
 
-TEST(Theory, SaysWhereALeaderStopsThatWantsToStandStill) {
+TEST(Theory, PredictsWhereALeaderStopsThatWantsZeroVelocity) {
   const Prediction prediction =
       Of("[run]\nduration_s = 60.0\n[agents]\ncount = 2\nmodel = 'double_integrator'\nposition_m = [[0, 0, 1], [1, 0, "
          "3]]\nvelocity_m_per_s = [[1, 0, 0], [0, 0, 0]]\n[control]\nvelocity_gain = 4.0\n"
@@ -448,11 +449,11 @@ TEST(Theory, ScaledGainsScaleTheRateAndRenamedAgentsChangeNothing) {
   EXPECT_LT((*renamed.value_m - *one.value_m).norm(), 1e-12);
 }
 
-TEST(Theory, IsOnAverageWhereSamplesAreLost) {
+TEST(Theory, HoldsOnAverageWhereSamplesAreLost) {
   const std::string law = kFive + kSingles + kPath + "[law]\nname = 'velocity_consensus'\n[link]\nloss = ";
   EXPECT_FALSE(Of(law + "0.0\n").on_average);
   EXPECT_TRUE(Of(law + "0.5\n").on_average);
-  // Half the samples: half the Laplacian.
+  // With half the samples, the Laplacian is halved.
   EXPECT_NEAR(*Of(law + "0.5\n").rate_per_s, -100 * std::log(1 - 0.01 * 0.5 * 0.381966), 1e-6);
 }
 
@@ -504,7 +505,7 @@ TEST(Theory, PromisesNoMinMaxTimeWhereChildrenMayMissTheirParents) {
 
 // --- teams of different agents, graphs that change -----------------------------------------------------
 
-TEST(Theory, JudgesAgentsWithGainsOfTheirOwnTogether) {
+TEST(Theory, PredictsAgentsWithDifferentGainsTogether) {
   const std::string text =
       kFive + "model = 'double_integrator'\n" + kPath +
       "[[agents.override]]\nid = 2\nlaw = { p_gain = 2.0, beta = 3.0 }\n"
@@ -514,7 +515,7 @@ TEST(Theory, JudgesAgentsWithGainsOfTheirOwnTogether) {
   IdealNetwork network(text);
   network.RunUntil(100);
   for (const Motion& motion : network.motions) EXPECT_NEAR(motion.p_WB.x(), prediction.value_m->x(), 1e-6);
-  // p, b of each: sum of b q / p.
+  // The sum of b q / p is conserved; share = b / p.
   const double share[] = {1.5, 1.5, 1.5, 3.0, 1.5}, starts[] = {3, -1, 4, 1, -5};
   double sum = 0, total = 0;
   for (int i = 0; i < 5; ++i) sum += share[i] * starts[i], total += share[i];
@@ -575,12 +576,12 @@ TEST(Theory, KnowsTheRateButNoSettlingTimeOfTeamsThatWaitForOneAgent) {
   EXPECT_EQ(prediction.persistence->from_s, 7.0);
 }
 
-TEST(Theory, IsSilentOfAgentsThatMayGoOnForEver) {
+TEST(Theory, IsSilentAboutAgentsThatMayKeepMoving) {
   EXPECT_EQ(Of(kFive + "model = 'double_integrator'\n[[agents.override]]\nid = 2\nlaw = { v_gain = 3.0 }\n" + kPath +
                "[law]\nname = 'consensus'\nbeta = 0.0\nv_gain = 2.0\n")
                 .silent,
             "law.beta is 0: agents who have met may go on together");
-  // All alike, from rest: they meet at the mean and stay.
+  // Agents that are alike and start from rest meet at the mean and stay there.
   const Prediction alike =
       Of(kFive + "model = 'double_integrator'\n" + kPath + "[law]\nname = 'consensus'\nbeta = 0.0\nv_gain = 2.0\n");
   EXPECT_EQ(alike.stable, true);
@@ -597,7 +598,7 @@ TEST(Theory, WarnsWhenTheFirstVelocityWouldAlreadySaturate) {
                        "the limit is 5"));
 }
 
-TEST(Theory, CountsTheFirstCommandAsIfNothingWereLateOrLost) {
+TEST(Theory, ComputesTheFirstCommandWithoutDelaysAndLosses) {
   const std::string law = kFour + "[law]\nname = 'consensus'\n[link]\n";
   EXPECT_GT(Of(law).first_acceleration->asked, 0);
   EXPECT_EQ(Of(law + "delay_s = 0.1\nloss = 0.5\n").first_acceleration->asked, Of(law).first_acceleration->asked);

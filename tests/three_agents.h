@@ -1,4 +1,4 @@
-// Agent 1 and the two that it hears, for tests of laws that users write.
+// Agent 1 and its two neighbours, for tests of laws that users write.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace mascot {
 
-/// Three double integrators; agent 1 hears 2 and 3. `lines` of [law], which start at line 10 where `agents` is empty.
+/// Three double integrators; agent 1 hears 2 and 3. `lines`: keys of [law], from line 10 on if `agents` is empty.
 inline std::string Three(const std::string& lines, const std::string& agents = "") {
   return "[run]\nduration_s = 1.0\n[agents]\ncount = 3\nmodel = 'double_integrator'\n"
          "position_m = [[0, 0, 1], [1, 0, 2], [0, 2, 3]]\n" +
@@ -20,7 +20,7 @@ inline Experiment Load(const std::string& toml) {
   return LoadExperiment(Section::FromText(toml, "folder/test.toml"), "test");
 }
 
-/// The text with which `toml` is refused; empty: it is not.
+/// The error for `toml`; empty: it is valid.
 inline std::string Refusal(const std::string& toml) {
   try {
     Load(toml);
@@ -30,7 +30,7 @@ inline std::string Refusal(const std::string& toml) {
   return "";
 }
 
-/// What agent 1 hears: 2 and 3, and what 3 said.
+/// The samples that agent 1 hears: states of 2 and 3, and a message of 3.
 struct Others {
   Motion two, three;
   std::vector<double> said;

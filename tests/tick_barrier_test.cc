@@ -30,7 +30,7 @@ TEST(TickBarrier, NamesTheAgentsThatAreLate) {
   EXPECT_THAT(barrier.Late(), IsEmpty());
 }
 
-TEST(TickBarrier, TakesASecondAnswerForNothing) {
+TEST(TickBarrier, IgnoresASecondAnswer) {
   TickBarrier barrier(2);
   barrier.Open(0);
   EXPECT_FALSE(barrier.Answer(1, 0));
@@ -40,7 +40,7 @@ TEST(TickBarrier, TakesASecondAnswerForNothing) {
   EXPECT_FALSE(barrier.Answer(2, 0)) << "the tick is announced complete once";
 }
 
-TEST(TickBarrier, TakesAnAnswerToAnotherTickForNothing) {
+TEST(TickBarrier, IgnoresAnAnswerToAnotherTick) {
   TickBarrier barrier(1);
   barrier.Open(5);
   EXPECT_FALSE(barrier.Answer(1, 4));

@@ -24,29 +24,29 @@ Motion At(double x) {
   return motion;
 }
 
-/// The inbox of agent 1, and what a test asks of it: was a tick complete, and with what.
+/// Inbox of agent 1. Keeps the last complete tick for the checks of the tests.
 class Inbox {
  public:
   explicit Inbox(const std::vector<Peer>& peers, bool realtime = false) : inbox_(1, peers, realtime) {}
 
-  /// The state of a source (0 is the agent itself) at `tick`, at x. Returns the tick that is complete; -1: none.
+  /// Passes the state of a source (0: the agent itself) at `tick`, at x. Returns the tick that is complete; -1: none.
   std::int64_t State(std::size_t source, std::int64_t tick, double x = 0) {
     return Keep(inbox_.OnState(source, tick, At(x)));
   }
-  /// A message of one number.
+  /// Passes a message with one number.
   std::int64_t Message(std::size_t source, std::int64_t tick, double number) {
     return Keep(inbox_.OnMessage(source, tick, std::vector<double>{number}));
   }
   std::int64_t Bundle(const std::vector<TickInbox::State>& states) { return Keep(inbox_.OnBundle(states)); }
 
-  // What the last complete tick consisted of.
+  // Contents of the last complete tick.
   double self_x() const { return complete_.value().self->p_WB.x(); }
   std::vector<double> xs() const {
     std::vector<double> xs;
     for (const Sample& sample : complete_.value().samples) xs.push_back(sample.motion->p_WB.x());
     return xs;
   }
-  /// The message of a peer, counted from 0.
+  /// The message of a peer; peers count from 0.
   std::vector<double> message(std::size_t peer) const {
     const std::span<const double> data = complete_.value().samples[peer].message;
     return {data.begin(), data.end()};
@@ -95,7 +95,7 @@ TEST(TickInbox, GivesTheMotionsOfThatTickInTheOrderOfThePeers) {
   EXPECT_THAT(inbox.xs(), ElementsAre(2.1, 5.1));
 }
 
-TEST(TickInbox, WaitsForNobodyWhereTheAgentHearsNobody) {
+TEST(TickInbox, WaitsOnlyForItsOwnStateWithoutNeighbours) {
   Inbox inbox(kNobody);
   for (std::int64_t tick = 0; tick < 3; ++tick) EXPECT_EQ(inbox.State(0, tick), tick);
   EXPECT_THAT(inbox.xs(), IsEmpty());
@@ -128,7 +128,7 @@ TEST(TickInbox, IgnoresALateState) {
   EXPECT_THAT(inbox.xs(), ElementsAre(2.0, 5.0));
 }
 
-TEST(TickInbox, KeepsAStateOfTheFutureUntilItsTick) {
+TEST(TickInbox, KeepsAStateOfALaterTickUntilItsTick) {
   Inbox inbox(kOne);
   EXPECT_EQ(inbox.State(1, 1, 2.1), -1);
   EXPECT_EQ(inbox.State(0, 0), -1) << "no state of tick 1 stands in for one of tick 0";
@@ -136,7 +136,7 @@ TEST(TickInbox, KeepsAStateOfTheFutureUntilItsTick) {
   EXPECT_THAT(inbox.xs(), ElementsAre(2.1));
 }
 
-TEST(TickInbox, IgnoresStatesOfTicksThatThereAreNot) {
+TEST(TickInbox, IgnoresStatesOfInvalidTicks) {
   Inbox inbox(kOne);
   for (const std::int64_t tick : {std::int64_t{-1}, std::int64_t{-2}, kFirst})
     for (const std::size_t source : {0, 1}) EXPECT_EQ(inbox.State(source, tick), -1);
@@ -167,7 +167,7 @@ TEST(TickInbox, CompletesATickWithItsStatesIfTheMessageCameFirst) {
   EXPECT_THAT(inbox.message(0), ElementsAre(0.5));
 }
 
-TEST(TickInbox, WaitsForTheMessagesOfThoseWhoSendAnyOnly) {
+TEST(TickInbox, WaitsOnlyForMessagesOfAgentsThatSendThem) {
   Inbox inbox({{.id = 2}, {.id = 3, .sends_messages = true}, {.id = 4}});
   for (const std::size_t source : {0, 1, 2, 3}) inbox.State(source, 0);
   for (const std::size_t source : {0, 1, 2, 3}) EXPECT_EQ(inbox.State(source, 1), -1);
@@ -207,7 +207,7 @@ TEST(TickInbox, IgnoresADoubledAndALateMessage) {
   EXPECT_EQ(inbox.Message(1, 2, 99.0), -1) << "no tick is complete twice";
 }
 
-TEST(TickInbox, TakesNoOtherMessageForTheOneItWaitsForInLockstep) {
+TEST(TickInbox, DoesNotAcceptAnotherMessageForTheAwaitedOneInLockstep) {
   Inbox inbox(kTalker);
   inbox.State(0, 5);
   inbox.State(1, 5);
@@ -218,7 +218,7 @@ TEST(TickInbox, TakesNoOtherMessageForTheOneItWaitsForInLockstep) {
   EXPECT_EQ(other.Message(1, 4, 4.5), 5);
 }
 
-TEST(TickInbox, TakesAnEmptyMessageForAMessage) {
+TEST(TickInbox, CountsAnEmptyMessageAsAMessage) {
   TickInbox inbox(1, kTalker, /*realtime=*/false);
   inbox.OnState(0, 1, At(0));
   inbox.OnState(1, 1, At(0));
@@ -227,7 +227,7 @@ TEST(TickInbox, TakesAnEmptyMessageForAMessage) {
   EXPECT_THAT(complete->samples[0].message, IsEmpty());
 }
 
-TEST(TickInbox, IgnoresMessagesOfTicksThatThereAreNot) {
+TEST(TickInbox, IgnoresMessagesOfInvalidTicks) {
   TickInbox inbox(1, kTalker, kRealtime);
   Motion slowing_down;
   slowing_down.a_WB = {-1, -2, -3};
@@ -323,7 +323,7 @@ TEST(TickInbox, IgnoresALateBundle) {
   EXPECT_THAT(inbox.xs(), ElementsAre(2));
 }
 
-/// What is said of a bundle for agent 1, who hears 2 and 5.
+/// The error for a bundle for agent 1, which hears 2 and 5; "taken": none.
 std::string Refusal(const std::vector<State>& states) {
   Inbox inbox(kTwo);
   try {

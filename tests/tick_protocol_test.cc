@@ -26,7 +26,7 @@ constexpr Actions kNothing = {}, kTake = {.take = true}, kPublish = {.publish = 
                   kTakeStepAndPublish = {.take = true, .step = true, .publish = true},
                   kTakeAndWake = {.take = true, .wake = true};
 
-/// The exchange of so many agents with run.agent_timeout_s = 5 s, and what a test says of it in a word.
+/// TickProtocol with helpers for the tests.
 class Exchange : public TickProtocol {
  public:
   explicit Exchange(const Rules& rules) : TickProtocol(rules), agents_(rules.agents) {}
@@ -34,7 +34,7 @@ class Exchange : public TickProtocol {
   Actions OnCommand(int id, std::int64_t tick, bool stop_requested = false) {
     return TickProtocol::OnCommand(id, tick, stop_requested);
   }
-  /// Every agent answers the newest tick. Returns what the last of the commands leads to.
+  /// All agents answer the newest tick. Returns the actions for the last of these commands.
   Actions OnAllCommands(bool stop_requested = false) {
     const std::int64_t tick = published();
     for (int id = 1; id < agents_; ++id) OnCommand(id, tick, stop_requested);
@@ -50,14 +50,14 @@ TickProtocol::Rules Rules(int agents, std::int64_t last_tick) {
   return {.agents = agents, .last_tick = last_tick, .agent_timeout_s = 5, .recorder_window = 64};
 }
 
-/// Lockstep, started.
+/// A lockstep run that has started.
 Exchange Lockstep(int agents, std::int64_t last_tick = 1'000'000) {
   Exchange exchange(Rules(agents, last_tick));
   EXPECT_EQ(exchange.Start(), kPublish);
   return exchange;
 }
 
-/// Lockstep at the first tick whose states wait for the recorder, which has confirmed nothing.
+/// A lockstep run at the first tick whose states wait for the recorder, which has confirmed nothing yet.
 Exchange BeyondTheWindow(int agents) {
   Exchange exchange = Lockstep(agents);
   for (std::int64_t tick = 0; tick < 63; ++tick) EXPECT_EQ(exchange.OnAllCommands(), kTakeStepAndPublish) << tick;
@@ -65,7 +65,7 @@ Exchange BeyondTheWindow(int agents) {
   return exchange;
 }
 
-/// Real time with a tick every quarter of a second, started.
+/// A real-time run with a tick every 0.25 s that has started.
 Exchange Realtime(int agents, std::int64_t last_tick = 1'000'000) {
   TickProtocol::Rules rules = Rules(agents, last_tick);
   rules.period_s = 0.25;
@@ -74,7 +74,7 @@ Exchange Realtime(int agents, std::int64_t last_tick = 1'000'000) {
   return exchange;
 }
 
-/// Real time in which all agents had answered tick 0 at kStart: tick k is due k quarters of a second later.
+/// A real-time run in which all agents have answered tick 0 at kStart: tick k is due k * 0.25 s later.
 Exchange Paced(int agents, std::int64_t last_tick = 1'000'000) {
   Exchange exchange = Realtime(agents, last_tick);
   EXPECT_EQ(exchange.OnAllCommands(), kTakeAndWake);
@@ -82,7 +82,7 @@ Exchange Paced(int agents, std::int64_t last_tick = 1'000'000) {
   return exchange;
 }
 
-// --- what counts ----------------------------------------------------------------------------------------
+// --- lockstep -------------------------------------------------------------------------------------------
 
 TEST(TickProtocol, PublishesTickZeroWhenItStarts) {
   Exchange exchange(Rules(2, 10));
@@ -129,7 +129,7 @@ TEST(TickProtocol, IgnoresACommandToATickThatIsNotPublished) {
   EXPECT_EQ(exchange.OnCommand(1, 1), kTakeStepAndPublish) << "now it is";
 }
 
-TEST(TickProtocol, IgnoresTicksThatThereAreNot) {
+TEST(TickProtocol, IgnoresInvalidTicks) {
   Exchange exchange = Lockstep(1);
   EXPECT_EQ(exchange.OnCommand(1, -1), kNothing);
   EXPECT_EQ(exchange.OnCommand(1, std::numeric_limits<std::int64_t>::min()), kNothing);
@@ -200,7 +200,7 @@ TEST(TickProtocol, PublishesNothingForTheRecorderBeforeItStarts) {
   EXPECT_EQ(exchange.Start(), kPublish);
 }
 
-// --- who is late ----------------------------------------------------------------------------------------
+// --- late agents ----------------------------------------------------------------------------------------
 
 TEST(TickProtocol, NamesTheAgentsThatAreSilentForTheTimeout) {
   Exchange exchange = Lockstep(3);
@@ -268,7 +268,7 @@ TEST(TickProtocol, WaitsInRealTimeForEveryAgentsFirstCommand) {
   EXPECT_EQ(turn.look_again, kStart + 4s + 251ms) << "a whole period for tick 0, too";
 }
 
-TEST(TickProtocol, NamesWhoIsSilentFromTheStartOfRealTime) {
+TEST(TickProtocol, NamesAgentsThatAreSilentFromTheStartInRealTime) {
   Exchange exchange = Realtime(2);
   exchange.OnCommand(2, 0);
   exchange.Look(kStart);
@@ -302,9 +302,9 @@ TEST(TickProtocol, HoldsACommandThatIsLateInRealTime) {
   EXPECT_EQ(exchange.answered(2), 2);
 }
 
-TEST(TickProtocol, NamesWhoseCommandWasHeldInRealTimeForLongerThanTheTimeout) {
+TEST(TickProtocol, NamesAgentsWhoseCommandIsHeldLongerThanTheTimeoutInRealTime) {
   Exchange exchange = Paced(2);
-  for (int tick = 1; tick <= 21; ++tick) {  // 20 periods are the timeout
+  for (int tick = 1; tick <= 21; ++tick) {  // the timeout is 20 periods
     EXPECT_EQ(exchange.Look(kStart + tick * 250ms).failure, "") << tick;
     exchange.OnCommand(1, tick);
   }
@@ -314,9 +314,9 @@ TEST(TickProtocol, NamesWhoseCommandWasHeldInRealTimeForLongerThanTheTimeout) {
   EXPECT_EQ(turn.due, kStart + 22 * 250ms);
 }
 
-TEST(TickProtocol, FallsBehindAsAWholeOnAMachineThatCannotKeepUp) {
+TEST(TickProtocol, FallsBehindInRealTimeOnASlowMachine) {
   Exchange exchange = Paced(1);
-  Turn turn = exchange.Look(kStart + 1s);  // three periods after it was due
+  Turn turn = exchange.Look(kStart + 1s);  // three periods late
   EXPECT_EQ(turn.actions, kStepAndPublish);
   EXPECT_EQ(turn.due, kStart + 250ms) << "from when its lateness counts";
   turn = exchange.Look(kStart + 1s);
@@ -393,7 +393,7 @@ TEST(TickProtocol, StopsInRealTimeWhenTheNextTickIsDue) {
   EXPECT_EQ(exchange.OnCommand(1, 2, kStop), kNothing);
 }
 
-/// Real time in which the states of tick 64 have waited for the recorder since they were due.
+/// A real-time run in which the states of tick 64 wait for the recorder.
 Exchange PacedBeyondTheWindow() {
   Exchange exchange = Paced(1);
   for (int tick = 1; tick <= 64; ++tick) {

@@ -16,7 +16,7 @@ TEST(Timetable, HasATickEveryPeriod) {
   EXPECT_EQ(timetable.Due(250), kStart + 2500ms);
 }
 
-TEST(Timetable, DoesNotAddUpWhatRoundingCutsOff) {
+TEST(Timetable, DoesNotAccumulateRoundingErrors) {
   const Timetable timetable(1.0 / 3, kStart);
   EXPECT_EQ(timetable.Due(1), kStart + 333333333ns);
   EXPECT_EQ(timetable.Due(3'000'000), kStart + 1'000'000s);

@@ -28,11 +28,11 @@ using ::testing::Throws;
 using Json = nlohmann::json;
 using SetUpVerb = std::function<int()>(CLI::App& command);
 
-/// What a verb prints; checks that it returns 0.
+/// Output of a verb; checks that it returns 0.
 std::string Printed(SetUpVerb* set_up, std::vector<std::string> args) {
   CLI::App app;
   const auto run = set_up(app);
-  std::reverse(args.begin(), args.end());  // CLI11 takes them from the back
+  std::reverse(args.begin(), args.end());  // CLI11 expects them in reverse order
   app.parse(args);
   ::testing::internal::CaptureStdout();
   EXPECT_EQ(run(), 0);
@@ -91,7 +91,7 @@ TEST_F(Verbs, CheckSaysThatChainsSettleLaterThanTheirModes) {
               HasSubstr(" s (2 %, slowest mode; later along chains)\n"));
 }
 
-TEST_F(Verbs, CheckTellsProgramsTheSame) {
+TEST_F(Verbs, CheckPrintsTheSameAsJson) {
   const Json json = Json::parse(Printed(SetUpCheck, {path(), "--json"}));
   EXPECT_EQ(json["experiment"], "four agents");
   EXPECT_EQ(json["ticks"], 4000);
@@ -178,7 +178,7 @@ TEST_F(Verbs, GraphPrintsMatricesAndWhatTheyImply) {
 }
 
 TEST_F(Verbs, GraphSaysWhatIsMissingInADisconnectedGraph) {
-  // The override would contradict the file's topology, so the file is rewritten.
+  // graph.edges with --set would contradict the topology in the file, so that the file is rewritten.
   std::ofstream(path()) << "[run]\nduration_s = 1.0\n[agents]\ncount = 4\n"
                            "[graph]\nedges = [[1, 2], [2, 1], [4, 3]]\n";
   EXPECT_THAT(Printed(SetUpGraph, {path()}),
@@ -186,7 +186,7 @@ TEST_F(Verbs, GraphSaysWhatIsMissingInADisconnectedGraph) {
                     HasSubstr("spanning tree  none\n")));
 }
 
-TEST_F(Verbs, GraphTellsProgramsTheSame) {
+TEST_F(Verbs, GraphPrintsTheSameAsJson) {
   const Json json = Json::parse(Printed(SetUpGraph, {path(), "--json"}));
   EXPECT_EQ(json["laplacian"][1], (std::vector<double>{-1, 2, -1, 0}));
   EXPECT_EQ(json["adjacency"][1], (std::vector<double>{1, 0, 1, 0}));
@@ -239,7 +239,7 @@ TEST(Check, RecommendsBundlesForDenseGraphs) {
 }
 
 TEST(Tables, LawsShowEveryLawWithEquationAndEveryParameter) {
-  // Long texts are broken into lines: their words must be there.
+  // Long texts are wrapped: compare them with spaces in place of line breaks.
   const auto words = [](const std::string& text) { return std::regex_replace(text, std::regex("\\s+"), " "); };
   const std::string text = words(Printed(SetUpLaws, {}));
   for (const LawEntry& law : Laws()) {
@@ -274,7 +274,7 @@ TEST(Tables, AirframesShowEveryAirframeWithItsKeysAndWhatFollowsFromThem) {
   ASSERT_EQ(json.size(), Airframes().size());
   EXPECT_EQ(json[2]["name"], "crazyflie");
   EXPECT_EQ(json[2]["attitude"]["kp"], 100.0);
-  // Four rotors at that speed carry the weight.
+  // Four rotors at the hover speed carry the weight.
   const double hover_rad_per_s = json[2]["derived"]["hover_rotor_speed_rad_per_s"], lift_n_s2 = json[2]["lift_n_s2"];
   EXPECT_NEAR(4 * lift_n_s2 * hover_rad_per_s * hover_rad_per_s, 0.027 * 9.81, 1e-12);
   EXPECT_NEAR(json[2]["derived"]["thrust_to_weight"].get<double>(), 0.6 / (0.027 * 9.81), 1e-12);
@@ -300,7 +300,7 @@ TEST(Tables, EveryKeyThatAirframesShowsIsOneThatATableMayHave) {
   document.ThrowIfWrong();
   EXPECT_EQ(body.name, json[0]["name"]);
   EXPECT_EQ(body.attitude.kd, json[0]["attitude"]["kd"]);
-  // And none is missing: reading asks for every key that there is, and remembers it.
+  // No key is missing: the resolved document contains every key that reading asks for.
   std::istringstream resolved(document.Resolved());
   for (std::string line; std::getline(resolved, line);) {
     const std::string key = line.substr(0, line.find(" = "));

@@ -17,7 +17,7 @@ constexpr double kTau_s = 0.2;
 
 WindConfig Gusts(double std_m_per_s = kStd) { return {kMean, std_m_per_s, kTau_s}; }
 
-/// Gusts about the mean, for `duration_s`.
+/// Gusts relative to the mean (m/s), for `duration_s`.
 std::vector<Vector3d> Record(int rate_hz, double duration_s, std::uint64_t seed = 1) {
   Wind wind(Gusts(), seed, 1.0 / rate_hz);
   std::vector<Vector3d> gusts;
@@ -25,15 +25,15 @@ std::vector<Vector3d> Record(int rate_hz, double duration_s, std::uint64_t seed 
   return gusts;
 }
 
-/// Mean over time of g(t) g(t + lag)^T.
+/// Mean over time of g(t) g(t + lag)^T; `lag` in samples.
 Eigen::Matrix3d Correlation(const std::vector<Vector3d>& gusts, std::size_t lag) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t n = lag; n < gusts.size(); ++n) sum += gusts[n - lag] * gusts[n].transpose();
   return sum / static_cast<double>(gusts.size() - lag);
 }
 
-// A record of length T has about T / (2 tau) independent samples: the standard deviation of its mean is
-// sigma sqrt(2 tau / T), of its variance sigma^2 sqrt(2 tau / T). With T = 4000 s: 1 %. Tolerances are five times that.
+// A record of length T has about T / (2 tau) independent samples: its mean has the standard deviation
+// sigma sqrt(2 tau / T), its variance sigma^2 sqrt(2 tau / T): 1 % for T = 4000 s. Tolerances are five times that.
 constexpr double kLong_s = 4000;
 constexpr double kTolerance = 0.05;
 

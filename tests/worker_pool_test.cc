@@ -13,8 +13,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// All of `tasks` tasks, by number.
-std::map<std::size_t, WorkerPool::Done> WorkOff(WorkerPool& pool, std::size_t tasks) {
+/// Runs tasks 0 .. tasks - 1. Returns their results by task.
+std::map<std::size_t, WorkerPool::Done> RunAll(WorkerPool& pool, std::size_t tasks) {
   std::map<std::size_t, WorkerPool::Done> done;
   std::size_t next = 0;
   while (done.size() < tasks) {
@@ -27,7 +27,7 @@ std::map<std::size_t, WorkerPool::Done> WorkOff(WorkerPool& pool, std::size_t ta
 
 TEST(WorkerPool, AnswersEveryTaskOnce) {
   WorkerPool pool(3, [](std::size_t task) { return std::to_string(task * task); });
-  const auto done = WorkOff(pool, 100);
+  const auto done = RunAll(pool, 100);
   for (std::size_t task = 0; task < 100; ++task) {
     EXPECT_EQ(done.at(task).answer, std::to_string(task * task));
     EXPECT_EQ(done.at(task).failure, "");
@@ -40,7 +40,7 @@ TEST(WorkerPool, AnswersAtAnyLength) {
     if (task % 2 == 1) throw std::runtime_error(text);
     return text;
   });
-  for (const auto& [task, done] : WorkOff(pool, 4)) {
+  for (const auto& [task, done] : RunAll(pool, 4)) {
     EXPECT_EQ((task % 2 == 1 ? done.failure : done.answer).size(), task << 20);
     EXPECT_EQ((task % 2 == 1 ? done.answer : done.failure), "");
   }
@@ -49,7 +49,7 @@ TEST(WorkerPool, AnswersAtAnyLength) {
 TEST(WorkerPool, WorksInProcessesOfItsOwn) {
   WorkerPool pool(2, [](std::size_t) { return std::to_string(::getpid()); });
   std::set<std::string> pids;
-  for (const auto& [task, done] : WorkOff(pool, 20)) pids.insert(done.answer);
+  for (const auto& [task, done] : RunAll(pool, 20)) pids.insert(done.answer);
   EXPECT_LE(pids.size(), 2u);
   EXPECT_FALSE(pids.contains(std::to_string(::getpid())));
 }
@@ -59,18 +59,18 @@ TEST(WorkerPool, PassesOnWhatATaskThrows) {
     if (task == 1) throw std::runtime_error("tick 7: too bad");
     return "fine";
   });
-  const auto done = WorkOff(pool, 3);
+  const auto done = RunAll(pool, 3);
   EXPECT_EQ(done.at(1).failure, "tick 7: too bad");
   EXPECT_EQ(done.at(2).answer, "fine");
 }
 
-TEST(WorkerPool, GoesOnWithANewProcessWhenATaskTakesOneDown) {
+TEST(WorkerPool, ContinuesWithANewProcessWhenATaskCrashesOne) {
   WorkerPool pool(2, [](std::size_t task) -> std::string {
     if (task % 5 == 3) ::kill(::getpid(), SIGKILL);
     if (task % 5 == 4) ::_exit(3);
     return "fine";
   });
-  const auto done = WorkOff(pool, 20);
+  const auto done = RunAll(pool, 20);
   for (const auto& [task, one] : done) {
     if (task % 5 == 3)
       EXPECT_EQ(one.failure, "the process was killed by signal 9 (Killed)");
@@ -81,7 +81,7 @@ TEST(WorkerPool, GoesOnWithANewProcessWhenATaskTakesOneDown) {
   }
 }
 
-TEST(WorkerPool, LeavesNobodyBehind) {
+TEST(WorkerPool, LeavesNoProcessBehind) {
   pid_t pid = 0;
   {
     WorkerPool pool(1, [](std::size_t task) {
@@ -91,7 +91,7 @@ TEST(WorkerPool, LeavesNobodyBehind) {
     pool.Start(0);
     while (pid == 0)
       if (const auto done = pool.Wait(60s)) pid = std::stoi(done->answer);
-    pool.Start(1);  // never ends by itself
+    pool.Start(1);  // does not end by itself
   }
   EXPECT_EQ(::kill(pid, 0), -1);
 }

@@ -31,7 +31,7 @@ void Fly(World& world, const Actuation& command, int ticks) {
 /// Orientation of a body with this yaw.
 Eigen::Quaterniond Turned(double yaw_rad) { return Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ())); }
 
-// --- how it starts ----------------------------------------------------------------------------------
+// --- initial states ---------------------------------------------------------------------------------
 
 TEST(MakeModel, HasABodyForEveryModelAsItsTraitsSay) {
   for (const ModelTraits& traits : Models()) {
@@ -63,12 +63,12 @@ TEST(World, StartsExactlyAsConfigured) {
   }
 }
 
-TEST(World, LetsABodyDriveTheWayItWasTurnedAtTheStart) {
+TEST(World, DrivesABodyAlongItsInitialHeading) {
   Experiment e = Bodies("quadrotor", {{0, 0, 10}});
   e.agents[0].heading_rad = std::numbers::pi / 2;
   World world(e);
   const double hover = Built("mascot").HoverRotorSpeed(kG);
-  Fly(world, {0.99 * hover, hover, 1.01 * hover, hover}, 20);  // nose down, and the nose points north
+  Fly(world, {0.99 * hover, hover, 1.01 * hover, hover}, 20);  // nose down; the nose points north
   EXPECT_GT(world.State(1).v_WB.y(), 1e-3);
   EXPECT_NEAR(world.State(1).v_WB.x(), 0, 1e-6);
 }
@@ -114,7 +114,7 @@ TEST(World, MovesADoubleIntegratorByTheZeroOrderHoldRecursion) {
     for (double& component : u) component = static_cast<double>(random() >> 11) * 0x1p-52 - 1;  // in [-1, 1)
     p += h * v + h * h / 2 * u;
     v += h * u;
-    Fly(world, {u.x(), u.y(), u.z() + 0.5 * (3 - p.z()) - v.z(), 0}, 1);  // z: kept off the ground
+    Fly(world, {u.x(), u.y(), u.z() + 0.5 * (3 - p.z()) - v.z(), 0}, 1);  // keep z off the ground
     p.z() = world.State(1).p_WB.z();
     v.z() = world.State(1).v_WB.z();
     ASSERT_LT((world.State(1).p_WB - p).norm(), 1e-9) << "tick " << tick;
@@ -122,7 +122,7 @@ TEST(World, MovesADoubleIntegratorByTheZeroOrderHoldRecursion) {
   }
 }
 
-TEST(World, PullsOnlyWhatFeelsGravity) {
+TEST(World, AppliesGravityOnlyToModelsThatHaveIt) {
   Experiment e = Bodies("double_integrator", {{0, 0, 1}, {5, 0, 50}});
   e.agents[1].model = "quadrotor";
   World world(e);
@@ -153,14 +153,14 @@ TEST(World, MovesASingleIntegratorByExactlyItsVelocityInEveryTick) {
   for (const int physics_rate_hz : {100, 1000, 3000}) {
     Experiment e = Bodies("single_integrator", {{1, -2, 3}});
     e.physics.rate_hz = physics_rate_hz;
-    e.agents[0].v_W = {9, 9, 9};  // what it had before it was told anything
+    e.agents[0].v_W = {9, 9, 9};  // initial velocity, before the first command
     World world(e);
     std::mt19937_64 random(1);
     Vector3d p = e.agents[0].p_W;
     for (int tick = 0; tick < 1000; ++tick) {
       Vector3d v;
       for (double& component : v) component = static_cast<double>(random() >> 11) * 0x1p-52 - 1;  // in [-1, 1)
-      v.z() += 3 - p.z();                                                                         // off the ground
+      v.z() += 3 - p.z();  // keep it off the ground
       p += e.period_s() * v;
       Fly(world, {v.x(), v.y(), v.z(), 0}, 1);
       ASSERT_LT((world.State(1).p_WB - p).norm(), 1e-12) << "tick " << tick << " at " << physics_rate_hz << " Hz";
@@ -170,7 +170,7 @@ TEST(World, MovesASingleIntegratorByExactlyItsVelocityInEveryTick) {
   }
 }
 
-/// Where a unicycle is that started at `start` and held v and w.
+/// Position of a unicycle after t_s with constant speed v (m/s) and turn rate w (rad/s).
 Vector3d OnArc(const AgentConfig& start, double v, double w, double t_s) {
   const double a = start.heading_rad, b = a + w * t_s;
   return start.p_W + v / w * Vector3d(std::sin(b) - std::sin(a), std::cos(a) - std::cos(b), 0);
@@ -225,7 +225,7 @@ TEST(World, LetsAUnicycleRollOnTheGroundWithoutTouchingIt) {
 
 // --- rotation ---------------------------------------------------------------------------------------
 
-/// Angular velocity after 50 ms in which only rotor `fast` (1..4) turned faster than at hover.
+/// Angular velocity (rad/s, in B) after 50 ms with only rotor `fast` (1..4) faster than at hover.
 Vector3d TurnedBy(int fast) {
   World world(Bodies("quadrotor", {{0, 0, 10}}));
   const double hover = Built("mascot").HoverRotorSpeed(kG);
@@ -284,7 +284,7 @@ TEST(World, DrivesABodyThatLeansForwardForward) {
 
 TEST(World, KeepsAngularMomentumAndEnergyOfABodyThatTumblesFreely) {
   Airframe body = WithoutDrag();
-  body.inertia_kg_m2 = {0.08, 0.12, 0.18};  // three different axes, so that it does tumble
+  body.inertia_kg_m2 = {0.08, 0.12, 0.18};  // three different moments of inertia, so that the body tumbles
   Experiment e = Bodies("quadrotor", {{0, 0, 1000}}, body);
   World world(e);
   Fly(world, {700, 600, 500, 400}, 30);
@@ -350,7 +350,7 @@ TEST(World, KeepsLaggedRotorsAtHoverWhenToldToHover) {
   EXPECT_LT((world.State(1).p_WB - Vector3d(0, 0, 2)).norm(), 1e-9);
 }
 
-/// A world whose ticks are single steps, with one quadrotor, some of whose rotors fail.
+/// A world with one physics step per tick and one quadrotor with rotor failures.
 Experiment Failing(std::vector<RotorFailure> failures) {
   Experiment e = Bodies("quadrotor", {{0, 0, 50}}, WithoutDrag());
   e.control.rate_hz = e.physics.rate_hz;
@@ -399,7 +399,7 @@ TEST(World, LetsTheLatestFailureOfARotorCountWhateverTheirOrder) {
   World world(Failing({{.agent = 1, .rotor = 3, .at_s = 0.002, .remaining = 0},
                        {.agent = 1, .rotor = 3, .at_s = 0.001, .remaining = 0.5},
                        {.agent = 1, .rotor = 3, .at_s = 0.003, .remaining = 1}}));
-  const std::array<double, 4> lost_parts = {0, 0.5, 1, 0};  // of a quarter of the thrust
+  const std::array<double, 4> lost_parts = {0, 0.5, 1, 0};  // lost fraction of a quarter of the thrust
   for (const double lost : lost_parts) {
     const double v_before = world.State(1).v_WB.z();
     Fly(world, Rotors(hover), 1);
@@ -421,7 +421,7 @@ TEST(World, LetsOnlyTheRotorsOfTheAgentNamedFail) {
 
 TEST(World, BlowsAQuadrotorAwayAsDragSays) {
   const Airframe body = Built("mascot");
-  const double kept = 1 - 0.001 * body.linear_drag_kg_per_s / body.mass_kg;  // of the airspeed, from step to step
+  const double kept = 1 - 0.001 * body.linear_drag_kg_per_s / body.mass_kg;  // fraction of airspeed left per step
   ASSERT_LT(kept, 1);
   Experiment e = Bodies("quadrotor", {{0, 0, 50}});
   e.physics.wind.mean_m_per_s = {4, -2, 0.5};
@@ -474,7 +474,7 @@ TEST(World, HasTheGustsOfItsSeed) {
 
 // --- contacts ---------------------------------------------------------------------------------------
 
-/// Two double integrators 2 m apart that fly at each other, each at 1 m/s.
+/// Two double integrators at a distance of 2 m that fly towards each other with 1 m/s each.
 Experiment HeadOn() {
   Experiment e = Bodies("double_integrator", {{-1, 0, 1}, {1, 0, 1}});
   e.agents[0].v_W = {1, 0, 0};
@@ -547,7 +547,7 @@ TEST(World, LandsABodyOnTheGroundWhereItRests) {
   }
 }
 
-TEST(World, HasNoGroundWhenToldSo) {
+TEST(World, HasNoGroundIfItIsOff) {
   Experiment e = Bodies("quadrotor", {{0, 0, 1}});
   e.physics.ground = false;
   World world(e);
@@ -558,7 +558,7 @@ TEST(World, HasNoGroundWhenToldSo) {
 
 // --- obstacles --------------------------------------------------------------------------------------
 
-/// A ball with this velocity at the start, and one obstacle at the origin of x and y.
+/// A double integrator at `from` with initial velocity `v_W`, and one obstacle.
 Experiment Towards(const Obstacle& obstacle, const Vector3d& from, const Vector3d& v_W) {
   Experiment e = Bodies("double_integrator", {from});
   e.agents[0].v_W = v_W;
@@ -568,7 +568,7 @@ Experiment Towards(const Obstacle& obstacle, const Vector3d& from, const Vector3
 
 TEST(World, StopsABodyAtTheSurfaceOfAnObstacle) {
   constexpr double kYaw = std::numbers::pi / 4;
-  constexpr double kRounded_m = 0.04;  // Bullet's edges are: so the edge of the turned box is this much further in
+  constexpr double kRounded_m = 0.04;  // Bullet rounds edges by this margin, which moves the edge of the box inwards
   const double edge = -std::sqrt(2) * (1 - kRounded_m) - kRounded_m - 0.1;
   const Vector3d from(-3, 0, 5), east(1, 0, 0), above(0, 0, 8), down(0, 0, -1), at(0, 0, 5);
   const std::array cases = {
@@ -641,7 +641,7 @@ TEST(World, CountsContactsByWhatWasTouched) {
 
 // --- determinism ------------------------------------------------------------------------------------
 
-TEST(World, GivesTheSameBitsAgain) {
+TEST(World, RepeatsARunToTheBit) {
   std::vector<Vector3d> places;
   for (int i = 0; i < 8; ++i) places.push_back({0.3 * (i % 3), 0.3 * (i / 3), 0.2 + 0.1 * i});  // a heap: many contacts
   const auto run = [&] {
@@ -699,7 +699,7 @@ TEST(World, RefusesAStateThatIsNotFinite) {
       ThrowsMessage<std::runtime_error>(::testing::MatchesRegex("tick [0-9]+: agent 2: its state is not finite")));
 }
 
-TEST(World, WantsOneCommandPerAgent) {
+TEST(World, RequiresOneCommandPerAgent) {
   World world(Bodies("double_integrator", {{0, 0, 1}, {5, 0, 1}}));
   EXPECT_THAT([&] { world.Step(std::array<Actuation, 1>{Rotors(0)}); },
               ThrowsMessage<std::invalid_argument>("World::Step: one command per agent"));

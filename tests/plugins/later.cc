@@ -1,2 +1,2 @@
-// As a library of a later MASCOT begins: what follows the interface's number may be anything.
+// Beginning of a library for a later MASCOT: after the interface version, anything may follow.
 extern "C" const int mascot_plugin_law[] = {2, 0x5eed, 0x5eed, 0x5eed};

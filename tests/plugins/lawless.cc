@@ -1,2 +1,2 @@
-// A shared library that holds no law.
+// A shared library without a law.
 extern "C" int answer() { return 42; }

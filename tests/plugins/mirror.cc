@@ -1,4 +1,4 @@
-// A law that does what its parameters say, so that tests can see each thing that a plugin may do, or do wrong.
+// A law whose parameters select its behaviour, for tests of everything that a plug-in may do, right or wrong.
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -45,7 +45,7 @@ class Mirror final : public mascot::Law {
   Eigen::Vector3d made_for_;
   int leader_;
   std::string does_;
-  double from_s_;  // from when on it fails, if that is what it does
+  double from_s_;  // time from which on it fails, if does_ is a failure
   double gain_;
   bool velocity_;
 };

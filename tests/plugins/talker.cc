@@ -1,4 +1,4 @@
-// A law that sends messages: agents wander at random and pass on what they heard.
+// A law that sends messages: agents move at random and pass on what they have heard.
 #include <random>
 #include <vector>
 

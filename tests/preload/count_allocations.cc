@@ -1,5 +1,5 @@
-// Preloaded into the processes of a run (LD_PRELOAD): counts calls of malloc by the program or library that made them,
-// and writes the counts to MASCOT_ALLOCATIONS/<program>.<pid> when the process ends, a line "count object" each.
+// Preloaded into the processes of a run (LD_PRELOAD). Counts the malloc calls of each executable and library, and
+// writes the counts to MASCOT_ALLOCATIONS/<program>.<pid> when the process ends, in lines "count object".
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <link.h>
@@ -22,7 +22,7 @@ void* __libc_memalign(std::size_t alignment, std::size_t bytes);
 
 namespace {
 
-/// A program or library.
+/// An executable or library and its allocations.
 struct Object {
   std::atomic<const link_map*> loaded = nullptr;
   std::atomic<long> allocations = 0;
@@ -30,9 +30,9 @@ struct Object {
 
 std::array<Object, 64> objects;
 std::atomic<bool> counting = false;
-thread_local bool inside __attribute__((tls_model("initial-exec"))) = false;  // what the unwinder itself allocates
+thread_local bool inside __attribute__((tls_model("initial-exec"))) = false;  // in Count(): the unwinder allocates too
 
-/// The program or library that the code at this address lies in; nullptr: none.
+/// The executable or library that contains the code at this address; nullptr: none.
 const link_map* ObjectOf(void* code) {
   dl_find_object found;
   return ::_dl_find_object(code, &found) == 0 ? found.dlfo_link_map : nullptr;
@@ -40,7 +40,7 @@ const link_map* ObjectOf(void* code) {
 
 const char* PathOf(const link_map& object) { return *object.l_name == 0 ? program_invocation_name : object.l_name; }
 
-/// Through which others allocate.
+/// Whether the object only allocates on behalf of its callers (libc, libstdc++, this library).
 bool IsGoBetween(const link_map* object) {
   static const link_map* const own = ObjectOf(reinterpret_cast<void*>(&IsGoBetween));
   return object == nullptr || object == own || std::strstr(object->l_name, "/libc.so") != nullptr ||
@@ -120,7 +120,7 @@ int posix_memalign(void** place, std::size_t alignment, std::size_t bytes) {
 }
 }
 
-// Those of the C++ library would show malloc themselves as its caller.
+// With the operators of the C++ library, malloc would see libstdc++ as its caller.
 void* operator new(std::size_t bytes) {
   Count(__builtin_return_address(0));
   if (void* place = __libc_malloc(bytes)) return place;
