@@ -1,8 +1,8 @@
-// The bare exchange, the yardstick for the DDS engine: as many processes, topics, readers and messages as a run, the
-// same bus, but no physics, no law, no recording. The server publishes every agent's state; an agent that has its own
-// and its neighbours' of a tick answers with a command; with the last command the next tick begins.
+// The bare exchange, a baseline for the DDS engine: the processes, topics, readers, messages and bus of a run, but no
+// physics, law and recording. The server publishes the states of all agents. An agent that has received its own state
+// and its neighbours' states of a tick answers with a command. The last command starts the next tick.
 //   bare_exchange AGENTS ring|complete SECONDS [batch]     prints one line of JSON: ticks per second
-// batch: all of it as SCHED_BATCH, as lockstep runs are.
+// batch: all processes run with SCHED_BATCH, as in lockstep runs.
 #include <sched.h>
 #include <signal.h>
 #include <spawn.h>
@@ -36,7 +36,7 @@ using namespace std::chrono_literals;
 using namespace mascot;
 using WallClock = std::chrono::steady_clock;
 
-constexpr int kMostPeers = 20;  // as orchestrator/engines/dds/engine.cc
+constexpr int kMostPeers = 20;  // as in orchestrator/engines/dds/engine.cc
 constexpr std::uint64_t kWarmUpTicks = 50;
 
 struct Setting {
@@ -57,7 +57,7 @@ DomainOptions Options(const Setting& setting, const std::string& name, int parti
   return options;
 }
 
-/// Waits for the condition, which others make true.
+/// Waits until other threads have made the condition true.
 template <class Condition>
 void Await(const Condition& condition) {
   while (!condition()) std::this_thread::sleep_for(2ms);
@@ -72,7 +72,7 @@ void Await(const Condition& condition) {
   Writer<CommandType> commands(domain, Topic::Command(id));
   mascot_msgs::msg::AgentCommand command;
   std::mutex mutex;
-  std::vector<std::uint64_t> ticks(graph.HeardBy(id).size() + 1, 0);  // from 1 on
+  std::vector<std::uint64_t> ticks(graph.HeardBy(id).size() + 1, 0);  // newest tick by source; ticks start at 1
   std::vector<std::unique_ptr<Reader<StateType>>> readers;
   const auto listen = [&](std::size_t source, int from) {
     readers.push_back(std::make_unique<Reader<StateType>>(
@@ -113,7 +113,7 @@ class Server {
     return true;
   }
 
-  /// Ticks per second over `seconds`.
+  /// Measures ticks per second over `seconds`.
   double Measure(double seconds) {
     {
       const std::lock_guard lock(mutex_);
@@ -197,7 +197,7 @@ int main(int argc, char** argv) {
     }
     Server server(setting);
     Await([&] { return server.Matched(); });
-    std::this_thread::sleep_for(300ms);  // the agents' side of the matches
+    std::this_thread::sleep_for(300ms);  // until the agents have matched too
     std::printf("{\"ticks_per_s\": %.1f}\n", server.Measure(std::atof(argv[3])));
   }
   for (const pid_t agent : agents) {

@@ -1,5 +1,5 @@
-// The bare loop, the yardstick for the in-process engine: Bullet's whole step for each physics step, and one call of
-// the low-level stack for each control period; no law, no graph, no recording.
+// The bare loop, a baseline for the in-process engine: one full Bullet step for each physics step, and one call of the
+// low-level controller for each control period; no law, graph and recording.
 //   bare_loop AGENTS SECONDS     prints one line of JSON: agent-steps per second
 #include <chrono>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// What single pieces cost: a call of a law, a step of the world, a tick of the recording. Google Benchmark.
+// Cost of single operations: a call of a law, a tick of the world, a row of the recording. Google Benchmark.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -22,7 +22,7 @@ Experiment Load(int agents, const std::string& more) {
   return LoadExperiment(Section::FromText(text, "bench.toml"), "bench");
 }
 
-// --- laws: of an agent that hears five others -----------------------------------------------------------
+// --- laws: an agent that hears five others --------------------------------------------------------------
 
 void CallLaw(benchmark::State& state, const std::string& law) {
   Experiment experiment = Load(6, "[law]\n" + law);
@@ -68,7 +68,7 @@ void StepWorld(benchmark::State& state, World::LookForContacts look) {
 BENCHMARK_CAPTURE(StepWorld, when_close, World::LookForContacts::kWhenClose)->Arg(10)->Arg(100)->Arg(1000);
 BENCHMARK_CAPTURE(StepWorld, always, World::LookForContacts::kAlways)->Arg(10)->Arg(100)->Arg(1000);
 
-// --- recording: a row, with its measurement, to the disk ------------------------------------------------
+// --- recording: a row, with its metrics, to the disk ----------------------------------------------------
 
 void RecordRow(benchmark::State& state) {
   const auto agents = static_cast<int>(state.range(0));
@@ -87,7 +87,7 @@ void RecordRow(benchmark::State& state) {
   writer.Close();
   const auto samples = static_cast<std::int64_t>(writer.samples());
   state.SetItemsProcessed(samples);
-  constexpr std::int64_t kSampleBytes = 144;  // of a state and of a command, on average
+  constexpr std::int64_t kSampleBytes = 144;  // average of a state and a command
   state.SetBytesProcessed(samples * kSampleBytes);
 }
 

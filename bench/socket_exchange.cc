@@ -1,5 +1,5 @@
-// The operating system's own bound: the same lockstep over Unix sockets, one message to each agent's process and one
-// back, no DDS.
+// Lower bound set by the operating system: the same lockstep over Unix sockets, with one message to each agent process
+// and one back, without DDS.
 //   socket_exchange AGENTS SECONDS     prints one line of JSON: ticks per second
 #include <poll.h>
 #include <signal.h>

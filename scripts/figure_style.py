@@ -1,6 +1,6 @@
-"""How the pictures of runs and of sweeps look."""
+"""Style of the plots of runs, sweeps and benchmarks."""
 
-# Okabe and Ito's colours, which colour-blind readers can tell apart; the palest ones last.
+# Palette of Okabe and Ito, which colour-blind readers can distinguish; the palest colours last.
 OKABE_ITO = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442"]
 STYLE = {
     "axes.axisbelow": True,

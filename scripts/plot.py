@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Draws the pictures of one run, from its states.npz, config.toml and (where there is one) summary.json.
 
-The figures are those of the MASCOT paper: paths in the x-y plane, position, velocity, error and acceleration against
+The figures are those of the MASCOT paper: paths in the x-y plane, position, velocity, error and acceleration over
 time. The same run always gives the same bytes. Exit codes: 0 done, 1 the run cannot be read, 2 wrong use.
 """
 
@@ -19,17 +19,17 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Circle, Rectangle
 
-sys.dont_write_bytecode = True  # the scripts may stand where nobody may write
+sys.dont_write_bytecode = True  # the folder of the scripts may be read-only
 from figure_style import OKABE_ITO, STYLE
 from run_folder import RunError, disagreement, read_run, spanning_tree, waypoint_targets
 
-# Beyond those, viridis without its palest end.
+# Colours for more agents than OKABE_ITO has: viridis without its palest end.
 MANY = matplotlib.colors.ListedColormap(plt.get_cmap("viridis")(np.linspace(0, 0.95, 256)), "many")
 LEGEND_MAX = 10  # more agents than this share a colour bar
-DRAWN_MAX = 200  # more lines than this are a blot: every n-th agent is drawn
-LEAST_RANGE = 0.02  # m, m/s or m/s²: no axis zooms in further, so that a held height is a flat line
+DRAWN_MAX = 200  # more lines than this are unreadable: only every n-th agent is drawn
+LEAST_RANGE = 0.02  # m, m/s or m/s²: least range of a y axis, so that a held height is a flat line
 FLOOR_M = 1e-6  # bottom of log axes
-SMOOTHING_S = 0.5  # of an acceleration that switches all the time
+SMOOTHING_S = 0.5  # window for the mean of a switching acceleration
 AXIS_NAMES = "xyz"
 LINES = {"lines.linewidth": 1.2}
 
@@ -58,7 +58,7 @@ def titled(figure, run, what):
 
 
 def name_agents(figure, axes, run):
-    """A legend beside the first panel; a colour bar beside all of them where there are many agents."""
+    """Adds a legend beside the first panel, or for many agents a colour bar beside all panels."""
     first = axes[0]
     handles, labels = first.get_legend_handles_labels()
     if run.size > LEGEND_MAX:
@@ -73,7 +73,7 @@ def name_agents(figure, axes, run):
 
 
 def plot_agents(axis, run, x, y, indices=None):
-    """One line per agent; y is (T, N). The leader's is thicker and on top."""
+    """Plots one line per agent; y is (T, N). The line of the leader is thicker and on top."""
     palette = colours(run)
     for k in drawn(run) if indices is None else indices:
         leads = k == run.leader
@@ -96,7 +96,7 @@ def time_axis(axis, run):
 
 
 def panels(run, values, symbol, unit, what, axes):
-    """A panel per axis, `values` (T, N, 3) against time."""
+    """Plots `values` (T, N, 3) over time, in a panel per axis."""
     figure, grid = plt.subplots(len(axes), 1, sharex=True, figsize=(8, 1.2 + 1.9 * len(axes)), squeeze=False)
     for panel, k in zip(grid[:, 0], axes):
         plot_agents(panel, run, run.t, values[:, :, k])
@@ -109,7 +109,8 @@ def panels(run, values, symbol, unit, what, axes):
 
 
 def draw_graph(axis, run, p):
-    """The graph's edges, lightly: at the start if the agents end up together, else at the end."""
+    """Draws the edges of the graph in grey: between initial positions if the agents end close together, else between
+    final positions."""
     spread = [np.ptp(p[row], axis=0).max() for row in (0, -1)]
     at = p[-1] if spread[1] > 0.3 * spread[0] else p[0]
     pairs = sorted({(min(e), max(e)) for e in run.edges})
@@ -119,7 +120,7 @@ def draw_graph(axis, run, p):
 
 
 def draw_obstacles(axis, run):
-    """Seen from above."""
+    """Draws the obstacles as seen from above."""
     look = {"facecolor": "0.85", "edgecolor": "0.6", "zorder": 0.5}
     for obstacle in run.obstacles:
         (x, y), (width, depth) = obstacle["position_m"][:2], obstacle["size_m"][:2]
@@ -131,7 +132,7 @@ def draw_obstacles(axis, run):
 
 
 def draw_places(axis, run):
-    """Waypoints, and where theory says that the agents meet."""
+    """Draws the waypoints and the predicted meeting point."""
     points = np.asarray(run.law.get("waypoints_m", run.law.get("leader_waypoints_m", [])), dtype=float).reshape(-1, 3)
     if len(points):
         axis.plot(points[:, 0], points[:, 1], "D", color="0.35", ms=5, mfc="none", zorder=1.5, label="waypoints")
@@ -178,7 +179,7 @@ def velocity(run):
 
 
 def moving_mean(t, values, span_s):
-    """Mean over the last `span_s` of every row (fewer at the start)."""
+    """Mean over the `span_s` up to each row (less at the start)."""
     total = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)])
     begin = np.searchsorted(t, t - span_s, side="right")
     end = np.arange(1, t.size + 1)
@@ -186,10 +187,10 @@ def moving_mean(t, values, span_s):
 
 
 def acceleration(run):
-    """What the law asked for, after the limit: the paper's force, per mass. A velocity that a model takes at once is an
-    acceleration over one tick, and not limited."""
+    """Acceleration commanded by the law, after the limit: the force of the paper per mass. For a model that takes
+    velocities at once it is the change of velocity over one tick, which is not limited."""
     values, what = run.acceleration_command, "commanded acceleration"
-    switches = run.drawing["switches"]  # between full throttle and full brake: single lines would be a blot
+    switches = run.drawing["switches"]  # bang-bang: single lines would be unreadable
     if switches:
         values, what = moving_mean(run.t, values, SMOOTHING_S), f"{what} (bold: mean over {SMOOTHING_S:g} s)"
     figure, grid = panels(run, values, "$a_{}$", "m/s²", what, run.axes)
@@ -214,7 +215,7 @@ def acceleration(run):
 
 
 def log_panel(run, distance_m, what, ylabel):
-    """Distances (T, N) against time on a log axis."""
+    """Plots distances (T, N) over time on a log axis."""
     figure, axis = plt.subplots(figsize=(8, 4.2))
     visible = [k for k in drawn(run) if distance_m[:, k].max() > FLOOR_M] or [0]
     plot_agents(axis, run, run.t, np.maximum(distance_m, FLOOR_M), visible)
@@ -282,7 +283,7 @@ def tracking(run):
 class Picture:
     draw: object
     switch: str  # the key of [output] that turns it off
-    applies: object  # run -> None, or why there is no such picture of it
+    applies: object  # run -> None, or why the picture does not apply to it
 
 
 def only_if(condition, reason):
@@ -322,7 +323,7 @@ def can_open_windows():
             plt.switch_backend(backend)
             plt.close(plt.figure())
             return True
-        except Exception:  # each toolkit has errors of its own for "not installed" and "no display"
+        except Exception:  # each toolkit has its own exceptions for "not installed" and "no display"
             plt.switch_backend("Agg")
     return False
 

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Draws the table of a sweep: plot_sweep.py TABLE.csv PICTURE.png COLUMN [KEY [KEY]].
 
-Without a key: how often which value of COLUMN occurred. With one: COLUMN over it, the median of all seeds and the band
-between their first and ninth decile. With two: a heat map of medians, or points in colour where the keys were drawn at
-random. Runs that failed, or never reached what COLUMN says, are left out and counted in the title. Exit codes: 0 done, 1
-nothing to draw, 2 wrong use.
+Without a key: a histogram of COLUMN. With one key: COLUMN over it, as the median over all seeds and the band between
+first and ninth decile. With two keys: a heat map of medians, or coloured points if the keys were drawn at random. Runs
+that failed or have no value of COLUMN are left out, and counted in the title. Exit codes: 0 done, 1 nothing
+to draw, 2 wrong use.
 """
 
 import argparse
@@ -19,17 +19,17 @@ import matplotlib.pyplot as plt
 import matplotlib.ticker
 import numpy as np
 
-sys.dont_write_bytecode = True  # the scripts may stand where nobody may write
+sys.dont_write_bytecode = True  # the folder of the scripts may be read-only
 from figure_style import OKABE_ITO, STYLE
 
 BLUE = OKABE_ITO[0]
 TICKS_MAX = 12
 BINS_MAX = 50
-DECADES = 2  # what spans so many, or more, is drawn on a log scale
+DECADES = 2  # values that span at least this many decades get a log scale
 
 
 def number(text):
-    """A cell as a number; None if it is none."""
+    """A cell as a number; None if it is not a number."""
     if text in ("true", "false"):
         return float(text == "true")
     try:
@@ -39,7 +39,7 @@ def number(text):
 
 
 def read(path, column, keys):
-    """Cells of the keys and numbers of the column, of the runs that have one; and how many have none."""
+    """The cells of the keys and the number in the column, for all runs that have one; and how many runs have none."""
     with open(path, newline="", encoding="utf-8") as file:
         table = list(csv.DictReader(file))
     rows = [([row[key] for key in keys], number(row[column])) for row in table]
@@ -53,14 +53,14 @@ def is_wide(values):
 
 
 class Axis:
-    """Where the values of one key lie: numbers where they are, words side by side in order of appearance."""
+    """Positions of the values of one key: numbers at their value, words side by side in order of appearance."""
 
     def __init__(self, key, cells):
         self.key = key
         numbers = [number(cell) for cell in cells]
         self.is_numeric = all(n is not None for n in numbers)
         self.labels = sorted(set(cells), key=number) if self.is_numeric else list(dict.fromkeys(cells))
-        self.is_grid = False  # cells around each place, which then has its tick
+        self.is_grid = False  # a heat map with cells around each place, and a tick at each
         self.places = [number(label) for label in self.labels] if self.is_numeric else list(range(len(self.labels)))
         self.is_log = self.is_numeric and is_wide(self.places)
 
@@ -68,7 +68,7 @@ class Axis:
         return self.places[self.labels.index(cell)]
 
     def edges(self):
-        """Of cells around the places, half-way between them."""
+        """Edges of the cells around the places, half-way between them."""
         places = np.log(self.places) if self.is_log else np.array(self.places, float)
         between = (places[1:] + places[:-1]) / 2
         first, last = (2 * places[0] - between[0], 2 * places[-1] - between[-1]) if between.size else places[0] + [-0.5, 0.5]
@@ -129,7 +129,7 @@ def draw_map(figure, ax, rows, column, keys):
     points = [(axes[0].of(a), axes[1].of(b), np.median(values)) for (a, b), values in groups.items()]
     x, y, z = (np.array(part) for part in zip(*points))
     norm = matplotlib.colors.LogNorm() if is_wide(list(z)) else None
-    if 2 * len(groups) > len(axes[0].labels) * len(axes[1].labels):  # a grid, of which some may be missing
+    if 2 * len(groups) > len(axes[0].labels) * len(axes[1].labels):  # a grid, perhaps with gaps
         grid = np.full((len(axes[1].labels), len(axes[0].labels)), np.nan)
         for a, b, value in points:
             grid[axes[1].places.index(b), axes[0].places.index(a)] = value

@@ -1,4 +1,4 @@
-"""One run, as read from its folder, and what can be computed from it: what scripts/plot.py draws."""
+"""Reads a run folder and computes the quantities that scripts/plot.py plots."""
 
 import json
 import tomllib
@@ -12,7 +12,7 @@ ARRAYS = {"position": 3, "velocity": 3, "acceleration_command": 3}  # name -> nu
 
 
 class RunError(Exception):
-    """What went wrong, in one line, and the exit code it deserves."""
+    """An error with a message of one line and an exit code."""
 
     def __init__(self, message, code=1):
         super().__init__(message)
@@ -43,7 +43,7 @@ class Run:
 
     @property
     def drawing(self):
-        """How pictures show the law, as its row in the table of laws says."""
+        """How to plot the law, from its row in the table of laws."""
         return {"leader": "leader", "switches": False, "pictures": []} | self.summary.get("drawing", {})
 
     @property
@@ -54,12 +54,12 @@ class Run:
 
     @property
     def axes(self):
-        """The axes that the law decides about."""
+        """Indices of the axes that the law controls."""
         return [0, 1, 2] if self.law.get("axes", "xy") == "xyz" else [0, 1]
 
     @property
     def edges(self):
-        """Pairs (i, j): the agent of index i hears the one of index j."""
+        """Pairs (i, j) of indices: agent i hears agent j."""
         return [(int(e[0]) - 1, int(e[1]) - 1) for e in self.summary.get("graph", {}).get("edges", [])]
 
     @property
@@ -128,15 +128,16 @@ def read_run(folder):
 
 
 def disagreement(run):
-    """(T, N): distance of every agent to the leader, or to the mean, over the law's axes; of a formation, of what is left
-    of their positions without their places in it."""
+    """(T, N): distance of every agent to the leader, or else to the mean, along the axes of the law (m). In a
+    formation, the places are subtracted from the positions first."""
     p = (run.position - run.places)[:, :, run.axes]
     reference = p.mean(axis=1, keepdims=True) if run.leader is None else p[:, [run.leader]]
     return np.linalg.norm(p - reference, axis=2)
 
 
 def spanning_tree(run):
-    """Edges (child, parent) of the breadth-first tree from the root along "hears"; parent = lowest one level up."""
+    """Edges (child, parent) of the breadth-first tree from the root. The parent is the lowest-numbered agent one
+    level up from which the child receives messages."""
     parent = {run.leader: None}
     level = [run.leader]
     while level:
@@ -155,7 +156,7 @@ def target_by_time(times_s, run, agent, waypoints):
 
 
 def waypoint_targets(run, agent):
-    """(T, 3): where the waypoint law sends this agent, row by row, by its own rule (arrival and dwell, or times)."""
+    """(T, 3): target of this agent in each row, by the rule of the waypoint law (arrival and dwell, or times)."""
     waypoints = np.asarray(run.law["waypoints_m"], dtype=float)
     if run.law.get("times_s"):
         return target_by_time(run.law["times_s"], run, agent, waypoints)

@@ -27,7 +27,7 @@ ARRAY_OFFSET, BOUNDED_SEQUENCE_OFFSET, SEQUENCE_OFFSET = 48, 96, 144
 
 FIELD = re.compile(r"^(?P<base>[\w/]+)(?:<=(?P<string_bound>\d+))?(?P<array>\[(?P<bounded><=)?(?P<extent>\d*)\])?$")
 CONSTANT = re.compile(r"^\S+\s+\w+\s*=")
-# What rosidl puts into a message without fields.
+# The field that rosidl adds to a message without fields.
 EMPTY = {"name": "structure_needs_at_least_one_member",
          "type": {"type_id": 3, "capacity": 0, "string_capacity": 0, "nested_type_name": ""}}
 
@@ -57,7 +57,7 @@ class Messages:
         return fields or [EMPTY]
 
     def dependencies(self, name):
-        """Every type that `name` is made of, itself not, breadth first."""
+        """All types that `name` contains, without itself, breadth first."""
         found, todo = [], [name]
         while todo:
             for field in self.fields(todo.pop(0)):
@@ -79,7 +79,7 @@ class Messages:
         return "RIHS01_" + hashlib.sha256(canonical.encode()).hexdigest()
 
     def schema_text(self, name):
-        """The ros2msg schema: the type's own text, then each dependency's behind a line of 80 '='."""
+        """The ros2msg schema: the text of the type, then that of each dependency after a line of 80 '='."""
         text = self.text(name)
         for other in self.dependencies(name):
             text += "=" * 80 + "\nMSG: " + other.replace("/msg/", "/") + "\n" + self.text(other)
