@@ -11,8 +11,8 @@
 namespace mascot {
 
 /// The version of what a run leaves behind: config.toml, summary.json and the recording all say it, as `format`. It is
-/// raised when a reader of the version before would misunderstand one of them. Readers refuse a newer one; a file that says no
-/// format is of version 1.
+/// raised when a reader of the version before would misunderstand one of them. Readers refuse a newer one; a file that
+/// says no format is of version 1.
 inline constexpr int kFormat = 1;
 /// Reads `format` of an experiment file; notes a mistake if it is newer than kFormat. The document uses
 /// ExperimentKeys().

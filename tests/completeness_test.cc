@@ -170,7 +170,7 @@ TEST(Completeness, AnAttachedExperimentOfANewerFormatIsRefused) {
                                  "newer version of MASCOT"));
 }
 
-TEST(Completeness, AFileOfSomebodyElsesHasNoPlan) {
+TEST(Completeness, AFileOfAnotherProgramHasNoPlan) {
   const ScratchFolder scratch;
   McapWriter writer(scratch.File("other.mcap"));
   writer.Attach("config.toml", "application/toml", "colour = 'red'\n");

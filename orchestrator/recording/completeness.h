@@ -32,7 +32,7 @@ inline constexpr const char* kFormatKey = "format";
 std::string TooNew(const McapContents& contents);
 
 /// Reads the plan from the attached config.toml. Throws ConfigError if the recording is of a newer format, if there is
-/// no config.toml, or if it is somebody else's; `path` is the recording's name in that message.
+/// no config.toml, or if that is not a MASCOT experiment; `path` names the recording in that message.
 RecordingPlan PlanOf(const McapContents& contents, const std::string& path);
 
 /// Result of checking a recording by its sequence numbers: in a complete recording each channel counts 0 .. n-1, where
