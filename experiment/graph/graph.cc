@@ -1,10 +1,10 @@
 #include "experiment/graph/graph.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cassert>
 #include <complex>
+
+#include "experiment/linear_algebra.h"
 
 namespace mascot {
 namespace {
@@ -125,11 +125,9 @@ Eigen::VectorXcd Graph::Eigenvalues() const {
     const Eigen::MatrixXd block = laplacian(places, places);
     auto some = values.segment(found, block.rows());
     if (symmetric)
-      some = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(block, Eigen::EigenvaluesOnly)
-                 .eigenvalues()
-                 .cast<std::complex<double>>();
+      some = SymmetricEigenvalues(block).cast<std::complex<double>>();
     else
-      some = Eigen::EigenSolver<Eigen::MatrixXd>(block, /*computeEigenvectors=*/false).eigenvalues();
+      some = mascot::Eigenvalues(block);
     found += block.rows();
   }
   std::sort(values.begin(), values.end(), [](const auto& a, const auto& b) {
@@ -156,7 +154,7 @@ std::optional<Eigen::VectorXd> Graph::LeftNullVector() const {
     }
   }
   transposed.row(0).setOnes();
-  const Eigen::VectorXd weights = transposed.partialPivLu().solve(Eigen::VectorXd::Unit(count, 0));
+  const Eigen::VectorXd weights = Solve(transposed, Eigen::VectorXd::Unit(count, 0));
   Eigen::VectorXd gamma = Eigen::VectorXd::Zero(size());
   for (Eigen::Index i = 0; i < count; ++i) gamma(roots[static_cast<std::size_t>(i)] - 1) = weights(i);
   return gamma;

@@ -10,7 +10,6 @@
 // frequency w at which the second condition fails for some i; if there is none, no delay has a root.
 #include "orchestrator/theory/delay_margin.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -18,6 +17,8 @@
 #include <limits>
 #include <numbers>
 #include <vector>
+
+#include "experiment/linear_algebra.h"
 
 namespace mascot {
 namespace {
@@ -81,7 +82,7 @@ Spectrum SpectrumOf(const Loop& loop) {
     return values;
   };
   if (loop.IsRegular()) {
-    const Eigen::VectorXcd of_adjacency = loop.adjacency.eigenvalues();
+    const Eigen::VectorXcd of_adjacency = Eigenvalues(loop.adjacency);
     return
         [&loop, of_adjacency, sorted](double w) -> Eigen::VectorXcd { return sorted(loop.Gain(0, w) * of_adjacency); };
   }
@@ -89,7 +90,7 @@ Spectrum SpectrumOf(const Loop& loop) {
     Eigen::VectorXcd gains(loop.degree.size());
     for (Eigen::Index i = 0; i < gains.size(); ++i) gains(i) = loop.Gain(static_cast<std::size_t>(i), w);
     const Eigen::MatrixXcd m = gains.asDiagonal() * loop.adjacency.cast<Complex>();
-    return sorted(Eigen::ComplexEigenSolver<Eigen::MatrixXcd>(m, /*computeEigenvectors=*/false).eigenvalues());
+    return sorted(Eigenvalues(m));
   };
 }
 

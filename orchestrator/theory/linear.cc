@@ -1,12 +1,12 @@
 // Linear laws: consensus, formation, velocity consensus, and teams that mix them.
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "agent/laws.h"
 #include "agent/laws/reach.h"
+#include "experiment/linear_algebra.h"
 #include "orchestrator/theory/linear_team.h"
 #include "orchestrator/theory/links_on_average.h"
 #include "orchestrator/theory/meeting_point.h"
@@ -218,7 +218,7 @@ void LinearCase::WarnOfLag(int leader) const {
   Eigen::VectorXd ones = Eigen::VectorXd::Ones(pinned.rows());
   ones(leader - 1) = 0;
   const double speed = agent(leader).v_W.head(CountOf(experiment_.law.axes)).norm();
-  const double farthest = pinned.partialPivLu().solve(ones).maxCoeff();
+  const double farthest = Solve(pinned, ones).maxCoeff();
   prediction_.warnings.push_back(
       fmt::format("law.leader: the leader keeps its {:.4g} m/s, so followers stay up to {:.4g} m behind", speed,
                   farthest * common_->b / common_->p * speed));

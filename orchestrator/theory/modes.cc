@@ -1,11 +1,12 @@
 #include "orchestrator/theory/modes.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "experiment/linear_algebra.h"
 
 namespace mascot {
 namespace {
@@ -173,11 +174,11 @@ double OwnDelayMargin(const LinearMode& mode) {
   const Complex d = mode.damping, k = mode.stiffness, i(0, 1);
   if (mode.order == 1) return (std::numbers::pi / 2 - std::abs(std::arg(k))) / std::abs(k);
   // w^4 - |d|^2 w^2 + 2 (Re(k) Im(d) - Im(k) Re(d)) w - |k|^2 = 0
-  Eigen::Matrix4d companion = Eigen::Matrix4d::Zero();
+  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(4, 4);
   companion.diagonal<-1>().setOnes();
   companion.col(3) << std::norm(k), -2 * (k.real() * d.imag() - k.imag() * d.real()), std::norm(d), 0;
   double margin_s = kInfinity;
-  for (const Complex w : companion.eigenvalues()) {
+  for (const Complex w : Eigenvalues(companion)) {
     if (std::abs(w.imag()) > 1e-9 * std::abs(w)) continue;
     // (i w)^2 = -(stiffness + i w damping) e^(-i w tau)
     const double angle = std::arg((k + i * w.real() * d) / (w.real() * w.real()));

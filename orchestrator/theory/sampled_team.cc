@@ -1,7 +1,5 @@
 #include "orchestrator/theory/sampled_team.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -154,9 +152,9 @@ void SampledTeam::FindModes() {
     std::vector<Eigen::Index> places;
     for (std::int64_t ago = 0; ago <= reach_; ++ago)
       for (const int id : ids) places.insert(places.end(), {Place(id, ago), Place(id, ago) + n_});
-    const Eigen::EigenSolver<Matrix> modes(cycle_(places, places));
+    const Eigensystem modes = EigensystemOf(cycle_(places, places));
     if (!std::ranges::binary_search(ids, root))
-      slowest_ = std::max(slowest_, modes.eigenvalues().cwiseAbs().maxCoeff());
+      slowest_ = std::max(slowest_, modes.values.cwiseAbs().maxCoeff());
     else if (leader_ == 0)
       JudgeRoots(ids, modes);
   }
@@ -165,15 +163,15 @@ void SampledTeam::FindModes() {
 
 // One eigenvalue, 1, belongs to agreement. Others may do so too: those of agents at one place that slow down together,
 // and those of a single root, which does not move if it starts from rest.
-void SampledTeam::JudgeRoots(const std::vector<int>& ids, const Eigen::EigenSolver<Matrix>& modes) {
+void SampledTeam::JudgeRoots(const std::vector<int>& ids, const Eigensystem& modes) {
   const bool at_rest = experiment_.agent(ids.front()).v_W.isZero(0) || (team_.Common() && reach_ == 0);
   Eigen::Index one = 0;
-  (modes.eigenvalues().array() - 1.0).abs().minCoeff(&one);
-  for (Eigen::Index k = 0; k < modes.eigenvalues().size(); ++k) {
+  (modes.values.array() - 1.0).abs().minCoeff(&one);
+  for (Eigen::Index k = 0; k < modes.values.size(); ++k) {
     if (k == one) continue;
-    const double magnitude = std::abs(modes.eigenvalues()(k));
+    const double magnitude = std::abs(modes.values(k));
     radius_ = std::max(radius_, magnitude);
-    const Eigen::VectorXcd shape = modes.eigenvectors().col(k);
+    const Eigen::VectorXcd shape = modes.vectors.col(k);
     double apart = 0;  // shape holds q, v of each agent now, then of earlier ticks
     for (std::size_t i = 1; i < ids.size(); ++i)
       apart = std::max(apart, std::abs(shape(2 * static_cast<Eigen::Index>(i)) - shape(0)));
@@ -199,7 +197,7 @@ Eigen::Vector3d SampledTeam::MeetingPoint() const {
   }
   Matrix keeps(size + 1, size);
   keeps << cycle_.transpose() - Matrix::Identity(size, size), agreement.transpose();
-  const Eigen::VectorXd kept = Eigen::ColPivHouseholderQR<Matrix>(keeps).solve(Eigen::VectorXd::Unit(size + 1, size));
+  const Eigen::VectorXd kept = LeastSquares(keeps, Eigen::VectorXd::Unit(size + 1, size));
   if (steady_ > 0) state = Over(0, steady_) * state;
   return (kept.transpose() * state).transpose();
 }

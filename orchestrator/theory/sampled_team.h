@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <optional>
 #include <string>
 
+#include "experiment/linear_algebra.h"
 #include "orchestrator/theory/linear_team.h"
 #include "orchestrator/theory/timeline.h"
 
@@ -42,7 +42,7 @@ class SampledTeam {
   Matrix Over(std::int64_t from, std::int64_t to) const;
   Graph Heard() const;
   void FindModes();
-  void JudgeRoots(const std::vector<int>& ids, const Eigen::EigenSolver<Matrix>& modes);
+  void JudgeRoots(const std::vector<int>& ids, const Eigensystem& modes);
 
   const Experiment& experiment_;
   const LinearTeam& team_;

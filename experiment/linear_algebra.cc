@@ -1,0 +1,34 @@
+#include "experiment/linear_algebra.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+
+namespace mascot {
+
+Eigen::VectorXcd Eigenvalues(const Eigen::MatrixXd& matrix) {
+  return Eigen::EigenSolver<Eigen::MatrixXd>(matrix, /*computeEigenvectors=*/false).eigenvalues();
+}
+
+Eigen::VectorXcd Eigenvalues(const Eigen::MatrixXcd& matrix) {
+  return Eigen::ComplexEigenSolver<Eigen::MatrixXcd>(matrix, /*computeEigenvectors=*/false).eigenvalues();
+}
+
+Eigen::VectorXd SymmetricEigenvalues(const Eigen::MatrixXd& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+Eigensystem EigensystemOf(const Eigen::MatrixXd& matrix) {
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+Eigen::VectorXd Solve(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
+  return matrix.partialPivLu().solve(right);
+}
+
+Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
+  return matrix.colPivHouseholderQr().solve(right);
+}
+
+}  // namespace mascot

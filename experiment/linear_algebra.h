@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace mascot {
+
+// What Eigen's solvers answer for dense matrices of any size. They are compiled once, in linear_algebra.cc: every other
+// file that named them would spend ten seconds of compiling on it.
+
+/// In the order in which the solver finds them.
+Eigen::VectorXcd Eigenvalues(const Eigen::MatrixXd& matrix);
+Eigen::VectorXcd Eigenvalues(const Eigen::MatrixXcd& matrix);
+/// Real, in increasing order; reads the lower triangle only.
+Eigen::VectorXd SymmetricEigenvalues(const Eigen::MatrixXd& matrix);
+
+struct Eigensystem {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd vectors;  // column k belongs to values(k)
+};
+Eigensystem EigensystemOf(const Eigen::MatrixXd& matrix);
+
+/// x of matrix x = right, for an invertible matrix.
+Eigen::VectorXd Solve(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
+/// The x with the smallest |matrix x - right|.
+Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
+
+}  // namespace mascot
