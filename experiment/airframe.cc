@@ -85,14 +85,14 @@ constexpr auto kNames = [] {
   return names;
 }();
 
-constexpr Range kGain = {0, 1e4};
+constexpr Range kAirframeGain = {0, 1e4};
 constexpr std::string_view kOfBase = "that of `base`";
-constexpr Key kGainKeys[] = {
-    key::Number("kp", kGain, "proportional").Otherwise(kOfBase),
-    key::Number("kd", kGain, "derivative").Otherwise(kOfBase),
+constexpr Key kAirframeGainKeys[] = {
+    key::Number("kp", kAirframeGain, "proportional").Otherwise(kOfBase),
+    key::Number("kd", kAirframeGain, "derivative").Otherwise(kOfBase),
 };
 
-constexpr Key kKeys[] = {
+constexpr Key kAirframeKeys[] = {
     key::OneOf("base", kNames, "the built-in airframe that gives what this table leaves out").Default("\"mascot\""),
     key::Text("name", "name of the airframe").Otherwise(kOfBase),
     key::Number("mass_kg", Above(0, 1e4), "mass").Otherwise(kOfBase),
@@ -105,10 +105,10 @@ constexpr Key kKeys[] = {
     key::Number("rotor_time_constant_s", {0, 10}, "lag of the rotor speed; 0: none").Otherwise(kOfBase),
     key::Vector3("size_m", {1e-3, 100}, "collision box, full lengths").Otherwise(kOfBase),
     key::Number("tilt_limit_rad", Above(0, 1.5), "limit on roll and on pitch").Otherwise(kOfBase),
-    key::Table("altitude", kGainKeys, "m/s^2 per m and per m/s"),
-    key::Table("heading", kGainKeys, "rad/s^2 per rad and per rad/s"),
-    key::Table("attitude", kGainKeys, "roll and pitch: rad/s^2 per rad and per rad/s"),
-    key::Table("position", kGainKeys, "m/s^2 per m and per m/s, in x and y"),
+    key::Table("altitude", kAirframeGainKeys, "m/s^2 per m and per m/s"),
+    key::Table("heading", kAirframeGainKeys, "rad/s^2 per rad and per rad/s"),
+    key::Table("attitude", kAirframeGainKeys, "roll and pitch: rad/s^2 per rad and per rad/s"),
+    key::Table("position", kAirframeGainKeys, "m/s^2 per m and per m/s, in x and y"),
 };
 
 PdGains ReadGains(Section& table, std::string_view key, const PdGains& base) {
@@ -176,7 +176,7 @@ std::span<const Airframe> Airframes() {
   return airframes;
 }
 
-std::span<const Key> AirframeKeys() { return kKeys; }
+std::span<const Key> AirframeKeys() { return kAirframeKeys; }
 
 std::span<const std::string_view> AirframeNames() { return kNames; }
 

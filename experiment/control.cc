@@ -7,17 +7,17 @@ namespace {
 
 constexpr std::string_view kOfAirframe = "the airframe's";
 
-constexpr Range kGain = {0, 1e4};
-constexpr Key kGainKeys[] = {
-    key::Number("kp", kGain, "proportional").Required(),
-    key::Number("kd", kGain, "derivative").Required(),
+constexpr Range kLoopGain = {0, 1e4};
+constexpr Key kLoopGainKeys[] = {
+    key::Number("kp", kLoopGain, "proportional").Required(),
+    key::Number("kd", kLoopGain, "derivative").Required(),
 };
 
 constexpr std::array kAgentKeys = {
-    key::Table("altitude", kGainKeys, "gains of the altitude loop: m/s^2 per m and per m/s").Otherwise(kOfAirframe),
-    key::Table("heading", kGainKeys, "rad/s^2 per rad and per rad/s").Otherwise(kOfAirframe),
-    key::Table("attitude", kGainKeys, "roll and pitch: rad/s^2 per rad and per rad/s").Otherwise(kOfAirframe),
-    key::Table("position", kGainKeys, "x and y: m/s^2 per m and per m/s").Otherwise(kOfAirframe),
+    key::Table("altitude", kLoopGainKeys, "gains of the altitude loop: m/s^2 per m and per m/s").Otherwise(kOfAirframe),
+    key::Table("heading", kLoopGainKeys, "rad/s^2 per rad and per rad/s").Otherwise(kOfAirframe),
+    key::Table("attitude", kLoopGainKeys, "roll and pitch: rad/s^2 per rad and per rad/s").Otherwise(kOfAirframe),
+    key::Table("position", kLoopGainKeys, "x and y: m/s^2 per m and per m/s").Otherwise(kOfAirframe),
     key::Number("heading_rad", {-10, 10}, "wanted yaw").Default("0.0"),
     key::Number("max_acceleration_m_per_s2", Above(0, 1000), "limit on what the law wants, per axis; cuts are counted")
         .Default("3.0"),
@@ -37,7 +37,7 @@ constexpr std::array kAgentKeys = {
     key::Boolean("drag_compensation", "adds the known drag to the wanted acceleration").Default("true"),
 };
 
-constexpr auto kKeys = Joined(
+constexpr auto kControlKeys = Joined(
     std::array{
         key::Integer("rate_hz", 1, 100000, "ticks per simulated second; divides `physics.rate_hz`").Default("100")},
     kAgentKeys);
@@ -55,7 +55,7 @@ void ReadGains(Section& control, std::string_view key, PdGains Airframe::*loop, 
 
 }  // namespace
 
-std::span<const Key> ControlKeys() { return kKeys; }
+std::span<const Key> ControlKeys() { return kControlKeys; }
 
 std::span<const Key> AgentControlKeys() { return kAgentKeys; }
 

@@ -31,7 +31,7 @@ constexpr auto kOverrideKeys = Joined(
     std::array{key::Rows("edges", {1, 10000}, "`[i, j]`, ...: the edges that this is for (i hears j)").Required()},
     kCommonKeys);
 
-constexpr auto kKeys =
+constexpr auto kLinkKeys =
     Joined(kCommonKeys, std::array{key::Tables("override", kOverrideKeys,
                                                "other links for some edges; what is left out is as in `[link]`, `loss` "
                                                "and `gilbert_elliott` in place of each other")});
@@ -100,7 +100,7 @@ std::vector<std::pair<int, int>> ReadEdges(Section& section, const Graph& graph)
 
 }  // namespace
 
-std::span<const Key> LinkKeys() { return kKeys; }
+std::span<const Key> LinkKeys() { return kLinkKeys; }
 
 bool LinkTable::ArePerfect(const Graph& graph) const {
   for (int id = 1; id <= graph.size(); ++id)

@@ -5,7 +5,7 @@
 namespace mascot {
 namespace {
 
-constexpr Range kPlace_m = {-1e6, 1e6};
+constexpr Range kCentre_m = {-1e6, 1e6};
 constexpr Range kAirspeed_m_per_s = {-200, 200};
 constexpr EnumNames<Shape, 3> kShapes({{Shape::kBox, "box"},
                                        {Shape::kSphere, "sphere"},
@@ -20,7 +20,7 @@ constexpr Key kWindKeys[] = {
 
 constexpr Key kObstacleKeys[] = {
     key::OneOf("shape", kShapes.names(), "its form").Required(),
-    key::Vector3("position_m", kPlace_m, "its centre").Required(),
+    key::Vector3("position_m", kCentre_m, "its centre").Required(),
     key::Vector3("size_m", {1e-3, 1e4},
                  "full lengths; of a sphere its diameter three times; of a cylinder, which stands on end, its diameter "
                  "twice, then its height")
@@ -35,7 +35,7 @@ constexpr Key kRotorFailureKeys[] = {
     key::Number("remaining", {0, 1}, "part of its thrust and torque that is left").Default("0.0"),
 };
 
-constexpr Key kKeys[] = {
+constexpr Key kPhysicsKeys[] = {
     key::Integer("rate_hz", 1, 100000, "steps of the physics per simulated second").Default("1000"),
     key::Number("gravity_m_per_s2", {0, 100}, "downwards; integrators feel none").Default("9.81"),
     key::Boolean("collisions", "bodies touch each other and obstacles (the ground: `ground`)").Default("true"),
@@ -85,7 +85,7 @@ RotorFailure ReadRotorFailure(Section& section, int agents) {
 
 }  // namespace
 
-std::span<const Key> PhysicsKeys() { return kKeys; }
+std::span<const Key> PhysicsKeys() { return kPhysicsKeys; }
 
 PhysicsConfig ReadPhysics(Section& physics, int agents) {
   PhysicsConfig config;

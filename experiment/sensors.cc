@@ -22,7 +22,7 @@ constexpr auto kOwnKeys = Joined(
     std::array{key::Number("delay_s", {0, kLongestDelay_s},
                            "how late an agent knows its own position and velocity; it knows its attitude at once")
                    .Default("0.0")});
-constexpr Key kKeys[] = {
+constexpr Key kSensorKeys[] = {
     key::Table("own", kOwnKeys, "what an agent measures of itself: law and low-level stack both get this"),
     key::Table("heard", kHeardKeys, "what an agent measures of each agent that it hears"),
 };
@@ -38,7 +38,7 @@ NoiseConfig ReadNoise(Section& section) {
 
 }  // namespace
 
-std::span<const Key> SensorKeys() { return kKeys; }
+std::span<const Key> SensorKeys() { return kSensorKeys; }
 
 SensorConfig ReadSensors(Section& sensors) {
   SensorConfig config;

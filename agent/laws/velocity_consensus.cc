@@ -9,7 +9,7 @@
 namespace mascot {
 namespace {
 
-struct Params final : LawParams {
+struct VelocityConsensusParams final : LawParams {
   double p_gain = 0;  ///< 1/s
 };
 
@@ -32,16 +32,18 @@ class VelocityConsensus final : public Law {
 
 std::shared_ptr<const LawParams> ReadVelocityConsensus(const Experiment& /*experiment*/, const LawConfig& /*law*/,
                                                        Section& section) {
-  auto params = std::make_shared<Params>();
+  auto params = std::make_shared<VelocityConsensusParams>();
   params->p_gain = section.Number("p_gain");
   return params;
 }
 
 std::unique_ptr<Law> MakeVelocityConsensus(const Experiment& experiment, int id) {
   const LawConfig& law = experiment.agent(id).law;
-  return std::make_unique<VelocityConsensus>(ParamsOf<Params>(law).p_gain, id == law.leader);
+  return std::make_unique<VelocityConsensus>(ParamsOf<VelocityConsensusParams>(law).p_gain, id == law.leader);
 }
 
-LinearForm LinearVelocityConsensus(const LawConfig& law) { return {.p = ParamsOf<Params>(law).p_gain}; }
+LinearForm LinearVelocityConsensus(const LawConfig& law) {
+  return {.p = ParamsOf<VelocityConsensusParams>(law).p_gain};
+}
 
 }  // namespace mascot

@@ -27,7 +27,7 @@ void CheckTimes(Section& law, const std::string& key, const WaypointParams& para
   }
 }
 
-struct Params final : LawParams {
+struct WaypointLawParams final : LawParams {
   WaypointParams flight;
 };
 
@@ -120,18 +120,19 @@ std::shared_ptr<const LawParams> ReadWaypoint(const Experiment& /*experiment*/, 
                                               Section& section) {
   if (law.leader != 0)
     section.Fail("leader", "expected 0 (every agent flies the waypoints itself), got " + std::to_string(law.leader));
-  auto params = std::make_shared<Params>();
+  auto params = std::make_shared<WaypointLawParams>();
   params->flight = ReadWaypoints(section, "");
   return params;
 }
 
 std::unique_ptr<Law> MakeWaypoint(const Experiment& experiment, int id) {
   const AgentConfig& agent = experiment.agent(id);
-  return std::make_unique<Waypoint>(WaypointFlight(ParamsOf<Params>(agent.law).flight, agent.law.axes, agent.p_W));
+  return std::make_unique<Waypoint>(
+      WaypointFlight(ParamsOf<WaypointLawParams>(agent.law).flight, agent.law.axes, agent.p_W));
 }
 
 LinearForm LinearWaypoint(const LawConfig& law) {
-  const WaypointParams& flight = ParamsOf<Params>(law).flight;
+  const WaypointParams& flight = ParamsOf<WaypointLawParams>(law).flight;
   return {.p = flight.p_gain, .beta = flight.d_gain, .listens = false, .leader_flies = true};
 }
 

@@ -7,7 +7,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kBufferBytes = std::size_t{64} << 10;
+constexpr std::size_t kCsvBufferBytes = std::size_t{64} << 10;
 
 }  // namespace
 
@@ -28,7 +28,7 @@ void CsvWriter::Put(Number value) {
 
 void CsvWriter::EndRow() {
   buffer_.back() = '\n';  // in place of the last comma
-  if (buffer_.size() >= kBufferBytes) Flush();
+  if (buffer_.size() >= kCsvBufferBytes) Flush();
 }
 
 void CsvWriter::Close() {

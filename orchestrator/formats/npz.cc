@@ -20,7 +20,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kBufferBytes = std::size_t{64} << 10;
+constexpr std::size_t kNpzBufferBytes = std::size_t{64} << 10;
 
 [[noreturn]] void Fail(const std::string& what, const std::string& path) {
   throw std::runtime_error("cannot " + what + " " + path + ": " + std::generic_category().message(errno));
@@ -33,7 +33,7 @@ class Spool {
     fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (fd_ < 0) Fail("create", path_);
     ::unlink(path_.c_str());
-    buffer_.reserve(kBufferBytes);
+    buffer_.reserve(kNpzBufferBytes);
   }
   ~Spool() { ::close(fd_); }
   Spool(const Spool&) = delete;
@@ -42,12 +42,12 @@ class Spool {
   void Append(ByteSpan bytes) {
     mascot::Append(buffer_, bytes);
     size_ += bytes.size();
-    if (buffer_.size() >= kBufferBytes) Flush();
+    if (buffer_.size() >= kNpzBufferBytes) Flush();
   }
   /// Passes all bytes to `sink`, in pieces.
   void CopyTo(const std::function<void(ByteSpan)>& sink) {
     Flush();
-    buffer_.resize(kBufferBytes);
+    buffer_.resize(kNpzBufferBytes);
     for (std::uint64_t done = 0; done < size_;) {
       const ssize_t got = ::pread(fd_, buffer_.data(), buffer_.size(), static_cast<off_t>(done));
       if (got < 0 && errno == EINTR) continue;
