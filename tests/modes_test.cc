@@ -74,8 +74,12 @@ TEST(Modes, DecayIffEitherGainIsAboveItsLeastValue) {
         const double g = LeastRelativeDamping(p, other, lambda), b = LeastDamping(p, other, lambda);
         EXPECT_TRUE(Decays({other + (g + 1e-6) * lambda, p * lambda}));
         EXPECT_TRUE(Decays({b + 1e-6 + other * lambda, p * lambda}));
-        if (g > 0) EXPECT_FALSE(Decays({other + g * (1 - 1e-6) * lambda, p * lambda}));
-        if (b > 0) EXPECT_FALSE(Decays({b * (1 - 1e-6) + other * lambda, p * lambda}));
+        if (g > 0) {
+          EXPECT_FALSE(Decays({other + g * (1 - 1e-6) * lambda, p * lambda}));
+        }
+        if (b > 0) {
+          EXPECT_FALSE(Decays({b * (1 - 1e-6) + other * lambda, p * lambda}));
+        }
       }
     }
   }
