@@ -3,6 +3,7 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <new>
@@ -15,8 +16,8 @@
 
 namespace {
 
-std::size_t g_allocations = 0;
-std::size_t g_largest_bytes = 0;
+std::atomic<std::size_t> g_allocations = 0;  // also counted in the thread that compresses
+std::atomic<std::size_t> g_largest_bytes = 0;
 
 }  // namespace
 
@@ -24,7 +25,9 @@ std::size_t g_largest_bytes = 0;
 // Not inlined, since g++ 12 would then warn that malloc and delete do not match.
 [[gnu::noinline]] void* operator new(std::size_t bytes) {
   ++g_allocations;
-  g_largest_bytes = std::max(g_largest_bytes, bytes);
+  std::size_t largest_bytes = g_largest_bytes;
+  while (bytes > largest_bytes && !g_largest_bytes.compare_exchange_weak(largest_bytes, bytes)) {
+  }
   if (void* memory = std::malloc(bytes)) return memory;
   throw std::bad_alloc();
 }
