@@ -66,7 +66,7 @@ void WarnOfFirstCommand(const std::optional<FirstCommand>& first, std::string_vi
 }
 
 void WarnOfFirstCommands(const Experiment& experiment, Prediction& prediction) {
-  if (!PursuitFormOf(experiment.law))  // for pursuit laws, WarnOfCutBeta has warned
+  if (EntryOf(experiment.law).pursuit == nullptr)  // for pursuit laws, WarnOfCutBeta has warned
     WarnOfFirstCommand(prediction.first_acceleration, "control.max_acceleration_m_per_s2", "m/s^2", prediction);
   WarnOfFirstCommand(prediction.first_speed, "control.max_speed_m_per_s", "m/s", prediction);
   if (const auto& first = prediction.first_lean; first && first->asked > first->limit)

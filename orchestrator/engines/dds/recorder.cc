@@ -50,7 +50,7 @@ RowWindow::Rules RulesOf(const Experiment& experiment) {
 
 Recorder::Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed)
     : domain_(domain), experiment_(experiment), feed_(feed), window_(RulesOf(experiment)), taken_(experiment.size()) {
-  const std::vector<Topic> topics = RulesOf(experiment).topics;
+  const std::vector<Topic>& topics = window_.topics();
   for (std::size_t index = 0; index < topics.size(); ++index)
     readers_.push_back(std::make_unique<RawReader>(
         domain, topics[index],

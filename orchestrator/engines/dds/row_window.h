@@ -28,6 +28,8 @@ class RowWindow {
   };
   explicit RowWindow(Rules rules);
 
+  const std::vector<Topic>& topics() const { return rules_.topics; }
+
   /// Takes a sample of topic `index` of the rules; `sequence` is its writer's sequence number, from 1. Returns whether
   /// rows should be taken without delay. Throws std::runtime_error if an earlier sample of the topic is missing (but
   /// for commands and messages in real time), if the sample came twice, or if its tick is too far ahead.
