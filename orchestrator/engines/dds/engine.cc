@@ -30,7 +30,7 @@ using WallClock = std::chrono::steady_clock;
 /// Participants up to which peer-to-peer discovery is used; beyond, a discovery server is faster (50: 2 s, not 5 s).
 constexpr int kMostPeers = 20;
 /// How long children may take to exit by themselves at the end.
-constexpr auto kGrace = 5s;
+constexpr auto kExitGrace = 5s;
 
 /// Agent ids as `agent --id` takes them: "3" or "3-5".
 std::string IdsText(AgentRange agents) {
@@ -329,7 +329,7 @@ void DdsRun::TakeReport() {
 
 void DdsRun::End() {
   if (hub_) AskToEnd();
-  if (phases_.in_order()) children_.WaitAll(kGrace);
+  if (phases_.in_order()) children_.WaitAll(kExitGrace);
   children_.Stop(2s);
   // Agents that were started by hand are not our children: wait until they have left the domain.
   const auto deadline = WallClock::now() + 2s;

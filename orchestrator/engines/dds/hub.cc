@@ -43,7 +43,7 @@ const char* Text(Ask ask) {
   return "unknown";
 }
 
-Roster::Rules RulesOf(const Experiment& experiment) {
+Roster::Rules RosterRules(const Experiment& experiment) {
   Roster::Rules rules{.processes = {"physics_server"}, .external = {}};
   for (const AgentRange& agents : AgentProcesses(experiment)) rules.processes.push_back(ProcessName(agents));
   for (const AgentConfig& agent : experiment.agents) rules.external.push_back(agent.external);
@@ -57,7 +57,7 @@ Roster::Time Now() { return std::chrono::steady_clock::now(); }
 Hub::Hub(Domain& domain, const Experiment& experiment, const std::string& log, std::function<void()> wake)
     : wake_(std::move(wake)),
       log_("orchestrator", std::make_shared<spdlog::sinks::basic_file_sink_mt>(log)),
-      roster_(RulesOf(experiment)),
+      roster_(RosterRules(experiment)),
       experiments_(domain, Topic::Experiment()),
       requests_(domain, Topic::Request()),
       recorder_(domain, Topic::Status()),
