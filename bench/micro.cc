@@ -34,7 +34,7 @@ void CallLaw(benchmark::State& state, const std::string& law) {
     if (config.id > 1) samples.push_back({&motions[static_cast<std::size_t>(config.id - 1)]});
   }
   std::int64_t tick = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(agent.Want(tick++, motions[0], samples));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(agent.Want(tick++, motions[0], samples));
 }
 
 constexpr const char* kNothing =
@@ -61,7 +61,7 @@ void StepWorld(benchmark::State& state, World::LookForContacts look) {
   World world(experiment, look);
   const double hover = experiment.agent(1).airframe.HoverRotorSpeed(experiment.physics.gravity_m_per_s2);
   const std::vector<Actuation> commands(static_cast<std::size_t>(agents), Actuation{hover, hover, hover, hover});
-  for (auto _ : state) world.Step(commands);
+  for ([[maybe_unused]] auto _ : state) world.Step(commands);
   state.SetItemsProcessed(state.iterations() * agents * experiment.steps_per_tick());
 }
 
@@ -80,7 +80,7 @@ void RecordRow(benchmark::State& state) {
   RowFeed feed(experiment, {&writer, &meter});
   DecodedRow row(agents);
   std::int64_t tick = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     for (std::size_t i = 0; i < row.motions.size(); ++i) row.motions[i].p_WB.x() += 1e-3 * static_cast<double>(i);
     feed.Add(tick++, row);
   }

@@ -2,8 +2,6 @@
 
 #include <unistd.h>
 
-#include <utility>
-
 namespace mascot {
 
 using namespace std::chrono_literals;
@@ -23,7 +21,7 @@ template <class Why>
 
 }  // namespace
 
-Lifecycle::Lifecycle(Domain& domain, StopSignal& stop, std::string process, int agent)
+Lifecycle::Lifecycle(Domain& domain, StopSignal& stop, const std::string& process, int agent)
     : stop_(stop),
       domain_(domain),
       status_writer_(domain, Topic::Status()),
@@ -35,7 +33,7 @@ Lifecycle::Lifecycle(Domain& domain, StopSignal& stop, std::string process, int 
                          }),
       request_reader_(domain, Topic::Request(),
                       [this](const mascot_msgs::msg::Request& request) { OnRequest(request); }) {
-  status_.process(std::move(process));
+  status_.process(process);
   status_.agent(static_cast<std::uint32_t>(agent));
 }
 

@@ -30,7 +30,7 @@ class Ended : public std::exception {
 class Lifecycle {
  public:
   /// `process`: its name (ProcessName). `agent`: its agent; 0 if it has none, or several.
-  Lifecycle(Domain& domain, StopSignal& stop, std::string process, int agent);
+  Lifecycle(Domain& domain, StopSignal& stop, const std::string& process, int agent);
 
   /// Publishes WAITING every 0.2 s until the experiment comes. Throws std::runtime_error after `timeout`, and what
   /// Wait() throws.

@@ -10,7 +10,6 @@
 namespace mascot {
 namespace {
 
-using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 /// Two double integrators; agent 1 hears agent 2.

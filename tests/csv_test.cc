@@ -3,8 +3,9 @@
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
+#include <bit>
 #include <csignal>
-#include <cstring>
+#include <cstdint>
 #include <limits>
 #include <sstream>
 
@@ -45,7 +46,7 @@ TEST(Csv, AFloatReadsBackAsTheSameBits) {
   for (const double value : values) {
     ASSERT_TRUE(std::getline(lines, line));
     const double back = std::strtod(line.c_str(), nullptr);
-    EXPECT_EQ(std::memcmp(&back, &value, sizeof value), 0) << line;
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(back), std::bit_cast<std::uint64_t>(value)) << line;
   }
   EXPECT_THAT(ReadFile(scratch.File("x.csv")), testing::HasSubstr("\n40.01\n")) << "and as the shortest such text";
 }

@@ -367,14 +367,12 @@ TEST(Engines, FiftyAgentsFlyThroughADiscoveryServer) {
 
 TEST(Engines, ReportContactsByKindAlike) {
   ScratchFolder folder;
-  const std::vector<std::string> crowd = {
-      "--duration-s",
-      "1",
-      "--set",
+  const std::string agents =
       "agents={ count = 4, model = 'double_integrator', position_m = [[0, 0, 1], [1, 0, 1], [0, 9, 0.2], [9, 9, 5]], "
-      "velocity_m_per_s = [[2, 0, 0], [-2, 0, 0], [0, 0, -5], [3, 0, 0]] }",
-      "--set",
-      "physics.obstacles=[{ shape = 'box', position_m = [10.2, 9, 5], size_m = [1, 1, 1] }]"};
+      "velocity_m_per_s = [[2, 0, 0], [-2, 0, 0], [0, 0, -5], [3, 0, 0]] }";
+  const std::vector<std::string> crowd = {
+      "--duration-s", "1",     "--set",
+      agents,         "--set", "physics.obstacles=[{ shape = 'box', position_m = [10.2, 9, 5], size_m = [1, 1, 1] }]"};
   Up dds(folder, "dds", Config("leaderless"), crowd);
   EXPECT_EQ(dds.Wait(), 0) << dds.err();
   auto inprocess_words = crowd;

@@ -121,8 +121,7 @@ TEST(FreeSteps, HandOverBeforeFastBodiesTouch) {
     e.agents[1].v_W = {-speed, 0, 0};
     Twins twins(e);
     const std::vector<Actuation> nothing(2);
-    while (twins.ours.State(1).p_WB.x() < 3 && twins.ours.State(1).v_WB.x() > 0.5 * speed &&
-           twins.ours.tick() < 100 * 100)
+    while (twins.ours.State(1).p_WB.x() < 3 && twins.ours.State(1).v_WB.x() > 0.5 * speed && twins.ours.tick() < 10'000)
       twins.Step(nothing);
     EXPECT_EQ(twins.ours.contacts().agents, 1) << speed;
     EXPECT_TRUE(twins.Same()) << speed;

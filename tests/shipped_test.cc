@@ -22,7 +22,7 @@ struct Flight {
   nlohmann::json summary;
   double rate_hz = 100;
 
-  Flight(const std::string& config, const std::vector<std::string>& sets = {}) {
+  explicit Flight(const std::string& config, const std::vector<std::string>& sets = {}) {
     ScratchFolder folder;
     std::vector<std::string> words{"--engine", "inprocess"};
     for (const std::string& set : sets) words.insert(words.end(), {"--set", set});

@@ -24,7 +24,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
-using ::testing::Throws;
 using Json = nlohmann::json;
 using SetUpVerb = std::function<int()>(CLI::App& command);
 

@@ -643,7 +643,10 @@ TEST(World, CountsContactsByWhatWasTouched) {
 
 TEST(World, RepeatsARunToTheBit) {
   std::vector<Vector3d> places;
-  for (int i = 0; i < 8; ++i) places.push_back({0.3 * (i % 3), 0.3 * (i / 3), 0.2 + 0.1 * i});  // a heap: many contacts
+  for (int i = 0; i < 8; ++i) {  // a heap: many contacts
+    const int row = i / 3, column = i % 3;
+    places.push_back({0.3 * column, 0.3 * row, 0.2 + 0.1 * i});
+  }
   const auto run = [&] {
     Experiment e = Bodies("quadrotor", places);
     e.agents[3].model = e.agents[5].model = "double_integrator";

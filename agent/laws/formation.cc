@@ -49,7 +49,8 @@ Eigen::Vector3d PlaceOf(std::string_view shape, int i, int count) {
   }
   if (shape == "grid") {
     const int width = static_cast<int>(std::ceil(std::sqrt(count)));
-    return {static_cast<double>(i % width), static_cast<double>(i / width), 0};
+    const int row = i / width, column = i % width;
+    return {static_cast<double>(column), static_cast<double>(row), 0};
   }
   const double angle = 2 * std::numbers::pi * i / count;
   const double radius = count > 1 ? 0.5 / std::sin(std::numbers::pi / count) : 0;

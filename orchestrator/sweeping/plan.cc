@@ -101,7 +101,8 @@ std::vector<std::string> Range(const std::string& word, const std::vector<std::s
   if (steps >= static_cast<double>(kMostRuns)) Refuse("--set", "at most 10000000 values", word);
   if (auto integers = IntegerRange(parts)) return *integers;
   std::vector<std::string> values;
-  for (double i = 0; i <= steps; ++i) values.push_back(ShortestFloat(Rounded(*first + i * *step)));
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(steps); ++i)
+    values.push_back(ShortestFloat(Rounded(*first + static_cast<double>(i) * *step)));
   return values;
 }
 

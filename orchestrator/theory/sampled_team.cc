@@ -38,7 +38,7 @@ Eigen::MatrixXd Power(Eigen::MatrixXd base, std::int64_t exponent) {
 }  // namespace
 
 bool SampledTeam::IsSmall(const Experiment& experiment) {
-  return 2 * experiment.size() * (Reach(experiment) + 1) <= kLargestState;
+  return std::int64_t{2} * experiment.size() * (Reach(experiment) + 1) <= kLargestState;
 }
 
 SampledTeam::SampledTeam(const Experiment& experiment, const LinearTeam& team, const Timeline& timeline,

@@ -78,11 +78,12 @@ std::optional<Timeline> TimelineOf(const Experiment& experiment) {
     timeline.cycle_ticks = std::llround(per_cycle * schedule.repeat_s() * rate_hz);
     const std::int64_t cycles = *ticks.rbegin() / timeline.cycle_ticks + (*ticks.rbegin() > 0);
     timeline.cycle_from = cycles * timeline.cycle_ticks;
-    const double repetitions = static_cast<double>((cycles + 1) * per_cycle);
-    if (repetitions * static_cast<double>(schedule.phases().size()) > kMostIntervals) return std::nullopt;
-    for (double n = 0; n < repetitions; ++n)
+    const std::int64_t repetitions = (cycles + 1) * per_cycle;
+    if (static_cast<double>(repetitions) * static_cast<double>(schedule.phases().size()) > kMostIntervals)
+      return std::nullopt;
+    for (std::int64_t n = 0; n < repetitions; ++n)
       for (const Schedule::Phase& phase : schedule.phases())
-        AddTicks(n * schedule.repeat_s() + phase.at_s, rate_hz, ticks);
+        AddTicks(static_cast<double>(n) * schedule.repeat_s() + phase.at_s, rate_hz, ticks);
     ticks.erase(ticks.lower_bound(timeline.cycle_from + timeline.cycle_ticks), ticks.end());
   } else {
     for (const Schedule::Phase& phase : schedule.phases()) AddTicks(phase.at_s, rate_hz, ticks);

@@ -49,7 +49,11 @@ RowWindow::Rules WindowRules(const Experiment& experiment) {
 }  // namespace
 
 Recorder::Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed)
-    : domain_(domain), experiment_(experiment), feed_(feed), window_(WindowRules(experiment)), taken_(experiment.size()) {
+    : domain_(domain),
+      experiment_(experiment),
+      feed_(feed),
+      window_(WindowRules(experiment)),
+      taken_(experiment.size()) {
   const std::vector<Topic>& topics = window_.topics();
   for (std::size_t index = 0; index < topics.size(); ++index)
     readers_.push_back(std::make_unique<RawReader>(
