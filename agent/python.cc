@@ -39,13 +39,23 @@ PYBIND11_EMBEDDED_MODULE(mascot_output, module) {
   py::class_<Output>(module, "Output").def(py::init<>()).def("write", &Output::Write).def("flush", &Output::Flush);
 }
 
-void StartInterpreter() {
-  // One thread for linear algebra: results then do not depend on the number of cores, and a hundred agents do not each
-  // start a thread per core.
+/// What NumPy and linear algebra choose by the processor, chosen here: results then have the same bits on each.
+void PinToBaseline() {
+  // One thread: results do not depend on the number of cores, and a hundred agents do not each start a thread per core.
   for (const char* variable : {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"})
     setenv(variable, "1", /*overwrite=*/0);
+  setenv("OPENBLAS_CORETYPE", "Prescott", /*overwrite=*/1);  // x86-64 with SSE3
+  setenv("NPY_DISABLE_CPU_FEATURES",
+         "SSSE3 SSE41 POPCNT SSE42 AVX F16C FMA3 AVX2 AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL",
+         /*overwrite=*/1);
+}
+
+void StartInterpreter() {
+  PinToBaseline();
   PyConfig config;
   PyConfig_InitPythonConfig(&config);
+  // NumPy would warn of those features in the list that this processor lacks.
+  PyWideStringList_Append(&config.warnoptions, L"ignore:During parsing environment variable:RuntimeWarning");
   PyConfig_SetBytesString(&config, &config.program_name, "/usr/bin/python3");  // Debian's, whatever comes first in PATH
   config.parse_argv = 0;
   config.install_signal_handlers = 0;

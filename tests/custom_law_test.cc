@@ -57,6 +57,18 @@ TEST(CustomLaw, ReturnsTwoOrThreeNumbersInAnyUsualForm) {
   EXPECT_EQ(Wants("def control(t, me, neighbours):\n  return 1, -2, 7\n", "axes = 'xyz'\n"), Eigen::Vector3d(1, -2, 7));
 }
 
+TEST(CustomLaw, ComputesWithWhatEveryProcessorHas) {
+  EXPECT_EQ(Wants(R"(
+import math
+import numpy.core._multiarray_umath as numpy_core
+def control(t, me, neighbours):
+    dispatched = [f for f in numpy_core.__cpu_dispatch__ if numpy_core.__cpu_features__[f]]
+    assert not dispatched, dispatched
+    return 0, 0
+)"),
+            Eigen::Vector3d::Zero());
+}
+
 TEST(CustomLaw, SeesItselfAndItsNeighbours) {
   EXPECT_EQ(Wants(R"(
 import numpy as np

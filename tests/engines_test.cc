@@ -59,6 +59,55 @@ TEST_P(Shipped, FliesOverDdsAsInOneProcess) {
   EXPECT_EQ(check.exit_code, 0) << check.output;
 }
 
+/// `orchestrator up` in one process, with a glibc that takes the processor for one without AVX and FMA.
+class UpWithoutFma : public Running {
+ public:
+  UpWithoutFma(const ScratchFolder& folder, const std::string& config)
+      : Running("env",
+                {"GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2_Usable,-FMA_Usable,-FMA4_Usable,-AVX2,-FMA,-FMA4",
+                 std::string(MASCOT_BINARY_DIR "/orchestrator"), "up", config, "--out", folder.File("without_fma"),
+                 "--engine", "inprocess", "--set", "output.save_plot=false"},
+                folder.File("without_fma")),
+        recording_(folder.File("without_fma/run.mcap")) {}
+
+  std::string Recording() const { return ReadFile(recording_); }
+
+ private:
+  std::string recording_;
+};
+
+void ExpectTheSameBitsWithoutFma(const std::string& config) {
+  ScratchFolder folder;
+  Up up(folder, "run", config, {"--engine", "inprocess"});
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  UpWithoutFma without_fma(folder, config);
+  EXPECT_EQ(without_fma.Wait(), 0) << without_fma.err();
+  EXPECT_FALSE(up.File("run.mcap").empty());
+  EXPECT_TRUE(up.File("run.mcap") == without_fma.Recording()) << "run.mcap differs";
+}
+
+TEST_P(Shipped, FliesTheSameBitsWithoutFma) { ExpectTheSameBitsWithoutFma(Config(GetParam())); }
+
+TEST(Engines, AHeapOfQuadrotorsFliesTheSameBitsWithoutFma) {
+  const ScratchFolder folder;
+  WriteFile(folder.File("heap.toml"), R"(
+[run]
+duration_s = 20.0
+[agents]
+count = 8
+position_m = [[0, 0, 1], [0.9, 0, 1.1], [0, 0.9, 1.2], [0.9, 0.9, 1.3], [0, 0.1, 2], [0.9, 0.1, 2.1], [0, 1, 2.2],
+              [0.9, 1, 2.3]]
+[physics]
+obstacles = [{ shape = 'box', position_m = [0.45, 0.5, 0.5], size_m = [0.3, 0.3, 0.2] }]
+[graph]
+topology = 'complete'
+[law]
+name = 'consensus'
+axes = 'xyz'
+)");
+  ExpectTheSameBitsWithoutFma(folder.File("heap.toml"));
+}
+
 TEST_P(Shipped, StartsTenTimesOutOfTen) {
   for (int start = 1; start <= 10; ++start) {
     ScratchFolder folder;

@@ -289,6 +289,22 @@ class ThisTree(HouseTest):
         self.check(faults_of_names(ROOT))
 
 
+# Functions of libm that give the same bits on every processor: exact, or rounded as IEEE 754 says, or made of such.
+SAME_EVERYWHERE = {"cabs", "ceil", "csqrt", "fabs", "floor", "fmod", "frexp", "ldexp", "llround", "lround", "modf", "nextafter",
+                   "remainder", "rint", "round", "scalbn", "sqrt", "trunc"}
+# Complex functions, for theory alone: their last bit may depend on the processor.
+OF_THEORY = {"cexp"}
+
+
+def names_of_libm(*options):
+    """Names of functions in the output of nm, without versions: "sin@GLIBC_2.2.5" is "sin"."""
+    return {line.split()[-1].split("@")[0] for line in output_of("nm", "-D", *options).splitlines() if line.split()}
+
+
+def taken_from_libm(path, libm):
+    return names_of_libm("--undefined-only", path) & libm
+
+
 @unittest.skipUnless("MASCOT_BINARY_DIR" in os.environ, "MASCOT_BINARY_DIR does not say where the programs are")
 class Programs(HouseTest):
     def setUp(self):
@@ -297,6 +313,22 @@ class Programs(HouseTest):
 
     def test_the_physics_server_links_neither_laws_nor_python(self):
         self.check(faults_of_linking(self.folder / "physics_server", self.libraries))
+
+    def test_programs_take_no_function_from_libm_whose_bits_depend_on_the_processor(self):
+        libm = names_of_libm("--defined-only", re.search(r"libm\.so\.6 => (\S+)", output_of("ldd", self.folder / "agent"))[1])
+        self.assertIn("sin", libm)
+        for program in ["agent", "physics_server", "orchestrator"]:
+            allowed = SAME_EVERYWHERE | (OF_THEORY if program == "orchestrator" else set())
+            self.assertEqual(taken_from_libm(self.folder / program, libm) - allowed, set(), program)
+
+    def test_programs_give_bullet_what_it_would_take_from_libm(self):
+        program = self.folder / "physics_server"
+        libraries = re.findall(r"=> (\S*(?:Bullet|LinearMath)\S*)", output_of("ldd", program))
+        self.assertGreaterEqual(len(libraries), 3)
+        libm = names_of_libm("--defined-only", re.search(r"libm\.so\.6 => (\S+)", output_of("ldd", program))[1])
+        given = names_of_libm("--defined-only", program)
+        for library in libraries:
+            self.assertEqual(taken_from_libm(library, libm) - SAME_EVERYWHERE - given, set(), library)
 
     def test_what_links_them_is_found_out(self):
         python, laws, agent = faults_of_linking(self.folder / "agent", self.libraries)
