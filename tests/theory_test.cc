@@ -360,13 +360,22 @@ TEST(Theory, KnowsBothMarginsOfDelayOfSingleIntegrators) {
   const Prediction prediction = Of(kFive + kSingles + kPath + "[law]\nname = 'velocity_consensus'\n");
   ASSERT_TRUE(prediction.delay_margin);
   EXPECT_TRUE(prediction.delay_margin->independent);
-  EXPECT_NEAR(*prediction.own_delay_margin_s, 0.43416, 1e-5);
+  // pi / (2 lambda_5) = 0.43416 s less half a period, up to the next tick; continuous time is approached at high rates.
+  EXPECT_NEAR(*prediction.own_delay_margin_s, 0.43, 1e-12);
+  const Prediction fast =
+      Of(kFive + kSingles + "[control]\nrate_hz = 1000\n" + kPath + "[law]\nname = 'velocity_consensus'\n");
+  EXPECT_NEAR(*fast.own_delay_margin_s, 0.43416, 1e-3);
 }
 
 TEST(Theory, WarnsOfDelaysAboveTheMargin) {
   const std::string law = kFive + kSingles + kPath + "[law]\nname = 'velocity_consensus'\n";
   EXPECT_THAT(Of(law + "[link]\ndelay_s = 0.45\n[sensors.own]\ndelay_s = 0.45\n").warnings,
-              Contains("sensors.own.delay_s: unstable, it must be below 0.4342, got 0.45"));
+              Contains("sensors.own.delay_s: unstable, it must be below 0.43, got 0.45"));
+  EXPECT_THAT(
+      Of(law + "[link]\ndelay_s = 0.43\n[sensors.own]\ndelay_s = 0.425\n").warnings,
+      Contains("sensors.own.delay_s: unstable, it must be below 0.43, got 0.425, which whole control periods make "
+               "as long"));
+  EXPECT_EQ(Of(law + "[link]\ndelay_s = 0.42\n[sensors.own]\ndelay_s = 0.42\n").stable, true);
   EXPECT_EQ(Of(law + "[link]\ndelay_s = 0.1\n[sensors.own]\ndelay_s = 0.1\n").stable, true);
   // Delay of own state only: there is no closed form, but eigenvalues decide.
   EXPECT_THAT(Of(law + "[control]\nrate_hz = 10\n[sensors.own]\ndelay_s = 1.2\n").warnings,

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "agent/laws.h"
 #include "agent/laws/reach.h"
+#include "agent/link.h"
 #include "experiment/linear_algebra.h"
 #include "orchestrator/theory/linear_team.h"
 #include "orchestrator/theory/links_on_average.h"
@@ -16,8 +18,6 @@
 
 namespace mascot {
 namespace {
-
-bool Exceeds(double delay_s, std::optional<double> margin_s) { return margin_s && delay_s >= *margin_s; }
 
 /// Predicts an experiment with a linear team.
 class LinearCase {
@@ -45,6 +45,19 @@ class LinearCase {
   GainBound Gain() const;
   bool JudgeGains();
   bool JudgeDelays();
+  std::optional<double> OwnMargin() const;
+  /// The delay that one of `delay_s` amounts to: a whole number of control periods (s).
+  double InPeriods(double delay_s) const {
+    return experiment_.time_s(Link::Ticks(delay_s, experiment_.control.rate_hz));
+  }
+  bool Exceeds(double delay_s, std::optional<double> margin_s) const {
+    return margin_s && InPeriods(delay_s) > *margin_s - experiment_.period_s() / 2;
+  }
+  /// Text on a margin and a delay that exceeds it.
+  std::string Bound(double margin_s, double delay_s) const {
+    return fmt::format("below {:.4g}, got {:.4g}{}", margin_s, delay_s,
+                       delay_s < margin_s ? ", which whole control periods make as long" : "");
+  }
   void WarnOfDelays() const;
   bool PredictMotion();
   bool PredictSampled();
@@ -130,22 +143,37 @@ bool LinearCase::JudgeGains() {
   return false;
 }
 
+/// The margin of a delay that own states have too.
+std::optional<double> LinearCase::OwnMargin() const {
+  if (!common_ || common_->drag_b > 0 || modes_.empty()) return std::nullopt;
+  double margin_s = std::numeric_limits<double>::infinity();
+  for (const LinearMode& mode : modes_) {
+    const std::optional<double> own_s = OwnDelayMargin(mode, experiment_.period_s());
+    if (!own_s) return std::nullopt;
+    margin_s = std::min(margin_s, *own_s);
+  }
+  return margin_s;
+}
+
 /// Finds the delay margins. Returns false, with a warning, if the delays exceed them.
 bool LinearCase::JudgeDelays() {
   if (!timeline_.IsConstant()) return true;
   const double link_s = LongestDelay(experiment_), own_s = experiment_.sensors.own_delay_s;
-  prediction_.delay_margin = LinkDelayMargin(team_, graph_);
-  if (common_ && common_->drag_b == 0)
-    for (const LinearMode& mode : modes_)
-      prediction_.own_delay_margin_s =
-          std::min(prediction_.own_delay_margin_s.value_or(OwnDelayMargin(mode)), OwnDelayMargin(mode));
+  prediction_.delay_margin = LinkDelayMargin(team_, graph_, experiment_.period_s());
+  prediction_.own_delay_margin_s = OwnMargin();
   // The margins hold for delays that are all equal. With unequal delays the team may tolerate more.
   if (!RandomAge(experiment_).empty() || !CommonDelayTicks(experiment_, graph_)) return true;
-  if (own_s == 0 && Exceeds(link_s, LinkMargin()))
-    return Warn(fmt::format("link.delay_s: unstable, it must be below {:.4g}, got {:.4g}", *LinkMargin(), link_s));
-  if (own_s == link_s && Exceeds(own_s, prediction_.own_delay_margin_s))
-    return Warn(fmt::format("sensors.own.delay_s: unstable, it must be below {:.4g}, got {:.4g}",
-                            *prediction_.own_delay_margin_s, own_s));
+  if (own_s == 0 && prediction_.delay_margin) {
+    if (Exceeds(link_s, LinkMargin()))
+      return Warn(fmt::format("link.delay_s: unstable, it must be {}", Bound(*LinkMargin(), link_s)));
+    if (IsModal()) prediction_.stable = true;  // JudgeGains has judged the team without delays
+  }
+  if (InPeriods(own_s) == InPeriods(link_s) && prediction_.own_delay_margin_s) {
+    if (Exceeds(own_s, prediction_.own_delay_margin_s))
+      return Warn(
+          fmt::format("sensors.own.delay_s: unstable, it must be {}", Bound(*prediction_.own_delay_margin_s, own_s)));
+    prediction_.stable = true;
+  }
   return true;
 }
 
@@ -156,12 +184,12 @@ void LinearCase::WarnOfDelays() const {
     prediction_.warnings.push_back(
         fmt::format("link.delay_s: perhaps unstable, samples come up to {:.4g} s late; if all did, it would have to be "
                     "below {:.4g}",
-                    link_s, *LinkMargin()));
+                    InPeriods(link_s), *LinkMargin()));
   if (Exceeds(own_s, prediction_.own_delay_margin_s))
     prediction_.warnings.push_back(
         fmt::format("sensors.own.delay_s: perhaps unstable, got {:.4g}; if neighbours' samples were as late, it would "
                     "have to be below {:.4g}",
-                    own_s, *prediction_.own_delay_margin_s));
+                    InPeriods(own_s), *prediction_.own_delay_margin_s));
 }
 
 /// Predicts stability, rate and settling time. Returns false if nothing else can be predicted.

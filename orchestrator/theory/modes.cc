@@ -168,23 +168,42 @@ double SettlingTime(std::span<const LinearMode> modes, double period_s) {
   return settling_s;
 }
 
-// Roots s = i w of s^n + (stiffness + damping s) e^(-s tau), with the order n: w from |i w|^n = |stiffness + i w
-// damping|, then tau from the angles. w may be negative: the modes of a directed graph are complex.
-double OwnDelayMargin(const LinearMode& mode) {
-  const Complex d = mode.damping, k = mode.stiffness, i(0, 1);
-  if (mode.order == 1) return (std::numbers::pi / 2 - std::abs(std::arg(k))) / std::abs(k);
-  // w^4 - |d|^2 w^2 + 2 (Re(k) Im(d) - Im(k) Re(d)) w - |k|^2 = 0
+// With period h and the delay of m ticks, a root z = e^(i theta) of
+//   (z - 1)^2 + z^-m (d h (z - 1) + k h^2 (1 + hold (z - 1))), or for order 1 of z - 1 + z^-m h k.
+// In terms of w = (2 / h) tan(theta / 2), with e = d + (hold - 1/2) h k, the magnitudes and angles of both terms give
+//   w^4 = (1 + h^2 w^2 / 4) |k + i w e|^2,  m theta = arg((k + i w e) (1 - i h w / 2)),
+// or for order 1 2 sin(theta / 2) = h |k|, m theta = pi / 2 - |arg k| - theta / 2. w and theta may be negative: the
+// modes of a directed graph are complex. As w grows without bound the loop gain must fall below 1.
+std::optional<double> OwnDelayMargin(const LinearMode& mode, double period_s) {
+  const Complex k = mode.stiffness, i(0, 1);
+  const double h = period_s;
+  if (mode.order == 1) {
+    const double half_sine = h * std::abs(k) / 2;
+    if (half_sine >= 1) return std::nullopt;
+    const double theta = 2 * std::asin(half_sine);
+    return h * WholeTicks((std::numbers::pi / 2 - std::abs(std::arg(k))) / theta - 0.5);
+  }
+  const Complex e = mode.damping + (mode.hold - 0.5) * h * k;
+  const double highest = 1 - h * h * std::norm(e) / 4, turn = 2 * (k.real() * e.imag() - k.imag() * e.real());
+  if (highest <= 0) return std::nullopt;
+  // highest w^4 + h^2 / 4 turn w^3 - (|e|^2 + h^2 / 4 |k|^2) w^2 + turn w - |k|^2 = 0
   Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(4, 4);
   companion.diagonal<-1>().setOnes();
-  companion.col(3) << std::norm(k), -2 * (k.real() * d.imag() - k.imag() * d.real()), std::norm(d), 0;
-  double margin_s = kInfinity;
-  for (const Complex w : Eigenvalues(companion)) {
-    if (std::abs(w.imag()) > 1e-9 * std::abs(w)) continue;
-    // (i w)^2 = -(stiffness + i w damping) e^(-i w tau)
-    const double angle = std::arg((k + i * w.real() * d) / (w.real() * w.real()));
-    margin_s = std::min(margin_s, PositiveAngle(w.real() > 0 ? angle : -angle) / std::abs(w.real()));
+  companion.col(3) << std::norm(k), -turn, std::norm(e) + h * h / 4 * std::norm(k), -h * h / 4 * turn;
+  companion.col(3) /= highest;
+  double ticks = kInfinity;
+  for (const Complex root : Eigenvalues(companion)) {
+    if (std::abs(root.imag()) > 1e-9 * std::abs(root)) continue;
+    const double w = root.real(), theta = 2 * std::atan(h * std::abs(w) / 2);
+    const double angle = std::arg((k + i * w * e) * (1.0 - i * h * w / 2.0));
+    ticks = std::min(ticks, PositiveAngle(w > 0 ? angle : -angle) / theta);
   }
-  return margin_s;
+  return h * WholeTicks(ticks);
+}
+
+double WholeTicks(double ticks) {
+  constexpr double kRounding = 1e-9;  // relative: at the margin itself the loop oscillates for ever
+  return std::max(1.0, std::ceil(ticks * (1 - kRounding)));
 }
 
 }  // namespace mascot

@@ -34,8 +34,11 @@ double DecayRate(std::span<const LinearMode> modes, double period_s);
 double SettlingTime(const LinearMode& mode, double period_s);
 /// The longest settling time of all modes (s).
 double SettlingTime(std::span<const LinearMode> modes, double period_s);
-/// The smallest delay (s), equal for neighbours' samples and own state, at which the mode does not decay; continuous
-/// time.
-double OwnDelayMargin(const LinearMode& mode);
+/// The shortest delay (s), equal for neighbours' samples and own state, of whole control periods, with which the
+/// sampled mode does not decay. It must decay without. Nothing if the period is so long that the loop gain at half the
+/// sampling rate is not below 1.
+std::optional<double> OwnDelayMargin(const LinearMode& mode, double period_s);
+/// The least whole number that is not smaller than `ticks`, a positive number that is exact but for rounding.
+double WholeTicks(double ticks);
 
 }  // namespace mascot

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "agent/link.h"
 #include "orchestrator/theory/links_on_average.h"
 
 namespace mascot {
@@ -13,7 +14,7 @@ constexpr Eigen::Index kLargestState = 200;  // numbers; the eigenvalues take 0.
 
 /// Delay of own position and velocity (ticks).
 std::int64_t OwnTicks(const Experiment& experiment) {
-  return std::llround(experiment.sensors.own_delay_s * experiment.control.rate_hz);
+  return Link::Ticks(experiment.sensors.own_delay_s, experiment.control.rate_hz);
 }
 
 /// The longest delay of own states and links (ticks).
