@@ -428,6 +428,29 @@ TEST(Theory, MovesTheMeetingPointWithTheDelay) {
   EXPECT_EQ(doubles.stable, true);
 }
 
+TEST(Theory, KnowsThatAnAgentWithoutDampingWhichHearsNobodyStaysWhereItIs) {
+  const std::string chain =
+      "model = 'double_integrator'\n[graph]\nedges = [[2, 1], [2, 3], [3, 2], [4, 3], [5, 4]]\n"
+      "[law]\nname = 'consensus'\nbeta = 0.0\nv_gain = 2.0\n";
+  for (const std::string& link : {"", "[link]\ndelay_s = 0.01\n", "[link]\ndelay_s = 0.1\n"}) {
+    const Prediction prediction = Of(kFive + chain + link);
+    EXPECT_EQ(prediction.stable, true) << link;
+    ASSERT_TRUE(prediction.value_m) << link;
+    EXPECT_NEAR(prediction.value_m->x(), 3, 1e-12) << link;
+    EXPECT_TRUE(prediction.rate_per_s) << link;
+    EXPECT_THAT(prediction.warnings, Not(Contains(HasSubstr("unstable")))) << link;
+  }
+  // Agents that differ
+  const Prediction mixed = Of(kFive + chain + "[[agents.override]]\nid = 4\nlaw = { beta = 1.0 }\n");
+  EXPECT_EQ(mixed.stable, true);
+  EXPECT_NEAR(mixed.value_m->x(), 3, 1e-12);
+  // It moves: its followers would stay behind by what it flies during the delay.
+  std::string moving = kFive + chain + "[link]\ndelay_s = 0.1\n";
+  moving.insert(moving.find("model ="), "velocity_m_per_s = [[1, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]]\n");
+  EXPECT_EQ(Of(moving).silent, "law.beta is 0: agents who have met may go on together");
+  EXPECT_FALSE(Of(moving).value_m);
+}
+
 TEST(Theory, PredictsAFormationWithoutItsPlaces) {
   const Prediction prediction = Of(
       kFive + "model = 'double_integrator'\n" + kPath +

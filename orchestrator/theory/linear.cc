@@ -37,6 +37,7 @@ class LinearCase {
   /// Whether the team has modes: a constant graph, and agents that are alike.
   bool IsModal() const { return timeline_.IsConstant() && common_.has_value(); }
   bool IsDelayed() const { return LongestDelay(experiment_) > 0 || experiment_.sensors.own_delay_s > 0; }
+  int FreeRoot() const;
   bool MayCoast() const;
   std::optional<double> LinkMargin() const {
     return prediction_.delay_margin ? prediction_.delay_margin->margin_s : std::nullopt;
@@ -116,8 +117,18 @@ GainBound LinearCase::Gain() const {
   return {"law.beta", std::max(0.0, least - all.drag_b), own};
 }
 
-/// Whether agents might keep moving together after they have met: no agent leads, and some have no damping (b = 0).
+/// On a constant graph, the agent that hears nobody, is no leader, and is followed by all others, if it has no damping
+/// (b = 0): it goes on as it started. 0: there is none.
+int LinearCase::FreeRoot() const {
+  if (!team_.Leaders().empty() || !timeline_.IsConstant()) return 0;
+  const std::vector<int> roots = graph_.Roots();
+  const LinearAgent& root = team_.agent(roots.front());
+  return roots.size() == 1 && root.order == 2 && root.b == 0 ? roots.front() : 0;
+}
+
+/// Whether agents might keep moving together after they have met: no agent leads or rests, and some have no damping.
 bool LinearCase::MayCoast() const {
+  if (const int root = FreeRoot(); root > 0 && RestingPlace(experiment_, team_, root)) return false;
   return team_.Leaders().empty() &&
          std::ranges::any_of(team_.agents, [](const LinearAgent& moves) { return moves.order == 2 && moves.b == 0; });
 }
@@ -206,7 +217,8 @@ bool LinearCase::PredictMotion() {
 bool LinearCase::PredictSampled() {
   if (!SampledTeam::IsSmall(experiment_))
     return Silent("so many agents, different or with so long delays, are more than its eigenvalues are computed for");
-  if (MayCoast() && !(IsModal() && IsDelayed())) return Silent("law.beta is 0: agents who have met may go on together");
+  if (MayCoast() && !(IsModal() && IsDelayed() && FreeRoot() == 0))
+    return Silent("law.beta is 0: agents who have met may go on together");
   const SampledTeam sampled(experiment_, team_, timeline_, experiment_.period_s());
   prediction_.stable = sampled.Decays();
   if (!*prediction_.stable) {
@@ -224,7 +236,9 @@ bool LinearCase::PredictSampled() {
 
 void LinearCase::PredictValue() {
   const std::vector<int> leaders = team_.Leaders();
-  if (leaders.empty()) {
+  if (const int root = FreeRoot(); root > 0) {
+    prediction_.value_m = RestingPlace(experiment_, team_, root);
+  } else if (leaders.empty()) {
     prediction_.value_m = timeline_.IsConstant() ? MeetingPoint(experiment_, team_, graph_) : std::nullopt;
     if (!prediction_.value_m && SampledTeam::IsSmall(experiment_) && (!IsModal() || IsDelayed()))
       prediction_.value_m = SampledTeam(experiment_, team_, timeline_, experiment_.period_s()).MeetingPoint();

@@ -163,8 +163,11 @@ void SampledTeam::FindModes() {
 }
 
 // One eigenvalue, 1, belongs to agreement. Others may do so too: those of agents at one place that slow down together,
-// and those of a single root, which does not move if it starts from rest.
+// and those of a single root, which does not move if it starts from rest. A single root without damping goes on as it
+// started, and does not count: its eigenvalue 1 is double.
 void SampledTeam::JudgeRoots(const std::vector<int>& ids, const Eigensystem& modes) {
+  const LinearAgent& first = team_.agent(ids.front());
+  if (ids.size() == 1 && first.order == 2 && first.b == 0) return;
   const bool at_rest = experiment_.agent(ids.front()).v_W.isZero(0) || (team_.Common() && reach_ == 0);
   Eigen::Index one = 0;
   (modes.values.array() - 1.0).abs().minCoeff(&one);
