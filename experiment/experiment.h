@@ -28,6 +28,11 @@ enum class Axes { kXy, kXyz };
 inline constexpr EnumNames<Axes, 2> kAxes({{Axes::kXy, "xy"}, {Axes::kXyz, "xyz"}});
 /// Number of a vector's first components that the law controls: x and y, or all three.
 constexpr int CountOf(Axes axes) { return axes == Axes::kXyz ? 3 : 2; }
+/// `v` projected onto the axes that the law controls.
+inline Eigen::Vector3d Along(Axes axes, Eigen::Vector3d v) {
+  if (axes == Axes::kXy) v.z() = 0;
+  return v;
+}
 enum class Inversion { kSmallAngle, kExact };
 inline constexpr EnumNames<Inversion, 2> kInversions({{Inversion::kSmallAngle, "small_angle"},
                                                       {Inversion::kExact, "exact"}});

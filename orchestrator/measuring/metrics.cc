@@ -8,20 +8,12 @@
 #include "agent/python.h"
 
 namespace mascot {
-namespace {
-
-constexpr double kSettledFraction = 0.02;
-
-/// `v` projected onto the axes that the law controls.
-Eigen::Vector3d Along(Axes axes, Eigen::Vector3d v) {
-  if (axes == Axes::kXy) v.z() = 0;
-  return v;
-}
-
-}  // namespace
 
 Metrics::Metrics(const Experiment& experiment)
-    : experiment_(experiment), pursuit_(experiment), min_separation2_(std::numeric_limits<double>::infinity()) {
+    : experiment_(experiment),
+      agreement_(experiment),
+      pursuit_(experiment),
+      min_separation2_(std::numeric_limits<double>::infinity()) {
   const SuppressedPythonOutput suppressed;  // the laws run a second time; discard what they print
   if (experiment.output.fidelity) ideal_.emplace(experiment);
   const auto places_W = PlacesOf(experiment.law);
@@ -44,23 +36,13 @@ Eigen::Vector3d Metrics::Agreed(std::size_t i, const Motion& motion) const {
 }
 
 void Metrics::MeasureAgreement(std::span<const Motion> motions) {
-  mean_W_.setZero();
-  for (std::size_t i = 0; i < motions.size(); ++i)
-    mean_W_ += Agreed(i, motions[i]) / static_cast<double>(motions.size());
-  Eigen::Vector3d centre_W = mean_W_;
-  if (const int leader = experiment_.law.leader; leader > 0) {
-    const auto l = static_cast<std::size_t>(leader - 1);
-    centre_W = Agreed(l, motions[l]);
-  }
-  disagreement_m_ = speed_m_per_s_ = 0;
+  agreed_W_.clear();
+  speed_m_per_s_ = 0;
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    const Eigen::Vector3d off_W = Along(experiment_.law.axes, Agreed(i, motions[i]) - centre_W);
-    disagreement_m_ = std::max(disagreement_m_, off_W.norm());
+    agreed_W_.push_back(Agreed(i, motions[i]));
     speed_m_per_s_ = std::max(speed_m_per_s_, Along(experiment_.law.axes, motions[i].v_WB).norm());
   }
-  decay_.Add(experiment_.time_s(rows_), disagreement_m_);
-  if (rows_ == 0) first_disagreement_m_ = disagreement_m_;
-  if (disagreement_m_ > kSettledFraction * first_disagreement_m_) last_unsettled_ = rows_;
+  agreement_.Add(agreed_W_);
 }
 
 void Metrics::MeasureControl(std::span<const Command> commands) {
@@ -135,12 +117,11 @@ Measured Metrics::Result() const {
   if (rows_ == 0) return result;
   const double agents = experiment_.size();
   const double samples = agents * static_cast<double>(rows_);
-  result.value_m = mean_W_;
-  result.final_disagreement_m = disagreement_m_;
+  result.value_m = agreement_.mean_W();
+  result.final_disagreement_m = agreement_.disagreement_m();
   result.final_speed_m_per_s = speed_m_per_s_;
-  if (first_disagreement_m_ > 0 && last_unsettled_ < rows_ - 1)
-    result.settling_time_s = experiment_.time_s(last_unsettled_ + 1);
-  result.rate_per_s = decay_.rate_per_s();
+  result.settling_time_s = agreement_.settling_time_s();
+  result.rate_per_s = agreement_.rate_per_s();
   result.minmax_edges = pursuit_.Result();
   result.effort_m2_per_s3 = effort_m2_per_s3_ / agents;
   result.saturated_fraction = static_cast<double>(saturated_) / samples;

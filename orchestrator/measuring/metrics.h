@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
-#include "orchestrator/measuring/decay_meter.h"
+#include "orchestrator/measuring/agreement_meter.h"
 #include "orchestrator/measuring/pursuit_meter.h"
 #include "orchestrator/team/ideal_team.h"
 #include "orchestrator/team/row.h"
@@ -55,7 +55,7 @@ class Metrics {
   void Add(const DecodedRow& row);
   Measured Result() const;
   /// Disagreement in the newest row, for the progress line.
-  double disagreement_m() const { return disagreement_m_; }
+  double disagreement_m() const { return agreement_.disagreement_m(); }
 
  private:
   void MeasureAgreement(std::span<const Motion> motions);
@@ -72,13 +72,9 @@ class Metrics {
   std::optional<IdealTeam> ideal_;
   std::string ideal_failure_;
   std::int64_t rows_ = 0;
-  Eigen::Vector3d mean_W_ = Eigen::Vector3d::Zero();
-  double disagreement_m_ = 0;
+  AgreementMeter agreement_;
   double speed_m_per_s_ = 0;
-  double first_disagreement_m_ = 0;
-  DecayMeter decay_;
   PursuitMeter pursuit_;
-  std::int64_t last_unsettled_ = -1;  // newest row with more than 2 % of the first disagreement
   double effort_m2_per_s3_ = 0, newest_effort_m2_per_s3_ = 0;  // sums over all agents
   std::int64_t saturated_ = 0, tilt_limited_ = 0, rotor_limited_ = 0;
   double min_separation2_;
@@ -87,7 +83,7 @@ class Metrics {
   double path_m_ = 0;
   Measured::Formation formation_;
   std::vector<Eigen::Vector3d> last_p_W_;
-  std::vector<Eigen::Vector3d> by_x_;  // scratch
+  std::vector<Eigen::Vector3d> agreed_W_, by_x_;  // scratch
 };
 
 }  // namespace mascot

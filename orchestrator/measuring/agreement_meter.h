@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "experiment/experiment.h"
+#include "orchestrator/measuring/decay_meter.h"
+
+namespace mascot {
+
+/// Measures how far agents are from agreement, tick by tick. The disagreement is the largest distance, along law.axes,
+/// from the mean, or from the leader if there is one.
+class AgreementMeter {
+ public:
+  explicit AgreementMeter(const Experiment& experiment) : experiment_(experiment) {}
+  /// Adds the next tick. `q_W`: what the agents agree on, by id - 1: their positions, less their places in a formation.
+  void Add(std::span<const Eigen::Vector3d> q_W);
+
+  /// Mean of q in the newest tick.
+  const Eigen::Vector3d& mean_W() const { return mean_W_; }
+  /// Disagreement in the newest tick.
+  double disagreement_m() const { return disagreement_m_; }
+  /// Time from which on the disagreement stays at or below 2 % of its first value. Nothing if it does not, or was
+  /// 0 from the start.
+  std::optional<double> settling_time_s() const;
+  /// Decay rate of the disagreement (decay_meter.h).
+  std::optional<double> rate_per_s() const { return decay_.rate_per_s(); }
+
+ private:
+  const Experiment& experiment_;
+  std::int64_t ticks_ = 0;
+  Eigen::Vector3d mean_W_ = Eigen::Vector3d::Zero();
+  double disagreement_m_ = 0;
+  double first_disagreement_m_ = 0;
+  std::int64_t last_unsettled_ = -1;  // newest tick with more than 2 % of the first disagreement
+  DecayMeter decay_;
+};
+
+}  // namespace mascot
