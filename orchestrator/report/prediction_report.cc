@@ -38,6 +38,17 @@ std::string DelayText(const Prediction& prediction) {
 
 }  // namespace
 
+std::string RateBasis(const Prediction& prediction) {
+  if (!prediction.from_start) return "slowest mode";
+  if (!prediction.slowest_rate_per_s) return "from this start";
+  return fmt::format("from this start; slowest mode {:.4g}", *prediction.slowest_rate_per_s);
+}
+
+std::string SettlingBasis(const Experiment& experiment, const Prediction& prediction) {
+  if (prediction.from_start) return "from this start";
+  return experiment.graph.IsSymmetric() ? "slowest mode" : "slowest mode; later along chains";
+}
+
 Json PredictionJson(const Prediction& prediction) {
   const auto& margin = prediction.delay_margin;
   const auto asked = [](const std::optional<FirstCommand>& first) {
@@ -46,6 +57,8 @@ Json PredictionJson(const Prediction& prediction) {
   return {{"value_m", OrNull(prediction.value_m)},
           {"on_average", prediction.on_average},
           {"stable", OrNull(prediction.stable)},
+          {"slowest_rate_per_s", OrNull(prediction.slowest_rate_per_s)},
+          {"from_start", prediction.from_start},
           {"rate_per_s", OrNull(prediction.rate_per_s)},
           {"settling_time_s", OrNull(prediction.settling_time_s)},
           {"control_period_bound_s", OrNull(prediction.control_period_bound_s)},
@@ -72,11 +85,11 @@ std::vector<std::pair<std::string, std::string>> PredictionLines(const Experimen
                                    experiment.law.axes == Axes::kXy ? ", heights held" : "", average));
   if (prediction.stable) lines.emplace_back("stable", *prediction.stable ? "yes" : "no");
   if (prediction.rate_per_s)
-    lines.emplace_back("decays", fmt::format("at {:.4g} 1/s (slowest mode){}", *prediction.rate_per_s, average));
+    lines.emplace_back("decays",
+                       fmt::format("at {:.4g} 1/s ({}){}", *prediction.rate_per_s, RateBasis(prediction), average));
   if (prediction.settling_time_s)
-    lines.emplace_back("settles in",
-                       fmt::format("{} (2 %, slowest mode{}){}", SecondsText(*prediction.settling_time_s),
-                                   experiment.graph.IsSymmetric() ? "" : "; later along chains", average));
+    lines.emplace_back("settles in", fmt::format("{} (2 %, {}){}", SecondsText(*prediction.settling_time_s),
+                                                 SettlingBasis(experiment, prediction), average));
   if (prediction.control_period_bound_s)
     lines.emplace_back("control period",
                        fmt::format("below {} (now {})", SecondsText(*prediction.control_period_bound_s),

@@ -14,5 +14,8 @@ Json PredictionJson(const Prediction& prediction);
 /// The same as text: label and text of each line.
 std::vector<std::pair<std::string, std::string>> PredictionLines(const Experiment& experiment,
                                                                  const Prediction& prediction);
+/// What the predicted rate, and the predicted settling time, are those of.
+std::string RateBasis(const Prediction& prediction);
+std::string SettlingBasis(const Experiment& experiment, const Prediction& prediction);
 
 }  // namespace mascot

@@ -134,7 +134,6 @@ const char* AtMost(const std::vector<MinmaxEdge>& edges) {
 /// Text on agreement: mean position, decay rate and settling time, measured and predicted.
 std::string ConsensusText(const Experiment& experiment, const Measured& m, const Prediction& prediction) {
   const Deviation deviation = Compare(experiment, m, prediction);
-  const char* chains = experiment.graph.IsSymmetric() ? "" : "; later along chains";
   std::string text = Line("mean position  {:.4f}, {:.4f}, {:.4f} m", m.value_m.x(), m.value_m.y(), m.value_m.z());
   if (const auto& value = prediction.value_m)
     text += Line("  predicted    {:.4f}, {:.4f}, {:.4f} m{}: {:.2g} m off", value->x(), value->y(), value->z(),
@@ -146,7 +145,7 @@ std::string ConsensusText(const Experiment& experiment, const Measured& m, const
   else if (of_rate)
     text += "decayed        not far enough, or not for good, to say how fast\n";
   if (of_rate)
-    text += Line("  predicted    {:.4f} 1/s (slowest mode){}", *prediction.rate_per_s,
+    text += Line("  predicted    {:.4f} 1/s ({}){}", *prediction.rate_per_s, RateBasis(prediction),
                  DeviationText(deviation.rate_per_s, prediction.rate_per_s));
   const bool of_settling = prediction.settling_time_s && prediction.of_agreement;
   if (m.settling_time_s)
@@ -154,7 +153,7 @@ std::string ConsensusText(const Experiment& experiment, const Measured& m, const
   else if (of_settling)
     text += "settled        not by the end (2 %)\n";
   if (of_settling)
-    text += Line("  predicted    {:.2f} s (slowest mode{}){}", *prediction.settling_time_s, chains,
+    text += Line("  predicted    {:.2f} s ({}){}", *prediction.settling_time_s, SettlingBasis(experiment, prediction),
                  DeviationText(deviation.settling_time_s, prediction.settling_time_s));
   if (const auto caught_up_s = MinmaxTime(m, prediction))
     text += Line("caught up      after {:.2f} s (latest edge, within {:g} m)", *caught_up_s, kCaughtUp_m);

@@ -18,7 +18,7 @@ void PredictFlight(const Experiment& experiment, const LinearForm& form, Predict
   const LinearMode mode = first.Mode(1);
   prediction.stable = JudgeModes(experiment, {&mode, 1}, {"law.d_gain", 0, form.beta}, prediction);
   if (!*prediction.stable) return;
-  prediction.rate_per_s = DecayRate({&mode, 1}, experiment.period_s());
+  prediction.slowest_rate_per_s = prediction.rate_per_s = DecayRate({&mode, 1}, experiment.period_s());
   prediction.settling_time_s = SettlingTime(mode, experiment.period_s());
 }
 

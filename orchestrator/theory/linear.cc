@@ -9,6 +9,7 @@
 #include "agent/laws/reach.h"
 #include "agent/link.h"
 #include "experiment/linear_algebra.h"
+#include "orchestrator/theory/from_start.h"
 #include "orchestrator/theory/linear_team.h"
 #include "orchestrator/theory/links_on_average.h"
 #include "orchestrator/theory/meeting_point.h"
@@ -63,6 +64,7 @@ class LinearCase {
   bool PredictMotion();
   bool PredictSampled();
   void PredictValue();
+  void PredictFromStart();
   void WarnOfLag(int leader) const;
   bool Silent(const std::string& why) const {
     prediction_.silent = why;
@@ -87,10 +89,12 @@ class LinearCase {
 void LinearCase::Predict() {
   if (IsModal()) FindModes();
   if (!JudgeGains() || !JudgeDelays()) return;
-  if (PredictMotion())
+  if (PredictMotion()) {
     PredictValue();
-  else if (!prediction_.stable)
+    PredictFromStart();
+  } else if (!prediction_.stable) {
     WarnOfDelays();
+  }
 }
 
 void LinearCase::FindModes() {
@@ -209,14 +213,15 @@ bool LinearCase::PredictMotion() {
   if (!IsModal() || IsDelayed()) return PredictSampled();
   prediction_.stable = true;
   if (modes_.empty()) return true;
-  prediction_.rate_per_s = DecayRate(modes_, experiment_.period_s());
+  prediction_.slowest_rate_per_s = prediction_.rate_per_s = DecayRate(modes_, experiment_.period_s());
   prediction_.settling_time_s = SettlingTime(modes_, experiment_.period_s());
   return true;
 }
 
 bool LinearCase::PredictSampled() {
   if (!SampledTeam::IsSmall(experiment_))
-    return Silent("so many agents, different or with so long delays, are more than its eigenvalues are computed for");
+    return prediction_.stable.has_value() ||  // JudgeDelays knows
+           Silent("so many agents, different or with so long delays, are more than its eigenvalues are computed for");
   if (MayCoast() && !(IsModal() && IsDelayed() && FreeRoot() == 0))
     return Silent("law.beta is 0: agents who have met may go on together");
   const SampledTeam sampled(experiment_, team_, timeline_, experiment_.period_s());
@@ -228,7 +233,7 @@ bool LinearCase::PredictSampled() {
     return Warn("law: unstable with these gains on these graphs");
   }
   if (sampled.slowest() == 0) return true;  // no agent follows another
-  prediction_.rate_per_s = sampled.rate_per_s();
+  prediction_.slowest_rate_per_s = prediction_.rate_per_s = sampled.rate_per_s();
   if (timeline_.cycle_from == 0)
     prediction_.settling_time_s = std::log(50) / sampled.rate_per_s();  // nothing begins later
   return true;
@@ -250,6 +255,23 @@ void LinearCase::PredictValue() {
   }
   if (prediction_.value_m && experiment_.law.axes == Axes::kXy)
     prediction_.value_m->z() = HeldHeight(experiment_, team_);
+}
+
+/// Where the slowest mode may hardly take part in the motion, because there are many: replaces its rate and settling
+/// time by those of the experiment's own start.
+void LinearCase::PredictFromStart() {
+  const std::vector<int> leaders = team_.Leaders();
+  const bool leader_stands = leaders.empty() || (agent(leaders.front()).v_W.isZero(0) && prediction_.value_m);
+  if ((IsModal() && !IsDelayed()) || !leader_stands) return;
+  constexpr double kLonger = 3;  // than the slowest mode: along chains agents settle later
+  const double settled_s =
+      prediction_.slowest_rate_per_s ? kLonger * std::log(50) / *prediction_.slowest_rate_per_s : 0;
+  const FromStart from_start =
+      FlyFromStart(experiment_, team_, timeline_, std::max(experiment_.run.duration_s, settled_s));
+  if (!from_start.settling_time_s || !from_start.rate_per_s) return;
+  prediction_.from_start = true;
+  prediction_.settling_time_s = from_start.settling_time_s;
+  prediction_.rate_per_s = from_start.rate_per_s;
 }
 
 /// Warns that followers of a leader with constant velocity v stay behind by p_L - p = (b / p) v L_FF^-1 1.

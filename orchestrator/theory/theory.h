@@ -31,10 +31,15 @@ struct FirstCommand {
 struct Prediction {
   /// Where agents meet, in W; in a formation, p - d. With axes "xy", z is the mean of the heights that are held.
   std::optional<Eigen::Vector3d> value_m;
-  std::optional<bool> stable;        ///< whether all modes decay, sampled and with the delays of the experiment
-  std::optional<double> rate_per_s;  ///< decay rate of the slowest mode
-  /// Time until the slowest mode has decayed from rest to 2 %. Along directed chains agents settle later: the modes of
-  /// a directed graph are not orthogonal.
+  std::optional<bool> stable;  ///< whether all modes decay, sampled and with the delays of the experiment
+  /// Decay rate of the slowest mode: agents agree at least as fast in the long run. With `of_agreement` false, that of
+  /// each agent's flight to its waypoint.
+  std::optional<double> slowest_rate_per_s;
+  /// Whether the following two are of a team that starts as the experiment's agents do, as AgreementMeter measures
+  /// them. Otherwise they are of the slowest mode: its rate, and the time until it has decayed from rest to 2 %. Along
+  /// directed chains agents settle later: the modes of a directed graph are not orthogonal.
+  bool from_start = false;
+  std::optional<double> rate_per_s;
   std::optional<double> settling_time_s;
   std::optional<double> control_period_bound_s;    ///< the loop is unstable from this control period on, without delays
   std::optional<DelayMargin> delay_margin;         ///< delay of neighbours' samples

@@ -1,0 +1,140 @@
+#include "orchestrator/theory/from_start.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "agent/link.h"
+#include "orchestrator/measuring/agreement_meter.h"
+#include "orchestrator/theory/links_on_average.h"
+
+namespace mascot {
+namespace {
+
+using Vectors = std::vector<Eigen::Vector3d>;  // one an agent, by id - 1
+
+/// Positions less places, and velocities, of all agents at one tick.
+struct TeamState {
+  Vectors q, v;
+};
+
+class Flight {
+ public:
+  Flight(const Experiment& experiment, const LinearTeam& team, const Timeline& timeline)
+      : experiment_(experiment),
+        team_(team),
+        timeline_(timeline),
+        own_ticks_(Link::Ticks(experiment.sensors.own_delay_s, experiment.control.rate_hz)) {
+    std::int64_t reach = own_ticks_;
+    for (const AgentConfig& agent : experiment.agents)
+      for (const Graph::Neighbour& heard : experiment.graph.HeardBy(agent.id)) {
+        if (!team.agent(agent.id).listens || Delivered(experiment.links.Of(agent.id, heard.id)) == 0) continue;
+        edges_.push_back({agent.id, heard.id, DelayTicks(experiment, agent.id, heard.id), 0});
+        reach = std::max(reach, edges_.back().ago);
+      }
+    TeamState start;
+    for (const AgentConfig& agent : experiment.agents) {
+      start.q.push_back(agent.p_W - team.place_W[Index(agent.id)]);
+      start.v.push_back(agent.v_W);
+    }
+    past_.assign(static_cast<std::size_t>(reach) + 1, start);
+    u_.resize(start.q.size());
+  }
+
+  /// Agents and edges to look at in each tick.
+  double size() const { return static_cast<double>(edges_.size() + u_.size()); }
+  std::int64_t reach() const { return std::ssize(past_) - 1; }
+  const Vectors& q() const { return At(0).q; }
+  void Step();
+
+ private:
+  struct Edge {
+    int hearer, heard;
+    std::int64_t ago;
+    double weight;  // of the sample that arrives now; 0: none does
+  };
+
+  static std::size_t Index(int id) { return static_cast<std::size_t>(id - 1); }
+  const TeamState& At(std::int64_t ago) const {
+    return past_[static_cast<std::size_t>((tick_ + std::ssize(past_) - ago) % std::ssize(past_))];
+  }
+  void Weigh(const Timeline::Interval& now);
+  void Couple();
+
+  const Experiment& experiment_;
+  const LinearTeam& team_;
+  const Timeline& timeline_;
+  std::int64_t own_ticks_;
+  std::vector<Edge> edges_;
+  std::vector<TeamState> past_;  // that of tick k at k modulo its size
+  Vectors u_;                    // what the laws want; scratch
+  std::int64_t tick_ = 0;
+};
+
+void Flight::Weigh(const Timeline::Interval& now) {
+  if (timeline_.IsConstant() && tick_ > reach()) return;
+  for (Edge& edge : edges_) {
+    edge.weight = 0;
+    if (edge.ago > tick_ || !now.on[Index(edge.hearer)]) continue;
+    const auto& sent = timeline_.At(tick_ - edge.ago).graph.HeardBy(edge.hearer);
+    const auto then = std::ranges::lower_bound(sent, edge.heard, {}, &Graph::Neighbour::id);
+    if (then != sent.end() && then->id == edge.heard) edge.weight = then->weight;
+  }
+}
+
+void Flight::Couple() {
+  const TeamState& known = At(own_ticks_);
+  for (Eigen::Vector3d& u : u_) u.setZero();
+  for (const Edge& edge : edges_) {
+    if (edge.weight == 0) continue;
+    const LinearAgent& agent = team_.agent(edge.hearer);
+    const std::size_t i = Index(edge.hearer), j = Index(edge.heard);
+    const TeamState& heard = At(edge.ago);
+    u_[i] += edge.weight * (agent.p * (heard.q[j] - known.q[i]) + agent.g * (heard.v[j] - known.v[i]));
+  }
+}
+
+void Flight::Step() {
+  const Timeline::Interval& now = timeline_.At(tick_);
+  Weigh(now);
+  Couple();
+  const TeamState& known = At(own_ticks_);
+  TeamState next = At(0);
+  const double h = experiment_.period_s();
+  for (std::size_t i = 0; i < u_.size(); ++i) {
+    const LinearAgent& agent = team_.agents[i];
+    const bool on = now.on[i];
+    u_[i] -= ((on ? agent.b : agent.off_b) - agent.drag_b) * known.v[i] + agent.drag_b * next.v[i];
+    if (agent.order == 2 && (on || agent.hold < 1)) {
+      next.q[i] += h * next.v[i] + agent.hold * h * h * u_[i];
+      next.v[i] += h * u_[i];
+    } else {  // the law sets the velocity, which is 0 while the law is off
+      next.q[i] += h * u_[i];
+      next.v[i] = u_[i];
+    }
+  }
+  ++tick_;
+  past_[static_cast<std::size_t>(tick_ % std::ssize(past_))] = std::move(next);
+}
+
+}  // namespace
+
+FromStart FlyFromStart(const Experiment& experiment, const LinearTeam& team, const Timeline& timeline,
+                       double longest_s) {
+  Flight flight(experiment, team, timeline);
+  const double longest = longest_s * experiment.control.rate_hz;
+  if (longest * flight.size() > kMostSteps) return {};
+  AgreementMeter meter(experiment);
+  meter.Add(flight.q());
+  const double first_m = meter.disagreement_m();
+  constexpr double kAgreed = 1e-7;   // of the first disagreement
+  std::int64_t tick = 0, apart = 0;  // apart: the newest tick with more disagreement
+  while (static_cast<double>(tick) < longest && tick - apart <= apart / 5 + flight.reach() + 1) {
+    flight.Step();
+    ++tick;
+    meter.Add(flight.q());
+    if (meter.disagreement_m() > kAgreed * first_m) apart = tick;
+  }
+  return {meter.settling_time_s(), meter.rate_per_s()};
+}
+
+}  // namespace mascot

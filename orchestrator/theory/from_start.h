@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+
+#include "orchestrator/theory/linear_team.h"
+#include "orchestrator/theory/timeline.h"
+
+namespace mascot {
+
+/// How a linear team comes to agree from where and as fast as the experiment's agents start.
+struct FromStart {
+  std::optional<double> settling_time_s;  ///< as AgreementMeter measures it; nothing: it does not settle in time
+  std::optional<double> rate_per_s;       ///< likewise
+};
+
+/// Steps the sampled team (sampled_team.h) tick by tick, on average where links lose samples, until it agrees for good,
+/// but for at most `longest_s` of simulated time. Nothing if that is more work than kMostSteps. Leaders must stand
+/// still.
+FromStart FlyFromStart(const Experiment& experiment, const LinearTeam& team, const Timeline& timeline,
+                       double longest_s);
+
+inline constexpr double kMostSteps = 2e7;  ///< ticks times agents and edges; takes about 0.3 s
+
+}  // namespace mascot
