@@ -42,9 +42,16 @@ struct Airframe {
   PdGains attitude;  ///< roll and pitch alike; rad/s^2 per rad and per rad/s (times J)
   PdGains position;  ///< m/s^2 per m and per m/s; tracks, in x and y, the ideal double integrator under the same law
 
-  Eigen::Matrix4d Allocation() const;                     ///< A above
-  double MaxRotorSpeed() const;                           ///< rad/s, from max_thrust_n
-  double HoverRotorSpeed(double gravity_m_per_s2) const;  ///< rad/s, at which the thrust is the weight
+  /// The low-level stack keeps the thrust within these shares of max_thrust_n, so that the rotors can always give some
+  /// torque.
+  static constexpr double kLeastThrustShare = 0.1;
+  static constexpr double kMostThrustShare = 0.9;
+
+  double LeastThrust() const { return kLeastThrustShare * max_thrust_n; }  ///< N
+  double MostThrust() const { return kMostThrustShare * max_thrust_n; }    ///< N
+  Eigen::Matrix4d Allocation() const;                                      ///< A above
+  double MaxRotorSpeed() const;                                            ///< rad/s, from max_thrust_n
+  double HoverRotorSpeed(double gravity_m_per_s2) const;                   ///< rad/s, at which the thrust is the weight
 };
 
 /// The built-in airframes: `mascot`, `mascot_published`, `crazyflie`.

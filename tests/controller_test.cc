@@ -160,6 +160,21 @@ TEST(QuadrotorController, TakesTheLawsVerticalAccelerationWhenItSteersXyz) {
   EXPECT_NEAR(WrenchOf(e, First(e, AtStart(e), {0, 0, 2}))[0], e.agents[0].airframe.mass_kg * (kG + 2), 1e-9);
 }
 
+TEST(QuadrotorController, WithoutGravityItsLeastThrustAcceleratesIt) {
+  for (const Inversion inversion : {Inversion::kSmallAngle, Inversion::kExact}) {
+    Experiment e = One(Soft());
+    e.physics.gravity_m_per_s2 = 0;
+    e.agents[0].control.inversion = inversion;
+    const Airframe& body = e.agents[0].airframe;
+    const Eigen::Vector4d idle = WrenchOf(e, First(e, AtStart(e)));
+    EXPECT_NEAR(idle[0], body.LeastThrust(), 1e-9);
+    EXPECT_NEAR(idle.tail<3>().norm(), 0, 1e-12) << "stays level";
+    const double up = body.LeastThrust() / body.mass_kg;
+    const double pitch_rad = inversion == Inversion::kExact ? std::atan(0.4 / up) : 0.4 / up;
+    EXPECT_NEAR(Target(e, {0.4, 0, 0})[1], pitch_rad, 1e-12);
+  }
+}
+
 TEST(QuadrotorController, TurnsToItsHeadingTheShortWay) {
   Experiment e = One(Soft());
   e.agents[0].airframe.heading = {0.1, 0};  // small enough for the rotors' small yaw torque
@@ -240,7 +255,7 @@ TEST(QuadrotorController, ForgetsAReferenceThatTheBodyWasHeldBackFrom) {
 
 TEST(QuadrotorController, TurnsNoFasterThanItCanBrake) {
   Airframe body = WithoutDrag();
-  body.max_thrust_n = 1000;  // rotors that can give any torque
+  body.inertia_kg_m2 /= 10;  // rotors that can give any torque
   Experiment e = One(body);
   const Vector3d leap(3, 0, 0);
   const double turn = WrenchOf(e, First(e, AtStart(e), leap))[2] / body.inertia_kg_m2.y();

@@ -200,19 +200,27 @@ TEST(Theory, WarnsOfAFirstCommandForWhichAQuadrotorLeansTooFar) {
                           "to accelerate sideways by 2 m/s^2, and can by 0.981"));  // 9.81 * 0.1
   EXPECT_THAT(Of(kQuadrotors + "[control]\ninversion = 'exact'\n[agents.airframe]\ntilt_limit_rad = 0.1\n").warnings,
               ElementsAre(HasSubstr("and can by 0.9843")));
-  EXPECT_THAT(Of(kQuadrotors + "[physics]\ngravity_m_per_s2 = 0.0\n").warnings, ElementsAre(HasSubstr("and can by 0")));
+  EXPECT_THAT(Of(kQuadrotors + "[physics]\ngravity_m_per_s2 = 0.0\n").warnings,
+              Contains(HasSubstr("and can by 0.7109")));  // 3 N of least thrust / 1.477 kg * 0.35
 }
 
 TEST(Theory, WarnsOfRotorsThatCannotLiftTheirQuadrotor) {
   EXPECT_THAT(
-      Of(kQuadrotors + "[agents.airframe]\nmax_thrust_n = 14.0\n").warnings,
-      ElementsAre("agents.airframe: agent 1 cannot lift itself: its rotors give 14 N at most (max_thrust_n), its "
-                  "weight is 14.49 N (mass_kg, physics.gravity_m_per_s2)"));
+      Of(kQuadrotors + "[agents.airframe]\nmax_thrust_n = 16.0\n").warnings,
+      ElementsAre("agents.airframe: agent 1 cannot lift itself: its rotors are driven to 14.4 N at most (90 % of "
+                  "max_thrust_n), its weight is 14.49 N (mass_kg, physics.gravity_m_per_s2)"));
   EXPECT_THAT(Of(kQuadrotors + "[[agents.override]]\nid = 2\nairframe = { mass_kg = 50.0 }\n").warnings,
               Contains(StartsWith("agents.airframe: agent 2 cannot lift itself")));
   EXPECT_THAT(Of(kFour + "[law]\nname = 'consensus'\nbeta = 2.0\n[agents.airframe]\nmax_thrust_n = 14.0\n").warnings,
               Not(Contains(HasSubstr("lift"))))
       << "a double integrator has no rotors";
+}
+
+TEST(Theory, WarnsOfRotorsWhoseLeastThrustIsMoreThanTheWeight) {
+  EXPECT_THAT(Of(kQuadrotors + "[physics]\ngravity_m_per_s2 = 2.0\n").warnings,
+              Contains("agents.airframe: agent 1 climbs away: its rotors are driven to 3 N at least (10 % of "
+                       "max_thrust_n), its weight is 2.954 N (mass_kg, physics.gravity_m_per_s2)"));
+  EXPECT_THAT(Of(kQuadrotors + "[physics]\ngravity_m_per_s2 = 2.1\n").warnings, Not(Contains(HasSubstr("climbs"))));
 }
 
 TEST(Theory, WarnsWhenTheFirstCommandWouldAlreadySaturate) {

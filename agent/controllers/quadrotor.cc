@@ -2,9 +2,9 @@
 // speeds. With our axes (x forward, y left, z up; phi, theta, psi: roll, pitch, yaw about them):
 //   reference:  a   = a_W + kp (p* - p) + kd (v* - v) + B v / m    with p*'' = a_W; in z, the altitude loop
 //   thrust:     T   = m (a_z + g)
-//   inversion:  a in the heading frame -> phi*, theta*
-//   attitude:   tau = J (kp (phi* - phi) - kd phi')                the same for theta; psi goes to control.heading_rad
-//   rotors:     [w1^2 .. w4^2] = A^-1 [T, tau]
+//   inversion:  a in the heading frame -> phi*, theta*             small angles: phi* = -a_left / g, theta* = a_forward
+//   / g attitude:   tau = J (kp (phi* - phi) - kd phi')                the same for theta; psi goes to
+//   control.heading_rad rotors:     [w1^2 .. w4^2] = A^-1 [T, tau]
 // The reference p*, v* is the ideal double integrator of the theory: it starts where the agent starts, and integrates
 // the limited accelerations of the law. Tracking it gives back the velocity that the body loses while it tilts. With
 // law.axes = "xy", z* stays the initial height and v_z* = 0. Gains: airframe.position in x and y, airframe.altitude in
@@ -43,9 +43,11 @@ HeadingAccel AlongHeading(const Eigen::Vector3d& a_W, double yaw_rad) {
   return {.forward = c * a_W.x() + s * a_W.y(), .left = c * a_W.y() - s * a_W.x(), .up = a_W.z()};
 }
 
-// The paper's inversion: sin(angle) = angle, cos(angle) = 1, thrust = weight.
-Tilt SmallAngleTilt(const HeadingAccel& a, double gravity) {
-  return {.roll_rad = -a.left / gravity, .pitch_rad = a.forward / gravity};
+// The paper's inversion: sin(angle) = angle, cos(angle) = 1, thrust = weight. `min_up`: what the smallest thrust gives
+// (m/s^2). Where that is more than the weight, for example without gravity, it is what accelerates a tilted body.
+Tilt SmallAngleTilt(const HeadingAccel& a, double gravity, double min_up) {
+  const double up = std::max(gravity, min_up);
+  return {.roll_rad = -a.left / up, .pitch_rad = a.forward / up};
 }
 
 // Roll and pitch that point z_B = (cos(roll) sin(pitch), -sin(roll), cos(roll) cos(pitch)) along a + g. `min_up`:
@@ -123,8 +125,8 @@ class QuadrotorController final : public Controller {
   }
 
   Tilt ToTilt(const HeadingAccel& a) const {
-    if (!exact_) return SmallAngleTilt(a, gravity_);
-    return ExactTilt(a, gravity_, Mixer::kMinThrustShare * airframe_.max_thrust_n / airframe_.mass_kg);
+    const double min_up = airframe_.LeastThrust() / airframe_.mass_kg;
+    return exact_ ? ExactTilt(a, gravity_, min_up) : SmallAngleTilt(a, gravity_, min_up);
   }
 
   // Thrust for the vertical acceleration a_z (N). R_WB(2, 2) = cos(roll) cos(pitch) is the part of it that points up,

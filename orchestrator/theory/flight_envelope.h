@@ -7,11 +7,12 @@
 
 namespace mascot {
 
-/// The largest acceleration along x or y (m/s^2) that a quadrotor reaches at constant height within the tilt limit of
-/// its airframe.
+/// The largest acceleration along x or y (m/s^2) that a quadrotor reaches within the tilt limit of its airframe, with
+/// the thrust that carries its weight (at least Airframe::LeastThrust()).
 double LeanLimit(const AgentConfig& quadrotor, double gravity_m_per_s2);
 
-/// Warnings ("key: text") about quadrotors whose rotors cannot lift their weight.
+/// Warnings ("key: text") about quadrotors that cannot keep their height: their weight is outside the thrust that the
+/// low-level stack uses.
 std::vector<std::string> LiftWarnings(const Experiment& experiment);
 
 }  // namespace mascot
