@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "experiment/graph/schedule.h"
@@ -124,6 +125,43 @@ TEST(GraphFamilies, ErdosRenyiIsSymmetricSeededAndAsDenseAsAsked) {
   EXPECT_NEAR(static_cast<double>(graph.edges()) / 2, pairs * 0.4, 5 * deviation);
   EXPECT_EQ(MakeErdosRenyi(9, 0, 1).edges(), 0u);
   EXPECT_EQ(MakeErdosRenyi(9, 1, 1).edges(), 72u);
+}
+
+TEST(GraphFamilies, SmallWorldRewiresEveryEdgeThatItShould) {
+  // With p = 1, four agents and k = 2 there are three graphs. 1 hears 2 and 4, and must take 3 in place of 2. 2 then
+  // hears only 3, and takes 1 or 4. 3 takes 2 in place of 4 in both cases. 4 hears only 1: it takes 2 or 3 in the first
+  // case, 3 in the second.
+  std::map<std::vector<std::vector<int>>, int> seen;
+  constexpr int kDraws = 4000;
+  for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
+    const Graph graph = MakeSmallWorld(4, 2, 1, seed);
+    std::vector<std::vector<int>> heard;
+    for (int i = 1; i <= 4; ++i) heard.push_back(Ids(graph.HeardBy(i)));
+    ++seen[heard];
+  }
+  const auto share = [&seen](const std::vector<std::vector<int>>& heard) { return seen[heard] / double{kDraws}; };
+  constexpr double kFiveDeviations = 0.04;
+  EXPECT_NEAR(share({{2, 3}, {1, 3, 4}, {1, 2}, {2}}), 0.25, kFiveDeviations);
+  EXPECT_NEAR(share({{2, 3}, {1, 3}, {1, 2, 4}, {3}}), 0.25, kFiveDeviations);
+  EXPECT_NEAR(share({{3}, {3, 4}, {1, 2, 4}, {2, 3}}), 0.5, kFiveDeviations);
+  EXPECT_THAT(seen, SizeIs(3));
+}
+
+TEST(GraphFamilies, SmallWorldRewiresAFractionPOfItsRing) {
+  constexpr int kCount = 200, kNearest = 6;
+  const Graph graph = MakeSmallWorld(kCount, kNearest, 0.3, 1);
+  EXPECT_EQ(graph.edges(), std::size_t{kCount * kNearest});
+  EXPECT_TRUE(graph.IsSymmetric());
+  int rewired = 0;
+  for (int i = 1; i <= kCount; ++i)
+    for (const Graph::Neighbour& j : graph.HeardBy(i)) {
+      const int apart = std::abs(i - j.id);
+      rewired += i < j.id && std::min(apart, kCount - apart) > kNearest / 2;
+    }
+  const double edges = kCount * kNearest / 2.0;
+  EXPECT_NEAR(rewired, 0.3 * edges, 5 * std::sqrt(edges * 0.3 * 0.7));
+  EXPECT_EQ(MakeSmallWorld(8, 2, 0, 1).Laplacian(), MakeTopology("ring", 8).Laplacian());
+  EXPECT_EQ(MakeSmallWorld(5, 4, 1, 1).Laplacian(), MakeTopology("complete", 5).Laplacian()) << "nobody else to hear";
 }
 
 // --- properties of a graph --------------------------------------------------------------------------

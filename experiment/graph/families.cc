@@ -138,20 +138,29 @@ Graph MakeGeometric(std::span<const Eigen::Vector3d> p_W, double radius_m) {
   return std::move(edges).Build();
 }
 
+// Watts & Strogatz, "Collective dynamics of 'small-world' networks", Nature 393 (1998): each edge of the ring, in turn,
+// gets with probability p another far end, drawn uniformly from all agents that its near end i does not hear yet.
 Graph MakeSmallWorld(int count, int k, double p, std::uint64_t seed) {
   Random random(seed, Random::Stream::kGraph);
   std::set<std::pair<int, int>> pairs;  // lower id first
-  const auto hear = [&](int i, int j) { return pairs.emplace(std::minmax(i, j)); };
+  std::vector<int> degree(static_cast<std::size_t>(count));
+  const auto hear = [&](int i, int j) {
+    const bool is_new = i != j && pairs.emplace(std::minmax(i, j)).second;
+    for (const int end : {i, j}) degree[static_cast<std::size_t>(end - 1)] += is_new;
+    return is_new;
+  };
+  const auto hears_all = [&](int i) { return degree[static_cast<std::size_t>(i - 1)] == count - 1; };
   const auto ahead = [count](int i, int steps) { return (i - 1 + steps) % count + 1; };
   for (int steps = 1; steps <= k / 2; ++steps)
     for (int i = 1; i <= count; ++i) hear(i, ahead(i, steps));
   for (int steps = 1; steps <= k / 2; ++steps)
     for (int i = 1; i <= count; ++i) {
-      const auto old = pairs.find(std::minmax(i, ahead(i, steps)));
-      const bool rewired = random.Unit() < p;
-      const int other = static_cast<int>(random.Below(static_cast<std::size_t>(count))) + 1;
-      if (!rewired || old == pairs.end() || other == i || !hear(i, other).second) continue;  // exists: keep old
-      pairs.erase(old);
+      if (random.Unit() >= p || hears_all(i)) continue;
+      while (!hear(i, static_cast<int>(random.Below(static_cast<std::size_t>(count))) + 1)) {
+      }
+      const int far = ahead(i, steps);
+      pairs.erase(std::minmax(i, far));
+      for (const int end : {i, far}) --degree[static_cast<std::size_t>(end - 1)];
     }
   Edges edges(count);
   for (const auto& [i, j] : pairs) edges.Both(i, j);
