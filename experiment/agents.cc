@@ -145,9 +145,12 @@ std::span<const Key> AgentsKeys() {
       key::Table("control", AgentControlKeys(), "what is left out is as in `[control]`"),
       key::Table("law", LawKeys(),
                  "a law of its own; what is left out is as in `[law]`, if its name is the same or left out"),
-      key::Number("start_s", kTime_s, "before this time its law is off: it stands still, and nobody hears it")
+      key::Number("start_s", kTime_s, "before this time its law is off: it comes to rest, and nobody hears it")
           .Default("0.0"),
-      key::Number("stop_s", kTime_s, "from this time on its law is off again").Otherwise("never"),
+      key::Number("stop_s", kTime_s,
+                  "from this time on its law is off again: driven by acceleration, it coasts about v / "
+                  "`control.velocity_gain` from the speed v")
+          .Otherwise("never"),
       key::OneOf("host", kHosts, "external: started by hand, on this host or another, and waited for")
           .Default("\"local\""),
   };

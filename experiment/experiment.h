@@ -77,7 +77,8 @@ struct AgentConfig {
   LawConfig law;
   bool has_own_law = false;     ///< `law` is the agent's own, not the team's
   bool sends_messages = false;  ///< its law sends messages: it has a topic for them
-  /// From start_s until before stop_s its law is on, and others may hear it; before and after, it stands still.
+  /// From start_s until before stop_s its law is on, and others may hear it; before and after, it is commanded the
+  /// velocity 0.
   double start_s = 0;
   double stop_s = std::numeric_limits<double>::infinity();
   bool external = false;  ///< started by hand and waited for

@@ -66,6 +66,27 @@ TEST(SingleIntegrators, MeetOnADigraphAtTheMeanWeightedByTheLeftNullVector) {
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(network.x()[i], meeting, 1e-9);
 }
 
+// --- a law that is off (docs/laws.md, different agents) -------------------------------------------------
+
+/// How far an agent whose law is off goes from a speed of `v`.
+double Coasts(const std::string& model, double v) {
+  FlownNetwork network("[run]\nduration_s = 10.0\n[agents]\ncount = 1\nmodel = '" + model +
+                       "'\nposition_m = [[0, 0, 1]]\nvelocity_m_per_s = [[" + ShortestFloat(v) +
+                       ", 0, 0]]\n[[agents.override]]\nid = 1\nstart_s = 10.0\n[law]\nname = 'consensus'\n");
+  network.RunUntil(10);
+  EXPECT_NEAR(network.agent(1).v_WB.x(), 0, 1e-4);
+  return network.agent(1).p_WB.x();
+}
+
+TEST(Off, CoastsToRestFromAVelocityThatCannotBeTakenAway) {
+  const double k = 2, h = 0.01, most = 3;
+  EXPECT_EQ(Coasts("single_integrator", 1), 0);
+  EXPECT_NEAR(Coasts("double_integrator", 1), 1 / k - h / 2, 1e-6) << "h / 2: the acceleration is held over a tick";
+  EXPECT_NEAR(Coasts("quadrotor", 1), 1 / k - h / 2, 0.02);
+  const double cut = most / k;  // the speed below which the acceleration limit does not cut
+  EXPECT_NEAR(Coasts("double_integrator", 4), (4 * 4 - cut * cut) / (2 * most) + cut / k, 0.02);
+}
+
 // --- delay ------------------------------------------------------------------------------------------
 
 TEST(Delay, OfNeighboursMovesTheMeetingPointByTheDegrees) {

@@ -1,7 +1,7 @@
 // Consensus of single integrators; Olfati-Saber & Murray, "Consensus problems in networks of agents with switching
 // topology and time-delays", IEEE Trans. Automatic Control 49 (2004):
 //   v_i = p_gain sum_j a_ij (p_j - p_i)
-// A leader does not use what it hears, and stands still.
+// A leader does not use what it hears, and wants the velocity 0.
 #include "agent/laws/velocity_consensus.h"
 
 #include <memory>
