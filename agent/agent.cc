@@ -68,24 +68,33 @@ void Agent::LimitAcceleration(const Eigen::Vector3d& a_W, Command& command) cons
   if (command.a_limited_W != a_W) command.flags |= kAccelerationLimited;
 }
 
-// Writes the limited velocity into `command`, with the flag, and the acceleration that the wanted velocity v* means:
-// (v* - v) / T, T being the tick, for a model driven by velocity, else k_v (v* - v).
+// Writes a wanted velocity and its limited value into `command`, with the flag.
 void Agent::LimitVelocity(const Eigen::Vector3d& v_W, Command& command) const {
+  command.v_law_W = v_W;
   command.v_limited_W = Clamped(v_W, config_.control.max_speed_m_per_s);
   if (command.v_limited_W != v_W) command.flags |= kSpeedLimited;
-  const bool at_once = driven_by_ == Wanted::kVelocity;
-  const double gain = at_once ? rate_hz_ : config_.control.velocity_gain;
+}
+
+// For a model driven by acceleration: writes what the wanted velocity v* means for it, k_v (v* - v), before all limits
+// and after the limits of the velocity and of the acceleration.
+void Agent::AccelerateTowards(const Eigen::Vector3d& v_W, Command& command) const {
   const auto accelerate = [&](const Eigen::Vector3d& to_W) {
-    Eigen::Vector3d a_W = gain * (to_W - measured_.v_WB);
+    Eigen::Vector3d a_W = config_.control.velocity_gain * (to_W - measured_.v_WB);
     if (holds_altitude_) a_W.z() = 0;
     return a_W;
   };
-  if (at_once) {
-    command.a_law_W = accelerate(v_W);
-    command.a_limited_W = accelerate(command.v_limited_W);
-  } else {
-    LimitAcceleration(accelerate(command.v_limited_W), command);
-  }
+  LimitVelocity(v_W, command);
+  LimitAcceleration(accelerate(command.v_limited_W), command);
+  command.a_law_W = accelerate(v_W);
+}
+
+// For a model driven by velocity: integrates the wanted acceleration over one tick. Where the limit of the velocity
+// cuts the result, less acceleration than wanted is commanded.
+void Agent::Integrate(const Eigen::Vector3d& a_W, Command& command) const {
+  LimitAcceleration(a_W, command);
+  LimitVelocity(v_integrated_W_ + command.a_limited_W / rate_hz_, command);
+  const auto cut = command.v_limited_W.array() != command.v_law_W.array();
+  command.a_limited_W = cut.select((command.v_limited_W - v_integrated_W_) * rate_hz_, command.a_limited_W).eval();
 }
 
 Command Agent::Want(std::int64_t tick, const Motion& self, std::span<const Sample> samples) {
@@ -93,16 +102,14 @@ Command Agent::Want(std::int64_t tick, const Motion& self, std::span<const Sampl
   measured_ = sensor_.Measure(tick, self);
   const Eigen::Vector3d w_W = AskLaw(tick, measured_, heard);
   Command command;
-  if (wanted_ == Wanted::kVelocity) {
+  if (driven_by_ == Wanted::kVelocity && wanted_ == Wanted::kVelocity)
     LimitVelocity(w_W, command);
-  } else {
+  else if (driven_by_ == Wanted::kVelocity)
+    Integrate(w_W, command);
+  else if (wanted_ == Wanted::kVelocity)
+    AccelerateTowards(w_W, command);
+  else
     LimitAcceleration(w_W, command);
-    if (driven_by_ != Wanted::kVelocity) return command;
-    // The law wants an acceleration, but the model is driven by velocity: integrate over one tick.
-    const Eigen::Vector3d v_W = v_integrated_W_ + command.a_limited_W / rate_hz_;
-    command.v_limited_W = Clamped(v_W, config_.control.max_speed_m_per_s);
-    if (command.v_limited_W != v_W) command.flags |= kSpeedLimited;
-  }
   v_integrated_W_ = command.v_limited_W;
   return command;
 }

@@ -19,8 +19,8 @@ class Agent {
   Agent(const Experiment& experiment, int id);
 
   int id() const { return id_; }
-  /// Evaluates the law and its limits: fills in a_law_W, a_limited_W, v_limited_W and their flags. `self`: the true
-  /// motion at `tick`. `samples`: what the agents in graph.HeardBy(id) sent at this tick, in that order. Ticks
+  /// Evaluates the law and its limits: fills in the command's accelerations, velocities and their flags. `self`: the
+  /// true motion at `tick`. `samples`: what the agents in graph.HeardBy(id) sent at this tick, in that order. Ticks
   /// increase. Throws std::runtime_error naming agent and tick if the law fails or its answer is not finite.
   Command Want(std::int64_t tick, const Motion& self, std::span<const Sample> samples);
   /// Want() and then the low-level stack: the complete command. Throws as Want() does.
@@ -35,6 +35,8 @@ class Agent {
   Eigen::Vector3d AskLaw(std::int64_t tick, const Motion& measured, std::span<const Heard> heard);
   void LimitAcceleration(const Eigen::Vector3d& a_W, Command& command) const;
   void LimitVelocity(const Eigen::Vector3d& v_W, Command& command) const;
+  void AccelerateTowards(const Eigen::Vector3d& v_W, Command& command) const;
+  void Integrate(const Eigen::Vector3d& a_W, Command& command) const;
 
   const AgentConfig& config_;
   int id_;

@@ -170,6 +170,10 @@ Wanted WantedBy(const LawConfig& law) {
   return entry.wanted != nullptr ? entry.wanted(law) : Wanted::kAcceleration;
 }
 
+bool IsCommandedByVelocity(const AgentConfig& agent) {
+  return agent.traits().driven_by == Wanted::kVelocity && WantedBy(agent.law) == Wanted::kVelocity;
+}
+
 std::span<const Eigen::Vector3d> PlacesOf(const LawConfig& law) {
   const LawEntry& entry = EntryOf(law);
   return entry.places_W != nullptr ? entry.places_W(law) : std::span<const Eigen::Vector3d>();

@@ -75,6 +75,8 @@ const LawEntry& EntryOf(const LawConfig& law);
 
 // What the row of a law says about it. They throw as EntryOf() does.
 Wanted WantedBy(const LawConfig& law);
+/// True if the agent's law wants a velocity and its model is driven by one: no acceleration is commanded.
+bool IsCommandedByVelocity(const AgentConfig& agent);
 /// Each agent's place in the formation, in W (m), by id - 1; empty: no places. Valid as long as `law`.
 std::span<const Eigen::Vector3d> PlacesOf(const LawConfig& law);
 std::optional<LinearForm> LinearFormOf(const LawConfig& law);

@@ -37,13 +37,17 @@ enum CommandFlag : std::uint32_t {
   kSpeedLimited = 1u << 3,         ///< the law asked for more than control.max_speed_m_per_s
 };
 
-/// An agent's answer to one tick.
+/// An agent's answer to one tick. A wanted velocity v* is an acceleration k_v (v* - v) for a model driven by
+/// acceleration. For a model driven by velocity it is none: both accelerations are then 0.
 struct Command {
   Actuation actuator{};
-  Eigen::Vector3d a_law_W = Eigen::Vector3d::Zero();      ///< the law's acceleration before limits (m/s^2)
-  Eigen::Vector3d a_limited_W = Eigen::Vector3d::Zero();  ///< the same after limits (m/s^2)
+  Eigen::Vector3d a_law_W = Eigen::Vector3d::Zero();      ///< the law's acceleration before all limits (m/s^2)
+  Eigen::Vector3d a_limited_W = Eigen::Vector3d::Zero();  ///< after those of acceleration and speed (m/s^2)
   std::uint32_t flags = 0;                                ///< CommandFlag bits
-  Eigen::Vector3d v_limited_W = Eigen::Vector3d::Zero();  ///< wanted velocity after limits (m/s); not on the wire
+  // Not on the wire: the wanted velocity before and after its limit (m/s), if the law wants one, or the model is driven
+  // by it.
+  Eigen::Vector3d v_law_W = Eigen::Vector3d::Zero();
+  Eigen::Vector3d v_limited_W = Eigen::Vector3d::Zero();
 };
 
 }  // namespace mascot

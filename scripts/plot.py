@@ -187,8 +187,7 @@ def moving_mean(t, values, span_s):
 
 
 def acceleration(run):
-    """Acceleration commanded by the law, after the limit: the force of the paper per mass. For a model that takes
-    velocities at once it is the change of velocity over one tick, which is not limited."""
+    """Acceleration commanded by the law, after the limits: the force of the paper per mass."""
     values, what = run.acceleration_command, "commanded acceleration"
     switches = run.drawing["switches"]  # bang-bang: single lines would be unreadable
     if switches:
@@ -203,8 +202,10 @@ def acceleration(run):
     label = f"limit ±{limit:g} m/s²"
     for k, panel in zip(run.axes, grid):
         peak = np.abs(run.acceleration_command[:, :, k]).max()
-        if peak > limit * (1 + 1e-9):
-            panel.set_title("not limited: velocities are taken at once", fontsize=8, color="0.3", loc="right")
+        if not run.acceleration_command.any():
+            panel.set_title("none is commanded", fontsize=8, color="0.3", loc="right")
+        elif peak > limit * (1 + 1e-9):
+            panel.set_title("some agents have other limits", fontsize=8, color="0.3", loc="right")
         elif peak >= 0.25 * limit:
             for side in (-limit, limit):
                 panel.axhline(side, color="0.3", linestyle="--", linewidth=1, label=label if side > 0 else None)

@@ -12,11 +12,13 @@ namespace {
 
 using ::testing::ThrowsMessage;
 
-/// Two double integrators; agent 1 hears agent 2.
-Experiment Two(const std::string& law, const std::string& control = "") {
+/// Two agents; agent 1 hears agent 2.
+Experiment Two(const std::string& law, const std::string& control = "",
+               const std::string& model = "double_integrator") {
   return LoadExperiment(
-      Section::FromText("[run]\nduration_s = 1.0\n[agents]\ncount = 2\nmodel = 'double_integrator'\n"
-                        "position_m = [[0, 0, 1], [10, 0, 2]]\n[graph]\nedges = [[1, 2]]\n[control]\n" +
+      Section::FromText("[run]\nduration_s = 1.0\n[agents]\ncount = 2\nmodel = '" + model +
+                            "'\n"
+                            "position_m = [[0, 0, 1], [10, 0, 2]]\n[graph]\nedges = [[1, 2]]\n[control]\n" +
                             control + "\n[law]\n" + law,
                         "test.toml"),
       "test");
@@ -50,6 +52,53 @@ TEST(Agent, LeavesAnAccelerationAtTheLimitAloneAndUnflagged) {
   const Command command = agent.Want(0, At(0, 0, 0), heard);
   EXPECT_EQ(command.a_limited_W, Eigen::Vector3d(2, -2, 0));
   EXPECT_EQ(command.flags, 0u);
+}
+
+// docs/recording.md, "commanded acceleration": its four rows are LimitsTheLawPerAxisAndSaysSo and the next three tests.
+TEST(Agent, LimitsTheSpeedThenTheAccelerationThatAVelocityMeans) {
+  const Motion other = At(10, 0, 0);
+  const std::vector<Sample> heard = Other(other);
+  const auto wants = [&](const std::string& control) {
+    const Experiment experiment = Two("name = 'velocity_consensus'", control);
+    return Agent(experiment, 1).Want(0, At(0, 0, 0), heard);
+  };
+  const Command slow = wants("max_speed_m_per_s = 1.0");
+  EXPECT_EQ(slow.a_law_W.x(), 2 * 10) << "k_v (v* - v), before all limits";
+  EXPECT_EQ(slow.a_limited_W.x(), 2 * 1);
+  EXPECT_EQ(slow.flags, kSpeedLimited);
+  const Command weak = wants("max_speed_m_per_s = 1.0\nmax_acceleration_m_per_s2 = 1.5");
+  EXPECT_EQ(weak.a_law_W.x(), 2 * 10);
+  EXPECT_EQ(weak.a_limited_W.x(), 1.5);
+  EXPECT_EQ(weak.flags, kSpeedLimited | kAccelerationLimited);
+}
+
+TEST(Agent, CommandsNoAccelerationToAModelThatTakesAVelocity) {
+  const Experiment experiment = Two("name = 'velocity_consensus'", "max_speed_m_per_s = 4.0", "single_integrator");
+  const Motion other = At(10, -1, 0);
+  const std::vector<Sample> heard = Other(other);
+  const Command command = Agent(experiment, 1).Decide(0, At(0, 0, 0), heard);
+  EXPECT_EQ(command.a_law_W, Eigen::Vector3d::Zero());
+  EXPECT_EQ(command.a_limited_W, Eigen::Vector3d::Zero());
+  EXPECT_EQ(command.flags, kSpeedLimited);
+  EXPECT_EQ(command.v_law_W, Eigen::Vector3d(10, -1, 0));
+  EXPECT_EQ(command.actuator[0], 4);
+  EXPECT_EQ(command.actuator[1], -1);
+}
+
+TEST(Agent, CommandsTheAccelerationThatTheSpeedLimitLeaves) {
+  const Experiment experiment =
+      Two("name = 'consensus'", "rate_hz = 8\nmax_speed_m_per_s = 0.625\nmax_acceleration_m_per_s2 = 2.0",
+          "single_integrator");
+  Agent agent(experiment, 1);
+  const Motion other = At(10, -1, 0);
+  const std::vector<Sample> heard = Other(other);
+  const double left[] = {2, 2, 1, 0};  // v* = 0.25, 0.5, 0.625, 0.625
+  for (int tick = 0; tick < 4; ++tick) {
+    const Command command = agent.Want(tick, At(0, 0, 0), heard);
+    EXPECT_EQ(command.a_law_W, Eigen::Vector3d(10, -1, 0));
+    EXPECT_EQ(command.a_limited_W, Eigen::Vector3d(left[tick], -1, 0));
+    EXPECT_EQ(command.flags, tick < 2 ? kAccelerationLimited : kAccelerationLimited | kSpeedLimited);
+  }
 }
 
 TEST(Agent, IgnoresTheLawInZWhereTheAltitudeIsHeld) {

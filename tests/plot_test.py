@@ -162,10 +162,16 @@ class WhatIsInThem(PlotTest):
         axes = self.figure("acceleration").axes
         self.assertEqual([axis.get_ylabel() for axis in axes], ["$a_x$ (m/s²)", "$a_y$ (m/s²)"])
         self.assertNotIn("limit ±3 m/s²", self.lines(axes[0]))
-        self.assertEqual(axes[0].get_title(loc="right"), "not limited: velocities are taken at once")
+        self.assertEqual(axes[0].get_title(loc="right"), "some agents have other limits")
         axes = self.figure("acceleration", config=CONSENSUS + "[control]\nmax_acceleration_m_per_s2 = 5\n").axes
         self.assertEqual(self.lines(axes[0])["limit ±5 m/s²"].get_ydata()[0], 5)
         self.assertEqual(len(self.figure("acceleration", config=WAYPOINT).axes), 3)
+
+    def test_acceleration_says_that_none_is_commanded(self):
+        states = arrays()
+        states["acceleration_command"] *= 0
+        axes = self.figure("acceleration", states=states).axes
+        self.assertEqual(axes[0].get_title(loc="right"), "none is commanded")
 
     def test_a_limit_far_away_does_not_flatten_the_lines(self):
         axes = self.figure("acceleration", config=CONSENSUS + "[control]\nmax_acceleration_m_per_s2 = 100\n").axes

@@ -330,6 +330,9 @@ TEST(SwitchingGraph, StillMeetsAtTheMean) {
   for (int id = 1; id <= 6; ++id) mean += flight.At(0, id).p_WB.head<2>() / 6;
   for (int id = 1; id <= 6; ++id) EXPECT_LT((flight.At(flight.last(), id).p_WB.head<2>() - mean).norm(), 1e-3);
   EXPECT_LT(flight.summary["fidelity"]["rms_m"].get<double>(), 1e-9) << "single integrators are what they should be";
+  EXPECT_TRUE(flight.summary["control"]["effort"].is_null()) << "velocities are commanded";
+  for (const auto& row : flight.commands)
+    for (const Command& command : row) ASSERT_TRUE(command.a_law_W.isZero(0) && command.a_limited_W.isZero(0));
   const auto consensus = flight.summary["consensus"];
   const double rate_per_s = consensus["predicted"]["rate_per_s"];
   EXPECT_NEAR(consensus["rate_per_s"].get<double>(), rate_per_s, 0.01 * rate_per_s);

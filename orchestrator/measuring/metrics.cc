@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "agent/laws.h"
@@ -16,6 +17,7 @@ Metrics::Metrics(const Experiment& experiment)
       min_separation2_(std::numeric_limits<double>::infinity()) {
   const SuppressedPythonOutput suppressed;  // the laws run a second time; discard what they print
   if (experiment.output.fidelity) ideal_.emplace(experiment);
+  accelerated_ = std::ranges::count_if(experiment.agents, std::not_fn(IsCommandedByVelocity));
   const auto places_W = PlacesOf(experiment.law);
   formation_.offsets_m.assign(places_W.begin(), places_W.end());
 }
@@ -123,7 +125,7 @@ Measured Metrics::Result() const {
   result.settling_time_s = agreement_.settling_time_s();
   result.rate_per_s = agreement_.rate_per_s();
   result.minmax_edges = pursuit_.Result();
-  result.effort_m2_per_s3 = effort_m2_per_s3_ / agents;
+  if (accelerated_ > 0) result.effort_m2_per_s3 = effort_m2_per_s3_ / static_cast<double>(accelerated_);
   result.saturated_fraction = static_cast<double>(saturated_) / samples;
   result.tilt_limited_fraction = static_cast<double>(tilt_limited_) / samples;
   result.rotor_limited_fraction = static_cast<double>(rotor_limited_) / samples;

@@ -25,12 +25,14 @@ struct Measured {
   std::optional<double> settling_time_s;         ///< absent: not settled by the end
   std::optional<double> rate_per_s;              ///< decay rate of the disagreement (decay_meter.h)
   std::vector<PursuitMeter::Edge> minmax_edges;  ///< for min-max consensus
-  double effort_m2_per_s3 = 0;                   ///< mean over agents of the integral of |acceleration command|^2
-  double saturated_fraction = 0;                 ///< fraction of commands cut at the acceleration limit
-  double tilt_limited_fraction = 0;              ///< fraction of commands cut at the tilt limit
-  double rotor_limited_fraction = 0;             ///< fraction of commands cut at a rotor's limit
-  std::optional<double> min_separation_m;        ///< absent for one agent
-  double travelled_m = 0;                        ///< mean path length of the agents
+  /// Integral of |acceleration command|^2, mean over the agents that are commanded accelerations; absent: there are
+  /// none.
+  std::optional<double> effort_m2_per_s3;
+  double saturated_fraction = 0;           ///< fraction of commands cut at the acceleration limit
+  double tilt_limited_fraction = 0;        ///< fraction of commands cut at the tilt limit
+  double rotor_limited_fraction = 0;       ///< fraction of commands cut at a rotor's limit
+  std::optional<double> min_separation_m;  ///< absent for one agent
+  double travelled_m = 0;                  ///< mean path length of the agents
   /// Distance of the agents from ideal bodies under the same laws, over all agents and rows.
   struct Fidelity {
     double rms_m = 0;
@@ -75,7 +77,8 @@ class Metrics {
   AgreementMeter agreement_;
   double speed_m_per_s_ = 0;
   PursuitMeter pursuit_;
-  double effort_m2_per_s3_ = 0, newest_effort_m2_per_s3_ = 0;  // sums over all agents
+  std::int64_t accelerated_ = 0;      // agents that are commanded accelerations
+  double effort_m2_per_s3_ = 0, newest_effort_m2_per_s3_ = 0;  // sums over these agents
   std::int64_t saturated_ = 0, tilt_limited_ = 0, rotor_limited_ = 0;
   double min_separation2_;
   double squared_deviation_ = 0;

@@ -205,7 +205,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   json["graph"] = {{"edges", EdgesOf(experiment.graph)}};
   json["drawing"] = ToJson(EntryOf(experiment.law).drawing);
   json["consensus"] = Consensus(experiment, measured, prediction);
-  json["control"] = {{"effort", measured.effort_m2_per_s3},
+  json["control"] = {{"effort", OrNull(measured.effort_m2_per_s3)},
                      {"saturated_fraction", measured.saturated_fraction},
                      {"tilt_limited_fraction", measured.tilt_limited_fraction},
                      {"rotor_limited_fraction", measured.rotor_limited_fraction}};

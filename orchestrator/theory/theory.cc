@@ -26,10 +26,12 @@ std::vector<Motion> Start(const Experiment& experiment) {
   return motions;
 }
 
-/// The largest component of an agent's first command before limits: of the acceleration (m/s^2), or with `velocity` of
-/// the velocity (m/s).
-double Asked(const Command& command, const Motion& start, bool velocity, double period_s) {
-  const Eigen::Vector3d asked_W = velocity ? start.v_WB + command.a_law_W * period_s : command.a_law_W;
+/// The largest component of an agent's first command: of the velocity (m/s), if the command is one, else of the
+/// acceleration (m/s^2). Before limits; but an acceleration towards a velocity that its limit makes small enough is
+/// what it is after that.
+double Asked(const Command& command, bool velocity) {
+  const bool cut = (command.flags & kAccelerationLimited) != 0;
+  const Eigen::Vector3d& asked_W = velocity ? command.v_law_W : cut ? command.a_law_W : command.a_limited_W;
   return asked_W.cwiseAbs().maxCoeff();
 }
 
@@ -46,13 +48,12 @@ void PredictFirstCommand(const Experiment& experiment, Prediction& prediction) {
   const std::vector<Motion> motions = Start(experiment);
   for (const AgentConfig& agent : experiment.agents) {
     const Command command = team.Want(agent.id, 0, motions);
-    const bool velocity = agent.traits().driven_by == Wanted::kVelocity && WantedBy(agent.law) == Wanted::kVelocity;
-    const Motion& start = motions[static_cast<std::size_t>(agent.id - 1)];
-    const double asked = Asked(command, start, velocity, experiment.period_s());
+    const bool velocity = IsCommandedByVelocity(agent);
+    const double asked = Asked(command, velocity);
     const double limit = velocity ? agent.control.max_speed_m_per_s : agent.control.max_acceleration_m_per_s2;
     Keep(velocity ? prediction.first_speed : prediction.first_acceleration, {agent.id, asked, limit});
     if (!agent.traits().has_airframe) continue;
-    const double sideways = std::min(command.a_law_W.head<2>().cwiseAbs().maxCoeff(), limit);
+    const double sideways = command.a_limited_W.head<2>().cwiseAbs().maxCoeff();
     Keep(prediction.first_lean, {agent.id, sideways, LeanLimit(agent, experiment.physics.gravity_m_per_s2)});
   }
 }
