@@ -16,14 +16,19 @@ constexpr Key kBurstKeys[] = {
 constexpr std::array kCommonKeys = {
     key::Number("loss", {0, 1}, "probability that a sample is lost, independent of all others").Default("0.0"),
     key::Table("gilbert_elliott", kBurstKeys, "loss in bursts, instead of `loss` (Gilbert 1960, Elliott 1963)"),
-    key::Number("delay_s", {0, kLongestDelay_s}, "how late samples are").Default("0.0"),
+    key::Number("delay_s", {0, kLongestDelay_s},
+                "how late samples are, rounded up to whole ticks; `orchestrator check` prints the delay in effect")
+        .Default("0.0"),
     key::Number("jitter_s", {0, kLongestDelay_s},
-                "the delay of each sample lies within `delay_s` -+ this, uniformly; at most `delay_s`")
+                "the delay of each sample lies within `delay_s` -+ this, uniformly, before it is rounded up; at most "
+                "`delay_s`")
         .Default("0.0"),
     key::Number("reordering", {0, 1}, "probability that a sample skips the delay, and so overtakes others")
         .Default("0.0"),
     key::Boolean("symmetric", "i -> j and j -> i lose and delay the same samples").Default("false"),
-    key::Number("hold_s", {0, 1e6}, "how old the last sample may grow, beyond its delay, while no newer one comes")
+    key::Number(
+        "hold_s", {0, 1e6},
+        "how old the last sample may grow, beyond its delay, while no newer one comes; rounded down to whole ticks")
         .Default("0.0"),
 };
 

@@ -19,9 +19,11 @@ constexpr std::array kHeardKeys = {
 };
 constexpr auto kOwnKeys = Joined(
     kHeardKeys,
-    std::array{key::Number("delay_s", {0, kLongestDelay_s},
-                           "how late an agent knows its own position and velocity; it knows its attitude at once")
-                   .Default("0.0")});
+    std::array{
+        key::Number("delay_s", {0, kLongestDelay_s},
+                    "how late an agent knows its own position and velocity, rounded up to whole ticks; it knows its "
+                    "attitude at once")
+            .Default("0.0")});
 constexpr Key kSensorKeys[] = {
     key::Table("own", kOwnKeys, "what an agent measures of itself: law and low-level stack both get this"),
     key::Table("heard", kHeardKeys, "what an agent measures of each agent that it hears"),

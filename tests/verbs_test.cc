@@ -24,6 +24,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Json = nlohmann::json;
 using SetUpVerb = std::function<int()>(CLI::App& command);
 
@@ -82,6 +83,26 @@ TEST_F(Verbs, CheckTakesTheOptionsOfARun) {
 TEST_F(Verbs, CheckPrintsWarningsAfterItsFacts) {
   EXPECT_THAT(Printed(SetUpCheck, {path(), "--set", "law.beta=0.0"}),
               HasSubstr("\nwarning: law.beta: unstable, it must be above 0, got 0\n"));
+}
+
+TEST_F(Verbs, CheckSaysWhichDelaysAreInEffect) {
+  const std::vector<std::string> late = {path(),
+                                         "--set",
+                                         "link.delay_s=0.025",
+                                         "--set",
+                                         "link.override=[{ edges = [[1, 2]], jitter_s = 0.012 }]",
+                                         "--set",
+                                         "sensors.own.delay_s=0.02"};
+  const std::string text = Printed(SetUpCheck, late);
+  EXPECT_THAT(text, HasSubstr("  delay in use   link.delay_s = 0.025 s -+ 0.012 s is 2 to 4 ticks, 0.02 to 0.04 s\n"
+                              "  delay in use   link.delay_s = 0.025 s is 3 ticks, 0.03 s\n"
+                              "  delay in use   sensors.own.delay_s = 0.02 s is 2 ticks, 0.02 s\n"));
+  EXPECT_THAT(Printed(SetUpCheck, {path()}), Not(HasSubstr("in use")));
+  std::vector<std::string> as_json = late;
+  as_json.push_back("--json");
+  const Json delays = Json::parse(Printed(SetUpCheck, as_json))["delays"];
+  EXPECT_EQ(delays.size(), 3u);
+  EXPECT_EQ(delays[0], (Json{{"key", "link.delay_s"}, {"asked_s", 0.025}, {"least_s", 0.02}, {"most_s", 0.04}}));
 }
 
 TEST_F(Verbs, CheckSaysThatChainsSettleLaterThanTheirModes) {

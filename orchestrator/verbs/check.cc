@@ -9,6 +9,7 @@
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/report/prediction_report.h"
+#include "orchestrator/theory/delays_in_effect.h"
 #include "orchestrator/theory/graph_facts.h"
 #include "orchestrator/theory/theory.h"
 #include "orchestrator/verbs/config_args.h"
@@ -29,18 +30,36 @@ Json ToJson(const GraphFacts& facts) {
           {"spanning_tree", facts.tree}};
 }
 
+Json DelaysJson(const Experiment& experiment) {
+  Json delays = Json::array();
+  for (const DelayInEffect& delay : DelaysInEffect(experiment))
+    delays.push_back({{"key", delay.key},
+                      {"asked_s", delay.asked_s},
+                      {"least_s", experiment.time_s(delay.least_ticks)},
+                      {"most_s", experiment.time_s(delay.most_ticks)}});
+  return delays;
+}
+
+std::vector<std::string> DelayLines(const Experiment& experiment) {
+  std::vector<std::string> lines;
+  for (const DelayInEffect& delay : DelaysInEffect(experiment)) {
+    const bool jitters = delay.least_ticks != delay.most_ticks;
+    lines.push_back(fmt::format("{} = {:g} s{} is {}{} ticks, {}{:g} s", delay.key, delay.asked_s,
+                                delay.jitter_s > 0 ? fmt::format(" -+ {:g} s", delay.jitter_s) : "",
+                                jitters ? fmt::format("{} to ", delay.least_ticks) : "", delay.most_ticks,
+                                jitters ? fmt::format("{:g} to ", experiment.time_s(delay.least_ticks)) : "",
+                                experiment.time_s(delay.most_ticks)));
+  }
+  return lines;
+}
+
 Json ToJson(const Experiment& experiment, const GraphFacts& facts, const Prediction& prediction) {
-  return {{"experiment", experiment.run.name},
-          {"duration_s", experiment.run.duration_s},
-          {"ticks", experiment.ticks()},
-          {"control_rate_hz", experiment.control.rate_hz},
-          {"agents", experiment.size()},
-          {"models", CountModels(experiment)},
-          {"law", experiment.law.name},
-          {"axes", kAxes.Name(experiment.law.axes)},
-          {"leader", experiment.law.leader},
-          {"graph", ToJson(facts)},
-          {"predicted", PredictionJson(prediction)},
+  return {{"experiment", experiment.run.name}, {"duration_s", experiment.run.duration_s},
+          {"ticks", experiment.ticks()},       {"control_rate_hz", experiment.control.rate_hz},
+          {"agents", experiment.size()},       {"models", CountModels(experiment)},
+          {"law", experiment.law.name},        {"axes", kAxes.Name(experiment.law.axes)},
+          {"leader", experiment.law.leader},   {"graph", ToJson(facts)},
+          {"delays", DelaysJson(experiment)},  {"predicted", PredictionJson(prediction)},
           {"warnings", prediction.warnings}};
 }
 
@@ -84,6 +103,7 @@ int Check(const ConfigArgs& args, bool json) {
   std::cout << args.path << ": valid\n";
   PrintExperiment(experiment);
   PrintGraph(facts, experiment.schedule);
+  for (const std::string& line : DelayLines(experiment)) PrintLine("delay in use", line);
   for (const auto& [label, text] : PredictionLines(experiment, prediction)) PrintLine(label, text);
   for (const std::string& warning : prediction.warnings) std::cout << "warning: " << warning << "\n";
   return 0;
