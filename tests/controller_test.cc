@@ -265,6 +265,65 @@ TEST(QuadrotorController, TurnsNoFasterThanItCanBrake) {
   EXPECT_NEAR(WrenchOf(e, First(e, turning, leap))[2], 0, 1e-9) << "3 rad/s is enough";
 }
 
+// --- docs/frames.md, "The body" ---------------------------------------------------------------------
+
+/// Thrust (N) and torques (N m) for a first command `u_W`, computed as docs/frames.md says, without limits of the
+/// rotors.
+Eigen::Vector4d AsDocumented(const Experiment& e, const Motion& self, const Vector3d& u_W, double roll, double pitch,
+                             double yaw) {
+  const AgentConfig& agent = e.agents[0];
+  const Airframe& body = agent.airframe;
+  Vector3d a_W = u_W + body.linear_drag_kg_per_s * self.v_WB / body.mass_kg;
+  for (int axis = 0; axis < 3; ++axis) {
+    const PdGains& gains = axis < 2 ? body.position : body.altitude;
+    const double correction =
+        gains.kp * (agent.p_W[axis] - self.p_WB[axis]) + gains.kd * (agent.v_W[axis] - self.v_WB[axis]);
+    if (std::abs(correction) <= 1) a_W[axis] += correction;
+  }
+  const double forward = std::cos(yaw) * a_W.x() + std::sin(yaw) * a_W.y();
+  const double left = std::cos(yaw) * a_W.y() - std::sin(yaw) * a_W.x();
+  const auto tilt_torque = [&](double j, double wanted, double angle, double rate) {
+    const double target = std::clamp(wanted, -body.tilt_limit_rad, body.tilt_limit_rad);
+    const double most = 3 * body.attitude.kd;
+    return j * (std::clamp(body.attitude.kp * (target - angle), -most, most) - body.attitude.kd * rate);
+  };
+  const Vector3d& j = body.inertia_kg_m2;
+  const Vector3d& w = self.w_WB_B;
+  return {body.mass_kg * (a_W.z() + kG), tilt_torque(j.x(), -left / kG, roll, w.x()),
+          tilt_torque(j.y(), forward / kG, pitch, w.y()),
+          j.z() * (body.heading.kp * (agent.control.heading_rad - yaw) - body.heading.kd * w.z())};
+}
+
+TEST(FramesDoc, SaysWhatTheLowLevelStackDoes) {
+  std::mt19937_64 random(1);
+  const auto within = [&](double most) { return most * (2 * (static_cast<double>(random() >> 11) * 0x1p-53) - 1); };
+  const auto vector = [&](double most) { return Vector3d(within(most), within(most), within(most)); };
+  int free = 0, kept = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    Experiment e = One();
+    e.agents[0].law.axes = Axes::kXyz;
+    e.agents[0].airframe.inertia_kg_m2 /= 30;  // so that the rotors can often give all of the torque
+    e.agents[0].control.heading_rad = within(0.2);
+    e.agents[0].v_W = vector(1);
+    const double roll = within(0.1), pitch = within(0.1), yaw = within(0.2);
+    Motion self = Tilted(e, roll, pitch, yaw);
+    self.p_WB += vector(0.5);
+    self.v_WB += vector(0.3);
+    self.w_WB_B = vector(0.2);
+    const Vector3d u_W(within(5), within(5), within(trial % 2 == 0 ? 5 : 20));
+    const Eigen::Vector4d expected = AsDocumented(e, self, u_W, roll, pitch, yaw);
+    const Controller::Output output = First(e, self, u_W);
+    const double t_max = e.agents[0].airframe.max_thrust_n;
+    EXPECT_NEAR(WrenchOf(e, output)[0], std::clamp(expected[0], 0.1 * t_max, 0.9 * t_max), 1e-9);
+    kept += expected[0] < 0.1 * t_max || expected[0] > 0.9 * t_max;
+    if ((output.flags & kRotorLimited) != 0) continue;
+    EXPECT_LT((WrenchOf(e, output) - expected).norm(), 1e-9);
+    ++free;
+  }
+  EXPECT_GT(free, 100) << "all four were compared";
+  EXPECT_GT(kept, 100) << "the thrust was out of its range";
+}
+
 // --- mixer ------------------------------------------------------------------------------------------
 
 /// Thrust (N) and torques (N m) of the mixed rotor speeds.

@@ -271,7 +271,9 @@ TEST(World, TurnsWithTorqueOverInertia) {
   const double torque = body.drag_n_m_s2 * hover * hover * 2 * (1.1 * 1.1 - 0.9 * 0.9);
   EXPECT_NEAR(world.State(1).w_WB_B.z(), torque / body.inertia_kg_m2.z(), 1e-9);
   const Eigen::Quaterniond q = world.State(1).q_WB;
-  EXPECT_NEAR(2 * std::atan2(q.z(), q.w()), torque / body.inertia_kg_m2.z() / 2, 1e-3) << "angle after 1 s";
+  const double turn = torque / body.inertia_kg_m2.z();
+  EXPECT_NEAR(2 * std::atan2(q.z(), q.w()), turn / 2 + 0.001 * turn / 2, 1e-9)
+      << "angle after 1 s, ahead by dt (w - w(0)) / 2 (docs/frames.md, integration)";
 }
 
 TEST(World, DrivesABodyThatLeansForwardForward) {
