@@ -2,9 +2,9 @@
 // speeds. With our axes (x forward, y left, z up; phi, theta, psi: roll, pitch, yaw about them):
 //   reference:  a   = a_W + kp (p* - p) + kd (v* - v) + B v / m    with p*'' = a_W; in z, the altitude loop
 //   thrust:     T   = m (a_z + g)
-//   inversion:  a in the heading frame -> phi*, theta*             small angles: phi* = -a_left / g, theta* = a_forward
-//   / g attitude:   tau = J (kp (phi* - phi) - kd phi')                the same for theta; psi goes to
-//   control.heading_rad rotors:     [w1^2 .. w4^2] = A^-1 [T, tau]
+//   inversion:  a in the heading frame -> phi*, theta*             small: phi* = -a_left / g, theta* = a_forward / g
+//   attitude:   tau = J (kp (phi* - phi) - kd phi')                same for theta; psi goes to control.heading_rad
+//   rotors:     [w1^2 .. w4^2] = A^-1 [T, tau]
 // The reference p*, v* is the ideal double integrator of the theory: it starts where the agent starts, and integrates
 // the limited accelerations of the law. Tracking it gives back the velocity that the body loses while it tilts. With
 // law.axes = "xy", z* stays the initial height and v_z* = 0. Gains: airframe.position in x and y, airframe.altitude in
