@@ -20,9 +20,9 @@ std::atomic<int> suppressed = 0;
 /// Python's stdout: what Python code prints goes to stderr in whole lines, because stdout belongs to the program.
 class Output {
  public:
-  void Write(const std::string& text) {
+  void Write(const py::str& text) {
     if (suppressed > 0) return;
-    line_ += text;
+    line_ += TextOf(text);
     const auto end = line_.rfind('\n');
     if (end == std::string::npos) return;
     std::fwrite(line_.data(), 1, end + 1, stderr);
@@ -190,11 +190,18 @@ PythonLock::~PythonLock() { PyGILState_Release(state_); }
 PythonTimeLimit::PythonTimeLimit(const TimeLimit& limit) { Watchdog::Get().Begin(limit); }
 PythonTimeLimit::~PythonTimeLimit() { Watchdog::Get().End(); }
 
+std::string TextOf(const py::handle& text) {
+  const auto bytes =
+      py::reinterpret_steal<py::bytes>(PyUnicode_AsEncodedString(text.ptr(), "utf-8", "backslashreplace"));
+  if (!bytes) throw py::error_already_set();
+  return bytes;
+}
+
 PythonError Explain(py::error_already_set& error, const std::string& file) {
   const py::object traceback = py::module_::import("traceback");
   const bool is_syntax = error.matches(PyExc_SyntaxError);
   const auto text = [&](const py::object& lines) {
-    std::string joined = py::str("").attr("join")(lines).cast<std::string>();
+    std::string joined = TextOf(py::str("").attr("join")(lines));
     while (joined.ends_with('\n')) joined.pop_back();
     return joined;
   };
@@ -230,7 +237,7 @@ std::string SignatureIfNotCallable(const py::object& function, std::size_t count
     signature.attr("bind")(*py::tuple(py::make_tuple(py::none()) * py::int_(count)));
     return "";
   } catch (py::error_already_set&) {
-    return py::str(signature).cast<std::string>();
+    return TextOf(py::str(signature));
   }
 }
 

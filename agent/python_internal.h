@@ -39,6 +39,10 @@ class PythonTimeLimit {
   PythonTimeLimit& operator=(const PythonTimeLimit&) = delete;
 };
 
+/// The text of a str in UTF-8. Half of a surrogate pair, which UTF-8 does not have, is escaped as on Python's stderr:
+/// \udc80.
+std::string TextOf(const py::handle& text);
+
 /// Runs `text` in a namespace of its own, which it returns. `file`, `line`: where `text` begins, for messages. Throws
 /// PythonError.
 py::dict RunPython(const std::string& text, const std::string& file, int line);

@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include "experiment/toml/utf8.h"
+
 namespace mascot {
 
 using namespace std::chrono_literals;
@@ -58,7 +60,7 @@ void Lifecycle::Set(Life life, const std::string& reason) {
   {
     const std::lock_guard lock(mutex_);
     status_.state(static_cast<std::uint8_t>(life));
-    status_.reason(reason.substr(0, 1024));
+    status_.reason(std::string(CutUtf8(reason, 1024)));
   }
   Publish();
 }

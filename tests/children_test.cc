@@ -79,6 +79,37 @@ TEST_F(ChildrenTest, OnlyTheLastTenLinesAreKept) {
   EXPECT_THAT(logs_.LastLines("agent_1"), ElementsAre("3", "4", "5", "6", "7", "8", "9", "10", "11", "12"));
 }
 
+TEST_F(ChildrenTest, WhatIsNoUtf8IsReplacedInLinesAndKeptInTheLog) {
+  Spawn("agent_1", "printf 'Gr\\374n \\303\\274\\n'");
+  AwaitExits(1);
+  EXPECT_THAT(logs_.LastLines("agent_1"), ElementsAre("Gr\xEF\xBF\xBDn \xC3\xBC"));
+  EXPECT_EQ(ReadFile(folder_.File("agent_1.log")), "Gr\374n \xC3\xBC\n");
+}
+
+TEST_F(ChildrenTest, ALineThatIsNotOverIsInTheLogAtOnce) {
+  Spawn("agent_1", "printf 'step 1 ...'; exec sleep 1000");
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (ReadFile(folder_.File("agent_1.log")) != "step 1 ..." && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::yield();
+  EXPECT_EQ(ReadFile(folder_.File("agent_1.log")), "step 1 ...");
+  EXPECT_THAT(lines(), IsEmpty()) << "it may go on";
+}
+
+TEST_F(ChildrenTest, ALineWithoutEndIsTakenInPieces) {
+  Spawn("agent_1", "printf '%05000d' 1; exec sleep 1000");
+  AwaitLines(1);
+  EXPECT_THAT(lines(), ElementsAre(Pair("agent_1", std::string(4096, '0'))));
+  children_.Kill();
+  EXPECT_THAT(logs_.LastLines("agent_1"), ElementsAre(std::string(4096, '0'), std::string(903, '0') + "1"));
+  EXPECT_EQ(ReadFile(folder_.File("agent_1.log")), std::string(4999, '0') + "1\n");
+}
+
+TEST_F(ChildrenTest, ALongLineIsCutBetweenCharacters) {
+  Spawn("agent_1", "printf '%04095d\\303\\274\\n' 0");
+  AwaitExits(1);
+  EXPECT_THAT(logs_.LastLines("agent_1"), ElementsAre(std::string(4095, '0'), "\xC3\xBC"));
+}
+
 TEST_F(ChildrenTest, AnExitSaysItsCodeOrItsSignal) {
   Spawn("polite", "exit 3");
   const std::vector<Exit> polite = AwaitExits(1);

@@ -4,6 +4,7 @@
 #include "agent/agent.h"
 #include "agent/laws.h"
 #include "agent/python.h"
+#include "experiment/toml/utf8.h"
 #include "tests/scratch.h"
 #include "tests/three_agents.h"
 
@@ -295,6 +296,19 @@ TEST(CustomLaw, WhatCannotShowItselfIsShownByItsType) {
   EXPECT_EQ(Failure(bad + "def control(t, me, neighbours): return 0, 0\ndef message(me): return Bad()\n"),
             "tick 3: the law of agent 1 failed: message returned an object of type Bad, expected None or at most 64 "
             "numbers");
+}
+
+TEST(CustomLaw, WhatCameBackIsCutBetweenCharacters) {
+  const std::string failure = Failure("def control(t, me, neighbours): return 'x' + 150 * '\xC3\xBC'\n");
+  EXPECT_EQ(failure, Utf8(failure)) << "half a character was left";
+  EXPECT_THAT(failure, HasSubstr("\xC3\xBC..., expected 3 numbers or 2"));
+}
+
+TEST(CustomLaw, TextThatUtf8CannotSayIsEscaped) {
+  EXPECT_THAT(Failure("def control(t, me, neighbours):\n  print('\\udcff')\n  raise ValueError('\\udcfe')\n"),
+              ::testing::EndsWith("ValueError: \\udcfe"));
+  EXPECT_THAT(Failure("def control(t, me, neighbours): return '\\udcff'\n"),
+              HasSubstr("control returned '\\udcff', expected 3 numbers or 2"));
 }
 
 TEST(CustomLaw, ThatTriesUntilItWorksIsEndedToo) {

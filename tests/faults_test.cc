@@ -128,6 +128,29 @@ TEST(Faults, ARunDoesNotWaitForWhatALawHasStarted) {
   EXPECT_GE(helpers, 1);
 }
 
+TEST(Faults, WhatALawPrintsMayBeNoText) {
+  ScratchFolder folder;
+  const std::string law =
+      "import os\ndef control(t, me, neighbours):\n  if t > 0.1:\n    os.write(2, b'Gr\\xfc\\xdfe\\n')\n"
+      "    raise ValueError('no')\n  return 0, 0\n";
+  Up up(folder, "run", Python(folder, 1, law, "fidelity = false\n"));
+  EXPECT_EQ(up.Wait(), 1);
+  EXPECT_THAT(up.Summary()["failure"].get<std::string>(), AllOf(HasSubstr("agent_1 | Gr\xEF\xBF\xBD\xEF\xBF\xBD"
+                                                                          "e\n"),
+                                                                HasSubstr("ValueError: no")));
+  EXPECT_EQ(up.Summary()["exit"], 1);
+}
+
+TEST(Faults, ALawThatFailsOnIdealBodiesAloneMayFailInAnyLanguage) {
+  ScratchFolder folder;  // a quadrotor tilts; the ideal body does not
+  const std::string law =
+      "def control(t, me, neighbours):\n"
+      "  if t > 0.5 and abs(me.orientation[2]) < 1e-9:\n    return 'x' + 150 * '\xC3\xBC'\n  return 1, 0\n";
+  Up up(folder, "run", Python(folder, 1, law), {"--engine", "inprocess"});
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  EXPECT_THAT(up.Summary()["fidelity"]["failure"].get<std::string>(), HasSubstr("\xC3\xBC..., expected 3 numbers"));
+}
+
 TEST(Faults, ASlowLawIsNoFault) {
   ScratchFolder folder;  // for 64 rows, the metrics spend over a second in the laws of all agents
   const std::string law = "import time\ndef control(t, me, neighbours):\n  time.sleep(0.01)\n  return [0, 0]\n";

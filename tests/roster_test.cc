@@ -73,6 +73,8 @@ TEST_F(RosterTest, ProcessesWithoutAStatusAreNamed) {
 TEST_F(RosterTest, AnAgentStartedByHandThatFailsIsTheRunsFailure) {
   EXPECT_THAT([&] { Say("agent_2", Life::kFailed, 2, "no such law"); },
               ThrowsMessage<std::runtime_error>("agent_2 failed: no such law"));
+  EXPECT_THAT([&] { Say("agent_2", Life::kFailed, 2, "\xFF"); },
+              ThrowsMessage<std::runtime_error>("agent_2 failed: \xEF\xBF\xBD"));
 }
 
 TEST_F(RosterTest, AFailureOfAnyOtherProcessIsLeftToItsExit) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "agent/python_internal.h"
+#include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {
@@ -55,10 +56,10 @@ struct Names {
 /// repr() of a returned value, for a message; its type if repr() fails.
 std::string Repr(const py::handle& value) try {
   constexpr std::size_t kLongest = 200;
-  const std::string text = py::repr(value).cast<std::string>();
-  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+  const std::string text = TextOf(py::repr(value));
+  return text.size() <= kLongest ? text : std::string(CutUtf8(text, kLongest)) + "...";
 } catch (py::error_already_set&) {
-  return "an object of type " + py::type::of(value).attr("__name__").cast<std::string>();
+  return "an object of type " + TextOf(py::type::of(value).attr("__name__"));
 }
 
 /// The numbers in a returned value; nullopt if it is not a flat sequence of numbers.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "agent/law_library.h"
+#include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {
@@ -44,7 +45,7 @@ std::string ExceptionText() {
   try {
     throw;
   } catch (const std::exception& error) {
-    return error.what();
+    return Utf8(error.what());
   } catch (...) {
     return "it threw something that is no std::exception";
   }
@@ -117,7 +118,7 @@ void Try(const LawLibrary& library, const Experiment& experiment, int id, Plugin
     plugin.wanted = library.Make(SetupOf(experiment, id, params))->wanted();
     NoteUnknown(law, plugin.params, params);
   } catch (const std::invalid_argument& refusal) {
-    NoteRefusal(law, refusal.what());
+    NoteRefusal(law, Utf8(refusal.what()));
   } catch (...) {
     law.Fail("library", "expected a law of agent " + std::to_string(id) + ", got an exception: " + ExceptionText());
   }

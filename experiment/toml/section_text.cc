@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "experiment/toml/section_internal.h"
+#include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {
@@ -34,8 +35,6 @@ std::string Escaped(char c) {
 }
 
 bool IsControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
-bool IsContinuation(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
-
 char Lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 /// Edit distance in which a swap of neighbouring letters counts as one edit (Damerau, CACM 7(3), 1964).
@@ -87,9 +86,7 @@ std::string OneLine(std::string_view text) {
 std::string CutShort(std::string_view text) {
   constexpr std::size_t kLongest = 60;
   if (text.size() <= kLongest) return std::string(text);
-  std::size_t length = kLongest;
-  while (length > 0 && IsContinuation(text[length])) --length;  // no half UTF-8 character
-  return std::string(text.substr(0, length)) + "...";
+  return std::string(CutUtf8(text, kLongest)) + "...";
 }
 
 std::string Printable(std::string_view text) { return OneLine(CutShort(text)); }

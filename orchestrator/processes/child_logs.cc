@@ -9,8 +9,12 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
+
+#include "experiment/toml/utf8.h"
 
 namespace mascot {
 
@@ -21,17 +25,28 @@ struct ChildLogs::Stream {
   std::string process;
   int descriptor = -1;
   std::ofstream file;
-  std::string partial;           // characters since the last end of line
+  std::string partial;           // what came since the last line
   std::deque<std::string> last;  // the last kLastLines lines
 };
 
 namespace {
 
 constexpr std::size_t kLastLines = 10;
-constexpr auto kPipeIsEmpty = 2s;  // by then, the last output of a dead child has been copied from its pipe
+constexpr std::size_t kLongestLine = 4096;  // a longer one is taken for several
+constexpr auto kPipeIsEmpty = 2s;           // by then, the last output of a dead child has been copied from its pipe
 
 void MakePipe(int (&ends)[2]) {
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
+}
+
+/// Takes the next line off the front of `text`; nothing if it is not over.
+std::optional<std::string> NextLine(std::string& text) {
+  const auto end = text.find('\n');
+  if (end == std::string::npos && text.size() <= kLongestLine) return std::nullopt;
+  const bool is_long = end > kLongestLine;
+  std::string line(is_long ? CutUtf8(text, kLongestLine) : std::string_view(text).substr(0, end));
+  text.erase(0, line.size() + (is_long ? 0 : 1));
+  return line;
 }
 
 }  // namespace
@@ -91,8 +106,10 @@ void ChildLogs::Copy() {
 }
 
 void ChildLogs::Close(Stream& stream) {
-  if (!stream.partial.empty()) TakeLine(stream, stream.partial);
-  stream.partial.clear();
+  if (!stream.partial.empty()) {
+    stream.file << std::endl;
+    TakeLine(stream, std::exchange(stream.partial, {}));
+  }
   if (stream.descriptor >= 0) close(std::exchange(stream.descriptor, -1));
 }
 
@@ -101,13 +118,14 @@ void ChildLogs::Read(Stream& stream) {
   const ssize_t size = read(stream.descriptor, buffer, sizeof buffer);
   if (size < 0 && (errno == EAGAIN || errno == EINTR)) return;
   if (size <= 0) return Close(stream);
-  stream.partial.append(buffer, static_cast<std::size_t>(size));
-  for (std::size_t end; (end = stream.partial.find('\n')) != std::string::npos; stream.partial.erase(0, end + 1))
-    TakeLine(stream, stream.partial.substr(0, end));
+  const std::string_view text(buffer, static_cast<std::size_t>(size));
+  stream.file << text << std::flush;
+  stream.partial += text;
+  while (const auto line = NextLine(stream.partial)) TakeLine(stream, *line);
 }
 
-void ChildLogs::TakeLine(Stream& stream, const std::string& line) {
-  stream.file << line << std::endl;
+void ChildLogs::TakeLine(Stream& stream, const std::string& bytes) {
+  const std::string line = Utf8(bytes);
   stream.last.push_back(line);
   if (stream.last.size() > kLastLines) stream.last.pop_front();
   on_line_(stream.process, line);

@@ -11,10 +11,11 @@
 
 namespace mascot {
 
-/// Copies the output of children to their log files, passes every line to a sink, and keeps each child's last 10 lines.
+/// Copies the output of children to their log files, byte for byte and at once; passes every line to a sink, as valid
+/// UTF-8, and keeps each child's last 10 lines. A line that is not over is passed on at 4096 bytes and at the end.
 class ChildLogs {
  public:
-  /// Called for each complete line, in the copying thread.
+  /// Called for each line, in the copying thread.
   using LineSink = std::function<void(const std::string& process, const std::string& line)>;
 
   explicit ChildLogs(LineSink on_line);
@@ -34,7 +35,7 @@ class ChildLogs {
   void Copy();
   void Read(Stream& stream);
   void Close(Stream& stream);
-  void TakeLine(Stream& stream, const std::string& line);
+  void TakeLine(Stream& stream, const std::string& bytes);
 
   const LineSink on_line_;
   std::mutex mutex_;

@@ -119,7 +119,7 @@ std::string ConfigurationSchema() {
   Json& tables = schema["properties"];
   tables["law"].update(LawSchema(false));
   tables["agents"]["properties"]["override"]["items"]["properties"]["law"].update(LawSchema(true));
-  return schema.dump(2) + "\n";
+  return JsonText(schema);
 }
 
 }  // namespace mascot

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 
 #include "experiment/toml/key.h"
 
@@ -10,6 +11,11 @@ namespace mascot {
 
 /// JSON whose objects keep the insertion order of their keys.
 using Json = nlohmann::ordered_json;
+
+/// `json` as it is printed and written. Text that is no UTF-8, such as the name of a file, is replaced, not refused.
+inline std::string JsonText(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 inline Json VectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 

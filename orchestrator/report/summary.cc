@@ -217,7 +217,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
     json["realtime"] = engine.pacing ? Realtime(*engine.pacing) : Json(nullptr);
   json["startup_s"] = engine.startup_s;
   json["total_s"] = facts.total_s;
-  return json.dump(2) + "\n";
+  return JsonText(json);
 }
 
 std::string SummaryText(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,

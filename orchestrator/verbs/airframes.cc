@@ -106,7 +106,7 @@ int ShowAirframes(bool json) {
       Print(airframe);
     }
   }
-  if (json) std::cout << table.dump(2) << "\n";
+  if (json) std::cout << JsonText(table);
   return 0;
 }
 

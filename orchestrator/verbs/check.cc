@@ -97,7 +97,7 @@ int Check(const ConfigArgs& args, bool json) {
   Prediction prediction = Predict(experiment);
   for (std::string& warning : DeliveryWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
   if (json) {
-    std::cout << ToJson(experiment, facts, prediction).dump(2) << "\n";
+    std::cout << JsonText(ToJson(experiment, facts, prediction));
     return 0;
   }
   std::cout << args.path << ": valid\n";

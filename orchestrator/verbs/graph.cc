@@ -134,7 +134,7 @@ int ShowGraph(const ConfigArgs& args, bool json, bool dot) {
   }
   const GraphFacts facts = FactsOf(experiment.graph, experiment.law.leader);
   if (json) {
-    std::cout << ToJson(experiment, facts).dump(2) << "\n";
+    std::cout << JsonText(ToJson(experiment, facts));
   } else {
     Print(experiment.graph, facts, experiment.schedule);
   }

@@ -159,8 +159,7 @@ int Info(const std::string& run, bool as_json) {
     return 2;
   }
   if (as_json)
-    // The names in a damaged file may contain any bytes.
-    std::cout << ToJson(findings).dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
+    std::cout << JsonText(ToJson(findings)) << std::flush;
   else
     PrintText(findings);
   return findings.complete() ? 0 : 1;

@@ -69,7 +69,7 @@ int ShowLaws(bool json) {
       Print(law);
     }
   }
-  if (json) std::cout << table.dump(2) << "\n";
+  if (json) std::cout << JsonText(table);
   return 0;
 }
 
@@ -82,7 +82,7 @@ int ShowModels(bool json) {
       std::cout << fmt::format("{}\n  {}\n  actuator  {}\n", model.name, model.summary, model.actuator);
     }
   }
-  if (json) std::cout << table.dump(2) << "\n";
+  if (json) std::cout << JsonText(table);
   return 0;
 }
 

@@ -13,6 +13,7 @@
 #include "bus/bus.h"
 #include "bus/shared_memory.h"
 #include "experiment/processes.h"
+#include "experiment/toml/utf8.h"
 #include "orchestrator/engines/dds/domain_lock.h"
 #include "orchestrator/engines/dds/hub.h"
 #include "orchestrator/engines/dds/recorder.h"
@@ -268,7 +269,7 @@ void DdsRun::Do(const RunPhases::Actions& actions) {
 }
 
 void DdsRun::AskToEnd() try {
-  hub_->Ask(Ask::kEnd, phases_.in_order() ? "done" : phases_.failure().substr(0, 1000));
+  hub_->Ask(Ask::kEnd, phases_.in_order() ? "done" : std::string(CutUtf8(phases_.failure(), 1000)));
 } catch (const BusError& error) {  // End() then stops the processes with signals
   console_.Line(error.what());
 }

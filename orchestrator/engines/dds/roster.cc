@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bus/wire.h"
+#include "experiment/toml/utf8.h"
 
 namespace mascot {
 
@@ -27,7 +28,8 @@ Roster::News Roster::OnStatus(const Status& status) {
   experiment_wanted_ |= life == Life::kWaiting;
   const bool external =
       status.agent() >= 1 && status.agent() <= rules_.external.size() && rules_.external[status.agent() - 1];
-  if (life == Life::kFailed && external) throw std::runtime_error(process + " failed: " + status.reason().to_string());
+  if (life == Life::kFailed && external)
+    throw std::runtime_error(Utf8(process + " failed: " + status.reason().to_string()));
   return {.changed = changed, .wake = life == Life::kWaiting || life == Life::kDone};
 }
 
