@@ -1,13 +1,9 @@
 #include "agent/python.h"
 
 #include <atomic>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <limits>
 #include <mutex>
-#include <sstream>
-#include <thread>
 #include <utility>
 
 #include "agent/python_internal.h"
@@ -86,75 +82,6 @@ int LineOf(const py::error_already_set& error, const std::string& file) {
   return line;
 }
 
-/// An exception class for code that takes too long: PyThreadState_SetAsyncExc() takes a class. It is no Exception,
-/// because loops that try something until it works catch those.
-py::object MakeTimeoutError(const TimeLimit& limit) {
-  py::dict space;
-  std::ostringstream text;
-  text << "took longer than " << limit.source << " = " << limit.limit_s << " s";
-  space["text"] = text.str();
-  py::exec(R"(
-class TimeoutError(BaseException):
-    __module__ = "builtins"
-    def __str__(self):
-        return text
-)",
-           space);
-  return space["TimeoutError"];
-}
-
-/// Interrupts the one piece of Python code that runs with a time limit, if it runs too long. A thread checks now and
-/// then; the code itself pays for two atomic stores.
-class Watchdog {
- public:
-  static Watchdog& Get() {
-    static Watchdog& watchdog = *new Watchdog;  // its thread lives as long as the process
-    return watchdog;
-  }
-  void Begin(const TimeLimit& limit) {
-    limit_ = limit;
-    thread_ = PyThread_get_thread_ident();
-    deadline_ = Now() + LimitNs();
-  }
-  void End() {
-    deadline_ = kNever;
-    if (std::exchange(interrupted_, false)) PyThreadState_SetAsyncExc(thread_, nullptr);  // cancel it if pending
-  }
-
- private:
-  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
-  static constexpr auto kCheckEvery = std::chrono::milliseconds(50);
-
-  static std::int64_t Now() {
-    return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
-  }
-
-  Watchdog() {
-    std::thread([this] {
-      for (;; std::this_thread::sleep_for(kCheckEvery))
-        if (Now() > deadline_) Interrupt();
-    }).detach();
-  }
-
-  void Interrupt() {
-    const PyGILState_STATE state = PyGILState_Ensure();  // code that hangs releases the GIL every few milliseconds
-    if (Now() > deadline_) {                             // it still runs after we waited
-      deadline_ = Now() + LimitNs();
-      interrupted_ = true;
-      PyThreadState_SetAsyncExc(thread_, MakeTimeoutError(limit_).ptr());
-    }
-    PyGILState_Release(state);
-  }
-
-  std::int64_t LimitNs() const { return static_cast<std::int64_t>(limit_.limit_s * 1e9); }
-
-  std::atomic<std::int64_t> deadline_ = kNever;
-  // The members below are used with the GIL held.
-  TimeLimit limit_;
-  unsigned long thread_ = 0;
-  bool interrupted_ = false;
-};
-
 int IntOr0(const py::handle& object, const char* attribute) {
   const py::object value = py::getattr(object, attribute, py::none());
   return py::isinstance<py::int_>(value) ? value.cast<int>() : 0;
@@ -186,9 +113,6 @@ PythonLock::PythonLock() {
 }
 
 PythonLock::~PythonLock() { PyGILState_Release(state_); }
-
-PythonTimeLimit::PythonTimeLimit(const TimeLimit& limit) { Watchdog::Get().Begin(limit); }
-PythonTimeLimit::~PythonTimeLimit() { Watchdog::Get().End(); }
 
 std::string TextOf(const py::handle& text) {
   const auto bytes =

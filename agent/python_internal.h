@@ -1,10 +1,11 @@
 #pragma once
 
-// What python.cc and laws/custom.cc share; no other file includes this, or pybind11.
+// What python*.cc and laws/custom.cc share; no other file includes this, or pybind11.
 
 #include <pybind11/embed.h>
 #include <pybind11/numpy.h>
 
+#include <cstdint>
 #include <string>
 
 #include "agent/python.h"
@@ -30,13 +31,26 @@ class PythonLock {
 
 /// Python code that runs longer than `limit` while an object of this class lives gets a TimeoutError at the line where
 /// it is, and another one each time it catches that (it is no Exception: only a bare except, or one of BaseException,
-/// does). A call that does not return to Python is not interrupted. Made with the GIL held; one at a time in a process.
+/// does). A call that does not return to Python is not interrupted. Made and destroyed with the GIL held, in one
+/// thread; one at a time in each thread.
 class PythonTimeLimit {
  public:
   explicit PythonTimeLimit(const TimeLimit& limit);
   ~PythonTimeLimit();
   PythonTimeLimit(const PythonTimeLimit&) = delete;
   PythonTimeLimit& operator=(const PythonTimeLimit&) = delete;
+
+ private:
+  friend class PythonWatchdog;
+  void SetDeadline();
+  bool IsLate() const;
+  void Interrupt(const py::object& error);
+
+  // Used with the GIL held, also by the watchdog's thread.
+  const TimeLimit limit_;
+  const unsigned long thread_;
+  std::int64_t deadline_ns_ = 0;
+  bool interrupted_ = false;
 };
 
 /// The text of a str in UTF-8. Half of a surrogate pair, which UTF-8 does not have, is escaped as on Python's stderr:

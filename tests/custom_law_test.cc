@@ -1,6 +1,9 @@
 // Laws written in Python.
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <thread>
+
 #include "agent/agent.h"
 #include "agent/laws.h"
 #include "agent/python.h"
@@ -364,6 +367,26 @@ TEST(CustomLaw, ThatHangsIsEndedAtTheLineWhereItHangs) {
                   AllOf(HasSubstr("tick 0: the law of agent 1 failed at t = 0.0 s\n"),
                         ::testing::ContainsRegex("line (10|11), in control"),
                         ::testing::EndsWith("TimeoutError: took longer than 0.8 run.agent_timeout_s = 0.08 s"))));
+}
+
+TEST(CustomLaw, ThatHangsIsEndedThoughAnotherOfItsProcessEnds) {
+  const ScratchFolder folder;
+  Experiment experiment = LoadExperiment(
+      Section::FromText("[run]\nduration_s = 1.0\nagent_timeout_s = 0.5\n[agents]\ncount = 2\n[graph]\nedges = "
+                        "[]\n[law]\nname = 'custom'\n"
+                        "python = '''\nimport time\ndef control(t, me, neighbours):\n  if me.id == 1:\n    open('" +
+                            folder.File("hangs") +
+                            "', 'w').close()\n    end = time.monotonic() + 20\n"
+                            "    while time.monotonic() < end: pass\n  return 0, 0\n'''\n",
+                        "test.toml"),
+      "test");
+  Agent hangs(experiment, 1), ends(experiment, 2);
+  std::thread other([&] {  // as in a process with several agents: another thread, which takes turns
+    while (!std::filesystem::exists(folder.File("hangs"))) std::this_thread::yield();
+    ends.Want(0, Motion{}, {});
+  });
+  EXPECT_THAT([&] { hangs.Want(0, Motion{}, {}); }, ThrowsMessage<std::runtime_error>(HasSubstr("TimeoutError: ")));
+  other.join();
 }
 
 // --- the published testbed's laws -------------------------------------------------------------------
