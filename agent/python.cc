@@ -1,7 +1,5 @@
 #include "agent/python.h"
 
-#include <atomic>
-#include <cstdio>
 #include <cstdlib>
 #include <mutex>
 #include <utility>
@@ -10,30 +8,6 @@
 
 namespace mascot {
 namespace {
-
-std::atomic<int> suppressed = 0;
-
-/// Python's stdout: what Python code prints goes to stderr in whole lines, because stdout belongs to the program.
-class Output {
- public:
-  void Write(const py::str& text) {
-    if (suppressed > 0) return;
-    line_ += TextOf(text);
-    const auto end = line_.rfind('\n');
-    if (end == std::string::npos) return;
-    std::fwrite(line_.data(), 1, end + 1, stderr);
-    std::fflush(stderr);
-    line_.erase(0, end + 1);
-  }
-  void Flush() {}
-
- private:
-  std::string line_;
-};
-
-PYBIND11_EMBEDDED_MODULE(mascot_output, module) {
-  py::class_<Output>(module, "Output").def(py::init<>()).def("write", &Output::Write).def("flush", &Output::Flush);
-}
 
 /// What NumPy and linear algebra choose by the processor, chosen here: results then have the same bits on each.
 void PinToBaseline() {
@@ -59,7 +33,7 @@ void StartInterpreter() {
   config.use_hash_seed = 1;  // the order of sets of strings is the same in every run
   config.hash_seed = 0;
   py::initialize_interpreter(&config);
-  py::module_::import("sys").attr("stdout") = py::module_::import("mascot_output").attr("Output")();
+  TakePythonOutput();
   PyEval_SaveThread();
 }
 
@@ -101,9 +75,6 @@ py::object SignatureOf(const py::object& function) try {
 }
 
 }  // namespace
-
-SuppressedPythonOutput::SuppressedPythonOutput() { ++suppressed; }
-SuppressedPythonOutput::~SuppressedPythonOutput() { --suppressed; }
 
 PythonLock::PythonLock() {
   static std::once_flag started;

@@ -53,6 +53,8 @@ class PythonTimeLimit {
   bool interrupted_ = false;
 };
 
+/// Makes sys.stdout print to stderr. Called once, with the GIL held.
+void TakePythonOutput();
 /// The text of a str in UTF-8. Half of a surrogate pair, which UTF-8 does not have, is escaped as on Python's stderr:
 /// \udc80.
 std::string TextOf(const py::handle& text);

@@ -1,6 +1,7 @@
 // Laws written in Python.
 #include <gmock/gmock.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
@@ -461,6 +462,34 @@ TEST(CustomLaw, PrintsToStandardErrorInWholeLinesAndNotIfMuted) {
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "at 0.05 s\n");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
+/// What a law with this first statement prints in one call.
+std::string Printed(const std::string& statement) {
+  Experiment experiment = Custom("def control(t, me, neighbours):\n  " + statement + "\n  return 0, 0\n");
+  Agent agent(experiment, 2);
+  testing::internal::CaptureStderr();
+  agent.Want(0, Motion{}, {});
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(CustomLaw, PrintsALineThatIsNotOverWhenItIsFlushedOrLong) {
+  EXPECT_EQ(Printed("print('.', end='')"), "");
+  EXPECT_EQ(Printed("print('.', end='', flush=True)"), "..") << "the first had waited";
+  EXPECT_EQ(Printed("print(5000 * '-', end='')"), std::string(5000, '-'));
+  EXPECT_EQ(Printed("print('whole\\nnot', end='')"), "whole\n");
+  EXPECT_EQ(Printed("print(\"'s line\")"), "not's line\n");
+}
+
+TEST(CustomLaw, PrintsALineThatIsNotOverAtTheEndOfTheProcess) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // Python does not survive a fork
+  EXPECT_EXIT(
+      {
+        Agent(Custom("def control(t, me, neighbours):\n  print('last words', end='')\n  return 0, 0\n"), 2)
+            .Want(0, Motion{}, {});
+        std::exit(0);
+      },
+      testing::ExitedWithCode(0), "last words");
 }
 
 }  // namespace
