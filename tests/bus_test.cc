@@ -3,8 +3,14 @@
 #include "bus/bus.h"
 
 #include <gmock/gmock.h>
+#include <pwd.h>
+#include <sched.h>
+#include <sys/mount.h>
 
 #include <atomic>
+#include <cstring>
+#include <memory>
+#include <thread>
 
 #include "agent/laws.h"
 #include "bus/stop_signal.h"
@@ -217,13 +223,19 @@ TEST_F(Bus, ASampleReachesItsReadersBeforeItsWriterLeaves) {
   }
 }
 
+std::string UserName() {
+  const passwd* entry = getpwuid(geteuid());
+  return entry != nullptr ? entry->pw_name : std::to_string(geteuid());
+}
+
 TEST(DomainLock, GivesEachRunADomainOfItsOwn) {
   const DomainLock one(-1), two(-1);
   EXPECT_NE(one.domain(), two.domain());
   EXPECT_NE(one.discovery_port(), two.discovery_port());
   EXPECT_THAT([&] { DomainLock third(one.domain()); },
               ThrowsMessage<std::runtime_error>("network.domain = " + std::to_string(one.domain()) +
-                                                " is in use by another run on this machine"));
+                                                " is in use by another run on this machine: process " +
+                                                std::to_string(getpid()) + " of user " + UserName()));
 }
 
 TEST(DomainLock, IsFreeAgainWhenItsRunIsOver) {
@@ -233,6 +245,40 @@ TEST(DomainLock, IsFreeAgainWhenItsRunIsOver) {
     domain = lock.domain();
   }
   EXPECT_EQ(DomainLock(domain).domain(), domain);
+}
+
+/// Runs `test` in a thread with namespaces of its own (CLONE_NEWNET, ...). Returns why that is not allowed; else empty.
+std::string Apart(int namespaces, const std::function<void()>& test) {
+  std::string trouble;
+  std::thread([&] {
+    if (unshare(namespaces) != 0)
+      trouble = std::string("making namespaces is not allowed here: ") + std::strerror(errno);
+    else
+      test();
+  }).join();
+  return trouble;
+}
+
+TEST(DomainLock, SaysWhoHasTheDomainsIfNoneIsFree) {
+  const std::string trouble = Apart(CLONE_NEWNET, [] {  // others go on taking domains
+    std::vector<std::unique_ptr<DomainLock>> taken;
+    for (int domain = 2; domain <= 98; domain += 2) taken.push_back(std::make_unique<DomainLock>(domain));
+    EXPECT_THAT([&] { DomainLock{-1}; },
+                ThrowsMessage<std::runtime_error>("no free DDS domain among 2, 4, ..., 98: user " + UserName() +
+                                                  " has 49; network.domain may name another"));
+    EXPECT_EQ(DomainLock(3).domain(), 3);
+  });
+  if (!trouble.empty()) GTEST_SKIP() << trouble;
+}
+
+TEST(DomainLock, NeedsNoFile) {  // which somebody else may have made, or may not read
+  const std::string trouble = Apart(CLONE_NEWNS | CLONE_NEWNET, [] {
+    ASSERT_EQ(mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr), 0) << std::strerror(errno);
+    ASSERT_EQ(mount("none", "/tmp", "tmpfs", MS_RDONLY, nullptr), 0) << std::strerror(errno);
+    EXPECT_NO_THROW(DomainLock{-1});
+    EXPECT_NO_THROW(DomainLock{3});
+  });
+  if (!trouble.empty()) GTEST_SKIP() << trouble;
 }
 
 // --- programs started by hand ---------------------------------------------------------------------------

@@ -1,13 +1,18 @@
 #include "orchestrator/engines/dds/domain_lock.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
+#include <fmt/format.h>
+#include <pwd.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <fstream>
+#include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -15,29 +20,58 @@
 namespace mascot {
 namespace {
 
-constexpr const char* kFolder = "/tmp/mascot-domains";  // not $TMPDIR: every run of the machine must see it
 constexpr int kFirstDomain = 2, kLastDomain = 98;
 constexpr int kDomainStep = 2;  // more than 120 participants run over into the next domain's ports
 constexpr int kPortBase = 7400, kPortsPerDomain = 250;  // RTPS 2.2, section 9.6.1
 
 int FirstPort(int domain) { return kPortBase + kPortsPerDomain * domain; }
 
-/// Opens the domain's lock file, creating it if necessary. Without O_CLOEXEC: children inherit the lock.
-int OpenLockFile(int domain) {
-  if (mkdir(kFolder, 01777) == 0) chmod(kFolder, 01777);  // the umask applies to mkdir's mode
-  const std::string path = std::string(kFolder) + "/" + std::to_string(domain);
-  int descriptor = open(path.c_str(), O_RDONLY | O_NOFOLLOW);
-  if (descriptor < 0 && errno == ENOENT) descriptor = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CREAT, 0644);
-  if (descriptor < 0) throw std::runtime_error("cannot open " + path + ": " + std::strerror(errno));
+/// Calls `call`, which is bind() or connect(), with a socket and the name that stands for the domain. The name is an
+/// abstract one (unix(7)), in no folder: one socket at a time can have it, whosever it is, and no file is left, or can
+/// be in the way.
+template <class Call>
+int WithNameOf(int domain, int socket, Call call) {
+  const std::string name = "mascot-domain-" + std::to_string(domain);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::ranges::copy(name, address.sun_path + 1);  // an abstract name begins with a zero byte
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  return call(socket, reinterpret_cast<const sockaddr*>(&address), size);
+}
+
+int MakeSocket(int flags) {
+  const int descriptor = ::socket(AF_UNIX, SOCK_STREAM | flags, 0);
+  if (descriptor < 0) throw std::runtime_error(std::string("cannot make a socket: ") + std::strerror(errno));
   return descriptor;
 }
 
-/// Locks the domain. Returns the descriptor that holds the lock, or -1 if another run holds it.
+/// Reserves the domain. Returns the descriptor that holds it, or -1 if another run does.
 int TryLock(int domain) {
-  const int descriptor = OpenLockFile(domain);
-  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
-  close(descriptor);
-  return -1;
+  const int descriptor = MakeSocket(0);  // without SOCK_CLOEXEC: children inherit it
+  if (WithNameOf(domain, descriptor, ::bind) == 0) {
+    ::listen(descriptor, SOMAXCONN);  // so that others learn who it is: HolderOf
+    return descriptor;
+  }
+  const int error = errno;
+  ::close(descriptor);
+  if (error == EADDRINUSE) return -1;
+  throw std::runtime_error(fmt::format("cannot reserve DDS domain {}: {}", domain, std::strerror(error)));
+}
+
+/// The process that reserved the domain; nothing if it does not answer.
+std::optional<ucred> HolderOf(int domain) {
+  const int descriptor = MakeSocket(SOCK_NONBLOCK | SOCK_CLOEXEC);
+  ucred holder{};
+  socklen_t size = sizeof holder;
+  const bool known = WithNameOf(domain, descriptor, ::connect) == 0 &&
+                     ::getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &holder, &size) == 0;
+  ::close(descriptor);
+  return known ? std::optional(holder) : std::nullopt;
+}
+
+std::string UserName(uid_t user) {
+  const passwd* entry = ::getpwuid(user);
+  return "user " + (entry != nullptr ? entry->pw_name : std::to_string(user));
 }
 
 /// Local UDP ports in use on this machine, by which other DDS programs are recognised.
@@ -63,26 +97,42 @@ bool HasPortIn(const std::set<int>& ports, int first, int end) {
   return port != ports.end() && *port < end;
 }
 
+/// "other DDS programs have 1, user alice has 48": who has the domains that a run may choose from.
+std::string Holders() {
+  std::map<std::string, int> count;
+  for (int domain = kFirstDomain; domain <= kLastDomain; domain += kDomainStep) {
+    const auto holder = HolderOf(domain);
+    ++count[holder ? UserName(holder->uid) + " has" : "other DDS programs have"];
+  }
+  std::string text;
+  for (const auto& [who, domains] : count) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", who, domains);
+  return text;
+}
+
 }  // namespace
 
-DomainLock::DomainLock(int wanted) {
-  if (wanted >= 0) {
-    domain_ = wanted;
-    descriptor_ = TryLock(wanted);
-    if (descriptor_ < 0)
-      throw std::runtime_error("network.domain = " + std::to_string(wanted) +
-                               " is in use by another run on this machine");
+DomainLock::DomainLock(int wanted) : domain_(wanted) {
+  if (wanted < 0) {
+    TakeAny();
     return;
   }
+  descriptor_ = TryLock(wanted);
+  if (descriptor_ >= 0) return;
+  const auto holder = HolderOf(wanted);
+  throw std::runtime_error(
+      fmt::format("network.domain = {} is in use by another run on this machine{}", wanted,
+                  holder ? fmt::format(": process {} of {}", holder->pid, UserName(holder->uid)) : std::string()));
+}
+
+void DomainLock::TakeAny() {
   const std::set<int> busy = UdpPortsInUse();
-  for (int domain = kFirstDomain; domain <= kLastDomain; domain += kDomainStep) {
-    if (HasPortIn(busy, FirstPort(domain), FirstPort(domain + kDomainStep))) continue;
-    descriptor_ = TryLock(domain);
-    if (descriptor_ < 0) continue;
-    domain_ = domain;
-    return;
+  for (domain_ = kFirstDomain; domain_ <= kLastDomain; domain_ += kDomainStep) {
+    if (HasPortIn(busy, FirstPort(domain_), FirstPort(domain_ + kDomainStep))) continue;
+    descriptor_ = TryLock(domain_);
+    if (descriptor_ >= 0) return;
   }
-  throw std::runtime_error("no free DDS domain: too many runs on this machine at once");
+  throw std::runtime_error(fmt::format("no free DDS domain among {}, {}, ..., {}: {}; network.domain may name another",
+                                       kFirstDomain, kFirstDomain + kDomainStep, kLastDomain, Holders()));
 }
 
 DomainLock::~DomainLock() { close(descriptor_); }

@@ -4,12 +4,13 @@
 
 namespace mascot {
 
-/// Reserves a DDS domain, so that no other run on this machine uses it: a lock on a file in /tmp. It lasts as long as
-/// this object, or any child process that inherited its descriptor.
+/// Reserves a DDS domain, so that no other run on this machine uses it, of this user or another: the name of a socket,
+/// of which there is one in each network namespace. It lasts as long as this object, or any child process that
+/// inherited its descriptor, and leaves nothing.
 class DomainLock {
  public:
   /// Reserves domain `wanted`; if `wanted` < 0, any free domain. Throws std::runtime_error if it is in use or none is
-  /// free.
+  /// free, and says who has it, or them.
   explicit DomainLock(int wanted);
   ~DomainLock();
   DomainLock(const DomainLock&) = delete;
@@ -20,6 +21,8 @@ class DomainLock {
   int discovery_port() const;
 
  private:
+  void TakeAny();
+
   int domain_ = -1;
   int descriptor_ = -1;
 };
