@@ -74,7 +74,7 @@ void RecordRow(benchmark::State& state) {
   const auto agents = static_cast<int>(state.range(0));
   Experiment experiment = Load(agents, "[output]\nfidelity = false\n");
   const ScratchFolder scratch;
-  const RunFolder folder(scratch.File("run"), "bench", false);
+  const RunFolder folder(scratch.File("run"), experiment, false);
   RunWriter writer(experiment, folder, "");
   RunMeter meter(experiment);
   RowFeed feed(experiment, {&writer, &meter});

@@ -43,7 +43,7 @@ def message(me):
 /// Runs `toml` in this process and records it. Returns the path of the recording.
 std::string Record(const ScratchFolder& scratch, const std::string& toml) {
   const Experiment experiment = LoadExperiment(Section::FromText(toml, "talk.toml"), "talk");
-  const RunFolder folder(scratch.File("run"), "talk", false);
+  const RunFolder folder(scratch.File("run"), experiment, false);
   RunWriter writer(experiment, folder, experiment.resolved);
   EXPECT_EQ(RunInProcess(experiment, {&writer}, [] { return true; }).failure, "");
   writer.Close();

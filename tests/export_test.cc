@@ -210,7 +210,7 @@ void WriteLateRun(const ScratchFolder& scratch, const std::string& name) {
   const std::string text =
       "[run]\nname = 'late'\nduration_s = 0.1\nmode = 'realtime'\n[agents]\ncount = 2\n[law]\nname = 'consensus'\n";
   Experiment experiment = LoadExperiment(Section::FromText(text, "late.toml"), "late");
-  const RunFolder folder(scratch.File(name), "late", false);
+  const RunFolder folder(scratch.File(name), experiment, false);
   RunWriter writer(experiment, folder, experiment.resolved);
   RowFeed feed(experiment, {&writer});
   Row row(2);

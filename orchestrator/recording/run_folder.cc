@@ -4,8 +4,15 @@
 
 #include <algorithm>
 #include <ctime>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
 
 #include "experiment/toml/section.h"
+#include "idl/topics.h"
+#include "orchestrator/formats/mcap/writer.h"
 #include "orchestrator/formats/whole_file.h"
 
 namespace mascot {
@@ -27,28 +34,86 @@ fs::path MakeNew(const fs::path& parent) {
       return path;
 }
 
-/// Files that a run writes. A recording under another name (record.file) is not listed: --force keeps it.
-constexpr std::string_view kFiles[] = {
-    "logs",         "config.toml",  "summary.json",     "states.npz",       "run.mcap",     "paths.png",
-    "position.png", "velocity.png", "acceleration.png", "disagreement.png", "tracking.png", "error.png"};
+/// Files that a run writes, beside its recording and its logs.
+constexpr std::string_view kFiles[] = {"config.toml",      "summary.json",    "states.npz",   "paths.png",
+                                       "position.png",     "velocity.png",    "tracking.png", "error.png",
+                                       "acceleration.png", "disagreement.png"};
 
-void RemoveEarlierRun(const fs::path& path) {
-  for (const auto& entry : fs::directory_iterator(path)) {
-    const fs::path name = entry.path().filename();
-    if (std::find(std::begin(kFiles), std::end(kFiles), name) != std::end(kFiles)) fs::remove_all(entry.path());
+/// True for regular files only: not for links to them, not for folders.
+bool IsFile(const fs::path& path) { return fs::is_regular_file(fs::symlink_status(path)); }
+
+bool IsRecording(const fs::path& path) {
+  try {
+    return path.extension() == ".mcap" && IsFile(path) && IsByMcapWriter(path.string());
+  } catch (const std::runtime_error&) {  // it cannot be read
+    return false;
   }
 }
 
-fs::path MakeGiven(const std::string& out, bool force) {
+/// Whether this is a config.toml as a run writes it: resolved, with the format first.
+bool IsResolved(const fs::path& config) {
+  constexpr std::string_view kBeginning = "format = ";
+  std::string text(kBeginning.size(), '\0');
+  return IsFile(config) && std::ifstream(config, std::ios::binary).read(text.data(), std::ssize(text)) &&
+         text == kBeginning;
+}
+
+/// Whether a run has made the folder: it wrote its config.toml and began a recording.
+bool IsOfARun(const fs::path& folder) {
+  return IsResolved(folder / "config.toml") && std::ranges::any_of(fs::directory_iterator(folder), IsRecording);
+}
+
+bool IsLogName(const fs::path& name) {
+  const std::string process = name.stem().string();
+  return name.extension() == ".log" &&
+         (process == "orchestrator" || process == "physics_server" || AgentsOf(process).has_value());
+}
+
+/// What there is in the folder by a name that a run gives, relative to it.
+std::vector<fs::path> NamesOfARun(const fs::path& folder, const std::string& recording) {
+  std::vector<fs::path> names;
+  const auto add = [&](const fs::path& name) {
+    if (fs::exists(fs::symlink_status(folder / name))) names.push_back(name);
+  };
+  for (const std::string_view file : kFiles)
+    for (const char* suffix : {"", ".part"}) add(std::string(file) + suffix);
+  for (const std::string& file : std::set<std::string>{recording, "run.mcap"}) add(file);
+  const fs::file_status logs = fs::symlink_status(folder / "logs");
+  if (fs::exists(logs) && !fs::is_directory(logs)) names.emplace_back("logs");
+  if (fs::is_directory(logs))
+    for (const fs::path& log : fs::directory_iterator(folder / "logs"))
+      if (IsLogName(log.filename())) names.push_back("logs" / log.filename());
+  std::ranges::sort(names);
+  return names;
+}
+
+/// Removes the files of an earlier run. Throws ConfigError, and removes nothing, if something has the name of such a
+/// file and is none.
+void RemoveEarlierRun(const fs::path& folder, const std::string& recording) {
+  const bool of_a_run = IsOfARun(folder);
+  const std::vector<fs::path> names = NamesOfARun(folder, recording);
+  std::string others;
+  for (const fs::path& name : names) {
+    const fs::path path = folder / name;
+    if (of_a_run && IsFile(path) && (name.extension() != ".mcap" || IsRecording(path))) continue;
+    others += (others.empty() ? "" : ", ") + name.string();
+  }
+  if (!others.empty())
+    throw ConfigError({"--out " + folder.string() + ": expected the files of an earlier run, got " + others +
+                       ", which no run has made (--force replaces nothing else)"});
+  for (const fs::path& name : names) fs::remove(folder / name);
+}
+
+fs::path MakeGiven(const std::string& out, const std::string& recording, bool force) {
   const fs::path path = out;
   if (fs::exists(path) && !fs::is_directory(path))
     throw ConfigError({"--out " + out + ": expected a folder, got a file"});
   if (fs::exists(path) && !fs::is_empty(path)) {
     if (!force)
-      throw ConfigError(
-          {"--out " + out +
-           ": expected a new or empty folder, got one with files in it (--force writes there all the same)"});
-    RemoveEarlierRun(path);
+      throw ConfigError({"--out " + out +
+                         ": expected a new or empty folder, got one with files in it (--force replaces those of an "
+                         "earlier run, and keeps others)"});
+    RemoveEarlierRun(path, recording);
   }
   fs::create_directories(path);
   return path;
@@ -56,8 +121,8 @@ fs::path MakeGiven(const std::string& out, bool force) {
 
 }  // namespace
 
-RunFolder::RunFolder(const std::optional<std::string>& out, const std::string& name, bool force) try
-    : path_(out ? MakeGiven(*out, force) : MakeNew(fs::path("runs") / name)) {
+RunFolder::RunFolder(const std::optional<std::string>& out, const Experiment& experiment, bool force) try
+    : path_(out ? MakeGiven(*out, experiment.record.file, force) : MakeNew(fs::path("runs") / experiment.run.name)) {
   fs::create_directories(path_ / "logs");
 } catch (const fs::filesystem_error& error) {
   throw ConfigError({"--out: cannot make the run folder " + error.path1().string() + ": " + error.code().message()});

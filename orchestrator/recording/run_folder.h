@@ -4,14 +4,17 @@
 #include <optional>
 #include <string>
 
+#include "experiment/experiment.h"
+
 namespace mascot {
 
 /// Folder for the results of a run: `runs/<name>/<time>/`, or the folder given with --out.
 class RunFolder {
  public:
   /// Creates the folder. Throws ConfigError if that fails, or if `out` exists and is not empty; with `force`, the files
-  /// of an earlier run are removed from it instead.
-  RunFolder(const std::optional<std::string>& out, const std::string& name, bool force);
+  /// of an earlier run are removed from it instead, and nothing else: what has the name of such a file, in a folder
+  /// that no run has made, is an error.
+  RunFolder(const std::optional<std::string>& out, const Experiment& experiment, bool force);
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path File(const std::string& name) const { return path_ / name; }

@@ -88,7 +88,7 @@ int Up(const UpArgs& args) {
   if (over_dds) RefuseTooManyProcesses(experiment);
   const Prediction prediction = Predict(experiment);
 
-  const RunFolder folder(args.out, experiment.run.name, args.force);
+  const RunFolder folder(args.out, experiment, args.force);
   folder.Write("config.toml", experiment.resolved);
   Console console(args.quiet || args.json);
   for (const std::string& warning : prediction.warnings) console.Line("warning: " + warning);
@@ -134,7 +134,8 @@ std::function<int()> SetUpUp(CLI::App& command) {
   command.add_option("--out", args->out, "folder for the results (default: runs/NAME/TIME)")->type_name("DIR");
   command.add_option("--engine", args->engine, "dds: processes on a bus; inprocess: the same in one thread")
       ->check(CLI::IsMember({"dds", "inprocess"}));
-  command.add_flag("--force", args->force, "write into a folder that is not empty; an earlier run's files are removed");
+  command.add_flag("--force", args->force,
+                   "write into a folder that is not empty: an earlier run's files are replaced, others kept");
   command.add_flag("--json", args->json, "print the summary as JSON on stdout, and nothing else");
   command.add_flag("--quiet", args->quiet, "print errors only");
   return [args] { return Up(*args); };

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "orchestrator/formats/input_file.h"
 #include "orchestrator/formats/mcap/records.h"
 #include "orchestrator/formats/mcap/zstd.h"
 #include "orchestrator/formats/output_file.h"
@@ -16,6 +17,13 @@ namespace {
 
 using mcap::Op;
 using mcap::Record;
+
+/// Magic and header.
+Bytes Beginning() {
+  Bytes bytes(mcap::kMagic.begin(), mcap::kMagic.end());
+  Record(bytes, Op::kHeader).String("ros2").String("mascot").End();
+  return bytes;
+}
 
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 constexpr std::uint64_t kChunkSpan_ns = 1'000'000'000;
@@ -95,11 +103,7 @@ struct McapWriter::Impl {
   SummaryGroup metadata_indexes{Op::kMetadataIndex, {}};
 };
 
-McapWriter::McapWriter(const std::string& path) : impl_(std::make_unique<Impl>(path)) {
-  impl_->WriteData(mcap::kMagic);
-  Record(impl_->record, Op::kHeader).String("ros2").String("mascot").End();
-  impl_->FlushRecord();
-}
+McapWriter::McapWriter(const std::string& path) : impl_(std::make_unique<Impl>(path)) { impl_->WriteData(Beginning()); }
 
 McapWriter::~McapWriter() {
   try {
@@ -177,6 +181,13 @@ void McapWriter::Close() {
   impl_->WriteSummary();
   impl_->file.SyncAndClose();
   impl_->closed = true;
+}
+
+bool IsByMcapWriter(const std::string& path) {
+  const Bytes expected = Beginning();
+  Bytes bytes;
+  InputFile(path).Read(0, expected.size(), bytes);
+  return bytes == expected;
 }
 
 std::uint64_t McapWriter::messages() const { return impl_->messages + impl_->chunk_messages; }

@@ -51,6 +51,9 @@ class McapWriter {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Whether the file begins as those of McapWriter do. Throws std::runtime_error if it cannot be read.
+bool IsByMcapWriter(const std::string& path);
+
 /// Contents of an MCAP file, up to its end or the first damage. A chunk that is cut off counts as far as it can be
 /// decompressed; a chunk with a wrong CRC does not count.
 struct McapContents {
