@@ -10,6 +10,8 @@
 #include "agent/laws.h"
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/formats/bytes.h"
+#include "orchestrator/formats/mcap/reader.h"
+#include "orchestrator/formats/mcap/writer.h"
 #include "orchestrator/recording/recording.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/run_writer.h"

@@ -7,7 +7,7 @@
 #include "bus/bus.h"
 #include "bus/shared_memory.h"
 #include "bus/wire.h"
-#include "orchestrator/formats/mcap/writer.h"
+#include "orchestrator/formats/mcap/reader.h"
 #include "tests/orchestrator.h"
 #include "tests/param_name.h"
 

@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "orchestrator/formats/mcap/writer.h"
+#include "orchestrator/formats/mcap/reader.h"
 #include "tests/orchestrator.h"
 #include "tests/param_name.h"
 

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/formats/mcap/writer.h"
 #include "tests/mcap_files.h"
 #include "tests/scratch.h"

@@ -8,6 +8,7 @@
 #include <random>
 #include <tuple>
 
+#include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/formats/mcap/records.h"
 #include "orchestrator/formats/mcap/writer.h"
 #include "tests/mcap_files.h"
@@ -93,6 +94,19 @@ TEST(Mcap, ReadsBackWhatItWrote) {
   EXPECT_EQ(messages[8].sequence, 4u);
   EXPECT_EQ(messages[8].log_time, 4 * kMs + 77);
   EXPECT_EQ(messages[8].data, Noise(random, 40));
+}
+
+TEST(Mcap, GivesOneMessageAtATime) {
+  const ScratchFolder scratch;
+  WriteSmallFile(scratch.File("run.mcap"));
+  McapReader reader(scratch.File("run.mcap"));
+  ASSERT_NE(reader.Next(), nullptr);
+  EXPECT_EQ(reader.contents().messages, 1u);
+  for (int k = 1; k < 14; ++k) ASSERT_NE(reader.Next(), nullptr);
+  EXPECT_FALSE(reader.contents().complete);
+  EXPECT_EQ(reader.Next(), nullptr);
+  EXPECT_TRUE(reader.contents().complete);
+  EXPECT_EQ(reader.Next(), nullptr);
 }
 
 TEST(Mcap, EqualCallsGiveEqualBytes) {
@@ -205,6 +219,7 @@ void CutAtEveryByte(const std::string& path) {
     const McapContents contents = ReadMcap(path, [&](const auto& message) { read.push_back(message); });
     const auto whole = std::count_if(ends.begin(), ends.end(), [cut](std::size_t end) { return end <= cut; });
     ASSERT_FALSE(contents.complete) << "cut at " << cut;
+    ASSERT_TRUE(contents.cut) << "cut at " << cut;
     ASSERT_THAT(contents.damage, AllOf(HasSubstr("the file "), HasSubstr("byte "))) << "cut at " << cut;
     ASSERT_GE(read.size(), static_cast<std::size_t>(whole)) << "cut at " << cut;  // a cut zstd frame may give more
     for (std::size_t i = 0; i < read.size(); ++i)
@@ -287,6 +302,32 @@ TEST(Mcap, HostileFilesAreDescribed) {
     EXPECT_FALSE(contents.complete) << hostile.name;
     EXPECT_EQ(contents.damage, hostile.damage + " (record at byte 33)") << hostile.name;
   }
+}
+
+TEST(Mcap, AWrongLengthDoesNotTakeTheRestOfALargeFileIntoMemory) {
+  const ScratchFolder scratch;
+  const std::uint64_t large = std::uint64_t{300} << 20;
+  Bytes record;
+  Record(record, Op::kMetadata).End(/*beyond=*/large);
+  WriteFile(scratch.File("bad.mcap"), Handmade(record));
+  std::filesystem::resize_file(scratch.File("bad.mcap"), 2 * large);  // sparse
+  EXPECT_EQ(ReadMcap(scratch.File("bad.mcap")).damage,
+            "a record of 314572800 bytes, above the limit of 268435456 (record at byte 33)");
+}
+
+TEST(Mcap, SaysWhetherDamageIsInTheSummaryAlone) {
+  const ScratchFolder scratch;
+  const std::string file = WriteSmallFile(scratch.File("run.mcap"));
+  const auto read = [&](const std::string& bytes) {
+    WriteFile(scratch.File("bad.mcap"), bytes);
+    return ReadMcap(scratch.File("bad.mcap"));
+  };
+  EXPECT_TRUE(read(file.substr(0, file.size() - 1)).data_complete);
+  EXPECT_FALSE(read(file.substr(0, file.size() / 2)).data_complete);
+  std::string changed = file;
+  changed[file.size() - 20] ^= 1;  // in the footer
+  EXPECT_TRUE(read(changed).data_complete);
+  EXPECT_FALSE(read(changed).cut);
 }
 
 TEST(Mcap, CountsAGapWhereverTheSequenceDoesNotRiseByOne) {

@@ -8,7 +8,7 @@
 
 #include "agent/laws.h"
 #include "bus/wire.h"
-#include "orchestrator/formats/mcap/writer.h"
+#include "orchestrator/formats/mcap/reader.h"
 #include "tests/orchestrator.h"
 #include "tests/param_name.h"
 

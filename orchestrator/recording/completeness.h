@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "idl/topics.h"
-#include "orchestrator/formats/mcap/writer.h"
+#include "orchestrator/formats/mcap/reader.h"
 
 namespace mascot {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "orchestrator/formats/mcap/writer.h"
+#include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/recording/completeness.h"
 #include "orchestrator/team/row.h"
 

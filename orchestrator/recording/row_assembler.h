@@ -7,7 +7,7 @@
 #include <string>
 
 #include "idl/topics.h"
-#include "orchestrator/formats/mcap/writer.h"
+#include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/team/row.h"
 
 namespace mascot {

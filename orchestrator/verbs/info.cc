@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "experiment/toml/section.h"
-#include "orchestrator/formats/mcap/writer.h"
+#include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/recording/completeness.h"
 #include "orchestrator/recording/recording.h"
 #include "orchestrator/report/json.h"

@@ -1,3 +1,5 @@
+#include "orchestrator/formats/mcap/reader.h"
+
 #include <algorithm>
 #include <stdexcept>
 #include <tuple>
@@ -5,7 +7,6 @@
 
 #include "orchestrator/formats/input_file.h"
 #include "orchestrator/formats/mcap/records.h"
-#include "orchestrator/formats/mcap/writer.h"
 #include "orchestrator/formats/mcap/zstd.h"
 
 namespace mascot {
@@ -15,31 +16,47 @@ using mcap::Fields;
 using mcap::Malformed;
 using mcap::Op;
 
+/// Damage: the file ends where more must follow.
+struct Truncated : Malformed {
+  using Malformed::Malformed;
+};
+
 std::uint8_t Code(Op op) { return static_cast<std::uint8_t>(op); }
 
-/// Reads one file record by record and collects its contents. A malformed record throws Malformed, which ends the
-/// reading in Run().
-class Reader {
- public:
-  Reader(const std::string& path, const std::function<void(const McapContents::Message&)>& on_message)
-      : path_(path), file_(path), on_message_(on_message) {}
+}  // namespace
 
-  McapContents Run() {
-    try {
+/// Reads the file record by record and collects its contents. A malformed record throws Malformed, which ends the
+/// reading.
+class McapReader::Impl {
+ public:
+  explicit Impl(const std::string& path) : path_(path), file_(path) {
+    UpToDamage([this] {
       ReadMagic();
       ReadHeader();
-      while (!ReadDataRecord()) {
-      }
-      ReadSummary();
-      contents_.complete = true;
-    } catch (const Malformed& damage) {
-      const std::string what = whole_ ? damage.what() : "the file ends inside a record";
-      contents_.damage = what + " (record at byte " + std::to_string(offset_) + ")";
-    }
-    return std::move(contents_);
+    });
   }
 
+  const McapContents::Message* Next() {
+    bool found = false;
+    UpToDamage([&] {
+      while (!over_ && !found) found = chunk_.empty() ? ReadDataRecord() : ReadChunkRecord();
+    });
+    return found ? &message_ : nullptr;
+  }
+  const McapContents& contents() const { return contents_; }
+
  private:
+  /// Calls `read`. Damage ends the reading, and is described in the contents.
+  template <class Read>
+  void UpToDamage(const Read& read) try {
+    read();
+  } catch (const Malformed& damage) {
+    over_ = true;
+    contents_.cut = !whole_ || dynamic_cast<const Truncated*>(&damage) != nullptr;
+    const std::string what = whole_ ? damage.what() : "the file ends inside a record";
+    contents_.damage = what + " (record at byte " + std::to_string(offset_) + ")";
+  }
+
   void ReadMagic();
   void ReadHeader();
   bool NextRecord();
@@ -47,9 +64,11 @@ class Reader {
   void ReadSchema(Fields body);
   void ReadChannel(Fields body);
   void ReadMessage(Fields body);
-  void ReadChunk(Fields body);
-  void ReadChunkRecords(ByteSpan raw);
+  void OpenChunk(Fields body);
+  bool ReadChunkRecord();
   void ReadAttachment(Fields body);
+  void ReadMetadata(Fields body);
+  void ReadDataEnd(Fields body);
   void ReadSummary();
   void ReadFooter(std::uint64_t summary_start, std::uint32_t crc);
   void CompareStatistics(Fields body) const;
@@ -61,11 +80,11 @@ class Reader {
 
   std::string path_;
   InputFile file_;
-  const std::function<void(const McapContents::Message&)>& on_message_;
   McapContents contents_;
   std::map<std::uint16_t, Schema> schemas_;
   std::map<std::uint16_t, std::uint32_t> next_sequence_;  // expected next, by channel; starts at 0
   McapContents::Message message_;                         // reused: one allocation serves all messages
+  bool over_ = false;                                     // the end of the file is read, or damage
 
   // The current record.
   std::uint64_t offset_ = 0;  // where it begins
@@ -73,38 +92,44 @@ class Reader {
   std::uint8_t op_ = 0;
   bool whole_ = true;  // all of its body is in the file
   Bytes record_;       // frame and body
+  ByteSpan chunk_;     // if it is a chunk: the records in it that are still to be read
   Bytes frame_;
   mcap::Decompressor decompressor_;
   std::uint32_t data_crc_ = 0;
 };
 
-void Reader::ReadMagic() {
+void McapReader::Impl::ReadMagic() {
   file_.Read(0, mcap::kMagic.size(), record_);
   if (!std::equal(record_.begin(), record_.end(), mcap::kMagic.begin()))
     throw std::runtime_error(path_ + ": is no MCAP file: it does not begin with MCAP's magic bytes");
-  if (record_.size() < mcap::kMagic.size()) throw Malformed("the file ends inside its first magic bytes");
+  if (record_.size() < mcap::kMagic.size()) throw Truncated("the file ends inside its first magic bytes");
   data_crc_ = Crc32(0, record_);
   next_ = mcap::kMagic.size();
 }
 
-/// Reads the record at `next_`. Returns false at the end of the file. `whole_` is false if the file ends inside it.
-bool Reader::NextRecord() {
+/// Reads the record at `next_`. Returns false at the end of the file. `whole_` is false if the file ends inside it. A
+/// wrong length does not make it read the rest of a large file into memory.
+bool McapReader::Impl::NextRecord() {
   offset_ = next_;
   file_.Read(offset_, mcap::kFrameBytes, frame_);
   if (frame_.empty()) return false;
-  if (frame_.size() < mcap::kFrameBytes) throw Malformed("the file ends inside a record's frame");
+  if (frame_.size() < mcap::kFrameBytes) throw Truncated("the file ends inside a record's frame");
   Fields frame(frame_);
   op_ = frame.U8();
   const std::uint64_t length = frame.U64();
   const std::uint64_t available = file_.size() - offset_ - mcap::kFrameBytes;
+  const std::uint64_t present = std::min(length, available);
+  if (present > mcap::kMaxRecordBytes)
+    throw Malformed("a record of " + std::to_string(length) + " bytes, above the limit of " +
+                    std::to_string(mcap::kMaxRecordBytes));
   whole_ = length <= available;
-  file_.Read(offset_, mcap::kFrameBytes + std::min(length, available), record_);
+  file_.Read(offset_, mcap::kFrameBytes + present, record_);
   next_ = offset_ + record_.size();
   return true;
 }
 
-void Reader::ReadHeader() {
-  if (!NextRecord() || !whole_) throw Malformed("the file ends before its header does");
+void McapReader::Impl::ReadHeader() {
+  if (!NextRecord() || !whole_) throw Truncated("the file ends before its header does");
   if (op_ != Code(Op::kHeader)) throw Malformed("expected a header record, got opcode " + std::to_string(op_));
   data_crc_ = Crc32(data_crc_, record_);
   Fields body(ByteSpan(record_).subspan(mcap::kFrameBytes));
@@ -112,32 +137,28 @@ void Reader::ReadHeader() {
   contents_.library = body.String();
 }
 
-/// Returns true once DataEnd was read and its CRC is right. Skips records with other or unknown opcodes.
-bool Reader::ReadDataRecord() {
-  if (!NextRecord()) throw Malformed("the file ends without a summary: it was not closed");
+/// Reads the next record of the data section. Returns whether it is a message. Skips records with unknown opcodes.
+bool McapReader::Impl::ReadDataRecord() {
+  if (!whole_) throw Truncated("the file ends inside a record");  // a chunk, whose whole messages were read
+  if (!NextRecord()) throw Truncated("the file ends without a summary: it was not closed");
   const Fields body(ByteSpan(record_).subspan(mcap::kFrameBytes));
-  if (op_ == Code(Op::kChunk)) ReadChunk(body);  // even if cut: its whole messages count
-  if (!whole_) throw Malformed("the file ends inside a record");
+  if (op_ == Code(Op::kChunk)) OpenChunk(body);  // even if cut: its whole messages count
+  if (!whole_ && chunk_.empty()) throw Truncated("the file ends inside a record");
   if (op_ == Code(Op::kDataEnd)) {
-    const std::uint32_t crc = Fields(body).U32();
-    if (crc != 0 && crc != data_crc_) throw Malformed("the CRC of the data section is wrong");
-    return true;
+    ReadDataEnd(body);
+    return false;
   }
   if (op_ == Code(Op::kSchema)) ReadSchema(body);
   if (op_ == Code(Op::kChannel)) ReadChannel(body);
   if (op_ == Code(Op::kMessage)) ReadMessage(body);
   if (op_ == Code(Op::kAttachment)) ReadAttachment(body);
-  if (op_ == Code(Op::kMetadata)) {
-    Fields fields(body);
-    const std::string name = fields.String();
-    contents_.metadata[name] = fields.Map();
-  }
+  if (op_ == Code(Op::kMetadata)) ReadMetadata(body);
   if (op_ == Code(Op::kFooter)) throw Malformed("a footer without the end of the data section");
   data_crc_ = Crc32(data_crc_, record_);
-  return false;
+  return op_ == Code(Op::kMessage);
 }
 
-void Reader::ReadSchema(Fields body) {
+void McapReader::Impl::ReadSchema(Fields body) {
   const std::uint16_t id = body.U16();
   Schema schema;
   schema.name = body.String();
@@ -148,7 +169,7 @@ void Reader::ReadSchema(Fields body) {
   if (!added && !(known->second == schema)) throw Malformed("schema " + std::to_string(id) + " is defined twice");
 }
 
-void Reader::ReadChannel(Fields body) {
+void McapReader::Impl::ReadChannel(Fields body) {
   const std::uint16_t id = body.U16();
   const std::uint16_t schema_id = body.U16();
   McapContents::ChannelInfo channel;
@@ -169,7 +190,7 @@ void Reader::ReadChannel(Fields body) {
     throw Malformed("channel " + std::to_string(id) + " is defined twice");
 }
 
-void Reader::ReadMessage(Fields body) {
+void McapReader::Impl::ReadMessage(Fields body) {
   message_.channel = body.U16();
   message_.sequence = body.U32();
   message_.log_time = body.U64();
@@ -188,12 +209,11 @@ void Reader::ReadMessage(Fields body) {
   channel.bytes += message_.data.size();
   ++channel.messages;
   ++contents_.messages;
-  if (on_message_) on_message_(message_);
 }
 
 /// A complete chunk is read only if its size and CRC are right. The CRC of a chunk that is cut off
 /// cannot be compared, but cutting changes none of the bytes before the cut: whatever can be decompressed is read.
-void Reader::ReadChunk(Fields body) {
+void McapReader::Impl::OpenChunk(Fields body) {
   body.U64();  // start time
   body.U64();  // end time
   const std::uint64_t size = body.U64();
@@ -215,23 +235,23 @@ void Reader::ReadChunk(Fields body) {
     contents_.compressed_bytes += stored.size();
     contents_.uncompressed_bytes += raw.size();
   }
-  ReadChunkRecords(raw);
+  chunk_ = raw;
 }
 
-void Reader::ReadChunkRecords(ByteSpan raw) {
-  while (!raw.empty()) {
-    Fields frame(raw);
-    const std::uint8_t op = frame.U8();
-    const std::uint64_t length = frame.U64();
-    const Fields body(frame.Raw(length));  // throws at the record in which the chunk is cut off
-    if (op == Code(Op::kSchema)) ReadSchema(body);
-    if (op == Code(Op::kChannel)) ReadChannel(body);
-    if (op == Code(Op::kMessage)) ReadMessage(body);
-    raw = frame.rest();
-  }
+/// Reads the next record of the chunk. Returns whether it is a message.
+bool McapReader::Impl::ReadChunkRecord() {
+  Fields frame(chunk_);
+  const std::uint8_t op = frame.U8();
+  const std::uint64_t length = frame.U64();
+  const Fields body(frame.Raw(length));  // throws at the record in which the chunk is cut off
+  chunk_ = frame.rest();
+  if (op == Code(Op::kSchema)) ReadSchema(body);
+  if (op == Code(Op::kChannel)) ReadChannel(body);
+  if (op == Code(Op::kMessage)) ReadMessage(body);
+  return op == Code(Op::kMessage);
 }
 
-void Reader::ReadAttachment(Fields body) {
+void McapReader::Impl::ReadAttachment(Fields body) {
   const ByteSpan all = body.rest();
   body.U64();  // log time
   body.U64();  // creation time
@@ -244,14 +264,28 @@ void Reader::ReadAttachment(Fields body) {
   contents_.attachments[name] = {data.begin(), data.end()};
 }
 
+void McapReader::Impl::ReadMetadata(Fields body) {
+  const std::string name = body.String();
+  contents_.metadata[name] = body.Map();
+}
+
+/// Reads the end of the data section, and the summary behind it.
+void McapReader::Impl::ReadDataEnd(Fields body) {
+  const std::uint32_t crc = body.U32();
+  if (crc != 0 && crc != data_crc_) throw Malformed("the CRC of the data section is wrong");
+  contents_.data_complete = true;
+  ReadSummary();
+  contents_.complete = over_ = true;
+}
+
 /// Reads the summary and compares its statistics and chunk count with the data section.
-void Reader::ReadSummary() {
+void McapReader::Impl::ReadSummary() {
   const std::uint64_t summary_start = next_;
   std::uint32_t crc = 0;
   std::uint64_t chunk_indexes = 0;
   bool statistics = false;
   while (NextRecord()) {
-    if (!whole_) throw Malformed("the file ends inside its summary");
+    if (!whole_) throw Truncated("the file ends inside its summary");
     const Fields body(ByteSpan(record_).subspan(mcap::kFrameBytes));
     if (op_ == Code(Op::kFooter)) {
       if (!statistics) throw Malformed("the summary holds no statistics");
@@ -267,10 +301,10 @@ void Reader::ReadSummary() {
       statistics = true;
     }
   }
-  throw Malformed("the file ends inside its summary");
+  throw Truncated("the file ends inside its summary");
 }
 
-void Reader::CompareStatistics(Fields body) const {
+void McapReader::Impl::CompareStatistics(Fields body) const {
   const std::uint64_t messages = body.U64();
   body.U16();                           // schemas
   body.U32();                           // channels
@@ -287,7 +321,7 @@ void Reader::CompareStatistics(Fields body) const {
 }
 
 /// `crc` is the CRC of the summary so far; it also covers the footer's frame and its two offsets.
-void Reader::ReadFooter(std::uint64_t summary_start, std::uint32_t crc) {
+void McapReader::Impl::ReadFooter(std::uint64_t summary_start, std::uint32_t crc) {
   Fields body(ByteSpan(record_).subspan(mcap::kFrameBytes));
   const std::uint64_t claimed_start = body.U64();
   body.U64();  // start of the summary offsets
@@ -297,14 +331,24 @@ void Reader::ReadFooter(std::uint64_t summary_start, std::uint32_t crc) {
   if (claimed_crc != 0 && claimed_crc != Crc32(crc, ByteSpan(record_).first(covered)))
     throw Malformed("the CRC of the summary is wrong");
   file_.Read(next_, mcap::kMagic.size() + 1, frame_);
+  if (frame_.size() < mcap::kMagic.size()) throw Truncated("the file ends inside its last magic bytes");
   if (!std::equal(frame_.begin(), frame_.end(), mcap::kMagic.begin(), mcap::kMagic.end()))
     throw Malformed("the file does not end with MCAP's magic bytes behind its footer");
 }
 
-}  // namespace
+McapReader::McapReader(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+
+McapReader::~McapReader() = default;
+
+const McapContents::Message* McapReader::Next() { return impl_->Next(); }
+
+const McapContents& McapReader::contents() const { return impl_->contents(); }
 
 McapContents ReadMcap(const std::string& path, const std::function<void(const McapContents::Message&)>& on_message) {
-  return Reader(path, on_message).Run();
+  McapReader reader(path);
+  while (const McapContents::Message* message = reader.Next())
+    if (on_message) on_message(*message);
+  return reader.contents();
 }
 
 }  // namespace mascot

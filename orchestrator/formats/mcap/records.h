@@ -19,6 +19,8 @@ inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'M', 'C', 'A', 'P',
 inline constexpr std::size_t kFrameBytes = 9;  ///< opcode and body length, before every body
 /// Largest chunk, uncompressed, that is written or accepted (bytes).
 inline constexpr std::size_t kMaxChunkBytes = std::size_t{64} << 20;
+/// Largest record that is accepted (bytes): a chunk that could not be compressed, or a large attachment.
+inline constexpr std::size_t kMaxRecordBytes = std::size_t{256} << 20;
 
 enum class Op : std::uint8_t {
   kHeader = 0x01,

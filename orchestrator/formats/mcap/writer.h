@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -53,35 +52,5 @@ class McapWriter {
 
 /// Whether the file begins as those of McapWriter do. Throws std::runtime_error if it cannot be read.
 bool IsByMcapWriter(const std::string& path);
-
-/// Contents of an MCAP file, up to its end or the first damage. A chunk that is cut off counts as far as it can be
-/// decompressed; a chunk with a wrong CRC does not count.
-struct McapContents {
-  struct Message {
-    std::uint16_t channel = 0;
-    std::uint32_t sequence = 0;
-    std::uint64_t log_time = 0;
-    std::vector<std::uint8_t> data;
-  };
-  struct ChannelInfo {
-    std::string topic, schema_name, schema_encoding, schema_text, message_encoding;
-    std::map<std::string, std::string> metadata;
-    std::uint64_t messages = 0, bytes = 0;
-    std::uint64_t first_time = 0, last_time = 0;
-    std::uint64_t gaps = 0;  ///< messages whose sequence number is not the previous one + 1, or 0 at the start
-  };
-  std::string profile, library;
-  std::map<std::uint16_t, ChannelInfo> channels;
-  std::map<std::string, std::string> attachments;  ///< name -> bytes
-  std::map<std::string, std::map<std::string, std::string>> metadata;
-  std::uint64_t chunks = 0, messages = 0, compressed_bytes = 0, uncompressed_bytes = 0;
-  bool complete = false;  ///< the file has DataEnd, summary and footer, and every CRC is right
-  std::string damage;     ///< what is wrong, and at which byte; empty: nothing
-};
-
-/// Reads `path` and passes each message to `on_message` (may be empty). Throws std::runtime_error if the file cannot be
-/// read or does not begin with the MCAP magic. Damage is reported in the contents, also for a file cut off at any byte.
-McapContents ReadMcap(const std::string& path,
-                      const std::function<void(const McapContents::Message&)>& on_message = {});
 
 }  // namespace mascot
