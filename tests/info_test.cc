@@ -67,7 +67,9 @@ TEST(Info, DescribesARunAndProvesItComplete) {
   const std::string size = std::to_string(ReadFile(path).size());
   EXPECT_THAT(said.out, StartsWith("file:         " + path + "\nsize:         " + size +
                                    " bytes\n"
-                                   "profile:      ros2 (written by mascot)\nduration:     10.000 s\n"
+                                   "profile:      ros2 (written by " +
+                                   McapWriter::Library() +
+                                   ")\nduration:     10.000 s\n"
                                    "messages:     202\nchunks:       10\ncompression:  "));
   EXPECT_THAT(said.out, HasSubstr("  topic             type                               count          Hz\n"
                                   "  /agent_1/command  mascot_msgs/msg/AgentCommand         101       10.00\n"

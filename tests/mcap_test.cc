@@ -23,6 +23,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::MatchesRegex;
 using testing::Pair;
 using testing::StartsWith;
 using testing::ThrowsMessage;
@@ -69,7 +70,8 @@ TEST(Mcap, ReadsBackWhatItWrote) {
   EXPECT_TRUE(contents.complete);
   EXPECT_EQ(contents.damage, "");
   EXPECT_EQ(contents.profile, "ros2");
-  EXPECT_EQ(contents.library, "mascot");
+  EXPECT_EQ(contents.library, McapWriter::Library());
+  EXPECT_THAT(contents.library, MatchesRegex("mascot [0-9]+\\.[0-9]+\\.[0-9]+"));
   EXPECT_EQ(contents.messages, 14u);
   EXPECT_EQ(contents.chunks, 4u);
   EXPECT_THAT(contents.attachments, ElementsAre(Pair("config.toml", "[run]\n")));

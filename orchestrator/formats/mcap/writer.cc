@@ -18,12 +18,7 @@ namespace {
 using mcap::Op;
 using mcap::Record;
 
-/// Magic and header.
-Bytes Beginning() {
-  Bytes bytes(mcap::kMagic.begin(), mcap::kMagic.end());
-  Record(bytes, Op::kHeader).String("ros2").String("mascot").End();
-  return bytes;
-}
+constexpr std::string_view kProfile = "ros2", kProgram = "mascot";
 
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 constexpr std::uint64_t kChunkSpan_ns = 1'000'000'000;
@@ -103,7 +98,13 @@ struct McapWriter::Impl {
   SummaryGroup metadata_indexes{Op::kMetadataIndex, {}};
 };
 
-McapWriter::McapWriter(const std::string& path) : impl_(std::make_unique<Impl>(path)) { impl_->WriteData(Beginning()); }
+std::string McapWriter::Library() { return std::string(kProgram) + " " MASCOT_VERSION; }
+
+McapWriter::McapWriter(const std::string& path) : impl_(std::make_unique<Impl>(path)) {
+  impl_->WriteData(mcap::kMagic);
+  Record(impl_->record, Op::kHeader).String(kProfile).String(Library()).End();
+  impl_->FlushRecord();
+}
 
 McapWriter::~McapWriter() {
   try {
@@ -184,10 +185,15 @@ void McapWriter::Close() {
 }
 
 bool IsByMcapWriter(const std::string& path) {
-  const Bytes expected = Beginning();
+  // After the magic: the opcode of the header and its length (1 + 8 bytes), the profile and the library, each behind its
+  // length (4 bytes). The library ends with a version.
+  constexpr std::size_t kProfileAt = 21, kLibraryAt = kProfileAt + kProfile.size() + 4;
   Bytes bytes;
-  InputFile(path).Read(0, expected.size(), bytes);
-  return bytes == expected;
+  InputFile(path).Read(0, kLibraryAt + kProgram.size(), bytes);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return bytes.size() == kLibraryAt + kProgram.size() &&
+         std::equal(mcap::kMagic.begin(), mcap::kMagic.end(), bytes.begin()) &&
+         text.substr(kProfileAt, kProfile.size()) == kProfile && text.substr(kLibraryAt) == kProgram;
 }
 
 std::uint64_t McapWriter::messages() const { return impl_->messages + impl_->chunk_messages; }

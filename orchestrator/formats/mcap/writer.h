@@ -22,6 +22,9 @@ class McapWriter {
     std::map<std::string, std::string> metadata;
   };
 
+  /// What the header of every file says of the program that wrote it: "mascot 0.1.0".
+  static std::string Library();
+
   /// Creates or truncates `path` and writes magic and header.
   explicit McapWriter(const std::string& path);
   ~McapWriter();  ///< without Close(), the file keeps its complete chunks but has no summary
@@ -50,7 +53,7 @@ class McapWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Whether the file begins as those of McapWriter do. Throws std::runtime_error if it cannot be read.
+/// Whether the file begins as those of McapWriter do, of any version. Throws std::runtime_error if it cannot be read.
 bool IsByMcapWriter(const std::string& path);
 
 }  // namespace mascot
