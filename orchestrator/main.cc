@@ -23,10 +23,9 @@ constexpr VerbEntry kVerbs[] = {
     {"info", "what a recording holds, and the proof that it is complete", SetUpInfo},
     {"plot", "the pictures of a run again", SetUpPlot},
     {"sweep", "run an experiment over values of its keys and seeds: a table, a picture", SetUpSweep},
+    {"recover", "a whole recording of what a cut or damaged one still holds", SetUpRecover},
     {"export", "a recording as NumPy arrays, as CSV or as a MATLAB file", SetUpExport},
 };
-
-constexpr int kUsageError = 2;
 
 /// Reports an unknown verb and returns the exit code. CLI11's own error only says that a subcommand is required.
 int UnknownVerb(const std::string& word) {
@@ -38,7 +37,7 @@ int UnknownVerb(const std::string& word) {
   std::cerr << "; expected one of";
   for (std::string_view name : names) std::cerr << (name == names.front() ? " " : ", ") << name;
   std::cerr << "\n";
-  return kUsageError;
+  return kUsage;
 }
 
 int Main(int argc, char** argv) {
@@ -52,7 +51,7 @@ int Main(int argc, char** argv) {
   }
   if (argc < 2) {
     std::cerr << app.help();
-    return kUsageError;
+    return kUsage;
   }
   const bool is_verb = argv[1][0] == '-' || std::any_of(std::begin(kVerbs), std::end(kVerbs),
                                                         [&](const auto& verb) { return verb.name == argv[1]; });
@@ -63,7 +62,7 @@ int Main(int argc, char** argv) {
     return app.exit(asked_for_help);
   } catch (const CLI::ParseError& error) {
     std::cerr << "error: " << UsageText(app, error) << "\n";
-    return kUsageError;
+    return kUsage;
   }
   return action();
 }
@@ -71,16 +70,12 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace mascot
 
-int main(int argc, char** argv) try {
-  mascot::OpenStandardStreams();
-  std::signal(SIGCHLD, SIG_DFL);  // some supervisors leave it ignored; then waitpid cannot tell how a child ended
-  std::signal(SIGPIPE, SIG_IGN);  // a closed terminal or pager must not kill the run
-  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the file size limit then fails with EFBIG, which is reported
-  return mascot::Main(argc, argv);
-} catch (const mascot::ConfigError& error) {
-  for (const std::string& mistake : error.mistakes()) std::cerr << "error: " << mistake << "\n";
-  return mascot::kUsageError;
-} catch (const std::exception& error) {
-  std::cerr << "error: " << error.what() << "\n";
-  return 1;
+int main(int argc, char** argv) {
+  return mascot::ExitCodeOf([&] {
+    mascot::OpenStandardStreams();
+    std::signal(SIGCHLD, SIG_DFL);  // some supervisors leave it ignored; then waitpid cannot tell how a child ended
+    std::signal(SIGPIPE, SIG_IGN);  // a closed terminal or pager must not kill the run
+    std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the file size limit then fails with EFBIG, which is reported
+    return mascot::Main(argc, argv);
+  });
 }

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <CLI/CLI.hpp>
 #include <map>
 #include <sstream>
 
@@ -11,7 +10,7 @@
 #include "orchestrator/engines/row_feed.h"
 #include "orchestrator/formats/mcap/records.h"
 #include "orchestrator/recording/run_writer.h"
-#include "orchestrator/verbs/verb.h"
+#include "tests/call.h"
 #include "tests/mat.h"
 #include "tests/scratch.h"
 
@@ -24,42 +23,14 @@ using testing::EndsWith;
 using testing::StartsWith;
 using testing::ThrowsMessage;
 
-struct Said {
-  int exit_code = -1;
-  std::string out, err;
-};
-
-/// Runs a verb in this process.
-Said Call(std::function<int()> (*set_up)(CLI::App& command), const std::vector<std::string>& arguments) {
-  CLI::App app;
-  const std::function<int()> run = set_up(app);
-  app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  Said said;
-  try {
-    said.exit_code = run();
-  } catch (...) {
-    testing::internal::GetCapturedStdout();
-    testing::internal::GetCapturedStderr();
-    throw;
-  }
-  said.out = testing::internal::GetCapturedStdout();
-  said.err = testing::internal::GetCapturedStderr();
-  return said;
-}
-
 Said Export(const std::vector<std::string>& arguments) { return Call(SetUpExport, arguments); }
 
-/// The text of the Error (ConfigError, std::runtime_error) that the export throws; "" if there is none.
-template <class Error>
-std::string ErrorOf(const std::vector<std::string>& arguments) {
-  try {
-    Export(arguments);
-    return "";
-  } catch (const Error& error) {
-    return error.what();
-  }
+/// What the export says when it ends with `exit_code`; "" if it ends with another.
+std::string ErrorOf(int exit_code, const std::vector<std::string>& arguments) {
+  const Said said = Export(arguments);
+  const std::string prefix = "error: ";
+  if (said.exit_code != exit_code || !said.err.starts_with(prefix)) return "";
+  return said.err.substr(prefix.size(), said.err.size() - prefix.size() - 1);
 }
 
 /// Records two quadrotors for 2.5 s at 100 Hz: 251 ticks, in three chunks.
@@ -184,20 +155,19 @@ TEST(Export, ACutRecordingIsExportedUpToTheCutWhereverThatIs) {
   for (std::size_t size = 0; size < recording.size(); size += recording.size() / 60) {
     WriteFile(cut, recording.substr(0, size));
     std::filesystem::remove(csv);
-    try {
-      const Said said = Export({cut, "--format", "csv"});
-      EXPECT_EQ(said.exit_code, 0);
-      EXPECT_THAT(said.err,
-                  AllOf(StartsWith("warning: " + cut + ": the file "), EndsWith("); exported what comes before\n")));
-      ++exported;
-    } catch (const std::runtime_error& nothing_whole) {
+    const Said said = Export({cut, "--format", "csv"});
+    if (said.exit_code != kIncomplete) {  // nothing is whole
       EXPECT_FALSE(std::filesystem::exists(csv));
-      EXPECT_THAT(nothing_whole.what(),
-                  testing::AnyOf(StartsWith(cut + ": holds no whole tick: the file ends "),
-                                 StartsWith(cut + ": expected a run's recording, with its config.toml attached, got "
-                                                  "none: the file ends ")));
+      EXPECT_THAT(said.err,
+                  testing::AnyOf(StartsWith("error: " + cut + ": holds no whole tick: the file ends "),
+                                 StartsWith("error: " + cut +
+                                            ": expected a run's recording, with its config.toml attached, got none: "
+                                            "the file ends ")));
       continue;
     }
+    EXPECT_THAT(said.err,
+                AllOf(StartsWith("warning: " + cut + ": the file "), EndsWith("); exported what comes before\n")));
+    ++exported;
     const std::string part = ReadFile(csv);
     EXPECT_TRUE(whole.starts_with(part)) << "cut at " << size;
     EXPECT_EQ(std::count(part.begin(), part.end(), '\n') % 2, 1) << "a line of names, two agents a tick";
@@ -254,7 +224,7 @@ TEST(Export, InRealTimeALateCommandIsHeldAsInTheRunsOwnStates) {
 TEST(Export, WithoutStatesThereIsNothingToExport) {
   const ScratchFolder scratch;
   Fly(scratch, "run", {"--set", "record.topics=['/clock', '/agent_1/*']"});
-  EXPECT_EQ(ErrorOf<std::runtime_error>({scratch.File("run"), "--format", "csv"}),
+  EXPECT_EQ(ErrorOf(kFailed, {scratch.File("run"), "--format", "csv"}),
             scratch.File("run/run.mcap") + ": holds no /agent_2/state: record.topics left it out");
   EXPECT_FALSE(std::filesystem::exists(scratch.File("run/states.csv")));
 }
@@ -311,14 +281,14 @@ TEST(Export, AMissingSampleIsAnErrorThatNamesIt) {
   const ScratchFolder scratch;
   const std::string path = scratch.File("run.mcap");
   WriteRunWithout(path, Topic::State(2), 5, false, /*close=*/true);
-  EXPECT_EQ(ErrorOf<std::runtime_error>({path, "--format", "csv"}),
+  EXPECT_EQ(ErrorOf(kFailed, {path, "--format", "csv"}),
             path + ": /agent_1/command has 301 messages, /agent_2/state has 300");
   WriteRunWithout(path, Topic::State(2), 5, false, /*close=*/false);
-  EXPECT_EQ(ErrorOf<std::runtime_error>({path, "--format", "csv"}), path + ": tick 5 has no /agent_2/state");
+  EXPECT_EQ(ErrorOf(kFailed, {path, "--format", "csv"}), path + ": tick 5 has no /agent_2/state");
   WriteRunWithout(path, Topic::Command(1), 7, false, /*close=*/false);
-  EXPECT_EQ(ErrorOf<std::runtime_error>({path, "--format", "npz"}), path + ": tick 7 has no /agent_1/command");
+  EXPECT_EQ(ErrorOf(kFailed, {path, "--format", "npz"}), path + ": tick 7 has no /agent_1/command");
   WriteRunWithout(path, Topic::Clock(), 9, /*whole_tick=*/true, /*close=*/true);
-  EXPECT_EQ(ErrorOf<std::runtime_error>({path, "--format", "mat"}), path + ": tick 9 is missing");
+  EXPECT_EQ(ErrorOf(kFailed, {path, "--format", "mat"}), path + ": tick 9 is missing");
   std::vector<std::string> left;
   for (const auto& entry : std::filesystem::directory_iterator(scratch.path())) left.push_back(entry.path());
   EXPECT_THAT(left, ElementsAre(path)) << "nothing half-written";
@@ -338,18 +308,17 @@ TEST(Export, AGapInTheSequenceNumbersIsAnError) {
   const ScratchFolder scratch;
   const std::string path = scratch.File("run.mcap");
   WriteFile(path, {file.begin(), file.end()});
-  EXPECT_EQ(ErrorOf<std::runtime_error>({path, "--format", "csv"}),
-            path + ": /agent_1/state: gaps in its sequence numbers: 1");
+  EXPECT_EQ(ErrorOf(kFailed, {path, "--format", "csv"}), path + ": /agent_1/state: gaps in its sequence numbers: 1");
 }
 
 TEST(Export, AnExistingFileIsReplacedOnlyWithForce) {
   const ScratchFolder scratch;
   Fly(scratch, "run");
   const std::string states = scratch.File("run/states.npz"), before = ReadFile(states);
-  EXPECT_EQ(ErrorOf<ConfigError>({scratch.File("run"), "--format", "npz"}),
+  EXPECT_EQ(ErrorOf(kUsage, {scratch.File("run"), "--format", "npz"}),
             states + ": expected a new file, got one that exists (--force replaces it)");
   WriteFile(states, "mine");
-  EXPECT_EQ(ErrorOf<ConfigError>({scratch.File("run"), "--format", "npz", "--out", states}),
+  EXPECT_EQ(ErrorOf(kUsage, {scratch.File("run"), "--format", "npz", "--out", states}),
             "--out " + states + ": expected a new file, got one that exists (--force replaces it)");
   EXPECT_EQ(ReadFile(states), "mine");
   EXPECT_EQ(Export({scratch.File("run"), "--format", "npz", "--force"}).exit_code, 0);
@@ -360,7 +329,7 @@ TEST(Export, TheRecordingItselfIsNeverReplaced) {
   const ScratchFolder scratch;
   Fly(scratch, "run");
   const std::string recording = scratch.File("run/run.mcap");
-  EXPECT_EQ(ErrorOf<ConfigError>({recording, "--format", "csv", "--force", "--out", recording}),
+  EXPECT_EQ(ErrorOf(kUsage, {recording, "--format", "csv", "--force", "--out", recording}),
             "--out " + recording + ": expected another file than the recording");
 }
 
@@ -373,30 +342,30 @@ TEST(Export, OutNamesAFileOrAFolderThatExists) {
   EXPECT_THAT(Export({scratch.File("run"), "--format", "csv", "--out", scratch.File("results/mine.txt")}).out,
               StartsWith(scratch.File("results/mine.txt")));
   for (const std::string wrong : {"none/states.csv", "none/"})
-    EXPECT_EQ(ErrorOf<ConfigError>({scratch.File("run"), "--format", "csv", "--out", scratch.File(wrong)}),
+    EXPECT_EQ(ErrorOf(kUsage, {scratch.File("run"), "--format", "csv", "--out", scratch.File(wrong)}),
               "--out " + scratch.File(wrong) + ": expected a file in a folder that exists");
   std::filesystem::create_directory(scratch.File("run/states.csv"));
-  EXPECT_EQ(ErrorOf<ConfigError>({scratch.File("run"), "--format", "csv", "--force"}),
+  EXPECT_EQ(ErrorOf(kUsage, {scratch.File("run"), "--format", "csv", "--force"}),
             scratch.File("run/states.csv") + ": expected a file, got a folder");
 }
 
 TEST(Export, AnythingButARecordingIsAUsageError) {
   const ScratchFolder scratch;
   const std::string path = scratch.File("run.mcap");
-  EXPECT_EQ(ErrorOf<ConfigError>({path, "--format", "csv"}), "cannot open " + path + ": No such file or directory");
-  EXPECT_EQ(ErrorOf<ConfigError>({scratch.path().string(), "--format", "csv"}),
+  EXPECT_EQ(ErrorOf(kUsage, {path, "--format", "csv"}), "cannot open " + path + ": No such file or directory");
+  EXPECT_EQ(ErrorOf(kUsage, {scratch.path().string(), "--format", "csv"}),
             scratch.path().string() + ": expected a run folder with one .mcap file, got 0");
   WriteFile(path, "no recording");
-  EXPECT_EQ(ErrorOf<ConfigError>({path, "--format", "csv"}),
+  EXPECT_EQ(ErrorOf(kUsage, {path, "--format", "csv"}),
             path + ": is no MCAP file: it does not begin with MCAP's magic bytes");
   { McapWriter(path).Close(); }
-  EXPECT_EQ(ErrorOf<ConfigError>({path, "--format", "csv"}),
+  EXPECT_EQ(ErrorOf(kUsage, {path, "--format", "csv"}),
             path + ": expected a run's recording, with its config.toml attached, got none");
   McapWriter somebodys(path);
   somebodys.Attach("config.toml", "application/toml",
                    "[run]\nname = \"x\"\nduration_s = 3.0\n[agents]\n[control]\nrate_hz = 100\n");
   somebodys.Close();
-  EXPECT_THAT(ErrorOf<ConfigError>({path, "--format", "csv"}),
+  EXPECT_THAT(ErrorOf(kUsage, {path, "--format", "csv"}),
               StartsWith(path + " (config.toml):4:1: agents.count: expected "));
 }
 

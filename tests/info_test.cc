@@ -1,12 +1,11 @@
 #include <gmock/gmock.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "orchestrator/formats/bytes.h"
 #include "orchestrator/formats/mcap/records.h"
 #include "orchestrator/formats/mcap/writer.h"
-#include "orchestrator/verbs/verb.h"
+#include "tests/call.h"
 #include "tests/scratch.h"
 
 namespace mascot {
@@ -17,24 +16,7 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-struct Said {
-  int exit_code = -1;
-  std::string out, err;
-};
-
-/// Runs `orchestrator info` in this process.
-Said Info(const std::vector<std::string>& arguments) {
-  CLI::App app;
-  const std::function<int()> run = SetUpInfo(app);
-  app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  Said said;
-  said.exit_code = run();
-  said.out = testing::internal::GetCapturedStdout();
-  said.err = testing::internal::GetCapturedStderr();
-  return said;
-}
+Said Info(const std::vector<std::string>& arguments) { return Call(SetUpInfo, arguments); }
 
 /// Writes a recording of one agent at 10 Hz for 10 s: 101 states and the first `commands` commands.
 void WriteRun(const std::string& path, int commands, const std::string& config = "[run]\n") {
@@ -166,7 +148,9 @@ TEST(Info, AFileThatWasCutIsDescribedUpToTheCut) {
   std::filesystem::resize_file(scratch.File("run.mcap"), std::filesystem::file_size(scratch.File("run.mcap")) / 2);
   const Said said = Info({scratch.File("run.mcap")});
   EXPECT_EQ(said.exit_code, 1);
-  EXPECT_THAT(said.out, ContainsRegex("\ncomplete: no \\(the file ends .*record at byte [0-9]+\\)\\)\n$"));
+  EXPECT_THAT(
+      said.out,
+      ContainsRegex("\ncomplete: no \\(the file ends .*record at byte [0-9]+\\); whole up to tick [0-9]+\\)\n$"));
   const nlohmann::json report = nlohmann::json::parse(Info({scratch.File("run.mcap"), "--json"}).out);
   EXPECT_EQ(report.at("complete"), false);
   EXPECT_EQ(report.at("ticks"), nullptr);

@@ -185,6 +185,26 @@ TEST(Mcap, NeverWritesAChunkThatItWouldRefuseToRead) {
   EXPECT_EQ(contents.chunks, 4u);
 }
 
+TEST(Mcap, RefusesAMessageThatNoChunkCanHold) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.File("run.mcap");
+  McapWriter writer(path);
+  const auto channel = writer.AddChannel(Numbers("/n"));
+  EXPECT_THAT([&] { writer.Write(channel, 0, Bytes((std::size_t{32} << 20) + 1)); },
+              ThrowsMessage<std::runtime_error>(path + ": a message of 33554433 bytes, above the limit of 33554432"));
+}
+
+TEST(Mcap, ChannelsWithOtherTextsOfASchemaKeepTheirOwn) {
+  const ScratchFolder scratch;
+  McapWriter writer(scratch.File("run.mcap"));
+  for (const std::string text : {"uint64 n\n", "int8 n\n"})
+    writer.Write(writer.AddChannel({"/" + text.substr(0, 1), "test_msgs/msg/Number", text, {}}), 0, Bytes(8));
+  writer.Close();
+  const McapContents contents = ReadMcap(scratch.File("run.mcap"));
+  EXPECT_EQ(contents.channels.at(1).schema_text, "uint64 n\n");
+  EXPECT_EQ(contents.channels.at(2).schema_text, "int8 n\n");
+}
+
 /// Offset in `file` after which each message is complete: its end, or the end of its chunk if that is compressed.
 std::vector<std::size_t> MessageEnds(const std::string& file) {
   std::vector<std::size_t> ends;

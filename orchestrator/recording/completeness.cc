@@ -69,12 +69,20 @@ Counts Count(const McapContents& contents, const std::optional<RecordingPlan>& p
   return counts;
 }
 
-/// Describes the first gap: a gap in the sequence numbers of a channel; in a recording that was closed, also a topic
-/// that is missing or has fewer samples than another. Empty: none.
+/// The entry of the metadata that says which format a recording has; null: there is none.
+const std::string* MetadataEntry(const McapContents& contents, const char* key) {
+  const auto metadata = contents.metadata.find(kMetadata);
+  if (metadata == contents.metadata.end()) return nullptr;
+  const auto entry = metadata->second.find(key);
+  return entry == metadata->second.end() ? nullptr : &entry->second;
+}
+
+/// Describes the first gap: a gap in the sequence numbers of a channel; in a recording that lost nothing at its end,
+/// also a topic that is missing or has fewer samples than another. Empty: none.
 std::string FindGap(const McapContents& contents, const std::optional<RecordingPlan>& plan, const Counts& counts) {
   for (const auto& [id, channel] : contents.channels)
     if (channel.gaps > 0) return fmt::format("{}: gaps in its sequence numbers: {}", channel.topic, channel.gaps);
-  if (!contents.complete) return "";
+  if (!LossOf(contents).empty()) return "";
   const auto is_there = [&](const Topic& topic) {
     return std::ranges::any_of(contents.channels,
                                [&](const auto& channel) { return channel.second.topic == topic.Name(); });
@@ -93,16 +101,19 @@ std::string FindGap(const McapContents& contents, const std::optional<RecordingP
 bool RecordingPlan::HasEveryTick(const Topic& topic) const { return IsPerTick(topic, realtime); }
 
 std::string TooNew(const McapContents& contents) {
-  const auto metadata = contents.metadata.find(kMetadata);
-  if (metadata == contents.metadata.end()) return "";
-  const auto format = metadata->second.find(kFormatKey);
-  if (format == metadata->second.end()) return "";
+  const std::string* format = MetadataEntry(contents, kFormatKey);
+  if (format == nullptr) return "";
   int version = 0;
-  const char* end = format->second.data() + format->second.size();
-  const auto [rest, error] = std::from_chars(format->second.data(), end, version);
+  const char* end = format->data() + format->size();
+  const auto [rest, error] = std::from_chars(format->data(), end, version);
   if (error == std::errc() && rest == end && version <= kFormat) return "";
-  return fmt::format("it is of format {}, newer than the {} that this version of MASCOT reads", format->second,
-                     kFormat);
+  return fmt::format("it is of format {}, newer than the {} that this version of MASCOT reads", *format, kFormat);
+}
+
+std::string LossOf(const McapContents& contents) {
+  if (!contents.damage.empty()) return contents.damage;
+  const std::string* recovered = MetadataEntry(contents, kRecoveredKey);
+  return recovered == nullptr ? "" : "recovered from a file that was damaged: " + *recovered;
 }
 
 RecordingPlan PlanOf(const McapContents& contents, const std::string& path) {
@@ -127,6 +138,13 @@ RecordingPlan PlanOf(const McapContents& contents, const std::string& path) {
   plan.topics = TopicsOf(patterns, SendersOf(config, static_cast<std::size_t>(plan.agents)));
   config.ThrowIfWrong();
   return plan;
+}
+
+std::string Proof::End(std::optional<std::uint64_t> planned_ticks) const {
+  if (!ticks) return "";
+  if (*ticks == 0) return "no tick is whole";
+  return fmt::format("whole up to tick {}{}", *ticks - 1,
+                     planned_ticks ? fmt::format(" of {}", *planned_ticks - 1) : "");
 }
 
 Proof Prove(const McapContents& contents, const std::optional<RecordingPlan>& plan) {

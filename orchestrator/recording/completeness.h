@@ -31,6 +31,12 @@ inline constexpr const char* kFormatKey = "format";
 /// version 1.
 std::string TooNew(const McapContents& contents);
 
+/// In that metadata: the damage of the file that the recording was recovered from.
+inline constexpr const char* kRecoveredKey = "recovered";
+/// Why ticks may be missing at the end: the damage of the file, or of the file that it was recovered from. Empty:
+/// nothing is missing there.
+std::string LossOf(const McapContents& contents);
+
 /// Reads the plan from the attached config.toml. Throws ConfigError if the recording is of a newer format, if there is
 /// no config.toml, or if that is not a MASCOT experiment; `path` names the recording in that message.
 RecordingPlan PlanOf(const McapContents& contents, const std::string& path);
@@ -43,6 +49,8 @@ struct Proof {
   std::string gap;
   /// Number of complete ticks, from 0 on; nothing if no topic has a sample of every tick.
   std::optional<std::uint64_t> ticks;
+  /// Where the whole ticks end: "whole up to tick 812 of 4000", "no tick is whole". Empty without `ticks`.
+  std::string End(std::optional<std::uint64_t> planned_ticks) const;
 };
 /// Checks a recording. Every topic of the plan must be there; without a plan, only the topics that are there are
 /// compared.

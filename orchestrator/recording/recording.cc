@@ -9,13 +9,6 @@
 #include "orchestrator/recording/row_assembler.h"
 
 namespace mascot {
-namespace {
-
-McapContents Read(const std::string& path) try { return ReadMcap(path); } catch (const std::exception& error) {
-  throw ConfigError({error.what()});
-}
-
-}  // namespace
 
 std::string FindRecording(const std::string& run) {
   namespace fs = std::filesystem;
@@ -30,8 +23,12 @@ std::string FindRecording(const std::string& run) {
   return found.front();
 }
 
+McapContents ReadRecording(const std::string& path) try { return ReadMcap(path); } catch (const std::exception& error) {
+  throw ConfigError({error.what()});
+}
+
 Recording::Recording(const std::string& run)
-    : path_(FindRecording(run)), contents_(Read(path_)), plan_(PlanOf(contents_, path_)) {
+    : path_(FindRecording(run)), contents_(ReadRecording(path_)), plan_(PlanOf(contents_, path_)) {
   std::erase_if(plan_.topics, [](const Topic& topic) {
     return topic.kind != TopicKind::kState && topic.kind != TopicKind::kCommand;
   });
@@ -47,8 +44,7 @@ Recording::Recording(const std::string& run)
   const Proof proof = Prove(contents_, plan_);
   if (!proof.gap.empty()) throw std::runtime_error(path_ + ": " + proof.gap);
   ticks_ = static_cast<std::int64_t>(proof.ticks.value_or(0));
-  if (ticks_ == 0)
-    throw std::runtime_error(path_ + ": holds no whole tick" + (damage().empty() ? "" : ": " + damage()));
+  if (ticks_ == 0) throw std::runtime_error(path_ + ": holds no whole tick" + (loss().empty() ? "" : ": " + loss()));
 }
 
 void Recording::ForEachRow(const std::function<void(const Row&)>& on_row) const {

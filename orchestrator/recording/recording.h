@@ -14,6 +14,9 @@ namespace mascot {
 /// (record.file may have another name). Throws ConfigError if there is no run.mcap and not exactly one .mcap file.
 std::string FindRecording(const std::string& run);
 
+/// What `path` holds, as ReadMcap. Throws ConfigError if it cannot be read or is no MCAP file.
+McapContents ReadRecording(const std::string& path);
+
 /// Reads a recording tick by tick, also an incomplete one. Needs no other file of the run.
 class Recording {
  public:
@@ -31,8 +34,8 @@ class Recording {
   bool has_commands() const { return has_commands_; }
   /// Number of complete ticks: 0 to ticks() - 1.
   std::int64_t ticks() const { return ticks_; }
-  /// Damage of the file, because of which later ticks may be missing; empty if the recording was closed properly.
-  const std::string& damage() const { return contents_.damage; }
+  /// Why later ticks may be missing (LossOf); empty if the recording was closed properly.
+  std::string loss() const { return LossOf(contents_); }
 
   /// Passes every complete tick to `on_row`, in order. Rows have no clock and no messages, and commands only if
   /// has_commands(). Throws std::runtime_error if a sample is missing.

@@ -54,6 +54,14 @@ double DurationSeconds(const McapContents& contents) {
   return first ? Seconds(*last - *first) : 0;
 }
 
+/// Why a recording is not complete; empty: it is.
+std::string ReasonOf(const McapContents& contents, const Proof& proof, std::optional<std::uint64_t> planned_ticks) {
+  if (const std::string too_new = TooNew(contents); !too_new.empty()) return too_new;
+  const std::string loss = LossOf(contents), end = proof.End(planned_ticks);
+  if (loss.empty()) return proof.gap;
+  return end.empty() ? loss : loss + "; " + end;
+}
+
 /// The plan of the recording; nothing if no MASCOT experiment is attached.
 std::optional<RecordingPlan> PlanIn(const McapContents& contents, const std::string& file) try {
   return PlanOf(contents, file);
@@ -69,8 +77,7 @@ Findings Inspect(const std::string& run) {
   const std::optional<RecordingPlan> plan = PlanIn(findings.contents, findings.file);
   if (plan) findings.planned_ticks = plan->ticks;
   const Proof proof = Prove(findings.contents, plan);
-  const std::string too_new = TooNew(findings.contents);
-  findings.reason = !too_new.empty() ? too_new : findings.contents.complete ? proof.gap : findings.contents.damage;
+  findings.reason = ReasonOf(findings.contents, proof, findings.planned_ticks);
   if (findings.complete()) findings.ticks = proof.ticks;
   return findings;
 }

@@ -9,9 +9,17 @@ class App;
 
 namespace mascot {
 
+/// Exit codes. A verb that a signal interrupts returns 128 + signal.
+inline constexpr int kDone = 0;
+inline constexpr int kFailed = 1;      ///< the run failed; what was to be proved is not so
+inline constexpr int kUsage = 2;       ///< wrong arguments or experiment; thrown as ConfigError
+inline constexpr int kIncomplete = 3;  ///< done, as far as a recording goes that was cut
+
+/// Calls `action`, and returns its exit code. What it throws becomes lines on stderr and kUsage or kFailed.
+int ExitCodeOf(const std::function<int()>& action);
+
 /// A row of the verb table. `set_up` declares the options of the verb on `command`, and returns a function to call
-/// after parsing, which returns the exit code (0 done, 1 run failed, 2 usage or configuration, 128 + signal if
-/// interrupted).
+/// after parsing, which returns the exit code.
 struct VerbEntry {
   std::string_view name;
   std::string_view summary;
@@ -27,6 +35,7 @@ std::function<int()> SetUpAirframes(CLI::App& command);  // airframes.cc
 std::function<int()> SetUpInfo(CLI::App& command);       // info.cc
 std::function<int()> SetUpPlot(CLI::App& command);       // plot.cc
 std::function<int()> SetUpExport(CLI::App& command);     // export.cc
+std::function<int()> SetUpRecover(CLI::App& command);    // recover.cc
 std::function<int()> SetUpSweep(CLI::App& command);      // sweep.cc
 
 }  // namespace mascot

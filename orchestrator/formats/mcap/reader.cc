@@ -256,12 +256,13 @@ void McapReader::Impl::ReadAttachment(Fields body) {
   body.U64();  // log time
   body.U64();  // creation time
   const std::string name = body.String();
-  body.String();  // media type
+  const std::string media_type = body.String();
   const ByteSpan data = body.Raw(body.U64());
   const ByteSpan covered = all.first(all.size() - body.rest().size());
   const std::uint32_t crc = body.U32();
   if (crc != 0 && crc != Crc32(0, covered)) throw Malformed("the CRC of attachment '" + name + "' is wrong");
   contents_.attachments[name] = {data.begin(), data.end()};
+  contents_.media_types[name] = media_type;
 }
 
 void McapReader::Impl::ReadMetadata(Fields body) {

@@ -28,6 +28,7 @@ struct McapContents {
   std::string profile, library;
   std::map<std::uint16_t, ChannelInfo> channels;
   std::map<std::string, std::string> attachments;  ///< name -> bytes
+  std::map<std::string, std::string> media_types;  ///< of the attachments, by name
   std::map<std::string, std::map<std::string, std::string>> metadata;
   std::uint64_t chunks = 0, messages = 0, compressed_bytes = 0, uncompressed_bytes = 0;
   bool complete = false;       ///< the file has DataEnd, summary and footer, and every CRC is right

@@ -119,17 +119,20 @@ std::uint16_t McapWriter::AddChannel(const Channel& channel) {
   std::vector<ChannelState>& channels = impl_->channels;
   if (channels.size() == std::numeric_limits<std::uint16_t>::max())
     throw std::runtime_error(impl_->file.path() + ": more channels than MCAP can number (65535)");
-  auto schema =
-      std::find_if(schemas.begin(), schemas.end(), [&](const auto& s) { return s.name == channel.schema_name; });
+  auto schema = std::find_if(schemas.begin(), schemas.end(), [&](const auto& s) {
+    return s.name == channel.schema_name && s.text == channel.schema_text;
+  });
   if (schema == schemas.end()) schema = schemas.insert(schema, {channel.schema_name, channel.schema_text});
-  assert(schema->text == channel.schema_text);
   channels.push_back({channel, static_cast<std::uint16_t>(schema - schemas.begin() + 1), 0, {}});
   return static_cast<std::uint16_t>(channels.size());
 }
 
 void McapWriter::Write(std::uint16_t channel, std::uint64_t time_ns, std::span<const std::uint8_t> data) {
-  assert(!impl_->closed && channel >= 1 && channel <= impl_->channels.size() && data.size() <= kLargestChunkBytes);
+  assert(!impl_->closed && channel >= 1 && channel <= impl_->channels.size());
   Impl& m = *impl_;
+  if (data.size() > kLargestChunkBytes)
+    throw std::runtime_error(m.file.path() + ": a message of " + std::to_string(data.size()) +
+                             " bytes, above the limit of " + std::to_string(kLargestChunkBytes));
   if (m.chunk.size() + data.size() > kLargestChunkBytes) m.CloseChunk();
   ChannelState& state = m.channels[channel - 1u];
   if (state.messages == 0) m.Announce(channel);

@@ -32,7 +32,7 @@ class McapWriter {
   McapWriter& operator=(const McapWriter&) = delete;
 
   /// Registers a channel and returns its id (1, 2, ...). Its schema and channel records are written before its first
-  /// message. Channels with equal schema_name share one schema record, and must have equal schema_text.
+  /// message. Channels with equal schema_name and schema_text share one schema record.
   std::uint16_t AddChannel(const Channel& channel);
   /// Adds a message to the open chunk. Sequence numbers count 0, 1, 2, ... per channel; log and publish time are
   /// `time_ns`.

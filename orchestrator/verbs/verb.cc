@@ -1,0 +1,17 @@
+#include "orchestrator/verbs/verb.h"
+
+#include <iostream>
+
+#include "experiment/toml/section.h"
+
+namespace mascot {
+
+int ExitCodeOf(const std::function<int()>& action) try { return action(); } catch (const ConfigError& error) {
+  for (const std::string& mistake : error.mistakes()) std::cerr << "error: " << mistake << "\n";
+  return kUsage;
+} catch (const std::exception& error) {
+  std::cerr << "error: " << error.what() << "\n";
+  return kFailed;
+}
+
+}  // namespace mascot
