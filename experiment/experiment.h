@@ -55,6 +55,7 @@ struct ControlConfig {
 struct LawParams {
   virtual ~LawParams() = default;
   bool sends_messages = false;
+  std::vector<std::string> files;  ///< absolute paths of files that the law depends on; their contents are not in here
 };
 
 /// [law], or an agent's own law table.

@@ -23,6 +23,7 @@ constexpr VerbEntry kVerbs[] = {
     {"info", "what a recording holds, and the proof that it is complete", SetUpInfo},
     {"plot", "the pictures of a run again", SetUpPlot},
     {"sweep", "run an experiment over values of its keys and seeds: a table, a picture", SetUpSweep},
+    {"verify", "fly a recorded experiment again, and compare bit for bit", SetUpVerify},
     {"recover", "a whole recording of what a cut or damaged one still holds", SetUpRecover},
     {"export", "a recording as NumPy arrays, as CSV or as a MATLAB file", SetUpExport},
 };

@@ -10,6 +10,8 @@
 #include <thread>
 
 #include "orchestrator/engines/dds/domain_lock.h"
+#include "orchestrator/formats/mcap/reader.h"
+#include "orchestrator/formats/mcap/writer.h"
 #include "tests/orchestrator.h"
 #include "tests/param_name.h"
 
@@ -18,6 +20,7 @@ namespace {
 
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 std::vector<std::string> ShippedConfigs() {
   std::vector<std::string> names;
@@ -127,6 +130,34 @@ TEST_P(Shipped, IsReproducedByItsResolvedFile) {
 
 INSTANTIATE_TEST_SUITE_P(Configs, Shipped, testing::ValuesIn(ShippedConfigs()),
                          [](const auto& row) { return row.param; });
+
+TEST(Verify, FliesOverDdsWhatOneProcessRecordedAndEndsAtTheFirstDifference) {
+  ScratchFolder folder;
+  Up up(folder, "run", Config("minmax"), {"--duration-s", "1", "--engine", "inprocess"});
+  ASSERT_EQ(up.Wait(), 0) << up.err();
+  const auto verify = [&](const std::string& recording) {
+    return Shell(MASCOT_BINARY_DIR "/orchestrator verify '" + recording + "' --engine dds");
+  };
+  const std::string recording = folder.File("run/run.mcap"), changed = folder.File("changed.mcap");
+  const Ran same = verify(recording);
+  EXPECT_EQ(same.exit_code, 0) << same.output;
+  EXPECT_THAT(same.output, StartsWith(recording + ": the same, bit for bit: 101 ticks, "));
+
+  const McapContents contents = ReadMcap(recording);
+  McapWriter writer(changed);
+  writer.Attach("config.toml", "application/toml", contents.attachments.at("config.toml"));
+  for (const auto& [id, channel] : contents.channels)
+    writer.AddChannel({channel.topic, channel.schema_name, channel.schema_text, channel.metadata});
+  ReadMcap(recording, [&](McapContents::Message message) {
+    if (message.channel == 2 && message.sequence == 30) message.data.back() ^= 1;
+    writer.Write(message.channel, message.log_time, message.data);
+  });
+  writer.Close();
+  const Ran other = verify(changed);
+  EXPECT_EQ(other.exit_code, 1) << other.output;
+  EXPECT_THAT(other.output, StartsWith(changed + ": differs: " + contents.channels.at(2).topic +
+                                       " at tick 30 (t = 0.3 s): acceleration.z is "));
+}
 
 // A law in Python that sends messages, over lossy and delayed links, on a graph that changes: agent i counts what it
 // has heard from each neighbour, and passes it on.

@@ -163,6 +163,7 @@ std::shared_ptr<const LawParams> ReadPlugin(const Experiment& experiment, const 
   auto plugin = std::make_shared<PluginConfig>();
   ReadKeys(section, *plugin);
   plugin->sends_messages = SendsMessages(experiment, law, *plugin, section);
+  plugin->files = {plugin->library};
   return plugin;
 }
 

@@ -10,15 +10,20 @@ std::uint64_t BytesOf(Message sample) {
   return bytes.size();
 }
 
-}  // namespace
-
-Row::Bytes& SampleOf(Row& row, const Topic& topic) {
+/// `AnyRow` is Row or const Row.
+template <class AnyRow>
+auto& SampleIn(AnyRow& row, const Topic& topic) {
   const auto agent = static_cast<std::size_t>(topic.agent - 1);
   return topic.kind == TopicKind::kState     ? row.states[agent]
          : topic.kind == TopicKind::kCommand ? row.commands[agent]
          : topic.kind == TopicKind::kMessage ? row.messages[agent]
                                              : row.clock;
 }
+
+}  // namespace
+
+Row::Bytes& SampleOf(Row& row, const Topic& topic) { return SampleIn(row, topic); }
+const Row::Bytes& SampleOf(const Row& row, const Topic& topic) { return SampleIn(row, topic); }
 
 void Decode(const Row& row, DecodedRow& decoded) {
   mascot_msgs::msg::AgentState state;

@@ -10,6 +10,7 @@ namespace mascot {
 
 /// The bytes of a per-tick topic's sample in `row`.
 Row::Bytes& SampleOf(Row& row, const Topic& topic);
+const Row::Bytes& SampleOf(const Row& row, const Topic& topic);
 
 /// Decodes `row` into `decoded`, which holds the previous row: a command that is missing in `row` keeps its value.
 /// Throws std::runtime_error for bytes that are not a sample of the expected type.

@@ -1,11 +1,14 @@
 #include "orchestrator/recording/run_writer.h"
 
+#include <map>
+
 #include "bus/qos.h"
 #include "bus/wire.h"
 #include "experiment/read_experiment.h"
 #include "idl/schemas.h"
 #include "idl/topics.h"
 #include "orchestrator/recording/completeness.h"
+#include "orchestrator/recording/fingerprint.h"
 #include "orchestrator/recording/topic_filter.h"
 
 namespace mascot {
@@ -29,7 +32,9 @@ std::string_view SchemaName(TopicKind kind) {
 RunWriter::RunWriter(const Experiment& experiment, const RunFolder& folder, const std::string& resolved)
     : experiment_(experiment), mcap_(folder.File(experiment.record.file)), arrays_(experiment.size()) {
   mcap_.Attach("config.toml", "application/toml", resolved);
-  mcap_.Metadata(kMetadata, {{kFormatKey, std::to_string(kFormat)}});
+  std::map<std::string, std::string> about = Fingerprints(experiment);
+  about[kFormatKey] = std::to_string(kFormat);
+  mcap_.Metadata(kMetadata, about);
   for (int id = 1; id <= experiment.size(); ++id) {
     commands_.push_back(AddChannel(Topic::Command(id)));
     messages_.push_back(experiment.agent(id).sends_messages ? AddChannel(Topic::Message(id)) : std::nullopt);

@@ -6,20 +6,17 @@
 #include <optional>
 #include <vector>
 
-#include "agent/laws.h"
 #include "bus/stop_signal.h"
 #include "orchestrator/engines/dds/delivery.h"
-#include "orchestrator/engines/dds/engine.h"
-#include "orchestrator/engines/inprocess.h"
 #include "orchestrator/engines/progress.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/processes/console.h"
-#include "orchestrator/processes/interruptions.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/run_writer.h"
 #include "orchestrator/report/summary.h"
 #include "orchestrator/theory/theory.h"
 #include "orchestrator/verbs/config_args.h"
+#include "orchestrator/verbs/fly.h"
 #include "orchestrator/verbs/plot.h"
 #include "orchestrator/verbs/verb.h"
 
@@ -31,30 +28,9 @@ using WallClock = std::chrono::steady_clock;
 struct UpArgs {
   ConfigArgs config;
   std::optional<std::string> out;
-  std::string engine = "dds";
+  std::string engine = kOverDds;
   bool force = false, json = false, quiet = false;
 };
-
-EngineResult RunInThisProcess(const Experiment& experiment, const std::vector<RowSink*>& sinks, Console& console,
-                              StopSignal& stop) {
-  const Interruptions interruptions(stop, console);
-  EngineResult result = RunInProcess(experiment, sinks, [&] { return interruptions.signal() == 0; });
-  result.signal = interruptions.signal();
-  return result;
-}
-
-/// The resolved experiment as attached to the recording: with the default domain, processes and delivery, so that runs
-/// that differ only in these have the same recording.
-std::string WithoutDelivery(const Experiment& experiment) {
-  const auto& network = experiment.network;
-  if (network.domain < 0 && network.agents_per_process == 1 && network.delivery == Delivery::kTopics)
-    return experiment.resolved;
-  const Override usual[] = {
-      {"network.domain", "\"auto\""}, {"network.agents_per_process", "1"}, {"network.delivery", "\"topics\""}};
-  return LoadExperiment(Section::FromText(experiment.resolved, "config.toml", usual), experiment.run.name,
-                        /*checked=*/true)
-      .resolved;
-}
 
 int ExitCode(const EngineResult& result) {
   if (!result.failure.empty()) return 1;
@@ -73,33 +49,24 @@ int MakeOutput(const Experiment& experiment, const RunFolder& folder, bool has_r
   return 1;
 }
 
-/// Throws ConfigError for a real-time run in one process, which has no pacing.
-void RefuseRealtimeInOneProcess(const Experiment& experiment, const std::string& engine) {
-  if (engine == "inprocess" && experiment.run.mode == Mode::kRealtime)
-    throw ConfigError({"--engine inprocess: expected run.mode = \"lockstep\", got \"realtime\""});
-}
-
 int Up(const UpArgs& args) {
   const auto launched = WallClock::now();
   StopSignal stop;
   const Experiment experiment = args.config.Load();
-  RefuseRealtimeInOneProcess(experiment, args.engine);
-  const bool over_dds = args.engine == "dds";
-  if (over_dds) RefuseTooManyProcesses(experiment);
+  RefuseEngine(args.engine, experiment);
   const Prediction prediction = Predict(experiment);
 
   const RunFolder folder(args.out, experiment, args.force);
   folder.Write("config.toml", experiment.resolved);
   Console console(args.quiet || args.json);
   for (const std::string& warning : prediction.warnings) console.Line("warning: " + warning);
-  if (over_dds)
+  if (args.engine == kOverDds)
     for (const std::string& warning : DeliveryWarnings(experiment)) console.Line("warning: " + warning);
   RunWriter writer(experiment, folder, WithoutDelivery(experiment));
   RunMeter meter(experiment);
   Progress progress(experiment, meter, console);
   const std::vector<RowSink*> sinks{&writer, &meter, &progress};
-  EngineResult result = over_dds ? RunOverDds(experiment, folder, sinks, console, stop)
-                                 : RunInThisProcess(experiment, sinks, console, stop);
+  EngineResult result = Fly(args.engine, experiment, folder, sinks, console, stop);
   console.EndProgress();
   try {
     writer.Close();
@@ -133,7 +100,7 @@ std::function<int()> SetUpUp(CLI::App& command) {
   args->config.AddTo(command);
   command.add_option("--out", args->out, "folder for the results (default: runs/NAME/TIME)")->type_name("DIR");
   command.add_option("--engine", args->engine, "dds: processes on a bus; inprocess: the same in one thread")
-      ->check(CLI::IsMember({"dds", "inprocess"}));
+      ->check(CLI::IsMember({kOverDds, kInProcess}));
   command.add_flag("--force", args->force,
                    "write into a folder that is not empty: an earlier run's files are replaced, others kept");
   command.add_flag("--json", args->json, "print the summary as JSON on stdout, and nothing else");

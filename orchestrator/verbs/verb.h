@@ -36,6 +36,7 @@ std::function<int()> SetUpInfo(CLI::App& command);       // info.cc
 std::function<int()> SetUpPlot(CLI::App& command);       // plot.cc
 std::function<int()> SetUpExport(CLI::App& command);     // export.cc
 std::function<int()> SetUpRecover(CLI::App& command);    // recover.cc
+std::function<int()> SetUpVerify(CLI::App& command);     // verify.cc
 std::function<int()> SetUpSweep(CLI::App& command);      // sweep.cc
 
 }  // namespace mascot

@@ -1,0 +1,70 @@
+#include "orchestrator/recording/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "bus/wire.h"
+#include "orchestrator/recording/row_codec.h"
+#include "orchestrator/recording/sample_fields.h"
+
+namespace mascot {
+namespace {
+
+/// "/agent_2/state of t = 0.57 s"
+std::string Described(const McapReader& reader, const McapContents::Message& message) {
+  return fmt::format("{} of t = {} s", reader.contents().channels.at(message.channel).topic,
+                     static_cast<double>(message.log_time) / 1e9);
+}
+
+}  // namespace
+
+Comparison::Comparison(const std::string& recording, const RecordingPlan& plan) : reader_(recording), plan_(plan) {}
+
+void Comparison::Add(const FlownRow& row) {
+  bool first = true;
+  for (const Topic& topic : plan_.topics) {
+    if (over_) return;
+    AddSample(row.bytes(), topic, first);
+    first = false;
+  }
+  if (!over_) ++ticks_;
+}
+
+void Comparison::AddSample(const Row& row, const Topic& topic, bool first_of_tick) {
+  const Row::Bytes& flown = SampleOf(row, topic);
+  const std::string place =
+      fmt::format("{} at tick {} (t = {} s)", topic.Name(), row.tick, static_cast<double>(row.tick) / plan_.rate_hz);
+  const McapContents::Message* recorded = reader_.Next();
+  if (recorded == nullptr) {
+    if (!first_of_tick && LossOf(reader_.contents()).empty()) Differ(place + " is missing: the recording ends there");
+    over_ = true;
+    return;
+  }
+  if (reader_.contents().channels.at(recorded->channel).topic != topic.Name() ||
+      recorded->log_time != StampNs(row.tick, plan_.rate_hz))
+    Differ(place + " is missing: the recording has " + Described(reader_, *recorded) + " there");
+  if (recorded->sequence != static_cast<std::uint32_t>(row.tick))
+    Differ(fmt::format("{} has sequence number {} in the recording, {} flown", place, recorded->sequence, row.tick));
+  if (const auto difference = FirstDifference(topic.kind, recorded->data, flown))
+    Differ(fmt::format("{}: {} is {} in the recording, {} flown", place, difference->field, difference->first,
+                       difference->second));
+  ++messages_;
+}
+
+void Comparison::Finish() {
+  if (over_) return;
+  over_ = true;
+  if (const McapContents::Message* more = reader_.Next())
+    difference_ =
+        fmt::format("the recording goes on after tick {}, the last, with {}", ticks_ - 1, Described(reader_, *more));
+}
+
+void Comparison::Differ(const std::string& how) {
+  over_ = true;
+  difference_ = how;
+  throw std::runtime_error("the run differs from its recording: " + how);
+}
+
+}  // namespace mascot

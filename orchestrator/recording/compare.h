@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "orchestrator/formats/mcap/reader.h"
+#include "orchestrator/recording/completeness.h"
+#include "orchestrator/team/row_sink.h"
+
+namespace mascot {
+
+/// Compares a run, as it flies, with a recording: message by message, in the order of the recording, topic, sequence
+/// number, time and bytes. Holds one tick and one message at a time. For recordings in lockstep.
+class Comparison final : public RowSink {
+ public:
+  /// `plan` is that of the recording (PlanOf).
+  Comparison(const std::string& recording, const RecordingPlan& plan);
+
+  /// Compares the next tick. Throws std::runtime_error at the first difference, which ends the run. Ticks after the end
+  /// of the recording are not compared.
+  void Add(const FlownRow& row) override;
+  /// Notes a difference if the recording goes on. To be called after the last tick of the run.
+  void Finish();
+
+  /// The first difference: topic, tick, field, both values. Empty: none.
+  const std::string& difference() const { return difference_; }
+  /// Messages that are equal.
+  std::uint64_t messages() const { return messages_; }
+  /// Whole ticks that are equal, from 0 on.
+  std::int64_t ticks() const { return ticks_; }
+
+ private:
+  void AddSample(const Row& row, const Topic& topic, bool first_of_tick);
+  [[noreturn]] void Differ(const std::string& how);
+
+  McapReader reader_;
+  const RecordingPlan plan_;
+  bool over_ = false;  // the recording has ended, or differs
+  std::string difference_;
+  std::uint64_t messages_ = 0;
+  std::int64_t ticks_ = 0;
+};
+
+}  // namespace mascot

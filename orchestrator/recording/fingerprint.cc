@@ -1,0 +1,32 @@
+#include "orchestrator/recording/fingerprint.h"
+
+#include <fmt/format.h>
+
+#include "orchestrator/formats/input_file.h"
+
+namespace mascot {
+namespace {
+
+std::string FingerprintOf(const std::string& path) {
+  constexpr std::uint64_t kPiece = 1 << 20;
+  const InputFile file(path);
+  Bytes piece;
+  std::uint32_t crc = 0;
+  for (std::uint64_t at = 0; at < file.size(); at += kPiece) {
+    file.Read(at, kPiece, piece);
+    crc = Crc32(crc, piece);
+  }
+  return fmt::format("crc32 {:08x} of {} bytes", crc, file.size());
+}
+
+}  // namespace
+
+std::map<std::string, std::string> Fingerprints(const Experiment& experiment) {
+  std::map<std::string, std::string> fingerprints;
+  for (const AgentConfig& agent : experiment.agents)
+    for (const std::string& path : agent.law.params->files)
+      if (!fingerprints.contains(path)) fingerprints[path] = FingerprintOf(path);
+  return fingerprints;
+}
+
+}  // namespace mascot

@@ -1,0 +1,201 @@
+// `orchestrator verify RUN`: flies the experiment of a recording again, and compares bit for bit.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "agent/laws.h"
+#include "orchestrator/formats/mcap/writer.h"
+#include "orchestrator/recording/compare.h"
+#include "orchestrator/recording/fingerprint.h"
+#include "orchestrator/recording/recording.h"
+#include "orchestrator/verbs/fly.h"
+#include "orchestrator/verbs/verb.h"
+
+namespace mascot {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct VerifyArgs {
+  std::string run;
+  std::string engine = kInProcess;
+};
+
+/// A folder for the logs of the second flight, which nobody keeps.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() : path_((fs::temp_directory_path() / "mascot-verify-XXXXXX").string()) {
+    if (::mkdtemp(path_.data()) == nullptr) throw std::runtime_error("cannot make a folder " + path_);
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// A recording that can be verified.
+struct Subject {
+  std::string file;
+  McapContents contents;
+  RecordingPlan plan;
+  std::uint64_t ticks = 0;  ///< ticks of which it has samples
+
+  const std::string& config() const { return contents.attachments.at("config.toml"); }
+};
+
+/// Throws ConfigError for what cannot be verified.
+Subject SubjectOf(const std::string& run) {
+  Subject subject;
+  subject.file = FindRecording(run);
+  subject.contents = ReadRecording(subject.file);
+  subject.plan = PlanOf(subject.contents, subject.file);
+  if (subject.plan.realtime)
+    throw ConfigError({subject.file + ": expected run.mode = \"lockstep\", got \"realtime\": such a run depends on the "
+                                      "wall clock, and never repeats bit for bit"});
+  for (const auto& [id, channel] : subject.contents.channels) subject.ticks = std::max(subject.ticks, channel.messages);
+  subject.ticks = std::min(subject.ticks, subject.plan.ticks);
+  if (subject.ticks == 0) {
+    const std::string loss = LossOf(subject.contents);
+    throw ConfigError({subject.file + ": expected a recording with messages, got none" +
+                       (loss.empty() ? "; record.topics left them out" : ": " + loss)});
+  }
+  return subject;
+}
+
+/// Reads an experiment that is to fly `ticks` ticks: a run that ended early is not flown beyond its end.
+Experiment Load(const std::string& toml, const std::string& name, const Subject& subject) {
+  std::vector<Override> overrides;
+  if (subject.ticks < subject.plan.ticks) {
+    const auto periods = static_cast<double>(std::max<std::uint64_t>(subject.ticks - 1, 1));
+    overrides.push_back({"run.duration_s", ShortestFloat(periods / subject.plan.rate_hz)});
+  }
+  return LoadExperiment(Section::FromText(toml, name, overrides), subject.plan.name);
+}
+
+/// The first line in which two resolved experiments differ, with its table: "[law] p_gain = 0.3, the recording's says
+/// p_gain = 0.2". Empty: none.
+std::string FirstChange(const std::string& ours, const std::string& recorded) {
+  std::istringstream a(ours), b(recorded);
+  std::string table, line_a, line_b;
+  for (;;) {
+    const bool more_a = static_cast<bool>(std::getline(a, line_a)), more_b = static_cast<bool>(std::getline(b, line_b));
+    if (!more_a && !more_b) return "";
+    if (more_a != more_b || line_a != line_b)
+      return fmt::format("{}{}, the recording's says {}", table.empty() ? "" : table + " ",
+                         more_a ? line_a : "nothing more", more_b ? line_b : "nothing more");
+    if (line_a.starts_with("[")) table = line_a;
+  }
+}
+
+/// The experiment to fly: that of the recording, with the processes and the delivery of the run's own config.toml. Sets
+/// `change` if the two are not the same experiment.
+Experiment ExperimentOf(const std::string& run, const Subject& subject, std::string& change) {
+  Experiment recorded = Load(subject.config(), subject.file + " (config.toml)", subject);
+  const fs::path path = fs::path(run) / "config.toml";
+  if (!fs::is_directory(run) || !fs::exists(path)) return recorded;
+  Experiment ours = Load(ReadRegularFile(path.string()), path.string(), subject);
+  change = FirstChange(WithoutDelivery(ours), WithoutDelivery(recorded));
+  return ours;
+}
+
+/// What differs between the program that recorded and this one; differences of bits may come from it.
+void PrintChanges(const Subject& subject, const Experiment& experiment) {
+  if (subject.contents.library != McapWriter::Library())
+    std::cout << "note: recorded by " << subject.contents.library << ", flown again by " << McapWriter::Library()
+              << "\n";
+  const auto& about = subject.contents.metadata.find(kMetadata);
+  for (const auto& [path, fingerprint] : Fingerprints(experiment)) {
+    if (about == subject.contents.metadata.end() || !about->second.contains(path))
+      std::cout << "note: the recording does not tell which " << path << " it was flown with\n";
+    else if (about->second.at(path) != fingerprint)
+      std::cout << "note: " << path << " has changed: recorded with " << about->second.at(path) << ", now "
+                << fingerprint << "\n";
+  }
+}
+
+/// "813 of 4001 ticks (the run ended early), 7317 messages"
+std::string Extent(const Subject& subject, const Comparison& comparison) {
+  const auto ticks = static_cast<std::uint64_t>(comparison.ticks());
+  const bool early = subject.ticks < subject.plan.ticks && LossOf(subject.contents).empty();
+  return fmt::format("{}{} ticks{}, {} messages", ticks,
+                     ticks < subject.plan.ticks ? fmt::format(" of {}", subject.plan.ticks) : "",
+                     early ? " (the run ended early)" : "", comparison.messages());
+}
+
+/// Prints the verdict, and returns the exit code.
+int Judge(const Subject& subject, const Comparison& comparison, const EngineResult& result) {
+  const auto say = [&](const std::string& verdict) { std::cout << subject.file << ": " << verdict << std::endl; };
+  const std::string extent = Extent(subject, comparison), loss = LossOf(subject.contents);
+  const bool differs = !comparison.difference().empty();
+  if (differs) {
+    say("differs: " + comparison.difference());
+  } else if (!result.failure.empty()) {
+    say("differs: it goes on after " + extent + ", where the run now fails: " + result.failure);
+    return kFailed;
+  } else if (result.signal != 0) {
+    say("interrupted: the same so far, " + extent);
+    return 128 + result.signal;
+  } else {
+    say("the same, bit for bit: " + extent);
+  }
+  if (loss.empty()) return differs ? kFailed : kDone;
+  const bool damaged = !subject.contents.damage.empty() && !subject.contents.cut;
+  say((damaged ? "damaged: " : "cut: ") + loss);
+  return differs || damaged ? kFailed : kIncomplete;
+}
+
+int Verify(const VerifyArgs& args) {
+  StopSignal stop;
+  const Subject subject = SubjectOf(args.run);
+  std::string change;
+  const Experiment experiment = ExperimentOf(args.run, subject, change);
+  if (!change.empty()) {
+    std::cout << subject.file << ": config.toml beside it is of another experiment: " << change << "\n"
+              << "`orchestrator verify " << subject.file << "` checks the recording alone" << std::endl;
+    return kFailed;
+  }
+  RefuseEngine(args.engine, experiment);
+  PrintChanges(subject, experiment);
+  const TemporaryFolder temporary;
+  const RunFolder folder(temporary.path(), experiment, /*force=*/false);
+  Console console(/*quiet=*/true);
+  Comparison comparison(subject.file, subject.plan);
+  const EngineResult result = Fly(args.engine, experiment, folder, {&comparison}, console, stop);
+  if (result.failure.empty() && result.signal == 0) comparison.Finish();
+  return Judge(subject, comparison, result);
+}
+
+}  // namespace
+
+std::function<int()> SetUpVerify(CLI::App& command) {
+  auto args = std::make_shared<VerifyArgs>();
+  command.add_option("run", args->run, "a run folder or an .mcap file")->required()->type_name("RUN");
+  command
+      .add_option("--engine", args->engine,
+                  "inprocess (default): in one thread; dds: processes on a bus. Whichever recorded it")
+      ->check(CLI::IsMember({kOverDds, kInProcess}));
+  command.footer(
+      "Flies the experiment that is attached to the recording, as far as the recording goes, and compares every\n"
+      "message as it comes. Writes no file. Exit codes: 0 the same bits, 1 something differs or is damaged, 2 it is "
+      "no\n"
+      "recording that could repeat, 3 the recording was cut, and what is left of it is the same.");
+  return [args] { return Verify(*args); };
+}
+
+}  // namespace mascot
