@@ -32,7 +32,10 @@ struct PursuitForm {
   std::vector<double> beta;         ///< largest acceleration per axis (m/s^2)
   std::vector<double> parent_beta;  ///< the bound that the agent assumes for its parent; 0 for the root
   bool root_flies = false;          ///< the root flies waypoints; else its acceleration is 0
+  bool switches = true;             ///< accelerations jump between -beta and beta, up to the end
 };
+/// A child has caught up with its parent when they are at most this far apart along each axis of the law (m).
+inline constexpr double kCaughtUp_m = 0.05;
 
 /// Plot settings of a law: summary.json passes them to scripts/plot.py.
 struct Drawing {

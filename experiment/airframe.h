@@ -47,6 +47,10 @@ struct Airframe {
   static constexpr double kLeastThrustShare = 0.1;
   static constexpr double kMostThrustShare = 0.9;
 
+  /// The low-level stack keeps the rates at which roll and pitch approach their targets below this (rad/s). The rotors
+  /// of the built-in airframes can brake it within the tilts that are flown.
+  static constexpr double kMostTurnRate = 3.0;
+
   double LeastThrust() const { return kLeastThrustShare * max_thrust_n; }  ///< N
   double MostThrust() const { return kMostThrustShare * max_thrust_n; }    ///< N
   Eigen::Matrix4d Allocation() const;                                      ///< A above

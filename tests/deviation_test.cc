@@ -38,6 +38,7 @@ TEST(Pursuit, EndsWhenAChildIsCloseToItsParentForGood) {
   EXPECT_EQ(edges[0].time_s, 0.03);
   EXPECT_EQ(edges[1].child, 3);
   EXPECT_FALSE(edges[1].time_s) << "not yet";
+  EXPECT_DOUBLE_EQ(edges[1].end_m, 0.09);
   meter.Add(Row(0, 0, 0));
   EXPECT_EQ(meter.Result()[1].time_s, 0.05);
 }

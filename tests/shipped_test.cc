@@ -218,6 +218,25 @@ TEST(Minmax, ShippedQuadrotorsStayTogetherAfterwards) {
   EXPECT_LT(latest_s, 1.15 * predicted_s);
 }
 
+TEST(Minmax, SaysWhyAQuadrotorThatTremblesHasNoTime) {
+  ScratchFolder folder;
+  Up up(
+      folder, "run", Config("minmax"),
+      {"--engine", "inprocess", "--set", "agents.airframe='mascot_published'", "--set", "law.beta=[0.1,0.7,0.8,0.9]"});
+  ASSERT_EQ(up.Wait(), 0) << up.err();
+  const nlohmann::json consensus = up.Summary()["consensus"], edge = consensus["minmax_edges"][0];
+  const nlohmann::json trembling = consensus["predicted"]["minmax_edges"][0]["trembling"];
+  EXPECT_TRUE(edge["time_s"].is_null());
+  EXPECT_EQ(edge["why_null"].get<std::string>().substr(0, 56),
+            "agent 2 did not stay within 0.05 m of agent 1: up to 0.2");
+  EXPECT_THAT(edge["why_null"],
+              testing::HasSubstr("in the end; theory expects that it trembles by about 0.23 m, since it "
+                                 "turns first, and so accelerates 0.26 s late"));
+  EXPECT_NEAR(edge["end_m"].get<double>(), trembling["radius_m"].get<double>(), 0.05);
+  EXPECT_THAT(up.out(),
+              testing::ContainsRegex("caught up      not all, not for good .3 of 3 edges.: agent [234] did not"));
+}
+
 TEST(Published, FliesTheSetUpOfThePublishedTestbed) {
   const Flight flight("published");
   EXPECT_EQ(flight.summary["ticks"], 6000);

@@ -288,9 +288,35 @@ TEST(Theory, PredictsThePublishedMinMaxRun) {
   EXPECT_NEAR(*prediction.minmax_time_s, 29.44, 5e-3);
   EXPECT_THAT(
       prediction.warnings,
-      ElementsAre("law.beta: beta of agents 2, 3 and 4 is above control.max_acceleration_m_per_s2 = 0.6, which cuts it",
-                  "law.weak_edges: agents 3 and 4 are no stronger than the parent, who must keep within the root's "
-                  "bound"));
+      ElementsAre(
+          "law.beta: beta of agents 2, 3 and 4 is above control.max_acceleration_m_per_s2 = 0.6, which cuts it",
+          "law.beta: agent 2 will tremble around the root by about 0.039 m, and may never stay within 0.05 m of "
+          "it: accelerations come 0.26 s late, because the body turns first (agents.airframe); a smaller beta "
+          "trembles less",
+          "law.weak_edges: agents 3 and 4 are no stronger than the parent, who must keep within the root's "
+          "bound"));
+}
+
+TEST(Theory, SaysHowAQuadrotorTremblesOnlyWhereItKnows) {
+  const std::string pair =
+      "[run]\nduration_s = 80.0\n[agents]\ncount = 2\nposition_m = [[0, 0, 1], [4, -2, 3]]\n[law]\nname = 'minmax'\n"
+      "leader = 1\nbeta = [0.1, 0.3]\n";
+  const std::optional<Trembling> trembling = Of(pair).minmax_edges.at(0).trembling;
+  ASSERT_TRUE(trembling);
+  EXPECT_NEAR(trembling->lag_s, 30.0 / 625 + 0.01, 1e-12) << "the PD law of the attitude and the control period";
+  EXPECT_NEAR(*trembling->time_s, MinmaxTime(4, 0, 0.2, 0.3), 1);
+  EXPECT_THAT(Of(pair).warnings, IsEmpty());
+  EXPECT_FALSE(Of(pair + "boundary_layer = 0.1\n").minmax_edges.at(0).trembling) << "does not switch to the end";
+  EXPECT_FALSE(Of(pair + "leader_waypoints_m = [[1, 1, 1]]\n").minmax_edges.at(0).trembling) << "the root accelerates";
+  const std::string points = "[[agents.override]]\nid = 2\nmodel = 'double_integrator'\n";
+  EXPECT_FALSE(Of(pair + points).minmax_edges.at(0).trembling) << "has no attitude";
+}
+
+TEST(Theory, LeansNoFurtherInMinMaxThanItsTiltLimit) {
+  const Prediction prediction =
+      Of("[run]\nduration_s = 80.0\n[agents]\ncount = 2\nairframe = 'mascot_published'\n"
+         "position_m = [[0, 0, 1], [4, 0, 3]]\n[law]\nname = 'minmax'\nleader = 1\nbeta = [1.7, 2.0]\n");
+  EXPECT_NEAR(*prediction.minmax_time_s, MinmaxTime(4, 0, 2.0 - 1.7, 0.1 * 9.81), 1e-9) << "0.1 rad of tilt";
 }
 
 TEST(Theory, WarnsOfBodiesThatWillTouch) {

@@ -22,9 +22,6 @@ namespace {
 // Largest correction towards the reference, per axis (m/s^2). A body that would need more has been held or pushed: the
 // reference restarts from the body.
 constexpr double kMaxCorrection = 1.0;
-// Largest rate of roll and pitch towards a target (rad/s). The rotors can brake it within the tilts that are flown,
-// however a_W jumps.
-constexpr double kMaxTurnRate = 3.0;
 // Lower limit of cos(tilt) where thrust is divided by it: beyond 60 degrees of tilt, thrust is not raised further.
 constexpr double kMinUprightness = 0.5;
 
@@ -64,10 +61,10 @@ double Yaw(const Eigen::Matrix3d& R_WB) { return std::atan2(R_WB(1, 0), R_WB(0, 
 
 double Pd(PdGains gains, double error, double error_rate) { return gains.kp * error + gains.kd * error_rate; }
 
-// PD law with a limited proportional part, so that the rate towards the target settles at kMaxTurnRate at most (without
-// damping there is no such limit).
+// PD law with a limited proportional part, so that the rate towards the target settles at kMostTurnRate at most
+// (without damping there is no such limit).
 double TiltAccel(PdGains gains, double error_rad, double rate) {
-  const double most = gains.kd > 0 ? gains.kd * kMaxTurnRate : std::numeric_limits<double>::infinity();
+  const double most = gains.kd > 0 ? gains.kd * Airframe::kMostTurnRate : std::numeric_limits<double>::infinity();
   return std::clamp(gains.kp * error_rad, -most, most) - gains.kd * rate;
 }
 

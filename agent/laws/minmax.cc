@@ -133,6 +133,7 @@ std::shared_ptr<const LawParams> ReadMinmax(const Experiment& experiment, const 
   tree.beta = ReadBeta(law, experiment.size());
   const bool root_bound = law.OneOf("weak_edges") == "root";
   params->boundary_layer_m = law.Number("boundary_layer");
+  tree.switches = params->boundary_layer_m == 0;
   params->root_flight = ReadLeaderWaypoints(config, law);
   tree.root_flies = params->root_flight.has_value();
 

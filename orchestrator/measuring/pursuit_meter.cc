@@ -1,5 +1,7 @@
 #include "orchestrator/measuring/pursuit_meter.h"
 
+#include <algorithm>
+
 #include "agent/laws.h"
 
 namespace mascot {
@@ -9,7 +11,7 @@ PursuitMeter::PursuitMeter(const Experiment& experiment) : experiment_(experimen
   if (!pursuit) return;
   for (const AgentConfig& agent : experiment.agents) {
     const int parent = pursuit->parent[static_cast<std::size_t>(agent.id - 1)];
-    if (parent != 0 && !agent.has_own_law) pursuits_.push_back({agent.id, parent, -1});
+    if (parent != 0 && !agent.has_own_law) pursuits_.push_back({.child = agent.id, .parent = parent});
   }
 }
 
@@ -20,6 +22,8 @@ void PursuitMeter::Add(std::span<const Motion> motions) {
     const Motion& parent = motions[static_cast<std::size_t>(pursuit.parent - 1)];
     const double apart_m = (child.p_WB - parent.p_WB).head(axes).cwiseAbs().maxCoeff();
     if (apart_m > kCaughtUp_m) pursuit.last_apart = rows_;
+    const bool ends = 10 * rows_ > 9 * experiment_.ticks();
+    pursuit.end_m = ends ? std::max(apart_m, pursuit.end_m) : apart_m;
   }
   ++rows_;
 }
@@ -27,7 +31,7 @@ void PursuitMeter::Add(std::span<const Motion> motions) {
 std::vector<PursuitMeter::Edge> PursuitMeter::Result() const {
   std::vector<Edge> edges;
   for (const Pursuit& pursuit : pursuits_) {
-    edges.push_back({pursuit.child, pursuit.parent, std::nullopt});
+    edges.push_back({pursuit.child, pursuit.parent, std::nullopt, pursuit.end_m});
     if (pursuit.last_apart < rows_ - 1) edges.back().time_s = experiment_.time_s(pursuit.last_apart + 1);
   }
   return edges;

@@ -10,9 +10,6 @@
 
 namespace mascot {
 
-/// A child has caught up with its parent when they are at most this far apart along each axis of the law (m).
-inline constexpr double kCaughtUp_m = 0.05;
-
 /// Measures, row by row, when each child of a pursuit law (PursuitForm) has caught up with its parent for good.
 class PursuitMeter {
  public:
@@ -20,6 +17,8 @@ class PursuitMeter {
     int child = 0;
     int parent = 0;
     std::optional<double> time_s;  ///< absent: the child has not caught up by the end
+    double end_m =
+        0;  ///< largest distance along an axis in the last tenth of run.duration_s; of a shorter run, at the end
   };
 
   /// The edges are those of the team's law. A law without a PursuitForm has no edges.
@@ -32,7 +31,8 @@ class PursuitMeter {
  private:
   struct Pursuit {
     int child, parent;
-    std::int64_t last_apart;  // newest row in which they were farther apart
+    std::int64_t last_apart = -1;  // newest row in which they were farther apart
+    double end_m = 0;              // Edge::end_m
   };
 
   const Experiment& experiment_;

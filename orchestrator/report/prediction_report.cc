@@ -15,10 +15,19 @@ Json ToJson(const std::optional<Persistence>& persistence) {
           {"in_range_at_start", OrNull(persistence->in_range_at_start)}};
 }
 
+Json ToJson(const std::optional<Trembling>& trembling) {
+  if (!trembling) return nullptr;
+  return {{"lag_s", trembling->lag_s}, {"radius_m", trembling->radius_m}, {"time_s", OrNull(trembling->time_s)}};
+}
+
 Json ToJson(const std::vector<MinmaxEdge>& edges) {
   Json json = Json::array();
   for (const MinmaxEdge& edge : edges)
-    json.push_back({{"child", edge.child}, {"parent", edge.parent}, {"time_s", edge.time_s}, {"exact", edge.exact}});
+    json.push_back({{"child", edge.child},
+                    {"parent", edge.parent},
+                    {"time_s", edge.time_s},
+                    {"exact", edge.exact},
+                    {"trembling", ToJson(edge.trembling)}});
   return json;
 }
 
@@ -33,6 +42,17 @@ std::string DelayText(const Prediction& prediction) {
   if (prediction.own_delay_margin_s)
     text += fmt::format("{}of these and the own: below {}", text.empty() ? "" : "; ",
                         SecondsText(*prediction.own_delay_margin_s));
+  return text;
+}
+
+/// "meets in 8.5 s; with a lag of 0.06 s it trembles by 0.01 m, within 0.02 m from 8.1 s on"
+std::string EdgeText(const MinmaxEdge& edge) {
+  std::string text = fmt::format("{} {}", edge.exact ? "meets in" : "meets within", SecondsText(edge.time_s));
+  if (!edge.trembling) return text;
+  const Trembling& trembling = *edge.trembling;
+  text += fmt::format("; with a lag of {:.2g} s it trembles by {:.2g} m", trembling.lag_s, trembling.radius_m);
+  if (trembling.time_s)
+    text += fmt::format(", within {:.2g} m from {} on", 2 * trembling.radius_m, SecondsText(*trembling.time_s));
   return text;
 }
 
@@ -96,8 +116,7 @@ std::vector<std::pair<std::string, std::string>> PredictionLines(const Experimen
                                    SecondsText(experiment.period_s())));
   if (const std::string delay = DelayText(prediction); !delay.empty()) lines.emplace_back("delay", delay);
   for (const MinmaxEdge& edge : prediction.minmax_edges)
-    lines.emplace_back(fmt::format("edge {} -> {}", edge.child, edge.parent),
-                       fmt::format("{} {}", edge.exact ? "meets in" : "meets within", SecondsText(edge.time_s)));
+    lines.emplace_back(fmt::format("edge {} -> {}", edge.child, edge.parent), EdgeText(edge));
   if (const auto& first = prediction.first_acceleration)
     lines.emplace_back("first command", fmt::format("{:.4g} m/s^2 of {:g} allowed", first->asked, first->limit));
   if (const auto& first = prediction.first_speed)

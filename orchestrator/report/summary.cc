@@ -21,10 +21,30 @@ Json EdgesOf(const Graph& graph) {
   return edges;
 }
 
-Json Edges(const std::vector<PursuitMeter::Edge>& measured) {
+/// Why the time of an edge is null; empty: it is not.
+std::string WhyNotCaughtUp(const PursuitMeter::Edge& edge, const Prediction& prediction) {
+  if (edge.time_s) return "";
+  std::string why = fmt::format("agent {} did not stay within {:g} m of agent {}: up to {:.2g} m away in the end",
+                                edge.child, kCaughtUp_m, edge.parent, edge.end_m);
+  const auto predicted = std::ranges::find(prediction.minmax_edges, edge.child, &MinmaxEdge::child);
+  if (predicted == prediction.minmax_edges.end() || !predicted->trembling) return why;
+  const Trembling& trembling = *predicted->trembling;
+  return why + fmt::format(
+                   "; theory expects that it trembles by about {:.2g} m, since it turns first, and so "
+                   "accelerates {:.2g} s late",
+                   trembling.radius_m, trembling.lag_s);
+}
+
+Json Edges(const std::vector<PursuitMeter::Edge>& measured, const Prediction& prediction) {
   Json edges = Json::array();
-  for (const PursuitMeter::Edge& edge : measured)
-    edges.push_back({{"child", edge.child}, {"parent", edge.parent}, {"time_s", OrNull(edge.time_s)}});
+  for (const PursuitMeter::Edge& edge : measured) {
+    const std::string why = WhyNotCaughtUp(edge, prediction);
+    edges.push_back({{"child", edge.child},
+                     {"parent", edge.parent},
+                     {"time_s", OrNull(edge.time_s)},
+                     {"end_m", edge.end_m},
+                     {"why_null", why.empty() ? Json(nullptr) : Json(why)}});
+  }
   return edges;
 }
 
@@ -42,7 +62,7 @@ Json Consensus(const Experiment& experiment, const Measured& measured, const Pre
   consensus["final_speed_m_per_s"] = measured.final_speed_m_per_s;
   consensus["settling_time_s"] = OrNull(measured.settling_time_s);
   consensus["rate_per_s"] = OrNull(measured.rate_per_s);
-  if (!measured.minmax_edges.empty()) consensus["minmax_edges"] = Edges(measured.minmax_edges);
+  if (!measured.minmax_edges.empty()) consensus["minmax_edges"] = Edges(measured.minmax_edges, prediction);
   consensus["predicted"] = PredictionJson(prediction);
   consensus["deviation"] = ToJson(Compare(experiment, measured, prediction));
   return consensus;
@@ -131,6 +151,17 @@ const char* AtMost(const std::vector<MinmaxEdge>& edges) {
   return std::ranges::all_of(edges, &MinmaxEdge::exact) ? "" : "at most ";
 }
 
+/// The line for edges that have not caught up: about the one that is farthest apart in the end.
+std::string NotCaughtUpText(const Measured& m, const Prediction& prediction) {
+  const auto missed = [](const PursuitMeter::Edge& edge) { return !edge.time_s; };
+  const auto count = std::ranges::count_if(m.minmax_edges, missed);
+  if (count == 0) return "";
+  const auto worst = std::ranges::max_element(
+      m.minmax_edges, {}, [&](const PursuitMeter::Edge& edge) { return missed(edge) ? edge.end_m : -1; });
+  return Line("caught up      not all, not for good ({} of {} edges): {}", count, m.minmax_edges.size(),
+              WhyNotCaughtUp(*worst, prediction));
+}
+
 /// Text on agreement: mean position, decay rate and settling time, measured and predicted.
 std::string ConsensusText(const Experiment& experiment, const Measured& m, const Prediction& prediction) {
   const Deviation deviation = Compare(experiment, m, prediction);
@@ -157,6 +188,8 @@ std::string ConsensusText(const Experiment& experiment, const Measured& m, const
                  DeviationText(deviation.settling_time_s, prediction.settling_time_s));
   if (const auto caught_up_s = MinmaxTime(m, prediction))
     text += Line("caught up      after {:.2f} s (latest edge, within {:g} m)", *caught_up_s, kCaughtUp_m);
+  else
+    text += NotCaughtUpText(m, prediction);
   if (prediction.minmax_time_s)
     text += Line("  predicted    {}{:.2f} s (min-max, latest edge){}", AtMost(prediction.minmax_edges),
                  *prediction.minmax_time_s, DeviationText(deviation.minmax_time_s, prediction.minmax_time_s));

@@ -24,13 +24,36 @@ std::string ClimbsAway(const AgentConfig& agent, double weight_n) {
       agent.id, airframe.LeastThrust(), 100 * Airframe::kLeastThrustShare, weight_n);
 }
 
+/// What the thrust gives at a constant height (m/s^2), or the least thrust where that is more.
+double UpAccel(const Airframe& airframe, double gravity_m_per_s2) {
+  return std::max(gravity_m_per_s2, airframe.LeastThrust() / airframe.mass_kg);
+}
+
 }  // namespace
 
 double LeanLimit(const AgentConfig& quadrotor, double gravity_m_per_s2) {
-  const Airframe& airframe = quadrotor.airframe;
-  const double up = std::max(gravity_m_per_s2, airframe.LeastThrust() / airframe.mass_kg);
-  const double tilt_rad = airframe.tilt_limit_rad;
-  return up * (quadrotor.control.inversion == Inversion::kExact ? std::tan(tilt_rad) : tilt_rad);
+  const double tilt_rad = quadrotor.airframe.tilt_limit_rad;
+  return UpAccel(quadrotor.airframe, gravity_m_per_s2) *
+         (quadrotor.control.inversion == Inversion::kExact ? std::tan(tilt_rad) : tilt_rad);
+}
+
+// A turn by `angle` to a target is late by the area below the error divided by the angle, which is the larger of
+//   kd / kp                                             PD law, damped well
+//   angle / (2 turn_rate) + turn_rate (kd / kp)^2 / (2 angle)    the same, above the largest turning rate
+//   sqrt(angle / A)                                     half of the time for speeding up and braking with A
+double AccelerationLag(const Experiment& experiment, const AgentConfig& quadrotor, double a_m_per_s2) {
+  const Airframe& body = quadrotor.airframe;
+  const double gravity = experiment.physics.gravity_m_per_s2;
+  const double up = UpAccel(body, gravity);
+  const double angle_rad = 2 * a_m_per_s2 / up;
+  const double pd_s = body.attitude.kd / body.attitude.kp;
+  const double rate = Airframe::kMostTurnRate;
+  const double slew_s = angle_rad > rate * pd_s ? angle_rad / (2 * rate) + rate * pd_s * pd_s / (2 * angle_rad) : pd_s;
+  const double hover_n = body.mass_kg * up;
+  const double torque_nm = body.arm_m / 2 * std::min(hover_n, body.max_thrust_n - hover_n);
+  const double turn_accel = torque_nm / body.inertia_kg_m2.head<2>().maxCoeff();
+  const double turn_s = std::max(slew_s, std::sqrt(angle_rad / turn_accel));
+  return turn_s + body.rotor_time_constant_s + experiment.period_s();
 }
 
 std::vector<std::string> LiftWarnings(const Experiment& experiment) {

@@ -3,30 +3,65 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "agent/laws/reach.h"
+#include "orchestrator/theory/flight_envelope.h"
+#include "orchestrator/theory/lagged_pursuit.h"
 #include "orchestrator/theory/minmax_time.h"
 #include "orchestrator/theory/parts.h"
 
 namespace mascot {
 namespace {
 
+/// The largest acceleration of the child along an axis (m/s^2).
+double Strongest(const Experiment& experiment, const AgentConfig& child, double beta, int axis) {
+  const double allowed = std::min(beta, child.control.max_acceleration_m_per_s2);
+  const bool leans = child.traits().has_airframe && axis < 2;
+  return leans ? std::min(allowed, LeanLimit(child, experiment.physics.gravity_m_per_s2)) : allowed;
+}
+
+/// How the child `edge.child` trembles: along x and y, for which it leans.
+std::optional<Trembling> PredictTrembling(const Experiment& experiment, const MinmaxEdge& edge, double alpha,
+                                          double beta) {
+  const AgentConfig& child = experiment.agent(edge.child);
+  const AgentConfig& parent = experiment.agent(edge.parent);
+  Trembling trembling;
+  trembling.lag_s = AccelerationLag(experiment, child, beta);
+  trembling.radius_m = TrembleRadius(alpha, beta, trembling.lag_s);
+  if (!std::isfinite(trembling.radius_m)) return std::nullopt;  // no proportional gain of the attitude: it never leans
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto time_s = LaggedMinmaxTime(child.p_W[axis] - parent.p_W[axis], child.v_W[axis] - parent.v_W[axis], alpha,
+                                         beta, trembling.lag_s, 2 * trembling.radius_m);
+    if (!time_s) {
+      trembling.time_s.reset();
+      break;
+    }
+    trembling.time_s = std::max(*time_s, trembling.time_s.value_or(0));
+  }
+  return trembling;
+}
+
 /// The time of the slowest axis of the edge from `child` to its parent; nothing if there is no formula for it.
 std::optional<MinmaxEdge> PredictEdge(const Experiment& experiment, const PursuitForm& law, int child) {
   const auto c = static_cast<std::size_t>(child - 1);
   const int parent = law.parent[c];
   const double alpha = law.beta[c] - law.parent_beta[c];
-  const double limit = experiment.agent(child).control.max_acceleration_m_per_s2;
+  const AgentConfig& agent = experiment.agent(child);
+  const double strongest = Strongest(experiment, agent, law.beta[c], 0);
   const bool exact = parent == experiment.law.leader && !law.root_flies;
-  // The acceleration limit may be less than beta. If the parent does not accelerate, anything above alpha is enough.
-  if (exact ? limit <= alpha : limit < law.beta[c]) return std::nullopt;
+  // Limits may leave less than beta. If the parent does not accelerate, anything above alpha is enough.
+  if (exact ? strongest <= alpha : strongest < law.beta[c]) return std::nullopt;
 
   MinmaxEdge edge{child, parent, 0, exact};
+  if (exact && law.switches && agent.traits().has_airframe)
+    edge.trembling = PredictTrembling(experiment, edge, alpha, strongest);
   const Eigen::Vector3d z_W = experiment.agent(child).p_W - experiment.agent(parent).p_W;
   const Eigen::Vector3d w_W = experiment.agent(child).v_W - experiment.agent(parent).v_W;
   for (int axis = 0; axis < CountOf(experiment.law.axes); ++axis) {
-    edge.time_s = std::max(edge.time_s, exact ? MinmaxTime(z_W(axis), w_W(axis), alpha, std::min(law.beta[c], limit))
-                                              : MinmaxBound(z_W(axis), w_W(axis), alpha));
+    edge.time_s = std::max(
+        edge.time_s, exact ? MinmaxTime(z_W(axis), w_W(axis), alpha, Strongest(experiment, agent, law.beta[c], axis))
+                           : MinmaxBound(z_W(axis), w_W(axis), alpha));
   }
   return edge;
 }
@@ -45,6 +80,21 @@ void WarnOfCutBeta(const Experiment& experiment, const PursuitForm& law, Predict
   prediction.warnings.push_back(
       fmt::format("law.beta: beta of {} is above control.max_acceleration_m_per_s2 = {:.4g}, which cuts it",
                   AgentList(cut), limit));
+}
+
+void WarnOfTrembling(Prediction& prediction) {
+  std::vector<int> trembling;
+  Trembling most;
+  for (const MinmaxEdge& edge : prediction.minmax_edges) {
+    if (!edge.trembling || 2 * edge.trembling->radius_m <= kCaughtUp_m) continue;
+    trembling.push_back(edge.child);
+    if (edge.trembling->radius_m > most.radius_m) most = *edge.trembling;
+  }
+  if (trembling.empty()) return;
+  prediction.warnings.push_back(fmt::format(
+      "law.beta: {} will tremble around the root by {}{:.2g} m, and may never stay within {:g} m of it: accelerations "
+      "come {:.2g} s late, because the body turns first (agents.airframe); a smaller beta trembles less",
+      AgentList(trembling), trembling.size() == 1 ? "about " : "up to ", most.radius_m, kCaughtUp_m, most.lag_s));
 }
 
 void WarnOfWeakEdges(const PursuitForm& law, Prediction& prediction) {
@@ -100,6 +150,7 @@ void PredictPursuit(const Experiment& experiment, const Timeline& timeline, cons
     prediction.minmax_time_s = std::max(edge.time_s, prediction.minmax_time_s.value_or(0));
   }
   WarnOfCutBeta(experiment, law, prediction);
+  WarnOfTrembling(prediction);
   WarnOfWeakEdges(law, prediction);
 }
 

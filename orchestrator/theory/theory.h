@@ -11,12 +11,20 @@
 
 namespace mascot {
 
+/// How a quadrotor's attitude makes it late, and tremble around a parent that does not accelerate.
+struct Trembling {
+  double lag_s = 0;              ///< how late its acceleration is (flight_envelope.h)
+  double radius_m = 0;           ///< largest distance from the parent in the end, per axis
+  std::optional<double> time_s;  ///< from which on it stays within 2 radius_m; absent: takes too long to compute
+};
+
 /// Prediction for one edge of the tree of min-max time consensus.
 struct MinmaxEdge {
   int child = 0;
   int parent = 0;
   double time_s = 0;   ///< until the child has the position and velocity of its parent, for the slowest axis
   bool exact = false;  ///< exact for the initial condition; else a bound for any motion of the parent
+  std::optional<Trembling> trembling = {};  ///< only for quadrotors whose time is exact, with a law that switches
 };
 
 /// The largest component of the command that a law asks for at tick 0, if all neighbours are heard without delay, and
