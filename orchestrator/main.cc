@@ -65,7 +65,9 @@ int Main(int argc, char** argv) {
     std::cerr << "error: " << UsageText(app, error) << "\n";
     return kUsage;
   }
-  return action();
+  const int code = action();
+  FlushStandardOutput();
+  return code;
 }
 
 }  // namespace

@@ -681,6 +681,23 @@ TEST(Up, PrintsTheSummaryAndNothingElseAsJson) {
   EXPECT_EQ(printed, up.Summary());
 }
 
+TEST(Up, FailsIfTheSummaryCannotBePrintedUnlessNobodyWantsIt) {
+  ScratchFolder folder;
+  const auto up = [&](const std::string& name, const std::string& where) {
+    const Ran ran = Shell("{ { '" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") +
+                          " --engine inprocess --duration-s 0.1 --set output.save_plot=false --out " +
+                          folder.File(name) + "; echo exit $? >&2; } " + where + "; }");
+    EXPECT_THAT(
+        ran.output,
+        HasSubstr("exit " + nlohmann::json::parse(ReadFile(folder.File(name + "/summary.json")))["exit"].dump()));
+    return ran.output;
+  };
+  EXPECT_THAT(up("full", ">/dev/full"),
+              HasSubstr("error: cannot write to standard output: No space left on device\nexit 1\n"));
+  EXPECT_THAT(up("closed", ">&-"), AllOf(HasSubstr("\nexit 0\n"), Not(HasSubstr("error"))));
+  EXPECT_THAT(up("gone", "| true"), AllOf(HasSubstr("\nexit 0\n"), Not(HasSubstr("error"))));
+}
+
 TEST(Up, RefusesAFolderThatHoldsSomethingUnlessForced) {
   ScratchFolder folder;
   Up earlier(folder, "run", Config("leaderless"), {"--duration-s", "0.2", "--engine", "inprocess"});

@@ -231,7 +231,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   json["wall_s"] = engine.wall_s;
   json["real_time_factor"] = engine.wall_s > 0 ? Json(sim_s / engine.wall_s) : Json(nullptr);
   json["ticks_per_s"] = engine.wall_s > 0 ? Json(static_cast<double>(ticks) / engine.wall_s) : Json(nullptr);
-  json["exit"] = facts.exit;
+  json["exit"] = OrNull(facts.exit);
   json["failure"] = engine.failure.empty() ? Json(nullptr) : Json(engine.failure);
   json["samples"] = {{"topics", facts.topics}, {"recorded", facts.samples}, {"lost", engine.lost}};
   json["wire"] = {{"matches_graph", OrNull(engine.wire_matches_graph)}};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "experiment/experiment.h"
@@ -11,11 +12,11 @@ namespace mascot {
 
 /// Facts about a run that neither the meters nor the engine result contain.
 struct RunFacts {
-  std::string engine;  ///< "dds" | "inprocess"
-  int exit = 0;
-  std::size_t topics = 0;     ///< topics recorded
-  std::uint64_t samples = 0;  ///< samples recorded
-  double total_s = 0;         ///< wall-clock time from the start of `up` until summary.json is written
+  std::string engine;           ///< "dds" | "inprocess"
+  std::optional<int> exit = 0;  ///< exit code of `up`; absent while it is not known yet
+  std::size_t topics = 0;       ///< topics recorded
+  std::uint64_t samples = 0;    ///< samples recorded
+  double total_s = 0;           ///< wall-clock time from the start of `up` until summary.json is written
 };
 
 /// Text of summary.json; docs/recording.md describes the keys.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "bus/standard_streams.h"
 #include "bus/stop_signal.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/progress.h"
@@ -13,6 +14,7 @@
 #include "orchestrator/processes/console.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/run_writer.h"
+#include "orchestrator/report/ending.h"
 #include "orchestrator/report/summary.h"
 #include "orchestrator/theory/theory.h"
 #include "orchestrator/verbs/config_args.h"
@@ -37,16 +39,16 @@ int ExitCode(const EngineResult& result) {
   return result.signal == 0 ? 0 : 128 + result.signal;
 }
 
-/// Makes the plots and keeps or removes the data file, as [output] says. Returns 0, or 1 or 128 + signal if plotting
-/// failed or was interrupted.
+/// Makes the plots and keeps or removes the data file, as [output] says. Returns 0, or 128 + signal if plotting was
+/// interrupted. Throws std::runtime_error if it failed.
 int MakeOutput(const Experiment& experiment, const RunFolder& folder, bool has_rows, StopSignal& stop) {
   const auto& output = experiment.output;
   int code = 0;
   if (has_rows && output.wants_pictures()) code = PlotRun(folder.path(), output.show_plot, stop);
   if (!output.save_data) std::filesystem::remove(folder.File("states.npz"));
   if (code == 0 || code > 128) return code;
-  std::cerr << "error: the pictures could not be made; the data are complete (output.save_plot = false skips them)\n";
-  return 1;
+  throw std::runtime_error(
+      "the pictures could not be made; the data are complete (output.save_plot = false skips them)");
 }
 
 int Up(const UpArgs& args) {
@@ -75,22 +77,24 @@ int Up(const UpArgs& args) {
   }
   if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
 
-  RunFacts facts{args.engine, ExitCode(result), writer.topics(), writer.samples()};
-  auto write_summary = [&] {
+  RunFacts facts{args.engine, {}, writer.topics(), writer.samples()};
+  const auto summary = [&](std::optional<int> exit) {
+    facts.exit = exit;
     facts.total_s = std::chrono::duration<double>(WallClock::now() - launched).count();
-    folder.Write("summary.json", SummaryJson(experiment, prediction, meter, result, facts));
+    return SummaryJson(experiment, prediction, meter, result, facts);
   };
-  write_summary();  // the plots read it
-  const int output = MakeOutput(experiment, folder, writer.rows() > 1, stop);
-  if (facts.exit == 0) facts.exit = output;
-  write_summary();
-  if (args.json)
-    std::cout << SummaryJson(experiment, prediction, meter, result, facts);
-  else if (!args.quiet)
-    std::cout << SummaryText(experiment, prediction, meter, result, facts) << "results        "
-              << folder.path().string() << std::endl;
-  if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
-  return facts.exit;
+  const auto print = [&](const std::string& json) {
+    if (args.json)
+      std::cout << json;
+    else if (!args.quiet)
+      std::cout << SummaryText(experiment, prediction, meter, result, facts) << "results        "
+                << folder.path().string() << "\n";
+    FlushStandardOutput();
+  };
+  return EndRun(folder, ExitCode(result),
+                {.summary = summary,
+                 .draw = [&] { return MakeOutput(experiment, folder, writer.rows() > 1, stop); },
+                 .print = print});
 }
 
 }  // namespace
