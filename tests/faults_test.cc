@@ -60,7 +60,9 @@ TEST(Faults, ADyingServerEndsTheRunByName) {
 /// Matches an error that names agent 2. Others may be named too: if agent 2 is stopped while it holds a shared-memory
 /// lock of the server's queue, the agents behind it cannot answer.
 auto NamesAgentTwo() {
-  return testing::ContainsRegex(": no command from agents? ([0-9]+, )*2(, [0-9]+)* within run.agent_timeout_s = 0.5 s");
+  return testing::ContainsRegex(
+      "error: physics_server: tick [0-9]+: no command from agents? ([0-9]+, )*2(, [0-9]+)* within run.agent_timeout_s "
+      "= 0.5 s");
 }
 
 TEST(Faults, ASilentAgentIsNamedAfterTheTimeout) {

@@ -30,7 +30,10 @@ class RunPhasesTest : public testing::Test {
             .period_s = period_s,
             .violation = [this] { return violation_; },
             .missing = [] { return std::string("nothing was heard of agent_2"); },
-            .last_lines = [](const std::string& process) { return std::vector<std::string>{process + " sighs"}; }};
+            .last_lines =
+                [this](const std::string& process) {
+                  return printed_.empty() ? std::vector<std::string>{process + " sighs"} : printed_;
+                }};
   }
 
   Actions Look() { return phases_.Look(view_, now_); }
@@ -58,6 +61,7 @@ class RunPhasesTest : public testing::Test {
   }
 
   std::string violation_;
+  std::vector<std::string> printed_;  // by a child that has ended; empty: it has sighed
   RunPhases::Time now_ = RunPhases::Time() + 1h;
   View view_;
   RunPhases phases_;
@@ -245,6 +249,15 @@ TEST_F(RunPhasesTest, AChildThatEndsInAnyPhaseBeforeTheRunIsOverFailsItWithItsLa
               "agent_2 was killed by signal 11 (Segmentation fault)\n  agent_2 | agent_2 sighs\n"
               "agent_3 exited with code 1\n  agent_3 | agent_3 sighs");
   }
+}
+
+TEST_F(RunPhasesTest, TheErrorThatAChildPrintedIsTheHeadline) {
+  Fly();
+  printed_ = {"warning: it is windy", "error: tick 7: no command from agent 2", "  and no other"};
+  Exits("physics_server", 1, "exited with code 1");
+  EXPECT_EQ(phases_.failure(),
+            "physics_server: tick 7: no command from agent 2 (exited with code 1)\n"
+            "  physics_server | warning: it is windy\n  physics_server |   and no other");
 }
 
 TEST_F(RunPhasesTest, AChildThatEndsAfterTheRunIsNoFailure) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "experiment/toml/section.h"
@@ -30,6 +31,20 @@ constexpr auto kLateReport = 1s;
 
 RunPhases::Time After(RunPhases::Time time, Seconds span) {
   return time + std::chrono::duration_cast<RunPhases::Time::duration>(span);
+}
+
+/// How a child ended, and why: the first error that it printed is the headline, its other lines follow. The error may
+/// name another process, such as an agent that does not answer.
+std::string Story(const std::string& process, const std::string& end, std::vector<std::string> lines) {
+  constexpr std::string_view kError = "error: ";
+  std::string story = process + " " + end;
+  const auto error = std::ranges::find_if(lines, [&](const std::string& line) { return line.starts_with(kError); });
+  if (error != lines.end()) {
+    story = process + ": " + error->substr(kError.size()) + " (" + end + ")";
+    lines.erase(error);
+  }
+  for (const std::string& line : lines) story += "\n  " + process + " | " + line;
+  return story;
 }
 
 std::string DiffersFromTheGraph(const std::string& how) { return "the wire differs from the graph: " + how; }
@@ -96,8 +111,7 @@ void RunPhases::JudgeExits() {
   std::string why;
   for (const Exit& exit : std::exchange(exits_, {})) {
     if (signal_ != 0 && exit.code == 128 + signal_) continue;
-    why += (why.empty() ? "" : "\n") + exit.process + " " + exit.text;
-    for (const std::string& line : rules_.last_lines(exit.process)) why += "\n  " + exit.process + " | " + line;
+    why += (why.empty() ? "" : "\n") + Story(exit.process, exit.text, rules_.last_lines(exit.process));
   }
   if (!why.empty()) Note(why);
   Finish();
