@@ -44,7 +44,10 @@ mascot_msgs::msg::Experiment Lifecycle::AwaitExperiment(std::chrono::seconds tim
   for (auto ask_again = Clock::now(); Clock::now() < deadline;) {
     {
       const std::lock_guard lock(mutex_);
-      if (experiment_) return *experiment_;
+      if (experiment_) {
+        status_.experiment(DigestOf(*experiment_));  // what this process will fly, whatever comes later
+        return *experiment_;
+      }
     }
     if (Clock::now() >= ask_again) {
       Set(Life::kWaiting);

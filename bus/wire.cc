@@ -1,5 +1,6 @@
 #include "bus/wire.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "bus/bus.h"
@@ -50,6 +51,13 @@ void DeserializeAs(std::span<const std::uint8_t> bytes, typename PubSub::type& s
 }
 
 }  // namespace
+
+std::uint64_t DigestOf(const mascot_msgs::msg::Experiment& experiment) {
+  std::uint64_t digest = 14695981039346656037ULL;
+  for (const char character : experiment.toml())
+    digest = (digest ^ static_cast<unsigned char>(character)) * 1099511628211ULL;
+  return std::max<std::uint64_t>(digest, 1);
+}
 
 std::string WireTypeName(TopicKind kind) {
   switch (kind) {

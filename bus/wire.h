@@ -28,6 +28,9 @@ constexpr bool IsLast(Life life) { return life >= Life::kDone; }
 /// Values of Request::kind.
 enum class Ask : std::uint8_t { kReport = 0, kStop, kEnd };
 
+/// A number that two processes compare to know that they fly the same experiment: the FNV-1a hash of its text. Never 0.
+std::uint64_t DigestOf(const mascot_msgs::msg::Experiment& experiment);
+
 /// DDS type name of the samples on topics of this kind: "mascot_msgs::msg::dds_::AgentState_".
 std::string WireTypeName(TopicKind kind);
 

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "agent/laws.h"
+#include "bus/lifecycle.h"
 #include "bus/stop_signal.h"
 #include "bus/wire.h"
 #include "orchestrator/engines/dds/domain_lock.h"
@@ -149,6 +150,24 @@ TEST_F(Bus, AuditIsNotCompleteWithoutEveryReaderOfMessages) {
   hear(2);
   EXPECT_TRUE(Until([&] { return audit.IsComplete(two); }));
   EXPECT_EQ(audit.Violation(two), "");
+}
+
+TEST_F(Bus, AProcessSaysWhichExperimentItHasReceived) {
+  StopSignal stop;
+  Lifecycle agent(there_, stop, "agent_1", 1);
+  Writer<ExperimentType> orchestrator(here_, Topic::Experiment());
+  std::atomic<std::uint64_t> reported = 0;
+  Reader<StatusType> statuses(here_, Topic::Status(), [&](const auto& status) { reported = status.experiment(); });
+  mascot_msgs::msg::Experiment experiment, other;
+  experiment.toml("p_gain = 0.1");
+  other.toml("p_gain = 0.2");
+  orchestrator.Write(experiment);
+  EXPECT_EQ(agent.AwaitExperiment(std::chrono::seconds(60)).toml(), experiment.toml());
+  EXPECT_TRUE(Until([&] {
+    agent.Set(Life::kMatching);
+    return reported == DigestOf(experiment);
+  }));
+  EXPECT_NE(DigestOf(experiment), DigestOf(other));
 }
 
 TEST_F(Bus, RawBytesAreThoseOfTheSerialiserWithZeroedPadding) {

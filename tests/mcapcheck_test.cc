@@ -148,6 +148,7 @@ TEST(Schemas, MatchTheSerialisedBytes) {
   status.process("agent_3");
   status.agent(3);
   status.state(5);
+  status.experiment(11);
   status.tick(6);
   status.misses(7);
   status.tick_lateness_s({0.5, 1.5, 2.5});
@@ -185,7 +186,7 @@ TEST(Schemas, MatchTheSerialisedBytes) {
       "actuator": [1.5, 2.5, 3.5, 4.5], "acceleration_wanted": {"x": 5.5, "y": 6.5, "z": 7.5},
       "acceleration_limited": {"x": 8.5, "y": 9.5, "z": 10.5}},
     "/clock": {"clock": {"sec": 1, "nanosec": 230000000}},
-    "/status": {"process": "agent_3", "agent": 3, "state": 5, "tick": 6, "misses": 7,
+    "/status": {"process": "agent_3", "agent": 3, "state": 5, "experiment": 11, "tick": 6, "misses": 7,
       "tick_lateness_s": [0.5, 1.5, 2.5], "command_age_s": [3.5, 4.5, 5.5],
       "agent_contacts": 8, "ground_contacts": 9, "obstacle_contacts": 10, "reason": "none"},
     "/request": {"kind": 2, "reason": "over"},

@@ -14,8 +14,10 @@ using testing::ThrowsMessage;
 /// Roster of a physics server and two agents, the second started by hand.
 class RosterTest : public testing::Test {
  protected:
-  Roster::News Say(const std::string& process, Life life, std::uint32_t agent = 0, const std::string& reason = "") {
+  Roster::News Say(const std::string& process, Life life, std::uint32_t agent = 0, const std::string& reason = "",
+                   std::uint64_t experiment = 0) {
     Roster::Status status;
+    status.experiment(experiment);
     status.process(process);
     status.agent(agent);
     status.state(static_cast<std::uint8_t>(life));
@@ -23,7 +25,8 @@ class RosterTest : public testing::Test {
     return roster_.OnStatus(status);
   }
 
-  Roster roster_{{.processes = {"physics_server", "agent_1", "agent_2"}, .external = {false, true}}};
+  Roster roster_{
+      {.processes = {"physics_server", "agent_1", "agent_2"}, .external = {false, true}, .experiment = 0x5eed}};
   Roster::Time now_ = Roster::Time() + 1h;
 };
 
@@ -53,6 +56,23 @@ TEST_F(RosterTest, TheExperimentIsHandedOutOnRequestAtMostTenTimesASecond) {
   Say("agent_2", Life::kWaiting, 2);
   EXPECT_FALSE(roster_.IsTimeToHandOut(now_ + 1s + 99ms));
   EXPECT_TRUE(roster_.IsTimeToHandOut(now_ + 1s + 100ms));
+}
+
+TEST_F(RosterTest, EveryProcessMustHaveTheExperimentOfThisRun) {
+  for (const char* process : {"physics_server", "agent_1", "agent_2"}) {
+    EXPECT_FALSE(roster_.HaveTheExperiment());
+    Say(process, Life::kWaiting);
+    Say(process, Life::kMatching, 0, "", 0x5eed);
+  }
+  EXPECT_TRUE(roster_.HaveTheExperiment());
+}
+
+TEST_F(RosterTest, AProcessThatHasAnotherExperimentFailsTheRun) {
+  EXPECT_THAT([this] { Say("agent_2", Life::kMatching, 2, "", 0xbad); },
+              ThrowsMessage<std::runtime_error>("agent_2 has received another experiment than this run's (digest "
+                                                "0000000000000bad, expected 0000000000005eed): somebody else publishes "
+                                                "experiments in this DDS domain"));
+  EXPECT_FALSE(roster_.HaveTheExperiment());
 }
 
 TEST_F(RosterTest, TheRecorderSaysHelloFiveTimesASecond) {

@@ -254,7 +254,8 @@ RunPhases::View DdsRun::Record() {
 
 RunPhases::View DdsRun::Look() const {
   const bool starting = phases_.phase() == RunPhases::Phase::kStarting;
-  return {.everybody_found = starting && recorder_->Matched() && audit_.IsComplete(experiment_),
+  return {.everybody_found = starting && recorder_->Matched() && audit_.IsComplete(experiment_) &&
+                             hub_->HaveTheExperiment(),
           .newest_tick = recorder_->newest_tick(),
           .rows = confirmed_,
           .last_tick = {},

@@ -43,8 +43,15 @@ const char* Text(Ask ask) {
   return "unknown";
 }
 
+mascot_msgs::msg::Experiment MessageOf(const Experiment& experiment) {
+  mascot_msgs::msg::Experiment message;
+  message.name(experiment.run.name);
+  message.toml(experiment.resolved);
+  return message;
+}
+
 Roster::Rules RosterRules(const Experiment& experiment) {
-  Roster::Rules rules{.processes = {"physics_server"}, .external = {}};
+  Roster::Rules rules{.processes = {"physics_server"}, .external = {}, .experiment = DigestOf(MessageOf(experiment))};
   for (const AgentRange& agents : AgentProcesses(experiment)) rules.processes.push_back(ProcessName(agents));
   for (const AgentConfig& agent : experiment.agents) rules.external.push_back(agent.external);
   return rules;
@@ -57,14 +64,13 @@ Roster::Time Now() { return std::chrono::steady_clock::now(); }
 Hub::Hub(Domain& domain, const Experiment& experiment, const std::string& log, std::function<void()> wake)
     : wake_(std::move(wake)),
       log_("orchestrator", std::make_shared<spdlog::sinks::basic_file_sink_mt>(log)),
+      message_(MessageOf(experiment)),
       roster_(RosterRules(experiment)),
       experiments_(domain, Topic::Experiment()),
       requests_(domain, Topic::Request()),
       recorder_(domain, Topic::Status()),
       status_(domain, Topic::Status(), [this](const Status& status) { OnStatus(status); }) {
   log_.flush_on(spdlog::level::info);
-  message_.name(experiment.run.name);
-  message_.toml(experiment.resolved);
 }
 
 void Hub::HandOutExperiment() {
@@ -115,6 +121,11 @@ void Hub::OnStatus(const Status& status) {
 std::optional<Hub::Status> Hub::StatusOf(const std::string& process) const {
   const std::lock_guard lock(mutex_);
   return roster_.Of(process);
+}
+
+bool Hub::HaveTheExperiment() const {
+  const std::lock_guard lock(mutex_);
+  return roster_.HaveTheExperiment();
 }
 
 std::string Hub::Missing() const {

@@ -36,6 +36,8 @@ class Hub {
 
   /// The latest status of a process; nothing if there is none yet.
   std::optional<Status> StatusOf(const std::string& process) const;
+  /// Whether every process has said that it has received the experiment of this run.
+  bool HaveTheExperiment() const;
   /// What the start still waits for, as text for an error message.
   std::string Missing() const;
 

@@ -1,5 +1,8 @@
 #include "orchestrator/engines/dds/roster.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -30,6 +33,11 @@ Roster::News Roster::OnStatus(const Status& status) {
       status.agent() >= 1 && status.agent() <= rules_.external.size() && rules_.external[status.agent() - 1];
   if (life == Life::kFailed && external)
     throw std::runtime_error(Utf8(process + " failed: " + status.reason().to_string()));
+  if (status.experiment() != 0 && status.experiment() != rules_.experiment)
+    throw std::runtime_error(
+        fmt::format("{} has received another experiment than this run's (digest {:016x}, expected {:016x}): somebody "
+                    "else publishes experiments in this DDS domain",
+                    process, status.experiment(), rules_.experiment));
   return {.changed = changed, .wake = life == Life::kWaiting || life == Life::kDone};
 }
 
@@ -49,6 +57,13 @@ std::optional<Roster::Status> Roster::Of(const std::string& process) const {
   const auto found = statuses_.find(process);
   if (found == statuses_.end()) return std::nullopt;
   return found->second;
+}
+
+bool Roster::HaveTheExperiment() const {
+  return std::ranges::all_of(rules_.processes, [this](const std::string& process) {
+    const auto found = statuses_.find(process);
+    return found != statuses_.end() && found->second.experiment() == rules_.experiment;
+  });
 }
 
 std::string Roster::Missing() const {

@@ -3,6 +3,7 @@
 #include <mascot.h>
 
 #include <chrono>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -21,6 +22,7 @@ class Roster {
   struct Rules {
     std::vector<std::string> processes;  ///< names of all processes, the physics server first
     std::vector<bool> external;          ///< by agent id - 1: started by hand, so that its exit is not seen
+    std::uint64_t experiment = 0;        ///< digest of the experiment of this run
   };
 
   /// What a status changes.
@@ -31,7 +33,8 @@ class Roster {
 
   explicit Roster(Rules rules);
 
-  /// Takes a status. Throws std::runtime_error if an external agent reports that it has failed.
+  /// Takes a status. Throws std::runtime_error if an external agent reports that it has failed, or if a process has
+  /// received another experiment than that of this run.
   News OnStatus(const Status& status);
   /// Whether to publish the experiment now: a process has asked for it since the last time, and that is at least 0.1 s
   /// ago. All processes receive it each time, so that a hundred agents that ask at once need it only once.
@@ -41,6 +44,8 @@ class Roster {
 
   /// The latest status of a process; nothing if there is none yet.
   std::optional<Status> Of(const std::string& process) const;
+  /// Whether every process has said that it has received the experiment of this run.
+  bool HaveTheExperiment() const;
   /// What the start still waits for, as text for an error message.
   std::string Missing() const;
 

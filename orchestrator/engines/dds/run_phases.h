@@ -49,10 +49,11 @@ class RunPhases {
 
   /// The state of the run at one moment.
   struct View {
-    bool everybody_found = false;   ///< every endpoint of the graph is discovered, and the recorder has every writer
-    std::int64_t newest_tick = -1;  ///< newest tick with a sample; -1: none
-    std::int64_t rows = 0;          ///< rows recorded
-    bool gave_up = false;           ///< incomplete rows were recorded too, because gives_up()
+    /// Every endpoint of the graph is discovered, the recorder has every writer, and every process the experiment.
+    bool everybody_found = false;
+    std::int64_t newest_tick = -1;               ///< newest tick with a sample; -1: none
+    std::int64_t rows = 0;                       ///< rows recorded
+    bool gave_up = false;                        ///< incomplete rows were recorded too, because gives_up()
     std::optional<std::int64_t> last_tick = {};  ///< last tick of the physics server, once it is done
     bool reported = false;                       ///< the physics server has sent its last status, with what it measured
   };
