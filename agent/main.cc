@@ -17,23 +17,42 @@ int Place(const mascot::Experiment& experiment, mascot::AgentRange agents) {
   return 1 + static_cast<int>(std::ranges::find(processes, agents) - processes.begin());
 }
 
-void RunAgent(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot_msgs::msg::Experiment& message,
-              mascot::AgentRange agents) {
+/// Reads the experiment. Throws std::runtime_error if it has fewer agents than this process has.
+mascot::Experiment ReadFor(mascot::AgentRange agents, const mascot_msgs::msg::Experiment& message) {
   const auto document = mascot::Section::FromText(message.toml(), message.name());
-  const mascot::Experiment experiment = mascot::LoadExperiment(document, message.name(), /*checked=*/true);
+  mascot::Experiment experiment = mascot::LoadExperiment(document, message.name(), /*checked=*/true);
   if (agents.last > experiment.size())
     throw std::runtime_error("--id " + std::to_string(agents.last) + ": the experiment has only agents 1 to " +
                              std::to_string(experiment.size()));
+  return experiment;
+}
+
+void SayWhoIsHeard(const mascot::Experiment& experiment, mascot::AgentRange agents) {
   for (int id = agents.first; id <= agents.last; ++id) {
     std::string heard;
     for (const auto& neighbour : experiment.graph.HeardBy(id)) heard += " " + std::to_string(neighbour.id);
     std::cerr << (agents.size() > 1 ? mascot::AgentName(id) + " " : "") << "hears"
               << (heard.empty() ? " nobody" : heard) << std::endl;
   }
-  mascot::Node node(domain, lifecycle, experiment, agents);
-  mascot::TakePrivileges(experiment, Place(experiment, agents));  // after all threads have started
-  node.Run();
 }
+
+class AgentRole : public mascot::Role {
+ public:
+  AgentRole(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot_msgs::msg::Experiment& message,
+            mascot::AgentRange agents)
+      : agents_(agents), experiment_(ReadFor(agents, message)), node_(domain, lifecycle, experiment_, agents) {}
+
+  void Run() override {
+    SayWhoIsHeard(experiment_, agents_);
+    mascot::TakePrivileges(experiment_, Place(experiment_, agents_));  // after all threads have started
+    node_.Run();
+  }
+
+ private:
+  const mascot::AgentRange agents_;
+  const mascot::Experiment experiment_;
+  mascot::Node node_;
+};
 
 }  // namespace
 
@@ -43,6 +62,6 @@ int main(int argc, char** argv) {
   CLI::App app("MASCOT agent: hears its neighbours, runs its law and its low-level stack, commands its actuators.");
   mascot::ProcessArgs args(/*agent_process=*/true);
   return mascot::ProcessMain(app, argc, argv, args, stop, [&args](auto& domain, auto& lifecycle, const auto& message) {
-    RunAgent(domain, lifecycle, message, args.agents);
+    return std::make_unique<AgentRole>(domain, lifecycle, message, args.agents);
   });
 }

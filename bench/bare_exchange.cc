@@ -204,6 +204,6 @@ int main(int argc, char** argv) {
     kill(agent, SIGKILL);
     waitpid(agent, nullptr, 0);
   }
-  SweepSharedMemory();
+  SweepSharedMemory(setting.domain);
   return 0;
 }

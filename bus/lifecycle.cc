@@ -1,27 +1,11 @@
 #include "bus/lifecycle.h"
 
-#include <unistd.h>
-
 #include "experiment/toml/utf8.h"
 
 namespace mascot {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
-
-namespace {
-
-constexpr auto kTimeToLeave = 5s;
-
-/// Throws `why`, and has SIGALRM end this process if it does not leave in time: leaving the domain waits for its
-/// threads, and a law may hang in one of them.
-template <class Why>
-[[noreturn]] void StartAlarmAndThrow(const Why& why) {
-  ::alarm(static_cast<unsigned>(kTimeToLeave.count()));
-  throw why;
-}
-
-}  // namespace
 
 Lifecycle::Lifecycle(Domain& domain, StopSignal& stop, const std::string& process, int agent)
     : stop_(stop),
@@ -90,14 +74,14 @@ void Lifecycle::Report(std::uint64_t tick, const Pacing& pacing, const Contacts&
 void Lifecycle::Wait(std::chrono::nanoseconds timeout) {
   const int signal = stop_.Within(timeout);
   domain_.RethrowFailure();
-  if (signal != 0) StartAlarmAndThrow(Ended(signal));
-  if (end_requested_) StartAlarmAndThrow(Ended(0));
+  if (signal != 0) throw Ended(signal);
+  if (end_requested_) throw Ended(0);
   if (report_requested_.exchange(false)) Publish();
   // Only the orchestrator writes /experiment: while no writer is matched, it is not in the domain.
   if (experiment_reader_.matched() > 0)
     orchestrator_seen_ = true;
   else if (orchestrator_seen_)
-    StartAlarmAndThrow(std::runtime_error("the orchestrator has gone"));
+    throw std::runtime_error("the orchestrator has gone");
 }
 
 void Lifecycle::OnRequest(const mascot_msgs::msg::Request& request) {

@@ -43,8 +43,7 @@ class Lifecycle {
   /// Publishes new counters with the current state. Thread-safe.
   void Report(std::uint64_t tick, const Pacing& pacing, const Contacts& contacts);
   /// Waits for a wake-up, at most `timeout`. Throws Ended after a signal or an END request, and std::runtime_error when
-  /// the orchestrator has left the domain; from then on this process has 5 s to leave the domain as well, or SIGALRM
-  /// ends it. Rethrows what a callback of the domain threw.
+  /// the orchestrator has left the domain. Rethrows what a callback of the domain threw.
   void Wait(std::chrono::nanoseconds timeout);
   /// Makes the running Wait(), or the next one, return. Thread-safe.
   void Wake() { stop_.Wake(); }

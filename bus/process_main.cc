@@ -1,14 +1,18 @@
 #include "bus/process_main.h"
 
+#include <poll.h>
 #include <sys/prctl.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <iostream>
 #include <stdexcept>
 #include <string_view>
 
+#include "bus/leave.h"
 #include "bus/shared_memory.h"
 #include "bus/usage.h"
 #include "experiment/experiment.h"
@@ -16,9 +20,8 @@
 namespace mascot {
 namespace {
 
-using Run = std::function<void(Domain&, Lifecycle&, const mascot_msgs::msg::Experiment&)>;
-
-constexpr const char* kSweep = "--sweep-shared-memory";
+constexpr auto kTimeToLeave = std::chrono::seconds(5);
+constexpr auto kTimeToReport = std::chrono::seconds(3);  // see Lifecycle::SetFinal()
 
 /// "3" or "1-50".
 AgentRange ParseIds(const std::string& text) {
@@ -31,29 +34,49 @@ AgentRange ParseIds(const std::string& text) {
   return *agents;
 }
 
-/// Removes the shared memory of an orchestrator that was killed, or of this process if it cannot leave the domain. Fast
-/// DDS still maps the segments that this process has read, and another child that sweeps would take those to be in use;
-/// so this process replaces itself (exec) by a fresh one that sweeps. Closing all files releases its own locks.
-/// Async-signal-safe.
-void RestartToSweep() {
-  ::close_range(STDERR_FILENO + 1, ~0U, 0);
-  ::execl("/proc/self/exe", "sweep", kSweep, nullptr);
+/// See kSweepAfterRun. Files of a process that is just ending are in use for another moment: sweeps until that is over.
+int SweepAfterRun(int domain) {
+  constexpr int kSweeps = 4;
+  constexpr int kMoment_ms = 50;
+  char nothing = 0;
+  while (read(STDIN_FILENO, &nothing, 1) > 0 || errno == EINTR) {
+  }
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    SweepSharedMemory(domain);
+    poll(nullptr, 0, kMoment_ms);
+  }
+  return 0;
 }
 
-/// Joins the domain and calls `run`. Publishes a failure before it leaves. Returns the exit code.
-int Join(const ProcessArgs& args, StopSignal& stop, const Run& run) {
+int SweepSegments(int code) {
+  SweepSharedMemory(kNoDomain);
+  return code;
+}
+
+/// Prepares to leave the domain: from now on the process ends within `limit`.
+void Leave(const ProcessArgs& args, std::chrono::seconds limit, int code) {
+  const bool by_hand = args.parent == 0;  // else the orchestrator kills and sweeps, or its Janitor
+  LeaveWithin(limit, {.code = code, .process = args.options.name, .on_signals = by_hand, .sweeps = by_hand});
+}
+
+/// Joins the domain and runs its role. Publishes a failure before it leaves. Returns the exit code.
+int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role) {
   Domain domain(args.options, [&stop] { stop.Wake(); });
   Lifecycle lifecycle(domain, stop, args.options.name, args.agents.size() == 1 ? args.agents.first : 0);
+  std::unique_ptr<Role> role;  // destroyed after the exit code is known: that may hang
+  int code = 1;
   try {
-    run(domain, lifecycle, lifecycle.AwaitExperiment(std::chrono::seconds(args.wait_s)));
-    return 0;
+    role = make_role(domain, lifecycle, lifecycle.AwaitExperiment(std::chrono::seconds(args.wait_s)));
+    role->Run();
   } catch (const Ended& ended) {
-    return ended.signal() == 0 ? 0 : 128 + ended.signal();
+    code = ended.signal() == 0 ? 0 : 128 + ended.signal();
   } catch (const std::exception& failure) {
-    std::cerr << "error: " << failure.what() << std::endl;
-    lifecycle.SetFinal(Life::kFailed, failure.what());
-    return 1;
+    Leave(args, kTimeToReport + kTimeToLeave, code);
+    std::cerr << "error: " << InWords(failure) << std::endl;
+    lifecycle.SetFinal(Life::kFailed, InWords(failure));
   }
+  Leave(args, kTimeToLeave, code);
+  return code;
 }
 
 }  // namespace
@@ -76,11 +99,11 @@ void ProcessArgs::AddTo(CLI::App& app) {
   app.add_option("--parent", parent, "Process id of the orchestrator that spawned this process: end when it dies");
 }
 
-int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSignal& stop, const Run& run) {
-  if (argc == 2 && std::string_view(argv[1]) == kSweep) {
-    SweepSharedMemory();
-    return 0;
-  }
+int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSignal& stop,
+                const RoleFactory& make_role) {
+  SayWhatIsUncaught();
+  if (argc == 3 && std::string_view(argv[1]) == kSweep) return SweepSegments(std::atoi(argv[2]));
+  if (argc == 3 && std::string_view(argv[1]) == kSweepAfterRun) return SweepAfterRun(std::atoi(argv[2]));
   args.AddTo(app);
   try {
     app.parse(argc, argv);
@@ -90,25 +113,23 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
     std::cerr << "error: " << UsageText(app, error) << std::endl;
     return 2;
   }
-  std::signal(SIGPIPE, SIG_IGN);                        // clean up even if stderr is the pipe of a dead orchestrator
-  std::signal(SIGALRM, [](int) { RestartToSweep(); });  // Lifecycle::Wait(): could not leave
+  std::signal(SIGPIPE, SIG_IGN);  // clean up even if stderr is the pipe of a dead orchestrator
+  close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);  // what a law starts is no process of the run (Janitor)
   if (args.parent != 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != args.parent) return 1;  // the orchestrator died before this line
   }
   args.options.name = args.is_agent ? ProcessName(args.agents) : "physics_server";
   if (!args.options.server.empty()) args.options.role = DiscoveryRole::kClient;
-  int code = 1;
   try {
-    code = Join(args, stop, run);
+    return Join(args, stop, make_role);
   } catch (const std::invalid_argument& usage) {
     std::cerr << "error: " << usage.what() << std::endl;
-    code = 2;
+    return 2;
   } catch (const std::exception& failure) {
-    std::cerr << "error: " << failure.what() << std::endl;
+    std::cerr << "error: " << InWords(failure) << std::endl;
+    return 1;
   }
-  if (args.parent != 0 && getppid() != args.parent) RestartToSweep();
-  return code;
 }
 
 }  // namespace mascot

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "bus/bus.h"
@@ -27,11 +28,27 @@ struct ProcessArgs {
   void AddTo(CLI::App& app);
 };
 
+/// What a process is in a run, once it has the experiment. Owns the process's endpoints of per-tick topics.
+class Role {
+ public:
+  virtual ~Role() = default;
+  /// Ends by an exception, such as Ended.
+  [[noreturn]] virtual void Run() = 0;
+};
+using RoleFactory = std::function<std::unique_ptr<Role>(Domain&, Lifecycle&, const mascot_msgs::msg::Experiment&)>;
+
 /// The common `main` of the physics server and the agents: parses the command line, joins the domain, waits for the
-/// experiment, calls `run` (which does not return normally: it ends by an exception, such as Ended), publishes and
-/// prints a failure, cleans up. With --sweep-shared-memory as the only argument it just calls SweepSharedMemory().
-/// Returns the exit code: 0 ended by the run, 1 failed, 2 wrong usage, 128 + signal (130, 143) ended by a signal.
+/// experiment, runs the role that `make_role` makes, publishes and prints a failure, and leaves, by force if the DDS
+/// library does not end within 5 s. Returns the exit code: 0 ended by the run, 1 failed, 2 wrong usage, 128 + signal
+/// (130, 143) ended by a signal.
 int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSignal& stop,
-                const std::function<void(Domain&, Lifecycle&, const mascot_msgs::msg::Experiment&)>& run);
+                const RoleFactory& make_role);
+
+// What ProcessMain does instead if this is its first argument; the second is a number.
+/// Removes segments of dead processes. The number is the exit code.
+inline constexpr const char* kSweep = "--sweep-shared-memory";
+/// Waits until stdin ends, then removes the shared memory of a run. The number is its domain. The caller holds the
+/// domain's lock (Janitor).
+inline constexpr const char* kSweepAfterRun = "--sweep-after-run";
 
 }  // namespace mascot

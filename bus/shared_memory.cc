@@ -4,23 +4,29 @@
 #include <poll.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "bus/ports.h"
 
 namespace mascot {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr const char* kFolder = "/dev/shm";
+constexpr const char *kFolder = "/dev/shm", *kPrefix = "/dev/shm/";
 
 /// Name of the segment or port X that a file belongs to: Fast DDS keeps X itself, its lock files X_el or X_sl, and
 /// sem.X_mutex.
@@ -38,37 +44,80 @@ bool IsOurs(const std::string& path) {
   return lstat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode) && info.st_uid == geteuid();
 }
 
-/// Paths of the files of each segment or port, by its name.
-std::map<std::string, std::vector<std::string>> Segments() {
-  std::map<std::string, std::vector<std::string>> segments;
+/// Whether a run in `domain` owns the port of this name; true for segments, whose names are random.
+bool IsSegmentOrPortOf(int domain, const std::string& name) {
+  constexpr std::string_view kPort = "fastrtps_port";
+  if (!name.starts_with(kPort)) return true;
+  int port = 0;
+  std::from_chars(name.data() + kPort.size(), name.data() + name.size(), port);
+  return domain != kNoDomain && FirstPort(domain) <= port && port < FirstPort(domain + kDomainsPerRun);
+}
+
+/// Paths in a folder; those that can be read, if it vanishes with its process.
+std::vector<fs::path> PathsIn(const fs::path& folder) {
+  std::vector<fs::path> paths;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(kFolder, error)) {
-    const std::string name = entry.path().filename();
-    const std::string segment = SegmentOf(name);
-    if (segment.starts_with("fastrtps_") && IsOurs(entry.path())) segments[segment].push_back(entry.path());
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    paths.push_back(entry->path());
+  return paths;
+}
+
+/// Paths of the files of each segment or port, by its name.
+std::map<std::string, std::vector<std::string>> Segments(int domain) {
+  std::map<std::string, std::vector<std::string>> segments;
+  for (const fs::path& path : PathsIn(kFolder)) {
+    const std::string name = SegmentOf(path.filename());
+    if (name.starts_with("fastrtps_") && IsSegmentOrPortOf(domain, name) && IsOurs(path))
+      segments[name].push_back(path);
   }
   return segments;
 }
 
-/// Names of all files in /dev/shm that another process maps. This process does not count: it has no participant any
-/// more, but Fast DDS may still map segments of peers that died.
-std::set<std::string> MappedNames() {
-  std::set<std::string> names;
-  std::error_code error;
-  const std::string prefix = std::string(kFolder) + "/";
-  for (const auto& entry : fs::directory_iterator("/proc", error)) {
-    const std::string pid = entry.path().filename();
-    if (pid == std::to_string(getpid())) continue;
-    if (!std::all_of(pid.begin(), pid.end(), [](unsigned char c) { return std::isdigit(c); })) continue;
-    std::ifstream maps(entry.path() / "maps");
-    for (std::string line; std::getline(maps, line);)
-      if (const auto at = line.find(prefix); at != std::string::npos) names.insert(line.substr(at + prefix.size()));
-  }
-  return names;
+/// A file, whatever its name: Fast DDS maps semaphores under a temporary one.
+using FileId = std::pair<dev_t, ino_t>;
+
+FileId IdOf(const std::string& path) {
+  struct stat info {};
+  return stat(path.c_str(), &info) == 0 ? FileId{info.st_dev, info.st_ino} : FileId{};
 }
 
-/// True if the file's owner is alive: owners lock X_el exclusively and X_sl shared. We try the weakest lock that
-/// conflicts with the owner's, so that two processes that check X_el at once do not take each other for the owner.
+/// The files in /dev/shm that a process has open (`process`: its folder in /proc).
+void AddOpen(const fs::path& process, std::set<FileId>& used) {
+  std::error_code error;
+  for (const fs::path& descriptor : PathsIn(process / "fd"))
+    if (fs::read_symlink(descriptor, error).string().starts_with(kPrefix)) used.insert(IdOf(descriptor));
+}
+
+/// The files in /dev/shm that a process maps.
+void AddMapped(const fs::path& process, std::set<FileId>& used) {
+  std::ifstream maps(process / "maps");
+  for (std::string line; std::getline(maps, line);) {
+    unsigned major = 0, minor = 0;
+    unsigned long inode = 0;
+    if (line.find(kPrefix) != line.npos &&
+        std::sscanf(line.c_str(), "%*s %*s %*s %x:%x %lu", &major, &minor, &inode) == 3)
+      used.emplace(makedev(major, minor), inode);
+  }
+}
+
+/// The files in /dev/shm that other processes use. This process does not count: it has no participant any more, but
+/// Fast DDS may still map segments of peers that died. A process that makes a file keeps it open until it maps it; so
+/// looking at what it has open first, and then at what it maps, misses no file.
+std::set<FileId> FilesInUse() {
+  std::set<FileId> used;
+  for (const fs::path& process : PathsIn("/proc")) {
+    const std::string pid = process.filename();
+    if (pid == std::to_string(getpid())) continue;
+    if (!std::ranges::all_of(pid, [](unsigned char c) { return std::isdigit(c); })) continue;
+    AddOpen(process, used);
+    AddMapped(process, used);
+  }
+  return used;
+}
+
+/// True if the file's owner is alive, perhaps in another container that shares /dev/shm, where we do not see what it
+/// has open: owners lock X_el exclusively and X_sl shared. We try the weakest lock that conflicts with the owner's, so
+/// that two processes that check X_el at once do not take each other for the owner.
 bool IsLocked(const std::string& path) {
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return false;
@@ -79,24 +128,22 @@ bool IsLocked(const std::string& path) {
 
 }  // namespace
 
-std::vector<std::string> StaleSharedMemory() {
-  // First the files, then the mappings: a file that a starting process has just made is mostly mapped or locked by
-  // then.
-  const auto segments = Segments();
+std::vector<std::string> StaleSharedMemory(int domain) {
+  const auto segments = Segments(domain);  // before FilesInUse(): what is made later is not stale
   if (segments.empty()) return {};
-  const std::set<std::string> mapped = MappedNames();
+  const std::set<FileId> used = FilesInUse();
+  const auto in_use = [&](const std::string& path) { return used.contains(IdOf(path)) || IsLocked(path); };
   std::vector<std::string> stale;
   for (const auto& [segment, files] : segments)
-    if (!mapped.contains(segment) && std::none_of(files.begin(), files.end(), IsLocked))
-      stale.insert(stale.end(), files.begin(), files.end());
+    if (std::ranges::none_of(files, in_use)) stale.insert(stale.end(), files.begin(), files.end());
   return stale;
 }
 
-void SweepSharedMemory() {
-  const std::vector<std::string> once = StaleSharedMemory();
+void SweepSharedMemory(int domain) {
+  const std::vector<std::string> once = StaleSharedMemory(domain);
   if (once.empty()) return;
-  poll(nullptr, 0, 50);  // milliseconds: a process that has just made one of the files maps or locks it in this time
-  const std::vector<std::string> again = StaleSharedMemory();
+  poll(nullptr, 0, 50);  // milliseconds: the kernel shows a new file a moment before its maker has it open
+  const std::vector<std::string> again = StaleSharedMemory(domain);
   for (const std::string& file : once)
     if (std::ranges::find(again, file) != again.end()) unlink(file.c_str());
 }

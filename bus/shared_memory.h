@@ -5,10 +5,17 @@
 
 namespace mascot {
 
+/// For StaleSharedMemory() and SweepSharedMemory(): segments only.
+inline constexpr int kNoDomain = -1;
+
 /// Paths of the files that dead Fast DDS processes (killed or crashed) left in /dev/shm: files of this user that no
-/// other process maps and no process has locked. The calling process must have no DDS participant (any more).
-std::vector<std::string> StaleSharedMemory();
-/// Removes the files that are stale now and still stale 50 ms later. Safe while other processes run.
-void SweepSharedMemory();
+/// other process has open, maps or has locked; segments, and the ports of a run in `domain`. The calling process must
+/// have no DDS participant (any more).
+std::vector<std::string> StaleSharedMemory(int domain);
+/// Removes the files that are stale now and still stale 50 ms later. Safe while other processes run, also while they
+/// start: a process keeps a file open until it maps it. The caller must hold the DomainLock of `domain`: names of
+/// ports, unlike those of segments, are used again, and a port that looks stale may be opened just before it is
+/// removed.
+void SweepSharedMemory(int domain);
 
 }  // namespace mascot

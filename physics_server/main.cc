@@ -8,15 +8,25 @@
 
 namespace {
 
-void RunServer(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot_msgs::msg::Experiment& message) {
-  const auto document = mascot::Section::FromText(message.toml(), message.name());
-  const mascot::Experiment experiment = mascot::ReadWithoutLaws(document, message.name());
-  mascot::Server server(domain, lifecycle, experiment);
-  mascot::TakePrivileges(experiment, 0);  // after all threads have started
-  server.Run();
-  lifecycle.Set(mascot::Life::kDone);
-  for (;;) lifecycle.Wait(std::chrono::seconds(1));  // stay until the run ends us: readers may need the last samples
-}
+class ServerRole : public mascot::Role {
+ public:
+  ServerRole(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot_msgs::msg::Experiment& message)
+      : lifecycle_(lifecycle),
+        experiment_(mascot::ReadWithoutLaws(mascot::Section::FromText(message.toml(), message.name()), message.name())),
+        server_(domain, lifecycle, experiment_) {}
+
+  void Run() override {
+    mascot::TakePrivileges(experiment_, 0);  // after all threads have started
+    server_.Run();
+    lifecycle_.Set(mascot::Life::kDone);
+    for (;;) lifecycle_.Wait(std::chrono::seconds(1));  // stay until the run ends us: readers may need the last samples
+  }
+
+ private:
+  mascot::Lifecycle& lifecycle_;
+  const mascot::Experiment experiment_;
+  mascot::Server server_;
+};
 
 }  // namespace
 
@@ -25,5 +35,7 @@ int main(int argc, char** argv) {
   mascot::StopSignal stop;  // before anything that starts threads: they must inherit the mask
   CLI::App app("MASCOT physics server: publishes every agent's state, gathers every command, steps the world.");
   mascot::ProcessArgs args(/*agent_process=*/false);
-  return mascot::ProcessMain(app, argc, argv, args, stop, RunServer);
+  return mascot::ProcessMain(app, argc, argv, args, stop, [](auto& domain, auto& lifecycle, const auto& message) {
+    return std::make_unique<ServerRole>(domain, lifecycle, message);
+  });
 }

@@ -1,6 +1,8 @@
 // Faults in runs over DDS, with the real processes: each is detected, reported by name, and cleaned up after.
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/file.h>
 
 #include <cstring>
 
@@ -22,11 +24,23 @@ Up Endless(const ScratchFolder& folder, std::vector<std::string> more = {}) {
   return Up(folder, "run", Config("leaderless"), more);
 }
 
-/// Waits until no shared memory of dead processes is left: those of another test may be just about to be removed.
-testing::AssertionResult NothingIsLeft() {
-  if (Until([] { return StaleSharedMemory().empty(); })) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << StaleSharedMemory().front() << " was left";
+/// The DDS domain that `up` prints. `said`: what it printed.
+int DomainOf(const std::string& said) {
+  const std::size_t at = said.find("domain ");
+  return at == said.npos ? kNoDomain : std::stoi(said.substr(at + 7));
 }
+
+int DomainOf(const Running& up) { return DomainOf(up.err()); }
+
+/// Waits until no shared memory of a run is left: its janitor, or another test, may be just about to remove some.
+/// `said`: what the run's `up` printed.
+testing::AssertionResult NothingIsLeft(const std::string& said) {
+  const int domain = DomainOf(said);
+  if (Until([&] { return StaleSharedMemory(domain).empty(); })) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << StaleSharedMemory(domain).front() << " was left";
+}
+
+testing::AssertionResult NothingIsLeft(const Running& up) { return NothingIsLeft(up.err()); }
 
 bool IsGone(pid_t pid) {
   return Until([&] {
@@ -43,7 +57,7 @@ TEST(Faults, ADyingAgentEndsTheRunByNameAndSignal) {
   EXPECT_THAT(up.err(), HasSubstr("error: agent_3 was killed by signal 9 (Killed)"));
   EXPECT_EQ(up.Summary()["exit"], 1);
   EXPECT_THAT(up.Summary()["failure"].get<std::string>(), HasSubstr("agent_3 was killed"));
-  EXPECT_TRUE(NothingIsLeft());
+  EXPECT_TRUE(NothingIsLeft(up));
 }
 
 TEST(Faults, ADyingServerEndsTheRunByName) {
@@ -54,7 +68,7 @@ TEST(Faults, ADyingServerEndsTheRunByName) {
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(up.err(), HasSubstr("error: physics_server was killed by signal 11 (Segmentation fault)"));
   EXPECT_TRUE(up.Summary()["safety"]["collisions"].is_null()) << "it knew, and did not tell";
-  EXPECT_TRUE(NothingIsLeft());
+  EXPECT_TRUE(NothingIsLeft(up));
 }
 
 /// Matches an error that names agent 2. Others may be named too: if agent 2 is stopped while it holds a shared-memory
@@ -72,7 +86,7 @@ TEST(Faults, ASilentAgentIsNamedAfterTheTimeout) {
   kill(up.Child("agent_2"), SIGSTOP);
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(up.err(), NamesAgentTwo());
-  EXPECT_TRUE(NothingIsLeft());
+  EXPECT_TRUE(NothingIsLeft(up));
 }
 
 TEST(Faults, NobodyOutlivesAKilledOrchestrator) {
@@ -86,9 +100,58 @@ TEST(Faults, NobodyOutlivesAKilledOrchestrator) {
   EXPECT_EQ(up.Wait(), -SIGKILL);
   EXPECT_TRUE(IsGone(server));
   EXPECT_TRUE(IsGone(agent));
-  EXPECT_TRUE(NothingIsLeft());
+  EXPECT_TRUE(NothingIsLeft(up));
   const McapContents recording = ReadMcap(up.path() / "run.mcap");  // the recording is readable
   EXPECT_FALSE(recording.complete);
+}
+
+/// Whether nobody holds the lock of a DDS domain.
+bool IsFree(int domain) {
+  const int file = open(("/tmp/mascot-domains/" + std::to_string(domain)).c_str(), O_RDONLY | O_CLOEXEC);
+  const bool free = flock(file, LOCK_EX | LOCK_NB) == 0;
+  close(file);
+  return free;
+}
+
+/// A moment of a run: `file` of its results, or what it prints, has `text`.
+struct Moment {
+  std::string name, file, text;
+};
+
+void PrintTo(const Moment& moment, std::ostream* out) { *out << moment.name; }
+
+class Orphaned : public testing::TestWithParam<Moment> {};
+
+TEST_P(Orphaned, RunsClearUpAfterAnOrchestratorThatWasKilled) {
+  ScratchFolder folder;
+  Up up(folder, "run", Config("leaderless"), {"--duration-s", "2"});
+  const auto [name, file, text] = GetParam();
+  ASSERT_TRUE(Until([&] { return (file.empty() ? up.err() : up.File(file)).find(text) != std::string::npos; }));
+  up.Signal(SIGKILL);
+  up.Wait();  // if it was faster than we, all the better
+  EXPECT_TRUE(Until([&] { return IsFree(DomainOf(up)); })) << "some process still lives";
+  EXPECT_TRUE(NothingIsLeft(up));
+}
+
+INSTANTIATE_TEST_SUITE_P(At, Orphaned,
+                         testing::Values(Moment{"Spawning", "", "domain "},
+                                         Moment{"Matching", "logs/orchestrator.log", "handed out"},
+                                         Moment{"Flying", "", "x real time"},
+                                         Moment{"Ending", "logs/orchestrator.log", "request: end"}),
+                         NamedAsPrinted<Moment>);
+
+/// A command in whose processes of this name leaving the DDS domain never ends.
+std::string Hanging(const std::string& process, const std::string& command) {
+  return "MASCOT_HANGS=" + process + " LD_PRELOAD='" MASCOT_BINARY_DIR "/tests/preload/libhang_at_end.so' exec '" +
+         MASCOT_BINARY_DIR "/" + process + "' " + command;
+}
+
+TEST(Faults, AProcessThatWasStartedByHandLeavesWithinItsTime) {
+  ScratchFolder folder;
+  Running agent("/bin/sh", {"-c", Hanging("agent", "--id 3 --loopback --domain 101 --wait-s 1")}, folder.File("agent"));
+  EXPECT_EQ(agent.Wait(), 1);
+  EXPECT_THAT(agent.err(), HasSubstr("error: no experiment came within 1 s"));
+  EXPECT_THAT(agent.err(), HasSubstr("agent_3: the DDS library does not end: leaving by force\n"));
 }
 
 /// Writes an experiment whose law is this Python text. Returns its path.
@@ -111,7 +174,7 @@ TEST(Faults, NoLawThatHangsOutlivesAKilledOrchestrator) {
   up.Signal(SIGKILL);
   EXPECT_EQ(up.Wait(), -SIGKILL);
   EXPECT_TRUE(IsGone(agent));
-  EXPECT_TRUE(NothingIsLeft());
+  EXPECT_TRUE(NothingIsLeft(up));
 }
 
 TEST(Faults, ARunDoesNotWaitForWhatALawHasStarted) {
@@ -177,7 +240,7 @@ TEST(Faults, ASilentServerIsNamed) {
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(up.err(), HasSubstr("error: nothing came from physics_server for 5.5 s"));
   EXPECT_TRUE(up.Summary()["safety"]["collisions"].is_null());
-  EXPECT_TRUE(NothingIsLeft());
+  EXPECT_TRUE(NothingIsLeft(up));
 }
 
 TEST(Faults, ASignalToTheWholeJobIsNoFailure) {
@@ -191,7 +254,7 @@ TEST(Faults, ASignalToTheWholeJobIsNoFailure) {
   for (const pid_t other : others) kill(other, SIGTERM);
   EXPECT_EQ(up.Wait(), 128 + SIGTERM) << up.err();
   EXPECT_TRUE(up.Summary()["failure"].is_null());
-  EXPECT_TRUE(NothingIsLeft());
+  EXPECT_TRUE(NothingIsLeft(up));
 }
 
 TEST(Faults, AnAgentEndedAloneIsAFailure) {
@@ -225,7 +288,7 @@ TEST_P(Interrupted, RunsEndInOrderWithACompleteRecording) {
   EXPECT_EQ(recording.messages, 9 * (up.Summary()["ticks"].get<std::uint64_t>() + 1));
   EXPECT_EQ(up.Summary()["samples"]["lost"], 0);
   EXPECT_THAT(ReadFile(up.path() / "logs/orchestrator.log"), HasSubstr("physics_server is done, tick"));
-  EXPECT_TRUE(NothingIsLeft());
+  EXPECT_TRUE(NothingIsLeft(up));
 }
 
 INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted, testing::Values(Interruption{SIGINT, 130}, Interruption{SIGTERM, 143}),
@@ -240,7 +303,7 @@ TEST(Faults, ASecondCtrlCKillsWhatDoesNotStop) {
   ASSERT_TRUE(Until([&] { return up.Said("once more to kill"); }));
   up.Signal(SIGINT);
   EXPECT_EQ(up.Wait(), 130);
-  EXPECT_TRUE(NothingIsLeft());
+  EXPECT_TRUE(NothingIsLeft(up));
 }
 
 TEST(Faults, ACtrlCThatCannotStopInOrderKeepsWhatTheServerMeasured) {
@@ -275,7 +338,7 @@ TEST(Faults, ACtrlCBeforeTheFirstTickEndsToo) {
   ASSERT_TRUE(Until([&] { return up.Said("waiting for: agent --id 1"); }));
   up.Signal(SIGINT);
   EXPECT_EQ(up.Wait(), 130);
-  EXPECT_TRUE(NothingIsLeft());
+  EXPECT_TRUE(NothingIsLeft(up));
 }
 
 TEST(Faults, AnAgentThatNeverComesIsNamedAfterTheStartTimeout) {
@@ -284,7 +347,7 @@ TEST(Faults, AnAgentThatNeverComesIsNamedAfterTheStartTimeout) {
       Endless(folder, {"--set", "agents.override=[{id = 2, host = \"external\"}]", "--set", "run.start_timeout_s=2.0"});
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(up.err(), HasSubstr("not ready within run.start_timeout_s = 2.0 s: agent 2"));
-  EXPECT_TRUE(NothingIsLeft());
+  EXPECT_TRUE(NothingIsLeft(up));
 }
 
 TEST(Faults, AFullDiskFailsTheRun) {
@@ -296,14 +359,8 @@ TEST(Faults, AFullDiskFailsTheRun) {
     EXPECT_EQ(run.exit_code, 1) << run.output;
     EXPECT_THAT(run.output, HasSubstr("error: cannot write " + folder.File(engine + "/run.mcap") + ": File too large"));
     EXPECT_GT(nlohmann::json::parse(ReadFile(folder.File(engine + "/summary.json")))["ticks"], 0);
+    EXPECT_TRUE(NothingIsLeft(run.output));
   }
-  EXPECT_TRUE(NothingIsLeft());
-}
-
-/// The DDS domain that `up` prints.
-int DomainOf(const Running& up) {
-  const std::string text = up.err();
-  return std::stoi(text.substr(text.find("domain ") + 7));
 }
 
 DomainOptions Intruder(const Up& up, const std::string& name) {

@@ -41,6 +41,7 @@ void Children::Spawn(const std::string& process, const std::string& program, con
   posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&files, output, STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&files, output, STDERR_FILENO);
+  for (const int shared : shared_) posix_spawn_file_actions_adddup2(&files, shared, shared);  // not closed by exec
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none, all;

@@ -31,6 +31,8 @@ struct Exit {
 class Children {
  public:
   explicit Children(ChildLogs& logs) : logs_(logs) {}
+  /// Children that are spawned from now on inherit this descriptor, under the same number.
+  void Share(int descriptor) { shared_.push_back(descriptor); }
   ~Children();  ///< kills and reaps what is left
   Children(const Children&) = delete;
   Children& operator=(const Children&) = delete;
@@ -52,6 +54,7 @@ class Children {
   void Signal(int signal);
 
   ChildLogs& logs_;
+  std::vector<int> shared_;
   std::map<pid_t, std::string> running_;
 };
 

@@ -17,14 +17,12 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "bus/ports.h"
+
 namespace mascot {
 namespace {
 
 constexpr int kFirstDomain = 2, kLastDomain = 98;
-constexpr int kDomainStep = 2;  // more than 120 participants run over into the next domain's ports
-constexpr int kPortBase = 7400, kPortsPerDomain = 250;  // RTPS 2.2, section 9.6.1
-
-int FirstPort(int domain) { return kPortBase + kPortsPerDomain * domain; }
 
 /// Calls `call`, which is bind() or connect(), with a socket and the name that stands for the domain. The name is an
 /// abstract one (unix(7)), in no folder: one socket at a time can have it, whosever it is, and no file is left, or can
@@ -100,7 +98,7 @@ bool HasPortIn(const std::set<int>& ports, int first, int end) {
 /// "other DDS programs have 1, user alice has 48": who has the domains that a run may choose from.
 std::string Holders() {
   std::map<std::string, int> count;
-  for (int domain = kFirstDomain; domain <= kLastDomain; domain += kDomainStep) {
+  for (int domain = kFirstDomain; domain <= kLastDomain; domain += kDomainsPerRun) {
     const auto holder = HolderOf(domain);
     ++count[holder ? UserName(holder->uid) + " has" : "other DDS programs have"];
   }
@@ -126,13 +124,13 @@ DomainLock::DomainLock(int wanted) : domain_(wanted) {
 
 void DomainLock::TakeAny() {
   const std::set<int> busy = UdpPortsInUse();
-  for (domain_ = kFirstDomain; domain_ <= kLastDomain; domain_ += kDomainStep) {
-    if (HasPortIn(busy, FirstPort(domain_), FirstPort(domain_ + kDomainStep))) continue;
+  for (domain_ = kFirstDomain; domain_ <= kLastDomain; domain_ += kDomainsPerRun) {
+    if (HasPortIn(busy, FirstPort(domain_), FirstPort(domain_ + kDomainsPerRun))) continue;
     descriptor_ = TryLock(domain_);
     if (descriptor_ >= 0) return;
   }
   throw std::runtime_error(fmt::format("no free DDS domain among {}, {}, ..., {}: {}; network.domain may name another",
-                                       kFirstDomain, kFirstDomain + kDomainStep, kLastDomain, Holders()));
+                                       kFirstDomain, kFirstDomain + kDomainsPerRun, kLastDomain, Holders()));
 }
 
 DomainLock::~DomainLock() { close(descriptor_); }

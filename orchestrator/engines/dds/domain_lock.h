@@ -5,8 +5,8 @@
 namespace mascot {
 
 /// Reserves a DDS domain, so that no other run on this machine uses it, of this user or another: the name of a socket,
-/// of which there is one in each network namespace. It lasts as long as this object, or any child process that
-/// inherited its descriptor, and leaves nothing.
+/// of which there is one in each network namespace. It lasts as long as this object, or a process that inherited its
+/// descriptor (Janitor), and leaves nothing.
 class DomainLock {
  public:
   /// Reserves domain `wanted`; if `wanted` < 0, any free domain. Throws std::runtime_error if it is in use or none is
@@ -17,6 +17,7 @@ class DomainLock {
   DomainLock& operator=(const DomainLock&) = delete;
 
   int domain() const { return domain_; }
+  int descriptor() const { return descriptor_; }
   /// UDP port for the run's discovery server; RTPS assigns it to no participant of this domain.
   int discovery_port() const;
 

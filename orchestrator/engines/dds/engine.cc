@@ -11,11 +11,13 @@
 #include <utility>
 
 #include "bus/bus.h"
+#include "bus/leave.h"
 #include "bus/shared_memory.h"
 #include "experiment/processes.h"
 #include "experiment/toml/utf8.h"
 #include "orchestrator/engines/dds/domain_lock.h"
 #include "orchestrator/engines/dds/hub.h"
+#include "orchestrator/engines/dds/janitor.h"
 #include "orchestrator/engines/dds/recorder.h"
 #include "orchestrator/engines/dds/run_phases.h"
 #include "orchestrator/engines/dds/wire_audit.h"
@@ -88,6 +90,7 @@ class DdsRun {
   const bool with_server_;
   const RunFolder& folder_;
   std::optional<DomainLock> lock_;
+  std::optional<Janitor> janitor_;
   ChildLogs logs_;
   Children children_;
   WireAudit audit_;
@@ -125,7 +128,9 @@ RunPhases::Rules DdsRun::Rules() {
 
 void DdsRun::Join() {
   lock_.emplace(experiment_.network.domain);
-  SweepSharedMemory();  // left by runs that were killed
+  SweepSharedMemory(lock_->domain());  // left by runs of which also the janitor was killed
+  janitor_.emplace(*lock_);
+  children_.Share(janitor_->lifeline());
   Spawn();
   LowerPriority();
   auto wake = [this] { stop_.Wake(); };
@@ -198,7 +203,7 @@ EngineResult DdsRun::Run() {
     Join();
     Loop();
   } catch (const std::exception& failure) {
-    phases_.Fail(failure.what());
+    phases_.Fail(InWords(failure));
   }
   if (recorder_) Collect();
   End();
@@ -340,7 +345,8 @@ void DdsRun::End() {
   hub_.reset();
   domain_.reset();
   discovery_server_.reset();
-  SweepSharedMemory();
+  if (lock_) SweepSharedMemory(lock_->domain());
+  if (janitor_) janitor_->Dismiss();
 }
 
 }  // namespace

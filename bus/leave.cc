@@ -1,0 +1,87 @@
+#include "bus/leave.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <new>
+#include <system_error>
+
+#include "bus/process_main.h"
+
+namespace mascot {
+namespace {
+
+// What LeaveByForce() needs, which must not allocate.
+volatile sig_atomic_t leaving_code = 0, leaving_sweeps = 0;
+char leaving_line[128] = "", leaving_code_text[16] = "";
+volatile sig_atomic_t leaving_line_size = 0;
+
+/// A signal handler. Fast DDS still maps the segments that this process has read; exec unmaps them, and closing all
+/// files releases its own locks.
+void LeaveByForce(int) {
+  alarm(0);
+  const ssize_t written = write(STDERR_FILENO, leaving_line, static_cast<std::size_t>(leaving_line_size));
+  if (leaving_sweeps != 0 && written != 0) {
+    close_range(STDERR_FILENO + 1, ~0U, 0);
+    execl("/proc/self/exe", "sweep", kSweep, leaving_code_text, nullptr);
+  }
+  _exit(leaving_code);
+}
+
+bool IsIgnoredNow(int signal) {
+  struct sigaction action {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+void LeaveOn(int signal) {
+  if (IsIgnoredNow(signal)) return;  // nohup
+  struct sigaction action {};
+  action.sa_handler = LeaveByForce;
+  sigaction(signal, &action, nullptr);
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, signal);
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
+[[noreturn]] void SayAndExit() {
+  try {
+    if (const auto uncaught = std::current_exception()) std::rethrow_exception(uncaught);
+    std::fputs("error: the program ended itself (std::terminate)\n", stderr);
+  } catch (const std::exception& failure) {
+    std::fprintf(stderr, "error: %s\n", InWords(failure).c_str());
+  } catch (...) {
+    std::fputs("error: an exception of unknown type\n", stderr);
+  }
+  _exit(1);
+}
+
+}  // namespace
+
+void LeaveWithin(std::chrono::seconds limit, const Leaving& leaving) {
+  alarm(0);
+  leaving_code = leaving.code;
+  leaving_sweeps = leaving.sweeps ? 1 : 0;
+  std::snprintf(leaving_code_text, sizeof leaving_code_text, "%d", leaving.code);
+  leaving_line_size = std::snprintf(leaving_line, sizeof leaving_line,
+                                    "%.48s: the DDS library does not end: leaving by force\n", leaving.process.c_str());
+  LeaveOn(SIGALRM);
+  if (leaving.on_signals)
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) LeaveOn(signal);
+  alarm(static_cast<unsigned>(limit.count()));
+}
+
+void SayWhatIsUncaught() { std::set_terminate(SayAndExit); }
+
+std::string InWords(const std::exception& failure) {
+  if (dynamic_cast<const std::bad_alloc*>(&failure) != nullptr)
+    return std::string("out of memory (") + failure.what() + "); is there a limit, such as ulimit -v?";
+  const auto* refused = dynamic_cast<const std::system_error*>(&failure);
+  if (refused != nullptr && refused->code() == std::errc::resource_unavailable_try_again)
+    return std::string("no thread can be started (") + failure.what() + "); is there a limit, such as ulimit -u or -v?";
+  return failure.what();
+}
+
+}  // namespace mascot

@@ -1,0 +1,66 @@
+#include "orchestrator/engines/dds/janitor.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+#include "bus/process_main.h"
+#include "orchestrator/processes/children.h"
+
+extern char** environ;
+
+namespace mascot {
+namespace {
+
+/// Starts `program` as a janitor of `domain`, with these files: stdin, null output, the lock. Signals for the run, and
+/// a terminal that hangs up, do not reach it. Returns 0 or an error number.
+int SpawnJanitor(pid_t* pid, std::string program, std::string domain, int input, int lock) {
+  std::string name = "janitor", option = kSweepAfterRun;
+  char* const argv[] = {name.data(), option.data(), domain.data(), nullptr};
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&files, lock, lock);  // not closed by exec
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t all;
+  sigfillset(&all);
+  posix_spawnattr_setsigmask(&attributes, &all);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSID);
+  const int error = posix_spawn(pid, program.c_str(), &files, &attributes, argv, environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&files);
+  return error;
+}
+
+}  // namespace
+
+Janitor::Janitor(const DomainLock& lock) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
+  lifeline_ = ends[1];
+  const std::string program = ProgramFolder() / "physics_server";
+  const int error = SpawnJanitor(&pid_, program, std::to_string(lock.domain()), ends[0], lock.descriptor());
+  close(ends[0]);
+  if (error == 0) return;
+  close(lifeline_);
+  throw std::runtime_error("cannot start " + program + ": " + std::strerror(error));
+}
+
+Janitor::~Janitor() { close(lifeline_); }
+
+void Janitor::Dismiss() {
+  kill(pid_, SIGKILL);
+  waitpid(pid_, nullptr, 0);
+}
+
+}  // namespace mascot

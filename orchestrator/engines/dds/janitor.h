@@ -1,0 +1,30 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include "orchestrator/engines/dds/domain_lock.h"
+
+namespace mascot {
+
+/// A process that outlives the others of a run, and removes what they leave in shared memory. It waits for the end of a
+/// pipe whose other end the orchestrator and all processes that it spawned have open: when the last of them has ended,
+/// in whatever way, it sweeps. Until then it also keeps the domain locked.
+class Janitor {
+ public:
+  /// Starts the process. Throws std::runtime_error if it cannot be started.
+  explicit Janitor(const DomainLock& lock);
+  ~Janitor();  ///< leaves the process to its work
+  Janitor(const Janitor&) = delete;
+  Janitor& operator=(const Janitor&) = delete;
+
+  /// The end of the pipe that every process of the run has to inherit.
+  int lifeline() const { return lifeline_; }
+  /// Ends the process: the caller has removed the shared memory itself.
+  void Dismiss();
+
+ private:
+  int lifeline_ = -1;
+  pid_t pid_ = 0;
+};
+
+}  // namespace mascot
