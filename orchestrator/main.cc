@@ -1,9 +1,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <iostream>
 #include <vector>
 
+#include "bus/leave.h"
 #include "bus/standard_streams.h"
 #include "bus/usage.h"
 #include "experiment/toml/section.h"
@@ -74,11 +76,14 @@ int Main(int argc, char** argv) {
 }  // namespace mascot
 
 int main(int argc, char** argv) {
-  return mascot::ExitCodeOf([&] {
+  const int code = mascot::ExitCodeOf([&] {
     mascot::OpenStandardStreams();
     std::signal(SIGCHLD, SIG_DFL);  // some supervisors leave it ignored; then waitpid cannot tell how a child ended
     std::signal(SIGPIPE, SIG_IGN);  // a closed terminal or pager must not kill the run
     std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the file size limit then fails with EFBIG, which is reported
+    mascot::SayWhatIsUncaught();
     return mascot::Main(argc, argv);
   });
+  mascot::LeaveWithin(std::chrono::seconds(5), {.code = code, .process = "orchestrator", .on_signals = true});
+  return code;  // and destroy what the DDS library keeps in static variables
 }

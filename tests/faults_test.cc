@@ -146,6 +146,23 @@ std::string Hanging(const std::string& process, const std::string& command) {
          MASCOT_BINARY_DIR "/" + process + "' " + command;
 }
 
+TEST(Faults, ResultsAreWrittenBeforeTheDomainIsLeftAndASignalEndsALeavingThatHangs) {
+  ScratchFolder folder;
+  Running up("/bin/sh",
+             {"-c", Hanging("orchestrator", "up " + Config("leaderless") + " --duration-s 0.5 --out " +
+                                                folder.File("run") + " --set output.save_plot=false")},
+             folder.File("up"));
+  ASSERT_TRUE(Until([&] { return up.Said("leaving the domain hangs"); }));
+  EXPECT_EQ(nlohmann::json::parse(ReadFile(folder.File("run/summary.json")))["exit"], 0);
+  EXPECT_TRUE(ReadMcap(folder.File("run/run.mcap")).complete);
+  EXPECT_TRUE(std::filesystem::exists(folder.File("run/states.npz")));
+  up.Signal(SIGTERM);
+  EXPECT_EQ(up.Wait(), 0) << "that is what it had decided";
+  EXPECT_THAT(up.err(), HasSubstr("orchestrator: the DDS library does not end: leaving by force\n"));
+  EXPECT_THAT(up.out(), HasSubstr("results "));
+  EXPECT_TRUE(NothingIsLeft(up));
+}
+
 TEST(Faults, AProcessThatWasStartedByHandLeavesWithinItsTime) {
   ScratchFolder folder;
   Running agent("/bin/sh", {"-c", Hanging("agent", "--id 3 --loopback --domain 101 --wait-s 1")}, folder.File("agent"));

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
-"""kill_runs.py [--kills N] [--seed S] [--span S] [--programs DIR]: kills (SIGKILL) one process of a run over DDS, at a random moment, N
-times, and counts what is left behind: processes, files in /dev/shm, locks of domains. Not part of the tests: 200 kills
-take about ten minutes. Needs root: it works in namespaces of its own, with a /dev/shm and processes of its own.
+"""kill_runs.py [--kills N] [--seed S] [--span S] [--programs DIR]: what do runs leave behind when they are killed?
+
+Kills (SIGKILL) one process of a run over DDS, at a random moment, N times, and counts what is left behind: processes,
+files in /dev/shm, locks of domains. Not part of the tests: 200 kills take several minutes. Needs root: it works in
+namespaces of its own, with processes and a /dev/shm of its own.
 
 The process is the orchestrator, the physics server, an agent or the janitor, each as likely. A run is killed from its
 first moment to its last, and sometimes just after it has ended.
@@ -86,16 +88,21 @@ def kill_one(dice, span, programs):
     return name
 
 
-def left_behind():
-    """What is left when every process has had its time to end."""
-    deadline = time.monotonic() + DEADLINE_S
-    while processes() and time.monotonic() < deadline:
-        time.sleep(0.01)
-    return {
+def left_now():
+    left = {
         "processes": sorted(processes().values()),
         "files": sorted(path.name for path in SHARED_MEMORY.iterdir()),
         "locks": locked_domains(),
     }
+    return {what: names for what, names in left.items() if names}
+
+
+def left_behind():
+    """What is left when every process has had its time to end."""
+    deadline = time.monotonic() + DEADLINE_S
+    while left_now() and time.monotonic() < deadline:
+        time.sleep(0.01)
+    return left_now()
 
 
 def clear():
@@ -119,7 +126,7 @@ def main():
         name = kill_one(dice, args.span, args.programs)
         killed[name] = killed.get(name, 0) + 1
         left = left_behind()
-        if any(left.values()):
+        if left:
             failures += 1
             print(f"kill {number} of {name} left {left}", flush=True)
             clear()

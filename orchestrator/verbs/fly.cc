@@ -1,8 +1,11 @@
 #include "orchestrator/verbs/fly.h"
 
+#include <unistd.h>
+
+#include <iostream>
+
 #include "agent/laws.h"
 #include "orchestrator/engines/dds/delivery.h"
-#include "orchestrator/engines/dds/engine.h"
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/processes/interruptions.h"
 
@@ -14,13 +17,28 @@ void RefuseEngine(const std::string& engine, const Experiment& experiment) {
     throw ConfigError({"--engine inprocess: expected run.mode = \"lockstep\", got \"realtime\""});
 }
 
-EngineResult Fly(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
-                 const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop) {
-  if (engine == kOverDds) return RunOverDds(experiment, folder, sinks, console, stop);
-  const Interruptions interruptions(stop, console);
-  EngineResult result = RunInProcess(experiment, sinks, [&] { return interruptions.signal() == 0; });
+Flight::Flight(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
+               const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop)
+    : experiment_(experiment), sinks_(sinks), console_(console), stop_(stop) {
+  if (engine == kOverDds) dds_.emplace(experiment, folder, sinks, console, stop);
+}
+
+EngineResult Flight::Fly() {
+  if (dds_) return dds_->Fly();
+  const Interruptions interruptions(stop_, console_);
+  EngineResult result = RunInProcess(experiment_, sinks_, [&] { return interruptions.signal() == 0; });
   result.signal = interruptions.signal();
   return result;
+}
+
+void Flight::End() {
+  if (dds_) hangs_ = !dds_->End();
+}
+
+void Flight::LeaveIfItHangs(int code) const {
+  if (!hangs_) return;
+  std::cerr << "orchestrator: the DDS library does not end: leaving by force" << std::endl;
+  _exit(code);
 }
 
 std::string WithoutDelivery(const Experiment& experiment) {

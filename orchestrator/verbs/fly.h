@@ -1,17 +1,18 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bus/stop_signal.h"
 #include "experiment/experiment.h"
+#include "orchestrator/engines/dds/engine.h"
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/processes/console.h"
 #include "orchestrator/recording/run_folder.h"
+#include "orchestrator/team/row_sink.h"
 
 namespace mascot {
-
-class RowSink;
 
 /// Values of --engine.
 inline constexpr const char* kOverDds = "dds";
@@ -19,10 +20,30 @@ inline constexpr const char* kInProcess = "inprocess";
 
 /// Throws ConfigError if this engine cannot fly the experiment.
 void RefuseEngine(const std::string& engine, const Experiment& experiment);
-/// Flies the experiment on this engine. Every sink gets every row, in tick order. The first signal ends the run after
-/// its tick. A failure is reported in the result.
-EngineResult Fly(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
-                 const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop);
+
+/// One experiment on one engine.
+class Flight {
+ public:
+  /// Every sink gets every row, in tick order. All arguments must outlive this object.
+  Flight(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
+         const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop);
+
+  /// Flies. The first signal ends the run after its tick. A failure is reported in the result, which is final: to be
+  /// written to files before End() is called.
+  EngineResult Fly();
+  /// Ends what the run has started (DdsEngine::End()).
+  void End();
+  /// After End(): if the DDS library hangs, ends this process by force with this exit code.
+  void LeaveIfItHangs(int code) const;
+
+ private:
+  const Experiment& experiment_;
+  const std::vector<RowSink*>& sinks_;
+  Console& console_;
+  StopSignal& stop_;
+  std::optional<DdsEngine> dds_;  // absent: in this process
+  bool hangs_ = false;
+};
 
 /// The resolved experiment as attached to the recording: with the default domain, processes and delivery, so that runs
 /// that differ only in these have the same recording.

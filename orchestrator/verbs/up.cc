@@ -68,7 +68,8 @@ int Up(const UpArgs& args) {
   RunMeter meter(experiment);
   Progress progress(experiment, meter, console);
   const std::vector<RowSink*> sinks{&writer, &meter, &progress};
-  EngineResult result = Fly(args.engine, experiment, folder, sinks, console, stop);
+  Flight flight(args.engine, experiment, folder, sinks, console, stop);
+  EngineResult result = flight.Fly();
   console.EndProgress();
   try {
     writer.Close();
@@ -91,10 +92,13 @@ int Up(const UpArgs& args) {
                 << folder.path().string() << "\n";
     FlushStandardOutput();
   };
-  return EndRun(folder, ExitCode(result),
-                {.summary = summary,
-                 .draw = [&] { return MakeOutput(experiment, folder, writer.rows() > 1, stop); },
-                 .print = print});
+  const auto draw = [&] {
+    flight.End();  // after the first summary: the DDS library may not let us end in order
+    return MakeOutput(experiment, folder, writer.rows() > 1, stop);
+  };
+  const int code = EndRun(folder, ExitCode(result), {.summary = summary, .draw = draw, .print = print});
+  flight.LeaveIfItHangs(code);
+  return code;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "bus/leave.h"
 #include "experiment/toml/section.h"
 
 namespace mascot {
@@ -10,7 +11,7 @@ int ExitCodeOf(const std::function<int()>& action) try { return action(); } catc
   for (const std::string& mistake : error.mistakes()) std::cerr << "error: " << mistake << "\n";
   return kUsage;
 } catch (const std::exception& error) {
-  std::cerr << "error: " << error.what() << "\n";
+  std::cerr << "error: " << InWords(error) << "\n";
   return kFailed;
 }
 

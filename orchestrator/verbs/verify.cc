@@ -176,9 +176,14 @@ int Verify(const VerifyArgs& args) {
   const RunFolder folder(temporary.path(), experiment, /*force=*/false);
   Console console(/*quiet=*/true);
   Comparison comparison(subject.file, subject.plan);
-  const EngineResult result = Fly(args.engine, experiment, folder, {&comparison}, console, stop);
+  const std::vector<RowSink*> sinks{&comparison};
+  Flight flight(args.engine, experiment, folder, sinks, console, stop);
+  const EngineResult result = flight.Fly();
   if (result.failure.empty() && result.signal == 0) comparison.Finish();
-  return Judge(subject, comparison, result);
+  const int code = Judge(subject, comparison, result);
+  flight.End();
+  flight.LeaveIfItHangs(code);
+  return code;
 }
 
 }  // namespace

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <functional>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "bus/bus.h"
@@ -15,6 +17,7 @@
 #include "bus/shared_memory.h"
 #include "experiment/processes.h"
 #include "experiment/toml/utf8.h"
+#include "orchestrator/engines/dds/bounded_call.h"
 #include "orchestrator/engines/dds/domain_lock.h"
 #include "orchestrator/engines/dds/hub.h"
 #include "orchestrator/engines/dds/janitor.h"
@@ -34,6 +37,8 @@ using WallClock = std::chrono::steady_clock;
 constexpr int kMostPeers = 20;
 /// How long children may take to exit by themselves at the end.
 constexpr auto kExitGrace = 5s;
+/// How long the DDS library may take for a call at the end of a run.
+constexpr auto kLibraryGrace = 5s;
 
 /// Agent ids as `agent --id` takes them: "3" or "3-5".
 std::string IdsText(AgentRange agents) {
@@ -48,13 +53,16 @@ void LowerPriority() {
   setpriority(PRIO_PROCESS, 0, kNice);
 }
 
+}  // namespace
+
 /// One run, from locking the domain until the last process has ended. RunPhases makes the decisions; DdsRun carries
 /// them out.
 class DdsRun {
  public:
   DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Console& console,
          StopSignal& stop);
-  EngineResult Run();
+  EngineResult Fly();
+  bool End();
 
  private:
   DomainOptions Options(const std::string& name, DiscoveryRole role) const;
@@ -71,12 +79,13 @@ class DdsRun {
   RunPhases::View Look() const;
   void Do(const RunPhases::Actions& actions);
   void AskToEnd();
+  void CallLibrary(const std::function<void()>& call);
   std::optional<Hub::Status> ServerReport() const;
   void DrainAll();
   void AwaitReport();
   void Collect();
   void TakeReport();
-  void End();
+  void LeaveDomain();
 
   const Experiment& experiment_;
   Console& console_;
@@ -91,6 +100,7 @@ class DdsRun {
   const RunFolder& folder_;
   std::optional<DomainLock> lock_;
   std::optional<Janitor> janitor_;
+  bool library_hangs_ = false;
   ChildLogs logs_;
   Children children_;
   WireAudit audit_;
@@ -198,7 +208,7 @@ int DdsRun::BundleRoom() const {
   return static_cast<int>(std::min<std::size_t>(experiment_.graph.edges() / kStatesPerPeer, 10000));
 }
 
-EngineResult DdsRun::Run() {
+EngineResult DdsRun::Fly() {
   try {
     Join();
     Loop();
@@ -206,7 +216,6 @@ EngineResult DdsRun::Run() {
     phases_.Fail(InWords(failure));
   }
   if (recorder_) Collect();
-  End();
   result_.failure = phases_.failure();
   result_.signal = phases_.signal();
   return result_;
@@ -259,8 +268,8 @@ RunPhases::View DdsRun::Record() {
 
 RunPhases::View DdsRun::Look() const {
   const bool starting = phases_.phase() == RunPhases::Phase::kStarting;
-  return {.everybody_found = starting && recorder_->Matched() && audit_.IsComplete(experiment_) &&
-                             hub_->HaveTheExperiment(),
+  return {.everybody_found =
+              starting && recorder_->Matched() && audit_.IsComplete(experiment_) && hub_->HaveTheExperiment(),
           .newest_tick = recorder_->newest_tick(),
           .rows = confirmed_,
           .last_tick = {},
@@ -274,10 +283,17 @@ void DdsRun::Do(const RunPhases::Actions& actions) {
   if (actions.kill) children_.Kill();
 }
 
-void DdsRun::AskToEnd() try {
-  hub_->Ask(Ask::kEnd, phases_.in_order() ? "done" : std::string(CutUtf8(phases_.failure(), 1000)));
-} catch (const BusError& error) {  // End() then stops the processes with signals
-  console_.Line(error.what());
+void DdsRun::AskToEnd() {
+  CallLibrary([this] {
+    hub_->Ask(Ask::kEnd, phases_.in_order() ? "done" : std::string(CutUtf8(phases_.failure(), 1000)));
+  });
+}
+
+/// Calls the DDS library once the run is over. If it fails or hangs, End() still stops the processes with signals.
+void DdsRun::CallLibrary(const std::function<void()>& call) try {
+  if (!library_hangs_) library_hangs_ = !ReturnsWithin(kLibraryGrace, call, stop_);
+} catch (const std::exception& failure) {
+  console_.Line(InWords(failure));
 }
 
 /// The physics server's last status, with what it measured in the run; nothing before the server has sent it.
@@ -309,7 +325,7 @@ void DdsRun::Collect() {
   try {
     DrainAll();
   } catch (const std::exception& failure) {
-    phases_.Fail(failure.what());
+    phases_.Fail(InWords(failure));
   }
   result_.lost = recorder_->lost();
   const bool violated = !audit_.Violation(experiment_).empty();
@@ -334,26 +350,41 @@ void DdsRun::TakeReport() {
                       .command_age_s = server->command_age_s()};
 }
 
-void DdsRun::End() {
+bool DdsRun::End() {
   if (hub_) AskToEnd();
   if (phases_.in_order()) children_.WaitAll(kExitGrace);
   children_.Stop(2s);
+  CallLibrary([this] { LeaveDomain(); });
+  if (library_hangs_) return false;
+  if (lock_) SweepSharedMemory(lock_->domain());
+  if (janitor_) janitor_->Dismiss();
+  return true;
+}
+
+void DdsRun::LeaveDomain() {
   // Agents that were started by hand are not our children: wait until they have left the domain.
   const auto deadline = WallClock::now() + 2s;
-  while (external_ && hub_ && hub_->listeners() > 0 && WallClock::now() < deadline) stop_.Within(20ms);
+  while (external_ && hub_ && hub_->listeners() > 0 && WallClock::now() < deadline) std::this_thread::sleep_for(20ms);
   recorder_.reset();
   hub_.reset();
   domain_.reset();
   discovery_server_.reset();
-  if (lock_) SweepSharedMemory(lock_->domain());
-  if (janitor_) janitor_->Dismiss();
 }
 
-}  // namespace
+DdsEngine::DdsEngine(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
+                     Console& console, StopSignal& stop)
+    : run_(std::make_unique<DdsRun>(experiment, folder, sinks, console, stop)) {}
 
-EngineResult RunOverDds(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
-                        Console& console, StopSignal& stop) {
-  return DdsRun(experiment, folder, sinks, console, stop).Run();
+DdsEngine::~DdsEngine() { End(); }
+
+EngineResult DdsEngine::Fly() { return run_->Fly(); }
+
+bool DdsEngine::End() {
+  if (!run_) return true;
+  const bool ended = run_->End();
+  if (!ended) run_.release();  // threads of the library use it
+  run_.reset();
+  return ended;
 }
 
 }  // namespace mascot

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "bus/stop_signal.h"
@@ -11,11 +12,28 @@
 
 namespace mascot {
 
-/// Runs the experiment as separate processes in a DDS domain of its own: a physics server and the agent processes.
+class DdsRun;
+
+/// Runs an experiment as separate processes in a DDS domain of its own: a physics server and the agent processes.
 /// External agents are waited for, not started. The calling process records: `sinks` get every row, in tick order.
-/// Returns when every child process has ended and the run's shared memory is removed. A failure
-/// is reported in the result.
-EngineResult RunOverDds(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
-                        Console& console, StopSignal& stop);
+class DdsEngine {
+ public:
+  DdsEngine(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Console& console,
+            StopSignal& stop);
+  ~DdsEngine();  ///< calls End()
+  DdsEngine(const DdsEngine&) = delete;
+  DdsEngine& operator=(const DdsEngine&) = delete;
+
+  /// Flies until the run is over, for whatever reason. A failure is reported in the result. The result is final; the
+  /// caller should write it to files before it calls End().
+  EngineResult Fly();
+  /// Ends every child process, leaves the domain and removes the run's shared memory. Returns whether the DDS library
+  /// let go within 5 s and before a signal. If not, its threads go on, and this process has to end by _exit(); the
+  /// run's Janitor then removes the shared memory.
+  bool End();
+
+ private:
+  std::unique_ptr<DdsRun> run_;
+};
 
 }  // namespace mascot
