@@ -32,6 +32,18 @@ void DisableIntraprocessDelivery() {
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
 }
 
+/// Joins the domain. Throws BusError if Fast DDS refuses, and in words if it fails on the way: if it cannot start one
+/// of its threads, it joins it all the same, which is an "Invalid argument".
+dds::DomainParticipant* CreateParticipant(const DomainOptions& options, dds::DomainParticipantListener* discovery) try {
+  return dds::DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<dds::DomainId_t>(options.domain), ParticipantQos(options), discovery, dds::StatusMask::none());
+} catch (const std::invalid_argument&) {
+  throw;
+} catch (const std::exception& failure) {
+  throw BusError("Fast DDS failed to join domain " + std::to_string(options.domain) + " (" + failure.what() +
+                 "); is there a limit of memory or threads, such as ulimit -v or -u?");
+}
+
 }  // namespace
 
 // --- Domain -------------------------------------------------------------------------------------------
@@ -39,14 +51,12 @@ void DisableIntraprocessDelivery() {
 Domain::Domain(const DomainOptions& options, std::function<void()> wake, dds::DomainParticipantListener* discovery)
     : wake_(std::move(wake)) {
   DisableIntraprocessDelivery();
-  auto* factory = dds::DomainParticipantFactory::get_instance();
-  const auto domain_id = static_cast<dds::DomainId_t>(options.domain);
-  participant_ = Own<dds::DomainParticipant>(
-      factory->create_participant(domain_id, ParticipantQos(options), discovery, dds::StatusMask::none()),
-      "participant in domain " + std::to_string(options.domain), [factory](auto* participant) {
-        participant->set_listener(nullptr);
-        factory->delete_participant(participant);
-      });
+  participant_ =
+      Own<dds::DomainParticipant>(CreateParticipant(options, discovery),
+                                  "participant in domain " + std::to_string(options.domain), [](auto* participant) {
+                                    participant->set_listener(nullptr);
+                                    dds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+                                  });
   auto* participant = participant_.get();
   publisher_ = Own<dds::Publisher>(participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT), "publisher",
                                    [participant](auto* publisher) { participant->delete_publisher(publisher); });

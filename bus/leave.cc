@@ -18,6 +18,14 @@ volatile sig_atomic_t leaving_code = 0, leaving_sweeps = 0;
 char leaving_line[128] = "", leaving_code_text[16] = "";
 volatile sig_atomic_t leaving_line_size = 0;
 
+void Prepare(const Leaving& leaving) {
+  leaving_code = leaving.code;
+  leaving_sweeps = leaving.sweeps ? 1 : 0;
+  std::snprintf(leaving_code_text, sizeof leaving_code_text, "%d", leaving.code);
+  leaving_line_size = std::snprintf(leaving_line, sizeof leaving_line,
+                                    "%.48s: the DDS library does not end: leaving by force\n", leaving.process.c_str());
+}
+
 /// A signal handler. Fast DDS still maps the segments that this process has read; exec unmaps them, and closing all
 /// files releases its own locks.
 void LeaveByForce(int) {
@@ -46,12 +54,38 @@ void LeaveOn(int signal) {
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
 }
 
+/// What stands before and after what() of an exception.
+struct Words {
+  const char *before = "", *after = "";
+};
+
+Words WordsFor(const std::exception& failure) {
+  if (dynamic_cast<const std::bad_alloc*>(&failure) != nullptr)
+    return {"out of memory (", "); is there a limit, such as ulimit -v?"};
+  const auto* refused = dynamic_cast<const std::system_error*>(&failure);
+  if (refused != nullptr && refused->code() == std::errc::resource_unavailable_try_again)
+    return {"no thread can be started (", "); is there a limit, such as ulimit -u or -v?"};
+  if (refused != nullptr &&
+      refused->code() == std::errc::invalid_argument)  // Fast DDS joins a thread it could not start
+    return {"a thread was not started (", "); is there a limit, such as ulimit -u or -v?"};
+  return {};
+}
+
+/// A signal handler, called once: then SIGBUS ends the process.
+void ExplainBusError(int signal) {
+  constexpr char kWords[] = "error: /dev/shm is probably full: its memory cannot be had (SIGBUS)\n";
+  if (write(STDERR_FILENO, kWords, sizeof kWords - 1) < 0) _exit(128 + signal);
+  raise(signal);
+}
+
+/// A terminate handler. There may be no memory for a string.
 [[noreturn]] void SayAndExit() {
   try {
     if (const auto uncaught = std::current_exception()) std::rethrow_exception(uncaught);
     std::fputs("error: the program ended itself (std::terminate)\n", stderr);
   } catch (const std::exception& failure) {
-    std::fprintf(stderr, "error: %s\n", InWords(failure).c_str());
+    const Words words = WordsFor(failure);
+    for (const char* piece : {"error: ", words.before, failure.what(), words.after, "\n"}) std::fputs(piece, stderr);
   } catch (...) {
     std::fputs("error: an exception of unknown type\n", stderr);
   }
@@ -62,26 +96,30 @@ void LeaveOn(int signal) {
 
 void LeaveWithin(std::chrono::seconds limit, const Leaving& leaving) {
   alarm(0);
-  leaving_code = leaving.code;
-  leaving_sweeps = leaving.sweeps ? 1 : 0;
-  std::snprintf(leaving_code_text, sizeof leaving_code_text, "%d", leaving.code);
-  leaving_line_size = std::snprintf(leaving_line, sizeof leaving_line,
-                                    "%.48s: the DDS library does not end: leaving by force\n", leaving.process.c_str());
+  Prepare(leaving);
   LeaveOn(SIGALRM);
   if (leaving.on_signals)
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) LeaveOn(signal);
   alarm(static_cast<unsigned>(limit.count()));
 }
 
-void SayWhatIsUncaught() { std::set_terminate(SayAndExit); }
+void LeaveNow(const Leaving& leaving) {
+  Prepare(leaving);
+  LeaveByForce(0);
+  _exit(leaving.code);
+}
+
+void SayWhatIsUncaught() {
+  std::set_terminate(SayAndExit);
+  struct sigaction action {};
+  action.sa_handler = ExplainBusError;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGBUS, &action, nullptr);
+}
 
 std::string InWords(const std::exception& failure) {
-  if (dynamic_cast<const std::bad_alloc*>(&failure) != nullptr)
-    return std::string("out of memory (") + failure.what() + "); is there a limit, such as ulimit -v?";
-  const auto* refused = dynamic_cast<const std::system_error*>(&failure);
-  if (refused != nullptr && refused->code() == std::errc::resource_unavailable_try_again)
-    return std::string("no thread can be started (") + failure.what() + "); is there a limit, such as ulimit -u or -v?";
-  return failure.what();
+  const Words words = WordsFor(failure);
+  return std::string(words.before) + failure.what() + words.after;
 }
 
 }  // namespace mascot

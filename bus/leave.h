@@ -19,8 +19,11 @@ struct Leaving {
 /// and these may hang. A later call replaces an earlier one.
 void LeaveWithin(std::chrono::seconds limit, const Leaving& leaving);
 
-/// Makes an exception that nobody catches, in a thread of Fast DDS, say, an error in words and exit code 1. (The
-/// default is SIGABRT.)
+/// Leaves by force at once.
+[[noreturn]] void LeaveNow(const Leaving& leaving);
+
+/// Makes an exception that nobody catches, in a thread of Fast DDS, say, an error in words and exit code 1 (the default
+/// is SIGABRT). Also explains SIGBUS, by which a full /dev/shm ends a process.
 void SayWhatIsUncaught();
 
 /// What went wrong, in words: what() of most exceptions; one that is thrown for want of memory or threads says so.

@@ -83,11 +83,21 @@ dds::DataReaderQos MakeReaderQos(const Topic& topic, const Profile& profile, int
 
 // --- transports: one row each -------------------------------------------------------------------------
 
+/// Bytes for samples that are sent and not read yet. The recorder may be 64 ticks behind: an agent's commands and
+/// messages of that time are 65 KB.
+std::uint32_t SegmentSize(const DomainOptions& options) {
+  return 128 * 1024 + 32 * 1024 * static_cast<std::uint32_t>(options.participants);
+}
+
+/// Number of samples that wait to be received.
+std::uint32_t QueueCapacity(const DomainOptions& options) {
+  return std::max<std::uint32_t>(512, 64 * static_cast<std::uint32_t>(options.participants));
+}
+
 std::shared_ptr<rtps::TransportDescriptorInterface> SharedMemory(const DomainOptions& options) {
   auto transport = std::make_shared<rtps::SharedMemTransportDescriptor>();
-  const auto peers = static_cast<std::uint32_t>(options.participants);
-  transport->segment_size(512 * 1024 + 32 * 1024 * peers);
-  transport->port_queue_capacity(std::max<std::uint32_t>(512, 64 * peers));
+  transport->segment_size(SegmentSize(options));
+  transport->port_queue_capacity(QueueCapacity(options));
   return transport;
 }
 
@@ -183,20 +193,42 @@ std::span<const std::string_view> TransportNames() {
   return names;
 }
 
-dds::DomainParticipantQos ParticipantQos(const DomainOptions& options) {
+namespace {
+
+const Transport& TransportOf(const DomainOptions& options) {
   const auto row = std::find_if(std::begin(kTransports), std::end(kTransports),
                                 [&](const Transport& transport) { return transport.name == options.transport; });
-  if (row == std::end(kTransports)) {
-    std::string names;
-    for (const Transport& transport : kTransports) names += std::string(transport.name) + ", ";
-    throw std::invalid_argument("--transport: expected one of " + names + "got '" + options.transport + "'");
-  }
+  if (row != std::end(kTransports)) return *row;
+  std::string names;
+  for (const Transport& transport : kTransports) names += std::string(transport.name) + ", ";
+  throw std::invalid_argument("--transport: expected one of " + names + "got '" + options.transport + "'");
+}
+
+/// Discovery servers exchange discovery data only: no use for shared memory.
+bool UsesSharedMemory(const DomainOptions& options) {
+  return TransportOf(options).shared_memory && options.role != DiscoveryRole::kServer;
+}
+
+}  // namespace
+
+std::uint64_t SharedMemoryNeeded(const DomainOptions& options) {
+  if (!UsesSharedMemory(options)) return 0;
+  // Sizes of the files of Fast DDS 2.9: a segment with a table of what waits, two ports, and perhaps one more, of a
+  // peer that is not there.
+  constexpr std::uint64_t kPage = 4096, kTableRow = 48, kQueueRow = 20, kPort = 42 * 1024;
+  const auto pages = [](std::uint64_t bytes) { return (bytes + kPage - 1) / kPage * kPage; };
+  const std::uint64_t rows = QueueCapacity(options);
+  const std::uint64_t locks = 3 * kPage;
+  return pages(SegmentSize(options) + kTableRow * rows + kPage) + 3 * pages(kQueueRow * rows + kPort) + locks;
+}
+
+dds::DomainParticipantQos ParticipantQos(const DomainOptions& options) {
   dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
   qos.name(options.name);
   qos.transport().use_builtin_transports = false;
-  const bool server = options.role == DiscoveryRole::kServer;  // discovery data only: no use for shared memory
-  if (row->shared_memory && !server) qos.transport().user_transports.push_back(SharedMemory(options));
-  if (row->udp || options.role != DiscoveryRole::kPeer) qos.transport().user_transports.push_back(Udp(options));
+  if (UsesSharedMemory(options)) qos.transport().user_transports.push_back(SharedMemory(options));
+  if (TransportOf(options).udp || options.role != DiscoveryRole::kPeer)
+    qos.transport().user_transports.push_back(Udp(options));
   SetDiscovery(qos, options);
   return qos;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
@@ -38,6 +39,9 @@ struct DomainOptions {
 
 /// The legal values of DomainOptions::transport.
 std::span<const std::string_view> TransportNames();
+
+/// Bytes of /dev/shm that such a participant takes. Throws std::invalid_argument for an unknown transport.
+std::uint64_t SharedMemoryNeeded(const DomainOptions& options);
 
 /// Throws std::invalid_argument for an unknown transport or an unreadable server address.
 eprosima::fastdds::dds::DomainParticipantQos ParticipantQos(const DomainOptions& options);

@@ -10,9 +10,13 @@
 #include <atomic>
 #include <cstring>
 #include <memory>
+#include <new>
+#include <set>
+#include <system_error>
 #include <thread>
 
 #include "agent/laws.h"
+#include "bus/leave.h"
 #include "bus/lifecycle.h"
 #include "bus/stop_signal.h"
 #include "bus/wire.h"
@@ -150,6 +154,50 @@ TEST_F(Bus, AuditIsNotCompleteWithoutEveryReaderOfMessages) {
   hear(2);
   EXPECT_TRUE(Until([&] { return audit.IsComplete(two); }));
   EXPECT_EQ(audit.Violation(two), "");
+}
+
+TEST(InWords, WantOfMemoryAndOfThreadsIsSaid) {
+  EXPECT_EQ(InWords(std::runtime_error("as it is")), "as it is");
+  EXPECT_EQ(InWords(std::bad_alloc()), "out of memory (std::bad_alloc); is there a limit, such as ulimit -v?");
+  EXPECT_EQ(InWords(std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again))),
+            "no thread can be started (Resource temporarily unavailable); is there a limit, such as ulimit -u or -v?");
+}
+
+TEST(InWordsDeathTest, ThatNobodyCatchesAnExceptionIsAnErrorAndExitCode1) {
+  const auto die_of = [](auto exception) {
+    SayWhatIsUncaught();
+    std::thread([exception] { throw exception; }).join();
+  };
+  EXPECT_EXIT(die_of(std::bad_alloc()), testing::ExitedWithCode(1), "^error: out of memory \\(std::bad_alloc\\)");
+  EXPECT_EXIT(die_of(std::runtime_error("no such bit")), testing::ExitedWithCode(1), "^error: no such bit\n$");
+  EXPECT_EXIT(die_of(7), testing::ExitedWithCode(1), "^error: an exception of unknown type");
+}
+
+/// Bytes of the files of Fast DDS in /dev/shm that this process maps.
+std::uint64_t MappedSharedMemory() {
+  std::set<std::string> files;
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);)
+    if (const auto at = line.find("/dev/shm/fastrtps_"); at != line.npos) files.insert(line.substr(at));
+  std::uint64_t bytes = 0;
+  for (const std::string& file : files)
+    if (std::filesystem::exists(file)) bytes += std::filesystem::file_size(file);  // else it says "(deleted)"
+  return bytes;
+}
+
+TEST(SharedMemoryNeed, IsKnownBeforeAParticipantIsMade) {
+  const DomainLock lock(-1);
+  for (const int peers : {2, 100}) {
+    DomainOptions options{.domain = lock.domain(), .transport = "shm", .name = "needy", .participants = peers};
+    const auto before = MappedSharedMemory();
+    const Domain domain(options, [] {});
+    const auto taken = static_cast<double>(MappedSharedMemory() - before);
+    const auto needed = static_cast<double>(SharedMemoryNeeded(options));
+    EXPECT_GE(needed, taken) << peers;
+    EXPECT_LT(needed, 1.1 * taken) << peers;
+    options.transport = "udp";
+    EXPECT_EQ(SharedMemoryNeeded(options), 0u);
+  }
 }
 
 TEST_F(Bus, AProcessSaysWhichExperimentItHasReceived) {

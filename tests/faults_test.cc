@@ -529,6 +529,30 @@ TEST(Faults, AnotherProgramMayReadButNotCommand) {
   EXPECT_THAT(up.err(), HasSubstr("'rviz' writes /agent_4/command, which only agent_4 may"));
 }
 
+TEST(Faults, TooLittleSharedMemoryIsRefusedInWords) {
+  const std::string alone = "unshare --mount sh -c 'mount -t tmpfs -o size=2m tmpfs /dev/shm";
+  if (Shell(alone + "'").exit_code != 0) GTEST_SKIP() << "mounting a /dev/shm is not allowed here";
+  ScratchFolder folder;
+  const std::string up = " && \"" MASCOT_BINARY_DIR "/orchestrator\" up " + Config("leaderless") +
+                         " --duration-s 0.2 --set output.save_plot=false --out " + folder.File("run");
+  const Ran refused = Shell(alone + up + "'");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.output,
+              testing::ContainsRegex("error: /dev/shm has 2\\.0 MiB free, and this run needs [0-9.]+ MiB"));
+  EXPECT_THAT(ReadFile(folder.File("run/summary.json")), HasSubstr("/dev/shm has 2.0 MiB free"));
+  EXPECT_EQ(Shell(alone + up + " --force --set network.transport=udp'").exit_code, 0) << "needs none";
+}
+
+TEST(Faults, TooLittleAddressSpaceIsRefusedInWords) {
+  ScratchFolder folder;
+  const Ran run = Shell("ulimit -v 204800; '" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") +
+                        " --out " + folder.File("run"));
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.output,
+              HasSubstr("error: the address space of a process is limited to 200 MiB (ulimit -v), and a run "
+                        "over DDS needs 512 MiB\n"));
+}
+
 TEST(Faults, ADomainInUseIsRefused) {
   ScratchFolder folder;
   Up up = Endless(folder);

@@ -1,10 +1,7 @@
 #include "orchestrator/verbs/fly.h"
 
-#include <unistd.h>
-
-#include <iostream>
-
 #include "agent/laws.h"
+#include "bus/leave.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/processes/interruptions.h"
@@ -36,9 +33,7 @@ void Flight::End() {
 }
 
 void Flight::LeaveIfItHangs(int code) const {
-  if (!hangs_) return;
-  std::cerr << "orchestrator: the DDS library does not end: leaving by force" << std::endl;
-  _exit(code);
+  if (hangs_) LeaveNow({.code = code, .process = "orchestrator"});  // its threads use what would be destroyed
 }
 
 std::string WithoutDelivery(const Experiment& experiment) {

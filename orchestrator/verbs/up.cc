@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "bus/leave.h"
 #include "bus/standard_streams.h"
 #include "bus/stop_signal.h"
 #include "orchestrator/engines/dds/delivery.h"
@@ -74,7 +75,7 @@ int Up(const UpArgs& args) {
   try {
     writer.Close();
   } catch (const std::exception& failure) {
-    if (result.failure.empty()) result.failure = failure.what();
+    if (result.failure.empty()) result.failure = InWords(failure);
   }
   if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
 

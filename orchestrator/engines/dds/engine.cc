@@ -22,6 +22,7 @@
 #include "orchestrator/engines/dds/hub.h"
 #include "orchestrator/engines/dds/janitor.h"
 #include "orchestrator/engines/dds/recorder.h"
+#include "orchestrator/engines/dds/resources.h"
 #include "orchestrator/engines/dds/run_phases.h"
 #include "orchestrator/engines/dds/wire_audit.h"
 #include "orchestrator/engines/row_feed.h"
@@ -68,6 +69,7 @@ class DdsRun {
   DomainOptions Options(const std::string& name, DiscoveryRole role) const;
   int PeersOf(AgentRange agents) const;
   int BundleRoom() const;
+  std::uint64_t SharedMemoryNeed() const;
   RunPhases::Rules Rules();
   void Join();
   void Spawn();
@@ -139,6 +141,7 @@ RunPhases::Rules DdsRun::Rules() {
 void DdsRun::Join() {
   lock_.emplace(experiment_.network.domain);
   SweepSharedMemory(lock_->domain());  // left by runs of which also the janitor was killed
+  RequireResources(SharedMemoryNeed());
   janitor_.emplace(*lock_);
   children_.Share(janitor_->lifeline());
   Spawn();
@@ -206,6 +209,18 @@ int DdsRun::BundleRoom() const {
   if (experiment_.network.delivery != Delivery::kBundled) return 0;
   constexpr std::size_t kStatesPerPeer = 32 * 1024 / 176;  // bus/qos.cc reserves 32 KiB per participant
   return static_cast<int>(std::min<std::size_t>(experiment_.graph.edges() / kStatesPerPeer, 10000));
+}
+
+/// Bytes of /dev/shm that the processes of the run take together.
+std::uint64_t DdsRun::SharedMemoryNeed() const {
+  DomainOptions options = Options("", DiscoveryRole::kPeer);
+  std::uint64_t need = 2 * SharedMemoryNeeded(options);  // this process and the physics server
+  for (const AgentRange& agents : processes_) {
+    if (experiment_.agent(agents.first).external) continue;
+    options.participants = PeersOf(agents);
+    need += SharedMemoryNeeded(options);
+  }
+  return need;
 }
 
 EngineResult DdsRun::Fly() {
