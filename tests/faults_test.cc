@@ -553,6 +553,14 @@ TEST(Faults, TooLittleAddressSpaceIsRefusedInWords) {
                         "over DDS needs 512 MiB\n"));
 }
 
+TEST(Faults, TheCommandForAnAgentByHandNamesTheTransport) {
+  ScratchFolder folder;
+  Up up = Endless(folder,
+                  {"--set", "agents.override=[{id = 1, host = \"external\"}]", "--set", "network.transport=\"udp\""});
+  ASSERT_TRUE(Until([&] { return up.Said("waiting for: agent --id 1"); }));
+  EXPECT_THAT(up.err(), testing::ContainsRegex("waiting for: agent --id 1 --domain [0-9]+ --transport udp\n"));
+}
+
 TEST(Faults, ADomainInUseIsRefused) {
   ScratchFolder folder;
   Up up = Endless(folder);

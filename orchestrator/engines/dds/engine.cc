@@ -191,6 +191,7 @@ void DdsRun::Spawn() {
       spawn(ProcessName(agents), "agent", PeersOf(agents), {"--id", IdsText(agents)});
     else
       console_.Line("waiting for: agent --id " + IdsText(agents) + " --domain " + std::to_string(options.domain) +
+                    (options.transport == DomainOptions().transport ? "" : " --transport " + options.transport) +
                     (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_->discovery_port()) : ""));
   }
 }
