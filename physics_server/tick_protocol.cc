@@ -78,7 +78,7 @@ TickProtocol::Turn TickProtocol::Watch(Time now) {
 }
 
 TickProtocol::Turn TickProtocol::EndTick(Time due, Time now, bool stop_requested) {
-  if (HoldsTooLong()) return {.due = due, .failure = WhoIsLate()};
+  if (const auto silent = HeldTooLong(); !silent.empty()) return {.due = due, .failure = NoCommandFrom(silent)};
   timetable_->OnTick(tick_ + 1, now);
   Turn turn{.actions = Step(), .due = due};
   paced_ = tick_ < rules_.last_tick;
@@ -87,18 +87,23 @@ TickProtocol::Turn TickProtocol::EndTick(Time due, Time now, bool stop_requested
   return turn;
 }
 
-bool TickProtocol::HoldsTooLong() const {
-  return std::ranges::any_of(answered_, [this](std::int64_t answered) {
-    return static_cast<double>(published_ - answered) * *rules_.period_s > rules_.agent_timeout_s;
-  });
+std::vector<int> TickProtocol::HeldTooLong() const {
+  std::vector<int> ids;
+  for (int id = 1; id <= rules_.agents; ++id)
+    if (static_cast<double>(published_ - answered(id)) * *rules_.period_s > rules_.agent_timeout_s) ids.push_back(id);
+  return ids;
+}
+
+std::string TickProtocol::NoCommandFrom(const std::vector<int>& agents) const {
+  return "tick " + std::to_string(tick_) + ": no command from " + AgentsText(agents) +
+         " within run.agent_timeout_s = " + ShortestFloat(rules_.agent_timeout_s) + " s";
 }
 
 std::string TickProtocol::WhoIsLate() const {
-  const std::string limit = "run.agent_timeout_s = " + ShortestFloat(rules_.agent_timeout_s) + " s";
-  const std::string late = AwaitsRecorder() ? "the recorder has confirmed only " + std::to_string(recorded_rows_) +
-                                                  " ticks, nothing within " + std::to_string(rules_.agents) + " times "
-                                            : "no command from " + AgentsText(barrier_.Late()) + " within ";
-  return "tick " + std::to_string(tick_) + ": " + late + limit;
+  if (!AwaitsRecorder()) return NoCommandFrom(barrier_.Late());
+  return "tick " + std::to_string(tick_) + ": the recorder has confirmed only " + std::to_string(recorded_rows_) +
+         " ticks, nothing within " + std::to_string(rules_.agents) +
+         " times run.agent_timeout_s = " + ShortestFloat(rules_.agent_timeout_s) + " s";
 }
 
 }  // namespace mascot

@@ -82,9 +82,11 @@ class TickProtocol {
   Turn Watch(Time now);
   /// Look() in real time when the next tick is due: ends this one with the commands held.
   Turn EndTick(Time due, Time now, bool stop_requested);
-  /// True if a command is older than run.agent_timeout_s.
-  bool HoldsTooLong() const;
+  /// Agents whose command is older than run.agent_timeout_s.
+  std::vector<int> HeldTooLong() const;
   /// "tick 12: no command from agents 2, 5 within run.agent_timeout_s = 5.0 s".
+  std::string NoCommandFrom(const std::vector<int>& agents) const;
+  /// The same of those who have not answered this tick; or that the recorder is late.
   std::string WhoIsLate() const;
 
   const Rules rules_;
