@@ -52,6 +52,21 @@ std::string Record(const ScratchFolder& scratch, const std::string& toml) {
   return folder.File("run.mcap").string();
 }
 
+TEST(RunInProcess, ReportsWhatFailsBeforeTheFirstTick) {
+  const ScratchFolder scratch;
+  const std::string breaks = scratch.File("breaks");
+  const Experiment experiment = LoadExperiment(
+      Section::FromText("[run]\nduration_s = 1.0\n[agents]\ncount = 1\n[law]\nname = 'custom'\npython = \"\"\"\n"
+                        "import os\ndef start(me, params):\n  if os.path.exists('" +
+                            breaks +
+                            "'):\n    raise ValueError('broken')\n"
+                            "def control(t, me, neighbours):\n  return [0, 0]\n\"\"\"\n",
+                        "late.toml"),
+      "late");
+  WriteFile(breaks, "");
+  EXPECT_THAT(RunInProcess(experiment, {}, [] { return true; }).failure, HasSubstr("ValueError: broken"));
+}
+
 /// Copies the recording without one topic and closes it properly; `fewer`: without the last sample of that topic only.
 std::string Without(const std::string& path, const std::string& topic, bool fewer = false) {
   const McapContents contents = ReadMcap(path);

@@ -1,6 +1,7 @@
 #include "orchestrator/engines/inprocess.h"
 
 #include <chrono>
+#include <optional>
 
 #include "orchestrator/engines/row_feed.h"
 #include "orchestrator/team/team.h"
@@ -57,21 +58,23 @@ EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSin
   EngineResult result;
   result.wire_matches_graph = true;  // no wire here: each agent gets only the samples that the graph allows
   const auto launched = WallClock::now();
-  Flight flight(experiment);
-  RowFeed feed(experiment, sinks);
-  const auto start = WallClock::now();
+  auto start = launched;
+  std::optional<Flight> flight;
   try {
+    flight.emplace(experiment);
+    RowFeed feed(experiment, sinks);
+    start = WallClock::now();
     for (std::int64_t tick = 0; go_on(); ++tick) {
-      feed.Add(tick, flight.Exchange());
+      feed.Add(tick, flight->Exchange());
       if (tick == experiment.ticks()) break;
-      flight.Step();
+      flight->Step();
     }
   } catch (const std::exception& failure) {
     result.failure = failure.what();
   }
   result.wall_s = std::chrono::duration<double>(WallClock::now() - start).count();
   result.startup_s = std::chrono::duration<double>(start - launched).count();
-  result.contacts = flight.contacts();
+  if (flight) result.contacts = flight->contacts();
   return result;
 }
 
