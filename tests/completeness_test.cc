@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -42,12 +43,12 @@ def message(me):
 """ }
 )";
 
-/// Runs `toml` in this process and records it. Returns the path of the recording.
-std::string Record(const ScratchFolder& scratch, const std::string& toml) {
+/// Runs `toml` in this process, for at most so many rows, and records it. Returns the path of the recording.
+std::string Record(const ScratchFolder& scratch, const std::string& toml, int rows = 1000) {
   const Experiment experiment = LoadExperiment(Section::FromText(toml, "talk.toml"), "talk");
   const RunFolder folder(scratch.File("run"), experiment, false);
   RunWriter writer(experiment, folder, experiment.resolved);
-  EXPECT_EQ(RunInProcess(experiment, {&writer}, [] { return true; }).failure, "");
+  EXPECT_EQ(RunInProcess(experiment, {&writer}, [&rows] { return rows-- > 0; }).failure, "");
   writer.Close();
   return folder.File("run.mcap").string();
 }
@@ -65,6 +66,30 @@ TEST(RunInProcess, ReportsWhatFailsBeforeTheFirstTick) {
       "late");
   WriteFile(breaks, "");
   EXPECT_THAT(RunInProcess(experiment, {}, [] { return true; }).failure, HasSubstr("ValueError: broken"));
+}
+
+/// A copy of the recording, closed properly, of what `edit` keeps: it may change the time of the n-th message of a
+/// topic.
+std::string Edited(const std::string& path,
+                   const std::function<bool(const std::string& topic, std::uint64_t n, std::uint64_t& time_ns)>& edit,
+                   std::map<std::string, std::string> early_end = {}) {
+  const McapContents contents = ReadMcap(path);
+  const std::string copy = path + ".edited.mcap";
+  McapWriter writer(copy);
+  for (const auto& [name, data] : contents.attachments) writer.Attach(name, "application/toml", data);
+  if (!early_end.empty()) writer.Metadata("mascot_ended_early", early_end);
+  std::map<std::uint16_t, std::uint16_t> channels;
+  std::map<std::uint16_t, std::uint64_t> next;
+  ReadMcap(path, [&](const McapContents::Message& message) {
+    const McapContents::ChannelInfo& channel = contents.channels.at(message.channel);
+    std::uint64_t time_ns = message.log_time;
+    if (!edit(channel.topic, next[message.channel]++, time_ns)) return;
+    if (!channels.contains(message.channel))
+      channels[message.channel] = writer.AddChannel({channel.topic, channel.schema_name, "uint64 n\n", {}});
+    writer.Write(channels[message.channel], time_ns, message.data);
+  });
+  writer.Close();
+  return copy;
 }
 
 /// Copies the recording without one topic and closes it properly; `fewer`: without the last sample of that topic only.
@@ -150,12 +175,95 @@ TEST(Completeness, InRealTimeOnlyCommandsAndMessagesMayBeFewer) {
   EXPECT_FALSE(plan.HasEveryTick(Topic::Message(1)));
 }
 
-TEST(Completeness, WithoutAPlanOnlyTopicsThatAreThereAreCompared) {
+Verdict JudgementOf(const std::string& path) { return Judge(path, ReadMcap(path)); }
+
+constexpr auto kAll = [](const std::string&, std::uint64_t, std::uint64_t&) { return true; };
+
+TEST(Completeness, OfAWholeRecordingIsProved) {
   const ScratchFolder scratch;
-  const std::string path = Without(Record(scratch, kExperiment), "/agent_2/state");
-  const Proof proof = Prove(ReadMcap(path), std::nullopt);
-  EXPECT_EQ(proof.gap, "");
-  EXPECT_EQ(proof.ticks, 11u);
+  const Verdict verdict = JudgementOf(Record(scratch, kExperiment));
+  EXPECT_EQ(verdict.reason, "");
+  EXPECT_EQ(verdict.ticks, 11u);
+}
+
+TEST(Completeness, OfARecordingWithoutMessagesIsNotProved) {
+  const ScratchFolder scratch;
+  const auto none = [](const std::string&, std::uint64_t, std::uint64_t&) { return false; };
+  EXPECT_EQ(JudgementOf(Edited(Record(scratch, kExperiment), none)).reason,
+            "it holds 0 ticks, expected 11: the run does not say that it ended early");
+}
+
+TEST(Completeness, OfARecordingThatLacksAnAgentIsNotProved) {
+  const ScratchFolder scratch;
+  const auto one = [](const std::string& topic, std::uint64_t, std::uint64_t&) {
+    return !topic.starts_with("/agent_2/");
+  };
+  EXPECT_EQ(JudgementOf(Edited(Record(scratch, kExperiment), one)).reason,
+            "/agent_2/command is missing, which the experiment records");
+}
+
+TEST(Completeness, OfTopicsThatTellNoTicksIsNotProved) {
+  const ScratchFolder scratch;
+  const std::string toml = std::string(kExperiment) + "[record]\ntopics = ['/agent_7/*']\n";
+  EXPECT_EQ(JudgementOf(Record(scratch, toml)).reason,
+            "record.topics selects no topic that has a sample of every tick: nothing proves how many there were");
+}
+
+TEST(Completeness, NeedsTheTimeOfEachTick) {
+  const ScratchFolder scratch;
+  const std::string whole = Record(scratch, kExperiment);
+  const auto zero = [](const std::string&, std::uint64_t, std::uint64_t& time_ns) { return time_ns = 0, true; };
+  EXPECT_THAT(JudgementOf(Edited(whole, zero)).reason, HasSubstr(" has a message of t = 0 s, expected 0.01 s"));
+  const auto late = [](const std::string& topic, std::uint64_t n, std::uint64_t& time_ns) {
+    if (topic == "/agent_2/message" && n == 10) ++time_ns;
+    return true;
+  };
+  EXPECT_EQ(JudgementOf(Edited(whole, late)).reason,
+            "/agent_2/message has a message of t = 0.100000001 s, expected 0.1 s");
+}
+
+TEST(Completeness, InRealTimeCommandsMayMissTicksButNotTheirTimes) {
+  const ScratchFolder scratch;  // written as in real time; flown in lockstep, as tests do
+  std::string toml = kExperiment;
+  toml.replace(toml.find("duration_s"), 0, "mode = 'realtime'\n");
+  const std::string whole = Record(scratch, toml);
+  const auto some = [](const std::string& topic, std::uint64_t n, std::uint64_t&) {
+    return !topic.ends_with("/command") || n % 5 == 0;
+  };
+  EXPECT_EQ(JudgementOf(Edited(whole, some)).reason, "");
+  const auto twice = [](const std::string& topic, std::uint64_t n, std::uint64_t& time_ns) {
+    if (topic == "/agent_1/command" && n == 3) time_ns = 20'000'000;
+    return true;
+  };
+  EXPECT_EQ(JudgementOf(Edited(whole, twice)).reason, "/agent_1/command has a message of t = 0.02 s, expected 0.03 s");
+}
+
+TEST(Completeness, ARunThatEndedEarlySaysSo) {
+  const ScratchFolder scratch;
+  const Verdict verdict = JudgementOf(Record(scratch, kExperiment, /*rows=*/4));
+  EXPECT_EQ(verdict.reason, "");
+  EXPECT_EQ(verdict.ticks, 4u);
+  EXPECT_EQ(verdict.plan->ticks, 11u);
+}
+
+TEST(Completeness, ARecordingWhoseEndWasTakenAwayIsNotComplete) {
+  const ScratchFolder scratch;
+  const std::string whole = Record(scratch, kExperiment);
+  const auto four = [](const std::string&, std::uint64_t n, std::uint64_t&) { return n < 4; };
+  EXPECT_EQ(JudgementOf(Edited(whole, four)).reason,
+            "it holds 4 ticks, expected 11: the run does not say that it ended early");
+  EXPECT_EQ(JudgementOf(Edited(whole, four, {{"ticks", "7"}})).reason,
+            "it holds 4 ticks, expected 7, at which the run says it ended early");
+  EXPECT_EQ(JudgementOf(Edited(whole, kAll, {{"ticks", "7"}})).reason,
+            "it holds 11 ticks, expected 7, at which the run says it ended early");
+  EXPECT_NE(JudgementOf(Edited(whole, four, {{"ticks", "some"}})).reason, "");
+}
+
+TEST(Completeness, WithoutAnExperimentNothingIsProved) {
+  const ScratchFolder scratch;
+  McapWriter(scratch.File("other.mcap")).Close();
+  EXPECT_EQ(JudgementOf(scratch.File("other.mcap")).reason,
+            "no experiment is attached, which would say what there must be");
 }
 
 TEST(Completeness, ARecordingSaysItsFormat) {

@@ -524,6 +524,7 @@ TEST(Realtime, SaysHowItKeptToItsTimes) {
   EXPECT_GT(realtime["tick_lateness_s"]["max"], 0) << "nobody wakes before it is time";
   EXPECT_EQ(realtime["misses"] == 0, realtime["command_age_s"]["max"] == 0.0);
   EXPECT_THAT(up.out(), HasSubstr("ms after they were due in the median"));
+  EXPECT_THAT(up.Info(), HasSubstr("ticks:        101, recorded without a gap\ncomplete: yes\n"));
 }
 
 /// Whether a process has locked memory, according to the kernel.

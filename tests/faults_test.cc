@@ -57,6 +57,7 @@ TEST(Faults, ADyingAgentEndsTheRunByNameAndSignal) {
   EXPECT_THAT(up.err(), HasSubstr("error: agent_3 was killed by signal 9 (Killed)"));
   EXPECT_EQ(up.Summary()["exit"], 1);
   EXPECT_THAT(up.Summary()["failure"].get<std::string>(), HasSubstr("agent_3 was killed"));
+  EXPECT_THAT(up.Info(), HasSubstr("the run ended early, recorded without a gap\ncomplete: yes\n"));
   EXPECT_TRUE(NothingIsLeft(up));
 }
 
@@ -303,6 +304,7 @@ TEST_P(Interrupted, RunsEndInOrderWithACompleteRecording) {
   const McapContents recording = ReadMcap(up.path() / "run.mcap");
   EXPECT_TRUE(recording.complete) << recording.damage;
   EXPECT_EQ(recording.messages, 9 * (up.Summary()["ticks"].get<std::uint64_t>() + 1));
+  EXPECT_THAT(up.Info(), HasSubstr("the run ended early, recorded without a gap\ncomplete: yes\n"));
   EXPECT_EQ(up.Summary()["samples"]["lost"], 0);
   EXPECT_THAT(ReadFile(up.path() / "logs/orchestrator.log"), HasSubstr("physics_server is done, tick"));
   EXPECT_TRUE(NothingIsLeft(up));

@@ -18,11 +18,19 @@ using testing::StartsWith;
 
 Said Info(const std::vector<std::string>& arguments) { return Call(SetUpInfo, arguments); }
 
-/// Writes a recording of one agent at 10 Hz for 10 s: 101 states and the first `commands` commands.
-void WriteRun(const std::string& path, int commands, const std::string& config = "[run]\n") {
+/// An experiment of one agent at 10 Hz.
+std::string Config(const std::string& duration_s, const std::string& mode = "lockstep") {
+  return "[run]\nname = 'run'\nduration_s = " + duration_s + "\nmode = '" + mode +
+         "'\n[agents]\ncount = 1\n[control]\nrate_hz = 10\n[record]\ntopics = ['/agent_*']\n";
+}
+
+/// Writes a recording of this experiment: 10 s, 101 states and the first `commands` commands.
+void WriteRun(const std::string& path, int commands, const std::string& config = Config("10.0"),
+              bool ended_early = false) {
   McapWriter writer(path);
   writer.Attach("config.toml", "application/toml", config);
   writer.Metadata("mascot", {{"seed", "7"}});
+  if (ended_early) writer.Metadata("mascot_ended_early", {{"ticks", "101"}});
   const auto command = writer.AddChannel({"/agent_1/command", "mascot_msgs/msg/AgentCommand", "uint64 n\n", {}});
   const auto state = writer.AddChannel({"/agent_1/state", "mascot_msgs/msg/AgentState", "uint64 n\n", {}});
   for (std::uint64_t k = 0; k <= 100; ++k) {
@@ -31,12 +39,6 @@ void WriteRun(const std::string& path, int commands, const std::string& config =
     writer.EndTick();
   }
   writer.Close();
-}
-
-/// The attached experiment of such a recording.
-std::string Config(const std::string& duration_s, const std::string& mode) {
-  return "[run]\nname = 'run'\nduration_s = " + duration_s + "\nmode = '" + mode +
-         "'\n[agents]\ncount = 1\n[control]\nrate_hz = 10\n[record]\ntopics = ['/agent_*']\n";
 }
 
 TEST(Info, DescribesARunAndProvesItComplete) {
@@ -56,7 +58,7 @@ TEST(Info, DescribesARunAndProvesItComplete) {
   EXPECT_THAT(said.out, HasSubstr("  topic             type                               count          Hz\n"
                                   "  /agent_1/command  mascot_msgs/msg/AgentCommand         101       10.00\n"
                                   "  /agent_1/state    mascot_msgs/msg/AgentState           101       10.00\n"));
-  EXPECT_THAT(said.out, HasSubstr("attachment:   config.toml, 6 bytes\n"));
+  EXPECT_THAT(said.out, HasSubstr("attachment:   config.toml, " + std::to_string(Config("10.0").size()) + " bytes\n"));
   EXPECT_THAT(said.out, HasSubstr("metadata:     mascot\n              seed = 7\n"));
   EXPECT_THAT(said.out, EndsWith("ticks:        101, recorded without a gap\ncomplete: yes\n"));
 }
@@ -76,7 +78,7 @@ TEST(Info, JsonIsOneObjectWithTheSameFacts) {
   EXPECT_GT(report.at("compression_ratio"), 2.0);
   EXPECT_EQ(report.at("topics")[1], nlohmann::json::parse(R"({"topic": "/agent_1/state", "count": 101, "hz": 10.0,
     "type": "mascot_msgs/msg/AgentState", "bytes": 20200, "gaps": 0, "first_ns": 0, "last_ns": 10000000000})"));
-  EXPECT_EQ(report.at("attachments"), nlohmann::json::parse(R"([{"name": "config.toml", "bytes": 6}])"));
+  EXPECT_EQ(report.at("attachments"), nlohmann::json({{{"name", "config.toml"}, {"bytes", Config("10.0").size()}}}));
   EXPECT_EQ(report.at("metadata"), nlohmann::json::parse(R"({"mascot": {"seed": "7"}})"));
 }
 
@@ -110,10 +112,28 @@ TEST(Info, ANewerFormatIsDescribedButNotProved) {
 
 TEST(Info, SaysThatARunEndedEarly) {
   const ScratchFolder scratch;
-  WriteRun(scratch.File("run.mcap"), 101, Config("30.0", "lockstep"));
+  WriteRun(scratch.File("run.mcap"), 101, Config("30.0"), /*ended_early=*/true);
   EXPECT_THAT(Info({scratch.File("run.mcap")}).out,
               EndsWith("ticks:        101 of 301: the run ended early, recorded without a gap\ncomplete: yes\n"));
   EXPECT_EQ(nlohmann::json::parse(Info({"--json", scratch.File("run.mcap")}).out).at("planned_ticks"), 301);
+}
+
+TEST(Info, ARecordingThatStopsWithoutSayingSoIsNotComplete) {
+  const ScratchFolder scratch;
+  WriteRun(scratch.File("run.mcap"), 101, Config("30.0"));
+  const Said said = Info({scratch.File("run.mcap")});
+  EXPECT_EQ(said.exit_code, 1);
+  EXPECT_THAT(said.out, EndsWith("complete: no (it holds 101 ticks, expected 301: the run does not say that it ended "
+                                 "early)\n"));
+}
+
+TEST(Info, AFileWithoutAnExperimentIsNotProved) {
+  const ScratchFolder scratch;
+  WriteRun(scratch.File("run.mcap"), 101, "[run]\n");
+  const Said said = Info({scratch.File("run.mcap")});
+  EXPECT_EQ(said.exit_code, 1);
+  EXPECT_THAT(said.out, EndsWith("complete: no (no experiment is attached, which would say what there must be)\n"));
+  EXPECT_EQ(nlohmann::json::parse(Info({"--json", scratch.File("run.mcap")}).out).at("planned_ticks"), nullptr);
 }
 
 /// Writes a closed file without CRCs, with a channel whose sequence numbers are 0, 2.

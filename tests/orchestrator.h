@@ -92,6 +92,10 @@ class Up : public Running {
   const std::filesystem::path& path() const { return path_; }
   std::string File(const std::string& name) const { return ReadFile(path_ / name); }
   nlohmann::json Summary() const { return nlohmann::json::parse(File("summary.json")); }
+  /// What `orchestrator info` says of the recording.
+  std::string Info() const {
+    return Shell("'" MASCOT_BINARY_DIR "/orchestrator' info '" + path_.string() + "'").output;
+  }
   /// Process id of a child; 0 before it has been spawned.
   pid_t Child(const std::string& process) const;
 

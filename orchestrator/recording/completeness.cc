@@ -7,11 +7,21 @@
 #include <cmath>
 #include <map>
 
+#include "bus/wire.h"
 #include "experiment/read_experiment.h"
 #include "orchestrator/recording/topic_filter.h"
 
 namespace mascot {
 namespace {
+
+/// All of `text` as a number; nothing if it is something else.
+template <class Number>
+std::optional<Number> NumberFrom(const std::string& text) {
+  Number number = 0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc() && rest == end ? std::optional(number) : std::nullopt;
+}
 
 /// Whether a topic of this kind has a sample of every tick.
 bool IsPerTick(const Topic& topic, bool realtime) {
@@ -55,45 +65,134 @@ std::vector<Topic> TopicsOf(const std::vector<std::string>& patterns, const std:
 
 using Counts = std::map<std::string, std::uint64_t>;  // messages by topic
 
-/// Counts the messages of the topics that should have a sample of every tick.
-Counts Count(const McapContents& contents, const std::optional<RecordingPlan>& plan) {
+/// Messages of all topics that the plan has, also of those that are not there.
+Counts CountMessages(const McapContents& contents, const RecordingPlan& plan) {
   Counts counts;
-  if (plan)
-    for (const Topic& topic : plan->topics)
-      if (plan->HasEveryTick(topic)) counts[topic.Name()] = 0;
-  for (const auto& [id, channel] : contents.channels) {
-    const auto topic = Topic::Parse(channel.topic);
-    if (topic && (plan ? counts.contains(channel.topic) : IsPerTick(*topic, /*realtime=*/false)))
-      counts[channel.topic] = channel.messages;
-  }
+  for (const Topic& topic : plan.topics) counts[topic.Name()] = 0;
+  for (const auto& [id, channel] : contents.channels)
+    if (const auto count = counts.find(channel.topic); count != counts.end()) count->second += channel.messages;
   return counts;
 }
 
-/// The entry of the metadata that says which format a recording has; null: there is none.
-const std::string* MetadataEntry(const McapContents& contents, const char* key) {
-  const auto metadata = contents.metadata.find(kMetadata);
+/// An entry of a metadata record; null: there is none.
+const std::string* MetadataEntry(const McapContents& contents, const char* name, const char* key) {
+  const auto metadata = contents.metadata.find(name);
   if (metadata == contents.metadata.end()) return nullptr;
   const auto entry = metadata->second.find(key);
   return entry == metadata->second.end() ? nullptr : &entry->second;
 }
 
-/// Describes the first gap: a gap in the sequence numbers of a channel; in a recording that lost nothing at its end,
-/// also a topic that is missing or has fewer samples than another. Empty: none.
-std::string FindGap(const McapContents& contents, const std::optional<RecordingPlan>& plan, const Counts& counts) {
+/// The topics of the plan, by name.
+std::map<std::string, Topic> TopicsByName(const RecordingPlan& plan) {
+  std::map<std::string, Topic> topics;
+  for (const Topic& topic : plan.topics) topics[topic.Name()] = topic;
+  return topics;
+}
+
+std::string SequenceGap(const McapContents& contents) {
   for (const auto& [id, channel] : contents.channels)
     if (channel.gaps > 0) return fmt::format("{}: gaps in its sequence numbers: {}", channel.topic, channel.gaps);
-  if (!LossOf(contents).empty()) return "";
-  const auto is_there = [&](const Topic& topic) {
-    return std::ranges::any_of(contents.channels,
-                               [&](const auto& channel) { return channel.second.topic == topic.Name(); });
-  };
-  if (plan)
-    for (const Topic& topic : plan->topics)
-      if (!is_there(topic)) return topic.Name() + " is missing, which the experiment records";
-  const auto fewest = std::ranges::min_element(counts, {}, &Counts::value_type::second);
-  const auto most = std::ranges::max_element(counts, {}, &Counts::value_type::second);
-  if (counts.empty() || fewest->second == most->second) return "";
-  return fmt::format("{} has {} messages, {} has {}", most->first, most->second, fewest->first, fewest->second);
+  return "";
+}
+
+/// How many ticks a run that ended early says it has recorded; nothing if it does not say that it ended early.
+std::optional<std::uint64_t> TicksOfEarlyEnd(const McapContents& contents) {
+  const std::string* ticks = MetadataEntry(contents, kEarlyEnd, kTicksKey);
+  return ticks == nullptr ? std::nullopt : NumberFrom<std::uint64_t>(*ticks);
+}
+
+/// In a recording that was closed: the first topic that is missing, or has fewer samples than another. Empty: none.
+std::string TopicGap(const RecordingPlan& plan, const Counts& counts, bool ended_early) {
+  const std::pair<const std::string, std::uint64_t>* most = nullptr;
+  for (const auto& count : counts)
+    if (most == nullptr || count.second > most->second) most = &count;
+  for (const Topic& topic : plan.topics) {
+    const std::string name = topic.Name();
+    const std::uint64_t count = counts.at(name);
+    const bool may_miss_ticks = !plan.HasEveryTick(topic);
+    if (count == 0 && most->second > 0 && !(may_miss_ticks && ended_early))
+      return name + " is missing, which the experiment records";
+    if (count < most->second && !may_miss_ticks)
+      return fmt::format("{} has {} messages, {} has {}", most->first, most->second, name, count);
+  }
+  return "";
+}
+
+/// Why a recording without a gap does not prove that it holds its run up to the end. Empty: it does.
+std::string EndGap(const McapContents& contents, const RecordingPlan& plan, std::optional<std::uint64_t> ticks) {
+  if (!ticks)
+    return "record.topics selects no topic that has a sample of every tick: nothing proves how many there were";
+  const auto early = TicksOfEarlyEnd(contents);
+  if (*ticks == early.value_or(plan.ticks)) return "";
+  return fmt::format("it holds {} ticks, expected {}{}", *ticks, early.value_or(plan.ticks),
+                     early ? ", at which the run says it ended early" : ": the run does not say that it ended early");
+}
+
+/// Checks the times of one topic, message by message: tick k is at k / rate.
+class Times {
+ public:
+  Times(const Topic& topic, const RecordingPlan& plan)
+      : name_(topic.Name()), plan_(plan), dense_(plan.HasEveryTick(topic)) {}
+
+  /// What is wrong with the time of the topic's next message. Empty: nothing.
+  std::string Take(std::uint64_t time_ns) {
+    const std::uint64_t tick = dense_ ? next_ : std::max(next_, TickAt(time_ns));
+    const std::uint64_t expected_ns = StampNs(static_cast<std::int64_t>(tick), plan_.rate_hz);
+    next_ = tick + 1;
+    if (time_ns == expected_ns && tick < plan_.ticks) return "";
+    return fmt::format("{} has a message of t = {:.9g} s, expected {:.9g} s", name_,
+                       1e-9 * static_cast<double>(time_ns), 1e-9 * static_cast<double>(expected_ns));
+  }
+
+ private:
+  /// The tick that is next to this time; the last one for times beyond.
+  std::uint64_t TickAt(std::uint64_t time_ns) const {
+    constexpr std::uint64_t kSecond = 1'000'000'000;
+    const auto rate = static_cast<std::uint64_t>(plan_.rate_hz);
+    const std::uint64_t rest = time_ns % kSecond;
+    return std::min(time_ns / kSecond * rate + (rest * rate + kSecond / 2) / kSecond, plan_.ticks - 1);
+  }
+
+  std::string name_;
+  const RecordingPlan& plan_;
+  bool dense_;              // a message for each tick; else (real time) for some, in order
+  std::uint64_t next_ = 0;  // the first tick that may come next
+};
+
+/// The first message of the recording that has not the time of its tick. Empty: none.
+std::string TimeGap(const std::string& path, const McapContents& contents, const RecordingPlan& plan) {
+  const auto topics = TopicsByName(plan);
+  std::map<std::uint16_t, Times> times;
+  for (const auto& [id, channel] : contents.channels)
+    if (const auto topic = topics.find(channel.topic); topic != topics.end())
+      times.try_emplace(id, topic->second, plan);
+  std::string gap;
+  ReadMcap(path, [&](const McapContents::Message& message) {
+    const auto channel = times.find(message.channel);
+    if (gap.empty() && channel != times.end()) gap = channel->second.Take(message.log_time);
+  });
+  return gap;
+}
+
+/// The plan of the recording; nothing if no MASCOT experiment is attached.
+std::optional<RecordingPlan> PlanIn(const McapContents& contents, const std::string& path) try {
+  return PlanOf(contents, path);
+} catch (const ConfigError&) {
+  return std::nullopt;
+}
+
+std::string WhyIncomplete(const std::string& path, const McapContents& contents, const Verdict& verdict) {
+  if (std::string why = TooNew(contents); !why.empty()) return why;
+  const Proof proof = verdict.plan ? Prove(contents, *verdict.plan) : Proof{};
+  if (const std::string loss = LossOf(contents); !loss.empty()) {
+    const std::string end = proof.End(verdict.plan ? std::optional(verdict.plan->ticks) : std::nullopt);
+    return end.empty() ? loss : loss + "; " + end;
+  }
+  if (std::string gap = SequenceGap(contents); !gap.empty()) return gap;
+  if (!verdict.plan) return "no experiment is attached, which would say what there must be";
+  if (!proof.gap.empty()) return proof.gap;
+  if (std::string gap = EndGap(contents, *verdict.plan, proof.ticks); !gap.empty()) return gap;
+  return TimeGap(path, contents, *verdict.plan);
 }
 
 }  // namespace
@@ -101,18 +200,15 @@ std::string FindGap(const McapContents& contents, const std::optional<RecordingP
 bool RecordingPlan::HasEveryTick(const Topic& topic) const { return IsPerTick(topic, realtime); }
 
 std::string TooNew(const McapContents& contents) {
-  const std::string* format = MetadataEntry(contents, kFormatKey);
+  const std::string* format = MetadataEntry(contents, kMetadata, kFormatKey);
   if (format == nullptr) return "";
-  int version = 0;
-  const char* end = format->data() + format->size();
-  const auto [rest, error] = std::from_chars(format->data(), end, version);
-  if (error == std::errc() && rest == end && version <= kFormat) return "";
+  if (const auto version = NumberFrom<int>(*format); version && *version <= kFormat) return "";
   return fmt::format("it is of format {}, newer than the {} that this version of MASCOT reads", *format, kFormat);
 }
 
 std::string LossOf(const McapContents& contents) {
   if (!contents.damage.empty()) return contents.damage;
-  const std::string* recovered = MetadataEntry(contents, kRecoveredKey);
+  const std::string* recovered = MetadataEntry(contents, kMetadata, kRecoveredKey);
   return recovered == nullptr ? "" : "recovered from a file that was damaged: " + *recovered;
 }
 
@@ -147,11 +243,21 @@ std::string Proof::End(std::optional<std::uint64_t> planned_ticks) const {
                      planned_ticks ? fmt::format(" of {}", *planned_ticks - 1) : "");
 }
 
-Proof Prove(const McapContents& contents, const std::optional<RecordingPlan>& plan) {
-  const Counts counts = Count(contents, plan);
-  Proof proof{.gap = FindGap(contents, plan, counts), .ticks = {}};
-  if (!counts.empty()) proof.ticks = std::ranges::min_element(counts, {}, &Counts::value_type::second)->second;
+Proof Prove(const McapContents& contents, const RecordingPlan& plan) {
+  const Counts counts = CountMessages(contents, plan);
+  Proof proof{.gap = SequenceGap(contents), .ticks = {}};
+  if (proof.gap.empty() && LossOf(contents).empty())
+    proof.gap = TopicGap(plan, counts, TicksOfEarlyEnd(contents).has_value());
+  for (const Topic& topic : plan.topics)
+    if (plan.HasEveryTick(topic)) proof.ticks = std::min(proof.ticks.value_or(UINT64_MAX), counts.at(topic.Name()));
   return proof;
+}
+
+Verdict Judge(const std::string& path, const McapContents& contents) {
+  Verdict verdict{.plan = PlanIn(contents, path), .reason = {}, .ticks = {}};
+  verdict.reason = WhyIncomplete(path, contents, verdict);
+  if (verdict.reason.empty()) verdict.ticks = Prove(contents, *verdict.plan).ticks;
+  return verdict;
 }
 
 }  // namespace mascot

@@ -41,19 +41,34 @@ std::string LossOf(const McapContents& contents);
 /// no config.toml, or if that is not a MASCOT experiment; `path` names the recording in that message.
 RecordingPlan PlanOf(const McapContents& contents, const std::string& path);
 
-/// Result of checking a recording by its sequence numbers: in a complete recording each channel counts 0 .. n-1, where
-/// n is the number of ticks for every topic with a sample of every tick.
+/// The metadata of a recording whose run ended early: how many ticks it holds.
+inline constexpr const char* kEarlyEnd = "mascot_ended_early";
+inline constexpr const char* kTicksKey = "ticks";
+
+/// Result of checking a recording by its sequence numbers and counts: each channel counts 0 .. n-1, where n is the
+/// number of ticks for every topic with a sample of every tick.
 struct Proof {
-  /// Description of the first gap: something is missing that should be there even if the file was not closed. Empty:
-  /// none.
+  /// Description of the first gap: something is missing that should be there even if the file was not closed, or the
+  /// run ended early. Empty: none.
   std::string gap;
-  /// Number of complete ticks, from 0 on; nothing if no topic has a sample of every tick.
+  /// Number of complete ticks, from 0 on; nothing if the plan has no topic with a sample of every tick.
   std::optional<std::uint64_t> ticks;
   /// Where the whole ticks end: "whole up to tick 812 of 4000", "no tick is whole". Empty without `ticks`.
   std::string End(std::optional<std::uint64_t> planned_ticks) const;
 };
-/// Checks a recording. Every topic of the plan must be there; without a plan, only the topics that are there are
-/// compared.
-Proof Prove(const McapContents& contents, const std::optional<RecordingPlan>& plan);
+/// Checks a recording, of which only the topics of the plan count. Each of them must be there.
+Proof Prove(const McapContents& contents, const RecordingPlan& plan);
+
+/// Whether a recording is complete: it was closed, it has no gap, the experiment attached to it says which topics and
+/// how many ticks there must be (fewer only if the run says that it ended early), and each message has the time of its
+/// tick.
+struct Verdict {
+  std::optional<RecordingPlan> plan;   ///< absent: no experiment is attached
+  std::string reason;                  ///< why it is not complete; empty: it is
+  std::optional<std::uint64_t> ticks;  ///< number of ticks; absent: it is not complete
+};
+/// Judges a recording of which `contents` was read. Reads its times again, from `path`: throws std::runtime_error if it
+/// cannot.
+Verdict Judge(const std::string& path, const McapContents& contents);
 
 }  // namespace mascot

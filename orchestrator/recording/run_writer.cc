@@ -79,6 +79,7 @@ void RunWriter::Add(const FlownRow& row) {
 }
 
 void RunWriter::Close() {
+  if (rows_ <= experiment_.ticks()) mcap_.Metadata(kEarlyEnd, {{kTicksKey, std::to_string(rows_)}});
   mcap_.Close();
   if (npz_) npz_->Close();
 }

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "experiment/toml/section.h"
 #include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/recording/completeness.h"
 #include "orchestrator/recording/recording.h"
@@ -25,11 +24,12 @@ struct Findings {
   std::string file;
   std::uint64_t size_bytes = 0;
   McapContents contents;
-  std::optional<std::uint64_t> ticks;          ///< absent: not complete, or no topic has a sample of every tick
-  std::optional<std::uint64_t> planned_ticks;  ///< absent: no experiment is attached
-  std::string reason;                          ///< why the recording is not complete; empty: it is
+  Verdict verdict;
 
-  bool complete() const { return reason.empty(); }
+  bool complete() const { return verdict.reason.empty(); }
+  std::optional<std::uint64_t> planned_ticks() const {
+    return verdict.plan ? std::optional(verdict.plan->ticks) : std::nullopt;
+  }
 };
 
 double Seconds(std::uint64_t ns) { return static_cast<double>(ns) * 1e-9; }
@@ -54,31 +54,12 @@ double DurationSeconds(const McapContents& contents) {
   return first ? Seconds(*last - *first) : 0;
 }
 
-/// Why a recording is not complete; empty: it is.
-std::string ReasonOf(const McapContents& contents, const Proof& proof, std::optional<std::uint64_t> planned_ticks) {
-  if (const std::string too_new = TooNew(contents); !too_new.empty()) return too_new;
-  const std::string loss = LossOf(contents), end = proof.End(planned_ticks);
-  if (loss.empty()) return proof.gap;
-  return end.empty() ? loss : loss + "; " + end;
-}
-
-/// The plan of the recording; nothing if no MASCOT experiment is attached.
-std::optional<RecordingPlan> PlanIn(const McapContents& contents, const std::string& file) try {
-  return PlanOf(contents, file);
-} catch (const ConfigError&) {
-  return std::nullopt;
-}
-
 Findings Inspect(const std::string& run) {
   Findings findings;
   findings.file = FindRecording(run);
   findings.contents = ReadMcap(findings.file);
   findings.size_bytes = std::filesystem::file_size(findings.file);
-  const std::optional<RecordingPlan> plan = PlanIn(findings.contents, findings.file);
-  if (plan) findings.planned_ticks = plan->ticks;
-  const Proof proof = Prove(findings.contents, plan);
-  findings.reason = ReasonOf(findings.contents, proof, findings.planned_ticks);
-  if (findings.complete()) findings.ticks = proof.ticks;
+  findings.verdict = Judge(findings.file, findings.contents);
   return findings;
 }
 
@@ -109,10 +90,10 @@ Json ToJson(const Findings& findings) {
           {"topics", topics},
           {"attachments", attachments},
           {"metadata", contents.metadata},
-          {"ticks", OrNull(findings.ticks)},
-          {"planned_ticks", OrNull(findings.planned_ticks)},
+          {"ticks", OrNull(findings.verdict.ticks)},
+          {"planned_ticks", OrNull(findings.planned_ticks())},
           {"complete", findings.complete()},
-          {"reason", findings.reason}};
+          {"reason", findings.verdict.reason}};
 }
 
 void PrintTopics(const McapContents& contents) {
@@ -148,13 +129,12 @@ void PrintText(const Findings& findings) {
     print("metadata:", name);
     for (const auto& [key, value] : entries) print("", fmt::format("{} = {}", key, value));
   }
-  if (findings.ticks) {
-    const bool early = findings.planned_ticks && *findings.ticks < *findings.planned_ticks;
-    print("ticks:",
-          fmt::format("{}{}, recorded without a gap", *findings.ticks,
-                      early ? fmt::format(" of {}: the run ended early", *findings.planned_ticks) : std::string()));
+  if (const auto ticks = findings.verdict.ticks) {
+    const std::uint64_t planned = findings.verdict.plan->ticks;
+    print("ticks:", fmt::format("{}{}, recorded without a gap", *ticks,
+                                *ticks < planned ? fmt::format(" of {}: the run ended early", planned) : ""));
   }
-  std::cout << "complete: " << (findings.complete() ? "yes" : "no (" + findings.reason + ")") << "\n";
+  std::cout << "complete: " << (findings.complete() ? "yes" : "no (" + findings.verdict.reason + ")") << "\n";
 }
 
 int Info(const std::string& run, bool as_json) {
