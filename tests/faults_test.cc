@@ -172,6 +172,19 @@ TEST(Faults, AProcessThatWasStartedByHandLeavesWithinItsTime) {
   EXPECT_THAT(agent.err(), HasSubstr("agent_3: the DDS library does not end: leaving by force\n"));
 }
 
+TEST(Faults, NotEvenAStoppedAgentOutlivesAKilledOrchestrator) {
+  ScratchFolder folder;
+  Up up = Endless(folder);
+  ASSERT_TRUE(Flies(up));
+  const pid_t agent = up.Child("agent_2");
+  ASSERT_GT(agent, 0);
+  kill(agent, SIGSTOP);
+  up.Signal(SIGKILL);
+  EXPECT_EQ(up.Wait(), -SIGKILL);
+  EXPECT_TRUE(IsGone(agent));
+  EXPECT_TRUE(NothingIsLeft(up));
+}
+
 /// Writes an experiment whose law is this Python text. Returns its path.
 std::string Python(const ScratchFolder& folder, int agents, const std::string& text, const std::string& more = "") {
   WriteFile(folder.File("law.toml"), "[run]\nduration_s = 1.0\n[agents]\ncount = " + std::to_string(agents) +
