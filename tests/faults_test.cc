@@ -185,6 +185,24 @@ TEST(Faults, NotEvenAStoppedAgentOutlivesAKilledOrchestrator) {
   EXPECT_TRUE(NothingIsLeft(up));
 }
 
+TEST(Faults, DamagedDatagramsEndARunInWordsAndWithResultsOrNotAtAll) {
+  if (geteuid() != 0) GTEST_SKIP() << "packet sockets are not allowed here";
+  ScratchFolder folder;
+  Up up = Endless(folder, {"--set", "network.transport=udp", "--set", "run.agent_timeout_s=0.5"});
+  ASSERT_TRUE(Flies(up));
+  Running attacker(MASCOT_SOURCE_DIR "/tests/flip_bits.py", {std::to_string(DomainOf(up)), "--seed", "1"},
+                   folder.File("attacker"));
+  const pid_t pid = up.pid();
+  const auto has_ended = [&] {
+    return ReadFile("/proc/" + std::to_string(pid) + "/stat").find(") Z ") != std::string::npos;
+  };
+  ASSERT_TRUE(Until([&] { return has_ended() || attacker.Said("1000 datagrams forged"); })) << attacker.err();
+  up.Signal(SIGINT);  // in case it still flies
+  EXPECT_THAT(up.Wait(), testing::AnyOf(1, 130)) << up.err();
+  EXPECT_EQ(up.Summary()["failure"].is_null(), up.Summary()["exit"] == 130);
+  EXPECT_TRUE(NothingIsLeft(up));
+}
+
 /// Writes an experiment whose law is this Python text. Returns its path.
 std::string Python(const ScratchFolder& folder, int agents, const std::string& text, const std::string& more = "") {
   WriteFile(folder.File("law.toml"), "[run]\nduration_s = 1.0\n[agents]\ncount = " + std::to_string(agents) +
