@@ -1,5 +1,7 @@
 #include "bus/wire.h"
 
+#include <fastcdr/exceptions/Exception.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -44,7 +46,11 @@ void DeserializeAs(std::span<const std::uint8_t> bytes, typename PubSub::type& s
   payload.data = const_cast<std::uint8_t*>(bytes.data());
   payload.length = payload.max_size = static_cast<std::uint32_t>(bytes.size());
   const bool fits = fixed_size ? bytes.size() == type.m_typeSize : bytes.size() <= type.m_typeSize;
-  const bool ok = fits && type.deserialize(&payload, &sample);
+  bool ok = false;
+  try {
+    ok = fits && type.deserialize(&payload, &sample);
+  } catch (const eprosima::fastcdr::exception::Exception&) {  // for an encapsulation that it does not know
+  }
   payload.data = nullptr;
   payload.length = payload.max_size = 0;
   if (!ok) throw std::runtime_error("a sample of " + std::to_string(bytes.size()) + " bytes is no " + type.getName());

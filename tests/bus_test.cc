@@ -105,6 +105,20 @@ TEST(Wire, BytesOfAnotherLengthAreRefused) {
 
 /// Two participants in a DDS domain that only this test uses.
 class Bus : public testing::Test {
+TEST(Wire, BytesWithAnotherEncapsulationAreRefused) {
+  mascot_msgs::msg::AgentState sample;
+  std::vector<std::uint8_t> bytes;
+  Serialize(sample, bytes);
+  for (const std::size_t at : {0, 1}) {
+    std::vector<std::uint8_t> changed = bytes;
+    changed[at] = 99;
+    EXPECT_THAT([&] { Deserialize(changed, sample); },
+                ThrowsMessage<std::runtime_error>(HasSubstr("bytes is no mascot_msgs::msg::dds_::AgentState_")));
+    changed[at] = bytes[at];
+    EXPECT_EQ(changed, bytes) << "the bytes are still the caller's";
+  }
+}
+
  protected:
   DomainOptions Options(const std::string& name) const {
     DomainOptions options;

@@ -8,7 +8,9 @@
 #include "agent/laws.h"
 #include "bus/wire.h"
 #include "orchestrator/engines/row_feed.h"
+#include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/formats/mcap/records.h"
+#include "orchestrator/formats/mcap/writer.h"
 #include "orchestrator/recording/run_writer.h"
 #include "tests/call.h"
 #include "tests/mat.h"
@@ -309,6 +311,25 @@ TEST(Export, AGapInTheSequenceNumbersIsAnError) {
   const std::string path = scratch.File("run.mcap");
   WriteFile(path, {file.begin(), file.end()});
   EXPECT_EQ(ErrorOf(kFailed, {path, "--format", "csv"}), path + ": /agent_1/state: gaps in its sequence numbers: 1");
+}
+
+TEST(Export, NamesTickAndTopicOfASampleThatIsNone) {
+  const ScratchFolder scratch;
+  Fly(scratch, "run");
+  const McapContents contents = ReadMcap(scratch.File("run/run.mcap"));
+  const std::string path = scratch.File("bad.mcap");
+  McapWriter writer(path);
+  writer.Attach("config.toml", "application/toml", contents.attachments.at("config.toml"));
+  for (const auto& [id, channel] : contents.channels)
+    writer.AddChannel({channel.topic, channel.schema_name, channel.schema_text, {}});
+  ReadMcap(scratch.File("run/run.mcap"), [&](McapContents::Message message) {
+    if (message.channel == 2 && message.sequence == 7) message.data[1] = 99;  // no encapsulation that CDR knows
+    writer.Write(message.channel, message.log_time, message.data);
+  });
+  writer.Close();
+  EXPECT_THAT(ErrorOf(kFailed, {path, "--format", "csv"}),
+              testing::MatchesRegex(path + ": tick 7: /agent_1/state: a sample of [0-9]+ bytes is no "
+                                           "mascot_msgs::msg::dds_::AgentState_"));
 }
 
 TEST(Export, AnExistingFileIsReplacedOnlyWithForce) {

@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <numeric>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "orchestrator/formats/csv.h"
@@ -21,7 +23,11 @@ void ForEachStateRow(const Recording& recording, const std::function<void(std::i
   DecodedRow decoded(recording.agents());
   StateRow values(recording.agents());
   recording.ForEachRow([&](const Row& row) {
-    Decode(row, decoded);
+    try {
+      Decode(row, decoded);
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(recording.path() + ": " + error.what());
+    }
     values.Set(recording.time_s(row.tick), decoded);
     on_row(row.tick, values);
   });

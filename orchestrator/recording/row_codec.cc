@@ -1,5 +1,9 @@
 #include "orchestrator/recording/row_codec.h"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
 namespace mascot {
 namespace {
 
@@ -20,6 +24,14 @@ auto& SampleIn(AnyRow& row, const Topic& topic) {
                                              : row.clock;
 }
 
+/// Deserializes a sample of `row`. Throws std::runtime_error with tick and topic if it is none.
+template <class Sample>
+void DecodeSample(const Row& row, const Topic& topic, Sample& sample) try {
+  Deserialize(SampleIn(row, topic), sample);
+} catch (const std::runtime_error& error) {
+  throw std::runtime_error(fmt::format("tick {}: {}: {}", row.tick, topic.Name(), error.what()));
+}
+
 }  // namespace
 
 Row::Bytes& SampleOf(Row& row, const Topic& topic) { return SampleIn(row, topic); }
@@ -30,15 +42,16 @@ void Decode(const Row& row, DecodedRow& decoded) {
   mascot_msgs::msg::AgentCommand command;
   mascot_msgs::msg::AgentMessage message;
   for (std::size_t i = 0; i < decoded.motions.size(); ++i) {
-    Deserialize(row.states[i], state);
+    const int id = static_cast<int>(i) + 1;
+    DecodeSample(row, Topic::State(id), state);
     decoded.motions[i] = FromWire(state);
     decoded.messages[i].clear();
     if (!row.messages[i].empty()) {
-      Deserialize(row.messages[i], message);
+      DecodeSample(row, Topic::Message(id), message);
       decoded.messages[i].assign(message.data().begin(), message.data().end());
     }
     if (row.commands[i].empty()) continue;
-    Deserialize(row.commands[i], command);
+    DecodeSample(row, Topic::Command(id), command);
     decoded.commands[i] = FromWire(command);
   }
 }

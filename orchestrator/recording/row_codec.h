@@ -13,7 +13,7 @@ Row::Bytes& SampleOf(Row& row, const Topic& topic);
 const Row::Bytes& SampleOf(const Row& row, const Topic& topic);
 
 /// Decodes `row` into `decoded`, which holds the previous row: a command that is missing in `row` keeps its value.
-/// Throws std::runtime_error for bytes that are not a sample of the expected type.
+/// Throws std::runtime_error, with tick and topic, for bytes that are not a sample of the expected type.
 void Decode(const Row& row, DecodedRow& decoded);
 
 /// Encodes the rows of a run in one process as the bytes that separate processes would have sent.
