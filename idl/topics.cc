@@ -20,12 +20,12 @@ constexpr KindName kKinds[] = {
 constexpr std::string_view kAgentPrefix = "agent_";
 constexpr std::string_view kAgentsPrefix = "agents_";
 
-/// All of `text` as a non-negative integer; nullopt if it is something else.
+/// All of `text` as the number of an agent, 1 or more, as we write it: without sign and leading zeros.
 std::optional<int> Number(std::string_view text) {
   int number = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool is_number = error == std::errc{} && rest == text.data() + text.size() && text.front() != '-';
-  return is_number ? std::optional(number) : std::nullopt;
+  const bool is_number = error == std::errc{} && rest == text.data() + text.size() && text.front() != '0';
+  return is_number && number >= 1 ? std::optional(number) : std::nullopt;
 }
 
 std::optional<int> AgentNumber(std::string_view name) {
@@ -68,8 +68,9 @@ std::optional<Topic> Topic::Parse(std::string_view name) {
   const auto slash = name.find('/');
   const bool per_agent = slash != name.npos;
   if (per_agent) {
-    topic.agent = AgentNumber(name.substr(0, slash)).value_or(0);
-    if (topic.agent < 1) return std::nullopt;
+    const auto agent = AgentNumber(name.substr(0, slash));
+    if (!agent) return std::nullopt;
+    topic.agent = *agent;
     name.remove_prefix(slash + 1);
   }
   for (const KindName& row : kKinds)

@@ -47,14 +47,16 @@ TEST(Topic, AgentsAreNamedAndNumberedAlike) {
   EXPECT_EQ(ProcessName({1, 50}), "agents_1-50");
   for (const AgentRange agents : {AgentRange{12, 12}, AgentRange{1, 50}, AgentRange{9999, 10000}})
     EXPECT_EQ(AgentsOf(ProcessName(agents)), agents);
-  for (const char* name : {"agent_", "agent_x", "agent_1x", "agent_-1", "agents_", "agents_3", "agents_-3", "agents_3-",
-                           "agents_3-3", "agents_5-3", "agents_1-x", "agents_1--2", "recorder", ""})
+  for (const char* name :
+       {"agent_", "agent_x", "agent_1x", "agent_-1", "agents_", "agents_3", "agents_-3", "agents_3-", "agents_3-3",
+        "agents_5-3", "agents_1-x", "agents_1--2", "agent_0", "agent_03", "agents_0-3", "agents_1-03", "recorder", ""})
     EXPECT_EQ(AgentsOf(name), std::nullopt) << name;
 }
 
 TEST(Topic, IsNotParsedFromForeignNames) {
-  for (const char* name : {"", "rt", "rt/", "/", "/agent_/state", "/agent_0/state", "/agent_-1/state", "/agent_3",
-                           "/agent_3/", "/agent_3/clock", "/state", "/agent_3/state2", "/tf", "rt/agent_x/state"})
+  for (const char* name :
+       {"", "rt", "rt/", "/", "/agent_/state", "/agent_0/state", "/agent_03/state", "/agent_-1/state", "/agent_3",
+        "/agent_3/", "/agent_3/clock", "/state", "/agent_3/state2", "/tf", "rt/agent_x/state"})
     EXPECT_EQ(Topic::Parse(name), std::nullopt) << name;
 }
 
@@ -103,8 +105,6 @@ TEST(Wire, BytesOfAnotherLengthAreRefused) {
       ThrowsMessage<std::runtime_error>(HasSubstr("a sample of 3 bytes is no mascot_msgs::msg::dds_::AgentState_")));
 }
 
-/// Two participants in a DDS domain that only this test uses.
-class Bus : public testing::Test {
 TEST(Wire, BytesWithAnotherEncapsulationAreRefused) {
   mascot_msgs::msg::AgentState sample;
   std::vector<std::uint8_t> bytes;
@@ -119,6 +119,8 @@ TEST(Wire, BytesWithAnotherEncapsulationAreRefused) {
   }
 }
 
+/// Two participants in a DDS domain that only this test uses.
+class Bus : public testing::Test {
  protected:
   DomainOptions Options(const std::string& name) const {
     DomainOptions options;
