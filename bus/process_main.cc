@@ -116,7 +116,7 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
   std::signal(SIGPIPE, SIG_IGN);  // clean up even if stderr is the pipe of a dead orchestrator
   close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);  // what a law starts is no process of the run (Janitor)
   if (args.parent != 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);  // it may be stopped, or hang in a law or in Fast DDS; the Janitor sweeps
+    prctl(PR_SET_PDEATHSIG, SIGKILL);        // it may be stopped, or hang in a law or in Fast DDS; the Janitor sweeps
     if (getppid() != args.parent) return 1;  // the orchestrator died before this line
   }
   args.options.name = args.is_agent ? ProcessName(args.agents) : "physics_server";

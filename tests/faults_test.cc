@@ -1,14 +1,13 @@
 // Faults in runs over DDS, with the real processes: each is detected, reported by name, and cleaned up after.
 
-#include <fcntl.h>
 #include <gmock/gmock.h>
-#include <sys/file.h>
 
 #include <cstring>
 
 #include "bus/bus.h"
 #include "bus/shared_memory.h"
 #include "bus/wire.h"
+#include "orchestrator/engines/dds/domain_lock.h"
 #include "orchestrator/formats/mcap/reader.h"
 #include "tests/orchestrator.h"
 #include "tests/param_name.h"
@@ -106,12 +105,12 @@ TEST(Faults, NobodyOutlivesAKilledOrchestrator) {
   EXPECT_FALSE(recording.complete);
 }
 
-/// Whether nobody holds the lock of a DDS domain.
-bool IsFree(int domain) {
-  const int file = open(("/tmp/mascot-domains/" + std::to_string(domain)).c_str(), O_RDONLY | O_CLOEXEC);
-  const bool free = flock(file, LOCK_EX | LOCK_NB) == 0;
-  close(file);
-  return free;
+/// Whether no run holds the lock of a DDS domain.
+bool IsFree(int domain) try {
+  const DomainLock lock(domain);
+  return true;
+} catch (const std::runtime_error&) {
+  return false;
 }
 
 /// A moment of a run: `file` of its results, or what it prints, has `text`.
