@@ -10,7 +10,6 @@ first moment to its last, and sometimes just after it has ended.
 """
 
 import argparse
-import fcntl
 import os
 import pathlib
 import random
@@ -24,7 +23,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CONFIG = ROOT / "configs/leaderless.toml"
 SHARED_MEMORY = pathlib.Path("/dev/shm")
-LOCKS = pathlib.Path("/tmp/mascot-domains")
+SOCKETS = pathlib.Path("/proc/net/unix")
 DEADLINE_S = 30.0  # what still lives then is left behind
 
 
@@ -54,14 +53,9 @@ def processes():
 
 
 def locked_domains():
-    locked = []
-    for path in LOCKS.iterdir():
-        with path.open() as file:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                locked.append(path.name)
-    return locked
+    """Names of the sockets by which runs reserve domains (DomainLock)."""
+    words = (line.split() for line in SOCKETS.read_text().splitlines())
+    return sorted({word[-1] for word in words if word[-1].startswith("@mascot-domain-")})
 
 
 def kill_one(dice, span, programs):
@@ -116,7 +110,7 @@ def main():
     args = arguments()
     if os.environ.get("MASCOT_KILLS_ALONE") is None:
         os.environ["MASCOT_KILLS_ALONE"] = "yes"
-        mounts = "mount -t tmpfs tmpfs /dev/shm && mount -t tmpfs tmpfs /tmp && mkdir -p /tmp/mascot-domains"
+        mounts = "mount -t tmpfs tmpfs /dev/shm && mount -t tmpfs tmpfs /tmp"
         here = ["sh", "-c", mounts + ' && exec "$@"', "sh", sys.executable, *sys.argv]
         os.execvp("unshare", ["unshare", "--mount", "--net", "--pid", "--fork", "--mount-proc", *here])
     subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
