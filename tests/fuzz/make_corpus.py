@@ -1,0 +1,155 @@
+#!/usr/bin/python3
+"""Makes tests/fuzz/corpus/ again: small inputs from which the fuzzers start. Recordings are written by hand, without
+compression and checksums, so that a changed byte reaches what is behind them; one is of a real run.
+
+  tests/fuzz/make_corpus.py [FOLDER OF orchestrator]"""
+
+import pathlib
+import random
+import struct
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+CORPUS = ROOT / "tests/fuzz/corpus"
+MAGIC = b"\x89MCAP0\r\n"
+HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK = range(1, 7)
+ATTACHMENT, STATISTICS, METADATA, DATA_END = 9, 11, 12, 15
+CDR = b"\x00\x01\x00\x00"  # encapsulation: little endian
+
+CONFIG = b"""format = 1
+[run]
+name = "seed"
+duration_s = 0.02
+mode = "lockstep"
+[agents]
+count = 1
+[control]
+rate_hz = 100
+[record]
+topics = ["/agent_*", "/clock"]
+"""
+
+
+# --- samples ----------------------------------------------------------------------------------------------
+
+
+def head(tick, agent=1):
+    return struct.pack("<iIQI", 0, tick * 10_000_000, tick, agent)
+
+
+def state(tick):
+    return head(tick) + bytes(4) + struct.pack("<16d", 1, 2, 3, 0, 0, 0, 1, *[0.5] * 9)
+
+
+def command(tick):
+    return head(tick) + struct.pack("<I10d", 1, *[0.25] * 10)
+
+
+def message(tick):
+    return head(tick) + struct.pack("<I2d", 2, 1.5, 2.5)
+
+
+def clock(tick):
+    return struct.pack("<iI", 0, tick * 10_000_000)
+
+
+def text(value):
+    data = value.encode() + b"\0"
+    return struct.pack("<I", len(data)) + data + bytes(-len(data) % 4)
+
+
+def status():
+    return text("agents_1-3") + struct.pack("<IB7xQQ6dQQQ", 1, 2, 5, 0, *[0.0] * 6, 0, 0, 0) + text("why")
+
+
+def samples():
+    """By the first byte, the type in the order of tests/fuzz/samples.cc."""
+    bundle = struct.pack("<II", 1, 0) + state(3)
+    request = b"\x01\0\0\0" + text("stop")
+    experiment = text("seed") + text(CONFIG.decode())
+    bodies = [state(3), command(3), message(3), clock(3), status(), bundle, request, experiment]
+    return {f"{kind}_{k}": bytes([k]) + CDR + body
+            for k, (kind, body) in enumerate(zip("state command message clock status bundle request experiment".split(), bodies))}
+
+
+# --- recordings -------------------------------------------------------------------------------------------
+
+
+def string(data):
+    data = data if isinstance(data, bytes) else data.encode()
+    return struct.pack("<I", len(data)) + data
+
+
+def record(op, body):
+    return struct.pack("<BQ", op, len(body)) + body
+
+
+def announcements():
+    schema = struct.pack("<H", 1) + string("test_msgs/msg/Any") + string("ros2msg") + string("uint64 n\n")
+    channels = b"".join(
+        record(CHANNEL, struct.pack("<HH", k, 1) + string(topic) + string("cdr") + string(b""))
+        for k, topic in enumerate(["/agent_1/command", "/agent_1/state", "/clock"], 1))
+    return record(SCHEMA, schema) + channels
+
+
+def messages():
+    return b"".join(
+        record(MESSAGE, struct.pack("<HIQQ", channel, tick, tick * 10_000_000, tick * 10_000_000) + CDR + body)
+        for tick in range(3)
+        for channel, body in enumerate([command(tick), state(tick), clock(tick)], 1))
+
+
+def recording(chunked):
+    config = struct.pack("<QQ", 0, 0) + string("config.toml") + string("application/toml")
+    config += struct.pack("<Q", len(CONFIG)) + CONFIG + bytes(4)
+    about = string("mascot") + string(string("format") + string("1"))
+    out = MAGIC + record(HEADER, string("ros2") + string("seed"))
+    out += record(ATTACHMENT, config) + record(METADATA, about)
+    inner = announcements() + messages()
+    if chunked:
+        head_of_chunk = struct.pack("<QQQI", 0, 20_000_000, len(inner), 0) + string(b"") + struct.pack("<Q", len(inner))
+        inner = record(CHUNK, head_of_chunk + inner)
+    out += inner + record(DATA_END, bytes(4))
+    counts = b"".join(struct.pack("<HQ", channel, 3) for channel in (1, 2, 3))
+    statistics = struct.pack("<QHIIIIQQ", 9, 1, 3, 1, 1, chunked, 0, 20_000_000) + string(counts)
+    # A summary must index every chunk; this one has only the statistics, so a chunked file is damaged at its end.
+    return out + record(STATISTICS, statistics) + record(FOOTER, struct.pack("<QQI", len(out), 0, 0)) + MAGIC
+
+
+def real_recording(programs):
+    """Of one agent, for three ticks."""
+    with tempfile.TemporaryDirectory() as folder:
+        config = pathlib.Path(folder) / "seed.toml"
+        config.write_text("[run]\nduration_s = 0.02\n[agents]\ncount = 1\nmodel = 'double_integrator'\n[graph]\n"
+                          "edges = []\n[law]\nname = 'waypoint'\nwaypoints_m = [[1, 1, 1]]\n")
+        subprocess.run([programs / "orchestrator", "up", config, "--engine", "inprocess", "--out", f"{folder}/run",
+                        "--quiet", "--set", "output.save_plot=false"], check=True)
+        return (pathlib.Path(folder) / "run/run.mcap").read_bytes()
+
+
+def recordings(programs):
+    whole = recording(chunked=False)
+    return {"loose": whole, "chunked": recording(chunked=True), "cut": whole[:len(whole) // 2],
+            "real": real_recording(programs)}
+
+
+# --- events of protocols ----------------------------------------------------------------------------------
+
+
+def protocols():
+    """By the first byte, the object in the order of tests/fuzz/protocols.cc; then any events."""
+    return {f"events_{k}": bytes([k]) + random.Random(k).randbytes(256) for k in range(7)}
+
+
+def main():
+    programs = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release")
+    for name, files in [("samples", samples()), ("recording", recordings(programs)), ("protocols", protocols())]:
+        (CORPUS / name).mkdir(parents=True, exist_ok=True)
+        for file, data in files.items():
+            (CORPUS / name / file).write_bytes(data)
+
+
+if __name__ == "__main__":
+    main()

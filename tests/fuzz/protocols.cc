@@ -1,0 +1,257 @@
+// Fuzzer: any order of any events, at the plain objects that take samples from the wire. What they answer keeps their
+// promises. The first byte chooses the object, the rest is its events.
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "agent/tick_inbox.h"
+#include "bus/wire.h"
+#include "orchestrator/engines/dds/roster.h"
+#include "orchestrator/engines/dds/row_window.h"
+#include "orchestrator/engines/dds/run_phases.h"
+#include "orchestrator/recording/row_assembler.h"
+#include "physics_server/start_roll.h"
+#include "physics_server/tick_protocol.h"
+#include "tests/fuzz/fuzz.h"
+
+namespace mascot {
+namespace {
+
+using Events = FuzzedDataProvider;
+using Time = std::chrono::steady_clock::time_point;
+
+constexpr std::int64_t kLastTick = 1'000'000'000;  // of any experiment
+
+/// Mostly a tick that could be, sometimes any number.
+std::int64_t SomeTick(Events& events, std::int64_t around) {
+  const std::int64_t next = std::clamp<std::int64_t>(around, -1, kLastTick);
+  return events.ConsumeBool() ? next + events.ConsumeIntegralInRange<std::int64_t>(-3, 3)
+                              : events.ConsumeIntegral<std::int64_t>();
+}
+
+/// As SomeTick, but one that a run has: what others say is checked before it becomes a View.
+std::int64_t TickOfRun(Events& events, std::int64_t around) {
+  return std::clamp<std::int64_t>(SomeTick(events, around), -1, kLastTick);
+}
+
+/// A time that does not go back.
+void Pass(Events& events, Time& now) { now += std::chrono::milliseconds(events.ConsumeIntegralInRange<int>(0, 3000)); }
+
+void FuzzTickInbox(Events& events) {
+  const bool realtime = events.ConsumeBool();
+  const std::vector<TickInbox::Peer> peers = {{2, events.ConsumeBool()}, {3, events.ConsumeBool()}};
+  TickInbox inbox(1, peers, realtime);
+  std::int64_t answered = -1;
+  const auto judge = [&](const std::optional<TickInbox::CompleteTick>& complete) {
+    if (!complete) return;
+    Require(complete->tick > answered && complete->self != nullptr && complete->samples.size() == peers.size(),
+            "a tick was complete twice, or incompletely");
+    answered = complete->tick;
+    for (const Sample& sample : complete->samples) {
+      Require(sample.motion != nullptr, "a sample without a motion");
+      Require(std::ranges::all_of(sample.message, [](double number) { return number == 7; }), "a message of nobody");
+    }
+  };
+  const std::vector<double> data(events.ConsumeIntegralInRange<std::size_t>(0, 64), 7.0);
+  while (events.remaining_bytes() > 0) {
+    const auto source = events.ConsumeIntegralInRange<std::size_t>(0, 2);
+    const std::int64_t tick = SomeTick(events, answered);
+    const int kind = events.ConsumeIntegralInRange<int>(0, 2);
+    if (kind == 0) judge(inbox.OnState(source, tick, Motion()));
+    if (kind == 1 && source > 0) judge(inbox.OnMessage(source, tick, data));
+    if (kind != 2) continue;
+    std::vector<TickInbox::State> bundle(events.ConsumeIntegralInRange<std::size_t>(0, 4));
+    for (std::size_t k = 0; k < bundle.size(); ++k)
+      bundle[k] = {
+          .agent = events.ConsumeBool() ? static_cast<std::uint32_t>(k + 1) : events.ConsumeIntegral<std::uint32_t>(),
+          .tick = SomeTick(events, tick)};
+    try {
+      judge(inbox.OnBundle(bundle));
+    } catch (const std::runtime_error&) {  // not what this agent may hear
+    }
+  }
+}
+
+void FuzzTickProtocol(Events& events) {
+  TickProtocol::Rules rules{.agents = 3, .last_tick = events.ConsumeIntegralInRange<std::int64_t>(0, 20)};
+  if (events.ConsumeBool()) rules.period_s = 0.01;
+  rules.agent_timeout_s = 5;
+  rules.recorder_window = 4;
+  TickProtocol protocol(rules);
+  Time now{};
+  std::int64_t tick = 0, published = -1, recorded = 0;
+  const auto carry_out = [&](const TickProtocol::Actions& actions) {
+    if (actions.step) Require(++tick <= rules.last_tick, "stepped beyond the last tick");
+    if (actions.publish) {
+      Require(published == tick - 1, "published a tick twice, or left one out");
+      published = tick;
+    }
+    Require(protocol.published() == published, "published what it did not ask for");
+    Require(published < recorded + rules.recorder_window, "published what the recorder has no room for");
+  };
+  while (events.remaining_bytes() > 0) {
+    const bool stop = events.ConsumeProbability<double>() < 0.02;
+    switch (events.ConsumeIntegralInRange<int>(0, 3)) {
+      case 0:
+        if (published < 0) carry_out(protocol.Start());
+        break;
+      case 1:
+        recorded = events.ConsumeBool() ? published + 1 : recorded;
+        carry_out(protocol.OnRecorded(recorded));
+        break;
+      case 2:
+        carry_out(protocol.OnCommand(events.ConsumeIntegralInRange<int>(1, 3), SomeTick(events, published), stop));
+        break;
+      default: {
+        Pass(events, now);
+        const TickProtocol::Turn turn = protocol.Look(now, stop);
+        if (!turn.failure.empty()) return;
+        carry_out(turn.actions);
+      }
+    }
+  }
+}
+
+void FuzzStartRoll(Events& events) {
+  StartRoll roll(events.ConsumeIntegralInRange<int>(1, 5), 10);
+  Time now{};
+  roll.Begin(now);
+  while (events.remaining_bytes() > 0) {
+    roll.OnAgents({events.ConsumeIntegral<int>(), events.ConsumeIntegral<int>()}, events.ConsumeBool());
+    roll.OnRecorder(events.ConsumeBool());
+    Pass(events, now);
+    if (roll.Look(now, events.ConsumeBool()) == StartRoll::Next::kFail)
+      Require(!roll.Failure().empty(), "failed without a reason");
+  }
+}
+
+void FuzzRowWindow(Events& events) {
+  const std::vector<Topic> topics = {Topic::Command(1), Topic::State(1), Topic::Message(2), Topic::State(2),
+                                     Topic::Clock()};
+  RowWindow window({.topics = topics,
+                    .agents = 2,
+                    .last_tick = 50,
+                    .realtime = events.ConsumeBool(),
+                    .ticks = 8,
+                    .patience = 4,
+                    .batch = 2});
+  std::vector<std::int64_t> sequences(topics.size(), 0);
+  Row row(2);
+  try {
+    while (events.remaining_bytes() > 0) {
+      const auto index = events.ConsumeIntegralInRange<std::size_t>(0, topics.size() - 1);
+      const std::int64_t sequence = events.ConsumeProbability<double>() < 0.95
+                                        ? ++sequences[index]
+                                        : events.ConsumeIntegralInRange<std::int64_t>(1, INT64_MAX);
+      window.Take(index, std::max<std::int64_t>(SomeTick(events, window.rows()), 0), std::vector<std::uint8_t>(3),
+                  sequence);
+      const std::int64_t rows = window.rows();
+      if (window.Next(events.ConsumeBool(), row)) Require(row.tick == rows && window.rows() == rows + 1, "a row twice");
+    }
+  } catch (const std::runtime_error&) {  // a sample is missing, or too far ahead
+  }
+}
+
+void FuzzRowAssembler(Events& events) {
+  constexpr int kRate = 100;
+  const std::int64_t ticks = events.ConsumeIntegralInRange<std::int64_t>(1, 10);
+  std::int64_t rows = 0;
+  RowAssembler assembler({"fuzz.mcap", 2, kRate, ticks, events.ConsumeBool()},
+                         [&](const Row& row) { Require(row.tick == rows++, "a row twice, or left out"); });
+  const Topic topics[] = {Topic::Command(1), Topic::State(1), Topic::Command(2), Topic::State(2)};
+  for (std::size_t k = 0; k < std::size(topics); ++k) assembler.AddChannel(static_cast<std::uint16_t>(k), topics[k]);
+  McapContents::Message message;
+  message.data.resize(3);
+  try {
+    while (events.remaining_bytes() > 0) {
+      message.channel = events.ConsumeIntegralInRange<std::uint16_t>(0, std::size(topics));
+      message.log_time = events.ConsumeBool() ? StampNs(rows + events.ConsumeIntegralInRange<int>(0, 1), kRate)
+                                              : events.ConsumeIntegral<std::uint64_t>();
+      assembler.Take(message);
+    }
+    assembler.Finish();
+    Require(rows == ticks, "ended with rows missing");
+  } catch (const std::runtime_error&) {  // a tick is missing
+  }
+}
+
+void FuzzRoster(Events& events) {
+  Roster roster({.processes = {"physics_server", "agent_1", "agent_2"}, .external = {false, true}});
+  Time now{};
+  while (events.remaining_bytes() > 0) {
+    Roster::Status status;
+    const char* const names[] = {"physics_server", "agent_1", "agent_2", ""};
+    const std::string name = events.PickValueInArray(names);
+    const std::string process = name.empty() ? events.ConsumeRandomLengthString(64) : name;
+    status.process(process.c_str());
+    status.agent(events.ConsumeIntegral<std::uint32_t>());
+    status.state(events.ConsumeIntegral<std::uint8_t>());
+    try {
+      roster.OnStatus(status);
+    } catch (const std::runtime_error&) {  // an external agent failed
+    }
+    Require(roster.Of(status.process().to_string()).has_value(), "a status was forgotten");
+    Pass(events, now);
+    roster.IsTimeToHandOut(now);
+    roster.IsTimeForHello(now);
+    roster.Missing();
+  }
+}
+
+void FuzzRunPhases(Events& events) {
+  RunPhases phases({.start_timeout_s = 10,
+                    .agent_timeout_s = 5,
+                    .period_s = events.ConsumeBool() ? 0.01 : 0,
+                    .violation = [] { return std::string(); },
+                    .missing = [] { return std::string("agent_1"); },
+                    .last_lines = [](const std::string&) { return std::vector<std::string>{"its last words"}; }},
+                   Time{});
+  Time now{};
+  RunPhases::Phase phase = phases.phase();
+  RunPhases::View view;
+  while (events.remaining_bytes() > 0) {
+    Pass(events, now);
+    view.rows += events.ConsumeIntegralInRange<int>(0, 3);
+    view.newest_tick = TickOfRun(events, view.rows);
+    view.everybody_found = events.ConsumeBool();
+    view.reported = events.ConsumeBool();
+    view.gave_up = phases.gives_up(now);
+    if (events.ConsumeBool()) view.last_tick = TickOfRun(events, view.rows - 1);
+    switch (events.ConsumeIntegralInRange<int>(0, 5)) {
+      case 0:
+        phases.OnSignal(events.ConsumeBool() ? 2 : 15, now);
+        break;
+      case 1:
+        phases.OnExits(
+            {{"agent_1", events.ConsumeBool() ? std::optional(events.ConsumeIntegral<int>()) : std::nullopt, "exited"}},
+            now);
+        break;
+      case 2:
+        phases.Fail("because");
+        break;
+      case 3:
+        if (phases.phase() == RunPhases::Phase::kCollecting) phases.Collected(view, now);
+        break;
+      default:
+        phases.Look(view, now);
+    }
+    Require(phases.phase() >= phase, "a phase came back");
+    phase = phases.phase();
+  }
+}
+
+constexpr void (*kFuzz[])(Events& events) = {FuzzTickInbox,    FuzzTickProtocol, FuzzStartRoll, FuzzRowWindow,
+                                             FuzzRowAssembler, FuzzRoster,       FuzzRunPhases};
+
+}  // namespace
+}  // namespace mascot
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  mascot::Events events(data + 1, size - 1);
+  mascot::kFuzz[data[0] % std::size(mascot::kFuzz)](events);
+  return 0;
+}
