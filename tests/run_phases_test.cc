@@ -312,6 +312,13 @@ TEST_F(RunPhasesTest, TheFirstFailureIsTheReason) {
   EXPECT_EQ(phases_.phase(), Phase::kCollecting);
 }
 
+TEST_F(RunPhasesTest, AFailureWithoutAWordIsAFailureNevertheless) {
+  Fly();
+  phases_.Fail("");
+  EXPECT_EQ(phases_.failure(), "something failed without a word");
+  EXPECT_FALSE(phases_.in_order());
+}
+
 TEST_F(RunPhasesTest, AChildThatEndedBeforeTheFailureIsTheReason) {
   Fly();
   Exits("agent_1", 139, "exited with code 139");

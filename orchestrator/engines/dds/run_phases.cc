@@ -61,7 +61,9 @@ void RunPhases::Finish() { phase_ = std::max(phase_, Phase::kCollecting); }
 void RunPhases::Note(const std::string& why) {
   if (!failure_.empty()) return;
   const std::string violation = rules_.violation();
-  failure_ = violation.empty() ? why : DiffersFromTheGraph(violation);
+  failure_ = !violation.empty() ? DiffersFromTheGraph(violation)
+             : !why.empty()     ? why
+                                : "something failed without a word";
 }
 
 void RunPhases::OnViolation(const std::string& violation) {
