@@ -27,10 +27,12 @@ std::map<int, std::vector<Node::Listener>> Node::Listeners(bool own) const {
 void Node::ListenToStates(Domain& domain) {
   for (auto& [id, listeners] : Listeners(/*own=*/true))
     readers_.push_back(std::make_unique<Reader<StateType>>(
-        domain, Topic::State(id), [listeners = std::move(listeners)](const mascot_msgs::msg::AgentState& state) {
+        domain, Topic::State(id),
+        [topic = Topic::State(id), last = experiment_.ticks(),
+         listeners = std::move(listeners)](const mascot_msgs::msg::AgentState& state) {
+          const std::int64_t tick = CheckedTick(topic, state.agent(), state.tick(), last);
           const Motion motion = FromWire(state);
-          for (const Listener& listener : listeners)
-            listener.seat->OnState(listener.source, static_cast<std::int64_t>(state.tick()), motion);
+          for (const Listener& listener : listeners) listener.seat->OnState(listener.source, tick, motion);
         }));
 }
 
@@ -45,10 +47,12 @@ void Node::ListenToMessages(Domain& domain) {
   for (auto& [id, listeners] : Listeners(/*own=*/false)) {
     if (!experiment_.agent(id).sends_messages) continue;
     readers_.push_back(std::make_unique<Reader<MessageType>>(
-        domain, Topic::Message(id), [listeners = std::move(listeners)](const mascot_msgs::msg::AgentMessage& message) {
+        domain, Topic::Message(id),
+        [topic = Topic::Message(id), last = experiment_.ticks(),
+         listeners = std::move(listeners)](const mascot_msgs::msg::AgentMessage& message) {
+          const std::int64_t tick = CheckedTick(topic, message.agent(), message.tick(), last);
           const std::span<const double> data(message.data().begin(), message.data().end());
-          for (const Listener& listener : listeners)
-            listener.seat->OnMessage(listener.source, static_cast<std::int64_t>(message.tick()), data);
+          for (const Listener& listener : listeners) listener.seat->OnMessage(listener.source, tick, data);
         }));
   }
 }

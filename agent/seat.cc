@@ -45,8 +45,11 @@ void Seat::OnMessage(std::size_t source, std::int64_t tick, std::span<const doub
 void Seat::OnBundle(const mascot_msgs::msg::AgentBundle& bundle) {
   const std::lock_guard lock(mutex_);
   states_.clear();
-  for (const mascot_msgs::msg::AgentState& state : bundle.states())
-    states_.push_back({state.agent(), static_cast<std::int64_t>(state.tick()), FromWire(state)});
+  for (const mascot_msgs::msg::AgentState& state : bundle.states()) {
+    const Topic topic = Topic::State(static_cast<int>(state.agent()));
+    states_.push_back(
+        {state.agent(), CheckedTick(topic, state.agent(), state.tick(), experiment_.ticks()), FromWire(state)});
+  }
   if (const auto complete = inbox_.OnBundle(states_)) Answer(*complete);
 }
 

@@ -2,11 +2,13 @@
 
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 
+#include <algorithm>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
+#include <set>
 #include <utility>
 
 #include "bus/wire.h"
@@ -48,8 +50,9 @@ dds::DomainParticipant* CreateParticipant(const DomainOptions& options, dds::Dom
 
 // --- Domain -------------------------------------------------------------------------------------------
 
-Domain::Domain(const DomainOptions& options, std::function<void()> wake, dds::DomainParticipantListener* discovery)
-    : wake_(std::move(wake)) {
+Domain::Domain(const DomainOptions& options, std::function<void()> wake, Peers* peers,
+               dds::DomainParticipantListener* discovery)
+    : wake_(std::move(wake)), peers_(peers) {
   DisableIntraprocessDelivery();
   participant_ =
       Own<dds::DomainParticipant>(CreateParticipant(options, discovery),
@@ -88,15 +91,67 @@ Handle<dds::Topic> Domain::MakeTopic(const Topic& topic, dds::TypeSupport type) 
                          [participant](auto* made) { participant->delete_topic(made); });
 }
 
+// --- who is matched -----------------------------------------------------------------------------------
+
+namespace {
+
+using Guid = eprosima::fastrtps::rtps::GUID_t;
+
+/// The endpoints that one of ours is matched with.
+class Matches {
+ public:
+  template <class Status>
+  void OnChange(const Status& status, const eprosima::fastrtps::rtps::InstanceHandle_t& endpoint) {
+    const Guid guid = eprosima::fastrtps::rtps::iHandle2GUID(endpoint);
+    const std::lock_guard lock(mutex_);
+    number_ = status.current_count;
+    if (status.current_count_change > 0) endpoints_.insert(guid);
+    if (status.current_count_change < 0) endpoints_.erase(guid);
+  }
+  /// All of them.
+  int Number() const {
+    const std::lock_guard lock(mutex_);
+    return number_;
+  }
+  /// Number of processes, where `process_of` names the process of an endpoint, or nothing if it does not count.
+  template <class ProcessOf>
+  int Processes(const ProcessOf& process_of) const {
+    const std::lock_guard lock(mutex_);
+    std::set<std::string> processes;
+    for (const Guid& guid : endpoints_)
+      if (std::string process = process_of(guid.guidPrefix); !process.empty()) processes.insert(std::move(process));
+    // If two endpoints come at the same moment, Fast DDS may name one of them twice and the other not at all.
+    return static_cast<int>(std::ssize(processes) + std::max<std::ptrdiff_t>(number_ - std::ssize(endpoints_), 0));
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::ptrdiff_t number_ = 0;
+  std::set<Guid> endpoints_;
+};
+
+}  // namespace
+
 // --- writers ------------------------------------------------------------------------------------------
 
 class WriterBase::Listener : public dds::DataWriterListener {
  public:
   explicit Listener(Domain& domain) : domain_(domain) {}
-  void on_publication_matched(dds::DataWriter*, const dds::PublicationMatchedStatus&) override { domain_.Wake(); }
+
+  void on_publication_matched(dds::DataWriter*, const dds::PublicationMatchedStatus& status) override {
+    matches_.OnChange(status, status.last_subscription_handle);
+    domain_.Wake();
+  }
+
+  int matched() const {
+    const Peers* peers = domain_.peers_;
+    if (peers == nullptr) return matches_.Number();
+    return matches_.Processes([peers](const Peers::GuidPrefix& reader) { return peers->ProcessOf(reader); });
+  }
 
  private:
   Domain& domain_;
+  Matches matches_;
 };
 
 WriterBase::WriterBase(Domain& domain, const Topic& topic, dds::TypeSupport type)
@@ -112,11 +167,7 @@ WriterBase::WriterBase(Domain& domain, const Topic& topic, dds::TypeSupport type
 
 WriterBase::~WriterBase() = default;
 
-int WriterBase::matched() const {
-  dds::PublicationMatchedStatus status;
-  writer_->get_publication_matched_status(status);
-  return status.current_count;
-}
+int WriterBase::matched() const { return listener_->matched(); }
 
 void WriterBase::AwaitReaders(std::chrono::milliseconds timeout) {
   writer_->wait_for_acknowledgments(eprosima::fastrtps::Duration_t(1e-3L * timeout.count()));
@@ -130,29 +181,54 @@ void WriterBase::WriteAny(void* sample) {
 
 class ReaderBase::Listener : public dds::DataReaderListener {
  public:
-  Listener(Domain& domain, void* sample, std::function<void(std::int64_t)> on_sample)
-      : domain_(domain), sample_(sample), on_sample_(std::move(on_sample)) {}
+  Listener(Domain& domain, const Topic& topic, OnBytes on_bytes)
+      : domain_(domain), topic_(topic), on_bytes_(std::move(on_bytes)) {}
 
-  void on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus&) override { domain_.Wake(); }
+  void on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus& status) override {
+    matches_.OnChange(status, status.last_publication_handle);
+    domain_.Wake();
+  }
 
   void on_data_available(dds::DataReader* reader) override try {
     dds::SampleInfo info;
-    while (reader->take_next_sample(sample_, &info) == ReturnCode_t::RETCODE_OK)
-      if (info.valid_data) on_sample_(info.sample_identity.sequence_number().to64long());
+    while (reader->take_next_sample(&bytes_, &info) == ReturnCode_t::RETCODE_OK)
+      if (info.valid_data && IsBelieved(info.sample_identity.writer_guid()))
+        on_bytes_(bytes_, {.process = process_,
+                           .sequence = static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long())});
   } catch (...) {
     domain_.Fail(std::current_exception());
   }
 
+  int matched() const {
+    const Peers* peers = domain_.peers_;
+    if (peers == nullptr) return matches_.Number();
+    return matches_.Processes([&](const Peers::GuidPrefix& writer) { return peers->WriterOf(topic_, writer); });
+  }
+
  private:
+  /// Whether to take samples of this writer. Notes it, and its process.
+  bool IsBelieved(const Guid& writer) {
+    if (domain_.peers_ == nullptr || writer == writer_) return true;
+    std::string process = domain_.peers_->Believe(topic_, writer.guidPrefix);
+    const bool is_second = HasOneWriter(topic_) && !process_.empty();
+    if (process.empty() || is_second) return false;
+    writer_ = writer;
+    process_ = std::move(process);
+    return true;
+  }
+
   Domain& domain_;
-  void* sample_;
-  std::function<void(std::int64_t)> on_sample_;
+  const Topic topic_;
+  const OnBytes on_bytes_;
+  Matches matches_;
+  Bytes bytes_;          // of the sample just taken
+  Guid writer_;          // of the last sample that was believed
+  std::string process_;  // whose writer that is
 };
 
 ReaderBase::ReaderBase(Domain& domain, const Topic& topic, dds::TypeSupport type, const dds::DataReaderQos& qos,
-                       void* sample, std::function<void(std::int64_t)> on_sample)
-    : listener_(std::make_unique<Listener>(domain, sample, std::move(on_sample))),
-      topic_(domain.MakeTopic(topic, type)) {
+                       OnBytes on_bytes)
+    : listener_(std::make_unique<Listener>(domain, topic, std::move(on_bytes))), topic_(domain.MakeTopic(topic, type)) {
   auto* subscriber = domain.subscriber_.get();
   const dds::StatusMask mask = dds::StatusMask::subscription_matched() << dds::StatusMask::data_available();
   reader_ = Own<dds::DataReader>(subscriber->create_datareader(topic_.get(), qos, listener_.get(), mask),
@@ -164,10 +240,10 @@ ReaderBase::ReaderBase(Domain& domain, const Topic& topic, dds::TypeSupport type
 
 ReaderBase::~ReaderBase() = default;
 
-int ReaderBase::matched() const {
-  dds::SubscriptionMatchedStatus status;
-  reader_->get_subscription_matched_status(status);
-  return status.current_count;
+int ReaderBase::matched() const { return listener_->matched(); }
+
+void ThrowNoSample(const Topic& topic, std::size_t bytes, const std::string& type) {
+  throw std::runtime_error(topic.Name() + ": a sample of " + std::to_string(bytes) + " bytes is no " + type);
 }
 
 // --- raw bytes ----------------------------------------------------------------------------------------
@@ -184,25 +260,21 @@ class RawType : public dds::TopicDataType {
   }
   bool serialize(void*, SerializedPayload_t*) override { return false; }  // read only
   bool deserialize(SerializedPayload_t* payload, void* data) override {
-    static_cast<RawReader::Bytes*>(data)->assign(payload->data, payload->data + payload->length);
+    static_cast<ReaderBase::Bytes*>(data)->assign(payload->data, payload->data + payload->length);
     return true;
   }
   std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return [data] { return static_cast<std::uint32_t>(static_cast<RawReader::Bytes*>(data)->size()); };
+    return [data] { return static_cast<std::uint32_t>(static_cast<ReaderBase::Bytes*>(data)->size()); };
   }
-  void* createData() override { return new RawReader::Bytes; }
-  void deleteData(void* data) override { delete static_cast<RawReader::Bytes*>(data); }
+  void* createData() override { return new ReaderBase::Bytes; }
+  void deleteData(void* data) override { delete static_cast<ReaderBase::Bytes*>(data); }
   bool getKey(void*, eprosima::fastrtps::rtps::InstanceHandle_t*, bool) override { return false; }
 };
 
 }  // namespace
 
-RawReader::RawReader(Domain& domain, const Topic& topic, Callback on_sample)
-    : RawReader(domain, topic, std::move(on_sample), std::make_shared<Bytes>()) {}
-
-RawReader::RawReader(Domain& domain, const Topic& topic, Callback on_sample, std::shared_ptr<Bytes> bytes)
+RawReader::RawReader(Domain& domain, const Topic& topic, OnBytes on_sample)
     : ReaderBase(domain, topic, dds::TypeSupport(new RawType(WireTypeName(topic.kind))), RecorderQos(topic),
-                 bytes.get(),
-                 [bytes, on_sample = std::move(on_sample)](std::int64_t sequence) { on_sample(*bytes, sequence); }) {}
+                 std::move(on_sample)) {}
 
 }  // namespace mascot

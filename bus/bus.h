@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <cstring>
 #include <exception>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
@@ -20,6 +19,8 @@
 #include <string>
 #include <vector>
 
+#include "bus/cdr.h"
+#include "bus/peers.h"
 #include "bus/qos.h"
 #include "idl/topics.h"
 
@@ -40,14 +41,18 @@ using Handle = std::unique_ptr<Entity, std::function<void(Entity*)>>;
 class Domain {
  public:
   /// `wake` is called, from any thread, when a waiting loop should check again: a reader or writer was matched or
-  /// unmatched, a callback failed, or Wake() was called. `discovery`, if given, is told of every discovered participant
-  /// and endpoint; it must outlive this object. Throws BusError, and what ParticipantQos() throws.
-  Domain(const DomainOptions& options, std::function<void()> wake,
+  /// unmatched, a callback failed, or Wake() was called. `peers`: the processes of the run; readers take samples from
+  /// nobody else, and nobody else is counted as matched. Without them everybody is believed, as by one who only
+  /// listens. `discovery`, if given, is told of every discovered participant and endpoint. Both must outlive this
+  /// object. Throws BusError, and what ParticipantQos() throws.
+  Domain(const DomainOptions& options, std::function<void()> wake, Peers* peers = nullptr,
          eprosima::fastdds::dds::DomainParticipantListener* discovery = nullptr);
 
   /// Rethrows the first exception given to Fail(), if any.
   void RethrowFailure() const;
   void Wake() const { wake_(); }
+  /// The name that DDS has given this participant.
+  const Peers::GuidPrefix& guid_prefix() const { return participant_->guid().guidPrefix; }
   /// Stores a callback's exception, if it is the first, and wakes the loop. Thread-safe.
   void Fail(std::exception_ptr failure);
 
@@ -57,6 +62,7 @@ class Domain {
   Handle<eprosima::fastdds::dds::Topic> MakeTopic(const Topic& topic, eprosima::fastdds::dds::TypeSupport type);
 
   std::function<void()> wake_;
+  Peers* peers_;
   mutable std::mutex mutex_;
   std::exception_ptr failure_;
   Handle<eprosima::fastdds::dds::DomainParticipant> participant_;  // parents first: destroyed in reverse order
@@ -67,7 +73,7 @@ class Domain {
 /// The part of Writer<PubSub> that does not depend on the type of the sample.
 class WriterBase {
  public:
-  /// Number of readers matched now.
+  /// Number of the run's processes that have a matched reader now; without Peers, the number of those readers.
   int matched() const;
   /// Waits until all matched readers have acknowledged every sample, at most `timeout`. To be called before a process
   /// ends: its shared memory goes with it, and samples that are not read by then are lost.
@@ -86,19 +92,27 @@ class WriterBase {
   Handle<eprosima::fastdds::dds::DataWriter> writer_;
 };
 
+/// Who sent a sample.
+struct Sender {
+  const std::string& process;  ///< of the run; empty without Peers
+  std::int64_t sequence = 0;   ///< the writer's sequence number, from 1
+};
+
 /// The part of Reader<PubSub> and RawReader that does not depend on the type of the sample.
 class ReaderBase {
  public:
+  using Bytes = std::vector<std::uint8_t>;
   virtual ~ReaderBase();
-  /// Number of writers matched now.
+  /// Number of the run's processes with a matched writer that is believed; without Peers, the number of writers.
   int matched() const;
 
  protected:
-  /// For every sample, one at a time, the reception thread takes it into `sample` and calls `on_sample` with the
-  /// writer's sequence number.
+  using OnBytes = std::function<void(const Bytes&, const Sender&)>;
+  /// The reception thread calls `on_bytes` for every sample of a writer that is believed (Peers), one at a time. On a
+  /// topic that only one process may write, that is the first writer of that process and no other. `type` must hand out
+  /// samples as Bytes.
   ReaderBase(Domain& domain, const Topic& topic, eprosima::fastdds::dds::TypeSupport type,
-             const eprosima::fastdds::dds::DataReaderQos& qos, void* sample,
-             std::function<void(std::int64_t sequence)> on_sample);
+             const eprosima::fastdds::dds::DataReaderQos& qos, OnBytes on_bytes);
 
  private:
   class Listener;
@@ -107,56 +121,45 @@ class ReaderBase {
   Handle<eprosima::fastdds::dds::DataReader> reader_;
 };
 
-/// A fastddsgen type whose padding bytes are zero on the wire. Fast CDR leaves old memory in them, which would make
-/// recordings differ from run to run.
-template <class PubSub>
-class ZeroPadded : public PubSub {
- public:
-  bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override;
-};
+/// Bytes on a topic that are no sample of its type, although its rightful writer sent them.
+[[noreturn]] void ThrowNoSample(const Topic& topic, std::size_t bytes, const std::string& type);
 
 /// Publishes samples of a fastddsgen type (PubSub is, e.g., AgentStatePubSubType). Thread-safe.
 template <class PubSub>
 class Writer : public WriterBase {
  public:
   Writer(Domain& domain, const Topic& topic)
-      : WriterBase(domain, topic, eprosima::fastdds::dds::TypeSupport(new ZeroPadded<PubSub>)) {}
+      : WriterBase(domain, topic, eprosima::fastdds::dds::TypeSupport(new WireType<PubSub>)) {}
   /// Throws BusError if Fast DDS does not accept the sample.
   void Write(typename PubSub::type& sample) { WriteAny(&sample); }
 };
 
 /// Calls `on_sample` for every sample, in Fast DDS's reception thread: a hop to another thread would cost half a round
-/// trip. An exception that `on_sample` throws goes to Domain::Fail().
+/// trip. An exception that `on_sample` throws goes to Domain::Fail(), and so does one for bytes that are no sample.
 template <class PubSub>
 class Reader : public ReaderBase {
  public:
   using Sample = typename PubSub::type;
   using Callback = std::function<void(const Sample&)>;
-  Reader(Domain& domain, const Topic& topic, Callback on_sample)
-      : Reader(domain, topic, std::move(on_sample), std::make_shared<Sample>()) {}
+  using CallbackWithSender = std::function<void(const Sample&, const Sender&)>;
 
- private:
-  Reader(Domain& domain, const Topic& topic, Callback on_sample, std::shared_ptr<Sample> sample)
-      : ReaderBase(domain, topic, eprosima::fastdds::dds::TypeSupport(new ZeroPadded<PubSub>), ReaderQos(topic),
-                   sample.get(), [sample, on_sample = std::move(on_sample)](std::int64_t) { on_sample(*sample); }) {}
+  Reader(Domain& domain, const Topic& topic, Callback on_sample)
+      : Reader(domain, topic,
+               [on_sample = std::move(on_sample)](const Sample& sample, const Sender&) { on_sample(sample); }) {}
+  Reader(Domain& domain, const Topic& topic, CallbackWithSender on_sample)
+      : ReaderBase(domain, topic, eprosima::fastdds::dds::TypeSupport(new WireType<PubSub>), ReaderQos(topic),
+                   [topic, sample = std::make_shared<Sample>(), on_sample = std::move(on_sample)](
+                       const Bytes& bytes, const Sender& sender) {
+                     if (!Decode<PubSub>(bytes, *sample)) ThrowNoSample(topic, bytes.size(), PubSub().getName());
+                     on_sample(*sample, sender);
+                   }) {}
 };
 
-/// Calls `on_sample` with the bytes of every sample as they were on the wire (with the 4-byte encapsulation header) and
-/// its writer's sequence number (from 1). For the recorder.
+/// Calls `on_sample` with the bytes of every sample as they were on the wire, with the 4-byte encapsulation header. For
+/// the recorder.
 class RawReader : public ReaderBase {
  public:
-  using Bytes = std::vector<std::uint8_t>;
-  using Callback = std::function<void(const Bytes& cdr, std::int64_t sequence)>;
-  RawReader(Domain& domain, const Topic& topic, Callback on_sample);
-
- private:
-  RawReader(Domain& domain, const Topic& topic, Callback on_sample, std::shared_ptr<Bytes> bytes);
+  RawReader(Domain& domain, const Topic& topic, OnBytes on_sample);
 };
-
-template <class PubSub>
-bool ZeroPadded<PubSub>::serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) {
-  std::memset(payload->data, 0, payload->max_size);
-  return PubSub::serialize(data, payload);
-}
 
 }  // namespace mascot

@@ -7,18 +7,16 @@ namespace mascot {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-Lifecycle::Lifecycle(Domain& domain, StopSignal& stop, const std::string& process, int agent)
+Lifecycle::Lifecycle(Domain& domain, Peers& peers, StopSignal& stop, const std::string& process, int agent)
     : stop_(stop),
       domain_(domain),
+      peers_(peers),
       status_writer_(domain, Topic::Status()),
       experiment_reader_(domain, Topic::Experiment(),
-                         [this](const mascot_msgs::msg::Experiment& experiment) {
-                           const std::lock_guard lock(mutex_);
-                           experiment_ = experiment;
-                           domain_.Wake();
-                         }),
-      request_reader_(domain, Topic::Request(),
-                      [this](const mascot_msgs::msg::Request& request) { OnRequest(request); }) {
+                         [this](const mascot_msgs::msg::Experiment& experiment) { OnExperiment(experiment); }),
+      request_reader_(domain, Topic::Request(), [this](const mascot_msgs::msg::Request& request, const Sender& sender) {
+        OnRequest(request, sender.process);
+      }) {
   status_.process(process);
   status_.agent(static_cast<std::uint32_t>(agent));
 }
@@ -84,8 +82,20 @@ void Lifecycle::Wait(std::chrono::nanoseconds timeout) {
     throw std::runtime_error("the orchestrator has gone");
 }
 
-void Lifecycle::OnRequest(const mascot_msgs::msg::Request& request) {
-  switch (static_cast<Ask>(request.kind())) {
+void Lifecycle::OnExperiment(const mascot_msgs::msg::Experiment& experiment) {
+  for (const mascot_msgs::msg::Process& process : experiment.processes())
+    peers_.Know(process.name().to_string(), ProcessKey(process.bits(), process.mask()));
+  {
+    const std::lock_guard lock(mutex_);
+    experiment_ = experiment;
+  }
+  domain_.Wake();
+}
+
+void Lifecycle::OnRequest(const mascot_msgs::msg::Request& request, const std::string& from) {
+  const auto ask = static_cast<Ask>(request.kind());
+  if (from != kOrchestrator && ask != Ask::kReport) return;
+  switch (ask) {
     case Ask::kReport:
       report_requested_ = true;
       break;

@@ -26,11 +26,13 @@ class Ended : public std::exception {
 
 /// The lifecycle of a process of a run (the server or agents; the orchestrator has none). Publishes its state on
 /// /status, again on a REPORT request; receives the experiment on /experiment; ends on an END request or a signal.
-/// Nothing relies on a match event or a single delivery: a process that lacks something keeps asking.
+/// Nothing relies on a match event or a single delivery: a process that lacks something keeps asking. Only the
+/// orchestrator is obeyed; the physics server may ask for reports.
 class Lifecycle {
  public:
-  /// `process`: its name (ProcessName). `agent`: its agent; 0 if it has none, or several.
-  Lifecycle(Domain& domain, StopSignal& stop, const std::string& process, int agent);
+  /// `process`: its name (ProcessName). `agent`: its agent; 0 if it has none, or several. `peers` learns from the
+  /// orchestrator who the processes of the run are; it is that of `domain`.
+  Lifecycle(Domain& domain, Peers& peers, StopSignal& stop, const std::string& process, int agent);
 
   /// Publishes WAITING every 0.2 s until the experiment comes. Throws std::runtime_error after `timeout`, and what
   /// Wait() throws.
@@ -51,11 +53,13 @@ class Lifecycle {
   bool stop_requested() const { return stop_requested_; }
 
  private:
-  void OnRequest(const mascot_msgs::msg::Request& request);
+  void OnExperiment(const mascot_msgs::msg::Experiment& experiment);
+  void OnRequest(const mascot_msgs::msg::Request& request, const std::string& from);
   void Publish();
 
   StopSignal& stop_;
   Domain& domain_;
+  Peers& peers_;
   std::mutex mutex_;  // guards status_ and experiment_
   mascot_msgs::msg::Status status_;
   std::optional<mascot_msgs::msg::Experiment> experiment_;

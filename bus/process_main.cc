@@ -59,10 +59,28 @@ void Leave(const ProcessArgs& args, std::chrono::seconds limit, int code) {
   LeaveWithin(limit, {.code = code, .process = args.options.name, .on_signals = by_hand, .sweeps = by_hand});
 }
 
+/// At its end, prints what was not taken from whom.
+class Refusals {
+ public:
+  explicit Refusals(const Peers& peers) : peers_(peers) {}
+  ~Refusals() {
+    for (const std::string& line : peers_.Refusals()) std::cerr << line << std::endl;
+  }
+  Refusals(const Refusals&) = delete;
+  Refusals& operator=(const Refusals&) = delete;
+
+ private:
+  const Peers& peers_;
+};
+
 /// Joins the domain and runs its role. Publishes a failure before it leaves. Returns the exit code.
 int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role) {
-  Domain domain(args.options, [&stop] { stop.Wake(); });
-  Lifecycle lifecycle(domain, stop, args.options.name, args.agents.size() == 1 ? args.agents.first : 0);
+  Peers peers;
+  peers.Know(kOrchestrator, args.parent != 0 ? ProcessKey::WithPid(args.parent) : ProcessKey::Anybody());
+  Domain domain(
+      args.options, [&stop] { stop.Wake(); }, &peers);
+  const Refusals refusals(peers);
+  Lifecycle lifecycle(domain, peers, stop, args.options.name, args.agents.size() == 1 ? args.agents.first : 0);
   std::unique_ptr<Role> role;  // destroyed after the exit code is known: that may hang
   int code = 1;
   try {
@@ -119,7 +137,7 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
     prctl(PR_SET_PDEATHSIG, SIGKILL);        // it may be stopped, or hang in a law or in Fast DDS; the Janitor sweeps
     if (getppid() != args.parent) return 1;  // the orchestrator died before this line
   }
-  args.options.name = args.is_agent ? ProcessName(args.agents) : "physics_server";
+  args.options.name = args.is_agent ? ProcessName(args.agents) : kPhysicsServer;
   if (!args.options.server.empty()) args.options.role = DiscoveryRole::kClient;
   try {
     return Join(args, stop, make_role);

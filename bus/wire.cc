@@ -1,11 +1,8 @@
 #include "bus/wire.h"
 
-#include <fastcdr/exceptions/Exception.h>
-
 #include <algorithm>
 #include <stdexcept>
-
-#include "bus/bus.h"
+#include <utility>
 
 namespace mascot {
 namespace {
@@ -41,19 +38,10 @@ void SerializeAs(typename PubSub::type& sample, std::vector<std::uint8_t>& bytes
 
 template <class PubSub>
 void DeserializeAs(std::span<const std::uint8_t> bytes, typename PubSub::type& sample, bool fixed_size = true) {
-  thread_local PubSub type;
-  SerializedPayload_t payload;  // borrows the bytes: reset below, or it would free them
-  payload.data = const_cast<std::uint8_t*>(bytes.data());
-  payload.length = payload.max_size = static_cast<std::uint32_t>(bytes.size());
+  thread_local const PubSub type;
   const bool fits = fixed_size ? bytes.size() == type.m_typeSize : bytes.size() <= type.m_typeSize;
-  bool ok = false;
-  try {
-    ok = fits && type.deserialize(&payload, &sample);
-  } catch (const eprosima::fastcdr::exception::Exception&) {  // for an encapsulation that it does not know
-  }
-  payload.data = nullptr;
-  payload.length = payload.max_size = 0;
-  if (!ok) throw std::runtime_error("a sample of " + std::to_string(bytes.size()) + " bytes is no " + type.getName());
+  if (!fits || !Decode<PubSub>(bytes, sample))
+    throw std::runtime_error("a sample of " + std::to_string(bytes.size()) + " bytes is no " + type.getName());
 }
 
 }  // namespace
@@ -85,6 +73,23 @@ std::string WireTypeName(TopicKind kind) {
       return StatusType().getName();
   }
   return {};
+}
+
+Life CheckedLife(const mascot_msgs::msg::Status& status, std::int64_t last_tick) {
+  const unsigned state = status.state();
+  if (state <= static_cast<unsigned>(Life::kEnded) && std::cmp_less_equal(status.tick(), last_tick + 1))
+    return static_cast<Life>(state);
+  throw std::runtime_error("/status: expected a state of 0 to 6 and a tick of 0 to " + std::to_string(last_tick + 1) +
+                           " from " + status.process().to_string() + ", got state " + std::to_string(state) +
+                           " and tick " + std::to_string(status.tick()));
+}
+
+std::int64_t CheckedTick(const Topic& topic, std::uint32_t agent, std::uint64_t tick, std::int64_t last_tick) {
+  if (std::cmp_equal(agent, topic.agent) && std::cmp_less_equal(tick, last_tick))
+    return static_cast<std::int64_t>(tick);
+  throw std::runtime_error(topic.Name() + ": expected a tick of 0 to " + std::to_string(last_tick) + " of agent " +
+                           std::to_string(topic.agent) + ", got tick " + std::to_string(tick) + " of agent " +
+                           std::to_string(agent));
 }
 
 std::uint64_t StampNs(std::int64_t tick, int rate_hz) {

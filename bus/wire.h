@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bus/cdr.h"
 #include "experiment/motion.h"
 #include "idl/topics.h"
 
@@ -21,10 +22,26 @@ using StatusType = mascot_msgs::msg::StatusPubSubType;
 using RequestType = mascot_msgs::msg::RequestPubSubType;
 using ExperimentType = mascot_msgs::msg::ExperimentPubSubType;
 
+template <>
+struct SequenceOf<MessageType> {
+  static constexpr std::size_t kAt = 24, kElement = sizeof(double);
+};
+template <>
+struct SequenceOf<BundleType> {
+  static constexpr std::size_t kAt = 4, kElement = 148;
+};
+template <>
+struct SequenceOf<ExperimentType> {
+  static constexpr std::size_t kAt = 4, kElement = 24;
+};
+
 /// Values of Status::state: where a process is in its lifecycle.
 enum class Life : std::uint8_t { kWaiting = 0, kMatching, kReady, kRunning, kDone, kFailed, kEnded };
 /// True for the final states: done, failed, ended.
 constexpr bool IsLast(Life life) { return life >= Life::kDone; }
+/// The state that a status tells. Throws std::runtime_error if there is no such state, or if the tick is more than one
+/// beyond the last of the run.
+Life CheckedLife(const mascot_msgs::msg::Status& status, std::int64_t last_tick);
 /// Values of Request::kind.
 enum class Ask : std::uint8_t { kReport = 0, kStop, kEnd };
 
@@ -36,6 +53,10 @@ std::string WireTypeName(TopicKind kind);
 
 /// Simulated time of `tick` in nanoseconds: rounded from tick / rate, never accumulated.
 std::uint64_t StampNs(std::int64_t tick, int rate_hz);
+
+/// The tick of a sample that says it is of this agent and tick. Throws std::runtime_error unless `topic` is that
+/// agent's and the tick is one of the run, whose last is `last_tick`.
+std::int64_t CheckedTick(const Topic& topic, std::uint32_t agent, std::uint64_t tick, std::int64_t last_tick);
 
 // The only conversions between our types and the wire types (whose quaternions are x, y, z, w).
 void ToWire(std::int64_t tick, int rate_hz, int agent, const Motion& motion, mascot_msgs::msg::AgentState& sample);

@@ -32,7 +32,9 @@ Server::Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experimen
       commands_(static_cast<std::size_t>(experiment.size())),
       clock_(domain, Topic::Clock()),
       requests_(domain, Topic::Request()),
-      status_reader_(domain, Topic::Status(), [this](const mascot_msgs::msg::Status& status) { OnStatus(status); }) {
+      status_reader_(domain, Topic::Status(), [this](const mascot_msgs::msg::Status& status, const Sender& sender) {
+        OnStatus(status, sender.process);
+      }) {
   const bool bundled = experiment.network.delivery == Delivery::kBundled;
   const int recorder = 1;
   for (const int processes : HearingProcesses(experiment, /*heard_only=*/false))
@@ -107,14 +109,14 @@ bool Server::Matched() const {
   return std::ranges::all_of(bundles_, [](const auto& bundle) { return bundle->matched() >= 1; });
 }
 
-void Server::OnStatus(const mascot_msgs::msg::Status& status) {
-  const std::lock_guard lock(mutex_);
-  const auto life = static_cast<Life>(status.state());
+void Server::OnStatus(const mascot_msgs::msg::Status& status, const std::string& from) {
+  const Life life = CheckedLife(status, experiment_.ticks());
   const bool ready = life == Life::kReady || life == Life::kRunning;
-  if (status.process() == "recorder") {
+  const std::lock_guard lock(mutex_);
+  if (from == kOrchestrator) {
     roll_.OnRecorder(ready);
     Do(ticks_.OnRecorded(static_cast<std::int64_t>(status.tick())));
-  } else if (const auto agents = AgentsOf(status.process().to_string())) {
+  } else if (const auto agents = AgentsOf(from)) {
     roll_.OnAgents(*agents, ready);
   }
 }
@@ -153,8 +155,9 @@ void Server::PublishBundles() {
 }
 
 void Server::OnCommand(int id, const mascot_msgs::msg::AgentCommand& command) {
+  const std::int64_t tick = CheckedTick(Topic::Command(id), command.agent(), command.tick(), experiment_.ticks());
   const std::lock_guard lock(mutex_);
-  const auto actions = ticks_.OnCommand(id, static_cast<std::int64_t>(command.tick()), lifecycle_.stop_requested());
+  const auto actions = ticks_.OnCommand(id, tick, lifecycle_.stop_requested());
   if (actions.take) commands_[static_cast<std::size_t>(id - 1)] = command.actuator();
   Do(actions);
 }

@@ -43,7 +43,7 @@ class Server {
   void Report();
 
   void OnCommand(int id, const mascot_msgs::msg::AgentCommand& command);
-  void OnStatus(const mascot_msgs::msg::Status& status);
+  void OnStatus(const mascot_msgs::msg::Status& status, const std::string& from);
   // The functions below are called with mutex_ held.
   void Do(const TickProtocol::Actions& actions);
   void Publish();

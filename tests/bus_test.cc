@@ -15,13 +15,11 @@
 #include <system_error>
 #include <thread>
 
-#include "agent/laws.h"
 #include "bus/leave.h"
 #include "bus/lifecycle.h"
 #include "bus/stop_signal.h"
 #include "bus/wire.h"
 #include "orchestrator/engines/dds/domain_lock.h"
-#include "orchestrator/engines/dds/wire_audit.h"
 #include "tests/orchestrator.h"
 
 namespace mascot::test {
@@ -135,41 +133,165 @@ class Bus : public testing::Test {
   Domain there_{Options("there"), [] {}};
 };
 
-TEST_F(Bus, AuditIsNotCompleteWithoutEveryReaderOfMessages) {
-  const Experiment two = LoadExperiment(
-      Section::FromText(
-          "[run]\nduration_s = 1.0\n[agents]\ncount = 2\n[network]\nagents_per_process = 2\n[law]\nname = "
-          "'custom'\npython = '''\ndef control(t, me, heard):\n  return [0, 0]\ndef message(me):\n  "
-          "return [1]\n'''\n",
-          "a.toml"),
-      "a");
-  WireAudit audit;
-  Domain auditor(
-      Options("orchestrator"), [] {}, &audit);
-  Domain agents(Options("agents_1-2"), [] {});
-  std::vector<std::unique_ptr<Reader<StateType>>> states;
-  std::vector<std::unique_ptr<Writer<CommandType>>> commands;
-  std::vector<std::unique_ptr<Writer<MessageType>>> messages;
-  std::vector<std::unique_ptr<Reader<MessageType>>> message_readers;
-  for (int id : {1, 2}) {
-    states.push_back(std::make_unique<Reader<StateType>>(agents, Topic::State(id), [](const auto&) {}));
-    commands.push_back(std::make_unique<Writer<CommandType>>(agents, Topic::Command(id)));
-    messages.push_back(std::make_unique<Writer<MessageType>>(agents, Topic::Message(id)));
-  }
-  const auto hear = [&](int id) {
-    message_readers.push_back(std::make_unique<Reader<MessageType>>(agents, Topic::Message(id), [](const auto&) {}));
+/// What a reader took, and from whom.
+struct Taken {
+  std::atomic<int> samples = 0;
+  std::string process;
+};
+
+TEST_F(Bus, SamplesAreTakenFromTheProcessWhoseTopicItIsAndFromNobodyElse) {
+  Peers peers;
+  peers.Know("physics_server", ProcessKey::WithPid(getpid() + 1));
+  Domain believer(
+      Options("agent_1"), [] {}, &peers);
+  Taken taken;
+  std::atomic<int> heard = 0;
+  Reader<StateType> reader(believer, Topic::State(1), [&](const auto&, const Sender& sender) {
+    taken.process = sender.process;
+    ++taken.samples;
+  });
+  Reader<StateType> listener(there_, Topic::State(1), [&](const auto&) { ++heard; });
+  Writer<StateType> writer(here_, Topic::State(1));
+  ASSERT_TRUE(Until([&] { return writer.matched() == 2 && listener.matched() == 1; }));
+  mascot_msgs::msg::AgentState sample;
+  ASSERT_TRUE(Until([&] {
+    writer.Write(sample);
+    return !peers.Refusals().empty();
+  }));
+  EXPECT_EQ(taken.samples, 0);
+  EXPECT_EQ(reader.matched(), 0) << "a stranger's writer counts for nothing";
+  EXPECT_THAT(peers.Refusals().at(0), HasSubstr("of /agent_1/state from " + Text(here_.guid_prefix())));
+  peers.Know("physics_server", ProcessKey::Of(here_.guid_prefix()));
+  ASSERT_TRUE(Until([&] {
+    writer.Write(sample);
+    return taken.samples > 0;
+  }));
+  EXPECT_EQ(taken.process, "physics_server");
+  EXPECT_EQ(reader.matched(), 1);
+  EXPECT_GT(heard, 0) << "who knows no peers listens to everybody";
+}
+
+TEST_F(Bus, ASecondWriterOfAProcessIsNotHeardBesideTheFirst) {
+  Peers peers;
+  peers.Know("physics_server", ProcessKey::WithPid(getpid()));
+  Domain believer(
+      Options("agent_1"), [] {}, &peers);
+  std::atomic<std::uint64_t> newest = 0;
+  std::atomic<int> wrong = 0;
+  Reader<StateType> reader(believer, Topic::State(1), [&](const mascot_msgs::msg::AgentState& state) {
+    newest = state.tick();
+    if (state.tick() > 1000) ++wrong;
+  });
+  Writer<StateType> first(here_, Topic::State(1)), second(there_, Topic::State(1));
+  ASSERT_TRUE(Until([&] { return first.matched() == 1 && second.matched() == 1; }));
+  mascot_msgs::msg::AgentState sample;
+  sample.tick(1);
+  first.Write(sample);
+  ASSERT_TRUE(Until([&] { return newest == 1; }));
+  sample.tick(1001);
+  second.Write(sample);
+  second.AwaitReaders(std::chrono::seconds(10));
+  sample.tick(2);
+  first.Write(sample);
+  ASSERT_TRUE(Until([&] { return newest == 2; }));
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(Bus, AWriterCountsTheProcessesOfTheRunThatHearIt) {
+  Peers peers;
+  Domain server(
+      Options("physics_server"), [] {}, &peers);
+  Writer<StateType> writer(server, Topic::State(1));
+  Writer<ClockType> clock(server, Topic::Clock());
+  Reader<StateType> one(here_, Topic::State(1), [](const auto&) {}), two(there_, Topic::State(1), [](const auto&) {});
+  Reader<ClockType> last_one(here_, Topic::Clock(), [](const auto&) {}),
+      last_two(there_, Topic::Clock(), [](const auto&) {});
+  ASSERT_TRUE(Until([&] { return one.matched() == 1 && two.matched() == 1; }));
+  EXPECT_EQ(writer.matched(), 0) << "they are strangers";
+  peers.Know("agent_1", ProcessKey::Of(here_.guid_prefix()));
+  EXPECT_TRUE(Until([&] { return writer.matched() == 1; })) << "both are participants of one process";
+}
+
+TEST_F(Bus, OnlyTheOrchestratorIsObeyed) {
+  Peers peers;
+  peers.Know("orchestrator", ProcessKey::WithPid(getpid() + 1));
+  peers.Know("physics_server", ProcessKey::Of(here_.guid_prefix()));
+  StopSignal stop;
+  Domain domain(
+      Options("agent_1"), [&] { stop.Wake(); }, &peers);
+  Lifecycle lifecycle(domain, peers, stop, "agent_1", 1);
+  std::atomic<int> reports = 0;
+  Reader<StatusType> statuses(there_, Topic::Status(), [&](const auto&) { ++reports; });
+  Writer<RequestType> server(here_, Topic::Request());
+  const auto ask = [&](Ask what) {
+    mascot_msgs::msg::Request request;
+    request.kind(static_cast<std::uint8_t>(what));
+    server.Write(request);
   };
-  hear(1);
-  // Endpoints are discovered in the order in which they are created.
-  Writer<StatusType> last_writer(agents, Topic::Status());
-  Reader<RequestType> last_reader(agents, Topic::Request(), [](const auto&) {});
-  Reader<StatusType> finds_writer(auditor, Topic::Status(), [](const auto&) {});
-  Writer<RequestType> finds_reader(auditor, Topic::Request());
-  ASSERT_TRUE(Until([&] { return finds_writer.matched() > 0 && finds_reader.matched() > 0; }));
-  EXPECT_FALSE(audit.IsComplete(two)) << "nobody reads the messages of agent 2";
-  hear(2);
-  EXPECT_TRUE(Until([&] { return audit.IsComplete(two); }));
-  EXPECT_EQ(audit.Violation(two), "");
+  ASSERT_TRUE(Until([&] { return server.matched() == 1 && statuses.matched() == 1; }));
+  ask(Ask::kStop);
+  ask(Ask::kEnd);
+  ASSERT_TRUE(Until([&] {  // requests come in order: after a report, the others have been heard, too
+    ask(Ask::kReport);
+    lifecycle.Wait(std::chrono::milliseconds(5));
+    return reports > 0;
+  }));
+  EXPECT_FALSE(lifecycle.stop_requested());
+  peers.Know("orchestrator", ProcessKey::Of(there_.guid_prefix()));
+  Writer<RequestType> orchestrator(there_, Topic::Request());
+  mascot_msgs::msg::Request end;
+  end.kind(static_cast<std::uint8_t>(Ask::kEnd));
+  EXPECT_TRUE(Until([&] {
+    orchestrator.Write(end);
+    try {
+      lifecycle.Wait(std::chrono::milliseconds(5));
+      return false;
+    } catch (const Ended&) {
+      return true;
+    }
+  }));
+}
+
+/// Whether a sample is decoded after it was encoded.
+template <class PubSub>
+bool ComesBack(typename PubSub::type& sample) {
+  ZeroPadded<PubSub> type;
+  eprosima::fastrtps::rtps::SerializedPayload_t payload(type.getSerializedSizeProvider(&sample)());
+  typename PubSub::type back;
+  return type.serialize(&sample, &payload) && Decode<PubSub>({payload.data, payload.length}, back);
+}
+
+TEST(Wire, ASequenceThatIsLongerThanItsSampleIsRefusedBeforeMemoryIsReserved) {
+  mascot_msgs::msg::AgentMessage message;
+  message.data({1, 2, 3});
+  std::vector<std::uint8_t> bytes;
+  Serialize(message, bytes);
+  EXPECT_TRUE(Decode<MessageType>(bytes, message));
+  std::fill_n(bytes.begin() + 24, 4, std::uint8_t{0xff});  // the number of elements: 4 294 967 295 of 8 bytes
+  EXPECT_FALSE(Decode<MessageType>(bytes, message));
+  mascot_msgs::msg::AgentBundle bundle;
+  bundle.states().resize(3);
+  EXPECT_TRUE(ComesBack<BundleType>(bundle));
+  mascot_msgs::msg::Experiment experiment;
+  experiment.processes().resize(3);
+  EXPECT_TRUE(ComesBack<ExperimentType>(experiment)) << "names may be empty";
+  bytes.assign({0, 1, 0, 0, 0xff, 0xff, 0xff, 0xff});
+  EXPECT_FALSE(Decode<BundleType>(bytes, bundle));
+  EXPECT_FALSE(Decode<ExperimentType>(bytes, experiment));
+  bytes.resize(3);
+  EXPECT_FALSE(Decode<BundleType>(bytes, bundle));
+}
+
+TEST(Wire, TicksAndAgentsThatCannotBeAreRefused) {
+  EXPECT_EQ(CheckedTick(Topic::State(2), 2, 100, 100), 100);
+  for (const std::uint64_t tick : {std::uint64_t{101}, std::uint64_t{1} << 62, ~std::uint64_t{0}})
+    EXPECT_THAT(
+        [&] { CheckedTick(Topic::Message(2), 2, tick, 100); },
+        ThrowsMessage<std::runtime_error>("/agent_2/message: expected a tick of 0 to 100 of agent 2, got tick " +
+                                          std::to_string(tick) + " of agent 2"));
+  for (const std::uint32_t agent : {0U, 3U, ~0U})
+    EXPECT_THAT([&] { CheckedTick(Topic::Command(2), agent, 0, 100); },
+                ThrowsMessage<std::runtime_error>(HasSubstr("got tick 0 of agent " + std::to_string(agent))));
 }
 
 TEST(InWords, WantOfMemoryAndOfThreadsIsSaid) {
@@ -218,7 +340,8 @@ TEST(SharedMemoryNeed, IsKnownBeforeAParticipantIsMade) {
 
 TEST_F(Bus, AProcessSaysWhichExperimentItHasReceived) {
   StopSignal stop;
-  Lifecycle agent(there_, stop, "agent_1", 1);
+  Peers peers;
+  Lifecycle agent(there_, peers, stop, "agent_1", 1);
   Writer<ExperimentType> orchestrator(here_, Topic::Experiment());
   std::atomic<std::uint64_t> reported = 0;
   Reader<StatusType> statuses(here_, Topic::Status(), [&](const auto& status) { reported = status.experiment(); });
@@ -238,9 +361,9 @@ TEST_F(Bus, RawBytesAreThoseOfTheSerialiserWithZeroedPadding) {
   Writer<StateType> writer(here_, Topic::State(1));
   std::mutex mutex;
   std::vector<std::pair<RawReader::Bytes, std::int64_t>> heard;
-  RawReader reader(there_, Topic::State(1), [&](const RawReader::Bytes& bytes, std::int64_t sequence) {
+  RawReader reader(there_, Topic::State(1), [&](const RawReader::Bytes& bytes, const Sender& sender) {
     const std::lock_guard lock(mutex);
-    heard.emplace_back(bytes, sequence);
+    heard.emplace_back(bytes, sender.sequence);
   });
   ASSERT_TRUE(Until([&] { return writer.matched() == 1 && reader.matched() == 1; }));
   mascot_msgs::msg::AgentState sample;

@@ -163,6 +163,10 @@ TEST(Schemas, MatchTheSerialisedBytes) {
   request.kind(2);
   request.reason("over");
   mascot_msgs::msg::Experiment experiment;
+  experiment.processes().resize(2);
+  experiment.processes()[1].name("agent_3");
+  experiment.processes()[1].bits(11);
+  experiment.processes()[1].mask(12);
   experiment.name("n");
   experiment.toml("[run]");
   write("/state", "mascot_msgs/msg/AgentState", OnTheWire<StateType>(SomeState()));
@@ -190,7 +194,8 @@ TEST(Schemas, MatchTheSerialisedBytes) {
       "tick_lateness_s": [0.5, 1.5, 2.5], "command_age_s": [3.5, 4.5, 5.5],
       "agent_contacts": 8, "ground_contacts": 9, "obstacle_contacts": 10, "reason": "none"},
     "/request": {"kind": 2, "reason": "over"},
-    "/experiment": {"name": "n", "toml": "[run]"}})"));
+    "/experiment": {"processes": [{"name": "", "bits": 0, "mask": 0}, {"name": "agent_3", "bits": 11, "mask": 12}],
+      "name": "n", "toml": "[run]"}})"));
 }
 
 TEST(Schemas, ListEachDependencyOnceBehindALineOfEightyEqualSigns) {

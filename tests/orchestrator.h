@@ -71,6 +71,11 @@ class Running {
     waitpid(std::exchange(pid_, -1), &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
+  /// Whether the program has ended; Wait() then returns at once.
+  bool IsOver() const {
+    siginfo_t info{};
+    return waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == pid_;
+  }
   std::string out() const { return ReadFile(out_); }
   std::string err() const { return ReadFile(err_); }
   bool Said(const std::string& text) const { return err().find(text) != std::string::npos; }

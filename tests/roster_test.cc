@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
 #include "bus/wire.h"
 
 namespace mascot {
@@ -14,46 +16,46 @@ using testing::ThrowsMessage;
 /// Roster of a physics server and two agents, the second started by hand.
 class RosterTest : public testing::Test {
  protected:
-  Roster::News Say(const std::string& process, Life life, std::uint32_t agent = 0, const std::string& reason = "",
+  Roster::News Say(const std::string& process, Life life, const std::string& reason = "",
                    std::uint64_t experiment = 0) {
     Roster::Status status;
     status.experiment(experiment);
-    status.process(process);
-    status.agent(agent);
     status.state(static_cast<std::uint8_t>(life));
     status.reason(reason);
-    return roster_.OnStatus(status);
+    return roster_.OnStatus(process, status);
   }
 
-  Roster roster_{
-      {.processes = {"physics_server", "agent_1", "agent_2"}, .external = {false, true}, .experiment = 0x5eed}};
+  Roster roster_{{.processes = {"physics_server", "agent_1", "agent_2"},
+                  .external = {false, true},
+                  .experiment = 0x5eed,
+                  .last_tick = 100}};
   Roster::Time now_ = Roster::Time() + 1h;
 };
 
 TEST_F(RosterTest, AStatusIsNewsIfItsStateHasChanged) {
-  EXPECT_TRUE(Say("agent_1", Life::kWaiting, 1).changed);
-  EXPECT_FALSE(Say("agent_1", Life::kWaiting, 1).changed);
-  EXPECT_TRUE(Say("agent_1", Life::kReady, 1).changed);
+  EXPECT_TRUE(Say("agent_1", Life::kWaiting).changed);
+  EXPECT_FALSE(Say("agent_1", Life::kWaiting).changed);
+  EXPECT_TRUE(Say("agent_1", Life::kReady).changed);
   EXPECT_EQ(static_cast<Life>(roster_.Of("agent_1")->state()), Life::kReady);
   EXPECT_FALSE(roster_.Of("agent_2").has_value());
 }
 
 TEST_F(RosterTest, TheLoopIsWokenForWaitingProcessesAndTheServersEnd) {
-  EXPECT_TRUE(Say("agent_1", Life::kWaiting, 1).wake);
-  EXPECT_FALSE(Say("agent_1", Life::kReady, 1).wake);
+  EXPECT_TRUE(Say("agent_1", Life::kWaiting).wake);
+  EXPECT_FALSE(Say("agent_1", Life::kReady).wake);
   EXPECT_FALSE(Say("physics_server", Life::kRunning).wake);
   EXPECT_TRUE(Say("physics_server", Life::kDone).wake);
 }
 
 TEST_F(RosterTest, TheExperimentIsHandedOutOnRequestAtMostTenTimesASecond) {
   EXPECT_FALSE(roster_.IsTimeToHandOut(now_)) << "nobody has asked";
-  Say("agent_1", Life::kWaiting, 1);
-  Say("agent_2", Life::kWaiting, 2);
+  Say("agent_1", Life::kWaiting);
+  Say("agent_2", Life::kWaiting);
   EXPECT_TRUE(roster_.IsTimeToHandOut(now_));
   EXPECT_FALSE(roster_.IsTimeToHandOut(now_ + 1s)) << "nobody has asked since";
-  Say("agent_2", Life::kWaiting, 2);
+  Say("agent_2", Life::kWaiting);
   EXPECT_TRUE(roster_.IsTimeToHandOut(now_ + 1s));
-  Say("agent_2", Life::kWaiting, 2);
+  Say("agent_2", Life::kWaiting);
   EXPECT_FALSE(roster_.IsTimeToHandOut(now_ + 1s + 99ms));
   EXPECT_TRUE(roster_.IsTimeToHandOut(now_ + 1s + 100ms));
 }
@@ -62,13 +64,13 @@ TEST_F(RosterTest, EveryProcessMustHaveTheExperimentOfThisRun) {
   for (const char* process : {"physics_server", "agent_1", "agent_2"}) {
     EXPECT_FALSE(roster_.HaveTheExperiment());
     Say(process, Life::kWaiting);
-    Say(process, Life::kMatching, 0, "", 0x5eed);
+    Say(process, Life::kMatching, "", 0x5eed);
   }
   EXPECT_TRUE(roster_.HaveTheExperiment());
 }
 
 TEST_F(RosterTest, AProcessThatHasAnotherExperimentFailsTheRun) {
-  EXPECT_THAT([this] { Say("agent_2", Life::kMatching, 2, "", 0xbad); },
+  EXPECT_THAT([this] { Say("agent_2", Life::kMatching, "", 0xbad); },
               ThrowsMessage<std::runtime_error>("agent_2 has received another experiment than this run's (digest "
                                                 "0000000000000bad, expected 0000000000005eed): somebody else publishes "
                                                 "experiments in this DDS domain"));
@@ -84,23 +86,37 @@ TEST_F(RosterTest, TheRecorderSaysHelloFiveTimesASecond) {
 TEST_F(RosterTest, ProcessesWithoutAStatusAreNamed) {
   EXPECT_EQ(roster_.Missing(), "nothing was heard of physics_server, agent_1, agent_2");
   Say("physics_server", Life::kMatching);
-  Say("agent_1", Life::kWaiting, 1);
+  Say("agent_1", Life::kWaiting);
   EXPECT_EQ(roster_.Missing(), "nothing was heard of agent_2");
-  Say("agent_2", Life::kWaiting, 2);
+  Say("agent_2", Life::kWaiting);
   EXPECT_EQ(roster_.Missing(), "not everybody has found everybody");
 }
 
 TEST_F(RosterTest, AnAgentStartedByHandThatFailsIsTheRunsFailure) {
-  EXPECT_THAT([&] { Say("agent_2", Life::kFailed, 2, "no such law"); },
+  EXPECT_THAT([&] { Say("agent_2", Life::kFailed, "no such law"); },
               ThrowsMessage<std::runtime_error>("agent_2 failed: no such law"));
-  EXPECT_THAT([&] { Say("agent_2", Life::kFailed, 2, "\xFF"); },
+  EXPECT_THAT([&] { Say("agent_2", Life::kFailed, "\xFF"); },
               ThrowsMessage<std::runtime_error>("agent_2 failed: \xEF\xBF\xBD"));
 }
 
 TEST_F(RosterTest, AFailureOfAnyOtherProcessIsLeftToItsExit) {
-  EXPECT_NO_THROW(Say("agent_1", Life::kFailed, 1, "no such law"));
-  EXPECT_NO_THROW(Say("stranger", Life::kFailed, 77, "who am I"));
-  EXPECT_NO_THROW(Say("physics_server", Life::kFailed, 0, "agent 1 is late"));
+  EXPECT_NO_THROW(Say("agent_1", Life::kFailed, "no such law"));
+  EXPECT_NO_THROW(Say("agents_1-2", Life::kFailed, "who am I"));
+  EXPECT_NO_THROW(Say("physics_server", Life::kFailed, "agent 1 is late"));
+}
+
+TEST_F(RosterTest, AStatusThatCannotBeOfThisRunIsRefused) {
+  Roster::Status status;
+  status.process("agent_1");
+  status.state(7);
+  EXPECT_THAT([&] { roster_.OnStatus("agent_1", status); },
+              ThrowsMessage<std::runtime_error>(
+                  "/status: expected a state of 0 to 6 and a tick of 0 to 101 from agent_1, got state 7 and tick 0"));
+  status.state(4);
+  status.tick(std::numeric_limits<std::uint64_t>::max());
+  EXPECT_THAT([&] { roster_.OnStatus("agent_1", status); },
+              ThrowsMessage<std::runtime_error>(testing::EndsWith("got state 4 and tick 18446744073709551615")));
+  EXPECT_FALSE(roster_.Of("agent_1").has_value());
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ std::string Exit::Text() const {
 
 Children::~Children() { Stop(0ms); }
 
-void Children::Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments,
-                     const std::filesystem::path& log) {
+pid_t Children::Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments,
+                      const std::filesystem::path& log) {
   const int output = logs_.Open(process, log);
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
@@ -59,6 +59,7 @@ void Children::Spawn(const std::string& process, const std::string& program, con
   close(output);
   if (error != 0) throw std::runtime_error("cannot start " + program + ": " + std::strerror(error));
   running_[pid] = process;
+  return pid;
 }
 
 std::vector<Exit> Children::Reap() {

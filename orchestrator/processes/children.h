@@ -37,10 +37,10 @@ class Children {
   Children(const Children&) = delete;
   Children& operator=(const Children&) = delete;
 
-  /// Starts `program` (a path) with `arguments`, under the name `process`; its output goes to the file `log`. Throws
-  /// std::runtime_error if it cannot be started.
-  void Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments,
-             const std::filesystem::path& log);
+  /// Starts `program` (a path) with `arguments`, under the name `process`; its output goes to the file `log`. Returns
+  /// its process id. Throws std::runtime_error if it cannot be started.
+  pid_t Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments,
+              const std::filesystem::path& log);
   /// Reaps children. Returns those that have ended since the last call.
   std::vector<Exit> Reap();
   /// Waits at most `grace` until all children have ended, and reaps them. Returns whether all have.

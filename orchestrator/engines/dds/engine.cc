@@ -105,6 +105,7 @@ class DdsRun {
   bool library_hangs_ = false;
   ChildLogs logs_;
   Children children_;
+  Peers peers_;
   WireAudit audit_;
   std::optional<Domain> discovery_server_;
   std::optional<Domain> domain_;
@@ -125,6 +126,7 @@ DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std:
       folder_(folder),
       logs_([&console](const std::string& process, const std::string& line) { console.ChildLine(process, line); }),
       children_(logs_),
+      audit_(experiment, peers_),
       feed_(experiment, sinks),
       phases_(Rules(), launched_) {}
 
@@ -133,7 +135,7 @@ RunPhases::Rules DdsRun::Rules() {
   return {.start_timeout_s = run.start_timeout_s,
           .agent_timeout_s = run.agent_timeout_s,
           .period_s = run.mode == Mode::kRealtime ? experiment_.period_s() / run.speed : 0,
-          .violation = [this] { return audit_.Violation(experiment_); },
+          .violation = [this] { return audit_.Violation(); },
           .missing = [this] { return hub_->Missing(); },
           .last_lines = [this](const std::string& process) { return logs_.LastLines(process); }};
 }
@@ -148,9 +150,10 @@ void DdsRun::Join() {
   LowerPriority();
   auto wake = [this] { stop_.Wake(); };
   if (with_server_) discovery_server_.emplace(Options("discovery_server", DiscoveryRole::kServer), [] {});
-  domain_.emplace(Options("orchestrator", with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake,
+  domain_.emplace(Options(kOrchestrator, with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake, &peers_,
                   &audit_);
-  hub_.emplace(*domain_, experiment_, folder_.Log("orchestrator").string(), wake);
+  peers_.Know(kOrchestrator, ProcessKey::Of(domain_->guid_prefix()));
+  hub_.emplace(*domain_, peers_, experiment_, folder_.Log("orchestrator").string(), wake);
   recorder_.emplace(*domain_, experiment_, feed_);
 }
 
@@ -183,16 +186,19 @@ void DdsRun::Spawn() {
     auto arguments = common;
     arguments.insert(arguments.end(), {"--participants", std::to_string(peers)});
     arguments.insert(arguments.end(), more.begin(), more.end());
-    children_.Spawn(process, ProgramFolder() / program, arguments, folder_.Log(process));
+    const pid_t pid = children_.Spawn(process, ProgramFolder() / program, arguments, folder_.Log(process));
+    peers_.Know(process, ProcessKey::WithPid(pid));
   };
-  spawn("physics_server", "physics_server", options.participants, {});
+  spawn(kPhysicsServer, "physics_server", options.participants, {});
   for (const AgentRange& agents : processes_) {
-    if (!experiment_.agent(agents.first).external)
+    if (!experiment_.agent(agents.first).external) {
       spawn(ProcessName(agents), "agent", PeersOf(agents), {"--id", IdsText(agents)});
-    else
+    } else {
+      peers_.Know(ProcessName(agents), ProcessKey());  // the first that says it is that
       console_.Line("waiting for: agent --id " + IdsText(agents) + " --domain " + std::to_string(options.domain) +
                     (options.transport == DomainOptions().transport ? "" : " --transport " + options.transport) +
                     (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_->discovery_port()) : ""));
+    }
   }
 }
 
@@ -264,13 +270,12 @@ void DdsRun::Reap() {
 }
 
 void DdsRun::CheckWire() {
-  if (!audit_.HasNews()) return;
-  if (const std::string violation = audit_.Violation(experiment_); !violation.empty()) phases_.OnViolation(violation);
+  if (const std::string violation = audit_.Violation(); !violation.empty()) phases_.OnViolation(violation);
 }
 
 /// Records the complete rows and confirms them to the server. Returns the state of the run afterwards.
 RunPhases::View DdsRun::Record() {
-  const auto server = hub_->StatusOf("physics_server");  // before draining: all samples up to its tick have been sent
+  const auto server = hub_->StatusOf(kPhysicsServer);  // before draining: all samples up to its tick have been sent
   const bool done = server && static_cast<Life>(server->state()) == Life::kDone;
   const bool give_up = phases_.gives_up(WallClock::now());
   const std::int64_t rows = recorder_->Drain(give_up);
@@ -284,8 +289,7 @@ RunPhases::View DdsRun::Record() {
 
 RunPhases::View DdsRun::Look() const {
   const bool starting = phases_.phase() == RunPhases::Phase::kStarting;
-  return {.everybody_found =
-              starting && recorder_->Matched() && audit_.IsComplete(experiment_) && hub_->HaveTheExperiment(),
+  return {.everybody_found = starting && recorder_->Matched() && audit_.IsComplete() && hub_->HaveTheExperiment(),
           .newest_tick = recorder_->newest_tick(),
           .rows = confirmed_,
           .last_tick = {},
@@ -300,9 +304,8 @@ void DdsRun::Do(const RunPhases::Actions& actions) {
 }
 
 void DdsRun::AskToEnd() {
-  CallLibrary([this] {
-    hub_->Ask(Ask::kEnd, phases_.in_order() ? "done" : std::string(CutUtf8(phases_.failure(), 1000)));
-  });
+  CallLibrary(
+      [this] { hub_->Ask(Ask::kEnd, phases_.in_order() ? "done" : std::string(CutUtf8(phases_.failure(), 1000))); });
 }
 
 /// Calls the DDS library once the run is over. If it fails or hangs, End() still stops the processes with signals.
@@ -314,7 +317,7 @@ void DdsRun::CallLibrary(const std::function<void()>& call) try {
 
 /// The physics server's last status, with what it measured in the run; nothing before the server has sent it.
 std::optional<Hub::Status> DdsRun::ServerReport() const {
-  auto server = hub_->StatusOf("physics_server");
+  auto server = hub_->StatusOf(kPhysicsServer);
   if (recorder_->newest_tick() < 0 || !server || !IsLast(static_cast<Life>(server->state()))) return std::nullopt;
   return server;
 }
@@ -344,7 +347,8 @@ void DdsRun::Collect() {
     phases_.Fail(InWords(failure));
   }
   result_.lost = recorder_->lost();
-  const bool violated = !audit_.Violation(experiment_).empty();
+  CheckWire();
+  const bool violated = !audit_.Violation().empty();
   if (violated || phases_.found_everybody()) result_.wire_matches_graph = !violated;
   if (recorder_->newest_tick() >= 0) {
     result_.wall_s = recorder_->wall_s();

@@ -51,7 +51,10 @@ mascot_msgs::msg::Experiment MessageOf(const Experiment& experiment) {
 }
 
 Roster::Rules RosterRules(const Experiment& experiment) {
-  Roster::Rules rules{.processes = {"physics_server"}, .external = {}, .experiment = DigestOf(MessageOf(experiment))};
+  Roster::Rules rules{.processes = {kPhysicsServer},
+                      .external = {},
+                      .experiment = DigestOf(MessageOf(experiment)),
+                      .last_tick = experiment.ticks()};
   for (const AgentRange& agents : AgentProcesses(experiment)) rules.processes.push_back(ProcessName(agents));
   for (const AgentConfig& agent : experiment.agents) rules.external.push_back(agent.external);
   return rules;
@@ -61,22 +64,37 @@ Roster::Time Now() { return std::chrono::steady_clock::now(); }
 
 }  // namespace
 
-Hub::Hub(Domain& domain, const Experiment& experiment, const std::string& log, std::function<void()> wake)
-    : wake_(std::move(wake)),
+Hub::Hub(Domain& domain, const Peers& peers, const Experiment& experiment, const std::string& log,
+         std::function<void()> wake)
+    : peers_(peers),
+      wake_(std::move(wake)),
       log_("orchestrator", std::make_shared<spdlog::sinks::basic_file_sink_mt>(log)),
       message_(MessageOf(experiment)),
       roster_(RosterRules(experiment)),
       experiments_(domain, Topic::Experiment()),
       requests_(domain, Topic::Request()),
       recorder_(domain, Topic::Status()),
-      status_(domain, Topic::Status(), [this](const Status& status) { OnStatus(status); }) {
+      status_(domain, Topic::Status(),
+              [this](const Status& status, const Sender& sender) { OnStatus(status, sender.process); }) {
   log_.flush_on(spdlog::level::info);
+}
+
+Hub::~Hub() {
+  for (const std::string& line : peers_.Refusals()) log_.warn("{}", line);
 }
 
 void Hub::HandOutExperiment() {
   {
     const std::lock_guard lock(mutex_);
+    if (const auto version = peers_.version(); std::exchange(told_, version) != version) roster_.WantExperiment();
     if (!roster_.IsTimeToHandOut(Now())) return;
+  }
+  message_.processes().clear();
+  for (const auto& [process, key] : peers_.Places()) {
+    message_.processes().emplace_back();
+    message_.processes().back().name(process);
+    message_.processes().back().bits(key.bits());
+    message_.processes().back().mask(key.mask());
   }
   experiments_.Write(message_);
   log_.info("experiment '{}' handed out", message_.name());
@@ -109,11 +127,12 @@ void Hub::Ask(mascot::Ask ask, const std::string& reason) {
   log_.info("request: {} ({})", Text(ask), reason);
 }
 
-void Hub::OnStatus(const Status& status) {
+void Hub::OnStatus(const Status& status, const std::string& from) {
+  if (from == kOrchestrator) return;  // our own, as the recorder
   const std::lock_guard lock(mutex_);
-  const Roster::News news = roster_.OnStatus(status);
+  const Roster::News news = roster_.OnStatus(from, status);
   if (news.changed)
-    log_.info("{} {}, tick {} {}", status.process().to_string(), Text(static_cast<Life>(status.state())), status.tick(),
+    log_.info("{} {}, tick {} {}", from, Text(static_cast<Life>(status.state())), status.tick(),
               status.reason().to_string());
   if (news.wake) wake_();
 }

@@ -20,10 +20,15 @@ class Hub {
  public:
   using Status = Roster::Status;
 
-  /// `log` is the path of the log file. `wake` is called, from any thread, when the loop should look without delay.
-  Hub(Domain& domain, const Experiment& experiment, const std::string& log, std::function<void()> wake);
+  /// `peers`: the processes of the run, which are handed out with the experiment. `log` is the path of the log file.
+  /// `wake` is called, from any thread, when the loop should look without delay.
+  Hub(Domain& domain, const Peers& peers, const Experiment& experiment, const std::string& log,
+      std::function<void()> wake);
+  /// Logs what was not taken from whom.
+  ~Hub();
 
-  /// Publishes the experiment if a process has asked for it. Cheap to call often.
+  /// Publishes the experiment if a process has asked for it, or if there are news of who is who: an agent that comes
+  /// late gets what was published before it came, and so need not ask. Cheap to call often.
   void HandOutExperiment();
   /// Publishes that the recorder is ready, at most five times a second. Cheap to call often.
   void SayReady();
@@ -42,11 +47,13 @@ class Hub {
   std::string Missing() const;
 
  private:
-  void OnStatus(const Status& status);
+  void OnStatus(const Status& status, const std::string& from);
 
+  const Peers& peers_;
   std::function<void()> wake_;
   spdlog::logger log_;
   mascot_msgs::msg::Experiment message_;
+  std::uint64_t told_ = 0;    // version of peers_ at the last look
   mutable std::mutex mutex_;  // guards roster_
   Roster roster_;
 

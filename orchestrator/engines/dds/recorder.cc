@@ -58,8 +58,8 @@ Recorder::Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed)
   for (std::size_t index = 0; index < topics.size(); ++index)
     readers_.push_back(std::make_unique<RawReader>(
         domain, topics[index],
-        [this, index, topic = topics[index]](const RawReader::Bytes& bytes, std::int64_t sequence) {
-          OnSample(index, topic, bytes, sequence);
+        [this, index, topic = topics[index]](const RawReader::Bytes& bytes, const Sender& sender) {
+          OnSample(index, topic, bytes, sender.sequence);
         }));
 }
 
@@ -68,12 +68,15 @@ bool Recorder::Matched() const {
 }
 
 std::int64_t Recorder::TickOf(const Topic& topic, const RawReader::Bytes& bytes) const {
-  constexpr std::size_t kEncapsulation = 4, kStamp = 8;  // idl/mascot.idl: stamp first, then tick
-  if (topic.kind != TopicKind::kClock) return ReadAt<std::int64_t>(bytes, kEncapsulation + kStamp);
+  constexpr std::size_t kStamp = 4, kTick = 12, kAgent = 20;  // after the encapsulation; idl/mascot.idl
+  if (topic.kind != TopicKind::kClock)
+    return CheckedTick(topic, ReadAt<std::uint32_t>(bytes, kAgent), ReadAt<std::uint64_t>(bytes, kTick),
+                       experiment_.ticks());
   const auto rate = static_cast<std::uint64_t>(experiment_.control.rate_hz);
-  const auto seconds = ReadAt<std::uint32_t>(bytes, kEncapsulation);
-  const auto nanoseconds = ReadAt<std::uint32_t>(bytes, kEncapsulation + 4);
-  return static_cast<std::int64_t>(seconds * rate + (nanoseconds * rate + 500'000'000) / 1'000'000'000);
+  const auto seconds = ReadAt<std::uint32_t>(bytes, kStamp);
+  const auto nanoseconds = ReadAt<std::uint32_t>(bytes, kStamp + 4);
+  return CheckedTick(topic, 0, seconds * rate + (nanoseconds * rate + 500'000'000) / 1'000'000'000,
+                     experiment_.ticks());
 }
 
 void Recorder::OnSample(std::size_t index, const Topic& topic, const RawReader::Bytes& bytes, std::int64_t sequence) {

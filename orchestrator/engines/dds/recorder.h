@@ -39,6 +39,7 @@ class Recorder {
 
   /// `index`: index of the topic's reader in readers_.
   void OnSample(std::size_t index, const Topic& topic, const RawReader::Bytes& bytes, std::int64_t sequence);
+  /// Throws std::runtime_error unless the sample is of this topic's agent and of a tick of the run.
   std::int64_t TickOf(const Topic& topic, const RawReader::Bytes& bytes) const;
 
   Domain& domain_;

@@ -8,6 +8,7 @@
 
 #include "bus/wire.h"
 #include "experiment/toml/utf8.h"
+#include "idl/topics.h"
 
 namespace mascot {
 
@@ -22,15 +23,14 @@ constexpr auto kBetweenHellos = 200ms;
 
 Roster::Roster(Rules rules) : rules_(std::move(rules)) {}
 
-Roster::News Roster::OnStatus(const Status& status) {
-  const auto life = static_cast<Life>(status.state());
-  const std::string process = status.process().to_string();
+Roster::News Roster::OnStatus(const std::string& process, const Status& status) {
+  const Life life = CheckedLife(status, rules_.last_tick);
   const auto [known, is_new] = statuses_.try_emplace(process);
   const bool changed = is_new || known->second.state() != status.state();
   known->second = status;
   experiment_wanted_ |= life == Life::kWaiting;
-  const bool external =
-      status.agent() >= 1 && status.agent() <= rules_.external.size() && rules_.external[status.agent() - 1];
+  const auto agents = AgentsOf(process);
+  const bool external = agents && rules_.external.at(static_cast<std::size_t>(agents->first - 1));
   if (life == Life::kFailed && external)
     throw std::runtime_error(Utf8(process + " failed: " + status.reason().to_string()));
   if (status.experiment() != 0 && status.experiment() != rules_.experiment)

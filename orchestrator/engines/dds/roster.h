@@ -23,6 +23,7 @@ class Roster {
     std::vector<std::string> processes;  ///< names of all processes, the physics server first
     std::vector<bool> external;          ///< by agent id - 1: started by hand, so that its exit is not seen
     std::uint64_t experiment = 0;        ///< digest of the experiment of this run
+    std::int64_t last_tick = 0;          ///< of the run
   };
 
   /// What a status changes.
@@ -33,9 +34,11 @@ class Roster {
 
   explicit Roster(Rules rules);
 
-  /// Takes a status. Throws std::runtime_error if an external agent reports that it has failed, or if a process has
-  /// received another experiment than that of this run.
-  News OnStatus(const Status& status);
+  /// Takes a status of `process`. Throws std::runtime_error if an external agent reports that it has failed, if a
+  /// process has received another experiment than that of this run, or if the status cannot be one of this run.
+  News OnStatus(const std::string& process, const Status& status);
+  /// As if a process had asked for the experiment.
+  void WantExperiment() { experiment_wanted_ = true; }
   /// Whether to publish the experiment now: a process has asked for it since the last time, and that is at least 0.1 s
   /// ago. All processes receive it each time, so that a hundred agents that ask at once need it only once.
   bool IsTimeToHandOut(Time now);

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <optional>
+#include <set>
 #include <utility>
 
 #include "experiment/processes.h"
@@ -50,110 +50,141 @@ bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic
   return false;
 }
 
-/// Name of the only process that may write `topic`; empty: any process may.
+/// Who may write `topic`, for messages.
 std::string RightfulWriter(const Experiment& experiment, const Topic& topic) {
-  switch (topic.kind) {
-    case TopicKind::kBundle:
-    case TopicKind::kState:
-    case TopicKind::kClock:
-      return "physics_server";
-    case TopicKind::kCommand:
-    case TopicKind::kMessage:
-      for (const AgentRange& agents : AgentProcesses(experiment))
-        if (agents.Holds(topic.agent)) return ProcessName(agents);
-      return AgentName(topic.agent);
-    case TopicKind::kExperiment:
-      return "orchestrator";
-    case TopicKind::kRequest:
-    case TopicKind::kStatus:
-      return {};
+  if (topic.kind == TopicKind::kStatus) return "processes of the run";
+  for (const char* process : {kOrchestrator, kPhysicsServer})
+    if (MayWrite(process, topic)) return process;
+  for (const AgentRange& agents : AgentProcesses(experiment))
+    if (agents.Holds(topic.agent)) return ProcessName(agents);
+  return AgentName(topic.agent);
+}
+
+/// What a participant tells of itself: "process 4711 (ros2) on vm". Fast DDS and Cyclone DDS do, each in its own words.
+std::string Whereabouts(const rtps::ParticipantProxyData& participant) {
+  std::string process, program, host;
+  for (auto it = participant.m_properties.begin(); it != participant.m_properties.end(); ++it) {
+    const std::string key = it->first(), value = it->second();
+    if (key == "fastdds.physical_data.process" || key == "__Pid") process = "process " + value;
+    if (key == "__ProcessName") program = " (" + value + ")";
+    if (key == "fastdds.physical_data.host" || key == "__Hostname") host = " on " + value.substr(0, value.find(':'));
   }
-  return {};
+  return process + program + host;
 }
 
 }  // namespace
 
 void WireAudit::on_participant_discovery(DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) {
-  const std::lock_guard lock(mutex_);
-  // The name of a participant that has left is kept: its endpoints may be removed later, and are judged until then.
-  participants_[info.info.m_guid.guidPrefix] = info.info.m_participantName.to_string();
-  news_ = true;
-}
-
-void WireAudit::on_subscriber_discovery(DomainParticipant* self, rtps::ReaderDiscoveryInfo&& info) {
-  Note(self, info.info.guid(), {info.info.topicName().to_string(), true},
-       info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER);
-}
-
-void WireAudit::on_publisher_discovery(DomainParticipant* self, rtps::WriterDiscoveryInfo&& info) {
-  Note(self, info.info.guid(), {info.info.topicName().to_string(), false},
-       info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER);
-}
-
-void WireAudit::Note(DomainParticipant* self, const Guid& guid, Endpoint endpoint, bool removed) {
-  if (guid.guidPrefix == self->guid().guidPrefix) return;  // our own endpoint
-  const std::lock_guard lock(mutex_);
-  if (removed)
-    endpoints_.erase(guid);
+  using Info = rtps::ParticipantDiscoveryInfo;
+  const GuidPrefix& prefix = info.info.m_guid.guidPrefix;
+  if (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT)
+    OnParticipantGone(prefix);
   else
-    endpoints_[guid] = std::move(endpoint);
-  news_ = true;
+    OnParticipant(prefix, info.info.m_participantName.to_string(), Whereabouts(info.info));
 }
 
-std::string WireAudit::OwnerOf(const Guid& endpoint) const {
-  const auto found = participants_.find(endpoint.guidPrefix);
-  return found == participants_.end() ? "" : found->second;
+void WireAudit::on_subscriber_discovery(DomainParticipant*, rtps::ReaderDiscoveryInfo&& info) {
+  if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER)
+    OnEndpointGone(info.info.guid());
+  else
+    OnEndpoint(info.info.guid(), info.info.topicName().to_string(), /*reads=*/true);
 }
 
-std::string WireAudit::ViolationOf(const Guid& guid, const Endpoint& endpoint, const Experiment& experiment) const {
-  const auto topic = Topic::Parse(endpoint.topic);
-  if (!topic) return {};
-  const std::string owner = OwnerOf(guid);
-  const std::string what = owner + (endpoint.reads ? " reads " : " writes ") + topic->Name();
-  if (const auto agents = AgentsOf(owner)) {
-    const bool known = agents->first >= 1 && agents->last <= experiment.size();
-    if (!known && topic->agent > 0)
-      return what + ", but there are only agents 1 to " + std::to_string(experiment.size());
-    if (known && !MayHave(experiment, *agents, *topic, endpoint.reads))
-      return what + ", which the graph does not let it";
-  }
-  if (const std::string rightful = RightfulWriter(experiment, *topic);
-      !endpoint.reads && !rightful.empty() && owner != rightful)
-    return "'" + owner + "' writes " + topic->Name() + ", which only " + rightful + " may";
-  return {};
+void WireAudit::on_publisher_discovery(DomainParticipant*, rtps::WriterDiscoveryInfo&& info) {
+  if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER)
+    OnEndpointGone(info.info.guid());
+  else
+    OnEndpoint(info.info.guid(), info.info.topicName().to_string(), /*reads=*/false);
 }
 
-std::string WireAudit::Violation(const Experiment& experiment) const {
+void WireAudit::OnParticipant(const GuidPrefix& participant, const std::string& name, const std::string& whereabouts) {
   const std::lock_guard lock(mutex_);
-  std::set<std::pair<std::string, std::string>> writers;
-  for (const auto& [guid, endpoint] : endpoints_) {
-    if (std::string violation = ViolationOf(guid, endpoint, experiment); !violation.empty()) return violation;
-    const auto topic = Topic::Parse(endpoint.topic);
-    const bool exclusive = topic && !endpoint.reads && !RightfulWriter(experiment, *topic).empty();
-    if (exclusive && !writers.emplace(OwnerOf(guid), endpoint.topic).second)
-      return "two processes say that they are " + OwnerOf(guid);
-  }
-  return {};
+  const std::string where = name.empty() && whereabouts.empty() ? Text(participant) : whereabouts;
+  const Participant& known = participants_[participant] = {name, where, peers_.Claim(participant, name)};
+  // Its endpoints may be gone before we are told of them: to call itself so is enough.
+  if (known.process.empty() && IsProcess(name))
+    Find("two processes say that they are " + name + (where.empty() ? "" : " (" + where + ")"));
 }
 
-bool WireAudit::IsComplete(const Experiment& experiment) const {
+void WireAudit::Find(const std::string& violation) {
+  if (violation_.empty()) violation_ = violation;
+}
+
+void WireAudit::OnParticipantGone(const GuidPrefix& participant) {
+  const std::lock_guard lock(mutex_);
+  participants_.erase(participant);
+  peers_.Leave(participant);
+}
+
+void WireAudit::OnEndpoint(const Guid& guid, const std::string& dds_topic, bool reads) {
+  const auto topic = Topic::Parse(dds_topic);
+  if (!topic) return;
+  const std::lock_guard lock(mutex_);
+  const auto known = participants_.find(guid.guidPrefix);
+  const Participant self{.name = {}, .whereabouts = {}, .process = peers_.ProcessOf(guid.guidPrefix)};
+  const Endpoint& endpoint = endpoints_[guid] = {*topic, reads, known == participants_.end() ? self : known->second};
+  Find(ViolationOf(guid, endpoint));
+}
+
+void WireAudit::OnEndpointGone(const Guid& guid) {
+  const std::lock_guard lock(mutex_);
+  endpoints_.erase(guid);
+}
+
+std::string WireAudit::Violation() const {
+  const std::lock_guard lock(mutex_);
+  return violation_;
+}
+
+bool WireAudit::IsProcess(const std::string& name) const {
+  return std::ranges::any_of(peers_.Places(), [&](const Peers::Place& place) { return place.first == name; });
+}
+
+std::string WireAudit::ViolationOf(const Guid& guid, const Endpoint& endpoint) const {
+  const auto& [topic, reads, owner] = endpoint;
+  const bool is_ours = !owner.process.empty();
+  const std::string& process = is_ours ? owner.process : owner.name;  // of another who calls itself an agent, too
+  const std::string alias = is_ours && !owner.name.empty() && owner.name != process ? " (as '" + owner.name + "')" : "";
+  const std::string what = process + alias + (reads ? " reads " : " writes ") + topic.Name();
+  if (const auto agents = AgentsOf(process)) {
+    const bool exist = agents->first >= 1 && agents->last <= experiment_.size();
+    if (!exist && (topic.agent > 0 || !reads))
+      return what + ", but there are only agents 1 to " + std::to_string(experiment_.size());
+    if (exist && !MayHave(experiment_, *agents, topic, reads)) return what + ", which the graph does not let it";
+  }
+  if (reads) return {};
+  if (!is_ours || !MayWrite(process, topic)) return WrongWriter(endpoint);
+  const bool twice = HasOneWriter(topic) && std::ranges::any_of(endpoints_, [&](const auto& other) {
+                       return other.first != guid && !other.second.reads && other.second.topic == endpoint.topic;
+                     });
+  return twice ? what + " twice" : "";
+}
+
+std::string WireAudit::WrongWriter(const Endpoint& endpoint) const {
+  const auto& [topic, reads, owner] = endpoint;
+  const std::string where = owner.whereabouts.empty() ? "" : " (" + owner.whereabouts + ")";
+  const std::string& name = owner.name.empty() ? owner.process : owner.name;
+  return (name.empty() ? "a participant without a name" + where : "'" + name + "'") + " writes " + topic.Name() +
+         ", which only " + RightfulWriter(experiment_, topic) + " may" + (name.empty() ? "" : where);
+}
+
+bool WireAudit::IsComplete() const {
   const std::lock_guard lock(mutex_);
   std::set<std::pair<AgentRange, Topic>> reading, writing;
   for (const auto& [guid, endpoint] : endpoints_) {
-    const auto agents = AgentsOf(OwnerOf(guid));
-    const auto topic = Topic::Parse(endpoint.topic);
-    if (agents && topic) (endpoint.reads ? reading : writing).emplace(*agents, *topic);
+    const auto agents = AgentsOf(endpoint.owner.process);
+    if (agents) (endpoint.reads ? reading : writing).emplace(*agents, endpoint.topic);
   }
-  const bool bundled = experiment.network.delivery == Delivery::kBundled;
-  for (const AgentRange& process : AgentProcesses(experiment)) {
+  const bool bundled = experiment_.network.delivery == Delivery::kBundled;
+  for (const AgentRange& process : AgentProcesses(experiment_)) {
     const auto reads = [&](const Topic& topic) { return reading.contains({process, topic}); };
     const auto writes = [&](const Topic& topic) { return writing.contains({process, topic}); };
     for (int id = process.first; id <= process.last; ++id) {
       if (!reads(bundled ? Topic::Bundle(id) : Topic::State(id)) || !writes(Topic::Command(id))) return false;
-      if (experiment.agent(id).sends_messages && !writes(Topic::Message(id))) return false;
-      for (const Graph::Neighbour& heard : experiment.graph.HeardBy(id)) {
+      if (experiment_.agent(id).sends_messages && !writes(Topic::Message(id))) return false;
+      for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(id)) {
         if (!bundled && !reads(Topic::State(heard.id))) return false;
-        if (experiment.agent(heard.id).sends_messages && !reads(Topic::Message(heard.id))) return false;
+        if (experiment_.agent(heard.id).sends_messages && !reads(Topic::Message(heard.id))) return false;
       }
     }
   }

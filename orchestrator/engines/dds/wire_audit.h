@@ -1,28 +1,41 @@
 #pragma once
 
-#include <atomic>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <map>
 #include <mutex>
-#include <set>
 #include <string>
 
+#include "bus/peers.h"
 #include "experiment/experiment.h"
 #include "idl/topics.h"
 
 namespace mascot {
 
 /// Compares the readers and writers that DDS discovery reports with the graph. This proves that a run was
-/// decentralised: it relies on the endpoints that exist in the domain, not on what our code intends. Thread-safe.
+/// decentralised: it relies on the endpoints that exist in the domain, not on what our code intends.
+///
+/// A process hears what all of its participants hear. Others may listen, under names that are not those of processes of
+/// the run, and may not write what a run reads. What was found once stays found, also when the endpoint has gone.
+/// Thread-safe.
 class WireAudit : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
-  /// Whether an endpoint or participant was discovered or has left since the last call.
-  bool HasNews() { return news_.exchange(false); }
-  /// Describes the first violation found: an agent that reads or writes a topic that it must not, or another process
-  /// that writes in its place. Empty if there is none.
-  std::string Violation(const Experiment& experiment) const;
+  using Guid = eprosima::fastrtps::rtps::GUID_t;
+  using GuidPrefix = Peers::GuidPrefix;
+
+  /// `peers` knows the processes of the run; this audit gives agents that are started by hand their places there.
+  WireAudit(const Experiment& experiment, Peers& peers) : experiment_(experiment), peers_(peers) {}
+
+  /// The first violation that was found: who reads or writes a topic that it must not. Empty if there was none.
+  std::string Violation() const;
   /// Whether every reader that the graph asks for, and every writer of the agents, has been discovered.
-  bool IsComplete(const Experiment& experiment) const;
+  bool IsComplete() const;
+
+  // What discovery reports.
+  /// `whereabouts`: what else is known of the participant, for messages: "process 4711 on vm".
+  void OnParticipant(const GuidPrefix& participant, const std::string& name, const std::string& whereabouts);
+  void OnParticipantGone(const GuidPrefix& participant);
+  void OnEndpoint(const Guid& guid, const std::string& dds_topic, bool reads);
+  void OnEndpointGone(const Guid& guid);
 
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*,
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
@@ -32,20 +45,29 @@ class WireAudit : public eprosima::fastdds::dds::DomainParticipantListener {
                               eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
 
  private:
-  using Guid = eprosima::fastrtps::rtps::GUID_t;
-  using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
-  struct Endpoint {
-    std::string topic;
-    bool reads = false;
+  struct Participant {
+    std::string name;
+    std::string whereabouts;
+    std::string process;  // of the run; empty: none
   };
-  void Note(eprosima::fastdds::dds::DomainParticipant* self, const Guid& guid, Endpoint endpoint, bool removed);
-  std::string OwnerOf(const Guid& endpoint) const;
-  std::string ViolationOf(const Guid& guid, const Endpoint& endpoint, const Experiment& experiment) const;
+  struct Endpoint {
+    Topic topic;
+    bool reads = false;
+    Participant owner;
+  };
+  /// Notes a violation, if it is the first; empty: there is none.
+  void Find(const std::string& violation);
+  std::string ViolationOf(const Guid& guid, const Endpoint& endpoint) const;
+  /// Of one that writes what it must not.
+  std::string WrongWriter(const Endpoint& endpoint) const;
+  bool IsProcess(const std::string& name) const;
 
-  std::atomic<bool> news_ = false;
+  const Experiment& experiment_;
+  Peers& peers_;
   mutable std::mutex mutex_;
-  std::map<GuidPrefix, std::string> participants_;
-  std::map<Guid, Endpoint> endpoints_;
+  std::map<GuidPrefix, Participant> participants_;
+  std::map<Guid, Endpoint> endpoints_;  // on topics of the run, there now
+  std::string violation_;
 };
 
 }  // namespace mascot

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <fastcdr/exceptions/Exception.h>
+#include <fastdds/rtps/common/SerializedPayload.h>
+
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+namespace mascot {
+
+/// A fastddsgen type whose padding bytes are zero on the wire. Fast CDR leaves old memory in them, which would make
+/// recordings differ from run to run.
+template <class PubSub>
+class ZeroPadded : public PubSub {
+ public:
+  bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override {
+    std::memset(payload->data, 0, payload->max_size);
+    return PubSub::serialize(data, payload);
+  }
+};
+
+/// A type as our participants register it: what they write is ZeroPadded, and what they receive stays bytes (a
+/// std::vector<std::uint8_t>) until it is known who sent it.
+template <class PubSub>
+class WireType : public ZeroPadded<PubSub> {
+ public:
+  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* bytes) override {
+    static_cast<std::vector<std::uint8_t>*>(bytes)->assign(payload->data, payload->data + payload->length);
+    return true;
+  }
+};
+
+/// Where samples of a type hold the number of elements of their only sequence, and the fewest bytes that an element
+/// takes; 0, 0 for types without a sequence. Specialised in bus/wire.h.
+template <class PubSub>
+struct SequenceOf {
+  static constexpr std::size_t kAt = 0, kElement = 0;
+};
+
+/// Whether `bytes` can hold as many elements as they say. Fast CDR would reserve memory for that number unseen.
+template <class PubSub>
+bool HoldsItsSequence(std::span<const std::uint8_t> bytes) {
+  using Sequence = SequenceOf<PubSub>;
+  if constexpr (Sequence::kElement == 0) return true;
+  std::uint32_t count = 0;
+  if (bytes.size() < Sequence::kAt + sizeof count) return false;
+  std::memcpy(&count, bytes.data() + Sequence::kAt, sizeof count);
+  return count * std::uint64_t{Sequence::kElement} <= bytes.size();
+}
+
+/// Decodes a sample from `bytes`: a 4-byte encapsulation header, then CDR. Returns false if they are no such sample.
+template <class PubSub>
+bool Decode(std::span<const std::uint8_t> bytes, typename PubSub::type& sample) {
+  if (!HoldsItsSequence<PubSub>(bytes)) return false;
+  thread_local PubSub type;
+  eprosima::fastrtps::rtps::SerializedPayload_t payload;  // borrows the bytes: reset below, or it would free them
+  payload.data = const_cast<std::uint8_t*>(bytes.data());
+  payload.length = payload.max_size = static_cast<std::uint32_t>(bytes.size());
+  bool ok = false;
+  try {
+    ok = type.deserialize(&payload, &sample);
+  } catch (const eprosima::fastcdr::exception::Exception&) {  // for an encapsulation that it does not know
+  }
+  payload.data = nullptr;
+  payload.length = payload.max_size = 0;
+  return ok;
+}
+
+}  // namespace mascot

@@ -1,0 +1,130 @@
+#include "bus/peers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace mascot {
+
+bool MayWrite(std::string_view process, const Topic& topic) {
+  switch (topic.kind) {
+    case TopicKind::kBundle:
+    case TopicKind::kState:
+    case TopicKind::kClock:
+      return process == kPhysicsServer;
+    case TopicKind::kCommand:
+    case TopicKind::kMessage: {
+      const auto agents = AgentsOf(process);
+      return agents && agents->Holds(topic.agent);
+    }
+    case TopicKind::kExperiment:
+      return process == kOrchestrator;
+    case TopicKind::kRequest:  // the server may ask for reports (Lifecycle)
+      return process == kOrchestrator || process == kPhysicsServer;
+    case TopicKind::kStatus:
+      return true;
+  }
+  return false;
+}
+
+bool HasOneWriter(const Topic& topic) { return topic.kind != TopicKind::kRequest && topic.kind != TopicKind::kStatus; }
+
+void Peers::Know(const std::string& process, const ProcessKey& key) {
+  const std::lock_guard lock(mutex_);
+  const auto entry = std::ranges::find(entries_, process, &Entry::process);
+  if (entry == entries_.end())
+    entries_.push_back({process, key});
+  else if (key.IsExact())
+    entry->key = key;
+}
+
+std::vector<Peers::Place> Peers::Places() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<Place> places;
+  for (const Entry& entry : entries_) places.emplace_back(entry.process, entry.key);
+  return places;
+}
+
+std::uint64_t Peers::version() const {
+  const std::lock_guard lock(mutex_);
+  return version_;
+}
+
+std::optional<std::size_t> Peers::Find(const GuidPrefix& participant, std::string_view name) const {
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const auto& [process, key, claimant] = entries_[i];
+    if (!key.IsAnybody() && key.Fits(participant) && (!found || process == name)) found = i;
+  }
+  return found;
+}
+
+std::optional<std::size_t> Peers::FindWriter(const Topic& topic, const GuidPrefix& writer) const {
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const auto& [process, key, claimant] = entries_[i];
+    // Only the experiment says who the orchestrator is, to those that it has not started.
+    const bool fits = key.Fits(writer) && (!key.IsAnybody() || topic.kind == TopicKind::kExperiment);
+    if (fits && MayWrite(process, topic)) return i;
+  }
+  return {};
+}
+
+std::string Peers::Claim(const GuidPrefix& participant, const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  if (const auto found = Find(participant, name)) {
+    Entry& entry = entries_[*found];
+    if (entry.process == name) entry.key = ProcessKey::Of(participant);
+    return entry.process;
+  }
+  for (Entry& entry : entries_)
+    if (entry.process == name && entry.key.IsNobody()) {
+      entry.key = ProcessKey::Of(participant);
+      entry.claimant = participant;
+      ++version_;
+      return name;
+    }
+  return {};
+}
+
+void Peers::Leave(const GuidPrefix& participant) {
+  const std::lock_guard lock(mutex_);
+  for (Entry& entry : entries_)
+    if (entry.claimant == participant) {
+      entry = {.process = entry.process, .key = {}};
+      ++version_;
+    }
+}
+
+std::string Peers::ProcessOf(const GuidPrefix& participant) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = Find(participant);
+  return found ? entries_[*found].process : std::string();
+}
+
+std::string Peers::WriterOf(const Topic& topic, const GuidPrefix& writer) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = FindWriter(topic, writer);
+  return found ? entries_[*found].process : std::string();
+}
+
+std::string Peers::Believe(const Topic& topic, const GuidPrefix& writer) {
+  const std::lock_guard lock(mutex_);
+  if (const auto found = FindWriter(topic, writer)) {
+    entries_[*found].key = ProcessKey::Of(writer);
+    return entries_[*found].process;
+  }
+  ++refused_[{topic, writer}];
+  return {};
+}
+
+std::vector<std::string> Peers::Refusals() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> lines;
+  for (const auto& [from, samples] : refused_)
+    if (!FindWriter(from.first, from.second))  // it may have come before we were told who that is
+      lines.push_back(fmt::format("not taken: {} sample{} of {} from {}, who may not write it", samples,
+                                  samples == 1 ? "" : "s", from.first.Name(), Text(from.second)));
+  return lines;
+}
+
+}  // namespace mascot

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <fastdds/rtps/common/GuidPrefix_t.hpp>
+#include <string>
+
+namespace mascot {
+
+/// First bytes of the name that DDS gives a participant (its GUID prefix), as far as they are known of a process. Fast
+/// DDS puts there, two bytes each: its own vendor id, the host, the low bits of the process id, a number that the
+/// process has drawn. They are the same in all participants of a process; the last four bytes differ.
+class ProcessKey {
+ public:
+  using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
+
+  /// Fits nobody: the process is not known yet.
+  ProcessKey() = default;
+  /// Fits everybody: whoever comes first is believed.
+  static ProcessKey Anybody() { return {0, 0}; }
+  /// Fits a process that this host has started, which is known by its process id alone until it shows up.
+  static ProcessKey WithPid(pid_t pid);
+  /// Fits exactly the process of this participant.
+  static ProcessKey Of(const GuidPrefix& participant);
+  /// What bits() and mask() of another key have told.
+  ProcessKey(std::uint64_t bits, std::uint64_t mask) : bits_(bits), mask_(mask) {}
+
+  bool Fits(const GuidPrefix& participant) const;
+  /// Whether no other process can fit.
+  bool IsExact() const { return mask_ == ~std::uint64_t{0}; }
+  bool IsNobody() const { return mask_ == 0 && bits_ != 0; }
+  bool IsAnybody() const { return mask_ == 0 && bits_ == 0; }
+  std::uint64_t bits() const { return bits_; }
+  std::uint64_t mask() const { return mask_; }
+
+ private:
+  std::uint64_t bits_ = 1, mask_ = 0;  // the first eight bytes, and which bits of them are known
+};
+
+/// A participant as Fast DDS prints it: "01.0f.78.fd.f5.37.39.de.00.00.00.00".
+std::string Text(const ProcessKey::GuidPrefix& participant);
+
+}  // namespace mascot

@@ -1,0 +1,73 @@
+// A law that breaks the rules: the process of agent 1 opens a second participant, which calls itself rviz, and listens
+// to agent 4.
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <fastdds/dds/topic/TopicDataType.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "agent/plugin.h"
+
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+
+/// Matches the writers of states, and decodes nothing.
+class State : public dds::TopicDataType {
+ public:
+  State() {
+    setName("mascot_msgs::msg::dds_::AgentState_");
+    m_typeSize = 256;
+    m_isGetKeyDefined = false;
+  }
+  bool serialize(void*, eprosima::fastrtps::rtps::SerializedPayload_t*) override { return false; }
+  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t*, void*) override { return true; }
+  std::function<std::uint32_t()> getSerializedSizeProvider(void*) override {
+    return [] { return 256U; };
+  }
+  void* createData() override { return new char; }
+  void deleteData(void* data) override { delete static_cast<char*>(data); }
+  bool getKey(void*, eprosima::fastrtps::rtps::InstanceHandle_t*, bool) override { return false; }
+};
+
+/// The DDS domain of this process: the number after --domain on its command line; -1: it has none.
+int OwnDomain() {
+  std::ifstream file("/proc/self/cmdline");
+  const std::string words((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::string option("--domain\0", 9);
+  const auto at = words.find(option);
+  return at == words.npos ? -1 : std::stoi(words.substr(at + option.size()));
+}
+
+void Listen(int domain) {
+  dds::DomainParticipantQos qos;
+  qos.name("rviz");
+  auto* participant =
+      dds::DomainParticipantFactory::get_instance()->create_participant(static_cast<dds::DomainId_t>(domain), qos);
+  if (participant == nullptr) return;
+  const dds::TypeSupport type(new State);
+  type.register_type(participant);
+  auto* topic = participant->create_topic("rt/agent_4/state", type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
+  auto* subscriber = participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
+  if (topic != nullptr && subscriber != nullptr) subscriber->create_datareader(topic, dds::DATAREADER_QOS_DEFAULT);
+}
+
+class Eavesdropper final : public mascot::Law {
+ public:
+  explicit Eavesdropper(const mascot::PluginSetup& setup) {
+    if (const int domain = OwnDomain(); setup.id == 1 && domain >= 0) Listen(domain);
+  }
+
+  Eigen::Vector3d Want_W(double /*t_s*/, const mascot::Motion& self, std::span<const mascot::Heard>) override {
+    return -self.v_WB;
+  }
+};
+
+}  // namespace
+
+MASCOT_PLUGIN_LAW(Eavesdropper)

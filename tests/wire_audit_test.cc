@@ -1,0 +1,224 @@
+// What the audit finds in what discovery reports, without DDS.
+#include "orchestrator/engines/dds/wire_audit.h"
+
+#include <gmock/gmock.h>
+
+#include "agent/laws.h"
+
+namespace mascot {
+namespace {
+
+/// Participants are numbered; those of a process are the same but for their last byte.
+WireAudit::GuidPrefix Participant(int process, int number = 0) {
+  WireAudit::GuidPrefix prefix;
+  prefix.value[0] = 1;
+  prefix.value[1] = 15;
+  prefix.value[4] = static_cast<std::uint8_t>(process);
+  prefix.value[8] = static_cast<std::uint8_t>(number);
+  return prefix;
+}
+
+Experiment Load(const std::string& toml) { return LoadExperiment(Section::FromText(toml, "a.toml"), "a"); }
+
+/// A run of three agents on a path: 1 - 2 - 3. The server is process 100, the agents are 101 to 103.
+class WireAuditTest : public testing::Test {
+ protected:
+  WireAuditTest() {
+    peers_.Know("orchestrator", ProcessKey::Of(Participant(99)));
+    Start("physics_server", 100);
+    for (int id = 1; id <= 3; ++id) Start(AgentName(id), 100 + id);
+  }
+  void Start(const std::string& process, int pid) {
+    peers_.Know(process, ProcessKey::WithPid(pid));
+    audit_.OnParticipant(Participant(pid), process, "");
+  }
+  /// A new endpoint of a participant. Returns its GUID.
+  WireAudit::Guid Endpoint(const WireAudit::GuidPrefix& participant, const Topic& topic, bool reads) {
+    WireAudit::Guid guid;
+    guid.guidPrefix = participant;
+    guid.entityId.value[0] = ++endpoints_;
+    audit_.OnEndpoint(guid, topic.DdsName(), reads);
+    return guid;
+  }
+  WireAudit::Guid Reads(const WireAudit::GuidPrefix& participant, const Topic& topic) {
+    return Endpoint(participant, topic, true);
+  }
+  WireAudit::Guid Writes(const WireAudit::GuidPrefix& participant, const Topic& topic) {
+    return Endpoint(participant, topic, false);
+  }
+
+  const Experiment experiment_ =
+      Load("[run]\nduration_s = 1.0\n[agents]\ncount = 3\n[graph]\ntopology = \"path\"\n[law]\nname = \"consensus\"\n");
+  Peers peers_;
+  WireAudit audit_{experiment_, peers_};
+  std::uint8_t endpoints_ = 0;
+};
+
+TEST_F(WireAuditTest, FindsNothingInARunAsItShouldBe) {
+  Reads(Participant(101), Topic::State(1));
+  Reads(Participant(101), Topic::State(2));
+  Writes(Participant(101), Topic::Command(1));
+  Writes(Participant(101), Topic::Status());
+  Reads(Participant(101), Topic::Request());
+  Writes(Participant(100), Topic::State(1));
+  Writes(Participant(100), Topic::Status());
+  Writes(Participant(100), Topic::Request());
+  Reads(Participant(99), Topic::State(3));
+  Writes(Participant(99), Topic::Experiment());
+  Writes(Participant(99), Topic::Request());
+  Writes(Participant(99), Topic::Status());
+  EXPECT_EQ(audit_.Violation(), "");
+}
+
+TEST_F(WireAuditTest, AnyoneMayListenWhoDoesNotCallItselfAnAgent) {
+  audit_.OnParticipant(Participant(200), "rviz", "");
+  for (const Topic& topic : {Topic::State(1), Topic::Command(2), Topic::Clock(), Topic::Status(), Topic::Request()})
+    Reads(Participant(200), topic);
+  EXPECT_EQ(audit_.Violation(), "");
+}
+
+TEST_F(WireAuditTest, RemembersWhoHasLeft) {
+  audit_.OnEndpointGone(Reads(Participant(101), Topic::State(3)));
+  audit_.OnParticipantGone(Participant(101));
+  EXPECT_EQ(audit_.Violation(), "agent_1 reads /agent_3/state, which the graph does not let it");
+}
+
+TEST_F(WireAuditTest, NobodyElseMayCallItselfAProcessOfTheRun) {
+  audit_.OnParticipant(Participant(200), "agent_1", "process 200 on vm");
+  audit_.OnParticipantGone(Participant(200));
+  EXPECT_EQ(audit_.Violation(), "two processes say that they are agent_1 (process 200 on vm)");
+}
+
+TEST_F(WireAuditTest, ASecondParticipantOfAProcessIsThatProcess) {
+  audit_.OnParticipant(Participant(101, 1), "rviz", "");
+  Reads(Participant(101, 1), Topic::State(2));
+  EXPECT_EQ(audit_.Violation(), "");
+  Reads(Participant(101, 1), Topic::State(3));
+  EXPECT_EQ(audit_.Violation(), "agent_1 (as 'rviz') reads /agent_3/state, which the graph does not let it");
+}
+
+TEST_F(WireAuditTest, AProcessHasOneVoiceOnATopic) {
+  const WireAudit::Guid first = Writes(Participant(101), Topic::Command(1));
+  audit_.OnEndpoint(first, Topic::Command(1).DdsName(), /*reads=*/false);  // is reported again when its QoS changes
+  EXPECT_EQ(audit_.Violation(), "");
+  audit_.OnParticipant(Participant(101, 1), "spare", "");
+  Writes(Participant(101, 1), Topic::Command(1));
+  EXPECT_EQ(audit_.Violation(), "agent_1 (as 'spare') writes /agent_1/command twice");
+}
+
+TEST_F(WireAuditTest, AnAgentThatDoesNotExistMayListenAndNotSpeak) {
+  audit_.OnParticipant(Participant(200), "agent_9", "");
+  Reads(Participant(200), Topic::Experiment());
+  EXPECT_EQ(audit_.Violation(), "");
+  Writes(Participant(200), Topic::Status());
+  EXPECT_EQ(audit_.Violation(), "agent_9 writes /status, but there are only agents 1 to 3");
+}
+
+struct Voice {
+  Topic topic;
+  const char* rightful;
+};
+
+TEST_F(WireAuditTest, StrangersAreNamedOnEveryTopicOfTheRun) {
+  for (const Voice& voice : {Voice{Topic::State(1), "physics_server"}, Voice{Topic::Bundle(1), "physics_server"},
+                             Voice{Topic::Clock(), "physics_server"}, Voice{Topic::Command(1), "agent_1"},
+                             Voice{Topic::Message(1), "agent_1"}, Voice{Topic::Experiment(), "orchestrator"},
+                             Voice{Topic::Request(), "orchestrator"}, Voice{Topic::Status(), "processes of the run"}}) {
+    WireAudit audit(experiment_, peers_);
+    WireAudit::Guid guid;
+    guid.guidPrefix = Participant(200);
+    audit.OnParticipant(guid.guidPrefix, "rviz", "process 200 on vm");
+    audit.OnEndpoint(guid, voice.topic.DdsName(), /*reads=*/false);
+    EXPECT_EQ(audit.Violation(),
+              "'rviz' writes " + voice.topic.Name() + ", which only " + voice.rightful + " may (process 200 on vm)");
+  }
+}
+
+TEST_F(WireAuditTest, AStrangerWithoutANameIsNamedByItsProcessOrItsGuid) {
+  audit_.OnParticipant(Participant(200), "", "process 200 (ddsperf) on vm");
+  Writes(Participant(200), Topic::Command(1));
+  EXPECT_EQ(
+      audit_.Violation(),
+      "a participant without a name (process 200 (ddsperf) on vm) writes /agent_1/command, which only agent_1 may");
+  WireAudit another(experiment_, peers_);
+  WireAudit::Guid guid;
+  guid.guidPrefix = Participant(200);
+  another.OnParticipant(guid.guidPrefix, "", "");
+  another.OnEndpoint(guid, Topic::Clock().DdsName(), /*reads=*/false);
+  EXPECT_EQ(another.Violation(),
+            "a participant without a name (01.0f.00.00.c8.00.00.00.00.00.00.00) writes /clock, which only "
+            "physics_server may");
+}
+
+TEST_F(WireAuditTest, AProcessOfTheRunMayNotWriteForAnother) {
+  Writes(Participant(102), Topic::Command(1));
+  EXPECT_EQ(audit_.Violation(), "agent_2 writes /agent_1/command, which the graph does not let it");
+  WireAudit another(experiment_, peers_);
+  WireAudit::Guid guid;
+  guid.guidPrefix = Participant(100);
+  another.OnParticipant(guid.guidPrefix, "physics_server", "");
+  another.OnEndpoint(guid, Topic::Experiment().DdsName(), /*reads=*/false);
+  EXPECT_EQ(another.Violation(), "'physics_server' writes /experiment, which only orchestrator may");
+}
+
+/// What is found if the process of agents 1 and 2, on a path of four agents, reads this topic.
+std::string IfAgentsOneAndTwoRead(const Topic& topic, const std::string& network) {
+  const Experiment experiment = Load(
+      "[run]\nduration_s = 1.0\n[agents]\ncount = 4\n[graph]\ntopology = \"path\"\n[law]\nname = \"consensus\"\n"
+      "[network]\nagents_per_process = 2\n" +
+      network);
+  Peers peers;
+  peers.Know("agents_1-2", ProcessKey::WithPid(100));
+  WireAudit audit(experiment, peers);
+  audit.OnParticipant(Participant(100), "agents_1-2", "");
+  WireAudit::Guid guid;
+  guid.guidPrefix = Participant(100);
+  audit.OnEndpoint(guid, topic.DdsName(), /*reads=*/true);
+  return audit.Violation();
+}
+
+TEST(WireAudit, AProcessOfSeveralAgentsMayHearWhatOneOfThemMayAndNoMore) {
+  EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::State(3), ""), "") << "agent 2 may hear it";
+  EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::State(4), ""),
+            "agents_1-2 reads /agent_4/state, which the graph does not let it");
+  EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::Bundle(1), ""),
+            "agents_1-2 reads /agent_1/bundle, which the graph does not let it");
+}
+
+TEST(WireAudit, AnAgentThatIsSentBundlesMayHearNothingElse) {
+  const std::string bundled = "delivery = \"bundled\"\n";
+  EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::Bundle(2), bundled), "");
+  EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::Bundle(3), bundled),
+            "agents_1-2 reads /agent_3/bundle, which the graph does not let it");
+  EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::State(1), bundled),
+            "agents_1-2 reads /agent_1/state, which the graph does not let it");
+}
+
+TEST(WireAudit, IsNotCompleteWithoutEveryReaderOfMessages) {
+  const Experiment two = Load(
+      "[run]\nduration_s = 1.0\n[agents]\ncount = 2\n[network]\nagents_per_process = 2\n[law]\nname = 'custom'\n"
+      "python = '''\ndef control(t, me, heard):\n  return [0, 0]\ndef message(me):\n  return [1]\n'''\n");
+  Peers peers;
+  peers.Know("agents_1-2", ProcessKey::WithPid(100));
+  WireAudit audit(two, peers);
+  audit.OnParticipant(Participant(100), "agents_1-2", "");
+  WireAudit::Guid guid;
+  guid.guidPrefix = Participant(100);
+  const auto add = [&](const Topic& topic, bool reads) {
+    ++guid.entityId.value[0];
+    audit.OnEndpoint(guid, topic.DdsName(), reads);
+  };
+  for (const int id : {1, 2}) {
+    add(Topic::State(id), true);
+    add(Topic::Command(id), false);
+    add(Topic::Message(id), false);
+  }
+  add(Topic::Message(1), true);
+  EXPECT_FALSE(audit.IsComplete()) << "nobody reads the messages of agent 2";
+  add(Topic::Message(2), true);
+  EXPECT_TRUE(audit.IsComplete());
+  EXPECT_EQ(audit.Violation(), "");
+}
+
+}  // namespace
+}  // namespace mascot
