@@ -326,7 +326,11 @@ std::uint64_t MappedSharedMemory() {
 TEST(SharedMemoryNeed, IsKnownBeforeAParticipantIsMade) {
   const DomainLock lock(-1);
   for (const int peers : {2, 100}) {
-    DomainOptions options{.domain = lock.domain(), .transport = "shm", .name = "needy", .participants = peers};
+    DomainOptions options;
+    options.domain = lock.domain();
+    options.transport = "shm";
+    options.name = "needy";
+    options.participants = peers;
     const auto before = MappedSharedMemory();
     const Domain domain(options, [] {});
     const auto taken = static_cast<double>(MappedSharedMemory() - before);

@@ -23,17 +23,15 @@ Up Endless(const ScratchFolder& folder, std::vector<std::string> more = {}) {
 }
 
 /// The DDS domain that `up` prints. `said`: what it printed.
-int DomainOf(const std::string& said) {
+int DomainIn(const std::string& said) {
   const std::size_t at = said.find("domain ");
   return at == said.npos ? kNoDomain : std::stoi(said.substr(at + 7));
 }
 
-int DomainOf(const Running& up) { return DomainOf(up.err()); }
-
 /// Waits until no shared memory of a run is left: its janitor, or another test, may be just about to remove some.
 /// `said`: what the run's `up` printed.
 testing::AssertionResult NothingIsLeft(const std::string& said) {
-  const int domain = DomainOf(said);
+  const int domain = DomainIn(said);
   if (Until([&] { return StaleSharedMemory(domain).empty(); })) return testing::AssertionSuccess();
   return testing::AssertionFailure() << StaleSharedMemory(domain).front() << " was left";
 }
@@ -128,7 +126,7 @@ TEST_P(Orphaned, RunsClearUpAfterAnOrchestratorThatWasKilled) {
   ASSERT_TRUE(Until([&] { return (file.empty() ? up.err() : up.File(file)).find(text) != std::string::npos; }));
   up.Signal(SIGKILL);
   up.Wait();  // if it was faster than we, all the better
-  EXPECT_TRUE(Until([&] { return IsFree(DomainOf(up)); })) << "some process still lives";
+  EXPECT_TRUE(Until([&] { return IsFree(DomainIn(up.err())); })) << "some process still lives";
   EXPECT_TRUE(NothingIsLeft(up));
 }
 
@@ -429,6 +427,22 @@ TEST(Faults, AnAgentWithAnUnknownIdEndsTheRun) {
                 {"--id", "9", "--loopback", "--domain", std::to_string(DomainOf(up))}, folder.File("ninth"));
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(up.err(), HasSubstr("agent_9 writes /status, but there are only agents 1 to 4"));
+}
+
+TEST(Faults, AnAgentWhoseLawHangsSaysSoWhenItIsInterrupted) {
+  ScratchFolder folder;
+  const std::string law =
+      "import time\ndef control(t, me, neighbours):\n  if t > 0.1 and me.id == 1:\n    print('I hang', flush=True)\n"
+      "    time.sleep(1000)\n  return [0, 0]\n";
+  Up up(folder, "run", Python(folder, 2, law, "fidelity = false\n"),
+        {"--set", "agents.override=[{id = 1, host = \"external\"}]", "--set", "run.agent_timeout_s=1000"});
+  ASSERT_TRUE(Until([&] { return up.Said("waiting for: agent --id 1"); }));
+  Running agent(std::string(MASCOT_BINARY_DIR) + "/agent", {"--id", "1", "--domain", std::to_string(DomainOf(up))},
+                folder.File("agent"));
+  ASSERT_TRUE(Until([&] { return agent.Said("I hang"); })) << agent.err();
+  agent.Signal(SIGINT);
+  EXPECT_EQ(agent.Wait(), 130);
+  EXPECT_THAT(agent.err(), HasSubstr("agent_1: the DDS library does not end: leaving by force\n"));
 }
 
 TEST(Faults, ASecondServerEndsTheRun) {
