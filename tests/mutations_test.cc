@@ -154,7 +154,8 @@ std::vector<std::string> Recordings(const ScratchFolder& scratch) {
 /// Whether the words say where: a byte of the file, a place in the experiment, a topic; or that it is another file.
 bool HasPlace(const std::string& words) {
   static const std::regex place(
-      "record at byte [0-9]+|:[0-9]+:[0-9]+: |/agent_[0-9]+/|/clock|is no MCAP file|newer than|expected |holds no "
+      "record at byte [0-9]+|tick [0-9]+ is missing|:[0-9]+:[0-9]+: |/agent_[0-9]+/|/clock|is no MCAP file|newer "
+      "than|expected |holds no "
       "whole");
   return std::regex_search(words, place);
 }

@@ -10,9 +10,10 @@
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/processes/console.h"
 #include "orchestrator/recording/run_folder.h"
-#include "orchestrator/team/row_sink.h"
 
 namespace mascot {
+
+class RowSink;
 
 /// Values of --engine.
 inline constexpr const char* kOverDds = "dds";
