@@ -68,9 +68,9 @@ Graph MakeTopology(std::string_view name, int count);
 Graph MakeErdosRenyi(int count, double p, std::uint64_t seed);
 /// Agents that are closer than `radius_m` at `p_W` hear each other (Gilbert, J. SIAM 9, 1961).
 Graph MakeGeometric(std::span<const Eigen::Vector3d> p_W, double radius_m);
-/// A ring in which every agent hears its `k` nearest (k even, below `count`). Each edge is replaced with probability `p`
-/// by one from the same agent to another that it does not hear yet, drawn uniformly (Watts & Strogatz, Nature 393, 1998);
-/// it stays if the agent hears all others. The number of edges stays the same.
+/// A ring in which every agent hears its `k` nearest (k even, below `count`). Each edge is replaced with probability
+/// `p` by one from the same agent to another that it does not hear yet, drawn uniformly (Watts & Strogatz, Nature 393,
+/// 1998); it stays if the agent hears all others. The number of edges stays the same.
 Graph MakeSmallWorld(int count, int k, double p, std::uint64_t seed);
 /// The keys that describe one graph, in [graph] or in a [[graph.schedule]].
 std::span<const Key> GraphKeys();

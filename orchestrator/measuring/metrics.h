@@ -77,7 +77,7 @@ class Metrics {
   AgreementMeter agreement_;
   double speed_m_per_s_ = 0;
   PursuitMeter pursuit_;
-  std::int64_t accelerated_ = 0;      // agents that are commanded accelerations
+  std::int64_t accelerated_ = 0;                               // agents that are commanded accelerations
   double effort_m2_per_s3_ = 0, newest_effort_m2_per_s3_ = 0;  // sums over these agents
   std::int64_t saturated_ = 0, tilt_limited_ = 0, rotor_limited_ = 0;
   double min_separation2_;

@@ -188,8 +188,8 @@ void McapWriter::Close() {
 }
 
 bool IsByMcapWriter(const std::string& path) {
-  // After the magic: the opcode of the header and its length (1 + 8 bytes), the profile and the library, each behind its
-  // length (4 bytes). The library ends with a version.
+  // After the magic: the opcode of the header and its length (1 + 8 bytes), the profile and the library, each behind
+  // its length (4 bytes). The library ends with a version.
   constexpr std::size_t kProfileAt = 21, kLibraryAt = kProfileAt + kProfile.size() + 4;
   Bytes bytes;
   InputFile(path).Read(0, kLibraryAt + kProgram.size(), bytes);
