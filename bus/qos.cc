@@ -215,7 +215,7 @@ std::uint64_t SharedMemoryNeeded(const DomainOptions& options) {
   if (!UsesSharedMemory(options)) return 0;
   // Sizes of the files of Fast DDS 2.9: a segment with a table of what waits, two ports, and perhaps one more, of a
   // peer that is not there.
-  constexpr std::uint64_t kPage = 4096, kTableRow = 48, kQueueRow = 20, kPort = 42 * 1024;
+  constexpr std::uint64_t kPage = 4096, kTableRow = 48, kQueueRow = 20, kPort = 42ULL * 1024;
   const auto pages = [](std::uint64_t bytes) { return (bytes + kPage - 1) / kPage * kPage; };
   const std::uint64_t rows = QueueCapacity(options);
   const std::uint64_t locks = 3 * kPage;

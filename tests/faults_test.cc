@@ -122,8 +122,9 @@ class Orphaned : public testing::TestWithParam<Moment> {};
 TEST_P(Orphaned, RunsClearUpAfterAnOrchestratorThatWasKilled) {
   ScratchFolder folder;
   Up up(folder, "run", Config("leaderless"), {"--duration-s", "2"});
-  const auto [name, file, text] = GetParam();
-  ASSERT_TRUE(Until([&] { return (file.empty() ? up.err() : up.File(file)).find(text) != std::string::npos; }));
+  const Moment& moment = GetParam();
+  ASSERT_TRUE(Until(
+      [&] { return (moment.file.empty() ? up.err() : up.File(moment.file)).find(moment.text) != std::string::npos; }));
   up.Signal(SIGKILL);
   up.Wait();  // if it was faster than we, all the better
   EXPECT_TRUE(Until([&] { return IsFree(DomainIn(up.err())); })) << "some process still lives";

@@ -17,7 +17,6 @@
 namespace mascot {
 namespace {
 
-using testing::AllOf;
 using testing::ContainsRegex;
 using testing::EndsWith;
 using testing::HasSubstr;

@@ -402,7 +402,7 @@ EngineResult DdsEngine::Fly() { return run_->Fly(); }
 bool DdsEngine::End() {
   if (!run_) return true;
   const bool ended = run_->End();
-  if (!ended) run_.release();  // threads of the library use it
+  if (!ended) static_cast<void>(run_.release());  // threads of the library use it
   run_.reset();
   return ended;
 }

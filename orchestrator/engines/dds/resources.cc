@@ -9,7 +9,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::uint64_t kMiB = 1024 * 1024;
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 /// Processes of a run reserve 0.6 to 1.2 GiB if they may, mostly stacks and heaps of threads. With 180 to 300 MiB some
 /// start and some do not.
 constexpr std::uint64_t kAddressSpace = 512 * kMiB;
