@@ -147,6 +147,26 @@ TEST(Recover, ARunWhoseSummaryAloneIsDamagedIsMadeAgainByteForByte) {
   EXPECT_EQ(Call(SetUpInfo, {scratch.File("out.mcap")}).exit_code, 0);
 }
 
+TEST(Recover, ARunThatEndedEarlyIsAsWholeAsItWas) {
+  const ScratchFolder scratch;
+  WriteFile(scratch.File("fails.toml"),
+            "[run]\nduration_s = 1.0\n[agents]\ncount = 1\nmodel = 'double_integrator'\n[law]\nname = 'custom'\n"
+            "python = '''\ndef control(t, me, neighbours):\n    return [1 / (t - 0.5), 0, 0]\n'''\n");
+  EXPECT_EQ(Call(SetUpUp, {scratch.File("fails.toml"), "--engine", "inprocess", "--out", scratch.File("run"), "--quiet",
+                           "--set", "output.save_plot=false"})
+                .exit_code,
+            kFailed);
+  const std::string whole = ReadFile(scratch.File("run/run.mcap"));
+  const std::string data_end = std::string(1, '\x0f') + std::string("\x04\0\0\0\0\0\0\0", 8);
+  for (const std::size_t size : {whole.size() - 1, whole.rfind(data_end)}) {  // all in front of the summary is there
+    WriteFile(scratch.File("cut.mcap"), whole.substr(0, size));
+    const Said said = Recover({scratch.File("cut.mcap"), "--out", scratch.File("out.mcap"), "--force"});
+    EXPECT_EQ(said.exit_code, kDone);
+    EXPECT_THAT(said.out, HasSubstr(", whole up to tick 49 of 100\n"));
+    EXPECT_TRUE(ReadFile(scratch.File("out.mcap")) == whole);
+  }
+}
+
 TEST(Recover, AChangedByteEndsWhatIsKept) {
   const ScratchFolder scratch;
   std::string changed = Fly(scratch);

@@ -229,7 +229,18 @@ TEST_F(Verify, ARunThatFailedIsComparedUpToItsEnd) {
   EXPECT_THAT(flown_.err, HasSubstr("ZeroDivisionError"));
   const Said said = Check(recording);
   EXPECT_EQ(said.exit_code, kDone) << said.err;
-  EXPECT_EQ(said.out, recording + ": the same, bit for bit: 100 of 251 ticks (the run ended early), 500 messages\n");
+  EXPECT_EQ(said.out, recording + ": the same, bit for bit: 100 of 251 ticks, 500 messages\n" + recording +
+                          ": the run ended early\n");
+}
+
+TEST_F(Verify, ARecordingWhoseEndWasTakenAwayIsIncomplete) {
+  const std::string recording = Fly(), changed = File("changed.mcap");
+  Copy(recording, changed,
+       [](const std::string& /*topic*/, McapContents::Message& message) { return message.sequence < 100; });
+  const Said said = Check(changed);
+  EXPECT_EQ(said.exit_code, kFailed);
+  EXPECT_EQ(said.out, changed + ": the same, bit for bit: 100 of 251 ticks, 500 messages\n" + changed +
+                          ": incomplete: it holds 100 ticks, expected 251: the run does not say that it ended early\n");
 }
 
 TEST_F(Verify, ARunThatFailsWhereItDidNotIsADifference) {

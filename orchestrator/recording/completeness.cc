@@ -95,12 +95,6 @@ std::string SequenceGap(const McapContents& contents) {
   return "";
 }
 
-/// How many ticks a run that ended early says it has recorded; nothing if it does not say that it ended early.
-std::optional<std::uint64_t> TicksOfEarlyEnd(const McapContents& contents) {
-  const std::string* ticks = MetadataEntry(contents, kEarlyEnd, kTicksKey);
-  return ticks == nullptr ? std::nullopt : NumberFrom<std::uint64_t>(*ticks);
-}
-
 /// In a recording that was closed: the first topic that is missing, or has fewer samples than another. Empty: none.
 std::string TopicGap(const RecordingPlan& plan, const Counts& counts, bool ended_early) {
   const std::pair<const std::string, std::uint64_t>* most = nullptr;
@@ -210,6 +204,11 @@ std::string LossOf(const McapContents& contents) {
   if (!contents.damage.empty()) return contents.damage;
   const std::string* recovered = MetadataEntry(contents, kMetadata, kRecoveredKey);
   return recovered == nullptr ? "" : "recovered from a file that was damaged: " + *recovered;
+}
+
+std::optional<std::uint64_t> TicksOfEarlyEnd(const McapContents& contents) {
+  const std::string* ticks = MetadataEntry(contents, kEarlyEnd, kTicksKey);
+  return ticks == nullptr ? std::nullopt : NumberFrom<std::uint64_t>(*ticks);
 }
 
 RecordingPlan PlanOf(const McapContents& contents, const std::string& path) {

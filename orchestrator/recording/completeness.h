@@ -44,6 +44,8 @@ RecordingPlan PlanOf(const McapContents& contents, const std::string& path);
 /// The metadata of a recording whose run ended early: how many ticks it holds.
 inline constexpr const char* kEarlyEnd = "mascot_ended_early";
 inline constexpr const char* kTicksKey = "ticks";
+/// How many ticks a run that ended early says it has recorded; nothing if it does not say that it ended early.
+std::optional<std::uint64_t> TicksOfEarlyEnd(const McapContents& contents);
 
 /// Result of checking a recording by its sequence numbers and counts: each channel counts 0 .. n-1, where n is the
 /// number of ticks for every topic with a sample of every tick.

@@ -21,7 +21,9 @@ class Repair {
   /// Where its whole ticks end (Proof::End).
   std::string End() const { return proof_.End(plan_.ticks); }
   /// Whether nothing is lost: the damage is behind the last message of the run.
-  bool keeps_all() const { return contents_.data_complete || proof_.ticks == plan_.ticks; }
+  bool keeps_all() const {
+    return contents_.data_complete || proof_.ticks == TicksOfEarlyEnd(contents_).value_or(plan_.ticks);
+  }
 
   /// Writes the whole recording to `path`, completely or not at all. If something is lost, its metadata say so
   /// (LossOf); else it has the bytes of the recording before the damage. Throws std::runtime_error.

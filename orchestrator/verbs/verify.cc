@@ -10,6 +10,8 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "agent/laws.h"
@@ -129,35 +131,52 @@ void PrintChanges(const Subject& subject, const Experiment& experiment) {
   }
 }
 
-/// "813 of 4001 ticks (the run ended early), 7317 messages"
+/// "813 of 4001 ticks, 7317 messages"
 std::string Extent(const Subject& subject, const Comparison& comparison) {
   const auto ticks = static_cast<std::uint64_t>(comparison.ticks());
-  const bool early = subject.ticks < subject.plan.ticks && LossOf(subject.contents).empty();
-  return fmt::format("{}{} ticks{}, {} messages", ticks,
+  return fmt::format("{}{} ticks, {} messages", ticks,
                      ticks < subject.plan.ticks ? fmt::format(" of {}", subject.plan.ticks) : "",
-                     early ? " (the run ended early)" : "", comparison.messages());
+                     comparison.messages());
 }
 
-/// Prints the verdict, and returns the exit code.
-int Judge(const Subject& subject, const Comparison& comparison, const EngineResult& result) {
-  const auto say = [&](const std::string& verdict) { std::cout << subject.file << ": " << verdict << std::endl; };
-  const std::string extent = Extent(subject, comparison), loss = LossOf(subject.contents);
-  const bool differs = !comparison.difference().empty();
-  if (differs) {
+/// What is to be said of the file itself, whatever was compared, and the exit code of a recording that does not differ.
+std::pair<std::string, int> StateOf(const Subject& subject) {
+  const McapContents& contents = subject.contents;
+  const std::string loss = LossOf(contents);
+  if (loss.empty()) return {"", kDone};
+  if (contents.damage.empty() || contents.cut) return {"cut: " + loss, kIncomplete};
+  return {"damaged: " + loss, kFailed};
+}
+
+/// What is to be said of a whole file that does not differ as far as it goes, and the exit code.
+std::pair<std::string, int> EndOf(const Subject& subject) {
+  const std::string gap = Judge(subject.file, subject.contents).reason;
+  if (!gap.empty()) return {"incomplete: " + gap, kFailed};
+  return {subject.ticks < subject.plan.ticks ? "the run ended early" : "", kDone};
+}
+
+/// Prints the outcome, and returns the exit code.
+int Report(const Subject& subject, const Comparison& comparison, const EngineResult& result) {
+  const auto say = [&](const std::string& words) {
+    if (!words.empty()) std::cout << subject.file << ": " << words << std::endl;
+  };
+  const std::string extent = Extent(subject, comparison);
+  auto [state, code] = StateOf(subject);
+  if (!comparison.difference().empty()) {
     say("differs: " + comparison.difference());
+    code = kFailed;
   } else if (!result.failure.empty()) {
     say("differs: it goes on after " + extent + ", where the run now fails: " + result.failure);
-    return kFailed;
+    code = kFailed;
   } else if (result.signal != 0) {
     say("interrupted: the same so far, " + extent);
-    return 128 + result.signal;
+    code = 128 + result.signal;
   } else {
     say("the same, bit for bit: " + extent);
+    if (state.empty()) std::tie(state, code) = EndOf(subject);
   }
-  if (loss.empty()) return differs ? kFailed : kDone;
-  const bool damaged = !subject.contents.damage.empty() && !subject.contents.cut;
-  say((damaged ? "damaged: " : "cut: ") + loss);
-  return differs || damaged ? kFailed : kIncomplete;
+  say(state);
+  return code;
 }
 
 int Verify(const VerifyArgs& args) {
@@ -180,7 +199,7 @@ int Verify(const VerifyArgs& args) {
   Flight flight(args.engine, experiment, folder, sinks, console, stop);
   const EngineResult result = flight.Fly();
   if (result.failure.empty() && result.signal == 0) comparison.Finish();
-  const int code = Judge(subject, comparison, result);
+  const int code = Report(subject, comparison, result);
   flight.End();
   flight.LeaveIfItHangs(code);
   return code;
