@@ -68,7 +68,8 @@ def samples():
     """By the first byte, the type in the order of tests/fuzz/samples.cc."""
     bundle = struct.pack("<II", 1, 0) + state(3)
     request = b"\x01\0\0\0" + text("stop")
-    experiment = text("seed") + text(CONFIG.decode())
+    process = text("agent_1") + struct.pack("<QQ", 1, 0)
+    experiment = struct.pack("<I", 1) + process + text("seed") + text(CONFIG.decode())
     bodies = [state(3), command(3), message(3), clock(3), status(), bundle, request, experiment]
     return {f"{kind}_{k}": bytes([k]) + CDR + body
             for k, (kind, body) in enumerate(zip("state command message clock status bundle request experiment".split(), bodies))}

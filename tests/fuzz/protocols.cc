@@ -179,21 +179,23 @@ void FuzzRowAssembler(Events& events) {
 }
 
 void FuzzRoster(Events& events) {
-  Roster roster({.processes = {"physics_server", "agent_1", "agent_2"}, .external = {false, true}});
+  const std::vector<std::string> processes = {"physics_server", "agent_1", "agent_2"};
+  Roster roster({.processes = processes, .external = {false, true}, .last_tick = 50});
   Time now{};
   while (events.remaining_bytes() > 0) {
+    const std::string& process = processes[events.ConsumeIntegralInRange<std::size_t>(0, processes.size() - 1)];
     Roster::Status status;
-    const char* const names[] = {"physics_server", "agent_1", "agent_2", ""};
-    const std::string name = events.PickValueInArray(names);
-    const std::string process = name.empty() ? events.ConsumeRandomLengthString(64) : name;
-    status.process(process.c_str());
+    status.process(events.ConsumeRandomLengthString(80).c_str());
     status.agent(events.ConsumeIntegral<std::uint32_t>());
-    status.state(events.ConsumeIntegral<std::uint8_t>());
+    status.state(events.ConsumeBool() ? events.ConsumeIntegralInRange<std::uint8_t>(0, 6)
+                                      : events.ConsumeIntegral<std::uint8_t>());
+    status.tick(static_cast<std::uint64_t>(SomeTick(events, 50)));
+    status.reason(events.ConsumeRandomLengthString(20).c_str());
     try {
-      roster.OnStatus(status);
-    } catch (const std::runtime_error&) {  // an external agent failed
+      roster.OnStatus(process, status);
+      Require(roster.Of(process).has_value(), "a status was forgotten");
+    } catch (const std::runtime_error&) {  // an external agent failed, or the status is none of this run
     }
-    Require(roster.Of(status.process().to_string()).has_value(), "a status was forgotten");
     Pass(events, now);
     roster.IsTimeToHandOut(now);
     roster.IsTimeForHello(now);
