@@ -160,7 +160,9 @@ TEST(LinkDelay, OfRandomTeamsWhoseAgentsDifferHarmsFromItsMarginOnToTheTick) {
     ASSERT_TRUE(margin) << a;
     const int ticks = margin->independent ? 30 : static_cast<int>(std::lround(*margin->margin_s / h));
     for (const int late : {1, ticks / 2, ticks - 1})
-      if (late < ticks) EXPECT_TRUE(Settles(a, team.agents, h, late)) << a << "\n" << h << " " << ticks << " " << late;
+      if (late < ticks) {
+        EXPECT_TRUE(Settles(a, team.agents, h, late)) << a << "\n" << h << " " << ticks << " " << late;
+      }
     if (margin->independent || ticks > 30) continue;
     EXPECT_FALSE(Settles(a, team.agents, h, ticks)) << a << "\n" << h << " " << ticks;
     ++known;

@@ -466,7 +466,7 @@ TEST(Theory, KnowsThatAnAgentWithoutDampingWhichHearsNobodyStaysWhereItIs) {
   const std::string chain =
       "model = 'double_integrator'\n[graph]\nedges = [[2, 1], [2, 3], [3, 2], [4, 3], [5, 4]]\n"
       "[law]\nname = 'consensus'\nbeta = 0.0\nv_gain = 2.0\n";
-  for (const std::string& link : {"", "[link]\ndelay_s = 0.01\n", "[link]\ndelay_s = 0.1\n"}) {
+  for (const char* link : {"", "[link]\ndelay_s = 0.01\n", "[link]\ndelay_s = 0.1\n"}) {
     const Prediction prediction = Of(kFive + chain + link);
     EXPECT_EQ(prediction.stable, true) << link;
     ASSERT_TRUE(prediction.value_m) << link;
