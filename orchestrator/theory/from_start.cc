@@ -1,9 +1,7 @@
 #include "orchestrator/theory/from_start.h"
 
-#include <algorithm>
 #include <vector>
 
-#include "agent/link.h"
 #include "orchestrator/measuring/agreement_meter.h"
 #include "orchestrator/theory/links_on_average.h"
 
@@ -20,23 +18,18 @@ struct TeamState {
 class Flight {
  public:
   Flight(const Experiment& experiment, const LinearTeam& team, const Timeline& timeline)
-      : experiment_(experiment),
-        team_(team),
-        timeline_(timeline),
-        own_ticks_(Link::Ticks(experiment.sensors.own_delay_s, experiment.control.rate_hz)) {
-    std::int64_t reach = own_ticks_;
+      : experiment_(experiment), team_(team), timeline_(timeline), own_ticks_(OwnDelayTicks(experiment)) {
     for (const AgentConfig& agent : experiment.agents)
       for (const Graph::Neighbour& heard : experiment.graph.HeardBy(agent.id)) {
         if (!team.agent(agent.id).listens || Delivered(experiment.links.Of(agent.id, heard.id)) == 0) continue;
         edges_.push_back({agent.id, heard.id, DelayTicks(experiment, agent.id, heard.id), 0});
-        reach = std::max(reach, edges_.back().ago);
       }
     TeamState start;
     for (const AgentConfig& agent : experiment.agents) {
       start.q.push_back(agent.p_W - team.place_W[Index(agent.id)]);
       start.v.push_back(agent.v_W);
     }
-    past_.assign(static_cast<std::size_t>(reach) + 1, start);
+    past_.assign(static_cast<std::size_t>(LongestDelayTicks(experiment)) + 1, start);
     u_.resize(start.q.size());
   }
 
@@ -72,13 +65,8 @@ class Flight {
 
 void Flight::Weigh(const Timeline::Interval& now) {
   if (timeline_.IsConstant() && tick_ > reach()) return;
-  for (Edge& edge : edges_) {
-    edge.weight = 0;
-    if (edge.ago > tick_ || !now.on[Index(edge.hearer)]) continue;
-    const auto& sent = timeline_.At(tick_ - edge.ago).graph.HeardBy(edge.hearer);
-    const auto then = std::ranges::lower_bound(sent, edge.heard, {}, &Graph::Neighbour::id);
-    if (then != sent.end() && then->id == edge.heard) edge.weight = then->weight;
-  }
+  for (Edge& edge : edges_)
+    edge.weight = now.on[Index(edge.hearer)] ? timeline_.WeightOf(edge.hearer, edge.heard, tick_ - edge.ago) : 0;
 }
 
 void Flight::Couple() {

@@ -45,6 +45,19 @@ std::int64_t DelayTicks(const Experiment& experiment, int hearer, int heard) {
   return Link::Ticks(experiment.links.Of(hearer, heard).delay_s, experiment.control.rate_hz);
 }
 
+std::int64_t OwnDelayTicks(const Experiment& experiment) {
+  return Link::Ticks(experiment.sensors.own_delay_s, experiment.control.rate_hz);
+}
+
+std::int64_t LongestDelayTicks(const Experiment& experiment) {
+  std::int64_t longest = OwnDelayTicks(experiment);
+  for (int id = 1; id <= experiment.size(); ++id)
+    for (const Graph::Neighbour& heard : experiment.graph.HeardBy(id))
+      if (Delivered(experiment.links.Of(id, heard.id)) > 0)
+        longest = std::max(longest, DelayTicks(experiment, id, heard.id));
+  return longest;
+}
+
 std::optional<std::int64_t> CommonDelayTicks(const Experiment& experiment, const Graph& graph) {
   std::optional<std::int64_t> common;
   for (int id = 1; id <= graph.size(); ++id)

@@ -16,6 +16,10 @@ Graph OnAverage(const Graph& graph, const LinkTable& links);
 bool LosesSome(const Experiment& experiment);
 /// The delay, without jitter, of the link on which `hearer` hears `heard`, in ticks.
 std::int64_t DelayTicks(const Experiment& experiment, int hearer, int heard);
+/// The delay of agents' own position and velocity, in ticks.
+std::int64_t OwnDelayTicks(const Experiment& experiment);
+/// The longest delay, without jitter, of own states and of links that deliver something, in ticks.
+std::int64_t LongestDelayTicks(const Experiment& experiment);
 /// The delay, without jitter, that all edges of `graph` have in common, in ticks; nothing if delays differ.
 std::optional<std::int64_t> CommonDelayTicks(const Experiment& experiment, const Graph& graph);
 /// The longest delay, with jitter, that a sample may have on any edge (s).

@@ -4,28 +4,12 @@
 #include <cmath>
 #include <set>
 
-#include "agent/link.h"
 #include "orchestrator/theory/links_on_average.h"
 
 namespace mascot {
 namespace {
 
 constexpr Eigen::Index kLargestState = 200;  // numbers; the eigenvalues take 0.1 s
-
-/// Delay of own position and velocity (ticks).
-std::int64_t OwnTicks(const Experiment& experiment) {
-  return Link::Ticks(experiment.sensors.own_delay_s, experiment.control.rate_hz);
-}
-
-/// The longest delay of own states and links (ticks).
-std::int64_t Reach(const Experiment& experiment) {
-  std::int64_t reach = OwnTicks(experiment);
-  for (int id = 1; id <= experiment.size(); ++id)
-    for (const Graph::Neighbour& heard : experiment.graph.HeardBy(id))
-      if (Delivered(experiment.links.Of(id, heard.id)) > 0)
-        reach = std::max(reach, DelayTicks(experiment, id, heard.id));
-  return reach;
-}
 
 Eigen::MatrixXd Power(Eigen::MatrixXd base, std::int64_t exponent) {
   Eigen::MatrixXd power = Eigen::MatrixXd::Identity(base.rows(), base.cols());
@@ -39,7 +23,7 @@ Eigen::MatrixXd Power(Eigen::MatrixXd base, std::int64_t exponent) {
 }  // namespace
 
 bool SampledTeam::IsSmall(const Experiment& experiment) {
-  return std::int64_t{2} * experiment.size() * (Reach(experiment) + 1) <= kLargestState;
+  return std::int64_t{2} * experiment.size() * (LongestDelayTicks(experiment) + 1) <= kLargestState;
 }
 
 SampledTeam::SampledTeam(const Experiment& experiment, const LinearTeam& team, const Timeline& timeline,
@@ -49,8 +33,8 @@ SampledTeam::SampledTeam(const Experiment& experiment, const LinearTeam& team, c
       timeline_(timeline),
       h_(period_s),
       n_(experiment.size()),
-      own_ticks_(OwnTicks(experiment)),
-      reach_(Reach(experiment)) {
+      own_ticks_(OwnDelayTicks(experiment)),
+      reach_(LongestDelayTicks(experiment)) {
   if (!team.Leaders().empty()) leader_ = team.Leaders().front();
   // A sample arrives only if the edge existed when it was sent: maps repeat one longest delay after the graph does.
   steady_ = timeline.cycle_from + reach_;
@@ -72,15 +56,13 @@ void SampledTeam::MoveAgent(int id, const Timeline::Interval& now, std::int64_t 
   if (on && agent.listens) {
     for (const Graph::Neighbour& edge : experiment_.graph.HeardBy(id)) {
       const std::int64_t ago = DelayTicks(experiment_, id, edge.id);
-      if (ago > tick) continue;  // nothing has arrived yet
-      const auto& sent = timeline_.At(tick - ago).graph.HeardBy(id);
-      const auto then = std::ranges::lower_bound(sent, edge.id, {}, &Graph::Neighbour::id);
-      if (then == sent.end() || then->id != edge.id) continue;
+      const double weight = timeline_.WeightOf(id, edge.id, tick - ago);
+      if (weight == 0) continue;
       const Eigen::Index q_heard = Place(edge.id, ago), v_heard = q_heard + n_;
-      u(q_heard) += then->weight * agent.p;
-      u(q_known) -= then->weight * agent.p;
-      u(v_heard) += then->weight * agent.g;
-      u(v_known) -= then->weight * agent.g;
+      u(q_heard) += weight * agent.p;
+      u(q_known) -= weight * agent.p;
+      u(v_heard) += weight * agent.g;
+      u(v_known) -= weight * agent.g;
     }
   }
   u(v_known) -= on ? agent.b - agent.drag_b : agent.off_b - agent.drag_b;

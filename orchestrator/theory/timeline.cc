@@ -64,6 +64,13 @@ const Timeline::Interval& Timeline::At(std::int64_t tick) const {
   return *std::prev(next);
 }
 
+double Timeline::WeightOf(int hearer, int heard, std::int64_t tick) const {
+  if (tick < 0) return 0;
+  const auto& edges = At(tick).graph.HeardBy(hearer);
+  const auto edge = std::ranges::lower_bound(edges, heard, {}, &Graph::Neighbour::id);
+  return edge != edges.end() && edge->id == heard ? edge->weight : 0;
+}
+
 std::optional<Timeline> TimelineOf(const Experiment& experiment) {
   const Schedule& schedule = experiment.schedule;
   const int rate_hz = experiment.control.rate_hz;

@@ -25,6 +25,8 @@ struct Timeline {
   bool IsConstant() const { return intervals.size() == 1; }
   /// The interval of any tick.
   const Interval& At(std::int64_t tick) const;
+  /// Weight with which `hearer` hears what `heard` sent at `tick`; 0: it does not, or `tick` is before the first.
+  double WeightOf(int hearer, int heard, std::int64_t tick) const;
 };
 
 /// The timeline of an experiment. Nothing if no small multiple of graph.repeat_s is a whole number of ticks, or if
