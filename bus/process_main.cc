@@ -39,8 +39,10 @@ int SweepAfterRun(int domain) {
   constexpr int kSweeps = 4;
   constexpr int kMoment_ms = 50;
   char nothing = 0;
-  while (read(STDIN_FILENO, &nothing, 1) > 0 || errno == EINTR) {
-  }
+  ssize_t got = 0;
+  do {
+    got = read(STDIN_FILENO, &nothing, 1);
+  } while (got > 0 || (got < 0 && errno == EINTR));
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     SweepSharedMemory(domain);
     poll(nullptr, 0, kMoment_ms);
