@@ -92,7 +92,7 @@ class WriterBase {
   Handle<eprosima::fastdds::dds::DataWriter> writer_;
 };
 
-/// Who sent a sample.
+/// The sender of a sample.
 struct Sender {
   const std::string& process;  ///< of the run; empty without Peers
   std::int64_t sequence = 0;   ///< the writer's sequence number, from 1

@@ -1,4 +1,4 @@
-// Whom a process of a run believes, without DDS: participants are the names that DDS gives them.
+// Peers decides whom a process of a run believes. No DDS here: participants are the names that DDS gives them.
 #include "bus/peers.h"
 
 #include <gmock/gmock.h>

@@ -50,11 +50,10 @@ mascot_msgs::msg::Experiment MessageOf(const Experiment& experiment) {
   return message;
 }
 
-Roster::Rules RosterRules(const Experiment& experiment) {
-  Roster::Rules rules{.processes = {kPhysicsServer},
-                      .external = {},
-                      .experiment = DigestOf(MessageOf(experiment)),
-                      .last_tick = experiment.ticks()};
+/// `digest`: of the experiment as it is handed out.
+Roster::Rules RosterRules(const Experiment& experiment, std::uint64_t digest) {
+  Roster::Rules rules{
+      .processes = {kPhysicsServer}, .external = {}, .experiment = digest, .last_tick = experiment.ticks()};
   for (const AgentRange& agents : AgentProcesses(experiment)) rules.processes.push_back(ProcessName(agents));
   for (const AgentConfig& agent : experiment.agents) rules.external.push_back(agent.external);
   return rules;
@@ -70,7 +69,7 @@ Hub::Hub(Domain& domain, const Peers& peers, const Experiment& experiment, const
       wake_(std::move(wake)),
       log_("orchestrator", std::make_shared<spdlog::sinks::basic_file_sink_mt>(log)),
       message_(MessageOf(experiment)),
-      roster_(RosterRules(experiment)),
+      roster_(RosterRules(experiment, DigestOf(message_))),
       experiments_(domain, Topic::Experiment()),
       requests_(domain, Topic::Request()),
       recorder_(domain, Topic::Status()),

@@ -50,7 +50,7 @@ bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic
   return false;
 }
 
-/// Who may write `topic`, for messages.
+/// The name of the process that may write `topic`, as error messages say it.
 std::string RightfulWriter(const Experiment& experiment, const Topic& topic) {
   if (topic.kind == TopicKind::kStatus) return "processes of the run";
   for (const char* process : {kOrchestrator, kPhysicsServer})

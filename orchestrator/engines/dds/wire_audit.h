@@ -58,7 +58,7 @@ class WireAudit : public eprosima::fastdds::dds::DomainParticipantListener {
   /// Notes a violation, if it is the first; empty: there is none.
   void Find(const std::string& violation);
   std::string ViolationOf(const Guid& guid, const Endpoint& endpoint) const;
-  /// Of one that writes what it must not.
+  /// The violation of an endpoint that writes what it must not.
   std::string WrongWriter(const Endpoint& endpoint) const;
   bool IsProcess(const std::string& name) const;
 
