@@ -1,6 +1,8 @@
 // Our code allocates no memory during ticks, in the real processes. The allocations of the middleware are printed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <iostream>
 #include <map>
 #include <sstream>
@@ -29,6 +31,7 @@ Allocations Read(const std::filesystem::path& folder) {
 }
 
 constexpr int kAgents = 4;
+constexpr std::array kPrograms = {"agent", "physics_server", "orchestrator"};
 
 /// Allocations of a whole run of `ticks` ticks.
 Allocations AllocationsOf(int ticks, const std::string& engine, const std::string& more) {
@@ -51,19 +54,36 @@ constexpr int kFew = 500, kMore = 10500, kTicks = kMore - kFew;
 /// allocates a little for each chunk of 100 ticks.
 constexpr int kTolerance = kTicks / 10;
 
+/// For each program and file, the smaller of two counts.
+void TakeFewer(const Allocations& other, Allocations& counts) {
+  for (const auto& [program, files] : other)
+    for (const auto& [file, count] : files) {
+      const auto known = counts[program].emplace(file, count).first;
+      known->second = std::min(known->second, count);
+    }
+}
+
 /// Allocations of kTicks ticks: the difference between a longer and a shorter run, whose start and end are the same.
+/// Beside other runs they are not: processes wait longer for each other, and the orchestrator looks through all that
+/// use shared memory. So a difference that is too large counts only if more runs do not reduce it.
 Allocations AllocationsOfTicks(const std::string& engine, const std::string& experiment) {
-  const Allocations few = AllocationsOf(kFew, engine, experiment);
-  Allocations more = AllocationsOf(kMore, engine, experiment);
-  EXPECT_FALSE(few.empty()) << "nobody counted";
-  for (const auto& [program, files] : few) {
-    EXPECT_GT(files.at(program), 0) << "those of the start are counted";
-    for (const auto& [file, count] : files) more[program][file] -= count;
+  constexpr int kMostAttempts = 4;
+  Allocations few, more, ticks;
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    TakeFewer(AllocationsOf(kFew, engine, experiment), few);
+    TakeFewer(AllocationsOf(kMore, engine, experiment), more);
+    ticks = more;
+    for (const auto& [program, files] : few)
+      for (const auto& [file, count] : files) ticks[program][file] -= count;
+    if (std::ranges::all_of(kPrograms, [&](const char* program) { return ticks[program][program] < kTolerance; }))
+      break;
   }
-  for (const auto& [program, files] : more)
+  EXPECT_FALSE(few.empty()) << "nobody counted";
+  for (const auto& [program, files] : few) EXPECT_GT(files.at(program), 0) << "those of the start are counted";
+  for (const auto& [program, files] : ticks)
     for (const auto& [file, count] : files)
       if (count > kTolerance) std::cout << program << ": " << count * 1.0 / kTicks << " per tick by " << file << '\n';
-  return more;
+  return ticks;
 }
 
 /// An experiment and its name.
@@ -80,10 +100,7 @@ class AllocationsOverDds : public testing::TestWithParam<Setup> {};
 
 TEST_P(AllocationsOverDds, AreNeverMadeByOurCodeInATick) {
   Allocations counted = AllocationsOfTicks("dds", GetParam().toml);
-  for (const char* program : {"agent", "physics_server"})
-    EXPECT_LT(counted.at(program)[program], kTolerance) << program;
-  // The buffers of the recorder's rows grow at first, and each batch of rows is confirmed.
-  EXPECT_LT(counted.at("orchestrator")["orchestrator"], kTicks);
+  for (const char* program : kPrograms) EXPECT_LT(counted.at(program)[program], kTolerance) << program;
 }
 
 INSTANTIATE_TEST_SUITE_P(Experiments, AllocationsOverDds,
