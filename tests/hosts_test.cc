@@ -76,7 +76,7 @@ class Hosts : public testing::Test {
       agent_words.insert(agent_words.end(),
                          {"--discovery", "10.77.0.1:" + std::to_string(std::stoi(said.substr(at + 10)))});
     Running agent("ip", hosts_.There(agent_words), folder_.File("agent"));
-    EXPECT_EQ(up.Wait(), 0) << up.err() << agent.err();
+    EXPECT_EQ(up.Wait(), 0) << up.err() << agent.err() << ReadFile(folder_.File("run/logs/orchestrator.log"));
     EXPECT_EQ(agent.Wait(), 0) << agent.err();
 
     Up inprocess(folder_, "inprocess", config, [&] {
