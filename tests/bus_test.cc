@@ -461,8 +461,22 @@ std::string Apart(int namespaces, const std::function<void()>& test) {
   return trouble;
 }
 
+TEST(DomainLock, IsSharedByNetworkNamespacesThatShareSharedMemory) {
+  const DomainLock here(-1);
+  const std::string trouble = Apart(CLONE_NEWNET, [&] {
+    EXPECT_NE(DomainLock(-1).domain(), here.domain());
+    EXPECT_THAT(
+        [&] { DomainLock there(here.domain()); },
+        ThrowsMessage<std::runtime_error>("network.domain = " + std::to_string(here.domain()) +
+                                          " is in use by a run in another network namespace that shares /dev/shm"));
+  });
+  if (!trouble.empty()) GTEST_SKIP() << trouble;
+}
+
 TEST(DomainLock, SaysWhoHasTheDomainsIfNoneIsFree) {
-  const std::string trouble = Apart(CLONE_NEWNET, [] {  // others go on taking domains
+  const std::string trouble = Apart(CLONE_NEWNS | CLONE_NEWNET, [] {  // others go on taking domains
+    ASSERT_EQ(mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr), 0) << std::strerror(errno);
+    ASSERT_EQ(mount("none", "/dev/shm", "tmpfs", 0, nullptr), 0) << std::strerror(errno);
     std::vector<std::unique_ptr<DomainLock>> taken;
     for (int domain = 2; domain <= 98; domain += 2) taken.push_back(std::make_unique<DomainLock>(domain));
     EXPECT_THAT([&] { DomainLock{-1}; },

@@ -1,5 +1,6 @@
 #include "orchestrator/engines/dds/domain_lock.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <pwd.h>
 #include <sys/socket.h>
@@ -43,8 +44,8 @@ int MakeSocket(int flags) {
   return descriptor;
 }
 
-/// Reserves the domain. Returns the descriptor that holds it, or -1 if another run does.
-int TryLock(int domain) {
+/// Reserves the domain in this network namespace. Returns the descriptor that holds it, or -1 if another run does.
+int TakeName(int domain) {
   const int descriptor = MakeSocket(0);  // without SOCK_CLOEXEC: children inherit it
   if (WithNameOf(domain, descriptor, ::bind) == 0) {
     ::listen(descriptor, SOMAXCONN);  // so that others learn who it is: HolderOf
@@ -54,6 +55,47 @@ int TryLock(int domain) {
   ::close(descriptor);
   if (error == EADDRINUSE) return -1;
   throw std::runtime_error(fmt::format("cannot reserve DDS domain {}: {}", domain, std::strerror(error)));
+}
+
+/// Reserves the domain in /dev/shm, where Fast DDS names files by domain and port, whatever the network namespace.
+/// Returns the descriptor that holds it, -1 if another run does. A folder can be locked for reading only; so everybody
+/// locks first, and then asks whether a lock for writing would be in somebody's way.
+int TakeSharedMemory(int domain) {
+  const int descriptor = ::open("/dev/shm", O_RDONLY | O_DIRECTORY);  // without O_CLOEXEC: children inherit it
+  struct flock place {};
+  place.l_whence = SEEK_SET;
+  place.l_start = domain;
+  place.l_len = 1;
+  place.l_type = F_RDLCK;
+  struct flock other = place;
+  other.l_type = F_WRLCK;
+  if (descriptor >= 0 && ::fcntl(descriptor, F_OFD_SETLK, &place) == 0 &&
+      ::fcntl(descriptor, F_OFD_GETLK, &other) == 0) {
+    if (other.l_type == F_UNLCK) return descriptor;
+    ::close(descriptor);
+    return -1;
+  }
+  const int error = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  throw std::runtime_error(fmt::format("cannot reserve DDS domain {} in /dev/shm: {}", domain, std::strerror(error)));
+}
+
+/// What keeps a domain from being reserved.
+enum class Taken { kNo, kHere, kInSharedMemory };
+
+/// Reserves the domain, and adds the descriptors that hold it.
+Taken TryLock(int domain, std::vector<int>& descriptors) {
+  const int name = TakeName(domain);
+  if (name < 0) return Taken::kHere;
+  descriptors = {name};
+  const int memory = TakeSharedMemory(domain);
+  if (memory >= 0) {
+    descriptors.push_back(memory);
+    return Taken::kNo;
+  }
+  ::close(name);
+  descriptors.clear();
+  return Taken::kInSharedMemory;
 }
 
 /// The process that reserved the domain; nothing if it does not answer.
@@ -114,8 +156,11 @@ DomainLock::DomainLock(int wanted) : domain_(wanted) {
     TakeAny();
     return;
   }
-  descriptor_ = TryLock(wanted);
-  if (descriptor_ >= 0) return;
+  const Taken taken = TryLock(wanted, descriptors_);
+  if (taken == Taken::kNo) return;
+  if (taken == Taken::kInSharedMemory)
+    throw std::runtime_error(fmt::format(
+        "network.domain = {} is in use by a run in another network namespace that shares /dev/shm", wanted));
   const auto holder = HolderOf(wanted);
   throw std::runtime_error(
       fmt::format("network.domain = {} is in use by another run on this machine{}", wanted,
@@ -126,14 +171,15 @@ void DomainLock::TakeAny() {
   const std::set<int> busy = UdpPortsInUse();
   for (domain_ = kFirstDomain; domain_ <= kLastDomain; domain_ += kDomainsPerRun) {
     if (HasPortIn(busy, FirstPort(domain_), FirstPort(domain_ + kDomainsPerRun))) continue;
-    descriptor_ = TryLock(domain_);
-    if (descriptor_ >= 0) return;
+    if (TryLock(domain_, descriptors_) == Taken::kNo) return;
   }
   throw std::runtime_error(fmt::format("no free DDS domain among {}, {}, ..., {}: {}; network.domain may name another",
                                        kFirstDomain, kFirstDomain + kDomainsPerRun, kLastDomain, Holders()));
 }
 
-DomainLock::~DomainLock() { close(descriptor_); }
+DomainLock::~DomainLock() {
+  for (const int descriptor : descriptors_) close(descriptor);
+}
 
 int DomainLock::discovery_port() const { return FirstPort(domain_) + 5; }
 

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace mascot {
 
-/// Reserves a DDS domain, so that no other run on this machine uses it, of this user or another: the name of a socket,
-/// of which there is one in each network namespace. It lasts as long as this object, or a process that inherited its
-/// descriptor (Janitor), and leaves nothing.
+/// Reserves a DDS domain, so that no other run on this machine uses it, of this user or another: neither in the network
+/// namespace, by the name of a socket, nor in /dev/shm, which several of them may share, by a lock on a byte of that
+/// folder. It lasts as long as this object, or a process that inherited its descriptors (Janitor), and leaves nothing.
 class DomainLock {
  public:
   /// Reserves domain `wanted`; if `wanted` < 0, any free domain. Throws std::runtime_error if it is in use or none is
@@ -17,7 +18,8 @@ class DomainLock {
   DomainLock& operator=(const DomainLock&) = delete;
 
   int domain() const { return domain_; }
-  int descriptor() const { return descriptor_; }
+  /// What holds the reservation.
+  const std::vector<int>& descriptors() const { return descriptors_; }
   /// UDP port for the run's discovery server; RTPS assigns it to no participant of this domain.
   int discovery_port() const;
 
@@ -25,7 +27,7 @@ class DomainLock {
   void TakeAny();
 
   int domain_ = -1;
-  int descriptor_ = -1;
+  std::vector<int> descriptors_;
 };
 
 }  // namespace mascot

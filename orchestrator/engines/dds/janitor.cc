@@ -10,6 +10,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "bus/process_main.h"
 #include "orchestrator/processes/children.h"
@@ -21,7 +22,7 @@ namespace {
 
 /// Starts `program` as a janitor of `domain`, with these files: stdin, null output, the lock. Signals for the run, and
 /// a terminal that hangs up, do not reach it. Returns 0 or an error number.
-int SpawnJanitor(pid_t* pid, std::string program, std::string domain, int input, int lock) {
+int SpawnJanitor(pid_t* pid, std::string program, std::string domain, int input, const std::vector<int>& lock) {
   std::string name = "janitor", option = kSweepAfterRun;
   char* const argv[] = {name.data(), option.data(), domain.data(), nullptr};
   posix_spawn_file_actions_t files;
@@ -29,7 +30,7 @@ int SpawnJanitor(pid_t* pid, std::string program, std::string domain, int input,
   posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
   posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&files, lock, lock);  // not closed by exec
+  for (const int descriptor : lock) posix_spawn_file_actions_adddup2(&files, descriptor, descriptor);  // stays open
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t all;
@@ -49,7 +50,7 @@ Janitor::Janitor(const DomainLock& lock) {
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
   lifeline_ = ends[1];
   const std::string program = ProgramFolder() / "physics_server";
-  const int error = SpawnJanitor(&pid_, program, std::to_string(lock.domain()), ends[0], lock.descriptor());
+  const int error = SpawnJanitor(&pid_, program, std::to_string(lock.domain()), ends[0], lock.descriptors());
   close(ends[0]);
   if (error == 0) return;
   close(lifeline_);
