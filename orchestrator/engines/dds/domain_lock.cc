@@ -38,30 +38,28 @@ int WithNameOf(int domain, int socket, Call call) {
   return call(socket, reinterpret_cast<const sockaddr*>(&address), size);
 }
 
-int MakeSocket(int flags) {
-  const int descriptor = ::socket(AF_UNIX, SOCK_STREAM | flags, 0);
-  if (descriptor < 0) throw std::runtime_error(std::string("cannot make a socket: ") + std::strerror(errno));
-  return descriptor;
+Descriptor MakeSocket(int flags) {
+  Descriptor made(::socket(AF_UNIX, SOCK_STREAM | flags, 0));
+  if (!made.is_open()) throw std::runtime_error(std::string("cannot make a socket: ") + std::strerror(errno));
+  return made;
 }
 
-/// Reserves the domain in this network namespace. Returns the descriptor that holds it, or -1 if another run does.
-int TakeName(int domain) {
-  const int descriptor = MakeSocket(0);  // without SOCK_CLOEXEC: children inherit it
-  if (WithNameOf(domain, descriptor, ::bind) == 0) {
-    ::listen(descriptor, SOMAXCONN);  // so that others learn who it is: HolderOf
-    return descriptor;
+/// Reserves the domain in this network namespace, as long as the result is open; it is not if another run has it.
+Descriptor TakeName(int domain) {
+  Descriptor name = MakeSocket(0);  // without SOCK_CLOEXEC: children inherit it
+  if (WithNameOf(domain, name.number(), ::bind) == 0) {
+    ::listen(name.number(), SOMAXCONN);  // so that others learn who it is: HolderOf
+    return name;
   }
-  const int error = errno;
-  ::close(descriptor);
-  if (error == EADDRINUSE) return -1;
-  throw std::runtime_error(fmt::format("cannot reserve DDS domain {}: {}", domain, std::strerror(error)));
+  if (errno == EADDRINUSE) return Descriptor();
+  throw std::runtime_error(fmt::format("cannot reserve DDS domain {}: {}", domain, std::strerror(errno)));
 }
 
-/// Reserves the domain in /dev/shm, where Fast DDS names files by domain and port, whatever the network namespace.
-/// Returns the descriptor that holds it, -1 if another run does. A folder can be locked for reading only; so everybody
+/// Reserves the domain in /dev/shm, where Fast DDS names files by domain and port, whatever the network namespace, as
+/// long as the result is open; it is not if another run has it. A folder can be locked for reading only; so everybody
 /// locks first, and then asks whether a lock for writing would be in somebody's way.
-int TakeSharedMemory(int domain) {
-  const int descriptor = ::open("/dev/shm", O_RDONLY | O_DIRECTORY);  // without O_CLOEXEC: children inherit it
+Descriptor TakeSharedMemory(int domain) {
+  Descriptor folder(::open("/dev/shm", O_RDONLY | O_DIRECTORY));  // without O_CLOEXEC: children inherit it
   struct flock place {};
   place.l_whence = SEEK_SET;
   place.l_start = domain;
@@ -69,43 +67,19 @@ int TakeSharedMemory(int domain) {
   place.l_type = F_RDLCK;
   struct flock other = place;
   other.l_type = F_WRLCK;
-  if (descriptor >= 0 && ::fcntl(descriptor, F_OFD_SETLK, &place) == 0 &&
-      ::fcntl(descriptor, F_OFD_GETLK, &other) == 0) {
-    if (other.l_type == F_UNLCK) return descriptor;
-    ::close(descriptor);
-    return -1;
-  }
-  const int error = errno;
-  if (descriptor >= 0) ::close(descriptor);
-  throw std::runtime_error(fmt::format("cannot reserve DDS domain {} in /dev/shm: {}", domain, std::strerror(error)));
-}
-
-/// What keeps a domain from being reserved.
-enum class Taken { kNo, kHere, kInSharedMemory };
-
-/// Reserves the domain, and adds the descriptors that hold it.
-Taken TryLock(int domain, std::vector<int>& descriptors) {
-  const int name = TakeName(domain);
-  if (name < 0) return Taken::kHere;
-  descriptors = {name};
-  const int memory = TakeSharedMemory(domain);
-  if (memory >= 0) {
-    descriptors.push_back(memory);
-    return Taken::kNo;
-  }
-  ::close(name);
-  descriptors.clear();
-  return Taken::kInSharedMemory;
+  if (!folder.is_open() || ::fcntl(folder.number(), F_OFD_SETLK, &place) != 0 ||
+      ::fcntl(folder.number(), F_OFD_GETLK, &other) != 0)
+    throw std::runtime_error(fmt::format("cannot reserve DDS domain {} in /dev/shm: {}", domain, std::strerror(errno)));
+  return other.l_type == F_UNLCK ? std::move(folder) : Descriptor();
 }
 
 /// The process that reserved the domain; nothing if it does not answer.
 std::optional<ucred> HolderOf(int domain) {
-  const int descriptor = MakeSocket(SOCK_NONBLOCK | SOCK_CLOEXEC);
+  const Descriptor caller = MakeSocket(SOCK_NONBLOCK | SOCK_CLOEXEC);
   ucred holder{};
   socklen_t size = sizeof holder;
-  const bool known = WithNameOf(domain, descriptor, ::connect) == 0 &&
-                     ::getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &holder, &size) == 0;
-  ::close(descriptor);
+  const bool known = WithNameOf(domain, caller.number(), ::connect) == 0 &&
+                     ::getsockopt(caller.number(), SOL_SOCKET, SO_PEERCRED, &holder, &size) == 0;
   return known ? std::optional(holder) : std::nullopt;
 }
 
@@ -151,13 +125,17 @@ std::string Holders() {
 
 }  // namespace
 
+Descriptor::~Descriptor() {
+  if (is_open()) ::close(number_);
+}
+
 DomainLock::DomainLock(int wanted) : domain_(wanted) {
   if (wanted < 0) {
     TakeAny();
     return;
   }
-  const Taken taken = TryLock(wanted, descriptors_);
-  if (taken == Taken::kNo) return;
+  const Taken taken = Take(wanted);
+  if (taken == Taken::kNowhere) return;
   if (taken == Taken::kInSharedMemory)
     throw std::runtime_error(fmt::format(
         "network.domain = {} is in use by a run in another network namespace that shares /dev/shm", wanted));
@@ -167,18 +145,24 @@ DomainLock::DomainLock(int wanted) : domain_(wanted) {
                   holder ? fmt::format(": process {} of {}", holder->pid, UserName(holder->uid)) : std::string()));
 }
 
+DomainLock::Taken DomainLock::Take(int domain) {
+  Descriptor name = TakeName(domain);
+  if (!name.is_open()) return Taken::kHere;
+  Descriptor memory = TakeSharedMemory(domain);
+  if (!memory.is_open()) return Taken::kInSharedMemory;
+  name_ = std::move(name);
+  memory_ = std::move(memory);
+  return Taken::kNowhere;
+}
+
 void DomainLock::TakeAny() {
   const std::set<int> busy = UdpPortsInUse();
   for (domain_ = kFirstDomain; domain_ <= kLastDomain; domain_ += kDomainsPerRun) {
     if (HasPortIn(busy, FirstPort(domain_), FirstPort(domain_ + kDomainsPerRun))) continue;
-    if (TryLock(domain_, descriptors_) == Taken::kNo) return;
+    if (Take(domain_) == Taken::kNowhere) return;
   }
   throw std::runtime_error(fmt::format("no free DDS domain among {}, {}, ..., {}: {}; network.domain may name another",
                                        kFirstDomain, kFirstDomain + kDomainsPerRun, kLastDomain, Holders()));
-}
-
-DomainLock::~DomainLock() {
-  for (const int descriptor : descriptors_) close(descriptor);
 }
 
 int DomainLock::discovery_port() const { return FirstPort(domain_) + 5; }

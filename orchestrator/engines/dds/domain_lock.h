@@ -1,9 +1,27 @@
 #pragma once
 
-#include <string>
-#include <vector>
+#include <array>
+#include <utility>
 
 namespace mascot {
+
+/// Owns a file descriptor, or none (-1).
+class Descriptor {
+ public:
+  explicit Descriptor(int number = -1) : number_(number) {}
+  ~Descriptor();
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+
+  int number() const { return number_; }
+  bool is_open() const { return number_ >= 0; }
+
+ private:
+  int number_;
+};
 
 /// Reserves a DDS domain, so that no other run on this machine uses it, of this user or another: neither in the network
 /// namespace, by the name of a socket, nor in /dev/shm, which several of them may share, by a lock on a byte of that
@@ -13,21 +31,23 @@ class DomainLock {
   /// Reserves domain `wanted`; if `wanted` < 0, any free domain. Throws std::runtime_error if it is in use or none is
   /// free, and says who has it, or them.
   explicit DomainLock(int wanted);
-  ~DomainLock();
-  DomainLock(const DomainLock&) = delete;
-  DomainLock& operator=(const DomainLock&) = delete;
 
   int domain() const { return domain_; }
   /// What holds the reservation.
-  const std::vector<int>& descriptors() const { return descriptors_; }
+  std::array<int, 2> descriptors() const { return {name_.number(), memory_.number()}; }
   /// UDP port for the run's discovery server; RTPS assigns it to no participant of this domain.
   int discovery_port() const;
 
  private:
+  /// Where a domain is taken.
+  enum class Taken { kNowhere, kHere, kInSharedMemory };
+
+  /// Reserves the domain, unless another run has it.
+  Taken Take(int domain);
   void TakeAny();
 
   int domain_ = -1;
-  std::vector<int> descriptors_;
+  Descriptor name_, memory_;
 };
 
 }  // namespace mascot

@@ -6,11 +6,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "bus/process_main.h"
 #include "orchestrator/processes/children.h"
@@ -22,7 +22,7 @@ namespace {
 
 /// Starts `program` as a janitor of `domain`, with these files: stdin, null output, the lock. Signals for the run, and
 /// a terminal that hangs up, do not reach it. Returns 0 or an error number.
-int SpawnJanitor(pid_t* pid, std::string program, std::string domain, int input, const std::vector<int>& lock) {
+int SpawnJanitor(pid_t* pid, std::string program, std::string domain, int input, std::array<int, 2> lock) {
   std::string name = "janitor", option = kSweepAfterRun;
   char* const argv[] = {name.data(), option.data(), domain.data(), nullptr};
   posix_spawn_file_actions_t files;
