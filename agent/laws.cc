@@ -26,7 +26,8 @@ LawFactory MakeConsensus, MakeWaypoint, MakeMinmax, MakeFormation, MakeVelocityC
 using Linearizer = LinearForm(const LawConfig& law);
 Linearizer LinearConsensus, LinearWaypoint, LinearFormation, LinearVelocityConsensus;
 PursuitForm PursuitOfMinmax(const LawConfig& law);
-std::span<const Eigen::Vector3d> FormationPlaces_W(const LawConfig& law);
+using Places = std::span<const Eigen::Vector3d>(const LawConfig& law);
+Places FormationPlaces_W, WaypointsOfConsensus, WaypointsOfWaypoint, WaypointsOfMinmax, WaypointsOfFormation;
 Wanted WantedByCustom(const LawConfig& law);
 Wanted WantedByPlugin(const LawConfig& law);
 
@@ -52,6 +53,7 @@ constexpr LawEntry kLaws[] = {
      .drawing = {.pictures = kAgreement},
      .read = ReadConsensus,
      .make = MakeConsensus,
+     .waypoints_W = WaypointsOfConsensus,
      .linear = LinearConsensus},
     {.name = "waypoint",
      .summary = "every agent flies the same list of waypoints, by arrival or by time",
@@ -64,6 +66,7 @@ constexpr LawEntry kLaws[] = {
      .drawing = {.pictures = kFlight},
      .read = ReadWaypoint,
      .make = MakeWaypoint,
+     .waypoints_W = WaypointsOfWaypoint,
      .linear = LinearWaypoint},
     {.name = "minmax",
      .summary = "min-max time consensus tracking on a spanning tree of the graph",
@@ -79,6 +82,7 @@ constexpr LawEntry kLaws[] = {
      .drawing = {.leader = "root", .switches = true, .pictures = kPursuit},
      .read = ReadMinmax,
      .make = MakeMinmax,
+     .waypoints_W = WaypointsOfMinmax,
      .pursuit = PursuitOfMinmax},
     {.name = "formation",
      .summary = "agents keep given displacements from each other, alone or behind a leader",
@@ -93,6 +97,7 @@ constexpr LawEntry kLaws[] = {
      .read = ReadFormation,
      .make = MakeFormation,
      .places_W = FormationPlaces_W,
+     .waypoints_W = WaypointsOfFormation,
      .linear = LinearFormation},
     {.name = "velocity_consensus",
      .summary = "single integrators meet: the law wants a velocity",
@@ -177,6 +182,12 @@ bool IsCommandedByVelocity(const AgentConfig& agent) {
 std::span<const Eigen::Vector3d> PlacesOf(const LawConfig& law) {
   const LawEntry& entry = EntryOf(law);
   return entry.places_W != nullptr ? entry.places_W(law) : std::span<const Eigen::Vector3d>();
+}
+
+std::span<const Eigen::Vector3d> WaypointsOf(const AgentConfig& agent) {
+  const LawEntry& entry = EntryOf(agent.law);
+  const bool flies = agent.law.leader == 0 || agent.law.leader == agent.id;
+  return entry.waypoints_W != nullptr && flies ? entry.waypoints_W(agent.law) : std::span<const Eigen::Vector3d>();
 }
 
 std::optional<LinearForm> LinearFormOf(const LawConfig& law) {

@@ -65,6 +65,8 @@ struct LawEntry {
   Wanted (*wanted)(const LawConfig& law) = nullptr;
   /// d_i: each agent's place in the formation, in W (m), by id - 1; null: no places.
   std::span<const Eigen::Vector3d> (*places_W)(const LawConfig& law) = nullptr;
+  /// Targets of every agent, or of the leader alone if there is one, in W (m); null: none.
+  std::span<const Eigen::Vector3d> (*waypoints_W)(const LawConfig& law) = nullptr;
   /// Null: the law is not linear.
   LinearForm (*linear)(const LawConfig& law) = nullptr;
   /// Null: the law is no pursuit on a tree.
@@ -82,6 +84,8 @@ Wanted WantedBy(const LawConfig& law);
 bool IsCommandedByVelocity(const AgentConfig& agent);
 /// Each agent's place in the formation, in W (m), by id - 1; empty: no places. Valid as long as `law`.
 std::span<const Eigen::Vector3d> PlacesOf(const LawConfig& law);
+/// The targets that this agent flies, in W (m); empty: it flies none. Valid as long as `agent`.
+std::span<const Eigen::Vector3d> WaypointsOf(const AgentConfig& agent);
 std::optional<LinearForm> LinearFormOf(const LawConfig& law);
 std::optional<PursuitForm> PursuitFormOf(const LawConfig& law);
 

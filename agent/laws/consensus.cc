@@ -61,6 +61,10 @@ std::unique_ptr<Law> MakeConsensus(const Experiment& experiment, int id) {
   return std::make_unique<Consensus>(params);
 }
 
+std::span<const Eigen::Vector3d> WaypointsOfConsensus(const LawConfig& law) {
+  return WaypointsOf(ParamsOf<ConsensusParams>(law).leader_flight);
+}
+
 LinearForm LinearConsensus(const LawConfig& law) { return LinearFormOf(ParamsOf<ConsensusParams>(law)); }
 
 }  // namespace mascot

@@ -97,6 +97,10 @@ std::unique_ptr<Law> MakeFormation(const Experiment& experiment, int id) {
   return std::make_unique<Formation>(params, id);
 }
 
+std::span<const Eigen::Vector3d> WaypointsOfFormation(const LawConfig& law) {
+  return WaypointsOf(ParamsOf<FormationParams>(law).leader_flight);
+}
+
 LinearForm LinearFormation(const LawConfig& law) { return LinearFormOf(ParamsOf<FormationParams>(law)); }
 
 std::span<const Eigen::Vector3d> FormationPlaces_W(const LawConfig& law) { return ParamsOf<FormationParams>(law).d_W; }

@@ -159,6 +159,10 @@ std::unique_ptr<Law> MakeMinmax(const Experiment& experiment, int id) {
   return std::make_unique<Root>(std::move(flight), tree.beta[i]);
 }
 
+std::span<const Eigen::Vector3d> WaypointsOfMinmax(const LawConfig& law) {
+  return WaypointsOf(ParamsOf<MinmaxParams>(law).root_flight);
+}
+
 PursuitForm PursuitOfMinmax(const LawConfig& law) { return ParamsOf<MinmaxParams>(law).tree; }
 
 }  // namespace mascot

@@ -131,6 +131,10 @@ std::unique_ptr<Law> MakeWaypoint(const Experiment& experiment, int id) {
       WaypointFlight(ParamsOf<WaypointLawParams>(agent.law).flight, agent.law.axes, agent.p_W));
 }
 
+std::span<const Eigen::Vector3d> WaypointsOfWaypoint(const LawConfig& law) {
+  return ParamsOf<WaypointLawParams>(law).flight.waypoints_W;
+}
+
 LinearForm LinearWaypoint(const LawConfig& law) {
   const WaypointParams& flight = ParamsOf<WaypointLawParams>(law).flight;
   return {.p = flight.p_gain, .beta = flight.d_gain, .listens = false, .leader_flies = true};

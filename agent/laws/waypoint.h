@@ -58,6 +58,11 @@ WaypointParams ReadWaypoints(Section& law, const std::string& prefix);
 /// stands without a leader, or without leader_waypoints_m.
 std::optional<WaypointParams> ReadLeaderWaypoints(const LawConfig& law, Section& section);
 
+/// The targets of a flight that there may be.
+inline std::span<const Eigen::Vector3d> WaypointsOf(const std::optional<WaypointParams>& flight) {
+  return flight ? std::span<const Eigen::Vector3d>(flight->waypoints_W) : std::span<const Eigen::Vector3d>();
+}
+
 /// Flies one agent through a list of waypoints: a = p_gain (w - p) - d_gain v, with w the target.
 class WaypointFlight {
  public:
