@@ -44,6 +44,8 @@ class Link {
   /// The newest sample that has arrived by `tick` (increasing), if it arrived at this tick or is held (hold_s); else
   /// null. Valid until the next call.
   const Packet* Receive(std::int64_t tick);
+  /// The newest sample that had arrived at the last Receive(); null: none.
+  const Packet* newest() const { return newest_.sent >= 0 ? &newest_ : nullptr; }
   const EdgeCount& count() const { return count_; }
   /// Number of ticks after which a sample with a delay of `time_s` arrives, rounded up.
   static std::int64_t Ticks(double time_s, int rate_hz);

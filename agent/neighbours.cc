@@ -21,6 +21,7 @@ Neighbours::Neighbours(const Experiment& experiment, int id)
                               static_cast<std::uint64_t>(neighbour.id)));
   }
   heard_.reserve(may_hear_.size());
+  ways_.resize(may_hear_.size());
   plain_ = IsPlain();
   plain_counts_.resize(may_hear_.size());
 }
@@ -52,6 +53,7 @@ double Neighbours::WeightOf(const Graph& graph, double t_s, int source) const {
 std::span<const Heard> Neighbours::Hear(std::int64_t tick, const Motion& self, std::span<const Sample> samples) {
   assert(samples.size() == may_hear_.size());
   heard_.clear();
+  tick_ = tick;
   if (plain_) {
     HearPlain(samples);
     return heard_;
@@ -61,6 +63,7 @@ std::span<const Heard> Neighbours::Hear(std::int64_t tick, const Motion& self, s
   for (std::size_t k = 0; k < may_hear_.size(); ++k) {
     const double weight = WeightOf(graph, t_s, may_hear_[k].id);
     const bool in_range = range_m == 0 || (samples[k].motion->p_WB - self.p_WB).norm() < range_m;
+    ways_[k] = weight == 0 ? EdgeNow::State::kNoEdge : in_range ? EdgeNow::State::kLost : EdgeNow::State::kOutOfRange;
     if (weight > 0 && in_range) links_[k].Send(tick, weight, samples[k]);
     Deliver(k, tick);
   }
@@ -76,6 +79,20 @@ void Neighbours::Deliver(std::size_t k, std::int64_t tick) {
                     .age_s = experiment_.time_s(tick - packet->sent),
                     .message = packet->message});
   noises_[k].AddTo(heard_.back().motion, packet->sent);
+}
+
+EdgeNow Neighbours::EdgeAt(std::size_t k) const {
+  if (tick_ < 0) return {};
+  if (plain_) return {EdgeNow::State::kHeard, 0};
+  const Link::Packet* newest = links_[k].newest();
+  const double age_s = newest != nullptr ? experiment_.time_s(tick_ - newest->sent) : -1;
+  if (std::ranges::binary_search(heard_, may_hear_[k].id, {}, &Heard::id)) return {EdgeNow::State::kHeard, age_s};
+  const bool is_silent = newest == nullptr && ways_[k] == EdgeNow::State::kLost;
+  return {is_silent ? EdgeNow::State::kNothingYet : ways_[k], age_s};
+}
+
+void Neighbours::AddEdgesTo(std::vector<EdgeNow>& edges) const {
+  for (std::size_t k = 0; k < may_hear_.size(); ++k) edges.push_back(EdgeAt(k));
 }
 
 std::vector<EdgeCount> Neighbours::counts() const {

@@ -11,6 +11,19 @@
 
 namespace mascot {
 
+/// What became of the samples on one edge, at one tick.
+struct EdgeNow {
+  enum class State : std::uint8_t {
+    kNoEdge,      ///< the graph of this tick does not have it, or one of the agents is off
+    kHeard,       ///< the law gets a sample
+    kLost,        ///< the law gets none, though others have arrived before
+    kOutOfRange,  ///< likewise, and the agents are too far apart
+    kNothingYet,  ///< no sample has ever arrived
+  };
+  State state = State::kNothingYet;
+  double age_s = -1;  ///< simulated time since the newest sample that has arrived was sent; -1: none has
+};
+
 /// Decides what one agent hears of its neighbours: applies start and stop times, the schedule of graphs, the range, the
 /// links and the noise, so that its law never sees a sample that it could not have heard.
 class Neighbours {
@@ -23,8 +36,11 @@ class Neighbours {
   std::span<const Heard> Hear(std::int64_t tick, const Motion& self, std::span<const Sample> samples);
   /// Counters of the edges from experiment.graph.HeardBy(id), in that order.
   std::vector<EdgeCount> counts() const;
+  /// Appends what became of the edges from experiment.graph.HeardBy(id) at the tick of the last Hear(), in that order.
+  void AddEdgesTo(std::vector<EdgeNow>& edges) const;
 
  private:
+  EdgeNow EdgeAt(std::size_t k) const;
   /// The weight of the edge from `source` at `t_s`; 0: there is no edge, or one of the agents is off.
   double WeightOf(const Graph& graph, double t_s, int source) const;
   /// Adds what link `k` delivers at `tick` to heard_.
@@ -40,6 +56,8 @@ class Neighbours {
   std::vector<Link> links_;    // by index in may_hear_
   std::vector<Noise> noises_;  // by index in may_hear_
   std::vector<Heard> heard_;
+  std::vector<EdgeNow::State> ways_;  // by index in may_hear_: kNoEdge, kOutOfRange, or else kLost
+  std::int64_t tick_ = -1;            // of the last Hear()
   bool plain_;
   std::vector<EdgeCount> plain_counts_;  // by index in may_hear_
 };

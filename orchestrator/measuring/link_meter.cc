@@ -42,6 +42,12 @@ void LinkMeter::Add(std::int64_t tick, const DecodedRow& row) {
   exchange_.EndTick();
 }
 
+void LinkMeter::EdgesNow(std::vector<EdgeNow>& edges) const {
+  edges.clear();
+  if (plain_) edges.resize(experiment_.graph.edges(), rows_ > 0 ? EdgeNow{EdgeNow::State::kHeard, 0} : EdgeNow());
+  for (const Neighbours& neighbours : neighbours_) neighbours.AddEdgesTo(edges);
+}
+
 std::vector<EdgeTraffic> LinkMeter::Result() const {
   std::vector<EdgeTraffic> traffic;
   for (int id = 1; id <= experiment_.size(); ++id) {

@@ -27,6 +27,8 @@ class LinkMeter {
   void Add(std::int64_t tick, const DecodedRow& row);
   /// One entry per edge, in increasing order of hearer, then of heard.
   std::vector<EdgeTraffic> Result() const;
+  /// What became of each edge at the newest tick, in the same order. Replaces `edges`, which keeps its capacity.
+  void EdgesNow(std::vector<EdgeNow>& edges) const;
 
  private:
   const Experiment& experiment_;

@@ -21,7 +21,8 @@ class RunMeter final : public RowSink {
   }
   Measured Result() const { return metrics_.Result(); }
   std::vector<EdgeTraffic> Traffic() const { return links_.Result(); }
-  /// Disagreement in the newest row, for the progress line.
+  void EdgesNow(std::vector<EdgeNow>& edges) const { links_.EdgesNow(edges); }
+  /// Disagreement in the newest row, for those who watch.
   double disagreement_m() const { return metrics_.disagreement_m(); }
 
  private:
