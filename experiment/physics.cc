@@ -7,10 +7,6 @@ namespace {
 
 constexpr Range kCentre_m = {-1e6, 1e6};
 constexpr Range kAirspeed_m_per_s = {-200, 200};
-constexpr EnumNames<Shape, 3> kShapes({{Shape::kBox, "box"},
-                                       {Shape::kSphere, "sphere"},
-                                       {Shape::kCylinder, "cylinder"}});
-
 constexpr Key kWindKeys[] = {
     key::Vector3("mean_m_per_s", kAirspeed_m_per_s, "in W").Default("[0, 0, 0]"),
     key::Number("gust_std_m_per_s", {0, 200}, "standard deviation of the gusts, per axis").Default("0.0"),

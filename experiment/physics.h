@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "experiment/toml/enum_names.h"
 #include "experiment/toml/section.h"
 
 namespace mascot {
@@ -16,6 +17,9 @@ struct WindConfig {
 };
 
 enum class Shape { kBox, kSphere, kCylinder };
+inline constexpr EnumNames<Shape, 3> kShapes({{Shape::kBox, "box"},
+                                              {Shape::kSphere, "sphere"},
+                                              {Shape::kCylinder, "cylinder"}});
 
 /// Something solid that does not move.
 struct Obstacle {

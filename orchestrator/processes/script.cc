@@ -18,15 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Path of a script: installed beside this program, or in the source tree that it was built from.
-fs::path Find(const std::string& script) {
-  for (const fs::path& path :
-       {ProgramFolder() / "../share/mascot" / script, fs::path(MASCOT_SOURCE_DIR) / "scripts" / script})
-    if (fs::exists(path)) return path;
-  throw std::runtime_error(script +
-                           " is missing: neither beside this program (../share/mascot) nor in its source tree");
-}
-
 /// Runs a program on our terminal. Returns its exit code, or 128 + the signal that ended it or that `stop` received.
 int RunProgram(std::vector<std::string> words, StopSignal& stop) {
   std::vector<char*> argv;
@@ -55,9 +46,15 @@ int RunProgram(std::vector<std::string> words, StopSignal& stop) {
 
 }  // namespace
 
+fs::path FindShared(const std::string& name, const std::string& folder) {
+  for (const fs::path& path : {ProgramFolder() / "../share/mascot" / name, fs::path(MASCOT_SOURCE_DIR) / folder / name})
+    if (fs::exists(path)) return path;
+  throw std::runtime_error(name + " is missing: neither beside this program (../share/mascot) nor in its source tree");
+}
+
 int RunScript(const std::string& script, const std::vector<std::string>& arguments, StopSignal& stop) {
   // The system's Python, for which matplotlib is installed; PATH may find another one first.
-  std::vector<std::string> words{"/usr/bin/python3", Find(script)};
+  std::vector<std::string> words{"/usr/bin/python3", FindShared(script, "scripts")};
   words.insert(words.end(), arguments.begin(), arguments.end());
   return RunProgram(words, stop);
 }

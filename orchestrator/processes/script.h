@@ -1,11 +1,16 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "bus/stop_signal.h"
 
 namespace mascot {
+
+/// Path of what is installed with this program in ../share/mascot, or else in `folder` of the source tree that the
+/// program was built from. Throws std::runtime_error if it is in neither.
+std::filesystem::path FindShared(const std::string& name, const std::string& folder);
 
 /// Runs the Python script `script` of scripts/ (installed or in the source tree) with `arguments`. Returns its exit
 /// code, or 128 + the signal that ended it. A signal that `stop` receives meanwhile ends the script. Throws

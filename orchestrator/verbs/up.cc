@@ -11,8 +11,11 @@
 #include "bus/stop_signal.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/progress.h"
+#include "orchestrator/live/address.h"
+#include "orchestrator/live/live_view.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/processes/console.h"
+#include "orchestrator/processes/script.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/run_writer.h"
 #include "orchestrator/report/ending.h"
@@ -31,8 +34,49 @@ using WallClock = std::chrono::steady_clock;
 struct UpArgs {
   ConfigArgs config;
   std::optional<std::string> out;
+  std::optional<LiveAddress> view;
   std::string engine = kOverDds;
   bool force = false, json = false, quiet = false;
+};
+
+/// The control of a run that takes no wishes.
+class NoControl final : public RunControl {
+ public:
+  Answer Ask(const Wish& /*wish*/) override { return {false, "this run cannot be changed while it goes on"}; }
+};
+
+/// The viewers of a run, if the user asked for --view.
+class Viewers {
+ public:
+  Viewers(const UpArgs& args, const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
+          Console& console)
+      : experiment_(experiment) {
+    if (!args.view) return;
+    view_.emplace(experiment, prediction, meter, control_,
+                  LiveView::Options{.address = args.view->address,
+                                    .port = args.view->port,
+                                    .page = FindShared("page", "orchestrator/live"),
+                                    .engine = args.engine,
+                                    .pace = Pace()},
+                  [&console](const std::string& line) { console.Line(line); });
+    console.Line("view           " + view_->url());
+  }
+  void AddTo(std::vector<RowSink*>& sinks) {
+    if (view_) sinks.push_back(&*view_);
+  }
+  void SayHowItEnded(const EngineResult& result) {
+    if (!view_) return;
+    RunState state{.phase = result.failure.empty() ? RunState::Phase::kDone : RunState::Phase::kFailed, .pace = Pace()};
+    if (result.contacts) state.contacts = result.contacts->total();
+    view_->SetState(state);
+  }
+
+ private:
+  double Pace() const { return experiment_.run.mode == Mode::kRealtime ? experiment_.run.speed : 0; }
+
+  const Experiment& experiment_;
+  NoControl control_;
+  std::optional<LiveView> view_;
 };
 
 int ExitCode(const EngineResult& result) {
@@ -68,7 +112,9 @@ int Up(const UpArgs& args) {
   RunWriter writer(experiment, folder, WithoutDelivery(experiment));
   RunMeter meter(experiment);
   Progress progress(experiment, meter, console);
-  const std::vector<RowSink*> sinks{&writer, &meter, &progress};
+  std::vector<RowSink*> sinks{&writer, &meter, &progress};
+  Viewers viewers(args, experiment, prediction, meter, console);
+  viewers.AddTo(sinks);
   Flight flight(args.engine, experiment, folder, sinks, console, stop);
   EngineResult result = flight.Fly();
   console.EndProgress();
@@ -77,6 +123,7 @@ int Up(const UpArgs& args) {
   } catch (const std::exception& failure) {
     if (result.failure.empty()) result.failure = InWords(failure);
   }
+  viewers.SayHowItEnded(result);
   if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
 
   RunFacts facts{args.engine, {}, writer.topics(), writer.samples()};
@@ -110,6 +157,13 @@ std::function<int()> SetUpUp(CLI::App& command) {
   command.add_option("--out", args->out, "folder for the results (default: runs/NAME/TIME)")->type_name("DIR");
   command.add_option("--engine", args->engine, "dds: processes on a bus; inprocess: the same in one thread")
       ->check(CLI::IsMember({kOverDds, kInProcess}));
+  command
+      .add_option_function<std::string>(
+          "--view", [args](const std::string& address) { args->view = ReadLiveAddress(address); },
+          "a page to watch the run, and Foxglove's protocol, at this address (default: 127.0.0.1:8765, or the next "
+          "free port)")
+      ->expected(0, 1)
+      ->type_name("[ADDRESS:PORT]");
   command.add_flag("--force", args->force,
                    "write into a folder that is not empty: an earlier run's files are replaced, others kept");
   command.add_flag("--json", args->json, "print the summary as JSON on stdout, and nothing else");

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+namespace mascot {
+
+/// What somebody asks of a run while it goes on.
+struct Wish {
+  enum class Kind { kPause, kResume, kStep, kPace, kStop, kEvent, kSeek };
+  Kind kind = Kind::kPause;
+  double number =
+      0;  ///< kStep: ticks; kPace: simulated seconds a second, 0: as fast as it goes; kSeek: simulated time (s)
+  std::string toml = {};  ///< kEvent: the keys of one [[events]] table, without at_s
+};
+
+struct Answer {
+  bool granted = false;
+  std::string words = {};  ///< what will happen, or why not
+};
+
+/// Takes wishes from any thread; an answer comes within a second or two.
+class RunControl {
+ public:
+  virtual ~RunControl() = default;
+  virtual Answer Ask(const Wish& wish) = 0;
+};
+
+}  // namespace mascot

@@ -1,0 +1,40 @@
+#include "orchestrator/live/address.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+
+#include "experiment/toml/section.h"
+
+namespace mascot {
+namespace {
+
+bool IsHost(const std::string& text) {
+  return std::ranges::all_of(text,
+                             [](unsigned char c) { return std::isalnum(c) != 0 || c == '.' || c == '-' || c == ':'; });
+}
+
+}  // namespace
+
+LiveAddress ReadLiveAddress(const std::string& text) {
+  const auto fail = [&] {
+    throw ConfigError({"--view: expected ADDRESS:PORT (such as 127.0.0.1:8765), got \"" + text + "\""});
+  };
+  LiveAddress at;
+  const bool is_bracketed = text.starts_with('[');
+  const auto closing = is_bracketed ? text.find(']') : 0;
+  if (closing == std::string::npos) fail();
+  const auto colon = text.find(':', closing);
+  std::string host = text.substr(0, colon);
+  if (is_bracketed) host = text.substr(1, closing - 1);
+  if (is_bracketed && colon != closing + 1 && closing + 1 != text.size()) fail();
+  if (!IsHost(host) || (!is_bracketed && host.ends_with(".toml"))) fail();
+  if (!host.empty()) at.address = host;
+  if (colon == std::string::npos) return at;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, at.port);
+  if (error != std::errc{} || rest != end) fail();
+  return at;
+}
+
+}  // namespace mascot

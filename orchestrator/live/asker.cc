@@ -1,0 +1,31 @@
+#include "orchestrator/live/asker.h"
+
+#include <exception>
+#include <utility>
+
+namespace mascot {
+
+void Asker::Ask(const Wish& wish, std::function<void(const Answer&)> answered) {
+  const std::lock_guard lock(mutex_);
+  questions_.push_back({wish, std::move(answered)});
+  come_.notify_one();
+}
+
+void Asker::Run(const std::stop_token& over) {
+  for (;;) {
+    std::unique_lock lock(mutex_);
+    if (!come_.wait(lock, over, [this] { return !questions_.empty(); })) return;
+    const Question question = std::move(questions_.front());
+    questions_.pop_front();
+    lock.unlock();
+    Answer answer;
+    try {
+      answer = control_.Ask(question.wish);
+    } catch (const std::exception& failure) {
+      answer = {false, failure.what()};
+    }
+    question.answered(answer);
+  }
+}
+
+}  // namespace mascot

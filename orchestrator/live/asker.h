@@ -1,0 +1,38 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+
+#include "orchestrator/engines/run_control.h"
+
+namespace mascot {
+
+/// Asks a RunControl in a thread of its own, because an answer may take a second or two. One wish after the other.
+class Asker {
+ public:
+  /// `control` must outlive this object.
+  explicit Asker(RunControl& control)
+      : control_(control), thread_([this](const std::stop_token& over) { Run(over); }) {}
+
+  /// `answered` gets the answer in the asker's thread; it is not called if this object ends before.
+  void Ask(const Wish& wish, std::function<void(const Answer&)> answered);
+
+ private:
+  struct Question {
+    Wish wish;
+    std::function<void(const Answer&)> answered;
+  };
+  void Run(const std::stop_token& over);
+
+  RunControl& control_;
+  std::mutex mutex_;
+  std::condition_variable_any come_;
+  std::deque<Question> questions_;
+  std::jthread thread_;  // last: it uses the others
+};
+
+}  // namespace mascot

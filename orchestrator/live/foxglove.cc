@@ -1,0 +1,414 @@
+#include "orchestrator/live/foxglove.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "orchestrator/live/compact_json.h"
+
+namespace mascot {
+namespace {
+
+using Json = Foxglove::Json;
+
+constexpr int kWarning = 1, kError = 2;
+constexpr std::string_view kGoalTopic = "/goal";
+constexpr std::string_view kGoalType = "geometry_msgs/msg/PoseStamped", kOldGoalType = "geometry_msgs/PoseStamped";
+constexpr std::string_view kEncodings[] = {"cdr", "json"};
+constexpr std::string_view kCapabilities[] = {"time",     "parameters",    "parametersSubscribe",
+                                              "services", "clientPublish", "connectionGraph"};
+constexpr std::uint32_t kService = 0;
+constexpr std::size_t kLongestEcho = 200;  // of what a client sent
+
+enum class FromServer : char { kMessage = 1, kTime, kServiceResponse, kAsset, kPlayback };
+enum class FromClient : std::uint8_t { kMessage = 1, kServiceRequest, kPlayback };
+
+std::string Begin(FromServer kind) { return {static_cast<char>(kind)}; }
+
+std::optional<std::uint32_t> U32(const Json& json) {
+  if (!json.is_number_integer() || json < 0 || json > 0xffffffffU) return std::nullopt;
+  return json.get<std::uint32_t>();
+}
+/// The list in this field; empty if there is none.
+const Json& List(const Json& message, const char* field) {
+  static const Json kNone = Json::array();
+  const auto found = message.find(field);
+  return found != message.end() && found->is_array() ? *found : kNone;
+}
+std::optional<std::uint32_t> U32(const Json& message, const char* field) {
+  return message.is_object() && message.contains(field) ? U32(message[field]) : std::nullopt;
+}
+std::string Text(const Json& message, const char* field) {
+  const bool has = message.is_object() && message.contains(field) && message[field].is_string();
+  return has ? message[field].get<std::string>() : "";
+}
+/// An id that a client gives a request, to be repeated in the response: null if it gave none.
+Json RequestOf(const Json& message) {
+  const std::string id = Text(message, "id");
+  return id.empty() ? Json(nullptr) : Json(id);
+}
+
+Json SchemaJson(const Foxglove::Schema& schema) {
+  return {
+      {"encoding", "json"}, {"schemaName", schema.name}, {"schemaEncoding", schema.encoding}, {"schema", schema.text}};
+}
+
+Json TimeJson(std::uint64_t time_ns) { return {{"sec", time_ns / 1'000'000'000}, {"nsec", time_ns % 1'000'000'000}}; }
+
+Json NodesJson(const Foxglove::Connections::Nodes& nodes, const char* ids) {
+  Json json = Json::array();
+  for (const auto& [name, names] : nodes) json.push_back({{"name", name}, {ids, names}});
+  return json;
+}
+
+}  // namespace
+
+void Foxglove::OnOpen(ClientId id, bool controls_playback) {
+  clients_[id].controls_playback = controls_playback;
+  Json capabilities = kCapabilities;
+  if (controls_playback) capabilities.push_back("playbackControl");
+  SendText(id, {{"op", "serverInfo"},
+                {"name", about_.name},
+                {"capabilities", capabilities},
+                {"supportedEncodings", kEncodings},
+                {"metadata", Json::object()},
+                {"sessionId", about_.session},
+                {"dataStartTime", TimeJson(0)},
+                {"dataEndTime", TimeJson(about_.end_ns)}});
+  Json channels = Json::array();
+  for (const Channel& channel : about_.channels)
+    channels.push_back({{"id", channels.size()},
+                        {"topic", channel.topic},
+                        {"encoding", channel.encoding},
+                        {"schemaName", channel.schema.name},
+                        {"schemaEncoding", channel.schema.encoding},
+                        {"schema", channel.schema.text}});
+  SendText(id, {{"op", "advertise"}, {"channels", channels}});
+  const Json service = {{"id", kService},
+                        {"name", about_.service},
+                        {"type", about_.service},
+                        {"request", SchemaJson(about_.request)},
+                        {"response", SchemaJson(about_.response)}};
+  SendText(id, {{"op", "advertiseServices"}, {"services", Json::array({service})}});
+  SendPlayback(id, "");
+}
+
+std::string Foxglove::OnMessage(ClientId id, bool is_text, Bytes message) {
+  if (!clients_.contains(id)) return {};
+  if (is_text) return OnText(id, message);
+  const auto kind = message.empty() ? 0 : message[0];
+  const Bytes rest = message.empty() ? message : message.subspan(1);
+  switch (static_cast<FromClient>(kind)) {
+    case FromClient::kMessage:
+      return OnClientMessage(id, rest);
+    case FromClient::kServiceRequest:
+      return OnServiceCall(id, rest);
+    case FromClient::kPlayback:
+      return OnPlaybackControl(id, rest);
+  }
+  return fmt::format("expected a binary message of kind 1, 2 or 3, got {}", message.empty() ? "nothing" : "another");
+}
+
+std::string Foxglove::OnText(ClientId id, Bytes text) {
+  struct Operation {
+    std::string_view name;
+    void (Foxglove::*act)(ClientId, const Json&);
+  };
+  static constexpr Operation kOperations[] = {
+      {"subscribe", &Foxglove::OnSubscribe},
+      {"unsubscribe", &Foxglove::OnUnsubscribe},
+      {"advertise", &Foxglove::OnAdvertise},
+      {"unadvertise", &Foxglove::OnUnadvertise},
+      {"getParameters", &Foxglove::OnGetParameters},
+      {"setParameters", &Foxglove::OnSetParameters},
+      {"subscribeParameterUpdates", &Foxglove::OnSubscribeParameters},
+      {"unsubscribeParameterUpdates", &Foxglove::OnUnsubscribeParameters},
+      {"subscribeConnectionGraph", &Foxglove::OnSubscribeConnections},
+      {"unsubscribeConnectionGraph", &Foxglove::OnUnsubscribeConnections},
+  };
+  const Json message = Json::parse(text.begin(), text.end(), nullptr, /*allow_exceptions=*/false);
+  const std::string name = Text(message, "op");
+  if (name.empty()) return "expected a JSON object with \"op\"";
+  const auto* operation = std::ranges::find(kOperations, name, &Operation::name);
+  if (operation == std::end(kOperations))
+    SendStatus(id, kWarning, "there is no operation \"" + name.substr(0, kLongestEcho) + "\"");
+  else
+    (this->*operation->act)(id, message);
+  return {};
+}
+
+void Foxglove::OnSubscribe(ClientId id, const Json& message) {
+  for (const Json& wanted : List(message, "subscriptions")) {
+    const auto number = U32(wanted, "id"), channel = U32(wanted, "channelId");
+    auto& subscriptions = clients_[id].subscriptions;
+    const auto is_same = [&](const auto& subscription) { return subscription.second == channel; };
+    if (!number || !channel || *channel >= about_.channels.size())
+      SendStatus(id, kError, "subscribe: there is no such channel");
+    else if (subscriptions.contains(*number) || std::ranges::any_of(subscriptions, is_same))
+      SendStatus(id, kError, "subscribe: this number, or this channel, has been subscribed already");
+    else {
+      subscriptions[*number] = *channel;
+      host_.OnSubscribe(id, *channel);
+    }
+  }
+}
+
+void Foxglove::OnUnsubscribe(ClientId id, const Json& message) {
+  for (const Json& number : List(message, "subscriptionIds"))
+    if (!U32(number) || clients_[id].subscriptions.erase(*U32(number)) == 0)
+      SendStatus(id, kError, "unsubscribe: there is no such subscription");
+}
+
+void Foxglove::OnAdvertise(ClientId id, const Json& message) {
+  auto& channels = clients_[id].channels;
+  for (const Json& offered : List(message, "channels")) {
+    const auto number = U32(offered, "id");
+    const Channel channel{Text(offered, "topic"), Text(offered, "encoding"), {Text(offered, "schemaName"), "", ""}};
+    const bool is_goal = channel.schema.name == kGoalType || channel.schema.name == kOldGoalType;
+    if (!number || channel.topic != kGoalTopic || std::ranges::count(kEncodings, channel.encoding) == 0 || !is_goal)
+      SendStatus(id, kError,
+                 fmt::format("advertise: expected {} of {} in cdr or json, got {}", kGoalTopic, kGoalType,
+                             channel.topic.substr(0, kLongestEcho)));
+    else if (channels.contains(*number) || channels.size() >= kMostClientChannels)
+      SendStatus(id, kError, "advertise: this number is taken, or there are too many channels");
+    else
+      channels[*number] = channel;
+  }
+}
+
+void Foxglove::OnUnadvertise(ClientId id, const Json& message) {
+  for (const Json& number : List(message, "channelIds"))
+    if (!U32(number) || clients_[id].channels.erase(*U32(number)) == 0)
+      SendStatus(id, kError, "unadvertise: there is no such channel");
+}
+
+void Foxglove::OnGetParameters(ClientId id, const Json& message) {
+  const Json& names = List(message, "parameterNames");
+  SendParameters(
+      id,
+      [&](const Parameter& parameter) {
+        return names.empty() || std::ranges::find(names, Json(parameter.name)) != names.end();
+      },
+      RequestOf(message));
+}
+
+void Foxglove::OnSetParameters(ClientId id, const Json& message) {
+  std::vector<Wish> wishes;
+  std::set<std::string> names;
+  for (const Json& parameter : List(message, "parameters")) {
+    names.insert(Text(parameter, "name"));
+    wishes.push_back(
+        SetKey(Text(parameter, "name"), parameter.is_object() ? parameter.value("value", Json()) : Json()));
+  }
+  if (wishes.size() > kMostQuestions) return SendStatus(id, kError, "setParameters: too many at once");
+  AskAll(id, std::move(wishes), [this, id, names, request = RequestOf(message)](const Answer& answer) {
+    if (!answer.granted) SendStatus(id, kError, "setParameters: " + answer.words);
+    SendParameters(
+        id, [&](const Parameter& parameter) { return names.contains(parameter.name); }, request);
+  });
+}
+
+void Foxglove::OnSubscribeParameters(ClientId id, const Json& message) {
+  const Json& names = List(message, "parameterNames");
+  for (const Parameter& parameter : parameters_)
+    if (names.empty() || std::ranges::find(names, Json(parameter.name)) != names.end())
+      clients_[id].parameters.insert(parameter.name);
+}
+
+void Foxglove::OnUnsubscribeParameters(ClientId id, const Json& message) {
+  const Json& names = List(message, "parameterNames");
+  if (names.empty()) clients_[id].parameters.clear();
+  for (const Json& name : names)
+    if (name.is_string()) clients_[id].parameters.erase(name.get<std::string>());
+}
+
+void Foxglove::OnSubscribeConnections(ClientId id, const Json&) {
+  const Connections connections = about_.connections();
+  SendText(id, {{"op", "connectionGraphUpdate"},
+                {"publishedTopics", NodesJson(connections.writers, "publisherIds")},
+                {"subscribedTopics", NodesJson(connections.readers, "subscriberIds")},
+                {"advertisedServices", NodesJson(connections.providers, "providerIds")},
+                {"removedTopics", Json::array()},
+                {"removedServices", Json::array()}});
+}
+
+void Foxglove::OnUnsubscribeConnections(ClientId, const Json&) {}  // they do not change: no update would come
+
+std::string Foxglove::OnClientMessage(ClientId id, Bytes message) {
+  ByteReader bytes(message);
+  const auto number = bytes.Take<std::uint32_t>();
+  if (!bytes.ok()) return "expected a message with a channel, got a shorter one";
+  const auto channel = clients_[id].channels.find(number);
+  if (channel == clients_[id].channels.end()) {
+    SendStatus(id, kError, "a message on a channel that was not advertised");
+    return {};
+  }
+  const auto goal = ReadGoal(channel->second.encoding, bytes.rest());
+  if (!goal) return fmt::format("expected a {} in {}, got something else", kGoalType, channel->second.encoding);
+  const Reply reply = [this, id](const Answer& answer) {
+    SendStatus(id, answer.granted ? 0 : kError, std::string(kGoalTopic) + ": " + answer.words);
+  };
+  Question(id, reply, [&](Reply later) { host_.AskForGoal(*goal, std::move(later)); });
+  return {};
+}
+
+std::string Foxglove::OnServiceCall(ClientId id, Bytes message) {
+  ByteReader bytes(message);
+  const auto service = bytes.Take<std::uint32_t>(), call = bytes.Take<std::uint32_t>();
+  const std::string encoding(bytes.TakeText());
+  if (!bytes.ok()) return "expected a service call, got a shorter message";
+  const auto fail = [&](const std::string& why) {
+    SendText(id, {{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", why}});
+    return std::string();
+  };
+  if (service != kService) return fail("there is no such service");
+  if (encoding != "json") return fail("expected the encoding json, got " + encoding.substr(0, kLongestEcho));
+  Wish wish;
+  try {
+    wish = ReadWish(Json::parse(bytes.rest().begin(), bytes.rest().end(), nullptr, /*allow_exceptions=*/false));
+  } catch (const std::invalid_argument& error) {
+    return fail(error.what());
+  }
+  AskAll(id, {wish}, [this, id, service, call](const Answer& answer) {
+    std::string response = Begin(FromServer::kServiceResponse);
+    for (const std::uint32_t number : {service, call, std::uint32_t{4}}) PutBytes(response, number);
+    SendBytes(id, response + "json" + CompactJson({{"granted", answer.granted}, {"words", answer.words}}));
+  });
+  return {};
+}
+
+std::string Foxglove::OnPlaybackControl(ClientId id, Bytes message) {
+  ByteReader bytes(message);
+  const auto command = bytes.Take<std::uint8_t>();
+  const auto speed = bytes.Take<float>();
+  const bool seeks = bytes.Take<std::uint8_t>() != 0;
+  const auto time_ns = bytes.Take<std::uint64_t>();
+  const std::string request(bytes.TakeText().substr(0, kLongestEcho));
+  if (!bytes.ok() || command > 1) return "expected a request to control playback, got something else";
+  std::vector<Wish> wishes;
+  if (seeks) wishes.push_back({.kind = Wish::Kind::kSeek, .number = static_cast<double>(time_ns) * 1e-9});
+  if (speed != playback_.speed) wishes.push_back({.kind = Wish::Kind::kPace, .number = speed});
+  wishes.push_back({.kind = command == 0 ? Wish::Kind::kResume : Wish::Kind::kPause});
+  AskAll(id, std::move(wishes), [this, id, request](const Answer& answer) {
+    if (!answer.granted) SendStatus(id, kError, answer.words);
+    SendPlayback(id, request);
+  });
+  return {};
+}
+
+void Foxglove::AskAll(ClientId id, std::vector<Wish> wishes, Reply reply) {
+  if (wishes.empty()) return reply({.granted = true});
+  const Wish first = wishes.front();
+  wishes.erase(wishes.begin());
+  const Reply next = [this, id, wishes = std::move(wishes), reply](const Answer& answer) {
+    if (answer.granted && !wishes.empty()) return AskAll(id, wishes, reply);
+    reply(answer);
+  };
+  Question(id, next, [&](Reply later) { host_.Ask(first, std::move(later)); });
+}
+
+void Foxglove::Question(ClientId id, Reply reply, const std::function<void(Reply)>& ask) {
+  if (clients_[id].questions >= kMostQuestions) return reply({false, "too many requests are not answered yet"});
+  ++clients_[id].questions;
+  ask([this, id, reply = std::move(reply)](const Answer& answer) {
+    const auto client = clients_.find(id);
+    if (client == clients_.end()) return;  // it left
+    --client->second.questions;
+    reply(answer);
+  });
+}
+
+std::vector<ClientId> Foxglove::clients() const {
+  std::vector<ClientId> ids;
+  for (const auto& [id, client] : clients_) ids.push_back(id);
+  return ids;
+}
+
+bool Foxglove::HasSubscriber(ChannelId channel) const {
+  return std::ranges::any_of(clients_, [&](const auto& client) {
+    return std::ranges::any_of(client.second.subscriptions, [&](const auto& row) { return row.second == channel; });
+  });
+}
+
+void Foxglove::PublishTo(ClientId id, ChannelId channel, std::uint64_t time_ns, const Payload& payload) {
+  const auto client = clients_.find(id);
+  if (client == clients_.end()) return;
+  for (const auto& [number, subscribed] : client->second.subscriptions) {
+    if (subscribed != channel) continue;
+    std::string head = Begin(FromServer::kMessage);
+    PutBytes(head, number);
+    PutBytes(head, time_ns);
+    host_.Send(id, {.head = std::move(head), .body = payload});
+  }
+}
+
+void Foxglove::Publish(ChannelId channel, std::uint64_t time_ns, const Payload& payload) {
+  for (const auto& [id, client] : clients_)
+    if (!host_.IsSlow(id)) PublishTo(id, channel, time_ns, payload);
+}
+
+void Foxglove::SendTime(std::uint64_t time_ns) {
+  std::string message = Begin(FromServer::kTime);
+  PutBytes(message, time_ns);
+  for (const auto& [id, client] : clients_)
+    if (!host_.IsSlow(id)) SendBytes(id, message);
+  playback_.time_ns = time_ns;
+}
+
+void Foxglove::SetParameters(std::vector<Parameter> parameters) {
+  const auto has_changed = [&, before = std::exchange(parameters_, std::move(parameters))](const Parameter& now) {
+    const auto old = std::ranges::find(before, now.name, &Parameter::name);
+    return old == before.end() || old->value != now.value;
+  };
+  if (std::ranges::none_of(parameters_, has_changed)) return;
+  for (const auto& [id, client] : clients_) {
+    const auto wanted = [&names = client.parameters, &has_changed](const Parameter& parameter) {
+      return names.contains(parameter.name) && has_changed(parameter);
+    };
+    if (std::ranges::any_of(parameters_, wanted)) SendParameters(id, wanted, nullptr);
+  }
+}
+
+void Foxglove::SetPlayback(const Playback& playback) {
+  const Playback before = std::exchange(playback_, playback);
+  if (before.status == playback.status && before.speed == playback.speed) return;
+  for (const auto& [id, client] : clients_) SendPlayback(id, "");
+}
+
+void Foxglove::SendText(ClientId id, const Json& message) {
+  host_.Send(id, {.is_text = true, .head = CompactJson(message)});
+}
+
+void Foxglove::SendBytes(ClientId id, std::string message) { host_.Send(id, {.head = std::move(message)}); }
+
+void Foxglove::SendStatus(ClientId id, int level, const std::string& words) {
+  SendText(id, {{"op", "status"}, {"level", level}, {"message", words}});
+}
+
+void Foxglove::SendParameters(ClientId id, const std::function<bool(const Parameter&)>& wanted, const Json& request) {
+  Json parameters = Json::array();
+  for (const Parameter& parameter : parameters_)
+    if (wanted(parameter)) {
+      parameters.push_back({{"name", parameter.name}, {"value", parameter.value}});
+      if (parameter.value.is_number()) parameters.back()["type"] = "float64";
+      if (parameter.value.is_array()) parameters.back()["type"] = "float64_array";
+    }
+  Json message = {{"op", "parameterValues"}, {"parameters", parameters}};
+  if (!request.is_null()) message["id"] = request;
+  SendText(id, message);
+}
+
+void Foxglove::SendPlayback(ClientId id, const std::string& request) {
+  if (!clients_[id].controls_playback) return;
+  std::string message = Begin(FromServer::kPlayback);
+  message += static_cast<char>(playback_.status);
+  PutBytes(message, playback_.time_ns);
+  PutBytes(message, playback_.speed);
+  PutBytes(message, static_cast<std::uint32_t>(request.size()));
+  SendBytes(id, message + request);
+}
+
+}  // namespace mascot

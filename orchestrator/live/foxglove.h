@@ -1,0 +1,152 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "orchestrator/engines/run_control.h"
+#include "orchestrator/live/foxglove_bytes.h"
+#include "orchestrator/live/socket.h"
+
+namespace mascot {
+
+/// The server's side of the Foxglove WebSocket protocol (subprotocols foxglove.sdk.v1 and foxglove.websocket.v1), for
+/// any number of clients: no socket, no thread, no clock. Clients may send whatever they like: nothing is thrown.
+class Foxglove {
+ public:
+  using Json = nlohmann::ordered_json;
+  using Payload = std::shared_ptr<const std::string>;
+  using Reply = std::function<void(const Answer&)>;
+  /// Index in About::channels.
+  using ChannelId = std::uint32_t;
+
+  struct Schema {
+    std::string name, encoding, text;
+  };
+  struct Channel {
+    std::string topic, encoding;
+    Schema schema;
+  };
+  /// A parameter of the run, such as a gain.
+  struct Parameter {
+    std::string name;
+    Json value;
+  };
+  /// Values of playback's status, as the protocol has them.
+  enum class Playing : std::uint8_t { kPlaying, kPaused, kBuffering, kEnded };
+  struct Playback {
+    Playing status = Playing::kPlaying;
+    std::uint64_t time_ns = 0;
+    float speed = 1;
+  };
+  /// Who writes and who reads each topic, and who offers each service.
+  struct Connections {
+    using Nodes = std::map<std::string, std::vector<std::string>>;
+    Nodes writers, readers, providers;
+  };
+  /// What does not change.
+  struct About {
+    std::string name, session;  ///< a client that connects again to the same session knows the channels
+    std::uint64_t end_ns = 0;   ///< of the run, which begins at 0
+    std::vector<Channel> channels;
+    std::function<Connections()> connections;
+    std::string service;  ///< the service, which takes and gives JSON
+    Schema request, response;
+  };
+
+  /// Whom this object asks to do things.
+  class Host {
+   public:
+    virtual ~Host() = default;
+    virtual void Send(ClientId client, Frame frame) = 0;
+    /// Whether messages for this client should be left out, because it has not read older ones.
+    virtual bool IsSlow(ClientId client) const = 0;
+    /// A client has subscribed: what it has missed may be sent to it now.
+    virtual void OnSubscribe(ClientId client, ChannelId channel) = 0;
+    // Ask the run. `reply` is to be called later, not before the call returns.
+    virtual void Ask(const Wish& wish, Reply reply) = 0;
+    virtual void AskForGoal(const Goal& goal, Reply reply) = 0;
+  };
+
+  /// `host` must outlive this object.
+  Foxglove(About about, Host& host) : about_(std::move(about)), host_(host) {}
+
+  /// `controls_playback`: the client speaks foxglove.sdk.v1, which has more kinds of messages.
+  void OnOpen(ClientId client, bool controls_playback);
+  /// Returns why the client is to be dropped; empty: it is not.
+  std::string OnMessage(ClientId client, bool is_text, std::span<const std::uint8_t> message);
+  void OnClose(ClientId client) { clients_.erase(client); }
+
+  std::vector<ClientId> clients() const;
+  bool HasSubscriber(ChannelId channel) const;
+  /// Sends a message to all who have subscribed to the channel and are not slow.
+  void Publish(ChannelId channel, std::uint64_t time_ns, const Payload& payload);
+  /// Sends a message to one client, slow or not, if it has subscribed to the channel.
+  void PublishTo(ClientId client, ChannelId channel, std::uint64_t time_ns, const Payload& payload);
+  /// Tells the simulated time to all who are not slow.
+  void SendTime(std::uint64_t time_ns);
+  /// What the parameters are from now on; who has subscribed to one that changed is told.
+  void SetParameters(std::vector<Parameter> parameters);
+  /// How the run goes; everybody is told if more than the time has changed.
+  void SetPlayback(const Playback& playback);
+
+  // What one client may have at a time.
+  static constexpr std::size_t kMostClientChannels = 16;
+  static constexpr std::size_t kMostQuestions = 16;
+
+ private:
+  struct Client {
+    std::map<std::uint32_t, ChannelId> subscriptions;  // by the client's number; at most one of each channel
+    std::map<std::uint32_t, Channel> channels;         // that it publishes, by its own number
+    std::set<std::string> parameters;                  // whose changes it wants to know
+    std::size_t questions = 0;                         // not answered yet
+    bool controls_playback = false;
+  };
+  using Bytes = std::span<const std::uint8_t>;
+
+  std::string OnText(ClientId id, Bytes text);
+  void OnSubscribe(ClientId id, const Json& message);
+  void OnUnsubscribe(ClientId id, const Json& message);
+  void OnAdvertise(ClientId id, const Json& message);
+  void OnUnadvertise(ClientId id, const Json& message);
+  void OnGetParameters(ClientId id, const Json& message);
+  void OnSetParameters(ClientId id, const Json& message);
+  void OnSubscribeParameters(ClientId id, const Json& message);
+  void OnUnsubscribeParameters(ClientId id, const Json& message);
+  void OnSubscribeConnections(ClientId id, const Json& message);
+  void OnUnsubscribeConnections(ClientId id, const Json& message);
+  std::string OnClientMessage(ClientId id, Bytes message);
+  std::string OnServiceCall(ClientId id, Bytes message);
+  std::string OnPlaybackControl(ClientId id, Bytes message);
+
+  /// Asks for the wishes one after the other, as long as they are granted; `reply` gets the last answer.
+  void AskAll(ClientId id, std::vector<Wish> wishes, Reply reply);
+  /// Passes a question on with `ask`, which gets the reply to call. With too many questions it is refused at once.
+  void Question(ClientId id, Reply reply, const std::function<void(Reply)>& ask);
+
+  void SendText(ClientId id, const Json& message);
+  void SendBytes(ClientId id, std::string message);
+  void SendStatus(ClientId id, int level, const std::string& words);
+  void SendParameters(ClientId id, const std::function<bool(const Parameter&)>& wanted, const Json& request);
+  void SendPlayback(ClientId id, const std::string& request);
+
+  const About about_;
+  Host& host_;
+  std::map<ClientId, Client> clients_;
+  std::vector<Parameter> parameters_;
+  Playback playback_;
+};
+
+/// The wish that a request of the page in JSON describes: {"ask": "pause"}, {"ask": "event", "toml": "..."}. Throws
+/// std::invalid_argument with what was expected.
+Wish ReadWish(const nlohmann::ordered_json& request);
+/// The event that gives a key a value.
+Wish SetKey(const std::string& key, const nlohmann::ordered_json& value);
+
+}  // namespace mascot

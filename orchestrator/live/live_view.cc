@@ -1,0 +1,196 @@
+#include "orchestrator/live/live_view.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "bus/wire.h"
+#include "idl/topics.h"
+
+namespace mascot {
+namespace {
+
+/// That of the SDK, then that of the clients before it.
+constexpr const char* kSubprotocols[] = {"foxglove.sdk.v1", "foxglove.websocket.v1"};
+constexpr int kFramesPerSecond = 30;
+constexpr auto kPaceWindow = std::chrono::seconds(1);
+
+/// Channels of the page, in this order.
+enum UiChannel : Foxglove::ChannelId { kExperimentChannel, kFrameChannel, kEventsChannel };
+
+constexpr std::string_view kWishSchema = R"({"type":"object","required":["ask"],"properties":{)"
+                                         R"("ask":{"enum":["pause","resume","stop","step","pace","event","seek"]},)"
+                                         R"("count":{"type":"integer"},"value":{"type":"number"},)"
+                                         R"("toml":{"type":"string"},"t_s":{"type":"number"}}})";
+constexpr std::string_view kAnswerSchema =
+    R"({"type":"object","properties":{"granted":{"type":"boolean"},"words":{"type":"string"}}})";
+
+Foxglove::Channel JsonChannel(const std::string& topic, const std::string& type) {
+  return {topic,
+          "json",
+          {type, "jsonschema", R"({"type":")" + std::string(type == "mascot/Events" ? "array" : "object") + "\"}"}};
+}
+
+Foxglove::Payload Shared(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
+
+/// A name of this run by which clients tell it from another on the same port.
+std::string NewSession() { return std::to_string(std::chrono::system_clock::now().time_since_epoch().count()); }
+
+SocketOptions OptionsOf(const LiveView::Options& options) {
+  return {.address = options.address,
+          .port = options.port,
+          .subprotocols = {std::begin(kSubprotocols), std::end(kSubprotocols)},
+          .period = std::chrono::milliseconds(1000 / kFramesPerSecond)};
+}
+
+}  // namespace
+
+LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
+                   RunControl& control, const Options& options, std::function<void(const std::string&)> log)
+    : experiment_(experiment),
+      prediction_(prediction),
+      meter_(meter),
+      engine_(options.engine),
+      pages_(options.page),
+      newest_(experiment.size()),
+      state_{.pace = options.pace},
+      shown_(experiment.size()),
+      shown_state_(state_),
+      experiment_json_(Shared(ExperimentJson(experiment, prediction, "run", engine_, {}))),
+      events_json_(Shared(EventsJson(experiment, {}))),
+      foxglove_(About(options), *this),
+      server_(OptionsOf(options), *this, std::move(log)),
+      asker_(control) {
+  server_.Start();
+}
+
+Foxglove::About LiveView::About(const Options&) const {
+  return {.name = "mascot: " + experiment_.run.name,
+          .session = NewSession(),
+          .end_ns = StampNs(experiment_.ticks(), experiment_.control.rate_hz),
+          .channels = {JsonChannel("/ui/experiment", "mascot/Experiment"), JsonChannel("/ui/frame", "mascot/Frame"),
+                       JsonChannel("/ui/events", "mascot/Events")},
+          .connections = [] { return Foxglove::Connections(); },
+          .service = "/mascot/ask",
+          .request = {"mascot/Wish", "jsonschema", std::string(kWishSchema)},
+          .response = {"mascot/Answer", "jsonschema", std::string(kAnswerSchema)}};
+}
+
+void LiveView::Add(const FlownRow& row) {
+  const std::lock_guard lock(mutex_);
+  newest_.tick = row.tick();
+  newest_.decoded = row.decoded();
+  newest_.disagreement_m = meter_.disagreement_m();
+  if (experiment_.graph.edges() <= kMostEdgesShown) meter_.EdgesNow(newest_.edges);
+  is_new_ = true;
+}
+
+void LiveView::SetState(const RunState& state) {
+  const std::lock_guard lock(mutex_);
+  state_ = state;
+  is_new_ = true;
+}
+
+void LiveView::OnEvent(const ShownEvent& event, const Experiment& now, const std::vector<LiveKey>& keys) {
+  server_.Post([this, event, json = Shared(ExperimentJson(now, prediction_, "run", engine_, keys)), keys] {
+    events_.push_back(event);
+    experiment_json_ = json;
+    events_json_ = Shared(EventsJson(experiment_, events_));
+    foxglove_.Publish(kExperimentChannel, shown_ns(), experiment_json_);
+    foxglove_.Publish(kEventsChannel, shown_ns(), events_json_);
+    std::vector<Foxglove::Parameter> parameters;
+    for (const LiveKey& key : keys) parameters.push_back({key.name, Foxglove::Json::parse(key.value, nullptr, false)});
+    foxglove_.SetParameters(std::move(parameters));
+  });
+}
+
+void LiveView::OnOpen(ClientId client, const std::string& subprotocol) {
+  foxglove_.OnOpen(client, subprotocol == kSubprotocols[0]);
+}
+
+std::string LiveView::OnMessage(ClientId client, bool is_text, std::span<const std::uint8_t> message) {
+  return foxglove_.OnMessage(client, is_text, message);
+}
+
+void LiveView::OnClose(ClientId client) {
+  foxglove_.OnClose(client);
+  missed_.erase(client);
+}
+
+std::uint64_t LiveView::shown_ns() const {
+  return StampNs(std::max<std::int64_t>(shown_.tick, 0), experiment_.control.rate_hz);
+}
+
+void LiveView::OnSubscribe(ClientId client, Foxglove::ChannelId channel) {
+  const Foxglove::Payload latched[] = {experiment_json_, frame_json_, events_json_};
+  if (channel < std::size(latched) && latched[channel] != nullptr)
+    foxglove_.PublishTo(client, channel, shown_ns(), latched[channel]);
+}
+
+bool LiveView::TakeNewest() {
+  const std::lock_guard lock(mutex_);
+  if (!std::exchange(is_new_, false)) return false;
+  if (newest_.tick > shown_.tick) std::swap(newest_, shown_);
+  const double real_time_factor = shown_state_.real_time_factor;
+  shown_state_ = state_;
+  shown_state_.real_time_factor = real_time_factor;
+  return true;
+}
+
+void LiveView::MeasurePace() {
+  const auto now = WallClock::now();
+  if (measured_at_ && now - *measured_at_ < kPaceWindow) return;
+  if (measured_at_) {
+    const double wall_s = std::chrono::duration<double>(now - *measured_at_).count();
+    shown_state_.real_time_factor = experiment_.time_s(shown_.tick - measured_tick_) / wall_s;
+  }
+  measured_at_ = now;
+  measured_tick_ = shown_.tick;
+}
+
+void LiveView::Show() {
+  frame_json_ = Shared(FrameJson(experiment_, shown_, shown_state_));
+  foxglove_.SendTime(shown_ns());
+  foxglove_.Publish(kFrameChannel, shown_ns(), frame_json_);
+}
+
+void LiveView::OnTimer() {
+  slow_.clear();
+  for (const ClientId client : foxglove_.clients())
+    if (server_.Waiting(client) > 0) slow_.insert(client);
+  const bool is_new = TakeNewest();
+  if (shown_.tick < 0) return;
+  if (is_new) {
+    MeasurePace();
+    Show();
+    missed_ = slow_;
+  }
+  std::erase_if(missed_, [this](ClientId client) {  // no newer frame may come
+    if (slow_.contains(client)) return false;
+    foxglove_.PublishTo(client, kFrameChannel, shown_ns(), frame_json_);
+    return true;
+  });
+}
+
+void LiveView::Ask(const Wish& wish, Foxglove::Reply reply) {
+  asker_.Ask(wish, [this, reply = std::move(reply)](const Answer& answer) {
+    server_.Post([reply, answer] { reply(answer); });
+  });
+}
+
+void LiveView::AskForGoal(const Goal& goal, Foxglove::Reply reply) {
+  const auto named = AgentsOf(goal.frame_id);
+  const int agent = named ? named->first : experiment_.law.leader;
+  if (agent < 1 || agent > experiment_.size())
+    return server_.Post([reply = std::move(reply)] {
+      reply({false, "expected the name of an agent (agent_1) as frame_id, because there is no leader"});
+    });
+  // A click on the ground has height 0, and means the place, not the height.
+  const double z =
+      goal.z != 0 || shown_.tick < 0 ? goal.z : shown_.decoded.motions[static_cast<std::size_t>(agent - 1)].p_WB.z();
+  Ask({.kind = Wish::Kind::kEvent,
+       .toml = fmt::format("goto = {{ agent = {}, position_m = [{:.6f}, {:.6f}, {:.6f}] }}", agent, goal.x, goal.y, z)},
+      std::move(reply));
+}
+
+}  // namespace mascot

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "orchestrator/live/asker.h"
+#include "orchestrator/live/foxglove.h"
+#include "orchestrator/live/pages.h"
+#include "orchestrator/live/socket.h"
+#include "orchestrator/live/ui_channels.h"
+#include "orchestrator/measuring/run_meter.h"
+#include "orchestrator/team/row_sink.h"
+#include "orchestrator/theory/theory.h"
+
+namespace mascot {
+
+/// A page to watch and touch a run, and the Foxglove WebSocket protocol, on one port. The run's thread only copies each
+/// row; all else happens in the server's thread. A slow viewer loses frames.
+class LiveView final : public RowSink, private SocketUser, private Foxglove::Host {
+ public:
+  struct Options {
+    std::string address = "127.0.0.1";
+    std::uint16_t port = 8765;
+    std::filesystem::path page;  ///< folder of index.html
+    std::string engine;          ///< "dds" or "inprocess"
+    double pace = 0;             ///< simulated seconds a second that the run asks for; 0: as fast as it goes
+  };
+
+  /// Listens from now on; all arguments but `options` must outlive this object. `meter` must get each row before this
+  /// object does. `log` takes a line about a viewer that was dropped, from any thread. Throws std::runtime_error if no
+  /// port can be had.
+  LiveView(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter, RunControl& control,
+           const Options& options, std::function<void(const std::string&)> log);
+
+  /// Address of the page.
+  std::string url() const { return server_.url(); }
+  /// Takes the next row, from the run's thread.
+  void Add(const FlownRow& row) override;
+
+  // From any thread.
+  /// Says how the run goes. real_time_factor is not used: it is measured here.
+  void SetState(const RunState& state);
+  /// An event has taken effect: `now` is the experiment with it, `keys` are all that may be changed.
+  void OnEvent(const ShownEvent& event, const Experiment& now, const std::vector<LiveKey>& keys);
+
+ private:
+  using WallClock = std::chrono::steady_clock;
+
+  // SocketUser, in the server's thread.
+  HttpAnswer Get(std::string_view target, std::string_view host) override { return pages_.Get(target, host); }
+  void OnOpen(ClientId client, const std::string& subprotocol) override;
+  std::string OnMessage(ClientId client, bool is_text, std::span<const std::uint8_t> message) override;
+  void OnClose(ClientId client) override;
+  void OnTimer() override;
+
+  // Foxglove::Host, likewise.
+  void Send(ClientId client, Frame frame) override { server_.Send(client, std::move(frame)); }
+  bool IsSlow(ClientId client) const override { return slow_.contains(client); }
+  void OnSubscribe(ClientId client, Foxglove::ChannelId channel) override;
+  void Ask(const Wish& wish, Foxglove::Reply reply) override;
+  void AskForGoal(const Goal& goal, Foxglove::Reply reply) override;
+
+  Foxglove::About About(const Options& options) const;
+  bool TakeNewest();
+  void MeasurePace();
+  void Show();
+  std::uint64_t shown_ns() const;
+
+  const Experiment& experiment_;
+  const Prediction& prediction_;
+  const RunMeter& meter_;
+  const std::string engine_;
+  const Pages pages_;
+
+  std::mutex mutex_;
+  ShownRow newest_;      // guarded by mutex_
+  bool is_new_ = false;  // guarded by mutex_: newest_ or state_ has changed
+  RunState state_;       // guarded by mutex_
+
+  // The server's thread alone.
+  ShownRow shown_;
+  RunState shown_state_;
+  std::set<ClientId> slow_, missed_;  // missed_: the last frame
+  Foxglove::Payload experiment_json_, events_json_, frame_json_;
+  std::vector<ShownEvent> events_;
+  std::optional<WallClock::time_point> measured_at_;
+  std::int64_t measured_tick_ = 0;
+
+  Foxglove foxglove_;
+  SocketServer server_;  // its thread uses all of the above
+  Asker asker_;          // its thread uses server_
+};
+
+}  // namespace mascot

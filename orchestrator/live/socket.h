@@ -1,0 +1,94 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace mascot {
+
+/// One connection by WebSocket. Numbers are not used again.
+using ClientId = std::uint64_t;
+
+/// One message to a client, of two parts.
+struct Frame {
+  bool is_text = false;
+  std::string head = {};                         ///< what differs from client to client
+  std::shared_ptr<const std::string> body = {};  ///< what clients share, behind the head; null: nothing
+};
+
+/// The answer to a GET.
+struct HttpAnswer {
+  unsigned status = 200;
+  std::vector<std::pair<std::string, std::string>> headers = {};
+  std::string body = {};
+};
+
+/// Limits of a server.
+struct SocketLimits {
+  std::size_t clients = 64;                           ///< by WebSocket; who comes then gets 503
+  std::size_t connections = 256;                      ///< of both kinds; who comes then is not answered
+  std::size_t message_bytes = std::size_t{1} << 20;   ///< longest message of a client
+  std::size_t waiting_bytes = std::size_t{64} << 20;  ///< a client that leaves so much unread is dropped
+  std::chrono::seconds handshake{5};                  ///< time for a request to arrive
+};
+
+struct SocketOptions {
+  std::string address = "127.0.0.1";           ///< an IP address or a name
+  std::uint16_t port = 8765;                   ///< if it is taken, one of the next hundred; 0: any free one
+  std::vector<std::string> subprotocols = {};  ///< the first one that a client offers is taken
+  std::chrono::milliseconds period{33};        ///< of SocketUser::OnTimer()
+  SocketLimits limits = {};
+};
+
+/// What a SocketServer serves. All functions are called in the server's thread. What they throw is logged; the client
+/// is dropped.
+class SocketUser {
+ public:
+  virtual ~SocketUser() = default;
+  /// The answer to GET `target` (path and query as sent). `host`: the Host header, which is one of ours.
+  virtual HttpAnswer Get(std::string_view target, std::string_view host) = 0;
+  /// `subprotocol`: that of SocketOptions::subprotocols on which both sides agreed.
+  virtual void OnOpen(ClientId client, const std::string& subprotocol) = 0;
+  /// A message, text in UTF-8 or bytes. Returns why the client is to be dropped; empty: it is not.
+  virtual std::string OnMessage(ClientId client, bool is_text, std::span<const std::uint8_t> message) = 0;
+  virtual void OnClose(ClientId client) = 0;
+  virtual void OnTimer() = 0;
+};
+
+/// HTTP and WebSocket on one port, in a thread of its own. Refuses requests whose Host or Origin is foreign
+/// (live/origin.h). Its sockets are not inherited by child processes.
+class SocketServer {
+ public:
+  /// Listens from now on. `log` takes a line about a client that was dropped, in the server's thread. Throws
+  /// std::runtime_error if no port can be had. `user` must outlive this object, and is called only after Start().
+  SocketServer(SocketOptions options, SocketUser& user, std::function<void(const std::string&)> log);
+  /// Says goodbye to the clients, sends what is waiting for them for at most a second, and ends the thread.
+  ~SocketServer();
+  SocketServer(const SocketServer&) = delete;
+  SocketServer& operator=(const SocketServer&) = delete;
+
+  /// Starts the thread.
+  void Start();
+  /// "http://127.0.0.1:8765"
+  std::string url() const;
+  /// Calls `function` in the server's thread, soon. From any thread.
+  void Post(std::function<void()> function);
+
+  // In the server's thread only.
+  /// Sends a message; nothing if the client is gone.
+  void Send(ClientId client, Frame frame);
+  /// Bytes that wait until the client reads; 0 if it is gone.
+  std::size_t Waiting(ClientId client) const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mascot

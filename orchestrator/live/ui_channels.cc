@@ -1,0 +1,203 @@
+#include "orchestrator/live/ui_channels.h"
+
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "agent/laws.h"
+#include "orchestrator/live/compact_json.h"
+
+namespace mascot {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr EnumNames<RunState::Phase, 4> kPhases({{RunState::Phase::kRunning, "running"},
+                                                 {RunState::Phase::kPaused, "paused"},
+                                                 {RunState::Phase::kDone, "done"},
+                                                 {RunState::Phase::kFailed, "failed"}});
+constexpr EnumNames<ValueKind, 14> kKinds({{ValueKind::kNone, "none"},
+                                           {ValueKind::kNumber, "number"},
+                                           {ValueKind::kInteger, "integer"},
+                                           {ValueKind::kBoolean, "boolean"},
+                                           {ValueKind::kText, "text"},
+                                           {ValueKind::kOneOf, "one_of"},
+                                           {ValueKind::kTexts, "texts"},
+                                           {ValueKind::kVector3, "vector3"},
+                                           {ValueKind::kNumbers, "numbers"},
+                                           {ValueKind::kRows, "rows"},
+                                           {ValueKind::kPoints, "points"},
+                                           {ValueKind::kTable, "table"},
+                                           {ValueKind::kTables, "tables"},
+                                           {ValueKind::kAny, "any"}});
+
+Json ToJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+template <class Value>
+Json OrNull(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json AgentJson(const AgentConfig& agent) {
+  const auto places_W = PlacesOf(agent.law);
+  const auto pursuit = PursuitFormOf(agent.law);
+  const auto i = static_cast<std::size_t>(agent.id - 1);
+  Json waypoints = Json::array();
+  for (const Eigen::Vector3d& waypoint : WaypointsOf(agent)) waypoints.push_back(ToJson(waypoint));
+  const bool leads = agent.law.leader == agent.id;
+  return {{"id", agent.id},
+          {"model", agent.model},
+          {"size_m", ToJson(agent.size_m())},
+          {"arm_m", agent.traits().has_airframe ? agent.airframe.arm_m : 0.0},
+          {"law", agent.law.name},
+          {"leads", leads},
+          {"waypoints_m", waypoints},
+          {"place_m", places_W.empty() ? Json(nullptr) : ToJson(places_W[i])},
+          {"parent", pursuit ? pursuit->parent[i] : 0},
+          {"goto", leads || !waypoints.empty()}};
+}
+
+Json EdgesJson(const Graph& graph) {
+  Json edges = Json::array();
+  if (graph.edges() > kMostEdgesShown) return edges;
+  for (int id = 1; id <= graph.size(); ++id)
+    for (const Graph::Neighbour& heard : graph.HeardBy(id)) edges.push_back({id, heard.id, heard.weight});
+  return edges;
+}
+
+Json ObstaclesJson(const std::vector<Obstacle>& obstacles) {
+  Json json = Json::array();
+  for (const Obstacle& obstacle : obstacles)
+    json.push_back({{"kind", kShapes.Name(obstacle.shape)},
+                    {"position_m", ToJson(obstacle.p_W)},
+                    {"size_m", ToJson(obstacle.size_m)},
+                    {"heading_rad", obstacle.heading_rad}});
+  return json;
+}
+
+Json KeysJson(const std::vector<LiveKey>& keys) {
+  Json json = Json::array();
+  for (const LiveKey& key : keys) {
+    const bool is_integer = key.row.kind == ValueKind::kInteger;
+    const std::vector<std::string> names(key.row.names.begin(), key.row.names.end());
+    json.push_back({{"key", key.name},
+                    {"kind", kKinds.Name(key.row.kind)},
+                    {"unit", key.row.unit},
+                    {"min", is_integer ? static_cast<double>(key.row.min_integer) : key.row.range.min},
+                    {"max", is_integer ? static_cast<double>(key.row.max_integer) : key.row.range.max},
+                    {"open_min", key.row.range.open_min},
+                    {"names", names},
+                    {"value", Json::parse(key.value, nullptr, /*allow_exceptions=*/false)},
+                    {"meaning", key.row.meaning}});
+  }
+  return json;
+}
+
+/// Writes numbers into JSON, quickly: a frame may have tens of thousands.
+class Numbers {
+ public:
+  explicit Numbers(std::string& out) : out_(out) {}
+  void Add(double value) {
+    if (!std::isfinite(value)) return AddText("null");
+    char text[32];
+    const auto end = std::to_chars(std::begin(text), std::end(text), static_cast<float>(value)).ptr;
+    AddText({text, end});
+  }
+  void Add(std::int64_t value) { AddText(std::to_string(value)); }
+  void Add(const Eigen::Vector3d& v) {
+    for (const double value : v) Add(value);
+  }
+
+ private:
+  void AddText(std::string_view text) {
+    if (out_.back() != '[') out_ += ',';
+    out_ += text;
+  }
+  std::string& out_;
+};
+
+/// Appends ,"name":[...]: what `add` adds for each item.
+template <class Items, class Add>
+void AddList(std::string& out, const char* name, const Items& items, const Add& add) {
+  out.append(",\"").append(name).append("\":[");
+  Numbers numbers(out);
+  for (const auto& item : items) add(numbers, item);
+  out += ']';
+}
+
+void AddEdges(std::string& out, const Experiment& experiment, const std::vector<EdgeNow>& edges) {
+  if (edges.size() != experiment.graph.edges()) {
+    out += ",\"edge\":null,\"age_s\":null";
+    return;
+  }
+  AddList(out, "edge", edges, [](Numbers& to, const EdgeNow& edge) { to.Add(static_cast<std::int64_t>(edge.state)); });
+  AddList(out, "age_s", edges, [](Numbers& to, const EdgeNow& edge) { to.Add(edge.age_s); });
+}
+
+}  // namespace
+
+std::string ExperimentJson(const Experiment& experiment, const Prediction& prediction, std::string_view source,
+                           std::string_view engine, const std::vector<LiveKey>& keys) {
+  Json agents = Json::array();
+  for (const AgentConfig& agent : experiment.agents) agents.push_back(AgentJson(agent));
+  return CompactJson({{"name", experiment.run.name},
+                      {"source", source},
+                      {"engine", engine},
+                      {"rate_hz", experiment.control.rate_hz},
+                      {"ticks", experiment.ticks()},
+                      {"duration_s", experiment.run.duration_s},
+                      {"axes", kAxes.Name(experiment.law.axes)},
+                      {"leader", experiment.law.leader},
+                      {"agents", agents},
+                      {"edges", EdgesJson(experiment.graph)},
+                      {"range_m", experiment.schedule.range_m()},
+                      {"obstacles", ObstaclesJson(experiment.physics.obstacles)},
+                      {"wind_m_per_s", ToJson(experiment.physics.wind.mean_m_per_s)},
+                      {"prediction",
+                       {{"stable", OrNull(prediction.stable)},
+                        {"value_m", prediction.value_m ? ToJson(*prediction.value_m) : Json(nullptr)},
+                        {"rate_per_s", OrNull(prediction.rate_per_s)},
+                        {"settling_time_s", OrNull(prediction.settling_time_s)},
+                        {"why", prediction.silent}}},
+                      {"live_keys", KeysJson(keys)}});
+}
+
+std::string FrameJson(const Experiment& experiment, const ShownRow& row, const RunState& state) {
+  const auto& motions = row.decoded.motions;
+  const auto& commands = row.decoded.commands;
+  const Json head = {{"tick", row.tick},
+                     {"t_s", experiment.time_s(row.tick)},
+                     {"state", kPhases.Name(state.phase)},
+                     {"pace", state.pace},
+                     {"real_time_factor", state.real_time_factor},
+                     {"disagreement_m", row.disagreement_m},
+                     {"contacts", OrNull(state.contacts)}};
+  std::string out = CompactJson(head);
+  out.pop_back();  // the closing brace
+  AddList(out, "p", motions, [](Numbers& to, const Motion& motion) { to.Add(motion.p_WB); });
+  AddList(out, "q", motions, [](Numbers& to, const Motion& motion) {
+    for (const double value : {motion.q_WB.w(), motion.q_WB.x(), motion.q_WB.y(), motion.q_WB.z()}) to.Add(value);
+  });
+  AddList(out, "v", motions, [](Numbers& to, const Motion& motion) { to.Add(motion.v_WB); });
+  AddList(out, "speed_m_per_s", motions, [](Numbers& to, const Motion& motion) { to.Add(motion.v_WB.norm()); });
+  AddList(out, "a", commands, [](Numbers& to, const Command& command) { to.Add(command.a_limited_W); });
+  AddList(out, "u", commands, [](Numbers& to, const Command& command) {
+    for (const double value : command.actuator) to.Add(value);
+  });
+  AddList(out, "flags", commands, [](Numbers& to, const Command& command) { to.Add(std::int64_t{command.flags}); });
+  AddEdges(out, experiment, row.edges);
+  return out += '}';
+}
+
+std::string EventsJson(const Experiment& experiment, const std::vector<ShownEvent>& events) {
+  Json json = Json::array();
+  for (const ShownEvent& event : events)
+    json.push_back({{"number", event.number},
+                    {"tick", event.tick},
+                    {"t_s", experiment.time_s(event.tick)},
+                    {"toml", event.toml},
+                    {"by_hand", event.by_hand}});
+  return CompactJson(json);
+}
+
+}  // namespace mascot

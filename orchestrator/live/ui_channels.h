@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "agent/neighbours.h"
+#include "experiment/experiment.h"
+#include "experiment/toml/key.h"
+#include "orchestrator/team/row.h"
+#include "orchestrator/theory/theory.h"
+
+namespace mascot {
+
+// What the page is told, as JSON. Distances in m, times in s, agents by id - 1; docs/live.md has the fields.
+
+/// Edges beyond which a frame says nothing about them.
+inline constexpr std::size_t kMostEdgesShown = 20000;
+
+/// One tick of a run, as viewers see it.
+struct ShownRow {
+  explicit ShownRow(int agents) : decoded(agents) {}
+
+  std::int64_t tick = -1;  ///< -1: none yet
+  DecodedRow decoded;
+  std::vector<EdgeNow> edges;  ///< in increasing order of hearer, then of heard; empty beyond kMostEdgesShown
+  double disagreement_m = 0;
+};
+
+/// How a run goes.
+struct RunState {
+  enum class Phase { kRunning, kPaused, kDone, kFailed };
+  Phase phase = Phase::kRunning;
+  double pace = 0;                             ///< simulated seconds a second that are asked for; 0: as fast as it goes
+  double real_time_factor = 0;                 ///< those that are flown
+  std::optional<std::uint64_t> contacts = {};  ///< absent: not known before the end
+};
+
+/// A key that an event may change.
+struct LiveKey {
+  std::string name;  ///< "law.p_gain"
+  Key row;
+  std::string value;  ///< as JSON
+};
+
+/// An event that has taken effect.
+struct ShownEvent {
+  std::int64_t number = 0, tick = 0;
+  std::string toml;
+  bool by_hand = false;
+};
+
+/// /ui/experiment. `source`: "run" or "recording".
+std::string ExperimentJson(const Experiment& experiment, const Prediction& prediction, std::string_view source,
+                           std::string_view engine, const std::vector<LiveKey>& keys);
+/// /ui/frame
+std::string FrameJson(const Experiment& experiment, const ShownRow& row, const RunState& state);
+/// /ui/events
+std::string EventsJson(const Experiment& experiment, const std::vector<ShownEvent>& events);
+
+}  // namespace mascot
