@@ -7,7 +7,7 @@ namespace mascot {
 namespace {
 
 constexpr TypeSchema kSchemas[] = {
-#include "schemas.inc"  // made from idl/mascot_msgs/msg/*.msg by idl/make_schemas.py
+#include "schemas.inc"  // made from idl/**/*.msg by idl/make_schemas.py
 };
 
 }  // namespace
@@ -19,6 +19,28 @@ const TypeSchema& SchemaOf(std::string_view name) {
       std::find_if(std::begin(kSchemas), std::end(kSchemas), [&](const auto& s) { return s.name == name; });
   if (row == std::end(kSchemas)) throw std::out_of_range("no schema for the type " + std::string(name));
   return *row;
+}
+
+const TypeSchema& SchemaOf(TopicKind kind) {
+  switch (kind) {
+    case TopicKind::kBundle:
+      return SchemaOf("mascot_msgs/msg/AgentBundle");
+    case TopicKind::kCommand:
+      return SchemaOf("mascot_msgs/msg/AgentCommand");
+    case TopicKind::kMessage:
+      return SchemaOf("mascot_msgs/msg/AgentMessage");
+    case TopicKind::kState:
+      return SchemaOf("mascot_msgs/msg/AgentState");
+    case TopicKind::kClock:
+      return SchemaOf("rosgraph_msgs/msg/Clock");
+    case TopicKind::kExperiment:
+      return SchemaOf("mascot_msgs/msg/Experiment");
+    case TopicKind::kRequest:
+      return SchemaOf("mascot_msgs/msg/Request");
+    case TopicKind::kStatus:
+      return SchemaOf("mascot_msgs/msg/Status");
+  }
+  throw std::out_of_range("no schema for this kind of topic");
 }
 
 std::string OfferedQos(int depth) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <ranges>
 #include <stdexcept>
 #include <utility>
 
@@ -20,7 +21,7 @@ constexpr std::string_view kGoalType = "geometry_msgs/msg/PoseStamped", kOldGoal
 constexpr std::string_view kEncodings[] = {"cdr", "json"};
 constexpr std::string_view kCapabilities[] = {"time",     "parameters",    "parametersSubscribe",
                                               "services", "clientPublish", "connectionGraph"};
-constexpr std::uint32_t kService = 0;
+constexpr std::uint32_t kServiceId = 0;
 constexpr std::size_t kLongestEcho = 200;  // of what a client sent
 
 enum class FromServer : char { kMessage = 1, kTime, kServiceResponse, kAsset, kPlayback };
@@ -87,7 +88,7 @@ void Foxglove::OnOpen(ClientId id, bool controls_playback) {
                         {"schemaEncoding", channel.schema.encoding},
                         {"schema", channel.schema.text}});
   SendText(id, {{"op", "advertise"}, {"channels", channels}});
-  const Json service = {{"id", kService},
+  const Json service = {{"id", kServiceId},
                         {"name", about_.service},
                         {"type", about_.service},
                         {"request", SchemaJson(about_.request)},
@@ -141,25 +142,27 @@ std::string Foxglove::OnText(ClientId id, Bytes text) {
 }
 
 void Foxglove::OnSubscribe(ClientId id, const Json& message) {
+  auto& subscriptions = clients_[id].subscriptions;
   for (const Json& wanted : List(message, "subscriptions")) {
     const auto number = U32(wanted, "id"), channel = U32(wanted, "channelId");
-    auto& subscriptions = clients_[id].subscriptions;
-    const auto is_same = [&](const auto& subscription) { return subscription.second == channel; };
-    if (!number || !channel || *channel >= about_.channels.size())
+    if (!number || !channel || *channel >= about_.channels.size()) {
       SendStatus(id, kError, "subscribe: there is no such channel");
-    else if (subscriptions.contains(*number) || std::ranges::any_of(subscriptions, is_same))
+    } else if (subscriptions.contains(*channel) ||
+               std::ranges::count(subscriptions | std::views::values, *number) > 0) {
       SendStatus(id, kError, "subscribe: this number, or this channel, has been subscribed already");
-    else {
-      subscriptions[*number] = *channel;
+    } else {
+      subscriptions[*channel] = *number;
       host_.OnSubscribe(id, *channel);
     }
   }
 }
 
 void Foxglove::OnUnsubscribe(ClientId id, const Json& message) {
-  for (const Json& number : List(message, "subscriptionIds"))
-    if (!U32(number) || clients_[id].subscriptions.erase(*U32(number)) == 0)
+  for (const Json& number : List(message, "subscriptionIds")) {
+    const auto is_it = [&](const auto& subscription) { return subscription.second == U32(number); };
+    if (std::erase_if(clients_[id].subscriptions, is_it) == 0)
       SendStatus(id, kError, "unsubscribe: there is no such subscription");
+  }
 }
 
 void Foxglove::OnAdvertise(ClientId id, const Json& message) {
@@ -264,7 +267,7 @@ std::string Foxglove::OnServiceCall(ClientId id, Bytes message) {
     SendText(id, {{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", why}});
     return std::string();
   };
-  if (service != kService) return fail("there is no such service");
+  if (service != kServiceId) return fail("there is no such service");
   if (encoding != "json") return fail("expected the encoding json, got " + encoding.substr(0, kLongestEcho));
   Wish wish;
   try {
@@ -328,21 +331,18 @@ std::vector<ClientId> Foxglove::clients() const {
 }
 
 bool Foxglove::HasSubscriber(ChannelId channel) const {
-  return std::ranges::any_of(clients_, [&](const auto& client) {
-    return std::ranges::any_of(client.second.subscriptions, [&](const auto& row) { return row.second == channel; });
-  });
+  return std::ranges::any_of(clients_, [&](const auto& row) { return row.second.subscriptions.contains(channel); });
 }
 
 void Foxglove::PublishTo(ClientId id, ChannelId channel, std::uint64_t time_ns, const Payload& payload) {
   const auto client = clients_.find(id);
   if (client == clients_.end()) return;
-  for (const auto& [number, subscribed] : client->second.subscriptions) {
-    if (subscribed != channel) continue;
-    std::string head = Begin(FromServer::kMessage);
-    PutBytes(head, number);
-    PutBytes(head, time_ns);
-    host_.Send(id, {.head = std::move(head), .body = payload});
-  }
+  const auto subscription = client->second.subscriptions.find(channel);
+  if (subscription == client->second.subscriptions.end()) return;
+  std::string head = Begin(FromServer::kMessage);
+  PutBytes(head, subscription->second);
+  PutBytes(head, time_ns);
+  host_.Send(id, {.head = std::move(head), .body = payload});
 }
 
 void Foxglove::Publish(ChannelId channel, std::uint64_t time_ns, const Payload& payload) {

@@ -102,7 +102,7 @@ class Foxglove {
 
  private:
   struct Client {
-    std::map<std::uint32_t, ChannelId> subscriptions;  // by the client's number; at most one of each channel
+    std::map<ChannelId, std::uint32_t> subscriptions;  // the client's number of each
     std::map<std::uint32_t, Channel> channels;         // that it publishes, by its own number
     std::set<std::string> parameters;                  // whose changes it wants to know
     std::size_t questions = 0;                         // not answered yet

@@ -12,11 +12,12 @@ namespace {
 
 /// That of the SDK, then that of the clients before it.
 constexpr const char* kSubprotocols[] = {"foxglove.sdk.v1", "foxglove.websocket.v1"};
+constexpr const char* kServiceName = "/mascot/ask";
 constexpr int kFramesPerSecond = 30;
 constexpr auto kPaceWindow = std::chrono::seconds(1);
 
-/// Channels of the page, in this order.
-enum UiChannel : Foxglove::ChannelId { kExperimentChannel, kFrameChannel, kEventsChannel };
+/// Channels of the page, in this order, and the first of RosChannels.
+enum UiChannel : Foxglove::ChannelId { kExperimentChannel, kFrameChannel, kEventsChannel, kFirstOfRos };
 
 constexpr std::string_view kWishSchema = R"({"type":"object","required":["ask"],"properties":{)"
                                          R"("ask":{"enum":["pause","resume","stop","step","pace","event","seek"]},)"
@@ -26,9 +27,7 @@ constexpr std::string_view kAnswerSchema =
     R"({"type":"object","properties":{"granted":{"type":"boolean"},"words":{"type":"string"}}})";
 
 Foxglove::Channel JsonChannel(const std::string& topic, const std::string& type) {
-  return {topic,
-          "json",
-          {type, "jsonschema", R"({"type":")" + std::string(type == "mascot/Events" ? "array" : "object") + "\"}"}};
+  return {topic, "json", {"mascot" + topic, "jsonschema", R"({"type":")" + type + R"("})"}};
 }
 
 Foxglove::Payload Shared(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
@@ -56,24 +55,54 @@ LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, c
       state_{.pace = options.pace},
       shown_(experiment.size()),
       shown_state_(state_),
+      ros_(experiment),
+      ros_channels_(ros_.channels().size()),
       experiment_json_(Shared(ExperimentJson(experiment, prediction, "run", engine_, {}))),
       events_json_(Shared(EventsJson(experiment, {}))),
-      foxglove_(About(options), *this),
+      foxglove_(About(), *this),
       server_(OptionsOf(options), *this, std::move(log)),
       asker_(control) {
   server_.Start();
 }
 
-Foxglove::About LiveView::About(const Options&) const {
-  return {.name = "mascot: " + experiment_.run.name,
-          .session = NewSession(),
-          .end_ns = StampNs(experiment_.ticks(), experiment_.control.rate_hz),
-          .channels = {JsonChannel("/ui/experiment", "mascot/Experiment"), JsonChannel("/ui/frame", "mascot/Frame"),
-                       JsonChannel("/ui/events", "mascot/Events")},
-          .connections = [] { return Foxglove::Connections(); },
-          .service = "/mascot/ask",
-          .request = {"mascot/Wish", "jsonschema", std::string(kWishSchema)},
-          .response = {"mascot/Answer", "jsonschema", std::string(kAnswerSchema)}};
+Foxglove::About LiveView::About() const {
+  Foxglove::About about{.name = "mascot: " + experiment_.run.name,
+                        .session = NewSession(),
+                        .end_ns = StampNs(experiment_.ticks(), experiment_.control.rate_hz),
+                        .channels = {JsonChannel("/ui/experiment", "object"), JsonChannel("/ui/frame", "object"),
+                                     JsonChannel("/ui/events", "array")},
+                        .connections = [this] { return ConnectionsOfTheRun(); },
+                        .service = kServiceName,
+                        .request = {"mascot/Wish", "jsonschema", std::string(kWishSchema)},
+                        .response = {"mascot/Answer", "jsonschema", std::string(kAnswerSchema)}};
+  for (Foxglove::Channel& channel : ros_.channels()) about.channels.push_back(std::move(channel));
+  return about;
+}
+
+/// Who hears whom: processes as nodes, though several agents may share one.
+Foxglove::Connections LiveView::ConnectionsOfTheRun() const {
+  Foxglove::Connections connections;
+  const std::string server = "/physics_server", recorder = "/orchestrator";
+  const auto add = [&](const Topic& topic, const std::string& writer, std::vector<std::string> readers) {
+    connections.writers[topic.Name()] = {writer};
+    readers.push_back(recorder);
+    connections.readers[topic.Name()] = std::move(readers);
+  };
+  std::vector<std::vector<std::string>> hearers(experiment_.agents.size());
+  for (const AgentConfig& agent : experiment_.agents)
+    for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(agent.id))
+      hearers[static_cast<std::size_t>(heard.id - 1)].push_back("/" + AgentName(agent.id));
+  for (const AgentConfig& agent : experiment_.agents) {
+    const std::string name = "/" + AgentName(agent.id);
+    std::vector<std::string>& others = hearers[static_cast<std::size_t>(agent.id - 1)];
+    add(Topic::Command(agent.id), name, {server});
+    if (agent.sends_messages) add(Topic::Message(agent.id), name, others);
+    others.push_back(name);
+    add(Topic::State(agent.id), server, others);
+  }
+  add(Topic::Clock(), server, {});
+  connections.providers[kServiceName] = {recorder};
+  return connections;
 }
 
 void LiveView::Add(const FlownRow& row) {
@@ -125,6 +154,8 @@ void LiveView::OnSubscribe(ClientId client, Foxglove::ChannelId channel) {
   const Foxglove::Payload latched[] = {experiment_json_, frame_json_, events_json_};
   if (channel < std::size(latched) && latched[channel] != nullptr)
     foxglove_.PublishTo(client, channel, shown_ns(), latched[channel]);
+  else if (channel >= kFirstOfRos && shown_.tick >= 0)
+    foxglove_.PublishTo(client, channel, shown_ns(), Shared(ros_.FirstMessage(channel - kFirstOfRos)));
 }
 
 bool LiveView::TakeNewest() {
@@ -152,6 +183,13 @@ void LiveView::Show() {
   frame_json_ = Shared(FrameJson(experiment_, shown_, shown_state_));
   foxglove_.SendTime(shown_ns());
   foxglove_.Publish(kFrameChannel, shown_ns(), frame_json_);
+  ros_.SetRow(shown_);
+  for (std::size_t i = 0; i < ros_channels_; ++i) {
+    const auto channel = static_cast<Foxglove::ChannelId>(kFirstOfRos + i);
+    if (!foxglove_.HasSubscriber(channel)) continue;
+    if (std::string message = ros_.Message(i); !message.empty())
+      foxglove_.Publish(channel, shown_ns(), Shared(std::move(message)));
+  }
 }
 
 void LiveView::OnTimer() {

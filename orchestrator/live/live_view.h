@@ -13,6 +13,7 @@
 #include "orchestrator/live/asker.h"
 #include "orchestrator/live/foxglove.h"
 #include "orchestrator/live/pages.h"
+#include "orchestrator/live/ros_channels.h"
 #include "orchestrator/live/socket.h"
 #include "orchestrator/live/ui_channels.h"
 #include "orchestrator/measuring/run_meter.h"
@@ -67,7 +68,8 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   void Ask(const Wish& wish, Foxglove::Reply reply) override;
   void AskForGoal(const Goal& goal, Foxglove::Reply reply) override;
 
-  Foxglove::About About(const Options& options) const;
+  Foxglove::About About() const;
+  Foxglove::Connections ConnectionsOfTheRun() const;
   bool TakeNewest();
   void MeasurePace();
   void Show();
@@ -87,6 +89,8 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   // The server's thread alone.
   ShownRow shown_;
   RunState shown_state_;
+  RosChannels ros_;
+  const std::size_t ros_channels_;
   std::set<ClientId> slow_, missed_;  // missed_: the last frame
   Foxglove::Payload experiment_json_, events_json_, frame_json_;
   std::vector<ShownEvent> events_;

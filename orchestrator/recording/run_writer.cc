@@ -12,23 +12,6 @@
 #include "orchestrator/recording/topic_filter.h"
 
 namespace mascot {
-namespace {
-
-std::string_view SchemaName(TopicKind kind) {
-  switch (kind) {
-    case TopicKind::kCommand:
-      return "mascot_msgs/msg/AgentCommand";
-    case TopicKind::kMessage:
-      return "mascot_msgs/msg/AgentMessage";
-    case TopicKind::kState:
-      return "mascot_msgs/msg/AgentState";
-    default:
-      return "rosgraph_msgs/msg/Clock";
-  }
-}
-
-}  // namespace
-
 RunWriter::RunWriter(const Experiment& experiment, const RunFolder& folder, const std::string& resolved)
     : experiment_(experiment), mcap_(folder.File(experiment.record.file)), arrays_(experiment.size()) {
   mcap_.Attach("config.toml", "application/toml", resolved);
@@ -48,7 +31,7 @@ RunWriter::RunWriter(const Experiment& experiment, const RunFolder& folder, cons
 std::optional<std::uint16_t> RunWriter::AddChannel(const Topic& topic) {
   const std::string name = topic.Name();
   if (!IsRecorded(experiment_.record.topics, topic)) return std::nullopt;
-  const TypeSchema& schema = SchemaOf(SchemaName(topic.kind));
+  const TypeSchema& schema = SchemaOf(topic.kind);
   ++topics_;
   return mcap_.AddChannel({name,
                            std::string(schema.name),

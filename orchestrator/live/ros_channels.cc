@@ -1,0 +1,111 @@
+#include "orchestrator/live/ros_channels.h"
+
+#include "bus/wire.h"
+#include "idl/schemas.h"
+#include "orchestrator/live/ros_scene.h"
+#include "orchestrator/recording/topic_filter.h"
+
+namespace mascot {
+namespace {
+
+using ScenePubSub = visualization_msgs::msg::MarkerArrayPubSubType;
+
+constexpr std::size_t kTfChannel = 0, kSceneChannel = 1, kFirstTopic = 2;
+constexpr std::size_t kFewEdges = 2000;
+/// A trail has a point for every so many rows: at 30 rows a second, one point a fifth of a second.
+constexpr int kRowsPerTrailPoint = 6;
+
+Foxglove::Channel CdrChannel(const std::string& topic, const TypeSchema& schema) {
+  return {topic, "cdr", {std::string(schema.name), "ros2msg", std::string(schema.text)}};
+}
+
+}  // namespace
+
+/// The markers, and when they were sent last.
+class RosChannels::Scene {
+ public:
+  explicit Scene(const Experiment& experiment) : experiment_(experiment), markers_(experiment) {}
+
+  void SetRow(const ShownRow& row) {
+    ++rows_;
+    if (rows_ % kRowsPerTrailPoint == 0) markers_.AddToTrails(row);
+  }
+  std::string Message(const ShownRow& row, std::uint64_t time_ns) const {
+    if (rows_ % kRowsPerScene == 0) return All(row, time_ns);
+    if (experiment_.graph.edges() > kFewEdges) return {};
+    visualization_msgs::msg::MarkerArray edges = markers_.Edges(row, time_ns);
+    return CdrOf<ScenePubSub>(edges);
+  }
+  std::string All(const ShownRow& row, std::uint64_t time_ns) const {
+    visualization_msgs::msg::MarkerArray all = markers_.All(row, time_ns);
+    return CdrOf<ScenePubSub>(all);
+  }
+
+ private:
+  const Experiment& experiment_;
+  RosScene markers_;
+  std::int64_t rows_ = 0;
+};
+
+RosChannels::RosChannels(const Experiment& experiment)
+    : experiment_(experiment), encoder_(experiment), scene_(std::make_unique<Scene>(experiment)) {
+  const auto add = [&](const Topic& topic) {
+    if (IsRecorded(experiment.record.topics, topic)) topics_.push_back(topic);
+  };
+  for (const AgentConfig& agent : experiment.agents) {
+    add(Topic::Command(agent.id));
+    if (agent.sends_messages) add(Topic::Message(agent.id));
+    add(Topic::State(agent.id));
+  }
+  topics_.push_back(Topic::Clock());
+}
+
+RosChannels::~RosChannels() = default;
+
+std::vector<Foxglove::Channel> RosChannels::channels() const {
+  std::vector<Foxglove::Channel> channels{CdrChannel("/tf", SchemaOf("tf2_msgs/msg/TFMessage")),
+                                          CdrChannel("/scene", SchemaOf("visualization_msgs/msg/MarkerArray"))};
+  for (const Topic& topic : topics_) channels.push_back(CdrChannel(topic.Name(), SchemaOf(topic.kind)));
+  return channels;
+}
+
+void RosChannels::SetRow(const ShownRow& row) {
+  row_ = &row;
+  bytes_ = nullptr;
+  scene_->SetRow(row);
+}
+
+std::string RosChannels::Transforms() const {
+  const std_msgs::msg::Header header = HeaderOf(StampNs(row_->tick, experiment_.control.rate_hz), kWorldFrame);
+  tf2_msgs::msg::TFMessage message;
+  message.transforms().resize(experiment_.agents.size());
+  for (std::size_t i = 0; i < experiment_.agents.size(); ++i) {
+    const Motion& motion = row_->decoded.motions[i];
+    geometry_msgs::msg::TransformStamped& transform = message.transforms()[i];
+    transform.header(header);
+    transform.child_frame_id(AgentName(static_cast<int>(i) + 1));
+    transform.transform().translation().x(motion.p_WB.x());
+    transform.transform().translation().y(motion.p_WB.y());
+    transform.transform().translation().z(motion.p_WB.z());
+    transform.transform().rotation().x(motion.q_WB.x());
+    transform.transform().rotation().y(motion.q_WB.y());
+    transform.transform().rotation().z(motion.q_WB.z());
+    transform.transform().rotation().w(motion.q_WB.w());
+  }
+  return CdrOf<tf2_msgs::msg::TFMessagePubSubType>(message);
+}
+
+std::string RosChannels::Message(std::size_t channel) {
+  if (channel == kTfChannel) return Transforms();
+  if (channel == kSceneChannel) return scene_->Message(*row_, StampNs(row_->tick, experiment_.control.rate_hz));
+  if (bytes_ == nullptr) bytes_ = &encoder_.Encode(row_->tick, row_->decoded);
+  const Row::Bytes& bytes = SampleOf(*bytes_, topics_[channel - kFirstTopic]);
+  return {bytes.begin(), bytes.end()};
+}
+
+std::string RosChannels::FirstMessage(std::size_t channel) {
+  if (channel == kSceneChannel) return scene_->All(*row_, StampNs(row_->tick, experiment_.control.rate_hz));
+  return Message(channel);
+}
+
+}  // namespace mascot

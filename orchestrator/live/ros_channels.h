@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "idl/topics.h"
+#include "orchestrator/live/foxglove.h"
+#include "orchestrator/live/ui_channels.h"
+#include "orchestrator/recording/row_codec.h"
+
+namespace mascot {
+
+/// What tools of ROS 2 read of a run, in cdr: /tf (world to agent_<id>), /scene (markers: bodies, numbers, trails,
+/// edges of the graph, obstacles), and the run's own recorded topics of each tick. No clock, no socket.
+class RosChannels {
+ public:
+  /// Every how many rows /scene holds all markers; in between, if there are few, it holds the edges alone.
+  static constexpr int kRowsPerScene = 30;
+
+  explicit RosChannels(const Experiment& experiment);
+  ~RosChannels();
+  RosChannels(const RosChannels&) = delete;
+  RosChannels& operator=(const RosChannels&) = delete;
+
+  /// All channels, in the order in which Message() counts them.
+  std::vector<Foxglove::Channel> channels() const;
+  /// Goes on to another row, which must outlive the calls of Message().
+  void SetRow(const ShownRow& row);
+  /// What a channel says of the row: empty if it says nothing of it.
+  std::string Message(std::size_t channel);
+  /// What somebody who begins to listen now has to know.
+  std::string FirstMessage(std::size_t channel);
+
+ private:
+  class Scene;
+  std::string Transforms() const;
+
+  const Experiment& experiment_;
+  std::vector<Topic> topics_;  // after /tf and /scene
+  const ShownRow* row_ = nullptr;
+  RowEncoder encoder_;
+  const Row* bytes_ = nullptr;  // the row as recorded, once it has been asked for
+  std::unique_ptr<Scene> scene_;
+};
+
+}  // namespace mascot
