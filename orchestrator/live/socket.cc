@@ -92,6 +92,7 @@ class Session : public std::enable_shared_from_this<Session> {
     stream_.set_option(websocket::stream_base::decorator([subprotocol](websocket::response_type& response) {
       response.set(http::field::sec_websocket_protocol, subprotocol);
     }));
+    stream_.auto_fragment(false);  // a message is one frame: it is in memory anyway
     stream_.read_message_max(server_.options.limits.message_bytes);
     stream_.async_accept(
         request, [self = shared_from_this(), subprotocol](error_code error) { self->OnAccept(error, subprotocol); });

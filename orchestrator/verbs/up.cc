@@ -12,10 +12,8 @@
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/progress.h"
 #include "orchestrator/live/address.h"
-#include "orchestrator/live/live_view.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/processes/console.h"
-#include "orchestrator/processes/script.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/run_writer.h"
 #include "orchestrator/report/ending.h"
@@ -25,6 +23,7 @@
 #include "orchestrator/verbs/fly.h"
 #include "orchestrator/verbs/plot.h"
 #include "orchestrator/verbs/verb.h"
+#include "orchestrator/verbs/viewers.h"
 
 namespace mascot {
 namespace {
@@ -37,46 +36,6 @@ struct UpArgs {
   std::optional<LiveAddress> view;
   std::string engine = kOverDds;
   bool force = false, json = false, quiet = false;
-};
-
-/// The control of a run that takes no wishes.
-class NoControl final : public RunControl {
- public:
-  Answer Ask(const Wish& /*wish*/) override { return {false, "this run cannot be changed while it goes on"}; }
-};
-
-/// The viewers of a run, if the user asked for --view.
-class Viewers {
- public:
-  Viewers(const UpArgs& args, const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
-          Console& console)
-      : experiment_(experiment) {
-    if (!args.view) return;
-    view_.emplace(experiment, prediction, meter, control_,
-                  LiveView::Options{.address = args.view->address,
-                                    .port = args.view->port,
-                                    .page = FindShared("page", "orchestrator/live"),
-                                    .engine = args.engine,
-                                    .pace = Pace()},
-                  [&console](const std::string& line) { console.Line(line); });
-    console.Line("view           " + view_->url());
-  }
-  void AddTo(std::vector<RowSink*>& sinks) {
-    if (view_) sinks.push_back(&*view_);
-  }
-  void SayHowItEnded(const EngineResult& result) {
-    if (!view_) return;
-    RunState state{.phase = result.failure.empty() ? RunState::Phase::kDone : RunState::Phase::kFailed, .pace = Pace()};
-    if (result.contacts) state.contacts = result.contacts->total();
-    view_->SetState(state);
-  }
-
- private:
-  double Pace() const { return experiment_.run.mode == Mode::kRealtime ? experiment_.run.speed : 0; }
-
-  const Experiment& experiment_;
-  NoControl control_;
-  std::optional<LiveView> view_;
 };
 
 int ExitCode(const EngineResult& result) {
@@ -103,17 +62,18 @@ int Up(const UpArgs& args) {
   RefuseEngine(args.engine, experiment);
   const Prediction prediction = Predict(experiment);
 
+  Console console(args.quiet || args.json);
+  RunMeter meter(experiment);
+  Viewers viewers(args.view, args.engine, experiment, prediction, meter, console);
+
   const RunFolder folder(args.out, experiment, args.force);
   folder.Write("config.toml", experiment.resolved);
-  Console console(args.quiet || args.json);
   for (const std::string& warning : prediction.warnings) console.Line("warning: " + warning);
   if (args.engine == kOverDds)
     for (const std::string& warning : DeliveryWarnings(experiment)) console.Line("warning: " + warning);
   RunWriter writer(experiment, folder, WithoutDelivery(experiment));
-  RunMeter meter(experiment);
   Progress progress(experiment, meter, console);
   std::vector<RowSink*> sinks{&writer, &meter, &progress};
-  Viewers viewers(args, experiment, prediction, meter, console);
   viewers.AddTo(sinks);
   Flight flight(args.engine, experiment, folder, sinks, console, stop);
   EngineResult result = flight.Fly();

@@ -1,0 +1,275 @@
+// HTTP and WebSocket of the live view, as strangers, slow and broken clients use them.
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+
+#include "orchestrator/live/origin.h"
+#include "orchestrator/live/pages.h"
+#include "orchestrator/live/socket.h"
+#include "tests/orchestrator.h"
+#include "tests/web_client.h"
+
+namespace mascot::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+/// Sends every message back, "bad" apart, for which it drops the client, and tells everybody each period.
+class Echo final : public SocketUser {
+ public:
+  explicit Echo(SocketOptions options = {}, std::size_t told_bytes = 0)
+      : told_(std::make_shared<const std::string>(told_bytes, 'x')) {
+    WriteFile(folder_.File("index.html"), "<p>here</p>");
+    WriteFile(folder_.File("secret.txt"), "not a file of a page");
+    WriteFile(folder_.File(".hidden.html"), "hidden");
+    options.port = 0;
+    options.subprotocols = {"foxglove.sdk.v1", "foxglove.websocket.v1"};
+    options.period = std::chrono::milliseconds(1);
+    server_.emplace(options, *this, [this](const std::string& line) {
+      const std::lock_guard lock(mutex_);
+      log_ += line + "\n";
+    });
+    server_->Start();
+  }
+  HttpAnswer Get(std::string_view target, std::string_view host) override {
+    return Pages(folder_.path()).Get(target, host);
+  }
+  void OnOpen(ClientId client, const std::string& subprotocol) override {
+    ++open;
+    clients_.push_back(client);
+    server_->Send(client,
+                  {.is_text = true, .head = "hello ", .body = std::make_shared<const std::string>(subprotocol)});
+  }
+  std::string OnMessage(ClientId client, bool is_text, std::span<const std::uint8_t> message) override {
+    const std::string text(message.begin(), message.end());
+    if (text == "throw") throw std::runtime_error("broken");
+    if (text == "bad") return "it is bad";
+    server_->Send(client, {.is_text = is_text, .head = text});
+    return {};
+  }
+  void OnClose(ClientId client) override {
+    --open;
+    std::erase(clients_, client);
+  }
+  void OnTimer() override {
+    ++periods;
+    if (told_->empty()) return;
+    for (const ClientId client : clients_) server_->Send(client, {.body = told_});
+  }
+
+  std::string url() const { return server_->url(); }
+  void End() { server_.reset(); }
+  std::string log() {
+    const std::lock_guard lock(mutex_);
+    return log_;
+  }
+  std::atomic<int> open = 0;
+  std::atomic<std::int64_t> periods = 0;
+
+ private:
+  ScratchFolder folder_;
+  std::shared_ptr<const std::string> told_;
+  std::vector<ClientId> clients_;
+  std::mutex mutex_;
+  std::string log_;
+  std::optional<SocketServer> server_;
+};
+
+TEST(Origin, OnlyAddressesAndOurOwnNamesAreOurHost) {
+  for (const char* host :
+       {"127.0.0.1:8765", "127.0.0.1", "localhost:9999", "LOCALHOST", "[::1]:8765", "192.168.1.11:80", "lab1:8765"})
+    EXPECT_TRUE(IsOurHost(host, "lab1")) << host;
+  for (const char* host : {"", "evil.example", "evil.example:8765", "localhost.evil.example", "127.0.0.1.evil.example",
+                           "127.0.0.1@evil.example"})
+    EXPECT_FALSE(IsOurHost(host, "127.0.0.1")) << host;
+}
+
+TEST(Origin, OnlyPagesOfTheSameHostMayTalk) {
+  const std::string host = "127.0.0.1:8765";
+  for (const char* origin : {"", "http://127.0.0.1:8765", "https://127.0.0.1:8765", "file://", "app://foxglove"})
+    EXPECT_TRUE(MayTalk(origin, host)) << origin;
+  for (const char* origin : {"null", "http://evil.example", "http://127.0.0.1", "http://127.0.0.1:8766",
+                             "http://localhost:8765", "https://evil.example:8765"})
+    EXPECT_FALSE(MayTalk(origin, host)) << origin;
+}
+
+TEST(LiveSocket, ServesFilesOfThePageAndNoOthers) {
+  Echo echo;
+  WebClient client(echo.url());
+  const std::string page = client.Get("/");
+  EXPECT_THAT(page, StartsWith("HTTP/1.1 200 OK"));
+  EXPECT_THAT(page, EndsWith("\r\n\r\n<p>here</p>"));
+  EXPECT_THAT(page, HasSubstr("Content-Type: text/html; charset=utf-8\r\n"));
+  EXPECT_THAT(page, HasSubstr("default-src 'none'; script-src 'self';"));
+  EXPECT_THAT(page, HasSubstr("connect-src 'self' ws://" + client.host() + ";"));
+  EXPECT_EQ(client.Get("/index.html?x=1"), page);
+  for (const char* path :
+       {"/nothing.html", "/secret.txt", "/.hidden.html", "/../index.html", "/%2e%2e/index.html", "//index.html",
+        "/vendor/three/../../../../etc/passwd", "/vendor/nobody/x.js", "/vendor/", "index.html"})
+    EXPECT_THAT(WebClient(echo.url()).Get(path), StartsWith("HTTP/1.1 404")) << path;
+  EXPECT_THAT(WebClient(echo.url()).Ask("POST / HTTP/1.1\r\nHost: localhost\r\n\r\n"), StartsWith("HTTP/1.1 405"));
+}
+
+TEST(LiveSocket, RefusesAForeignHostAndAForeignOrigin) {
+  Echo echo;
+  const auto ask = [&](const std::string& host, const std::string& more) {
+    return WebClient(echo.url()).Ask("GET / HTTP/1.1\r\nHost: " + host + "\r\n" + more + "\r\n");
+  };
+  EXPECT_THAT(ask("evil.example", ""), StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(ask("localhost", "Origin: http://evil.example\r\n"), StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(WebClient(echo.url()).Upgrade("foxglove.sdk.v1", "Origin: http://evil.example\r\n"),
+              StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(WebClient(echo.url()).Upgrade("foxglove.sdk.v1", "Origin: null\r\n"), StartsWith("HTTP/1.1 403"));
+  WebClient own(echo.url());
+  EXPECT_THAT(own.Upgrade("foxglove.sdk.v1", "Origin: http://" + own.host() + "\r\n"), StartsWith("HTTP/1.1 101"));
+}
+
+TEST(LiveSocket, TakesTheSubprotocolThatItKnows) {
+  Echo echo;
+  WebClient first(echo.url()), second(echo.url());
+  EXPECT_THAT(first.Upgrade("chat, foxglove.websocket.v1"),
+              HasSubstr("Sec-WebSocket-Protocol: foxglove.websocket.v1\r\n"));
+  EXPECT_EQ(first.Next()->payload, "hello foxglove.websocket.v1");
+  EXPECT_THAT(second.Upgrade("chat"), StartsWith("HTTP/1.1 400"));
+}
+
+TEST(LiveSocket, TwentyClientsTalkAtOnceAndTooManyAreRefused) {
+  SocketOptions options;
+  options.limits.clients = 20;
+  Echo echo(options);
+  std::vector<std::unique_ptr<WebClient>> clients;
+  for (int i = 0; i < 20; ++i) {
+    clients.push_back(std::make_unique<WebClient>(echo.url()));
+    EXPECT_THAT(clients.back()->Upgrade(), StartsWith("HTTP/1.1 101"));
+  }
+  for (int i = 0; i < 20; ++i) clients[i]->Send(WebClient::kText, std::to_string(i));
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(clients[i]->NextWith(std::to_string(i)));
+  EXPECT_THAT(WebClient(echo.url()).Upgrade(), StartsWith("HTTP/1.1 503"));
+  clients.pop_back();
+  EXPECT_TRUE(Until([&] { return echo.open == 19; }));
+  EXPECT_THAT(WebClient(echo.url()).Upgrade(), StartsWith("HTTP/1.1 101"));
+}
+
+TEST(LiveSocket, DropsClientsThatBreakTheRulesWithALineInTheLog) {
+  Echo echo;
+  const std::pair<std::string, const char*> kBroken[] = {
+      {WebClient::FrameOf(WebClient::kText, "bad"), "dropped: it is bad\n"},
+      {WebClient::FrameOf(WebClient::kText, "throw"), "dropped: an error of ours: broken\n"},
+      {WebClient::FrameOf(3, "x"), "dropped: The WebSocket frame contained an illegal opcode\n"},
+      {std::string("\x81\x05hello", 7), "dropped: The WebSocket frame was unmasked\n"},
+      {WebClient::FrameOf(WebClient::kText, "\xff\xff"), "dropped: The WebSocket frame payload was not valid utf8\n"},
+      {WebClient::FrameOf(WebClient::kBinary, std::string((1 << 20) + 1, 'x')),
+       "dropped: The WebSocket message exceeded the locally configured limit\n"},
+  };
+  for (const auto& [bytes, line] : kBroken) {
+    WebClient client(echo.url());
+    client.Upgrade();
+    client.SendRaw(bytes);
+    client.Send(WebClient::kClose, "");
+    EXPECT_TRUE(client.IsClosed()) << line;
+    client.Close();
+    EXPECT_TRUE(Until([&, text = line] { return echo.log().find(text) != std::string::npos; })) << echo.log();
+  }
+  WebClient noise(echo.url());
+  noise.SendRaw(std::string(100'000, '\0'));
+  EXPECT_TRUE(noise.IsClosed());
+  noise.Close();
+  EXPECT_TRUE(Until([&] { return echo.open == 0; }));
+}
+
+TEST(LiveSocket, OutlivesAClientThatDiesInTheMidstOfAFrame) {
+  Echo echo;
+  for (const std::size_t sent : {1u, 3u, 9u}) {
+    WebClient client(echo.url());
+    client.Upgrade();
+    client.SendRaw(WebClient::FrameOf(WebClient::kText, std::string(1000, 'x')).substr(0, sent));
+    EXPECT_TRUE(Until([&] { return echo.open == 1; }));
+    client.Close();
+    EXPECT_TRUE(Until([&] { return echo.open == 0; }));
+  }
+  WebClient client(echo.url());
+  client.Upgrade();
+  client.Send(WebClient::kText, "still here");
+  EXPECT_TRUE(client.NextWith("still here"));
+}
+
+TEST(LiveSocket, AClientThatDoesNotReadIsDroppedAndHoldsUpNobody) {
+  SocketOptions options;
+  options.limits.waiting_bytes = 4 << 20;
+  Echo echo(options, /*told_bytes=*/100'000);
+  WebClient slow(echo.url()), quick(echo.url());
+  slow.Upgrade();
+  quick.Upgrade();
+  EXPECT_TRUE(Until([&] { return echo.open == 2; }));
+  while (echo.open == 2) ASSERT_TRUE(quick.Next());
+  EXPECT_THAT(echo.log(), HasSubstr("dropped: does not read what it asks for\n"));
+  const std::int64_t before = echo.periods;
+  EXPECT_TRUE(Until([&] { return echo.periods > before + 10; }));
+  EXPECT_TRUE(quick.Next());
+}
+
+TEST(LiveSocket, ClosesRequestsThatDoNotCome) {
+  SocketOptions options;
+  options.limits.handshake = std::chrono::seconds(1);
+  Echo echo(options);
+  WebClient idle(echo.url()), half(echo.url());
+  half.SendRaw("GET / HTTP/1.1\r\nHost:");
+  EXPECT_TRUE(idle.IsClosed());
+  EXPECT_TRUE(half.IsClosed());
+}
+
+TEST(LiveSocket, TakesTheNextFreePort) {
+  Echo echo;
+  const int taken = std::stoi(echo.url().substr(echo.url().rfind(':') + 1));
+  SocketOptions options{.port = static_cast<std::uint16_t>(taken)};
+  const SocketServer second(options, echo, [](const std::string&) {});
+  EXPECT_GT(std::stoi(second.url().substr(second.url().rfind(':') + 1)), taken);
+  options.address = "203.0.113.1";  // of nobody
+  EXPECT_THAT([&] { SocketServer(options, echo, [](const std::string&) {}); },
+              testing::ThrowsMessage<std::runtime_error>("cannot listen on 203.0.113.1:" + std::to_string(taken) +
+                                                         ": Cannot assign requested address"));
+}
+
+TEST(LiveSocket, NoChildInheritsASocket) {
+  Echo echo;
+  WebClient client(echo.url());
+  client.Upgrade();
+  EXPECT_TRUE(Until([&] { return echo.open == 1; }));
+  int sockets = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code gone;
+    if (!std::filesystem::read_symlink(entry.path(), gone).string().starts_with("socket:")) continue;
+    ++sockets;
+    const int flags = fcntl(std::stoi(entry.path().filename()), F_GETFD);
+    EXPECT_EQ(flags & FD_CLOEXEC, FD_CLOEXEC);
+  }
+  EXPECT_GE(sockets, 3);  // listening, both ends of the connection
+}
+
+TEST(LiveSocket, SaysGoodbyeAtTheEnd) {
+  Echo echo;
+  WebClient idle(echo.url()), client(echo.url());
+  client.Upgrade();
+  EXPECT_TRUE(client.NextWith("hello"));
+  std::thread end([&] { echo.End(); });
+  const auto goodbye = client.Next();
+  client.Send(WebClient::kClose, goodbye ? goodbye->payload : "");
+  EXPECT_TRUE(client.IsClosed());
+  client.Close();
+  end.join();
+  ASSERT_TRUE(goodbye);
+  EXPECT_EQ(goodbye->opcode, WebClient::kClose);
+  EXPECT_EQ(goodbye->payload, std::string("\x03\xe9", 2));  // 1001, going away
+  EXPECT_TRUE(idle.IsClosed());
+}
+
+}  // namespace
+}  // namespace mascot::test

@@ -1,0 +1,348 @@
+// A run as its viewers see it: fly in this process, watched by clients by hand and by Foxglove's own packages.
+
+#include "orchestrator/live/live_view.h"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <mutex>
+
+#include "agent/laws.h"
+#include "orchestrator/engines/inprocess.h"
+#include "orchestrator/recording/run_folder.h"
+#include "orchestrator/recording/run_writer.h"
+#include "tests/orchestrator.h"
+#include "tests/web_client.h"
+
+namespace mascot::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+using ::testing::StartsWith;
+using Json = nlohmann::json;
+
+constexpr const char* kThree = R"(
+[run]
+name = "three"
+duration_s = 3.0
+[agents]
+count = 3
+position_m = [[0, 0, 1], [4, 0, 1], [0, 4, 2]]
+model = "double_integrator"
+[physics]
+obstacles = [{ shape = "box", position_m = [9, 9, 1], size_m = [1, 2, 3] }]
+[graph]
+edges = [[1, 2], [2, 3], [3, 1]]
+[law]
+name = "consensus"
+leader = 1
+leader_waypoints_m = [[1, 1, 1]]
+)";
+
+Experiment Load(const std::string& toml, const std::string& key = "", const std::string& value = "") {
+  std::vector<Override> more;
+  if (!key.empty()) more.push_back({key, value});
+  return LoadExperiment(Section::FromText(toml, "test.toml", more), "test");
+}
+
+/// Grants everything but stop.
+class Control final : public RunControl {
+ public:
+  Answer Ask(const Wish& wish) override {
+    const std::lock_guard lock(mutex_);
+    wishes_.push_back(wish);
+    return {wish.kind != Wish::Kind::kStop, "asked"};
+  }
+  std::vector<Wish> wishes() {
+    const std::lock_guard lock(mutex_);
+    return wishes_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<Wish> wishes_;
+};
+
+/// A run in this process, which goes on tick by tick as the test says.
+class Watched {
+ public:
+  explicit Watched(Experiment flown, std::vector<RowSink*> more = {})
+      : experiment(std::move(flown)),
+        prediction_(Predict(experiment)),
+        meter_(experiment),
+        view(experiment, prediction_, meter_, control,
+             {.port = 0, .page = MASCOT_SOURCE_DIR "/orchestrator/live/page", .engine = "inprocess"},
+             [](const std::string&) {}),
+        sinks_(std::move(more)) {
+    sinks_.insert(sinks_.begin(), {&meter_, &view});
+  }
+
+  /// Flies; before each tick that `go_on` is asked of, it may wait.
+  EngineResult Fly(const std::function<void(std::int64_t)>& before_tick = {}) {
+    std::int64_t tick = 0;
+    EngineResult result = RunInProcess(experiment, sinks_, [&] {
+      if (before_tick) before_tick(tick++);
+      return true;
+    });
+    view.SetState({.phase = result.failure.empty() ? RunState::Phase::kDone : RunState::Phase::kFailed, .contacts = 0});
+    return result;
+  }
+
+  const Experiment experiment;
+  Control control;
+
+ private:
+  Prediction prediction_;
+  RunMeter meter_;
+
+ public:
+  LiveView view;
+
+ private:
+  std::vector<RowSink*> sinks_;
+};
+
+/// A viewer by hand: foxglove.sdk.v1.
+class Viewer : public WebClient {
+ public:
+  explicit Viewer(const std::string& url) : WebClient(url) {
+    EXPECT_THAT(Upgrade(), StartsWith("HTTP/1.1 101"));
+    const auto advertised = NextWith(R"("op":"advertise")");
+    if (!advertised) return;
+    const Json message = Json::parse(advertised->payload);
+    for (const Json& channel : message["channels"]) channels_[channel["topic"].get<std::string>()] = channel["id"];
+  }
+  bool Offers(const std::string& topic) const { return channels_.contains(topic); }
+  void Subscribe(const std::string& topic) {
+    const std::uint32_t id = channels_.at(topic);
+    Send(kText, Json({{"op", "subscribe"}, {"subscriptions", {{{"id", id}, {"channelId", id}}}}}).dump());
+  }
+  /// The payload of the next message of a topic.
+  std::string NextOf(const std::string& topic) {
+    const std::string head = "\x01" + std::string(reinterpret_cast<const char*>(&channels_.at(topic)), 4);
+    for (auto frame = Next(); frame; frame = Next())
+      if (frame->payload.starts_with(head)) return frame->payload.substr(13);
+    return {};
+  }
+  Json NextJsonOf(const std::string& topic) { return Json::parse(NextOf(topic)); }
+  Json Ask(const Json& wish) {
+    const std::uint32_t numbers[] = {0, 1, 4};
+    Send(kBinary, "\x02" + std::string(reinterpret_cast<const char*>(numbers), sizeof numbers) + "json" + wish.dump());
+    for (auto frame = Next(); frame; frame = Next())
+      if (frame->payload.starts_with('\3')) return Json::parse(frame->payload.substr(frame->payload.find('{')));
+    return {};
+  }
+
+ private:
+  std::map<std::string, std::uint32_t> channels_;
+};
+
+TEST(LiveView, DescribesTheExperiment) {
+  Watched run(Load(kThree));
+  Viewer viewer(run.view.url());
+  viewer.Subscribe("/ui/experiment");
+  const Json experiment = viewer.NextJsonOf("/ui/experiment");
+  EXPECT_EQ(experiment["name"], "three");
+  EXPECT_EQ(experiment["source"], "run");
+  EXPECT_EQ(experiment["ticks"], 300);
+  EXPECT_EQ(experiment["axes"], "xy");
+  EXPECT_EQ(experiment["edges"], Json::parse("[[1,2,1.0],[2,3,1.0],[3,1,1.0]]"));
+  EXPECT_EQ(experiment["obstacles"][0]["kind"], "box");
+  const Json& leader = experiment["agents"][0];
+  EXPECT_EQ(leader["leads"], true);
+  EXPECT_EQ(leader["goto"], true);
+  EXPECT_EQ(leader["waypoints_m"], Json::parse("[[1.0,1.0,1.0]]"));
+  EXPECT_EQ(experiment["agents"][1]["goto"], false);
+  EXPECT_EQ(experiment["agents"][1]["waypoints_m"], Json::array());
+  EXPECT_EQ(experiment["prediction"]["stable"], true);
+}
+
+TEST(LiveView, ShowsTheTickThatTheRunStandsAt) {
+  Watched run(Load(kThree));
+  std::optional<Viewer> viewer;
+  const EngineResult result = run.Fly([&](std::int64_t tick) {
+    if (tick != 100) return;  // 0 to 99 are flown, and the run stands still: who comes now sees the newest
+    viewer.emplace(run.view.url());
+    viewer->Subscribe("/ui/frame");
+    Json frame = viewer->NextJsonOf("/ui/frame");
+    while (frame["tick"] != 99) frame = viewer->NextJsonOf("/ui/frame");
+    EXPECT_EQ(frame["t_s"], 0.99);
+    EXPECT_EQ(frame["state"], "running");
+    EXPECT_EQ(frame["p"].size(), 9u);
+    EXPECT_EQ(frame["q"].size(), 12u);
+    EXPECT_EQ(frame["u"].size(), 12u);
+    EXPECT_EQ(frame["flags"].size(), 3u);
+    EXPECT_EQ(frame["edge"], Json::parse("[1,1,1]"));
+    EXPECT_EQ(frame["age_s"], Json::parse("[0,0,0]"));
+    EXPECT_GT(frame["disagreement_m"], 0);
+    EXPECT_EQ(frame["contacts"], nullptr);
+  });
+  EXPECT_EQ(result.failure, "");
+  Json frame;
+  while (frame.is_null() || frame["state"] != "done") frame = viewer->NextJsonOf("/ui/frame");
+  EXPECT_EQ(frame["tick"], 300);
+  EXPECT_EQ(frame["contacts"], 0);
+}
+
+TEST(LiveView, KnowsWhatBecameOfEveryEdge) {
+  // 1 hears 2 through a link that loses everything, 2 hears 3 later, 3 is too far from 1 to hear it.
+  Watched run(Load(R"(
+[run]
+duration_s = 0.5
+[agents]
+count = 3
+position_m = [[0, 0, 1], [4, 0, 1], [0, 40, 2]]
+model = "double_integrator"
+[graph]
+edges = [[1, 2], [2, 1], [3, 1]]
+range_m = 20.0
+[link]
+delay_s = 0.1
+hold_s = 0.1
+[[link.override]]
+edges = [[1, 2]]
+loss = 1.0
+[law]
+name = "consensus"
+)"));
+  Viewer viewer(run.view.url());
+  viewer.Subscribe("/ui/frame");
+  const auto frame_at = [&](std::int64_t tick) {
+    Json frame = viewer.NextJsonOf("/ui/frame");
+    while (frame["tick"] != tick) frame = viewer.NextJsonOf("/ui/frame");
+    return frame;
+  };
+  run.Fly([&](std::int64_t tick) {
+    if (tick == 6) {
+      EXPECT_EQ(frame_at(5)["edge"], Json::parse("[4,4,3]"));
+    } else if (tick == 21) {
+      const Json frame = frame_at(20);
+      EXPECT_EQ(frame["edge"], Json::parse("[4,1,3]"));
+      EXPECT_NEAR(frame["age_s"][1], 0.1, 1e-6);
+      EXPECT_EQ(frame["age_s"][0], -1);
+    }
+  });
+}
+
+TEST(LiveView, PassesWishesToTheRunAndItsAnswersBack) {
+  Watched run(Load(kThree));
+  Viewer viewer(run.view.url());
+  EXPECT_EQ(viewer.Ask({{"ask", "pause"}}), (Json{{"granted", true}, {"words", "asked"}}));
+  EXPECT_EQ(viewer.Ask({{"ask", "stop"}}), (Json{{"granted", false}, {"words", "asked"}}));
+  const auto publish = [&](const char* frame_id) {
+    viewer.Send(WebClient::kBinary, std::string("\x01\x01\0\0\0", 5) + R"({"header":{"frame_id":")" + frame_id +
+                                        R"("},"pose":{"position":{"x":5,"y":6,"z":7}}})");
+    EXPECT_TRUE(viewer.NextWith("/goal: asked"));
+    return run.control.wishes().back().toml;
+  };
+  viewer.Send(WebClient::kText, R"({"op":"advertise","channels":[{"id":1,"topic":"/goal","encoding":"json",)"
+                                R"("schemaName":"geometry_msgs/msg/PoseStamped"}]})");
+  EXPECT_EQ(publish("agent_2"), "goto = { agent = 2, position_m = [5.000000, 6.000000, 7.000000] }");
+  EXPECT_EQ(publish("map"), "goto = { agent = 1, position_m = [5.000000, 6.000000, 7.000000] }");  // the leader
+}
+
+TEST(LiveView, TellsOfEvents) {
+  Watched run(Load(kThree));
+  Viewer viewer(run.view.url());
+  viewer.Subscribe("/ui/experiment");
+  viewer.Subscribe("/ui/events");
+  EXPECT_EQ(viewer.NextJsonOf("/ui/experiment")["live_keys"], Json::array());
+  EXPECT_EQ(viewer.NextJsonOf("/ui/events"), Json::array());
+  const Experiment now = Load(kThree, "law.leader_waypoints_m", "[[7, 8, 1]]");
+  const Key gain = key::Number("p_gain", Above(0, 10), "pull").Unit("1/s^2");
+  run.view.OnEvent({.number = 1, .tick = 50, .toml = "goto = {}", .by_hand = true}, now, {{"law.p_gain", gain, "0.5"}});
+  const Json experiment = viewer.NextJsonOf("/ui/experiment");
+  EXPECT_EQ(experiment["agents"][0]["waypoints_m"], Json::parse("[[7.0,8.0,1.0]]"));
+  EXPECT_EQ(experiment["live_keys"], Json::parse(R"([{"key":"law.p_gain","kind":"number","unit":"1/s^2","min":0.0,
+    "max":10.0,"open_min":true,"names":[],"value":0.5,"meaning":"pull"}])"));
+  EXPECT_EQ(viewer.NextJsonOf("/ui/events"),
+            Json::parse(R"([{"number":1,"tick":50,"t_s":0.5,"toml":"goto = {}","by_hand":true}])"));
+}
+
+TEST(LiveView, SendsSamplesAsTheyAreRecorded) {
+  const ScratchFolder folder;
+  const Experiment experiment = Load(kThree, "record.topics", "['*/state']");
+  std::string recorded;
+  struct Keep final : RowSink {
+    explicit Keep(std::string& to) : state(to) {}
+    void Add(const FlownRow& row) override { state.assign(row.bytes().states[1].begin(), row.bytes().states[1].end()); }
+    std::string& state;
+  } keep(recorded);
+  Watched run(experiment, {&keep});
+  run.Fly();
+  Viewer viewer(run.view.url());
+  EXPECT_FALSE(viewer.Offers("/agent_2/command"));
+  viewer.Subscribe("/agent_2/state");
+  EXPECT_EQ(viewer.NextOf("/agent_2/state"), recorded);
+}
+
+TEST(LiveView, WatchedRunsRecordTheSameBytesAndAViewerThatDiesHoldsUpNothing) {
+  const ScratchFolder folder;
+  const auto fly = [&](const std::string& name, int viewers) {
+    const Experiment experiment = Load(kThree);
+    const RunFolder out(folder.File(name), experiment, false);
+    RunWriter writer(experiment, out, experiment.resolved);
+    Watched run(experiment, {&writer});
+    std::vector<std::unique_ptr<Viewer>> watching;
+    for (int i = 0; i < viewers; ++i) {
+      watching.push_back(std::make_unique<Viewer>(run.view.url()));
+      for (const char* topic : {"/ui/frame", "/scene", "/agent_1/state"}) watching.back()->Subscribe(topic);
+    }
+    EXPECT_EQ(run.Fly([&](std::int64_t tick) {
+                   if (tick == 150 && viewers > 0) watching[0]->SendRaw("\x81");
+                   if (tick == 151 && viewers > 0) watching.erase(watching.begin());
+                 })
+                  .failure,
+              "");
+    writer.Close();
+    return ReadFile(folder.File(name + "/run.mcap"));
+  };
+  const std::string unwatched = fly("unwatched", 0);
+  EXPECT_FALSE(unwatched.empty());
+  EXPECT_TRUE(unwatched == fly("watched", 20));
+}
+
+/// wscheck against a server; ends once it has seen all.
+class WsCheck : public Running {
+ public:
+  WsCheck(const ScratchFolder& folder, const std::string& url)
+      : Running("node", {MASCOT_SOURCE_DIR "/tests/wscheck/wscheck.mjs", "ws" + url.substr(4)},
+                folder.File("wscheck")) {}
+};
+
+TEST(LiveView, IsReadByFoxglovesOwnPackages) {
+  ASSERT_TRUE(std::filesystem::exists(MASCOT_SOURCE_DIR "/tests/wscheck/node_modules"))
+      << "tests/wscheck/node_modules is missing: run scripts/test, which installs it with `npm ci`";
+  const ScratchFolder folder;
+  Watched run(Load(kThree));
+  WsCheck check(folder, run.view.url());
+  std::atomic<bool> over = false;
+  run.Fly([&](std::int64_t) {
+    if (!over) poll(nullptr, 0, 5);  // milliseconds: so that there is something to see
+    over = over || check.IsOver();
+  });
+  EXPECT_EQ(check.Wait(), 0) << check.out() << check.err();
+  const Json report = Json::parse(check.out());
+  std::vector<std::string> topics;
+  for (const auto& [topic, channel] : report["channels"].items()) topics.push_back(topic);
+  EXPECT_THAT(topics, IsSupersetOf({"/agent_1/command", "/agent_3/state", "/clock", "/scene", "/tf", "/ui/events",
+                                    "/ui/experiment", "/ui/frame"}));
+  const Json& transform = report["channels"]["/tf"]["first"]["transforms"][0];
+  EXPECT_EQ(transform["header"]["frame_id"], "world");
+  EXPECT_EQ(transform["child_frame_id"], "agent_1");
+  const Json& markers = report["channels"]["/scene"]["first"]["markers"];
+  EXPECT_GT(markers.size(), 9u);
+  EXPECT_EQ(report["answers"]["ask"]["granted"], true);
+  EXPECT_EQ(report["answers"]["status"][0]["message"], "/goal: asked");
+  const auto readers_of = [&](const std::string& topic) {
+    for (const Json& row : report["answers"]["graph"]["subscribedTopics"])
+      if (row["name"] == topic) return row["subscriberIds"].get<std::vector<std::string>>();
+    return std::vector<std::string>();
+  };
+  EXPECT_THAT(readers_of("/agent_2/state"), ElementsAre("/agent_1", "/agent_2", "/orchestrator"));
+}
+
+}  // namespace
+}  // namespace mascot::test
