@@ -184,6 +184,7 @@ TEST(LiveView, ShowsTheTickThatTheRunStandsAt) {
   while (frame.is_null() || frame["state"] != "done") frame = viewer->NextJsonOf("/ui/frame");
   EXPECT_EQ(frame["tick"], 300);
   EXPECT_EQ(frame["contacts"], 0);
+  EXPECT_TRUE(viewer->NextWith("\x05\x03"));  // playback has ended
 }
 
 TEST(LiveView, KnowsWhatBecameOfEveryEdge) {
@@ -234,13 +235,44 @@ TEST(LiveView, PassesWishesToTheRunAndItsAnswersBack) {
   const auto publish = [&](const char* frame_id) {
     viewer.Send(WebClient::kBinary, std::string("\x01\x01\0\0\0", 5) + R"({"header":{"frame_id":")" + frame_id +
                                         R"("},"pose":{"position":{"x":5,"y":6,"z":7}}})");
-    EXPECT_TRUE(viewer.NextWith("/goal: asked"));
-    return run.control.wishes().back().toml;
+    const auto status = viewer.NextWith("/goal: ");
+    return status ? Json::parse(status->payload)["message"].get<std::string>() : "";
   };
+  const auto asked = [&] { return run.control.wishes().back().toml; };
   viewer.Send(WebClient::kText, R"({"op":"advertise","channels":[{"id":1,"topic":"/goal","encoding":"json",)"
                                 R"("schemaName":"geometry_msgs/msg/PoseStamped"}]})");
-  EXPECT_EQ(publish("agent_2"), "goto = { agent = 2, position_m = [5.000000, 6.000000, 7.000000] }");
-  EXPECT_EQ(publish("map"), "goto = { agent = 1, position_m = [5.000000, 6.000000, 7.000000] }");  // the leader
+  EXPECT_EQ(publish("agent_2"), "/goal: asked");
+  EXPECT_EQ(asked(), "goto = { agent = 2, position_m = [5.000000, 6.000000, 7.000000] }");
+  EXPECT_EQ(publish("map"), "/goal: asked");
+  EXPECT_EQ(asked(), "goto = { agent = 1, position_m = [5.000000, 6.000000, 7.000000] }");  // the leader
+  EXPECT_EQ(publish("agent_9"), "/goal: expected agent_1 to agent_3 as frame_id, got agent_9");
+}
+
+TEST(LiveView, WithoutALeaderAGoalNeedsAnAgentAndOnTheGroundItKeepsTheHeight) {
+  Watched run(Load(R"(
+[run]
+duration_s = 0.1
+[agents]
+count = 2
+position_m = [[0, 0, 1], [4, 0, 2.5]]
+model = "double_integrator"
+[law]
+name = "consensus"
+)"));
+  run.Fly();
+  Viewer viewer(run.view.url());
+  viewer.Subscribe("/ui/frame");
+  viewer.NextOf("/ui/frame");
+  viewer.Send(WebClient::kText, R"({"op":"advertise","channels":[{"id":1,"topic":"/goal","encoding":"json",)"
+                                R"("schemaName":"geometry_msgs/msg/PoseStamped"}]})");
+  const auto publish = [&](const std::string& json) {
+    viewer.Send(WebClient::kBinary, std::string("\x01\x01\0\0\0", 5) + json);
+    return viewer.NextWith("/goal: ")->payload;
+  };
+  EXPECT_THAT(publish(R"({"pose":{"position":{"x":5,"y":6,"z":0}}})"),
+              HasSubstr("/goal: expected an agent's name as frame_id, such as agent_1, because there is no leader"));
+  publish(R"({"header":{"frame_id":"agent_2"},"pose":{"position":{"x":5,"y":6,"z":0}}})");
+  EXPECT_EQ(run.control.wishes().back().toml, "goto = { agent = 2, position_m = [5.000000, 6.000000, 2.500000] }");
 }
 
 TEST(LiveView, TellsOfEvents) {

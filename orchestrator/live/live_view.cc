@@ -6,34 +6,17 @@
 
 #include "bus/wire.h"
 #include "idl/topics.h"
+#include "orchestrator/live/about.h"
 
 namespace mascot {
 namespace {
 
 /// That of the SDK, then that of the clients before it.
 constexpr const char* kSubprotocols[] = {"foxglove.sdk.v1", "foxglove.websocket.v1"};
-constexpr const char* kServiceName = "/mascot/ask";
 constexpr int kFramesPerSecond = 30;
 constexpr auto kPaceWindow = std::chrono::seconds(1);
 
-/// Channels of the page, in this order, and the first of RosChannels.
-enum UiChannel : Foxglove::ChannelId { kExperimentChannel, kFrameChannel, kEventsChannel, kFirstOfRos };
-
-constexpr std::string_view kWishSchema = R"({"type":"object","required":["ask"],"properties":{)"
-                                         R"("ask":{"enum":["pause","resume","stop","step","pace","event","seek"]},)"
-                                         R"("count":{"type":"integer"},"value":{"type":"number"},)"
-                                         R"("toml":{"type":"string"},"t_s":{"type":"number"}}})";
-constexpr std::string_view kAnswerSchema =
-    R"({"type":"object","properties":{"granted":{"type":"boolean"},"words":{"type":"string"}}})";
-
-Foxglove::Channel JsonChannel(const std::string& topic, const std::string& type) {
-  return {topic, "json", {"mascot" + topic, "jsonschema", R"({"type":")" + type + R"("})"}};
-}
-
 Foxglove::Payload Shared(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
-
-/// A name of this run by which clients tell it from another on the same port.
-std::string NewSession() { return std::to_string(std::chrono::system_clock::now().time_since_epoch().count()); }
 
 SocketOptions OptionsOf(const LiveView::Options& options) {
   return {.address = options.address,
@@ -59,50 +42,10 @@ LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, c
       ros_channels_(ros_.channels().size()),
       experiment_json_(Shared(ExperimentJson(experiment, prediction, "run", engine_, {}))),
       events_json_(Shared(EventsJson(experiment, {}))),
-      foxglove_(About(), *this),
+      foxglove_(AboutTheRun(experiment, ros_.channels()), *this),
       server_(OptionsOf(options), *this, std::move(log)),
       asker_(control) {
   server_.Start();
-}
-
-Foxglove::About LiveView::About() const {
-  Foxglove::About about{.name = "mascot: " + experiment_.run.name,
-                        .session = NewSession(),
-                        .end_ns = StampNs(experiment_.ticks(), experiment_.control.rate_hz),
-                        .channels = {JsonChannel("/ui/experiment", "object"), JsonChannel("/ui/frame", "object"),
-                                     JsonChannel("/ui/events", "array")},
-                        .connections = [this] { return ConnectionsOfTheRun(); },
-                        .service = kServiceName,
-                        .request = {"mascot/Wish", "jsonschema", std::string(kWishSchema)},
-                        .response = {"mascot/Answer", "jsonschema", std::string(kAnswerSchema)}};
-  for (Foxglove::Channel& channel : ros_.channels()) about.channels.push_back(std::move(channel));
-  return about;
-}
-
-/// Who hears whom: processes as nodes, though several agents may share one.
-Foxglove::Connections LiveView::ConnectionsOfTheRun() const {
-  Foxglove::Connections connections;
-  const std::string server = "/physics_server", recorder = "/orchestrator";
-  const auto add = [&](const Topic& topic, const std::string& writer, std::vector<std::string> readers) {
-    connections.writers[topic.Name()] = {writer};
-    readers.push_back(recorder);
-    connections.readers[topic.Name()] = std::move(readers);
-  };
-  std::vector<std::vector<std::string>> hearers(experiment_.agents.size());
-  for (const AgentConfig& agent : experiment_.agents)
-    for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(agent.id))
-      hearers[static_cast<std::size_t>(heard.id - 1)].push_back("/" + AgentName(agent.id));
-  for (const AgentConfig& agent : experiment_.agents) {
-    const std::string name = "/" + AgentName(agent.id);
-    std::vector<std::string>& others = hearers[static_cast<std::size_t>(agent.id - 1)];
-    add(Topic::Command(agent.id), name, {server});
-    if (agent.sends_messages) add(Topic::Message(agent.id), name, others);
-    others.push_back(name);
-    add(Topic::State(agent.id), server, others);
-  }
-  add(Topic::Clock(), server, {});
-  connections.providers[kServiceName] = {recorder};
-  return connections;
 }
 
 void LiveView::Add(const FlownRow& row) {
@@ -134,6 +77,7 @@ void LiveView::OnEvent(const ShownEvent& event, const Experiment& now, const std
 }
 
 void LiveView::OnOpen(ClientId client, const std::string& subprotocol) {
+  if (foxglove_.clients().empty() && TakeNewest() && shown_.tick >= 0) Show();  // nobody watched: what it saw is old
   foxglove_.OnOpen(client, subprotocol == kSubprotocols[0]);
 }
 
@@ -179,6 +123,17 @@ void LiveView::MeasurePace() {
   measured_tick_ = shown_.tick;
 }
 
+Foxglove::Playback LiveView::PlaybackNow() const {
+  using Playing = Foxglove::Playing;
+  const bool plays = shown_state_.phase == RunState::Phase::kRunning;
+  const bool stands = shown_state_.phase == RunState::Phase::kPaused;
+  return {.status = plays    ? Playing::kPlaying
+                    : stands ? Playing::kPaused
+                             : Playing::kEnded,
+          .time_ns = shown_ns(),
+          .speed = shown_state_.pace > 0 ? static_cast<float>(shown_state_.pace) : 1};
+}
+
 void LiveView::Show() {
   frame_json_ = Shared(FrameJson(experiment_, shown_, shown_state_));
   foxglove_.SendTime(shown_ns());
@@ -190,9 +145,11 @@ void LiveView::Show() {
     if (std::string message = ros_.Message(i); !message.empty())
       foxglove_.Publish(channel, shown_ns(), Shared(std::move(message)));
   }
+  foxglove_.SetPlayback(PlaybackNow());
 }
 
 void LiveView::OnTimer() {
+  if (foxglove_.clients().empty()) return;
   slow_.clear();
   for (const ClientId client : foxglove_.clients())
     if (server_.Waiting(client) > 0) slow_.insert(client);
@@ -219,15 +176,16 @@ void LiveView::Ask(const Wish& wish, Foxglove::Reply reply) {
 void LiveView::AskForGoal(const Goal& goal, Foxglove::Reply reply) {
   const auto named = AgentsOf(goal.frame_id);
   const int agent = named ? named->first : experiment_.law.leader;
-  if (agent < 1 || agent > experiment_.size())
-    return server_.Post([reply = std::move(reply)] {
-      reply({false, "expected the name of an agent (agent_1) as frame_id, because there is no leader"});
-    });
+  const auto refuse = [&](std::string why) { server_.Post([reply, why = std::move(why)] { reply({false, why}); }); };
+  if (agent == 0) return refuse("expected an agent's name as frame_id, such as agent_1, because there is no leader");
+  if (agent > experiment_.size() || (named && named->size() > 1))
+    return refuse(
+        fmt::format("expected agent_1 to {} as frame_id, got {}", AgentName(experiment_.size()), goal.frame_id));
   // A click on the ground has height 0, and means the place, not the height.
-  const double z =
-      goal.z != 0 || shown_.tick < 0 ? goal.z : shown_.decoded.motions[static_cast<std::size_t>(agent - 1)].p_WB.z();
-  Ask({.kind = Wish::Kind::kEvent,
-       .toml = fmt::format("goto = {{ agent = {}, position_m = [{:.6f}, {:.6f}, {:.6f}] }}", agent, goal.x, goal.y, z)},
+  const auto i = static_cast<std::size_t>(agent - 1);
+  const double z = goal.z != 0 || shown_.tick < 0 ? goal.z : shown_.decoded.motions[i].p_WB.z();
+  const std::string position = fmt::format("[{:.6f}, {:.6f}, {:.6f}]", goal.x, goal.y, z);
+  Ask({.kind = Wish::Kind::kEvent, .toml = fmt::format("goto = {{ agent = {}, position_m = {} }}", agent, position)},
       std::move(reply));
 }
 

@@ -68,10 +68,9 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   void Ask(const Wish& wish, Foxglove::Reply reply) override;
   void AskForGoal(const Goal& goal, Foxglove::Reply reply) override;
 
-  Foxglove::About About() const;
-  Foxglove::Connections ConnectionsOfTheRun() const;
   bool TakeNewest();
   void MeasurePace();
+  Foxglove::Playback PlaybackNow() const;
   void Show();
   std::uint64_t shown_ns() const;
 

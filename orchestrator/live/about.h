@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "orchestrator/live/foxglove.h"
+
+namespace mascot {
+
+/// Channels of the page, in this order, and the first of those that follow.
+enum UiChannel : Foxglove::ChannelId { kExperimentChannel, kFrameChannel, kEventsChannel, kFirstOfRos };
+
+/// What clients are told of a run when they come: the channels of the page, then `ros`; the service; who hears whom.
+/// `experiment` must outlive the result.
+Foxglove::About AboutTheRun(const Experiment& experiment, std::vector<Foxglove::Channel> ros);
+
+}  // namespace mascot
