@@ -33,10 +33,11 @@ class Echo final : public SocketUser {
     options.port = 0;
     options.subprotocols = {"foxglove.sdk.v1", "foxglove.websocket.v1"};
     options.period = std::chrono::milliseconds(1);
-    server_.emplace(options, *this, [this](const std::string& line) {
+    owned_ = std::make_unique<SocketServer>(options, *this, [this](const std::string& line) {
       const std::lock_guard lock(mutex_);
       log_ += line + "\n";
     });
+    server_ = owned_.get();
     server_->Start();
   }
   HttpAnswer Get(std::string_view target, std::string_view host) override {
@@ -66,7 +67,7 @@ class Echo final : public SocketUser {
   }
 
   std::string url() const { return server_->url(); }
-  void End() { server_.reset(); }
+  void End() { owned_.reset(); }
   std::string log() {
     const std::lock_guard lock(mutex_);
     return log_;
@@ -80,7 +81,8 @@ class Echo final : public SocketUser {
   std::vector<ClientId> clients_;
   std::mutex mutex_;
   std::string log_;
-  std::optional<SocketServer> server_;
+  SocketServer* server_ = nullptr;  // for its own thread, up to its end
+  std::unique_ptr<SocketServer> owned_;
 };
 
 TEST(Origin, OnlyAddressesAndOurOwnNamesAreOurHost) {

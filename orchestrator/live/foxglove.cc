@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <ranges>
 #include <stdexcept>
 #include <utility>
 
@@ -145,10 +144,10 @@ void Foxglove::OnSubscribe(ClientId id, const Json& message) {
   auto& subscriptions = clients_[id].subscriptions;
   for (const Json& wanted : List(message, "subscriptions")) {
     const auto number = U32(wanted, "id"), channel = U32(wanted, "channelId");
+    const auto is_taken = [&](const auto& subscription) { return subscription.second == number; };
     if (!number || !channel || *channel >= about_.channels.size()) {
       SendStatus(id, kError, "subscribe: there is no such channel");
-    } else if (subscriptions.contains(*channel) ||
-               std::ranges::count(subscriptions | std::views::values, *number) > 0) {
+    } else if (subscriptions.contains(*channel) || std::ranges::any_of(subscriptions, is_taken)) {
       SendStatus(id, kError, "subscribe: this number, or this channel, has been subscribed already");
     } else {
       subscriptions[*channel] = *number;

@@ -144,9 +144,41 @@ def protocols():
     return {f"events_{k}": bytes([k]) + random.Random(k).randbytes(256) for k in range(7)}
 
 
+# --- messages of viewers ------------------------------------------------------------------------------------
+
+
+def viewers():
+    """Lists of messages, as tests/fuzz/viewers.cc reads them."""
+    def texts(*messages):
+        return b"".join(struct.pack("<BH", 0, len(one)) + one for one in messages)
+
+    def binaries(*messages):
+        return b"".join(struct.pack("<BH", 1, len(one)) + one for one in messages)
+
+    goal = b'{"op":"advertise","channels":[{"id":%d,"topic":"/goal","encoding":"%s","schemaName":"geometry_msgs/PoseStamped"}]}'
+    pose = CDR + struct.pack("<iI", 0, 0) + text("agent_3") + bytes(4) + struct.pack("<7d", 1, 2, 3, 0, 0, 0, 1)
+    pose_json = b'{"header":{"frame_id":"agent_3"},"pose":{"position":{"x":1,"y":2,"z":3}}}'
+    ask = b'{"ask":"event","toml":"goto = {}"}'
+    return {
+        "subscribe": texts(b'{"op":"subscribe","subscriptions":[{"id":0,"channelId":0},{"id":1,"channelId":1}]}',
+                           b'{"op":"unsubscribe","subscriptionIds":[0]}'),
+        "parameters": texts(b'{"op":"getParameters","parameterNames":[],"id":"all"}',
+                            b'{"op":"subscribeParameterUpdates","parameterNames":["law.p_gain"]}',
+                            b'{"op":"setParameters","parameters":[{"name":"law.p_gain","value":[1,true,"x"]}],"id":"set"}',
+                            b'{"op":"unsubscribeParameterUpdates","parameterNames":[]}'),
+        "connections": texts(b'{"op":"subscribeConnectionGraph"}', b'{"op":"unsubscribeConnectionGraph"}'),
+        "goal_cdr": texts(goal % (1, b"cdr")) + binaries(b"\1" + struct.pack("<I", 1) + pose),
+        "goal_json": texts(goal % (2, b"json")) + binaries(b"\1" + struct.pack("<I", 2) + pose_json)
+                     + texts(b'{"op":"unadvertise","channelIds":[2]}'),
+        "ask": binaries(b"\2" + struct.pack("<III", 0, 5, 4) + b"json" + ask),
+        "playback": binaries(b"\3" + struct.pack("<BfBQI", 1, 2.0, 1, 1000, 2) + b"r1"),
+    }
+
+
 def main():
     programs = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release")
-    for name, files in [("samples", samples()), ("recording", recordings(programs)), ("protocols", protocols())]:
+    for name, files in [("samples", samples()), ("recording", recordings(programs)), ("protocols", protocols()),
+                        ("viewers", viewers())]:
         (CORPUS / name).mkdir(parents=True, exist_ok=True)
         for file, data in files.items():
             (CORPUS / name / file).write_bytes(data)

@@ -1,0 +1,79 @@
+// Fuzzer: messages of viewers to the Foxglove protocol. Nothing is thrown, every question is answered, and what is sent
+// back is a message of the protocol. The input is a list of messages: a byte that says whether it is text, two of its
+// length, and the message.
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "orchestrator/live/foxglove.h"
+#include "tests/fuzz/fuzz.h"
+
+namespace mascot {
+namespace {
+
+constexpr ClientId kClient = 1;
+
+/// A server whose questions are answered after each message.
+class FuzzedServer final : public Foxglove::Host {
+ public:
+  FuzzedServer()
+      : foxglove_({.name = "fuzzed",
+                   .session = "1",
+                   .end_ns = 1,
+                   .channels = {{"/a", "json", {}}, {"/b", "cdr", {}}},
+                   .connections = [] { return Foxglove::Connections(); },
+                   .service = "/ask",
+                   .request = {},
+                   .response = {}},
+                  *this) {
+    foxglove_.OnOpen(kClient, /*controls_playback=*/true);
+    foxglove_.SetParameters({{"law.p_gain", 1.0}, {"law.name", "x"}});
+  }
+
+  void Send(ClientId client, Frame frame) override {
+    Require(client == kClient, "a message to nobody");
+    const std::string message = frame.head + (frame.body ? *frame.body : "");
+    if (frame.is_text)
+      Require(Foxglove::Json::parse(message).contains("op"), message);
+    else
+      Require(message.size() >= 9 && message[0] >= 1 && message[0] <= 5, message);
+  }
+  bool IsSlow(ClientId /*client*/) const override { return false; }
+  void OnSubscribe(ClientId client, Foxglove::ChannelId channel) override {
+    Require(foxglove_.HasSubscriber(channel), "who has just subscribed has not");
+    foxglove_.PublishTo(client, channel, 1, std::make_shared<const std::string>("payload"));
+  }
+  void Ask(const Wish& /*wish*/, Foxglove::Reply reply) override { replies_.push_back(std::move(reply)); }
+  void AskForGoal(const Goal& /*goal*/, Foxglove::Reply reply) override { replies_.push_back(std::move(reply)); }
+
+  void Take(bool is_text, std::span<const std::uint8_t> message) {
+    foxglove_.OnMessage(kClient, is_text, message);
+    Require(replies_.size() <= Foxglove::kMostQuestions, "too many questions");
+    for (bool granted = true; !replies_.empty(); granted = !granted) {
+      const Foxglove::Reply reply = std::move(replies_.back());
+      replies_.pop_back();
+      reply({granted, "words"});
+    }
+    foxglove_.Publish(0, 1, std::make_shared<const std::string>("payload"));
+  }
+
+ private:
+  Foxglove foxglove_;
+  std::vector<Foxglove::Reply> replies_;
+};
+
+}  // namespace
+}  // namespace mascot
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  mascot::ByteReader input({data, size});
+  mascot::FuzzedServer server;
+  while (!input.rest().empty()) {
+    const bool is_text = input.Take<std::uint8_t>() % 2 == 0;
+    const std::size_t length = input.Take<std::uint16_t>();
+    server.Take(is_text, input.TakeBytes(std::min(length, input.rest().size())));
+  }
+  return 0;
+}
