@@ -15,7 +15,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
-using ::testing::UnorderedElementsAre;
 using Json = Foxglove::Json;
 
 std::span<const std::uint8_t> AsBytes(std::string_view text) {
@@ -270,8 +269,8 @@ TEST(Foxglove, TakesGoalsInBothEncodings) {
   EXPECT_EQ(server.SayBytes(Bytes('\1', 1u) +
                             R"({"header":{"frame_id":"agent_2"},"pose":{"position":{"x":1,"y":2.5,"z":-3}}})"),
             "");
-  const std::string cdr =
-      Bytes('\0', '\1', '\0', '\0', 0, 0u, 8u) + std::string("agent_3\0", 8) + Bytes(0, 4.0, 5.0, 6.0, 0.0, 0.0, 0.0, 1.0);
+  const std::string cdr = Bytes('\0', '\1', '\0', '\0', 0, 0u, 8u) + std::string("agent_3\0", 8) +
+                          Bytes(0, 4.0, 5.0, 6.0, 0.0, 0.0, 0.0, 1.0);
   EXPECT_EQ(server.SayBytes(Bytes('\1', 2u) + cdr), "");
   ASSERT_THAT(server.goals, SizeIs(2));
   EXPECT_EQ(server.goals[0].frame_id, "agent_2");

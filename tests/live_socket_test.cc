@@ -16,10 +16,8 @@
 namespace mascot::test {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
-using ::testing::Not;
 using ::testing::StartsWith;
 
 /// Sends every message back, "bad" apart, for which it drops the client, and tells everybody each period.

@@ -4,7 +4,6 @@
 
 #include <gmock/gmock.h>
 
-#include <atomic>
 #include <mutex>
 
 #include "agent/laws.h"
@@ -84,7 +83,7 @@ class Watched {
     std::int64_t tick = 0;
     EngineResult result = RunInProcess(experiment, sinks_, [&] {
       if (before_tick) before_tick(tick++);
-      return true;
+      return !over;
     });
     view.SetState({.phase = result.failure.empty() ? RunState::Phase::kDone : RunState::Phase::kFailed, .contacts = 0});
     return result;
@@ -92,6 +91,7 @@ class Watched {
 
   const Experiment experiment;
   Control control;
+  bool over = false;  // the run ends before the next tick
 
  private:
   Prediction prediction_;
@@ -227,6 +227,49 @@ name = "consensus"
   });
 }
 
+TEST(EdgesNow, AreLostAsOftenAsSamplesAreLostAndAbsentWhenTheGraphSaysSo) {
+  const Experiment experiment = Load(R"(
+[run]
+duration_s = 1.0
+[agents]
+count = 2
+model = "double_integrator"
+[graph]
+edges = [[1, 2], [2, 1]]
+repeat_s = 0.5
+[[graph.schedule]]
+at_s = 0.25
+edges = [[1, 2]]
+[link]
+loss = 0.3
+[law]
+name = "consensus"
+)");
+  RunMeter meter(experiment);
+  std::map<EdgeNow::State, std::uint64_t> of_1, of_2;
+  std::vector<EdgeNow> edges;
+  EXPECT_EQ(RunInProcess(experiment, {&meter},
+                         [&, tick = 0]() mutable {
+                           if (tick++ == 0) return true;
+                           meter.EdgesNow(edges);
+                           ++of_1[edges[0].state];
+                           ++of_2[edges[1].state];
+                           return true;
+                         })
+                .failure,
+            "");
+  meter.EdgesNow(edges);  // of the last tick
+  ++of_1[edges[0].state];
+  ++of_2[edges[1].state];
+  using State = EdgeNow::State;
+  const auto traffic = meter.Traffic();
+  EXPECT_GT(traffic[0].count.lost, 0u);
+  EXPECT_EQ(of_1[State::kLost] + of_1[State::kNothingYet], traffic[0].count.lost);
+  EXPECT_EQ(of_1[State::kHeard], 101 - traffic[0].count.lost);
+  EXPECT_EQ(of_2[State::kNoEdge], 50u);  // ticks 25 to 49 and 75 to 99
+  EXPECT_EQ(of_2[State::kHeard], 51 - traffic[1].count.lost);
+}
+
 TEST(LiveView, PassesWishesToTheRunAndItsAnswersBack) {
   Watched run(Load(kThree));
   Viewer viewer(run.view.url());
@@ -348,12 +391,11 @@ TEST(LiveView, IsReadByFoxglovesOwnPackages) {
   ASSERT_TRUE(std::filesystem::exists(MASCOT_SOURCE_DIR "/tests/wscheck/node_modules"))
       << "tests/wscheck/node_modules is missing: run scripts/test, which installs it with `npm ci`";
   const ScratchFolder folder;
-  Watched run(Load(kThree));
+  Watched run(Load(kThree, "run.duration_s", "100000.0"));  // as long as the checker takes
   WsCheck check(folder, run.view.url());
-  std::atomic<bool> over = false;
   run.Fly([&](std::int64_t) {
-    if (!over) poll(nullptr, 0, 5);  // milliseconds: so that there is something to see
-    over = over || check.IsOver();
+    poll(nullptr, 0, 5);  // milliseconds: so that there is something to see
+    run.over = check.IsOver();
   });
   EXPECT_EQ(check.Wait(), 0) << check.out() << check.err();
   const Json report = Json::parse(check.out());

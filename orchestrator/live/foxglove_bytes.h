@@ -39,7 +39,6 @@ class ByteReader {
   std::span<const std::uint8_t> TakeBytes(std::size_t count) {
     if (count > rest_.size()) {
       ok_ = false;
-      count = rest_.size();
       rest_ = {};
       return {};
     }
