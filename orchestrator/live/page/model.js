@@ -1,0 +1,101 @@
+// What the page knows: the experiment, the newest row of the run, its events, and what the viewer has chosen.
+// Everything drawn is drawn from here. Numbers of agents begin at 1, indices at 0.
+
+/** States of an edge in a row. */
+export const EDGE = {
+  NONE: 0,
+  HEARD: 1,
+  LOST: 2,
+  FAR: 3,
+  SILENT: 4
+};
+export const EDGE_WORDS = ["no edge now", "heard", "lost", "out of range", "nothing arrived yet"];
+
+/** Bits of a command's flags, in words. */
+const LIMITS = [[1, "acceleration", "accel."], [8, "speed", "speed"], [2, "tilt", "tilt"], [4, "rotors", "rotors"]];
+const limitsOf = (flags) => LIMITS.filter(([bit]) => flags & bit);
+export const limitWords = (flags) => limitsOf(flags).map(([, word]) => word).join(", ");
+export const shortLimitWords = (flags) => limitsOf(flags).map(([, , word]) => word).join(" ");
+
+export class Model {
+  connected = false;
+  experiment = null;
+  frame = null;
+  events = [];
+  selected = 0;       // number of an agent, 0: none
+  lastAnswer = null;  // the server's last answer: {request, granted, words}
+  #session = null;
+  #listeners = {};
+
+  /**
+   * Calls `listener` after each change of a kind: "connection", "run" (another run, or other agents), "experiment" (a
+   *  value of it), "frame", "events", "selected".
+   */
+  on(kind, listener) { (this.#listeners[kind] ??= []).push(listener); }
+
+  #tell(kind) {
+    for (const listener of this.#listeners[kind] ?? []) listener(this);
+  }
+
+  get size() { return this.experiment?.agents.length ?? 0; }
+
+  get isRecording() { return this.experiment?.source === "recording"; }
+
+  setConnection(connected, session = null) {
+    if (connected && session !== this.#session) this.#forget();
+    if (connected) this.#session = session;
+    this.connected = connected;
+    this.#tell("connection");
+  }
+
+  #forget() {
+    this.experiment = this.frame = null;
+    this.events = [];
+  }
+
+  setExperiment(experiment) {
+    const isOther = bodiesOf(this.experiment) !== bodiesOf(experiment);
+    this.experiment = experiment;
+    if (isOther) {
+      this.frame = null;
+      this.selected = Math.min(this.selected, experiment.agents.length);
+      this.#tell("run");
+    }
+    this.#tell("experiment");
+  }
+
+  setFrame(frame) {
+    if (!this.experiment || frame.p.length !== 3 * this.size) return;  // a row of a run that is not described yet
+    this.frame = frame;
+    this.#tell("frame");
+  }
+
+  setEvents(events) {
+    this.events = events;
+    this.#tell("events");
+  }
+
+  select(number) {
+    this.selected = number >= 1 && number <= this.size ? number : 0;
+    this.#tell("selected");
+  }
+
+  agent(number) { return this.experiment?.agents[number - 1]; }
+
+  /** Three numbers of an agent in a flat array of the row: "p", "v" or "a". */
+  vector(name, number) { return this.frame[name].slice(3 * number - 3, 3 * number); }
+
+  /** Edges on which an agent hears: {index, heard, weight, state, age_s}. */
+  heardBy(number) {
+    return this.experiment.edges.flatMap(([hearer, heard, weight], index) => hearer !== number ? [] : [
+      {index, heard, weight, state: this.frame?.edge?.[index] ?? EDGE.SILENT, age_s: this.frame?.age_s?.[index] ?? -1}
+    ]);
+  }
+}
+
+// Two experiments with the same text here are drawn with the same bodies.
+function bodiesOf(experiment) {
+  if (!experiment) return "";
+  const {name, source, ticks, edges, agents} = experiment;
+  return JSON.stringify([name, source, ticks, edges.length, agents.map(({model, size_m}) => [model, size_m])]);
+}

@@ -1,0 +1,122 @@
+// Time: what it is, how fast it goes, pause, step, stop; of a recording a time line.
+import {byId, element, figure, setText} from "../dom.js";
+
+const PACES = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
+const AS_FAST_AS_IT_GOES = 0;
+const SEEK_EVERY_MS = 80;
+
+export class Transport {
+  #model;
+  #asking;
+  #isSeeking = false;
+  #lastSeek_ms = 0;
+  #marked = "";
+
+  constructor(model, asking) {
+    this.#model = model;
+    this.#asking = asking;
+    byId("play").addEventListener("click", () => this.playOrPause());
+    byId("step").addEventListener("click", () => this.step());
+    byId("stop").addEventListener("click", () => byId("confirm").showModal());
+    byId("confirm-no").addEventListener("click", () => byId("confirm").close());
+    byId("confirm-yes").addEventListener("click", () => this.#stop());
+    byId("pace").addEventListener("change", ({target}) => this.#setPace(Number(target.value)));
+    byId("seek").addEventListener("input", () => this.#onSeek(false));
+    byId("seek").addEventListener("change", () => this.#onSeek(true));
+    model.on("frame", () => this.#onFrame());
+    model.on("experiment", () => this.#onExperiment());
+    model.on("events", () => this.#mark());
+  }
+
+  // --- what can be asked ---
+
+  playOrPause() {
+    const {frame} = this.#model;
+    return frame && this.#asking.ask({ask: frame.state === "running" ? "pause" : "resume"});
+  }
+
+  step(count = 1) { return this.#asking.ask({ask: "step", count}); }
+
+  /** The next slower (-1) or faster (+1) pace of the list. */
+  changePace(by) {
+    const now = this.#model.frame?.pace ?? 1;
+    const next = by > 0 ? PACES.find((pace) => pace > now) : PACES.findLast((pace) => pace < now);
+    if (next !== undefined) this.#setPace(next);
+  }
+
+  seekBy(by_s) {
+    const {experiment, frame} = this.#model;
+    return frame &&
+        this.#asking.ask({ask: "seek", t_s: Math.max(0, Math.min(experiment.duration_s, frame.t_s + by_s))});
+  }
+
+  async #setPace(value) {
+    await this.#asking.ask({ask: "pace", value});
+    this.#showPace();  // a refused pace goes back to what it is
+  }
+
+  #stop() {
+    byId("confirm").close();
+    return this.#asking.ask({ask: "stop"}, "Stop the run");
+  }
+
+  // While the handle is held, some of its places are asked for; where it is let go, always.
+  #onSeek(isLast) {
+    const t_s = Number(byId("seek").value), now = performance.now();
+    this.#isSeeking = !isLast;
+    if (!isLast && now - this.#lastSeek_ms < SEEK_EVERY_MS) return;
+    this.#lastSeek_ms = now;
+    this.#asking.ask({ask: "seek", t_s});
+  }
+
+  // --- what is shown ---
+
+  #onExperiment() {
+    const {experiment, isRecording} = this.#model;
+    byId("seek").hidden = !isRecording;
+    byId("seek").max = experiment.duration_s;
+    byId("stop").hidden = isRecording;
+    setText(byId("pace-label"), isRecording ? "Speed" : "Pace");
+    setText(byId("duration"), `/ ${figure(experiment.duration_s, 2)} s`);
+    const paces =
+        [...PACES.map((pace) => [pace, `× ${pace}`]), ...(isRecording ? [] : [[AS_FAST_AS_IT_GOES, "fastest"]])];
+    byId("pace").replaceChildren(...paces.map(([value, textContent]) => element("option", {value, textContent})));
+    this.#showPace();
+    this.#mark();
+  }
+
+  #onFrame() {
+    const {frame, experiment} = this.#model, isOver = frame.state === "done" || frame.state === "failed";
+    const isRunning = frame.state === "running", canGoOn = !isOver || this.#model.isRecording;
+    setText(byId("time"), `${frame.t_s.toFixed(2)} s`);
+    setText(byId("tick"), `tick ${frame.tick}`);
+    setText(byId("factor"), isRunning ? `${figure(frame.real_time_factor, 2)} × real time` : "");
+    setText(byId("play-words"), isRunning ? "Pause" : this.#model.isRecording ? "Play" : "Resume");
+    byId("play").dataset.running = isRunning;
+    byId("play").disabled = byId("step").disabled = byId("pace").disabled = !canGoOn;
+    byId("stop").disabled = isOver;
+    byId("progress").style.width = `${100 * Math.min(1, frame.t_s / experiment.duration_s)}%`;
+    if (!this.#isSeeking) byId("seek").value = frame.t_s;
+    if (document.activeElement !== byId("pace")) this.#showPace();
+  }
+
+  #showPace() {
+    const pace = this.#model.frame?.pace ?? 1, select = byId("pace");
+    if (![...select.options].some(({value}) => Number(value) === pace))
+      select.append(element("option", {value: pace, textContent: `× ${figure(pace, 2)}`}));
+    select.value = String(pace);
+  }
+
+  #mark() {
+    const {events, experiment} = this.#model;
+    if (!experiment) return;
+    const marks = events.map(({t_s, number, toml}) => ({share: t_s / experiment.duration_s, number, toml}));
+    if (JSON.stringify(marks) === this.#marked) return;
+    this.#marked = JSON.stringify(marks);
+    byId("marks").replaceChildren(...marks.map(({share, number, toml}) => {
+      const mark = element("i", {title: `event ${number}\n${toml}`});
+      mark.style.left = `${100 * share}%`;
+      return mark;
+    }));
+  }
+}

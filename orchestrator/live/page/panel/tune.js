@@ -1,0 +1,181 @@
+// The live keys: a control for each, with its range and unit. A control asks when it is let go, and shows what the
+// server says the value is, whatever was asked for.
+import {setToml} from "../asking.js";
+import {byId, element, figure, setText} from "../dom.js";
+
+import {Scale} from "./scale.js";
+
+export class Tune {
+  #model;
+  #asking;
+  #controls = new Map();  // key -> {row, show}
+  #drawn = "";
+
+  constructor(model, asking) {
+    this.#model = model;
+    this.#asking = asking;
+    model.on("experiment", () => this.#onExperiment());
+    model.on("selected", () => this.#nameTarget());
+  }
+
+  #onExperiment() {
+    const keys = this.#model.experiment.live_keys ?? [];
+    const wanted = JSON.stringify(keys.map(({value, ...key}) => key)) + this.#model.isRecording;
+    if (wanted !== this.#drawn) this.#make(keys);
+    this.#drawn = wanted;
+    for (const {key, value} of keys) this.#controls.get(key)?.show(value);
+  }
+
+  #make(keys) {
+    this.#controls.clear();
+    if (keys.length === 0 || this.#model.isRecording) {
+      const why = this.#model.isRecording ? "A recording cannot be changed." :
+                                            "This run has no keys that can be changed while it goes on.";
+      return byId("tune").replaceChildren(element("p", {className: "muted hint", textContent: why}));
+    }
+    this.only = element("input", {type: "checkbox", id: "tune-only"});
+    this.onlyLabel = element("label", {className: "only", htmlFor: "tune-only"}, this.only, element("span"));
+    byId("tune").replaceChildren(this.onlyLabel, ...keys.map((key) => this.#row(key)));
+    this.#nameTarget();
+  }
+
+  #nameTarget() {
+    if (!this.onlyLabel) return;
+    const {selected} = this.#model;
+    this.only.disabled = !selected;
+    if (!selected) this.only.checked = false;
+    setText(
+        this.onlyLabel.lastChild,
+        selected ? `only for agent ${selected}` : "for all agents (choose one to change it alone)");
+  }
+
+  #row(key) {
+    const words = element("p", {className: "refusal", role: "alert"});
+    const ask = (value) => this.#ask(key, value, words);
+    const {body, show} = (CONTROLS[key.kind] ?? CONTROLS.other)(key, ask);
+    const name = element(
+        "label", {title: key.meaning ?? "", htmlFor: `key-${key.key}`}, key.key,
+        element("small", {className: "muted", textContent: key.unit ? ` ${key.unit}` : ""}));
+    this.#controls.set(key.key, {show});
+    const row = element("div", {className: "key"}, name, ...body, words);
+    row.dataset.key = key.key;
+    return row;
+  }
+
+  async #ask({key, unit}, value, words) {
+    const agents = this.only.checked ? [this.#model.selected] : [];
+    const answer =
+        await this.#asking.event(setToml(key, value, agents), `${key} = ${show(value)}${unit ? ` ${unit}` : ""}`);
+    setText(words, answer.granted ? "" : answer.words);
+    if (!answer.granted)
+      this.#controls.get(key)?.show(this.#model.experiment.live_keys.find((live) => live.key === key)?.value);
+  }
+}
+
+const show = (value) =>
+    (typeof value === "number" ? figure(value) :
+         Array.isArray(value)  ? value.map((x) => figure(x)).join(", ") :
+                                 String(value));
+const idOf = ({key}) => `key-${key}`;
+const boundsOf = ({min, max, open_min}) =>
+    ({low: `${open_min ? "> " : ""}${shortNumber(min)}`, high: shortNumber(max)});
+const shortNumber = (x) => (Math.abs(x) >= 1e4 ? x.toExponential(0).replace("e+", "e") : String(x));
+
+// --- a control for each kind of value: what is shown, and a function that takes the value ------------------
+
+function number(key, ask) {
+  const scale = new Scale(key), {low, high} = boundsOf(key);
+  const slider =
+      element("input", {type: "range", min: 0, max: Scale.STEPS, step: 1, id: idOf(key), "aria-label": key.key});
+  const box = element("input", {type: "number", step: "any", "aria-label": `${key.key}, value`});
+  slider.addEventListener("input", () => {
+    box.value = scale.value(Number(slider.value));
+  });
+  slider.addEventListener("change", () => ask(scale.value(Number(slider.value))));
+  box.addEventListener("change", () => box.value !== "" && ask(Number(box.value)));
+  let latest = key.value;
+  const showInBox = () => {
+    box.value = Number(Number(latest).toPrecision(6));
+  };
+  box.addEventListener("blur", showInBox);
+  return {
+    body: [
+      element("div", {className: "slide"}, slider, box),
+      element(
+          "div", {className: "bounds muted"}, element("span", {textContent: low}), element("span", {textContent: high}))
+    ],
+    show(value) {
+      latest = value;
+      if (document.activeElement !== box) showInBox();
+      if (!slider.matches(":active")) slider.value = scale.place(value);
+      slider.setAttribute("aria-valuetext", `${figure(value)} ${key.unit ?? ""}`);
+    },
+  };
+}
+
+function boolean(key, ask) {
+  const box = element("input", {type: "checkbox", id: idOf(key), role: "switch"});
+  box.addEventListener("change", () => ask(box.checked));
+  return {
+    body: [box],
+    show: (value) => {
+      box.checked = value;
+    }
+  };
+}
+
+function oneOf(key, ask) {
+  const select = element(
+      "select", {id: idOf(key)}, ...key.names.map((name) => element("option", {value: name, textContent: name})));
+  select.addEventListener("change", () => ask(select.value));
+  return {
+    body: [select],
+    show: (value) => {
+      select.value = value;
+    }
+  };
+}
+
+function vector3(key, ask) {
+  const boxes = ["x", "y", "z"].map(
+      (axis, k) => element(
+          "input", {type: "number", step: "any", "aria-label": `${key.key}, ${axis}`, ...(k ? {} : {id: idOf(key)})}));
+  for (const box of boxes)
+    box.addEventListener(
+        "change", () => boxes.every(({value}) => value !== "") && ask(boxes.map(({value}) => Number(value))));
+  return {
+    body: [element("div", {className: "vector"}, ...boxes)],
+    show: (value) => boxes.forEach((box, k) => {
+      if (document.activeElement !== box) box.value = value[k];
+    }),
+  };
+}
+
+/** Any other value, as JSON, which TOML reads alike for numbers, texts and lists of them. */
+function other(key, ask) {
+  const box = element("input", {type: "text", id: idOf(key), spellcheck: false});
+  box.addEventListener("change", () => {
+    try {
+      ask(JSON.parse(box.value));
+      box.setCustomValidity("");
+    } catch {
+      box.setCustomValidity("expected a number, a \"text\" or a list [a, b, ...]");
+      box.reportValidity();
+    }
+  });
+  return {
+    body: [box],
+    show: (value) => {
+      if (document.activeElement !== box) box.value = JSON.stringify(value);
+    }
+  };
+}
+
+const CONTROLS = {
+  number,
+  integer: number,
+  boolean,
+  one_of: oneOf,
+  vector3,
+  other
+};

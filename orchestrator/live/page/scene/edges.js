@@ -1,0 +1,84 @@
+// Who hears whom: an arrow from the agent that is heard to the one that hears it. It lights up when a sample was heard
+// and darkens when it was lost or out of range.
+import {rgb, styleColour} from "../colours.js";
+import {EDGE} from "../model.js";
+
+import {Ribbons} from "./ribbons.js";
+
+const MOST_EDGES = 20_000;
+const EASE = 0.35;  // part of the way to its new look that an edge goes in a row
+
+// Of each state: colour in the style sheet, alpha, width, dash (px).
+const LOOKS = {
+  [EDGE.NONE]: ["edge-none", 0.35, 1, 3],
+  [EDGE.HEARD]: ["edge-heard", 0.9, 2, 0],
+  [EDGE.LOST]: ["edge-lost", 0.55, 1.3, 0],
+  [EDGE.FAR]: ["edge-far", 0.4, 1.2, 6],
+  [EDGE.SILENT]: ["edge-far", 0.3, 1, 0],
+};
+
+const wanted = new Float32Array(5);  // what an edge goes to
+
+export class Edges extends Ribbons {
+  #edges;
+  #shifts;
+  #density;
+  #looks = {};
+  #now;  // red, green, blue, alpha, width of each edge as drawn
+
+  constructor(edges) {
+    const drawn = edges.slice(0, MOST_EDGES);
+    super(Math.max(1, drawn.length), {head: drawn.length > 400 ? 6 : 9, trim: 7, order: 2});
+    const pairs = new Set(drawn.map(([hearer, heard]) => `${hearer} ${heard}`));
+    this.#edges = drawn;
+    this.#shifts = drawn.map(([hearer, heard]) => (pairs.has(`${heard} ${hearer}`) ? 2.5 : 0));
+    this.#density = Math.max(0.12, Math.min(1, Math.sqrt(120 / Math.max(1, drawn.length))));
+    this.#now = new Float32Array(5 * drawn.length);
+    this.count = drawn.length;
+    this.paintAll();
+  }
+
+  get edges() { return this.#edges; }
+
+  paintAll() {
+    for (const [state, [name, alpha, width, dash]] of Object.entries(LOOKS))
+      this.#looks[state] = {colour: rgb(styleColour(name)), alpha, width, dash};
+  }
+
+  /** `pointed`: index of the edge under the pointer, -1: none. Returns true while a look still changes. */
+  update({p, edge}, {pointed = -1, selected = 0, radius = 0} = {}) {
+    this.uniform("radius", radius);
+    let moving = false;
+    this.#edges.forEach(([hearer, heard], k) => {
+      this.place(k, p, 3 * (heard - 1), p, 3 * (hearer - 1));
+      moving = this.#ease(
+                   k, this.#looks[edge?.[k] ?? EDGE.SILENT], k === pointed, selected === hearer || selected === heard,
+                   selected) ||
+          moving;
+    });
+    this.send(["start", "end", "tint", "form"]);
+    return moving;
+  }
+
+  #ease(k, look, isPointed, isOfSelected, selected) {
+    const now = this.#now.subarray(5 * k, 5 * k + 5);
+    const emphasis = isPointed || isOfSelected ? 1 : this.#density * (selected ? 0.45 : 1);
+    wanted.set(look.colour);
+    wanted[3] = look.alpha * emphasis;
+    wanted[4] = look.width * (isPointed ? 2 : isOfSelected ? 1.3 : 1);
+    let moving = false;
+    for (let i = 0; i < 5; ++i) {
+      now[i] += EASE * (wanted[i] - now[i]);
+      moving = moving || Math.abs(wanted[i] - now[i]) > 0.02;
+    }
+    this.paint(k, now, now[3]);
+    this.shape(k, now[4], this.#shifts[k], look.dash);
+    return moving;
+  }
+
+  /** Of an edge as drawn: red, green, blue, alpha. */
+  look(k) { return [...this.#now.subarray(5 * k, 5 * k + 4)]; }
+
+  /** The shift of an edge to its left, in pixels. */
+  shift(k) { return this.#shifts[k]; }
+}

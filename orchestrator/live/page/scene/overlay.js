@@ -1,0 +1,177 @@
+// Texts and marks of constant size, above the picture: numbers of agents, the scale of the ground, waypoints, formation
+// places, the predicted meeting point, and where an agent is being sent.
+import {agentColours, styleColour} from "../colours.js";
+
+const FONT = '12px system-ui, "Segoe UI", "DejaVu Sans", sans-serif';
+const MOST_NUMBERS = 60;  // with more agents, only those of interest and those near the camera
+const NEAR_PX = 26;       // on the screen, between neighbouring numbers of a crowd
+
+export class Overlay {
+  #view;
+  #canvas;
+  #pen;
+  numbers = 0;  // drawn
+
+  constructor(canvas, view) {
+    this.#canvas = canvas;
+    this.#view = view;
+    this.#pen = canvas.getContext("2d");
+  }
+
+  resize(width, height, ratio) {
+    Object.assign(this.#canvas, {width: width * ratio, height: height * ratio});
+    this.#pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  }
+
+  draw(frame) {
+    const {clientWidth: width, clientHeight: height} = this.#canvas;
+    this.#pen.clearRect(0, 0, width, height);
+    this.#pen.font = FONT;
+    this.#pen.lineJoin = "round";
+    this.#ground();
+    const {experiment} = this.#view.model;
+    if (!experiment || !frame) return;
+    if (this.#view.shown.plan) this.#plan(experiment, frame);
+    this.#rings(experiment);
+    this.numbers = this.#view.shown.numbers ? this.#numbers(experiment) : 0;
+    if (this.#view.ghost) this.#ghost(this.#view.ghost);
+  }
+
+  // --- what is drawn ---
+
+  #ground() {
+    const {ground, eye} = this.#view;
+    for (const [p, text] of ground.labels(eye.target)) this.#text(p, text, styleColour("muted"), 5, 12);
+    for (const [p, text, colour] of ground.names()) this.#text(p, text, colour, 5, -6);
+  }
+
+  #plan({agents, prediction}, {p}) {
+    const colours = agentColours(agents.length), ink = styleColour("text");
+    for (const {id, waypoints_m} of agents)
+      (waypoints_m ?? []).forEach((place, k) => {
+        this.#mark(place, colours[id - 1], diamond(6));
+        this.#text(place, String(k + 1), styleColour("muted"), 9, -6);
+      });
+    for (const [place, id] of places(agents, p)) this.#mark(place, colours[id - 1], ring(8), [2, 3]);
+    if (!prediction?.value_m) return;
+    this.#mark(prediction.value_m, ink, star(9));
+    this.#text(prediction.value_m, "predicted", ink, 13, 4);
+  }
+
+  #rings({agents}) {
+    const {model, pointed} = this.#view;
+    for (const {id, goto: canGo, leads} of agents) {
+      if (id === model.selected)
+        this.#circle(id, 15, styleColour("accent"), 2.2);
+      else if (id === pointed.agent)
+        this.#circle(id, 15, styleColour("accent"), 1.2);
+      if (leads || (canGo && agents.length <= MOST_NUMBERS))
+        this.#circle(id, 11, styleColour("muted"), 1.2, leads ? [] : [2, 2]);
+    }
+  }
+
+  #numbers({agents}) {
+    const {model, pointed, screen} = this.#view, isCrowd = agents.length > MOST_NUMBERS, taken = new Set();
+    let drawn = 0;
+    const write = ({id, leads}) => {
+      const [x, y, depth] = screen.subarray(3 * (id - 1), 3 * id);
+      const cell = `${Math.round(x / NEAR_PX)} ${Math.round(y / NEAR_PX)}`;
+      if (depth > 1 || (isCrowd && taken.has(cell))) return;
+      taken.add(cell);
+      ++drawn;
+      this.#write(
+          x + 10, y - 9, leads ? `${id} leads` : String(id), styleColour("text"), id === model.selected || leads);
+    };
+    const isOfInterest = ({id, leads}) => id === model.selected || id === pointed.agent || leads;
+    agents.filter(isOfInterest).forEach(write);
+    if (!isCrowd || this.#view.eye.distance() < 40) agents.filter((agent) => !isOfInterest(agent)).forEach(write);
+    return drawn;
+  }
+
+  #ghost({agent, p}) {
+    const [x, y] = this.#view.screen.subarray(3 * agent - 3), colour = styleColour("accent");
+    const to = this.#view.toScreen(p), foot = this.#view.toScreen([p[0], p[1], 0]);
+    this.#line([x, y], to, colour, [6, 4]);
+    this.#line(to, foot, styleColour("muted"), [2, 3]);
+    this.#mark(p, colour, cross(8));
+    this.#text(p, p.map((c) => c.toFixed(1)).join(", ") + " m", styleColour("text"), 12, -8);
+  }
+
+  // --- how ---
+
+  #at(p) {
+    const [x, y, depth] = this.#view.toScreen(p);
+    return depth <= 1 ? [x, y] : null;
+  }
+
+  #text(p, text, colour, dx, dy) {
+    const at = this.#at(p);
+    if (at) this.#write(at[0] + dx, at[1] + dy, text, colour);
+  }
+
+  #write(x, y, text, colour, bold = false) {
+    this.#pen.font = bold ? `600 ${FONT}` : FONT;
+    Object.assign(this.#pen, {lineWidth: 3, strokeStyle: styleColour("stage"), fillStyle: colour});
+    this.#pen.strokeText(text, x, y);
+    this.#pen.fillText(text, x, y);
+  }
+
+  #mark(p, colour, shape, dash = []) {
+    const at = this.#at(p);
+    if (!at) return;
+    this.#pen.save();
+    this.#pen.translate(...at);
+    this.#stroke(() => shape(this.#pen), colour, 1.6, dash);
+    this.#pen.restore();
+  }
+
+  #circle(id, radius, colour, width, dash = []) {
+    const [x, y, depth] = this.#view.screen.subarray(3 * (id - 1), 3 * id);
+    if (depth <= 1) this.#stroke(() => this.#pen.arc(x, y, radius, 0, 2 * Math.PI), colour, width, dash);
+  }
+
+  #line(from, to, colour, dash) {
+    this.#stroke(() => {
+      this.#pen.moveTo(...from);
+      this.#pen.lineTo(to[0], to[1]);
+    }, colour, 1.4, dash);
+  }
+
+  #stroke(trace, colour, width, dash) {
+    this.#pen.beginPath();
+    trace();
+    Object.assign(this.#pen, {strokeStyle: colour, lineWidth: width});
+    this.#pen.setLineDash(dash);
+    this.#pen.stroke();
+    this.#pen.setLineDash([]);
+  }
+}
+
+// Where the places of a formation are: it has no place of its own, so it is drawn around the agents' mean.
+function places(agents, p) {
+  const placed = agents.filter(({place_m}) => place_m);
+  if (placed.length === 0) return [];
+  const middle = [0, 1, 2].map(
+      (i) => placed.reduce((sum, {id, place_m}) => sum + p[3 * (id - 1) + i] - place_m[i], 0) / placed.length);
+  return placed.map(({id, place_m}) => [place_m.map((x, i) => (i === 2 ? p[3 * id - 1] : x + middle[i])), id]);
+}
+
+// --- shapes around (0, 0) ----------------------------------------------------------------------------------
+
+const polygon = (points) => (pen) => {
+  points.forEach(([x, y], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
+  pen.closePath();
+};
+const diamond = (r) => polygon([[0, -r], [r, 0], [0, r], [-r, 0]]);
+const ring = (r) => (pen) => pen.arc(0, 0, r, 0, 2 * Math.PI);
+const star = (r) => polygon(Array.from({length: 10}, (_, k) => {
+  const a = (k / 5 - 0.5) * Math.PI, length = k % 2 ? 0.42 * r : r;
+  return [length * Math.cos(a), length * Math.sin(a)];
+}));
+const cross = (r) => (pen) => {
+  pen.arc(0, 0, r, 0, 2 * Math.PI);
+  for (const [x, y] of [[1, 0], [0, 1]]) {
+    pen.moveTo(-1.5 * r * x, -1.5 * r * y);
+    pen.lineTo(1.5 * r * x, 1.5 * r * y);
+  }
+};
