@@ -1,0 +1,313 @@
+// The page in a real browser, on made-up runs: what it shows, what it asks for, and what it says of the answers.
+import assert from "node:assert/strict";
+import {after, before, test} from "node:test";
+
+import {launch, open, PHONE, WIDE} from "./browser.mjs";
+import {startFake} from "./fake_server.mjs";
+
+let browser;
+before(async () => {
+  browser = await launch();
+});
+after(() => browser.close());
+
+/** Runs `body` with a window on a made-up run; the window must have had no troubles. */
+async function watching({run = {}, ...window}, body) {
+  const fake = await startFake(run);
+  try {
+    const {page, troubles} = await open(browser, fake.url, window);
+    await body({page, fake});
+    assert.deepEqual(troubles, []);
+    await page.context().close();
+  } finally {
+    await fake.stop();
+  }
+}
+
+const until = (page, condition, argument) => page.waitForFunction(condition, argument, {timeout: 20_000});
+const isPaused = (page) => until(page, () => mascot.state === "paused");
+const events = (fake) => fake.asked.filter(({ask}) => ask === "event").map(({toml}) => toml);
+
+/** Where in the window an agent, or the middle of an edge, is. */
+async function placeOf(page, what, number) {
+  const [x, y] = await page.evaluate(([name, k]) => mascot[name](k), [what, number]);
+  const box = await page.locator("#scene").boundingBox();
+  return [box.x + x, box.y + y];
+}
+
+/** A finger goes from a place of the window by (dx, dy). */
+async function swipe(page, [x, y], [dx, dy]) {
+  const fingers = await page.context().newCDPSession(page);
+  const touch = (type, ...touchPoints) => fingers.send("Input.dispatchTouchEvent", {type, touchPoints});
+  await touch("touchStart", {x, y});
+  for (const share of [0.3, 0.6, 1]) await touch("touchMove", {x: x + share * dx, y: y + share * dy});
+  await touch("touchEnd");
+}
+
+/** The edge whose middle is farthest from all agents. */
+const edgeInTheOpen = (page) => page.evaluate(() => {
+  const agents = mascot.experiment.agents.map(({id}) => mascot.agentOnScreen(id));
+  const room = mascot.experiment.edges.map((_, index) => {
+    const [x, y] = mascot.edgeOnScreen(index);
+    return Math.min(...agents.map(([ax, ay]) => Math.hypot(ax - x, ay - y)));
+  });
+  return room.indexOf(Math.max(...room));
+});
+
+async function pausedFromAbove(page) {
+  await page.keyboard.press("Space");
+  await isPaused(page);
+  const before = await page.evaluate(() => mascot.drawn.pictures);
+  await page.keyboard.press("t");
+  await until(page, (pictures) => mascot.drawn.pictures > pictures, before);
+}
+
+// --- what it shows -----------------------------------------------------------------------------------------
+
+test(
+    "agents move, in wide and narrow windows, light and dark",
+    () => watching({}, async ({page}) => {
+      for (const [size, colorScheme, ground] of [
+               [WIDE, "light", "243, 245, 248"], [WIDE, "dark", "13, 17, 22"], [PHONE, "dark", "13, 17, 22"],
+               [PHONE, "light", "243, 245, 248"]]) {
+        await page.emulateMedia({colorScheme});
+        await page.setViewportSize(size);
+        await until(page, (wanted) => getComputedStyle(document.body).backgroundColor === wanted, `rgb(${ground})`);
+        await until(page, () => scene.width === scene.parentElement.clientWidth);  // the view has taken its size
+        const {tick, p} = await page.evaluate(() => {
+          globalThis.seen = mascot.pixels();
+          return {tick: mascot.tick, p: mascot.positions};
+        });
+        await until(page, (last) => mascot.tick > last + 20, tick);
+        const {now, changed, overflow} = await page.evaluate(() => {
+          const {data} = mascot.pixels();
+          let changed = 0;
+          for (let k = 0; k < data.length; k += 4) changed += data[k] !== globalThis.seen.data[k];
+          return {now: mascot.positions, changed, overflow: document.documentElement.scrollWidth - innerWidth};
+        });
+        assert.ok(p.some((x, k) => Math.abs(x - now[k]) > 0.02), "positions stay");
+        assert.ok(changed > 200, `${changed} pixels have changed`);
+        assert.ok(overflow <= 0, `${overflow} px stick out`);
+      }
+      assert.equal(await page.evaluate(() => mascot.drawn.agents), 10);
+    }));
+
+test(
+    "a thousand agents are drawn, and listed by the rows in sight; text is text",
+    () => watching({run: {agents: 1000, name: "<b>bold</b>"}}, async ({page}) => {
+      const {drawn, rows} =
+          await page.evaluate(() => ({drawn: mascot.drawn, rows: document.querySelectorAll("#table .row").length}));
+      assert.equal(drawn.agents, 1000);
+      assert.ok(drawn.edges > 1000);
+      assert.ok(rows < 60, `${rows} rows`);
+      await until(page, (tick) => mascot.tick > tick, await page.evaluate(() => mascot.tick));
+      assert.equal(await page.textContent("#name"), "<b>bold</b>");
+      assert.equal(await page.locator("#name b").count(), 0);
+    }));
+
+test(
+    "keys choose an agent, which is told in full and followed, and open the help sheet",
+    () => watching({}, async ({page}) => {
+      await page.keyboard.press("3");
+      await until(page, () => mascot.selected === 3);
+      await until(page, () => document.querySelector("#detail h3")?.textContent.startsWith("Agent 3"));
+      await until(page, () => /agent 4.*(heard|lost).*s old/.test(document.querySelector("#detail .ear")?.textContent));
+      await page.keyboard.press("f");
+      await until(page, () => mascot.followed === 3);
+      await until(page, () => {
+        const [x, y] = mascot.agentOnScreen(3);
+        return Math.hypot(x - scene.clientWidth / 2, y - scene.clientHeight / 2) < 5;
+      });
+      await page.keyboard.press("Escape");
+      await until(page, () => mascot.selected === 0);
+      await page.keyboard.press("?");
+      assert.ok(await page.evaluate(() => help.open));
+    }));
+
+// --- what it asks for --------------------------------------------------------------------------------------
+
+/** Tests that follow each other in one window: opening one takes a second or two of the processor. */
+function inOneWindow(name, tests) {
+  test(name, (t) => watching({}, async (window) => {
+               for (const [what, body] of Object.entries(tests)) {
+                 window.fake.asked.length = 0;
+                 await t.test(what, () => body(window));
+               }
+             }));
+}
+
+async function drag(page, number) {
+  const [x, y] = await placeOf(page, "agentOnScreen", number);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 30, y - 20, {steps: 2});
+  await page.mouse.move(x + 80, y - 40, {steps: 2});
+  await page.mouse.up();
+}
+
+inOneWindow("the view is touched:", {
+  async "pause stops time, and a step is one tick"({page, fake}) {
+    await page.click("#play");
+    await isPaused(page);
+    const tick = await page.evaluate(() => mascot.tick);
+    await page.keyboard.press(".");
+    await until(page, (last) => mascot.tick === last + 1, tick);
+    await page.selectOption("#pace", "5");
+    await until(page, () => mascot.pace === 5);
+    await page.click("#play");
+    await until(page, () => mascot.state === "running");
+    assert.deepEqual(fake.asked.map(({ask}) => ask), ["pause", "step", "pace", "resume"]);
+  },
+  async "dragging the leader sends it there, and the answer is shown; others are not dragged"({page, fake}) {
+    await pausedFromAbove(page);
+    const was = fake.run.p[3];
+    await drag(page, 4);
+    await until(page, () => mascot.events.length === 1);
+    const [toml] = events(fake), [agent, px, py, pz] = toml.match(/-?\d+(\.\d+)?/g).map(Number);
+    assert.match(toml, /^goto = \{ agent = 4, position_m = \[.*\] \}$/);
+    assert.equal(agent, 4);
+    assert.ok(px > was[0] && py > was[1], `from ${was} to ${px}, ${py}`);  // right is east, up is north
+    assert.ok(Math.abs(pz - was[2]) < 2e-3, "its height stays");
+    await until(page, () => document.querySelector(".notice.granted")?.textContent.includes("takes effect at tick"));
+    await drag(page, 10);
+    assert.equal(events(fake).length, 1);
+  },
+  async "edges darken when samples are lost, and when a click cuts them, until a click mends them"({page, fake}) {
+    const index = await edgeInTheOpen(page), pair = fake.run.edges[index].slice(0, 2).join(", ");
+    const showsAs = (state, low, high) => until(page, ([k, wanted, from, to]) => {
+      const [, , , alpha] = mascot.edgeLook(k);
+      return mascot.edgeStates[k] === wanted && alpha > from && alpha < to;
+    }, [index, state, low, high]);
+    await showsAs(1, 0.7, 1);
+    fake.run.losing.add(index);
+    await page.keyboard.press(".");
+    await showsAs(2, 0.4, 0.6);
+    fake.run.losing.clear();
+    await page.keyboard.press(".");
+    await showsAs(1, 0.7, 1);
+    const [x, y] = await placeOf(page, "edgeOnScreen", index);
+    await page.mouse.click(x, y);
+    await page.mouse.move(x, y - 200);
+    await showsAs(0, 0.1, 0.45);
+    await page.mouse.click(x, y);
+    await showsAs(1, 0.7, 1);
+    assert.deepEqual(events(fake), [`cut = [[${pair}]]`, `mend = [[${pair}]]`]);
+  },
+  async "a run is stopped after a question"({page, fake}) {
+    await page.click("#stop");
+    await page.click("#confirm-no");
+    assert.deepEqual(fake.asked, []);
+    await page.click("#stop");
+    await page.click("#confirm-yes");
+    await until(page, () => mascot.state === "done" && document.getElementById("play").disabled);
+    assert.deepEqual(fake.asked, [{ask: "stop"}]);
+  },
+});
+
+test(
+    "a finger names an edge before it is cut, and drags the leader",
+    () => watching({size: PHONE}, async ({page, fake}) => {
+      await pausedFromAbove(page);
+      const index = await edgeInTheOpen(page), [hearer, heard] = fake.run.edges[index];
+      await page.touchscreen.tap(...await placeOf(page, "edgeOnScreen", index));
+      await until(page, () => !card.hidden);
+      assert.match(await page.textContent("#card"), new RegExp(`^${hearer} hears ${heard}, heard`));
+      assert.deepEqual(events(fake), []);
+      await page.click("#card button");
+      await until(page, () => mascot.events.length === 1);
+      assert.deepEqual(events(fake), [`cut = [[${hearer}, ${heard}]]`]);
+      await swipe(page, await placeOf(page, "agentOnScreen", 4), [40, -30]);
+      await until(page, () => mascot.events.length === 2);
+      assert.match(events(fake)[1], /^goto = \{ agent = 4,/);
+    }));
+
+inOneWindow("keys are tuned:", {
+  async "a slider reaches both ends of a range, and every value between them within a step"({page}) {
+    const wrong = await page.evaluate(async () => {
+      const {Scale} = await import("/panel/scale.js");
+      const keys = [
+        {min: 0, max: 1000, value: 0.045}, {min: 0, max: 1, value: 0.2}, {min: 1e-3, max: 1e6, value: 3},
+        {min: -10, max: 10, value: 0}, {min: 0, max: 100, value: 0}, {min: 1, max: 10_000, value: 12, kind: "integer"}
+      ];
+      return keys.flatMap((key) => {
+        const scale = new Scale(key), {min, max, value} = key;
+        const wrong = [[0, min], [Scale.STEPS, max]].filter(([step, end]) => scale.value(step) !== end);
+        const found = scale.value(scale.place(value));
+        const step = Math.max((max - min) / Scale.STEPS, 0.03 * value);  // of a linear scale, of a logarithmic one
+        return Math.abs(found - value) <= (key.max > 50 * value ? 0.03 * value : step) ? wrong :
+                                                                                         [...wrong, [key, found]];
+      });
+    });
+    assert.deepEqual(wrong, []);
+  },
+  async "a slider sets a gain, for one agent if asked"({page, fake}) {
+    await page.keyboard.press("2");
+    await page.click("#tab-tune");
+    const row = page.locator("[data-key='law.p_gain']");
+    await row.locator("input[type=range]").focus();
+    await page.keyboard.press("ArrowRight");
+    await until(page, () => mascot.events.length === 1);
+    const now = Number(await row.locator("input[type=number]").inputValue());
+    assert.ok(now > 0.35 && now < 0.37, `one step is ${now}`);
+    assert.equal(events(fake)[0], `set = { "law.p_gain" = ${now} }`);
+    await page.check("#tune-only");
+    await row.locator("input[type=number]").fill("0.5");
+    await page.keyboard.press("Enter");
+    await until(page, () => mascot.events.length === 2);
+    assert.equal(events(fake)[1], `set = { "law.p_gain" = 0.5 }\nagents = [2]`);
+  },
+  async "a refusal is shown in the server's words, and the value stays what it is"({page}) {
+    const row = page.locator("[data-key='law.p_gain']");
+    const words = "event by hand: law.p_gain: expected a number in [0, 1000], got 5000";
+    await row.locator("input[type=number]").fill("5000");
+    await page.keyboard.press("Enter");
+    await until(page, () => mascot.lastAnswer?.granted === false);
+    assert.equal(await row.locator(".refusal").textContent(), words);
+    assert.ok((await page.textContent(".notice.refused")).includes(words));
+    await row.locator("input[type=number]").blur();
+    assert.equal(await row.locator("input[type=number]").inputValue(), "0.5");
+    assert.equal(await page.evaluate(() => mascot.events.length), 2);
+  },
+  async "events are listed with their ticks, to be copied as TOML"({page, fake}) {
+    await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
+    await page.click("#tab-events");
+    const {tick, toml} = fake.run.events.at(-1);
+    assert.ok((await page.textContent("#events")).includes(`tick ${tick}`));
+    await page.click(".event button");
+    await until(page, () => document.querySelector(".notice.granted:last-child")?.textContent.includes("Copied"));
+    assert.equal(await page.evaluate(() => navigator.clipboard.readText()), toml);
+  },
+});
+
+// --- recordings and connections ----------------------------------------------------------------------------
+
+test(
+    "a recording is played, sought and not changed",
+    () => watching({run: {source: "recording"}}, async ({page, fake}) => {
+      assert.equal(await page.locator("#marks i").count(), 2);
+      assert.ok(await page.locator("#stop").isHidden());
+      await page.locator("#seek").fill("30");
+      await until(page, () => Math.abs(mascot.t_s - 30) < 0.02);
+      await page.locator("#scene").focus();
+      await page.keyboard.press("ArrowRight");
+      await until(page, () => Math.abs(mascot.t_s - 31) < 0.02);
+      await page.selectOption("#pace", "100");
+      await page.keyboard.press("Space");
+      await until(page, () => mascot.t_s > 40);
+      await page.click("#tab-tune");
+      assert.match(await page.textContent("#tune"), /cannot be changed/);
+      assert.deepEqual(events(fake), []);
+    }));
+
+test("a lost connection is said, and mended by itself, also to another run", async () => {
+  const first = await startFake({agents: 5});
+  const {page} = await open(browser, first.url);
+  await first.stop();
+  await until(page, () => !mascot.connected && !banner.hidden);
+  assert.match(await page.textContent("#banner"), /connection is lost/);
+  const second = await startFake({agents: 3, port: first.port, session: "2", name: "the next"});
+  await until(page, () => mascot.connected && mascot.drawn.agents === 3 && banner.hidden);
+  assert.equal(await page.textContent("#name"), "the next");
+  await page.context().close();
+  await second.stop();
+});
