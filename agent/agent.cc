@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "agent/laws.h"
 
@@ -34,21 +35,28 @@ Eigen::Vector3d Clamped(const Eigen::Vector3d& v, double limit) { return v.cwise
 }  // namespace
 
 Agent::Agent(const Experiment& experiment, int id)
-    : config_(experiment.agent(id)),
+    : config_(&experiment.agent(id)),
       id_(id),
       rate_hz_(experiment.control.rate_hz),
-      holds_altitude_(config_.law.axes == Axes::kXy),
+      holds_altitude_(config_->law.axes == Axes::kXy),
       law_(MakeLaw(experiment, id)),
       controller_(MakeController(experiment, id)),
-      driven_by_(config_.traits().driven_by),
+      driven_by_(config_->traits().driven_by),
       neighbours_(experiment, id),
       sensor_(experiment.sensors, experiment.control.rate_hz, experiment.run.seed, id),
-      v_integrated_W_(config_.v_W) {}
+      v_integrated_W_(config_->v_W) {}
+
+void Agent::Adopt(std::shared_ptr<const Experiment> now) {
+  config_ = &now->agent(id_);
+  neighbours_.Adopt(*now);
+  law_->Adopt(*config_);
+  now_ = std::move(now);  // the last one ends here: nobody refers to it any more
+}
 
 Eigen::Vector3d Agent::AskLaw(std::int64_t tick, const Motion& measured, std::span<const Heard> heard) {
   const double t_s = static_cast<double>(tick) / rate_hz_;
   message_ = {};
-  if (!IsOn(config_, t_s)) {
+  if (!IsOn(*config_, t_s)) {
     wanted_ = Wanted::kVelocity;
     return Eigen::Vector3d::Zero();
   }
@@ -56,13 +64,13 @@ Eigen::Vector3d Agent::AskLaw(std::int64_t tick, const Motion& measured, std::sp
   Eigen::Vector3d w_W = AtTick(tick, [&] { return law_->Want_W(t_s, measured, heard); });
   if (holds_altitude_) w_W.z() = 0;
   if (!w_W.allFinite()) ThrowNotFinite(tick, id_, wanted_, w_W);
-  if (config_.sends_messages) message_ = AtTick(tick, [&] { return law_->Message(); });
+  if (config_->sends_messages) message_ = AtTick(tick, [&] { return law_->Message(); });
   return w_W;
 }
 
 // Writes the law's acceleration and its limited value into `command`, with the flag.
 void Agent::LimitAcceleration(const Eigen::Vector3d& a_W, Command& command) const {
-  const double limit = config_.control.max_acceleration_m_per_s2;
+  const double limit = config_->control.max_acceleration_m_per_s2;
   command.a_law_W = a_W;
   command.a_limited_W = Clamped(a_W, limit);
   if (command.a_limited_W != a_W) command.flags |= kAccelerationLimited;
@@ -71,7 +79,7 @@ void Agent::LimitAcceleration(const Eigen::Vector3d& a_W, Command& command) cons
 // Writes a wanted velocity and its limited value into `command`, with the flag.
 void Agent::LimitVelocity(const Eigen::Vector3d& v_W, Command& command) const {
   command.v_law_W = v_W;
-  command.v_limited_W = Clamped(v_W, config_.control.max_speed_m_per_s);
+  command.v_limited_W = Clamped(v_W, config_->control.max_speed_m_per_s);
   if (command.v_limited_W != v_W) command.flags |= kSpeedLimited;
 }
 
@@ -79,7 +87,7 @@ void Agent::LimitVelocity(const Eigen::Vector3d& v_W, Command& command) const {
 // and after the limits of the velocity and of the acceleration.
 void Agent::AccelerateTowards(const Eigen::Vector3d& v_W, Command& command) const {
   const auto accelerate = [&](const Eigen::Vector3d& to_W) {
-    Eigen::Vector3d a_W = config_.control.velocity_gain * (to_W - measured_.v_WB);
+    Eigen::Vector3d a_W = config_->control.velocity_gain * (to_W - measured_.v_WB);
     if (holds_altitude_) a_W.z() = 0;
     return a_W;
   };

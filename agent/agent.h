@@ -19,6 +19,8 @@ class Agent {
   Agent(const Experiment& experiment, int id);
 
   int id() const { return id_; }
+  /// Events have changed the experiment: from the next Want() or Decide() on, it is `now`.
+  void Adopt(std::shared_ptr<const Experiment> now);
   /// Evaluates the law and its limits: fills in the command's accelerations, velocities and their flags. `self`: the
   /// true motion at `tick`. `samples`: what the agents in graph.HeardBy(id) sent at this tick, in that order. Ticks
   /// increase. Throws std::runtime_error naming agent and tick if the law fails or its answer is not finite.
@@ -38,7 +40,8 @@ class Agent {
   void AccelerateTowards(const Eigen::Vector3d& v_W, Command& command) const;
   void Integrate(const Eigen::Vector3d& a_W, Command& command) const;
 
-  const AgentConfig& config_;
+  std::shared_ptr<const Experiment> now_;  // null before the first event
+  const AgentConfig* config_;
   int id_;
   double rate_hz_;
   bool holds_altitude_;

@@ -7,6 +7,8 @@
 
 namespace mascot {
 
+struct AgentConfig;
+
 /// Largest number of values in a message.
 inline constexpr std::size_t kMaxMessage = 64;
 
@@ -34,6 +36,10 @@ class Law {
   /// numbers, valid until the next call; empty: no message. Called only for laws that send messages
   /// (LawParams::sends_messages).
   virtual std::span<const double> Message() { return {}; }
+  /// An event has changed the experiment: from the next Want_W() on, `agent` is what it says about this agent. Its law
+  /// keeps what it remembers. `agent` lives until the next Adopt() has returned. For the laws of the table; laws in
+  /// shared libraries have Set() (agent/plugin.h).
+  virtual void Adopt(const AgentConfig& /*agent*/) {}
 };
 
 }  // namespace mascot

@@ -16,6 +16,8 @@ class LawLibrary {
   explicit LawLibrary(const std::string& path);
 
   bool sends_messages() const { return law_->sends_messages; }
+  /// Gives a law of this library new parameters; null: it takes none (PluginExport::set).
+  auto set() const { return law_->set; }
   /// Makes a law. Throws what the law's constructor throws.
   std::unique_ptr<Law> Make(const PluginSetup& setup) const { return std::unique_ptr<Law>(law_->make(setup)); }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -30,6 +31,8 @@ using Places = std::span<const Eigen::Vector3d>(const LawConfig& law);
 Places FormationPlaces_W, WaypointsOfConsensus, WaypointsOfWaypoint, WaypointsOfMinmax, WaypointsOfFormation;
 Wanted WantedByCustom(const LawConfig& law);
 Wanted WantedByPlugin(const LawConfig& law);
+using Guide = std::map<std::string, Value>(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s);
+Guide GoToOfConsensus, GoToOfWaypoint, GoToOfMinmax;
 
 namespace {
 
@@ -53,6 +56,7 @@ constexpr LawEntry kLaws[] = {
      .drawing = {.pictures = kAgreement},
      .read = ReadConsensus,
      .make = MakeConsensus,
+     .go_to = GoToOfConsensus,
      .waypoints_W = WaypointsOfConsensus,
      .linear = LinearConsensus},
     {.name = "waypoint",
@@ -66,6 +70,7 @@ constexpr LawEntry kLaws[] = {
      .drawing = {.pictures = kFlight},
      .read = ReadWaypoint,
      .make = MakeWaypoint,
+     .go_to = GoToOfWaypoint,
      .waypoints_W = WaypointsOfWaypoint,
      .linear = LinearWaypoint},
     {.name = "minmax",
@@ -82,6 +87,7 @@ constexpr LawEntry kLaws[] = {
      .drawing = {.leader = "root", .switches = true, .pictures = kPursuit},
      .read = ReadMinmax,
      .make = MakeMinmax,
+     .go_to = GoToOfMinmax,
      .waypoints_W = WaypointsOfMinmax,
      .pursuit = PursuitOfMinmax},
     {.name = "formation",
@@ -97,6 +103,7 @@ constexpr LawEntry kLaws[] = {
      .read = ReadFormation,
      .make = MakeFormation,
      .places_W = FormationPlaces_W,
+     .go_to = GoToOfConsensus,
      .waypoints_W = WaypointsOfFormation,
      .linear = LinearFormation},
     {.name = "velocity_consensus",
@@ -154,6 +161,11 @@ class Catalog final : public LawCatalog {
  public:
   std::span<const std::string_view> names() const override { return kLawNames; }
   Axes DefaultAxes(std::string_view law) const override { return Entry(law).axes; }
+  std::span<const Key> Parameters(std::string_view law) const override { return Entry(law).parameters; }
+  std::map<std::string, Value> GoTo(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s) const override {
+    const LawEntry& entry = Entry(agent.law.name);
+    return entry.go_to != nullptr ? entry.go_to(agent, p_W, t_s) : std::map<std::string, Value>();
+  }
   std::shared_ptr<const LawParams> Read(const Experiment& experiment, const LawConfig& law,
                                         Section& section) const override {
     const LawEntry& entry = Entry(law.name);
@@ -204,8 +216,13 @@ std::unique_ptr<Law> MakeLaw(const Experiment& experiment, int id) {
   return EntryOf(experiment.agent(id).law).make(experiment, id);
 }
 
+const LawCatalog& LawTable() {
+  static const Catalog table;
+  return table;
+}
+
 Experiment LoadExperiment(Section document, const std::string& default_name, bool checked) {
-  return ReadExperiment(std::move(document), Catalog(), default_name, checked);
+  return ReadExperiment(std::move(document), LawTable(), default_name, checked);
 }
 
 }  // namespace mascot

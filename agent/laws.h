@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cassert>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -65,6 +66,9 @@ struct LawEntry {
   Wanted (*wanted)(const LawConfig& law) = nullptr;
   /// d_i: each agent's place in the formation, in W (m), by id - 1; null: no places.
   std::span<const Eigen::Vector3d> (*places_W)(const LawConfig& law) = nullptr;
+  /// The parameters, with their values, that make an agent fly to `p_W` from `t_s` on, in place of its waypoints; empty
+  /// for an agent that flies none. Null: nobody flies waypoints.
+  std::map<std::string, Value> (*go_to)(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s) = nullptr;
   /// Targets of every agent, or of the leader alone if there is one, in W (m); null: none.
   std::span<const Eigen::Vector3d> (*waypoints_W)(const LawConfig& law) = nullptr;
   /// Null: the law is not linear.
@@ -92,6 +96,8 @@ std::optional<PursuitForm> PursuitFormOf(const LawConfig& law);
 /// Makes the law of agent `id`. The experiment must outlive it.
 std::unique_ptr<Law> MakeLaw(const Experiment& experiment, int id);
 
+/// The table of laws, for readers of experiments.
+const LawCatalog& LawTable();
 /// Reads a complete experiment with the laws of the table. `checked`: it was read before, without a mistake, so slow
 /// checks are left out. Throws ConfigError with all mistakes.
 Experiment LoadExperiment(Section document, const std::string& default_name, bool checked = false);

@@ -18,11 +18,20 @@ Dice DiceOf(const LinkConfig& config, std::uint64_t seed, int hearer, int heard)
 }  // namespace
 
 Link::Link(const LinkConfig& config, int rate_hz, std::uint64_t seed, int hearer, int heard)
-    : config_(config),
-      rate_hz_(rate_hz),
-      hold_ticks_(std::llround(std::floor(config.hold_s * rate_hz + kRounding))),
-      dice_(DiceOf(config, seed, hearer, heard)),
-      arrivals_(static_cast<std::size_t>(Ticks(config.delay_s + config.jitter_s, rate_hz)) + 1) {}
+    : rate_hz_(rate_hz), dice_(DiceOf(config, seed, hearer, heard)), arrivals_(1) {
+  Adopt(config);
+}
+
+void Link::Adopt(const LinkConfig& config) {
+  config_ = config;
+  hold_ticks_ = std::llround(std::floor(config.hold_s * rate_hz_ + kRounding));
+  const auto places = static_cast<std::size_t>(Ticks(config.delay_s + config.jitter_s, rate_hz_)) + 1;
+  if (places <= arrivals_.size()) return;
+  std::vector<Packet> arrivals(places);
+  for (std::int64_t t = collected_tick_ + 1; t <= collected_tick_ + std::ssize(arrivals_); ++t)
+    arrivals[static_cast<std::size_t>(t) % places] = std::move(ArrivalAt(t));
+  arrivals_ = std::move(arrivals);
+}
 
 // Rounds up, but a time that is a whole number of ticks except for a rounding error is that number.
 std::int64_t Link::Ticks(double time_s, int rate_hz) {

@@ -22,6 +22,14 @@ struct EdgeCount {
   std::uint64_t lost = 0;
   std::uint64_t late = 0;     ///< arrived after, or with, a newer sample and were not used
   std::uint64_t numbers = 0;  ///< values in the messages sent
+
+  EdgeCount& operator+=(const EdgeCount& other) {
+    sent += other.sent;
+    lost += other.lost;
+    late += other.late;
+    numbers += other.numbers;
+    return *this;
+  }
 };
 
 /// The communication link from one agent to an agent that hears it: loses and delays samples, in simulated time. What
@@ -39,6 +47,8 @@ class Link {
 
   /// `hearer`, `heard`: ids; `heard` sends.
   Link(const LinkConfig& config, int rate_hz, std::uint64_t seed, int hearer, int heard);
+  /// From now on the link is like this: samples in transit arrive as they would have. config.symmetric stays.
+  void Adopt(const LinkConfig& config);
   /// Sends a sample; at most one per tick, ticks increasing. `weight`: a_ij at this tick.
   void Send(std::int64_t tick, double weight, const Sample& sample);
   /// The newest sample that has arrived by `tick` (increasing), if it arrived at this tick or is held (hold_s); else
@@ -60,7 +70,7 @@ class Link {
 
   LinkConfig config_;
   int rate_hz_;
-  std::int64_t hold_ticks_;
+  std::int64_t hold_ticks_ = 0;
   Dice dice_;
   EdgeCount count_;
   bool bad_ = false;                  // state of the Gilbert-Elliott model

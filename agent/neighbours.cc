@@ -12,7 +12,7 @@ bool IsOn(const AgentConfig& agent, double t_s) {
 }
 
 Neighbours::Neighbours(const Experiment& experiment, int id)
-    : experiment_(experiment), config_(experiment.agent(id)), may_hear_(experiment.graph.HeardBy(id)) {
+    : experiment_(&experiment), id_(id), may_hear_(experiment.graph.HeardBy(id)) {
   for (const Graph::Neighbour& neighbour : may_hear_) {
     links_.emplace_back(experiment.links.Of(id, neighbour.id), experiment.control.rate_hz, experiment.run.seed, id,
                         neighbour.id);
@@ -26,12 +26,17 @@ Neighbours::Neighbours(const Experiment& experiment, int id)
   plain_counts_.resize(may_hear_.size());
 }
 
+void Neighbours::Adopt(const Experiment& experiment) {
+  experiment_ = &experiment;
+  for (std::size_t k = 0; k < links_.size(); ++k) links_[k].Adopt(experiment.links.Of(id_, may_hear_[k].id));
+  plain_ = plain_ && IsPlain();  // once not, links may hold samples
+}
+
 bool Neighbours::IsPlain() const {
   const auto always_on = [](const AgentConfig& agent) { return agent.start_s == 0 && std::isinf(agent.stop_s); };
-  return experiment_.schedule.IsConstant() && experiment_.sensors.heard.IsNone() && always_on(config_) &&
-         std::ranges::all_of(may_hear_, [&](const Graph::Neighbour& neighbour) {
-           return experiment_.links.Of(config_.id, neighbour.id).IsPerfect() &&
-                  always_on(experiment_.agent(neighbour.id));
+  return experiment_->schedule.IsConstant() && experiment_->cut.empty() && experiment_->sensors.heard.IsNone() &&
+         always_on(experiment_->agent(id_)) && std::ranges::all_of(may_hear_, [&](const Graph::Neighbour& neighbour) {
+           return experiment_->links.Of(id_, neighbour.id).IsPerfect() && always_on(experiment_->agent(neighbour.id));
          });
 }
 
@@ -44,8 +49,9 @@ void Neighbours::HearPlain(std::span<const Sample> samples) {
 }
 
 double Neighbours::WeightOf(const Graph& graph, double t_s, int source) const {
-  if (!IsOn(experiment_.agent(source), t_s) || !IsOn(config_, t_s)) return 0;
-  const auto& heard = graph.HeardBy(config_.id);
+  if (experiment_->cut.contains({id_, source})) return 0;
+  if (!IsOn(experiment_->agent(source), t_s) || !IsOn(experiment_->agent(id_), t_s)) return 0;
+  const auto& heard = graph.HeardBy(id_);
   const auto edge = std::ranges::lower_bound(heard, source, {}, &Graph::Neighbour::id);
   return edge != heard.end() && edge->id == source ? edge->weight : 0;
 }
@@ -58,8 +64,8 @@ std::span<const Heard> Neighbours::Hear(std::int64_t tick, const Motion& self, s
     HearPlain(samples);
     return heard_;
   }
-  const double t_s = experiment_.time_s(tick), range_m = experiment_.schedule.range_m();
-  const Graph& graph = experiment_.schedule.At(t_s);
+  const double t_s = experiment_->time_s(tick), range_m = experiment_->schedule.range_m();
+  const Graph& graph = experiment_->schedule.At(t_s);
   for (std::size_t k = 0; k < may_hear_.size(); ++k) {
     const double weight = WeightOf(graph, t_s, may_hear_[k].id);
     const bool in_range = range_m == 0 || (samples[k].motion->p_WB - self.p_WB).norm() < range_m;
@@ -76,7 +82,7 @@ void Neighbours::Deliver(std::size_t k, std::int64_t tick) {
   heard_.push_back({.id = may_hear_[k].id,
                     .weight = packet->weight,
                     .motion = packet->motion,
-                    .age_s = experiment_.time_s(tick - packet->sent),
+                    .age_s = experiment_->time_s(tick - packet->sent),
                     .message = packet->message});
   noises_[k].AddTo(heard_.back().motion, packet->sent);
 }
@@ -85,7 +91,7 @@ EdgeNow Neighbours::EdgeAt(std::size_t k) const {
   if (tick_ < 0) return {};
   if (plain_) return {EdgeNow::State::kHeard, 0};
   const Link::Packet* newest = links_[k].newest();
-  const double age_s = newest != nullptr ? experiment_.time_s(tick_ - newest->sent) : -1;
+  const double age_s = newest != nullptr ? experiment_->time_s(tick_ - newest->sent) : -1;
   if (std::ranges::binary_search(heard_, may_hear_[k].id, {}, &Heard::id)) return {EdgeNow::State::kHeard, age_s};
   const bool is_silent = newest == nullptr && ways_[k] == EdgeNow::State::kLost;
   return {is_silent ? EdgeNow::State::kNothingYet : ways_[k], age_s};
@@ -96,9 +102,8 @@ void Neighbours::AddEdgesTo(std::vector<EdgeNow>& edges) const {
 }
 
 std::vector<EdgeCount> Neighbours::counts() const {
-  if (plain_) return plain_counts_;
-  std::vector<EdgeCount> counts;
-  for (const Link& link : links_) counts.push_back(link.count());
+  std::vector<EdgeCount> counts = plain_counts_;
+  for (std::size_t k = 0; k < links_.size(); ++k) counts[k] += links_[k].count();
   return counts;
 }
 

@@ -30,6 +30,8 @@ class Neighbours {
  public:
   Neighbours(const Experiment& experiment, int id);
 
+  /// From now on links, range and edges are those of `experiment`, which must outlive this object or the next Adopt().
+  void Adopt(const Experiment& experiment);
   /// What the law hears at `tick` (increasing). `samples`: what the agents in experiment.graph.HeardBy(id) sent at this
   /// tick, in that order. `self`: the agent's true motion, for the range. Valid until the next call, and as long as
   /// `samples`.
@@ -50,16 +52,16 @@ class Neighbours {
   bool IsPlain() const;
   void HearPlain(std::span<const Sample> samples);
 
-  const Experiment& experiment_;
-  const AgentConfig& config_;
-  const std::vector<Graph::Neighbour>& may_hear_;
+  const Experiment* experiment_;
+  int id_;
+  const std::vector<Graph::Neighbour> may_hear_;
   std::vector<Link> links_;    // by index in may_hear_
   std::vector<Noise> noises_;  // by index in may_hear_
   std::vector<Heard> heard_;
   std::vector<EdgeNow::State> ways_;  // by index in may_hear_: kNoEdge, kOutOfRange, or else kLost
   std::int64_t tick_ = -1;            // of the last Hear()
   bool plain_;
-  std::vector<EdgeCount> plain_counts_;  // by index in may_hear_
+  std::vector<EdgeCount> plain_counts_;  // by index in may_hear_: of ticks at which plain_ held
 };
 
 /// True from start_s until before stop_s: the agent's law is on, and others may hear it.

@@ -2,16 +2,19 @@
 
 #include <algorithm>
 
+#include "agent/laws.h"
+
 namespace mascot {
 
 using namespace std::chrono_literals;
 
 Node::Node(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment, AgentRange agents)
-    : lifecycle_(lifecycle), experiment_(experiment) {
+    : lifecycle_(lifecycle), experiment_(experiment), live_(experiment, &LawTable(), /*checked=*/true) {
   for (int id = agents.first; id <= agents.last; ++id)
     seats_.push_back(std::make_unique<Seat>(domain, experiment, id, [this] { lifecycle_.Wake(); }));
   experiment.network.delivery == Delivery::kBundled ? ListenToBundles(domain) : ListenToStates(domain);
   ListenToMessages(domain);
+  ListenToEvents(domain);
 }
 
 std::map<int, std::vector<Node::Listener>> Node::Listeners(bool own) const {
@@ -32,7 +35,8 @@ void Node::ListenToStates(Domain& domain) {
          listeners = std::move(listeners)](const mascot_msgs::msg::AgentState& state) {
           const std::int64_t tick = CheckedTick(topic, state.agent(), state.tick(), last);
           const Motion motion = FromWire(state);
-          for (const Listener& listener : listeners) listener.seat->OnState(listener.source, tick, motion);
+          for (const Listener& listener : listeners)
+            listener.seat->OnState(listener.source, tick, motion, static_cast<int>(state.events()));
         }));
 }
 
@@ -55,6 +59,16 @@ void Node::ListenToMessages(Domain& domain) {
           for (const Listener& listener : listeners) listener.seat->OnMessage(listener.source, tick, data);
         }));
   }
+}
+
+void Node::ListenToEvents(Domain& domain) {
+  readers_.push_back(
+      std::make_unique<Reader<EventType>>(domain, Topic::Event(), [this](const mascot_msgs::msg::Event& event) {
+        const int number = static_cast<int>(live_.events().size()) + 1;
+        const std::int64_t tick = CheckedEvent(event, number, experiment_.ticks());
+        const auto now = live_.Take(live_.Parse(tick, event.toml(), "event " + std::to_string(number)));
+        for (const auto& seat : seats_) seat->OnEvent(number, now);
+      }));
 }
 
 void Node::Run() {

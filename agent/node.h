@@ -6,6 +6,7 @@
 
 #include "agent/seat.h"
 #include "bus/lifecycle.h"
+#include "experiment/live_experiment.h"
 #include "experiment/processes.h"
 
 namespace mascot {
@@ -32,12 +33,14 @@ class Node {
   void ListenToStates(Domain& domain);
   void ListenToBundles(Domain& domain);
   void ListenToMessages(Domain& domain);
+  void ListenToEvents(Domain& domain);
   /// For each agent, by id, the seats that listen to it. `own`: agents listen to themselves, too.
   std::map<int, std::vector<Listener>> Listeners(bool own) const;
 
   Lifecycle& lifecycle_;
   const Experiment& experiment_;
   std::vector<std::unique_ptr<Seat>> seats_;
+  LiveExperiment live_;                               // used by the reader of events alone
   std::vector<std::unique_ptr<ReaderBase>> readers_;  // last, so destroyed first: they call the members above
 };
 

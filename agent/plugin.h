@@ -21,6 +21,9 @@
 //
 // Threads: one object is called by one thread at a time; different objects may be called at once.
 //
+// Events: a law may define `void Set(mascot::PluginParams& params)`. It is called before Want_W() of the tick at which
+// an event has changed [law.params]; without it, such events are refused.
+//
 // Exceptions: for parameters that it refuses the constructor may throw std::invalid_argument, as setup.params does;
 // that is a mistake in the configuration. Any exception during a run ends it, naming the agent and the time.
 //
@@ -39,7 +42,7 @@
 namespace mascot {
 
 /// Version of the interface: goes up with every change to this header or to those that it includes.
-inline constexpr int kLawInterface = 1;
+inline constexpr int kLawInterface = 2;
 
 /// The argument of a law's constructor.
 struct PluginSetup {
@@ -87,11 +90,22 @@ struct PluginExport {
   const PluginFact* facts;  ///< kPluginFacts
   bool sends_messages;
   Law* (*make)(const PluginSetup& setup);
+  /// Gives a law new parameters; null: no event can change them.
+  void (*set)(Law& law, PluginParams& params);
 };
 
 /// True for a law that overrides Message(): it sends messages.
 template <class T>
 inline constexpr bool kSendsMessages = !std::is_same_v<decltype(&T::Message), decltype(&Law::Message)>;
+
+/// Calls Set() of a law of type T; null if it has none.
+template <class T>
+constexpr auto SetOf() -> void (*)(Law&, PluginParams&) {
+  if constexpr (requires(T & law, PluginParams & params) { law.Set(params); })
+    return [](Law& law, PluginParams& params) { static_cast<T&>(law).Set(params); };
+  else
+    return nullptr;
+}
 
 }  // namespace mascot
 
@@ -101,4 +115,4 @@ inline constexpr bool kSendsMessages = !std::is_same_v<decltype(&T::Message), de
   extern "C" __attribute__((visibility("default"))) const mascot::PluginExport mascot_plugin_law; \
   const mascot::PluginExport mascot_plugin_law = {                                                \
       mascot::kLawInterface, mascot::kPluginFacts, mascot::kSendsMessages<Type>,                  \
-      [](const mascot::PluginSetup& setup) -> mascot::Law* { return new Type(setup); }};
+      [](const mascot::PluginSetup& setup) -> mascot::Law* { return new Type(setup); }, mascot::SetOf<Type>()};

@@ -32,9 +32,15 @@ bool Seat::Matched() const {
   return commands_.matched() >= command_readers && (!messages_ || messages_->matched() >= message_readers_);
 }
 
-void Seat::OnState(std::size_t source, std::int64_t tick, const Motion& motion) {
+void Seat::OnState(std::size_t source, std::int64_t tick, const Motion& motion, int events) {
   const std::lock_guard lock(mutex_);
-  if (const auto complete = inbox_.OnState(source, tick, motion)) Answer(*complete);
+  if (const auto complete = inbox_.OnState(source, tick, motion, events)) Answer(*complete);
+}
+
+void Seat::OnEvent(int number, const std::shared_ptr<const Experiment>& now) {
+  const std::lock_guard lock(mutex_);
+  events_.emplace_back(number, now);
+  if (const auto complete = inbox_.OnEvent(number)) Answer(*complete);
 }
 
 void Seat::OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data) {
@@ -47,14 +53,21 @@ void Seat::OnBundle(const mascot_msgs::msg::AgentBundle& bundle) {
   states_.clear();
   for (const mascot_msgs::msg::AgentState& state : bundle.states()) {
     const Topic topic = Topic::State(static_cast<int>(state.agent()));
-    states_.push_back(
-        {state.agent(), CheckedTick(topic, state.agent(), state.tick(), experiment_.ticks()), FromWire(state)});
+    states_.push_back({state.agent(), CheckedTick(topic, state.agent(), state.tick(), experiment_.ticks()),
+                       FromWire(state), static_cast<int>(state.events())});
   }
   if (const auto complete = inbox_.OnBundle(states_)) Answer(*complete);
 }
 
+void Seat::TakeEvents(int events) {
+  std::shared_ptr<const Experiment> now;
+  for (; !events_.empty() && events_.front().first <= events; events_.pop_front()) now = events_.front().second;
+  if (now) agent_.Adopt(now);
+}
+
 void Seat::Answer(const TickInbox::CompleteTick& complete) {
   const std::int64_t tick = complete.tick;
+  TakeEvents(complete.events);
   const Command command = agent_.Decide(tick, *complete.self, complete.samples);
   if (messages_) {  // before the command: the next tick, which the command brings, needs it
     ToWire(tick, experiment_.control.rate_hz, id_, agent_.message(), message_);

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "agent/agent.h"
@@ -29,12 +32,16 @@ class Seat {
 
   // Samples that arrive, as TickInbox takes them. `source`: 0 is the agent itself, then the agents that it may hear, in
   // the order of graph.HeardBy(id). Called by the readers of Node, in their threads.
-  void OnState(std::size_t source, std::int64_t tick, const Motion& motion);
+  void OnState(std::size_t source, std::int64_t tick, const Motion& motion, int events);
   void OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data);
+  /// `now`: the experiment after event `number`.
+  void OnEvent(int number, const std::shared_ptr<const Experiment>& now);
   /// The bundle must hold the states of all sources, in order; else throws std::runtime_error.
   void OnBundle(const mascot_msgs::msg::AgentBundle& bundle);
 
  private:
+  /// Lets the agent adopt what the first `events` events have made of the experiment.
+  void TakeEvents(int events);
   /// Runs the agent on a complete tick and writes its answer. Called with mutex_ held.
   void Answer(const TickInbox::CompleteTick& complete);
 
@@ -45,7 +52,8 @@ class Seat {
   std::mutex mutex_;  // guards what is below except the endpoints: readers may call in different threads
   Agent agent_;
   TickInbox inbox_;
-  std::vector<TickInbox::State> states_;  // states in the last bundle
+  std::vector<TickInbox::State> states_;                                  // states in the last bundle
+  std::deque<std::pair<int, std::shared_ptr<const Experiment>>> events_;  // not yet adopted, by number
   std::atomic<bool> has_answered_ = false;
   mascot_msgs::msg::AgentCommand command_;
   mascot_msgs::msg::AgentMessage message_;

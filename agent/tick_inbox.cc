@@ -13,8 +13,9 @@ TickInbox::TickInbox(int id, const std::vector<Peer>& peers, bool realtime)
   for (const Peer& peer : peers) sources_.push_back({.agent = peer});
 }
 
-std::optional<TickInbox::CompleteTick> TickInbox::OnState(std::size_t source, std::int64_t tick, const Motion& motion) {
-  return Take(sources_[source], tick, motion) ? TakeIfComplete() : std::nullopt;
+std::optional<TickInbox::CompleteTick> TickInbox::OnState(std::size_t source, std::int64_t tick, const Motion& motion,
+                                                          int events) {
+  return Take(sources_[source], tick, motion, events) ? TakeIfComplete() : std::nullopt;
 }
 
 std::optional<TickInbox::CompleteTick> TickInbox::OnMessage(std::size_t source, std::int64_t tick,
@@ -29,14 +30,20 @@ std::optional<TickInbox::CompleteTick> TickInbox::OnMessage(std::size_t source, 
 
 std::optional<TickInbox::CompleteTick> TickInbox::OnBundle(std::span<const State> states) {
   CheckBundle(states);
-  for (std::size_t k = 0; k < states.size(); ++k) Take(sources_[k], states[k].tick, states[k].motion);
+  for (std::size_t k = 0; k < states.size(); ++k) Take(sources_[k], states[k].tick, states[k].motion, states[k].events);
   return TakeIfComplete();
 }
 
-bool TickInbox::Take(Source& source, std::int64_t tick, const Motion& motion) {
+std::optional<TickInbox::CompleteTick> TickInbox::OnEvent(int number) {
+  events_ = number;
+  return TakeIfComplete();
+}
+
+bool TickInbox::Take(Source& source, std::int64_t tick, const Motion& motion, int events) {
   if (tick <= source.tick) return false;
   source.tick = tick;
   source.motion = motion;
+  source.events = events;
   return true;
 }
 
@@ -68,13 +75,14 @@ std::span<const double> TickInbox::MessageBefore(const Source& source, std::int6
 
 std::optional<TickInbox::CompleteTick> TickInbox::TakeIfComplete() {
   const std::int64_t tick = sources_.front().tick;
-  if (tick <= answered_) return std::nullopt;
+  const int events = sources_.front().events;
+  if (tick <= answered_ || events > events_) return std::nullopt;
   if (!std::ranges::all_of(sources_, [&](const Source& source) { return IsComplete(source, tick); }))
     return std::nullopt;
   answered_ = tick;
   for (std::size_t k = 0; k < samples_.size(); ++k)
     samples_[k] = {&sources_[k + 1].motion, MessageBefore(sources_[k + 1], tick)};
-  return CompleteTick{.tick = tick, .self = &sources_.front().motion, .samples = samples_};
+  return CompleteTick{.tick = tick, .self = &sources_.front().motion, .samples = samples_, .events = events};
 }
 
 }  // namespace mascot

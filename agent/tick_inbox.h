@@ -12,9 +12,10 @@
 namespace mascot {
 
 /// Collects the samples that arrive for one agent, and tells which ticks it can answer. Tick k is complete when the
-/// agent's own state and those of its peers have arrived, all of tick k, and in lockstep also the messages that its
-/// peers sent with their answers to tick k-1. Each tick is complete once. In real time messages may be missing, and a
-/// tick that is overtaken by the next one never becomes complete: the server holds the agent's last command.
+/// agent's own state and those of its peers have arrived, all of tick k, the events up to it, and in lockstep also the
+/// messages that its peers sent with their answers to tick k-1. Each tick is complete once. In real time messages may
+/// be missing, and a tick that is overtaken by the next one never becomes complete: the server holds the agent's last
+/// command.
 ///
 /// No law, DDS, clock or lock: the caller passes in what arrives.
 class TickInbox {
@@ -30,6 +31,7 @@ class TickInbox {
     std::int64_t tick = -1;
     const Motion* self = nullptr;
     std::span<const Sample> samples = {};  ///< one per peer, in order, with its last message before
+    int events = 0;                        ///< how many events have taken effect up to this tick
   };
 
   /// The state of one agent in a bundle.
@@ -37,14 +39,17 @@ class TickInbox {
     std::uint32_t agent = 0;
     std::int64_t tick = -1;
     Motion motion = {};
+    int events = 0;  ///< how many events have taken effect up to its tick
   };
 
   TickInbox(int id, const std::vector<Peer>& peers, bool realtime);
 
   // Each takes what arrives and returns the tick that becomes complete with it, if any. `source`: 0 is the agent
   // itself, then its peers in order. What is late, doubled or of a negative tick is ignored.
-  std::optional<CompleteTick> OnState(std::size_t source, std::int64_t tick, const Motion& motion);
+  std::optional<CompleteTick> OnState(std::size_t source, std::int64_t tick, const Motion& motion, int events = 0);
   std::optional<CompleteTick> OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data);
+  /// All events up to `number` have arrived.
+  std::optional<CompleteTick> OnEvent(int number);
   /// The states must be those of all sources, in order; else throws std::runtime_error.
   std::optional<CompleteTick> OnBundle(std::span<const State> states);
 
@@ -60,11 +65,12 @@ class TickInbox {
     Peer agent = {};
     std::int64_t tick = -1;  ///< the tick of `motion`
     Motion motion = {};
+    int events = 0;                        ///< up to that tick
     std::array<Message, 2> messages = {};  ///< the last two, by tick modulo 2: a peer may be one answer ahead of us
   };
 
   /// Stores a state. Returns false if it is not newer than the one stored.
-  static bool Take(Source& source, std::int64_t tick, const Motion& motion);
+  static bool Take(Source& source, std::int64_t tick, const Motion& motion, int events);
   /// Throws std::runtime_error unless the states are those of all sources, in order.
   void CheckBundle(std::span<const State> states) const;
   std::optional<CompleteTick> TakeIfComplete();
@@ -77,6 +83,7 @@ class TickInbox {
   std::vector<Source> sources_;  // the agent itself, then its peers
   std::vector<Sample> samples_;  // CompleteTick::samples
   std::int64_t answered_ = -1;   // the last tick that was complete
+  int events_ = 0;               // number of the last event that has arrived
 };
 
 }  // namespace mascot

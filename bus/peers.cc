@@ -11,6 +11,7 @@ bool MayWrite(std::string_view process, const Topic& topic) {
     case TopicKind::kBundle:
     case TopicKind::kState:
     case TopicKind::kClock:
+    case TopicKind::kEvent:
       return process == kPhysicsServer;
     case TopicKind::kCommand:
     case TopicKind::kMessage: {

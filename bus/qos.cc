@@ -37,6 +37,7 @@ constexpr Profile kProfiles[] = {
     {TopicKind::kCommand, kHistoryDepth, 8, true, false},
     {TopicKind::kMessage, kHistoryDepth, 8, true, false},
     {TopicKind::kClock, kHistoryDepth, 8, true, false},
+    {TopicKind::kEvent, kHistoryDepth, kHistoryDepth, false, false},
     {TopicKind::kStatus, 256, 256, false, false},
     {TopicKind::kRequest, 32, 32, false, false},
     {TopicKind::kExperiment, 1, 1, false, true},

@@ -32,14 +32,19 @@ void SerializeAs(typename PubSub::type& sample, std::vector<std::uint8_t>& bytes
   thread_local ZeroPadded<PubSub> type;
   thread_local SerializedPayload_t payload(type.m_typeSize);
   payload.length = 0;
+  payload.reserve(type.getSerializedSizeProvider(&sample)());
   if (!type.serialize(&sample, &payload)) throw std::logic_error("a sample did not fit its own type");
   bytes.assign(payload.data, payload.data + payload.length);
 }
 
+/// How many bytes a sample of a type may have, as the generated type says it.
+enum class Size { kFixed, kBounded, kAny };
+
 template <class PubSub>
-void DeserializeAs(std::span<const std::uint8_t> bytes, typename PubSub::type& sample, bool fixed_size = true) {
+void DeserializeAs(std::span<const std::uint8_t> bytes, typename PubSub::type& sample, Size size = Size::kFixed) {
   thread_local const PubSub type;
-  const bool fits = fixed_size ? bytes.size() == type.m_typeSize : bytes.size() <= type.m_typeSize;
+  const bool fits = size == Size::kAny || bytes.size() == type.m_typeSize ||
+                    (size == Size::kBounded && bytes.size() < type.m_typeSize);
   if (!fits || !Decode<PubSub>(bytes, sample))
     throw std::runtime_error("a sample of " + std::to_string(bytes.size()) + " bytes is no " + type.getName());
 }
@@ -65,6 +70,8 @@ std::string WireTypeName(TopicKind kind) {
       return StateType().getName();
     case TopicKind::kClock:
       return ClockType().getName();
+    case TopicKind::kEvent:
+      return EventType().getName();
     case TopicKind::kExperiment:
       return ExperimentType().getName();
     case TopicKind::kRequest:
@@ -92,16 +99,26 @@ std::int64_t CheckedTick(const Topic& topic, std::uint32_t agent, std::uint64_t 
                            std::to_string(agent));
 }
 
+std::int64_t CheckedEvent(const mascot_msgs::msg::Event& event, int number, std::int64_t last_tick) {
+  if (std::cmp_equal(event.number(), number) && std::cmp_less_equal(event.tick(), last_tick))
+    return static_cast<std::int64_t>(event.tick());
+  throw std::runtime_error("/event: expected event " + std::to_string(number) + " with a tick of 0 to " +
+                           std::to_string(last_tick) + ", got event " + std::to_string(event.number()) + " with tick " +
+                           std::to_string(event.tick()));
+}
+
 std::uint64_t StampNs(std::int64_t tick, int rate_hz) {
   const auto rate = static_cast<std::uint64_t>(rate_hz);
   const auto k = static_cast<std::uint64_t>(tick);
   return (k / rate) * 1'000'000'000 + ((k % rate) * 1'000'000'000 + rate / 2) / rate;
 }
 
-void ToWire(std::int64_t tick, int rate_hz, int agent, const Motion& motion, mascot_msgs::msg::AgentState& sample) {
+void ToWire(std::int64_t tick, int rate_hz, int agent, int events, const Motion& motion,
+            mascot_msgs::msg::AgentState& sample) {
   sample.stamp(ToTime(tick, rate_hz));
   sample.tick(static_cast<std::uint64_t>(tick));
   sample.agent(static_cast<std::uint32_t>(agent));
+  sample.events(static_cast<std::uint32_t>(events));
   auto& position = sample.pose().position();
   position.x(motion.p_WB.x());
   position.y(motion.p_WB.y());
@@ -136,6 +153,13 @@ void ToWire(std::int64_t tick, int rate_hz, int agent, std::span<const double> m
 
 void ToWire(std::int64_t tick, int rate_hz, rosgraph_msgs::msg::Clock& sample) { sample.clock(ToTime(tick, rate_hz)); }
 
+void ToWire(std::int64_t tick, int rate_hz, int number, const std::string& toml, mascot_msgs::msg::Event& sample) {
+  sample.stamp(ToTime(tick, rate_hz));
+  sample.tick(static_cast<std::uint64_t>(tick));
+  sample.number(static_cast<std::uint32_t>(number));
+  sample.toml(toml);
+}
+
 Motion FromWire(const mascot_msgs::msg::AgentState& sample) {
   const auto& position = sample.pose().position();
   const auto& orientation = sample.pose().orientation();
@@ -169,6 +193,10 @@ void Serialize(mascot_msgs::msg::AgentMessage& sample, std::vector<std::uint8_t>
 void Serialize(rosgraph_msgs::msg::Clock& sample, std::vector<std::uint8_t>& bytes) {
   SerializeAs<ClockType>(sample, bytes);
 }
+void Serialize(mascot_msgs::msg::Event& sample, std::vector<std::uint8_t>& bytes) {
+  SerializeAs<EventType>(sample, bytes);
+  bytes.resize((bytes.size() + 3) / 4 * 4);  // as RTPS pads samples
+}
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentState& sample) {
   DeserializeAs<StateType>(bytes, sample);
 }
@@ -176,10 +204,13 @@ void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentCom
   DeserializeAs<CommandType>(bytes, sample);
 }
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentMessage& sample) {
-  DeserializeAs<MessageType>(bytes, sample, /*fixed_size=*/false);
+  DeserializeAs<MessageType>(bytes, sample, Size::kBounded);
 }
 void Deserialize(std::span<const std::uint8_t> bytes, rosgraph_msgs::msg::Clock& sample) {
   DeserializeAs<ClockType>(bytes, sample);
+}
+void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::Event& sample) {
+  DeserializeAs<EventType>(bytes, sample, Size::kAny);
 }
 
 }  // namespace mascot

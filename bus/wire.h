@@ -18,6 +18,7 @@ using BundleType = mascot_msgs::msg::AgentBundlePubSubType;
 using CommandType = mascot_msgs::msg::AgentCommandPubSubType;
 using MessageType = mascot_msgs::msg::AgentMessagePubSubType;
 using ClockType = rosgraph_msgs::msg::ClockPubSubType;
+using EventType = mascot_msgs::msg::EventPubSubType;
 using StatusType = mascot_msgs::msg::StatusPubSubType;
 using RequestType = mascot_msgs::msg::RequestPubSubType;
 using ExperimentType = mascot_msgs::msg::ExperimentPubSubType;
@@ -28,7 +29,7 @@ struct SequenceOf<MessageType> {
 };
 template <>
 struct SequenceOf<BundleType> {
-  static constexpr std::size_t kAt = 4, kElement = 148;
+  static constexpr std::size_t kAt = 4, kElement = 152;
 };
 template <>
 struct SequenceOf<ExperimentType> {
@@ -58,12 +59,20 @@ std::uint64_t StampNs(std::int64_t tick, int rate_hz);
 /// agent's and the tick is one of the run, whose last is `last_tick`.
 std::int64_t CheckedTick(const Topic& topic, std::uint32_t agent, std::uint64_t tick, std::int64_t last_tick);
 
+/// The tick of event `number`. Throws std::runtime_error if the sample is of another event, or its tick is none of the
+/// run, whose last is `last_tick`.
+std::int64_t CheckedEvent(const mascot_msgs::msg::Event& event, int number, std::int64_t last_tick);
+
 // The only conversions between our types and the wire types (whose quaternions are x, y, z, w).
-void ToWire(std::int64_t tick, int rate_hz, int agent, const Motion& motion, mascot_msgs::msg::AgentState& sample);
+/// `events`: how many have taken effect up to this tick.
+void ToWire(std::int64_t tick, int rate_hz, int agent, int events, const Motion& motion,
+            mascot_msgs::msg::AgentState& sample);
 void ToWire(std::int64_t tick, int rate_hz, int agent, const Command& command, mascot_msgs::msg::AgentCommand& sample);
 void ToWire(std::int64_t tick, int rate_hz, int agent, std::span<const double> message,
             mascot_msgs::msg::AgentMessage& sample);
 void ToWire(std::int64_t tick, int rate_hz, rosgraph_msgs::msg::Clock& sample);
+/// `number`, `toml`: of the event.
+void ToWire(std::int64_t tick, int rate_hz, int number, const std::string& toml, mascot_msgs::msg::Event& sample);
 Motion FromWire(const mascot_msgs::msg::AgentState& sample);
 Command FromWire(const mascot_msgs::msg::AgentCommand& sample);
 
@@ -73,10 +82,12 @@ void Serialize(mascot_msgs::msg::AgentState& sample, std::vector<std::uint8_t>& 
 void Serialize(mascot_msgs::msg::AgentCommand& sample, std::vector<std::uint8_t>& bytes);
 void Serialize(mascot_msgs::msg::AgentMessage& sample, std::vector<std::uint8_t>& bytes);
 void Serialize(rosgraph_msgs::msg::Clock& sample, std::vector<std::uint8_t>& bytes);
+void Serialize(mascot_msgs::msg::Event& sample, std::vector<std::uint8_t>& bytes);
 /// The inverse of Serialize(). Throws std::runtime_error for bytes that are no such sample.
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentState& sample);
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentCommand& sample);
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentMessage& sample);
 void Deserialize(std::span<const std::uint8_t> bytes, rosgraph_msgs::msg::Clock& sample);
+void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::Event& sample);
 
 }  // namespace mascot

@@ -20,13 +20,16 @@ constexpr std::array kAgentKeys = {
     key::Table("position", kLoopGainKeys, "x and y: m/s^2 per m and per m/s").Otherwise(kOfAirframe),
     key::Number("heading_rad", {-10, 10}, "wanted yaw").Default("0.0"),
     key::Number("max_acceleration_m_per_s2", Above(0, 1000), "limit on what the law wants, per axis; cuts are counted")
-        .Default("3.0"),
+        .Default("3.0")
+        .Live(),
     key::Number("max_speed_m_per_s", Above(0, 1000), "limit on a wanted velocity, per axis; cuts are counted")
-        .Default("100.0"),
+        .Default("100.0")
+        .Live(),
     key::Number("velocity_gain", Above(0, 1000),
                 "k_v: a wanted velocity v* asks a model driven by acceleration for k_v (v* - v)")
         .Default("2.0")
-        .Unit("1/s"),
+        .Unit("1/s")
+        .Live(),
     key::Number("look_ahead_m", Above(0, 100),
                 "unicycle: distance from its centre to the point ahead of it that moves as wanted")
         .Default("0.1"),

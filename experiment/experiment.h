@@ -4,10 +4,13 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "experiment/airframe.h"
+#include "experiment/events.h"
 #include "experiment/graph/graph.h"
 #include "experiment/graph/schedule.h"
 #include "experiment/link.h"
@@ -55,6 +58,7 @@ struct ControlConfig {
 struct LawParams {
   virtual ~LawParams() = default;
   bool sends_messages = false;
+  std::string fixed;               ///< why no event can change law.params, as far as is known; empty: one can
   std::vector<std::string> files;  ///< absolute paths of files that the law depends on; their contents are not in here
 };
 
@@ -118,6 +122,7 @@ struct Experiment {
   Graph graph{{}};
   /// The graph over time: who hears whom when.
   Schedule schedule;
+  std::set<std::pair<int, int>> cut;  ///< edges (hearer, heard) that an event has cut: nothing is sent on them
   LinkTable links;
   SensorConfig sensors;
   LawConfig law;  ///< the team's; each agent has its own copy
@@ -142,6 +147,7 @@ struct Experiment {
     int agents_per_process = 1;
     Delivery delivery = Delivery::kTopics;
   } network;
+  std::vector<Event> events;  ///< of the file, in order of time
 
   int size() const { return static_cast<int>(agents.size()); }
   const AgentConfig& agent(int id) const { return agents[static_cast<std::size_t>(id - 1)]; }

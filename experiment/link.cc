@@ -7,29 +7,33 @@ namespace mascot {
 namespace {
 
 constexpr Key kBurstKeys[] = {
-    key::Number("good_to_bad", {0, 1}, "probability per tick that a good link turns bad").Required(),
-    key::Number("bad_to_good", {0, 1}, "probability per tick that a bad link turns good").Required(),
-    key::Number("loss_good", {0, 1}, "probability of a loss while it is good").Default("0.0"),
-    key::Number("loss_bad", {0, 1}, "probability of a loss while it is bad").Default("1.0"),
+    key::Number("good_to_bad", {0, 1}, "probability per tick that a good link turns bad").Required().Live(),
+    key::Number("bad_to_good", {0, 1}, "probability per tick that a bad link turns good").Required().Live(),
+    key::Number("loss_good", {0, 1}, "probability of a loss while it is good").Default("0.0").Live(),
+    key::Number("loss_bad", {0, 1}, "probability of a loss while it is bad").Default("1.0").Live(),
 };
 
 constexpr std::array kCommonKeys = {
-    key::Number("loss", {0, 1}, "probability that a sample is lost, independent of all others").Default("0.0"),
+    key::Number("loss", {0, 1}, "probability that a sample is lost, independent of all others").Default("0.0").Live(),
     key::Table("gilbert_elliott", kBurstKeys, "loss in bursts, instead of `loss` (Gilbert 1960, Elliott 1963)"),
     key::Number("delay_s", {0, kLongestDelay_s},
                 "how late samples are, rounded up to whole ticks; `orchestrator check` prints the delay in effect")
-        .Default("0.0"),
+        .Default("0.0")
+        .Live(),
     key::Number("jitter_s", {0, kLongestDelay_s},
                 "the delay of each sample lies within `delay_s` -+ this, uniformly, before it is rounded up; at most "
                 "`delay_s`")
-        .Default("0.0"),
+        .Default("0.0")
+        .Live(),
     key::Number("reordering", {0, 1}, "probability that a sample skips the delay, and so overtakes others")
-        .Default("0.0"),
+        .Default("0.0")
+        .Live(),
     key::Boolean("symmetric", "i -> j and j -> i lose and delay the same samples").Default("false"),
     key::Number(
         "hold_s", {0, 1e6},
         "how old the last sample may grow, beyond its delay, while no newer one comes; rounded down to whole ticks")
-        .Default("0.0"),
+        .Default("0.0")
+        .Live(),
 };
 
 constexpr auto kOverrideKeys = Joined(
@@ -71,11 +75,6 @@ LinkConfig ReadLink(Section& section) {
   return link;
 }
 
-bool Hears(const Graph& graph, int hearer, int heard) {
-  const auto& neighbours = graph.HeardBy(hearer);
-  return std::ranges::find(neighbours, heard, &Graph::Neighbour::id) != neighbours.end();
-}
-
 std::string ListOf(const std::vector<double>& numbers) {
   std::string text;
   for (const double number : numbers) {
@@ -94,7 +93,7 @@ std::vector<std::pair<int, int>> ReadEdges(Section& section, const Graph& graph)
   for (std::size_t k = 0; k < rows.size() && !section.Wrong("edges") && graph.size() > 0; ++k) {
     const auto is_agent = [&](double id) { return id == static_cast<int>(id) && id <= graph.size(); };
     const bool is_edge = rows[k].size() == 2 && is_agent(rows[k][0]) && is_agent(rows[k][1]) &&
-                         Hears(graph, static_cast<int>(rows[k][0]), static_cast<int>(rows[k][1]));
+                         graph.Hears(static_cast<int>(rows[k][0]), static_cast<int>(rows[k][1]));
     if (is_edge)
       edges.emplace_back(static_cast<int>(rows[k][0]), static_cast<int>(rows[k][1]));
     else

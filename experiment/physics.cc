@@ -8,10 +8,11 @@ namespace {
 constexpr Range kCentre_m = {-1e6, 1e6};
 constexpr Range kAirspeed_m_per_s = {-200, 200};
 constexpr Key kWindKeys[] = {
-    key::Vector3("mean_m_per_s", kAirspeed_m_per_s, "in W").Default("[0, 0, 0]"),
-    key::Number("gust_std_m_per_s", {0, 200}, "standard deviation of the gusts, per axis").Default("0.0"),
+    key::Vector3("mean_m_per_s", kAirspeed_m_per_s, "in W").Default("[0, 0, 0]").Live(),
+    key::Number("gust_std_m_per_s", {0, 200}, "standard deviation of the gusts, per axis").Default("0.0").Live(),
     key::Number("gust_time_s", Above(0, 1e4), "correlation time of the gusts, a first-order Gauss-Markov process")
-        .Default("1.0"),
+        .Default("1.0")
+        .Live(),
 };
 
 constexpr Key kObstacleKeys[] = {

@@ -6,6 +6,7 @@
 
 #include "experiment/agents.h"
 #include "experiment/control.h"
+#include "experiment/live_experiment.h"
 
 namespace mascot {
 namespace {
@@ -217,6 +218,12 @@ void ReadNetwork(Section& section, Experiment& experiment) {
   section.Done();
 }
 
+/// Flies through all events, without agents: each must be legal after those before it. Throws ConfigError.
+void CheckEvents(const Experiment& experiment, const LawCatalog* laws) {
+  LiveExperiment live(experiment, laws, /*checked=*/false);
+  for (const Event& event : experiment.events) live.Take(event);
+}
+
 /// Reads everything. `laws` null: the parameters of laws are not read.
 Experiment Read(Section document, const LawCatalog* laws, const std::string& default_name, bool checked) {
   document.Use(ExperimentKeys());
@@ -226,7 +233,6 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
           control = document.Child("control"), sensors = document.Child("sensors"), graph = document.Child("graph"),
           link = document.Child("link"), law = document.Child("law"), record = document.Child("record"),
           output = document.Child("output"), network = document.Child("network");
-  document.Done();
 
   Experiment experiment;
   experiment.checked = checked;
@@ -261,8 +267,13 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
       std::ranges::any_of(overrides, [](const auto& override) { return override.section.Wrong("law"); });
   if (unknown || law.Wrong("name") || law.Wrong("leader")) experiment.agents.clear();
   if (laws != nullptr && !experiment.agents.empty()) ReadLawParameters(*laws, law, overrides, experiment);
+  const bool known_time = !run.Wrong("duration_s") && !control.Wrong("rate_hz");
+  experiment.events =
+      ReadEvents(document, count, known_time ? experiment.control.rate_hz : 0, known_time ? experiment.ticks() : 0);
+  document.Done();
   document.ThrowIfWrong();
   experiment.resolved = document.Resolved();
+  if (!checked) CheckEvents(experiment, laws);
   return experiment;
 }
 
@@ -304,6 +315,7 @@ std::span<const Key> ExperimentKeys() {
       key::Table("record", kRecordKeys, "the recording"),
       key::Table("output", kOutputKeys, "what else a run leaves behind"),
       key::Table("network", network_keys, "DDS"),
+      key::Tables("events", EventKeys(), "what changes while the run goes on"),
   };
   return keys;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -32,6 +33,11 @@ class LawCatalog {
   virtual std::span<const std::string_view> names() const = 0;
   /// The default of law.axes.
   virtual Axes DefaultAxes(std::string_view law) const = 0;
+  /// The keys of a law in [law], besides LawKeys().
+  virtual std::span<const Key> Parameters(std::string_view law) const = 0;
+  /// The keys in an agent's law, with their values, that make it fly to `p_W` from `t_s` on; empty: it flies no
+  /// waypoints.
+  virtual std::map<std::string, Value> GoTo(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s) const = 0;
   /// Reads and checks the parameters of `law`, which is experiment.law or an agent's own, from its table `section`.
   /// Everything else has been read. Mistakes are noted in `section`.
   virtual std::shared_ptr<const LawParams> Read(const Experiment& experiment, const LawConfig& law,

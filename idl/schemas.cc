@@ -29,6 +29,8 @@ const TypeSchema& SchemaOf(TopicKind kind) {
       return SchemaOf("mascot_msgs/msg/AgentCommand");
     case TopicKind::kMessage:
       return SchemaOf("mascot_msgs/msg/AgentMessage");
+    case TopicKind::kEvent:
+      return SchemaOf("mascot_msgs/msg/Event");
     case TopicKind::kState:
       return SchemaOf("mascot_msgs/msg/AgentState");
     case TopicKind::kClock:

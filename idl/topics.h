@@ -17,7 +17,7 @@ std::string ProcessName(AgentRange agents);
 std::optional<AgentRange> AgentsOf(std::string_view process);
 
 /// What a topic carries. In a recording the topics of one agent are in this order, which is that of their names.
-enum class TopicKind { kBundle, kCommand, kMessage, kState, kClock, kExperiment, kRequest, kStatus };
+enum class TopicKind { kBundle, kCommand, kMessage, kState, kClock, kEvent, kExperiment, kRequest, kStatus };
 
 /// A topic of a run. `agent` is 1..N for the per-agent kinds, else 0.
 struct Topic {
@@ -29,6 +29,7 @@ struct Topic {
   static Topic Command(int agent) { return {TopicKind::kCommand, agent}; }
   static Topic Message(int agent) { return {TopicKind::kMessage, agent}; }
   static Topic Clock() { return {TopicKind::kClock, 0}; }
+  static Topic Event() { return {TopicKind::kEvent, 0}; }
   static Topic Experiment() { return {TopicKind::kExperiment, 0}; }
   static Topic Request() { return {TopicKind::kRequest, 0}; }
   static Topic Status() { return {TopicKind::kStatus, 0}; }

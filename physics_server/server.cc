@@ -29,8 +29,11 @@ Server::Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experimen
       roll_(experiment.size(), experiment.run.start_timeout_s),
       ticks_(RulesOf(experiment)),
       world_(experiment),
+      live_(experiment, nullptr, /*checked=*/true),
       commands_(static_cast<std::size_t>(experiment.size())),
       clock_(domain, Topic::Clock()),
+      events_(domain, Topic::Event()),
+      event_readers_(static_cast<int>(AgentProcesses(experiment).size()) + 1),
       requests_(domain, Topic::Request()),
       status_reader_(domain, Topic::Status(), [this](const mascot_msgs::msg::Status& status, const Sender& sender) {
         OnStatus(status, sender.process);
@@ -103,7 +106,7 @@ void Server::AskForReports() {
 }
 
 bool Server::Matched() const {
-  if (clock_.matched() < 1) return false;
+  if (clock_.matched() < 1 || events_.matched() < event_readers_) return false;
   for (std::size_t i = 0; i < states_.size(); ++i)
     if (states_[i]->matched() < state_readers_[i] || command_readers_[i]->matched() < 1) return false;
   return std::ranges::all_of(bundles_, [](const auto& bundle) { return bundle->matched() >= 1; });
@@ -132,15 +135,29 @@ void Server::Do(const TickProtocol::Actions& actions) {
 void Server::Publish() {
   const std::int64_t tick = world_.tick();
   const int rate = experiment_.control.rate_hz;
+  PublishEvents();
   rosgraph_msgs::msg::Clock clock;
   ToWire(tick, rate, clock);
   clock_.Write(clock);
   for (int id = 1; id <= experiment_.size(); ++id) {
     const auto i = static_cast<std::size_t>(id - 1);
-    ToWire(tick, rate, id, world_.State(id), samples_[i]);
+    ToWire(tick, rate, id, static_cast<int>(live_.events().size()), world_.State(id), samples_[i]);
     states_[i]->Write(samples_[i]);
   }
   PublishBundles();
+}
+
+void Server::PublishEvents() {
+  const std::int64_t tick = world_.tick();
+  const std::size_t before = live_.events().size();
+  while (next_event_ < experiment_.events.size() && experiment_.events[next_event_].tick == tick) {
+    const Event& event = experiment_.events[next_event_++];
+    live_.Take(event);
+    mascot_msgs::msg::Event sample;
+    ToWire(tick, experiment_.control.rate_hz, static_cast<int>(live_.events().size()), event.Toml(), sample);
+    events_.Write(sample);
+  }
+  if (live_.events().size() > before) world_.Adopt(*live_.now());
 }
 
 void Server::PublishBundles() {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bus/lifecycle.h"
-#include "experiment/experiment.h"
+#include "experiment/live_experiment.h"
 #include "physics_server/pace_meter.h"
 #include "physics_server/start_roll.h"
 #include "physics_server/tick_protocol.h"
@@ -47,6 +47,8 @@ class Server {
   // The functions below are called with mutex_ held.
   void Do(const TickProtocol::Actions& actions);
   void Publish();
+  /// Publishes the events that take effect at the world's tick.
+  void PublishEvents();
   /// Publishes to each agent one bundle with those of samples_ that it may hear.
   void PublishBundles();
   /// Notes the age of the commands with which the world is stepped.
@@ -59,6 +61,8 @@ class Server {
   StartRoll roll_;
   TickProtocol ticks_;
   World world_;
+  LiveExperiment live_;
+  std::size_t next_event_ = 0;       // in experiment_.events
   std::vector<Actuation> commands_;  // by id - 1: the commands with which the world is stepped
   PaceMeter pace_;
 
@@ -68,6 +72,8 @@ class Server {
   std::vector<mascot_msgs::msg::AgentState> samples_;         // the last states published, by id - 1
   mascot_msgs::msg::AgentBundle bundle_;
   Writer<ClockType> clock_;
+  Writer<EventType> events_;
+  int event_readers_;  // how many events_ must match
   Writer<RequestType> requests_;
   std::vector<std::unique_ptr<Reader<CommandType>>> command_readers_;
   Reader<StatusType> status_reader_;

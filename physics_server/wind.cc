@@ -9,12 +9,16 @@
 
 namespace mascot {
 
-Wind::Wind(const WindConfig& config, std::uint64_t seed, double dt_s)
-    : mean_W_(config.mean_m_per_s),
-      std_m_per_s_(config.gust_std_m_per_s),
-      kept_(std::exp(-dt_s / config.gust_time_s)),
-      renewed_m_per_s_(std_m_per_s_ * std::sqrt(-std::expm1(-2 * dt_s / config.gust_time_s))),
-      dice_(seed, Dice::Stream::kWind) {}
+Wind::Wind(const WindConfig& config, std::uint64_t seed, double dt_s) : dt_s_(dt_s), dice_(seed, Dice::Stream::kWind) {
+  Adopt(config);
+}
+
+void Wind::Adopt(const WindConfig& config) {
+  mean_W_ = config.mean_m_per_s;
+  std_m_per_s_ = config.gust_std_m_per_s;
+  kept_ = std::exp(-dt_s_ / config.gust_time_s);
+  renewed_m_per_s_ = std_m_per_s_ * std::sqrt(-std::expm1(-2 * dt_s_ / config.gust_time_s));
+}
 
 Eigen::Vector3d Wind::Next() {
   if (std_m_per_s_ == 0) return mean_W_;

@@ -13,14 +13,17 @@ namespace mascot {
 class Wind {
  public:
   Wind(const WindConfig& config, std::uint64_t seed, double dt_s);
+  /// From the next step on: the gusts go on from where they are.
+  void Adopt(const WindConfig& config);
   /// The wind of the next physics step, in W (m/s). The first call is for step 0.
   Eigen::Vector3d Next();
 
  private:
   Eigen::Vector3d mean_W_;
-  double std_m_per_s_;
-  double kept_;             // rho
-  double renewed_m_per_s_;  // sigma sqrt(1 - rho^2)
+  double std_m_per_s_ = 0;
+  double kept_ = 0;             // rho
+  double renewed_m_per_s_ = 0;  // sigma sqrt(1 - rho^2)
+  double dt_s_;
   Dice dice_;
   std::int64_t step_ = 0;
   Eigen::Vector3d gust_W_ = Eigen::Vector3d::Zero();  // the gust of the last step

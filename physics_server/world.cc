@@ -360,6 +360,8 @@ void World::Impl::EndTick() {
 World::World(const Experiment& experiment, LookForContacts look) : impl_(std::make_unique<Impl>(experiment, look)) {}
 World::~World() = default;
 
+void World::Adopt(const Experiment& now) { impl_->wind.Adopt(now.physics.wind); }
+
 Motion World::State(int id) const { return impl_->bodies[static_cast<std::size_t>(id - 1)].state; }
 
 void World::Step(std::span<const Actuation> commands) {

@@ -83,7 +83,7 @@ Motion SomeMotion() {
 
 TEST(Wire, AMotionComesBackAsItWent) {
   mascot_msgs::msg::AgentState sample, received;
-  ToWire(17, 100, 3, SomeMotion(), sample);
+  ToWire(17, 100, 3, 0, SomeMotion(), sample);
   std::vector<std::uint8_t> bytes;
   Serialize(sample, bytes);
   Deserialize(bytes, received);
@@ -364,7 +364,7 @@ TEST_F(Bus, RawBytesAreThoseOfTheSerialiserWithZeroedPadding) {
   ASSERT_TRUE(Until([&] { return writer.matched() == 1 && reader.matched() == 1; }));
   mascot_msgs::msg::AgentState sample;
   for (int tick = 0; tick < 3; ++tick) {
-    ToWire(tick, 100, 1, SomeMotion(), sample);
+    ToWire(tick, 100, 1, 0, SomeMotion(), sample);
     writer.Write(sample);
   }
   ASSERT_TRUE(Until([&] {
@@ -372,7 +372,7 @@ TEST_F(Bus, RawBytesAreThoseOfTheSerialiserWithZeroedPadding) {
     return heard.size() == 3;
   }));
   for (int tick = 0; tick < 3; ++tick) {
-    ToWire(tick, 100, 1, SomeMotion(), sample);
+    ToWire(tick, 100, 1, 0, SomeMotion(), sample);
     std::vector<std::uint8_t> bytes;
     Serialize(sample, bytes);
     EXPECT_EQ(heard[static_cast<std::size_t>(tick)].first, bytes);

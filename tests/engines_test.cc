@@ -419,6 +419,27 @@ TEST(Engines, LoadDoesNotChangeABit) {
   ExpectSameBytes(quiet, loaded);
 }
 
+TEST(Engines, EventsTakeEffectAtTheSameTickInBothAndAnotherFlightOfTheResolvedFileIsTheSame) {
+  ScratchFolder folder;
+  const std::string config = MASCOT_SOURCE_DIR "/tests/good_configs/events.toml";
+  Up inprocess(folder, "inprocess", config, {"--engine", "inprocess", "--set", "run.name=events"});
+  ASSERT_EQ(inprocess.Wait(), 0) << inprocess.err();
+  const std::vector<std::vector<std::string>> deliveries = {
+      {}, {"--set", "network.agents_per_process=2", "--set", "network.delivery=bundled"}};
+  for (std::size_t k = 0; k < deliveries.size(); ++k) {
+    std::vector<std::string> words{"--set", "run.name=events"};
+    words.insert(words.end(), deliveries[k].begin(), deliveries[k].end());
+    Up dds(folder, "dds" + std::to_string(k), config, words);
+    ASSERT_EQ(dds.Wait(), 0) << dds.err();
+    EXPECT_TRUE(dds.File("run.mcap") == inprocess.File("run.mcap")) << "run.mcap differs";
+    EXPECT_TRUE(dds.File("states.npz") == inprocess.File("states.npz")) << "states.npz differs";
+    EXPECT_EQ(dds.Summary()["fidelity"], inprocess.Summary()["fidelity"]);
+  }
+  Up again(folder, "again", folder.File("inprocess/config.toml"), {"--engine", "inprocess"});
+  ASSERT_EQ(again.Wait(), 0) << again.err();
+  ExpectSameBytes(again, inprocess);
+}
+
 TEST(Engines, TwoRunsAtOnceDoNotDisturbEachOther) {
   ScratchFolder folder;
   Up one(folder, "one", Config("leaderless"), {"--duration-s", "5"});

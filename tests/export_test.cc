@@ -192,7 +192,7 @@ void WriteLateRun(const ScratchFolder& scratch, const std::string& name) {
       mascot_msgs::msg::AgentCommand command;
       Motion motion;
       motion.p_WB.x() = id;
-      ToWire(row.tick, 100, id, motion, state);
+      ToWire(row.tick, 100, id, 0, motion, state);
       Serialize(state, row.states[static_cast<std::size_t>(id - 1)]);
       Command wanted;
       wanted.actuator[0] = 100.0 * id + static_cast<double>(row.tick);
@@ -266,7 +266,7 @@ void WriteRunWithout(const std::string& path, const Topic& leave_out, int tick, 
   for (int k = 0; k <= 300; ++k) {
     for (const auto& [topic, channel] : channels) {
       if (k == tick && (whole_tick || topic == leave_out)) continue;
-      ToWire(k, 100, topic.agent, Motion(), state);
+      ToWire(k, 100, topic.agent, 0, Motion(), state);
       ToWire(k, 100, topic.agent, Command(), command);
       if (topic.kind == TopicKind::kState)
         Serialize(state, bytes);

@@ -51,7 +51,7 @@ mascot_msgs::msg::AgentState SomeState() {
   motion.w_WB_B = {7.5, 8.5, 9.5};
   motion.a_WB = {10.5, 11.5, 12.5};
   mascot_msgs::msg::AgentState sample;
-  ToWire(/*tick=*/123, /*rate_hz=*/100, /*agent=*/3, motion, sample);
+  ToWire(/*tick=*/123, /*rate_hz=*/100, /*agent=*/3, 0, motion, sample);
   return sample;
 }
 
@@ -87,7 +87,7 @@ TEST(McapCheck, AcceptsOurFiles) {
       mascot_msgs::msg::AgentCommand command;
       mascot_msgs::msg::AgentState state;
       ToWire(tick, 100, id, Command{{motion.p_WB.x(), 1, 2, 3}}, command);
-      ToWire(tick, 100, id, motion, state);
+      ToWire(tick, 100, id, 0, motion, state);
       writer.Write(commands[id - 1u], stamp_ns, OnTheWire<CommandType>(command));
       writer.Write(states[id - 1u], stamp_ns, OnTheWire<StateType>(state));
     }

@@ -142,8 +142,14 @@ TEST(PluginLaw, ThatExportsNoLawIsRefused) {
 }
 
 TEST(PluginLaw, OfAnotherInterfaceIsRefused) {
-  EXPECT_EQ(Refusal(Plugin("later")), kAtLibrary + "expected a library of law interface 1, got " + Library("later") +
-                                          " of interface 2 (compile it against the headers of this MASCOT)");
+  EXPECT_EQ(Refusal(Plugin("later")), kAtLibrary + "expected a library of law interface 2, got " + Library("later") +
+                                          " of interface 3 (compile it against the headers of this MASCOT)");
+}
+
+TEST(PluginLaw, OfAnEarlierInterfaceIsRefused) {
+  EXPECT_EQ(Refusal(Plugin("earlier")), kAtLibrary + "expected a library of law interface 2, got " +
+                                            Library("earlier") +
+                                            " of interface 1 (compile it against the headers of this MASCOT)");
 }
 
 TEST(PluginLaw, WithAnotherMemoryLayoutIsRefused) {

@@ -15,8 +15,9 @@ namespace {
 
 class Consensus final : public Law {
  public:
-  explicit Consensus(const ConsensusParams& params)
-      : p_gain_(params.p_gain), v_gain_(params.v_gain), beta_(params.beta) {}
+  explicit Consensus(const ConsensusParams& params) { Take(params); }
+
+  void Adopt(const AgentConfig& agent) override { Take(ParamsOf<ConsensusParams>(agent.law)); }
 
   Eigen::Vector3d Want_W(double /*t_s*/, const Motion& self, std::span<const Heard> heard) override {
     Eigen::Vector3d pull_W = Eigen::Vector3d::Zero(), match_W = Eigen::Vector3d::Zero();
@@ -28,9 +29,15 @@ class Consensus final : public Law {
   }
 
  private:
-  double p_gain_;
-  double v_gain_;
-  double beta_;
+  void Take(const ConsensusParams& params) {
+    p_gain_ = params.p_gain;
+    v_gain_ = params.v_gain;
+    beta_ = params.beta;
+  }
+
+  double p_gain_ = 0;
+  double v_gain_ = 0;
+  double beta_ = 0;
 };
 
 }  // namespace
@@ -47,6 +54,10 @@ LinearForm LinearFormOf(const ConsensusParams& params) {
       .p = params.p_gain, .g = params.v_gain, .beta = params.beta, .leader_flies = params.leader_flight.has_value()};
 }
 
+const std::optional<WaypointParams>& FlightOfLeader(const LawConfig& law) {
+  return ParamsOf<ConsensusParams>(law).leader_flight;
+}
+
 std::shared_ptr<const LawParams> ReadConsensus(const Experiment& /*experiment*/, const LawConfig& law,
                                                Section& section) {
   auto params = std::make_shared<ConsensusParams>();
@@ -57,8 +68,12 @@ std::shared_ptr<const LawParams> ReadConsensus(const Experiment& /*experiment*/,
 std::unique_ptr<Law> MakeConsensus(const Experiment& experiment, int id) {
   const AgentConfig& agent = experiment.agent(id);
   const auto& params = ParamsOf<ConsensusParams>(agent.law);
-  if (id == agent.law.leader) return MakeLeader(params.leader_flight, agent);
+  if (id == agent.law.leader) return MakeLeader(FlightOfLeader, agent);
   return std::make_unique<Consensus>(params);
+}
+
+std::map<std::string, Value> GoToOfConsensus(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s) {
+  return GoToOfLeader(FlightOfLeader, agent, p_W, t_s);
 }
 
 std::span<const Eigen::Vector3d> WaypointsOfConsensus(const LawConfig& law) {

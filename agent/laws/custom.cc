@@ -157,11 +157,11 @@ class PythonLaw : public Law {
 class Standard final : public PythonLaw {
  public:
   Standard(const CustomParams& params, TimeLimit time_limit, std::uint64_t seed, int id)
-      : PythonLaw(id, params, time_limit, "control") {
+      : PythonLaw(id, params, time_limit, "control"), params_(ToToml(params.params)) {
     const PythonLock lock;
     objects_.emplace(params);
     Objects& o = *objects_;
-    if (!o.start.is_none()) o.params = ToPython(params.params);
+    if (!o.start.is_none() || !o.set.is_none()) o.params = ToPython(params.params);
     o.me = o.agent_class();
     o.me.attr("id") = id;
     o.me.attr("weight") = 0.0;
@@ -184,10 +184,21 @@ class Standard final : public PythonLaw {
         o.start(o.me, o.params);
         o.start = py::none();
       }
+      if (o.params_changed && !o.set.is_none()) o.set(o.me, o.params);
+      o.params_changed = false;
       py::list neighbours(heard.size());
       for (std::size_t k = 0; k < heard.size(); ++k) neighbours[k] = Neighbour(heard[k]);
       return ToVector(o.control(t_s, o.me, neighbours), "");
     });
+  }
+
+  void Adopt(const AgentConfig& agent) override {
+    const PythonLock lock;
+    const Value& params = ParamsOf<CustomParams>(agent.law).params;
+    if (ToToml(params) == params_) return;
+    params_ = ToToml(params);
+    objects_->params = ToPython(params);
+    objects_->params_changed = true;
   }
 
   std::span<const double> Message() override {
@@ -216,7 +227,8 @@ class Standard final : public PythonLaw {
     }
     Module module;
     py::object control = module.Function("control"), start = module.Function("start"),
-               message = module.Function("message"), agent_class, me, params = py::dict();
+               message = module.Function("message"), set = module.Function("set"), agent_class, me, params = py::dict();
+    bool params_changed = false;  // by an event: set() is called before the next control()
     Names names;
   };
 
@@ -243,6 +255,7 @@ class Standard final : public PythonLaw {
   }
 
   std::optional<Objects> objects_;  // made and destroyed with the GIL held
+  std::string params_;              // as TOML
   std::vector<double> message_;
 };
 
@@ -310,8 +323,10 @@ struct Callback {
   bool required;
 };
 
-constexpr Callback kStandardCallbacks[] = {
-    {"control", "(t, me, neighbours)", 3, true}, {"start", "(me, params)", 2, false}, {"message", "(me)", 1, false}};
+constexpr Callback kStandardCallbacks[] = {{"control", "(t, me, neighbours)", 3, true},
+                                           {"start", "(me, params)", 2, false},
+                                           {"set", "(me, params)", 2, false},
+                                           {"message", "(me)", 1, false}};
 constexpr Callback kPublishedCallbacks[] = {
     {"control_user", "(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, leader)", 9, true}};
 
@@ -373,7 +388,7 @@ void CheckCallback(Section& law, const CustomParams& params, const Module& modul
 }
 
 /// Runs the text once, to find mistakes in it and the functions that it defines. Returns whether it can send messages.
-bool Try(Section& law, const CustomParams& params, const TimeLimit& time_limit) {
+bool Try(Section& law, CustomParams& params, const TimeLimit& time_limit) {
   const SuppressedPythonOutput suppressed;
   const PythonLock lock;
   const char* key = TextKey(law);
@@ -381,6 +396,7 @@ bool Try(Section& law, const CustomParams& params, const TimeLimit& time_limit) 
     const PythonTimeLimit limit(time_limit);
     const Module module(params);
     for (const Callback& callback : CallbacksOf(params.style)) CheckCallback(law, params, module, callback);
+    if (module.Function("set").is_none()) params.fixed = "expected a law that defines set(me, params), got none";
     return params.style == PythonStyle::kStandard && !module.Function("message").is_none();
   } catch (const PythonError& error) {
     law.FailInText(key,
@@ -392,7 +408,7 @@ bool Try(Section& law, const CustomParams& params, const TimeLimit& time_limit) 
 }
 
 /// Whether the law sends messages: as the key says, else whether the text defines message().
-bool SendsMessages(const Experiment& experiment, const CustomParams& params, Section& law) {
+bool SendsMessages(const Experiment& experiment, CustomParams& params, Section& law) {
   // A checked experiment has the key: reading it need not start Python.
   if ((experiment.checked && law.Has("messages")) || law.Wrong("")) return law.Boolean("messages", false);
   const bool can_send = Try(law, params, {experiment.run.start_timeout_s, "run.start_timeout_s"});

@@ -20,9 +20,12 @@ inline constexpr EnumNames<Wanted, 2> kPythonOutputs({{Wanted::kAcceleration, "a
 
 inline constexpr Key kCustomParameters[] = {
     key::Text("python",
-              "the law itself: defines control(t, me, neighbours), may define start(me, params), message(me)"),
+              "the law itself: defines control(t, me, neighbours), may define start(me, params), message(me), set(me, "
+              "params)"),
     key::Text("file", "a file that holds the law, instead of python; its path from the folder of this file"),
-    key::Any("params", "goes to start(me, params) as a dict").Default("{}"),
+    key::Any("params", "goes to start(me, params) as a dict, and to set(me, params) when an event has changed it")
+        .Default("{}")
+        .Live(),
     key::OneOf("style", kPythonStyles.names(),
                "mascot: the published testbed's control_user(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, "
                "leader)")

@@ -21,21 +21,23 @@ struct FormationParams final : ConsensusParams {
 
 class Formation final : public Law {
  public:
-  Formation(const FormationParams& params, int id) : params_(params), id_(id) {}
+  Formation(const FormationParams& params, int id) : params_(&params), id_(id) {}
+
+  void Adopt(const AgentConfig& agent) override { params_ = &ParamsOf<FormationParams>(agent.law); }
 
   Eigen::Vector3d Want_W(double /*t_s*/, const Motion& self, std::span<const Heard> heard) override {
-    Eigen::Vector3d a_W = -params_.beta * self.v_WB;
+    Eigen::Vector3d a_W = -params_->beta * self.v_WB;
     for (const Heard& j : heard) {
       const Eigen::Vector3d place_W = (self.p_WB - j.motion.p_WB) - (d_W(id_) - d_W(j.id));
-      a_W -= j.weight * (params_.p_gain * place_W + params_.v_gain * (self.v_WB - j.motion.v_WB));
+      a_W -= j.weight * (params_->p_gain * place_W + params_->v_gain * (self.v_WB - j.motion.v_WB));
     }
     return a_W;
   }
 
  private:
-  const Eigen::Vector3d& d_W(int id) const { return params_.d_W[static_cast<std::size_t>(id - 1)]; }
+  const Eigen::Vector3d& d_W(int id) const { return params_->d_W[static_cast<std::size_t>(id - 1)]; }
 
-  const FormationParams& params_;  // the experiment owns them
+  const FormationParams* params_;  // the experiment owns them
   int id_;
 };
 
@@ -93,7 +95,7 @@ std::shared_ptr<const LawParams> ReadFormation(const Experiment& experiment, con
 std::unique_ptr<Law> MakeFormation(const Experiment& experiment, int id) {
   const AgentConfig& agent = experiment.agent(id);
   const auto& params = ParamsOf<FormationParams>(agent.law);
-  if (id == agent.law.leader) return MakeLeader(params.leader_flight, agent);
+  if (id == agent.law.leader) return MakeLeader(FlightOfLeader, agent);
   return std::make_unique<Formation>(params, id);
 }
 

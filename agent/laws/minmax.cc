@@ -18,6 +18,7 @@
 #include <memory>
 #include <utility>
 
+#include "agent/laws/leader.h"
 #include "agent/laws/reach.h"
 
 namespace mascot {
@@ -34,8 +35,16 @@ double Sign(double x) { return (x > 0) - (x < 0); }
 /// The law of every agent but the root: follows the parent on each axis by itself.
 class Child final : public Law {
  public:
-  Child(int parent, double beta, double parent_beta, double boundary_layer_m)
-      : parent_(parent), beta_(beta), alpha_(beta - parent_beta), layer_m_(boundary_layer_m) {}
+  explicit Child(const AgentConfig& agent) { Adopt(agent); }
+
+  void Adopt(const AgentConfig& agent) override {
+    const auto& params = ParamsOf<MinmaxParams>(agent.law);
+    const auto i = static_cast<std::size_t>(agent.id - 1);
+    parent_ = params.tree.parent[i];
+    beta_ = params.tree.beta[i];
+    alpha_ = beta_ - params.tree.parent_beta[i];
+    layer_m_ = params.boundary_layer_m;
+  }
 
   Eigen::Vector3d Want_W(double /*t_s*/, const Motion& self, std::span<const Heard> heard) override {
     const auto parent = std::find_if(heard.begin(), heard.end(), [this](const Heard& j) { return j.id == parent_; });
@@ -54,16 +63,22 @@ class Child final : public Law {
     return -beta_ * std::clamp((w + f) / s, -1.0, 1.0);
   }
 
-  int parent_;
-  double beta_;
-  double alpha_;
-  double layer_m_;
+  int parent_ = 0;
+  double beta_ = 0;
+  double alpha_ = 0;
+  double layer_m_ = 0;
 };
 
 /// The law of the root: keeps its velocity, or flies waypoints within its own bound, on which its children rely.
 class Root final : public Law {
  public:
-  Root(std::optional<WaypointFlight> flight, double beta) : flight_(std::move(flight)), beta_(beta) {}
+  explicit Root(const AgentConfig& agent) { Adopt(agent); }
+
+  void Adopt(const AgentConfig& agent) override {
+    const auto& params = ParamsOf<MinmaxParams>(agent.law);
+    FlyAs(params.root_flight, agent, flight_);
+    beta_ = params.tree.beta[static_cast<std::size_t>(agent.id - 1)];
+  }
 
   Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> /*heard*/) override {
     if (!flight_) return Eigen::Vector3d::Zero();
@@ -72,7 +87,7 @@ class Root final : public Law {
 
  private:
   std::optional<WaypointFlight> flight_;
-  double beta_;
+  double beta_ = 0;
 };
 
 /// law.beta as one bound per agent (m/s^2), also after a mistake.
@@ -150,13 +165,15 @@ std::shared_ptr<const LawParams> ReadMinmax(const Experiment& experiment, const 
 std::unique_ptr<Law> MakeMinmax(const Experiment& experiment, int id) {
   const AgentConfig& agent = experiment.agent(id);
   const auto& params = ParamsOf<MinmaxParams>(agent.law);
-  const PursuitForm& tree = params.tree;
-  const auto i = static_cast<std::size_t>(id - 1);
-  if (tree.parent[i] != 0)
-    return std::make_unique<Child>(tree.parent[i], tree.beta[i], tree.parent_beta[i], params.boundary_layer_m);
-  std::optional<WaypointFlight> flight;
-  if (params.root_flight) flight.emplace(*params.root_flight, agent.law.axes, agent.p_W);
-  return std::make_unique<Root>(std::move(flight), tree.beta[i]);
+  if (params.tree.parent[static_cast<std::size_t>(id - 1)] != 0) return std::make_unique<Child>(agent);
+  return std::make_unique<Root>(agent);
+}
+
+std::map<std::string, Value> GoToOfMinmax(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s) {
+  const auto flight_of = [](const LawConfig& law) -> const std::optional<WaypointParams>& {
+    return ParamsOf<MinmaxParams>(law).root_flight;
+  };
+  return GoToOfLeader(flight_of, agent, p_W, t_s);
 }
 
 std::span<const Eigen::Vector3d> WaypointsOfMinmax(const LawConfig& law) {

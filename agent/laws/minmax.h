@@ -16,7 +16,8 @@ inline constexpr auto kMinmaxParameters = Joined(
         key::Number("beta", Above(0, 1000), "largest acceleration per axis: one number, or a list by id")
             .Or(ValueKind::kNumbers)
             .Unit("m/s^2")
-            .Required(),
+            .Required()
+            .Live(),
         key::OneOf("weak_edges", kWeakEdges,
                    "an edge whose child is not stronger than its parent: refuse, or expect the root's bound of every "
                    "parent")
@@ -24,7 +25,8 @@ inline constexpr auto kMinmaxParameters = Joined(
         key::Number("boundary_layer", {0, 1000},
                     "distance to the parent within which sgn gives way to a smooth function")
             .Default("0.0")
-            .Unit("m"),
+            .Unit("m")
+            .Live(),
     },
     kLeaderFlightParameters);
 

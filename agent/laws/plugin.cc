@@ -54,7 +54,8 @@ std::string ExceptionText() {
 /// The user's law; its exceptions get the agent and the time in front.
 class PluginLaw final : public Law {
  public:
-  PluginLaw(int id, std::unique_ptr<Law> law) : id_(id), law_(std::move(law)) {}
+  PluginLaw(const PluginConfig& plugin, const PluginSetup& setup)
+      : id_(setup.id), library_(plugin.library), params_(ToToml(plugin.params)), law_(library_.Make(setup)) {}
 
   Wanted wanted() const override {
     return Guarded([&] { return law_->wanted(); });
@@ -62,6 +63,14 @@ class PluginLaw final : public Law {
   Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> heard) override {
     t_s_ = t_s;
     return Guarded([&] { return law_->Want_W(t_s, self, heard); });
+  }
+  void Adopt(const AgentConfig& agent) override {
+    const Value& params = ParamsOf<PluginConfig>(agent.law).params;
+    if (ToToml(params) == std::exchange(params_, ToToml(params)) || library_.set() == nullptr) return;
+    Guarded([&] {
+      PluginParams changed(params);
+      library_.set()(*law_, changed);
+    });
   }
   std::span<const double> Message() override {
     return Guarded([&] {
@@ -85,6 +94,8 @@ class PluginLaw final : public Law {
   }
 
   int id_;
+  LawLibrary library_;
+  std::string params_;  // as TOML
   std::unique_ptr<Law> law_;
   double t_s_ = 0;
 };
@@ -140,6 +151,7 @@ bool TryAll(const Experiment& experiment, const LawConfig& config, PluginConfig&
       if (law.Wrong("")) break;  // the other agents' laws would find the same mistake
       Try(library, experiment, id, plugin, law);
     }
+    if (library.set() == nullptr) plugin.fixed = "expected a law with Set(PluginParams&), got none";
     return library.sends_messages();
   } catch (const std::runtime_error& error) {
     law.Fail("library", error.what());
@@ -171,7 +183,7 @@ std::unique_ptr<Law> MakePlugin(const Experiment& experiment, int id) {
   const auto& plugin = ParamsOf<PluginConfig>(experiment.agent(id).law);
   try {
     PluginParams params(plugin.params);
-    return std::make_unique<PluginLaw>(id, LawLibrary(plugin.library).Make(SetupOf(experiment, id, params)));
+    return std::make_unique<PluginLaw>(plugin, SetupOf(experiment, id, params));
   } catch (...) {
     throw std::runtime_error("cannot make the law of agent " + std::to_string(id) + ": " + ExceptionText() +
                              " (every host that flies it needs the same library at the same path)");

@@ -15,8 +15,11 @@ struct VelocityConsensusParams final : LawParams {
 
 class VelocityConsensus final : public Law {
  public:
-  VelocityConsensus(double p_gain, bool leads) : p_gain_(leads ? 0 : p_gain) {}
+  explicit VelocityConsensus(const AgentConfig& agent) { Adopt(agent); }
   Wanted wanted() const override { return Wanted::kVelocity; }
+  void Adopt(const AgentConfig& agent) override {
+    p_gain_ = agent.id == agent.law.leader ? 0 : ParamsOf<VelocityConsensusParams>(agent.law).p_gain;
+  }
 
   Eigen::Vector3d Want_W(double /*t_s*/, const Motion& self, std::span<const Heard> heard) override {
     Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();
@@ -25,7 +28,7 @@ class VelocityConsensus final : public Law {
   }
 
  private:
-  double p_gain_;
+  double p_gain_ = 0;
 };
 
 }  // namespace
@@ -38,8 +41,7 @@ std::shared_ptr<const LawParams> ReadVelocityConsensus(const Experiment& /*exper
 }
 
 std::unique_ptr<Law> MakeVelocityConsensus(const Experiment& experiment, int id) {
-  const LawConfig& law = experiment.agent(id).law;
-  return std::make_unique<VelocityConsensus>(ParamsOf<VelocityConsensusParams>(law).p_gain, id == law.leader);
+  return std::make_unique<VelocityConsensus>(experiment.agent(id));
 }
 
 LinearForm LinearVelocityConsensus(const LawConfig& law) {

@@ -35,6 +35,8 @@ class Waypoint final : public Law {
  public:
   explicit Waypoint(WaypointFlight flight) : flight_(std::move(flight)) {}
 
+  void Adopt(const AgentConfig& agent) override { flight_.Adopt(ParamsOf<WaypointLawParams>(agent.law).flight); }
+
   Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> /*heard*/) override {
     return flight_.Accel_W(t_s, self);
   }
@@ -85,6 +87,32 @@ std::optional<WaypointParams> ReadLeaderWaypoints(const LawConfig& config, Secti
 WaypointFlight::WaypointFlight(WaypointParams params, Axes axes, const Eigen::Vector3d& start_W)
     : params_(std::move(params)), axes_(axes), start_W_(start_W) {}
 
+void WaypointFlight::Adopt(const WaypointParams& params) {
+  if (params.waypoints_W != params_.waypoints_W) {
+    next_ = 0;
+    arrived_at_s_.reset();
+  }
+  params_ = params;
+}
+
+void FlyAs(const std::optional<WaypointParams>& params, const AgentConfig& agent,
+           std::optional<WaypointFlight>& flight) {
+  if (!params)
+    flight.reset();
+  else if (flight)
+    flight->Adopt(*params);
+  else
+    flight.emplace(*params, agent.law.axes, agent.p_W);
+}
+
+std::map<std::string, Value> Destination(const std::string& prefix, const WaypointParams* now,
+                                         const Eigen::Vector3d& p_W, double t_s) {
+  std::map<std::string, Value> keys;
+  keys[prefix + "waypoints_m"] = {Value::List{{Value::List{{p_W.x()}, {p_W.y()}, {p_W.z()}}}}};
+  if (now != nullptr && !now->times_s.empty()) keys[prefix + "times_s"] = {Value::List{{t_s}}};
+  return keys;
+}
+
 Eigen::Vector3d WaypointFlight::Accel_W(double t_s, const Motion& self) {
   if (params_.waypoints_W.empty()) return Eigen::Vector3d::Zero();
   const Eigen::Vector3d& target_W = params_.times_s.empty() ? TargetByArrival(t_s, self.p_WB) : TargetByTime(t_s);
@@ -129,6 +157,10 @@ std::unique_ptr<Law> MakeWaypoint(const Experiment& experiment, int id) {
   const AgentConfig& agent = experiment.agent(id);
   return std::make_unique<Waypoint>(
       WaypointFlight(ParamsOf<WaypointLawParams>(agent.law).flight, agent.law.axes, agent.p_W));
+}
+
+std::map<std::string, Value> GoToOfWaypoint(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s) {
+  return Destination("", &ParamsOf<WaypointLawParams>(agent.law).flight, p_W, t_s);
 }
 
 std::span<const Eigen::Vector3d> WaypointsOfWaypoint(const LawConfig& law) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,28 +28,35 @@ inline constexpr Range kTime_s = {0, 1e6};
 
 inline constexpr Key kWaypointParameters[] = {
     key::Points("waypoints_m", kWaypoint_m, "targets, flown in this order by every agent; the last one is held")
-        .Required(),
-    key::Number("p_gain", kGain, "pull towards the target").Default("1.0").Unit("1/s^2"),
-    key::Number("d_gain", kGain, "damping").Default("1.0").Unit("1/s"),
+        .Required()
+        .Live(),
+    key::Number("p_gain", kGain, "pull towards the target").Default("1.0").Unit("1/s^2").Live(),
+    key::Number("d_gain", kGain, "damping").Default("1.0").Unit("1/s").Live(),
     key::Number("arrival_radius_m", Above(0, 1000), "a target counts as reached this close to it, over law.axes")
-        .Default("0.2"),
-    key::Number("dwell_s", kTime_s, "time to stay that close before the next target").Default("1.0"),
+        .Default("0.2")
+        .Live(),
+    key::Number("dwell_s", kTime_s, "time to stay that close before the next target").Default("1.0").Live(),
     key::Numbers("times_s", kTime_s, "when each waypoint becomes the target, instead of by arrival; increasing"),
 };
 
 /// The same keys for the leader, in laws that may have one.
 inline constexpr std::array kLeaderFlightParameters = {
-    key::Points("leader_waypoints_m", kWaypoint_m, "the leader flies these, as the waypoint law does"),
+    key::Points("leader_waypoints_m", kWaypoint_m, "the leader flies these, as the waypoint law does").Live(),
     key::Number("leader_p_gain", kGain, "with leader_waypoints_m, as the waypoint law's p_gain")
         .Default("1.0")
-        .Unit("1/s^2"),
+        .Unit("1/s^2")
+        .Live(),
     key::Number("leader_d_gain", kGain, "with leader_waypoints_m, as the waypoint law's d_gain")
         .Default("1.0")
-        .Unit("1/s"),
+        .Unit("1/s")
+        .Live(),
     key::Number("leader_arrival_radius_m", Above(0, 1000),
                 "with leader_waypoints_m, as the waypoint law's arrival_radius_m")
-        .Default("0.2"),
-    key::Number("leader_dwell_s", kTime_s, "with leader_waypoints_m, as the waypoint law's dwell_s").Default("1.0"),
+        .Default("0.2")
+        .Live(),
+    key::Number("leader_dwell_s", kTime_s, "with leader_waypoints_m, as the waypoint law's dwell_s")
+        .Default("1.0")
+        .Live(),
     key::Numbers("leader_times_s", kTime_s, "with leader_waypoints_m, as the waypoint law's times_s"),
 };
 
@@ -57,6 +65,11 @@ WaypointParams ReadWaypoints(Section& law, const std::string& prefix);
 /// Reads the keys of kLeaderFlightParameters; nullopt: the leader has no waypoints. Notes a mistake where such a key
 /// stands without a leader, or without leader_waypoints_m.
 std::optional<WaypointParams> ReadLeaderWaypoints(const LawConfig& law, Section& section);
+
+/// The keys, whose names begin with `prefix`, that make an agent fly to `p_W` from `t_s` on, in place of the waypoints
+/// that it flies by `now` (null: none).
+std::map<std::string, Value> Destination(const std::string& prefix, const WaypointParams* now,
+                                         const Eigen::Vector3d& p_W, double t_s);
 
 /// The targets of a flight that there may be.
 inline std::span<const Eigen::Vector3d> WaypointsOf(const std::optional<WaypointParams>& flight) {
@@ -68,6 +81,8 @@ class WaypointFlight {
  public:
   /// `axes`: those that count for arrival. `start_W`: the target until the first of `times_s`.
   WaypointFlight(WaypointParams params, Axes axes, const Eigen::Vector3d& start_W);
+  /// Flies by other parameters from now on. It keeps its target, unless the list of waypoints is another.
+  void Adopt(const WaypointParams& params);
   /// Wanted acceleration in W (m/s^2). `t_s`: simulated time, increasing from call to call.
   Eigen::Vector3d Accel_W(double t_s, const Motion& self);
 
@@ -82,5 +97,9 @@ class WaypointFlight {
   std::size_t next_ = 0;                  // on arrival: index of the target
   std::optional<double> arrived_at_s_{};  // since when the agent has been close to it
 };
+
+/// Makes `flight` of agent `agent` one by `params` (nullopt: none), as an event changes it, or at first.
+void FlyAs(const std::optional<WaypointParams>& params, const AgentConfig& agent,
+           std::optional<WaypointFlight>& flight);
 
 }  // namespace mascot

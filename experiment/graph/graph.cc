@@ -82,6 +82,13 @@ Graph::Graph(std::vector<std::vector<Neighbour>> heard) : heard_(std::move(heard
     assert(std::is_sorted(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.id < b.id; }));
 }
 
+bool Graph::Hears(int hearer, int heard) const {
+  if (hearer < 1 || hearer > size()) return false;
+  const auto& neighbours = HeardBy(hearer);
+  const auto edge = std::ranges::lower_bound(neighbours, heard, {}, &Neighbour::id);
+  return edge != neighbours.end() && edge->id == heard;
+}
+
 std::size_t Graph::edges() const {
   std::size_t count = 0;
   for (const auto& row : heard_) count += row.size();

@@ -26,6 +26,8 @@ class Graph {
   int size() const { return static_cast<int>(heard_.size()); }
   /// In-neighbours of agent `id`, in increasing id.
   const std::vector<Neighbour>& HeardBy(int id) const { return heard_[static_cast<std::size_t>(id - 1)]; }
+  /// True if agent `hearer` hears agent `heard`; false for numbers of no agent.
+  bool Hears(int hearer, int heard) const;
   /// Number of directed edges.
   std::size_t edges() const;
   /// True if a_ij == a_ji for all pairs.

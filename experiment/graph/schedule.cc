@@ -43,7 +43,8 @@ std::span<const Key> ScheduleKeys() {
       key::Tables("schedule", phase_keys, "graphs that take over later, in order of time"),
       key::Number("repeat_s", Above(0, 1e6), "after this time it starts over").Otherwise("never"),
       key::Number("range_m", Above(0, 1e6), "an edge works only while its agents are closer than this")
-          .Otherwise("at any distance"),
+          .Otherwise("at any distance")
+          .Live(),
   });
   return keys;
 }

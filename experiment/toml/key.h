@@ -57,6 +57,7 @@ struct Key {
   std::string_view otherwise = {};               ///< what holds without the key, in words, if that is no fixed value
   std::string_view unit = {};                    ///< the unit, if the name does not end in it
   bool required = false;
+  bool live = false;  ///< an event may change it while a run goes on
 
   /// A copy in which one member is `value`.
   template <class Member, class Value>
@@ -69,6 +70,7 @@ struct Key {
   constexpr Key Otherwise(std::string_view words) const { return With(&Key::otherwise, words); }
   constexpr Key Unit(std::string_view symbol) const { return With(&Key::unit, symbol); }
   constexpr Key Required() const { return With(&Key::required, true); }
+  constexpr Key Live() const { return With(&Key::live, true); }
   constexpr Key Or(ValueKind other) const { return With(&Key::or_kind, other); }
 };
 

@@ -98,6 +98,8 @@ Section::Place Section::PlaceOfText(std::string_view key) const {
   return text;
 }
 
+std::string Section::Where(std::string_view key) const { return document_->PlaceText(table_->PlaceOf(key)); }
+
 Section::FileText Section::TextOfFile(std::string_view key, std::string_view text_key) {
   const std::string path = table_->Read<std::string>(key, "the path of a file", std::nullopt, "", TextIn);
   std::string text;

@@ -27,10 +27,12 @@ class ConfigError : public std::runtime_error {
   std::vector<std::string> mistakes_;
 };
 
-/// A key given on the command line, which replaces the file's.
+/// A key given on the command line or by an event, which replaces the file's.
 struct Override {
-  std::string key;    ///< dotted: "law.p_gain"
-  std::string value;  ///< a TOML value: "0.5", "[1, 2]", "'ring'"
+  std::string key;          ///< dotted: "law.p_gain"
+  std::string value;        ///< a TOML value: "0.5", "[1, 2]", "'ring'"
+  std::string origin = {};  ///< what messages say in place of a file and line; empty: "--set key=value"
+  bool extends = false;     ///< an index one beyond the end of a list of tables adds a table, and a list if need be
 };
 
 /// One table of a TOML file, read strictly. Each reader checks type and range; a mistake is noted (not thrown) and the
@@ -43,6 +45,8 @@ class Section {
   /// cannot be opened (a folder, a dangling link, ...), decoded or parsed.
   static Section FromFile(const std::string& path, std::span<const Override> overrides = {});
   static Section FromText(const std::string& text, const std::string& name, std::span<const Override> overrides = {});
+  /// As FromText, of text that is in no file: messages say `origin` without line and column.
+  static Section FromWords(const std::string& text, const std::string& origin);
 
   /// True if `key` is present, here or in the base (InheritFrom).
   bool Has(std::string_view key) const;
@@ -73,6 +77,8 @@ class Section {
     int line = 1;        ///< line in `file` of the text's first line
   };
   Place PlaceOfText(std::string_view key) const;
+  /// The place of `key` ("": of this table) as messages say it: "a.toml:12:7", or where an override comes from.
+  std::string Where(std::string_view key) const;
   /// The text of the file that `key` names, relative to this document's folder. Resolved() has the text itself, under
   /// `text_key`.
   struct FileText {
@@ -134,6 +140,8 @@ class Section {
   struct Document;
   struct Table;
   Section(std::shared_ptr<Document> document, std::shared_ptr<Table> table);
+  /// The table of the document's root.
+  static Section Of(const std::shared_ptr<Document>& document);
   std::shared_ptr<Document> document_;
   std::shared_ptr<Table> table_;
 };
@@ -143,6 +151,9 @@ std::string ReadRegularFile(const std::string& path);
 
 /// The name among `names` that is closest to `word`, if it is close enough for a typing mistake.
 std::optional<std::string> DidYouMean(std::string_view word, std::span<const std::string_view> names);
+
+/// `value` as TOML on one line.
+std::string ToToml(const Value& value);
 
 /// Shortest decimal text that reads back as exactly `value`; always with a point or exponent ("40.0").
 std::string ShortestFloat(double value);

@@ -59,7 +59,8 @@ void RefuseDeepKeys(std::string_view text, const std::string& name) {
   }
 }
 
-std::string PlaceText(const toml::source_region& place, const std::string& name) {
+/// `place` in the document `name`, as messages say it.
+std::string PlaceIn(const toml::source_region& place, const std::string& name) {
   if (place.path && *place.path != name) return *place.path;  // a value given on the command line
   return name + ":" + std::to_string(std::max(place.begin.line, 1u)) + ":" +
          std::to_string(std::max(place.begin.column, 1u));
@@ -82,7 +83,7 @@ toml::table ParseToml(std::string_view text, const std::string& name) {
   try {
     return toml::parse(text, std::string_view(name));
   } catch (const toml::parse_error& error) {
-    throw ConfigError({PlaceText(error.source(), name) + ": " + OneLine(Why(error.description()))});
+    throw ConfigError({PlaceIn(error.source(), name) + ": " + OneLine(Why(error.description()))});
   }
 }
 
@@ -122,8 +123,10 @@ Section::Document::Document(std::string_view text, const std::string& document_n
   for (const Override& override : overrides) Apply(override, root);
 }
 
+std::string Section::Document::PlaceText(const toml::source_region& place) const { return PlaceIn(place, name); }
+
 void Section::Document::Note(const toml::source_region& place, const std::string& path, const std::string& message) {
-  NoteText(place, PlaceText(place, name) + ": " + (path.empty() ? "" : path + ": ") + message);
+  NoteText(place, PlaceText(place) + ": " + (path.empty() ? "" : path + ": ") + message);
 }
 
 void Section::Document::NoteText(const toml::source_region& place, const std::string& text) {
@@ -149,7 +152,16 @@ Section Section::FromFile(const std::string& path, std::span<const Override> ove
 }
 
 Section Section::FromText(const std::string& text, const std::string& name, std::span<const Override> overrides) {
-  auto document = std::make_shared<Document>(text, name, overrides);
+  return Of(std::make_shared<Document>(text, name, overrides));
+}
+
+Section Section::FromWords(const std::string& text, const std::string& origin) {
+  auto document = std::make_shared<Document>("", "", std::span<const Override>());
+  document->root = ParseToml(text, origin);  // with the origin as the path of each node
+  return Of(document);
+}
+
+Section Section::Of(const std::shared_ptr<Document>& document) {
   document->top = std::make_shared<Table>();
   document->top->toml = &document->root;
   document->top->place = document->root.source();

@@ -19,6 +19,8 @@ struct Section::Document {
   /// As Note(), for a `text` that names its place already; listed as if at `place`.
   void NoteText(const toml::source_region& place, const std::string& text);
   void ThrowIfWrong() const;
+  /// A place as messages say it.
+  std::string PlaceText(const toml::source_region& place) const;
 
   std::string name;  ///< as the user typed it
   toml::table root;
@@ -131,9 +133,6 @@ std::string Indexed(std::string_view path, std::size_t index);
 
 /// A node as a Value. Dates and times become text.
 Value ToValue(const toml::node& node);
-/// A Value as TOML text on one line.
-std::string ToToml(const Value& value);
-
 /// TOML basic string, quoted and escaped.
 std::string QuotedToml(std::string_view text);
 /// TOML string; a multi-line one for text of several lines, if possible.

@@ -105,16 +105,29 @@ class Place {
   const Step& step_;
 };
 
-/// Puts a value where the steps lead, and makes the tables that the document lacks.
-void Put(toml::table& root, std::span<const Step> steps, toml::node&& value) {
+/// If `step` of `inside` is the index one beyond the end of its list: adds a table there.
+void Extend(toml::node& inside, const Step& step) {
+  const auto* index = std::get_if<std::size_t>(&step);
+  toml::array* list = inside.as_array();
+  if (index != nullptr && list != nullptr && *index == list->size()) list->push_back(toml::table());
+}
+
+/// Puts a value where the steps lead, and makes the tables that the document lacks. `extends`: and the tables of lists
+/// (Override::extends).
+void Put(toml::table& root, std::span<const Step> steps, toml::node&& value, bool extends) {
   toml::node* node = &root;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
+    if (extends) Extend(*node, steps[i]);
     const Place place(*node, steps, i);
     if (place.Find() == nullptr) {
-      if (std::holds_alternative<std::size_t>(steps[i + 1]))
+      const bool is_list = std::holds_alternative<std::size_t>(steps[i + 1]);
+      if (is_list && !extends)
         throw std::invalid_argument(PathOf(steps.first(i + 1)) + ": expected a list to set " +
                                     PathOf(steps.subspan(i + 1, 1)) + " in, got nothing");
-      place.Put(toml::table(), value.source());
+      if (is_list)
+        place.Put(toml::array(), value.source());
+      else
+        place.Put(toml::table(), value.source());
     }
     node = place.Find();
   }
@@ -125,14 +138,15 @@ void Put(toml::table& root, std::span<const Step> steps, toml::node&& value) {
 }  // namespace
 
 void Apply(const Override& override, toml::table& root) {
-  const std::string name = "--set " + Printable(override.key + "=" + override.value);
+  const std::string name =
+      override.origin.empty() ? "--set " + Printable(override.key + "=" + override.value) : override.origin;
   const std::vector<Step> steps = Steps(override.key);
   if (steps.empty())
     throw ConfigError({name + ": expected a dotted key such as law.p_gain or agents.override[0].start_s, got '" +
                        Printable(override.key) + "'"});
   toml::table parsed = ParseValue(override, name);
   try {
-    Put(root, steps, std::move(*parsed.get("value")));
+    Put(root, steps, std::move(*parsed.get("value")), override.extends);
   } catch (const std::invalid_argument& why) {
     throw ConfigError({name + ": " + why.what()});
   }

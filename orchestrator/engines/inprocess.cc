@@ -3,6 +3,8 @@
 #include <chrono>
 #include <optional>
 
+#include "agent/laws.h"
+#include "experiment/live_experiment.h"
 #include "orchestrator/engines/row_feed.h"
 #include "orchestrator/team/team.h"
 #include "physics_server/world.h"
@@ -19,12 +21,14 @@ class Flight {
       : experiment_(experiment),
         world_(experiment),
         team_(experiment),
+        live_(experiment, &LawTable(), /*checked=*/true),
         actuation_(static_cast<std::size_t>(experiment.size())),
         row_(experiment.size()) {}
 
   /// States of the current tick, and the commands and messages that answer them. Valid until the next call.
   const DecodedRow& Exchange() {
     const std::int64_t tick = world_.tick();
+    TakeEvents(tick);
     for (const AgentConfig& agent : experiment_.agents)
       row_.motions[static_cast<std::size_t>(agent.id - 1)] = world_.State(agent.id);
     for (const AgentConfig& agent : experiment_.agents) {
@@ -44,9 +48,23 @@ class Flight {
   Contacts contacts() const { return world_.contacts(); }
 
  private:
+  void TakeEvents(std::int64_t tick) {
+    row_.events.clear();
+    while (next_event_ < experiment_.events.size() && experiment_.events[next_event_].tick == tick) {
+      const Event& event = experiment_.events[next_event_++];
+      live_.Take(event);
+      row_.events.push_back({++row_.events_so_far, event.Toml()});
+    }
+    if (row_.events.empty()) return;
+    world_.Adopt(*live_.now());
+    team_.Adopt(live_.now());
+  }
+
   const Experiment& experiment_;
   World world_;
   Team team_;
+  LiveExperiment live_;
+  std::size_t next_event_ = 0;  // in experiment_.events
   std::vector<Actuation> actuation_;
   DecodedRow row_;
 };

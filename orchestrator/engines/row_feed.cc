@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "agent/laws.h"
+
 namespace mascot {
 namespace {
 
@@ -38,7 +40,10 @@ class FromThisProcess final : public FlownRow {
 }  // namespace
 
 RowFeed::RowFeed(const Experiment& experiment, std::vector<RowSink*> sinks)
-    : sinks_(std::move(sinks)), decoded_(experiment.size()), encoder_(experiment) {}
+    : sinks_(std::move(sinks)),
+      decoded_(experiment.size()),
+      encoder_(experiment),
+      live_(experiment, &LawTable(), /*checked=*/true) {}
 
 void RowFeed::Add(const Row& bytes) {
   Decode(bytes, decoded_);
@@ -47,7 +52,11 @@ void RowFeed::Add(const Row& bytes) {
 
 void RowFeed::Add(std::int64_t tick, const DecodedRow& decoded) { HandOut(FromThisProcess(tick, decoded, encoder_)); }
 
-void RowFeed::HandOut(const FlownRow& row) const {
+void RowFeed::HandOut(const FlownRow& row) {
+  for (const DecodedRow::Happening& event : row.decoded().events)
+    live_.Take(live_.Parse(row.tick(), event.toml, "event " + std::to_string(event.number)));
+  if (!row.decoded().events.empty())
+    for (RowSink* sink : sinks_) sink->Adopt(live_.now());
   for (RowSink* sink : sinks_) sink->Add(row);
 }
 

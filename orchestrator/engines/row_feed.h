@@ -3,13 +3,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "experiment/experiment.h"
+#include "experiment/live_experiment.h"
 #include "orchestrator/recording/row_codec.h"
 #include "orchestrator/team/row_sink.h"
 
 namespace mascot {
 
-/// Passes the rows of a run to its sinks, one sink after the other. Each row is decoded once and encoded at most once.
+/// Passes the rows of a run to its sinks, one sink after the other, and the experiment as events change it. Each row is
+/// decoded once and encoded at most once.
 class RowFeed {
  public:
   /// The sinks must outlive this object.
@@ -20,13 +21,16 @@ class RowFeed {
   void Add(const Row& bytes);
   /// Adds the next tick of a run in one process. Throws what a sink throws.
   void Add(std::int64_t tick, const DecodedRow& decoded);
+  /// The events so far.
+  const std::vector<Event>& events() const { return live_.events(); }
 
  private:
-  void HandOut(const FlownRow& row) const;
+  void HandOut(const FlownRow& row);
 
   std::vector<RowSink*> sinks_;
   DecodedRow decoded_;  // newest row received: a command that is missing in the next row keeps its value
   RowEncoder encoder_;
+  LiveExperiment live_;
 };
 
 }  // namespace mascot

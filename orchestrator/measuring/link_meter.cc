@@ -8,7 +8,7 @@ namespace {
 
 /// Whether every sample of every edge arrives: perfect links, a constant graph, and every agent there all the time.
 bool IsPlain(const Experiment& experiment) {
-  return experiment.schedule.IsConstant() && experiment.links.ArePerfect(experiment.graph) &&
+  return experiment.schedule.IsConstant() && experiment.cut.empty() && experiment.links.ArePerfect(experiment.graph) &&
          std::ranges::all_of(experiment.agents,
                              [](const AgentConfig& agent) { return agent.start_s == 0 && std::isinf(agent.stop_s); });
 }
@@ -21,12 +21,28 @@ LinkMeter::LinkMeter(const Experiment& experiment)
       said_(experiment.agents.size()),
       sent_numbers_(experiment.agents.size()),
       exchange_(experiment) {
-  if (plain_) return;
-  for (const AgentConfig& agent : experiment.agents) neighbours_.emplace_back(experiment, agent.id);
+  if (!plain_) CountSamples();
+}
+
+/// From now on each sample is followed, because some may not arrive.
+void LinkMeter::CountSamples() {
+  plain_ = false;
+  for (const AgentConfig& agent : experiment_.agents) {
+    neighbours_.emplace_back(experiment_, agent.id);
+    exchange_.Send(agent.id,
+                   std::vector<double>(said_[static_cast<std::size_t>(agent.id - 1)]));  // only their number counts
+  }
+  exchange_.EndTick();
+}
+
+void LinkMeter::Adopt(const std::shared_ptr<const Experiment>& now) {
+  if (plain_ && !IsPlain(*now)) CountSamples();
+  for (Neighbours& neighbours : neighbours_) neighbours.Adopt(*now);
+  now_ = now;
 }
 
 void LinkMeter::Add(std::int64_t tick, const DecodedRow& row) {
-  ++rows_;
+  if (plain_) ++plain_rows_;
   for (const AgentConfig& agent : experiment_.agents) {
     const auto i = static_cast<std::size_t>(agent.id - 1);
     if (plain_) {  // the message sent at tick k - 1 travels with the state of tick k
@@ -44,7 +60,7 @@ void LinkMeter::Add(std::int64_t tick, const DecodedRow& row) {
 
 void LinkMeter::EdgesNow(std::vector<EdgeNow>& edges) const {
   edges.clear();
-  if (plain_) edges.resize(experiment_.graph.edges(), rows_ > 0 ? EdgeNow{EdgeNow::State::kHeard, 0} : EdgeNow());
+  if (plain_) edges.resize(experiment_.graph.edges(), plain_rows_ > 0 ? EdgeNow{EdgeNow::State::kHeard, 0} : EdgeNow());
   for (const Neighbours& neighbours : neighbours_) neighbours.AddEdgesTo(edges);
 }
 
@@ -52,17 +68,15 @@ std::vector<EdgeTraffic> LinkMeter::Result() const {
   std::vector<EdgeTraffic> traffic;
   for (int id = 1; id <= experiment_.size(); ++id) {
     const auto& may_hear = experiment_.graph.HeardBy(id);
-    const auto counts = plain_ ? std::vector<EdgeCount>() : neighbours_[static_cast<std::size_t>(id - 1)].counts();
+    const auto counts =
+        plain_ ? std::vector<EdgeCount>(may_hear.size()) : neighbours_[static_cast<std::size_t>(id - 1)].counts();
     for (std::size_t k = 0; k < may_hear.size(); ++k) {
       const auto from = static_cast<std::size_t>(may_hear[k].id - 1);
       EdgeTraffic edge{.hearer = id,
                        .heard = may_hear[k].id,
-                       .count = {},
+                       .count = counts[k],
                        .sends_messages = experiment_.agents[from].sends_messages};
-      if (plain_)
-        edge.count = {.sent = static_cast<std::uint64_t>(rows_), .numbers = sent_numbers_[from]};
-      else
-        edge.count = counts[k];
+      edge.count += {.sent = static_cast<std::uint64_t>(plain_rows_), .numbers = sent_numbers_[from]};
       traffic.push_back(edge);
     }
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "agent/neighbours.h"
@@ -23,6 +24,8 @@ struct EdgeTraffic {
 class LinkMeter {
  public:
   explicit LinkMeter(const Experiment& experiment);
+  /// Events have changed the experiment: from the next row on it is `now`.
+  void Adopt(const std::shared_ptr<const Experiment>& now);
   /// Adds the next tick.
   void Add(std::int64_t tick, const DecodedRow& row);
   /// One entry per edge, in increasing order of hearer, then of heard.
@@ -31,9 +34,12 @@ class LinkMeter {
   void EdgesNow(std::vector<EdgeNow>& edges) const;
 
  private:
+  void CountSamples();
+
   const Experiment& experiment_;
-  bool plain_;  // every sample of every edge arrives: rows need only be counted
-  std::int64_t rows_ = 0;
+  std::shared_ptr<const Experiment> now_;  // null before the first event
+  bool plain_;                             // every sample of every edge arrives: rows need only be counted
+  std::int64_t plain_rows_ = 0;
   std::vector<std::uint64_t> said_, sent_numbers_;  // if plain_, by id - 1: numbers in the last message; in all sent
   std::vector<Neighbours> neighbours_;              // if not plain_, by id - 1
   Exchange exchange_;

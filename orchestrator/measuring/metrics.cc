@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include "agent/laws.h"
 #include "agent/python.h"
@@ -18,8 +19,17 @@ Metrics::Metrics(const Experiment& experiment)
   const SuppressedPythonOutput suppressed;  // the laws run a second time; discard what they print
   if (experiment.output.fidelity) ideal_.emplace(experiment);
   accelerated_ = std::ranges::count_if(experiment.agents, std::not_fn(IsCommandedByVelocity));
-  const auto places_W = PlacesOf(experiment.law);
+  TakePlaces(experiment.law);
+}
+
+void Metrics::TakePlaces(const LawConfig& law) {
+  const auto places_W = PlacesOf(law);
   formation_.offsets_m.assign(places_W.begin(), places_W.end());
+}
+
+void Metrics::Adopt(std::shared_ptr<const Experiment> now) {
+  TakePlaces(now->law);
+  now_ = std::move(now);
 }
 
 void Metrics::Add(const DecodedRow& row) {
@@ -84,6 +94,7 @@ void Metrics::StepIdeal() try {
 void Metrics::MeasureFidelity(std::span<const Motion> motions) {
   if (ideal_ && rows_ > 0) StepIdeal();
   if (!ideal_) return;
+  if (now_) ideal_->Adopt(std::exchange(now_, nullptr));  // after the step that leads to this row
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const double deviation2 = (motions[i].p_WB - ideal_->p_W(static_cast<int>(i) + 1)).squaredNorm();
     squared_deviation_ += deviation2;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -53,6 +54,8 @@ struct Measured {
 class Metrics {
  public:
   explicit Metrics(const Experiment& experiment);
+  /// Events have changed the experiment: from the next row on it is `now`.
+  void Adopt(std::shared_ptr<const Experiment> now);
   /// Adds the next tick.
   void Add(const DecodedRow& row);
   Measured Result() const;
@@ -60,6 +63,7 @@ class Metrics {
   double disagreement_m() const { return agreement_.disagreement_m(); }
 
  private:
+  void TakePlaces(const LawConfig& law);
   void MeasureAgreement(std::span<const Motion> motions);
   void MeasureControl(std::span<const Command> commands);
   void MeasureSeparation(std::span<const Motion> motions);
@@ -71,6 +75,7 @@ class Metrics {
   Eigen::Vector3d Agreed(std::size_t i, const Motion& motion) const;
 
   const Experiment& experiment_;
+  std::shared_ptr<const Experiment> now_;  // not null: the ideal team has yet to adopt it
   std::optional<IdealTeam> ideal_;
   std::string ideal_failure_;
   std::int64_t rows_ = 0;

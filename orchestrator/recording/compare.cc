@@ -24,18 +24,23 @@ Comparison::Comparison(const std::string& recording, const RecordingPlan& plan) 
 
 void Comparison::Add(const FlownRow& row) {
   bool first = true;
+  const Row& bytes = row.bytes();
   for (const Topic& topic : plan_.topics) {
-    if (over_) return;
-    AddSample(row.bytes(), topic, first);
+    if (topic.kind == TopicKind::kEvent) {
+      for (const Row::Bytes& event : bytes.events) AddSample(topic, row.tick(), events_++, event, first);
+    } else {
+      AddSample(topic, row.tick(), row.tick(), SampleOf(bytes, topic), first);
+    }
     first = false;
   }
   if (!over_) ++ticks_;
 }
 
-void Comparison::AddSample(const Row& row, const Topic& topic, bool first_of_tick) {
-  const Row::Bytes& flown = SampleOf(row, topic);
+void Comparison::AddSample(const Topic& topic, std::int64_t tick, std::int64_t sequence, const Row::Bytes& flown,
+                           bool first_of_tick) {
+  if (over_) return;
   const std::string place =
-      fmt::format("{} at tick {} (t = {} s)", topic.Name(), row.tick, static_cast<double>(row.tick) / plan_.rate_hz);
+      fmt::format("{} at tick {} (t = {} s)", topic.Name(), tick, static_cast<double>(tick) / plan_.rate_hz);
   const McapContents::Message* recorded = reader_.Next();
   if (recorded == nullptr) {
     if (!first_of_tick && LossOf(reader_.contents()).empty()) Differ(place + " is missing: the recording ends there");
@@ -43,10 +48,10 @@ void Comparison::AddSample(const Row& row, const Topic& topic, bool first_of_tic
     return;
   }
   if (reader_.contents().channels.at(recorded->channel).topic != topic.Name() ||
-      recorded->log_time != StampNs(row.tick, plan_.rate_hz))
+      recorded->log_time != StampNs(tick, plan_.rate_hz))
     Differ(place + " is missing: the recording has " + Described(reader_, *recorded) + " there");
-  if (recorded->sequence != static_cast<std::uint32_t>(row.tick))
-    Differ(fmt::format("{} has sequence number {} in the recording, {} flown", place, recorded->sequence, row.tick));
+  if (recorded->sequence != static_cast<std::uint32_t>(sequence))
+    Differ(fmt::format("{} has sequence number {} in the recording, {} flown", place, recorded->sequence, sequence));
   if (const auto difference = FirstDifference(topic.kind, recorded->data, flown))
     Differ(fmt::format("{}: {} is {} in the recording, {} flown", place, difference->field, difference->first,
                        difference->second));

@@ -30,7 +30,9 @@ class Comparison final : public RowSink {
   std::int64_t ticks() const { return ticks_; }
 
  private:
-  void AddSample(const Row& row, const Topic& topic, bool first_of_tick);
+  /// Compares the topic's sample number `sequence`, from 0 on.
+  void AddSample(const Topic& topic, std::int64_t tick, std::int64_t sequence, const Row::Bytes& flown,
+                 bool first_of_tick);
   [[noreturn]] void Differ(const std::string& how);
 
   McapReader reader_;
@@ -39,6 +41,7 @@ class Comparison final : public RowSink {
   std::string difference_;
   std::uint64_t messages_ = 0;
   std::int64_t ticks_ = 0;
+  std::int64_t events_ = 0;
 };
 
 }  // namespace mascot

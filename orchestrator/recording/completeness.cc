@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <map>
 
 #include "bus/wire.h"
@@ -49,7 +50,7 @@ std::vector<bool> SendersOf(Section& config, std::size_t agents) {
   return senders;
 }
 
-/// The recorded topics (record.topics): each agent's command, message and state, then the clock.
+/// The recorded topics (record.topics): each agent's command, message and state, then the clock and the events.
 std::vector<Topic> TopicsOf(const std::vector<std::string>& patterns, const std::vector<bool>& sends_messages) {
   std::vector<Topic> topics;
   for (std::size_t i = 0; i < sends_messages.size(); ++i) {
@@ -59,6 +60,7 @@ std::vector<Topic> TopicsOf(const std::vector<std::string>& patterns, const std:
     topics.push_back(Topic::State(id));
   }
   topics.push_back(Topic::Clock());
+  topics.push_back(Topic::Event());
   std::erase_if(topics, [&](const Topic& topic) { return !IsRecorded(patterns, topic); });
   return topics;
 }
@@ -104,8 +106,8 @@ std::string TopicGap(const RecordingPlan& plan, const Counts& counts, bool ended
     const std::string name = topic.Name();
     const std::uint64_t count = counts.at(name);
     const bool may_miss_ticks = !plan.HasEveryTick(topic);
-    if (count == 0 && most->second > 0 && !(may_miss_ticks && ended_early))
-      return name + " is missing, which the experiment records";
+    const bool may_be_empty = topic.kind == TopicKind::kEvent || (may_miss_ticks && ended_early);
+    if (count == 0 && most->second > 0 && !may_be_empty) return name + " is missing, which the experiment records";
     if (count < most->second && !may_miss_ticks)
       return fmt::format("{} has {} messages, {} has {}", most->first, most->second, name, count);
   }
@@ -153,19 +155,63 @@ class Times {
   std::uint64_t next_ = 0;  // the first tick that may come next
 };
 
-/// The first message of the recording that has not the time of its tick. Empty: none.
-std::string TimeGap(const std::string& path, const McapContents& contents, const RecordingPlan& plan) {
+/// Checks the events: each has its number and the time of its tick, and there are as many as the states say.
+class EventsCheck {
+ public:
+  explicit EventsCheck(const RecordingPlan& plan) : plan_(plan) {}
+
+  /// What is wrong with the next event. Empty: nothing.
+  std::string TakeEvent(const McapContents::Message& message) {
+    mascot_msgs::msg::Event event;
+    Deserialize(message.data, event);
+    const std::uint64_t time_ns = StampNs(static_cast<std::int64_t>(event.tick()), plan_.rate_hz);
+    if (event.number() == ++events_ && time_ns == message.log_time && event.tick() < plan_.ticks) return "";
+    return fmt::format("{} has event {} of t = {:.9g} s, expected event {}", Topic::Event().Name(), event.number(),
+                       1e-9 * static_cast<double>(message.log_time), events_);
+  }
+  void TakeState(const McapContents::Message& message) {
+    constexpr std::size_t kEvents = 24;  // behind encapsulation, stamp, tick and agent (idl/mascot.idl)
+    std::uint32_t events = 0;
+    if (message.data.size() >= kEvents + sizeof events)
+      std::memcpy(&events, message.data.data() + kEvents, sizeof events);
+    said_ = std::max(said_, events);
+  }
+  /// What is wrong with their number, after the last message. Empty: nothing.
+  std::string Finish() const {
+    if (events_ == said_) return "";
+    return fmt::format("{} has {} events, the states say {}", Topic::Event().Name(), events_, said_);
+  }
+
+ private:
+  const RecordingPlan& plan_;
+  std::uint32_t events_ = 0, said_ = 0;
+};
+
+/// The first message of the recording that has not the time of its tick, or what is wrong with its events. Empty:
+/// nothing.
+std::string MessageGap(const std::string& path, const McapContents& contents, const RecordingPlan& plan) try {
   const auto topics = TopicsByName(plan);
   std::map<std::uint16_t, Times> times;
+  std::map<std::uint16_t, TopicKind> kinds;
   for (const auto& [id, channel] : contents.channels)
-    if (const auto topic = topics.find(channel.topic); topic != topics.end())
-      times.try_emplace(id, topic->second, plan);
+    if (const auto topic = topics.find(channel.topic); topic != topics.end()) {
+      kinds[id] = topic->second.kind;
+      if (topic->second.kind != TopicKind::kEvent) times.try_emplace(id, topic->second, plan);
+    }
+  const bool has_both = std::ranges::any_of(plan.topics, [](const Topic& t) { return t.kind == TopicKind::kEvent; }) &&
+                        std::ranges::any_of(plan.topics, [](const Topic& t) { return t.kind == TopicKind::kState; });
+  EventsCheck events(plan);
   std::string gap;
   ReadMcap(path, [&](const McapContents::Message& message) {
-    const auto channel = times.find(message.channel);
-    if (gap.empty() && channel != times.end()) gap = channel->second.Take(message.log_time);
+    const auto kind = kinds.find(message.channel);
+    if (!gap.empty() || kind == kinds.end()) return;
+    if (kind->second == TopicKind::kState) events.TakeState(message);
+    gap = kind->second == TopicKind::kEvent ? events.TakeEvent(message)
+                                            : times.at(message.channel).Take(message.log_time);
   });
-  return gap;
+  return gap.empty() && has_both ? events.Finish() : gap;
+} catch (const std::runtime_error& error) {  // of a sample that is none
+  return error.what();
 }
 
 /// The plan of the recording; nothing if no MASCOT experiment is attached.
@@ -186,7 +232,7 @@ std::string WhyIncomplete(const std::string& path, const McapContents& contents,
   if (!verdict.plan) return "no experiment is attached, which would say what there must be";
   if (!proof.gap.empty()) return proof.gap;
   if (std::string gap = EndGap(contents, *verdict.plan, proof.ticks); !gap.empty()) return gap;
-  return TimeGap(path, contents, *verdict.plan);
+  return MessageGap(path, contents, *verdict.plan);
 }
 
 }  // namespace

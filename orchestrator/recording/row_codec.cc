@@ -32,6 +32,17 @@ void DecodeSample(const Row& row, const Topic& topic, Sample& sample) try {
   throw std::runtime_error(fmt::format("tick {}: {}: {}", row.tick, topic.Name(), error.what()));
 }
 
+void DecodeEvents(const Row& row, DecodedRow& decoded) try {
+  decoded.events.clear();
+  mascot_msgs::msg::Event event;
+  for (const Row::Bytes& bytes : row.events) {
+    Deserialize(bytes, event);
+    decoded.events.push_back({static_cast<int>(event.number()), event.toml()});
+  }
+} catch (const std::runtime_error& error) {
+  throw std::runtime_error(fmt::format("tick {}: {}: {}", row.tick, Topic::Event().Name(), error.what()));
+}
+
 }  // namespace
 
 Row::Bytes& SampleOf(Row& row, const Topic& topic) { return SampleIn(row, topic); }
@@ -41,10 +52,12 @@ void Decode(const Row& row, DecodedRow& decoded) {
   mascot_msgs::msg::AgentState state;
   mascot_msgs::msg::AgentCommand command;
   mascot_msgs::msg::AgentMessage message;
+  DecodeEvents(row, decoded);
   for (std::size_t i = 0; i < decoded.motions.size(); ++i) {
     const int id = static_cast<int>(i) + 1;
     DecodeSample(row, Topic::State(id), state);
     decoded.motions[i] = FromWire(state);
+    decoded.events_so_far = static_cast<int>(state.events());
     decoded.messages[i].clear();
     if (!row.messages[i].empty()) {
       DecodeSample(row, Topic::Message(id), message);
@@ -61,9 +74,14 @@ const Row& RowEncoder::Encode(std::int64_t tick, const DecodedRow& decoded) {
   row_.tick = tick;
   ToWire(tick, rate, clock_);
   Serialize(clock_, row_.clock);
+  row_.events.resize(decoded.events.size());
+  for (std::size_t k = 0; k < decoded.events.size(); ++k) {
+    ToWire(tick, rate, decoded.events[k].number, decoded.events[k].toml, event_);
+    Serialize(event_, row_.events[k]);
+  }
   for (std::size_t i = 0; i < decoded.motions.size(); ++i) {
     const int id = static_cast<int>(i) + 1;
-    ToWire(tick, rate, id, decoded.motions[i], state_);
+    ToWire(tick, rate, id, decoded.events_so_far, decoded.motions[i], state_);
     Serialize(state_, row_.states[i]);
     ToWire(tick, rate, id, decoded.commands[i], command_);
     Serialize(command_, row_.commands[i]);

@@ -30,6 +30,7 @@ class RowEncoder {
   mascot_msgs::msg::AgentState state_;
   mascot_msgs::msg::AgentCommand command_;
   mascot_msgs::msg::AgentMessage message_;
+  mascot_msgs::msg::Event event_;
 };
 
 /// Sizes of single samples on the wire (bytes).

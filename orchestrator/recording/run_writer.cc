@@ -24,6 +24,7 @@ RunWriter::RunWriter(const Experiment& experiment, const RunFolder& folder, cons
     states_.push_back(AddChannel(Topic::State(id)));
   }
   clock_ = AddChannel(Topic::Clock());
+  event_ = AddChannel(Topic::Event());
   if (experiment.output.save_data || experiment.output.wants_pictures())  // which are made of it
     npz_.emplace(folder.File("states.npz"), experiment.size());
 }
@@ -53,6 +54,7 @@ void RunWriter::Add(const FlownRow& row) {
     WriteSample(states_[i], time_ns, bytes.states[i]);
   }
   WriteSample(clock_, time_ns, bytes.clock);
+  for (const Row::Bytes& event : bytes.events) WriteSample(event_, time_ns, event);
   mcap_.EndTick();
   if (npz_) {
     arrays_.Set(experiment_.time_s(row.tick()), row.decoded());

@@ -40,7 +40,7 @@ class RunWriter final : public RowSink {
   McapWriter mcap_;
   std::optional<StatesNpz> npz_;
   std::vector<std::optional<std::uint16_t>> commands_, messages_, states_;  // channels by id - 1
-  std::optional<std::uint16_t> clock_;
+  std::optional<std::uint16_t> clock_, event_;
   std::size_t topics_ = 0;
   std::int64_t rows_ = 0;
   StateRow arrays_;

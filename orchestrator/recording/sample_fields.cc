@@ -17,8 +17,8 @@ using SampleBytes = std::span<const std::uint8_t>;
 /// Names and values of the fields of one sample, in the order of its definition.
 class FieldList {
  public:
-  template <class Number>
-  void Add(const std::string& name, Number value) {
+  template <class Plain>
+  void Add(const std::string& name, const Plain& value) {
     fields_.emplace_back(name, fmt::format("{}", value));
   }
   void Add(const std::string& name, const builtin_interfaces::msg::Time& time) {
@@ -50,6 +50,7 @@ class FieldList {
 
 void AddFields(const mascot_msgs::msg::AgentState& state, FieldList& list) {
   list.AddHead(state);
+  list.Add("events", state.events());
   list.AddXyz("pose.position", state.pose().position());
   list.AddXyz("pose.orientation", state.pose().orientation());
   list.Add("pose.orientation.w", state.pose().orientation().w());
@@ -74,6 +75,13 @@ void AddFields(const mascot_msgs::msg::AgentMessage& message, FieldList& list) {
 
 void AddFields(const rosgraph_msgs::msg::Clock& clock, FieldList& list) { list.Add("clock", clock.clock()); }
 
+void AddFields(const mascot_msgs::msg::Event& event, FieldList& list) {
+  list.Add("stamp", event.stamp());
+  list.Add("tick", event.tick());
+  list.Add("number", event.number());
+  list.Add("toml", event.toml());
+}
+
 template <class Sample>
 FieldList FieldsAs(SampleBytes bytes) {
   Sample sample;
@@ -92,6 +100,8 @@ FieldList FieldsOf(TopicKind kind, SampleBytes bytes) {
       return FieldsAs<mascot_msgs::msg::AgentCommand>(bytes);
     case TopicKind::kMessage:
       return FieldsAs<mascot_msgs::msg::AgentMessage>(bytes);
+    case TopicKind::kEvent:
+      return FieldsAs<mascot_msgs::msg::Event>(bytes);
     default:
       return FieldsAs<rosgraph_msgs::msg::Clock>(bytes);
   }

@@ -27,6 +27,8 @@ The name of a key ends with its unit; the unit of a gain is beside its range. `[
 excludes a. Points and vectors are `[x, y, z]` in the world frame W (x east, y north, z up), unless the key says
 otherwise; B is the body frame (x forward, y left, z up). Agent i *hears* agent j if it receives the state of j.
 
+A *live* key may be set by an event (`[[events]]`, [events.md](events.md)) while a run goes on.
+
 Editors with TOML support (VS Code with Even Better TOML, and others based on taplo) complete and check the keys as you
 type if the file begins with `#:schema` and the path of [mascot.schema.json](mascot.schema.json), as the files in
 `configs/` do.
@@ -45,10 +47,16 @@ std::string DefaultText(const Key& key) {
   return std::string(key.otherwise);
 }
 
+/// The column `live` is left out if no key is.
 std::string TableOf(std::span<const Key> rows) {
-  std::string text = "\n| key | value | default | meaning |\n|---|---|---|---|\n";
+  const bool any_live = std::ranges::any_of(rows, &Key::live);
+  std::string text = any_live ? "\n| key | value | default | live | meaning |\n|---|---|---|---|---|\n"
+                              : "\n| key | value | default | meaning |\n|---|---|---|---|\n";
   for (const Key& key : rows)
-    text += fmt::format("| `{}` | {} | {} | {} |\n", key.name, Cell(ValueText(key)), Cell(DefaultText(key)),
+    text += fmt::format("| `{}` | {} | {} |{} {} |\n", key.name, Cell(ValueText(key)), Cell(DefaultText(key)),
+                        !any_live  ? ""
+                        : key.live ? " live |"
+                                   : " |",
                         Cell(key.meaning));
   return text;
 }

@@ -75,6 +75,7 @@ Json SchemaOf(const Key& key) {
   std::string description(key.meaning);
   if (!key.unit.empty()) description.append(" (").append(key.unit).append(")");
   if (!key.otherwise.empty()) description.append("; without it: ").append(key.otherwise);
+  if (key.live) description.append("; live: an event may change it");
   if (!description.empty()) schema["description"] = description;
   if (!key.fallback.empty()) schema["default"] = DefaultJson(key);
   return schema;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "experiment/motion.h"
@@ -16,6 +17,7 @@ struct Row {
   std::vector<Bytes> states;
   std::vector<Bytes> commands;
   std::vector<Bytes> messages;  ///< empty for agents that send none
+  std::vector<Bytes> events;    ///< those that take effect at this tick, in order
 
   explicit Row(int agents = 0)
       : states(static_cast<std::size_t>(agents)),
@@ -25,12 +27,20 @@ struct Row {
 
 /// The decoded samples of one tick, by id - 1.
 struct DecodedRow {
+  /// An event that takes effect at this tick.
+  struct Happening {
+    int number = 0;    ///< from 1 on, over the whole run
+    std::string toml;  ///< Event::Toml()
+  };
+
   explicit DecodedRow(int agents)
       : motions(static_cast<std::size_t>(agents)), commands(motions.size()), messages(motions.size()) {}
 
   std::vector<Motion> motions;
   std::vector<Command> commands;              ///< a missing command keeps the value of the previous row (zero at first)
   std::vector<std::vector<double>> messages;  ///< empty: none was sent
+  std::vector<Happening> events;              ///< in order
+  int events_so_far = 0;                      ///< number of the last event up to this tick; 0: there was none
 };
 
 }  // namespace mascot

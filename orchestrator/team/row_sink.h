@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
+#include "experiment/experiment.h"
 #include "orchestrator/team/row.h"
 
 namespace mascot {
@@ -20,6 +22,8 @@ class FlownRow {
 class RowSink {
  public:
   virtual ~RowSink() = default;
+  /// Events have changed the experiment: from the next row on it is `now`, which lives as long as the sink keeps it.
+  virtual void Adopt(const std::shared_ptr<const Experiment>& /*now*/) {}
   /// Takes the next row, which is valid during the call. If this throws, the run fails.
   virtual void Add(const FlownRow& row) = 0;
 };

@@ -15,6 +15,10 @@ class Team {
  public:
   explicit Team(const Experiment& experiment);
 
+  /// Events have changed the experiment: it is `now` from the next tick on.
+  void Adopt(const std::shared_ptr<const Experiment>& now) {
+    for (const auto& agent : agents_) agent->Adopt(now);
+  }
   /// Calls Agent::Decide of agent `id`. `motions`: states of all agents at this tick, by id - 1.
   Command Decide(int id, std::int64_t tick, std::span<const Motion> motions);
   /// Calls Agent::Want of agent `id` in the same way.

@@ -87,6 +87,11 @@ void WarnOfShortRun(const Experiment& experiment, Prediction& prediction) {
 
 /// Predicts the behaviour under the law, from the linear or pursuit form in its table row.
 void PredictLaw(const Experiment& experiment, Prediction& prediction) {
+  if (!experiment.events.empty()) {
+    prediction.silent =
+        fmt::format("events change the run, from {:g} s on", experiment.time_s(experiment.events.front().tick));
+    return;
+  }
   const std::optional<Timeline> timeline = TimelineOf(experiment);
   if (timeline) prediction.persistence = PersistenceOf(experiment, *timeline);
   const std::optional<LinearForm> linear = LinearFormOf(experiment.law);

@@ -21,6 +21,7 @@ Json ToJson(const LawEntry& law) {
                           {"required", parameter.required},
                           {"default", DefaultJson(parameter)},
                           {"range", ValueText(parameter)},
+                          {"live", parameter.live},
                           {"meaning", parameter.meaning}});
   }
   return {{"name", law.name},     {"summary", law.summary},       {"equation", law.equation}, {"theory", law.theory},
@@ -51,10 +52,12 @@ void Print(const LawEntry& law) {
   PrintWrapped("  equation", law.equation, 12);
   PrintWrapped("  theory", law.theory, 12);
   PrintWrapped("  source", law.source, 12);
-  std::cout << fmt::format("  keys of [law]; axes = \"{}\" unless said otherwise; * required\n", kAxes.Name(law.axes));
+  std::cout << fmt::format("  keys of [law]; axes = \"{}\" unless said otherwise; * required, ~ live\n",
+                           kAxes.Name(law.axes));
   for (const Key& parameter : law.parameters) {
     const std::string_view mark = parameter.required ? "*" : parameter.fallback.empty() ? "" : " = ";
-    const std::string key = fmt::format("{}{}{}", parameter.name, mark, parameter.fallback);
+    const std::string key =
+        fmt::format("{}{}{}{}", parameter.name, parameter.live ? "~" : "", mark, parameter.fallback);
     PrintWrapped(fmt::format("    {:<30} {:<21} ", key, ValueText(parameter)), parameter.meaning, 58);
   }
 }

@@ -41,6 +41,8 @@ class Mirror final : public mascot::Law {
     return want_W;
   }
 
+  void Set(mascot::PluginParams& params) { gain_ = params.Number("gain", 0, 10, 1.0); }
+
  private:
   Eigen::Vector3d made_for_;
   int leader_;

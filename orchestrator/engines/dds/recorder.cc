@@ -21,6 +21,9 @@ constexpr std::int64_t kBatch = 8;
 /// slow: the metrics evaluate the laws of all agents for it, one after the other.
 constexpr auto kLongEnough = std::chrono::milliseconds(50);
 
+// Places in a sample, after the encapsulation (idl/mascot.idl). An event has its number in the place of the agent.
+constexpr std::size_t kStamp = 4, kTick = 12, kAgent = 20, kEvents = 24;
+
 template <class T>
 T ReadAt(const RawReader::Bytes& bytes, std::size_t offset) {
   T value;
@@ -61,6 +64,9 @@ Recorder::Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed)
         [this, index, topic = topics[index]](const RawReader::Bytes& bytes, const Sender& sender) {
           OnSample(index, topic, bytes, sender.sequence);
         }));
+  readers_.push_back(std::make_unique<RawReader>(
+      domain, Topic::Event(),
+      [this](const RawReader::Bytes& bytes, const Sender& sender) { OnEvent(bytes, sender.sequence); }));
 }
 
 bool Recorder::Matched() const {
@@ -68,7 +74,6 @@ bool Recorder::Matched() const {
 }
 
 std::int64_t Recorder::TickOf(const Topic& topic, const RawReader::Bytes& bytes) const {
-  constexpr std::size_t kStamp = 4, kTick = 12, kAgent = 20;  // after the encapsulation; idl/mascot.idl
   if (topic.kind != TopicKind::kClock)
     return CheckedTick(topic, ReadAt<std::uint32_t>(bytes, kAgent), ReadAt<std::uint64_t>(bytes, kTick),
                        experiment_.ticks());
@@ -81,12 +86,19 @@ std::int64_t Recorder::TickOf(const Topic& topic, const RawReader::Bytes& bytes)
 
 void Recorder::OnSample(std::size_t index, const Topic& topic, const RawReader::Bytes& bytes, std::int64_t sequence) {
   const std::int64_t tick = TickOf(topic, bytes);
+  const std::int64_t events = topic.kind == TopicKind::kState ? ReadAt<std::uint32_t>(bytes, kEvents) : 0;
   const std::lock_guard lock(mutex_);
   const bool first = window_.newest_tick() < 0, in_time = tick >= window_.rows();
-  const bool wake = window_.Take(index, tick, bytes, sequence);
+  const bool wake = window_.Take(index, tick, bytes, sequence, events);
   if (first && in_time) started_ = WallClock::now();
   if (topic.kind == TopicKind::kCommand && in_time) last_command_ = WallClock::now();
   if (wake) domain_.Wake();
+}
+
+void Recorder::OnEvent(const RawReader::Bytes& bytes, std::int64_t sequence) {
+  const std::int64_t tick = CheckedTick(Topic::Event(), 0, ReadAt<std::uint64_t>(bytes, kTick), experiment_.ticks());
+  const std::lock_guard lock(mutex_);
+  if (window_.TakeEvent(tick, bytes, sequence)) domain_.Wake();
 }
 
 std::int64_t Recorder::Drain(bool give_up) {

@@ -38,6 +38,7 @@ class Recorder {
   using Time = std::chrono::steady_clock::time_point;
 
   /// `index`: index of the topic's reader in readers_.
+  void OnEvent(const RawReader::Bytes& bytes, std::int64_t sequence);
   void OnSample(std::size_t index, const Topic& topic, const RawReader::Bytes& bytes, std::int64_t sequence);
   /// Throws std::runtime_error unless the sample is of this topic's agent and of a tick of the run.
   std::int64_t TickOf(const Topic& topic, const RawReader::Bytes& bytes) const;

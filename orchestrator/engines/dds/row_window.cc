@@ -36,11 +36,14 @@ void RowWindow::Begin(Slot& slot, std::int64_t tick) const {
   slot.tick = tick;
   slot.samples = 0;
   slot.states = 0;
+  slot.events = 0;
+  slot.row.events.clear();
   for (auto& command : slot.row.commands) command.clear();
   for (auto& message : slot.row.messages) message.clear();
 }
 
-bool RowWindow::Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t sequence) {
+bool RowWindow::Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t sequence,
+                     std::int64_t events) {
   CheckSequence(index, sequence);
   if (tick < rows_) {  // its row was taken without it: only in real time
     ++lost_;
@@ -51,14 +54,26 @@ bool RowWindow::Take(std::size_t index, std::int64_t tick, std::span<const std::
   const Topic& topic = rules_.topics[index];
   SampleOf(slot.row, topic).assign(bytes.begin(), bytes.end());
   ++slot.samples;
+  slot.events = std::max(slot.events, events);
   if (topic.kind == TopicKind::kState || topic.kind == TopicKind::kClock) ++slot.states;
   newest_ = std::max(newest_, tick);
   if (slot.samples == rules_.topics.size()) ++complete_;
   return complete_ >= rules_.batch || tick == rules_.last_tick || newest_ - rows_ == rules_.patience;
 }
 
+bool RowWindow::TakeEvent(std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t sequence) {
+  if (sequence != newest_event_ + 1 || tick < rows_)
+    throw std::runtime_error(fmt::format("the recording is not complete: {}: event {} came after event {}, at tick {}",
+                                         Topic::Event().Name(), sequence, newest_event_, rows_));
+  newest_event_ = sequence;
+  Slot& slot = SlotOf(tick);
+  if (slot.tick != tick) Begin(slot, tick);
+  slot.row.events.emplace_back(bytes.begin(), bytes.end());
+  return true;
+}
+
 bool RowWindow::IsReady(const Slot& slot, bool give_up) const {
-  if (slot.tick != rows_) return false;
+  if (slot.tick != rows_ || slot.events > events_ + std::ssize(slot.row.events)) return false;
   if (slot.samples == rules_.topics.size()) return true;
   const bool states_complete = slot.states == rules_.agents + 1;
   return rules_.realtime && states_complete && (give_up || newest_ - slot.tick >= rules_.patience);
@@ -73,6 +88,8 @@ bool RowWindow::Next(bool give_up, Row& row) {
   std::swap(row.states, slot.row.states);
   std::swap(row.commands, slot.row.commands);
   std::swap(row.messages, slot.row.messages);
+  std::swap(row.events, slot.row.events);
+  events_ += std::ssize(row.events);
   ++rows_;
   return true;
 }

@@ -33,7 +33,11 @@ class RowWindow {
   /// Takes a sample of topic `index` of the rules; `sequence` is its writer's sequence number, from 1. Returns whether
   /// rows should be taken without delay. Throws std::runtime_error if an earlier sample of the topic is missing (but
   /// for commands and messages in real time), if the sample came twice, or if its tick is too far ahead.
-  bool Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t sequence);
+  /// `events`: of a state, how many events have taken effect up to its tick, without which no row of it is complete.
+  bool Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t sequence,
+            std::int64_t events = 0);
+  /// Takes event number `sequence`, which takes effect at `tick`. Returns and throws as Take() does.
+  bool TakeEvent(std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t sequence);
   /// Swaps the next row into `row` if it is complete; in real time also if it only lacks commands or messages and has
   /// waited `patience` ticks for them, or at all if `give_up`. Returns whether it did.
   bool Next(bool give_up, Row& row);
@@ -50,7 +54,8 @@ class RowWindow {
   struct Slot {
     std::int64_t tick = -1;
     std::size_t samples = 0;
-    int states = 0;  // states and clock
+    int states = 0;           // states and clock
+    std::int64_t events = 0;  // up to this tick, as its states say
     Row row;
   };
 
@@ -64,6 +69,8 @@ class RowWindow {
   std::vector<Slot> slots_;
   std::vector<std::int64_t> sequences_;  // newest sequence number, by topic
   std::int64_t rows_ = 0;
+  std::int64_t events_ = 0;  // in rows taken so far
+  std::int64_t newest_event_ = 0;
   std::int64_t complete_ = 0;  // rows completed since the last Next()
   std::int64_t newest_ = -1;
   std::uint64_t lost_ = 0;

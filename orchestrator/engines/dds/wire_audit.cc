@@ -40,6 +40,7 @@ bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic
     case TopicKind::kMessage:
       return (reads ? MayHear(experiment, agents, topic.agent) : own) && experiment.agent(topic.agent).sends_messages;
     case TopicKind::kClock:
+    case TopicKind::kEvent:
     case TopicKind::kExperiment:
       return reads;
     case TopicKind::kRequest:

@@ -1,0 +1,187 @@
+#include "experiment/events.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "experiment/experiment.h"
+
+namespace mascot {
+namespace {
+
+constexpr Range kGoTo_m = {-1e6, 1e6};
+constexpr std::array kKinds = {"set", "goto", "graph", "cut", "mend"};
+
+constexpr Key kGoToKeys[] = {
+    key::Integer("agent", 1, kMaxAgents, "a leader, or an agent that flies waypoints").Required(),
+    key::Vector3("position_m", kGoTo_m, "where to, in W").Required(),
+};
+
+constexpr Key kGraphKeys[] = {
+    key::Rows("edges", {1, kMaxAgents}, "`[i, j]`, ... (i hears j)").Required(),
+};
+
+constexpr Key kEventKeys[] = {
+    key::Number("at_s", {0, 1e6}, "when; a whole number of ticks").Required(),
+    key::Any("set", "live keys and their new values: `{ \"law.p_gain\" = 0.2 }`"),
+    key::Numbers("agents", {1, kMaxAgents}, "with set: whom it is for").Otherwise("all whom it can concern"),
+    key::Table("goto", kGoToKeys, "the agent's waypoints are replaced by this one"),
+    key::Table("graph", kGraphKeys, "these edges work from now on, of those that the file declares, and no others"),
+    key::Rows("cut", {1, kMaxAgents}, "`[i, j]`, ...: edges that work no more (i hears j)"),
+    key::Rows("mend", {1, kMaxAgents}, "`[i, j]`, ...: edges that work again"),
+};
+
+/// Puts the leaves of `value` into `set`, under dotted keys: { law = { p_gain = 1 } } is { "law.p_gain" = 1 }.
+void Flatten(const std::string& key, const Value& value, std::map<std::string, Value>& set) {
+  const auto* table = std::get_if<Value::Table>(&value.data);
+  if (table == nullptr || (table->empty() && !key.empty())) {
+    set[key] = value;
+    return;
+  }
+  for (const auto& [name, inner] : *table) Flatten(key.empty() ? name : key + "." + name, inner, set);
+}
+
+void ReadSet(Section& section, Event& event) {
+  if (section.Kind("set") != "table") {
+    section.Fail("set", "expected a table, got a " + section.Kind("set"));
+    return;
+  }
+  Flatten("", section.Free("set"), event.set);
+  if (event.set.empty()) section.Fail("set", "expected live keys and their new values, got none");
+}
+
+/// Whole numbers from 1 to `agents` (0: unknown), each once.
+std::vector<int> ReadIds(Section& section, int agents) {
+  std::vector<int> ids;
+  const std::vector<double> numbers = section.Numbers("agents");
+  for (std::size_t k = 0; k < numbers.size() && !section.Wrong("agents"); ++k) {
+    const int id = static_cast<int>(numbers[k]);
+    if (id != numbers[k] || (agents > 0 && id > agents))
+      section.FailRow("agents", k,
+                      "expected an agent in 1.." + std::to_string(agents) + ", got " + ShortestFloat(numbers[k]));
+    else if (std::ranges::find(ids, id) != ids.end())
+      section.FailRow("agents", k, "expected each agent once, got " + std::to_string(id) + " again");
+    else
+      ids.push_back(id);
+  }
+  if (!section.Wrong("agents")) section.Free("agents");  // whole numbers, as they were written
+  if (numbers.empty() && !section.Wrong("agents")) section.Fail("agents", "expected a list of agents, got nothing");
+  std::ranges::sort(ids);
+  return ids;
+}
+
+Event::Edges ReadEdges(Section& section, std::string_view key) {
+  Event::Edges edges;
+  const auto rows = section.Rows(key);
+  for (std::size_t k = 0; k < rows.size() && !section.Wrong(key); ++k) {
+    const auto whole = [](double number) { return number == std::floor(number); };
+    if (rows[k].size() == 2 && std::ranges::all_of(rows[k], whole))
+      edges.emplace_back(static_cast<int>(rows[k][0]), static_cast<int>(rows[k][1]));
+    else
+      section.FailRow(key, k, "expected an edge [i, j] (i hears j)");
+  }
+  return edges;
+}
+
+Event::GoTo ReadGoTo(Section section, int agents) {
+  Event::GoTo go_to;
+  go_to.agent = static_cast<int>(section.Integer("agent", 1, agents > 0 ? agents : kMaxAgents));
+  go_to.p_W = section.Vector3("position_m");
+  section.Done();
+  return go_to;
+}
+
+Event::Edges ReadGraph(Section section) {
+  Event::Edges edges = ReadEdges(section, "edges");
+  section.Done();
+  return edges;
+}
+
+/// Checks that the event is of exactly one kind.
+void CheckKind(Section& section) {
+  std::string found, all;
+  int count = 0;
+  for (const char* kind : kKinds) {
+    all += (all.empty() ? "" : ", ") + std::string(kind);
+    if (!section.Has(kind)) continue;
+    found += (found.empty() ? "" : " and ") + std::string(kind);
+    ++count;
+  }
+  if (count != 1) section.Fail("", "expected one of " + all + ", got " + (count == 0 ? "none" : found));
+  if (section.Has("agents") && !section.Has("set"))
+    section.Fail("agents", "expected only with set, got " + (count == 0 ? "it alone" : found));
+}
+
+/// The tick of at_s; 0 after a mistake.
+std::int64_t ReadTick(Section& section, int rate_hz, std::int64_t last_tick) {
+  constexpr double kTolerance = 1e-9;  // relative: 0.1 s at 30 Hz is 3 ticks although 0.1 is not a binary fraction
+  const double at_s = section.Number("at_s");
+  if (section.Wrong("at_s") || rate_hz == 0) return 0;
+  const double ticks = at_s * rate_hz;
+  if (std::abs(ticks - std::round(ticks)) > kTolerance * ticks) {
+    section.Fail("at_s", "expected a whole number of periods of control.rate_hz (" + std::to_string(rate_hz) +
+                             "), got " + ShortestFloat(at_s));
+  } else if (std::round(ticks) > static_cast<double>(last_tick)) {
+    section.Fail("at_s", "expected at most run.duration_s, got " + ShortestFloat(at_s));
+  }
+  return section.Wrong("at_s") ? 0 : std::llround(ticks);
+}
+
+std::string EdgesText(const Event::Edges& edges) {
+  Value::List list;
+  for (const auto& [hearer, heard] : edges)
+    list.push_back({Value::List{{std::int64_t{hearer}}, {std::int64_t{heard}}}});
+  return ToToml({std::move(list)});
+}
+
+std::string PointText(const Eigen::Vector3d& p) { return ToToml({Value::List{{p.x()}, {p.y()}, {p.z()}}}); }
+
+}  // namespace
+
+std::string Event::Toml() const {
+  std::string text;
+  if (!set.empty()) text += "set = " + ToToml({Value::Table(set.begin(), set.end())}) + "\n";
+  if (!agents.empty()) {
+    Value::List ids;
+    for (const int id : agents) ids.push_back({std::int64_t{id}});
+    text += "agents = " + ToToml({std::move(ids)}) + "\n";
+  }
+  if (go_to)
+    text += "goto = { agent = " + std::to_string(go_to->agent) + ", position_m = " + PointText(go_to->p_W) + " }\n";
+  if (graph) text += "graph = { edges = " + EdgesText(*graph) + " }\n";
+  if (!cut.empty()) text += "cut = " + EdgesText(cut) + "\n";
+  if (!mend.empty()) text += "mend = " + EdgesText(mend) + "\n";
+  return text;
+}
+
+std::span<const Key> EventKeys() { return kEventKeys; }
+
+Event ReadEvent(Section& section, int agents) {
+  Event event;
+  event.where = section.Where("");
+  CheckKind(section);
+  if (section.Has("set")) ReadSet(section, event);
+  if (section.Has("agents")) event.agents = ReadIds(section, agents);
+  if (section.Has("goto")) event.go_to = ReadGoTo(section.Child("goto"), agents);
+  if (section.Has("graph")) event.graph = ReadGraph(section.Child("graph"));
+  for (const auto& [key, edges] : {std::pair("cut", &event.cut), std::pair("mend", &event.mend)}) {
+    if (!section.Has(key)) continue;
+    *edges = ReadEdges(section, key);
+    if (edges->empty() && !section.Wrong(key)) section.Fail(key, "expected edges [i, j] (i hears j), got none");
+  }
+  return event;
+}
+
+std::vector<Event> ReadEvents(Section& document, int agents, int rate_hz, std::int64_t ticks) {
+  std::vector<Event> events;
+  for (Section& section : document.Children("events")) {
+    const std::int64_t tick = ReadTick(section, rate_hz, ticks);
+    events.push_back(ReadEvent(section, agents));
+    events.back().tick = tick;
+    section.Done();
+  }
+  std::ranges::stable_sort(events, {}, &Event::tick);
+  return events;
+}
+
+}  // namespace mascot

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiment/toml/section.h"
+
+namespace mascot {
+
+/// What changes a run while it goes on: one [[events]] table of the file, or the same keys given by hand. It takes
+/// effect at a tick, before anybody answers that tick.
+struct Event {
+  using Edges = std::vector<std::pair<int, int>>;  ///< hearer, heard
+  struct GoTo {
+    int agent = 0;
+    Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< where to (m)
+  };
+
+  std::int64_t tick = 0;
+  std::map<std::string, Value> set = {};  ///< live keys, dotted, and their new values
+  std::vector<int> agents = {};           ///< of `set`: whom it is for; empty: all whom it can concern
+  std::optional<GoTo> go_to = {};         ///< replaces that agent's waypoints by this one
+  std::optional<Edges> graph = {};        ///< the edges that work from now on, of those that the file declares
+  Edges cut = {};                         ///< edges that work no more
+  Edges mend = {};                        ///< edges that work again
+  std::string where = {};                 ///< place of the event, as messages say it: "a.toml:12:1", "event by hand"
+
+  /// Its keys but at_s as TOML, in a fixed form: the same for the event of a file and the same event given by hand.
+  std::string Toml() const;
+};
+
+/// The keys of [[events]].
+std::span<const Key> EventKeys();
+/// Reads `section`, one [[events]] table or the keys given by hand, all but at_s. `agents`: their number; 0: unknown
+/// because of a mistake. Which keys are live, and which values legal, LiveExperiment::Take() says.
+Event ReadEvent(Section& section, int agents);
+/// Reads [[events]], in order of time; events of one tick in the order of the file. `ticks`: the last tick.
+std::vector<Event> ReadEvents(Section& document, int agents, int rate_hz, std::int64_t ticks);
+
+}  // namespace mascot

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiment/events.h"
+#include "experiment/experiment.h"
+#include "experiment/read_experiment.h"
+
+namespace mascot {
+
+/// A key that an event may set in this experiment.
+struct LiveKey {
+  std::string path;  ///< dotted: "law.p_gain"
+  Key row;
+};
+
+/// An experiment while it flies: what its file says, changed by the events so far. What an event sets is read by the
+/// same rows as the file, so that it is checked, and refused, in the same way. Each state is an Experiment of its own,
+/// const and shared: whoever flies by one keeps it as long as needed.
+class LiveExperiment {
+ public:
+  /// `laws` null: the parameters of laws are neither read nor checked (the physics server). `checked`: the events were
+  /// taken before without a mistake: slow checks, which run the code of a law, are left out. Both must outlive this.
+  LiveExperiment(const Experiment& start, const LawCatalog* laws, bool checked);
+
+  /// The event of this tick that Event::Toml() is `toml` of. Throws ConfigError for other text.
+  Event Parse(std::int64_t tick, const std::string& toml, const std::string& where) const;
+  /// Takes the next event. Throws ConfigError, with event.where in front, and changes nothing, if it names a key that
+  /// is not live, a value that is not legal, an edge that the file does not declare, or an agent that flies no
+  /// waypoints.
+  std::shared_ptr<const Experiment> Take(const Event& event);
+  /// The experiment as it is now; null before the first event.
+  const std::shared_ptr<const Experiment>& now() const { return now_; }
+  /// The events taken so far.
+  const std::vector<Event>& events() const { return events_; }
+
+ private:
+  /// An agent's own table in the document, and the keys that stand in it.
+  struct Own {
+    int id = 0;
+    std::vector<std::string> keys;  ///< dotted: "law.p_gain"
+  };
+
+  std::vector<Override> Changes(const Event& event);
+  void Set(const Event& event, const std::string& key, const Value& value, std::vector<Override>& changes);
+  void SetFor(int agent, const std::string& where, const std::string& key, const Value& value,
+              std::vector<Override>& changes);
+  void CheckKey(const Event& event, const std::string& key) const;
+  /// Checks that the laws of those whom it concerns let their law.params change.
+  void CheckParams(const Event& event) const;
+  std::set<std::pair<int, int>> CutAfter(const Event& event) const;
+  const Experiment& current() const { return now_ ? *now_ : start_; }
+
+  const Experiment& start_;
+  const LawCatalog* laws_;
+  bool checked_;
+  std::string text_;  // the resolved experiment
+  std::vector<Own> own_;
+  std::vector<Override> changes_;  // of all events so far
+  std::vector<Event> events_;
+  std::shared_ptr<const Experiment> now_;
+};
+
+/// The keys that events may set in `experiment`, in the order of the file.
+std::vector<LiveKey> LiveKeysOf(const Experiment& experiment, const LawCatalog& laws);
+
+}  // namespace mascot

@@ -1,0 +1,303 @@
+// Events: what changes a run while it goes on, from exactly its tick on.
+#include "experiment/events.h"
+
+#include <gmock/gmock.h>
+
+#include "agent/laws.h"
+#include "experiment/live_experiment.h"
+#include "orchestrator/engines/inprocess.h"
+#include "orchestrator/team/row_sink.h"
+#include "tests/param_name.h"
+#include "tests/scratch.h"
+#include "tests/three_agents.h"
+
+namespace mascot {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr std::int64_t kTick = 50;  // of the events below: 0.5 s
+
+/// Keeps every row.
+class Rows final : public RowSink {
+ public:
+  void Add(const FlownRow& row) override { rows.push_back(row.decoded()); }
+  std::vector<DecodedRow> rows;
+};
+
+std::vector<DecodedRow> Fly(const std::string& toml) {
+  const Experiment experiment = Load(toml);
+  Rows sink;
+  const EngineResult result = RunInProcess(experiment, {&sink}, [] { return true; });
+  EXPECT_EQ(result.failure, "");
+  return sink.rows;
+}
+
+/// The first tick at which `of` of two runs differs; -1: none.
+template <class Of>
+std::int64_t FirstDifference(const std::vector<DecodedRow>& a, const std::vector<DecodedRow>& b, Of of) {
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k)
+    for (std::size_t i = 0; i < a[k].motions.size(); ++i)
+      if (of(a[k], i) != of(b[k], i)) return static_cast<std::int64_t>(k);
+  return -1;
+}
+
+Eigen::Vector3d CommandOf(const DecodedRow& row, std::size_t i) { return row.commands[i].a_limited_W; }
+Eigen::Vector3d PositionOf(const DecodedRow& row, std::size_t i) { return row.motions[i].p_WB; }
+
+std::string Event(const std::string& lines, const std::string& at_s = "0.5") {
+  return "[[events]]\nat_s = " + at_s + "\n" + lines + "\n";
+}
+
+// --- live keys --------------------------------------------------------------------------------------
+
+/// Three agents with a law, and an event that sets `key`. `command`, `position`: the first tick at which they differ
+/// from those of the run without it.
+struct Row {
+  std::string key, value;
+  std::string law = "name = 'consensus'\n";
+  std::string more = {};
+  std::int64_t command = kTick;
+  std::int64_t position = kTick + 1;
+  std::string name = key;
+};
+
+void PrintTo(const Row& row, std::ostream* out) { *out << row.key << " = " << row.value; }
+
+class LiveKeys : public testing::TestWithParam<Row> {};
+
+TEST_P(LiveKeys, ChangeTheRunFromTheirTickOn) {
+  const Row& row = GetParam();
+  const std::string base = Three(row.law) + row.more;
+  const auto without = Fly(base);
+  const auto with = Fly(base + Event("set = { \"" + row.key + "\" = " + row.value + " }"));
+  EXPECT_EQ(FirstDifference(without, with, CommandOf), row.command);
+  EXPECT_EQ(FirstDifference(without, with, PositionOf), row.position);
+}
+
+constexpr const char* kLeads = "name = 'consensus'\nleader = 1\nleader_waypoints_m = [[0.1, 0, 1], [5, 5, 2]]\n";
+constexpr const char* kFlies = "name = 'waypoint'\nwaypoints_m = [[5, 5, 2]]\n";
+constexpr const char* kForms = "name = 'formation'\noffsets_m = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]\n";
+constexpr const char* kMinmax = "name = 'minmax'\nleader = 2\nbeta = [2, 0.5, 1]\n";
+constexpr const char* kLossy = "[link]\nloss = 0.9\nhold_s = 1.0\n";
+constexpr const char* kBursts =
+    "[link]\ngilbert_elliott = { good_to_bad = 0.0, bad_to_good = 0.5 }\n";
+
+std::string NameOf(const testing::TestParamInfo<Row>& row) { return test::ParamName(row.param.name); }
+
+INSTANTIATE_TEST_SUITE_P(
+    OfLaws, LiveKeys,
+    testing::Values(Row{"law.p_gain", "2.0"}, Row{"law.v_gain", "2.0"}, Row{"law.beta", "2.0"},
+                    Row{.key = "law.p_gain", .value = "2.0", .law = kFlies, .name = "waypoint: p_gain"},
+                    Row{.key = "law.d_gain", .value = "2.0", .law = kFlies},
+                    Row{.key = "law.waypoints_m", .value = "[[1, 1, 1]]", .law = kFlies},
+                    Row{.key = "law.offsets_m", .value = "[[0, 0, 0], [0, 1, 0], [0, 2, 0]]", .law = kForms},
+                    Row{.key = "law.leader_p_gain", .value = "2.0", .law = kLeads},
+                    Row{.key = "law.leader_d_gain", .value = "2.0", .law = kLeads},
+                    Row{.key = "law.leader_waypoints_m", .value = "[[3, 3, 3]]", .law = kLeads},
+                    Row{.key = "law.leader_arrival_radius_m",
+                        .value = "100.0",
+                        .law = std::string(kLeads) + "leader_arrival_radius_m = 0.01\nleader_dwell_s = 0.1\n",
+                        .command = kTick + 10,
+                        .position = kTick + 11},
+                    Row{.key = "law.p_gain",
+                        .value = "2.0",
+                        .law = "name = 'velocity_consensus'\n",
+                        .name = "velocity_consensus: p_gain"}),
+    NameOf);
+
+INSTANTIATE_TEST_SUITE_P(
+    OfControl, LiveKeys,
+    testing::Values(Row{"control.max_acceleration_m_per_s2", "0.01"},
+                    Row{.key = "control.max_speed_m_per_s", .value = "0.01", .law = "name = 'velocity_consensus'\n"},
+                    Row{.key = "control.velocity_gain", .value = "1.0", .law = "name = 'velocity_consensus'\n"}),
+    NameOf);
+
+INSTANTIATE_TEST_SUITE_P(OfLinks, LiveKeys,
+                         testing::Values(Row{"link.loss", "1.0"}, Row{"link.delay_s", "0.05"},
+                                         Row{"graph.range_m", "0.5"},
+                                         Row{.key = "link.hold_s", .value = "0.0", .more = kLossy},
+                                         Row{.key = "link.gilbert_elliott.loss_good", .value = "1.0", .more = kBursts}),
+                         NameOf);
+
+// --- what events say --------------------------------------------------------------------------------
+
+/// The file's line of an event behind Three("name = 'consensus'\n").
+std::string RefusalOf(const std::string& event, const std::string& law = "name = 'consensus'\n") {
+  return Refusal(Three(law) + Event(event));
+}
+
+TEST(Events, AreRefusedWithTheirPlaceAndTheWordsOfTheFile) {
+  EXPECT_EQ(RefusalOf("set = { \"law.p_gain\" = -1.0 }"),
+            "folder/test.toml:11:1: law.p_gain: expected a number in [0, 1000], got -1.0");
+  EXPECT_EQ(RefusalOf("set = { \"law.p_gain\" = 'fast' }"),
+            "folder/test.toml:11:1: law.p_gain: expected a number in [0, 1000], got 'fast'");
+  EXPECT_EQ(RefusalOf("set = { \"law.p_gian\" = 1.0 }"),
+            "folder/test.toml:11:1: law.p_gian: unknown key (did you mean \"law.p_gain\"?)");
+  EXPECT_EQ(RefusalOf("set = { \"law.leader\" = 1 }"),
+            "folder/test.toml:11:1: law.leader: expected a live key, got one that no event changes");
+  EXPECT_EQ(RefusalOf("set = { \"agents.count\" = 4 }"),
+            "folder/test.toml:11:1: agents.count: expected a live key, got one that no event changes");
+  EXPECT_EQ(RefusalOf("set = {}"),
+            "folder/test.toml:13:7: events[0].set: expected live keys and their new values, got none");
+}
+
+TEST(Events, AreOfOneKind) {
+  EXPECT_EQ(RefusalOf(""), "folder/test.toml:11:1: events[0]: expected one of set, goto, graph, cut, mend, got none");
+  EXPECT_EQ(RefusalOf("cut = [[1, 2]]\nmend = [[1, 3]]"),
+            "folder/test.toml:11:1: events[0]: expected one of set, goto, graph, cut, mend, got cut and mend");
+  EXPECT_EQ(RefusalOf("cut = [[1, 2]]\nagents = [1]"),
+            "folder/test.toml:14:10: events[0].agents: expected only with set, got cut");
+}
+
+TEST(Events, NameAgentsAndEdgesThatExist) {
+  EXPECT_EQ(RefusalOf("set = { \"law.beta\" = 1 }\nagents = [4]"),
+            "folder/test.toml:14:11: events[0].agents[0]: expected an agent in 1..3, got 4.0");
+  EXPECT_EQ(RefusalOf("set = { \"link.loss\" = 1 }\nagents = [1]"),
+            "folder/test.toml:11:1: agents: expected none, got some: link.loss is the same for all");
+  EXPECT_EQ(RefusalOf("cut = [[2, 1]]"),
+            "folder/test.toml:11:1: expected an edge of the graph (i hears j), got [2, 1]");
+  EXPECT_EQ(RefusalOf("goto = { agent = 2, position_m = [1, 1, 1] }"),
+            "folder/test.toml:11:1: goto: expected an agent that flies waypoints, or a leader, got agent 2 of law "
+            "'consensus'");
+}
+
+TEST(Events, AreAtWholeTicksOfTheRun) {
+  const std::string base = Three("name = 'consensus'\n");
+  EXPECT_EQ(Refusal(base + Event("cut = [[1, 2]]", "0.123")),
+            "folder/test.toml:12:8: events[0].at_s: expected a whole number of periods of control.rate_hz (100), got "
+            "0.123");
+  EXPECT_EQ(Refusal(base + Event("cut = [[1, 2]]", "2.0")),
+            "folder/test.toml:12:8: events[0].at_s: expected at most run.duration_s, got 2.0");
+}
+
+TEST(Events, AreReadInOrderOfTime) {
+  const Experiment experiment = Load(Three("name = 'consensus'\n") + Event("cut = [[1, 2]]", "0.7") +
+                                     Event("mend = [[1, 2]]", "0.2") + Event("cut = [[1, 3]]", "0.2"));
+  std::vector<std::int64_t> ticks;
+  for (const auto& event : experiment.events) ticks.push_back(event.tick);
+  EXPECT_THAT(ticks, ElementsAre(20, 20, 70));
+  EXPECT_EQ(experiment.events[0].Toml(), "mend = [[1, 2]]\n");
+}
+
+TEST(Events, AreInTheResolvedFileAndReadBackAsTheSame) {
+  const Experiment experiment =
+      Load(Three("name = 'consensus'\nleader = 1\n") + Event("set = { law = { p_gain = 2 }, \"link.loss\" = 0.5 }") +
+           Event("set = { \"law.beta\" = 2 }\nagents = [3, 2]") +
+           Event("goto = { agent = 1, position_m = [1, 2, 3] }") + Event("graph = { edges = [[1, 2]] }"));
+  const Experiment again = Load(experiment.resolved);
+  EXPECT_EQ(again.resolved, experiment.resolved);
+  std::string events, events_again;
+  for (const auto& event : experiment.events) events += event.Toml();
+  for (const auto& event : again.events) events_again += event.Toml();
+  EXPECT_EQ(events,
+            "set = { \"law.p_gain\" = 2, \"link.loss\" = 0.5 }\n"
+            "set = { \"law.beta\" = 2 }\nagents = [2, 3]\n"
+            "goto = { agent = 1, position_m = [1.0, 2.0, 3.0] }\n"
+            "graph = { edges = [[1, 2]] }\n");
+  EXPECT_EQ(events_again, events);
+}
+
+// --- what events do ---------------------------------------------------------------------------------
+
+TEST(Events, ConcernThoseWhomTheyName) {
+  const std::string base = Three("name = 'consensus'\n");
+  const auto without = Fly(base), with = Fly(base + Event("set = { \"law.beta\" = 5.0 }\nagents = [1]"));
+  const auto one = [](const DecodedRow& row, std::size_t i) {
+    return i == 0 ? Eigen::Vector3d::Zero().eval() : CommandOf(row, i);
+  };
+  EXPECT_EQ(FirstDifference(without, with, CommandOf), kTick);
+  EXPECT_EQ(FirstDifference(without, with, one), -1) << "2 and 3 hear nobody";
+}
+
+TEST(Events, ReachAgentsWithALawOfTheirOwn) {
+  const std::string base =
+      Three("name = 'consensus'\nbeta = 1.0\n", "[[agents.override]]\nid = 1\nlaw = { beta = 2.0 }\n");
+  const Experiment experiment = Load(base + Event("set = { \"law.beta\" = 3.0 }"));
+  LiveExperiment live(experiment, &LawTable(), false);
+  const auto now = live.Take(experiment.events.front());
+  for (int id = 1; id <= 3; ++id) EXPECT_EQ(LinearFormOf(now->agent(id).law)->beta, 3.0) << id;
+}
+
+TEST(Events, ThatAreRefusedChangeNothing) {
+  const Experiment experiment = Load(Three("name = 'consensus'\n"));
+  LiveExperiment live(experiment, &LawTable(), false);
+  const auto refused = live.Parse(3, "set = { \"law.beta\" = -3.0 }\nagents = [1]", "event by hand");
+  try {
+    live.Take(refused);
+    ADD_FAILURE() << "was taken";
+  } catch (const ConfigError& error) {
+    EXPECT_STREQ(error.what(), "event by hand: agents.override[0].law.beta: expected a number in [0, 1000], got -3.0");
+  }
+  EXPECT_EQ(live.now(), nullptr);
+  const auto now = live.Take(live.Parse(3, "set = { \"law.beta\" = 3.0 }\nagents = [2]", "event by hand"));
+  EXPECT_EQ(LinearFormOf(now->agent(1).law)->beta, 1.0);
+  EXPECT_EQ(LinearFormOf(now->agent(2).law)->beta, 3.0);
+}
+
+TEST(Events, CutAndMendEdges) {
+  const std::string base = Three("name = 'consensus'\n");
+  const auto all = Fly(base), cut = Fly(base + Event("cut = [[1, 2], [1, 3]]") + Event("mend = [[1, 2]]", "0.7"));
+  EXPECT_EQ(FirstDifference(all, cut, CommandOf), kTick);
+  for (std::size_t k = 50; k < 70; ++k)
+    EXPECT_EQ(cut[k].commands[0].a_law_W.head<2>(), -cut[k].motions[0].v_WB.head<2>()) << "nobody is heard at " << k;
+  EXPECT_GT(cut[70].commands[0].a_law_W.x(), 0.1) << "2 is at x = 1, and is heard again";
+  const auto graph = Fly(base + Event("graph = { edges = [] }") + Event("graph = { edges = [[1, 2]] }", "0.7"));
+  EXPECT_EQ(FirstDifference(cut, graph, PositionOf), -1);
+}
+
+TEST(Events, SendALeaderAndThoseWhoFlyWaypointsElsewhere) {
+  for (const std::string& law : {std::string("name = 'consensus'\nleader = 1\n"), std::string(kLeads),
+                                 std::string(kLeads) + "leader_times_s = [0.1, 0.2]\n", std::string(kFlies),
+                                 std::string("name = 'minmax'\nleader = 1\nbeta = [0.5, 1, 1]\n")}) {
+    const std::string graph = law.find("minmax") != law.npos ? "[[2, 1], [3, 1]]" : "[[1, 2, 0.5], [1, 3]]";
+    std::string base =
+        "[run]\nduration_s = 12.0\n[agents]\ncount = 3\nmodel = 'double_integrator'\n"
+        "position_m = [[0, 0, 1], [1, 0, 2], [0, 2, 3]]\n[graph]\nedges = " +
+        graph + "\n[law]\n" + law;
+    const auto rows = Fly(base + Event("goto = { agent = 1, position_m = [2, 1, 1] }"));
+    EXPECT_LT((rows.back().motions[0].p_WB.head<2>() - Eigen::Vector2d(2, 1)).norm(), 0.05) << law;
+  }
+}
+
+TEST(Events, OfTheWindMoveQuadrotorsFromTheNextTickOn) {
+  const std::string base = "[run]\nduration_s = 1.0\n[agents]\ncount = 1\nposition_m = [[0, 0, 5]]\n";
+  const auto without = Fly(base);
+  for (const char* set : {"physics.wind.mean_m_per_s\" = [5, 0, 0]", "physics.wind.gust_std_m_per_s\" = 5.0"}) {
+    const auto with = Fly(base + Event("set = { \"" + std::string(set) + " }"));
+    EXPECT_EQ(FirstDifference(without, with, PositionOf), kTick + 1) << set;
+  }
+}
+
+TEST(Events, TellPythonLawsTheirNewParams) {
+  const std::string law =
+      "name = 'custom'\nparams = { gain = 1.0 }\npython = '''\n"
+      "def start(me, params):\n    me.gain = params['gain']\n"
+      "def set(me, params):\n    me.gain = -params['gain']\n"
+      "def control(t, me, neighbours):\n    return [me.gain, 0, 0]\n'''\n";
+  const auto rows = Fly(Three(law) + Event("set = { \"law.params.gain\" = 0.25 }"));
+  EXPECT_EQ(rows[49].commands[0].a_law_W.x(), 1.0);
+  EXPECT_EQ(rows[50].commands[0].a_law_W.x(), -0.25);
+  const std::string without =
+      "name = 'custom'\npython = '''\ndef control(t, me, neighbours):\n    return [0, 0, 0]\n'''\n";
+  EXPECT_THAT(Refusal(Three(without) + Event("set = { \"law.params.gain\" = 0.25 }")),
+              HasSubstr("law.params: expected a law that defines set(me, params), got none"));
+}
+
+TEST(Events, TellPluginsTheirNewParams) {
+  const auto library = [](const std::string& name) {
+    return "name = 'plugin'\nlibrary = '" MASCOT_BINARY_DIR "/tests/plugins/lib" + name + ".so'\n";
+  };
+  const auto without = Fly(Three(library("mirror"))),
+             with = Fly(Three(library("mirror")) + Event("set = { \"law.params.gain\" = 2.0 }"));
+  EXPECT_EQ(FirstDifference(without, with, CommandOf), kTick);
+  EXPECT_DOUBLE_EQ(with[50].commands[0].a_law_W.x() + with[50].motions[0].v_WB.x(),
+                   2 * (without[50].commands[0].a_law_W.x() + without[50].motions[0].v_WB.x()));
+  EXPECT_THAT(Refusal(Three(library("talker")) + Event("set = { \"law.params.gain\" = 2.0 }")),
+              HasSubstr("law.params: expected a law with Set(PluginParams&), got none"));
+}
+
+}  // namespace
+}  // namespace mascot
