@@ -40,7 +40,7 @@ int UnknownVerb(const std::string& word) {
   std::cerr << "; expected one of";
   for (std::string_view name : names) std::cerr << (name == names.front() ? " " : ", ") << name;
   std::cerr << "\n";
-  return kUsage;
+  return kExitUsage;
 }
 
 int Main(int argc, char** argv) {
@@ -54,7 +54,7 @@ int Main(int argc, char** argv) {
   }
   if (argc < 2) {
     std::cerr << app.help();
-    return kUsage;
+    return kExitUsage;
   }
   const bool is_verb = argv[1][0] == '-' || std::any_of(std::begin(kVerbs), std::end(kVerbs),
                                                         [&](const auto& verb) { return verb.name == argv[1]; });
@@ -65,7 +65,7 @@ int Main(int argc, char** argv) {
     return app.exit(asked_for_help);
   } catch (const CLI::ParseError& error) {
     std::cerr << "error: " << UsageText(app, error) << "\n";
-    return kUsage;
+    return kExitUsage;
   }
   const int code = action();
   FlushStandardOutput();

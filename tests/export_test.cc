@@ -158,7 +158,7 @@ TEST(Export, ACutRecordingIsExportedUpToTheCutWhereverThatIs) {
     WriteFile(cut, recording.substr(0, size));
     std::filesystem::remove(csv);
     const Said said = Export({cut, "--format", "csv"});
-    if (said.exit_code != kIncomplete) {  // nothing is whole
+    if (said.exit_code != kExitIncomplete) {  // nothing is whole
       EXPECT_FALSE(std::filesystem::exists(csv));
       EXPECT_THAT(said.err,
                   testing::AnyOf(StartsWith("error: " + cut + ": holds no whole tick: the file ends "),
@@ -226,7 +226,7 @@ TEST(Export, InRealTimeALateCommandIsHeldAsInTheRunsOwnStates) {
 TEST(Export, WithoutStatesThereIsNothingToExport) {
   const ScratchFolder scratch;
   Fly(scratch, "run", {"--set", "record.topics=['/clock', '/agent_1/*']"});
-  EXPECT_EQ(ErrorOf(kFailed, {scratch.File("run"), "--format", "csv"}),
+  EXPECT_EQ(ErrorOf(kExitFailed, {scratch.File("run"), "--format", "csv"}),
             scratch.File("run/run.mcap") + ": holds no /agent_2/state: record.topics left it out");
   EXPECT_FALSE(std::filesystem::exists(scratch.File("run/states.csv")));
 }
@@ -283,14 +283,14 @@ TEST(Export, AMissingSampleIsAnErrorThatNamesIt) {
   const ScratchFolder scratch;
   const std::string path = scratch.File("run.mcap");
   WriteRunWithout(path, Topic::State(2), 5, false, /*close=*/true);
-  EXPECT_EQ(ErrorOf(kFailed, {path, "--format", "csv"}),
+  EXPECT_EQ(ErrorOf(kExitFailed, {path, "--format", "csv"}),
             path + ": /agent_1/command has 301 messages, /agent_2/state has 300");
   WriteRunWithout(path, Topic::State(2), 5, false, /*close=*/false);
-  EXPECT_EQ(ErrorOf(kFailed, {path, "--format", "csv"}), path + ": tick 5 has no /agent_2/state");
+  EXPECT_EQ(ErrorOf(kExitFailed, {path, "--format", "csv"}), path + ": tick 5 has no /agent_2/state");
   WriteRunWithout(path, Topic::Command(1), 7, false, /*close=*/false);
-  EXPECT_EQ(ErrorOf(kFailed, {path, "--format", "npz"}), path + ": tick 7 has no /agent_1/command");
+  EXPECT_EQ(ErrorOf(kExitFailed, {path, "--format", "npz"}), path + ": tick 7 has no /agent_1/command");
   WriteRunWithout(path, Topic::Clock(), 9, /*whole_tick=*/true, /*close=*/true);
-  EXPECT_EQ(ErrorOf(kFailed, {path, "--format", "mat"}), path + ": tick 9 is missing");
+  EXPECT_EQ(ErrorOf(kExitFailed, {path, "--format", "mat"}), path + ": tick 9 is missing");
   std::vector<std::string> left;
   for (const auto& entry : std::filesystem::directory_iterator(scratch.path())) left.push_back(entry.path());
   EXPECT_THAT(left, ElementsAre(path)) << "nothing half-written";
@@ -310,7 +310,8 @@ TEST(Export, AGapInTheSequenceNumbersIsAnError) {
   const ScratchFolder scratch;
   const std::string path = scratch.File("run.mcap");
   WriteFile(path, {file.begin(), file.end()});
-  EXPECT_EQ(ErrorOf(kFailed, {path, "--format", "csv"}), path + ": /agent_1/state: gaps in its sequence numbers: 1");
+  EXPECT_EQ(ErrorOf(kExitFailed, {path, "--format", "csv"}),
+            path + ": /agent_1/state: gaps in its sequence numbers: 1");
 }
 
 TEST(Export, NamesTickAndTopicOfASampleThatIsNone) {
@@ -327,7 +328,7 @@ TEST(Export, NamesTickAndTopicOfASampleThatIsNone) {
     writer.Write(message.channel, message.log_time, message.data);
   });
   writer.Close();
-  EXPECT_THAT(ErrorOf(kFailed, {path, "--format", "csv"}),
+  EXPECT_THAT(ErrorOf(kExitFailed, {path, "--format", "csv"}),
               testing::MatchesRegex(path + ": tick 7: /agent_1/state: a sample of [0-9]+ bytes is no "
                                            "mascot_msgs::msg::dds_::AgentState_"));
 }
@@ -336,10 +337,10 @@ TEST(Export, AnExistingFileIsReplacedOnlyWithForce) {
   const ScratchFolder scratch;
   Fly(scratch, "run");
   const std::string states = scratch.File("run/states.npz"), before = ReadFile(states);
-  EXPECT_EQ(ErrorOf(kUsage, {scratch.File("run"), "--format", "npz"}),
+  EXPECT_EQ(ErrorOf(kExitUsage, {scratch.File("run"), "--format", "npz"}),
             states + ": expected a new file, got one that exists (--force replaces it)");
   WriteFile(states, "mine");
-  EXPECT_EQ(ErrorOf(kUsage, {scratch.File("run"), "--format", "npz", "--out", states}),
+  EXPECT_EQ(ErrorOf(kExitUsage, {scratch.File("run"), "--format", "npz", "--out", states}),
             "--out " + states + ": expected a new file, got one that exists (--force replaces it)");
   EXPECT_EQ(ReadFile(states), "mine");
   EXPECT_EQ(Export({scratch.File("run"), "--format", "npz", "--force"}).exit_code, 0);
@@ -350,7 +351,7 @@ TEST(Export, TheRecordingItselfIsNeverReplaced) {
   const ScratchFolder scratch;
   Fly(scratch, "run");
   const std::string recording = scratch.File("run/run.mcap");
-  EXPECT_EQ(ErrorOf(kUsage, {recording, "--format", "csv", "--force", "--out", recording}),
+  EXPECT_EQ(ErrorOf(kExitUsage, {recording, "--format", "csv", "--force", "--out", recording}),
             "--out " + recording + ": expected another file than the recording");
 }
 
@@ -363,30 +364,30 @@ TEST(Export, OutNamesAFileOrAFolderThatExists) {
   EXPECT_THAT(Export({scratch.File("run"), "--format", "csv", "--out", scratch.File("results/mine.txt")}).out,
               StartsWith(scratch.File("results/mine.txt")));
   for (const std::string wrong : {"none/states.csv", "none/"})
-    EXPECT_EQ(ErrorOf(kUsage, {scratch.File("run"), "--format", "csv", "--out", scratch.File(wrong)}),
+    EXPECT_EQ(ErrorOf(kExitUsage, {scratch.File("run"), "--format", "csv", "--out", scratch.File(wrong)}),
               "--out " + scratch.File(wrong) + ": expected a file in a folder that exists");
   std::filesystem::create_directory(scratch.File("run/states.csv"));
-  EXPECT_EQ(ErrorOf(kUsage, {scratch.File("run"), "--format", "csv", "--force"}),
+  EXPECT_EQ(ErrorOf(kExitUsage, {scratch.File("run"), "--format", "csv", "--force"}),
             scratch.File("run/states.csv") + ": expected a file, got a folder");
 }
 
 TEST(Export, AnythingButARecordingIsAUsageError) {
   const ScratchFolder scratch;
   const std::string path = scratch.File("run.mcap");
-  EXPECT_EQ(ErrorOf(kUsage, {path, "--format", "csv"}), "cannot open " + path + ": No such file or directory");
-  EXPECT_EQ(ErrorOf(kUsage, {scratch.path().string(), "--format", "csv"}),
+  EXPECT_EQ(ErrorOf(kExitUsage, {path, "--format", "csv"}), "cannot open " + path + ": No such file or directory");
+  EXPECT_EQ(ErrorOf(kExitUsage, {scratch.path().string(), "--format", "csv"}),
             scratch.path().string() + ": expected a run folder with one .mcap file, got 0");
   WriteFile(path, "no recording");
-  EXPECT_EQ(ErrorOf(kUsage, {path, "--format", "csv"}),
+  EXPECT_EQ(ErrorOf(kExitUsage, {path, "--format", "csv"}),
             path + ": is no MCAP file: it does not begin with MCAP's magic bytes");
   { McapWriter(path).Close(); }
-  EXPECT_EQ(ErrorOf(kUsage, {path, "--format", "csv"}),
+  EXPECT_EQ(ErrorOf(kExitUsage, {path, "--format", "csv"}),
             path + ": expected a run's recording, with its config.toml attached, got none");
   McapWriter somebodys(path);
   somebodys.Attach("config.toml", "application/toml",
                    "[run]\nname = \"x\"\nduration_s = 3.0\n[agents]\n[control]\nrate_hz = 100\n");
   somebodys.Close();
-  EXPECT_THAT(ErrorOf(kUsage, {path, "--format", "csv"}),
+  EXPECT_THAT(ErrorOf(kExitUsage, {path, "--format", "csv"}),
               StartsWith(path + " (config.toml):4:1: agents.count: expected "));
 }
 

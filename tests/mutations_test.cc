@@ -125,19 +125,19 @@ TEST(Mutations, AChangedExperimentIsReadOrRefusedWithAPlace) {
     WriteFile(path, mutant);
     const Said said = Call(SetUpCheck, {path});
     ++ends[said.exit_code];
-    ASSERT_THAT(said.exit_code, testing::AnyOf(kDone, kFailed, kUsage)) << "mutation " << k;
-    if (said.exit_code == kFailed) {  // a law in Python, which theory asks
+    ASSERT_THAT(said.exit_code, testing::AnyOf(kExitDone, kExitFailed, kExitUsage)) << "mutation " << k;
+    if (said.exit_code == kExitFailed) {  // a law in Python, which theory asks
       ASSERT_THAT(said.err, testing::ContainsRegex("error: tick [0-9]+: the law of agent [0-9]+ failed at t = "))
           << "mutation " << k;
     }
-    if (said.exit_code != kUsage) continue;
+    if (said.exit_code != kExitUsage) continue;
     for (const std::string& line : Lines(said.err))
       ASSERT_THAT(line, testing::ContainsRegex("^error: [^:]+:([0-9]+:[0-9]+: | too many mistakes)"))
           << "mutation " << k;
   }
   for (const auto& [code, count] : ends) RecordProperty("exit_" + std::to_string(code), count);
-  EXPECT_GT(ends[kDone], 0);
-  EXPECT_GT(ends[kUsage], 0);
+  EXPECT_GT(ends[kExitDone], 0);
+  EXPECT_GT(ends[kExitUsage], 0);
 }
 
 /// Recordings: of a real run; and one without checksums, of which every byte can be changed unnoticed.
@@ -178,14 +178,15 @@ TEST(Mutations, AChangedRecordingIsReadOrRefusedWithAPlace) {
     for (const auto& [set_up, arguments] : verbs) {
       const Said said = Call(set_up, arguments);
       ++ends[said.exit_code];
-      ASSERT_THAT(said.exit_code, testing::AnyOf(kDone, kFailed, kUsage, kIncomplete)) << "mutation " << k;
-      ASSERT_TRUE(said.exit_code == kDone || HasPlace(said.out + said.err))
+      ASSERT_THAT(said.exit_code, testing::AnyOf(kExitDone, kExitFailed, kExitUsage, kExitIncomplete))
+          << "mutation " << k;
+      ASSERT_TRUE(said.exit_code == kExitDone || HasPlace(said.out + said.err))
           << "mutation " << k << ": " << said.out << said.err;
     }
   }
   for (const auto& [code, count] : ends) RecordProperty("exit_" + std::to_string(code), count);
-  EXPECT_GT(ends[kDone], 0);
-  EXPECT_GT(ends[kFailed], 0);
+  EXPECT_GT(ends[kExitDone], 0);
+  EXPECT_GT(ends[kExitFailed], 0);
 }
 
 }  // namespace

@@ -57,12 +57,12 @@ TEST(Recover, KeepsEveryWholeMessageWhereverTheFileWasCut) {
     std::filesystem::remove(out);
     const Said said = Recover({cut, "--out", out});
     if (SamplesOf(cut).empty()) {
-      EXPECT_THAT(said.exit_code, testing::AnyOf(kFailed, kUsage));
+      EXPECT_THAT(said.exit_code, testing::AnyOf(kExitFailed, kExitUsage));
       EXPECT_FALSE(std::filesystem::exists(out));
       continue;
     }
     const Samples kept = SamplesOf(out);
-    EXPECT_EQ(said.exit_code, kept.size() == kSamples ? kDone : kIncomplete) << said.err;
+    EXPECT_EQ(said.exit_code, kept.size() == kSamples ? kExitDone : kExitIncomplete) << said.err;
     EXPECT_TRUE(ReadMcap(out).complete);
     EXPECT_EQ(kept, SamplesOf(cut)) << "cut at " << size;
     ++recovered;
@@ -76,7 +76,7 @@ TEST(Recover, TheIndependentReaderAcceptsWhatItMade) {
   const std::string cut = scratch.File("cut.mcap"), out = scratch.File("cut.recovered.mcap");
   WriteFile(cut, whole.substr(0, whole.size() / 2));
   const Said said = Recover({cut});
-  EXPECT_EQ(said.exit_code, kIncomplete) << said.err;
+  EXPECT_EQ(said.exit_code, kExitIncomplete) << said.err;
   const Ran checked = McapCheck(out);
   EXPECT_EQ(checked.exit_code, 0) << checked.output;
 }
@@ -96,7 +96,7 @@ TEST(Recover, InfoSaysThatARecoveredRunIsNotComplete) {
   const ScratchFolder scratch;
   const std::string whole = Fly(scratch);
   WriteFile(scratch.File("run.mcap"), whole.substr(0, whole.size() / 2));
-  EXPECT_EQ(Recover({scratch.File("run.mcap"), "--out", scratch.File("out.mcap")}).exit_code, kIncomplete);
+  EXPECT_EQ(Recover({scratch.File("run.mcap"), "--out", scratch.File("out.mcap")}).exit_code, kExitIncomplete);
   const Said info = Call(SetUpInfo, {scratch.File("out.mcap")});
   EXPECT_EQ(info.exit_code, 1);
   EXPECT_THAT(info.out,
@@ -112,7 +112,7 @@ TEST(Recover, ExportTakesARecoveredRunAsItTakesTheCutOne) {
   const auto exported = [&](const std::string& recording) {
     const Said said =
         Call(SetUpExport, {scratch.File(recording), "--format", "csv", "--out", scratch.File("x.csv"), "--force"});
-    EXPECT_EQ(said.exit_code, kIncomplete);
+    EXPECT_EQ(said.exit_code, kExitIncomplete);
     EXPECT_THAT(said.err, EndsWith("; exported what comes before\n"));
     return ReadFile(scratch.File("x.csv"));
   };
@@ -126,7 +126,7 @@ TEST(Recover, ACutRecoveredRunStillTellsItsFirstDamage) {
   Recover({scratch.File("a.mcap"), "--out", scratch.File("b.mcap")});
   const std::string once = ReadFile(scratch.File("b.mcap"));
   WriteFile(scratch.File("c.mcap"), once.substr(0, once.size() - 20));  // the summary only: the last tick is still lost
-  EXPECT_EQ(Recover({scratch.File("c.mcap"), "--out", scratch.File("d.mcap")}).exit_code, kDone);
+  EXPECT_EQ(Recover({scratch.File("c.mcap"), "--out", scratch.File("d.mcap")}).exit_code, kExitDone);
   EXPECT_TRUE(ReadFile(scratch.File("d.mcap")) == once);
 }
 
@@ -139,7 +139,7 @@ TEST(Recover, ARunWhoseSummaryAloneIsDamagedIsMadeAgainByteForByte) {
   WriteFile(scratch.File("changed.mcap"), changed);
   for (const char* const damaged : {"cut.mcap", "changed.mcap"}) {
     const Said said = Recover({scratch.File(damaged), "--out", scratch.File("out.mcap"), "--force"});
-    EXPECT_EQ(said.exit_code, kDone);
+    EXPECT_EQ(said.exit_code, kExitDone);
     EXPECT_THAT(said.out,
                 AllOf(HasSubstr(": kept 1255 messages, whole up to tick 250 of 250\n"), EndsWith("\nlost: nothing\n")));
     EXPECT_TRUE(ReadFile(scratch.File("out.mcap")) == whole) << damaged;
@@ -155,13 +155,13 @@ TEST(Recover, ARunThatEndedEarlyIsAsWholeAsItWas) {
   EXPECT_EQ(Call(SetUpUp, {scratch.File("fails.toml"), "--engine", "inprocess", "--out", scratch.File("run"), "--quiet",
                            "--set", "output.save_plot=false"})
                 .exit_code,
-            kFailed);
+            kExitFailed);
   const std::string whole = ReadFile(scratch.File("run/run.mcap"));
   const std::string data_end = std::string(1, '\x0f') + std::string("\x04\0\0\0\0\0\0\0", 8);
   for (const std::size_t size : {whole.size() - 1, whole.rfind(data_end)}) {  // all in front of the summary is there
     WriteFile(scratch.File("cut.mcap"), whole.substr(0, size));
     const Said said = Recover({scratch.File("cut.mcap"), "--out", scratch.File("out.mcap"), "--force"});
-    EXPECT_EQ(said.exit_code, kDone);
+    EXPECT_EQ(said.exit_code, kExitDone);
     EXPECT_THAT(said.out, HasSubstr(", whole up to tick 49 of 100\n"));
     EXPECT_TRUE(ReadFile(scratch.File("out.mcap")) == whole);
   }
@@ -173,7 +173,7 @@ TEST(Recover, AChangedByteEndsWhatIsKept) {
   changed[changed.size() / 2] ^= 1;
   WriteFile(scratch.File("changed.mcap"), changed);
   const Said said = Recover({scratch.File("changed.mcap")});
-  EXPECT_EQ(said.exit_code, kIncomplete);
+  EXPECT_EQ(said.exit_code, kExitIncomplete);
   EXPECT_THAT(said.out,
               ContainsRegex("whole up to tick [0-9]+ of 250\ndamage: the CRC of a chunk is wrong \\(record at "
                             "byte [0-9]+\\)\nlost: all messages behind the damage\n"));
@@ -183,7 +183,7 @@ TEST(Recover, AWholeRunIsLeftAlone) {
   const ScratchFolder scratch;
   Fly(scratch);
   const Said said = Recover({scratch.File("run")});
-  EXPECT_EQ(said.exit_code, kDone);
+  EXPECT_EQ(said.exit_code, kExitDone);
   EXPECT_EQ(said.out, scratch.File("run/run.mcap") + ": is whole; nothing is to be recovered\n");
   EXPECT_FALSE(std::filesystem::exists(scratch.File("run/run.recovered.mcap")));
 }
@@ -194,11 +194,11 @@ TEST(Recover, RefusesToReplaceAFile) {
   WriteFile(scratch.File("cut.mcap"), whole.substr(0, whole.size() / 2));
   WriteFile(scratch.File("cut.recovered.mcap"), "mine");
   const Said said = Recover({scratch.File("cut.mcap")});
-  EXPECT_EQ(said.exit_code, kUsage);
+  EXPECT_EQ(said.exit_code, kExitUsage);
   EXPECT_EQ(said.err, "error: " + scratch.File("cut.recovered.mcap") +
                           ": expected a new file, got one that exists (--force replaces it)\n");
   EXPECT_EQ(ReadFile(scratch.File("cut.recovered.mcap")), "mine");
-  EXPECT_EQ(Recover({scratch.File("cut.mcap"), "--out", scratch.File("cut.mcap"), "--force"}).exit_code, kUsage);
+  EXPECT_EQ(Recover({scratch.File("cut.mcap"), "--out", scratch.File("cut.mcap"), "--force"}).exit_code, kExitUsage);
 }
 
 TEST(Recover, NamesWhatIsNoRecording) {
@@ -207,7 +207,7 @@ TEST(Recover, NamesWhatIsNoRecording) {
   EXPECT_EQ(Recover({path}).err, "error: cannot open " + path + ": No such file or directory\n");
   WriteFile(path, "");
   Said said = Recover({path});
-  EXPECT_EQ(said.exit_code, kUsage);
+  EXPECT_EQ(said.exit_code, kExitUsage);
   EXPECT_EQ(said.err, "error: " + path +
                           ": expected a run's recording, with its config.toml attached, got none: the file ends inside "
                           "its first magic bytes (record at byte 0)\n");
@@ -228,7 +228,7 @@ TEST(Recover, SaysThatNoMessageIsWhole) {
   Fly(scratch);
   WriteFile(scratch.File("x.mcap"), Unclosed(ReadFile(scratch.File("run/config.toml")), {}));
   const Said said = Recover({scratch.File("x.mcap")});
-  EXPECT_EQ(said.exit_code, kFailed);
+  EXPECT_EQ(said.exit_code, kExitFailed);
   EXPECT_THAT(said.err, StartsWith("error: " + scratch.File("x.mcap") +
                                    ": holds no whole message: the file ends without a summary: it was not closed "));
 }
@@ -242,7 +242,7 @@ TEST(Recover, RefusesARecordingWithGaps) {
     mcap::Record(records, mcap::Op::kMessage).U16(1).U32(sequence).U64(0).U64(0).End();
   WriteFile(scratch.File("x.mcap"), Unclosed(ReadFile(scratch.File("run/config.toml")), records));
   const Said said = Recover({scratch.File("x.mcap")});
-  EXPECT_EQ(said.exit_code, kFailed);
+  EXPECT_EQ(said.exit_code, kExitFailed);
   EXPECT_EQ(said.err, "error: " + scratch.File("x.mcap") + ": /clock: gaps in its sequence numbers: 1\n");
 }
 
@@ -254,7 +254,7 @@ TEST(Recover, RefusesAChannelThatNoRunWrites) {
   mcap::Record(records, mcap::Op::kMessage).U16(1).U32(0).U64(0).U64(0).End();
   WriteFile(scratch.File("x.mcap"), Unclosed(ReadFile(scratch.File("run/config.toml")), records));
   const Said said = Recover({scratch.File("x.mcap")});
-  EXPECT_EQ(said.exit_code, kFailed);
+  EXPECT_EQ(said.exit_code, kExitFailed);
   EXPECT_EQ(said.err,
             "error: " + scratch.File("x.mcap") + ": /n: expected cdr with a schema in ros2msg, got 'json' with ''\n");
   EXPECT_FALSE(std::filesystem::exists(scratch.File("x.recovered.mcap")));

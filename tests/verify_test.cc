@@ -85,7 +85,7 @@ void CopyWithConfig(const std::string& recording, const std::string& copy, const
 TEST_F(Verify, ARunRepeatsBitForBit) {
   const std::string recording = Fly();
   const Said said = Check(File("run"));
-  EXPECT_EQ(said.exit_code, kDone);
+  EXPECT_EQ(said.exit_code, kExitDone);
   EXPECT_EQ(said.out, recording + ": the same, bit for bit: 251 ticks, 1255 messages\n");
   EXPECT_EQ(said.err, "");
   EXPECT_EQ(Check(recording).out, said.out) << "the recording alone";
@@ -116,7 +116,7 @@ TEST_F(Verify, NamesTopicTickFieldAndBothValuesOfTheFirstDifference) {
     return true;
   });
   const Said said = Check(changed);
-  EXPECT_EQ(said.exit_code, kFailed);
+  EXPECT_EQ(said.exit_code, kExitFailed);
   EXPECT_EQ(said.out, changed + ": differs: /agent_2/state at tick 57 (t = 0.57 s): pose.position.x is " + after +
                           " in the recording, " + before + " flown\n");
   EXPECT_NE(before, after);
@@ -127,7 +127,7 @@ TEST_F(Verify, NamesAMissingSample) {
   Copy(recording, changed, [](const std::string& topic, McapContents::Message& message) {
     return topic != "/agent_1/command" || message.sequence != 7;
   });
-  EXPECT_EQ(Check(changed).exit_code, kFailed);
+  EXPECT_EQ(Check(changed).exit_code, kExitFailed);
   EXPECT_EQ(Check(changed).out, changed +
                                     ": differs: /agent_1/command at tick 7 (t = 0.07 s) is missing: the recording has "
                                     "/agent_1/state of t = 0.07 s there\n");
@@ -146,14 +146,14 @@ TEST_F(Verify, ARecordingThatEndsInsideATickDiffers) {
     return topic != "/clock" || message.sequence != 250;
   });
   const Said said = Check(changed);
-  EXPECT_EQ(said.exit_code, kFailed);
+  EXPECT_EQ(said.exit_code, kExitFailed);
   EXPECT_THAT(said.out, EndsWith(": differs: /clock at tick 250 (t = 2.5 s) is missing: the recording ends there\n"));
 }
 
 TEST_F(Verify, ARecordingThatGoesOnAfterTheLastTickDiffers) {
   CopyWithConfig(Fly(), File("changed.mcap"), "duration_s = 2.5", "duration_s = 2.0");
   const Said said = Check(File("changed.mcap"));
-  EXPECT_EQ(said.exit_code, kFailed);
+  EXPECT_EQ(said.exit_code, kExitFailed);
   EXPECT_THAT(said.out,
               EndsWith(": differs: the recording goes on after tick 200, the last, with /agent_1/command of t "
                        "= 2.01 s\n"));
@@ -165,12 +165,12 @@ TEST_F(Verify, ACutRecordingIsComparedUpToTheCutWhereverThatIs) {
   for (std::size_t size = whole.size() / 8; size < whole.size(); size += whole.size() / 8) {
     WriteFile(cut, whole.substr(0, size));
     const Said said = Check(cut);
-    if (said.exit_code == kUsage) {
+    if (said.exit_code == kExitUsage) {
       EXPECT_THAT(said.err, ContainsRegex("expected a (run's recording|recording with messages), .*got none: the file "
                                           "ends .*record at byte [0-9]+\\)\n"));
       continue;
     }
-    EXPECT_EQ(said.exit_code, kIncomplete) << size;
+    EXPECT_EQ(said.exit_code, kExitIncomplete) << size;
     EXPECT_THAT(said.out, MatchesRegex(cut + ": the same, bit for bit: [0-9]+( of 251)? ticks, [0-9]+ messages\n" +
                                        cut + ": cut: the file ends .*record at byte [0-9]+\\)\n"));
     ++compared;
@@ -183,7 +183,7 @@ TEST_F(Verify, AChangedBitInTheFileIsDamageAndNoCut) {
   changed[changed.size() / 2] ^= 1;
   WriteFile(File("changed.mcap"), changed);
   const Said said = Check(File("changed.mcap"));
-  EXPECT_EQ(said.exit_code, kFailed);
+  EXPECT_EQ(said.exit_code, kExitFailed);
   EXPECT_THAT(said.out, ContainsRegex(": the same, bit for bit: [0-9]+ of 251 ticks, [0-9]+ messages\n.*: damaged: the "
                                       "CRC of a chunk is wrong \\(record at byte [0-9]+\\)\n"));
 }
@@ -191,9 +191,9 @@ TEST_F(Verify, AChangedBitInTheFileIsDamageAndNoCut) {
 TEST_F(Verify, ARecoveredRecordingIsStillACutOne) {
   const std::string whole = ReadFile(Fly());
   WriteFile(File("cut.mcap"), whole.substr(0, whole.size() / 2));
-  ASSERT_EQ(Call(SetUpRecover, {File("cut.mcap"), "--out", File("out.mcap")}).exit_code, kIncomplete);
+  ASSERT_EQ(Call(SetUpRecover, {File("cut.mcap"), "--out", File("out.mcap")}).exit_code, kExitIncomplete);
   const Said said = Check(File("out.mcap"));
-  EXPECT_EQ(said.exit_code, kIncomplete);
+  EXPECT_EQ(said.exit_code, kExitIncomplete);
   EXPECT_THAT(said.out, HasSubstr(": cut: recovered from a file that was damaged: the file ends inside a record "));
 }
 
@@ -203,17 +203,17 @@ TEST_F(Verify, AChangedConfigBesideTheRecordingIsNamed) {
   Change(config, "p_gain = 0.2", "p_gain = 0.3");
   WriteFile(File("run/config.toml"), config);
   const Said said = Check(File("run"));
-  EXPECT_EQ(said.exit_code, kFailed);
+  EXPECT_EQ(said.exit_code, kExitFailed);
   EXPECT_EQ(said.out, recording +
                           ": config.toml beside it is of another experiment: [law] p_gain = 0.3, the recording's says "
                           "p_gain = 0.2\n`orchestrator verify " +
                           recording + "` checks the recording alone\n");
-  EXPECT_EQ(Check(recording).exit_code, kDone);
+  EXPECT_EQ(Check(recording).exit_code, kExitDone);
 }
 
 TEST_F(Verify, OtherProcessesAndDeliveryAreNoOtherExperiment) {
   Fly(kTwo, {"--set", "network.agents_per_process=2", "--set", "network.delivery='bundled'"});
-  EXPECT_EQ(Check(File("run")).exit_code, kDone);
+  EXPECT_EQ(Check(File("run")).exit_code, kExitDone);
 }
 
 /// An experiment whose law runs `line` at every tick.
@@ -225,10 +225,10 @@ std::string WithLaw(const std::string& line) {
 
 TEST_F(Verify, ARunThatFailedIsComparedUpToItsEnd) {
   const std::string recording = Fly(WithLaw("1 / (t - 1)"));
-  EXPECT_EQ(flown_.exit_code, kFailed);
+  EXPECT_EQ(flown_.exit_code, kExitFailed);
   EXPECT_THAT(flown_.err, HasSubstr("ZeroDivisionError"));
   const Said said = Check(recording);
-  EXPECT_EQ(said.exit_code, kDone) << said.err;
+  EXPECT_EQ(said.exit_code, kExitDone) << said.err;
   EXPECT_EQ(said.out, recording + ": the same, bit for bit: 100 of 251 ticks, 500 messages\n" + recording +
                           ": the run ended early\n");
 }
@@ -238,7 +238,7 @@ TEST_F(Verify, ARecordingWhoseEndWasTakenAwayIsIncomplete) {
   Copy(recording, changed,
        [](const std::string& /*topic*/, McapContents::Message& message) { return message.sequence < 100; });
   const Said said = Check(changed);
-  EXPECT_EQ(said.exit_code, kFailed);
+  EXPECT_EQ(said.exit_code, kExitFailed);
   EXPECT_EQ(said.out, changed + ": the same, bit for bit: 100 of 251 ticks, 500 messages\n" + changed +
                           ": incomplete: it holds 100 ticks, expected 251: the run does not say that it ended early\n");
 }
@@ -248,7 +248,7 @@ TEST_F(Verify, ARunThatFailsWhereItDidNotIsADifference) {
   ASSERT_EQ(flown_.exit_code, 0) << flown_.err;
   CopyWithConfig(recording, File("changed.mcap"), "1 / (t - 9)", "1 / (t - 1)");
   const Said said = Check(File("changed.mcap"));
-  EXPECT_EQ(said.exit_code, kFailed);
+  EXPECT_EQ(said.exit_code, kExitFailed);
   EXPECT_THAT(said.out, ContainsRegex(": differs: it goes on after 100 of 251 ticks, 500 messages, where the run now "
                                       "fails: .*ZeroDivisionError"));
 }
@@ -259,7 +259,7 @@ TEST_F(Verify, ALawWhoseFileChangedIsFlownAsItWas) {
       Fly("[run]\nduration_s = 0.5\n[agents]\ncount = 2\nmodel = 'double_integrator'\n[law]\nname = 'custom'\nfile = "
           "'law.py'\n");
   WriteFile(File("law.py"), "def control(t, me, neighbours):\n    return [0.2, 0, 0]\n");
-  EXPECT_EQ(Check(File("run")).exit_code, kDone) << "the recording holds the text of the law";
+  EXPECT_EQ(Check(File("run")).exit_code, kExitDone) << "the recording holds the text of the law";
 }
 
 TEST_F(Verify, ALibraryThatChangedIsNamed) {
@@ -268,15 +268,15 @@ TEST_F(Verify, ALibraryThatChangedIsNamed) {
   Fly("[run]\nduration_s = 0.5\n[agents]\ncount = 2\nmodel = 'double_integrator'\n[law]\nname = 'plugin'\nlibrary = '" +
       mine + "'\n");
   ASSERT_EQ(flown_.exit_code, 0) << flown_.err;
-  EXPECT_EQ(Check(File("run")).exit_code, kDone);
+  EXPECT_EQ(Check(File("run")).exit_code, kExitDone);
   EXPECT_THAT(Check(File("run")).out, testing::Not(HasSubstr("note: ")));
   std::ofstream(mine, std::ios::app) << "more";  // the same code
   const Said said = Check(File("run"));
-  EXPECT_EQ(said.exit_code, kDone) << "it gives the same bits";
+  EXPECT_EQ(said.exit_code, kExitDone) << "it gives the same bits";
   EXPECT_THAT(said.out, StartsWith("note: " + mine + " has changed: recorded with crc32 "));
   std::filesystem::remove(mine);
   const Said gone = Check(File("run"));
-  EXPECT_EQ(gone.exit_code, kUsage);
+  EXPECT_EQ(gone.exit_code, kExitUsage);
   EXPECT_THAT(gone.err, HasSubstr("law.library: expected a shared library, got " + mine));
 }
 
@@ -291,7 +291,7 @@ TEST_F(Verify, ARecordingOfAnotherVersionSaysSo) {
   bytes.replace(bytes.rfind(data_end) + data_end.size(), 4, 4, '\0');
   WriteFile(File("theirs.mcap"), bytes);
   const Said said = Check(File("theirs.mcap"));
-  EXPECT_EQ(said.exit_code, kDone) << said.out;
+  EXPECT_EQ(said.exit_code, kExitDone) << said.out;
   EXPECT_EQ(said.out, "note: recorded by " + theirs + ", flown again by " + ours + "\n" + File("theirs.mcap") +
                           ": the same, bit for bit: 251 ticks, 1255 messages\n");
 }
@@ -299,7 +299,7 @@ TEST_F(Verify, ARecordingOfAnotherVersionSaysSo) {
 TEST_F(Verify, ARunInRealTimeIsRefusedInWords) {
   CopyWithConfig(Fly(), File("realtime.mcap"), "\"lockstep\"", "\"realtime\"");
   const Said said = Check(File("realtime.mcap"));
-  EXPECT_EQ(said.exit_code, kUsage);
+  EXPECT_EQ(said.exit_code, kExitUsage);
   EXPECT_EQ(said.err, "error: " + File("realtime.mcap") +
                           ": expected run.mode = \"lockstep\", got \"realtime\": such a run depends on the wall clock, "
                           "and never repeats bit for bit\n");
@@ -308,7 +308,7 @@ TEST_F(Verify, ARunInRealTimeIsRefusedInWords) {
 TEST_F(Verify, ARecordingWithoutMessagesIsRefused) {
   const std::string recording = Fly(kTwo, {"--set", "record.topics=[]"});
   const Said said = Check(recording);
-  EXPECT_EQ(said.exit_code, kUsage);
+  EXPECT_EQ(said.exit_code, kExitUsage);
   EXPECT_EQ(said.err,
             "error: " + recording + ": expected a recording with messages, got none; record.topics left them out\n");
 }
@@ -319,7 +319,7 @@ TEST_F(Verify, OnlyTheRecordedTopicsAreCompared) {
 }
 
 TEST_F(Verify, WhatIsNoRecordingIsRefused) {
-  EXPECT_EQ(Check(File("none.mcap")).exit_code, kUsage);
+  EXPECT_EQ(Check(File("none.mcap")).exit_code, kExitUsage);
   WriteFile(File("x.mcap"), "no recording");
   EXPECT_EQ(Check(File("x.mcap")).err,
             "error: " + File("x.mcap") + ": is no MCAP file: it does not begin with MCAP's magic bytes\n");

@@ -30,7 +30,7 @@ int Export(const ExportArgs& args) {
     std::cerr << "warning: " << recording.path()
               << ": record.topics left out commands; exported without acceleration_command, actuator\n";
   std::cout << target << ": " << recording.ticks() << " ticks, " << recording.agents() << " agents" << std::endl;
-  return recording.loss().empty() ? kDone : kIncomplete;
+  return recording.loss().empty() ? kExitDone : kExitIncomplete;
 }
 
 }  // namespace

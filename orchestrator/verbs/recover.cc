@@ -25,7 +25,7 @@ int Recover(const RecoverArgs& args) {
   const Repair repair(recording);
   if (repair.damage().empty()) {
     std::cout << recording << ": is whole; nothing is to be recovered" << std::endl;
-    return kDone;
+    return kExitDone;
   }
   const std::string name = std::filesystem::path(recording).stem().string() + ".recovered.mcap";
   const std::string target = NewFile(args.out, name, recording, args.force).string();
@@ -34,7 +34,7 @@ int Recover(const RecoverArgs& args) {
   std::cout << target << ": kept " << repair.messages() << " messages" << (end.empty() ? "" : ", " + end) << "\n"
             << "damage: " << repair.damage() << "\n"
             << "lost: " << (repair.keeps_all() ? "nothing" : "all messages behind the damage") << std::endl;
-  return repair.keeps_all() ? kDone : kIncomplete;
+  return repair.keeps_all() ? kExitDone : kExitIncomplete;
 }
 
 }  // namespace

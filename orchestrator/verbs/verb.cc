@@ -9,10 +9,10 @@ namespace mascot {
 
 int ExitCodeOf(const std::function<int()>& action) try { return action(); } catch (const ConfigError& error) {
   for (const std::string& mistake : error.mistakes()) std::cerr << "error: " << mistake << "\n";
-  return kUsage;
+  return kExitUsage;
 } catch (const std::exception& error) {
   std::cerr << "error: " << InWords(error) << "\n";
-  return kFailed;
+  return kExitFailed;
 }
 
 }  // namespace mascot

@@ -10,12 +10,12 @@ class App;
 namespace mascot {
 
 /// Exit codes. A verb that a signal interrupts returns 128 + signal.
-inline constexpr int kDone = 0;
-inline constexpr int kFailed = 1;      ///< the run failed; what was to be proved is not so
-inline constexpr int kUsage = 2;       ///< wrong arguments or experiment; thrown as ConfigError
-inline constexpr int kIncomplete = 3;  ///< done, as far as a recording goes that was cut
+inline constexpr int kExitDone = 0;
+inline constexpr int kExitFailed = 1;      ///< the run failed; what was to be proved is not so
+inline constexpr int kExitUsage = 2;       ///< wrong arguments or experiment; thrown as ConfigError
+inline constexpr int kExitIncomplete = 3;  ///< done, as far as a recording goes that was cut
 
-/// Calls `action`, and returns its exit code. What it throws becomes lines on stderr and kUsage or kFailed.
+/// Calls `action`, and returns its exit code. What it throws becomes lines on stderr and kExitUsage or kExitFailed.
 int ExitCodeOf(const std::function<int()>& action);
 
 /// A row of the verb table. `set_up` declares the options of the verb on `command`, and returns a function to call

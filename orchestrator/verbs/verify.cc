@@ -143,16 +143,16 @@ std::string Extent(const Subject& subject, const Comparison& comparison) {
 std::pair<std::string, int> StateOf(const Subject& subject) {
   const McapContents& contents = subject.contents;
   const std::string loss = LossOf(contents);
-  if (loss.empty()) return {"", kDone};
-  if (contents.damage.empty() || contents.cut) return {"cut: " + loss, kIncomplete};
-  return {"damaged: " + loss, kFailed};
+  if (loss.empty()) return {"", kExitDone};
+  if (contents.damage.empty() || contents.cut) return {"cut: " + loss, kExitIncomplete};
+  return {"damaged: " + loss, kExitFailed};
 }
 
 /// What is to be said of a whole file that does not differ as far as it goes, and the exit code.
 std::pair<std::string, int> EndOf(const Subject& subject) {
   const std::string gap = Judge(subject.file, subject.contents).reason;
-  if (!gap.empty()) return {"incomplete: " + gap, kFailed};
-  return {subject.ticks < subject.plan.ticks ? "the run ended early" : "", kDone};
+  if (!gap.empty()) return {"incomplete: " + gap, kExitFailed};
+  return {subject.ticks < subject.plan.ticks ? "the run ended early" : "", kExitDone};
 }
 
 /// Prints the outcome, and returns the exit code.
@@ -164,10 +164,10 @@ int Report(const Subject& subject, const Comparison& comparison, const EngineRes
   auto [state, code] = StateOf(subject);
   if (!comparison.difference().empty()) {
     say("differs: " + comparison.difference());
-    code = kFailed;
+    code = kExitFailed;
   } else if (!result.failure.empty()) {
     say("differs: it goes on after " + extent + ", where the run now fails: " + result.failure);
-    code = kFailed;
+    code = kExitFailed;
   } else if (result.signal != 0) {
     say("interrupted: the same so far, " + extent);
     code = 128 + result.signal;
@@ -187,7 +187,7 @@ int Verify(const VerifyArgs& args) {
   if (!change.empty()) {
     std::cout << subject.file << ": config.toml beside it is of another experiment: " << change << "\n"
               << "`orchestrator verify " << subject.file << "` checks the recording alone" << std::endl;
-    return kFailed;
+    return kExitFailed;
   }
   RefuseEngine(args.engine, experiment);
   PrintChanges(subject, experiment);
