@@ -8,6 +8,7 @@
 #include <random>
 #include <tuple>
 
+#include "orchestrator/formats/mcap/index.h"
 #include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/formats/mcap/records.h"
 #include "orchestrator/formats/mcap/writer.h"
@@ -399,6 +400,88 @@ TEST(Mcap, AFileThatCannotBeOpenedOrIsNoMcapIsAnError) {
 TEST(Mcap, AFullDiskIsAnErrorThatNamesTheFile) {
   const auto write = [] { McapWriter writer("/dev/full"); };
   EXPECT_THAT(write, ThrowsMessage<std::runtime_error>("cannot write /dev/full: No space left on device"));
+}
+
+/// The messages of all chunks, one chunk after the other.
+std::vector<McapContents::Message> MessagesOf(McapIndex& index) {
+  std::vector<McapContents::Message> messages;
+  for (const McapIndex::Chunk& chunk : index.chunks())
+    index.ReadChunk(chunk, [&](const auto& message) { messages.push_back(message); });
+  return messages;
+}
+
+MATCHER(IsSameMessage, "") {
+  const auto& [a, b] = arg;
+  return std::tie(a.channel, a.sequence, a.log_time, a.data) == std::tie(b.channel, b.sequence, b.log_time, b.data);
+}
+
+TEST(McapIndex, KnowsAndReadsWhatTheReaderDoes) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.File("run.mcap");
+  WriteSmallFile(path);
+  McapIndex index(path);
+  EXPECT_TRUE(index.is_indexed());
+  const McapContents contents = ReadMcap(path);
+  EXPECT_EQ(index.contents().attachments, contents.attachments);
+  EXPECT_EQ(index.contents().metadata, contents.metadata);
+  EXPECT_EQ(index.contents().messages, contents.messages);
+  EXPECT_TRUE(index.contents().complete);
+  for (const auto& [id, channel] : contents.channels) {
+    EXPECT_EQ(index.contents().channels.at(id).topic, channel.topic);
+    EXPECT_EQ(index.contents().channels.at(id).messages, channel.messages);
+  }
+  ASSERT_EQ(index.chunks().size(), 4u);
+  EXPECT_EQ(index.chunks()[0].last_ns, 3 * kMs);
+  EXPECT_THAT(index.chunks()[0].channels, ElementsAre(1, 2));
+  EXPECT_THAT(index.chunks()[3].channels, ElementsAre(1));
+  EXPECT_THAT(MessagesOf(index), testing::Pointwise(IsSameMessage(), Messages(path)));
+}
+
+TEST(McapIndex, AFileCutAtAnyByteIsReadThroughAndGivesEveryWholeMessage) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.File("cut.mcap"), whole = WriteSmallFile(scratch.File("whole.mcap"));
+  for (std::size_t size = 8; size < whole.size(); ++size) {
+    WriteFile(path, whole.substr(0, size));
+    McapIndex index(path);
+    EXPECT_FALSE(index.is_indexed());
+    EXPECT_EQ(index.contents().damage, ReadMcap(path).damage);
+    ASSERT_THAT(MessagesOf(index), testing::Pointwise(IsSameMessage(), Messages(path))) << "cut at " << size;
+  }
+}
+
+TEST(McapIndex, OpensALongFileByReadingLittleOfIt) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.File("long.mcap");
+  McapWriter writer(path);
+  const auto channel = writer.AddChannel(Numbers("/n"));
+  std::mt19937_64 random(1);
+  for (std::uint64_t k = 0; k < 200; ++k) {  // 20 KiB a second
+    writer.Write(channel, k * 1000 * kMs, Noise(random, 10 << 10));
+    writer.Write(channel, (k * 1000 + 999) * kMs, Noise(random, 10 << 10));
+    writer.Write(channel, (k * 1000 + 999) * kMs + kMs, {});
+    writer.EndTick();
+  }
+  writer.Close();
+  McapIndex index(path);
+  const std::uint64_t size = std::filesystem::file_size(path);
+  ASSERT_EQ(index.chunks().size(), 200u);
+  EXPECT_LT(index.bytes_read(), size / 100);
+  index.ReadChunk(index.chunks()[150], [](const auto&) {});
+  EXPECT_LT(index.bytes_read(), size / 50);
+}
+
+TEST(McapIndex, ADamagedChunkIsAnErrorThatSaysWhere) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.File("run.mcap");
+  std::string bytes = WriteSmallFile(path);
+  const std::uint64_t offset = McapIndex(path).chunks()[1].offset;
+  bytes[offset + 60] = static_cast<char>(bytes[offset + 60] ^ 1);
+  WriteFile(path, bytes);
+  McapIndex index(path);
+  EXPECT_TRUE(index.is_indexed());
+  EXPECT_THAT([&] { MessagesOf(index); },
+              ThrowsMessage<std::runtime_error>(path + ": the CRC of a chunk is wrong (record at byte " +
+                                                std::to_string(offset) + ")"));
 }
 
 TEST(Mcap, AFileThatCannotBeCreatedIsAnErrorThatNamesIt) {

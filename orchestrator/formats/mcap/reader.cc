@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
 #include "orchestrator/formats/input_file.h"
+#include "orchestrator/formats/mcap/chunk.h"
+#include "orchestrator/formats/mcap/contents_builder.h"
 #include "orchestrator/formats/mcap/records.h"
 #include "orchestrator/formats/mcap/zstd.h"
 
@@ -44,6 +45,7 @@ class McapReader::Impl {
     return found ? &message_ : nullptr;
   }
   const McapContents& contents() const { return contents_; }
+  std::uint64_t record_offset() const { return offset_; }
 
  private:
   /// Calls `read`. Damage ends the reading, and is described in the contents.
@@ -61,27 +63,18 @@ class McapReader::Impl {
   void ReadHeader();
   bool NextRecord();
   bool ReadDataRecord();
-  void ReadSchema(Fields body);
-  void ReadChannel(Fields body);
   void ReadMessage(Fields body);
   void OpenChunk(Fields body);
   bool ReadChunkRecord();
-  void ReadAttachment(Fields body);
-  void ReadMetadata(Fields body);
   void ReadDataEnd(Fields body);
   void ReadSummary();
   void ReadFooter(std::uint64_t summary_start, std::uint32_t crc);
   void CompareStatistics(Fields body) const;
 
-  struct Schema {
-    std::string name, encoding, text;
-    bool operator==(const Schema&) const = default;
-  };
-
   std::string path_;
   InputFile file_;
   McapContents contents_;
-  std::map<std::uint16_t, Schema> schemas_;
+  mcap::ContentsBuilder builder_{contents_};
   std::map<std::uint16_t, std::uint32_t> next_sequence_;  // expected next, by channel; starts at 0
   McapContents::Message message_;                         // reused: one allocation serves all messages
   bool over_ = false;                                     // the end of the file is read, or damage
@@ -148,55 +141,18 @@ bool McapReader::Impl::ReadDataRecord() {
     ReadDataEnd(body);
     return false;
   }
-  if (op_ == Code(Op::kSchema)) ReadSchema(body);
-  if (op_ == Code(Op::kChannel)) ReadChannel(body);
+  if (op_ == Code(Op::kSchema)) builder_.AddSchema(body);
+  if (op_ == Code(Op::kChannel)) builder_.AddChannel(body);
   if (op_ == Code(Op::kMessage)) ReadMessage(body);
-  if (op_ == Code(Op::kAttachment)) ReadAttachment(body);
-  if (op_ == Code(Op::kMetadata)) ReadMetadata(body);
+  if (op_ == Code(Op::kAttachment)) builder_.AddAttachment(body);
+  if (op_ == Code(Op::kMetadata)) builder_.AddMetadata(body);
   if (op_ == Code(Op::kFooter)) throw Malformed("a footer without the end of the data section");
   data_crc_ = Crc32(data_crc_, record_);
   return op_ == Code(Op::kMessage);
 }
 
-void McapReader::Impl::ReadSchema(Fields body) {
-  const std::uint16_t id = body.U16();
-  Schema schema;
-  schema.name = body.String();
-  schema.encoding = body.String();
-  const ByteSpan text = body.Raw(body.U32());
-  schema.text.assign(text.begin(), text.end());
-  const auto [known, added] = schemas_.try_emplace(id, schema);
-  if (!added && !(known->second == schema)) throw Malformed("schema " + std::to_string(id) + " is defined twice");
-}
-
-void McapReader::Impl::ReadChannel(Fields body) {
-  const std::uint16_t id = body.U16();
-  const std::uint16_t schema_id = body.U16();
-  McapContents::ChannelInfo channel;
-  channel.topic = body.String();
-  channel.message_encoding = body.String();
-  channel.metadata = body.Map();
-  if (schema_id != 0) {  // 0: the channel has no schema
-    const auto schema = schemas_.find(schema_id);
-    if (schema == schemas_.end()) throw Malformed("channel " + channel.topic + " has an unknown schema");
-    channel.schema_name = schema->second.name;
-    channel.schema_encoding = schema->second.encoding;
-    channel.schema_text = schema->second.text;
-  }
-  const auto [known, added] = contents_.channels.try_emplace(id, channel);
-  const McapContents::ChannelInfo& old = known->second;
-  if (!added && std::tie(old.topic, old.schema_name, old.message_encoding, old.metadata) !=
-                    std::tie(channel.topic, channel.schema_name, channel.message_encoding, channel.metadata))
-    throw Malformed("channel " + std::to_string(id) + " is defined twice");
-}
-
 void McapReader::Impl::ReadMessage(Fields body) {
-  message_.channel = body.U16();
-  message_.sequence = body.U32();
-  message_.log_time = body.U64();
-  body.U64();  // publish time
-  message_.data.assign(body.rest().begin(), body.rest().end());
-
+  mcap::ReadMessage(body, message_);
   const auto found = contents_.channels.find(message_.channel);
   if (found == contents_.channels.end())
     throw Malformed("a message on the unknown channel " + std::to_string(message_.channel));
@@ -211,63 +167,23 @@ void McapReader::Impl::ReadMessage(Fields body) {
   ++contents_.messages;
 }
 
-/// A complete chunk is read only if its size and CRC are right. The CRC of a chunk that is cut off
-/// cannot be compared, but cutting changes none of the bytes before the cut: whatever can be decompressed is read.
 void McapReader::Impl::OpenChunk(Fields body) {
-  body.U64();  // start time
-  body.U64();  // end time
-  const std::uint64_t size = body.U64();
-  const std::uint32_t crc = body.U32();
-  const std::string compression = body.String();
-  const std::uint64_t stored_size = body.U64();
-  const ByteSpan stored = whole_ ? body.Raw(stored_size) : body.rest();
-  if (size > mcap::kMaxChunkBytes)
-    throw Malformed("a chunk of " + std::to_string(size) + " bytes, above the limit of " +
-                    std::to_string(mcap::kMaxChunkBytes));
-  if (!compression.empty() && compression != "zstd") throw Malformed("unknown compression '" + compression + "'");
-
-  const ByteSpan raw = compression.empty() ? stored : decompressor_.Decompress(stored, static_cast<std::size_t>(size));
+  const mcap::Chunk chunk = mcap::OpenChunk(body, whole_, decompressor_);
   if (whole_) {
-    if (raw.size() != size)
-      throw Malformed("a chunk holds " + std::to_string(raw.size()) + " bytes, not " + std::to_string(size));
-    if (crc != 0 && crc != Crc32(0, raw)) throw Malformed("the CRC of a chunk is wrong");
     ++contents_.chunks;
-    contents_.compressed_bytes += stored.size();
-    contents_.uncompressed_bytes += raw.size();
+    contents_.compressed_bytes += chunk.stored_bytes;
+    contents_.uncompressed_bytes += chunk.records.size();
   }
-  chunk_ = raw;
+  chunk_ = chunk.records;
 }
 
 /// Reads the next record of the chunk. Returns whether it is a message.
 bool McapReader::Impl::ReadChunkRecord() {
-  Fields frame(chunk_);
-  const std::uint8_t op = frame.U8();
-  const std::uint64_t length = frame.U64();
-  const Fields body(frame.Raw(length));  // throws at the record in which the chunk is cut off
-  chunk_ = frame.rest();
-  if (op == Code(Op::kSchema)) ReadSchema(body);
-  if (op == Code(Op::kChannel)) ReadChannel(body);
+  const auto [op, body] = mcap::TakeRecord(chunk_);
+  if (op == Code(Op::kSchema)) builder_.AddSchema(body);
+  if (op == Code(Op::kChannel)) builder_.AddChannel(body);
   if (op == Code(Op::kMessage)) ReadMessage(body);
   return op == Code(Op::kMessage);
-}
-
-void McapReader::Impl::ReadAttachment(Fields body) {
-  const ByteSpan all = body.rest();
-  body.U64();  // log time
-  body.U64();  // creation time
-  const std::string name = body.String();
-  const std::string media_type = body.String();
-  const ByteSpan data = body.Raw(body.U64());
-  const ByteSpan covered = all.first(all.size() - body.rest().size());
-  const std::uint32_t crc = body.U32();
-  if (crc != 0 && crc != Crc32(0, covered)) throw Malformed("the CRC of attachment '" + name + "' is wrong");
-  contents_.attachments[name] = {data.begin(), data.end()};
-  contents_.media_types[name] = media_type;
-}
-
-void McapReader::Impl::ReadMetadata(Fields body) {
-  const std::string name = body.String();
-  contents_.metadata[name] = body.Map();
 }
 
 /// Reads the end of the data section, and the summary behind it.
@@ -294,8 +210,8 @@ void McapReader::Impl::ReadSummary() {
       return ReadFooter(summary_start, crc);
     }
     crc = Crc32(crc, record_);
-    if (op_ == Code(Op::kSchema)) ReadSchema(body);
-    if (op_ == Code(Op::kChannel)) ReadChannel(body);
+    if (op_ == Code(Op::kSchema)) builder_.AddSchema(body);
+    if (op_ == Code(Op::kChannel)) builder_.AddChannel(body);
     if (op_ == Code(Op::kChunkIndex)) ++chunk_indexes;
     if (op_ == Code(Op::kStatistics)) {
       CompareStatistics(body);
@@ -344,6 +260,8 @@ McapReader::~McapReader() = default;
 const McapContents::Message* McapReader::Next() { return impl_->Next(); }
 
 const McapContents& McapReader::contents() const { return impl_->contents(); }
+
+std::uint64_t McapReader::record_offset() const { return impl_->record_offset(); }
 
 McapContents ReadMcap(const std::string& path, const std::function<void(const McapContents::Message&)>& on_message) {
   McapReader reader(path);

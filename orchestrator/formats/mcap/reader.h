@@ -51,6 +51,8 @@ class McapReader {
   const McapContents::Message* Next();
   /// What was read so far; all that the file holds once Next() has returned null.
   const McapContents& contents() const;
+  /// Where in the file the record begins that holds the last message: a chunk, or the message itself.
+  std::uint64_t record_offset() const;
 
  private:
   class Impl;
