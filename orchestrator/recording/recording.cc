@@ -27,32 +27,38 @@ McapContents ReadRecording(const std::string& path) try { return ReadMcap(path);
   throw ConfigError({error.what()});
 }
 
-Recording::Recording(const std::string& run)
-    : path_(FindRecording(run)), contents_(ReadRecording(path_)), plan_(PlanOf(contents_, path_)) {
-  std::erase_if(plan_.topics, [](const Topic& topic) {
+RowsOf RowsIn(const McapContents& contents, const std::string& path) {
+  RowsOf rows{.plan = PlanOf(contents, path)};
+  std::erase_if(rows.plan.topics, [](const Topic& topic) {
     return topic.kind != TopicKind::kState && topic.kind != TopicKind::kCommand;
   });
   const auto is_recorded = [&](const Topic& topic) {
-    return std::ranges::find(plan_.topics, topic) != plan_.topics.end();
+    return std::ranges::find(rows.plan.topics, topic) != rows.plan.topics.end();
   };
-  has_commands_ = true;
-  for (int id = 1; id <= plan_.agents; ++id) {
+  rows.has_commands = true;
+  for (int id = 1; id <= rows.plan.agents; ++id) {
     if (!is_recorded(Topic::State(id)))
-      throw std::runtime_error(path_ + ": holds no " + Topic::State(id).Name() + ": record.topics left it out");
-    has_commands_ = has_commands_ && is_recorded(Topic::Command(id));
+      throw std::runtime_error(path + ": holds no " + Topic::State(id).Name() + ": record.topics left it out");
+    rows.has_commands = rows.has_commands && is_recorded(Topic::Command(id));
   }
-  const Proof proof = Prove(contents_, plan_);
-  if (!proof.gap.empty()) throw std::runtime_error(path_ + ": " + proof.gap);
-  ticks_ = static_cast<std::int64_t>(proof.ticks.value_or(0));
-  if (ticks_ == 0) throw std::runtime_error(path_ + ": holds no whole tick" + (loss().empty() ? "" : ": " + loss()));
+  const Proof proof = Prove(contents, rows.plan);
+  if (!proof.gap.empty()) throw std::runtime_error(path + ": " + proof.gap);
+  rows.ticks = static_cast<std::int64_t>(proof.ticks.value_or(0));
+  const std::string loss = LossOf(contents);
+  if (rows.ticks == 0) throw std::runtime_error(path + ": holds no whole tick" + (loss.empty() ? "" : ": " + loss));
+  return rows;
 }
 
+Recording::Recording(const std::string& run)
+    : path_(FindRecording(run)), contents_(ReadRecording(path_)), rows_(RowsIn(contents_, path_)) {}
+
 void Recording::ForEachRow(const std::function<void(const Row&)>& on_row) const {
-  RowAssembler assembler({path_, plan_.agents, plan_.rate_hz, ticks_, has_commands_ && !plan_.realtime}, on_row);
+  const RecordingPlan& plan = rows_.plan;
+  RowAssembler assembler({path_, plan.agents, plan.rate_hz, ticks(), has_commands() && !plan.realtime}, on_row);
   for (const auto& [id, channel] : contents_.channels) {
     const auto topic = Topic::Parse(channel.topic);
-    if (!topic || topic->agent < 1 || topic->agent > plan_.agents) continue;
-    if (topic->kind == TopicKind::kState || (topic->kind == TopicKind::kCommand && has_commands_))
+    if (!topic || topic->agent < 1 || topic->agent > plan.agents) continue;
+    if (topic->kind == TopicKind::kState || (topic->kind == TopicKind::kCommand && has_commands()))
       assembler.AddChannel(id, *topic);
   }
   ReadMcap(path_, [&assembler](const McapContents::Message& message) { assembler.Take(message); });

@@ -17,6 +17,16 @@ std::string FindRecording(const std::string& run);
 /// What `path` holds, as ReadMcap. Throws ConfigError if it cannot be read or is no MCAP file.
 McapContents ReadRecording(const std::string& path);
 
+/// The rows that a recording holds.
+struct RowsOf {
+  RecordingPlan plan = {};    ///< with the topics of states and commands only
+  bool has_commands = false;  ///< whether every agent's commands were recorded
+  std::int64_t ticks = 0;     ///< number of complete ticks, from 0 on
+};
+/// Throws ConfigError if it is not the recording of a run, and std::runtime_error if it has gaps, no complete tick, or
+/// not the states of all agents. `path` names it in messages.
+RowsOf RowsIn(const McapContents& contents, const std::string& path);
+
 /// Reads a recording tick by tick, also an incomplete one. Needs no other file of the run.
 class Recording {
  public:
@@ -27,13 +37,13 @@ class Recording {
   const std::string& path() const { return path_; }
   /// The resolved experiment as TOML; name() is its run.name.
   const std::string& config() const { return contents_.attachments.at("config.toml"); }
-  const std::string& name() const { return plan_.name; }
-  int agents() const { return plan_.agents; }
-  double time_s(std::int64_t tick) const { return static_cast<double>(tick) / plan_.rate_hz; }
+  const std::string& name() const { return rows_.plan.name; }
+  int agents() const { return rows_.plan.agents; }
+  double time_s(std::int64_t tick) const { return static_cast<double>(tick) / rows_.plan.rate_hz; }
   /// Whether every agent's commands were recorded.
-  bool has_commands() const { return has_commands_; }
+  bool has_commands() const { return rows_.has_commands; }
   /// Number of complete ticks: 0 to ticks() - 1.
-  std::int64_t ticks() const { return ticks_; }
+  std::int64_t ticks() const { return rows_.ticks; }
   /// Why later ticks may be missing (LossOf); empty if the recording was closed properly.
   std::string loss() const { return LossOf(contents_); }
 
@@ -44,9 +54,7 @@ class Recording {
  private:
   std::string path_;
   McapContents contents_;
-  RecordingPlan plan_;  // with state and command topics only
-  bool has_commands_ = false;
-  std::int64_t ticks_ = 0;
+  RowsOf rows_;
 };
 
 }  // namespace mascot
