@@ -11,7 +11,7 @@
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/run_writer.h"
 #include "tests/orchestrator.h"
-#include "tests/web_client.h"
+#include "tests/viewer.h"
 
 namespace mascot::test {
 namespace {
@@ -72,7 +72,7 @@ class Watched {
         prediction_(Predict(experiment)),
         meter_(experiment),
         view(experiment, prediction_, meter_, control,
-             {.port = 0, .page = MASCOT_SOURCE_DIR "/orchestrator/live/page", .engine = "inprocess"},
+             {.port = 0, .page = MASCOT_SOURCE_DIR "/orchestrator/live/page", .source = {.engine = "inprocess"}},
              [](const std::string&) {}),
         sinks_(std::move(more)) {
     sinks_.insert(sinks_.begin(), {&meter_, &view});
@@ -102,41 +102,6 @@ class Watched {
 
  private:
   std::vector<RowSink*> sinks_;
-};
-
-/// A viewer by hand: foxglove.sdk.v1.
-class Viewer : public WebClient {
- public:
-  explicit Viewer(const std::string& url) : WebClient(url) {
-    EXPECT_THAT(Upgrade(), StartsWith("HTTP/1.1 101"));
-    const auto advertised = NextWith(R"("op":"advertise")");
-    if (!advertised) return;
-    const Json message = Json::parse(advertised->payload);
-    for (const Json& channel : message["channels"]) channels_[channel["topic"].get<std::string>()] = channel["id"];
-  }
-  bool Offers(const std::string& topic) const { return channels_.contains(topic); }
-  void Subscribe(const std::string& topic) {
-    const std::uint32_t id = channels_.at(topic);
-    Send(kText, Json({{"op", "subscribe"}, {"subscriptions", {{{"id", id}, {"channelId", id}}}}}).dump());
-  }
-  /// The payload of the next message of a topic.
-  std::string NextOf(const std::string& topic) {
-    const std::string head = "\x01" + std::string(reinterpret_cast<const char*>(&channels_.at(topic)), 4);
-    for (auto frame = Next(); frame; frame = Next())
-      if (frame->payload.starts_with(head)) return frame->payload.substr(13);
-    return {};
-  }
-  Json NextJsonOf(const std::string& topic) { return Json::parse(NextOf(topic)); }
-  Json Ask(const Json& wish) {
-    const std::uint32_t numbers[] = {0, 1, 4};
-    Send(kBinary, "\x02" + std::string(reinterpret_cast<const char*>(numbers), sizeof numbers) + "json" + wish.dump());
-    for (auto frame = Next(); frame; frame = Next())
-      if (frame->payload.starts_with('\3')) return Json::parse(frame->payload.substr(frame->payload.find('{')));
-    return {};
-  }
-
- private:
-  std::map<std::string, std::uint32_t> channels_;
 };
 
 TEST(LiveView, DescribesTheExperiment) {

@@ -52,10 +52,10 @@ Foxglove::Connections ConnectionsOf(const Experiment& experiment) {
 
 }  // namespace
 
-Foxglove::About AboutTheRun(const Experiment& experiment, std::vector<Foxglove::Channel> ros) {
+Foxglove::About AboutTheRun(const Experiment& experiment, std::vector<Foxglove::Channel> ros, std::int64_t last_tick) {
   Foxglove::About about{.name = "mascot: " + experiment.run.name,
                         .session = NewSession(),
-                        .end_ns = StampNs(experiment.ticks(), experiment.control.rate_hz),
+                        .end_ns = StampNs(last_tick, experiment.control.rate_hz),
                         .channels = {JsonChannel("/ui/experiment", "object"), JsonChannel("/ui/frame", "object"),
                                      JsonChannel("/ui/events", "array")},
                         .connections = [&experiment] { return ConnectionsOf(experiment); },

@@ -29,10 +29,18 @@ SocketOptions OptionsOf(const LiveView::Options& options) {
 
 LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
                    RunControl& control, const Options& options, std::function<void(const std::string&)> log)
+    : LiveView(experiment, prediction, &meter, control, options, std::move(log)) {}
+
+LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, RunControl& control,
+                   const Options& options, std::function<void(const std::string&)> log)
+    : LiveView(experiment, prediction, nullptr, control, options, std::move(log)) {}
+
+LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, const RunMeter* meter,
+                   RunControl& control, const Options& options, std::function<void(const std::string&)> log)
     : experiment_(experiment),
       prediction_(prediction),
       meter_(meter),
-      engine_(options.engine),
+      source_(options.source),
       pages_(options.page),
       newest_(experiment.size()),
       state_{.pace = options.pace},
@@ -40,9 +48,11 @@ LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, c
       shown_state_(state_),
       ros_(experiment),
       ros_channels_(ros_.channels().size()),
-      experiment_json_(Shared(ExperimentJson(experiment, prediction, "run", engine_, {}))),
+      experiment_json_(Shared(ExperimentJson(experiment, prediction, source_, {}))),
       events_json_(Shared(EventsJson(experiment, {}))),
-      foxglove_(AboutTheRun(experiment, ros_.channels()), *this),
+      foxglove_(
+          AboutTheRun(experiment, ros_.channels(), source_.recorded ? source_.recorded->last_tick : experiment.ticks()),
+          *this),
       server_(OptionsOf(options), *this, std::move(log)),
       asker_(control) {
   server_.Start();
@@ -52,9 +62,15 @@ void LiveView::Add(const FlownRow& row) {
   const std::lock_guard lock(mutex_);
   newest_.tick = row.tick();
   newest_.decoded = row.decoded();
-  newest_.disagreement_m = meter_.disagreement_m();
-  if (experiment_.graph.edges() <= kMostEdgesShown) meter_.EdgesNow(newest_.edges);
-  is_new_ = true;
+  newest_.disagreement_m = meter_->disagreement_m();
+  if (experiment_.graph.edges() <= kMostEdgesShown) meter_->EdgesNow(newest_.edges);
+  row_is_new_ = is_new_ = true;
+}
+
+void LiveView::Take(const ShownRow& row) {
+  const std::lock_guard lock(mutex_);
+  newest_ = row;
+  row_is_new_ = is_new_ = true;
 }
 
 void LiveView::SetState(const RunState& state) {
@@ -63,15 +79,32 @@ void LiveView::SetState(const RunState& state) {
   is_new_ = true;
 }
 
-void LiveView::OnEvent(const ShownEvent& event, const Experiment& now, const std::vector<LiveKey>& keys) {
-  server_.Post([this, event, json = Shared(ExperimentJson(now, prediction_, "run", engine_, keys)), keys] {
+void LiveView::OnEvent(const ShownEvent& event, const Experiment& now, const std::vector<ShownKey>& keys) {
+  SetExperiment(now, keys);
+  server_.Post([this, event] {
     events_.push_back(event);
+    PublishEvents();
+  });
+}
+
+void LiveView::SetEvents(std::vector<ShownEvent> events) {
+  server_.Post([this, events = std::move(events)]() mutable {
+    events_ = std::move(events);
+    PublishEvents();
+  });
+}
+
+void LiveView::PublishEvents() {
+  events_json_ = Shared(EventsJson(experiment_, events_));
+  foxglove_.Publish(kEventsChannel, shown_ns(), events_json_);
+}
+
+void LiveView::SetExperiment(const Experiment& now, const std::vector<ShownKey>& keys) {
+  server_.Post([this, json = Shared(ExperimentJson(now, prediction_, source_, keys)), keys] {
     experiment_json_ = json;
-    events_json_ = Shared(EventsJson(experiment_, events_));
     foxglove_.Publish(kExperimentChannel, shown_ns(), experiment_json_);
-    foxglove_.Publish(kEventsChannel, shown_ns(), events_json_);
     std::vector<Foxglove::Parameter> parameters;
-    for (const LiveKey& key : keys) parameters.push_back({key.name, Foxglove::Json::parse(key.value, nullptr, false)});
+    for (const ShownKey& key : keys) parameters.push_back({key.name, Foxglove::Json::parse(key.value, nullptr, false)});
     foxglove_.SetParameters(std::move(parameters));
   });
 }
@@ -105,7 +138,7 @@ void LiveView::OnSubscribe(ClientId client, Foxglove::ChannelId channel) {
 bool LiveView::TakeNewest() {
   const std::lock_guard lock(mutex_);
   if (!std::exchange(is_new_, false)) return false;
-  if (newest_.tick > shown_.tick) std::swap(newest_, shown_);
+  if (std::exchange(row_is_new_, false)) std::swap(newest_, shown_);
   const double real_time_factor = shown_state_.real_time_factor;
   shown_state_ = state_;
   shown_state_.real_time_factor = real_time_factor;
@@ -113,6 +146,10 @@ bool LiveView::TakeNewest() {
 }
 
 void LiveView::MeasurePace() {
+  if (source_.recorded) {  // plays at its speed, and may jump
+    shown_state_.real_time_factor = shown_state_.phase == RunState::Phase::kRunning ? shown_state_.pace : 0;
+    return;
+  }
   const auto now = WallClock::now();
   if (measured_at_ && now - *measured_at_ < kPaceWindow) return;
   if (measured_at_) {

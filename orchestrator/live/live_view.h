@@ -22,16 +22,16 @@
 
 namespace mascot {
 
-/// A page to watch and touch a run, and the Foxglove WebSocket protocol, on one port. The run's thread only copies each
-/// row; all else happens in the server's thread. A slow viewer loses frames.
+/// A page to watch and touch a run, or a recording, and the Foxglove WebSocket protocol, on one port. The run's thread
+/// only copies each row; all else happens in the server's thread. A slow viewer loses frames.
 class LiveView final : public RowSink, private SocketUser, private Foxglove::Host {
  public:
   struct Options {
     std::string address = "127.0.0.1";
     std::uint16_t port = 8765;
     std::filesystem::path page;  ///< folder of index.html
-    std::string engine;          ///< "dds" or "inprocess"
-    double pace = 0;             ///< simulated seconds a second that the run asks for; 0: as fast as it goes
+    ShownSource source = {};
+    double pace = 0;  ///< simulated seconds a second that the run asks for; 0: as fast as it goes
   };
 
   /// Listens from now on; all arguments but `options` must outlive this object. `meter` must get each row before this
@@ -39,6 +39,9 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   /// port can be had.
   LiveView(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter, RunControl& control,
            const Options& options, std::function<void(const std::string&)> log);
+  /// Likewise of a recording: rows come by Take(), not by Add().
+  LiveView(const Experiment& experiment, const Prediction& prediction, RunControl& control, const Options& options,
+           std::function<void(const std::string&)> log);
 
   /// Address of the page.
   std::string url() const { return server_.url(); }
@@ -46,13 +49,22 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   void Add(const FlownRow& row) override;
 
   // From any thread.
+  /// Shows this row from now on, whether it is later or earlier than the one before.
+  void Take(const ShownRow& row);
   /// Says how the run goes. real_time_factor is not used: it is measured here.
   void SetState(const RunState& state);
   /// An event has taken effect: `now` is the experiment with it, `keys` are all that may be changed.
-  void OnEvent(const ShownEvent& event, const Experiment& now, const std::vector<LiveKey>& keys);
+  void OnEvent(const ShownEvent& event, const Experiment& now, const std::vector<ShownKey>& keys);
+  /// These are all the events.
+  void SetEvents(std::vector<ShownEvent> events);
+  /// The experiment is `now`.
+  void SetExperiment(const Experiment& now, const std::vector<ShownKey>& keys);
 
  private:
   using WallClock = std::chrono::steady_clock;
+
+  LiveView(const Experiment& experiment, const Prediction& prediction, const RunMeter* meter, RunControl& control,
+           const Options& options, std::function<void(const std::string&)> log);
 
   // SocketUser, in the server's thread.
   HttpAnswer Get(std::string_view target, std::string_view host) override { return pages_.Get(target, host); }
@@ -68,6 +80,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   void Ask(const Wish& wish, Foxglove::Reply reply) override;
   void AskForGoal(const Goal& goal, Foxglove::Reply reply) override;
 
+  void PublishEvents();
   bool TakeNewest();
   void MeasurePace();
   Foxglove::Playback PlaybackNow() const;
@@ -76,14 +89,15 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
 
   const Experiment& experiment_;
   const Prediction& prediction_;
-  const RunMeter& meter_;
-  const std::string engine_;
+  const RunMeter* meter_;  // null: of a recording
+  const ShownSource source_;
   const Pages pages_;
 
   std::mutex mutex_;
-  ShownRow newest_;      // guarded by mutex_
-  bool is_new_ = false;  // guarded by mutex_: newest_ or state_ has changed
-  RunState state_;       // guarded by mutex_
+  ShownRow newest_;          // guarded by mutex_
+  bool row_is_new_ = false;  // guarded by mutex_: newest_ has changed
+  bool is_new_ = false;      // guarded by mutex_: newest_ or state_ has changed
+  RunState state_;           // guarded by mutex_
 
   // The server's thread alone.
   ShownRow shown_;

@@ -1,5 +1,7 @@
 #include "orchestrator/live/ros_channels.h"
 
+#include <utility>
+
 #include "bus/wire.h"
 #include "idl/schemas.h"
 #include "orchestrator/live/ros_scene.h"
@@ -14,6 +16,8 @@ constexpr std::size_t kTfChannel = 0, kSceneChannel = 1, kFirstTopic = 2;
 constexpr std::size_t kFewEdges = 2000;
 /// A trail has a point for every so many rows: at 30 rows a second, one point a fifth of a second.
 constexpr int kRowsPerTrailPoint = 6;
+/// Agents that are seen again after more simulated time than this have a new trail.
+constexpr int kLongestTrailStep_s = 8;
 
 Foxglove::Channel CdrChannel(const std::string& topic, const TypeSchema& schema) {
   return {topic, "cdr", {std::string(schema.name), "ros2msg", std::string(schema.text)}};
@@ -28,6 +32,8 @@ class RosChannels::Scene {
 
   void SetRow(const ShownRow& row) {
     ++rows_;
+    if (const std::int64_t by = row.tick - std::exchange(tick_, row.tick); by < 0 || by > trail_ticks_)
+      markers_.ClearTrails();  // somebody sought another place of a recording
     if (rows_ % kRowsPerTrailPoint == 0) markers_.AddToTrails(row);
   }
   std::string Message(const ShownRow& row, std::uint64_t time_ns) const {
@@ -44,7 +50,8 @@ class RosChannels::Scene {
  private:
   const Experiment& experiment_;
   RosScene markers_;
-  std::int64_t rows_ = 0;
+  const std::int64_t trail_ticks_ = kLongestTrailStep_s * experiment_.control.rate_hz;
+  std::int64_t rows_ = 0, tick_ = 0;
 };
 
 RosChannels::RosChannels(const Experiment& experiment)

@@ -138,6 +138,10 @@ void RosScene::AddToTrails(const ShownRow& row) {
   }
 }
 
+void RosScene::ClearTrails() {
+  for (auto& trail : trails_) trail.clear();
+}
+
 Markers RosScene::Edges(const ShownRow& row, std::uint64_t time_ns) const {
   Markers markers;
   AddEdgeMarkers(experiment_, row, time_ns, markers);

@@ -33,6 +33,7 @@ class RosScene {
   explicit RosScene(const Experiment& experiment) : experiment_(experiment), trails_(experiment.agents.size()) {}
   /// Remembers where the agents have been.
   void AddToTrails(const ShownRow& row);
+  void ClearTrails();
   /// All markers.
   visualization_msgs::msg::MarkerArray All(const ShownRow& row, std::uint64_t time_ns) const;
   /// The edges alone.

@@ -75,9 +75,13 @@ Json ObstaclesJson(const std::vector<Obstacle>& obstacles) {
   return json;
 }
 
-Json KeysJson(const std::vector<LiveKey>& keys) {
+Json RecordedJson(const Experiment& experiment, const RecordedPart& recorded) {
+  return {{"end_s", experiment.time_s(recorded.last_tick)}, {"loss", recorded.loss}};
+}
+
+Json KeysJson(const std::vector<ShownKey>& keys) {
   Json json = Json::array();
-  for (const LiveKey& key : keys) {
+  for (const ShownKey& key : keys) {
     const bool is_integer = key.row.kind == ValueKind::kInteger;
     const std::vector<std::string> names(key.row.names.begin(), key.row.names.end());
     json.push_back({{"key", key.name},
@@ -136,13 +140,14 @@ void AddEdges(std::string& out, const Experiment& experiment, const std::vector<
 
 }  // namespace
 
-std::string ExperimentJson(const Experiment& experiment, const Prediction& prediction, std::string_view source,
-                           std::string_view engine, const std::vector<LiveKey>& keys) {
+std::string ExperimentJson(const Experiment& experiment, const Prediction& prediction, const ShownSource& source,
+                           const std::vector<ShownKey>& keys) {
   Json agents = Json::array();
   for (const AgentConfig& agent : experiment.agents) agents.push_back(AgentJson(agent));
   return CompactJson({{"name", experiment.run.name},
-                      {"source", source},
-                      {"engine", engine},
+                      {"source", source.recorded ? "recording" : "run"},
+                      {"engine", source.engine},
+                      {"recorded", source.recorded ? RecordedJson(experiment, *source.recorded) : Json(nullptr)},
                       {"rate_hz", experiment.control.rate_hz},
                       {"ticks", experiment.ticks()},
                       {"duration_s", experiment.run.duration_s},

@@ -38,8 +38,8 @@ struct RunState {
   std::optional<std::uint64_t> contacts = {};  ///< absent: not known before the end
 };
 
-/// A key that an event may change.
-struct LiveKey {
+/// A live key, with its value.
+struct ShownKey {
   std::string name;  ///< "law.p_gain"
   Key row;
   std::string value;  ///< as JSON
@@ -52,9 +52,21 @@ struct ShownEvent {
   bool by_hand = false;
 };
 
-/// /ui/experiment. `source`: "run" or "recording".
-std::string ExperimentJson(const Experiment& experiment, const Prediction& prediction, std::string_view source,
-                           std::string_view engine, const std::vector<LiveKey>& keys);
+/// What there is of a recording.
+struct RecordedPart {
+  std::int64_t last_tick = 0;
+  std::string loss = {};  ///< why later ticks may be missing; empty: there are none
+};
+
+/// Where rows come from.
+struct ShownSource {
+  std::string engine = {};                    ///< of a run: "dds" or "inprocess"
+  std::optional<RecordedPart> recorded = {};  ///< absent: a run
+};
+
+/// /ui/experiment
+std::string ExperimentJson(const Experiment& experiment, const Prediction& prediction, const ShownSource& source,
+                           const std::vector<ShownKey>& keys);
 /// /ui/frame
 std::string FrameJson(const Experiment& experiment, const ShownRow& row, const RunState& state);
 /// /ui/events

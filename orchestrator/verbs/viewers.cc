@@ -14,7 +14,7 @@ Viewers::Viewers(const std::optional<LiveAddress>& at, const std::string& engine
                 LiveView::Options{.address = at->address,
                                   .port = at->port,
                                   .page = FindShared("page", "orchestrator/live"),
-                                  .engine = engine,
+                                  .source = {.engine = engine},
                                   .pace = pace_},
                 [&console](const std::string& line) { console.Line(line); });
   console.Line("view           " + view_->url());
