@@ -24,6 +24,7 @@ constexpr VerbEntry kVerbs[] = {
     {"airframes", "the built-in quadrotors: parameters, gains, limits", SetUpAirframes},
     {"info", "what a recording holds, and the proof that it is complete", SetUpInfo},
     {"plot", "the pictures of a run again", SetUpPlot},
+    {"view", "a recording on the page of a run: play, pause, seek", SetUpView},
     {"sweep", "run an experiment over values of its keys and seeds: a table, a picture", SetUpSweep},
     {"verify", "fly a recorded experiment again, and compare bit for bit", SetUpVerify},
     {"recover", "a whole recording of what a cut or damaged one still holds", SetUpRecover},

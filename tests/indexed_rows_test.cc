@@ -123,6 +123,21 @@ TEST(IndexedRows, InRealTimeALateCommandIsTheOneBefore) {
   EXPECT_EQ(row.commands[1].a_limited_W, Eigen::Vector3d::Zero());
 }
 
+TEST(IndexedRows, SayWhereTheFileIsDamagedAndGiveTheRest) {
+  const ScratchFolder folder;
+  const Flown run(folder, kTwo);
+  std::string bytes = ReadFile(run.path());
+  const std::uint64_t offset = McapIndex(run.path()).chunks().at(1).offset;
+  bytes[offset + 100] = static_cast<char>(bytes[offset + 100] ^ 1);
+  WriteFile(run.path(), bytes);
+  DecodedRow row(2);
+  IndexedRows rows(run.path());
+  EXPECT_THAT([&] { rows.Read(150, row); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("(record at byte " + std::to_string(offset) + ")")));
+  rows.Read(50, row);
+  EXPECT_TRUE(IsSame(row, run.at(50).row));
+}
+
 TEST(IndexedRows, SayWhatIsMissing) {
   const ScratchFolder folder;
   std::string toml = kTwo;

@@ -1,9 +1,9 @@
-// `orchestrator up --view`: the real programs, watched by an independent client.
+// `orchestrator up --view` and `orchestrator view`: the real programs, watched by an independent client.
 
 #include <gmock/gmock.h>
 
 #include "tests/orchestrator.h"
-#include "tests/web_client.h"
+#include "tests/viewer.h"
 
 namespace mascot::test {
 namespace {
@@ -38,6 +38,30 @@ std::string UrlOf(const Running& up) {
 
 Ran WsCheck(const std::string& url) {
   return Shell("node '" MASCOT_SOURCE_DIR "/tests/wscheck/wscheck.mjs' ws" + url.substr(4));
+}
+
+/// Records 5 s of three agents.
+std::string Record(const ScratchFolder& folder) {
+  WriteFile(folder.File("run.toml"), kRun);
+  Up up(folder, "run", folder.File("run.toml"),
+        {"--engine", "inprocess", "--set", "run.mode='lockstep'", "--duration-s", "5", "--set",
+         "output.save_data=false"});
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  return up.path() / "run.mcap";
+}
+
+/// `orchestrator view`, on any free port.
+class ViewOf : public Running {
+ public:
+  ViewOf(const ScratchFolder& folder, const std::string& run, const std::string& at = "127.0.0.1:0")
+      : Running(MASCOT_BINARY_DIR "/orchestrator", {"view", run, "--at", at}, folder.File("view")) {}
+};
+
+/// The next frame that is at this tick.
+nlohmann::json FrameAt(Viewer& viewer, std::int64_t tick) {
+  nlohmann::json frame = viewer.NextJsonOf("/ui/frame");
+  while (frame["tick"] != tick) frame = viewer.NextJsonOf("/ui/frame");
+  return frame;
 }
 
 TEST(UpWithView, IsReadByFoxglovesOwnPackagesOverDds) {
@@ -96,6 +120,67 @@ TEST(UpWithView, SaysWhatAnAddressIs) {
   EXPECT_EQ(up.Wait(), 2);
   EXPECT_EQ(up.err(), "error: --view: cannot listen on 203.0.113.1:8765: Cannot assign requested address\n");
   EXPECT_FALSE(std::filesystem::exists(up.path()));
+}
+
+TEST(View, PlaysARecordingWhereverAViewerWantsItUntilCtrlC) {
+  const ScratchFolder folder;
+  ViewOf view(folder, Record(folder));
+  const std::string url = UrlOf(view);
+  ASSERT_THAT(url, StartsWith("http://127.0.0.1:")) << view.err();
+  Viewer viewer(url);
+  viewer.Subscribe("/ui/experiment");
+  const nlohmann::json experiment = viewer.NextJsonOf("/ui/experiment");
+  EXPECT_EQ(experiment["source"], "recording");
+  EXPECT_EQ(experiment["recorded"], (nlohmann::json{{"end_s", 5.0}, {"loss", ""}}));
+  viewer.Subscribe("/ui/frame");
+  EXPECT_EQ(FrameAt(viewer, 0)["state"], "paused");
+  const auto granted = [](const char* words) { return nlohmann::json{{"granted", true}, {"words", words}}; };
+  EXPECT_EQ(viewer.Ask({{"ask", "seek"}, {"t_s", 2.5}}), granted("at tick 250 (2.5 s)"));
+  const nlohmann::json there = FrameAt(viewer, 250);
+  EXPECT_EQ(viewer.Ask({{"ask", "seek"}, {"t_s", 1.0}}), granted("at tick 100 (1 s)"));
+  FrameAt(viewer, 100);
+  EXPECT_EQ(viewer.Ask({{"ask", "event"}, {"toml", "cut = [[1, 2]]"}}),
+            (nlohmann::json{{"granted", false}, {"words", "a recording cannot be changed"}}));
+  viewer.Ask({{"ask", "pace"}, {"value", 100}});
+  viewer.Ask({{"ask", "resume"}});
+  EXPECT_EQ(FrameAt(viewer, 500)["state"], "paused");
+  viewer.Ask({{"ask", "seek"}, {"t_s", 2.5}});  // the end is not the end
+  EXPECT_EQ(FrameAt(viewer, 250)["p"], there["p"]);
+  viewer.Ask({{"ask", "pace"}, {"value", 0.1}});
+  viewer.Ask({{"ask", "resume"}});
+  const Ran check = WsCheck(url);  // which sets the pace to 1
+  EXPECT_EQ(check.exit_code, 0) << check.output;
+  view.Signal(SIGINT);
+  EXPECT_EQ(view.Wait(), 130) << view.err();
+}
+
+TEST(View, PlaysACutRecordingUpToTheCutAndSaysThatItIsCut) {
+  const ScratchFolder folder;
+  const std::string whole = ReadFile(Record(folder));
+  WriteFile(folder.File("cut.mcap"), whole.substr(0, whole.size() / 2));
+  ViewOf view(folder, folder.File("cut.mcap"));
+  Viewer viewer(UrlOf(view));
+  EXPECT_THAT(view.err(), HasSubstr("warning: " + folder.File("cut.mcap") + ": the file ends"));
+  viewer.Subscribe("/ui/experiment");
+  const nlohmann::json recorded = viewer.NextJsonOf("/ui/experiment")["recorded"];
+  EXPECT_THAT(recorded["loss"].get<std::string>(), StartsWith("the file ends"));
+  EXPECT_GT(recorded["end_s"], 0);
+  EXPECT_LT(recorded["end_s"], 5);
+  EXPECT_THAT(viewer.Ask({{"ask", "seek"}, {"t_s", 4.9}})["words"].get<std::string>(),
+              HasSubstr(", where the recording ends"));
+}
+
+TEST(View, SaysWhatItCannotServe) {
+  const ScratchFolder folder;
+  ViewOf none(folder, folder.File("none"));
+  EXPECT_EQ(none.Wait(), 2);
+  EXPECT_EQ(none.err(), "error: cannot open " + folder.File("none") + ": No such file or directory\n");
+  ViewOf nowhere(folder, folder.File("none"), "127.0.0.1:x");
+  EXPECT_EQ(nowhere.Wait(), 2);
+  EXPECT_THAT(nowhere.err(), HasSubstr("--at: expected ADDRESS:PORT (such as 127.0.0.1:8765), got \"127.0.0.1:x\""));
+  ViewOf elsewhere(folder, Record(folder), "203.0.113.1");
+  EXPECT_EQ(elsewhere.Wait(), 2);
+  EXPECT_EQ(elsewhere.err(), "error: --at: cannot listen on 203.0.113.1:8765: Cannot assign requested address\n");
 }
 
 }  // namespace

@@ -16,9 +16,9 @@ bool IsHost(const std::string& text) {
 
 }  // namespace
 
-LiveAddress ReadLiveAddress(const std::string& text) {
+LiveAddress ReadLiveAddress(const std::string& text, const std::string& option) {
   const auto fail = [&] {
-    throw ConfigError({"--view: expected ADDRESS:PORT (such as 127.0.0.1:8765), got \"" + text + "\""});
+    throw ConfigError({option + ": expected ADDRESS:PORT (such as 127.0.0.1:8765), got \"" + text + "\""});
   };
   LiveAddress at;
   const bool is_bracketed = text.starts_with('[');

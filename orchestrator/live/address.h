@@ -12,7 +12,7 @@ struct LiveAddress {
 };
 
 /// Reads "ADDRESS:PORT", "ADDRESS", ":PORT" or "[IPv6]:PORT"; empty text: the default. Throws ConfigError, with
-/// "--view: expected ..., got ...".
-LiveAddress ReadLiveAddress(const std::string& text);
+/// "OPTION: expected ..., got ...".
+LiveAddress ReadLiveAddress(const std::string& text, const std::string& option = "--view");
 
 }  // namespace mascot

@@ -1,17 +1,39 @@
 #include "orchestrator/measuring/agreement_meter.h"
 
 #include <algorithm>
+#include <vector>
+
+#include "agent/laws.h"
 
 namespace mascot {
+namespace {
+
+Eigen::Vector3d MeanOf(std::span<const Eigen::Vector3d> q_W) {
+  Eigen::Vector3d mean_W = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& q : q_W) mean_W += q / static_cast<double>(q_W.size());
+  return mean_W;
+}
+
+double LargestDistance(const LawConfig& law, std::span<const Eigen::Vector3d> q_W, const Eigen::Vector3d& mean_W) {
+  const Eigen::Vector3d centre_W = law.leader > 0 ? q_W[static_cast<std::size_t>(law.leader - 1)] : mean_W;
+  double largest_m = 0;
+  for (const Eigen::Vector3d& q : q_W) largest_m = std::max(largest_m, Along(law.axes, q - centre_W).norm());
+  return largest_m;
+}
+
+}  // namespace
+
+double DisagreementOf(const Experiment& experiment, std::span<const Motion> motions) {
+  const auto places_W = PlacesOf(experiment.law);
+  std::vector<Eigen::Vector3d> q_W;
+  for (const Motion& motion : motions) q_W.push_back(motion.p_WB);
+  for (std::size_t i = 0; i < places_W.size(); ++i) q_W[i] -= places_W[i];
+  return LargestDistance(experiment.law, q_W, MeanOf(q_W));
+}
 
 void AgreementMeter::Add(std::span<const Eigen::Vector3d> q_W) {
-  mean_W_.setZero();
-  for (const Eigen::Vector3d& q : q_W) mean_W_ += q / static_cast<double>(q_W.size());
-  const int leader = experiment_.law.leader;
-  const Eigen::Vector3d centre_W = leader > 0 ? q_W[static_cast<std::size_t>(leader - 1)] : mean_W_;
-  disagreement_m_ = 0;
-  for (const Eigen::Vector3d& q : q_W)
-    disagreement_m_ = std::max(disagreement_m_, Along(experiment_.law.axes, q - centre_W).norm());
+  mean_W_ = MeanOf(q_W);
+  disagreement_m_ = LargestDistance(experiment_.law, q_W, mean_W_);
   decay_.Add(experiment_.time_s(ticks_), disagreement_m_);
   if (ticks_ == 0) first_disagreement_m_ = disagreement_m_;
   constexpr double kSettledFraction = 0.02;

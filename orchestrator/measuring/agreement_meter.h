@@ -6,9 +6,13 @@
 #include <span>
 
 #include "experiment/experiment.h"
+#include "experiment/motion.h"
 #include "orchestrator/measuring/decay_meter.h"
 
 namespace mascot {
+
+/// Disagreement of agents at one tick: of their positions, or in a formation of those less their places.
+double DisagreementOf(const Experiment& experiment, std::span<const Motion> motions);
 
 /// Measures how far agents are from agreement, tick by tick. The disagreement is the largest distance, along law.axes,
 /// from the mean, or from the leader if there is one.

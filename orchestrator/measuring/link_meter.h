@@ -28,6 +28,8 @@ class LinkMeter {
   void Adopt(const std::shared_ptr<const Experiment>& now);
   /// Adds the next tick.
   void Add(std::int64_t tick, const DecodedRow& row);
+  /// True as long as every sample of every edge has arrived at once: then EdgesNow() depends on no row.
+  bool plain() const { return plain_; }
   /// One entry per edge, in increasing order of hearer, then of heard.
   std::vector<EdgeTraffic> Result() const;
   /// What became of each edge at the newest tick, in the same order. Replaces `edges`, which keeps its capacity.

@@ -38,5 +38,6 @@ std::function<int()> SetUpExport(CLI::App& command);     // export.cc
 std::function<int()> SetUpRecover(CLI::App& command);    // recover.cc
 std::function<int()> SetUpVerify(CLI::App& command);     // verify.cc
 std::function<int()> SetUpSweep(CLI::App& command);      // sweep.cc
+std::function<int()> SetUpView(CLI::App& command);       // view.cc
 
 }  // namespace mascot

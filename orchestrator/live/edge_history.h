@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "orchestrator/measuring/link_meter.h"
+
+namespace mascot {
+
+/// What became of each edge at any tick of a recording. A link remembers (what is on its way, what it holds, bursts of
+/// losses), so that the states of a tick follow from all rows up to it: they are followed from the start, or from one
+/// of some places that are kept. As long as every sample arrives at once, no row is needed.
+class EdgeHistory {
+ public:
+  /// Where rows and changes come from.
+  struct Source {
+    std::function<void(std::int64_t tick, DecodedRow& row)> read;
+    /// The experiment as events change it at exactly this tick; null: they do not.
+    std::function<std::shared_ptr<const Experiment>(std::int64_t tick)> adopted_at;
+    /// The first tick after this one at which events change the experiment; INT64_MAX: none.
+    std::function<std::int64_t(std::int64_t tick)> next_change;
+  };
+  /// `experiment`, which must outlive this object: as it was at the start. `last_tick`: of the recording.
+  EdgeHistory(const Experiment& experiment, std::int64_t last_tick, Source source);
+
+  /// Goes on towards `tick`, by at most so many rows. Returns whether it is there; `edges` are then those of the tick,
+  /// in increasing order of hearer, then of heard. Throws what reading throws.
+  bool Follow(std::int64_t tick, int rows, std::vector<EdgeNow>& edges);
+
+ private:
+  void GoNear(std::int64_t tick);
+
+  Source source_;
+  DecodedRow row_;
+  std::int64_t keep_every_;                                  // ticks
+  std::map<std::int64_t, std::unique_ptr<LinkMeter>> kept_;  // by the next tick to add; one is before tick 0
+  std::unique_ptr<LinkMeter> meter_;
+  std::int64_t next_ = 0;  // tick to add to meter_
+};
+
+}  // namespace mascot

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+
+#include "orchestrator/engines/run_control.h"
+
+namespace mascot {
+
+/// Which tick of a recording is to be seen, as viewers ask for it and as time goes on. Begins at tick 0, paused; at the
+/// last tick it pauses, and resumed there it plays from the start. Thread-safe.
+class Playback final : public RunControl {
+ public:
+  using WallClock = std::chrono::steady_clock;
+  static constexpr double kSlowest = 0.1, kFastest = 100;  ///< simulated seconds a second
+
+  struct Standing {
+    std::int64_t tick = 0;
+    bool plays = false;
+    double speed = 1;
+    bool operator==(const Standing&) const = default;
+  };
+
+  /// `clock`: what time it is.
+  Playback(int rate_hz, std::int64_t last_tick, std::function<WallClock::time_point()> clock = WallClock::now)
+      : rate_hz_(rate_hz), last_tick_(last_tick), clock_(std::move(clock)), since_(clock_()) {}
+
+  Answer Ask(const Wish& wish) override;
+  Standing Now();
+  /// Waits for a wish, `over` or this time.
+  void Wait(const std::stop_token& over, WallClock::time_point until);
+
+ private:
+  Answer Grant(const Wish& wish);
+  void Advance();
+  Answer GoTo(double tick);
+  std::string Where() const;
+
+  const int rate_hz_;
+  const std::int64_t last_tick_;
+  const std::function<WallClock::time_point()> clock_;
+
+  std::mutex mutex_;  // guards what follows
+  std::condition_variable_any asked_;
+  std::uint64_t wishes_ = 0, heard_ = 0;  // granted; of these, seen by Now()
+  double tick_ = 0;                       // with its fraction, at since_
+  WallClock::time_point since_;
+  bool plays_ = false;
+  double speed_ = 1;
+};
+
+}  // namespace mascot

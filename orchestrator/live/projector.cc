@@ -1,0 +1,62 @@
+#include "orchestrator/live/projector.h"
+
+#include <exception>
+#include <utility>
+
+#include "orchestrator/live/shown_keys.h"
+
+namespace mascot {
+namespace {
+
+constexpr auto kFramePeriod = std::chrono::milliseconds(33);
+/// So many rows are followed for the states of edges before somebody is asked what to show.
+constexpr int kRowsAtATime = 50;
+
+}  // namespace
+
+Projector::Projector(RecordedRun& run, Playback& playback, LiveView& view, std::function<void(const std::string&)> log)
+    : run_(run), playback_(playback), view_(view), log_(std::move(log)), row_(run.experiment().size()) {
+  view_.SetEvents(run.Events());
+  thread_ = std::jthread([this](const std::stop_token& over) { Run(over); });
+}
+
+void Projector::Run(const std::stop_token& over) {
+  std::optional<Playback::Standing> shown;
+  while (!over.stop_requested()) {
+    const auto frame_ends = Playback::WallClock::now() + kFramePeriod;
+    const Playback::Standing now = playback_.Now();
+    try {
+      if (now != shown) Show(now);
+      while (!has_edges_ && Playback::WallClock::now() < frame_ends && !over.stop_requested()) FollowEdges();
+    } catch (const std::exception& error) {
+      log_(std::string("error: ") + error.what());
+      playback_.Ask({.kind = Wish::Kind::kPause});
+      row_.tick = now.tick;  // not again
+      has_edges_ = true;
+    }
+    shown = now;
+    if (has_edges_) playback_.Wait(over, now.plays ? frame_ends : frame_ends + std::chrono::hours(1));
+  }
+}
+
+void Projector::Show(const Playback::Standing& now) {
+  view_.SetState({.phase = now.plays ? RunState::Phase::kRunning : RunState::Phase::kPaused, .pace = now.speed});
+  if (now.tick == row_.tick) return;
+  run_.Show(now.tick, row_);
+  has_edges_ = run_.FollowEdges(row_, kRowsAtATime);
+  Publish();
+}
+
+void Projector::FollowEdges() {
+  has_edges_ = run_.FollowEdges(row_, kRowsAtATime);
+  if (has_edges_) Publish();
+}
+
+void Projector::Publish() {
+  const Experiment& now = run_.At(row_.tick);
+  if (&now != experiment_) view_.SetExperiment(now, ShownKeysOf(now));
+  experiment_ = &now;
+  view_.Take(row_);
+}
+
+}  // namespace mascot

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "orchestrator/live/live_view.h"
+#include "orchestrator/live/playback.h"
+#include "orchestrator/live/recorded_run.h"
+
+namespace mascot {
+
+/// Shows viewers the ticks of a recording that playback asks for, in a thread of its own.
+class Projector {
+ public:
+  /// All must outlive this object; nobody else may use `run` meanwhile. `log` takes a line about a damaged file; where
+  /// it is damaged playback pauses.
+  Projector(RecordedRun& run, Playback& playback, LiveView& view, std::function<void(const std::string&)> log);
+
+ private:
+  void Run(const std::stop_token& over);
+  void Show(const Playback::Standing& now);
+  void FollowEdges();
+  void Publish();
+
+  RecordedRun& run_;
+  Playback& playback_;
+  LiveView& view_;
+  const std::function<void(const std::string&)> log_;
+  ShownRow row_;
+  const Experiment* experiment_ = nullptr;  // that viewers know
+  bool has_edges_ = true;                   // row_.edges are known
+  std::jthread thread_;                     // last: it uses the others
+};
+
+}  // namespace mascot

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "experiment/live_experiment.h"
+#include "orchestrator/live/edge_history.h"
+#include "orchestrator/live/ui_channels.h"
+#include "orchestrator/recording/indexed_rows.h"
+
+namespace mascot {
+
+/// A recording as viewers see it, tick by tick in any order. What is shown of a tick depends on that tick alone. Reads
+/// the parts of the file that are asked for.
+class RecordedRun {
+ public:
+  /// Throws what IndexedRows throws, and ConfigError if its experiment cannot be read.
+  explicit RecordedRun(const std::string& run);
+  RecordedRun(const RecordedRun&) = delete;
+  RecordedRun& operator=(const RecordedRun&) = delete;
+
+  /// As it was at the start.
+  const Experiment& experiment() const { return experiment_; }
+  const IndexedRows& rows() const { return rows_; }
+  std::int64_t last_tick() const { return rows_.ticks() - 1; }
+  RecordedPart part() const { return {last_tick(), rows_.loss()}; }
+  /// All events. None is known to have been given by hand: a recording does not say it.
+  std::vector<ShownEvent> Events() const;
+
+  /// The experiment as events have changed it up to and at `tick`. Throws ConfigError for an event that this version
+  /// does not understand.
+  const Experiment& At(std::int64_t tick);
+  /// What is seen at `tick`, without its edges. Throws std::runtime_error if the file is damaged there.
+  void Show(std::int64_t tick, ShownRow& row);
+  /// Goes on to find out the edges of the row that Show() gave, by at most so many rows of the recording. Returns
+  /// whether row.edges are known now, or never will be: there are more than kMostEdgesShown. Throws likewise.
+  bool FollowEdges(ShownRow& row, int rows);
+
+ private:
+  /// The experiment from this event on; null: as at the start.
+  std::shared_ptr<const Experiment> StateAfter(std::size_t events);
+  /// How many events have taken effect up to and at `tick`.
+  std::size_t EventsUpTo(std::int64_t tick) const;
+
+  IndexedRows rows_;
+  const Experiment experiment_;
+  const std::vector<IndexedRows::EventAt> events_;
+  LiveExperiment live_;                                    // after as many events as states_ has
+  std::vector<std::shared_ptr<const Experiment>> states_;  // after each event that was taken so far
+  EdgeHistory edges_;
+};
+
+}  // namespace mascot

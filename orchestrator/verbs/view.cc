@@ -1,0 +1,73 @@
+// `orchestrator view RUN`: serves the page of a run on its recording, with a time line.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "bus/stop_signal.h"
+#include "orchestrator/live/address.h"
+#include "orchestrator/live/live_view.h"
+#include "orchestrator/live/playback.h"
+#include "orchestrator/live/projector.h"
+#include "orchestrator/live/recorded_run.h"
+#include "orchestrator/processes/console.h"
+#include "orchestrator/processes/script.h"
+#include "orchestrator/theory/theory.h"
+#include "orchestrator/verbs/verb.h"
+
+namespace mascot {
+namespace {
+
+struct ViewArgs {
+  std::string run;
+  LiveAddress at;
+};
+
+int WaitForSignal(StopSignal& stop) {
+  for (;;)
+    if (const int signal = stop.Within(std::chrono::hours(1)); signal != 0) return 128 + signal;
+}
+
+int View(const ViewArgs& args) {
+  StopSignal stop;
+  Console console(/*quiet=*/false);
+  const auto log = [&console](const std::string& line) { console.Line(line); };
+  RecordedRun run(args.run);
+  if (!run.rows().loss().empty())
+    console.Line("warning: " + run.rows().path() + ": " + run.rows().loss() + "; it plays up to there");
+  const Prediction prediction = Predict(run.experiment());
+  Playback playback(run.experiment().control.rate_hz, run.last_tick());
+  const LiveView::Options options{.address = args.at.address,
+                                  .port = args.at.port,
+                                  .page = FindShared("page", "orchestrator/live"),
+                                  .source = {.recorded = run.part()},
+                                  .pace = 1};
+  const auto view = [&] {
+    try {
+      return std::make_unique<LiveView>(run.experiment(), prediction, playback, options, log);
+    } catch (const std::runtime_error& failure) {
+      throw ConfigError({std::string("--at: ") + failure.what()});
+    }
+  }();
+  const Projector projector(run, playback, *view, log);
+  console.Line("view           " + view->url());
+  return WaitForSignal(stop);
+}
+
+}  // namespace
+
+std::function<int()> SetUpView(CLI::App& command) {
+  auto args = std::make_shared<ViewArgs>();
+  command.add_option("run", args->run, "a run folder or an .mcap file")->required()->type_name("RUN");
+  command
+      .add_option_function<std::string>(
+          "--at", [args](const std::string& address) { args->at = ReadLiveAddress(address, "--at"); },
+          "where to listen (default: 127.0.0.1:8765, or the next free port)")
+      ->type_name("ADDRESS:PORT");
+  command.footer(
+      "Serves the page of a run, and Foxglove's protocol, until Ctrl-C. Only the recording is read, and of it the "
+      "parts\nthat are looked at; what was cut short plays up to the cut. docs/live.md says what is to be seen.");
+  return [args] { return View(*args); };
+}
+
+}  // namespace mascot
