@@ -16,9 +16,17 @@ export class MadeUpRun {
   events = [];
   gains = {p_gain: 0.35, beta: 1.1};
 
-  constructor(
-      {agents = 10, source = "run", name = "gather at the leader", leader = 4, lossy = false, range_m = 100} = {}) {
-    Object.assign(this, {size: agents, source, name, lossy, range_m, leader: Math.min(leader, agents)});
+  constructor({
+    agents = 10,
+    source = "run",
+    name = "gather at the leader",
+    leader = 4,
+    lossy = false,
+    range_m = 100,
+    end_s = DURATION_S,
+    loss = ""
+  } = {}) {
+    Object.assign(this, {size: agents, source, name, lossy, range_m, end_s, loss, leader: Math.min(leader, agents)});
     const spread = 2.2 * Math.sqrt(agents);
     this.p = Array.from(
         {length: agents},
@@ -50,7 +58,8 @@ export class MadeUpRun {
     return {
       name: this.name,
       source: this.source,
-      engine: "dds",
+      engine: this.rows ? "" : "dds",
+      recorded: this.rows ? {end_s: this.end_s, loss: this.loss} : null,
       rate_hz: RATE_HZ,
       ticks: RATE_HZ * DURATION_S,
       duration_s: DURATION_S,
@@ -128,7 +137,7 @@ export class MadeUpRun {
       this.#show(Math.min(this.rows.length - 1, Math.floor(this.tick / 10)));
     else
       this.#fly(1 / RATE_HZ);
-    if (this.tick >= RATE_HZ * DURATION_S) this.state = this.source === "recording" ? "paused" : "done";
+    if (this.tick >= RATE_HZ * this.end_s) this.state = this.source === "recording" ? "paused" : "done";
   }
 
   #fly(dt_s) {
@@ -178,6 +187,11 @@ export class MadeUpRun {
           toml: `[[events]]\nat_s = ${t_s.toFixed(1)}\n${keys}\n`,
           by_hand: true
         }));
+  }
+
+  #goTo(tick) {
+    this.tick = Math.max(0, Math.min(RATE_HZ * this.end_s, tick));
+    this.#show(Math.min(this.rows.length - 1, Math.floor(this.tick / 10)));
   }
 
   #show(k) { Object.assign(this, structuredClone(this.rows[k])); }
@@ -237,14 +251,15 @@ export class MadeUpRun {
       this.state = "running";
     else if (ask === "stop")
       this.state = "done";
+    else if (ask === "step" && this.rows)
+      this.#goTo(this.tick + count);
     else if (ask === "step")
       for (let k = 0; k < count; ++k) this.step();
     else if (ask === "pace")
       this.pace = value;
-    else if (ask === "seek" && this.rows) {
-      this.tick = Math.round(t_s * RATE_HZ);
-      this.#show(Math.min(this.rows.length - 1, Math.floor(this.tick / 10)));
-    } else if (ask === "event")
+    else if (ask === "seek" && this.rows)
+      this.#goTo(Math.round(t_s * RATE_HZ));
+    else if (ask === "event")
       return this.#event(toml, at);
     else
       return {granted: false, words: `${ask}: expected pause, resume, step, pace, event or stop`};

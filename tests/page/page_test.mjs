@@ -289,14 +289,33 @@ test(
       await page.locator("#seek").fill("30");
       await until(page, () => Math.abs(mascot.t_s - 30) < 0.02);
       await page.locator("#scene").focus();
-      await page.keyboard.press("ArrowRight");
-      await until(page, () => Math.abs(mascot.t_s - 31) < 0.02);
+      await page.keyboard.press("Shift+ArrowRight");
+      await until(page, () => mascot.tick === 3100);
+      await page.keyboard.press("ArrowLeft");
+      await until(page, () => mascot.tick === 3099);
+      await page.keyboard.press("PageUp");
+      await until(page, () => mascot.tick === 2099);
+      await page.locator("#marks i").nth(1).click();
+      await until(page, () => mascot.tick === 3200);
       await page.selectOption("#pace", "100");
       await page.keyboard.press("Space");
       await until(page, () => mascot.t_s > 40);
       await page.click("#tab-tune");
       assert.match(await page.textContent("#tune"), /cannot be changed/);
+      assert.match(await page.textContent("[data-key='law.p_gain']"), /0\.350/);
+      assert.equal(await page.locator("#tune input").count(), 0);
       assert.deepEqual(events(fake), []);
+    }));
+
+test(
+    "a recording that was cut says so, and its time line ends at the cut",
+    () => watching({run: {source: "recording", end_s: 40, loss: "the file ends inside a record"}}, async ({page}) => {
+      assert.equal(await page.textContent("#source"), "recording, cut");
+      assert.equal(await page.getAttribute("#source", "title"), "the file ends inside a record");
+      assert.equal(await page.textContent("#duration"), "/ 40.0 s of 60.0 s");
+      await page.locator("#scene").focus();
+      for (let k = 0; k < 5; ++k) await page.keyboard.press("PageDown");
+      await until(page, () => mascot.t_s === 40);
     }));
 
 test("a lost connection is said, and mended by itself, also to another run", async () => {

@@ -1,7 +1,7 @@
-// A run over DDS in real time, with a page.
+// The page of the real program: on a run over DDS in real time, and on a recording.
 import {spawn} from "node:child_process";
 import {once} from "node:events";
-import {mkdtemp, rm} from "node:fs/promises";
+import {mkdtemp, rm, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {createInterface} from "node:readline";
@@ -15,13 +15,26 @@ const ORCHESTRATOR = join(process.env.MASCOT_BINARY_DIR ?? join(ROOT, "build/rel
  */
 export async function startRun(config, ...options) {
   const folder = await mkdtemp(join(tmpdir(), "mascot-page-"));
-  const run = spawn(
+  return serve(folder, [
+    "up", join(ROOT, "configs", config), "--set", "run.mode=realtime", "--view", "--out", join(folder, "run"),
+    ...options
+  ]);
+}
+
+/** Flies an experiment, given as TOML, as fast as it goes, and serves its recording; likewise. */
+export async function startRecording(toml) {
+  const folder = await mkdtemp(join(tmpdir(), "mascot-page-")), file = join(folder, "flown.toml");
+  await writeFile(file, toml);
+  const flight = spawn(
       ORCHESTRATOR,
-      [
-        "up", join(ROOT, "configs", config), "--set", "run.mode=realtime", "--view", "--out", join(folder, "run"),
-        ...options
-      ],
-      {stdio: ["ignore", "ignore", "pipe"]});
+      ["up", file, "--engine", "inprocess", "--set", "output.save_plot=false", "--out", join(folder, "run"), "--quiet"],
+      {stdio: ["ignore", "ignore", "inherit"]});
+  await once(flight, "exit");
+  return serve(folder, ["view", join(folder, "run")]);
+}
+
+async function serve(folder, words) {
+  const run = spawn(ORCHESTRATOR, words, {stdio: ["ignore", "ignore", "pipe"]});
   const ended = once(run, "exit");
   const stop = async () => {
     run.kill("SIGINT");

@@ -7,9 +7,10 @@ export const EDGE = {
   HEARD: 1,
   LOST: 2,
   FAR: 3,
-  SILENT: 4
+  SILENT: 4,
+  UNKNOWN: 5  // of a recording: it is still being found out
 };
-export const EDGE_WORDS = ["no edge now", "heard", "lost", "out of range", "nothing arrived yet"];
+export const EDGE_WORDS = ["no edge now", "heard", "lost", "out of range", "nothing arrived yet", "not known yet"];
 
 /** Bits of a command's flags, in words. */
 const LIMITS = [[1, "acceleration", "accel."], [8, "speed", "speed"], [2, "tilt", "tilt"], [4, "rotors", "rotors"]];
@@ -40,6 +41,12 @@ export class Model {
   get size() { return this.experiment?.agents.length ?? 0; }
 
   get isRecording() { return this.experiment?.source === "recording"; }
+
+  /** Where time ends: what was planned, of a recording what there is. */
+  get end_s() { return this.experiment.recorded?.end_s ?? this.experiment.duration_s; }
+
+  /** Why a recording ends early: it was cut; empty: it is whole. */
+  get loss() { return this.experiment?.recorded?.loss ?? ""; }
 
   setConnection(connected, session = null) {
     if (connected && session !== this.#session) this.#forget();
@@ -88,7 +95,7 @@ export class Model {
   /** Edges on which an agent hears: {index, heard, weight, state, age_s}. */
   heardBy(number) {
     return this.experiment.edges.flatMap(([hearer, heard, weight], index) => hearer !== number ? [] : [
-      {index, heard, weight, state: this.frame?.edge?.[index] ?? EDGE.SILENT, age_s: this.frame?.age_s?.[index] ?? -1}
+      {index, heard, weight, state: this.frame?.edge?.[index] ?? EDGE.UNKNOWN, age_s: this.frame?.age_s?.[index] ?? -1}
     ]);
   }
 }
@@ -96,6 +103,7 @@ export class Model {
 // Two experiments with the same text here are drawn with the same bodies.
 function bodiesOf(experiment) {
   if (!experiment) return "";
-  const {name, source, ticks, edges, agents} = experiment;
-  return JSON.stringify([name, source, ticks, edges.length, agents.map(({model, size_m}) => [model, size_m])]);
+  const {name, source, recorded, ticks, edges, agents} = experiment;
+  return JSON.stringify(
+      [name, source, recorded, ticks, edges.length, agents.map(({model, size_m}) => [model, size_m])]);
 }

@@ -6,6 +6,7 @@ const MOST_ROWS = 1200;
 const LEAST_M = 1e-6;  // bottom of the logarithmic axis
 const MOST_LINES = 8;  // speeds of more agents are shown as fastest, mean, slowest and the selected one
 const DRAW_EVERY_MS = 120;
+const JUMP_S = 8;
 
 /** Rows of time and values, thinned out by half whenever there are too many. */
 class History {
@@ -57,15 +58,21 @@ export class Charts {
   // --- what is collected ---
 
   #restart() {
+    this.#forget();
+    this.#last_s = null;
+    this.paint();
+  }
+
+  #forget() {
     this.#disagreement.clear();
     this.#speeds.clear();
-    this.#anchor = this.#last_s = null;
-    this.paint();
+    this.#anchor = null;
   }
 
   #onFrame({t_s, disagreement_m, speed_m_per_s}) {
     if (t_s === this.#last_s) return;
     if (t_s < this.#last_s) this.#anchor = null;
+    if (this.#model.isRecording && t_s > this.#last_s + JUMP_S) this.#forget();  // somebody looked elsewhere
     this.#last_s = t_s;
     this.#disagreement.add([t_s, this.#level(disagreement_m), this.#theory(t_s, disagreement_m)]);
     this.#speeds.add([t_s, ...this.#speedsOf(speed_m_per_s)]);

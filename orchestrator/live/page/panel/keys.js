@@ -4,7 +4,8 @@ import {byId, element} from "../dom.js";
 const SHEET = [
   ["space", "pause or go on"],
   [".", "one tick"],
-  ["← →", "slower, faster; in a recording a second back or on, with Shift ten"],
+  ["← →", "slower, faster; in a recording a tick back or on, with Shift a second"],
+  ["Page ↑ ↓", "in a recording ten seconds back or on"],
   ["↑ ↓", "choose the agent before or after"],
   ["1 – 9", "choose agent 1 to 9"],
   ["Esc", "choose none"],
@@ -23,11 +24,16 @@ const POINTER = [
 ];
 
 export function bindKeys({model, view, transport, follow, layers}) {
+  const leftOrRight = (by, shiftKey) => !model.isRecording ? transport.changePace(by) :
+      shiftKey                                             ? transport.seekBy(by) :
+                                                             transport.step(by);
   const actions = {
     " ": () => transport.playOrPause(),
     ".": () => transport.step(),
-    ArrowLeft: ({shiftKey}) => (model.isRecording ? transport.seekBy(shiftKey ? -10 : -1) : transport.changePace(-1)),
-    ArrowRight: ({shiftKey}) => (model.isRecording ? transport.seekBy(shiftKey ? 10 : 1) : transport.changePace(1)),
+    ArrowLeft: ({shiftKey}) => leftOrRight(-1, shiftKey),
+    ArrowRight: ({shiftKey}) => leftOrRight(1, shiftKey),
+    PageUp: () => model.isRecording && transport.seekBy(-10),
+    PageDown: () => model.isRecording && transport.seekBy(10),
     ArrowUp: () => model.select(model.selected > 1 ? model.selected - 1 : model.size),
     ArrowDown: () => model.select(model.selected < model.size ? model.selected + 1 : 1),
     Escape: () => model.select(0),

@@ -42,11 +42,12 @@ export class Status {
   }
 
   #onExperiment() {
-    const {experiment, isRecording} = this.#model;
+    const {experiment, isRecording, loss} = this.#model;
     setText(byId("name"), experiment.name || "MASCOT");
     document.title = `${experiment.name || "run"} – MASCOT`;
     byId("source").hidden = false;
-    setText(byId("source"), isRecording ? "recording" : experiment.engine);
+    setText(byId("source"), !isRecording ? experiment.engine : loss ? "recording, cut" : "recording");
+    byId("source").title = loss;
     this.#showWind(experiment.wind_m_per_s ?? [0, 0, 0]);
     byId("legend").hidden = experiment.edges.length === 0;
     byId("legend").querySelector(".far").parentElement.hidden = !(experiment.range_m > 0);

@@ -10,6 +10,8 @@ export class Transport {
   #asking;
   #isSeeking = false;
   #lastSeek_ms = 0;
+  #seeks = 0;     // that are not answered yet
+  #aim_s = null;  // where the last one goes, until a row comes after its answer
   #marked = "";
 
   constructor(model, asking) {
@@ -45,9 +47,15 @@ export class Transport {
   }
 
   seekBy(by_s) {
-    const {experiment, frame} = this.#model;
-    return frame &&
-        this.#asking.ask({ask: "seek", t_s: Math.max(0, Math.min(experiment.duration_s, frame.t_s + by_s))});
+    const {frame} = this.#model;
+    return frame && this.seek(Math.max(0, Math.min(this.#model.end_s, (this.#aim_s ?? frame.t_s) + by_s)));
+  }
+
+  async seek(t_s) {
+    this.#aim_s = t_s;
+    ++this.#seeks;
+    await this.#asking.ask({ask: "seek", t_s});
+    --this.#seeks;
   }
 
   async #setPace(value) {
@@ -66,18 +74,19 @@ export class Transport {
     this.#isSeeking = !isLast;
     if (!isLast && now - this.#lastSeek_ms < SEEK_EVERY_MS) return;
     this.#lastSeek_ms = now;
-    this.#asking.ask({ask: "seek", t_s});
+    this.seek(t_s);
   }
 
   // --- what is shown ---
 
   #onExperiment() {
-    const {experiment, isRecording} = this.#model;
+    const {experiment, isRecording, end_s} = this.#model;
     byId("seek").hidden = !isRecording;
-    byId("seek").max = experiment.duration_s;
+    byId("seek").max = end_s;
     byId("stop").hidden = isRecording;
     setText(byId("pace-label"), isRecording ? "Speed" : "Pace");
-    setText(byId("duration"), `/ ${figure(experiment.duration_s, 2)} s`);
+    const planned = end_s < experiment.duration_s ? ` of ${figure(experiment.duration_s, 2)} s` : "";
+    setText(byId("duration"), `/ ${figure(end_s, 2)} s${planned}`);
     const paces =
         [...PACES.map((pace) => [pace, `× ${pace}`]), ...(isRecording ? [] : [[AS_FAST_AS_IT_GOES, "fastest"]])];
     byId("pace").replaceChildren(...paces.map(([value, textContent]) => element("option", {value, textContent})));
@@ -86,7 +95,8 @@ export class Transport {
   }
 
   #onFrame() {
-    const {frame, experiment} = this.#model, isOver = frame.state === "done" || frame.state === "failed";
+    const {frame, end_s} = this.#model, isOver = frame.state === "done" || frame.state === "failed";
+    if (this.#seeks === 0) this.#aim_s = null;
     const isRunning = frame.state === "running", canGoOn = !isOver || this.#model.isRecording;
     setText(byId("time"), `${frame.t_s.toFixed(2)} s`);
     setText(byId("tick"), `tick ${frame.tick}`);
@@ -95,7 +105,7 @@ export class Transport {
     byId("play").dataset.running = isRunning;
     byId("play").disabled = byId("step").disabled = byId("pace").disabled = !canGoOn;
     byId("stop").disabled = isOver;
-    byId("progress").style.width = `${100 * Math.min(1, frame.t_s / experiment.duration_s)}%`;
+    byId("progress").style.width = `${100 * Math.min(1, frame.t_s / end_s)}%`;
     if (!this.#isSeeking) byId("seek").value = frame.t_s;
     if (document.activeElement !== byId("pace")) this.#showPace();
   }
@@ -108,14 +118,15 @@ export class Transport {
   }
 
   #mark() {
-    const {events, experiment} = this.#model;
+    const {events, experiment, end_s} = this.#model;
     if (!experiment) return;
-    const marks = events.map(({t_s, number, toml}) => ({share: t_s / experiment.duration_s, number, toml}));
+    const marks = events.map(({t_s, number, toml}) => ({share: t_s / end_s, t_s, number, toml}));
     if (JSON.stringify(marks) === this.#marked) return;
     this.#marked = JSON.stringify(marks);
-    byId("marks").replaceChildren(...marks.map(({share, number, toml}) => {
+    byId("marks").replaceChildren(...marks.map(({share, t_s, number, toml}) => {
       const mark = element("i", {title: `event ${number}\n${toml}`});
       mark.style.left = `${100 * share}%`;
+      mark.addEventListener("click", () => this.#model.isRecording && this.seek(t_s));
       return mark;
     }));
   }

@@ -28,15 +28,26 @@ export class Tune {
 
   #make(keys) {
     this.#controls.clear();
-    if (keys.length === 0 || this.#model.isRecording) {
-      const why = this.#model.isRecording ? "A recording cannot be changed." :
-                                            "This run has no keys that can be changed while it goes on.";
-      return byId("tune").replaceChildren(element("p", {className: "muted hint", textContent: why}));
-    }
+    const hint = (textContent) => element("p", {className: "muted hint", textContent});
+    if (this.#model.isRecording) return this.#list(keys, hint("A recording cannot be changed. At this time it has:"));
+    if (keys.length === 0)
+      return byId("tune").replaceChildren(hint("This run has no keys that can be changed while it goes on."));
     this.only = element("input", {type: "checkbox", id: "tune-only"});
     this.onlyLabel = element("label", {className: "only", htmlFor: "tune-only"}, this.only, element("span"));
     byId("tune").replaceChildren(this.onlyLabel, ...keys.map((key) => this.#row(key)));
     this.#nameTarget();
+  }
+
+  // What the keys are, to be read only.
+  #list(keys, hint) {
+    const rows = keys.map(({key, unit}) => {
+      const value = element("b");
+      this.#controls.set(key, {show: (now) => setText(value, now === null ? "–" : show(now))});
+      const row = element("div", {className: "reading"}, key, value, element("small", {className: "muted"}, unit));
+      row.dataset.key = key;
+      return row;
+    });
+    byId("tune").replaceChildren(hint, ...rows);
   }
 
   #nameTarget() {

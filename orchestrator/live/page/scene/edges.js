@@ -15,6 +15,7 @@ const LOOKS = {
   [EDGE.LOST]: ["edge-lost", 0.55, 1.3, 0],
   [EDGE.FAR]: ["edge-far", 0.4, 1.2, 6],
   [EDGE.SILENT]: ["edge-far", 0.3, 1, 0],
+  [EDGE.UNKNOWN]: ["edge-far", 0.3, 1, 0],
 };
 
 const wanted = new Float32Array(5);  // what an edge goes to
@@ -52,7 +53,7 @@ export class Edges extends Ribbons {
     this.#edges.forEach(([hearer, heard], k) => {
       this.place(k, p, 3 * (heard - 1), p, 3 * (hearer - 1));
       moving = this.#ease(
-                   k, this.#looks[edge?.[k] ?? EDGE.SILENT], k === pointed, selected === hearer || selected === heard,
+                   k, this.#looks[edge?.[k] ?? EDGE.UNKNOWN], k === pointed, selected === hearer || selected === heard,
                    selected) ||
           moving;
     });

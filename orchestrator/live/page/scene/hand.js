@@ -175,7 +175,7 @@ export class Hand {
     return `${hearer} hears ${heard}, ${EDGE_WORDS[state]}${action}`;
   }
 
-  #state(index) { return this.#model.frame?.edge?.[index] ?? EDGE.SILENT; }
+  #state(index) { return this.#model.frame?.edge?.[index] ?? EDGE.UNKNOWN; }
 
   #click({offsetX: x, offsetY: y, pointerType}) {
     if (!this.#model.frame) return;
