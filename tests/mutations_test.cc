@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iostream>
 #include <map>
+#include <memory>
 #include <random>
 #include <regex>
 
 #include "experiment/read_experiment.h"
+#include "orchestrator/live/recorded_run.h"
 #include "tests/call.h"
 #include "tests/scratch.h"
 
@@ -160,6 +163,21 @@ bool HasPlace(const std::string& words) {
   return std::regex_search(words, place);
 }
 
+/// Looks at some ticks of a recording, as `view` does.
+std::function<int()> SetUpLook(CLI::App& command) {
+  auto run = std::make_shared<std::string>();
+  command.add_option("run", *run);
+  return [run] {
+    RecordedRun recorded(*run);
+    ShownRow row(recorded.experiment().size());
+    for (const std::int64_t tick : {recorded.last_tick(), std::int64_t{0}, recorded.last_tick() / 2}) {
+      recorded.Show(tick, row);
+      recorded.FollowEdges(row, 100);
+    }
+    return recorded.part().loss.empty() ? kExitDone : (std::cout << recorded.part().loss, kExitIncomplete);
+  };
+}
+
 TEST(Mutations, AChangedRecordingIsReadOrRefusedWithAPlace) {
   const ScratchFolder scratch;
   const std::string path = MASCOT_BINARY_DIR "/mutant.mcap";
@@ -169,6 +187,7 @@ TEST(Mutations, AChangedRecordingIsReadOrRefusedWithAPlace) {
       {SetUpExport, {path, "--format", "csv", "--force", "--out", scratch.File("x.csv")}},
       {SetUpRecover, {path, "--force", "--out", scratch.File("x.mcap")}},
       {SetUpVerify, {path}},
+      {SetUpLook, {path}},
   };
   Mutator mutator(2);
   std::map<int, int> ends;

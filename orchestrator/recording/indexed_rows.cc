@@ -34,6 +34,8 @@ IndexedRows::IndexedRows(const std::string& run)
       rows_(RowsIn(index_->contents(), path_)),
       row_(rows_.plan.agents),
       before_(rows_.plan.agents) {
+  // The index counts messages, of which a damaged one may claim any number.
+  rows_.ticks = std::min(rows_.ticks, static_cast<std::int64_t>(rows_.plan.ticks));
   for (const auto& [id, channel] : index_->contents().channels)
     if (const auto topic = Topic::Parse(channel.topic); topic && BelongsToRows(*topic, rows_.plan.agents))
       topics_[id] = *topic;

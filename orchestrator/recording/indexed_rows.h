@@ -25,6 +25,7 @@ class IndexedRows {
   /// The resolved experiment as TOML; name() is its run.name.
   const std::string& config() const { return index_->contents().attachments.at("config.toml"); }
   const std::string& name() const { return rows_.plan.name; }
+  int agents() const { return rows_.plan.agents; }
   bool has_commands() const { return rows_.has_commands; }
   /// Number of complete ticks: 0 to ticks() - 1.
   std::int64_t ticks() const { return rows_.ticks; }

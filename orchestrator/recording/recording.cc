@@ -43,7 +43,7 @@ RowsOf RowsIn(const McapContents& contents, const std::string& path) {
   }
   const Proof proof = Prove(contents, rows.plan);
   if (!proof.gap.empty()) throw std::runtime_error(path + ": " + proof.gap);
-  rows.ticks = static_cast<std::int64_t>(proof.ticks.value_or(0));
+  rows.ticks = static_cast<std::int64_t>(std::min<std::uint64_t>(proof.ticks.value_or(0), INT64_MAX));
   const std::string loss = LossOf(contents);
   if (rows.ticks == 0) throw std::runtime_error(path + ": holds no whole tick" + (loss.empty() ? "" : ": " + loss));
   return rows;

@@ -1,4 +1,4 @@
-// Fuzzer: any bytes as a recording, read by all that read recordings: info, export, verify, recover. Damage has a
+// Fuzzer: any bytes as a recording, read by all that read recordings: info, export, verify, recover, view. Damage has a
 // place. What was recovered is a whole recording with the same messages.
 #include "orchestrator/recording/recording.h"
 
@@ -13,6 +13,7 @@
 #include "experiment/toml/section.h"
 #include "orchestrator/formats/output_file.h"
 #include "orchestrator/recording/completeness.h"
+#include "orchestrator/recording/indexed_rows.h"
 #include "orchestrator/recording/repair.h"
 #include "orchestrator/recording/row_codec.h"
 #include "orchestrator/recording/sample_fields.h"
@@ -50,6 +51,13 @@ void InWords(const Read& read) try {
   read();
 } catch (const std::runtime_error& error) {  // ConfigError too
   Require(*error.what() != '\0', "an error without words");
+}
+
+void ReadSomeRows(const std::string& path) {
+  IndexedRows rows(path);
+  DecodedRow decoded(rows.agents());
+  rows.Events();
+  for (const std::int64_t tick : {rows.ticks() - 1, std::int64_t{0}, rows.ticks() / 2}) rows.Read(tick, decoded);
 }
 
 void ReadRows(const std::string& path) {
@@ -91,6 +99,7 @@ void FuzzRecording(std::span<const std::uint8_t> bytes) {
   Prove(contents, plan).End(plan.ticks);
   if (plan.agents == 0 || plan.agents > kMostAgents) return;
   InWords([&] { ReadRows(file.path()); });
+  InWords([&] { ReadSomeRows(file.path()); });
   InWords([&] { RecoverTo(target, file.path(), messages.size()); });
   ::unlink(target.c_str());
 }
