@@ -4,12 +4,16 @@
 #include <gmock/gmock.h>
 
 #include <limits>
+#include <mutex>
 #include <set>
 
 #include "agent/laws.h"
+#include "orchestrator/live/projector.h"
 #include "orchestrator/live/recorded_run.h"
 #include "orchestrator/live/shown_keys.h"
 #include "tests/flown.h"
+#include "tests/orchestrator.h"
+#include "tests/viewer.h"
 
 namespace mascot {
 namespace {
@@ -208,6 +212,57 @@ TEST(RecordedRun, OfACutFileEndsAtTheCutAndSaysSo) {
   recorded.Show(last, row);
   EXPECT_TRUE(IsSame(row.decoded, run.at(last).row));
   for (const ShownEvent& event : recorded.Events()) EXPECT_LE(event.tick, last);
+}
+
+TEST(Projector, PausesWhereTheFileIsDamagedAndShowsWhatFollowsWithoutEdges) {
+  const ScratchFolder folder;
+  std::string toml(kThree);
+  toml.replace(toml.find("[[events]]"), std::string::npos, kLossy);
+  const Flown flown(folder, toml);
+  std::string bytes = ReadFile(flown.path());
+  const std::uint64_t offset = McapIndex(flown.path()).chunks().at(1).offset;  // of 1.01 s to 2.01 s
+  bytes[offset + 100] = static_cast<char>(bytes[offset + 100] ^ 1);
+  WriteFile(flown.path(), bytes);
+
+  std::mutex mutex;
+  std::vector<std::string> lines;
+  const auto log = [&](const std::string& line) {
+    const std::lock_guard lock(mutex);
+    lines.push_back(line);
+  };
+  RecordedRun run(flown.path());
+  const Prediction prediction;
+  Playback playback(100, run.last_tick());
+  LiveView view(run.experiment(), prediction, playback, {.port = 0, .page = {}, .source = {.recorded = run.part()}},
+                log);
+  test::Viewer viewer(view.url());
+  viewer.Subscribe("/ui/frame");
+  {
+    const Projector projector(run, playback, view, log);
+    const auto go_to = [&](double t_s, std::int64_t tick) {
+      viewer.Ask({{"ask", "seek"}, {"t_s", t_s}});
+      nlohmann::json frame = viewer.NextJsonOf("/ui/frame");
+      while (frame["tick"] != tick) frame = viewer.NextJsonOf("/ui/frame");
+      return frame;
+    };
+    EXPECT_EQ(go_to(0.5, 50)["edge"].size(), 3u);
+    EXPECT_EQ(go_to(2.6, 260)["edge"], nullptr);
+    const auto has_said = [&](std::size_t number) {
+      return test::Until([&] {
+        const std::lock_guard lock(mutex);
+        return lines.size() == number;
+      });
+    };
+    EXPECT_TRUE(has_said(1));
+    viewer.Ask({{"ask", "seek"}, {"t_s", 1.0}});
+    viewer.Ask({{"ask", "resume"}});
+    EXPECT_TRUE(has_said(2));
+    EXPECT_EQ(go_to(0.5, 50)["state"], "paused");
+  }
+  const std::string damage = flown.path() + ": ", place = " (record at byte " + std::to_string(offset) + ")";
+  EXPECT_THAT(lines, ElementsAre(testing::AllOf(testing::StartsWith("warning: " + damage), HasSubstr(place),
+                                                testing::EndsWith(": states of edges are not known from there on")),
+                                 testing::AllOf(testing::StartsWith("error: " + damage), testing::EndsWith(place))));
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ void Projector::Run(const std::stop_token& over) {
     const Playback::Standing now = playback_.Now();
     try {
       if (now != shown) Show(now);
-      while (!has_edges_ && Playback::WallClock::now() < frame_ends && !over.stop_requested()) FollowEdges();
+      while (!has_edges_ && Playback::WallClock::now() < frame_ends && !over.stop_requested())
+        if ((has_edges_ = FollowEdges())) Publish();
     } catch (const std::exception& error) {
       log_(std::string("error: ") + error.what());
       playback_.Ask({.kind = Wish::Kind::kPause});
@@ -43,13 +44,16 @@ void Projector::Show(const Playback::Standing& now) {
   view_.SetState({.phase = now.plays ? RunState::Phase::kRunning : RunState::Phase::kPaused, .pace = now.speed});
   if (now.tick == row_.tick) return;
   run_.Show(now.tick, row_);
-  has_edges_ = run_.FollowEdges(row_, kRowsAtATime);
+  has_edges_ = FollowEdges();
   Publish();
 }
 
-void Projector::FollowEdges() {
-  has_edges_ = run_.FollowEdges(row_, kRowsAtATime);
-  if (has_edges_) Publish();
+bool Projector::FollowEdges() try {
+  return run_.FollowEdges(row_, kRowsAtATime);
+} catch (const std::exception& error) {  // of an earlier tick
+  if (!lacks_rows_) log_(std::string("warning: ") + error.what() + ": states of edges are not known from there on");
+  lacks_rows_ = true;
+  return true;
 }
 
 void Projector::Publish() {

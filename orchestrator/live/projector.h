@@ -16,13 +16,13 @@ namespace mascot {
 class Projector {
  public:
   /// All must outlive this object; nobody else may use `run` meanwhile. `log` takes a line about a damaged file; where
-  /// it is damaged playback pauses.
+  /// it is damaged playback pauses, and behind that the states of edges are not known, if they take all rows.
   Projector(RecordedRun& run, Playback& playback, LiveView& view, std::function<void(const std::string&)> log);
 
  private:
   void Run(const std::stop_token& over);
   void Show(const Playback::Standing& now);
-  void FollowEdges();
+  bool FollowEdges();
   void Publish();
 
   RecordedRun& run_;
@@ -31,7 +31,8 @@ class Projector {
   const std::function<void(const std::string&)> log_;
   ShownRow row_;
   const Experiment* experiment_ = nullptr;  // that viewers know
-  bool has_edges_ = true;                   // row_.edges are known
+  bool has_edges_ = true;                   // row_.edges are known, or never will be
+  bool lacks_rows_ = false;                 // edges cannot be followed everywhere: the file is damaged
   std::jthread thread_;                     // last: it uses the others
 };
 
