@@ -156,8 +156,9 @@ TEST(Completeness, ARecordingThatLacksASampleOfATopicIsNotComplete) {
   const ScratchFolder scratch;
   const std::string whole = Record(scratch, kExperiment);
   for (const Topic& topic : PlanOf(ReadMcap(whole), whole).topics)
-    if (topic.kind != TopicKind::kEvent)  // there were none
+    if (topic.kind != TopicKind::kEvent) {  // there were none
       EXPECT_THAT(ProofOf(Without(whole, topic.Name(), /*fewer=*/true)).gap, HasSubstr(topic.Name() + " has 10"));
+    }
 }
 
 TEST(Completeness, TopicsThatTheExperimentDoesNotRecordAreNotMissed) {
