@@ -67,12 +67,14 @@ void IndexedRows::Collect(std::int64_t tick, Row& row) {
   const auto& chunks = index_->chunks();
   for (std::size_t chunk = 0; chunk < chunks.size(); ++chunk) {
     if (time_ns < chunks[chunk].first_ns || time_ns > chunks[chunk].last_ns) continue;
-    for (const auto& sample : std::ranges::equal_range(Load(chunk), time_ns, {}, &McapContents::Message::log_time)) {
-      const Topic& topic = topics_.at(sample.channel);
+    const Samples& samples = Load(chunk);
+    auto sample = std::ranges::lower_bound(samples, time_ns, {}, &McapContents::Message::log_time);
+    for (; sample != samples.end() && sample->log_time == time_ns; ++sample) {
+      const Topic& topic = topics_.at(sample->channel);
       if (topic.kind == TopicKind::kEvent)
-        row.events.push_back(sample.data);
+        row.events.push_back(sample->data);
       else
-        SampleOf(row, topic).assign(sample.data.begin(), sample.data.end());
+        SampleOf(row, topic).assign(sample->data.begin(), sample->data.end());
     }
   }
 }
