@@ -83,22 +83,7 @@ void RosChannels::SetRow(const ShownRow& row) {
 }
 
 std::string RosChannels::Transforms() const {
-  const std_msgs::msg::Header header = HeaderOf(StampNs(row_->tick, experiment_.control.rate_hz), kWorldFrame);
-  tf2_msgs::msg::TFMessage message;
-  message.transforms().resize(experiment_.agents.size());
-  for (std::size_t i = 0; i < experiment_.agents.size(); ++i) {
-    const Motion& motion = row_->decoded.motions[i];
-    geometry_msgs::msg::TransformStamped& transform = message.transforms()[i];
-    transform.header(header);
-    transform.child_frame_id(AgentName(static_cast<int>(i) + 1));
-    transform.transform().translation().x(motion.p_WB.x());
-    transform.transform().translation().y(motion.p_WB.y());
-    transform.transform().translation().z(motion.p_WB.z());
-    transform.transform().rotation().x(motion.q_WB.x());
-    transform.transform().rotation().y(motion.q_WB.y());
-    transform.transform().rotation().z(motion.q_WB.z());
-    transform.transform().rotation().w(motion.q_WB.w());
-  }
+  tf2_msgs::msg::TFMessage message = TransformsOf(*row_, StampNs(row_->tick, experiment_.control.rate_hz));
   return CdrOf<tf2_msgs::msg::TFMessagePubSubType>(message);
 }
 

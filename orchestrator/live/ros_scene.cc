@@ -32,12 +32,12 @@ geometry_msgs::msg::Point ToPoint(const Eigen::Vector3d& p) {
   return point;
 }
 
-geometry_msgs::msg::Vector3 ToScale(const Eigen::Vector3d& v) {
-  geometry_msgs::msg::Vector3 scale;
-  scale.x(v.x());
-  scale.y(v.y());
-  scale.z(v.z());
-  return scale;
+geometry_msgs::msg::Vector3 ToVector3(const Eigen::Vector3d& v) {
+  geometry_msgs::msg::Vector3 vector;
+  vector.x(v.x());
+  vector.y(v.y());
+  vector.z(v.z());
+  return vector;
 }
 
 /// A marker that stands until another of the same name and number replaces it.
@@ -70,7 +70,7 @@ void AddBody(const AgentConfig& agent, std::uint64_t time_ns, Markers& to) {
   const Colour& colour = agent.law.leader == agent.id ? kOrange : kBlue;
   const bool has_rotors = agent.traits().has_airframe;
   Marker body = MakeMarker("bodies", agent.id, has_rotors ? kCube : kSphere, colour, header);
-  body.scale(ToScale(agent.size_m()));
+  body.scale(ToVector3(agent.size_m()));
   body.frame_locked(true);
   if (has_rotors) {
     body.color().a(0.3f);  // the box that collides; the arms are inside
@@ -95,7 +95,7 @@ void AddObstacle(const Obstacle& obstacle, std::int32_t id, std::uint64_t time_n
   marker.pose().position(ToPoint(obstacle.p_W));
   marker.pose().orientation().w(std::cos(obstacle.heading_rad / 2));
   marker.pose().orientation().z(std::sin(obstacle.heading_rad / 2));
-  marker.scale(ToScale(obstacle.size_m));
+  marker.scale(ToVector3(obstacle.size_m));
   to.markers().push_back(std::move(marker));
 }
 
@@ -129,6 +129,24 @@ std_msgs::msg::Header HeaderOf(std::uint64_t time_ns, const std::string& frame) 
   header.stamp().nanosec(static_cast<std::uint32_t>(time_ns % 1'000'000'000));
   header.frame_id(frame);
   return header;
+}
+
+tf2_msgs::msg::TFMessage TransformsOf(const ShownRow& row, std::uint64_t time_ns) {
+  const std_msgs::msg::Header header = HeaderOf(time_ns, kWorldFrame);
+  tf2_msgs::msg::TFMessage message;
+  int id = 0;
+  for (const Motion& motion : row.decoded.motions) {
+    geometry_msgs::msg::TransformStamped transform;
+    transform.header(header);
+    transform.child_frame_id(AgentName(++id));
+    transform.transform().translation(ToVector3(motion.p_WB));
+    transform.transform().rotation().x(motion.q_WB.x());
+    transform.transform().rotation().y(motion.q_WB.y());
+    transform.transform().rotation().z(motion.q_WB.z());
+    transform.transform().rotation().w(motion.q_WB.w());
+    message.transforms().push_back(std::move(transform));
+  }
+  return message;
 }
 
 void RosScene::AddToTrails(const ShownRow& row) {

@@ -27,6 +27,9 @@ std::string CdrOf(typename PubSub::type& sample) {
 
 std_msgs::msg::Header HeaderOf(std::uint64_t time_ns, const std::string& frame);
 
+/// Where the agents are: from kWorldFrame to a frame for each agent, which has its name.
+tf2_msgs::msg::TFMessage TransformsOf(const ShownRow& row, std::uint64_t time_ns);
+
 /// A run as markers of RViz. Bodies and numbers are in the frames of their agents, which /tf moves.
 class RosScene {
  public:
