@@ -3,12 +3,15 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
+
+#include "idl/schemas.h"
 
 namespace mascot {
 namespace {
@@ -240,6 +243,8 @@ dds::DataWriterQos WriterQos(TopicKind kind) {
   SetCommon(qos, profile, profile.writer_depth);
   qos.publish_mode().kind = profile.late_joiners ? dds::ASYNCHRONOUS_PUBLISH_MODE  // may need fragments
                                                  : dds::SYNCHRONOUS_PUBLISH_MODE;
+  const std::string type = fmt::format("typehash={};", SchemaOf(kind).type_hash);  // as ROS 2 tells it
+  qos.user_data().setValue({type.begin(), type.end()});
   auto& reliable = qos.reliable_writer_qos();
   reliable.times.heartbeatPeriod = Duration_t(0, 200'000'000);  // repairs a lost last sample within 0.2 s
   if (profile.per_tick) {

@@ -1,8 +1,12 @@
 #include "bus/wire.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
+
+#include "idl/schemas.h"
 
 namespace mascot {
 namespace {
@@ -59,27 +63,9 @@ std::uint64_t DigestOf(const mascot_msgs::msg::Experiment& experiment) {
 }
 
 std::string WireTypeName(TopicKind kind) {
-  switch (kind) {
-    case TopicKind::kBundle:
-      return BundleType().getName();
-    case TopicKind::kCommand:
-      return CommandType().getName();
-    case TopicKind::kMessage:
-      return MessageType().getName();
-    case TopicKind::kState:
-      return StateType().getName();
-    case TopicKind::kClock:
-      return ClockType().getName();
-    case TopicKind::kEvent:
-      return EventType().getName();
-    case TopicKind::kExperiment:
-      return ExperimentType().getName();
-    case TopicKind::kRequest:
-      return RequestType().getName();
-    case TopicKind::kStatus:
-      return StatusType().getName();
-  }
-  return {};
+  const std::string_view name = SchemaOf(kind).name;  // "package/msg/Type"
+  const std::size_t first = name.find('/'), last = name.rfind('/');
+  return fmt::format("{}::msg::dds_::{}_", name.substr(0, first), name.substr(last + 1));
 }
 
 Life CheckedLife(const mascot_msgs::msg::Status& status, std::int64_t last_tick) {

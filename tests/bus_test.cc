@@ -60,8 +60,19 @@ TEST(Topic, IsNotParsedFromForeignNames) {
 
 TEST(Wire, TypesHaveTheNamesThatRos2GivesThem) {
   EXPECT_EQ(WireTypeName(TopicKind::kState), "mascot_msgs::msg::dds_::AgentState_");
-  EXPECT_EQ(WireTypeName(TopicKind::kCommand), "mascot_msgs::msg::dds_::AgentCommand_");
   EXPECT_EQ(WireTypeName(TopicKind::kClock), "rosgraph_msgs::msg::dds_::Clock_");
+}
+
+TEST(Wire, TypesHaveTheNamesOfTheirGeneratedCode) {
+  EXPECT_EQ(WireTypeName(TopicKind::kBundle), BundleType().getName());
+  EXPECT_EQ(WireTypeName(TopicKind::kCommand), CommandType().getName());
+  EXPECT_EQ(WireTypeName(TopicKind::kMessage), MessageType().getName());
+  EXPECT_EQ(WireTypeName(TopicKind::kState), StateType().getName());
+  EXPECT_EQ(WireTypeName(TopicKind::kClock), ClockType().getName());
+  EXPECT_EQ(WireTypeName(TopicKind::kEvent), EventType().getName());
+  EXPECT_EQ(WireTypeName(TopicKind::kExperiment), ExperimentType().getName());
+  EXPECT_EQ(WireTypeName(TopicKind::kRequest), RequestType().getName());
+  EXPECT_EQ(WireTypeName(TopicKind::kStatus), StatusType().getName());
 }
 
 TEST(Wire, StampsAreDividedAndNeverAccumulated) {
