@@ -169,8 +169,9 @@ WriterBase::~WriterBase() = default;
 
 int WriterBase::matched() const { return listener_->matched(); }
 
-void WriterBase::AwaitReaders(std::chrono::milliseconds timeout) {
-  writer_->wait_for_acknowledgments(eprosima::fastrtps::Duration_t(1e-3L * timeout.count()));
+bool WriterBase::AwaitReaders(std::chrono::milliseconds timeout) {
+  return writer_->wait_for_acknowledgments(eprosima::fastrtps::Duration_t(1e-3L * timeout.count())) ==
+         ReturnCode_t::RETCODE_OK;
 }
 
 void WriterBase::WriteAny(void* sample) {
@@ -250,7 +251,8 @@ void ThrowNoSample(const Topic& topic, std::size_t bytes, const std::string& typ
 
 namespace {
 
-/// Has the name of a generated type, so that it matches that type's writers, but keeps the bytes as they came.
+/// Has the name of a generated type, so that it matches that type's readers and writers, but keeps the bytes as they
+/// are.
 class RawType : public dds::TopicDataType {
  public:
   explicit RawType(const std::string& name) {
@@ -258,7 +260,14 @@ class RawType : public dds::TopicDataType {
     m_typeSize = 256;  // a first guess for preallocation; histories grow with what comes
     m_isGetKeyDefined = false;
   }
-  bool serialize(void*, SerializedPayload_t*) override { return false; }  // read only
+  bool serialize(void* data, SerializedPayload_t* payload) override {
+    const auto& bytes = *static_cast<ReaderBase::Bytes*>(data);
+    if (bytes.size() > payload->max_size) return false;
+    std::ranges::copy(bytes, payload->data);
+    payload->length = static_cast<std::uint32_t>(bytes.size());
+    payload->encapsulation = CDR_LE;
+    return true;
+  }
   bool deserialize(SerializedPayload_t* payload, void* data) override {
     static_cast<ReaderBase::Bytes*>(data)->assign(payload->data, payload->data + payload->length);
     return true;
@@ -276,5 +285,8 @@ class RawType : public dds::TopicDataType {
 RawReader::RawReader(Domain& domain, const Topic& topic, OnBytes on_sample)
     : ReaderBase(domain, topic, dds::TypeSupport(new RawType(WireTypeName(topic.kind))), RecorderQos(topic),
                  std::move(on_sample)) {}
+
+RawWriter::RawWriter(Domain& domain, const Topic& topic)
+    : WriterBase(domain, topic, dds::TypeSupport(new RawType(WireTypeName(topic.kind)))) {}
 
 }  // namespace mascot

@@ -75,9 +75,9 @@ class WriterBase {
  public:
   /// Number of the run's processes that have a matched reader now; without Peers, the number of those readers.
   int matched() const;
-  /// Waits until all matched readers have acknowledged every sample, at most `timeout`. To be called before a process
-  /// ends: its shared memory goes with it, and samples that are not read by then are lost.
-  void AwaitReaders(std::chrono::milliseconds timeout);
+  /// Waits until all matched readers have acknowledged every sample, at most `timeout`. Returns whether they have. To
+  /// be called before a process ends: its shared memory goes with it, and samples that are not read by then are lost.
+  bool AwaitReaders(std::chrono::milliseconds timeout);
 
  protected:
   WriterBase(Domain& domain, const Topic& topic, eprosima::fastdds::dds::TypeSupport type);
@@ -160,6 +160,15 @@ class Reader : public ReaderBase {
 class RawReader : public ReaderBase {
  public:
   RawReader(Domain& domain, const Topic& topic, OnBytes on_sample);
+};
+
+/// Publishes samples that are bytes already: the 4-byte encapsulation header, then CDR. Thread-safe.
+class RawWriter : public WriterBase {
+ public:
+  using Bytes = ReaderBase::Bytes;
+  RawWriter(Domain& domain, const Topic& topic);
+  /// Throws BusError if Fast DDS does not accept the sample.
+  void Write(Bytes& sample) { WriteAny(&sample); }
 };
 
 }  // namespace mascot

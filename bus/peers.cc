@@ -19,6 +19,8 @@ bool MayWrite(std::string_view process, const Topic& topic) {
       return agents && agents->Holds(topic.agent);
     }
     case TopicKind::kExperiment:
+    case TopicKind::kScene:
+    case TopicKind::kTf:
       return process == kOrchestrator;
     case TopicKind::kRequest:  // the server may ask for reports (Lifecycle)
       return process == kOrchestrator || process == kPhysicsServer;

@@ -31,19 +31,22 @@ struct Profile {
   int reader_depth;
   bool per_tick;  // sent at every tick: tuned for the round trip of lockstep
   bool late_joiners;
+  bool large;  // may need fragments
 };
 
 constexpr Profile kProfiles[] = {
     // topics of agents come first: ReaderNumber() counts these rows
-    {TopicKind::kBundle, 4, 4, true, false},  // large, and not recorded
-    {TopicKind::kState, kHistoryDepth, 8, true, false},
-    {TopicKind::kCommand, kHistoryDepth, 8, true, false},
-    {TopicKind::kMessage, kHistoryDepth, 8, true, false},
-    {TopicKind::kClock, kHistoryDepth, 8, true, false},
-    {TopicKind::kEvent, kHistoryDepth, kHistoryDepth, false, false},
-    {TopicKind::kStatus, 256, 256, false, false},
-    {TopicKind::kRequest, 32, 32, false, false},
-    {TopicKind::kExperiment, 1, 1, false, true},
+    {TopicKind::kBundle, 4, 4, true, false, false},  // large, and not recorded
+    {TopicKind::kState, kHistoryDepth, 8, true, false, false},
+    {TopicKind::kCommand, kHistoryDepth, 8, true, false, false},
+    {TopicKind::kMessage, kHistoryDepth, 8, true, false, false},
+    {TopicKind::kClock, kHistoryDepth, 8, true, false, false},
+    {TopicKind::kEvent, kHistoryDepth, kHistoryDepth, false, false, false},
+    {TopicKind::kStatus, 256, 256, false, false, false},
+    {TopicKind::kRequest, 32, 32, false, false, false},
+    {TopicKind::kExperiment, 1, 1, false, true, true},
+    {TopicKind::kScene, 1, 1, false, true, true},
+    {TopicKind::kTf, 10, 10, false, false, true},
 };
 
 const Profile& ProfileOf(TopicKind kind) {
@@ -241,8 +244,7 @@ dds::DataWriterQos WriterQos(TopicKind kind) {
   const Profile& profile = ProfileOf(kind);
   dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
   SetCommon(qos, profile, profile.writer_depth);
-  qos.publish_mode().kind = profile.late_joiners ? dds::ASYNCHRONOUS_PUBLISH_MODE  // may need fragments
-                                                 : dds::SYNCHRONOUS_PUBLISH_MODE;
+  qos.publish_mode().kind = profile.large ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
   const std::string type = fmt::format("typehash={};", SchemaOf(kind).type_hash);  // as ROS 2 tells it
   qos.user_data().setValue({type.begin(), type.end()});
   auto& reliable = qos.reliable_writer_qos();

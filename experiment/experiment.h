@@ -146,6 +146,7 @@ struct Experiment {
     std::string transport;
     int agents_per_process = 1;
     Delivery delivery = Delivery::kTopics;
+    bool ros_view = false;
   } network;
   std::vector<Event> events;  ///< of the file, in order of time
 

@@ -215,6 +215,7 @@ void ReadNetwork(Section& section, Experiment& experiment) {
   network.transport = section.OneOf("transport");
   network.agents_per_process = static_cast<int>(section.Integer("agents_per_process"));
   network.delivery = kDeliveries.Value(section.OneOf("delivery"));
+  network.ros_view = section.Boolean("ros_view");
   section.Done();
 }
 
@@ -299,6 +300,7 @@ std::span<const Key> ExperimentKeys() {
           "topics: a reader for each agent that is heard; bundled: one sample with all that an agent may hear, for "
           "dense graphs")
           .Default("\"topics\""),
+      key::Boolean("ros_view", "publishes `/tf` and `/scene`, for RViz2").Default("false"),
   };
   static const Key keys[] = {
       key::Integer("format", 1, kFormat, "version of the file's format; a run's own config.toml says it").Default("1"),

@@ -39,8 +39,12 @@ const TypeSchema& SchemaOf(TopicKind kind) {
       return SchemaOf("mascot_msgs/msg/Experiment");
     case TopicKind::kRequest:
       return SchemaOf("mascot_msgs/msg/Request");
+    case TopicKind::kScene:
+      return SchemaOf("visualization_msgs/msg/MarkerArray");
     case TopicKind::kStatus:
       return SchemaOf("mascot_msgs/msg/Status");
+    case TopicKind::kTf:
+      return SchemaOf("tf2_msgs/msg/TFMessage");
   }
   throw std::out_of_range("no schema for this kind of topic");
 }

@@ -12,11 +12,17 @@ struct KindName {
 };
 
 constexpr KindName kKinds[] = {
-    {TopicKind::kBundle, "bundle", true},          {TopicKind::kCommand, "command", true},
-    {TopicKind::kMessage, "message", true},        {TopicKind::kState, "state", true},
-    {TopicKind::kClock, "clock", false},           {TopicKind::kEvent, "event", false},
-    {TopicKind::kExperiment, "experiment", false}, {TopicKind::kRequest, "request", false},
+    {TopicKind::kBundle, "bundle", true},
+    {TopicKind::kCommand, "command", true},
+    {TopicKind::kMessage, "message", true},
+    {TopicKind::kState, "state", true},
+    {TopicKind::kClock, "clock", false},
+    {TopicKind::kEvent, "event", false},
+    {TopicKind::kExperiment, "experiment", false},
+    {TopicKind::kRequest, "request", false},
+    {TopicKind::kScene, "scene", false},
     {TopicKind::kStatus, "status", false},
+    {TopicKind::kTf, "tf", false},
 };
 constexpr std::string_view kAgentPrefix = "agent_";
 constexpr std::string_view kAgentsPrefix = "agents_";

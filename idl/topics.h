@@ -17,7 +17,19 @@ std::string ProcessName(AgentRange agents);
 std::optional<AgentRange> AgentsOf(std::string_view process);
 
 /// What a topic carries. In a recording the topics of one agent are in this order, which is that of their names.
-enum class TopicKind { kBundle, kCommand, kMessage, kState, kClock, kEvent, kExperiment, kRequest, kStatus };
+enum class TopicKind {
+  kBundle,
+  kCommand,
+  kMessage,
+  kState,
+  kClock,
+  kEvent,
+  kExperiment,
+  kRequest,
+  kScene,
+  kStatus,
+  kTf
+};
 
 /// A topic of a run. `agent` is 1..N for the per-agent kinds, else 0.
 struct Topic {
@@ -32,7 +44,9 @@ struct Topic {
   static Topic Event() { return {TopicKind::kEvent, 0}; }
   static Topic Experiment() { return {TopicKind::kExperiment, 0}; }
   static Topic Request() { return {TopicKind::kRequest, 0}; }
+  static Topic Scene() { return {TopicKind::kScene, 0}; }
   static Topic Status() { return {TopicKind::kStatus, 0}; }
+  static Topic Tf() { return {TopicKind::kTf, 0}; }
 
   /// The ROS name: "/agent_3/state", "/clock".
   std::string Name() const;

@@ -31,7 +31,7 @@ using testing::ThrowsMessage;
 TEST(Topic, IsMadeAndParsedAlike) {
   for (const Topic& topic :
        {Topic::State(1), Topic::State(123), Topic::Bundle(4), Topic::Command(7), Topic::Message(12), Topic::Clock(),
-        Topic::Status(), Topic::Request(), Topic::Experiment()}) {
+        Topic::Status(), Topic::Request(), Topic::Experiment(), Topic::Tf(), Topic::Scene()}) {
     EXPECT_EQ(Topic::Parse(topic.Name()), topic);
     EXPECT_EQ(Topic::Parse(topic.DdsName()), topic);
   }
@@ -54,13 +54,15 @@ TEST(Topic, AgentsAreNamedAndNumberedAlike) {
 TEST(Topic, IsNotParsedFromForeignNames) {
   for (const char* name :
        {"", "rt", "rt/", "/", "/agent_/state", "/agent_0/state", "/agent_03/state", "/agent_-1/state", "/agent_3",
-        "/agent_3/", "/agent_3/clock", "/state", "/agent_3/state2", "/tf", "rt/agent_x/state"})
+        "/agent_3/", "/agent_3/clock", "/state", "/agent_3/state2", "/tf_static", "rt/agent_x/state"})
     EXPECT_EQ(Topic::Parse(name), std::nullopt) << name;
 }
 
 TEST(Wire, TypesHaveTheNamesThatRos2GivesThem) {
   EXPECT_EQ(WireTypeName(TopicKind::kState), "mascot_msgs::msg::dds_::AgentState_");
   EXPECT_EQ(WireTypeName(TopicKind::kClock), "rosgraph_msgs::msg::dds_::Clock_");
+  EXPECT_EQ(WireTypeName(TopicKind::kTf), "tf2_msgs::msg::dds_::TFMessage_");
+  EXPECT_EQ(WireTypeName(TopicKind::kScene), "visualization_msgs::msg::dds_::MarkerArray_");
 }
 
 TEST(Wire, TypesHaveTheNamesOfTheirGeneratedCode) {

@@ -8,6 +8,7 @@
 
 #include "agent/laws.h"
 #include "orchestrator/engines/inprocess.h"
+#include "orchestrator/live/ros_view.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/run_writer.h"
 #include "tests/orchestrator.h"
@@ -233,6 +234,25 @@ name = "consensus"
   EXPECT_EQ(of_1[State::kHeard], 101 - traffic[0].count.lost);
   EXPECT_EQ(of_2[State::kNoEdge], 50u);  // ticks 25 to 49 and 75 to 99
   EXPECT_EQ(of_2[State::kHeard], 51 - traffic[1].count.lost);
+}
+
+TEST(RosView, StandsAtATickUntilItIsToldToGoOn) {
+  const Experiment experiment = Load(kThree);
+  RunMeter meter(experiment);
+  RosView view(experiment, meter);
+  EXPECT_EQ(view.TakeNewest(), -1);
+  RosSource::Bytes first;
+  const EngineResult result = RunInProcess(experiment, {&meter, &view}, [&, tick = 0]() mutable {
+    if (tick++ != 100) return true;
+    EXPECT_EQ(view.TakeNewest(), 99);
+    first = view.Transforms();
+    return true;
+  });
+  EXPECT_EQ(result.failure, "");
+  EXPECT_EQ(view.Transforms(), first);
+  EXPECT_EQ(view.TakeNewest(), 300);
+  EXPECT_NE(view.Transforms(), first);
+  EXPECT_EQ(view.TakeNewest(), 300);
 }
 
 TEST(LiveView, PassesWishesToTheRunAndItsAnswersBack) {

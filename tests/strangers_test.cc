@@ -113,6 +113,11 @@ std::vector<Lie> Lies() {
        "'rviz' writes /request, which only orchestrator may"},
       {"an experiment", "rviz", Write<ExperimentType>(Topic::Experiment(), {}),
        "'rviz' writes /experiment, which only orchestrator may"},
+      {"a place of an agent",
+       "rviz",
+       Write<ClockType>(Topic::Tf(), {}),
+       "'rviz' writes /tf, which only orchestrator may",
+       {"--set", "network.ros_view=true"}},
   };
 }
 

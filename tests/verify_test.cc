@@ -213,6 +213,9 @@ TEST_F(Verify, AChangedConfigBesideTheRecordingIsNamed) {
 
 TEST_F(Verify, OtherProcessesAndDeliveryAreNoOtherExperiment) {
   Fly(kTwo, {"--set", "network.agents_per_process=2", "--set", "network.delivery='bundled'"});
+  std::string config = ReadFile(File("run/config.toml"));
+  Change(config, "ros_view = false", "ros_view = true");
+  WriteFile(File("run/config.toml"), config);
   EXPECT_EQ(Check(File("run")).exit_code, kExitDone);
 }
 

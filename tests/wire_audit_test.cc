@@ -77,6 +77,35 @@ TEST_F(WireAuditTest, AnyoneMayListenWhoDoesNotCallItselfAnAgent) {
   EXPECT_EQ(audit_.Violation(), "");
 }
 
+TEST_F(WireAuditTest, WithAViewForRosStrangersMayReadItAndAgentsMayNot) {
+  audit_.OnParticipant(Participant(200), "rviz", "");
+  Reads(Participant(101), Topic::Tf());
+  Writes(Participant(200), Topic::Tf());  // of no concern to a run without
+  EXPECT_EQ(audit_.Violation(), "");
+  Experiment experiment = experiment_;
+  experiment.network.ros_view = true;
+  const auto violation_of = [&](int process, const Topic& topic, bool reads) {
+    WireAudit audit(experiment, peers_);
+    for (const int participant : {99, 100, 101, 200})
+      audit.OnParticipant(Participant(participant), participant == 200 ? "rviz" : "", "");
+    WireAudit::Guid guid;
+    guid.guidPrefix = Participant(process, 1);
+    if (process == 200) guid.guidPrefix = Participant(200);
+    audit.OnEndpoint(guid, topic.DdsName(), reads);
+    return audit.Violation();
+  };
+  for (const Topic& topic : {Topic::Tf(), Topic::Scene()}) {
+    EXPECT_EQ(violation_of(99, topic, /*reads=*/false), "") << "by a second participant";
+    EXPECT_EQ(violation_of(200, topic, /*reads=*/true), "");
+    EXPECT_EQ(violation_of(101, topic, /*reads=*/true),
+              "agent_1 reads " + topic.Name() + ", which the graph does not let it");
+    EXPECT_EQ(violation_of(200, topic, /*reads=*/false),
+              "'rviz' writes " + topic.Name() + ", which only orchestrator may");
+    EXPECT_EQ(violation_of(100, topic, /*reads=*/false),
+              "'physics_server' writes " + topic.Name() + ", which only orchestrator may");
+  }
+}
+
 TEST_F(WireAuditTest, RemembersWhoHasLeft) {
   audit_.OnEndpointGone(Reads(Participant(101), Topic::State(3)));
   audit_.OnParticipantGone(Participant(101));

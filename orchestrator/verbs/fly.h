@@ -13,6 +13,7 @@
 
 namespace mascot {
 
+class RosSource;
 class RowSink;
 
 /// Values of --engine.
@@ -25,9 +26,10 @@ void RefuseEngine(const std::string& engine, const Experiment& experiment);
 /// One experiment on one engine.
 class Flight {
  public:
-  /// Every sink gets every row, in tick order. All arguments must outlive this object.
+  /// Every sink gets every row, in tick order; `ros`, if given, is published for RViz2. All arguments must outlive this
+  /// object.
   Flight(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
-         const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop);
+         const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop, RosSource* ros = nullptr);
 
   /// Flies. The first signal ends the run after its tick. A failure is reported in the result, which is final: to be
   /// written to files before End() is called.
@@ -46,8 +48,8 @@ class Flight {
   bool hangs_ = false;
 };
 
-/// The resolved experiment as attached to the recording: with the default domain, processes and delivery, so that runs
-/// that differ only in these have the same recording.
+/// The resolved experiment as attached to the recording: with the default domain, processes and delivery, and
+/// without a view for RViz2, so that runs that differ only in these have the same recording.
 std::string WithoutDelivery(const Experiment& experiment);
 
 }  // namespace mascot

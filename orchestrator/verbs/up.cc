@@ -12,6 +12,7 @@
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/progress.h"
 #include "orchestrator/live/address.h"
+#include "orchestrator/live/ros_view.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/processes/console.h"
 #include "orchestrator/recording/run_folder.h"
@@ -75,7 +76,9 @@ int Up(const UpArgs& args) {
   Progress progress(experiment, meter, console);
   std::vector<RowSink*> sinks{&writer, &meter, &progress};
   viewers.AddTo(sinks);
-  Flight flight(args.engine, experiment, folder, sinks, console, stop);
+  std::optional<RosView> ros_view;
+  if (experiment.network.ros_view) sinks.push_back(&ros_view.emplace(experiment, meter));
+  Flight flight(args.engine, experiment, folder, sinks, console, stop, ros_view ? &*ros_view : nullptr);
   EngineResult result = flight.Fly();
   console.EndProgress();
   try {

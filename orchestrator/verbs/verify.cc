@@ -105,14 +105,15 @@ std::string FirstChange(const std::string& ours, const std::string& recorded) {
   }
 }
 
-/// The experiment to fly: that of the recording, with the processes and the delivery of the run's own config.toml. Sets
-/// `change` if the two are not the same experiment.
+/// The experiment to fly: that of the recording, with the processes and the delivery of the run's own config.toml, and
+/// nobody who watches. Sets `change` if the two are not the same experiment.
 Experiment ExperimentOf(const std::string& run, const Subject& subject, std::string& change) {
   Experiment recorded = Load(subject.config(), subject.file + " (config.toml)", subject);
   const fs::path path = fs::path(run) / "config.toml";
   if (!fs::is_directory(run) || !fs::exists(path)) return recorded;
   Experiment ours = Load(ReadRegularFile(path.string()), path.string(), subject);
   change = FirstChange(WithoutDelivery(ours), WithoutDelivery(recorded));
+  ours.network.ros_view = false;
   return ours;
 }
 

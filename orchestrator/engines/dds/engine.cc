@@ -23,6 +23,7 @@
 #include "orchestrator/engines/dds/janitor.h"
 #include "orchestrator/engines/dds/recorder.h"
 #include "orchestrator/engines/dds/resources.h"
+#include "orchestrator/engines/dds/ros_publisher.h"
 #include "orchestrator/engines/dds/run_phases.h"
 #include "orchestrator/engines/dds/wire_audit.h"
 #include "orchestrator/engines/row_feed.h"
@@ -61,7 +62,7 @@ void LowerPriority() {
 class DdsRun {
  public:
   DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Console& console,
-         StopSignal& stop);
+         StopSignal& stop, RosSource* ros);
   EngineResult Fly();
   bool End();
 
@@ -72,6 +73,7 @@ class DdsRun {
   std::uint64_t SharedMemoryNeed() const;
   RunPhases::Rules Rules();
   void Join();
+  void ShowToRos();
   void Spawn();
   void Loop();
   void OnSignal(int signal);
@@ -92,6 +94,7 @@ class DdsRun {
   const Experiment& experiment_;
   Console& console_;
   StopSignal& stop_;
+  RosSource* const ros_;
   const WallClock::time_point launched_ = WallClock::now();
   const bool external_;
   EngineResult result_;
@@ -112,14 +115,16 @@ class DdsRun {
   std::optional<Hub> hub_;
   RowFeed feed_;
   std::optional<Recorder> recorder_;
+  std::optional<RosPublisher> ros_publisher_;
   RunPhases phases_;
 };
 
 DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
-               Console& console, StopSignal& stop)
+               Console& console, StopSignal& stop, RosSource* ros)
     : experiment_(experiment),
       console_(console),
       stop_(stop),
+      ros_(ros),
       external_(std::ranges::any_of(experiment.agents, &AgentConfig::external)),
       processes_(AgentProcesses(experiment)),
       with_server_(std::ssize(processes_) + 2 > kMostPeers),
@@ -155,6 +160,15 @@ void DdsRun::Join() {
   peers_.Know(kOrchestrator, ProcessKey::Of(domain_->guid_prefix()));
   hub_.emplace(*domain_, peers_, experiment_, folder_.Log("orchestrator").string(), wake);
   recorder_.emplace(*domain_, experiment_, feed_);
+  if (ros_ != nullptr) ShowToRos();
+}
+
+/// Shows the run to RViz2, by a participant of its own: without shared memory, which other versions of Fast DDS may not
+/// share with ours, and found without the discovery server. Whom that server does not know tells the audit.
+void DdsRun::ShowToRos() {
+  DomainOptions options = Options("ros_view", DiscoveryRole::kPeer);
+  options.transport = "udp";
+  ros_publisher_.emplace(options, *ros_, *domain_, with_server_ ? &audit_ : nullptr);
 }
 
 DomainOptions DdsRun::Options(const std::string& name, DiscoveryRole role) const {
@@ -385,6 +399,7 @@ void DdsRun::LeaveDomain() {
   // Agents that were started by hand are not our children: wait until they have left the domain.
   const auto deadline = WallClock::now() + 2s;
   while (external_ && hub_ && hub_->listeners() > 0 && WallClock::now() < deadline) std::this_thread::sleep_for(20ms);
+  ros_publisher_.reset();
   recorder_.reset();
   hub_.reset();
   domain_.reset();
@@ -392,8 +407,8 @@ void DdsRun::LeaveDomain() {
 }
 
 DdsEngine::DdsEngine(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
-                     Console& console, StopSignal& stop)
-    : run_(std::make_unique<DdsRun>(experiment, folder, sinks, console, stop)) {}
+                     Console& console, StopSignal& stop, RosSource* ros)
+    : run_(std::make_unique<DdsRun>(experiment, folder, sinks, console, stop, ros)) {}
 
 DdsEngine::~DdsEngine() { End(); }
 

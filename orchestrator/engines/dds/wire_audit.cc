@@ -47,8 +47,16 @@ bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic
       return true;
     case TopicKind::kStatus:
       return !reads;
+    case TopicKind::kScene:
+    case TopicKind::kTf:  // all agents are on them
+      return false;
   }
   return false;
+}
+
+/// Whether a run of this experiment has such a topic.
+bool IsOfTheRun(const Experiment& experiment, const Topic& topic) {
+  return experiment.network.ros_view || (topic.kind != TopicKind::kScene && topic.kind != TopicKind::kTf);
 }
 
 /// The name of the process that may write `topic`, as error messages say it.
@@ -119,7 +127,7 @@ void WireAudit::OnParticipantGone(const GuidPrefix& participant) {
 
 void WireAudit::OnEndpoint(const Guid& guid, const std::string& dds_topic, bool reads) {
   const auto topic = Topic::Parse(dds_topic);
-  if (!topic) return;
+  if (!topic || !IsOfTheRun(experiment_, *topic)) return;
   const std::lock_guard lock(mutex_);
   const auto known = participants_.find(guid.guidPrefix);
   const Participant self{.name = {}, .whereabouts = {}, .process = peers_.ProcessOf(guid.guidPrefix)};

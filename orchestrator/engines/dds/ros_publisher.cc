@@ -1,0 +1,66 @@
+#include "orchestrator/engines/dds/ros_publisher.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+
+namespace mascot {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kTfPeriod = 20ms, kScenePeriod = 100ms;
+constexpr double kMostBytesPerSecond = 5e6;  // of a topic
+
+RosPublisher::Clock::duration TimeToSend(std::size_t bytes) {
+  const std::chrono::duration<double> time(static_cast<double>(bytes) / kMostBytesPerSecond);
+  return std::chrono::duration_cast<RosPublisher::Clock::duration>(time);
+}
+
+}  // namespace
+
+RosPublisher::RosPublisher(const DomainOptions& options, RosSource& source, Domain& run,
+                           eprosima::fastdds::dds::DomainParticipantListener* discovery)
+    : source_(source),
+      run_(run),
+      domain_(
+          options, [] {}, nullptr, discovery),
+      tf_{.writer = {domain_, Topic::Tf()}, .period = kTfPeriod},
+      scene_{.writer = {domain_, Topic::Scene()}, .period = kScenePeriod},
+      thread_([this](const std::stop_token& over) { Run(over); }) {}
+
+void RosPublisher::Run(const std::stop_token& over) try {
+  std::mutex mutex;
+  std::condition_variable_any never;
+  for (std::unique_lock lock(mutex); !over.stop_requested();
+       never.wait_for(lock, over, kTfPeriod, [] { return false; })) {
+    if (tf_.writer.matched() + scene_.writer.matched() == 0) continue;
+    const std::int64_t tick = source_.TakeNewest();
+    if (tick < 0) continue;
+    Show(tf_, tick, &RosSource::Transforms);
+    Show(scene_, tick, &RosSource::Scene);
+  }
+} catch (...) {
+  run_.Fail(std::current_exception());
+}
+
+void RosPublisher::Show(Shown& topic, std::int64_t tick, RosSource::Bytes (RosSource::*make)() const) {
+  const int readers = topic.writer.matched();
+  if (readers > topic.readers) topic.owed = 2;
+  topic.readers = readers;
+  const auto now = Clock::now();
+  if (readers == 0 || now < topic.next) return;
+  const bool pays = topic.owed == 2 || (topic.owed == 1 && topic.writer.AwaitReaders(0ms));
+  if (!pays && tick == topic.tick) return;
+  if (pays) --topic.owed;
+  RosSource::Bytes sample = (source_.*make)();
+  topic.tick = tick;
+  topic.next = now + std::max(topic.period, TimeToSend(sample.size()));
+  try {
+    topic.writer.Write(sample);
+  } catch (const BusError&) {  // another follows
+  }
+}
+
+}  // namespace mascot

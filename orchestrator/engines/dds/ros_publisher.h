@@ -1,0 +1,48 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <stop_token>
+#include <thread>
+
+#include "bus/bus.h"
+#include "orchestrator/engines/ros_source.h"
+
+namespace mascot {
+
+/// Publishes /tf and /scene for RViz2 (network.ros_view): the newest tick, at most 50 and 10 times a second, and less
+/// often if samples are large. No sample is made for nobody. A thread and a participant of its own do all of
+/// it: no reader, however slow, delays the run.
+class RosPublisher {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// Joins as `options` say, and begins. `discovery`, if given, is told of all who are found. A failure of `source` is
+  /// one of `run`, which, like the others, must outlive this object. Throws what Domain() throws.
+  RosPublisher(const DomainOptions& options, RosSource& source, Domain& run,
+               eprosima::fastdds::dds::DomainParticipantListener* discovery);
+
+ private:
+  /// A topic, and the last sample of it. A sample for a new reader is sent again once the reader has answered: it may
+  /// not have known this writer when the first one came.
+  struct Shown {
+    RawWriter writer;
+    Clock::duration period;
+    std::int64_t tick = -1;
+    int readers = 0;
+    int owed = 0;                 // samples for a new reader
+    Clock::time_point next = {};  // no other sample before
+  };
+  void Run(const std::stop_token& over);
+  /// Publishes what `make` makes of this tick, if it is time, and if there is a reader who needs it.
+  void Show(Shown& topic, std::int64_t tick, RosSource::Bytes (RosSource::*make)() const);
+
+  RosSource& source_;
+  Domain& run_;
+  Domain domain_;
+  Shown tf_, scene_;
+  std::jthread thread_;  // last: it uses the others
+};
+
+}  // namespace mascot

@@ -1,0 +1,53 @@
+#include "orchestrator/live/ros_view.h"
+
+#include <utility>
+
+#include "bus/wire.h"
+
+namespace mascot {
+namespace {
+
+/// A trail has a point for every so many rows that are shown: at 50 rows a second, one point a fifth of a second.
+constexpr int kRowsPerPoint = 10;
+
+RosSource::Bytes BytesOf(const std::string& text) { return {text.begin(), text.end()}; }
+
+}  // namespace
+
+RosView::RosView(const Experiment& experiment, const RunMeter& meter)
+    : experiment_(experiment),
+      meter_(meter),
+      newest_(experiment.size()),
+      shown_(experiment.size()),
+      scene_(experiment) {}
+
+void RosView::Add(const FlownRow& row) {
+  const std::lock_guard lock(mutex_);
+  newest_.tick = row.tick();
+  newest_.decoded = row.decoded();
+  if (experiment_.graph.edges() <= kMostEdgesShown) meter_.EdgesNow(newest_.edges);
+}
+
+std::int64_t RosView::TakeNewest() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (newest_.tick <= shown_.tick) return shown_.tick;
+    std::swap(newest_, shown_);
+  }
+  if (rows_++ % kRowsPerPoint == 0) scene_.AddToTrails(shown_);
+  return shown_.tick;
+}
+
+std::uint64_t RosView::shown_ns() const { return StampNs(shown_.tick, experiment_.control.rate_hz); }
+
+RosSource::Bytes RosView::Transforms() const {
+  tf2_msgs::msg::TFMessage transforms = TransformsOf(shown_, shown_ns());
+  return BytesOf(CdrOf<tf2_msgs::msg::TFMessagePubSubType>(transforms));
+}
+
+RosSource::Bytes RosView::Scene() const {
+  visualization_msgs::msg::MarkerArray all = scene_.All(shown_, shown_ns());
+  return BytesOf(CdrOf<visualization_msgs::msg::MarkerArrayPubSubType>(all));
+}
+
+}  // namespace mascot

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+
+#include "experiment/experiment.h"
+#include "orchestrator/engines/ros_source.h"
+#include "orchestrator/live/ros_scene.h"
+#include "orchestrator/live/ui_channels.h"
+#include "orchestrator/measuring/run_meter.h"
+#include "orchestrator/team/row_sink.h"
+
+namespace mascot {
+
+/// What RViz2 is shown of a run. The run's thread only copies each row; another one makes samples of the newest.
+class RosView final : public RowSink, public RosSource {
+ public:
+  /// Both arguments must outlive this object. `meter` must get each row before this object does.
+  RosView(const Experiment& experiment, const RunMeter& meter);
+
+  /// Takes the next row, from the run's thread.
+  void Add(const FlownRow& row) override;
+
+  // RosSource, in a thread of its own.
+  std::int64_t TakeNewest() override;
+  Bytes Transforms() const override;
+  Bytes Scene() const override;
+
+ private:
+  std::uint64_t shown_ns() const;
+
+  const Experiment& experiment_;
+  const RunMeter& meter_;
+
+  std::mutex mutex_;
+  ShownRow newest_;  // guarded by mutex_
+
+  // The thread of RosSource alone.
+  ShownRow shown_;
+  RosScene scene_;
+  int rows_ = 0;
+};
+
+}  // namespace mascot
