@@ -489,6 +489,18 @@ TEST(Section, OverridesReachIntoLists) {
   EXPECT_THAT(Mistakes(file, read, set), IsEmpty());
 }
 
+TEST(Section, OverridesTakeKeysOut) {
+  const auto read = [](Section& root) {
+    EXPECT_FALSE(root.Has("a"));
+    EXPECT_FALSE(root.Child("law").Has("gain"));
+    EXPECT_EQ(root.Child("law").Number("damping", 0, 9), 2);
+  };
+  const auto removed = [](const std::string& key) { return Override{.key = key, .value = "", .removes = true}; };
+  EXPECT_THAT(Mistakes("a = 1\nlaw = { gain = 1, damping = 2 }\n", read,
+                       {removed("a"), removed("law.gain"), removed("law.gain"), removed("graph.edges")}),
+              IsEmpty());
+}
+
 TEST(Section, RefusesPlacesOutsideAList) {
   const auto read = [](Section&) {};
   const std::string file = "a = [1, 2]\n[[b]]\nc = 1\n";

@@ -33,6 +33,7 @@ struct Override {
   std::string value;        ///< a TOML value: "0.5", "[1, 2]", "'ring'"
   std::string origin = {};  ///< what messages say in place of a file and line; empty: "--set key=value"
   bool extends = false;     ///< an index one beyond the end of a list of tables adds a table, and a list if need be
+  bool removes = false;     ///< the key of a table is taken out, if it is there; there is no value
 };
 
 /// One table of a TOML file, read strictly. Each reader checks type and range; a mistake is noted (not thrown) and the

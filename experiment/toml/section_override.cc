@@ -135,6 +135,17 @@ void Put(toml::table& root, std::span<const Step> steps, toml::node&& value, boo
   Place(*node, steps, steps.size() - 1).Put(std::move(value), source);
 }
 
+/// Takes out the key to which the steps lead, through tables.
+void Remove(toml::table& root, std::span<const Step> steps) {
+  toml::table* table = &root;
+  for (const Step& step : steps.first(steps.size() - 1)) {
+    const auto* key = std::get_if<std::string>(&step);
+    table = key != nullptr ? table->get_as<toml::table>(*key) : nullptr;
+    if (table == nullptr) return;
+  }
+  if (const auto* key = std::get_if<std::string>(&steps.back())) table->erase(*key);
+}
+
 }  // namespace
 
 void Apply(const Override& override, toml::table& root) {
@@ -144,6 +155,7 @@ void Apply(const Override& override, toml::table& root) {
   if (steps.empty())
     throw ConfigError({name + ": expected a dotted key such as law.p_gain or agents.override[0].start_s, got '" +
                        Printable(override.key) + "'"});
+  if (override.removes) return Remove(root, steps);
   toml::table parsed = ParseValue(override, name);
   try {
     Put(root, steps, std::move(*parsed.get("value")), override.extends);
