@@ -84,7 +84,7 @@ void RecordRow(benchmark::State& state) {
     for (std::size_t i = 0; i < row.motions.size(); ++i) row.motions[i].p_WB.x() += 1e-3 * static_cast<double>(i);
     feed.Add(tick++, row);
   }
-  writer.Close();
+  writer.Close("");
   const auto samples = static_cast<std::int64_t>(writer.samples());
   state.SetItemsProcessed(samples);
   constexpr std::int64_t kSampleBytes = 144;  // average of a state and a command

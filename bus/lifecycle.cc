@@ -1,5 +1,7 @@
 #include "bus/lifecycle.h"
 
+#include <algorithm>
+
 #include "experiment/toml/utf8.h"
 
 namespace mascot {
@@ -69,6 +71,18 @@ void Lifecycle::Report(std::uint64_t tick, const Pacing& pacing, const Contacts&
   Publish();
 }
 
+void Lifecycle::Report(const Course& course) {
+  {
+    const std::lock_guard lock(mutex_);
+    status_.tick(static_cast<std::uint64_t>(std::max<std::int64_t>(course.tick, 0)));
+    status_.request(course.request);
+    status_.request_tick(course.request_tick);
+    status_.paused(course.paused);
+    status_.pace(course.pace);
+  }
+  Publish();
+}
+
 void Lifecycle::Wait(std::chrono::nanoseconds timeout) {
   const int signal = stop_.Within(timeout);
   domain_.RethrowFailure();
@@ -105,6 +119,8 @@ void Lifecycle::OnRequest(const mascot_msgs::msg::Request& request, const std::s
     case Ask::kEnd:
       end_requested_ = true;
       break;
+    default:  // of the physics server's ticks
+      return;
   }
   domain_.Wake();
 }

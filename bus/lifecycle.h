@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -24,6 +25,15 @@ class Ended : public std::exception {
   int signal_;
 };
 
+/// How the ticks of a run go on, as the physics server reports it.
+struct Course {
+  std::int64_t tick = 0;          ///< the newest one published
+  std::uint32_t request = 0;      ///< number of the newest request carried out; 0: none yet
+  std::int64_t request_tick = 0;  ///< the first tick that it holds for; -1: the run was over
+  bool paused = false;
+  double pace = 0;  ///< simulated seconds a second; 0: as fast as it goes
+};
+
 /// The lifecycle of a process of a run (the server or agents; the orchestrator has none). Publishes its state on
 /// /status, again on a REPORT request; receives the experiment on /experiment; ends on an END request or a signal.
 /// Nothing relies on a match event or a single delivery: a process that lacks something keeps asking. Only the
@@ -44,6 +54,8 @@ class Lifecycle {
   void SetFinal(Life life, const std::string& reason = {});
   /// Publishes new counters with the current state. Thread-safe.
   void Report(std::uint64_t tick, const Pacing& pacing, const Contacts& contacts);
+  /// Publishes how the ticks go on, with the current state. Thread-safe.
+  void Report(const Course& course);
   /// Waits for a wake-up, at most `timeout`. Throws Ended after a signal or an END request, and std::runtime_error when
   /// the orchestrator has left the domain. Rethrows what a callback of the domain threw.
   void Wait(std::chrono::nanoseconds timeout);

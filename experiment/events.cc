@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "experiment/experiment.h"
 
@@ -152,6 +153,11 @@ std::string Event::Toml() const {
   if (!cut.empty()) text += "cut = " + EdgesText(cut) + "\n";
   if (!mend.empty()) text += "mend = " + EdgesText(mend) + "\n";
   return text;
+}
+
+std::string WithEvent(std::string experiment, std::int64_t tick, int rate_hz, const std::string& toml) {
+  const std::string at_s = ShortestFloat(static_cast<double>(tick) / rate_hz);
+  return std::move(experiment) + "\n[[events]]\nat_s = " + at_s + "\n" + toml;
 }
 
 std::span<const Key> EventKeys() { return kEventKeys; }

@@ -34,6 +34,9 @@ struct Event {
   std::string Toml() const;
 };
 
+/// An experiment's text with one more event behind those that it has. `toml`: Event::Toml().
+std::string WithEvent(std::string experiment, std::int64_t tick, int rate_hz, const std::string& toml);
+
 /// The keys of [[events]].
 std::span<const Key> EventKeys();
 /// Reads `section`, one [[events]] table or the keys given by hand, all but at_s. `agents`: their number; 0: unknown

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -109,6 +110,7 @@ struct Experiment {
     double agent_timeout_s = 5;
     double start_timeout_s = 60;
     double speed = 1;
+    std::optional<double> pace = {};  ///< simulated seconds a second in lockstep; 0: as fast as it goes
     Scheduler scheduler = Scheduler::kOther;
     bool pin_cores = false;
     bool lock_memory = false;

@@ -105,8 +105,10 @@ std::shared_ptr<const Experiment> LiveExperiment::Take(const Event& event) {
   try {
     const auto cut = CutAfter(event);
     std::vector<Override> changes = changes_;
-    const std::vector<Override> more = Changes(event);
-    changes.insert(changes.end(), more.begin(), more.end());
+    for (Override& change : Changes(event)) {
+      std::erase_if(changes, [&](const Override& older) { return older.key == change.key; });
+      changes.push_back(std::move(change));
+    }
     Section document = Section::FromText(text_, "config.toml", changes);
     Experiment next = laws_ != nullptr ? ReadExperiment(std::move(document), *laws_, start_.run.name, checked_)
                                        : ReadWithoutLaws(std::move(document), start_.run.name);

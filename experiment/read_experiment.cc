@@ -28,6 +28,9 @@ constexpr Key kRunKeys[] = {
         .Default("5.0"),
     key::Number("start_timeout_s", Above(0, 3600), "how long the start may take, wall clock").Default("60.0"),
     key::Number("speed", Above(0, 1000), "in realtime: simulated seconds per second").Default("1.0"),
+    key::Number("pace", {0, 1000}, "in lockstep: simulated seconds per second, for people who watch; changes no result")
+        .Otherwise("as fast as it goes, which is 0; with --view 1")
+        .Live(),
     key::OneOf("scheduler", kSchedulers.names(),
                "fifo: the server and the agents run at a real-time priority (SCHED_FIFO), if the system permits it; "
                "other: as any process, in lockstep as a batch job (SCHED_BATCH)")
@@ -95,6 +98,9 @@ void ReadRun(Section& section, const std::string& default_name, Experiment& expe
   run.agent_timeout_s = section.Number("agent_timeout_s");
   run.start_timeout_s = section.Number("start_timeout_s");
   run.speed = section.Number("speed");
+  if (section.Has("pace")) run.pace = section.Number("pace");
+  if (run.pace && !section.Wrong("pace") && run.mode == Mode::kRealtime)
+    section.Fail("pace", "expected run.mode = \"lockstep\" with it (run.speed paces real time), got \"realtime\"");
   run.scheduler = kSchedulers.Value(section.OneOf("scheduler"));
   run.pin_cores = section.Boolean("pin_cores");
   run.lock_memory = section.Boolean("lock_memory");

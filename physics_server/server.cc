@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "experiment/processes.h"
 
@@ -15,9 +16,11 @@ namespace {
 TickProtocol::Rules RulesOf(const Experiment& experiment) {
   TickProtocol::Rules rules{.agents = experiment.size(),
                             .last_tick = experiment.ticks(),
+                            .period_s = experiment.period_s(),
                             .agent_timeout_s = experiment.run.agent_timeout_s,
                             .recorder_window = kRecorderWindow};
-  if (experiment.run.mode == Mode::kRealtime) rules.period_s = experiment.period_s() / experiment.run.speed;
+  rules.realtime = experiment.run.mode == Mode::kRealtime;
+  if (rules.realtime) rules.pace = experiment.run.speed;  // of lockstep, the recorder says it
   return rules;
 }
 
@@ -35,8 +38,11 @@ Server::Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experimen
       events_(domain, Topic::Event()),
       event_readers_(static_cast<int>(AgentProcesses(experiment).size()) + 1),
       requests_(domain, Topic::Request()),
-      status_reader_(domain, Topic::Status(), [this](const mascot_msgs::msg::Status& status, const Sender& sender) {
-        OnStatus(status, sender.process);
+      status_reader_(
+          domain, Topic::Status(),
+          [this](const mascot_msgs::msg::Status& status, const Sender& sender) { OnStatus(status, sender.process); }),
+      request_reader_(domain, Topic::Request(), [this](const mascot_msgs::msg::Request& request, const Sender& sender) {
+        if (sender.process == kOrchestrator) OnRequest(request);
       }) {
   const bool bundled = experiment.network.delivery == Delivery::kBundled;
   const int recorder = 1;
@@ -106,7 +112,7 @@ void Server::AskForReports() {
 }
 
 bool Server::Matched() const {
-  if (clock_.matched() < 1 || events_.matched() < event_readers_) return false;
+  if (clock_.matched() < 1 || request_reader_.matched() < 1 || events_.matched() < event_readers_) return false;
   for (std::size_t i = 0; i < states_.size(); ++i)
     if (states_[i]->matched() < state_readers_[i] || command_readers_[i]->matched() < 1) return false;
   return std::ranges::all_of(bundles_, [](const auto& bundle) { return bundle->matched() >= 1; });
@@ -118,6 +124,7 @@ void Server::OnStatus(const mascot_msgs::msg::Status& status, const std::string&
   const std::lock_guard lock(mutex_);
   if (from == kOrchestrator) {
     roll_.OnRecorder(ready);
+    if (life == Life::kReady && ticks_.published() < 0) ticks_.gate().SetPace(status.pace());
     Do(ticks_.OnRecorded(static_cast<std::int64_t>(status.tick())));
   } else if (const auto agents = AgentsOf(from)) {
     roll_.OnAgents(*agents, ready);
@@ -148,16 +155,73 @@ void Server::Publish() {
 }
 
 void Server::PublishEvents() {
-  const std::int64_t tick = world_.tick();
   const std::size_t before = live_.events().size();
-  while (next_event_ < experiment_.events.size() && experiment_.events[next_event_].tick == tick) {
-    const Event& event = experiment_.events[next_event_++];
-    live_.Take(event);
-    mascot_msgs::msg::Event sample;
-    ToWire(tick, experiment_.control.rate_hz, static_cast<int>(live_.events().size()), event.Toml(), sample);
-    events_.Write(sample);
-  }
+  while (next_event_ < experiment_.events.size() && experiment_.events[next_event_].tick == world_.tick())
+    PublishEvent(experiment_.events[next_event_++]);
+  for (const Event& event : std::exchange(by_hand_, {})) PublishEvent(event);
   if (live_.events().size() > before) world_.Adopt(*live_.now());
+}
+
+void Server::PublishEvent(const Event& event) {
+  live_.Take(event);
+  if (event.set.contains("run.pace")) {
+    ticks_.gate().SetPace(live_.now()->run.pace.value_or(0));
+    course_is_new_ = true;
+    lifecycle_.Wake();
+  }
+  mascot_msgs::msg::Event sample;
+  ToWire(event.tick, experiment_.control.rate_hz, static_cast<int>(live_.events().size()), event.Toml(), sample);
+  events_.Write(sample);
+}
+
+void Server::OnRequest(const mascot_msgs::msg::Request& request) {
+  if (request.number() == 0) return;  // for Lifecycle
+  {
+    const std::lock_guard lock(mutex_);
+    if (request.number() > course_.request) {
+      course_.request_tick = CarryOut(request);
+      course_.request = request.number();
+    }
+  }
+  ReportCourse();
+  lifecycle_.Wake();
+}
+
+std::int64_t Server::CarryOut(const mascot_msgs::msg::Request& request) {
+  const std::int64_t next = ticks_.published() + 1;
+  if (ticks_.finished() || lifecycle_.stop_requested() || next > experiment_.ticks()) return -1;
+  switch (static_cast<Ask>(request.kind())) {
+    case Ask::kPause:
+      ticks_.gate().Pause();
+      break;
+    case Ask::kResume:
+      ticks_.gate().Resume();
+      break;
+    case Ask::kStep:
+      ticks_.gate().Step(static_cast<std::int64_t>(request.value()));
+      break;
+    case Ask::kPace:
+      ticks_.gate().SetPace(request.value());
+      break;
+    case Ask::kEvent:
+      by_hand_.push_back(live_.Parse(next, request.toml(), "event by hand"));
+      break;
+    default:
+      throw std::runtime_error("an unknown kind of request: " + std::to_string(request.kind()));
+  }
+  return next;
+}
+
+void Server::ReportCourse() {
+  Course course;
+  {
+    const std::lock_guard lock(mutex_);
+    course = course_;
+    course.tick = ticks_.published();
+    course.paused = ticks_.gate().paused();
+    course.pace = ticks_.gate().pace();
+  }
+  lifecycle_.Report(course);
 }
 
 void Server::PublishBundles() {
@@ -181,7 +245,13 @@ void Server::OnCommand(int id, const mascot_msgs::msg::AgentCommand& command) {
 
 void Server::RunTicks() {
   Start();
-  while (const auto look_again = Look()) lifecycle_.Wait(*look_again - WallClock::now());
+  for (;;) {
+    const TickProtocol::Turn turn = Look();
+    if (!turn.look_again) return;
+    const bool is_long = turn.held && *turn.look_again - WallClock::now() > 100ms;
+    if (course_is_new_.exchange(false) || is_long) ReportCourse();
+    lifecycle_.Wait(*turn.look_again - WallClock::now());
+  }
 }
 
 void Server::Start() {
@@ -190,7 +260,7 @@ void Server::Start() {
   Do(ticks_.Start());
 }
 
-std::optional<TickProtocol::Time> Server::Look() {
+TickProtocol::Turn Server::Look() {
   const auto now = WallClock::now();
   const std::lock_guard lock(mutex_);
   const TickProtocol::Turn turn = ticks_.Look(now, lifecycle_.stop_requested());
@@ -198,7 +268,7 @@ std::optional<TickProtocol::Time> Server::Look() {
   if (!turn.failure.empty()) throw std::runtime_error(turn.failure);
   Do(turn.actions);
   if (turn.due) pace_.AddTick(std::chrono::duration<double>(WallClock::now() - *turn.due).count());
-  return turn.look_again;
+  return turn;
 }
 
 void Server::MeasureCommands() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -37,18 +38,24 @@ class Server {
   bool Matched() const;
   void RunTicks();
   void Start();
-  /// Does what is due now. Returns when to call it again; nullopt: the run is finished. Throws std::runtime_error
-  /// naming the late agents or the recorder.
-  std::optional<TickProtocol::Time> Look();
+  /// Does what is due now. Throws std::runtime_error naming the late agents or the recorder.
+  TickProtocol::Turn Look();
   void Report();
+  /// Tells the others how the ticks go on: the answer to a request, and, while the gate holds a tick, a sign of life.
+  void ReportCourse();
 
   void OnCommand(int id, const mascot_msgs::msg::AgentCommand& command);
   void OnStatus(const mascot_msgs::msg::Status& status, const std::string& from);
+  /// Carries out what people ask of the ticks. A request comes again until it is answered.
+  void OnRequest(const mascot_msgs::msg::Request& request);
   // The functions below are called with mutex_ held.
   void Do(const TickProtocol::Actions& actions);
   void Publish();
-  /// Publishes the events that take effect at the world's tick.
+  /// Carries out a new request. Returns the first tick that it holds for; -1: the run is over.
+  std::int64_t CarryOut(const mascot_msgs::msg::Request& request);
+  /// Publishes the events that take effect at the world's tick: those of the file, then those by hand.
   void PublishEvents();
+  void PublishEvent(const Event& event);
   /// Publishes to each agent one bundle with those of samples_ that it may hear.
   void PublishBundles();
   /// Notes the age of the commands with which the world is stepped.
@@ -62,8 +69,11 @@ class Server {
   TickProtocol ticks_;
   World world_;
   LiveExperiment live_;
-  std::size_t next_event_ = 0;       // in experiment_.events
-  std::vector<Actuation> commands_;  // by id - 1: the commands with which the world is stepped
+  std::size_t next_event_ = 0;  // in experiment_.events
+  std::vector<Event> by_hand_;  // events of the next tick to be published
+  Course course_;
+  std::atomic<bool> course_is_new_ = true;  // others have not been told
+  std::vector<Actuation> commands_;         // by id - 1: the commands with which the world is stepped
   PaceMeter pace_;
 
   std::vector<std::unique_ptr<Writer<StateType>>> states_;
@@ -77,6 +87,7 @@ class Server {
   Writer<RequestType> requests_;
   std::vector<std::unique_ptr<Reader<CommandType>>> command_readers_;
   Reader<StatusType> status_reader_;
+  Reader<RequestType> request_reader_;
 };
 
 }  // namespace mascot

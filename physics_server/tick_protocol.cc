@@ -9,22 +9,27 @@ namespace mascot {
 
 namespace {
 constexpr auto kLookEvery = std::chrono::milliseconds(50);
+/// The same while the gate holds a tick. It is also how often others learn that the run is held, not stuck.
+constexpr auto kLookWhileHeldEvery = std::chrono::milliseconds(500);
 }  // namespace
 
 TickProtocol::TickProtocol(const Rules& rules)
     : rules_(rules),
       barrier_(rules.agents),
       answered_(static_cast<std::size_t>(rules.agents), -1),
-      watch_(ProgressWatch::Seconds(rules.agent_timeout_s)) {}
+      watch_(ProgressWatch::Seconds(rules.agent_timeout_s)),
+      gate_(rules.period_s, rules.pace) {}
 
 TickProtocol::Actions TickProtocol::Start() {
   running_ = true;
-  return {.publish = Publish()};
+  NotePublished();
+  return {.publish = true};
 }
 
 TickProtocol::Actions TickProtocol::OnRecorded(std::int64_t rows) {
   recorded_rows_ = rows;
-  return {.publish = running_ && !finished_ && Publish(), .wake = IsRealtime()};  // the loop may wait for this row
+  const bool may_wait = rules_.realtime || !gate_.IsOpen();  // the loop, for this row
+  return {.publish = running_ && !finished_ && Publish(), .wake = may_wait};
 }
 
 TickProtocol::Actions TickProtocol::OnCommand(int id, std::int64_t tick, bool stop_requested) {
@@ -33,40 +38,65 @@ TickProtocol::Actions TickProtocol::OnCommand(int id, std::int64_t tick, bool st
   last = tick;
   Actions actions;
   if (barrier_.Answer(id, tick)) {
-    if (tick == rules_.last_tick || (stop_requested && !IsRealtime()))
+    if (tick == rules_.last_tick || (stop_requested && !rules_.realtime))
       actions.wake = finished_ = true;
-    else if (!IsRealtime())
+    else if (!rules_.realtime)
       actions = Step();
     else if (tick == 0)
       actions.wake = paced_ = true;
+    else
+      actions.wake = gate_.paused();
   }
   actions.take = true;
   return actions;
 }
 
-bool TickProtocol::Publish() {
-  if (!AwaitsRecorder() || recorded_rows_ <= tick_ - rules_.recorder_window) return false;
+void TickProtocol::NotePublished() {
   published_ = tick_;
   barrier_.Open(tick_);
+}
+
+bool TickProtocol::Publish() {
+  if (!AwaitsPublication() || AwaitsRecorder() || !IsOpen()) return false;
+  NotePublished();
   return true;
 }
 
 TickProtocol::Actions TickProtocol::Step() {
   ++tick_;
-  return {.step = true, .publish = Publish()};
+  return {.step = true, .publish = Publish(), .wake = !IsOpen()};
 }
 
 TickProtocol::Turn TickProtocol::Look(Time now, bool stop_requested) {
   if (!running_ || finished_) return {};
-  if (!paced_) return Watch(now);
-  if (stop_requested && (!timetable_ || AwaitsRecorder())) {
+  if (paced_) return LookAtClock(now, stop_requested);
+  return AwaitsPublication() && !AwaitsRecorder() ? LookAtGate(now, stop_requested) : Watch(now);
+}
+
+TickProtocol::Turn TickProtocol::LookAtGate(Time now, bool stop_requested) {
+  if (stop_requested) {
     finished_ = true;
     return {};
   }
-  if (AwaitsRecorder()) return Watch(now);
-  if (!timetable_) timetable_.emplace(*rules_.period_s, now);
-  const Time due = timetable_->Due(tick_ + 1);
-  return now < due ? Turn{.look_again = due} : EndTick(due, now, stop_requested);
+  const std::optional<Time> opens = gate_.Opens(now);
+  const Time look_again = now + kLookWhileHeldEvery;
+  if (!opens || now < *opens) return {.look_again = std::min(look_again, opens.value_or(look_again)), .held = true};
+  gate_.OnTick(now);
+  NotePublished();
+  return {.actions = {.publish = true}, .look_again = now + kLookEvery};
+}
+
+TickProtocol::Turn TickProtocol::LookAtClock(Time now, bool stop_requested) {
+  if (stop_requested && (!timed_ || AwaitsRecorder() || gate_.paused())) {
+    finished_ = true;
+    return {};
+  }
+  // In real time a pause has no due times: its single steps wait for every command.
+  if (AwaitsRecorder() || (gate_.paused() && !barrier_.Late().empty())) return Watch(now);
+  const std::optional<Time> due = gate_.Opens(now);
+  timed_ = true;
+  if (!due) return {.look_again = now + kLookWhileHeldEvery, .held = true};
+  return now < *due ? Turn{.look_again = due} : EndTick(*due, now, stop_requested);
 }
 
 TickProtocol::Turn TickProtocol::Watch(Time now) {
@@ -79,7 +109,7 @@ TickProtocol::Turn TickProtocol::Watch(Time now) {
 
 TickProtocol::Turn TickProtocol::EndTick(Time due, Time now, bool stop_requested) {
   if (const auto silent = HeldTooLong(); !silent.empty()) return {.due = due, .failure = NoCommandFrom(silent)};
-  timetable_->OnTick(tick_ + 1, now);
+  gate_.OnTick(now);
   Turn turn{.actions = Step(), .due = due};
   paced_ = tick_ < rules_.last_tick;
   finished_ = stop_requested;
@@ -88,9 +118,10 @@ TickProtocol::Turn TickProtocol::EndTick(Time due, Time now, bool stop_requested
 }
 
 std::vector<int> TickProtocol::HeldTooLong() const {
+  const double period_s = rules_.period_s / gate_.pace();  // of the wall clock
   std::vector<int> ids;
   for (int id = 1; id <= rules_.agents; ++id)
-    if (static_cast<double>(published_ - answered(id)) * *rules_.period_s > rules_.agent_timeout_s) ids.push_back(id);
+    if (static_cast<double>(published_ - answered(id)) * period_s > rules_.agent_timeout_s) ids.push_back(id);
   return ids;
 }
 

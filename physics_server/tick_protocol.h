@@ -8,14 +8,15 @@
 
 #include "physics_server/progress_watch.h"
 #include "physics_server/tick_barrier.h"
-#include "physics_server/timetable.h"
+#include "physics_server/tick_gate.h"
 
 namespace mascot {
 
 /// The server's side of the tick protocol: decides when states are published, which commands count, when the world
 /// steps, and when waiting has taken too long. In lockstep a tick ends with the last agent's command. In real time it
 /// ends when the next one is due, and a late agent's last command is held; only the first and the last tick wait for
-/// every command.
+/// every command. In both, a TickGate says when a tick may happen: in lockstep it is published no earlier, in real time
+/// it ends the tick before.
 ///
 /// No world, DDS, clock or lock: the caller passes in what arrives, and the time when it looks. It must carry out the
 /// answer to each event at once, before the next event.
@@ -26,9 +27,11 @@ class TickProtocol {
   struct Rules {
     int agents = 0;
     std::int64_t last_tick = 0;
-    std::optional<double> period_s = {};  ///< real time: wall clock between two ticks; nullopt: lockstep
-    double agent_timeout_s = 0;           ///< run.agent_timeout_s
-    std::int64_t recorder_window = 0;     ///< tick k is published once the recorder has tick k - recorder_window
+    double period_s = 0;               ///< simulated time between two ticks
+    double pace = 0;                   ///< simulated seconds a second; 0: as fast as it goes
+    bool realtime = false;             ///< real time, with a pace above 0; else lockstep
+    double agent_timeout_s = 0;        ///< run.agent_timeout_s
+    std::int64_t recorder_window = 0;  ///< tick k is published once the recorder has tick k - recorder_window
   };
 
   /// What the caller must do, in this order.
@@ -45,6 +48,7 @@ class TickProtocol {
     Actions actions = {};
     std::optional<Time> due = {};         ///< set if a tick ends in real time: when the next one was due
     std::optional<Time> look_again = {};  ///< when to call Look() at the latest; nullopt: the run is over
+    bool held = false;                    ///< nothing but the gate keeps the next tick from happening
     std::string failure = {};             ///< why the run has failed; empty: it has not
   };
 
@@ -57,9 +61,11 @@ class TickProtocol {
   /// Agent `id` (1..N) answered `tick`. The command counts only if `tick` is published and later than the agent's last
   /// answer.
   Actions OnCommand(int id, std::int64_t tick, bool stop_requested);
-  /// To be called by the loop after Start(): ends the ticks of real time that are due, and fails if an agent or the
-  /// recorder is late.
+  /// To be called by the loop after Start(), and when the gate has changed: lets ticks happen that are due, and fails
+  /// if an agent or the recorder is late.
   Turn Look(Time now, bool stop_requested);
+  /// When ticks may happen; to be changed at any time.
+  TickGate& gate() { return gate_; }
 
   /// True when the last tick is answered or a requested stop has taken effect. From then on no command counts and
   /// nothing is published.
@@ -70,16 +76,23 @@ class TickProtocol {
   std::int64_t answered(int id) const { return answered_[static_cast<std::size_t>(id - 1)]; }
 
  private:
-  bool IsRealtime() const { return rules_.period_s.has_value(); }
+  bool AwaitsPublication() const { return published_ < tick_; }
   /// True while the states of the world's tick wait for the recorder.
-  bool AwaitsRecorder() const { return published_ < tick_; }
-  /// Notes that the world's tick is published. Returns false, and does nothing, if it already is or if the recorder is
-  /// too far behind.
+  bool AwaitsRecorder() const { return AwaitsPublication() && recorded_rows_ <= tick_ - rules_.recorder_window; }
+  /// Whether the world's tick may be published without a look at the clock.
+  bool IsOpen() const { return rules_.realtime || gate_.IsOpen(); }
+  /// Notes that the world's tick is published.
+  void NotePublished();
+  /// The same, and returns true, if it is not published yet, and neither the recorder nor the gate is in the way.
   bool Publish();
   /// Moves on to the next tick.
   Actions Step();
   /// Look() at a tick that waits for all commands, or for the recorder: fails if nothing has moved for too long.
   Turn Watch(Time now);
+  /// Look() in lockstep at a tick whose states wait for nothing but the gate.
+  Turn LookAtGate(Time now, bool stop_requested);
+  /// Look() in real time between the first and the last tick.
+  Turn LookAtClock(Time now, bool stop_requested);
   /// Look() in real time when the next tick is due: ends this one with the commands held.
   Turn EndTick(Time due, Time now, bool stop_requested);
   /// Agents whose command is older than run.agent_timeout_s.
@@ -91,7 +104,8 @@ class TickProtocol {
 
   const Rules rules_;
   bool running_ = false;
-  bool paced_ = false;  // real time: from the first tick's answers to the last tick, the timetable ends ticks
+  bool timed_ = false;  // real time: the gate has been asked when a tick is due
+  bool paced_ = false;  // real time: from the first tick's answers to the last tick, the gate ends ticks
   bool finished_ = false;
   std::int64_t tick_ = 0;  // the world's tick
   std::int64_t published_ = -1;
@@ -99,7 +113,7 @@ class TickProtocol {
   TickBarrier barrier_;                 // waits for the newest tick published
   std::vector<std::int64_t> answered_;  // by id - 1: the last tick answered
   ProgressWatch watch_;
-  std::optional<Timetable> timetable_;  // made by the first Look() that paces
+  TickGate gate_;
 };
 
 }  // namespace mascot

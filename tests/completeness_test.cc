@@ -49,7 +49,7 @@ std::string Record(const ScratchFolder& scratch, const std::string& toml, int ro
   const RunFolder folder(scratch.File("run"), experiment, false);
   RunWriter writer(experiment, folder, experiment.resolved);
   EXPECT_EQ(RunInProcess(experiment, {&writer}, [&rows] { return rows-- > 0; }).failure, "");
-  writer.Close();
+  writer.Close(experiment.resolved);
   return folder.File("run.mcap").string();
 }
 

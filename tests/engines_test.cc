@@ -231,7 +231,7 @@ TEST(PluginLaw, GivesTheSameBytesInBothEnginesMessagesIncluded) {
   ExpectSameBytes(dds, inprocess);
   EXPECT_EQ(Measurements(dds), Measurements(inprocess));
   EXPECT_EQ(dds.Summary()["wire"]["matches_graph"], true);
-  EXPECT_EQ(dds.Summary()["samples"]["topics"], 3 * 4 + 1 - 1) << "agent 3 sends no messages";
+  EXPECT_EQ(dds.Summary()["samples"]["topics"], 3 * 4 + 2 - 1) << "agent 3 sends no messages";
   Up muffled(folder, "muffled", folder.File("talkers.toml"), {"--engine", "inprocess", "--set", "law.messages=false"});
   ASSERT_EQ(muffled.Wait(), 0) << muffled.err();
   EXPECT_FALSE(muffled.File("states.npz") == inprocess.File("states.npz")) << "what they say matters";
@@ -266,7 +266,7 @@ TEST(Messages, ReachThoseWhoHearTheSenderTheSameInBothEngines) {
   ExpectSameBytes(dds, inprocess);
   EXPECT_EQ(Measurements(dds), Measurements(inprocess));
   EXPECT_EQ(dds.Summary()["wire"]["matches_graph"], true);
-  EXPECT_EQ(dds.Summary()["samples"]["topics"], 3 * 5 + 1);
+  EXPECT_EQ(dds.Summary()["samples"]["topics"], 3 * 5 + 2);
   EXPECT_GT(dds.Summary()["links"]["lost"], 0);
   EXPECT_GT(dds.Summary()["links"]["late"], 0);
   EXPECT_THAT(dds.out(), ContainsRegex("links          [0-9]+ samples sent, [0-9.]+ % lost, [0-9.]+ % overtaken\n"));

@@ -14,7 +14,6 @@
 namespace mascot {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -80,7 +79,6 @@ TEST_P(LiveKeys, ChangeTheRunFromTheirTickOn) {
 constexpr const char* kLeads = "name = 'consensus'\nleader = 1\nleader_waypoints_m = [[0.1, 0, 1], [5, 5, 2]]\n";
 constexpr const char* kFlies = "name = 'waypoint'\nwaypoints_m = [[5, 5, 2]]\n";
 constexpr const char* kForms = "name = 'formation'\noffsets_m = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]\n";
-constexpr const char* kMinmax = "name = 'minmax'\nleader = 2\nbeta = [2, 0.5, 1]\n";
 constexpr const char* kLossy = "[link]\nloss = 0.9\nhold_s = 1.0\n";
 constexpr const char* kBursts = "[link]\ngilbert_elliott = { good_to_bad = 0.0, bad_to_good = 0.5 }\n";
 

@@ -205,7 +205,7 @@ void WriteLateRun(const ScratchFolder& scratch, const std::string& name) {
     }
     feed.Add(row);
   }
-  writer.Close();
+  writer.Close(experiment.resolved);
 }
 
 TEST(Export, InRealTimeALateCommandIsHeldAsInTheRunsOwnStates) {

@@ -29,9 +29,11 @@ class Flown final : private RowSink {
   Flown(const ScratchFolder& folder, const std::string& toml, const std::string& name = "run")
       : experiment_(LoadExperiment(Section::FromText(toml, name + ".toml"), name)), meter_(experiment_) {
     const RunFolder out(folder.File(name), experiment_, /*force=*/false);
-    RunWriter writer(experiment_, out, experiment_.resolved);
+    const Override none[] = {{.key = "events", .value = "[]"}};
+    const Experiment without = LoadExperiment(Section::FromText(experiment_.resolved, name + ".toml", none), name);
+    RunWriter writer(experiment_, out, without.resolved);
     EXPECT_EQ(RunInProcess(experiment_, {&writer, &meter_, this}, [] { return true; }).failure, "");
-    writer.Close();
+    writer.Close(experiment_.resolved);
     path_ = out.File("run.mcap").string();
   }
 

@@ -6,6 +6,7 @@
 
 #include <random>
 
+#include "orchestrator/live/wish.h"
 #include "tests/scratch.h"
 
 namespace mascot {

@@ -9,8 +9,6 @@
 namespace mascot {
 namespace {
 
-using testing::ElementsAre;
-using testing::Field;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 

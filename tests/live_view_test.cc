@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "agent/laws.h"
+#include "bus/wire.h"
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/live/ros_view.h"
 #include "orchestrator/recording/run_folder.h"
@@ -20,7 +21,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
-using ::testing::StartsWith;
 using Json = nlohmann::json;
 
 constexpr const char* kThree = R"(
@@ -306,6 +306,7 @@ name = "consensus"
 TEST(LiveView, TellsOfEvents) {
   Watched run(Load(kThree));
   Viewer viewer(run.view.url());
+  viewer.Subscribe("/event");
   viewer.Subscribe("/ui/experiment");
   viewer.Subscribe("/ui/events");
   EXPECT_EQ(viewer.NextJsonOf("/ui/experiment")["live_keys"], Json::array());
@@ -319,6 +320,13 @@ TEST(LiveView, TellsOfEvents) {
     "max":10.0,"open_min":true,"names":[],"value":0.5,"meaning":"pull"}])"));
   EXPECT_EQ(viewer.NextJsonOf("/ui/events"),
             Json::parse(R"([{"number":1,"tick":50,"t_s":0.5,"toml":"goto = {}","by_hand":true}])"));
+  const std::string bytes = viewer.NextOf("/event");
+  mascot_msgs::msg::Event event;
+  Deserialize({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, event);
+  EXPECT_EQ(event.number(), 1u);
+  EXPECT_EQ(event.tick(), 50u);
+  EXPECT_EQ(event.stamp().nanosec(), 500'000'000u);
+  EXPECT_EQ(event.toml(), "goto = {}");
 }
 
 TEST(LiveView, SendsSamplesAsTheyAreRecorded) {
@@ -356,7 +364,7 @@ TEST(LiveView, WatchedRunsRecordTheSameBytesAndAViewerThatDiesHoldsUpNothing) {
                  })
                   .failure,
               "");
-    writer.Close();
+    writer.Close(experiment.resolved);
     return ReadFile(folder.File(name + "/run.mcap"));
   };
   const std::string unwatched = fly("unwatched", 0);

@@ -51,7 +51,7 @@ mascot_msgs::msg::AgentState SomeState() {
   motion.w_WB_B = {7.5, 8.5, 9.5};
   motion.a_WB = {10.5, 11.5, 12.5};
   mascot_msgs::msg::AgentState sample;
-  ToWire(/*tick=*/123, /*rate_hz=*/100, /*agent=*/3, 0, motion, sample);
+  ToWire(/*tick=*/123, /*rate_hz=*/100, /*agent=*/3, /*events=*/2, motion, sample);
   return sample;
 }
 
@@ -156,11 +156,18 @@ TEST(Schemas, MatchTheSerialisedBytes) {
   status.agent_contacts(8);
   status.ground_contacts(9);
   status.obstacle_contacts(10);
+  status.request(14);
+  status.request_tick(-1);
+  status.paused(true);
+  status.pace(0.5);
   status.reason("none");
   mascot_msgs::msg::AgentBundle bundle;
   bundle.states({SomeState()});
   mascot_msgs::msg::Request request;
   request.kind(2);
+  request.number(13);
+  request.value(1.5);
+  request.toml("cut = [[1, 2]]");
   request.reason("over");
   mascot_msgs::msg::Experiment experiment;
   experiment.processes().resize(2);
@@ -182,7 +189,7 @@ TEST(Schemas, MatchTheSerialisedBytes) {
   EXPECT_EQ(decoded["/bundle"]["states"], nlohmann::json::array({decoded["/state"]}));
   decoded.erase("/bundle");
   EXPECT_EQ(decoded, nlohmann::json::parse(R"({
-    "/state": {"stamp": {"sec": 1, "nanosec": 230000000}, "tick": 123, "agent": 3,
+    "/state": {"stamp": {"sec": 1, "nanosec": 230000000}, "tick": 123, "agent": 3, "events": 2,
       "pose": {"position": {"x": 1.5, "y": 2.5, "z": 3.5}, "orientation": {"x": 0.1, "y": 0.2, "z": 0.3, "w": 0.5}},
       "twist": {"linear": {"x": 4.5, "y": 5.5, "z": 6.5}, "angular": {"x": 7.5, "y": 8.5, "z": 9.5}},
       "acceleration": {"x": 10.5, "y": 11.5, "z": 12.5}},
@@ -192,8 +199,9 @@ TEST(Schemas, MatchTheSerialisedBytes) {
     "/clock": {"clock": {"sec": 1, "nanosec": 230000000}},
     "/status": {"process": "agent_3", "agent": 3, "state": 5, "experiment": 11, "tick": 6, "misses": 7,
       "tick_lateness_s": [0.5, 1.5, 2.5], "command_age_s": [3.5, 4.5, 5.5],
-      "agent_contacts": 8, "ground_contacts": 9, "obstacle_contacts": 10, "reason": "none"},
-    "/request": {"kind": 2, "reason": "over"},
+      "agent_contacts": 8, "ground_contacts": 9, "obstacle_contacts": 10,
+      "request": 14, "request_tick": -1, "paused": true, "pace": 0.5, "reason": "none"},
+    "/request": {"kind": 2, "number": 13, "value": 1.5, "toml": "cut = [[1, 2]]", "reason": "over"},
     "/experiment": {"processes": [{"name": "", "bits": 0, "mask": 0}, {"name": "agent_3", "bits": 11, "mask": 12}],
       "name": "n", "toml": "[run]"}})"));
 }

@@ -53,9 +53,9 @@ TEST(Reference, SchemaIsCurrent) {
 
 TEST(Reference, SaysRangeDefaultAndMeaning) {
   const std::string text = ConfigurationReference();
-  EXPECT_THAT(text, HasSubstr("| `loss` | [0, 1] | `0.0` | probability that a sample is lost"));
-  EXPECT_THAT(text, HasSubstr("| `duration_s` | (0, 1e+06] | *required* | "));
-  EXPECT_THAT(text, HasSubstr("| `mode` | lockstep \\| realtime | `\"lockstep\"` | "));
+  EXPECT_THAT(text, HasSubstr("| `loss` | [0, 1] | `0.0` | live | probability that a sample is lost"));
+  EXPECT_THAT(text, HasSubstr("| `duration_s` | (0, 1e+06] | *required* | | "));
+  EXPECT_THAT(text, HasSubstr("| `mode` | lockstep \\| realtime | `\"lockstep\"` | | "));
   EXPECT_THAT(text, HasSubstr("\n### [[link.override]]\n"));
   EXPECT_THAT(text, HasSubstr("\nKeys as in `[control]`, but for `rate_hz`.\n"));
   for (const LawEntry& law : Laws()) EXPECT_THAT(text, HasSubstr("law.name = \"" + std::string(law.name) + "\""));

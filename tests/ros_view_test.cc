@@ -14,10 +14,7 @@
 namespace mascot::test {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::UnorderedElementsAre;
 using Json = nlohmann::json;
 
 const std::string kProgram = MASCOT_BINARY_DIR "/cyclone_rviz";

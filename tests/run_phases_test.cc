@@ -402,5 +402,36 @@ TEST_F(RunPhasesTest, ASignalEndsTheWaitForTheReport) {
   EXPECT_EQ(phases_.signal(), 0) << "the run had failed before";
 }
 
+TEST_F(RunPhasesTest, APausedServerThatGivesSignsOfLifeIsNotSilent) {
+  Fly();
+  for (int k = 0; k < 100; ++k) {
+    ++view_.server_words;
+    LookAfter(6s);
+    EXPECT_EQ(phases_.failure(), "") << k;
+  }
+  LookAfter(7001ms);
+  EXPECT_EQ(phases_.failure(), "nothing came from physics_server for 7.0 s");
+}
+
+TEST_F(RunPhasesTest, AWishToStopEndsTheRunInOrder) {
+  Fly();
+  EXPECT_EQ(phases_.OnWishToStop(now_), (Actions{.ask_to_stop = true}));
+  EXPECT_EQ(phases_.OnWishToStop(now_), Actions{}) << "once";
+  view_.newest_tick = 3;
+  view_.last_tick = 3;
+  view_.rows = 4;
+  Look();
+  EXPECT_EQ(phases_.phase(), Phase::kCollecting);
+  EXPECT_TRUE(phases_.in_order());
+  EXPECT_EQ(phases_.signal(), 0);
+}
+
+TEST_F(RunPhasesTest, AServerThatDoesNotStopWhenAskedToFailsTheRun) {
+  Fly();
+  phases_.OnWishToStop(now_);
+  LookAfter(5001ms);
+  EXPECT_EQ(phases_.failure(), "asked to stop, physics_server did not within 5 s");
+}
+
 }  // namespace
 }  // namespace mascot

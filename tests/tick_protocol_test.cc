@@ -47,7 +47,7 @@ class Exchange : public TickProtocol {
 };
 
 TickProtocol::Rules Rules(int agents, std::int64_t last_tick) {
-  return {.agents = agents, .last_tick = last_tick, .agent_timeout_s = 5, .recorder_window = 64};
+  return {.agents = agents, .last_tick = last_tick, .period_s = 0.01, .agent_timeout_s = 5, .recorder_window = 64};
 }
 
 /// A lockstep run that has started.
@@ -69,6 +69,8 @@ Exchange BeyondTheWindow(int agents) {
 Exchange Realtime(int agents, std::int64_t last_tick = 1'000'000) {
   TickProtocol::Rules rules = Rules(agents, last_tick);
   rules.period_s = 0.25;
+  rules.pace = 1;
+  rules.realtime = true;
   Exchange exchange(rules);
   EXPECT_EQ(exchange.Start(), kPublish);
   return exchange;
@@ -432,6 +434,96 @@ TEST(TickProtocol, StopsInRealTimeAtTickZeroWithoutAStep) {
   EXPECT_EQ(turn.look_again, std::nullopt);
   EXPECT_TRUE(exchange.finished());
   EXPECT_EQ(exchange.published(), 0);
+}
+
+// --- the gate -------------------------------------------------------------------------------------------
+
+constexpr Actions kTakeStepAndWake = {.take = true, .step = true, .wake = true};
+
+TEST(TickProtocol, PublishesATickOfLockstepWhenTheGateOpens) {
+  Exchange exchange = Lockstep(2);
+  exchange.gate().SetPace(1);
+  EXPECT_EQ(exchange.OnAllCommands(), kTakeStepAndWake) << "the world steps at once, but is not published";
+  Turn turn = exchange.Look(kStart);
+  EXPECT_EQ(turn.actions, kNothing);
+  EXPECT_TRUE(turn.held);
+  EXPECT_EQ(turn.look_again, kStart + 10ms);
+  EXPECT_EQ(exchange.Look(kStart + 9ms).actions, kNothing);
+  EXPECT_EQ(exchange.Look(kStart + 10ms).actions, kPublish);
+  EXPECT_EQ(exchange.published(), 1);
+  EXPECT_EQ(exchange.Look(kStart + 10ms).actions, kNothing) << "once";
+}
+
+TEST(TickProtocol, APausedRunOutlivesTheTimeOutOfAgents) {
+  Exchange exchange = Lockstep(2);
+  exchange.gate().Pause();
+  exchange.OnAllCommands();
+  for (int hour = 0; hour < 100; ++hour) {
+    const Turn turn = exchange.Look(kStart + hour * 1h);
+    EXPECT_EQ(turn.failure, "");
+    EXPECT_TRUE(turn.held);
+    EXPECT_EQ(turn.look_again, kStart + hour * 1h + 500ms);
+  }
+  exchange.gate().Resume();
+  EXPECT_EQ(exchange.Look(kStart + 100h).actions, kPublish);
+  EXPECT_EQ(exchange.Look(kStart + 100h).failure, "");
+  EXPECT_EQ(exchange.Look(kStart + 100h + 5s).failure, "") << "agents have their time from then on";
+  EXPECT_EQ(exchange.Look(kStart + 100h + 5001ms).failure,
+            "tick 1: no command from agents 1, 2 within run.agent_timeout_s = 5.0 s");
+}
+
+TEST(TickProtocol, StepsPublishAsManyTicksAndPauseAgain) {
+  Exchange exchange = Lockstep(2);
+  exchange.gate().Step(2);
+  for (int step = 0; step < 2; ++step) {
+    EXPECT_EQ(exchange.OnAllCommands(), kTakeStepAndWake);
+    EXPECT_EQ(exchange.Look(kStart).actions, kPublish);
+  }
+  EXPECT_EQ(exchange.OnAllCommands(), kTakeStepAndWake);
+  EXPECT_TRUE(exchange.Look(kStart).held);
+  EXPECT_EQ(exchange.published(), 2);
+}
+
+TEST(TickProtocol, AStopEndsAPausedRunAtOnce) {
+  for (const bool realtime : {false, true}) {
+    Exchange exchange = realtime ? Paced(2) : Lockstep(2);
+    exchange.gate().Pause();
+    if (!realtime) exchange.OnAllCommands();
+    EXPECT_TRUE(exchange.Look(kStart + 1s).held);
+    EXPECT_EQ(exchange.Look(kStart + 1s, kStop).look_again, std::nullopt);
+    EXPECT_TRUE(exchange.finished());
+    EXPECT_EQ(exchange.published(), 0);
+  }
+}
+
+TEST(TickProtocol, APausedTickOfLockstepStillWaitsForTheRecorder) {
+  Exchange exchange = BeyondTheWindow(1);
+  exchange.gate().SetPace(1000);
+  EXPECT_FALSE(exchange.Look(kStart).held);
+  EXPECT_EQ(exchange.OnRecorded(1), kWake) << "for the loop to look at the gate";
+  EXPECT_TRUE(exchange.Look(kStart).held);
+  EXPECT_EQ(exchange.Look(kStart + 1s).actions, kPublish);
+}
+
+TEST(TickProtocol, APauseStopsTheClockOfRealTime) {
+  Exchange exchange = Paced(1);
+  exchange.gate().Pause();
+  EXPECT_TRUE(exchange.Look(kStart + 10h).held);
+  EXPECT_EQ(exchange.published(), 0);
+  exchange.gate().Resume();
+  EXPECT_EQ(exchange.Look(kStart + 10h).look_again, kStart + 10h + 250ms);
+  EXPECT_EQ(exchange.Look(kStart + 10h + 250ms).actions, kStepAndPublish);
+}
+
+TEST(TickProtocol, StepsOfAPausedRealTimeRunWaitForEveryCommand) {
+  Exchange exchange = Paced(1);
+  exchange.gate().Step(2);
+  EXPECT_EQ(exchange.Look(kStart).actions, kStepAndPublish);
+  EXPECT_EQ(exchange.Look(kStart).actions, kNothing) << "tick 1 is not answered";
+  EXPECT_EQ(exchange.OnCommand(1, 1), kTakeAndWake);
+  EXPECT_EQ(exchange.Look(kStart).actions, kStepAndPublish);
+  EXPECT_EQ(exchange.OnCommand(1, 2), kTakeAndWake);
+  EXPECT_TRUE(exchange.Look(kStart).held);
 }
 
 }  // namespace

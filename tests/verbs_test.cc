@@ -268,7 +268,7 @@ TEST(Tables, LawsShowEveryLawWithEquationAndEveryParameter) {
     EXPECT_THAT(text, AllOf(HasSubstr(std::string(law.name)), HasSubstr(words(std::string(law.equation)))));
     for (const Key& parameter : law.parameters) EXPECT_THAT(text, HasSubstr(std::string(parameter.meaning)));
   }
-  EXPECT_THAT(text, AllOf(HasSubstr(" waypoints_m* "), HasSubstr(" p_gain = 1.0 ")));
+  EXPECT_THAT(text, AllOf(HasSubstr(" waypoints_m~* "), HasSubstr(" p_gain~ = 1.0 ")));
   const Json json = Json::parse(Printed(SetUpLaws, {"--json"}));
   ASSERT_EQ(json.size(), Laws().size());
   EXPECT_EQ(json[1]["name"], "waypoint");

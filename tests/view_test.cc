@@ -76,7 +76,8 @@ TEST(UpWithView, IsReadByFoxglovesOwnPackagesOverDds) {
   EXPECT_EQ(report["channels"]["/ui/experiment"]["last"]["engine"], "dds");
   EXPECT_EQ(report["channels"]["/ui/frame"]["last"]["pace"], 1);
   EXPECT_EQ(report["answers"]["ask"],
-            (nlohmann::json{{"granted", false}, {"words", "this run cannot be changed while it goes on"}}));
+            (nlohmann::json{{"granted", false},
+                            {"words", "pace: expected a run in lockstep, got one in real time (run.speed)"}}));
   WebClient page(url);
   EXPECT_THAT(page.Get("/"), HasSubstr("Content-Type: text/html; charset=utf-8"));
   WebClient watching(url);

@@ -1,12 +1,17 @@
 #include "orchestrator/engines/inprocess.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "agent/laws.h"
 #include "experiment/live_experiment.h"
 #include "orchestrator/engines/row_feed.h"
 #include "orchestrator/team/team.h"
+#include "physics_server/tick_gate.h"
 #include "physics_server/world.h"
 
 namespace mascot {
@@ -45,19 +50,29 @@ class Flight {
   }
 
   void Step() { world_.Step(actuation_); }
+  /// An event by hand, which takes effect at the next Exchange().
+  void Take(const std::string& toml) { by_hand_.push_back(live_.Parse(world_.tick(), toml, "event by hand")); }
+  /// The pace that an event of the newest tick has set; nullopt: none has.
+  std::optional<double> new_pace() const { return new_pace_; }
   Contacts contacts() const { return world_.contacts(); }
 
  private:
+  /// Those of the file, then those by hand.
   void TakeEvents(std::int64_t tick) {
     row_.events.clear();
-    while (next_event_ < experiment_.events.size() && experiment_.events[next_event_].tick == tick) {
-      const Event& event = experiment_.events[next_event_++];
-      live_.Take(event);
-      row_.events.push_back({++row_.events_so_far, event.Toml()});
-    }
+    new_pace_.reset();
+    while (next_event_ < experiment_.events.size() && experiment_.events[next_event_].tick == tick)
+      TakeEvent(experiment_.events[next_event_++]);
+    for (const Event& event : std::exchange(by_hand_, {})) TakeEvent(event);
     if (row_.events.empty()) return;
     world_.Adopt(*live_.now());
     team_.Adopt(live_.now());
+  }
+
+  void TakeEvent(const Event& event) {
+    live_.Take(event);
+    if (event.set.contains("run.pace")) new_pace_ = live_.now()->run.pace.value_or(0);
+    row_.events.push_back({++row_.events_so_far, event.Toml()});
   }
 
   const Experiment& experiment_;
@@ -65,24 +80,102 @@ class Flight {
   Team team_;
   LiveExperiment live_;
   std::size_t next_event_ = 0;  // in experiment_.events
+  std::vector<Event> by_hand_;
+  std::optional<double> new_pace_;
   std::vector<Actuation> actuation_;
   DecodedRow row_;
+};
+
+/// Carries out what people ask at the helm, and says when it is time for the next tick.
+class Steering {
+ public:
+  Steering(const Experiment& experiment, Helm& helm, Flight& flight)
+      : helm_(helm), flight_(flight), gate_(experiment.period_s(), helm.going().pace) {}
+  ~Steering() { helm_.Close(); }
+  Steering(const Steering&) = delete;
+  Steering& operator=(const Steering&) = delete;
+
+  /// Waits until it is time for tick `tick`, the next one. Returns false if the run is to end before: by a wish, or
+  /// because `go_on` says so.
+  bool Await(std::int64_t tick, const std::function<bool()>& go_on) {
+    if (tick == 0) return go_on();
+    helm_.Open();
+    if (const auto pace = flight_.new_pace()) SetPace(*pace);
+    while (go_on()) {
+      if (!CarryOutWishes(tick)) return false;
+      const auto now = WallClock::now();
+      const auto opens = gate_.Opens(now);
+      if (opens && now >= *opens) {
+        gate_.OnTick(now);
+        return true;
+      }
+      helm_.WaitUntil(std::min(now + kLookEvery, opens.value_or(now + kLookEvery)));
+    }
+    return false;
+  }
+
+ private:
+  static constexpr auto kLookEvery = std::chrono::milliseconds(50);  // whether to go on
+
+  void SetPace(double pace) {
+    gate_.SetPace(pace);
+    helm_.SetGoing(gate_.paused(), pace);
+  }
+
+  /// Returns false if the run is to end.
+  bool CarryOutWishes(std::int64_t tick) {
+    while (const auto wish = helm_.Next()) {
+      const bool goes_on = CarryOut(*wish);
+      helm_.SetGoing(gate_.paused(), gate_.pace());
+      helm_.Done(tick);
+      if (!goes_on) return false;
+    }
+    return true;
+  }
+
+  bool CarryOut(const Wish& wish) {
+    switch (wish.kind) {
+      case Wish::Kind::kPause:
+        gate_.Pause();
+        return true;
+      case Wish::Kind::kResume:
+        gate_.Resume();
+        return true;
+      case Wish::Kind::kStep:
+        gate_.Step(std::llround(wish.number));
+        return true;
+      case Wish::Kind::kPace:
+        gate_.SetPace(wish.number);
+        return true;
+      case Wish::Kind::kEvent:
+        flight_.Take(wish.toml);
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  Helm& helm_;
+  Flight& flight_;
+  TickGate gate_;
 };
 
 }  // namespace
 
 EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSink*>& sinks,
-                          const std::function<bool()>& go_on) {
+                          const std::function<bool()>& go_on, Helm* helm) {
   EngineResult result;
   result.wire_matches_graph = true;  // no wire here: each agent gets only the samples that the graph allows
   const auto launched = WallClock::now();
   auto start = launched;
   std::optional<Flight> flight;
+  std::optional<Steering> steering;
   try {
     flight.emplace(experiment);
+    if (helm != nullptr) steering.emplace(experiment, *helm, *flight);
     RowFeed feed(experiment, sinks);
     start = WallClock::now();
-    for (std::int64_t tick = 0; go_on(); ++tick) {
+    for (std::int64_t tick = 0; steering ? steering->Await(tick, go_on) : go_on(); ++tick) {
       feed.Add(tick, flight->Exchange());
       if (tick == experiment.ticks()) break;
       flight->Step();

@@ -4,12 +4,11 @@
 
 namespace mascot {
 
-/// What somebody asks of a run while it goes on.
+/// What somebody asks of a run while it goes on, or of a recording.
 struct Wish {
   enum class Kind { kPause, kResume, kStep, kPace, kStop, kEvent, kSeek };
   Kind kind = Kind::kPause;
-  double number =
-      0;  ///< kStep: ticks; kPace: simulated seconds a second, 0: as fast as it goes; kSeek: simulated time (s)
+  double number = 0;      ///< kStep: ticks; kPace: simulated seconds a second, 0: as fast as it goes; kSeek: time (s)
   std::string toml = {};  ///< kEvent: the keys of one [[events]] table, without at_s
 };
 

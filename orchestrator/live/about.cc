@@ -46,6 +46,9 @@ Foxglove::Connections ConnectionsOf(const Experiment& experiment) {
     add(Topic::State(agent.id), server, others);
   }
   add(Topic::Clock(), server, {});
+  std::vector<std::string> all;
+  for (const AgentConfig& agent : experiment.agents) all.push_back("/" + AgentName(agent.id));
+  add(Topic::Event(), server, all);
   connections.providers[kServiceName] = {recorder};
   return connections;
 }

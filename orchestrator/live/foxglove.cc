@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "orchestrator/live/compact_json.h"
+#include "orchestrator/live/wish.h"
 
 namespace mascot {
 namespace {

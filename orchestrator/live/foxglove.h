@@ -143,10 +143,4 @@ class Foxglove {
   Playback playback_;
 };
 
-/// The wish that a request of the page in JSON describes: {"ask": "pause"}, {"ask": "event", "toml": "..."}. Throws
-/// std::invalid_argument with what was expected.
-Wish ReadWish(const nlohmann::ordered_json& request);
-/// The event that gives a key a value.
-Wish SetKey(const std::string& key, const nlohmann::ordered_json& value);
-
 }  // namespace mascot

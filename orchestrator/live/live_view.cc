@@ -84,6 +84,8 @@ void LiveView::OnEvent(const ShownEvent& event, const Experiment& now, const std
   server_.Post([this, event] {
     events_.push_back(event);
     PublishEvents();
+    foxglove_.Publish(static_cast<Foxglove::ChannelId>(kFirstOfRos + ros_.event_channel()),
+                      StampNs(event.tick, experiment_.control.rate_hz), Shared(ros_.Message(event)));
   });
 }
 
@@ -131,7 +133,7 @@ void LiveView::OnSubscribe(ClientId client, Foxglove::ChannelId channel) {
   const Foxglove::Payload latched[] = {experiment_json_, frame_json_, events_json_};
   if (channel < std::size(latched) && latched[channel] != nullptr)
     foxglove_.PublishTo(client, channel, shown_ns(), latched[channel]);
-  else if (channel >= kFirstOfRos && shown_.tick >= 0)
+  else if (channel >= kFirstOfRos && shown_.tick >= 0 && channel != kFirstOfRos + ros_.event_channel())
     foxglove_.PublishTo(client, channel, shown_ns(), Shared(ros_.FirstMessage(channel - kFirstOfRos)));
 }
 

@@ -53,12 +53,12 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   void Take(const ShownRow& row);
   /// Says how the run goes. real_time_factor is not used: it is measured here.
   void SetState(const RunState& state);
+  /// The experiment is `now`.
+  void SetExperiment(const Experiment& now, const std::vector<ShownKey>& keys);
   /// An event has taken effect: `now` is the experiment with it, `keys` are all that may be changed.
   void OnEvent(const ShownEvent& event, const Experiment& now, const std::vector<ShownKey>& keys);
   /// These are all the events.
   void SetEvents(std::vector<ShownEvent> events);
-  /// The experiment is `now`.
-  void SetExperiment(const Experiment& now, const std::vector<ShownKey>& keys);
 
  private:
   using WallClock = std::chrono::steady_clock;

@@ -12,7 +12,7 @@ namespace {
 
 using ScenePubSub = visualization_msgs::msg::MarkerArrayPubSubType;
 
-constexpr std::size_t kTfChannel = 0, kSceneChannel = 1, kFirstTopic = 2;
+constexpr std::size_t kTfChannel = 0, kSceneChannel = 1;
 constexpr std::size_t kFewEdges = 2000;
 /// A trail has a point for every so many rows: at 30 rows a second, one point a fifth of a second.
 constexpr int kRowsPerTrailPoint = 6;
@@ -50,7 +50,7 @@ class RosChannels::Scene {
  private:
   const Experiment& experiment_;
   RosScene markers_;
-  const std::int64_t trail_ticks_ = kLongestTrailStep_s * experiment_.control.rate_hz;
+  const std::int64_t trail_ticks_ = std::int64_t{kLongestTrailStep_s} * experiment_.control.rate_hz;
   std::int64_t rows_ = 0, tick_ = 0;
 };
 
@@ -73,6 +73,7 @@ std::vector<Foxglove::Channel> RosChannels::channels() const {
   std::vector<Foxglove::Channel> channels{CdrChannel("/tf", SchemaOf("tf2_msgs/msg/TFMessage")),
                                           CdrChannel("/scene", SchemaOf("visualization_msgs/msg/MarkerArray"))};
   for (const Topic& topic : topics_) channels.push_back(CdrChannel(topic.Name(), SchemaOf(topic.kind)));
+  channels.push_back(CdrChannel(Topic::Event().Name(), SchemaOf(TopicKind::kEvent)));
   return channels;
 }
 
@@ -90,8 +91,17 @@ std::string RosChannels::Transforms() const {
 std::string RosChannels::Message(std::size_t channel) {
   if (channel == kTfChannel) return Transforms();
   if (channel == kSceneChannel) return scene_->Message(*row_, StampNs(row_->tick, experiment_.control.rate_hz));
+  if (channel == event_channel()) return {};
   if (bytes_ == nullptr) bytes_ = &encoder_.Encode(row_->tick, row_->decoded);
-  const Row::Bytes& bytes = SampleOf(*bytes_, topics_[channel - kFirstTopic]);
+  const Row::Bytes& bytes = SampleOf(*bytes_, topics_[channel - kTopicsBefore]);
+  return {bytes.begin(), bytes.end()};
+}
+
+std::string RosChannels::Message(const ShownEvent& event) const {
+  mascot_msgs::msg::Event sample;
+  ToWire(event.tick, experiment_.control.rate_hz, static_cast<int>(event.number), event.toml, sample);
+  Row::Bytes bytes;
+  Serialize(sample, bytes);
   return {bytes.begin(), bytes.end()};
 }
 

@@ -14,11 +14,13 @@
 namespace mascot {
 
 /// What tools of ROS 2 read of a run, in cdr: /tf (world to agent_<id>), /scene (markers: bodies, numbers, trails,
-/// edges of the graph, obstacles), and the run's own recorded topics of each tick. No clock, no socket.
+/// edges of the graph, obstacles), and the run's own recorded topics: of each tick, and its events. No clock, no
+/// socket.
 class RosChannels {
  public:
   /// Every how many rows /scene holds all markers; in between, if there are few, it holds the edges alone.
   static constexpr int kRowsPerScene = 30;
+  static constexpr std::size_t kTopicsBefore = 2;  ///< /tf and /scene come before the run's own topics
 
   explicit RosChannels(const Experiment& experiment);
   ~RosChannels();
@@ -31,6 +33,10 @@ class RosChannels {
   void SetRow(const ShownRow& row);
   /// What a channel says of the row: empty if it says nothing of it.
   std::string Message(std::size_t channel);
+  /// The channel of events, which Message() says nothing of.
+  std::size_t event_channel() const { return kTopicsBefore + topics_.size(); }
+  /// What that channel says of an event.
+  std::string Message(const ShownEvent& event) const;
   /// What somebody who begins to listen now has to know.
   std::string FirstMessage(std::size_t channel);
 

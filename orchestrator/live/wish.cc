@@ -1,12 +1,14 @@
+#include "orchestrator/live/wish.h"
+
 #include <stdexcept>
+#include <string_view>
 
 #include "orchestrator/live/compact_json.h"
-#include "orchestrator/live/foxglove.h"
 
 namespace mascot {
 namespace {
 
-using Json = Foxglove::Json;
+using Json = nlohmann::ordered_json;
 
 struct Asked {
   std::string_view word;
@@ -43,6 +45,16 @@ Wish ReadWish(const Json& request) {
     return wish;
   }
   throw std::invalid_argument("expected {\"ask\": " + words + "}");
+}
+
+Json WishJson(const Wish& wish) {
+  for (const Asked& row : kAsked) {
+    if (row.kind != wish.kind) continue;
+    Json json{{"ask", row.word}};
+    if (row.field != nullptr) json[row.field] = row.kind == Wish::Kind::kEvent ? Json(wish.toml) : Json(wish.number);
+    return json;
+  }
+  throw std::logic_error("a wish that nobody can ask for");
 }
 
 Wish SetKey(const std::string& key, const Json& value) {

@@ -259,7 +259,7 @@ std::optional<std::uint64_t> TicksOfEarlyEnd(const McapContents& contents) {
 
 RecordingPlan PlanOf(const McapContents& contents, const std::string& path) {
   if (const std::string why = TooNew(contents); !why.empty()) throw ConfigError({path + ": " + why});
-  const auto attached = contents.attachments.find("config.toml");
+  const auto attached = contents.attachments.find(kConfigFile);
   if (attached == contents.attachments.end())
     throw ConfigError({path + ": expected a run's recording, with its config.toml attached, got none" +
                        (contents.damage.empty() ? "" : ": " + contents.damage)});

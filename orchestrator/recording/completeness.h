@@ -31,6 +31,12 @@ inline constexpr const char* kFormatKey = "format";
 /// version 1.
 std::string TooNew(const McapContents& contents);
 
+/// Attachments: the resolved experiment with all events that it has or was given; the same without any event, written
+/// before the first message.
+inline constexpr const char* kConfigFile = "config.toml";
+inline constexpr const char* kExperimentFile = "experiment.toml";
+inline constexpr const char* kToml = "application/toml";
+
 /// In that metadata: the damage of the file that the recording was recovered from.
 inline constexpr const char* kRecoveredKey = "recovered";
 /// Why ticks may be missing at the end: the damage of the file, or of the file that it was recovered from. Empty:

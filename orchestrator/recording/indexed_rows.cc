@@ -31,12 +31,13 @@ bool BelongsToRows(const Topic& topic, int agents) {
 IndexedRows::IndexedRows(const std::string& run)
     : path_(FindRecording(run)),
       index_(OpenIndex(path_)),
-      rows_(RowsIn(index_->contents(), path_)),
+      contents_(WithConfig(index_->contents(), path_)),
+      rows_(RowsIn(contents_, path_)),
       row_(rows_.plan.agents),
       before_(rows_.plan.agents) {
   // The index counts messages, of which a damaged one may claim any number.
   rows_.ticks = std::min(rows_.ticks, static_cast<std::int64_t>(rows_.plan.ticks));
-  for (const auto& [id, channel] : index_->contents().channels)
+  for (const auto& [id, channel] : contents_.channels)
     if (const auto topic = Topic::Parse(channel.topic); topic && BelongsToRows(*topic, rows_.plan.agents))
       topics_[id] = *topic;
 }

@@ -23,14 +23,14 @@ class IndexedRows {
 
   const std::string& path() const { return path_; }
   /// The resolved experiment as TOML; name() is its run.name.
-  const std::string& config() const { return index_->contents().attachments.at("config.toml"); }
+  const std::string& config() const { return contents_.attachments.at(kConfigFile); }
   const std::string& name() const { return rows_.plan.name; }
   int agents() const { return rows_.plan.agents; }
   bool has_commands() const { return rows_.has_commands; }
   /// Number of complete ticks: 0 to ticks() - 1.
   std::int64_t ticks() const { return rows_.ticks; }
   /// Why later ticks may be missing (LossOf); empty: the recording was closed properly.
-  std::string loss() const { return LossOf(index_->contents()); }
+  std::string loss() const { return LossOf(contents_); }
 
   /// Reads the row of `tick`, a complete one. A command that is missing in real time is the newest one of the second
   /// before; 0 if there is none. Throws std::runtime_error if a sample is missing or damaged.
@@ -61,6 +61,7 @@ class IndexedRows {
 
   std::string path_;
   std::unique_ptr<McapIndex> index_;
+  McapContents contents_;
   RowsOf rows_;
   std::map<std::uint16_t, Topic> topics_;  // what the channels carry that rows have
   std::deque<Loaded> loaded_;              // the newest in front

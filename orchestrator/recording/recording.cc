@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
+#include "bus/wire.h"
+#include "experiment/read_experiment.h"
 #include "experiment/toml/section.h"
 #include "idl/topics.h"
 #include "orchestrator/recording/row_assembler.h"
@@ -23,7 +26,37 @@ std::string FindRecording(const std::string& run) {
   return found.front();
 }
 
-McapContents ReadRecording(const std::string& path) try { return ReadMcap(path); } catch (const std::exception& error) {
+namespace {
+
+/// What config.toml would say, had the recording not been cut: the experiment with the events that it still holds.
+std::string ConfigUpToTheCut(const std::string& path, const McapContents& contents) {
+  Section section = Section::FromText(contents.attachments.at(kExperimentFile), path + " (" + kExperimentFile + ")");
+  section.Use(ExperimentKeys());
+  const int rate_hz = static_cast<int>(section.Child("control").Integer("rate_hz"));
+  section.ThrowIfWrong();
+  std::string config = contents.attachments.at(kExperimentFile);
+  ReadMcap(path, [&](const McapContents::Message& message) {
+    if (contents.channels.at(message.channel).topic != Topic::Event().Name()) return;
+    mascot_msgs::msg::Event event;
+    Deserialize(message.data, event);
+    config = WithEvent(std::move(config), static_cast<std::int64_t>(event.tick()), rate_hz, event.toml());
+  });
+  return config;
+}
+
+}  // namespace
+
+McapContents WithConfig(McapContents contents, const std::string& path) {
+  if (contents.attachments.contains(kExperimentFile) && !contents.attachments.contains(kConfigFile)) {
+    contents.attachments[kConfigFile] = ConfigUpToTheCut(path, contents);
+    contents.media_types[kConfigFile] = kToml;
+  }
+  return contents;
+}
+
+McapContents ReadRecording(const std::string& path) try {
+  return WithConfig(ReadMcap(path), path);
+} catch (const std::exception& error) {
   throw ConfigError({error.what()});
 }
 

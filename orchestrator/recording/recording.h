@@ -14,7 +14,9 @@ namespace mascot {
 /// (record.file may have another name). Throws ConfigError if there is no run.mcap and not exactly one .mcap file.
 std::string FindRecording(const std::string& run);
 
-/// What `path` holds, as ReadMcap. Throws ConfigError if it cannot be read or is no MCAP file.
+/// `contents`, those of `path`; a cut recording also has the config.toml that it would have, had the run ended there.
+McapContents WithConfig(McapContents contents, const std::string& path);
+/// What `path` holds, as ReadMcap, WithConfig(). Throws ConfigError if it cannot be read or is no MCAP file.
 McapContents ReadRecording(const std::string& path);
 
 /// The rows that a recording holds.
@@ -36,7 +38,7 @@ class Recording {
 
   const std::string& path() const { return path_; }
   /// The resolved experiment as TOML; name() is its run.name.
-  const std::string& config() const { return contents_.attachments.at("config.toml"); }
+  const std::string& config() const { return contents_.attachments.at(kConfigFile); }
   const std::string& name() const { return rows_.plan.name; }
   int agents() const { return rows_.plan.agents; }
   double time_s(std::int64_t tick) const { return static_cast<double>(tick) / rows_.plan.rate_hz; }

@@ -50,13 +50,16 @@ Repair::Repair(const std::string& recording)
 void Repair::Write(const std::string& path) const {
   PartFile part(path);
   McapWriter writer(part.name());
-  for (const auto& [name, data] : contents_.attachments) writer.Attach(name, contents_.media_types.at(name), data);
+  auto attachments = contents_.attachments;
+  const auto config = attachments.extract(kConfigFile);  // behind the messages, where the run wrote it
+  for (const auto& [name, data] : attachments) writer.Attach(name, contents_.media_types.at(name), data);
   auto metadata = contents_.metadata;
   if (!keeps_all()) metadata[kMetadata].try_emplace(kRecoveredKey, damage());
   const auto early_end = metadata.extract(kEarlyEnd);  // behind the messages, where the run wrote it
   for (const auto& [name, entries] : metadata) writer.Metadata(name, entries);
   CopyMessages(recording_, AddChannels(writer, contents_, recording_), writer);
   if (!early_end.empty()) writer.Metadata(early_end.key(), early_end.mapped());
+  writer.Attach(kConfigFile, kToml, config.mapped());
   writer.Close();
   part.Commit();
 }

@@ -12,9 +12,9 @@
 #include "orchestrator/recording/topic_filter.h"
 
 namespace mascot {
-RunWriter::RunWriter(const Experiment& experiment, const RunFolder& folder, const std::string& resolved)
+RunWriter::RunWriter(const Experiment& experiment, const RunFolder& folder, const std::string& without_events)
     : experiment_(experiment), mcap_(folder.File(experiment.record.file)), arrays_(experiment.size()) {
-  mcap_.Attach("config.toml", "application/toml", resolved);
+  mcap_.Attach(kExperimentFile, kToml, without_events);
   std::map<std::string, std::string> about = Fingerprints(experiment);
   about[kFormatKey] = std::to_string(kFormat);
   mcap_.Metadata(kMetadata, about);
@@ -63,8 +63,9 @@ void RunWriter::Add(const FlownRow& row) {
   ++rows_;
 }
 
-void RunWriter::Close() {
+void RunWriter::Close(const std::string& config) {
   if (rows_ <= experiment_.ticks()) mcap_.Metadata(kEarlyEnd, {{kTicksKey, std::to_string(rows_)}});
+  mcap_.Attach(kConfigFile, kToml, config);
   mcap_.Close();
   if (npz_) npz_->Close();
 }

@@ -19,13 +19,14 @@ namespace mascot {
 /// byte-identical files. Failures throw std::runtime_error.
 class RunWriter final : public RowSink {
  public:
-  /// `resolved`: the resolved experiment as TOML, to be attached to the recording.
-  RunWriter(const Experiment& experiment, const RunFolder& folder, const std::string& resolved);
+  /// `without_events`: the resolved experiment as TOML, without events, to be attached to the recording: what a cut
+  /// recording still says of it.
+  RunWriter(const Experiment& experiment, const RunFolder& folder, const std::string& without_events);
 
   void Add(const FlownRow& row) override;
   /// Completes the files. Without it the recording is readable up to its last complete chunk, and there is no
-  /// states.npz.
-  void Close();
+  /// states.npz. `config`: the resolved experiment as TOML, with all events that it has or was given, to be attached.
+  void Close(const std::string& config);
 
   std::int64_t rows() const { return rows_; }
   std::uint64_t samples() const { return mcap_.messages(); }

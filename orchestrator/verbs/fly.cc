@@ -1,5 +1,7 @@
 #include "orchestrator/verbs/fly.h"
 
+#include <utility>
+
 #include "agent/laws.h"
 #include "bus/leave.h"
 #include "orchestrator/engines/dds/delivery.h"
@@ -7,6 +9,18 @@
 #include "orchestrator/processes/interruptions.h"
 
 namespace mascot {
+namespace {
+
+/// The usual values of keys that change nothing in what is flown.
+std::vector<Override> UsualDelivery() {
+  return {{.key = "network.domain", .value = "\"auto\""},
+          {.key = "network.agents_per_process", .value = "1"},
+          {.key = "network.delivery", .value = "\"topics\""},
+          {.key = "network.ros_view", .value = "false"},
+          {.key = "run.pace", .value = "", .removes = true}};
+}
+
+}  // namespace
 
 void RefuseEngine(const std::string& engine, const Experiment& experiment) {
   if (engine == kOverDds) return RefuseTooManyProcesses(experiment);
@@ -17,15 +31,16 @@ void RefuseEngine(const std::string& engine, const Experiment& experiment) {
 }
 
 Flight::Flight(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
-               const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop, RosSource* ros)
-    : experiment_(experiment), sinks_(sinks), console_(console), stop_(stop) {
-  if (engine == kOverDds) dds_.emplace(experiment, folder, sinks, console, stop, ros);
+               const std::vector<RowSink*>& sinks, Helm* helm, Console& console, StopSignal& stop, RosSource* ros)
+    : experiment_(experiment), sinks_(sinks), helm_(helm), console_(console), stop_(stop) {
+  if (engine == kOverDds) dds_.emplace(experiment, folder, sinks, helm, console, stop, ros);
 }
 
 EngineResult Flight::Fly() {
   if (dds_) return dds_->Fly();
   const Interruptions interruptions(stop_, console_);
-  EngineResult result = RunInProcess(experiment_, sinks_, [&] { return interruptions.signal() == 0; });
+  EngineResult result = RunInProcess(
+      experiment_, sinks_, [&] { return interruptions.signal() == 0; }, helm_);
   result.signal = interruptions.signal();
   return result;
 }
@@ -38,18 +53,37 @@ void Flight::LeaveIfItHangs(int code) const {
   if (hangs_) LeaveNow({.code = code, .process = "orchestrator"});  // its threads use what would be destroyed
 }
 
-std::string WithoutDelivery(const Experiment& experiment) {
+std::vector<Override> DeliveryOf(const Experiment& experiment) {
   const auto& network = experiment.network;
-  if (network.domain < 0 && network.agents_per_process == 1 && network.delivery == Delivery::kTopics &&
-      !network.ros_view)
-    return experiment.resolved;
-  const Override usual[] = {{"network.domain", "\"auto\""},
-                            {"network.agents_per_process", "1"},
-                            {"network.delivery", "\"topics\""},
-                            {"network.ros_view", "false"}};
-  return LoadExperiment(Section::FromText(experiment.resolved, "config.toml", usual), experiment.run.name,
+  return {{.key = "network.domain", .value = network.domain < 0 ? "\"auto\"" : std::to_string(network.domain)},
+          {.key = "network.agents_per_process", .value = std::to_string(network.agents_per_process)},
+          {.key = "network.delivery", .value = ToToml(Value{std::string(kDeliveries.Name(network.delivery))})}};
+}
+
+std::string Changed(const Experiment& experiment, const std::vector<Override>& changes) {
+  return LoadExperiment(Section::FromText(experiment.resolved, "config.toml", changes), experiment.run.name,
                         /*checked=*/true)
       .resolved;
+}
+
+Experiment WithEvents(const Experiment& experiment, const std::vector<Event>& by_hand) {
+  std::string text = experiment.resolved;
+  for (const Event& event : by_hand)
+    text = WithEvent(std::move(text), event.tick, experiment.control.rate_hz, event.Toml());
+  return LoadExperiment(Section::FromText(text, "config.toml"), experiment.run.name, /*checked=*/true);
+}
+
+std::string WithoutDelivery(const Experiment& experiment) {
+  const auto& network = experiment.network;
+  const bool is_usual = network.domain < 0 && network.agents_per_process == 1 &&
+                        network.delivery == Delivery::kTopics && !network.ros_view && !experiment.run.pace;
+  return is_usual ? experiment.resolved : Changed(experiment, UsualDelivery());
+}
+
+std::string WithoutEvents(const Experiment& experiment) {
+  std::vector<Override> changes = UsualDelivery();
+  changes.push_back({.key = "events", .value = "[]"});
+  return Changed(experiment, changes);
 }
 
 }  // namespace mascot

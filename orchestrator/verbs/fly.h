@@ -8,6 +8,7 @@
 #include "experiment/experiment.h"
 #include "orchestrator/engines/dds/engine.h"
 #include "orchestrator/engines/engine.h"
+#include "orchestrator/engines/helm.h"
 #include "orchestrator/processes/console.h"
 #include "orchestrator/recording/run_folder.h"
 
@@ -26,10 +27,10 @@ void RefuseEngine(const std::string& engine, const Experiment& experiment);
 /// One experiment on one engine.
 class Flight {
  public:
-  /// Every sink gets every row, in tick order; `ros`, if given, is published for RViz2. All arguments must outlive this
-  /// object.
+  /// Every sink gets every row, in tick order. `helm`: where people steer the run, one of the sinks; null: nowhere.
+  /// `ros`, if given, is published for RViz2. All arguments must outlive this object.
   Flight(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
-         const std::vector<RowSink*>& sinks, Console& console, StopSignal& stop, RosSource* ros = nullptr);
+         const std::vector<RowSink*>& sinks, Helm* helm, Console& console, StopSignal& stop, RosSource* ros = nullptr);
 
   /// Flies. The first signal ends the run after its tick. A failure is reported in the result, which is final: to be
   /// written to files before End() is called.
@@ -42,14 +43,23 @@ class Flight {
  private:
   const Experiment& experiment_;
   const std::vector<RowSink*>& sinks_;
+  Helm* const helm_;
   Console& console_;
   StopSignal& stop_;
   std::optional<DdsEngine> dds_;  // absent: in this process
   bool hangs_ = false;
 };
 
-/// The resolved experiment as attached to the recording: with the default domain, processes and delivery, and
+/// The keys that say how an experiment is delivered, as this one has them.
+std::vector<Override> DeliveryOf(const Experiment& experiment);
+/// The resolved experiment with other values.
+std::string Changed(const Experiment& experiment, const std::vector<Override>& changes);
+/// The experiment with these events, given by hand, behind its own.
+Experiment WithEvents(const Experiment& experiment, const std::vector<Event>& by_hand);
+/// The resolved experiment as attached to the recording: with the default domain, processes, delivery and pace, and
 /// without a view for RViz2, so that runs that differ only in these have the same recording.
 std::string WithoutDelivery(const Experiment& experiment);
+/// The same without events.
+std::string WithoutEvents(const Experiment& experiment);
 
 }  // namespace mascot

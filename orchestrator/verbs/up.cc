@@ -10,6 +10,7 @@
 #include "bus/standard_streams.h"
 #include "bus/stop_signal.h"
 #include "orchestrator/engines/dds/delivery.h"
+#include "orchestrator/engines/helm.h"
 #include "orchestrator/engines/progress.h"
 #include "orchestrator/live/address.h"
 #include "orchestrator/live/ros_view.h"
@@ -61,28 +62,34 @@ int Up(const UpArgs& args) {
   StopSignal stop;
   const Experiment experiment = args.config.Load();
   RefuseEngine(args.engine, experiment);
-  const Prediction prediction = Predict(experiment);
+  Prediction prediction = Predict(experiment);
 
   Console console(args.quiet || args.json);
   RunMeter meter(experiment);
-  Viewers viewers(args.view, args.engine, experiment, prediction, meter, console);
+  Helm helm(experiment, experiment.run.pace.value_or(args.view ? 1 : 0));
+  Viewers viewers(args.view, args.engine, experiment, prediction, meter, helm, console);
 
   const RunFolder folder(args.out, experiment, args.force);
   folder.Write("config.toml", experiment.resolved);
   for (const std::string& warning : prediction.warnings) console.Line("warning: " + warning);
   if (args.engine == kOverDds)
     for (const std::string& warning : DeliveryWarnings(experiment)) console.Line("warning: " + warning);
-  RunWriter writer(experiment, folder, WithoutDelivery(experiment));
+  RunWriter writer(experiment, folder, WithoutEvents(experiment));
   Progress progress(experiment, meter, console);
-  std::vector<RowSink*> sinks{&writer, &meter, &progress};
+  std::vector<RowSink*> sinks{&writer, &meter, &progress, &helm};
   viewers.AddTo(sinks);
   std::optional<RosView> ros_view;
   if (experiment.network.ros_view) sinks.push_back(&ros_view.emplace(experiment, meter));
-  Flight flight(args.engine, experiment, folder, sinks, console, stop, ros_view ? &*ros_view : nullptr);
+  Flight flight(args.engine, experiment, folder, sinks, &helm, console, stop, ros_view ? &*ros_view : nullptr);
   EngineResult result = flight.Fly();
   console.EndProgress();
   try {
-    writer.Close();
+    const Experiment flown = WithEvents(experiment, helm.by_hand());
+    if (!helm.by_hand().empty()) {
+      folder.Write("config.toml", flown.resolved);
+      prediction = Predict(flown);
+    }
+    writer.Close(WithoutDelivery(flown));
   } catch (const std::exception& failure) {
     if (result.failure.empty()) result.failure = InWords(failure);
   }

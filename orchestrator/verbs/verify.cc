@@ -58,7 +58,7 @@ struct Subject {
   RecordingPlan plan;
   std::uint64_t ticks = 0;  ///< ticks of which it has samples
 
-  const std::string& config() const { return contents.attachments.at("config.toml"); }
+  const std::string& config() const { return contents.attachments.at(kConfigFile); }
 };
 
 /// Throws ConfigError for what cannot be verified.
@@ -80,14 +80,18 @@ Subject SubjectOf(const std::string& run) {
   return subject;
 }
 
-/// Reads an experiment that is to fly `ticks` ticks: a run that ended early is not flown beyond its end.
+/// Reads an experiment that is to fly no more ticks than the recording has: a run that ended early, or a recording that
+/// was cut, is flown to its end, with the events up to there.
 Experiment Load(const std::string& toml, const std::string& name, const Subject& subject) {
-  std::vector<Override> overrides;
-  if (subject.ticks < subject.plan.ticks) {
-    const auto periods = static_cast<double>(std::max<std::uint64_t>(subject.ticks - 1, 1));
-    overrides.push_back({"run.duration_s", ShortestFloat(periods / subject.plan.rate_hz)});
-  }
-  return LoadExperiment(Section::FromText(toml, name, overrides), subject.plan.name);
+  Experiment whole = LoadExperiment(Section::FromText(toml, name), subject.plan.name);
+  if (subject.ticks >= subject.plan.ticks) return whole;
+  const auto last = static_cast<std::int64_t>(std::max<std::uint64_t>(subject.ticks - 1, 1));
+  std::string text = Changed(whole, {{.key = "events", .value = "[]"}});
+  for (const Event& event : whole.events)
+    if (event.tick <= last) text = WithEvent(std::move(text), event.tick, subject.plan.rate_hz, event.Toml());
+  const std::string duration_s = ShortestFloat(static_cast<double>(last) / subject.plan.rate_hz);
+  const Override shorter[] = {{.key = "run.duration_s", .value = duration_s}};
+  return LoadExperiment(Section::FromText(text, name, shorter), subject.plan.name, /*checked=*/true);
 }
 
 /// The first line in which two resolved experiments differ, with its table: "[law] p_gain = 0.3, the recording's says
@@ -106,15 +110,22 @@ std::string FirstChange(const std::string& ours, const std::string& recorded) {
 }
 
 /// The experiment to fly: that of the recording, with the processes and the delivery of the run's own config.toml, and
-/// nobody who watches. Sets `change` if the two are not the same experiment.
+/// nobody who watches. Sets `change` if the two are not the same experiment. A recording that was cut knows of no event
+/// after the cut, and the config.toml of a run that was killed of none by hand.
 Experiment ExperimentOf(const std::string& run, const Subject& subject, std::string& change) {
   Experiment recorded = Load(subject.config(), subject.file + " (config.toml)", subject);
   const fs::path path = fs::path(run) / "config.toml";
   if (!fs::is_directory(run) || !fs::exists(path)) return recorded;
   Experiment ours = Load(ReadRegularFile(path.string()), path.string(), subject);
-  change = FirstChange(WithoutDelivery(ours), WithoutDelivery(recorded));
-  ours.network.ros_view = false;
-  return ours;
+  if (LossOf(subject.contents).empty()) {
+    change = FirstChange(WithoutDelivery(ours), WithoutDelivery(recorded));
+    ours.network.ros_view = false;
+    return ours;
+  }
+  change = FirstChange(WithoutEvents(ours), WithoutEvents(recorded));
+  const std::vector<Override> delivery = DeliveryOf(ours);
+  return LoadExperiment(Section::FromText(recorded.resolved, subject.file, delivery), subject.plan.name,
+                        /*checked=*/true);
 }
 
 /// What differs between the program that recorded and this one; differences of bits may come from it.
@@ -197,7 +208,7 @@ int Verify(const VerifyArgs& args) {
   Console console(/*quiet=*/true);
   Comparison comparison(subject.file, subject.plan);
   const std::vector<RowSink*> sinks{&comparison};
-  Flight flight(args.engine, experiment, folder, sinks, console, stop);
+  Flight flight(args.engine, experiment, folder, sinks, nullptr, console, stop);
   const EngineResult result = flight.Fly();
   if (result.failure.empty() && result.signal == 0) comparison.Finish();
   const int code = Report(subject, comparison, result);

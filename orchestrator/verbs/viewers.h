@@ -1,12 +1,14 @@
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "experiment/experiment.h"
 #include "orchestrator/engines/engine.h"
-#include "orchestrator/engines/run_control.h"
+#include "orchestrator/engines/helm.h"
 #include "orchestrator/live/address.h"
 #include "orchestrator/live/live_view.h"
 #include "orchestrator/processes/console.h"
@@ -19,22 +21,37 @@ class Viewers {
   /// Listens at `at`, if it is given, and prints where. All arguments but the first two must outlive this object.
   /// Throws ConfigError if nobody could watch.
   Viewers(const std::optional<LiveAddress>& at, const std::string& engine, const Experiment& experiment,
-          const Prediction& prediction, const RunMeter& meter, Console& console);
+          const Prediction& prediction, const RunMeter& meter, Helm& helm, Console& console);
+  ~Viewers();
+  Viewers(const Viewers&) = delete;
+  Viewers& operator=(const Viewers&) = delete;
 
+  /// Address of the page; empty: there is none.
+  std::string url() const { return view_ ? view_->url() : ""; }
+
+  /// To be called when the helm is among the sinks.
   void AddTo(std::vector<RowSink*>& sinks);
   /// Viewers see how the run ended until this object ends, which closes their connections.
   void SayHowItEnded(const EngineResult& result);
 
  private:
-  /// The control of a run that takes no wishes.
-  class NoControl final : public RunControl {
+  /// Tells viewers of the events that rows bring.
+  class Events final : public RowSink {
    public:
-    Answer Ask(const Wish& wish) override;
+    Events(LiveView& view, const Helm& helm) : view_(view), helm_(helm) {}
+    void Adopt(const std::shared_ptr<const Experiment>& now) override { now_ = now; }
+    void Add(const FlownRow& row) override;
+
+   private:
+    LiveView& view_;
+    const Helm& helm_;
+    std::shared_ptr<const Experiment> now_;
+    std::size_t by_hand_ = 0;  // so far
   };
 
-  const double pace_;
-  NoControl control_;
+  Helm& helm_;
   std::optional<LiveView> view_;
+  std::optional<Events> events_;
 };
 
 }  // namespace mascot

@@ -61,8 +61,8 @@ void LowerPriority() {
 /// them out.
 class DdsRun {
  public:
-  DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Console& console,
-         StopSignal& stop, RosSource* ros);
+  DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Helm* helm,
+         Console& console, StopSignal& stop, RosSource* ros);
   EngineResult Fly();
   bool End();
 
@@ -79,9 +79,11 @@ class DdsRun {
   void OnSignal(int signal);
   void Reap();
   void CheckWire();
+  void Steer();
   RunPhases::View Record();
   RunPhases::View Look() const;
   void Do(const RunPhases::Actions& actions);
+  double Pace() const;
   void AskToEnd();
   void CallLibrary(const std::function<void()>& call);
   std::optional<Hub::Status> ServerReport() const;
@@ -92,6 +94,7 @@ class DdsRun {
   void LeaveDomain();
 
   const Experiment& experiment_;
+  Helm* const helm_;  // may be null
   Console& console_;
   StopSignal& stop_;
   RosSource* const ros_;
@@ -99,6 +102,8 @@ class DdsRun {
   const bool external_;
   EngineResult result_;
   std::int64_t confirmed_ = 0;  // rows recorded so far
+  std::uint32_t requests_ = 0;  // number of the newest request to the physics server
+  bool is_asked_ = false;       // it is that of the wish that helm_ has now
 
   const std::vector<AgentRange> processes_;
   const bool with_server_;
@@ -119,9 +124,10 @@ class DdsRun {
   RunPhases phases_;
 };
 
-DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
+DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Helm* helm,
                Console& console, StopSignal& stop, RosSource* ros)
     : experiment_(experiment),
+      helm_(helm),
       console_(console),
       stop_(stop),
       ros_(ros),
@@ -147,6 +153,7 @@ RunPhases::Rules DdsRun::Rules() {
 
 void DdsRun::Join() {
   lock_.emplace(experiment_.network.domain);
+  if (helm_ != nullptr) helm_->SetDomain(lock_->domain());
   SweepSharedMemory(lock_->domain());  // left by runs of which also the janitor was killed
   RequireResources(SharedMemoryNeed());
   janitor_.emplace(*lock_);
@@ -246,11 +253,13 @@ std::uint64_t DdsRun::SharedMemoryNeed() const {
 
 EngineResult DdsRun::Fly() {
   try {
+    if (helm_ != nullptr) helm_->CallWhenAsked([this] { stop_.Wake(); });
     Join();
     Loop();
   } catch (const std::exception& failure) {
     phases_.Fail(InWords(failure));
   }
+  if (helm_ != nullptr) helm_->Close();
   if (recorder_) Collect();
   result_.failure = phases_.failure();
   result_.signal = phases_.signal();
@@ -266,7 +275,26 @@ void DdsRun::Loop() {
     CheckWire();
     const RunPhases::View view = Record();
     Do(phases_.Look(view, WallClock::now()));
+    if (helm_ != nullptr && phases_.phase() == RunPhases::Phase::kFlying) Steer();
   }
+}
+
+/// Passes a wish on to the physics server, and its answer back.
+void DdsRun::Steer() {
+  helm_->Open();
+  const auto server = hub_->StatusOf(kPhysicsServer);
+  if (server && static_cast<Life>(server->state()) == Life::kRunning) helm_->SetGoing(server->paused(), server->pace());
+  const auto wish = helm_->Next();
+  if (!wish) return;
+  if (wish->kind == Wish::Kind::kStop) {
+    Do(phases_.OnWishToStop(WallClock::now()));
+    return helm_->Done(confirmed_);
+  }
+  if (!std::exchange(is_asked_, true)) ++requests_;
+  if (!server || server->request() != requests_) return hub_->Steer(*wish, requests_);
+  const std::int64_t tick = server->request_tick();
+  helm_->Done(tick < 0 ? std::nullopt : std::optional(tick));
+  is_asked_ = false;
 }
 
 void DdsRun::OnSignal(int signal) {
@@ -307,14 +335,21 @@ RunPhases::View DdsRun::Look() const {
           .newest_tick = recorder_->newest_tick(),
           .rows = confirmed_,
           .last_tick = {},
+          .server_words = hub_->server_words(),
           .reported = ServerReport().has_value()};
 }
 
 void DdsRun::Do(const RunPhases::Actions& actions) {
-  if (actions.say_ready) hub_->SayReady();
-  if (actions.ask_to_stop) hub_->Ask(Ask::kStop, strsignal(phases_.signal()));
+  if (actions.say_ready) hub_->SayReady(Pace());
+  if (actions.ask_to_stop) hub_->Ask(Ask::kStop, phases_.signal() != 0 ? strsignal(phases_.signal()) : "asked to stop");
   if (actions.ask_to_end) AskToEnd();
   if (actions.kill) children_.Kill();
+}
+
+/// Simulated seconds a second to begin with; where nobody steers, lockstep goes as fast as it can.
+double DdsRun::Pace() const {
+  if (helm_ != nullptr) return helm_->going().pace;
+  return experiment_.run.mode == Mode::kRealtime ? experiment_.run.speed : 0;
 }
 
 void DdsRun::AskToEnd() {
@@ -407,8 +442,8 @@ void DdsRun::LeaveDomain() {
 }
 
 DdsEngine::DdsEngine(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
-                     Console& console, StopSignal& stop, RosSource* ros)
-    : run_(std::make_unique<DdsRun>(experiment, folder, sinks, console, stop, ros)) {}
+                     Helm* helm, Console& console, StopSignal& stop, RosSource* ros)
+    : run_(std::make_unique<DdsRun>(experiment, folder, sinks, helm, console, stop, ros)) {}
 
 DdsEngine::~DdsEngine() { End(); }
 

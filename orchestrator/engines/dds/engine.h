@@ -6,6 +6,7 @@
 #include "bus/stop_signal.h"
 #include "experiment/experiment.h"
 #include "orchestrator/engines/engine.h"
+#include "orchestrator/engines/helm.h"
 #include "orchestrator/engines/ros_source.h"
 #include "orchestrator/processes/console.h"
 #include "orchestrator/recording/run_folder.h"
@@ -17,11 +18,11 @@ class DdsRun;
 
 /// Runs an experiment as separate processes in a DDS domain of its own: a physics server and the agent processes.
 /// External agents are waited for, not started. The calling process records: `sinks` get every row, in tick order.
-/// `ros`, if given, is published for RViz2.
+/// `helm`: where people steer the run; null: nowhere. `ros`, if given, is published for RViz2.
 class DdsEngine {
  public:
-  DdsEngine(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Console& console,
-            StopSignal& stop, RosSource* ros = nullptr);
+  DdsEngine(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Helm* helm,
+            Console& console, StopSignal& stop, RosSource* ros = nullptr);
   ~DdsEngine();  ///< calls End()
   DdsEngine(const DdsEngine&) = delete;
   DdsEngine& operator=(const DdsEngine&) = delete;

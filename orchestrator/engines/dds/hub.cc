@@ -3,11 +3,14 @@
 #include <spdlog/sinks/basic_file_sink.h>
 
 #include <chrono>
+#include <stdexcept>
 #include <utility>
 
 #include "experiment/processes.h"
 
 namespace mascot {
+
+using namespace std::chrono_literals;
 
 namespace {
 
@@ -39,6 +42,16 @@ const char* Text(Ask ask) {
       return "stop";
     case Ask::kEnd:
       return "end";
+    case Ask::kPause:
+      return "pause";
+    case Ask::kResume:
+      return "resume";
+    case Ask::kStep:
+      return "step";
+    case Ask::kPace:
+      return "pace";
+    case Ask::kEvent:
+      return "event";
   }
   return "unknown";
 }
@@ -57,6 +70,24 @@ Roster::Rules RosterRules(const Experiment& experiment, std::uint64_t digest) {
   for (const AgentRange& agents : AgentProcesses(experiment)) rules.processes.push_back(ProcessName(agents));
   for (const AgentConfig& agent : experiment.agents) rules.external.push_back(agent.external);
   return rules;
+}
+
+/// What is asked of the physics server for a wish about its ticks.
+Ask AskOf(Wish::Kind kind) {
+  switch (kind) {
+    case Wish::Kind::kPause:
+      return Ask::kPause;
+    case Wish::Kind::kResume:
+      return Ask::kResume;
+    case Wish::Kind::kStep:
+      return Ask::kStep;
+    case Wish::Kind::kPace:
+      return Ask::kPace;
+    case Wish::Kind::kEvent:
+      return Ask::kEvent;
+    default:
+      throw std::logic_error("no wish about ticks");
+  }
 }
 
 Roster::Time Now() { return std::chrono::steady_clock::now(); }
@@ -99,7 +130,7 @@ void Hub::HandOutExperiment() {
   log_.info("experiment '{}' handed out", message_.name());
 }
 
-void Hub::SayReady() {
+void Hub::SayReady(double pace) {
   {
     const std::lock_guard lock(mutex_);
     if (!roster_.IsTimeForHello(Now())) return;
@@ -107,6 +138,7 @@ void Hub::SayReady() {
   Status status;
   status.process("recorder");
   status.state(static_cast<std::uint8_t>(Life::kReady));
+  status.pace(pace);
   recorder_.Write(status);
 }
 
@@ -126,10 +158,30 @@ void Hub::Ask(mascot::Ask ask, const std::string& reason) {
   log_.info("request: {} ({})", Text(ask), reason);
 }
 
+void Hub::Steer(const Wish& wish, std::uint32_t number) {
+  const bool is_new = std::exchange(newest_request_, number) != number;
+  if (!is_new && Now() < next_request_) return;
+  next_request_ = Now() + 200ms;
+  const mascot::Ask ask = AskOf(wish.kind);
+  mascot_msgs::msg::Request request;
+  request.kind(static_cast<std::uint8_t>(ask));
+  request.number(number);
+  request.value(wish.number);
+  request.toml(wish.toml);
+  requests_.Write(request);
+  if (is_new) log_.info("request {}: {} {} {}", number, Text(ask), wish.number, wish.toml);
+}
+
+std::int64_t Hub::server_words() const {
+  const std::lock_guard lock(mutex_);
+  return server_words_;
+}
+
 void Hub::OnStatus(const Status& status, const std::string& from) {
   if (from == kOrchestrator) return;  // our own, as the recorder
   const std::lock_guard lock(mutex_);
   const Roster::News news = roster_.OnStatus(from, status);
+  if (from == kPhysicsServer) ++server_words_;
   if (news.changed)
     log_.info("{} {}, tick {} {}", from, Text(static_cast<Life>(status.state())), status.tick(),
               status.reason().to_string());

@@ -11,6 +11,7 @@
 #include "bus/wire.h"
 #include "experiment/experiment.h"
 #include "orchestrator/engines/dds/roster.h"
+#include "orchestrator/engines/run_control.h"
 
 namespace mascot {
 
@@ -31,11 +32,16 @@ class Hub {
   /// late gets what was published before it came, and so need not ask. Cheap to call often.
   void HandOutExperiment();
   /// Publishes that the recorder is ready, at most five times a second. Cheap to call often.
-  void SayReady();
+  /// `pace`: simulated seconds a second to begin with; 0: as fast as it goes.
+  void SayReady(double pace);
   /// Publishes that rows 0 .. rows - 1 are recorded.
   void Confirm(std::int64_t rows);
   /// Publishes a request to all processes.
   void Ask(mascot::Ask ask, const std::string& reason);
+  /// Publishes a numbered request to the physics server: again at most five times a second. Cheap to call often.
+  void Steer(const Wish& wish, std::uint32_t number);
+  /// Number of statuses that the physics server has sent.
+  std::int64_t server_words() const;
   /// Number of processes that listen to requests.
   int listeners() const { return requests_.matched(); }
 
@@ -53,9 +59,12 @@ class Hub {
   std::function<void()> wake_;
   spdlog::logger log_;
   mascot_msgs::msg::Experiment message_;
-  std::uint64_t told_ = 0;    // version of peers_ at the last look
-  mutable std::mutex mutex_;  // guards roster_
+  std::uint64_t told_ = 0;            // version of peers_ at the last look
+  std::uint32_t newest_request_ = 0;  // number of the last request of Steer()
+  Roster::Time next_request_{};       // when it may be sent again
+  mutable std::mutex mutex_;          // guards what follows
   Roster roster_;
+  std::int64_t server_words_ = 0;
 
   Writer<ExperimentType> experiments_;
   Writer<RequestType> requests_;

@@ -27,6 +27,7 @@ Roster::News Roster::OnStatus(const std::string& process, const Status& status) 
   const Life life = CheckedLife(status, rules_.last_tick);
   const auto [known, is_new] = statuses_.try_emplace(process);
   const bool changed = is_new || known->second.state() != status.state();
+  const bool answers = known->second.request() != status.request();
   known->second = status;
   experiment_wanted_ |= life == Life::kWaiting;
   const auto agents = AgentsOf(process);
@@ -38,7 +39,7 @@ Roster::News Roster::OnStatus(const std::string& process, const Status& status) 
         fmt::format("{} has received another experiment than this run's (digest {:016x}, expected {:016x}): somebody "
                     "else publishes experiments in this DDS domain",
                     process, status.experiment(), rules_.experiment));
-  return {.changed = changed, .wake = life == Life::kWaiting || life == Life::kDone};
+  return {.changed = changed, .wake = life == Life::kWaiting || life == Life::kDone || answers};
 }
 
 bool Roster::IsTimeToHandOut(Time now) {

@@ -94,6 +94,12 @@ RunPhases::Actions RunPhases::OnSignal(int signal, Time now) {
   return {.ask_to_stop = true};
 }
 
+RunPhases::Actions RunPhases::OnWishToStop(Time now) {
+  if (IsOver() || stop_deadline_) return {};
+  stop_deadline_ = now + kGrace;
+  return {.ask_to_stop = true};
+}
+
 void RunPhases::OnExits(const std::vector<Exit>& exits, Time now) {
   for (const Exit& exit : exits)
     if (exit.process == "physics_server") (exit.code ? server_exited_ : server_silent_) = true;
@@ -147,7 +153,8 @@ void RunPhases::LookAtDraining(const View& view, Time now) {
 }
 
 void RunPhases::LookAtDeadlines(const View& view, Time now) {
-  if (stop_deadline_ && now > *stop_deadline_) return Finish();  // and record what has come
+  if (stop_deadline_ && now > *stop_deadline_)  // and record what has come
+    return signal_ != 0 ? Finish() : Fail("asked to stop, physics_server did not within 5 s");
   if (phase_ == Phase::kStarting) {
     if (now > After(launched_, Seconds(rules_.start_timeout_s) + kStartGrace))
       Fail("not started within run.start_timeout_s = " + ShortestFloat(rules_.start_timeout_s) +
@@ -155,7 +162,7 @@ void RunPhases::LookAtDeadlines(const View& view, Time now) {
     return;
   }
   // The server reports silent agents; a silent server must be noticed here.
-  if (phase_ != Phase::kFlying || !watch_.IsOverdue(view.newest_tick + view.rows, now)) return;
+  if (phase_ != Phase::kFlying || !watch_.IsOverdue(view.newest_tick + view.rows + view.server_words, now)) return;
   server_silent_ = true;
   const Seconds limit = Seconds(rules_.agent_timeout_s + rules_.period_s) + kGrace;
   Fail("nothing came from physics_server for " + ShortestFloat(limit.count()) + " s");

@@ -55,6 +55,7 @@ class RunPhases {
     std::int64_t rows = 0;                       ///< rows recorded
     bool gave_up = false;                        ///< incomplete rows were recorded too, because gives_up()
     std::optional<std::int64_t> last_tick = {};  ///< last tick of the physics server, once it is done
+    std::int64_t server_words = 0;               ///< statuses of the physics server: while paused, its signs of life
     bool reported = false;                       ///< the physics server has sent its last status, with what it measured
   };
 
@@ -71,6 +72,8 @@ class RunPhases {
   /// SIGINT, SIGTERM or SIGHUP came. The first stops the run in order, the second kills the children; during
   /// kReporting, a signal only ends that wait.
   Actions OnSignal(int signal, Time now);
+  /// Somebody asks for the end of the run: as the first signal, but the run counts as one that has ended by itself.
+  Actions OnWishToStop(Time now);
   /// Children have exited by themselves. Before the run is over that is a failure.
   void OnExits(const std::vector<Exit>& exits, Time now);
   /// The run fails, because of `why`. Only the first failure is kept; if the DDS endpoints differ from the graph, that

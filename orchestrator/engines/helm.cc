@@ -1,0 +1,211 @@
+#include "orchestrator/engines/helm.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "agent/laws.h"
+#include "experiment/toml/section.h"
+
+namespace mascot {
+namespace {
+
+constexpr const char* kByHand = "event by hand";
+constexpr double kMostSteps = 1e9;
+/// How long a wish that comes early waits for the first tick.
+constexpr auto kStartPatience = std::chrono::seconds(5);
+
+/// The row of run.pace.
+const Key& PaceRow() {
+  const std::span<const Key> run = std::ranges::find(ExperimentKeys(), "run", &Key::name)->keys;
+  return *std::ranges::find(run, "pace", &Key::name);
+}
+
+std::string Refusal(const ConfigError& error) {
+  std::string text;
+  for (const std::string& line : error.mistakes()) text += (text.empty() ? "" : "\n") + line;
+  return text;
+}
+
+}  // namespace
+
+Helm::Helm(const Experiment& experiment, double pace)
+    : experiment_(experiment),
+      going_{.pace = experiment.run.mode == Mode::kRealtime ? experiment.run.speed : pace},
+      live_(experiment, &LawTable(), /*checked=*/true) {}
+
+Answer Helm::Ask(const Wish& wish) {
+  const std::lock_guard one_at_a_time(asking_);
+  const Answer too_late{false, "the run is over"};
+  {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kStartPatience, [this] { return is_open_ || is_over_; });
+    if (is_over_) return too_late;
+    if (!is_open_) return {false, "the run has not begun yet"};
+  }
+  Wish checked;
+  try {
+    checked = Checked(wish);
+  } catch (const ConfigError& error) {
+    return {false, Refusal(error)};
+  } catch (const std::invalid_argument& error) {
+    return {false, error.what()};
+  }
+  std::unique_lock lock(mutex_);
+  if (is_over_) return too_late;
+  answer_.reset();
+  wish_ = checked;
+  changed_.notify_all();
+  if (wake_) wake_();
+  changed_.wait(lock, [this] { return answer_ || is_over_; });
+  wish_.reset();
+  return answer_.value_or(too_late);
+}
+
+Wish Helm::Checked(const Wish& wish) {
+  const bool realtime = experiment_.run.mode == Mode::kRealtime;
+  switch (wish.kind) {
+    case Wish::Kind::kPause:
+    case Wish::Kind::kResume:
+    case Wish::Kind::kStop:
+      break;
+    case Wish::Kind::kStep:
+      if (!(wish.number >= 1 && wish.number <= kMostSteps && wish.number == std::floor(wish.number)))
+        throw std::invalid_argument(
+            fmt::format("step: expected an integer in [1, {:.0f}], got {}", kMostSteps, ShortestFloat(wish.number)));
+      break;
+    case Wish::Kind::kPace:
+      if (realtime) throw std::invalid_argument("pace: expected a run in lockstep, got one in real time (run.speed)");
+      if (!PaceRow().range.Holds(wish.number))
+        throw std::invalid_argument(
+            fmt::format("pace: expected a number in {}, got {}", PaceRow().range.Text(), ShortestFloat(wish.number)));
+      break;
+    case Wish::Kind::kSeek:
+      throw std::invalid_argument("seek: expected a recording, got a run: nobody can go back in it, or ahead");
+    case Wish::Kind::kEvent:
+      return {.kind = wish.kind, .toml = CheckedEvent(wish.toml).Toml()};
+  }
+  return wish;
+}
+
+Event Helm::CheckedEvent(const std::string& toml) {
+  std::unique_lock lock(mutex_);
+  LiveExperiment live = live_;
+  const std::deque<Event> granted = granted_;
+  const std::size_t of_file = of_file_;
+  const std::int64_t tick = std::min(going_.tick + 1, experiment_.ticks());
+  lock.unlock();
+  const Event event = live.Parse(tick, toml, kByHand);
+  for (const Event& other : granted) live.Take(other);
+  live.Take(event);
+  for (std::size_t k = of_file; k < experiment_.events.size(); ++k) live.Take(experiment_.events[k]);
+  return event;
+}
+
+Answer Helm::AnswerTo(const Wish& wish, std::optional<std::int64_t> tick) const {
+  if (!tick) return {false, "the run is over"};
+  const auto at = [&](std::int64_t k) {
+    return fmt::format("tick {} ({} s)", k, ShortestFloat(experiment_.time_s(k)));
+  };
+  switch (wish.kind) {
+    case Wish::Kind::kPause:
+      return {true, "paused after " + at(*tick - 1)};
+    case Wish::Kind::kResume:
+      return {true, "goes on with " + at(*tick)};
+    case Wish::Kind::kStep:
+      return {true,
+              "pauses after " + at(std::min<std::int64_t>(*tick - 1 + std::llround(wish.number), experiment_.ticks()))};
+    case Wish::Kind::kPace:
+      return {true, wish.number > 0 ? fmt::format("{} simulated seconds a second", ShortestFloat(wish.number))
+                                    : "as fast as it goes"};
+    case Wish::Kind::kStop:
+      return {true, "stops"};
+    default:
+      return {true, "takes effect at " + at(*tick)};
+  }
+}
+
+Going Helm::going() const {
+  const std::lock_guard lock(mutex_);
+  return going_;
+}
+
+void Helm::Add(const FlownRow& row) {
+  const std::lock_guard lock(mutex_);
+  going_.tick = row.tick();
+  for (const DecodedRow::Happening& happening : row.decoded().events) {
+    const Event event = live_.Parse(row.tick(), happening.toml, "event " + std::to_string(happening.number));
+    live_.Take(event);
+    const std::vector<Event>& file = experiment_.events;
+    if (of_file_ < file.size() && file[of_file_].tick == row.tick()) {  // those of the file come first
+      ++of_file_;
+    } else {
+      by_hand_.push_back(event);
+      if (!granted_.empty()) granted_.pop_front();
+    }
+  }
+}
+
+void Helm::CallWhenAsked(std::function<void()> wake) {
+  const std::lock_guard lock(mutex_);
+  wake_ = std::move(wake);
+}
+
+void Helm::Open() {
+  const std::lock_guard lock(mutex_);
+  if (std::exchange(is_open_, true)) return;
+  changed_.notify_all();
+}
+
+std::optional<Wish> Helm::Next() const {
+  const std::lock_guard lock(mutex_);
+  return answer_ ? std::nullopt : wish_;
+}
+
+void Helm::Done(std::optional<std::int64_t> tick) {
+  const std::lock_guard lock(mutex_);
+  if (!wish_ || answer_) return;
+  answer_ = AnswerTo(*wish_, tick);
+  if (tick && wish_->kind == Wish::Kind::kEvent) granted_.push_back(live_.Parse(*tick, wish_->toml, kByHand));
+  changed_.notify_all();
+}
+
+void Helm::CallWhenChanged(std::function<void(const Going&)> tell) {
+  const std::lock_guard lock(mutex_);
+  tell_ = std::move(tell);
+}
+
+void Helm::SetGoing(bool paused, double pace) {
+  const std::lock_guard lock(mutex_);
+  if (going_.paused == paused && going_.pace == pace) return;
+  going_.paused = paused;
+  going_.pace = pace;
+  if (tell_) tell_(going_);
+}
+
+void Helm::SetDomain(int domain) {
+  const std::lock_guard lock(mutex_);
+  going_.domain = domain;
+}
+
+void Helm::Close() {
+  const std::lock_guard lock(mutex_);
+  is_over_ = true;
+  wake_ = nullptr;
+  changed_.notify_all();
+}
+
+void Helm::WaitUntil(Time time) const {
+  std::unique_lock lock(mutex_);
+  changed_.wait_until(lock, time, [this] { return wish_ && !answer_; });
+}
+
+std::vector<Event> Helm::by_hand() const {
+  const std::lock_guard lock(mutex_);
+  return by_hand_;
+}
+
+}  // namespace mascot

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiment/live_experiment.h"
+#include "orchestrator/engines/run_control.h"
+#include "orchestrator/team/row_sink.h"
+
+namespace mascot {
+
+/// How a run goes on.
+struct Going {
+  bool paused = false;
+  double pace = 0;         ///< simulated seconds a second that are asked for; 0: as fast as it goes
+  std::int64_t tick = -1;  ///< newest one recorded; -1: none
+  int domain = -1;         ///< DDS domain; -1: none
+};
+
+/// Where those who steer a run meet the run: wishes come in from any thread, are checked, and wait, one after the
+/// other, until the run's own thread has carried them out. Gets the run's rows, to know what events have made of the
+/// experiment.
+class Helm final : public RunControl, public RowSink {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// `pace`: simulated seconds a second to begin with. `experiment` must outlive this object.
+  Helm(const Experiment& experiment, double pace);
+
+  /// Returns when the wish is carried out or refused: at once if it is no legal one, after 5 s if the run has not begun
+  /// by then, and when the run is over before the wish is carried out.
+  Answer Ask(const Wish& wish) override;
+  /// From any thread.
+  Going going() const;
+  void Add(const FlownRow& row) override;
+  /// `tell` is called, in the run's thread, when how it goes on has changed by more than a tick.
+  void CallWhenChanged(std::function<void(const Going&)> tell);
+
+  // For the run's thread.
+  /// `wake` is called, from any thread, when a wish has come; null: nobody needs to be woken.
+  void CallWhenAsked(std::function<void()> wake);
+  /// The run has begun: wishes are taken from now on.
+  void Open();
+  /// The wish that is to be carried out, the same until Done(); nothing: there is none. An event's text is
+  /// Event::Toml().
+  std::optional<Wish> Next() const;
+  /// That wish is carried out: `tick` is the first that it holds for; nullopt: the run is over.
+  void Done(std::optional<std::int64_t> tick);
+  /// How the ticks go on now.
+  void SetGoing(bool paused, double pace);
+  void SetDomain(int domain);
+  /// The run is over: whoever waits is told so, and no more wishes are taken.
+  void Close();
+  /// Waits for a wish, at most until `time`.
+  void WaitUntil(Time time) const;
+
+  /// Events that were given by hand and have taken effect, in order.
+  std::vector<Event> by_hand() const;
+
+ private:
+  /// What the wish asks for, with an event's text in its fixed form. Throws ConfigError or std::invalid_argument if it
+  /// is not legal.
+  Wish Checked(const Wish& wish);
+  /// Throws ConfigError if the event is not legal now, or an event of the file after it.
+  Event CheckedEvent(const std::string& toml);
+  Answer AnswerTo(const Wish& wish, std::optional<std::int64_t> tick) const;
+
+  const Experiment& experiment_;
+  std::mutex asking_;  // one wish at a time
+
+  mutable std::mutex mutex_;  // guards what is below
+  mutable std::condition_variable changed_;
+  std::function<void()> wake_;
+  std::function<void(const Going&)> tell_;
+  bool is_open_ = false, is_over_ = false;
+  Going going_;
+  std::optional<Wish> wish_;
+  std::optional<Answer> answer_;
+  LiveExperiment live_;         // as of that row
+  std::size_t of_file_ = 0;     // how many of the file's events are in live_
+  std::deque<Event> granted_;   // by hand, not in live_ yet
+  std::vector<Event> by_hand_;  // by hand, in live_
+};
+
+}  // namespace mascot
