@@ -17,6 +17,8 @@ namespace {
 // All verbs; `orchestrator --help` prints this table.
 constexpr VerbEntry kVerbs[] = {
     {"up", "run an experiment: spawn, record, measure, plot", SetUpUp},
+    {"ps", "the runs that are alive on this machine", SetUpPs},
+    {"send", "steer a run that is alive: pause, pace, set a key, send an agent somewhere", SetUpSend},
     {"check", "validate an experiment and say what theory predicts; starts nothing", SetUpCheck},
     {"graph", "matrix, lambda_2, components and roots of an experiment's graph", SetUpGraph},
     {"laws", "the control laws: equation, source, parameters", SetUpLaws},

@@ -745,7 +745,7 @@ TEST(Up, SaysWhatIsWrongWithItsArguments) {
     return up.err();
   };
   EXPECT_THAT(refusal({"upp"}),
-              HasSubstr("error: unknown verb 'upp' (did you mean \"up\"?); expected one of up, check"));
+              HasSubstr("error: unknown verb 'upp' (did you mean \"up\"?); expected one of up, ps, send, check"));
   EXPECT_THAT(refusal({}), HasSubstr("Usage: "));
   EXPECT_THAT(refusal({"up"}), HasSubstr("error: config is required"));
   EXPECT_THAT(refusal({"up", Config("leaderless"), "--duration", "5"}),

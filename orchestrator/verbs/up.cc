@@ -14,6 +14,7 @@
 #include "orchestrator/engines/progress.h"
 #include "orchestrator/live/address.h"
 #include "orchestrator/live/ros_view.h"
+#include "orchestrator/live/run_socket.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/processes/console.h"
 #include "orchestrator/recording/run_folder.h"
@@ -80,6 +81,8 @@ int Up(const UpArgs& args) {
   viewers.AddTo(sinks);
   std::optional<RosView> ros_view;
   if (experiment.network.ros_view) sinks.push_back(&ros_view.emplace(experiment, meter));
+  const RunSocket socket(experiment, std::filesystem::absolute(folder.path()).string(), args.engine, viewers.url(),
+                         helm);
   Flight flight(args.engine, experiment, folder, sinks, &helm, console, stop, ros_view ? &*ros_view : nullptr);
   EngineResult result = flight.Fly();
   console.EndProgress();

@@ -1,0 +1,269 @@
+#include "orchestrator/live/run_socket.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <pwd.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstddef>
+#include <cstring>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+
+#include "orchestrator/live/compact_json.h"
+#include "orchestrator/live/wish.h"
+
+namespace mascot {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kName = "mascot-run-";  // and the process id
+constexpr std::size_t kLongestLine = 1 << 20;
+/// How long the other side may take for a line. A run may take a while for an answer: its laws may be slow.
+constexpr int kClientSeconds = 2, kRunSeconds = 60;
+
+struct Address {
+  sockaddr_un address{};
+  socklen_t size = 0;
+  const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&address); }
+};
+
+Address AddressOf(pid_t process) {
+  const std::string name = std::string(kName) + std::to_string(process);
+  Address result;
+  result.address.sun_family = AF_UNIX;
+  std::ranges::copy(name, result.address.sun_path + 1);  // an abstract name begins with a zero byte
+  result.size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  return result;
+}
+
+/// Owns a socket.
+class Connection {
+ public:
+  explicit Connection(int number) : number_(number) {}
+  ~Connection() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  int number() const { return number_; }
+
+  void LimitTo(int seconds) const {
+    const timeval limit{.tv_sec = seconds, .tv_usec = 0};
+    ::setsockopt(number_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+    ::setsockopt(number_, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
+  }
+
+  std::optional<ucred> Peer() const {
+    ucred peer{};
+    socklen_t size = sizeof peer;
+    if (::getsockopt(number_, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return std::nullopt;
+    return peer;
+  }
+
+  bool Write(std::string line) const {
+    line += '\n';
+    for (std::size_t sent = 0; sent < line.size();) {
+      const ssize_t count = ::send(number_, line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return false;
+      sent += static_cast<std::size_t>(count);
+    }
+    return true;
+  }
+
+  /// A line; nothing if none comes, whole and in time.
+  std::optional<std::string> Read() const {
+    std::string line;
+    std::array<char, 4096> buffer{};
+    while (line.size() <= kLongestLine) {
+      const ssize_t count = ::recv(number_, buffer.data(), buffer.size(), 0);
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return std::nullopt;
+      line.append(buffer.data(), static_cast<std::size_t>(count));
+      if (const auto end = line.find('\n'); end != std::string::npos) return line.substr(0, end);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  int number_;
+};
+
+/// Whether user `asking` may ask a process of user `asked`.
+bool MayAsk(uid_t asking, uid_t asked) { return asking == asked || asking == 0; }
+
+std::string UserNameOf(uid_t user) {
+  const passwd* entry = ::getpwuid(user);
+  return entry != nullptr ? entry->pw_name : std::to_string(user);
+}
+
+std::string AnswerJson(const Answer& answer) {
+  return CompactJson({{"granted", answer.granted}, {"words", answer.words}});
+}
+
+/// Sends a line to a run, and returns its answer.
+std::optional<Json> ExchangeLines(pid_t process, const Json& request, ucred* peer = nullptr) {
+  const Connection run(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const Address address = AddressOf(process);
+  if (::connect(run.number(), address.get(), address.size) != 0) return std::nullopt;
+  run.LimitTo(kRunSeconds);
+  const auto who = run.Peer();
+  if (who && peer != nullptr) *peer = *who;
+  if (!who || !run.Write(CompactJson(request))) return std::nullopt;
+  const auto line = run.Read();
+  const Json answer = line ? Json::parse(*line, nullptr, /*allow_exceptions=*/false) : Json();
+  return answer.is_object() ? std::optional(answer) : std::nullopt;
+}
+
+/// The process ids in the names of all sockets that look like those of runs.
+std::set<pid_t> NamesInUse() {
+  std::set<pid_t> processes;
+  std::ifstream table("/proc/net/unix");
+  for (std::string line; std::getline(table, line);) {
+    const auto at = line.rfind('@');
+    if (at == std::string::npos || line.compare(at + 1, kName.size(), kName) != 0) continue;
+    pid_t process = 0;
+    const char *begin = line.data() + at + 1 + kName.size(), *end = line.data() + line.size();
+    if (std::from_chars(begin, end, process).ptr == end) processes.insert(process);
+  }
+  return processes;
+}
+
+}  // namespace
+
+RunSocket::RunSocket(const Experiment& experiment, const std::string& folder, const std::string& engine,
+                     const std::string& page, Helm& helm)
+    : experiment_(experiment), folder_(folder), engine_(engine), page_(page), helm_(helm) {
+  socket_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  wakeups_ = ::eventfd(0, EFD_CLOEXEC);
+  const Address address = AddressOf(::getpid());
+  if (socket_ < 0 || wakeups_ < 0 || ::bind(socket_, address.get(), address.size) != 0 ||
+      ::listen(socket_, SOMAXCONN) != 0) {
+    const std::string why = std::strerror(errno);
+    ::close(socket_);
+    ::close(wakeups_);
+    throw std::runtime_error("cannot make the socket by which `orchestrator send` reaches this run: " + why);
+  }
+  thread_ = std::jthread([this](const std::stop_token& over) { Listen(over); });
+}
+
+RunSocket::~RunSocket() {
+  thread_.request_stop();
+  const std::uint64_t one = 1;
+  while (::write(wakeups_, &one, sizeof one) < 0 && errno == EINTR) continue;
+  thread_.join();
+  ::close(socket_);
+  ::close(wakeups_);
+}
+
+void RunSocket::Listen(const std::stop_token& over) {
+  while (!over.stop_requested()) {
+    std::array<pollfd, 2> ready{{{socket_, POLLIN, 0}, {wakeups_, POLLIN, 0}}};
+    if (::poll(ready.data(), ready.size(), -1) <= 0 || (ready[0].revents & POLLIN) == 0) continue;
+    const int client = ::accept4(socket_, nullptr, nullptr, SOCK_CLOEXEC);
+    if (client >= 0) Serve(client);
+  }
+}
+
+void RunSocket::Serve(int client) {
+  const Connection connection(client);
+  connection.LimitTo(kClientSeconds);
+  const auto peer = connection.Peer();
+  if (!peer) return;
+  if (!MayAsk(peer->uid, ::geteuid())) {
+    connection.Write(AnswerJson({false, "this run is user " + UserNameOf(::geteuid()) + "'s"}));
+    return;
+  }
+  if (const auto request = connection.Read()) connection.Write(AnswerTo(*request));
+}
+
+std::string RunSocket::AnswerTo(const std::string& line) {
+  const Json request = Json::parse(line, nullptr, /*allow_exceptions=*/false);
+  if (request.is_object() && request.contains("who")) {
+    const Going going = helm_.going();
+    return CompactJson({{"name", experiment_.run.name},
+                        {"folder", folder_},
+                        {"engine", engine_},
+                        {"page", page_},
+                        {"agents", experiment_.size()},
+                        {"domain", going.domain},
+                        {"tick", going.tick},
+                        {"t_s", experiment_.time_s(std::max<std::int64_t>(going.tick, 0))},
+                        {"duration_s", experiment_.run.duration_s},
+                        {"paused", going.paused},
+                        {"pace", going.pace}});
+  }
+  try {
+    return AnswerJson(helm_.Ask(ReadWish(request)));
+  } catch (const std::exception& error) {
+    return AnswerJson({false, error.what()});
+  }
+}
+
+std::vector<RunningRun> RunsAlive() {
+  std::vector<RunningRun> runs;
+  for (const pid_t process : NamesInUse()) {
+    ucred peer{};
+    const auto answer = ExchangeLines(process, {{"who", true}}, &peer);
+    if (!answer || peer.pid != process) continue;
+    RunningRun run;
+    run.process = process;
+    run.user = UserNameOf(peer.uid);
+    run.is_ours = answer->contains("folder");
+    if (run.is_ours) {
+      answer->at("name").get_to(run.name);
+      answer->at("folder").get_to(run.folder);
+      answer->at("engine").get_to(run.engine);
+      answer->at("page").get_to(run.page);
+      answer->at("agents").get_to(run.agents);
+      answer->at("domain").get_to(run.domain);
+      answer->at("tick").get_to(run.tick);
+      answer->at("t_s").get_to(run.t_s);
+      answer->at("duration_s").get_to(run.duration_s);
+      answer->at("paused").get_to(run.paused);
+      answer->at("pace").get_to(run.pace);
+    }
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
+std::string RunsJson(const std::vector<RunningRun>& runs) {
+  Json list = Json::array();
+  for (const RunningRun& run : runs) {
+    Json json{{"process", run.process}, {"user", run.user}};
+    if (run.is_ours)
+      json.update({{"name", run.name},
+                   {"folder", run.folder},
+                   {"engine", run.engine},
+                   {"page", run.page.empty() ? Json() : Json(run.page)},
+                   {"domain", run.domain < 0 ? Json() : Json(run.domain)},
+                   {"agents", run.agents},
+                   {"tick", run.tick < 0 ? Json() : Json(run.tick)},
+                   {"t_s", run.t_s},
+                   {"duration_s", run.duration_s},
+                   {"paused", run.paused},
+                   {"pace", run.pace}});
+    list.push_back(std::move(json));
+  }
+  return list.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::optional<Answer> AskRun(pid_t process, const Wish& wish) {
+  const auto answer = ExchangeLines(process, WishJson(wish));
+  if (!answer || !answer->contains("granted") || !answer->contains("words")) return std::nullopt;
+  return Answer{answer->at("granted").get<bool>(), answer->at("words").get<std::string>()};
+}
+
+}  // namespace mascot

@@ -1,0 +1,192 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cctype>
+#include <charconv>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bus/standard_streams.h"
+#include "experiment/toml/section.h"
+#include "orchestrator/live/run_socket.h"
+#include "orchestrator/verbs/verb.h"
+
+namespace mascot {
+namespace {
+
+struct SendArgs {
+  std::optional<std::string> run;
+  std::optional<int> domain;
+  std::vector<int> agents;
+  std::vector<std::string> words;
+};
+
+[[noreturn]] void Expected(const std::string& what, const std::string& got) {
+  throw ConfigError({"send: expected " + what + ", got " + (got.empty() ? "nothing" : "'" + got + "'")});
+}
+
+double NumberOf(const std::string& word, const std::string& what) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  if (error != std::errc() || end != word.data() + word.size()) Expected(what, word);
+  return number;
+}
+
+/// Whether this is a TOML value.
+bool IsToml(const std::string& text) try {
+  Section::FromWords("value = " + text, "");
+  return text.find('\n') == std::string::npos;
+} catch (const ConfigError&) {
+  return false;
+}
+
+/// "law.p_gain=0.2" as TOML; as in --set, a word need not be quoted.
+std::string Assignment(const std::string& word) {
+  const std::size_t equals = word.find('=');
+  if (equals == std::string::npos || equals == 0) Expected("KEY=VALUE", word);
+  const std::string value = word.substr(equals + 1);
+  const bool is_word = !value.empty() && std::isalpha(static_cast<unsigned char>(value[0])) != 0;
+  const std::string key = ToToml(Value{word.substr(0, equals)});
+  if (is_word && !IsToml(value)) return key + " = " + ToToml(Value{value});
+  if (!IsToml(value)) Expected("a TOML value after '='", word);
+  return key + " = " + value;
+}
+
+/// One thing that can be asked for: what comes after its name, how many words that is at least and at most, and the
+/// wish that it makes.
+struct Sentence {
+  std::string_view name;
+  const char* words;
+  std::size_t least, most;
+  Wish (*wish)(const SendArgs& args, const std::vector<std::string>& words);
+};
+
+Wish EdgesWish(const char* key, const std::vector<std::string>& words) {
+  std::string edges;
+  for (const std::string& word : words) {
+    const std::size_t comma = word.find(',');
+    const std::string what = "an edge HEARER,HEARD, such as 2,1";
+    if (comma == std::string::npos) Expected(what, word);
+    edges += fmt::format("{}[{}, {}]", edges.empty() ? "" : ", ", NumberOf(word.substr(0, comma), what),
+                         NumberOf(word.substr(comma + 1), what));
+  }
+  return {.kind = Wish::Kind::kEvent, .toml = fmt::format("{} = [{}]", key, edges)};
+}
+
+Wish SetWish(const SendArgs& args, const std::vector<std::string>& words) {
+  std::string assignments;
+  for (const std::string& word : words) assignments += (assignments.empty() ? "" : ", ") + Assignment(word);
+  Wish wish{.kind = Wish::Kind::kEvent, .toml = "set = { " + assignments + " }"};
+  if (!args.agents.empty()) wish.toml += fmt::format("\nagents = [{}]", fmt::join(args.agents, ", "));
+  return wish;
+}
+
+Wish GoToWish(const SendArgs& /*args*/, const std::vector<std::string>& words) {
+  const double agent = NumberOf(words[0], "an agent's number"), x = NumberOf(words[1], "a number as X"),
+               y = NumberOf(words[2], "a number as Y"), z = NumberOf(words[3], "a number as Z");
+  return {.kind = Wish::Kind::kEvent,
+          .toml = fmt::format("goto = {{ agent = {}, position_m = [{}, {}, {}] }}", agent, ShortestFloat(x),
+                              ShortestFloat(y), ShortestFloat(z))};
+}
+
+constexpr std::size_t kAny = 1000;
+constexpr Sentence kSentences[] = {
+    {"pause", "", 0, 0, [](const auto&, const auto&) { return Wish{.kind = Wish::Kind::kPause}; }},
+    {"resume", "", 0, 0, [](const auto&, const auto&) { return Wish{.kind = Wish::Kind::kResume}; }},
+    {"step", "[TICKS]", 0, 1,
+     [](const auto&, const auto& words) {
+       return Wish{.kind = Wish::Kind::kStep, .number = words.empty() ? 1 : NumberOf(words[0], "a number of ticks")};
+     }},
+    {"pace", "FACTOR", 1, 1,
+     [](const auto&, const auto& words) {
+       return Wish{.kind = Wish::Kind::kPace,
+                   .number = NumberOf(words[0], "simulated seconds a second, or 0: as fast as it goes")};
+     }},
+    {"stop", "", 0, 0, [](const auto&, const auto&) { return Wish{.kind = Wish::Kind::kStop}; }},
+    {"goto", "AGENT X Y Z", 4, 4, GoToWish},
+    {"set", "KEY=VALUE...", 1, kAny, SetWish},
+    {"cut", "HEARER,HEARD...", 1, kAny, [](const auto&, const auto& words) { return EdgesWish("cut", words); }},
+    {"mend", "HEARER,HEARD...", 1, kAny, [](const auto&, const auto& words) { return EdgesWish("mend", words); }},
+    {"event", "TOML", 1, 1,
+     [](const auto&, const auto& words) { return Wish{.kind = Wish::Kind::kEvent, .toml = words[0]}; }},
+};
+
+std::string Usage() {
+  std::string text;
+  for (const Sentence& sentence : kSentences)
+    text +=
+        (text.empty() ? "" : " | ") + std::string(sentence.name) + (*sentence.words != 0 ? " " : "") + sentence.words;
+  return text;
+}
+
+Wish WishOf(const SendArgs& args) {
+  for (const Sentence& sentence : kSentences) {
+    if (args.words.empty() || sentence.name != args.words.front()) continue;
+    const std::vector<std::string> words(args.words.begin() + 1, args.words.end());
+    if (words.size() < sentence.least || words.size() > sentence.most)
+      throw ConfigError(
+          {fmt::format("send: expected {}{}{}, got {} word{} behind it", sentence.name, *sentence.words != 0 ? " " : "",
+                       sentence.words, words.size(), words.size() == 1 ? "" : "s")});
+    if (!args.agents.empty() && sentence.name != "set")
+      throw ConfigError({"send: --agents: expected with set only, got it with " + std::string(sentence.name)});
+    return sentence.wish(args, words);
+  }
+  Expected(Usage(), args.words.empty() ? "" : args.words.front());
+}
+
+std::string ListOf(const std::vector<RunningRun>& runs) {
+  std::string text;
+  for (const RunningRun& run : runs)
+    text += fmt::format("\n  {}{}", run.domain < 0 ? "" : fmt::format("domain {}: ", run.domain), run.folder);
+  return text;
+}
+
+/// The run that is meant. Throws ConfigError if it is not exactly one.
+RunningRun RunOf(const SendArgs& args) {
+  namespace fs = std::filesystem;
+  std::vector<RunningRun> ours, meant;
+  std::error_code ignored;
+  for (RunningRun& run : RunsAlive())
+    if (run.is_ours) ours.push_back(std::move(run));
+  for (const RunningRun& run : ours)
+    if ((!args.run || fs::weakly_canonical(*args.run, ignored) == fs::weakly_canonical(run.folder, ignored)) &&
+        (!args.domain || *args.domain == run.domain))
+      meant.push_back(run);
+  if (meant.size() == 1) return meant.front();
+  if (ours.empty()) throw ConfigError({"send: no run of yours is alive on this machine"});
+  if (meant.empty()) throw ConfigError({"send: that run is not alive; these are:" + ListOf(ours)});
+  throw ConfigError({"send: several runs are alive; --run DIR or --domain D says which:" + ListOf(meant)});
+}
+
+int Send(const SendArgs& args) {
+  const Wish wish = WishOf(args);
+  const auto answer = AskRun(RunOf(args).process, wish);
+  if (answer && answer->granted) {
+    std::cout << answer->words << "\n";
+    FlushStandardOutput();
+    return kExitDone;
+  }
+  std::cerr << "error: " << (answer ? answer->words : "the run ended before it answered") << "\n";
+  return kExitFailed;
+}
+
+}  // namespace
+
+std::function<int()> SetUpSend(CLI::App& command) {
+  auto args = std::make_shared<SendArgs>();
+  command.add_option("--run", args->run, "the folder of the run; not needed if only one is alive")->type_name("DIR");
+  command.add_option("--domain", args->domain, "the DDS domain of the run")->type_name("D");
+  command.add_option("--agents", args->agents, "with set: whom it is for (default: all whom it can concern)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("ID,...");
+  command.add_option("words", args->words, Usage())->type_name("WHAT")->required();
+  command.footer("Exit code: 0 done; 1 the run refused, and says why; 2 no such run, or wrong usage.");
+  return [args] { return Send(*args); };
+}
+
+}  // namespace mascot
