@@ -307,6 +307,25 @@ TEST(BadConfig, StartsNothingAndWritesNothing) {
   }
 }
 
+// --- touch ----------------------------------------------------------------------------------------------
+
+TEST(Touch, TheVeeFollowsItsLeaderAndWhoIsCutOffStaysBehind) {
+  const auto flown = [](const std::string& events) {
+    return Flight("touch", {"output.save_plot=false", "run.duration_s=40.0", "events=[" + events + "]"});
+  };
+  const std::string sent = "{ at_s = 15.0, goto = { agent = 1, position_m = [20.0, -10.0, 5.0] } }";
+  const Flight whole = flown(sent), split = flown(sent + ", { at_s = 15.0, cut = [[4, 2]] }");
+  const double step = 3 / std::sqrt(2.0);
+  for (int id = 1; id <= 8; ++id) {
+    const int row = id / 2, side = id % 2 == 0 ? 1 : -1;
+    const Eigen::Vector3d place(20 - row * step, -10 + side * row * step, 5);
+    EXPECT_LT((whole.At(whole.last(), id).p_WB - place).norm(), 0.1) << id;
+    const bool is_cut_off = id == 4 || id == 6 || id == 8;
+    EXPECT_EQ((split.At(split.last(), id).p_WB - place).norm() > 15, is_cut_off) << id;
+  }
+  for (const Flight* flight : {&whole, &split}) EXPECT_EQ(flight->summary["safety"]["collisions"], 0);
+}
+
 // --- formation, switching, custom, mixed ----------------------------------------------------------------
 
 TEST(FormationInWind, KeepsItsDisplacementsOverABadNetwork) {
