@@ -4,6 +4,7 @@ import {after, before, test} from "node:test";
 
 import {launch, open, PHONE, WIDE} from "./browser.mjs";
 import {startFake} from "./fake_server.mjs";
+import {clickEdge, drag, edgeInTheOpen, edgeShowsAs, isPaused, pausedFromAbove, placeOf, until} from "./hand.mjs";
 
 let browser;
 before(async () => {
@@ -24,16 +25,7 @@ async function watching({run = {}, ...window}, body) {
   }
 }
 
-const until = (page, condition, argument) => page.waitForFunction(condition, argument, {timeout: 20_000});
-const isPaused = (page) => until(page, () => mascot.state === "paused");
 const events = (fake) => fake.asked.filter(({ask}) => ask === "event").map(({toml}) => toml);
-
-/** Where in the window an agent, or the middle of an edge, is. */
-async function placeOf(page, what, number) {
-  const [x, y] = await page.evaluate(([name, k]) => mascot[name](k), [what, number]);
-  const box = await page.locator("#scene").boundingBox();
-  return [box.x + x, box.y + y];
-}
 
 /** A finger goes from a place of the window by (dx, dy). */
 async function swipe(page, [x, y], [dx, dy]) {
@@ -42,24 +34,6 @@ async function swipe(page, [x, y], [dx, dy]) {
   await touch("touchStart", {x, y});
   for (const share of [0.3, 0.6, 1]) await touch("touchMove", {x: x + share * dx, y: y + share * dy});
   await touch("touchEnd");
-}
-
-/** The edge whose middle is farthest from all agents. */
-const edgeInTheOpen = (page) => page.evaluate(() => {
-  const agents = mascot.experiment.agents.map(({id}) => mascot.agentOnScreen(id));
-  const room = mascot.experiment.edges.map((_, index) => {
-    const [x, y] = mascot.edgeOnScreen(index);
-    return Math.min(...agents.map(([ax, ay]) => Math.hypot(ax - x, ay - y)));
-  });
-  return room.indexOf(Math.max(...room));
-});
-
-async function pausedFromAbove(page) {
-  await page.keyboard.press("Space");
-  await isPaused(page);
-  const before = await page.evaluate(() => mascot.drawn.pictures);
-  await page.keyboard.press("t");
-  await until(page, (pictures) => mascot.drawn.pictures > pictures, before);
 }
 
 // --- what it shows -----------------------------------------------------------------------------------------
@@ -136,15 +110,6 @@ function inOneWindow(name, tests) {
              }));
 }
 
-async function drag(page, number) {
-  const [x, y] = await placeOf(page, "agentOnScreen", number);
-  await page.mouse.move(x, y);
-  await page.mouse.down();
-  await page.mouse.move(x + 30, y - 20, {steps: 2});
-  await page.mouse.move(x + 80, y - 40, {steps: 2});
-  await page.mouse.up();
-}
-
 inOneWindow("the view is touched:", {
   async "pause stops time, and a step is one tick"({page, fake}) {
     await page.click("#play");
@@ -174,10 +139,7 @@ inOneWindow("the view is touched:", {
   },
   async "edges darken when samples are lost, and when a click cuts them, until a click mends them"({page, fake}) {
     const index = await edgeInTheOpen(page), pair = fake.run.edges[index].slice(0, 2).join(", ");
-    const showsAs = (state, low, high) => until(page, ([k, wanted, from, to]) => {
-      const [, , , alpha] = mascot.edgeLook(k);
-      return mascot.edgeStates[k] === wanted && alpha > from && alpha < to;
-    }, [index, state, low, high]);
+    const showsAs = (state, low, high) => edgeShowsAs(page, index, state, low, high);
     await showsAs(1, 0.7, 1);
     fake.run.losing.add(index);
     await page.keyboard.press(".");
@@ -185,11 +147,9 @@ inOneWindow("the view is touched:", {
     fake.run.losing.clear();
     await page.keyboard.press(".");
     await showsAs(1, 0.7, 1);
-    const [x, y] = await placeOf(page, "edgeOnScreen", index);
-    await page.mouse.click(x, y);
-    await page.mouse.move(x, y - 200);
+    await clickEdge(page, index);
     await showsAs(0, 0.1, 0.45);
-    await page.mouse.click(x, y);
+    await clickEdge(page, index);
     await showsAs(1, 0.7, 1);
     assert.deepEqual(events(fake), [`cut = [[${pair}]]`, `mend = [[${pair}]]`]);
   },

@@ -1,6 +1,5 @@
 #!/usr/bin/env node
-// Makes the pictures of the page that the documents have, from runs that are flown now, at half speed, so that no
-// command comes late while pictures are drawn without a graphics card:
+// Makes the pictures of the page that the documents have, from runs that are flown now:
 //   tests/page/pictures.mjs [FOLDER]     docs/pictures/ unless given
 import {execFileSync} from "node:child_process";
 import {join} from "node:path";
@@ -23,7 +22,7 @@ const PICTURES = [
 
 const browser = await launch({fine: true});
 for (const [name, config, tick, keys, window] of PICTURES) {
-  const run = await startRun(config, "--set", "run.speed=0.5"), {page, troubles} = await open(browser, run.url, window);
+  const run = await startRun(config), {page, troubles} = await open(browser, run.url, window);
   for (const key of keys) await page.keyboard.press(key);
   await page.waitForFunction((least) => mascot.tick >= least, tick, {timeout: 120_000});
   const path = join(FOLDER, `${name}.png`);

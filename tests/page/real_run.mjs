@@ -1,7 +1,7 @@
-// The page of the real program: on a run over DDS in real time, and on a recording.
+// The page of the real program: on a run over DDS, and on a recording.
 import {spawn} from "node:child_process";
 import {once} from "node:events";
-import {mkdtemp, rm, writeFile} from "node:fs/promises";
+import {mkdtemp, readFile, rm, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {createInterface} from "node:readline";
@@ -11,14 +11,13 @@ const ROOT = fileURLToPath(new URL("../..", import.meta.url));
 const ORCHESTRATOR = join(process.env.MASCOT_BINARY_DIR ?? join(ROOT, "build/release"), "orchestrator");
 
 /**
- * Starts an experiment of configs/. Its results are thrown away. Returns the address of its page, and how to stop it.
+ * Starts an experiment of configs/, in lockstep and at one simulated second a second unless `options` say otherwise.
+ * Returns the address of its page; `ended`, a promise of its exit code; `read`, to read a file of its results; and
+ * `stop`, which ends it and throws its results away.
  */
 export async function startRun(config, ...options) {
   const folder = await mkdtemp(join(tmpdir(), "mascot-page-"));
-  return serve(folder, [
-    "up", join(ROOT, "configs", config), "--set", "run.mode=realtime", "--view", "--out", join(folder, "run"),
-    ...options
-  ]);
+  return serve(folder, ["up", join(ROOT, "configs", config), "--view", "--out", join(folder, "run"), ...options]);
 }
 
 /** Flies an experiment, given as TOML, as fast as it goes, and serves its recording; likewise. */
@@ -35,14 +34,14 @@ export async function startRecording(toml) {
 
 async function serve(folder, words) {
   const run = spawn(ORCHESTRATOR, words, {stdio: ["ignore", "ignore", "pipe"]});
-  const ended = once(run, "exit");
+  const ended = once(run, "exit").then(([code]) => code);
   const stop = async () => {
     run.kill("SIGINT");
     await ended;
     await rm(folder, {recursive: true});
   };
   try {
-    return {url: await addressOf(run), stop};
+    return {url: await addressOf(run), ended, read: (name) => readFile(join(folder, "run", name), "utf8"), stop};
   } catch (error) {
     await stop();
     throw error;

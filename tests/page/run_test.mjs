@@ -1,26 +1,116 @@
-// The page on a real run, ten agents over DDS in real time, and on a real recording, watched by a real browser.
+// The page on a real run, eight agents over DDS in lockstep, and on a real recording, in a real browser.
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
 import {launch, open} from "./browser.mjs";
+import {clickEdge, drag, edgeInTheOpen, edgeShowsAs, pausedFromAbove, until} from "./hand.mjs";
 import {startRecording, startRun} from "./real_run.mjs";
 
-test("the page of a run shows its agents, who hears whom, and how long it has flown", async () => {
-  const browser = await launch(), run = await startRun("leader_follower.toml", "--set", "run.name=watched");
-  try {
-    const {page, troubles} = await open(browser, run.url);
-    const until = (condition, argument) => page.waitForFunction(condition, argument, {timeout: 60_000});
-    const seen = await page.evaluate(() => ({tick: mascot.tick, p: mascot.positions}));
-    await until((tick) => mascot.tick > tick + 50, seen.tick);
-    await until(() => mascot.edgeStates.every((state) => state === 1));
-    const {drawn, positions, experiment} =
-        await page.evaluate(() => ({drawn: mascot.drawn, positions: mascot.positions, experiment: mascot.experiment}));
-    assert.equal(drawn.agents, 10);
-    assert.equal(drawn.edges, 13);
-    assert.ok(positions.some((x, k) => Math.abs(x - seen.p[k]) > 0.01), "positions stay");
+/** What follows each other on one run, which `body` functions get with its page. */
+const TOUCHES = {
+  async "its agents move, on the page and in its pixels"({page}) {
+    const seen = await page.evaluate(() => {
+      globalThis.seen = mascot.pixels();
+      return {tick: mascot.tick, p: mascot.positions};
+    });
+    await until(page, (tick) => mascot.tick > tick + 50, seen.tick);
+    await until(page, () => mascot.edgeStates.every((state) => state === 1));
+    const {drawn, experiment, moved, changed} = await page.evaluate((p) => {
+      const {data} = mascot.pixels(), changed = data.filter((x, k) => x !== globalThis.seen.data[k]).length;
+      const moved = mascot.positions.some((x, k) => Math.abs(x - p[k]) > 0.01);
+      return {drawn: mascot.drawn, experiment: mascot.experiment, moved, changed};
+    }, seen.p);
+    assert.equal(drawn.agents, 8);
+    assert.equal(drawn.edges, 7);
+    assert.ok(moved, "positions stay");
+    assert.ok(changed > 200, `${changed} bytes of the picture have changed`);
     assert.equal(experiment.name, "watched");
-    assert.deepEqual(experiment.agents.filter(({leads}) => leads).map(({id}) => id), [4]);
-    assert.deepEqual(troubles, []);
+    assert.deepEqual(experiment.agents.filter(({leads}) => leads).map(({id}) => id), [1]);
+  },
+  async "pause stops time, a step is one tick, and resume goes on"({page}) {
+    await pausedFromAbove(page);
+    const tick = await page.evaluate(() => mascot.tick);
+    await page.evaluate(async () => {
+      for (let k = 0; k < 10; ++k) await new Promise(requestAnimationFrame);
+    });
+    assert.equal(await page.evaluate(() => mascot.tick), tick);
+    await page.keyboard.press(".");
+    await until(page, (paused) => mascot.tick === paused + 1 && mascot.state === "paused", tick);
+    await page.click("#play");
+    await until(page, (paused) => mascot.state === "running" && mascot.tick > paused + 10, tick);
+  },
+  async "dragging its leader moves it"({page}) {
+    await pausedFromAbove(page);
+    const [x, y] = await page.evaluate(() => mascot.positions);
+    await drag(page, 1);
+    await until(page, () => document.querySelector(".notice.granted")?.textContent.includes("takes effect at tick"));
+    await page.keyboard.press("Space");
+    await until(page, ([x, y]) => mascot.positions[0] > x + 0.5 && mascot.positions[1] > y + 0.2, [x, y]);
+    await until(page, () => mascot.events.length === 1);
+  },
+  async "a click cuts an edge, which darkens, and another click mends it"({page}) {
+    await pausedFromAbove(page);
+    const index = await edgeInTheOpen(page);
+    for (const [verb, state, low, high] of [["cut", 0, 0.1, 0.45], ["mend", 1, 0.7, 1]]) {
+      await clickEdge(page, index);
+      await until(
+          page, (asked) => mascot.lastAnswer.granted && mascot.lastAnswer.request.toml?.startsWith(asked), verb);
+      await page.keyboard.press(".");
+      await edgeShowsAs(page, index, state, low, high);
+    }
+    await page.keyboard.press("Space");
+    await until(page, () => mascot.state === "running");
+  },
+  async "a slider changes a gain, and the page shows what it is"({page}) {
+    await page.click("#tab-tune");
+    const row = page.locator("[data-key='law.p_gain']");
+    await row.locator("input[type=range]").focus();
+    await page.keyboard.press("ArrowRight");
+    await until(page, () => mascot.events.length === 4);
+    const toml = await page.evaluate(() => mascot.events.at(-1).toml), now = Number(toml.match(/= ([\d.]+) }/)[1]);
+    assert.ok(now > 0.5 && now < 0.55, toml);
+    await until(
+        page, (value) => mascot.experiment.live_keys.find(({key}) => key === "law.p_gain").value === value, now);
+    assert.equal(Number(await row.locator("input[type=number]").inputValue()), now);
+  },
+  async "a refusal is shown in the words of the run"({page}) {
+    const row = page.locator("[data-key='law.p_gain']");
+    await row.locator("input[type=number]").fill("5000");
+    await page.keyboard.press("Enter");
+    await until(page, () => mascot.lastAnswer?.granted === false);
+    const words = "law.p_gain: expected a number in [0, 1000], got 5000";
+    assert.ok((await row.locator(".refusal").textContent()).endsWith(words));
+    assert.ok((await page.textContent(".notice.refused")).includes(words));
+    assert.equal(await page.evaluate(() => mascot.events.length), 4);
+  },
+  async "a second run at the same time takes another port"({run}) {
+    const second = await startRun("waypoint.toml", "--engine", "inprocess");
+    try {
+      assert.ok(Number(new URL(second.url).port) > Number(new URL(run.url).port), `${run.url}, ${second.url}`);
+      assert.equal((await fetch(second.url)).status, 200);
+    } finally {
+      await second.stop();
+    }
+  },
+  async "once it is stopped, its config.toml has all that was done"({page, run, troubles}) {
+    assert.deepEqual(troubles, []);  // afterwards the page tries to connect again
+    const done = await page.evaluate(() => mascot.events.map(({toml}) => toml.trim()));
+    await page.click("#stop");
+    await page.click("#confirm-yes");
+    assert.equal(await run.ended, 0);
+    const config = await run.read("config.toml");
+    assert.deepEqual(done.map((toml) => toml.split(" = ")[0]), ["goto", "cut", "mend", "set"]);
+    assert.equal(config.split("[[events]]").length - 1, done.length);
+    for (const toml of done) assert.ok(config.includes(toml), `${toml} is not in\n${config}`);
+  },
+};
+
+test("a run is watched and touched:", async (t) => {
+  const browser = await launch(),
+        run = await startRun("touch.toml", "--set", "run.name=watched", "--set", "output.save_plot=false");
+  try {
+    const window = await open(browser, run.url);
+    for (const [what, body] of Object.entries(TOUCHES)) await t.test(what, () => body({...window, run}));
   } finally {
     await run.stop();
     await browser.close();
@@ -54,24 +144,24 @@ test("the page of a recording goes where it is asked to, and shows what was so a
   const browser = await launch(), recording = await startRecording(FLOWN);
   try {
     const {page, troubles} = await open(browser, recording.url);
-    const until = (condition, argument) => page.waitForFunction(condition, argument, {timeout: 60_000});
-    await until(() => mascot.experiment.live_keys.length > 0 && mascot.state === "paused");
+    const shows = (condition, argument) => until(page, condition, argument);
+    await shows(() => mascot.experiment.live_keys.length > 0 && mascot.state === "paused");
     const first = await page.evaluate(() => mascot.positions);
     assert.equal(await page.locator("#marks i").count(), 2);
     const gain = () => page.textContent("[data-key='law.p_gain'] b");
     assert.equal(await gain(), "0.100");
     await page.locator("#seek").fill("15");
-    await until(() => mascot.tick === 1500 && mascot.edgeStates[1] === 0);
-    await until(() => document.querySelector("[data-key='law.p_gain'] b").textContent === "0.300");
+    await shows(() => mascot.tick === 1500 && mascot.edgeStates[1] === 0);
+    await shows(() => document.querySelector("[data-key='law.p_gain'] b").textContent === "0.300");
     await page.locator("#scene").focus();
     await page.keyboard.press("ArrowLeft");
-    await until(() => mascot.tick === 1499);
-    await until(() => document.querySelector("[data-key='law.p_gain'] b").textContent === "0.100");
+    await shows(() => mascot.tick === 1499);
+    await shows(() => document.querySelector("[data-key='law.p_gain'] b").textContent === "0.100");
     await page.selectOption("#pace", "100");
     await page.keyboard.press("Space");
-    await until(() => mascot.tick === 2000 && mascot.state === "paused");
+    await shows(() => mascot.tick === 2000 && mascot.state === "paused");
     await page.locator("#seek").fill("0");
-    await until(() => mascot.tick === 0 && mascot.edgeStates.length === 3);
+    await shows(() => mascot.tick === 0 && mascot.edgeStates.length === 3);
     assert.deepEqual(await page.evaluate(() => mascot.positions), first);
     assert.deepEqual(troubles, []);
   } finally {
