@@ -174,15 +174,18 @@ export class Charts {
   }
 }
 
-/** A range for a logarithmic axis: what is measured and predicted, with some room, at least a factor of 5. */
+/**
+ * A range for a logarithmic axis: what is measured, with some room, at least a factor of 5; and what is predicted, as
+ * far as a decade below that.
+ */
 function decadesOf(rows) {
-  let low = Infinity, high = LEAST_M;
-  for (const [, ...values] of rows)
-    for (const value of values) {
-      if (value === null) continue;
-      low = Math.min(low, value);
-      high = Math.max(high, value);
-    }
+  let low = Infinity, least = Infinity, high = LEAST_M;
+  for (const [, measured, theory] of rows) {
+    low = Math.min(low, measured ?? Infinity);
+    least = Math.min(least, measured ?? Infinity, theory ?? Infinity);
+    high = Math.max(high, measured ?? 0, theory ?? 0);
+  }
+  low = Math.max(least, low / 10);
   return [Math.min(low / 1.2, high / 5), high * 1.2];
 }
 

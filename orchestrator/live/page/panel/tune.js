@@ -19,7 +19,7 @@ export class Tune {
   }
 
   #onExperiment() {
-    const keys = this.#model.experiment.live_keys ?? [];
+    const keys = shown(this.#model.experiment.live_keys ?? []);
     const wanted = JSON.stringify(keys.map(({value, ...key}) => key)) + this.#model.isRecording;
     if (wanted !== this.#drawn) this.#make(keys);
     this.#drawn = wanted;
@@ -81,6 +81,12 @@ export class Tune {
     if (!answer.granted)
       this.#controls.get(key)?.show(this.#model.experiment.live_keys.find((live) => live.key === key)?.value);
   }
+}
+
+/** What is tuned most comes first. The pace has a control of its own. */
+function shown(keys) {
+  const isOfLaw = ({key}) => key.startsWith("law.");
+  return [...keys.filter(isOfLaw), ...keys.filter((key) => !isOfLaw(key) && key.key !== "run.pace")];
 }
 
 const show = (value) =>
@@ -164,7 +170,7 @@ function vector3(key, ask) {
 
 /** Any other value, as JSON, which TOML reads alike for numbers, texts and lists of them. */
 function other(key, ask) {
-  const box = element("input", {type: "text", id: idOf(key), spellcheck: false});
+  const box = element("input", {type: "text", id: idOf(key), spellcheck: false, placeholder: "not given"});
   box.addEventListener("change", () => {
     try {
       ask(JSON.parse(box.value));
@@ -177,7 +183,7 @@ function other(key, ask) {
   return {
     body: [box],
     show: (value) => {
-      if (document.activeElement !== box) box.value = JSON.stringify(value);
+      if (document.activeElement !== box) box.value = (value ?? null) === null ? "" : JSON.stringify(value);
     }
   };
 }
