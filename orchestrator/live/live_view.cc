@@ -6,7 +6,6 @@
 
 #include "bus/wire.h"
 #include "idl/topics.h"
-#include "orchestrator/live/about.h"
 
 namespace mascot {
 namespace {
@@ -48,8 +47,8 @@ LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, c
       shown_state_(state_),
       ros_(experiment),
       ros_channels_(ros_.channels().size()),
-      experiment_json_(Shared(ExperimentJson(experiment, prediction, source_, {}))),
-      events_json_(Shared(EventsJson(experiment, {}))),
+      latched_{Shared(ExperimentJson(experiment, prediction, source_, {})), nullptr,
+               Shared(EventsJson(experiment, {}))},
       foxglove_(
           AboutTheRun(experiment, ros_.channels(), source_.recorded ? source_.recorded->last_tick : experiment.ticks()),
           *this),
@@ -96,15 +95,26 @@ void LiveView::SetEvents(std::vector<ShownEvent> events) {
   });
 }
 
-void LiveView::PublishEvents() {
-  events_json_ = Shared(EventsJson(experiment_, events_));
-  foxglove_.Publish(kEventsChannel, shown_ns(), events_json_);
+void LiveView::PublishEvents() { PublishLatched(kEventsChannel, EventsJson(experiment_, events_)); }
+
+void LiveView::PublishLatched(UiChannel channel, std::string json) {
+  latched_[channel] = Shared(std::move(json));
+  foxglove_.Publish(channel, shown_ns(), latched_[channel]);
+  missed_[channel] = slow_;
+}
+
+void LiveView::SendMissed() {  // no newer message may come
+  for (Foxglove::ChannelId channel = 0; channel < kFirstOfRos; ++channel)
+    std::erase_if(missed_[channel], [&](ClientId client) {
+      if (slow_.contains(client)) return false;
+      foxglove_.PublishTo(client, channel, shown_ns(), latched_[channel]);
+      return true;
+    });
 }
 
 void LiveView::SetExperiment(const Experiment& now, const std::vector<ShownKey>& keys) {
-  server_.Post([this, json = Shared(ExperimentJson(now, prediction_, source_, keys)), keys] {
-    experiment_json_ = json;
-    foxglove_.Publish(kExperimentChannel, shown_ns(), experiment_json_);
+  server_.Post([this, json = ExperimentJson(now, prediction_, source_, keys), keys]() mutable {
+    PublishLatched(kExperimentChannel, std::move(json));
     std::vector<Foxglove::Parameter> parameters;
     for (const ShownKey& key : keys) parameters.push_back({key.name, Foxglove::Json::parse(key.value, nullptr, false)});
     foxglove_.SetParameters(std::move(parameters));
@@ -122,7 +132,8 @@ std::string LiveView::OnMessage(ClientId client, bool is_text, std::span<const s
 
 void LiveView::OnClose(ClientId client) {
   foxglove_.OnClose(client);
-  missed_.erase(client);
+  slow_.erase(client);
+  for (auto& missed : missed_) missed.erase(client);
 }
 
 std::uint64_t LiveView::shown_ns() const {
@@ -130,9 +141,8 @@ std::uint64_t LiveView::shown_ns() const {
 }
 
 void LiveView::OnSubscribe(ClientId client, Foxglove::ChannelId channel) {
-  const Foxglove::Payload latched[] = {experiment_json_, frame_json_, events_json_};
-  if (channel < std::size(latched) && latched[channel] != nullptr)
-    foxglove_.PublishTo(client, channel, shown_ns(), latched[channel]);
+  if (channel < kFirstOfRos && latched_[channel] != nullptr)
+    foxglove_.PublishTo(client, channel, shown_ns(), latched_[channel]);
   else if (channel >= kFirstOfRos && shown_.tick >= 0 && channel != kFirstOfRos + ros_.event_channel())
     foxglove_.PublishTo(client, channel, shown_ns(), Shared(ros_.FirstMessage(channel - kFirstOfRos)));
 }
@@ -174,9 +184,8 @@ Foxglove::Playback LiveView::PlaybackNow() const {
 }
 
 void LiveView::Show() {
-  frame_json_ = Shared(FrameJson(experiment_, shown_, shown_state_));
   foxglove_.SendTime(shown_ns());
-  foxglove_.Publish(kFrameChannel, shown_ns(), frame_json_);
+  PublishLatched(kFrameChannel, FrameJson(experiment_, shown_, shown_state_));
   ros_.SetRow(shown_);
   for (std::size_t i = 0; i < ros_channels_; ++i) {
     const auto channel = static_cast<Foxglove::ChannelId>(kFirstOfRos + i);
@@ -192,18 +201,11 @@ void LiveView::OnTimer() {
   slow_.clear();
   for (const ClientId client : foxglove_.clients())
     if (server_.Waiting(client) > 0) slow_.insert(client);
-  const bool is_new = TakeNewest();
-  if (shown_.tick < 0) return;
-  if (is_new) {
+  if (TakeNewest() && shown_.tick >= 0) {
     MeasurePace();
     Show();
-    missed_ = slow_;
   }
-  std::erase_if(missed_, [this](ClientId client) {  // no newer frame may come
-    if (slow_.contains(client)) return false;
-    foxglove_.PublishTo(client, kFrameChannel, shown_ns(), frame_json_);
-    return true;
-  });
+  SendMissed();
 }
 
 void LiveView::Ask(const Wish& wish, Foxglove::Reply reply) {

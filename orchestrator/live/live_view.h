@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
+#include "orchestrator/live/about.h"
 #include "orchestrator/live/asker.h"
 #include "orchestrator/live/foxglove.h"
 #include "orchestrator/live/pages.h"
@@ -81,6 +82,8 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   void AskForGoal(const Goal& goal, Foxglove::Reply reply) override;
 
   void PublishEvents();
+  void PublishLatched(UiChannel channel, std::string json);
+  void SendMissed();
   bool TakeNewest();
   void MeasurePace();
   Foxglove::Playback PlaybackNow() const;
@@ -104,8 +107,9 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   RunState shown_state_;
   RosChannels ros_;
   const std::size_t ros_channels_;
-  std::set<ClientId> slow_, missed_;  // missed_: the last frame
-  Foxglove::Payload experiment_json_, events_json_, frame_json_;
+  std::set<ClientId> slow_;
+  Foxglove::Payload latched_[kFirstOfRos];  // the newest message of each UiChannel
+  std::set<ClientId> missed_[kFirstOfRos];  // who was too slow for it
   std::vector<ShownEvent> events_;
   std::optional<WallClock::time_point> measured_at_;
   std::int64_t measured_tick_ = 0;
