@@ -329,6 +329,21 @@ TEST(LiveView, TellsOfEvents) {
   EXPECT_EQ(event.toml(), "goto = {}");
 }
 
+TEST(LiveView, AViewerThatReadsLateGetsTheNewestEventsAllTheSame) {
+  constexpr int kEvents = 100;
+  Watched run(Load("[run]\nduration_s = 1.0\n[agents]\ncount = 400\nmodel = 'double_integrator'\nrandom = {}\n"));
+  Viewer viewer(run.view.url());
+  viewer.Subscribe("/ui/experiment");
+  viewer.Subscribe("/ui/events");
+  EXPECT_EQ(viewer.NextJsonOf("/ui/events"), Json::array());
+  // Far more than the system keeps for a viewer that reads nothing.
+  for (int number = 1; number <= kEvents; ++number)
+    run.view.OnEvent({.number = number, .tick = number, .toml = "cut = [[1, 2]]", .by_hand = true}, run.experiment, {});
+  std::size_t newest = 0;
+  while (newest < kEvents && !testing::Test::HasFailure()) newest = viewer.NextJsonOf("/ui/events").size();
+  EXPECT_EQ(newest, static_cast<std::size_t>(kEvents));
+}
+
 TEST(LiveView, SendsSamplesAsTheyAreRecorded) {
   const ScratchFolder folder;
   const Experiment experiment = Load(kThree, "record.topics", "['*/state']");
