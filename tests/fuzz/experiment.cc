@@ -14,6 +14,11 @@ class LawsWithoutCode final : public LawCatalog {
  public:
   std::span<const std::string_view> names() const override { return LawNames(); }
   Axes DefaultAxes(std::string_view law) const override { return Row(law).axes; }
+  std::span<const Key> Parameters(std::string_view law) const override { return Row(law).parameters; }
+  std::map<std::string, Value> GoTo(const AgentConfig& /*agent*/, const Eigen::Vector3d& /*p_W*/,
+                                    double /*t_s*/) const override {
+    return {};
+  }
   std::shared_ptr<const LawParams> Read(const Experiment& experiment, const LawConfig& law,
                                         Section& section) const override {
     const LawEntry& row = Row(law.name);
