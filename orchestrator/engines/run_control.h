@@ -15,6 +15,7 @@ struct Wish {
 struct Answer {
   bool granted = false;
   std::string words = {};  ///< what will happen, or why not
+  bool operator==(const Answer&) const = default;
 };
 
 /// Takes wishes from any thread; an answer comes within a second or two.

@@ -180,12 +180,11 @@ void RunSocket::Serve(int client) {
   const Connection connection(client);
   connection.LimitTo(kClientSeconds);
   const auto peer = connection.Peer();
-  if (!peer) return;
-  if (!MayAsk(peer->uid, ::geteuid())) {
-    connection.Write(AnswerJson({false, "this run is user " + UserNameOf(::geteuid()) + "'s"}));
-    return;
-  }
-  if (const auto request = connection.Read()) connection.Write(AnswerTo(*request));
+  const auto request = connection.Read();  // first: who closes with something unread takes back what it said
+  if (!peer || !request) return;
+  connection.Write(MayAsk(peer->uid, ::geteuid())
+                       ? AnswerTo(*request)
+                       : AnswerJson({false, "this run is user " + UserNameOf(::geteuid()) + "'s"}));
 }
 
 std::string RunSocket::AnswerTo(const std::string& line) {
