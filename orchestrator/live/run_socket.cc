@@ -1,23 +1,18 @@
 #include "orchestrator/live/run_socket.h"
 
-#include <fmt/format.h>
-#include <poll.h>
-#include <pwd.h>
-#include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <sys/time.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
-#include <cstddef>
 #include <cstring>
 #include <fstream>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "orchestrator/live/compact_json.h"
 #include "orchestrator/live/wish.h"
@@ -29,52 +24,27 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kName = "mascot-run-";  // and the process id
 constexpr std::size_t kLongestLine = 1 << 20;
-/// How long the other side may take for a line. A run may take a while for an answer: its laws may be slow.
+/// How long the other side may take for a line. A run may take a while for its answer: its laws may be slow.
 constexpr int kClientSeconds = 2, kRunSeconds = 60;
 
-struct Address {
-  sockaddr_un address{};
-  socklen_t size = 0;
-  const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&address); }
-};
+std::string NameOf(pid_t process) { return std::string(kName) + std::to_string(process); }
 
-Address AddressOf(pid_t process) {
-  const std::string name = std::string(kName) + std::to_string(process);
-  Address result;
-  result.address.sun_family = AF_UNIX;
-  std::ranges::copy(name, result.address.sun_path + 1);  // an abstract name begins with a zero byte
-  result.size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  return result;
-}
-
-/// Owns a socket.
+/// Passes lines to and fro.
 class Connection {
  public:
-  explicit Connection(int number) : number_(number) {}
-  ~Connection() {
-    if (number_ >= 0) ::close(number_);
-  }
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
-  int number() const { return number_; }
-
-  void LimitTo(int seconds) const {
+  /// `seconds`: how long the other side may take for a line.
+  Connection(Descriptor socket, int seconds) : socket_(std::move(socket)) {
     const timeval limit{.tv_sec = seconds, .tv_usec = 0};
-    ::setsockopt(number_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-    ::setsockopt(number_, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
+    ::setsockopt(socket_.number(), SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+    ::setsockopt(socket_.number(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
   }
 
-  std::optional<ucred> Peer() const {
-    ucred peer{};
-    socklen_t size = sizeof peer;
-    if (::getsockopt(number_, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return std::nullopt;
-    return peer;
-  }
+  std::optional<ucred> Peer() const { return PeerOf(socket_); }
 
   bool Write(std::string line) const {
     line += '\n';
     for (std::size_t sent = 0; sent < line.size();) {
-      const ssize_t count = ::send(number_, line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
+      const ssize_t count = ::send(socket_.number(), line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
       if (count < 0 && errno == EINTR) continue;
       if (count <= 0) return false;
       sent += static_cast<std::size_t>(count);
@@ -87,7 +57,7 @@ class Connection {
     std::string line;
     std::array<char, 4096> buffer{};
     while (line.size() <= kLongestLine) {
-      const ssize_t count = ::recv(number_, buffer.data(), buffer.size(), 0);
+      const ssize_t count = ::recv(socket_.number(), buffer.data(), buffer.size(), 0);
       if (count < 0 && errno == EINTR) continue;
       if (count <= 0) return std::nullopt;
       line.append(buffer.data(), static_cast<std::size_t>(count));
@@ -97,16 +67,11 @@ class Connection {
   }
 
  private:
-  int number_;
+  Descriptor socket_;
 };
 
 /// Whether user `asking` may ask a process of user `asked`.
 bool MayAsk(uid_t asking, uid_t asked) { return asking == asked || asking == 0; }
-
-std::string UserNameOf(uid_t user) {
-  const passwd* entry = ::getpwuid(user);
-  return entry != nullptr ? entry->pw_name : std::to_string(user);
-}
 
 std::string AnswerJson(const Answer& answer) {
   return CompactJson({{"granted", answer.granted}, {"words", answer.words}});
@@ -114,10 +79,9 @@ std::string AnswerJson(const Answer& answer) {
 
 /// Sends a line to a run, and returns its answer.
 std::optional<Json> ExchangeLines(pid_t process, const Json& request, ucred* peer = nullptr) {
-  const Connection run(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  const Address address = AddressOf(process);
-  if (::connect(run.number(), address.get(), address.size) != 0) return std::nullopt;
-  run.LimitTo(kRunSeconds);
+  Descriptor socket = MakeLocalSocket(SOCK_CLOEXEC);
+  if (!ConnectTo(NameOf(process), socket)) return std::nullopt;
+  const Connection run(std::move(socket), kRunSeconds);
   const auto who = run.Peer();
   if (who && peer != nullptr) *peer = *who;
   if (!who || !run.Write(CompactJson(request))) return std::nullopt;
@@ -144,47 +108,40 @@ std::set<pid_t> NamesInUse() {
 
 RunSocket::RunSocket(const Experiment& experiment, const std::string& folder, const std::string& engine,
                      const std::string& page, Helm& helm)
-    : experiment_(experiment), folder_(folder), engine_(engine), page_(page), helm_(helm) {
-  socket_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  wakeups_ = ::eventfd(0, EFD_CLOEXEC);
-  const Address address = AddressOf(::getpid());
-  if (socket_ < 0 || wakeups_ < 0 || ::bind(socket_, address.get(), address.size) != 0 ||
-      ::listen(socket_, SOMAXCONN) != 0) {
-    const std::string why = std::strerror(errno);
-    ::close(socket_);
-    ::close(wakeups_);
-    throw std::runtime_error("cannot make the socket by which `orchestrator send` reaches this run: " + why);
-  }
-  thread_ = std::jthread([this](const std::stop_token& over) { Listen(over); });
+    : experiment_(experiment),
+      folder_(folder),
+      engine_(engine),
+      page_(page),
+      helm_(helm),
+      socket_(MakeLocalSocket(SOCK_CLOEXEC)) {
+  if (!ListenAs(NameOf(::getpid()), socket_))
+    throw std::runtime_error(std::string("cannot make the socket by which `orchestrator send` reaches this run: ") +
+                             std::strerror(errno));
+  thread_ = std::jthread([this] { Listen(); });
 }
 
 RunSocket::~RunSocket() {
-  thread_.request_stop();
-  const std::uint64_t one = 1;
-  while (::write(wakeups_, &one, sizeof one) < 0 && errno == EINTR) continue;
-  thread_.join();
-  ::close(socket_);
-  ::close(wakeups_);
+  ::shutdown(socket_.number(), SHUT_RDWR);  // Listen() sees it, and returns
 }
 
-void RunSocket::Listen(const std::stop_token& over) {
-  while (!over.stop_requested()) {
-    std::array<pollfd, 2> ready{{{socket_, POLLIN, 0}, {wakeups_, POLLIN, 0}}};
-    if (::poll(ready.data(), ready.size(), -1) <= 0 || (ready[0].revents & POLLIN) == 0) continue;
-    const int client = ::accept4(socket_, nullptr, nullptr, SOCK_CLOEXEC);
-    if (client >= 0) Serve(client);
+void RunSocket::Listen() {
+  for (;;) {
+    Descriptor client(::accept4(socket_.number(), nullptr, nullptr, SOCK_CLOEXEC));
+    if (client.is_open())
+      Serve(std::move(client));
+    else if (errno == EINVAL)
+      return;
   }
 }
 
-void RunSocket::Serve(int client) {
-  const Connection connection(client);
-  connection.LimitTo(kClientSeconds);
+void RunSocket::Serve(Descriptor client) {
+  const Connection connection(std::move(client), kClientSeconds);
   const auto peer = connection.Peer();
   const auto request = connection.Read();  // first: who closes with something unread takes back what it said
   if (!peer || !request) return;
   connection.Write(MayAsk(peer->uid, ::geteuid())
                        ? AnswerTo(*request)
-                       : AnswerJson({false, "this run is user " + UserNameOf(::geteuid()) + "'s"}));
+                       : AnswerJson({false, "this run is user " + UserName(::geteuid()) + "'s"}));
 }
 
 std::string RunSocket::AnswerTo(const std::string& line) {
@@ -218,7 +175,7 @@ std::vector<RunningRun> RunsAlive() {
     if (!answer || peer.pid != process) continue;
     RunningRun run;
     run.process = process;
-    run.user = UserNameOf(peer.uid);
+    run.user = UserName(peer.uid);
     run.is_ours = answer->contains("folder");
     if (run.is_ours) {
       answer->at("name").get_to(run.name);

@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "bus/local_socket.h"
 #include "experiment/experiment.h"
 #include "orchestrator/engines/helm.h"
 
@@ -40,14 +41,14 @@ class RunSocket {
   RunSocket& operator=(const RunSocket&) = delete;
 
  private:
-  void Listen(const std::stop_token& over);
-  void Serve(int client);
+  void Listen();
+  void Serve(Descriptor client);
   std::string AnswerTo(const std::string& request);
 
   const Experiment& experiment_;
   const std::string folder_, engine_, page_;
   Helm& helm_;
-  int socket_ = -1, wakeups_ = -1;
+  const Descriptor socket_;
   std::jthread thread_;
 };
 

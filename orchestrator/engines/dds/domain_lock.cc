@@ -2,14 +2,9 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <pwd.h>
 #include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <cstddef>
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -25,32 +20,13 @@ namespace {
 
 constexpr int kFirstDomain = 2, kLastDomain = 98;
 
-/// Calls `call`, which is bind() or connect(), with a socket and the name that stands for the domain. The name is an
-/// abstract one (unix(7)), in no folder: one socket at a time can have it, whosever it is, and no file is left, or can
-/// be in the way.
-template <class Call>
-int WithNameOf(int domain, int socket, Call call) {
-  const std::string name = "mascot-domain-" + std::to_string(domain);
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  std::ranges::copy(name, address.sun_path + 1);  // an abstract name begins with a zero byte
-  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  return call(socket, reinterpret_cast<const sockaddr*>(&address), size);
-}
-
-Descriptor MakeSocket(int flags) {
-  Descriptor made(::socket(AF_UNIX, SOCK_STREAM | flags, 0));
-  if (!made.is_open()) throw std::runtime_error(std::string("cannot make a socket: ") + std::strerror(errno));
-  return made;
-}
+/// The name of the socket that stands for a domain.
+std::string NameOf(int domain) { return "mascot-domain-" + std::to_string(domain); }
 
 /// Reserves the domain in this network namespace, as long as the result is open; it is not if another run has it.
 Descriptor TakeName(int domain) {
-  Descriptor name = MakeSocket(0);  // without SOCK_CLOEXEC: children inherit it
-  if (WithNameOf(domain, name.number(), ::bind) == 0) {
-    ::listen(name.number(), SOMAXCONN);  // so that others learn who it is: HolderOf
-    return name;
-  }
+  Descriptor name = MakeLocalSocket(0);             // without SOCK_CLOEXEC: children inherit it
+  if (ListenAs(NameOf(domain), name)) return name;  // it listens so that others learn who it is: HolderOf
   if (errno == EADDRINUSE) return Descriptor();
   throw std::runtime_error(fmt::format("cannot reserve DDS domain {}: {}", domain, std::strerror(errno)));
 }
@@ -75,17 +51,8 @@ Descriptor TakeSharedMemory(int domain) {
 
 /// The process that reserved the domain; nothing if it does not answer.
 std::optional<ucred> HolderOf(int domain) {
-  const Descriptor caller = MakeSocket(SOCK_NONBLOCK | SOCK_CLOEXEC);
-  ucred holder{};
-  socklen_t size = sizeof holder;
-  const bool known = WithNameOf(domain, caller.number(), ::connect) == 0 &&
-                     ::getsockopt(caller.number(), SOL_SOCKET, SO_PEERCRED, &holder, &size) == 0;
-  return known ? std::optional(holder) : std::nullopt;
-}
-
-std::string UserName(uid_t user) {
-  const passwd* entry = ::getpwuid(user);
-  return "user " + (entry != nullptr ? entry->pw_name : std::to_string(user));
+  const Descriptor caller = MakeLocalSocket(SOCK_NONBLOCK | SOCK_CLOEXEC);
+  return ConnectTo(NameOf(domain), caller) ? PeerOf(caller) : std::nullopt;
 }
 
 /// Local UDP ports in use on this machine, by which other DDS programs are recognised.
@@ -116,7 +83,7 @@ std::string Holders() {
   std::map<std::string, int> count;
   for (int domain = kFirstDomain; domain <= kLastDomain; domain += kDomainsPerRun) {
     const auto holder = HolderOf(domain);
-    ++count[holder ? UserName(holder->uid) + " has" : "other DDS programs have"];
+    ++count[holder ? "user " + UserName(holder->uid) + " has" : "other DDS programs have"];
   }
   std::string text;
   for (const auto& [who, domains] : count) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", who, domains);
@@ -124,10 +91,6 @@ std::string Holders() {
 }
 
 }  // namespace
-
-Descriptor::~Descriptor() {
-  if (is_open()) ::close(number_);
-}
 
 DomainLock::DomainLock(int wanted) : domain_(wanted) {
   if (wanted < 0) {
@@ -142,7 +105,7 @@ DomainLock::DomainLock(int wanted) : domain_(wanted) {
   const auto holder = HolderOf(wanted);
   throw std::runtime_error(
       fmt::format("network.domain = {} is in use by another run on this machine{}", wanted,
-                  holder ? fmt::format(": process {} of {}", holder->pid, UserName(holder->uid)) : std::string()));
+                  holder ? fmt::format(": process {} of user {}", holder->pid, UserName(holder->uid)) : std::string()));
 }
 
 DomainLock::Taken DomainLock::Take(int domain) {

@@ -1,27 +1,10 @@
 #pragma once
 
 #include <array>
-#include <utility>
+
+#include "bus/local_socket.h"
 
 namespace mascot {
-
-/// Owns a file descriptor, or none (-1).
-class Descriptor {
- public:
-  explicit Descriptor(int number = -1) : number_(number) {}
-  ~Descriptor();
-  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-
-  int number() const { return number_; }
-  bool is_open() const { return number_ >= 0; }
-
- private:
-  int number_;
-};
 
 /// Reserves a DDS domain, so that no other run on this machine uses it, of this user or another: neither in the network
 /// namespace, by the name of a socket, nor in /dev/shm, which several of them may share, by a lock on a byte of that

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <sys/socket.h>
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace mascot {
+
+/// Owns a file descriptor, or none (-1).
+class Descriptor {
+ public:
+  explicit Descriptor(int number = -1) : number_(number) {}
+  ~Descriptor();
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+
+  int number() const { return number_; }
+  bool is_open() const { return number_ >= 0; }
+
+ private:
+  int number_;
+};
+
+// Stream sockets between processes of this machine, with abstract names (unix(7)): a name is in no folder, one socket
+// at a time can have it, whosever it is, and no file is left, or can be in the way. Network namespaces have names of
+// their own.
+
+/// Makes a socket. `flags`: SOCK_CLOEXEC, without which children inherit it, and others of socket(2). Throws
+/// std::runtime_error.
+Descriptor MakeLocalSocket(int flags);
+/// Gives the socket this name and listens. Returns whether it has the name; if not, errno says why.
+bool ListenAs(const std::string& name, const Descriptor& socket);
+/// Connects the socket with the one that has this name. Returns whether it is; if not, errno says why.
+bool ConnectTo(const std::string& name, const Descriptor& socket);
+/// The process at the other end of a connection; nothing if that is not known.
+std::optional<ucred> PeerOf(const Descriptor& connection);
+/// The name of a user, or the number if there is no name.
+std::string UserName(uid_t user);
+
+}  // namespace mascot
