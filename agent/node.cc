@@ -66,7 +66,7 @@ void Node::ListenToEvents(Domain& domain) {
       std::make_unique<Reader<EventType>>(domain, Topic::Event(), [this](const mascot_msgs::msg::Event& event) {
         const int number = static_cast<int>(live_.events().size()) + 1;
         const std::int64_t tick = CheckedEvent(event, number, experiment_.ticks());
-        const auto now = live_.Take(live_.Parse(tick, event.toml(), "event " + std::to_string(number)));
+        const auto now = live_.Take(tick, number, event.toml());
         for (const auto& seat : seats_) seat->OnEvent(number, now);
       }));
 }

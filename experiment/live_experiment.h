@@ -34,6 +34,11 @@ class LiveExperiment {
   /// is not live, a value that is not legal, an edge that the file does not declare, or an agent that flies no
   /// waypoints.
   std::shared_ptr<const Experiment> Take(const Event& event);
+  /// Takes event `number` of a run, as its recording or /event has it: of this tick, with this Event::Toml(). Throws as
+  /// Parse() and Take() do, with "event NUMBER" in front.
+  std::shared_ptr<const Experiment> Take(std::int64_t tick, int number, const std::string& toml) {
+    return Take(Parse(tick, toml, "event " + std::to_string(number)));
+  }
   /// The experiment as it is now; null before the first event.
   const std::shared_ptr<const Experiment>& now() const { return now_; }
   /// The events taken so far.

@@ -35,7 +35,7 @@ std::string Refusal(const ConfigError& error) {
 Helm::Helm(const Experiment& experiment, double pace)
     : experiment_(experiment),
       going_{.pace = experiment.run.mode == Mode::kRealtime ? experiment.run.speed : pace},
-      live_(experiment, &LawTable(), /*checked=*/true) {}
+      live_(std::in_place, experiment, &LawTable(), /*checked=*/true) {}
 
 Answer Helm::Ask(const Wish& wish) {
   const std::lock_guard one_at_a_time(asking_);
@@ -93,7 +93,7 @@ Wish Helm::Checked(const Wish& wish) {
 
 Event Helm::CheckedEvent(const std::string& toml) {
   std::unique_lock lock(mutex_);
-  LiveExperiment live = live_;
+  LiveExperiment live = *live_;
   const std::deque<Event> granted = granted_;
   const std::size_t of_file = of_file_;
   const std::int64_t tick = std::min(going_.tick + 1, experiment_.ticks());
@@ -133,20 +133,24 @@ Going Helm::going() const {
   return going_;
 }
 
-void Helm::Add(const FlownRow& row) {
+void Helm::Adopt(const LiveExperiment& live) {
   const std::lock_guard lock(mutex_);
-  going_.tick = row.tick();
-  for (const DecodedRow::Happening& happening : row.decoded().events) {
-    const Event event = live_.Parse(row.tick(), happening.toml, "event " + std::to_string(happening.number));
-    live_.Take(event);
-    const std::vector<Event>& file = experiment_.events;
-    if (of_file_ < file.size() && file[of_file_].tick == row.tick()) {  // those of the file come first
+  const std::vector<Event>& file = experiment_.events;
+  for (std::size_t k = live_->events().size(); k < live.events().size(); ++k) {
+    const Event& event = live.events()[k];
+    if (of_file_ < file.size() && file[of_file_].tick == event.tick) {  // those of the file come first
       ++of_file_;
     } else {
       by_hand_.push_back(event);
       if (!granted_.empty()) granted_.pop_front();
     }
   }
+  live_.emplace(live);
+}
+
+void Helm::Add(const FlownRow& row) {
+  const std::lock_guard lock(mutex_);
+  going_.tick = row.tick();
 }
 
 void Helm::CallWhenAsked(std::function<void()> wake) {
@@ -169,7 +173,7 @@ void Helm::Done(std::optional<std::int64_t> tick) {
   const std::lock_guard lock(mutex_);
   if (!wish_ || answer_) return;
   answer_ = AnswerTo(*wish_, tick);
-  if (tick && wish_->kind == Wish::Kind::kEvent) granted_.push_back(live_.Parse(*tick, wish_->toml, kByHand));
+  if (tick && wish_->kind == Wish::Kind::kEvent) granted_.push_back(live_->Parse(*tick, wish_->toml, kByHand));
   changed_.notify_all();
 }
 

@@ -39,6 +39,7 @@ class Helm final : public RunControl, public RowSink {
   Answer Ask(const Wish& wish) override;
   /// From any thread.
   Going going() const;
+  void Adopt(const LiveExperiment& live) override;
   void Add(const FlownRow& row) override;
   /// `tell` is called, in the run's thread, when how it goes on has changed by more than a tick.
   void CallWhenChanged(std::function<void(const Going&)> tell);
@@ -83,10 +84,10 @@ class Helm final : public RunControl, public RowSink {
   Going going_;
   std::optional<Wish> wish_;
   std::optional<Answer> answer_;
-  LiveExperiment live_;         // as of that row
-  std::size_t of_file_ = 0;     // how many of the file's events are in live_
-  std::deque<Event> granted_;   // by hand, not in live_ yet
-  std::vector<Event> by_hand_;  // by hand, in live_
+  std::optional<LiveExperiment> live_;  // as of the newest row; never empty
+  std::size_t of_file_ = 0;             // how many of the file's events are in live_
+  std::deque<Event> granted_;           // by hand, not in live_ yet
+  std::vector<Event> by_hand_;          // by hand, in live_
 };
 
 }  // namespace mascot

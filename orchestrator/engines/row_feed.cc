@@ -53,10 +53,9 @@ void RowFeed::Add(const Row& bytes) {
 void RowFeed::Add(std::int64_t tick, const DecodedRow& decoded) { HandOut(FromThisProcess(tick, decoded, encoder_)); }
 
 void RowFeed::HandOut(const FlownRow& row) {
-  for (const DecodedRow::Happening& event : row.decoded().events)
-    live_.Take(live_.Parse(row.tick(), event.toml, "event " + std::to_string(event.number)));
+  for (const DecodedRow::Happening& event : row.decoded().events) live_.Take(row.tick(), event.number, event.toml);
   if (!row.decoded().events.empty())
-    for (RowSink* sink : sinks_) sink->Adopt(live_.now());
+    for (RowSink* sink : sinks_) sink->Adopt(live_);
   for (RowSink* sink : sinks_) sink->Add(row);
 }
 

@@ -42,7 +42,7 @@ std::size_t RecordedRun::EventsUpTo(std::int64_t tick) const {
 std::shared_ptr<const Experiment> RecordedRun::StateAfter(std::size_t events) {
   while (states_.size() < events) {
     const auto& [tick, event] = events_[states_.size()];
-    states_.push_back(live_.Take(live_.Parse(tick, event.toml, "event " + std::to_string(event.number))));
+    states_.push_back(live_.Take(tick, event.number, event.toml));
   }
   return events == 0 ? nullptr : states_[events - 1];
 }

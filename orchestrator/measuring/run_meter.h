@@ -15,9 +15,9 @@ class RunMeter final : public RowSink {
  public:
   explicit RunMeter(const Experiment& experiment) : metrics_(experiment), links_(experiment) {}
 
-  void Adopt(const std::shared_ptr<const Experiment>& now) override {
-    metrics_.Adopt(now);
-    links_.Adopt(now);
+  void Adopt(const LiveExperiment& live) override {
+    metrics_.Adopt(live.now());
+    links_.Adopt(live.now());
   }
   void Add(const FlownRow& row) override {
     metrics_.Add(row.decoded());

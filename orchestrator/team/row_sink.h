@@ -1,9 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 
-#include "experiment/experiment.h"
+#include "experiment/live_experiment.h"
 #include "orchestrator/team/row.h"
 
 namespace mascot {
@@ -22,8 +21,9 @@ class FlownRow {
 class RowSink {
  public:
   virtual ~RowSink() = default;
-  /// Events have changed the experiment: from the next row on it is `now`, which lives as long as the sink keeps it.
-  virtual void Adopt(const std::shared_ptr<const Experiment>& /*now*/) {}
+  /// Events have changed the experiment: from the next row on it is `live.now()`, which lives as long as the sink keeps
+  /// it. `live` itself goes on with the run.
+  virtual void Adopt(const LiveExperiment& /*live*/) {}
   /// Takes the next row, which is valid during the call. If this throws, the run fails.
   virtual void Add(const FlownRow& row) = 0;
 };

@@ -39,7 +39,7 @@ class Viewers {
   class Events final : public RowSink {
    public:
     Events(LiveView& view, const Helm& helm) : view_(view), helm_(helm) {}
-    void Adopt(const std::shared_ptr<const Experiment>& now) override { now_ = now; }
+    void Adopt(const LiveExperiment& live) override { now_ = live.now(); }
     void Add(const FlownRow& row) override;
 
    private:
