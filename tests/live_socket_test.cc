@@ -1,12 +1,17 @@
 // HTTP and WebSocket of the live view, as strangers, slow and broken clients use them.
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include <atomic>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <mutex>
+#include <vector>
 
+#include "bus/local_socket.h"
 #include "orchestrator/live/origin.h"
 #include "orchestrator/live/pages.h"
 #include "orchestrator/live/socket.h"
@@ -236,6 +241,26 @@ TEST(LiveSocket, TakesTheNextFreePort) {
   EXPECT_THAT([&] { SocketServer(options, echo, [](const std::string&) {}); },
               testing::ThrowsMessage<std::runtime_error>("cannot listen on 203.0.113.1:" + std::to_string(taken) +
                                                          ": Cannot assign requested address"));
+}
+
+TEST(LiveSocket, LetsAClientInOnceThereIsADescriptorAgain) {
+  Echo echo;
+  rlimit usual{};
+  getrlimit(RLIMIT_NOFILE, &usual);
+  const rlimit small{.rlim_cur = 256, .rlim_max = usual.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &small), 0);
+  std::vector<Descriptor> all;
+  for (int fd = 0; fd >= 0;)
+    if (fd = open("/dev/null", O_RDONLY | O_CLOEXEC); fd >= 0) all.emplace_back(fd);
+  ASSERT_EQ(errno, EMFILE);
+  all.pop_back();
+  WebClient client(echo.url());  // takes the last one
+  const std::int64_t seen = echo.periods;
+  ASSERT_TRUE(Until([&] { return echo.periods > seen + 50; })) << "the server's thread goes on";
+  EXPECT_EQ(echo.open, 0);
+  all.clear();
+  EXPECT_THAT(client.Upgrade("foxglove.sdk.v1"), StartsWith("HTTP/1.1 101"));
+  setrlimit(RLIMIT_NOFILE, &usual);
 }
 
 TEST(LiveSocket, NoChildInheritsASocket) {

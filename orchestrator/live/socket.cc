@@ -38,7 +38,8 @@ constexpr int kPortsToTry = 100;
 constexpr int kMostLines = 100;  // of the log: a hostile client could fill a disk
 constexpr auto kGoodbye = std::chrono::seconds(1);
 constexpr auto kGoodbyeLook = std::chrono::milliseconds(5);
-constexpr auto kIdle = std::chrono::seconds(60);  // a client that does not even answer pings is gone
+constexpr auto kFullPause = std::chrono::milliseconds(10);  // until somebody is let in, without descriptors
+constexpr auto kIdle = std::chrono::seconds(60);            // a client that does not even answer pings is gone
 /// The kernel's share of what waits for a client: small, so that a slow client is noticed and sees no old frames.
 constexpr int kSendBuffer_bytes = 256 << 10;
 
@@ -295,7 +296,8 @@ class SocketServer::Impl {
   Impl(SocketOptions options, SocketUser& user, std::function<void(const std::string&)> log)
       : server_{.options = std::move(options), .user = user, .log = std::move(log)},
         acceptor_(server_.io),
-        timer_(server_.io) {
+        timer_(server_.io),
+        pause_(server_.io) {
     Bind();
   }
   ~Impl() {
@@ -348,23 +350,25 @@ class SocketServer::Impl {
   void Await() {
     acceptor_.async_wait(tcp::acceptor::wait_read, [this](error_code error) {
       if (error) return;
-      Accept();
-      Await();
+      if (Accept()) return Await();
+      pause_.expires_after(kFullPause);
+      pause_.async_wait([this](error_code stopped) {
+        if (!stopped) Await();
+      });
     });
   }
 
-  void Accept() {
+  /// False if nobody can be let in now, because this process or the machine has no descriptor left.
+  bool Accept() {
     const int socket = ::accept4(acceptor_.native_handle(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (socket < 0) {
-      if (errno == EMFILE || errno == ENFILE) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      return;
-    }
+    if (socket < 0) return errno != EMFILE && errno != ENFILE;
     setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &kSendBuffer_bytes, sizeof kSendBuffer_bytes);
     tcp::socket accepted(server_.io, acceptor_.local_endpoint().protocol(), socket);
     error_code ignored;
     accepted.set_option(tcp::no_delay(true), ignored);
-    if (server_.connections >= server_.options.limits.connections) return;
+    if (server_.connections >= server_.options.limits.connections) return true;
     std::make_shared<Visit>(server_, std::move(accepted))->Read();
+    return true;
   }
 
   void Tick() {
@@ -385,6 +389,7 @@ class SocketServer::Impl {
     server_.ending = true;
     acceptor_.close();
     timer_.cancel();
+    pause_.cancel();
     for (const auto& [id, session] : std::map(server_.sessions)) session->SayGoodbye();
     AwaitGoodbyes(std::chrono::steady_clock::now() + kGoodbye);
   }
@@ -397,7 +402,7 @@ class SocketServer::Impl {
 
   Server server_;
   tcp::acceptor acceptor_;
-  asio::steady_timer timer_;
+  asio::steady_timer timer_, pause_;
   std::thread thread_;
 };
 
