@@ -118,11 +118,21 @@ TEST(LiveView, DescribesTheExperiment) {
   EXPECT_EQ(experiment["obstacles"][0]["kind"], "box");
   const Json& leader = experiment["agents"][0];
   EXPECT_EQ(leader["leads"], true);
+  EXPECT_EQ(leader["rolls"], false);
   EXPECT_EQ(leader["goto"], true);
   EXPECT_EQ(leader["waypoints_m"], Json::parse("[[1.0,1.0,1.0]]"));
   EXPECT_EQ(experiment["agents"][1]["goto"], false);
   EXPECT_EQ(experiment["agents"][1]["waypoints_m"], Json::array());
   EXPECT_EQ(experiment["prediction"]["stable"], true);
+}
+
+TEST(LiveView, SaysWhichBodiesRoll) {
+  Watched run(Load(kThree, "agents.model", "\"unicycle\""));
+  Viewer viewer(run.view.url());
+  viewer.Subscribe("/ui/experiment");
+  const Json agent = viewer.NextJsonOf("/ui/experiment")["agents"][0];
+  EXPECT_EQ(agent["model"], "unicycle");
+  EXPECT_EQ(agent["rolls"], true);
 }
 
 TEST(LiveView, ShowsTheTickThatTheRunStandsAt) {

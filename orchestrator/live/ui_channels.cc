@@ -47,6 +47,7 @@ Json AgentJson(const AgentConfig& agent) {
   const bool leads = agent.law.leader == agent.id;
   return {{"id", agent.id},
           {"model", agent.model},
+          {"rolls", agent.traits().rolls},
           {"size_m", ToJson(agent.size_m())},
           {"arm_m", agent.traits().has_airframe ? agent.airframe.arm_m : 0.0},
           {"law", agent.law.name},

@@ -112,6 +112,7 @@ export class MadeUpRun {
     return {
       id,
       model,
+      rolls: model === "unicycle",
       size_m: isQuadrotor ? [0.5, 0.5, 0.1] : [0.4, 0.4, 0.4],
       arm_m: isQuadrotor ? 0.25 : 0,
       law: "consensus",

@@ -105,5 +105,5 @@ function bodiesOf(experiment) {
   if (!experiment) return "";
   const {name, source, recorded, ticks, edges, agents} = experiment;
   return JSON.stringify(
-      [name, source, recorded, ticks, edges.length, agents.map(({model, size_m}) => [model, size_m])]);
+      [name, source, recorded, ticks, edges.length, agents.map(({rolls, arm_m, size_m}) => [rolls, arm_m, size_m])]);
 }

@@ -55,7 +55,7 @@ const KINDS = {
     scale: ({size_m}) => size_m,
   },
 };
-const kindOf = ({arm_m, model}) => (arm_m > 0 ? KINDS.airframe : model === "unicycle" ? KINDS.roller : KINDS.ball);
+const kindOf = ({arm_m, rolls}) => (arm_m > 0 ? KINDS.airframe : rolls ? KINDS.roller : KINDS.ball);
 
 // --- one mesh of many --------------------------------------------------------------------------------------
 
