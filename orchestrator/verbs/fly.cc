@@ -67,6 +67,7 @@ std::string Changed(const Experiment& experiment, const std::vector<Override>& c
 }
 
 Experiment WithEvents(const Experiment& experiment, const std::vector<Event>& by_hand) {
+  if (by_hand.empty()) return experiment;
   std::string text = experiment.resolved;
   for (const Event& event : by_hand)
     text = WithEvent(std::move(text), event.tick, experiment.control.rate_hz, event.Toml());
@@ -81,6 +82,7 @@ std::string WithoutDelivery(const Experiment& experiment) {
 }
 
 std::string WithoutEvents(const Experiment& experiment) {
+  if (experiment.events.empty()) return WithoutDelivery(experiment);
   std::vector<Override> changes = UsualDelivery();
   changes.push_back({.key = "events", .value = "[]"});
   return Changed(experiment, changes);
