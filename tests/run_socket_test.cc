@@ -1,4 +1,4 @@
-// Who may reach a run on this machine, and what they are told.
+// RunSocket: which users reach a run on this machine, and what it answers.
 #include "orchestrator/live/run_socket.h"
 
 #include <gmock/gmock.h>

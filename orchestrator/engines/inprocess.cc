@@ -57,7 +57,7 @@ class Flight {
   Contacts contacts() const { return world_.contacts(); }
 
  private:
-  /// Those of the file, then those by hand.
+  /// Takes the events of this tick: first the file's, then those given by hand.
   void TakeEvents(std::int64_t tick) {
     row_.events.clear();
     new_pace_.reset();

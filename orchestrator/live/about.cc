@@ -24,7 +24,7 @@ Foxglove::Channel JsonChannel(const std::string& topic, const std::string& type)
 /// A name of this run by which clients tell it from another on the same port.
 std::string NewSession() { return std::to_string(std::chrono::system_clock::now().time_since_epoch().count()); }
 
-/// Who hears whom: processes as nodes, though several agents may share one.
+/// The writers and readers of each topic: every agent is a node of its own, though several may share a process.
 Foxglove::Connections ConnectionsOf(const Experiment& experiment) {
   Foxglove::Connections connections;
   const std::string server = "/physics_server", recorder = "/orchestrator";

@@ -45,7 +45,7 @@ class Foxglove {
     std::uint64_t time_ns = 0;
     float speed = 1;
   };
-  /// Who writes and who reads each topic, and who offers each service.
+  /// The graph of connections: which nodes write and read each topic, and which offer each service.
   struct Connections {
     using Nodes = std::map<std::string, std::vector<std::string>>;
     Nodes writers, readers, providers;
@@ -60,7 +60,7 @@ class Foxglove {
     Schema request, response;
   };
 
-  /// Whom this object asks to do things.
+  /// The server that this object works for.
   class Host {
    public:
     virtual ~Host() = default;

@@ -40,7 +40,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   /// port can be had.
   LiveView(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter, RunControl& control,
            const Options& options, std::function<void(const std::string&)> log);
-  /// Likewise of a recording: rows come by Take(), not by Add().
+  /// As above, but of a recording: rows come by Take(), not by Add().
   LiveView(const Experiment& experiment, const Prediction& prediction, RunControl& control, const Options& options,
            std::function<void(const std::string&)> log);
 

@@ -20,7 +20,7 @@ constexpr std::size_t kTrailPoints = 200;
 struct Colour {
   float r, g, b, a = 1;
 };
-// Of Okabe and Ito, as in the pictures.
+// Okabe and Ito's palette, as in the pictures.
 constexpr Colour kBlue{0.0f, 0.447f, 0.698f}, kGreen{0.0f, 0.62f, 0.451f}, kVermilion{0.835f, 0.369f, 0.0f},
     kOrange{0.902f, 0.624f, 0.0f}, kGrey{0.6f, 0.6f, 0.6f, 0.6f};
 

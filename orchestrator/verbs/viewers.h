@@ -15,7 +15,7 @@
 
 namespace mascot {
 
-/// Those who watch a run of `up`, if the user asked for --view.
+/// The live view of a run of `up`, if the user asked for --view; else an object that does nothing.
 class Viewers {
  public:
   /// Listens at `at`, if it is given, and prints where. All arguments but the first two must outlive this object.

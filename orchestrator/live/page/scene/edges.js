@@ -1,5 +1,5 @@
-// Who hears whom: an arrow from the agent that is heard to the one that hears it. It lights up when a sample was heard
-// and darkens when it was lost or out of range.
+// The edges of the graph: each is an arrow from the agent that is heard to the one that hears it. It lights up when a
+// sample was heard and darkens when it was lost or out of range.
 import {rgb, styleColour} from "../colours.js";
 import {EDGE} from "../model.js";
 
