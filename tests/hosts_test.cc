@@ -2,10 +2,16 @@
 
 #include <gmock/gmock.h>
 
+#include <functional>
+#include <initializer_list>
+
 #include "tests/orchestrator.h"
 
 namespace mascot::test {
 namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 /// Two network namespaces as hosts, 10.77.0.1 (ours) and 10.77.0.2. Their names contain our pid; the destructor removes
 /// them.
@@ -52,9 +58,10 @@ class Hosts : public testing::Test {
     ASSERT_EQ(hosts_.trouble(), "");
   }
 
-  /// Runs `config` with agent `external_id` on the other host, where the file does not exist. `more`: further
-  /// arguments.
-  void FlyTogether(const std::string& config, const std::vector<std::string>& more, int external_id) {
+  /// Runs `config` with agent `external_id` on the other host, where the file does not exist, and flies the file that
+  /// this leaves again in one process. `more`: further arguments. `meanwhile`: called once the agent has been started.
+  void FlyTogether(const std::string& config, const std::vector<std::string>& more, int external_id,
+                   const std::function<void()>& meanwhile = {}) {
     const std::string bin = MASCOT_BINARY_DIR;
     std::vector<std::string> up_words{
         bin + "/orchestrator",
@@ -76,18 +83,21 @@ class Hosts : public testing::Test {
       agent_words.insert(agent_words.end(),
                          {"--discovery", "10.77.0.1:" + std::to_string(std::stoi(said.substr(at + 10)))});
     Running agent("ip", hosts_.There(agent_words), folder_.File("agent"));
+    if (meanwhile) meanwhile();
     EXPECT_EQ(up.Wait(), 0) << up.err() << agent.err() << ReadFile(folder_.File("run/logs/orchestrator.log"));
     EXPECT_EQ(agent.Wait(), 0) << agent.err();
 
-    Up inprocess(folder_, "inprocess", config, [&] {
-      auto words = more;
-      words.insert(words.end(),
-                   {"--engine", "inprocess", "--set",
-                    "agents.override=[{ id = " + std::to_string(external_id) + ", host = \"external\" }]"});
-      return words;
-    }());
+    Up inprocess(folder_, "inprocess", folder_.File("run/config.toml"), {"--engine", "inprocess", "--force"});
     EXPECT_EQ(inprocess.Wait(), 0) << inprocess.err();
     EXPECT_TRUE(inprocess.File("run.mcap") == ReadFile(folder_.File("run/run.mcap"))) << "run.mcap differs";
+  }
+
+  /// Runs a verb of the orchestrator on our host.
+  Ran Orchestrator(const std::vector<std::string>& words) {
+    std::string command = "ip";
+    for (const std::string& word : hosts_.Here({MASCOT_BINARY_DIR "/orchestrator"})) command += " " + word;
+    for (const std::string& word : words) command += " '" + word + "'";
+    return Shell(command + " 2>&1");
   }
 
   ScratchFolder folder_;
@@ -106,6 +116,44 @@ TEST_F(Hosts, ALawInPythonTravelsToAnotherHostAsTextOrFromAFile) {
   WriteFile(folder_.File("from_file.toml"),
             "[run]\nduration_s = 1.0\n[agents]\ncount = 3\n[law]\nname = \"custom\"\nfile = \"law.py\"\n");
   FlyTogether(folder_.File("from_file.toml"), {"--force"}, 2);
+}
+
+TEST_F(Hosts, AnAgentOnAnotherHostTakesEventsOfTheFileAndByHand) {
+  WriteFile(folder_.File("events.toml"), R"(
+[run]
+duration_s = 2.0
+pace = 1.0
+[agents]
+count = 3
+model = "double_integrator"
+random = {}
+[graph]
+topology = "ring"
+[law]
+name = "consensus"
+leader = 2
+[[events]]
+at_s = 0.1
+agents = [2]
+set = { "law.p_gain" = 0.4 }
+)");
+  const auto send = [this](std::vector<std::string> words) {
+    words.insert(words.begin(), {"send", "--run", folder_.File("run")});
+    return Orchestrator(words);
+  };
+  FlyTogether(folder_.File("events.toml"), {}, 2, [&] {
+    ASSERT_TRUE(Until([&] { return send({"pause"}).exit_code == 0; })) << send({"pause"}).output;
+    for (const std::vector<std::string>& words : std::initializer_list<std::vector<std::string>>{
+             {"goto", "2", "-3", "1", "2"}, {"--agents", "2", "set", "law.beta=2"}, {"cut", "2,1"}, {"step", "20"}}) {
+      const Ran ran = send(words);
+      EXPECT_EQ(ran.exit_code, 0) << ran.output;
+    }
+    EXPECT_EQ(send({"resume"}).exit_code, 0);
+    EXPECT_EQ(send({"pace", "0"}).exit_code, 0);
+  });
+  EXPECT_THAT(ReadFile(folder_.File("run/config.toml")),
+              AllOf(HasSubstr("goto = { agent = 2, position_m = [-3.0, 1.0, 2.0] }"),
+                    HasSubstr("set = { \"law.beta\" = 2"), HasSubstr("cut = [[2, 1]]")));
 }
 
 TEST_F(Hosts, AnAgentOnAnotherHostJoinsThroughTheDiscoveryServer) {
