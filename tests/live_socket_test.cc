@@ -245,6 +245,9 @@ TEST(LiveSocket, TakesTheNextFreePort) {
 
 TEST(LiveSocket, LetsAClientInOnceThereIsADescriptorAgain) {
   Echo echo;
+  WebClient first(echo.url());  // lets all code run once: sanitizers look at objects of new types through pipes
+  ASSERT_THAT(first.Upgrade("foxglove.sdk.v1"), StartsWith("HTTP/1.1 101"));
+  ASSERT_TRUE(Until([&] { return echo.open == 1 && echo.periods > 0; }));
   rlimit usual{};
   getrlimit(RLIMIT_NOFILE, &usual);
   const rlimit small{.rlim_cur = 256, .rlim_max = usual.rlim_max};
@@ -257,7 +260,7 @@ TEST(LiveSocket, LetsAClientInOnceThereIsADescriptorAgain) {
   WebClient client(echo.url());  // takes the last one
   const std::int64_t seen = echo.periods;
   ASSERT_TRUE(Until([&] { return echo.periods > seen + 50; })) << "the server's thread goes on";
-  EXPECT_EQ(echo.open, 0);
+  EXPECT_EQ(echo.open, 1);
   all.clear();
   EXPECT_THAT(client.Upgrade("foxglove.sdk.v1"), StartsWith("HTTP/1.1 101"));
   setrlimit(RLIMIT_NOFILE, &usual);
