@@ -38,6 +38,9 @@ struct PursuitForm {
 /// A child has caught up with its parent when they are at most this far apart along each axis of the law (m).
 inline constexpr double kCaughtUp_m = 0.05;
 
+/// Of Drawing::pictures: how fast agents agree.
+inline constexpr std::string_view kDisagreementPicture[] = {"disagreement"};
+
 /// Plot settings of a law: summary.json passes them to scripts/plot.py.
 struct Drawing {
   std::string_view leader = "leader";          ///< word for the agent law.leader
@@ -46,6 +49,7 @@ struct Drawing {
 };
 
 /// A row of the table of laws: all that other libraries may know about a law. `orchestrator laws` prints the texts.
+/// Each law's file in agent/laws/ makes its own row; agent/laws.cc lists them.
 struct LawEntry {
   std::string_view name;
   std::string_view summary;

@@ -190,6 +190,12 @@ def names_in_rows(root, path):
     return re.findall(r'\.name = "(\w+)"', (root / path).read_text())
 
 
+def names_of_laws(root):
+    """A law's file ends with the function that returns its row."""
+    return [name for path in sorted((root / "agent/laws").glob("*.cc"))
+            for name in re.findall(r'return \{\.name = "(\w+)"', path.read_text())]
+
+
 CPP_TOKEN = re.compile(r"""//[^\n]* | /\*.*?\*/                                # comments
                          | R"(?P<mark>[^(\s"]*)\((?P<raw>.*?)\)(?P=mark)"      # raw strings
                          | "(?P<text>(?:\\.|[^"\\\n])*)"
@@ -222,7 +228,7 @@ def python_literals(path):
 
 def faults_of_names(root):
     """Of string literals that are the name of a law or a model, outside its own files and rows."""
-    homes = {name: ["agent/laws.cc", f"agent/laws/{name}.*"] for name in names_in_rows(root, "agent/laws.cc")}
+    homes = {name: [f"agent/laws/{name}.cc", f"agent/laws/{name}.h"] for name in names_of_laws(root)}
     for name in names_in_rows(root, "experiment/model_traits.cc"):
         homes[name] = ["experiment/model_traits.cc", "agent/controllers.cc", "physics_server/models.cc",
                        f"agent/controllers/{name}.cc", f"physics_server/models/{name}.cc"]
@@ -284,7 +290,7 @@ class ThisTree(HouseTest):
         self.check(faults_of_libraries((ROOT / "CMakeLists.txt").read_text(), self.house))
 
     def test_laws_and_models_are_named_in_their_own_places_only(self):
-        self.assertGreater(len(names_in_rows(ROOT, "agent/laws.cc")), 1)
+        self.assertGreater(len(names_of_laws(ROOT)), 1)
         self.assertGreater(len(names_in_rows(ROOT, "experiment/model_traits.cc")), 1)
         self.check(faults_of_names(ROOT))
 
@@ -364,8 +370,9 @@ FILES = {
     "experiment/a.cc": '#include "experiment/a.h"\n#include <zlib.h>\n#include <Eigen/Core>\n',
     "bus/bus.h": '#include <fastdds/x.hpp>\n#include "experiment/a.h"\n',
     "agent/law.h": '#include "experiment/a.h"\n',
-    "agent/laws.cc": '{.name = "chase"}, {.name = "flee"} // "chase"\n',
-    "agent/laws/chase.cc": '#include "agent/law.h"\nauto name = "chase";\n',
+    "agent/laws.cc": 'Row Chase, Flee;  // "chase"\n',
+    "agent/laws/chase.cc": '#include "agent/law.h"\nreturn {.name = "chase"};\n',
+    "agent/laws/flee.cc": 'return {.name = "flee"};\n',
     "agent/agent.h": '#include "agent/law.h"\n#include "experiment/a.h"\n//   #include "bus/bus.h"\n',
     "agent/main.cc": '#include "agent/agent.h"\n#include "bus/bus.h"\nint n = 1\'000; char c = \'"\';\n',
     "agent/controllers.cc": '{"ball", MakeBall}\n',
@@ -427,6 +434,7 @@ class Rooms(Planted):
 
     def test_a_file_in_two_rooms(self):
         self.broken("agent/laws/chase.cc:1: is in two rooms: agent, law (docs/architecture.md)",
+                    "agent/laws/flee.cc:1: is in two rooms: agent, law (docs/architecture.md)",
                     replace=("| `agent/` |", "| `agent/`, `agent/laws/` |"))
 
     def test_a_room_without_files(self):
@@ -501,11 +509,11 @@ class Names(Planted):
 
     def test_a_law_named_by_the_agent(self):
         self.broken({"agent/agent.cc": '// "flee"\nint n = 1\'000;\nif (law.name == "chase") n = 2;  /* "flee" */\n'},
-                    'agent/agent.cc:3: "chase": ask the row of the law or model, in agent/laws.cc')
+                    'agent/agent.cc:3: "chase": ask the row of the law or model, in agent/laws/chase.cc')
 
     def test_a_law_named_by_another_law(self):
-        self.broken({"agent/laws/flee.cc": 'auto own = "flee";\nauto other = R"(chase)";\n'},
-                    'agent/laws/flee.cc:2: "chase": ask the row of the law or model, in agent/laws.cc')
+        self.broken({"agent/laws/flee.cc": 'return {.name = "flee"};\nauto other = R"(chase)";\n'},
+                    'agent/laws/flee.cc:2: "chase": ask the row of the law or model, in agent/laws/chase.cc')
 
     def test_a_model_named_as_a_toml_value(self):
         self.broken({"experiment/agents.cc": 'auto fallback = "\\"ball\\"";\n'},
@@ -522,13 +530,13 @@ class Names(Planted):
     def test_a_list_of_names_is_no_key(self):
         self.broken({"orchestrator/a.cc": 'auto f = ["chase"] {};\n',
                      "scripts/plot.py": 'if law in ["chase"]:\n    x = {"flee": 1}\n'},
-                    'orchestrator/a.cc:1: "chase": ask the row of the law or model, in agent/laws.cc',
-                    'scripts/plot.py:1: "chase": ask the row of the law or model, in agent/laws.cc',
-                    'scripts/plot.py:2: "flee": ask the row of the law or model, in agent/laws.cc')
+                    'orchestrator/a.cc:1: "chase": ask the row of the law or model, in agent/laws/chase.cc',
+                    'scripts/plot.py:1: "chase": ask the row of the law or model, in agent/laws/chase.cc',
+                    'scripts/plot.py:2: "flee": ask the row of the law or model, in agent/laws/flee.cc')
 
     def test_a_law_named_by_a_script(self):
         self.broken({"scripts/plot.py": 'if law == "chase":  # "flee"\n    pass\n'},
-                    'scripts/plot.py:1: "chase": ask the row of the law or model, in agent/laws.cc')
+                    'scripts/plot.py:1: "chase": ask the row of the law or model, in agent/laws/chase.cc')
 
 
 if __name__ == "__main__":

@@ -40,6 +40,26 @@ class Consensus final : public Law {
   double beta_ = 0;
 };
 
+std::shared_ptr<const LawParams> ReadConsensus(const Experiment& /*experiment*/, const LawConfig& law,
+                                               Section& section) {
+  auto params = std::make_shared<ConsensusParams>();
+  ReadGains(law, section, *params);
+  return params;
+}
+
+std::unique_ptr<Law> MakeConsensus(const Experiment& experiment, int id) {
+  const AgentConfig& agent = experiment.agent(id);
+  const auto& params = ParamsOf<ConsensusParams>(agent.law);
+  if (id == agent.law.leader) return MakeLeader(FlightOfLeader, agent);
+  return std::make_unique<Consensus>(params);
+}
+
+std::span<const Eigen::Vector3d> WaypointsOfConsensus(const LawConfig& law) {
+  return WaypointsOf(ParamsOf<ConsensusParams>(law).leader_flight);
+}
+
+LinearForm LinearConsensus(const LawConfig& law) { return LinearFormOf(ParamsOf<ConsensusParams>(law)); }
+
 }  // namespace
 
 void ReadGains(const LawConfig& law, Section& section, ConsensusParams& params) {
@@ -58,28 +78,29 @@ const std::optional<WaypointParams>& FlightOfLeader(const LawConfig& law) {
   return ParamsOf<ConsensusParams>(law).leader_flight;
 }
 
-std::shared_ptr<const LawParams> ReadConsensus(const Experiment& /*experiment*/, const LawConfig& law,
-                                               Section& section) {
-  auto params = std::make_shared<ConsensusParams>();
-  ReadGains(law, section, *params);
-  return params;
-}
-
-std::unique_ptr<Law> MakeConsensus(const Experiment& experiment, int id) {
-  const AgentConfig& agent = experiment.agent(id);
-  const auto& params = ParamsOf<ConsensusParams>(agent.law);
-  if (id == agent.law.leader) return MakeLeader(FlightOfLeader, agent);
-  return std::make_unique<Consensus>(params);
-}
-
 std::map<std::string, Value> GoToOfConsensus(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s) {
   return GoToOfLeader(FlightOfLeader, agent, p_W, t_s);
 }
 
-std::span<const Eigen::Vector3d> WaypointsOfConsensus(const LawConfig& law) {
-  return WaypointsOf(ParamsOf<ConsensusParams>(law).leader_flight);
+LawEntry ConsensusLaw() {
+  return {.name = "consensus",
+          .summary = "agents meet, or gather at a leader, by what they hear of their neighbours",
+          .equation =
+              "a_i = sum_j a_ij [p_gain (p_j - p_i) + v_gain (v_j - v_i)] - beta v_i;  leader: a = 0, or its waypoints",
+          .theory =
+              "leaderless: meets at g'p(0) + g'v(0) / beta, g the left null vector of L, if a spanning tree exists and "
+              "s^2 + (beta + v_gain lambda) s + p_gain lambda is stable for every eigenvalue lambda != 0 of L; "
+              "a leader at constant v is followed with a constant lag",
+          .source = "Pandit, Njattuvetty, Mulla: MASCOT; Ren & Beard (2008)",
+          .parameters = kConsensusParameters,
+          .agrees = true,
+          .gathers = true,
+          .drawing = {.pictures = kDisagreementPicture},
+          .read = ReadConsensus,
+          .make = MakeConsensus,
+          .go_to = GoToOfConsensus,
+          .waypoints_W = WaypointsOfConsensus,
+          .linear = LinearConsensus};
 }
-
-LinearForm LinearConsensus(const LawConfig& law) { return LinearFormOf(ParamsOf<ConsensusParams>(law)); }
 
 }  // namespace mascot

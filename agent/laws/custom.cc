@@ -1,18 +1,53 @@
 // A law written by the user in Python: control(t, me, neighbours) -> acceleration or velocity in W.
-#include "agent/laws/custom.h"
-
 #include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
+#include "agent/laws.h"
 #include "agent/python_internal.h"
+#include "experiment/experiment.h"
 #include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {
+
+/// Which functions a custom law defines.
+enum class PythonStyle {
+  kStandard,  ///< control(t, me, neighbours), start, message
+  kMascot,    ///< control_user(...) of the published testbed
+};
+
+constexpr EnumNames<PythonStyle, 2> kPythonStyles({{PythonStyle::kStandard, "standard"},
+                                                   {PythonStyle::kMascot, "mascot"}});
+constexpr EnumNames<Wanted, 2> kPythonOutputs({{Wanted::kAcceleration, "acceleration"},
+                                               {Wanted::kVelocity, "velocity"}});
+
+constexpr Key kCustomParameters[] = {
+    key::Text("python",
+              "the law itself: defines control(t, me, neighbours), may define start(me, params), message(me), set(me, "
+              "params)"),
+    key::Text("file", "a file that holds the law, instead of python; its path from the folder of this file"),
+    key::Any("params", "goes to start(me, params) as a dict, and to set(me, params) when an event has changed it")
+        .Default("{}")
+        .Live(),
+    key::OneOf("style", kPythonStyles.names(),
+               "mascot: the published testbed's control_user(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, "
+               "leader)")
+        .Default("\"standard\""),
+    key::OneOf("output", kPythonOutputs.names(), "what control returns, 3 numbers or 2 (x, y), in W")
+        .Default("\"acceleration\""),
+    key::Boolean("messages", "whether it sends messages").Otherwise("whether it defines message"),
+    key::Integer("leader", 0, kMaxAgents,
+                 "for control_user, which counts agents from 0: given as leader - 1, -1 if there is none")
+        .Default("0"),
+    key::Text("python_file", "what python goes by in messages").Otherwise("this file"),
+    key::Integer("python_line", 1, 1'000'000, "the line of python_file at which python begins")
+        .Otherwise("where it stands"),
+};
 
 // Part of run.agent_timeout_s that a call of the law may take: less than all, so that the law is interrupted first and
 // the message says where it hangs.
@@ -417,8 +452,6 @@ bool SendsMessages(const Experiment& experiment, CustomParams& params, Section& 
   return sends;
 }
 
-}  // namespace
-
 std::shared_ptr<const LawParams> ReadCustom(const Experiment& experiment, const LawConfig& /*law*/, Section& section) {
   auto params = std::make_shared<CustomParams>();
   ReadKeys(section, *params);
@@ -436,5 +469,21 @@ std::unique_ptr<Law> MakeCustom(const Experiment& experiment, int id) {
 }
 
 Wanted WantedByCustom(const LawConfig& law) { return ParamsOf<CustomParams>(law).wanted; }
+
+}  // namespace
+
+LawEntry CustomLaw() {
+  return {.name = "custom",
+          .summary =
+              "your own law, in Python: what one agent wants, from what it knows of itself and heard of its neighbours",
+          .equation = "control(t, me, neighbours) -> [a_x, a_y, a_z] or [a_x, a_y]",
+          .theory = "none: check knows only built-in laws",
+          .source = "docs/laws.md",
+          .parameters = kCustomParameters,
+          .drawing = {.pictures = kDisagreementPicture},
+          .read = ReadCustom,
+          .make = MakeCustom,
+          .wanted = WantedByCustom};
+}
 
 }  // namespace mascot

@@ -3,17 +3,35 @@
 //   a_i = -sum_j a_ij [ p_gain ((p_i - p_j) - (d_i - d_j)) + v_gain (v_i - v_j) ] - beta v_i
 // This is consensus on p_i - d_i. A leader does not use what it hears: it keeps its velocity (a = 0), or flies
 // waypoints.
-#include "agent/laws/formation.h"
-
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
+#include <vector>
 
+#include "agent/laws/consensus.h"
 #include "agent/laws/leader.h"
+#include "experiment/experiment.h"
 
 namespace mascot {
 namespace {
+
+constexpr std::string_view kFormationShapes[] = {"circle", "line", "grid", "vee"};
+
+constexpr auto kFormationParameters = Joined(
+    std::array{
+        key::Points("offsets_m", {-1e6, 1e6}, "d_i: each agent's place, relative to a point that all agents share")
+            .Live(),
+        key::OneOf("shape", kFormationShapes, "places of a family, instead of offsets_m; in x and y"),
+        key::Number("spacing_m", Above(0, 1e4), "with shape: between neighbouring places").Default("2.0").Live(),
+        key::Number("p_gain", kGain, "pull towards the place that each neighbour's position means, times its weight")
+            .Default("1.0")
+            .Unit("1/s^2")
+            .Live(),
+    },
+    kVelocityAndLeaderParameters);
 
 struct FormationParams final : ConsensusParams {
   std::vector<Eigen::Vector3d> d_W;  ///< d_i by id - 1: each agent's place in the formation, in W (m)
@@ -83,8 +101,6 @@ std::vector<Eigen::Vector3d> ReadPlaces(Section& law, int agents) {
   return places;
 }
 
-}  // namespace
-
 std::shared_ptr<const LawParams> ReadFormation(const Experiment& experiment, const LawConfig& law, Section& section) {
   auto params = std::make_shared<FormationParams>();
   params->d_W = ReadPlaces(section, experiment.size());
@@ -106,5 +122,28 @@ std::span<const Eigen::Vector3d> WaypointsOfFormation(const LawConfig& law) {
 LinearForm LinearFormation(const LawConfig& law) { return LinearFormOf(ParamsOf<FormationParams>(law)); }
 
 std::span<const Eigen::Vector3d> FormationPlaces_W(const LawConfig& law) { return ParamsOf<FormationParams>(law).d_W; }
+
+}  // namespace
+
+LawEntry FormationLaw() {
+  return {.name = "formation",
+          .summary = "agents keep given displacements from each other, alone or behind a leader",
+          .equation =
+              "a_i = -sum_j a_ij [p_gain ((p_i - p_j) - (d_i - d_j)) + v_gain (v_i - v_j)] - beta v_i;  leader: a = "
+              "0, or its waypoints",
+          .theory =
+              "consensus on p_i - d_i: the formation's point meets at the mean of p(0) - d plus that of v(0) / beta "
+              "(undirected)",
+          .source = "Oh, Park & Ahn (2015); Ren & Atkins (2007)",
+          .parameters = kFormationParameters,
+          .agrees = true,
+          .drawing = {.pictures = kDisagreementPicture},
+          .read = ReadFormation,
+          .make = MakeFormation,
+          .places_W = FormationPlaces_W,
+          .go_to = GoToOfConsensus,
+          .waypoints_W = WaypointsOfFormation,
+          .linear = LinearFormation};
+}
 
 }  // namespace mascot

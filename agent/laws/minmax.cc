@@ -11,18 +11,42 @@
 //   f(z) = sgn(z) (sqrt(2 alpha |z|) - s)           beyond
 // f and its slope are continuous; l -> 0 gives the law above; near the parent the damping ratio is
 // sqrt(beta_c / (2 alpha)) >= 0.7; a parent that accelerates at its bound is followed at (beta_p / beta_c) l.
-#include "agent/laws/minmax.h"
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "agent/laws/leader.h"
 #include "agent/laws/reach.h"
+#include "agent/laws/waypoint.h"
+#include "experiment/experiment.h"
 
 namespace mascot {
 namespace {
+
+constexpr std::string_view kWeakEdges[] = {"refuse", "root"};
+
+constexpr auto kMinmaxParameters = Joined(
+    std::array{
+        key::Integer("leader", 1, kMaxAgents, "root of the spanning tree, 1..N").Required(),
+        key::Number("beta", Above(0, 1000), "largest acceleration per axis: one number, or a list by id")
+            .Or(ValueKind::kNumbers)
+            .Unit("m/s^2")
+            .Required()
+            .Live(),
+        key::OneOf("weak_edges", kWeakEdges,
+                   "an edge whose child is not stronger than its parent: refuse, or expect the root's bound of every "
+                   "parent")
+            .Default("\"refuse\""),
+        key::Number("boundary_layer", {0, 1000},
+                    "distance to the parent within which sgn gives way to a smooth function")
+            .Default("0.0")
+            .Unit("m")
+            .Live(),
+    },
+    kLeaderFlightParameters);
 
 struct MinmaxParams final : LawParams {
   PursuitForm tree;
@@ -139,8 +163,6 @@ void CheckEdges(const PursuitForm& tree, int root, bool root_bound, Section& law
   law.Fail("beta", first);
 }
 
-}  // namespace
-
 std::shared_ptr<const LawParams> ReadMinmax(const Experiment& experiment, const LawConfig& config, Section& law) {
   auto params = std::make_shared<MinmaxParams>();
   PursuitForm& tree = params->tree;
@@ -181,5 +203,29 @@ std::span<const Eigen::Vector3d> WaypointsOfMinmax(const LawConfig& law) {
 }
 
 PursuitForm PursuitOfMinmax(const LawConfig& law) { return ParamsOf<MinmaxParams>(law).tree; }
+
+}  // namespace
+
+LawEntry MinmaxLaw() {
+  static constexpr std::string_view kPursuitPictures[] = {"disagreement", "tracking"};
+  return {.name = "minmax",
+          .summary = "min-max time consensus tracking on a spanning tree of the graph",
+          .equation =
+              "a_c = -beta_c sgn(2 (beta_c - beta_p) z + w |w|),  z = p_c - p_p,  w = v_c - v_p, per axis;  root: a = "
+              "0, or its waypoints",
+          .theory =
+              "a child meets a resting parent after sqrt(2 z (1/alpha + 1/beta_c)), any parent within 2 sqrt(z / "
+              "alpha), from rest, alpha = beta_c - beta_p > 0",
+          .source = "Mulla et al. (2017)",
+          .parameters = kMinmaxParameters,
+          .agrees = true,
+          .gathers = true,
+          .drawing = {.leader = "root", .switches = true, .pictures = kPursuitPictures},
+          .read = ReadMinmax,
+          .make = MakeMinmax,
+          .go_to = GoToOfMinmax,
+          .waypoints_W = WaypointsOfMinmax,
+          .pursuit = PursuitOfMinmax};
+}
 
 }  // namespace mascot

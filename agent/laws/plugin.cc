@@ -1,6 +1,4 @@
 // A law written by the user in C++, in its own shared library (agent/plugin.h).
-#include "agent/laws/plugin.h"
-
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
@@ -9,10 +7,18 @@
 #include <vector>
 
 #include "agent/law_library.h"
+#include "agent/laws.h"
 #include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {
+
+constexpr Key kPluginParameters[] = {
+    key::Text("library", "the shared library that holds the law; its path from the folder of this file").Required(),
+    key::Any("params", "goes to the law's constructor, which refuses what it does not know").Default("{}").Live(),
+    key::Boolean("messages", "whether it sends messages").Otherwise("whether it overrides Message()"),
+    key::Integer("leader", 0, kMaxAgents, "for the law, if it asks; 0: none").Default("0"),
+};
 
 struct PluginConfig final : LawParams {
   std::string library;  ///< absolute path; "" after a mistake
@@ -169,8 +175,6 @@ bool SendsMessages(const Experiment& experiment, const LawConfig& config, Plugin
   return sends;
 }
 
-}  // namespace
-
 std::shared_ptr<const LawParams> ReadPlugin(const Experiment& experiment, const LawConfig& law, Section& section) {
   auto plugin = std::make_shared<PluginConfig>();
   ReadKeys(section, *plugin);
@@ -191,5 +195,20 @@ std::unique_ptr<Law> MakePlugin(const Experiment& experiment, int id) {
 }
 
 Wanted WantedByPlugin(const LawConfig& law) { return ParamsOf<PluginConfig>(law).wanted; }
+
+}  // namespace
+
+LawEntry PluginLaw() {
+  return {.name = "plugin",
+          .summary = "your own law, in C++: a shared library that is loaded when the experiment is read",
+          .equation = "Want_W(t_s, self, heard) -> acceleration or velocity",
+          .theory = "none: check knows only built-in laws",
+          .source = "docs/plugin_law.md",
+          .parameters = kPluginParameters,
+          .drawing = {.pictures = kDisagreementPicture},
+          .read = ReadPlugin,
+          .make = MakePlugin,
+          .wanted = WantedByPlugin};
+}
 
 }  // namespace mascot

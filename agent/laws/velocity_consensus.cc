@@ -2,12 +2,18 @@
 // topology and time-delays", IEEE Trans. Automatic Control 49 (2004):
 //   v_i = p_gain sum_j a_ij (p_j - p_i)
 // A leader does not use what it hears, and wants the velocity 0.
-#include "agent/laws/velocity_consensus.h"
-
 #include <memory>
+
+#include "agent/laws.h"
+#include "experiment/experiment.h"
 
 namespace mascot {
 namespace {
+
+constexpr Key kVelocityConsensusParameters[] = {
+    key::Number("p_gain", {0, 1000}, "pull towards each neighbour, times its weight").Default("1.0").Unit("1/s").Live(),
+    key::Integer("leader", 0, kMaxAgents, "agent that leads, by wanting the velocity 0, 1..N; 0: none").Default("0"),
+};
 
 struct VelocityConsensusParams final : LawParams {
   double p_gain = 0;  ///< 1/s
@@ -31,8 +37,6 @@ class VelocityConsensus final : public Law {
   double p_gain_ = 0;
 };
 
-}  // namespace
-
 std::shared_ptr<const LawParams> ReadVelocityConsensus(const Experiment& /*experiment*/, const LawConfig& /*law*/,
                                                        Section& section) {
   auto params = std::make_shared<VelocityConsensusParams>();
@@ -46,6 +50,27 @@ std::unique_ptr<Law> MakeVelocityConsensus(const Experiment& experiment, int id)
 
 LinearForm LinearVelocityConsensus(const LawConfig& law) {
   return {.p = ParamsOf<VelocityConsensusParams>(law).p_gain};
+}
+
+}  // namespace
+
+LawEntry VelocityConsensusLaw() {
+  return {
+      .name = "velocity_consensus",
+      .summary = "single integrators meet: the law wants a velocity",
+      .equation = "v_i = p_gain sum_j a_ij (p_j - p_i)",
+      .theory =
+          "meets at g'p(0), g the left null vector of L, if a spanning tree exists; sampled with period T: p(k+1) = "
+          "(I - T p_gain L) p(k), stable for T < 2 / (p_gain lambda_max) (undirected)",
+      .source = "Olfati-Saber & Murray (2004)",
+      .parameters = kVelocityConsensusParameters,
+      .agrees = true,
+      .gathers = true,
+      .drawing = {.pictures = kDisagreementPicture},
+      .read = ReadVelocityConsensus,
+      .make = MakeVelocityConsensus,
+      .wanted = [](const LawConfig&) { return Wanted::kVelocity; },
+      .linear = LinearVelocityConsensus};
 }
 
 }  // namespace mascot

@@ -144,6 +144,8 @@ double WaypointFlight::Distance(const Eigen::Vector3d& p_WB) const {
   return axes_ == Axes::kXyz ? to_target.norm() : to_target.head<2>().norm();
 }
 
+namespace {
+
 std::shared_ptr<const LawParams> ReadWaypoint(const Experiment& /*experiment*/, const LawConfig& law,
                                               Section& section) {
   if (law.leader != 0)
@@ -170,6 +172,26 @@ std::span<const Eigen::Vector3d> WaypointsOfWaypoint(const LawConfig& law) {
 LinearForm LinearWaypoint(const LawConfig& law) {
   const WaypointParams& flight = ParamsOf<WaypointLawParams>(law).flight;
   return {.p = flight.p_gain, .beta = flight.d_gain, .listens = false, .leader_flies = true};
+}
+
+}  // namespace
+
+LawEntry WaypointLaw() {
+  static constexpr std::string_view kErrorPicture[] = {"error"};
+  return {.name = "waypoint",
+          .summary = "every agent flies the same list of waypoints, by arrival or by time",
+          .equation = "a_i = p_gain (w - p_i) - d_gain v_i",
+          .theory = "modes s^2 + d_gain s + p_gain; no overshoot from rest for d_gain >= 2 sqrt(p_gain) without limits",
+          .source = "Pandit, Njattuvetty, Mulla: MASCOT",
+          .parameters = kWaypointParameters,
+          .axes = Axes::kXyz,
+          .gathers = true,
+          .drawing = {.pictures = kErrorPicture},
+          .read = ReadWaypoint,
+          .make = MakeWaypoint,
+          .go_to = GoToOfWaypoint,
+          .waypoints_W = WaypointsOfWaypoint,
+          .linear = LinearWaypoint};
 }
 
 }  // namespace mascot
