@@ -8,11 +8,12 @@
 namespace mascot {
 
 using Row = LawEntry();
-Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, CustomLaw, PluginLaw;
+Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
-      ConsensusLaw(), WaypointLaw(), MinmaxLaw(), FormationLaw(), VelocityConsensusLaw(), CustomLaw(), PluginLaw(),
+      ConsensusLaw(),         WaypointLaw(),   MinmaxLaw(), FormationLaw(),
+      VelocityConsensusLaw(), FiniteTimeLaw(), CustomLaw(), PluginLaw(),
   };
   return kLaws;
 }
@@ -55,6 +56,22 @@ class Catalog final : public LawCatalog {
 }  // namespace
 
 const LawEntry& EntryOf(const LawConfig& law) { return Entry(law.name); }
+
+std::vector<const LawEntry*> LawsIn(const Experiment& experiment) {
+  std::vector<const LawEntry*> laws;
+  for (const AgentConfig& agent : experiment.agents) {
+    const LawEntry* law = &EntryOf(agent.law);
+    if (std::ranges::find(laws, law) == laws.end()) laws.push_back(law);
+  }
+  return laws;
+}
+
+std::vector<int> AgentsWith(const LawEntry& law, const Experiment& experiment) {
+  std::vector<int> ids;
+  for (const AgentConfig& agent : experiment.agents)
+    if (agent.law.name == law.name) ids.push_back(agent.id);
+  return ids;
+}
 
 Wanted WantedBy(const LawConfig& law) {
   const LawEntry& entry = EntryOf(law);

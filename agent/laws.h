@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "agent/law.h"
+#include "agent/law_figures.h"
 #include "experiment/read_experiment.h"
 
 namespace mascot {
@@ -54,12 +55,13 @@ struct LawEntry {
   std::string_view name;
   std::string_view summary;
   std::string_view equation;
-  std::string_view theory;          ///< known results on convergence
-  std::string_view source;          ///< paper
-  std::span<const Key> parameters;  ///< its own keys in [law], besides LawKeys()
-  Axes axes = Axes::kXy;            ///< default of law.axes
-  bool agrees = false;              ///< agents agree by what they hear, which takes a spanning tree
-  bool gathers = false;             ///< agents meet in one place, where only their heights keep them apart
+  std::string_view theory;                  ///< known results on convergence
+  std::string_view source;                  ///< paper
+  std::span<const Key> parameters;          ///< its own keys in [law], besides LawKeys()
+  std::span<const LawFigure> figures = {};  ///< what it measures beyond the figures that all laws share
+  Axes axes = Axes::kXy;                    ///< default of law.axes
+  bool agrees = false;                      ///< agents agree by what they hear, which takes a spanning tree
+  bool gathers = false;                     ///< agents meet in one place, where only their heights keep them apart
   Drawing drawing;
 
   /// Reads and checks the parameters, as LawCatalog::Read() does.
@@ -79,9 +81,18 @@ struct LawEntry {
   LinearForm (*linear)(const LawConfig& law) = nullptr;
   /// Null: the law is no pursuit on a tree.
   PursuitForm (*pursuit)(const LawConfig& law) = nullptr;
+  /// Predicts the figures, for an experiment without events in which no agent has a law of its own. Null: nothing.
+  LawTheory (*predict)(const Experiment& experiment) = nullptr;
+  /// Makes the meter of the figures, over the agents `ids` (increasing, at least one), whose law.name is this row's.
+  /// The experiment outlives it. Null: there are none.
+  std::unique_ptr<LawMeter> (*meter)(const Experiment& experiment, std::span<const int> ids) = nullptr;
 };
 
 std::span<const LawEntry> Laws();
+/// The rows of the laws that agents of the experiment fly, in the order in which they first appear.
+std::vector<const LawEntry*> LawsIn(const Experiment& experiment);
+/// The agents that fly `law`, in increasing id.
+std::vector<int> AgentsWith(const LawEntry& law, const Experiment& experiment);
 std::span<const std::string_view> LawNames();
 /// The row of a law. Throws std::invalid_argument for a name that is not in the table.
 const LawEntry& EntryOf(const LawConfig& law);

@@ -174,7 +174,7 @@ TEST_F(SweepTest, RefusesWhatCannotBeSwept) {
   };
   refuses("--set law.p_gain=slow,fast", "error: --set law.p_gain=slow: law.p_gain: expected a number in [0, 1000]");
   refuses("--set run.mode=realtime", "error: sweep: expected run.mode = \"lockstep\", got \"realtime\"");
-  refuses("--plot consensus.final_disagreement",
+  refuses("--seeds 1..2 --plot consensus.final_disagreement",
           "error: --plot: expected a column of the table, such as consensus.final_disagreement_m, got "
           "'consensus.final_disagreement' (did you mean \"consensus.final_disagreement_m\"?)");
   refuses("--seeds 5..1", "error: --seeds: expected a..b or a,b,... of integers from 0 on, got '5..1'");

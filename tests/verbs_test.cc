@@ -25,6 +25,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 using Json = nlohmann::json;
 using SetUpVerb = std::function<int()>(CLI::App& command);
 
@@ -267,6 +268,7 @@ TEST(Tables, LawsShowEveryLawWithEquationAndEveryParameter) {
   for (const LawEntry& law : Laws()) {
     EXPECT_THAT(text, AllOf(HasSubstr(std::string(law.name)), HasSubstr(words(std::string(law.equation)))));
     for (const Key& parameter : law.parameters) EXPECT_THAT(text, HasSubstr(std::string(parameter.meaning)));
+    for (const LawFigure& figure : law.figures) EXPECT_THAT(text, HasSubstr(std::string(figure.meaning)));
   }
   EXPECT_THAT(text, AllOf(HasSubstr(" waypoints_m~* "), HasSubstr(" p_gain~ = 1.0 ")));
   const Json json = Json::parse(Printed(SetUpLaws, {"--json"}));
@@ -275,6 +277,16 @@ TEST(Tables, LawsShowEveryLawWithEquationAndEveryParameter) {
   EXPECT_EQ(json[1]["axes"], "xyz");
   EXPECT_EQ(json[1]["parameters"][0]["required"], true);
   EXPECT_EQ(json[1]["parameters"][1]["default"], 1.0);
+}
+
+TEST(Tables, LawsShowOneLawIfItIsNamed) {
+  const std::string text = Printed(SetUpLaws, {"finite_time"});
+  EXPECT_THAT(text, AllOf(StartsWith("finite_time\n"), HasSubstr("    agreement_time_s               from which on"),
+                          ::testing::Not(HasSubstr("minmax"))));
+  EXPECT_EQ(Json::parse(Printed(SetUpLaws, {"minmax", "--json"})).size(), 1u);
+  EXPECT_THAT([] { Printed(SetUpLaws, {"finitetime"}); },
+              testing::ThrowsMessage<ConfigError>(
+                  "laws: expected the name of a law, got 'finitetime' (did you mean \"finite_time\"?)"));
 }
 
 TEST(Tables, ModelsShowEveryModelWithItsActuators) {

@@ -9,6 +9,7 @@
 #include "orchestrator/recording/row_codec.h"
 #include "orchestrator/report/deviation.h"
 #include "orchestrator/report/json.h"
+#include "orchestrator/report/law_report.h"
 #include "orchestrator/report/prediction_report.h"
 
 namespace mascot {
@@ -244,6 +245,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
                      {"rotor_limited_fraction", measured.rotor_limited_fraction}};
   json["safety"] = Safety(measured, engine.contacts);
   if (const auto& formation = measured.formation) json["formation"] = Formation(*formation);
+  if (const auto laws = meter.Laws(); !laws.empty()) json["laws"] = LawsJson(experiment, laws, prediction);
   json["links"] = Links(meter.Traffic());
   json["fidelity"] = Fidelity(measured);
   if (experiment.run.mode == Mode::kRealtime)
@@ -278,6 +280,7 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
   if (const auto& formation = m.formation)
     text += Line("formation      {:.4f} m rms off at the end, {:.4f} m at worst in the second half",
                  formation->final_rms_m, formation->worst_rms_m);
+  text += LawsText(experiment, meter.Laws(), prediction);
   std::uint64_t sent = 0, lost = 0, late = 0;
   for (const EdgeTraffic& edge : meter.Traffic()) {
     sent += edge.count.sent;

@@ -1,57 +1,74 @@
 #include "orchestrator/sweeping/metrics.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "agent/laws.h"
 #include "experiment/toml/section.h"
 
 namespace mascot {
 namespace {
 
-// JSON pointer of each column in summary.json. Wall-clock times come last: all other columns are reproducible bit by
-// bit.
 constexpr const char* kMetrics[] = {
-    "/ticks",
-    "/sim_s",
-    "/consensus/value_m/0",
-    "/consensus/value_m/1",
-    "/consensus/value_m/2",
-    "/consensus/final_disagreement_m",
-    "/consensus/final_speed_m_per_s",
-    "/consensus/settling_time_s",
-    "/consensus/rate_per_s",
-    "/consensus/predicted/value_m/0",
-    "/consensus/predicted/value_m/1",
-    "/consensus/predicted/value_m/2",
-    "/consensus/predicted/stable",
-    "/consensus/predicted/settling_time_s",
-    "/consensus/predicted/rate_per_s",
-    "/consensus/predicted/minmax_time_s",
-    "/consensus/deviation/value_m",
-    "/consensus/deviation/settling_time_s",
-    "/consensus/deviation/rate_per_s",
-    "/consensus/deviation/minmax_time_s",
-    "/control/effort",
-    "/control/saturated_fraction",
-    "/control/tilt_limited_fraction",
-    "/control/rotor_limited_fraction",
-    "/safety/min_separation_m",
-    "/safety/collisions",
-    "/safety/contacts/agents",
-    "/safety/contacts/ground",
-    "/safety/contacts/obstacles",
-    "/formation/final_rms_m",
-    "/formation/worst_rms_m",
-    "/links/sent",
-    "/links/lost",
-    "/links/late",
-    "/links/bytes",
-    "/fidelity/rms_m",
-    "/fidelity/max_m",
-    "/fidelity/travelled_m",
-    "/wall_s",
-    "/real_time_factor",
+    "ticks",
+    "sim_s",
+    "consensus.value_m.x",
+    "consensus.value_m.y",
+    "consensus.value_m.z",
+    "consensus.final_disagreement_m",
+    "consensus.final_speed_m_per_s",
+    "consensus.settling_time_s",
+    "consensus.rate_per_s",
+    "consensus.predicted.value_m.x",
+    "consensus.predicted.value_m.y",
+    "consensus.predicted.value_m.z",
+    "consensus.predicted.stable",
+    "consensus.predicted.settling_time_s",
+    "consensus.predicted.rate_per_s",
+    "consensus.predicted.minmax_time_s",
+    "consensus.deviation.value_m",
+    "consensus.deviation.settling_time_s",
+    "consensus.deviation.rate_per_s",
+    "consensus.deviation.minmax_time_s",
+    "control.effort",
+    "control.saturated_fraction",
+    "control.tilt_limited_fraction",
+    "control.rotor_limited_fraction",
+    "safety.min_separation_m",
+    "safety.collisions",
+    "safety.contacts.agents",
+    "safety.contacts.ground",
+    "safety.contacts.obstacles",
+    "formation.final_rms_m",
+    "formation.worst_rms_m",
+    "links.sent",
+    "links.lost",
+    "links.late",
+    "links.bytes",
+    "fidelity.rms_m",
+    "fidelity.max_m",
+    "fidelity.travelled_m",
 };
+// Wall-clock times come last: all other columns are reproducible bit by bit.
+constexpr const char* kWallClockMetrics[] = {"wall_s", "real_time_factor"};
+
+/// The place in summary.json of a column; "value_m.x" is the first entry of a list.
+nlohmann::json::json_pointer PlaceOf(std::string name) {
+  if (name.ends_with(".x") || name.ends_with(".y") || name.ends_with(".z"))
+    name.back() = static_cast<char>('0' + name.back() - 'x');
+  std::ranges::replace(name, '.', '/');
+  return nlohmann::json::json_pointer("/" + name);
+}
+
+/// Appends the columns of a law's own figures.
+void AddFigures(const LawEntry& law, std::vector<std::string>& names) {
+  for (const char* table : {"", "predicted."})
+    for (const LawFigure& figure : law.figures)
+      if (figure.each.empty()) names.push_back(fmt::format("laws.{}.{}{}", law.name, table, figure.name));
+}
 
 std::string Cell(const nlohmann::json& value) {
   if (value.is_null()) return "";
@@ -61,23 +78,20 @@ std::string Cell(const nlohmann::json& value) {
 
 }  // namespace
 
-std::vector<std::string> SweepMetricNames() {
-  std::vector<std::string> names;
-  for (const char* pointer : kMetrics) {
-    std::string name = pointer + 1;
-    std::ranges::replace(name, '/', '.');
-    if (name.back() >= '0' && name.back() <= '2') name.back() = "xyz"[name.back() - '0'];
-    names.push_back(name);
-  }
+std::vector<std::string> SweepMetricNames(const std::vector<std::string>& laws) {
+  std::vector<std::string> names(std::begin(kMetrics), std::end(kMetrics));
+  for (const LawEntry& law : Laws())
+    if (std::ranges::find(laws, law.name) != laws.end()) AddFigures(law, names);
+  names.insert(names.end(), std::begin(kWallClockMetrics), std::end(kWallClockMetrics));
   return names;
 }
 
-std::vector<std::string> SweepMetrics(const std::string& summary) {
+std::map<std::string, std::string> SweepMetrics(const std::string& summary, const std::vector<std::string>& names) {
   const nlohmann::json json = nlohmann::json::parse(summary);
-  std::vector<std::string> cells;
-  for (const char* pointer : kMetrics) {
-    const nlohmann::json::json_pointer place(pointer);
-    cells.push_back(json.contains(place) ? Cell(json[place]) : "");
+  std::map<std::string, std::string> cells;
+  for (const std::string& name : names) {
+    const nlohmann::json::json_pointer place = PlaceOf(name);
+    cells[name] = json.contains(place) ? Cell(json[place]) : "";
   }
   return cells;
 }

@@ -1,13 +1,18 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
 namespace mascot {
 
-/// Names of the metric columns of a sweep's table: dotted keys of summary.json, each with one number.
-std::vector<std::string> SweepMetricNames();
-/// Cells of these columns, from the text of a summary.json; empty where it has no number.
-std::vector<std::string> SweepMetrics(const std::string& summary);
+/// The column that is drawn unless another is asked for.
+inline constexpr const char* kUsualMetric = "consensus.final_disagreement_m";
+
+/// Names of the metric columns of a sweep's table: dotted keys of summary.json, each with one number. `laws`: names of
+/// the laws whose own figures have columns.
+std::vector<std::string> SweepMetricNames(const std::vector<std::string>& laws);
+/// Cells of these columns by name, from the text of a summary.json; empty where it has no number.
+std::map<std::string, std::string> SweepMetrics(const std::string& summary, const std::vector<std::string>& names);
 
 }  // namespace mascot

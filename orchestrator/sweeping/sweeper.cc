@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -41,25 +42,31 @@ struct Sweep {
   }
 };
 
-/// Executes one run. Returns the text of its summary.json. Throws ConfigError if the experiment is not valid, and
+std::vector<std::string> NamesOfLaws(const Experiment& experiment) {
+  std::vector<std::string> names;
+  for (const LawEntry* law : LawsIn(experiment)) names.emplace_back(law->name);
+  return names;
+}
+
+/// Executes one run. Returns the cells of its metric columns. Throws ConfigError if the experiment is not valid, and
 /// std::runtime_error if the run fails.
-std::string FlyOne(const Sweep& sweep, std::size_t run) {
+std::map<std::string, std::string> FlyOne(const Sweep& sweep, std::size_t run) {
   const Experiment experiment = sweep.Load(run);
   const Prediction prediction = Predict(experiment);
   RunMeter meter(experiment);
   const EngineResult result = RunInProcess(experiment, {&meter}, [] { return true; });
   if (!result.failure.empty()) throw std::runtime_error(result.failure);
   const RunFacts facts{.engine = "inprocess"};
-  return SummaryJson(experiment, prediction, meter, result, facts);
+  return SweepMetrics(SummaryJson(experiment, prediction, meter, result, facts),
+                      SweepMetricNames(NamesOfLaws(experiment)));
 }
 
-/// Work of the pool for a sweep of n runs: task k < n executes run k and returns its table cells as JSON; task n + k
+/// Work of the pool for a sweep of n runs: task k < n executes run k and returns its metric cells as JSON; task n + k
 /// only reads and checks the experiment of run k and returns it resolved.
 WorkerPool::Work WorkOf(const Sweep& sweep) {
   return [sweep](std::size_t task) -> std::string {
     if (task >= sweep.plan.size()) return sweep.Load(task - sweep.plan.size()).resolved;
-    nlohmann::json cells = SweepMetrics(FlyOne(sweep, task));
-    return cells.dump();
+    return nlohmann::json(FlyOne(sweep, task)).dump();
   };
 }
 
@@ -114,20 +121,20 @@ class Progress {
 };
 
 /// Cells of a row after the run number: values set, error, metrics.
-SweepFile::Cells RowOf(const SweepPoint& point, const WorkerPool::Done& done) {
+SweepFile::Cells RowOf(const SweepPoint& point, const WorkerPool::Done& done, const std::vector<std::string>& metrics) {
   SweepFile::Cells cells;
   for (const Override& override : point.overrides) cells.push_back(override.value);
   cells.push_back(done.failure);
-  const auto measured = done.failure.empty() ? nlohmann::json::parse(done.answer).get<SweepFile::Cells>()
-                                             : SweepFile::Cells(SweepMetricNames().size());
-  cells.insert(cells.end(), measured.begin(), measured.end());
+  std::map<std::string, std::string> measured;
+  if (done.failure.empty()) nlohmann::json::parse(done.answer).get_to(measured);
+  for (const std::string& metric : metrics) cells.push_back(measured[metric]);
   return cells;
 }
 
 /// Executes every run that is missing in the table. Updates `outcome` after each run, so that it is right even if a
 /// signal ends this.
-void ExecuteMissing(const SweepPlan& plan, WorkerPool& pool, SweepFile& table, bool quiet, StopSignal& stop,
-                    Sweeper::Outcome& outcome) {
+void ExecuteMissing(const SweepPlan& plan, const std::vector<std::string>& metrics, WorkerPool& pool, SweepFile& table,
+                    bool quiet, StopSignal& stop, Sweeper::Outcome& outcome) {
   Progress progress(plan.size(), table.rows(), quiet);
   std::size_t next = 0;
   const auto skip_done = [&] {
@@ -137,7 +144,7 @@ void ExecuteMissing(const SweepPlan& plan, WorkerPool& pool, SweepFile& table, b
   while (skip_done() || pool.IsBusy()) {
     while (skip_done() && pool.HasIdle()) pool.Start(next++);
     if (const auto done = pool.Wait(std::chrono::milliseconds(100))) {
-      table.Add(done->task, RowOf(plan[done->task], *done));
+      table.Add(done->task, RowOf(plan[done->task], *done, metrics));
       ++outcome.flown;
       outcome.failed += !done->failure.empty();
     }
@@ -146,13 +153,32 @@ void ExecuteMissing(const SweepPlan& plan, WorkerPool& pool, SweepFile& table, b
   }
 }
 
-SweepFile::Cells ColumnsOf(const SweepPlan& plan) {
+/// Metric columns of the table: those of the laws in its first valid experiment, and of the laws that it goes over.
+std::vector<std::string> MetricsOf(const Sweep& sweep, const std::string& resolved) {
+  const Experiment first = LoadExperiment(Section::FromText(resolved, sweep.name), "", /*checked=*/true);
+  std::vector<std::string> laws = NamesOfLaws(first);
+  for (std::size_t run = 0; run < sweep.plan.size(); ++run)
+    for (const Override& override : sweep.plan[run].overrides)
+      if (override.key == "law.name" && override.value.size() > 2)
+        laws.push_back(override.value.substr(1, override.value.size() - 2));  // without quotation marks
+  return SweepMetricNames(laws);
+}
+
+SweepFile::Cells ColumnsOf(const SweepPlan& plan, const std::vector<std::string>& metrics) {
   SweepFile::Cells columns{"run"};
   columns.insert(columns.end(), plan.keys().begin(), plan.keys().end());
   columns.push_back(kErrorColumn);
-  const auto names = SweepMetricNames();
-  columns.insert(columns.end(), names.begin(), names.end());
+  columns.insert(columns.end(), metrics.begin(), metrics.end());
   return columns;
+}
+
+/// Throws ConfigError if `metric` is not one of `metrics`.
+void CheckMetric(const std::string& metric, const std::vector<std::string>& metrics) {
+  if (std::ranges::find(metrics, metric) != metrics.end()) return;
+  const std::vector<std::string_view> views(metrics.begin(), metrics.end());
+  const auto nearest = DidYouMean(metric, views);
+  throw ConfigError({fmt::format("--plot: expected a column of the table, such as {}, got '{}'{}", kUsualMetric, metric,
+                                 nearest ? " (did you mean \"" + *nearest + "\"?)" : "")});
 }
 
 /// Text that identifies the sweep of a table: the experiment file, the first valid experiment resolved (with the files
@@ -177,10 +203,12 @@ Sweeper::Outcome Sweeper::Fly(const Options& options, StopSignal& stop) const {
   WorkerPool pool(options.jobs > 0 ? options.jobs : cores, WorkOf(sweep));
   Outcome outcome;
   try {
-    const std::string plan = PlanText(sweep, FirstValid(sweep, pool, stop));
-    SweepFile table(options.out, ColumnsOf(plan_), plan, options.force);
+    const std::string first = FirstValid(sweep, pool, stop);
+    const std::vector<std::string> metrics = MetricsOf(sweep, first);
+    if (!options.metric.empty()) CheckMetric(options.metric, metrics);
+    SweepFile table(options.out, ColumnsOf(plan_, metrics), PlanText(sweep, first), options.force);
     try {
-      ExecuteMissing(plan_, pool, table, options.quiet, stop, outcome);
+      ExecuteMissing(plan_, metrics, pool, table, options.quiet, stop, outcome);
       table.Sort();
     } catch (const Interrupted& interrupted) {
       outcome.signal = interrupted.signal;

@@ -15,6 +15,7 @@ class Sweeper {
   struct Options {
     int jobs = 0;        ///< number of processes; 0: one per core
     std::string out;     ///< path of the table
+    std::string metric;  ///< a column that the table must have; "": none
     bool force = false;  ///< overwrite the table of another sweep
     bool quiet = false;
   };
@@ -30,7 +31,8 @@ class Sweeper {
   Sweeper(std::string name, std::string text, SweepPlan plan);
 
   /// Executes every run that is missing in the table. Throws ConfigError if no run is a valid experiment (with the
-  /// mistakes of the first run) or if SweepFile refuses the table; std::runtime_error if the table cannot be written.
+  /// mistakes of the first run), if the table would not have the column `metric`, or if SweepFile refuses the table;
+  /// std::runtime_error if the table cannot be written.
   Outcome Fly(const Options& options, StopSignal& stop) const;
   const SweepPlan& plan() const { return plan_; }
 

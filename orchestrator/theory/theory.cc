@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "agent/laws.h"
 #include "agent/python.h"
@@ -85,7 +86,18 @@ void WarnOfShortRun(const Experiment& experiment, Prediction& prediction) {
                       experiment.run.duration_s, *time_s));
 }
 
-/// Predicts the behaviour under the law, from the linear or pursuit form in its table row.
+/// Adds what the team's law itself has to say about the experiment.
+void PredictFigures(const Experiment& experiment, Prediction& prediction) {
+  const bool alone = std::ranges::none_of(experiment.agents, &AgentConfig::has_own_law);
+  LawTheory theory =
+      alone ? EntryOf(experiment.law).predict(experiment) : LawTheory{.silent = "agents have laws of their own"};
+  prediction.law_figures = std::move(theory.figures);
+  if (!theory.silent.empty()) prediction.silent = std::move(theory.silent);
+  if (theory.value_m) prediction.value_m = theory.value_m;
+  for (std::string& warning : theory.warnings) prediction.warnings.push_back(std::move(warning));
+}
+
+/// Predicts the behaviour under the law, from what its table row says: its linear or pursuit form, its own predictions.
 void PredictLaw(const Experiment& experiment, Prediction& prediction) {
   if (!experiment.events.empty()) {
     prediction.silent =
@@ -96,7 +108,8 @@ void PredictLaw(const Experiment& experiment, Prediction& prediction) {
   if (timeline) prediction.persistence = PersistenceOf(experiment, *timeline);
   const std::optional<LinearForm> linear = LinearFormOf(experiment.law);
   const std::optional<PursuitForm> pursuit = PursuitFormOf(experiment.law);
-  if (!linear && !pursuit) {
+  const bool predicts = EntryOf(experiment.law).predict != nullptr;
+  if (!linear && !pursuit && !predicts) {
     prediction.silent = "theory does not know the law " + experiment.law.name;
     return;
   }
@@ -111,10 +124,11 @@ void PredictLaw(const Experiment& experiment, Prediction& prediction) {
       prediction.warnings.push_back(std::move(warning));
   if (pursuit)
     PredictPursuit(experiment, *timeline, *pursuit, prediction);
-  else if (linear->listens)
+  else if (linear && linear->listens)
     PredictLinear(experiment, *timeline, prediction);
-  else
+  else if (linear)
     PredictFlight(experiment, *linear, prediction);
+  if (predicts) PredictFigures(experiment, prediction);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "agent/law_figures.h"
 #include "experiment/experiment.h"
 #include "orchestrator/theory/delay_margin.h"
 #include "orchestrator/theory/persistence.h"
@@ -58,6 +59,8 @@ struct Prediction {
   std::optional<FirstCommand> first_speed;         ///< m/s: laws that want a velocity, on models driven by velocity
   std::optional<FirstCommand> first_lean;  ///< m/s^2: horizontal, after limits; `limit` follows from the tilt limit
   std::optional<Persistence> persistence;
+  /// Of the figures that the team's law measures, in the order of its row; empty: theory does not speak of them.
+  std::vector<PredictedFigure> law_figures;
   bool of_agreement = true;  ///< false: rate and settling time are those of each agent's flight to its waypoint
   bool on_average = false;   ///< samples are lost or noisy: the above holds on average
   std::string silent;        ///< why predictions are missing; empty: none is

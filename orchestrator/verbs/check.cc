@@ -8,6 +8,7 @@
 
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/report/json.h"
+#include "orchestrator/report/law_report.h"
 #include "orchestrator/report/prediction_report.h"
 #include "orchestrator/theory/delays_in_effect.h"
 #include "orchestrator/theory/graph_facts.h"
@@ -54,16 +55,25 @@ std::vector<std::string> DelayLines(const Experiment& experiment) {
 }
 
 Json ToJson(const Experiment& experiment, const GraphFacts& facts, const Prediction& prediction) {
-  return {{"experiment", experiment.run.name}, {"duration_s", experiment.run.duration_s},
-          {"ticks", experiment.ticks()},       {"control_rate_hz", experiment.control.rate_hz},
-          {"agents", experiment.size()},       {"models", CountModels(experiment)},
-          {"law", experiment.law.name},        {"axes", kAxes.Name(experiment.law.axes)},
-          {"leader", experiment.law.leader},   {"graph", ToJson(facts)},
-          {"delays", DelaysJson(experiment)},  {"predicted", PredictionJson(prediction)},
+  return {{"experiment", experiment.run.name},
+          {"duration_s", experiment.run.duration_s},
+          {"ticks", experiment.ticks()},
+          {"control_rate_hz", experiment.control.rate_hz},
+          {"agents", experiment.size()},
+          {"models", CountModels(experiment)},
+          {"law", experiment.law.name},
+          {"axes", kAxes.Name(experiment.law.axes)},
+          {"leader", experiment.law.leader},
+          {"graph", ToJson(facts)},
+          {"delays", DelaysJson(experiment)},
+          {"predicted", PredictionJson(prediction)},
+          {"figures", PredictedFiguresJson(experiment, prediction)},
           {"warnings", prediction.warnings}};
 }
 
-void PrintLine(std::string_view label, std::string_view text) { std::cout << fmt::format("  {:<15}{}\n", label, text); }
+void PrintLine(std::string_view label, std::string_view text) {
+  std::cout << fmt::format("  {:<14} {}\n", label, text);
+}
 
 void PrintExperiment(const Experiment& experiment) {
   std::string models;
@@ -104,6 +114,7 @@ int Check(const ConfigArgs& args, bool json) {
   PrintExperiment(experiment);
   PrintGraph(facts, experiment.schedule);
   for (const std::string& line : DelayLines(experiment)) PrintLine("delay in use", line);
+  for (const auto& [label, text] : PredictedFigureLines(experiment, prediction)) PrintLine(label, text);
   for (const auto& [label, text] : PredictionLines(experiment, prediction)) PrintLine(label, text);
   for (const std::string& warning : prediction.warnings) std::cout << "warning: " << warning << "\n";
   return 0;

@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kUsualMetric = "consensus.final_disagreement_m";
-
 struct SweepArgs {
   std::string config;
   SweepPlan::Words words;
@@ -29,15 +27,6 @@ struct SweepArgs {
   std::optional<std::string> metric;  ///< the column to plot; absent: kUsualMetric
   bool force = false, no_plot = false, quiet = false;
 };
-
-void CheckMetric(const std::string& metric) {
-  const std::vector<std::string> names = SweepMetricNames();
-  if (std::ranges::find(names, metric) != names.end()) return;
-  const std::vector<std::string_view> views(names.begin(), names.end());
-  const auto nearest = DidYouMean(metric, views);
-  throw ConfigError({"--plot: expected a column of the table, such as " + std::string(kUsualMetric) + ", got '" +
-                     metric + "'" + (nearest ? " (did you mean \"" + *nearest + "\"?)" : "")});
-}
 
 /// Throws ConfigError if the table has the name of the plot, which is written beside it as .png.
 void CheckOut(const std::string& out) {
@@ -66,13 +55,16 @@ int Picture(const SweepArgs& args, const SweepPlan& plan, StopSignal& stop) {
 
 int Run(const SweepArgs& args) {
   StopSignal stop;
-  if (args.metric) CheckMetric(*args.metric);
   CheckOut(args.out);
   const Sweeper sweeper(args.config, ReadRegularFile(args.config), SweepPlan(args.words));
   const std::size_t runs = sweeper.plan().size();
   const bool drawable = IsDrawable(args, sweeper.plan());
-  const Sweeper::Outcome outcome =
-      sweeper.Fly({.jobs = args.jobs, .out = args.out, .force = args.force, .quiet = args.quiet}, stop);
+  const Sweeper::Outcome outcome = sweeper.Fly({.jobs = args.jobs,
+                                                .out = args.out,
+                                                .metric = args.metric.value_or(""),
+                                                .force = args.force,
+                                                .quiet = args.quiet},
+                                               stop);
   if (outcome.signal != 0) {
     if (outcome.in_table)
       std::cerr << "interrupted: " << *outcome.in_table << " of " << runs << " runs are in the table; the same command"

@@ -1,4 +1,4 @@
-// `orchestrator laws` and `orchestrator models`: print the laws and models that an experiment may name.
+// `orchestrator laws [NAME]` and `orchestrator models`: print the laws and models that an experiment may name.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -24,8 +24,11 @@ Json ToJson(const LawEntry& law) {
                           {"live", parameter.live},
                           {"meaning", parameter.meaning}});
   }
+  Json figures = Json::array();
+  for (const LawFigure& figure : law.figures)
+    figures.push_back({{"name", figure.name}, {"each", figure.each}, {"meaning", figure.meaning}});
   return {{"name", law.name},     {"summary", law.summary},       {"equation", law.equation}, {"theory", law.theory},
-          {"source", law.source}, {"axes", kAxes.Name(law.axes)}, {"parameters", parameters}};
+          {"source", law.source}, {"axes", kAxes.Name(law.axes)}, {"parameters", parameters}, {"figures", figures}};
 }
 
 /// Prints `label`, then `text` from column `indent` on, broken between words at column 110.
@@ -60,15 +63,31 @@ void Print(const LawEntry& law) {
         fmt::format("{}{}{}{}", parameter.name, parameter.live ? "~" : "", mark, parameter.fallback);
     PrintWrapped(fmt::format("    {:<30} {:<21} ", key, ValueText(parameter)), parameter.meaning, 58);
   }
+  if (!law.figures.empty()) std::cout << "  figures of its own, in summary.json and sweeps\n";
+  for (const LawFigure& figure : law.figures) {
+    const std::string each = figure.each.empty() ? "" : fmt::format(", for each {}", figure.each);
+    PrintWrapped(fmt::format("    {:<30} ", figure.name), std::string(figure.meaning) + each, 35);
+  }
 }
 
-int ShowLaws(bool json) {
+/// The laws to show: the one called `name`, or all if that is empty. Throws ConfigError for a name that is none.
+std::span<const LawEntry> LawsCalled(const std::string& name) {
+  if (name.empty()) return Laws();
+  const auto law = std::ranges::find(Laws(), name, &LawEntry::name);
+  if (law != Laws().end()) return {law, 1};
+  const auto nearest = DidYouMean(name, LawNames());
+  throw ConfigError({"laws: expected the name of a law, got '" + name + "'" +
+                     (nearest ? " (did you mean \"" + *nearest + "\"?)" : "")});
+}
+
+int ShowLaws(const std::string& name, bool json) {
+  const std::span<const LawEntry> laws = LawsCalled(name);
   Json table = Json::array();
-  for (const LawEntry& law : Laws()) {
+  for (const LawEntry& law : laws) {
     if (json) {
       table.push_back(ToJson(law));
     } else {
-      std::cout << (law.name == Laws().front().name ? "" : "\n");
+      std::cout << (law.name == laws.front().name ? "" : "\n");
       Print(law);
     }
   }
@@ -89,16 +108,28 @@ int ShowModels(bool json) {
   return 0;
 }
 
-std::function<int()> SetUpTable(CLI::App& command, int (*show)(bool json)) {
-  const auto json = std::make_shared<bool>(false);
-  command.add_flag("--json", *json, "print JSON and nothing else");
-  return [json, show] { return show(*json); };
+struct TableArgs {
+  std::string name;
+  bool json = false;
+};
+
+std::shared_ptr<TableArgs> AddJsonFlag(CLI::App& command) {
+  auto args = std::make_shared<TableArgs>();
+  command.add_flag("--json", args->json, "print JSON and nothing else");
+  return args;
 }
 
 }  // namespace
 
-std::function<int()> SetUpLaws(CLI::App& command) { return SetUpTable(command, ShowLaws); }
+std::function<int()> SetUpLaws(CLI::App& command) {
+  const auto args = AddJsonFlag(command);
+  command.add_option("name", args->name, "the law to show (default: all)")->type_name("NAME");
+  return [args] { return ShowLaws(args->name, args->json); };
+}
 
-std::function<int()> SetUpModels(CLI::App& command) { return SetUpTable(command, ShowModels); }
+std::function<int()> SetUpModels(CLI::App& command) {
+  const auto args = AddJsonFlag(command);
+  return [args] { return ShowModels(args->json); };
+}
 
 }  // namespace mascot

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "experiment/motion.h"
+
+namespace mascot {
+
+/// What the predicted value of a figure is to the measured one.
+enum class Bound { kEqual, kAtMost, kAtLeast };
+inline constexpr EnumNames<Bound, 3> kBounds({{Bound::kEqual, "equal"},
+                                              {Bound::kAtMost, "at_most"},
+                                              {Bound::kAtLeast, "at_least"}});
+
+/// A figure that a law measures in a run, beyond those that all laws share (orchestrator/measuring/metrics.h), and that
+/// theory may predict.
+struct LawFigure {
+  std::string_view name;       ///< with its unit, as in summary.json: "agreement_time_s"
+  std::string_view meaning;    ///< "from which on all agents are within 1 mm"
+  std::string_view each = {};  ///< a list, with a value for each of these: "waypoint"; empty: one value
+};
+
+/// The values of a LawFigure: one, or one for each entry of its list. Absent: there is none, or none yet.
+using FigureValues = std::vector<std::optional<double>>;
+
+/// One tick of a run as laws measure it. Vectors are by id - 1.
+struct TeamRow {
+  std::int64_t tick = 0;
+  std::span<const Motion> motions;
+  std::span<const Command> commands;
+  std::span<const std::vector<double>> messages;  ///< empty: none was sent
+};
+
+/// Measures the figures of one law, row by row, over the agents that fly it.
+class LawMeter {
+ public:
+  virtual ~LawMeter() = default;
+  /// Events have changed the experiment: from the next row on it is `now`, which lives until the next Adopt().
+  virtual void Adopt(const Experiment& /*now*/) {}
+  virtual void Add(const TeamRow& row) = 0;
+  /// In the order of LawEntry::figures.
+  virtual std::vector<FigureValues> Figures() const = 0;
+};
+
+/// A figure as theory predicts it.
+struct PredictedFigure {
+  FigureValues values;  ///< empty: theory does not say
+  Bound bound = Bound::kEqual;
+};
+
+/// What theory says about an experiment whose agents all fly one law.
+struct LawTheory {
+  std::string silent = {};                      ///< why theory says nothing; empty: it speaks
+  std::vector<PredictedFigure> figures = {};    ///< in the order of LawEntry::figures; empty if it is silent
+  std::optional<Eigen::Vector3d> value_m = {};  ///< where agents meet, in W
+  std::vector<std::string> warnings = {};       ///< "key: text": what will not work, or not as expected
+};
+
+}  // namespace mascot

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "orchestrator/measuring/law_meters.h"
+#include "orchestrator/report/json.h"
+#include "orchestrator/theory/theory.h"
+
+namespace mascot {
+
+// The figures that laws measure beyond those that all laws share. `prediction` is about the law of the team.
+
+/// "laws" in summary.json: for each law its figures as measured, "predicted", and "bounds".
+Json LawsJson(const Experiment& experiment, std::span<const LawMeasured> measured, const Prediction& prediction);
+/// The same as lines of the text summary.
+std::string LawsText(const Experiment& experiment, std::span<const LawMeasured> measured, const Prediction& prediction);
+/// The predicted figures by name: "figures" of `check --json`.
+Json PredictedFiguresJson(const Experiment& experiment, const Prediction& prediction);
+/// The same: label and text of each line of `check`.
+std::vector<std::pair<std::string, std::string>> PredictedFigureLines(const Experiment& experiment,
+                                                                      const Prediction& prediction);
+
+}  // namespace mascot

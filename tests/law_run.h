@@ -1,0 +1,41 @@
+// A run in the process of the test, measured and predicted as `up --engine inprocess` does, without files.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "agent/laws.h"
+#include "orchestrator/engines/inprocess.h"
+#include "orchestrator/measuring/run_meter.h"
+#include "orchestrator/report/summary.h"
+#include "orchestrator/theory/theory.h"
+
+namespace mascot {
+
+struct LawRun {
+  /// Flies `toml` to its end.
+  explicit LawRun(const std::string& toml)
+      : experiment(LoadExperiment(Section::FromText(toml, "test.toml"), "test")),
+        prediction(Predict(experiment)),
+        meter(experiment) {
+    const EngineResult result = RunInProcess(experiment, {&meter}, [] { return true; });
+    EXPECT_EQ(result.failure, "");
+    summary = nlohmann::json::parse(SummaryJson(experiment, prediction, meter, result, {.engine = "inprocess"}));
+    text = SummaryText(experiment, prediction, meter, result, {.engine = "inprocess"});
+  }
+  /// A figure of the team's law, as measured and as predicted. Both must be numbers.
+  double Measured(const std::string& figure) const { return Law()[figure].get<double>(); }
+  double Predicted(const std::string& figure) const { return Law()["predicted"][figure].get<double>(); }
+  /// What summary.json says of the team's law.
+  const nlohmann::json& Law() const { return summary["laws"][experiment.law.name]; }
+
+  Experiment experiment;
+  Prediction prediction;
+  RunMeter meter;
+  nlohmann::json summary;
+  std::string text;
+};
+
+}  // namespace mascot
