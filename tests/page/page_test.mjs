@@ -98,6 +98,22 @@ test(
       assert.ok(await page.evaluate(() => help.open));
     }));
 
+test(
+    "space pauses, also after the pointer has pressed something else",
+    () => watching({}, async ({page, fake}) => {
+      for (const pressed of ["#tab-tune", "#view-top", "#tab-agents"]) {
+        await page.click(pressed);
+        await page.keyboard.press("Space");
+        await isPaused(page);
+        await page.keyboard.press("Space");
+        await until(page, () => mascot.state === "running");
+      }
+      await page.focus("#tab-events");
+      await page.keyboard.press("Space");
+      await until(page, () => document.querySelector("#tab-events").getAttribute("aria-selected") === "true");
+      assert.equal(fake.asked.length, 6);
+    }));
+
 // --- what it asks for --------------------------------------------------------------------------------------
 
 /** Tests that follow each other in one window: opening one takes a second or two of the processor. */
@@ -284,9 +300,13 @@ test("a lost connection is said, and mended by itself, also to another run", asy
   await first.stop();
   await until(page, () => !mascot.connected && !banner.hidden);
   assert.match(await page.textContent("#banner"), /connection is lost/);
+  const isGrey = (isDisabled) => ["play", "step", "pace", "stop"].every(
+      (id) => document.getElementById(id).disabled === isDisabled);
+  assert.ok(await page.evaluate(isGrey, true));
   const second = await startFake({agents: 3, port: first.port, session: "2", name: "the next"});
   await until(page, () => mascot.connected && mascot.drawn.agents === 3 && banner.hidden);
   assert.equal(await page.textContent("#name"), "the next");
+  await until(page, isGrey, false);
   await page.context().close();
   await second.stop();
 });

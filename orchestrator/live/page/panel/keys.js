@@ -56,6 +56,12 @@ export function bindKeys({model, view, transport, follow, layers}) {
     event.preventDefault();
     action(event);
   });
+  // A control that was pressed with the pointer does not keep the focus: the next space pauses, and does not press it
+  // again. (Clicks by the keyboard have no detail.)
+  addEventListener("click", ({target, detail}) => {
+    const control = target.closest?.("button, summary");
+    if (detail > 0 && control && control === document.activeElement) control.blur();
+  });
 }
 
 // A focused control keeps the keys that it understands.

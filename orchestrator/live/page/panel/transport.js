@@ -26,6 +26,7 @@ export class Transport {
     byId("seek").addEventListener("input", () => this.#onSeek(false));
     byId("seek").addEventListener("change", () => this.#onSeek(true));
     model.on("frame", () => this.#onFrame());
+    model.on("connection", () => this.#enable());
     model.on("experiment", () => this.#onExperiment());
     model.on("events", () => this.#mark());
   }
@@ -95,19 +96,27 @@ export class Transport {
   }
 
   #onFrame() {
-    const {frame, end_s} = this.#model, isOver = frame.state === "done" || frame.state === "failed";
+    const {frame, end_s} = this.#model;
     if (this.#seeks === 0) this.#aim_s = null;
-    const isRunning = frame.state === "running", canGoOn = !isOver || this.#model.isRecording;
+    const isRunning = frame.state === "running";
     setText(byId("time"), `${frame.t_s.toFixed(2)} s`);
     setText(byId("tick"), `tick ${frame.tick}`);
     setText(byId("factor"), isRunning ? `${figure(frame.real_time_factor, 2)} × real time` : "");
     setText(byId("play-words"), isRunning ? "Pause" : this.#model.isRecording ? "Play" : "Resume");
     byId("play").dataset.running = isRunning;
-    byId("play").disabled = byId("step").disabled = byId("pace").disabled = !canGoOn;
-    byId("stop").disabled = isOver;
+    this.#enable();
     byId("progress").style.width = `${100 * Math.min(1, frame.t_s / end_s)}%`;
     if (!this.#isSeeking) byId("seek").value = frame.t_s;
     if (document.activeElement !== byId("pace")) this.#showPace();
+  }
+
+  // What cannot be asked for now is grey.
+  #enable() {
+    const {connected, frame, isRecording} = this.#model;
+    const isOver = frame?.state === "done" || frame?.state === "failed";
+    const canGoOn = connected && (!isOver || isRecording);
+    byId("play").disabled = byId("step").disabled = byId("pace").disabled = byId("seek").disabled = !canGoOn;
+    byId("stop").disabled = !connected || isOver;
   }
 
   #showPace() {
