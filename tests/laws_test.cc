@@ -13,8 +13,6 @@
 namespace mascot {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 // --- experiments as text ----------------------------------------------------------------------------
