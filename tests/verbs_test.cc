@@ -29,15 +29,33 @@ using ::testing::StartsWith;
 using Json = nlohmann::json;
 using SetUpVerb = std::function<int()>(CLI::App& command);
 
-/// Output of a verb; checks that it returns 0.
+/// Standard output while this object lives.
+class Captured {
+ public:
+  Captured() { ::testing::internal::CaptureStdout(); }
+  ~Captured() {
+    if (!is_taken_) (void)::testing::internal::GetCapturedStdout();
+  }
+  Captured(const Captured&) = delete;
+  Captured& operator=(const Captured&) = delete;
+  std::string Text() {
+    is_taken_ = true;
+    return ::testing::internal::GetCapturedStdout();
+  }
+
+ private:
+  bool is_taken_ = false;
+};
+
+/// Output of a verb; checks that it returns 0. Throws what the verb throws.
 std::string Printed(SetUpVerb* set_up, std::vector<std::string> args) {
   CLI::App app;
   const auto run = set_up(app);
   std::reverse(args.begin(), args.end());  // CLI11 expects them in reverse order
   app.parse(args);
-  ::testing::internal::CaptureStdout();
+  Captured captured;
   EXPECT_EQ(run(), 0);
-  return ::testing::internal::GetCapturedStdout();
+  return captured.Text();
 }
 
 class Verbs : public ::testing::Test {
@@ -184,7 +202,6 @@ TEST_F(Verbs, SetWithoutAKeyOrValueIsAMistake) {
     } catch (const ConfigError& error) {
       EXPECT_EQ(error.what(), "--set: expected key=value (such as law.p_gain=0.5), got '" + wrong + "'");
     }
-    (void)::testing::internal::GetCapturedStdout();
   }
 }
 
