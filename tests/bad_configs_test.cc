@@ -34,10 +34,17 @@ std::string Refusal(const fs::path& path) {
   return "";
 }
 
-/// The error text as in an .expected file.
+void ReplaceAll(std::string& text, const std::string& part, const std::string& by) {
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + by.size()))
+    text.replace(at, part.size(), by);
+}
+
+/// The error text as in an .expected file: FILE stands for the path, LAWS for the names of all laws.
 std::string Anonymous(std::string refusal, const std::string& path) {
-  for (auto at = refusal.find(path); at != std::string::npos; at = refusal.find(path, at))
-    refusal.replace(at, path.size(), "FILE");
+  std::string laws;
+  for (const std::string_view law : LawNames()) laws += (laws.empty() ? "" : ", ") + std::string(law);
+  ReplaceAll(refusal, path, "FILE");
+  ReplaceAll(refusal, laws, "LAWS");
   return refusal + "\n";
 }
 
