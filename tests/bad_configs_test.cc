@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "agent/laws.h"
+#include "tests/bad_config.h"
 #include "tests/param_name.h"
 #include "tests/scratch.h"
 
@@ -34,27 +35,13 @@ std::string Refusal(const fs::path& path) {
   return "";
 }
 
-void ReplaceAll(std::string& text, const std::string& part, const std::string& by) {
-  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + by.size()))
-    text.replace(at, part.size(), by);
-}
-
-/// The error text as in an .expected file: FILE stands for the path, LAWS for the names of all laws.
-std::string Anonymous(std::string refusal, const std::string& path) {
-  std::string laws;
-  for (const std::string_view law : LawNames()) laws += (laws.empty() ? "" : ", ") + std::string(law);
-  ReplaceAll(refusal, path, "FILE");
-  ReplaceAll(refusal, laws, "LAWS");
-  return refusal + "\n";
-}
-
 class BadConfig : public ::testing::TestWithParam<fs::path> {};
 
 TEST_P(BadConfig, IsRefusedWithTheExpectedWords) {
   std::ifstream file(fs::path(GetParam()).replace_extension(".expected"));
   ASSERT_TRUE(file) << "no .expected beside " << GetParam();
   const std::string expected{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  EXPECT_EQ(Anonymous(Refusal(GetParam()), GetParam().string()), expected);
+  EXPECT_EQ(test::Anonymous(Refusal(GetParam()), GetParam().string()) + "\n", expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(Corpus, BadConfig, ::testing::ValuesIn(Corpus()),
@@ -68,7 +55,7 @@ TEST(BadConfigs, AreManyAndEachHasItsExpectation) {
 
 TEST(BadConfigs, SayWhereWhatExpectedAndGotOnEveryLine) {
   for (const fs::path& path : Corpus()) {
-    std::istringstream refusal(Anonymous(Refusal(path), path.string()));
+    std::istringstream refusal(test::Anonymous(Refusal(path), path.string()));
     for (std::string line; std::getline(refusal, line);)
       EXPECT_THAT(line, testing::ContainsRegex("^FILE:[0-9]+:[0-9]+: .*(expected|unknown key|while parsing)")) << path;
   }
