@@ -13,8 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/agreement.h"
 #include "agent/laws/ideal.h"
+#include "agent/laws/pull.h"
+#include "agent/laws/row_parts.h"
 
 namespace mascot {
 namespace {
@@ -140,14 +142,6 @@ class FiniteTimeMeter final : public LawMeter {
   AgreementTime time_;
 };
 
-std::unique_ptr<LawMeter> MeterOfFiniteTime(const Experiment& experiment, std::span<const int> ids) {
-  return std::make_unique<FiniteTimeMeter>(experiment, ids);
-}
-
-std::unique_ptr<Law> MakeFiniteTime(const Experiment& experiment, int id) {
-  return std::make_unique<FiniteTime>(experiment.agent(id));
-}
-
 }  // namespace
 
 LawEntry FiniteTimeLaw() {
@@ -166,10 +160,10 @@ LawEntry FiniteTimeLaw() {
       .gathers = true,
       .drawing = {.pictures = kDisagreementPicture},
       .read = ReadFiniteTime,
-      .make = MakeFiniteTime,
-      .wanted = [](const LawConfig&) { return Wanted::kVelocity; },
+      .make = MakeOf<FiniteTime>,
+      .wanted = WantsVelocity,
       .predict = PredictFiniteTime,
-      .meter = MeterOfFiniteTime};
+      .meter = MeterOf<FiniteTimeMeter>};
 }
 
 }  // namespace mascot

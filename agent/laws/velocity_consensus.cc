@@ -4,8 +4,8 @@
 // A leader does not use what it hears, and wants the velocity 0.
 #include <memory>
 
-#include "agent/laws.h"
-#include "experiment/experiment.h"
+#include "agent/laws/pull.h"
+#include "agent/laws/row_parts.h"
 
 namespace mascot {
 namespace {
@@ -28,9 +28,7 @@ class VelocityConsensus final : public Law {
   }
 
   Eigen::Vector3d Want_W(double /*t_s*/, const Motion& self, std::span<const Heard> heard) override {
-    Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();
-    for (const Heard& j : heard) pull_W += j.weight * (j.motion.p_WB - self.p_WB);
-    return p_gain_ * pull_W;
+    return p_gain_ * Pull_W(self, heard);
   }
 
  private:
@@ -42,10 +40,6 @@ std::shared_ptr<const LawParams> ReadVelocityConsensus(const Experiment& /*exper
   auto params = std::make_shared<VelocityConsensusParams>();
   params->p_gain = section.Number("p_gain");
   return params;
-}
-
-std::unique_ptr<Law> MakeVelocityConsensus(const Experiment& experiment, int id) {
-  return std::make_unique<VelocityConsensus>(experiment.agent(id));
 }
 
 LinearForm LinearVelocityConsensus(const LawConfig& law) {
@@ -68,8 +62,8 @@ LawEntry VelocityConsensusLaw() {
       .gathers = true,
       .drawing = {.pictures = kDisagreementPicture},
       .read = ReadVelocityConsensus,
-      .make = MakeVelocityConsensus,
-      .wanted = [](const LawConfig&) { return Wanted::kVelocity; },
+      .make = MakeOf<VelocityConsensus>,
+      .wanted = WantsVelocity,
       .linear = LinearVelocityConsensus};
 }
 

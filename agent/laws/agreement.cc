@@ -1,0 +1,47 @@
+#include "agent/laws/agreement.h"
+
+#include <algorithm>
+
+namespace mascot {
+namespace {
+
+/// The largest extent, along one of the first `axes` axes, of the points p_W(id) over `ids`.
+template <class Position>
+double Extent(std::span<const int> ids, Axes axes, Position p_W) {
+  Eigen::Vector3d least = p_W(ids.front()), most = least;
+  for (const int id : ids) {
+    least = least.cwiseMin(p_W(id));
+    most = most.cwiseMax(p_W(id));
+  }
+  return (most - least).head(CountOf(axes)).maxCoeff();
+}
+
+}  // namespace
+
+Eigen::Vector3d MeanStart(const Experiment& experiment) {
+  Eigen::Vector3d mean_W = Eigen::Vector3d::Zero();
+  for (const AgentConfig& agent : experiment.agents) mean_W += agent.p_W / experiment.size();
+  return mean_W;
+}
+
+double LargestSpread(const Experiment& experiment, std::span<const int> ids) {
+  return Extent(ids, experiment.agent(ids.front()).law.axes, [&](int id) { return experiment.agent(id).p_W; });
+}
+
+AgreementTime::AgreementTime(const Experiment& experiment, std::span<const int> ids, double share, double least_m)
+    : experiment_(experiment),
+      ids_(ids.begin(), ids.end()),
+      tolerance_m_(std::max(share * LargestSpread(experiment, ids), least_m)) {}
+
+void AgreementTime::Add(const TeamRow& row) {
+  newest_ = row.tick;
+  const auto p_W = [&](int id) { return row.motions[static_cast<std::size_t>(id - 1)].p_WB; };
+  if (Extent(ids_, experiment_.agent(ids_.front()).law.axes, p_W) > tolerance_m_) last_apart_ = row.tick;
+}
+
+std::optional<double> AgreementTime::time_s() const {
+  if (last_apart_ == newest_) return std::nullopt;
+  return experiment_.time_s(last_apart_ + 1);
+}
+
+}  // namespace mascot

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "agent/law_figures.h"
+#include "experiment/experiment.h"
+
+namespace mascot {
+
+/// Mean of the starting positions, in W: where teams meet that keep their mean.
+Eigen::Vector3d MeanStart(const Experiment& experiment);
+/// The largest distance along one axis of the law between the starts of agents `ids` (m).
+double LargestSpread(const Experiment& experiment, std::span<const int> ids);
+
+/// Measures since when agents agree: along each axis of their law, all of them are within a tolerance for good.
+class AgreementTime {
+ public:
+  /// `share`: the tolerance as a share of LargestSpread(); `least_m`: it is at least this.
+  AgreementTime(const Experiment& experiment, std::span<const int> ids, double share, double least_m);
+  void Add(const TeamRow& row);
+  /// Absent: they do not agree in the newest row.
+  std::optional<double> time_s() const;
+
+ private:
+  const Experiment& experiment_;
+  std::vector<int> ids_;
+  double tolerance_m_;
+  std::int64_t newest_ = -1, last_apart_ = -1;  // ticks
+};
+
+}  // namespace mascot

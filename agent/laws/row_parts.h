@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "agent/laws.h"
+
+namespace mascot {
+
+// What rows of laws (LawEntry) have in common.
+
+/// LawEntry::make for a law that is made of its agent's configuration alone.
+template <class OneLaw>
+std::unique_ptr<Law> MakeOf(const Experiment& experiment, int id) {
+  return std::make_unique<OneLaw>(experiment.agent(id));
+}
+
+/// LawEntry::meter.
+template <class Meter>
+std::unique_ptr<LawMeter> MeterOf(const Experiment& experiment, std::span<const int> ids) {
+  return std::make_unique<Meter>(experiment, ids);
+}
+
+/// LawEntry::wanted for a law that always wants a velocity.
+inline Wanted WantsVelocity(const LawConfig& /*law*/) { return Wanted::kVelocity; }
+
+}  // namespace mascot
