@@ -13,15 +13,23 @@ namespace mascot {
 
 /// Mean of the starting positions, in W: where teams meet that keep their mean.
 Eigen::Vector3d MeanStart(const Experiment& experiment);
+/// The middle between the outermost starts along the axes of the law, in W.
+Eigen::Vector3d MiddleStart(const Experiment& experiment);
 /// The largest distance along one axis of the law between the starts of agents `ids` (m).
 double LargestSpread(const Experiment& experiment, std::span<const int> ids);
 
+/// The figure of an AgreementTime.
+inline constexpr LawFigure kAgreementTimeFigures[] = {
+    {.name = "agreement_time_s", .meaning = "from which on all agents are together"},
+};
+
 /// Measures since when agents agree: along each axis of their law, all of them are within a tolerance for good.
-class AgreementTime {
+class AgreementTime final : public LawMeter {
  public:
   /// `share`: the tolerance as a share of LargestSpread(); `least_m`: it is at least this.
   AgreementTime(const Experiment& experiment, std::span<const int> ids, double share, double least_m);
-  void Add(const TeamRow& row);
+  void Add(const TeamRow& row) override;
+  std::vector<FigureValues> Figures() const override { return {{time_s()}}; }
   /// Absent: they do not agree in the newest row.
   std::optional<double> time_s() const;
 

@@ -36,9 +36,6 @@ constexpr Key kFiniteTimeParameters[] = {
     key::Number("alpha", Above(0, 0.99), "with power: the exponent").Default("0.5").Live(),
 };
 
-constexpr LawFigure kFiniteTimeFigures[] = {
-    {.name = "agreement_time_s", .meaning = "from which on all agents are together"},
-};
 constexpr double kAgreedShare = 1e-3;
 
 struct FiniteTimeParams final : LawParams {
@@ -100,18 +97,6 @@ double LongestTime(const Experiment& experiment, const FiniteTimeParams& params)
   return 4 * std::pow(largest_v, (1 - alpha) / 2) / ((1 - alpha) * std::pow(4 * lambda, (1 + alpha) / 2));
 }
 
-/// The middle between the outermost starts, along the axes of the law.
-Eigen::Vector3d MiddleStart(const Experiment& experiment) {
-  Eigen::Vector3d least = experiment.agents.front().p_W, most = least, middle_W = MeanStart(experiment);
-  for (const AgentConfig& agent : experiment.agents) {
-    least = least.cwiseMin(agent.p_W);
-    most = most.cwiseMax(agent.p_W);
-  }
-  const Eigen::Index axes = CountOf(experiment.law.axes);
-  middle_W.head(axes) = (least + most).head(axes) / 2;
-  return middle_W;
-}
-
 LawTheory PredictFiniteTime(const Experiment& experiment) {
   const auto& params = ParamsOf<FiniteTimeParams>(experiment.law);
   if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty()) return {.silent = std::move(why)};
@@ -125,22 +110,16 @@ LawTheory PredictFiniteTime(const Experiment& experiment) {
           .value_m = MeanStart(experiment)};
 }
 
-class FiniteTimeMeter final : public LawMeter {
- public:
-  FiniteTimeMeter(const Experiment& experiment, std::span<const int> ids)
-      : time_(experiment, ids, kAgreedShare, Trembling_m(experiment, experiment.agent(ids.front()))) {}
-  void Add(const TeamRow& row) override { time_.Add(row); }
-  std::vector<FigureValues> Figures() const override { return {{time_.time_s()}}; }
+/// Agents that fly at the same speed and change direction at every tick or every other are at most this far apart in
+/// the end (m).
+double Trembling_m(const Experiment& experiment, const FiniteTimeParams& params) {
+  return params.form == FiniteTimeForm::kSign ? 4 * params.gain * experiment.period_s() : 0;
+}
 
- private:
-  /// How far apart agents are in the end that fly at the same speed and change direction at every tick or every other.
-  static double Trembling_m(const Experiment& experiment, const AgentConfig& agent) {
-    const auto& params = ParamsOf<FiniteTimeParams>(agent.law);
-    return params.form == FiniteTimeForm::kSign ? 4 * params.gain * experiment.period_s() : 0;
-  }
-
-  AgreementTime time_;
-};
+std::unique_ptr<LawMeter> MeterOfFiniteTime(const Experiment& experiment, std::span<const int> ids) {
+  const auto& params = ParamsOf<FiniteTimeParams>(experiment.agent(ids.front()).law);
+  return std::make_unique<AgreementTime>(experiment, ids, kAgreedShare, Trembling_m(experiment, params));
+}
 
 }  // namespace
 
@@ -155,7 +134,7 @@ LawEntry FiniteTimeLaw() {
           "have flown there: (max p(0) - min p(0)) / (2 gain)",
       .source = "Cortes (2006); Wang & Xiao (2010)",
       .parameters = kFiniteTimeParameters,
-      .figures = kFiniteTimeFigures,
+      .figures = kAgreementTimeFigures,
       .agrees = true,
       .gathers = true,
       .drawing = {.pictures = kDisagreementPicture},
@@ -163,7 +142,7 @@ LawEntry FiniteTimeLaw() {
       .make = MakeOf<FiniteTime>,
       .wanted = WantsVelocity,
       .predict = PredictFiniteTime,
-      .meter = MeterOf<FiniteTimeMeter>};
+      .meter = MeterOfFiniteTime};
 }
 
 }  // namespace mascot
