@@ -8,12 +8,13 @@
 namespace mascot {
 
 using Row = LawEntry();
-Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, CustomLaw, PluginLaw;
+Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
+    CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
-      ConsensusLaw(),         WaypointLaw(),   MinmaxLaw(), FormationLaw(),
-      VelocityConsensusLaw(), FiniteTimeLaw(), CustomLaw(), PluginLaw(),
+      ConsensusLaw(),  WaypointLaw(),       MinmaxLaw(), FormationLaw(), VelocityConsensusLaw(),
+      FiniteTimeLaw(), PrescribedTimeLaw(), CustomLaw(), PluginLaw(),
   };
   return kLaws;
 }

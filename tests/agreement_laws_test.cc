@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "experiment/random.h"
 #include "orchestrator/sweeping/metrics.h"
 #include "tests/ideal_network.h"
 #include "tests/law_run.h"
@@ -97,6 +98,97 @@ TEST(FiniteTime, TheoryIsSilentWhereItsClosedFormsDoNotHold) {
   EXPECT_EQ(silent("[[agents.override]]\nid = 2\nlaw = { name = 'velocity_consensus' }\n"),
             "agents have laws of their own");
   EXPECT_EQ(silent("[[events]]\nat_s = 0.05\nset = { \"law.gain\" = 2.0 }\n"), "events change the run, from 0.05 s on");
+}
+
+// --- prescribed time --------------------------------------------------------------------------------------
+
+std::string Prescribed(double time_s, const std::string& more = "") {
+  return "name = 'prescribed_time'\ntime_s = " + ShortestFloat(time_s) + "\n" + more;
+}
+
+/// Starts the agents at random places along x, 5 m around 0 or `scale` times that. Returns their mean.
+double Scatter(IdealNetwork& network, Random& random, double scale = 1) {
+  for (Motion& motion : network.motions) motion.p_WB.x() = scale * random.In(-5, 5);
+  return MeanX(network);
+}
+
+TEST(PrescribedTime, AllAgreeAtTheGivenTimeWhereverTheyStart) {
+  Random random(7, Random::Stream::kPositions);
+  for (const double time_s : {0.5, 2.0, 7.3}) {
+    for (const double scale : {0.01, 1.0, 1000.0}) {
+      IdealNetwork network(Five(1000, 10, Prescribed(time_s)));
+      const double mean = Scatter(network, random, scale), spread = SpreadX(network);
+      network.RunUntil(time_s / 2);
+      EXPECT_GT(SpreadX(network), 0.004 * spread) << time_s << ": not before";
+      network.RunUntil(time_s);
+      EXPECT_LT(SpreadX(network), 1e-4 * spread) << time_s << " s from " << spread << " m";
+      EXPECT_NEAR(MeanX(network), mean, 1e-12 * scale) << "the gain is the same for all: the mean is kept";
+      network.RunUntil(time_s + 0.5);
+      EXPECT_LT(SpreadX(network), 1e-4 * spread) << "they stay together";
+    }
+  }
+}
+
+TEST(PrescribedTime, AModeShrinksAsTheClosedFormSays) {
+  // Two agents: one mode, lambda = 2. exponent lambda = 3, so |d(t) / d(0)| = exp(-2 gain t) (1 - t / T)^3.
+  IdealNetwork network(
+      "[run]\nduration_s = 4\n[physics]\ncollisions = false\n[agents]\ncount = 2\nmodel = 'single_integrator'\n"
+      "position_m = [[3, 0, 1], [-1, 0, 1]]\n[control]\nrate_hz = 1000\n[graph]\ntopology = 'path'\n[law]\n" +
+      Prescribed(4, "exponent = 1.5\ngain = 0.25\n"));
+  for (const double t_s : {1.0, 2.0, 3.0, 3.5}) {
+    network.RunUntil(t_s);
+    EXPECT_NEAR(SpreadX(network), 4 * std::exp(-0.5 * t_s) * std::pow(1 - t_s / 4, 3), 4 * 2e-3) << t_s;
+  }
+  network.RunUntil(4);
+  EXPECT_LT(SpreadX(network), 1e-8);
+}
+
+TEST(PrescribedTime, NobodyLeavesTheHullHoweverLargeTheGain) {
+  Random random(8, Random::Stream::kPositions);
+  for (const char* topology : {"complete", "star", "directed_ring", "ring"}) {
+    std::string toml = Five(50, 3, Prescribed(1, "exponent = 900.0\ngain = 900.0\n"));
+    toml.replace(toml.find("'path'"), 6, "'" + std::string(topology) + "'");
+    IdealNetwork network(toml);
+    Scatter(network, random);
+    for (double before = SpreadX(network), now = 0; network.time_s() < 3; before = now) {
+      network.Step();
+      now = SpreadX(network);
+      ASSERT_LE(now, before + 1e-12) << topology << " at " << network.time_s();
+    }
+  }
+}
+
+TEST(PrescribedTime, IsPredictedAndMeasured) {
+  const LawRun run(Five(100, 6, Prescribed(5)));
+  EXPECT_DOUBLE_EQ(run.Predicted("agreement_time_s"), 5);
+  EXPECT_EQ(run.Law()["bounds"]["agreement_time_s"], "at_most");
+  EXPECT_LE(run.Measured("agreement_time_s"), 5);
+  EXPECT_GT(run.Measured("agreement_time_s"), 3) << "the bound is not idle";
+  EXPECT_LE(run.Measured("left_share"), run.Predicted("left_share") * (1 + 1e-6));
+  EXPECT_GT(run.Measured("left_share"), 0.1 * run.Predicted("left_share")) << "this start has much of the slowest mode";
+  EXPECT_THAT(run.prediction.warnings, ::testing::IsEmpty());
+  EXPECT_NEAR(run.summary["consensus"]["predicted"]["value_m"][0].get<double>(), 0.4, 1e-12);
+}
+
+TEST(PrescribedTime, SaysWhatTheControlPeriodLeaves) {
+  const LawRun run(Five(10, 2, Prescribed(1)));
+  EXPECT_THAT(run.prediction.warnings,
+              Contains(HasSubstr("law.exponent: up to 37 % of the disagreement is left at law.time_s: the control "
+                                 "period bounds the gain by 2.5 1/s")));
+  EXPECT_TRUE(run.Law()["predicted"]["agreement_time_s"].is_null()) << "it is not promised then";
+  EXPECT_LE(run.Measured("left_share"), run.Predicted("left_share") * (1 + 1e-6));
+}
+
+TEST(PrescribedTime, BodiesThatFollowWithALagAreNearlyTogetherAtTheGivenTime) {
+  for (const char* model : {"double_integrator", "quadrotor"}) {
+    std::string toml = Five(100, 20, Prescribed(8, "exponent = 5.0\n"));
+    toml.replace(toml.find("single_integrator"), 17, model);
+    toml.replace(toml.find("[law]"), 5, "[output]\nfidelity = false\n[law]");
+    const LawRun run(toml);
+    EXPECT_LT(run.Measured("left_share"), 0.2) << model;
+    EXPECT_LT(run.meter.Result().final_disagreement_m, 0.02 * 5.4) << model << ": in the end";
+    EXPECT_EQ(run.prediction.silent, "the closed form is of single integrators");
+  }
 }
 
 // --- figures of laws in tables ------------------------------------------------------------------------------

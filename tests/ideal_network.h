@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ class IdealNetwork {
       motions.back().p_WB = agent.p_W;
       motions.back().v_WB = agent.v_W;
     }
+    messages.resize(motions.size());
   }
 
   double h() const { return experiment.period_s(); }
@@ -34,7 +36,8 @@ class IdealNetwork {
     std::vector<Eigen::Vector3d> wants_W;
     for (int id = 1; id <= experiment.size(); ++id) {
       std::vector<Heard> heard;
-      for (const Graph::Neighbour& j : experiment.graph.HeardBy(id)) heard.push_back({j.id, j.weight, agent(j.id)});
+      for (const Graph::Neighbour& j : experiment.graph.HeardBy(id))
+        heard.push_back({j.id, j.weight, agent(j.id), 0, messages[static_cast<std::size_t>(j.id - 1)]});
       wants_W.push_back(laws[static_cast<std::size_t>(id - 1)]->Want_W(time_s(), agent(id), heard));
       if (experiment.law.axes == Axes::kXy) wants_W.back().z() = 0;
     }
@@ -43,6 +46,11 @@ class IdealNetwork {
 
   void Step() {
     const std::vector<Eigen::Vector3d> wants_W = Wants();
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      if (!experiment.agents[i].sends_messages) continue;
+      const std::span<const double> message = laws[i]->Message();
+      messages[i].assign(message.begin(), message.end());
+    }
     for (std::size_t i = 0; i < motions.size(); ++i) {
       if (laws[i]->wanted() == Wanted::kVelocity) {
         motions[i].v_WB = wants_W[i];
@@ -62,6 +70,7 @@ class IdealNetwork {
   Experiment experiment;
   std::vector<std::unique_ptr<Law>> laws;
   std::vector<Motion> motions;
+  std::vector<std::vector<double>> messages;  ///< of the last tick, by id - 1; empty: none was sent
   std::int64_t tick = 0;
 };
 

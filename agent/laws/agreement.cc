@@ -39,6 +39,25 @@ double LargestSpread(const Experiment& experiment, std::span<const int> ids) {
   return Extent(ids, experiment.agent(ids.front()).law.axes, [&](int id) { return experiment.agent(id).p_W; });
 }
 
+double LargestDegree(const Graph& graph) {
+  double largest = 0;
+  for (int id = 1; id <= graph.size(); ++id) {
+    double degree = 0;
+    for (const Graph::Neighbour& j : graph.HeardBy(id)) degree += j.weight;
+    largest = std::max(largest, degree);
+  }
+  return largest;
+}
+
+double SquaredDisagreement(std::span<const Motion> motions, std::span<const int> ids, Axes axes) {
+  const auto p_W = [&](int id) { return Along(axes, motions[static_cast<std::size_t>(id - 1)].p_WB); };
+  Eigen::Vector3d mean_W = Eigen::Vector3d::Zero();
+  for (const int id : ids) mean_W += p_W(id) / static_cast<double>(ids.size());
+  double sum = 0;
+  for (const int id : ids) sum += (p_W(id) - mean_W).squaredNorm();
+  return sum;
+}
+
 AgreementTime::AgreementTime(const Experiment& experiment, std::span<const int> ids, double share, double least_m)
     : experiment_(experiment),
       ids_(ids.begin(), ids.end()),

@@ -18,6 +18,11 @@ Eigen::Vector3d MiddleStart(const Experiment& experiment);
 /// The largest distance along one axis of the law between the starts of agents `ids` (m).
 double LargestSpread(const Experiment& experiment, std::span<const int> ids);
 
+/// The largest sum of weights that an agent hears: the largest entry of the Laplacian's diagonal.
+double LargestDegree(const Graph& graph);
+/// Sum over agents `ids` of their squared distances from their mean, along `axes` (m^2).
+double SquaredDisagreement(std::span<const Motion> motions, std::span<const int> ids, Axes axes);
+
 /// The figure of an AgreementTime.
 inline constexpr LawFigure kAgreementTimeFigures[] = {
     {.name = "agreement_time_s", .meaning = "from which on all agents are together"},

@@ -99,9 +99,7 @@ double LongestTime(const Experiment& experiment, const FiniteTimeParams& params)
 
 LawTheory PredictFiniteTime(const Experiment& experiment) {
   const auto& params = ParamsOf<FiniteTimeParams>(experiment.law);
-  if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty()) return {.silent = std::move(why)};
-  if (!experiment.graph.IsSymmetric()) return {.silent = "the closed forms are of undirected graphs"};
-  if (experiment.graph.Roots().empty()) return {.silent = "the graph is not connected"};
+  if (std::string why = WhyNotIdealUndirected(experiment); !why.empty()) return {.silent = std::move(why)};
   if (params.form == FiniteTimeForm::kSign)
     return {.figures = {{.values = {LargestSpread(experiment, AgentsWith(EntryOf(experiment.law), experiment)) /
                                     (2 * params.gain)}}},

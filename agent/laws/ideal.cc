@@ -17,4 +17,10 @@ std::string WhyNotIdeal(const Experiment& experiment, Wanted wanted) {
   return "";
 }
 
+std::string WhyNotIdealUndirected(const Experiment& experiment) {
+  if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty()) return why;
+  if (!experiment.graph.IsSymmetric()) return "the closed forms are of undirected graphs";
+  return experiment.graph.Roots().empty() ? "the graph is not connected" : "";
+}
+
 }  // namespace mascot

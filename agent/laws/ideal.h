@@ -11,5 +11,7 @@ namespace mascot {
 /// samples are lost, late, noisy or out of range, the graph changes, agents come and go. Empty: they hold, as long as
 /// no limit is reached.
 std::string WhyNotIdeal(const Experiment& experiment, Wanted wanted);
+/// Likewise for closed forms of single integrators on connected undirected graphs.
+std::string WhyNotIdealUndirected(const Experiment& experiment);
 
 }  // namespace mascot
