@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "agent/laws/waypoint.h"
+#include "agent/laws/waypoint_flight.h"
 #include "experiment/experiment.h"
 
 namespace mascot {

@@ -20,7 +20,7 @@
 
 #include "agent/laws/leader.h"
 #include "agent/laws/reach.h"
-#include "agent/laws/waypoint.h"
+#include "agent/laws/waypoint_flight.h"
 #include "experiment/experiment.h"
 
 namespace mascot {
