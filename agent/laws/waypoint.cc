@@ -1,14 +1,32 @@
 // PD flight through waypoints, the first experiment of the MASCOT paper (Pandit, Njattuvetty, Mulla):
 //   a_i = p_gain (w - p_i) - d_gain v_i
 // The target w becomes the next waypoint on arrival or at a given time; the last waypoint stays the target.
+// A double integrator, whose acceleration is held for a tick h, moves by e+ = [1 - h^2 p/2, h - h^2 d/2; -h p, 1 - h d]
+// e about each target, e = (p_i - w, v_i), p and d the gains: theory flies the list by this map. From rest and for
+// small h it overshoots by exp(-pi z / sqrt(1 - z^2)) of the way, z = d / (2 sqrt(p)).
 #include <map>
 #include <memory>
 #include <utility>
+#include <vector>
 
+#include "agent/laws/ideal.h"
+#include "agent/laws/row_parts.h"
+#include "agent/laws/waypoint_figures.h"
 #include "agent/laws/waypoint_flight.h"
 
 namespace mascot {
 namespace {
+
+constexpr LawFigure kWaypointFigures[] = {
+    {.name = "arrival_time_s",
+     .meaning = "when the last agent was first within arrival_radius_m, or 0.2 m with times_s, of its target",
+     .each = "waypoint"},
+    {.name = "overshoot_m", .meaning = "the farthest that an agent flew past its target, along the way to it"},
+    {.name = "settling_time_s",
+     .meaning =
+         "after which all agents stay within 2 % of the way to the last waypoint, from when it was their target"},
+    {.name = "tracking_rms_m", .meaning = "rms distance to the target, of all agents and ticks"},
+};
 
 struct WaypointLawParams final : LawParams {
   WaypointParams flight;
@@ -56,6 +74,50 @@ LinearForm LinearWaypoint(const LawConfig& law) {
   return {.p = flight.p_gain, .beta = flight.d_gain, .listens = false, .leader_flies = true};
 }
 
+const WaypointParams& FlightOf(const AgentConfig& agent) { return ParamsOf<WaypointLawParams>(agent.law).flight; }
+
+class WaypointMeter final : public LawMeter {
+ public:
+  WaypointMeter(const Experiment& experiment, std::span<const int> ids)
+      : experiment_(&experiment), ids_(ids.begin(), ids.end()) {
+    for (const int id : ids) {
+      const AgentConfig& agent = experiment.agent(id);
+      tracks_.emplace_back(FlightOf(agent), agent.law.axes, agent.p_W);
+    }
+  }
+  void Adopt(const Experiment& now) override {
+    experiment_ = &now;
+    for (std::size_t i = 0; i < ids_.size(); ++i) tracks_[i].Adopt(FlightOf(now.agent(ids_[i])));
+  }
+  void Add(const TeamRow& row) override {
+    const double t_s = experiment_->time_s(row.tick);
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+      const AgentConfig& agent = experiment_->agent(ids_[i]);
+      if (t_s < agent.start_s || t_s >= agent.stop_s) continue;
+      tracks_[i].Add(t_s, row.motions[static_cast<std::size_t>(agent.id - 1)].p_WB);
+    }
+  }
+  std::vector<FigureValues> Figures() const override { return WaypointTrack::FiguresOf(tracks_); }
+
+ private:
+  const Experiment* experiment_;
+  std::vector<int> ids_;
+  std::vector<WaypointTrack> tracks_;  // by index in ids_
+};
+
+LawTheory PredictWaypoints(const Experiment& experiment) {
+  if (std::string why = WhyNotIdeal(experiment, Wanted::kAcceleration); !why.empty()) return {.silent = std::move(why)};
+  std::vector<WaypointTrack> tracks;
+  for (const AgentConfig& agent : experiment.agents) {
+    const std::optional<WaypointTrack> track = IdealTrack(experiment, agent, FlightOf(agent));
+    if (!track) return {.silent = "the limit of the acceleration cuts what the law asks for"};
+    tracks.push_back(*track);
+  }
+  std::vector<PredictedFigure> figures;
+  for (FigureValues& values : WaypointTrack::FiguresOf(tracks)) figures.push_back({.values = std::move(values)});
+  return {.figures = std::move(figures)};
+}
+
 }  // namespace
 
 LawEntry WaypointLaw() {
@@ -66,6 +128,7 @@ LawEntry WaypointLaw() {
           .theory = "modes s^2 + d_gain s + p_gain; no overshoot from rest for d_gain >= 2 sqrt(p_gain) without limits",
           .source = "Pandit, Njattuvetty, Mulla: MASCOT",
           .parameters = kWaypointParameters,
+          .figures = kWaypointFigures,
           .axes = Axes::kXyz,
           .gathers = true,
           .drawing = {.pictures = kErrorPicture},
@@ -73,7 +136,9 @@ LawEntry WaypointLaw() {
           .make = MakeWaypoint,
           .go_to = GoToOfWaypoint,
           .waypoints_W = WaypointsOfWaypoint,
-          .linear = LinearWaypoint};
+          .linear = LinearWaypoint,
+          .predict = PredictWaypoints,
+          .meter = MeterOf<WaypointMeter>};
 }
 
 }  // namespace mascot

@@ -93,17 +93,22 @@ std::map<std::string, Value> Destination(const std::string& prefix, const Waypoi
 
 Eigen::Vector3d WaypointFlight::Accel_W(double t_s, const Motion& self) {
   if (params_.waypoints_W.empty()) return Eigen::Vector3d::Zero();
-  const Eigen::Vector3d& target_W = params_.times_s.empty() ? TargetByArrival(t_s, self.p_WB) : TargetByTime(t_s);
+  const std::optional<std::size_t> target = Target(t_s, self.p_WB);
+  const Eigen::Vector3d& target_W = target ? params_.waypoints_W[*target] : start_W_;
   return params_.p_gain * (target_W - self.p_WB) - params_.d_gain * self.v_WB;
 }
 
-const Eigen::Vector3d& WaypointFlight::TargetByTime(double t_s) {
-  std::size_t begun = 0;
-  while (begun < params_.times_s.size() && t_s >= params_.times_s[begun]) ++begun;
-  return begun == 0 ? start_W_ : params_.waypoints_W[begun - 1];
+std::optional<std::size_t> WaypointFlight::Target(double t_s, const Eigen::Vector3d& p_WB) {
+  return params_.times_s.empty() ? TargetByArrival(t_s, p_WB) : TargetByTime(t_s);
 }
 
-const Eigen::Vector3d& WaypointFlight::TargetByArrival(double t_s, const Eigen::Vector3d& p_WB) {
+std::optional<std::size_t> WaypointFlight::TargetByTime(double t_s) const {
+  std::size_t begun = 0;
+  while (begun < params_.times_s.size() && t_s >= params_.times_s[begun]) ++begun;
+  return begun == 0 ? std::nullopt : std::optional(begun - 1);
+}
+
+std::size_t WaypointFlight::TargetByArrival(double t_s, const Eigen::Vector3d& p_WB) {
   while (next_ + 1 < params_.waypoints_W.size()) {
     if (Distance(p_WB) > params_.arrival_radius_m) {
       arrived_at_s_.reset();
@@ -114,7 +119,7 @@ const Eigen::Vector3d& WaypointFlight::TargetByArrival(double t_s, const Eigen::
     arrived_at_s_.reset();
     ++next_;
   }
-  return params_.waypoints_W[next_];
+  return next_;
 }
 
 double WaypointFlight::Distance(const Eigen::Vector3d& p_WB) const {

@@ -85,10 +85,12 @@ class WaypointFlight {
   void Adopt(const WaypointParams& params);
   /// Wanted acceleration in W (m/s^2). `t_s`: simulated time, increasing from call to call.
   Eigen::Vector3d Accel_W(double t_s, const Motion& self);
+  /// The index of the target, in Accel_W() or in place of it; nullopt: the start, before the first of times_s.
+  std::optional<std::size_t> Target(double t_s, const Eigen::Vector3d& p_WB);
 
  private:
-  const Eigen::Vector3d& TargetByTime(double t_s);
-  const Eigen::Vector3d& TargetByArrival(double t_s, const Eigen::Vector3d& p_WB);
+  std::optional<std::size_t> TargetByTime(double t_s) const;
+  std::size_t TargetByArrival(double t_s, const Eigen::Vector3d& p_WB);
   double Distance(const Eigen::Vector3d& p_WB) const;
 
   WaypointParams params_;
