@@ -9,12 +9,12 @@ namespace mascot {
 
 using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
-    CustomLaw, PluginLaw;
+    EventTriggeredLaw, CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
-      ConsensusLaw(),  WaypointLaw(),       MinmaxLaw(), FormationLaw(), VelocityConsensusLaw(),
-      FiniteTimeLaw(), PrescribedTimeLaw(), CustomLaw(), PluginLaw(),
+      ConsensusLaw(),  WaypointLaw(),       MinmaxLaw(),         FormationLaw(), VelocityConsensusLaw(),
+      FiniteTimeLaw(), PrescribedTimeLaw(), EventTriggeredLaw(), CustomLaw(),    PluginLaw(),
   };
   return kLaws;
 }

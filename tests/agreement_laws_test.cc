@@ -5,7 +5,7 @@
 
 #include "experiment/random.h"
 #include "orchestrator/sweeping/metrics.h"
-#include "tests/ideal_network.h"
+#include "tests/five_on_a_path.h"
 #include "tests/law_run.h"
 
 namespace mascot {
@@ -13,30 +13,6 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
-
-/// Five single integrators on a path that start at (3, -1, 4, 1, -5) along x, whose lambda_2 is 0.381966. `more`: lines
-/// from [law] on.
-std::string Five(int rate_hz, double duration_s, const std::string& more) {
-  return "[run]\nduration_s = " + ShortestFloat(duration_s) +
-         "\n[physics]\ncollisions = false\n[agents]\ncount = 5\nmodel = 'single_integrator'\n"
-         "position_m = [[3, 0, 1], [-1, 0, 1], [4, 0, 1], [1, 0, 1], [-5, 0, 1]]\n[control]\nrate_hz = " +
-         std::to_string(rate_hz) + "\n[graph]\ntopology = 'path'\n[law]\n" + more;
-}
-
-double MeanX(const IdealNetwork& network) {
-  double sum = 0;
-  for (const Motion& motion : network.motions) sum += motion.p_WB.x();
-  return sum / static_cast<double>(network.motions.size());
-}
-
-double SpreadX(const IdealNetwork& network) {
-  double least = network.motions[0].p_WB.x(), most = least;
-  for (const Motion& motion : network.motions) {
-    least = std::min(least, motion.p_WB.x());
-    most = std::max(most, motion.p_WB.x());
-  }
-  return most - least;
-}
 
 // --- finite time ------------------------------------------------------------------------------------------
 

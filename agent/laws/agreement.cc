@@ -1,6 +1,7 @@
 #include "agent/laws/agreement.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mascot {
 namespace {
@@ -47,6 +48,14 @@ double LargestDegree(const Graph& graph) {
     largest = std::max(largest, degree);
   }
   return largest;
+}
+
+double StartDisagreement_m(const Experiment& experiment) {
+  const Eigen::Vector3d mean_W = MeanStart(experiment);
+  double sum = 0;
+  for (const AgentConfig& agent : experiment.agents)
+    sum += Along(experiment.law.axes, agent.p_W - mean_W).squaredNorm();
+  return std::sqrt(sum);
 }
 
 double SquaredDisagreement(std::span<const Motion> motions, std::span<const int> ids, Axes axes) {

@@ -20,6 +20,8 @@ double LargestSpread(const Experiment& experiment, std::span<const int> ids);
 
 /// The largest sum of weights that an agent hears: the largest entry of the Laplacian's diagonal.
 double LargestDegree(const Graph& graph);
+/// Root of the sum over all agents of their starts' squared distances from the mean, along the axes of the law (m).
+double StartDisagreement_m(const Experiment& experiment);
 /// Sum over agents `ids` of their squared distances from their mean, along `axes` (m^2).
 double SquaredDisagreement(std::span<const Motion> motions, std::span<const int> ids, Axes axes);
 

@@ -20,6 +20,7 @@ std::string WhyNotIdeal(const Experiment& experiment, Wanted wanted) {
 std::string WhyNotIdealUndirected(const Experiment& experiment) {
   if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty()) return why;
   if (!experiment.graph.IsSymmetric()) return "the closed forms are of undirected graphs";
+  if (experiment.size() > kMostModes) return "the modes of so many agents are not computed";
   return experiment.graph.Roots().empty() ? "the graph is not connected" : "";
 }
 

@@ -11,7 +11,9 @@ namespace mascot {
 /// samples are lost, late, noisy or out of range, the graph changes, agents come and go. Empty: they hold, as long as
 /// no limit is reached.
 std::string WhyNotIdeal(const Experiment& experiment, Wanted wanted);
-/// Likewise for closed forms of single integrators on connected undirected graphs.
+/// Above this many agents, closed forms that need eigenvalues are not computed.
+inline constexpr int kMostModes = 1000;
+/// Likewise for closed forms of single integrators on connected undirected graphs, by the graph's eigenvalues.
 std::string WhyNotIdealUndirected(const Experiment& experiment);
 
 }  // namespace mascot

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "experiment/experiment.h"
+
+namespace mascot {
+
+// Modes of p(k+1) = (I - step L) p(k) on the experiment's graph, which is connected and undirected.
+
+/// lambda_n, the largest eigenvalue of L: its norm.
+double LargestRoot(const Experiment& experiment);
+/// max |1 - step lambda| over the modes other than that of the mean: what a disagreement keeps from tick to tick at
+/// most.
+double SlowestFactor(const Experiment& experiment, double step);
+/// The warning of a law.gain with which that is 1 or more.
+std::string UnstableGain(const Experiment& experiment);
+
+}  // namespace mascot
