@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "experiment/agent_ids.h"
 #include "experiment/experiment.h"
 
 namespace mascot {
@@ -49,26 +50,6 @@ void ReadSet(Section& section, Event& event) {
   }
   Flatten("", section.Free("set"), event.set);
   if (event.set.empty()) section.Fail("set", "expected live keys and their new values, got none");
-}
-
-/// Whole numbers from 1 to `agents` (0: unknown), each once.
-std::vector<int> ReadIds(Section& section, int agents) {
-  std::vector<int> ids;
-  const std::vector<double> numbers = section.Numbers("agents");
-  for (std::size_t k = 0; k < numbers.size() && !section.Wrong("agents"); ++k) {
-    const int id = static_cast<int>(numbers[k]);
-    if (id != numbers[k] || (agents > 0 && id > agents))
-      section.FailRow("agents", k,
-                      "expected an agent in 1.." + std::to_string(agents) + ", got " + ShortestFloat(numbers[k]));
-    else if (std::ranges::find(ids, id) != ids.end())
-      section.FailRow("agents", k, "expected each agent once, got " + std::to_string(id) + " again");
-    else
-      ids.push_back(id);
-  }
-  if (!section.Wrong("agents")) section.Free("agents");  // whole numbers, as they were written
-  if (numbers.empty() && !section.Wrong("agents")) section.Fail("agents", "expected a list of agents, got nothing");
-  std::ranges::sort(ids);
-  return ids;
 }
 
 Event::Edges ReadEdges(Section& section, std::string_view key) {
@@ -167,7 +148,7 @@ Event ReadEvent(Section& section, int agents) {
   event.where = section.Where("");
   CheckKind(section);
   if (section.Has("set")) ReadSet(section, event);
-  if (section.Has("agents")) event.agents = ReadIds(section, agents);
+  if (section.Has("agents")) event.agents = ReadAgentIds(section, "agents", agents);
   if (section.Has("goto")) event.go_to = ReadGoTo(section.Child("goto"), agents);
   if (section.Has("graph")) event.graph = ReadGraph(section.Child("graph"));
   for (const auto& [key, edges] : {std::pair("cut", &event.cut), std::pair("mend", &event.mend)}) {

@@ -18,10 +18,20 @@ struct Eigensystem {
   Eigen::MatrixXcd vectors;  // column k belongs to values(k)
 };
 Eigensystem EigensystemOf(const Eigen::MatrixXd& matrix);
+struct SymmetricEigensystem {
+  Eigen::VectorXd values;   // in increasing order
+  Eigen::MatrixXd vectors;  // orthonormal; column k belongs to values(k)
+};
+/// Reads the lower triangle only.
+SymmetricEigensystem SymmetricEigensystemOf(const Eigen::MatrixXd& matrix);
 
 /// x of matrix x = right, for an invertible matrix.
 Eigen::VectorXd Solve(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
+/// The same for each column of `right`.
+Eigen::MatrixXd SolveColumns(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
 /// The x with the smallest |matrix x - right|.
 Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
+/// The number of independent rows, where 1e-9 of the largest pivot counts as 0.
+int RankOf(const Eigen::MatrixXd& matrix);
 
 }  // namespace mascot

@@ -2,7 +2,9 @@
 
 namespace mascot {
 
-std::vector<int> NotReached(const Graph& graph, int root) {
+std::vector<int> NotReached(const Graph& graph, int root) { return NotReached(graph, std::span<const int>(&root, 1)); }
+
+std::vector<int> NotReached(const Graph& graph, std::span<const int> roots) {
   const auto count = static_cast<std::size_t>(graph.size());
   std::vector<std::vector<int>> hearers(count);  // by id - 1: the agents that hear this one
   for (int id = 1; id <= graph.size(); ++id) {
@@ -10,8 +12,8 @@ std::vector<int> NotReached(const Graph& graph, int root) {
       hearers[static_cast<std::size_t>(heard.id - 1)].push_back(id);
   }
   std::vector<bool> reached(count, false);
-  std::vector<int> open = {root};
-  reached[static_cast<std::size_t>(root - 1)] = true;
+  std::vector<int> open(roots.begin(), roots.end());
+  for (const int root : roots) reached[static_cast<std::size_t>(root - 1)] = true;
   while (!open.empty()) {
     const auto from = static_cast<std::size_t>(open.back() - 1);
     open.pop_back();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,8 @@ namespace mascot {
 
 /// Ids of the agents that hear `root` neither directly nor through others; sorted.
 std::vector<int> NotReached(const Graph& graph, int root);
+/// Ids of the agents that hear none of `roots`, neither directly nor through others; sorted.
+std::vector<int> NotReached(const Graph& graph, std::span<const int> roots);
 /// "agent 3", "agents 2, 3 and 5"; long lists are cut: "agents 2, 3, 4, 5 and 96 more".
 std::string AgentList(const std::vector<int>& ids);
 

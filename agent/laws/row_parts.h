@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 
 #include "agent/laws.h"
 
@@ -23,5 +24,11 @@ std::unique_ptr<LawMeter> MeterOf(const Experiment& experiment, std::span<const 
 
 /// LawEntry::wanted for a law that always wants a velocity.
 inline Wanted WantsVelocity(const LawConfig& /*law*/) { return Wanted::kVelocity; }
+
+/// Notes a mistake if law.leader names an agent, in laws that have no single leader.
+inline void ExpectNoLeader(const LawConfig& law, Section& section) {
+  if (law.leader != 0)
+    section.Fail("leader", "expected 0 (this law has no single leader), got " + std::to_string(law.leader));
+}
 
 }  // namespace mascot

@@ -1,0 +1,26 @@
+#include "experiment/agent_ids.h"
+
+#include <algorithm>
+
+namespace mascot {
+
+std::vector<int> ReadAgentIds(Section& section, const std::string& key, int agents) {
+  std::vector<int> ids;
+  const std::vector<double> numbers = section.Numbers(key);
+  for (std::size_t k = 0; k < numbers.size() && !section.Wrong(key); ++k) {
+    const int id = static_cast<int>(numbers[k]);
+    if (id != numbers[k] || (agents > 0 && id > agents))
+      section.FailRow(key, k,
+                      "expected an agent in 1.." + std::to_string(agents) + ", got " + ShortestFloat(numbers[k]));
+    else if (std::ranges::find(ids, id) != ids.end())
+      section.FailRow(key, k, "expected each agent once, got " + std::to_string(id) + " again");
+    else
+      ids.push_back(id);
+  }
+  if (!section.Wrong(key)) section.Free(key);  // whole numbers, as they were written
+  if (numbers.empty() && !section.Wrong(key)) section.Fail(key, "expected a list of agents, got nothing");
+  std::ranges::sort(ids);
+  return ids;
+}
+
+}  // namespace mascot

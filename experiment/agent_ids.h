@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiment/toml/section.h"
+
+namespace mascot {
+
+/// Reads a list of agents under `key`, whose row is key::Numbers with the range [1, kMaxAgents]: whole numbers from 1
+/// to `agents` (0: unknown), each once. Returns them in increasing order. Mistakes are noted in `section`.
+std::vector<int> ReadAgentIds(Section& section, const std::string& key, int agents);
+
+}  // namespace mascot
