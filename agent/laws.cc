@@ -9,12 +9,13 @@ namespace mascot {
 
 using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
-    EventTriggeredLaw, CustomLaw, PluginLaw;
+    EventTriggeredLaw, ContainmentLaw, CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
-      ConsensusLaw(),  WaypointLaw(),       MinmaxLaw(),         FormationLaw(), VelocityConsensusLaw(),
-      FiniteTimeLaw(), PrescribedTimeLaw(), EventTriggeredLaw(), CustomLaw(),    PluginLaw(),
+      ConsensusLaw(),         WaypointLaw(),   MinmaxLaw(),         FormationLaw(),
+      VelocityConsensusLaw(), FiniteTimeLaw(), PrescribedTimeLaw(), EventTriggeredLaw(),
+      ContainmentLaw(),       CustomLaw(),     PluginLaw(),
   };
   return kLaws;
 }

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "agent/law_figures.h"
+#include "experiment/experiment.h"
+
+namespace mascot {
+
+// Teams in which several agents lead, and the places of the others follow from those of the leaders.
+
+/// Above this many agents the matrices below would be too large: theory is silent, and nothing is measured.
+inline constexpr int kMostAgentsOfMatrices = 1000;
+
+inline constexpr Key kLeadersKey =
+    key::Numbers("leaders", {1, kMaxAgents}, "agents that lead: they use nothing of what they hear").Required();
+
+/// A team and its leaders. Ids are in increasing order.
+struct LedTeam {
+  LedTeam(std::vector<int> leader_ids, int agents);
+  bool IsLeader(int id) const;
+
+  std::vector<int> leaders, followers;
+};
+
+/// Reads law.leaders. At least one agent is left to follow, or a mistake is noted in `section`.
+std::vector<int> ReadLeaders(const Experiment& experiment, Section& section);
+
+/// The entries of `matrix` (N x N, by id - 1) in these rows and columns.
+Eigen::MatrixXd BlockOf(const Eigen::MatrixXd& matrix, std::span<const int> rows, std::span<const int> columns);
+/// The starting positions of agents `ids`, one row each, in W (m).
+Eigen::MatrixX3d StartsOf(const Experiment& experiment, std::span<const int> ids);
+/// -M_FF^-1 M_FL, for a matrix M whose M_FF is invertible: times the positions of the leaders it gives the places at
+/// which M p = 0 in the rows of the followers.
+Eigen::MatrixXd SharesOfLeaders(const Eigen::MatrixXd& matrix, const LedTeam& team);
+
+/// What theory says if p+ = p - T rates p diverges, with T the control period and `rates` in 1/s; absent: it does not.
+std::optional<LawTheory> WhyUnstable(const Experiment& experiment, const Eigen::MatrixXd& rates);
+
+/// The largest distance, along `axes`, of a follower from the place that `shares` gives it among the leaders (m).
+double LargestLag(const LedTeam& team, const Eigen::MatrixXd& shares, Axes axes, std::span<const Motion> motions);
+/// The length of the longest row, along `axes`.
+double LongestRow(const Eigen::MatrixX3d& rows, Axes axes);
+
+}  // namespace mascot

@@ -1,0 +1,103 @@
+// Laws by which agents take places relative to each other: their closed forms, on the law alone and in whole runs.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "agent/laws/leaders.h"
+#include "tests/ideal_network.h"
+#include "tests/law_run.h"
+
+namespace mascot {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A team without contacts. `agents`: lines of [agents]; `more`: lines from there on.
+std::string Team(double duration_s, int rate_hz, const std::string& agents, const std::string& more) {
+  return "[run]\nduration_s = " + ShortestFloat(duration_s) +
+         "\n[physics]\ncollisions = false\n[control]\nrate_hz = " + std::to_string(rate_hz) + "\n[agents]\n" + agents +
+         "\n" + more;
+}
+const std::string kSingles = "model = 'single_integrator'\n";
+
+// --- containment ----------------------------------------------------------------------------------------------
+
+/// Leaders 1, 2, 5 at the corners of a triangle, followers 3, 4, 6 outside it.
+const std::string kSix =
+    "count = 6\nposition_m = [[0, 0, 1], [6, 0, 1], [9, 9, 1], [-5, 2, 1], [0, 6, 1], [3, -8, 1]]\n";
+const std::string kSixGraph =
+    "[graph]\nedges = [[3, 1], [3, 2, 2.0], [3, 4], [4, 3, 0.5], [4, 5], [4, 6], [6, 4], [6, 2]]\n"
+    "[law]\nname = 'containment'\nleaders = [1, 2, 5]\n";
+
+Eigen::MatrixX3d Places(const IdealNetwork& network, const LedTeam& team) {
+  Eigen::MatrixX3d p_L(3, 3);
+  for (int k = 0; k < 3; ++k) p_L.row(k) = network.motions[static_cast<std::size_t>(team.leaders[k] - 1)].p_WB;
+  return SharesOfLeaders(network.experiment.graph.Laplacian(), team) * p_L;
+}
+
+TEST(Containment, FollowersEndAtTheirSharesOfTheLeadersWithinTheHull) {
+  IdealNetwork network(Team(1, 100, kSingles + kSix, kSixGraph));
+  const LedTeam team({1, 2, 5}, 6);
+  const Eigen::MatrixXd shares = SharesOfLeaders(network.experiment.graph.Laplacian(), team);
+  EXPECT_GE(shares.minCoeff(), 0);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(shares.row(k).sum(), 1, 1e-12);
+  network.RunUntil(60);
+  const Eigen::MatrixX3d places = Places(network, team);
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d p = network.agent(team.followers[k]).p_WB;
+    EXPECT_LT((p.transpose() - places.row(k)).head<2>().norm(), 1e-9);
+    EXPECT_TRUE(p.x() > 0 && p.y() > 0 && p.x() + p.y() < 6) << "inside the triangle";
+  }
+  EXPECT_EQ(network.agent(5).p_WB, Eigen::Vector3d(0, 6, 1)) << "leaders rest";
+}
+
+TEST(Containment, BehindMovingLeadersFollowersLagAsPredicted) {
+  // One follower between two leaders: M = (1/2, 1/2), L_FF = 2, so the lag is the mean velocity over 2 gain.
+  const std::string law =
+      "[graph]\nedges = [[2, 1], [2, 3]]\n[law]\nname = 'containment'\ngain = 0.8\nleaders = [1, 3]\n"
+      "leader_velocities_m_per_s = [[0.4, 0, 0], [0.2, 0.4, 0]]\n";
+  const std::string three = "count = 3\nposition_m = [[0, 0, 1], [0, 5, 1], [4, 0, 1]]\n";
+  IdealNetwork network(Team(1, 100, kSingles + three, law));
+  network.RunUntil(30);
+  const Eigen::Vector3d place = (network.agent(1).p_WB + network.agent(3).p_WB) / 2;
+  EXPECT_LT((place - network.agent(2).p_WB - Eigen::Vector3d(0.3, 0.2, 0) / 1.6).head<2>().norm(), 1e-9);
+
+  const LawRun run(Team(30, 100, kSingles + three, law));
+  EXPECT_NEAR(run.Predicted("lag_m"), std::hypot(0.3, 0.2) / 1.6, 1e-12);
+  EXPECT_NEAR(run.Measured("lag_m"), run.Predicted("lag_m"), 1e-5) << "tolerance: positions in bodies";
+  EXPECT_EQ(run.Law()["bounds"]["lag_m"], "equal");
+}
+
+TEST(Containment, BehindLeadersWithOneVelocityTheLagOfEveryFollowerIsThatOfTheGraph) {
+  // 1 leads the chain 1 <- 2 <- 3: the lags are v / gain and 2 v / gain.
+  const LawRun run(Team(30, 100, kSingles + "count = 3\nposition_m = [[0, 0, 1], [-1, 0, 1], [-3, 0, 1]]\n",
+                        "[graph]\ntopology = 'directed_path'\n[law]\nname = 'containment'\nleaders = [1]\n"
+                        "leader_velocities_m_per_s = [[0.5, 0, 0]]\n"));
+  EXPECT_NEAR(run.Predicted("lag_m"), 1.0, 1e-12);
+  EXPECT_NEAR(run.Measured("lag_m"), 1.0, 1e-5);
+}
+
+TEST(Containment, FliesOnAllModelsAndIsPredictedForSingleIntegrators) {
+  for (const char* model : {"single_integrator", "double_integrator", "quadrotor"}) {
+    const LawRun run(Team(
+        20, 100, "model = '" + std::string(model) + "'\ncount = 3\nposition_m = [[0, 0, 5], [-4, 3, 5], [4, 0, 5]]\n",
+        "[graph]\nedges = [[2, 1], [2, 3]]\n[law]\nname = 'containment'\nleaders = [1, 3]\n"));
+    EXPECT_LT(run.Measured("lag_m"), 0.01) << model;
+    EXPECT_EQ(run.prediction.silent,
+              std::string(model) == "single_integrator" ? "" : "the closed form is of single integrators");
+  }
+}
+
+TEST(Containment, TheoryNamesTheRateBelowWhichTheSampledTeamDiverges) {
+  const LawRun run(
+      Team(1, 10, kSingles + "count = 3\nposition_m = [[0, 0, 1], [-4, 3, 1], [4, 0, 1]]\n",
+           "[graph]\nedges = [[2, 1], [2, 3]]\n[law]\nname = 'containment'\nleaders = [1, 3]\ngain = 20\n"));
+  EXPECT_EQ(run.prediction.silent, "the sampled team is unstable");
+  EXPECT_THAT(run.prediction.warnings,
+              ::testing::Contains("control.rate_hz: unstable at this rate, it must be above 20, got 10"))
+      << "1 - T 2 gain > -1";
+}
+
+}  // namespace
+}  // namespace mascot
