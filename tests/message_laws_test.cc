@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "experiment/random.h"
 #include "tests/five_on_a_path.h"
@@ -120,6 +121,105 @@ TEST(EventTriggered, BodiesThatFollowWithALagAgreeToo) {
       for (const auto& messages : run.Law()["messages"]) EXPECT_LT(messages.get<double>(), 1000) << model;
     }
   }
+}
+
+// --- dynamic average consensus ----------------------------------------------------------------------------
+
+/// Inputs of five agents: a constant, a ramp, and swings of one frequency or of several.
+std::string Tracking(const std::string& frequencies, const std::string& more = "") {
+  return "name = 'average_tracking'\ninputs_m = [[3, 0, 0], [-1, 2, 0], [4, 0, 1], [1, 0, 0], [-5, 1, 0]]\n"
+         "ramps_m_per_s = [[0.1, 0, 0], [0, 0, 0], [0, -0.2, 0], [0, 0, 0], [0, 0, 0]]\n"
+         "amplitudes_m = [[2, 0, 0], [0, 1, 0], [0, 0, 0], [1, 1, 0], [0.5, 0, 0]]\n"
+         "phases_rad = [0.0, 1.0, 2.0, 3.0, -1.0]\nfrequencies_hz = " +
+         frequencies + "\n" + more;
+}
+const std::string kOneFrequency = "[0.2, 0.2, 0.2, 0.2, 0.2]", kSeveral = "[0.1, 0.2, 0.3, 0.45, 0.7]";
+
+/// r_i(t) of Tracking().
+Eigen::Vector3d InputOf(std::size_t i, const std::vector<double>& hz, double t_s) {
+  const Eigen::Vector3d constant[] = {{3, 0, 0}, {-1, 2, 0}, {4, 0, 1}, {1, 0, 0}, {-5, 1, 0}};
+  const Eigen::Vector3d ramp[] = {{0.1, 0, 0}, {0, 0, 0}, {0, -0.2, 0}, {0, 0, 0}, {0, 0, 0}};
+  const Eigen::Vector3d swing[] = {{2, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0.5, 0, 0}};
+  const double phase[] = {0, 1, 2, 3, -1};
+  return constant[i] + t_s * ramp[i] + std::sin(2 * std::numbers::pi * hz[i] * t_s + phase[i]) * swing[i];
+}
+
+TEST(AverageTracking, TheSumOfEstimatesIsThatOfTheInputsAtEveryTick) {
+  for (const char* topology : {"path", "complete", "star"}) {
+    std::string toml = Five(100, 20, Tracking(kSeveral));
+    toml.replace(toml.find("'path'"), 6, "'" + std::string(topology) + "'");
+    IdealNetwork network(toml);
+    while (network.time_s() < 20) {
+      const double t_s = network.time_s();
+      network.Step();
+      Eigen::Vector3d off_W = Eigen::Vector3d::Zero();
+      for (std::size_t i = 0; i < 5; ++i) {
+        off_W += Eigen::Map<const Eigen::Vector3d>(network.messages[i].data());
+        off_W -= InputOf(i, {0.1, 0.2, 0.3, 0.45, 0.7}, t_s);
+      }
+      ASSERT_LT(off_W.norm(), 1e-12) << topology << " at " << t_s;
+    }
+  }
+}
+
+TEST(AverageTracking, OfInputsThatStandStillItIsConsensusToTheirMean) {
+  IdealNetwork network(Five(100, 20, "name = 'average_tracking'\n"));
+  network.RunUntil(20);
+  for (const Motion& motion : network.motions) EXPECT_NEAR(motion.p_WB.x(), 0.4, 1e-9) << "where they started";
+}
+
+TEST(AverageTracking, ARampIsFollowedWithTheLagOfTheClosedForm) {
+  // All but agent 1 stand still: x - mean(r) = pinv(L) ramp / gain, the solution of L x = ramp - mean with sum 0.
+  IdealNetwork network(Five(100, 60,
+                            "name = 'average_tracking'\ngain = 2.0\n"
+                            "ramps_m_per_s = [[1, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]]\n"));
+  network.RunUntil(60);
+  const Eigen::MatrixXd l = network.experiment.graph.Laplacian();
+  Eigen::VectorXd x(5);
+  for (int i = 0; i < 5; ++i) x(i) = network.messages[static_cast<std::size_t>(i)][0];
+  Eigen::VectorXd ramp = Eigen::VectorXd::Constant(5, -0.2);
+  ramp(0) += 1;
+  EXPECT_LT((2 * l * x - ramp).norm(), 1e-6);
+}
+
+TEST(AverageTracking, TheBoundIsReachedByOneFrequencyAndHoldsForSeveral) {
+  const LawRun one(Five(100, 40, Tracking(kOneFrequency)));
+  EXPECT_LE(one.Measured("tracking_error_m"), one.Predicted("tracking_error_m"));
+  EXPECT_GT(one.Measured("tracking_error_m"), 0.8 * one.Predicted("tracking_error_m"))
+      << "x and y, the swing and the ramp are at their worst at different times";
+  EXPECT_LE(one.Measured("sum_off_m"), one.Predicted("sum_off_m"));
+  EXPECT_LT(one.Predicted("sum_off_m"), 1e-8);
+  const LawRun several(Five(100, 40, Tracking(kSeveral)));
+  EXPECT_LE(several.Measured("tracking_error_m"), several.Predicted("tracking_error_m"));
+  EXPECT_GT(several.Measured("tracking_error_m"), 0.5 * several.Predicted("tracking_error_m"));
+  EXPECT_EQ(several.Law()["bounds"]["tracking_error_m"], "at_most");
+  const LawRun alone(Five(100, 40,
+                          "name = 'average_tracking'\nfrequencies_hz = [0.2, 0.0, 0.0, 0.0, 0.0]\namplitudes_m = "
+                          "[[2, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]]\n"));
+  EXPECT_NEAR(alone.Measured("tracking_error_m"), alone.Predicted("tracking_error_m"), 1e-3) << "one swing: exact";
+}
+
+TEST(AverageTracking, TheEstimatesDoNotDependOnTheBodies) {
+  const LawRun single(Five(100, 20, Tracking(kSeveral)));
+  for (const char* model : {"double_integrator", "quadrotor"}) {
+    const LawRun run(With(model, Five(100, 20, Tracking(kSeveral) + "[output]\nfidelity = false\n")));
+    EXPECT_EQ(run.Measured("tracking_error_m"), single.Measured("tracking_error_m")) << model;
+    EXPECT_LE(run.Measured("tracking_error_m"), run.Predicted("tracking_error_m")) << model;
+    EXPECT_LT(run.meter.Result().final_disagreement_m, 2.5) << model;
+  }
+}
+
+TEST(AverageTracking, AgentsFlyToTheirPlacesAroundTheEstimate) {
+  const LawRun run(Five(100, 20, "name = 'average_tracking'\nshape = 'circle'\nspacing_m = 3.0\n"));
+  EXPECT_LT(run.meter.Result().final_disagreement_m, 1e-6) << "less the places";
+  EXPECT_LT(run.meter.Result().formation->final_rms_m, 1e-6);
+}
+
+TEST(AverageTracking, TheoryIsSilentWhereMessagesAreLateAndWarnsOfAnUnstableGain) {
+  EXPECT_EQ(LawRun(Five(100, 0.1, Tracking(kSeveral) + "[link]\ndelay_s = 0.1\n")).prediction.silent,
+            "samples are lost or late");
+  EXPECT_THAT(LawRun(Five(10, 0.2, Tracking(kSeveral, "gain = 6.0\n"))).prediction.warnings,
+              Contains("law.gain: unstable: expected below 5.528 1/s at this control period and graph"));
 }
 
 }  // namespace

@@ -7,13 +7,19 @@
 
 namespace mascot {
 
-/// Why closed forms for ideal agents do not hold in this experiment: bodies are not driven by what the law wants,
-/// samples are lost, late, noisy or out of range, the graph changes, agents come and go. Empty: they hold, as long as
-/// no limit is reached.
+// Why closed forms do not hold in an experiment. Empty: they hold, as long as no limit is reached.
+
+/// Of what ideal agents do: bodies are not driven by what the law wants, samples are lost, late, noisy or out of range,
+/// the graph changes, agents come and go.
 std::string WhyNotIdeal(const Experiment& experiment, Wanted wanted);
-/// Above this many agents, closed forms that need eigenvalues are not computed.
-inline constexpr int kMostModes = 1000;
-/// Likewise for closed forms of single integrators on connected undirected graphs, by the graph's eigenvalues.
+/// Of what agents compute from each other's messages alone: not all of these arrive at the next tick.
+std::string WhyNotAllHeard(const Experiment& experiment);
+/// Of connected undirected graphs, by their eigenvalues.
+std::string WhyNotUndirected(const Experiment& experiment);
+/// Of ideal single integrators on such graphs.
 std::string WhyNotIdealUndirected(const Experiment& experiment);
+
+/// Above this many agents, eigenvalues are not computed.
+inline constexpr int kMostModes = 1000;
 
 }  // namespace mascot
