@@ -8,11 +8,13 @@
 #include "orchestrator/sweeping/metrics.h"
 #include "tests/ideal_network.h"
 #include "tests/law_run.h"
+#include "tests/scratch.h"
 
 namespace mascot {
 namespace {
 
 using ::testing::Contains;
+using ::testing::HasSubstr;
 
 // --- waypoints --------------------------------------------------------------------------------------------
 
@@ -101,6 +103,124 @@ TEST(Waypoints, HaveColumnsInSweeps) {
   const LawRun run(Step(kTenMetres));
   EXPECT_EQ(std::stod(SweepMetrics(run.summary.dump(), names).at("laws.waypoint.tracking_rms_m")),
             run.Measured("tracking_rms_m"));
+}
+
+// --- trajectories -----------------------------------------------------------------------------------------
+
+/// Agents that follow a path of 3 m and 10 s, from its start; `law`: more lines of [law].
+std::string Circling(const std::string& law, const std::string& more = "",
+                     const std::string& model = "double_integrator", double duration_s = 40) {
+  return "[run]\nduration_s = " + ShortestFloat(duration_s) + "\n[agents]\ncount = 1\nmodel = '" + model +
+         "'\nposition_m = [[3, 0, 1]]\n[control]\nmax_acceleration_m_per_s2 = 100\n[law]\nname = 'trajectory'\n"
+         "radius_m = 3\nperiod_s = 10\n" +
+         law + more;
+}
+
+TEST(Trajectory, WithFeedForwardTheErrorGoesToZeroOnEveryPath) {
+  for (const std::string path : {"circle", "figure_eight"}) {
+    IdealNetwork network(Circling("path = '" + path + "'\n"));
+    network.RunUntil(30);
+    const LawRun run(Circling("path = '" + path + "'\n"));
+    EXPECT_LT(run.Predicted("tracking_rms_m"), 1e-4) << path << ": what the hold leaves";
+    EXPECT_LT(run.Measured("tracking_rms_m"), 1e-4) << path;
+    EXPECT_NEAR(run.Measured("lag_s"), 0, 1e-4) << path;
+    EXPECT_NEAR(run.Measured("amplitude_ratio"), 1, 1e-4) << path;
+  }
+  IdealNetwork network(Circling("path = 'figure_eight'\n"));
+  network.RunUntil(31.25);  // an eighth of the way: (r sin 45, r sin 45 cos 45)
+  EXPECT_NEAR((network.agent(1).p_WB - Eigen::Vector3d(3 * std::sqrt(0.5), 1.5, 1)).norm(), 0, 1e-3);
+}
+
+TEST(Trajectory, WithoutFeedForwardTheCircleComesOutLargerAndLate) {
+  const LawRun run(Circling("feed_forward = false\n"));
+  const double w = 2 * std::numbers::pi / 10;  // p = 1, d = 2: (1 + 2jw) / (1 - w^2 + 2jw)
+  const double above = 1 + 4 * w * w, below = (1 + w * w) * (1 + w * w);
+  EXPECT_NEAR(run.Predicted("amplitude_ratio"), std::sqrt(above / below), 5e-3) << "but for the hold";
+  EXPECT_NEAR(run.Predicted("tracking_rms_m"), 3 * w * w / (1 + w * w), 0.01);
+  const double phase = std::atan2(2 * w, 1 - w * w) - std::atan2(2 * w, 1);
+  EXPECT_NEAR(run.Predicted("lag_s"), std::sqrt(above / below) * std::sin(phase) / w, 5e-3);
+  for (const char* figure : {"tracking_rms_m", "lag_s", "amplitude_ratio"})
+    EXPECT_NEAR(run.Measured(figure), run.Predicted(figure), 1e-6)
+        << figure << ": the sampled loop is predicted exactly";
+}
+
+TEST(Trajectory, ThePredictionHoldsForFiguresOfEightAndSlowLoopsToo) {
+  for (const std::string rate : {"10", "50"}) {
+    std::string toml = Circling("path = 'figure_eight'\nfeed_forward = false\nd_gain = 1.5\n");
+    toml.insert(toml.find("max_acceleration"), "rate_hz = " + rate + "\n");
+    const LawRun run(toml);
+    for (const char* figure : {"tracking_rms_m", "lag_s", "amplitude_ratio"})
+      EXPECT_NEAR(run.Measured(figure), run.Predicted(figure), 1e-5) << rate << " " << figure;
+  }
+}
+
+TEST(Trajectory, AFormationKeepsItsPlacesAlongTheWay) {
+  IdealNetwork network(
+      "[run]\nduration_s = 40\n[agents]\ncount = 3\nmodel = 'double_integrator'\nposition_m = "
+      "[[0, 0, 1], [5, 5, 2], [-4, 1, 3]]\n[law]\nname = 'trajectory'\nperiod_s = 10\n"
+      "offsets_m = [[0, 0, 0], [1, 0, 0], [0, 2, 1]]\n");
+  network.RunUntil(20);
+  EXPECT_LT((network.agent(2).p_WB - network.agent(1).p_WB - Eigen::Vector3d(1, 0, 0)).norm(), 1e-5);
+  EXPECT_LT((network.agent(3).p_WB - network.agent(1).p_WB - Eigen::Vector3d(0, 2, 1)).norm(), 1e-5);
+  EXPECT_LT((network.agent(1).p_WB - Eigen::Vector3d(2, 0, 1)).norm(), 1e-3) << "two periods of the circle";
+}
+
+TEST(Trajectory, SamplesAreFlownThroughAtTheirTimesFromRestToRest) {
+  const std::string samples =
+      "path = 'samples'\nsamples = \"\"\"\nt,x,y,z\n0,3,0,1\n4,5,2,2\n8, 6, -1, 3\n12,4,0,1\n\"\"\"\n";
+  IdealNetwork network(Circling(samples, "", "double_integrator", 15));
+  const auto at = [&](double t_s) {
+    network.RunUntil(t_s);
+    return network.agent(1);
+  };
+  EXPECT_LT((at(4).p_WB - Eigen::Vector3d(5, 2, 2)).norm(), 2e-3);
+  EXPECT_LT((at(8).p_WB - Eigen::Vector3d(6, -1, 3)).norm(), 2e-3);
+  EXPECT_LT((at(12).p_WB - Eigen::Vector3d(4, 0, 1)).norm(), 2e-3);
+  EXPECT_LT(at(12).v_WB.norm(), 0.01) << "at rest";
+  const LawRun run(Circling(samples, "", "double_integrator", 12));
+  EXPECT_LT(run.Measured("tracking_rms_m"), 2e-3);
+  EXPECT_EQ(run.prediction.silent, "the closed form is of circles and figures of eight");
+}
+
+TEST(Trajectory, SamplesOfAFileAreInTheResolvedExperiment) {
+  const std::string path = MASCOT_SOURCE_DIR "/tests/good_configs/trajectory_file.toml";
+  Section document = Section::FromFile(path);
+  const Experiment experiment = LoadExperiment(document, "test");
+  IdealNetwork again(document.Resolved());
+  EXPECT_THAT(document.Resolved(), HasSubstr("1.5,0.5,0,1.2"));
+  again.RunUntil(3);
+  EXPECT_GT(again.agent(1).p_WB.x(), 0.1);
+}
+
+TEST(Trajectory, AMistakeInAFileNamesTheFileAndTheLine) {
+  const ScratchFolder folder;
+  WriteFile(folder.File("way.csv"), "t,x,y,z\n0,0,0,1\n1,far,0,1\n");
+  WriteFile(folder.File("way.toml"), Circling("path = 'samples'\nfile = 'way.csv'\n"));
+  try {
+    LoadExperiment(Section::FromFile(folder.File("way.toml")), "test");
+    FAIL() << "it was read";
+  } catch (const ConfigError& error) {
+    EXPECT_STREQ(error.what(),
+                 "way.csv:3: law.file: expected four numbers in [-1e+06, 1e+06], t,x,y,z, got '1,far,0,1'");
+  }
+}
+
+TEST(Trajectory, FliesOnQuadrotorsAndSingleIntegrators) {
+  const LawRun quadrotor(Circling("", "", "quadrotor"));
+  EXPECT_LT(quadrotor.Measured("tracking_rms_m"), 0.25);
+  const LawRun single(Circling("", "", "single_integrator"));
+  EXPECT_LT(single.Measured("tracking_rms_m"), 0.05);
+  EXPECT_EQ(single.prediction.silent, "the closed form is of double integrators");
+}
+
+TEST(Trajectory, TheoryIsSilentWhereTheLongRunIsNotReached) {
+  EXPECT_EQ(LawRun(Circling("", "", "double_integrator", 11)).prediction.silent,
+            "the run ends before the start has been forgotten for a period");
+  EXPECT_EQ(LawRun(Circling("p_gain = 0.0\n", "", "double_integrator", 1)).prediction.silent,
+            "the loop of law.p_gain and law.d_gain does not decay");
+  EXPECT_EQ(LawRun(Circling("", "[[agents.override]]\nid = 1\ncontrol = { max_acceleration_m_per_s2 = 1.0 }\n"))
+                .prediction.silent,
+            "the limit of the acceleration cuts what the trajectory takes");
 }
 
 }  // namespace

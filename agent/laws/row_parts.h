@@ -3,6 +3,8 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "agent/laws.h"
 
@@ -20,6 +22,13 @@ std::unique_ptr<Law> MakeOf(const Experiment& experiment, int id) {
 template <class Meter>
 std::unique_ptr<LawMeter> MeterOf(const Experiment& experiment, std::span<const int> ids) {
   return std::make_unique<Meter>(experiment, ids);
+}
+
+/// Figures that theory predicts exactly.
+inline std::vector<PredictedFigure> Equal(std::vector<FigureValues> figures) {
+  std::vector<PredictedFigure> predicted;
+  for (FigureValues& values : figures) predicted.push_back({.values = std::move(values)});
+  return predicted;
 }
 
 /// LawEntry::wanted for a law that always wants a velocity.

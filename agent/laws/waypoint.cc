@@ -113,9 +113,7 @@ LawTheory PredictWaypoints(const Experiment& experiment) {
     if (!track) return {.silent = "the limit of the acceleration cuts what the law asks for"};
     tracks.push_back(*track);
   }
-  std::vector<PredictedFigure> figures;
-  for (FigureValues& values : WaypointTrack::FiguresOf(tracks)) figures.push_back({.values = std::move(values)});
-  return {.figures = std::move(figures)};
+  return {.figures = Equal(WaypointTrack::FiguresOf(tracks))};
 }
 
 }  // namespace

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace mascot {
+
+/// Where a reference is at some time, in W.
+struct PathPoint {
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero(), v_W = Eigen::Vector3d::Zero(), a_W = Eigen::Vector3d::Zero();
+};
+
+/// A way through samples (t, x, y, z), as a cubic spline: position, velocity and acceleration are continuous between
+/// the first and the last sample, where it is at rest; before and after it stays there.
+class PathSamples {
+ public:
+  /// Reads text of lines "t,x,y,z", of which the first may be a heading. Empty: it was read; else the mistake and, in
+  /// `line`, its line.
+  std::string Read(const std::string& text, int& line);
+  PathPoint At(double t_s) const;
+  /// From the first to the last sample; at least two have been read.
+  double duration_s() const { return knots_.back().t_s - knots_.front().t_s; }
+
+ private:
+  struct Knot {
+    double t_s = 0;
+    Eigen::Vector3d p_W, v_W = Eigen::Vector3d::Zero();
+  };
+  void FindVelocities();
+
+  std::vector<Knot> knots_;
+};
+
+}  // namespace mascot
