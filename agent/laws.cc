@@ -9,13 +9,13 @@ namespace mascot {
 
 using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
-    EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, CustomLaw, PluginLaw;
+    EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw, CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
-      ConsensusLaw(),  WaypointLaw(),       MinmaxLaw(),         FormationLaw(),   VelocityConsensusLaw(),
-      FiniteTimeLaw(), PrescribedTimeLaw(), EventTriggeredLaw(), ContainmentLaw(), AverageTrackingLaw(),
-      TrajectoryLaw(), CustomLaw(),         PluginLaw(),
+      ConsensusLaw(),  WaypointLaw(),         MinmaxLaw(),         FormationLaw(),   VelocityConsensusLaw(),
+      FiniteTimeLaw(), PrescribedTimeLaw(),   EventTriggeredLaw(), ContainmentLaw(), AverageTrackingLaw(),
+      TrajectoryLaw(), GradientTrackingLaw(), CustomLaw(),         PluginLaw(),
   };
   return kLaws;
 }

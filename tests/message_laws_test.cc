@@ -2,6 +2,7 @@
 // whole runs.
 #include <gmock/gmock.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -220,6 +221,101 @@ TEST(AverageTracking, TheoryIsSilentWhereMessagesAreLateAndWarnsOfAnUnstableGain
             "samples are lost or late");
   EXPECT_THAT(LawRun(Five(10, 0.2, Tracking(kSeveral, "gain = 6.0\n"))).prediction.warnings,
               Contains("law.gain: unstable: expected below 5.528 1/s at this control period and graph"));
+}
+
+// --- distributed optimisation -----------------------------------------------------------------------------
+
+/// Costs of five agents whose minima differ, one of them along x alone.
+const std::string kCosts =
+    "targets_m = [[3, 0, 1], [-1, 2, 1], [4, 0, 2], [1, -3, 1], [-5, 1, 1]]\n"
+    "weights = [[1], [2, 1, 1], [1, 0.5, 0, 2, 0, 1], [0.5], [1, 0, 0]]\n";
+
+/// (sum Q)^-1 sum Q b of kCosts.
+Eigen::Vector3d MinimumOfCosts() {
+  Eigen::Matrix3d q[5];
+  q[0].setIdentity();
+  q[1] = Eigen::Vector3d(2, 1, 1).asDiagonal();
+  q[2] << 1, 0.5, 0, 0.5, 2, 0, 0, 0, 1;
+  q[3] = 0.5 * Eigen::Matrix3d::Identity();
+  q[4] = Eigen::Vector3d(1, 0, 0).asDiagonal();
+  const Eigen::Vector3d b[] = {{3, 0, 1}, {-1, 2, 1}, {4, 0, 2}, {1, -3, 1}, {-5, 1, 1}};
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < 5; ++i) {
+    sum += q[i];
+    right += q[i] * b[i];
+  }
+  return sum.inverse() * right;
+}
+
+const std::string kGradient = "name = 'gradient_tracking'\naxes = 'xyz'\n";
+
+TEST(GradientTracking, AllEndWhereTheSumOfTheCostsIsLeast) {
+  for (const char* topology : {"path", "complete", "star"}) {
+    std::string toml = Five(100, 20, kGradient + kCosts);
+    toml.replace(toml.find("'path'"), 6, "'" + std::string(topology) + "'");
+    IdealNetwork network(toml);
+    network.RunUntil(20);
+    for (const auto& message : network.messages)
+      EXPECT_LT((Eigen::Map<const Eigen::Vector3d>(message.data()) - MinimumOfCosts()).norm(), 1e-9) << topology;
+    for (const Motion& motion : network.motions) EXPECT_LT((motion.p_WB - MinimumOfCosts()).norm(), 1e-9) << topology;
+  }
+}
+
+TEST(GradientTracking, TheTrackersSumUpToTheGradientsAtEveryTick) {
+  // With Q = 1, sum y = sum (x - b); b: the starts (3, -1, 4, 1, -5).
+  IdealNetwork network(Five(100, 5, kGradient));
+  while (network.time_s() < 5) {
+    network.Step();
+    double off = 2;  // sum b
+    for (const auto& message : network.messages) off += message[3] - message[0];
+    ASSERT_NEAR(off, 0, 1e-12) << network.time_s();
+  }
+}
+
+TEST(GradientTracking, OfEqualCostsOnACompleteGraphTheRateIsThatOfTheMean) {
+  // W = J / 5: the mean of x obeys m+ = (1 - step) m, and disagreement is gone after two ticks but for what the step
+  // brings: x+ = -step y, y+ = -x - step y, whose roots are below sqrt(step) for a step below 1.
+  std::string toml = Five(100, 10, kGradient + "step = 0.1\n");
+  toml.replace(toml.find("'path'"), 6, "'complete'");
+  const LawRun run(toml);
+  EXPECT_NEAR(run.Predicted("rate_per_s"), -100 * std::log(0.9), 1e-6);
+}
+
+TEST(GradientTracking, TheRateIsPredictedAndMeasured) {
+  for (const double step : {0.02, 0.05, 0.1}) {
+    const LawRun run(Five(100, 40, kGradient + kCosts + "step = " + ShortestFloat(step) + "\n"));
+    EXPECT_NEAR(run.Measured("rate_per_s") / run.Predicted("rate_per_s"), 1, 0.02) << step;
+    EXPECT_LT(run.Measured("error_m"), 1e-9);
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(run.summary["consensus"]["predicted"]["value_m"][axis].get<double>(), MinimumOfCosts()[axis], 1e-12);
+  }
+}
+
+TEST(GradientTracking, AStepBeyondTheLimitThatItNamesDiverges) {
+  const LawRun run(Five(100, 1, kGradient + kCosts + "step = 2.0\n"));
+  ASSERT_EQ(run.prediction.warnings.size(), 1u);
+  const std::string& warning = run.prediction.warnings.front();
+  ASSERT_TRUE(warning.starts_with("law.step: unstable: expected below ")) << warning;
+  const double limit = std::stod(warning.substr(35));
+  const LawRun below(Five(100, 8, kGradient + kCosts + "step = " + ShortestFloat(0.98 * limit) + "\n"));
+  const LawRun above(Five(100, 8, kGradient + kCosts + "step = " + ShortestFloat(1.02 * limit) + "\n"));
+  EXPECT_LT(below.Measured("error_m"), 1);
+  EXPECT_GT(above.Measured("error_m"), 5);
+}
+
+TEST(GradientTracking, TheEstimatesDoNotDependOnTheBodies) {
+  for (const char* model : {"double_integrator", "quadrotor"}) {
+    const LawRun run(With(model, Five(100, 20, kGradient + kCosts + "p_gain = 0.5\n[output]\nfidelity = false\n")));
+    EXPECT_LT(run.Measured("error_m"), 1e-9) << model;
+    EXPECT_LT(run.meter.Result().final_disagreement_m, 0.02) << model;
+  }
+}
+
+TEST(GradientTracking, TheoryIsSilentOnDirectedGraphs) {
+  std::string toml = Five(100, 1, kGradient);
+  toml.replace(toml.find("'path'"), 6, "'directed_ring'");
+  EXPECT_EQ(LawRun(toml).prediction.silent, "the closed forms are of undirected graphs");
 }
 
 }  // namespace
