@@ -9,13 +9,14 @@ namespace mascot {
 
 using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
-    EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw, CustomLaw, PluginLaw;
+    EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw, CyclicPursuitLaw,
+    CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
       ConsensusLaw(),  WaypointLaw(),         MinmaxLaw(),         FormationLaw(),   VelocityConsensusLaw(),
       FiniteTimeLaw(), PrescribedTimeLaw(),   EventTriggeredLaw(), ContainmentLaw(), AverageTrackingLaw(),
-      TrajectoryLaw(), GradientTrackingLaw(), CustomLaw(),         PluginLaw(),
+      TrajectoryLaw(), GradientTrackingLaw(), CyclicPursuitLaw(),  CustomLaw(),      PluginLaw(),
   };
   return kLaws;
 }

@@ -99,5 +99,87 @@ TEST(Containment, TheoryNamesTheRateBelowWhichTheSampledTeamDiverges) {
       << "1 - T 2 gain > -1";
 }
 
+// --- cyclic pursuit -------------------------------------------------------------------------------------------
+
+/// A regular N-gon of radius 2 around (1, -1); `order`: 1 counterclockwise, -1 clockwise.
+std::string Polygon(int count, int order = 1) {
+  std::string points;
+  for (int i = 0; i < count; ++i) {
+    const double angle = order * 2 * std::numbers::pi * i / count;
+    points += (i == 0 ? "[" : ", [") + ShortestFloat(1 + 2 * std::cos(angle)) + ", " +
+              ShortestFloat(-1 + 2 * std::sin(angle)) + ", 1]";
+  }
+  return "count = " + std::to_string(count) + "\nposition_m = [" + points + "]\n";
+}
+
+std::string Pursuit(double alpha_deg, double gain = 1) {
+  return "[graph]\ntopology = 'ring'\n[law]\nname = 'cyclic_pursuit'\nalpha_deg = " + ShortestFloat(alpha_deg) +
+         "\ngain = " + ShortestFloat(gain) + "\n";
+}
+
+double DistanceFromCentre(const IdealNetwork& network, std::size_t i) {
+  return (network.motions[i].p_WB.head<2>() - Eigen::Vector2d(1, -1)).norm();
+}
+
+TEST(CyclicPursuit, ARegularPolygonShrinksStaysOrGrowsAtItsRate) {
+  for (const int n : {3, 5, 8}) {
+    const double step = 2 * std::numbers::pi / n;
+    for (const double alpha : {0.0, 0.3 / n, std::numbers::pi / n, 4.0 / n}) {
+      IdealNetwork network(Team(1, 1000, kSingles + Polygon(n), Pursuit(alpha * 180 / std::numbers::pi, 0.5)));
+      network.RunUntil(3);
+      const double rate_per_s = 0.5 * (std::cos(step - alpha) - std::cos(alpha));
+      for (std::size_t i = 0; i < network.motions.size(); ++i)
+        EXPECT_NEAR(DistanceFromCentre(network, i), 2 * std::exp(rate_per_s * 3), 6e-3) << n << ", " << alpha;
+      const double turn_rad_per_s = 0.5 * (std::sin(step - alpha) + std::sin(alpha));
+      const Eigen::Vector3d p = network.agent(1).p_WB;  // it started in the east
+      EXPECT_NEAR(std::remainder(std::atan2(p.y() + 1, p.x() - 1) - turn_rad_per_s * 3, 2 * std::numbers::pi), 0, 2e-3)
+          << n << ", " << alpha;
+    }
+    EXPECT_NEAR(0.5 * (std::sin(step / 2) + std::sin(step / 2)), 2 * 0.5 * std::sin(std::numbers::pi / n), 1e-12);
+  }
+}
+
+TEST(CyclicPursuit, KeepsTheCentre) {
+  IdealNetwork network(
+      Team(1, 100, kSingles + kSix, "[graph]\ntopology = 'ring'\n[law]\nname = 'cyclic_pursuit'\nalpha_deg = 40\n"));
+  const auto centre = [&] {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const Motion& motion : network.motions) sum += motion.p_WB / 6;
+    return sum;
+  };
+  const Eigen::Vector3d before = centre();
+  network.RunUntil(20);
+  EXPECT_LT((centre() - before).norm(), 1e-9 * network.agent(1).p_WB.norm());
+}
+
+TEST(CyclicPursuit, IsPredictedFromAnyStartAsItIsSampled) {
+  for (const double alpha_deg : {-20.0, 0.0, 30.0, 45.0}) {
+    const LawRun run(Team(8, 20, kSingles + kSix, Pursuit(alpha_deg)));
+    for (const char* figure : {"radius_m", "radius_ratio", "turn_rate_rad_per_s"})
+      EXPECT_NEAR(run.Measured(figure), run.Predicted(figure), 1e-5 * std::abs(run.Predicted(figure)) + 1e-5)
+          << alpha_deg << " " << figure << "; tolerance: positions in bodies";
+  }
+  const LawRun meeting(Team(1, 20, kSingles + kSix, Pursuit(0)));
+  EXPECT_FALSE(meeting.summary["consensus"]["predicted"]["value_m"].is_null());
+  const LawRun circling(Team(1, 20, kSingles + kSix, Pursuit(30)));
+  EXPECT_TRUE(circling.summary["consensus"]["predicted"]["value_m"].is_null());
+}
+
+TEST(CyclicPursuit, AHeldVelocityOpensTheCircleAsTheSampledModesSay) {
+  const LawRun run(Team(10, 10, kSingles + Polygon(6), Pursuit(30)));
+  // |1 + T gain exp(-i pi/6) (exp(i pi/3) - 1)|^2 = |1 + i T|^2 = 1 + T^2
+  EXPECT_NEAR(run.Predicted("radius_ratio"), std::pow(1 + 0.01, 50), 1e-9);
+  EXPECT_NEAR(run.Measured("radius_ratio"), run.Predicted("radius_ratio"), 1e-5);
+  EXPECT_NEAR(run.Predicted("turn_rate_rad_per_s"), std::atan(0.1) / 0.1, 1e-9);
+}
+
+TEST(CyclicPursuit, FliesOnAllModels) {
+  for (const char* model : {"single_integrator", "double_integrator", "quadrotor"}) {
+    const LawRun run(Team(20, 100, "model = '" + std::string(model) + "'\n" + Polygon(4), Pursuit(0, 0.4)));
+    EXPECT_LT(run.Measured("radius_m"), 0.02) << model;
+    EXPECT_EQ(run.prediction.silent.empty(), std::string(model) == "single_integrator");
+  }
+}
+
 }  // namespace
 }  // namespace mascot
