@@ -1,12 +1,15 @@
 #pragma once
 
-// What python*.cc and laws/custom.cc share; no other file includes this, or pybind11.
+// What python*.cc and laws/custom*.cc share; no other file includes this, or pybind11.
 
 #include <pybind11/embed.h>
 #include <pybind11/numpy.h>
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "agent/python.h"
 #include "experiment/toml/value.h"
@@ -66,6 +69,12 @@ py::dict RunPython(const std::string& text, const std::string& file, int line);
 PythonError Explain(py::error_already_set& error, const std::string& file);
 /// A value as dict, list, str, int, float or bool.
 py::object ToPython(const Value& value);
+/// A new NumPy array that holds `values`.
+py::array_t<double> Array(std::span<const double> values);
+/// repr() of a returned value, for a message; its type if repr() fails.
+std::string Repr(const py::handle& value);
+/// The numbers in a returned value; nullopt if it is not a flat sequence of numbers.
+std::optional<std::vector<double>> Numbers(const py::object& value);
 /// The signature of a function, "(t, me)", if it cannot be called with `count` arguments; else empty.
 std::string SignatureIfNotCallable(const py::object& function, std::size_t count);
 /// The line at which a function is defined; 0: not known.

@@ -1,0 +1,66 @@
+// What the text of a law in Python must be: it runs, and defines functions that can be called.
+#include "agent/laws/custom.h"
+
+namespace mascot {
+namespace {
+
+/// A function that the text may define.
+struct Callback {
+  const char* name;
+  const char* arguments;
+  std::size_t count;
+  bool required;
+};
+
+constexpr Callback kStandardCallbacks[] = {{"control", "(t, me, neighbours)", 3, true},
+                                           {"start", "(me, params)", 2, false},
+                                           {"set", "(me, params)", 2, false},
+                                           {"message", "(me)", 1, false}};
+constexpr Callback kPublishedCallbacks[] = {
+    {"control_user", "(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, leader)", 9, true}};
+
+std::span<const Callback> CallbacksOf(PythonStyle style) {
+  if (style == PythonStyle::kMascot) return kPublishedCallbacks;
+  return kStandardCallbacks;
+}
+
+/// Notes a mistake if the function is required and missing, or cannot be called with its arguments.
+void CheckCallback(Section& law, const CustomParams& params, const PythonModule& module, const Callback& callback) {
+  const py::object function = module.Function(callback.name);
+  const auto fail = [&](int line, const std::string& message) {
+    law.FailInText(TextKey(law), params.file + ":" + std::to_string(line) + ":1", message);
+  };
+  if (function.is_none()) {
+    if (callback.required) fail(params.line, std::string("expected a function ") + callback.name + ", got none");
+    return;
+  }
+  const std::string other = SignatureIfNotCallable(function, callback.count);
+  if (!other.empty())
+    fail(std::max(LineOf(function), 1),
+         std::string("expected ") + callback.name + callback.arguments + ", got " + callback.name + other);
+}
+
+}  // namespace
+
+const char* TextKey(const Section& law) { return law.Has("file") ? "file" : "python"; }
+
+bool TryText(Section& law, CustomParams& params, const TimeLimit& time_limit) {
+  const SuppressedPythonOutput suppressed;
+  const PythonLock lock;
+  const char* key = TextKey(law);
+  try {
+    const PythonTimeLimit limit(time_limit);
+    const PythonModule module(params);
+    for (const Callback& callback : CallbacksOf(params.style)) CheckCallback(law, params, module, callback);
+    if (module.Function("set").is_none()) params.fixed = "expected a law that defines set(me, params), got none";
+    return params.style == PythonStyle::kStandard && !module.Function("message").is_none();
+  } catch (const PythonError& error) {
+    law.FailInText(key,
+                   params.file + ":" + std::to_string(std::max(error.line(), 1)) + ":" +
+                       std::to_string(std::max(error.column(), 1)),
+                   "expected Python, got " + error.summary());
+    return false;
+  }
+}
+
+}  // namespace mascot
