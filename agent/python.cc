@@ -94,7 +94,7 @@ std::string TextOf(const py::handle& text) {
 
 PythonError Explain(py::error_already_set& error, const std::string& file) {
   const py::object traceback = py::module_::import("traceback");
-  const bool is_syntax = error.matches(PyExc_SyntaxError);
+  const bool is_syntax = error.matches(PyExc_SyntaxError) && TextOf(py::str(error.value().attr("filename"))) == file;
   const auto text = [&](const py::object& lines) {
     std::string joined = TextOf(py::str("").attr("join")(lines));
     while (joined.ends_with('\n')) joined.pop_back();
@@ -108,7 +108,7 @@ PythonError Explain(py::error_already_set& error, const std::string& file) {
                      is_syntax ? IntOr0(error.value(), "offset") : 0);
 }
 
-py::dict RunPython(const std::string& text, const std::string& file, int line) {
+py::dict RunPython(const std::string& text, const std::string& file, int line, const PythonModules& modules) {
   const std::string padded = std::string(static_cast<std::size_t>(line - 1), '\n') + text;
   try {
     RegisterLines(padded, file);
@@ -116,7 +116,7 @@ py::dict RunPython(const std::string& text, const std::string& file, int line) {
     py::dict space;
     space["__name__"] = "law";
     space["__file__"] = file;
-    space["__builtins__"] = py::module_::import("builtins");
+    space["__builtins__"] = BuiltinsOf(modules);
     const auto result = py::reinterpret_steal<py::object>(PyEval_EvalCode(code.ptr(), space.ptr(), space.ptr()));
     if (!result) throw py::error_already_set();
     return space;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -11,6 +12,12 @@ struct TimeLimit {
   double limit_s = 0;
   std::string_view source;
 };
+
+/// Modules that a law imports and that stand beside it: texts by paths from the folder of the law ("shapes.py").
+using PythonModules = std::map<std::string, std::string>;
+
+/// The modules in `folder` that `text` imports, itself or through each other. Throws PythonError if one cannot be read.
+PythonModules ModulesBeside(const std::string& text, const std::string& folder);
 
 /// While an object of this class lives, what Python code in this process prints is dropped: for laws that run a second
 /// time, for comparison.

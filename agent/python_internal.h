@@ -4,6 +4,7 @@
 
 #include <pybind11/embed.h>
 #include <pybind11/numpy.h>
+#include <pybind11/stl.h>
 
 #include <cstdint>
 #include <optional>
@@ -62,9 +63,12 @@ void TakePythonOutput();
 /// \udc80.
 std::string TextOf(const py::handle& text);
 
+/// What a law has as __builtins__: those of Python, with an import statement that knows `modules`. Each call makes new
+/// objects of them, so that laws share nothing.
+py::object BuiltinsOf(const PythonModules& modules);
 /// Runs `text` in a namespace of its own, which it returns. `file`, `line`: where `text` begins, for messages. Throws
 /// PythonError.
-py::dict RunPython(const std::string& text, const std::string& file, int line);
+py::dict RunPython(const std::string& text, const std::string& file, int line, const PythonModules& modules);
 /// The PythonError for an exception that left the user's code, whose name in messages is `file`.
 PythonError Explain(py::error_already_set& error, const std::string& file);
 /// A value as dict, list, str, int, float or bool.

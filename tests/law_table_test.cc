@@ -51,7 +51,13 @@ std::vector<Setting> CustomSettings() {
   const std::string published =
       "style = 'mascot'\npython = '''\ndef control_user(px, vx, ax, py, vy, ay, i, n, leader):\n"
       "  return 0.1 * leader - vx[i], -vy[i]\n'''\n";
+  const auto with_module = [](const std::string& gain) {
+    return "modules = { 'gains.py' = 'GAIN = " + gain +
+           "' }\npython = '''\nimport gains\ndef control(t, me, neighbours):\n"
+           "  return -me.velocity + sum(gains.GAIN * (j.position - me.position) for j in neighbours)\n'''\n";
+  };
   return {{"python", law("1.0"), law("1.1")},
+          {"modules", with_module("1.0"), with_module("1.1")},
           {"params", law("1.0"), law("1.0") + "params = { gain = 0.5 }\n"},
           {"style", law("1.0"), published},
           {"leader", published, published + "leader = 2\n"},

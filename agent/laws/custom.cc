@@ -17,6 +17,8 @@ constexpr Key kCustomParameters[] = {
     key::Any("params", "goes to start(me, params) as a dict, and to set(me, params) when an event has changed it")
         .Default("{}")
         .Live(),
+    key::Any("modules", "texts of the modules that the law imports, by their paths from its folder")
+        .Otherwise("those that stand beside it"),
     key::OneOf("style", kPythonStyles.names(),
                "mascot: the published testbed's control_user(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, "
                "leader)")
@@ -36,10 +38,33 @@ constexpr Key kCustomParameters[] = {
 // the message says where it hangs.
 constexpr double kTimeShare = 0.8;
 
+/// Reads the modules of the law: those of the key, else those in `folder`.
+void ReadModules(const std::string& folder, Section& law, CustomParams& params) {
+  Value modules;
+  if (!law.Has("modules")) {
+    try {
+      auto& found = std::get<Value::Table>(modules.data);
+      for (const auto& [path, text] : ModulesBeside(params.text, folder)) found[path].data = text;
+    } catch (const PythonError& error) {
+      law.Fail(TextKey(law), "expected modules that can be read, got " + error.summary());
+    }
+    if (std::get<Value::Table>(modules.data).empty()) return;  // the resolved file is shorter
+  }
+  modules = law.Free("modules", modules);
+  const auto* texts = std::get_if<Value::Table>(&modules.data);
+  if (texts == nullptr) return law.Fail("modules", "expected a table, got a " + law.Kind("modules"));
+  for (const auto& [path, text] : *texts) {
+    if (const auto* words = std::get_if<std::string>(&text.data))
+      params.modules[path] = *words;
+    else
+      law.FailInside("modules", path, "expected text");
+  }
+}
+
 /// Reads the text of the law, and the file and line for messages.
-void ReadText(Section& law, CustomParams& params) {
-  law.Supersede("file", {"python", "python_file", "python_line"});
-  law.Supersede("python", {"file", "python_file", "python_line"});
+void ReadText(bool checked, Section& law, CustomParams& params) {
+  law.Supersede("file", {"python", "python_file", "python_line", "modules"});
+  law.Supersede("python", {"file", "python_file", "python_line", "modules"});
   if (law.Has("python") == law.Has("file")) {
     law.Fail(law.Has("file") ? "file" : "",
              std::string("expected one of python, file, got ") + (law.Has("file") ? "both" : "none"));
@@ -51,17 +76,18 @@ void ReadText(Section& law, CustomParams& params) {
     text = law.TextOfFile("file", "python");
   } else {
     const Section::Place place = law.PlaceOfText("python");
-    text = {law.Text("python"), place.file};
+    text = {law.Text("python"), place.file, place.folder};
     line = place.line;
   }
   params.text = text.text;
   params.file = law.Text("python_file", text.name);
   params.line = static_cast<int>(law.Integer("python_line", 1, 1'000'000, line));
   if (params.text.find('\0') != std::string::npos) law.Fail(TextKey(law), "expected text, got a NUL byte");
+  if (!law.Wrong("") && (law.Has("modules") || !checked)) ReadModules(text.folder, law, params);
 }
 
-void ReadKeys(Section& law, CustomParams& params) {
-  ReadText(law, params);
+void ReadKeys(bool checked, Section& law, CustomParams& params) {
+  ReadText(checked, law, params);
   params.style = kPythonStyles.Value(law.OneOf("style"));
   params.wanted = kPythonOutputs.Value(law.OneOf("output"));
   if (law.Has("params") && law.Kind("params") != "table")
@@ -82,7 +108,7 @@ bool SendsMessages(const Experiment& experiment, CustomParams& params, Section& 
 
 std::shared_ptr<const LawParams> ReadCustom(const Experiment& experiment, const LawConfig& /*law*/, Section& section) {
   auto params = std::make_shared<CustomParams>();
-  ReadKeys(section, *params);
+  ReadKeys(experiment.checked, section, *params);
   params->sends_messages = SendsMessages(experiment, *params, section);
   return params;
 }

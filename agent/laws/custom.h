@@ -27,6 +27,7 @@ struct CustomParams final : LawParams {
   std::string text;
   std::string file;  ///< the file's name in messages
   int line = 1;      ///< line of `file` at which `text` begins
+  PythonModules modules;
   PythonStyle style = PythonStyle::kStandard;
   Wanted wanted = Wanted::kAcceleration;
   Value params;  ///< a table
@@ -35,8 +36,13 @@ struct CustomParams final : LawParams {
 /// The user's text, run in a Python namespace of its own for one agent.
 class PythonModule {
  public:
-  explicit PythonModule(const CustomParams& params) : space_(RunPython(params.text, params.file, params.line)) {}
+  explicit PythonModule(const CustomParams& params)
+      : space_(RunPython(params.text, params.file, params.line, params.modules)) {}
 
+  /// PARAMETERS, which the text may define: the parameters that the law takes, with their defaults; else None.
+  py::object Parameters() const {
+    return space_.contains("PARAMETERS") ? py::object(space_["PARAMETERS"]) : py::none();
+  }
   /// The function `name` that the text defines; None if it defines none.
   py::object Function(const char* name) const {
     const py::object function = space_.contains(name) ? py::object(space_[name]) : py::none();

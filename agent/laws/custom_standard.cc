@@ -30,7 +30,7 @@ class Standard final : public PythonLaw {
     const PythonLock lock;
     objects_.emplace(params);
     Objects& o = *objects_;
-    if (!o.start.is_none() || !o.set.is_none()) o.params = ToPython(params.params);
+    if (!o.start.is_none() || !o.set.is_none()) o.TakeParams(params.params);
     o.me = o.agent_class();
     o.me.attr("id") = id;
     o.me.attr("weight") = 0.0;
@@ -66,7 +66,7 @@ class Standard final : public PythonLaw {
     const Value& params = ParamsOf<CustomParams>(agent.law).params;
     if (ToToml(params) == params_) return;
     params_ = ToToml(params);
-    objects_->params = ToPython(params);
+    objects_->TakeParams(params);
     objects_->params_changed = true;
   }
 
@@ -93,6 +93,13 @@ class Standard final : public PythonLaw {
       py::exec(kClasses, space);
       agent_class = space["Agent"];
       py::module_::import("numpy");  // now, so that the first tick does not wait for it
+    }
+    /// The law's params become the defaults of PARAMETERS, with `given` in their places.
+    void TakeParams(const Value& given) {
+      const py::object defaults = module.Parameters();
+      params = py::dict();
+      if (!defaults.is_none()) params.attr("update")(py::module_::import("copy").attr("deepcopy")(defaults));
+      params.attr("update")(ToPython(given));
     }
     PythonModule module;
     py::object control = module.Function("control"), start = module.Function("start"),

@@ -1,5 +1,6 @@
 // What the text of a law in Python must be: it runs, and defines functions that can be called.
 #include "agent/laws/custom.h"
+#include "agent/laws/user_params.h"
 
 namespace mascot {
 namespace {
@@ -40,6 +41,34 @@ void CheckCallback(Section& law, const CustomParams& params, const PythonModule&
          std::string("expected ") + callback.name + callback.arguments + ", got " + callback.name + other);
 }
 
+/// What a parameter is whose default is `value`, for messages; empty: it may be anything.
+std::string KindOf(const py::handle& value) {
+  if (py::isinstance<py::bool_>(value)) return "true or false";
+  if (py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value)) return "a number";
+  if (py::isinstance<py::str>(value)) return "a string";
+  if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) return "a list";
+  if (py::isinstance<py::dict>(value)) return "a table";
+  return "";
+}
+
+/// Notes parameters that PARAMETERS does not have, and those that are something else than there.
+void CheckParameters(Section& law, const CustomParams& params, const PythonModule& module) {
+  const py::object declared = module.Parameters();
+  if (declared.is_none()) return;
+  if (!py::isinstance<py::dict>(declared))
+    return law.FailInText(TextKey(law), params.file + ":" + std::to_string(params.line) + ":1",
+                          "expected PARAMETERS to be a dict, got " + Repr(declared));
+  std::vector<std::string> names;
+  for (const auto& [name, value] : declared.cast<py::dict>()) names.push_back(TextOf(py::str(name)));
+  FailUnknownParams(law, params.params, std::vector<std::string_view>(names.begin(), names.end()));
+  for (const auto& [name, value] : std::get<Value::Table>(params.params.data)) {
+    if (!declared.contains(name)) continue;
+    const std::string expected = KindOf(declared[py::str(name)]);
+    if (!expected.empty() && KindOf(ToPython(value)) != expected)
+      law.FailInside("params", name, "expected " + expected + " as in PARAMETERS, got " + ToToml(value));
+  }
+}
+
 }  // namespace
 
 const char* TextKey(const Section& law) { return law.Has("file") ? "file" : "python"; }
@@ -52,6 +81,7 @@ bool TryText(Section& law, CustomParams& params, const TimeLimit& time_limit) {
     const PythonTimeLimit limit(time_limit);
     const PythonModule module(params);
     for (const Callback& callback : CallbacksOf(params.style)) CheckCallback(law, params, module, callback);
+    CheckParameters(law, params, module);
     if (module.Function("set").is_none()) params.fixed = "expected a law that defines set(me, params), got none";
     return params.style == PythonStyle::kStandard && !module.Function("message").is_none();
   } catch (const PythonError& error) {

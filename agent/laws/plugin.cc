@@ -8,6 +8,7 @@
 
 #include "agent/law_library.h"
 #include "agent/laws.h"
+#include "agent/laws/user_params.h"
 #include "experiment/toml/utf8.h"
 
 namespace mascot {
@@ -118,22 +119,12 @@ void NoteRefusal(Section& law, const std::string& words) {
     law.Fail("params", "expected what the law takes, got: " + words);
 }
 
-/// Notes the keys of [law.params] that the law has not asked for.
-void NoteUnknown(Section& law, const Value& params, const PluginParams& read) {
-  const std::vector<std::string_view> asked(read.asked().begin(), read.asked().end());
-  for (const auto& [key, value] : std::get<Value::Table>(params.data)) {
-    if (read.asked().contains(key)) continue;
-    const auto nearest = DidYouMean(key, asked);
-    law.FailInside("params", key, "unknown key" + (nearest ? " (did you mean \"" + *nearest + "\"?)" : std::string()));
-  }
-}
-
 /// Makes the law of agent `id` once, to check its parameters and to learn what it wants.
 void Try(const LawLibrary& library, const Experiment& experiment, int id, PluginConfig& plugin, Section& law) {
   PluginParams params(plugin.params);
   try {
     plugin.wanted = library.Make(SetupOf(experiment, id, params))->wanted();
-    NoteUnknown(law, plugin.params, params);
+    FailUnknownParams(law, plugin.params, std::vector<std::string_view>(params.asked().begin(), params.asked().end()));
   } catch (const std::invalid_argument& refusal) {
     NoteRefusal(law, Utf8(refusal.what()));
   } catch (...) {

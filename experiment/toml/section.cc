@@ -102,10 +102,11 @@ std::string Section::Where(std::string_view key) const { return document_->Place
 
 Section::FileText Section::TextOfFile(std::string_view key, std::string_view text_key) {
   const std::string path = table_->Read<std::string>(key, "the path of a file", std::nullopt, "", TextIn);
+  const std::filesystem::path file = std::filesystem::path(PlaceOfText(key).folder) / path;
   std::string text;
   if (!table_->Wrong(key)) {
     try {
-      text = ReadRegularFile((std::filesystem::path(PlaceOfText(key).folder) / path).string());
+      text = ReadRegularFile(file.string());
       constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some editors write it
       if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
     } catch (const ConfigError& error) {
@@ -113,7 +114,7 @@ Section::FileText Section::TextOfFile(std::string_view key, std::string_view tex
     }
   }
   table_->Record(text_key, StringToml(text));
-  return {text, std::filesystem::path(path).filename().string()};
+  return {text, file.filename().string(), file.parent_path().string()};
 }
 
 std::string Section::PathOfFile(std::string_view key) {
@@ -224,9 +225,9 @@ void Section::Supersede(std::string_view key, std::initializer_list<std::string_
   if (table_->Has(key)) table_->superseded.insert(others.begin(), others.end());
 }
 
-Value Section::Free(std::string_view key) {
+Value Section::Free(std::string_view key, const Value& absent) {
   const toml::node* node = table_->Find(key);
-  Value value = node != nullptr ? ToValue(*node) : Value{};
+  Value value = node != nullptr ? ToValue(*node) : absent;
   table_->Record(key, ToToml(value));
   return value;
 }

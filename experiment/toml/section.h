@@ -84,7 +84,8 @@ class Section {
   /// `text_key`.
   struct FileText {
     std::string text;
-    std::string name;  ///< the file's, without its folders
+    std::string name;         ///< the file's, without its folders
+    std::string folder = {};  ///< the folder of the file; "": the current one
   };
   FileText TextOfFile(std::string_view key, std::string_view text_key);
   /// The absolute path of the file that `key` names, relative to this document's folder; the file need not exist.
@@ -119,8 +120,8 @@ class Section {
   /// If this table has `key` itself, `others` are not inherited from now on: they contradict it, or belong to what it
   /// replaces.
   void Supersede(std::string_view key, std::initializer_list<std::string_view> others);
-  /// The value of `key`, of any kind (an absent one reads as an empty table).
-  Value Free(std::string_view key);
+  /// The value of `key`, of any kind; `absent` if there is none.
+  Value Free(std::string_view key, const Value& absent = {});
 
   /// Notes a mistake at the place of `key` (or of this table if absent): message = "expected ..., got ...".
   void Fail(std::string_view key, const std::string& message);
