@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 
@@ -91,14 +90,22 @@ TEST(Theory, WeighsAgentsThatAreDampedDifferently) {
   EXPECT_EQ(prediction.silent, "");
 }
 
+/// Four agents on a path that start at cos((2 i - 1) step), i = 1..4, along x. `law`: lines from [law] on.
+std::string FourInACosine(double step, const std::string& law) {
+  std::string positions;
+  for (int i = 1; i <= 4; ++i) positions += fmt::format("[{}, 0, {}], ", std::cos((2 * i - 1) * step), i);
+  return "[run]\nduration_s = 40.0\n[agents]\ncount = 4\nmodel = 'double_integrator'\nposition_m = [" + positions +
+         "]\n[graph]\ntopology = 'path'\n[law]\nname = 'consensus'\n" + law;
+}
+
 TEST(Theory, PredictsWhenTheSlowestModeHasSettled) {
-  const std::string text = kFour + "[graph]\ntopology = 'path'\n[law]\nname = 'consensus'\nbeta = 2.0\n";
+  // A team that starts in the shape of the slowest mode of a path settles when that mode does.
+  const std::string text = FourInACosine(std::numbers::pi / 8, "beta = 2.0\n");
   const Prediction prediction = Of(text);
   ASSERT_TRUE(prediction.settling_time_s);
+  const LinearMode slowest{2.0, 2 - 2 * std::cos(std::numbers::pi / 4)};
+  EXPECT_NEAR(*prediction.settling_time_s, SettlingTime(slowest, 0.01), 1e-9);
   IdealNetwork network(text);
-  // A network that starts in the shape of the slowest mode settles when that mode does.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(network.experiment.graph.Laplacian());
-  for (int i = 0; i < 4; ++i) network.motions[i].p_WB = {solver.eigenvectors()(i, 1), 0, 0};
   const double start_m = std::abs(network.agent(1).p_WB.x());
   double last_s = 0;
   while (network.time_s() < 40) {
@@ -112,9 +119,14 @@ TEST(Theory, PredictsThatFollowersGatherAtALeaderThatRests) {
   const Prediction prediction = Of(kFour + "[graph]\ntopology = 'path'\n[law]\nname = 'consensus'\nleader = 4\n");
   ASSERT_TRUE(prediction.value_m);
   EXPECT_EQ(*prediction.value_m, Eigen::Vector3d(1, 2, 2.5));
+}
+
+TEST(Theory, PredictsWhenFollowersOfALeaderThatRestsHaveSettled) {
+  // Grounded Laplacian of a path with three followers: eigenvalues 2 - 2 cos((2 k - 1) pi / 7); the team starts in the
+  // shape of the slowest mode.
+  const Prediction prediction = Of(FourInACosine(std::numbers::pi / 14, "leader = 4\n"));
   ASSERT_TRUE(prediction.settling_time_s);
-  // Grounded Laplacian of a path with three followers: eigenvalues 2 - 2 cos((2 k - 1) pi / 7).
-  const LinearMode slowest{1.0, 2 - 2 * std::cos(std::acos(-1.0) / 7)};
+  const LinearMode slowest{1.0, 2 - 2 * std::cos(std::numbers::pi / 7)};
   EXPECT_NEAR(*prediction.settling_time_s, SettlingTime(slowest, 0.01), 1e-9);
 }
 
@@ -501,9 +513,28 @@ TEST(Theory, PredictsFromTheExperimentsOwnStartWhereSamplesAreLate) {
   EXPECT_NEAR(*opposite.rate_per_s, *opposite.slowest_rate_per_s, 0.01 * *opposite.rate_per_s);
   EXPECT_GT(*same.rate_per_s, 2 * *opposite.rate_per_s);
   EXPECT_LT(*same.settling_time_s, 0.5 * *opposite.settling_time_s);
-  // Without delays all predictions are of the slowest mode.
-  EXPECT_FALSE(settles("1", "").from_start);
+  // Without delays there are few modes, and the rate is that of the slowest.
   EXPECT_EQ(settles("1", "").rate_per_s, settles("1", "").slowest_rate_per_s);
+}
+
+TEST(Theory, PredictsTheSettlingTimeFromTheExperimentsOwnStart) {
+  // Single integrators on a path, held for a period h of 0.01 s, start in one mode: lambda = 1 if the outer two start
+  // opposite each other, lambda = 3 if they start together. It decays by 1 - h lambda per tick.
+  const auto settles = [](const std::string& third) {
+    return Of(
+        "[run]\nduration_s = 100.0\n[physics]\ncollisions = false\n[agents]\ncount = 3\nmodel = "
+        "'single_integrator'\nposition_m = [[1, 0, 1], [0, 0, 2], [" +
+        third + ", 0, 3]]\n[graph]\ntopology = 'path'\n[law]\nname = 'velocity_consensus'\n");
+  };
+  const auto settled_s = [](double lambda) { return 0.01 * std::ceil(std::log(0.02) / std::log(1 - 0.01 * lambda)); };
+  EXPECT_TRUE(settles("-1").from_start);
+  EXPECT_NEAR(*settles("-1").settling_time_s, settled_s(1), 1e-9);
+  EXPECT_NEAR(*settles("1").settling_time_s, settled_s(3), 1e-9);
+  // Agents that begin together have nothing to settle: the slowest mode is all that can be said.
+  EXPECT_FALSE(Of("[run]\nduration_s = 1.0\n[agents]\ncount = 2\nmodel = 'single_integrator'\nposition_m = [[0, 0, 1], "
+                  "[0, 0, 2]]\n"
+                  "[graph]\ntopology = 'path'\n[law]\nname = 'velocity_consensus'\n")
+                   .from_start);
 }
 
 TEST(Theory, PredictsTeamsWithDelaysThatAreTooLongForEigenvalues) {

@@ -59,7 +59,7 @@ std::string EdgeText(const MinmaxEdge& edge) {
 }  // namespace
 
 std::string RateBasis(const Prediction& prediction) {
-  if (!prediction.from_start) return "slowest mode";
+  if (prediction.rate_per_s == prediction.slowest_rate_per_s) return "slowest mode";
   if (!prediction.slowest_rate_per_s) return "from this start";
   return fmt::format("from this start; slowest mode {:.4g}", *prediction.slowest_rate_per_s);
 }

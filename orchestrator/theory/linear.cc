@@ -257,12 +257,12 @@ void LinearCase::PredictValue() {
     prediction_.value_m->z() = HeldHeight(experiment_, team_);
 }
 
-/// Where the slowest mode may hardly take part in the motion, because there are many: replaces its rate and settling
-/// time by those of the experiment's own start.
+/// Replaces the settling time of the slowest mode by that of the experiment's own start; and the rate of the slowest
+/// mode too, where that mode may hardly take part in the motion, because there are many.
 void LinearCase::PredictFromStart() {
   const std::vector<int> leaders = team_.Leaders();
   const bool leader_stands = leaders.empty() || (agent(leaders.front()).v_W.isZero(0) && prediction_.value_m);
-  if ((IsModal() && !IsDelayed()) || !leader_stands) return;
+  if (!leader_stands) return;
   constexpr double kLonger = 3;  // than the slowest mode: along chains agents settle later
   const double settled_s =
       prediction_.slowest_rate_per_s ? kLonger * std::log(50) / *prediction_.slowest_rate_per_s : 0;
@@ -271,7 +271,7 @@ void LinearCase::PredictFromStart() {
   if (!from_start.settling_time_s || !from_start.rate_per_s) return;
   prediction_.from_start = true;
   prediction_.settling_time_s = from_start.settling_time_s;
-  prediction_.rate_per_s = from_start.rate_per_s;
+  if (!IsModal() || IsDelayed()) prediction_.rate_per_s = from_start.rate_per_s;
 }
 
 /// Warns that followers of a leader with constant velocity v stay behind by p_L - p = (b / p) v L_FF^-1 1.

@@ -44,12 +44,15 @@ struct Prediction {
   /// Decay rate of the slowest mode: agents agree at least as fast in the long run. With `of_agreement` false, that of
   /// each agent's flight to its waypoint.
   std::optional<double> slowest_rate_per_s;
-  /// Whether the following two are of a team that starts as the experiment's agents do, as AgreementMeter measures
-  /// them. Otherwise they are of the slowest mode: its rate, and the time until it has decayed from rest to 2 %. Along
-  /// directed chains agents settle later: the modes of a directed graph are not orthogonal.
-  bool from_start = false;
+  /// The decay rate to measure: that of the slowest mode, or, where there are many modes, as with delays, that of a team
+  /// that starts as the experiment's agents do.
   std::optional<double> rate_per_s;
+  /// When the agents settle, as AgreementMeter measures it.
   std::optional<double> settling_time_s;
+  /// Whether `settling_time_s` is of a linear team that starts as the experiment's agents do. Otherwise it is the time
+  /// until the slowest mode has decayed from rest to 2 %; along directed chains agents settle later than that, because
+  /// the modes of a directed graph are not orthogonal.
+  bool from_start = false;
   std::optional<double> control_period_bound_s;    ///< the loop is unstable from this control period on, without delays
   std::optional<DelayMargin> delay_margin;         ///< delay of neighbours' samples
   std::optional<double> own_delay_margin_s;        ///< equal delay of neighbours' samples and own states
