@@ -10,13 +10,14 @@ namespace mascot {
 using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
     EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw, CyclicPursuitLaw,
-    CustomLaw, PluginLaw;
+    DistanceFormationLaw, BearingFormationLaw, CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
-      ConsensusLaw(),  WaypointLaw(),         MinmaxLaw(),         FormationLaw(),   VelocityConsensusLaw(),
-      FiniteTimeLaw(), PrescribedTimeLaw(),   EventTriggeredLaw(), ContainmentLaw(), AverageTrackingLaw(),
-      TrajectoryLaw(), GradientTrackingLaw(), CyclicPursuitLaw(),  CustomLaw(),      PluginLaw(),
+      ConsensusLaw(),  WaypointLaw(),         MinmaxLaw(),         FormationLaw(),         VelocityConsensusLaw(),
+      FiniteTimeLaw(), PrescribedTimeLaw(),   EventTriggeredLaw(), ContainmentLaw(),       AverageTrackingLaw(),
+      TrajectoryLaw(), GradientTrackingLaw(), CyclicPursuitLaw(),  DistanceFormationLaw(), BearingFormationLaw(),
+      CustomLaw(),     PluginLaw(),
   };
   return kLaws;
 }

@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "agent/laws/leaders.h"
+#include "agent/laws/rigidity.h"
+#include "experiment/linear_algebra.h"
 #include "tests/ideal_network.h"
 #include "tests/law_run.h"
 
@@ -177,6 +179,159 @@ TEST(CyclicPursuit, FliesOnAllModels) {
   for (const char* model : {"single_integrator", "double_integrator", "quadrotor"}) {
     const LawRun run(Team(20, 100, "model = '" + std::string(model) + "'\n" + Polygon(4), Pursuit(0, 0.4)));
     EXPECT_LT(run.Measured("radius_m"), 0.02) << model;
+    EXPECT_EQ(run.prediction.silent.empty(), std::string(model) == "single_integrator");
+  }
+}
+
+// --- rigidity -------------------------------------------------------------------------------------------------
+
+TEST(Rigidity, HasTheRanksOfTextbookFrameworks) {
+  const std::vector<Eigen::Vector3d> square = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  const std::vector<Eigen::Vector3d> bent = {{0, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 1, 1}};
+  const std::vector<Eigen::Vector3d> line = {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}};
+  const std::vector<Bar> ring = {{1, 2}, {2, 3}, {3, 4}, {1, 4}};
+  const std::vector<Bar> braced = {{1, 2}, {2, 3}, {3, 4}, {1, 4}, {1, 3}};
+  const std::vector<Bar> complete = {{1, 2}, {2, 3}, {3, 4}, {1, 4}, {1, 3}, {2, 4}};
+  const auto rank = [](const auto& bars, const auto& points, Axes axes) {
+    return RankOf(RigidityMatrix(bars, points, axes));
+  };
+  const auto bearing_rank = [](const auto& bars, const auto& points, Axes axes) {
+    return RankOf(BearingRigidityMatrix(bars, points, axes));
+  };
+  EXPECT_EQ(rank(ring, square, Axes::kXy), 4);
+  EXPECT_EQ(rank(braced, square, Axes::kXy), RankOfRigid(4, Axes::kXy));
+  EXPECT_EQ(rank(complete, square, Axes::kXyz), 5) << "flat: each point can leave the plane";
+  EXPECT_EQ(rank(complete, bent, Axes::kXyz), RankOfRigid(4, Axes::kXyz));
+  EXPECT_EQ(rank(std::vector<Bar>{{1, 2}, {2, 3}, {1, 3}}, line, Axes::kXy), 2) << "the middle one can leave the line";
+  EXPECT_EQ(bearing_rank(ring, square, Axes::kXy), 4);
+  EXPECT_EQ(bearing_rank(braced, square, Axes::kXy), RankOfBearingRigid(4, Axes::kXy));
+  EXPECT_EQ(bearing_rank(ring, bent, Axes::kXyz), RankOfBearingRigid(4, Axes::kXyz))
+      << "a bent quadrangle is bearing rigid in space, with edges too few for rigidity";
+  EXPECT_EQ(RankOfRigid(2, Axes::kXyz), 1);
+  EXPECT_EQ(RankOfRigid(3, Axes::kXyz), 3);
+}
+
+// --- distance formation ---------------------------------------------------------------------------------------
+
+std::string Two(double z_m, const std::string& law, double duration_s = 1, int rate_hz = 1000) {
+  return Team(duration_s, rate_hz,
+              kSingles + "count = 2\nposition_m = [[0, 0, 1], [" + ShortestFloat(z_m) + ", 0, 1]]\n", law);
+}
+const std::string kTwoApart =
+    "[graph]\ntopology = 'complete'\n[law]\nname = 'distance_formation'\noffsets_m = [[0, 0, 0], [0, 1.5, 0]]\n";
+
+const std::string kSlow = "gain = 0.2\n";
+
+TEST(DistanceFormation, TwoAgentsFollowTheClosedForm) {
+  for (const double z_m : {0.3, 1.0, 2.5}) {
+    IdealNetwork network(Two(z_m, kTwoApart + kSlow));
+    const double d2 = 1.5 * 1.5;
+    for (const double t_s : {0.2, 0.5, 1.0}) {
+      network.RunUntil(t_s);
+      const double q = (network.agent(1).p_WB - network.agent(2).p_WB).squaredNorm();
+      EXPECT_NEAR(q, d2 / (1 + (d2 / (z_m * z_m) - 1) * std::exp(-4 * 0.2 * d2 * t_s)), 3e-3) << "sampled at 1 kHz";
+    }
+  }
+}
+
+TEST(DistanceFormation, OfTwoAgentsTheErrorIsPredictedAsItIsSampled) {
+  for (const int rate_hz : {10, 100}) {
+    const LawRun run(Two(2.5, kTwoApart + kSlow, 1, rate_hz));
+    EXPECT_GT(run.Predicted("distance_error_m"), 0.01);
+    EXPECT_NEAR(run.Measured("distance_error_m"), run.Predicted("distance_error_m"), 1e-6);
+    EXPECT_EQ(run.Law()["bounds"]["distance_error_m"], "equal");
+  }
+}
+
+/// Five agents, seven edges: rigid in the plane. The places: an irregular pentagon.
+const std::string kRigidFive =
+    "[graph]\nedges = [[1, 2], [2, 1], [2, 3], [3, 2], [3, 4], [4, 3], [4, 5], [5, 4], [5, 1], [1, 5], [1, 3], [3, 1], "
+    "[1, 4], [4, 1]]\n[law]\noffsets_m = [[0, 0, 0], [3, 0, 0], [4, 2, 0], [2, 4, 0], [-1, 2, 0]]\n";
+
+TEST(DistanceFormation, ReachesAllDistancesFromNearTheShapeAndKeepsTheCentroid) {
+  // The shape, turned by 90 degrees, shifted and disturbed.
+  const LawRun run(Team(20, 100,
+                        kSingles + "count = 5\nposition_m = [[7, 1, 1], [7.4, 4.2, 1], [4.8, 5.3, 1], [2.7, 3.2, 1], "
+                                   "[5.4, 0.3, 1]]\n",
+                        kRigidFive + "name = 'distance_formation'\n"));
+  EXPECT_LT(run.Measured("distance_error_m"), 1e-4);
+  EXPECT_LT(run.Measured("centroid_drift_m"), 1e-6);
+  EXPECT_EQ(run.Predicted("centroid_drift_m"), 0);
+  EXPECT_EQ(run.Law()["bounds"]["distance_error_m"], "at_most");
+  EXPECT_GT(run.Predicted("distance_error_m"), 0.1) << "the potential at the start";
+}
+
+TEST(DistanceFormation, ThePotentialNeverGrowsSoTheBoundHoldsFromAnyStart) {
+  const LawRun run(Team(5, 1000,
+                        kSingles + "count = 5\nposition_m = [[1, 1, 1], [0, 3, 1], [4, 1, 1], [2, 2, 1], [3, 3, 1]]\n",
+                        kRigidFive + "name = 'distance_formation'\n"));
+  EXPECT_LT(run.Measured("distance_error_m"), run.Predicted("distance_error_m"));
+}
+
+TEST(DistanceFormation, FliesOnAllModels) {
+  for (const char* model : {"single_integrator", "double_integrator", "quadrotor"}) {
+    const LawRun run(Team(
+        30, 100, "model = '" + std::string(model) + "'\ncount = 3\nposition_m = [[0, 0, 5], [4, 1, 5], [1, 3, 5]]\n",
+        "[graph]\ntopology = 'complete'\n[law]\nname = 'distance_formation'\nshape = 'circle'\n"
+        "spacing_m = 2.5\n"));
+    EXPECT_LT(run.Measured("distance_error_m"), 0.02) << model;
+    EXPECT_EQ(run.prediction.silent.empty(), std::string(model) == "single_integrator");
+  }
+}
+
+TEST(DistanceFormation, TheoryNamesTheRateBelowWhichTheSampledShapeIsUnstable) {
+  EXPECT_EQ(LawRun(Two(1.6, kTwoApart + kSlow, 5, 1)).prediction.silent, "") << "1 - T 4 gain d^2 = -0.8";
+  const LawRun run(Two(1.6, kTwoApart + "gain = 0.3\n", 5, 1));
+  EXPECT_EQ(run.prediction.silent, "the sampled team is unstable") << "1 - T 4 gain d^2 = -1.7";
+  EXPECT_THAT(run.prediction.warnings,
+              ::testing::Contains("control.rate_hz: unstable at this rate, it must be above 1.35, got 1"));
+}
+
+// --- bearing formation ----------------------------------------------------------------------------------------
+
+TEST(BearingFormation, ReachesAllDirectionsFromMixedUpStartsAndKeepsCentroidAndScale) {
+  const std::vector<std::string> starts = {"[[0, 5, 1], [5, 0, 1], [-3, -2, 1], [1, 1, 1], [2, -4, 1]]",
+                                           "[[1, 0, 1], [2, 0.1, 1], [3, 0, 1], [4, 0.1, 1], [5, 0, 1]]",
+                                           "[[4, 3, 1], [-4, 3, 1], [0, -5, 1], [1, 0, 1], [0, 2, 1]]"};
+  for (const std::string& start : starts) {
+    const LawRun run(Team(60, 50, kSingles + "count = 5\nposition_m = " + start + "\n",
+                          kRigidFive + "name = 'bearing_formation'\ngain = 2.0\n"));
+    EXPECT_LT(run.Measured("bearing_error_deg"), 0.1) << start;
+    EXPECT_NEAR(run.Measured("scale_ratio"), 1, 0.05) << start << "; velocities are held for a tick";
+    EXPECT_LT(run.Measured("centroid_drift_m"), 1e-6) << start;
+    EXPECT_EQ(run.Predicted("bearing_error_deg"), 0);
+    EXPECT_EQ(run.Predicted("scale_ratio"), 1);
+  }
+}
+
+TEST(BearingFormation, HeldVelocitiesMakeTheScaleGrowInProportionToThePeriod) {
+  const auto growth = [](int rate_hz) {
+    IdealNetwork network(Team(
+        1, rate_hz, kSingles + "count = 5\nposition_m = [[0, 5, 1], [5, 0, 1], [-3, -2, 1], [1, 1, 1], [2, -4, 1]]\n",
+        kRigidFive + "name = 'bearing_formation'\n"));
+    const auto scale2 = [&] {
+      Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+      for (const Motion& motion : network.motions) centre += motion.p_WB / 5;
+      double sum = 0;
+      for (const Motion& motion : network.motions) sum += (motion.p_WB - centre).squaredNorm();
+      return sum;
+    };
+    const double before = scale2();
+    network.RunUntil(5);
+    return scale2() / before - 1;
+  };
+  EXPECT_GT(growth(50), 0);
+  EXPECT_NEAR(growth(50) / growth(100), 2, 0.1);
+}
+
+TEST(BearingFormation, ASpaceShapeIsReachedInSpaceByAllModels) {
+  for (const char* model : {"single_integrator", "double_integrator", "quadrotor"}) {
+    const LawRun run(Team(40, 100,
+                          "model = '" + std::string(model) +
+                              "'\ncount = 4\nposition_m = [[0, 0, 10], [5, 1, 14], [2, 5, 9], [-2, 3, 12]]\n",
+                          "[graph]\ntopology = 'ring'\n[law]\nname = 'bearing_formation'\naxes = 'xyz'\ngain = 1.0\n"
+                          "offsets_m = [[0, 0, 0], [3, 0, 3], [3, 3, 0], [0, 3, 3]]\n"));
+    EXPECT_LT(run.Measured("bearing_error_deg"), 0.5) << model;
     EXPECT_EQ(run.prediction.silent.empty(), std::string(model) == "single_integrator");
   }
 }

@@ -17,6 +17,7 @@
 #include "agent/laws/pull.h"
 #include "agent/laws/reach.h"
 #include "agent/laws/row_parts.h"
+#include "agent/laws/stable_period.h"
 #include "experiment/linear_algebra.h"
 
 namespace mascot {
@@ -96,7 +97,7 @@ LawTheory PredictContainment(const Experiment& experiment) {
   if (params.gain == 0) return {.silent = "with gain = 0 followers stay where they are"};
   const Eigen::MatrixXd laplacian = experiment.graph.Laplacian();
   const Eigen::MatrixXd l_FF = BlockOf(laplacian, params.team.followers, params.team.followers);
-  if (auto unstable = WhyUnstable(experiment, params.gain * l_FF)) return *unstable;
+  if (auto unstable = WhyUnstable(experiment, LongestPeriodOf(params.gain * l_FF))) return *unstable;
   const Eigen::MatrixX3d lag = SolveColumns(l_FF, SharesOfLeaders(laplacian, params.team) * params.v_L_W) / params.gain;
   return {.figures = {{.values = {LongestRow(lag, experiment.law.axes)}}}};
 }

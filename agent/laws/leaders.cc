@@ -1,10 +1,6 @@
 #include "agent/laws/leaders.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <complex>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -44,16 +40,6 @@ Eigen::MatrixX3d StartsOf(const Experiment& experiment, std::span<const int> ids
 
 Eigen::MatrixXd SharesOfLeaders(const Eigen::MatrixXd& matrix, const LedTeam& team) {
   return -SolveColumns(BlockOf(matrix, team.followers, team.followers), BlockOf(matrix, team.followers, team.leaders));
-}
-
-std::optional<LawTheory> WhyUnstable(const Experiment& experiment, const Eigen::MatrixXd& rates) {
-  double longest_s = std::numeric_limits<double>::infinity();
-  for (const std::complex<double>& rate : Eigenvalues(rates))
-    longest_s = std::min(longest_s, 2 * rate.real() / std::norm(rate));
-  if (experiment.period_s() < longest_s) return std::nullopt;
-  return LawTheory{.silent = "the sampled team is unstable",
-                   .warnings = {fmt::format("control.rate_hz: unstable at this rate, it must be above {:.4g}, got {}",
-                                            1 / longest_s, experiment.control.rate_hz)}};
 }
 
 double LongestRow(const Eigen::MatrixX3d& rows, Axes axes) {

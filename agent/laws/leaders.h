@@ -1,11 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "agent/law_figures.h"
 #include "experiment/experiment.h"
 
 namespace mascot {
@@ -36,9 +34,6 @@ Eigen::MatrixX3d StartsOf(const Experiment& experiment, std::span<const int> ids
 /// -M_FF^-1 M_FL, for a matrix M whose M_FF is invertible: times the positions of the leaders it gives the places at
 /// which M p = 0 in the rows of the followers.
 Eigen::MatrixXd SharesOfLeaders(const Eigen::MatrixXd& matrix, const LedTeam& team);
-
-/// What theory says if p+ = p - T rates p diverges, with T the control period and `rates` in 1/s; absent: it does not.
-std::optional<LawTheory> WhyUnstable(const Experiment& experiment, const Eigen::MatrixXd& rates);
 
 /// The largest distance, along `axes`, of a follower from the place that `shares` gives it among the leaders (m).
 double LargestLag(const LedTeam& team, const Eigen::MatrixXd& shares, Axes axes, std::span<const Motion> motions);

@@ -27,7 +27,7 @@ Eigen::Vector3d PlaceOf(std::string_view shape, int i, int count) {
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> ReadPlaces(Section& law, int agents) {
+std::vector<Eigen::Vector3d> ReadPlaces(Section& law, int agents, PlaceScale scale) {
   const auto count = static_cast<std::size_t>(agents);
   law.Supersede("offsets_m", {"shape", "spacing_m"});
   law.Supersede("shape", {"offsets_m"});
@@ -39,7 +39,7 @@ std::vector<Eigen::Vector3d> ReadPlaces(Section& law, int agents) {
   std::vector<Eigen::Vector3d> places;
   if (law.Has("shape")) {
     const std::string shape = law.OneOf("shape");
-    const double spacing_m = law.Number("spacing_m");
+    const double spacing_m = scale == PlaceScale::kRead ? law.Number("spacing_m") : 1;
     for (int i = 0; i < agents; ++i) places.push_back(spacing_m * PlaceOf(shape, i, agents));
     return places;
   }

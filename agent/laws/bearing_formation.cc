@@ -1,0 +1,140 @@
+// Bearing-only formation; Zhao & Zelazo, "Bearing rigidity and almost global bearing-only formation stabilization",
+// IEEE Trans. Automatic Control 61 (2016):
+//   v_i = -gain sum_j a_ij P(g_ij) g*_ij,  P(g) = I - g g'
+// g_ij is the direction from agent i to agent j, g*_ij the one between their places. An agent needs no distance. The
+// sum of v_i is 0 and P(g_ij) takes what is along g_ij, so the centroid and the scale (the rms distance from it) stay;
+// held for a tick, velocities across the way make the scale grow a little. On an infinitesimally bearing rigid
+// framework all directions are reached from almost any start: from all but those that lead to the shape mirrored in its
+// centroid.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "agent/laws/ideal.h"
+#include "agent/laws/places.h"
+#include "agent/laws/rigidity.h"
+#include "agent/laws/row_parts.h"
+
+namespace mascot {
+namespace {
+
+constexpr auto kBearingFormationParameters =
+    Joined(kPlaceKeysWithoutScale,
+           std::array{
+               key::Number("gain", {0, 1000}, "speed per neighbour that is seen at right angles to its place")
+                   .Default("1.0")
+                   .Unit("m/s")
+                   .Live(),
+           });
+
+constexpr LawFigure kBearingFormationFigures[] = {
+    {.name = "bearing_error_deg", .meaning = "largest error of the direction to a neighbour, at the end"},
+    {.name = "scale_ratio", .meaning = "rms distance from the agents' mean, as a multiple of that at the start"},
+    {.name = "centroid_drift_m", .meaning = "way of the agents' mean from its start, at the end"},
+};
+
+struct BearingFormationParams final : LawParams {
+  std::vector<Eigen::Vector3d> d_W;  ///< each agent's place, by id - 1 (m)
+  double gain = 0;                   ///< m/s
+};
+
+class BearingFormation final : public Law {
+ public:
+  explicit BearingFormation(const AgentConfig& agent) { Adopt(agent); }
+  Wanted wanted() const override { return Wanted::kVelocity; }
+  void Adopt(const AgentConfig& agent) override { agent_ = &agent; }
+
+  Eigen::Vector3d Want_W(double /*t_s*/, const Motion& self, std::span<const Heard> heard) override {
+    const auto& params = ParamsOf<BearingFormationParams>(agent_->law);
+    const Axes axes = agent_->law.axes;
+    Eigen::Vector3d turn_W = Eigen::Vector3d::Zero();
+    for (const Heard& j : heard) {
+      const Eigen::Vector3d g = Along(axes, j.motion.p_WB - self.p_WB).normalized();  // 0 if they are in one place
+      const Eigen::Vector3d wanted_g = SpanOf({agent_->id, j.id}, params.d_W, axes).normalized();
+      turn_W -= j.weight * (wanted_g - g * g.dot(wanted_g));
+    }
+    return params.gain * turn_W;
+  }
+
+ private:
+  const AgentConfig* agent_ = nullptr;  // the experiment owns it
+};
+
+std::shared_ptr<const LawParams> ReadBearingFormation(const Experiment& experiment, const LawConfig& law,
+                                                      Section& section) {
+  auto params = std::make_shared<BearingFormationParams>();
+  ExpectNoLeader(law, section);
+  params->d_W = ReadPlaces(section, experiment.size(), PlaceScale::kNone);
+  params->gain = section.Number("gain");
+  ExpectRigid(experiment, params->d_W, law.axes, Rigidity::kBearings, section);
+  return params;
+}
+
+LawTheory PredictBearingFormation(const Experiment& experiment) {
+  if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty()) return {.silent = std::move(why)};
+  if (experiment.size() > kMostAgentsOfRigidity) return {.silent = "the team is large: its rigidity is not checked"};
+  return {.figures = {{.values = {0.0}}, {.values = {1.0}}, {.values = {0.0}}}};
+}
+
+class BearingFormationMeter final : public LawMeter {
+ public:
+  BearingFormationMeter(const Experiment& experiment, std::span<const int> ids) : now_(&experiment), id_(ids.front()) {
+    start_W_ = StartsOf(experiment);
+    start_m_ = ScaleOf(start_W_);
+  }
+  void Adopt(const Experiment& now) override { now_ = &now; }
+  void Add(const TeamRow& row) override { p_W_ = PositionsOf(row.motions); }
+  std::vector<FigureValues> Figures() const override {
+    const Eigen::Vector3d drift_W = CentroidOf(p_W_) - CentroidOf(start_W_);
+    return {{LargestError_deg()}, {ScaleOf(p_W_) / start_m_}, {Along(axes(), drift_W).norm()}};
+  }
+
+ private:
+  Axes axes() const { return now_->agent(id_).law.axes; }
+  double ScaleOf(const std::vector<Eigen::Vector3d>& p_W) const {
+    const Eigen::Vector3d centre_W = CentroidOf(p_W);
+    double squares = 0;
+    for (const Eigen::Vector3d& p : p_W) squares += Along(axes(), p - centre_W).squaredNorm();
+    return std::sqrt(squares / static_cast<double>(p_W.size()));
+  }
+  double LargestError_deg() const {
+    const auto& d_W = ParamsOf<BearingFormationParams>(now_->agent(id_).law).d_W;
+    double largest_rad = 0;
+    for (const Bar& bar : BarsOf(now_->graph)) {
+      const Eigen::Vector3d is_W = SpanOf(bar, p_W_, axes()), wanted_W = SpanOf(bar, d_W, axes());
+      largest_rad = std::max(largest_rad, std::atan2(is_W.cross(wanted_W).norm(), is_W.dot(wanted_W)));
+    }
+    return largest_rad * 180 / std::numbers::pi;
+  }
+
+  const Experiment* now_;
+  int id_;
+  std::vector<Eigen::Vector3d> start_W_, p_W_;
+  double start_m_ = 0;
+};
+
+}  // namespace
+
+LawEntry BearingFormationLaw() {
+  return {
+      .name = "bearing_formation",
+      .summary = "agents reach the directions of a formation, with its scale and place as they were",
+      .equation = "v_i = -gain sum_j a_ij P(g_ij) g*_ij,  P(g) = I - g g'",
+      .theory =
+          "infinitesimally bearing rigid: all directions are reached from almost any start; centroid and scale stay",
+      .source = "Zhao & Zelazo (2016)",
+      .parameters = kBearingFormationParameters,
+      .figures = kBearingFormationFigures,
+      .drawing = {},
+      .read = ReadBearingFormation,
+      .make = MakeOf<BearingFormation>,
+      .wanted = WantsVelocity,
+      .predict = PredictBearingFormation,
+      .meter = MeterOf<BearingFormationMeter>};
+}
+
+}  // namespace mascot

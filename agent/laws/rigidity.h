@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "experiment/experiment.h"
+
+namespace mascot {
+
+// Frameworks: an undirected graph whose agents have places.
+
+/// Above this many agents no rank is computed.
+inline constexpr int kMostAgentsOfRigidity = 200;
+
+/// A pair of agents that hear each other: i < j.
+struct Bar {
+  int i = 0, j = 0;
+  double weight = 1;
+};
+/// The edges of an undirected graph, each once.
+std::vector<Bar> BarsOf(const Graph& graph);
+/// The vector from agent i to agent j along `axes`.
+Eigen::Vector3d SpanOf(const Bar& bar, std::span<const Eigen::Vector3d> points, Axes axes);
+/// Its length, and the square of that.
+double LengthOf(const Bar& bar, std::span<const Eigen::Vector3d> points, Axes axes);
+double SquareOf(const Bar& bar, std::span<const Eigen::Vector3d> points, Axes axes);
+
+/// A row for each bar, CountOf(axes) columns for each agent: d/dp of half the squares of all lengths.
+Eigen::MatrixXd RigidityMatrix(std::span<const Bar> bars, std::span<const Eigen::Vector3d> points, Axes axes);
+/// The largest eigenvalue of R'WR, with R that matrix and W the weights of the bars (m^2).
+double LargestStiffness(std::span<const Bar> bars, std::span<const Eigen::Vector3d> points, Axes axes);
+/// Rank of the rigidity matrix if lengths fix the shape against small changes: all motions but those of a rigid body
+/// change a length.
+int RankOfRigid(int agents, Axes axes);
+
+/// CountOf(axes) rows for each bar: d/dp of all directions. The points of a bar must differ.
+Eigen::MatrixXd BearingRigidityMatrix(std::span<const Bar> bars, std::span<const Eigen::Vector3d> points, Axes axes);
+/// Its rank if directions fix the shape, up to its scale: all motions but shifts and scaling change a direction.
+int RankOfBearingRigid(int agents, Axes axes);
+
+/// What a framework is checked for.
+enum class Rigidity { kLengths, kBearings };
+/// Notes a mistake in `section`, a law's table without others, unless graph and places suit a law that keeps the shape
+/// by lengths or directions. Ranks are left out above kMostAgentsOfRigidity.
+void ExpectRigid(const Experiment& experiment, std::span<const Eigen::Vector3d> places_W, Axes axes, Rigidity rigidity,
+                 Section& section);
+
+/// The positions of the whole team, by id - 1.
+std::vector<Eigen::Vector3d> PositionsOf(std::span<const Motion> motions);
+std::vector<Eigen::Vector3d> StartsOf(const Experiment& experiment);
+Eigen::Vector3d CentroidOf(std::span<const Eigen::Vector3d> points);
+
+}  // namespace mascot

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "agent/law_figures.h"
+#include "experiment/experiment.h"
+
+namespace mascot {
+
+/// p+ = p - T rates p decays for all control periods T below this (s); `rates` in 1/s, eigenvalues with positive real
+/// parts.
+double LongestPeriodOf(const Eigen::MatrixXd& rates);
+/// What theory says of a law whose control period must be below `longest_s`; absent: it is.
+std::optional<LawTheory> WhyUnstable(const Experiment& experiment, double longest_s);
+
+}  // namespace mascot
