@@ -54,10 +54,6 @@ std::unique_ptr<Law> MakeConsensus(const Experiment& experiment, int id) {
   return std::make_unique<Consensus>(params);
 }
 
-std::span<const Eigen::Vector3d> WaypointsOfConsensus(const LawConfig& law) {
-  return WaypointsOf(ParamsOf<ConsensusParams>(law).leader_flight);
-}
-
 LinearForm LinearConsensus(const LawConfig& law) { return LinearFormOf(ParamsOf<ConsensusParams>(law)); }
 
 }  // namespace
@@ -78,10 +74,6 @@ const std::optional<WaypointParams>& FlightOfLeader(const LawConfig& law) {
   return ParamsOf<ConsensusParams>(law).leader_flight;
 }
 
-std::map<std::string, Value> GoToOfConsensus(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s) {
-  return GoToOfLeader(FlightOfLeader, agent, p_W, t_s);
-}
-
 LawEntry ConsensusLaw() {
   return {.name = "consensus",
           .summary = "agents meet, or gather at a leader, by what they hear of their neighbours",
@@ -98,8 +90,8 @@ LawEntry ConsensusLaw() {
           .drawing = {.pictures = kDisagreementPicture},
           .read = ReadConsensus,
           .make = MakeConsensus,
-          .go_to = GoToOfConsensus,
-          .waypoints_W = WaypointsOfConsensus,
+          .go_to = GoToOf<FlightOfLeader>,
+          .waypoints_W = LeaderWaypointsOf<FlightOfLeader>,
           .linear = LinearConsensus};
 }
 

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <map>
 #include <optional>
-#include <string>
 
 #include "agent/laws/waypoint_flight.h"
 #include "experiment/experiment.h"
@@ -42,7 +40,5 @@ void ReadGains(const LawConfig& law, Section& section, ConsensusParams& params);
 LinearForm LinearFormOf(const ConsensusParams& params);
 /// How the leader flies, of consensus and formation.
 const std::optional<WaypointParams>& FlightOfLeader(const LawConfig& law);
-/// LawEntry::go_to of consensus and formation.
-std::map<std::string, Value> GoToOfConsensus(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s);
 
 }  // namespace mascot

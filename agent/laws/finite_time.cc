@@ -17,6 +17,7 @@
 #include "agent/laws/ideal.h"
 #include "agent/laws/pull.h"
 #include "agent/laws/row_parts.h"
+#include "agent/laws/sgn.h"
 
 namespace mascot {
 namespace {
@@ -43,8 +44,6 @@ struct FiniteTimeParams final : LawParams {
   double gain = 0;
   double alpha = 0;
 };
-
-double Sgn(double x) { return (x > 0) - (x < 0); }
 
 class FiniteTime final : public Law {
  public:

@@ -65,10 +65,6 @@ std::unique_ptr<Law> MakeFormation(const Experiment& experiment, int id) {
   return std::make_unique<Formation>(params, id);
 }
 
-std::span<const Eigen::Vector3d> WaypointsOfFormation(const LawConfig& law) {
-  return WaypointsOf(ParamsOf<FormationParams>(law).leader_flight);
-}
-
 LinearForm LinearFormation(const LawConfig& law) { return LinearFormOf(ParamsOf<FormationParams>(law)); }
 
 std::span<const Eigen::Vector3d> FormationPlaces_W(const LawConfig& law) { return ParamsOf<FormationParams>(law).d_W; }
@@ -91,8 +87,8 @@ LawEntry FormationLaw() {
           .read = ReadFormation,
           .make = MakeFormation,
           .places_W = FormationPlaces_W,
-          .go_to = GoToOfConsensus,
-          .waypoints_W = WaypointsOfFormation,
+          .go_to = GoToOf<FlightOfLeader>,
+          .waypoints_W = LeaderWaypointsOf<FlightOfLeader>,
           .linear = LinearFormation};
 }
 

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "agent/laws/waypoint_flight.h"
@@ -14,8 +15,18 @@ namespace mascot {
 using LeaderFlight = const std::optional<WaypointParams>&(const LawConfig& law);
 /// Makes the law of a leader, which does not use what it hears: it keeps its velocity (a = 0), or flies waypoints.
 std::unique_ptr<Law> MakeLeader(LeaderFlight* flight_of, const AgentConfig& agent);
-/// LawEntry::go_to for laws with such a leader.
+/// The parameters that make such a leader fly to `p_W`, as LawEntry::go_to gives them.
 std::map<std::string, Value> GoToOfLeader(LeaderFlight* flight_of, const AgentConfig& agent, const Eigen::Vector3d& p_W,
                                           double t_s);
+
+/// LawEntry::go_to and LawEntry::waypoints_W for laws with such a leader.
+template <LeaderFlight* flight_of>
+std::map<std::string, Value> GoToOf(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s) {
+  return GoToOfLeader(flight_of, agent, p_W, t_s);
+}
+template <LeaderFlight* flight_of>
+std::span<const Eigen::Vector3d> LeaderWaypointsOf(const LawConfig& law) {
+  return WaypointsOf(flight_of(law));
+}
 
 }  // namespace mascot
