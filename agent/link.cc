@@ -24,7 +24,7 @@ Link::Link(const LinkConfig& config, int rate_hz, std::uint64_t seed, int hearer
 
 void Link::Adopt(const LinkConfig& config) {
   config_ = config;
-  hold_ticks_ = std::llround(std::floor(config.hold_s * rate_hz_ + kRounding));
+  hold_ticks_ = HoldTicks(config.hold_s, rate_hz_);
   const auto places = static_cast<std::size_t>(Ticks(config.delay_s + config.jitter_s, rate_hz_)) + 1;
   if (places <= arrivals_.size()) return;
   std::vector<Packet> arrivals(places);
@@ -36,6 +36,10 @@ void Link::Adopt(const LinkConfig& config) {
 // Rounds up, but a time that is a whole number of ticks except for a rounding error is that number.
 std::int64_t Link::Ticks(double time_s, int rate_hz) {
   return std::max<std::int64_t>(0, std::llround(std::ceil(time_s * rate_hz - kRounding)));
+}
+
+std::int64_t Link::HoldTicks(double time_s, int rate_hz) {
+  return std::llround(std::floor(time_s * rate_hz + kRounding));
 }
 
 bool Link::Loses(std::int64_t tick) {

@@ -59,6 +59,8 @@ class Link {
   const EdgeCount& count() const { return count_; }
   /// Number of ticks after which a sample with a delay of `time_s` arrives, rounded up.
   static std::int64_t Ticks(double time_s, int rate_hz);
+  /// For how many ticks a sample may stand in for newer ones with a hold_s of `time_s`, rounded down.
+  static std::int64_t HoldTicks(double time_s, int rate_hz);
 
  private:
   enum Draw : std::uint64_t { kLoss, kChange, kDelay, kReordering };

@@ -537,6 +537,30 @@ TEST(Theory, PredictsTheSettlingTimeFromTheExperimentsOwnStart) {
                    .from_start);
 }
 
+TEST(Theory, WarnsThatALostSampleIsSilenceAndOfWhatThatCosts) {
+  // Single integrators on a path of two: lambda = 2 without loss, and 1.5 on average if a quarter is lost; held for a
+  // period of 0.01 s it decays at -ln(1 - 0.01 lambda) / 0.01.
+  const std::string two =
+      "[run]\nduration_s = 5.0\n[agents]\ncount = 2\nmodel = 'single_integrator'\nposition_m = [[0, 0, 1], [1, 0, "
+      "2]]\n[graph]\ntopology = 'path'\n[law]\nname = 'velocity_consensus'\n[link]\n";
+  const std::string silence =
+      "link.hold_s: below one control period, 0.01 s, it lets a lost sample be silence for that tick: on average what "
+      "is "
+      "heard counts for 0.75 of its weight, and the slowest mode decays at 1.511 instead of 2.02 1/s; a longer one "
+      "keeps "
+      "the last sample instead";
+  EXPECT_THAT(Of(two + "loss = 0.25\n").warnings, ElementsAre(silence));
+  EXPECT_THAT(Of(two + "loss = 0.25\nhold_s = 0.005\n").warnings, ElementsAre(silence));
+  EXPECT_THAT(Of(two + "loss = 0.25\nhold_s = 0.01\n").warnings, IsEmpty());
+  EXPECT_THAT(Of(two + "loss = 0.0\n").warnings, IsEmpty());
+  EXPECT_THAT(
+      Of(two + "loss = 0.25\ndelay_s = 0.05\n").warnings,
+      ElementsAre("link.hold_s: below one control period, 0.01 s, it lets a lost sample be silence for that tick: "
+                  "on average what is heard counts for 0.75 of its weight; a longer one keeps the last sample "
+                  "instead"))
+      << "a delay changes the rate, too";
+}
+
 TEST(Theory, PredictsTeamsWithDelaysThatAreTooLongForEigenvalues) {
   const Prediction prediction =
       Of(kFive + kSingles + kPath + "[link]\ndelay_s = 0.5\n[law]\nname = 'velocity_consensus'\n");

@@ -16,6 +16,9 @@ bool AnyLink(const Experiment& experiment, Property property) {
   return false;
 }
 
+/// Whether the link puts an older sample in the place of a lost one.
+bool Holds(const LinkConfig& link, int rate_hz) { return Link::HoldTicks(link.hold_s, rate_hz) > 0; }
+
 }  // namespace
 
 double Delivered(const LinkConfig& link) {
@@ -39,6 +42,15 @@ Graph OnAverage(const Graph& graph, const LinkTable& links) {
 
 bool LosesSome(const Experiment& experiment) {
   return AnyLink(experiment, [](const LinkConfig& link) { return Delivered(link) > 0 && Delivered(link) < 1; });
+}
+
+double LeastDeliveredUnheld(const Experiment& experiment) {
+  double least = 1;
+  AnyLink(experiment, [&](const LinkConfig& link) {
+    if (!Holds(link, experiment.control.rate_hz) && Delivered(link) > 0) least = std::min(least, Delivered(link));
+    return false;
+  });
+  return least;
 }
 
 std::int64_t DelayTicks(const Experiment& experiment, int hearer, int heard) {
@@ -83,7 +95,8 @@ std::string RandomAge(const Experiment& experiment) {
     return "link.jitter_s: delays are random";
   if (AnyLink(experiment, [](const LinkConfig& link) { return link.delay_s > 0 && link.reordering > 0; }))
     return "link.reordering: delays are random";
-  if (AnyLink(experiment, [](const LinkConfig& link) { return link.hold_s > 0 && Delivered(link) < 1; }))
+  const int rate_hz = experiment.control.rate_hz;
+  if (AnyLink(experiment, [&](const LinkConfig& link) { return Holds(link, rate_hz) && Delivered(link) < 1; }))
     return "link.hold_s: what is heard in place of a lost sample is of a random age";
   return "";
 }

@@ -14,6 +14,9 @@ double Delivered(const LinkConfig& link);
 Graph OnAverage(const Graph& graph, const LinkTable& links);
 /// Whether some link loses some of its samples, but not all.
 bool LosesSome(const Experiment& experiment);
+/// The least fraction of samples that a link delivers which loses some of them and holds none in their place
+/// (link.hold_s below one tick); 1 if there is no such link.
+double LeastDeliveredUnheld(const Experiment& experiment);
 /// The delay, without jitter, of the link on which `hearer` hears `heard`, in ticks.
 std::int64_t DelayTicks(const Experiment& experiment, int hearer, int heard);
 /// The delay of agents' own position and velocity, in ticks.
