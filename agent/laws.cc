@@ -10,14 +10,14 @@ namespace mascot {
 using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
     EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw, CyclicPursuitLaw,
-    DistanceFormationLaw, BearingFormationLaw, CustomLaw, PluginLaw;
+    DistanceFormationLaw, BearingFormationLaw, PlatoonLaw, CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
       ConsensusLaw(),  WaypointLaw(),         MinmaxLaw(),         FormationLaw(),         VelocityConsensusLaw(),
       FiniteTimeLaw(), PrescribedTimeLaw(),   EventTriggeredLaw(), ContainmentLaw(),       AverageTrackingLaw(),
       TrajectoryLaw(), GradientTrackingLaw(), CyclicPursuitLaw(),  DistanceFormationLaw(), BearingFormationLaw(),
-      CustomLaw(),     PluginLaw(),
+      PlatoonLaw(),    CustomLaw(),           PluginLaw(),
   };
   return kLaws;
 }

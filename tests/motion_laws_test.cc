@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "agent/laws/string_stability.h"
 #include "orchestrator/sweeping/metrics.h"
 #include "tests/ideal_network.h"
 #include "tests/law_run.h"
@@ -221,6 +222,91 @@ TEST(Trajectory, TheoryIsSilentWhereTheLongRunIsNotReached) {
   EXPECT_EQ(LawRun(Circling("", "[[agents.override]]\nid = 1\ncontrol = { max_acceleration_m_per_s2 = 1.0 }\n"))
                 .prediction.silent,
             "the limit of the acceleration cuts what the trajectory takes");
+}
+
+// --- platoons ---------------------------------------------------------------------------------------------
+
+/// A platoon of four with p = 2, d = 1.5, that starts with its distances at 5 m/s. `law`: more lines of [law].
+std::string Driving(double headway_s, const std::string& law = "", const std::string& model = "double_integrator") {
+  std::string positions, velocities;
+  for (int i = 0; i < 4; ++i) {
+    positions += (i == 0 ? "[" : ", [") + ShortestFloat(-i * (3 + 5 * headway_s)) + ", 0, 1]";
+    velocities += i == 0 ? "[5, 0, 0]" : ", [5, 0, 0]";
+  }
+  return "[run]\nduration_s = 45\n[agents]\ncount = 4\nmodel = '" + model + "'\nposition_m = [" + positions +
+         "]\nvelocity_m_per_s = [" + velocities +
+         "]\n[graph]\ntopology = 'directed_path'\n[law]\nname = 'platoon'\nspacing_m = 3\np_gain = 2\nd_gain = 1.5\n"
+         "disturbance_period_s = 5\nheadway_s = " +
+         ShortestFloat(headway_s) + "\n" + law;
+}
+
+TEST(Platoon, TheStringIsStableFromThePredictedHeadwayOnAndNotBelow) {
+  for (const double h : {0.001, 0.05, 0.2}) {
+    const StringStability at{.p = 2, .d = 1.5, .headway_s = 0.5, .h = h};
+    EXPECT_NEAR(at.LeastHeadway_s(), 0.5, 1e-12) << "(sqrt(d^2 + 2 p) - d) / p";
+    EXPECT_NEAR(at.LargestGain(), 1, 1e-12) << h;
+    const StringStability above{.p = 2, .d = 1.5, .headway_s = 0.51, .h = h};
+    EXPECT_EQ(above.LargestGain(), 1) << h;
+    const StringStability below{.p = 2, .d = 1.5, .headway_s = 0.49, .h = h};
+    EXPECT_GT(below.LargestGain(), 1 + 1e-5) << h;
+    const StringStability constant{.p = 2, .d = 1.5, .headway_s = 0, .h = h};
+    EXPECT_GT(constant.LargestGain(), 1.3) << "a constant spacing never does";
+  }
+}
+
+TEST(Platoon, TheLargestGainIsThatOfASearchOverAllFrequencies) {
+  for (const double headway_s : {0.0, 0.1, 0.3, 0.45})
+    for (const double h : {0.01, 0.1, 0.2}) {
+      const StringStability string{.p = 2, .d = 1.5, .headway_s = headway_s, .h = h};
+      double largest = 0;
+      for (int k = 1; k <= 20000; ++k) largest = std::max(largest, string.Gain(k * 5e-4));
+      EXPECT_NEAR(string.LargestGain(), largest, 1e-6) << headway_s << " " << h;
+    }
+}
+
+TEST(Platoon, SwingsGrowOrShrinkByThePredictedFactorFromVehicleToVehicle) {
+  for (const double headway_s : {0.2, 0.8}) {
+    const LawRun run(Driving(headway_s));
+    const double w = 2 * std::numbers::pi / 5, d = 1.5 + 2 * headway_s;  // |Gamma(jw)| without the hold
+    const double gamma = std::sqrt((4 + 2.25 * w * w) / ((2 - w * w) * (2 - w * w) + d * d * w * w));
+    const auto& predicted = run.Law()["predicted"]["amplification"];
+    const auto& measured = run.Law()["amplification"];
+    ASSERT_EQ(measured.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(predicted[i].get<double>(), gamma, 0.02) << headway_s;
+      EXPECT_NEAR(measured[i].get<double>(), predicted[i].get<double>(), 2e-4) << headway_s << " follower " << i + 1;
+    }
+    EXPECT_EQ(run.Law()["bounds"]["string_gain"], "at_most");
+    EXPECT_LE(run.Measured("string_gain"), run.Predicted("string_gain") + 1e-4);
+    EXPECT_EQ(run.Predicted("string_gain") > 1, headway_s < 0.5);
+    const bool warns = run.prediction.warnings.size() == 1;
+    EXPECT_EQ(warns, headway_s < 0.5);
+    if (warns) {
+      EXPECT_THAT(run.prediction.warnings[0], HasSubstr("a headway of 0.5 s would do"));
+    }
+  }
+}
+
+TEST(Platoon, KeepsItsDistancesWestwardsTooAndTheSmallestIsMeasured) {
+  std::string toml = Driving(0.8, "direction = 'west'\ndisturbance_m_per_s = 0.0\nspeed_m_per_s = 2\n");
+  IdealNetwork network(toml);
+  network.RunUntil(40);
+  for (int id = 2; id <= 4; ++id) {
+    EXPECT_NEAR(network.agent(id).p_WB.x() - network.agent(id - 1).p_WB.x(), 3 + 0.8 * 2, 1e-3) << id;
+    EXPECT_NEAR(network.agent(id).v_WB.x(), -2, 1e-4) << id;
+  }
+  const LawRun run(Driving(0.2));
+  EXPECT_NEAR(run.Measured("least_gap_m"), 4, 0.7);
+  EXPECT_LT(run.Measured("least_gap_m"), 4);
+}
+
+TEST(Platoon, FliesOnQuadrotorsAndSingleIntegrators) {
+  const LawRun quadrotor(Driving(0.8, "", "quadrotor"));
+  EXPECT_NEAR(quadrotor.Law()["amplification"][2].get<double>(),
+              quadrotor.Law()["predicted"]["amplification"][2].get<double>(), 0.1);
+  const LawRun single(Driving(0.8, "", "single_integrator"));
+  EXPECT_LT(single.Measured("string_gain"), 1);
+  EXPECT_EQ(single.prediction.silent, "the closed form is of double integrators");
 }
 
 }  // namespace

@@ -18,6 +18,12 @@ std::unique_ptr<Law> MakeOf(const Experiment& experiment, int id) {
   return std::make_unique<OneLaw>(experiment.agent(id));
 }
 
+/// LawEntry::make for a law that knows the control period, too.
+template <class OneLaw>
+std::unique_ptr<Law> MakeWithPeriod(const Experiment& experiment, int id) {
+  return std::make_unique<OneLaw>(experiment.agent(id), experiment.period_s());
+}
+
 /// LawEntry::meter.
 template <class Meter>
 std::unique_ptr<LawMeter> MeterOf(const Experiment& experiment, std::span<const int> ids) {

@@ -55,10 +55,6 @@ class Trajectory final : public Law {
   const TrajectoryParams* params_ = nullptr;  // the experiment owns them
 };
 
-std::unique_ptr<Law> MakeTrajectory(const Experiment& experiment, int id) {
-  return std::make_unique<Trajectory>(experiment.agent(id), experiment.period_s());
-}
-
 std::shared_ptr<const LawParams> ReadTrajectory(const Experiment& experiment, const LawConfig& /*law*/,
                                                 Section& section) {
   auto params = std::make_shared<TrajectoryParams>();
@@ -141,7 +137,7 @@ LawEntry TrajectoryLaw() {
           .axes = Axes::kXyz,
           .drawing = {},
           .read = ReadTrajectory,
-          .make = MakeTrajectory,
+          .make = MakeWithPeriod<Trajectory>,
           .places_W = PlacesOfTrajectory_W,
           .predict = PredictTrajectory,
           .meter = MeterOf<TrajectoryMeter>};
