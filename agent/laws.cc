@@ -9,15 +9,15 @@ namespace mascot {
 
 using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
-    EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw, CyclicPursuitLaw,
-    DistanceFormationLaw, BearingFormationLaw, PlatoonLaw, CustomLaw, PluginLaw;
+    RendezvousLaw, EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw,
+    CyclicPursuitLaw, DistanceFormationLaw, BearingFormationLaw, PlatoonLaw, CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
-      ConsensusLaw(),  WaypointLaw(),         MinmaxLaw(),         FormationLaw(),         VelocityConsensusLaw(),
-      FiniteTimeLaw(), PrescribedTimeLaw(),   EventTriggeredLaw(), ContainmentLaw(),       AverageTrackingLaw(),
-      TrajectoryLaw(), GradientTrackingLaw(), CyclicPursuitLaw(),  DistanceFormationLaw(), BearingFormationLaw(),
-      PlatoonLaw(),    CustomLaw(),           PluginLaw(),
+      ConsensusLaw(),        WaypointLaw(),       MinmaxLaw(),           FormationLaw(),      VelocityConsensusLaw(),
+      FiniteTimeLaw(),       PrescribedTimeLaw(), RendezvousLaw(),       EventTriggeredLaw(), ContainmentLaw(),
+      AverageTrackingLaw(),  TrajectoryLaw(),     GradientTrackingLaw(), CyclicPursuitLaw(),  DistanceFormationLaw(),
+      BearingFormationLaw(), PlatoonLaw(),        CustomLaw(),           PluginLaw(),
   };
   return kLaws;
 }
