@@ -10,14 +10,14 @@ namespace mascot {
 using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
     RendezvousLaw, EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw,
-    CyclicPursuitLaw, DistanceFormationLaw, BearingFormationLaw, PlatoonLaw, CustomLaw, PluginLaw;
+    CyclicPursuitLaw, DistanceFormationLaw, BearingFormationLaw, PlatoonLaw, PursuitEvasionLaw, CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
       ConsensusLaw(),        WaypointLaw(),       MinmaxLaw(),           FormationLaw(),      VelocityConsensusLaw(),
       FiniteTimeLaw(),       PrescribedTimeLaw(), RendezvousLaw(),       EventTriggeredLaw(), ContainmentLaw(),
       AverageTrackingLaw(),  TrajectoryLaw(),     GradientTrackingLaw(), CyclicPursuitLaw(),  DistanceFormationLaw(),
-      BearingFormationLaw(), PlatoonLaw(),        CustomLaw(),           PluginLaw(),
+      BearingFormationLaw(), PlatoonLaw(),        PursuitEvasionLaw(),   CustomLaw(),         PluginLaw(),
   };
   return kLaws;
 }

@@ -2,7 +2,9 @@
 // in whole runs.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "agent/laws/string_stability.h"
@@ -307,6 +309,67 @@ TEST(Platoon, FliesOnQuadrotorsAndSingleIntegrators) {
   const LawRun single(Driving(0.8, "", "single_integrator"));
   EXPECT_LT(single.Measured("string_gain"), 1);
   EXPECT_EQ(single.prediction.silent, "the closed form is of double integrators");
+}
+
+// --- pursuit and evasion ----------------------------------------------------------------------------------
+
+/// Agent 1 flees, the others start at these places. `more`: of [law].
+std::string Chase(const std::string& positions, int agents, const std::string& more = "",
+                  const std::string& model = "single_integrator") {
+  return "[run]\nduration_s = 30\n[physics]\ncollisions = false\n[agents]\ncount = " + std::to_string(agents) +
+         "\nmodel = '" + model + "'\nposition_m = " + positions + "\n[law]\nname = 'pursuit_evasion'\nleader = 1\n" +
+         more;
+}
+const std::string kThree = "[[0, 0, 1], [-3, -4, 1], [7, 0, 1], [-2, 6, 1]]";
+
+TEST(PursuitEvasion, ASinglePursuerCapturesExactlyWhenTheDifferenceOfSpeedsHasClosedTheDistance) {
+  const LawRun run(Chase("[[0, 0, 1], [-3, -4, 2]]", 2));
+  EXPECT_DOUBLE_EQ(run.Predicted("capture_time_s"), 11.75) << "(5 - 0.3) / (1 - 0.6): heights do not count";
+  EXPECT_EQ(run.Law()["bounds"]["capture_time_s"], "equal");
+  EXPECT_NEAR(run.Measured("capture_time_s"), 11.75, 0.011) << "tolerance: one tick, for rounding";
+}
+
+TEST(PursuitEvasion, SeveralCaptureWithinTheBoundOfTheNearest) {
+  const LawRun run(Chase(kThree, 4));
+  EXPECT_DOUBLE_EQ(run.Predicted("capture_time_s"), 11.75);
+  EXPECT_EQ(run.Law()["bounds"]["capture_time_s"], "at_most");
+  EXPECT_LT(run.Measured("capture_time_s"), 11.75);
+  EXPECT_LE(run.Measured("closest_m"), 0.3);
+}
+
+TEST(PursuitEvasion, EachPursuerComesCloserAtEveryTickByTheDifferenceOfSpeedsAtLeast) {
+  IdealNetwork network(Chase(kThree, 4));
+  const auto distance_m = [&](int id) { return (network.agent(id).p_WB - network.agent(1).p_WB).norm(); };
+  for (int k = 0; k < 500; ++k) {
+    const double before[] = {distance_m(2), distance_m(3), distance_m(4)};
+    if (*std::min_element(std::begin(before), std::end(before)) <= 0.3) break;
+    network.Step();
+    for (int id = 2; id <= 4; ++id) ASSERT_LE(distance_m(id), before[id - 2] - 0.004 + 1e-12) << id << " " << k;
+  }
+}
+
+TEST(PursuitEvasion, ASlowPursuerNeverCapturesAndTheorySaysNothing) {
+  const LawRun run(Chase("[[0, 0, 1], [-3, -4, 1]]", 2, "evader_speed_m_per_s = 1.1\n"));
+  EXPECT_TRUE(run.Law()["capture_time_s"].is_null());
+  EXPECT_EQ(run.prediction.silent, "pursuers are not faster than the evader");
+  EXPECT_NEAR(run.Measured("closest_m"), 5, 1e-9) << "at the start";
+  EXPECT_EQ(LawRun(Chase(kThree, 4, "capture_radius_m = 0.005\n")).prediction.silent,
+            "a pursuer may fly past the evader within a tick");
+}
+
+TEST(PursuitEvasion, WhoDoesNotHearTheEvaderStaysWhereItIs) {
+  IdealNetwork network(Chase(kThree, 4) + "[graph]\nedges = [[1, 2], [2, 1], [1, 3]]\n");
+  network.RunUntil(3);
+  EXPECT_EQ(network.agent(3).p_WB, Eigen::Vector3d(7, 0, 1));
+  EXPECT_NEAR((network.agent(2).p_WB - Eigen::Vector3d(-3, -4, 1)).norm(), 3, 1e-9);
+}
+
+TEST(PursuitEvasion, QuadrotorsAndDoubleIntegratorsCaptureTooALittleLater) {
+  for (const std::string model : {"quadrotor", "double_integrator"}) {
+    const LawRun run(Chase("[[0, 0, 1], [-3, -4, 1]]", 2, "", model));
+    EXPECT_NEAR(run.Measured("capture_time_s"), 11.75, 2) << model;
+    EXPECT_EQ(run.prediction.silent, "the closed form is of single integrators") << model;
+  }
 }
 
 }  // namespace
