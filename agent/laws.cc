@@ -10,14 +10,16 @@ namespace mascot {
 using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
     RendezvousLaw, EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw,
-    CyclicPursuitLaw, DistanceFormationLaw, BearingFormationLaw, PlatoonLaw, PursuitEvasionLaw, CustomLaw, PluginLaw;
+    CyclicPursuitLaw, DistanceFormationLaw, BearingFormationLaw, PlatoonLaw, PursuitEvasionLaw, AffineFormationLaw,
+    CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
-      ConsensusLaw(),        WaypointLaw(),       MinmaxLaw(),           FormationLaw(),      VelocityConsensusLaw(),
-      FiniteTimeLaw(),       PrescribedTimeLaw(), RendezvousLaw(),       EventTriggeredLaw(), ContainmentLaw(),
-      AverageTrackingLaw(),  TrajectoryLaw(),     GradientTrackingLaw(), CyclicPursuitLaw(),  DistanceFormationLaw(),
-      BearingFormationLaw(), PlatoonLaw(),        PursuitEvasionLaw(),   CustomLaw(),         PluginLaw(),
+      ConsensusLaw(),        WaypointLaw(),       MinmaxLaw(),           FormationLaw(),       VelocityConsensusLaw(),
+      FiniteTimeLaw(),       PrescribedTimeLaw(), RendezvousLaw(),       EventTriggeredLaw(),  ContainmentLaw(),
+      AverageTrackingLaw(),  TrajectoryLaw(),     GradientTrackingLaw(), CyclicPursuitLaw(),   DistanceFormationLaw(),
+      BearingFormationLaw(), PlatoonLaw(),        PursuitEvasionLaw(),   AffineFormationLaw(), CustomLaw(),
+      PluginLaw(),
   };
   return kLaws;
 }

@@ -6,6 +6,7 @@
 
 #include "agent/laws/leaders.h"
 #include "agent/laws/rigidity.h"
+#include "agent/laws/stress_matrix.h"
 #include "experiment/linear_algebra.h"
 #include "tests/ideal_network.h"
 #include "tests/law_run.h"
@@ -332,6 +333,127 @@ TEST(BearingFormation, ASpaceShapeIsReachedInSpaceByAllModels) {
                           "[graph]\ntopology = 'ring'\n[law]\nname = 'bearing_formation'\naxes = 'xyz'\ngain = 1.0\n"
                           "offsets_m = [[0, 0, 0], [3, 0, 3], [3, 3, 0], [0, 3, 3]]\n"));
     EXPECT_LT(run.Measured("bearing_error_deg"), 0.5) << model;
+    EXPECT_EQ(run.prediction.silent.empty(), std::string(model) == "single_integrator");
+  }
+}
+
+// --- affine formation -----------------------------------------------------------------------------------------
+
+const std::vector<Eigen::Vector3d> kSevenPlaces = {{4, 0, 0},  {2, 2, 0},  {2, -2, 0}, {0, 2, 0},
+                                                   {0, -2, 0}, {-2, 2, 0}, {-2, -2, 0}};
+const std::vector<Bar> kSevenBars = {{1, 2}, {1, 3}, {1, 4}, {1, 5}, {2, 4}, {2, 7},
+                                     {3, 5}, {3, 6}, {4, 5}, {4, 6}, {5, 7}, {6, 7}};
+
+std::string Seven(double duration_s, const std::string& model, const std::string& law) {
+  std::string edges, places;
+  for (const Bar& bar : kSevenBars) {
+    const std::string i = std::to_string(bar.i), j = std::to_string(bar.j);
+    edges += (edges.empty() ? "[[" : ", [") + i + ", " + j + "], [" + j + ", " + i + "]";
+  }
+  for (const Eigen::Vector3d& r : kSevenPlaces)
+    places += (places.empty() ? "[[" : ", [") + ShortestFloat(r.x()) + ", " + ShortestFloat(r.y()) + ", 0]";
+  return Team(duration_s, 100,
+              "model = '" + model +
+                  "'\ncount = 7\nposition_m = [[4, 1, 5], [1, 3, 6], [2, -3, 7], [0, 2, 8], [-1, -3, 9], [-3, 1, 10], "
+                  "[-2, -1, 11]]\n",
+              "[graph]\nedges = " + edges +
+                  "]\n[law]\nname = 'affine_formation'\nleaders = [1, 2, 3]\noffsets_m = " + places + "]\n" + law);
+}
+
+void ExpectStressMatrix(const Eigen::MatrixXd& omega, const std::vector<Bar>& bars,
+                        const std::vector<Eigen::Vector3d>& places, int d) {
+  const auto count = static_cast<Eigen::Index>(places.size());
+  Eigen::MatrixXd is_bar = Eigen::MatrixXd::Identity(count, count), r(count, 4);
+  for (const Bar& bar : bars) is_bar(bar.i - 1, bar.j - 1) = is_bar(bar.j - 1, bar.i - 1) = 1;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    r.row(i) << places[static_cast<std::size_t>(i)].transpose(), 1;
+    for (Eigen::Index j = 0; j < count; ++j)
+      EXPECT_NEAR((1 - is_bar(i, j)) * omega(i, j), 0, 1e-9) << i + 1 << ", " << j + 1 << " do not hear each other";
+  }
+  EXPECT_LT((omega * r).norm(), 1e-8) << "in equilibrium";
+  EXPECT_EQ((omega - omega.transpose()).norm(), 0);
+  const Eigen::VectorXd values = SymmetricEigenvalues(omega);
+  EXPECT_NEAR(values(count - 1), 1, 1e-9);
+  EXPECT_GT(values(0), -1e-9);
+  EXPECT_EQ((values.array() > 1e-6).count(), count - d - 1);
+}
+
+TEST(StressMatrix, IsInEquilibriumAndOfTheRightRank) {
+  const auto plane = StressMatrixOf(kSevenBars, kSevenPlaces, Axes::kXy);
+  ASSERT_TRUE(plane.has_value());
+  if (plane) ExpectStressMatrix(*plane, kSevenBars, kSevenPlaces, 2);
+  const std::vector<Eigen::Vector3d> points = {{0, 0, 4}, {3, 0, 4}, {0, 3, 4}, {0, 0, 7}, {3, 3, 7}, {1, 2, 5}};
+  std::vector<Bar> complete;
+  for (int i = 1; i <= 6; ++i)
+    for (int j = i + 1; j <= 6; ++j) complete.push_back({i, j});
+  const auto space = StressMatrixOf(complete, points, Axes::kXyz);
+  ASSERT_TRUE(space.has_value());
+  if (space) ExpectStressMatrix(*space, complete, points, 3);
+}
+
+TEST(StressMatrix, OfASquareWithDiagonalsIsTheKnownOne) {
+  const std::vector<Eigen::Vector3d> square = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
+  const std::vector<Bar> bars = {{1, 2}, {2, 3}, {3, 4}, {1, 4}, {1, 3}, {2, 4}};
+  const auto omega = StressMatrixOf(bars, square, Axes::kXy);
+  ASSERT_TRUE(omega.has_value());
+  const Eigen::Vector4d signs(1, -1, 1, -1);  // the sides pull, the diagonals push
+  if (omega) {
+    EXPECT_LT((*omega - signs * signs.transpose() / 4).norm(), 1e-9);
+  }
+}
+
+TEST(StressMatrix, IsNotFoundWhereThereIsNone) {
+  const std::vector<Bar> chain = {{1, 2}, {2, 4}, {4, 6}, {6, 7}, {7, 5}, {5, 3}, {1, 3}};
+  EXPECT_FALSE(StressMatrixOf(chain, kSevenPlaces, Axes::kXy)) << "a polygon has no stress";
+  // A triangle within a triangle, joined by three bars that meet in one point: stresses, but not of rank 3.
+  const std::vector<Eigen::Vector3d> points = {{0, 2, 0}, {-2, -1, 0}, {2, -1, 0}, {0, 5, 0}, {-5, -3, 0}, {5, -2, 0}};
+  const std::vector<Bar> prism = {{1, 2}, {2, 3}, {1, 3}, {4, 5}, {5, 6}, {4, 6}, {1, 4}, {2, 5}, {3, 6}};
+  EXPECT_FALSE(StressMatrixOf(prism, points, Axes::kXy));
+}
+
+TEST(AffineFormation, FollowersTakeTheAffineImageOfTheirPlaces) {
+  IdealNetwork network(Seven(1, "single_integrator",
+                             "times_s = [0, 10]\nturns_deg = [0, 90]\nstretches = [[1, 1, 1], [2, 0.5, 1]]\n"
+                             "shears = [0, 1]\nshifts_m = [[0, 0, 0], [5, -3, 0]]\n"));
+  network.RunUntil(40);
+  for (int id = 1; id <= 7; ++id) {
+    const Eigen::Vector3d& r = kSevenPlaces[static_cast<std::size_t>(id - 1)];
+    const Eigen::Vector2d stretched(2 * r.x() + 0.5 * r.y(), 0.5 * r.y());  // x + shear y, y
+    const Eigen::Vector2d image(-stretched.y() + 5, stretched.x() - 3);
+    EXPECT_LT((network.agent(id).p_WB.head<2>() - image).norm(), 1e-9) << id;
+  }
+}
+
+TEST(AffineFormation, LeadersOnTheirWayStayOnIt) {
+  IdealNetwork network(Seven(1, "single_integrator", "times_s = [0, 10]\nturns_deg = [0, 180]\n"));
+  for (int id = 1; id <= 3; ++id) network.agent(id).p_WB = kSevenPlaces[static_cast<std::size_t>(id - 1)];
+  network.RunUntil(5);
+  EXPECT_LT((network.agent(1).p_WB.head<2>() - Eigen::Vector2d(0, 4)).norm(), 1e-9) << "turned by 90 degrees";
+  EXPECT_LT((network.agent(2).p_WB.head<2>() - Eigen::Vector2d(-2, 2)).norm(), 1e-9);
+}
+
+TEST(AffineFormation, ErrorsStayBelowTheirBoundsAndEndAtRest) {
+  const std::string maneuver =
+      "times_s = [0, 5, 10]\nshifts_m = [[0, 0, 0], [4, 0, 0], [4, 6, 0]]\nshears = [0, 1, 0]\n";
+  for (const double duration_s : {8.0, 25.0}) {
+    const LawRun run(Seven(duration_s, "single_integrator", maneuver));
+    for (const char* figure : {"place_error_m", "largest_place_error_m"}) {
+      EXPECT_LE(run.Measured(figure), run.Predicted(figure)) << figure;
+      EXPECT_GT(run.Measured(figure), run.Predicted(figure) / 10) << figure << ": the bound is not idle";
+      EXPECT_EQ(run.Law()["bounds"][figure], "at_most");
+    }
+    if (duration_s > 20) {
+      EXPECT_LT(run.Predicted("place_error_m"), 1e-5) << "15 s at 1/s after the last step";
+    }
+  }
+}
+
+TEST(AffineFormation, FliesOnAllModels) {
+  for (const char* model : {"single_integrator", "double_integrator", "quadrotor"}) {
+    const LawRun run(Seven(30, model,
+                           "gain = 0.05\ntimes_s = [0, 5]\nshifts_m = [[0, 0, 0], [2, 0, 0]]\n"
+                           ""));
+    EXPECT_LT(run.Measured("place_error_m"), run.Measured("largest_place_error_m")) << model;
     EXPECT_EQ(run.prediction.silent.empty(), std::string(model) == "single_integrator");
   }
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <string>
 
 #include "experiment/linear_algebra.h"
 
@@ -75,8 +76,7 @@ std::string WhyNotRigid(const Experiment& experiment, std::span<const Eigen::Vec
                         Rigidity rigidity) {
   const int agents = experiment.size();
   if (agents < 2) return fmt::format("expected at least 2 agents, got {}", agents);
-  if (!experiment.graph.IsSymmetric())
-    return "expected a graph in which both agents of an edge hear each other with the same weight, got one without";
+  if (!experiment.graph.IsSymmetric()) return std::string(kExpectedUndirected);
   const std::vector<Bar> bars = BarsOf(experiment.graph);
   for (const Bar& bar : bars)
     if (LengthOf(bar, places_W, axes) == 0)

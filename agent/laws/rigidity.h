@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 #include <span>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiment/experiment.h"
@@ -40,6 +40,9 @@ Eigen::MatrixXd BearingRigidityMatrix(std::span<const Bar> bars, std::span<const
 /// Its rank if directions fix the shape, up to its scale: all motions but shifts and scaling change a direction.
 int RankOfBearingRigid(int agents, Axes axes);
 
+/// What is said of a graph that is not undirected.
+inline constexpr std::string_view kExpectedUndirected =
+    "expected a graph in which both agents of an edge hear each other with the same weight, got one without";
 /// What a framework is checked for.
 enum class Rigidity { kLengths, kBearings };
 /// Notes a mistake in `section`, a law's table without others, unless graph and places suit a law that keeps the shape

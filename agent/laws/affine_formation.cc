@@ -1,0 +1,148 @@
+// Affine formation maneuvers; Zhao, "Affine formation maneuver control of multiagent systems", IEEE Trans. Automatic
+// Control 63 (2018):
+//   follower:  v_i = -gain sum_j omega_ij (p_i - p_j)
+//   leader:    v_i = (P_i(t + T) - P_i(t)) / T + leader_gain (P_i(t) - p_i),  P_i(t) = A(t) r_i + b(t)
+// The stresses omega_ij of the edges follow from places r and graph (agent/laws/stress_matrix.h): Omega r = 0, and
+// Omega is positive semidefinite of rank N - d - 1. If the leaders' places span the plane, or space, followers tend to
+// M p_L, M = -Omega_FF^-1 Omega_FL: the affine map of the leaders' places, applied to their own. While leaders move, e
+// = p_F - M p_L obeys e+ = (I - T gain Omega_FF) e - M (p_L+ - p_L), which gives the bounds.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "agent/laws/ideal.h"
+#include "agent/laws/leaders.h"
+#include "agent/laws/maneuver.h"
+#include "agent/laws/places.h"
+#include "agent/laws/row_parts.h"
+#include "agent/laws/stable_period.h"
+#include "agent/laws/stress_matrix.h"
+#include "experiment/linear_algebra.h"
+
+namespace mascot {
+namespace {
+
+constexpr auto kAffineFormationParameters =
+    Joined(Joined(kPlaceKeys, kManeuverKeys),
+           std::array{
+               kLeadersKey,
+               key::Number("gain", {0, 1000}, "slowest rate of the followers").Default("1.0").Unit("1/s").Live(),
+           });
+
+constexpr LawFigure kAffineFormationFigures[] = {
+    {.name = "place_error_m", .meaning = "how far the farthest follower is from where the leaders put it, at the end"},
+    {.name = "largest_place_error_m", .meaning = "the same at its largest in the run"},
+};
+
+struct AffineFormationParams final : LawParams {
+  double gain = 0;                   ///< 1/s
+  std::vector<Eigen::Vector3d> r_W;  ///< each agent's place, by id - 1 (m)
+  Maneuver maneuver;                 ///< of the leaders
+  LedTeam team{{}, 0};
+  Eigen::MatrixXd omega;
+};
+
+class AffineFormation final : public Law {
+ public:
+  AffineFormation(const AgentConfig& agent, double period_s) : period_s_(period_s), id_(agent.id) { Adopt(agent); }
+  Wanted wanted() const override { return Wanted::kVelocity; }
+  void Adopt(const AgentConfig& agent) override { params_ = &ParamsOf<AffineFormationParams>(agent.law); }
+
+  Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> heard) override {
+    if (params_->team.IsLeader(id_))
+      return params_->maneuver.Velocity_W(t_s, period_s_, params_->r_W[static_cast<std::size_t>(id_ - 1)], self.p_WB);
+    Eigen::Vector3d v_W = Eigen::Vector3d::Zero();
+    for (const Heard& j : heard) v_W += params_->gain * params_->omega(id_ - 1, j.id - 1) * (self.p_WB - j.motion.p_WB);
+    return v_W;  // omega_ij = -Omega(i, j)
+  }
+
+ private:
+  const AffineFormationParams* params_ = nullptr;  // the experiment owns them
+  double period_s_;
+  int id_;
+};
+
+std::shared_ptr<const LawParams> ReadAffineFormation(const Experiment& experiment, const LawConfig& law,
+                                                     Section& section) {
+  auto params = std::make_shared<AffineFormationParams>();
+  ExpectNoLeader(law, section);
+  params->gain = section.Number("gain");
+  params->maneuver = Maneuver::Read(section);
+  params->r_W = ReadPlaces(section, experiment.size());
+  params->team = LedTeam(ReadLeaders(experiment, section), experiment.size());
+  params->omega = ReadStressMatrix(experiment, params->r_W, params->team.leaders, law.axes, section);
+  return params;
+}
+
+LawTheory PredictAffineFormation(const Experiment& experiment) {
+  const auto& params = ParamsOf<AffineFormationParams>(experiment.law);
+  if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty()) return {.silent = std::move(why)};
+  if (params.gain == 0) return {.silent = "with gain = 0 followers stay where they are"};
+  const LedTeam& team = params.team;
+  const double h_s = experiment.period_s();
+  const Eigen::VectorXd rates =
+      SymmetricEigenvalues(params.gain * BlockOf(params.omega, team.followers, team.followers));
+  if (auto unstable = WhyUnstable(experiment, 2 / std::max(rates.maxCoeff(), params.maneuver.gain_per_s())))
+    return *unstable;
+  const double kept = (1 - h_s * rates.array()).abs().maxCoeff();  // |I - T gain Omega_FF|
+  const Eigen::MatrixXd shares = SharesOfLeaders(params.omega, team);
+  const auto size_m = [&](const Eigen::MatrixX3d& rows) { return rows.leftCols(CountOf(experiment.law.axes)).norm(); };
+  Eigen::MatrixX3d p_L = StartsOf(experiment, team.leaders), step_L = p_L;
+  double error_m = size_m(StartsOf(experiment, team.followers) - shares * p_L), largest_m = error_m;
+  for (std::int64_t k = 0; k < experiment.ticks(); ++k) {
+    for (Eigen::Index l = 0; l < p_L.rows(); ++l) {
+      const Eigen::Vector3d& r = params.r_W[static_cast<std::size_t>(team.leaders[static_cast<std::size_t>(l)] - 1)];
+      step_L.row(l) = h_s * params.maneuver.Velocity_W(experiment.time_s(k), h_s, r, p_L.row(l).transpose());
+    }
+    error_m = kept * error_m + size_m(shares * step_L);
+    largest_m = std::max(largest_m, error_m);
+    p_L += step_L;
+  }
+  return {
+      .figures = {{.values = {error_m}, .bound = Bound::kAtMost}, {.values = {largest_m}, .bound = Bound::kAtMost}}};
+}
+
+class AffineFormationMeter final : public LawMeter {
+ public:
+  AffineFormationMeter(const Experiment& experiment, std::span<const int> ids) : id_(ids.front()) { Adopt(experiment); }
+  void Adopt(const Experiment& now) override {
+    law_ = &now.agent(id_).law;
+    shares_ = SharesOfLeaders(params().omega, params().team);
+  }
+  void Add(const TeamRow& row) override {
+    error_m_ = LargestLag(params().team, shares_, law_->axes, row.motions);
+    largest_m_ = std::max(largest_m_, error_m_);
+  }
+  std::vector<FigureValues> Figures() const override { return {{error_m_}, {largest_m_}}; }
+
+ private:
+  const AffineFormationParams& params() const { return ParamsOf<AffineFormationParams>(*law_); }
+
+  int id_;
+  const LawConfig* law_ = nullptr;
+  Eigen::MatrixXd shares_;
+  double error_m_ = 0, largest_m_ = 0;
+};
+
+}  // namespace
+
+LawEntry AffineFormationLaw() {
+  return {.name = "affine_formation",
+          .summary = "a few leaders turn, stretch, shear and shift a whole formation",
+          .equation = "follower: v_i = -gain sum_j omega_ij (p_i - p_j);  leader: to P_i(t) = A(t) r_i + b(t)",
+          .theory = "p_F tends to -Omega_FF^-1 Omega_FL p_L, the same affine map of the followers' places",
+          .source = "Zhao (2018)",
+          .parameters = kAffineFormationParameters,
+          .figures = kAffineFormationFigures,
+          .drawing = {},
+          .read = ReadAffineFormation,
+          .make = MakeWithPeriod<AffineFormation>,
+          .wanted = WantsVelocity,
+          .predict = PredictAffineFormation,
+          .meter = MeterOf<AffineFormationMeter>};
+}
+
+}  // namespace mascot
