@@ -11,15 +11,15 @@ using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
     RendezvousLaw, EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw,
     CyclicPursuitLaw, DistanceFormationLaw, BearingFormationLaw, PlatoonLaw, PursuitEvasionLaw, AffineFormationLaw,
-    CustomLaw, PluginLaw;
+    ResilientLaw, CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
       ConsensusLaw(),        WaypointLaw(),       MinmaxLaw(),           FormationLaw(),       VelocityConsensusLaw(),
       FiniteTimeLaw(),       PrescribedTimeLaw(), RendezvousLaw(),       EventTriggeredLaw(),  ContainmentLaw(),
       AverageTrackingLaw(),  TrajectoryLaw(),     GradientTrackingLaw(), CyclicPursuitLaw(),   DistanceFormationLaw(),
-      BearingFormationLaw(), PlatoonLaw(),        PursuitEvasionLaw(),   AffineFormationLaw(), CustomLaw(),
-      PluginLaw(),
+      BearingFormationLaw(), PlatoonLaw(),        PursuitEvasionLaw(),   AffineFormationLaw(), ResilientLaw(),
+      CustomLaw(),           PluginLaw(),
   };
   return kLaws;
 }

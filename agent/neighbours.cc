@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 namespace mascot {
 
@@ -19,6 +20,8 @@ Neighbours::Neighbours(const Experiment& experiment, int id)
     noises_.emplace_back(experiment.sensors.heard,
                          Dice(experiment.run.seed, Dice::Stream::kHeardSensor, static_cast<std::uint64_t>(id),
                               static_cast<std::uint64_t>(neighbour.id)));
+    const auto& lie = experiment.agent(neighbour.id).lie;
+    lies_.push_back(lie ? std::optional<Lie>(std::in_place, *lie, experiment.run.seed, neighbour.id) : std::nullopt);
   }
   heard_.reserve(may_hear_.size());
   ways_.resize(may_hear_.size());
@@ -36,7 +39,8 @@ bool Neighbours::IsPlain() const {
   const auto always_on = [](const AgentConfig& agent) { return agent.start_s == 0 && std::isinf(agent.stop_s); };
   return experiment_->schedule.IsConstant() && experiment_->cut.empty() && experiment_->sensors.heard.IsNone() &&
          always_on(experiment_->agent(id_)) && std::ranges::all_of(may_hear_, [&](const Graph::Neighbour& neighbour) {
-           return experiment_->links.Of(id_, neighbour.id).IsPerfect() && always_on(experiment_->agent(neighbour.id));
+           return experiment_->links.Of(id_, neighbour.id).IsPerfect() && always_on(experiment_->agent(neighbour.id)) &&
+                  !experiment_->agent(neighbour.id).lie;
          });
 }
 
@@ -70,10 +74,20 @@ std::span<const Heard> Neighbours::Hear(std::int64_t tick, const Motion& self, s
     const double weight = WeightOf(graph, t_s, may_hear_[k].id);
     const bool in_range = range_m == 0 || (samples[k].motion->p_WB - self.p_WB).norm() < range_m;
     ways_[k] = weight == 0 ? EdgeNow::State::kNoEdge : in_range ? EdgeNow::State::kLost : EdgeNow::State::kOutOfRange;
-    if (weight > 0 && in_range) links_[k].Send(tick, weight, samples[k]);
+    if (weight > 0 && in_range) links_[k].Send(tick, weight, SaidBy(k, tick, samples[k]));
     Deliver(k, tick);
   }
   return heard_;
+}
+
+Sample Neighbours::SaidBy(std::size_t k, std::int64_t tick, const Sample& truth) {
+  const double t_s = experiment_->time_s(tick);
+  const std::optional<Lie>& lie = lies_[k];
+  if (!lie || !lie->IsToldAt(t_s)) return truth;
+  false_motion_ = *truth.motion;
+  false_message_.assign(truth.message.begin(), truth.message.end());
+  lie->Tell(tick, t_s, false_motion_, false_message_);
+  return {&false_motion_, false_message_};
 }
 
 void Neighbours::Deliver(std::size_t k, std::int64_t tick) {

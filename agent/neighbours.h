@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "agent/law.h"
+#include "agent/lie.h"
 #include "agent/link.h"
 #include "agent/sensor.h"
 #include "experiment/experiment.h"
@@ -25,7 +27,7 @@ struct EdgeNow {
 };
 
 /// Decides what one agent hears of its neighbours: applies start and stop times, the schedule of graphs, the range, the
-/// links and the noise, so that its law never sees a sample that it could not have heard.
+/// lies, the links and the noise, so that its law never sees a sample that it could not have heard.
 class Neighbours {
  public:
   Neighbours(const Experiment& experiment, int id);
@@ -50,13 +52,18 @@ class Neighbours {
   /// True if every sample is heard at once as it was sent: one graph, no range, perfect links, no noise, and these
   /// agents are on from start to end.
   bool IsPlain() const;
+  /// What agent may_hear_[k] sends at `tick`: the truth, or its lie, which is valid until the next call.
+  Sample SaidBy(std::size_t k, std::int64_t tick, const Sample& truth);
   void HearPlain(std::span<const Sample> samples);
 
   const Experiment* experiment_;
   int id_;
   const std::vector<Graph::Neighbour> may_hear_;
-  std::vector<Link> links_;    // by index in may_hear_
-  std::vector<Noise> noises_;  // by index in may_hear_
+  std::vector<Link> links_;               // by index in may_hear_
+  std::vector<Noise> noises_;             // by index in may_hear_
+  std::vector<std::optional<Lie>> lies_;  // by index in may_hear_
+  Motion false_motion_;
+  std::vector<double> false_message_;
   std::vector<Heard> heard_;
   std::vector<EdgeNow::State> ways_;  // by index in may_hear_: kNoEdge, kOutOfRange, or else kLost
   std::int64_t tick_ = -1;            // of the last Hear()

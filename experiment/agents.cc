@@ -122,6 +122,10 @@ AgentOverride ReadOverride(Section& section, std::vector<AgentConfig>& agents, s
                                  ShortestFloat(agent.stop_s));
   }
   agent.external = section.OneOf("host") == "external";
+  if (section.Has("lie")) {
+    Section lie = section.Child("lie");
+    agent.lie = ReadLie(lie);
+  }
   return {.id = agents.empty() || section.Wrong("id") ? 0 : static_cast<int>(id), .section = section};
 }
 
@@ -153,6 +157,7 @@ std::span<const Key> AgentsKeys() {
           .Otherwise("never"),
       key::OneOf("host", kHosts, "external: started by hand, on this host or another, and waited for")
           .Default("\"local\""),
+      key::Table("lie", LieKeys(), "what others hear of it is false: state and messages"),
   };
   static const Key keys[] = {
       key::Integer("count", 1, kMaxAgents, "how many; they are numbered from 1").Required(),

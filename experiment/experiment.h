@@ -14,6 +14,7 @@
 #include "experiment/events.h"
 #include "experiment/graph/graph.h"
 #include "experiment/graph/schedule.h"
+#include "experiment/lie.h"
 #include "experiment/link.h"
 #include "experiment/model_traits.h"
 #include "experiment/physics.h"
@@ -87,7 +88,8 @@ struct AgentConfig {
   /// velocity 0.
   double start_s = 0;
   double stop_s = std::numeric_limits<double>::infinity();
-  bool external = false;  ///< started by hand and waited for
+  bool external = false;              ///< started by hand and waited for
+  std::optional<LieConfig> lie = {};  ///< absent: it tells the truth
 
   const ModelTraits& traits() const { return TraitsOf(model); }
   /// Full lengths of its collision shape along the axes of B (m).

@@ -16,6 +16,8 @@ std::string WhyNotIdeal(const Experiment& experiment, Wanted wanted) {
 
 std::string WhyNotAllHeard(const Experiment& experiment) {
   for (const AgentConfig& agent : experiment.agents)
+    if (agent.lie) return "an agent lies";
+  for (const AgentConfig& agent : experiment.agents)
     if (agent.start_s > 0 || std::isfinite(agent.stop_s)) return "agents come or go";
   if (!experiment.schedule.IsConstant()) return "the graph changes";
   return experiment.links.ArePerfect(experiment.graph) ? "" : "samples are lost or late";

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "experiment/experiment.h"
 #include "experiment/motion.h"
@@ -14,11 +15,11 @@ namespace mascot {
 /// Disagreement of agents at one tick: of their positions, or in a formation of those less their places.
 double DisagreementOf(const Experiment& experiment, std::span<const Motion> motions);
 
-/// Measures how far agents are from agreement, tick by tick. The disagreement is the largest distance, along law.axes,
-/// from the mean, or from the leader if there is one.
+/// Measures how far agents that do not lie are from agreement, tick by tick. The disagreement is the largest distance,
+/// along law.axes, from the mean, or from the leader if there is one.
 class AgreementMeter {
  public:
-  explicit AgreementMeter(const Experiment& experiment) : experiment_(experiment) {}
+  explicit AgreementMeter(const Experiment& experiment);
   /// Adds the next tick. `q_W`: what the agents agree on, by id - 1: their positions, less their places in a formation.
   void Add(std::span<const Eigen::Vector3d> q_W);
 
@@ -34,6 +35,7 @@ class AgreementMeter {
 
  private:
   const Experiment& experiment_;
+  std::vector<std::size_t> honest_;  // index in the experiment's agents
   std::int64_t ticks_ = 0;
   Eigen::Vector3d mean_W_ = Eigen::Vector3d::Zero();
   double disagreement_m_ = 0;

@@ -109,6 +109,13 @@ void PredictLaw(const Experiment& experiment, Prediction& prediction) {
   const std::optional<LinearForm> linear = LinearFormOf(experiment.law);
   const std::optional<PursuitForm> pursuit = PursuitFormOf(experiment.law);
   const bool predicts = EntryOf(experiment.law).predict != nullptr;
+  const auto liar =
+      std::ranges::find_if(experiment.agents, [](const AgentConfig& agent) { return agent.lie.has_value(); });
+  const bool lies = liar != experiment.agents.end();
+  if (lies && !predicts) {
+    prediction.silent = fmt::format("agent {} lies", liar->id);
+    return;
+  }
   if (!linear && !pursuit && !predicts) {
     prediction.silent = "theory does not know the law " + experiment.law.name;
     return;
@@ -122,11 +129,11 @@ void PredictLaw(const Experiment& experiment, Prediction& prediction) {
   if (EntryOf(experiment.law).agrees)
     for (std::string& warning : PersistenceWarnings(experiment, *timeline, *prediction.persistence))
       prediction.warnings.push_back(std::move(warning));
-  if (pursuit)
+  if (pursuit && !lies)
     PredictPursuit(experiment, *timeline, *pursuit, prediction);
-  else if (linear && linear->listens)
+  else if (linear && linear->listens && !lies)
     PredictLinear(experiment, *timeline, prediction);
-  else if (linear)
+  else if (linear && !linear->listens)
     PredictFlight(experiment, *linear, prediction);
   if (predicts) PredictFigures(experiment, prediction);
 }

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "experiment/toml/enum_names.h"
+#include "experiment/toml/section.h"
+
+namespace mascot {
+
+enum class LieKind { kConstant, kOscillating, kRandom };
+inline constexpr EnumNames<LieKind, 3> kLieKinds({{LieKind::kConstant, "constant"},
+                                                  {LieKind::kOscillating, "oscillating"},
+                                                  {LieKind::kRandom, "random"}});
+
+/// `lie` of [[agents.override]]: from a time on, what others hear of the agent is false. It itself, its body and the
+/// recording know the truth.
+struct LieConfig {
+  LieKind kind = LieKind::kConstant;
+  double from_s = 0;
+  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
+  double period_s = 0;  ///< of an oscillating lie
+};
+
+/// The keys of `lie`.
+std::span<const Key> LieKeys();
+LieConfig ReadLie(Section& lie);
+
+}  // namespace mascot
