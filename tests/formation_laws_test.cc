@@ -14,8 +14,6 @@
 namespace mascot {
 namespace {
 
-using ::testing::HasSubstr;
-
 /// A team without contacts. `agents`: lines of [agents]; `more`: lines from there on.
 std::string Team(double duration_s, int rate_hz, const std::string& agents, const std::string& more) {
   return "[run]\nduration_s = " + ShortestFloat(duration_s) +
