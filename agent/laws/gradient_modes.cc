@@ -25,7 +25,7 @@ Eigen::MatrixXd Metropolis(const Graph& graph) {
 }  // namespace
 
 double GradientRadius(const Graph& graph, const std::vector<QuadraticCost>& costs, double step) {
-  const Eigen::Index n = 3 * graph.size();
+  const Eigen::Index n = Eigen::Index{3} * graph.size();
   const Eigen::MatrixXd metropolis = Metropolis(graph);
   Eigen::MatrixXd w = Eigen::MatrixXd::Zero(n, n), q = w;
   for (Eigen::Index i = 0; i < graph.size(); ++i) {
