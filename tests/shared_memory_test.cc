@@ -21,7 +21,8 @@ namespace {
 using testing::Contains;
 using testing::Not;
 
-constexpr int kDomain = 200;  // of no run: network.domain is at most 100
+// Domains of no run: network.domain is at most 100. Each is of one test, since tests run at the same time.
+constexpr int kDomain = 200, kDomainOfOthers = 210;
 
 /// Another process, which does something and then stalls until it is killed.
 class Stalled {
@@ -99,13 +100,13 @@ TEST(SharedMemory, ASemaphoreOfAPortIsNotStaleWhileItsMakerMapsItUnderAnotherNam
 }
 
 TEST(SharedMemory, PortsOfOtherDomainsAreLeftToThoseWhoLockThem) {
-  const std::string path = "/dev/shm/fastrtps_port" + std::to_string(FirstPort(kDomain));
+  const std::string path = "/dev/shm/fastrtps_port" + std::to_string(FirstPort(kDomainOfOthers));
   close(open(path.c_str(), O_CREAT | O_WRONLY, 0644));
-  for (const int other : {kNoDomain, kDomain - kDomainsPerRun, kDomain + 1}) {
+  for (const int other : {kNoDomain, kDomainOfOthers - kDomainsPerRun, kDomainOfOthers + 1}) {
     SweepSharedMemory(other);
     EXPECT_TRUE(std::filesystem::exists(path)) << other;
   }
-  SweepSharedMemory(kDomain);
+  SweepSharedMemory(kDomainOfOthers);
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
