@@ -124,9 +124,12 @@ TEST_F(Verbs, CheckSaysWhichDelaysAreInEffect) {
   EXPECT_EQ(delays[0], (Json{{"key", "link.delay_s"}, {"asked_s", 0.025}, {"least_s", 0.02}, {"most_s", 0.04}}));
 }
 
-TEST_F(Verbs, CheckSaysThatChainsSettleLaterThanTheirModes) {
-  EXPECT_THAT(Printed(SetUpCheck, {path()}), HasSubstr(" s (2 %, slowest mode)\n"));
-  EXPECT_THAT(Printed(SetUpCheck, {path(), "--set", "graph.topology='directed_ring'", "--set", "law.beta=2.0"}),
+TEST_F(Verbs, CheckSaysWhatThePredictedSettlingTimeIsOf) {
+  EXPECT_THAT(Printed(SetUpCheck, {path()}), HasSubstr(" s (2 %, from this start)\n"));
+  const std::string together = "agents.position_m=[[0, 0, 1], [0, 0, 2], [0, 0, 3], [0, 0, 4]]";
+  EXPECT_THAT(Printed(SetUpCheck, {path(), "--set", together}), HasSubstr(" s (2 %, slowest mode)\n"));
+  EXPECT_THAT(Printed(SetUpCheck,
+                      {path(), "--set", together, "--set", "graph.topology='directed_ring'", "--set", "law.beta=2.0"}),
               HasSubstr(" s (2 %, slowest mode; later along chains)\n"));
 }
 

@@ -1,5 +1,6 @@
 #include "orchestrator/theory/from_start.h"
 
+#include <utility>
 #include <vector>
 
 #include "orchestrator/measuring/agreement_meter.h"
@@ -60,6 +61,7 @@ class Flight {
   std::vector<Edge> edges_;
   std::vector<TeamState> past_;  // that of tick k at k modulo its size
   Vectors u_;                    // what the laws want; scratch
+  TeamState next_;               // scratch
   std::int64_t tick_ = 0;
 };
 
@@ -86,7 +88,7 @@ void Flight::Step() {
   Weigh(now);
   Couple();
   const TeamState& known = At(own_ticks_);
-  TeamState next = At(0);
+  TeamState& next = next_ = At(0);
   const double h = experiment_.period_s();
   for (std::size_t i = 0; i < u_.size(); ++i) {
     const LinearAgent& agent = team_.agents[i];
@@ -101,7 +103,7 @@ void Flight::Step() {
     }
   }
   ++tick_;
-  past_[static_cast<std::size_t>(tick_ % std::ssize(past_))] = std::move(next);
+  std::swap(past_[static_cast<std::size_t>(tick_ % std::ssize(past_))], next_);
 }
 
 }  // namespace
