@@ -96,7 +96,7 @@ TEST(Waypoints, QuadrotorsAreMeasuredBesideTheIdealBody) {
 
 TEST(Waypoints, TheoryIsSilentWhereALimitCutsTheResponse) {
   const LawRun cut(Step(kTenMetres, "[[agents.override]]\nid = 1\ncontrol = { max_acceleration_m_per_s2 = 1.0 }\n"));
-  EXPECT_EQ(cut.prediction.silent, "the limit of the acceleration cuts what the law asks for");
+  EXPECT_EQ(cut.prediction.figures_silent, "the limit of the acceleration cuts what the law asks for");
 }
 
 TEST(Waypoints, HaveColumnsInSweeps) {

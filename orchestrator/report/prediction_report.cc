@@ -71,6 +71,7 @@ std::string SettlingBasis(const Experiment& experiment, const Prediction& predic
 
 Json PredictionJson(const Prediction& prediction) {
   const auto& margin = prediction.delay_margin;
+  const auto why = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
   const auto asked = [](const std::optional<FirstCommand>& first) {
     return first ? Json(first->asked) : Json(nullptr);
   };
@@ -90,7 +91,8 @@ Json PredictionJson(const Prediction& prediction) {
           {"persistence", ToJson(prediction.persistence)},
           {"first_command_m_per_s2", asked(prediction.first_acceleration)},
           {"first_speed_m_per_s", asked(prediction.first_speed)},
-          {"silent", prediction.silent.empty() ? Json(nullptr) : Json(prediction.silent)}};
+          {"silent", why(prediction.silent)},
+          {"figures_silent", why(prediction.figures_silent)}};
 }
 
 std::vector<std::pair<std::string, std::string>> PredictionLines(const Experiment& experiment,
@@ -121,6 +123,8 @@ std::vector<std::pair<std::string, std::string>> PredictionLines(const Experimen
     lines.emplace_back("first command", fmt::format("{:.4g} m/s^2 of {:g} allowed", first->asked, first->limit));
   if (const auto& first = prediction.first_speed)
     lines.emplace_back("first command", fmt::format("{:.4g} m/s of {:g} allowed", first->asked, first->limit));
+  if (!prediction.figures_silent.empty())
+    lines.emplace_back("figures", "not predicted, because " + prediction.figures_silent);
   if (!prediction.silent.empty()) lines.emplace_back("theory", "silent, because " + prediction.silent);
   return lines;
 }

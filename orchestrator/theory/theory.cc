@@ -92,7 +92,7 @@ void PredictFigures(const Experiment& experiment, Prediction& prediction) {
   LawTheory theory =
       alone ? EntryOf(experiment.law).predict(experiment) : LawTheory{.silent = "agents have laws of their own"};
   prediction.law_figures = std::move(theory.figures);
-  if (!theory.silent.empty()) prediction.silent = std::move(theory.silent);
+  if (!theory.silent.empty()) (prediction.stable ? prediction.figures_silent : prediction.silent) = theory.silent;
   if (theory.value_m) prediction.value_m = theory.value_m;
   for (std::string& warning : theory.warnings) prediction.warnings.push_back(std::move(warning));
 }

@@ -44,8 +44,8 @@ struct Prediction {
   /// Decay rate of the slowest mode: agents agree at least as fast in the long run. With `of_agreement` false, that of
   /// each agent's flight to its waypoint.
   std::optional<double> slowest_rate_per_s;
-  /// The decay rate to measure: that of the slowest mode, or, where there are many modes, as with delays, that of a team
-  /// that starts as the experiment's agents do.
+  /// The decay rate to measure: that of the slowest mode, or, where there are many modes, as with delays, that of a
+  /// team that starts as the experiment's agents do.
   std::optional<double> rate_per_s;
   /// When the agents settle, as AgreementMeter measures it.
   std::optional<double> settling_time_s;
@@ -67,6 +67,8 @@ struct Prediction {
   bool of_agreement = true;  ///< false: rate and settling time are those of each agent's flight to its waypoint
   bool on_average = false;   ///< samples are lost or noisy: the above holds on average
   std::string silent;        ///< why predictions are missing; empty: none is
+  /// Why the figures of the law are not predicted, while theory says something else; empty: it says all.
+  std::string figures_silent;
   std::vector<std::string> warnings;  ///< "key: text": what will not work, or not as expected
 };
 
