@@ -10,16 +10,16 @@ namespace mascot {
 using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
     RendezvousLaw, EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw,
-    CyclicPursuitLaw, DistanceFormationLaw, BearingFormationLaw, PlatoonLaw, PursuitEvasionLaw, AffineFormationLaw,
-    ResilientLaw, CustomLaw, PluginLaw;
+    CyclicPursuitLaw, DistanceFormationLaw, BearingFormationLaw, PlatoonLaw, PursuitEvasionLaw, CoverageLaw,
+    AffineFormationLaw, ResilientLaw, CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
-      ConsensusLaw(),        WaypointLaw(),       MinmaxLaw(),           FormationLaw(),       VelocityConsensusLaw(),
-      FiniteTimeLaw(),       PrescribedTimeLaw(), RendezvousLaw(),       EventTriggeredLaw(),  ContainmentLaw(),
-      AverageTrackingLaw(),  TrajectoryLaw(),     GradientTrackingLaw(), CyclicPursuitLaw(),   DistanceFormationLaw(),
-      BearingFormationLaw(), PlatoonLaw(),        PursuitEvasionLaw(),   AffineFormationLaw(), ResilientLaw(),
-      CustomLaw(),           PluginLaw(),
+      ConsensusLaw(),        WaypointLaw(),       MinmaxLaw(),           FormationLaw(),      VelocityConsensusLaw(),
+      FiniteTimeLaw(),       PrescribedTimeLaw(), RendezvousLaw(),       EventTriggeredLaw(), ContainmentLaw(),
+      AverageTrackingLaw(),  TrajectoryLaw(),     GradientTrackingLaw(), CyclicPursuitLaw(),  DistanceFormationLaw(),
+      BearingFormationLaw(), PlatoonLaw(),        PursuitEvasionLaw(),   CoverageLaw(),       AffineFormationLaw(),
+      ResilientLaw(),        CustomLaw(),         PluginLaw(),
   };
   return kLaws;
 }
