@@ -7,16 +7,18 @@
 
 namespace mascot {
 
-// Why closed forms do not hold in an experiment. Empty: they hold, as long as no limit is reached.
+// Each function returns why a kind of closed form does not hold in an experiment; empty: it holds, as long as no limit
+// is reached.
 
-/// Of what ideal agents do: bodies are not driven by what the law wants, samples are lost, late, noisy or out of range,
-/// the graph changes, agents come and go.
+/// Closed forms of ideal agents do not hold if bodies are not driven by what the law wants, samples are lost, late,
+/// noisy or out of range, the graph changes, or agents come and go.
 std::string WhyNotIdeal(const Experiment& experiment, Wanted wanted);
-/// Of what agents compute from each other's messages alone: not all of these arrive at the next tick.
+/// Closed forms of what agents compute from each other's messages do not hold if some of these do not arrive at the
+/// next tick.
 std::string WhyNotAllHeard(const Experiment& experiment);
-/// Of connected undirected graphs, by their eigenvalues.
+/// Closed forms by eigenvalues do not hold if the graph is directed, not connected, or too large for these.
 std::string WhyNotUndirected(const Experiment& experiment);
-/// Of ideal single integrators on such graphs.
+/// Both WhyNotIdeal(), for single integrators, and WhyNotUndirected().
 std::string WhyNotIdealUndirected(const Experiment& experiment);
 
 /// Above this many agents, eigenvalues are not computed.

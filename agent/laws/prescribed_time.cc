@@ -89,7 +89,7 @@ LawTheory PredictPrescribedTime(const Experiment& experiment) {
   if (std::string why = WhyNotIdealUndirected(experiment); !why.empty()) return {.silent = std::move(why)};
   const double left = LeftShare(experiment, params);
   LawTheory theory{.figures = {{}, {.values = {left}, .bound = Bound::kAtMost}}, .value_m = MeanStart(experiment)};
-  // Of N agents, any two are at most sqrt(2) |d| apart, where |d| is at most sqrt(N) / 2 times the spread at the start.
+  // Any two of N agents are at most sqrt(2) |d| apart, where |d| is at most sqrt(N) / 2 times the spread at the start.
   if (left * std::sqrt(experiment.size() / 2.0) <= kTogetherShare)
     theory.figures[0] = {.values = {experiment.time_s(params.tick)}, .bound = Bound::kAtMost};
   else

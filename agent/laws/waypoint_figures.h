@@ -16,7 +16,7 @@ class WaypointTrack {
   /// Flies by other parameters from now on. Another list of waypoints begins anew.
   void Adopt(const WaypointParams& params);
   void Add(double t_s, const Eigen::Vector3d& p_W);
-  /// Of several flights: latest arrival at each waypoint, largest overshoot, latest settling, rms distance.
+  /// The figures of several flights: latest arrival at each waypoint, largest overshoot, latest settling, rms distance.
   static std::vector<FigureValues> FiguresOf(const std::vector<WaypointTrack>& tracks);
 
  private:

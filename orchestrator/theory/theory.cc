@@ -142,14 +142,16 @@ void PredictLaw(const Experiment& experiment, Prediction& prediction) {
 void WarnOfSilence(const Experiment& experiment, Prediction& prediction) {
   const double delivered = LeastDeliveredUnheld(experiment);
   if (delivered == 1) return;
-  Experiment lossless = experiment;
-  lossless.links = {};
-  Prediction without;
-  PredictLaw(lossless, without);
   std::string cost = fmt::format("what is heard counts for {:.3g} of its weight", delivered);
-  if (prediction.slowest_rate_per_s && without.slowest_rate_per_s && LongestDelayTicks(experiment) == 0)
-    cost += fmt::format(", and the slowest mode decays at {:.4g} instead of {:.4g} 1/s", *prediction.slowest_rate_per_s,
-                        *without.slowest_rate_per_s);
+  if (prediction.slowest_rate_per_s && LongestDelayTicks(experiment) == 0) {
+    Experiment lossless = experiment;
+    lossless.links = {};
+    Prediction without;
+    PredictLaw(lossless, without);
+    if (without.slowest_rate_per_s)
+      cost += fmt::format(", and the slowest mode decays at {:.4g} instead of {:.4g} 1/s",
+                          *prediction.slowest_rate_per_s, *without.slowest_rate_per_s);
+  }
   prediction.warnings.push_back(
       fmt::format("link.hold_s: below one control period, {:.4g} s, it lets a lost sample be silence for that tick: on "
                   "average {}; a longer one keeps the last sample instead",
