@@ -1,0 +1,120 @@
+// Flocking of double integrators; Olfati-Saber, "Flocking for multi-agent dynamic systems: algorithms and theory", IEEE
+// Trans. Automatic Control 51 (2006), Algorithm 2 (and Algorithm 1, with c1_gamma = c2_gamma = 0):
+//   a_i = sum_j w_ij [ c1_alpha phi_alpha(|p_j - p_i|_sigma) n_ij + c2_alpha rho_h(|p_j - p_i|_sigma / r_alpha) (v_j -
+//   v_i) ]
+//         - c1_gamma (p_i - q_r) - c2_gamma (v_i - p_r)
+//   |z|_sigma = (sqrt(1 + epsilon |z|^2) - 1) / epsilon,  n_ij = (p_j - p_i) / sqrt(1 + epsilon |p_j - p_i|^2)
+// Alpha agents keep the distance d from each other, and do nothing to each other from the range r = range_ratio d on.
+// phi_alpha = rho_h phi, where rho_h fades from 1 to 0 between the share `bump` of the range and the range, and phi is
+// the paper's with a = b = 1. The gamma agent (q_r, p_r) has a constant velocity. There are no beta agents (obstacles).
+// On an undirected graph the forces between agents cancel: the centre of mass obeys
+//   x'' = -c1_gamma (x - q_r) - c2_gamma (x' - p_r)
+// and the structural energy about it, potentials and kinetic energy, never grows: agents end at one velocity.
+#include "agent/laws/flocking.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "agent/laws/flock_meter.h"
+#include "agent/laws/ideal.h"
+#include "agent/laws/row_parts.h"
+
+namespace mascot {
+namespace {
+
+constexpr Key kFlockingParameters[] = {
+    key::Number("distance_m", Above(0, 1e4), "wanted distance between neighbours").Default("2.0").Live(),
+    key::Number("range_ratio", Above(1, 100), "from this many distances on, agents do nothing to each other")
+        .Default("1.2")
+        .Live(),
+    key::Number("epsilon", Above(0, 1000), "of the smooth norm").Default("0.1").Unit("1/m^2").Live(),
+    key::Number("bump", {0, 0.99}, "share of the range, in the smooth norm, from which on neighbours count less")
+        .Default("0.2")
+        .Live(),
+    key::Number("c1_alpha", {0, 1000}, "attraction and repulsion of neighbours").Default("1.0").Unit("1/s^2").Live(),
+    key::Number("c2_alpha", {0, 1000}, "pull towards the neighbours' velocities").Default("1.0").Unit("1/s").Live(),
+    key::Number("c1_gamma", {0, 1000}, "pull towards the gamma agent").Default("0.2").Unit("1/s^2").Live(),
+    key::Number("c2_gamma", {0, 1000}, "pull towards its velocity").Default("1.0").Unit("1/s").Live(),
+    key::Vector3("target_m", {-1e6, 1e6}, "where the gamma agent is at the time 0").Default("[0.0, 0.0, 1.0]").Live(),
+    key::Vector3("target_velocity_m_per_s", {-1000, 1000}, "its velocity, which it keeps")
+        .Default("[0.0, 0.0, 0.0]")
+        .Live(),
+};
+
+class Flocking final : public Law {
+ public:
+  explicit Flocking(const AgentConfig& agent) { Adopt(agent); }
+  void Adopt(const AgentConfig& agent) override {
+    params_ = &ParamsOf<FlockParams>(agent.law);
+    axes_ = agent.law.axes;
+  }
+
+  Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> heard) override {
+    const FlockParams& law = *params_;
+    Eigen::Vector3d a_W = -law.c1_gamma * (self.p_WB - law.Target_W(t_s));
+    a_W -= law.c2_gamma * (self.v_WB - law.target_velocity_W);
+    for (const Heard& j : heard) {
+      const Eigen::Vector3d way_W = Along(axes_, j.motion.p_WB - self.p_WB);
+      const double l = way_W.norm();
+      if (l >= law.pair.range_m()) continue;
+      a_W += j.weight * law.c1_alpha * law.pair.Stiffness(l) * way_W;
+      a_W += j.weight * law.c2_alpha * law.pair.Weight(l) * (j.motion.v_WB - self.v_WB);
+    }
+    return a_W;
+  }
+
+ private:
+  const FlockParams* params_ = nullptr;  // the experiment owns them
+  Axes axes_ = Axes::kXy;
+};
+
+std::shared_ptr<const LawParams> ReadFlocking(const Experiment& /*experiment*/, const LawConfig& law,
+                                              Section& section) {
+  ExpectNoLeader(law, section);
+  auto params = std::make_shared<FlockParams>();
+  const double distance_m = section.Number("distance_m"), range_m = distance_m * section.Number("range_ratio");
+  const double epsilon = section.Number("epsilon"), bump = section.Number("bump");
+  params->pair = AlphaPair(distance_m, range_m, epsilon, bump);
+  params->c1_alpha = section.Number("c1_alpha");
+  params->c2_alpha = section.Number("c2_alpha");
+  params->c1_gamma = section.Number("c1_gamma");
+  params->c2_gamma = section.Number("c2_gamma");
+  params->target_W = section.Vector3("target_m");
+  params->target_velocity_W = section.Vector3("target_velocity_m_per_s");
+  return params;
+}
+
+LawTheory PredictFlocking(const Experiment& experiment) {
+  const auto& params = ParamsOf<FlockParams>(experiment.law);
+  Experiment anywhere = experiment;  // a range of hearing beyond that of the law changes nothing
+  if (experiment.schedule.range_m() >= params.pair.range_m())
+    anywhere.schedule = Schedule({experiment.schedule.phases().begin(), experiment.schedule.phases().end()},
+                                 experiment.schedule.repeat_s(), 0);
+  if (std::string why = WhyNotIdeal(anywhere, Wanted::kAcceleration); !why.empty()) return {.silent = std::move(why)};
+  if (!experiment.graph.IsSymmetric()) return {.silent = "the closed forms are of undirected graphs"};
+  return {.figures = PredictFlock(experiment)};
+}
+
+}  // namespace
+
+LawEntry FlockingLaw() {
+  return {.name = "flocking",
+          .summary = "agents fly as a flock: near each other, at one velocity, with a target or without",
+          .equation =
+              "a_i = sum_j a_ij [c1_alpha phi_alpha(|p_j - p_i|_s) n_ij + c2_alpha rho_h(|p_j - p_i|_s / r_alpha) "
+              "(v_j - v_i)] - c1_gamma (p_i - q_r) - c2_gamma (v_i - p_r)",
+          .theory =
+              "undirected: the centre of mass obeys x'' = -c1_gamma (x - q_r) - c2_gamma (x' - p_r); the structural "
+              "energy about it never grows, but for what holding a command costs; agents end at one velocity",
+          .source = "Olfati-Saber (2006)",
+          .parameters = kFlockingParameters,
+          .figures = kFlockFigures,
+          .drawing = {},
+          .read = ReadFlocking,
+          .make = MakeOf<Flocking>,
+          .predict = PredictFlocking,
+          .meter = MeterOf<FlockMeter>};
+}
+
+}  // namespace mascot

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+namespace mascot {
+
+/// |z|_sigma = (sqrt(1 + epsilon |z|^2) - 1) / epsilon, of a vector of length `l`: a norm that is smooth at 0.
+inline double SigmaNorm(double l, double epsilon) { return (std::sqrt(1 + epsilon * l * l) - 1) / epsilon; }
+
+/// What two alpha agents do to each other in Olfati-Saber's flocking (2006), with |a| = |b| = 1 in its phi: they repel
+/// each other below the distance d, attract each other above it, and do nothing from the range r on.
+class AlphaPair {
+ public:
+  /// `bump`: from which share of r_alpha = |r|_sigma on they fade.
+  AlphaPair(double distance_m, double range_m, double epsilon, double bump);
+
+  double range_m() const { return range_m_; }
+  /// a_ij = rho_h(|z|_sigma / r_alpha) at a distance of `l` (m): 1 when near, 0 from the range on.
+  double Weight(double l) const { return Bump(SigmaNorm(l, epsilon_) / r_alpha_); }
+  /// phi_alpha(|z|_sigma) / sqrt(1 + epsilon |z|^2): the pull along z, per length of z.
+  double Stiffness(double l) const { return Action(SigmaNorm(l, epsilon_)) / std::sqrt(1 + epsilon_ * l * l); }
+  /// psi_alpha(|z|_sigma) = integral of phi_alpha from |d|_sigma on: the potential of that pull, 0 at the distance d.
+  double Potential(double l) const { return TillRange(d_alpha_) - TillRange(SigmaNorm(l, epsilon_)); }
+  /// At least the largest curvature of the potential, in any direction.
+  double LargestCurvature() const;
+
+ private:
+  double Bump(double share) const;
+  double Action(double s) const;  // phi_alpha
+  /// The integral of phi_alpha from `s` to r_alpha.
+  double TillRange(double s) const;
+  double ByQuadrature(double from, double to) const;
+
+  double range_m_, epsilon_, bump_, r_alpha_, d_alpha_;
+  std::vector<double> till_range_;  // from knots that divide [0, r_alpha]
+};
+
+}  // namespace mascot
