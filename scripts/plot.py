@@ -17,11 +17,11 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection
-from matplotlib.patches import Circle, Rectangle
+from matplotlib.patches import Circle, Polygon, Rectangle
 
 sys.dont_write_bytecode = True  # the folder of the scripts may be read-only
 from figure_style import OKABE_ITO, STYLE
-from run_folder import RunError, disagreement, read_run, spanning_tree, waypoint_targets
+from run_folder import RunError, cells, disagreement, hull, read_run, spanning_tree, waypoint_targets
 
 # Colours for more agents than OKABE_ITO has: viridis without its palest end.
 MANY = matplotlib.colors.ListedColormap(plt.get_cmap("viridis")(np.linspace(0, 0.95, 256)), "many")
@@ -48,8 +48,8 @@ def drawn(run):
 
 
 def agent_label(run, index):
-    role = f" ({run.drawing['leader']})" if index == run.leader else ""
-    return f"agent {run.id[index]}{role}"
+    roles = [run.drawing["leader"]] * (index in run.leads) + ["lies"] * (index in run.liars)
+    return f"agent {run.id[index]}" + (f" ({', '.join(roles)})" if roles else "")
 
 
 def titled(figure, run, what):
@@ -73,13 +73,14 @@ def name_agents(figure, axes, run):
 
 
 def plot_agents(axis, run, x, y, indices=None):
-    """Plots one line per agent; y is (T, N). The line of the leader is thicker and on top."""
-    palette = colours(run)
+    """Plots one line per agent; y is (T, N). Lines of leaders are thicker and on top, those of liars dashed."""
+    palette, leaders, liars = colours(run), run.leads, run.liars
     for k in drawn(run) if indices is None else indices:
-        leads = k == run.leader
+        leads = k in leaders
         axis.plot(
             x if x.ndim == 1 else x[:, k], y[:, k], color=palette[k], label=agent_label(run, k),
             linewidth=2.2 if leads else 1.2 if run.size <= LEGEND_MAX else 0.8, zorder=3 if leads else 2,
+            linestyle="--" if k in liars else "-",
         )
 
 
@@ -131,6 +132,17 @@ def draw_obstacles(axis, run):
             axis.add_patch(Circle((x, y), width / 2, **look))
 
 
+def draw_areas(axis, run, p):
+    """Draws the areas of the law at the end: the hull of its leaders, the cells into which agents divide a region."""
+    look = {"facecolor": "none", "edgecolor": "0.55", "zorder": 1.2}
+    if run.drawing["hull"]:
+        axis.add_patch(Polygon(hull(p[-1, run.leads]), linestyle="--", label="hull of leaders", **look))
+    if run.drawing["cells"]:
+        for part in cells(run.law[run.drawing["cells"]], p[-1]):
+            axis.add_patch(Polygon(part, **look))
+        axis.plot([], [], color=look["edgecolor"], label="cells")
+
+
 def draw_places(axis, run):
     """Draws the waypoints and the predicted meeting point."""
     points = np.asarray(run.law.get("waypoints_m", run.law.get("leader_waypoints_m", [])), dtype=float).reshape(-1, 3)
@@ -148,6 +160,7 @@ def paths(run):
     p = run.position[:, :, :2]
     draw_graph(axis, run, p)
     draw_obstacles(axis, run)
+    draw_areas(axis, run, p)
     plot_agents(axis, run, p[:, :, 0], p[:, :, 1])
     shown, palette = drawn(run), colours(run)
     marks = {"s": 45 if run.size <= LEGEND_MAX else 22, "zorder": 4}
@@ -237,7 +250,7 @@ def disagreement_figure(run):
     to = "the mean" if run.leader is None else f"agent {run.id[run.leader]}"
     what = f"distance from its place, seen from {to}" if np.any(run.places) else f"distance to {to}"
     figure, axis = log_panel(run, distance_m, f"disagreement ({what})", f"{what} (m)")
-    largest_m = np.maximum(distance_m.max(axis=1), FLOOR_M)
+    largest_m = np.maximum(distance_m[:, run.honest].max(axis=1), FLOOR_M)
     axis.plot(run.t, largest_m, color="0.1", linewidth=3, alpha=0.25, zorder=1, label="largest")
     axis.axhline(0.02 * largest_m[0], color="0.3", linestyle="--", linewidth=1, label="2 % of the start")
     mark_time(axis, (run.summary.get("consensus") or {}).get("settling_time_s"), "settled at")

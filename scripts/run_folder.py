@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+DRAWING = {"leader": "leader", "switches": False, "pictures": [], "hull": "", "cells": ""}
 ARRAYS = {"position": 3, "velocity": 3, "acceleration_command": 3}  # name -> numbers per agent and row
 
 
@@ -44,13 +45,30 @@ class Run:
     @property
     def drawing(self):
         """How to plot the law, from its row in the table of laws."""
-        return {"leader": "leader", "switches": False, "pictures": []} | self.summary.get("drawing", {})
+        return DRAWING | self.summary.get("drawing", {})
 
     @property
     def leader(self):
         """Index of the leader (or root), or None."""
         number = self.law.get("leader", 0)
         return number - 1 if 1 <= number <= self.size else None
+
+    @property
+    def leads(self):
+        """Indices of all agents that lead: the leader, and those whom the law's key of leaders lists."""
+        numbers = self.law.get(self.drawing["hull"], []) if self.drawing["hull"] else []
+        return [int(number) - 1 for number in numbers] or [self.leader] * (self.leader is not None)
+
+    @property
+    def liars(self):
+        """Indices of the agents of which others hear what is false."""
+        overrides = self.config.get("agents", {}).get("override", [])
+        return [agent["id"] - 1 for agent in overrides if "lie" in agent]
+
+    @property
+    def honest(self):
+        """Indices of all other agents, or of all if all lie."""
+        return [k for k in range(self.size) if k not in self.liars] or list(range(self.size))
 
     @property
     def axes(self):
@@ -128,10 +146,10 @@ def read_run(folder):
 
 
 def disagreement(run):
-    """(T, N): distance of every agent to the leader, or else to the mean, along the axes of the law (m). In a
-    formation, the places are subtracted from the positions first."""
+    """(T, N): distance of every agent to the leader, or else to the mean of those who do not lie, along the axes of the
+    law (m). In a formation, the places are subtracted from the positions first."""
     p = (run.position - run.places)[:, :, run.axes]
-    reference = p.mean(axis=1, keepdims=True) if run.leader is None else p[:, [run.leader]]
+    reference = p[:, run.honest].mean(axis=1, keepdims=True) if run.leader is None else p[:, [run.leader]]
     return np.linalg.norm(p - reference, axis=2)
 
 
@@ -174,3 +192,46 @@ def waypoint_targets(run, agent):
             at, arrived_s = at + 1, None
         chosen[k] = at
     return waypoints[chosen]
+
+
+def hull(points):
+    """Corners of the convex hull of points (N, 2), counterclockwise (Andrew's monotone chain)."""
+    ordered = sorted(set(map(tuple, points)))
+    if len(ordered) < 3:
+        return np.array(ordered).reshape(-1, 2)
+
+    def turns_left(a, b, c):
+        return (b[0] - a[0]) * (c[1] - a[1]) > (b[1] - a[1]) * (c[0] - a[0])
+
+    def half(corners):
+        kept = []
+        for corner in corners:
+            while len(kept) > 1 and not turns_left(kept[-2], kept[-1], corner):
+                kept.pop()
+            kept.append(corner)
+        return kept[:-1]
+
+    return np.array(half(ordered) + half(ordered[::-1]))
+
+
+def nearer(polygon, p, q):
+    """The part of a convex polygon (N, 2) that is nearer to p than to q."""
+    off = (polygon - (p + q) / 2) @ (q - p)
+    kept = []
+    for k, corner in enumerate(polygon):
+        if (off[k - 1] > 0) != (off[k] > 0):
+            kept.append(polygon[k - 1] + (corner - polygon[k - 1]) * off[k - 1] / (off[k - 1] - off[k]))
+        if off[k] <= 0:
+            kept.append(corner)
+    return np.array(kept).reshape(-1, 2)
+
+
+def cells(region, points):
+    """For each of the points (N, 2), the part of a convex region that is nearest to it."""
+    parts = []
+    for k, p in enumerate(points):
+        part = np.asarray(region, dtype=float)
+        for q in np.delete(points, k, axis=0):
+            part = nearer(part, p, q)
+        parts.append(part)
+    return parts

@@ -209,6 +209,38 @@ class WhatIsInThem(PlotTest):
         self.assertEqual((box.get_x(), box.get_y(), box.get_width(), box.get_height()), (0, 0, 2, 4))
         self.assertEqual((tuple(sphere.center), sphere.radius), ((5, 0), 1))
 
+    def test_a_liar_is_dashed_and_named_and_does_not_count_in_the_disagreement(self):
+        config = CONSENSUS + '[[agents.override]]\nid = 2\nlie = { kind = "constant", offset_m = [9, 0, 0] }\n'
+        lines = self.lines(self.figure("paths", config=config).axes[0])
+        self.assertEqual([lines[f"agent {name}"].get_linestyle() for name in ("1", "2 (lies)", "3")], ["-", "--", "-"])
+        states = arrays()
+        states["position"][:, 1] = [100, 0, 1]
+        axis = self.figure("disagreement", config=config, states=states).axes[0]
+        p = states["position"][0, [0, 2], :2]
+        self.assertAlmostEqual(self.lines(axis)["largest"].get_ydata()[0], np.linalg.norm(p[0] - p[1]) / 2)
+
+    def test_the_hull_of_listed_leaders_is_drawn_at_the_end(self):
+        config = '[law]\nname = "chase"\nguides = [1, 2, 3, 5]\n'
+        states = arrays(agents=5)
+        states["position"][-1] = [[0, 0, 1], [2, 0, 1], [1, 2, 1], [9, 9, 1], [1, 1, 1]]
+        axis = self.figure("paths", config=config, states=states, summary={"drawing": {"hull": "guides"}}).axes[0]
+        corners = axis.patches[0].get_xy()[:-1]  # without the first one again
+        self.assertEqual(corners.tolist(), [[0, 0], [2, 0], [1, 2]])
+        lines = self.lines(axis)
+        self.assertEqual([lines[name].get_linewidth() for name in ("agent 1 (leader)", "agent 4")], [2.2, 1.2])
+        self.assertIn("hull of leaders", [text.get_text() for text in axis.get_legend().get_texts()])
+
+    def test_the_hull_of_two_leaders_is_a_line(self):
+        self.assertEqual(run_folder.hull(np.array([[1, 0], [0, 0]])).tolist(), [[0, 0], [1, 0]])
+
+    def test_cells_divide_their_region_at_the_end(self):
+        config = '[law]\nname = "chase"\nfield = [[0, 0], [4, 0], [4, 2], [0, 2]]\n'
+        states = arrays(agents=2)
+        states["position"][-1] = [[1, 1, 1], [3, 1, 1]]
+        axis = self.figure("paths", config=config, states=states, summary={"drawing": {"cells": "field"}}).axes[0]
+        found = [sorted(map(tuple, patch.get_xy()[:-1].tolist())) for patch in axis.patches]
+        self.assertEqual(found, [[(0, 0), (0, 2), (2, 0), (2, 2)], [(2, 0), (2, 2), (4, 0), (4, 2)]])
+
     def test_disagreement_with_a_leader_is_the_distance_to_it(self):
         axis = self.figure("disagreement", config=LEADER).axes[0]
         self.assertEqual(axis.get_ylabel(), "distance to agent 2 (m)")

@@ -137,7 +137,7 @@ LawEntry AffineFormationLaw() {
           .source = "Zhao (2018)",
           .parameters = kAffineFormationParameters,
           .figures = kAffineFormationFigures,
-          .drawing = {},
+          .drawing = {.pictures = {}, .hull = kLeadersKey.name},
           .read = ReadAffineFormation,
           .make = MakeWithPeriod<AffineFormation>,
           .wanted = WantsVelocity,

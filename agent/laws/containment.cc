@@ -133,7 +133,7 @@ LawEntry ContainmentLaw() {
       .source = "Ji, Ferrari-Trecate, Egerstedt & Buffa (2008)",
       .parameters = kContainmentParameters,
       .figures = kContainmentFigures,
-      .drawing = {},
+      .drawing = {.pictures = {}, .hull = kLeadersKey.name},
       .read = ReadContainment,
       .make = MakeOf<Containment>,
       .wanted = WantsVelocity,

@@ -137,7 +137,7 @@ LawEntry CoverageLaw() {
       .source = "Cortes, Martinez, Karatas & Bullo (2004)",
       .parameters = kCoverageParameters,
       .figures = kCoverageFigures,
-      .drawing = {},
+      .drawing = {.pictures = {}, .cells = "region_m"},
       .read = ReadCoverage,
       .make = MakeOf<Coverage>,
       .wanted = WantsVelocity,

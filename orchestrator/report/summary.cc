@@ -117,7 +117,9 @@ Json Formation(const Measured::Formation& formation) {
 Json ToJson(const Drawing& drawing) {
   return {{"leader", drawing.leader},
           {"switches", drawing.switches},
-          {"pictures", std::vector<std::string_view>(drawing.pictures.begin(), drawing.pictures.end())}};
+          {"pictures", std::vector<std::string_view>(drawing.pictures.begin(), drawing.pictures.end())},
+          {"hull", drawing.hull},
+          {"cells", drawing.cells}};
 }
 
 Json Fidelity(const Measured& measured) {
