@@ -47,6 +47,7 @@ struct Drawing {
   std::string_view leader = "leader";          ///< word for the agent law.leader
   bool switches = false;                       ///< commands jump between limits: show their moving mean, too
   std::span<const std::string_view> pictures;  ///< pictures besides positions and velocities
+  std::string_view telling = "paths";          ///< the picture that shows most of the law: docs/laws.md has it
   std::string_view hull = {};                  ///< the key that lists the agents whose hull is drawn; empty: none
   std::string_view cells = {};                 ///< the key of a region that agents divide by nearness; empty: none
 };

@@ -179,14 +179,14 @@ def paths(run):
     return figure
 
 
-def position(run):
-    figure, grid = panels(run, run.position, "{}", "m", "position", [0, 1, 2])
+def position(run, axes=(0, 1, 2)):
+    figure, grid = panels(run, run.position, "{}", "m", "position", axes)
     name_agents(figure, grid, run)
     return figure
 
 
-def velocity(run):
-    figure, grid = panels(run, run.velocity, "$v_{}$", "m/s", "velocity", [0, 1, 2])
+def velocity(run, axes=(0, 1, 2)):
+    figure, grid = panels(run, run.velocity, "$v_{}$", "m/s", "velocity", axes)
     name_agents(figure, grid, run)
     return figure
 

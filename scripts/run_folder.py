@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-DRAWING = {"leader": "leader", "switches": False, "pictures": [], "hull": "", "cells": ""}
+DRAWING = {"leader": "leader", "switches": False, "pictures": [], "telling": "paths", "hull": "", "cells": ""}
 ARRAYS = {"position": 3, "velocity": 3, "acceleration_command": 3}  # name -> numbers per agent and row
 
 

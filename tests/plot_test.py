@@ -1,7 +1,9 @@
 #!/usr/bin/python3
-"""Tests of scripts/plot.py: which plots it makes, what they contain, and its error messages."""
+"""Tests of scripts/plot.py and scripts/law_pictures: which plots they make, what these contain, and error messages."""
 
 import contextlib
+import importlib.machinery
+import importlib.util
 import io
 import json
 import os
@@ -16,6 +18,10 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "scripts
 sys.dont_write_bytecode = True
 import plot
 import run_folder
+
+loader = importlib.machinery.SourceFileLoader("law_pictures", str(pathlib.Path(plot.__file__).parent / "law_pictures"))
+law_pictures = importlib.util.module_from_spec(importlib.util.spec_from_loader("law_pictures", loader))
+loader.exec_module(law_pictures)
 
 CONSENSUS = '[run]\nname = "demo"\n[law]\nname = "consensus"\n'
 LEADER = CONSENSUS + "leader = 2\n"
@@ -297,6 +303,29 @@ class WhatIsInThem(PlotTest):
         axis = self.figure("paths", summary=summary).axes[0]
         self.assertEqual(len(axis.collections[0].get_segments()), 2)  # two pairs that hear each other
         self.assertEqual([list(d) for d in self.lines(axis)["predicted"].get_data()], [[1], [2]])
+
+
+class PicturesOfLaws(PlotTest):
+    """scripts/law_pictures, which draws the pictures in docs/laws.md."""
+
+    def test_each_experiment_that_the_page_names_has_its_picture(self):
+        named = law_pictures.experiments()
+        self.assertGreater(len(named), 20)
+        self.assertEqual(sorted(named), sorted(path.stem for path in law_pictures.PICTURES.glob("*.png")))
+        for experiment in named.values():
+            self.assertTrue((law_pictures.ROOT / experiment).is_file(), experiment)
+
+    def test_the_picture_that_tells_most_is_drawn_in_few_colours_without_axes_where_nothing_moves(self):
+        self.write(summary={"drawing": {"telling": "velocity"}})
+        run = run_folder.read_run(self.folder)
+        self.assertEqual(law_pictures.moving(run.velocity), [0, 1])
+        self.assertEqual(law_pictures.moving(0 * run.velocity), [0])
+        for name in ("a", "b"):
+            law_pictures.draw(run, self.folder / f"{name}.png")
+        first, second = ((self.folder / f"{name}.png").read_bytes() for name in ("a", "b"))
+        self.assertEqual(first[:4], b"\x89PNG")
+        self.assertEqual(first[25], 3, "the colours are those of a palette")
+        self.assertEqual(first, second)
 
 
 class Errors(PlotTest):

@@ -1,5 +1,5 @@
-// docs/configuration.md and docs/mascot.schema.json, which are generated from the key tables, compared with the reader
-// of experiment files (LoadExperiment) and with taplo, which editors use.
+// docs/configuration.md, docs/mascot.schema.json and the sections of docs/laws.md, which are generated from the tables
+// of keys and laws, compared with the reader of experiment files (LoadExperiment) and with taplo, which editors use.
 #include "orchestrator/reference/reference.h"
 
 #include <gmock/gmock.h>
@@ -18,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 const fs::path kSource = MASCOT_SOURCE_DIR;
 
@@ -59,6 +60,65 @@ TEST(Reference, SaysRangeDefaultAndMeaning) {
   EXPECT_THAT(text, HasSubstr("\n### [[link.override]]\n"));
   EXPECT_THAT(text, HasSubstr("\nKeys as in `[control]`, but for `rate_hz`.\n"));
   for (const LawEntry& law : Laws()) EXPECT_THAT(text, HasSubstr("law.name = \"" + std::string(law.name) + "\""));
+}
+
+// --- the page of the laws ---------------------------------------------------------------------------
+
+const fs::path kPictures = kSource / "docs/pictures/laws";
+
+TEST(LawPage, IsCurrent) {
+  const std::string page = ReadFile(kSource / "docs/laws.md");
+  EXPECT_EQ(page, LawPage(page, kSource / "configs")) << kHowTo;
+}
+
+TEST(LawPage, HasASectionOfEachLawAndItsPicture) {
+  const std::string page = ReadFile(kSource / "docs/laws.md");
+  std::vector<std::string_view> not_shown;
+  for (const LawEntry& law : Laws()) {
+    const std::string name(law.name);
+    const std::size_t begin = page.find("\n### " + name + "\n");
+    ASSERT_NE(begin, std::string::npos) << name;
+    const std::string section = page.substr(begin, page.find("\n### ", begin + 1) - begin);
+    EXPECT_THAT(section, HasSubstr(law.theory));
+    EXPECT_THAT(section, HasSubstr(law.source));
+    for (const Key& key : law.parameters) EXPECT_THAT(section, HasSubstr("| `" + std::string(key.name) + "` |"));
+    for (const LawFigure& figure : law.figures)
+      EXPECT_THAT(section, HasSubstr("| `" + std::string(figure.name) + "` |")) << name;
+    if (section.find("](pictures/laws/" + name + ".png)") == std::string::npos) {
+      not_shown.push_back(law.name);
+      continue;
+    }
+    ASSERT_TRUE(fs::exists(kPictures / (name + ".png"))) << "run: scripts/law_pictures " << name;
+    EXPECT_THAT(ReadFile(kPictures / (name + ".png")), testing::StartsWith("\x89PNG")) << name;
+    EXPECT_LT(fs::file_size(kPictures / (name + ".png")), 60'000) << name;
+  }
+  EXPECT_THAT(not_shown, testing::ElementsAre("plugin")) << "experiments with libraries are not shipped";
+}
+
+TEST(LawPage, HasNoPictureOfAnotherLaw) {
+  for (const auto& entry : fs::directory_iterator(kPictures))
+    EXPECT_THAT(LawNames(), testing::Contains(entry.path().stem().string())) << entry.path();
+}
+
+TEST(LawPage, ShowsALawByTheExperimentOfItsNameOrElseByTheFirst) {
+  ScratchFolder folder;
+  const auto write = [&](const std::string& name, const std::string& law) {
+    WriteFile(folder.File(name + ".toml"),
+              "#:schema x\n# Words of\n# " + name + ".\n#\n# Others.\n[law]\nname = '" + law + "'\n");
+  };
+  write("a", "finite_time");
+  write("finite_time", "finite_time");
+  write("z", "minmax");
+  write("y", "minmax");
+  const std::string page = LawPage(ReadFile(kSource / "docs/laws.md"), folder.path());
+  EXPECT_THAT(page, HasSubstr("[configs/finite_time.toml](../configs/finite_time.toml). Words of finite_time.\n"));
+  EXPECT_THAT(page, HasSubstr("[configs/y.toml](../configs/y.toml). Words of y.\n"));
+  EXPECT_THAT(page, Not(HasSubstr("configs/a.toml")));
+  EXPECT_THAT(page, Not(HasSubstr("configs/z.toml")));
+}
+
+TEST(LawPage, WithoutItsCommentsIsRefused) {
+  EXPECT_THROW(LawPage("# Control laws\n", kSource / "configs"), std::runtime_error);
 }
 
 // --- complete and true ------------------------------------------------------------------------------

@@ -139,7 +139,7 @@ LawEntry EventTriggeredLaw() {
       .figures = kEventTriggeredFigures,
       .agrees = true,
       .gathers = true,
-      .drawing = {.pictures = kDisagreementPicture},
+      .drawing = {.pictures = kDisagreementPicture, .telling = "disagreement"},
       .read = ReadEventTriggered,
       .make = MakeOf<EventTriggered>,
       .wanted = WantsVelocity,

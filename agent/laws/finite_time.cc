@@ -134,7 +134,7 @@ LawEntry FiniteTimeLaw() {
       .figures = kAgreementTimeFigures,
       .agrees = true,
       .gathers = true,
-      .drawing = {.pictures = kDisagreementPicture},
+      .drawing = {.pictures = kDisagreementPicture, .telling = "disagreement"},
       .read = ReadFiniteTime,
       .make = MakeOf<FiniteTime>,
       .wanted = WantsVelocity,

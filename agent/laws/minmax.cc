@@ -139,7 +139,7 @@ LawEntry MinmaxLaw() {
           .parameters = kMinmaxParameters,
           .agrees = true,
           .gathers = true,
-          .drawing = {.leader = "root", .switches = true, .pictures = kPursuitPictures},
+          .drawing = {.leader = "root", .switches = true, .pictures = kPursuitPictures, .telling = "tracking"},
           .read = ReadMinmax,
           .make = MakeMinmax,
           .go_to = GoToOf<FlightOfRoot>,

@@ -139,7 +139,7 @@ LawEntry PlatoonLaw() {
       .source = "Ploeg, van de Wouw & Nijmeijer (2014)",
       .parameters = kPlatoonParameters,
       .figures = kPlatoonFigures,
-      .drawing = {},
+      .drawing = {.pictures = {}, .telling = "velocity"},
       .read = ReadPlatoon,
       .make = MakeWithPeriod<Platoon>,
       .predict = PredictPlatoon,

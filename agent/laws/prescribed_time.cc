@@ -139,7 +139,7 @@ LawEntry PrescribedTimeLaw() {
           .figures = kPrescribedTimeFigures,
           .agrees = true,
           .gathers = true,
-          .drawing = {.pictures = kDisagreementPicture},
+          .drawing = {.pictures = kDisagreementPicture, .telling = "disagreement"},
           .read = ReadPrescribedTime,
           .make = MakeOf<PrescribedTime>,
           .wanted = WantsVelocity,

@@ -137,7 +137,7 @@ LawEntry ResilientLaw() {
       .figures = kResilientFigures,
       .agrees = true,
       .gathers = true,
-      .drawing = {.pictures = kDisagreementPicture},
+      .drawing = {.pictures = kDisagreementPicture, .telling = "position"},
       .read = ReadResilient,
       .make = MakeOf<Resilient>,
       .wanted = WantsVelocity,

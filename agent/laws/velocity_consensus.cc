@@ -60,7 +60,7 @@ LawEntry VelocityConsensusLaw() {
       .parameters = kVelocityConsensusParameters,
       .agrees = true,
       .gathers = true,
-      .drawing = {.pictures = kDisagreementPicture},
+      .drawing = {.pictures = kDisagreementPicture, .telling = "disagreement"},
       .read = ReadVelocityConsensus,
       .make = MakeOf<VelocityConsensus>,
       .wanted = WantsVelocity,

@@ -9,6 +9,7 @@
 #include "agent/laws.h"
 #include "experiment/experiment.h"
 #include "experiment/toml/key.h"
+#include "orchestrator/reference/markdown.h"
 
 namespace mascot {
 namespace {
@@ -33,39 +34,6 @@ Editors with TOML support (VS Code with Even Better TOML, and others based on ta
 type if the file begins with `#:schema` and the path of [mascot.schema.json](mascot.schema.json), as the files in
 `configs/` do.
 )";
-
-/// Escapes text for a cell of a Markdown table.
-std::string Cell(std::string_view text) {
-  std::string cell;
-  for (const char c : text) cell += c == '|' ? std::string("\\|") : std::string(1, c);
-  return cell;
-}
-
-std::string DefaultText(const Key& key) {
-  if (key.required) return "*required*";
-  if (!key.fallback.empty()) return "`" + std::string(key.fallback) + "`";
-  return std::string(key.otherwise);
-}
-
-/// The column `live` is left out if no key is.
-std::string TableOf(std::span<const Key> rows) {
-  const bool any_live = std::ranges::any_of(rows, &Key::live);
-  std::string text = any_live ? "\n| key | value | default | live | meaning |\n|---|---|---|---|---|\n"
-                              : "\n| key | value | default | meaning |\n|---|---|---|---|\n";
-  for (const Key& key : rows)
-    text += fmt::format("| `{}` | {} | {} |{} {} |\n", key.name, Cell(ValueText(key)), Cell(DefaultText(key)),
-                        !any_live  ? ""
-                        : key.live ? " live |"
-                                   : " |",
-                        Cell(key.meaning));
-  return text;
-}
-
-std::string Sentence(std::string_view words) {
-  std::string sentence(words);
-  if (!sentence.empty()) sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
-  return sentence + ".";
-}
 
 bool IsIn(std::span<const Key> rows, const Key& key) {
   return std::ranges::any_of(rows, [&](const Key& row) {
@@ -95,12 +63,12 @@ class Writer {
     std::vector<Key> alone;  // keys of no table
     for (const Key& key : ExperimentKeys())
       key.keys.empty() ? alone.push_back(key) : tables_.push_back({std::string(key.name), key.keys});
-    text_ += "\n## The file\n" + TableOf(alone);
+    text_ += "\n## The file\n" + TableOfKeys(alone);
     for (const Key& table : ExperimentKeys()) {
       if (table.keys.empty()) continue;
       text_ += fmt::format("\n## [{}]\n", table.name);
       if (!table.meaning.empty()) text_ += "\n" + Sentence(table.meaning) + "\n";
-      text_ += TableOf(table.keys);
+      text_ += TableOfKeys(table.keys);
       if (table.name == "graph") WriteTopologies();
       WriteInner(std::string(table.name), table.keys);
     }
@@ -137,12 +105,12 @@ class Writer {
       const std::vector<Key> own = Without(other.rows, rows);
       if (2 * own.size() > rows.size()) continue;
       const std::vector<Key> left_out = Without(rows, other.rows);
-      if (!own.empty()) text_ += TableOf(own);
+      if (!own.empty()) text_ += TableOfKeys(own);
       text_ += fmt::format("\n{} as in `[{}]`{}.\n", own.empty() ? "Keys" : "Also keys", other.path,
                            left_out.empty() ? "" : ", but for " + NameList(left_out));
       return;
     }
-    text_ += TableOf(rows);
+    text_ += TableOfKeys(rows);
   }
 
   void WriteTopologies() {
@@ -157,7 +125,7 @@ class Writer {
     for (const LawEntry& law : Laws()) {
       text_ += fmt::format("\n### law.name = \"{}\"\n\n{} Default of `axes`: `\"{}\"`.\n\n```\n{}\n```\n", law.name,
                            Sentence(law.summary), kAxes.Name(law.axes), law.equation);
-      text_ += TableOf(law.parameters);
+      text_ += TableOfKeys(law.parameters);
     }
   }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 namespace mascot {
@@ -8,5 +9,8 @@ namespace mascot {
 std::string ConfigurationReference();  // reference.cc
 /// Text of docs/mascot.schema.json: the same as a JSON Schema (draft 7), for editors.
 std::string ConfigurationSchema();  // schema.cc
+/// Text of docs/laws.md: `page` with the sections of the laws made anew, from the table of laws and the experiments in
+/// the folder `configs`. Throws std::runtime_error if the page lacks the comments between which they stand.
+std::string LawPage(const std::string& page, const std::filesystem::path& configs);  // law_page.cc
 
 }  // namespace mascot

@@ -118,6 +118,7 @@ Json ToJson(const Drawing& drawing) {
   return {{"leader", drawing.leader},
           {"switches", drawing.switches},
           {"pictures", std::vector<std::string_view>(drawing.pictures.begin(), drawing.pictures.end())},
+          {"telling", drawing.telling},
           {"hull", drawing.hull},
           {"cells", drawing.cells}};
 }

@@ -1,0 +1,99 @@
+// The sections of docs/laws.md: a law each, with the experiment that shows it and the picture of its run.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "agent/laws.h"
+#include "experiment/toml/section.h"
+#include "orchestrator/reference/markdown.h"
+#include "orchestrator/reference/reference.h"
+
+namespace mascot {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kBegin =
+    "<!-- From here on made from the table of laws by `cmake --build build/release --target reference`; a test keeps "
+    "it "
+    "current. -->\n";
+constexpr std::string_view kEnd = "<!-- Until here. -->\n";
+
+/// An experiment that shows a law.
+struct ShownBy {
+  std::string law, config, says;  ///< name of the law, of the file; the first paragraph of its comments
+};
+
+/// The first paragraph of the comments of an experiment.
+std::string FirstWords(const std::string& toml) {
+  std::istringstream lines(toml);
+  std::string words;
+  for (std::string line; std::getline(lines, line) && line != "#";)
+    if (line.starts_with("# ")) words += (words.empty() ? "" : " ") + line.substr(2);
+  return words;
+}
+
+std::vector<ShownBy> Shipped(const fs::path& configs) {
+  std::vector<ShownBy> shipped;
+  for (const auto& entry : fs::directory_iterator(configs)) {
+    if (entry.path().extension() != ".toml") continue;
+    Section law = Section::FromFile(entry.path()).Child("law");
+    shipped.push_back({law.Text("name", std::string(LawNames().front())), entry.path().stem(),
+                       FirstWords(ReadRegularFile(entry.path()))});
+  }
+  std::ranges::sort(shipped, {}, &ShownBy::config);
+  return shipped;
+}
+
+/// The experiment that shows a law: the one of its name, or else the first; null: none.
+const ShownBy* ShowOf(std::string_view law, const std::vector<ShownBy>& shipped) {
+  const ShownBy* found = nullptr;
+  for (const ShownBy& one : shipped)
+    if (one.law == law && (found == nullptr || one.config == law)) found = &one;
+  return found;
+}
+
+/// An equation with its parts, which two spaces separate, on lines of their own.
+std::string Lines(std::string equation) {
+  for (std::size_t at = equation.find(";  "); at != std::string::npos; at = equation.find(";  ", at))
+    equation.replace(at, 3, "\n");
+  return equation;
+}
+
+std::string TableOfFigures(std::span<const LawFigure> figures) {
+  std::string text = "\n| figure | meaning |\n|---|---|\n";
+  for (const LawFigure& figure : figures)
+    text += fmt::format("| `{}` | {}{} |\n", figure.name, Cell(figure.meaning),
+                        figure.each.empty() ? "" : fmt::format("; for each {}", figure.each));
+  return text;
+}
+
+std::string SectionOf(const LawEntry& law, const ShownBy* show) {
+  std::string text = fmt::format("\n### {}\n\n{} Default of `axes`: `\"{}\"`.\n\n```\n{}\n```\n\n", law.name,
+                                 Sentence(law.summary), kAxes.Name(law.axes), Lines(std::string(law.equation)));
+  text += fmt::format("* Theory: {}.\n* Source: {}.\n", law.theory, law.source);
+  if (show != nullptr)
+    text += fmt::format(
+        "* Experiment: [configs/{0}.toml](../configs/{0}.toml). {1}\n\n![Run of {0}.toml](pictures/laws/{2}.png)\n",
+        show->config, show->says, law.name);
+  if (!law.parameters.empty()) text += TableOfKeys(law.parameters);
+  if (!law.figures.empty()) text += TableOfFigures(law.figures);
+  return text;
+}
+
+}  // namespace
+
+std::string LawPage(const std::string& page, const fs::path& configs) {
+  const std::size_t begin = page.find(kBegin), end = page.find(kEnd);
+  if (begin == std::string::npos || end == std::string::npos || end < begin)
+    throw std::runtime_error("docs/laws.md: the comments around the sections of the laws are missing");
+  const std::vector<ShownBy> shipped = Shipped(configs);
+  std::string text = page.substr(0, begin) + std::string(kBegin);
+  for (const LawEntry& law : Laws()) text += SectionOf(law, ShowOf(law.name, shipped));
+  return text + "\n" + page.substr(end);
+}
+
+}  // namespace mascot
