@@ -44,6 +44,7 @@ Agent::Agent(const Experiment& experiment, int id)
       driven_by_(config_->traits().driven_by),
       neighbours_(experiment, id),
       sensor_(experiment.sensors, experiment.control.rate_hz, experiment.run.seed, id),
+      ranges_(experiment.sensors.range_m, experiment.physics.obstacles),
       v_integrated_W_(config_->v_W) {}
 
 void Agent::Adopt(std::shared_ptr<const Experiment> now) {
@@ -61,6 +62,7 @@ Eigen::Vector3d Agent::AskLaw(std::int64_t tick, const Motion& measured, std::sp
     return Eigen::Vector3d::Zero();
   }
   wanted_ = law_->wanted();
+  if (ranges_.is_on()) AtTick(tick, [&] { law_->See(ranges_.Sense(measured.p_WB)); });
   Eigen::Vector3d w_W = AtTick(tick, [&] { return law_->Want_W(t_s, measured, heard); });
   if (holds_altitude_) w_W.z() = 0;
   if (!w_W.allFinite()) ThrowNotFinite(tick, id_, wanted_, w_W);

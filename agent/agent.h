@@ -51,6 +51,7 @@ class Agent {
   Wanted wanted_ = Wanted::kAcceleration;  // what the last AskLaw() returned
   Neighbours neighbours_;
   OwnSensor sensor_;
+  RangeSensor ranges_;
   Motion measured_;
   Eigen::Vector3d v_integrated_W_;  // for a velocity-driven model whose law wants accelerations
   std::span<const double> message_;

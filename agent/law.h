@@ -28,6 +28,10 @@ class Law {
   virtual ~Law() = default;
   /// What Want_W() returns.
   virtual Wanted wanted() const { return Wanted::kAcceleration; }
+  /// What the agent sees of obstacles: the nearest point, in W (m), of each that lies within sensors.range_m of its
+  /// measured position, in the order of physics.obstacles; inside of one, the position itself. Called before each
+  /// Want_W() if sensors.range_m is set; `nearest_W` is valid until that has returned.
+  virtual void See(std::span<const Eigen::Vector3d> /*nearest_W*/) {}
   /// Wanted acceleration (m/s^2) or velocity (m/s) of this agent, expressed in W. `t_s`: simulated time, increasing
   /// from call to call. `self`: the measured motion of this agent. `heard`: one entry per neighbour whose sample was
   /// delivered, in increasing id. Components outside law.axes are ignored. An exception ends the run.

@@ -96,7 +96,7 @@ std::span<const Eigen::Vector3d> PlacesOf(const LawConfig& law) {
 std::span<const Eigen::Vector3d> WaypointsOf(const AgentConfig& agent) {
   const LawEntry& entry = EntryOf(agent.law);
   const bool flies = agent.law.leader == 0 || agent.law.leader == agent.id;
-  return entry.waypoints_W != nullptr && flies ? entry.waypoints_W(agent.law) : std::span<const Eigen::Vector3d>();
+  return entry.waypoints_W != nullptr && flies ? entry.waypoints_W(agent) : std::span<const Eigen::Vector3d>();
 }
 
 std::optional<LinearForm> LinearFormOf(const LawConfig& law) {

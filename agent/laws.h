@@ -65,6 +65,7 @@ struct LawEntry {
   Axes axes = Axes::kXy;                    ///< default of law.axes
   bool agrees = false;                      ///< agents agree by what they hear, which takes a spanning tree
   bool gathers = false;                     ///< agents meet in one place, where only their heights keep them apart
+  bool sees_obstacles = false;              ///< uses what it sees of obstacles (Law::See), to keep clear of them
   Drawing drawing;
 
   /// Reads and checks the parameters, as LawCatalog::Read() does.
@@ -78,8 +79,8 @@ struct LawEntry {
   /// The parameters, with their values, that make an agent fly to `p_W` from `t_s` on, in place of its waypoints; empty
   /// for an agent that flies none. Null: nobody flies waypoints.
   std::map<std::string, Value> (*go_to)(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s) = nullptr;
-  /// Targets of every agent, or of the leader alone if there is one, in W (m); null: none.
-  std::span<const Eigen::Vector3d> (*waypoints_W)(const LawConfig& law) = nullptr;
+  /// Targets of an agent, in W (m), of the leader alone if there is one; null: none.
+  std::span<const Eigen::Vector3d> (*waypoints_W)(const AgentConfig& agent) = nullptr;
   /// Null: the law is not linear.
   LinearForm (*linear)(const LawConfig& law) = nullptr;
   /// Null: the law is no pursuit on a tree.

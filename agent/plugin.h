@@ -42,7 +42,7 @@
 namespace mascot {
 
 /// Version of the interface: goes up with every change to this header or to those that it includes.
-inline constexpr int kLawInterface = 2;
+inline constexpr int kLawInterface = 3;
 
 /// The argument of a law's constructor.
 struct PluginSetup {

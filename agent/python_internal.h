@@ -6,6 +6,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -75,6 +76,8 @@ PythonError Explain(py::error_already_set& error, const std::string& file);
 py::object ToPython(const Value& value);
 /// A new NumPy array that holds `values`.
 py::array_t<double> Array(std::span<const double> values);
+/// A new NumPy array of the shape (points, 3).
+py::array_t<double> Rows(std::span<const Eigen::Vector3d> points);
 /// repr() of a returned value, for a message; its type if repr() fails.
 std::string Repr(const py::handle& value);
 /// The numbers in a returned value; nullopt if it is not a flat sequence of numbers.

@@ -12,6 +12,13 @@ py::array_t<double> Array(std::span<const double> values) {
   return array;
 }
 
+py::array_t<double> Rows(std::span<const Eigen::Vector3d> points) {
+  py::array_t<double> rows({static_cast<py::ssize_t>(points.size()), py::ssize_t{3}});
+  double* next = rows.mutable_data();
+  for (const Eigen::Vector3d& point : points) next = std::copy_n(point.data(), 3, next);
+  return rows;
+}
+
 std::string Repr(const py::handle& value) try {
   constexpr std::size_t kLongest = 200;
   const std::string text = TextOf(py::repr(value));

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "agent/link.h"
+#include "experiment/obstacles.h"
 
 namespace mascot {
 namespace {
@@ -52,6 +54,20 @@ void OwnSensor::Delay(std::int64_t tick, Motion& motion) {
   motion.p_WB = then.p_WB;
   motion.v_WB = then.v_WB;
   motion.a_WB = then.a_WB;
+}
+
+RangeSensor::RangeSensor(double range_m, std::vector<Obstacle> obstacles)
+    : range_m_(range_m), obstacles_(std::move(obstacles)) {
+  nearest_W_.reserve(obstacles_.size());
+}
+
+std::span<const Eigen::Vector3d> RangeSensor::Sense(const Eigen::Vector3d& p_W) {
+  nearest_W_.clear();
+  for (const Obstacle& obstacle : obstacles_) {
+    const Eigen::Vector3d nearest_W = NearestPoint_W(obstacle, p_W);
+    if ((nearest_W - p_W).norm() <= range_m_) nearest_W_.push_back(nearest_W);
+  }
+  return nearest_W_;
 }
 
 }  // namespace mascot

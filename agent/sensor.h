@@ -1,9 +1,12 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "experiment/motion.h"
+#include "experiment/physics.h"
 #include "experiment/random.h"
 #include "experiment/sensors.h"
 
@@ -41,6 +44,22 @@ class OwnSensor {
   std::int64_t delay_ticks_;
   std::int64_t last_tick_ = -1;
   std::vector<Motion> past_;  // the motion at tick t is at index t modulo the size
+};
+
+/// An agent's sensor for obstacles (sensors.range_m): knows where they stand, and sees them from where the agent
+/// measures itself to be. Other agents and the ground are none: agents know of others what they hear.
+class RangeSensor {
+ public:
+  RangeSensor(double range_m, std::vector<Obstacle> obstacles);
+  bool is_on() const { return range_m_ > 0; }
+  /// The nearest point, in W (m), of each obstacle within the range of `p_W`, as Law::See() gets them. Valid until the
+  /// next call; allocates nothing.
+  std::span<const Eigen::Vector3d> Sense(const Eigen::Vector3d& p_W);
+
+ private:
+  double range_m_;
+  std::vector<Obstacle> obstacles_;
+  std::vector<Eigen::Vector3d> nearest_W_;  // room for all obstacles
 };
 
 }  // namespace mascot

@@ -96,6 +96,8 @@ struct AgentConfig {
   Eigen::Vector3d size_m() const {
     return traits().has_airframe ? airframe.size_m : Eigen::Vector3d::Constant(2 * kBallRadius_m);
   }
+  /// Radius of the smallest ball around its position that holds its body, however it is turned (m).
+  double radius_m() const { return traits().has_airframe ? airframe.size_m.norm() / 2 : kBallRadius_m; }
 };
 
 /// One experiment: everything that the processes of a run must agree on. Field names are the TOML keys.

@@ -314,7 +314,7 @@ std::span<const Key> ExperimentKeys() {
       key::Table("physics", PhysicsKeys(), "the world"),
       key::Table("agents", AgentsKeys(), "who flies"),
       key::Table("control", ControlKeys(), "the low-level stack under the law"),
-      key::Table("sensors", SensorKeys(), "what agents measure: standard deviations of zero-mean Gaussian errors"),
+      key::Table("sensors", SensorKeys(), "what agents measure; standard deviations are of zero-mean Gaussian errors"),
       key::Table("graph", ScheduleKeys(),
                  "who hears whom: one of `topology`, `laplacian`, `adjacency`, `edges`, `random`"),
       key::Table("link", LinkKeys(),

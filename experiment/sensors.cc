@@ -25,6 +25,10 @@ constexpr auto kOwnKeys = Joined(
                     "attitude at once")
             .Default("0.0")});
 constexpr Key kSensorKeys[] = {
+    key::Number("range_m", {0, 1e6},
+                "how far, from its measured position, an agent sees the nearest point of each obstacle, for laws that "
+                "ask; 0: no such sensor")
+        .Default("0.0"),
     key::Table("own", kOwnKeys, "what an agent measures of itself: law and low-level stack both get this"),
     key::Table("heard", kHeardKeys, "what an agent measures of each agent that it hears"),
 };
@@ -50,6 +54,7 @@ SensorConfig ReadSensors(Section& sensors) {
   own.Done();
   config.heard = ReadNoise(heard);
   heard.Done();
+  config.range_m = sensors.Number("range_m");
   sensors.Done();
   return config;
 }

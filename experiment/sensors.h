@@ -22,6 +22,7 @@ struct SensorConfig {
   NoiseConfig own;         ///< a bias per agent; law and low-level stack both get the measured motion
   double own_delay_s = 0;  ///< delay of position, velocity and acceleration; attitude has none
   NoiseConfig heard;       ///< noise and bias per directed edge
+  double range_m = 0;      ///< how far an agent sees obstacles; 0: it sees none
 };
 
 /// The keys of [sensors].

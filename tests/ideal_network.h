@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "agent/laws.h"
+#include "agent/sensor.h"
 #include "experiment/experiment.h"
 
 namespace mascot {
@@ -20,6 +21,7 @@ class IdealNetwork {
       : experiment(LoadExperiment(Section::FromText(toml, "test.toml"), "test")) {
     for (const AgentConfig& agent : experiment.agents) {
       laws.push_back(MakeLaw(experiment, agent.id));
+      ranges.emplace_back(experiment.sensors.range_m, experiment.physics.obstacles);
       motions.emplace_back();
       motions.back().p_WB = agent.p_W;
       motions.back().v_WB = agent.v_W;
@@ -38,7 +40,9 @@ class IdealNetwork {
       std::vector<Heard> heard;
       for (const Graph::Neighbour& j : experiment.graph.HeardBy(id))
         heard.push_back({j.id, j.weight, agent(j.id), 0, messages[static_cast<std::size_t>(j.id - 1)]});
-      wants_W.push_back(laws[static_cast<std::size_t>(id - 1)]->Want_W(time_s(), agent(id), heard));
+      const auto i = static_cast<std::size_t>(id - 1);
+      if (ranges[i].is_on()) laws[i]->See(ranges[i].Sense(agent(id).p_WB));
+      wants_W.push_back(laws[i]->Want_W(time_s(), agent(id), heard));
       if (experiment.law.axes == Axes::kXy) wants_W.back().z() = 0;
     }
     return wants_W;
@@ -69,6 +73,7 @@ class IdealNetwork {
 
   Experiment experiment;
   std::vector<std::unique_ptr<Law>> laws;
+  std::vector<RangeSensor> ranges;
   std::vector<Motion> motions;
   std::vector<std::vector<double>> messages;  ///< of the last tick, by id - 1; empty: none was sent
   std::int64_t tick = 0;

@@ -40,6 +40,13 @@ TEST(PluginLaw, SeesItselfAndItsNeighbours) {
   EXPECT_EQ(Wants(Plugin("mirror")).a_law_W, Eigen::Vector3d(0.5, 2 - 0.25, 0)) << "sum a_ij (p_j - p_i) - v_i";
 }
 
+TEST(PluginLaw, SeesObstaclesWithinTheRange) {
+  const std::string obstacle =
+      "[[physics.obstacles]]\nshape = 'box'\nposition_m = [0, 7, 1]\nsize_m = [2, 4, 2]\n[sensors]\nrange_m = 6.0\n";
+  EXPECT_EQ(Wants(Mirror("does = 'feel'", "axes = 'xyz'\n")).a_law_W, Eigen::Vector3d(0, 0, 0)) << "none";
+  EXPECT_EQ(Wants(obstacle + Mirror("does = 'feel'", "axes = 'xyz'\n")).a_law_W, Eigen::Vector3d(0, 5, 1));
+}
+
 TEST(PluginLaw, GetsItsParameters) {
   EXPECT_EQ(Wants(Mirror("gain = 2")).a_law_W, Eigen::Vector3d(1, 4 - 0.25, 0));
   EXPECT_EQ(Wants(Mirror("bonus = 1")).a_law_W, Eigen::Vector3d(1, 4 - 0.25, 0));
@@ -142,12 +149,12 @@ TEST(PluginLaw, ThatExportsNoLawIsRefused) {
 }
 
 TEST(PluginLaw, OfAnotherInterfaceIsRefused) {
-  EXPECT_EQ(Refusal(Plugin("later")), kAtLibrary + "expected a library of law interface 2, got " + Library("later") +
-                                          " of interface 3 (compile it against the headers of this MASCOT)");
+  EXPECT_EQ(Refusal(Plugin("later")), kAtLibrary + "expected a library of law interface 3, got " + Library("later") +
+                                          " of interface 4 (compile it against the headers of this MASCOT)");
 }
 
 TEST(PluginLaw, OfAnEarlierInterfaceIsRefused) {
-  EXPECT_EQ(Refusal(Plugin("earlier")), kAtLibrary + "expected a library of law interface 2, got " +
+  EXPECT_EQ(Refusal(Plugin("earlier")), kAtLibrary + "expected a library of law interface 3, got " +
                                             Library("earlier") +
                                             " of interface 1 (compile it against the headers of this MASCOT)");
 }

@@ -134,6 +134,7 @@ LawEntry CustomLaw() {
           .theory = "none: check knows only built-in laws",
           .source = "docs/laws.md",
           .parameters = kCustomParameters,
+          .sees_obstacles = true,
           .drawing = {.pictures = kDisagreementPicture},
           .read = ReadCustom,
           .make = MakeCustom,

@@ -20,7 +20,7 @@ py::array_t<double> Array3(const Eigen::Vector3d& v) { return Array(std::span<co
 struct Names {
   py::str id{"id"}, position{"position"}, velocity{"velocity"}, acceleration{"acceleration"},
       orientation{"orientation"}, angular_velocity{"angular_velocity"}, weight{"weight"}, message{"message"},
-      age_s{"age_s"};
+      age_s{"age_s"}, ranges{"ranges"};
 };
 
 class Standard final : public PythonLaw {
@@ -43,11 +43,14 @@ class Standard final : public PythonLaw {
     objects_.reset();
   }
 
+  void See(std::span<const Eigen::Vector3d> nearest_W) override { seen_W_ = nearest_W; }
+
   Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> heard) override {
     const PythonLock lock;
     Objects& o = *objects_;
     SetTime(t_s);
     SetMotion(o.me, self);
+    py::setattr(o.me, o.names.ranges, Rows(seen_W_));
     return Guarded([&] {
       if (!o.start.is_none()) {
         o.start(o.me, o.params);
@@ -131,7 +134,8 @@ class Standard final : public PythonLaw {
   }
 
   std::optional<Objects> objects_;  // made and destroyed with the GIL held
-  std::string params_;              // as TOML
+  std::span<const Eigen::Vector3d> seen_W_;
+  std::string params_;  // as TOML
   std::vector<double> message_;
 };
 

@@ -25,8 +25,8 @@ std::map<std::string, Value> GoToOf(const AgentConfig& agent, const Eigen::Vecto
   return GoToOfLeader(flight_of, agent, p_W, t_s);
 }
 template <LeaderFlight* flight_of>
-std::span<const Eigen::Vector3d> LeaderWaypointsOf(const LawConfig& law) {
-  return WaypointsOf(flight_of(law));
+std::span<const Eigen::Vector3d> LeaderWaypointsOf(const AgentConfig& leader) {
+  return WaypointsOf(flight_of(leader.law));
 }
 
 }  // namespace mascot

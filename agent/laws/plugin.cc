@@ -27,6 +27,9 @@ class PluginLaw final : public Law {
   Wanted wanted() const override {
     return Guarded([&] { return law_->wanted(); });
   }
+  void See(std::span<const Eigen::Vector3d> nearest_W) override {
+    Guarded([&] { law_->See(nearest_W); });
+  }
   Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> heard) override {
     t_s_ = t_s;
     return Guarded([&] { return law_->Want_W(t_s, self, heard); });
@@ -89,6 +92,7 @@ LawEntry PluginLaw() {
           .theory = "none: check knows only built-in laws",
           .source = "docs/plugin_law.md",
           .parameters = kPluginParameters,
+          .sees_obstacles = true,
           .drawing = {.pictures = kDisagreementPicture},
           .read = ReadPlugin,
           .make = MakePlugin,

@@ -65,8 +65,8 @@ std::map<std::string, Value> GoToOfWaypoint(const AgentConfig& agent, const Eige
   return Destination("", &ParamsOf<WaypointLawParams>(agent.law).flight, p_W, t_s);
 }
 
-std::span<const Eigen::Vector3d> WaypointsOfWaypoint(const LawConfig& law) {
-  return ParamsOf<WaypointLawParams>(law).flight.waypoints_W;
+std::span<const Eigen::Vector3d> WaypointsOfWaypoint(const AgentConfig& agent) {
+  return ParamsOf<WaypointLawParams>(agent.law).flight.waypoints_W;
 }
 
 LinearForm LinearWaypoint(const LawConfig& law) {

@@ -29,8 +29,14 @@ class Mirror final : public mascot::Law {
     return velocity_ ? mascot::Wanted::kVelocity : mascot::Wanted::kAcceleration;
   }
 
+  void See(std::span<const Eigen::Vector3d> nearest_W) override {
+    felt_W_.setZero();
+    for (const Eigen::Vector3d& point_W : nearest_W) felt_W_ += point_W;
+  }
+
   Eigen::Vector3d Want_W(double t_s, const mascot::Motion& self, std::span<const mascot::Heard> heard) override {
     if (does_ == "tell") return made_for_;
+    if (does_ == "feel") return felt_W_;
     const bool fails = t_s >= from_s_;
     if (fails && does_ == "nan") return {0, std::numeric_limits<double>::quiet_NaN(), 0};
     if (fails && does_ == "throw") throw std::domain_error("the map ends here");
@@ -45,6 +51,7 @@ class Mirror final : public mascot::Law {
 
  private:
   Eigen::Vector3d made_for_;
+  Eigen::Vector3d felt_W_ = Eigen::Vector3d::Zero();  // the sum of the points that it sees
   int leader_;
   std::string does_;
   double from_s_;  // time from which on it fails, if does_ is a failure

@@ -1,0 +1,71 @@
+#include "experiment/obstacles.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace mascot {
+namespace {
+
+/// The nearest point along the obstacle's own axes, about its centre.
+Eigen::Vector3d NearestPoint(const Obstacle& obstacle, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d half_m = obstacle.size_m / 2;
+  Eigen::Vector3d nearest = p;
+  switch (obstacle.shape) {
+    case Shape::kBox:
+      nearest = p.cwiseMin(half_m).cwiseMax(-half_m);
+      break;
+    case Shape::kSphere:
+      if (const double l = p.norm(); l > half_m.x()) nearest *= half_m.x() / l;
+      break;
+    case Shape::kCylinder:
+      if (const double l = p.head<2>().norm(); l > half_m.x()) nearest.head<2>() *= half_m.x() / l;
+      nearest.z() = std::clamp(p.z(), -half_m.z(), half_m.z());
+      break;
+  }
+  return nearest;
+}
+
+}  // namespace
+
+Eigen::Vector3d NearestPoint_W(const Obstacle& obstacle, const Eigen::Vector3d& p_W) {
+  const Eigen::AngleAxisd to_W(obstacle.heading_rad, Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d p = to_W.inverse() * (p_W - obstacle.p_W);
+  const Eigen::Vector3d nearest = NearestPoint(obstacle, p);
+  return nearest == p ? p_W : obstacle.p_W + to_W * nearest;
+}
+
+// The distance to a convex body is convex along a line: a search that keeps the middle third or more finds its least.
+double DistanceOfWay_m(const Obstacle& obstacle, const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W) {
+  constexpr int kThirds = 100;  // (2/3)^100 of the way is 2.5e-18
+  const auto distance_m = [&](double part) {
+    const Eigen::Vector3d p_W = from_W + part * (to_W - from_W);
+    return (NearestPoint_W(obstacle, p_W) - p_W).norm();
+  };
+  double low = 0, high = 1;
+  for (int n = 0; n < kThirds; ++n) {
+    const double third = (high - low) / 3;
+    if (distance_m(low + third) <= distance_m(high - third))
+      high -= third;
+    else
+      low += third;
+  }
+  return std::min({distance_m(0), distance_m(1), distance_m((low + high) / 2)});
+}
+
+// Points that are each the nearest to the last, on one obstacle and the other in turn, tend to the two that are nearest
+// (Cheney & Goldstein 1959).
+double Distance_m(const Obstacle& a, const Obstacle& b) {
+  constexpr int kMostTurns = 10000;
+  constexpr double kClose_m = 1e-9;
+  Eigen::Vector3d of_a_W = NearestPoint_W(a, b.p_W), of_b_W = NearestPoint_W(b, of_a_W);
+  for (int n = 0; n < kMostTurns; ++n) {
+    const double before_m = (of_b_W - of_a_W).norm();
+    of_a_W = NearestPoint_W(a, of_b_W);
+    of_b_W = NearestPoint_W(b, of_a_W);
+    if (before_m - (of_b_W - of_a_W).norm() < kClose_m) break;
+  }
+  return (of_b_W - of_a_W).norm();
+}
+
+}  // namespace mascot
