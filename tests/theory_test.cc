@@ -350,6 +350,48 @@ TEST(Theory, WarnsOfBodiesThatWillTouch) {
               IsEmpty());
 }
 
+/// What is said of the ways of two agents that fly `law` past a pillar of 1 m and a ball.
+std::vector<std::string> WarningsOfWays(const std::string& law, const std::string& more = "") {
+  return Predict(LoadExperiment(
+                     Section::FromText("[run]\nduration_s = 200\n[agents]\ncount = 2\nmodel = 'double_integrator'\n"
+                                       "position_m = [[0, 0, 1], [0, 3, 2]]\n"
+                                       "[[physics.obstacles]]\nshape = 'cylinder'\nposition_m = [5, 0, 1]\n"
+                                       "size_m = [1, 1, 2]\n"
+                                       "[[physics.obstacles]]\nshape = 'sphere'\nposition_m = [5, 3, 2]\n"
+                                       "size_m = [1, 1, 1]\n[law]\nname = 'waypoint'\n" +
+                                           law + more,
+                                       "test.toml"),
+                     "test"))
+      .warnings;
+}
+
+TEST(ObstacleWarnings, NameTheFirstWayThatPassesThroughAnObstacle) {
+  const std::string through = "physics.obstacles: the straight way of agent ";
+  const std::string body = ", or closer than its body";
+  EXPECT_THAT(WarningsOfWays("waypoints_m = [[0, -9, 1], [0, 0, 1], [9, 0, 1]]\n"),
+              Contains(through + "1 from waypoint 2 to waypoint 3 passes through obstacle 1" + body +
+                       " (and ways of 1 more agent)"));
+  EXPECT_THAT(WarningsOfWays("axes = 'xy'\nwaypoints_m = [[0, 3, 9], [9, 3, 9]]\n"),
+              Contains(through + "2 from waypoint 1 to waypoint 2 passes through obstacle 2" + body))
+      << "with axes xy agents keep their heights: 1 flies below the ball";
+  EXPECT_THAT(WarningsOfWays("waypoints_m = [[0, 0.59, 1], [9, 0.59, 1]]\n"),
+              Contains(through + "1 from waypoint 1 to waypoint 2 passes through obstacle 1" + body +
+                       " (and ways of 1 more agent)"))
+      << "the pillar's radius is 0.5 m, that of the body 0.1 m";
+}
+
+TEST(ObstacleWarnings, AreNotGivenWhereNobodyMeetsAnObstacle) {
+  const auto none = testing::Not(Contains(HasSubstr("obstacle")));
+  EXPECT_THAT(WarningsOfWays("waypoints_m = [[0, 1.5, 1], [9, 1.5, 1]]\n"), none) << "the way lies between them";
+  EXPECT_THAT(WarningsOfWays("waypoints_m = [[0, 0.61, 0.8], [9, 0.61, 0.8]]\n"), none) << "just past the body";
+  EXPECT_THAT(WarningsOfWays("waypoints_m = [[0, 0, 1], [9, 0, 1]]\n", "[physics]\ncollisions = false\n"), none);
+}
+
+TEST(ObstacleWarnings, NameARangeSensorThatNoLawAsks) {
+  EXPECT_THAT(WarningsOfWays("waypoints_m = [[0, 1.5, 1]]\n", "[sensors]\nrange_m = 3.0\n"),
+              Contains("sensors.range_m: no law of this experiment asks what obstacles are near"));
+}
+
 TEST(Theory, SaysThatAFormationDoesNotGather) {
   // Its places keep agents apart, so that equal heights are no problem.
   EXPECT_THAT(Of("[run]\nduration_s = 40.0\n[agents]\ncount = 2\nmodel = 'double_integrator'\nposition_m = [[0, 0, 1], "

@@ -11,6 +11,7 @@
 #include "orchestrator/theory/crowding.h"
 #include "orchestrator/theory/flight_envelope.h"
 #include "orchestrator/theory/links_on_average.h"
+#include "orchestrator/theory/obstacle_warnings.h"
 #include "orchestrator/theory/parts.h"
 
 namespace mascot {
@@ -171,6 +172,7 @@ Prediction Predict(const Experiment& experiment) {
   WarnOfShortRun(experiment, prediction);
   for (std::string& warning : LiftWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
   for (std::string& warning : CrowdingWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
+  for (std::string& warning : ObstacleWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
   return prediction;
 }
 
