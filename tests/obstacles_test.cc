@@ -16,7 +16,6 @@
 namespace mascot {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 const Obstacle kBox{.shape = Shape::kBox, .p_W = {1, 2, 3}, .size_m = {4, 2, 1}, .heading_rad = 0.5};
