@@ -11,7 +11,7 @@ using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
     RendezvousLaw, EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw,
     CyclicPursuitLaw, DistanceFormationLaw, BearingFormationLaw, PlatoonLaw, PursuitEvasionLaw, CoverageLaw,
-    AffineFormationLaw, ResilientLaw, FlockingLaw, CustomLaw, PluginLaw;
+    AffineFormationLaw, ResilientLaw, FlockingLaw, AvoidanceLaw, CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
@@ -19,7 +19,7 @@ std::span<const LawEntry> Laws() {
       FiniteTimeLaw(),       PrescribedTimeLaw(), RendezvousLaw(),       EventTriggeredLaw(), ContainmentLaw(),
       AverageTrackingLaw(),  TrajectoryLaw(),     GradientTrackingLaw(), CyclicPursuitLaw(),  DistanceFormationLaw(),
       BearingFormationLaw(), PlatoonLaw(),        PursuitEvasionLaw(),   CoverageLaw(),       AffineFormationLaw(),
-      ResilientLaw(),        FlockingLaw(),       CustomLaw(),           PluginLaw(),
+      ResilientLaw(),        FlockingLaw(),       AvoidanceLaw(),        CustomLaw(),         PluginLaw(),
   };
   return kLaws;
 }

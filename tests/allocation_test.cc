@@ -135,6 +135,10 @@ INSTANTIATE_TEST_SUITE_P(
               "[physics]\nwind = { gust_std_m_per_s = 1.0 }\n[sensors.own]\nposition_std_m = 0.01\n"
               "[law]\nname = 'formation'\nshape = 'circle'\n"},
         Setup{"minmax", "[graph]\ntopology = 'path'\n[law]\nname = 'minmax'\nleader = 1\nbeta = [0.5, 1, 1.5, 2]\n"},
+        Setup{"past obstacles",
+              "[physics]\nobstacles = [{ shape = 'box', position_m = [0, 0, 30], size_m = [1, 1, 1] }]\n"
+              "[sensors]\nrange_m = 50.0\n"
+              "[law]\nname = 'avoidance'\ngoals_m = [[9, 9, 1], [-9, 9, 1], [9, -9, 1], [-9, -9, 1]]\n"},
         Setup{"waypoints with links of limited range",
               "[physics]\ncollisions = false\n[law]\nname = 'waypoint'\nwaypoints_m = [[1, 1, 1], [2, 2, 2]]\n"
               "[graph]\nrange_m = 5.0\n"}),
