@@ -183,6 +183,16 @@ TEST(Avoidance, TheorySaysWhyItIsSilent) {
             "there are no obstacles, and of agents among each other theory says nothing");
 }
 
+TEST(Avoidance, CheckWarnsOfAGoalInAnObstacle) {
+  const auto warnings = [](const Eigen::Vector3d& goal_W) {
+    const std::string toml = PastAPillar("single_integrator", {0, 0, 2}, goal_W);
+    return Predict(LoadExperiment(Section::FromText(toml, "test.toml"), "test")).warnings;
+  };
+  EXPECT_THAT(warnings({5, 0.55, 2}), Contains("physics.obstacles: waypoint 1 of agent 1 is in obstacle 1, or closer "
+                                               "than its body"));
+  EXPECT_THAT(warnings({9, 0, 2}), Not(Contains(HasSubstr("obstacle")))) << "though the straight way leads through it";
+}
+
 // --- flights ----------------------------------------------------------------------------------------------
 
 TEST(Avoidance, FliesAroundAPillarOnAllModels) {
