@@ -170,6 +170,18 @@ TEST(Flocking, IsNotDisturbedByARangeOfHearingBeyondItsOwn) {
   EXPECT_EQ(LawRun(Nine(kMoving, "[graph]\nrange_m = 2.3\n")).prediction.silent, "the graph changes");
 }
 
+TEST(Flocking, AnEventSendsTheFlockElsewhere) {
+  const std::string event = "[[events]]\nat_s = 1.0\nset = { \"law.target_m\" = [-5, 4, 1], \"law.c1_gamma\" = 1.0 }\n";
+  const LawRun run(Nine("", event));
+  EXPECT_LT(run.Measured("centre_off_m"), 0.1) << "measured to the new target";
+  EXPECT_GT(run.Measured("centre_rms_m"), 1);
+  EXPECT_LT((Eigen::Vector2d(run.summary["consensus"]["value_m"][0], run.summary["consensus"]["value_m"][1]) -
+             Eigen::Vector2d(-5, 4))
+                .norm(),
+            0.1);
+  EXPECT_LT(run.Measured("energy_growth_share"), 1e-4) << "what the event added is no growth";
+}
+
 TEST(Flocking, TheoryIsSilentAboutDirectedGraphs) {
   EXPECT_EQ(LawRun(Nine("", "[graph]\ntopology = 'directed_ring'\n")).prediction.silent,
             "the closed forms are of undirected graphs");
