@@ -153,6 +153,16 @@ TEST(Flocking, TheBoundOfTheEnergyComesDownWithThePeriod) {
   EXPECT_FALSE(slow.Law()["predicted"]["centre_rms_m"].is_null());
 }
 
+TEST(Flocking, ABoundOfTheEnergyThatIsNoneIsNotTold) {
+  for (const double duration_s : {1.0, 10.0}) {
+    const LawRun run(Nine("c1_alpha = 2.0\nc2_alpha = 2.0\nc2_gamma = 20.0\n", "[control]\nrate_hz = 40\n",
+                          "double_integrator", duration_s));
+    EXPECT_EQ(run.Law()["predicted"]["energy_growth_share"].is_null(), duration_s > 1)
+        << "each tick may add 3 %: after 10 s that is more than everything";
+    EXPECT_FALSE(run.Law()["predicted"]["centre_rms_m"].is_null());
+  }
+}
+
 TEST(Flocking, EnergyGrowsWithoutDamping) {
   const LawRun run(Nine("c2_alpha = 0\nc2_gamma = 0\nc1_alpha = 4\n"));
   EXPECT_GT(run.Measured("energy_growth_share"), 0) << "the figure can see it: a held force adds energy";

@@ -46,7 +46,8 @@ std::optional<double> FlockEnergyGrowth(const Experiment& experiment, const Floc
     worst = std::max(worst, n * n / rest);
   }
   const double share = h * h * h / 8 * curvature * worst;
-  return share * std::pow(1 + share, experiment.ticks());
+  const double bound = share * std::pow(1 + share, experiment.ticks());
+  return bound < 1 ? std::optional(bound) : std::nullopt;  // more is no bound
 }
 
 }  // namespace mascot

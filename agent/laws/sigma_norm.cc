@@ -37,7 +37,7 @@ double AlphaPair::Action(double s) const {
 }
 
 double AlphaPair::TillRange(double s) const {
-  if (s >= r_alpha_) return 0;
+  if (!(s < r_alpha_)) return 0;  // nor for what is no number
   const auto next = std::min(static_cast<std::size_t>(s / r_alpha_ * kKnots) + 1, std::size_t{kKnots});
   return ByQuadrature(s, static_cast<double>(next) * r_alpha_ / kKnots) + till_range_[next];
 }
