@@ -43,6 +43,7 @@ Agent::Agent(const Experiment& experiment, int id)
       controller_(MakeController(experiment, id)),
       driven_by_(config_->traits().driven_by),
       neighbours_(experiment, id),
+      safety_(experiment, id),
       sensor_(experiment.sensors, experiment.control.rate_hz, experiment.run.seed, id),
       ranges_(experiment.sensors.range_m, experiment.physics.obstacles),
       v_integrated_W_(config_->v_W) {}
@@ -50,6 +51,7 @@ Agent::Agent(const Experiment& experiment, int id)
 void Agent::Adopt(std::shared_ptr<const Experiment> now) {
   config_ = &now->agent(id_);
   neighbours_.Adopt(*now);
+  safety_.Adopt(*now);
   law_->Adopt(*config_);
   now_ = std::move(now);  // the last one ends here: nobody refers to it any more
 }
@@ -70,24 +72,38 @@ Eigen::Vector3d Agent::AskLaw(std::int64_t tick, const Motion& measured, std::sp
   return w_W;
 }
 
-// Writes the law's acceleration and its limited value into `command`, with the flag.
-void Agent::LimitAcceleration(const Eigen::Vector3d& a_W, Command& command) const {
+Eigen::Vector3d Agent::Safe(const Eigen::Vector3d& wanted_W, const Eigen::Vector3d& limited_W, double limit,
+                            Command& command) {
+  if (!safety_.is_on()) return limited_W;
+  const SafetyFilter::Answer safe = safety_.Nearest(wanted_W, limit, measured_, heard_);
+  if (safe.u_W != limited_W) command.flags |= kSafetyFiltered;
+  if (!safe.is_feasible) command.flags |= kSafetyInfeasible;
+  return safe.u_W;
+}
+
+// Writes the law's acceleration and its limited value into `command`, with the flags. The limited value is safe, if the
+// model is driven by it.
+void Agent::LimitAcceleration(const Eigen::Vector3d& a_W, Command& command) {
   const double limit = config_->control.max_acceleration_m_per_s2;
   command.a_law_W = a_W;
   command.a_limited_W = Clamped(a_W, limit);
   if (command.a_limited_W != a_W) command.flags |= kAccelerationLimited;
+  if (driven_by_ == Wanted::kAcceleration) command.a_limited_W = Safe(a_W, command.a_limited_W, limit, command);
 }
 
-// Writes a wanted velocity and its limited value into `command`, with the flag.
-void Agent::LimitVelocity(const Eigen::Vector3d& v_W, Command& command) const {
+// Writes a wanted velocity and its limited value into `command`, with the flags. The limited value is safe, if the
+// model is driven by it.
+void Agent::LimitVelocity(const Eigen::Vector3d& v_W, Command& command) {
+  const double limit = config_->control.max_speed_m_per_s;
   command.v_law_W = v_W;
-  command.v_limited_W = Clamped(v_W, config_->control.max_speed_m_per_s);
+  command.v_limited_W = Clamped(v_W, limit);
   if (command.v_limited_W != v_W) command.flags |= kSpeedLimited;
+  if (driven_by_ == Wanted::kVelocity) command.v_limited_W = Safe(v_W, command.v_limited_W, limit, command);
 }
 
 // For a model driven by acceleration: writes what the wanted velocity v* means for it, k_v (v* - v), before all limits
 // and after the limits of the velocity and of the acceleration.
-void Agent::AccelerateTowards(const Eigen::Vector3d& v_W, Command& command) const {
+void Agent::AccelerateTowards(const Eigen::Vector3d& v_W, Command& command) {
   const auto accelerate = [&](const Eigen::Vector3d& to_W) {
     Eigen::Vector3d a_W = config_->control.velocity_gain * (to_W - measured_.v_WB);
     if (holds_altitude_) a_W.z() = 0;
@@ -99,8 +115,8 @@ void Agent::AccelerateTowards(const Eigen::Vector3d& v_W, Command& command) cons
 }
 
 // For a model driven by velocity: integrates the wanted acceleration over one tick. Where the limit of the velocity
-// cuts the result, less acceleration than wanted is commanded.
-void Agent::Integrate(const Eigen::Vector3d& a_W, Command& command) const {
+// or the safety filter changes the result, another acceleration than wanted is commanded.
+void Agent::Integrate(const Eigen::Vector3d& a_W, Command& command) {
   LimitAcceleration(a_W, command);
   LimitVelocity(v_integrated_W_ + command.a_limited_W / rate_hz_, command);
   const auto cut = command.v_limited_W.array() != command.v_law_W.array();
@@ -108,9 +124,9 @@ void Agent::Integrate(const Eigen::Vector3d& a_W, Command& command) const {
 }
 
 Command Agent::Want(std::int64_t tick, const Motion& self, std::span<const Sample> samples) {
-  const std::span<const Heard> heard = neighbours_.Hear(tick, self, samples);
+  heard_ = neighbours_.Hear(tick, self, samples);
   measured_ = sensor_.Measure(tick, self);
-  const Eigen::Vector3d w_W = AskLaw(tick, measured_, heard);
+  const Eigen::Vector3d w_W = AskLaw(tick, measured_, heard_);
   Command command;
   if (driven_by_ == Wanted::kVelocity && wanted_ == Wanted::kVelocity)
     LimitVelocity(w_W, command);

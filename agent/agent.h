@@ -6,6 +6,7 @@
 #include "agent/controller.h"
 #include "agent/law.h"
 #include "agent/neighbours.h"
+#include "agent/safety.h"
 #include "agent/sensor.h"
 #include "experiment/experiment.h"
 #include "experiment/motion.h"
@@ -35,10 +36,14 @@ class Agent {
  private:
   /// What the law wants, checked to be finite; velocity 0 while the law is off (start_s, stop_s).
   Eigen::Vector3d AskLaw(std::int64_t tick, const Motion& measured, std::span<const Heard> heard);
-  void LimitAcceleration(const Eigen::Vector3d& a_W, Command& command) const;
-  void LimitVelocity(const Eigen::Vector3d& v_W, Command& command) const;
-  void AccelerateTowards(const Eigen::Vector3d& v_W, Command& command) const;
-  void Integrate(const Eigen::Vector3d& a_W, Command& command) const;
+  void LimitAcceleration(const Eigen::Vector3d& a_W, Command& command);
+  void LimitVelocity(const Eigen::Vector3d& v_W, Command& command);
+  void AccelerateTowards(const Eigen::Vector3d& v_W, Command& command);
+  void Integrate(const Eigen::Vector3d& a_W, Command& command);
+  /// What is commanded for `wanted_W`, which is `limited_W` after its limit: that, or what the safety filter makes of
+  /// what is wanted, with its flags.
+  Eigen::Vector3d Safe(const Eigen::Vector3d& wanted_W, const Eigen::Vector3d& limited_W, double limit,
+                       Command& command);
 
   std::shared_ptr<const Experiment> now_;  // null before the first event
   const AgentConfig* config_;
@@ -50,9 +55,11 @@ class Agent {
   Wanted driven_by_;
   Wanted wanted_ = Wanted::kAcceleration;  // what the last AskLaw() returned
   Neighbours neighbours_;
+  SafetyFilter safety_;
   OwnSensor sensor_;
   RangeSensor ranges_;
   Motion measured_;
+  std::span<const Heard> heard_;
   Eigen::Vector3d v_integrated_W_;  // for a velocity-driven model whose law wants accelerations
   std::span<const double> message_;
 };

@@ -18,6 +18,7 @@
 #include "experiment/link.h"
 #include "experiment/model_traits.h"
 #include "experiment/physics.h"
+#include "experiment/safety.h"
 #include "experiment/sensors.h"
 #include "experiment/toml/enum_names.h"
 
@@ -69,6 +70,7 @@ struct LawConfig {
   std::string name;
   int leader = 0;  ///< 0 = none
   Axes axes = Axes::kXy;
+  std::optional<SafetyConfig> safety = {};  ///< absent: nothing changes what the law wants but the limits
   std::shared_ptr<const LawParams> params;  ///< null if the experiment was read without laws (the physics server)
 };
 

@@ -58,6 +58,15 @@ std::vector<std::string> LawsIn(const Experiment& experiment) {
   return names;
 }
 
+/// Appends the dotted names of what is in the table `value`, and in the tables inside it.
+void AddKeys(const std::string& name, const Value& value, std::vector<std::string>& keys) {
+  for (const auto& [key, inner] : std::get<Value::Table>(value.data)) {
+    const std::string path = name + "." + key;
+    keys.push_back(path);
+    if (std::holds_alternative<Value::Table>(inner.data)) AddKeys(path, inner, keys);
+  }
+}
+
 std::string EdgeText(const std::pair<int, int>& edge) {
   return "[" + std::to_string(edge.first) + ", " + std::to_string(edge.second) + "]";
 }
@@ -82,9 +91,7 @@ LiveExperiment::LiveExperiment(const Experiment& start, const LawCatalog* laws, 
   for (Section& section : document.Child("agents").Children("override")) {
     Own own{.id = static_cast<int>(section.Integer("id")), .keys = {}};
     for (const char* table : kWhoseKeys) {
-      const Value keys = section.Free(table);
-      for (const auto& [key, value] : std::get<Value::Table>(keys.data))
-        own.keys.push_back(std::string(table) + "." + key);
+      AddKeys(table, section.Free(table), own.keys);
     }
     own_.push_back(std::move(own));
   }

@@ -35,15 +35,18 @@ enum CommandFlag : std::uint32_t {
   kTiltLimited = 1u << 1,          ///< roll or pitch target cut at the airframe's tilt limit
   kRotorLimited = 1u << 2,         ///< a rotor speed cut to what the rotor can do
   kSpeedLimited = 1u << 3,         ///< the law asked for more than control.max_speed_m_per_s
+  kSafetyFiltered = 1u << 4,       ///< law.safety changed what the law asked for, beyond these limits
+  kSafetyInfeasible = 1u << 5,     ///< no command within the limits is as safe as law.safety asks for
 };
 
 /// An agent's answer to one tick. A wanted velocity v* is an acceleration k_v (v* - v) for a model driven by
 /// acceleration. For a model driven by velocity it is none: both accelerations are then 0.
 struct Command {
   Actuation actuator{};
-  Eigen::Vector3d a_law_W = Eigen::Vector3d::Zero();      ///< the law's acceleration before all limits (m/s^2)
-  Eigen::Vector3d a_limited_W = Eigen::Vector3d::Zero();  ///< after those of acceleration and speed (m/s^2)
-  std::uint32_t flags = 0;                                ///< CommandFlag bits
+  Eigen::Vector3d a_law_W = Eigen::Vector3d::Zero();  ///< the law's acceleration before all limits (m/s^2)
+  Eigen::Vector3d a_limited_W =
+      Eigen::Vector3d::Zero();  ///< after law.safety and those of acceleration and speed (m/s^2)
+  std::uint32_t flags = 0;      ///< CommandFlag bits
   // Not on the wire: the wanted velocity before and after its limit (m/s), if the law wants one, or the model is driven
   // by it.
   Eigen::Vector3d v_law_W = Eigen::Vector3d::Zero();

@@ -40,13 +40,6 @@ constexpr Key kRunKeys[] = {
         .Default("false"),
 };
 
-constexpr Key kLawKeys[] = {
-    key::Text("name", "one of the laws below").Otherwise("the first of the laws"),
-    key::Integer("leader", 0, kMaxAgents, "agent that leads; 0: none").Default("0"),
-    key::OneOf("axes", kAxes.names(), "the axes that the law controls; with xy the initial heights are held")
-        .Otherwise("the law's own"),
-};
-
 constexpr Key kRecordKeys[] = {
     key::Text("file", "name of the recording in the run's folder, ending in .mcap").Default("\"run.mcap\""),
     key::Texts("topics", "which topics it holds; shell patterns").Default("[\"*\"]"),
@@ -107,14 +100,19 @@ void ReadRun(Section& section, const std::string& default_name, Experiment& expe
   section.Done();
 }
 
-/// Reads the keys that all laws share. `laws` null: the document is a resolved one, which has them all.
-LawConfig ReadLaw(Section& section, int count, const LawCatalog* laws) {
+/// Reads the keys that all laws share. `team`: for an agent's own law, the table that it inherits from, if it does.
+/// `laws` null: the document is a resolved one, which has them all.
+LawConfig ReadLaw(Section& section, std::optional<Section> team, int count, const LawCatalog* laws) {
   LawConfig law;
   law.name =
       laws != nullptr ? section.OneOf("name", laws->names(), std::string(laws->names().front())) : section.Text("name");
   law.leader = static_cast<int>(section.Integer("leader", 0, count > 0 ? count : kMaxAgents));
   const Axes usual = laws != nullptr ? laws->DefaultAxes(law.name) : Axes::kXy;
   law.axes = kAxes.Value(section.OneOf("axes", kAxes.names(), std::string(kAxes.Name(usual))));
+  if (!section.Has("safety")) return law;
+  Section safety = section.Child("safety");
+  if (team && team->Has("safety")) safety.InheritFrom(team->Child("safety"));
+  law.safety = ReadSafety(safety);
   return law;
 }
 
@@ -133,7 +131,7 @@ void FinishOverride(AgentOverride& override, Section& control, const Section& te
     Section own = section.Child("law");
     const bool same_law = !own.Has("name") || own.Text("name") == experiment.law.name;
     if (same_law) own.InheritFrom(team_law);
-    agent.law = ReadLaw(own, count, laws);
+    agent.law = ReadLaw(own, same_law ? std::optional(team_law) : std::nullopt, count, laws);
     agent.has_own_law = true;
     if (override.id > 0) override.law = own;
   }
@@ -247,7 +245,7 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
   int count = static_cast<int>(agents.Integer("count"));
   if (agents.Wrong("count")) count = 0;
   experiment.physics = ReadPhysics(physics, count);
-  experiment.law = ReadLaw(law, count, laws);
+  experiment.law = ReadLaw(law, /*team=*/{}, count, laws);
   std::vector<AgentOverride> overrides = ReadAgents(agents, count, experiment);
   CheckRotorFailures(physics, experiment);
   experiment.control.rate_hz = static_cast<int>(control.Integer("rate_hz"));
@@ -293,7 +291,16 @@ void CheckFormat(Section& document) {
                                 ": the file is of a newer version of MASCOT");
 }
 
-std::span<const Key> LawKeys() { return kLawKeys; }
+std::span<const Key> LawKeys() {
+  static const Key keys[] = {
+      key::Text("name", "one of the laws below").Otherwise("the first of the laws"),
+      key::Integer("leader", 0, kMaxAgents, "agent that leads; 0: none").Default("0"),
+      key::OneOf("axes", kAxes.names(), "the axes that the law controls; with xy the initial heights are held")
+          .Otherwise("the law's own"),
+      key::Table("safety", SafetyKeys(), "a barrier that keeps agents apart, around any law").Otherwise("none"),
+  };
+  return keys;
+}
 
 std::span<const Key> ExperimentKeys() {
   static const Key network_keys[] = {

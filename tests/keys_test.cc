@@ -156,8 +156,10 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"graph.random.p", "0.9", {"graph={ random = { kind = \"erdos_renyi\", p = 0.1 } }"}},
         Row{"agents", "{ count = 4, position_m = [[0,0,1],[1,0,2],[2,0,3],[3,0,4]] }", {}, "agents.position_m"},
         Row{"law", "{ name = \"waypoint\", waypoints_m = [[5, 0, 1]] }", {}, "law.name"}, Row{"law.leader", "2"},
-        Row{"law.axes", "xyz"}, Row{"law.p_gain", "0.02"}, Row{"law.beta", "0.5"},
-        Row{"law.leader_waypoints_m", "[[5,5,1]]", {"law.leader=1"}}),
+        Row{"law.axes", "xyz"}, Row{"law.safety", "{ distance_m = 30.0 }"},
+        Row{"law.safety.distance_m", "29.0", {"law.safety.distance_m=30.0"}},
+        Row{"law.safety.gamma", "2.0", {"law.safety.distance_m=30.0"}}, Row{"law.p_gain", "0.02"},
+        Row{"law.beta", "0.5"}, Row{"law.leader_waypoints_m", "[[5,5,1]]", {"law.leader=1"}}),
     NameOf);
 
 // --- [link] -----------------------------------------------------------------------------------------
@@ -340,6 +342,15 @@ INSTANTIATE_TEST_SUITE_P(
                         {"agents.override=[{ id = 2, lie = { offset_m = [1.0, 0.0, 0.0], kind = 'oscillating' } }]"},
                         "agents.override.lie.period_s"},
                     Override("law.p_gain", "0.1"), Override("law.axes", "'xyz'"), Override("law.leader", "2"),
+                    Override("law.safety", "{ distance_m = 30.0 }"),
+                    Row{"agents.override",
+                        "[{ id = 2, law.safety.distance_m = 29.0 }]",
+                        {"agents.override=[{ id = 2, law.safety.distance_m = 30.0 }]"},
+                        "agents.override.law.safety.distance_m"},
+                    Row{"agents.override",
+                        "[{ id = 2, law.safety = { distance_m = 30.0, gamma = 2.0 } }]",
+                        {"agents.override=[{ id = 2, law.safety.distance_m = 30.0 }]"},
+                        "agents.override.law.safety.gamma"},
                     Override("law.name", "'velocity_consensus'"), Override("control.max_acceleration_m_per_s2", "0.3"),
                     Override("control.tilt_limit_rad", "0.01"), Override("control.inversion", "'exact'"),
                     Override("control.drag_compensation", "false"), Override("control.heading_rad", "0.5"),

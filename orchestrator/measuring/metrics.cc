@@ -20,6 +20,7 @@ Metrics::Metrics(const Experiment& experiment)
   if (experiment.output.fidelity) ideal_.emplace(experiment);
   accelerated_ = std::ranges::count_if(experiment.agents, std::not_fn(IsCommandedByVelocity));
   TakePlaces(experiment.law);
+  TakeSafety(experiment);
 }
 
 void Metrics::TakePlaces(const LawConfig& law) {
@@ -27,8 +28,13 @@ void Metrics::TakePlaces(const LawConfig& law) {
   formation_.offsets_m.assign(places_W.begin(), places_W.end());
 }
 
+void Metrics::TakeSafety(const Experiment& experiment) {
+  for (const AgentConfig& agent : experiment.agents) has_safety_ = has_safety_ || agent.law.safety;
+}
+
 void Metrics::Adopt(std::shared_ptr<const Experiment> now) {
   TakePlaces(now->law);
+  TakeSafety(*now);
   now_ = std::move(now);
 }
 
@@ -60,12 +66,16 @@ void Metrics::MeasureAgreement(std::span<const Motion> motions) {
 void Metrics::MeasureControl(std::span<const Command> commands) {
   effort_m2_per_s3_ += newest_effort_m2_per_s3_;  // that of the previous row; the last commands are never applied
   newest_effort_m2_per_s3_ = 0;
+  bool is_feasible = true;
   for (const Command& command : commands) {
     newest_effort_m2_per_s3_ += command.a_limited_W.squaredNorm() * experiment_.period_s();
     saturated_ += (command.flags & kAccelerationLimited) != 0;
     tilt_limited_ += (command.flags & kTiltLimited) != 0;
     rotor_limited_ += (command.flags & kRotorLimited) != 0;
+    filtered_ += (command.flags & kSafetyFiltered) != 0;
+    is_feasible = is_feasible && (command.flags & kSafetyInfeasible) == 0;
   }
+  infeasible_ticks_ += !is_feasible;
 }
 
 /// Updates the smallest separation. Agents are sorted by x, so that the inner loop ends where x alone differs by more.
@@ -141,6 +151,10 @@ Measured Metrics::Result() const {
   result.tilt_limited_fraction = static_cast<double>(tilt_limited_) / samples;
   result.rotor_limited_fraction = static_cast<double>(rotor_limited_) / samples;
   if (experiment_.size() > 1) result.min_separation_m = std::sqrt(min_separation2_);
+  if (has_safety_) {
+    result.filtered_fraction = static_cast<double>(filtered_) / samples;
+    result.infeasible_ticks = infeasible_ticks_;
+  }
   if (ideal_) result.fidelity = {.rms_m = std::sqrt(squared_deviation_ / samples), .max_m = std::sqrt(max_deviation2_)};
   result.fidelity_failure = ideal_failure_;
   if (!formation_.offsets_m.empty()) result.formation = formation_;

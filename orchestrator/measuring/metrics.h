@@ -29,11 +29,13 @@ struct Measured {
   /// Integral of |acceleration command|^2, mean over the agents that are commanded accelerations; absent: there are
   /// none.
   std::optional<double> effort_m2_per_s3;
-  double saturated_fraction = 0;           ///< fraction of commands cut at the acceleration limit
-  double tilt_limited_fraction = 0;        ///< fraction of commands cut at the tilt limit
-  double rotor_limited_fraction = 0;       ///< fraction of commands cut at a rotor's limit
-  std::optional<double> min_separation_m;  ///< absent for one agent
-  double travelled_m = 0;                  ///< mean path length of the agents
+  double saturated_fraction = 0;            ///< fraction of commands cut at the acceleration limit
+  double tilt_limited_fraction = 0;         ///< fraction of commands cut at the tilt limit
+  double rotor_limited_fraction = 0;        ///< fraction of commands cut at a rotor's limit
+  std::optional<double> min_separation_m;   ///< absent for one agent
+  std::optional<double> filtered_fraction;  ///< fraction of commands that law.safety changed; absent: nobody has it
+  std::optional<std::int64_t> infeasible_ticks;  ///< ticks at which some agent had no safe command; absent likewise
+  double travelled_m = 0;                        ///< mean path length of the agents
   /// Distance of the agents from ideal bodies under the same laws, over all agents and rows.
   struct Fidelity {
     double rms_m = 0;
@@ -64,6 +66,7 @@ class Metrics {
 
  private:
   void TakePlaces(const LawConfig& law);
+  void TakeSafety(const Experiment& experiment);
   void MeasureAgreement(std::span<const Motion> motions);
   void MeasureControl(std::span<const Command> commands);
   void MeasureSeparation(std::span<const Motion> motions);
@@ -85,6 +88,8 @@ class Metrics {
   std::int64_t accelerated_ = 0;                               // agents that are commanded accelerations
   double effort_m2_per_s3_ = 0, newest_effort_m2_per_s3_ = 0;  // sums over these agents
   std::int64_t saturated_ = 0, tilt_limited_ = 0, rotor_limited_ = 0;
+  bool has_safety_ = false;  // some agent has, or had, law.safety
+  std::int64_t filtered_ = 0, infeasible_ticks_ = 0;
   double min_separation2_;
   double squared_deviation_ = 0;
   double max_deviation2_ = 0;

@@ -95,6 +95,21 @@ Json PredictionJson(const Prediction& prediction) {
           {"figures_silent", why(prediction.figures_silent)}};
 }
 
+std::string SafetyText(const SafetyPrediction& safety) {
+  if (!safety.silent.empty()) return "no distance, because " + safety.silent;
+  if (!safety.min_separation_m) return "nothing: there is one agent";
+  return fmt::format("at least {:.4f} m (law.safety){}", *safety.min_separation_m,
+                     safety.assumes.empty() ? "" : ", if " + safety.assumes);
+}
+
+Json SafetyPredictionJson(const Prediction& prediction) {
+  if (!prediction.safety) return nullptr;
+  const auto text = [](const std::string& words) { return words.empty() ? Json(nullptr) : Json(words); };
+  return {{"min_separation_m", OrNull(prediction.safety->min_separation_m)},
+          {"assumes", text(prediction.safety->assumes)},
+          {"silent", text(prediction.safety->silent)}};
+}
+
 std::vector<std::pair<std::string, std::string>> PredictionLines(const Experiment& experiment,
                                                                  const Prediction& prediction) {
   std::vector<std::pair<std::string, std::string>> lines;
@@ -123,6 +138,7 @@ std::vector<std::pair<std::string, std::string>> PredictionLines(const Experimen
     lines.emplace_back("first command", fmt::format("{:.4g} m/s^2 of {:g} allowed", first->asked, first->limit));
   if (const auto& first = prediction.first_speed)
     lines.emplace_back("first command", fmt::format("{:.4g} m/s of {:g} allowed", first->asked, first->limit));
+  if (prediction.safety) lines.emplace_back("separation", SafetyText(*prediction.safety));
   if (!prediction.figures_silent.empty())
     lines.emplace_back("figures", "not predicted, because " + prediction.figures_silent);
   if (!prediction.silent.empty()) lines.emplace_back("theory", "silent, because " + prediction.silent);

@@ -14,6 +14,10 @@ Json PredictionJson(const Prediction& prediction);
 /// The same as text: label and text of each line.
 std::vector<std::pair<std::string, std::string>> PredictionLines(const Experiment& experiment,
                                                                  const Prediction& prediction);
+/// The same of law.safety: JSON for "safety" in `check --json` and for "safety.predicted" in summary.json, null if no
+/// agent has it; and the text of its line.
+Json SafetyPredictionJson(const Prediction& prediction);
+std::string SafetyText(const SafetyPrediction& safety);
 /// What the predicted rate, and the predicted settling time, are those of.
 std::string RateBasis(const Prediction& prediction);
 std::string SettlingBasis(const Experiment& experiment, const Prediction& prediction);

@@ -69,7 +69,7 @@ Json Consensus(const Experiment& experiment, const Measured& measured, const Pre
   return consensus;
 }
 
-Json Safety(const Measured& measured, const std::optional<Contacts>& contacts) {
+Json Safety(const Measured& measured, const std::optional<Contacts>& contacts, const Prediction& prediction) {
   Json safety;
   safety["min_separation_m"] = OrNull(measured.min_separation_m);
   safety["collisions"] = contacts ? Json(contacts->total()) : Json(nullptr);
@@ -77,6 +77,9 @@ Json Safety(const Measured& measured, const std::optional<Contacts>& contacts) {
   if (contacts)
     safety["contacts"] = {
         {"agents", contacts->agents}, {"ground", contacts->ground}, {"obstacles", contacts->obstacles}};
+  safety["filtered_fraction"] = OrNull(measured.filtered_fraction);
+  safety["infeasible_ticks"] = OrNull(measured.infeasible_ticks);
+  safety["predicted"] = SafetyPredictionJson(prediction);
   return safety;
 }
 
@@ -207,6 +210,19 @@ std::string AlsoLimited(const Measured& m) {
                      100 * m.rotor_limited_fraction);
 }
 
+/// Text on the distance of agents, and what law.safety has to do with it.
+std::string SeparationText(const Measured& m, const std::optional<Contacts>& contacts, const Prediction& prediction) {
+  std::string text;
+  if (m.min_separation_m)
+    text += Line("separation     {:.3f} m at least, {} collisions", *m.min_separation_m,
+                 contacts ? std::to_string(contacts->total()) : "an unknown number of");
+  if (prediction.safety) text += Line("  predicted    {}", SafetyText(*prediction.safety));
+  if (m.filtered_fraction)
+    text += Line("filtered       {:.3g} % of commands by law.safety; {} ticks without a safe one",
+                 100 * *m.filtered_fraction, *m.infeasible_ticks);
+  return text;
+}
+
 /// Name of the ideal bodies that a run is compared with (docs/recording.md, fidelity).
 std::string IdealBodies(const Experiment& experiment) {
   const auto by_velocity = std::ranges::count_if(
@@ -246,7 +262,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
                      {"saturated_fraction", measured.saturated_fraction},
                      {"tilt_limited_fraction", measured.tilt_limited_fraction},
                      {"rotor_limited_fraction", measured.rotor_limited_fraction}};
-  json["safety"] = Safety(measured, engine.contacts);
+  json["safety"] = Safety(measured, engine.contacts, prediction);
   if (const auto& formation = measured.formation) json["formation"] = Formation(*formation);
   if (const auto laws = meter.Laws(); !laws.empty()) json["laws"] = LawsJson(experiment, laws, prediction);
   json["links"] = Links(meter.Traffic());
@@ -277,9 +293,7 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
         Line("ticks          {:.3g} ms after they were due in the median, 99 % within {:.3g} ms, all within {:.3g} ms",
              1e3 * pacing.tick_lateness_s[0], 1e3 * pacing.tick_lateness_s[1], 1e3 * pacing.tick_lateness_s[2]);
   }
-  if (m.min_separation_m)
-    text += Line("separation     {:.3f} m at least, {} collisions", *m.min_separation_m,
-                 engine.contacts ? std::to_string(engine.contacts->total()) : "an unknown number of");
+  text += SeparationText(m, engine.contacts, prediction);
   if (const auto& formation = m.formation)
     text += Line("formation      {:.4f} m rms off at the end, {:.4f} m at worst in the second half",
                  formation->final_rms_m, formation->worst_rms_m);

@@ -130,6 +130,10 @@ void PredictLaw(const Experiment& experiment, Prediction& prediction) {
   if (EntryOf(experiment.law).agrees)
     for (std::string& warning : PersistenceWarnings(experiment, *timeline, *prediction.persistence))
       prediction.warnings.push_back(std::move(warning));
+  if (prediction.safety) {
+    prediction.silent = "law.safety may change what the law asks for";
+    return;
+  }
   if (pursuit && !lies)
     PredictPursuit(experiment, *timeline, *pursuit, prediction);
   else if (linear && linear->listens && !lies)
@@ -165,6 +169,7 @@ Prediction Predict(const Experiment& experiment) {
   Prediction prediction;
   prediction.on_average =
       LosesSome(experiment) || !experiment.sensors.own.IsNone() || !experiment.sensors.heard.IsNone();
+  prediction.safety = PredictSafety(experiment);
   PredictLaw(experiment, prediction);
   PredictFirstCommand(experiment, prediction);
   WarnOfFirstCommands(experiment, prediction);
@@ -173,6 +178,9 @@ Prediction Predict(const Experiment& experiment) {
   for (std::string& warning : LiftWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
   for (std::string& warning : CrowdingWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
   for (std::string& warning : ObstacleWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
+  if (prediction.safety)
+    prediction.warnings.insert(prediction.warnings.end(), prediction.safety->warnings.begin(),
+                               prediction.safety->warnings.end());
   return prediction;
 }
 

@@ -67,6 +67,7 @@ Json ToJson(const Experiment& experiment, const GraphFacts& facts, const Predict
           {"graph", ToJson(facts)},
           {"delays", DelaysJson(experiment)},
           {"predicted", PredictionJson(prediction)},
+          {"safety", SafetyPredictionJson(prediction)},
           {"figures", PredictedFiguresJson(experiment, prediction)},
           {"warnings", prediction.warnings}};
 }

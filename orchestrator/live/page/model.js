@@ -13,7 +13,10 @@ export const EDGE = {
 export const EDGE_WORDS = ["no edge now", "heard", "lost", "out of range", "nothing arrived yet", "not known yet"];
 
 /** Bits of a command's flags, in words. */
-const LIMITS = [[1, "acceleration", "accel."], [8, "speed", "speed"], [2, "tilt", "tilt"], [4, "rotors", "rotors"]];
+const LIMITS = [
+  [1, "acceleration", "accel."], [8, "speed", "speed"], [2, "tilt", "tilt"], [4, "rotors", "rotors"],
+  [16, "safety", "safe"], [32, "no safe command", "unsafe"]
+];
 const limitsOf = (flags) => LIMITS.filter(([bit]) => flags & bit);
 export const limitWords = (flags) => limitsOf(flags).map(([, word]) => word).join(", ");
 export const shortLimitWords = (flags) => limitsOf(flags).map(([, , word]) => word).join(" ");

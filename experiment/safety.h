@@ -1,0 +1,19 @@
+#pragma once
+
+#include <span>
+
+#include "experiment/toml/section.h"
+
+namespace mascot {
+
+/// [law.safety], or `safety` of an agent's own law: the filter between the law and the limits (agent/safety.h).
+struct SafetyConfig {
+  double distance_m = 0;  ///< D: how far apart agents are kept, along law.axes
+  double gamma = 0;       ///< 1/s
+};
+
+/// The keys of `safety`.
+std::span<const Key> SafetyKeys();
+SafetyConfig ReadSafety(Section& safety);
+
+}  // namespace mascot
