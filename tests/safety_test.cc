@@ -12,6 +12,7 @@
 #include "orchestrator/report/prediction_report.h"
 #include "orchestrator/team/ideal_team.h"
 #include "tests/law_run.h"
+#include "tests/scratch.h"
 
 namespace mascot {
 namespace {
@@ -317,6 +318,24 @@ TEST(Safety, CountsTheTicksAtWhichSomebodyHadNoSafeCommand) {
                           kNoBodies, "velocity_m_per_s = [[0, 0, 0], [-4, 0, 0], [4, 0, 0]]\n", 2));
   EXPECT_GT(run.summary["safety"]["infeasible_ticks"].get<int>(), 0);
   EXPECT_LE(run.summary["safety"]["infeasible_ticks"].get<int>(), 201);
+}
+
+// --- the shipped experiment -------------------------------------------------------------------------------
+
+TEST(Crossing, KeepsTenQuadrotorsApartOnTheirWayToThePlacesOpposite) {
+  const std::string crossing = ReadFile(MASCOT_SOURCE_DIR "/configs/crossing.toml");
+  const LawRun run(crossing);
+  const auto& safety = run.summary["safety"];
+  EXPECT_EQ(safety["infeasible_ticks"], 0);
+  EXPECT_NEAR(safety["predicted"]["min_separation_m"].get<double>(), 1.1 - 4e-4 / 8, 1e-12);
+  EXPECT_GE(safety["min_separation_m"].get<double>(), safety["predicted"]["min_separation_m"].get<double>());
+  EXPECT_LT(safety["min_separation_m"].get<double>(), 1.2) << "not more than needed";
+  EXPECT_EQ(safety["collisions"], 0);
+  EXPECT_LT(run.summary["formation"]["final_rms_m"].get<double>(), 0.05) << "all have arrived";
+
+  const LawRun without(crossing.substr(0, crossing.find("\n[law.safety]")));
+  EXPECT_LT(without.summary["safety"]["min_separation_m"].get<double>(), 1.0);
+  EXPECT_GT(without.summary["safety"]["contacts"]["agents"].get<int>(), 0);
 }
 
 // --- keys -------------------------------------------------------------------------------------------------
