@@ -49,10 +49,16 @@ Agent::Agent(const Experiment& experiment, int id)
       v_integrated_W_(config_->v_W) {}
 
 void Agent::Adopt(std::shared_ptr<const Experiment> now) {
+  const bool begins = now->agent(id_).law.since != config_->law.since;
   config_ = &now->agent(id_);
   neighbours_.Adopt(*now);
   safety_.Adopt(*now);
-  law_->Adopt(*config_);
+  if (begins) {
+    law_ = MakeLaw(*now, id_);
+    law_made_for_ = now;
+  } else {
+    law_->Adopt(*config_);
+  }
   now_ = std::move(now);  // the last one ends here: nobody refers to it any more
 }
 
@@ -65,10 +71,11 @@ Eigen::Vector3d Agent::AskLaw(std::int64_t tick, const Motion& measured, std::sp
   }
   wanted_ = law_->wanted();
   if (ranges_.is_on()) AtTick(tick, [&] { law_->See(ranges_.Sense(measured.p_WB)); });
-  Eigen::Vector3d w_W = AtTick(tick, [&] { return law_->Want_W(t_s, measured, heard); });
+  const double law_t_s = static_cast<double>(tick - config_->law.since) / rate_hz_;
+  Eigen::Vector3d w_W = AtTick(tick, [&] { return law_->Want_W(law_t_s, measured, heard); });
   if (holds_altitude_) w_W.z() = 0;
   if (!w_W.allFinite()) ThrowNotFinite(tick, id_, wanted_, w_W);
-  if (config_->sends_messages) message_ = AtTick(tick, [&] { return law_->Message(); });
+  if (config_->law.params->sends_messages) message_ = AtTick(tick, [&] { return law_->Message(); });
   return w_W;
 }
 

@@ -50,6 +50,7 @@ class Agent {
   int id_;
   double rate_hz_;
   bool holds_altitude_;
+  std::shared_ptr<const Experiment> law_made_for_;  // what law_ may refer to; null: the experiment of the start
   std::unique_ptr<Law> law_;
   std::unique_ptr<Controller> controller_;
   Wanted driven_by_;

@@ -32,9 +32,10 @@ class Law {
   /// measured position, in the order of physics.obstacles; inside of one, the position itself. Called before each
   /// Want_W() if sensors.range_m is set; `nearest_W` is valid until that has returned.
   virtual void See(std::span<const Eigen::Vector3d> /*nearest_W*/) {}
-  /// Wanted acceleration (m/s^2) or velocity (m/s) of this agent, expressed in W. `t_s`: simulated time, increasing
-  /// from call to call. `self`: the measured motion of this agent. `heard`: one entry per neighbour whose sample was
-  /// delivered, in increasing id. Components outside law.axes are ignored. An exception ends the run.
+  /// Wanted acceleration (m/s^2) or velocity (m/s) of this agent, expressed in W. `t_s`: simulated time since the law
+  /// began (LawConfig::since), increasing from call to call. `self`: the measured motion of this agent. `heard`: one
+  /// entry per neighbour whose sample was delivered, in increasing id. Components outside law.axes are ignored. An
+  /// exception ends the run.
   virtual Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> heard) = 0;
   /// The message for the agents that hear this one, called after Want_W() of the same tick: at most kMaxMessage
   /// numbers, valid until the next call; empty: no message. Called only for laws that send messages

@@ -44,9 +44,15 @@ bool Neighbours::IsPlain() const {
          });
 }
 
+std::span<const double> Neighbours::OfItsLaw(std::size_t k, std::int64_t sent, std::span<const double> message) const {
+  const std::int64_t since = experiment_->agent(may_hear_[k].id).law.since;
+  return since == 0 || sent > since ? message : std::span<const double>();
+}
+
 void Neighbours::HearPlain(std::span<const Sample> samples) {
   for (std::size_t k = 0; k < may_hear_.size(); ++k) {
-    heard_.push_back({may_hear_[k].id, may_hear_[k].weight, *samples[k].motion, 0, samples[k].message});
+    heard_.push_back(
+        {may_hear_[k].id, may_hear_[k].weight, *samples[k].motion, 0, OfItsLaw(k, tick_, samples[k].message)});
     ++plain_counts_[k].sent;
     plain_counts_[k].numbers += samples[k].message.size();
   }
@@ -97,7 +103,7 @@ void Neighbours::Deliver(std::size_t k, std::int64_t tick) {
                     .weight = packet->weight,
                     .motion = packet->motion,
                     .age_s = experiment_->time_s(tick - packet->sent),
-                    .message = packet->message});
+                    .message = OfItsLaw(k, packet->sent, packet->message)});
   noises_[k].AddTo(heard_.back().motion, packet->sent);
 }
 

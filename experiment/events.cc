@@ -23,14 +23,22 @@ constexpr Key kGraphKeys[] = {
     key::Rows("edges", {1, kMaxAgents}, "`[i, j]`, ... (i hears j)").Required(),
 };
 
+constexpr Key kAgents =
+    key::Numbers("agents", {1, kMaxAgents}, "with set: whom it is for").Otherwise("all whom it can concern");
+
 constexpr Key kEventKeys[] = {
     key::Number("at_s", {0, 1e6}, "when; a whole number of ticks").Required(),
     key::Any("set", "live keys and their new values: `{ \"law.p_gain\" = 0.2 }`"),
-    key::Numbers("agents", {1, kMaxAgents}, "with set: whom it is for").Otherwise("all whom it can concern"),
+    kAgents,
     key::Table("goto", kGoToKeys, "the agent's waypoints are replaced by this one"),
     key::Table("graph", kGraphKeys, "these edges work from now on, of those that the file declares, and no others"),
     key::Rows("cut", {1, kMaxAgents}, "`[i, j]`, ...: edges that work no more (i hears j)"),
     key::Rows("mend", {1, kMaxAgents}, "`[i, j]`, ...: edges that work again"),
+};
+
+constexpr Key kPhaseKeys[] = {
+    key::Any("law", "a whole law table"),
+    kAgents,
 };
 
 /// Puts the leaves of `value` into `set`, under dotted keys: { law = { p_gain = 1 } } is { "law.p_gain" = 1 }.
@@ -94,21 +102,6 @@ void CheckKind(Section& section) {
     section.Fail("agents", "expected only with set, got " + (count == 0 ? "it alone" : found));
 }
 
-/// The tick of at_s; 0 after a mistake.
-std::int64_t ReadTick(Section& section, int rate_hz, std::int64_t last_tick) {
-  constexpr double kTolerance = 1e-9;  // relative: 0.1 s at 30 Hz is 3 ticks although 0.1 is not a binary fraction
-  const double at_s = section.Number("at_s");
-  if (section.Wrong("at_s") || rate_hz == 0) return 0;
-  const double ticks = at_s * rate_hz;
-  if (std::abs(ticks - std::round(ticks)) > kTolerance * ticks) {
-    section.Fail("at_s", "expected a whole number of periods of control.rate_hz (" + std::to_string(rate_hz) +
-                             "), got " + ShortestFloat(at_s));
-  } else if (std::round(ticks) > static_cast<double>(last_tick)) {
-    section.Fail("at_s", "expected at most run.duration_s, got " + ShortestFloat(at_s));
-  }
-  return section.Wrong("at_s") ? 0 : std::llround(ticks);
-}
-
 std::string EdgesText(const Event::Edges& edges) {
   Value::List list;
   for (const auto& [hearer, heard] : edges)
@@ -123,6 +116,7 @@ std::string PointText(const Eigen::Vector3d& p) { return ToToml({Value::List{{p.
 std::string Event::Toml() const {
   std::string text;
   if (!set.empty()) text += "set = " + ToToml({Value::Table(set.begin(), set.end())}) + "\n";
+  if (law) text += "law = " + ToToml({*law}) + "\n";
   if (!agents.empty()) {
     Value::List ids;
     for (const int id : agents) ids.push_back({std::int64_t{id}});
@@ -139,6 +133,20 @@ std::string Event::Toml() const {
 std::string WithEvent(std::string experiment, std::int64_t tick, int rate_hz, const std::string& toml) {
   const std::string at_s = ShortestFloat(static_cast<double>(tick) / rate_hz);
   return std::move(experiment) + "\n[[events]]\nat_s = " + at_s + "\n" + toml;
+}
+
+std::int64_t ReadTick(Section& section, int rate_hz, std::int64_t last_tick) {
+  constexpr double kTolerance = 1e-9;  // relative: 0.1 s at 30 Hz is 3 ticks although 0.1 is not a binary fraction
+  const double at_s = section.Number("at_s");
+  if (section.Wrong("at_s") || rate_hz == 0) return 0;
+  const double ticks = at_s * rate_hz;
+  if (std::abs(ticks - std::round(ticks)) > kTolerance * ticks) {
+    section.Fail("at_s", "expected a whole number of periods of control.rate_hz (" + std::to_string(rate_hz) +
+                             "), got " + ShortestFloat(at_s));
+  } else if (std::round(ticks) > static_cast<double>(last_tick)) {
+    section.Fail("at_s", "expected at most run.duration_s, got " + ShortestFloat(at_s));
+  }
+  return section.Wrong("at_s") ? 0 : std::llround(ticks);
 }
 
 std::span<const Key> EventKeys() { return kEventKeys; }
@@ -159,6 +167,25 @@ Event ReadEvent(Section& section, int agents) {
   return event;
 }
 
+bool IsPhase(const std::string& toml) { return Section::FromWords(toml, "event").Has("law"); }
+
+Event ReadEventOfRun(Section& section, int agents) {
+  if (!section.Has("law")) {
+    section.Use(kEventKeys);
+    return ReadEvent(section, agents);
+  }
+  section.Use(kPhaseKeys);
+  Event event;
+  event.where = section.Where("");
+  const Value law = section.Free("law");
+  if (const auto* table = std::get_if<Value::Table>(&law.data))
+    event.law = *table;
+  else
+    section.Fail("law", "expected a table, got a " + section.Kind("law"));
+  if (section.Has("agents")) event.agents = ReadAgentIds(section, "agents", agents);
+  return event;
+}
+
 std::vector<Event> ReadEvents(Section& document, int agents, int rate_hz, std::int64_t ticks) {
   std::vector<Event> events;
   for (Section& section : document.Children("events")) {
@@ -167,7 +194,6 @@ std::vector<Event> ReadEvents(Section& document, int agents, int rate_hz, std::i
     events.back().tick = tick;
     section.Done();
   }
-  std::ranges::stable_sort(events, {}, &Event::tick);
   return events;
 }
 

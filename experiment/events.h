@@ -28,7 +28,11 @@ struct Event {
   std::optional<Edges> graph = {};        ///< the edges that work from now on, of those that the file declares
   Edges cut = {};                         ///< edges that work no more
   Edges mend = {};                        ///< edges that work again
-  std::string where = {};                 ///< place of the event, as messages say it: "a.toml:12:1", "event by hand"
+  /// A phase of [[law.schedule]]: the whole law table from now on, of `agents`, or else of all without one of their
+  /// own.
+  std::optional<Value::Table> law = {};
+  std::vector<std::string> files = {};  ///< absolute paths of files that `law` depends on, as LawParams::files
+  std::string where = {};               ///< place of the event, as messages say it: "a.toml:12:1", "event by hand"
 
   /// Its keys but at_s as TOML, in a fixed form: the same for the event of a file and the same event given by hand.
   std::string Toml() const;
@@ -37,12 +41,19 @@ struct Event {
 /// An experiment's text with one more event behind those that it has. `toml`: Event::Toml().
 std::string WithEvent(std::string experiment, std::int64_t tick, int rate_hz, const std::string& toml);
 
+/// Reads the key `at_s`, a whole number of ticks up to `last_tick`; 0 after a mistake, or with `rate_hz` = 0 (unknown).
+std::int64_t ReadTick(Section& section, int rate_hz, std::int64_t last_tick);
+
 /// The keys of [[events]].
 std::span<const Key> EventKeys();
 /// Reads `section`, one [[events]] table or the keys given by hand, all but at_s. `agents`: their number; 0: unknown
 /// because of a mistake. Which keys are live, and which values legal, LiveExperiment::Take() says.
 Event ReadEvent(Section& section, int agents);
-/// Reads [[events]], in order of time; events of one tick in the order of the file. `ticks`: the last tick.
+/// Whether Event::Toml() is that of a phase.
+bool IsPhase(const std::string& toml);
+/// Reads Event::Toml() of any event of a run, also of a phase, from a section without rows.
+Event ReadEventOfRun(Section& section, int agents);
+/// Reads [[events]], in the order of the file. `ticks`: the last tick.
 std::vector<Event> ReadEvents(Section& document, int agents, int rate_hz, std::int64_t ticks);
 
 }  // namespace mascot

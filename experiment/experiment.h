@@ -72,6 +72,7 @@ struct LawConfig {
   Axes axes = Axes::kXy;
   std::optional<SafetyConfig> safety = {};  ///< absent: nothing changes what the law wants but the limits
   std::shared_ptr<const LawParams> params;  ///< null if the experiment was read without laws (the physics server)
+  std::int64_t since = 0;  ///< tick at which the law began, with nothing to remember ([[law.schedule]])
 };
 
 /// What an experiment says about one agent.
@@ -85,7 +86,7 @@ struct AgentConfig {
   ControlConfig control;
   LawConfig law;
   bool has_own_law = false;     ///< `law` is the agent's own, not the team's
-  bool sends_messages = false;  ///< its law sends messages: it has a topic for them
+  bool sends_messages = false;  ///< its law sends messages, at least in some phase: it has a topic for them
   /// From start_s until before stop_s its law is on, and others may hear it; before and after, it is commanded the
   /// velocity 0.
   double start_s = 0;
@@ -156,7 +157,9 @@ struct Experiment {
     Delivery delivery = Delivery::kTopics;
     bool ros_view = false;
   } network;
-  std::vector<Event> events;  ///< of the file, in order of time
+  std::size_t phase = 0;              ///< how many phases of [[law.schedule]] have begun after the first
+  std::vector<double> late_phases_s;  ///< when phases of [[law.schedule]] were to begin that the run does not reach
+  std::vector<Event> events;          ///< of the file, with the phases of [[law.schedule]], in order of time
 
   int size() const { return static_cast<int>(agents.size()); }
   const AgentConfig& agent(int id) const { return agents[static_cast<std::size_t>(id - 1)]; }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "experiment/live_keys.h"
+
 namespace mascot {
 namespace {
 
@@ -10,52 +12,31 @@ constexpr const char* kWhoseKeys[] = {"law", "control"};  // tables of which an 
 
 [[noreturn]] void Refuse(const Event& event, const std::string& why) { throw ConfigError({event.where + ": " + why}); }
 
-std::pair<std::string, std::string> SplitFirst(const std::string& path) {
-  const std::size_t dot = path.find('.');
-  return {path.substr(0, dot), dot == std::string::npos ? "" : path.substr(dot + 1)};
-}
-
 bool IsOfAgents(const std::string& key) {
   return std::ranges::find(kWhoseKeys, SplitFirst(key).first) != std::end(kWhoseKeys);
 }
 
-/// The row of the dotted key `path` in `rows`; null if there is none. Inside a table whose keys the user chooses, every
-/// key has the row of that table.
-const Key* FindRow(std::span<const Key> rows, const std::string& path) {
-  const auto [name, rest] = SplitFirst(path);
-  const auto row = std::ranges::find(rows, name, &Key::name);
-  if (row == rows.end()) return nullptr;
-  if (rest.empty() || row->kind == ValueKind::kAny) return &*row;
-  return row->kind == ValueKind::kTable ? FindRow(row->keys, rest) : nullptr;
-}
+/// The key of override `index`, with which those of its keys begin.
+std::string OverrideKey(std::size_t index) { return "agents.override[" + std::to_string(index) + "]."; }
 
-std::vector<Key> KeysOfLaw(const LawCatalog& laws, const std::string& law) {
-  std::vector<Key> rows(LawKeys().begin(), LawKeys().end());
-  for (const Key& row : laws.Parameters(law)) {  // a law may describe `leader` more closely
-    const auto common = std::ranges::find(rows, row.name, &Key::name);
-    if (common == rows.end())
-      rows.push_back(row);
-    else
-      *common = row;
-  }
-  return rows;
-}
-
-void AddLive(const std::string& prefix, std::span<const Key> rows, std::vector<LiveKey>& live) {
-  for (const Key& row : rows) {
-    const std::string path = prefix.empty() ? std::string(row.name) : prefix + "." + std::string(row.name);
-    const bool known = std::ranges::any_of(live, [&](const LiveKey& other) { return other.path == path; });
-    if (row.live && !known) live.push_back({path, row});
-    if (row.kind == ValueKind::kTable) AddLive(path, row.keys, live);
-  }
-}
-
-/// The names of all laws in the experiment, the team's first.
-std::vector<std::string> LawsIn(const Experiment& experiment) {
-  std::vector<std::string> names{experiment.law.name};
-  for (const AgentConfig& agent : experiment.agents)
-    if (std::ranges::find(names, agent.law.name) == names.end()) names.push_back(agent.law.name);
-  return names;
+/// Whether a law whose table changes in this way goes on with what it remembers: the same law, but for live keys and
+/// the safety filter around it. Tables whose keys the user chooses do not count as live: not every law learns of a
+/// change in them.
+bool GoesOn(const LawCatalog& laws, const Value::Table& before, const Value::Table& after) {
+  const auto name = before.find("name");
+  if (name == before.end()) return false;
+  const std::vector<Key> rows = KeysOfLaw(laws, std::get<std::string>(name->second.data));
+  const auto same = [&](const std::string& key) {
+    const Key* row = FindRow(rows, key);
+    const bool is_live = row != nullptr && row->live && row->kind != ValueKind::kAny;
+    if (is_live || key == "schedule" || key == "safety") return true;
+    const auto was = before.find(key), is = after.find(key);
+    return was != before.end() && is != after.end() && was->second == is->second;
+  };
+  const auto all_same = [&](const Value::Table& table) {
+    return std::ranges::all_of(table, [&](const auto& entry) { return same(entry.first); });
+  };
+  return all_same(before) && all_same(after);
 }
 
 /// Appends the dotted names of what is in the table `value`, and in the tables inside it.
@@ -73,34 +54,27 @@ std::string EdgeText(const std::pair<int, int>& edge) {
 
 }  // namespace
 
-std::vector<LiveKey> LiveKeysOf(const Experiment& experiment, const LawCatalog& laws) {
-  std::vector<LiveKey> live;
-  for (const Key& row : ExperimentKeys()) {
-    if (row.name != "law")
-      AddLive("", {&row, 1}, live);
-    else
-      for (const std::string& law : LawsIn(experiment)) AddLive("law", KeysOfLaw(laws, law), live);
-  }
-  return live;
-}
-
 LiveExperiment::LiveExperiment(const Experiment& start, const LawCatalog* laws, bool checked)
-    : start_(start), laws_(laws), checked_(checked), text_(start.resolved), changes_{{.key = "events", .value = "[]"}} {
+    : start_(start), laws_(laws), checked_(checked), text_(start.resolved) {
+  for (const char* key : {"events", "law.schedule"}) changes_.push_back({.key = key, .value = "[]"});
   Section document = Section::FromText(text_, "config.toml");
   document.Use(ExperimentKeys());
+  law_tables_[0] = document.Child("law").InTheFile();
+  since_.resize(start.agents.size());
   for (Section& section : document.Child("agents").Children("override")) {
-    Own own{.id = static_cast<int>(section.Integer("id")), .keys = {}};
-    for (const char* table : kWhoseKeys) {
-      AddKeys(table, section.Free(table), own.keys);
+    Own own{.id = static_cast<int>(section.Integer("id")), .keys = {}, .has_law = section.Has("law")};
+    if (own.has_law) {
+      law_tables_[own.id] = section.Child("law").InTheFile();
+      changes_.push_back({.key = OverrideKey(own_.size()) + "law.schedule", .value = "[]"});
     }
+    for (const char* table : kWhoseKeys) AddKeys(table, section.Free(table), own.keys);
     own_.push_back(std::move(own));
   }
 }
 
 Event LiveExperiment::Parse(std::int64_t tick, const std::string& toml, const std::string& where) const {
   Section section = Section::FromWords(toml, where);
-  section.Use(EventKeys());
-  Event event = ReadEvent(section, start_.size());
+  Event event = ReadEventOfRun(section, start_.size());
   section.Done();
   section.ThrowIfWrong();
   event.tick = tick;
@@ -109,23 +83,35 @@ Event LiveExperiment::Parse(std::int64_t tick, const std::string& toml, const st
 
 std::shared_ptr<const Experiment> LiveExperiment::Take(const Event& event) {
   const std::vector<Own> own = own_;
+  const bool team_had_changed = team_has_changed_;
   try {
     const auto cut = CutAfter(event);
     std::vector<Override> changes = changes_;
+    if (event.law) ForgetLaws(event, changes);
     for (Override& change : Changes(event)) {
       std::erase_if(changes, [&](const Override& older) { return older.key == change.key; });
       changes.push_back(std::move(change));
     }
     Section document = Section::FromText(text_, "config.toml", changes);
-    Experiment next = laws_ != nullptr ? ReadExperiment(std::move(document), *laws_, start_.run.name, checked_)
-                                       : ReadWithoutLaws(std::move(document), start_.run.name);
+    Experiment next = laws_ != nullptr
+                          ? ReadExperiment(std::move(document), *laws_, start_.run.name, checked_, WithTheirOwnLaw())
+                          : ReadWithoutLaws(std::move(document), start_.run.name);
     next.cut = cut;
+    const bool begins_phase = event.law && phase_tick_ != event.tick;
+    next.phase = current().phase + (begins_phase ? 1 : 0);
+    if (event.law && laws_ != nullptr) BeginLaws(event);
+    for (AgentConfig& agent : next.agents) {
+      agent.law.since = since_[static_cast<std::size_t>(agent.id - 1)];
+      agent.sends_messages = start_.agent(agent.id).sends_messages;
+    }
     now_ = std::make_shared<const Experiment>(std::move(next));
     changes_ = std::move(changes);
+    if (event.law) phase_tick_ = event.tick;
     events_.push_back(event);
     return now_;
   } catch (...) {
     own_ = own;
+    team_has_changed_ = team_had_changed;
     throw;
   }
 }
@@ -150,15 +136,51 @@ std::set<std::pair<int, int>> LiveExperiment::CutAfter(const Event& event) const
   return cut;
 }
 
+std::set<int> LiveExperiment::WithTheirOwnLaw() const {
+  std::set<int> alone;
+  for (const Own& own : own_)
+    if (own.has_law && team_has_changed_) alone.insert(own.id);
+  return alone;
+}
+
+void LiveExperiment::ForgetLaws(const Event& phase, std::vector<Override>& changes) {
+  const auto forget = [&](const std::string& table) {
+    std::erase_if(changes, [&](const Override& change) { return (change.key + ".").starts_with(table + "."); });
+  };
+  if (phase.agents.empty()) forget("law");
+  team_has_changed_ = team_has_changed_ || phase.agents.empty();
+  for (std::size_t k = 0; k < own_.size(); ++k) {
+    const bool concerns = phase.agents.empty() ? !own_[k].has_law : phase.agents.front() == own_[k].id;
+    if (!concerns) continue;
+    forget(OverrideKey(k) + "law");
+    std::erase_if(own_[k].keys, [](const std::string& key) { return key.starts_with("law."); });
+    if (!phase.agents.empty()) AddKeys("law", {*phase.law}, own_[k].keys);
+  }
+}
+
+void LiveExperiment::BeginLaws(const Event& phase) {
+  const int whose = phase.agents.empty() ? 0 : phase.agents.front();
+  const bool goes_on = GoesOn(*laws_, law_tables_[whose], *phase.law);
+  law_tables_[whose] = *phase.law;
+  if (goes_on) return;
+  for (const AgentConfig& agent : start_.agents)
+    if (whose > 0 ? agent.id == whose : !agent.has_own_law) since_[static_cast<std::size_t>(agent.id - 1)] = phase.tick;
+}
+
 std::vector<Override> LiveExperiment::Changes(const Event& event) {
   std::vector<Override> changes;
+  if (event.law) {
+    const Value table{*event.law};
+    if (event.agents.empty()) changes.push_back({.key = "law", .value = ToToml(table), .origin = event.where});
+    for (const int agent : event.agents) SetFor(agent, event.where, "law", table, changes);
+  }
   for (const auto& [key, value] : event.set) {
     CheckKey(event, key);
     Set(event, key, value, changes);
   }
   if (event.go_to && laws_ != nullptr) {
     const AgentConfig& agent = current().agent(event.go_to->agent);
-    const auto target = laws_->GoTo(agent, event.go_to->p_W, current().time_s(event.tick));
+    const auto target = laws_->GoTo(agent, event.go_to->p_W, current().time_s(event.tick - agent.law.since));
     if (target.empty())
       Refuse(event, "goto: expected an agent that flies waypoints, or a leader, got agent " + std::to_string(agent.id) +
                         " of law '" + agent.law.name + "'");
@@ -172,7 +194,7 @@ void LiveExperiment::CheckKey(const Event& event, const std::string& key) const 
   const auto [table, rest] = SplitFirst(key);
   const Key* row = nullptr;
   if (table == "law") {
-    std::vector<std::string> names = LawsIn(current());
+    std::vector<std::string> names = LawNamesIn(current());
     if (!event.agents.empty()) names = {current().agent(event.agents.front()).law.name};
     for (const std::string& name : names) {
       const std::vector<Key> rows = KeysOfLaw(*laws_, name);
@@ -194,7 +216,7 @@ void LiveExperiment::CheckKey(const Event& event, const std::string& key) const 
 }
 
 void LiveExperiment::CheckParams(const Event& event) const {
-  for (const AgentConfig& agent : start_.agents) {
+  for (const AgentConfig& agent : current().agents) {
     const bool is_concerned = event.agents.empty() || std::ranges::find(event.agents, agent.id) != event.agents.end();
     if (is_concerned && !agent.law.params->fixed.empty()) Refuse(event, "law.params: " + agent.law.params->fixed);
   }
@@ -208,7 +230,7 @@ void LiveExperiment::Set(const Event& event, const std::string& key, const Value
     return;
   }
   const auto [table, rest] = SplitFirst(key);
-  const bool is_of_team = table != "law" || laws_ == nullptr || FindRow(KeysOfLaw(*laws_, start_.law.name), rest);
+  const bool is_of_team = table != "law" || laws_ == nullptr || FindRow(KeysOfLaw(*laws_, current().law.name), rest);
   if (is_of_team) changes.push_back({.key = key, .value = ToToml(value), .origin = event.where});
   for (std::size_t k = 0; k < own_.size(); ++k)
     if (std::ranges::find(own_[k].keys, key) != own_[k].keys.end())
@@ -218,7 +240,7 @@ void LiveExperiment::Set(const Event& event, const std::string& key, const Value
 void LiveExperiment::SetFor(int agent, const std::string& where, const std::string& key, const Value& value,
                             std::vector<Override>& changes) {
   const auto found = std::ranges::find(own_, agent, &Own::id);
-  const std::string path = "agents.override[" + std::to_string(found - own_.begin()) + "].";
+  const std::string path = OverrideKey(static_cast<std::size_t>(found - own_.begin()));
   if (found == own_.end()) {
     own_.push_back({.id = agent, .keys = {}});
     changes.push_back({.key = path + "id", .value = std::to_string(agent), .origin = where, .extends = true});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -12,12 +13,6 @@
 #include "experiment/read_experiment.h"
 
 namespace mascot {
-
-/// A key that an event may set in this experiment.
-struct LiveKey {
-  std::string path;  ///< dotted: "law.p_gain"
-  Key row;
-};
 
 /// An experiment while it flies: what its file says, changed by the events so far. What an event sets is read by the
 /// same rows as the file, so that it is checked, and refused, in the same way. Each state is an Experiment of its own,
@@ -49,9 +44,16 @@ class LiveExperiment {
   struct Own {
     int id = 0;
     std::vector<std::string> keys;  ///< dotted: "law.p_gain"
+    bool has_law = false;           ///< it has a law table of its own, which a phase of the team's does not concern
   };
 
   std::vector<Override> Changes(const Event& event);
+  /// The agents whose own law tables inherit nothing: those of the file, once a phase has changed the team's.
+  std::set<int> WithTheirOwnLaw() const;
+  /// Takes out of `changes` what they set in the law tables that a phase replaces.
+  void ForgetLaws(const Event& phase, std::vector<Override>& changes);
+  /// Notes of which agents the law begins anew with a phase.
+  void BeginLaws(const Event& phase);
   void Set(const Event& event, const std::string& key, const Value& value, std::vector<Override>& changes);
   void SetFor(int agent, const std::string& where, const std::string& key, const Value& value,
               std::vector<Override>& changes);
@@ -66,12 +68,13 @@ class LiveExperiment {
   bool checked_;
   std::string text_;  // the resolved experiment
   std::vector<Own> own_;
-  std::vector<Override> changes_;  // of all events so far
+  std::map<int, Value::Table> law_tables_;  // of agents with their own, by id; at 0 the team's; but for live keys
+  std::vector<std::int64_t> since_;         // LawConfig::since, by id - 1
+  bool team_has_changed_ = false;           // by a phase
+  std::int64_t phase_tick_ = -1;            // at which the newest phase began; -1: there is only the first
+  std::vector<Override> changes_;           // of all events so far
   std::vector<Event> events_;
   std::shared_ptr<const Experiment> now_;
 };
-
-/// The keys that events may set in `experiment`, in the order of the file.
-std::vector<LiveKey> LiveKeysOf(const Experiment& experiment, const LawCatalog& laws);
 
 }  // namespace mascot

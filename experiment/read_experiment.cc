@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "experiment/agents.h"
 #include "experiment/control.h"
+#include "experiment/law_tables.h"
 #include "experiment/live_experiment.h"
 
 namespace mascot {
@@ -100,25 +102,9 @@ void ReadRun(Section& section, const std::string& default_name, Experiment& expe
   section.Done();
 }
 
-/// Reads the keys that all laws share. `team`: for an agent's own law, the table that it inherits from, if it does.
-/// `laws` null: the document is a resolved one, which has them all.
-LawConfig ReadLaw(Section& section, std::optional<Section> team, int count, const LawCatalog* laws) {
-  LawConfig law;
-  law.name =
-      laws != nullptr ? section.OneOf("name", laws->names(), std::string(laws->names().front())) : section.Text("name");
-  law.leader = static_cast<int>(section.Integer("leader", 0, count > 0 ? count : kMaxAgents));
-  const Axes usual = laws != nullptr ? laws->DefaultAxes(law.name) : Axes::kXy;
-  law.axes = kAxes.Value(section.OneOf("axes", kAxes.names(), std::string(kAxes.Name(usual))));
-  if (!section.Has("safety")) return law;
-  Section safety = section.Child("safety");
-  if (team && team->Has("safety")) safety.InheritFrom(team->Child("safety"));
-  law.safety = ReadSafety(safety);
-  return law;
-}
-
 /// Reads an override's own control and law tables; what they leave out is as in [control] and [law] (`team_law`).
-void FinishOverride(AgentOverride& override, Section& control, const Section& team_law, int count,
-                    const LawCatalog* laws, Experiment& experiment) {
+void FinishOverride(AgentOverride& override, Section& control, const Section& team_law, const std::set<int>& alone,
+                    int count, const LawCatalog* laws, Experiment& experiment) {
   Section& section = override.section;
   AgentConfig unknown;
   AgentConfig& agent = override.id > 0 ? experiment.agents[static_cast<std::size_t>(override.id - 1)] : unknown;
@@ -127,32 +113,8 @@ void FinishOverride(AgentOverride& override, Section& control, const Section& te
     own.InheritFrom(control);
     ReadControl(own, {&agent, 1});
   }
-  if (section.Has("law")) {
-    Section own = section.Child("law");
-    const bool same_law = !own.Has("name") || own.Text("name") == experiment.law.name;
-    if (same_law) own.InheritFrom(team_law);
-    agent.law = ReadLaw(own, same_law ? std::optional(team_law) : std::nullopt, count, laws);
-    agent.has_own_law = true;
-    if (override.id > 0) override.law = own;
-  }
+  ReadOwnLaw(override, team_law, alone, count, laws, experiment);
   section.Done();
-}
-
-/// Reads the parameters of the team's law and of agents' own laws.
-void ReadLawParameters(const LawCatalog& laws, Section& team_law, std::vector<AgentOverride>& overrides,
-                       Experiment& experiment) {
-  experiment.law.params = laws.Read(experiment, experiment.law, team_law);
-  for (AgentConfig& agent : experiment.agents)
-    if (!agent.has_own_law) agent.law.params = experiment.law.params;
-  for (AgentOverride& override : overrides) {
-    if (!override.law) continue;
-    LawConfig& own = experiment.agents[static_cast<std::size_t>(override.id - 1)].law;
-    own.params = laws.Read(experiment, own, *override.law);
-  }
-  for (AgentConfig& agent : experiment.agents) agent.sends_messages = agent.law.params->sends_messages;
-  team_law.Done();
-  for (AgentOverride& override : overrides)
-    if (override.law) override.law->Done();
 }
 
 /// Checks that the rotors that fail are those of quadrotors.
@@ -230,7 +192,8 @@ void CheckEvents(const Experiment& experiment, const LawCatalog* laws) {
 }
 
 /// Reads everything. `laws` null: the parameters of laws are not read.
-Experiment Read(Section document, const LawCatalog* laws, const std::string& default_name, bool checked) {
+Experiment Read(Section document, const LawCatalog* laws, const std::string& default_name, bool checked,
+                const std::set<int>& alone) {
   document.Use(ExperimentKeys());
   CheckFormat(document);
   // Opened in the order of the resolved file; read below in the order in which one needs another.
@@ -250,7 +213,7 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
   CheckRotorFailures(physics, experiment);
   experiment.control.rate_hz = static_cast<int>(control.Integer("rate_hz"));
   ReadControl(control, experiment.agents);
-  for (AgentOverride& override : overrides) FinishOverride(override, control, law, count, laws, experiment);
+  for (AgentOverride& override : overrides) FinishOverride(override, control, law, alone, count, laws, experiment);
   CheckTime(run, physics, control, experiment);
   experiment.sensors = ReadSensors(sensors);
   std::vector<Eigen::Vector3d> p_W;
@@ -271,10 +234,18 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
   const bool unknown =
       std::ranges::any_of(overrides, [](const auto& override) { return override.section.Wrong("law"); });
   if (unknown || law.Wrong("name") || law.Wrong("leader")) experiment.agents.clear();
-  if (laws != nullptr && !experiment.agents.empty()) ReadLawParameters(*laws, law, overrides, experiment);
   const bool known_time = !run.Wrong("duration_s") && !control.Wrong("rate_hz");
-  experiment.events =
-      ReadEvents(document, count, known_time ? experiment.control.rate_hz : 0, known_time ? experiment.ticks() : 0);
+  const int rate_hz = known_time ? experiment.control.rate_hz : 0;
+  const std::int64_t ticks = known_time ? experiment.ticks() : 0;
+  if (!experiment.agents.empty()) {
+    if (laws != nullptr) ReadLawParameters(*laws, law, overrides, experiment);
+    experiment.events = ReadLawSchedules(laws, law, overrides, rate_hz, ticks, experiment);
+    if (laws != nullptr) law.Done();
+    for (AgentOverride& override : overrides)
+      if (laws != nullptr && override.law) override.law->Done();
+  }
+  for (Event& event : ReadEvents(document, count, rate_hz, ticks)) experiment.events.push_back(std::move(event));
+  std::ranges::stable_sort(experiment.events, {}, &Event::tick);
   document.Done();
   document.ThrowIfWrong();
   experiment.resolved = document.Resolved();
@@ -289,17 +260,6 @@ void CheckFormat(Section& document) {
   if (!document.Wrong("format") && format > kFormat)
     document.Fail("format", "expected at most " + std::to_string(kFormat) + ", got " + std::to_string(format) +
                                 ": the file is of a newer version of MASCOT");
-}
-
-std::span<const Key> LawKeys() {
-  static const Key keys[] = {
-      key::Text("name", "one of the laws below").Otherwise("the first of the laws"),
-      key::Integer("leader", 0, kMaxAgents, "agent that leads; 0: none").Default("0"),
-      key::OneOf("axes", kAxes.names(), "the axes that the law controls; with xy the initial heights are held")
-          .Otherwise("the law's own"),
-      key::Table("safety", SafetyKeys(), "a barrier that keeps agents apart, around any law").Otherwise("none"),
-  };
-  return keys;
 }
 
 std::span<const Key> ExperimentKeys() {
@@ -335,12 +295,13 @@ std::span<const Key> ExperimentKeys() {
   return keys;
 }
 
-Experiment ReadExperiment(Section document, const LawCatalog& laws, const std::string& default_name, bool checked) {
-  return Read(std::move(document), &laws, default_name, checked);
+Experiment ReadExperiment(Section document, const LawCatalog& laws, const std::string& default_name, bool checked,
+                          const std::set<int>& alone) {
+  return Read(std::move(document), &laws, default_name, checked, alone);
 }
 
 Experiment ReadWithoutLaws(Section document, const std::string& default_name) {
-  return Read(std::move(document), nullptr, default_name, /*checked=*/true);
+  return Read(std::move(document), nullptr, default_name, /*checked=*/true, /*alone=*/{});
 }
 
 }  // namespace mascot

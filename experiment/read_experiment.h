@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,9 +45,11 @@ class LawCatalog {
                                                 Section& section) const = 0;
 };
 
-/// Reads a complete experiment. `default_name`: for run.name. `checked`: it was read before, without a mistake. Throws
-/// ConfigError with all mistakes.
-Experiment ReadExperiment(Section document, const LawCatalog& laws, const std::string& default_name, bool checked);
+/// Reads a complete experiment. `default_name`: for run.name. `checked`: it was read before, without a mistake.
+/// `alone`: agents whose own law tables are complete, and inherit nothing from [law]. Throws ConfigError with all
+/// mistakes.
+Experiment ReadExperiment(Section document, const LawCatalog& laws, const std::string& default_name, bool checked,
+                          const std::set<int>& alone = {});
 /// Reads a resolved and checked experiment without the parameters of laws, for the physics server, which runs none.
 /// Throws ConfigError.
 Experiment ReadWithoutLaws(Section document, const std::string& default_name);

@@ -96,6 +96,16 @@ def time_axis(axis, run):
     axis.set_xlim(run.t[0], run.t[-1] if run.t.size > 1 else run.t[0] + 1)
 
 
+def mark_phases(axes, run):
+    """Draws a line where each phase of [[law.schedule]] begins, and names its law above the first panel."""
+    for axis in axes:
+        for phase in run.phases[1:]:
+            axis.axvline(phase["at_s"], color="0.5", linewidth=0.8, zorder=1)
+    for phase in run.phases:
+        axes[0].annotate(phase["law"], (phase["at_s"], 1), xycoords=("data", "axes fraction"), xytext=(2, 2),
+                         textcoords="offset points", fontsize=7, color="0.3", annotation_clip=False)
+
+
 def panels(run, values, symbol, unit, what, axes):
     """Plots `values` (T, N, 3) over time, in a panel per axis."""
     figure, grid = plt.subplots(len(axes), 1, sharex=True, figsize=(8, 1.2 + 1.9 * len(axes)), squeeze=False)
@@ -104,6 +114,7 @@ def panels(run, values, symbol, unit, what, axes):
         panel.set_ylabel(f"{symbol.format(AXIS_NAMES[k])} ({unit})")
         widen(panel, LEAST_RANGE)
     time_axis(grid[-1, 0], run)
+    mark_phases(grid[:, 0], run)
     figure.align_ylabels()
     titled(figure, run, what)
     return figure, grid[:, 0]
@@ -236,6 +247,7 @@ def log_panel(run, distance_m, what, ylabel):
     axis.set_yscale("log")
     axis.set_ylabel(ylabel)
     time_axis(axis, run)
+    mark_phases([axis], run)
     titled(figure, run, what)
     return figure, axis
 
@@ -252,8 +264,12 @@ def disagreement_figure(run):
     figure, axis = log_panel(run, distance_m, f"disagreement ({what})", f"{what} (m)")
     largest_m = np.maximum(distance_m[:, run.honest].max(axis=1), FLOOR_M)
     axis.plot(run.t, largest_m, color="0.1", linewidth=3, alpha=0.25, zorder=1, label="largest")
-    axis.axhline(0.02 * largest_m[0], color="0.3", linestyle="--", linewidth=1, label="2 % of the start")
-    mark_time(axis, (run.summary.get("consensus") or {}).get("settling_time_s"), "settled at")
+    begins = [phase["at_s"] for phase in run.phases] or [run.t[0]]
+    for k, (begin, end) in enumerate(zip(begins, [*begins[1:], run.t[-1]])):
+        axis.hlines(0.02 * largest_m[np.searchsorted(run.t, begin)], begin, end, color="0.3", linestyle="--",
+                    linewidth=1, label="2 % of the start" if k == 0 else None)
+    settled_s = (run.summary.get("consensus") or {}).get("settling_time_s")
+    mark_time(axis, None if settled_s is None else begins[-1] + settled_s, "settled at")
     name_agents(figure, [axis], run)
     return figure
 
@@ -314,10 +330,11 @@ PICTURES = {
         "it needs several agents and a law of agreement")),
     "acceleration": Picture(acceleration, "velocity_plot", ALWAYS),
     "tracking": Picture(tracking, "position_plot", only_if(
-        lambda run: "tracking" in run.drawing["pictures"] and run.edges,
-        "it needs a law of pursuit and the graph in summary.json")),
+        lambda run: "tracking" in run.drawing["pictures"] and run.edges and not run.phases,
+        "it needs a law of pursuit, from start to end, and the graph in summary.json")),
     "error": Picture(error, "position_plot", only_if(
-        lambda run: "error" in run.drawing["pictures"], "it needs a law that flies to waypoints")),
+        lambda run: "error" in run.drawing["pictures"] and not run.phases,
+        "it needs a law that flies to waypoints, from start to end")),
 }
 
 

@@ -39,8 +39,16 @@ class Run:
         return self.config.get("run", {}).get("name", "")
 
     @property
+    def phases(self):
+        """What summary.json says of the phases of [[law.schedule]] that have begun; empty: the law never changed."""
+        return self.summary.get("phases", [])
+
+    @property
     def law(self):
-        return self.config.get("law", {})
+        """The table of the law, of the phase in which the run ended."""
+        law = self.config.get("law", {})
+        begun = [phase for phase in law.get("schedule", []) if phase["at_s"] <= self.t[-1]]
+        return begun[-1] if begun else law
 
     @property
     def drawing(self):
@@ -82,9 +90,13 @@ class Run:
 
     @property
     def places(self):
-        """(N, 3): the agents' places in their formation; zero for other laws."""
-        offsets = self.summary.get("formation", {}).get("offsets_m")
-        return np.zeros((self.size, 3)) if offsets is None else np.asarray(offsets, dtype=float).reshape(self.size, 3)
+        """(T, N, 3): the agents' places in their formation in each row; zero for other laws."""
+        places = np.zeros((self.t.size, self.size, 3))
+        for phase in self.phases or [{"at_s": self.t[0], **self.summary}]:
+            offsets = phase.get("formation", {}).get("offsets_m")
+            of_agents = 0 if offsets is None else np.asarray(offsets, dtype=float).reshape(self.size, 3)
+            places[self.t >= phase["at_s"]] = of_agents
+        return places
 
     @property
     def obstacles(self):

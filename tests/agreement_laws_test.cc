@@ -162,7 +162,7 @@ TEST(PrescribedTime, BodiesThatFollowWithALagAreNearlyTogetherAtTheGivenTime) {
     toml.replace(toml.find("[law]"), 5, "[output]\nfidelity = false\n[law]");
     const LawRun run(toml);
     EXPECT_LT(run.Measured("left_share"), 0.2) << model;
-    EXPECT_LT(run.meter.Result().final_disagreement_m, 0.02 * 5.4) << model << ": in the end";
+    EXPECT_LT(run.meter.aim().final_disagreement_m, 0.02 * 5.4) << model << ": in the end";
     EXPECT_EQ(run.prediction.silent, "the closed form is of single integrators");
   }
 }

@@ -56,7 +56,7 @@ TEST(Pursuit, HasNoEdgesInConsensus) {
 
 TEST(Deviation, IsMeasuredMinusPredictedAndADistanceAlongTheAxes) {
   const Experiment experiment = Load(kThree);
-  Measured measured;
+  Aim measured;
   measured.rows = 1;
   measured.value_m = {3, 4, 100};
   measured.settling_time_s = 5;
@@ -77,7 +77,7 @@ TEST(Deviation, IsMeasuredMinusPredictedAndADistanceAlongTheAxes) {
 
 TEST(Deviation, IsAbsentWhereEitherValueIsAbsent) {
   const Experiment experiment = Load(kThree);
-  Measured measured;
+  Aim measured;
   measured.rows = 1;
   measured.minmax_edges = {{2, 1, std::nullopt}};
   measured.settling_time_s = 5;
@@ -93,7 +93,7 @@ TEST(Deviation, IsAbsentWhereEitherValueIsAbsent) {
 
 TEST(Deviation, OfSettlingIsAbsentForFlightsToWaypoints) {
   const Experiment experiment = Load(kThree);
-  Measured measured;
+  Aim measured;
   measured.settling_time_s = 5;
   Prediction prediction;
   prediction.settling_time_s = 6;

@@ -110,6 +110,9 @@ TEST(Helm, RefusesInTheWordsOfTheFileAndChangesNothing) {
               StartsWith("event by hand: goto: expected an agent that flies waypoints, or a leader"));
   EXPECT_EQ(refusal("cut = [[2, 1]]"), "event by hand: expected an edge of the graph (i hears j), got [2, 1]");
   EXPECT_EQ(refusal("at_s = 3.0\ncut = [[1, 2]]"), "event by hand: at_s: unknown key");
+  EXPECT_EQ(refusal("law = { name = \"waypoint\" }"),
+            "event by hand: law: expected a phase in [[law.schedule]] of the file, got one by hand");
+  EXPECT_EQ(refusal("law = 3"), "event by hand: law: expected a table, got a number");
   EXPECT_THAT(refusal("cut = [["), StartsWith("event by hand:1:9: "));
   EXPECT_EQ(refusal(""), "event by hand: expected one of set, goto, graph, cut, mend, got none");
   run.Ask({.kind = Kind::kStop});

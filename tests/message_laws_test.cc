@@ -118,7 +118,7 @@ TEST(EventTriggered, BodiesThatFollowWithALagAgreeToo) {
   for (const char* model : {"double_integrator", "quadrotor"}) {
     for (const std::string& trigger : {kStatic, kDynamic}) {
       const LawRun run(With(model, Five(100, 30, "gain = 0.5\n" + trigger + "[output]\nfidelity = false\n")));
-      EXPECT_LT(run.meter.Result().final_disagreement_m, 0.3) << model;
+      EXPECT_LT(run.meter.aim().final_disagreement_m, 0.3) << model;
       for (const auto& messages : run.Law()["messages"]) EXPECT_LT(messages.get<double>(), 1000) << model;
     }
   }
@@ -206,14 +206,14 @@ TEST(AverageTracking, TheEstimatesDoNotDependOnTheBodies) {
     const LawRun run(With(model, Five(100, 20, Tracking(kSeveral) + "[output]\nfidelity = false\n")));
     EXPECT_EQ(run.Measured("tracking_error_m"), single.Measured("tracking_error_m")) << model;
     EXPECT_LE(run.Measured("tracking_error_m"), run.Predicted("tracking_error_m")) << model;
-    EXPECT_LT(run.meter.Result().final_disagreement_m, 2.5) << model;
+    EXPECT_LT(run.meter.aim().final_disagreement_m, 2.5) << model;
   }
 }
 
 TEST(AverageTracking, AgentsFlyToTheirPlacesAroundTheEstimate) {
   const LawRun run(Five(100, 20, "name = 'average_tracking'\nshape = 'circle'\nspacing_m = 3.0\n"));
-  EXPECT_LT(run.meter.Result().final_disagreement_m, 1e-6) << "less the places";
-  EXPECT_LT(run.meter.Result().formation->final_rms_m, 1e-6);
+  EXPECT_LT(run.meter.aim().final_disagreement_m, 1e-6) << "less the places";
+  EXPECT_LT(run.meter.aim().formation->final_rms_m, 1e-6);
 }
 
 TEST(AverageTracking, TheoryIsSilentWhereMessagesAreLateAndWarnsOfAnUnstableGain) {
@@ -308,7 +308,7 @@ TEST(GradientTracking, TheEstimatesDoNotDependOnTheBodies) {
   for (const char* model : {"double_integrator", "quadrotor"}) {
     const LawRun run(With(model, Five(100, 20, kGradient + kCosts + "p_gain = 0.5\n[output]\nfidelity = false\n")));
     EXPECT_LT(run.Measured("error_m"), 1e-9) << model;
-    EXPECT_LT(run.meter.Result().final_disagreement_m, 0.02) << model;
+    EXPECT_LT(run.meter.aim().final_disagreement_m, 0.02) << model;
   }
 }
 

@@ -381,8 +381,8 @@ class Errors(PlotTest):
         code, errors = self.run_plot("--only", "speed")
         self.assertEqual(code, 2)
         self.assertRegex(errors, r"^error: argument --only: invalid choice: 'speed' \(choose from 'paths', .*\)\n$")
-        self.check(2, "--only error: it needs a law that flies to waypoints", "--only", "error")
-        self.check(2, "--only tracking: it needs a law of pursuit and the graph in summary.json", "--only", "tracking")
+        self.check(2, "--only error: it needs a law that flies to waypoints, from start to end", "--only", "error")
+        self.check(2, "--only tracking: it needs a law of pursuit, from start to end, and the graph in summary.json", "--only", "tracking")
         self.check(2, "unrecognized arguments: --fast", "--fast")
 
     def test_a_folder_that_cannot_be_written(self):

@@ -163,20 +163,20 @@ TEST(Resilient, HonestAgentsAgreeInTheHullOfTheirStartsWhateverOneSays) {
     EXPECT_EQ(run.Measured("robustness"), 4);
     EXPECT_EQ(run.Predicted("robustness"), 4);
     EXPECT_THAT(run.prediction.warnings, IsEmpty());
-    EXPECT_LT(run.meter.Result().final_disagreement_m, 1e-3) << "of honest agents";
+    EXPECT_LT(run.meter.aim().final_disagreement_m, 1e-3) << "of honest agents";
   }
 }
 
 TEST(Resilient, ConsensusIsDraggedOffByTheSameLie) {
   const LawRun run(Seven("velocity_consensus", kLies[0]));
-  EXPECT_GT(run.meter.Result().value_m.x(), 4 + 20) << "far outside of the starts";
+  EXPECT_GT(run.meter.aim().value_m.x(), 4 + 20) << "far outside of the starts";
 }
 
 TEST(Resilient, WithoutLiarsAndWithFOfZeroItIsConsensus) {
   std::string toml = Seven("resilient", "offset_m = [0.0, 0.0, 0.0]") + "f = 0\n";
   std::string plain = Seven("velocity_consensus", "offset_m = [0.0, 0.0, 0.0]");
   const LawRun a(toml), b(plain);
-  EXPECT_LT((a.meter.Result().value_m - b.meter.Result().value_m).norm(), 1e-12);
+  EXPECT_LT((a.meter.aim().value_m - b.meter.aim().value_m).norm(), 1e-12);
 }
 
 TEST(Resilient, BodiesThatFollowWithALagAreNotDraggedOffEither) {

@@ -178,6 +178,21 @@ TEST_F(Verify, ACutRecordingIsComparedUpToTheCutWhereverThatIs) {
   EXPECT_GT(compared, 3);
 }
 
+TEST_F(Verify, ARecordingOfALawThatChangesIsComparedWholeOrCutInAnyPhase) {
+  const std::string phases =
+      "[[law.schedule]]\nat_s = 0.5\np_gain = 0.5\n[[law.schedule]]\nat_s = 1.8\nname = 'waypoint'\naxes = 'xy'\n"
+      "waypoints_m = [[1, 2, 3]]\n[[events]]\nat_s = 0.6\nset = { 'law.p_gain' = 0.4 }\n";
+  const std::string path = Fly(kTwo + phases), cut = File("cut.mcap");
+  EXPECT_EQ(Check(path).exit_code, 0);
+  const std::string whole = ReadFile(path);
+  for (const std::size_t eighths : {3U, 5U, 7U}) {
+    WriteFile(cut, whole.substr(0, whole.size() / 8 * eighths));
+    const Said said = Check(cut);
+    EXPECT_EQ(said.exit_code, kExitIncomplete) << eighths << ": " << said.err;
+    EXPECT_THAT(said.out, HasSubstr(": the same, bit for bit: ")) << eighths;
+  }
+}
+
 TEST_F(Verify, AChangedBitInTheFileIsDamageAndNoCut) {
   std::string changed = ReadFile(Fly());
   changed[changed.size() / 2] ^= 1;

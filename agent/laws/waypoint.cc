@@ -58,7 +58,7 @@ std::shared_ptr<const LawParams> ReadWaypoint(const Experiment& /*experiment*/, 
 std::unique_ptr<Law> MakeWaypoint(const Experiment& experiment, int id) {
   const AgentConfig& agent = experiment.agent(id);
   return std::make_unique<Waypoint>(
-      WaypointFlight(ParamsOf<WaypointLawParams>(agent.law).flight, agent.law.axes, agent.p_W));
+      WaypointFlight(ParamsOf<WaypointLawParams>(agent.law).flight, agent.law.axes, KnownStart(agent)));
 }
 
 std::map<std::string, Value> GoToOfWaypoint(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s) {

@@ -62,7 +62,7 @@ std::optional<WaypointParams> ReadLeaderWaypoints(const LawConfig& config, Secti
   return std::nullopt;
 }
 
-WaypointFlight::WaypointFlight(WaypointParams params, Axes axes, const Eigen::Vector3d& start_W)
+WaypointFlight::WaypointFlight(WaypointParams params, Axes axes, const std::optional<Eigen::Vector3d>& start_W)
     : params_(std::move(params)), axes_(axes), start_W_(start_W) {}
 
 void WaypointFlight::Adopt(const WaypointParams& params) {
@@ -73,6 +73,10 @@ void WaypointFlight::Adopt(const WaypointParams& params) {
   params_ = params;
 }
 
+std::optional<Eigen::Vector3d> KnownStart(const AgentConfig& agent) {
+  return agent.law.since == 0 ? std::optional(agent.p_W) : std::nullopt;
+}
+
 void FlyAs(const std::optional<WaypointParams>& params, const AgentConfig& agent,
            std::optional<WaypointFlight>& flight) {
   if (!params)
@@ -80,7 +84,7 @@ void FlyAs(const std::optional<WaypointParams>& params, const AgentConfig& agent
   else if (flight)
     flight->Adopt(*params);
   else
-    flight.emplace(*params, agent.law.axes, agent.p_W);
+    flight.emplace(*params, agent.law.axes, KnownStart(agent));
 }
 
 std::map<std::string, Value> Destination(const std::string& prefix, const WaypointParams* now,
@@ -94,7 +98,8 @@ std::map<std::string, Value> Destination(const std::string& prefix, const Waypoi
 Eigen::Vector3d WaypointFlight::Accel_W(double t_s, const Motion& self) {
   if (params_.waypoints_W.empty()) return Eigen::Vector3d::Zero();
   const std::optional<std::size_t> target = Target(t_s, self.p_WB);
-  const Eigen::Vector3d& target_W = target ? params_.waypoints_W[*target] : start_W_;
+  if (!start_W_) start_W_ = self.p_WB;
+  const Eigen::Vector3d& target_W = target ? params_.waypoints_W[*target] : *start_W_;
   return params_.p_gain * (target_W - self.p_WB) - params_.d_gain * self.v_WB;
 }
 

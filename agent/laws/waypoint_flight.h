@@ -79,8 +79,9 @@ inline std::span<const Eigen::Vector3d> WaypointsOf(const std::optional<Waypoint
 /// Flies one agent through a list of waypoints: a = p_gain (w - p) - d_gain v, with w the target.
 class WaypointFlight {
  public:
-  /// `axes`: those that count for arrival. `start_W`: the target until the first of `times_s`.
-  WaypointFlight(WaypointParams params, Axes axes, const Eigen::Vector3d& start_W);
+  /// `axes`: those that count for arrival. `start_W`: the target until the first of `times_s`; nullopt:
+  /// where the agent is at the first Accel_W().
+  WaypointFlight(WaypointParams params, Axes axes, const std::optional<Eigen::Vector3d>& start_W);
   /// Flies by other parameters from now on. It keeps its target, unless the list of waypoints is another.
   void Adopt(const WaypointParams& params);
   /// Wanted acceleration in W (m/s^2). `t_s`: simulated time, increasing from call to call.
@@ -95,11 +96,13 @@ class WaypointFlight {
 
   WaypointParams params_;
   Axes axes_;
-  Eigen::Vector3d start_W_;
+  std::optional<Eigen::Vector3d> start_W_;
   std::size_t next_ = 0;                  // on arrival: index of the target
   std::optional<double> arrived_at_s_{};  // since when the agent has been close to it
 };
 
+/// Where the agent is when its law begins, if that is known in advance: at the start of the run.
+std::optional<Eigen::Vector3d> KnownStart(const AgentConfig& agent);
 /// Makes `flight` of agent `agent` one by `params` (nullopt: none), as an event changes it, or at first.
 void FlyAs(const std::optional<WaypointParams>& params, const AgentConfig& agent,
            std::optional<WaypointFlight>& flight);

@@ -219,7 +219,10 @@ std::vector<Section> Section::Children(std::string_view key) {
   return children;
 }
 
-void Section::InheritFrom(const Section& base) { table_->base = base.table_.get(); }
+void Section::InheritFrom(const Section& base, std::initializer_list<std::string_view> own) {
+  table_->base = base.table_.get();
+  table_->superseded.insert(own.begin(), own.end());
+}
 
 void Section::Supersede(std::string_view key, std::initializer_list<std::string_view> others) {
   if (table_->Has(key)) table_->superseded.insert(others.begin(), others.end());
@@ -278,6 +281,14 @@ void Section::ThrowIfWrong() const { document_->ThrowIfWrong(); }
 std::string Section::Resolved() const {
   const std::string text = document_->top->Resolved("", false);
   return !text.empty() && text.front() == '\n' ? text.substr(1) : text;
+}
+
+Value::Table Section::AsRead() const {
+  return std::get<Value::Table>(ToValue(ParseToml(table_->Resolved("", false), table_->path)).data);
+}
+
+Value::Table Section::InTheFile() const {
+  return table_->toml == nullptr ? Value::Table() : std::get<Value::Table>(ToValue(*table_->toml).data);
 }
 
 }  // namespace mascot

@@ -115,8 +115,9 @@ class Section {
   /// An array of tables ([[key]]); absent reads as none.
   std::vector<Section> Children(std::string_view key);
 
-  /// From now on, keys that this table lacks are read from `base`. Mistakes in them are left to the reader of `base`.
-  void InheritFrom(const Section& base);
+  /// From now on, keys that this table lacks are read from `base`, but for `own`. Mistakes in them are left to the
+  /// reader of `base`.
+  void InheritFrom(const Section& base, std::initializer_list<std::string_view> own = {});
   /// If this table has `key` itself, `others` are not inherited from now on: they contradict it, or belong to what it
   /// replaces.
   void Supersede(std::string_view key, std::initializer_list<std::string_view> others);
@@ -137,6 +138,10 @@ class Section {
   void ThrowIfWrong() const;
   /// TOML text of everything read so far, in reading order, defaults included, shortest round-trip floats.
   std::string Resolved() const;
+  /// What was read of this table so far, defaults included, as Resolved() has it.
+  Value::Table AsRead() const;
+  /// This table as it stands in the document, without what it inherits.
+  Value::Table InTheFile() const;
 
  private:
   struct Document;

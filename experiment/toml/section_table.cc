@@ -276,6 +276,7 @@ std::optional<std::string> Section::Table::ResolvedInline() const {
   constexpr std::size_t kLongestInline = 100;
   std::vector<std::string> items;
   for (const Entry& entry : entries) {
+    if (entry.is_list && entry.tables.empty()) continue;
     if (!entry.tables.empty() || entry.value.find('\n') != std::string::npos) return std::nullopt;
     items.push_back(entry.key + " = " + entry.value);
   }

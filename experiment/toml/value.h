@@ -14,6 +14,8 @@ struct Value {
   using Table = std::map<std::string, Value>;
   std::variant<bool, std::int64_t, double, std::string, List, Table> data = Table{};
 
+  bool operator==(const Value&) const = default;
+
   /// A number, whether written as integer or not; throws std::bad_variant_access for anything else.
   double Number() const {
     const auto* integer = std::get_if<std::int64_t>(&data);

@@ -99,6 +99,9 @@ Event Helm::CheckedEvent(const std::string& toml) {
   const std::int64_t tick = std::min(going_.tick + 1, experiment_.ticks());
   lock.unlock();
   const Event event = live.Parse(tick, toml, kByHand);
+  if (event.law)
+    throw std::invalid_argument(std::string(kByHand) +
+                                ": law: expected a phase in [[law.schedule]] of the file, got one by hand");
   for (const Event& other : granted) live.Take(other);
   live.Take(event);
   for (std::size_t k = of_file; k < experiment_.events.size(); ++k) live.Take(experiment_.events[k]);

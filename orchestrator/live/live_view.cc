@@ -113,7 +113,7 @@ void LiveView::SendMissed() {  // no newer message may come
 }
 
 void LiveView::SetExperiment(const Experiment& now, const std::vector<ShownKey>& keys) {
-  server_.Post([this, json = ExperimentJson(now, prediction_, source_, keys), keys]() mutable {
+  server_.Post([this, json = ExperimentJson(now, PredictionOf(prediction_, now.phase), source_, keys), keys]() mutable {
     PublishLatched(kExperimentChannel, std::move(json));
     std::vector<Foxglove::Parameter> parameters;
     for (const ShownKey& key : keys) parameters.push_back({key.name, Foxglove::Json::parse(key.value, nullptr, false)});

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "agent/laws.h"
-#include "experiment/live_experiment.h"
+#include "experiment/live_keys.h"
 
 namespace mascot {
 namespace {

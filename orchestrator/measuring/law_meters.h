@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "agent/laws.h"
@@ -16,12 +17,16 @@ struct LawMeasured {
   std::vector<FigureValues> figures;  ///< in the order of law->figures
 };
 
-/// Measures, row by row, what the laws in flight measure beyond the figures that all laws share.
+/// Measures, row by row, what the laws in flight measure beyond the figures that all laws share: of each law from when
+/// it began, over phases of [[law.schedule]] in which it goes on with what it remembers.
 class LawMeters {
  public:
-  explicit LawMeters(const Experiment& experiment);
-  /// Events have changed the experiment: from the next row on it is `now`.
-  void Adopt(std::shared_ptr<const Experiment> now);
+  /// The experiment at tick 0 must outlive this object.
+  explicit LawMeters(const Experiment& start) : start_(start) {}
+  /// A phase begins at `tick`, with these motions (by id - 1): the run flies `now`.
+  void Begin(const Experiment& now, std::int64_t tick, std::span<const Motion> motions);
+  /// Events have changed the experiment, but begun no phase: from the next row on it is `now`.
+  void Adopt(const Experiment& now);
   /// Adds the next tick.
   void Add(std::int64_t tick, const DecodedRow& row);
   /// One entry for each law that has figures, in the order of LawsIn().
@@ -29,11 +34,19 @@ class LawMeters {
 
  private:
   struct Meter {
-    const LawEntry* law;
-    std::unique_ptr<LawMeter> meter;
-  };
+    const LawEntry* law = nullptr;
+    std::vector<int> ids = {};
+    std::int64_t from = 0;
+    std::vector<Motion> starts = {};
+    std::shared_ptr<const Experiment> first = {}, now = {};  // from `from` on, as it began and as it is
+    std::unique_ptr<LawMeter> meter = {};
 
-  std::shared_ptr<const Experiment> now_;  // null before the first event
+    bool GoesOn(const LawEntry* with, std::span<const int> of, const Experiment& in) const;
+  };
+  std::shared_ptr<const Experiment> Since(const Meter& meter, const Experiment& now) const;
+
+  const Experiment& start_;
+  std::int64_t end_ = 0;  // of the phase
   std::vector<Meter> meters_;
 };
 

@@ -10,22 +10,21 @@
 #include "agent/python.h"
 
 namespace mascot {
+namespace {
 
-Metrics::Metrics(const Experiment& experiment)
-    : experiment_(experiment),
-      agreement_(experiment),
-      pursuit_(experiment),
-      min_separation2_(std::numeric_limits<double>::infinity()) {
-  const SuppressedPythonOutput suppressed;  // the laws run a second time; discard what they print
-  if (experiment.output.fidelity) ideal_.emplace(experiment);
-  accelerated_ = std::ranges::count_if(experiment.agents, std::not_fn(IsCommandedByVelocity));
-  TakePlaces(experiment.law);
-  TakeSafety(experiment);
+/// The number of agents that are commanded accelerations.
+std::int64_t CommandedByAcceleration(const Experiment& experiment) {
+  return std::ranges::count_if(experiment.agents, std::not_fn(IsCommandedByVelocity));
 }
 
-void Metrics::TakePlaces(const LawConfig& law) {
-  const auto places_W = PlacesOf(law);
-  formation_.offsets_m.assign(places_W.begin(), places_W.end());
+}  // namespace
+
+Metrics::Metrics(const Experiment& experiment)
+    : experiment_(experiment), min_separation2_(std::numeric_limits<double>::infinity()) {
+  const SuppressedPythonOutput suppressed;  // the laws run a second time; discard what they print
+  if (experiment.output.fidelity) ideal_.emplace(experiment);
+  accelerated_ = CommandedByAcceleration(experiment);
+  TakeSafety(experiment);
 }
 
 void Metrics::TakeSafety(const Experiment& experiment) {
@@ -33,34 +32,17 @@ void Metrics::TakeSafety(const Experiment& experiment) {
 }
 
 void Metrics::Adopt(std::shared_ptr<const Experiment> now) {
-  TakePlaces(now->law);
+  accelerated_ = std::max(accelerated_, CommandedByAcceleration(*now));
   TakeSafety(*now);
   now_ = std::move(now);
 }
 
 void Metrics::Add(const DecodedRow& row) {
-  MeasureAgreement(row.motions);
   MeasureControl(row.commands);
   MeasureSeparation(row.motions);
   MeasureFidelity(row.motions);
   MeasurePath(row.motions);
-  MeasureFormation(row.motions);
-  pursuit_.Add(row.motions);
   ++rows_;
-}
-
-Eigen::Vector3d Metrics::Agreed(std::size_t i, const Motion& motion) const {
-  return formation_.offsets_m.empty() ? motion.p_WB : motion.p_WB - formation_.offsets_m[i];
-}
-
-void Metrics::MeasureAgreement(std::span<const Motion> motions) {
-  agreed_W_.clear();
-  speed_m_per_s_ = 0;
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    agreed_W_.push_back(Agreed(i, motions[i]));
-    speed_m_per_s_ = std::max(speed_m_per_s_, Along(experiment_.law.axes, motions[i].v_WB).norm());
-  }
-  agreement_.Add(agreed_W_);
 }
 
 void Metrics::MeasureControl(std::span<const Command> commands) {
@@ -118,34 +100,12 @@ void Metrics::MeasurePath(std::span<const Motion> motions) {
   for (std::size_t i = 0; i < motions.size(); ++i) last_p_W_[i] = motions[i].p_WB;
 }
 
-void Metrics::MeasureFormation(std::span<const Motion> motions) {
-  if (formation_.offsets_m.empty()) return;
-  double squares = 0;
-  for (int id = 1; id <= experiment_.size(); ++id) {
-    const auto i = static_cast<std::size_t>(id - 1);
-    for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(id)) {
-      const auto j = static_cast<std::size_t>(heard.id - 1);
-      squares += Along(experiment_.law.axes, Agreed(i, motions[i]) - Agreed(j, motions[j])).squaredNorm();
-    }
-  }
-  formation_.final_rms_m =
-      std::sqrt(squares / static_cast<double>(std::max<std::size_t>(experiment_.graph.edges(), 1)));
-  if (2 * rows_ >= experiment_.ticks())
-    formation_.worst_rms_m = std::max(formation_.worst_rms_m, formation_.final_rms_m);
-}
-
 Measured Metrics::Result() const {
   Measured result;
   result.rows = rows_;
   if (rows_ == 0) return result;
   const double agents = experiment_.size();
   const double samples = agents * static_cast<double>(rows_);
-  result.value_m = agreement_.mean_W();
-  result.final_disagreement_m = agreement_.disagreement_m();
-  result.final_speed_m_per_s = speed_m_per_s_;
-  result.settling_time_s = agreement_.settling_time_s();
-  result.rate_per_s = agreement_.rate_per_s();
-  result.minmax_edges = pursuit_.Result();
   if (accelerated_ > 0) result.effort_m2_per_s3 = effort_m2_per_s3_ / static_cast<double>(accelerated_);
   result.saturated_fraction = static_cast<double>(saturated_) / samples;
   result.tilt_limited_fraction = static_cast<double>(tilt_limited_) / samples;
@@ -157,7 +117,6 @@ Measured Metrics::Result() const {
   }
   if (ideal_) result.fidelity = {.rms_m = std::sqrt(squared_deviation_ / samples), .max_m = std::sqrt(max_deviation2_)};
   result.fidelity_failure = ideal_failure_;
-  if (!formation_.offsets_m.empty()) result.formation = formation_;
   result.travelled_m = path_m_ / agents;
   return result;
 }

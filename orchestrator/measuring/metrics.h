@@ -9,23 +9,14 @@
 #include <vector>
 
 #include "experiment/experiment.h"
-#include "orchestrator/measuring/agreement_meter.h"
-#include "orchestrator/measuring/pursuit_meter.h"
 #include "orchestrator/team/ideal_team.h"
 #include "orchestrator/team/row.h"
 
 namespace mascot {
 
-/// Metrics of a run, in SI units; docs/recording.md has the definitions.
+/// Metrics of a run as a whole, in SI units, whatever its laws are for; docs/recording.md has the definitions.
 struct Measured {
   std::int64_t rows = 0;
-  Eigen::Vector3d value_m = Eigen::Vector3d::Zero();  ///< mean position at the end
-  double final_disagreement_m = 0;               ///< largest distance from the mean, or the leader, along law.axes;
-                                                 ///< in a formation, of p_i - d_i
-  double final_speed_m_per_s = 0;                ///< largest speed of an agent, along law.axes
-  std::optional<double> settling_time_s;         ///< absent: not settled by the end
-  std::optional<double> rate_per_s;              ///< decay rate of the disagreement (decay_meter.h)
-  std::vector<PursuitMeter::Edge> minmax_edges;  ///< for min-max consensus
   /// Integral of |acceleration command|^2, mean over the agents that are commanded accelerations; absent: there are
   /// none.
   std::optional<double> effort_m2_per_s3;
@@ -43,13 +34,6 @@ struct Measured {
   };
   std::optional<Fidelity> fidelity;  ///< absent: output.fidelity is off, or fidelity_failure
   std::string fidelity_failure;      ///< error of a law on ideal bodies, which ended the comparison
-  /// Formation error: rms over edges of |(p_i - p_j) - (d_i - d_j)|, along law.axes.
-  struct Formation {
-    std::vector<Eigen::Vector3d> offsets_m;  ///< d_i, by id - 1
-    double final_rms_m = 0;
-    double worst_rms_m = 0;  ///< largest in the second half of run.duration_s
-  };
-  std::optional<Formation> formation;  ///< absent: the law has no formation
 };
 
 /// Measures a run row by row. Memory does not grow with the number of rows.
@@ -61,30 +45,20 @@ class Metrics {
   /// Adds the next tick.
   void Add(const DecodedRow& row);
   Measured Result() const;
-  /// Disagreement in the newest row, for the progress line.
-  double disagreement_m() const { return agreement_.disagreement_m(); }
 
  private:
-  void TakePlaces(const LawConfig& law);
   void TakeSafety(const Experiment& experiment);
-  void MeasureAgreement(std::span<const Motion> motions);
   void MeasureControl(std::span<const Command> commands);
   void MeasureSeparation(std::span<const Motion> motions);
   void MeasureFidelity(std::span<const Motion> motions);
   void StepIdeal();
   void MeasurePath(std::span<const Motion> motions);
-  void MeasureFormation(std::span<const Motion> motions);
-  /// The position on which the agents agree: p_i, or p_i - d_i in a formation.
-  Eigen::Vector3d Agreed(std::size_t i, const Motion& motion) const;
 
   const Experiment& experiment_;
   std::shared_ptr<const Experiment> now_;  // not null: the ideal team has yet to adopt it
   std::optional<IdealTeam> ideal_;
   std::string ideal_failure_;
   std::int64_t rows_ = 0;
-  AgreementMeter agreement_;
-  double speed_m_per_s_ = 0;
-  PursuitMeter pursuit_;
   std::int64_t accelerated_ = 0;                               // agents that are commanded accelerations
   double effort_m2_per_s3_ = 0, newest_effort_m2_per_s3_ = 0;  // sums over these agents
   std::int64_t saturated_ = 0, tilt_limited_ = 0, rotor_limited_ = 0;
@@ -94,9 +68,8 @@ class Metrics {
   double squared_deviation_ = 0;
   double max_deviation2_ = 0;
   double path_m_ = 0;
-  Measured::Formation formation_;
   std::vector<Eigen::Vector3d> last_p_W_;
-  std::vector<Eigen::Vector3d> agreed_W_, by_x_;  // scratch
+  std::vector<Eigen::Vector3d> by_x_;  // scratch
 };
 
 }  // namespace mascot

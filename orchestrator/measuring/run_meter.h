@@ -1,43 +1,48 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "experiment/experiment.h"
 #include "orchestrator/measuring/law_meters.h"
 #include "orchestrator/measuring/link_meter.h"
 #include "orchestrator/measuring/metrics.h"
+#include "orchestrator/measuring/phase_meter.h"
 #include "orchestrator/team/row_sink.h"
 
 namespace mascot {
 
-/// Measures a run row by row: metrics, link traffic, figures of laws.
+/// Measures a run row by row: metrics, link traffic, and, phase by phase of [[law.schedule]], what its laws are for.
 class RunMeter final : public RowSink {
  public:
-  explicit RunMeter(const Experiment& experiment) : metrics_(experiment), links_(experiment), laws_(experiment) {}
+  explicit RunMeter(const Experiment& experiment);
 
-  void Adopt(const LiveExperiment& live) override {
-    metrics_.Adopt(live.now());
-    links_.Adopt(live.now());
-    laws_.Adopt(live.now());
-  }
-  void Add(const FlownRow& row) override {
-    metrics_.Add(row.decoded());
-    links_.Add(row.tick(), row.decoded());
-    laws_.Add(row.tick(), row.decoded());
-  }
+  void Adopt(const LiveExperiment& live) override;
+  void Add(const FlownRow& row) override;
   Measured Result() const { return metrics_.Result(); }
-  /// What the laws measure of themselves.
-  std::vector<LawMeasured> Laws() const { return laws_.Result(); }
+  /// The phases so far, in order; at least the first.
+  const std::deque<PhaseMeter>& phases() const { return phases_; }
+  /// What the laws have measured by the end of a phase, or by now.
+  std::vector<LawMeasured> LawsOf(std::size_t phase) const;
+  /// What the newest phase has come to.
+  Aim aim() const { return phases_.back().aim(); }
   std::vector<EdgeTraffic> Traffic() const { return links_.Result(); }
   void EdgesNow(std::vector<EdgeNow>& edges) const { links_.EdgesNow(edges); }
   /// Disagreement in the newest row, for those who watch.
-  double disagreement_m() const { return metrics_.disagreement_m(); }
+  double disagreement_m() const { return phases_.back().disagreement_m(); }
 
  private:
+  void Begin(const Experiment& now, std::int64_t tick, std::span<const Motion> motions);
+
+  const Experiment& experiment_;
+  std::shared_ptr<const Experiment> now_;  // null before the first event
   Metrics metrics_;
   LinkMeter links_;
   LawMeters laws_;
+  std::deque<PhaseMeter> phases_;  // never empty
 };
 
 }  // namespace mascot

@@ -23,9 +23,12 @@ std::string FingerprintOf(const std::string& path) {
 
 std::map<std::string, std::string> Fingerprints(const Experiment& experiment) {
   std::map<std::string, std::string> fingerprints;
-  for (const AgentConfig& agent : experiment.agents)
-    for (const std::string& path : agent.law.params->files)
+  const auto add = [&](const std::vector<std::string>& paths) {
+    for (const std::string& path : paths)
       if (!fingerprints.contains(path)) fingerprints[path] = FingerprintOf(path);
+  };
+  for (const AgentConfig& agent : experiment.agents) add(agent.law.params->files);
+  for (const Event& event : experiment.events) add(event.files);
   return fingerprints;
 }
 

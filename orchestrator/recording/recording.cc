@@ -39,6 +39,7 @@ std::string ConfigUpToTheCut(const std::string& path, const McapContents& conten
     if (contents.channels.at(message.channel).topic != Topic::Event().Name()) return;
     mascot_msgs::msg::Event event;
     Deserialize(message.data, event);
+    if (IsPhase(event.toml())) return;  // stands in [[law.schedule]]
     config = WithEvent(std::move(config), static_cast<std::int64_t>(event.tick()), rate_hz, event.toml());
   });
   return config;

@@ -81,23 +81,27 @@ Json SchemaOf(const Key& key) {
   return schema;
 }
 
-/// Schema (if/then) of [law] for one law. `inherits`: keys that are left out, `name` too, may be set in another table.
-Json LawCase(const LawEntry& law, bool inherits) {
+/// Refers to the schema of the parameters of a law, in `definitions`.
+Json ParametersOf(const LawEntry& law) { return {{"$ref", "#/definitions/parameters_of_" + std::string(law.name)}}; }
+
+/// Schema (if/then) of a table of `rows` and the parameters of one law. `inherits`: keys that are left out, `name` too,
+/// may be set in another table.
+Json LawCase(const LawEntry& law, std::span<const Key> rows, bool inherits) {
   Json schema = TableSchema(law.parameters);
   Json names = Json::array();
-  for (const Key& key : LawKeys()) names.push_back(key.name);
+  for (const Key& key : rows) names.push_back(key.name);
   for (const Key& key : law.parameters)
     if (std::ranges::find(names, Json(key.name)) == names.end()) names.push_back(key.name);
-  Json then = {{"propertyNames", {{"enum", std::move(names)}}}, {"properties", std::move(schema["properties"])}};
+  Json then = {{"propertyNames", {{"enum", std::move(names)}}}, {"allOf", Json::array({ParametersOf(law)})}};
   if (!inherits && schema.contains("required")) then["required"] = std::move(schema["required"]);
   Json condition = {{"properties", {{"name", {{"const", law.name}}}}}};
   if (inherits || law.name != LawNames().front()) condition["required"] = Json::array({"name"});
   return {{"if", std::move(condition)}, {"then", std::move(then)}};
 }
 
-/// Schema of [law]: every key of any law, and one if/then case per law.
-Json LawSchema(bool inherits) {
-  Json schema = TableSchema(LawKeys());
+/// Schema of a law table, whose common keys are `rows`: every key of any law, and one if/then case per law.
+Json LawSchema(std::span<const Key> rows, bool inherits) {
+  Json schema = TableSchema(rows);
   Json& properties = schema["properties"];
   properties["name"]["enum"] = std::vector<std::string_view>(LawNames().begin(), LawNames().end());
   if (!inherits) properties["name"]["default"] = LawNames().front();
@@ -105,9 +109,16 @@ Json LawSchema(bool inherits) {
   for (const LawEntry& law : Laws()) {
     for (const Key& key : law.parameters)
       if (!properties.contains(key.name)) properties[key.name] = Json::object();  // the case of its law has the schema
-    cases.push_back(LawCase(law, inherits));
+    cases.push_back(LawCase(law, rows, inherits));
   }
   schema["allOf"] = std::move(cases);
+  return schema;
+}
+
+/// Schema of [law] or of an agent's own law table. The phases of its schedule are in `definitions`.
+Json LawTableSchema(bool inherits) {
+  Json schema = LawSchema(LawKeys(), inherits);
+  schema["properties"]["schedule"]["items"] = {{"$ref", "#/definitions/law_phase"}};
   return schema;
 }
 
@@ -118,8 +129,13 @@ std::string ConfigurationSchema() {
   schema.update(TableSchema(ExperimentKeys()));
   schema["required"] = Json::array({"run", "agents"});  // both have a required key
   Json& tables = schema["properties"];
-  tables["law"].update(LawSchema(false));
-  tables["agents"]["properties"]["override"]["items"]["properties"]["law"].update(LawSchema(true));
+  tables["law"].update(LawTableSchema(false));
+  tables["agents"]["properties"]["override"]["items"]["properties"]["law"].update(LawTableSchema(true));
+  const Key& schedule = *std::ranges::find(LawKeys(), "schedule", &Key::name);
+  schema["definitions"]["law_phase"] = LawSchema(schedule.keys, true);
+  for (const LawEntry& law : Laws())
+    schema["definitions"]["parameters_of_" + std::string(law.name)] = {
+        {"properties", TableSchema(law.parameters)["properties"]}};
   return JsonText(schema);
 }
 

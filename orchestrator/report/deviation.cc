@@ -12,7 +12,7 @@ std::optional<double> Difference(std::optional<double> measured, std::optional<d
 
 }  // namespace
 
-std::optional<double> MinmaxTime(const Measured& measured, const Prediction& prediction) {
+std::optional<double> MinmaxTime(const Aim& measured, const Prediction& prediction) {
   std::optional<double> latest_s;
   for (const MinmaxEdge& edge : prediction.minmax_edges) {
     const auto same = std::ranges::find(measured.minmax_edges, edge.child, &PursuitMeter::Edge::child);
@@ -22,7 +22,7 @@ std::optional<double> MinmaxTime(const Measured& measured, const Prediction& pre
   return latest_s;
 }
 
-Deviation Compare(const Experiment& experiment, const Measured& measured, const Prediction& prediction) {
+Deviation Compare(const Experiment& experiment, const Aim& measured, const Prediction& prediction) {
   Deviation deviation;
   const Eigen::Index axes = CountOf(experiment.law.axes);
   if (prediction.value_m && measured.rows > 0)

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "orchestrator/measuring/metrics.h"
+#include "orchestrator/measuring/aim_meter.h"
 #include "orchestrator/theory/theory.h"
 
 namespace mascot {
@@ -15,9 +15,9 @@ struct Deviation {
   std::optional<double> minmax_time_s;  ///< for the last of the edges with a predicted time
 };
 
-Deviation Compare(const Experiment& experiment, const Measured& measured, const Prediction& prediction);
+Deviation Compare(const Experiment& experiment, const Aim& measured, const Prediction& prediction);
 /// Time at which the last of the edges with a predicted time caught up (s). Absent if one has not, or if there are
 /// none.
-std::optional<double> MinmaxTime(const Measured& measured, const Prediction& prediction);
+std::optional<double> MinmaxTime(const Aim& measured, const Prediction& prediction);
 
 }  // namespace mascot

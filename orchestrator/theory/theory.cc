@@ -7,6 +7,9 @@
 
 #include "agent/laws.h"
 #include "agent/python.h"
+#include "experiment/live_experiment.h"
+#include "experiment/phase.h"
+#include "orchestrator/team/ideal_team.h"
 #include "orchestrator/team/team.h"
 #include "orchestrator/theory/crowding.h"
 #include "orchestrator/theory/flight_envelope.h"
@@ -16,17 +19,6 @@
 
 namespace mascot {
 namespace {
-
-/// Motions of all agents at tick 0.
-std::vector<Motion> Start(const Experiment& experiment) {
-  std::vector<Motion> motions(experiment.agents.size());
-  for (const AgentConfig& agent : experiment.agents) {
-    Motion& motion = motions[static_cast<std::size_t>(agent.id - 1)];
-    motion.p_WB = agent.p_W;
-    motion.v_WB = agent.v_W;
-  }
-  return motions;
-}
 
 /// The largest component of an agent's first command: of the velocity (m/s), if the command is one, else of the
 /// acceleration (m/s^2). Before limits; but an acceleration towards a velocity that its limit makes small enough is
@@ -47,7 +39,7 @@ void PredictFirstCommand(const Experiment& experiment, Prediction& prediction) {
   Experiment prompt = experiment;
   prompt.links = {};  // delays and losses only postpone the tick at which agents hear all their neighbours
   Team team(prompt);
-  const std::vector<Motion> motions = Start(experiment);
+  const std::vector<Motion> motions = MotionsAtStart(experiment);
   for (const AgentConfig& agent : experiment.agents) {
     const Command command = team.Want(agent.id, 0, motions);
     const bool velocity = IsCommandedByVelocity(agent);
@@ -79,19 +71,21 @@ void WarnOfFirstCommands(const Experiment& experiment, Prediction& prediction) {
         first->agent, first->asked, first->limit));
 }
 
-void WarnOfShortRun(const Experiment& experiment, Prediction& prediction) {
+void WarnOfShortPhase(const Experiment& phase, bool is_last, Prediction& prediction) {
   for (const auto& time_s : {prediction.settling_time_s, prediction.minmax_time_s})
-    if (time_s && *time_s > experiment.run.duration_s)
-      prediction.warnings.push_back(
-          fmt::format("run.duration_s: the run ends after {:.4g} s, before what theory expects at {:.4g} s",
-                      experiment.run.duration_s, *time_s));
+    if (time_s && *time_s > phase.run.duration_s)
+      prediction.warnings.push_back(fmt::format("{} ends after {:.4g} s, before what theory expects at {:.4g} s",
+                                                is_last ? "run.duration_s: the run" : "law.schedule: the phase",
+                                                phase.run.duration_s, *time_s));
 }
 
 /// Adds what the team's law itself has to say about the experiment.
 void PredictFigures(const Experiment& experiment, Prediction& prediction) {
   const bool alone = std::ranges::none_of(experiment.agents, &AgentConfig::has_own_law);
-  LawTheory theory =
-      alone ? EntryOf(experiment.law).predict(experiment) : LawTheory{.silent = "agents have laws of their own"};
+  const bool goes_on = std::ranges::any_of(experiment.agents, [](const AgentConfig& a) { return a.law.since < 0; });
+  LawTheory theory = goes_on ? LawTheory{.silent = "the law goes on with what it remembers of the phase before"}
+                     : alone ? EntryOf(experiment.law).predict(experiment)
+                             : LawTheory{.silent = "agents have laws of their own"};
   prediction.law_figures = std::move(theory.figures);
   if (!theory.silent.empty()) (prediction.stable ? prediction.figures_silent : prediction.silent) = theory.silent;
   if (theory.value_m) prediction.value_m = theory.value_m;
@@ -100,11 +94,6 @@ void PredictFigures(const Experiment& experiment, Prediction& prediction) {
 
 /// Predicts the behaviour under the law, from what its table row says: its linear or pursuit form, its own predictions.
 void PredictLaw(const Experiment& experiment, Prediction& prediction) {
-  if (!experiment.events.empty()) {
-    prediction.silent =
-        fmt::format("events change the run, from {:g} s on", experiment.time_s(experiment.events.front().tick));
-    return;
-  }
   const std::optional<Timeline> timeline = TimelineOf(experiment);
   if (timeline) prediction.persistence = PersistenceOf(experiment, *timeline);
   const std::optional<LinearForm> linear = LinearFormOf(experiment.law);
@@ -163,24 +152,106 @@ void WarnOfSilence(const Experiment& experiment, Prediction& prediction) {
                   experiment.period_s(), cost));
 }
 
-}  // namespace
-
-Prediction Predict(const Experiment& experiment) {
+/// Predicts a phase, as an experiment of its own. `silent`: why theory says nothing of it; empty: it may.
+Prediction PredictPhase(const Experiment& phase, const std::string& silent, bool is_last) {
   Prediction prediction;
-  prediction.on_average =
-      LosesSome(experiment) || !experiment.sensors.own.IsNone() || !experiment.sensors.heard.IsNone();
-  prediction.safety = PredictSafety(experiment);
-  PredictLaw(experiment, prediction);
-  PredictFirstCommand(experiment, prediction);
-  WarnOfFirstCommands(experiment, prediction);
-  WarnOfSilence(experiment, prediction);
-  WarnOfShortRun(experiment, prediction);
-  for (std::string& warning : LiftWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
-  for (std::string& warning : CrowdingWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
-  for (std::string& warning : ObstacleWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
+  prediction.on_average = LosesSome(phase) || !phase.sensors.own.IsNone() || !phase.sensors.heard.IsNone();
+  prediction.silent = silent;
+  prediction.safety = PredictSafety(phase);
+  if (silent.empty()) PredictLaw(phase, prediction);
+  PredictFirstCommand(phase, prediction);
+  WarnOfFirstCommands(phase, prediction);
+  WarnOfSilence(phase, prediction);
+  WarnOfShortPhase(phase, is_last, prediction);
+  for (std::string& warning : LiftWarnings(phase)) prediction.warnings.push_back(std::move(warning));
+  for (std::string& warning : CrowdingWarnings(phase)) prediction.warnings.push_back(std::move(warning));
+  for (std::string& warning : ObstacleWarnings(phase)) prediction.warnings.push_back(std::move(warning));
   if (prediction.safety)
     prediction.warnings.insert(prediction.warnings.end(), prediction.safety->warnings.begin(),
                                prediction.safety->warnings.end());
+  return prediction;
+}
+
+/// Why events in the phase from tick `from` on keep theory silent; empty: they do not.
+std::string SilencingEvent(const Experiment& experiment, std::int64_t from) {
+  const std::int64_t end = EndOfPhase(experiment, from);
+  const auto changes = [&](const Event& event) {
+    return !event.law && event.tick >= from && (event.tick < end || end == experiment.ticks());
+  };
+  const auto event = std::ranges::find_if(experiment.events, changes);
+  if (event == experiment.events.end()) return "";
+  return fmt::format("events change the run, from {:g} s on", experiment.time_s(event->tick));
+}
+
+/// Why theory is silent about a later phase, which flies `now`; empty: it is not.
+std::string WhySilentLater(const Experiment& start, const Experiment& now, std::int64_t from) {
+  if (std::string event = SilencingEvent(start, from); !event.empty()) return event;
+  if (!now.cut.empty()) return "events have cut edges of the graph";
+  if (!now.schedule.IsConstant()) return "graph.schedule: theory knows schedules of the graph only from the start";
+  return "";
+}
+
+/// Predicts the phases after the first, each from where ideal bodies are by then.
+std::vector<LaterPhase> PredictLater(const Experiment& start) {
+  const SuppressedPythonOutput suppressed;
+  const std::vector<std::int64_t> phases = PhasesOf(start);
+  std::vector<LaterPhase> later;
+  LiveExperiment live(start, &LawTable(), /*checked=*/true);
+  IdealTeam team(start);
+  std::string failure;
+  auto event = start.events.begin();
+  for (std::int64_t tick = 0; tick <= phases.back(); ++tick) {
+    for (; event != start.events.end() && event->tick == tick; ++event) team.Adopt(live.Take(*event));
+    if (std::ranges::binary_search(phases, tick)) {
+      const auto phase = std::make_shared<const Experiment>(
+          PhaseAsExperiment(start, *live.now(), tick, EndOfPhase(start, tick), team.motions()));
+      const std::string silent = failure.empty() ? WhySilentLater(start, *live.now(), tick) : failure;
+      later.push_back({tick, phase, PredictPhase(*phase, silent, tick == phases.back())});
+    }
+    try {
+      if (failure.empty()) team.Step();
+    } catch (const std::exception& why) {
+      failure = fmt::format("a law before it fails on ideal bodies: {}", why.what());
+    }
+  }
+  return later;
+}
+
+/// What two phases promise together.
+std::optional<SafetyPrediction> Weaker(const std::optional<SafetyPrediction>& a,
+                                       const std::optional<SafetyPrediction>& b) {
+  if (!a && !b) return std::nullopt;
+  if (!a || !b) return SafetyPrediction{.silent = "law.safety is not on in all phases"};
+  if (!a->min_separation_m || !b->min_separation_m) return a->min_separation_m ? b : a;
+  return *a->min_separation_m <= *b->min_separation_m ? a : b;
+}
+
+void WarnOfLatePhases(const Experiment& experiment, Prediction& prediction) {
+  for (const double at_s : experiment.late_phases_s)
+    prediction.warnings.push_back(fmt::format(
+        "law.schedule: the phase of {:g} s does not begin: the run ends at {:g} s", at_s, experiment.run.duration_s));
+}
+
+}  // namespace
+
+Prediction Predict(const Experiment& experiment) {
+  const std::string silent = SilencingEvent(experiment, 0);
+  if (PhasesOf(experiment).empty()) {
+    Prediction prediction = PredictPhase(experiment, silent, /*is_last=*/true);
+    WarnOfLatePhases(experiment, prediction);
+    return prediction;
+  }
+  const Experiment first =
+      PhaseAsExperiment(experiment, experiment, 0, EndOfPhase(experiment, 0), MotionsAtStart(experiment));
+  Prediction prediction = PredictPhase(first, silent, /*is_last=*/false);
+  prediction.later = PredictLater(experiment);
+  for (const LaterPhase& phase : prediction.later)
+    prediction.safety = Weaker(prediction.safety, phase.prediction.safety);
+  for (const LaterPhase& phase : prediction.later)
+    for (const std::string& warning : phase.prediction.warnings)
+      if (std::ranges::find(prediction.warnings, warning) == prediction.warnings.end())
+        prediction.warnings.push_back(fmt::format("{} (from {:g} s on)", warning, experiment.time_s(phase.from)));
+  WarnOfLatePhases(experiment, prediction);
   return prediction;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +39,8 @@ struct FirstCommand {
   double limit = 0;
 };
 
+struct LaterPhase;
+
 /// Predictions about an experiment; docs/theory.md has the formulas and sources. Absent values cannot be predicted.
 struct Prediction {
   /// Where agents meet, in W; in a formation, p - d. With axes "xy", z is the mean of the heights that are held.
@@ -72,7 +76,21 @@ struct Prediction {
   /// Why the figures of the law are not predicted, while theory says something else; empty: it says all.
   std::string figures_silent;
   std::vector<std::string> warnings;  ///< "key: text": what will not work, or not as expected
+  /// The phases of [[law.schedule]] after the first, of which all the above is, but for `safety` and the warnings,
+  /// which are those of all.
+  std::vector<LaterPhase> later;
 };
+
+/// A phase of [[law.schedule]] as an experiment of its own that begins where ideal bodies are by then.
+struct LaterPhase {
+  std::int64_t from = 0;  ///< tick
+  std::shared_ptr<const Experiment> experiment;
+  Prediction prediction;  ///< times count from the phase's begin
+};
+/// What is predicted of phase `index`; 0 is the first.
+inline const Prediction& PredictionOf(const Prediction& run, std::size_t index) {
+  return index == 0 ? run : run.later.at(index - 1).prediction;
+}
 
 /// Predicts an experiment that LoadExperiment returned. Above kLargestSpectrum agents, no eigenvalues are computed.
 Prediction Predict(const Experiment& experiment);

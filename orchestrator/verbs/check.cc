@@ -54,6 +54,18 @@ std::vector<std::string> DelayLines(const Experiment& experiment) {
   return lines;
 }
 
+/// The phases after the first.
+Json PhasesJson(const Experiment& experiment, const Prediction& prediction) {
+  Json phases = Json::array();
+  for (const LaterPhase& phase : prediction.later)
+    phases.push_back({{"at_s", experiment.time_s(phase.from)},
+                      {"law", phase.experiment->law.name},
+                      {"leader", phase.experiment->law.leader},
+                      {"predicted", PredictionJson(phase.prediction)},
+                      {"figures", PredictedFiguresJson(*phase.experiment, phase.prediction)}});
+  return phases;
+}
+
 Json ToJson(const Experiment& experiment, const GraphFacts& facts, const Prediction& prediction) {
   return {{"experiment", experiment.run.name},
           {"duration_s", experiment.run.duration_s},
@@ -69,6 +81,7 @@ Json ToJson(const Experiment& experiment, const GraphFacts& facts, const Predict
           {"predicted", PredictionJson(prediction)},
           {"safety", SafetyPredictionJson(prediction)},
           {"figures", PredictedFiguresJson(experiment, prediction)},
+          {"phases", PhasesJson(experiment, prediction)},
           {"warnings", prediction.warnings}};
 }
 
@@ -76,17 +89,24 @@ void PrintLine(std::string_view label, std::string_view text) {
   std::cout << fmt::format("  {:<14} {}\n", label, text);
 }
 
+std::string LawText(const LawConfig& law) {
+  return fmt::format("{}, {}, axes {}", law.name, law.leader > 0 ? fmt::format("leader {}", law.leader) : "no leader",
+                     kAxes.Name(law.axes));
+}
+
+void PrintPredictions(const Experiment& phase, const Prediction& prediction) {
+  for (const auto& [label, text] : PredictedFigureLines(phase, prediction)) PrintLine(label, text);
+  for (const auto& [label, text] : PredictionLines(phase, prediction)) PrintLine(label, text);
+}
+
 void PrintExperiment(const Experiment& experiment) {
   std::string models;
   for (const auto& [model, count] : CountModels(experiment)) {
     models += fmt::format("{}{} {}", models.empty() ? "" : ", ", count, model);
   }
-  const int leader = experiment.law.leader;
   PrintLine("experiment", experiment.run.name);
   PrintLine("agents", models);
-  PrintLine("law",
-            fmt::format("{}, {}, axes {}", experiment.law.name,
-                        leader > 0 ? fmt::format("leader {}", leader) : "no leader", kAxes.Name(experiment.law.axes)));
+  PrintLine("law", LawText(experiment.law));
   PrintLine("duration", fmt::format("{:g} s, {} ticks at {} Hz", experiment.run.duration_s, experiment.ticks(),
                                     experiment.control.rate_hz));
 }
@@ -115,8 +135,11 @@ int Check(const ConfigArgs& args, bool json) {
   PrintExperiment(experiment);
   PrintGraph(facts, experiment.schedule);
   for (const std::string& line : DelayLines(experiment)) PrintLine("delay in use", line);
-  for (const auto& [label, text] : PredictedFigureLines(experiment, prediction)) PrintLine(label, text);
-  for (const auto& [label, text] : PredictionLines(experiment, prediction)) PrintLine(label, text);
+  PrintPredictions(experiment, prediction);
+  for (const LaterPhase& phase : prediction.later) {
+    PrintLine(fmt::format("from {:g} s", experiment.time_s(phase.from)), LawText(phase.experiment->law));
+    PrintPredictions(*phase.experiment, phase.prediction);
+  }
   for (const std::string& warning : prediction.warnings) std::cout << "warning: " << warning << "\n";
   return 0;
 }
