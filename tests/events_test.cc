@@ -5,11 +5,9 @@
 
 #include "agent/laws.h"
 #include "experiment/live_experiment.h"
-#include "orchestrator/engines/inprocess.h"
-#include "orchestrator/team/row_sink.h"
+#include "tests/fly_rows.h"
 #include "tests/param_name.h"
 #include "tests/scratch.h"
-#include "tests/three_agents.h"
 
 namespace mascot {
 namespace {
@@ -18,21 +16,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr std::int64_t kTick = 50;  // of the events below: 0.5 s
-
-/// Keeps every row.
-class Rows final : public RowSink {
- public:
-  void Add(const FlownRow& row) override { rows.push_back(row.decoded()); }
-  std::vector<DecodedRow> rows;
-};
-
-std::vector<DecodedRow> Fly(const std::string& toml) {
-  const Experiment experiment = Load(toml);
-  Rows sink;
-  const EngineResult result = RunInProcess(experiment, {&sink}, [] { return true; });
-  EXPECT_EQ(result.failure, "");
-  return sink.rows;
-}
 
 /// The first tick at which `of` of two runs differs; -1: none.
 template <class Of>

@@ -6,9 +6,8 @@
 #include <cmath>
 
 #include "experiment/phase.h"
-#include "orchestrator/team/row_sink.h"
+#include "tests/fly_rows.h"
 #include "tests/law_run.h"
-#include "tests/three_agents.h"
 
 namespace mascot {
 namespace {
@@ -17,19 +16,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::IsSupersetOf;
-
-class Rows final : public RowSink {
- public:
-  void Add(const FlownRow& row) override { rows.push_back(row.decoded()); }
-  std::vector<DecodedRow> rows;
-};
-
-std::vector<DecodedRow> Fly(const std::string& toml) {
-  const Experiment experiment = Load(toml);
-  Rows sink;
-  EXPECT_EQ(RunInProcess(experiment, {&sink}, [] { return true; }).failure, "");
-  return sink.rows;
-}
 
 /// Two single integrators on the x axis, 8 m apart, that hear each other. `law`: lines of [law].
 std::string Pair(const std::string& law, const std::string& duration_s = "2.0") {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "agent/agent.h"
+#include "agent/laws.h"
 #include "experiment/experiment.h"
 
 namespace mascot {
