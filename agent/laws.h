@@ -72,6 +72,8 @@ struct LawEntry {
   std::shared_ptr<const LawParams> (*read)(const Experiment& experiment, const LawConfig& law, Section& section);
   /// Makes the law of agent `id`, whose law.name is this row's.
   std::unique_ptr<Law> (*make)(const Experiment& experiment, int id);
+  /// Whether the law may draw random numbers by run.seed; null: it draws none.
+  bool (*draws)(const LawConfig& law) = nullptr;
   /// What the law wants; null: an acceleration.
   Wanted (*wanted)(const LawConfig& law) = nullptr;
   /// d_i: each agent's place in the formation, in W (m), by id - 1; null: no places.

@@ -122,6 +122,7 @@ std::unique_ptr<Law> MakeCustom(const Experiment& experiment, int id) {
   return MakeStandardLaw(params, time_limit, experiment.run.seed, id);
 }
 
+bool DrawsByCustom(const LawConfig& law) { return CanDraw(ParamsOf<CustomParams>(law)); }
 Wanted WantedByCustom(const LawConfig& law) { return ParamsOf<CustomParams>(law).wanted; }
 
 }  // namespace
@@ -138,6 +139,7 @@ LawEntry CustomLaw() {
           .drawing = {.pictures = kDisagreementPicture},
           .read = ReadCustom,
           .make = MakeCustom,
+          .draws = DrawsByCustom,
           .wanted = WantedByCustom};
 }
 

@@ -108,6 +108,9 @@ std::unique_ptr<Law> MakeStandardLaw(const CustomParams& params, const TimeLimit
 std::unique_ptr<Law> MakePublishedLaw(const CustomParams& params, const TimeLimit& time_limit, int id, int agents,
                                       int leader);
 
+/// Whether its code can draw random numbers by run.seed.
+bool CanDraw(const CustomParams& params);
+
 /// The key of `law` that holds the text, or names its file.
 const char* TextKey(const Section& law);
 /// Runs the text once, to find mistakes in it and the functions that it defines. Returns whether it can send messages.

@@ -93,4 +93,13 @@ bool TryText(Section& law, CustomParams& params, const TimeLimit& time_limit) {
   }
 }
 
+// Only me.random knows run.seed, and control_user(...) is given no `me`.
+bool CanDraw(const CustomParams& params) {
+  const auto names_it = [](const std::string& text) { return text.find("random") != std::string::npos; };
+  const auto& modules = params.modules;
+  return params.style == PythonStyle::kStandard &&
+         (names_it(params.text) ||
+          std::any_of(modules.begin(), modules.end(), [&](const auto& module) { return names_it(module.second); }));
+}
+
 }  // namespace mascot

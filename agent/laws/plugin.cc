@@ -81,6 +81,9 @@ std::unique_ptr<Law> MakePlugin(const Experiment& experiment, int id) {
   }
 }
 
+/// Nobody can tell: it is given run.seed.
+bool DrawsByPlugin(const LawConfig& /*law*/) { return true; }
+
 Wanted WantedByPlugin(const LawConfig& law) { return ParamsOf<PluginConfig>(law).wanted; }
 
 }  // namespace
@@ -96,6 +99,7 @@ LawEntry PluginLaw() {
           .drawing = {.pictures = kDisagreementPicture},
           .read = ReadPlugin,
           .make = MakePlugin,
+          .draws = DrawsByPlugin,
           .wanted = WantedByPlugin};
 }
 

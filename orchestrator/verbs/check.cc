@@ -11,6 +11,7 @@
 #include "orchestrator/report/law_report.h"
 #include "orchestrator/report/prediction_report.h"
 #include "orchestrator/theory/delays_in_effect.h"
+#include "orchestrator/theory/draws.h"
 #include "orchestrator/theory/graph_facts.h"
 #include "orchestrator/theory/theory.h"
 #include "orchestrator/verbs/config_args.h"
@@ -77,6 +78,7 @@ Json ToJson(const Experiment& experiment, const GraphFacts& facts, const Predict
           {"axes", kAxes.Name(experiment.law.axes)},
           {"leader", experiment.law.leader},
           {"graph", ToJson(facts)},
+          {"draws", DrawsOf(experiment)},
           {"delays", DelaysJson(experiment)},
           {"predicted", PredictionJson(prediction)},
           {"safety", SafetyPredictionJson(prediction)},
@@ -99,6 +101,13 @@ void PrintPredictions(const Experiment& phase, const Prediction& prediction) {
   for (const auto& [label, text] : PredictionLines(phase, prediction)) PrintLine(label, text);
 }
 
+std::string SeedText(const Experiment& experiment) {
+  std::string keys;
+  for (const std::string& key : DrawsOf(experiment)) keys += (keys.empty() ? "" : ", ") + key;
+  return std::to_string(experiment.run.seed) +
+         (keys.empty() ? ", without effect: nothing is drawn at random" : ", for " + keys);
+}
+
 void PrintExperiment(const Experiment& experiment) {
   std::string models;
   for (const auto& [model, count] : CountModels(experiment)) {
@@ -109,6 +118,7 @@ void PrintExperiment(const Experiment& experiment) {
   PrintLine("law", LawText(experiment.law));
   PrintLine("duration", fmt::format("{:g} s, {} ticks at {} Hz", experiment.run.duration_s, experiment.ticks(),
                                     experiment.control.rate_hz));
+  PrintLine("seed", SeedText(experiment));
 }
 
 /// Prints properties of the graph; for a schedule, of the union of its graphs.

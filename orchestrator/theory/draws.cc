@@ -1,0 +1,105 @@
+// Every random number of a run comes from a stream of Random or Dice (experiment/random.h), or from a law that is given
+// run.seed. Each stream has a case below: the compiler refuses a stream without one.
+#include "orchestrator/theory/draws.h"
+
+#include <algorithm>
+
+#include "agent/laws.h"
+#include "experiment/live_experiment.h"
+#include "experiment/random.h"
+#include "experiment/toml/section.h"
+
+namespace mascot {
+namespace {
+
+/// Whether something happens only now and then.
+bool IsChance(double probability) { return probability > 0 && probability < 1; }
+
+using Keys = std::vector<std::string>;
+
+void AddOnce(const char* key, bool if_so, Keys& keys) {
+  if (if_so && std::ranges::find(keys, key) == keys.end()) keys.emplace_back(key);
+}
+
+/// Whether a table with the keys of [graph] draws its edges. A geometric graph follows from where agents start.
+bool DrawsEdges(Section graph) {
+  if (!graph.Has("random")) return false;
+  Section random = graph.Child("random");
+  return random.Has("p") && IsChance(random.Free("p").Number());
+}
+
+/// What is drawn before the run. `document`: the resolved experiment.
+void AddOnReading(Random::Stream stream, Section& document, Keys& keys) {
+  switch (stream) {
+    case Random::Stream::kPositions:
+      return AddOnce("agents.random", document.Child("agents").Has("random"), keys);
+    case Random::Stream::kGraph: {
+      Section graph = document.Child("graph");
+      AddOnce("graph.random", DrawsEdges(graph), keys);
+      for (const Section& phase : graph.Children("schedule")) AddOnce("graph.schedule.random", DrawsEdges(phase), keys);
+      return;
+    }
+    case Random::Stream::kSweep:
+      return;  // by the plan of a sweep, not by run.seed
+  }
+}
+
+void AddLink(const LinkConfig& link, Keys& keys) {
+  AddOnce("link.loss", !link.bursts && IsChance(link.loss), keys);
+  const auto& bursts = link.bursts;
+  AddOnce("link.gilbert_elliott",
+          bursts && (IsChance(bursts->good_to_bad) || IsChance(bursts->bad_to_good) || IsChance(bursts->loss_good) ||
+                     IsChance(bursts->loss_bad)),
+          keys);
+  AddOnce("link.jitter_s", link.jitter_s > 0, keys);
+  AddOnce("link.reordering", link.delay_s > 0 && IsChance(link.reordering), keys);
+}
+
+/// What is drawn in flight, as the experiment is at some time.
+void AddInFlight(Dice::Stream stream, const Experiment& now, Keys& keys) {
+  const auto is_heard = [&](int id) {
+    return std::ranges::any_of(now.agents, [&](const AgentConfig& agent) { return now.graph.Hears(agent.id, id); });
+  };
+  switch (stream) {
+    case Dice::Stream::kLink:
+      for (const AgentConfig& agent : now.agents)
+        for (const Graph::Neighbour& heard : now.graph.HeardBy(agent.id))
+          AddLink(now.links.Of(agent.id, heard.id), keys);
+      return;
+    case Dice::Stream::kOwnSensor:
+      return AddOnce("sensors.own", !now.sensors.own.IsNone(), keys);
+    case Dice::Stream::kHeardSensor:
+      return AddOnce("sensors.heard",
+                     !now.sensors.heard.IsNone() && std::ranges::any_of(now.agents, is_heard, &AgentConfig::id), keys);
+    case Dice::Stream::kWind:
+      return AddOnce("physics.wind.gust_std_m_per_s", now.physics.wind.gust_std_m_per_s > 0, keys);
+    case Dice::Stream::kLie:
+      for (const AgentConfig& agent : now.agents)
+        AddOnce("agents.override.lie", agent.lie && agent.lie->kind == LieKind::kRandom && is_heard(agent.id), keys);
+      return;
+  }
+}
+
+void AddAll(const Experiment& now, Keys& keys) {
+  using enum Dice::Stream;
+  for (const Dice::Stream stream : {kLink, kOwnSensor, kHeardSensor, kWind, kLie}) AddInFlight(stream, now, keys);
+  for (const AgentConfig& agent : now.agents) {
+    const LawEntry& law = EntryOf(agent.law);
+    AddOnce("law", law.draws != nullptr && law.draws(agent.law), keys);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> DrawsOf(const Experiment& experiment) {
+  Keys keys;
+  Section document = Section::FromText(experiment.resolved, "the resolved experiment");
+  using enum Random::Stream;
+  for (const Random::Stream stream : {kPositions, kGraph, kSweep}) AddOnReading(stream, document, keys);
+  AddAll(experiment, keys);
+  LiveExperiment live(experiment, &LawTable(), /*checked=*/true);
+  for (const Event& event : experiment.events) AddAll(*live.Take(event), keys);
+  return keys;
+}
+
+}  // namespace mascot
