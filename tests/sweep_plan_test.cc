@@ -73,6 +73,28 @@ TEST(SweepPlan, CombinesEveryKeyWithEveryOtherAndSeedsFastest) {
   EXPECT_EQ(SweepPlan(words).size(), 12u);
 }
 
+TEST(SweepPlan, TriesEachValueOfAListAndTheLastOfARange) {
+  Words words = Sets({"a=1,2", "b=0:1:9", "c=5"});
+  words.seeds = "7..8";
+  std::vector<std::string> trials;
+  const SweepPlan plan(words);
+  for (const SweepPoint& trial : plan.trials()) {
+    trials.emplace_back();
+    for (const Override& override : trial.overrides) trials.back() += override.value + " ";
+  }
+  EXPECT_THAT(trials, ElementsAre("2 0 5 7 ", "1 9 5 7 "));
+}
+
+TEST(SweepPlan, KnowsWhichRunsHaveTheFirstSeed) {
+  Words words = Sets({"a=1,2"});
+  EXPECT_THAT(SweepPlan(words).WithFirstSeed(), IsEmpty());
+  words.seeds = "3";
+  EXPECT_THAT(SweepPlan(words).WithFirstSeed(), IsEmpty());
+  words.seeds = "3..5";
+  EXPECT_THAT(SweepPlan(words).WithFirstSeed(), ElementsAre(0, 3));
+  EXPECT_THAT(SweepPlan(Sets({"run.seed=4,9", "a=1,2"})).WithFirstSeed(), ElementsAre(0, 1));
+}
+
 TEST(SweepPlan, DrawsTheSameSamplesEveryTime) {
   const Words words{
       .sets = {}, .randoms = {"law.p_gain=0.1:0.3", "law.beta=0.01:100:log"}, .samples = 200, .seeds = ""};

@@ -133,7 +133,7 @@ TEST_F(SweepTest, CanBeInterruptedAndSaysHowToGoOn) {
 
 TEST_F(SweepTest, CanBeInterruptedWhileItLooksForAValidRun) {
   Running sweep(std::string(MASCOT_BINARY_DIR) + "/orchestrator",
-                {"sweep", config_, "--out", out_, "--set", "law.p_gain=-1", "--seeds", "1..1000000"},
+                {"sweep", config_, "--out", out_, "--set", "law.p_gain=-1", "--seeds", "1..1000000", "--force"},
                 folder_.File("looks"));
   const std::string pid = std::to_string(sweep.pid());
   ASSERT_TRUE(Until([&] { return !ReadFile("/proc/" + pid + "/task/" + pid + "/children").empty(); })) << "no worker";
@@ -159,10 +159,66 @@ TEST_F(SweepTest, KeepsTheErrorOfARunThatFailsAndGoesOn) {
 }
 
 TEST_F(SweepTest, KeepsTheMistakeOfAnImpossibleRunAsItsError) {
-  const Ran ran = Sweep("--set law.p_gain=0.5,fast --no-plot");
+  const std::string mistake = "--set law.p_gain=fast: law.p_gain: expected a number in [0, 1000], got 'fast'";
+  const std::string words = "--set law.p_gain=0.5,fast --no-plot";
+  const Ran refused = Sweep(words);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.output, HasSubstr("error: sweep: the first run with law.p_gain = fast: " + mistake +
+                                        " (--force flies the other runs)"));
+  EXPECT_FALSE(std::filesystem::exists(out_));
+  const Ran ran = Sweep(words + " --force");
   EXPECT_EQ(ran.exit_code, 0) << ran.output;
-  EXPECT_THAT(Table(out_).At(1, "error"),
-              HasSubstr("--set law.p_gain=fast: law.p_gain: expected a number in [0, 1000], got 'fast'"));
+  EXPECT_THAT(Table(out_).At(1, "error"), HasSubstr(mistake));
+  EXPECT_EQ(Sweep(words).exit_code, 0) << "goes on with what --force has begun";
+}
+
+TEST_F(SweepTest, RefusesMisspeltKeysBeforeTheFirstRun) {
+  const auto refuses = [&](const std::string& words, const std::string& text) {
+    const Ran ran = Sweep(words + " --no-plot");
+    EXPECT_EQ(ran.exit_code, 2) << ran.output;
+    EXPECT_THAT(ran.output, HasSubstr("error: " + text));
+    EXPECT_FALSE(std::filesystem::exists(out_));
+  };
+  refuses("--set law.pgain=0.1:0.1:100000", "--set law.pgain=0.1: law.pgain: unknown key (did you mean \"p_gain\"?)");
+  refuses("--random lw.beta=0:1 --samples 100000", "--set lw.beta=");
+  refuses("--set graph.topology=ring,paht", "sweep: the first run with graph.topology = paht: ");
+  refuses("--set law.p_gain=1:1000:2001", "sweep: the first run with law.p_gain = 2001: ");
+}
+
+TEST_F(SweepTest, RefusesSeveralSeedsIfNothingDependsOnThem) {
+  const std::string words = "--set 'agents.position_m=[[0, 0, 1], [1, 1, 2], [2, 2, 3]]' --no-plot ";
+  const Ran refused = Sweep(words + "--seeds 1..3 --set link.loss=0,1");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.output,
+              HasSubstr("error: sweep: expected one run.seed, because every seed gives the same run (nothing is drawn: "
+                        "no places, edges, loss, jitter, noise, gusts or lies at random, no law that draws), got 3 "
+                        "(--force flies them all)"));
+  EXPECT_FALSE(std::filesystem::exists(out_));
+  EXPECT_EQ(Sweep(words + "--seeds 1..3 --force").exit_code, 0);
+  EXPECT_EQ(Sweep(words + "--seeds 1..3").exit_code, 0) << "goes on with what --force has begun";
+  EXPECT_EQ(Sweep(words + "--seeds 1..3 --set link.loss=0,0.5 --force").exit_code, 0);
+  std::filesystem::remove(out_);
+  EXPECT_EQ(Sweep(words + "--seeds 1..3 --set link.loss=0,0.5").exit_code, 0) << "some runs depend on it";
+  std::filesystem::remove(out_);
+  EXPECT_EQ(Sweep(words + "--seeds 3").exit_code, 0);
+}
+
+TEST_F(SweepTest, FliesLawsSideBySideEachWithTheKeysThatItHas) {
+  WriteFile(config_,
+            "[run]\nduration_s = 1.0\n[agents]\ncount = 3\n[graph]\ntopology = 'ring'\n[law]\nname = "
+            "'consensus'\nbeta = 0.7\n");
+  const Ran ran = Sweep("--set law.name=consensus,velocity_consensus --set law.p_gain=0.1,0.2 --seeds 1..2 --no-plot");
+  ASSERT_EQ(ran.exit_code, 0) << ran.output;
+  EXPECT_THAT(ran.output, HasSubstr("sweep: law.name = velocity_consensus: without law.beta, which it does not have"));
+  const Table table(out_);
+  ASSERT_THAT(table.rows, SizeIs(8));
+  for (std::size_t row = 0; row < 8; ++row) EXPECT_EQ(table.At(row, "error"), "");
+  EXPECT_EQ(table.At(4, "law.name"), "velocity_consensus");
+  EXPECT_NE(table.At(0, "control.effort"), table.At(4, "control.effort"));
+  const Ran refused = Sweep("--set law.name=consensus,velocity_consensus --set law.beta=0.1,0.2 --no-plot --force");
+  EXPECT_EQ(refused.exit_code, 0) << refused.output;
+  EXPECT_THAT(Table(out_).At(2, "error"), HasSubstr("law.beta: unknown key"))
+      << "a key of several values is not left out";
 }
 
 TEST_F(SweepTest, RefusesWhatCannotBeSwept) {

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMostRuns = 10'000'000;
 constexpr std::uint64_t kSamplesSeed = 1;
+constexpr const char* kSeedKey = "run.seed";
 
 [[noreturn]] void Refuse(const std::string& option, const std::string& expected, const std::string& got) {
   throw ConfigError({option + ": expected " + expected + ", got '" + got + "'"});
@@ -62,11 +63,6 @@ std::vector<std::string> Split(std::string_view text, char separator) {
   return parts;
 }
 
-struct Axis {
-  std::string key;
-  std::vector<std::string> values;
-};
-
 /// Splits KEY=VALUES at the first equals sign.
 std::pair<std::string, std::string> SplitKey(const std::string& option, const std::string& word) {
   const auto equals = word.find('=');
@@ -92,7 +88,7 @@ std::optional<std::vector<std::string>> IntegerRange(const std::vector<std::stri
 
 /// The values of A:STEP:B, both ends included: A + i STEP, without accumulation. B is included even if a rounding error
 /// would miss it.
-std::vector<std::string> Range(const std::string& word, const std::vector<std::string>& parts) {
+std::vector<std::string> RangeValues(const std::string& word, const std::vector<std::string>& parts) {
   const auto first = ToNumber(parts[0]), step = ToNumber(parts[1]), last = ToNumber(parts[2]);
   if (!first || !step || !last || *step == 0 || (*last - *first) / *step < 0)
     Refuse("--set", "a:step:b, three numbers with b on step's side of a", word);
@@ -104,34 +100,6 @@ std::vector<std::string> Range(const std::string& word, const std::vector<std::s
   for (std::size_t i = 0; i <= static_cast<std::size_t>(steps); ++i)
     values.push_back(ShortestFloat(Rounded(*first + static_cast<double>(i) * *step)));
   return values;
-}
-
-Axis ParseSet(const std::string& word) {
-  const auto [key, text] = SplitKey("--set", word);
-  const std::vector<std::string> range = Split(text, ':');
-  if (range.size() == 3 && ToNumber(range[0])) return {key, Range(word, range)};
-  Axis axis{key, Split(text, ',')};
-  if (std::ranges::find(axis.values, "") != axis.values.end()) Refuse("--set", "values between commas", word);
-  return axis;
-}
-
-/// Draws the values of a --random key. Each key has its own random stream, chosen by its `place` among these options.
-Axis ParseRandom(const std::string& word, std::uint64_t place, std::int64_t samples) {
-  const auto [key, text] = SplitKey("--random", word);
-  const std::vector<std::string> parts = Split(text, ':');
-  const auto min = ToNumber(parts[0]), max = parts.size() > 1 ? ToNumber(parts[1]) : std::nullopt;
-  const bool log = parts.size() == 3 && parts[2] == "log";
-  if (!min || !max || *min > *max || (parts.size() == 3 && !log) || parts.size() > 3 || (log && *min <= 0))
-    Refuse("--random", "key=min:max or key=min:max:log with 0 < min", word);
-  if (!std::isfinite(log ? *max / *min : *max - *min)) Refuse("--random", "a range that a double can span", word);
-  Random random(kSamplesSeed + place, Random::Stream::kSweep);
-  Axis axis{key, {}};
-  for (std::int64_t i = 0; i < samples; ++i) {
-    const double fraction = random.Unit();
-    axis.values.push_back(
-        ShortestFloat(log ? *min * std::pow(*max / *min, fraction) : *min + fraction * (*max - *min)));
-  }
-  return axis;
 }
 
 std::optional<std::int64_t> ToSeed(std::string_view text) {
@@ -169,9 +137,9 @@ std::vector<SweepPoint> Combine(const std::vector<SweepPoint>& points, const std
   return all;
 }
 
-std::vector<SweepPoint> ChoicesOf(const Axis& axis) {
+std::vector<SweepPoint> ChoicesOf(const std::string& key, const std::vector<std::string>& values) {
   std::vector<SweepPoint> choices;
-  for (const std::string& value : axis.values) choices.push_back({{{axis.key, value}}});
+  for (const std::string& value : values) choices.push_back({{{key, value}}});
   return choices;
 }
 
@@ -182,31 +150,88 @@ bool IsInside(std::string_view key, std::string_view table) {
 
 }  // namespace
 
+SweepPlan::Axis SweepPlan::ParseSet(const std::string& word) {
+  const auto [key, text] = SplitKey("--set", word);
+  const std::vector<std::string> range = Split(text, ':');
+  if (range.size() == 3 && ToNumber(range[0])) return {key, RangeValues(word, range), /*is_range=*/true};
+  Axis axis{key, Split(text, ',')};
+  if (std::ranges::find(axis.values, "") != axis.values.end()) Refuse("--set", "values between commas", word);
+  return axis;
+}
+
+/// Draws the values of a --random key. Each key has its own random stream, chosen by its `place` among these options.
+SweepPlan::Axis SweepPlan::ParseRandom(const std::string& word, std::uint64_t place, std::int64_t samples) {
+  const auto [key, text] = SplitKey("--random", word);
+  const std::vector<std::string> parts = Split(text, ':');
+  const auto min = ToNumber(parts[0]), max = parts.size() > 1 ? ToNumber(parts[1]) : std::nullopt;
+  const bool log = parts.size() == 3 && parts[2] == "log";
+  if (!min || !max || *min > *max || (parts.size() == 3 && !log) || parts.size() > 3 || (log && *min <= 0))
+    Refuse("--random", "key=min:max or key=min:max:log with 0 < min", word);
+  if (!std::isfinite(log ? *max / *min : *max - *min)) Refuse("--random", "a range that a double can span", word);
+  Random random(kSamplesSeed + place, Random::Stream::kSweep);
+  Axis axis{key, {}};
+  for (std::int64_t i = 0; i < samples; ++i) {
+    const double fraction = random.Unit();
+    axis.values.push_back(
+        ShortestFloat(log ? *min * std::pow(*max / *min, fraction) : *min + fraction * (*max - *min)));
+  }
+  return axis;
+}
+
+/// Notes a key and its values. Throws ConfigError if another axis sets the key, or what is inside of it.
+void SweepPlan::AddAxis(const Axis& axis) {
+  for (const std::string& key : keys_)
+    if (IsInside(key, axis.key) || IsInside(axis.key, key))
+      throw ConfigError(
+          {"sweep: expected each key once, got " + axis.key + (key == axis.key ? " again" : " and " + key)});
+  keys_.push_back(axis.key);
+  axes_.push_back(axis);
+  if (axis.values.size() > 1 && axis.key != kSeedKey) varied_.push_back(axis.key);
+}
+
+void SweepPlan::AddTrials() {
+  for (std::size_t k = 0; k < axes_.size(); ++k)
+    for (std::size_t i = axes_[k].is_range ? std::max<std::size_t>(axes_[k].values.size() - 1, 1) : 1;
+         i < axes_[k].values.size(); ++i) {
+      trials_.push_back(points_.front());
+      trials_.back().overrides[k].value = axes_[k].values[i];
+    }
+}
+
 SweepPlan::SweepPlan(const Words& words) : points_(1) {
-  const auto add_key = [this](const Axis& axis, bool drawn) {
-    for (const std::string& key : keys_)
-      if (IsInside(key, axis.key) || IsInside(axis.key, key))
-        throw ConfigError(
-            {"sweep: expected each key once, got " + axis.key + (key == axis.key ? " again" : " and " + key)});
-    keys_.push_back(axis.key);
-    if (drawn && axis.values.size() > 1) varied_.push_back(axis.key);
-  };
   for (const std::string& word : words.sets) {
     const Axis axis = ParseSet(word);
-    add_key(axis, true);
-    points_ = Combine(points_, ChoicesOf(axis));
+    AddAxis(axis);
+    points_ = Combine(points_, ChoicesOf(axis.key, axis.values));
   }
+  AddTrials();
   std::vector<SweepPoint> samples(words.randoms.empty() ? 1 : static_cast<std::size_t>(words.samples));
   for (std::size_t k = 0; k < words.randoms.size(); ++k) {
     const Axis axis = ParseRandom(words.randoms[k], k, words.samples);
-    add_key(axis, true);
+    AddAxis(axis);
     for (std::size_t i = 0; i < samples.size(); ++i) samples[i].overrides.push_back({axis.key, axis.values[i]});
+    for (SweepPoint& trial : trials_) trial.overrides.push_back({axis.key, axis.values.front()});
   }
   points_ = Combine(points_, samples);
   if (words.seeds.empty()) return;
-  const Axis seeds{"run.seed", ParseSeeds(words.seeds)};
-  add_key(seeds, false);
-  points_ = Combine(points_, ChoicesOf(seeds));
+  const Axis seeds{kSeedKey, ParseSeeds(words.seeds)};
+  AddAxis(seeds);
+  points_ = Combine(points_, ChoicesOf(seeds.key, seeds.values));
+  for (SweepPoint& trial : trials_) trial.overrides.push_back({seeds.key, seeds.values.front()});
+}
+
+std::span<const std::string> SweepPlan::ValuesOf(std::string_view key) const {
+  const auto axis = std::ranges::find(axes_, key, &Axis::key);
+  return axis == axes_.end() ? std::span<const std::string>() : axis->values;
+}
+
+std::vector<std::size_t> SweepPlan::WithFirstSeed() const {
+  const auto place = static_cast<std::size_t>(std::ranges::find(keys_, kSeedKey) - keys_.begin());
+  if (place == keys_.size() || axes_[place].values.size() < 2) return {};
+  std::vector<std::size_t> runs;
+  for (std::size_t run = 0; run < points_.size(); ++run)
+    if (points_[run].overrides[place].value == axes_[place].values.front()) runs.push_back(run);
+  return runs;
 }
 
 }  // namespace mascot

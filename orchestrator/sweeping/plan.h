@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiment/toml/section.h"
@@ -33,11 +36,29 @@ class SweepPlan {
   const SweepPoint& operator[](std::size_t index) const { return points_[index]; }
   /// Keys with more than one value, without run.seed: the axes of a plot.
   const std::vector<std::string>& varied() const { return varied_; }
+  /// The values of a key, as typed; empty if it is not set.
+  std::span<const std::string> ValuesOf(std::string_view key) const;
+  /// The first run with each other value that --set gives a key; of A:STEP:B only with the last one.
+  const std::vector<SweepPoint>& trials() const { return trials_; }
+  /// The runs with the first value of run.seed, if it has several; else none.
+  std::vector<std::size_t> WithFirstSeed() const;
 
  private:
+  struct Axis {
+    std::string key;
+    std::vector<std::string> values;
+    bool is_range = false;  ///< of A:STEP:B
+  };
+  static Axis ParseSet(const std::string& word);
+  static Axis ParseRandom(const std::string& word, std::uint64_t place, std::int64_t samples);
+  void AddAxis(const Axis& axis);
+  void AddTrials();
+
   std::vector<std::string> keys_;
+  std::vector<Axis> axes_;  // of keys_
   std::vector<std::string> varied_;
   std::vector<SweepPoint> points_;
+  std::vector<SweepPoint> trials_;
 };
 
 }  // namespace mascot

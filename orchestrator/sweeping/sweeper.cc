@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <functional>
+#include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <thread>
@@ -18,8 +21,10 @@
 #include "orchestrator/processes/console.h"
 #include "orchestrator/processes/worker_pool.h"
 #include "orchestrator/report/summary.h"
+#include "orchestrator/sweeping/law_axis.h"
 #include "orchestrator/sweeping/metrics.h"
 #include "orchestrator/sweeping/table.h"
+#include "orchestrator/theory/draws.h"
 #include "orchestrator/theory/theory.h"
 
 namespace mascot {
@@ -32,9 +37,10 @@ struct Sweep {
   const std::string& name;
   const std::string& text;
   const SweepPlan& plan;
+  const LawAxis& laws;
 
-  Experiment Load(std::size_t run) const {
-    const Section document = Section::FromText(text, name, plan[run].overrides);
+  Experiment Load(const SweepPoint& point) const {
+    const Section document = Section::FromText(text, name, laws.Fit(point.overrides));
     Experiment experiment = LoadExperiment(document, std::filesystem::path(name).stem().string());
     if (experiment.run.mode == Mode::kRealtime)
       throw ConfigError({"sweep: expected run.mode = \"lockstep\", got \"realtime\""});
@@ -51,7 +57,7 @@ std::vector<std::string> NamesOfLaws(const Experiment& experiment) {
 /// Executes one run. Returns the cells of its metric columns. Throws ConfigError if the experiment is not valid, and
 /// std::runtime_error if the run fails.
 std::map<std::string, std::string> FlyOne(const Sweep& sweep, std::size_t run) {
-  const Experiment experiment = sweep.Load(run);
+  const Experiment experiment = sweep.Load(sweep.plan[run]);
   const Prediction prediction = Predict(experiment);
   RunMeter meter(experiment);
   const EngineResult result = RunInProcess(experiment, {&meter}, [] { return true; });
@@ -61,13 +67,27 @@ std::map<std::string, std::string> FlyOne(const Sweep& sweep, std::size_t run) {
                       SweepMetricNames(NamesOfLaws(experiment)));
 }
 
-/// Work of the pool for a sweep of n runs: task k < n executes run k and returns its metric cells as JSON; task n + k
-/// only reads and checks the experiment of run k and returns it resolved.
+/// What is found out about an experiment without flying it.
+struct Looked {
+  std::string resolved;
+  std::vector<std::string> draws;  ///< DrawsOf()
+};
+
+/// Work of the pool for a sweep of n runs: task k < n executes run k and returns its metric cells; task n + k only
+/// looks at run k, and task 2 n + k at trial k of the plan. Answers are JSON.
 WorkerPool::Work WorkOf(const Sweep& sweep) {
   return [sweep](std::size_t task) -> std::string {
-    if (task >= sweep.plan.size()) return sweep.Load(task - sweep.plan.size()).resolved;
-    return nlohmann::json(FlyOne(sweep, task)).dump();
+    const std::size_t runs = sweep.plan.size();
+    if (task < runs) return nlohmann::json(FlyOne(sweep, task)).dump();
+    const Experiment experiment =
+        sweep.Load(task < 2 * runs ? sweep.plan[task - runs] : sweep.plan.trials()[task - 2 * runs]);
+    return nlohmann::json({{"resolved", experiment.resolved}, {"draws", DrawsOf(experiment)}}).dump();
   };
+}
+
+Looked LookedFrom(const std::string& answer) {
+  const nlohmann::json json = nlohmann::json::parse(answer);
+  return {json["resolved"], json["draws"]};
 }
 
 struct Interrupted {
@@ -79,21 +99,73 @@ void ThrowIfInterrupted(StopSignal& stop) {
   if (const int signal = stop.Within(std::chrono::nanoseconds::zero()); signal != 0) throw Interrupted{signal};
 }
 
-/// Returns the first valid experiment of the sweep, resolved. Throws ConfigError with the mistakes of the first run if
-/// no run is valid.
-std::string FirstValid(const Sweep& sweep, WorkerPool& pool, StopSignal& stop) {
-  std::string mistakes;
-  for (std::size_t run = 0; run < sweep.plan.size(); ++run) {
-    pool.Start(sweep.plan.size() + run);
-    std::optional<WorkerPool::Done> done;
-    while (!done) {
-      done = pool.Wait(std::chrono::milliseconds(100));
-      ThrowIfInterrupted(stop);
-    }
-    if (done->failure.empty()) return done->answer;
-    if (mistakes.empty()) mistakes = done->failure;
+/// Executes tasks, several at a time, and hands each to `take` as it is done, in any order, until that returns false.
+void ExecuteTasks(std::span<const std::size_t> tasks, WorkerPool& pool, StopSignal& stop,
+                  const std::function<bool(const WorkerPool::Done&)>& take) {
+  bool go_on = true;
+  for (auto next = tasks.begin(); (go_on && next != tasks.end()) || pool.IsBusy();) {
+    while (go_on && next != tasks.end() && pool.HasIdle()) pool.Start(*next++);
+    if (const auto done = pool.Wait(std::chrono::milliseconds(100)); done && go_on) go_on = take(*done);
+    ThrowIfInterrupted(stop);
   }
-  throw ConfigError({mistakes});
+}
+
+/// Returns the first valid experiment of the sweep. Throws ConfigError with the mistakes of the first run if no run is
+/// valid; with `first_alone`, if that one is not.
+Looked FirstValid(const Sweep& sweep, bool first_alone, WorkerPool& pool, StopSignal& stop) {
+  std::string mistakes;
+  std::optional<Looked> valid;
+  for (std::size_t run = 0; run < (first_alone ? 1 : sweep.plan.size()) && !valid; ++run) {
+    const std::size_t task = sweep.plan.size() + run;
+    ExecuteTasks({&task, 1}, pool, stop, [&](const WorkerPool::Done& done) {
+      if (done.failure.empty()) valid = LookedFrom(done.answer);
+      if (mistakes.empty()) mistakes = done.failure;
+      return true;
+    });
+  }
+  if (!valid) throw ConfigError({mistakes});
+  return *valid;
+}
+
+/// The values in which a trial differs from the first run: "law.name = rendezvous".
+std::string DifferenceOf(const SweepPoint& trial, const SweepPoint& first) {
+  for (std::size_t k = 0; k < trial.overrides.size(); ++k)
+    if (trial.overrides[k].value != first.overrides[k].value)
+      return trial.overrides[k].key + " = " + trial.overrides[k].value;
+  return "";
+}
+
+/// Throws ConfigError with the mistakes of the first trial that is not valid.
+void CheckTrials(const Sweep& sweep, WorkerPool& pool, StopSignal& stop) {
+  std::vector<std::size_t> tasks(sweep.plan.trials().size());
+  std::iota(tasks.begin(), tasks.end(), 2 * sweep.plan.size());
+  std::map<std::size_t, std::string> mistakes;
+  ExecuteTasks(tasks, pool, stop, [&](const WorkerPool::Done& done) {
+    if (!done.failure.empty()) mistakes[done.task - tasks.front()] = done.failure;
+    return true;
+  });
+  if (mistakes.empty()) return;
+  const auto& [trial, text] = *mistakes.begin();
+  throw ConfigError({fmt::format("sweep: the first run with {}: {} (--force flies the other runs)",
+                                 DifferenceOf(sweep.plan.trials()[trial], sweep.plan[0]), text)});
+}
+
+/// Throws ConfigError if the sweep goes over several seeds, but no run depends on its seed.
+void CheckSeeds(const Sweep& sweep, const Looked& first, WorkerPool& pool, StopSignal& stop) {
+  std::vector<std::size_t> runs = sweep.plan.WithFirstSeed();
+  if (runs.empty() || !first.draws.empty()) return;
+  for (std::size_t& run : runs) run += sweep.plan.size();
+  bool draws = false;
+  ExecuteTasks(runs, pool, stop, [&](const WorkerPool::Done& done) {
+    draws = done.failure.empty() && !LookedFrom(done.answer).draws.empty();
+    return !draws;
+  });
+  if (!draws)
+    throw ConfigError(
+        {fmt::format("sweep: expected one run.seed, because every seed gives the same run (nothing is "
+                     "drawn: no places, edges, loss, jitter, noise, gusts or lies at random, no law that "
+                     "draws), got {} (--force flies them all)",
+                     sweep.plan.size() / runs.size())});
 }
 
 class Progress {
@@ -157,10 +229,7 @@ void ExecuteMissing(const SweepPlan& plan, const std::vector<std::string>& metri
 std::vector<std::string> MetricsOf(const Sweep& sweep, const std::string& resolved) {
   const Experiment first = LoadExperiment(Section::FromText(resolved, sweep.name), "", /*checked=*/true);
   std::vector<std::string> laws = NamesOfLaws(first);
-  for (std::size_t run = 0; run < sweep.plan.size(); ++run)
-    for (const Override& override : sweep.plan[run].overrides)
-      if (override.key == "law.name" && override.value.size() > 2)
-        laws.push_back(override.value.substr(1, override.value.size() - 2));  // without quotation marks
+  laws.insert(laws.end(), sweep.laws.laws().begin(), sweep.laws.laws().end());
   return SweepMetricNames(laws);
 }
 
@@ -181,15 +250,26 @@ void CheckMetric(const std::string& metric, const std::vector<std::string>& metr
                                  nearest ? " (did you mean \"" + *nearest + "\"?)" : "")});
 }
 
-/// Text that identifies the sweep of a table: the experiment file, the first valid experiment resolved (with the files
-/// that it names), and what each run sets.
-std::string PlanText(const Sweep& sweep, const std::string& resolved) {
-  std::string text;
+/// What every run of the sweep sets.
+std::string PointsText(const Sweep& sweep) {
+  std::string text = "\n# runs of the sweep\n";
   for (std::size_t run = 0; run < sweep.plan.size(); ++run) {
     for (const Override& override : sweep.plan[run].overrides) text += override.key + "=" + override.value + " ";
     text += "\n";
   }
-  return sweep.text + "\n# its first valid run\n" + resolved + "\n# runs of the sweep\n" + text;
+  return text;
+}
+
+/// Text that identifies the sweep of a table: the experiment file, the first valid experiment resolved (with the files
+/// that it names), and what each run sets.
+std::string PlanText(const Sweep& sweep, const std::string& resolved) {
+  return sweep.text + "\n# its first valid run\n" + resolved + PointsText(sweep);
+}
+
+/// Whether a table of this sweep was begun: it is then gone on with, also if --force has begun it.
+bool IsBegun(const Sweep& sweep, const std::string& table) {
+  const std::string plan = SweepFile::PlanBeside(table);
+  return plan.starts_with(sweep.text) && plan.ends_with(PointsText(sweep));
 }
 
 }  // namespace
@@ -198,15 +278,21 @@ Sweeper::Sweeper(std::string name, std::string text, SweepPlan plan)
     : name_(std::move(name)), text_(std::move(text)), plan_(std::move(plan)) {}
 
 Sweeper::Outcome Sweeper::Fly(const Options& options, StopSignal& stop) const {
-  const Sweep sweep{name_, text_, plan_};
+  const LawAxis laws(Section::FromText(text_, name_), plan_);
+  const Sweep sweep{name_, text_, plan_, laws};
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   WorkerPool pool(options.jobs > 0 ? options.jobs : cores, WorkOf(sweep));
   Outcome outcome;
   try {
-    const std::string first = FirstValid(sweep, pool, stop);
-    const std::vector<std::string> metrics = MetricsOf(sweep, first);
+    const bool strict = !options.force && !IsBegun(sweep, options.out);
+    const Looked first = FirstValid(sweep, strict, pool, stop);
+    const std::vector<std::string> metrics = MetricsOf(sweep, first.resolved);
     if (!options.metric.empty()) CheckMetric(options.metric, metrics);
-    SweepFile table(options.out, ColumnsOf(plan_, metrics), PlanText(sweep, first), options.force);
+    if (strict) CheckTrials(sweep, pool, stop);
+    if (strict) CheckSeeds(sweep, first, pool, stop);
+    SweepFile table(options.out, ColumnsOf(plan_, metrics), PlanText(sweep, first.resolved), options.force);
+    if (!options.quiet)
+      for (const std::string& note : laws.Notes()) std::cerr << "sweep: " << note << "\n";
     try {
       ExecuteMissing(plan_, metrics, pool, table, options.quiet, stop, outcome);
       table.Sort();

@@ -118,6 +118,11 @@ SweepFile::SweepFile(fs::path path, const Cells& columns, const std::string& pla
   if (fd_ < 0) throw std::runtime_error(path_.string() + ": cannot be opened: " + std::strerror(errno));
 }
 
+std::string SweepFile::PlanBeside(const fs::path& path) {
+  const fs::path plan = PlanOf(path);
+  return fs::is_regular_file(plan) ? ReadAll(plan) : "";
+}
+
 SweepFile::~SweepFile() {
   if (fd_ >= 0) ::close(fd_);
   if (plan_fd_ >= 0) ::close(plan_fd_);

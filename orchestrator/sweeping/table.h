@@ -24,6 +24,8 @@ class SweepFile {
   /// if another sweep is writing it.
   SweepFile(std::filesystem::path path, const Cells& columns, const std::string& plan, bool force);
   ~SweepFile();
+  /// The plan beside the table at `path`; empty: there is none.
+  static std::string PlanBeside(const std::filesystem::path& path);
   SweepFile(const SweepFile&) = delete;
   SweepFile& operator=(const SweepFile&) = delete;
 
