@@ -65,7 +65,8 @@ constexpr const char* kColumns =
     "t,id,position_x,position_y,position_z,velocity_x,velocity_y,velocity_z,"
     "orientation_w,orientation_x,orientation_y,orientation_z,"
     "angular_velocity_x,angular_velocity_y,angular_velocity_z,"
-    "acceleration_command_x,acceleration_command_y,acceleration_command_z,actuator_1,actuator_2,actuator_3,actuator_4";
+    "acceleration_command_x,acceleration_command_y,acceleration_command_z,actuator_1,actuator_2,actuator_3,actuator_4,"
+    "flags";
 
 TEST(Export, NpzIsTheRunsOwnStatesToTheByte) {
   const ScratchFolder scratch;
@@ -101,12 +102,13 @@ print(np.array_equal(column("t"), np.repeat(arrays["t"], agents).reshape(ticks, 
 for name, components in [("position", "xyz"), ("velocity", "xyz"), ("orientation", "wxyz"), ("angular_velocity", "xyz"),
                          ("acceleration_command", "xyz"), ("actuator", "1234")]:
     print(name, np.array_equal(np.stack([column(f"{name}_{c}") for c in components], axis=2), arrays[name]))
+print("flags", np.array_equal(column("flags"), arrays["flags"]))
 )");
   EXPECT_EQ(Shell("/usr/bin/python3 '" + script + "' '" + scratch.File("run/states.npz") + "' '" +
                   scratch.File("run/states.csv") + "'")
                 .output,
             "True True\nposition True\nvelocity True\norientation True\nangular_velocity True\n"
-            "acceleration_command True\nactuator True\n");
+            "acceleration_command True\nactuator True\nflags True\n");
 }
 
 TEST(Export, MatHasTheArraysInMatlabsOrderAndTheExperiment) {
@@ -118,7 +120,7 @@ TEST(Export, MatHasTheArraysInMatlabsOrderAndTheExperiment) {
   const Table table = ReadCsv(scratch.File("run/states.csv"), columns);
   const std::string path = scratch.File("run/states.mat");
   EXPECT_THAT(MatNames(path), ElementsAre("experiment", "config", "id", "t", "position", "velocity", "orientation",
-                                          "angular_velocity", "acceleration_command", "actuator"));
+                                          "angular_velocity", "acceleration_command", "actuator", "flags"));
   EXPECT_EQ(MatVariable(path, "experiment").text(), u"two");
   const std::string config = ReadFile(scratch.File("run/config.toml"));
   EXPECT_EQ(MatVariable(path, "config").text(), std::u16string(config.begin(), config.end()));
@@ -144,6 +146,7 @@ TEST(Export, MatHasTheArraysInMatlabsOrderAndTheExperiment) {
           ASSERT_EQ(values[k + kTicks * (i + 2 * c)], table[2 * k + i][first + c]) << name << " at tick " << k;
     first += static_cast<std::size_t>(width);
   }
+  EXPECT_THAT(MatVariable(path, "flags").dimensions(), ElementsAre(kTicks, 2)) << "one number per agent";
 }
 
 TEST(Export, ACutRecordingIsExportedUpToTheCutWhereverThatIs) {
@@ -196,6 +199,7 @@ void WriteLateRun(const ScratchFolder& scratch, const std::string& name) {
       Serialize(state, row.states[static_cast<std::size_t>(id - 1)]);
       Command wanted;
       wanted.actuator[0] = 100.0 * id + static_cast<double>(row.tick);
+      wanted.flags = id == 2 ? kSafetyFiltered | kSafetyInfeasible : 0;
       ToWire(row.tick, 100, id, wanted, command);
       Row::Bytes& bytes = row.commands[static_cast<std::size_t>(id - 1)];
       if (id == 1 || row.tick % 3 == 1)
@@ -216,11 +220,14 @@ TEST(Export, InRealTimeALateCommandIsHeldAsInTheRunsOwnStates) {
   Export({scratch.File("run"), "--format", "csv"});
   std::string columns;
   const Table table = ReadCsv(scratch.File("run/states.csv"), columns);
-  const std::size_t actuator = table[0].size() - 4;
+  const std::size_t actuator = table[0].size() - 5, flags = table[0].size() - 1;
   EXPECT_EQ(table[1][actuator], 0) << "no command so far";
   EXPECT_EQ(table[2 * 1 + 1][actuator], 201);
   EXPECT_EQ(table[2 * 3 + 1][actuator], 201) << "held";
   EXPECT_EQ(table[2 * 4 + 1][actuator], 204);
+  EXPECT_EQ(table[1][flags], 0) << "no command so far";
+  EXPECT_EQ(table[2 * 4][flags], 0);
+  EXPECT_EQ(table[2 * 4 + 1][flags], 48) << "16 + 32";
 }
 
 TEST(Export, WithoutStatesThereIsNothingToExport) {
@@ -236,8 +243,9 @@ TEST(Export, WithoutCommandsTheirArraysAreLeftOutWithAWarning) {
   Fly(scratch, "run", {"--set", "record.topics=['*/state', '/agent_1/*']"});
   const Said said = Export({scratch.File("run"), "--format", "csv"});
   EXPECT_EQ(said.exit_code, 0);
-  EXPECT_EQ(said.err, "warning: " + scratch.File("run/run.mcap") +
-                          ": record.topics left out commands; exported without acceleration_command, actuator\n");
+  EXPECT_EQ(said.err,
+            "warning: " + scratch.File("run/run.mcap") +
+                ": record.topics left out commands; exported without acceleration_command, actuator, flags\n");
   std::string columns;
   EXPECT_EQ(ReadCsv(scratch.File("run/states.csv"), columns).size(), 2 * kTicks);
   EXPECT_THAT(columns, EndsWith(",angular_velocity_x,angular_velocity_y,angular_velocity_z"));

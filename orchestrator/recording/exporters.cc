@@ -46,8 +46,11 @@ void WriteCsv(const Recording& recording, const std::string& path) {
   for (std::size_t a = 1; a < kStateArrays.size(); ++a) {
     if (!IsExported(kStateArrays[a], recording)) continue;
     arrays.push_back(a);
-    for (const char component : kStateArrays[a].components)
-      columns.push_back(std::string(kStateArrays[a].name) + "_" + component);
+    const std::string name(kStateArrays[a].name);
+    if (kStateArrays[a].has_one())
+      columns.push_back(name);
+    else
+      for (const char component : kStateArrays[a].components) columns.push_back(name + "_" + component);
   }
   CsvWriter csv(path, columns);
   ForEachStateRow(recording, [&](std::int64_t tick, const StateRow& row) {
@@ -69,12 +72,13 @@ void WriteCsv(const Recording& recording, const std::string& path) {
 /// must be in memory.
 struct Transposed {
   std::size_t array;                    // index into kStateArrays
-  std::vector<std::size_t> dimensions;  // T x N x components, or T x 1
+  std::vector<std::size_t> dimensions;  // T x N x components, T x N, or T x 1
   std::vector<double> values;
 
   Transposed(std::size_t a, std::size_t ticks, std::size_t agents) : array(a), dimensions{ticks, 1} {
     const StateArray& of = kStateArrays[a];
-    if (!of.components.empty()) dimensions = {ticks, agents, of.components.size()};
+    if (!of.components.empty()) dimensions[1] = agents;
+    if (of.components.size() > 1) dimensions.push_back(of.components.size());
     MatWriter::RequireFits(std::string(of.name), dimensions);
     values.resize(ticks * of.row_values(agents));
   }

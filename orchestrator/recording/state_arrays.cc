@@ -11,9 +11,10 @@ enum ArrayIndex : std::size_t {
   kOrientation,
   kAngularVelocity,
   kAccelerationCommand,
-  kActuator
+  kActuator,
+  kFlags
 };
-static_assert(kStateArrays[kTime].name == "t" && kStateArrays[kActuator].name == "actuator");
+static_assert(kStateArrays[kTime].name == "t" && kStateArrays[kFlags].name == "flags");
 
 }  // namespace
 
@@ -37,6 +38,7 @@ void StateRow::Set(double t_s, const DecodedRow& decoded) {
     put(kAngularVelocity, i, motion.w_WB_B);
     put(kAccelerationCommand, i, decoded.commands[i].a_limited_W);
     put(kActuator, i, decoded.commands[i].actuator);
+    put(kFlags, i, std::array{static_cast<double>(decoded.commands[i].flags)});
   }
 }
 

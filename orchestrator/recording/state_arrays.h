@@ -12,15 +12,17 @@ namespace mascot {
 /// One of the arrays of states.npz, which have one row per tick. docs/recording.md says what each contains.
 struct StateArray {
   std::string_view name;
-  std::string_view components;  ///< per agent, one letter each; empty: one number per row, not per agent
-  bool of_command = false;      ///< taken from the commands, not from the states
+  /// Per agent, one letter each; "1": one number per agent; empty: one number per row, not per agent.
+  std::string_view components;
+  bool of_command = false;  ///< taken from the commands, not from the states
 
+  bool has_one() const { return components == "1"; }
   /// Number of values in a row.
   std::size_t row_values(std::size_t agents) const { return components.empty() ? 1 : agents * components.size(); }
 };
 
 /// All arrays, in the order of states.npz.
-inline constexpr std::array<StateArray, 7> kStateArrays = {{
+inline constexpr std::array<StateArray, 8> kStateArrays = {{
     {"t", ""},
     {"position", "xyz"},
     {"velocity", "xyz"},
@@ -28,6 +30,7 @@ inline constexpr std::array<StateArray, 7> kStateArrays = {{
     {"angular_velocity", "xyz"},
     {"acceleration_command", "xyz", true},
     {"actuator", "1234", true},
+    {"flags", "1", true},
 }};
 
 /// One tick's row of every array of kStateArrays.

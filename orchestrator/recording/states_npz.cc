@@ -9,7 +9,8 @@ StatesNpz::StatesNpz(const std::string& path, int agents, bool commands) : npz_(
     const StateArray& array = kStateArrays[a];
     if (array.of_command && !commands) continue;
     std::vector<std::size_t> shape;
-    if (!array.components.empty()) shape = {static_cast<std::size_t>(agents), array.components.size()};
+    if (!array.components.empty()) shape.push_back(static_cast<std::size_t>(agents));
+    if (array.components.size() > 1) shape.push_back(array.components.size());
     columns_.push_back({a, npz_.AddArray(std::string(array.name), shape)});
     if (array.name != "t") continue;
     std::vector<std::int64_t> ids(static_cast<std::size_t>(agents));

@@ -28,7 +28,7 @@ int Export(const ExportArgs& args) {
     std::cerr << "warning: " << recording.path() << ": " << recording.loss() << "; exported what comes before\n";
   if (!recording.has_commands())
     std::cerr << "warning: " << recording.path()
-              << ": record.topics left out commands; exported without acceleration_command, actuator\n";
+              << ": record.topics left out commands; exported without acceleration_command, actuator, flags\n";
   std::cout << target << ": " << recording.ticks() << " ticks, " << recording.agents() << " agents" << std::endl;
   return recording.loss().empty() ? kExitDone : kExitIncomplete;
 }
