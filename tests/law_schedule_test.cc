@@ -270,6 +270,7 @@ TEST(LawSchedule, EachPhaseIsMeasuredAsARunOfItsOwn) {
   EXPECT_EQ(phases[0]["law"], "formation");
   EXPECT_EQ(phases[0]["consensus"], first.summary["consensus"]);
   EXPECT_EQ(phases[0]["formation"], first.summary["formation"]);
+  EXPECT_EQ(phases[0]["drawing"], first.summary["drawing"]);
   EXPECT_EQ(phases[1]["at_s"], 20.0);
   EXPECT_EQ(phases[1]["consensus"], run.summary["consensus"]) << "the summary is of the last phase";
   const double measured_s = phases[1]["consensus"]["settling_time_s"].get<double>();

@@ -378,6 +378,13 @@ TEST(SwitchingGraph, StillMeetsAtTheMean) {
   EXPECT_NEAR(consensus["rate_per_s"].get<double>(), rate_per_s, 0.01 * rate_per_s);
   EXPECT_EQ(consensus["predicted"]["persistence"]["never_alone"], true);
   EXPECT_LT(consensus["deviation"]["value_m"].get<double>(), 1e-9);
+  const auto schedule = flight.summary["graph"]["schedule"];
+  ASSERT_EQ(schedule.size(), 2U);
+  EXPECT_EQ(schedule[0]["at_s"], 0.0);
+  EXPECT_EQ(schedule[1]["at_s"], 0.5);
+  EXPECT_EQ(schedule[1]["edges"][0], nlohmann::json({1, 6, 1.0})) << "each of its graphs has six of the twelve edges";
+  EXPECT_EQ(schedule[1]["edges"].size(), 6U);
+  EXPECT_EQ(flight.summary["graph"]["edges"].size(), 12U);
 }
 
 TEST(CustomLawInPython, ChasesAroundTheCircle) {

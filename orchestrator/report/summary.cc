@@ -23,6 +23,16 @@ Json EdgesOf(const Graph& graph) {
   return edges;
 }
 
+/// Who hears whom at any time and, if the graph switches, when.
+Json GraphJson(const Experiment& experiment) {
+  Json graph = {{"edges", EdgesOf(experiment.graph)}};
+  if (experiment.schedule.phases().size() == 1) return graph;
+  graph["schedule"] = Json::array();
+  for (const Schedule::Phase& phase : experiment.schedule.phases())
+    graph["schedule"].push_back({{"at_s", phase.at_s}, {"edges", EdgesOf(phase.graph)}});
+  return graph;
+}
+
 Json Safety(const Measured& measured, const std::optional<Contacts>& contacts, const Prediction& prediction) {
   Json safety;
   safety["min_separation_m"] = OrNull(measured.min_separation_m);
@@ -90,7 +100,9 @@ Json Phases(const Experiment& experiment, const RunMeter& meter, const Predictio
   Json phases = Json::array();
   for (std::size_t k = 0; k < meter.phases().size(); ++k) {
     const PhaseMeter& phase = meter.phases()[k];
-    Json json = {{"at_s", experiment.time_s(phase.from())}, {"law", phase.experiment().law.name}};
+    Json json = {{"at_s", experiment.time_s(phase.from())},
+                 {"law", phase.experiment().law.name},
+                 {"drawing", ToJson(EntryOf(phase.experiment().law).drawing)}};
     json.update(PhaseJson(meter, k, prediction));
     phases.push_back(std::move(json));
   }
@@ -180,7 +192,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
   json["failure"] = engine.failure.empty() ? Json(nullptr) : Json(engine.failure);
   json["samples"] = {{"topics", facts.topics}, {"recorded", facts.samples}, {"lost", engine.lost}};
   json["wire"] = {{"matches_graph", OrNull(engine.wire_matches_graph)}};
-  json["graph"] = {{"edges", EdgesOf(experiment.graph)}};
+  json["graph"] = GraphJson(experiment);
   const std::size_t last = meter.phases().size() - 1;
   json["drawing"] = ToJson(EntryOf(meter.phases()[last].experiment().law).drawing);
   json.update(PhaseJson(meter, last, prediction));
