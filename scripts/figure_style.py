@@ -1,7 +1,21 @@
-"""Style of the plots of runs, sweeps and benchmarks."""
+"""Style of the pictures of runs, sweeps and benchmarks: colours, sizes, legends, and how they are saved."""
+
+import math
+import textwrap
+from dataclasses import dataclass
+
+import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
 
 # Palette of Okabe and Ito, which colour-blind readers can distinguish; the palest colours last.
 OKABE_ITO = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442"]
+# With more lines than colours, each colour but the palest comes in these; dashes are left for other uses.
+LINE_STYLES = ["-", ":", "-.", (0, (7, 1.5, 1, 1.5, 1, 1.5))]
+DASHED = "--"
+LOOKS_MAX = (len(OKABE_ITO) - 1) * len(LINE_STYLES)  # more lines than this share a colour bar
+# Their colours: viridis without its palest end.
+MANY = matplotlib.colors.ListedColormap(plt.get_cmap("viridis")(np.linspace(0, 0.95, 256)), "many")
 STYLE = {
     "axes.axisbelow": True,
     "axes.edgecolor": "0.4",
@@ -12,8 +26,154 @@ STYLE = {
     "axes.titlesize": 10,
     "figure.constrained_layout.use": True,
     "figure.dpi": 120,
+    "figure.titlesize": 11,
     "font.size": 9,
     "grid.color": "0.9",
     "legend.fontsize": 8,
     "legend.frameon": False,
+    "lines.linewidth": 1.2,
+    "pdf.fonttype": 42,  # embeds fonts as TrueType: journals refuse Type 3
+    "svg.hashsalt": "mascot",  # or else names within the file are drawn at random
 }
+PAPER = {  # in addition, at true size
+    "axes.linewidth": 0.6,
+    "axes.titlesize": 8,
+    "figure.constrained_layout.h_pad": 0.02,
+    "figure.constrained_layout.w_pad": 0.02,
+    "figure.dpi": 300,
+    "figure.titlesize": 8,
+    "font.size": 8,
+    "legend.columnspacing": 1.2,
+    "legend.handlelength": 1.8,
+    "legend.handletextpad": 0.5,
+    "lines.linewidth": 1.0,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+}
+
+
+@dataclass(frozen=True)
+class Size:
+    """Of pictures: widths and heights in inches."""
+
+    width: float
+    panel: float  # height of a panel over time
+    single: float  # height of the only panel over time
+    square: float  # height of a picture as wide as high, about
+    small_pt: float  # smallest letters
+    is_paper: bool = True  # a caption is below it, and no title in it
+    is_narrow: bool = False  # legends are below, not beside
+
+
+SIZES = {
+    "screen": Size(8, panel=1.9, single=4.2, square=6, small_pt=7, is_paper=False),
+    "column": Size(3.5, panel=1.15, single=2.3, square=3, small_pt=8, is_narrow=True),  # of IEEE's journals
+    "page": Size(7.16, panel=1.35, single=2.8, square=4.6, small_pt=8),  # both columns
+}
+FORMATS = ("png", "pdf", "svg")
+NO_DATES = {"png": {"Software": None}, "svg": {"Creator": None, "Date": None},
+            "pdf": {"Creator": None, "Producer": None, "CreationDate": None}}
+
+
+class Chosen:
+    """The size in use."""
+
+    size = SIZES["screen"]
+
+
+def use(name):
+    """Draws in this size from now on, whatever the user's own matplotlibrc says."""
+    Chosen.size = SIZES[name]
+    paper = PAPER if Chosen.size.is_paper else {}
+    matplotlib.rcParams.update(matplotlib.rcParamsDefault | STYLE | paper | {"backend": plt.get_backend()})
+
+
+def size():
+    return Chosen.size
+
+
+def small():
+    return {"fontsize": size().small_pt, "color": "0.3"}
+
+
+def looks(count):
+    """Colours and line styles of so many lines."""
+    if count <= len(OKABE_ITO):
+        return [(colour, "-") for colour in OKABE_ITO[:count]]
+    if count <= LOOKS_MAX:
+        return [(colour, style) for style in LINE_STYLES for colour in OKABE_ITO[:-1]][:count]
+    return [(MANY(k / (count - 1)), "-") for k in range(count)]
+
+
+def shades(palette, most=16):
+    """(M, 3), M up to 256: the colours and grey, each in shades up to white: all that a picture in them needs."""
+    count = min(most, 256 // (len(palette) + 1))
+    rows = [np.linspace(matplotlib.colors.to_rgb(colour), (1, 1, 1), count, endpoint=False) for colour in palette]
+    rows.append(np.linspace((0, 0, 0), (1, 1, 1), count))
+    return np.rint(255 * np.concatenate(rows)).astype(np.uint8)
+
+
+def title(figure, text):
+    """Names the picture, where no caption does."""
+    if not size().is_paper:
+        figure.suptitle(text, x=0.01, ha="left")
+
+
+def keep_free(figure, right=0.0, below=0.0):
+    """Keeps these parts of the figure free of panels."""
+    if engine := figure.get_layout_engine():
+        engine.set(rect=(0, below, 1 - right, 1 - below))
+
+
+def add_legend(figure, handles, labels, is_below=False):
+    """Adds a legend beside the panels, or below them, in as many columns as fit, and keeps its place free. A legend
+    below makes the figure higher: the panels keep their height."""
+    if not handles:
+        return
+    width, height = figure.get_size_inches()
+
+    def legend(columns, **where):
+        made = figure.legend(handles, labels, ncols=columns, borderaxespad=0.4, **where)
+        extent = made.get_window_extent(figure.canvas.get_renderer())
+        pad = 0.8 * plt.rcParams["legend.fontsize"] / 72
+        return made, extent.width / figure.dpi + pad, extent.height / figure.dpi + pad
+
+    if size().is_narrow or is_below:
+        for columns in range(min(len(handles), 8), 0, -1):
+            made, wide, high = legend(columns, loc="lower center")
+            if wide <= width or columns == 1:
+                break
+            made.remove()
+        figure.set_figheight(height + high)
+        keep_free(figure, below=high / (height + high))
+        return
+    top = 0 if size().is_paper else 2.2 * plt.rcParams["figure.titlesize"] / 72
+    for columns in range(1, len(handles) + 1):
+        made, wide, high = legend(columns, loc="upper right", bbox_to_anchor=(1, 1 - top / height))
+        if high <= height - top or columns == len(handles):
+            break
+        made.remove()
+    keep_free(figure, right=wide / width)
+
+
+def wrap_labels(figure):
+    """Breaks the labels of vertical axes that are longer than their axis."""
+    def may_be_longer(axis):
+        long_pt = 0.6 * axis.yaxis.label.get_fontsize() * len(axis.get_ylabel())
+        return long_pt > 0.6 * 72 * axis.get_window_extent().height / figure.dpi
+
+    if not any(map(may_be_longer, figure.axes)):
+        return  # laying out the panels takes time
+    figure.draw_without_rendering()
+    renderer = figure.canvas.get_renderer()
+    for axis in figure.axes:
+        label = axis.yaxis.label
+        long, most = label.get_window_extent(renderer).height, axis.get_window_extent(renderer).height
+        if label.get_text() and long > most:
+            width = math.floor(len(label.get_text()) * most / long)
+            label.set_text("\n".join(textwrap.wrap(label.get_text(), max(8, width), break_long_words=False)))
+
+
+def save(figure, path):
+    """Writes the picture in the format that the ending of its name says: for the same run, the same bytes."""
+    figure.savefig(path, metadata=NO_DATES[path.suffix[1:]])

@@ -1,4 +1,4 @@
-"""Reads a run folder and computes the quantities that scripts/plot.py plots."""
+"""Reads a run folder and computes the quantities that its pictures show."""
 
 import json
 import tomllib
@@ -10,6 +10,7 @@ import numpy as np
 
 DRAWING = {"leader": "leader", "switches": False, "pictures": [], "telling": "paths", "hull": "", "cells": ""}
 ARRAYS = {"position": 3, "velocity": 3, "acceleration_command": 3}  # name -> numbers per agent and row
+FILTERED, INFEASIBLE = 16, 32  # bits of flags: law.safety changed the command; it found no safe one
 
 
 class RunError(Exception):
@@ -21,12 +22,24 @@ class RunError(Exception):
 
 
 @dataclass
+class Span:
+    """A phase of the law."""
+
+    at_s: float
+    rows: np.ndarray  # (T): which rows of the run are its own
+    law: dict  # its table in config.toml
+    drawing: dict
+    summary: dict  # what summary.json says of it
+
+
+@dataclass
 class Run:
     t: np.ndarray
     id: np.ndarray
     position: np.ndarray
     velocity: np.ndarray
     acceleration_command: np.ndarray
+    flags: np.ndarray  # (T, N); of a run of an earlier version: 0
     config: dict
     summary: dict
 
@@ -44,22 +57,36 @@ class Run:
         return self.summary.get("phases", [])
 
     @property
+    def spans(self):
+        """The phases of the law that have begun, one if there is no schedule."""
+        law = self.config.get("law", {})
+        tables = [{**law, "at_s": self.t[0]}, *law.get("schedule", [])]
+        tables = [table for table in tables if table["at_s"] <= self.t[-1]]
+        ends = [*(table["at_s"] for table in tables[1:]), np.inf]
+        told = self.phases if len(self.phases) == len(tables) else [self.summary] * len(tables)
+        return [Span(table["at_s"], (self.t >= table["at_s"]) & (self.t < end), table,
+                     DRAWING | phase.get("drawing", self.summary.get("drawing", {})), phase)
+                for table, end, phase in zip(tables, ends, told)]
+
+    @property
     def law(self):
         """The table of the law, of the phase in which the run ended."""
-        law = self.config.get("law", {})
-        begun = [phase for phase in law.get("schedule", []) if phase["at_s"] <= self.t[-1]]
-        return begun[-1] if begun else law
+        return self.spans[-1].law
 
     @property
     def drawing(self):
         """How to plot the law, from its row in the table of laws."""
         return DRAWING | self.summary.get("drawing", {})
 
+    def leader_of(self, law):
+        """Index of the leader (or root) that a table of a law names, or None."""
+        number = law.get("leader", 0)
+        return number - 1 if 1 <= number <= self.size else None
+
     @property
     def leader(self):
-        """Index of the leader (or root), or None."""
-        number = self.law.get("leader", 0)
-        return number - 1 if 1 <= number <= self.size else None
+        """Index of the leader (or root) at the end, or None."""
+        return self.leader_of(self.law)
 
     @property
     def leads(self):
@@ -89,6 +116,40 @@ class Run:
         return [(int(e[0]) - 1, int(e[1]) - 1) for e in self.summary.get("graph", {}).get("edges", [])]
 
     @property
+    def graphs(self):
+        """(begin, end, edges) in order of time: who hears whom from begin to end (s), by the schedule of the graph and
+        by events. Whether the agents are near enough (graph.range_m) is not asked."""
+        found, has, cut = [], frozenset(), frozenset()
+        for at_s, change in self.changes_of_graph():
+            if isinstance(change, dict):
+                cut = cut_by(change, cut, self.edges)
+            else:
+                has = change
+            if found and at_s - found[-1][0] < 1e-9:
+                found.pop()
+            if not found or found[-1][1] != has - cut:
+                found.append((at_s, has - cut))
+        ends = [*(at_s for at_s, _ in found[1:]), self.t[-1]]
+        return [(at_s, until_s, working) for (at_s, working), until_s in zip(found, ends)]
+
+    def changes_of_graph(self):
+        """(time, edges of the schedule from then on, or event) in order; at one time the schedule comes first."""
+        told, end_s = self.summary.get("graph", {"edges": []}), self.t[-1]
+        phases = told.get("schedule") or [{"at_s": 0, "edges": told["edges"]}]
+        repeat_s = self.config.get("graph", {}).get("repeat_s")
+        cycles = range(int(np.ceil((end_s - 1e-9) / repeat_s)) or 1) if repeat_s else [0]
+        changes = [((n * repeat_s if n else 0) + phase["at_s"], pairs(phase["edges"])) for n in cycles for phase in phases]
+        changes += [(event["at_s"], event) for event in self.config.get("events", [])
+                    if {"cut", "mend", "graph"} & event.keys()]
+        return sorted((change for change in changes if change[0] <= end_s), key=lambda change: change[0])
+
+    @property
+    def events(self):
+        """(time, words) of what changed the run, in order, without the phases of the law."""
+        told = [(event["at_s"], words_of(event)) for event in self.config.get("events", [])]
+        return sorted(((at_s, words) for at_s, words in told if words and at_s <= self.t[-1]), key=lambda of: of[0])
+
+    @property
     def places(self):
         """(T, N, 3): the agents' places in their formation in each row; zero for other laws."""
         places = np.zeros((self.t.size, self.size, 3))
@@ -104,6 +165,36 @@ class Run:
 
     def output(self, key):
         return self.config.get("output", {}).get(key, key != "show_plot")
+
+
+def pairs(edges):
+    return frozenset((int(edge[0]) - 1, int(edge[1]) - 1) for edge in edges)
+
+
+def cut_by(event, cut, declared):
+    """The edges that work no more after an event, of those declared."""
+    if "graph" in event:
+        return frozenset(declared) - pairs(event["graph"]["edges"])
+    return (cut | pairs(event.get("cut", []))) - pairs(event.get("mend", []))
+
+
+def number(value):
+    return f"{value:g}" if isinstance(value, (int, float)) and not isinstance(value, bool) else str(value)
+
+
+def words_of(event):
+    """What an event of config.toml does, in few words."""
+    words = [f"{key.split('.')[-1]} = {number(value)}" for key, value in event.get("set", {}).items()]
+    if words and "agents" in event:
+        words.append("of " + ", ".join(map(str, event["agents"])))
+    if "goto" in event:
+        words.append(f"goto {event['goto']['agent']}")
+    for key in ("cut", "mend"):
+        if edges := event.get(key):
+            words.append(f"{key} {edges[0][0]},{edges[0][1]}" + (f" and {len(edges) - 1} more" if edges[1:] else ""))
+    if "graph" in event:
+        words.append("another graph")
+    return ", ".join(words)
 
 
 FORMAT = 1  # of config.toml and summary.json: the newest that is understood here
@@ -130,6 +221,7 @@ def read_states(path):
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as states:
             arrays = {name: states[name] for name in ["t", "id", *ARRAYS]}
+            arrays["flags"] = states["flags"].astype(int) if "flags" in states else None
     except KeyError as error:
         raise RunError(f"{path}: {str(error.args[0]).split(' is not')[0]}: no such array") from None
     except FileNotFoundError:
@@ -143,6 +235,10 @@ def read_states(path):
     for name, width in ARRAYS.items():
         if arrays[name].shape != (rows, agents, width):
             raise RunError(f"{path}: {name}: expected shape ({rows}, {agents}, {width}), got {arrays[name].shape}")
+    if arrays["flags"] is None:
+        arrays["flags"] = np.zeros((rows, agents), dtype=int)
+    if arrays["flags"].shape != (rows, agents):
+        raise RunError(f"{path}: flags: expected shape ({rows}, {agents}), got {arrays['flags'].shape}")
     if rows == 0 or agents == 0:
         raise RunError(f"{path}: holds no tick")
     return arrays
@@ -159,10 +255,25 @@ def read_run(folder):
 
 def disagreement(run):
     """(T, N): distance of every agent to the leader, or else to the mean of those who do not lie, along the axes of the
-    law (m). In a formation, the places are subtracted from the positions first."""
+    law (m); the leader is that of the phase. In a formation, the places are subtracted from the positions first. NaN in
+    phases whose law does not make agents agree."""
     p = (run.position - run.places)[:, :, run.axes]
-    reference = p[:, run.honest].mean(axis=1, keepdims=True) if run.leader is None else p[:, [run.leader]]
-    return np.linalg.norm(p - reference, axis=2)
+    distance = np.full(p.shape[:2], np.nan)
+    for span in run.spans:
+        if "disagreement" in span.drawing["pictures"]:
+            of, leader = p[span.rows], run.leader_of(span.law)
+            reference = of[:, run.honest].mean(axis=1, keepdims=True) if leader is None else of[:, [leader]]
+            distance[span.rows] = np.linalg.norm(of - reference, axis=2)
+    return distance
+
+
+def separation(run):
+    """(T): smallest distance between two agents along the axes of the law (m)."""
+    p = run.position[:, :, run.axes]
+    least = np.full(run.t.size, np.inf)
+    for k in range(1, run.size):
+        least = np.minimum(least, np.linalg.norm(p[:, k:] - p[:, :-k], axis=2).min(axis=1))
+    return least
 
 
 def spanning_tree(run):

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Tests of scripts/plot.py and scripts/law_pictures: which plots they make, what these contain, and error messages."""
+"""Tests of scripts/plot.py and scripts/law_pictures: which pictures they make, what these contain, how large
+they are, and error messages."""
 
 import contextlib
 import importlib.machinery
@@ -8,16 +9,21 @@ import io
 import json
 import os
 import pathlib
+import re
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "scripts"))
 sys.dont_write_bytecode = True
+import figure_style
+import pictures
 import plot
 import run_folder
+from matplotlib.quiver import Quiver
 
 loader = importlib.machinery.SourceFileLoader("law_pictures", str(pathlib.Path(plot.__file__).parent / "law_pictures"))
 law_pictures = importlib.util.module_from_spec(importlib.util.spec_from_loader("law_pictures", loader))
@@ -46,7 +52,15 @@ def arrays(agents=3, rows=51):
 
 
 def setUpModule():
-    plot.STYLE |= {"figure.dpi": 30, "figure.constrained_layout.use": False}  # to be fast: nobody looks at these plots
+    figure_style.STYLE |= {"figure.dpi": 30, "figure.constrained_layout.use": False}  # fast: nobody looks at these
+
+
+@contextlib.contextmanager
+def laid_out(dpi=30):
+    """Panels have their true places meanwhile."""
+    changed = {"figure.constrained_layout.use": True, "figure.dpi": dpi}
+    with mock.patch.dict(figure_style.STYLE, changed), mock.patch.dict(figure_style.PAPER, {"figure.dpi": dpi}):
+        yield
 
 
 class PlotTest(unittest.TestCase):
@@ -70,12 +84,16 @@ class PlotTest(unittest.TestCase):
             code = plot.main([str(self.folder), *options])
         return code, errors.getvalue()
 
+    def check(self, code, message, *options):
+        self.assertEqual(self.run_plot(*options), (code, f"error: {message}\n"))
+
     def pictures(self):
         return sorted(path.stem for path in self.folder.glob("*.png"))
 
     def figure(self, name, **what):
         self.write(**what)
-        return plot.PICTURES[name].draw(run_folder.read_run(self.folder))
+        figure_style.use("screen")
+        return pictures.PICTURES[name].draw(run_folder.read_run(self.folder))
 
 
 class Pictures(PlotTest):
@@ -109,6 +127,13 @@ class Pictures(PlotTest):
                 for name in ["paths", "velocity"] + ["disagreement"] * (agents > 1):
                     self.assertEqual(self.run_plot("--only", name), (0, ""))
 
+    def test_up_replaces_all_pictures_by_name(self):
+        told = (pathlib.Path(plot.__file__).parent.parent / "orchestrator/recording/run_folder.cc").read_text()
+        names = re.search(r"kPictures\[\] = \{(.*?)\}", told, re.S)[1]
+        self.assertEqual(sorted(re.findall(r'"(\w+)"', names)), sorted(pictures.PICTURES))
+        endings = re.search(r"kPictureFormats\[\] = \{(.*?)\}", told, re.S)[1]
+        self.assertEqual(re.findall(r'"\.(\w+)"', endings), list(figure_style.FORMATS))
+
     def test_only_draws_one(self):
         self.write()
         self.assertEqual(self.run_plot("--only", "velocity"), (0, ""))
@@ -133,7 +158,7 @@ class Switches(PlotTest):
     def test_velocity_plot_off_leaves_the_others(self):
         self.write(MINMAX + "[output]\nvelocity_plot = false\n", PATH)
         self.assertEqual(self.run_plot()[0], 0)
-        self.assertEqual(self.pictures(), ["disagreement", "paths", "position", "tracking"])
+        self.assertEqual(self.pictures(), ["disagreement", "graph", "paths", "position", "tracking"])
 
     def test_save_plot_off_writes_none_and_says_so(self):
         self.write(CONSENSUS + "[output]\nsave_plot = false\n")
@@ -233,8 +258,8 @@ class WhatIsInThem(PlotTest):
         corners = axis.patches[0].get_xy()[:-1]  # without the first one again
         self.assertEqual(corners.tolist(), [[0, 0], [2, 0], [1, 2]])
         lines = self.lines(axis)
-        self.assertEqual([lines[name].get_linewidth() for name in ("agent 1 (leader)", "agent 4")], [2.2, 1.2])
-        self.assertIn("hull of leaders", [text.get_text() for text in axis.get_legend().get_texts()])
+        self.assertEqual([lines[name].get_linewidth() for name in ("agent 1 (leader)", "agent 4")], [1.8 * 1.2, 1.2])
+        self.assertIn("hull of leaders", axis.get_legend_handles_labels()[1])
 
     def test_the_hull_of_two_leaders_is_a_line(self):
         self.assertEqual(run_folder.hull(np.array([[1, 0], [0, 0]])).tolist(), [[0, 0], [1, 0]])
@@ -285,24 +310,258 @@ class WhatIsInThem(PlotTest):
         np.testing.assert_array_equal(targets[20], [4, 4, 1])
 
     def test_agents_are_named_in_a_legend_and_many_by_a_colour_bar(self):
-        legend = self.figure("paths", config=LEADER).axes[0].get_legend()
+        legend = self.figure("paths", config=LEADER).legends[0]
         names = [text.get_text() for text in legend.get_texts()]
         self.assertEqual(names, ["agent 1", "agent 2 (leader)", "agent 3", "start", "end"])
-        many = self.figure("position", states=arrays(agents=11))
-        self.assertIsNone(many.axes[0].get_legend())
+        several = self.figure("position", states=arrays(agents=figure_style.LOOKS_MAX))
+        self.assertEqual(len(several.legends[0].get_texts()), figure_style.LOOKS_MAX)
+        many = self.figure("position", states=arrays(agents=50))
+        self.assertEqual(many.legends, [])
         self.assertEqual(many.axes[-1].get_ylabel(), "agent")
 
-    def test_colours_differ_and_are_okabe_and_itos_up_to_eight(self):
-        self.write(states=arrays(agents=8))
-        self.assertEqual(sorted(plot.colours(run_folder.read_run(self.folder))), sorted(plot.OKABE_ITO))
-        self.write(states=arrays(agents=100))
-        self.assertEqual(len(set(plot.colours(run_folder.read_run(self.folder)))), 100)
+    def test_no_two_agents_look_alike_and_colours_are_okabe_and_itos_if_they_suffice(self):
+        for agents in (1, 8, 9, 10, 28, 29, 50, 100):
+            with self.subTest(agents=agents):
+                looks = figure_style.looks(agents)
+                self.assertEqual(len(set(map(str, looks))), agents)
+                self.assertEqual(all(colour in figure_style.OKABE_ITO for colour, _ in looks), agents <= 28)
+                self.assertNotIn(figure_style.DASHED, [line for _, line in looks], "dashes are those of liars")
+        self.assertEqual({line for _, line in figure_style.looks(8)}, {"-"})
+        lines = self.lines(self.figure("position", states=arrays(agents=10)).axes[0])
+        self.assertEqual(lines["agent 1"].get_color(), lines["agent 8"].get_color())
+        self.assertEqual([lines[f"agent {k}"].get_linestyle() for k in (1, 8)], ["-", ":"])
 
     def test_the_graph_and_the_prediction_are_drawn(self):
         summary = PATH | {"consensus": {"settling_time_s": None, "predicted": {"value_m": [1, 2, 3]}}}
         axis = self.figure("paths", summary=summary).axes[0]
         self.assertEqual(len(axis.collections[0].get_segments()), 2)  # two pairs that hear each other
+        self.assertEqual([c for c in axis.collections if isinstance(c, Quiver)], [])
         self.assertEqual([list(d) for d in self.lines(axis)["predicted"].get_data()], [[1], [2]])
+
+    def test_an_edge_in_one_direction_is_an_arrow_to_who_hears(self):
+        edges = [[1, 2, 1.0], [2, 1, 1.0], [3, 1, 1.0]]  # 3 hears 1, and not the other way round
+        axis = self.figure("paths", summary={"graph": {"edges": edges}}).axes[0]
+        self.assertEqual(len(axis.collections[0].get_segments()), 2)
+        (arrows,) = (c for c in axis.collections if isinstance(c, Quiver))
+        start = arrays()["position"][0, :, :2]  # the agents end close together: the graph is where they start
+        way = start[2] - start[0]
+        np.testing.assert_allclose([arrows.U[0], arrows.V[0]], way / np.linalg.norm(way))
+        np.testing.assert_allclose(arrows.XY[0], start[0] + 0.62 * way)
+        self.assertLessEqual({"hear each other", "arrow to who hears"}, self.lines(axis).keys())
+
+
+class Graphs(PlotTest):
+    """The picture of who hears whom, and when."""
+
+    A, B = [[1, 2, 1.0], [2, 1, 1.0]], [[3, 2, 1.0]]
+    TWO = {"graph": {"edges": A + B, "schedule": [{"at_s": 0, "edges": A}, {"at_s": 1.5, "edges": B}]}}
+
+    def titles(self, figure):
+        return [axis.get_title() for axis in figure.axes]
+
+    def test_a_graph_that_stays_has_one_panel(self):
+        self.assertEqual(self.titles(self.figure("graph", summary=PATH)), ["at any time"])
+
+    def test_each_distinct_graph_has_a_panel_with_its_times(self):
+        figure = self.figure("graph", summary=self.TWO)
+        self.assertEqual(self.titles(figure), ["0 to 1.5 s", "1.5 to 5 s"])
+        self.assertEqual([sum(isinstance(c, Quiver) for c in axis.collections) for axis in figure.axes], [0, 1])
+        figure = self.figure("graph", summary=self.TWO, config=CONSENSUS + "[graph]\nrepeat_s = 2.0\n")
+        self.assertEqual(self.titles(figure), ["0 to 1.5 s\nof each 2 s", "1.5 to 2 s\nof each 2 s"])
+        figure = self.figure("graph", summary=PATH, config=CONSENSUS + "[graph]\nrange_m = 2.5\n")
+        self.assertEqual(self.titles(figure), ["at any time\nwithin 2.5 m"])
+
+    def test_events_change_the_graph(self):
+        config = CONSENSUS + ('[[events]]\nat_s = 1.0\ncut = [[1, 2]]\n[[events]]\nat_s = 2.0\nmend = [[1, 2]]\n'
+                              '[[events]]\nat_s = 3.0\ngraph = { edges = [[3, 2]] }\n'
+                              '[[events]]\nat_s = 9.0\ncut = [[3, 2]]\n')
+        figure = self.figure("graph", summary=PATH, config=config)
+        self.assertEqual(self.titles(figure), ["0 to 1 s, 2 to 3 s", "1 to 2 s", "3 to 5 s"])
+        run = run_folder.read_run(self.folder)
+        whole = set(run.edges)
+        self.assertEqual([set(edges) for _, _, edges in run.graphs], [whole, whole - {(0, 1)}, whole, {(2, 1)}])
+
+    def test_a_graph_that_repeats_goes_on_between_events(self):
+        config = CONSENSUS + ("[graph]\nrepeat_s = 2.0\n[[events]]\nat_s = 3.0\ncut = [[3, 2], [1, 2]]\n"
+                              "[[events]]\nat_s = 4.5\ncut = [[2, 1]]\n")
+        self.write(config, self.TWO)
+        a, b, less = {(0, 1), (1, 0)}, {(2, 1)}, {(1, 0)}
+        self.assertEqual([(begin, end, set(edges)) for begin, end, edges in run_folder.read_run(self.folder).graphs],
+                         [(0, 1.5, a), (1.5, 2, b), (2, 3, a), (3, 3.5, less), (3.5, 4, set()), (4, 4.5, less), (4.5, 5, set())])
+
+    def test_at_most_twelve_graphs_are_drawn(self):
+        phases = [{"at_s": 0.25 * k, "edges": [[k % 5 + 1, k // 5 + 6, 1.0]]} for k in range(20)]
+        figure = self.figure("graph", states=arrays(agents=9), summary={
+            "graph": {"edges": [edge for phase in phases for edge in phase["edges"]], "schedule": phases}})
+        self.assertEqual(len(figure.axes), 12)
+        self.assertIn("(12 of 20 graphs)", figure._suptitle.get_text())
+
+    def test_agents_have_their_numbers_if_there_is_room(self):
+        for agents, numbers in ((10, 10), (200, 0)):
+            figure = self.figure("graph", states=arrays(agents, 2), summary=PATH)
+            self.assertEqual(len(figure.axes[0].texts), numbers)
+
+
+class Changes(PlotTest):
+    """Phases of [[law.schedule]], events, and commands that law.safety changed."""
+
+    PHASES = ('[law]\nname = "chase"\nleader = 1\n[[law.schedule]]\nat_s = 2.0\nname = "chase"\nleader = 3\n'
+              '[[law.schedule]]\nat_s = 4.0\nname = "flee"\nleader = 0\n')
+    TOLD = {"phases": [{"at_s": at_s, "law": law, "drawing": AGREEMENT, "consensus": {"settling_time_s": settled_s}}
+                       for at_s, law, settled_s in ((0, "chase", 1.5), (2, "chase", None), (4, "flee", 0.5))]}
+
+    def marks(self, axis):
+        return [text.get_text() for text in axis.texts]
+
+    def vertical(self, axis):
+        return sorted(line.get_xdata()[0] for line in axis.get_lines() if list(line.get_ydata()) == [0, 1]
+                      and line.get_xdata()[0] == line.get_xdata()[1])
+
+    def test_disagreement_is_seen_from_the_leader_of_each_phase(self):
+        axis = self.figure("disagreement", config=self.PHASES, summary=self.TOLD).axes[0]
+        p, t = arrays()["position"][:, :, :2], arrays()["t"]
+        lines = {line.get_label(): line.get_ydata() for line in axis.get_lines()}
+        for rows, reference, leader in ((t < 2, p[:, 0], 0), ((t >= 2) & (t < 4), p[:, 2], 2),
+                                        (t >= 4, p.mean(axis=1), None)):
+            for k in range(3):
+                expected = np.linalg.norm(p[rows, k] - reference[rows], axis=1)
+                found = lines[f"agent {k + 1}"][rows]
+                if k == leader:
+                    self.assertTrue(np.isnan(found).all(), "a leader is not far from itself")
+                else:
+                    np.testing.assert_allclose(found, expected, rtol=1e-12)
+        self.assertEqual(self.marks(axis), ["chase, to agent 1", "chase, to agent 3", "flee, to the mean"])
+        self.assertEqual(axis.get_ylabel(), "distance to the mean or the leader (m)")
+        self.assertLessEqual({"settled at 1.50 s", "settled at 4.50 s"}, lines.keys())
+
+    def test_a_phase_whose_law_does_not_agree_has_no_disagreement(self):
+        first, _, last = self.TOLD["phases"]
+        self.write(self.PHASES, {"phases": [first, {"at_s": 2, "law": "chase", "drawing": FLIGHT}, last]})
+        distance = run_folder.disagreement(run_folder.read_run(self.folder))
+        self.assertEqual([np.isnan(distance[row]).all() for row in (0, 19, 20, 39, 40, 50)],
+                         [False, False, True, True, False, False])
+
+    def test_phases_and_events_are_marked_and_named(self):
+        config = self.PHASES + ('[[events]]\nat_s = 1.0\nset = { "law.p_gain" = 0.25 }\nagents = [1, 2]\n'
+                                '[[events]]\nat_s = 3.0\ngoto = { agent = 3, position_m = [1, 2, 3] }\n'
+                                '[[events]]\nat_s = 3.0\ncut = [[1, 2], [2, 1], [3, 1]]\n'
+                                '[[events]]\nat_s = 3.5\nmend = [[1, 2]]\n'
+                                '[[events]]\nat_s = 4.5\ngraph = { edges = [] }\n'
+                                '[[events]]\nat_s = 8.0\nset = { "law.p_gain" = 1 }\n')
+        for name in ("position", "velocity", "acceleration"):
+            axes = self.figure(name, config=config, summary=self.TOLD).axes
+            self.assertEqual(self.marks(axes[0]), [
+                "chase", "chase", "flee", "p_gain = 0.25, of 1, 2", "goto 3, cut 1,2 and 2 more", "mend 1,2",
+                "another graph"])
+            for axis in axes:
+                self.assertEqual(self.vertical(axis), [1, 2, 3, 3.5, 4, 4.5])
+
+    def test_names_of_changes_do_not_cover_each_other(self):
+        events = "".join(f'[[events]]\nat_s = {at_s}\nset = {{ "law.a_long_name" = 1 }}\n'
+                         for at_s in (0.1, 0.5, 2.1, 2.2, 4.9))
+        for size in figure_style.SIZES:
+            with self.subTest(size=size), laid_out(dpi=100):
+                self.write(self.PHASES + events, self.TOLD)
+                figure_style.use(size)
+                figure = pictures.PICTURES["velocity"].draw(run_folder.read_run(self.folder))
+                figure.canvas.draw()
+                boxes = [text.get_window_extent() for text in figure.axes[0].texts]
+                self.assertEqual(len(boxes), 8)
+                for k, box in enumerate(boxes):
+                    self.assertEqual([other for other in boxes[:k] if box.overlaps(other)], [])
+
+    def test_commands_that_the_safety_filter_changed_are_drawn(self):
+        states = arrays()
+        states["flags"] = np.zeros((51, 3))
+        self.write(states=states)
+        self.assertEqual(self.run_plot("--only", "safety")[0], 2, "it changed none")
+        states["flags"][10:20, 1] = 16 + 1
+        states["flags"][15:17, 1] += 32
+        states["flags"][50, 2] = 16
+        config = CONSENSUS + "[law.safety]\ndistance_m = 1.5\n"
+        near, when = self.figure("safety", config=config, states=states).axes
+        bars = [[path.get_extents().bounds for path in bars.get_paths()] for bars in when.collections]
+        bars = [of_agent for of_agent in bars if of_agent]
+        np.testing.assert_allclose(bars, [[(1, 1.6, 1, 0.8)], [(5, 2.6, 0.1, 0.8)], [(1.5, 1.6, 0.2, 0.8)]])
+        lines = {line.get_label(): line.get_ydata() for line in near.get_lines()}
+        np.testing.assert_allclose(lines["smallest distance"], 5 * np.sqrt(3) * np.exp(-arrays()["t"]))
+        self.assertEqual(lines["to be kept: 1.5 m"][0], 1.5)
+
+
+class Paper(PlotTest):
+    """Pictures at true size."""
+
+    POINTS = {"column": 252, "page": 515.52}
+
+    def test_pages_are_as_wide_as_asked_with_embedded_fonts_and_without_dates(self):
+        for size, wide in self.POINTS.items():
+            with self.subTest(size=size):
+                self.write(LEADER, PATH)
+                options = ("--only", "disagreement", "--size", size, "--format", "svg,pdf")
+                self.assertEqual(self.run_plot(*options), (0, ""))
+                pdf, svg = ((self.folder / f"disagreement.{ending}").read_bytes() for ending in ("pdf", "svg"))
+                box = re.search(rb"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]", pdf)
+                self.assertAlmostEqual(float(box[1]), wide)
+                self.assertIn(f'width="{wide}pt"'.encode(), svg)
+                self.assertIn(b"/FontFile2", pdf)
+                self.assertNotIn(b"/Type3", pdf)
+                self.assertEqual(re.findall(rb"Date|dc:date|Matplotlib v", pdf + svg), [])
+                self.run_plot(*options)
+                self.assertEqual((self.folder / "disagreement.pdf").read_bytes(), pdf)
+                self.assertEqual((self.folder / "disagreement.svg").read_bytes(), svg)
+        self.assertEqual(self.pictures(), [], "PNG was not asked for")
+
+    def test_letters_are_of_8_points_and_there_is_no_title(self):
+        config, summary = Changes.PHASES, Changes.TOLD | PATH
+        for name in ("paths", "acceleration", "disagreement", "graph"):
+            self.write(config, summary)
+            figure_style.use("column")
+            figure = pictures.PICTURES[name].draw(run_folder.read_run(self.folder))
+            self.assertIsNone(figure._suptitle)
+            sizes = {text.get_fontsize() for text in figure.findobj(plot.matplotlib.text.Text) if text.get_text()}
+            self.assertEqual(sizes, {8.0}, name)
+
+    def clipped(self, name, size):
+        """What of the picture is not whole: beyond the page, or covered by the legend."""
+        figure_style.use(size)
+        figure = pictures.PICTURES[name].draw(run_folder.read_run(self.folder))
+        figure.canvas.draw()
+        renderer = figure.canvas.get_renderer()
+        tight, (wide, high) = figure.get_tightbbox(renderer), figure.get_size_inches()
+        over = max(-tight.x0, -tight.y0, tight.x1 - wide, tight.y1 - high)
+        covered = [axis for axis in figure.axes for legend in figure.legends
+                   if axis.get_visible() and legend.get_window_extent(renderer).overlaps(axis.get_tightbbox(renderer))]
+        plot.plt.close(figure)
+        return (["beyond the page"] if over > 0.01 else []) + covered
+
+    def test_nothing_is_clipped_or_covered(self):
+        with laid_out():
+            for agents, names in ((3, ("paths", "disagreement")), (10, ("paths", "graph")), (28, ("paths", "velocity")),
+                                  (50, ("disagreement", "graph"))):
+                edges = [[k, k % agents + 1, 1.0] for k in range(1, agents + 1)]
+                self.write(Changes.PHASES, Changes.TOLD | {"graph": {"edges": edges}}, arrays(agents, 51))
+                for name in names:
+                    for size in ("column", "screen" if agents == 50 else "page")[:1 if agents < 28 else 2]:
+                        with self.subTest(agents=agents, size=size, name=name):
+                            self.assertEqual(self.clipped(name, size), [])
+
+    def test_a_long_label_is_broken(self):
+        offsets = [[0, 0, 0], [3, 0, 0], [0, 4, 0]]
+        told = {"phases": [phase | {"formation": {"offsets_m": offsets}} for phase in Changes.TOLD["phases"]]}
+        with laid_out():
+            self.write(Changes.PHASES, told)
+            self.assertEqual(self.clipped("disagreement", "column"), [])
+            figure = pictures.PICTURES["disagreement"].draw(run_folder.read_run(self.folder))
+            self.assertEqual(figure.axes[0].get_ylabel().replace("\n", " "),
+                             "distance from its place, seen from the mean or the leader (m)")
+            self.assertIn("\n", figure.axes[0].get_ylabel())
+
+    def test_pictures_go_where_they_are_asked_to(self):
+        self.write()
+        out = self.folder.parent / "for/the paper"
+        self.assertEqual(self.run_plot("--only", "paths", "--format", "png,pdf", "--out", str(out)), (0, ""))
+        self.assertEqual(sorted(path.name for path in out.iterdir()), ["paths.pdf", "paths.png"])
+        self.assertEqual(self.pictures(), [])
 
 
 class PicturesOfLaws(PlotTest):
@@ -329,9 +588,6 @@ class PicturesOfLaws(PlotTest):
 
 
 class Errors(PlotTest):
-    def check(self, code, message, *options):
-        self.assertEqual(self.run_plot(*options), (code, f"error: {message}\n"))
-
     def test_missing_folder(self):
         self.folder = self.folder / "gone"
         self.check(2, f"{self.folder}: no such folder")
@@ -357,6 +613,10 @@ class Errors(PlotTest):
         self.write(states=arrays() | {"velocity": np.zeros((51, 2, 3))})
         self.check(1, f"{self.folder}/states.npz: velocity: expected shape (51, 3, 3), got (51, 2, 3)")
 
+    def test_flags_of_the_wrong_shape(self):
+        self.write(states=arrays() | {"flags": np.zeros((51, 2))})
+        self.check(1, f"{self.folder}/states.npz: flags: expected shape (51, 3), got (51, 2)")
+
     def test_states_without_a_tick(self):
         self.write(states=arrays(rows=0))
         self.check(1, f"{self.folder}/states.npz: holds no tick")
@@ -380,10 +640,16 @@ class Errors(PlotTest):
         self.write()
         code, errors = self.run_plot("--only", "speed")
         self.assertEqual(code, 2)
-        self.assertRegex(errors, r"^error: argument --only: invalid choice: 'speed' \(choose from 'paths', .*\)\n$")
+        self.assertEqual(errors, "error: --only: expected one of paths, position, velocity, disagreement, acceleration, "
+                                 "tracking, error, graph, safety, got 'speed'\n")
         self.check(2, "--only error: it needs a law that flies to waypoints, from start to end", "--only", "error")
         self.check(2, "--only tracking: it needs a law of pursuit, from start to end, and the graph in summary.json", "--only", "tracking")
         self.check(2, "unrecognized arguments: --fast", "--fast")
+        self.check(2, "--format: expected one or more of png, pdf, svg, with commas between, got 'bmp'",
+                   "--format", "pdf,bmp")
+        self.check(2, "--size: expected one of screen, column, page, got 'poster'", "--size", "poster")
+        self.check(2, "--out: expected one run, got 2 runs, whose pictures have the same names",
+                   str(self.folder), "--out", "x")
 
     def test_a_folder_that_cannot_be_written(self):
         self.write()

@@ -27,8 +27,9 @@ class RunFolderTest : public testing::Test {
   /// What a run leaves.
   void WriteRun() const {
     Write("config.toml", experiment_.resolved);
-    for (const char* name : {"summary.json", "summary.json.part", "states.npz", "error.png", "logs/agents_1-50.log",
-                             "logs/agent_3.log", "logs/physics_server.log", "logs/orchestrator.log"})
+    for (const char* name :
+         {"summary.json", "summary.json.part", "states.npz", "error.png", "graph.svg", "safety.pdf",
+          "logs/agents_1-50.log", "logs/agent_3.log", "logs/physics_server.log", "logs/orchestrator.log"})
       Write(name);
     WriteRecording("run.mcap");
   }
@@ -65,12 +66,13 @@ TEST_F(RunFolderTest, ForceRemovesWhatARunHasMade) {
 
 TEST_F(RunFolderTest, ForceKeepsWhatIsNotOfARun) {
   WriteRun();
-  for (const char* name : {"notes.txt", "config.toml~", "logs/mail.log", "logs/agent_x.log", "logs/agent_1.txt"})
+  for (const char* name :
+       {"notes.txt", "config.toml~", "film.mp4", "error.bmp", "logs/mail.log", "logs/agent_x.log", "logs/agent_1.txt"})
     Write(name);
   WriteRecording("another.mcap");
   Force();
-  EXPECT_THAT(Files(), UnorderedElementsAre("notes.txt", "config.toml~", "logs/mail.log", "logs/agent_x.log",
-                                            "logs/agent_1.txt", "another.mcap"));
+  EXPECT_THAT(Files(), UnorderedElementsAre("notes.txt", "config.toml~", "film.mp4", "error.bmp", "logs/mail.log",
+                                            "logs/agent_x.log", "logs/agent_1.txt", "another.mcap"));
 }
 
 TEST_F(RunFolderTest, ForceTouchesNothingInAFolderThatNoRunHasMade) {

@@ -34,10 +34,12 @@ fs::path MakeNew(const fs::path& parent) {
       return path;
 }
 
-/// Files that a run writes, beside its recording and its logs.
-constexpr std::string_view kFiles[] = {"config.toml",      "summary.json",    "states.npz",   "paths.png",
-                                       "position.png",     "velocity.png",    "tracking.png", "error.png",
-                                       "acceleration.png", "disagreement.png"};
+/// Files that a run writes, beside its recording, its pictures and its logs.
+constexpr std::string_view kFiles[] = {"config.toml", "summary.json", "states.npz"};
+/// Pictures of a run (scripts/pictures.py), and the formats in which `plot` draws them.
+constexpr std::string_view kPictures[] = {"paths", "position", "velocity", "acceleration", "disagreement",
+                                          "error", "tracking", "graph",    "safety"};
+constexpr std::string_view kPictureFormats[] = {".png", ".pdf", ".svg"};
 
 /// True for regular files only: not for links to them, not for folders.
 bool IsFile(const fs::path& path) { return fs::is_regular_file(fs::symlink_status(path)); }
@@ -77,6 +79,8 @@ std::vector<fs::path> NamesOfARun(const fs::path& folder, const std::string& rec
   };
   for (const std::string_view file : kFiles)
     for (const char* suffix : {"", ".part"}) add(std::string(file) + suffix);
+  for (const std::string_view picture : kPictures)
+    for (const std::string_view format : kPictureFormats) add(std::string(picture) + std::string(format));
   for (const std::string& file : std::set<std::string>{recording, "run.mcap"}) add(file);
   const fs::file_status logs = fs::symlink_status(folder / "logs");
   if (fs::exists(logs) && !fs::is_directory(logs)) names.emplace_back("logs");

@@ -1,3 +1,6 @@
+// `orchestrator plot RUN...`: the pictures of runs, drawn again by scripts/plot.py, which also knows what each option
+// may be. What is not given here is left to the script.
+
 #include "orchestrator/verbs/plot.h"
 
 #include <CLI/CLI.hpp>
@@ -14,10 +17,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// An option with a value, handed on as it is.
+struct PlotOption {
+  const char* name;
+  const char* value;
+  const char* meaning;
+};
+
+constexpr PlotOption kOptions[] = {
+    {"--only", "NAME",
+     "one picture: paths, position, velocity, acceleration, disagreement, error, tracking, graph, safety"},
+    {"--format", "LIST", "png, pdf, svg; several with commas between (png)"},
+    {"--size", "SIZE", "screen; column or page: 3.5 or 7.16 inches wide, letters of 8 pt, without a title (screen)"},
+    {"--out", "FOLDER", "write the pictures there, not into the run folder"},
+};
+
 struct PlotArgs {
-  std::string run;
+  std::vector<std::string> runs;
+  std::vector<std::string> values = std::vector<std::string>(std::size(kOptions));
   bool show = false;
 };
+
+std::vector<std::string> Words(const CLI::App& command, const PlotArgs& args) {
+  std::vector<std::string> words = args.runs;
+  for (std::size_t k = 0; k < std::size(kOptions); ++k)
+    if (command.count(kOptions[k].name) > 0) words.push_back(std::string(kOptions[k].name) + "=" + args.values[k]);
+  if (args.show) words.emplace_back("--show");
+  return words;
+}
 
 }  // namespace
 
@@ -29,12 +56,15 @@ int PlotRun(const fs::path& folder, bool show, StopSignal& stop) {
 
 std::function<int()> SetUpPlot(CLI::App& command) {
   auto args = std::make_shared<PlotArgs>();
-  command.add_option("run", args->run, "run folder")->required()->type_name("RUN");
+  command.add_option("run", args->runs, "run folders")->required()->type_name("RUN");
+  for (std::size_t k = 0; k < std::size(kOptions); ++k)
+    command.add_option(kOptions[k].name, args->values[k], kOptions[k].meaning)->type_name(kOptions[k].value);
   command.add_flag("--show", args->show, "open windows too");
-  return [args] {
-    if (!fs::is_directory(args->run)) throw ConfigError({args->run + ": expected a run folder"});
+  return [args, &command] {
+    for (const std::string& run : args->runs)
+      if (!fs::is_directory(run)) throw ConfigError({run + ": expected a run folder"});
     StopSignal stop;
-    return PlotRun(args->run, args->show, stop);
+    return RunScript("plot.py", Words(command, *args), stop);
   };
 }
 

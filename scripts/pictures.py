@@ -1,0 +1,533 @@
+"""The pictures of one run, from its states.npz, config.toml and (where there is one) summary.json.
+
+They are those of the MASCOT paper (paths in the x-y plane, position, velocity, error and acceleration over time), and
+more that help to judge a run. PICTURES lists them.
+"""
+
+from dataclasses import dataclass
+
+import figure_style as style
+import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from figure_style import DASHED, LOOKS_MAX, MANY, OKABE_ITO, small
+from matplotlib.collections import LineCollection
+from matplotlib.patches import Circle, Polygon, Rectangle
+from run_folder import FILTERED, INFEASIBLE, cells, disagreement, hull, separation, spanning_tree, waypoint_targets
+
+CROWD = 10  # more agents than this have smaller marks and thinner lines
+DRAWN_MAX = 200  # more lines than this are unreadable: only every n-th agent is drawn
+GRAPHS_MAX = 12  # more graphs than this do not fit into a picture
+LEAST_RANGE = 0.02  # m, m/s or m/s²: least range of a y axis, so that a held height is a flat line
+FLOOR_M = 1e-6  # bottom of log axes
+SMOOTHING_S = 0.5  # window for the mean of a switching acceleration
+AXIS_NAMES = "xyz"
+GREY = "0.6"
+
+
+# --- drawing --------------------------------------------------------------------------------------------
+
+
+def colours(run):
+    return [colour for colour, _ in style.looks(run.size)]
+
+
+def drawn(run):
+    return np.unique(np.linspace(0, run.size - 1, min(run.size, DRAWN_MAX)).astype(int))
+
+
+def agent_label(run, index):
+    roles = [run.drawing["leader"]] * (index in run.leads) + ["lies"] * (index in run.liars)
+    return f"agent {run.id[index]}" + (f" ({', '.join(roles)})" if roles else "")
+
+
+def titled(figure, run, what):
+    some = f" ({len(drawn(run))} of {run.size} agents drawn)" if run.size > DRAWN_MAX else ""
+    style.title(figure, f"{run.name}: {what}{some}" if run.name else f"{what}{some}")
+
+
+def name_agents(figure, axes, run):
+    """Adds a legend or, for more agents than there are looks, a colour bar beside all panels. To be called last: it
+    keeps free the place that it needs."""
+    found = {}
+    for axis in axes:
+        for handle, label in zip(*axis.get_legend_handles_labels()):
+            found.setdefault(label, handle)
+    if run.size > LOOKS_MAX:
+        scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(run.id[0], run.id[-1]), MANY)
+        figure.colorbar(scale, ax=list(axes), label="agent", pad=0.02, aspect=40)
+        found = {label: handle for label, handle in found.items()
+                 if not label.startswith("agent ") or label.endswith(")")}
+    style.add_legend(figure, list(found.values()), list(found), is_below=run.size > LOOKS_MAX)
+    style.wrap_labels(figure)
+
+
+def line_width(run, leads=False):
+    return plt.rcParams["lines.linewidth"] * (1.8 if leads else 1 if run.size <= CROWD else 0.7)
+
+
+def plot_agents(axis, run, x, y, indices=None):
+    """Plots one line per agent; y is (T, N). Lines of leaders are thicker and on top, those of liars dashed."""
+    looks, leaders, liars = style.looks(run.size), run.leads, run.liars
+    for k in drawn(run) if indices is None else indices:
+        colour, line = looks[k]
+        leads = k in leaders
+        axis.plot(x if x.ndim == 1 else x[:, k], y[:, k], color=colour, label=agent_label(run, k),
+                  linewidth=line_width(run, leads), zorder=3 if leads else 2,
+                  linestyle=DASHED if k in liars else line)
+
+
+def widen(axis, least):
+    """Makes the y range at least `least`, around its middle."""
+    low, high = axis.get_ylim()
+    if high - low < least:
+        axis.set_ylim((low + high - least) / 2, (low + high + least) / 2)
+
+
+def time_axis(axis, run):
+    axis.set_xlabel("time (s)")
+    axis.set_xlim(run.t[0], run.t[-1] if run.t.size > 1 else run.t[0] + 1)
+
+
+def in_rows(labels, from_s, to_s, width_pt, letter_pt):
+    """Rows, from 0, in which labels (time, words) do not cover each other, and whether each ends at its time."""
+    per_s = width_pt / (to_s - from_s)
+    ends, rows = [], []
+    for at_s, words in labels:
+        left, long = (at_s - from_s) * per_s, (len(words) + 1) * letter_pt
+        ends_there = left + long > width_pt and left > long
+        left -= long * ends_there
+        row = next((k for k, end in enumerate(ends) if end <= left), len(ends))
+        ends[row:row + 1] = [left + long]
+        rows.append((row, ends_there))
+    return rows
+
+
+def mark_changes(axes, run, laws=None):
+    """Draws a line where each phase of [[law.schedule]] begins and where an event changed something, and says above the
+    first panel what: the phases in the lowest row. `laws`: what to call the phases, if not by their laws. Returns the
+    height of all rows (pt), by which the figure grows."""
+    phases = [(span.at_s, law) for span, law in zip(run.spans, laws or [phase["law"] for phase in run.phases])]
+    events = {}
+    for at_s, words in run.events:
+        events[at_s] = f"{events[at_s]}, {words}" if at_s in events else words
+    for axis in axes:
+        for at_s, _ in phases[1:]:
+            axis.axvline(at_s, color="0.5", linewidth=0.8, zorder=1)
+        for at_s in events:
+            axis.axvline(at_s, color="0.5", linewidth=0.8, zorder=1, linestyle=(0, (1, 1.5)))
+    size = style.size()
+    begin, end = axes[0].get_xlim()
+    first = 0
+    for labels in (phases, sorted(events.items())):
+        rows = in_rows(labels, begin, end, 72 * (size.width - (0.6 if size.is_narrow else 2)), 0.58 * size.small_pt)
+        for (at_s, words), (row, ends_there) in zip(labels, rows):
+            axes[0].annotate(words, (at_s, 1), xycoords=("data", "axes fraction"), annotation_clip=False, **small(),
+                             xytext=(-1 if ends_there else 1, 2 + 1.2 * size.small_pt * (first + row)),
+                             textcoords="offset points", ha="right" if ends_there else "left")
+        first += 1 + max((row for row, _ in rows), default=-1)
+    figure, high_pt = axes[0].figure, 1.2 * size.small_pt * first
+    figure.set_figheight(figure.get_figheight() + high_pt / 72)
+    return high_pt
+
+
+def panel_grid(count):
+    """A figure with so many panels over time, one below the other."""
+    size = style.size()
+    high = 0.3 * size.panel + 0.4 + size.panel * count
+    figure, grid = plt.subplots(count, 1, sharex=True, figsize=(size.width, high), squeeze=False)
+    return figure, grid[:, 0]
+
+
+def panels(run, values, symbol, unit, what, axes):
+    """Plots `values` (T, N, 3) over time, in a panel per axis."""
+    figure, grid = panel_grid(len(axes))
+    for panel, k in zip(grid, axes):
+        plot_agents(panel, run, run.t, values[:, :, k])
+        panel.set_ylabel(f"{symbol.format(AXIS_NAMES[k])} ({unit})")
+        widen(panel, LEAST_RANGE)
+    time_axis(grid[-1], run)
+    marks_pt = mark_changes(grid, run)
+    figure.align_ylabels()
+    titled(figure, run, what)
+    return figure, grid, marks_pt
+
+
+def edge_artists(axis, at, edges, alpha=None):
+    """Adds edges between the places `at` (N, 2) in grey, paler where they are many: a line between two who hear each
+    other, an arrow from j to i if i hears j and not the other way round."""
+    lines = sorted(edge for edge in edges if edge[0] < edge[1] or edge[::-1] not in edges)
+    arrows = [edge for edge in lines if edge[::-1] not in edges]
+    alpha = alpha or max(0.15, min(0.8, 40 / max(1, len(lines))))
+    artists = [axis.add_collection(LineCollection([at[list(edge)] for edge in lines], colors=GREY, alpha=alpha,
+                                                  linewidths=0.8, zorder=1))]
+    if arrows:
+        hearer, heard = np.array(arrows).T
+        artists.append(arrow_heads(axis, at[heard], at[hearer], min(1, 1.5 * alpha)))
+    return artists
+
+
+def arrow_heads(axis, begin, end, alpha):
+    """Adds heads of arrows beyond the middle of lines from `begin` to `end` (M, 2), where agents do not cover them."""
+    way = end - begin
+    long = np.linalg.norm(way, axis=1)[:, None]
+    along = np.divide(way, long, out=np.zeros_like(way), where=long > 0)
+    return axis.quiver(*(begin + 0.62 * way).T, *along.T, angles="xy", scale_units="inches", scale=12, units="inches",
+                       width=1 / 84, headlength=7, headaxislength=7, headwidth=5.5, minlength=0, pivot="mid",
+                       color=GREY, alpha=alpha, zorder=1.1)
+
+
+def name_edges(axis, edges):
+    """Adds the kinds of edges to the legend."""
+    if any(edge[::-1] in edges for edge in edges):
+        axis.plot([], [], color=GREY, linewidth=0.8, label="hear each other")
+    if any(edge[::-1] not in edges for edge in edges):
+        axis.plot([], [], color=GREY, linewidth=0.8, marker=">", markersize=4, label="arrow to who hears")
+
+
+def draw_graph(axis, run, p):
+    """Draws all edges that the graph ever has: between initial positions if the agents end close together, else between
+    final positions."""
+    spread = [np.ptp(p[row], axis=0).max() for row in (0, -1)]
+    edge_artists(axis, p[-1] if spread[1] > 0.3 * spread[0] else p[0], set(run.edges))
+    name_edges(axis, set(run.edges))
+
+
+def draw_obstacles(axis, run):
+    """Draws the obstacles as seen from above."""
+    look = {"facecolor": "0.85", "edgecolor": "0.6", "zorder": 0.5}
+    for obstacle in run.obstacles:
+        (x, y), (width, depth) = obstacle["position_m"][:2], obstacle["size_m"][:2]
+        if obstacle["shape"] == "box":
+            axis.add_patch(Rectangle((x - width / 2, y - depth / 2), width, depth, rotation_point="center",
+                                     angle=np.degrees(obstacle.get("heading_rad", 0)), **look))
+        else:
+            axis.add_patch(Circle((x, y), width / 2, **look))
+
+
+def area_artists(axis, run, p):
+    """Adds the areas of the law while agents are at p (N, 2): the hull of its leaders, the cells into which agents
+    divide a region."""
+    look = {"facecolor": "none", "edgecolor": "0.55", "zorder": 1.2}
+    areas = []
+    if run.drawing["hull"]:
+        areas.append(Polygon(hull(p[run.leads]), linestyle="--", label="hull of leaders", **look))
+    if run.drawing["cells"]:
+        areas += [Polygon(part, **look) for part in cells(run.law[run.drawing["cells"]], p)]
+        areas[-1].set_label("cells")
+    return [axis.add_patch(area) for area in areas]
+
+
+def draw_places(axis, run):
+    """Draws the waypoints and the predicted meeting point."""
+    points = np.asarray(run.law.get("waypoints_m", run.law.get("leader_waypoints_m", [])), dtype=float).reshape(-1, 3)
+    if len(points):
+        axis.plot(points[:, 0], points[:, 1], "D", color="0.35", ms=5, mfc="none", zorder=1.5, label="waypoints")
+    for n, point in enumerate(points, start=1):
+        axis.annotate(str(n), point[:2], xytext=(6, 6), textcoords="offset points", color="0.35")
+    value_m = ((run.summary.get("consensus") or {}).get("predicted") or {}).get("value_m")
+    if value_m:
+        axis.plot(*value_m[:2], "*", color="0.2", ms=13, mfc="none", mew=1.2, zorder=5, label="predicted")
+
+
+def square_figure():
+    return plt.subplots(figsize=(style.size().width, style.size().square))
+
+
+def mark_area(run):
+    """Of the mark of an agent (pt²)."""
+    return (45 if run.size <= CROWD else 22) * (0.5 if style.size().is_narrow else 1)
+
+
+def map_axis(axis):
+    axis.set(xlabel="x, east (m)", ylabel="y, north (m)")
+    axis.margins(0.06)
+    axis.set_aspect("equal", adjustable="datalim")
+    widen(axis, 1.0)
+
+
+def paths(run):
+    figure, axis = square_figure()
+    p = run.position[:, :, :2]
+    draw_graph(axis, run, p)
+    draw_obstacles(axis, run)
+    area_artists(axis, run, p[-1])
+    plot_agents(axis, run, p[:, :, 0], p[:, :, 1])
+    shown, palette = drawn(run), colours(run)
+    marks = {"s": mark_area(run), "zorder": 4}
+    edges = [palette[k] for k in shown]
+    axis.scatter(*p[0, shown].T, marker="o", facecolors="white", edgecolors=edges, **marks)
+    axis.scatter(*p[-1, shown].T, marker="x", c=edges, **marks)
+    draw_places(axis, run)
+    axis.plot([], [], "o", color="0.3", mfc="white", label="start")
+    axis.plot([], [], "x", color="0.3", label="end")
+    map_axis(axis)
+    titled(figure, run, "paths seen from above")
+    name_agents(figure, [axis], run)
+    return figure
+
+
+def position(run, axes=(0, 1, 2)):
+    figure, grid = panels(run, run.position, "{}", "m", "position", axes)[:2]
+    name_agents(figure, grid, run)
+    return figure
+
+
+def velocity(run, axes=(0, 1, 2)):
+    figure, grid = panels(run, run.velocity, "$v_{}$", "m/s", "velocity", axes)[:2]
+    name_agents(figure, grid, run)
+    return figure
+
+
+def moving_mean(t, values, span_s):
+    """Mean over the `span_s` up to each row (less at the start)."""
+    total = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)])
+    begin = np.searchsorted(t, t - span_s, side="right")
+    end = np.arange(1, t.size + 1)
+    return (total[end] - total[begin]) / (end - begin)[:, None, None]
+
+
+def acceleration(run):
+    """Acceleration commanded by the law, after the limits: the force of the paper per mass."""
+    values, what = run.acceleration_command, "commanded acceleration"
+    switches = run.drawing["switches"]  # bang-bang: single lines would be unreadable
+    if switches:
+        values, what = moving_mean(run.t, values, SMOOTHING_S), f"{what} (bold: mean over {SMOOTHING_S:g} s)"
+    figure, grid, marks_pt = panels(run, values, "$a_{}$", "m/s²", what, run.axes)
+    for k, panel in zip(run.axes, grid) if switches else ():
+        colors = [colours(run)[n] for n in drawn(run)]
+        lines = [np.stack([run.t, run.acceleration_command[:, n, k]], axis=1) for n in drawn(run)]
+        panel.add_collection(LineCollection(lines, colors=colors, linewidths=0.5, alpha=0.2, zorder=1))
+        panel.autoscale_view()
+    limit = run.config.get("control", {}).get("max_acceleration_m_per_s2", 3.0)
+    label = f"limit ±{limit:g} m/s²"
+    for k, panel in zip(run.axes, grid):
+        note = {"loc": "right", "pad": 2 + (marks_pt if panel is grid[0] else 0), **small()}
+        peak = np.abs(run.acceleration_command[:, :, k]).max()
+        if not run.acceleration_command.any():
+            panel.set_title("none is commanded", **note)
+        elif peak > limit * (1 + 1e-9):
+            panel.set_title("some agents have other limits", **note)
+        elif peak >= 0.25 * limit:
+            for side in (-limit, limit):
+                panel.axhline(side, color="0.3", linestyle="--", linewidth=1, label=label if side > 0 else None)
+        else:
+            panel.set_title(f"{label}, out of view", **note)
+    name_agents(figure, grid, run)
+    return figure
+
+
+def log_panel(run, distance_m, what, ylabel):
+    """Plots distances (T, N) over time on a log axis."""
+    figure, axis = plt.subplots(figsize=(style.size().width, style.size().single))
+    visible = [k for k in drawn(run) if np.any(distance_m[:, k] > FLOOR_M)] or [0]
+    plot_agents(axis, run, run.t, np.maximum(distance_m, FLOOR_M), visible)
+    axis.set_yscale("log")
+    axis.set_ylabel(ylabel)
+    time_axis(axis, run)
+    titled(figure, run, what)
+    return figure, axis
+
+
+def mark_time(axis, t_s, label):
+    if t_s is not None:
+        axis.axvline(t_s, color="0.3", linestyle=":", linewidth=1.2, label=f"{label} {t_s:.2f} s")
+
+
+def disagreement_figure(run):
+    distance_m = disagreement(run)
+    leaders = [run.leader_of(span.law) for span in run.spans]
+    names = ["the mean" if leader is None else f"agent {run.id[leader]}" for leader in leaders]
+    to = names[0] if len(set(names)) == 1 else "the mean or the leader"
+    what = f"distance from its place, seen from {to}" if np.any(run.places) else f"distance to {to}"
+    shown_m = distance_m.copy()
+    for span, leader in zip(run.spans, leaders):
+        if leader is not None:
+            shown_m[span.rows, leader] = np.nan
+    figure, axis = log_panel(run, shown_m, f"disagreement ({what})", f"{what} (m)")
+    mark_changes([axis], run, [f"{span.law['name']}, to {name}" for span, name in zip(run.spans, names)]
+                 if len(set(names)) > 1 else None)
+    largest_m = np.maximum(distance_m[:, run.honest].max(axis=1), FLOOR_M)
+    axis.plot(run.t, largest_m, color="0.1", linewidth=3, alpha=0.25, zorder=1, label="largest")
+    label = "2 % of the start"
+    for span in run.spans:
+        t = run.t[span.rows]
+        axis.hlines(0.02 * largest_m[span.rows][0], t[0], t[-1], color="0.3", linestyle="--", linewidth=1, label=label)
+        label = None
+        settled_s = (span.summary.get("consensus") or {}).get("settling_time_s")
+        if settled_s is not None and "disagreement" in span.drawing["pictures"]:
+            mark_time(axis, span.at_s + settled_s, "settled at")
+    name_agents(figure, [axis], run)
+    return figure
+
+
+def error(run):
+    targets = np.stack([waypoint_targets(run, agent) for agent in range(run.size)], axis=1)
+    distance_m = np.linalg.norm((targets - run.position)[:, :, run.axes], axis=2)
+    figure, axis = log_panel(run, distance_m, "error (distance to the current waypoint)", "distance (m)")
+    mark_changes([axis], run)
+    if not run.law.get("times_s"):
+        radius_m = run.law.get("arrival_radius_m", 0.2)
+        axis.axhline(radius_m, color="0.3", linestyle="--", linewidth=1, label=f"arrival radius {radius_m:g} m")
+    name_agents(figure, [axis], run)
+    return figure
+
+
+def tracking(run):
+    """Position and speed of every agent relative to its parent in the tree: z and w of the min-max law."""
+    tree = dict(spanning_tree(run))
+    parent = np.array([tree.get(k, k) for k in range(run.size)])
+    size, across = style.size(), 1 if style.size().is_narrow else len(run.axes)
+    down = 2 * len(run.axes) // across
+    wide = size.width * (1 if size.is_paper else across / 1.6)
+    high = 0.6 + (size.panel + 0.4) * down
+    figure, grid = plt.subplots(down, across, sharex=True, figsize=(wide, high), squeeze=False)
+    grid = grid.reshape(2, -1) if across > 1 else grid.reshape(-1, 2).T
+    rows = [(run.position, "{} relative to parent (m)"), (run.velocity, "$v_{}$ relative to parent (m/s)")]
+    bound_s = ((run.summary.get("consensus") or {}).get("predicted") or {}).get("minmax_time_s")
+    for row, (values, label) in zip(grid, rows):
+        relative = values - values[:, parent]
+        for panel, k in zip(row, run.axes):
+            plot_agents(panel, run, run.t, relative[:, :, k], [c for c in drawn(run) if c in tree])
+            panel.set_ylabel(label.format(AXIS_NAMES[k]))
+            mark_time(panel, bound_s, "predicted")
+            time_axis(panel, run)
+            if across > 1 and panel not in grid[-1] or across == 1 and panel is not grid[-1, -1]:
+                panel.set_xlabel("")
+    mark_changes(list(grid.flat), run)
+    figure.align_ylabels()
+    titled(figure, run, "tracking of the parent in the spanning tree")
+    name_agents(figure, list(grid.flat), run)
+    return figure
+
+
+def span_text(spans, run, repeats):
+    """Words for the times at which a graph works; `spans` are pairs (begin, end)."""
+    if len(spans) == 1 and spans[0] == (run.t[0], run.t[-1]):
+        return "at any time"
+    if repeats:
+        repeat_s = run.config["graph"]["repeat_s"]
+        first = [(begin, min(end, begin + repeat_s)) for begin, end in spans if begin < repeat_s - 1e-9]
+        return ", ".join(f"{begin:g} to {end:g} s" for begin, end in first) + f"\nof each {repeat_s:g} s"
+    text = ", ".join(f"{begin:g} to {end:g} s" for begin, end in spans[:3])
+    return text + (f"\nand {len(spans) - 3} times more" if len(spans) > 3 else "")
+
+
+def graph(run):
+    """Who hears whom: a panel for each distinct graph, with the times at which it works."""
+    spans = {}
+    for begin, end, edges in run.graphs:
+        spans.setdefault(edges, []).append((begin, end))
+    by_event = any({"cut", "mend", "graph"} & event.keys() for event in run.config.get("events", []))
+    repeats = bool(run.config.get("graph", {}).get("repeat_s")) and not by_event and len(run.graphs) > len(spans)
+    shown = list(spans)[:GRAPHS_MAX]
+    range_m = run.config.get("graph", {}).get("range_m")
+    letter = plt.rcParams["legend.fontsize"]
+    near = f"\nwithin {range_m:g} m" if range_m else ""
+    size = style.size()
+    across = min(len(shown), 2 if size.is_narrow else 3 if len(shown) < 4 else 4)
+    down = -(-len(shown) // across)
+    side = min(0.7 * size.square, size.width / across)
+    figure, grid = plt.subplots(down, across, figsize=(size.width, 0.2 + down * side), squeeze=False)
+    angle = np.pi / 2 - 2 * np.pi * np.arange(run.size) / run.size
+    at = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    for axis in grid.flat:
+        axis.set_axis_off()
+    for axis, edges in zip(grid.flat, shown):
+        edge_artists(axis, at, edges)
+        name_edges(axis, edges)
+        draw_nodes(axis, run, at, side)
+        axis.set_title(span_text(spans[edges], run, repeats) + near, loc="center", fontsize=letter)
+        axis.set(xlim=(-1.25, 1.25), ylim=(-1.25, 1.25), aspect="equal")
+    some = f" ({len(shown)} of {len(spans)} graphs)" if len(shown) < len(spans) else ""
+    titled(figure, run, f"who hears whom{some}")
+    found = dict(pair[::-1] for axis in grid.flat for pair in zip(*axis.get_legend_handles_labels()))
+    style.add_legend(figure, list(found.values()), list(found), is_below=True)
+    return figure
+
+
+def draw_nodes(axis, run, at, side):
+    """Draws agents as circles with their numbers, or as dots if they are too many for numbers."""
+    letter = style.size().small_pt
+    room_pt = 72 * side * 0.8 / 2.5 * (2 * np.sin(np.pi / max(run.size, 3)))  # from one circle to the next
+    numbered = room_pt > 1.9 * letter
+    mark = min(2.4 * letter, 0.85 * room_pt) if numbered else max(2, min(letter, 0.6 * room_pt))
+    for k, colour in enumerate(colours(run)):
+        axis.plot(*at[k], "o", markersize=mark, markerfacecolor="white" if numbered else colour, markeredgecolor=colour,
+                  markeredgewidth=2 if k in run.leads else 1, zorder=3)
+        if numbered:
+            axis.annotate(str(run.id[k]), at[k], ha="center", va="center_baseline", fontsize=letter, zorder=4)
+
+
+def stretches(is_so):
+    """(begin, end) indices of each stretch of True in (T)."""
+    edge = np.flatnonzero(np.diff(np.concatenate([[False], is_so, [False]]).astype(int)))
+    return list(zip(edge[::2], edge[1::2]))
+
+
+def safety(run):
+    """The smallest distance between agents, and when law.safety changed commands, agent by agent."""
+    size = style.size()
+    figure, (near, when) = plt.subplots(2, 1, sharex=True, figsize=(size.width, 0.5 + 2.2 * size.panel))
+    near.plot(run.t, separation(run), color=OKABE_ITO[0], label="smallest distance")
+    for at_m in sorted({span.law["safety"]["distance_m"] for span in run.spans if "safety" in span.law}):
+        near.axhline(at_m, color="0.3", linestyle="--", linewidth=1, label=f"to be kept: {at_m:g} m")
+    near.set_ylabel("distance (m)")
+    near.set_ylim(bottom=0)
+    tick_s = run.t[1] - run.t[0] if run.t.size > 1 else 1
+    for bit, colour, label, order in ((FILTERED, OKABE_ITO[5], "changed by law.safety", 2),
+                                      (INFEASIBLE, OKABE_ITO[1], "no safe command", 3)):
+        if not np.any(run.flags & bit):
+            continue
+        for k in range(run.size):
+            bars = [(run.t[begin], run.t[end - 1] - run.t[begin] + tick_s)
+                    for begin, end in stretches(run.flags[:, k] & bit != 0)]
+            when.broken_barh(bars, (run.id[k] - 0.4, 0.8), facecolor=colour, edgecolor=colour, linewidth=0.4,
+                             zorder=order)
+        when.bar(0, 0, color=colour, label=label)
+    when.set(ylabel="agent", ylim=(run.size + 0.6, 0.4))
+    when.yaxis.set_major_locator(matplotlib.ticker.MaxNLocator(8 if size.is_paper else 12, integer=True, min_n_ticks=1))
+    time_axis(when, run)
+    mark_changes([near, when], run)
+    figure.align_ylabels()
+    titled(figure, run, "distance kept, and commands that law.safety changed")
+    handles, labels = map(sum, zip(near.get_legend_handles_labels(), when.get_legend_handles_labels()), ([], []))
+    style.add_legend(figure, handles, labels, is_below=True)
+    return figure
+
+
+# --- which figures a run gets ---------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Picture:
+    draw: object
+    switch: str  # the key of [output] that turns it off
+    applies: object  # run -> None, or why the picture does not apply to it
+
+
+def only_if(condition, reason):
+    return lambda run: None if condition(run) else reason
+
+
+ALWAYS = only_if(lambda run: True, "")
+PICTURES = {
+    "paths": Picture(paths, "position_plot", ALWAYS),
+    "position": Picture(position, "position_plot", ALWAYS),
+    "velocity": Picture(velocity, "velocity_plot", ALWAYS),
+    "disagreement": Picture(disagreement_figure, "position_plot", only_if(
+        lambda run: run.size > 1 and any("disagreement" in span.drawing["pictures"] for span in run.spans),
+        "it needs several agents and a law of agreement")),
+    "acceleration": Picture(acceleration, "velocity_plot", ALWAYS),
+    "tracking": Picture(tracking, "position_plot", only_if(
+        lambda run: "tracking" in run.drawing["pictures"] and run.edges and not run.phases,
+        "it needs a law of pursuit, from start to end, and the graph in summary.json")),
+    "error": Picture(error, "position_plot", only_if(
+        lambda run: "error" in run.drawing["pictures"] and not run.phases,
+        "it needs a law that flies to waypoints, from start to end")),
+    "graph": Picture(graph, "position_plot", only_if(
+        lambda run: run.size > 1 and run.edges, "it needs several agents, and the graph in summary.json")),
+    "safety": Picture(safety, "position_plot", only_if(
+        lambda run: run.size > 1 and np.any(run.flags & (FILTERED | INFEASIBLE)),
+        "it needs a law.safety that changed some command")),
+}

@@ -1,0 +1,44 @@
+// `orchestrator plot`: hands its options to scripts/plot.py, which says what is wrong with them (tests/plot_test.py).
+
+#include <gmock/gmock.h>
+
+#include "tests/call.h"
+#include "tests/scratch.h"
+
+namespace mascot {
+namespace {
+
+using testing::StartsWith;
+
+struct PlotVerb : testing::Test {
+  /// What `plot` says of a folder that is no run, and its exit code.
+  Said Plot(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), scratch.path().string());
+    return Call(SetUpPlot, arguments);
+  }
+  void ExpectError(const std::vector<std::string>& arguments, const std::string& message) const {
+    const Said said = Plot(arguments);
+    EXPECT_EQ(said.exit_code, 2);
+    EXPECT_THAT(said.err, StartsWith("error: " + message));
+  }
+  const ScratchFolder scratch;
+};
+
+TEST_F(PlotVerb, HandsItsOptionsToTheScript) {
+  ExpectError({"--format", "bmp"}, "--format: expected one or more of png, pdf, svg, with commas between, got 'bmp'\n");
+  ExpectError({"--size", "poster"}, "--size: expected one of screen, column, page, got 'poster'\n");
+}
+
+TEST_F(PlotVerb, WithoutOptionsItDrawsTheRun) {
+  const Said said = Plot({});
+  EXPECT_EQ(said.exit_code, 1);
+  EXPECT_EQ(said.err,
+            "error: " + scratch.File("states.npz") + ": no such file (output.save_data = false writes none)\n");
+}
+
+TEST_F(PlotVerb, WantsRunFolders) {
+  ExpectError({scratch.File("gone")}, scratch.File("gone") + ": expected a run folder\n");
+}
+
+}  // namespace
+}  // namespace mascot
