@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""Draws the table of a sweep: plot_sweep.py TABLE.csv PICTURE.png COLUMN [KEY [KEY]].
+"""Draws the table of a sweep: plot_sweep.py TABLE.csv STATISTICS.csv PICTURE.png COLUMN [KEY [KEY]] [--label NAME=TEXT]...
 
-Without a key: a histogram of COLUMN. With one key: COLUMN over it, as the median over all seeds and the band between
-first and ninth decile. With two keys: a heat map of medians, or coloured points if the keys were drawn at random. Runs
-that failed or have no value of COLUMN are left out, and counted in the title. Exit codes: 0 done, 1 nothing
-to draw, 2 wrong use.
+Without a key: a histogram of COLUMN. With one key: COLUMN over it, as the mean over all seeds with its 95 % confidence
+band, and as the median with first and ninth decile, both from STATISTICS. A second key of words (laws, topologies)
+gives a colour to each; two keys of numbers give a heat map of medians, or coloured points if they were drawn at random.
+Runs that failed (crosses) or have no value of COLUMN (triangles, at the end of the run for times) are marked, and a
+panel shows which part of the runs has a value. Exit codes: 0 done, 1 nothing to draw, 2 wrong use.
 """
 
 import argparse
@@ -23,6 +24,7 @@ sys.dont_write_bytecode = True  # the folder of the scripts may be read-only
 from figure_style import OKABE_ITO, STYLE
 
 BLUE = OKABE_ITO[0]
+FAILED, MISSING = "x", "^"  # markers
 TICKS_MAX = 12
 BINS_MAX = 50
 DECADES = 2  # values that span at least this many decades get a log scale
@@ -38,34 +40,74 @@ def number(text):
         return None
 
 
-def read(path, column, keys):
-    """The cells of the keys and the number in the column, for all runs that have one; and how many runs have none."""
+def rows_of(path):
     with open(path, newline="", encoding="utf-8") as file:
-        table = list(csv.DictReader(file))
-    rows = [([row[key] for key in keys], number(row[column])) for row in table]
-    good = [(cells, value) for cells, value in rows if value is not None]
-    return good, len(rows) - len(good)
+        return list(csv.DictReader(file))
 
 
 def is_wide(values):
-    positive = [v for v in values if v > 0]
-    return len(positive) == len(values) and max(positive) / min(positive) >= 10**DECADES
+    finite = [v for v in values if v is not None and np.isfinite(v)]
+    return bool(finite) and min(finite) > 0 and max(finite) / min(finite) >= 10**DECADES
+
+
+class Table:
+    """The rows of the sweep, and of its statistics of one column."""
+
+    def __init__(self, options):
+        self.column, self.keys = options.column, options.keys
+        self.runs = rows_of(options.table)
+        self.points = [row for row in rows_of(options.statistics) if row["metric"] == self.column]
+        self.labels = dict(text.split("=", 1) for text in options.label)
+        self.failed = [row for row in self.runs if row["error"]]
+        # Figures of a law are missing in the runs of another law, and not only there.
+        own = {tuple(row[key] for key in self.keys) for row in self.points}
+        self.late = [
+            row for row in self.runs
+            if not row["error"] and number(row[self.column]) is None and tuple(row[key] for key in self.keys) in own
+        ]
+        self.good = [row for row in self.runs if number(row[self.column]) is not None]
+        self.is_time = options.time
+
+    def label(self, name):
+        return self.labels.get(name, name)
+
+    def has_value(self):
+        """What it means for a run to have a value of the column."""
+        if not self.is_time:
+            return "with a value"
+        return "settled" if self.column.endswith("settling_time_s") else "reached by the end"
+
+    def values(self):
+        return [number(row[self.column]) for row in self.good]
+
+    def end_s(self):
+        """Where runs without a time are marked: at the end of the longest."""
+        return max(number(row["sim_s"]) or 0 for row in self.late)
+
+    def title(self):
+        text = f"{len(self.runs)} runs"
+        if self.failed:
+            text += f", {len(self.failed)} failed ({FAILED})"
+        if self.late:
+            text += f", {len(self.late)} " + ("not " + self.has_value() if self.is_time else "without a value") + " (\u25b3)"
+        return text
 
 
 class Axis:
     """Positions of the values of one key: numbers at their value, words side by side in order of appearance."""
 
-    def __init__(self, key, cells):
-        self.key = key
+    def __init__(self, table, key):
+        self.key, self.text = key, table.label(key)
+        cells = [row[key] for row in table.runs]
         numbers = [number(cell) for cell in cells]
         self.is_numeric = all(n is not None for n in numbers)
-        self.labels = sorted(set(cells), key=number) if self.is_numeric else list(dict.fromkeys(cells))
+        self.cells = sorted(set(cells), key=number) if self.is_numeric else list(dict.fromkeys(cells))
         self.is_grid = False  # a heat map with cells around each place, and a tick at each
-        self.places = [number(label) for label in self.labels] if self.is_numeric else list(range(len(self.labels)))
+        self.places = [number(cell) for cell in self.cells] if self.is_numeric else list(range(len(self.cells)))
         self.is_log = self.is_numeric and is_wide(self.places)
 
     def of(self, cell):
-        return self.places[self.labels.index(cell)]
+        return self.places[self.cells.index(cell)]
 
     def edges(self):
         """Edges of the cells around the places, half-way between them."""
@@ -75,96 +117,219 @@ class Axis:
         edges = np.array([first, *between, last])
         return np.exp(edges) if self.is_log else edges
 
-    def label(self, axis):
-        axis.set_label_text(self.key)
+    def dress(self, axis):
+        axis.set_label_text(self.text)
         if self.is_log:
             getattr(axis.axes, f"set_{axis.axis_name}scale")("log")
             if self.is_grid:
                 axis.set_minor_locator(matplotlib.ticker.NullLocator())
-        if not self.is_numeric or self.is_grid and len(self.labels) <= TICKS_MAX:
-            axis.set_ticks(self.places, self.labels)
+        if not self.is_numeric or self.is_grid and len(self.cells) <= TICKS_MAX:
+            axis.set_ticks(self.places, [cell.strip("\"'") for cell in self.cells])
 
 
-def by_cells(rows):
-    groups = {}
-    for cells, value in rows:
-        groups.setdefault(tuple(cells), []).append(value)
-    return groups
-
-
-def draw_histogram(ax, rows, column):
-    values = np.array([value for _, value in rows])
+def draw_histogram(table):
+    figure, ax = plt.subplots(figsize=(6.4, 4.2))
+    values = np.array(table.values())
     bins = min(BINS_MAX, 1 + int(np.sqrt(values.size)))
     if is_wide(values):
         bins = np.geomspace(values.min(), values.max(), bins + 1)
         ax.set_xscale("log")
-    ax.hist(values, bins=bins, color=BLUE, edgecolor="white", linewidth=0.5)
-    ax.set_xlabel(column)
+    ax.hist(values, bins=bins, color=OKABE_ITO[5], edgecolor="white", linewidth=0.5)
+    row = {name: number(cell) for name, cell in table.points[0].items()}
+    if row["mean_low_95"] is not None:
+        ax.axvspan(row["mean_low_95"], row["mean_high_95"], color=OKABE_ITO[1], alpha=0.25, linewidth=0,
+                   label="mean, 95 % confidence")
+        ax.axvline(row["mean"], color=OKABE_ITO[1])
+        if np.isfinite(row["median"]):
+            ax.axvline(row["median"], color="black", linestyle="--", label="median")
+    if table.late and table.is_time:
+        ax.plot([table.end_s()], [0.03], MISSING, color="black", markerfacecolor="white", clip_on=False,
+                transform=ax.get_xaxis_transform(), label=f"not {table.has_value()}: {len(table.late)}")
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend()
+    ax.set_xlabel(table.label(table.column))
     ax.set_ylabel("runs")
     ax.yaxis.set_major_locator(matplotlib.ticker.MaxNLocator(integer=True))
+    return figure
 
 
-def draw_curve(ax, rows, column, key):
-    axis = Axis(key, [cells[0] for cells, _ in rows])
-    groups = by_cells(rows)
-    labels = [label for label in axis.labels if (label,) in groups]
-    x = [axis.of(label) for label in labels]
-    median, low, high = ([np.quantile(groups[(label,)], q) for label in labels] for q in (0.5, 0.1, 0.9))
-    if any(len(values) > 1 for values in groups.values()):
-        if axis.is_numeric:
-            ax.fill_between(x, low, high, color=BLUE, alpha=0.2, linewidth=0, label="first to ninth decile")
+class Curves:
+    """COLUMN over one key; another key of words gives the colours."""
+
+    def __init__(self, table, key, series):
+        self.table, self.x = table, Axis(table, key)
+        self.series_key = series
+        self.series = Axis(table, series).cells if series else [None]
+        self.colours = {cell: OKABE_ITO[n % len(OKABE_ITO)] for n, cell in enumerate(self.series)}
+        self.has_sample = any(int(point["runs"]) > 1 for point in table.points)
+
+    def is_of(self, row, cell):
+        return self.series_key is None or row[self.series_key] == cell
+
+    def points(self, cell):
+        """The statistics of a series, by x."""
+        return sorted((row for row in self.table.points if self.is_of(row, cell)), key=lambda row: self.x.of(row[self.x.key]))
+
+    def nudged(self, row):
+        """Where a point stands: words side by side are spread by series, so that they do not cover each other."""
+        place = self.x.of(row[self.x.key])
+        if self.x.is_numeric or len(self.series) < 2:
+            return place
+        return place + 0.5 * (self.series.index(row[self.series_key]) / (len(self.series) - 1) - 0.5)
+
+    def band(self, ax, cell, middle, low, high, name):
+        rows = self.points(cell)
+        colour = self.colours[cell]
+        x = [self.nudged(row) for row in rows]
+        y, bottom, top = ([number(row[column]) for row in rows] for column in (middle, low, high))
+        y, bottom, top = (np.array([np.nan if v is None else v for v in part]) for part in (y, bottom, top))
+        if self.table.is_time and self.table.late:  # a band that goes on beyond the end of the runs
+            top = np.where(np.isinf(top), self.table.end_s(), top)
+        text = name if cell is None else cell.strip("\"'")
+        shown = np.isfinite(bottom) & np.isfinite(top)
+        if self.x.is_numeric:
+            ax.fill_between(x, bottom, top, where=shown, color=colour, alpha=0.2, linewidth=0)
+        ax.vlines(np.array(x)[shown], bottom[shown], top[shown], color=colour, alpha=0.5, linewidth=1.5)
+        y = np.where(np.isfinite(y), y, np.nan)
+        ax.plot(x, y, "o-" if self.x.is_numeric else "o", color=colour, markersize=3.5, label=text)
+
+    def marks(self, ax):
+        """The runs without a value, and those that failed."""
+        for runs, marker, y, transform in (
+            (self.table.failed, FAILED, 0.02, ax.get_xaxis_transform()),
+            (self.table.late, MISSING, self.table.end_s() if self.table.late and self.table.is_time else 0.98,
+             ax.transData if self.table.is_time else ax.get_xaxis_transform()),
+        ):
+            for n, cell in enumerate(self.series):
+                places = sorted({self.nudged(row) for row in runs if self.is_of(row, cell)})
+                if not places:
+                    continue
+                ax.plot(places, [y] * len(places), marker, color=self.colours[cell], markerfacecolor="none", markersize=5 + 2 * n,
+                        transform=transform, clip_on=False, zorder=3)
+        if self.table.late and self.table.is_time:
+            ax.axhline(self.table.end_s(), color="0.5", linestyle=":", linewidth=0.8)
+
+    def fractions(self, ax):
+        for cell in self.series:
+            rows = self.points(cell)
+            part = [1 - (int(row["failed"]) + int(row["without_value"])) / int(row["runs"]) for row in rows]
+            ax.plot([self.nudged(row) for row in rows], part, "o-" if self.x.is_numeric else "o",
+                    color=self.colours[cell], markersize=3)
+        ax.set_ylim(-0.06, 1.06)
+        ax.set_yticks([0, 0.5, 1], ["0", "50 %", "100 %"])
+        ax.set_ylabel(self.table.has_value())
+
+    def limit(self, ax):
+        """Shows the values; the confidence band of a mean of two of them may be far wider, and is cut."""
+        values = self.table.values() + ([self.table.end_s()] if self.table.late and self.table.is_time else [])
+        margin = 0.3 * (max(values) - min(values))
+        bottom, top = ax.get_ylim()
+        if margin > 0:
+            ax.set_ylim(max(bottom, min(values) - margin), min(top, max(values) + margin))
+
+    def draw(self):
+        table = self.table
+        kinds = [("mean", "mean_low_95", "mean_high_95", "mean, 95 % confidence"),
+                 ("median", "decile_1", "decile_9", "median, first to ninth decile")] if self.has_sample else [
+                     ("mean", "mean_low_95", "mean_high_95", "")]
+        with_fractions = bool(table.failed or table.late)
+        figure, panels = plt.subplots(1 + with_fractions, len(kinds), figsize=(1.8 + 4.2 * len(kinds), 4.0 + 1.2 * with_fractions),
+                                      sharex=True, sharey="row", squeeze=False,
+                                      gridspec_kw={"height_ratios": [3.4, 1][:1 + with_fractions]})
+        for column, (middle, low, high, name) in enumerate(kinds):
+            ax = panels[0, column]
+            for cell in self.series:
+                self.band(ax, cell, middle, low, high, name)
+            self.marks(ax)
+            ax.set_title(name + (", of runs " + table.has_value() if middle == "mean" and table.late and name else ""))
+            if with_fractions:
+                self.fractions(panels[1, column])
+            self.x.dress(panels[-1, column].xaxis)
+        if is_wide([number(row["median"]) for row in table.points]) and is_wide(table.values()):
+            panels[0, 0].set_yscale("log")
         else:
-            ax.vlines(x, low, high, color=BLUE, alpha=0.4, linewidth=3, label="first to ninth decile")
-    ax.plot(x, median, "o-" if axis.is_numeric else "o", color=BLUE, markersize=3, label="median")
-    if is_wide(median):
-        ax.set_yscale("log")
-    axis.label(ax.xaxis)
-    ax.set_ylabel(column)
-    ax.legend()
+            self.limit(panels[0, 0])
+        panels[0, 0].set_ylabel(table.label(table.column))
+        for row in panels:
+            for ax in row[1:]:
+                ax.set_ylabel("")
+        if self.series_key:
+            panels[0, 0].legend(title=table.label(self.series_key))
+        figure.suptitle(table.title(), x=0.01, ha="left", fontsize=9)
+        return figure
 
 
-def draw_map(figure, ax, rows, column, keys):
-    axes = [Axis(key, [cells[k] for cells, _ in rows]) for k, key in enumerate(keys)]
-    groups = by_cells(rows)
-    points = [(axes[0].of(a), axes[1].of(b), np.median(values)) for (a, b), values in groups.items()]
-    x, y, z = (np.array(part) for part in zip(*points))
-    norm = matplotlib.colors.LogNorm() if is_wide(list(z)) else None
-    if 2 * len(groups) > len(axes[0].labels) * len(axes[1].labels):  # a grid, perhaps with gaps
-        grid = np.full((len(axes[1].labels), len(axes[0].labels)), np.nan)
-        for a, b, value in points:
+def draw_cells(figure, ax, table, z, label, **colours):
+    """One colour for each point of two keys: cells of a grid, perhaps with gaps, or dots."""
+    axes = [Axis(table, key) for key in table.keys]
+    x, y = ([axis.of(row[axis.key]) for row in table.points] for axis in axes)
+    if 2 * len(z) > len(axes[0].cells) * len(axes[1].cells):
+        grid = np.full((len(axes[1].cells), len(axes[0].cells)), np.nan)
+        for a, b, value in zip(x, y, z):
             grid[axes[1].places.index(b), axes[0].places.index(a)] = value
         ax.grid(False)
         axes[0].is_grid = axes[1].is_grid = True
-        drawn = ax.pcolormesh(axes[0].edges(), axes[1].edges(), grid, cmap="viridis", norm=norm)
+        drawn = ax.pcolormesh(axes[0].edges(), axes[1].edges(), grid, cmap="viridis", **colours)
     else:
-        drawn = ax.scatter(x, y, c=z, cmap="viridis", s=12, norm=norm)
-    axes[0].label(ax.xaxis)
-    axes[1].label(ax.yaxis)
-    figure.colorbar(drawn, ax=ax, label=column)
+        drawn = ax.scatter(x, y, c=z, cmap="viridis", s=12, **colours)
+    for rows, marker in ((table.failed, FAILED), (table.late, MISSING)):
+        places = sorted({tuple(axis.of(row[axis.key]) for axis in axes) for row in rows})
+        if places:
+            ax.plot(*zip(*places), marker, color="black", markerfacecolor="white", markersize=5, clip_on=False)
+    axes[0].dress(ax.xaxis)
+    axes[1].dress(ax.yaxis)
+    if np.isfinite(z).any():
+        figure.colorbar(drawn, ax=ax, label=label)
+
+
+def draw_map(table):
+    with_fractions = bool(table.failed or table.late)
+    figure, panels = plt.subplots(1, 1 + with_fractions, figsize=(6.4 + 5.2 * with_fractions, 4.6), sharey=True, squeeze=False)
+    medians = [number(row["median"]) for row in table.points]
+    medians = np.array([np.nan if z is None or np.isinf(z) else z for z in medians])
+    norm = matplotlib.colors.LogNorm() if is_wide(medians.tolist()) else None
+    draw_cells(figure, panels[0, 0], table, medians, "median of " + table.label(table.column), norm=norm)
+    if with_fractions:
+        parts = [1 - (int(row["failed"]) + int(row["without_value"])) / int(row["runs"]) for row in table.points]
+        draw_cells(figure, panels[0, 1], table, np.array(parts), f"fraction of runs {table.has_value()}", vmin=0, vmax=1)
+        panels[0, 1].set_ylabel("")
+    panels[0, 0].set_title(table.title())
+    return figure
+
+
+def draw(table):
+    if not table.keys:
+        figure = draw_histogram(table)
+        figure.axes[0].set_title(table.title())
+        return figure
+    if len(table.keys) == 1:
+        return Curves(table, table.keys[0], None).draw()
+    words = [key for key in table.keys if not Axis(table, key).is_numeric]
+    if not words:
+        return draw_map(table)
+    series = "law.name" if "law.name" in words else words[0]
+    key = next(key for key in reversed(table.keys) if key != series)
+    return Curves(table, key, series).draw()
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("table")
+    parser.add_argument("statistics")
     parser.add_argument("picture")
     parser.add_argument("column")
     parser.add_argument("keys", nargs="*", metavar="KEY")
-    options = parser.parse_args()
+    parser.add_argument("--label", action="append", default=[], metavar="NAME=TEXT", help="what a column or key is called")
+    parser.add_argument("--time", action="store_true", help="a run without a value is later than its end")
+    options = parser.parse_intermixed_args()
     if len(options.keys) > 2:
         parser.error("expected at most two keys")
-    rows, missing = read(options.table, options.column, options.keys)
-    if not rows:
+    table = Table(options)
+    if not table.good:
         print(f"error: {options.table}: no run has a {options.column}", file=sys.stderr)
         return 1
     plt.rcParams.update(STYLE)
-    figure, ax = plt.subplots(figsize=(6.4, 4.2))
-    if not options.keys:
-        draw_histogram(ax, rows, options.column)
-    elif len(options.keys) == 1:
-        draw_curve(ax, rows, options.column, options.keys[0])
-    else:
-        draw_map(figure, ax, rows, options.column, options.keys)
-    ax.set_title(f"{len(rows)} runs" + (f", {missing} without a value" if missing else ""))
+    figure = draw(table)
     part = options.picture + ".part.png"
     figure.savefig(part, metadata={"Software": None})
     os.replace(part, options.picture)

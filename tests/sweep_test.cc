@@ -154,8 +154,33 @@ TEST_F(SweepTest, KeepsTheErrorOfARunThatFailsAndGoesOn) {
   ASSERT_THAT(table.rows, SizeIs(3));
   EXPECT_EQ(table.At(0, "error"), "");
   EXPECT_THAT(table.At(1, "error"), HasSubstr("ZeroDivisionError"));
+  EXPECT_THAT(ran.output, HasSubstr("failed: 1 of 3 runs\n  run 1: tick 0: the law of agent 1 failed at t = 0.0 s"));
+  EXPECT_THAT(ran.output, HasSubstr("ZeroDivisionError: float division by zero\n")) << "the end of a long reason";
   EXPECT_EQ(table.At(1, "consensus.final_disagreement_m"), "");
   EXPECT_EQ(table.At(2, "error"), "");
+}
+
+TEST_F(SweepTest, SaysWhatDidNotSettleAndWritesStatistics) {
+  const Ran ran =
+      Sweep("--set law.p_gain=0.2,0.3 --set run.duration_s=2,30 --seeds 1..3 --plot consensus.settling_time_s");
+  EXPECT_EQ(ran.exit_code, 0) << ran.output;
+  EXPECT_THAT(ran.output,
+              HasSubstr("not settled by the end: 6 of 12 runs (no consensus.settling_time_s), first run 0"));
+  EXPECT_THAT(ran.output, HasSubstr("statistics over seeds: " + folder_.File("sweep.stats.csv")));
+  const Table statistics(folder_.File("sweep.stats.csv"));
+  const auto row = std::ranges::find_if(statistics.rows, [](const Cells& cells) {
+    return cells[0] == "0.3" && cells[1] == "30" && cells[2] == "consensus.settling_time_s";
+  });
+  ASSERT_NE(row, statistics.rows.end());
+  const Table table(out_);
+  double sum = 0;
+  for (std::size_t run = 9; run < 12; ++run) sum += std::stod(table.At(run, "consensus.settling_time_s"));
+  EXPECT_NEAR(std::stod((*row)[6]), sum / 3, 1e-12);
+  EXPECT_EQ((*row)[5], "0");
+  const std::string before = ReadFile(folder_.File("sweep.stats.csv"));
+  std::filesystem::remove(out_);
+  Sweep("--set law.p_gain=0.2,0.3 --set run.duration_s=2,30 --seeds 1..3 --jobs 1 --no-plot");
+  EXPECT_EQ(ReadFile(folder_.File("sweep.stats.csv")), before) << "the same bytes";
 }
 
 TEST_F(SweepTest, KeepsTheMistakeOfAnImpossibleRunAsItsError) {
@@ -281,6 +306,11 @@ TEST_F(SweepTest, DrawsCurvesMapsAndHistograms) {
         "--set law.p_gain=0.1:0.1:0.3 --set law.beta=0.5,1.0",
         "--set law.p_gain=0.01,0.1,1 --set law.beta=0.5",  // with a log axis, as the next one
         "--set law.p_gain=0.01,0.1,1 --set law.beta=0.5,1.0",
+        "--set graph.topology=ring,path --set law.p_gain=0.1,0.2 --seeds 1..2 --plot consensus.settling_time_s "
+        "--set run.duration_s=20",
+        "--set graph.topology=ring,path --set law.axes=xy,xyz --seeds 1..2",
+        "--set law.p_gain=0.01,1 --set law.beta=1,2 --set run.duration_s=20 --plot consensus.settling_time_s",
+        "--seeds 1..3 --plot consensus.settling_time_s --set law.p_gain=1 --set run.duration_s=8",
         "--random law.p_gain=0.1:1 --random law.beta=0.5:2 --samples 6"}) {
     std::filesystem::remove(folder_.File("sweep.png"));
     const Ran ran = Sweep(std::string(words) + " --force");

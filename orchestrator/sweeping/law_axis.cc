@@ -8,15 +8,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::string_view kLawKey = "law.name";
 constexpr std::string_view kLawTable = "law.";
-
-/// A string of TOML, or a word as the command line has it, without quotes.
-std::string Unquoted(const std::string& value) {
-  const bool quoted =
-      value.size() > 1 && (value.front() == '"' || value.front() == '\'') && value.back() == value.front();
-  return quoted ? value.substr(1, value.size() - 2) : value;
-}
 
 bool Knows(std::string_view law, std::string_view key) {
   const auto has = [&](std::span<const Key> rows) { return std::ranges::find(rows, key, &Key::name) != rows.end(); };
@@ -41,6 +33,12 @@ std::set<std::string> KeysToFit(Section& law, const SweepPlan& plan) {
 }
 
 }  // namespace
+
+std::string Unquoted(const std::string& value) {
+  const bool quoted =
+      value.size() > 1 && (value.front() == '"' || value.front() == '\'') && value.back() == value.front();
+  return quoted ? value.substr(1, value.size() - 2) : value;
+}
 
 LawAxis::LawAxis(Section document, const SweepPlan& plan) {
   for (const std::string& value : plan.ValuesOf(kLawKey)) laws_.push_back(Unquoted(value));

@@ -9,6 +9,9 @@
 
 namespace mascot {
 
+/// A string of TOML, or a word as the command line has it, without quotes.
+std::string Unquoted(const std::string& value);
+
 /// The laws of a sweep over `law.name`. The file's [law] table has the keys of one law: what another one does not know
 /// is left out of its runs, if one of these laws knows it. So is a key that --set gives one value. A key with several
 /// values must be known to every law.

@@ -56,7 +56,7 @@ constexpr const char* kMetrics[] = {
     "fidelity.travelled_m",
 };
 // Wall-clock times come last: all other columns are reproducible bit by bit.
-constexpr const char* kWallClockMetrics[] = {"wall_s", "real_time_factor"};
+constexpr const char* kWallClockMetrics[kWallClockColumns] = {"wall_s", "real_time_factor"};
 
 /// The place in summary.json of a column; "value_m.x" is the first entry of a list.
 nlohmann::json::json_pointer PlaceOf(std::string name) {

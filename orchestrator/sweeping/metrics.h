@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
@@ -8,6 +9,9 @@ namespace mascot {
 
 /// The column that is drawn unless another is asked for.
 inline constexpr const char* kUsualMetric = "consensus.final_disagreement_m";
+
+/// The last columns of a table, which depend on the machine, not only on the experiment.
+inline constexpr std::size_t kWallClockColumns = 2;
 
 /// Names of the metric columns of a sweep's table: dotted keys of summary.json, each with one number. `laws`: names of
 /// the laws whose own figures have columns.

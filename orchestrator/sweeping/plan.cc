@@ -15,7 +15,6 @@ namespace {
 
 constexpr std::size_t kMostRuns = 10'000'000;
 constexpr std::uint64_t kSamplesSeed = 1;
-constexpr const char* kSeedKey = "run.seed";
 
 [[noreturn]] void Refuse(const std::string& option, const std::string& expected, const std::string& got) {
   throw ConfigError({option + ": expected " + expected + ", got '" + got + "'"});
@@ -214,7 +213,7 @@ SweepPlan::SweepPlan(const Words& words) : points_(1) {
   }
   points_ = Combine(points_, samples);
   if (words.seeds.empty()) return;
-  const Axis seeds{kSeedKey, ParseSeeds(words.seeds)};
+  const Axis seeds{std::string(kSeedKey), ParseSeeds(words.seeds)};
   AddAxis(seeds);
   points_ = Combine(points_, ChoicesOf(seeds.key, seeds.values));
   for (SweepPoint& trial : trials_) trial.overrides.push_back({seeds.key, seeds.values.front()});

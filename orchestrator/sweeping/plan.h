@@ -11,6 +11,9 @@
 
 namespace mascot {
 
+/// Keys that mean more to a sweep than others.
+inline constexpr std::string_view kSeedKey = "run.seed", kLawKey = "law.name";
+
 /// One run of a sweep: the keys that it sets, in addition to the experiment file.
 struct SweepPoint {
   std::vector<Override> overrides;  ///< in the order of SweepPlan::keys()

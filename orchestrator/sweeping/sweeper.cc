@@ -17,12 +17,14 @@
 
 #include "agent/laws.h"
 #include "orchestrator/engines/inprocess.h"
+#include "orchestrator/formats/whole_file.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/processes/console.h"
 #include "orchestrator/processes/worker_pool.h"
 #include "orchestrator/report/summary.h"
 #include "orchestrator/sweeping/law_axis.h"
 #include "orchestrator/sweeping/metrics.h"
+#include "orchestrator/sweeping/outcomes.h"
 #include "orchestrator/sweeping/table.h"
 #include "orchestrator/theory/draws.h"
 #include "orchestrator/theory/theory.h"
@@ -30,6 +32,7 @@
 namespace mascot {
 namespace {
 
+namespace fs = std::filesystem;
 using WallClock = std::chrono::steady_clock;
 
 /// Experiment file and plan of a sweep.
@@ -225,12 +228,12 @@ void ExecuteMissing(const SweepPlan& plan, const std::vector<std::string>& metri
   }
 }
 
-/// Metric columns of the table: those of the laws in its first valid experiment, and of the laws that it goes over.
-std::vector<std::string> MetricsOf(const Sweep& sweep, const std::string& resolved) {
+/// Names of the laws in the first valid experiment, and of those that the sweep goes over.
+std::vector<std::string> LawsOf(const Sweep& sweep, const std::string& resolved) {
   const Experiment first = LoadExperiment(Section::FromText(resolved, sweep.name), "", /*checked=*/true);
   std::vector<std::string> laws = NamesOfLaws(first);
   laws.insert(laws.end(), sweep.laws.laws().begin(), sweep.laws.laws().end());
-  return SweepMetricNames(laws);
+  return laws;
 }
 
 SweepFile::Cells ColumnsOf(const SweepPlan& plan, const std::vector<std::string>& metrics) {
@@ -272,7 +275,23 @@ bool IsBegun(const Sweep& sweep, const std::string& table) {
   return plan.starts_with(sweep.text) && plan.ends_with(PointsText(sweep));
 }
 
+/// Writes the statistics of a complete table beside it. Returns what there is to say on the terminal.
+std::vector<std::string> Conclude(const SweepPlan& plan, const std::vector<std::string>& metrics,
+                                  const SweepFile& table, const std::string& out) {
+  const Outcomes outcomes(plan, ColumnsOf(plan, metrics), table.AllCells());
+  const std::span<const std::string> repeatable = std::span(metrics).first(metrics.size() - kWallClockColumns);
+  const fs::path path = StatisticsBeside(out);
+  WriteWhole(path.string(), outcomes.StatisticsCsv({repeatable.begin(), repeatable.end()}));
+  std::vector<std::string> lines = outcomes.Lines();
+  lines.push_back("statistics over seeds: " + path.string());
+  return lines;
+}
+
 }  // namespace
+
+std::filesystem::path StatisticsBeside(const std::filesystem::path& table) {
+  return fs::path(table).replace_extension(".stats.csv");
+}
 
 Sweeper::Sweeper(std::string name, std::string text, SweepPlan plan)
     : name_(std::move(name)), text_(std::move(text)), plan_(std::move(plan)) {}
@@ -286,7 +305,8 @@ Sweeper::Outcome Sweeper::Fly(const Options& options, StopSignal& stop) const {
   try {
     const bool strict = !options.force && !IsBegun(sweep, options.out);
     const Looked first = FirstValid(sweep, strict, pool, stop);
-    const std::vector<std::string> metrics = MetricsOf(sweep, first.resolved);
+    outcome.laws = LawsOf(sweep, first.resolved);
+    const std::vector<std::string> metrics = SweepMetricNames(outcome.laws);
     if (!options.metric.empty()) CheckMetric(options.metric, metrics);
     if (strict) CheckTrials(sweep, pool, stop);
     if (strict) CheckSeeds(sweep, first, pool, stop);
@@ -296,6 +316,7 @@ Sweeper::Outcome Sweeper::Fly(const Options& options, StopSignal& stop) const {
     try {
       ExecuteMissing(plan_, metrics, pool, table, options.quiet, stop, outcome);
       table.Sort();
+      outcome.lines = Conclude(plan_, metrics, table, options.out);
     } catch (const Interrupted& interrupted) {
       outcome.signal = interrupted.signal;
     }

@@ -1,13 +1,18 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bus/stop_signal.h"
 #include "orchestrator/sweeping/plan.h"
 
 namespace mascot {
+
+/// The file with the statistics of a table, beside it: sweep.stats.csv of sweep.csv.
+std::filesystem::path StatisticsBeside(const std::filesystem::path& table);
 
 /// Executes the runs of a sweep, each in one process, with several processes in parallel, and writes their table.
 class Sweeper {
@@ -23,6 +28,8 @@ class Sweeper {
     std::size_t flown = 0;                ///< runs executed by this call
     std::size_t failed = 0;               ///< how many of these failed
     std::optional<std::size_t> in_table;  ///< rows in the table, also from earlier calls; absent: no table was opened
+    std::vector<std::string> lines;       ///< of a sweep that was not interrupted: what became of its runs
+    std::vector<std::string> laws;        ///< names of the laws that it goes over
     int signal = 0;                       ///< the signal that ended the sweep early; 0: none
   };
 

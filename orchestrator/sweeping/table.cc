@@ -160,6 +160,12 @@ void SweepFile::ReadRows(const std::string& text) {
   }
 }
 
+std::vector<SweepFile::Cells> SweepFile::AllCells() const {
+  std::vector<Cells> all;
+  for (const auto& [run, line] : rows_) all.push_back(CsvCells(line));
+  return all;
+}
+
 void SweepFile::WriteAll() const {
   std::string text = header_;
   for (const auto& [run, line] : rows_) text += line;

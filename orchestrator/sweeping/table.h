@@ -31,6 +31,8 @@ class SweepFile {
 
   bool Has(std::size_t run) const { return rows_.contains(run); }
   std::size_t rows() const { return rows_.size(); }
+  /// The cells of all rows, by the number of the run, which is their first cell.
+  std::vector<Cells> AllCells() const;
   /// Appends the row of a run; `cells` without the run number.
   void Add(std::size_t run, const Cells& cells);
   /// Sorts the rows by run number. The file is replaced atomically.

@@ -10,7 +10,9 @@
 
 #include "bus/stop_signal.h"
 #include "orchestrator/processes/script.h"
+#include "orchestrator/sweeping/labels.h"
 #include "orchestrator/sweeping/metrics.h"
+#include "orchestrator/sweeping/outcomes.h"
 #include "orchestrator/sweeping/sweeper.h"
 #include "orchestrator/verbs/verb.h"
 
@@ -46,10 +48,15 @@ bool IsDrawable(const SweepArgs& args, const SweepPlan& plan) {
   return plan.varied().size() <= kMostKeys;
 }
 
-int Picture(const SweepArgs& args, const SweepPlan& plan, StopSignal& stop) {
-  std::vector<std::string> words{args.out, fs::path(args.out).replace_extension(".png"),
-                                 args.metric.value_or(kUsualMetric)};
+int Picture(const SweepArgs& args, const SweepPlan& plan, const std::vector<std::string>& laws, StopSignal& stop) {
+  const std::string column = args.metric.value_or(kUsualMetric);
+  std::vector<std::string> words{args.out, StatisticsBeside(args.out), fs::path(args.out).replace_extension(".png"),
+                                 column};
   words.insert(words.end(), plan.varied().begin(), plan.varied().end());
+  words.insert(words.end(), {"--label", column + "=" + LabelOfColumn(column)});
+  for (const std::string& key : plan.varied())
+    words.insert(words.end(), {"--label", key + "=" + LabelOfKey(key, laws)});
+  if (IsTimeOfEvent(column)) words.emplace_back("--time");
   return RunScript("plot_sweep.py", words, stop);
 }
 
@@ -71,9 +78,11 @@ int Run(const SweepArgs& args) {
                 << (args.force ? ", without --force, " : " ") << "goes on with the others\n";
     return 128 + outcome.signal;
   }
-  const int picture = drawable ? Picture(args, sweeper.plan(), stop) : 0;
+  const int picture = drawable ? Picture(args, sweeper.plan(), outcome.laws, stop) : 0;
   if (!args.quiet)
     std::cout << runs << " runs, " << outcome.failed << " of those flown now failed: " << args.out << "\n";
+  if (!args.quiet)
+    for (const std::string& line : outcome.lines) std::cout << line << "\n";
   if (outcome.flown > 0 && outcome.failed == outcome.flown) return 1;
   return picture;
 }

@@ -1,0 +1,100 @@
+#include "orchestrator/sweeping/labels.h"
+
+#include <algorithm>
+#include <span>
+
+#include "agent/laws.h"
+
+namespace mascot {
+namespace {
+
+/// Units as names end in them; longer endings first.
+struct Ending {
+  std::string_view ending, unit;
+};
+constexpr Ending kEndings[] = {
+    {"_m_per_s2", "m/s²"}, {"_rad_per_s", "rad/s"}, {"_m2_per_s3", "m²/s³"},
+    {"_m_per_s", "m/s"},   {"_per_s", "1/s"},       {"_rad", "rad"},
+    {"_deg", "°"},         {"_hz", "Hz"},           {"_kg", "kg"},
+    {"_N", "N"},           {"_m2", "m²"},           {"_m", "m"},
+    {"_s", "s"},
+};
+/// Units of columns whose names do not end in them.
+constexpr Ending kUnits[] = {{"control.effort", "m²/s³"}, {"links.bytes", "B"}};
+
+struct Named {
+  std::string name;  ///< without its unit
+  std::string_view unit;
+};
+
+Named SplitUnit(std::string_view name) {
+  for (const Ending& ending : kEndings)
+    if (name.ends_with(ending.ending))
+      return {std::string(name.substr(0, name.size() - ending.ending.size())), ending.unit};
+  return {std::string(name), {}};
+}
+
+/// "1/s^2" as "1/s²".
+std::string Superscript(std::string_view unit) {
+  std::string text(unit);
+  for (const auto& [caret, raised] : {std::pair("^2", "²"), std::pair("^3", "³")})
+    for (auto place = text.find(caret); place != text.npos; place = text.find(caret)) text.replace(place, 2, raised);
+  return text;
+}
+
+std::string WithUnit(std::string text, std::string_view unit) {
+  return unit.empty() ? text : text.append(" (").append(Superscript(unit)).append(")");
+}
+
+/// The units of the rows of a dotted key, one for each law that gives it another.
+std::vector<std::string_view> UnitsOf(std::string_view key, std::span<const Key> rows, bool in_law,
+                                      const std::vector<std::string>& laws) {
+  const std::string_view step = key.substr(0, key.find('.'));
+  const std::string_view name = step.substr(0, step.find('['));
+  key.remove_prefix(std::min(key.size(), step.size() + 1));
+  std::vector<std::string_view> units;
+  const auto look = [&](std::span<const Key> among) {
+    const auto row = std::ranges::find(among, name, &Key::name);
+    if (row == among.end()) return;
+    if (!key.empty()) units = UnitsOf(key, row->keys, name == "law", laws);
+    if (key.empty() && !row->unit.empty() && std::ranges::find(units, row->unit) == units.end())
+      units.push_back(row->unit);
+  };
+  look(rows);
+  for (const std::string& law : laws)
+    if (in_law) look(LawTable().Parameters(law));
+  return units;
+}
+
+}  // namespace
+
+std::string LabelOfColumn(std::string_view column) {
+  std::string_view rest = column, prefix;
+  if (rest.starts_with("consensus.")) rest.remove_prefix(std::string_view("consensus.").size());
+  if (rest.starts_with("laws.")) {  // laws.NAME.FIGURE
+    rest.remove_prefix(std::string_view("laws.").size());
+    prefix = rest.substr(0, rest.find('.'));
+    rest.remove_prefix(std::min(rest.size(), prefix.size() + 1));
+  }
+  std::string_view axis;
+  for (const std::string_view end : {".x", ".y", ".z"})
+    if (rest.ends_with(end)) axis = end.substr(1);
+  if (!axis.empty()) rest.remove_suffix(2);
+  Named named = SplitUnit(rest);
+  for (const Ending& unit : kUnits)
+    if (column == unit.ending) named.unit = unit.unit;
+  std::replace_if(
+      named.name.begin(), named.name.end(), [](char c) { return c == '_' || c == '.'; }, ' ');
+  if (!axis.empty()) named.name.append(" ").append(axis);
+  return WithUnit(prefix.empty() ? named.name : std::string(prefix) + ": " + named.name, named.unit);
+}
+
+std::string LabelOfKey(std::string_view key, const std::vector<std::string>& laws) {
+  const Named named = SplitUnit(key);
+  std::string units;
+  for (const std::string_view unit : UnitsOf(key, ExperimentKeys(), false, laws))
+    units.append(units.empty() ? "" : " or ").append(unit);
+  return WithUnit(named.name, units.empty() ? named.unit : units);
+}
+
+}  // namespace mascot

@@ -1,0 +1,67 @@
+#include "orchestrator/sweeping/outcomes.h"
+
+#include <gmock/gmock.h>
+
+namespace mascot {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+const Outcomes::Cells kColumns = {"run", "law.name", "run.seed", "error", "consensus.settling_time_s", "laws.a.cost"};
+
+SweepPlan Plan() { return SweepPlan({.sets = {"law.name=a,'b'"}, .randoms = {}, .seeds = "1..3"}); }
+
+TEST(Outcomes, SayNothingWhereEveryRunIsWell) {
+  EXPECT_THAT(Outcomes(Plan(), kColumns, {{"0", "a", "1", "", "4.0", ""}}).Lines(), IsEmpty());
+}
+
+TEST(Outcomes, CountWhatFailedAndWhatDidNotSettle) {
+  const Outcomes outcomes(Plan(), kColumns,
+                          {{"0", "a", "1", "it fell", "", ""},
+                           {"1", "a", "2", "", "", ""},
+                           {"2", "a", "3", "it fell", "", ""},
+                           {"3", "'b'", "1", std::string(300, 'x'), "", ""},
+                           {"4", "'b'", "2", "c", "", ""},
+                           {"5", "'b'", "3", "d", "", ""}});
+  EXPECT_THAT(outcomes.Lines(),
+              ElementsAre("failed: 5 of 6 runs", "  run 0 and 1 more: it fell",
+                          "  run 3: " + std::string(100, 'x') + " ... " + std::string(100, 'x'), "  run 4: c",
+                          "  and 1 other reasons",
+                          "not settled by the end: 1 of 6 runs (no consensus.settling_time_s), first run 1"));
+}
+
+TEST(Outcomes, HaveStatisticsOverTheSeedsOfEachPoint) {
+  const SweepPlan plan = Plan();
+  const Outcomes outcomes(plan, kColumns,
+                          {{"0", "a", "1", "", "4.0", "1"},
+                           {"1", "a", "2", "", "6.0", ""},
+                           {"2", "a", "3", "", "5.0", ""},
+                           {"3", "'b'", "1", "it fell", "", ""},
+                           {"4", "'b'", "2", "", "", ""},
+                           {"5", "'b'", "3", "", "2.0", ""}});
+  EXPECT_EQ(outcomes.StatisticsCsv({"consensus.settling_time_s", "laws.a.cost"}),
+            "law.name,metric,runs,failed,without_value,mean,mean_low_95,mean_high_95,median,decile_1,decile_9\n"
+            "a,consensus.settling_time_s,3,0,0,5.0,2.5158622882496724,7.484137711750328,5.0,4.2,5.8\n"
+            "'b',consensus.settling_time_s,3,1,1,2.0,,,inf,inf,inf\n"
+            "a,laws.a.cost,3,0,2,1.0,,,1.0,1.0,1.0\n")
+      << "a run that does not settle is later than all others; a cost that is missing is none";
+}
+
+TEST(Outcomes, LeaveOutWhatNoRunHas) {
+  const SweepPlan plan = Plan();
+  const Outcomes outcomes(plan, kColumns, {{"0", "a", "1", "", "", ""}});
+  EXPECT_EQ(outcomes.StatisticsCsv({"consensus.settling_time_s"}),
+            "law.name,metric,runs,failed,without_value,mean,mean_low_95,mean_high_95,median,decile_1,decile_9\n");
+}
+
+TEST(Outcomes, KnowTimesThatMayNotComeToPass) {
+  EXPECT_TRUE(IsTimeOfEvent("consensus.settling_time_s"));
+  EXPECT_TRUE(IsTimeOfEvent("laws.finite_time.agreement_time_s"));
+  EXPECT_FALSE(IsTimeOfEvent("consensus.predicted.settling_time_s"));
+  EXPECT_FALSE(IsTimeOfEvent("consensus.deviation.settling_time_s"));
+  EXPECT_FALSE(IsTimeOfEvent("sim_s"));
+}
+
+}  // namespace
+}  // namespace mascot
