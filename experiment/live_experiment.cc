@@ -239,12 +239,13 @@ void LiveExperiment::Set(const Event& event, const std::string& key, const Value
 
 void LiveExperiment::SetFor(int agent, const std::string& where, const std::string& key, const Value& value,
                             std::vector<Override>& changes) {
-  const auto found = std::ranges::find(own_, agent, &Own::id);
-  const std::string path = OverrideKey(static_cast<std::size_t>(found - own_.begin()));
-  if (found == own_.end()) {
-    own_.push_back({.id = agent, .keys = {}});
+  auto own = std::ranges::find(own_, agent, &Own::id);
+  const std::string path = OverrideKey(static_cast<std::size_t>(own - own_.begin()));
+  if (own == own_.end()) {
+    own = own_.insert(own_.end(), {.id = agent, .keys = {}});
     changes.push_back({.key = path + "id", .value = std::to_string(agent), .origin = where, .extends = true});
   }
+  if (std::ranges::find(own->keys, key) == own->keys.end()) own->keys.push_back(key);
   changes.push_back({.key = path + key, .value = ToToml(value), .origin = where, .extends = true});
 }
 

@@ -40,7 +40,8 @@ class LiveExperiment {
   const std::vector<Event>& events() const { return events_; }
 
  private:
-  /// An agent's own table in the document, and the keys that stand in it.
+  /// An agent's own table in the document, and the keys that stand in it: those of the file and those that events have
+  /// set for this agent.
   struct Own {
     int id = 0;
     std::vector<std::string> keys;  ///< dotted: "law.p_gain"

@@ -201,6 +201,46 @@ TEST(Events, ReachAgentsWithALawOfTheirOwn) {
   for (int id = 1; id <= 3; ++id) EXPECT_EQ(LinearFormOf(now->agent(id).law)->beta, 3.0) << id;
 }
 
+TEST(Events, ForAllReachAgentsToWhichAnEarlierOneGaveAValueOfTheirOwn) {
+  const Experiment experiment = Load(Three("name = 'consensus'\n"));
+  LiveExperiment live(experiment, &LawTable(), false);
+  const auto take = [&](const std::string& toml) { return live.Take(live.Parse(3, toml, "event by hand")); };
+  const auto betas = [](const Experiment& now) {
+    std::vector<double> each;
+    for (const AgentConfig& agent : now.agents) each.push_back(LinearFormOf(agent.law)->beta);
+    return each;
+  };
+  EXPECT_THAT(betas(*take("set = { \"law.beta\" = 2.0 }\nagents = [2]")), ElementsAre(1, 2, 1));
+  EXPECT_THAT(betas(*take("set = { \"law.beta\" = 3.0 }")), ElementsAre(3, 3, 3));
+  EXPECT_THAT(betas(*take("set = { \"law.beta\" = 4.0 }\nagents = [3, 2]")), ElementsAre(3, 4, 4));
+  EXPECT_THAT(betas(*take("set = { \"law.beta\" = 5.0 }")), ElementsAre(5, 5, 5));
+  EXPECT_THAT(betas(*take("set = { \"law.p_gain\" = 5.0 }")), ElementsAre(5, 5, 5)) << "another key changes nothing";
+  const auto limit = [](const Experiment& now, int id) { return now.agent(id).control.max_speed_m_per_s; };
+  take("set = { \"control.max_speed_m_per_s\" = 2.0 }\nagents = [2]");
+  const auto now = take("set = { \"control.max_speed_m_per_s\" = 3.0 }");
+  for (int id = 1; id <= 3; ++id) EXPECT_EQ(limit(*now, id), 3.0) << id;
+}
+
+TEST(Events, ForAllChangeTheParamsOfAgentsWithTheirOwn) {
+  const std::string law =
+      "name = 'custom'\nparams = { gain = 1.0 }\npython = '''\n"
+      "def start(me, params):\n    me.gain = params['gain']\n"
+      "def set(me, params):\n    me.gain = params['gain']\n"
+      "def control(t, me, neighbours):\n    return [me.gain, 0, 0]\n'''\n";
+  const auto rows = Fly(Three(law) + Event("set = { \"law.params.gain\" = 0.25 }\nagents = [2]", "0.3") +
+                        Event("set = { \"law.params.gain\" = 0.5 }"));
+  EXPECT_EQ(rows[49].commands[0].a_law_W.x(), 1.0);
+  EXPECT_EQ(rows[49].commands[1].a_law_W.x(), 0.25);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(rows[50].commands[i].a_law_W.x(), 0.5) << i;
+}
+
+TEST(Events, ForAllTakeTheWaypointsOfAnAgentThatAnEventSentElsewhere) {
+  const auto rows = Fly(Three(kFlies) + Event("goto = { agent = 2, position_m = [9, 9, 9] }", "0.3") +
+                        Event("set = { \"law.waypoints_m\" = [[1, 0, 2]] }"));
+  EXPECT_GT(rows[49].commands[1].a_law_W.x(), 0);
+  EXPECT_LE(rows[50].commands[1].a_law_W.x(), 0) << "it is beyond [1, 0, 2] and flies on";
+}
+
 TEST(Events, ThatAreRefusedChangeNothing) {
   const Experiment experiment = Load(Three("name = 'consensus'\n"));
   LiveExperiment live(experiment, &LawTable(), false);
