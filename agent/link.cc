@@ -71,6 +71,7 @@ void Link::Send(std::int64_t tick, double weight, const Sample& sample) {
   packet.weight = weight;
   packet.motion = *sample.motion;
   packet.message.assign(sample.message.begin(), sample.message.end());
+  packet.message_age = sample.message_age;
 }
 
 void Link::Collect(std::int64_t tick) {

@@ -14,6 +14,7 @@ namespace mascot {
 struct Sample {
   const Motion* motion = nullptr;
   std::span<const double> message = {};
+  std::int64_t message_age = 1;  ///< ticks since the answer that the message came with; in real time also more
 };
 
 /// Counters of one directed edge since the start of the run.
@@ -43,6 +44,7 @@ class Link {
     double weight = 0;       ///< a_ij when it was sent
     Motion motion;
     std::vector<double> message;
+    std::int64_t message_age = 1;  ///< Sample::message_age when it was sent
   };
 
   /// `hearer`, `heard`: ids; `heard` sends.

@@ -44,15 +44,15 @@ bool Neighbours::IsPlain() const {
          });
 }
 
-std::span<const double> Neighbours::OfItsLaw(std::size_t k, std::int64_t sent, std::span<const double> message) const {
+std::span<const double> Neighbours::OfItsLaw(std::size_t k, std::int64_t tick, std::span<const double> message) const {
   const std::int64_t since = experiment_->agent(may_hear_[k].id).law.since;
-  return since == 0 || sent > since ? message : std::span<const double>();
+  return since == 0 || tick >= since ? message : std::span<const double>();
 }
 
 void Neighbours::HearPlain(std::span<const Sample> samples) {
   for (std::size_t k = 0; k < may_hear_.size(); ++k) {
-    heard_.push_back(
-        {may_hear_[k].id, may_hear_[k].weight, *samples[k].motion, 0, OfItsLaw(k, tick_, samples[k].message)});
+    const std::span<const double> message = OfItsLaw(k, tick_ - samples[k].message_age, samples[k].message);
+    heard_.push_back({may_hear_[k].id, may_hear_[k].weight, *samples[k].motion, 0, message});
     ++plain_counts_[k].sent;
     plain_counts_[k].numbers += samples[k].message.size();
   }
@@ -93,7 +93,7 @@ Sample Neighbours::SaidBy(std::size_t k, std::int64_t tick, const Sample& truth)
   false_motion_ = *truth.motion;
   false_message_.assign(truth.message.begin(), truth.message.end());
   lie->Tell(tick, t_s, false_motion_, false_message_);
-  return {&false_motion_, false_message_};
+  return {&false_motion_, false_message_, truth.message_age};
 }
 
 void Neighbours::Deliver(std::size_t k, std::int64_t tick) {
@@ -103,7 +103,7 @@ void Neighbours::Deliver(std::size_t k, std::int64_t tick) {
                     .weight = packet->weight,
                     .motion = packet->motion,
                     .age_s = experiment_->time_s(tick - packet->sent),
-                    .message = OfItsLaw(k, packet->sent, packet->message)});
+                    .message = OfItsLaw(k, packet->sent - packet->message_age, packet->message)});
   noises_[k].AddTo(heard_.back().motion, packet->sent);
 }
 

@@ -55,9 +55,9 @@ class Neighbours {
   /// What agent may_hear_[k] sends at `tick`: the truth, or its lie, which is valid until the next call.
   Sample SaidBy(std::size_t k, std::int64_t tick, const Sample& truth);
   void HearPlain(std::span<const Sample> samples);
-  /// `message`, which came with a sample of tick `sent` of agent may_hear_[k], and is thus of the tick before; empty if
-  /// that was before its law began: the message of another law.
-  std::span<const double> OfItsLaw(std::size_t k, std::int64_t sent, std::span<const double> message) const;
+  /// `message`, which agent may_hear_[k] sent with its answer to `tick`; empty if that was before its law began: the
+  /// message of another law.
+  std::span<const double> OfItsLaw(std::size_t k, std::int64_t tick, std::span<const double> message) const;
 
   const Experiment* experiment_;
   int id_;

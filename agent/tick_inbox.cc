@@ -66,11 +66,12 @@ bool TickInbox::IsComplete(const Source& source, std::int64_t tick) const {
   return source.messages[static_cast<std::size_t>((tick - 1) % 2)].tick == tick - 1;
 }
 
-std::span<const double> TickInbox::MessageBefore(const Source& source, std::int64_t tick) {
+Sample TickInbox::SampleAt(const Source& source, std::int64_t tick) {
   const Message* last = nullptr;
   for (const Message& message : source.messages)
     if (message.tick < tick && (last == nullptr || message.tick > last->tick)) last = &message;
-  return last == nullptr ? std::span<const double>() : last->data;
+  if (last == nullptr) return {.motion = &source.motion};
+  return {.motion = &source.motion, .message = last->data, .message_age = tick - last->tick};
 }
 
 std::optional<TickInbox::CompleteTick> TickInbox::TakeIfComplete() {
@@ -80,8 +81,7 @@ std::optional<TickInbox::CompleteTick> TickInbox::TakeIfComplete() {
   if (!std::ranges::all_of(sources_, [&](const Source& source) { return IsComplete(source, tick); }))
     return std::nullopt;
   answered_ = tick;
-  for (std::size_t k = 0; k < samples_.size(); ++k)
-    samples_[k] = {&sources_[k + 1].motion, MessageBefore(sources_[k + 1], tick)};
+  for (std::size_t k = 0; k < samples_.size(); ++k) samples_[k] = SampleAt(sources_[k + 1], tick);
   return CompleteTick{.tick = tick, .self = &sources_.front().motion, .samples = samples_, .events = events};
 }
 

@@ -76,8 +76,8 @@ class TickInbox {
   std::optional<CompleteTick> TakeIfComplete();
   /// True if everything that `tick` needs of this source has arrived.
   bool IsComplete(const Source& source, std::int64_t tick) const;
-  /// The last message that `source` sent before `tick`; empty: it sent none.
-  static std::span<const double> MessageBefore(const Source& source, std::int64_t tick);
+  /// The motion of `source`, and the last message that it sent before `tick`; empty: it sent none.
+  static Sample SampleAt(const Source& source, std::int64_t tick);
 
   const bool realtime_;
   std::vector<Source> sources_;  // the agent itself, then its peers

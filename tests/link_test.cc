@@ -262,6 +262,40 @@ TEST(Neighbours, AreSeenWithNoiseAndBias) {
   EXPECT_LT(bias.norm(), 1);
 }
 
+/// The ticks of 0..12 at which agent 1 gets a message of agent 2, whose law begins anew at tick 5. What agent 2 sends
+/// at tick k holds a message that is `ages[k]` ticks old.
+std::vector<std::int64_t> TicksWithMessage(const std::string& rest, const std::vector<std::int64_t>& ages) {
+  const Experiment before = Load("[graph]\nedges = [[1, 2]]\n" + rest);
+  Experiment after = before;
+  after.agents[1].law.since = 5;
+  Neighbours neighbours(before, 1);
+  const Motion motion;
+  const std::vector<double> said = {7};
+  std::vector<std::int64_t> ticks;
+  for (std::int64_t tick = 0; tick < std::ssize(ages); ++tick) {
+    if (tick == 5) neighbours.Adopt(after);
+    const std::vector<Sample> samples = {{&motion, said, ages[static_cast<std::size_t>(tick)]}};
+    for (const Heard& heard : neighbours.Hear(tick, motion, samples))
+      if (!heard.message.empty()) ticks.push_back(tick);
+  }
+  return ticks;
+}
+
+TEST(Neighbours, NeverPassOnAMessageOfTheLawBefore) {
+  const std::vector<std::int64_t> each = {1, 1, 1, 1, 1, 1, 1, 1, 1};
+  EXPECT_THAT(TicksWithMessage("", each), ElementsAre(0, 1, 2, 3, 4, 6, 7, 8));
+  EXPECT_THAT(TicksWithMessage("[link]\ndelay_s = 0.02\n", each), ElementsAre(2, 3, 4, 8));
+}
+
+TEST(Neighbours, KnowAMessageOfTheLawBeforeAlsoIfTicksWereMissed) {
+  // In real time: agent 2 misses ticks 5 and 6, answers tick 7, and misses tick 8.
+  const std::vector<std::int64_t> ages = {1, 1, 1, 1, 1, 1, 2, 3, 1, 2, 1};
+  EXPECT_THAT(TicksWithMessage("", ages), ElementsAre(0, 1, 2, 3, 4, 8, 9, 10));
+  EXPECT_THAT(TicksWithMessage("[link]\ndelay_s = 0.02\n", ages), ElementsAre(2, 3, 4, 10));
+  EXPECT_THAT(TicksWithMessage("[[agents.override]]\nid = 2\nlie = { offset_m = [1, 1, 1] }\n", ages),
+              ElementsAre(0, 1, 2, 3, 4, 8, 9, 10));
+}
+
 // --- OwnSensor --------------------------------------------------------------------------------------
 
 TEST(OwnSensor, IsExactByDefault) {

@@ -51,6 +51,7 @@ class Inbox {
     const std::span<const double> data = complete_.value().samples[peer].message;
     return {data.begin(), data.end()};
   }
+  std::int64_t message_age(std::size_t peer) const { return complete_.value().samples[peer].message_age; }
 
  private:
   std::int64_t Keep(const std::optional<TickInbox::CompleteTick>& complete) {
@@ -155,6 +156,7 @@ TEST(TickInbox, WaitsInLockstepForTheMessageOfTheTickBefore) {
   EXPECT_EQ(inbox.State(1, 1), -1);
   EXPECT_EQ(inbox.Message(1, 0, 0.5), 1);
   EXPECT_THAT(inbox.message(0), ElementsAre(0.5));
+  EXPECT_EQ(inbox.message_age(0), 1);
 }
 
 TEST(TickInbox, CompletesATickWithItsStatesIfTheMessageCameFirst) {
@@ -257,6 +259,7 @@ TEST(TickInbox, GivesTheLastMessageThatWasSentBeforeTheTickInRealTime) {
   inbox.State(0, 4);
   EXPECT_EQ(inbox.State(1, 4), 4);
   EXPECT_THAT(inbox.message(0), ElementsAre(0.5)) << "ticks 1 to 3 were missed";
+  EXPECT_EQ(inbox.message_age(0), 4);
   inbox.Message(1, 3, 3.5);
   inbox.Message(1, 6, 6.5);
   inbox.State(0, 5);
@@ -265,6 +268,7 @@ TEST(TickInbox, GivesTheLastMessageThatWasSentBeforeTheTickInRealTime) {
   inbox.State(0, 6);
   EXPECT_EQ(inbox.State(1, 6), 6);
   EXPECT_THAT(inbox.message(0), ElementsAre(3.5)) << "nor at tick 6";
+  EXPECT_EQ(inbox.message_age(0), 3);
   inbox.State(0, 7);
   EXPECT_EQ(inbox.State(1, 7), 7);
   EXPECT_THAT(inbox.message(0), ElementsAre(6.5));
