@@ -174,6 +174,15 @@ TEST(CyclicPursuit, AHeldVelocityOpensTheCircleAsTheSampledModesSay) {
   EXPECT_NEAR(run.Predicted("turn_rate_rad_per_s"), std::atan(0.1) / 0.1, 1e-9);
 }
 
+TEST(CyclicPursuit, FromOnePlaceItsRadiusIsNoMultipleOfRoundingErrors) {
+  const std::string one_place = "[0.1, 0.7, 1], [0.1, 0.7, 2], [0.1, 0.7, 3], [0.1, 0.7, 4], [0.1, 0.7, 5]";
+  const LawRun run(Team(1, 20, kSingles + "count = 5\nposition_m = [" + one_place + "]\n", Pursuit(30)));
+  EXPECT_EQ(run.prediction.silent, "the radius is no finite multiple of that at the start");
+  EXPECT_TRUE(run.Law()["radius_ratio"].is_null());
+  EXPECT_TRUE(run.Law()["turn_rate_rad_per_s"].is_null());
+  EXPECT_LT(run.Measured("radius_m"), 1e-9);
+}
+
 TEST(CyclicPursuit, FliesOnAllModels) {
   for (const char* model : {"single_integrator", "double_integrator", "quadrotor"}) {
     const LawRun run(Team(20, 100, "model = '" + std::string(model) + "'\n" + Polygon(4), Pursuit(0, 0.4)));

@@ -11,6 +11,9 @@ namespace mascot {
 // The motion of agents in cyclic pursuit, as complex numbers x + i y: exact for single integrators with held
 // velocities.
 
+/// The radius of agents who are all at one place is below this: a sum of rounding errors (m).
+inline constexpr double kRoundedRadius_m = 1e-9;
+
 /// What two figures of a moving ring are at one tick.
 struct RingMotion {
   double radius_m = 0;             ///< rms distance from the centre

@@ -95,7 +95,7 @@ LawTheory PredictCyclicPursuit(const Experiment& experiment) {
   const double start_m = RingMotionOf(starts, starts, 1).radius_m;
   const CyclicModes modes(starts, experiment.period_s() * params.gain, params.alpha_rad);
   const auto [radius_m, turn_rate_rad_per_s] = modes.At(experiment.ticks(), experiment.period_s());
-  if (!std::isfinite(radius_m) || start_m == 0)
+  if (!std::isfinite(radius_m) || start_m < kRoundedRadius_m)
     return {.silent = "the radius is no finite multiple of that at the start"};
   LawTheory theory{
       .figures = {{.values = {radius_m}}, {.values = {radius_m / start_m}}, {.values = {turn_rate_rad_per_s}}}};
@@ -114,7 +114,7 @@ class CyclicPursuitMeter final : public LawMeter {
     if (row.tick == 0) start_m_ = motion_.radius_m;
   }
   std::vector<FigureValues> Figures() const override {
-    if (start_m_ == 0) return {{motion_.radius_m}, {{}}, {{}}};
+    if (start_m_ < kRoundedRadius_m) return {{motion_.radius_m}, {{}}, {{}}};
     return {{motion_.radius_m}, {motion_.radius_m / start_m_}, {motion_.turn_rate_rad_per_s}};
   }
 
