@@ -139,6 +139,11 @@ TEST(Events, NameAgentsAndEdgesThatExist) {
             "folder/test.toml:11:1: agents: expected none, got some: link.loss is the same for all");
   EXPECT_EQ(RefusalOf("cut = [[2, 1]]"),
             "folder/test.toml:11:1: expected an edge of the graph (i hears j), got [2, 1]");
+  EXPECT_EQ(RefusalOf("cut = []"), "folder/test.toml:13:7: events[0].cut: expected edges [i, j] (i hears j), got none");
+  EXPECT_EQ(RefusalOf("mend = [[1, 2], [1, 2, 3]]"),
+            "folder/test.toml:13:17: events[0].mend[1]: expected an edge [i, j] (i hears j)");
+  EXPECT_EQ(RefusalOf("graph = { edges = [[1, 2.5]] }"),
+            "folder/test.toml:13:20: events[0].graph.edges[0]: expected an edge [i, j] (i hears j)");
   EXPECT_EQ(RefusalOf("goto = { agent = 2, position_m = [1, 1, 1] }"),
             "folder/test.toml:11:1: goto: expected an agent that flies waypoints, or a leader, got agent 2 of law "
             "'consensus'");

@@ -33,6 +33,7 @@ TEST_P(Silence, IsExplained) {
   EXPECT_EQ(SilentOf(row.config, {{.key = row.key, .value = row.value}}), row.silent);
 }
 
+constexpr const char* kSixAtOnePlace = "[[1, 2, 1], [1, 2, 2], [1, 2, 3], [1, 2, 4], [1, 2, 5], [1, 2, 6]]";
 constexpr const char* kTwoPairs = "{ edges = [[1, 2], [2, 1], [3, 4], [4, 3]] }";
 
 std::string NameOf(const testing::TestParamInfo<Row>& row) {
@@ -46,11 +47,55 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"pursuit_evasion", "control.max_speed_m_per_s", "0.5", "the limit of the speed cuts the pursuit"},
         Row{"pursuit_evasion", "graph", "{ edges = [[1, 2], [1, 3], [1, 4]] }", "nobody hears the evader"},
         Row{"affine_formation", "law.gain", "0.0", "with gain = 0 followers stay where they are"},
+        Row{"avoidance", "agents.velocity_m_per_s", "[[0, 0, 0], [0, 1, 1], [0, 0, 0], [0, 0, 0]]",
+            "agents start faster than law.speed_m_per_s"},
         Row{"containment", "law.gain", "0.0", "with gain = 0 followers stay where they are"},
+        Row{"cyclic_pursuit", "law.gain", "1000.0", "the radius is no finite multiple of that at the start"},
+        Row{"cyclic_pursuit", "agents.position_m", kSixAtOnePlace,
+            "the radius is no finite multiple of that at the start"},
         Row{"finite_time", "graph", kTwoPairs, "the graph is not connected"},
         Row{"gradient_tracking", "graph", kTwoPairs, "the graph is not connected"},
         Row{"prescribed_time", "graph", kTwoPairs, "the graph is not connected"}),
     NameOf);
+
+// --- large teams ------------------------------------------------------------------------------------
+
+/// A law that is predicted up to `most` agents.
+struct LargeTeam {
+  std::string law;  ///< its name, and further lines of [law]
+  int most = 0;
+  std::string silent;
+};
+
+void PrintTo(const LargeTeam& team, std::ostream* out) { *out << team.law; }
+
+class LargeTeams : public testing::TestWithParam<LargeTeam> {};
+
+std::string SilentOfTeam(const std::string& law, int count, const std::string& topology) {
+  const std::string toml =
+      "[run]\nduration_s = 1.0\n[agents]\nmodel = 'single_integrator'\nrandom = { min_m = [-500, -500, 1], max_m = "
+      "[500, 500, 1000] }\ncount = " +
+      std::to_string(count) + "\n[graph]\ntopology = '" + topology + "'\n[law]\nname = " + law;
+  const Experiment experiment = LoadExperiment(Section::FromText(toml, "test.toml"), "test");
+  return LawsIn(experiment).front()->predict(experiment).silent;
+}
+
+TEST_P(LargeTeams, AreBeyondWhatTheoryComputes) {
+  EXPECT_EQ(SilentOfTeam(GetParam().law, 4, "complete"), "");
+  EXPECT_EQ(SilentOfTeam(GetParam().law, GetParam().most + 1, "path"), GetParam().silent);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfLaws, LargeTeams,
+    testing::Values(
+        LargeTeam{"'finite_time'\n", 1000, "the modes of so many agents are not computed"},
+        LargeTeam{"'gradient_tracking'\n", 40, "the modes of so many agents are not computed"},
+        LargeTeam{"'containment'\nleaders = [1, 2]\n", 1000, "the team is large"},
+        LargeTeam{"'distance_formation'\nshape = 'circle'\n", 200, "the team is large: its rigidity is not checked"},
+        LargeTeam{"'bearing_formation'\nshape = 'circle'\n", 200, "the team is large: its rigidity is not checked"}),
+    [](const auto& row) { return test::ParamName(row.param.law.substr(1, row.param.law.find('\'', 1) - 1)); });
+
+// --- phases -----------------------------------------------------------------------------------------
 
 TEST(SilenceOfAPhase, AfterALawThatFailsOnIdealBodiesNamesTheFailure) {
   const std::string toml =
