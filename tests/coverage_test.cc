@@ -100,6 +100,15 @@ TEST(Coverage, FourAgentsQuarterASquare) {
   EXPECT_LE(run.Measured("largest_increase_m2"), run.Predicted("largest_increase_m2"));
 }
 
+TEST(Coverage, WithoutADensityOneAgentEndsAtTheCentroidOfItsRegion) {
+  const LawRun run(
+      "[run]\nduration_s = 15\n[agents]\nmodel = 'single_integrator'\ncount = 1\nposition_m = [[5, 0.5, 1]]\n"
+      "[law]\nname = 'coverage'\nregion_m = [[0, 0], [6, 0], [0, 3]]\ndensity = []\n");
+  EXPECT_LT((run.meter.aim().value_m.head<2>() - Eigen::Vector2d(2, 1)).norm(), 1e-4);
+  EXPECT_NEAR(run.Measured("cost_end_m2"), (36 + 9 + 45) / 36., 1e-6) << "of a triangle: the sides' squares over 36";
+  EXPECT_LE(run.Measured("largest_increase_m2"), run.Predicted("largest_increase_m2"));
+}
+
 TEST(Coverage, TheCostFallsAlsoWhenAHeldCommandFliesPastTheCentroid) {
   const LawRun fast(Corner("gain = 190\n"));
   EXPECT_LE(fast.Measured("largest_increase_m2"), fast.Predicted("largest_increase_m2")) << "gain T = 1.9";

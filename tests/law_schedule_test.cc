@@ -74,6 +74,34 @@ TEST(LawSchedule, TheTimeOfALawCountsFromThePhasesBegin) {
   EXPECT_GT(rows[150].commands[0].a_limited_W.y(), 0);
 }
 
+TEST(LawSchedule, TheTimesOfALeaderCountFromThePhasesBegin) {
+  const std::string law =
+      "name = 'consensus'\nleader = 1\nleader_waypoints_m = [[-4, 0, 1], [-4, 9, 1]]\nleader_times_s = [0.0, 1.0]\n";
+  const auto rows = Fly(Pair(Pull("0.0") + Phase("0.5", law)));
+  EXPECT_EQ(rows[149].commands[0].a_law_W.y(), 0);
+  EXPECT_GT(rows[150].commands[0].a_law_W.y(), 0);
+}
+
+TEST(LawSchedule, ConcernsAgentsThatComeLate) {
+  const std::string late = "[[agents.override]]\nid = 2\nstart_s = 1.0\n";
+  const auto before = Fly(Pair(Pull("0.5") + Phase("0.5", "gain = 2.0")) + late);
+  EXPECT_EQ(DistanceAt(before, 100), 8) << "agent 1 hears nobody";
+  EXPECT_NEAR(DistanceAt(before, 200), Shrunk(8, 2, 100), 1e-9) << "agent 2 begins in the second phase";
+  const auto after = Fly(Pair(Pull("0.5") + Phase("1.5", "gain = 2.0")) + late);
+  EXPECT_NEAR(DistanceAt(after, 200), Shrunk(Shrunk(8, 0.5, 50), 2, 50), 1e-9);
+  const auto at_once = Fly(Pair(Pull("0.5") + Phase("1.0", "gain = 2.0")) + late);
+  EXPECT_NEAR(DistanceAt(at_once, 200), Shrunk(8, 2, 100), 1e-9);
+}
+
+TEST(LawSchedule, TheTimeOfALawCountsFromThePhasesBeginAlsoForAgentsThatComeLate) {
+  const std::string law = "name = 'waypoint'\nwaypoints_m = [[0, 0, 1], [0, 9, 1]]\ntimes_s = [0.0, 1.0]\n";
+  const auto rows = Fly(Pair(Pull("0.0") + Phase("0.5", law)) + "[[agents.override]]\nid = 2\nstart_s = 1.2\n");
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(rows[149].commands[i].a_limited_W.y(), 0) << i;
+    EXPECT_GT(rows[150].commands[i].a_limited_W.y(), 0) << i;
+  }
+}
+
 TEST(LawSchedule, ALawOfTheSameNameGoesOnIfOnlyLiveKeysDiffer) {
   // The first phase's clock runs on: prescribed_time is past its time when the second phase begins.
   const std::string law = "name = 'prescribed_time'\ntime_s = 0.2\nexponent = 4.0\ngain = 0.0\n";
@@ -117,6 +145,15 @@ TEST(LawSchedule, LeavesItsLiveKeysToLaterEvents) {
                              Phase("1.0", Pull("0.5"))) +
                         set);
   EXPECT_NEAR(DistanceAt(rows, 200), Shrunk(Shrunk(8, 0.5, 50), 1, 50), 1e-9);
+}
+
+TEST(LawSchedule, BeginsBeforeOtherEventsOfItsTick) {
+  const std::string set = "[[events]]\nat_s = 0.5\nset = { \"law.gain\" = 1.0 }\n";
+  const auto rows = Fly(Pair(Pull("0.5") + Phase("0.5", "gain = 2.0")) + set);
+  EXPECT_NEAR(DistanceAt(rows, 200), Shrunk(Shrunk(8, 0.5, 50), 1, 150), 1e-9);
+  const auto other =
+      Fly(Pair("name = 'consensus'\np_gain = 0.0\n" + Phase("0.5", Pull("2.0"))) + set + "agents = [2]\n");
+  EXPECT_NEAR(DistanceAt(other, 200), Shrunk(8, 1.5, 150), 1e-9) << "agent 1 pulls with 2, agent 2 with 1";
 }
 
 TEST(LawSchedule, NoLawGetsMessagesOfAnother) {

@@ -289,6 +289,16 @@ TEST(Platoon, SwingsGrowOrShrinkByThePredictedFactorFromVehicleToVehicle) {
   }
 }
 
+TEST(Platoon, WithAConstantSpacingSlowSwingsGrowFromVehicleToVehicle) {
+  const LawRun run(Driving(0));
+  const double w = 2 * std::numbers::pi / 5;  // below sqrt(2 p) = 2 rad/s: |p|^2 > |p - w^2|^2
+  const double gamma = std::sqrt((4 + 2.25 * w * w) / ((2 - w * w) * (2 - w * w) + 2.25 * w * w));
+  EXPECT_GT(gamma, 1.4);
+  for (const auto& amplification : run.Law()["amplification"]) EXPECT_NEAR(amplification.get<double>(), gamma, 0.03);
+  EXPECT_GT(run.Measured("string_gain"), 1.4);
+  EXPECT_LE(run.Measured("string_gain"), run.Predicted("string_gain") + 1e-4);
+}
+
 TEST(Platoon, KeepsItsDistancesWestwardsTooAndTheSmallestIsMeasured) {
   std::string toml = Driving(0.8, "direction = 'west'\ndisturbance_m_per_s = 0.0\nspeed_m_per_s = 2\n");
   IdealNetwork network(toml);

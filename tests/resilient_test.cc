@@ -167,6 +167,36 @@ TEST(Resilient, HonestAgentsAgreeInTheHullOfTheirStartsWhateverOneSays) {
   }
 }
 
+/// Nine who all hear each other, and four more of whom each hears five before it: 5-robust, with 92 of 156
+/// edges (LeBlanc et al., theorem on preferential attachment). Agents 3 and 8 lie.
+std::string Thirteen(int f) {
+  std::string edges, places;
+  for (int i = 1; i <= 13; ++i) {
+    for (int j = 1; j < (i <= 9 ? 10 : i); ++j)
+      if (i != j && (i <= 9 || 7 * j % (i - 1) < 5))
+        edges += (edges.empty() ? "[" : ", [") + std::to_string(i) + ", " + std::to_string(j) + "]";
+    places += (places.empty() ? "[" : ", [") + std::to_string(i * 5 % 13) + ", " + std::to_string(i) + ", 1]";
+  }
+  return "[run]\nduration_s = 30.0\n[physics]\ncollisions = false\n[control]\nrate_hz = 20\n[output]\nfidelity = "
+         "false\n[agents]\ncount = 13\nmodel = 'single_integrator'\nposition_m = [" +
+         places +
+         "]\n[[agents.override]]\nid = 3\nlie = { offset_m = [50, 0, 0] }\n[[agents.override]]\nid = 8\nlie = { "
+         "offset_m = [60, -40, 0] }\n[graph]\nedges = [" +
+         edges + "]\n[law]\nname = 'resilient'\ngain = 0.4\nf = " + std::to_string(f) + "\n";
+}
+
+TEST(Resilient, TwoLiarsDragNobodyOffOnASparseGraphThatIsFiveRobust) {
+  const LawRun run(Thirteen(2));
+  EXPECT_EQ(run.Measured("robustness"), 5);
+  EXPECT_EQ(run.Measured("outside_m"), 0);
+  EXPECT_EQ(run.Predicted("outside_m"), 0);
+  EXPECT_LT(run.Measured("apart_m"), 1e-3);
+  EXPECT_THAT(run.prediction.warnings, IsEmpty());
+  const LawRun one(Thirteen(1));
+  EXPECT_GT(one.Measured("outside_m"), 10) << "one of the two is believed";
+  EXPECT_THAT(one.prediction.warnings, Contains("law.f: agent 1 hears 2 that lie: more than F = 1 are not left out"));
+}
+
 TEST(Resilient, ConsensusIsDraggedOffByTheSameLie) {
   const LawRun run(Seven("velocity_consensus", kLies[0]));
   EXPECT_GT(run.meter.aim().value_m.x(), 4 + 20) << "far outside of the starts";
