@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws the pictures of runs (scripts/pictures.py).
+"""Draws the pictures of runs (scripts/pictures.py), of several runs in one (overlay.py).
 
 The same run always gives the same bytes. Exit codes: 0 done, 1 a run cannot be read, 2 wrong use.
 """
@@ -16,6 +16,7 @@ import matplotlib.pyplot as plt
 
 sys.dont_write_bytecode = True  # the folder of the scripts may be read-only
 import figure_style
+from overlay import OVERLAYS, draw_overlay
 from pictures import PICTURES
 from run_folder import RunError, read_run
 
@@ -102,14 +103,22 @@ def parser():
     made.add_argument("--size", metavar="SIZE", type=one_of("--size", figure_style.SIZES), default="screen",
                       help="one of " + ", ".join(figure_style.SIZES))
     made.add_argument("--out", metavar="FOLDER", type=pathlib.Path, help="where the pictures go")
+    made.add_argument("--overlay", action="store_true", help="all runs in the same pictures")
     made.add_argument("--show", action="store_true", help="open windows, too")
     return made
 
 
 def check(options):
     """Refuses options that do not go together."""
-    if options.out and len(options.runs) > 1:
-        wrong(f"--out: expected one run, got {len(options.runs)} runs, whose pictures have the same "
+    if options.overlay:
+        if len(options.runs) < 2:
+            wrong("--overlay: expected at least 2 runs, got 1")
+        if not options.out:
+            wrong("--overlay: it needs --out FOLDER, for the pictures belong to no single run")
+        if options.only and options.only not in OVERLAYS:
+            wrong(f"--only {options.only}: expected one of {', '.join(OVERLAYS)} with --overlay")
+    elif options.out and len(options.runs) > 1:
+        wrong(f"--out: expected one run, or --overlay, got {len(options.runs)} runs, whose pictures have the same "
               "names")
 
 
@@ -117,12 +126,16 @@ def check(options):
 def draw(options):
     check(options)
     runs = [read_run(folder) for folder in options.runs]
-    show = opens_windows(options.show or any(run.output("show_plot") for run in runs))
+    show = opens_windows(options.show or not options.overlay and any(run.output("show_plot") for run in runs))
     figure_style.use(options.size)
     if options.out:
         options.out.mkdir(parents=True, exist_ok=True)
-    for folder, run in zip(options.runs, runs):
-        draw_run(folder, run, options, show)
+    if options.overlay:
+        for name, figure in draw_overlay(options.runs, runs, options.only):
+            finish(figure, options.out, name, options.format, show)
+    else:
+        for folder, run in zip(options.runs, runs):
+            draw_run(folder, run, options, show)
     if show:
         plt.show()
 

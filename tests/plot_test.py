@@ -20,6 +20,7 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "scripts"))
 sys.dont_write_bytecode = True
 import figure_style
+import overlay
 import pictures
 import plot
 import run_folder
@@ -564,6 +565,64 @@ class Paper(PlotTest):
         self.assertEqual(self.pictures(), [])
 
 
+class Overlays(PlotTest):
+    def setUp(self):
+        super().setUp()
+        self.out = self.folder.parent / "both"
+        self.folders = [self.folder.parent / name for name in ("slow", "fast")]
+
+    def write_two(self, configs=(CONSENSUS, CONSENSUS), states=(None, None)):
+        for self.folder, config, of in zip(self.folders, configs, states):
+            self.folder.mkdir(exist_ok=True)
+            self.write(config, states=of)
+
+    def overlay(self, *options):
+        errors = io.StringIO()
+        with contextlib.redirect_stderr(errors):
+            code = plot.main([*map(str, self.folders), "--overlay", *options])
+        return code, errors.getvalue()
+
+    def test_all_pictures_that_apply_to_all_runs_are_drawn(self):
+        self.write_two((CONSENSUS, WAYPOINT))
+        self.assertEqual(self.overlay("--out", str(self.out), "--format", "png,svg", "--size", "column"), (0, ""))
+        names = ("acceleration", "paths", "position", "velocity")
+        self.assertEqual(sorted(path.name for path in self.out.iterdir()),
+                         [f"{name}.{ending}" for name in names for ending in ("png", "svg")])
+
+    def test_a_run_has_one_colour_and_one_name(self):
+        self.write_two(states=(arrays(3), arrays(4)))
+        figure_style.use("screen")
+        runs = [run_folder.read_run(folder) for folder in self.folders]
+        figures = dict(overlay.draw_overlay(self.folders, runs, None))
+        self.assertEqual(list(figures), ["paths", "position", "velocity", "acceleration", "disagreement"])
+        lines = figures["position"].axes[0].get_lines()
+        blue, orange = figure_style.OKABE_ITO[:2]
+        self.assertEqual([line.get_color() for line in lines], [blue] * 3 + [orange] * 4)
+        np.testing.assert_array_equal(lines[4].get_ydata(), runs[1].position[:, 1, 0])
+        names = [text.get_text() for text in figures["position"].legends[0].get_texts()]
+        self.assertEqual(names, ["slow", "fast"], "the runs have the same name: those of their folders")
+        (slow, fast) = figures["disagreement"].axes[0].get_lines()
+        np.testing.assert_allclose(slow.get_ydata(), 5 * np.exp(-runs[0].t), rtol=1e-12)
+
+    def test_runs_have_their_own_names_if_they_differ(self):
+        self.write_two((CONSENSUS, CONSENSUS.replace("demo", "other")))
+        runs = [run_folder.read_run(folder) for folder in self.folders]
+        self.assertEqual(overlay.names_of(self.folders, runs), ["demo", "other"])
+
+    def test_wrong_use(self):
+        self.write_two((CONSENSUS, WAYPOINT))
+        out = ("--out", str(self.out))
+        for options, message in (
+                ((), "--overlay: it needs --out FOLDER, for the pictures belong to no single run"),
+                ((*out, "--only", "graph"), "--only graph: expected one of paths, position, velocity, acceleration, "
+                                            "disagreement with --overlay"),
+                ((*out, "--only", "disagreement"),
+                 f"--only disagreement: {self.folders[1]}: it needs several agents and a law of agreement")):
+            self.assertEqual(self.overlay(*options), (2, f"error: {message}\n"))
+        self.folders.pop()
+        self.assertEqual(self.overlay(*out), (2, "error: --overlay: expected at least 2 runs, got 1\n"))
+
+
 class PicturesOfLaws(PlotTest):
     """scripts/law_pictures, which draws the pictures in docs/laws.md."""
 
@@ -648,7 +707,7 @@ class Errors(PlotTest):
         self.check(2, "--format: expected one or more of png, pdf, svg, with commas between, got 'bmp'",
                    "--format", "pdf,bmp")
         self.check(2, "--size: expected one of screen, column, page, got 'poster'", "--size", "poster")
-        self.check(2, "--out: expected one run, got 2 runs, whose pictures have the same names",
+        self.check(2, "--out: expected one run, or --overlay, got 2 runs, whose pictures have the same names",
                    str(self.folder), "--out", "x")
 
     def test_a_folder_that_cannot_be_written(self):

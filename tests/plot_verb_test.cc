@@ -27,6 +27,7 @@ struct PlotVerb : testing::Test {
 TEST_F(PlotVerb, HandsItsOptionsToTheScript) {
   ExpectError({"--format", "bmp"}, "--format: expected one or more of png, pdf, svg, with commas between, got 'bmp'\n");
   ExpectError({"--size", "poster"}, "--size: expected one of screen, column, page, got 'poster'\n");
+  ExpectError({scratch.path().string(), "--overlay", "--out", "pictures", "--only", "graph"}, "--only graph: expected");
 }
 
 TEST_F(PlotVerb, WithoutOptionsItDrawsTheRun) {

@@ -35,13 +35,14 @@ constexpr PlotOption kOptions[] = {
 struct PlotArgs {
   std::vector<std::string> runs;
   std::vector<std::string> values = std::vector<std::string>(std::size(kOptions));
-  bool show = false;
+  bool show = false, overlay = false;
 };
 
 std::vector<std::string> Words(const CLI::App& command, const PlotArgs& args) {
   std::vector<std::string> words = args.runs;
   for (std::size_t k = 0; k < std::size(kOptions); ++k)
     if (command.count(kOptions[k].name) > 0) words.push_back(std::string(kOptions[k].name) + "=" + args.values[k]);
+  if (args.overlay) words.emplace_back("--overlay");
   if (args.show) words.emplace_back("--show");
   return words;
 }
@@ -57,6 +58,7 @@ int PlotRun(const fs::path& folder, bool show, StopSignal& stop) {
 std::function<int()> SetUpPlot(CLI::App& command) {
   auto args = std::make_shared<PlotArgs>();
   command.add_option("run", args->runs, "run folders")->required()->type_name("RUN");
+  command.add_flag("--overlay", args->overlay, "several runs in the same pictures, in the folder --out");
   for (std::size_t k = 0; k < std::size(kOptions); ++k)
     command.add_option(kOptions[k].name, args->values[k], kOptions[k].meaning)->type_name(kOptions[k].value);
   command.add_flag("--show", args->show, "open windows too");

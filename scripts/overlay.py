@@ -1,0 +1,104 @@
+"""Several runs in one picture: the agents of a run share its colour and its kind of line."""
+
+import figure_style as style
+import matplotlib.pyplot as plt
+import numpy as np
+from pictures import (
+    AXIS_NAMES, FLOOR_M, LEAST_RANGE, PICTURES, draw_obstacles, drawn, map_axis, panel_grid, square_figure, widen,
+)
+from run_folder import RunError, disagreement
+
+
+def names_of(folders, runs):
+    """What tells the runs apart: their names, those of their folders, or the ways to them."""
+    for names in ([run.name for run in runs], [folder.resolve().name for folder in folders]):
+        if len(set(names)) == len(names) and all(names):
+            return names
+    return [str(folder) for folder in folders]
+
+
+def each(names, runs):
+    """The runs, each with how to draw its lines; the label is for the first of them."""
+    for name, run, (colour, line) in zip(names, runs, style.looks(len(runs))):
+        yield run, {"color": colour, "linestyle": line}, name
+
+
+def plot_lines(axis, x, y, name, look):
+    """One line per column of y, all alike."""
+    lines = axis.plot(x, y, **look, alpha=0.5 + 0.5 / y.shape[1])
+    lines[0].set_label(name)
+
+
+def finished(figure, axis, what):
+    handles, labels = axis.get_legend_handles_labels()
+    style.title(figure, what)
+    style.add_legend(figure, handles, labels)
+    style.wrap_labels(figure)
+    return figure
+
+
+def all_time(axis, runs):
+    axis.set_xlabel("time (s)")
+    axis.set_xlim(min(run.t[0] for run in runs), max(max(run.t[-1] for run in runs), runs[0].t[0] + 1e-3))
+
+
+def paths(names, runs):
+    figure, axis = square_figure()
+    draw_obstacles(axis, runs[0])
+    for run, look, name in each(names, runs):
+        p = run.position[:, drawn(run), :2]
+        plot_lines(axis, p[:, :, 0], p[:, :, 1], name, look)
+        axis.plot(*p[0].T, "o", markersize=4, color=look["color"], markerfacecolor="white", zorder=4)
+        axis.plot(*p[-1].T, "x", markersize=4, color=look["color"], zorder=4)
+    axis.plot([], [], "o", color="0.3", markersize=4, markerfacecolor="white", label="start")
+    axis.plot([], [], "x", color="0.3", markersize=4, label="end")
+    map_axis(axis)
+    return finished(figure, axis, "paths seen from above")
+
+
+def over_time(what, symbol, unit, values_of, axes_of):
+    def draw(names, runs):
+        axes = sorted(set().union(*map(axes_of, runs)))
+        figure, grid = panel_grid(len(axes))
+        for panel, k in zip(grid, axes):
+            for run, look, name in each(names, runs):
+                plot_lines(panel, run.t, values_of(run)[:, drawn(run), k], name, look)
+            panel.set_ylabel(f"{symbol.format(AXIS_NAMES[k])} ({unit})")
+            widen(panel, LEAST_RANGE)
+        all_time(grid[-1], runs)
+        figure.align_ylabels()
+        return finished(figure, grid[0], what)
+    return draw
+
+
+def disagreements(names, runs):
+    figure, axis = plt.subplots(figsize=(style.size().width, style.size().single))
+    for run, look, name in each(names, runs):
+        largest_m = np.maximum(disagreement(run)[:, run.honest].max(axis=1), FLOOR_M)
+        plot_lines(axis, run.t, largest_m[:, None], name, look)
+    axis.set_yscale("log")
+    axis.set_ylabel("largest distance to the mean or the leader (m)")
+    all_time(axis, runs)
+    return finished(figure, axis, "disagreement")
+
+
+OVERLAYS = {
+    "paths": paths,
+    "position": over_time("position", "{}", "m", lambda run: run.position, lambda run: (0, 1, 2)),
+    "velocity": over_time("velocity", "$v_{}$", "m/s", lambda run: run.velocity, lambda run: (0, 1, 2)),
+    "acceleration": over_time("commanded acceleration", "$a_{}$", "m/s²", lambda run: run.acceleration_command,
+                              lambda run: run.axes),
+    "disagreement": disagreements,
+}
+
+
+def draw_overlay(folders, runs, only):
+    """Yields name and figure of each picture that applies to all runs, or of one."""
+    names = names_of(folders, runs)
+    for name in [only] if only else OVERLAYS:
+        against = [(folder, PICTURES[name].applies(run)) for folder, run in zip(folders, runs)]
+        against = [(folder, reason) for folder, reason in against if reason]
+        if not against:
+            yield name, OVERLAYS[name](names, runs)
+        elif only:
+            raise RunError(f"--only {only}: {against[0][0]}: {against[0][1]}", code=2)
