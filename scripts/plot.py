@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""Draws the pictures of runs (scripts/pictures.py), of several runs in one (overlay.py).
+"""Draws the pictures of runs (scripts/pictures.py), of several runs in one (overlay.py), or a film (animation.py).
 
 The same run always gives the same bytes. Exit codes: 0 done, 1 a run cannot be read, 2 wrong use.
 """
 
 import argparse
+import math
 import os
 import pathlib
 import sys
@@ -15,6 +16,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 sys.dont_write_bytecode = True  # the folder of the scripts may be read-only
+import animation
 import figure_style
 from overlay import OVERLAYS, draw_overlay
 from pictures import PICTURES
@@ -81,6 +83,16 @@ def formats(text):
     return named
 
 
+def pace(text):
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0 < value < math.inf:
+        wrong(f"--pace: expected a number above 0, got '{text}'")
+    return value
+
+
 def one_of(option, names):
     def check(text):
         if text not in names:
@@ -98,12 +110,14 @@ def parser():
     made = Parser(description="Draws the pictures of runs, by default each into the folder of its run.")
     made.add_argument("runs", metavar="RUN_FOLDER", type=pathlib.Path, nargs="+")
     made.add_argument("--only", metavar="NAME", type=one_of("--only", PICTURES), help="one of " + ", ".join(PICTURES))
-    made.add_argument("--format", metavar="LIST", type=formats, default=["png"],
-                      help=", ".join(figure_style.FORMATS) + ", with commas between")
+    made.add_argument("--format", metavar="LIST", type=formats,
+                      help=", ".join(figure_style.FORMATS) + ", with commas between (png)")
     made.add_argument("--size", metavar="SIZE", type=one_of("--size", figure_style.SIZES), default="screen",
                       help="one of " + ", ".join(figure_style.SIZES))
     made.add_argument("--out", metavar="FOLDER", type=pathlib.Path, help="where the pictures go")
     made.add_argument("--overlay", action="store_true", help="all runs in the same pictures")
+    made.add_argument("--animate", metavar="FILE", type=pathlib.Path, help="a film (.mp4, .gif) instead of pictures")
+    made.add_argument("--pace", metavar="X", type=pace, help="of the film: simulated seconds per second")
     made.add_argument("--show", action="store_true", help="open windows, too")
     return made
 
@@ -120,14 +134,27 @@ def check(options):
     elif options.out and len(options.runs) > 1:
         wrong(f"--out: expected one run, or --overlay, got {len(options.runs)} runs, whose pictures have the same "
               "names")
-
+    if options.animate:
+        if len(options.runs) > 1:
+            wrong(f"--animate: expected one run, got {len(options.runs)}")
+        for name in ("only", "format", "out", "show"):
+            if getattr(options, name):
+                wrong(f"--animate: it draws a film and nothing else, got --{name} too")
+        animation.check(options.animate)
+    elif options.pace:
+        wrong("--pace: it is that of a film, and needs --animate")
 
 
 def draw(options):
     check(options)
     runs = [read_run(folder) for folder in options.runs]
+    if options.animate:
+        figure_style.use(options.size)
+        animation.film(runs[0], options.animate, options.pace)
+        return
     show = opens_windows(options.show or not options.overlay and any(run.output("show_plot") for run in runs))
     figure_style.use(options.size)
+    options.format = options.format or ["png"]
     if options.out:
         options.out.mkdir(parents=True, exist_ok=True)
     if options.overlay:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of scripts/plot.py and scripts/law_pictures: which pictures they make, what these contain, how large
+"""Tests of scripts/plot.py and scripts/law_pictures: which pictures and films they make, what these contain, how large
 they are, and error messages."""
 
 import contextlib
@@ -10,6 +10,7 @@ import json
 import os
 import pathlib
 import re
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -19,6 +20,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "scripts"))
 sys.dont_write_bytecode = True
+import animation
 import figure_style
 import overlay
 import pictures
@@ -621,6 +623,107 @@ class Overlays(PlotTest):
             self.assertEqual(self.overlay(*options), (2, f"error: {message}\n"))
         self.folders.pop()
         self.assertEqual(self.overlay(*out), (2, "error: --overlay: expected at least 2 runs, got 1\n"))
+
+
+def probe(path):
+    """Codec, width, height, number of frames and frames per second of a film."""
+    wanted = ("codec_name", "width", "height", "nb_read_frames", "r_frame_rate")
+    told = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-of", "json", "-show_entries",
+                           "stream=" + ",".join(wanted), path], check=True, capture_output=True)
+    return tuple(json.loads(told.stdout)["streams"][0][name] for name in wanted)
+
+
+class Films(PlotTest):
+    """They need ffmpeg: scripts/setup --test."""
+
+    def test_a_film_has_its_frames_and_size_and_the_same_bytes_each_time(self):
+        self.write(LEADER, PATH)
+        for ending, codec, scale in ((".mp4", "h264", 30), (".gif", "gif", 20)):
+            path = self.folder.parent / f"film{ending}"
+            self.assertEqual(self.run_plot("--animate", str(path), "--pace", "5"), (0, ""))
+            self.assertEqual(probe(path), (codec, 8 * scale, 6 * scale, "26", "25/1"))
+            first = path.read_bytes()
+            self.run_plot("--animate", str(path), "--pace", "5")
+            self.assertEqual(path.read_bytes(), first)
+        self.assertEqual(sorted(path.name for path in self.folder.parent.iterdir()), ["a run", "film.gif", "film.mp4"])
+        self.assertEqual(self.pictures(), [])
+
+    def test_frames_begin_with_the_first_row_and_end_with_the_last(self):
+        t = np.arange(1001) / 10
+        for pace, frames, used in ((None, 501, 5), (1.0, 2501, 1.0), (7.0, 359, 7.0), (1e9, 2, 1e9)):
+            rows, found = animation.rows_of_frames(t, pace)
+            self.assertEqual((len(rows), rows[0], rows[-1], found), (frames, 0, 1000, used))
+            self.assertTrue(np.all(np.diff(rows) >= 0))
+        self.assertEqual(animation.rows_of_frames(t[:1], None)[0].tolist(), [0])
+
+    def film(self, **what):
+        self.write(**what)
+        figure_style.use("screen")
+        return animation.Film(run_folder.read_run(self.folder), 3, 1)
+
+    def test_agents_are_where_they_were_and_their_ways_remain(self):
+        film = self.film(states=arrays(agents=3))
+        p = film.p
+        for row, before in ((0, 0), (5, 0), (10, 5)):
+            pixels = np.asarray(film.frame(row, before))
+            high = pixels.shape[0]
+            for k in range(3):
+                x, y = film.axis.transData.transform(p[row, k])
+                colour = 255 * np.array(plot.matplotlib.colors.to_rgb(figure_style.OKABE_ITO[k]))
+                np.testing.assert_allclose(pixels[int(high - y), int(x), :3], colour, atol=8)
+        x, y = film.axis.transData.transform(p[2, 0])
+        self.assertLess(pixels[int(high - y) - 1:int(high - y) + 2, int(x), 0].min(), 200, "agent 1 came along here")
+
+    def test_edges_are_those_of_their_time_and_of_agents_that_are_near(self):
+        film = self.film(summary=Graphs.TWO, config=CONSENSUS + "[graph]\nrange_m = 5.0\n")
+        near = np.zeros((3, 3))
+        self.assertEqual([film.edges(t_s, near) for t_s in (0, 1.4, 1.5, 5)], [{(0, 1), (1, 0)}] * 2 + [{(2, 1)}] * 2)
+        self.assertEqual(film.edges(0, np.array([[0, 0, 0], [0, 0, 6], [0, 0, 0]])), set())
+
+    def test_it_tells_the_time_the_phase_and_events_of_late(self):
+        film = self.film(config=Changes.PHASES + "[[events]]\nat_s = 1.0\ncut = [[1, 2]]\n", summary=Changes.TOLD)
+        self.assertEqual([film.words(t_s) for t_s in (0.94, 1, 2.9, 4)], [
+            "t = 0.9 s   chase\n", "t = 1.0 s   chase\ncut 1,2", "t = 2.9 s   chase\ncut 1,2", "t = 4.0 s   flee\n"])
+        self.assertEqual(self.film().words(1), "t = 1.0 s")
+
+    def test_hull_and_cells_move(self):
+        film = self.film(config='[law]\nname = "chase"\nguides = [1, 2, 3]\n', summary={"drawing": {"hull": "guides"}})
+        first = np.array(film.frame(0, 0))
+        self.assertGreater(np.count_nonzero(first != np.array(film.frame(20, 20))), 0)
+        self.assertEqual(list(film.axis.patches), [], "each frame has its own")
+
+    def test_wrong_use(self):
+        self.write()
+        film = ("--animate", str(self.folder / "film.mp4"))
+        for options, code, message in (
+                (("--animate", "film.avi"), 2,
+                 "--animate: expected a file whose name ends in .mp4 or .gif, got 'film.avi'"),
+                ((*film, "--only", "paths"), 2, "--animate: it draws a film and nothing else, got --only too"),
+                ((*film, "--format", "svg"), 2, "--animate: it draws a film and nothing else, got --format too"),
+                ((*film, "--show"), 2, "--animate: it draws a film and nothing else, got --show too"),
+                ((*film, "--pace", "0"), 2, "--pace: expected a number above 0, got '0'"),
+                ((*film, "--pace", "fast"), 2, "--pace: expected a number above 0, got 'fast'"),
+                (("--pace", "2"), 2, "--pace: it is that of a film, and needs --animate"),
+                ((str(self.folder), *film), 2, "--animate: expected one run, got 2")):
+            self.check(code, message, *options)
+
+    def test_without_ffmpeg_it_says_what_to_install(self):
+        self.write()
+        with mock.patch.dict(os.environ, {"PATH": str(self.folder)}):
+            self.check(1, "--animate: it needs the program ffmpeg, which is not installed (Debian: apt-get install ffmpeg)",
+                       "--animate", str(self.folder / "film.mp4"))
+
+    def test_a_failure_of_ffmpeg_is_told_and_leaves_no_file(self):
+        self.write()
+        ffmpeg = self.folder / "ffmpeg"
+        ffmpeg.write_text("#!/bin/sh\n[ -z \"$KEEPS_ON\" ] || /bin/cat > /dev/null\necho no room for it >&2\nexit 1\n")
+        ffmpeg.chmod(0o755)
+        path = self.folder / "film.gif"
+        for keeps_on in ("", "yes"):
+            with mock.patch.dict(os.environ, {"PATH": str(self.folder), "KEEPS_ON": keeps_on}):
+                self.assertEqual(self.run_plot("--animate", str(path), "--pace", "5"),
+                                 (1, f"error: {path}: ffmpeg failed: no room for it\n"))
+            self.assertEqual(list(self.folder.glob("film*")), [])
 
 
 class PicturesOfLaws(PlotTest):

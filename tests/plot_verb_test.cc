@@ -27,6 +27,8 @@ struct PlotVerb : testing::Test {
 TEST_F(PlotVerb, HandsItsOptionsToTheScript) {
   ExpectError({"--format", "bmp"}, "--format: expected one or more of png, pdf, svg, with commas between, got 'bmp'\n");
   ExpectError({"--size", "poster"}, "--size: expected one of screen, column, page, got 'poster'\n");
+  ExpectError({"--animate", "film.avi", "--pace", "2"}, "--animate: expected a file whose name ends in .mp4 or .gif");
+  ExpectError({"--animate", "film.mp4", "--show"}, "--animate: it draws a film and nothing else, got --show too\n");
   ExpectError({scratch.path().string(), "--overlay", "--out", "pictures", "--only", "graph"}, "--only graph: expected");
 }
 

@@ -30,6 +30,8 @@ constexpr PlotOption kOptions[] = {
     {"--format", "LIST", "png, pdf, svg; several with commas between (png)"},
     {"--size", "SIZE", "screen; column or page: 3.5 or 7.16 inches wide, letters of 8 pt, without a title (screen)"},
     {"--out", "FOLDER", "write the pictures there, not into the run folder"},
+    {"--animate", "FILE", "draw the run as a film instead: FILE.mp4 or FILE.gif (needs ffmpeg)"},
+    {"--pace", "X", "with --animate: simulated seconds per second (1, or more if the film would last over 20 s)"},
 };
 
 struct PlotArgs {
