@@ -2,9 +2,11 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "bus/bus.h"
 #include "bus/wire.h"
+#include "experiment/motion.h"
 #include "idl/schemas.h"
 #include "idl/topics.h"
 #include "orchestrator/formats/bytes.h"
@@ -211,6 +213,18 @@ TEST(Schemas, ListEachDependencyOnceBehindALineOfEightyEqualSigns) {
   EXPECT_THAT(std::string(text), testing::EndsWith("builtin_interfaces/Time clock\n" + std::string(80, '=') +
                                                    "\nMSG: builtin_interfaces/Time\n# A point in time, in seconds and "
                                                    "nanoseconds.\nint32 sec\nuint32 nanosec\n"));
+}
+
+TEST(Schemas, NameEachBitOfTheFlagsOfACommand) {
+  const std::pair<CommandFlag, std::string> names[] = {{kAccelerationLimited, "ACCELERATION_LIMITED"},
+                                                       {kTiltLimited, "TILT_LIMITED"},
+                                                       {kRotorLimited, "ROTOR_LIMITED"},
+                                                       {kSpeedLimited, "SPEED_LIMITED"},
+                                                       {kSafetyFiltered, "SAFETY_FILTERED"},
+                                                       {kSafetyInfeasible, "SAFETY_INFEASIBLE"}};
+  const std::string text(SchemaOf("mascot_msgs/msg/AgentCommand").text);
+  for (const auto& [flag, name] : names)
+    EXPECT_THAT(text, testing::HasSubstr("\nuint32 " + name + "=" + std::to_string(flag) + "\n"));
 }
 
 TEST(Schemas, TypeHashesAreThoseThatRosPublishes) {
