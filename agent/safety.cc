@@ -8,11 +8,11 @@
 //     share of agent i      -dp.u_i <= a_i / (a_i + a_j) b
 // a is control.max_acceleration_m_per_s2. Each agent takes the u_i nearest to what its law wants, within its limits.
 // The paper has gamma h^3; with gamma h, one gain in 1/s serves both kinds, and h >= h(0) exp(-gamma t).
-// What follows from commands that are held for a tick T:
-// * the root, by which b divides, counts as at least (a_i + a_j) T: agents come to rest in the tick in which they would
-//   reach D, and not before its end. This costs at most (a_i + a_j) T^2 / 8 of distance.
-// * in a tick, dp turns by |v_t| T / d, v_t the part of dv across dp, and u_i - u_j with it only in the next. b is less
-//   by the most that this can take from h, to first order in T: 3/2 T |v_t| |u_i - u_j|.
+// Commands are held for a tick T. For that reason two terms differ from the paper:
+// * b divides by the root, which is taken to be at least (a_i + a_j) T. Agents then come to rest at the end of the tick
+//   in which they would reach D, and may come nearer than D by up to (a_i + a_j) T^2 / 8.
+// * Let v_t be the part of dv across dp. Within a tick dp turns by |v_t| T / d, but commands turn with it only in the
+//   next one. What this takes from h is at most 3/2 T |v_t| |u_i - u_j|, to first order in T: b is less by that.
 // Closer than D, h = -sqrt(2 (a_i + a_j)(D - d)) + dp.dv/d: agents return to D.
 #include "agent/safety.h"
 

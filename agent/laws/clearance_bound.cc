@@ -10,7 +10,7 @@
 namespace mascot {
 namespace {
 
-/// The clearance at which the push is `speed`.
+/// The clearance at which an obstacle pushes with `speed`.
 double Balance_m(const Repulsion& repulsion, double speed) {
   double low = 0, high = repulsion.reach;
   for (int n = 0; n < 200; ++n) {
@@ -20,14 +20,14 @@ double Balance_m(const Repulsion& repulsion, double speed) {
   return low;
 }
 
-/// The speed away from the obstacle that is wanted at least.
+/// The least speed away from an obstacle that the law wants where the obstacle pushes with `push`.
 double LeastAway(double push, double speed) {
   if (push < speed) return push - speed;
   return std::min(push - speed, speed * std::sqrt(1 - speed * speed / (push * push)));
 }
 
-/// The least clearance of an approach from `start_m` on, with `speed`, of a body that follows with the rate `k` (1/s)
-/// what it wanted a tick of `h` before.
+/// The least clearance of a body that approaches an obstacle from `start_m` away, with `speed` at first. The body's
+/// velocity follows, at the rate `k` (1/s), what its law wanted one tick (`h`, in s) before.
 double LeastOfApproach_m(const Repulsion& repulsion, double start_m, double speed, double k, double h) {
   constexpr int kMostSteps = 1'000'000;
   constexpr double kAtRest = 1e-6;  // m/s

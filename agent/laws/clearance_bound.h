@@ -14,16 +14,18 @@ namespace mascot {
 std::optional<double> Clearance_m(const AgentConfig& agent, const Eigen::Vector3d& p_W,
                                   const std::vector<Obstacle>& obstacles);
 
-/// How near agents come to obstacles that push as Repulsion says, while whatever else they want is limited to `speed`,
-/// and so is the sum: v* = [f + push n]_s, |f| <= s, with n away from the obstacle. The distance to a convex body is
-/// convex, so the clearance c of an agent with velocity v falls at most as fast as along the line:
+/// How near agents come to obstacles. An obstacle pushes as Repulsion says, along n, the direction away from it. What
+/// an agent wants besides, f, is limited to the speed s = `speed`, and so is the sum: v* = [f + push n]_s, |f| <= s.
+/// The distance to a convex body is a convex function, so that the clearance c of an agent with velocity v and
+/// acceleration a falls no faster than on a straight way to the body:
 ///   c(t + T) >= c(t) + T n v      and      c'' >= n a
-/// Driven by velocity, v = v*: n v >= push(c) - s if that is negative. Held for a tick T, c never falls below the
-/// clearance c* of push(c*) = s, if T times the steepness there is at most 1.
-/// Driven by acceleration, a = k (v* - v): for the speed of approach y = -n v
+/// An agent driven by velocity has v = v*, held for a tick T: n v >= push(c) - s wherever that is negative. Its c never
+/// falls below the clearance c* of push(c*) = s, if T times the steepness there is at most 1.
+/// An agent driven by acceleration has a = k (v* - v). For its speed of approach y = -n v
 ///   y' <= -k (w(c) + y),  y <= s,  w = push - s if push < s, else min(push - s, s sqrt(1 - (s / push)^2))
-/// The least c is that of the approach with y = s from where the push begins: no other crosses its curve in (c, y),
-/// as w grows when c falls. A command held for a tick is at most a tick late, so w is taken at c + s T.
+/// The approach that comes nearest has y = s where the push begins: w grows as c falls, so that the curve of no other
+/// approach in the plane (c, y) crosses its curve. A command held for a tick is at most a tick late, so w is taken at
+/// c + s T.
 struct ClearanceBound {
   double gain = 0, influence_m = 0, speed = 0;
 

@@ -1,7 +1,7 @@
 // Flocking of double integrators; Olfati-Saber, "Flocking for multi-agent dynamic systems: algorithms and theory", IEEE
 // Trans. Automatic Control 51 (2006), Algorithm 2 (and Algorithm 1, with c1_gamma = c2_gamma = 0):
-//   a_i = sum_j w_ij [ c1_alpha phi_alpha(|p_j - p_i|_sigma) n_ij + c2_alpha rho_h(|p_j - p_i|_sigma / r_alpha) (v_j -
-//   v_i) ]
+//   a_i = sum_j w_ij [ c1_alpha phi_alpha(|p_j - p_i|_sigma) n_ij
+//                      + c2_alpha rho_h(|p_j - p_i|_sigma / r_alpha) (v_j - v_i) ]
 //         - c1_gamma (p_i - q_r) - c2_gamma (v_i - p_r)
 //   |z|_sigma = (sqrt(1 + epsilon |z|^2) - 1) / epsilon,  n_ij = (p_j - p_i) / sqrt(1 + epsilon |p_j - p_i|^2)
 // Alpha agents keep the distance d from each other, and do nothing to each other from the range r = range_ratio d on.

@@ -5,11 +5,12 @@
 
 namespace mascot {
 
-/// The repulsion of Khatib (1986) from a body that is `clearance` away, as a speed. Its potential,
-/// gain (1/clearance - 1/reach)^2 / 2, grows beyond all bounds as the clearance goes to 0.
+/// The push of a body on an agent that passes it, as a wanted speed; Khatib (1986). `clearance` is the free distance
+/// between the two (m). The push has the potential gain (1/clearance - 1/reach)^2 / 2, which grows beyond all bounds as
+/// the clearance goes to 0.
 struct Repulsion {
   double gain = 0;   ///< m^4/s
-  double reach = 0;  ///< from this clearance on there is none (m)
+  double reach = 0;  ///< at this clearance and beyond there is no push (m)
 
   /// Away from the body (m/s).
   double Push(double clearance) const {
@@ -23,7 +24,7 @@ struct Repulsion {
   }
 
  private:
-  static constexpr double kTouching_m = 1e-3;  // from there on the push no longer grows
+  static constexpr double kTouching_m = 1e-3;  // a smaller clearance counts as this one
 };
 
 /// `v`, or the vector of its direction whose length is `limit` if it is longer.
