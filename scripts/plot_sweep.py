@@ -75,7 +75,7 @@ class Table:
         """What it means for a run to have a value of the column."""
         if not self.is_time:
             return "with a value"
-        return "settled" if self.column.endswith("settling_time_s") else "reached by the end"
+        return "settled" if self.column.endswith("settling_time_s") else "in time"
 
     def values(self):
         return [number(row[self.column]) for row in self.good]
@@ -241,7 +241,7 @@ class Curves:
             for cell in self.series:
                 self.band(ax, cell, middle, low, high, name)
             self.marks(ax)
-            ax.set_title(name + (", of runs " + table.has_value() if middle == "mean" and table.late and name else ""))
+            ax.set_title(name + (", of the runs " + table.has_value() if middle == "mean" and table.late and name else ""))
             if with_fractions:
                 self.fractions(panels[1, column])
             self.x.dress(panels[-1, column].xaxis)

@@ -16,6 +16,13 @@ TEST(LabelOfColumn, IsWordsAndAUnit) {
   EXPECT_EQ(LabelOfColumn("laws.finite_time.agreement_time_s"), "finite_time: agreement time (s)");
 }
 
+TEST(LabelOfMetric, HasTheUnitThatItsFileSays) {
+  EXPECT_EQ(LabelOfMetric({"rise_time_s", ""}), "rise time (s)");
+  EXPECT_EQ(LabelOfMetric({"rise_time_s", "s"}), "rise time (s)");
+  EXPECT_EQ(LabelOfMetric({"peak_command", "m/s^2"}), "peak command (m/s²)");
+  EXPECT_EQ(LabelOfMetric({"turns", ""}), "turns");
+}
+
 TEST(LabelOfKey, HasTheUnitOfItsRowOrOfItsName) {
   EXPECT_EQ(LabelOfKey("law.p_gain", {"consensus"}), "law.p_gain (1/s²)");
   EXPECT_EQ(LabelOfKey("law.p_gain", {"velocity_consensus"}), "law.p_gain (1/s)");

@@ -160,6 +160,47 @@ TEST_F(SweepTest, KeepsTheErrorOfARunThatFailsAndGoesOn) {
   EXPECT_EQ(table.At(2, "error"), "");
 }
 
+TEST_F(SweepTest, HasColumnsOfMetricsInPythonOverTheArraysOfStatesNpz) {
+  WriteFile(folder_.File("own.py"),
+            "import hashlib\n\n\ndef fingerprint(run):\n    digest = hashlib.sha256()\n    for name in sorted(run):\n"
+            "        digest.update(f'{name} {run[name].dtype} {run[name].shape}'.encode() + run[name].tobytes())\n"
+            "    return int.from_bytes(digest.digest()[:6], 'big')\n\n\ndef _mean(x):\n    return x\n\n\n"
+            "def half_time_s(run):\n    return None if run['position'][0, 0, 0] < 0 else run['t'][-1] / 2\n");
+  const std::string words = "--set law.p_gain=0.1,0.2 --seeds 4..6 --metric " + folder_.File("own.py");
+  const Ran ran = Sweep(words + " --plot half_time_s");
+  ASSERT_EQ(ran.exit_code, 0) << ran.output;
+  const Table table(out_);
+  EXPECT_THAT(Cells(table.columns.end() - 4, table.columns.end()),
+              testing::ElementsAre("fingerprint", "half_time_s", "wall_s", "real_time_factor"));
+  EXPECT_THAT(table.At(0, "half_time_s"), testing::AnyOf("1.0", ""));
+  Up up(folder_, "up", config_, {"--engine", "inprocess", "--set", "law.p_gain=0.2", "--seed", "5"});
+  ASSERT_EQ(up.Wait(), 0);
+  const Ran numpy =
+      Shell("cd '" + folder_.path().string() +
+            "' && /usr/bin/python3 -c 'import numpy, own; print(float(own.fingerprint(dict(numpy.load(\"" +
+            (up.path() / "states.npz").string() + "\")))))'");
+  EXPECT_EQ(table.At(4, "fingerprint") + "\n", numpy.output);
+  EXPECT_THAT(Sweep("--set law.p_gain=0.1,0.2 --seeds 4..6").output, HasSubstr("got another (--force begins anew)"));
+}
+
+TEST_F(SweepTest, RefusesMetricsWithMistakesAndNamesTheLineOfThoseInARun) {
+  const std::string file = folder_.File("own.py");
+  const auto refuses = [&](const std::string& text, const std::string& message) {
+    WriteFile(file, text);
+    const Ran ran = Sweep("--seeds 1..2 --no-plot --metric " + file);
+    EXPECT_EQ(ran.exit_code, 2) << ran.output;
+    EXPECT_THAT(ran.output, HasSubstr("error: --metric: " + message));
+    EXPECT_FALSE(std::filesystem::exists(out_));
+  };
+  refuses("def f(run:\n", "own.py:1: SyntaxError: '(' was never closed");
+  refuses("def ticks(run):\n    return 1\n", "expected names that no other column has, got 'ticks'");
+  WriteFile(file, "def f(run):\n    x = 0\n    return 1 / x\n");
+  const Ran failed = Sweep("--seeds 1..2 --no-plot --metric " + file);
+  EXPECT_EQ(failed.exit_code, 1) << failed.output;
+  EXPECT_THAT(failed.output, HasSubstr("run 0 and 1 more: own.py:3: metric f: ZeroDivisionError: division by zero"));
+  EXPECT_EQ(Table(out_).At(0, "error"), "own.py:3: metric f: ZeroDivisionError: division by zero");
+}
+
 TEST_F(SweepTest, SaysWhatDidNotSettleAndWritesStatistics) {
   const Ran ran =
       Sweep("--set law.p_gain=0.2,0.3 --set run.duration_s=2,30 --seeds 1..3 --plot consensus.settling_time_s");

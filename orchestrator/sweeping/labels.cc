@@ -89,6 +89,13 @@ std::string LabelOfColumn(std::string_view column) {
   return WithUnit(prefix.empty() ? named.name : std::string(prefix) + ": " + named.name, named.unit);
 }
 
+std::string LabelOfMetric(const PythonMetric& metric) {
+  if (metric.unit.empty()) return LabelOfColumn(metric.name);
+  std::string words = SplitUnit(metric.name).name;
+  std::ranges::replace(words, '_', ' ');
+  return WithUnit(words, metric.unit);
+}
+
 std::string LabelOfKey(std::string_view key, const std::vector<std::string>& laws) {
   const Named named = SplitUnit(key);
   std::string units;

@@ -8,6 +8,7 @@
 #include <functional>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -25,6 +26,7 @@
 #include "orchestrator/sweeping/law_axis.h"
 #include "orchestrator/sweeping/metrics.h"
 #include "orchestrator/sweeping/outcomes.h"
+#include "orchestrator/sweeping/run_arrays.h"
 #include "orchestrator/sweeping/table.h"
 #include "orchestrator/theory/draws.h"
 #include "orchestrator/theory/theory.h"
@@ -35,12 +37,16 @@ namespace {
 namespace fs = std::filesystem;
 using WallClock = std::chrono::steady_clock;
 
+constexpr TimeLimit kMetricLimit{60, "the limit of a metric"};
+
 /// Experiment file and plan of a sweep.
 struct Sweep {
   const std::string& name;
   const std::string& text;
   const SweepPlan& plan;
   const LawAxis& laws;
+  const Sweeper::MetricFile& metric_file;
+  std::shared_ptr<std::optional<PythonMetrics>> own = {};  ///< made by each worker for itself, when it needs them
 
   Experiment Load(const SweepPoint& point) const {
     const Section document = Section::FromText(text, name, laws.Fit(point.overrides));
@@ -57,17 +63,36 @@ std::vector<std::string> NamesOfLaws(const Experiment& experiment) {
   return names;
 }
 
+/// The metrics of the user's file.
+const PythonMetrics& OwnMetrics(const Sweep& sweep) {
+  const fs::path path = sweep.metric_file.path;
+  if (!*sweep.own) sweep.own->emplace(sweep.metric_file.text, path.filename(), path.parent_path(), kMetricLimit);
+  return **sweep.own;
+}
+
+/// Adds the cells of the user's metrics.
+void AddOwn(const PythonMetrics& own, const RunArrays& arrays, std::map<std::string, std::string>& cells) {
+  const std::vector<std::optional<double>> numbers = own.Of(arrays.All());
+  for (std::size_t k = 0; k < numbers.size(); ++k)
+    cells[own.list()[k].name] = numbers[k] ? ShortestFloat(*numbers[k]) : "";
+}
+
 /// Executes one run. Returns the cells of its metric columns. Throws ConfigError if the experiment is not valid, and
 /// std::runtime_error if the run fails.
 std::map<std::string, std::string> FlyOne(const Sweep& sweep, std::size_t run) {
   const Experiment experiment = sweep.Load(sweep.plan[run]);
   const Prediction prediction = Predict(experiment);
   RunMeter meter(experiment);
-  const EngineResult result = RunInProcess(experiment, {&meter}, [] { return true; });
+  RunArrays arrays(experiment);
+  std::vector<RowSink*> sinks{&meter};
+  if (sweep.own) sinks.push_back(&arrays);
+  const EngineResult result = RunInProcess(experiment, sinks, [] { return true; });
   if (!result.failure.empty()) throw std::runtime_error(result.failure);
   const RunFacts facts{.engine = "inprocess"};
-  return SweepMetrics(SummaryJson(experiment, prediction, meter, result, facts),
-                      SweepMetricNames(NamesOfLaws(experiment)));
+  auto cells = SweepMetrics(SummaryJson(experiment, prediction, meter, result, facts),
+                            SweepMetricNames(NamesOfLaws(experiment)));
+  if (sweep.own) AddOwn(OwnMetrics(sweep), arrays, cells);
+  return cells;
 }
 
 /// What is found out about an experiment without flying it.
@@ -76,12 +101,19 @@ struct Looked {
   std::vector<std::string> draws;  ///< DrawsOf()
 };
 
+std::size_t TaskOfMetrics(const Sweep& sweep) { return 2 * sweep.plan.size() + sweep.plan.trials().size(); }
+
 /// Work of the pool for a sweep of n runs: task k < n executes run k and returns its metric cells; task n + k only
 /// looks at run k, and task 2 n + k at trial k of the plan. Answers are JSON.
 WorkerPool::Work WorkOf(const Sweep& sweep) {
   return [sweep](std::size_t task) -> std::string {
     const std::size_t runs = sweep.plan.size();
     if (task < runs) return nlohmann::json(FlyOne(sweep, task)).dump();
+    if (task == TaskOfMetrics(sweep)) {
+      nlohmann::json list = nlohmann::json::array();
+      for (const PythonMetric& metric : OwnMetrics(sweep).list()) list.push_back({metric.name, metric.unit});
+      return list.dump();
+    }
     const Experiment experiment =
         sweep.Load(task < 2 * runs ? sweep.plan[task - runs] : sweep.plan.trials()[task - 2 * runs]);
     return nlohmann::json({{"resolved", experiment.resolved}, {"draws", DrawsOf(experiment)}}).dump();
@@ -128,6 +160,23 @@ Looked FirstValid(const Sweep& sweep, bool first_alone, WorkerPool& pool, StopSi
   }
   if (!valid) throw ConfigError({mistakes});
   return *valid;
+}
+
+/// The user's metrics. Throws ConfigError for mistakes in their file, or if a name is that of another column.
+std::vector<PythonMetric> ListMetrics(const Sweep& sweep, const std::vector<std::string>& others, WorkerPool& pool,
+                                      StopSignal& stop) {
+  std::vector<PythonMetric> list;
+  if (!sweep.own) return list;
+  const std::size_t task = TaskOfMetrics(sweep);
+  ExecuteTasks({&task, 1}, pool, stop, [&](const WorkerPool::Done& done) {
+    if (!done.failure.empty()) throw ConfigError({"--metric: " + done.failure});
+    for (const auto& metric : nlohmann::json::parse(done.answer)) list.push_back({metric[0], metric[1]});
+    return true;
+  });
+  for (const PythonMetric& metric : list)
+    if (std::ranges::find(others, metric.name) != others.end())
+      throw ConfigError({"--metric: expected names that no other column has, got '" + metric.name + "'"});
+  return list;
 }
 
 /// The values in which a trial differs from the first run: "law.name = rendezvous".
@@ -264,9 +313,10 @@ std::string PointsText(const Sweep& sweep) {
 }
 
 /// Text that identifies the sweep of a table: the experiment file, the first valid experiment resolved (with the files
-/// that it names), and what each run sets.
+/// that it names), the user's metrics, and what each run sets.
 std::string PlanText(const Sweep& sweep, const std::string& resolved) {
-  return sweep.text + "\n# its first valid run\n" + resolved + PointsText(sweep);
+  const std::string own = sweep.own ? "\n# its own metrics\n" + sweep.metric_file.text : "";
+  return sweep.text + "\n# its first valid run\n" + resolved + own + PointsText(sweep);
 }
 
 /// Whether a table of this sweep was begun: it is then gone on with, also if --force has begun it.
@@ -298,7 +348,8 @@ Sweeper::Sweeper(std::string name, std::string text, SweepPlan plan)
 
 Sweeper::Outcome Sweeper::Fly(const Options& options, StopSignal& stop) const {
   const LawAxis laws(Section::FromText(text_, name_), plan_);
-  const Sweep sweep{name_, text_, plan_, laws};
+  Sweep sweep{name_, text_, plan_, laws, options.metric_file};
+  if (!options.metric_file.path.empty()) sweep.own = std::make_shared<std::optional<PythonMetrics>>();
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   WorkerPool pool(options.jobs > 0 ? options.jobs : cores, WorkOf(sweep));
   Outcome outcome;
@@ -306,7 +357,9 @@ Sweeper::Outcome Sweeper::Fly(const Options& options, StopSignal& stop) const {
     const bool strict = !options.force && !IsBegun(sweep, options.out);
     const Looked first = FirstValid(sweep, strict, pool, stop);
     outcome.laws = LawsOf(sweep, first.resolved);
-    const std::vector<std::string> metrics = SweepMetricNames(outcome.laws);
+    std::vector<std::string> metrics = SweepMetricNames(outcome.laws);
+    outcome.own = ListMetrics(sweep, ColumnsOf(plan_, metrics), pool, stop);
+    for (const PythonMetric& metric : outcome.own) metrics.insert(metrics.end() - kWallClockColumns, metric.name);
     if (!options.metric.empty()) CheckMetric(options.metric, metrics);
     if (strict) CheckTrials(sweep, pool, stop);
     if (strict) CheckSeeds(sweep, first, pool, stop);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "agent/python_metrics.h"
 #include "bus/stop_signal.h"
 #include "orchestrator/sweeping/plan.h"
 
@@ -17,10 +18,16 @@ std::filesystem::path StatisticsBeside(const std::filesystem::path& table);
 /// Executes the runs of a sweep, each in one process, with several processes in parallel, and writes their table.
 class Sweeper {
  public:
+  /// A Python file with the user's own metrics, and its contents, read once.
+  struct MetricFile {
+    std::string path;  ///< empty: there is none
+    std::string text;
+  };
   struct Options {
     int jobs = 0;        ///< number of processes; 0: one per core
     std::string out;     ///< path of the table
     std::string metric;  ///< a column that the table must have; "": none
+    MetricFile metric_file = {};
     bool force = false;  ///< overwrite the table of another sweep
     bool quiet = false;
   };
@@ -29,6 +36,7 @@ class Sweeper {
     std::size_t failed = 0;               ///< how many of these failed
     std::optional<std::size_t> in_table;  ///< rows in the table, also from earlier calls; absent: no table was opened
     std::vector<std::string> lines;       ///< of a sweep that was not interrupted: what became of its runs
+    std::vector<PythonMetric> own;        ///< the user's metrics
     std::vector<std::string> laws;        ///< names of the laws that it goes over
     int signal = 0;                       ///< the signal that ended the sweep early; 0: none
   };

@@ -26,7 +26,8 @@ struct SweepArgs {
   SweepPlan::Words words;
   int jobs = 0;
   std::string out = "sweep.csv";
-  std::optional<std::string> metric;  ///< the column to plot; absent: kUsualMetric
+  std::optional<std::string> metric;  ///< the column to plot; absent: the first of metric_file, or kUsualMetric
+  std::string metric_file;
   bool force = false, no_plot = false, quiet = false;
 };
 
@@ -48,14 +49,16 @@ bool IsDrawable(const SweepArgs& args, const SweepPlan& plan) {
   return plan.varied().size() <= kMostKeys;
 }
 
-int Picture(const SweepArgs& args, const SweepPlan& plan, const std::vector<std::string>& laws, StopSignal& stop) {
-  const std::string column = args.metric.value_or(kUsualMetric);
+int Picture(const SweepArgs& args, const SweepPlan& plan, const Sweeper::Outcome& outcome, StopSignal& stop) {
+  const std::string column = args.metric.value_or(outcome.own.empty() ? kUsualMetric : outcome.own.front().name);
+  const auto own = std::ranges::find(outcome.own, column, &PythonMetric::name);
   std::vector<std::string> words{args.out, StatisticsBeside(args.out), fs::path(args.out).replace_extension(".png"),
                                  column};
   words.insert(words.end(), plan.varied().begin(), plan.varied().end());
-  words.insert(words.end(), {"--label", column + "=" + LabelOfColumn(column)});
+  words.insert(words.end(),
+               {"--label", column + "=" + (own != outcome.own.end() ? LabelOfMetric(*own) : LabelOfColumn(column))});
   for (const std::string& key : plan.varied())
-    words.insert(words.end(), {"--label", key + "=" + LabelOfKey(key, laws)});
+    words.insert(words.end(), {"--label", key + "=" + LabelOfKey(key, outcome.laws)});
   if (IsTimeOfEvent(column)) words.emplace_back("--time");
   return RunScript("plot_sweep.py", words, stop);
 }
@@ -65,10 +68,13 @@ int Run(const SweepArgs& args) {
   CheckOut(args.out);
   const Sweeper sweeper(args.config, ReadRegularFile(args.config), SweepPlan(args.words));
   const std::size_t runs = sweeper.plan().size();
+  Sweeper::MetricFile metric_file{args.metric_file, ""};
+  if (!args.metric_file.empty()) metric_file.text = ReadRegularFile(args.metric_file);
   const bool drawable = IsDrawable(args, sweeper.plan());
   const Sweeper::Outcome outcome = sweeper.Fly({.jobs = args.jobs,
                                                 .out = args.out,
                                                 .metric = args.metric.value_or(""),
+                                                .metric_file = metric_file,
                                                 .force = args.force,
                                                 .quiet = args.quiet},
                                                stop);
@@ -78,7 +84,7 @@ int Run(const SweepArgs& args) {
                 << (args.force ? ", without --force, " : " ") << "goes on with the others\n";
     return 128 + outcome.signal;
   }
-  const int picture = drawable ? Picture(args, sweeper.plan(), outcome.laws, stop) : 0;
+  const int picture = drawable ? Picture(args, sweeper.plan(), outcome, stop) : 0;
   if (!args.quiet)
     std::cout << runs << " runs, " << outcome.failed << " of those flown now failed: " << args.out << "\n";
   if (!args.quiet)
@@ -112,6 +118,10 @@ std::function<int()> SetUpSweep(CLI::App& command) {
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
   command.add_option("--out", args->out, "the table (default: sweep.csv)")->type_name("FILE");
+  command
+      .add_option("--metric", args->metric_file,
+                  "a Python file: each of its functions of the arrays of a run is a column")
+      ->type_name("FILE");
   command.add_option("--plot", args->metric, "the column that the picture shows")->type_name("COLUMN");
   command.add_flag("--no-plot", args->no_plot, "no picture");
   command.add_flag("--force", args->force, "begin anew where --out holds another sweep");

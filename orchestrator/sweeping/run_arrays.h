@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "agent/python_metrics.h"
+#include "orchestrator/recording/state_arrays.h"
+#include "orchestrator/team/row_sink.h"
+
+namespace mascot {
+
+/// Keeps the arrays of states.npz of a run in memory, for metrics in Python.
+class RunArrays final : public RowSink {
+ public:
+  explicit RunArrays(const Experiment& experiment);
+
+  void Add(const FlownRow& row) override;
+  /// As np.load gives them of states.npz. Valid until the next Add().
+  std::vector<RunArray> All() const;
+
+ private:
+  const Experiment& experiment_;
+  StateRow row_;
+  std::vector<double> ids_;
+  std::array<std::vector<double>, kStateArrays.size()> values_;  // row after row
+};
+
+}  // namespace mascot
