@@ -17,6 +17,7 @@ from run_folder import FILTERED, INFEASIBLE, cells, disagreement, hull, separati
 
 CROWD = 10  # more agents than this have smaller marks and thinner lines
 DRAWN_MAX = 200  # more lines than this are unreadable: only every n-th agent is drawn
+ROWS_MAX = 6  # of names of events; what does not fit is marked, and not named
 GRAPHS_MAX = 12  # more graphs than this do not fit into a picture
 LEAST_RANGE = 0.02  # m, m/s or m/s²: least range of a y axis, so that a held height is a flat line
 FLOOR_M = 1e-6  # bottom of log axes
@@ -73,7 +74,7 @@ def plot_agents(axis, run, x, y, indices=None):
         colour, line = looks[k]
         leads = k in leaders
         axis.plot(x if x.ndim == 1 else x[:, k], y[:, k], color=colour, label=agent_label(run, k),
-                  linewidth=line_width(run, leads), zorder=3 if leads else 2,
+                  linewidth=line_width(run, leads) * (1 if line == "-" else 1.3), zorder=3 if leads else 2,
                   linestyle=DASHED if k in liars else line)
 
 
@@ -121,11 +122,12 @@ def mark_changes(axes, run, laws=None):
     first = 0
     for labels in (phases, sorted(events.items())):
         rows = in_rows(labels, begin, end, 72 * (size.width - (0.6 if size.is_narrow else 2)), 0.58 * size.small_pt)
-        for (at_s, words), (row, ends_there) in zip(labels, rows):
+        named = [(label, place) for label, place in zip(labels, rows) if place[0] < ROWS_MAX]
+        for (at_s, words), (row, ends_there) in named:
             axes[0].annotate(words, (at_s, 1), xycoords=("data", "axes fraction"), annotation_clip=False, **small(),
                              xytext=(-1 if ends_there else 1, 2 + 1.2 * size.small_pt * (first + row)),
                              textcoords="offset points", ha="right" if ends_there else "left")
-        first += 1 + max((row for row, _ in rows), default=-1)
+        first += 1 + max((row for _, (row, _) in named), default=-1)
     figure, high_pt = axes[0].figure, 1.2 * size.small_pt * first
     figure.set_figheight(figure.get_figheight() + high_pt / 72)
     return high_pt

@@ -473,6 +473,13 @@ class Changes(PlotTest):
                 for k, box in enumerate(boxes):
                     self.assertEqual([other for other in boxes[:k] if box.overlaps(other)], [])
 
+    def test_a_crowd_of_events_leaves_room_for_the_panels(self):
+        events = "".join(f'[[events]]\nat_s = {k / 50}\nset = {{ "law.p_gain" = {k} }}\n' for k in range(1, 200))
+        figure = self.figure("velocity", config=CONSENSUS + events)
+        self.assertEqual(len(self.vertical(figure.axes[0])), 199)
+        self.assertLess(len(self.marks(figure.axes[0])), 60)
+        self.assertLess(figure.get_figheight(), 9)
+
     def test_commands_that_the_safety_filter_changed_are_drawn(self):
         states = arrays()
         states["flags"] = np.zeros((51, 3))
