@@ -28,6 +28,7 @@ constexpr VerbEntry kVerbs[] = {
     {"plot", "the pictures of a run again", SetUpPlot},
     {"view", "a recording on the page of a run: play, pause, seek", SetUpView},
     {"sweep", "run an experiment over values of its keys and seeds: a table, a picture", SetUpSweep},
+    {"compare", "the summaries of several runs side by side", SetUpCompare},
     {"verify", "fly a recorded experiment again, and compare bit for bit", SetUpVerify},
     {"recover", "a whole recording of what a cut or damaged one still holds", SetUpRecover},
     {"export", "a recording as NumPy arrays, as CSV or as a MATLAB file", SetUpExport},

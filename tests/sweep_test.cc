@@ -316,6 +316,28 @@ TEST_F(SweepTest, RefusesWhatCannotBeSwept) {
           "error: --out: expected the table's file, such as sweep.csv, got '" + out_ + "', the picture's");
 }
 
+TEST_F(SweepTest, IsComparedRunByRunByAVerbOfItsOwn) {
+  const auto compare = [&](const std::string& words) {
+    return Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator compare " + words);
+  };
+  std::string runs;
+  for (const char* gain : {"0.2", "0.4"}) {
+    Up up(folder_, std::string("gain_") + gain, config_,
+          {"--engine", "inprocess", "--set", std::string("law.p_gain=") + gain});
+    ASSERT_EQ(up.Wait(), 0);
+    runs += up.path().string() + " ";
+  }
+  const Ran table = compare(runs + "--plot " + folder_.File("pictures"));
+  EXPECT_EQ(table.exit_code, 0) << table.output;
+  EXPECT_THAT(table.output, testing::ContainsRegex("gain_0.2 +gain_0.4\nset differently\n  law.p_gain +0.2 +0.4\n"));
+  EXPECT_TRUE(std::filesystem::exists(folder_.File("pictures/disagreement.png")));
+  const Ran json = compare(runs + "--json");
+  EXPECT_EQ(nlohmann::json::parse(json.output)["config"]["law.p_gain"], nlohmann::json({0.2, 0.4}));
+  const Ran one = compare(folder_.File("gain_0.2"));
+  EXPECT_EQ(one.exit_code, 2);
+  EXPECT_EQ(one.output, "error: compare: expected at least 2 runs, got 1\n");
+}
+
 TEST_F(SweepTest, DoesNotGoOnWithAnotherLaw) {
   const auto law = [&](const std::string& gain) {
     WriteFile(folder_.File("law.py"), "def control(t, me, neighbours):\n    return [" + gain + ", 0.0]\n");

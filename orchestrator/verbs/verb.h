@@ -39,6 +39,7 @@ std::function<int()> SetUpRecover(CLI::App& command);    // recover.cc
 std::function<int()> SetUpVerify(CLI::App& command);     // verify.cc
 std::function<int()> SetUpPs(CLI::App& command);         // ps.cc
 std::function<int()> SetUpSend(CLI::App& command);       // send.cc
+std::function<int()> SetUpCompare(CLI::App& command);    // compare.cc
 std::function<int()> SetUpSweep(CLI::App& command);      // sweep.cc
 std::function<int()> SetUpView(CLI::App& command);       // view.cc
 

@@ -1,0 +1,45 @@
+// `orchestrator compare RUN...`: the summaries of runs side by side, and their pictures in one.
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bus/stop_signal.h"
+#include "experiment/toml/section.h"
+#include "orchestrator/processes/script.h"
+#include "orchestrator/sweeping/side_by_side.h"
+#include "orchestrator/verbs/verb.h"
+
+namespace mascot {
+namespace {
+
+struct CompareArgs {
+  std::vector<std::string> runs;
+  std::string plot;
+  bool json = false;
+};
+
+int Compare(const CompareArgs& args) {
+  if (args.runs.size() < 2) throw ConfigError({"compare: expected at least 2 runs, got 1"});
+  const SideBySide table(args.runs);
+  std::cout << (args.json ? table.JsonText() : table.Text());
+  if (args.plot.empty()) return kExitDone;
+  StopSignal stop;
+  std::vector<std::string> words = args.runs;
+  words.insert(words.end(), {"--overlay", "--out=" + args.plot});
+  return RunScript("plot.py", words, stop);
+}
+
+}  // namespace
+
+std::function<int()> SetUpCompare(CLI::App& command) {
+  auto args = std::make_shared<CompareArgs>();
+  command.add_option("run", args->runs, "run folders")->required()->type_name("RUN");
+  command.add_option("--plot", args->plot, "draw all runs into the same pictures, in this folder")->type_name("FOLDER");
+  command.add_flag("--json", args->json, "print JSON and nothing else");
+  return [args] { return Compare(*args); };
+}
+
+}  // namespace mascot
