@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws the table of a sweep: plot_sweep.py TABLE.csv STATISTICS.csv PICTURE.png COLUMN [KEY [KEY]] [--label NAME=TEXT]...
+"""Draws the table of a sweep: plot_sweep.py TABLE.csv STATISTICS.csv PICTURE.png COLUMN [KEY [KEY]] [OPTION...]
 
 Without a key: a histogram of COLUMN. With one key: COLUMN over it, as the mean over all seeds with its 95 % confidence
 band, and as the median with first and ninth decile, both from STATISTICS. A second key of words (laws, topologies)
@@ -10,7 +10,7 @@ panel shows which part of the runs has a value. Exit codes: 0 done, 1 nothing to
 
 import argparse
 import csv
-import os
+import pathlib
 import sys
 
 import matplotlib
@@ -21,7 +21,8 @@ import matplotlib.ticker
 import numpy as np
 
 sys.dont_write_bytecode = True  # the folder of the scripts may be read-only
-from figure_style import OKABE_ITO, STYLE
+import figure_style
+from figure_style import OKABE_ITO, size
 
 BLUE = OKABE_ITO[0]
 FAILED, MISSING = "x", "^"  # markers
@@ -128,7 +129,7 @@ class Axis:
 
 
 def draw_histogram(table):
-    figure, ax = plt.subplots(figsize=(6.4, 4.2))
+    figure, ax = plt.subplots(**figure_of(6.4, 4.2))
     values = np.array(table.values())
     bins = min(BINS_MAX, 1 + int(np.sqrt(values.size)))
     if is_wide(values):
@@ -227,36 +228,61 @@ class Curves:
         if margin > 0:
             ax.set_ylim(max(bottom, min(values) - margin), min(top, max(values) + margin))
 
+    def panels(self, kinds, with_fractions):
+        """A figure with a panel for each kind, side by side, or in a narrow column one below the other, and below each,
+        or below both, the fractions of runs."""
+        if size().is_narrow:
+            heights = [1.9] * kinds + [0.8] * with_fractions
+            figure, panels = plt.subplots(len(heights), 1, figsize=(size().width, 0.6 + sum(heights)), sharex=True, squeeze=False,
+                                          gridspec_kw={"height_ratios": heights})
+            return figure, panels[:kinds, 0], panels[kinds:, 0]
+        width = 1.8 + 4.2 * kinds
+        scale = size().width / 10.2 if size().is_paper else 1
+        figure, panels = plt.subplots(1 + with_fractions, kinds, figsize=(width * scale, (4 + 1.2 * with_fractions) * scale),
+                                      sharex=True, sharey="row", squeeze=False,
+                                      gridspec_kw={"height_ratios": [3.4, 1][:1 + with_fractions]})
+        return figure, panels[0], panels[1] if with_fractions else []
+
     def draw(self):
         table = self.table
         kinds = [("mean", "mean_low_95", "mean_high_95", "mean, 95 % confidence"),
                  ("median", "decile_1", "decile_9", "median, first to ninth decile")] if self.has_sample else [
                      ("mean", "mean_low_95", "mean_high_95", "")]
-        with_fractions = bool(table.failed or table.late)
-        figure, panels = plt.subplots(1 + with_fractions, len(kinds), figsize=(1.8 + 4.2 * len(kinds), 4.0 + 1.2 * with_fractions),
-                                      sharex=True, sharey="row", squeeze=False,
-                                      gridspec_kw={"height_ratios": [3.4, 1][:1 + with_fractions]})
-        for column, (middle, low, high, name) in enumerate(kinds):
-            ax = panels[0, column]
+        figure, panels, fractions = self.panels(len(kinds), bool(table.failed or table.late))
+        for ax, (middle, low, high, name) in zip(panels, kinds):
             for cell in self.series:
                 self.band(ax, cell, middle, low, high, name)
             self.marks(ax)
             ax.set_title(name + (", of the runs " + table.has_value() if middle == "mean" and table.late and name else ""))
-            if with_fractions:
-                self.fractions(panels[1, column])
-            self.x.dress(panels[-1, column].xaxis)
         if is_wide([number(row["median"]) for row in table.points]) and is_wide(table.values()):
-            panels[0, 0].set_yscale("log")
+            for ax in panels:
+                ax.set_yscale("log")
         else:
-            self.limit(panels[0, 0])
-        panels[0, 0].set_ylabel(table.label(table.column))
-        for row in panels:
-            for ax in row[1:]:
-                ax.set_ylabel("")
+            for ax in panels:
+                self.limit(ax)
+        for ax in fractions:
+            self.fractions(ax)
+        stacked = size().is_narrow
+        for row in (panels, fractions):
+            for k, ax in enumerate(row):
+                if row is panels and (stacked or k == 0):
+                    ax.set_ylabel(table.label(table.column))
+                elif k > 0:
+                    ax.set_ylabel("")
+        lowest = fractions if len(fractions) else panels
+        for ax in lowest[-1:] if stacked else lowest:
+            self.x.dress(ax.xaxis)
         if self.series_key:
-            panels[0, 0].legend(title=table.label(self.series_key))
-        figure.suptitle(table.title(), x=0.01, ha="left", fontsize=9)
+            panels[0].legend(title=table.label(self.series_key))
+        if not size().is_paper:
+            figure.suptitle(table.title(), x=0.01, ha="left", fontsize=9)
         return figure
+
+
+def figure_of(width, height):
+    """A figure of this size in inches on a screen; for a paper, as wide as that asks for."""
+    scale = min(size().width / width, 1) if size().is_paper else 1
+    return {"figsize": (width * scale, height * scale)}
 
 
 def draw_cells(figure, ax, table, z, label, **colours):
@@ -284,7 +310,13 @@ def draw_cells(figure, ax, table, z, label, **colours):
 
 def draw_map(table):
     with_fractions = bool(table.failed or table.late)
-    figure, panels = plt.subplots(1, 1 + with_fractions, figsize=(6.4 + 5.2 * with_fractions, 4.6), sharey=True, squeeze=False)
+    if size().is_narrow:
+        figure, panels = plt.subplots(1 + with_fractions, 1, figsize=(size().width, 2.6 * (1 + with_fractions)), sharex=True,
+                                      squeeze=False)
+        panels = panels.T
+    else:
+        figure, panels = plt.subplots(1, 1 + with_fractions, sharey=True, squeeze=False,
+                                      **figure_of(6.4 + 5.2 * with_fractions, 4.6))
     medians = [number(row["median"]) for row in table.points]
     medians = np.array([np.nan if z is None or np.isinf(z) else z for z in medians])
     norm = matplotlib.colors.LogNorm() if is_wide(medians.tolist()) else None
@@ -292,15 +324,20 @@ def draw_map(table):
     if with_fractions:
         parts = [1 - (int(row["failed"]) + int(row["without_value"])) / int(row["runs"]) for row in table.points]
         draw_cells(figure, panels[0, 1], table, np.array(parts), f"fraction of runs {table.has_value()}", vmin=0, vmax=1)
-        panels[0, 1].set_ylabel("")
-    panels[0, 0].set_title(table.title())
+        if size().is_narrow:
+            panels[0, 0].set_xlabel("")
+        else:
+            panels[0, 1].set_ylabel("")
+    if not size().is_paper:
+        panels[0, 0].set_title(table.title())
     return figure
 
 
 def draw(table):
     if not table.keys:
         figure = draw_histogram(table)
-        figure.axes[0].set_title(table.title())
+        if not size().is_paper:
+            figure.axes[0].set_title(table.title())
         return figure
     if len(table.keys) == 1:
         return Curves(table, table.keys[0], None).draw()
@@ -321,18 +358,27 @@ def main():
     parser.add_argument("keys", nargs="*", metavar="KEY")
     parser.add_argument("--label", action="append", default=[], metavar="NAME=TEXT", help="what a column or key is called")
     parser.add_argument("--time", action="store_true", help="a run without a value is later than its end")
+    parser.add_argument("--size", choices=figure_style.SIZES, default="screen")
+    parser.add_argument("--format", default="png", metavar="LIST", help="png, pdf, svg, with commas between")
     options = parser.parse_intermixed_args()
     if len(options.keys) > 2:
         parser.error("expected at most two keys")
+    formats = options.format.split(",")
+    if wrong := [name for name in formats if name not in figure_style.FORMATS]:
+        print(f"error: --format: expected one or more of {', '.join(figure_style.FORMATS)}, with commas between, got '{wrong[0]}'",
+              file=sys.stderr)
+        return 2
     table = Table(options)
     if not table.good:
         print(f"error: {options.table}: no run has a {options.column}", file=sys.stderr)
         return 1
-    plt.rcParams.update(STYLE)
-    figure = draw(table)
-    part = options.picture + ".part.png"
-    figure.savefig(part, metadata={"Software": None})
-    os.replace(part, options.picture)
+    figure_style.use(options.size)
+    for name in formats:
+        figure = draw(table)  # anew: what was laid out before would change the bytes
+        path = pathlib.Path(options.picture).with_suffix("." + name)
+        part = path.with_suffix(".part." + name)
+        figure_style.save(figure, part)
+        part.replace(path)
     return 0
 
 

@@ -363,17 +363,41 @@ TEST_F(SweepTest, DoesNotMixTwoSweepsInOneTable) {
   EXPECT_THAT(Table(out_).rows, SizeIs(3));
 }
 
+TEST_F(SweepTest, DrawsColoursForWordsAndMarksRunsThatDidNotSettle) {
+  for (const char* words :
+       {"--set graph.topology=ring,path --set law.p_gain=0.1,0.2 --seeds 1..2 --plot consensus.settling_time_s "
+        "--set run.duration_s=20",
+        "--set graph.topology=ring,path --set law.axes=xy,xyz --seeds 1..2",
+        "--set law.p_gain=0.01,1 --set law.beta=1,2 --set run.duration_s=20 --plot consensus.settling_time_s",
+        "--seeds 1..3 --plot consensus.settling_time_s --set law.p_gain=1 --set run.duration_s=8"}) {
+    std::filesystem::remove(folder_.File("sweep.png"));
+    const Ran ran = Sweep(std::string(words) + " --force");
+    EXPECT_EQ(ran.exit_code, 0) << ran.output;
+    EXPECT_THAT(ReadFile(folder_.File("sweep.png")), testing::StartsWith("\x89PNG")) << words;
+  }
+}
+
+TEST_F(SweepTest, DrawsForAPaperAndDrawsAgain) {
+  const Ran paper = Sweep("--set law.p_gain=0.1,0.2 --seeds 1..2 --force --format pdf,svg --size column");
+  EXPECT_EQ(paper.exit_code, 0) << paper.output;
+  EXPECT_THAT(ReadFile(folder_.File("sweep.pdf")), testing::StartsWith("%PDF"));
+  const std::string svg = ReadFile(folder_.File("sweep.svg"));
+  EXPECT_THAT(svg, HasSubstr("width=\"252pt\"")) << "3.5 inches";
+  const Ran again = Sweep("--set law.p_gain=0.1,0.2 --seeds 1..2 --format svg --size column");
+  EXPECT_THAT(again.output, HasSubstr("going on: 4 of 4 runs are in the table"));
+  EXPECT_EQ(ReadFile(folder_.File("sweep.svg")), svg) << "drawn again from the table, to the same bytes";
+  const Ran unknown = Sweep("--set law.p_gain=0.1,0.2 --seeds 1..2 --format gif");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.output,
+              HasSubstr("error: --format: expected one or more of png, pdf, svg, with commas between, got 'gif'"));
+}
+
 TEST_F(SweepTest, DrawsCurvesMapsAndHistograms) {
   for (const char* words :
        {"--seeds 1..4", "--set law.p_gain=0.1:0.1:0.4", "--set graph.topology=ring,path --seeds 1..2",
         "--set law.p_gain=0.1:0.1:0.3 --set law.beta=0.5,1.0",
         "--set law.p_gain=0.01,0.1,1 --set law.beta=0.5",  // with a log axis, as the next one
         "--set law.p_gain=0.01,0.1,1 --set law.beta=0.5,1.0",
-        "--set graph.topology=ring,path --set law.p_gain=0.1,0.2 --seeds 1..2 --plot consensus.settling_time_s "
-        "--set run.duration_s=20",
-        "--set graph.topology=ring,path --set law.axes=xy,xyz --seeds 1..2",
-        "--set law.p_gain=0.01,1 --set law.beta=1,2 --set run.duration_s=20 --plot consensus.settling_time_s",
-        "--seeds 1..3 --plot consensus.settling_time_s --set law.p_gain=1 --set run.duration_s=8",
         "--random law.p_gain=0.1:1 --random law.beta=0.5:2 --samples 6"}) {
     std::filesystem::remove(folder_.File("sweep.png"));
     const Ran ran = Sweep(std::string(words) + " --force");

@@ -28,12 +28,14 @@ struct SweepArgs {
   std::string out = "sweep.csv";
   std::optional<std::string> metric;  ///< the column to plot; absent: the first of metric_file, or kUsualMetric
   std::string metric_file;
+  std::string format = "png", size = "screen";  ///< of the picture; scripts/plot_sweep.py knows what they may be
   bool force = false, no_plot = false, quiet = false;
 };
 
-/// Throws ConfigError if the table has the name of the plot, which is written beside it as .png.
+/// Throws ConfigError if the table has the name of the picture, which is written beside it.
 void CheckOut(const std::string& out) {
-  if (fs::path(out).extension() == ".png")
+  const fs::path ending = fs::path(out).extension();
+  if (ending == ".png" || ending == ".pdf" || ending == ".svg")
     throw ConfigError({"--out: expected the table's file, such as sweep.csv, got '" + out + "', the picture's"});
 }
 
@@ -60,6 +62,7 @@ int Picture(const SweepArgs& args, const SweepPlan& plan, const Sweeper::Outcome
   for (const std::string& key : plan.varied())
     words.insert(words.end(), {"--label", key + "=" + LabelOfKey(key, outcome.laws)});
   if (IsTimeOfEvent(column)) words.emplace_back("--time");
+  words.insert(words.end(), {"--format", args.format, "--size", args.size});
   return RunScript("plot_sweep.py", words, stop);
 }
 
@@ -123,6 +126,11 @@ std::function<int()> SetUpSweep(CLI::App& command) {
                   "a Python file: each of its functions of the arrays of a run is a column")
       ->type_name("FILE");
   command.add_option("--plot", args->metric, "the column that the picture shows")->type_name("COLUMN");
+  command.add_option("--format", args->format, "of the picture: png, pdf, svg; several with commas between (png)")
+      ->type_name("LIST");
+  command.add_option("--size", args->size, "of the picture: screen, column or page, as of orchestrator plot (screen)")
+      ->check(CLI::IsMember({"screen", "column", "page"}))
+      ->type_name("SIZE");
   command.add_flag("--no-plot", args->no_plot, "no picture");
   command.add_flag("--force", args->force, "begin anew where --out holds another sweep");
   command.add_flag("--quiet", args->quiet, "print errors only");
