@@ -1,0 +1,213 @@
+#!/usr/bin/python3
+"""What a package holds beside programs: completion for shells, manual pages, the package of ROS 2. All of it must tell of
+the same verbs, options and version as the programs, and the files that scripts/package has made must be complete."""
+
+import gzip
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BUILD = pathlib.Path(os.environ["MASCOT_BINARY_DIR"]).resolve()
+PROGRAM = BUILD / "orchestrator"
+COMPLETION = ROOT / "scripts/completion"
+
+
+def output_of(*command, **options):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=True, **options).stdout
+
+
+def names(text, section):
+    """Of the rows of a section of a help: {"-h,--help": "Print this ..."}, what stands behind a name included."""
+    rows = re.search(rf"^{section}:\n((?: .*\n?)*)", text, re.M)
+    return dict(re.findall(r"^  (\S+) *(.*)", rows[1], re.M)) if rows else {}
+
+
+class Helps:
+    """What the program tells of itself, asked once."""
+
+    def __init__(self):
+        self.verbs = names(output_of(PROGRAM, "--help"), "Subcommands")
+        self.helps = {verb: output_of(PROGRAM, verb, "--help") for verb in self.verbs}
+        self.options = {verb: set(",".join(names(text, "Options")).split(",")) for verb, text in self.helps.items()}
+
+
+HELPS = Helps()
+LAWS = {line for line in output_of(PROGRAM, "laws").splitlines() if re.match(r"\w+$", line)}
+
+
+class Completion:
+    """What a shell offers for the last of some words, as a set. Subclasses say how to ask it."""
+
+    def ask(self, questions, folder):
+        raise NotImplementedError
+
+    def offered(self, *words):
+        return self.ask([words], ROOT)[0]
+
+    def test_verbs_are_those_of_the_program(self):
+        self.assertGreater(len(HELPS.verbs), 10)
+        self.assertEqual(self.offered(""), set(HELPS.verbs))
+
+    def test_options_are_those_of_the_verb(self):
+        answers = self.ask([(verb, "--") for verb in HELPS.verbs], ROOT)
+        for verb, answer in zip(HELPS.verbs, answers):
+            with self.subTest(verb=verb):
+                self.assertIn("--help", answer)
+                self.assertEqual(answer | {"-h"}, HELPS.options[verb])
+
+    def test_values_of_an_option_are_those_that_its_help_lists(self):
+        self.assertEqual(self.offered("up", "--engine", ""), {"dds", "inprocess"})
+        self.assertEqual(self.offered("export", "--format", ""), {"npz", "csv", "mat"})
+        self.assertEqual(self.offered("export", "--force", "--format", ""), {"npz", "csv", "mat"})
+
+    def test_laws_are_those_of_the_program(self):
+        self.assertGreater(len(LAWS), 10)
+        self.assertEqual(self.offered("laws", ""), LAWS)
+
+    def test_what_may_be_sent_to_a_run(self):
+        self.assertLess({"pause", "resume", "goto", "set"}, self.offered("send", ""))
+        self.assertEqual(self.offered("send", "pause", ""), set())
+
+    def test_a_value_that_nobody_lists_gets_no_offer(self):
+        self.assertEqual(self.offered("up", "--seed", ""), set())
+
+
+class Bash(Completion, unittest.TestCase):
+    SCRIPT = """
+        . "$1"; shift
+        program=$1; shift
+        while [ $# -gt 0 ]; do
+          COMP_WORDS=("$program" "${@:2:$1}") COMP_CWORD=$1; shift "$(($1 + 1))"
+          _orchestrator "$program" "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD - 1]}"
+          printf '%s\\n' "${COMPREPLY[@]}" --------
+        done"""
+
+    def ask(self, questions, folder):
+        words = [word for question in questions for word in (len(question), *question)]
+        text = output_of("bash", "--norc", "-c", self.SCRIPT, "bash", COMPLETION / "orchestrator.bash", PROGRAM, *words, cwd=folder)
+        return [set(answer.split("\n")) - {""} for answer in text.split("--------\n")[:-1]]
+
+    def test_a_value_behind_an_equals_sign_which_bash_takes_for_a_word(self):
+        self.assertEqual(self.offered("up", "--engine", "="), {"dds", "inprocess"})
+        self.assertEqual(self.offered("up", "--engine", "=", "in"), {"inprocess"})
+
+    def test_a_value_that_may_be_left_out_is_none(self):
+        self.assertEqual(self.offered("up", "--view", "--fo"), {"--force"})
+
+    def test_a_folder_that_begins_with_a_tilde(self):
+        self.assertEqual(output_of("bash", "-c", f". '{COMPLETION}/orchestrator.bash'; COMP_WORDS=(x v) COMP_CWORD=1;"
+                                   "_orchestrator '~/orchestrator' veri x; echo ${COMPREPLY[@]}",
+                                   env={"HOME": str(BUILD), "PATH": os.environ["PATH"]}), "verify\n")
+
+    def test_files_by_what_an_argument_is(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            for file in ["my run.toml", "run.mcap", "notes.txt"]:
+                (folder / file).touch()
+            (folder / "a run").mkdir()
+            questions = [("check", ""), ("info", ""), ("recover", ""), ("up", "--out", ""), ("plot", "a"), ("up", "my")]
+            self.assertEqual(self.ask(questions, folder),
+                             [{"my run.toml", "a run"}, {"run.mcap", "a run"},
+                              {"my run.toml", "run.mcap", "notes.txt", "a run"}, {"a run"}, {"a run"}, {"my run.toml"}])
+
+
+@unittest.skipUnless(shutil.which("zsh"), "there is no zsh")
+class Zsh(Completion, unittest.TestCase):
+    # Stands in for zsh's own functions, which draw on the terminal: prints what they are given.
+    SCRIPT = """
+        completion=$1; program=$2; shift 2
+        compadd() { print -rl -- "${(@P)argv[-1]}" }
+        _describe() { print -rl -- "${(@)${(@P)argv[-1]}%%:*}" }
+        _files() { print -r -- "files $*" }
+        _message() { }
+        compset() { }
+        while (( $# )); do
+          words=("$program" "${@[2,$1+1]}") CURRENT=$(($1 + 1)); shift $CURRENT
+          PREFIX=$words[-1]
+          . "$completion"
+          print -r -- --------
+        done"""
+
+    def ask(self, questions, folder):
+        words = [word for question in questions for word in (len(question), *question)]
+        text = output_of("zsh", "-f", "-c", self.SCRIPT, "zsh", COMPLETION / "_orchestrator", PROGRAM, *words, cwd=folder)
+        return [set(answer.split("\n")) - {""} for answer in text.split("--------\n")[:-1]]
+
+    def test_files_by_what_an_argument_is(self):
+        self.assertEqual(self.ask([("check", ""), ("info", ""), ("up", "--out", "")], ROOT),
+                         [{"files -g *.toml"}, {"files -g *.mcap(-.)"}, {"files -/"}])
+
+    def test_a_value_behind_an_equals_sign(self):
+        self.assertEqual(self.offered("up", "--engine="), {"dds", "inprocess"})
+
+
+class Version(unittest.TestCase):
+    VERSION = re.search(r"project\(mascot VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text())[1]
+
+    def test_the_program_tells_it(self):
+        self.assertEqual(output_of(PROGRAM, "--version"), f"mascot {self.VERSION}\n")
+
+    def test_the_package_of_ros_has_it(self):
+        self.assertIn(f"<version>{self.VERSION}</version>", (ROOT / "idl/mascot_msgs/package.xml").read_text())
+
+    def test_the_changelog_speaks_of_it(self):
+        newest = re.search(r"^## (\d\S*)", (ROOT / "CHANGELOG.md").read_text(), re.M)[1]
+        self.assertEqual(newest, self.VERSION)
+
+
+def is_newer(path):
+    """Whether it was made of the program that there is now."""
+    return path.exists() and path.stat().st_mtime >= PROGRAM.stat().st_mtime
+
+
+@unittest.skipUnless(is_newer(BUILD / "man/physics_server.1.gz"),
+                     "there are no manual pages of this build: cmake --build build/release --target man_pages")
+class ManualPages(unittest.TestCase):
+    def test_there_is_one_of_each_verb_and_program(self):
+        pages = {path.name for path in (BUILD / "man").iterdir()}
+        self.assertEqual(pages, {f"{name}.1.gz" for name in ["orchestrator", "agent", "physics_server",
+                                                              *(f"orchestrator-{verb}" for verb in HELPS.verbs)]})
+
+    def test_they_tell_what_whatis_looks_for_and_all_options(self):
+        for verb, summary in HELPS.verbs.items():
+            with self.subTest(verb=verb):
+                text = gzip.decompress((BUILD / f"man/orchestrator-{verb}.1.gz").read_bytes()).decode().replace("\\-", "-")
+                self.assertIn(f".SH NAME\norchestrator-{verb} - {summary}\n", text)
+                for option in HELPS.options[verb]:
+                    self.assertRegex(text, rf"(?m)^(\\fB)?{option}|,{option}")
+
+
+PACKAGES = [path for path in (ROOT / "build/package").glob("*.deb") if is_newer(path)]
+
+
+@unittest.skipUnless(PACKAGES, "there is no package of this build: scripts/package")
+class Package(unittest.TestCase):
+    def test_it_has_what_users_look_for(self):
+        files = set(re.findall(r" \./(\S+)", output_of("dpkg-deb", "--contents", PACKAGES[0])))
+        there = lambda folder, paths: {f"{folder}/{path}" for path in paths}
+        tree = lambda start, pattern: [path.relative_to(ROOT / start).as_posix() for path in (ROOT / start).rglob(pattern)]
+        for expected in [
+                there("usr/bin", ["orchestrator", "agent", "physics_server"]),
+                there("usr/share/mascot/configs", tree("configs", "*.toml")),
+                there("usr/share/mascot/page", tree("orchestrator/live/page", "*.*")),
+                there("usr/share/mascot_msgs", ["package.xml", "CMakeLists.txt", *tree("idl/mascot_msgs", "*.msg")]),
+                there("usr/share/man/man1", (path.name for path in (BUILD / "man").glob("*"))),
+                there("usr/share/doc/mascot", ["README.md", "CHANGELOG.md", "copyright", "configs"]),
+                there("usr/share/doc/mascot/docs", (path.name for path in (ROOT / "docs").glob("*.md"))),
+                there("usr/share", ["bash-completion/completions/orchestrator", "zsh/vendor-completions/_orchestrator"])]:
+            self.assertEqual(expected - files, set())
+
+    def test_what_it_depends_on_is_computed_and_told(self):
+        depends, recommends = (output_of("dpkg-deb", "--field", PACKAGES[0], field) for field in ["Depends", "Recommends"])
+        for name in ["libfastrtps2.9", "libbullet3.24", "libpython3.11", "python3-numpy", "libjs-three", "libjs-dygraphs"]:
+            self.assertRegex(depends, rf"\b{re.escape(name)}\b")
+        self.assertIn("python3-matplotlib", recommends)
+
+
+if __name__ == "__main__":
+    unittest.main()
