@@ -4,7 +4,8 @@ import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
 from pictures import (
-    AXIS_NAMES, FLOOR_M, LEAST_RANGE, PICTURES, draw_obstacles, drawn, map_axis, panel_grid, square_figure, widen,
+    AXIS_NAMES, FLOOR_M, LEAST_RANGE, PICTURES, draw_obstacles, drawn, map_axis, panel_grid, square_figure, time_axis,
+    widen,
 )
 from run_folder import RunError, disagreement
 
@@ -38,8 +39,7 @@ def finished(figure, axis, what):
 
 
 def all_time(axis, runs):
-    axis.set_xlabel("time (s)")
-    axis.set_xlim(min(run.t[0] for run in runs), max(max(run.t[-1] for run in runs), runs[0].t[0] + 1e-3))
+    time_axis(axis, min(run.t[0] for run in runs), max(run.t[-1] for run in runs))
 
 
 def paths(names, runs):

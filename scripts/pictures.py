@@ -85,9 +85,12 @@ def widen(axis, least):
         axis.set_ylim((low + high - least) / 2, (low + high + least) / 2)
 
 
-def time_axis(axis, run):
+def time_axis(axis, begin_s, end_s):
     axis.set_xlabel("time (s)")
-    axis.set_xlim(run.t[0], run.t[-1] if run.t.size > 1 else run.t[0] + 1)
+    axis.set_xlim(begin_s, end_s if end_s > begin_s else begin_s + 1)
+    # How many ticks there are must not depend on the width of the panel, for that depends on their labels.
+    most = 6 if style.size().is_narrow else 9
+    axis.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]))
 
 
 def in_rows(labels, from_s, to_s, width_pt, letter_pt):
@@ -148,7 +151,7 @@ def panels(run, values, symbol, unit, what, axes):
         plot_agents(panel, run, run.t, values[:, :, k])
         panel.set_ylabel(f"{symbol.format(AXIS_NAMES[k])} ({unit})")
         widen(panel, LEAST_RANGE)
-    time_axis(grid[-1], run)
+    time_axis(grid[-1], run.t[0], run.t[-1])
     marks_pt = mark_changes(grid, run)
     figure.align_ylabels()
     titled(figure, run, what)
@@ -326,7 +329,7 @@ def log_panel(run, distance_m, what, ylabel):
     plot_agents(axis, run, run.t, np.maximum(distance_m, FLOOR_M), visible)
     axis.set_yscale("log")
     axis.set_ylabel(ylabel)
-    time_axis(axis, run)
+    time_axis(axis, run.t[0], run.t[-1])
     titled(figure, run, what)
     return figure, axis
 
@@ -393,7 +396,7 @@ def tracking(run):
             plot_agents(panel, run, run.t, relative[:, :, k], [c for c in drawn(run) if c in tree])
             panel.set_ylabel(label.format(AXIS_NAMES[k]))
             mark_time(panel, bound_s, "predicted")
-            time_axis(panel, run)
+            time_axis(panel, run.t[0], run.t[-1])
             if across > 1 and panel not in grid[-1] or across == 1 and panel is not grid[-1, -1]:
                 panel.set_xlabel("")
     mark_changes(list(grid.flat), run)
@@ -440,7 +443,8 @@ def graph(run):
         name_edges(axis, edges)
         draw_nodes(axis, run, at, side)
         axis.set_title(span_text(spans[edges], run, repeats) + near, loc="center", fontsize=letter)
-        axis.set(xlim=(-1.25, 1.25), ylim=(-1.25, 1.25), aspect="equal")
+        axis.set(xlim=(-1.25, 1.25), ylim=(-1.25, 1.25))
+        axis.set_aspect("equal", adjustable="datalim")
     some = f" ({len(shown)} of {len(spans)} graphs)" if len(shown) < len(spans) else ""
     titled(figure, run, f"who hears whom{some}")
     found = dict(pair[::-1] for axis in grid.flat for pair in zip(*axis.get_legend_handles_labels()))
@@ -489,7 +493,7 @@ def safety(run):
         when.bar(0, 0, color=colour, label=label)
     when.set(ylabel="agent", ylim=(run.size + 0.6, 0.4))
     when.yaxis.set_major_locator(matplotlib.ticker.MaxNLocator(8 if size.is_paper else 12, integer=True, min_n_ticks=1))
-    time_axis(when, run)
+    time_axis(when, run.t[0], run.t[-1])
     mark_changes([near, when], run)
     figure.align_ylabels()
     titled(figure, run, "distance kept, and commands that law.safety changed")

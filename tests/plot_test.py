@@ -93,6 +93,19 @@ class PlotTest(unittest.TestCase):
     def pictures(self):
         return sorted(path.stem for path in self.folder.glob("*.png"))
 
+    def clipped(self, name, size):
+        """What of the picture is not whole: beyond the page, or covered by the legend."""
+        figure_style.use(size)
+        figure = pictures.PICTURES[name].draw(run_folder.read_run(self.folder))
+        figure.canvas.draw()
+        renderer = figure.canvas.get_renderer()
+        tight, (wide, high) = figure.get_tightbbox(renderer), figure.get_size_inches()
+        over = max(-tight.x0, -tight.y0, tight.x1 - wide, tight.y1 - high)
+        covered = [axis for axis in figure.axes for legend in figure.legends
+                   if axis.get_visible() and legend.get_window_extent(renderer).overlaps(axis.get_tightbbox(renderer))]
+        plot.plt.close(figure)
+        return (["beyond the page"] if over > 0.002 else []) + covered
+
     def figure(self, name, **what):
         self.write(**what)
         figure_style.use("screen")
@@ -359,6 +372,10 @@ class Graphs(PlotTest):
     A, B = [[1, 2, 1.0], [2, 1, 1.0]], [[3, 2, 1.0]]
     TWO = {"graph": {"edges": A + B, "schedule": [{"at_s": 0, "edges": A}, {"at_s": 1.5, "edges": B}]}}
 
+    EVENTS = CONSENSUS + ('[[events]]\nat_s = 1.0\ncut = [[1, 2]]\n[[events]]\nat_s = 2.0\nmend = [[1, 2]]\n'
+                          '[[events]]\nat_s = 3.0\ngraph = { edges = [[3, 2]] }\n'
+                          '[[events]]\nat_s = 9.0\ncut = [[3, 2]]\n')
+
     def titles(self, figure):
         return [axis.get_title() for axis in figure.axes]
 
@@ -375,10 +392,7 @@ class Graphs(PlotTest):
         self.assertEqual(self.titles(figure), ["at any time\nwithin 2.5 m"])
 
     def test_events_change_the_graph(self):
-        config = CONSENSUS + ('[[events]]\nat_s = 1.0\ncut = [[1, 2]]\n[[events]]\nat_s = 2.0\nmend = [[1, 2]]\n'
-                              '[[events]]\nat_s = 3.0\ngraph = { edges = [[3, 2]] }\n'
-                              '[[events]]\nat_s = 9.0\ncut = [[3, 2]]\n')
-        figure = self.figure("graph", summary=PATH, config=config)
+        figure = self.figure("graph", summary=PATH, config=self.EVENTS)
         self.assertEqual(self.titles(figure), ["0 to 1 s, 2 to 3 s", "1 to 2 s", "3 to 5 s"])
         run = run_folder.read_run(self.folder)
         whole = set(run.edges)
@@ -531,21 +545,11 @@ class Paper(PlotTest):
             sizes = {text.get_fontsize() for text in figure.findobj(plot.matplotlib.text.Text) if text.get_text()}
             self.assertEqual(sizes, {8.0}, name)
 
-    def clipped(self, name, size):
-        """What of the picture is not whole: beyond the page, or covered by the legend."""
-        figure_style.use(size)
-        figure = pictures.PICTURES[name].draw(run_folder.read_run(self.folder))
-        figure.canvas.draw()
-        renderer = figure.canvas.get_renderer()
-        tight, (wide, high) = figure.get_tightbbox(renderer), figure.get_size_inches()
-        over = max(-tight.x0, -tight.y0, tight.x1 - wide, tight.y1 - high)
-        covered = [axis for axis in figure.axes for legend in figure.legends
-                   if axis.get_visible() and legend.get_window_extent(renderer).overlaps(axis.get_tightbbox(renderer))]
-        plot.plt.close(figure)
-        return (["beyond the page"] if over > 0.01 else []) + covered
-
     def test_nothing_is_clipped_or_covered(self):
         with laid_out():
+            self.write(Graphs.EVENTS, PATH)
+            for size in figure_style.SIZES:
+                self.assertEqual(self.clipped("graph", size), [], "three panels")
             for agents, names in ((3, ("paths", "disagreement")), (10, ("paths", "graph")), (28, ("paths", "velocity")),
                                   (50, ("disagreement", "graph"))):
                 edges = [[k, k % agents + 1, 1.0] for k in range(1, agents + 1)]
@@ -554,6 +558,12 @@ class Paper(PlotTest):
                     for size in ("column", "screen" if agents == 50 else "page")[:1 if agents < 28 else 2]:
                         with self.subTest(agents=agents, size=size, name=name):
                             self.assertEqual(self.clipped(name, size), [])
+
+    def test_the_last_label_of_time_is_on_the_page(self):
+        states = arrays(6, 201)  # 20 s: with steps of 2.5 s the last label is wide
+        self.write(states=states | {"acceleration_command": 0 * states["velocity"]})
+        with laid_out(dpi=100):
+            self.assertEqual(self.clipped("acceleration", "column"), [])
 
     def test_a_long_label_is_broken(self):
         offsets = [[0, 0, 0], [3, 0, 0], [0, 4, 0]]
