@@ -132,7 +132,9 @@ std::function<int()> SetUpSweep(CLI::App& command) {
       ->check(CLI::IsMember({"screen", "column", "page"}))
       ->type_name("SIZE");
   command.add_flag("--no-plot", args->no_plot, "no picture");
-  command.add_flag("--force", args->force, "begin anew where --out holds another sweep");
+  command.add_flag(
+      "--force", args->force,
+      "begin anew where --out holds another sweep; fly also where values are mistakes or seeds change nothing");
   command.add_flag("--quiet", args->quiet, "print errors only");
   return [args] { return Run(*args); };
 }
