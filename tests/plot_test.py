@@ -32,6 +32,7 @@ loader = importlib.machinery.SourceFileLoader("law_pictures", str(pathlib.Path(p
 law_pictures = importlib.util.module_from_spec(importlib.util.spec_from_loader("law_pictures", loader))
 loader.exec_module(law_pictures)
 
+ROOT = pathlib.Path(plot.__file__).parent.parent
 CONSENSUS = '[run]\nname = "demo"\n[law]\nname = "consensus"\n'
 LEADER = CONSENSUS + "leader = 2\n"
 MINMAX = '[law]\nname = "minmax"\nleader = 1\n'
@@ -144,11 +145,16 @@ class Pictures(PlotTest):
                     self.assertEqual(self.run_plot("--only", name), (0, ""))
 
     def test_up_replaces_all_pictures_by_name(self):
-        told = (pathlib.Path(plot.__file__).parent.parent / "orchestrator/recording/run_folder.cc").read_text()
+        told = (ROOT / "orchestrator/recording/run_folder.cc").read_text()
         names = re.search(r"kPictures\[\] = \{(.*?)\}", told, re.S)[1]
         self.assertEqual(sorted(re.findall(r'"(\w+)"', names)), sorted(pictures.PICTURES))
         endings = re.search(r"kPictureFormats\[\] = \{(.*?)\}", told, re.S)[1]
         self.assertEqual(re.findall(r'"\.(\w+)"', endings), list(figure_style.FORMATS))
+
+    def test_the_program_tells_the_words_of_its_options(self):
+        told = dict(re.findall(r'\{"--(\w+)", "\w+:\{(.*?)\}"', (ROOT / "orchestrator/verbs/plot.cc").read_text()))
+        self.assertEqual({option: words.split(",") for option, words in told.items()}, {
+            "only": list(pictures.PICTURES), "format": list(figure_style.FORMATS), "size": list(figure_style.SIZES)})
 
     def test_only_draws_one(self):
         self.write()

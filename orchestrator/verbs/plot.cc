@@ -20,15 +20,15 @@ namespace fs = std::filesystem;
 /// An option with a value, handed on as it is.
 struct PlotOption {
   const char* name;
-  const char* value;
+  const char* value;  ///< its kind; the words that it may be in braces, which shells complete
   const char* meaning;
 };
 
 constexpr PlotOption kOptions[] = {
-    {"--only", "NAME",
-     "one picture: paths, position, velocity, acceleration, disagreement, error, tracking, graph, safety"},
-    {"--format", "LIST", "png, pdf, svg; several with commas between (png)"},
-    {"--size", "SIZE", "screen; column or page: 3.5 or 7.16 inches wide, letters of 8 pt, without a title (screen)"},
+    {"--only", "NAME:{paths,position,velocity,disagreement,acceleration,tracking,error,graph,safety}", "one picture"},
+    {"--format", "LIST:{png,pdf,svg}", "several with commas between (png)"},
+    {"--size", "SIZE:{screen,column,page}",
+     "column, page: 3.5 and 7.16 inches wide, letters of 8 pt, without a title (screen)"},
     {"--out", "FOLDER", "write the pictures there, not into the run folder"},
     {"--animate", "FILE", "draw the run as a film instead: FILE.mp4 or FILE.gif (needs ffmpeg)"},
     {"--pace", "X", "with --animate: simulated seconds per second (1, or more if the film would last over 20 s)"},
