@@ -1,32 +1,47 @@
-// Every key of an experiment file has an effect: changing it changes a result. engines_test.cc and faults_test.cc test
-// the keys for DDS and real time; laws_test.cc also tests the parameters of laws.
+// Every key of an experiment file has an effect: changing it changes a result. output_keys_test.cc tests the keys of
+// what a run leaves behind, engines_test.cc and faults_test.cc those for DDS and real time, laws_test.cc also the
+// parameters of laws.
 
 #include <gmock/gmock.h>
 
-#include <map>
+#include <array>
 
-#include "orchestrator/formats/mcap/reader.h"
-#include "tests/orchestrator.h"
+#include "agent/laws.h"
+#include "orchestrator/engines/inprocess.h"
+#include "orchestrator/recording/state_arrays.h"
+#include "orchestrator/team/row_sink.h"
 #include "tests/param_name.h"
 
 namespace mascot::test {
 namespace {
 
-namespace fs = std::filesystem;
+/// Keeps what states.npz holds of a run.
+class States final : public RowSink {
+ public:
+  explicit States(const Experiment& experiment) : experiment_(experiment), row_(experiment.size()) {}
+  void Add(const FlownRow& row) override {
+    row_.Set(experiment_.time_s(row.tick()), row.decoded());
+    for (std::size_t k = 0; k < arrays.size(); ++k)
+      arrays[k].insert(arrays[k].end(), row_.Values(k).begin(), row_.Values(k).end());
+  }
+  std::array<std::vector<double>, kStateArrays.size()> arrays;
 
-/// A short run in one process of a shipped configuration, with `sets` (KEY=VALUE).
-struct Flown {
-  Flown(const ScratchFolder& folder, const std::string& name, const std::string& config, std::vector<std::string> sets)
-      : up(folder, name, Config(config), Words(std::move(sets))) {
-    EXPECT_EQ(up.Wait(), 0) << up.err();
-  }
-  static std::vector<std::string> Words(std::vector<std::string> sets) {
-    std::vector<std::string> words{"--engine", "inprocess"};
-    for (std::string& set : sets) words.insert(words.end(), {"--set", std::move(set)});
-    return words;
-  }
-  Up up;
+ private:
+  const Experiment& experiment_;
+  StateRow row_;
 };
+
+/// The states of a run of configs/leaderless.toml with `sets` (KEY=VALUE).
+auto Fly(const std::vector<std::string>& sets) {
+  std::vector<Override> overrides;
+  for (const std::string& set : sets)
+    overrides.push_back({.key = set.substr(0, set.find('=')), .value = set.substr(set.find('=') + 1)});
+  const std::string file = std::string(MASCOT_SOURCE_DIR) + "/configs/leaderless.toml";
+  const Experiment experiment = LoadExperiment(Section::FromFile(file, overrides), "leaderless");
+  States states(experiment);
+  EXPECT_EQ(RunInProcess(experiment, {&states}, [] { return true; }).failure, "");
+  return states.arrays;
+}
 
 /// A test that setting `key` to `value`, in addition to `base`, changes the states. `name` is the name of the test: the
 /// key that is changed and, if several tests change it, how or for which agents.
@@ -34,7 +49,6 @@ struct Row {
   std::string key, value;
   std::vector<std::string> base = {};
   std::string name = key;
-  std::string config = "leaderless";
 };
 
 void PrintTo(const Row& row, std::ostream* out) {
@@ -45,15 +59,12 @@ void PrintTo(const Row& row, std::ostream* out) {
 class Key : public testing::TestWithParam<Row> {};
 
 TEST_P(Key, ChangesTheStates) {
-  ScratchFolder folder;
   const Row& row = GetParam();
   std::vector<std::string> base = row.base;
   if (row.key != "run.duration_s") base.insert(base.begin(), "run.duration_s=1.0");
   auto changed = base;
   changed.push_back(row.key + "=" + row.value);
-  const Flown before(folder, "before", row.config, base);
-  const Flown after(folder, "after", row.config, changed);
-  EXPECT_FALSE(before.up.File("states.npz") == after.up.File("states.npz"));
+  EXPECT_FALSE(Fly(base) == Fly(changed));
 }
 
 std::string NameOf(const testing::TestParamInfo<Row>& row) { return ParamName(row.param.name); }
@@ -360,138 +371,6 @@ INSTANTIATE_TEST_SUITE_P(
                     Override("control.velocity_gain", "1.0", DrivenByVelocity("double_integrator")),
                     Override("control.look_ahead_m", "0.2", DrivenByVelocity("unicycle"))),
     NameOf);
-
-std::vector<std::string> TopicsOf(const Flown& run, const std::string& file) {
-  std::vector<std::string> topics;
-  for (const auto& [id, channel] : ReadMcap(run.up.path() / file).channels) topics.push_back(channel.topic);
-  return topics;
-}
-
-TEST(Key, RecordFileNamesTheRecording) {
-  ScratchFolder folder;
-  const Flown run(folder, "run", "leaderless", {"run.duration_s=0.1", "record.file=flight.mcap"});
-  EXPECT_TRUE(fs::exists(run.up.path() / "flight.mcap"));
-  EXPECT_FALSE(fs::exists(run.up.path() / "run.mcap"));
-}
-
-TEST(Key, RecordTopicsChooses) {
-  ScratchFolder folder;
-  const Flown run(folder, "run", "leaderless",
-                  {"run.duration_s=0.1", "record.topics=[\"/agent_[12]/state\", \"/clock\"]"});
-  EXPECT_THAT(TopicsOf(run, "run.mcap"), testing::ElementsAre("/agent_1/state", "/agent_2/state", "/clock"));
-  EXPECT_EQ(run.up.Summary()["samples"]["topics"], 3);
-  EXPECT_TRUE(fs::exists(run.up.path() / "states.npz"));  // not affected by record.topics
-}
-
-TEST(Key, OutputSaveDataKeepsOrDropsTheArrays) {
-  ScratchFolder folder;
-  const Flown run(folder, "run", "leaderless", {"run.duration_s=0.1", "output.save_data=false"});
-  EXPECT_FALSE(fs::exists(run.up.path() / "states.npz"));
-}
-
-std::vector<std::string> Pictures(const Flown& run) {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(run.up.path()))
-    if (entry.path().extension() == ".png") names.push_back(entry.path().stem());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-TEST(Key, OutputPlotsAreMadeAsAskedFor) {
-  ScratchFolder folder;
-  const std::vector<std::string> base = {"run.duration_s=0.5", "output.save_plot=true"};
-  auto with = [&](const std::string& set) {
-    auto sets = base;
-    sets.push_back(set);
-    return sets;
-  };
-  const Flown all(folder, "all", "leaderless", base);
-  EXPECT_THAT(Pictures(all), testing::IsSupersetOf({"disagreement", "paths", "position", "velocity"}));
-  const Flown no_position(folder, "no_position", "leaderless", with("output.position_plot=false"));
-  EXPECT_THAT(Pictures(no_position), testing::Not(testing::Contains("position")));
-  EXPECT_THAT(Pictures(no_position), testing::Contains("velocity"));
-  const Flown no_velocity(folder, "no_velocity", "leaderless", with("output.velocity_plot=false"));
-  EXPECT_THAT(Pictures(no_velocity), testing::Not(testing::Contains("velocity")));
-  EXPECT_THAT(Pictures(no_velocity), testing::Contains("position"));
-  const Flown arrays_for_pictures_only(folder, "only", "leaderless", with("output.save_data=false"));
-  EXPECT_THAT(Pictures(arrays_for_pictures_only), testing::Contains("paths"));
-  EXPECT_FALSE(fs::exists(arrays_for_pictures_only.up.path() / "states.npz"));
-}
-
-TEST(Key, OutputShowPlotWithoutADisplaySaysSoAndDrawsAsWell) {
-  ScratchFolder folder;
-  const Ran run = Shell("env -u DISPLAY -u WAYLAND_DISPLAY '" MASCOT_BINARY_DIR "/orchestrator' up '" +
-                        Config("leaderless") + "' --engine inprocess --duration-s 0.5 --set output.show_plot=true " +
-                        "--out '" + folder.File("run") + "'");
-  EXPECT_EQ(run.exit_code, 0) << run.output;
-  EXPECT_THAT(run.output, testing::HasSubstr("no display: no window is opened\n"));
-  EXPECT_TRUE(fs::exists(folder.File("run/paths.png")));
-}
-
-TEST(Key, OutputShowPlotNeedsNeitherPicturesNorArraysAsFiles) {
-  ScratchFolder folder;
-  const Ran run = Shell("env -u DISPLAY -u WAYLAND_DISPLAY '" MASCOT_BINARY_DIR "/orchestrator' up '" +
-                        Config("leaderless") + "' --engine inprocess --duration-s 0.5 --set output.show_plot=true " +
-                        "--set output.save_plot=false --set output.save_data=false --out '" + folder.File("run") + "'");
-  EXPECT_EQ(run.exit_code, 0) << run.output;
-  EXPECT_FALSE(fs::exists(folder.File("run/states.npz")));
-}
-
-TEST(Key, OutputFidelityComparesWithIdealIntegratorsOrNot) {
-  ScratchFolder folder;
-  const Flown with(folder, "with", "leaderless", {"run.duration_s=0.1"});
-  EXPECT_TRUE(with.up.Summary()["fidelity"]["rms_m"].is_number());
-  const Flown without(folder, "without", "leaderless", {"run.duration_s=0.1", "output.fidelity=false"});
-  EXPECT_TRUE(without.up.Summary()["fidelity"]["rms_m"].is_null());
-  EXPECT_TRUE(without.up.Summary()["fidelity"]["max_m"].is_null());
-  EXPECT_EQ(without.up.Summary()["fidelity"]["travelled_m"], with.up.Summary()["fidelity"]["travelled_m"]);
-}
-
-/// Counts of the summary for each edge: {sent, lost, late, bytes} by [hearer, heard].
-std::map<std::pair<int, int>, std::vector<std::int64_t>> EdgesOf(const Flown& run) {
-  std::map<std::pair<int, int>, std::vector<std::int64_t>> edges;
-  const nlohmann::json summary = run.up.Summary();
-  for (const auto& edge : summary["links"]["edges"])
-    edges[{edge["hearer"], edge["heard"]}] = {edge["sent"], edge["lost"], edge["late"], edge["bytes"]};
-  return edges;
-}
-
-const std::vector<std::string> kLossyTriangle = {
-    "run.duration_s=2.0", "agents={ count = 3, position_m = [[0, 0, 1], [9, 0, 2], [0, 9, 3]] }",
-    "graph={ edges = [[1, 2], [2, 3], [3, 1]] }", "link={ loss = 0.3, delay_s = 0.05, jitter_s = 0.05 }"};
-
-TEST(LinkCounts, OfAnEdgeDoNotDependOnOtherAgents) {
-  ScratchFolder folder;
-  const Flown three(folder, "three", "leaderless", kLossyTriangle);
-  auto sets = kLossyTriangle;
-  sets[1] = "agents={ count = 4, position_m = [[0, 0, 1], [9, 0, 2], [0, 9, 3], [9, 9, 4]] }";
-  sets[2] = "graph={ edges = [[4, 1], [1, 4], [1, 2], [2, 3], [3, 1]] }";
-  const Flown four(folder, "four", "leaderless", sets);
-  const auto before = EdgesOf(three), after = EdgesOf(four);
-  EXPECT_EQ(before.size(), 3u);
-  EXPECT_EQ(after.size(), 5u);
-  for (const auto& [edge, counts] : before) EXPECT_EQ(after.at(edge), counts) << edge.first << " hears " << edge.second;
-}
-
-TEST(LinkCounts, OfAllEdgesAddUp) {
-  ScratchFolder folder;
-  const Flown run(folder, "run", "leaderless", kLossyTriangle);
-  const auto links = run.up.Summary()["links"];
-  std::vector<std::int64_t> sums(4, 0);
-  for (const auto& [edge, counts] : EdgesOf(run)) {
-    EXPECT_EQ(counts[0], 201) << "one a tick, from 0 to 200";
-    for (std::size_t k = 0; k < 4; ++k) sums[k] += counts[k];
-  }
-  EXPECT_EQ(sums, (std::vector<std::int64_t>{links["sent"], links["lost"], links["late"], links["bytes"]}));
-  EXPECT_GT(sums[1], 0);
-  EXPECT_GT(sums[2], 0);
-}
-
-TEST(Key, RunNameNamesTheRunFolder) {
-  ScratchFolder folder;
-  const Flown run(folder, "run", "leaderless", {"run.duration_s=0.1", "run.name=meeting"});
-  EXPECT_EQ(run.up.Summary()["experiment"], "meeting");
-}
 
 }  // namespace
 }  // namespace mascot::test
