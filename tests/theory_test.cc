@@ -387,6 +387,23 @@ TEST(ObstacleWarnings, AreNotGivenWhereNobodyMeetsAnObstacle) {
   EXPECT_THAT(WarningsOfWays("waypoints_m = [[0, 0, 1], [9, 0, 1]]\n", "[physics]\ncollisions = false\n"), none);
 }
 
+/// What is said of a quadrotor of 1.477 kg and 30 N whose rotor 2 keeps this part of its thrust from 4 s on.
+std::vector<std::string> WarningsOfFailure(const std::string& remaining) {
+  return Of("[run]\nduration_s = 9.0\n[agents]\ncount = 1\nposition_m = [[0, 0, 1]]\n"
+            "[[physics.rotor_failures]]\nagent = 1\nrotor = 2\nat_s = 4.0\nremaining = " +
+            remaining + "\n[law]\nname = 'waypoint'\nwaypoints_m = [[0, 0, 1]]\n")
+      .warnings;
+}
+
+TEST(RotorFailureWarnings, NameTheFirstThatLeavesTooLittleToHover) {
+  const double part = 1.477 * 9.81 / 30;  // of its 7.5 N, to carry a quarter of the weight
+  EXPECT_THAT(WarningsOfFailure(std::to_string(part - 1e-3)),
+              Contains("physics.rotor_failures: agent 1 will fall: from 4 s on, rotor 2 gives 3.615 N at most, and "
+                       "3.622 N, a quarter of its weight, is needed to hover level"));
+  EXPECT_THAT(WarningsOfFailure("0.0"), Contains(HasSubstr("rotor 2 gives 0 N at most")));
+  EXPECT_THAT(WarningsOfFailure(std::to_string(part + 1e-3)), testing::Not(Contains(HasSubstr("rotor_failures"))));
+}
+
 TEST(ObstacleWarnings, NameARangeSensorThatNoLawAsks) {
   EXPECT_THAT(WarningsOfWays("waypoints_m = [[0, 1.5, 1]]\n", "[sensors]\nrange_m = 3.0\n"),
               Contains("sensors.range_m: no law of this experiment asks what obstacles are near"));

@@ -24,6 +24,13 @@ std::string ClimbsAway(const AgentConfig& agent, double weight_n) {
       agent.id, airframe.LeastThrust(), 100 * Airframe::kLeastThrustShare, weight_n);
 }
 
+std::string FallsWithout(const RotorFailure& failure, double left_n, double needed_n) {
+  return fmt::format(
+      "physics.rotor_failures: agent {} will fall: from {:g} s on, rotor {} gives {:.4g} N at most, and {:.4g} N, a "
+      "quarter of its weight, is needed to hover level",
+      failure.agent, failure.at_s, failure.rotor, left_n, needed_n);
+}
+
 /// What the thrust gives at a constant height (m/s^2), or the least thrust where that is more.
 double UpAccel(const Airframe& airframe, double gravity_m_per_s2) {
   return std::max(gravity_m_per_s2, airframe.LeastThrust() / airframe.mass_kg);
@@ -62,6 +69,16 @@ std::vector<std::string> LiftWarnings(const Experiment& experiment) {
     const double weight_n = agent.airframe.mass_kg * experiment.physics.gravity_m_per_s2;
     if (weight_n > agent.airframe.MostThrust()) return {CannotLift(agent, weight_n)};
     if (weight_n < agent.airframe.LeastThrust()) return {ClimbsAway(agent, weight_n)};
+  }
+  return {};
+}
+
+std::vector<std::string> RotorFailureWarnings(const Experiment& experiment) {
+  for (const RotorFailure& failure : experiment.physics.rotor_failures) {
+    const Airframe& airframe = experiment.agent(failure.agent).airframe;
+    const double needed_n = airframe.mass_kg * experiment.physics.gravity_m_per_s2 / 4;
+    const double left_n = failure.remaining * airframe.max_thrust_n / 4;
+    if (left_n < needed_n && failure.at_s < experiment.run.duration_s) return {FallsWithout(failure, left_n, needed_n)};
   }
   return {};
 }

@@ -19,4 +19,9 @@ double AccelerationLag(const Experiment& experiment, const AgentConfig& quadroto
 /// low-level stack uses.
 std::vector<std::string> LiftWarnings(const Experiment& experiment);
 
+/// A warning ("key: text") about the first rotor failure that leaves too little: without roll, pitch and yaw, each of
+/// the four rotors carries a quarter of the weight, because those at opposite ends and those that turn the same way
+/// must balance.
+std::vector<std::string> RotorFailureWarnings(const Experiment& experiment);
+
 }  // namespace mascot

@@ -164,6 +164,7 @@ Prediction PredictPhase(const Experiment& phase, const std::string& silent, bool
   WarnOfSilence(phase, prediction);
   WarnOfShortPhase(phase, is_last, prediction);
   for (std::string& warning : LiftWarnings(phase)) prediction.warnings.push_back(std::move(warning));
+  for (std::string& warning : RotorFailureWarnings(phase)) prediction.warnings.push_back(std::move(warning));
   for (std::string& warning : CrowdingWarnings(phase)) prediction.warnings.push_back(std::move(warning));
   for (std::string& warning : ObstacleWarnings(phase)) prediction.warnings.push_back(std::move(warning));
   if (prediction.safety)
