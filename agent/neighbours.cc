@@ -118,7 +118,10 @@ EdgeNow Neighbours::EdgeAt(std::size_t k) const {
 }
 
 void Neighbours::AddEdgesTo(std::vector<EdgeNow>& edges) const {
-  for (std::size_t k = 0; k < may_hear_.size(); ++k) edges.push_back(EdgeAt(k));
+  for (std::size_t k = 0; k < may_hear_.size(); ++k) {
+    edges.push_back(EdgeAt(k));
+    edges.back().lost = links_[k].count().lost;
+  }
 }
 
 std::vector<EdgeCount> Neighbours::counts() const {

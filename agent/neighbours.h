@@ -23,7 +23,8 @@ struct EdgeNow {
     kNothingYet,  ///< no sample has ever arrived
   };
   State state = State::kNothingYet;
-  double age_s = -1;  ///< simulated time since the newest sample that has arrived was sent; -1: none has
+  double age_s = -1;       ///< simulated time since the newest sample that has arrived was sent; -1: none has
+  std::uint64_t lost = 0;  ///< samples lost so far
 };
 
 /// Decides what one agent hears of its neighbours: applies start and stop times, the schedule of graphs, the range, the

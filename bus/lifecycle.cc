@@ -61,12 +61,7 @@ void Lifecycle::Report(std::uint64_t tick, const Pacing& pacing, const Contacts&
   {
     const std::lock_guard lock(mutex_);
     status_.tick(tick);
-    status_.misses(pacing.misses);
-    status_.tick_lateness_s(pacing.tick_lateness_s);
-    status_.command_age_s(pacing.command_age_s);
-    status_.agent_contacts(static_cast<std::uint64_t>(contacts.agents));
-    status_.ground_contacts(static_cast<std::uint64_t>(contacts.ground));
-    status_.obstacle_contacts(static_cast<std::uint64_t>(contacts.obstacles));
+    ToWire(pacing, contacts, status_);
   }
   Publish();
 }

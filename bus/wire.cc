@@ -146,6 +146,56 @@ void ToWire(std::int64_t tick, int rate_hz, int number, const std::string& toml,
   sample.toml(toml);
 }
 
+/// Values of Incident::kind.
+enum class IncidentKind : std::uint8_t { kContact = 0, kLate };
+
+void ToWire(const Pacing& pacing, const Contacts& contacts, mascot_msgs::msg::Status& status) {
+  status.misses(pacing.misses);
+  status.tick_lateness_s(pacing.tick_lateness_s);
+  status.command_age_s(pacing.command_age_s);
+  status.agent_contacts(static_cast<std::uint64_t>(contacts.agents));
+  status.ground_contacts(static_cast<std::uint64_t>(contacts.ground));
+  status.obstacle_contacts(static_cast<std::uint64_t>(contacts.obstacles));
+  status.incidents().clear();
+  const auto add = [&status](IncidentKind kind, int agent, const Episode& ticks) -> mascot_msgs::msg::Incident& {
+    mascot_msgs::msg::Incident& incident = status.incidents().emplace_back();
+    incident.kind(static_cast<std::uint8_t>(kind));
+    incident.agent(static_cast<std::uint32_t>(agent));
+    incident.from_tick(static_cast<std::uint64_t>(ticks.from));
+    incident.to_tick(static_cast<std::uint64_t>(ticks.to));
+    incident.count(static_cast<std::uint64_t>(ticks.count));
+    return incident;
+  };
+  for (const Contact& contact : contacts.first) {
+    auto& incident = add(IncidentKind::kContact, contact.agent, {.from = contact.tick, .to = contact.tick, .count = 1});
+    incident.other(contact.other);
+    incident.speed(contact.speed_m_per_s);
+  }
+  for (const LateCommands& late : pacing.late) add(IncidentKind::kLate, late.agent, late.ticks);
+}
+
+void FromWire(const mascot_msgs::msg::Status& status, Pacing& pacing, Contacts& contacts) {
+  pacing = {.misses = status.misses(),
+            .late = {},
+            .tick_lateness_s = status.tick_lateness_s(),
+            .command_age_s = status.command_age_s()};
+  contacts = {.agents = static_cast<std::int64_t>(status.agent_contacts()),
+              .ground = static_cast<std::int64_t>(status.ground_contacts()),
+              .obstacles = static_cast<std::int64_t>(status.obstacle_contacts()),
+              .first = {}};
+  for (const mascot_msgs::msg::Incident& incident : status.incidents()) {
+    const int agent = static_cast<int>(incident.agent());
+    const Episode ticks{.from = static_cast<std::int64_t>(incident.from_tick()),
+                        .to = static_cast<std::int64_t>(incident.to_tick()),
+                        .count = static_cast<std::int64_t>(incident.count())};
+    if (incident.kind() == static_cast<std::uint8_t>(IncidentKind::kContact))
+      contacts.first.push_back(
+          {.tick = ticks.from, .agent = agent, .other = incident.other(), .speed_m_per_s = incident.speed()});
+    else
+      pacing.late.push_back({.agent = agent, .ticks = ticks});
+  }
+}
+
 Motion FromWire(const mascot_msgs::msg::AgentState& sample) {
   const auto& position = sample.pose().position();
   const auto& orientation = sample.pose().orientation();

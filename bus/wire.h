@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "bus/cdr.h"
+#include "experiment/contacts.h"
 #include "experiment/motion.h"
+#include "experiment/pacing.h"
 #include "idl/topics.h"
 
 namespace mascot {
@@ -26,6 +28,10 @@ using ExperimentType = mascot_msgs::msg::ExperimentPubSubType;
 template <>
 struct SequenceOf<MessageType> {
   static constexpr std::size_t kAt = 24, kElement = sizeof(double);
+};
+template <>
+struct SequenceOf<StatusType> {
+  static constexpr std::size_t kAt = 4, kElement = 44;
 };
 template <>
 struct SequenceOf<BundleType> {
@@ -73,6 +79,10 @@ void ToWire(std::int64_t tick, int rate_hz, int agent, std::span<const double> m
 void ToWire(std::int64_t tick, int rate_hz, rosgraph_msgs::msg::Clock& sample);
 /// `number`, `toml`: of the event.
 void ToWire(std::int64_t tick, int rate_hz, int number, const std::string& toml, mascot_msgs::msg::Event& sample);
+/// Puts what the physics server reports of its timing and of contacts into its status.
+void ToWire(const Pacing& pacing, const Contacts& contacts, mascot_msgs::msg::Status& status);
+/// Reads it again.
+void FromWire(const mascot_msgs::msg::Status& status, Pacing& pacing, Contacts& contacts);
 Motion FromWire(const mascot_msgs::msg::AgentState& sample);
 Command FromWire(const mascot_msgs::msg::AgentCommand& sample);
 

@@ -1,14 +1,30 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace mascot {
 
-/// Number of contacts begun so far, by what an agent touched; a contact that lasts counts once.
+/// The beginning of a contact.
+struct Contact {
+  static constexpr int kGround = 0;
+
+  std::int64_t tick = 0;     ///< it began between this tick and the next
+  int agent = 0;             ///< 1..N
+  int other = kGround;       ///< another agent, with a larger id; kGround; -k: obstacle k, from 1 on
+  double speed_m_per_s = 0;  ///< of the agent's centre relative to the other's, at that tick
+};
+
+/// A run tells of so many contacts one by one; beyond, it counts them.
+inline constexpr std::size_t kMostContactsTold = 256;
+
+/// The contacts begun so far, by what an agent touched; a contact that lasts counts once.
 struct Contacts {
   std::int64_t agents = 0;  ///< between two agents
   std::int64_t ground = 0;
   std::int64_t obstacles = 0;
+  std::vector<Contact> first;  ///< the first kMostContactsTold, in the order in which they began
 
   std::int64_t total() const { return agents + ground + obstacles; }
 };

@@ -16,14 +16,34 @@ std::uint64_t Place(double quantile, std::uint64_t count) {
 
 }  // namespace
 
-void PaceMeter::AddCommand(std::int64_t ticks) {
-  const auto age = static_cast<std::size_t>(std::max<std::int64_t>(ticks, 0));
-  if (commands_.size() <= age) commands_.resize(age + 1, 0);
-  ++commands_[age];
+void PaceMeter::AddCommand(int agent, std::int64_t tick, std::int64_t age) {
+  const auto ticks = static_cast<std::size_t>(std::max<std::int64_t>(age, 0));
+  if (commands_.size() <= ticks) commands_.resize(ticks + 1, 0);
+  ++commands_[ticks];
+  if (ticks > 0) NoteLate(agent, tick);
 }
 
-Pacing PaceMeter::Result(double period_s) const {
-  Pacing pacing;
+void PaceMeter::NoteLate(int agent, std::int64_t tick) {
+  const auto i = static_cast<std::size_t>(agent - 1);
+  if (lasting_.size() <= i) lasting_.resize(i + 1);
+  if (lasting_[i].IsOver(tick, EpisodeGapTicks(rate_hz_))) {
+    if (late_.size() < kMostLatesTold) late_.push_back({agent, lasting_[i]});
+    lasting_[i] = {};
+  }
+  lasting_[i].Add(tick);
+}
+
+std::vector<LateCommands> PaceMeter::Late() const {
+  std::vector<LateCommands> all = late_;
+  for (std::size_t i = 0; i < lasting_.size(); ++i)
+    if (lasting_[i].count > 0) all.push_back({static_cast<int>(i) + 1, lasting_[i]});
+  std::ranges::stable_sort(all, {}, [](const LateCommands& late) { return late.ticks.from; });
+  if (all.size() > kMostLatesTold) all.resize(kMostLatesTold);
+  return all;
+}
+
+Pacing PaceMeter::Result() const {
+  Pacing pacing{.late = Late()};
   std::vector<double> sorted = lateness_s_;
   std::ranges::sort(sorted);
   std::uint64_t used = 0;
@@ -37,7 +57,7 @@ Pacing PaceMeter::Result(double period_s) const {
     for (std::size_t age = 0; age < commands_.size() && used > 0; ++age) {
       passed += commands_[age];
       if (passed <= Place(kQuantiles[q], used)) continue;
-      pacing.command_age_s[q] = static_cast<double>(age) * period_s;
+      pacing.command_age_s[q] = static_cast<double>(age) / rate_hz_;
       break;
     }
   }

@@ -10,15 +10,23 @@ namespace mascot {
 /// Collects the timing statistics of a run in real time. No clock: the caller passes in the times.
 class PaceMeter {
  public:
+  explicit PaceMeter(double rate_hz) : rate_hz_(rate_hz) {}
+
   /// The states of a tick were out `lateness_s` after the tick was due.
   void AddTick(double lateness_s) { lateness_s_.push_back(lateness_s); }
-  /// The world is stepped with a command that answered the states of `ticks` ticks ago.
-  void AddCommand(std::int64_t ticks);
-  Pacing Result(double period_s) const;
+  /// At `tick` the world is stepped with a command of `agent` that answered the states of `age` ticks ago.
+  void AddCommand(int agent, std::int64_t tick, std::int64_t age);
+  Pacing Result() const;
 
  private:
+  void NoteLate(int agent, std::int64_t tick);
+  std::vector<LateCommands> Late() const;
+
+  const double rate_hz_;
   std::vector<double> lateness_s_;
   std::vector<std::uint64_t> commands_;  // by age in ticks
+  std::vector<LateCommands> late_;       // that are over
+  std::vector<Episode> lasting_;         // by agent - 1
 };
 
 }  // namespace mascot

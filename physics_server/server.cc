@@ -34,6 +34,7 @@ Server::Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experimen
       world_(experiment),
       live_(experiment, nullptr, /*checked=*/true),
       commands_(static_cast<std::size_t>(experiment.size())),
+      pace_(experiment.control.rate_hz),
       clock_(domain, Topic::Clock()),
       events_(domain, Topic::Event()),
       event_readers_(static_cast<int>(AgentProcesses(experiment).size()) + 1),
@@ -75,8 +76,8 @@ void Server::Run() {
 
 void Server::Report() {
   const std::lock_guard lock(mutex_);
-  lifecycle_.Report(static_cast<std::uint64_t>(std::max<std::int64_t>(ticks_.published(), 0)),
-                    pace_.Result(experiment_.period_s()), world_.contacts());
+  lifecycle_.Report(static_cast<std::uint64_t>(std::max<std::int64_t>(ticks_.published(), 0)), pace_.Result(),
+                    world_.contacts());
 }
 
 // --- start ----------------------------------------------------------------------------------------------
@@ -272,7 +273,8 @@ TickProtocol::Turn Server::Look() {
 }
 
 void Server::MeasureCommands() {
-  for (int id = 1; id <= experiment_.size(); ++id) pace_.AddCommand(world_.tick() - ticks_.answered(id));
+  for (int id = 1; id <= experiment_.size(); ++id)
+    pace_.AddCommand(id, world_.tick(), world_.tick() - ticks_.answered(id));
 }
 
 }  // namespace mascot

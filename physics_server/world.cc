@@ -17,8 +17,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "physics_server/clearance.h"
@@ -29,7 +31,7 @@ namespace mascot {
 namespace {
 
 // Bullet user indices of bodies that are no agents; an agent has its id.
-constexpr int kGroundIndex = 0;
+constexpr int kGroundIndex = Contact::kGround;
 constexpr int kObstacleIndex = -1;  // the first obstacle; the next is one less, and so on
 enum CollisionGroup { kGround = 1, kAgents = 2, kObstacles = 4 };
 
@@ -204,12 +206,14 @@ class ContactCounter {
   explicit ContactCounter(std::size_t bodies) {
     lasting_.reserve(4 * bodies);
     now_.reserve(4 * bodies);
+    begun_.first.reserve(kMostContactsTold);
   }
-  /// To be called after each step. Returns true if any two bodies are so close that Bullet keeps contact points for
-  /// them.
-  bool Update(btDispatcher& dispatcher) {
+  /// To be called after each step. `tick`: the one before the step; `bodies`: the agents', by id - 1. Returns true if
+  /// any two bodies are so close that Bullet keeps contact points for them.
+  bool Update(btDispatcher& dispatcher, std::int64_t tick, std::span<const Body> bodies) {
     bool any = false;
     now_.clear();
+    const std::size_t told = begun_.first.size();
     for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
       const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
       if (manifold.getNumContacts() == 0) continue;
@@ -218,8 +222,12 @@ class ContactCounter {
       const bool lasts = std::ranges::binary_search(lasting_, pair);
       if (!lasts && !Touches(manifold)) continue;
       now_.push_back(pair);
-      if (!lasts) ++Begun(pair);
+      if (!lasts) Begin(pair, tick, bodies);
     }
+    const auto newest = begun_.first.begin() + static_cast<std::ptrdiff_t>(told);
+    std::sort(newest, begun_.first.end(), [](const Contact& a, const Contact& b) {
+      return std::pair(a.agent, a.other) < std::pair(b.agent, b.other);
+    });
     std::ranges::sort(now_);
     lasting_.swap(now_);
     return any;
@@ -229,9 +237,16 @@ class ContactCounter {
  private:
   using Pair = std::pair<int, int>;  // user indices, in order; at least one is an agent's
 
-  std::int64_t& Begun(const Pair& pair) {
-    if (pair.first <= kObstacleIndex) return begun_.obstacles;
-    return pair.first == kGroundIndex ? begun_.ground : begun_.agents;
+  void Begin(const Pair& pair, std::int64_t tick, std::span<const Body> bodies) {
+    const bool is_of_agents = pair.first > kGroundIndex;
+    ++(is_of_agents ? begun_.agents : pair.first == kGroundIndex ? begun_.ground : begun_.obstacles);
+    if (begun_.first.size() == kMostContactsTold) return;
+    const int agent = is_of_agents ? pair.first : pair.second;
+    const int other = is_of_agents ? pair.second : pair.first;
+    // At the tick: the solver slows bodies down in the steps before they touch.
+    Eigen::Vector3d v_W = bodies[static_cast<std::size_t>(agent - 1)].state.v_WB;
+    if (is_of_agents) v_W -= bodies[static_cast<std::size_t>(other - 1)].state.v_WB;
+    begun_.first.push_back({.tick = tick, .agent = agent, .other = other, .speed_m_per_s = v_W.norm()});
   }
 
   // The tolerance: the solver stops a body driven by velocity slightly before it touches; how far before depends on the
@@ -328,7 +343,7 @@ void World::Impl::Step(std::span<const Actuation> commands) {
     Apply(bodies[i].model->Apply(commands[i], AtStep(*bodies[i].rigid), around), bodies[i]);
   if (MayTouch()) {
     world.stepSimulation(dt_s, 0);
-    any_contact = contacts.Update(dispatcher);
+    any_contact = contacts.Update(dispatcher, tick, bodies);
     ++steps_with_contacts;
   } else {
     for (Body& body : bodies) StepFreely(*body.rigid, dt_s);
@@ -373,7 +388,7 @@ void World::Step(std::span<const Actuation> commands) {
 
 std::int64_t World::tick() const { return impl_->tick; }
 
-Contacts World::contacts() const { return impl_->contacts.begun(); }
+const Contacts& World::contacts() const { return impl_->contacts.begun(); }
 
 std::int64_t World::steps_with_contacts() const { return impl_->steps_with_contacts; }
 

@@ -34,7 +34,7 @@ class World {
   /// The current tick: 0, then one more after each Step().
   std::int64_t tick() const;
   /// Contacts begun so far.
-  Contacts contacts() const;
+  const Contacts& contacts() const;
   std::int64_t collisions() const { return contacts().total(); }
   /// Physics steps so far at which Bullet looked for contacts.
   std::int64_t steps_with_contacts() const;

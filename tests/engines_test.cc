@@ -482,7 +482,19 @@ TEST(Engines, ReportContactsByKindAlike) {
   EXPECT_EQ(inprocess.Wait(), 0) << inprocess.err();
   ExpectSameBytes(dds, inprocess);
   const nlohmann::json safety = dds.Summary()["safety"];
-  EXPECT_EQ(safety["contacts"], nlohmann::json({{"agents", 1}, {"ground", 1}, {"obstacles", 1}}));
+  const nlohmann::json& contacts = safety["contacts"];
+  EXPECT_EQ(contacts["agents"], 1);
+  EXPECT_EQ(contacts["ground"], 1);
+  EXPECT_EQ(contacts["obstacles"], 1);
+  ASSERT_EQ(contacts["first"].size(), 3u);
+  EXPECT_EQ(contacts["first"][0]["agent"], 3);
+  EXPECT_EQ(contacts["first"][0]["with"], "ground");
+  EXPECT_EQ(contacts["first"][0]["t_s"], 0.02) << "0.1 m at 5 m/s";
+  EXPECT_NEAR(contacts["first"][0]["speed_m_per_s"], 4.04, 0.01) << "it brakes for 2 ticks";
+  EXPECT_EQ(inprocess.File("events.csv"), dds.File("events.csv"));
+  EXPECT_THAT(dds.File("events.csv"), HasSubstr(",contact,1,1,agent 2,"));
+  EXPECT_THAT(dds.File("events.csv"), HasSubstr(",contact,1,4,obstacle 1,"));
+  EXPECT_THAT(dds.out(), HasSubstr("happened       0.02 s: agent 3 touches the ground at "));
   EXPECT_EQ(safety["collisions"], 3);
   EXPECT_EQ(inprocess.Summary()["safety"], safety);
 }

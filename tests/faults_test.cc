@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cstring>
+#include <sstream>
 
 #include "bus/shared_memory.h"
 #include "bus/wire.h"
@@ -469,6 +470,15 @@ TEST(Faults, AnAgentThatFallsSilentEndsARealtimeRunToo) {
   EXPECT_THAT(up.err(), NamesAgentTwo());
   EXPECT_GT(up.Summary()["realtime"]["misses"], 10);
   EXPECT_GT(up.Summary()["wall_s"].get<double>(), 0.0);
+  std::istringstream events(up.File("events.csv"));
+  std::uint64_t late = 0;
+  for (std::string line; std::getline(events, line);) {
+    const auto at = line.find(",late_command,");
+    if (at != std::string::npos) late += std::stoull(line.substr(at + std::string(",late_command,").size()));
+  }
+  EXPECT_EQ(late, up.Summary()["realtime"]["misses"]);
+  EXPECT_THAT(up.File("events.csv"), testing::ContainsRegex(",late_command,[0-9]+,2,,\n"));
+  EXPECT_THAT(up.out(), testing::ContainsRegex(": commands of agent [1-4] come too late, for [0-9]+ ticks"));
 }
 
 TEST(Faults, WhatTheServerMeasuredIsReportedWhenAnAgentDies) {

@@ -147,6 +147,8 @@ TEST(Schemas, MatchTheSerialisedBytes) {
   rosgraph_msgs::msg::Clock clock;
   ToWire(123, 100, clock);
   mascot_msgs::msg::Status status;
+  ToWire(Pacing{.late = {{.agent = 4, .ticks = {.from = 20, .to = 30, .count = 5}}}},
+         Contacts{.first = {{.tick = 19, .agent = 3, .other = -2, .speed_m_per_s = 0.5}}}, status);
   status.process("agent_3");
   status.agent(3);
   status.state(5);
@@ -199,7 +201,10 @@ TEST(Schemas, MatchTheSerialisedBytes) {
       "actuator": [1.5, 2.5, 3.5, 4.5], "acceleration_wanted": {"x": 5.5, "y": 6.5, "z": 7.5},
       "acceleration_limited": {"x": 8.5, "y": 9.5, "z": 10.5}},
     "/clock": {"clock": {"sec": 1, "nanosec": 230000000}},
-    "/status": {"process": "agent_3", "agent": 3, "state": 5, "experiment": 11, "tick": 6, "misses": 7,
+    "/status": {"incidents": [
+        {"kind": 0, "agent": 3, "other": -2, "from_tick": 19, "to_tick": 19, "count": 1, "speed": 0.5},
+        {"kind": 1, "agent": 4, "other": 0, "from_tick": 20, "to_tick": 30, "count": 5, "speed": 0}],
+      "process": "agent_3", "agent": 3, "state": 5, "experiment": 11, "tick": 6, "misses": 7,
       "tick_lateness_s": [0.5, 1.5, 2.5], "command_age_s": [3.5, 4.5, 5.5],
       "agent_contacts": 8, "ground_contacts": 9, "obstacle_contacts": 10,
       "request": 14, "request_tick": -1, "paused": true, "pace": 0.5, "reason": "none"},

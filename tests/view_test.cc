@@ -132,7 +132,9 @@ TEST(View, PlaysARecordingWhereverAViewerWantsItUntilCtrlC) {
   viewer.Subscribe("/ui/experiment");
   const nlohmann::json experiment = viewer.NextJsonOf("/ui/experiment");
   EXPECT_EQ(experiment["source"], "recording");
-  EXPECT_EQ(experiment["recorded"], (nlohmann::json{{"end_s", 5.0}, {"loss", ""}}));
+  EXPECT_EQ(experiment["recorded"]["end_s"], 5.0);
+  EXPECT_EQ(experiment["recorded"]["loss"], "");
+  EXPECT_EQ(experiment["recorded"]["incidents"], ReadFile(folder.File("run/events.csv")));
   viewer.Subscribe("/ui/frame");
   EXPECT_EQ(FrameAt(viewer, 0)["state"], "paused");
   const auto granted = [](const char* words) { return nlohmann::json{{"granted", true}, {"words", words}}; };

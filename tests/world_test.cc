@@ -514,6 +514,12 @@ TEST(World, CountsACollisionEachTimeBodiesMeet) {
   World world(HeadOn());
   Drift(world, 2, 110);
   EXPECT_EQ(world.collisions(), 1);
+  ASSERT_EQ(world.contacts().first.size(), 1u);
+  const Contact& contact = world.contacts().first[0];
+  EXPECT_EQ(contact.agent, 1);
+  EXPECT_EQ(contact.other, 2);
+  EXPECT_NEAR(static_cast<double>(contact.tick), 90, 1) << "2 m apart but for two radii of 0.1 m, at 2 m/s and 100 Hz";
+  EXPECT_NEAR(contact.speed_m_per_s, 2, 1e-9);
   for (int i = 0; i < 50; ++i) world.Step(std::array<Actuation, 2>{{{-1, 0, 0, 0}, {1, 0, 0, 0}}});   // apart
   for (int i = 0; i < 200; ++i) world.Step(std::array<Actuation, 2>{{{1, 0, 0, 0}, {-1, 0, 0, 0}}});  // and back
   EXPECT_EQ(world.collisions(), 2);

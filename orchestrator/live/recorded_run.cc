@@ -2,16 +2,34 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 
 #include "agent/laws.h"
+#include "experiment/toml/utf8.h"
 #include "orchestrator/measuring/agreement_meter.h"
 
 namespace mascot {
+
+namespace {
+
+/// The first lines of the table of incidents beside the recording, as many as a page can mark; empty: there is none.
+std::string IncidentsBeside(const std::string& recording) {
+  constexpr int kMostLines = 1000;
+  std::ifstream table(std::filesystem::path(recording).replace_filename("events.csv"), std::ios::binary);
+  std::string text;
+  int lines = 0;
+  for (std::string line; lines < kMostLines && std::getline(table, line); ++lines) text += line + "\n";
+  return std::string(Utf8(text));
+}
+
+}  // namespace
 
 RecordedRun::RecordedRun(const std::string& run)
     : rows_(run),
       experiment_(LoadExperiment(Section::FromText(rows_.config(), rows_.path() + " (config.toml)"), rows_.name(),
                                  /*checked=*/true)),
+      incidents_(IncidentsBeside(rows_.path())),
       events_(rows_.Events()),
       live_(experiment_, &LawTable(), /*checked=*/true),
       edges_(experiment_, last_tick(),

@@ -26,7 +26,7 @@ class RecordedRun {
   const Experiment& experiment() const { return experiment_; }
   const IndexedRows& rows() const { return rows_; }
   std::int64_t last_tick() const { return rows_.ticks() - 1; }
-  RecordedPart part() const { return {last_tick(), rows_.loss()}; }
+  RecordedPart part() const { return {last_tick(), rows_.loss(), incidents_}; }
   /// All events. None is known to have been given by hand: a recording does not say it.
   std::vector<ShownEvent> Events() const;
 
@@ -47,6 +47,7 @@ class RecordedRun {
 
   IndexedRows rows_;
   const Experiment experiment_;
+  const std::string incidents_;
   const std::vector<IndexedRows::EventAt> events_;
   LiveExperiment live_;                                    // after as many events as states_ has
   std::vector<std::shared_ptr<const Experiment>> states_;  // after each event that was taken so far

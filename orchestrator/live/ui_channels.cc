@@ -77,7 +77,7 @@ Json ObstaclesJson(const std::vector<Obstacle>& obstacles) {
 }
 
 Json RecordedJson(const Experiment& experiment, const RecordedPart& recorded) {
-  return {{"end_s", experiment.time_s(recorded.last_tick)}, {"loss", recorded.loss}};
+  return {{"end_s", experiment.time_s(recorded.last_tick)}, {"loss", recorded.loss}, {"incidents", recorded.incidents}};
 }
 
 Json KeysJson(const std::vector<ShownKey>& keys) {

@@ -55,7 +55,8 @@ struct ShownEvent {
 /// What there is of a recording.
 struct RecordedPart {
   std::int64_t last_tick = 0;
-  std::string loss = {};  ///< why later ticks may be missing; empty: there are none
+  std::string loss = {};       ///< why later ticks may be missing; empty: there are none
+  std::string incidents = {};  ///< the first lines of the events.csv beside it; empty: there is none
 };
 
 /// Where rows come from.

@@ -7,7 +7,7 @@
 namespace mascot {
 
 RunMeter::RunMeter(const Experiment& experiment)
-    : experiment_(experiment), metrics_(experiment), links_(experiment), laws_(experiment) {
+    : experiment_(experiment), metrics_(experiment), links_(experiment), incidents_(experiment), laws_(experiment) {
   Begin(experiment, 0, MotionsAtStart(experiment));
 }
 
@@ -26,6 +26,7 @@ void RunMeter::Add(const FlownRow& row) {
   const DecodedRow& decoded = row.decoded();
   metrics_.Add(decoded);
   links_.Add(row.tick(), decoded);
+  incidents_.Add(row, links_);
   if (now_ && now_->phase == phases_.size()) {
     phases_.back().End(decoded.motions, laws_.Result());
     Begin(*now_, row.tick(), decoded.motions);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
+#include "orchestrator/measuring/incident_meter.h"
 #include "orchestrator/measuring/law_meters.h"
 #include "orchestrator/measuring/link_meter.h"
 #include "orchestrator/measuring/metrics.h"
@@ -31,6 +32,10 @@ class RunMeter final : public RowSink {
   Aim aim() const { return phases_.back().aim(); }
   std::vector<EdgeTraffic> Traffic() const { return links_.Result(); }
   void EdgesNow(std::vector<EdgeNow>& edges) const { links_.EdgesNow(edges); }
+  /// What the run came up against, with the contacts and the late commands that the physics server counted.
+  Incidents IncidentsWith(const Contacts& contacts, const std::vector<LateCommands>& late) const {
+    return incidents_.Result(contacts, late);
+  }
   /// Disagreement in the newest row, for those who watch.
   double disagreement_m() const { return phases_.back().disagreement_m(); }
 
@@ -41,6 +46,7 @@ class RunMeter final : public RowSink {
   std::shared_ptr<const Experiment> now_;  // null before the first event
   Metrics metrics_;
   LinkMeter links_;
+  IncidentMeter incidents_;
   LawMeters laws_;
   std::deque<PhaseMeter> phases_;  // never empty
 };

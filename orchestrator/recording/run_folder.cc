@@ -35,7 +35,7 @@ fs::path MakeNew(const fs::path& parent) {
 }
 
 /// Files that a run writes, beside its recording, its pictures and its logs.
-constexpr std::string_view kFiles[] = {"config.toml", "summary.json", "states.npz"};
+constexpr std::string_view kFiles[] = {"config.toml", "summary.json", "events.csv", "states.npz"};
 /// Pictures of a run (scripts/pictures.py), and the formats in which `plot` draws them.
 constexpr std::string_view kPictures[] = {"paths", "position", "velocity", "acceleration", "disagreement",
                                           "error", "tracking", "graph",    "safety"};

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "agent/laws.h"
 #include "orchestrator/recording/row_codec.h"
 #include "orchestrator/report/aim_report.h"
+#include "orchestrator/report/incident_report.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/report/law_report.h"
 #include "orchestrator/report/prediction_report.h"
@@ -33,14 +35,29 @@ Json GraphJson(const Experiment& experiment) {
   return graph;
 }
 
-Json Safety(const Measured& measured, const std::optional<Contacts>& contacts, const Prediction& prediction) {
+/// The first contacts, each with when, who, with what and how fast.
+Json FirstContacts(const Experiment& experiment, const Contacts& contacts) {
+  constexpr std::size_t kMost = 10;  // events.csv has more
+  Json first = Json::array();
+  for (const Contact& contact : std::span(contacts.first).first(std::min(kMost, contacts.first.size())))
+    first.push_back({{"t_s", experiment.time_s(contact.tick)},
+                     {"agent", contact.agent},
+                     {"with", PartnerOf(contact)},
+                     {"speed_m_per_s", contact.speed_m_per_s}});
+  return first;
+}
+
+Json Safety(const Experiment& experiment, const Measured& measured, const std::optional<Contacts>& contacts,
+            const Prediction& prediction) {
   Json safety;
   safety["min_separation_m"] = OrNull(measured.min_separation_m);
   safety["collisions"] = contacts ? Json(contacts->total()) : Json(nullptr);
   safety["contacts"] = nullptr;
   if (contacts)
-    safety["contacts"] = {
-        {"agents", contacts->agents}, {"ground", contacts->ground}, {"obstacles", contacts->obstacles}};
+    safety["contacts"] = {{"agents", contacts->agents},
+                          {"ground", contacts->ground},
+                          {"obstacles", contacts->obstacles},
+                          {"first", FirstContacts(experiment, *contacts)}};
   safety["filtered_fraction"] = OrNull(measured.filtered_fraction);
   safety["infeasible_ticks"] = OrNull(measured.infeasible_ticks);
   safety["predicted"] = SafetyPredictionJson(prediction);
@@ -201,7 +218,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
                      {"saturated_fraction", measured.saturated_fraction},
                      {"tilt_limited_fraction", measured.tilt_limited_fraction},
                      {"rotor_limited_fraction", measured.rotor_limited_fraction}};
-  json["safety"] = Safety(measured, engine.contacts, prediction);
+  json["safety"] = Safety(experiment, measured, engine.contacts, prediction);
   json["links"] = Links(meter.Traffic());
   json["fidelity"] = Fidelity(measured);
   if (experiment.run.mode == Mode::kRealtime)
@@ -231,6 +248,7 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
              1e3 * pacing.tick_lateness_s[0], 1e3 * pacing.tick_lateness_s[1], 1e3 * pacing.tick_lateness_s[2]);
   }
   text += SeparationText(m, engine.contacts, prediction);
+  text += IncidentsText(experiment, IncidentsOf(meter, engine));
   std::uint64_t sent = 0, lost = 0, late = 0;
   for (const EdgeTraffic& edge : meter.Traffic()) {
     sent += edge.count.sent;

@@ -20,6 +20,7 @@
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/run_writer.h"
 #include "orchestrator/report/ending.h"
+#include "orchestrator/report/incident_report.h"
 #include "orchestrator/report/summary.h"
 #include "orchestrator/theory/theory.h"
 #include "orchestrator/verbs/config_args.h"
@@ -115,6 +116,7 @@ int Up(const UpArgs& args) {
   };
   const auto draw = [&] {
     flight.End();  // after the first summary: the DDS library may not let us end in order
+    folder.Write("events.csv", IncidentsCsv(experiment, IncidentsOf(meter, result)));
     return MakeOutput(experiment, folder, writer.rows() > 1, stop);
   };
   const int code = EndRun(folder, ExitCode(result), {.summary = summary, .draw = draw, .print = print});

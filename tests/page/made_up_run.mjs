@@ -24,9 +24,11 @@ export class MadeUpRun {
     lossy = false,
     range_m = 100,
     end_s = DURATION_S,
-    loss = ""
+    loss = "",
+    incidents = ""
   } = {}) {
-    Object.assign(this, {size: agents, source, name, lossy, range_m, end_s, loss, leader: Math.min(leader, agents)});
+    Object.assign(
+        this, {size: agents, source, name, lossy, range_m, end_s, loss, incidents, leader: Math.min(leader, agents)});
     const spread = 2.2 * Math.sqrt(agents);
     this.p = Array.from(
         {length: agents},
@@ -59,7 +61,7 @@ export class MadeUpRun {
       name: this.name,
       source: this.source,
       engine: this.rows ? "" : "dds",
-      recorded: this.rows ? {end_s: this.end_s, loss: this.loss} : null,
+      recorded: this.rows ? {end_s: this.end_s, loss: this.loss, incidents: this.incidents} : null,
       rate_hz: RATE_HZ,
       ticks: RATE_HZ * DURATION_S,
       duration_s: DURATION_S,

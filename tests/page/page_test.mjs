@@ -283,6 +283,23 @@ test(
       assert.deepEqual(events(fake), []);
     }));
 
+test("what a recorded run came up against is marked on its time line, and is sought by a click", () => {
+  const incidents = `t_s,until_s,what,count,agent,with,detail
+12,12,contact,1,3,obstacle 2,1.25 m/s
+24.5,31,acceleration_limit,70,2,,
+32,32,event,1,,event 1,"set = { ""law.p_gain"" = 0.2, x = 1 }"
+`;
+  return watching({run: {source: "recording", incidents}}, async ({page}) => {
+    const marks = page.locator("#marks i.incident");
+    assert.equal(await marks.count(), 2);
+    assert.equal(await marks.nth(0).getAttribute("title"), "12.00 s: contact of agent 3, obstacle 2, 1.25 m/s");
+    assert.equal(await marks.nth(1).getAttribute("title"), "24.50 s: acceleration limit of agent 2, until 31.00 s");
+    assert.equal(await page.locator("#marks i").count(), 4);  // with two events
+    await marks.nth(0).click();
+    await until(page, () => mascot.tick === 1200);
+  });
+});
+
 test(
     "a recording that was cut says so, and its time line ends at the cut",
     () => watching({run: {source: "recording", end_s: 40, loss: "the file ends inside a record"}}, async ({page}) => {

@@ -410,13 +410,9 @@ void DdsRun::Collect() {
 void DdsRun::TakeReport() {
   const auto server = ServerReport();
   if (!server) return;
-  result_.contacts = {.agents = static_cast<std::int64_t>(server->agent_contacts()),
-                      .ground = static_cast<std::int64_t>(server->ground_contacts()),
-                      .obstacles = static_cast<std::int64_t>(server->obstacle_contacts())};
-  if (experiment_.run.mode == Mode::kRealtime)
-    result_.pacing = {.misses = server->misses(),
-                      .tick_lateness_s = server->tick_lateness_s(),
-                      .command_age_s = server->command_age_s()};
+  Pacing pacing;
+  FromWire(*server, pacing, result_.contacts.emplace());
+  if (experiment_.run.mode == Mode::kRealtime) result_.pacing = std::move(pacing);
 }
 
 bool DdsRun::End() {

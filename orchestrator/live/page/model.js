@@ -1,6 +1,8 @@
 // What the page knows: the experiment, the newest row of the run, its events, and what the viewer has chosen.
 // Everything drawn is drawn from here. Numbers of agents begin at 1, indices at 0.
 
+import {incidentsIn} from "./incidents.js";
+
 /** States of an edge in a row. */
 export const EDGE = {
   NONE: 0,
@@ -50,6 +52,9 @@ export class Model {
 
   /** Why a recording ends early: it was cut; empty: it is whole. */
   get loss() { return this.experiment?.recorded?.loss ?? ""; }
+
+  /** What a recorded run came up against, but for events: {t_s, words}. */
+  get incidents() { return incidentsIn(this.experiment?.recorded?.incidents ?? ""); }
 
   setConnection(connected, session = null) {
     if (connected && session !== this.#session) this.#forget();

@@ -127,14 +127,17 @@ export class Transport {
   }
 
   #mark() {
-    const {events, experiment, end_s} = this.#model;
+    const {events, incidents, experiment, end_s} = this.#model;
     if (!experiment) return;
-    const marks = events.map(({t_s, number, toml}) => ({share: t_s / end_s, t_s, number, toml}));
+    const marks = [
+      ...incidents.map(({t_s, words}) => ({t_s, title: `${t_s.toFixed(2)} s: ${words}`, className: "incident"})),
+      ...events.map(({t_s, number, toml}) => ({t_s, title: `event ${number}\n${toml}`, className: ""}))
+    ];
     if (JSON.stringify(marks) === this.#marked) return;
     this.#marked = JSON.stringify(marks);
-    byId("marks").replaceChildren(...marks.map(({share, t_s, number, toml}) => {
-      const mark = element("i", {title: `event ${number}\n${toml}`});
-      mark.style.left = `${100 * share}%`;
+    byId("marks").replaceChildren(...marks.map(({t_s, title, className}) => {
+      const mark = element("i", {title, className});
+      mark.style.left = `${100 * t_s / end_s}%`;
       mark.addEventListener("click", () => this.#model.isRecording && this.seek(t_s));
       return mark;
     }));

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "experiment/contacts.h"
+#include "experiment/episode.h"
+#include "experiment/experiment.h"
+#include "experiment/pacing.h"
+#include "orchestrator/measuring/link_meter.h"
+#include "orchestrator/team/row_sink.h"
+
+namespace mascot {
+
+/// What a run came up against, or what was done to it: a line of events.csv.
+struct Incident {
+  enum class Kind {
+    kContact,            ///< `other` as Contact::other
+    kRotorFailure,       ///< `other`: the rotor
+    kNoSafeCommand,      ///< law.safety found none within the limits
+    kLateCommand,        ///< its tick had ended before the command came; in real time only
+    kLostSamples,        ///< `other`: the agent that sent them
+    kAccelerationLimit,  ///< the law asked for more, and so for the other limits
+    kSpeedLimit,
+    kTiltLimit,
+    kRotorLimit,
+    kEvent,  ///< an event of the file or by hand, or a phase of [[law.schedule]]
+  };
+  Kind kind = Kind::kEvent;
+  std::int64_t from = 0, to = 0;  ///< the first and the last tick
+  std::int64_t count = 1;         ///< of the ticks in between, at how many; of kLostSamples: how many samples
+  int agent = 0;                  ///< 1..N; 0: no agent in particular
+  int other = 0;
+  double speed_m_per_s = 0;  ///< of kContact: Contact::speed_m_per_s
+  std::string toml = {};     ///< of kEvent: Event::Toml()
+};
+
+/// So many are told one by one, beside contacts and rotor failures; beyond, they are counted.
+inline constexpr std::size_t kMostIncidentsTold = 100'000;
+
+struct Incidents {
+  std::vector<Incident> told;  ///< in the order of their first ticks, then of kind, agent and other
+  std::int64_t more = 0;       ///< not told of
+};
+
+/// Gathers the incidents of a run, row by row.
+class IncidentMeter {
+ public:
+  explicit IncidentMeter(const Experiment& experiment);
+  /// Adds the next tick. `links`: has the same row already.
+  void Add(const FlownRow& row, const LinkMeter& links);
+  /// All up to the newest tick, with the contacts and the late commands of the run, which the physics server counts.
+  Incidents Result(const Contacts& contacts, const std::vector<LateCommands>& late) const;
+
+ private:
+  void Note(Episode& open, Incident::Kind kind, int agent, int other, std::int64_t tick, std::int64_t times = 1);
+  void NoteLimits(std::int64_t tick, const std::vector<Command>& commands);
+  void NoteLosses(std::int64_t tick, const LinkMeter& links);
+  void Close(Incident incident);
+
+  static constexpr std::size_t kKinds = static_cast<std::size_t>(Incident::Kind::kEvent) + 1;
+  const Experiment& experiment_;
+  const std::int64_t gap_;                         // in ticks
+  std::vector<std::array<Episode, kKinds>> open_;  // by id - 1, then by kind: limits
+  struct Edge {
+    int hearer = 0, heard = 0;
+    std::uint64_t lost = 0;
+    Episode open = {};
+  };
+  std::vector<Edge> edges_;   // in LinkMeter's order; empty as long as nothing can be lost
+  std::vector<EdgeNow> now_;  // scratch
+  std::int64_t tick_ = -1;    // the newest
+  Incidents closed_;          // not in order
+};
+
+}  // namespace mascot
