@@ -3,6 +3,8 @@
 #include <chrono>
 #include <csignal>
 #include <iostream>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "bus/leave.h"
@@ -34,6 +36,10 @@ constexpr VerbEntry kVerbs[] = {
     {"export", "a recording as NumPy arrays, as CSV or as a MATLAB file", SetUpExport},
 };
 
+bool IsVerb(std::string_view word) {
+  return std::ranges::any_of(kVerbs, [word](const VerbEntry& verb) { return verb.name == word; });
+}
+
 /// Reports an unknown verb and returns the exit code. CLI11's own error only says that a subcommand is required.
 int UnknownVerb(const std::string& word) {
   std::vector<std::string_view> names;
@@ -47,10 +53,19 @@ int UnknownVerb(const std::string& word) {
   return kExitUsage;
 }
 
+/// `orchestrator help [VERB]`: as --help and VERB --help. Returns the exit code.
+int Help(const CLI::App& app, const std::string& verb) {
+  if (!verb.empty() && !IsVerb(verb)) return UnknownVerb(verb);
+  std::cout << (verb.empty() ? app.help() : app.get_subcommand(verb)->help(app.get_name()));
+  FlushStandardOutput();
+  return kExitDone;
+}
+
 int Main(int argc, char** argv) {
   CLI::App app("MASCOT: a testbed for decentralised control of multi-agent systems.", "orchestrator");
   app.set_version_flag("--version", std::string("mascot ") + MASCOT_VERSION);
   app.require_subcommand(1);
+  app.footer("orchestrator help VERB: the arguments of one of them");
   std::function<int()> action;
   for (const VerbEntry& verb : kVerbs) {
     CLI::App& command = *app.add_subcommand(std::string(verb.name), std::string(verb.summary));
@@ -60,9 +75,8 @@ int Main(int argc, char** argv) {
     std::cerr << app.help();
     return kExitUsage;
   }
-  const bool is_verb = argv[1][0] == '-' || std::any_of(std::begin(kVerbs), std::end(kVerbs),
-                                                        [&](const auto& verb) { return verb.name == argv[1]; });
-  if (!is_verb) return UnknownVerb(argv[1]);
+  if (argv[1] == std::string_view("help")) return Help(app, argc > 2 ? argv[2] : "");
+  if (argv[1][0] != '-' && !IsVerb(argv[1])) return UnknownVerb(argv[1]);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked_for_help) {

@@ -749,6 +749,31 @@ TEST(Up, RefusesAFolderThatHoldsSomethingUnlessForced) {
   EXPECT_EQ(ReadFile(folder.File("run/notes.txt")), "a person's own");
 }
 
+TEST(Up, SaysFirstWhatItIsGoingToDo) {
+  ScratchFolder folder;
+  Up up(folder, "run", Config("leaderless"), {"--duration-s", "0.5", "--engine", "inprocess"});
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  EXPECT_THAT(up.err(), testing::StartsWith("leaderless: 4 agents for 0.5 s at 100 Hz, law consensus, in one process; "
+                                            "results go to " +
+                                            folder.File("run") + "\n"));
+}
+
+TEST(Help, OfAVerbIsThatOfItsOption) {
+  ScratchFolder folder;
+  const auto said = [&](std::vector<std::string> words) {
+    Running run(std::string(MASCOT_BINARY_DIR) + "/orchestrator", std::move(words), folder.File("help"));
+    EXPECT_EQ(run.Wait(), 0);
+    EXPECT_EQ(run.err(), "");
+    return run.out();
+  };
+  EXPECT_EQ(said({"help", "sweep"}), said({"sweep", "--help"}));
+  EXPECT_EQ(said({"help"}), said({"--help"}));
+  EXPECT_THAT(said({"help"}), HasSubstr("orchestrator help VERB"));
+  Running unknown(std::string(MASCOT_BINARY_DIR) + "/orchestrator", {"help", "swep"}, folder.File("unknown"));
+  EXPECT_EQ(unknown.Wait(), 2);
+  EXPECT_THAT(unknown.err(), HasSubstr("error: unknown verb 'swep' (did you mean \"sweep\"?)"));
+}
+
 TEST(Up, SaysWhatIsWrongWithItsArguments) {
   ScratchFolder folder;
   auto refusal = [&](std::vector<std::string> words) {

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "orchestrator/formats/bytes.h"
@@ -193,6 +195,29 @@ TEST(Info, ARecordingByAnotherNameIsFoundInItsRunFolder) {
   const Said said = Info({scratch.path().string()});
   EXPECT_EQ(said.exit_code, 2);
   EXPECT_EQ(said.err, "error: " + scratch.path().string() + ": expected a run folder with one .mcap file, got 2\n");
+}
+
+TEST(Info, TakesTheNewestRunOfAFolder) {
+  namespace fs = std::filesystem;
+  const ScratchFolder scratch;
+  const auto now = fs::file_time_type::clock::now();
+  for (const auto& [name, age_s] : {std::pair("b/2026-01-02", 30), {"a/2026-01-01", 10}, {"a/2026-01-03", 20}}) {
+    const fs::path run = scratch.path() / "runs" / name;
+    fs::create_directories(run / "logs");
+    WriteRun((run / "run.mcap").string(), 101);
+    WriteFile((run / "config.toml").string(), Config("10.0"));
+    fs::last_write_time(run / "config.toml", now - std::chrono::seconds(age_s));
+  }
+  const std::string runs = scratch.File("runs");
+  EXPECT_THAT(Info({runs}).out, HasSubstr(runs + "/a/2026-01-01/run.mcap\n"));
+  EXPECT_THAT(Info({runs + "/b"}).out, HasSubstr(runs + "/b/2026-01-02/run.mcap\n"));
+  EXPECT_THAT(Info({runs + "/a/2026-01-03"}).out, HasSubstr(runs + "/a/2026-01-03/run.mcap\n"));
+  const fs::path before = fs::current_path();
+  fs::current_path(scratch.path());
+  EXPECT_THAT(Info({"latest"}).out, HasSubstr("runs/a/2026-01-01/run.mcap\n"));
+  fs::current_path(runs);
+  EXPECT_EQ(Info({"latest"}).err, "error: latest: expected the newest run in the folder runs, which is not here\n");
+  fs::current_path(before);
 }
 
 TEST(Info, AFileThatCannotBeOpenedIsAnErrorAndPrintsNothingElse) {

@@ -1,10 +1,13 @@
 #include "orchestrator/processes/console.h"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <functional>
 #include <iostream>
+
+#include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {
@@ -18,6 +21,14 @@ int ColourOf(const std::string& process) {
   std::size_t hash = 0;
   for (char c : process) hash = hash * 31 + static_cast<unsigned char>(c);
   return kColours[hash % std::size(kColours)];
+}
+
+/// As much of `text` as one line of the terminal shows: what is longer would leave its beginning behind when it is
+/// rewritten.
+std::string Fitting(const std::string& text) {
+  winsize window{};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &window) != 0 || window.ws_col == 0) return text;
+  return std::string(CutUtf8(text, window.ws_col - 1u));
 }
 
 }  // namespace
@@ -57,7 +68,7 @@ void Console::Progress(double fraction, const std::string& text) {
   const std::lock_guard lock(mutex_);
   if (terminal_) {
     EraseProgress();
-    progress_ = text;
+    progress_ = Fitting(text);
     std::cerr << progress_ << std::flush;
   } else if (const int tenths = static_cast<int>(fraction * 10); tenths > tenths_) {
     tenths_ = tenths;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -13,8 +14,43 @@
 
 namespace mascot {
 
-std::string FindRecording(const std::string& run) {
-  namespace fs = std::filesystem;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kConfig = "config.toml";
+
+bool IsARun(const fs::path& folder) {
+  return fs::exists(folder / kConfig) || std::ranges::any_of(fs::directory_iterator(folder), [](const auto& entry) {
+           return entry.path().extension() == ".mcap";
+         });
+}
+
+/// When the run began.
+fs::file_time_type BeganAt(const fs::path& folder) {
+  return fs::last_write_time(fs::exists(folder / kConfig) ? folder / kConfig : folder);
+}
+
+}  // namespace
+
+std::string FindRun(const std::string& run) {
+  const fs::path named = run == "latest" && !fs::exists(run) ? "runs" : run;
+  if (named != run && !fs::is_directory(named))
+    throw ConfigError({run + ": expected the newest run in the folder runs, which is not here"});
+  if (!fs::is_directory(named) || IsARun(named)) return named.string();
+  std::optional<fs::path> newest;
+  for (fs::recursive_directory_iterator entry(named, fs::directory_options::skip_permission_denied), end; entry != end;
+       ++entry) {
+    if (!entry->is_directory()) continue;
+    const bool is_run = IsARun(entry->path());
+    if (is_run || entry.depth() == 1) entry.disable_recursion_pending();
+    if (is_run && (!newest || BeganAt(*newest) < BeganAt(entry->path()))) newest = entry->path();
+  }
+  return newest.value_or(named).string();
+}
+
+std::string FindRecording(const std::string& named) {
+  const std::string run = FindRun(named);
   if (!fs::is_directory(run)) return run;
   const fs::path usual = fs::path(run) / "run.mcap";
   if (fs::exists(usual)) return usual.string();

@@ -10,8 +10,13 @@
 
 namespace mascot {
 
-/// Path of the recording `run`: a file, or a run folder. In a folder it is run.mcap, or else the only .mcap file
-/// (record.file may have another name). Throws ConfigError if there is no run.mcap and not exactly one .mcap file.
+/// The run that is meant: `run` itself if it is a run folder or a file; if it is a folder with runs in it, at most two
+/// folders deep (`runs`, `runs/NAME`), the newest of them; for "latest", unless something has this name, the newest in
+/// `runs`. What is none of this is returned as it is. Throws ConfigError for "latest" if there is no folder `runs`.
+std::string FindRun(const std::string& run);
+
+/// Path of the recording of FindRun(`run`): a file, or a run folder. In a folder it is run.mcap, or else the only .mcap
+/// file (record.file may have another name). Throws ConfigError if there is no run.mcap and not exactly one .mcap file.
 std::string FindRecording(const std::string& run);
 
 /// `contents`, those of `path`; a cut recording also has the config.toml that it would have, had the run ended there.

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
@@ -59,6 +61,16 @@ int MakeOutput(const Experiment& experiment, const RunFolder& folder, bool has_r
       "the pictures could not be made; the data are complete (output.save_plot = false skips them)");
 }
 
+/// What is going to happen, in one line.
+std::string FirstLine(const Experiment& experiment, const std::string& engine, const RunFolder& folder) {
+  return fmt::format("{}: {} agent{} for {:g} s at {} Hz, law {}, {}; results go to {}", experiment.run.name,
+                     experiment.size(), experiment.size() == 1 ? "" : "s", experiment.run.duration_s,
+                     experiment.control.rate_hz, experiment.law.name,
+                     engine == kInProcess ? std::string("in one process")
+                                          : fmt::format("over DDS in {}", kModes.Name(experiment.run.mode)),
+                     folder.path().string());
+}
+
 int Up(const UpArgs& args) {
   const auto launched = WallClock::now();
   StopSignal stop;
@@ -73,6 +85,7 @@ int Up(const UpArgs& args) {
 
   const RunFolder folder(args.out, experiment, args.force);
   folder.Write("config.toml", experiment.resolved);
+  console.Line(FirstLine(experiment, args.engine, folder));
   for (const std::string& warning : prediction.warnings) console.Line("warning: " + warning);
   if (args.engine == kOverDds)
     for (const std::string& warning : DeliveryWarnings(experiment)) console.Line("warning: " + warning);

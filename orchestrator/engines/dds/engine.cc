@@ -199,7 +199,7 @@ void DdsRun::Spawn() {
                                   "--wait-s",    std::to_string(static_cast<int>(experiment_.run.start_timeout_s) + 1)};
   if (options.loopback) common.push_back("--loopback");
   if (with_server_) common.insert(common.end(), {"--discovery", options.server});
-  console_.Line("domain " + std::to_string(options.domain) +
+  console_.Line("DDS domain " + std::to_string(options.domain) +
                 (with_server_ ? ", discovery server " + options.server : ""));
 
   const auto spawn = [&](const std::string& process, const std::string& program, int peers,
