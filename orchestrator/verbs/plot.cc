@@ -10,6 +10,7 @@
 
 #include "experiment/toml/section.h"
 #include "orchestrator/processes/script.h"
+#include "orchestrator/recording/recording.h"
 #include "orchestrator/verbs/verb.h"
 
 namespace mascot {
@@ -65,8 +66,10 @@ std::function<int()> SetUpPlot(CLI::App& command) {
     command.add_option(kOptions[k].name, args->values[k], kOptions[k].meaning)->type_name(kOptions[k].value);
   command.add_flag("--show", args->show, "open windows too");
   return [args, &command] {
-    for (const std::string& run : args->runs)
+    for (std::string& run : args->runs) {
+      run = FindRun(run);
       if (!fs::is_directory(run)) throw ConfigError({run + ": expected a run folder"});
+    }
     StopSignal stop;
     return RunScript("plot.py", Words(command, *args), stop);
   };
