@@ -24,6 +24,7 @@ FLOOR_M = 1e-6  # bottom of log axes
 SMOOTHING_S = 0.5  # window for the mean of a switching acceleration
 AXIS_NAMES = "xyz"
 GREY = "0.6"
+TOUCHES = "#D00000"  # no agent has this colour
 
 
 # --- drawing --------------------------------------------------------------------------------------------
@@ -264,6 +265,10 @@ def paths(run):
     axis.scatter(*p[0, shown].T, marker="o", facecolors="white", edgecolors=edges, **marks)
     axis.scatter(*p[-1, shown].T, marker="x", c=edges, **marks)
     draw_places(axis, run)
+    if touched := [p[np.searchsorted(run.t, one.t_s), k] for one in run.incidents if one.what == "contact"
+                   for k in one.indices]:
+        axis.scatter(*np.transpose(touched), marker="*", s=3 * marks["s"], c=TOUCHES, edgecolors="white", linewidths=0.5,
+                     zorder=5, label="contact")
     axis.plot([], [], "o", color="0.3", mfc="white", label="start")
     axis.plot([], [], "x", color="0.3", label="end")
     map_axis(axis)
@@ -502,6 +507,34 @@ def safety(run):
     return figure
 
 
+def incidents(run):
+    """When which agent came up against what: a row for each kind, in it a lane for each agent."""
+    size = style.size()
+    kinds = list(dict.fromkeys(incident.what for incident in run.incidents))
+    figure, axis = plt.subplots(figsize=(size.width, 0.6 + 0.5 * len(kinds)))
+    tick_s = run.t[1] - run.t[0] if run.t.size > 1 else 1
+    lane = 0.8 / run.size
+    bars = {}
+    for incident in run.incidents:
+        for k in incident.indices:
+            bars.setdefault((k, incident.what), []).append((incident.t_s, incident.until_s - incident.t_s + tick_s))
+    for k, colour in enumerate(colours(run)):
+        for row, kind in enumerate(kinds):
+            low, of_agent = row - 0.4 + lane * k, bars.get((k, kind), [])
+            axis.broken_barh(of_agent, (low, lane), facecolor=colour, edgecolor="none")
+            short = [at_s for at_s, long_s in of_agent if long_s < 0.01 * run.t[-1]]  # a bar would hardly be seen
+            axis.plot(short, [low + lane / 2] * len(short), "|", color=colour, markersize=size.small_pt)
+        if any(k == agent for agent, _ in bars):
+            axis.plot([], [], "s", color=colour, label=agent_label(run, k))
+    axis.set_yticks(range(len(kinds)), [kind.replace("_", " ") for kind in kinds])
+    axis.set_ylim(len(kinds) - 0.4, -0.6)
+    time_axis(axis, run.t[0], run.t[-1])
+    mark_changes([axis], run)
+    titled(figure, run, "what the run came up against")
+    name_agents(figure, [axis], run)
+    return figure
+
+
 # --- which figures a run gets ---------------------------------------------------------------------------
 
 
@@ -536,4 +569,7 @@ PICTURES = {
     "safety": Picture(safety, "position_plot", only_if(
         lambda run: run.size > 1 and np.any(run.flags & (FILTERED | INFEASIBLE)),
         "it needs a law.safety that changed some command")),
+    "incidents": Picture(incidents, "position_plot", only_if(
+        lambda run: any(incident.until_s > 1 for incident in run.incidents),
+        "it needs an events.csv in which something happened after the first second")),
 }

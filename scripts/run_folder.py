@@ -1,10 +1,11 @@
 """Reads a run folder and computes the quantities that its pictures show."""
 
+import csv
 import json
 import tomllib
 import zipfile
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -32,6 +33,16 @@ class Span:
     summary: dict  # what summary.json says of it
 
 
+@dataclass(frozen=True)
+class Incident:
+    """A line of events.csv."""
+
+    t_s: float
+    until_s: float
+    what: str
+    indices: tuple  # of the agents that it happened to
+
+
 @dataclass
 class Run:
     t: np.ndarray
@@ -42,6 +53,7 @@ class Run:
     flags: np.ndarray  # (T, N); of a run of an earlier version: 0
     config: dict
     summary: dict
+    incidents: list = field(default_factory=list)  # in order, without events; empty also if there is no events.csv
 
     @property
     def size(self):
@@ -244,13 +256,34 @@ def read_states(path):
     return arrays
 
 
+def read_incidents(path, ids):
+    """The lines of events.csv about agents, in order; none if there is no such file. Events are no incidents."""
+    index = {number: k for k, number in enumerate(ids)}
+
+    def indices(row):
+        other = row["with"].removeprefix("agent ") if row["what"] == "contact" else ""
+        return tuple(index[int(agent)] for agent in (row["agent"], other) if agent.isdigit() and int(agent) in index)
+
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            return [Incident(float(row["t_s"]), float(row["until_s"]), row["what"], indices(row))
+                    for row in csv.DictReader(file) if row["agent"]]
+    except FileNotFoundError:
+        return []
+    except OSError as error:
+        raise RunError(f"{path}: {error.strerror}") from None
+    except (ValueError, TypeError, AttributeError, KeyError, csv.Error):
+        raise RunError(f"{path}: damaged, or not a table of events") from None
+
+
 def read_run(folder):
     if not folder.is_dir():
         raise RunError(f"{folder}: no such folder", code=2)
     states = read_states(folder / "states.npz")
     config = read_text(folder / "config.toml", tomllib.loads)
     summary = folder / "summary.json"
-    return Run(**states, config=config, summary=read_text(summary, json.loads) if summary.exists() else {})
+    return Run(**states, config=config, summary=read_text(summary, json.loads) if summary.exists() else {},
+               incidents=read_incidents(folder / "events.csv", states["id"]))
 
 
 def disagreement(run):

@@ -517,6 +517,47 @@ class Changes(PlotTest):
         np.testing.assert_allclose(lines["smallest distance"], 5 * np.sqrt(3) * np.exp(-arrays()["t"]))
         self.assertEqual(lines["to be kept: 1.5 m"][0], 1.5)
 
+    EVENTS = ('t_s,until_s,what,count,agent,with,detail\n'
+              '0,0.5,tilt_limit,6,2,,\n'
+              '1,1,contact,1,1,agent 3,2.5 m/s\n'
+              '2,2,contact,1,2,obstacle 1,0.5 m/s\n'
+              '2.5,2.5,event,1,,event 1,"set = { ""law.p_gain"" = 2.0 }"\n'
+              '3,4,tilt_limit,9,2,,\n')
+
+    def test_what_the_run_came_up_against_is_drawn_for_those_whom_it_concerns(self):
+        (self.folder / "events.csv").write_text(self.EVENTS)
+        axis, = self.figure("incidents").axes
+        self.assertEqual([label.get_text() for label in axis.get_yticklabels()], ["tilt limit", "contact"])
+        bars = {}
+        for collection in axis.collections:
+            for path in collection.get_paths():
+                left, low, long, high = path.get_extents().bounds
+                bars.setdefault((round(low + 0.4, 3), round(high, 3)), []).append((left, round(long, 3)))
+        lane = round(0.8 / 3, 3)
+        self.assertEqual(bars, {(lane, lane): [(0, 0.6), (3, 1.1)],  # agent 2, first row
+                                (1, lane): [(1, 0.1)], (1 + lane, lane): [(2, 0.1)], (round(1 + 1.6 / 3, 3), lane): [(1, 0.1)]})
+        self.assertEqual(axis.get_legend_handles_labels()[1], ["agent 1", "agent 2", "agent 3"])
+
+    def test_contacts_are_marked_where_they_were(self):
+        (self.folder / "events.csv").write_text(self.EVENTS)
+        axis, = self.figure("paths").axes
+        stars, = [marks for marks in axis.collections if marks.get_label() == "contact"]
+        p = arrays()["position"][:, :, :2]
+        np.testing.assert_allclose(stars.get_offsets(), [p[10, 0], p[10, 2], p[20, 1]])
+
+    def test_no_picture_is_drawn_of_what_only_the_start_brings(self):
+        for text in ("", "t_s,until_s,what,count,agent,with,detail\n0,0.9,rotor_limit,6,2,,\n"):
+            self.write()
+            (self.folder / "events.csv").write_text(text)
+            self.check(2, "--only incidents: it needs an events.csv in which something happened after the first second", "--only", "incidents")
+
+    def test_a_damaged_table_is_said(self):
+        self.write()
+        for text in (b"t_s,until_s,what,count,agent,with,detail\nsoon,1,contact,1,1,ground,\n", b"a,b\n1,2\n", b"\xff"):
+            (self.folder / "events.csv").write_bytes(text)
+            code, errors = self.run_plot()
+            self.assertEqual((code, errors), (1, f"error: {self.folder / 'events.csv'}: damaged, or not a table of events\n"))
+
 
 class Paper(PlotTest):
     """Pictures at true size."""
@@ -826,7 +867,7 @@ class Errors(PlotTest):
         code, errors = self.run_plot("--only", "speed")
         self.assertEqual(code, 2)
         self.assertEqual(errors, "error: --only: expected one of paths, position, velocity, disagreement, acceleration, "
-                                 "tracking, error, graph, safety, got 'speed'\n")
+                                 "tracking, error, graph, safety, incidents, got 'speed'\n")
         self.check(2, "--only error: it needs a law that flies to waypoints, from start to end", "--only", "error")
         self.check(2, "--only tracking: it needs a law of pursuit, from start to end, and the graph in summary.json", "--only", "tracking")
         self.check(2, "unrecognized arguments: --fast", "--fast")

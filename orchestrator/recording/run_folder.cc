@@ -38,7 +38,7 @@ fs::path MakeNew(const fs::path& parent) {
 constexpr std::string_view kFiles[] = {"config.toml", "summary.json", "events.csv", "states.npz"};
 /// Pictures of a run (scripts/pictures.py), and the formats in which `plot` draws them.
 constexpr std::string_view kPictures[] = {"paths", "position", "velocity", "acceleration", "disagreement",
-                                          "error", "tracking", "graph",    "safety"};
+                                          "error", "tracking", "graph",    "safety",       "incidents"};
 constexpr std::string_view kPictureFormats[] = {".png", ".pdf", ".svg"};
 
 /// True for regular files only: not for links to them, not for folders.

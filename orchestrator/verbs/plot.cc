@@ -26,7 +26,8 @@ struct PlotOption {
 };
 
 constexpr PlotOption kOptions[] = {
-    {"--only", "NAME:{paths,position,velocity,disagreement,acceleration,tracking,error,graph,safety}", "one picture"},
+    {"--only", "NAME:{paths,position,velocity,disagreement,acceleration,tracking,error,graph,safety,incidents}",
+     "one picture"},
     {"--format", "LIST:{png,pdf,svg}", "several with commas between (png)"},
     {"--size", "SIZE:{screen,column,page}",
      "column, page: 3.5 and 7.16 inches wide, letters of 8 pt, without a title (screen)"},
