@@ -41,6 +41,9 @@ def number(text):
         return None
 
 
+csv.field_size_limit(2**31 - 1)  # a cell may hold a whole law
+
+
 def rows_of(path):
     with open(path, newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))

@@ -299,6 +299,8 @@ TEST_F(SweepTest, RefusesWhatCannotBeSwept) {
   refuses("--seeds 1..2 --plot consensus.final_disagreement",
           "error: --plot: expected a column of the table, such as consensus.final_disagreement_m, got "
           "'consensus.final_disagreement' (did you mean \"consensus.final_disagreement_m\"?)");
+  refuses("--seeds 1..2 --plot wall_s",
+          "error: --plot: expected a column of which there are statistics, got 'wall_s', which depends on the machine");
   refuses("--seeds 5..1", "error: --seeds: expected a..b or a,b,... of integers from 0 on, got '5..1'");
   refuses("--random law.p_gain=0:1 --samples 0", "error: --samples: ");
   refuses("--samples 3", "error: --samples requires --random");

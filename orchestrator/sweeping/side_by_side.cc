@@ -8,6 +8,7 @@
 #include <set>
 
 #include "experiment/toml/section.h"
+#include "experiment/toml/utf8.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/sweeping/labels.h"
 #include "orchestrator/sweeping/metrics.h"
@@ -87,7 +88,7 @@ std::string Shown(const std::string& cell) {
   if (cell.empty()) return "-";
   const nlohmann::json json = nlohmann::json::parse(cell, nullptr, /*allow_exceptions=*/false);
   if (json.is_number_float()) return fmt::format("{:.6g}", json.get<double>());
-  return cell.size() <= kWidest ? cell : cell.substr(0, kWidest - 3) + "...";
+  return cell.size() <= kWidest ? cell : std::string(CutUtf8(cell, kWidest - 3)) + "...";
 }
 
 /// The number of characters of UTF-8 text.

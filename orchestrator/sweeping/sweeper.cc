@@ -295,7 +295,11 @@ SweepFile::Cells ColumnsOf(const SweepPlan& plan, const std::vector<std::string>
 
 /// Throws ConfigError if `metric` is not one of `metrics`.
 void CheckMetric(const std::string& metric, const std::vector<std::string>& metrics) {
-  if (std::ranges::find(metrics, metric) != metrics.end()) return;
+  const auto place = std::ranges::find(metrics, metric);
+  if (metrics.end() - place > static_cast<std::ptrdiff_t>(kWallClockColumns)) return;
+  if (place != metrics.end())
+    throw ConfigError({"--plot: expected a column of which there are statistics, got '" + metric +
+                       "', which depends on the machine"});
   const std::vector<std::string_view> views(metrics.begin(), metrics.end());
   const auto nearest = DidYouMean(metric, views);
   throw ConfigError({fmt::format("--plot: expected a column of the table, such as {}, got '{}'{}", kUsualMetric, metric,
