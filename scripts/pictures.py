@@ -11,7 +11,7 @@ import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 from figure_style import DASHED, LOOKS_MAX, MANY, OKABE_ITO, small
-from matplotlib.collections import LineCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import Circle, Polygon, Rectangle
 from run_folder import FILTERED, INFEASIBLE, cells, disagreement, hull, separation, spanning_tree, waypoint_targets
 
@@ -266,7 +266,7 @@ def paths(run):
     axis.scatter(*p[-1, shown].T, marker="x", c=edges, **marks)
     draw_places(axis, run)
     if touched := [p[np.searchsorted(run.t, one.t_s), k] for one in run.incidents if one.what == "contact"
-                   for k in one.indices]:
+                   and one.t_s <= run.t[-1] for k in one.indices]:
         axis.scatter(*np.transpose(touched), marker="*", s=3 * marks["s"], c=TOUCHES, edgecolors="white", linewidths=0.5,
                      zorder=5, label="contact")
     axis.plot([], [], "o", color="0.3", mfc="white", label="start")
@@ -514,18 +514,18 @@ def incidents(run):
     figure, axis = plt.subplots(figsize=(size.width, 0.6 + 0.5 * len(kinds)))
     tick_s = run.t[1] - run.t[0] if run.t.size > 1 else 1
     lane = 0.8 / run.size
-    bars = {}
+    palette, boxes, moments = np.array(colours(run), dtype=object), [], []
     for incident in run.incidents:
+        begin, end = incident.t_s, incident.until_s + tick_s
         for k in incident.indices:
-            bars.setdefault((k, incident.what), []).append((incident.t_s, incident.until_s - incident.t_s + tick_s))
-    for k, colour in enumerate(colours(run)):
-        for row, kind in enumerate(kinds):
-            low, of_agent = row - 0.4 + lane * k, bars.get((k, kind), [])
-            axis.broken_barh(of_agent, (low, lane), facecolor=colour, edgecolor="none")
-            short = [at_s for at_s, long_s in of_agent if long_s < 0.01 * run.t[-1]]  # a bar would hardly be seen
-            axis.plot(short, [low + lane / 2] * len(short), "|", color=colour, markersize=size.small_pt)
-        if any(k == agent for agent, _ in bars):
-            axis.plot([], [], "s", color=colour, label=agent_label(run, k))
+            low = kinds.index(incident.what) - 0.4 + lane * k
+            boxes.append((k, [(begin, low), (end, low), (end, low + lane), (begin, low + lane)]))
+            if end - begin < 0.01 * run.t[-1]:  # a box would hardly be seen
+                moments.append((k, [(begin, low), (begin, low + lane)]))
+    axis.add_collection(PolyCollection([box for _, box in boxes], facecolors=[palette[k] for k, _ in boxes]))
+    axis.add_collection(LineCollection([line for _, line in moments], colors=[palette[k] for k, _ in moments]))
+    for k in sorted({k for k, _ in boxes}):
+        axis.plot([], [], "s", color=palette[k], label=agent_label(run, k))
     axis.set_yticks(range(len(kinds)), [kind.replace("_", " ") for kind in kinds])
     axis.set_ylim(len(kinds) - 0.4, -0.6)
     time_axis(axis, run.t[0], run.t[-1])

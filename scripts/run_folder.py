@@ -209,6 +209,8 @@ def words_of(event):
     return ", ".join(words)
 
 
+csv.field_size_limit(2**31 - 1)  # an event may hold a large graph, or a whole law
+
 FORMAT = 1  # of config.toml and summary.json: the newest that is understood here
 
 

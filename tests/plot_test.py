@@ -528,14 +528,13 @@ class Changes(PlotTest):
         (self.folder / "events.csv").write_text(self.EVENTS)
         axis, = self.figure("incidents").axes
         self.assertEqual([label.get_text() for label in axis.get_yticklabels()], ["tilt limit", "contact"])
-        bars = {}
-        for collection in axis.collections:
-            for path in collection.get_paths():
-                left, low, long, high = path.get_extents().bounds
-                bars.setdefault((round(low + 0.4, 3), round(high, 3)), []).append((left, round(long, 3)))
-        lane = round(0.8 / 3, 3)
-        self.assertEqual(bars, {(lane, lane): [(0, 0.6), (3, 1.1)],  # agent 2, first row
-                                (1, lane): [(1, 0.1)], (1 + lane, lane): [(2, 0.1)], (round(1 + 1.6 / 3, 3), lane): [(1, 0.1)]})
+        boxes, moments = axis.collections
+        lane = 0.8 / 3
+        low = -0.4 + lane  # of agent 2 in the first row
+        np.testing.assert_allclose([path.get_extents().bounds for path in boxes.get_paths()],
+                                   [(0, low, 0.6, lane), (1, 0.6, 0.1, lane), (1, 0.6 + 2 * lane, 0.1, lane),
+                                    (2, 0.6 + lane, 0.1, lane), (3, low, 1.1, lane)])
+        self.assertEqual(len(moments.get_paths()), 0, "a tick is two per cent of this run")
         self.assertEqual(axis.get_legend_handles_labels()[1], ["agent 1", "agent 2", "agent 3"])
 
     def test_contacts_are_marked_where_they_were(self):
