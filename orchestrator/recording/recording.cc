@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "bus/wire.h"
@@ -20,15 +21,21 @@ namespace {
 
 constexpr const char* kConfig = "config.toml";
 
+// What cannot be read is no run: somebody else's folder, or one that is being removed.
+
 bool IsARun(const fs::path& folder) {
-  return fs::exists(folder / kConfig) || std::ranges::any_of(fs::directory_iterator(folder), [](const auto& entry) {
-           return entry.path().extension() == ".mcap";
-         });
+  std::error_code error;
+  if (fs::exists(folder / kConfig, error)) return true;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (entry->path().extension() == ".mcap") return true;
+  return false;
 }
 
-/// When the run began.
-fs::file_time_type BeganAt(const fs::path& folder) {
-  return fs::last_write_time(fs::exists(folder / kConfig) ? folder / kConfig : folder);
+/// When its config.toml, or else the folder, was written last.
+fs::file_time_type WrittenAt(const fs::path& folder) {
+  std::error_code error;
+  const fs::file_time_type config = fs::last_write_time(folder / kConfig, error);
+  return error ? fs::last_write_time(folder, error) : config;
 }
 
 }  // namespace
@@ -39,12 +46,13 @@ std::string FindRun(const std::string& run) {
     throw ConfigError({run + ": expected the newest run in the folder runs, which is not here"});
   if (!fs::is_directory(named) || IsARun(named)) return named.string();
   std::optional<fs::path> newest;
-  for (fs::recursive_directory_iterator entry(named, fs::directory_options::skip_permission_denied), end; entry != end;
-       ++entry) {
-    if (!entry->is_directory()) continue;
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(named, fs::directory_options::skip_permission_denied, error), end;
+       !error && entry != end; entry.increment(error)) {
+    if (std::error_code unknown; !entry->is_directory(unknown)) continue;
     const bool is_run = IsARun(entry->path());
     if (is_run || entry.depth() == 1) entry.disable_recursion_pending();
-    if (is_run && (!newest || BeganAt(*newest) < BeganAt(entry->path()))) newest = entry->path();
+    if (is_run && (!newest || WrittenAt(*newest) < WrittenAt(entry->path()))) newest = entry->path();
   }
   return newest.value_or(named).string();
 }

@@ -39,7 +39,9 @@ std::function<int()> SetUpExport(CLI::App& command) {
   auto args = std::make_shared<ExportArgs>();
   std::vector<std::string> formats;
   for (const Exporter& exporter : Exporters()) formats.emplace_back(exporter.format);
-  command.add_option("run", args->run, "a run folder or an .mcap file")->required()->type_name("RUN");
+  command.add_option("run", args->run, "a run folder, a folder of runs or 'latest' for the newest, or an .mcap file")
+      ->required()
+      ->type_name("RUN");
   command
       .add_option("--format", args->format,
                   "npz: NumPy arrays, the same as in the run's own states.npz\n"

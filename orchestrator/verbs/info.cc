@@ -160,7 +160,10 @@ std::function<int()> SetUpInfo(CLI::App& command) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  command.add_option("run", options->run, "a run folder or an .mcap file")->required()->type_name("RUN");
+  command
+      .add_option("run", options->run, "a run folder, a folder of runs or 'latest' for the newest, or an .mcap file")
+      ->required()
+      ->type_name("RUN");
   command.add_flag("--json", options->json, "print one JSON object and nothing else");
   return [options] { return Info(options->run, options->json); };
 }

@@ -222,7 +222,9 @@ int Verify(const VerifyArgs& args) {
 
 std::function<int()> SetUpVerify(CLI::App& command) {
   auto args = std::make_shared<VerifyArgs>();
-  command.add_option("run", args->run, "a run folder or an .mcap file")->required()->type_name("RUN");
+  command.add_option("run", args->run, "a run folder, a folder of runs or 'latest' for the newest, or an .mcap file")
+      ->required()
+      ->type_name("RUN");
   command
       .add_option("--engine", args->engine,
                   "inprocess (default): in one thread; dds: processes on a bus. Whichever recorded it")

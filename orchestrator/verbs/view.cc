@@ -58,7 +58,9 @@ int View(const ViewArgs& args) {
 
 std::function<int()> SetUpView(CLI::App& command) {
   auto args = std::make_shared<ViewArgs>();
-  command.add_option("run", args->run, "a run folder or an .mcap file")->required()->type_name("RUN");
+  command.add_option("run", args->run, "a run folder, a folder of runs or 'latest' for the newest, or an .mcap file")
+      ->required()
+      ->type_name("RUN");
   command
       .add_option_function<std::string>(
           "--at", [args](const std::string& address) { args->at = ReadLiveAddress(address, "--at"); },
