@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -146,8 +147,27 @@ void ToWire(std::int64_t tick, int rate_hz, int number, const std::string& toml,
   sample.toml(toml);
 }
 
+namespace {
+
 /// Values of Incident::kind.
 enum class IncidentKind : std::uint8_t { kContact = 0, kLate };
+
+void CheckIncident(const mascot_msgs::msg::Incident& incident, int agents, std::size_t obstacles,
+                   std::int64_t last_tick) {
+  const bool is_late = incident.kind() == static_cast<std::uint8_t>(IncidentKind::kLate);
+  const bool is_known = is_late || incident.kind() == static_cast<std::uint8_t>(IncidentKind::kContact);
+  const std::int64_t other = incident.other();
+  if (is_known && incident.agent() >= 1 && std::cmp_less_equal(incident.agent(), agents) && other <= agents &&
+      std::cmp_less_equal(-other, obstacles) && incident.from_tick() <= incident.to_tick() &&
+      std::cmp_less_equal(incident.to_tick(), last_tick) && std::isfinite(incident.speed()))
+    return;
+  throw std::runtime_error("/status: expected incidents of agents 1 to " + std::to_string(agents) + " at ticks 0 to " +
+                           std::to_string(last_tick) + ", got kind " + std::to_string(incident.kind()) + ", agent " +
+                           std::to_string(incident.agent()) + ", other " + std::to_string(other) + ", ticks " +
+                           std::to_string(incident.from_tick()) + " to " + std::to_string(incident.to_tick()));
+}
+
+}  // namespace
 
 void ToWire(const Pacing& pacing, const Contacts& contacts, mascot_msgs::msg::Status& status) {
   status.misses(pacing.misses);
@@ -174,7 +194,8 @@ void ToWire(const Pacing& pacing, const Contacts& contacts, mascot_msgs::msg::St
   for (const LateCommands& late : pacing.late) add(IncidentKind::kLate, late.agent, late.ticks);
 }
 
-void FromWire(const mascot_msgs::msg::Status& status, Pacing& pacing, Contacts& contacts) {
+void FromWire(const mascot_msgs::msg::Status& status, int agents, std::size_t obstacles, std::int64_t last_tick,
+              Pacing& pacing, Contacts& contacts) {
   pacing = {.misses = status.misses(),
             .late = {},
             .tick_lateness_s = status.tick_lateness_s(),
@@ -184,6 +205,7 @@ void FromWire(const mascot_msgs::msg::Status& status, Pacing& pacing, Contacts& 
               .obstacles = static_cast<std::int64_t>(status.obstacle_contacts()),
               .first = {}};
   for (const mascot_msgs::msg::Incident& incident : status.incidents()) {
+    CheckIncident(incident, agents, obstacles, last_tick);
     const int agent = static_cast<int>(incident.agent());
     const Episode ticks{.from = static_cast<std::int64_t>(incident.from_tick()),
                         .to = static_cast<std::int64_t>(incident.to_tick()),

@@ -81,8 +81,10 @@ void ToWire(std::int64_t tick, int rate_hz, rosgraph_msgs::msg::Clock& sample);
 void ToWire(std::int64_t tick, int rate_hz, int number, const std::string& toml, mascot_msgs::msg::Event& sample);
 /// Puts what the physics server reports of its timing and of contacts into its status.
 void ToWire(const Pacing& pacing, const Contacts& contacts, mascot_msgs::msg::Status& status);
-/// Reads it again.
-void FromWire(const mascot_msgs::msg::Status& status, Pacing& pacing, Contacts& contacts);
+/// Reads it again. Throws std::runtime_error if what it tells cannot have been in a run of `agents` agents and
+/// `obstacles` obstacles whose last tick is `last_tick`.
+void FromWire(const mascot_msgs::msg::Status& status, int agents, std::size_t obstacles, std::int64_t last_tick,
+              Pacing& pacing, Contacts& contacts);
 Motion FromWire(const mascot_msgs::msg::AgentState& sample);
 Command FromWire(const mascot_msgs::msg::AgentCommand& sample);
 

@@ -3,12 +3,17 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "bus/wire.h"
 #include "orchestrator/report/incident_report.h"
 #include "tests/law_run.h"
 #include "tests/three_agents.h"
@@ -112,8 +117,45 @@ TEST(Incidents, BeyondAHundredThousandAreCounted) {
   for (int tick = 0; tick < 10'001; ++tick) meter.Add(MadeRow(tick, row), links);
   const Incidents all = meter.Result({.ground = 3, .first = {{.tick = 1, .agent = 1, .other = 0}}}, {});
   EXPECT_EQ(all.told.size(), 100'001u);
-  EXPECT_EQ(all.more, 12);
-  EXPECT_THAT(IncidentsCsv(experiment, all), testing::EndsWith("\n,,more,12,,,\n"));
+  EXPECT_EQ(all.more, 10);
+  EXPECT_EQ(all.more_contacts, 2);
+  EXPECT_THAT(IncidentsText(experiment, all), HasSubstr("; 2 more of this kind"));
+  EXPECT_THAT(IncidentsCsv(experiment, all), testing::EndsWith("\n,,more,10,,,\n"));
+}
+
+TEST(Incidents, OfAStatusAreThoseThatWerePutIntoIt) {
+  const auto taken = [](const Pacing& told, const Contacts& touched) {
+    mascot_msgs::msg::Status status;
+    ToWire(told, touched, status);
+    Pacing pacing;
+    Contacts contacts;
+    FromWire(status, /*agents=*/3, /*obstacles=*/2, /*last_tick=*/100, pacing, contacts);
+    return std::pair(pacing, contacts);
+  };
+  const Contact last{.tick = 100, .agent = 3, .other = -2, .speed_m_per_s = 1.5};
+  const LateCommands late{.agent = 2, .ticks = {.from = 4, .to = 9, .count = 3}};
+  const auto [pacing, contacts] = taken({.late = {late}}, {.obstacles = 1, .first = {last}});
+  ASSERT_EQ(contacts.first.size(), 1u);
+  EXPECT_EQ(contacts.first[0].tick, last.tick);
+  EXPECT_EQ(contacts.first[0].other, last.other);
+  EXPECT_EQ(contacts.first[0].speed_m_per_s, last.speed_m_per_s);
+  ASSERT_EQ(pacing.late.size(), 1u);
+  EXPECT_EQ(pacing.late[0].ticks.to, late.ticks.to);
+  EXPECT_EQ(pacing.late[0].ticks.count, late.ticks.count);
+
+  for (const Contact& wrong : {Contact{.tick = 101, .agent = 1}, Contact{.tick = 1, .agent = 4}, Contact{.tick = 1},
+                               Contact{.tick = 1, .agent = 1, .other = -3}, Contact{.tick = 1, .agent = 1, .other = 4},
+                               Contact{.tick = 1, .agent = 1, .other = INT32_MIN},
+                               Contact{.tick = 1, .agent = 1, .speed_m_per_s = std::nan("")}})
+    EXPECT_THROW(taken({}, {.first = {wrong}}), std::runtime_error) << wrong.tick << " " << wrong.agent;
+  try {
+    taken({.late = {{.agent = 2, .ticks = {.from = 9, .to = 4, .count = 3}}}}, {});
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "/status: expected incidents of agents 1 to 3 at ticks 0 to 100, got kind 1, agent 2, "
+                 "other 0, ticks 9 to 4");
+  }
 }
 
 TEST(Incidents, AreEmptyIfNothingHappened) {
@@ -180,15 +222,15 @@ position_m = [[0, 0, 2]]
 [[physics.rotor_failures]]
 agent = 1
 rotor = 3
-at_s = 0.5
+at_s = 0.29
 [law]
 name = "waypoint"
 waypoints_m = [[0, 0, 2]]
 )");
-  EXPECT_THAT(run.text, HasSubstr("0.5 s: rotor 3 of agent 1 fails\n"));
+  EXPECT_THAT(run.text, HasSubstr("0.29 s: rotor 3 of agent 1 fails\n"));
   EXPECT_THAT(
       run.prediction.warnings,
-      testing::Contains("physics.rotor_failures: agent 1 will fall: from 0.5 s on, rotor 3 gives 0 N at most, and "
+      testing::Contains("physics.rotor_failures: agent 1 will fall: from 0.29 s on, rotor 3 gives 0 N at most, and "
                         "3.622 N, a quarter of its weight, is needed to hover level"));
 }
 

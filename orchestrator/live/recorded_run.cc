@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 
 #include "agent/laws.h"
 #include "experiment/toml/utf8.h"
@@ -15,12 +16,16 @@ namespace {
 
 /// The first lines of the table of incidents beside the recording, as many as a page can mark; empty: there is none.
 std::string IncidentsBeside(const std::string& recording) {
-  constexpr int kMostLines = 1000;
-  std::ifstream table(std::filesystem::path(recording).replace_filename("events.csv"), std::ios::binary);
-  std::string text;
-  int lines = 0;
-  for (std::string line; lines < kMostLines && std::getline(table, line); ++lines) text += line + "\n";
-  return std::string(Utf8(text));
+  constexpr std::size_t kMost = 1 << 17;  // bytes
+  const std::filesystem::path path = std::filesystem::path(recording).replace_filename("events.csv");
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return "";
+  std::string text(kMost, '\0');
+  std::ifstream table(path, std::ios::binary);
+  table.read(text.data(), std::ssize(text));
+  text.resize(static_cast<std::size_t>(table.gcount()));
+  if (text.size() == kMost) text.resize(text.find_last_of('\n') + 1);
+  return Utf8(text);
 }
 
 }  // namespace

@@ -17,6 +17,8 @@ constexpr std::pair<std::uint32_t, Kind> kFlags[] = {{kAccelerationLimited, Kind
                                                      {kSpeedLimited, Kind::kSpeedLimit},
                                                      {kSafetyInfeasible, Kind::kNoSafeCommand}};
 
+constexpr double kRounding = 1e-6;  // in ticks: 0.29 s at 100 Hz is tick 29
+
 }  // namespace
 
 IncidentMeter::IncidentMeter(const Experiment& experiment)
@@ -78,13 +80,13 @@ Incidents IncidentMeter::Result(const Contacts& contacts, const std::vector<Late
   for (const Edge& edge : edges_) close(edge.open, Kind::kLostSamples, edge.hearer, edge.heard);
   std::vector<Incident>& told = all.closed_.told;
   for (const RotorFailure& failure : experiment_.physics.rotor_failures)
-    if (const auto tick = static_cast<std::int64_t>(std::floor(failure.at_s * experiment_.control.rate_hz));
+    if (const auto tick = static_cast<std::int64_t>(std::floor(failure.at_s * experiment_.control.rate_hz + kRounding));
         tick <= tick_)
       told.push_back({Kind::kRotorFailure, tick, tick, 1, failure.agent, failure.rotor});
   for (const Contact& contact : contacts.first)
     told.push_back(
         {Kind::kContact, contact.tick, contact.tick, 1, contact.agent, contact.other, contact.speed_m_per_s});
-  all.closed_.more += contacts.total() - static_cast<std::int64_t>(contacts.first.size());
+  all.closed_.more_contacts = contacts.total() - static_cast<std::int64_t>(contacts.first.size());
   std::ranges::stable_sort(told, {}, [](const Incident& incident) {
     return std::tuple(incident.from, incident.kind, incident.agent, incident.other);
   });

@@ -41,8 +41,9 @@ struct Incident {
 inline constexpr std::size_t kMostIncidentsTold = 100'000;
 
 struct Incidents {
-  std::vector<Incident> told;  ///< in the order of their first ticks, then of kind, agent and other
-  std::int64_t more = 0;       ///< not told of
+  std::vector<Incident> told;      ///< in the order of their first ticks, then of kind, agent and other
+  std::int64_t more = 0;           ///< not told of, beside contacts
+  std::int64_t more_contacts = 0;  ///< contacts not told of
 };
 
 /// Gathers the incidents of a run, row by row.

@@ -100,6 +100,7 @@ std::string IncidentsText(const Experiment& experiment, const Incidents& inciden
     if (first[kind] == nullptr) first[kind] = &incident;
     ++counts[kind];
   }
+  counts[static_cast<std::size_t>(Kind::kContact)] += incidents.more_contacts;
   std::string text;
   for (const KindInWords& words : kKindsInWords) {
     const auto kind = static_cast<std::size_t>(words.kind);

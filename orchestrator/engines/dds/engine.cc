@@ -411,7 +411,13 @@ void DdsRun::TakeReport() {
   const auto server = ServerReport();
   if (!server) return;
   Pacing pacing;
-  FromWire(*server, pacing, result_.contacts.emplace());
+  Contacts contacts;
+  try {
+    FromWire(*server, experiment_.size(), experiment_.physics.obstacles.size(), experiment_.ticks(), pacing, contacts);
+  } catch (const std::exception& failure) {
+    return phases_.Fail(InWords(failure));
+  }
+  result_.contacts = std::move(contacts);
   if (experiment_.run.mode == Mode::kRealtime) result_.pacing = std::move(pacing);
 }
 

@@ -4,7 +4,7 @@
 export function incidentsIn(csv) {
   const [names, ...rows] = rowsOf(csv);
   return rows.map((row) => Object.fromEntries(names.map((name, k) => [name, row[k]])))
-      .filter(({t_s, what}) => t_s && what !== "event")
+      .filter(({t_s, what, until_s}) => t_s && until_s && what && what !== "event")
       .map((incident) => ({t_s: Number(incident.t_s), words: wordsFor(incident)}));
 }
 
