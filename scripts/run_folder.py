@@ -6,6 +6,7 @@ import tomllib
 import zipfile
 import zlib
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -68,7 +69,7 @@ class Run:
         """What summary.json says of the phases of [[law.schedule]] that have begun; empty: the law never changed."""
         return self.summary.get("phases", [])
 
-    @property
+    @cached_property
     def spans(self):
         """The phases of the law that have begun, one if there is no schedule."""
         law = self.config.get("law", {})
@@ -100,13 +101,13 @@ class Run:
         """Index of the leader (or root) at the end, or None."""
         return self.leader_of(self.law)
 
-    @property
+    @cached_property
     def leads(self):
         """Indices of all agents that lead: the leader, and those whom the law's key of leaders lists."""
         numbers = self.law.get(self.drawing["hull"], []) if self.drawing["hull"] else []
         return [int(number) - 1 for number in numbers] or [self.leader] * (self.leader is not None)
 
-    @property
+    @cached_property
     def liars(self):
         """Indices of the agents of which others hear what is false."""
         overrides = self.config.get("agents", {}).get("override", [])
