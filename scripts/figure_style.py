@@ -75,6 +75,15 @@ NO_DATES = {"png": {"Software": None}, "svg": {"Creator": None, "Date": None},
             "pdf": {"Creator": None, "Producer": None, "CreationDate": None}}
 
 
+def formats(text):
+    """Names of the formats in a list with commas; each once, in the order given. Raises ValueError."""
+    named = list(dict.fromkeys(text.split(",")))
+    for name in named:
+        if name not in FORMATS:
+            raise ValueError(f"--format: expected one or more of {', '.join(FORMATS)}, with commas between, got '{name}'")
+    return named
+
+
 class Chosen:
     """The size in use."""
 

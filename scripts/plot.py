@@ -74,13 +74,10 @@ def draw_run(folder, run, options, show):
 
 
 def formats(text):
-    """Names of the formats in a list with commas; each once, in the order given."""
-    named = list(dict.fromkeys(text.split(",")))
-    for name in named:
-        if name not in figure_style.FORMATS:
-            known = ", ".join(figure_style.FORMATS)
-            wrong(f"--format: expected one or more of {known}, with commas between, got '{name}'")
-    return named
+    try:
+        return figure_style.formats(text)
+    except ValueError as error:
+        wrong(str(error))
 
 
 def pace(text):

@@ -366,10 +366,10 @@ def main():
     options = parser.parse_intermixed_args()
     if len(options.keys) > 2:
         parser.error("expected at most two keys")
-    formats = options.format.split(",")
-    if wrong := [name for name in formats if name not in figure_style.FORMATS]:
-        print(f"error: --format: expected one or more of {', '.join(figure_style.FORMATS)}, with commas between, got '{wrong[0]}'",
-              file=sys.stderr)
+    try:
+        formats = figure_style.formats(options.format)
+    except ValueError as error:
+        print(f"error: {error}", file=sys.stderr)
         return 2
     table = Table(options)
     if not table.good:
