@@ -75,13 +75,18 @@ NO_DATES = {"png": {"Software": None}, "svg": {"Creator": None, "Date": None},
             "pdf": {"Creator": None, "Producer": None, "CreationDate": None}}
 
 
+def named(option, text, names):
+    """Names in a list with commas; each once, in the order given. Raises ValueError."""
+    chosen = list(dict.fromkeys(text.split(",")))
+    for name in chosen:
+        if name not in names:
+            raise ValueError(f"{option}: expected one or more of {', '.join(names)}, with commas between, got '{name}'")
+    return chosen
+
+
 def formats(text):
-    """Names of the formats in a list with commas; each once, in the order given. Raises ValueError."""
-    named = list(dict.fromkeys(text.split(",")))
-    for name in named:
-        if name not in FORMATS:
-            raise ValueError(f"--format: expected one or more of {', '.join(FORMATS)}, with commas between, got '{name}'")
-    return named
+    """Names of FORMATS in a list with commas. Raises ValueError."""
+    return named("--format", text, FORMATS)
 
 
 class Chosen:

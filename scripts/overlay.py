@@ -93,12 +93,12 @@ OVERLAYS = {
 
 
 def draw_overlay(folders, runs, only):
-    """Yields name and figure of each picture that applies to all runs, or of one."""
+    """Yields name and figure of each picture that applies to all runs, or of those in `only`."""
     names = names_of(folders, runs)
-    for name in [only] if only else OVERLAYS:
+    for name in only or OVERLAYS:
         against = [(folder, PICTURES[name].applies(run)) for folder, run in zip(folders, runs)]
         against = [(folder, reason) for folder, reason in against if reason]
         if not against:
             yield name, OVERLAYS[name](names, runs)
         elif only:
-            raise RunError(f"--only {only}: {against[0][0]}: {against[0][1]}", code=2)
+            raise RunError(f"--only {name}: {against[0][0]}: {against[0][1]}", code=2)

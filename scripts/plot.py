@@ -29,9 +29,10 @@ def wrong(message):
 
 def choose(run, only):
     """Names of the pictures to draw."""
-    if only and PICTURES[only].applies(run):
-        wrong(f"--only {only}: {PICTURES[only].applies(run)}")
-    names = [only] if only else [name for name, picture in PICTURES.items() if not picture.applies(run)]
+    for name in only or ():
+        if PICTURES[name].applies(run):
+            wrong(f"--only {name}: {PICTURES[name].applies(run)}")
+    names = only or [name for name, picture in PICTURES.items() if not picture.applies(run)]
     return [name for name in names if run.output(PICTURES[name].switch)]
 
 
@@ -73,11 +74,13 @@ def draw_run(folder, run, options, show):
                show)
 
 
-def formats(text):
-    try:
-        return figure_style.formats(text)
-    except ValueError as error:
-        wrong(str(error))
+def list_of(option, names):
+    def check(text):
+        try:
+            return figure_style.named(option, text, names)
+        except ValueError as error:
+            wrong(str(error))
+    return check
 
 
 def pace(text):
@@ -106,8 +109,9 @@ class Parser(argparse.ArgumentParser):
 def parser():
     made = Parser(description="Draws the pictures of runs, by default each into the folder of its run.")
     made.add_argument("runs", metavar="RUN_FOLDER", type=pathlib.Path, nargs="+")
-    made.add_argument("--only", metavar="NAME", type=one_of("--only", PICTURES), help="one of " + ", ".join(PICTURES))
-    made.add_argument("--format", metavar="LIST", type=formats,
+    made.add_argument("--only", metavar="LIST", type=list_of("--only", PICTURES),
+                      help=", ".join(PICTURES) + ", with commas between")
+    made.add_argument("--format", metavar="LIST", type=list_of("--format", figure_style.FORMATS),
                       help=", ".join(figure_style.FORMATS) + ", with commas between (png)")
     made.add_argument("--size", metavar="SIZE", type=one_of("--size", figure_style.SIZES), default="screen",
                       help="one of " + ", ".join(figure_style.SIZES))
@@ -126,8 +130,9 @@ def check(options):
             wrong("--overlay: expected at least 2 runs, got 1")
         if not options.out:
             wrong("--overlay: it needs --out FOLDER, for the pictures belong to no single run")
-        if options.only and options.only not in OVERLAYS:
-            wrong(f"--only {options.only}: expected one of {', '.join(OVERLAYS)} with --overlay")
+        for name in options.only or ():
+            if name not in OVERLAYS:
+                wrong(f"--only {name}: expected one of {', '.join(OVERLAYS)} with --overlay")
     elif options.out and len(options.runs) > 1:
         wrong(f"--out: expected one run, or --overlay, got {len(options.runs)} runs, whose pictures have the same "
               "names")

@@ -156,10 +156,12 @@ class Pictures(PlotTest):
         self.assertEqual({option: words.split(",") for option, words in told.items()}, {
             "only": list(pictures.PICTURES), "format": list(figure_style.FORMATS), "size": list(figure_style.SIZES)})
 
-    def test_only_draws_one(self):
+    def test_only_draws_those_that_it_names(self):
         self.write()
         self.assertEqual(self.run_plot("--only", "velocity"), (0, ""))
         self.assertEqual(self.pictures(), ["velocity"])
+        self.assertEqual(self.run_plot("--only", "position,paths"), (0, ""))
+        self.assertEqual(self.pictures(), ["paths", "position", "velocity"])
 
     def test_the_same_run_gives_the_same_bytes(self):
         self.write(LEADER, PATH)
@@ -865,8 +867,8 @@ class Errors(PlotTest):
         self.write()
         code, errors = self.run_plot("--only", "speed")
         self.assertEqual(code, 2)
-        self.assertEqual(errors, "error: --only: expected one of paths, position, velocity, disagreement, acceleration, "
-                                 "tracking, error, graph, safety, incidents, got 'speed'\n")
+        self.assertEqual(errors, "error: --only: expected one or more of paths, position, velocity, disagreement, acceleration, "
+                                 "tracking, error, graph, safety, incidents, with commas between, got 'speed'\n")
         self.check(2, "--only error: it needs a law that flies to waypoints, from start to end", "--only", "error")
         self.check(2, "--only tracking: it needs a law of pursuit, from start to end, and the graph in summary.json", "--only", "tracking")
         self.check(2, "unrecognized arguments: --fast", "--fast")

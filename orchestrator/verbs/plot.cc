@@ -26,8 +26,8 @@ struct PlotOption {
 };
 
 constexpr PlotOption kOptions[] = {
-    {"--only", "NAME:{paths,position,velocity,disagreement,acceleration,tracking,error,graph,safety,incidents}",
-     "one picture"},
+    {"--only", "LIST:{paths,position,velocity,disagreement,acceleration,tracking,error,graph,safety,incidents}",
+     "several with commas between (all that apply)"},
     {"--format", "LIST:{png,pdf,svg}", "several with commas between (png)"},
     {"--size", "SIZE:{screen,column,page}",
      "column, page: 3.5 and 7.16 inches wide, letters of 8 pt, without a title (screen)"},
