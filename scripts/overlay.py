@@ -4,8 +4,8 @@ import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
 from pictures import (
-    AXIS_NAMES, FLOOR_M, LEAST_RANGE, PICTURES, draw_obstacles, drawn, map_axis, panel_grid, square_figure, time_axis,
-    widen,
+    AXIS_NAMES, FLOOR_M, LEAST_RANGE, PICTURES, draw_obstacles, drawn, in_a_word, map_axis, panel_grid, seen_from,
+    square_figure, time_axis, widen,
 )
 from run_folder import RunError, disagreement
 
@@ -77,7 +77,7 @@ def disagreements(names, runs):
         largest_m = np.maximum(disagreement(run)[:, run.honest].max(axis=1), FLOOR_M)
         plot_lines(axis, run.t, largest_m[:, None], name, look)
     axis.set_yscale("log")
-    axis.set_ylabel("largest distance to the mean or the leader (m)")
+    axis.set_ylabel(f"largest distance to {in_a_word([name for run in runs for name in seen_from(run)])} (m)")
     all_time(axis, runs)
     return finished(figure, axis, "disagreement")
 

@@ -344,11 +344,22 @@ def mark_time(axis, t_s, label):
         axis.axvline(t_s, color="0.3", linestyle=":", linewidth=1.2, label=f"{label} {t_s:.2f} s")
 
 
+def seen_from(run):
+    """What the disagreement of each phase of a run is measured against."""
+    leaders = [run.leader_of(span.law) for span in run.spans]
+    return ["the mean" if leader is None else f"agent {run.id[leader]}" for leader in leaders]
+
+
+def in_a_word(names):
+    """What all disagreement of one picture is measured against."""
+    return names[0] if len(set(names)) == 1 else "the mean or the leader"
+
+
 def disagreement_figure(run):
     distance_m = disagreement(run)
     leaders = [run.leader_of(span.law) for span in run.spans]
-    names = ["the mean" if leader is None else f"agent {run.id[leader]}" for leader in leaders]
-    to = names[0] if len(set(names)) == 1 else "the mean or the leader"
+    names = seen_from(run)
+    to = in_a_word(names)
     what = f"distance from its place, seen from {to}" if np.any(run.places) else f"distance to {to}"
     shown_m = distance_m.copy()
     for span, leader in zip(run.spans, leaders):

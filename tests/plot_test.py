@@ -670,6 +670,15 @@ class Overlays(PlotTest):
         self.assertEqual(names, ["slow", "fast"], "the runs have the same name: those of their folders")
         (slow, fast) = figures["disagreement"].axes[0].get_lines()
         np.testing.assert_allclose(slow.get_ydata(), 5 * np.exp(-runs[0].t), rtol=1e-12)
+        self.assertEqual(figures["disagreement"].axes[0].get_ylabel(), "largest distance to the mean (m)")
+
+    def test_disagreement_is_labelled_by_what_it_is_measured_against(self):
+        self.write_two((CONSENSUS, LEADER))
+        runs = [run_folder.read_run(folder) for folder in self.folders]
+        for several, against in [((0, 1), "the mean or the leader"), ((1, 1), "agent 2"), ((0, 0), "the mean")]:
+            figures = dict(overlay.draw_overlay(self.folders, [runs[k] for k in several], ["disagreement"]))
+            label = figures["disagreement"].axes[0].get_ylabel().replace("\n", " ")  # it is broken where it is long
+            self.assertEqual(label, f"largest distance to {against} (m)")
 
     def test_runs_have_their_own_names_if_they_differ(self):
         self.write_two((CONSENSUS, CONSENSUS.replace("demo", "other")))
