@@ -1,0 +1,98 @@
+#!/usr/bin/python3
+"""The documentation as a site, built by scripts/site: all links lead somewhere, nothing comes from other hosts."""
+
+import html.parser
+import pathlib
+import subprocess
+import tempfile
+import unittest
+import urllib.parse
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+class Page(html.parser.HTMLParser):
+    """What a page links to, what it loads, and what in it may be linked to."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.links, self.loads, self.places = [], [], set()
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        self.places.update(attributes[key] for key in ("id", "name") if key in attributes)
+        if tag == "a" and "href" in attributes:
+            self.links.append(attributes["href"])
+        if tag == "link" and attributes.get("rel") != "canonical":
+            self.loads.append(attributes["href"])
+        if "src" in attributes:
+            self.loads.append(attributes["src"])
+
+
+class Site:
+    def __init__(self, folder):
+        self.pages = {path: Page(path.read_text()) for path in sorted(folder.rglob("*.html"))}
+
+    def broken(self):
+        """(page, link) of the links to this site that lead nowhere."""
+        found = []
+        for path, page in self.pages.items():
+            for link in page.links + page.loads:
+                parts = urllib.parse.urlsplit(link)
+                if parts.scheme or parts.netloc or path.name == "404.html":
+                    continue
+                target = (path.parent / urllib.parse.unquote(parts.path)).resolve() if parts.path else path
+                target = target / "index.html" if parts.path.endswith("/") or parts.path == "." else target
+                place = urllib.parse.unquote(parts.fragment)
+                if not target.is_file() or place and target in self.pages and place not in self.pages[target].places:
+                    found.append((path.name, link))
+        return found
+
+    def from_elsewhere(self):
+        """(page, address) of what pages load from other hosts."""
+        return [(path.name, load) for path, page in self.pages.items() for load in page.loads
+                if urllib.parse.urlsplit(load).netloc]
+
+
+class Checks(unittest.TestCase):
+    def test_find_what_is_wrong(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "index.html").write_text(
+                '<h1 id="top">x</h1><a href="#top"></a><a href="two.html#here"></a><a href="two.html#there"></a>'
+                '<a href="no.html"></a><img src="no.png"><script src="https://example.org/x.js"></script>'
+                '<a href="https://example.org">may be</a>')
+            (folder / "two.html").write_text('<p id="here">')
+            site = Site(folder)
+            self.assertEqual(site.broken(), [("index.html", link) for link in ("two.html#there", "no.html", "no.png")])
+            self.assertEqual(site.from_elsewhere(), [("index.html", "https://example.org/x.js")])
+
+
+class Documentation(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory())).resolve()
+        built = subprocess.run([ROOT / "scripts/site", cls.folder], capture_output=True, text=True)
+        assert built.returncode == 0, built.stdout + built.stderr
+        assert built.stdout == f"{cls.folder}/index.html\n", built.stdout
+        cls.site = Site(cls.folder)
+
+    def test_every_link_leads_somewhere(self):
+        self.assertGreater(sum(len(page.links) for page in self.site.pages.values()), 1000)
+        self.assertEqual(self.site.broken(), [])
+
+    def test_nothing_is_loaded_from_other_hosts(self):
+        self.assertEqual(self.site.from_elsewhere(), [])
+
+    def test_every_page_is_shown_and_in_the_navigation(self):
+        start = self.folder / "index.html"
+        linked = {(start.parent / urllib.parse.urlsplit(link).path).resolve() for link in self.site.pages[start].links}
+        pages = [*(ROOT / "docs").glob("*.md"), ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
+        self.assertGreater(len(pages), 15)
+        for page in pages:
+            self.assertIn(self.folder / page.relative_to(ROOT).with_suffix(".html"), linked)
+
+
+if __name__ == "__main__":
+    unittest.main()
