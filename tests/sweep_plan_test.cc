@@ -95,6 +95,27 @@ TEST(SweepPlan, KnowsWhichRunsHaveTheFirstSeed) {
   EXPECT_THAT(SweepPlan(Sets({"run.seed=4,9", "a=1,2"})).WithFirstSeed(), ElementsAre(0, 1));
 }
 
+TEST(SweepPlan, GivesAnyOfMillionsOfRunsWithoutListingThem) {
+  const SweepPlan plan({.sets = {"a=0:1:999", "b=x,y"}, .randoms = {"c=0:1"}, .samples = 50, .seeds = "1..100"});
+  ASSERT_EQ(plan.size(), 10'000'000u);
+  const auto values = [&](std::size_t run) {
+    const SweepPoint point = plan[run];
+    return std::vector{point.overrides[0].value, point.overrides[1].value, point.overrides[3].value};
+  };
+  EXPECT_THAT(values(0), ElementsAre("0", "x", "1"));
+  EXPECT_THAT(values(99), ElementsAre("0", "x", "100"));
+  EXPECT_EQ(plan[99].overrides[2].value, plan[0].overrides[2].value) << "seeds change fastest";
+  EXPECT_NE(plan[100].overrides[2].value, plan[0].overrides[2].value);
+  EXPECT_EQ(plan[5'000].overrides[2].value, plan[0].overrides[2].value) << "b and a see the same samples";
+  EXPECT_THAT(values(5'000), ElementsAre("0", "y", "1"));
+  EXPECT_THAT(values(9'999'999), ElementsAre("999", "y", "100"));
+}
+
+TEST(SweepPlan, IsToldFromOthersByItsText) {
+  const Words words{.sets = {"a=1:1:3", "b=x"}, .randoms = {"c=1:2:log"}, .samples = 9, .seeds = "4..5"};
+  EXPECT_EQ(SweepPlan(words).Text(), "a=1,2,3\nb=x\nc=1:2:log, 9 samples\nrun.seed=4,5\n");
+}
+
 TEST(SweepPlan, DrawsTheSameSamplesEveryTime) {
   const Words words{
       .sets = {}, .randoms = {"law.p_gain=0.1:0.3", "law.beta=0.01:100:log"}, .samples = 200, .seeds = ""};

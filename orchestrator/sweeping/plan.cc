@@ -1,6 +1,7 @@
 #include "orchestrator/sweeping/plan.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -122,26 +123,6 @@ std::vector<std::string> ParseSeeds(const std::string& text) {
   return seeds;
 }
 
-/// Combines every point with every choice.
-std::vector<SweepPoint> Combine(const std::vector<SweepPoint>& points, const std::vector<SweepPoint>& choices) {
-  if (points.size() > kMostRuns / std::max<std::size_t>(choices.size(), 1))
-    throw ConfigError({"sweep: expected at most 10000000 runs, got more"});
-  std::vector<SweepPoint> all;
-  all.reserve(points.size() * choices.size());
-  for (const SweepPoint& point : points)
-    for (const SweepPoint& choice : choices) {
-      all.push_back(point);
-      all.back().overrides.insert(all.back().overrides.end(), choice.overrides.begin(), choice.overrides.end());
-    }
-  return all;
-}
-
-std::vector<SweepPoint> ChoicesOf(const std::string& key, const std::vector<std::string>& values) {
-  std::vector<SweepPoint> choices;
-  for (const std::string& value : values) choices.push_back({{{key, value}}});
-  return choices;
-}
-
 /// Whether `key` is `table` itself, or a key or list element in it.
 bool IsInside(std::string_view key, std::string_view table) {
   return key.starts_with(table) && (key.size() == table.size() || key[table.size()] == '.' || key[table.size()] == '[');
@@ -168,11 +149,10 @@ SweepPlan::Axis SweepPlan::ParseRandom(const std::string& word, std::uint64_t pl
     Refuse("--random", "key=min:max or key=min:max:log with 0 < min", word);
   if (!std::isfinite(log ? *max / *min : *max - *min)) Refuse("--random", "a range that a double can span", word);
   Random random(kSamplesSeed + place, Random::Stream::kSweep);
-  Axis axis{key, {}};
+  Axis axis{.key = key, .values = {}, .range = text};
   for (std::int64_t i = 0; i < samples; ++i) {
     const double fraction = random.Unit();
-    axis.values.push_back(
-        ShortestFloat(log ? *min * std::pow(*max / *min, fraction) : *min + fraction * (*max - *min)));
+    axis.drawn.push_back(log ? *min * std::pow(*max / *min, fraction) : *min + fraction * (*max - *min));
   }
   return axis;
 }
@@ -185,38 +165,58 @@ void SweepPlan::AddAxis(const Axis& axis) {
           {"sweep: expected each key once, got " + axis.key + (key == axis.key ? " again" : " and " + key)});
   keys_.push_back(axis.key);
   axes_.push_back(axis);
-  if (axis.values.size() > 1 && axis.key != kSeedKey) varied_.push_back(axis.key);
+  if (axis.size() > 1 && axis.key != kSeedKey) varied_.push_back(axis.key);
 }
 
-void SweepPlan::AddTrials() {
-  for (std::size_t k = 0; k < axes_.size(); ++k)
-    for (std::size_t i = axes_[k].is_range ? std::max<std::size_t>(axes_[k].values.size() - 1, 1) : 1;
-         i < axes_[k].values.size(); ++i) {
-      trials_.push_back(points_.front());
-      trials_.back().overrides[k].value = axes_[k].values[i];
+/// Every run so far becomes `by` runs. Throws ConfigError if these are too many.
+void SweepPlan::Multiply(std::size_t by) {
+  if (size_ > kMostRuns / std::max<std::size_t>(by, 1))
+    throw ConfigError({"sweep: expected at most 10000000 runs, got more"});
+  size_ *= by;
+  for (Axis& axis : axes_) axis.stride *= by;
+}
+
+/// `sets`: how many keys --set gives; they come first.
+void SweepPlan::AddTrials(std::size_t sets) {
+  for (std::size_t k = 0; k < sets; ++k) {
+    const Axis& axis = axes_[k];
+    for (std::size_t i = axis.is_range ? std::max<std::size_t>(axis.size() - 1, 1) : 1; i < axis.size(); ++i) {
+      trials_.push_back((*this)[0]);
+      trials_.back().overrides[k].value = axis.Value(i);
     }
+  }
 }
 
-SweepPlan::SweepPlan(const Words& words) : points_(1) {
+SweepPlan::SweepPlan(const Words& words) {
   for (const std::string& word : words.sets) {
     const Axis axis = ParseSet(word);
+    Multiply(axis.size());
     AddAxis(axis);
-    points_ = Combine(points_, ChoicesOf(axis.key, axis.values));
   }
-  AddTrials();
-  std::vector<SweepPoint> samples(words.randoms.empty() ? 1 : static_cast<std::size_t>(words.samples));
-  for (std::size_t k = 0; k < words.randoms.size(); ++k) {
-    const Axis axis = ParseRandom(words.randoms[k], k, words.samples);
-    AddAxis(axis);
-    for (std::size_t i = 0; i < samples.size(); ++i) samples[i].overrides.push_back({axis.key, axis.values[i]});
-    for (SweepPoint& trial : trials_) trial.overrides.push_back({axis.key, axis.values.front()});
+  if (!words.randoms.empty()) Multiply(static_cast<std::size_t>(words.samples));
+  for (std::size_t k = 0; k < words.randoms.size(); ++k) AddAxis(ParseRandom(words.randoms[k], k, words.samples));
+  if (!words.seeds.empty()) {
+    const Axis seeds{.key = std::string(kSeedKey), .values = ParseSeeds(words.seeds)};
+    Multiply(seeds.size());
+    AddAxis(seeds);
   }
-  points_ = Combine(points_, samples);
-  if (words.seeds.empty()) return;
-  const Axis seeds{std::string(kSeedKey), ParseSeeds(words.seeds)};
-  AddAxis(seeds);
-  points_ = Combine(points_, ChoicesOf(seeds.key, seeds.values));
-  for (SweepPoint& trial : trials_) trial.overrides.push_back({seeds.key, seeds.values.front()});
+  AddTrials(words.sets.size());
+}
+
+std::string SweepPlan::Axis::Value(std::size_t k) const { return drawn.empty() ? values[k] : ShortestFloat(drawn[k]); }
+
+SweepPoint SweepPlan::operator[](std::size_t run) const {
+  SweepPoint point;
+  for (const Axis& axis : axes_) point.overrides.push_back({axis.key, axis.Value(run / axis.stride % axis.size())});
+  return point;
+}
+
+std::string SweepPlan::Text() const {
+  std::string text;
+  for (const Axis& axis : axes_)
+    text += axis.drawn.empty() ? fmt::format("{}={}\n", axis.key, fmt::join(axis.values, ","))
+                               : fmt::format("{}={}, {} samples\n", axis.key, axis.range, axis.drawn.size());
+  return text;
 }
 
 std::span<const std::string> SweepPlan::ValuesOf(std::string_view key) const {
@@ -226,10 +226,10 @@ std::span<const std::string> SweepPlan::ValuesOf(std::string_view key) const {
 
 std::vector<std::size_t> SweepPlan::WithFirstSeed() const {
   const auto place = static_cast<std::size_t>(std::ranges::find(keys_, kSeedKey) - keys_.begin());
-  if (place == keys_.size() || axes_[place].values.size() < 2) return {};
+  if (place == keys_.size() || axes_[place].size() < 2) return {};
   std::vector<std::size_t> runs;
-  for (std::size_t run = 0; run < points_.size(); ++run)
-    if (points_[run].overrides[place].value == axes_[place].values.front()) runs.push_back(run);
+  for (std::size_t run = 0; run < size_; ++run)
+    if (run / axes_[place].stride % axes_[place].size() == 0) runs.push_back(run);
   return runs;
 }
 

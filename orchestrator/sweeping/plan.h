@@ -20,7 +20,7 @@ struct SweepPoint {
 };
 
 /// The runs of a sweep: every combination of key values, random samples and seeds, in this order; seeds change fastest.
-/// The same options give the same plan.
+/// The same options give the same plan. Runs are made when asked for: a plan takes the memory of its keys' values.
 class SweepPlan {
  public:
   /// Command-line options, as typed.
@@ -35,32 +35,41 @@ class SweepPlan {
 
   /// The keys that are set: those of --set and --random as typed, then run.seed if --seeds was given.
   const std::vector<std::string>& keys() const { return keys_; }
-  std::size_t size() const { return points_.size(); }
-  const SweepPoint& operator[](std::size_t index) const { return points_[index]; }
+  std::size_t size() const { return size_; }
+  SweepPoint operator[](std::size_t run) const;
   /// Keys with more than one value, without run.seed: the axes of a plot.
   const std::vector<std::string>& varied() const { return varied_; }
-  /// The values of a key, as typed; empty if it is not set.
+  /// The values of a key, as typed; empty if it is not set by --set or --seeds.
   std::span<const std::string> ValuesOf(std::string_view key) const;
   /// The first run with each other value that --set gives a key; of A:STEP:B only with the last one.
   const std::vector<SweepPoint>& trials() const { return trials_; }
   /// The runs with the first value of run.seed, if it has several; else none.
   std::vector<std::size_t> WithFirstSeed() const;
+  /// What tells this plan from others: a line for each key.
+  std::string Text() const;
 
  private:
   struct Axis {
     std::string key;
     std::vector<std::string> values;
-    bool is_range = false;  ///< of A:STEP:B
+    bool is_range = false;   ///< of A:STEP:B
+    std::string range = {};  ///< of --random, as typed; it has `drawn` in the place of values
+    std::vector<double> drawn = {};
+    std::size_t stride = 1;  ///< the value changes after so many runs
+
+    std::size_t size() const { return drawn.empty() ? values.size() : drawn.size(); }
+    std::string Value(std::size_t k) const;
   };
   static Axis ParseSet(const std::string& word);
   static Axis ParseRandom(const std::string& word, std::uint64_t place, std::int64_t samples);
   void AddAxis(const Axis& axis);
-  void AddTrials();
+  void Multiply(std::size_t by);
+  void AddTrials(std::size_t sets);
 
   std::vector<std::string> keys_;
   std::vector<Axis> axes_;  // of keys_
   std::vector<std::string> varied_;
-  std::vector<SweepPoint> points_;
+  std::size_t size_ = 1;
   std::vector<SweepPoint> trials_;
 };
 

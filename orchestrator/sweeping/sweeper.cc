@@ -306,27 +306,20 @@ void CheckMetric(const std::string& metric, const std::vector<std::string>& metr
                                  nearest ? " (did you mean \"" + *nearest + "\"?)" : "")});
 }
 
-/// What every run of the sweep sets.
-std::string PointsText(const Sweep& sweep) {
-  std::string text = "\n# runs of the sweep\n";
-  for (std::size_t run = 0; run < sweep.plan.size(); ++run) {
-    for (const Override& override : sweep.plan[run].overrides) text += override.key + "=" + override.value + " ";
-    text += "\n";
-  }
-  return text;
-}
+/// The end of the text that identifies a sweep: what its runs set.
+std::string RunsText(const Sweep& sweep) { return "\n# its runs\n" + sweep.plan.Text(); }
 
 /// Text that identifies the sweep of a table: the experiment file, the first valid experiment resolved (with the files
 /// that it names), the user's metrics, and what each run sets.
 std::string PlanText(const Sweep& sweep, const std::string& resolved) {
   const std::string own = sweep.own ? "\n# its own metrics\n" + sweep.metric_file.text : "";
-  return sweep.text + "\n# its first valid run\n" + resolved + own + PointsText(sweep);
+  return sweep.text + "\n# its first valid run\n" + resolved + own + RunsText(sweep);
 }
 
 /// Whether a table of this sweep was begun: it is then gone on with, also if --force has begun it.
 bool IsBegun(const Sweep& sweep, const std::string& table) {
   const std::string plan = SweepFile::PlanBeside(table);
-  return plan.starts_with(sweep.text) && plan.ends_with(PointsText(sweep));
+  return plan.starts_with(sweep.text) && plan.ends_with(RunsText(sweep));
 }
 
 /// Writes the statistics of a complete table beside it. Returns what there is to say on the terminal.
