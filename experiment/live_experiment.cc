@@ -39,6 +39,9 @@ bool GoesOn(const LawCatalog& laws, const Value::Table& before, const Value::Tab
   return all_same(before) && all_same(after);
 }
 
+/// Whether the dotted key `inner` is inside the table `outer`.
+bool IsInside(const std::string& inner, const std::string& outer) { return inner.starts_with(outer + "."); }
+
 /// Appends the dotted names of what is in the table `value`, and in the tables inside it.
 void AddKeys(const std::string& name, const Value& value, std::vector<std::string>& keys) {
   for (const auto& [key, inner] : std::get<Value::Table>(value.data)) {
@@ -53,6 +56,11 @@ std::string EdgeText(const std::pair<int, int>& edge) {
 }
 
 }  // namespace
+
+bool LiveExperiment::Own::IsReachedBy(const std::string& key) const {
+  return std::ranges::find(keys, key) != keys.end() ||
+         std::ranges::any_of(set, [&](const std::string& own) { return IsInside(own, key) || IsInside(key, own); });
+}
 
 LiveExperiment::LiveExperiment(const Experiment& start, const LawCatalog* laws, bool checked)
     : start_(start), laws_(laws), checked_(checked), text_(start.resolved) {
@@ -153,7 +161,8 @@ void LiveExperiment::ForgetLaws(const Event& phase, std::vector<Override>& chang
     const bool concerns = phase.agents.empty() ? !own_[k].has_law : phase.agents.front() == own_[k].id;
     if (!concerns) continue;
     forget(OverrideKey(k) + "law");
-    std::erase_if(own_[k].keys, [](const std::string& key) { return key.starts_with("law."); });
+    for (std::vector<std::string>* keys : {&own_[k].keys, &own_[k].set})
+      std::erase_if(*keys, [](const std::string& key) { return IsInside(key, "law"); });
     if (!phase.agents.empty()) AddKeys("law", {*phase.law}, own_[k].keys);
   }
 }
@@ -172,7 +181,11 @@ std::vector<Override> LiveExperiment::Changes(const Event& event) {
   if (event.law) {
     const Value table{*event.law};
     if (event.agents.empty()) changes.push_back({.key = "law", .value = ToToml(table), .origin = event.where});
-    for (const int agent : event.agents) SetFor(agent, event.where, "law", table, changes);
+    for (const int agent : event.agents)
+      changes.push_back({.key = OverrideKey(OwnOf(agent, event.where, changes)) + "law",
+                         .value = ToToml(table),
+                         .origin = event.where,
+                         .extends = true});
   }
   for (const auto& [key, value] : event.set) {
     CheckKey(event, key);
@@ -233,20 +246,46 @@ void LiveExperiment::Set(const Event& event, const std::string& key, const Value
   const bool is_of_team = table != "law" || laws_ == nullptr || FindRow(KeysOfLaw(*laws_, current().law.name), rest);
   if (is_of_team) changes.push_back({.key = key, .value = ToToml(value), .origin = event.where});
   for (std::size_t k = 0; k < own_.size(); ++k)
-    if (std::ranges::find(own_[k].keys, key) != own_[k].keys.end())
-      SetFor(own_[k].id, event.where, key, value, changes);
+    if (own_[k].IsReachedBy(key)) SetFor(own_[k].id, event.where, key, value, changes);
+}
+
+std::size_t LiveExperiment::OwnOf(int agent, const std::string& where, std::vector<Override>& changes) {
+  const auto own = std::ranges::find(own_, agent, &Own::id);
+  const auto index = static_cast<std::size_t>(own - own_.begin());
+  if (own != own_.end()) return index;
+  own_.push_back({.id = agent, .keys = {}});
+  changes.push_back(
+      {.key = OverrideKey(index) + "id", .value = std::to_string(agent), .origin = where, .extends = true});
+  return index;
 }
 
 void LiveExperiment::SetFor(int agent, const std::string& where, const std::string& key, const Value& value,
                             std::vector<Override>& changes) {
-  auto own = std::ranges::find(own_, agent, &Own::id);
-  const std::string path = OverrideKey(static_cast<std::size_t>(own - own_.begin()));
-  if (own == own_.end()) {
-    own = own_.insert(own_.end(), {.id = agent, .keys = {}});
-    changes.push_back({.key = path + "id", .value = std::to_string(agent), .origin = where, .extends = true});
-  }
-  if (std::ranges::find(own->keys, key) == own->keys.end()) own->keys.push_back(key);
-  changes.push_back({.key = path + key, .value = ToToml(value), .origin = where, .extends = true});
+  const std::size_t index = OwnOf(agent, where, changes);
+  const auto set = [&](const std::string& own_key, const Value& own_value) {
+    for (std::vector<std::string>* keys : {&own_[index].keys, &own_[index].set})
+      if (std::ranges::find(*keys, own_key) == keys->end()) keys->push_back(own_key);
+    changes.push_back(
+        {.key = OverrideKey(index) + own_key, .value = ToToml(own_value), .origin = where, .extends = true});
+  };
+  if (const auto table = TakenOver(own_[index], key)) set(table->first, table->second);
+  set(key, value);
+}
+
+std::optional<std::pair<std::string, Value>> LiveExperiment::TakenOver(const Own& own, const std::string& key) const {
+  const auto [table, rest] = SplitFirst(key);
+  if (table != "law" || laws_ == nullptr) return std::nullopt;
+  const std::vector<Key> rows = KeysOfLaw(*laws_, current().agent(own.id).law.name);
+  const Key* row = FindRow(rows, rest);
+  if (row == nullptr || row->kind != ValueKind::kAny) return std::nullopt;
+  const std::string name(row->name), path = table + "." + name;
+  const auto is_in_it = [&](const std::string& own_key) { return own_key == path || IsInside(own_key, path); };
+  if (key == path || std::ranges::any_of(own.keys, is_in_it)) return std::nullopt;
+  Section document = Section::FromText(current().resolved, "config.toml");
+  document.Use(ExperimentKeys());
+  for (Section& section : document.Child("agents").Children("override"))
+    if (section.Integer("id") == own.id && section.Has("law")) return std::pair(path, section.Child("law").Free(name));
+  return std::pair(path, document.Child("law").Free(name));
 }
 
 }  // namespace mascot

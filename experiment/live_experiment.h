@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -45,7 +46,13 @@ class LiveExperiment {
   struct Own {
     int id = 0;
     std::vector<std::string> keys;  ///< dotted: "law.p_gain"
-    bool has_law = false;           ///< it has a law table of its own, which a phase of the team's does not concern
+    /// Those that events have set for this agent, and the tables that it has because of that.
+    std::vector<std::string> set = {};
+    bool has_law = false;  ///< it has a law table of its own, which a phase of the team's does not concern
+
+    /// Whether an event for all that sets `key` concerns this agent's own value of it: the agent has the key, or an
+    /// earlier event has set for it a key inside `key` or around it.
+    bool IsReachedBy(const std::string& key) const;
   };
 
   std::vector<Override> Changes(const Event& event);
@@ -56,8 +63,13 @@ class LiveExperiment {
   /// Notes of which agents the law begins anew with a phase.
   void BeginLaws(const Event& phase);
   void Set(const Event& event, const std::string& key, const Value& value, std::vector<Override>& changes);
+  /// The index of an agent's own table, which `changes` begins if there is none.
+  std::size_t OwnOf(int agent, const std::string& where, std::vector<Override>& changes);
   void SetFor(int agent, const std::string& where, const std::string& key, const Value& value,
               std::vector<Override>& changes);
+  /// The table whose keys the user chooses that an agent takes over from the team when the dotted `key` inside it is
+  /// set for this agent alone, and what stands in it now; none: `key` is in no such table, or the agent has its own.
+  std::optional<std::pair<std::string, Value>> TakenOver(const Own& own, const std::string& key) const;
   void CheckKey(const Event& event, const std::string& key) const;
   /// Checks that the laws of those whom it concerns let their law.params change.
   void CheckParams(const Event& event) const;

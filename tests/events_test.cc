@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Pair;
 
 constexpr std::int64_t kTick = 50;  // of the events below: 0.5 s
 
@@ -237,6 +238,81 @@ TEST(Events, ForAllChangeTheParamsOfAgentsWithTheirOwn) {
   EXPECT_EQ(rows[49].commands[0].a_law_W.x(), 1.0);
   EXPECT_EQ(rows[49].commands[1].a_law_W.x(), 0.25);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(rows[50].commands[i].a_law_W.x(), 0.5) << i;
+}
+
+/// What two agents want, [x, y], at each tenth of a second: params x and y as they are then; table.inner, or table,
+/// goes before x.
+std::vector<std::vector<std::pair<double, double>>> ParamsOf(const std::string& own, const std::string& events) {
+  const std::string law =
+      "name = 'custom'\nparams = { x = 1.0, y = 1.0 }\npython = '''\n"
+      "def start(me, params):\n    me.params = params\n"
+      "def set(me, params):\n    me.params = params\n"
+      "def control(t, me, neighbours):\n    x = me.params.get('table', me.params.get('x', 0))\n"
+      "    return [x['inner'] if isinstance(x, dict) else x, me.params.get('y', 0), 0]\n'''\n";
+  std::vector<std::vector<std::pair<double, double>>> params;
+  const auto rows = Fly(Three(law, own) + events);
+  for (std::size_t k = 0; k < 60; k += 10) {
+    params.emplace_back();
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Eigen::Vector3d& a_W = rows[k].commands[i].a_law_W;
+      params.back().emplace_back(a_W.x(), a_W.y());
+    }
+  }
+  return params;
+}
+
+constexpr const char* kOneParamOfAgent2 = "set = { \"law.params.x\" = 0.25 }\nagents = [2]";
+constexpr const char* kNoParamsOfAgent2 = "set = { \"law.params\" = {} }\nagents = [2]";
+
+TEST(Events, ForOneParamOfAnAgentLeaveItTheOthers) {
+  const auto params = ParamsOf("", Event(kOneParamOfAgent2, "0.1"));
+  EXPECT_THAT(params[0], ElementsAre(Pair(1, 1), Pair(1, 1)));
+  EXPECT_THAT(params[1], ElementsAre(Pair(1, 1), Pair(0.25, 1)));
+}
+
+TEST(Events, ForAllThatSetATableReachAgentsWithOneParamOfTheirOwn) {
+  const auto params =
+      ParamsOf("", Event(kOneParamOfAgent2, "0.1") + Event("set = { \"law.params\" = { y = 0.5 } }", "0.2") +
+                       Event("set = { \"law.params\" = { x = 0.5 } }", "0.3") + Event(kOneParamOfAgent2, "0.4") +
+                       Event("set = { \"law.params\" = {} }", "0.5"));
+  EXPECT_THAT(params[2], ElementsAre(Pair(1, 0.5), Pair(0.25, 0.5))) << "a table stands for the keys in it";
+  EXPECT_THAT(params[3], ElementsAre(Pair(0.5, 0.5), Pair(0.5, 0.5)));
+  EXPECT_THAT(params[4], ElementsAre(Pair(0.5, 0.5), Pair(0.25, 0.5)));
+  EXPECT_THAT(params[5], ElementsAre(Pair(0, 0), Pair(0, 0)));
+}
+
+TEST(Events, ForAllThatSetOneParamReachAgentsWithATableOfTheirOwn) {
+  const auto params =
+      ParamsOf("", Event(kNoParamsOfAgent2, "0.1") + Event("set = { \"law.params.y\" = 0.5 }", "0.2") +
+                       Event("set = { \"law.params.x\" = 0.75 }", "0.3") + Event(kNoParamsOfAgent2, "0.4") +
+                       Event("set = { \"law.params\" = { x = 2.0 } }", "0.5"));
+  EXPECT_THAT(params[1], ElementsAre(Pair(1, 1), Pair(0, 0)));
+  EXPECT_THAT(params[2], ElementsAre(Pair(1, 0.5), Pair(0, 0.5)));
+  EXPECT_THAT(params[3], ElementsAre(Pair(0.75, 0.5), Pair(0.75, 0.5)));
+  EXPECT_THAT(params[4], ElementsAre(Pair(0.75, 0.5), Pair(0, 0)));
+  EXPECT_THAT(params[5], ElementsAre(Pair(2, 0.5), Pair(2, 0)));
+}
+
+TEST(Events, ForAllThatSetAParamReachAgentsWithATableInItsPlace) {
+  const auto params = ParamsOf("", Event("set = { \"law.params.table.inner\" = 7.0 }", "0.05") +
+                                       Event("set = { \"law.params.table.inner\" = 8.0 }\nagents = [2]", "0.1") +
+                                       Event("set = { \"law.params.table\" = 0.5 }", "0.2"));
+  EXPECT_THAT(params[1], ElementsAre(Pair(7, 1), Pair(8, 1)));
+  EXPECT_THAT(params[2], ElementsAre(Pair(0.5, 1), Pair(0.5, 1)));
+}
+
+TEST(Events, ForAllReachWhatTheTableOfAnAgentInTheFileHas) {
+  const auto params =
+      ParamsOf("[[agents.override]]\nid = 2\nlaw = { params = { x = 2.0 } }\n",
+               Event("set = { \"law.params.y\" = 0.5 }", "0.1") + Event("set = { \"law.params.x\" = 0.75 }", "0.2") +
+                   Event(kOneParamOfAgent2, "0.3") + Event("set = { \"law.params.y\" = 0.25 }", "0.4") +
+                   Event("set = { \"law.params\" = {} }", "0.5"));
+  EXPECT_THAT(params[0], ElementsAre(Pair(1, 1), Pair(2, 0)));
+  EXPECT_THAT(params[1], ElementsAre(Pair(1, 0.5), Pair(2, 0))) << "its table has no y";
+  EXPECT_THAT(params[2], ElementsAre(Pair(0.75, 0.5), Pair(0.75, 0)));
+  EXPECT_THAT(params[3], ElementsAre(Pair(0.75, 0.5), Pair(0.25, 0)));
+  EXPECT_THAT(params[4], ElementsAre(Pair(0.75, 0.25), Pair(0.25, 0)));
+  EXPECT_THAT(params[5], ElementsAre(Pair(0, 0), Pair(0, 0)));
 }
 
 TEST(Events, ForAllTakeTheWaypointsOfAnAgentThatAnEventSentElsewhere) {
