@@ -118,10 +118,11 @@ EdgeNow Neighbours::EdgeAt(std::size_t k) const {
 }
 
 void Neighbours::AddEdgesTo(std::vector<EdgeNow>& edges) const {
-  for (std::size_t k = 0; k < may_hear_.size(); ++k) {
-    edges.push_back(EdgeAt(k));
-    edges.back().lost = links_[k].count().lost;
-  }
+  for (std::size_t k = 0; k < may_hear_.size(); ++k) edges.push_back(EdgeAt(k));
+}
+
+void Neighbours::AddLossesTo(std::vector<std::uint64_t>& lost) const {
+  for (const Link& link : links_) lost.push_back(link.count().lost);
 }
 
 std::vector<EdgeCount> Neighbours::counts() const {

@@ -23,8 +23,7 @@ struct EdgeNow {
     kNothingYet,  ///< no sample has ever arrived
   };
   State state = State::kNothingYet;
-  double age_s = -1;       ///< simulated time since the newest sample that has arrived was sent; -1: none has
-  std::uint64_t lost = 0;  ///< samples lost so far
+  double age_s = -1;  ///< simulated time since the newest sample that has arrived was sent; -1: none has
 };
 
 /// Decides what one agent hears of its neighbours: applies start and stop times, the schedule of graphs, the range, the
@@ -43,6 +42,8 @@ class Neighbours {
   std::vector<EdgeCount> counts() const;
   /// Appends what became of the edges from experiment.graph.HeardBy(id) at the tick of the last Hear(), in that order.
   void AddEdgesTo(std::vector<EdgeNow>& edges) const;
+  /// Appends how many samples the same edges have lost so far, in the same order.
+  void AddLossesTo(std::vector<std::uint64_t>& lost) const;
 
  private:
   EdgeNow EdgeAt(std::size_t k) const;

@@ -166,10 +166,11 @@ TEST(Incidents, AreEmptyIfNothingHappened) {
 /// Lines of the table of a run, by what happened.
 std::map<std::string, std::vector<Incident>> ByName(const LawRun& run, const EngineResult& engine) {
   std::map<std::string, std::vector<Incident>> by_name;
-  std::istringstream csv(IncidentsCsv(run.experiment, IncidentsOf(run.meter, engine)));
+  const Incidents all = IncidentsOf(run.meter, engine);
+  std::istringstream csv(IncidentsCsv(run.experiment, all));
   std::string line;
   std::getline(csv, line);
-  for (const Incident& incident : IncidentsOf(run.meter, engine).told) {
+  for (const Incident& incident : all.told) {
     std::getline(csv, line);
     std::istringstream fields(line);
     std::string t_s, until_s, what;
@@ -210,6 +211,27 @@ beta = 1.0
                    run.summary["control"]["saturated_fraction"].get<double>());
   EXPECT_THAT(run.text, HasSubstr("at its acceleration limit, at "));
   EXPECT_THAT(run.text, HasSubstr(" samples of agent "));
+}
+
+TEST(Incidents, OfALinkThatAnEventMakesLossyBeginWithTheEventAndAreAllThatIsLost) {
+  const Experiment experiment = Load(Three("name = 'consensus'\n") +
+                                     "[[events]]\nat_s = 0.3\nset = { \"link.loss\" = 0.5 }\n"
+                                     "[[events]]\nat_s = 0.6\nset = { \"link.loss\" = 0.0 }\n");
+  RunMeter meter(experiment);
+  const EngineResult result = RunInProcess(experiment, {&meter}, [] { return true; });
+  EXPECT_EQ(result.failure, "");
+  std::map<int, std::int64_t> lost;
+  for (const Incident& incident : IncidentsOf(meter, result).told) {
+    if (incident.kind != Kind::kLostSamples) continue;
+    EXPECT_EQ(incident.agent, 1);
+    EXPECT_GE(incident.from, 30);
+    EXPECT_LT(incident.to, 60);
+    lost[incident.other] += incident.count;
+  }
+  for (const EdgeTraffic& edge : meter.Traffic()) {
+    EXPECT_GT(lost[edge.heard], 0);
+    EXPECT_EQ(lost[edge.heard], static_cast<std::int64_t>(edge.count.lost)) << edge.heard;
+  }
 }
 
 TEST(Incidents, TellOfARotorThatFailsAndOfWhatFollows) {

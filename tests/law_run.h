@@ -9,6 +9,7 @@
 #include "agent/laws.h"
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/measuring/run_meter.h"
+#include "orchestrator/report/incident_report.h"
 #include "orchestrator/report/summary.h"
 #include "orchestrator/theory/theory.h"
 
@@ -23,7 +24,7 @@ struct LawRun {
     const EngineResult result = RunInProcess(experiment, {&meter}, [] { return true; });
     EXPECT_EQ(result.failure, "");
     summary = nlohmann::json::parse(SummaryJson(experiment, prediction, meter, result, {.engine = "inprocess"}));
-    text = SummaryText(experiment, prediction, meter, result, {.engine = "inprocess"});
+    text = SummaryText(experiment, prediction, meter, result, {.engine = "inprocess"}, IncidentsOf(meter, result));
   }
   /// A figure of the team's law, as measured and as predicted. Both must be numbers.
   double Measured(const std::string& figure) const { return Law()[figure].get<double>(); }

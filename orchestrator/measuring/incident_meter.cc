@@ -50,13 +50,12 @@ void IncidentMeter::NoteLosses(std::int64_t tick, const LinkMeter& links) {
   if (links.plain()) return;
   if (edges_.empty())
     for (const EdgeTraffic& edge : links.Result()) edges_.push_back({.hearer = edge.hearer, .heard = edge.heard});
-  links.EdgesNow(now_);
+  links.LossesSoFar(lost_);
   for (std::size_t k = 0; k < edges_.size(); ++k) {
     Edge& edge = edges_[k];
-    const std::uint64_t lost = std::exchange(edge.lost, now_[k].lost);
-    if (now_[k].lost > lost)
-      Note(edge.open, Kind::kLostSamples, edge.hearer, edge.heard, tick,
-           static_cast<std::int64_t>(now_[k].lost - lost));
+    const std::uint64_t lost = std::exchange(edge.lost, lost_[k]);
+    if (edge.lost > lost)
+      Note(edge.open, Kind::kLostSamples, edge.hearer, edge.heard, tick, static_cast<std::int64_t>(edge.lost - lost));
   }
 }
 

@@ -70,10 +70,10 @@ class IncidentMeter {
     std::uint64_t lost = 0;
     Episode open = {};
   };
-  std::vector<Edge> edges_;   // in LinkMeter's order; empty as long as nothing can be lost
-  std::vector<EdgeNow> now_;  // scratch
-  std::int64_t tick_ = -1;    // the newest
-  Incidents closed_;          // not in order
+  std::vector<Edge> edges_;          // in LinkMeter's order; empty as long as nothing can be lost
+  std::vector<std::uint64_t> lost_;  // likewise: so far; scratch
+  std::int64_t tick_ = -1;           // the newest
+  Incidents closed_;                 // not in order
 };
 
 }  // namespace mascot

@@ -64,6 +64,11 @@ void LinkMeter::EdgesNow(std::vector<EdgeNow>& edges) const {
   for (const Neighbours& neighbours : neighbours_) neighbours.AddEdgesTo(edges);
 }
 
+void LinkMeter::LossesSoFar(std::vector<std::uint64_t>& lost) const {
+  lost.clear();
+  for (const Neighbours& neighbours : neighbours_) neighbours.AddLossesTo(lost);
+}
+
 std::vector<EdgeTraffic> LinkMeter::Result() const {
   std::vector<EdgeTraffic> traffic;
   for (int id = 1; id <= experiment_.size(); ++id) {

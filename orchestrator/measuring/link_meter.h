@@ -34,6 +34,9 @@ class LinkMeter {
   std::vector<EdgeTraffic> Result() const;
   /// What became of each edge at the newest tick, in the same order. Replaces `edges`, which keeps its capacity.
   void EdgesNow(std::vector<EdgeNow>& edges) const;
+  /// How many samples each edge has lost so far, in the same order; nothing as long as plain(). Replaces `lost`, which
+  /// keeps its capacity.
+  void LossesSoFar(std::vector<std::uint64_t>& lost) const;
 
  private:
   void CountSamples();

@@ -229,7 +229,7 @@ std::string SummaryJson(const Experiment& experiment, const Prediction& predicti
 }
 
 std::string SummaryText(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
-                        const EngineResult& engine, const RunFacts& facts) {
+                        const EngineResult& engine, const RunFacts& facts, const Incidents& incidents) {
   const Measured m = meter.Result();
   if (m.rows == 0) return "nothing was recorded\n";
   const double sim_s = experiment.time_s(m.rows - 1);
@@ -248,7 +248,7 @@ std::string SummaryText(const Experiment& experiment, const Prediction& predicti
              1e3 * pacing.tick_lateness_s[0], 1e3 * pacing.tick_lateness_s[1], 1e3 * pacing.tick_lateness_s[2]);
   }
   text += SeparationText(m, engine.contacts, prediction);
-  text += IncidentsText(experiment, IncidentsOf(meter, engine));
+  text += IncidentsText(experiment, incidents);
   std::uint64_t sent = 0, lost = 0, late = 0;
   for (const EdgeTraffic& edge : meter.Traffic()) {
     sent += edge.count.sent;

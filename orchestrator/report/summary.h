@@ -5,6 +5,7 @@
 
 #include "experiment/experiment.h"
 #include "orchestrator/engines/engine.h"
+#include "orchestrator/measuring/incident_meter.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/theory/theory.h"
 
@@ -22,8 +23,8 @@ struct RunFacts {
 /// Text of summary.json; docs/recording.md describes the keys.
 std::string SummaryJson(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
                         const EngineResult& engine, const RunFacts& facts);
-/// The same in a few lines of text, with predictions beside measurements.
+/// The same in a few lines of text, with predictions beside measurements. `incidents`: IncidentsOf() the run.
 std::string SummaryText(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
-                        const EngineResult& engine, const RunFacts& facts);
+                        const EngineResult& engine, const RunFacts& facts, const Incidents& incidents);
 
 }  // namespace mascot

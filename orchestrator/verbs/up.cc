@@ -113,6 +113,7 @@ int Up(const UpArgs& args) {
   viewers.SayHowItEnded(result);
   if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
 
+  const Incidents incidents = IncidentsOf(meter, result);
   RunFacts facts{args.engine, {}, writer.topics(), writer.samples()};
   const auto summary = [&](std::optional<int> exit) {
     facts.exit = exit;
@@ -123,13 +124,13 @@ int Up(const UpArgs& args) {
     if (args.json)
       std::cout << json;
     else if (!args.quiet)
-      std::cout << SummaryText(experiment, prediction, meter, result, facts) << "results        "
+      std::cout << SummaryText(experiment, prediction, meter, result, facts, incidents) << "results        "
                 << folder.path().string() << "\n";
     FlushStandardOutput();
   };
   const auto draw = [&] {
     flight.End();  // after the first summary: the DDS library may not let us end in order
-    folder.Write("events.csv", IncidentsCsv(experiment, IncidentsOf(meter, result)));
+    folder.Write("events.csv", IncidentsCsv(experiment, incidents));
     return MakeOutput(experiment, folder, writer.rows() > 1, stop);
   };
   const int code = EndRun(folder, ExitCode(result), {.summary = summary, .draw = draw, .print = print});
