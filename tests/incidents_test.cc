@@ -166,7 +166,7 @@ TEST(Incidents, AreEmptyIfNothingHappened) {
 /// Lines of the table of a run, by what happened.
 std::map<std::string, std::vector<Incident>> ByName(const LawRun& run, const EngineResult& engine) {
   std::map<std::string, std::vector<Incident>> by_name;
-  const Incidents all = IncidentsOf(run.meter, engine);
+  const Incidents all = IncidentsOf(run.meter, engine, {});
   std::istringstream csv(IncidentsCsv(run.experiment, all));
   std::string line;
   std::getline(csv, line);
@@ -213,6 +213,22 @@ beta = 1.0
   EXPECT_THAT(run.text, HasSubstr(" samples of agent "));
 }
 
+TEST(Incidents, SayWhichEventsWereGivenByHand) {
+  const Experiment experiment = Load(Three("name = 'consensus'\n") +
+                                     "[[events]]\nat_s = 0.3\ncut = [[1, 2]]\n"
+                                     "[[events]]\nat_s = 0.3\nmend = [[1, 2]]\n"
+                                     "[[events]]\nat_s = 0.6\ncut = [[1, 3]]\n");
+  RunMeter meter(experiment);
+  const EngineResult result = RunInProcess(experiment, {&meter}, [] { return true; });
+  EXPECT_EQ(result.failure, "");
+  const int by_hand[] = {2};
+  EXPECT_EQ(IncidentsCsv(experiment, IncidentsOf(meter, result, by_hand)),
+            "t_s,until_s,what,count,agent,with,detail\n"
+            "0.3,0.3,event,1,,event 1,\"cut = [[1, 2]]\n\"\n"
+            "0.3,0.3,event,1,,event 2 by hand,\"mend = [[1, 2]]\n\"\n"
+            "0.6,0.6,event,1,,event 3,\"cut = [[1, 3]]\n\"\n");
+}
+
 TEST(Incidents, OfALinkThatAnEventMakesLossyBeginWithTheEventAndAreAllThatIsLost) {
   const Experiment experiment = Load(Three("name = 'consensus'\n") +
                                      "[[events]]\nat_s = 0.3\nset = { \"link.loss\" = 0.5 }\n"
@@ -221,7 +237,7 @@ TEST(Incidents, OfALinkThatAnEventMakesLossyBeginWithTheEventAndAreAllThatIsLost
   const EngineResult result = RunInProcess(experiment, {&meter}, [] { return true; });
   EXPECT_EQ(result.failure, "");
   std::map<int, std::int64_t> lost;
-  for (const Incident& incident : IncidentsOf(meter, result).told) {
+  for (const Incident& incident : IncidentsOf(meter, result, {}).told) {
     if (incident.kind != Kind::kLostSamples) continue;
     EXPECT_EQ(incident.agent, 1);
     EXPECT_GE(incident.from, 30);

@@ -24,7 +24,7 @@ struct LawRun {
     const EngineResult result = RunInProcess(experiment, {&meter}, [] { return true; });
     EXPECT_EQ(result.failure, "");
     summary = nlohmann::json::parse(SummaryJson(experiment, prediction, meter, result, {.engine = "inprocess"}));
-    text = SummaryText(experiment, prediction, meter, result, {.engine = "inprocess"}, IncidentsOf(meter, result));
+    text = SummaryText(experiment, prediction, meter, result, {.engine = "inprocess"}, IncidentsOf(meter, result, {}));
   }
   /// A figure of the team's law, as measured and as predicted. Both must be numbers.
   double Measured(const std::string& figure) const { return Law()[figure].get<double>(); }

@@ -13,6 +13,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 constexpr const char* kRun = R"(
@@ -101,6 +102,10 @@ TEST(Send, SteersARunThatFliesAgainFromItsFileInBothEngines) {
   EXPECT_EQ(dds.File("run.mcap"), run.File("run.mcap"));
   EXPECT_EQ(inprocess.File("run.mcap"), run.File("run.mcap"));
   EXPECT_EQ(dds.Summary()["consensus"], run.Summary()["consensus"]) << "predictions too";
+  EXPECT_THAT(run.File("events.csv"),
+              HasSubstr(" by hand,\"goto = { agent = 1, position_m = [-2.0, 3.5, 2.0] }\n\"\n"));
+  EXPECT_THAT(run.File("events.csv"), HasSubstr("\n1,1,event,1,,event "));
+  EXPECT_THAT(dds.File("events.csv"), Not(HasSubstr("by hand"))) << "all are of its file";
   EXPECT_THAT(run.Info(), EndsWith("complete: yes\n"));
   EXPECT_THAT(Orchestrator("verify '" + run.path().string() + "'").output, HasSubstr("the same, bit for bit"));
 }

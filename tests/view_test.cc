@@ -157,6 +157,40 @@ TEST(View, PlaysARecordingWhereverAViewerWantsItUntilCtrlC) {
   EXPECT_EQ(view.Wait(), 130) << view.err();
 }
 
+TEST(View, TellsEventsByHandFromThoseOfTheFileByTheTableBesideTheRecording) {
+  const ScratchFolder folder;
+  WriteFile(folder.File("run.toml"), std::string(kRun) + "[[events]]\nat_s = 0.0\ncut = [[1, 2]]\n");
+  Up up(folder, "run", folder.File("run.toml"),
+        {"--engine", "inprocess", "--set", "run.mode='lockstep'", "--set", "run.pace=1.0"});
+  const auto send = [&](const std::string& words) {
+    return Shell("'" MASCOT_BINARY_DIR "/orchestrator' send --run '" + up.path().string() + "' " + words + " 2>&1");
+  };
+  EXPECT_TRUE(Until([&] { return up.IsOver() || send("pause").exit_code == 0; })) << up.err();
+  EXPECT_THAT(send("event 'set = { \"link.loss\" = 0.5 }\n'").output, StartsWith("takes effect at "));
+  EXPECT_THAT(send("set law.p_gain=2").output, StartsWith("takes effect at "));
+  send("step 2");
+  send("stop");
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+
+  const auto by_hand = [&] {
+    ViewOf view(folder, up.path());
+    Viewer viewer(UrlOf(view));
+    viewer.Subscribe("/ui/events");
+    nlohmann::json said;
+    for (const nlohmann::json& event : viewer.NextJsonOf("/ui/events")) said.push_back(event["by_hand"]);
+    return said.dump();
+  };
+  EXPECT_EQ(by_hand(), "[false,true,true]");
+  std::string table = up.File("events.csv");
+  table.replace(table.find("law.p_gain"), 10, "law.v_gain");
+  WriteFile(up.path() / "events.csv", table);
+  EXPECT_EQ(by_hand(), "[false,true,null]") << "another text: that of another run";
+  WriteFile(up.path() / "events.csv", "t_s\n\"\"\"");
+  EXPECT_EQ(by_hand(), "[null,null,null]");
+  std::filesystem::remove(up.path() / "events.csv");
+  EXPECT_EQ(by_hand(), "[null,null,null]");
+}
+
 TEST(View, PlaysACutRecordingUpToTheCutAndSaysThatItIsCut) {
   const ScratchFolder folder;
   const std::string whole = ReadFile(Record(folder));

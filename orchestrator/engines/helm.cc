@@ -145,6 +145,7 @@ void Helm::Adopt(const LiveExperiment& live) {
       ++of_file_;
     } else {
       by_hand_.push_back(event);
+      numbers_by_hand_.push_back(static_cast<int>(k) + 1);
       if (!granted_.empty()) granted_.pop_front();
     }
   }
@@ -213,6 +214,11 @@ void Helm::WaitUntil(Time time) const {
 std::vector<Event> Helm::by_hand() const {
   const std::lock_guard lock(mutex_);
   return by_hand_;
+}
+
+std::vector<int> Helm::numbers_by_hand() const {
+  const std::lock_guard lock(mutex_);
+  return numbers_by_hand_;
 }
 
 }  // namespace mascot

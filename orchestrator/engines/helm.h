@@ -64,6 +64,8 @@ class Helm final : public RunControl, public RowSink {
 
   /// Events that were given by hand and have taken effect, in order.
   std::vector<Event> by_hand() const;
+  /// The numbers that these have in the run, increasing: DecodedRow::Happening::number.
+  std::vector<int> numbers_by_hand() const;
 
  private:
   /// What the wish asks for, with an event's text in its fixed form. Throws ConfigError or std::invalid_argument if it
@@ -88,6 +90,7 @@ class Helm final : public RunControl, public RowSink {
   std::size_t of_file_ = 0;             // how many of the file's events are in live_
   std::deque<Event> granted_;           // by hand, not in live_ yet
   std::vector<Event> by_hand_;          // by hand, in live_
+  std::vector<int> numbers_by_hand_;    // likewise
 };
 
 }  // namespace mascot

@@ -2,39 +2,18 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <system_error>
 
 #include "agent/laws.h"
-#include "experiment/toml/utf8.h"
+#include "orchestrator/live/incident_table.h"
 #include "orchestrator/measuring/agreement_meter.h"
 
 namespace mascot {
-
-namespace {
-
-/// The first lines of the table of incidents beside the recording, as many as a page can mark; empty: there is none.
-std::string IncidentsBeside(const std::string& recording) {
-  constexpr std::size_t kMost = 1 << 17;  // bytes
-  const std::filesystem::path path = std::filesystem::path(recording).replace_filename("events.csv");
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return "";
-  std::string text(kMost, '\0');
-  std::ifstream table(path, std::ios::binary);
-  table.read(text.data(), std::ssize(text));
-  text.resize(static_cast<std::size_t>(table.gcount()));
-  if (text.size() == kMost) text.resize(text.find_last_of('\n') + 1);
-  return Utf8(text);
-}
-
-}  // namespace
 
 RecordedRun::RecordedRun(const std::string& run)
     : rows_(run),
       experiment_(LoadExperiment(Section::FromText(rows_.config(), rows_.path() + " (config.toml)"), rows_.name(),
                                  /*checked=*/true)),
-      incidents_(IncidentsBeside(rows_.path())),
+      incidents_(FirstIncidentsBeside(rows_.path())),
       events_(rows_.Events()),
       live_(experiment_, &LawTable(), /*checked=*/true),
       edges_(experiment_, last_tick(),
@@ -52,8 +31,8 @@ RecordedRun::RecordedRun(const std::string& run)
 
 std::vector<ShownEvent> RecordedRun::Events() const {
   std::vector<ShownEvent> shown;
-  for (const auto& [tick, event] : events_)
-    shown.push_back({.number = event.number, .tick = tick, .toml = event.toml, .by_hand = false});
+  for (const auto& [tick, event] : events_) shown.push_back({.number = event.number, .tick = tick, .toml = event.toml});
+  if (!shown.empty()) TellByHand(rows_.path(), experiment_, shown);
   return shown;
 }
 

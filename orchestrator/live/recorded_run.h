@@ -27,7 +27,8 @@ class RecordedRun {
   const IndexedRows& rows() const { return rows_; }
   std::int64_t last_tick() const { return rows_.ticks() - 1; }
   RecordedPart part() const { return {last_tick(), rows_.loss(), incidents_}; }
-  /// All events. None is known to have been given by hand: a recording does not say it.
+  /// All events. Which of them were given by hand the events.csv beside the recording says, not the recording: that is
+  /// the same, byte for byte, when the run is flown again from its config.toml.
   std::vector<ShownEvent> Events() const;
 
   /// The experiment as events have changed it up to and at `tick`. Throws ConfigError for an event that this version

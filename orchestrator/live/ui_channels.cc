@@ -202,7 +202,7 @@ std::string EventsJson(const Experiment& experiment, const std::vector<ShownEven
                     {"tick", event.tick},
                     {"t_s", experiment.time_s(event.tick)},
                     {"toml", event.toml},
-                    {"by_hand", event.by_hand}});
+                    {"by_hand", OrNull(event.by_hand)}});
   return CompactJson(json);
 }
 

@@ -48,8 +48,8 @@ struct ShownKey {
 /// An event that has taken effect.
 struct ShownEvent {
   std::int64_t number = 0, tick = 0;
-  std::string toml;
-  bool by_hand = false;
+  std::string toml = {};
+  std::optional<bool> by_hand = {};  ///< absent: nobody knows
 };
 
 /// What there is of a recording.

@@ -32,9 +32,10 @@ struct Incident {
   std::int64_t from = 0, to = 0;  ///< the first and the last tick
   std::int64_t count = 1;         ///< of the ticks in between, at how many; of kLostSamples: how many samples
   int agent = 0;                  ///< 1..N; 0: no agent in particular
-  int other = 0;
-  double speed_m_per_s = 0;  ///< of kContact: Contact::speed_m_per_s
-  std::string toml = {};     ///< of kEvent: Event::Toml()
+  int other = 0;                  ///< of kEvent: its number
+  double speed_m_per_s = 0;       ///< of kContact: Contact::speed_m_per_s
+  std::string toml = {};          ///< of kEvent: Event::Toml()
+  bool by_hand = false;           ///< of kEvent: it was given while the run went on, and is not of the file
 };
 
 /// So many are told one by one, beside contacts and rotor failures; beyond, they are counted.

@@ -46,7 +46,7 @@ std::string WithWhat(const Incident& incident) {
     case Kind::kLostSamples:
       return fmt::format("agent {}", incident.other);
     case Kind::kEvent:
-      return fmt::format("event {}", incident.other);
+      return fmt::format("event {}{}", incident.other, incident.by_hand ? " by hand" : "");
     default:
       return "";
   }
@@ -77,8 +77,11 @@ std::string PartnerOf(const Contact& contact) {
   return contact.other > 0 ? fmt::format("agent {}", contact.other) : fmt::format("obstacle {}", -contact.other);
 }
 
-Incidents IncidentsOf(const RunMeter& meter, const EngineResult& engine) {
-  return meter.IncidentsWith(engine.contacts.value_or(Contacts()), engine.pacing.value_or(Pacing()).late);
+Incidents IncidentsOf(const RunMeter& meter, const EngineResult& engine, std::span<const int> by_hand) {
+  Incidents all = meter.IncidentsWith(engine.contacts.value_or(Contacts()), engine.pacing.value_or(Pacing()).late);
+  for (Incident& incident : all.told)
+    incident.by_hand = incident.kind == Kind::kEvent && std::ranges::binary_search(by_hand, incident.other);
+  return all;
 }
 
 std::string IncidentsCsv(const Experiment& experiment, const Incidents& incidents) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "experiment/contacts.h"
@@ -11,8 +12,8 @@ namespace mascot {
 
 /// What the agent touched: "agent 4", "ground", "obstacle 2".
 std::string PartnerOf(const Contact& contact);
-/// All incidents of a run.
-Incidents IncidentsOf(const RunMeter& meter, const EngineResult& engine);
+/// All incidents of a run. `by_hand`: the numbers of the events that were given by hand, increasing.
+Incidents IncidentsOf(const RunMeter& meter, const EngineResult& engine, std::span<const int> by_hand);
 /// Text of events.csv; docs/recording.md describes the columns.
 std::string IncidentsCsv(const Experiment& experiment, const Incidents& incidents);
 /// The first incident of each kind in words, and how many there were; empty if there was none.

@@ -113,7 +113,7 @@ int Up(const UpArgs& args) {
   viewers.SayHowItEnded(result);
   if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
 
-  const Incidents incidents = IncidentsOf(meter, result);
+  const Incidents incidents = IncidentsOf(meter, result, helm.numbers_by_hand());
   RunFacts facts{args.engine, {}, writer.topics(), writer.samples()};
   const auto summary = [&](std::optional<int> exit) {
     facts.exit = exit;

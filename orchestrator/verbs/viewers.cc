@@ -1,5 +1,7 @@
 #include "orchestrator/verbs/viewers.h"
 
+#include <algorithm>
+
 #include "orchestrator/live/shown_keys.h"
 #include "orchestrator/processes/script.h"
 
@@ -46,12 +48,13 @@ void Viewers::SayHowItEnded(const EngineResult& result) {
 void Viewers::Events::Add(const FlownRow& row) {
   const auto& events = row.decoded().events;
   if (events.empty()) return;
-  const std::size_t by_hand = helm_.by_hand().size();
-  const std::size_t of_file = events.size() - (by_hand - by_hand_);  // those of the file come first
-  by_hand_ = by_hand;
+  const std::vector<int> by_hand = helm_.numbers_by_hand();
   const std::vector<ShownKey> keys = ShownKeysOf(*now_);
-  for (std::size_t i = 0; i < events.size(); ++i)
-    view_.OnEvent({.number = events[i].number, .tick = row.tick(), .toml = events[i].toml, .by_hand = i >= of_file},
+  for (const DecodedRow::Happening& event : events)
+    view_.OnEvent({.number = event.number,
+                   .tick = row.tick(),
+                   .toml = event.toml,
+                   .by_hand = std::ranges::binary_search(by_hand, event.number)},
                   *now_, keys);
 }
 

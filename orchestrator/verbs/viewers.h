@@ -46,7 +46,6 @@ class Viewers {
     LiveView& view_;
     const Helm& helm_;
     std::shared_ptr<const Experiment> now_;
-    std::size_t by_hand_ = 0;  // so far
   };
 
   Helm& helm_;

@@ -120,6 +120,7 @@ export async function startFake({port = 0, session = "1", frame_ms = 100, ...opt
     run,
     asked,
     drop,
+    tellEvents: () => sendAll("/ui/events", run.events),
     port: server.address().port,
     url: `http://127.0.0.1:${server.address().port}/`,
     stop() {

@@ -188,7 +188,7 @@ export class MadeUpRun {
           tick: t_s * RATE_HZ,
           t_s,
           toml: `[[events]]\nat_s = ${t_s.toFixed(1)}\n${keys}\n`,
-          by_hand: true
+          by_hand: k === 1
         }));
   }
 

@@ -261,6 +261,16 @@ test(
     "a recording is played, sought and not changed",
     () => watching({run: {source: "recording"}}, async ({page, fake}) => {
       assert.equal(await page.locator("#marks i").count(), 2);
+      const title = (k) => page.locator("#marks i").nth(k).getAttribute("title");
+      assert.match(await title(0), /^event 1\n/);
+      assert.match(await title(1), /^event 2 by hand\n/);
+      const widths = await page.locator("#marks i").evaluateAll((marks) => marks.map(({offsetWidth}) => offsetWidth));
+      assert.ok(widths[1] > 2 * widths[0], `a dot and a bar: ${widths}`);
+      assert.deepEqual(await page.locator("#events .event .badge").allTextContents(), ["by hand", "file"]);
+      fake.run.events[1].by_hand = null;
+      fake.tellEvents();
+      await until(page, () => document.querySelectorAll("#events .event .badge").length === 1);
+      assert.match(await title(1), /^event 2\n/);
       assert.ok(await page.locator("#stop").isHidden());
       await page.locator("#seek").fill("30");
       await until(page, () => Math.abs(mascot.t_s - 30) < 0.02);

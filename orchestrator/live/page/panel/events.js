@@ -1,4 +1,4 @@
-// The events of the run: when, what, and by whom; to be copied into an experiment file.
+// The events of the run: when, what, and by whom, if that is known; to be copied into an experiment file.
 import {byId, element, setText} from "../dom.js";
 
 export class Events {
@@ -35,7 +35,9 @@ export class Events {
         element(
             "header", {}, element("b", {textContent: `tick ${tick}`}),
             element("span", {className: "muted", textContent: ` ${t_s.toFixed(2)} s`}),
-            element("span", {className: "badge", textContent: by_hand ? "by hand" : "file"}), copy),
+            ...(by_hand === null ? [] :
+                                   [element("span", {className: "badge", textContent: by_hand ? "by hand" : "file"})]),
+            copy),
         element("pre", {textContent: toml.trim()}));
   }
 

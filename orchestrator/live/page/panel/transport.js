@@ -131,7 +131,11 @@ export class Transport {
     if (!experiment) return;
     const marks = [
       ...incidents.map(({t_s, words}) => ({t_s, title: `${t_s.toFixed(2)} s: ${words}`, className: "incident"})),
-      ...events.map(({t_s, number, toml}) => ({t_s, title: `event ${number}\n${toml}`, className: ""}))
+      ...events.map(({t_s, number, toml, by_hand}) => ({
+                      t_s,
+                      title: `event ${number}${by_hand ? " by hand" : ""}\n${toml}`,
+                      className: by_hand ? "by-hand" : ""
+                    }))
     ];
     if (JSON.stringify(marks) === this.#marked) return;
     this.#marked = JSON.stringify(marks);

@@ -1,0 +1,73 @@
+#include "orchestrator/live/incident_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+
+#include "experiment/toml/utf8.h"
+
+namespace mascot {
+namespace {
+
+/// At most so many bytes of the table beside the recording; empty: there is none.
+std::string TableBeside(const std::string& recording, std::size_t most) {
+  const std::filesystem::path path = std::filesystem::path(recording).replace_filename("events.csv");
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return "";
+  std::string text(std::min<std::size_t>(most, std::filesystem::file_size(path, error)), '\0');
+  if (error) return "";
+  std::ifstream table(path, std::ios::binary);
+  table.read(text.data(), std::ssize(text));
+  text.resize(static_cast<std::size_t>(table.gcount()));
+  return text;
+}
+
+/// Takes the next line off `text`, as its fields; quoted ones may hold commas, lines and doubled quotes (RFC 4180).
+std::vector<std::string> TakeLine(std::string_view& text) {
+  std::vector<std::string> fields(1);
+  bool is_quoted = false;
+  std::size_t at = 0;
+  for (; at < text.size() && (is_quoted || text[at] != '\n'); ++at) {
+    if (text[at] == '"' && is_quoted && text.substr(at + 1).starts_with('"'))
+      fields.back() += text[++at];
+    else if (text[at] == '"')
+      is_quoted = !is_quoted;
+    else if (text[at] == ',' && !is_quoted)
+      fields.emplace_back();
+    else
+      fields.back() += text[at];
+  }
+  text.remove_prefix(std::min(at + 1, text.size()));
+  return fields;
+}
+
+}  // namespace
+
+std::string FirstIncidentsBeside(const std::string& recording) {
+  constexpr std::size_t kMost = 1 << 17;  // bytes
+  std::string text = TableBeside(recording, kMost);
+  if (text.size() == kMost) text.resize(text.find_last_of('\n') + 1);
+  return Utf8(text);
+}
+
+void TellByHand(const std::string& recording, const Experiment& experiment, std::vector<ShownEvent>& events) {
+  const std::string table = TableBeside(recording, std::string::npos);
+  std::string_view text = table;
+  auto event = events.begin();
+  while (!text.empty() && event != events.end()) {
+    const std::vector<std::string> fields = TakeLine(text);  // t_s, until_s, what, count, agent, with, detail
+    if (fields.size() != 7 || fields[2] != "event") continue;
+    const auto number = fmt::format("event {}", event->number);
+    const bool by_hand = fields[5] == number + " by hand";
+    if (!by_hand && fields[5] != number) continue;
+    if (fields[0] == fmt::format("{}", experiment.time_s(event->tick)) && fields[6] == event->toml)
+      event->by_hand = by_hand;
+    ++event;
+  }
+}
+
+}  // namespace mascot
