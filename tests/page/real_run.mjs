@@ -20,16 +20,30 @@ export async function startRun(config, ...options) {
   return serve(folder, ["up", join(ROOT, "configs", config), "--view", "--out", join(folder, "run"), ...options]);
 }
 
+/** Starts an experiment that is given as TOML; likewise. */
+export async function startRunOf(toml, ...options) {
+  const {folder, file} = await written(toml);
+  return serve(folder, ["up", file, "--view", "--out", join(folder, "run"), ...options]);
+}
+
 /** Flies an experiment, given as TOML, as fast as it goes, and serves its recording; likewise. */
 export async function startRecording(toml) {
-  const folder = await mkdtemp(join(tmpdir(), "mascot-page-")), file = join(folder, "flown.toml");
-  await writeFile(file, toml);
+  const {folder, file} = await written(toml);
   const flight = spawn(
       ORCHESTRATOR,
       ["up", file, "--engine", "inprocess", "--set", "output.save_plot=false", "--out", join(folder, "run"), "--quiet"],
       {stdio: ["ignore", "ignore", "inherit"]});
   await once(flight, "exit");
   return serve(folder, ["view", join(folder, "run")]);
+}
+
+/** The text of an experiment of configs/. */
+export const textOf = (config) => readFile(join(ROOT, "configs", config), "utf8");
+
+async function written(toml) {
+  const folder = await mkdtemp(join(tmpdir(), "mascot-page-")), file = join(folder, "flown.toml");
+  await writeFile(file, toml);
+  return {folder, file};
 }
 
 async function serve(folder, words) {

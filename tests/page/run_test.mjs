@@ -4,7 +4,7 @@ import {test} from "node:test";
 
 import {launch, open} from "./browser.mjs";
 import {clickEdge, drag, edgeInTheOpen, edgeShowsAs, pausedFromAbove, until} from "./hand.mjs";
-import {startRecording, startRun} from "./real_run.mjs";
+import {startRecording, startRun, startRunOf, textOf} from "./real_run.mjs";
 
 /** What follows each other on one run, which `body` functions get with its page. */
 const TOUCHES = {
@@ -163,6 +163,127 @@ test("the page of a recording goes where it is asked to, and shows what was so a
     await page.locator("#seek").fill("0");
     await shows(() => mascot.tick === 0 && mascot.edgeStates.length === 3);
     assert.deepEqual(await page.evaluate(() => mascot.positions), first);
+    assert.deepEqual(troubles, []);
+  } finally {
+    await recording.stop();
+    await browser.close();
+  }
+});
+
+const PHASES = `
+[run]
+name = "phases"
+duration_s = 100.0
+[agents]
+count = 3
+position_m = [[0, 0, 1], [4, 0, 1], [0, 4, 2]]
+model = "double_integrator"
+[graph]
+edges = [[1, 2], [2, 3], [3, 1]]
+[law]
+name = "consensus"
+p_gain = 0.1
+[[law.schedule]]
+at_s = 0.02
+name = "formation"
+shape = "line"
+p_gain = 0.2
+[[law.schedule]]
+at_s = 0.04
+leader = 1
+leader_waypoints_m = [[6.0, 4.0, 2.0]]
+`;
+
+/** What a page says of the law: of agent 1, which is chosen, in the list of live keys, and of the events so far. */
+async function lawOn(page) {
+  const {agents, keys, changes} = await page.evaluate(
+      () => ({
+        agents: mascot.experiment.agents.map(({law, leads}) => `${law}${leads ? ", leads" : ""}`),
+        keys: Object.fromEntries(["law.p_gain", "law.spacing_m"].map(
+            (key) => [key, mascot.experiment.live_keys.find((live) => live.key === key)?.value ?? null])),
+        changes: mascot.events.map(({tick}) => tick),
+      }));
+  const title = await page.textContent("#detail h3 small");
+  return {agents: agents[0], others: agents[1], title: title.trim(), ...keys, changes};
+}
+
+const CONSENSUS = {
+  agents: "consensus",
+  others: "consensus",
+  title: "double integrator, consensus",
+  "law.p_gain": 0.1,
+  "law.spacing_m": null,
+};
+const FORMATION = {
+  agents: "formation",
+  others: "formation",
+  title: "double integrator, formation",
+  "law.p_gain": 0.2,
+  "law.spacing_m": 2,
+};
+const LED = {
+  ...FORMATION,
+  agents: "formation, leads",
+  title: "double integrator, formation, leads"
+};
+
+test("a run whose law changes shows the law that it has, and lists the changes", async () => {
+  // So slow that it stands still but for the steps below.
+  const browser = await launch(), run = await startRunOf(PHASES, "--engine", "inprocess", "--set", "run.pace=0.0001");
+  try {
+    const {page, troubles} = await open(browser, run.url);
+    await until(page, () => mascot.state === "running");
+    await page.keyboard.press("Space");
+    await until(page, () => mascot.state === "paused");
+    await page.keyboard.press("1");
+    const stepTo = async (tick) => {
+      while (await page.evaluate(() => mascot.tick) < tick) {
+        const now = await page.evaluate(() => mascot.tick);
+        await page.keyboard.press(".");
+        await until(page, (before) => mascot.tick === before + 1, now);
+      }
+      await until(page, (count) => mascot.events.length === count, Math.floor(tick / 2));
+      await until(
+          page, (words) => document.querySelector("#detail h3 small")?.textContent.trim().endsWith(words),
+          ["consensus", "formation", "leads"][Math.floor(tick / 2)]);
+      return lawOn(page);
+    };
+    assert.deepEqual(await stepTo(1), {...CONSENSUS, changes: []});
+    assert.deepEqual(await stepTo(2), {...FORMATION, changes: [2]});
+    assert.deepEqual(await stepTo(4), {...LED, changes: [2, 4]});
+    await page.click("#tab-events");
+    const listed = await page.locator("#events .event").allTextContents();
+    assert.equal(listed.length, 2);
+    assert.match(listed[0], /^tick 4 0\.04 s *file.*law = \{.*"leader" = 1,/s);
+    assert.match(listed[1], /^tick 2 0\.02 s *file.*law = \{.*"name" = "formation"/s);
+    assert.deepEqual(troubles, []);
+  } finally {
+    await run.stop();
+    await browser.close();
+  }
+});
+
+test("the page of a recording whose law changes shows the law of the tick", async () => {
+  const browser = await launch(), recording = await startRecording(await textOf("formation_change.toml"));
+  try {
+    const {page, troubles} = await open(browser, recording.url);
+    await until(page, () => mascot.experiment?.live_keys.length > 0 && mascot.state === "paused");
+    await page.keyboard.press("1");
+    const at = async (t_s, title) => {
+      await page.locator("#seek").fill(String(t_s));
+      await until(page, (t_s) => mascot.t_s === t_s, t_s);
+      await until(page, (title) => document.querySelector("#detail h3 small")?.textContent.trim() === title, title);
+      return page.evaluate(() => mascot.experiment.agents.map(({place_m}) => place_m.map((x) => x.toFixed(3)).join()));
+    };
+    const circle = await at(10, "quadrotor, formation"), vee = await at(15, "quadrotor, formation");
+    assert.notDeepEqual(circle, vee);
+    assert.deepEqual(await at(30, "quadrotor, formation, leads"), vee);
+    assert.deepEqual(await at(14.99, "quadrotor, formation"), circle);
+    await page.click("#tab-events");
+    assert.deepEqual(
+        await page.locator("#events .event header").allTextContents(),
+        ["tick 3000 30.00 sfileCopy as TOML", "tick 1500 15.00 sfileCopy as TOML"]);
+    assert.equal(await page.locator("#marks i:not(.incident):not(.by-hand)").count(), 2);
     assert.deepEqual(troubles, []);
   } finally {
     await recording.stop();

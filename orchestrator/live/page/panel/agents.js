@@ -106,8 +106,8 @@ class Detail {
   update() {
     const {selected, frame, experiment} = this.#model;
     if (!experiment || !frame || byId("agents").hidden) return;
-    const wanted =
-        `${selected} ${experiment.edges.length} ${experiment.name} ${selected && this.#model.agent(selected).law}`;
+    const {law, leads} = this.#model.agent(selected) ?? {};  // an event may change both
+    const wanted = `${selected} ${experiment.edges.length} ${experiment.name} ${law} ${leads}`;
     if (wanted !== this.#drawn) this.#make(selected);
     this.#drawn = wanted;
     if (selected) this.#fill(selected);
