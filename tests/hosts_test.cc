@@ -2,16 +2,22 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <initializer_list>
 
+#include "experiment/events.h"
+#include "orchestrator/recording/indexed_rows.h"
 #include "tests/orchestrator.h"
 
 namespace mascot::test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 /// Two network namespaces as hosts, 10.77.0.1 (ours) and 10.77.0.2. Their names contain our pid; the destructor removes
 /// them.
@@ -100,9 +106,43 @@ class Hosts : public testing::Test {
     return Shell(command + " 2>&1");
   }
 
+  /// Asks the run of FlyTogether() for something.
+  Ran Send(std::vector<std::string> words) {
+    words.insert(words.begin(), {"send", "--run", folder_.File("run")});
+    return Orchestrator(words);
+  }
+
+  /// The newest tick of that run; -1: none yet.
+  std::int64_t TickNow() {
+    for (const auto& run : nlohmann::json::parse(Orchestrator({"ps", "--json"}).output))
+      if (run["tick"].is_number()) return run["tick"].get<std::int64_t>();
+    return -1;
+  }
+
   ScratchFolder folder_;
   TwoHosts hosts_;
 };
+
+/// Where the commands of two runs begin to differ: the tick, and whose do at that tick.
+struct Difference {
+  std::int64_t tick = -1;  ///< -1: nowhere
+  std::vector<int> agents = {};
+};
+
+Difference FirstDifference(const std::string& a, const std::string& b) {
+  IndexedRows rows_a(a), rows_b(b);
+  DecodedRow row_a(rows_a.agents()), row_b(rows_b.agents());
+  for (std::int64_t tick = 0; tick < std::min(rows_a.ticks(), rows_b.ticks()); ++tick) {
+    rows_a.Read(tick, row_a);
+    rows_b.Read(tick, row_b);
+    Difference difference{.tick = tick};
+    for (std::size_t i = 0; i < row_a.commands.size(); ++i)
+      if (row_a.commands[i].a_limited_W != row_b.commands[i].a_limited_W)
+        difference.agents.push_back(static_cast<int>(i) + 1);
+    if (!difference.agents.empty()) return difference;
+  }
+  return {};
+}
 
 TEST_F(Hosts, AnAgentOnAnotherHostJoinsAndTheRecordingIsTheSame) {
   FlyTogether(Config("leaderless"), {"--duration-s", "1"}, 2);
@@ -137,23 +177,68 @@ at_s = 0.1
 agents = [2]
 set = { "law.p_gain" = 0.4 }
 )");
-  const auto send = [this](std::vector<std::string> words) {
-    words.insert(words.begin(), {"send", "--run", folder_.File("run")});
-    return Orchestrator(words);
-  };
   FlyTogether(folder_.File("events.toml"), {}, 2, [&] {
-    ASSERT_TRUE(Until([&] { return send({"pause"}).exit_code == 0; })) << send({"pause"}).output;
+    ASSERT_TRUE(Until([&] { return Send({"pause"}).exit_code == 0; })) << Send({"pause"}).output;
     for (const std::vector<std::string>& words : std::initializer_list<std::vector<std::string>>{
              {"goto", "2", "-3", "1", "2"}, {"--agents", "2", "set", "law.beta=2"}, {"cut", "2,1"}, {"step", "20"}}) {
-      const Ran ran = send(words);
+      const Ran ran = Send(words);
       EXPECT_EQ(ran.exit_code, 0) << ran.output;
     }
-    EXPECT_EQ(send({"resume"}).exit_code, 0);
-    EXPECT_EQ(send({"pace", "0"}).exit_code, 0);
+    EXPECT_EQ(Send({"resume"}).exit_code, 0);
+    EXPECT_EQ(Send({"pace", "0"}).exit_code, 0);
   });
   EXPECT_THAT(ReadFile(folder_.File("run/config.toml")),
               AllOf(HasSubstr("goto = { agent = 2, position_m = [-3.0, 1.0, 2.0] }"),
                     HasSubstr("set = { \"law.beta\" = 2"), HasSubstr("cut = [[2, 1]]")));
+}
+
+TEST_F(Hosts, AnEventByHandReachesTheAgentOnAnotherHostAloneAndAtItsTick) {
+  const std::string file = R"(
+[run]
+duration_s = 1.0
+pace = 1.0
+[agents]
+count = 3
+model = "double_integrator"
+position_m = [[0, 0, 1], [1, 0, 2], [0, 2, 3]]
+[graph]
+topology = "ring"
+[law]
+name = "consensus"
+leader = 2
+)";
+  WriteFile(folder_.File("file.toml"), file);
+  const auto tick_of = [](const Ran& ran) {
+    const std::string before = "takes effect at tick ";
+    EXPECT_THAT(ran.output, StartsWith(before));
+    return ran.output.starts_with(before) ? std::stoll(ran.output.substr(before.size())) : -1;
+  };
+  std::int64_t sent_there = 0, gain_set = 0;
+  FlyTogether(folder_.File("file.toml"), {}, 2, [&] {
+    ASSERT_TRUE(Until([&] { return Send({"pause"}).exit_code == 0; })) << Send({"pause"}).output;
+    sent_there = tick_of(Send({"goto", "2", "-3", "1", "2"}));
+    EXPECT_EQ(Send({"step", "5"}).exit_code, 0);
+    EXPECT_TRUE(Until([&] { return TickNow() >= sent_there; }));
+    gain_set = tick_of(Send({"--agents", "2", "set", "law.leader_p_gain=3"}));
+    EXPECT_EQ(Send({"resume"}).exit_code, 0);
+    EXPECT_EQ(Send({"pace", "0"}).exit_code, 0);
+  });
+  EXPECT_GT(gain_set, sent_there);
+
+  const auto fly = [this](const std::string& name, const std::string& text) {
+    WriteFile(folder_.File(name + ".toml"), text);
+    Up up(folder_, name, folder_.File(name + ".toml"), {"--engine", "inprocess", "--set", "run.pace=0"});
+    EXPECT_EQ(up.Wait(), 0) << up.err();
+    return up.path().string();
+  };
+  const Difference first = FirstDifference(folder_.File("run"), fly("without", file));
+  EXPECT_EQ(first.tick, sent_there);
+  EXPECT_THAT(first.agents, ElementsAre(2));
+  const std::string goto_alone =
+      WithEvent(file, sent_there, 100, "goto = { agent = 2, position_m = [-3.0, 1.0, 2.0] }\n");
+  const Difference second = FirstDifference(folder_.File("run"), fly("goto_alone", goto_alone));
+  EXPECT_EQ(second.tick, gain_set);
+  EXPECT_THAT(second.agents, ElementsAre(2));
 }
 
 TEST_F(Hosts, AnAgentOnAnotherHostJoinsThroughTheDiscoveryServer) {
