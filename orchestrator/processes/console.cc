@@ -47,7 +47,7 @@ void Console::EraseProgress() {
 
 void Console::Print(const std::string& line) {
   EraseProgress();
-  std::cerr << line << "\n" << progress_ << std::flush;
+  std::cerr << line << "\n" << Fitting(progress_) << std::flush;
 }
 
 void Console::Line(const std::string& text) {
@@ -68,8 +68,8 @@ void Console::Progress(double fraction, const std::string& text) {
   const std::lock_guard lock(mutex_);
   if (terminal_) {
     EraseProgress();
-    progress_ = Fitting(text);
-    std::cerr << progress_ << std::flush;
+    progress_ = text;
+    std::cerr << Fitting(text) << std::flush;
   } else if (const int tenths = static_cast<int>(fraction * 10); tenths > tenths_) {
     tenths_ = tenths;
     Print(text);

@@ -32,7 +32,7 @@ class Console {
   const bool quiet_;
   const bool terminal_;
   const bool colour_;
-  std::string progress_;  // text of the progress line on the terminal
+  std::string progress_;  // whole text of the progress line on the terminal, which shows as much of it as fits
   int tenths_ = -1;       // without a terminal: tenths of the run done at the last line
 };
 

@@ -1,0 +1,190 @@
+// What is drawn on a terminal: the progress line of a run and of a sweep, on terminals of several widths.
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <poll.h>
+#include <pty.h>
+#include <sys/ioctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "orchestrator/processes/console.h"
+#include "tests/scratch.h"
+
+namespace mascot::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+constexpr std::string_view kErase = "\r\x1b[K";
+
+/// What was drawn, line by line: a line ends where the next one begins, or where it is erased. Without empty ones.
+std::vector<std::string> Drawn(std::string_view bytes) {
+  std::vector<std::string> lines(1);
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    if (bytes.substr(at).starts_with(kErase)) {
+      at += kErase.size() - 1;
+      lines.emplace_back();
+    } else if (bytes[at] == '\n') {
+      lines.emplace_back();
+    } else if (bytes[at] != '\r') {  // a terminal writes \r\n for \n
+      lines.back() += bytes[at];
+    }
+  }
+  std::erase(lines, "");
+  return lines;
+}
+
+winsize Columns(int width) {
+  winsize size{};
+  size.ws_row = 24;
+  size.ws_col = static_cast<unsigned short>(width);
+  return size;
+}
+
+/// All that comes from a terminal until its other end is closed.
+std::string ReadAll(int terminal) {
+  std::string bytes;
+  char buffer[4096];
+  for (ssize_t count; (count = read(terminal, buffer, sizeof buffer)) > 0;)
+    bytes.append(buffer, static_cast<std::size_t>(count));
+  return bytes;
+}
+
+/// A terminal in the place of this process's stderr, for as long as this object lives.
+class Terminal {
+ public:
+  explicit Terminal(int width) {
+    const winsize size = Columns(width);
+    int theirs = -1;
+    if (openpty(&ours_, &theirs, nullptr, nullptr, &size) != 0) throw std::runtime_error("no pseudo-terminal");
+    before_ = dup(STDERR_FILENO);
+    dup2(theirs, STDERR_FILENO);
+    close(theirs);
+    fcntl(ours_, F_SETFL, O_NONBLOCK);
+  }
+  ~Terminal() {
+    dup2(before_, STDERR_FILENO);
+    close(before_);
+    close(ours_);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  void Resize(int width) const {
+    const winsize size = Columns(width);
+    ioctl(ours_, TIOCSWINSZ, &size);
+  }
+  /// The lines that were drawn since the last call.
+  std::vector<std::string> Drawn() const { return test::Drawn(ReadAll(ours_)); }
+
+ private:
+  int ours_ = -1, before_ = -1;
+};
+
+TEST(Console, CutsTheProgressLineToTheTerminal) {
+  const std::string text = "t = 1.00 of 60 s | 12.3 x real time | 5 agents | disagreement 1.23 m";
+  const Terminal terminal(40);
+  Console console(/*quiet=*/false);
+  console.Progress(0.1, text);
+  EXPECT_THAT(terminal.Drawn(), ElementsAre(text.substr(0, 39))) << "the last column would move the cursor on";
+  terminal.Resize(120);
+  console.Progress(0.2, text);
+  EXPECT_THAT(terminal.Drawn(), ElementsAre(text));
+  terminal.Resize(20);
+  console.Line("a line");
+  EXPECT_THAT(terminal.Drawn(), ElementsAre("a line", text.substr(0, 19)));
+  terminal.Resize(120);
+  console.Line("another");
+  EXPECT_THAT(terminal.Drawn(), ElementsAre("another", text)) << "there is room again";
+  terminal.Resize(0);
+  console.Progress(0.3, text + text + text);
+  EXPECT_THAT(terminal.Drawn(), ElementsAre(text + text + text)) << "a terminal that does not say how wide it is";
+  console.EndProgress();
+  console.Line("the end");
+  EXPECT_THAT(terminal.Drawn(), ElementsAre("the end"));
+}
+
+TEST(Console, CutsBetweenCharacters) {
+  const Terminal terminal(10);
+  Console console(/*quiet=*/false);
+  console.Progress(0.1, "12345678\u00e9");
+  EXPECT_THAT(terminal.Drawn(), ElementsAre("12345678"));
+}
+
+/// Runs the orchestrator in `folder`, on a terminal of this width. Returns the lines that it draws.
+std::vector<std::string> DrawnBy(const std::vector<std::string>& words, const std::string& folder, int width) {
+  const winsize size = Columns(width);
+  int terminal = -1;
+  const pid_t child = forkpty(&terminal, nullptr, nullptr, &size);
+  if (child == 0) {
+    std::vector<char*> argv{const_cast<char*>("orchestrator")};
+    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+    setenv("NO_COLOR", "1", 1);
+    if (chdir(folder.c_str()) == 0) execv(MASCOT_BINARY_DIR "/orchestrator", argv.data());
+    _exit(127);
+  }
+  const std::string bytes = ReadAll(terminal);
+  int status = -1;
+  waitpid(child, &status, 0);
+  close(terminal);
+  EXPECT_EQ(status, 0) << bytes;
+  return Drawn(bytes);
+}
+
+std::vector<std::string> Having(const std::string& part, const std::vector<std::string>& lines) {
+  std::vector<std::string> having;
+  for (const std::string& line : lines)
+    if (line.find(part) != std::string::npos) having.push_back(line);
+  return having;
+}
+
+class TerminalOfWidth : public testing::TestWithParam<int> {
+ protected:
+  /// Each of the lines that begins like this fits, and there are some.
+  void ExpectToFit(const std::vector<std::string>& progress) const {
+    EXPECT_THAT(progress, Not(IsEmpty()));
+    for (const std::string& line : progress) EXPECT_LT(line.size(), static_cast<std::size_t>(GetParam())) << line;
+  }
+  ScratchFolder folder_;
+};
+
+TEST_P(TerminalOfWidth, HoldsEachProgressLineOfARun) {
+  WriteFile(folder_.File("run.toml"),
+            "[run]\nduration_s = 20.0\n[agents]\ncount = 6\nmodel = \"double_integrator\"\n"
+            "[graph]\ntopology = \"ring\"\n[law]\nname = \"consensus\"\n[output]\nsave_plot = false\n");
+  const auto lines =
+      DrawnBy({"up", "run.toml", "--engine", "inprocess", "--out", "run"}, folder_.File("."), GetParam());
+  const auto progress = Having("t = ", lines);
+  ExpectToFit(progress);
+  EXPECT_THAT(progress.back(), StartsWith("t = 20.00 of 20 s | "));
+  EXPECT_EQ(progress.back().find(" | disagreement ") != std::string::npos, GetParam() == 120) << progress.back();
+}
+
+TEST_P(TerminalOfWidth, HoldsEachProgressLineOfASweep) {
+  WriteFile(folder_.File("run.toml"),
+            "[run]\nduration_s = 1.0\n[agents]\ncount = 3\nmodel = \"double_integrator\"\n"
+            "[graph]\ntopology = \"ring\"\n[law]\nname = \"consensus\"\n");
+  const auto lines =
+      DrawnBy({"sweep", "run.toml", "--set", "law.p_gain=0.1:0.1:1.0", "--no-plot", "--out", "sweep.csv"},
+              folder_.File("."), GetParam());
+  const auto progress = Having(" of 10 runs | ", lines);
+  ExpectToFit(progress);
+  EXPECT_THAT(progress.back(), StartsWith("10 of 10 runs | 0 failed | about "));
+  EXPECT_EQ(progress.back().ends_with(" s left"), GetParam() == 120) << progress.back();
+}
+
+INSTANTIATE_TEST_SUITE_P(Widths, TerminalOfWidth, testing::Values(40, 120));
+
+}  // namespace
+}  // namespace mascot::test
