@@ -12,35 +12,54 @@ const Outcomes::Cells kColumns = {"run", "law.name", "run.seed", "error", "conse
 
 SweepPlan Plan() { return SweepPlan({.sets = {"law.name=a,'b'"}, .randoms = {}, .seeds = "1..3"}); }
 
-TEST(Outcomes, SayNothingWhereEveryRunIsWell) {
-  EXPECT_THAT(Outcomes(Plan(), kColumns, {{"0", "a", "1", "", "4.0", ""}}).Lines(), IsEmpty());
+/// Runs of the law of their law.name each: a, whose agents agree, and b, whose agents do not.
+SweepLaws LawsOf(const SweepPlan& plan) {
+  SweepLaws::Known known;
+  for (std::size_t run = 0; run < plan.size(); ++run) {
+    const bool is_a = plan[run].overrides[0].value == "a";
+    known[run] = {.team = is_a ? "a" : "b", .team_agrees = is_a, .names = {is_a ? "a" : "b"}};
+  }
+  return {plan, plan.FirstsAlike(SweepPlan::Alike::kInValues), known};
 }
 
+/// Lines of the outcomes of these rows.
+std::vector<std::string> LinesOf(const std::vector<Outcomes::Cells>& rows) {
+  const SweepPlan plan = Plan();
+  const SweepLaws laws = LawsOf(plan);
+  return Outcomes(plan, laws, kColumns, rows).Lines();
+}
+
+/// Statistics of these rows.
+std::string StatisticsOf(const std::vector<std::string>& metrics, const std::vector<Outcomes::Cells>& rows) {
+  const SweepPlan plan = Plan();
+  const SweepLaws laws = LawsOf(plan);
+  return Outcomes(plan, laws, kColumns, rows).StatisticsCsv(metrics);
+}
+
+TEST(Outcomes, SayNothingWhereEveryRunIsWell) { EXPECT_THAT(LinesOf({{"0", "a", "1", "", "4.0", ""}}), IsEmpty()); }
+
 TEST(Outcomes, CountWhatFailedAndWhatDidNotSettle) {
-  const Outcomes outcomes(Plan(), kColumns,
-                          {{"0", "a", "1", "it fell", "", ""},
-                           {"1", "a", "2", "", "", ""},
-                           {"2", "a", "3", "it fell", "", ""},
-                           {"3", "'b'", "1", std::string(300, 'x'), "", ""},
-                           {"4", "'b'", "2", "c", "", ""},
-                           {"5", "'b'", "3", "d", "", ""}});
-  EXPECT_THAT(outcomes.Lines(),
-              ElementsAre("failed: 5 of 6 runs", "  run 0 and 1 more: it fell",
-                          "  run 3: " + std::string(100, 'x') + " ... " + std::string(100, 'x'), "  run 4: c",
-                          "  and 1 other reasons",
-                          "not settled by the end: 1 of 6 runs (no consensus.settling_time_s), first run 1"));
+  const auto lines = LinesOf({{"0", "a", "1", "it fell", "", ""},
+                              {"1", "a", "2", "", "", ""},
+                              {"2", "a", "3", "it fell", "", ""},
+                              {"3", "'b'", "1", std::string(300, 'x'), "", ""},
+                              {"4", "'b'", "2", "c", "", ""},
+                              {"5", "'b'", "3", "d", "", ""}});
+  EXPECT_THAT(lines, ElementsAre("failed: 5 of 6 runs", "  run 0 and 1 more: it fell",
+                                 "  run 3: " + std::string(100, 'x') + " ... " + std::string(100, 'x'), "  run 4: c",
+                                 "  and 1 other reasons",
+                                 "not settled by the end: 1 of 6 runs (no consensus.settling_time_s), first run 1"));
 }
 
 TEST(Outcomes, HaveStatisticsOverTheSeedsOfEachPoint) {
-  const SweepPlan plan = Plan();
-  const Outcomes outcomes(plan, kColumns,
-                          {{"0", "a", "1", "", "4.0", "1"},
-                           {"1", "a", "2", "", "6.0", ""},
-                           {"2", "a", "3", "", "5.0", ""},
-                           {"3", "'b'", "1", "it fell", "", ""},
-                           {"4", "'b'", "2", "", "", ""},
-                           {"5", "'b'", "3", "", "2.0", ""}});
-  EXPECT_EQ(outcomes.StatisticsCsv({"consensus.settling_time_s", "laws.a.cost"}),
+  const std::string csv =
+      StatisticsOf({"consensus.settling_time_s", "laws.a.cost"}, {{"0", "a", "1", "", "4.0", "1"},
+                                                                  {"1", "a", "2", "", "6.0", ""},
+                                                                  {"2", "a", "3", "", "5.0", ""},
+                                                                  {"3", "'b'", "1", "it fell", "", ""},
+                                                                  {"4", "'b'", "2", "", "", ""},
+                                                                  {"5", "'b'", "3", "", "2.0", ""}});
+  EXPECT_EQ(csv,
             "law.name,metric,runs,failed,without_value,mean,mean_low_95,mean_high_95,median,decile_1,decile_9\n"
             "a,consensus.settling_time_s,3,0,0,5.0,2.5158622882496724,7.484137711750328,5.0,4.2,5.8\n"
             "'b',consensus.settling_time_s,3,1,1,2.0,,,inf,inf,inf\n"
@@ -49,9 +68,7 @@ TEST(Outcomes, HaveStatisticsOverTheSeedsOfEachPoint) {
 }
 
 TEST(Outcomes, LeaveOutWhatNoRunHas) {
-  const SweepPlan plan = Plan();
-  const Outcomes outcomes(plan, kColumns, {{"0", "a", "1", "", "", ""}});
-  EXPECT_EQ(outcomes.StatisticsCsv({"consensus.settling_time_s"}),
+  EXPECT_EQ(StatisticsOf({"consensus.settling_time_s"}, {{"0", "a", "1", "", "", ""}}),
             "law.name,metric,runs,failed,without_value,mean,mean_low_95,mean_high_95,median,decile_1,decile_9\n");
 }
 

@@ -137,6 +137,22 @@ TEST(SweepPlan, DrawsTheSameSamplesEveryTime) {
   EXPECT_NEAR(below_1, 100, 30) << "half of the decades";
 }
 
+TEST(SweepPlan, KnowsWhichRunsAreAlikeButForTheirSeeds) {
+  const auto firsts = [](const SweepPlan& plan, SweepPlan::Alike alike) {
+    std::vector<std::size_t> all;
+    for (std::size_t run = 0; run < plan.size(); ++run) all.push_back(plan.FirstsAlike(alike)[run]);
+    return all;
+  };
+  const SweepPlan plan({.sets = {"a=x,y", "b=1,2"}, .randoms = {}, .seeds = "1..2"});
+  EXPECT_THAT(firsts(plan, SweepPlan::Alike::kInValues), ElementsAre(0, 0, 2, 2, 4, 4, 6, 6));
+  EXPECT_THAT(firsts(plan, SweepPlan::Alike::kInWords), ElementsAre(0, 0, 0, 0, 4, 4, 4, 4));
+  const SweepPlan drawn({.sets = {"a=x,x"}, .randoms = {"b=0:1", "c=1:1"}, .samples = 2, .seeds = ""});
+  EXPECT_THAT(firsts(drawn, SweepPlan::Alike::kInValues), ElementsAre(0, 1, 0, 1));
+  EXPECT_THAT(firsts(drawn, SweepPlan::Alike::kInWords), ElementsAre(0, 0, 0, 0));
+  const SweepPlan same({.sets = {"a=1"}, .randoms = {"b=1:1"}, .samples = 2, .seeds = ""});
+  EXPECT_THAT(firsts(same, SweepPlan::Alike::kInValues), ElementsAre(0, 0));
+}
+
 TEST(SweepPlan, SaysWhatItExpected) {
   const auto of = [](Words words) { return [words] { SweepPlan plan(words); }; };
   EXPECT_THAT(of(Sets({"law.beta"})), ThrowsMessage<ConfigError>("--set: expected key=values (such as "

@@ -287,6 +287,33 @@ TEST_F(SweepTest, FliesLawsSideBySideEachWithTheKeysThatItHas) {
       << "a key of several values is not left out";
 }
 
+TEST_F(SweepTest, HasTheFiguresOfEveryLawThatARunEndsWith) {
+  const std::string team = "[run]\nduration_s = 1.0\n[agents]\ncount = 3\n[graph]\ntopology = 'ring'\n";
+  const std::string coverage = "{name=\"coverage\", region_m=[[-5, -5], [5, -5], [5, 5], [-5, 5]]}";
+  const auto points_with_cost = [&](const std::string& words) {
+    const Ran ran = Sweep(words + " --seeds 1..2 --no-plot --force");
+    EXPECT_EQ(ran.exit_code, 0) << ran.output;
+    Cells points;
+    for (const Cells& cells : Table(folder_.File("sweep.stats.csv")).rows)
+      if (std::ranges::count(cells, "laws.coverage.cost_end_m2") == 1) points.push_back(cells[0]);
+    return points;
+  };
+  WriteFile(config_, team);
+  EXPECT_THAT(points_with_cost("--set 'law={name=\"velocity_consensus\"}," + coverage + "'"), SizeIs(1)) << "of 2 laws";
+  EXPECT_EQ(Table(out_).At(1, "laws.coverage.cost_end_m2"), "") << "the other law's run";
+  EXPECT_NE(Table(out_).At(2, "laws.coverage.cost_end_m2"), "");
+
+  WriteFile(config_, team + "[[agents.override]]\nid = 3\nlaw = " + coverage + "\n");
+  EXPECT_THAT(points_with_cost("--set law.name=consensus,velocity_consensus"),
+              testing::ElementsAre("consensus", "velocity_consensus"))
+      << "an agent's own law";
+
+  WriteFile(config_,
+            team + "[[law.schedule]]\nat_s = 0.5\nname = 'coverage'\nregion_m = [[-5, -5], [5, -5], [0, 5]]\n");
+  EXPECT_THAT(points_with_cost("--set run.duration_s=0.5:0.5:1"), testing::ElementsAre("1.0"))
+      << "a phase that the shorter run does not reach";
+}
+
 TEST_F(SweepTest, RefusesWhatCannotBeSwept) {
   const auto refuses = [&](const std::string& words, const std::string& text) {
     const Ran ran = Sweep(words);

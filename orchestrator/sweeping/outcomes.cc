@@ -8,7 +8,6 @@
 #include <map>
 
 #include "experiment/toml/section.h"
-#include "orchestrator/sweeping/law_axis.h"
 #include "orchestrator/sweeping/statistics.h"
 #include "orchestrator/sweeping/table.h"
 
@@ -37,9 +36,12 @@ std::string Shortened(const std::string& text) {
   return text.substr(0, kReasonLength / 2) + " ... " + text.substr(text.size() - kReasonLength / 2);
 }
 
-/// Whether a column belongs to the figures of another law than `law`.
-bool IsOfAnotherLaw(const std::string& column, const std::string& law) {
-  return column.starts_with("laws.") && !column.starts_with("laws." + law + ".");
+/// The law whose figure a column has; empty: a column of all laws.
+std::string_view LawOfColumn(std::string_view column) {
+  constexpr std::string_view kLaws = "laws.";
+  if (!column.starts_with(kLaws)) return {};
+  column.remove_prefix(kLaws.size());
+  return column.substr(0, column.find('.'));
 }
 
 }  // namespace
@@ -49,8 +51,8 @@ bool IsTimeOfEvent(std::string_view column) {
          column.find(".deviation.") == column.npos;
 }
 
-Outcomes::Outcomes(const SweepPlan& plan, Cells columns, std::vector<Cells> rows)
-    : plan_(plan), columns_(std::move(columns)), rows_(std::move(rows)), error_(PlaceOf(kErrorColumn)) {}
+Outcomes::Outcomes(const SweepPlan& plan, const SweepLaws& laws, Cells columns, std::vector<Cells> rows)
+    : plan_(plan), laws_(laws), columns_(std::move(columns)), rows_(std::move(rows)), error_(PlaceOf(kErrorColumn)) {}
 
 std::size_t Outcomes::PlaceOf(std::string_view column) const {
   return static_cast<std::size_t>(std::ranges::find(columns_, column) - columns_.begin());
@@ -119,8 +121,7 @@ std::string Outcomes::StatisticsCsv(const std::vector<std::string>& metrics) con
 /// Appends the line of a metric over the runs of a group, which differ in their seeds alone.
 void Outcomes::AddStatistics(const std::string& metric, const std::vector<std::size_t>& group, std::string& csv) const {
   const Cells& first = rows_[group.front()];
-  if (const std::size_t law = PlaceOf(kLawKey); law < columns_.size() && IsOfAnotherLaw(metric, Unquoted(first[law])))
-    return;
+  if (const auto law = LawOfColumn(metric); !law.empty() && !laws_.Has(group.front(), law)) return;
   const std::size_t place = PlaceOf(metric);
   ValueSample sample;
   std::size_t failed = 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "orchestrator/sweeping/plan.h"
+#include "orchestrator/sweeping/run_laws.h"
 
 namespace mascot {
 
@@ -17,13 +18,14 @@ class Outcomes {
  public:
   using Cells = std::vector<std::string>;
 
-  /// `columns`: of the table. `rows`: all, by the number of the run.
-  Outcomes(const SweepPlan& plan, Cells columns, std::vector<Cells> rows);
+  /// `laws`: of the runs; outlives this object, as does `plan`. `columns`: of the table. `rows`: all, by the number of
+  /// the run.
+  Outcomes(const SweepPlan& plan, const SweepLaws& laws, Cells columns, std::vector<Cells> rows);
 
   /// For the terminal: how many runs failed and why, how many did not settle by the end.
   std::vector<std::string> Lines() const;
   /// CSV with one row for each combination of keys but run.seed, and each of `metrics` that has values: mean with its
-  /// confidence interval, median, deciles.
+  /// confidence interval, median, deciles. The figures of a law have rows only for combinations that fly it.
   std::string StatisticsCsv(const std::vector<std::string>& metrics) const;
 
  private:
@@ -32,6 +34,7 @@ class Outcomes {
   void AddStatistics(const std::string& metric, const std::vector<std::size_t>& group, std::string& csv) const;
 
   const SweepPlan& plan_;
+  const SweepLaws& laws_;
   Cells columns_;
   std::vector<Cells> rows_;
   std::size_t error_;

@@ -7,7 +7,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <optional>
+#include <unordered_map>
+#include <utility>
 
 #include "experiment/random.h"
 
@@ -26,6 +29,11 @@ std::optional<double> ToNumber(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool whole = error == std::errc() && end == text.data() + text.size();
   return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+/// Whether one of the values of a key is no number.
+bool HasWords(const std::vector<std::string>& values) {
+  return std::ranges::any_of(values, [](const std::string& value) { return !ToNumber(value); });
 }
 
 std::optional<std::int64_t> ToInteger(std::string_view text) {
@@ -222,6 +230,35 @@ std::string SweepPlan::Text() const {
 std::span<const std::string> SweepPlan::ValuesOf(std::string_view key) const {
   const auto axis = std::ranges::find(axes_, key, &Axis::key);
   return axis == axes_.end() ? std::span<const std::string>() : axis->values;
+}
+
+std::size_t SweepPlan::Firsts::operator[](std::size_t run) const {
+  std::size_t first = run;
+  for (const Digit& digit : digits_) {
+    const std::size_t k = run / digit.stride % digit.first.size();
+    first -= (k - digit.first[k]) * digit.stride;
+  }
+  return first;
+}
+
+SweepPlan::Firsts SweepPlan::FirstsAlike(Alike alike) const {
+  std::map<std::size_t, std::vector<std::string>> digits;  // by stride: what must be equal, for each value
+  for (const Axis& axis : axes_) {
+    if (axis.size() == 1) continue;
+    std::vector<std::string>& compared = digits[axis.stride];
+    compared.resize(axis.size());
+    if (axis.key == kSeedKey || (alike == Alike::kInWords && !HasWords(axis.values))) continue;
+    for (std::size_t k = 0; k < axis.size(); ++k) compared[k].append(axis.Value(k)).push_back('\0');
+  }
+  Firsts firsts;
+  for (const auto& [stride, compared] : digits) {
+    std::unordered_map<std::string_view, std::size_t> first_with;
+    Firsts::Digit digit{.stride = stride, .first = {}};
+    for (std::size_t k = 0; k < compared.size(); ++k)
+      digit.first.push_back(first_with.emplace(compared[k], k).first->second);
+    firsts.digits_.push_back(std::move(digit));
+  }
+  return firsts;
 }
 
 std::vector<std::size_t> SweepPlan::WithFirstSeed() const {

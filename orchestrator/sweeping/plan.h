@@ -43,6 +43,24 @@ class SweepPlan {
   std::span<const std::string> ValuesOf(std::string_view key) const;
   /// The first run with each other value that --set gives a key; of A:STEP:B only with the last one.
   const std::vector<SweepPoint>& trials() const { return trials_; }
+  /// Which runs count as alike: those that set the same values, or those that set the same words, whatever the numbers.
+  /// In both, run.seed may differ.
+  enum class Alike { kInValues, kInWords };
+  /// For each run the first one that is alike.
+  class Firsts {
+   public:
+    std::size_t operator[](std::size_t run) const;
+
+   private:
+    friend SweepPlan;
+    /// Keys whose values change together.
+    struct Digit {
+      std::size_t stride = 1;          ///< they change after so many runs
+      std::vector<std::size_t> first;  ///< for each value the place of the first one that is alike
+    };
+    std::vector<Digit> digits_;
+  };
+  Firsts FirstsAlike(Alike alike) const;
   /// The runs with the first value of run.seed, if it has several; else none.
   std::vector<std::size_t> WithFirstSeed() const;
   /// What tells this plan from others: a line for each key.

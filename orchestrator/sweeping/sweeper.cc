@@ -27,6 +27,7 @@
 #include "orchestrator/sweeping/metrics.h"
 #include "orchestrator/sweeping/outcomes.h"
 #include "orchestrator/sweeping/run_arrays.h"
+#include "orchestrator/sweeping/run_laws.h"
 #include "orchestrator/sweeping/table.h"
 #include "orchestrator/theory/draws.h"
 #include "orchestrator/theory/theory.h"
@@ -57,12 +58,6 @@ struct Sweep {
   }
 };
 
-std::vector<std::string> NamesOfLaws(const Experiment& experiment) {
-  std::vector<std::string> names;
-  for (const LawEntry* law : LawsIn(experiment)) names.emplace_back(law->name);
-  return names;
-}
-
 /// The metrics of the user's file.
 const PythonMetrics& OwnMetrics(const Sweep& sweep) {
   const fs::path path = sweep.metric_file.path;
@@ -90,7 +85,7 @@ std::map<std::string, std::string> FlyOne(const Sweep& sweep, std::size_t run) {
   if (!result.failure.empty()) throw std::runtime_error(result.failure);
   const RunFacts facts{.engine = "inprocess"};
   auto cells = SweepMetrics(SummaryJson(experiment, prediction, meter, result, facts),
-                            SweepMetricNames(NamesOfLaws(experiment)));
+                            SweepMetricNames(LawsAtTheEnd(experiment).names));
   if (sweep.own) AddOwn(OwnMetrics(sweep), arrays, cells);
   return cells;
 }
@@ -99,7 +94,19 @@ std::map<std::string, std::string> FlyOne(const Sweep& sweep, std::size_t run) {
 struct Looked {
   std::string resolved;
   std::vector<std::string> draws;  ///< DrawsOf()
+  RunLaws laws;
 };
+
+nlohmann::json ToJson(const RunLaws& laws) {
+  return {{"team", laws.team},
+          {"team_agrees", laws.team_agrees},
+          {"names", laws.names},
+          {"depend_on_numbers", laws.depend_on_numbers}};
+}
+
+RunLaws RunLawsFrom(const nlohmann::json& json) {
+  return {json["team"], json["team_agrees"], json["names"], json["depend_on_numbers"]};
+}
 
 std::size_t TaskOfMetrics(const Sweep& sweep) { return 2 * sweep.plan.size() + sweep.plan.trials().size(); }
 
@@ -116,13 +123,14 @@ WorkerPool::Work WorkOf(const Sweep& sweep) {
     }
     const Experiment experiment =
         sweep.Load(task < 2 * runs ? sweep.plan[task - runs] : sweep.plan.trials()[task - 2 * runs]);
-    return nlohmann::json({{"resolved", experiment.resolved}, {"draws", DrawsOf(experiment)}}).dump();
+    const nlohmann::json laws = ToJson(LawsAtTheEnd(experiment));
+    return nlohmann::json({{"resolved", experiment.resolved}, {"draws", DrawsOf(experiment)}, {"laws", laws}}).dump();
   };
 }
 
 Looked LookedFrom(const std::string& answer) {
   const nlohmann::json json = nlohmann::json::parse(answer);
-  return {json["resolved"], json["draws"]};
+  return {json["resolved"], json["draws"], RunLawsFrom(json["laws"])};
 }
 
 struct Interrupted {
@@ -160,6 +168,28 @@ Looked FirstValid(const Sweep& sweep, bool first_alone, WorkerPool& pool, StopSi
   }
   if (!valid) throw ConfigError({mistakes});
   return *valid;
+}
+
+/// The laws of every run, from a look at the first of those that are alike. Numbers count only where they decide about
+/// laws, or where a run is not valid: another number may be.
+SweepLaws LookAtLaws(const Sweep& sweep, WorkerPool& pool, StopSignal& stop) {
+  SweepLaws::Known known;
+  SweepPlan::Firsts firsts;
+  bool by_numbers = false;
+  for (const auto alike : {SweepPlan::Alike::kInWords, SweepPlan::Alike::kInValues}) {
+    firsts = sweep.plan.FirstsAlike(alike);
+    std::vector<std::size_t> tasks;
+    for (std::size_t run = 0; run < sweep.plan.size(); ++run)
+      if (firsts[run] == run && !known.contains(run)) tasks.push_back(sweep.plan.size() + run);
+    ExecuteTasks(tasks, pool, stop, [&](const WorkerPool::Done& done) {
+      const bool valid = done.failure.empty();
+      if (valid) known[done.task - sweep.plan.size()] = LookedFrom(done.answer).laws;
+      by_numbers = by_numbers || !valid || known[done.task - sweep.plan.size()].depend_on_numbers;
+      return true;
+    });
+    if (!by_numbers) break;
+  }
+  return {sweep.plan, std::move(firsts), std::move(known)};
 }
 
 /// The user's metrics. Throws ConfigError for mistakes in their file, or if a name is that of another column.
@@ -277,14 +307,6 @@ void ExecuteMissing(const SweepPlan& plan, const std::vector<std::string>& metri
   }
 }
 
-/// Names of the laws in the first valid experiment, and of those that the sweep goes over.
-std::vector<std::string> LawsOf(const Sweep& sweep, const std::string& resolved) {
-  const Experiment first = LoadExperiment(Section::FromText(resolved, sweep.name), "", /*checked=*/true);
-  std::vector<std::string> laws = NamesOfLaws(first);
-  laws.insert(laws.end(), sweep.laws.laws().begin(), sweep.laws.laws().end());
-  return laws;
-}
-
 SweepFile::Cells ColumnsOf(const SweepPlan& plan, const std::vector<std::string>& metrics) {
   SweepFile::Cells columns{"run"};
   columns.insert(columns.end(), plan.keys().begin(), plan.keys().end());
@@ -323,9 +345,9 @@ bool IsBegun(const Sweep& sweep, const std::string& table) {
 }
 
 /// Writes the statistics of a complete table beside it. Returns what there is to say on the terminal.
-std::vector<std::string> Conclude(const SweepPlan& plan, const std::vector<std::string>& metrics,
+std::vector<std::string> Conclude(const SweepPlan& plan, const SweepLaws& laws, const std::vector<std::string>& metrics,
                                   const SweepFile& table, const std::string& out) {
-  const Outcomes outcomes(plan, ColumnsOf(plan, metrics), table.AllCells());
+  const Outcomes outcomes(plan, laws, ColumnsOf(plan, metrics), table.AllCells());
   const std::span<const std::string> repeatable = std::span(metrics).first(metrics.size() - kWallClockColumns);
   const fs::path path = StatisticsBeside(out);
   WriteWhole(path.string(), outcomes.StatisticsCsv({repeatable.begin(), repeatable.end()}));
@@ -353,7 +375,9 @@ Sweeper::Outcome Sweeper::Fly(const Options& options, StopSignal& stop) const {
   try {
     const bool strict = !options.force && !IsBegun(sweep, options.out);
     const Looked first = FirstValid(sweep, strict, pool, stop);
-    outcome.laws = LawsOf(sweep, first.resolved);
+    const SweepLaws run_laws = LookAtLaws(sweep, pool, stop);
+    outcome.laws = run_laws.AllNames();
+    outcome.laws.insert(outcome.laws.end(), laws.laws().begin(), laws.laws().end());
     std::vector<std::string> metrics = SweepMetricNames(outcome.laws);
     outcome.own = ListMetrics(sweep, ColumnsOf(plan_, metrics), pool, stop);
     for (const PythonMetric& metric : outcome.own) metrics.insert(metrics.end() - kWallClockColumns, metric.name);
@@ -366,7 +390,7 @@ Sweeper::Outcome Sweeper::Fly(const Options& options, StopSignal& stop) const {
     try {
       ExecuteMissing(plan_, metrics, pool, table, options.quiet, stop, outcome);
       table.Sort();
-      outcome.lines = Conclude(plan_, metrics, table, options.out);
+      outcome.lines = Conclude(plan_, run_laws, metrics, table, options.out);
     } catch (const Interrupted& interrupted) {
       outcome.signal = interrupted.signal;
     }
