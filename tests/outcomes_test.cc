@@ -6,6 +6,7 @@ namespace mascot {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::IsEmpty;
 
 const Outcomes::Cells kColumns = {"run", "law.name", "run.seed", "error", "consensus.settling_time_s", "laws.a.cost"};
@@ -45,10 +46,13 @@ TEST(Outcomes, CountWhatFailedAndWhatDidNotSettle) {
                               {"3", "'b'", "1", std::string(300, 'x'), "", ""},
                               {"4", "'b'", "2", "c", "", ""},
                               {"5", "'b'", "3", "d", "", ""}});
-  EXPECT_THAT(lines, ElementsAre("failed: 5 of 6 runs", "  run 0 and 1 more: it fell",
-                                 "  run 3: " + std::string(100, 'x') + " ... " + std::string(100, 'x'), "  run 4: c",
-                                 "  and 1 other reasons",
-                                 "not settled by the end: 1 of 6 runs (no consensus.settling_time_s), first run 1"));
+  EXPECT_THAT(
+      lines,
+      ElementsAre("failed: 5 of 6 runs", "  run 0 and 1 more: it fell",
+                  "  run 3: " + std::string(100, 'x') + " ... " + std::string(100, 'x'), "  run 4: c",
+                  "  and 1 other reasons",
+                  "not settled by the end: 1 of 3 runs whose law makes agents agree (no consensus.settling_time_s), "
+                  "first run 1"));
 }
 
 TEST(Outcomes, HaveStatisticsOverTheSeedsOfEachPoint) {
@@ -65,6 +69,21 @@ TEST(Outcomes, HaveStatisticsOverTheSeedsOfEachPoint) {
             "'b',consensus.settling_time_s,3,1,1,2.0,,,inf,inf,inf\n"
             "a,laws.a.cost,3,0,2,1.0,,,1.0,1.0,1.0\n")
       << "a run that does not settle is later than all others; a cost that is missing is none";
+}
+
+TEST(Outcomes, CallARunLateOnlyIfItsLawMakesAgentsAgreeOrHasSettledInAnother) {
+  const std::vector<std::string> time = {"consensus.settling_time_s"};
+  const std::vector<Outcomes::Cells> never = {{"0", "a", "1", "", "4.0", ""}, {"1", "a", "2", "", "", ""},
+                                              {"2", "a", "3", "", "", ""},    {"3", "'b'", "1", "", "", ""},
+                                              {"4", "'b'", "2", "", "", ""},  {"5", "'b'", "3", "", "", ""}};
+  EXPECT_THAT(LinesOf(never), ElementsAre("not settled by the end: 2 of 3 runs whose law makes agents agree (no "
+                                          "consensus.settling_time_s), first run 1"));
+  EXPECT_THAT(StatisticsOf(time, never), EndsWith("decile_9\na,consensus.settling_time_s,3,0,2,4.0,,,inf,inf,inf\n"));
+  std::vector<Outcomes::Cells> once = never;
+  once[5][4] = "2.0";
+  EXPECT_THAT(LinesOf(once),
+              ElementsAre("not settled by the end: 4 of 6 runs (no consensus.settling_time_s), first run 1"));
+  EXPECT_THAT(StatisticsOf(time, once), EndsWith("\n'b',consensus.settling_time_s,3,0,2,2.0,,,inf,inf,inf\n"));
 }
 
 TEST(Outcomes, LeaveOutWhatNoRunHas) {

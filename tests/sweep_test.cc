@@ -224,6 +224,18 @@ TEST_F(SweepTest, SaysWhatDidNotSettleAndWritesStatistics) {
   EXPECT_EQ(ReadFile(folder_.File("sweep.stats.csv")), before) << "the same bytes";
 }
 
+TEST_F(SweepTest, DoesNotCallARunLateWhoseLawMakesNobodyAgree) {
+  const std::string apart = "{name=\"waypoint\", waypoints_m=[[9, 9, 9]]}";
+  const Ran alone = Sweep("--set 'law=" + apart + "' --seeds 1..2 --no-plot");
+  EXPECT_EQ(alone.exit_code, 0) << alone.output;
+  EXPECT_THAT(alone.output, Not(HasSubstr("settled")));
+  const Ran beside = Sweep("--set 'law={name=\"consensus\", p_gain=0.3}," + apart +
+                           "' --set run.duration_s=2,30 --plot consensus.settling_time_s --force --format svg");
+  EXPECT_EQ(beside.exit_code, 0) << beside.output;
+  EXPECT_THAT(beside.output, HasSubstr("not settled by the end: 1 of 2 runs whose law makes agents agree "));
+  EXPECT_THAT(ReadFile(folder_.File("sweep.svg")), HasSubstr("<!-- 4 runs, 1 not settled (\u25b3) -->"));
+}
+
 TEST_F(SweepTest, KeepsTheMistakeOfAnImpossibleRunAsItsError) {
   const std::string mistake = "--set law.p_gain=fast: law.p_gain: expected a number in [0, 1000], got 'fast'";
   const std::string words = "--set law.p_gain=0.5,fast --no-plot";

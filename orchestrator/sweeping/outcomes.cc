@@ -52,7 +52,23 @@ bool IsTimeOfEvent(std::string_view column) {
 }
 
 Outcomes::Outcomes(const SweepPlan& plan, const SweepLaws& laws, Cells columns, std::vector<Cells> rows)
-    : plan_(plan), laws_(laws), columns_(std::move(columns)), rows_(std::move(rows)), error_(PlaceOf(kErrorColumn)) {}
+    : plan_(plan), laws_(laws), columns_(std::move(columns)), rows_(std::move(rows)), error_(PlaceOf(kErrorColumn)) {
+  const std::size_t settled = PlaceOf(kSettled);
+  for (std::size_t run = 0; run < rows_.size(); ++run)
+    if (const RunLaws* of_run = laws_.Of(run); of_run != nullptr && !rows_[run][settled].empty())
+      settled_.insert(of_run->team);
+}
+
+bool Outcomes::MaySettle(std::size_t run) const {
+  const RunLaws* laws = laws_.Of(run);
+  return laws == nullptr || laws->team_agrees || settled_.contains(laws->team);
+}
+
+bool Outcomes::CanHave(std::size_t run, std::string_view metric) const {
+  if (metric == kSettled) return MaySettle(run);
+  const std::string_view law = LawOfColumn(metric);
+  return law.empty() || laws_.Has(run, law);
+}
 
 std::size_t Outcomes::PlaceOf(std::string_view column) const {
   return static_cast<std::size_t>(std::ranges::find(columns_, column) - columns_.begin());
@@ -64,12 +80,14 @@ std::vector<std::string> Outcomes::Lines() const {
     std::size_t runs = 0;
   };
   std::vector<Reason> reasons;
-  std::size_t failed = 0, late = 0;
+  std::size_t failed = 0, late = 0, may_settle = 0;
   std::string first_late;
   const std::size_t settled = PlaceOf(kSettled);
-  for (const Cells& row : rows_) {
+  for (std::size_t run = 0; run < rows_.size(); ++run) {
+    const Cells& row = rows_[run];
+    may_settle += MaySettle(run);
     if (!HasFailed(row)) {
-      if (row[settled].empty() && late++ == 0) first_late = row[0];
+      if (row[settled].empty() && MaySettle(run) && late++ == 0) first_late = row[0];
       continue;
     }
     ++failed;
@@ -85,8 +103,9 @@ std::vector<std::string> Outcomes::Lines() const {
                                 Shortened(reason.text)));
   if (reasons.size() > kReasons) lines.push_back(fmt::format("  and {} other reasons", reasons.size() - kReasons));
   if (late > 0)
-    lines.push_back(fmt::format("not settled by the end: {} of {} runs (no {}), first run {}", late, rows_.size(),
-                                kSettled, first_late));
+    lines.push_back(fmt::format("not settled by the end: {} of {} runs{} (no {}), first run {}", late, may_settle,
+                                may_settle < rows_.size() ? " whose law makes agents agree" : "", kSettled,
+                                first_late));
   return lines;
 }
 
@@ -121,7 +140,7 @@ std::string Outcomes::StatisticsCsv(const std::vector<std::string>& metrics) con
 /// Appends the line of a metric over the runs of a group, which differ in their seeds alone.
 void Outcomes::AddStatistics(const std::string& metric, const std::vector<std::size_t>& group, std::string& csv) const {
   const Cells& first = rows_[group.front()];
-  if (const auto law = LawOfColumn(metric); !law.empty() && !laws_.Has(group.front(), law)) return;
+  if (!CanHave(group.front(), metric)) return;
   const std::size_t place = PlaceOf(metric);
   ValueSample sample;
   std::size_t failed = 0;
