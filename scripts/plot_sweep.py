@@ -44,9 +44,13 @@ def number(text):
 csv.field_size_limit(2**31 - 1)  # a cell may hold a whole law
 
 
-def rows_of(path):
+def rows_of(path, columns=None, having=""):
+    """The cells of these columns (of all, without them), row by row, of the lines that have this text in them."""
     with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+        names = next(csv.reader([file.readline()]))
+        kept = [k for k, name in enumerate(names) if columns is None or name in columns]
+        for cells in csv.reader(line for line in file if having in line):  # a row is a line: sweep writes no others
+            yield {names[k]: cells[k] for k in kept}
 
 
 def is_wide(values):
@@ -59,8 +63,9 @@ class Table:
 
     def __init__(self, options):
         self.column, self.keys = options.column, options.keys
-        self.runs = rows_of(options.table)
-        self.points = [row for row in rows_of(options.statistics) if row["metric"] == self.column]
+        self.runs = list(rows_of(options.table, {*self.keys, self.column, "error", "sim_s"}))
+        points = rows_of(options.statistics, having=f"{self.column},")
+        self.points = [row for row in points if row["metric"] == self.column]
         self.labels = dict(text.split("=", 1) for text in options.label)
         self.failed = [row for row in self.runs if row["error"]]
         # Figures of a law are missing in the runs of another law, and not only there.
@@ -105,13 +110,18 @@ class Axis:
         cells = [row[key] for row in table.runs]
         numbers = [number(cell) for cell in cells]
         self.is_numeric = all(n is not None for n in numbers)
-        self.cells = sorted(set(cells), key=number) if self.is_numeric else list(dict.fromkeys(cells))
+        self.cells = sorted(set(cells), key=lambda cell: (number(cell), cell)) if self.is_numeric else list(dict.fromkeys(cells))
         self.is_grid = False  # a heat map with cells around each place, and a tick at each
         self.places = [number(cell) for cell in self.cells] if self.is_numeric else list(range(len(self.cells)))
         self.is_log = self.is_numeric and is_wide(self.places)
+        self.place_of = dict(zip(self.cells, self.places))
 
     def of(self, cell):
-        return self.places[self.cells.index(cell)]
+        return self.place_of[cell]
+
+    def rank(self):
+        """The number of each place; the first one of places that are equal."""
+        return {place: n for n, place in reversed(list(enumerate(self.places)))}
 
     def edges(self):
         """Edges of the cells around the places, half-way between them."""
@@ -294,8 +304,9 @@ def draw_cells(figure, ax, table, z, label, **colours):
     x, y = ([axis.of(row[axis.key]) for row in table.points] for axis in axes)
     if 2 * len(z) > len(axes[0].cells) * len(axes[1].cells):
         grid = np.full((len(axes[1].cells), len(axes[0].cells)), np.nan)
+        rank = [axis.rank() for axis in axes]
         for a, b, value in zip(x, y, z):
-            grid[axes[1].places.index(b), axes[0].places.index(a)] = value
+            grid[rank[1][b], rank[0][a]] = value
         ax.grid(False)
         axes[0].is_grid = axes[1].is_grid = True
         drawn = ax.pcolormesh(axes[0].edges(), axes[1].edges(), grid, cmap="viridis", **colours)

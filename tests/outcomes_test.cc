@@ -27,14 +27,20 @@ SweepLaws LawsOf(const SweepPlan& plan) {
 std::vector<std::string> LinesOf(const std::vector<Outcomes::Cells>& rows) {
   const SweepPlan plan = Plan();
   const SweepLaws laws = LawsOf(plan);
-  return Outcomes(plan, laws, kColumns, rows).Lines();
+  Outcomes outcomes(plan, laws, kColumns);
+  for (const Outcomes::Cells& row : rows) outcomes.Add(row);
+  return outcomes.Lines();
 }
 
 /// Statistics of these rows.
 std::string StatisticsOf(const std::vector<std::string>& metrics, const std::vector<Outcomes::Cells>& rows) {
   const SweepPlan plan = Plan();
   const SweepLaws laws = LawsOf(plan);
-  return Outcomes(plan, laws, kColumns, rows).StatisticsCsv(metrics);
+  Outcomes outcomes(plan, laws, kColumns);
+  for (const Outcomes::Cells& row : rows) outcomes.Add(row);
+  std::string csv;
+  outcomes.WriteStatistics(metrics, [&](std::string_view line) { csv += line; });
+  return csv;
 }
 
 TEST(Outcomes, SayNothingWhereEveryRunIsWell) { EXPECT_THAT(LinesOf({{"0", "a", "1", "", "4.0", ""}}), IsEmpty()); }
@@ -89,6 +95,24 @@ TEST(Outcomes, CallARunLateOnlyIfItsLawMakesAgentsAgreeOrHasSettledInAnother) {
 TEST(Outcomes, LeaveOutWhatNoRunHas) {
   EXPECT_EQ(StatisticsOf({"consensus.settling_time_s"}, {{"0", "a", "1", "", "", ""}}),
             "law.name,metric,runs,failed,without_value,mean,mean_low_95,mean_high_95,median,decile_1,decile_9\n");
+}
+
+TEST(Outcomes, KeepVeryManyPointsAndReasonsApart) {
+  constexpr std::size_t kRuns = 20'000;
+  const SweepPlan plan({.sets = {"law.p_gain=1:1:20000"}, .randoms = {}, .seeds = ""});
+  const SweepLaws laws(plan, plan.FirstsAlike(SweepPlan::Alike::kInWords), {});
+  Outcomes outcomes(plan, laws, {"run", "law.p_gain", "error", "consensus.settling_time_s"});
+  for (std::size_t run = 0; run < kRuns; ++run)
+    outcomes.Add({std::to_string(run), std::to_string(run + 1), run % 2 == 0 ? "" : "why " + std::to_string(run),
+                  run % 2 == 0 ? std::to_string(run) : ""});
+  EXPECT_THAT(outcomes.Lines(), ElementsAre("failed: 10000 of 20000 runs", "  run 1: why 1", "  run 3: why 3",
+                                            "  run 5: why 5", "  and 9997 other reasons"));
+  std::vector<std::string> lines;
+  const std::vector<std::string> metrics = {"consensus.settling_time_s"};
+  outcomes.WriteStatistics(metrics, [&](std::string_view line) { lines.emplace_back(line); });
+  ASSERT_EQ(lines.size(), 1 + kRuns) << "one at a time";
+  EXPECT_EQ(lines[19'999], "19999,consensus.settling_time_s,1,0,0,19998.0,,,19998.0,19998.0,19998.0\n");
+  EXPECT_EQ(lines[20'000], "20000,consensus.settling_time_s,1,1,0,,,,,,\n");
 }
 
 TEST(Outcomes, KnowTimesThatMayNotComeToPass) {

@@ -25,6 +25,7 @@ import figure_style
 import overlay
 import pictures
 import plot
+import plot_sweep
 import run_folder
 from matplotlib.quiver import Quiver
 
@@ -891,6 +892,39 @@ class Errors(PlotTest):
         self.write()
         (self.folder / "paths.png").mkdir()
         self.check(1, f"{self.folder}/paths.png: Is a directory")
+
+
+class SweepTableTest(unittest.TestCase):
+    COLUMN = "control.effort"
+
+    def table_of(self, runs, statistics, *keys):
+        """The Table of CSV files with these lines."""
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        paths = [pathlib.Path(scratch.name) / name for name in ("sweep.csv", "sweep.stats.csv")]
+        for path, lines in zip(paths, (runs, statistics)):
+            path.write_text("".join(f"{line}\n" for line in lines))
+        return plot_sweep.Table(mock.Mock(table=paths[0], statistics=paths[1], column=self.COLUMN, keys=list(keys), label=[], time=False))
+
+    def test_very_many_points(self):
+        count = 20_000
+        runs = [f'{k},{k / 2},"a, b",why,{k + 1}.0,9' for k in range(count)]
+        points = [f"{k / 2},{metric},1,{k + 1}.0" for metric in ("ticks", self.COLUMN) for k in range(count)]
+        table = self.table_of([f"run,law.p_gain,word,error,{self.COLUMN},sim_s", *runs],
+                              ["law.p_gain,metric,runs,mean", *points], "law.p_gain")
+        self.assertEqual(set(table.runs[0]), {"law.p_gain", "error", self.COLUMN, "sim_s"}, "what is drawn, and no more")
+        self.assertEqual([row["mean"] for row in table.points], [f"{k + 1}.0" for k in range(count)])
+        axis = plot_sweep.Axis(table, "law.p_gain")
+        self.assertEqual([axis.of(row["law.p_gain"]) for row in table.points], [k / 2 for k in range(count)])
+        self.assertEqual(axis.rank()[(count - 1) / 2], count - 1)
+
+    def test_equal_numbers_in_other_words_stand_in_one_order(self):
+        cells = ["1.00", "1", "1.0", "0.5"]
+        table = self.table_of([f"run,law.beta,error,{self.COLUMN},sim_s", *(f"0,{cell},,1,1" for cell in cells)],
+                              ["law.beta,metric"], "law.beta")
+        axis = plot_sweep.Axis(table, "law.beta")
+        self.assertEqual(axis.cells, ["0.5", "1", "1.0", "1.00"], "not in that of a set, which is another every time")
+        self.assertEqual(axis.rank(), {0.5: 0, 1.0: 1})
 
 
 if __name__ == "__main__":

@@ -1,17 +1,30 @@
 #include "orchestrator/formats/whole_file.h"
 
 #include "orchestrator/formats/bytes.h"
-#include "orchestrator/formats/output_file.h"
-#include "orchestrator/formats/part_file.h"
 
 namespace mascot {
 
+void WholeFile::Write(std::string_view text) {
+  constexpr std::size_t kMostPending = 1 << 16;
+  pending_ += text;
+  if (pending_.size() >= kMostPending) Flush();
+}
+
+void WholeFile::Flush() {
+  file_.Write(AsBytes(pending_));
+  pending_.clear();
+}
+
+void WholeFile::Commit() {
+  Flush();
+  file_.SyncAndClose();
+  part_.Commit();
+}
+
 void WriteWhole(const std::string& path, std::string_view text) {
-  PartFile part(path);
-  OutputFile file(part.name());
-  file.Write(AsBytes(text));
-  file.SyncAndClose();
-  part.Commit();
+  WholeFile file(path);
+  file.Write(text);
+  file.Commit();
 }
 
 }  // namespace mascot

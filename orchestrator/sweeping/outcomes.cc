@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <charconv>
 #include <cmath>
-#include <map>
+#include <limits>
 
 #include "experiment/toml/section.h"
 #include "orchestrator/sweeping/statistics.h"
@@ -15,6 +16,7 @@ namespace mascot {
 namespace {
 
 constexpr const char* kSettled = "consensus.settling_time_s";
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kReasons = 3;         // printed, of those why runs failed
 constexpr std::size_t kReasonLength = 200;  // of the characters printed of each
 
@@ -51,12 +53,36 @@ bool IsTimeOfEvent(std::string_view column) {
          column.find(".deviation.") == column.npos;
 }
 
-Outcomes::Outcomes(const SweepPlan& plan, const SweepLaws& laws, Cells columns, std::vector<Cells> rows)
-    : plan_(plan), laws_(laws), columns_(std::move(columns)), rows_(std::move(rows)), error_(PlaceOf(kErrorColumn)) {
-  const std::size_t settled = PlaceOf(kSettled);
-  for (std::size_t run = 0; run < rows_.size(); ++run)
-    if (const RunLaws* of_run = laws_.Of(run); of_run != nullptr && !rows_[run][settled].empty())
-      settled_.insert(of_run->team);
+Outcomes::Outcomes(const SweepPlan& plan, const SweepLaws& laws, Cells columns)
+    : plan_(plan),
+      laws_(laws),
+      columns_(std::move(columns)),
+      error_(static_cast<std::size_t>(std::ranges::find(columns_, kErrorColumn) - columns_.begin())),
+      values_(columns_.size() - error_ - 1) {}
+
+void Outcomes::Add(const Cells& row) {
+  const std::size_t run = has_failed_.size();
+  has_failed_.push_back(!row[error_].empty());
+  if (has_failed_.back()) AddFailure(row[error_]);
+  for (std::size_t k = 0; k < values_.size(); ++k) {
+    const auto value = NumberIn(row[error_ + 1 + k]);
+    if (value && values_[k].empty()) values_[k].assign(run, kNone);
+    if (value || !values_[k].empty()) values_[k].push_back(value.value_or(kNone));
+    if (value && columns_[error_ + 1 + k] == kSettled)
+      if (const RunLaws* laws = laws_.Of(run)) settled_.insert(laws->team);
+  }
+}
+
+void Outcomes::AddFailure(const std::string& why) {
+  const auto [place, is_new] = place_of_reason_.emplace(why, reasons_.size());
+  if (is_new) reasons_.push_back({.text = reasons_.size() < kReasons ? why : "", .first_run = has_failed_.size() - 1});
+  ++reasons_[place->second].runs;
+}
+
+const std::vector<double>& Outcomes::ValuesOf(std::string_view column) const {
+  const auto place = std::find(columns_.begin() + static_cast<std::ptrdiff_t>(error_) + 1, columns_.end(), column);
+  assert(place != columns_.end());
+  return values_[static_cast<std::size_t>(place - columns_.begin()) - error_ - 1];
 }
 
 bool Outcomes::MaySettle(std::size_t run) const {
@@ -70,98 +96,83 @@ bool Outcomes::CanHave(std::size_t run, std::string_view metric) const {
   return law.empty() || laws_.Has(run, law);
 }
 
-std::size_t Outcomes::PlaceOf(std::string_view column) const {
-  return static_cast<std::size_t>(std::ranges::find(columns_, column) - columns_.begin());
-}
-
 std::vector<std::string> Outcomes::Lines() const {
-  struct Reason {
-    std::string text, first_run;
-    std::size_t runs = 0;
-  };
-  std::vector<Reason> reasons;
-  std::size_t failed = 0, late = 0, may_settle = 0;
-  std::string first_late;
-  const std::size_t settled = PlaceOf(kSettled);
-  for (std::size_t run = 0; run < rows_.size(); ++run) {
-    const Cells& row = rows_[run];
-    may_settle += MaySettle(run);
-    if (!HasFailed(row)) {
-      if (row[settled].empty() && MaySettle(run) && late++ == 0) first_late = row[0];
-      continue;
-    }
-    ++failed;
-    auto reason = std::ranges::find(reasons, row[error_], &Reason::text);
-    if (reason == reasons.end()) reason = reasons.insert(reason, {row[error_], row[0]});
-    ++reason->runs;
+  const std::size_t runs = has_failed_.size();
+  const std::vector<double>& settled = ValuesOf(kSettled);
+  std::size_t failed = 0, late = 0, may_settle = 0, first_late = 0;
+  for (std::size_t run = 0; run < runs; ++run) {
+    failed += has_failed_[run];
+    if (!MaySettle(run)) continue;
+    ++may_settle;
+    if (!has_failed_[run] && (settled.empty() || std::isnan(settled[run])) && late++ == 0) first_late = run;
   }
   std::vector<std::string> lines;
-  if (failed > 0) lines.push_back(fmt::format("failed: {} of {} runs", failed, rows_.size()));
-  for (const Reason& reason : std::span(reasons).first(std::min(reasons.size(), kReasons)))
+  if (failed > 0) lines.push_back(fmt::format("failed: {} of {} runs", failed, runs));
+  for (const Reason& reason : std::span(reasons_).first(std::min(reasons_.size(), kReasons)))
     lines.push_back(fmt::format("  run {}{}: {}", reason.first_run,
                                 reason.runs > 1 ? fmt::format(" and {} more", reason.runs - 1) : "",
                                 Shortened(reason.text)));
-  if (reasons.size() > kReasons) lines.push_back(fmt::format("  and {} other reasons", reasons.size() - kReasons));
+  if (reasons_.size() > kReasons) lines.push_back(fmt::format("  and {} other reasons", reasons_.size() - kReasons));
   if (late > 0)
     lines.push_back(fmt::format("not settled by the end: {} of {} runs{} (no {}), first run {}", late, may_settle,
-                                may_settle < rows_.size() ? " whose law makes agents agree" : "", kSettled,
-                                first_late));
+                                may_settle < runs ? " whose law makes agents agree" : "", kSettled, first_late));
   return lines;
 }
 
-std::string Outcomes::StatisticsCsv(const std::vector<std::string>& metrics) const {
-  std::vector<std::size_t> keys;
-  Cells header;
-  for (std::size_t k = 0; k < plan_.keys().size(); ++k)
-    if (plan_.keys()[k] != kSeedKey) {
-      keys.push_back(1 + k);  // behind the number of the run
-      header.push_back(plan_.keys()[k]);
-    }
-  std::vector<Cells> points;  // in order of their first runs
-  std::map<Cells, std::vector<std::size_t>> groups;
-  for (std::size_t row = 0; row < rows_.size(); ++row) {
-    Cells point;
-    for (const std::size_t key : keys) point.push_back(rows_[row][key]);
-    if (!groups.contains(point)) points.push_back(point);
-    groups[point].push_back(row);
+/// In the order of their first runs.
+std::vector<Outcomes::Group> Outcomes::Groups() const {
+  const SweepPlan::Firsts firsts = plan_.FirstsAlike(SweepPlan::Alike::kInValues);
+  std::vector<std::size_t> group_of(has_failed_.size());
+  std::vector<Group> groups;
+  for (std::size_t run = 0; run < has_failed_.size(); ++run) {
+    if (firsts[run] == run) groups.emplace_back();
+    group_of[run] = firsts[run] == run ? groups.size() - 1 : group_of[firsts[run]];
+    groups[group_of[run]].push_back(run);
   }
+  return groups;
+}
+
+void Outcomes::WriteStatistics(std::span<const std::string> metrics,
+                               const std::function<void(std::string_view)>& write) const {
+  Cells header;
+  for (const std::string& key : plan_.keys())
+    if (key != kSeedKey) header.push_back(key);
   for (const char* name : {"metric", "runs", "failed", "without_value", "mean", "mean_low_95", "mean_high_95", "median",
                            "decile_1", "decile_9"})
     header.emplace_back(name);
-  std::string csv = CsvLine(header);
+  write(CsvLine(header));
+  const std::vector<Group> groups = Groups();
   for (const std::string& metric : metrics) {
-    const std::size_t place = PlaceOf(metric);
-    if (std::ranges::none_of(rows_, [&](const Cells& row) { return NumberIn(row[place]).has_value(); })) continue;
-    for (const Cells& point : points) AddStatistics(metric, groups[point], csv);
+    const std::vector<double>& values = ValuesOf(metric);
+    if (values.empty()) continue;
+    for (const Group& group : groups)
+      if (CanHave(group.front(), metric)) write(StatisticsLine(metric, values, group));
   }
-  return csv;
 }
 
-/// Appends the line of a metric over the runs of a group, which differ in their seeds alone.
-void Outcomes::AddStatistics(const std::string& metric, const std::vector<std::size_t>& group, std::string& csv) const {
-  const Cells& first = rows_[group.front()];
-  if (!CanHave(group.front(), metric)) return;
-  const std::size_t place = PlaceOf(metric);
+std::string Outcomes::StatisticsLine(const std::string& metric, const std::vector<double>& values,
+                                     const Group& group) const {
   ValueSample sample;
   std::size_t failed = 0;
-  for (const std::size_t row : group) {
-    if (const auto value = NumberIn(rows_[row][place])) sample.values.push_back(*value);
-    failed += HasFailed(rows_[row]);
+  for (const std::size_t run : group) {
+    if (!std::isnan(values[run])) sample.values.push_back(values[run]);
+    failed += has_failed_[run];
   }
   const std::size_t without = group.size() - failed - sample.values.size();
   if (IsTimeOfEvent(metric)) sample.beyond = without;
   const Spread spread = SpreadOf(sample);
   const bool bounded = spread.mean && spread.half_width;
   Cells line;
-  for (std::size_t k = 0; k < plan_.keys().size(); ++k)
-    if (plan_.keys()[k] != kSeedKey) line.push_back(first[1 + k]);
+  const SweepPoint point = plan_[group.front()];
+  for (const Override& override : point.overrides)
+    if (override.key != kSeedKey) line.push_back(override.value);
   line.push_back(metric);
   for (const std::size_t count : {group.size(), failed, without}) line.push_back(std::to_string(count));
   line.push_back(CellOf(spread.mean));
   line.push_back(bounded ? CellOf(*spread.mean - *spread.half_width) : "");
   line.push_back(bounded ? CellOf(*spread.mean + *spread.half_width) : "");
   for (const auto& value : {spread.median, spread.decile_1, spread.decile_9}) line.push_back(CellOf(value));
-  csv += CsvLine(line);
+  return CsvLine(line);
 }
 
 }  // namespace mascot

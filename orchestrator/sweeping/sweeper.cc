@@ -347,10 +347,13 @@ bool IsBegun(const Sweep& sweep, const std::string& table) {
 /// Writes the statistics of a complete table beside it. Returns what there is to say on the terminal.
 std::vector<std::string> Conclude(const SweepPlan& plan, const SweepLaws& laws, const std::vector<std::string>& metrics,
                                   const SweepFile& table, const std::string& out) {
-  const Outcomes outcomes(plan, laws, ColumnsOf(plan, metrics), table.AllCells());
+  Outcomes outcomes(plan, laws, ColumnsOf(plan, metrics));
+  table.ForEachRow([&](const SweepFile::Cells& cells) { outcomes.Add(cells); });
   const std::span<const std::string> repeatable = std::span(metrics).first(metrics.size() - kWallClockColumns);
   const fs::path path = StatisticsBeside(out);
-  WriteWhole(path.string(), outcomes.StatisticsCsv({repeatable.begin(), repeatable.end()}));
+  WholeFile statistics(path.string());
+  outcomes.WriteStatistics(repeatable, [&](std::string_view line) { statistics.Write(line); });
+  statistics.Commit();
   std::vector<std::string> lines = outcomes.Lines();
   lines.push_back("statistics over seeds: " + path.string());
   return lines;

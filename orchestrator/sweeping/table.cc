@@ -160,16 +160,15 @@ void SweepFile::ReadRows(const std::string& text) {
   }
 }
 
-std::vector<SweepFile::Cells> SweepFile::AllCells() const {
-  std::vector<Cells> all;
-  for (const auto& [run, line] : rows_) all.push_back(CsvCells(line));
-  return all;
+void SweepFile::ForEachRow(const std::function<void(const Cells&)>& take) const {
+  for (const auto& [run, line] : rows_) take(CsvCells(line));
 }
 
 void SweepFile::WriteAll() const {
-  std::string text = header_;
-  for (const auto& [run, line] : rows_) text += line;
-  WriteWhole(path_.string(), text);
+  WholeFile file(path_.string());
+  file.Write(header_);
+  for (const auto& [run, line] : rows_) file.Write(line);
+  file.Commit();
 }
 
 void SweepFile::Add(std::size_t run, const Cells& cells) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -31,8 +32,8 @@ class SweepFile {
 
   bool Has(std::size_t run) const { return rows_.contains(run); }
   std::size_t rows() const { return rows_.size(); }
-  /// The cells of all rows, by the number of the run, which is their first cell.
-  std::vector<Cells> AllCells() const;
+  /// Hands over the cells of each row, by the number of the run, which is the first cell.
+  void ForEachRow(const std::function<void(const Cells&)>& take) const;
   /// Appends the row of a run; `cells` without the run number.
   void Add(std::size_t run, const Cells& cells);
   /// Sorts the rows by run number. The file is replaced atomically.
