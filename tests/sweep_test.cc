@@ -393,6 +393,34 @@ TEST_F(SweepTest, DoesNotGoOnWithAnotherLaw) {
   EXPECT_THAT(other.output, HasSubstr("expected a new file, or one of this very sweep, got another"));
 }
 
+TEST_F(SweepTest, KeepsApartTheFilesOfTablesWhoseNamesDifferBehindADot) {
+  for (const char* name : {"gain.v1", "gain.v2", "gain.csv"}) {
+    out_ = folder_.File(name);
+    const Ran ran =
+        Sweep("--seeds 1..2 --set run.duration_s=1" + std::string(out_.ends_with("v1") ? "" : " --no-plot"));
+    ASSERT_EQ(ran.exit_code, 0) << ran.output;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("gain.png")));
+  for (const char* name :
+       {"gain.v1.stats.csv", "gain.v1.png", "gain.v2.stats.csv", "gain.stats.csv", "gain.v1", "gain.v1.plan"})
+    EXPECT_TRUE(std::filesystem::exists(folder_.File(name))) << name;
+}
+
+TEST_F(SweepTest, RefusesATableThatAnotherSweepIsWriting) {
+  Running sweep(std::string(MASCOT_BINARY_DIR) + "/orchestrator",
+                {"sweep", config_, "--out", out_, "--seeds", "1..5000", "--no-plot"}, folder_.File("first"));
+  ASSERT_TRUE(Until([&] { return std::filesystem::exists(out_) && Table(out_).rows.size() > 2; }));
+  for (const char* words : {"--seeds 1..5000 --no-plot", "--seeds 1..2 --no-plot --force"}) {
+    const Ran second = Sweep(words);
+    EXPECT_EQ(second.exit_code, 2) << second.output;
+    EXPECT_THAT(second.output, HasSubstr("error: --out " + out_ +
+                                         ": expected a table of this sweep's own, got one "
+                                         "that another is writing"));
+  }
+  ::kill(sweep.pid(), SIGINT);
+  EXPECT_EQ(sweep.Wait(), 130) << "the first is not disturbed";
+}
+
 TEST_F(SweepTest, DoesNotMixTwoSweepsInOneTable) {
   ASSERT_EQ(Sweep("--seeds 1..2 --no-plot").exit_code, 0);
   const std::string before = ReadFile(out_);

@@ -361,9 +361,12 @@ std::vector<std::string> Conclude(const SweepPlan& plan, const SweepLaws& laws, 
 
 }  // namespace
 
-std::filesystem::path StatisticsBeside(const std::filesystem::path& table) {
-  return fs::path(table).replace_extension(".stats.csv");
+std::filesystem::path FileBeside(std::filesystem::path table, std::string_view ending) {
+  if (table.extension() == ".csv") table.replace_extension();
+  return table += ending;
 }
+
+std::filesystem::path StatisticsBeside(const std::filesystem::path& table) { return FileBeside(table, ".stats.csv"); }
 
 Sweeper::Sweeper(std::string name, std::string text, SweepPlan plan)
     : name_(std::move(name)), text_(std::move(text)), plan_(std::move(plan)) {}

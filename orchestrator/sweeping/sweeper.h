@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "agent/python_metrics.h"
@@ -12,7 +13,10 @@
 
 namespace mascot {
 
-/// The file with the statistics of a table, beside it: sweep.stats.csv of sweep.csv.
+/// A file beside a table: sweep.png with the ending ".png" of sweep.csv. Of a table without the ending .csv the whole
+/// name stays: gain.v1.png of gain.v1.
+std::filesystem::path FileBeside(std::filesystem::path table, std::string_view ending);
+/// The file with the statistics of a table: sweep.stats.csv of sweep.csv.
 std::filesystem::path StatisticsBeside(const std::filesystem::path& table);
 
 /// Executes the runs of a sweep, each in one process, with several processes in parallel, and writes their table.

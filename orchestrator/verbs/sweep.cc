@@ -54,8 +54,7 @@ bool IsDrawable(const SweepArgs& args, const SweepPlan& plan) {
 int Picture(const SweepArgs& args, const SweepPlan& plan, const Sweeper::Outcome& outcome, StopSignal& stop) {
   const std::string column = args.metric.value_or(outcome.own.empty() ? kUsualMetric : outcome.own.front().name);
   const auto own = std::ranges::find(outcome.own, column, &PythonMetric::name);
-  std::vector<std::string> words{args.out, StatisticsBeside(args.out), fs::path(args.out).replace_extension(".png"),
-                                 column};
+  std::vector<std::string> words{args.out, StatisticsBeside(args.out), FileBeside(args.out, ".png"), column};
   words.insert(words.end(), plan.varied().begin(), plan.varied().end());
   words.insert(words.end(),
                {"--label", column + "=" + (own != outcome.own.end() ? LabelOfMetric(*own) : LabelOfColumn(column))});
