@@ -53,9 +53,10 @@ TEST_F(SideBySideTest, SaysSoIfTheExperimentsAreTheSame) {
               HasSubstr("\nthe same experiment\nmeasured and predicted\n  control effort (m²/s³)  2  3\n"));
 }
 
-TEST_F(SideBySideTest, NamesRunsByTheirPathsIfTheirFoldersHaveOneName) {
-  const std::string a = Run("x/run", "", R"({"exit": 0})"), b = Run("y/run", "", R"({"exit": 0})");
-  EXPECT_THAT(SideBySide({a, b}).Text(), HasSubstr("  " + a + "  " + b + "\n"));
+TEST_F(SideBySideTest, NamesRunsWithoutTheFoldersThatTheyShare) {
+  const std::string a = Run("slow/1", "", R"({"exit": 0})"), b = Run("fast/2", "", R"({"exit": 0})");
+  EXPECT_THAT(SideBySide({a + "/", b}).Text(), HasSubstr("  slow/1  fast/2\n"));
+  EXPECT_THAT(SideBySide({a, a}).Text(), HasSubstr("  1  1\n"));
 }
 
 TEST_F(SideBySideTest, IsJsonWithListsByRun) {

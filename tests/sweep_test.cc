@@ -374,7 +374,14 @@ TEST_F(SweepTest, IsComparedRunByRunByAVerbOfItsOwn) {
   EXPECT_TRUE(std::filesystem::exists(folder_.File("pictures/disagreement.png")));
   const Ran json = compare(runs + "--json");
   EXPECT_EQ(nlohmann::json::parse(json.output)["config"]["law.p_gain"], nlohmann::json({0.2, 0.4}));
-  const Ran one = compare(folder_.File("gain_0.2"));
+  const Ran newest = Shell("cd '" + folder_.path().string() + "' && mkdir runs && mv gain_0.2 gain_0.4 runs && touch " +
+                           "-d 2020-01-01 runs/gain_0.2/config.toml && mkdir other && cp -r runs/gain_0.2 other && " +
+                           std::string(MASCOT_BINARY_DIR) + "/orchestrator compare other latest");
+  EXPECT_THAT(newest.output, HasSubstr("other/gain_0.2  runs/gain_0.4\n")) << "found as by the other verbs";
+  const Ran nowhere = compare(folder_.File("other") + " latest");
+  EXPECT_EQ(nowhere.exit_code, 2);
+  EXPECT_EQ(nowhere.output, "error: latest: expected the newest run in the folder runs, which is not here\n");
+  const Ran one = compare(folder_.File("runs"));
   EXPECT_EQ(one.exit_code, 2);
   EXPECT_EQ(one.output, "error: compare: expected at least 2 runs, got 1\n");
 }

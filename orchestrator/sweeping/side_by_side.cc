@@ -73,14 +73,26 @@ std::vector<std::string> KeysOf(const std::vector<Cells>& runs, const std::vecto
   return keys;
 }
 
-/// Names of the runs at the heads of columns: the last folder's, if these differ.
+/// Names of the runs at the heads of columns: their paths, without the folders that they share.
 std::vector<std::string> HeadsOf(const std::vector<std::string>& runs) {
-  std::vector<std::string> heads;
+  std::vector<std::vector<fs::path>> paths;
   for (const std::string& run : runs) {
     const fs::path path = fs::path(run).lexically_normal();
-    heads.push_back(path.has_filename() ? path.filename() : path.parent_path().filename());
+    paths.emplace_back(path.begin(), path.end());
+    if (paths.back().size() > 1 && paths.back().back().empty()) paths.back().pop_back();  // it ended with a slash
   }
-  return std::set(heads.begin(), heads.end()).size() == heads.size() ? heads : runs;
+  std::size_t shared = paths.front().size() - 1;
+  for (const auto& path : paths) {
+    const auto differs = std::ranges::mismatch(path, paths.front()).in1;
+    shared = std::min({shared, path.size() - 1, static_cast<std::size_t>(differs - path.begin())});
+  }
+  std::vector<std::string> heads;
+  for (const auto& path : paths) {
+    fs::path head;
+    for (std::size_t k = shared; k < path.size(); ++k) head /= path[k];
+    heads.push_back(head.string());
+  }
+  return heads;
 }
 
 /// A cell as the text shows it.

@@ -4,11 +4,13 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bus/stop_signal.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/processes/script.h"
+#include "orchestrator/recording/recording.h"
 #include "orchestrator/sweeping/side_by_side.h"
 #include "orchestrator/verbs/verb.h"
 
@@ -21,13 +23,14 @@ struct CompareArgs {
   bool json = false;
 };
 
-int Compare(const CompareArgs& args) {
+int Compare(CompareArgs args) {
   if (args.runs.size() < 2) throw ConfigError({"compare: expected at least 2 runs, got 1"});
+  for (std::string& run : args.runs) run = FindRun(run);
   const SideBySide table(args.runs);
   std::cout << (args.json ? table.JsonText() : table.Text());
   if (args.plot.empty()) return kExitDone;
   StopSignal stop;
-  std::vector<std::string> words = args.runs;
+  std::vector<std::string> words = std::move(args.runs);
   words.insert(words.end(), {"--overlay", "--out=" + args.plot});
   return RunScript("plot.py", words, stop);
 }
