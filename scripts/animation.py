@@ -14,8 +14,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection
 from pictures import (
-    area_artists, colours, draw_obstacles, draw_places, edge_artists, map_axis, mark_area, name_agents, name_edges,
-    square_figure,
+    area_artists, colours, draw_obstacles, draw_places, edge_artists, in_order, map_axis, mark_area, name_agents,
+    name_edges, square_figure,
 )
 from run_folder import RunError
 
@@ -50,7 +50,8 @@ class Film:
     def __init__(self, run, scale, pace):
         self.run, self.told_s = run, TOLD_S * pace
         self.p = run.position[:, :, :2]
-        self.graphs, self.spans, self.events = run.graphs, run.spans, run.events
+        self.spans, self.events = run.spans, run.events
+        self.graphs = [(begin, in_order(edges)) for begin, _, edges in run.graphs]
         self.range_m = run.config.get("graph", {}).get("range_m") or np.inf
         plt.rcParams["figure.dpi"] *= scale
         self.figure, self.axis = square_figure()
@@ -65,7 +66,7 @@ class Film:
         name_edges(axis, set(run.edges))
         for indices, label, look in self.kinds():
             axis.plot([], [], color="0.4", linestyle="", label=label, **look)
-        axis.plot(*self.p.reshape(-1, 2).T, alpha=0)  # what the axes have to hold
+        axis.plot(*np.array([self.p.min(axis=(0, 1)), self.p.max(axis=(0, 1))]).T, alpha=0)  # what the axes have to hold
         hidden = area_artists(axis, run, self.p[0]) if self.has_areas else []
         map_axis(axis)
         self.text = axis.text(0, 1.01, "t\nt" if self.events else "t", transform=axis.transAxes, va="bottom")
@@ -105,8 +106,10 @@ class Film:
                                     annotation_clip=True, **style.small()) for k in self.order] if named else []
 
     def edges(self, t_s, p):
-        at = max(0, int(np.searchsorted([begin for begin, _, _ in self.graphs], t_s + 1e-9, side="right")) - 1)
-        return {(i, j) for i, j in self.graphs[at][2] if np.linalg.norm(p[i] - p[j]) < self.range_m}
+        """(M, 2): the edges of that time between agents, at places `p` (N, 3), who are near enough."""
+        at = max(0, int(np.searchsorted([begin for begin, _ in self.graphs], t_s + 1e-9, side="right")) - 1)
+        edges = self.graphs[at][1]
+        return edges[np.linalg.norm(p[edges[:, 0]] - p[edges[:, 1]], axis=1) < self.range_m]
 
     def words(self, t_s):
         """Time and phase; in a second line the events of late, as many as there is room for."""

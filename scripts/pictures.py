@@ -159,16 +159,22 @@ def panels(run, values, symbol, unit, what, axes):
     return figure, grid, marks_pt
 
 
+def in_order(edges):
+    """(M, 2): the edges of a set, sorted."""
+    return np.array(sorted(edges), dtype=int).reshape(-1, 2)
+
+
 def edge_artists(axis, at, edges, alpha=None):
-    """Adds edges between the places `at` (N, 2) in grey, paler where they are many: a line between two who hear each
-    other, an arrow from j to i if i hears j and not the other way round."""
-    lines = sorted(edge for edge in edges if edge[0] < edge[1] or edge[::-1] not in edges)
-    arrows = [edge for edge in lines if edge[::-1] not in edges]
+    """Adds edges, as in_order() has them, between the places `at` (N, 2) in grey, paler where they are many: a line
+    between two who hear each other, an arrow from j to i if i hears j and not the other way round."""
+    hearer, heard = edges.T
+    mutual = np.isin(heard * len(at) + hearer, hearer * len(at) + heard)
+    shown = ~mutual | (hearer < heard)
+    lines, arrows = edges[shown], edges[~mutual]
     alpha = alpha or max(0.15, min(0.8, 40 / max(1, len(lines))))
-    artists = [axis.add_collection(LineCollection([at[list(edge)] for edge in lines], colors=GREY, alpha=alpha,
-                                                  linewidths=0.8, zorder=1))]
-    if arrows:
-        hearer, heard = np.array(arrows).T
+    artists = [axis.add_collection(LineCollection(at[lines], colors=GREY, alpha=alpha, linewidths=0.8, zorder=1))]
+    if len(arrows):
+        hearer, heard = arrows.T
         artists.append(arrow_heads(axis, at[heard], at[hearer], min(1, 1.5 * alpha)))
     return artists
 
@@ -195,7 +201,7 @@ def draw_graph(axis, run, p):
     """Draws all edges that the graph ever has: between initial positions if the agents end close together, else between
     final positions."""
     spread = [np.ptp(p[row], axis=0).max() for row in (0, -1)]
-    edge_artists(axis, p[-1] if spread[1] > 0.3 * spread[0] else p[0], set(run.edges))
+    edge_artists(axis, p[-1] if spread[1] > 0.3 * spread[0] else p[0], in_order(set(run.edges)))
     name_edges(axis, set(run.edges))
 
 
@@ -455,7 +461,7 @@ def graph(run):
     for axis in grid.flat:
         axis.set_axis_off()
     for axis, edges in zip(grid.flat, shown):
-        edge_artists(axis, at, edges)
+        edge_artists(axis, at, in_order(edges))
         name_edges(axis, edges)
         draw_nodes(axis, run, at, side)
         axis.set_title(span_text(spans[edges], run, repeats) + near, loc="center", fontsize=letter)

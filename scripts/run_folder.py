@@ -12,6 +12,7 @@ import numpy as np
 
 DRAWING = {"leader": "leader", "switches": False, "pictures": [], "telling": "paths", "hull": "", "cells": ""}
 ARRAYS = {"position": 3, "velocity": 3, "acceleration_command": 3}  # name -> numbers per agent and row
+NUMBERS_AT_ONCE = 1 << 14  # in one array of a computation over rows, so that it stays in the cache
 FILTERED, INFEASIBLE = 16, 32  # bits of flags: law.safety changed the command; it found no safe one
 
 
@@ -305,10 +306,22 @@ def disagreement(run):
 
 def separation(run):
     """(T): smallest distance between two agents along the axes of the law (m)."""
-    p = run.position[:, :, run.axes]
-    least = np.full(run.t.size, np.inf)
-    for k in range(1, run.size):
-        least = np.minimum(least, np.linalg.norm(p[:, k:] - p[:, :-k], axis=2).min(axis=1))
+    rows = max(1, NUMBERS_AT_ONCE // run.size)
+    return np.concatenate([np.sqrt(least_square(run.position[begin:begin + rows, :, run.axes]))
+                           for begin in range(0, run.t.size, rows)])
+
+
+def least_square(p):
+    """(T): smallest square of a distance between two of the points (T, N, axes) of a row."""
+    along = [np.ascontiguousarray(p[:, :, axis]) for axis in range(p.shape[2])]
+    least = np.full(p.shape[0], np.inf)
+    for k in range(1, p.shape[1]):
+        squares = 0
+        for x in along:
+            apart = x[:, k:] - x[:, :-k]
+            apart *= apart
+            squares = np.add(squares, apart, out=apart)
+        np.minimum(least, squares.min(axis=1), out=least)
     return least
 
 

@@ -752,8 +752,9 @@ class Films(PlotTest):
     def test_edges_are_those_of_their_time_and_of_agents_that_are_near(self):
         film = self.film(summary=Graphs.TWO, config=CONSENSUS + "[graph]\nrange_m = 5.0\n")
         near = np.zeros((3, 3))
-        self.assertEqual([film.edges(t_s, near) for t_s in (0, 1.4, 1.5, 5)], [{(0, 1), (1, 0)}] * 2 + [{(2, 1)}] * 2)
-        self.assertEqual(film.edges(0, np.array([[0, 0, 0], [0, 0, 6], [0, 0, 0]])), set())
+        self.assertEqual([film.edges(t_s, near).tolist() for t_s in (0, 1.4, 1.5, 5)],
+                         [[[0, 1], [1, 0]]] * 2 + [[[2, 1]]] * 2)
+        self.assertEqual(film.edges(0, np.array([[0, 0, 0], [0, 0, 6], [0, 0, 0]])).tolist(), [])
 
     def test_it_tells_the_time_the_phase_and_events_of_late(self):
         film = self.film(config=Changes.PHASES + "[[events]]\nat_s = 1.0\ncut = [[1, 2]]\n", summary=Changes.TOLD)
@@ -892,6 +893,31 @@ class Errors(PlotTest):
         self.write()
         (self.folder / "paths.png").mkdir()
         self.check(1, f"{self.folder}/paths.png: Is a directory")
+
+
+class ManyAgentsTest(unittest.TestCase):
+    """What is computed in bulk is, to the bit, what it is one by one."""
+
+    def test_separation(self):
+        position = np.random.default_rng(1).normal(size=(1203, 40, 3))
+        for axes in ([0, 1], [0, 1, 2]):
+            p = position[:, :, axes]
+            pairs = [np.linalg.norm(p[:, i] - p[:, j], axis=1) for i in range(40) for j in range(i)]
+            run = mock.Mock(position=position, axes=axes, size=40, t=np.arange(1203))
+            np.testing.assert_array_equal(run_folder.separation(run), np.min(pairs, axis=0))
+
+    def test_edges(self):
+        rng = np.random.default_rng(2)
+        at = rng.normal(size=(60, 2))
+        edges = {(int(i), int(j)) for i, j in rng.integers(60, size=(700, 2)) if i != j}
+        lines = sorted(edge for edge in edges if edge[0] < edge[1] or edge[::-1] not in edges)
+        arrows = [edge for edge in lines if edge[::-1] not in edges]
+        self.assertNotIn(len(arrows), (0, len(lines)), "edges of both kinds")
+        with mock.patch.object(pictures, "arrow_heads") as heads:
+            drawn = pictures.edge_artists(pictures.plt.figure().add_subplot(), at, pictures.in_order(edges))[0]
+        np.testing.assert_array_equal(drawn.get_segments(), [at[list(edge)] for edge in lines])
+        np.testing.assert_array_equal(heads.call_args.args[1:3], [at[[j for _, j in arrows]], at[[i for i, _ in arrows]]])
+        pictures.plt.close("all")
 
 
 class SweepTableTest(unittest.TestCase):
