@@ -40,6 +40,13 @@ HELPS = Helps()
 LAWS = {line for line in output_of(PROGRAM, "laws").splitlines() if re.match(r"\w+$", line)}
 
 
+class Readme(unittest.TestCase):
+    def test_its_command_line_has_each_verb_once_and_help(self):
+        block = re.search(r"## Command line\n.*?```\n(.*?)```", (ROOT / "README.md").read_text(), re.S)[1]
+        shown = re.findall(r"^orchestrator ((?:\w+ \| )*\w+)", block, re.M)
+        self.assertEqual(sorted(verb for verbs in shown for verb in verbs.split(" | ")), sorted(["help", *HELPS.verbs]))
+
+
 class Completion:
     """What a shell offers for the last of some words, as a set. Subclasses say how to ask it."""
 
