@@ -189,10 +189,56 @@ class ManualPages(unittest.TestCase):
                     self.assertRegex(text, rf"(?m)^(\\fB)?{option}|,{option}")
 
 
-PACKAGES = [path for path in (ROOT / "build/package").glob("*.deb") if is_newer(path)]
+def files_in(path):
+    """The file itself, or all in a folder but what was built there."""
+    if path.is_file():
+        return [path]
+    return [file for file in path.rglob("*") if file.is_file() and "build" not in file.relative_to(path).parts]
 
 
-@unittest.skipUnless(PACKAGES, "there is no package of this build: scripts/package")
+def packaged_files():
+    """What scripts/package puts into the package: programs, manual pages, and what install() names in the tree."""
+    makers = [ROOT / "CMakeLists.txt", ROOT / "cmake/package.cmake"]
+    words = " ".join(re.findall(r"install\((?:FILES|PROGRAMS|DIRECTORY) ([^)]*?)\s+DESTINATION",
+                                "".join(maker.read_text() for maker in makers))).split()
+    named = [ROOT / word for word in words if "$" not in word]
+    programs = [BUILD / name for name in ("orchestrator", "agent", "physics_server")]
+    return [file for path in (*makers, *programs, BUILD / "man", *named) for file in files_in(path)]
+
+
+def why_old(package, files):
+    """Why a package is not one of these files as they are; "": it is. A file that was moved or copied is new, too."""
+    made = package.stat().st_mtime
+    newer = next((file for file in files if max(file.stat().st_mtime, file.stat().st_ctime) > made), None)
+    return f"{newer} is newer than {package}" if newer else ""
+
+
+class Age(unittest.TestCase):
+    def test_a_package_is_old_if_any_file_in_it_is_newer(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            page, package = pathlib.Path(scratch, "page.js"), pathlib.Path(scratch, "a.deb")
+            page.touch()
+            package.touch()
+            changed = page.stat().st_ctime
+            os.utime(page, (0, 0))  # as of a file that was moved here
+            os.utime(package, (0, changed - 1))
+            self.assertEqual(why_old(package, [page]), f"{page} is newer than {package}")
+            os.utime(package, (0, changed + 1))
+            self.assertEqual(why_old(package, [page]), "")
+
+    def test_all_that_is_installed_counts(self):
+        counted = {path.relative_to(ROOT).as_posix() for path in packaged_files() if path.is_relative_to(ROOT)}
+        self.assertLess({"README.md", "docs/sweep.md", "scripts/plot.py", "scripts/run_folder.py", "configs/leaderless.toml",
+                         "orchestrator/live/page/index.html", "scripts/completion/_orchestrator", "agent/plugin.h",
+                         "docs/mascot.schema.json", "cmake/package.cmake"}, counted)
+        self.assertIn(PROGRAM, packaged_files())
+
+
+PACKAGES = sorted((ROOT / "build/package").glob("*.deb"))
+NO_PACKAGE = why_old(PACKAGES[0], packaged_files()) if PACKAGES else "there is none"
+
+
+@unittest.skipIf(NO_PACKAGE, f"no package of this build and tree (scripts/package makes it): {NO_PACKAGE}")
 class Package(unittest.TestCase):
     def test_it_has_what_users_look_for(self):
         files = set(re.findall(r" \./(\S+)", output_of("dpkg-deb", "--contents", PACKAGES[0])))
