@@ -14,27 +14,27 @@ Box At(double x, double y, double z, double half_m = 0.5) {
   return {centre - half_m, centre + half_m};
 }
 
-Clearance Bodies(std::size_t count, std::vector<Box> fixed = {}, bool can_touch_each_other = true,
-                 bool can_touch_floor = true) {
+Clearance Boxes(std::size_t count, std::vector<Box> fixed = {}, bool can_touch_each_other = true,
+                bool can_touch_floor = true) {
   return Clearance({std::vector<bool>(count, can_touch_floor), can_touch_each_other, std::move(fixed)});
 }
 
 TEST(Clearance, SeesBoxesThatMeet) {
-  EXPECT_TRUE(Bodies(2).IsClear(std::vector{At(0, 0, 5), At(1.1, 0, 5)}));
-  EXPECT_FALSE(Bodies(2).IsClear(std::vector{At(0, 0, 5), At(0.9, 0.9, 5.9)}));
-  EXPECT_TRUE(Bodies(2).IsClear(std::vector{At(0, 0, 5), At(0.9, 0.9, 6.1)}));
-  EXPECT_TRUE(Bodies(2, {}, false).IsClear(std::vector{At(0, 0, 5), At(0, 0, 5)})) << "they pass through each other";
+  EXPECT_TRUE(Boxes(2).IsClear(std::vector{At(0, 0, 5), At(1.1, 0, 5)}));
+  EXPECT_FALSE(Boxes(2).IsClear(std::vector{At(0, 0, 5), At(0.9, 0.9, 5.9)}));
+  EXPECT_TRUE(Boxes(2).IsClear(std::vector{At(0, 0, 5), At(0.9, 0.9, 6.1)}));
+  EXPECT_TRUE(Boxes(2, {}, false).IsClear(std::vector{At(0, 0, 5), At(0, 0, 5)})) << "they pass through each other";
 }
 
 TEST(Clearance, SeesTheFloorAndWhatIsFixed) {
-  EXPECT_FALSE(Bodies(1).IsClear(std::vector{At(0, 0, 0.4)}));
-  EXPECT_TRUE(Bodies(1, {}, true, false).IsClear(std::vector{At(0, 0, 0.4)}));
-  EXPECT_FALSE(Bodies(1, {At(0, 0, 5)}).IsClear(std::vector{At(0.9, 0, 5)}));
-  EXPECT_TRUE(Bodies(1, {At(0, 0, 5)}).IsClear(std::vector{At(1.1, 0, 5)}));
+  EXPECT_FALSE(Boxes(1).IsClear(std::vector{At(0, 0, 0.4)}));
+  EXPECT_TRUE(Boxes(1, {}, true, false).IsClear(std::vector{At(0, 0, 0.4)}));
+  EXPECT_FALSE(Boxes(1, {At(0, 0, 5)}).IsClear(std::vector{At(0.9, 0, 5)}));
+  EXPECT_TRUE(Boxes(1, {At(0, 0, 5)}).IsClear(std::vector{At(1.1, 0, 5)}));
 }
 
 TEST(Clearance, SeesABodyComeAndGo) {
-  Clearance clearance = Bodies(2);
+  Clearance clearance = Boxes(2);
   for (int step = 0; step <= 400; ++step) {
     const double x = -2 + 0.01 * step;
     const bool meets = std::abs(x) < 1;
@@ -57,7 +57,7 @@ TEST(Clearance, AgreesWithComparingAllPairs) {
       at[i] = {place(random), place(random), 4 + place(random)};
       half_m[i] = size(random);
     }
-    Clearance clearance = Bodies(at.size(), fixed);
+    Clearance clearance = Boxes(at.size(), fixed);
     for (int step = 0; step < 300; ++step) {
       std::vector<Box> boxes;
       for (std::size_t i = 0; i < at.size(); ++i) {

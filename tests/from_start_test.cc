@@ -28,7 +28,7 @@ FromStart Fly(const Experiment& experiment) {
   return {meter.settling_time_s(), meter.rate_per_s()};
 }
 
-FromStart Predict(const Experiment& experiment) {
+FromStart FromMatrices(const Experiment& experiment) {
   return FlyFromStart(experiment, *LinearTeamOf(experiment).team, *TimelineOf(experiment), experiment.run.duration_s);
 }
 
@@ -48,7 +48,7 @@ std::string Agents(std::mt19937& random, int count, const std::string& model) {
 
 void ExpectTheSame(const std::string& toml) {
   const Experiment experiment = Load(toml);
-  const FromStart flown = Fly(experiment), predicted = Predict(experiment);
+  const FromStart flown = Fly(experiment), predicted = FromMatrices(experiment);
   ASSERT_TRUE(flown.settling_time_s && flown.rate_per_s) << toml;
   ASSERT_TRUE(predicted.settling_time_s && predicted.rate_per_s) << toml;
   EXPECT_NEAR(*predicted.settling_time_s, *flown.settling_time_s, 1.01 * experiment.period_s()) << toml;

@@ -21,7 +21,7 @@ namespace {
 using ::testing::StartsWith;
 using Kind = Wish::Kind;
 
-const std::string kLeads = "name = 'consensus'\nleader = 1\n";
+const std::string kFirstLeads = "name = 'consensus'\nleader = 1\n";
 
 /// The positions of all ticks, and the events.
 class Kept final : public RowSink {
@@ -64,7 +64,7 @@ class Steered {
 /// A long run that has paused.
 class Paused : public Steered {
  public:
-  explicit Paused(const std::string& toml = Long(Three(kLeads))) : Steered(toml, 1) {
+  explicit Paused(const std::string& toml = Long(Three(kFirstLeads))) : Steered(toml, 1) {
     const Answer answer = Ask({.kind = Kind::kPause});
     EXPECT_TRUE(answer.granted) << answer.words;
     EXPECT_THAT(answer.words, StartsWith("paused after tick "));
@@ -135,7 +135,7 @@ TEST(Helm, RefusesNumbersThatMakeNoSense) {
 }
 
 TEST(Helm, LetsAWishThatComesEarlyWaitForTheRunAndRefusesWhatComesLate) {
-  const Experiment experiment = Load(Three(kLeads));
+  const Experiment experiment = Load(Three(kFirstLeads));
   Helm helm(experiment, 0);
   Answer early;
   std::jthread asking([&] { early = helm.Ask({.kind = Kind::kPace, .number = 0}); });
@@ -152,7 +152,7 @@ TEST(Helm, LetsAWishThatComesEarlyWaitForTheRunAndRefusesWhatComesLate) {
 }
 
 TEST(Helm, TellsWhoWaitsWhenTheRunEnds) {
-  const Experiment experiment = Load(Three(kLeads));
+  const Experiment experiment = Load(Three(kFirstLeads));
   Helm helm(experiment, 0);
   helm.Open();
   Answer answer{.granted = true};
@@ -175,7 +175,7 @@ TEST(Helm, StopsARunInOrder) {
 }
 
 TEST(Helm, AnEventOfTheFileMayChangeThePace) {
-  Steered run(Paused::Long(Three(kLeads)) + "[[events]]\nat_s = 0.5\nset = { \"run.pace\" = 0.001 }\n");
+  Steered run(Paused::Long(Three(kFirstLeads)) + "[[events]]\nat_s = 0.5\nset = { \"run.pace\" = 0.001 }\n");
   while (run.helm.going().tick < 50) std::this_thread::yield();
   run.Ask({.kind = Kind::kPause});
   EXPECT_EQ(run.helm.going().pace, 0.001);
@@ -183,7 +183,7 @@ TEST(Helm, AnEventOfTheFileMayChangeThePace) {
 }
 
 TEST(Helm, PausesStepsAndPacesLeaveNoTrace) {
-  const std::string toml = Three(kLeads);
+  const std::string toml = Three(kFirstLeads);
   Kept plain;
   const Experiment experiment = Load(toml);
   RunInProcess(experiment, {&plain}, [] { return true; });
@@ -201,7 +201,7 @@ TEST(Helm, PausesStepsAndPacesLeaveNoTrace) {
 }
 
 TEST(Helm, EventsOfTwoSendersAtRandomMomentsFlyAgainFromTheFile) {
-  const std::string toml = Three(kLeads) + "[[events]]\nat_s = 0.3\ncut = [[1, 3]]\n[[events]]\nat_s = 0.6\n" +
+  const std::string toml = Three(kFirstLeads) + "[[events]]\nat_s = 0.3\ncut = [[1, 3]]\n[[events]]\nat_s = 0.6\n" +
                            "set = { \"law.p_gain\" = 0.4 }\n";
   Steered run(toml, 1);
   const auto send = [&](unsigned seed) {

@@ -28,7 +28,7 @@ std::string Pair(double z_m, const std::string& law, const std::string& velocity
          ShortestFloat(z_m) + ", 0, 2]]\nvelocity_m_per_s = " + velocity + "\n[graph]\nedges = [[2, 1]]\n[law]\n" + law;
 }
 
-std::vector<std::string> Mistakes(const std::string& toml) {
+std::vector<std::string> MistakesIn(const std::string& toml) {
   try {
     LoadExperiment(Section::FromText(toml, "test.toml"), "test");
   } catch (const ConfigError& error) {
@@ -464,7 +464,8 @@ TEST(MinmaxBoundaryLayer, FollowsAParentThatAcceleratesAtItsBoundFromWithinTheLa
 
 /// The mistake, without its place, in an experiment of five agents on a path with these lines of [law].
 std::string Mistake(std::string_view law, const std::string& lines, const std::string& graph = "topology = 'path'") {
-  const auto mistakes = Mistakes(kPath5 + "[graph]\n" + graph + "\n[law]\nname = '" + std::string(law) + "'\n" + lines);
+  const auto mistakes =
+      MistakesIn(kPath5 + "[graph]\n" + graph + "\n[law]\nname = '" + std::string(law) + "'\n" + lines);
   if (mistakes.size() != 1) return std::to_string(mistakes.size()) + " mistakes";
   const auto key = mistakes[0].find(" law.");
   return key == std::string::npos ? mistakes[0] : mistakes[0].substr(key + 1);
@@ -538,8 +539,8 @@ TEST(LawErrors, OfMinmaxNameAgentsThatTheRootDoesNotReach) {
 
 TEST(LawErrors, AreNotedOnceHoweverManyAgentsThereAre) {
   const std::string law = kPath5 + "[graph]\ntopology = 'path'\n[law]\nname = 'consensus'\n";
-  EXPECT_THAT(Mistakes(law + "p_gain = -1.0"), ::testing::SizeIs(1));
-  EXPECT_THAT(Mistakes(law), IsEmpty());
+  EXPECT_THAT(MistakesIn(law + "p_gain = -1.0"), ::testing::SizeIs(1));
+  EXPECT_THAT(MistakesIn(law), IsEmpty());
 }
 
 }  // namespace

@@ -17,11 +17,11 @@ std::string Two(const std::string& rest) {
          rest;
 }
 
-Linearity Of(const std::string& toml) {
+Linearity LinearityOf(const std::string& toml) {
   return LinearTeamOf(LoadExperiment(Section::FromText(toml, "test.toml"), "test"));
 }
 
-LinearAgent First(const std::string& toml) { return Of(toml).team.value().agents.front(); }
+LinearAgent First(const std::string& toml) { return LinearityOf(toml).team.value().agents.front(); }
 
 TEST(LinearTeam, TakesLawsThatWantAnAccelerationAsTheyAre) {
   const LinearAgent agent = First(Two("[law]\nname = 'consensus'\np_gain = 0.3\nv_gain = 0.2\nbeta = 0.7\n"));
@@ -53,29 +53,31 @@ TEST(LinearTeam, AddsUncompensatedDrag) {
 
 TEST(LinearTeam, KnowsItsLeaders) {
   const LinearTeam team =
-      Of(Two("[law]\nname = 'consensus'\nleader = 2\nleader_waypoints_m = [[1, 2, 3]]\n")).team.value();
+      LinearityOf(Two("[law]\nname = 'consensus'\nleader = 2\nleader_waypoints_m = [[1, 2, 3]]\n")).team.value();
   EXPECT_THAT(team.Leaders(), ElementsAre(2));
   EXPECT_TRUE(team.agent(2).flies);
   EXPECT_TRUE(team.Followed(Graph({{{2, 1.0}}, {{1, 1.0}}})).HeardBy(2).empty());
   const LinearTeam mixed =
-      Of(Two("[[agents.override]]\nid = 1\nlaw = { name = 'waypoint', axes = 'xy', waypoints_m = [[1, 2, 3]] }\n"
-             "[law]\nname = 'consensus'\n"))
+      LinearityOf(
+          Two("[[agents.override]]\nid = 1\nlaw = { name = 'waypoint', axes = 'xy', waypoints_m = [[1, 2, 3]] }\n"
+              "[law]\nname = 'consensus'\n"))
           .team.value();
   EXPECT_THAT(mixed.Leaders(), ElementsAre(1));
   EXPECT_TRUE(mixed.agent(1).flies);
 }
 
 TEST(LinearTeam, SaysWhyATeamIsNotLinear) {
-  EXPECT_EQ(Of(Two("[[agents.override]]\nid = 2\nmodel = 'unicycle'\n[law]\nname = 'consensus'\n")).why_not,
+  EXPECT_EQ(LinearityOf(Two("[[agents.override]]\nid = 2\nmodel = 'unicycle'\n[law]\nname = 'consensus'\n")).why_not,
             "agent 2 is a unicycle, which turns before going where wanted");
-  EXPECT_EQ(Of(Two("model = 'unicycle'\n[law]\nname = 'consensus'\n")).why_not,
+  EXPECT_EQ(LinearityOf(Two("model = 'unicycle'\n[law]\nname = 'consensus'\n")).why_not,
             "agents 1 and 2 are unicycles, which turn before going where wanted");
-  EXPECT_EQ(Of(Two("[[agents.override]]\nid = 2\nlaw = { name = 'custom', python = 'def control(t, me, neighbours): "
-                   "return 0, 0' }\n[law]\nname = 'consensus'\n"))
-                .why_not,
-            "theory does not know the law custom of agent 2");
-  EXPECT_EQ(Of(Two("[[agents.override]]\nid = 2\nlaw = { spacing_m = 5.0 }\n[law]\nname = 'formation'\n"
-                   "shape = 'line'\n"))
+  EXPECT_EQ(
+      LinearityOf(Two("[[agents.override]]\nid = 2\nlaw = { name = 'custom', python = 'def control(t, me, neighbours): "
+                      "return 0, 0' }\n[law]\nname = 'consensus'\n"))
+          .why_not,
+      "theory does not know the law custom of agent 2");
+  EXPECT_EQ(LinearityOf(Two("[[agents.override]]\nid = 2\nlaw = { spacing_m = 5.0 }\n[law]\nname = 'formation'\n"
+                            "shape = 'line'\n"))
                 .why_not,
             "agents keep different formations");
 }

@@ -179,7 +179,7 @@ TEST(Link, CarriesWeightAndMessageOfTheTickAtWhichTheSampleWasSent) {
 
 // --- Neighbours -------------------------------------------------------------------------------------
 
-Experiment Load(const std::string& rest) {
+Experiment LoadThree(const std::string& rest) {
   return LoadExperiment(Section::FromText("[run]\nduration_s = 10.0\n[agents]\ncount = 3\nmodel = 'double_integrator'\n"
                                           "position_m = [[0, 0, 1], [3, 0, 1], [9, 0, 1]]\n" +
                                               rest,
@@ -201,17 +201,17 @@ std::vector<int> HeardAt(const Experiment& experiment, std::int64_t tick) {
 }
 
 TEST(Neighbours, AreHeardInTheOrderOfTheirIds) {
-  EXPECT_THAT(HeardAt(Load("[graph]\nedges = [[1, 3], [1, 2]]\n"), 0), ElementsAre(2, 3));
+  EXPECT_THAT(HeardAt(LoadThree("[graph]\nedges = [[1, 3], [1, 2]]\n"), 0), ElementsAre(2, 3));
 }
 
 TEST(Neighbours, AreHeardOnlyWithinRange) {
-  EXPECT_THAT(HeardAt(Load("[graph]\nrange_m = 3.1\n"), 0), ElementsAre(2));
-  EXPECT_THAT(HeardAt(Load("[graph]\nrange_m = 3.0\n"), 0), IsEmpty()) << "closer than, not as far as";
-  EXPECT_THAT(HeardAt(Load("[graph]\nrange_m = 10.0\n"), 0), ElementsAre(2, 3));
+  EXPECT_THAT(HeardAt(LoadThree("[graph]\nrange_m = 3.1\n"), 0), ElementsAre(2));
+  EXPECT_THAT(HeardAt(LoadThree("[graph]\nrange_m = 3.0\n"), 0), IsEmpty()) << "closer than, not as far as";
+  EXPECT_THAT(HeardAt(LoadThree("[graph]\nrange_m = 10.0\n"), 0), ElementsAre(2, 3));
 }
 
 TEST(Neighbours, ChangeWithTheSchedule) {
-  const Experiment e = Load(
+  const Experiment e = LoadThree(
       "[graph]\nedges = [[1, 2]]\nrepeat_s = 3.0\n[[graph.schedule]]\nat_s = 1.0\nedges = [[1, 3]]\n"
       "[[graph.schedule]]\nat_s = 2.0\nedges = []\n");
   EXPECT_THAT(HeardAt(e, 99), ElementsAre(2));
@@ -223,16 +223,16 @@ TEST(Neighbours, ChangeWithTheSchedule) {
 }
 
 TEST(Neighbours, AreHeardOnlyWhileTheyAreThere) {
-  const Experiment late = Load("[[agents.override]]\nid = 2\nstart_s = 1.0\nstop_s = 2.0\n");
+  const Experiment late = LoadThree("[[agents.override]]\nid = 2\nstart_s = 1.0\nstop_s = 2.0\n");
   EXPECT_THAT(HeardAt(late, 99), ElementsAre(3));
   EXPECT_THAT(HeardAt(late, 100), ElementsAre(2, 3));
   EXPECT_THAT(HeardAt(late, 199), ElementsAre(2, 3));
   EXPECT_THAT(HeardAt(late, 200), ElementsAre(3));
-  EXPECT_THAT(HeardAt(Load("[[agents.override]]\nid = 1\nstart_s = 1.0\n"), 0), IsEmpty());
+  EXPECT_THAT(HeardAt(LoadThree("[[agents.override]]\nid = 1\nstart_s = 1.0\n"), 0), IsEmpty());
 }
 
 TEST(Neighbours, MayDifferInTheirLinks) {
-  const Experiment e = Load("[link]\ndelay_s = 0.01\n[[link.override]]\nedges = [[1, 3]]\ndelay_s = 0.0\n");
+  const Experiment e = LoadThree("[link]\ndelay_s = 0.01\n[[link.override]]\nedges = [[1, 3]]\ndelay_s = 0.0\n");
   EXPECT_THAT(HeardAt(e, 0), ElementsAre(3));
   EXPECT_EQ(e.links.Of(1, 2).delay_s, 0.01);
   EXPECT_EQ(e.links.Of(1, 3).delay_s, 0.0);
@@ -242,7 +242,7 @@ TEST(Neighbours, MayDifferInTheirLinks) {
 TEST(Neighbours, AreSeenWithNoiseAndBias) {
   constexpr int kTicks = 4000;
   const Experiment e =
-      Load("[graph]\nedges = [[1, 2]]\n[sensors.heard]\nposition_std_m = 0.5\nvelocity_bias_std_m_per_s = 0.2\n");
+      LoadThree("[graph]\nedges = [[1, 2]]\n[sensors.heard]\nposition_std_m = 0.5\nvelocity_bias_std_m_per_s = 0.2\n");
   Neighbours neighbours(e, 1);
   Motion motion;
   const std::vector<Sample> samples = {{&motion}};
@@ -265,7 +265,7 @@ TEST(Neighbours, AreSeenWithNoiseAndBias) {
 /// The ticks of 0..12 at which agent 1 gets a message of agent 2, whose law begins anew at tick 5. What agent 2 sends
 /// at tick k holds a message that is `ages[k]` ticks old.
 std::vector<std::int64_t> TicksWithMessage(const std::string& rest, const std::vector<std::int64_t>& ages) {
-  const Experiment before = Load("[graph]\nedges = [[1, 2]]\n" + rest);
+  const Experiment before = LoadThree("[graph]\nedges = [[1, 2]]\n" + rest);
   Experiment after = before;
   after.agents[1].law.since = 5;
   Neighbours neighbours(before, 1);

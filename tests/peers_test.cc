@@ -10,7 +10,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// As Fast DDS names participant `number` of a process of a host, which has drawn a random number.
-ProcessKey::GuidPrefix Participant(int host, pid_t pid, int random = 7, int number = 0) {
+ProcessKey::GuidPrefix ParticipantOf(int host, pid_t pid, int random = 7, int number = 0) {
   ProcessKey::GuidPrefix prefix;
   const int values[] = {1, 15, host, 0, pid & 255, (pid >> 8) & 255, random, 0, number, 0, 0, 0};
   for (std::size_t i = 0; i < std::size(values); ++i) prefix.value[i] = static_cast<std::uint8_t>(values[i]);
@@ -18,24 +18,24 @@ ProcessKey::GuidPrefix Participant(int host, pid_t pid, int random = 7, int numb
 }
 
 TEST(ProcessKey, FitsEveryParticipantOfItsProcessAndNoOther) {
-  const ProcessKey key = ProcessKey::Of(Participant(1, 1000));
-  EXPECT_TRUE(key.Fits(Participant(1, 1000, 7, 5)));
-  EXPECT_FALSE(key.Fits(Participant(2, 1000)));
-  EXPECT_FALSE(key.Fits(Participant(1, 1001)));
-  EXPECT_FALSE(key.Fits(Participant(1, 1000, 8))) << "another process that later got the same id";
+  const ProcessKey key = ProcessKey::Of(ParticipantOf(1, 1000));
+  EXPECT_TRUE(key.Fits(ParticipantOf(1, 1000, 7, 5)));
+  EXPECT_FALSE(key.Fits(ParticipantOf(2, 1000)));
+  EXPECT_FALSE(key.Fits(ParticipantOf(1, 1001)));
+  EXPECT_FALSE(key.Fits(ParticipantOf(1, 1000, 8))) << "another process that later got the same id";
 }
 
 TEST(ProcessKey, OfAProcessIdFitsThatProcessAlone) {
-  EXPECT_TRUE(ProcessKey::WithPid(70000).Fits(Participant(1, 70000)));
-  EXPECT_FALSE(ProcessKey::WithPid(70000).Fits(Participant(1, 70001)));
-  EXPECT_FALSE(ProcessKey().Fits(Participant(1, 70000)));
-  EXPECT_TRUE(ProcessKey::Anybody().Fits(Participant(1, 70000)));
+  EXPECT_TRUE(ProcessKey::WithPid(70000).Fits(ParticipantOf(1, 70000)));
+  EXPECT_FALSE(ProcessKey::WithPid(70000).Fits(ParticipantOf(1, 70001)));
+  EXPECT_FALSE(ProcessKey().Fits(ParticipantOf(1, 70000)));
+  EXPECT_TRUE(ProcessKey::Anybody().Fits(ParticipantOf(1, 70000)));
 }
 
 TEST(ProcessKey, IsTheSameForThoseWhoAreToldOfIt) {
-  for (const ProcessKey& key : {ProcessKey(), ProcessKey::WithPid(1000), ProcessKey::Of(Participant(1, 1000))}) {
+  for (const ProcessKey& key : {ProcessKey(), ProcessKey::WithPid(1000), ProcessKey::Of(ParticipantOf(1, 1000))}) {
     const ProcessKey told(key.bits(), key.mask());
-    EXPECT_EQ(told.Fits(Participant(1, 1000)), key.Fits(Participant(1, 1000)));
+    EXPECT_EQ(told.Fits(ParticipantOf(1, 1000)), key.Fits(ParticipantOf(1, 1000)));
     EXPECT_EQ(told.IsNobody(), key.IsNobody());
     EXPECT_EQ(told.IsExact(), key.IsExact());
   }
@@ -67,50 +67,50 @@ class PeersTest : public testing::Test {
 };
 
 TEST_F(PeersTest, AProcessThatWasStartedIsKnownByItsIdUnderWhateverName) {
-  EXPECT_EQ(peers_.Claim(Participant(1, 101), "agent_1"), "agent_1");
-  EXPECT_EQ(peers_.Claim(Participant(1, 101, 7, 1), "rviz"), "agent_1") << "its second participant";
-  EXPECT_EQ(peers_.ProcessOf(Participant(1, 101, 7, 2)), "agent_1");
+  EXPECT_EQ(peers_.Claim(ParticipantOf(1, 101), "agent_1"), "agent_1");
+  EXPECT_EQ(peers_.Claim(ParticipantOf(1, 101, 7, 1), "rviz"), "agent_1") << "its second participant";
+  EXPECT_EQ(peers_.ProcessOf(ParticipantOf(1, 101, 7, 2)), "agent_1");
 }
 
 TEST_F(PeersTest, ANameAloneDoesNotMakeAProcessThatWasStarted) {
-  EXPECT_EQ(peers_.Claim(Participant(1, 999), "agent_1"), "");
-  EXPECT_EQ(peers_.Believe(Topic::Command(1), Participant(1, 999)), "");
+  EXPECT_EQ(peers_.Claim(ParticipantOf(1, 999), "agent_1"), "");
+  EXPECT_EQ(peers_.Believe(Topic::Command(1), ParticipantOf(1, 999)), "");
 }
 
 TEST_F(PeersTest, OnceAProcessHasShownUpItIsKnownByItsHostToo) {
-  EXPECT_EQ(peers_.Claim(Participant(1, 101), "agent_1"), "agent_1");
-  EXPECT_EQ(peers_.Claim(Participant(2, 101), "agent_1"), "") << "the same process id on another host";
+  EXPECT_EQ(peers_.Claim(ParticipantOf(1, 101), "agent_1"), "agent_1");
+  EXPECT_EQ(peers_.Claim(ParticipantOf(2, 101), "agent_1"), "") << "the same process id on another host";
 }
 
 TEST_F(PeersTest, TheFirstThatHasTheNameTakesThePlaceOfAnAgentStartedByHand) {
-  EXPECT_EQ(peers_.Claim(Participant(2, 500), "agent_2"), "agent_2");
-  EXPECT_EQ(peers_.Claim(Participant(3, 600), "agent_2"), "") << "the second";
-  EXPECT_EQ(peers_.Believe(Topic::Command(2), Participant(2, 500)), "agent_2");
-  EXPECT_EQ(peers_.Believe(Topic::Command(2), Participant(3, 600)), "");
-  peers_.Leave(Participant(3, 600));
-  EXPECT_EQ(peers_.Claim(Participant(3, 600), "agent_2"), "");
-  peers_.Leave(Participant(2, 500));
-  EXPECT_EQ(peers_.Claim(Participant(3, 600), "agent_2"), "agent_2") << "the place was free again";
+  EXPECT_EQ(peers_.Claim(ParticipantOf(2, 500), "agent_2"), "agent_2");
+  EXPECT_EQ(peers_.Claim(ParticipantOf(3, 600), "agent_2"), "") << "the second";
+  EXPECT_EQ(peers_.Believe(Topic::Command(2), ParticipantOf(2, 500)), "agent_2");
+  EXPECT_EQ(peers_.Believe(Topic::Command(2), ParticipantOf(3, 600)), "");
+  peers_.Leave(ParticipantOf(3, 600));
+  EXPECT_EQ(peers_.Claim(ParticipantOf(3, 600), "agent_2"), "");
+  peers_.Leave(ParticipantOf(2, 500));
+  EXPECT_EQ(peers_.Claim(ParticipantOf(3, 600), "agent_2"), "agent_2") << "the place was free again";
 }
 
 TEST_F(PeersTest, AnAgentInAContainerIsNotTakenForAnotherProcessOfTheSameId) {
   // Containers may share the host's network, and so the host's number, and count their processes on their own.
-  EXPECT_EQ(peers_.Claim(Participant(1, 101), "agent_1"), "agent_1");
-  EXPECT_EQ(peers_.Claim(Participant(1, 101, 8), "agent_2"), "agent_2");
-  EXPECT_EQ(peers_.Believe(Topic::Command(1), Participant(1, 101)), "agent_1");
-  EXPECT_EQ(peers_.Believe(Topic::Command(2), Participant(1, 101, 8)), "agent_2");
+  EXPECT_EQ(peers_.Claim(ParticipantOf(1, 101), "agent_1"), "agent_1");
+  EXPECT_EQ(peers_.Claim(ParticipantOf(1, 101, 8), "agent_2"), "agent_2");
+  EXPECT_EQ(peers_.Believe(Topic::Command(1), ParticipantOf(1, 101)), "agent_1");
+  EXPECT_EQ(peers_.Believe(Topic::Command(2), ParticipantOf(1, 101, 8)), "agent_2");
 }
 
 TEST_F(PeersTest, AProcessIsBelievedOnItsOwnTopicsOnly) {
-  EXPECT_EQ(peers_.Believe(Topic::State(1), Participant(1, 100)), "physics_server");
-  EXPECT_EQ(peers_.Believe(Topic::State(1), Participant(1, 101)), "");
-  EXPECT_EQ(peers_.Believe(Topic::Status(), Participant(1, 101)), "agent_1");
-  EXPECT_EQ(peers_.Believe(Topic::Request(), Participant(1, 101)), "");
+  EXPECT_EQ(peers_.Believe(Topic::State(1), ParticipantOf(1, 100)), "physics_server");
+  EXPECT_EQ(peers_.Believe(Topic::State(1), ParticipantOf(1, 101)), "");
+  EXPECT_EQ(peers_.Believe(Topic::Status(), ParticipantOf(1, 101)), "agent_1");
+  EXPECT_EQ(peers_.Believe(Topic::Request(), ParticipantOf(1, 101)), "");
 }
 
 TEST_F(PeersTest, WhatIsNotTakenIsCountedByWriterAndTopic) {
-  for (int i = 0; i < 3; ++i) peers_.Believe(Topic::Request(), Participant(1, 999));
-  peers_.Believe(Topic::State(2), Participant(1, 999));
+  for (int i = 0; i < 3; ++i) peers_.Believe(Topic::Request(), ParticipantOf(1, 999));
+  peers_.Believe(Topic::State(2), ParticipantOf(1, 999));
   EXPECT_THAT(peers_.Refusals(),
               ElementsAre("not taken: 1 sample of /agent_2/state from 01.0f.01.00.e7.03.07.00.00.00.00.00, who may not "
                           "write it",
@@ -118,42 +118,42 @@ TEST_F(PeersTest, WhatIsNotTakenIsCountedByWriterAndTopic) {
 }
 
 TEST_F(PeersTest, WhatCameBeforeItsProcessWasKnownIsNoOffence) {
-  peers_.Believe(Topic::Status(), Participant(2, 500));
-  peers_.Know("agent_2", ProcessKey::Of(Participant(2, 500)));
+  peers_.Believe(Topic::Status(), ParticipantOf(2, 500));
+  peers_.Know("agent_2", ProcessKey::Of(ParticipantOf(2, 500)));
   EXPECT_THAT(peers_.Refusals(), ElementsAre());
 }
 
 TEST_F(PeersTest, AnotherLearnsWhoIsWho) {
-  peers_.Claim(Participant(1, 100), "physics_server");
+  peers_.Claim(ParticipantOf(1, 100), "physics_server");
   Peers told;
   for (const auto& [process, key] : peers_.Places()) told.Know(process, key);
-  EXPECT_EQ(told.Believe(Topic::State(1), Participant(2, 100)), "");
-  EXPECT_EQ(told.Believe(Topic::State(1), Participant(1, 100)), "physics_server");
-  EXPECT_EQ(told.Believe(Topic::Command(2), Participant(2, 500)), "") << "nobody has that place yet";
-  peers_.Claim(Participant(2, 500), "agent_2");
+  EXPECT_EQ(told.Believe(Topic::State(1), ParticipantOf(2, 100)), "");
+  EXPECT_EQ(told.Believe(Topic::State(1), ParticipantOf(1, 100)), "physics_server");
+  EXPECT_EQ(told.Believe(Topic::Command(2), ParticipantOf(2, 500)), "") << "nobody has that place yet";
+  peers_.Claim(ParticipantOf(2, 500), "agent_2");
   for (const auto& [process, key] : peers_.Places()) told.Know(process, key);
-  EXPECT_EQ(told.Believe(Topic::Command(2), Participant(2, 500)), "agent_2");
+  EXPECT_EQ(told.Believe(Topic::Command(2), ParticipantOf(2, 500)), "agent_2");
 }
 
 TEST_F(PeersTest, OthersMustBeToldWhenAPlaceIsTakenByNameOrLeft) {
-  peers_.Claim(Participant(1, 101), "agent_1");
+  peers_.Claim(ParticipantOf(1, 101), "agent_1");
   EXPECT_EQ(peers_.version(), 0U) << "they know its process id";
-  peers_.Claim(Participant(2, 500), "agent_2");
+  peers_.Claim(ParticipantOf(2, 500), "agent_2");
   EXPECT_EQ(peers_.version(), 1U);
-  peers_.Claim(Participant(2, 500), "agent_2");
+  peers_.Claim(ParticipantOf(2, 500), "agent_2");
   EXPECT_EQ(peers_.version(), 1U);
-  peers_.Leave(Participant(2, 500));
+  peers_.Leave(ParticipantOf(2, 500));
   EXPECT_EQ(peers_.version(), 2U);
 }
 
 TEST(Peers, AnAgentStartedByHandBelievesTheFirstThatGivesItAnExperiment) {
   Peers peers;
   peers.Know("orchestrator", ProcessKey::Anybody());
-  EXPECT_EQ(peers.Believe(Topic::Request(), Participant(1, 50)), "") << "it has given none";
-  EXPECT_EQ(peers.ProcessOf(Participant(1, 50)), "");
-  EXPECT_EQ(peers.Believe(Topic::Experiment(), Participant(1, 50)), "orchestrator");
-  EXPECT_EQ(peers.Believe(Topic::Experiment(), Participant(1, 60)), "");
-  EXPECT_EQ(peers.Believe(Topic::Request(), Participant(1, 50)), "orchestrator");
+  EXPECT_EQ(peers.Believe(Topic::Request(), ParticipantOf(1, 50)), "") << "it has given none";
+  EXPECT_EQ(peers.ProcessOf(ParticipantOf(1, 50)), "");
+  EXPECT_EQ(peers.Believe(Topic::Experiment(), ParticipantOf(1, 50)), "orchestrator");
+  EXPECT_EQ(peers.Believe(Topic::Experiment(), ParticipantOf(1, 60)), "");
+  EXPECT_EQ(peers.Believe(Topic::Request(), ParticipantOf(1, 50)), "orchestrator");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ std::string Four(const std::string& rest) {
 
 Experiment Load(const std::string& toml) { return LoadExperiment(Section::FromText(toml, "test.toml"), "test"); }
 
-Persistence Of(const std::string& toml) {
+Persistence PersistenceIn(const std::string& toml) {
   const Experiment experiment = Load(toml);
   return PersistenceOf(experiment, TimelineOf(experiment).value());
 }
@@ -68,7 +68,7 @@ TEST(Timeline, RepeatsAfterAsManyRepetitionsAsMakeWholeTicks) {
 // --- spanning trees over time -----------------------------------------------------------------------------
 
 TEST(Persistence, OfAConnectedGraphHoldsAtEveryTime) {
-  const Persistence path = Of(Four("[graph]\ntopology = 'path'\n"));
+  const Persistence path = PersistenceIn(Four("[graph]\ntopology = 'path'\n"));
   EXPECT_TRUE(path.always && path.joint && !path.never_alone);
   EXPECT_EQ(path.from_s, 0.0);
   EXPECT_EQ(Describe(path), "at every time");
@@ -79,7 +79,7 @@ TEST(Persistence, OfASwitchingGraphIsThatOfItsUnionOverLongEnoughWindows) {
   const std::string turns =
       "[graph]\nedges = [[1, 2], [2, 1], [3, 4], [4, 3]]\nrepeat_s = 0.8\n"
       "[[graph.schedule]]\nat_s = 0.3\nedges = [[2, 3], [3, 2]]\n";
-  const Persistence persistence = Of(Four(turns));
+  const Persistence persistence = PersistenceIn(Four(turns));
   EXPECT_TRUE(persistence.joint && persistence.never_alone);
   EXPECT_DOUBLE_EQ(persistence.window_s.value(), 0.51);
   EXPECT_EQ(Describe(persistence), "in the union of any 0.51 s; at no time alone");
@@ -105,13 +105,13 @@ TEST(Persistence, WindowIsTheShortestThatEveryStartingTickNeeds) {
 
 TEST(Persistence, OfAScheduleThatEndsIsThatOfItsLastGraph) {
   const Persistence late =
-      Of(Four("[graph]\nedges = [[1, 2]]\n[[graph.schedule]]\nat_s = 3.0\nedges = [[1, 2], [2, 3], "
-              "[3, 4]]\n[[graph.schedule]]\nat_s = 5.0\nedges = [[4, 3], [3, 2], [2, 1]]\n"));
+      PersistenceIn(Four("[graph]\nedges = [[1, 2]]\n[[graph.schedule]]\nat_s = 3.0\nedges = [[1, 2], [2, 3], "
+                         "[3, 4]]\n[[graph.schedule]]\nat_s = 5.0\nedges = [[4, 3], [3, 2], [2, 1]]\n"));
   EXPECT_TRUE(late.joint);
   EXPECT_EQ(late.from_s, 3.0);
   EXPECT_EQ(Describe(late), "from 3 s on");
   const std::string ends = Four("[graph]\ntopology = 'path'\n[[graph.schedule]]\nat_s = 3.0\nedges = [[1, 2]]\n");
-  EXPECT_EQ(Describe(Of(ends)), "none");
+  EXPECT_EQ(Describe(PersistenceIn(ends)), "none");
   EXPECT_THAT(WarningsOf(ends),
               ElementsAre("graph.schedule: from 3 s on nobody is heard by everyone, directly or not (no spanning "
                           "tree), so agents will not all meet"));
@@ -120,7 +120,7 @@ TEST(Persistence, OfAScheduleThatEndsIsThatOfItsLastGraph) {
 TEST(Persistence, WithALeaderNeedsATreeRootedAtIt) {
   const std::string turns =
       "[graph]\nedges = [[2, 1]]\nrepeat_s = 1.0\n[[graph.schedule]]\nat_s = 0.5\nedges = [[3, 2], [4, 3]]\n[law]\n";
-  EXPECT_TRUE(Of(Four(turns + "leader = 1\n")).joint);
+  EXPECT_TRUE(PersistenceIn(Four(turns + "leader = 1\n")).joint);
   EXPECT_THAT(WarningsOf(Four(turns + "leader = 2\n")),
               ElementsAre("graph.schedule: in the union of its graphs leader 2 is not heard, directly or not, by agent "
                           "1, who will not follow"));
@@ -143,9 +143,9 @@ TEST(Persistence, WarnsOfLinksThatLoseEverything) {
 
 TEST(Persistence, IncludesAgentsThatStartLateAndNotAgentsThatStop) {
   const std::string path = "[graph]\ntopology = 'path'\n[[agents.override]]\n";
-  EXPECT_EQ(Of(Four(path + "id = 2\nstart_s = 4.0\n")).from_s, 4.0);
-  EXPECT_TRUE(Of(Four(path + "id = 4\nstop_s = 4.0\n")).joint) << "the others still hear each other";
-  EXPECT_TRUE(Of(Four(path + "id = 2\nstop_s = 400.0\n")).always) << "after the run";
+  EXPECT_EQ(PersistenceIn(Four(path + "id = 2\nstart_s = 4.0\n")).from_s, 4.0);
+  EXPECT_TRUE(PersistenceIn(Four(path + "id = 4\nstop_s = 4.0\n")).joint) << "the others still hear each other";
+  EXPECT_TRUE(PersistenceIn(Four(path + "id = 2\nstop_s = 400.0\n")).always) << "after the run";
   EXPECT_THAT(WarningsOf(Four(path + "id = 2\nstop_s = 4.0\n")),
               ElementsAre("agents.override.stop_s: from 4 s on nobody is heard by everyone, directly or not (no "
                           "spanning tree), so agents will not all meet"));
@@ -153,9 +153,9 @@ TEST(Persistence, IncludesAgentsThatStartLateAndNotAgentsThatStop) {
 
 TEST(Persistence, ChecksTheRangeAtTheStart) {
   const std::string near = "[graph]\ntopology = 'path'\nrange_m = ";
-  EXPECT_EQ(Of(Four(near + "25.0\n")).in_range_at_start, true);
-  EXPECT_EQ(Describe(Of(Four(near + "25.0\n"))), "at every time, and within range at the start");
-  EXPECT_EQ(Describe(Of(Four(near + "15.0\n"))), "at every time, but not within range at the start");
+  EXPECT_EQ(PersistenceIn(Four(near + "25.0\n")).in_range_at_start, true);
+  EXPECT_EQ(Describe(PersistenceIn(Four(near + "25.0\n"))), "at every time, and within range at the start");
+  EXPECT_EQ(Describe(PersistenceIn(Four(near + "15.0\n"))), "at every time, but not within range at the start");
   EXPECT_THAT(WarningsOf(Four(near + "15.0\n")),
               ElementsAre("graph.range_m: from where they start, with 15 m, nobody is heard by everyone, directly or "
                           "not (no spanning tree), so agents may not all meet"));

@@ -26,7 +26,7 @@ std::string Mirror(const std::string& params, const std::string& lines = "") {
 }
 
 /// The command of agent 1 at tick 3.
-Command Wants(const std::string& toml) {
+Command FirstCommand(const std::string& toml) {
   Experiment experiment = Load(toml);
   Motion self;
   self.p_WB = {0, 0, 1};
@@ -37,29 +37,31 @@ Command Wants(const std::string& toml) {
 // --- inputs and outputs -----------------------------------------------------------------------------
 
 TEST(PluginLaw, SeesItselfAndItsNeighbours) {
-  EXPECT_EQ(Wants(Plugin("mirror")).a_law_W, Eigen::Vector3d(0.5, 2 - 0.25, 0)) << "sum a_ij (p_j - p_i) - v_i";
+  EXPECT_EQ(FirstCommand(Plugin("mirror")).a_law_W, Eigen::Vector3d(0.5, 2 - 0.25, 0)) << "sum a_ij (p_j - p_i) - v_i";
 }
 
 TEST(PluginLaw, SeesObstaclesWithinTheRange) {
   const std::string obstacle =
       "[[physics.obstacles]]\nshape = 'box'\nposition_m = [0, 7, 1]\nsize_m = [2, 4, 2]\n[sensors]\nrange_m = 6.0\n";
-  EXPECT_EQ(Wants(Mirror("does = 'feel'", "axes = 'xyz'\n")).a_law_W, Eigen::Vector3d(0, 0, 0)) << "none";
-  EXPECT_EQ(Wants(obstacle + Mirror("does = 'feel'", "axes = 'xyz'\n")).a_law_W, Eigen::Vector3d(0, 5, 1));
+  EXPECT_EQ(FirstCommand(Mirror("does = 'feel'", "axes = 'xyz'\n")).a_law_W, Eigen::Vector3d(0, 0, 0)) << "none";
+  EXPECT_EQ(FirstCommand(obstacle + Mirror("does = 'feel'", "axes = 'xyz'\n")).a_law_W, Eigen::Vector3d(0, 5, 1));
 }
 
 TEST(PluginLaw, GetsItsParameters) {
-  EXPECT_EQ(Wants(Mirror("gain = 2")).a_law_W, Eigen::Vector3d(1, 4 - 0.25, 0));
-  EXPECT_EQ(Wants(Mirror("bonus = 1")).a_law_W, Eigen::Vector3d(1, 4 - 0.25, 0));
-  EXPECT_EQ(Wants(Mirror("gain = 0.5, more_gains = [1, 0.5], times = 2")).a_law_W, Eigen::Vector3d(2, 8 - 0.25, 0));
+  EXPECT_EQ(FirstCommand(Mirror("gain = 2")).a_law_W, Eigen::Vector3d(1, 4 - 0.25, 0));
+  EXPECT_EQ(FirstCommand(Mirror("bonus = 1")).a_law_W, Eigen::Vector3d(1, 4 - 0.25, 0));
+  EXPECT_EQ(FirstCommand(Mirror("gain = 0.5, more_gains = [1, 0.5], times = 2")).a_law_W,
+            Eigen::Vector3d(2, 8 - 0.25, 0));
 }
 
 TEST(PluginLaw, KnowsItsAgent) {
   const std::string tell = Mirror("does = 'tell'", "leader = 2\naxes = 'xyz'\n");
-  EXPECT_EQ(Wants(tell).a_law_W, Eigen::Vector3d(1 + 30 + 200, 100, 1)) << "id, agents, leader; control rate; seed";
+  EXPECT_EQ(FirstCommand(tell).a_law_W, Eigen::Vector3d(1 + 30 + 200, 100, 1))
+      << "id, agents, leader; control rate; seed";
 }
 
 TEST(PluginLaw, MayWantAVelocity) {
-  EXPECT_EQ(Wants(Mirror("velocity = true, gain = 0.5")).a_law_W, Eigen::Vector3d(0.5, 2 - 0.5, 0))
+  EXPECT_EQ(FirstCommand(Mirror("velocity = true, gain = 0.5")).a_law_W, Eigen::Vector3d(0.5, 2 - 0.5, 0))
       << "k_v = 2 times (v* - v), v* = [0.25, 1, 0]";
 }
 
@@ -225,24 +227,24 @@ TEST(PluginLaw, RefusesToSendMessagesThatItDoesNotDefine) {
 // --- mistakes while it runs -------------------------------------------------------------------------
 
 TEST(PluginLaw, ThatThrowsInFlightEndsTheRunWithAgentAndTime) {
-  EXPECT_THAT([] { Wants(Mirror("does = 'throw'")); },
+  EXPECT_THAT([] { FirstCommand(Mirror("does = 'throw'")); },
               ThrowsMessage<std::runtime_error>("tick 3: the law of agent 1 failed at t = 0.03 s: the map ends here"));
-  EXPECT_THAT([] { Wants(Mirror("does = 'throw oddly'")); },
+  EXPECT_THAT([] { FirstCommand(Mirror("does = 'throw oddly'")); },
               ThrowsMessage<std::runtime_error>(
                   "tick 3: the law of agent 1 failed at t = 0.03 s: it threw something that is no std::exception"));
 }
 
 TEST(PluginLaw, ThatReturnsNanEndsTheRunWithAgentAndTick) {
-  EXPECT_THAT([] { Wants(Mirror("does = 'nan'")); },
+  EXPECT_THAT([] { FirstCommand(Mirror("does = 'nan'")); },
               ThrowsMessage<std::runtime_error>("tick 3: agent 1: the law's acceleration is not finite (0, nan, 0)"));
-  EXPECT_THAT([] { Wants(Mirror("does = 'nan', velocity = true")); },
+  EXPECT_THAT([] { FirstCommand(Mirror("does = 'nan', velocity = true")); },
               ThrowsMessage<std::runtime_error>("tick 3: agent 1: the law's velocity is not finite (0, nan, 0)"));
 }
 
 TEST(PluginLaw, ThatSaysTooMuchEndsTheRun) {
-  EXPECT_NO_THROW(Wants(Plugin("talker", "params = { words = 64 }\n")));
+  EXPECT_NO_THROW(FirstCommand(Plugin("talker", "params = { words = 64 }\n")));
   EXPECT_THAT(
-      [] { Wants(Plugin("talker", "params = { words = 65 }\n")); },
+      [] { FirstCommand(Plugin("talker", "params = { words = 65 }\n")); },
       ThrowsMessage<std::runtime_error>(
           "tick 3: the law of agent 1 failed at t = 0.03 s: Message() returned 65 numbers, expected at most 64"));
 }

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/made_up_time.h"
+
 namespace mascot {
 namespace {
 
 using namespace std::chrono_literals;
-
-const ProgressWatch::Time kStart{1000s};
 
 TEST(ProgressWatch, AllowsTheLimitAndNoMore) {
   ProgressWatch watch(5s);

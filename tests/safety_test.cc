@@ -21,9 +21,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-using Places = std::vector<Eigen::Vector3d>;
+using PlaceList = std::vector<Eigen::Vector3d>;
 
-std::string List(const Places& places) {
+std::string List(const PlaceList& places) {
   std::string text;
   for (const Eigen::Vector3d& p : places)
     text += "[" + ShortestFloat(p.x()) + ", " + ShortestFloat(p.y()) + ", " + ShortestFloat(p.z()) + "], ";
@@ -31,8 +31,8 @@ std::string List(const Places& places) {
 }
 
 /// `count` places on a circle, of which each is `skew_m` farther out than the one before.
-Places Circle(int count, double radius_m, double skew_m = 0) {
-  Places places;
+PlaceList Circle(int count, double radius_m, double skew_m = 0) {
+  PlaceList places;
   for (int k = 0; k < count; ++k) {
     const double angle = 2 * std::numbers::pi * k / count, r = radius_m + skew_m * k;
     places.emplace_back(r * std::cos(angle), r * std::sin(angle), 2);
@@ -41,8 +41,8 @@ Places Circle(int count, double radius_m, double skew_m = 0) {
 }
 
 /// Agents of `model` at these places, who all hear each other. `law`: lines from [law] on. `more`: tables in front.
-std::string TeamOf(const std::string& model, const Places& places, const std::string& law, const std::string& more = "",
-                   const std::string& agents = "", double duration_s = 10) {
+std::string TeamOf(const std::string& model, const PlaceList& places, const std::string& law,
+                   const std::string& more = "", const std::string& agents = "", double duration_s = 10) {
   return "[run]\nduration_s = " + ShortestFloat(duration_s) + "\n" + more +
          "[agents]\ncount = " + std::to_string(places.size()) + "\nmodel = '" + model +
          "'\nposition_m = " + List(places) + "\n" + agents + "[graph]\ntopology = 'complete'\n[law]\n" + law;
@@ -95,7 +95,7 @@ TEST(SafetyOfVelocities, LosesTheBarrierAtItsRateGammaWhenTwoAgentsHeadForEachOt
 
 TEST(SafetyOfVelocities, KeepsTheDistanceAndTheRateOfEveryPairInACrowd) {
   for (const char* axes : {"axes = 'xy'\n", "axes = 'xyz'\n"}) {
-    Places places = Circle(8, 3, 0.2);
+    PlaceList places = Circle(8, 3, 0.2);
     for (std::size_t k = 0; k < places.size(); k += 2) places[k].z() = 4;
     const Experiment experiment = Read(TeamOf("single_integrator", places, kMeet + axes + Safety(1, 2)));
     IdealTeam team(experiment);
@@ -140,7 +140,7 @@ TEST(SafetyOfVelocities, IsPredictedAndMeasured) {
 }
 
 TEST(SafetyOfVelocities, FiltersTheIntegralOfALawThatWantsAccelerations) {
-  const Places places = {{0, 0, 2}, {6, 0, 2}};
+  const PlaceList places = {{0, 0, 2}, {6, 0, 2}};
   EXPECT_LT(LeastDistance_m(TeamOf("single_integrator", places, kMeetByForce)), 0.1);
   const double least_m = LeastDistance_m(TeamOf("single_integrator", places, kMeetByForce + Safety(1)));
   EXPECT_GE(least_m, 1 - 1e-9);
@@ -182,7 +182,7 @@ TEST(SafetyOfAccelerations, KeepsPairsApartThatPassEachOtherInEveryDirection) {
   const auto number = [&random](double size) { return std::uniform_real_distribution(-size, size)(random); };
   int close = 0;
   for (int flight = 0; flight < 60; ++flight) {
-    const Places places = {{number(4), number(4), 2}, {6 + number(4), number(4), 2}};
+    const PlaceList places = {{number(4), number(4), 2}, {6 + number(4), number(4), 2}};
     std::string velocities;
     for (int k = 0; k < 2; ++k)
       velocities += "[" + ShortestFloat(number(2)) + ", " + ShortestFloat(number(2)) + ", 0], ";
@@ -260,7 +260,7 @@ TEST(Safety, KeepsMixedModelsApart) {
 
 TEST(Safety, ChangesNoBitOfAFlightInWhichNobodyComesClose) {
   for (const char* model : {"single_integrator", "double_integrator"}) {
-    const Places places = Circle(4, 6);
+    const PlaceList places = Circle(4, 6);
     const std::string law = "name = 'formation'\noffsets_m = " + List(Circle(4, 5)) + "\n";
     const Experiment without = Read(TeamOf(model, places, law)), with = Read(TeamOf(model, places, law + Safety(0.5)));
     IdealTeam a(without), b(with);
@@ -278,7 +278,7 @@ TEST(Safety, IsAroundLawsOfPythonAndOfLibraries) {
       "  return sum(2.0 * (j.position - me.position) for j in neighbours)\n'''\n";
   const std::string library = "name = 'plugin'\nlibrary = '" MASCOT_BINARY_DIR "/tests/plugins/libmirror.so'\n";
   for (const std::string& law : {python, library}) {
-    const Places places = {{0, 0, 2}, {5, 0, 2}};
+    const PlaceList places = {{0, 0, 2}, {5, 0, 2}};
     const double without_m = LeastDistance_m(TeamOf("single_integrator", places, law, "", "", 5));
     const double with_m = LeastDistance_m(TeamOf("single_integrator", places, law + Safety(2), "", "", 5));
     EXPECT_LT(without_m, 1.5) << law;
@@ -386,7 +386,7 @@ TEST(SafetyKeys, MaySwitchTheFilterOnDuringARun) {
 
 /// What is said of a team of four, with `more` lines in [law] or tables behind it.
 SafetyPrediction PredictionOf(const std::string& more, const std::string& front = "", const std::string& agents = "",
-                              const Places& places = Circle(4, 5), const std::string& model = "double_integrator") {
+                              const PlaceList& places = Circle(4, 5), const std::string& model = "double_integrator") {
   const auto prediction = PredictSafety(Read(TeamOf(model, places, kMeetByForce + more, front, agents)));
   EXPECT_TRUE(prediction);
   return prediction.value_or(SafetyPrediction());

@@ -18,7 +18,7 @@ std::string Five(const std::string& model, const std::string& rest) {
          "'\nposition_m = [[3, 0, 1], [-1, 0, 1], [4, 0, 1], [1, 0, 1], [-5, 0, 1]]\n[control]\nrate_hz = 10\n" + rest;
 }
 
-const std::string kPath = "[graph]\ntopology = 'path'\n";
+const std::string kPathGraph = "[graph]\ntopology = 'path'\n";
 
 struct Case {
   Experiment experiment;
@@ -53,14 +53,15 @@ double Rate(DelayedRecursion& witness, double time_s) {
 }
 
 TEST(SampledTeam, OfOrderOneIsTheSampledMapOfTheLaplacian) {
-  const Case path(Five("single_integrator", kPath + "[law]\nname = 'velocity_consensus'\n"));
+  const Case path(Five("single_integrator", kPathGraph + "[law]\nname = 'velocity_consensus'\n"));
   EXPECT_NEAR(path.sampled.slowest(), 1 - 0.1 * 0.381966, 1e-7);
   EXPECT_NEAR(path.sampled.rate_per_s(), -std::log(1 - 0.1 * 0.381966) / 0.1, 1e-6);
   EXPECT_NEAR(path.sampled.MeetingPoint().x(), 0.4, 1e-12);
 }
 
 TEST(SampledTeam, MeetsWhereADelayOfOneTickSendsIt) {
-  const Case delayed(Five("single_integrator", kPath + "[link]\ndelay_s = 0.1\n[law]\nname = 'velocity_consensus'\n"));
+  const Case delayed(
+      Five("single_integrator", kPathGraph + "[link]\ndelay_s = 0.1\n[law]\nname = 'velocity_consensus'\n"));
   EXPECT_NEAR(delayed.sampled.MeetingPoint().x(), 0.448275862, 1e-9);
 }
 
@@ -68,7 +69,7 @@ TEST(SampledTeam, MovesAsItsRecursionDoesForEveryLawModelAndDelay) {
   for (const std::string model : {"single_integrator", "double_integrator"}) {
     for (const std::string law : {"'velocity_consensus'\np_gain = 0.8", "'consensus'\np_gain = 0.7\nv_gain = 0.3"}) {
       for (const auto& [link, own] : {std::pair(0, 0), {1, 0}, {3, 0}, {2, 2}, {2, 1}, {0, 1}}) {
-        const Case c(Five(model, kPath + "[sensors.own]\ndelay_s = " + ShortestFloat(0.1 * own) +
+        const Case c(Five(model, kPathGraph + "[sensors.own]\ndelay_s = " + ShortestFloat(0.1 * own) +
                                      "\n[link]\ndelay_s = " + ShortestFloat(0.1 * link) + "\n[law]\nname = " + law));
         DelayedRecursion witness = c.Witness();
         witness.link_ticks = link;
@@ -87,7 +88,7 @@ TEST(SampledTeam, MovesAsItsRecursionDoesForEveryLawModelAndDelay) {
 TEST(SampledTeam, FindsTheDelayFromWhichOnItDoesNotSettle) {
   for (int ticks = 1; ticks <= 9; ++ticks) {
     const std::string delay = "delay_s = " + ShortestFloat(0.1 * ticks) + "\n";
-    const Case c(Five("single_integrator", "[sensors.own]\n" + delay + kPath + "[link]\n" + delay +
+    const Case c(Five("single_integrator", "[sensors.own]\n" + delay + kPathGraph + "[link]\n" + delay +
                                                "[law]\nname = 'velocity_consensus'\np_gain = 0.6\n"));
     DelayedRecursion witness = c.Witness();
     witness.link_ticks = witness.own_ticks = ticks;
@@ -134,7 +135,7 @@ TEST(SampledTeam, WithDelayedSwitchingEdgesUsesSamplesSentWhileTheyExisted) {
 }
 
 TEST(SampledTeam, TakesAgentsThatStartLateIntoAccount) {
-  const Case c(Five("single_integrator", kPath + "[law]\nname = 'velocity_consensus'\n") +
+  const Case c(Five("single_integrator", kPathGraph + "[law]\nname = 'velocity_consensus'\n") +
                "[[agents.override]]\nid = 5\nstart_s = 2.0\n");
   Eigen::VectorXd x = kStart;
   const Eigen::MatrixXd l = c.experiment.graph.Laplacian();
@@ -174,11 +175,11 @@ TEST(SampledTeam, DoesNotCountCommonBrakingAsDisagreement) {
 }
 
 TEST(SampledTeam, ScalesWeightsByTheLongRunDeliveryOfLinks) {
-  const Case half(Five("single_integrator", kPath + "[link]\nloss = 0.4\n[law]\nname = 'velocity_consensus'\n"));
+  const Case half(Five("single_integrator", kPathGraph + "[link]\nloss = 0.4\n[law]\nname = 'velocity_consensus'\n"));
   EXPECT_NEAR(half.sampled.slowest(), 1 - 0.06 * 0.381966, 1e-7);
-  const Case bursts(
-      Five("single_integrator",
-           kPath + "[law]\nname = 'velocity_consensus'\n[link]\ngilbert_elliott = { good_to_bad = 0.1, bad_to_good = "
+  const Case bursts(Five(
+      "single_integrator",
+      kPathGraph + "[law]\nname = 'velocity_consensus'\n[link]\ngilbert_elliott = { good_to_bad = 0.1, bad_to_good = "
                    "0.3, loss_good = 0.2, loss_bad = 1.0 }\n"));
   EXPECT_NEAR(bursts.sampled.slowest(), 1 - 0.1 * 0.75 * 0.8 * 0.381966, 1e-7);
 }

@@ -2,13 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/made_up_time.h"
+
 namespace mascot {
 namespace {
 
 using namespace std::chrono_literals;
 using Next = StartRoll::Next;
 
-const StartRoll::Time kStart{1000s};
 constexpr bool kMatched = true, kReady = true;
 
 /// A roll for three agents and a timeout of 60 s; it began at kStart and has asked once.

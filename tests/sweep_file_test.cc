@@ -14,7 +14,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-const SweepFile::Cells kColumns = {"run", "law.beta", "error"};
+const SweepFile::Cells kSweepColumns = {"run", "law.beta", "error"};
 
 class SweepFileTest : public ::testing::Test {
  protected:
@@ -24,7 +24,7 @@ class SweepFileTest : public ::testing::Test {
 };
 
 TEST_F(SweepFileTest, ContainsRowsInTheOrderInWhichTheyCome) {
-  SweepFile file(path_, kColumns, "plan", false);
+  SweepFile file(path_, kSweepColumns, "plan", false);
   file.Add(2, {"0.5", ""});
   EXPECT_EQ(Text(), "run,law.beta,error\n2,0.5,\n") << "on the disk at once";
   file.Add(0, {"0.1", "a, \"b\"\nc"});
@@ -35,14 +35,14 @@ TEST_F(SweepFileTest, ContainsRowsInTheOrderInWhichTheyCome) {
 
 TEST_F(SweepFileTest, GoesOnWhereItEndedAtWhateverByteItWasCut) {
   {
-    SweepFile file(path_, kColumns, "plan", false);
+    SweepFile file(path_, kSweepColumns, "plan", false);
     for (std::size_t run = 0; run < 3; ++run) file.Add(run, {"0.5", "some words"});
   }
   const std::string whole = Text();
   const std::string header = "run,law.beta,error\n";
   for (std::size_t bytes = header.size(); bytes <= whole.size(); ++bytes) {
     WriteFile(path_, whole.substr(0, bytes));
-    SweepFile file(path_, kColumns, "plan", false);
+    SweepFile file(path_, kSweepColumns, "plan", false);
     const std::size_t line = std::string("0,0.5,some words\n").size();
     ASSERT_EQ(file.rows(), (bytes - header.size()) / line) << bytes;
     for (std::size_t run = 0; run < 3; ++run)
@@ -54,48 +54,48 @@ TEST_F(SweepFileTest, GoesOnWhereItEndedAtWhateverByteItWasCut) {
 
 TEST_F(SweepFileTest, ForgetsRunsWhoseProcessDied) {
   {
-    SweepFile file(path_, kColumns, "plan", false);
+    SweepFile file(path_, kSweepColumns, "plan", false);
     file.Add(0, {"0.5", "no such thing"});
     file.Add(1, {"0.5", "the process was killed by signal 9 (Killed)"});
   }
-  const SweepFile file(path_, kColumns, "plan", false);
+  const SweepFile file(path_, kSweepColumns, "plan", false);
   EXPECT_TRUE(file.Has(0));
   EXPECT_FALSE(file.Has(1)) << "it is flown again";
 }
 
 TEST_F(SweepFileTest, IsNotMixedWithAnotherSweep) {
-  SweepFile(path_, kColumns, "plan", false).Add(0, {"0.5", ""});
+  SweepFile(path_, kSweepColumns, "plan", false).Add(0, {"0.5", ""});
   EXPECT_THAT(
-      [&] { SweepFile(path_, kColumns, "other plan", false); },
+      [&] { SweepFile(path_, kSweepColumns, "other plan", false); },
       ThrowsMessage<ConfigError>("--out " + path_ +
                                  ": expected a new file, or one of this very sweep, got another (--force begins "
                                  "anew)"));
   WriteFile(path_, "something else\n");
-  EXPECT_THAT([&] { SweepFile(path_, kColumns, "plan", false); },
+  EXPECT_THAT([&] { SweepFile(path_, kSweepColumns, "plan", false); },
               ThrowsMessage<ConfigError>("--out " + path_ + ": expected the columns of this sweep, got others"));
-  SweepFile anew(path_, kColumns, "plan", true);
+  SweepFile anew(path_, kSweepColumns, "plan", true);
   EXPECT_EQ(Text(), "run,law.beta,error\n");
 }
 
 TEST_F(SweepFileTest, DoesNotReplaceAFileThatIsNotItsTable) {
   WriteFile(path_, "a person's own table\n");
-  EXPECT_THAT([&] { SweepFile(path_, kColumns, "plan", false); },
+  EXPECT_THAT([&] { SweepFile(path_, kSweepColumns, "plan", false); },
               ThrowsMessage<ConfigError>(HasSubstr(": expected a new file, or one of this very sweep, got another")));
   EXPECT_EQ(Text(), "a person's own table\n");
   EXPECT_FALSE(std::filesystem::exists(path_ + ".plan"));
-  EXPECT_THAT([&] { SweepFile("/dev/null", kColumns, "plan", true); },
+  EXPECT_THAT([&] { SweepFile("/dev/null", kSweepColumns, "plan", true); },
               ThrowsMessage<ConfigError>("--out /dev/null: expected a file, got something else"));
 }
 
 TEST_F(SweepFileTest, ReplacesATableWithoutRows) {
   WriteFile(path_, "run,law.beta,error\n");  // as after a kill before the plan is written
-  EXPECT_NO_THROW(SweepFile(path_, kColumns, "plan", false));
+  EXPECT_NO_THROW(SweepFile(path_, kSweepColumns, "plan", false));
 }
 
 TEST_F(SweepFileTest, DropsIncompleteRows) {
-  SweepFile(path_, kColumns, "plan", false).Add(7, {"0.5", ""});
+  SweepFile(path_, kSweepColumns, "plan", false).Add(7, {"0.5", ""});
   WriteFile(path_, "run,law.beta,error\n0,0.5,\n1,0.5\nx,1,\n2,0.5,,3\n3,0.5,\"an error, the process too\"\n");
-  SweepFile file(path_, kColumns, "plan", false);
+  SweepFile file(path_, kSweepColumns, "plan", false);
   EXPECT_EQ(file.rows(), 2);
   EXPECT_TRUE(file.Has(0));
   EXPECT_TRUE(file.Has(3)) << "it failed by itself";
@@ -106,7 +106,7 @@ int OpenedElsewhere(const std::string& path) {
   const pid_t pid = fork();
   if (pid == 0) {
     try {
-      const SweepFile other(path, kColumns, "plan", true);
+      const SweepFile other(path, kSweepColumns, "plan", true);
       _exit(0);
     } catch (const ConfigError& error) {
       const std::string expected = ": expected a table of this sweep's own, got one that another is writing";
@@ -120,7 +120,7 @@ int OpenedElsewhere(const std::string& path) {
 
 TEST_F(SweepFileTest, IsWrittenByOneSweepAtATime) {
   {
-    const SweepFile file(path_, kColumns, "plan", false);
+    const SweepFile file(path_, kSweepColumns, "plan", false);
     EXPECT_EQ(OpenedElsewhere(path_), 2);
   }
   EXPECT_EQ(OpenedElsewhere(path_), 0);
@@ -129,7 +129,7 @@ TEST_F(SweepFileTest, IsWrittenByOneSweepAtATime) {
 TEST_F(SweepFileTest, FollowsLinks) {
   WriteFile(folder_.File("table.csv"), "");
   std::filesystem::create_symlink(folder_.File("table.csv"), path_);
-  SweepFile(path_, kColumns, "plan", false).Add(0, {"0.5", ""});
+  SweepFile(path_, kSweepColumns, "plan", false).Add(0, {"0.5", ""});
   EXPECT_TRUE(std::filesystem::is_symlink(path_));
   EXPECT_EQ(ReadFile(folder_.File("table.csv")), "run,law.beta,error\n0,0.5,\n");
 }
@@ -140,7 +140,7 @@ TEST(Csv, CellsAreReadBackFromTheirLine) {
 }
 
 TEST_F(SweepFileTest, SaysThatItCannotBeWritten) {
-  EXPECT_THROW(SweepFile(folder_.File("nowhere/sweep.csv"), kColumns, "plan", false), std::runtime_error);
+  EXPECT_THROW(SweepFile(folder_.File("nowhere/sweep.csv"), kSweepColumns, "plan", false), std::runtime_error);
 }
 
 }  // namespace

@@ -2,13 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/made_up_time.h"
+
 namespace mascot {
 namespace {
 
 using namespace std::chrono_literals;
 using Time = TickGate::Time;
 
-const Time kStart{1000s};
 constexpr double kPeriod_s = 0.01;
 
 TEST(TickGate, IsOpenUnlessAPaceOrAPauseIsAskedFor) {

@@ -328,7 +328,7 @@ TEST(TickInbox, IgnoresALateBundle) {
 }
 
 /// The error for a bundle for agent 1, which hears 2 and 5; "taken": none.
-std::string Refusal(const std::vector<State>& states) {
+std::string BundleRefusal(const std::vector<State>& states) {
   Inbox inbox(kTwo);
   try {
     inbox.Bundle(states);
@@ -339,12 +339,12 @@ std::string Refusal(const std::vector<State>& states) {
 }
 
 TEST(TickInbox, RefusesABundleThatIsNotItsOwn) {
-  EXPECT_EQ(Refusal({}), "a bundle of 0 states came for agent 1, who hears 2");
-  EXPECT_EQ(Refusal({{1}, {2}}), "a bundle of 2 states came for agent 1, who hears 2");
-  EXPECT_EQ(Refusal({{1}, {2}, {5}, {6}}), "a bundle of 4 states came for agent 1, who hears 2");
-  EXPECT_EQ(Refusal({{1}, {5}, {2}}), "a state of agent 5 came for agent 1 in place of that of agent 2");
-  EXPECT_EQ(Refusal({{3}, {2}, {5}}), "a state of agent 3 came for agent 1 in place of that of agent 1");
-  EXPECT_EQ(Refusal({{1}, {2}, {4294967295u}}),
+  EXPECT_EQ(BundleRefusal({}), "a bundle of 0 states came for agent 1, who hears 2");
+  EXPECT_EQ(BundleRefusal({{1}, {2}}), "a bundle of 2 states came for agent 1, who hears 2");
+  EXPECT_EQ(BundleRefusal({{1}, {2}, {5}, {6}}), "a bundle of 4 states came for agent 1, who hears 2");
+  EXPECT_EQ(BundleRefusal({{1}, {5}, {2}}), "a state of agent 5 came for agent 1 in place of that of agent 2");
+  EXPECT_EQ(BundleRefusal({{3}, {2}, {5}}), "a state of agent 3 came for agent 1 in place of that of agent 1");
+  EXPECT_EQ(BundleRefusal({{1}, {2}, {4294967295u}}),
             "a state of agent 4294967295 came for agent 1 in place of that of agent 5");
 }
 

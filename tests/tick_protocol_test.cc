@@ -5,6 +5,8 @@
 #include <limits>
 #include <ostream>
 
+#include "tests/made_up_time.h"
+
 namespace mascot {
 
 void PrintTo(const TickProtocol::Actions& actions, std::ostream* out) {
@@ -19,7 +21,6 @@ using Actions = TickProtocol::Actions;
 using Time = TickProtocol::Time;
 using Turn = TickProtocol::Turn;
 
-const Time kStart{1000s};
 constexpr bool kStop = true;
 constexpr Actions kNothing = {}, kTake = {.take = true}, kPublish = {.publish = true}, kWake = {.wake = true},
                   kStepAndPublish = {.step = true, .publish = true},

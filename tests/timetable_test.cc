@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/made_up_time.h"
+
 namespace mascot {
 namespace {
 
 using namespace std::chrono_literals;
-
-const Timetable::Time kStart{1000s};
 
 TEST(Timetable, HasATickEveryPeriod) {
   const Timetable timetable(0.01, kStart);
