@@ -466,6 +466,7 @@ def graph(run):
         draw_nodes(axis, run, at, side)
         axis.set_title(span_text(spans[edges], run, repeats) + near, loc="center", fontsize=letter)
         axis.set(xlim=(-1.25, 1.25), ylim=(-1.25, 1.25))
+        axis.update_datalim([(-1.25, -1.25), (1.25, 1.25)])  # what must stay in sight, circles included
         axis.set_aspect("equal", adjustable="datalim")
     some = f" ({len(shown)} of {len(spans)} graphs)" if len(shown) < len(spans) else ""
     titled(figure, run, f"who hears whom{some}")

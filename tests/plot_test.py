@@ -108,9 +108,9 @@ class PlotTest(unittest.TestCase):
         plot.plt.close(figure)
         return (["beyond the page"] if over > 0.002 else []) + covered
 
-    def figure(self, name, **what):
+    def figure(self, name, size="screen", **what):
         self.write(**what)
-        figure_style.use("screen")
+        figure_style.use(size)
         return pictures.PICTURES[name].draw(run_folder.read_run(self.folder))
 
 
@@ -421,6 +421,21 @@ class Graphs(PlotTest):
             "graph": {"edges": [edge for phase in phases for edge in phase["edges"]], "schedule": phases}})
         self.assertEqual(len(figure.axes), 12)
         self.assertIn("(12 of 20 graphs)", figure._suptitle.get_text())
+
+    def test_circles_are_whole(self):
+        for size in figure_style.SIZES:
+            for summary, config in ((PATH, CONSENSUS), (self.TWO, CONSENSUS), (PATH, self.EVENTS)):
+                figure = self.figure("graph", summary=summary, config=config, size=size)
+                figure.canvas.draw()
+                for axis in figure.axes:
+                    panel = axis.get_window_extent()
+                    for line in axis.get_lines():
+                        if line.get_marker() != "o":
+                            continue
+                        (x, y), radius = axis.transData.transform(line.get_xydata()[0]), line.get_markersize() / 72 * figure.dpi / 2
+                        self.assertTrue(panel.x0 <= x - radius and x + radius <= panel.x1, size)
+                        self.assertTrue(panel.y0 <= y - radius and y + radius <= panel.y1, size)
+                plot.plt.close(figure)
 
     def test_agents_have_their_numbers_if_there_is_room(self):
         for agents, numbers in ((10, 10), (200, 0)):
