@@ -319,13 +319,16 @@ TEST(LiveView, TellsOfEvents) {
   viewer.Subscribe("/event");
   viewer.Subscribe("/ui/experiment");
   viewer.Subscribe("/ui/events");
-  EXPECT_EQ(viewer.NextJsonOf("/ui/experiment")["live_keys"], Json::array());
+  const Json before = viewer.NextJsonOf("/ui/experiment");
+  EXPECT_EQ(before["live_keys"], Json::array());
+  EXPECT_EQ(before["prediction"]["why"], "");
   EXPECT_EQ(viewer.NextJsonOf("/ui/events"), Json::array());
   const Experiment now = Load(kThree, "law.leader_waypoints_m", "[[7, 8, 1]]");
   const Key gain = key::Number("p_gain", Above(0, 10), "pull").Unit("1/s^2");
   run.view.OnEvent({.number = 1, .tick = 50, .toml = "goto = {}", .by_hand = true}, now, {{"law.p_gain", gain, "0.5"}});
   const Json experiment = viewer.NextJsonOf("/ui/experiment");
   EXPECT_EQ(experiment["agents"][0]["waypoints_m"], Json::parse("[[7.0,8.0,1.0]]"));
+  EXPECT_EQ(experiment["prediction"]["why"], "events change the run, from 0.5 s on") << "what it said held before";
   EXPECT_EQ(experiment["live_keys"], Json::parse(R"([{"key":"law.p_gain","kind":"number","unit":"1/s^2","min":0.0,
     "max":10.0,"open_min":true,"names":[],"value":0.5,"meaning":"pull"}])"));
   EXPECT_EQ(viewer.NextJsonOf("/ui/events"),

@@ -79,6 +79,7 @@ void LiveView::SetState(const RunState& state) {
 }
 
 void LiveView::OnEvent(const ShownEvent& event, const Experiment& now, const std::vector<ShownKey>& keys) {
+  if (event.by_hand && !silenced_) silenced_.emplace().silent = SilentFrom(experiment_, event.tick);
   SetExperiment(now, keys);
   server_.Post([this, event] {
     events_.push_back(event);
@@ -113,7 +114,8 @@ void LiveView::SendMissed() {  // no newer message may come
 }
 
 void LiveView::SetExperiment(const Experiment& now, const std::vector<ShownKey>& keys) {
-  server_.Post([this, json = ExperimentJson(now, PredictionOf(prediction_, now.phase), source_, keys), keys]() mutable {
+  const Prediction& prediction = silenced_ ? *silenced_ : PredictionOf(prediction_, now.phase);
+  server_.Post([this, json = ExperimentJson(now, prediction, source_, keys), keys]() mutable {
     PublishLatched(kExperimentChannel, std::move(json));
     std::vector<Foxglove::Parameter> parameters;
     for (const ShownKey& key : keys) parameters.push_back({key.name, Foxglove::Json::parse(key.value, nullptr, false)});

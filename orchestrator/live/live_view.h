@@ -57,6 +57,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   /// The experiment is `now`.
   void SetExperiment(const Experiment& now, const std::vector<ShownKey>& keys);
   /// An event has taken effect: `now` is the experiment with it, `keys` are all that may be changed.
+  /// From the first event by hand on, theory is silent.
   void OnEvent(const ShownEvent& event, const Experiment& now, const std::vector<ShownKey>& keys);
   /// These are all the events.
   void SetEvents(std::vector<ShownEvent> events);
@@ -92,6 +93,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
 
   const Experiment& experiment_;
   const Prediction& prediction_;
+  std::optional<Prediction> silenced_;  // once an event by hand has changed the run; of the thread that calls OnEvent
   const RunMeter* meter_;  // null: of a recording
   const ShownSource source_;
   const Pages pages_;

@@ -174,7 +174,9 @@ std::string PhaseText(const Experiment& experiment, const RunMeter& meter, std::
   if (const auto& formation = aim.formation)
     text += Line("formation      {:.4f} m rms off at the end, {:.4f} m at worst in the second half",
                  formation->final_rms_m, formation->worst_rms_m);
-  return text + LawsText(phase.experiment(), meter.LawsOf(k), prediction);
+  text += LawsText(phase.experiment(), meter.LawsOf(k), prediction);
+  if (!prediction.silent.empty()) text += "theory         silent, because " + prediction.silent + "\n";
+  return text;
 }
 
 /// Name of the ideal bodies that a run is compared with (docs/recording.md, fidelity).

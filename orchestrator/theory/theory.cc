@@ -181,7 +181,7 @@ std::string SilencingEvent(const Experiment& experiment, std::int64_t from) {
   };
   const auto event = std::ranges::find_if(experiment.events, changes);
   if (event == experiment.events.end()) return "";
-  return fmt::format("events change the run, from {:g} s on", experiment.time_s(event->tick));
+  return SilentFrom(experiment, event->tick);
 }
 
 /// Why theory is silent about a later phase, which flies `now`; empty: it is not.
@@ -234,6 +234,10 @@ void WarnOfLatePhases(const Experiment& experiment, Prediction& prediction) {
 }
 
 }  // namespace
+
+std::string SilentFrom(const Experiment& experiment, std::int64_t tick) {
+  return fmt::format("events change the run, from {:g} s on", experiment.time_s(tick));
+}
 
 Prediction Predict(const Experiment& experiment) {
   const std::string silent = SilencingEvent(experiment, 0);

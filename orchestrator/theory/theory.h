@@ -92,6 +92,9 @@ inline const Prediction& PredictionOf(const Prediction& run, std::size_t index) 
   return index == 0 ? run : run.later.at(index - 1).prediction;
 }
 
+/// Why theory is silent about a run that events change from `tick` on.
+std::string SilentFrom(const Experiment& experiment, std::int64_t tick);
+
 /// Predicts an experiment that LoadExperiment returned. Above kLargestSpectrum agents, no eigenvalues are computed.
 Prediction Predict(const Experiment& experiment);
 
