@@ -100,7 +100,7 @@ export async function startFake({port = 0, session = "1", frame_ms = 100, ...opt
     const answer = run.ask(request), head = Buffer.from(message.subarray(0, 13 + message.readUInt32LE(9)));
     head.writeUInt8(3, 0);
     client.socket.send(Buffer.concat([head, Buffer.from(JSON.stringify(answer))]));
-    if (request.ask === "event" && answer.granted) {
+    if (run.take() || request.ask === "event" && answer.granted) {
       sendAll("/ui/experiment", run.experiment());
       sendAll("/ui/events", run.events);
     }

@@ -14,6 +14,7 @@ export class MadeUpRun {
   state = "running";
   pace = 1;
   events = [];
+  waiting = [];
   gains = {p_gain: 0.35, beta: 1.1};
 
   constructor({
@@ -25,10 +26,12 @@ export class MadeUpRun {
     range_m = 100,
     end_s = DURATION_S,
     loss = "",
-    incidents = ""
+    incidents = "",
+    waits = false  // what is granted while the run is paused takes effect when it goes on
   } = {}) {
     Object.assign(
-        this, {size: agents, source, name, lossy, range_m, end_s, loss, incidents, leader: Math.min(leader, agents)});
+        this,
+        {size: agents, source, name, lossy, range_m, end_s, loss, incidents, waits, leader: Math.min(leader, agents)});
     const spread = 2.2 * Math.sqrt(agents);
     this.p = Array.from(
         {length: agents},
@@ -269,6 +272,13 @@ export class MadeUpRun {
     return {granted: true, words: at};
   }
 
+  /** What has waited takes effect, if the run goes on. Returns whether there is such a thing. */
+  take() {
+    if (this.state === "paused" || this.waiting.length === 0) return false;
+    this.events.push(...this.waiting.splice(0));
+    return true;
+  }
+
   #event(toml, words) {
     const numbers = [...toml.replace(/"[^"]*"/g, "").matchAll(/-?\d+(\.\d+)?(e-?\d+)?/g)].map(([text]) => Number(text));
     if (toml.startsWith("goto"))
@@ -285,8 +295,9 @@ export class MadeUpRun {
         return {granted: false, words: `event by hand: law.p_gain: expected a number in [0, 1000], got ${numbers[0]}`};
       this.gains.p_gain = numbers[0];
     }
-    this.events.push({
-      number: this.events.length + 1,
+    const list = this.waits && this.state === "paused" ? this.waiting : this.events;
+    list.push({
+      number: this.events.length + this.waiting.length + 1,
       tick: this.tick + 1,
       t_s: (this.tick + 1) / RATE_HZ,
       toml: `[[events]]\nat_s = ${((this.tick + 1) / RATE_HZ).toFixed(2)}\n${toml}\n`,

@@ -255,6 +255,23 @@ inOneWindow("keys are tuned:", {
   },
 });
 
+test(
+    "what is granted while the run is paused waits in the list of events until it goes on",
+    () => watching({run: {waits: true}}, async ({page}) => {
+      await pausedFromAbove(page);
+      await page.click("#tab-events");
+      await clickEdge(page, await edgeInTheOpen(page));
+      await until(page, () => document.querySelectorAll("#events .event").length === 1);
+      const words = await page.textContent("#events");
+      assert.match(words, /^waiting takes effect at tick \d+/);
+      assert.ok(words.includes("cut = [["));
+      await page.keyboard.press("Space");
+      await until(page, () => mascot.events.length === 1);
+      assert.match(await page.textContent("#events"), /tick \d+/);
+      assert.ok(!(await page.textContent("#events")).includes("waiting"));
+      assert.equal(await page.locator("#events .event").count(), 1);
+    }));
+
 // --- recordings and connections ----------------------------------------------------------------------------
 
 test(

@@ -46,7 +46,11 @@ export class Asking {
   }
 
   /** Asks for an event: the keys of one [[events]] table. */
-  event(toml, say) { return this.ask({ask: "event", toml}, say); }
+  async event(toml, say) {
+    const answer = await this.ask({ask: "event", toml}, say);
+    if (answer.granted) this.#model.expect(toml, answer.words);
+    return answer;
+  }
 
   async #answer(request) {
     try {

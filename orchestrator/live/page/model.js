@@ -28,6 +28,7 @@ export class Model {
   experiment = null;
   frame = null;
   events = [];
+  #expected = [];     // granted here: {tick, words, toml}
   selected = 0;       // number of an agent, 0: none
   lastAnswer = null;  // the server's last answer: {request, granted, words}
   #session = null;
@@ -66,6 +67,7 @@ export class Model {
   #forget() {
     this.experiment = this.frame = null;
     this.events = [];
+    this.#expected = [];
   }
 
   setExperiment(experiment) {
@@ -89,6 +91,16 @@ export class Model {
     this.events = events;
     this.#tell("events");
   }
+
+  /** An event was granted: it takes effect at a later tick, of which the answer tells. */
+  expect(toml, words) {
+    const tick = Number(/tick (\d+)/.exec(words)?.[1] ?? 0);
+    this.#expected.push({tick, words, toml});
+    this.#tell("events");
+  }
+
+  /** What was granted here and has not taken effect yet; all that waits for a tick comes with it. */
+  get expected() { return this.#expected.filter(({tick}) => !this.events.some((event) => event.tick >= tick)); }
 
   select(number) {
     this.selected = number >= 1 && number <= this.size ? number : 0;

@@ -13,8 +13,10 @@ export class Events {
   }
 
   #show() {
-    const {events, isRecording} = this.#model;
+    const {events, expected, isRecording} = this.#model;
     setText(byId("event-count"), events.length ? String(events.length) : "");
+    const waiting = expected.toReversed().map((event) => this.#waitingRow(event));
+    if (waiting.length > 0 && events.length === 0) return byId("events").replaceChildren(...waiting);
     if (events.length === 0)
       return byId("events").replaceChildren(element("p", {
         className: "muted hint",
@@ -25,7 +27,17 @@ export class Events {
     const all =
         button("Copy all as TOML", () => this.#copy(events.map(({toml}) => toml.trimEnd()).join("\n\n") + "\n"));
     byId("events").replaceChildren(
-        element("div", {className: "row-end"}, all), ...events.toReversed().map((event) => this.#row(event)));
+        element("div", {className: "row-end"}, all), ...waiting,
+        ...events.toReversed().map((event) => this.#row(event)));
+  }
+
+  #waitingRow({toml, words}) {
+    return element(
+        "article", {className: "event"},
+        element(
+            "header", {}, element("b", {textContent: "waiting"}),
+            element("span", {className: "muted", textContent: ` ${words}`})),
+        element("pre", {textContent: toml.trim()}));
   }
 
   #row({tick, t_s, toml, by_hand}) {
