@@ -175,6 +175,9 @@ class Curves:
         self.series_key = series
         self.series = Axis(table, series).cells if series else [None]
         self.colours = {cell: OKABE_ITO[n % len(OKABE_ITO)] for n, cell in enumerate(self.series)}
+        values = table.values()
+        self.is_log = is_wide([number(row["median"]) for row in table.points]) and is_wide(values)
+        self.floor = min(values) / 2 if self.is_log else -np.inf
         self.has_sample = any(int(point["runs"]) > 1 for point in table.points)
 
     def is_of(self, row, cell):
@@ -201,6 +204,7 @@ class Curves:
             top = np.where(np.isinf(top), self.table.end_s(), top)
         text = name if cell is None else cell.strip("\"'")
         shown = np.isfinite(bottom) & np.isfinite(top)
+        bottom, top = np.maximum(bottom, self.floor), np.maximum(top, self.floor)  # a log axis has no place for 0 and below
         if self.x.is_numeric:
             ax.fill_between(x, bottom, top, where=shown, color=colour, alpha=0.2, linewidth=0)
         ax.vlines(np.array(x)[shown], bottom[shown], top[shown], color=colour, alpha=0.5, linewidth=1.5)
@@ -267,7 +271,7 @@ class Curves:
                 self.band(ax, cell, middle, low, high, name)
             self.marks(ax)
             ax.set_title(name + (", of the runs " + table.has_value() if middle == "mean" and table.late and name else ""))
-        if is_wide([number(row["median"]) for row in table.points]) and is_wide(table.values()):
+        if self.is_log:
             for ax in panels:
                 ax.set_yscale("log")
         else:

@@ -959,6 +959,17 @@ class SweepTableTest(unittest.TestCase):
         self.assertEqual([axis.of(row["law.p_gain"]) for row in table.points], [k / 2 for k in range(count)])
         self.assertEqual(axis.rank()[(count - 1) / 2], count - 1)
 
+    def test_a_band_that_goes_below_zero_ends_at_the_foot_of_a_log_axis(self):
+        table = self.table_of([f"run,law.beta,error,{self.COLUMN},sim_s", *(f"0,{k},,{y},1" for k in (1, 2) for y in (1, 9e3))],
+                              ["law.beta,metric,runs,failed,without_value,mean,mean_low_95,mean_high_95,median,decile_1,decile_9",
+                               f"1,{self.COLUMN},2,0,0,5,1,9,5,1,9", f"2,{self.COLUMN},2,0,0,4000,-500,9000,4000,1,9000"],
+                              "law.beta")
+        plot_sweep.figure_style.use("screen")
+        axis = plot_sweep.Curves(table, "law.beta", None).draw().axes[0]
+        self.addCleanup(plot.plt.close, "all")
+        band = axis.collections[0].get_paths()[0].vertices[:, 1]
+        self.assertEqual((axis.get_yscale(), band.min(), band.max()), ("log", 0.5, 9000))
+
     def test_equal_numbers_in_other_words_stand_in_one_order(self):
         cells = ["1.00", "1", "1.0", "0.5"]
         table = self.table_of([f"run,law.beta,error,{self.COLUMN},sim_s", *(f"0,{cell},,1,1" for cell in cells)],
