@@ -326,6 +326,15 @@ TEST_F(SweepTest, HasTheFiguresOfEveryLawThatARunEndsWith) {
       << "a phase that the shorter run does not reach";
 }
 
+TEST_F(SweepTest, FliesTheLawTablesThatTheDocumentShows) {
+  const std::string text = ReadFile(std::string(MASCOT_SOURCE_DIR) + "/docs/sweep.md");
+  const auto begin = text.find("--set 'law={"), end = text.find('`', begin);
+  ASSERT_NE(end, text.npos);
+  const Ran ran = Sweep(text.substr(begin, end - begin) + " --no-plot");
+  EXPECT_EQ(ran.exit_code, 0) << ran.output;
+  EXPECT_THAT(ran.output, HasSubstr("2 runs, 0 of those flown now failed"));
+}
+
 TEST_F(SweepTest, RefusesWhatCannotBeSwept) {
   const auto refuses = [&](const std::string& words, const std::string& text) {
     const Ran ran = Sweep(words);
@@ -338,6 +347,7 @@ TEST_F(SweepTest, RefusesWhatCannotBeSwept) {
   refuses("--seeds 1..2 --plot consensus.final_disagreement",
           "error: --plot: expected a column of the table, such as consensus.final_disagreement_m, got "
           "'consensus.final_disagreement' (did you mean \"consensus.final_disagreement_m\"?)");
+  refuses("--seeds 1..2 --plot settling_time_s", "got 'settling_time_s' (did you mean \"consensus.settling_time_s\"?)");
   refuses("--seeds 1..2 --plot wall_s",
           "error: --plot: expected a column of which there are statistics, got 'wall_s', which depends on the machine");
   refuses("--seeds 5..1", "error: --seeds: expected a..b or a,b,... of integers from 0 on, got '5..1'");
@@ -456,6 +466,8 @@ TEST_F(SweepTest, DrawsColoursForWordsAndMarksRunsThatDidNotSettle) {
 TEST_F(SweepTest, DrawsForAPaperAndDrawsAgain) {
   const Ran paper = Sweep("--set law.p_gain=0.1,0.2 --seeds 1..2 --force --format pdf,svg --size column");
   EXPECT_EQ(paper.exit_code, 0) << paper.output;
+  EXPECT_THAT(paper.output,
+              HasSubstr("\npicture: " + folder_.File("sweep.pdf") + "\npicture: " + folder_.File("sweep.svg") + "\n"));
   EXPECT_THAT(ReadFile(folder_.File("sweep.pdf")), testing::StartsWith("%PDF"));
   const std::string svg = ReadFile(folder_.File("sweep.svg"));
   EXPECT_THAT(svg, HasSubstr("width=\"252pt\"")) << "3.5 inches";

@@ -323,7 +323,9 @@ void CheckMetric(const std::string& metric, const std::vector<std::string>& metr
     throw ConfigError({"--plot: expected a column of which there are statistics, got '" + metric +
                        "', which depends on the machine"});
   const std::vector<std::string_view> views(metrics.begin(), metrics.end());
-  const auto nearest = DidYouMean(metric, views);
+  const auto whole =
+      std::ranges::find_if(metrics, [&](const std::string& name) { return name.ends_with("." + metric); });
+  const auto nearest = whole != metrics.end() ? std::optional(*whole) : DidYouMean(metric, views);
   throw ConfigError({fmt::format("--plot: expected a column of the table, such as {}, got '{}'{}", kUsualMetric, metric,
                                  nearest ? " (did you mean \"" + *nearest + "\"?)" : "")});
 }

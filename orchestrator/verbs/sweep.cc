@@ -7,6 +7,8 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
+#include <string>
 
 #include "bus/stop_signal.h"
 #include "orchestrator/processes/script.h"
@@ -91,6 +93,11 @@ int Run(const SweepArgs& args) {
     std::cout << runs << " runs, " << outcome.failed << " of those flown now failed: " << args.out << "\n";
   if (!args.quiet)
     for (const std::string& line : outcome.lines) std::cout << line << "\n";
+  if (!args.quiet && drawable && picture == kExitDone) {
+    std::istringstream formats(args.format);
+    for (std::string format; std::getline(formats, format, ',');)
+      std::cout << "picture: " << FileBeside(args.out, "." + format).string() << "\n";
+  }
   if (outcome.flown > 0 && outcome.failed == outcome.flown) return 1;
   return picture;
 }
