@@ -56,11 +56,19 @@ struct PredictedFigure {
   Bound bound = Bound::kEqual;
 };
 
+/// How fast the modes of a law that wants velocities decay on bodies that have them at once: x' = -rate x.
+struct LawRates {
+  std::vector<double> per_s;  ///< positive
+  std::string_view key;       ///< the gain to which all are proportional: "law.gain"
+  double gain = 0;
+};
+
 /// What theory says about an experiment whose agents all fly one law.
 struct LawTheory {
   std::string silent = {};                      ///< why theory says nothing; empty: it speaks
   std::vector<PredictedFigure> figures = {};    ///< in the order of LawEntry::figures; empty if it is silent
   std::optional<Eigen::Vector3d> value_m = {};  ///< where agents meet, in W
+  std::optional<LawRates> rates = {};           ///< to be judged on bodies that have no velocity at once
   std::vector<std::string> warnings = {};       ///< "key: text": what will not work, or not as expected
 };
 

@@ -485,5 +485,32 @@ TEST(AffineFormation, FliesOnAllModels) {
   }
 }
 
+/// Seven quadrotors a little beside their places, and what theory says of them.
+LawRun QuadrotorsNearTheirPlaces(double gain) {
+  std::string starts;
+  double z_m = 5;
+  for (const Eigen::Vector3d& r : kSevenPlaces) {
+    const double beside_m = z_m == 8 ? 0.01 : 0;  // agent 4
+    starts += (starts.empty() ? "[[" : ", [") + ShortestFloat(r.x() + beside_m) + ", " + ShortestFloat(r.y()) + ", " +
+              ShortestFloat(z_m) + "]";
+    z_m += 1;
+  }
+  std::string text = Seven(30, "quadrotor", "gain = " + ShortestFloat(gain) + "\n");
+  const auto begin = text.find("position_m = "), end = text.find('\n', begin);
+  return LawRun(text.replace(begin, end - begin, "position_m = " + starts + "]"));
+}
+
+TEST(AffineFormation, IsSaidToBeUnstableOnQuadrotorsFromTheGainOnFromWhichItIs) {
+  const auto unstable = testing::HasSubstr("law.gain: unstable, it must be below 0.48");
+  const LawRun calm = QuadrotorsNearTheirPlaces(0.42);
+  EXPECT_THAT(calm.prediction.warnings, Not(testing::Contains(unstable)));
+  EXPECT_LT(calm.Measured("place_error_m"), 0.001) << "of 0.01 m at the start";
+  const LawRun wild = QuadrotorsNearTheirPlaces(0.6);
+  EXPECT_THAT(wild.prediction.warnings, testing::Contains(unstable));
+  EXPECT_THAT(wild.prediction.warnings,
+              testing::Contains(testing::EndsWith(", got 0.6: quadrotors turn before they accelerate")));
+  EXPECT_GT(wild.Measured("place_error_m"), 0.1);
+}
+
 }  // namespace
 }  // namespace mascot

@@ -79,12 +79,13 @@ std::shared_ptr<const LawParams> ReadAffineFormation(const Experiment& experimen
 
 LawTheory PredictAffineFormation(const Experiment& experiment) {
   const auto& params = ParamsOf<AffineFormationParams>(experiment.law);
-  if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty()) return {.silent = std::move(why)};
   if (params.gain == 0) return {.silent = "with gain = 0 followers stay where they are"};
   const LedTeam& team = params.team;
-  const double h_s = experiment.period_s();
   const Eigen::VectorXd rates =
       SymmetricEigenvalues(params.gain * BlockOf(params.omega, team.followers, team.followers));
+  if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty())
+    return {.silent = std::move(why), .rates = LawRates{{rates.begin(), rates.end()}, "law.gain", params.gain}};
+  const double h_s = experiment.period_s();
   if (auto unstable = WhyUnstable(experiment, 2 / std::max(rates.maxCoeff(), params.maneuver.gain_per_s())))
     return *unstable;
   const double kept = (1 - h_s * rates.array()).abs().maxCoeff();  // |I - T gain Omega_FF|

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "agent/laws.h"
 #include "agent/laws/reach.h"
@@ -16,6 +17,7 @@
 #include "orchestrator/theory/parts.h"
 #include "orchestrator/theory/period_bound.h"
 #include "orchestrator/theory/sampled_team.h"
+#include "orchestrator/theory/turning.h"
 
 namespace mascot {
 namespace {
@@ -46,6 +48,7 @@ class LinearCase {
   void FindModes();
   GainBound Gain() const;
   bool JudgeGains();
+  bool JudgeTurning();
   bool JudgeDelays();
   std::optional<double> OwnMargin() const;
   /// The delay that one of `delay_s` amounts to: a whole number of control periods (s).
@@ -146,7 +149,7 @@ bool LinearCase::JudgeGains() {
         fmt::format("law.p_gain: 0 means that nothing pulls {} anywhere", common_ ? "an agent" : AgentList(idle)));
   if (!timeline_.IsConstant()) return true;
   if (common_) {
-    const bool stable = JudgeModes(experiment_, modes_, Gain(), prediction_);
+    const bool stable = JudgeModes(experiment_, modes_, Gain(), prediction_) && JudgeTurning();
     if (!stable) prediction_.stable = false;
     return stable;
   }
@@ -156,6 +159,14 @@ bool LinearCase::JudgeGains() {
   if (JudgePeriod(experiment_, longest_s, prediction_)) return true;
   prediction_.stable = false;
   return false;
+}
+
+/// Whether the modes decay also on quadrotors, which turn before they accelerate.
+bool LinearCase::JudgeTurning() {
+  std::vector<int> ids;
+  for (const Eigen::Index i : team_.Listening()) ids.push_back(static_cast<int>(i) + 1);
+  const double p_gain = LinearFormOf(agent(ids.front()).law)->p;
+  return mascot::JudgeTurning(experiment_, ids, *common_, modes_, "law.p_gain", p_gain, prediction_);
 }
 
 /// The margin of a delay that own states have too.

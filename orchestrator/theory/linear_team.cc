@@ -89,6 +89,10 @@ Graph LinearTeam::Followed(const Graph& graph) const {
   return Graph(std::move(heard));
 }
 
+LinearAgent FollowingAgent(const AgentConfig& agent, const LinearForm& form, Wanted wanted) {
+  return Driven(agent, form, wanted);
+}
+
 LinearAgent FlyingAgent(const AgentConfig& agent, const LinearForm& form) {
   return Driven(agent, form, Wanted::kAcceleration);
 }

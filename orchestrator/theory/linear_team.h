@@ -56,6 +56,8 @@ struct Linearity {
 };
 
 Linearity LinearTeamOf(const Experiment& experiment);
+/// Dynamics of an agent that is no leader, under a law of this form, whose output is `wanted`.
+LinearAgent FollowingAgent(const AgentConfig& agent, const LinearForm& form, Wanted wanted);
 /// Dynamics of an agent that flies to its target by itself, under a law of this form that does not listen.
 LinearAgent FlyingAgent(const AgentConfig& agent, const LinearForm& form);
 

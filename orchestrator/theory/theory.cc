@@ -16,6 +16,7 @@
 #include "orchestrator/theory/links_on_average.h"
 #include "orchestrator/theory/obstacle_warnings.h"
 #include "orchestrator/theory/parts.h"
+#include "orchestrator/theory/turning.h"
 
 namespace mascot {
 namespace {
@@ -89,6 +90,7 @@ void PredictFigures(const Experiment& experiment, Prediction& prediction) {
   prediction.law_figures = std::move(theory.figures);
   if (!theory.silent.empty()) (prediction.stable ? prediction.figures_silent : prediction.silent) = theory.silent;
   if (theory.value_m) prediction.value_m = theory.value_m;
+  if (theory.rates) JudgeTurning(experiment, *theory.rates, prediction);
   for (std::string& warning : theory.warnings) prediction.warnings.push_back(std::move(warning));
 }
 
