@@ -94,7 +94,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   const Experiment& experiment_;
   const Prediction& prediction_;
   std::optional<Prediction> silenced_;  // once an event by hand has changed the run; of the thread that calls OnEvent
-  const RunMeter* meter_;  // null: of a recording
+  const RunMeter* meter_;               // null: of a recording
   const ShownSource source_;
   const Pages pages_;
 
