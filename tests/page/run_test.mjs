@@ -86,8 +86,8 @@ const TOUCHES = {
   async "a second run at the same time takes another port"({run}) {
     const second = await startRun("waypoint.toml", "--engine", "inprocess");
     try {
-      assert.ok(Number(new URL(second.url).port) > Number(new URL(run.url).port), `${run.url}, ${second.url}`);
-      assert.equal((await fetch(second.url)).status, 200);
+      assert.notEqual(second.url, run.url);  // which is lower depends on what else listens meanwhile
+      for (const {url} of [run, second]) assert.equal((await fetch(url)).status, 200);
     } finally {
       await second.stop();
     }
