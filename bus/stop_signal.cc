@@ -24,7 +24,7 @@ bool IsIgnored(int signal) {
 sigset_t Signals() {
   sigset_t set;
   sigemptyset(&set);
-  for (int signal : {SIGINT, SIGTERM, SIGCHLD}) sigaddset(&set, signal);
+  for (int signal : {SIGINT, SIGTERM, SIGUSR1, SIGCHLD}) sigaddset(&set, signal);
   if (!IsIgnored(SIGHUP)) sigaddset(&set, SIGHUP);
   return set;
 }

@@ -4,9 +4,10 @@
 
 namespace mascot {
 
-/// Blocks SIGINT, SIGTERM, SIGCHLD and, unless it is ignored (nohup), SIGHUP, so that a loop can wait in one call for a
-/// signal, for a wake-up from another thread, or for a timeout. No handlers, no globals. Make it first in main:
-/// libraries start threads, which must inherit the blocked mask. Throws std::system_error.
+/// Blocks SIGINT, SIGTERM, SIGUSR1, by which batch systems say that the time of a job is nearly up, SIGCHLD and, unless
+/// it is ignored (nohup), SIGHUP, so that a loop can wait in one call for a signal, for a wake-up from another thread,
+/// or for a timeout. No handlers, no globals. Make it first in main: libraries start threads, which must inherit the
+/// blocked mask. Throws std::system_error.
 class StopSignal {
  public:
   StopSignal();
@@ -14,8 +15,8 @@ class StopSignal {
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
-  /// Waits at most `timeout`. Returns one SIGINT, SIGTERM or SIGHUP that came, or 0 after Wake(), the end of a child or
-  /// the timeout.
+  /// Waits at most `timeout`. Returns one SIGINT, SIGTERM, SIGUSR1 or SIGHUP that came, or 0 after Wake(), the end of a
+  /// child or the timeout.
   int Within(std::chrono::nanoseconds timeout);
   /// Makes the running Within(), or the next one, return. Thread-safe.
   void Wake();

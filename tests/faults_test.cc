@@ -343,7 +343,9 @@ TEST_P(Interrupted, RunsEndInOrderWithACompleteRecording) {
   EXPECT_TRUE(NothingIsLeft(up));
 }
 
-INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted, testing::Values(Interruption{SIGINT, 130}, Interruption{SIGTERM, 143}),
+INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted,
+                         testing::Values(Interruption{SIGINT, 130}, Interruption{SIGTERM, 143},
+                                         Interruption{SIGUSR1, 138}),
                          NamedAsPrinted<Interruption>);
 
 TEST(Faults, ASecondCtrlCKillsWhatDoesNotStop) {
