@@ -14,19 +14,20 @@ const Outcomes::Cells kColumns = {"run", "law.name", "run.seed", "error", "conse
 SweepPlan Plan() { return SweepPlan({.sets = {"law.name=a,'b'"}, .randoms = {}, .seeds = "1..3"}); }
 
 /// Runs of the law of their law.name each: a, whose agents agree, and b, whose agents do not.
-SweepLaws LawsOf(const SweepPlan& plan) {
-  SweepLaws::Known known;
+KnownLaws LawsOf(const SweepPlan& plan) {
+  KnownLaws known{.alike = SweepPlan::Alike::kInValues, .of_run = {}};
   for (std::size_t run = 0; run < plan.size(); ++run) {
     const bool is_a = plan[run].overrides[0].value == "a";
-    known[run] = {.team = is_a ? "a" : "b", .team_agrees = is_a, .names = {is_a ? "a" : "b"}};
+    known.of_run[run] = {.team = is_a ? "a" : "b", .team_agrees = is_a, .names = {is_a ? "a" : "b"}};
   }
-  return {plan, plan.FirstsAlike(SweepPlan::Alike::kInValues), known};
+  return known;
 }
 
 /// Lines of the outcomes of these rows.
 std::vector<std::string> LinesOf(const std::vector<Outcomes::Cells>& rows) {
   const SweepPlan plan = Plan();
-  const SweepLaws laws = LawsOf(plan);
+  const KnownLaws known = LawsOf(plan);
+  const SweepLaws laws(plan, known);
   Outcomes outcomes(plan, laws, kColumns);
   for (const Outcomes::Cells& row : rows) outcomes.Add(row);
   return outcomes.Lines();
@@ -35,7 +36,8 @@ std::vector<std::string> LinesOf(const std::vector<Outcomes::Cells>& rows) {
 /// Statistics of these rows.
 std::string StatisticsOf(const std::vector<std::string>& metrics, const std::vector<Outcomes::Cells>& rows) {
   const SweepPlan plan = Plan();
-  const SweepLaws laws = LawsOf(plan);
+  const KnownLaws known = LawsOf(plan);
+  const SweepLaws laws(plan, known);
   Outcomes outcomes(plan, laws, kColumns);
   for (const Outcomes::Cells& row : rows) outcomes.Add(row);
   std::string csv;
@@ -56,7 +58,7 @@ TEST(Outcomes, CountWhatFailedAndWhatDidNotSettle) {
       lines,
       ElementsAre("failed: 5 of 6 runs", "  run 0 and 1 more: it fell",
                   "  run 3: " + std::string(100, 'x') + " ... " + std::string(100, 'x'), "  run 4: c",
-                  "  and 1 other reasons",
+                  "  and 1 other reason",
                   "not settled by the end: 1 of 3 runs whose law makes agents agree (no consensus.settling_time_s), "
                   "first run 1"));
 }
@@ -100,7 +102,8 @@ TEST(Outcomes, LeaveOutWhatNoRunHas) {
 TEST(Outcomes, KeepVeryManyPointsAndReasonsApart) {
   constexpr std::size_t kRuns = 20'000;
   const SweepPlan plan({.sets = {"law.p_gain=1:1:20000"}, .randoms = {}, .seeds = ""});
-  const SweepLaws laws(plan, plan.FirstsAlike(SweepPlan::Alike::kInWords), {});
+  const KnownLaws none;
+  const SweepLaws laws(plan, none);
   Outcomes outcomes(plan, laws, {"run", "law.p_gain", "error", "consensus.settling_time_s"});
   for (std::size_t run = 0; run < kRuns; ++run)
     outcomes.Add({std::to_string(run), std::to_string(run + 1), run % 2 == 0 ? "" : "why " + std::to_string(run),

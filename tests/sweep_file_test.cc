@@ -72,7 +72,7 @@ TEST_F(SweepFileTest, IsNotMixedWithAnotherSweep) {
                                  "anew)"));
   WriteFile(path_, "something else\n");
   EXPECT_THAT([&] { SweepFile(path_, kSweepColumns, "plan", false); },
-              ThrowsMessage<ConfigError>("--out " + path_ + ": expected the columns of this sweep, got others"));
+              ThrowsMessage<ConfigError>(path_ + ": expected the columns of this sweep, got others"));
   SweepFile anew(path_, kSweepColumns, "plan", true);
   EXPECT_EQ(Text(), "run,law.beta,error\n");
 }

@@ -14,11 +14,14 @@
 extern char** environ;
 
 namespace mascot {
-namespace {
-
 namespace fs = std::filesystem;
 
-/// Runs a program on our terminal. Returns its exit code, or 128 + the signal that ended it or that `stop` received.
+fs::path FindShared(const std::string& name, const std::string& folder) {
+  for (const fs::path& path : {ProgramFolder() / "../share/mascot" / name, fs::path(MASCOT_SOURCE_DIR) / folder / name})
+    if (fs::exists(path)) return path;
+  throw std::runtime_error(name + " is missing: neither beside this program (../share/mascot) nor in its source tree");
+}
+
 int RunProgram(std::vector<std::string> words, StopSignal& stop) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -30,7 +33,7 @@ int RunProgram(std::vector<std::string> words, StopSignal& stop) {
   posix_spawnattr_setsigmask(&attributes, &none);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
   pid_t pid = 0;
-  const int error = posix_spawn(&pid, argv[0], nullptr, &attributes, argv.data(), environ);
+  const int error = posix_spawnp(&pid, argv[0], nullptr, &attributes, argv.data(), environ);
   posix_spawnattr_destroy(&attributes);
   if (error != 0) throw std::runtime_error("cannot start " + words[0] + ": " + std::strerror(error));
   int status = 0, received = 0;
@@ -42,14 +45,6 @@ int RunProgram(std::vector<std::string> words, StopSignal& stop) {
   }
   if (received != 0) return 128 + received;
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
-}  // namespace
-
-fs::path FindShared(const std::string& name, const std::string& folder) {
-  for (const fs::path& path : {ProgramFolder() / "../share/mascot" / name, fs::path(MASCOT_SOURCE_DIR) / folder / name})
-    if (fs::exists(path)) return path;
-  throw std::runtime_error(name + " is missing: neither beside this program (../share/mascot) nor in its source tree");
 }
 
 int RunScript(const std::string& script, const std::vector<std::string>& arguments, StopSignal& stop) {

@@ -12,9 +12,12 @@ namespace mascot {
 /// program was built from. Throws std::runtime_error if it is in neither.
 std::filesystem::path FindShared(const std::string& name, const std::string& folder);
 
+/// Runs a program, found by PATH, on our terminal. Returns its exit code, or 128 + the signal that ended it. A signal
+/// that `stop` receives meanwhile ends the program. Throws std::runtime_error if it cannot be started.
+int RunProgram(std::vector<std::string> words, StopSignal& stop);
+
 /// Runs the Python script `script` of scripts/ (installed or in the source tree) with `arguments`. Returns its exit
-/// code, or 128 + the signal that ended it. A signal that `stop` receives meanwhile ends the script. Throws
-/// std::runtime_error if the script is missing or cannot be started.
+/// code as RunProgram() does. Throws std::runtime_error if the script is missing or cannot be started.
 int RunScript(const std::string& script, const std::vector<std::string>& arguments, StopSignal& stop);
 
 }  // namespace mascot

@@ -16,6 +16,8 @@ inline constexpr std::size_t kWallClockColumns = 2;
 /// Names of the metric columns of a sweep's table: dotted keys of summary.json, each with one number. `laws`: names of
 /// the laws whose own figures have columns.
 std::vector<std::string> SweepMetricNames(const std::vector<std::string>& laws);
+/// Throws ConfigError, naming --plot, if `column` is not one of `metrics`, or depends on the machine.
+void CheckPlotted(const std::string& column, const std::vector<std::string>& metrics);
 /// Cells of these columns by name, from the text of a summary.json; empty where it has no number.
 std::map<std::string, std::string> SweepMetrics(const std::string& summary, const std::vector<std::string>& names);
 

@@ -112,7 +112,8 @@ std::vector<std::string> Outcomes::Lines() const {
     lines.push_back(fmt::format("  run {}{}: {}", reason.first_run,
                                 reason.runs > 1 ? fmt::format(" and {} more", reason.runs - 1) : "",
                                 Shortened(reason.text)));
-  if (reasons_.size() > kReasons) lines.push_back(fmt::format("  and {} other reasons", reasons_.size() - kReasons));
+  if (const std::size_t others = reasons_.size() - std::min(reasons_.size(), kReasons); others > 0)
+    lines.push_back(fmt::format("  and {} other reason{}", others, others > 1 ? "s" : ""));
   if (late > 0)
     lines.push_back(fmt::format("not settled by the end: {} of {} runs{} (no {}), first run {}", late, may_settle,
                                 may_settle < runs ? " whose law makes agents agree" : "", kSettled, first_late));

@@ -17,7 +17,6 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kMostRuns = 10'000'000;
 constexpr std::uint64_t kSamplesSeed = 1;
 
 [[noreturn]] void Refuse(const std::string& option, const std::string& expected, const std::string& got) {

@@ -14,6 +14,9 @@ namespace mascot {
 /// Keys that mean more to a sweep than others.
 inline constexpr std::string_view kSeedKey = "run.seed", kLawKey = "law.name";
 
+/// A sweep has at most so many runs.
+inline constexpr std::size_t kMostRuns = 10'000'000;
+
 /// One run of a sweep: the keys that it sets, in addition to the experiment file.
 struct SweepPoint {
   std::vector<Override> overrides;  ///< in the order of SweepPlan::keys()
@@ -29,6 +32,7 @@ class SweepPlan {
     std::vector<std::string> randoms;  ///< --random KEY=MIN:MAX[:log]
     std::int64_t samples = 1;          ///< --samples: how often all random keys are drawn
     std::string seeds;                 ///< --seeds A..B | A,B,...; "": the seed of the file
+    bool operator==(const Words&) const = default;
   };
   /// Throws ConfigError for an invalid option, naming the option and what was expected.
   explicit SweepPlan(const Words& words);

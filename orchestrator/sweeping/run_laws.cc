@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <utility>
 
 #include "agent/laws.h"
 #include "experiment/live_experiment.h"
@@ -37,12 +36,12 @@ RunLaws LawsAtTheEnd(const Experiment& experiment) {
   return laws;
 }
 
-SweepLaws::SweepLaws(const SweepPlan& plan, SweepPlan::Firsts firsts, Known known)
-    : plan_(plan), firsts_(std::move(firsts)), known_(std::move(known)) {}
+SweepLaws::SweepLaws(const SweepPlan& plan, const KnownLaws& known)
+    : plan_(plan), known_(known), firsts_(plan.FirstsAlike(known.alike)) {}
 
 const RunLaws* SweepLaws::Of(std::size_t run) const {
-  const auto laws = known_.find(firsts_[run]);
-  return laws == known_.end() ? nullptr : &laws->second;
+  const auto laws = known_.of_run.find(firsts_[run]);
+  return laws == known_.of_run.end() ? nullptr : &laws->second;
 }
 
 bool SweepLaws::Has(std::size_t run, std::string_view law) const {
@@ -51,9 +50,9 @@ bool SweepLaws::Has(std::size_t run, std::string_view law) const {
   return name.empty() || name == law;
 }
 
-std::vector<std::string> SweepLaws::AllNames() const {
-  std::vector<std::string> names;
-  for (const auto& [run, laws] : known_) names.insert(names.end(), laws.names.begin(), laws.names.end());
+std::set<std::string> SweepLaws::AllNames() const {
+  std::set<std::string> names;
+  for (const auto& [run, laws] : known_.of_run) names.insert(laws.names.begin(), laws.names.end());
   return names;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -20,28 +21,30 @@ struct RunLaws {
 };
 RunLaws LawsAtTheEnd(const Experiment& experiment);
 
+/// The laws of the first of those runs of a sweep that are alike.
+struct KnownLaws {
+  SweepPlan::Alike alike = SweepPlan::Alike::kInWords;  ///< in this way: alike runs have the same laws
+  std::unordered_map<std::size_t, RunLaws> of_run;      ///< by number; of those that are valid experiments
+};
+
 /// The laws of every run of a sweep.
 class SweepLaws {
  public:
-  /// Laws by the number of the run.
-  using Known = std::unordered_map<std::size_t, RunLaws>;
-
-  /// `firsts`: for each run of `plan`, which must outlive this object, the run that has the same laws. `known`: the
-  /// laws of those runs that are valid experiments.
-  SweepLaws(const SweepPlan& plan, SweepPlan::Firsts firsts, Known known);
+  /// `plan` and `known` must outlive this object.
+  SweepLaws(const SweepPlan& plan, const KnownLaws& known);
 
   /// The laws of a run; null: it is not a valid experiment.
   const RunLaws* Of(std::size_t run) const;
   /// Whether a run has figures of `law`. A run that is not a valid experiment would have those of its law.name; of any
   /// law if the sweep does not set it.
   bool Has(std::size_t run, std::string_view law) const;
-  /// The names of all laws; perhaps several times.
-  std::vector<std::string> AllNames() const;
+  /// The names of all laws, sorted.
+  std::set<std::string> AllNames() const;
 
  private:
   const SweepPlan& plan_;
+  const KnownLaws& known_;
   SweepPlan::Firsts firsts_;
-  Known known_;
 };
 
 }  // namespace mascot

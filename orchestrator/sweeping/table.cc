@@ -1,12 +1,14 @@
 #include "orchestrator/sweeping/table.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 
 #include "experiment/toml/section.h"
@@ -15,6 +17,7 @@
 #include "orchestrator/formats/output_file.h"
 #include "orchestrator/formats/whole_file.h"
 #include "orchestrator/processes/worker_pool.h"
+#include "orchestrator/sweeping/plan.h"
 
 namespace mascot {
 namespace {
@@ -30,6 +33,10 @@ std::string ReadAll(const fs::path& path) {
 }
 
 fs::path PlanOf(const fs::path& table) { return table.string() + ".plan"; }
+
+[[noreturn]] void FailToRead(const fs::path& path) {
+  throw std::runtime_error(path.string() + ": cannot be read: " + std::strerror(errno));
+}
 
 [[noreturn]] void FailToWrite(const fs::path& path) {
   throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
@@ -107,20 +114,70 @@ std::vector<std::string> CsvCells(std::string_view line) {
   return cells;
 }
 
-SweepFile::SweepFile(fs::path path, const Cells& columns, const std::string& plan, bool force)
-    : path_(fs::is_symlink(path) && fs::exists(path) ? fs::canonical(path) : std::move(path)),
-      header_(CsvLine(columns)),
-      plan_fd_(LockedPlan(path_)) {
-  if (fs::exists(path_) && !force) Resume(ReadAll(path_), plan);
-  WriteAll();  // before the plan: rows must never be next to the plan of another sweep
-  Overwrite(plan_fd_, plan, PlanOf(path_));
-  fd_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-  if (fd_ < 0) throw std::runtime_error(path_.string() + ": cannot be opened: " + std::strerror(errno));
+fs::path FileBeside(fs::path table, std::string_view ending) {
+  if (table.extension() == ".csv") table.replace_extension();
+  return table += ending;
 }
 
-std::string SweepFile::PlanBeside(const fs::path& path) {
-  const fs::path plan = PlanOf(path);
+fs::path StatisticsBeside(const fs::path& table) { return FileBeside(table, ".stats.csv"); }
+
+std::string PlanBeside(const fs::path& table) {
+  const fs::path plan = PlanOf(table);
   return fs::is_regular_file(plan) ? ReadAll(plan) : "";
+}
+
+bool RowPlaces::Add(std::size_t run, std::uint64_t place) {
+  if (Has(run)) return false;
+  if (run >= places_.size()) places_.resize(run + 1);
+  places_[run] = place;
+  ++size_;
+  return true;
+}
+
+void RowPlaces::ForEach(const std::function<void(std::size_t, std::uint64_t)>& take) const {
+  for (std::size_t run = 0; run < places_.size(); ++run)
+    if (Has(run)) take(run, places_[run]);
+}
+
+TableRows::TableRows(const fs::path& path, const Cells& columns, bool lost) : file_(path, std::ios::binary) {
+  std::string line;
+  if (!file_ || !fs::is_regular_file(path)) FailToRead(path);
+  if (!std::getline(file_, line) || file_.eof() || line + "\n" != CsvLine(columns))
+    throw ConfigError({path.string() + ": expected the columns of this sweep, got others"});
+  const auto error = static_cast<std::size_t>(std::ranges::find(columns, kErrorColumn) - columns.begin());
+  std::uint64_t place = line.size() + 1;
+  for (; std::getline(file_, line) && !file_.eof(); place += line.size() + 1) {
+    const Cells cells = CsvCells(line);
+    std::size_t run = 0;
+    const auto [rest, wrong] = std::from_chars(cells[0].data(), cells[0].data() + cells[0].size(), run);
+    const bool whole = wrong == std::errc() && rest == cells[0].data() + cells[0].size() && run < kMostRuns &&
+                       cells.size() == columns.size();
+    if (whole && (lost || !cells[error].starts_with(kLostProcess))) places_.Add(run, place);
+  }
+  if (file_.bad()) FailToRead(path);
+}
+
+void TableRows::ForEach(const std::function<void(std::size_t, const std::string&)>& take) {
+  std::string line;
+  std::uint64_t at = 0;
+  file_.clear();
+  file_.seekg(0);
+  places_.ForEach([&](std::size_t run, std::uint64_t place) {
+    if (place != at) file_.seekg(static_cast<std::streamoff>(place));
+    if (!std::getline(file_, line)) throw std::runtime_error("a table that was read has become shorter");
+    at = place + line.size() + 1;
+    take(run, line + "\n");
+  });
+}
+
+SweepFile::SweepFile(fs::path path, const Cells& columns, const std::string& plan, bool force)
+    : path_(fs::is_symlink(path) && fs::exists(path) ? fs::canonical(path) : std::move(path)),
+      columns_(columns),
+      plan_fd_(LockedPlan(path_)) {
+  std::optional<TableRows> rows;
+  if (fs::exists(path_) && !force && IsOfThisSweep(plan)) rows.emplace(path_, columns_, /*lost=*/false);
+  Rewrite(rows ? &*rows : nullptr);  // before the plan: rows must never be next to the plan of another sweep
+  Overwrite(plan_fd_, plan, PlanOf(path_));
 }
 
 SweepFile::~SweepFile() {
@@ -128,57 +185,58 @@ SweepFile::~SweepFile() {
   if (plan_fd_ >= 0) ::close(plan_fd_);
 }
 
-/// Continues an existing table, whose contents are `text`. A table without rows belongs to no sweep and is replaced.
-void SweepFile::Resume(const std::string& text, const std::string& plan) {
-  if (text.empty() || text == header_) return;
+/// Whether the table that is there has rows of this sweep. One without rows belongs to no sweep, and is replaced.
+/// Throws ConfigError if it is another's.
+bool SweepFile::IsOfThisSweep(const std::string& plan) const {
+  const auto bytes = fs::file_size(path_);
+  if (bytes == 0 || (bytes == CsvLine(columns_).size() && ReadAll(path_) == CsvLine(columns_))) return false;
   const std::string theirs = ReadWhole(plan_fd_);
-  if (theirs != plan) {
-    if (theirs.empty()) fs::remove(PlanOf(path_));  // it did not exist: LockedPlan created it
-    throw ConfigError({"--out " + path_.string() + ": expected a new file, or one of this very sweep, got another " +
-                       "(--force begins anew)"});
-  }
-  if (!text.starts_with(header_))
-    throw ConfigError({"--out " + path_.string() + ": expected the columns of this sweep, got others"});
-  ReadRows(text);
+  if (theirs == plan) return true;
+  if (theirs.empty()) fs::remove(PlanOf(path_));  // it did not exist: LockedPlan created it
+  throw ConfigError({"--out " + path_.string() + ": expected a new file, or one of this very sweep, got another " +
+                     "(--force begins anew)"});
 }
 
-/// Reads the complete rows. A run whose process was lost is left out, so that it is executed again.
-void SweepFile::ReadRows(const std::string& text) {
-  const Cells columns = CsvCells(header_);
-  const auto error = static_cast<std::size_t>(std::ranges::find(columns, kErrorColumn) - columns.begin());
-  for (std::size_t begin = header_.size(); begin < text.size();) {
-    const std::size_t end = text.find('\n', begin);
-    if (end == text.npos) break;  // incomplete row
-    const std::string line = text.substr(begin, end + 1 - begin);
-    begin = end + 1;
-    const Cells cells = CsvCells(line);
-    std::size_t run = 0;
-    const auto [rest, wrong] = std::from_chars(cells[0].data(), cells[0].data() + cells[0].size(), run);
-    const bool whole =
-        wrong == std::errc() && rest == cells[0].data() + cells[0].size() && cells.size() == columns.size();
-    if (whole && !cells[error].starts_with(kLostProcess)) rows_.emplace(run, line);
-  }
+/// Replaces the file by one with these rows, sorted; null: none.
+void SweepFile::Rewrite(TableRows* rows) {
+  WholeFile file(path_.string());
+  const std::string header = CsvLine(columns_);
+  file.Write(header);
+  size_ = header.size();
+  places_ = {};
+  if (rows != nullptr)
+    rows->ForEach([&](std::size_t run, const std::string& line) {
+      file.Write(line);
+      places_.Add(run, size_);
+      size_ += line.size();
+    });
+  file.Commit();
+  if (fd_ >= 0) ::close(fd_);
+  fd_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  if (fd_ < 0) throw std::runtime_error(path_.string() + ": cannot be opened: " + std::strerror(errno));
 }
 
 void SweepFile::ForEachRow(const std::function<void(const Cells&)>& take) const {
-  for (const auto& [run, line] : rows_) take(CsvCells(line));
-}
-
-void SweepFile::WriteAll() const {
-  WholeFile file(path_.string());
-  file.Write(header_);
-  for (const auto& [run, line] : rows_) file.Write(line);
-  file.Commit();
+  TableRows(path_, columns_, /*lost=*/true).ForEach([&](std::size_t /*run*/, const std::string& line) {
+    take(CsvCells(line));
+  });
 }
 
 void SweepFile::Add(std::size_t run, const Cells& cells) {
   Cells all{std::to_string(run)};
   all.insert(all.end(), cells.begin(), cells.end());
-  const std::string line = CsvLine(all);
-  if (!rows_.emplace(run, line).second) throw std::logic_error("run " + all[0] + " is in the table already");
-  Write(fd_, line, path_);
+  AddLine(run, CsvLine(all));
 }
 
-void SweepFile::Sort() { WriteAll(); }
+void SweepFile::AddLine(std::size_t run, const std::string& line) {
+  if (!places_.Add(run, size_)) throw std::logic_error(fmt::format("run {} is in the table already", run));
+  Write(fd_, line, path_);
+  size_ += line.size();
+}
+
+void SweepFile::Sort() {
+  TableRows rows(path_, columns_, /*lost=*/true);
+  Rewrite(&rows);
+}
 
 }  // namespace mascot

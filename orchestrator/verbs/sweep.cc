@@ -1,21 +1,27 @@
 // `orchestrator sweep CONFIG`: runs one experiment many times, over values of its keys and seeds. Each run takes place
 // in one process, with one process per core. Writes a table with a row for each run, and a plot of it.
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
+#include <vector>
 
 #include "bus/stop_signal.h"
+#include "orchestrator/formats/whole_file.h"
+#include "orchestrator/processes/children.h"
 #include "orchestrator/processes/script.h"
-#include "orchestrator/sweeping/labels.h"
-#include "orchestrator/sweeping/metrics.h"
-#include "orchestrator/sweeping/outcomes.h"
+#include "orchestrator/sweeping/job_array.h"
+#include "orchestrator/sweeping/shard.h"
 #include "orchestrator/sweeping/sweeper.h"
+#include "orchestrator/sweeping/table.h"
+#include "orchestrator/verbs/sweep_merge.h"
+#include "orchestrator/verbs/sweep_picture.h"
 #include "orchestrator/verbs/verb.h"
 
 namespace mascot {
@@ -28,10 +34,13 @@ struct SweepArgs {
   SweepPlan::Words words;
   int jobs = 0;
   std::string out = "sweep.csv";
-  std::optional<std::string> metric;  ///< the column to plot; absent: the first of metric_file, or kUsualMetric
   std::string metric_file;
-  std::string format = "png", size = "screen";  ///< of the picture; scripts/plot_sweep.py knows what they may be
-  bool force = false, no_plot = false, quiet = false;
+  SweepPicture picture;
+  std::string shard;  ///< empty: that of this task of a job array, or all
+  bool force = false, quiet = false;
+  bool slurm = false, submit = false;
+  std::optional<std::size_t> tasks;
+  std::vector<std::string> slurm_options;
 };
 
 /// Throws ConfigError if the table has the name of the picture, which is written beside it.
@@ -41,64 +50,117 @@ void CheckOut(const std::string& out) {
     throw ConfigError({"--out: expected the table's file, such as sweep.csv, got '" + out + "', the picture's"});
 }
 
-/// Whether the sweep can be plotted: over at most two keys, or over seeds alone. Throws ConfigError if --plot asks for
-/// a plot that is not possible.
-bool IsDrawable(const SweepArgs& args, const SweepPlan& plan) {
-  constexpr std::size_t kMostKeys = 2;
-  if (args.metric && plan.size() < 2) throw ConfigError({"--plot: expected at least 2 runs to draw, got 1"});
-  if (args.no_plot || plan.size() < 2) return false;
-  if (plan.varied().size() > kMostKeys && args.metric)
-    throw ConfigError({"--plot: expected at most 2 keys of several values to draw over, got " +
-                       std::to_string(plan.varied().size())});
-  return plan.varied().size() <= kMostKeys;
+/// The words that type this sweep again, without what concerns a share, the terminal or the picture.
+std::vector<std::string> CommandOf(const SweepArgs& args) {
+  std::vector<std::string> words{(ProgramFolder() / "orchestrator").string(), "sweep", args.config};
+  for (const std::string& word : args.words.sets) words.insert(words.end(), {"--set", word});
+  for (const std::string& word : args.words.randoms) words.insert(words.end(), {"--random", word});
+  if (!args.words.randoms.empty()) words.insert(words.end(), {"--samples", std::to_string(args.words.samples)});
+  if (!args.words.seeds.empty()) words.insert(words.end(), {"--seeds", args.words.seeds});
+  if (!args.metric_file.empty()) words.insert(words.end(), {"--metric", args.metric_file});
+  words.insert(words.end(), {"--out", args.out});
+  return words;
 }
 
-int Picture(const SweepArgs& args, const SweepPlan& plan, const Sweeper::Outcome& outcome, StopSignal& stop) {
-  const std::string column = args.metric.value_or(outcome.own.empty() ? kUsualMetric : outcome.own.front().name);
-  const auto own = std::ranges::find(outcome.own, column, &PythonMetric::name);
-  std::vector<std::string> words{args.out, StatisticsBeside(args.out), FileBeside(args.out, ".png"), column};
-  words.insert(words.end(), plan.varied().begin(), plan.varied().end());
-  words.insert(words.end(),
-               {"--label", column + "=" + (own != outcome.own.end() ? LabelOfMetric(*own) : LabelOfColumn(column))});
-  for (const std::string& key : plan.varied())
-    words.insert(words.end(), {"--label", key + "=" + LabelOfKey(key, outcome.laws)});
-  if (IsTimeOfEvent(column)) words.emplace_back("--time");
-  words.insert(words.end(), {"--format", args.format, "--size", args.size});
-  return RunScript("plot_sweep.py", words, stop);
+/// How many tasks a job array has unless told: of a hundred runs each, and no more than clusters usually take.
+std::size_t UsualTasks(std::size_t runs) {
+  constexpr std::size_t kRunsOfATask = 100, kMostTasks = 1000;
+  return std::clamp((runs + kRunsOfATask - 1) / kRunsOfATask, std::size_t{1}, kMostTasks);
+}
+
+/// Writes the script of a job array, and submits it if asked to.
+int WriteJobArray(const SweepArgs& args, std::size_t runs, StopSignal& stop) {
+  const std::size_t tasks = args.tasks.value_or(UsualTasks(runs));
+  if (tasks > runs)
+    throw ConfigError({fmt::format("--tasks: expected at most {}, one for each run, got {}", runs, tasks)});
+  const std::string script = FileBeside(args.out, ".sbatch");
+  WriteWhole(script, JobArrayScript({.command = CommandOf(args),
+                                     .folder = fs::current_path(),
+                                     .out = args.out,
+                                     .runs = runs,
+                                     .tasks = tasks,
+                                     .jobs = std::max(args.jobs, 1),
+                                     .options = args.slurm_options}));
+  if (!args.quiet) std::cout << runs << " runs in " << tasks << " tasks: " << script << "\n";
+  if (!args.submit) {
+    if (!args.quiet) std::cout << "submit it: sbatch " << script << "\n";
+    return kExitDone;
+  }
+  std::cout << std::flush;  // before sbatch prints
+  return RunProgram({"sbatch", script}, stop);
+}
+
+/// Throws ConfigError for options that exclude each other, in a way that the parser cannot say.
+void CheckSlurm(const SweepArgs& args) {
+  if (!args.slurm) return;
+  if (!args.shard.empty())
+    throw ConfigError({"--slurm: expected no --shard, because each task of the job array has its own"});
+  if (args.force)
+    throw ConfigError({"--slurm: expected no --force, because a task that is queued again goes on with what is there"});
+}
+
+/// The share of the runs to fly; nothing: all.
+std::optional<Shard> ShardOf(const SweepArgs& args) {
+  if (!args.shard.empty()) return ParseShard("--shard", args.shard);
+  return args.slurm ? std::nullopt : ShardOfThisTask();
+}
+
+/// ", 40 of them flown now": what this command did of `runs` runs; "" for all.
+std::string FlownNow(std::size_t runs, std::size_t flown) {
+  if (flown == runs) return "";
+  return fmt::format(", {} flown now", flown == 0 ? "none" : std::to_string(flown) + " of them");
+}
+
+/// Prints how a share ended.
+void PrintShare(const SweepArgs& args, const Shard& shard, const Sweeper::Outcome& outcome, std::size_t runs,
+                const std::string& table) {
+  const std::size_t ours = shard.CountOf(runs);
+  std::cout << fmt::format("share {}, {} of {} runs{}: {}\n", shard.Text(), ours, runs, FlownNow(ours, outcome.flown),
+                           table);
+  if (outcome.failed > 0) std::cout << "failed: " << outcome.failed << " of those flown now\n";
+  std::cout << "when all shares are there: orchestrator sweep merge " << TablesOfShards(args.out, shard.of).string()
+            << " --out " << args.out << "\n";
 }
 
 int Run(const SweepArgs& args) {
   StopSignal stop;
+  if (args.config.empty()) throw ConfigError({"sweep: expected CONFIG, an experiment file, or merge FILE..."});
   CheckOut(args.out);
-  const Sweeper sweeper(args.config, ReadRegularFile(args.config), SweepPlan(args.words));
+  CheckSlurm(args);
+  const std::optional<Shard> shard = ShardOf(args);
+  const std::string out = shard ? TableOfShard(args.out, *shard).string() : args.out;
+  const Sweeper sweeper(args.config, ReadRegularFile(args.config), args.words);
   const std::size_t runs = sweeper.plan().size();
-  Sweeper::MetricFile metric_file{args.metric_file, ""};
+  MetricFile metric_file{args.metric_file, ""};
   if (!args.metric_file.empty()) metric_file.text = ReadRegularFile(args.metric_file);
-  const bool drawable = IsDrawable(args, sweeper.plan());
-  const Sweeper::Outcome outcome = sweeper.Fly({.jobs = args.jobs,
-                                                .out = args.out,
-                                                .metric = args.metric.value_or(""),
-                                                .metric_file = metric_file,
-                                                .force = args.force,
-                                                .quiet = args.quiet},
-                                               stop);
+  const bool drawable = args.picture.IsDrawable(sweeper.plan()) && !shard;
+  const Sweeper::Options options{.jobs = args.jobs,
+                                 .out = out,
+                                 .shard = shard,
+                                 .metric = args.picture.metric.value_or(""),
+                                 .metric_file = metric_file,
+                                 .force = args.force,
+                                 .quiet = args.quiet};
+  if (args.slurm) {
+    const Sweeper::Outcome checked = sweeper.Check(options, stop);
+    return checked.signal != 0 ? 128 + checked.signal : WriteJobArray(args, runs, stop);
+  }
+  const Sweeper::Outcome outcome = sweeper.Fly(options, stop);
   if (outcome.signal != 0) {
     if (outcome.in_table)
-      std::cerr << "interrupted: " << *outcome.in_table << " of " << runs << " runs are in the table; the same command"
-                << (args.force ? ", without --force, " : " ") << "goes on with the others\n";
+      std::cerr << "interrupted: " << *outcome.in_table << " of " << (shard ? shard->CountOf(runs) : runs)
+                << " runs are in the table; the same command" << (args.force ? ", without --force, " : " ")
+                << "goes on with the others\n";
     return 128 + outcome.signal;
   }
-  const int picture = drawable ? Picture(args, sweeper.plan(), outcome, stop) : 0;
-  if (!args.quiet)
-    std::cout << runs << " runs, " << outcome.failed << " of those flown now failed: " << args.out << "\n";
-  if (!args.quiet)
+  const int picture = drawable ? args.picture.Draw(out, sweeper.plan(), outcome.identity, stop) : kExitDone;
+  if (!args.quiet && shard) PrintShare(args, *shard, outcome, runs, out);
+  if (!args.quiet && !shard) {
+    std::cout << runs << " runs" << FlownNow(runs, outcome.flown) << ": " << out << "\n";
     for (const std::string& line : outcome.lines) std::cout << line << "\n";
-  if (!args.quiet && drawable && picture == kExitDone) {
-    std::istringstream formats(args.format);
-    for (std::string format; std::getline(formats, format, ',');)
-      std::cout << "picture: " << FileBeside(args.out, "." + format).string() << "\n";
+    if (drawable && picture == kExitDone) args.picture.PrintNames(out);
   }
-  if (outcome.flown > 0 && outcome.failed == outcome.flown) return 1;
+  if (outcome.flown > 0 && outcome.failed == outcome.flown) return kExitFailed;
   return picture;
 }
 
@@ -106,7 +168,7 @@ int Run(const SweepArgs& args) {
 
 std::function<int()> SetUpSweep(CLI::App& command) {
   auto args = std::make_shared<SweepArgs>();
-  command.add_option("config", args->config, "experiment file (TOML)")->required()->type_name("CONFIG");
+  command.add_option("config", args->config, "experiment file (TOML)")->type_name("CONFIG");
   command
       .add_option("--set", args->words.sets,
                   "a key and its values: KEY=A:STEP:B, KEY=V1,V2,..., or one value; every combination is run")
@@ -131,18 +193,28 @@ std::function<int()> SetUpSweep(CLI::App& command) {
       .add_option("--metric", args->metric_file,
                   "a Python file: each of its functions of the arrays of a run is a column")
       ->type_name("FILE");
-  command.add_option("--plot", args->metric, "the column that the picture shows")->type_name("COLUMN");
-  command.add_option("--format", args->format, "of the picture: png, pdf, svg; several with commas between (png)")
-      ->type_name("LIST");
-  command.add_option("--size", args->size, "of the picture: screen, column or page, as of orchestrator plot (screen)")
-      ->check(CLI::IsMember({"screen", "column", "page"}))
-      ->type_name("SIZE");
-  command.add_flag("--no-plot", args->no_plot, "no picture");
+  args->picture.SetUp(command);
+  command
+      .add_option("--shard", args->shard,
+                  "only the I-th of N shares of the runs, in a table of its own (default in a Slurm job array: the "
+                  "task's)")
+      ->type_name("I/N");
+  auto* slurm = command.add_flag("--slurm", args->slurm, "fly nothing: write a job array for Slurm, beside --out");
+  command.add_option("--tasks", args->tasks, "of the job array: shares (default: of 100 runs each, at most 1000)")
+      ->check(CLI::Range(1, 1'000'000))
+      ->needs(slurm)
+      ->type_name("N");
+  command.add_option("--slurm-option", args->slurm_options, "of sbatch, such as --time=12:00:00; can be given again")
+      ->needs(slurm)
+      ->allow_extra_args(false)
+      ->type_name("OPTION");
+  command.add_flag("--submit", args->submit, "hand the job array to sbatch")->needs(slurm);
   command.add_flag(
       "--force", args->force,
       "begin anew where --out holds another sweep; fly also where values are mistakes or seeds change nothing");
   command.add_flag("--quiet", args->quiet, "print errors only");
-  return [args] { return Run(*args); };
+  CLI::App& merge = *command.add_subcommand("merge", "the tables of all shares as the table of the whole sweep");
+  return [args, &merge, run_merge = SetUpSweepMerge(merge)] { return merge.parsed() ? run_merge() : Run(*args); };
 }
 
 }  // namespace mascot

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "orchestrator/sweeping/plan.h"
+#include "orchestrator/sweeping/sweep_identity.h"
+#include "orchestrator/sweeping/table.h"
+
+namespace mascot {
+
+/// Writes the statistics of a complete table beside it, `out`. Returns what there is to say on the terminal.
+std::vector<std::string> Conclude(const SweepPlan& plan, const SweepIdentity& identity, const SweepFile& table,
+                                  const std::string& out);
+
+}  // namespace mascot

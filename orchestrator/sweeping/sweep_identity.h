@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "agent/python_metrics.h"
+#include "orchestrator/sweeping/plan.h"
+#include "orchestrator/sweeping/run_laws.h"
+
+namespace mascot {
+
+/// What the table of a sweep is of: all that its rows depend on, and what else it takes to conclude from them. It
+/// stands as JSON beside the table, and beside that of every share of it.
+struct SweepIdentity {
+  std::string build;                   ///< BuildText() of the program that flies the runs
+  std::string experiment;              ///< text of the experiment file
+  std::string first_run;               ///< the first valid run, with all defaults and the files that it names
+  std::string metric_file;             ///< text of the file with the user's metrics
+  SweepPlan::Words words;              ///< what each run sets
+  std::vector<PythonMetric> own;       ///< the user's metrics
+  std::vector<std::string> law_names;  ///< of the laws whose figures have columns
+  KnownLaws laws;
+
+  std::string Text() const;
+  /// Nothing if `text` is not that of an identity.
+  static std::optional<SweepIdentity> FromText(const std::string& text);
+
+  /// The columns of numbers: measured, predicted and the user's, at the end those that depend on the machine.
+  std::vector<std::string> Metrics() const;
+  /// All columns of the table.
+  std::vector<std::string> Columns() const;
+};
+
+/// The columns of a table of `plan` with these columns of numbers.
+std::vector<std::string> SweepColumns(const SweepPlan& plan, const std::vector<std::string>& metrics);
+
+}  // namespace mascot

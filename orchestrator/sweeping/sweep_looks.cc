@@ -1,0 +1,123 @@
+#include "orchestrator/sweeping/sweep_looks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <span>
+
+namespace mascot {
+namespace {
+
+/// Executes tasks, several at a time, and hands each to `take` as it is done, in any order, until that returns false.
+void ExecuteTasks(std::span<const std::size_t> tasks, WorkerPool& pool, StopSignal& stop,
+                  const std::function<bool(const WorkerPool::Done&)>& take) {
+  bool go_on = true;
+  for (auto next = tasks.begin(); (go_on && next != tasks.end()) || pool.IsBusy();) {
+    while (go_on && next != tasks.end() && pool.HasIdle()) pool.Start(*next++);
+    if (const auto done = pool.Wait(std::chrono::milliseconds(100)); done && go_on) go_on = take(*done);
+    ThrowIfInterrupted(stop);
+  }
+}
+
+/// The values in which a trial differs from the first run: "law.name = rendezvous".
+std::string DifferenceOf(const SweepPoint& trial, const SweepPoint& first) {
+  for (std::size_t k = 0; k < trial.overrides.size(); ++k)
+    if (trial.overrides[k].value != first.overrides[k].value)
+      return trial.overrides[k].key + " = " + trial.overrides[k].value;
+  return "";
+}
+
+}  // namespace
+
+void ThrowIfInterrupted(StopSignal& stop) {
+  if (const int signal = stop.Within(std::chrono::nanoseconds::zero()); signal != 0) throw Interrupted{signal};
+}
+
+Looked SweepLooks::FirstValid(bool first_alone) {
+  std::string mistakes;
+  std::optional<Looked> valid;
+  for (std::size_t run = 0; run < (first_alone ? 1 : sweep_.plan.size()) && !valid; ++run) {
+    const std::size_t task = tasks_.LookAtRun(run);
+    ExecuteTasks({&task, 1}, pool_, stop_, [&](const WorkerPool::Done& done) {
+      if (done.failure.empty()) valid = LookedFrom(done.answer);
+      if (mistakes.empty()) mistakes = done.failure;
+      return true;
+    });
+  }
+  if (!valid) throw ConfigError({mistakes});
+  return *valid;
+}
+
+KnownLaws SweepLooks::Laws() {
+  KnownLaws known;
+  bool by_numbers = false;
+  for (const auto alike : {SweepPlan::Alike::kInWords, SweepPlan::Alike::kInValues}) {
+    known.alike = alike;
+    const SweepPlan::Firsts firsts = sweep_.plan.FirstsAlike(alike);
+    std::vector<std::size_t> tasks;
+    for (std::size_t run = 0; run < sweep_.plan.size(); ++run)
+      if (firsts[run] == run && !known.of_run.contains(run)) tasks.push_back(tasks_.LookAtRun(run));
+    ExecuteTasks(tasks, pool_, stop_, [&](const WorkerPool::Done& done) {
+      const std::size_t run = tasks_.RunOfLook(done.task);
+      const bool valid = done.failure.empty();
+      if (valid) known.of_run[run] = LookedFrom(done.answer).laws;
+      by_numbers = by_numbers || !valid || known.of_run[run].depend_on_numbers;
+      return true;
+    });
+    if (!by_numbers) break;
+  }
+  return known;
+}
+
+std::vector<PythonMetric> SweepLooks::Metrics(const std::vector<std::string>& other_columns) {
+  std::vector<PythonMetric> list;
+  if (!sweep_.own) return list;
+  const std::size_t task = tasks_.ListMetrics();
+  ExecuteTasks({&task, 1}, pool_, stop_, [&](const WorkerPool::Done& done) {
+    if (!done.failure.empty()) throw ConfigError({"--metric: " + done.failure});
+    list = MetricsFrom(done.answer);
+    return true;
+  });
+  for (const PythonMetric& metric : list)
+    if (std::ranges::find(other_columns, metric.name) != other_columns.end())
+      throw ConfigError({"--metric: expected names that no other column has, got '" + metric.name + "'"});
+  return list;
+}
+
+void SweepLooks::CheckTrials() {
+  std::vector<std::size_t> tasks(sweep_.plan.trials().size());
+  std::iota(tasks.begin(), tasks.end(), tasks_.LookAtTrial(0));
+  std::map<std::size_t, std::string> mistakes;
+  ExecuteTasks(tasks, pool_, stop_, [&](const WorkerPool::Done& done) {
+    if (!done.failure.empty()) mistakes[done.task - tasks.front()] = done.failure;
+    return true;
+  });
+  if (mistakes.empty()) return;
+  const auto& [trial, text] = *mistakes.begin();
+  throw ConfigError({fmt::format("sweep: the first run with {}: {} (--force flies the other runs)",
+                                 DifferenceOf(sweep_.plan.trials()[trial], sweep_.plan[0]), text)});
+}
+
+void SweepLooks::CheckSeeds(const Looked& first) {
+  std::vector<std::size_t> runs = sweep_.plan.WithFirstSeed();
+  if (runs.empty() || !first.draws.empty()) return;
+  for (std::size_t& run : runs) run = tasks_.LookAtRun(run);
+  bool draws = false;
+  ExecuteTasks(runs, pool_, stop_, [&](const WorkerPool::Done& done) {
+    draws = done.failure.empty() && !LookedFrom(done.answer).draws.empty();
+    return !draws;
+  });
+  if (!draws)
+    throw ConfigError(
+        {fmt::format("sweep: expected one run.seed, because every seed gives the same run (nothing is "
+                     "drawn: no places, edges, loss, jitter, noise, gusts or lies at random, no law that "
+                     "draws), got {} (--force flies them all)",
+                     sweep_.plan.size() / runs.size())});
+}
+
+}  // namespace mascot

@@ -1,0 +1,93 @@
+#include "orchestrator/sweeping/sweep_work.h"
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "agent/laws.h"
+#include "orchestrator/engines/inprocess.h"
+#include "orchestrator/measuring/run_meter.h"
+#include "orchestrator/report/summary.h"
+#include "orchestrator/sweeping/metrics.h"
+#include "orchestrator/sweeping/run_arrays.h"
+#include "orchestrator/theory/draws.h"
+#include "orchestrator/theory/theory.h"
+
+namespace mascot {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr TimeLimit kMetricLimit{60, "the limit of a metric"};
+
+/// The metrics of the user's file.
+const PythonMetrics& OwnMetrics(const Sweep& sweep) {
+  const fs::path path = sweep.metric_file.path;
+  if (!*sweep.own) sweep.own->emplace(sweep.metric_file.text, path.filename(), path.parent_path(), kMetricLimit);
+  return **sweep.own;
+}
+
+/// Adds the cells of the user's metrics.
+void AddOwn(const PythonMetrics& own, const RunArrays& arrays, std::map<std::string, std::string>& cells) {
+  const std::vector<std::optional<double>> numbers = own.Of(arrays.All());
+  for (std::size_t k = 0; k < numbers.size(); ++k)
+    cells[own.list()[k].name] = numbers[k] ? ShortestFloat(*numbers[k]) : "";
+}
+
+/// Executes one run. Returns the cells of its metric columns. Throws ConfigError if the experiment is not valid, and
+/// std::runtime_error if the run fails.
+std::map<std::string, std::string> FlyOne(const Sweep& sweep, std::size_t run) {
+  const Experiment experiment = sweep.Load(sweep.plan[run]);
+  const Prediction prediction = Predict(experiment);
+  RunMeter meter(experiment);
+  RunArrays arrays(experiment);
+  std::vector<RowSink*> sinks{&meter};
+  if (sweep.own) sinks.push_back(&arrays);
+  const EngineResult result = RunInProcess(experiment, sinks, [] { return true; });
+  if (!result.failure.empty()) throw std::runtime_error(result.failure);
+  const RunFacts facts{.engine = "inprocess"};
+  auto cells = SweepMetrics(SummaryJson(experiment, prediction, meter, result, facts),
+                            SweepMetricNames(LawsAtTheEnd(experiment).names));
+  if (sweep.own) AddOwn(OwnMetrics(sweep), arrays, cells);
+  return cells;
+}
+
+}  // namespace
+
+Experiment Sweep::Load(const SweepPoint& point) const {
+  const Section document = Section::FromText(text, name, laws.Fit(point.overrides));
+  Experiment experiment = LoadExperiment(document, fs::path(name).stem().string());
+  if (experiment.run.mode == Mode::kRealtime)
+    throw ConfigError({"sweep: expected run.mode = \"lockstep\", got \"realtime\""});
+  return experiment;
+}
+
+WorkerPool::Work WorkOf(const Sweep& sweep) {
+  return [sweep](std::size_t task) -> std::string {
+    const SweepTasks tasks(sweep.plan);
+    if (task < tasks.LookAtRun(0)) return nlohmann::json(FlyOne(sweep, task)).dump();
+    if (task == tasks.ListMetrics()) {
+      nlohmann::json list = nlohmann::json::array();
+      for (const PythonMetric& metric : OwnMetrics(sweep).list()) list.push_back(metric);
+      return list.dump();
+    }
+    const bool of_run = task < tasks.LookAtTrial(0);
+    const Experiment experiment =
+        sweep.Load(of_run ? sweep.plan[tasks.RunOfLook(task)] : sweep.plan.trials()[task - tasks.LookAtTrial(0)]);
+    return nlohmann::json(
+               {{"resolved", experiment.resolved}, {"draws", DrawsOf(experiment)}, {"laws", LawsAtTheEnd(experiment)}})
+        .dump();
+  };
+}
+
+Looked LookedFrom(const std::string& answer) {
+  const nlohmann::json json = nlohmann::json::parse(answer);
+  return {json["resolved"], json["draws"], json["laws"].get<RunLaws>()};
+}
+
+std::vector<PythonMetric> MetricsFrom(const std::string& answer) {
+  return nlohmann::json::parse(answer).get<std::vector<PythonMetric>>();
+}
+
+}  // namespace mascot

@@ -1,0 +1,59 @@
+#include "orchestrator/verbs/sweep_picture.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <sstream>
+#include <vector>
+
+#include "experiment/toml/section.h"
+#include "orchestrator/processes/script.h"
+#include "orchestrator/sweeping/labels.h"
+#include "orchestrator/sweeping/metrics.h"
+#include "orchestrator/sweeping/outcomes.h"
+#include "orchestrator/sweeping/table.h"
+
+namespace mascot {
+
+void SweepPicture::SetUp(CLI::App& command) {
+  command.add_option("--plot", metric, "the column that the picture shows")->type_name("COLUMN");
+  command.add_option("--format", format, "of the picture: png, pdf, svg; several with commas between (png)")
+      ->type_name("LIST");
+  command.add_option("--size", size, "of the picture: screen, column or page, as of orchestrator plot (screen)")
+      ->check(CLI::IsMember({"screen", "column", "page"}))
+      ->type_name("SIZE");
+  command.add_flag("--no-plot", none, "no picture");
+}
+
+bool SweepPicture::IsDrawable(const SweepPlan& plan) const {
+  constexpr std::size_t kMostKeys = 2;
+  if (metric && plan.size() < 2) throw ConfigError({"--plot: expected at least 2 runs to draw, got 1"});
+  if (none || plan.size() < 2) return false;
+  if (plan.varied().size() > kMostKeys && metric)
+    throw ConfigError({"--plot: expected at most 2 keys of several values to draw over, got " +
+                       std::to_string(plan.varied().size())});
+  return plan.varied().size() <= kMostKeys;
+}
+
+int SweepPicture::Draw(const std::string& out, const SweepPlan& plan, const SweepIdentity& identity,
+                       StopSignal& stop) const {
+  const std::string column = metric.value_or(identity.own.empty() ? kUsualMetric : identity.own.front().name);
+  const auto own = std::ranges::find(identity.own, column, &PythonMetric::name);
+  std::vector<std::string> words{out, StatisticsBeside(out), FileBeside(out, ".png"), column};
+  words.insert(words.end(), plan.varied().begin(), plan.varied().end());
+  words.insert(words.end(),
+               {"--label", column + "=" + (own != identity.own.end() ? LabelOfMetric(*own) : LabelOfColumn(column))});
+  for (const std::string& key : plan.varied())
+    words.insert(words.end(), {"--label", key + "=" + LabelOfKey(key, identity.law_names)});
+  if (IsTimeOfEvent(column)) words.emplace_back("--time");
+  words.insert(words.end(), {"--format", format, "--size", size});
+  return RunScript("plot_sweep.py", words, stop);
+}
+
+void SweepPicture::PrintNames(const std::string& out) const {
+  std::istringstream formats(format);
+  for (std::string one; std::getline(formats, one, ',');)
+    std::cout << "picture: " << FileBeside(out, "." + one).string() << "\n";
+}
+
+}  // namespace mascot
