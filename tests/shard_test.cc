@@ -13,7 +13,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 using ::testing::ThrowsMessage;
 
 /// Sets variables of the environment for as long as it lives.
@@ -105,18 +104,46 @@ TEST(JobArray, AsksForWhatATaskNeeds) {
   EXPECT_THAT(JobArrayScript(Array()),
               AllOf(HasSubstr("#SBATCH --array=1-20\n"), HasSubstr("#SBATCH --cpus-per-task=4\n"),
                     HasSubstr("#SBATCH --mem-per-cpu=1G\n"), HasSubstr("#SBATCH --time=01:00:00\n"),
-                    HasSubstr("#SBATCH --job-name=gain\n"), HasSubstr("#SBATCH --output=gain.%a.log\n"),
+                    HasSubstr("#SBATCH --job-name=gain\n"), HasSubstr("#SBATCH --open-mode=append\n"),
                     HasSubstr("#SBATCH --signal=B:USR1@60\n"), HasSubstr("#SBATCH --requeue\n"),
-                    HasSubstr("orchestrator sweep merge gain.*-of-20.csv --out gain.csv\n")));
+                    HasSubstr("\ncd '/home/me/it'\\''s' || exit\n"),
+                    HasSubstr("\n/usr/bin/orchestrator sweep 'my file.toml' --set 'run.name='\\''a b'\\''' --shard "
+                              "\"$SLURM_ARRAY_TASK_ID/20\" --jobs 4 &\n"),
+                    HasSubstr("\n# orchestrator sweep merge gain.*-of-20.csv --out gain.csv\n")));
 }
 
 TEST(JobArray, TakesOptionsOfTheClusterInTheirPlace) {
   JobArray array = Array();
-  array.options = {"--time=12:00:00", "--partition=long", "--mem-per-cpu 4G"};
+  array.options = {"--time=12:00:00", "--partition=long", "--mem-per-cpu 4G", "--array=1-20%5", "--signal=B:USR1@300"};
+  const std::string script = JobArrayScript(array);
+  for (const std::string& option : array.options) EXPECT_THAT(script, HasSubstr("#SBATCH " + option + "\n"));
+  for (const char* name : {"--time", "--mem-per-cpu", "--array", "--signal"}) {
+    const std::size_t first = script.find(std::string("#SBATCH ") + name);
+    EXPECT_EQ(first, script.rfind(std::string("#SBATCH ") + name)) << name;
+  }
+}
+
+TEST(JobArray, HasItsLogsBesideTheTableWhateverTheNames) {
+  EXPECT_THAT(JobArrayScript(Array()), HasSubstr("#SBATCH --output='/home/me/it'\\''s/gain.%a.log'\n"));
+  JobArray array = Array();
+  array.out = "to day/100% \"#1\".csv";
   EXPECT_THAT(JobArrayScript(array),
-              AllOf(HasSubstr("#SBATCH --time=12:00:00\n"), Not(HasSubstr("--time=01")),
-                    HasSubstr("#SBATCH --partition=long\n"), HasSubstr("#SBATCH --mem-per-cpu 4G\n"),
-                    Not(HasSubstr("--mem-per-cpu=1G"))));
+              AllOf(HasSubstr("#SBATCH --job-name='100% \"#1\"'\n"),
+                    HasSubstr("#SBATCH --output='/home/me/it'\\''s/to day/100%% \"#1\".%a.log'\n"),
+                    HasSubstr("merge 'to day/100% \"#1\".'*-of-20.csv --out 'to day/100% \"#1\".csv'\n")));
+  array.out = "/scratch/me/gain.csv";
+  EXPECT_THAT(JobArrayScript(array), HasSubstr("#SBATCH --output=/scratch/me/gain.%a.log\n"));
+}
+
+TEST(JobArray, RefusesNamesThatSlurmCannotWriteLogsBeside) {
+  for (const char* name : {"a\\b", "a\nb"}) {
+    JobArray array = Array();
+    array.out = std::string(name) + ".csv";
+    EXPECT_THAT([&] { JobArrayScript(array); },
+                ThrowsMessage<ConfigError>("--out: expected a path without backslashes and line breaks, which Slurm "
+                                           "cannot write the logs of tasks beside, got '/home/me/it's/" +
+                                           array.out + "'"));
+  }
 }
 
 }  // namespace
