@@ -197,8 +197,8 @@ class JobArrays(unittest.TestCase):
         job = self.submit()
         for task in (2, 3):
             self.until_held(task)
-        ran("scancel", "--batch", "--signal=USR1", f"{job}_2")
-        ran("scontrol", "requeue", f"{job}_3")
+        ran("scancel", "--batch", "--signal=USR1", f"{job}_3")  # the last one has also the number of the whole array
+        ran("scontrol", "requeue", f"{job}_2")
         for task in (2, 3):
             self.until(f"task {task} goes on", lambda: "going on: 2 of 4 runs are in the table" in self.log(task))
             self.let_go(task)
@@ -207,6 +207,7 @@ class JobArrays(unittest.TestCase):
             self.assertIn("interrupted: 2 of 4 runs are in the table", self.log(task))
             self.assertIn(f"job {job}_{task} on node1", self.log(task))
             self.assertIn("start 2\n", self.log(task))
+        self.assertEqual([task["Restarts"] for _, task in sorted(self.tasks(job).items())], ["0", "1", "1"])
         self.check_merged()
 
     def test_a_task_that_was_cancelled_ends_in_order_and_may_go_on(self):

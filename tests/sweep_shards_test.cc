@@ -187,13 +187,13 @@ TEST_F(SweepShards, ATaskWhoseTimeIsUpIsQueuedAgain) {
   ASSERT_EQ(Sweep("--seeds 1..5000 --slurm --tasks 1").exit_code, 0);
   const std::string table = Folder("sweep.1-of-1.csv");
   Running task("env",
-               {"PATH=" + folder_.path().string() + ":/usr/bin:/bin", "SLURM_ARRAY_TASK_ID=1", "SLURM_JOB_ID=42",
+               {"PATH=" + folder_.path().string() + ":/usr/bin:/bin", "SLURM_ARRAY_TASK_ID=1", "SLURM_ARRAY_JOB_ID=42",
                 "bash", Folder("sweep.sbatch")},
                Folder("task"));
   ASSERT_TRUE(Until([&] { return std::filesystem::exists(table) && Table(table).rows.size() > 2; }));
   ::kill(task.pid(), SIGUSR1);
   EXPECT_EQ(task.Wait(), 138);
-  EXPECT_EQ(ReadFile(Folder("asked")), "requeue 42\n");
+  EXPECT_EQ(ReadFile(Folder("asked")), "requeue 42_1\n");
   EXPECT_THAT(task.err(), HasSubstr(" of 5000 runs are in the table"));
 }
 

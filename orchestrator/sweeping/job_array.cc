@@ -72,7 +72,8 @@ std::string MergeOf(const JobArray& array) {
 // in order on the first signal, whoever sends it, and takes no notice of more. bash ends `wait` when a signal comes.
 constexpr char kBody[] = R"sh(
 cd {folder} || exit
-echo "job ${{SLURM_ARRAY_JOB_ID}}_$SLURM_ARRAY_TASK_ID on $(hostname), $(date '+%F %T'), start $((SLURM_RESTART_COUNT + 1))"
+task=${{SLURM_ARRAY_JOB_ID}}_$SLURM_ARRAY_TASK_ID  # SLURM_JOB_ID is, in one of the tasks, the number of them all
+echo "job $task on $(hostname), $(date '+%F %T'), start $((SLURM_RESTART_COUNT + 1))"
 
 told= sweep=
 tell() {{ told=$1; [ -z "$sweep" ] || kill -s "$told" "$sweep" 2>/dev/null; }}
@@ -83,7 +84,7 @@ sweep=$!
 while told=; wait "$sweep"; code=$?; [ -n "$told" ]; do :; done
 
 if [ "$code" -eq 138 ]; then  # USR1: the time was up
-  scontrol requeue "$SLURM_JOB_ID"
+  scontrol requeue "$task"
 fi
 exit "$code"
 )sh";
