@@ -131,7 +131,8 @@ class Cluster:
     def until(self, what, is_so):
         deadline = time.monotonic() + LIMIT_S
         while not is_so():
-            dead = [f"{name} has ended with code {daemon.returncode}" for name, daemon in self.daemons if daemon.poll() is not None]
+            dead = [f"{name} has ended with code {daemon.returncode}"
+                    for name, daemon in self.daemons if daemon.poll() is not None]
             if dead or time.monotonic() > deadline:
                 reason = "; ".join(dead) or f"not within {LIMIT_S} s"
                 raise SystemExit(f"error: Slurm: expected that {what}, got: {reason}\n{ends_of_logs()}")

@@ -5,9 +5,11 @@ makes, also if tasks are told that their time is up, are cancelled, or are queue
 Ends with code 77 where there can be no Slurm, which ctest counts as skipped."""
 
 import csv
+import itertools
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -15,11 +17,13 @@ import time
 import unittest
 
 import in_slurm
+import tour_test
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CLUSTER = ROOT / "tests/in_slurm.py"
 INSIDE = "--inside"
 SKIPPED = 77
+END = "--- end of the command"
 LIMIT_S = 120  # for Slurm to do what was asked
 WALL_COLUMNS = ["wall_s", "real_time_factor"]
 NAME = "it's a \"100%j\" #1"  # of folders and files: all that a shell, sbatch and Slurm's file names take for their own
@@ -232,6 +236,24 @@ class JobArrays(unittest.TestCase):
                    self.metric.name, "--out", self.table, cwd=self.folder)
         self.until_ended(said.split()[-1])
         self.check_merged()
+
+
+class Page(unittest.TestCase):
+    def test_commands_do_what_it_says(self):
+        """Those of the section on Slurm of docs/hosts.md, in a cluster of their own: job 1 is on the page."""
+        told = [command for section, language, _, text in tour_test.blocks((ROOT / "docs/hosts.md").read_text())
+                if section.startswith("Slurm") and language == "console" for command in tour_test.commands(text)]
+        self.assertGreater(len(told), 4)
+        script = "\n".join(f"{command} 2>&1 || exit\necho {END}" for command, _ in told)
+        path = f'{os.environ["MASCOT_BINARY_DIR"]}:{os.environ["PATH"]}'
+        with tempfile.TemporaryDirectory(prefix="mascot-slurm-") as folder:
+            shutil.copy(ROOT / "configs/leaderless.toml", f"{folder}/mine.toml")
+            done = subprocess.run([CLUSTER, "bash", "-c", script], cwd=folder, env={**os.environ, "PATH": path},
+                                  capture_output=True, text=True)
+            logs = "".join(f"--- {log}\n{log.read_text()}" for log in sorted(pathlib.Path(folder).glob("*.log")))
+        for (command, wanted), output in itertools.zip_longest(told, done.stdout.split(f"{END}\n")[:-1], fillvalue=""):
+            self.assertTrue(tour_test.fits(output, wanted), f"$ {command}\n{output}\n{done.stdout}{done.stderr}{logs}")
+        self.assertEqual(done.returncode, 0)
 
 
 if __name__ == "__main__":
