@@ -27,6 +27,8 @@ class ProcessKey {
   ProcessKey(std::uint64_t bits, std::uint64_t mask) : bits_(bits), mask_(mask) {}
 
   bool Fits(const GuidPrefix& participant) const;
+  /// The same for a process of which an exact key is known.
+  bool Fits(const ProcessKey& exact) const { return (exact.bits_ & mask_) == bits_; }
   /// Whether no other process can fit.
   bool IsExact() const { return mask_ == ~std::uint64_t{0}; }
   bool IsNobody() const { return mask_ == 0 && bits_ != 0; }

@@ -78,7 +78,8 @@ class Refusals {
 /// Joins the domain and runs its role. Publishes a failure before it leaves. Returns the exit code.
 int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role) {
   Peers peers;
-  peers.Know(kOrchestrator, args.parent != 0 ? ProcessKey::WithPid(args.parent) : ProcessKey::Anybody());
+  const int orchestrator = args.orchestrator != 0 ? args.orchestrator : args.parent;
+  peers.Know(kOrchestrator, orchestrator != 0 ? ProcessKey::WithPid(orchestrator) : ProcessKey::Anybody());
   Domain domain(
       args.options, [&stop] { stop.Wake(); }, &peers);
   const Refusals refusals(peers);
@@ -116,7 +117,9 @@ void ProcessArgs::AddTo(CLI::App& app) {
   app.add_flag("--loopback", options.loopback, "Use only 127.0.0.1: everything runs on this host");
   app.add_option("--participants", options.participants, "How many processes this one talks to, about; sizes buffers")
       ->check(CLI::Range(1, 20000));
-  app.add_option("--parent", parent, "Process id of the orchestrator that spawned this process: end when it dies");
+  app.add_option("--parent", parent, "Process id of the program that spawned this process: end when it dies");
+  app.add_option("--orchestrator", orchestrator, "Process id of the orchestrator, if it is on another host");
+  app.add_option("--address", options.address, "IPv4 address of the interface to use (default: all)");
 }
 
 int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSignal& stop,

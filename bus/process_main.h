@@ -19,9 +19,10 @@ namespace mascot {
 /// Command-line options of a process that joins a run.
 struct ProcessArgs {
   DomainOptions options;
-  AgentRange agents;  ///< 0..0: none (the physics server)
-  int wait_s = 60;    ///< how long to wait for the experiment
-  int parent = 0;     ///< pid of the orchestrator that spawned this process: ends with it; 0: started by hand
+  AgentRange agents;     ///< 0..0: none (the physics server)
+  int wait_s = 60;       ///< how long to wait for the experiment
+  int parent = 0;        ///< pid of the process that spawned this one: ends with it; 0: started by hand
+  int orchestrator = 0;  ///< pid of the orchestrator, if that is not the parent but on another host
   bool is_agent = false;
 
   explicit ProcessArgs(bool agent_process) : is_agent(agent_process) {}

@@ -110,7 +110,8 @@ std::shared_ptr<rtps::TransportDescriptorInterface> SharedMemory(const DomainOpt
 
 std::shared_ptr<rtps::TransportDescriptorInterface> Udp(const DomainOptions& options) {
   auto transport = std::make_shared<rtps::UDPv4TransportDescriptor>();
-  if (options.loopback) transport->interfaceWhiteList.push_back("127.0.0.1");
+  if (options.loopback || !options.address.empty()) transport->interfaceWhiteList.push_back("127.0.0.1");
+  if (!options.address.empty()) transport->interfaceWhiteList.push_back(options.address);
   // The kernel's default of about 200 KB loses samples when a hundred agents send their commands at once. The kernel
   // grants at most its own limit.
   transport->receiveBufferSize = transport->sendBufferSize = 4 * 1024 * 1024;

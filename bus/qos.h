@@ -32,9 +32,10 @@ struct DomainOptions {
   std::string transport = "auto";  ///< one of TransportNames()
   std::string name;                ///< participant name: "agent_3"
   DiscoveryRole role = DiscoveryRole::kPeer;
-  std::string server;     ///< "HOST:PORT" of the discovery server, for all roles but kPeer
-  bool loopback = false;  ///< use 127.0.0.1 only; off if agents run on other hosts
-  int participants = 2;   ///< about how many processes this one talks to; sizes buffers
+  std::string server;        ///< "HOST:PORT" of the discovery server, for all roles but kPeer
+  bool loopback = false;     ///< use 127.0.0.1 only; off if agents run on other hosts
+  std::string address = {};  ///< IPv4 address of the interface to use, beside 127.0.0.1; empty: all
+  int participants = 2;      ///< about how many processes this one talks to; sizes buffers
 };
 
 /// The legal values of DomainOptions::transport.

@@ -14,6 +14,7 @@
 #include "experiment/events.h"
 #include "experiment/graph/graph.h"
 #include "experiment/graph/schedule.h"
+#include "experiment/hosts.h"
 #include "experiment/lie.h"
 #include "experiment/link.h"
 #include "experiment/model_traits.h"
@@ -92,6 +93,7 @@ struct AgentConfig {
   double start_s = 0;
   double stop_s = std::numeric_limits<double>::infinity();
   bool external = false;              ///< started by hand and waited for
+  std::string host = {};              ///< one of Experiment::hosts, by name; empty: where the physics server is
   std::optional<LieConfig> lie = {};  ///< absent: it tells the truth
 
   const ModelTraits& traits() const { return TraitsOf(model); }
@@ -157,6 +159,7 @@ struct Experiment {
     Delivery delivery = Delivery::kTopics;
     bool ros_view = false;
   } network;
+  std::vector<HostConfig> hosts;  ///< beside the one with the physics server
   std::size_t phase = 0;              ///< how many phases of [[law.schedule]] have begun after the first
   std::vector<double> late_phases_s;  ///< when phases of [[law.schedule]] were to begin that the run does not reach
   std::vector<Event> events;          ///< of the file, with the phases of [[law.schedule]], in order of time

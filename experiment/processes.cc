@@ -8,7 +8,8 @@ std::vector<AgentRange> AgentProcesses(const Experiment& experiment) {
   std::vector<AgentRange> processes;
   bool may_join = false;
   for (const AgentConfig& agent : experiment.agents) {
-    if (may_join && !agent.external && processes.back().size() < experiment.network.agents_per_process)
+    const bool fits = may_join && agent.host == experiment.agent(processes.back().last).host;
+    if (fits && !agent.external && processes.back().size() < experiment.network.agents_per_process)
       processes.back().last = agent.id;
     else
       processes.push_back({agent.id, agent.id});

@@ -7,8 +7,8 @@
 
 namespace mascot {
 
-/// The processes of agents, in increasing id. Each has network.agents_per_process agents, or fewer next to agents that
-/// are started by hand, which have a process each.
+/// The processes of agents, in increasing id. Each has network.agents_per_process agents, or fewer next to agents of
+/// other hosts, and next to those that are started by hand, which have a process each.
 std::vector<AgentRange> AgentProcesses(const Experiment& experiment);
 /// By id - 1, the number of processes that need the agent's states: those with the agent itself or with one that may
 /// ever hear it. `heard_only`: only those with one that may hear it.

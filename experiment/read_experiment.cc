@@ -7,6 +7,7 @@
 
 #include "experiment/agents.h"
 #include "experiment/control.h"
+#include "experiment/hosts.h"
 #include "experiment/law_tables.h"
 #include "experiment/live_experiment.h"
 
@@ -226,6 +227,10 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
   ReadOutput(output, experiment);
   ReadNetwork(network, experiment);
 
+  experiment.hosts = ReadHosts(document, experiment.agents);
+  if (!experiment.hosts.empty() && experiment.network.transport == "shm")
+    network.Fail("transport", "expected \"auto\" or \"udp\", which reach other hosts, got \"shm\"");
+
   // With a wrong graph or law, the checks of law parameters would only report the same mistake again.
   if (graph.Wrong("")) {
     experiment.schedule = Schedule();
@@ -290,6 +295,8 @@ std::span<const Key> ExperimentKeys() {
       key::Table("record", kRecordKeys, "the recording"),
       key::Table("output", kOutputKeys, "what else a run leaves behind"),
       key::Table("network", network_keys, "DDS"),
+      key::Tables("hosts", HostKeys(),
+                  "machines that have some of the agents, beside the one where `up` is; see [hosts.md](hosts.md)"),
       key::Tables("events", EventKeys(), "what changes while the run goes on"),
   };
   return keys;

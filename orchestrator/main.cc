@@ -34,6 +34,7 @@ constexpr VerbEntry kVerbs[] = {
     {"verify", "fly a recorded experiment again, and compare bit for bit", SetUpVerify},
     {"recover", "a whole recording of what a cut or damaged one still holds", SetUpRecover},
     {"export", "a recording as NumPy arrays, as CSV or as a MATLAB file", SetUpExport},
+    {"host", "a host's share of a run, told on standard input; `up` starts it", SetUpHost},
 };
 
 bool IsVerb(std::string_view word) {

@@ -9,6 +9,7 @@
 
 #include "agent/laws.h"
 #include "experiment/placement.h"
+#include "experiment/processes.h"
 
 namespace mascot {
 namespace {
@@ -550,6 +551,45 @@ TEST(Experiment, KnowsOnlyKeysThatDoSomething) {
 }
 
 // --- the resolved file ------------------------------------------------------------------------------
+
+// --- hosts ------------------------------------------------------------------------------------------
+
+/// The agents of each process: "1-3".
+std::vector<std::string> Processes(const std::string& text) {
+  std::vector<std::string> all;
+  for (const AgentRange& agents : AgentProcesses(Load(text)))
+    all.push_back(std::to_string(agents.first) + "-" + std::to_string(agents.last));
+  return all;
+}
+
+TEST(Hosts, HaveTheAgentsThatTheyName) {
+  const Experiment e = Load(Config("[[hosts]]\nname = 'me@lab1'\nagents = '2-3'\n"));
+  ASSERT_THAT(e.hosts, SizeIs(1));
+  EXPECT_THAT(e.hosts[0].launch, ElementsAre("ssh", "-oBatchMode=yes", "-oConnectTimeout=10", "me@lab1"));
+  EXPECT_EQ(e.agent(1).host, "");
+  EXPECT_EQ(e.agent(2).host, "me@lab1");
+  EXPECT_EQ(e.agent(4).host, "");
+  EXPECT_THAT(Load(e.resolved).hosts, SizeIs(1));
+}
+
+TEST(Hosts, ShareNoProcess) {
+  const std::string shared = Config("network.agents_per_process = 3\n");
+  EXPECT_THAT(Processes(shared), ElementsAre("1-3", "4-4"));
+  EXPECT_THAT(Processes(shared + "[[hosts]]\nname = 'a'\nagents = '2-3'\n"), ElementsAre("1-1", "2-3", "4-4"));
+  EXPECT_THAT(Processes(shared + "[[hosts]]\nname = 'a'\nagents = '1,4'\n[[hosts]]\nname = 'b'\nagents = '3'\n"),
+              ElementsAre("1-1", "2-2", "3-3", "4-4"));
+}
+
+TEST(Hosts, AreRefusedWithAgentsOrAddressesThatAreNone) {
+  const auto host = [](const std::string& more) { return Config("[[hosts]]\nname = 'a'\n" + more); };
+  for (const char* agents : {"", "0", "5", "2-1", "1-", "-1", "1,", "1 2", "1-2-3", "a"})
+    EXPECT_THAT(Mistakes(host("agents = '" + std::string(agents) + "'\n")), SizeIs(1)) << agents;
+  for (const char* agents : {"1", "1-4", "1,3", "1-2,4", "3,1"})
+    EXPECT_THAT(Mistakes(host("agents = '" + std::string(agents) + "'\n")), IsEmpty()) << agents;
+  for (const char* address : {"1.2.3", "1.2.3.4.5", "1.2.3.256", "1.2.3.", "1..2.3", "-1.2.3.4", "a.b.c.d", "::1"})
+    EXPECT_THAT(Mistakes(host("agents = '1'\naddress = '" + std::string(address) + "'\n")), SizeIs(1)) << address;
+  EXPECT_THAT(Mistakes(host("agents = '1'\naddress = '192.168.1.11'\n")), IsEmpty());
+}
 
 TEST(ResolvedExperiment, IsTheSameAgainWhenRead) {
   std::vector<std::string> texts = {

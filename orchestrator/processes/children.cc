@@ -30,7 +30,7 @@ std::string Exit::Text() const {
 Children::~Children() { Stop(0ms); }
 
 pid_t Children::Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments,
-                      const std::filesystem::path& log) {
+                      const std::filesystem::path& log, const Streams& streams) {
   const int output = logs_.Open(process, log);
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
@@ -38,8 +38,11 @@ pid_t Children::Spawn(const std::string& process, const std::string& program, co
 
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&files, output, STDOUT_FILENO);
+  if (streams.input >= 0)
+    posix_spawn_file_actions_adddup2(&files, streams.input, STDIN_FILENO);
+  else
+    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&files, streams.output >= 0 ? streams.output : output, STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&files, output, STDERR_FILENO);
   for (const int shared : shared_) posix_spawn_file_actions_adddup2(&files, shared, shared);  // not closed by exec
   posix_spawnattr_t attributes;
@@ -53,7 +56,7 @@ pid_t Children::Spawn(const std::string& process, const std::string& program, co
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
 
   pid_t pid = 0;
-  const int error = posix_spawn(&pid, program.c_str(), &files, &attributes, argv.data(), environ);
+  const int error = posix_spawnp(&pid, program.c_str(), &files, &attributes, argv.data(), environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&files);
   close(output);

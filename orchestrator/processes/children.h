@@ -37,16 +37,25 @@ class Children {
   Children(const Children&) = delete;
   Children& operator=(const Children&) = delete;
 
-  /// Starts `program` (a path) with `arguments`, under the name `process`; its output goes to the file `log`. Returns
-  /// its process id. Throws std::runtime_error if it cannot be started.
+  /// Starts `program` (a path, or a name in PATH) with `arguments`, under the name `process`; its output goes to the
+  /// file `log`. Returns its process id. Throws std::runtime_error if it cannot be started.
   pid_t Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments,
-              const std::filesystem::path& log);
+              const std::filesystem::path& log) {
+    return Spawn(process, program, arguments, log, {});
+  }
+  /// Descriptors for a child's standard input and output; -1: /dev/null, and the log.
+  struct Streams {
+    int input = -1, output = -1;
+  };
+  pid_t Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments,
+              const std::filesystem::path& log, const Streams& streams);
   /// Reaps children. Returns those that have ended since the last call.
   std::vector<Exit> Reap();
   /// Waits at most `grace` until all children have ended, and reaps them. Returns whether all have.
   bool WaitAll(std::chrono::milliseconds grace);
   /// Sends SIGTERM, and after `grace` SIGKILL to the children that are left; reaps all. May be called again.
   void Stop(std::chrono::milliseconds grace);
+  bool empty() const { return running_.empty(); }
   /// Sends SIGKILL to all children and reaps them.
   void Kill();
 

@@ -56,8 +56,8 @@ std::vector<Override> DeliveryOf(const Experiment& experiment);
 std::string Changed(const Experiment& experiment, const std::vector<Override>& changes);
 /// The experiment with these events, given by hand, behind its own.
 Experiment WithEvents(const Experiment& experiment, const std::vector<Event>& by_hand);
-/// The resolved experiment as attached to the recording: with the default domain, processes, delivery and pace, and
-/// without a view for RViz2, so that runs that differ only in these have the same recording.
+/// The resolved experiment as attached to the recording: with the default domain, processes, delivery and pace,
+/// without hosts and a view for RViz2, so that runs that differ only in these have the same recording.
 std::string WithoutDelivery(const Experiment& experiment);
 /// The same without events.
 std::string WithoutEvents(const Experiment& experiment);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <string>
 
 #include "experiment/processes.h"
 
@@ -27,14 +29,18 @@ std::vector<std::string> DeliveryWarnings(const Experiment& experiment) {
 }
 
 void RefuseTooManyProcesses(const Experiment& experiment) {
-  const std::vector<AgentRange> processes = AgentProcesses(experiment);
-  const auto local = std::ranges::count_if(
-      processes, [&](const AgentRange& agents) { return !experiment.agent(agents.first).external; });
-  if (local <= kMostProcesses) return;
-  throw ConfigError(
-      {fmt::format("network.agents_per_process: expected at most {} processes of agents on this host, such as "
-                   "by {}, got {} processes",
-                   kMostProcesses, (experiment.size() + kMostProcesses - 1) / kMostProcesses, local)});
+  std::map<std::string, std::ptrdiff_t> processes_on;
+  for (const AgentRange& agents : AgentProcesses(experiment)) {
+    const AgentConfig& agent = experiment.agent(agents.first);
+    if (!agent.external) ++processes_on[agent.host];
+  }
+  for (const auto& [host, processes] : processes_on)
+    if (processes > kMostProcesses)
+      throw ConfigError(
+          {fmt::format("network.agents_per_process: expected at most {} processes of agents on {} host, such as "
+                       "by {}, got {} processes",
+                       kMostProcesses, host.empty() ? "this" : "each",
+                       (experiment.size() + kMostProcesses - 1) / kMostProcesses, processes)});
 }
 
 }  // namespace mascot

@@ -21,6 +21,7 @@
 #include "orchestrator/engines/dds/domain_lock.h"
 #include "orchestrator/engines/dds/hub.h"
 #include "orchestrator/engines/dds/janitor.h"
+#include "orchestrator/engines/dds/launcher.h"
 #include "orchestrator/engines/dds/recorder.h"
 #include "orchestrator/engines/dds/resources.h"
 #include "orchestrator/engines/dds/ros_publisher.h"
@@ -41,6 +42,8 @@ constexpr int kMostPeers = 20;
 constexpr auto kExitGrace = 5s;
 /// How long the DDS library may take for a call at the end of a run.
 constexpr auto kLibraryGrace = 5s;
+/// A host is lost before its agents are: within this part of run.agent_timeout_s. A host is more patient with us.
+constexpr double kShareOfTimeout = 0.6, kLeastSilence_s = 2, kHostPatience_s = 10;
 
 /// Agent ids as `agent --id` takes them: "3" or "3-5".
 std::string IdsText(AgentRange agents) {
@@ -70,7 +73,12 @@ class DdsRun {
   DomainOptions Options(const std::string& name, DiscoveryRole role) const;
   int PeersOf(AgentRange agents) const;
   int BundleRoom() const;
-  std::uint64_t SharedMemoryNeed() const;
+  std::uint64_t SharedMemoryOf(const std::string& host) const;
+  std::vector<std::string> ArgumentsOf(int participants) const;
+  std::vector<std::string> ArgumentsOf(AgentRange agents) const;
+  HostJob JobOf(const HostConfig& host, const std::string& our_address) const;
+  std::string HostOf(const std::string& process) const;
+  std::string PlacedName(const std::string& process) const;
   RunPhases::Rules Rules();
   void Join();
   void ShowToRos();
@@ -78,6 +86,7 @@ class DdsRun {
   void Loop();
   void OnSignal(int signal);
   void Reap();
+  void HearHosts();
   void CheckWire();
   void Steer();
   RunPhases::View Record();
@@ -99,7 +108,8 @@ class DdsRun {
   StopSignal& stop_;
   RosSource* const ros_;
   const WallClock::time_point launched_ = WallClock::now();
-  const bool external_;
+  const bool external_;        // some agents are started by hand
+  const bool reaches_others_;  // agents may be on other hosts
   EngineResult result_;
   std::int64_t confirmed_ = 0;  // rows recorded so far
   std::uint32_t requests_ = 0;  // number of the newest request to the physics server
@@ -114,6 +124,7 @@ class DdsRun {
   ChildLogs logs_;
   Children children_;
   Peers peers_;
+  std::optional<Launcher> launcher_;  // if there are other hosts
   WireAudit audit_;
   std::optional<Domain> discovery_server_;
   std::optional<Domain> domain_;
@@ -132,10 +143,13 @@ DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std:
       stop_(stop),
       ros_(ros),
       external_(std::ranges::any_of(experiment.agents, &AgentConfig::external)),
+      reaches_others_(external_ || !experiment.hosts.empty()),
       processes_(AgentProcesses(experiment)),
-      with_server_(std::ssize(processes_) + 2 > kMostPeers),
+      with_server_(std::ssize(processes_) + 2 > kMostPeers || !experiment.hosts.empty()),
       folder_(folder),
-      logs_([&console](const std::string& process, const std::string& line) { console.ChildLine(process, line); }),
+      logs_([this](const std::string& process, const std::string& line) {
+        console_.ChildLine(PlacedName(process), line);
+      }),
       children_(logs_),
       audit_(experiment, peers_),
       feed_(experiment, sinks),
@@ -155,7 +169,7 @@ void DdsRun::Join() {
   lock_.emplace(experiment_.network.domain);
   if (helm_ != nullptr) helm_->SetDomain(lock_->domain());
   SweepSharedMemory(lock_->domain());  // left by runs of which also the janitor was killed
-  RequireResources(SharedMemoryNeed());
+  RequireResources(SharedMemoryOf(""));
   janitor_.emplace(*lock_);
   children_.Share(janitor_->lifeline());
   Spawn();
@@ -184,43 +198,91 @@ DomainOptions DdsRun::Options(const std::string& name, DiscoveryRole role) const
   options.transport = experiment_.network.transport;
   options.name = name;
   options.role = role;
-  options.loopback = !external_;
+  options.loopback = !reaches_others_;
   options.participants = experiment_.size() + 2 + BundleRoom();
-  const std::string host = role == DiscoveryRole::kServer && external_ ? "0.0.0.0" : "127.0.0.1";
+  const std::string host = role == DiscoveryRole::kServer && reaches_others_ ? "0.0.0.0" : "127.0.0.1";
   if (with_server_) options.server = host + ":" + std::to_string(lock_->discovery_port());
   return options;
 }
 
+/// The host of a process, if that is another one than this; else empty.
+std::string DdsRun::HostOf(const std::string& process) const {
+  const auto agents = AgentsOf(process);
+  return agents ? experiment_.agent(agents->first).host : "";
+}
+
+/// The name of a process with its host behind it, if that is another one: agent_3@lab1.
+std::string DdsRun::PlacedName(const std::string& process) const {
+  const std::string host = HostOf(process);
+  return host.empty() ? process : process + "@" + host;
+}
+
+/// Arguments of a process that talks to about so many others, wherever it is.
+std::vector<std::string> DdsRun::ArgumentsOf(int participants) const {
+  return {"--domain",       std::to_string(lock_->domain()),
+          "--transport",    experiment_.network.transport,
+          "--wait-s",       std::to_string(static_cast<int>(experiment_.run.start_timeout_s) + 1),
+          "--participants", std::to_string(participants)};
+}
+
+/// The same of a process of agents.
+std::vector<std::string> DdsRun::ArgumentsOf(AgentRange agents) const {
+  std::vector<std::string> arguments = ArgumentsOf(PeersOf(agents));
+  arguments.insert(arguments.end(), {"--id", IdsText(agents)});
+  return arguments;
+}
+
+HostJob DdsRun::JobOf(const HostConfig& host, const std::string& our_address) const {
+  HostJob job;
+  job.domain = lock_->domain();
+  job.shared_memory = SharedMemoryOf(host.name);
+  job.silence_s = std::max(kHostPatience_s, 2 * experiment_.run.agent_timeout_s);
+  for (const AgentRange& agents : processes_) {
+    if (experiment_.agent(agents.first).host != host.name) continue;
+    std::vector<std::string> arguments = ArgumentsOf(agents);
+    arguments.insert(arguments.end(), {"--orchestrator", std::to_string(getpid()), "--discovery",
+                                       our_address + ":" + std::to_string(lock_->discovery_port())});
+    if (!host.address.empty()) arguments.insert(arguments.end(), {"--address", host.address});
+    job.processes.push_back({ProcessName(agents), arguments});
+  }
+  return job;
+}
+
 void DdsRun::Spawn() {
   const DomainOptions options = Options("", DiscoveryRole::kClient);
-  std::vector<std::string> common{"--domain",    std::to_string(options.domain),
-                                  "--transport", options.transport,
-                                  "--parent",    std::to_string(getpid()),
-                                  "--wait-s",    std::to_string(static_cast<int>(experiment_.run.start_timeout_s) + 1)};
+  std::vector<std::string> common{"--parent", std::to_string(getpid())};
   if (options.loopback) common.push_back("--loopback");
   if (with_server_) common.insert(common.end(), {"--discovery", options.server});
   console_.Line("DDS domain " + std::to_string(options.domain) +
                 (with_server_ ? ", discovery server " + options.server : ""));
 
-  const auto spawn = [&](const std::string& process, const std::string& program, int peers,
-                         const std::vector<std::string>& more) {
-    auto arguments = common;
-    arguments.insert(arguments.end(), {"--participants", std::to_string(peers)});
-    arguments.insert(arguments.end(), more.begin(), more.end());
+  const auto spawn = [&](const std::string& process, const std::string& program, std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), common.begin(), common.end());
     const pid_t pid = children_.Spawn(process, ProgramFolder() / program, arguments, folder_.Log(process));
     peers_.Know(process, ProcessKey::WithPid(pid));
   };
-  spawn(kPhysicsServer, "physics_server", options.participants, {});
+  spawn(kPhysicsServer, "physics_server", ArgumentsOf(options.participants));
   for (const AgentRange& agents : processes_) {
-    if (!experiment_.agent(agents.first).external) {
-      spawn(ProcessName(agents), "agent", PeersOf(agents), {"--id", IdsText(agents)});
-    } else {
-      peers_.Know(ProcessName(agents), ProcessKey());  // the first that says it is that
+    const AgentConfig& agent = experiment_.agent(agents.first);
+    if (!agent.external && agent.host.empty()) {
+      spawn(ProcessName(agents), "agent", ArgumentsOf(agents));
+      continue;
+    }
+    peers_.Know(ProcessName(agents), ProcessKey());  // the first that says it is that
+    if (agent.external)
       console_.Line("waiting for: agent --id " + IdsText(agents) + " --domain " + std::to_string(options.domain) +
                     (options.transport == DomainOptions().transport ? "" : " --transport " + options.transport) +
                     (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_->discovery_port()) : ""));
-    }
   }
+  if (experiment_.hosts.empty()) return;
+  launcher_.emplace(
+      experiment_, folder_,
+      Launcher::Rules{
+          .start_timeout_s = experiment_.run.start_timeout_s,
+          .silence_s = std::max(kLeastSilence_s, kShareOfTimeout * experiment_.run.agent_timeout_s),
+          .job = [this](const HostConfig& host, const std::string& our_address) { return JobOf(host, our_address); }},
+      children_, logs_, peers_);
+  launcher_->Start();
 }
 
 /// Value of --participants for a process of agents, which sizes its buffers: 2 for one agent; for more, about the
@@ -239,12 +301,13 @@ int DdsRun::BundleRoom() const {
   return static_cast<int>(std::min<std::size_t>(experiment_.graph.edges() / kStatesPerPeer, 10000));
 }
 
-/// Bytes of /dev/shm that the processes of the run take together.
-std::uint64_t DdsRun::SharedMemoryNeed() const {
+/// Bytes of /dev/shm that the processes of the run on a host take together; "": on this one.
+std::uint64_t DdsRun::SharedMemoryOf(const std::string& host) const {
   DomainOptions options = Options("", DiscoveryRole::kPeer);
-  std::uint64_t need = 2 * SharedMemoryNeeded(options);  // this process and the physics server
+  std::uint64_t need = host.empty() ? 2 * SharedMemoryNeeded(options) : 0;  // this process and the physics server
   for (const AgentRange& agents : processes_) {
-    if (experiment_.agent(agents.first).external) continue;
+    const AgentConfig& agent = experiment_.agent(agents.first);
+    if (agent.external || agent.host != host) continue;
     options.participants = PeersOf(agents);
     need += SharedMemoryNeeded(options);
   }
@@ -304,11 +367,19 @@ void DdsRun::OnSignal(int signal) {
   Do(actions);
 }
 
-/// Passes the exits of children to RunPhases.
+/// Passes the exits of processes to RunPhases.
 void DdsRun::Reap() {
   std::vector<RunPhases::Exit> exits;
   for (const Exit& exit : children_.Reap()) exits.push_back({exit.process, exit.code(), exit.Text()});
+  if (launcher_) HearHosts();
+  if (launcher_)
+    for (const Exit& exit : launcher_->Reap())
+      exits.push_back({exit.process, exit.code(), exit.Text() + " on " + HostOf(exit.process)});
   phases_.OnExits(exits, WallClock::now());
+}
+
+void DdsRun::HearHosts() try { launcher_->Pump(); } catch (const std::exception& failure) {
+  phases_.Fail(InWords(failure));
 }
 
 void DdsRun::CheckWire() {
@@ -343,6 +414,7 @@ void DdsRun::Do(const RunPhases::Actions& actions) {
   if (actions.say_ready) hub_->SayReady(Pace());
   if (actions.ask_to_stop) hub_->Ask(Ask::kStop, phases_.signal() != 0 ? strsignal(phases_.signal()) : "asked to stop");
   if (actions.ask_to_end) AskToEnd();
+  if (actions.kill && launcher_) launcher_->Kill();
   if (actions.kill) children_.Kill();
 }
 
@@ -423,7 +495,8 @@ void DdsRun::TakeReport() {
 
 bool DdsRun::End() {
   if (hub_) AskToEnd();
-  if (phases_.in_order()) children_.WaitAll(kExitGrace);
+  const bool others = launcher_ && launcher_->End();
+  if (phases_.in_order() || others) children_.WaitAll(kExitGrace);
   children_.Stop(2s);
   CallLibrary([this] { LeaveDomain(); });
   if (library_hangs_) return false;

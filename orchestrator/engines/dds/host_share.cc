@@ -1,0 +1,162 @@
+#include "orchestrator/engines/dds/host_share.h"
+
+#include <unistd.h>
+
+#include <climits>
+#include <cstdlib>
+#include <iostream>
+
+#include "bus/leave.h"
+#include "bus/shared_memory.h"
+#include "experiment/toml/utf8.h"
+#include "orchestrator/engines/dds/resources.h"
+#include "orchestrator/processes/build.h"
+
+namespace mascot {
+namespace {
+
+using namespace std::chrono_literals;
+using WallClock = std::chrono::steady_clock;
+
+constexpr auto kBetweenSigns = 500ms;
+constexpr std::size_t kLongestError = 150;
+constexpr auto kEndGrace = 5s;  // for processes that were told to end, over DDS
+
+std::string Variable(const char* name) {
+  const char* text = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): nothing sets variables
+  return text == nullptr ? "" : text;
+}
+
+/// What this machine is called among those that were started together.
+std::string NodeName() {
+  char name[HOST_NAME_MAX + 1] = "";
+  gethostname(name, sizeof name - 1);
+  const std::string of_slurm = Variable("SLURMD_NODENAME");
+  return of_slurm.empty() ? name : of_slurm;
+}
+
+/// Our address at the other end of the ssh connection that started us: its first word.
+std::string SeenFrom() {
+  const std::string connection = Variable("SSH_CONNECTION");
+  return connection.substr(0, connection.find(' '));
+}
+
+}  // namespace
+
+HostShare::HostShare(StopSignal& stop)
+    : stop_(stop),
+      node_(NodeName()),
+      input_(STDIN_FILENO),
+      output_(STDOUT_FILENO),
+      logs_([this](const std::string& process, const std::string& line) { TellLine(process, line); }),
+      children_(std::in_place, logs_),
+      heard_(WallClock::now()) {}
+
+/// Tells a line in pieces: what merges the lines of several hosts may not keep a long one in one piece.
+void HostShare::TellLine(const std::string& process, std::string_view line) {
+  constexpr std::size_t kPiece = 100;  // JSON may need six characters for each
+  do {
+    const std::string_view piece = line.size() <= kPiece ? line : CutUtf8(line, kPiece);
+    line.remove_prefix(piece.size());
+    Tell({{"kind", "line"}, {"process", process}, {"text", piece}, {"more", !line.empty()}});
+  } while (!line.empty());
+}
+
+void HostShare::Tell(nlohmann::json words) {
+  words["node"] = node_;
+  output_.Write(words.dump());
+}
+
+int HostShare::Run() {
+  nlohmann::json hello = HostHello{.build = BuildText(), .machine = MachineText(), .seen_from = SeenFrom()};
+  hello["kind"] = "hello";
+  Tell(hello);
+  try {
+    while (Look()) {
+      const int signal = stop_.Within(20ms);
+      if (signal == 0) continue;
+      code_ = 128 + signal;
+      break;
+    }
+  } catch (const std::exception& failure) {
+    std::cerr << "error: " << InWords(failure) << std::endl;
+    Tell({{"kind", "error"}, {"text", CutUtf8(InWords(failure), kLongestError)}});
+    code_ = 1;
+  }
+  Leave();
+  return code_;
+}
+
+/// Returns whether to go on.
+bool HostShare::Look() {
+  while (const auto line = input_.Next()) {
+    heard_ = WallClock::now();
+    Obey(*line);
+  }
+  TellExits();
+  const auto now = WallClock::now();
+  if (now > told_ + kBetweenSigns) {
+    told_ = now;
+    Tell({{"kind", "alive"}});
+  }
+  if (ending_) return !children_->empty() && now < end_by_;
+  if (input_.ended() || output_.broken()) {
+    std::cerr << "the connection to `up` has ended" << std::endl;
+    code_ = 1;
+    return false;
+  }
+  if (now - heard_ > silence_) {
+    std::cerr << "nothing was heard of `up` for " << silence_.count() << " s" << std::endl;
+    code_ = 1;
+    return false;
+  }
+  return true;
+}
+
+void HostShare::Obey(const std::string& line) {
+  const nlohmann::json words = nlohmann::json::parse(line);
+  const std::string node = words.value("node", "");
+  if (!node.empty() && node != node_) return;
+  const std::string kind = words.at("kind");
+  if (kind == "job") Start(words.get<HostJob>());
+  if (kind == "kill") children_->Kill();
+  if (kind == "end" && !ending_) {
+    ending_ = true;
+    end_by_ = WallClock::now() + kEndGrace;
+  }
+}
+
+void HostShare::Start(const HostJob& job) {
+  domain_ = job.domain;
+  silence_ = std::chrono::duration<double>(job.silence_s);
+  if (job.own_memory) {
+    lock_.emplace(job.domain);
+    SweepSharedMemory(job.domain);
+    janitor_.emplace(*lock_);
+    children_->Share(janitor_->lifeline());
+  }
+  RequireResources(job.shared_memory);
+  for (const HostProcess& process : job.processes) {
+    std::vector<std::string> arguments = process.arguments;
+    arguments.insert(arguments.end(), {"--parent", std::to_string(getpid())});
+    const pid_t pid = children_->Spawn(process.name, ProgramFolder() / "agent", arguments, "/dev/null");
+    Tell({{"kind", "started"}, {"process", process.name}, {"pid", pid}});
+  }
+}
+
+void HostShare::TellExits() {
+  for (const Exit& exit : children_->Reap()) {
+    logs_.LastLines(exit.process);  // its last lines come first
+    Tell({{"kind", "exit"}, {"process", exit.process}, {"status", exit.status}});
+  }
+}
+
+void HostShare::Leave() {
+  children_->Stop(code_ == 0 ? 2s : 500ms);
+  TellExits();
+  if (!lock_) return;
+  SweepSharedMemory(domain_);
+  janitor_->Dismiss();
+}
+
+}  // namespace mascot

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "bus/stop_signal.h"
+#include "orchestrator/engines/dds/domain_lock.h"
+#include "orchestrator/engines/dds/host_words.h"
+#include "orchestrator/engines/dds/janitor.h"
+#include "orchestrator/processes/child_logs.h"
+#include "orchestrator/processes/children.h"
+#include "orchestrator/processes/line_pipe.h"
+
+namespace mascot {
+
+/// A host's share of a run: what `orchestrator host` does there. It is told on standard input which processes to start,
+/// and tells on standard output what they print and how they end. Its input is its lifeline: when that ends, when
+/// nothing comes for a while, or when a signal comes, it ends its processes, and leaves nothing.
+class HostShare {
+ public:
+  explicit HostShare(StopSignal& stop);
+  /// Returns an exit code: 0 in order, 1 its input ended early or it cannot do its job, 128 + signal.
+  int Run();
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+
+  bool Look();
+  void Obey(const std::string& line);
+  void Start(const HostJob& job);
+  void TellExits();
+  void TellLine(const std::string& process, std::string_view line);
+  void Tell(nlohmann::json words);
+  void Leave();
+
+  StopSignal& stop_;
+  const std::string node_;
+  LineReader input_;
+  LineWriter output_;
+  ChildLogs logs_;
+  std::optional<DomainLock> lock_;
+  std::optional<Janitor> janitor_;
+  std::optional<Children> children_;
+  int domain_ = -1;
+  std::chrono::duration<double> silence_{60};
+  Time heard_, told_;
+  bool ending_ = false;
+  Time end_by_;
+  int code_ = 0;
+};
+
+}  // namespace mascot

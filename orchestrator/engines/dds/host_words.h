@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace mascot {
+
+// What `up` and `orchestrator host` tell each other: a JSON object a line, with its kind under "kind". Lines for one
+// host of several that were started together have its name under "node"; those of a host always have.
+
+/// A host's first words: who it is.
+struct HostHello {
+  std::string build;      ///< BuildText()
+  std::string machine;    ///< equal: the same memory, so that one domain lock and one sweep are for both
+  std::string seen_from;  ///< our address as that host sees us; empty: unknown
+};
+/// This machine, as HostHello has it.
+std::string MachineText();
+
+/// A process that a host shall start: `agent` with these arguments and --parent.
+struct HostProcess {
+  std::string name;
+  std::vector<std::string> arguments;
+};
+/// What a host shall do.
+struct HostJob {
+  int domain = 0;
+  bool own_memory = true;  ///< lock the domain there, and sweep
+  std::uint64_t shared_memory = 0;
+  double silence_s = 10;  ///< end if nothing is heard for so long
+  std::vector<HostProcess> processes;
+};
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HostHello, build, machine, seen_from)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HostProcess, name, arguments)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HostJob, domain, own_memory, shared_memory, silence_s, processes)
+
+}  // namespace mascot

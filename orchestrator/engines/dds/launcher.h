@@ -1,0 +1,78 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bus/peers.h"
+#include "experiment/experiment.h"
+#include "orchestrator/engines/dds/host_words.h"
+#include "orchestrator/processes/child_logs.h"
+#include "orchestrator/processes/children.h"
+#include "orchestrator/processes/console.h"
+#include "orchestrator/recording/run_folder.h"
+
+namespace mascot {
+
+/// The other hosts of a run (`[[hosts]]`): starts `orchestrator host` on each by its launch command, tells it what to
+/// start, and hears what its processes print and how they end. A connection that ends is a child that has ended, called
+/// host_NAME, or `hosts` for those that were started together.
+class Launcher {
+ public:
+  struct Rules {
+    double start_timeout_s = 0;
+    double silence_s = 0;  ///< a host of which nothing is heard for so long is lost
+    /// What a host shall do. `our_address`: where it reaches us.
+    std::function<HostJob(const HostConfig& host, const std::string& our_address)> job;
+  };
+
+  /// All but `rules` must outlive this object.
+  Launcher(const Experiment& experiment, const RunFolder& folder, Rules rules, Children& children, ChildLogs& logs,
+           Peers& peers);
+  ~Launcher();
+  Launcher(const Launcher&) = delete;
+  Launcher& operator=(const Launcher&) = delete;
+
+  /// Starts the launch commands. Throws std::runtime_error if one cannot be started.
+  void Start();
+  /// Reads what the hosts have told, and gives a sign of life. To be called at least ten times a second. Throws
+  /// std::runtime_error if a host is of another build, cannot do its job, or is lost.
+  void Pump();
+  /// Processes on other hosts that have ended since the last call.
+  std::vector<Exit> Reap();
+  /// Tells the hosts to kill their processes.
+  void Kill();
+  /// Tells the hosts to leave when their processes have ended. Returns whether there are any that have answered.
+  bool End();
+
+ private:
+  struct Connection;
+  struct Remote;
+  using Time = std::chrono::steady_clock::time_point;
+
+  Connection& Connect(const HostConfig& host);
+  void Hear(const Connection& connection, const std::string& line);
+  void Obey(Remote& remote, const nlohmann::json& words);
+  void Greet(Remote& remote, const HostHello& hello);
+  void CheckPids(const Remote& remote) const;
+  void CheckSilence(const Remote& remote) const;
+  void TellAll(const nlohmann::json& words);
+
+  const Experiment& experiment_;
+  const RunFolder& folder_;
+  const Rules rules_;
+  Children& children_;
+  ChildLogs& logs_;
+  Peers& peers_;
+  std::vector<std::unique_ptr<Connection>> connections_;
+  std::vector<std::unique_ptr<Remote>> remotes_;
+  std::vector<Exit> exits_;
+  Time next_sign_{};
+  bool ending_ = false;
+};
+
+}  // namespace mascot

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace mascot {
+
+/// Reads lines of a pipe without ever waiting for one. Does not own the descriptor, which becomes non-blocking.
+class LineReader {
+ public:
+  explicit LineReader(int descriptor);
+  LineReader(const LineReader&) = delete;
+  LineReader& operator=(const LineReader&) = delete;
+
+  /// The next line, without its line break; nothing if none is complete. Throws std::runtime_error for a line longer
+  /// than 4 MiB.
+  std::optional<std::string> Next();
+  /// Whether there will be no more lines.
+  bool ended() const { return ended_; }
+
+ private:
+  int descriptor_;
+  std::string text_;
+  bool ended_ = false;
+};
+
+/// Writes lines into a pipe from a thread of its own, so that a reader who does not read holds up nobody. Does not own
+/// the descriptor, which becomes non-blocking.
+class LineWriter {
+ public:
+  explicit LineWriter(int descriptor);
+  ~LineWriter();  ///< writes what is left, for at most 1 s
+  LineWriter(const LineWriter&) = delete;
+  LineWriter& operator=(const LineWriter&) = delete;
+
+  /// Appends a line. If 64 MiB wait already, the line is lost.
+  void Write(const std::string& line);
+  /// Whether the reader has gone.
+  bool broken() const;
+
+ private:
+  void Run();
+  bool WriteSome(const std::string& bytes, std::size_t& done);
+
+  int descriptor_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::string> lines_;
+  std::size_t waiting_ = 0;                                     // bytes in lines_
+  std::optional<std::chrono::steady_clock::time_point> until_;  // set at the end
+  bool broken_ = false;
+  std::thread thread_;  // last: it uses the members above
+};
+
+}  // namespace mascot
