@@ -332,6 +332,23 @@ TEST(HostsPage, HasAnExperimentThatIsOne) {
   EXPECT_EQ(ran.exit_code, 0) << ran.output;
 }
 
+TEST(Slurm, IsExpectedAroundARunOnItsNodes) {
+  const ScratchFolder folder;
+  WriteFile(folder.File("two.toml"), "[run]\nduration_s = 1.0\n[agents]\ncount = 2\n[law]\nname = 'consensus'\n");
+  const auto refusal = [&](const std::string& words) {
+    const Ran ran = Shell("env -u SLURM_JOB_ID '" MASCOT_BINARY_DIR "/orchestrator' up " + folder.File("two.toml") +
+                          " --slurm --out " + folder.File("run") + " " + words);
+    EXPECT_EQ(ran.exit_code, 2);
+    EXPECT_FALSE(std::filesystem::exists(folder.File("run")));
+    return ran.output;
+  };
+  EXPECT_EQ(refusal(""),
+            "error: --slurm: expected a Slurm allocation (sbatch, salloc) around this command, got none\n");
+  EXPECT_EQ(refusal("--engine inprocess"), "error: --slurm: expected --engine dds, got inprocess\n");
+  EXPECT_EQ(refusal("--set 'hosts=[{name=\"lab1\", agents=\"1\"}]'"),
+            "error: --slurm: expected a file without hosts, because the job's nodes are the hosts\n");
+}
+
 TEST_F(OnOtherHosts, RefuseWhatIsNotTheSameProgram) {
   Connect();
   const auto launch = [&](const std::string& words) {

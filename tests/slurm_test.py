@@ -238,6 +238,23 @@ class JobArrays(unittest.TestCase):
         self.check_merged()
 
 
+class Run(unittest.TestCase):
+    def test_is_spread_over_the_nodes_of_a_job_with_the_bytes_of_one_machine(self):
+        orchestrator = f'{os.environ["MASCOT_BINARY_DIR"]}/orchestrator'
+        few = ["--set", "run.duration_s=0.5", "--set", "output.save_plot=false", "--quiet"]
+        with tempfile.TemporaryDirectory(prefix="mascot-slurm-") as folder:
+            config = ROOT / "configs/formation.toml"
+            ran(CLUSTER, "--nodes", "3", "salloc", "--nodes=3", "--quiet", orchestrator, "up", config, "--slurm", "--out", "spread",
+                *few, cwd=folder)
+            ran(orchestrator, "up", config, "--engine", "inprocess", "--out", "one", *few, cwd=folder)
+            spread, one = pathlib.Path(folder, "spread"), pathlib.Path(folder, "one")
+            self.assertEqual((spread / "run.mcap").read_bytes(), (one / "run.mcap").read_bytes())
+            hosts = re.findall('^name = "(node[0-9])"$', (spread / "config.toml").read_text(), re.MULTILINE)
+            self.assertEqual(hosts, ["node1", "node2", "node3"])
+            said = (spread / "logs/agent_1.log").read_text()
+            self.assertTrue(said.startswith("hears "), said)
+
+
 class Page(unittest.TestCase):
     def test_commands_do_what_it_says(self):
         """Those of the section on Slurm of docs/hosts.md, in a cluster of their own: job 1 is on the page."""

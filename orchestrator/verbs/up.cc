@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -19,6 +20,7 @@
 #include "orchestrator/live/run_socket.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/processes/console.h"
+#include "orchestrator/processes/slurm.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/run_writer.h"
 #include "orchestrator/report/ending.h"
@@ -42,6 +44,7 @@ struct UpArgs {
   std::optional<LiveAddress> view;
   std::string engine = kOverDds;
   bool force = false, json = false, quiet = false;
+  bool slurm = false;
 };
 
 int ExitCode(const EngineResult& result) {
@@ -71,10 +74,35 @@ std::string FirstLine(const Experiment& experiment, const std::string& engine, c
                      folder.path().string());
 }
 
+/// `--set hosts=...` that gives each node of the Slurm job an equal share of the agents.
+std::string HostsOfTheJob(int agents) {
+  std::vector<std::string> nodes = NodesOfTheJob();
+  if (std::ssize(nodes) > agents) nodes.resize(static_cast<std::size_t>(agents));
+  const int count = static_cast<int>(nodes.size());
+  std::string tables;
+  for (int k = 0; k < count; ++k)
+    tables += fmt::format("{}{{name = '{}', agents = '{}-{}', together = true, launch = ['{}']}}", k == 0 ? "" : ", ",
+                          nodes[static_cast<std::size_t>(k)], k * agents / count + 1, (k + 1) * agents / count,
+                          fmt::join(OnEachNode(nodes), "', '"));
+  return "hosts=[" + tables + "]";
+}
+
+/// The experiment; with --slurm, on the nodes of the job.
+Experiment Load(const UpArgs& args) {
+  Experiment experiment = args.config.Load();
+  if (!args.slurm) return experiment;
+  if (!experiment.hosts.empty())
+    throw ConfigError({"--slurm: expected a file without hosts, because the job's nodes are the hosts"});
+  if (args.engine != kOverDds) throw ConfigError({"--slurm: expected --engine dds, got " + args.engine});
+  ConfigArgs on_nodes = args.config;
+  on_nodes.sets.push_back(HostsOfTheJob(experiment.size()));
+  return on_nodes.Load();
+}
+
 int Up(const UpArgs& args) {
   const auto launched = WallClock::now();
   StopSignal stop;
-  const Experiment experiment = args.config.Load();
+  const Experiment experiment = Load(args);
   RefuseEngine(args.engine, experiment);
   Prediction prediction = Predict(experiment);
 
@@ -153,6 +181,8 @@ std::function<int()> SetUpUp(CLI::App& command) {
           "free port)")
       ->expected(0, 1)
       ->type_name("[ADDRESS:PORT]");
+  command.add_flag("--slurm", args->slurm,
+                   "inside of a Slurm allocation: spread the agents evenly over its nodes, by one srun");
   command.add_flag("--force", args->force,
                    "write into a folder that is not empty: an earlier run's files are replaced, others kept");
   command.add_flag("--json", args->json, "print the summary as JSON on stdout, and nothing else");
