@@ -159,7 +159,7 @@ struct Experiment {
     Delivery delivery = Delivery::kTopics;
     bool ros_view = false;
   } network;
-  std::vector<HostConfig> hosts;  ///< beside the one with the physics server
+  std::vector<HostConfig> hosts;      ///< beside the one with the physics server
   std::size_t phase = 0;              ///< how many phases of [[law.schedule]] have begun after the first
   std::vector<double> late_phases_s;  ///< when phases of [[law.schedule]] were to begin that the run does not reach
   std::vector<Event> events;          ///< of the file, with the phases of [[law.schedule]], in order of time
