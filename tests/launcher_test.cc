@@ -194,9 +194,16 @@ class OnOtherHosts : public testing::Test {
     words.insert(words.end(), more.begin(), more.end());
     return std::make_unique<Running>("ip", words, folder_.File("up"));
   }
+  /// A run of agents 1 to 6, of which 1, 2 are on lab1 and 3, 4 on lab2, once it flies.
+  std::unique_ptr<Running> FlyForLong() {
+    Connect();
+    auto up = Fly(Experiment(6, 600, laboratory_->Tables({"1-2", "3-4"})), {"--set", "run.pace=1"});
+    EXPECT_TRUE(Flies(*up)) << up->err();
+    return up;
+  }
   /// Expects the recording to be that of one host, and of one process.
-  void ExpectTheSameBytes(const std::string& config) const {
-    Up one(folder_, "one", config, {"--engine", "inprocess", "--force"});
+  void ExpectTheSameBytes() const {
+    Up one(folder_, "one", folder_.File("run/config.toml"), {"--engine", "inprocess", "--force"});
     EXPECT_EQ(one.Wait(), 0) << one.err();
     EXPECT_TRUE(one.File("run.mcap") == ReadFile(folder_.File("run/run.mcap"))) << "run.mcap differs";
   }
@@ -221,7 +228,7 @@ TEST_F(OnOtherHosts, ThirtyAgentsLeaveTheRecordingOfOneHost) {
                                HasSubstr("[agent_27] hears 26 28")));
   EXPECT_EQ(ReadFile(folder_.File("run/logs/agent_21.log")), "hears 20 22\n");
   EXPECT_THAT(ReadFile(folder_.File("run/config.toml")), HasSubstr("agents = \"11-15,21\""));
-  ExpectTheSameBytes(config);
+  ExpectTheSameBytes();
   ExpectNothingIsLeft();
 }
 
@@ -232,15 +239,15 @@ TEST_F(OnOtherHosts, ShareProcessesAndSayWhatTheyHear) {
   ASSERT_EQ(up->Wait(), 0) << up->err();
   for (const char* process : {"agent_1", "agents_2-4", "agents_5-7", "agent_8", "agent_9"})
     EXPECT_TRUE(std::filesystem::exists(folder_.File("run/logs/" + std::string(process) + ".log"))) << process;
-  ExpectTheSameBytes(config);
+  ExpectTheSameBytes();
 }
 
 TEST_F(OnOtherHosts, ALinkThatDelaysAndLosesChangesNoByte) {
   Connect({.delay_ms = 20, .loss = 0.01});
   const std::string config = Experiment(30, 0.3, laboratory_->Tables({"1-10", "11-20", "21-30"}));
-  const auto up = Fly(config);
+  const auto up = Fly(config, {"--set", "run.agent_timeout_s=20"});
   ASSERT_EQ(up->Wait(), 0) << up->err();
-  ExpectTheSameBytes(config);
+  ExpectTheSameBytes();
 }
 
 TEST_F(OnOtherHosts, EventsByHandReachThem) {
@@ -255,13 +262,11 @@ TEST_F(OnOtherHosts, EventsByHandReachThem) {
   EXPECT_EQ(send("--agents 3 set law.p_gain=0.4").exit_code, 0);
   EXPECT_EQ(send("pace 0").exit_code, 0);
   ASSERT_EQ(up->Wait(), 0) << up->err();
-  ExpectTheSameBytes(folder_.File("run/config.toml"));
+  ExpectTheSameBytes();
 }
 
 TEST_F(OnOtherHosts, AHostThatDiesEndsTheRunAndIsNamed) {
-  Connect();
-  const auto up = Fly(Experiment(6, 600, laboratory_->Tables({"1-2", "3-4"})), {"--set", "run.pace=1"});
-  ASSERT_TRUE(Flies(*up)) << up->err();
+  const auto up = FlyForLong();
   for (const pid_t pid : laboratory_->On(2, "orchestrator host")) ::kill(pid, SIGKILL);
   EXPECT_EQ(up->Wait(), 1);
   EXPECT_THAT(up->err(), HasSubstr("host_lab2"));
@@ -269,9 +274,7 @@ TEST_F(OnOtherHosts, AHostThatDiesEndsTheRunAndIsNamed) {
 }
 
 TEST_F(OnOtherHosts, AnAgentThatDiesThereIsNamedWithItsHost) {
-  Connect();
-  const auto up = Fly(Experiment(6, 600, laboratory_->Tables({"1-2", "3-4"})), {"--set", "run.pace=1"});
-  ASSERT_TRUE(Flies(*up)) << up->err();
+  const auto up = FlyForLong();
   for (const pid_t pid : laboratory_->On(2, "agent --domain")) {
     ::kill(pid, SIGKILL);
     break;
@@ -282,9 +285,7 @@ TEST_F(OnOtherHosts, AnAgentThatDiesThereIsNamedWithItsHost) {
 }
 
 TEST_F(OnOtherHosts, ACutLinkEndsTheRunOnBothOfItsEnds) {
-  Connect();
-  const auto up = Fly(Experiment(6, 600, laboratory_->Tables({"1-2", "3-4"})), {"--set", "run.pace=1"});
-  ASSERT_TRUE(Flies(*up)) << up->err();
+  const auto up = FlyForLong();
   laboratory_->Cut(2);
   EXPECT_EQ(up->Wait(), 1);
   EXPECT_THAT(up->err(), HasSubstr("host lab2 has not been heard of for 3 s"));
@@ -292,18 +293,14 @@ TEST_F(OnOtherHosts, ACutLinkEndsTheRunOnBothOfItsEnds) {
 }
 
 TEST_F(OnOtherHosts, NothingIsLeftOfAnOrchestratorThatIsKilled) {
-  Connect();
-  const auto up = Fly(Experiment(6, 600, laboratory_->Tables({"1-2", "3-4"})), {"--set", "run.pace=1"});
-  ASSERT_TRUE(Flies(*up)) << up->err();
+  const auto up = FlyForLong();
   for (const pid_t pid : laboratory_->On(0, "orchestrator up")) ::kill(pid, SIGKILL);
   up->Wait();
   ExpectNothingIsLeft();
 }
 
 TEST_F(OnOtherHosts, CtrlCEndsThemInOrder) {
-  Connect();
-  const auto up = Fly(Experiment(6, 600, laboratory_->Tables({"1-2", "3-4"})), {"--set", "run.pace=1"});
-  ASSERT_TRUE(Flies(*up)) << up->err();
+  const auto up = FlyForLong();
   for (const pid_t pid : laboratory_->On(0, "orchestrator up")) ::kill(pid, SIGINT);
   EXPECT_EQ(up->Wait(), 130);
   ExpectNothingIsLeft();
@@ -320,7 +317,7 @@ TEST_F(OnOtherHosts, NeedTheirAddressWhereNeitherSshNorTheirNameTellsIt) {
   const std::string config = Experiment(3, 0.5, tables + "address = '10.79.0.11'\n");
   const auto up = Fly(config);
   ASSERT_EQ(up->Wait(), 0) << up->err();
-  ExpectTheSameBytes(config);
+  ExpectTheSameBytes();
 }
 
 TEST(HostsPage, HasAnExperimentThatIsOne) {
