@@ -14,7 +14,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 constexpr int kHosts = 3;
 
@@ -188,9 +187,10 @@ class OnOtherHosts : public testing::Test {
     return folder_.File("team.toml");
   }
   std::unique_ptr<Running> Fly(const std::string& config, const std::vector<std::string>& more = {}) const {
+    const std::string program = MASCOT_BINARY_DIR "/orchestrator";
     std::vector<std::string> words = laboratory_->Here();
-    words.insert(words.end(), {MASCOT_BINARY_DIR "/orchestrator", "up", config, "--out", folder_.File("run"), "--force",
-                               "--set", "output.save_plot=false"});
+    words.insert(words.end(),
+                 {program, "up", config, "--out", folder_.File("run"), "--force", "--set", "output.save_plot=false"});
     words.insert(words.end(), more.begin(), more.end());
     return std::make_unique<Running>("ip", words, folder_.File("up"));
   }

@@ -34,8 +34,9 @@ int LookAtProgram(dl_phdr_info* object, std::size_t /*size*/, void* id) {
   for (int k = 0; k < object->dlpi_phnum; ++k) {
     const ElfW(Phdr)& segment = object->dlpi_phdr[k];
     if (segment.p_type != PT_NOTE) continue;
-    const std::string digits =
-        BuildIdIn(reinterpret_cast<const char*>(object->dlpi_addr + segment.p_vaddr), segment.p_memsz);
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): the loader tells addresses as numbers
+    const auto* const notes = reinterpret_cast<const char*>(object->dlpi_addr + segment.p_vaddr);
+    const std::string digits = BuildIdIn(notes, segment.p_memsz);
     if (!digits.empty()) *static_cast<std::string*>(id) = digits;
   }
   return 1;
