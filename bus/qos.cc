@@ -249,9 +249,10 @@ dds::DataWriterQos WriterQos(TopicKind kind) {
   const std::string type = fmt::format("typehash={};", SchemaOf(kind).type_hash);  // as ROS 2 tells it
   qos.user_data().setValue({type.begin(), type.end()});
   auto& reliable = qos.reliable_writer_qos();
-  reliable.times.heartbeatPeriod = Duration_t(0, 200'000'000);  // repairs a lost last sample within 0.2 s
+  reliable.times.heartbeatPeriod = Duration_t(0, 200'000'000);  // repairs a lost last sample; see per_tick
   if (profile.per_tick) {
-    reliable.times.nackSupressionDuration = Duration_t(1, 0);  // 0 would wake the event thread at every write
+    // 0 would wake the event thread at every write. A sample that a network lost is sent again after 1 s.
+    reliable.times.nackSupressionDuration = Duration_t(1, 0);
     reliable.disable_heartbeat_piggyback = true;
   }
   return qos;

@@ -5,24 +5,16 @@
 
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <sstream>
 #include <stdexcept>
 
 #include "experiment/toml/section.h"
+#include "orchestrator/processes/environment.h"
 
 namespace mascot {
-namespace {
-
-std::string Variable(const char* name) {
-  const char* text = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): nothing sets variables
-  return text == nullptr ? "" : text;
-}
-
-}  // namespace
 
 std::vector<std::string> NodesOfTheJob() {
-  if (Variable("SLURM_JOB_ID").empty() || Variable("SLURM_JOB_NODELIST").empty())
+  if (EnvironmentText("SLURM_JOB_ID").empty() || EnvironmentText("SLURM_JOB_NODELIST").empty())
     throw ConfigError({"--slurm: expected a Slurm allocation (sbatch, salloc) around this command, got none"});
   FILE* pipe = popen("scontrol show hostnames \"$SLURM_JOB_NODELIST\"", "r");  // NOLINT(cert-env33-c): fixed words
   if (pipe == nullptr) throw std::runtime_error("cannot start scontrol");
@@ -46,7 +38,7 @@ std::vector<std::string> OnEachNode(const std::vector<std::string>& nodes) {
                                  "--input=all",
                                  "--overlap",
                                  "--kill-on-bad-exit=0"};
-  if (const std::string processors = Variable("SLURM_CPUS_ON_NODE"); !processors.empty())
+  if (const std::string processors = EnvironmentText("SLURM_CPUS_ON_NODE"); !processors.empty())
     words.push_back("--cpus-per-task=" + processors);
   return words;
 }

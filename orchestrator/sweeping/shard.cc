@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdlib>
 #include <regex>
 #include <string_view>
 
 #include "experiment/toml/section.h"
+#include "orchestrator/processes/environment.h"
 #include "orchestrator/sweeping/table.h"
 
 namespace mascot {
@@ -24,8 +24,8 @@ std::optional<std::size_t> ToCount(std::string_view text) {
 
 /// The number in an environment variable of Slurm. Throws ConfigError if it is none.
 std::optional<std::size_t> Variable(const char* name) {
-  const char* text = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): nothing sets variables
-  if (text == nullptr || *text == '\0') return std::nullopt;
+  const std::string text = EnvironmentText(name);
+  if (text.empty()) return std::nullopt;
   if (const auto number = ToCount(text)) return number;
   throw ConfigError({fmt::format("{}: expected a number, as Slurm sets it, got '{}'", name, text)});
 }

@@ -74,8 +74,6 @@ std::vector<std::string> SweepIdentity::Metrics() const {
   return metrics;
 }
 
-std::vector<std::string> SweepIdentity::Columns() const { return SweepColumns(SweepPlan(words), Metrics()); }
-
 std::vector<std::string> SweepColumns(const SweepPlan& plan, const std::vector<std::string>& metrics) {
   std::vector<std::string> columns{"run"};
   columns.insert(columns.end(), plan.keys().begin(), plan.keys().end());

@@ -28,8 +28,6 @@ struct SweepIdentity {
 
   /// The columns of numbers: measured, predicted and the user's, at the end those that depend on the machine.
   std::vector<std::string> Metrics() const;
-  /// All columns of the table.
-  std::vector<std::string> Columns() const;
 };
 
 /// The columns of a table of `plan` with these columns of numbers.

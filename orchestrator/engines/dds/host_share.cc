@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <climits>
-#include <cstdlib>
 #include <iostream>
 
 #include "bus/leave.h"
@@ -11,6 +10,7 @@
 #include "experiment/toml/utf8.h"
 #include "orchestrator/engines/dds/resources.h"
 #include "orchestrator/processes/build.h"
+#include "orchestrator/processes/environment.h"
 
 namespace mascot {
 namespace {
@@ -22,22 +22,17 @@ constexpr auto kBetweenSigns = 500ms;
 constexpr std::size_t kLongestError = 150;
 constexpr auto kEndGrace = 5s;  // for processes that were told to end, over DDS
 
-std::string Variable(const char* name) {
-  const char* text = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): nothing sets variables
-  return text == nullptr ? "" : text;
-}
-
 /// What this machine is called among those that were started together.
 std::string NodeName() {
   char name[HOST_NAME_MAX + 1] = "";
   gethostname(name, sizeof name - 1);
-  const std::string of_slurm = Variable("SLURMD_NODENAME");
+  const std::string of_slurm = EnvironmentText("SLURMD_NODENAME");
   return of_slurm.empty() ? name : of_slurm;
 }
 
 /// Our address at the other end of the ssh connection that started us: its first word.
 std::string SeenFrom() {
-  const std::string connection = Variable("SSH_CONNECTION");
+  const std::string connection = EnvironmentText("SSH_CONNECTION");
   return connection.substr(0, connection.find(' '));
 }
 
@@ -49,7 +44,7 @@ HostShare::HostShare(StopSignal& stop)
       input_(STDIN_FILENO),
       output_(STDOUT_FILENO),
       logs_([this](const std::string& process, const std::string& line) { TellLine(process, line); }),
-      children_(std::in_place, logs_),
+      children_(logs_),
       heard_(WallClock::now()) {}
 
 /// Tells a line in pieces: what merges the lines of several hosts may not keep a long one in one piece.
@@ -99,7 +94,7 @@ bool HostShare::Look() {
     told_ = now;
     Tell({{"kind", "alive"}});
   }
-  if (ending_) return !children_->empty() && now < end_by_;
+  if (ending_) return !children_.empty() && now < end_by_;
   if (input_.ended() || output_.broken()) {
     std::cerr << "the connection to `up` has ended" << std::endl;
     code_ = 1;
@@ -119,7 +114,7 @@ void HostShare::Obey(const std::string& line) {
   if (!node.empty() && node != node_) return;
   const std::string kind = words.at("kind");
   if (kind == "job") Start(words.get<HostJob>());
-  if (kind == "kill") children_->Kill();
+  if (kind == "kill") children_.Kill();
   if (kind == "end" && !ending_) {
     ending_ = true;
     end_by_ = WallClock::now() + kEndGrace;
@@ -133,26 +128,26 @@ void HostShare::Start(const HostJob& job) {
     lock_.emplace(job.domain);
     SweepSharedMemory(job.domain);
     janitor_.emplace(*lock_);
-    children_->Share(janitor_->lifeline());
+    children_.Share(janitor_->lifeline());
   }
   RequireResources(job.shared_memory);
   for (const HostProcess& process : job.processes) {
     std::vector<std::string> arguments = process.arguments;
     arguments.insert(arguments.end(), {"--parent", std::to_string(getpid())});
-    const pid_t pid = children_->Spawn(process.name, ProgramFolder() / "agent", arguments, "/dev/null");
+    const pid_t pid = children_.Spawn(process.name, ProgramFolder() / "agent", arguments, "/dev/null");
     Tell({{"kind", "started"}, {"process", process.name}, {"pid", pid}});
   }
 }
 
 void HostShare::TellExits() {
-  for (const Exit& exit : children_->Reap()) {
+  for (const Exit& exit : children_.Reap()) {
     logs_.LastLines(exit.process);  // its last lines come first
     Tell({{"kind", "exit"}, {"process", exit.process}, {"status", exit.status}});
   }
 }
 
 void HostShare::Leave() {
-  children_->Stop(code_ == 0 ? 2s : 500ms);
+  children_.Stop(code_ == 0 ? 2s : 500ms);
   TellExits();
   if (!lock_) return;
   SweepSharedMemory(domain_);

@@ -43,7 +43,7 @@ class HostShare {
   ChildLogs logs_;
   std::optional<DomainLock> lock_;
   std::optional<Janitor> janitor_;
-  std::optional<Children> children_;
+  Children children_;
   int domain_ = -1;
   std::chrono::duration<double> silence_{60};
   Time heard_, told_;

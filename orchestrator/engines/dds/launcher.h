@@ -13,7 +13,6 @@
 #include "orchestrator/engines/dds/host_words.h"
 #include "orchestrator/processes/child_logs.h"
 #include "orchestrator/processes/children.h"
-#include "orchestrator/processes/console.h"
 #include "orchestrator/recording/run_folder.h"
 
 namespace mascot {
