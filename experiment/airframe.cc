@@ -79,7 +79,7 @@ struct Entry {
 // Every built-in airframe.
 constexpr Entry kAirframes[] = {{"mascot", Mascot}, {"mascot_published", Published}, {"crazyflie", Crazyflie}};
 
-constexpr auto kNames = [] {
+constexpr auto kAirframeNames = [] {
   std::array<std::string_view, std::size(kAirframes)> names{};
   for (std::size_t i = 0; i < names.size(); ++i) names[i] = kAirframes[i].name;
   return names;
@@ -93,7 +93,8 @@ constexpr Key kAirframeGainKeys[] = {
 };
 
 constexpr Key kAirframeKeys[] = {
-    key::OneOf("base", kNames, "the built-in airframe that gives what this table leaves out").Default("\"mascot\""),
+    key::OneOf("base", kAirframeNames, "the built-in airframe that gives what this table leaves out")
+        .Default("\"mascot\""),
     key::Text("name", "name of the airframe").Otherwise(kOfBase),
     key::Number("mass_kg", Above(0, 1e4), "mass").Otherwise(kOfBase),
     key::Vector3("inertia_kg_m2", {0, 1e6}, "moments of inertia about x, y, z of B").Otherwise(kOfBase),
@@ -178,7 +179,7 @@ std::span<const Airframe> Airframes() {
 
 std::span<const Key> AirframeKeys() { return kAirframeKeys; }
 
-std::span<const std::string_view> AirframeNames() { return kNames; }
+std::span<const std::string_view> AirframeNames() { return kAirframeNames; }
 
 Airframe ReadAirframe(Section& agents, std::string_view key) {
   if (agents.Kind(key) == "table") return ReadTable(agents.Child(key));

@@ -12,7 +12,7 @@ namespace mascot {
 namespace {
 
 constexpr Range kGoTo_m = {-1e6, 1e6};
-constexpr std::array kKinds = {"set", "goto", "graph", "cut", "mend"};
+constexpr std::array kEventKinds = {"set", "goto", "graph", "cut", "mend"};
 
 constexpr Key kGoToKeys[] = {
     key::Integer("agent", 1, kMaxAgents, "a leader, or an agent that flies waypoints").Required(),
@@ -91,7 +91,7 @@ Event::Edges ReadGraph(Section section) {
 void CheckKind(Section& section) {
   std::string found, all;
   int count = 0;
-  for (const char* kind : kKinds) {
+  for (const char* kind : kEventKinds) {
     all += (all.empty() ? "" : ", ") + std::string(kind);
     if (!section.Has(kind)) continue;
     found += (found.empty() ? "" : " and ") + std::string(kind);

@@ -14,7 +14,7 @@ namespace mascot {
 namespace {
 
 /// A name that is a word for ssh and for a file, and no option.
-bool IsName(const std::string& name) {
+bool IsHostName(const std::string& name) {
   constexpr std::string_view kOthers = "._-@";
   return !name.empty() && name.size() <= 100 && name.front() != '-' && name.front() != '.' &&
          std::ranges::all_of(name, [&](char c) {
@@ -79,7 +79,7 @@ void Place(Section& section, const HostConfig& host, std::vector<AgentConfig>& a
 HostConfig ReadHost(Section& section, std::vector<AgentConfig>& agents, std::set<std::string>& names) {
   HostConfig host;
   host.name = section.Text("name");
-  if (!section.Wrong("name") && !IsName(host.name))
+  if (!section.Wrong("name") && !IsHostName(host.name))
     section.Fail("name", "expected a host name, got '" + host.name + "'");
   else if (!section.Wrong("name") && !names.insert(host.name).second)
     section.Fail("name", "expected each host once, got " + host.name + " again");

@@ -69,7 +69,7 @@ bool IsNameCharacter(char c) {
          c == '-' || c == ' ';
 }
 
-bool IsName(std::string_view name) {
+bool IsRunName(std::string_view name) {
   constexpr std::size_t kLongest = 100;
   return !name.empty() && name.size() <= kLongest && std::string_view("._- ").find(name.front()) == name.npos &&
          std::all_of(name.begin(), name.end(), IsNameCharacter);
@@ -79,13 +79,13 @@ bool IsName(std::string_view name) {
 std::string NameFrom(std::string text) {
   for (char& c : text)
     if (!IsNameCharacter(c)) c = '_';
-  return IsName(text) ? text : "experiment";
+  return IsRunName(text) ? text : "experiment";
 }
 
 void ReadRun(Section& section, const std::string& default_name, Experiment& experiment) {
   auto& run = experiment.run;
   run.name = section.Text("name", NameFrom(default_name));
-  if (!section.Wrong("name") && !IsName(run.name))
+  if (!section.Wrong("name") && !IsRunName(run.name))
     section.Fail("name",
                  "expected a letter or digit, then letters, digits, '.', '_', '-' and spaces, got '" + run.name + "'");
   run.duration_s = section.Number("duration_s");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "agent/laws.h"
+#include "tests/load.h"
 
 namespace mascot {
 namespace {
@@ -12,10 +13,8 @@ const std::string kThree =
     "[run]\nduration_s = 10.0\n[agents]\ncount = 3\nposition_m = [[0, 0, 1], [4, 0, 2], [0, 3, 3]]\n"
     "[graph]\ntopology = 'path'\n[law]\nname = 'minmax'\nleader = 1\nbeta = [0.5, 1.0, 1.5]\n";
 
-Experiment Load(const std::string& toml) { return LoadExperiment(Section::FromText(toml, "test.toml"), "test"); }
-
-/// A row of three agents with these x (m); y = 0, z = 1, 2, 3.
-std::vector<Motion> Row(double first, double second, double third) {
+/// Three agents with these x (m); y = 0, z = 1, 2, 3.
+std::vector<Motion> At(double first, double second, double third) {
   std::vector<Motion> motions(3);
   motions[0].p_WB = {first, 0, 1};
   motions[1].p_WB = {second, 0, 2};
@@ -26,11 +25,11 @@ std::vector<Motion> Row(double first, double second, double third) {
 TEST(Pursuit, EndsWhenAChildIsCloseToItsParentForGood) {
   const Experiment experiment = Load(kThree);
   PursuitMeter meter(experiment);
-  meter.Add(Row(0, 4, 5));
-  meter.Add(Row(0, 0.04, 3));  // close, but not for good
-  meter.Add(Row(0, -0.06, 2));
-  meter.Add(Row(0, 0.05, 1));
-  meter.Add(Row(0, 0.01, 0.1));
+  meter.Add(At(0, 4, 5));
+  meter.Add(At(0, 0.04, 3));  // close, but not for good
+  meter.Add(At(0, -0.06, 2));
+  meter.Add(At(0, 0.05, 1));
+  meter.Add(At(0, 0.01, 0.1));
   const auto edges = meter.Result();
   ASSERT_EQ(edges.size(), 2u);
   EXPECT_EQ(edges[0].child, 2);
@@ -39,14 +38,14 @@ TEST(Pursuit, EndsWhenAChildIsCloseToItsParentForGood) {
   EXPECT_EQ(edges[1].child, 3);
   EXPECT_FALSE(edges[1].time_s) << "not yet";
   EXPECT_DOUBLE_EQ(edges[1].end_m, 0.09);
-  meter.Add(Row(0, 0, 0));
+  meter.Add(At(0, 0, 0));
   EXPECT_EQ(meter.Result()[1].time_s, 0.05);
 }
 
 TEST(Pursuit, LooksAlongTheAxesOfTheLawAlone) {
   const Experiment experiment = Load(kThree + "axes = 'xyz'\n");
   PursuitMeter meter(experiment);
-  meter.Add(Row(0, 0, 0));
+  meter.Add(At(0, 0, 0));
   EXPECT_FALSE(meter.Result()[0].time_s) << "a metre above";
 }
 

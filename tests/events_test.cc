@@ -38,7 +38,7 @@ std::string Event(const std::string& lines, const std::string& at_s = "0.5") {
 
 /// Three agents with a law, and an event that sets `key`. `command`, `position`: the first tick at which they differ
 /// from those of the run without it.
-struct Row {
+struct LiveKey {
   std::string key, value;
   std::string law = "name = 'consensus'\n";
   std::string more = {};
@@ -47,12 +47,12 @@ struct Row {
   std::string name = key;
 };
 
-void PrintTo(const Row& row, std::ostream* out) { *out << row.key << " = " << row.value; }
+void PrintTo(const LiveKey& row, std::ostream* out) { *out << row.key << " = " << row.value; }
 
-class LiveKeys : public testing::TestWithParam<Row> {};
+class LiveKeys : public testing::TestWithParam<LiveKey> {};
 
 TEST_P(LiveKeys, ChangeTheRunFromTheirTickOn) {
-  const Row& row = GetParam();
+  const LiveKey& row = GetParam();
   const std::string base = Three(row.law) + row.more;
   const auto without = Fly(base);
   const auto with = Fly(base + Event("set = { \"" + row.key + "\" = " + row.value + " }"));
@@ -66,42 +66,43 @@ constexpr const char* kForms = "name = 'formation'\noffsets_m = [[0, 0, 0], [1, 
 constexpr const char* kLossy = "[link]\nloss = 0.9\nhold_s = 1.0\n";
 constexpr const char* kBursts = "[link]\ngilbert_elliott = { good_to_bad = 0.0, bad_to_good = 0.5 }\n";
 
-std::string NameOf(const testing::TestParamInfo<Row>& row) { return test::ParamName(row.param.name); }
+std::string NameOf(const testing::TestParamInfo<LiveKey>& row) { return test::ParamName(row.param.name); }
 
 INSTANTIATE_TEST_SUITE_P(
     OfLaws, LiveKeys,
-    testing::Values(Row{"law.p_gain", "2.0"}, Row{"law.v_gain", "2.0"}, Row{"law.beta", "2.0"},
-                    Row{.key = "law.p_gain", .value = "2.0", .law = kFlies, .name = "waypoint: p_gain"},
-                    Row{.key = "law.d_gain", .value = "2.0", .law = kFlies},
-                    Row{.key = "law.waypoints_m", .value = "[[1, 1, 1]]", .law = kFlies},
-                    Row{.key = "law.offsets_m", .value = "[[0, 0, 0], [0, 1, 0], [0, 2, 0]]", .law = kForms},
-                    Row{.key = "law.leader_p_gain", .value = "2.0", .law = kLeads},
-                    Row{.key = "law.leader_d_gain", .value = "2.0", .law = kLeads},
-                    Row{.key = "law.leader_waypoints_m", .value = "[[3, 3, 3]]", .law = kLeads},
-                    Row{.key = "law.leader_arrival_radius_m",
-                        .value = "100.0",
-                        .law = std::string(kLeads) + "leader_arrival_radius_m = 0.01\nleader_dwell_s = 0.1\n",
-                        .command = kTick + 10,
-                        .position = kTick + 11},
-                    Row{.key = "law.p_gain",
-                        .value = "2.0",
-                        .law = "name = 'velocity_consensus'\n",
-                        .name = "velocity_consensus: p_gain"}),
+    testing::Values(LiveKey{"law.p_gain", "2.0"}, LiveKey{"law.v_gain", "2.0"}, LiveKey{"law.beta", "2.0"},
+                    LiveKey{.key = "law.p_gain", .value = "2.0", .law = kFlies, .name = "waypoint: p_gain"},
+                    LiveKey{.key = "law.d_gain", .value = "2.0", .law = kFlies},
+                    LiveKey{.key = "law.waypoints_m", .value = "[[1, 1, 1]]", .law = kFlies},
+                    LiveKey{.key = "law.offsets_m", .value = "[[0, 0, 0], [0, 1, 0], [0, 2, 0]]", .law = kForms},
+                    LiveKey{.key = "law.leader_p_gain", .value = "2.0", .law = kLeads},
+                    LiveKey{.key = "law.leader_d_gain", .value = "2.0", .law = kLeads},
+                    LiveKey{.key = "law.leader_waypoints_m", .value = "[[3, 3, 3]]", .law = kLeads},
+                    LiveKey{.key = "law.leader_arrival_radius_m",
+                            .value = "100.0",
+                            .law = std::string(kLeads) + "leader_arrival_radius_m = 0.01\nleader_dwell_s = 0.1\n",
+                            .command = kTick + 10,
+                            .position = kTick + 11},
+                    LiveKey{.key = "law.p_gain",
+                            .value = "2.0",
+                            .law = "name = 'velocity_consensus'\n",
+                            .name = "velocity_consensus: p_gain"}),
     NameOf);
 
 INSTANTIATE_TEST_SUITE_P(
     OfControl, LiveKeys,
-    testing::Values(Row{"control.max_acceleration_m_per_s2", "0.01"},
-                    Row{.key = "control.max_speed_m_per_s", .value = "0.01", .law = "name = 'velocity_consensus'\n"},
-                    Row{.key = "control.velocity_gain", .value = "1.0", .law = "name = 'velocity_consensus'\n"}),
+    testing::Values(LiveKey{"control.max_acceleration_m_per_s2", "0.01"},
+                    LiveKey{
+                        .key = "control.max_speed_m_per_s", .value = "0.01", .law = "name = 'velocity_consensus'\n"},
+                    LiveKey{.key = "control.velocity_gain", .value = "1.0", .law = "name = 'velocity_consensus'\n"}),
     NameOf);
 
-INSTANTIATE_TEST_SUITE_P(OfLinks, LiveKeys,
-                         testing::Values(Row{"link.loss", "1.0"}, Row{"link.delay_s", "0.05"},
-                                         Row{"graph.range_m", "0.5"},
-                                         Row{.key = "link.hold_s", .value = "0.0", .more = kLossy},
-                                         Row{.key = "link.gilbert_elliott.loss_good", .value = "1.0", .more = kBursts}),
-                         NameOf);
+INSTANTIATE_TEST_SUITE_P(
+    OfLinks, LiveKeys,
+    testing::Values(LiveKey{"link.loss", "1.0"}, LiveKey{"link.delay_s", "0.05"}, LiveKey{"graph.range_m", "0.5"},
+                    LiveKey{.key = "link.hold_s", .value = "0.0", .more = kLossy},
+                    LiveKey{.key = "link.gilbert_elliott.loss_good", .value = "1.0", .more = kBursts}),
+    NameOf);
 
 // --- what events say --------------------------------------------------------------------------------
 

@@ -7,14 +7,13 @@
 
 #include "orchestrator/measuring/agreement_meter.h"
 #include "orchestrator/team/ideal_team.h"
+#include "tests/load.h"
 
 namespace mascot {
 namespace {
 
-Experiment Load(const std::string& toml) { return LoadExperiment(Section::FromText(toml, "test.toml"), "test"); }
-
 /// What the laws themselves do, on ideal bodies.
-FromStart Fly(const Experiment& experiment) {
+FromStart FlyIdeal(const Experiment& experiment) {
   AgreementMeter meter(experiment);
   IdealTeam team(experiment);
   const std::vector<Eigen::Vector3d> place_W = LinearTeamOf(experiment).team->place_W;
@@ -48,7 +47,7 @@ std::string Agents(std::mt19937& random, int count, const std::string& model) {
 
 void ExpectTheSame(const std::string& toml) {
   const Experiment experiment = Load(toml);
-  const FromStart flown = Fly(experiment), predicted = FromMatrices(experiment);
+  const FromStart flown = FlyIdeal(experiment), predicted = FromMatrices(experiment);
   ASSERT_TRUE(flown.settling_time_s && flown.rate_per_s) << toml;
   ASSERT_TRUE(predicted.settling_time_s && predicted.rate_per_s) << toml;
   EXPECT_NEAR(*predicted.settling_time_s, *flown.settling_time_s, 1.01 * experiment.period_s()) << toml;

@@ -53,7 +53,7 @@ struct Outcome {
   double amplitude = 0;
 };
 
-Outcome Fly(const std::string& toml) {
+Outcome FlyPursuit(const std::string& toml) {
   FlownNetwork pair(toml);
   const Trembling predicted = Predict(pair.experiment).minmax_edges.at(0).trembling.value();
   const double end_s = *predicted.time_s + 20;
@@ -72,7 +72,7 @@ TEST(LaggedPursuit, SaysHowAHundredPairsOfQuadrotorsTrembleAndWhenTheyAreThere) 
   int late = 0;
   for (int n = 0; n < 100; ++n) {
     const std::string airframe(AirframeNames()[static_cast<std::size_t>(n) % AirframeNames().size()]);
-    const Outcome outcome = Fly(RandomPair(airframe, n));
+    const Outcome outcome = FlyPursuit(RandomPair(airframe, n));
     EXPECT_THAT(outcome.amplitude, AllOf(Ge(0.5), Le(2))) << airframe << ", pair " << n;
     late += outcome.late_s > 0.5;
   }

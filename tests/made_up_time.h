@@ -5,6 +5,6 @@
 
 namespace mascot {
 
-inline constexpr std::chrono::steady_clock::time_point kStart{std::chrono::seconds(1000)};
+inline constexpr std::chrono::steady_clock::time_point kT0{std::chrono::seconds(1000)};
 
 }  // namespace mascot

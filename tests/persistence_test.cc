@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "agent/laws.h"
+#include "tests/load.h"
 
 namespace mascot {
 namespace {
@@ -16,8 +17,6 @@ std::string Four(const std::string& rest) {
          "position_m = [[0, 0, 1], [10, 0, 2], [20, 0, 3], [40, 0, 4]]\n" +
          rest;
 }
-
-Experiment Load(const std::string& toml) { return LoadExperiment(Section::FromText(toml, "test.toml"), "test"); }
 
 Persistence PersistenceIn(const std::string& toml) {
   const Experiment experiment = Load(toml);

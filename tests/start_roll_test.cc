@@ -12,11 +12,11 @@ using Next = StartRoll::Next;
 
 constexpr bool kMatched = true, kReady = true;
 
-/// A roll for three agents and a timeout of 60 s; it began at kStart and has asked once.
+/// A roll for three agents and a timeout of 60 s; it began at kT0 and has asked once.
 StartRoll Begun() {
   StartRoll roll(3, 60.0);
-  roll.Begin(kStart);
-  EXPECT_EQ(roll.Look(kStart, kMatched), Next::kAsk);
+  roll.Begin(kT0);
+  EXPECT_EQ(roll.Look(kT0, kMatched), Next::kAsk);
   return roll;
 }
 
@@ -33,31 +33,31 @@ TEST(StartRoll, StartsWhenEveryAgentAndTheRecorderAreReady) {
   roll.OnAgents({2, 2}, kReady);
   roll.OnAgents({3, 3}, kReady);
   roll.OnRecorder(kReady);
-  EXPECT_EQ(roll.Look(kStart + 1ms, kMatched), Next::kWait);
+  EXPECT_EQ(roll.Look(kT0 + 1ms, kMatched), Next::kWait);
   roll.OnAgents({1, 1}, kReady);
-  EXPECT_EQ(roll.Look(kStart + 2ms, kMatched), Next::kStart);
+  EXPECT_EQ(roll.Look(kT0 + 2ms, kMatched), Next::kStart);
 }
 
 TEST(StartRoll, WaitsForTheRecorder) {
   StartRoll roll = Begun();
   roll.OnAgents({1, 3}, kReady);
-  EXPECT_EQ(roll.Look(kStart + 1ms, kMatched), Next::kWait);
+  EXPECT_EQ(roll.Look(kT0 + 1ms, kMatched), Next::kWait);
   roll.OnRecorder(kReady);
-  EXPECT_EQ(roll.Look(kStart + 1ms, kMatched), Next::kStart);
+  EXPECT_EQ(roll.Look(kT0 + 1ms, kMatched), Next::kStart);
 }
 
 TEST(StartRoll, WaitsForTheMatchingOfAllEndpoints) {
   StartRoll roll = Complete();
-  EXPECT_EQ(roll.Look(kStart + 1ms, !kMatched), Next::kWait);
-  EXPECT_EQ(roll.Look(kStart + 2ms, kMatched), Next::kStart);
+  EXPECT_EQ(roll.Look(kT0 + 1ms, !kMatched), Next::kWait);
+  EXPECT_EQ(roll.Look(kT0 + 2ms, kMatched), Next::kStart);
 }
 
 TEST(StartRoll, CountsAgentsThatAreReadyBeforeItBegins) {
   StartRoll roll(1, 60.0);
   roll.OnAgents({1, 1}, kReady);
   roll.OnRecorder(kReady);
-  roll.Begin(kStart);
-  EXPECT_EQ(roll.Look(kStart, kMatched), Next::kStart);
+  roll.Begin(kT0);
+  EXPECT_EQ(roll.Look(kT0, kMatched), Next::kStart);
 }
 
 TEST(StartRoll, IgnoresASecondReady) {
@@ -65,19 +65,19 @@ TEST(StartRoll, IgnoresASecondReady) {
   for (int time = 0; time < 3; ++time) roll.OnAgents({1, 1}, kReady);
   roll.OnRecorder(kReady);
   roll.OnRecorder(kReady);
-  EXPECT_EQ(roll.Look(kStart + 1ms, kMatched), Next::kWait);
+  EXPECT_EQ(roll.Look(kT0 + 1ms, kMatched), Next::kWait);
   EXPECT_EQ(roll.Failure(), "not ready within run.start_timeout_s = 60.0 s: agents 2, 3");
 }
 
 TEST(StartRoll, WaitsAgainForAProcessThatIsNoLongerReady) {
   StartRoll roll = Complete();
   roll.OnAgents({2, 2}, !kReady);
-  EXPECT_EQ(roll.Look(kStart + 1ms, kMatched), Next::kWait);
+  EXPECT_EQ(roll.Look(kT0 + 1ms, kMatched), Next::kWait);
   roll.OnAgents({2, 2}, kReady);
   roll.OnRecorder(!kReady);
-  EXPECT_EQ(roll.Look(kStart + 2ms, kMatched), Next::kWait);
+  EXPECT_EQ(roll.Look(kT0 + 2ms, kMatched), Next::kWait);
   roll.OnRecorder(kReady);
-  EXPECT_EQ(roll.Look(kStart + 3ms, kMatched), Next::kStart);
+  EXPECT_EQ(roll.Look(kT0 + 3ms, kMatched), Next::kStart);
 }
 
 TEST(StartRoll, IgnoresUnknownAgents) {
@@ -87,28 +87,28 @@ TEST(StartRoll, IgnoresUnknownAgents) {
     roll.OnAgents(strangers, kReady);
   EXPECT_EQ(roll.Failure(), "not ready within run.start_timeout_s = 60.0 s: agents 1, 2, 3");
   roll.OnAgents({-7, 99}, kReady);
-  EXPECT_EQ(roll.Look(kStart + 1ms, kMatched), Next::kStart);
+  EXPECT_EQ(roll.Look(kT0 + 1ms, kMatched), Next::kStart);
 }
 
 TEST(StartRoll, AsksAgainFourTimesASecond) {
   StartRoll roll = Begun();
-  EXPECT_EQ(roll.Look(kStart + 249ms, kMatched), Next::kWait);
-  EXPECT_EQ(roll.Look(kStart + 250ms, kMatched), Next::kAsk);
-  EXPECT_EQ(roll.Look(kStart + 251ms, kMatched), Next::kWait);
-  EXPECT_EQ(roll.Look(kStart + 499ms, kMatched), Next::kWait);
-  EXPECT_EQ(roll.Look(kStart + 510ms, kMatched), Next::kAsk);
-  EXPECT_EQ(roll.Look(kStart + 759ms, kMatched), Next::kWait) << "from when it asked last";
+  EXPECT_EQ(roll.Look(kT0 + 249ms, kMatched), Next::kWait);
+  EXPECT_EQ(roll.Look(kT0 + 250ms, kMatched), Next::kAsk);
+  EXPECT_EQ(roll.Look(kT0 + 251ms, kMatched), Next::kWait);
+  EXPECT_EQ(roll.Look(kT0 + 499ms, kMatched), Next::kWait);
+  EXPECT_EQ(roll.Look(kT0 + 510ms, kMatched), Next::kAsk);
+  EXPECT_EQ(roll.Look(kT0 + 759ms, kMatched), Next::kWait) << "from when it asked last";
 }
 
 TEST(StartRoll, FailsWhenItsTimeIsUp) {
   StartRoll roll = Begun();
-  EXPECT_NE(roll.Look(kStart + 60s - 1ns, kMatched), Next::kFail);
-  EXPECT_EQ(roll.Look(kStart + 60s, kMatched), Next::kFail);
+  EXPECT_NE(roll.Look(kT0 + 60s - 1ns, kMatched), Next::kFail);
+  EXPECT_EQ(roll.Look(kT0 + 60s, kMatched), Next::kFail);
 }
 
 TEST(StartRoll, StartsIfAllAreReadyAtTheLastMoment) {
   StartRoll roll = Complete();
-  EXPECT_EQ(roll.Look(kStart + 61s, kMatched), Next::kStart);
+  EXPECT_EQ(roll.Look(kT0 + 61s, kMatched), Next::kStart);
 }
 
 TEST(StartRoll, NamesTheProcessesThatAreMissing) {

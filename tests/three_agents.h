@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "agent/agent.h"
-#include "agent/laws.h"
-#include "experiment/experiment.h"
+#include "tests/load.h"
 
 namespace mascot {
 
@@ -15,10 +14,6 @@ inline std::string Three(const std::string& lines, const std::string& agents = "
   return "[run]\nduration_s = 1.0\n[agents]\ncount = 3\nmodel = 'double_integrator'\n"
          "position_m = [[0, 0, 1], [1, 0, 2], [0, 2, 3]]\n" +
          agents + "[graph]\nedges = [[1, 2, 0.5], [1, 3]]\n[law]\n" + lines;
-}
-
-inline Experiment Load(const std::string& toml) {
-  return LoadExperiment(Section::FromText(toml, "folder/test.toml"), "test");
 }
 
 /// The error for `toml`; empty: it is valid.

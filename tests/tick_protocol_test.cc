@@ -77,11 +77,11 @@ Exchange Realtime(int agents, std::int64_t last_tick = 1'000'000) {
   return exchange;
 }
 
-/// A real-time run in which all agents have answered tick 0 at kStart: tick k is due k * 0.25 s later.
+/// A real-time run in which all agents have answered tick 0 at kT0: tick k is due k * 0.25 s later.
 Exchange Paced(int agents, std::int64_t last_tick = 1'000'000) {
   Exchange exchange = Realtime(agents, last_tick);
   EXPECT_EQ(exchange.OnAllCommands(), kTakeAndWake);
-  EXPECT_EQ(exchange.Look(kStart).look_again, kStart + 250ms);
+  EXPECT_EQ(exchange.Look(kT0).look_again, kT0 + 250ms);
   return exchange;
 }
 
@@ -146,7 +146,7 @@ TEST(TickProtocol, FinishesWithTheLastCommandOfTheLastTickAndDoesNotStep) {
   EXPECT_FALSE(exchange.finished());
   EXPECT_EQ(exchange.OnCommand(2, 1), kTakeAndWake);
   EXPECT_TRUE(exchange.finished());
-  EXPECT_EQ(exchange.Look(kStart).look_again, std::nullopt);
+  EXPECT_EQ(exchange.Look(kT0).look_again, std::nullopt);
 }
 
 TEST(TickProtocol, IgnoresCommandsWhenItIsFinished) {
@@ -208,9 +208,9 @@ TEST(TickProtocol, PublishesNothingForTheRecorderBeforeItStarts) {
 TEST(TickProtocol, NamesTheAgentsThatAreSilentForTheTimeout) {
   Exchange exchange = Lockstep(3);
   exchange.OnCommand(2, 0);
-  EXPECT_EQ(exchange.Look(kStart).failure, "");
-  EXPECT_EQ(exchange.Look(kStart + 5s).failure, "");
-  const Turn turn = exchange.Look(kStart + 5s + 1ns);
+  EXPECT_EQ(exchange.Look(kT0).failure, "");
+  EXPECT_EQ(exchange.Look(kT0 + 5s).failure, "");
+  const Turn turn = exchange.Look(kT0 + 5s + 1ns);
   EXPECT_EQ(turn.failure, "tick 0: no command from agents 1, 3 within run.agent_timeout_s = 5.0 s");
   EXPECT_EQ(turn.actions, kNothing);
 }
@@ -218,39 +218,39 @@ TEST(TickProtocol, NamesTheAgentsThatAreSilentForTheTimeout) {
 TEST(TickProtocol, GivesTheWholeTimeoutToEveryTick) {
   Exchange exchange = Lockstep(2);
   for (int tick = 0; tick < 10; ++tick) {
-    exchange.Look(kStart + tick * 5s);
-    EXPECT_EQ(exchange.Look(kStart + tick * 5s + 5s).failure, "") << tick;
+    exchange.Look(kT0 + tick * 5s);
+    EXPECT_EQ(exchange.Look(kT0 + tick * 5s + 5s).failure, "") << tick;
     exchange.OnAllCommands();
   }
-  exchange.Look(kStart + 50s);
+  exchange.Look(kT0 + 50s);
   exchange.OnCommand(1, 10);
-  EXPECT_EQ(exchange.Look(kStart + 55s + 1ns).failure,
+  EXPECT_EQ(exchange.Look(kT0 + 55s + 1ns).failure,
             "tick 10: no command from agent 2 within run.agent_timeout_s = 5.0 s")
       << "one command ends no tick";
 }
 
 TEST(TickProtocol, GivesTheRecorderATimeoutForEachAgent) {
   Exchange exchange = BeyondTheWindow(3);
-  EXPECT_EQ(exchange.Look(kStart).failure, "");
-  EXPECT_EQ(exchange.Look(kStart + 15s).failure, "");
-  EXPECT_EQ(exchange.Look(kStart + 15s + 1ns).failure,
+  EXPECT_EQ(exchange.Look(kT0).failure, "");
+  EXPECT_EQ(exchange.Look(kT0 + 15s).failure, "");
+  EXPECT_EQ(exchange.Look(kT0 + 15s + 1ns).failure,
             "tick 64: the recorder has confirmed only 0 ticks, nothing within 3 times run.agent_timeout_s = 5.0 s");
 }
 
 TEST(TickProtocol, GivesAgentsTheirTimeFromWhenTheTickIsPublished) {
   Exchange exchange = BeyondTheWindow(3);
-  exchange.Look(kStart);
-  EXPECT_EQ(exchange.Look(kStart + 14s).failure, "");
+  exchange.Look(kT0);
+  EXPECT_EQ(exchange.Look(kT0 + 14s).failure, "");
   exchange.OnRecorded(1);
-  EXPECT_EQ(exchange.Look(kStart + 14s).failure, "");
-  EXPECT_EQ(exchange.Look(kStart + 19s).failure, "");
-  EXPECT_EQ(exchange.Look(kStart + 19s + 1ns).failure,
+  EXPECT_EQ(exchange.Look(kT0 + 14s).failure, "");
+  EXPECT_EQ(exchange.Look(kT0 + 19s).failure, "");
+  EXPECT_EQ(exchange.Look(kT0 + 19s + 1ns).failure,
             "tick 64: no command from agents 1, 2, 3 within run.agent_timeout_s = 5.0 s");
 }
 
 TEST(TickProtocol, LooksTwentyTimesASecondInLockstepAndDoesNothing) {
   Exchange exchange = Lockstep(1);
-  for (const Time now : {kStart, kStart + 1s, kStart + 2s}) {
+  for (const Time now : {kT0, kT0 + 1s, kT0 + 2s}) {
     const Turn turn = exchange.Look(now);
     EXPECT_EQ(turn.actions, kNothing);
     EXPECT_EQ(turn.look_again, now + 50ms);
@@ -263,39 +263,39 @@ TEST(TickProtocol, LooksTwentyTimesASecondInLockstepAndDoesNothing) {
 TEST(TickProtocol, WaitsInRealTimeForEveryAgentsFirstCommand) {
   Exchange exchange = Realtime(2);
   EXPECT_EQ(exchange.OnCommand(2, 0), kTake);
-  EXPECT_EQ(exchange.Look(kStart).actions, kNothing);
-  EXPECT_EQ(exchange.Look(kStart + 4s).actions, kNothing);
+  EXPECT_EQ(exchange.Look(kT0).actions, kNothing);
+  EXPECT_EQ(exchange.Look(kT0 + 4s).actions, kNothing);
   EXPECT_EQ(exchange.OnCommand(1, 0), kTakeAndWake);
-  const Turn turn = exchange.Look(kStart + 4s + 1ms);
+  const Turn turn = exchange.Look(kT0 + 4s + 1ms);
   EXPECT_EQ(turn.actions, kNothing);
-  EXPECT_EQ(turn.look_again, kStart + 4s + 251ms) << "a whole period for tick 0, too";
+  EXPECT_EQ(turn.look_again, kT0 + 4s + 251ms) << "a whole period for tick 0, too";
 }
 
 TEST(TickProtocol, NamesAgentsThatAreSilentFromTheStartInRealTime) {
   Exchange exchange = Realtime(2);
   exchange.OnCommand(2, 0);
-  exchange.Look(kStart);
-  EXPECT_EQ(exchange.Look(kStart + 5s).failure, "");
-  EXPECT_EQ(exchange.Look(kStart + 5s + 1ns).failure,
+  exchange.Look(kT0);
+  EXPECT_EQ(exchange.Look(kT0 + 5s).failure, "");
+  EXPECT_EQ(exchange.Look(kT0 + 5s + 1ns).failure,
             "tick 0: no command from agent 1 within run.agent_timeout_s = 5.0 s");
 }
 
 TEST(TickProtocol, StepsInRealTimeWhenTheNextTickIsDueAndNotBefore) {
   Exchange exchange = Paced(2);
-  exchange.Look(kStart + 250ms);
+  exchange.Look(kT0 + 250ms);
   EXPECT_EQ(exchange.OnAllCommands(), kTake) << "a complete tick does not hurry";
-  EXPECT_EQ(exchange.Look(kStart + 500ms - 1ns).actions, kNothing);
-  const Turn turn = exchange.Look(kStart + 500ms);
+  EXPECT_EQ(exchange.Look(kT0 + 500ms - 1ns).actions, kNothing);
+  const Turn turn = exchange.Look(kT0 + 500ms);
   EXPECT_EQ(turn.actions, kStepAndPublish);
-  EXPECT_EQ(turn.due, kStart + 500ms);
-  EXPECT_EQ(turn.look_again, kStart + 500ms);
-  EXPECT_EQ(exchange.Look(kStart + 500ms).look_again, kStart + 750ms);
+  EXPECT_EQ(turn.due, kT0 + 500ms);
+  EXPECT_EQ(turn.look_again, kT0 + 500ms);
+  EXPECT_EQ(exchange.Look(kT0 + 500ms).look_again, kT0 + 750ms);
 }
 
 TEST(TickProtocol, HoldsACommandThatIsLateInRealTime) {
   Exchange exchange = Paced(2);
   for (int tick = 1; tick <= 3; ++tick) {
-    EXPECT_EQ(exchange.Look(kStart + tick * 250ms).actions, kStepAndPublish);
+    EXPECT_EQ(exchange.Look(kT0 + tick * 250ms).actions, kStepAndPublish);
     EXPECT_EQ(exchange.OnCommand(1, tick), kTake);
   }
   EXPECT_EQ(exchange.answered(1), 3);
@@ -308,35 +308,35 @@ TEST(TickProtocol, HoldsACommandThatIsLateInRealTime) {
 TEST(TickProtocol, NamesAgentsWhoseCommandIsHeldLongerThanTheTimeoutInRealTime) {
   Exchange exchange = Paced(3);
   for (int tick = 1; tick <= 21; ++tick) {  // the timeout is 20 periods
-    EXPECT_EQ(exchange.Look(kStart + tick * 250ms).failure, "") << tick;
+    EXPECT_EQ(exchange.Look(kT0 + tick * 250ms).failure, "") << tick;
     exchange.OnCommand(1, tick);
     if (tick < 21) exchange.OnCommand(3, tick);  // it has missed only the last tick
   }
-  const Turn turn = exchange.Look(kStart + 22 * 250ms);
+  const Turn turn = exchange.Look(kT0 + 22 * 250ms);
   EXPECT_EQ(turn.failure, "tick 21: no command from agent 2 within run.agent_timeout_s = 5.0 s");
   EXPECT_EQ(turn.actions, kNothing) << "the world is not stepped with it";
-  EXPECT_EQ(turn.due, kStart + 22 * 250ms);
+  EXPECT_EQ(turn.due, kT0 + 22 * 250ms);
 }
 
 TEST(TickProtocol, FallsBehindInRealTimeOnASlowMachine) {
   Exchange exchange = Paced(1);
-  Turn turn = exchange.Look(kStart + 1s);  // three periods late
+  Turn turn = exchange.Look(kT0 + 1s);  // three periods late
   EXPECT_EQ(turn.actions, kStepAndPublish);
-  EXPECT_EQ(turn.due, kStart + 250ms) << "from when its lateness counts";
-  turn = exchange.Look(kStart + 1s);
+  EXPECT_EQ(turn.due, kT0 + 250ms) << "from when its lateness counts";
+  turn = exchange.Look(kT0 + 1s);
   EXPECT_EQ(turn.actions, kNothing);
-  EXPECT_EQ(turn.look_again, kStart + 1250ms) << "agents have a whole period";
-  exchange.Look(kStart + 1500ms);
-  EXPECT_EQ(exchange.Look(kStart + 1500ms).actions, kStepAndPublish) << "one period is made up for";
+  EXPECT_EQ(turn.look_again, kT0 + 1250ms) << "agents have a whole period";
+  exchange.Look(kT0 + 1500ms);
+  EXPECT_EQ(exchange.Look(kT0 + 1500ms).actions, kStepAndPublish) << "one period is made up for";
 }
 
 TEST(TickProtocol, WaitsForTheRecorderInRealTime) {
   Exchange exchange = Paced(2);
   for (int tick = 1; tick < 64; ++tick) {
-    EXPECT_EQ(exchange.Look(kStart + tick * 250ms).actions, kStepAndPublish);
+    EXPECT_EQ(exchange.Look(kT0 + tick * 250ms).actions, kStepAndPublish);
     exchange.OnAllCommands();
   }
-  const Time due = kStart + 64 * 250ms;
+  const Time due = kT0 + 64 * 250ms;
   EXPECT_EQ(exchange.Look(due).actions, (Actions{.step = true}));
   EXPECT_EQ(exchange.Look(due).look_again, due + 50ms);
   EXPECT_EQ(exchange.Look(due + 10s).failure, "");
@@ -351,10 +351,10 @@ TEST(TickProtocol, WaitsForTheRecorderInRealTime) {
 TEST(TickProtocol, GivesTheRecorderATimeoutForEachAgentInRealTimeToo) {
   Exchange exchange = Paced(2);
   for (int tick = 1; tick <= 64; ++tick) {
-    exchange.Look(kStart + tick * 250ms);
+    exchange.Look(kT0 + tick * 250ms);
     exchange.OnAllCommands();
   }
-  const Time since = kStart + 64 * 250ms;
+  const Time since = kT0 + 64 * 250ms;
   exchange.Look(since);
   EXPECT_EQ(exchange.Look(since + 10s).failure, "");
   EXPECT_EQ(exchange.Look(since + 10s + 1ns).failure,
@@ -368,16 +368,16 @@ TEST(TickProtocol, WakesTheLoopForTheRecorderInRealTimeOnly) {
 
 TEST(TickProtocol, WaitsInRealTimeForEveryAgentsLastCommand) {
   Exchange exchange = Paced(2, /*last_tick=*/2);
-  exchange.Look(kStart + 250ms);
-  EXPECT_EQ(exchange.Look(kStart + 500ms).actions, kStepAndPublish);
+  exchange.Look(kT0 + 250ms);
+  EXPECT_EQ(exchange.Look(kT0 + 500ms).actions, kStepAndPublish);
   EXPECT_EQ(exchange.OnCommand(1, 2), kTake);
   for (const auto later : {500ms, 750ms, 5500ms}) {
-    const Turn turn = exchange.Look(kStart + later);
+    const Turn turn = exchange.Look(kT0 + later);
     EXPECT_EQ(turn.actions, kNothing) << "no tick comes after the last";
     EXPECT_EQ(turn.failure, "");
   }
   Exchange other = exchange;
-  EXPECT_EQ(exchange.Look(kStart + 5500ms + 1ns).failure,
+  EXPECT_EQ(exchange.Look(kT0 + 5500ms + 1ns).failure,
             "tick 2: no command from agent 2 within run.agent_timeout_s = 5.0 s");
   EXPECT_EQ(other.OnCommand(2, 1), kTake) << "to the tick before: is held, ends nothing";
   EXPECT_EQ(other.OnCommand(2, 2), kTakeAndWake);
@@ -386,11 +386,11 @@ TEST(TickProtocol, WaitsInRealTimeForEveryAgentsLastCommand) {
 
 TEST(TickProtocol, StopsInRealTimeWhenTheNextTickIsDue) {
   Exchange exchange = Paced(2);
-  exchange.Look(kStart + 250ms);
+  exchange.Look(kT0 + 250ms);
   EXPECT_EQ(exchange.OnAllCommands(kStop), kTake);
-  EXPECT_EQ(exchange.Look(kStart + 300ms, kStop).look_again, kStart + 500ms);
+  EXPECT_EQ(exchange.Look(kT0 + 300ms, kStop).look_again, kT0 + 500ms);
   EXPECT_FALSE(exchange.finished());
-  const Turn turn = exchange.Look(kStart + 500ms, kStop);
+  const Turn turn = exchange.Look(kT0 + 500ms, kStop);
   EXPECT_EQ(turn.actions, kStepAndPublish);
   EXPECT_EQ(turn.look_again, std::nullopt);
   EXPECT_TRUE(exchange.finished());
@@ -401,7 +401,7 @@ TEST(TickProtocol, StopsInRealTimeWhenTheNextTickIsDue) {
 Exchange PacedBeyondTheWindow() {
   Exchange exchange = Paced(1);
   for (int tick = 1; tick <= 64; ++tick) {
-    exchange.Look(kStart + tick * 250ms);
+    exchange.Look(kT0 + tick * 250ms);
     exchange.OnAllCommands();
   }
   EXPECT_EQ(exchange.published(), 63);
@@ -410,7 +410,7 @@ Exchange PacedBeyondTheWindow() {
 
 TEST(TickProtocol, StopsInRealTimeWhereItWaitsForTheRecorderAndDoesNotStep) {
   Exchange exchange = PacedBeyondTheWindow();
-  const Turn turn = exchange.Look(kStart + 20s, kStop);
+  const Turn turn = exchange.Look(kT0 + 20s, kStop);
   EXPECT_EQ(turn.actions, kNothing) << "nobody has seen the states of tick 64";
   EXPECT_EQ(turn.look_again, std::nullopt);
   EXPECT_TRUE(exchange.finished());
@@ -419,7 +419,7 @@ TEST(TickProtocol, StopsInRealTimeWhereItWaitsForTheRecorderAndDoesNotStep) {
 TEST(TickProtocol, PublishesNothingWhenItIsFinished) {
   Exchange exchange = PacedBeyondTheWindow();
   exchange.OnRecorded(1);
-  EXPECT_EQ(exchange.Look(kStart + 20s, kStop).actions, (Actions{.step = true})) << "tick 65 waits for the recorder";
+  EXPECT_EQ(exchange.Look(kT0 + 20s, kStop).actions, (Actions{.step = true})) << "tick 65 waits for the recorder";
   ASSERT_TRUE(exchange.finished());
   EXPECT_EQ(exchange.OnRecorded(2), kWake);
   EXPECT_EQ(exchange.published(), 64);
@@ -428,9 +428,9 @@ TEST(TickProtocol, PublishesNothingWhenItIsFinished) {
 TEST(TickProtocol, StopsInRealTimeAtTickZeroWithoutAStep) {
   Exchange exchange = Realtime(2);
   EXPECT_EQ(exchange.OnCommand(1, 0, kStop), kTake);
-  EXPECT_EQ(exchange.Look(kStart, kStop).look_again, kStart + 50ms) << "tick 0 is waited for all the same";
+  EXPECT_EQ(exchange.Look(kT0, kStop).look_again, kT0 + 50ms) << "tick 0 is waited for all the same";
   EXPECT_EQ(exchange.OnCommand(2, 0, kStop), kTakeAndWake);
-  const Turn turn = exchange.Look(kStart + 1ms, kStop);
+  const Turn turn = exchange.Look(kT0 + 1ms, kStop);
   EXPECT_EQ(turn.actions, kNothing);
   EXPECT_EQ(turn.look_again, std::nullopt);
   EXPECT_TRUE(exchange.finished());
@@ -445,14 +445,14 @@ TEST(TickProtocol, PublishesATickOfLockstepWhenTheGateOpens) {
   Exchange exchange = Lockstep(2);
   exchange.gate().SetPace(1);
   EXPECT_EQ(exchange.OnAllCommands(), kTakeStepAndWake) << "the world steps at once, but is not published";
-  Turn turn = exchange.Look(kStart);
+  Turn turn = exchange.Look(kT0);
   EXPECT_EQ(turn.actions, kNothing);
   EXPECT_TRUE(turn.held);
-  EXPECT_EQ(turn.look_again, kStart + 10ms);
-  EXPECT_EQ(exchange.Look(kStart + 9ms).actions, kNothing);
-  EXPECT_EQ(exchange.Look(kStart + 10ms).actions, kPublish);
+  EXPECT_EQ(turn.look_again, kT0 + 10ms);
+  EXPECT_EQ(exchange.Look(kT0 + 9ms).actions, kNothing);
+  EXPECT_EQ(exchange.Look(kT0 + 10ms).actions, kPublish);
   EXPECT_EQ(exchange.published(), 1);
-  EXPECT_EQ(exchange.Look(kStart + 10ms).actions, kNothing) << "once";
+  EXPECT_EQ(exchange.Look(kT0 + 10ms).actions, kNothing) << "once";
 }
 
 TEST(TickProtocol, APausedRunOutlivesTheTimeOutOfAgents) {
@@ -460,16 +460,16 @@ TEST(TickProtocol, APausedRunOutlivesTheTimeOutOfAgents) {
   exchange.gate().Pause();
   exchange.OnAllCommands();
   for (int hour = 0; hour < 100; ++hour) {
-    const Turn turn = exchange.Look(kStart + hour * 1h);
+    const Turn turn = exchange.Look(kT0 + hour * 1h);
     EXPECT_EQ(turn.failure, "");
     EXPECT_TRUE(turn.held);
-    EXPECT_EQ(turn.look_again, kStart + hour * 1h + 500ms);
+    EXPECT_EQ(turn.look_again, kT0 + hour * 1h + 500ms);
   }
   exchange.gate().Resume();
-  EXPECT_EQ(exchange.Look(kStart + 100h).actions, kPublish);
-  EXPECT_EQ(exchange.Look(kStart + 100h).failure, "");
-  EXPECT_EQ(exchange.Look(kStart + 100h + 5s).failure, "") << "agents have their time from then on";
-  EXPECT_EQ(exchange.Look(kStart + 100h + 5001ms).failure,
+  EXPECT_EQ(exchange.Look(kT0 + 100h).actions, kPublish);
+  EXPECT_EQ(exchange.Look(kT0 + 100h).failure, "");
+  EXPECT_EQ(exchange.Look(kT0 + 100h + 5s).failure, "") << "agents have their time from then on";
+  EXPECT_EQ(exchange.Look(kT0 + 100h + 5001ms).failure,
             "tick 1: no command from agents 1, 2 within run.agent_timeout_s = 5.0 s");
 }
 
@@ -478,10 +478,10 @@ TEST(TickProtocol, StepsPublishAsManyTicksAndPauseAgain) {
   exchange.gate().Step(2);
   for (int step = 0; step < 2; ++step) {
     EXPECT_EQ(exchange.OnAllCommands(), kTakeStepAndWake);
-    EXPECT_EQ(exchange.Look(kStart).actions, kPublish);
+    EXPECT_EQ(exchange.Look(kT0).actions, kPublish);
   }
   EXPECT_EQ(exchange.OnAllCommands(), kTakeStepAndWake);
-  EXPECT_TRUE(exchange.Look(kStart).held);
+  EXPECT_TRUE(exchange.Look(kT0).held);
   EXPECT_EQ(exchange.published(), 2);
 }
 
@@ -490,8 +490,8 @@ TEST(TickProtocol, AStopEndsAPausedRunAtOnce) {
     Exchange exchange = realtime ? Paced(2) : Lockstep(2);
     exchange.gate().Pause();
     if (!realtime) exchange.OnAllCommands();
-    EXPECT_TRUE(exchange.Look(kStart + 1s).held);
-    EXPECT_EQ(exchange.Look(kStart + 1s, kStop).look_again, std::nullopt);
+    EXPECT_TRUE(exchange.Look(kT0 + 1s).held);
+    EXPECT_EQ(exchange.Look(kT0 + 1s, kStop).look_again, std::nullopt);
     EXPECT_TRUE(exchange.finished());
     EXPECT_EQ(exchange.published(), 0);
   }
@@ -500,31 +500,31 @@ TEST(TickProtocol, AStopEndsAPausedRunAtOnce) {
 TEST(TickProtocol, APausedTickOfLockstepStillWaitsForTheRecorder) {
   Exchange exchange = BeyondTheWindow(1);
   exchange.gate().SetPace(1000);
-  EXPECT_FALSE(exchange.Look(kStart).held);
+  EXPECT_FALSE(exchange.Look(kT0).held);
   EXPECT_EQ(exchange.OnRecorded(1), kWake) << "for the loop to look at the gate";
-  EXPECT_TRUE(exchange.Look(kStart).held);
-  EXPECT_EQ(exchange.Look(kStart + 1s).actions, kPublish);
+  EXPECT_TRUE(exchange.Look(kT0).held);
+  EXPECT_EQ(exchange.Look(kT0 + 1s).actions, kPublish);
 }
 
 TEST(TickProtocol, APauseStopsTheClockOfRealTime) {
   Exchange exchange = Paced(1);
   exchange.gate().Pause();
-  EXPECT_TRUE(exchange.Look(kStart + 10h).held);
+  EXPECT_TRUE(exchange.Look(kT0 + 10h).held);
   EXPECT_EQ(exchange.published(), 0);
   exchange.gate().Resume();
-  EXPECT_EQ(exchange.Look(kStart + 10h).look_again, kStart + 10h + 250ms);
-  EXPECT_EQ(exchange.Look(kStart + 10h + 250ms).actions, kStepAndPublish);
+  EXPECT_EQ(exchange.Look(kT0 + 10h).look_again, kT0 + 10h + 250ms);
+  EXPECT_EQ(exchange.Look(kT0 + 10h + 250ms).actions, kStepAndPublish);
 }
 
 TEST(TickProtocol, StepsOfAPausedRealTimeRunWaitForEveryCommand) {
   Exchange exchange = Paced(1);
   exchange.gate().Step(2);
-  EXPECT_EQ(exchange.Look(kStart).actions, kStepAndPublish);
-  EXPECT_EQ(exchange.Look(kStart).actions, kNothing) << "tick 1 is not answered";
+  EXPECT_EQ(exchange.Look(kT0).actions, kStepAndPublish);
+  EXPECT_EQ(exchange.Look(kT0).actions, kNothing) << "tick 1 is not answered";
   EXPECT_EQ(exchange.OnCommand(1, 1), kTakeAndWake);
-  EXPECT_EQ(exchange.Look(kStart).actions, kStepAndPublish);
+  EXPECT_EQ(exchange.Look(kT0).actions, kStepAndPublish);
   EXPECT_EQ(exchange.OnCommand(1, 2), kTakeAndWake);
-  EXPECT_TRUE(exchange.Look(kStart).held);
+  EXPECT_TRUE(exchange.Look(kT0).held);
 }
 
 }  // namespace

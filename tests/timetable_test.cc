@@ -10,38 +10,38 @@ namespace {
 using namespace std::chrono_literals;
 
 TEST(Timetable, HasATickEveryPeriod) {
-  const Timetable timetable(0.01, kStart);
-  EXPECT_EQ(timetable.Due(0), kStart);
-  EXPECT_EQ(timetable.Due(1), kStart + 10ms);
-  EXPECT_EQ(timetable.Due(250), kStart + 2500ms);
+  const Timetable timetable(0.01, kT0);
+  EXPECT_EQ(timetable.Due(0), kT0);
+  EXPECT_EQ(timetable.Due(1), kT0 + 10ms);
+  EXPECT_EQ(timetable.Due(250), kT0 + 2500ms);
 }
 
 TEST(Timetable, DoesNotAccumulateRoundingErrors) {
-  const Timetable timetable(1.0 / 3, kStart);
-  EXPECT_EQ(timetable.Due(1), kStart + 333333333ns);
-  EXPECT_EQ(timetable.Due(3'000'000), kStart + 1'000'000s);
+  const Timetable timetable(1.0 / 3, kT0);
+  EXPECT_EQ(timetable.Due(1), kT0 + 333333333ns);
+  EXPECT_EQ(timetable.Due(3'000'000), kT0 + 1'000'000s);
 }
 
 TEST(Timetable, StaysWhenATickIsLateByAPeriodOrLess) {
-  Timetable timetable(0.01, kStart);
-  timetable.OnTick(1, kStart + 10ms);
-  timetable.OnTick(2, kStart + 25ms);
-  timetable.OnTick(3, kStart + 40ms);
-  EXPECT_EQ(timetable.Due(4), kStart + 40ms) << "that is made up for";
+  Timetable timetable(0.01, kT0);
+  timetable.OnTick(1, kT0 + 10ms);
+  timetable.OnTick(2, kT0 + 25ms);
+  timetable.OnTick(3, kT0 + 40ms);
+  EXPECT_EQ(timetable.Due(4), kT0 + 40ms) << "that is made up for";
 }
 
 TEST(Timetable, MovesByAllOfADelayOfMoreThanAPeriod) {
-  Timetable timetable(0.01, kStart);
-  timetable.OnTick(1, kStart + 20ms + 1ns);
-  EXPECT_EQ(timetable.Due(2), kStart + 30ms + 1ns) << "a whole period after tick 1 came";
-  timetable.OnTick(2, kStart + 30ms + 1ns);
-  EXPECT_EQ(timetable.Due(3), kStart + 40ms + 1ns) << "and not again for the same delay";
+  Timetable timetable(0.01, kT0);
+  timetable.OnTick(1, kT0 + 20ms + 1ns);
+  EXPECT_EQ(timetable.Due(2), kT0 + 30ms + 1ns) << "a whole period after tick 1 came";
+  timetable.OnTick(2, kT0 + 30ms + 1ns);
+  EXPECT_EQ(timetable.Due(3), kT0 + 40ms + 1ns) << "and not again for the same delay";
 }
 
 TEST(Timetable, FallsBehindByAsMuchAtEveryTickThatIsTooLate) {
-  Timetable timetable(0.01, kStart);
-  for (std::int64_t tick = 1; tick <= 100; ++tick) timetable.OnTick(tick, kStart + tick * 30ms);
-  EXPECT_EQ(timetable.Due(101), kStart + 100 * 30ms + 10ms);
+  Timetable timetable(0.01, kT0);
+  for (std::int64_t tick = 1; tick <= 100; ++tick) timetable.OnTick(tick, kT0 + tick * 30ms);
+  EXPECT_EQ(timetable.Due(101), kT0 + 100 * 30ms + 10ms);
 }
 
 }  // namespace

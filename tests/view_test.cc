@@ -11,7 +11,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const char* const kRun = R"(
+const char* const kRecordedRun = R"(
 [run]
 duration_s = 1000.0
 mode = "realtime"
@@ -42,7 +42,7 @@ Ran WsCheck(const std::string& url) {
 
 /// Records 5 s of three agents.
 std::string Record(const ScratchFolder& folder) {
-  WriteFile(folder.File("run.toml"), kRun);
+  WriteFile(folder.File("run.toml"), kRecordedRun);
   Up up(folder, "run", folder.File("run.toml"),
         {"--engine", "inprocess", "--set", "run.mode='lockstep'", "--duration-s", "5", "--set",
          "output.save_data=false"});
@@ -66,7 +66,7 @@ nlohmann::json FrameAt(Viewer& viewer, std::int64_t tick) {
 
 TEST(UpWithView, IsReadByFoxglovesOwnPackagesOverDds) {
   const ScratchFolder folder;
-  WriteFile(folder.File("run.toml"), kRun);
+  WriteFile(folder.File("run.toml"), kRecordedRun);
   Up up(folder, "run", folder.File("run.toml"), {"--view", "127.0.0.1:0"});
   const std::string url = UrlOf(up);
   ASSERT_THAT(url, StartsWith("http://127.0.0.1:")) << up.err();
@@ -90,7 +90,7 @@ TEST(UpWithView, IsReadByFoxglovesOwnPackagesOverDds) {
 
 TEST(UpWithView, TakesTheNextPortIfAnotherRunHasTheFirst) {
   const ScratchFolder folder;
-  WriteFile(folder.File("run.toml"), kRun);
+  WriteFile(folder.File("run.toml"), kRecordedRun);
   const std::vector<std::string> in_one_process = {"--engine",     "inprocess", "--set", "run.mode='lockstep'",
                                                    "--duration-s", "100000",    "--set", "output.save_data=false"};
   auto more = in_one_process;
@@ -159,7 +159,7 @@ TEST(View, PlaysARecordingWhereverAViewerWantsItUntilCtrlC) {
 
 TEST(View, TellsEventsByHandFromThoseOfTheFileByTheTableBesideTheRecording) {
   const ScratchFolder folder;
-  WriteFile(folder.File("run.toml"), std::string(kRun) + "[[events]]\nat_s = 0.0\ncut = [[1, 2]]\n");
+  WriteFile(folder.File("run.toml"), std::string(kRecordedRun) + "[[events]]\nat_s = 0.0\ncut = [[1, 2]]\n");
   Up up(folder, "run", folder.File("run.toml"),
         {"--engine", "inprocess", "--set", "run.mode='lockstep'", "--set", "run.pace=1.0"});
   const auto send = [&](const std::string& words) {

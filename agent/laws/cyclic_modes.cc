@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 namespace mascot {
-namespace {
 
 using Complex = std::complex<double>;
+
+namespace {
 
 Complex Turn(double angle_rad) { return {std::cos(angle_rad), std::sin(angle_rad)}; }
 

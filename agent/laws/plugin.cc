@@ -19,9 +19,9 @@ constexpr Key kPluginParameters[] = {
 };
 
 /// The user's law; its exceptions get the agent and the time in front.
-class PluginLaw final : public Law {
+class Plugin final : public Law {
  public:
-  PluginLaw(const PluginConfig& plugin, const PluginSetup& setup)
+  Plugin(const PluginConfig& plugin, const PluginSetup& setup)
       : id_(setup.id), library_(plugin.library), params_(ToToml(plugin.params)), law_(library_.Make(setup)) {}
 
   Wanted wanted() const override {
@@ -74,7 +74,7 @@ std::unique_ptr<Law> MakePlugin(const Experiment& experiment, int id) {
   const auto& plugin = ParamsOf<PluginConfig>(experiment.agent(id).law);
   try {
     PluginParams params(plugin.params);
-    return std::make_unique<PluginLaw>(plugin, SetupOf(experiment, id, params));
+    return std::make_unique<Plugin>(plugin, SetupOf(experiment, id, params));
   } catch (...) {
     throw std::runtime_error("cannot make the law of agent " + std::to_string(id) + ": " + ExceptionText() +
                              " (every host that flies it needs the same library at the same path)");

@@ -99,7 +99,7 @@ constexpr std::array kFamilies = {
     Family{{"directed_tree", "i hears i / 2 (rounded down)"}, DirectedTree},
 };
 
-constexpr auto kNames = [] {
+constexpr auto kTopologyNames = [] {
   std::array<std::string_view, kFamilies.size()> names;
   for (std::size_t i = 0; i < names.size(); ++i) names[i] = kFamilies[i].name;
   return names;
@@ -107,7 +107,7 @@ constexpr auto kNames = [] {
 
 }  // namespace
 
-std::span<const std::string_view> TopologyNames() { return kNames; }
+std::span<const std::string_view> TopologyNames() { return kTopologyNames; }
 
 std::vector<Topology> Topologies() { return {kFamilies.begin(), kFamilies.end()}; }
 

@@ -12,10 +12,10 @@ using Heard = std::vector<std::vector<Graph::Neighbour>>;
 using Rows = std::vector<std::vector<double>>;
 
 constexpr Range kWeight = {0, 1e6};
-constexpr std::string_view kKinds[] = {"erdos_renyi", "geometric", "small_world"};
+constexpr std::string_view kRandomGraphKinds[] = {"erdos_renyi", "geometric", "small_world"};
 
-constexpr Key kRandomKeys[] = {
-    key::OneOf("kind", kKinds,
+constexpr Key kRandomGraphKeys[] = {
+    key::OneOf("kind", kRandomGraphKinds,
                "Erdos & Renyi: each pair of agents with probability p; geometric: pairs closer than "
                "radius_m at their starts; Watts & Strogatz: a ring with rewired edges")
         .Required(),
@@ -141,7 +141,7 @@ std::span<const Key> GraphKeys() {
       key::Rows("laplacian", {-1e10, 1e10}, "N x N: row i is what agent i needs; rows sum to 0 (the paper's L-mat)"),
       key::Rows("adjacency", kWeight, "N x N: a_ij, with which agent i hears agent j"),
       key::Rows("edges", kWeight, "`[i, j]` or `[i, j, weight]`, ...: i hears j"),
-      key::Table("random", kRandomKeys, "drawn by `run.seed`; undirected"),
+      key::Table("random", kRandomGraphKeys, "drawn by `run.seed`; undirected"),
   };
   return keys;
 }

@@ -20,10 +20,10 @@ double TrembleRadius(double alpha, double beta, double lag_s) {
 
 std::optional<double> LaggedMinmaxTime(double z, double w, double alpha, double beta, double lag_s, double within_m) {
   constexpr int kStepsOfLag = 20;
-  constexpr double kMostSteps = 5e6;
+  constexpr double kLongestInSteps = 5e6;
   const double dt_s = lag_s / kStepsOfLag;
   const double end_s = 3 * MinmaxTime(z, w, alpha, beta) + 100 * lag_s;  // by then it trembles, or never will
-  if (!(end_s / dt_s <= kMostSteps)) return std::nullopt;
+  if (!(end_s / dt_s <= kLongestInSteps)) return std::nullopt;
   const auto steps = static_cast<int>(end_s / dt_s);
   std::array<double, kStepsOfLag> coming{};  // the accelerations of the next steps; the first lag has none
   int last_outside = -1;

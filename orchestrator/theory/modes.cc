@@ -14,7 +14,7 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kSettled = 0.02;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// Roots of s^2 + b s + c, the smaller in magnitude first. It is computed from the product c to avoid cancellation.
 std::array<Complex, 2> Roots(Complex b, Complex c) {
@@ -75,7 +75,7 @@ class FromRest {
 /// (Jury).
 double LongestPeriodOfReal(const LinearMode& mode) {
   const double d = mode.damping.real(), k = mode.stiffness.real();
-  const double by_determinant = mode.hold < 1 ? d / ((1 - mode.hold) * k) : kInfinity;
+  const double by_determinant = mode.hold < 1 ? d / ((1 - mode.hold) * k) : kUnbounded;
   return std::min(by_determinant, 4 / (d + std::sqrt(d * d - 4 * (1 - 2 * mode.hold) * k)));
 }
 
@@ -129,13 +129,13 @@ double LeastRelativeDamping(double p, double b, std::complex<double> lambda) {
 }
 
 double LongestPeriod(std::span<const LinearMode> modes) {
-  double longest_s = kInfinity;
+  double longest_s = kUnbounded;
   for (const LinearMode& mode : modes) longest_s = std::min(longest_s, LongestPeriod(mode));
   return longest_s;
 }
 
 double DecayRate(std::span<const LinearMode> modes, double period_s) {
-  double slowest = kInfinity;
+  double slowest = kUnbounded;
   for (const LinearMode& mode : modes) slowest = std::min(slowest, Rate(mode, period_s));
   return slowest;
 }
@@ -191,7 +191,7 @@ std::optional<double> OwnDelayMargin(const LinearMode& mode, double period_s) {
   companion.diagonal<-1>().setOnes();
   companion.col(3) << std::norm(k), -turn, std::norm(e) + h * h / 4 * std::norm(k), -h * h / 4 * turn;
   companion.col(3) /= highest;
-  double ticks = kInfinity;
+  double ticks = kUnbounded;
   for (const Complex root : Eigenvalues(companion)) {
     if (std::abs(root.imag()) > 1e-9 * std::abs(root)) continue;
     const double w = root.real(), theta = 2 * std::atan(h * std::abs(w) / 2);

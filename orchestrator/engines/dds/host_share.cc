@@ -18,7 +18,6 @@ namespace {
 using namespace std::chrono_literals;
 using WallClock = std::chrono::steady_clock;
 
-constexpr auto kBetweenSigns = 500ms;
 constexpr std::size_t kLongestError = 150;
 constexpr auto kEndGrace = 5s;  // for processes that were told to end, over DDS
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,9 @@ namespace mascot {
 
 // What `up` and `orchestrator host` tell each other: a JSON object a line, with its kind under "kind". Lines for one
 // host of several that were started together have its name under "node"; those of a host always have.
+
+/// From one sign of life, {"kind": "alive"}, to the next, in both directions.
+constexpr std::chrono::milliseconds kBetweenSigns{500};
 
 /// A host's first words: who it is.
 struct HostHello {

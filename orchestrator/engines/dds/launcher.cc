@@ -21,7 +21,6 @@ namespace {
 using namespace std::chrono_literals;
 using WallClock = std::chrono::steady_clock;
 
-constexpr auto kBetweenSigns = 500ms;
 constexpr double kShareOfStart = 0.9;  // of run.start_timeout_s, for a host to answer: its agents join after that
 
 std::pair<Descriptor, Descriptor> Pipe() {

@@ -1,0 +1,14 @@
+// Experiments from a text in a test.
+#pragma once
+
+#include <string>
+
+#include "agent/laws.h"
+
+namespace mascot {
+
+inline Experiment Load(const std::string& toml) {
+  return LoadExperiment(Section::FromText(toml, "folder/test.toml"), "test");
+}
+
+}  // namespace mascot
