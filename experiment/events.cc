@@ -87,8 +87,8 @@ Event::Edges ReadGraph(Section section) {
   return edges;
 }
 
-/// Checks that the event is of exactly one kind.
-void CheckKind(Section& section) {
+/// The kind of the event; "" after a mistake: it is not of exactly one.
+std::string ReadKind(Section& section) {
   std::string found, all;
   int count = 0;
   for (const char* kind : kEventKinds) {
@@ -100,6 +100,7 @@ void CheckKind(Section& section) {
   if (count != 1) section.Fail("", "expected one of " + all + ", got " + (count == 0 ? "none" : found));
   if (section.Has("agents") && !section.Has("set"))
     section.Fail("agents", "expected only with set, got " + (count == 0 ? "it alone" : found));
+  return count == 1 ? found : "";
 }
 
 std::string EdgesText(const Event::Edges& edges) {
@@ -153,8 +154,7 @@ std::span<const Key> EventKeys() { return kEventKeys; }
 
 Event ReadEvent(Section& section, int agents) {
   Event event;
-  event.where = section.Where("");
-  CheckKind(section);
+  event.where = section.Where(ReadKind(section));
   if (section.Has("set")) ReadSet(section, event);
   if (section.Has("agents")) event.agents = ReadAgentIds(section, "agents", agents);
   if (section.Has("goto")) event.go_to = ReadGoTo(section.Child("goto"), agents);

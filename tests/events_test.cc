@@ -113,15 +113,15 @@ std::string RefusalOf(const std::string& event, const std::string& law = "name =
 
 TEST(Events, AreRefusedWithTheirPlaceAndTheWordsOfTheFile) {
   EXPECT_EQ(RefusalOf("set = { \"law.p_gain\" = -1.0 }"),
-            "folder/test.toml:11:1: law.p_gain: expected a number in [0, 1000], got -1.0");
+            "folder/test.toml:13:7: law.p_gain: expected a number in [0, 1000], got -1.0");
   EXPECT_EQ(RefusalOf("set = { \"law.p_gain\" = 'fast' }"),
-            "folder/test.toml:11:1: law.p_gain: expected a number in [0, 1000], got 'fast'");
+            "folder/test.toml:13:7: law.p_gain: expected a number in [0, 1000], got 'fast'");
   EXPECT_EQ(RefusalOf("set = { \"law.p_gian\" = 1.0 }"),
-            "folder/test.toml:11:1: law.p_gian: unknown key (did you mean \"law.p_gain\"?)");
+            "folder/test.toml:13:7: law.p_gian: unknown key (did you mean \"law.p_gain\"?)");
   EXPECT_EQ(RefusalOf("set = { \"law.leader\" = 1 }"),
-            "folder/test.toml:11:1: law.leader: expected a live key, got one that no event changes");
+            "folder/test.toml:13:7: law.leader: expected a live key, got one that no event changes");
   EXPECT_EQ(RefusalOf("set = { \"agents.count\" = 4 }"),
-            "folder/test.toml:11:1: agents.count: expected a live key, got one that no event changes");
+            "folder/test.toml:13:7: agents.count: expected a live key, got one that no event changes");
   EXPECT_EQ(RefusalOf("set = {}"),
             "folder/test.toml:13:7: events[0].set: expected live keys and their new values, got none");
 }
@@ -138,16 +138,16 @@ TEST(Events, NameAgentsAndEdgesThatExist) {
   EXPECT_EQ(RefusalOf("set = { \"law.beta\" = 1 }\nagents = [4]"),
             "folder/test.toml:14:11: events[0].agents[0]: expected an agent in 1..3, got 4.0");
   EXPECT_EQ(RefusalOf("set = { \"link.loss\" = 1 }\nagents = [1]"),
-            "folder/test.toml:11:1: agents: expected none, got some: link.loss is the same for all");
+            "folder/test.toml:13:7: agents: expected none, got some: link.loss is the same for all");
   EXPECT_EQ(RefusalOf("cut = [[2, 1]]"),
-            "folder/test.toml:11:1: expected an edge of the graph (i hears j), got [2, 1]");
+            "folder/test.toml:13:7: expected an edge of the graph (i hears j), got [2, 1]");
   EXPECT_EQ(RefusalOf("cut = []"), "folder/test.toml:13:7: events[0].cut: expected edges [i, j] (i hears j), got none");
   EXPECT_EQ(RefusalOf("mend = [[1, 2], [1, 2, 3]]"),
             "folder/test.toml:13:17: events[0].mend[1]: expected an edge [i, j] (i hears j)");
   EXPECT_EQ(RefusalOf("graph = { edges = [[1, 2.5]] }"),
             "folder/test.toml:13:20: events[0].graph.edges[0]: expected an edge [i, j] (i hears j)");
   EXPECT_EQ(RefusalOf("goto = { agent = 2, position_m = [1, 1, 1] }"),
-            "folder/test.toml:11:1: goto: expected an agent that flies waypoints, or a leader, got agent 2 of law "
+            "folder/test.toml:13:8: goto: expected an agent that flies waypoints, or a leader, got agent 2 of law "
             "'consensus'");
 }
 
