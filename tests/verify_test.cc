@@ -10,6 +10,7 @@
 #include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/formats/mcap/writer.h"
 #include "orchestrator/recording/compare.h"
+#include "orchestrator/recording/completeness.h"
 #include "orchestrator/recording/sample_fields.h"
 #include "tests/call.h"
 #include "tests/scratch.h"
@@ -329,6 +330,17 @@ TEST_F(Verify, ARecordingWithoutMessagesIsRefused) {
   EXPECT_EQ(said.exit_code, kExitUsage);
   EXPECT_EQ(said.err,
             "error: " + recording + ": expected a recording with messages, got none; record.topics left them out\n");
+}
+
+TEST_F(Verify, ARecordingOfARunThatEndedBeforeItsFirstTickIsRefused) {
+  const std::string recording = Fly();
+  McapContents contents = ReadMcap(recording);
+  contents.metadata[kEarlyEnd] = {{kTicksKey, "0"}};
+  Copy(recording, contents, File("none.mcap"), [](const auto&, const auto&) { return false; });
+  const Said said = Check(File("none.mcap"));
+  EXPECT_EQ(said.exit_code, kExitUsage);
+  EXPECT_EQ(said.err, "error: " + File("none.mcap") +
+                          ": expected a recording with messages, got none; the run ended before its first tick\n");
 }
 
 TEST_F(Verify, OnlyTheRecordedTopicsAreCompared) {

@@ -74,8 +74,10 @@ Subject SubjectOf(const std::string& run) {
   subject.ticks = std::min(subject.ticks, subject.plan.ticks);
   if (subject.ticks == 0) {
     const std::string loss = LossOf(subject.contents);
+    const char* reason = TicksOfEarlyEnd(subject.contents) == std::uint64_t{0} ? "the run ended before its first tick"
+                                                                               : "record.topics left them out";
     throw ConfigError({subject.file + ": expected a recording with messages, got none" +
-                       (loss.empty() ? "; record.topics left them out" : ": " + loss)});
+                       (loss.empty() ? std::string("; ") + reason : ": " + loss)});
   }
   return subject;
 }
