@@ -367,5 +367,39 @@ TEST_F(OnOtherHosts, RefuseWhatIsNotTheSameProgram) {
               HasSubstr("cannot start " + folder_.File("nowhere")));
 }
 
+TEST_F(OnOtherHosts, AreNamedWhenTheySayWhatNoHostSays) {
+  Connect();
+  const auto says = [&](const std::string& script) {
+    WriteFile(folder_.File("script"), "#!/bin/sh\n" + script);
+    std::filesystem::permissions(folder_.File("script"), std::filesystem::perms::owner_all);
+    const auto up = Fly(Experiment(2, 600,
+                                   "[[hosts]]\nname = 'lab1'\nagents = '2'\nlaunch = ['" + folder_.File("script") +
+                                       "']\naddress = '10.79.0.1'\n"),
+                        {"--set", "run.start_timeout_s=10"});
+    EXPECT_EQ(up->Wait(), 1) << script;
+    return up->err();
+  };
+  EXPECT_THAT(says("printf 'caf\\351\\n'; sleep 100\n"),
+              HasSubstr("got 'caf\uFFFD' (does its login print something?)"));
+  EXPECT_THAT(says("tr -d '\\n' < /dev/zero\n"), HasSubstr("error: host_lab1: a line of a pipe is too long"));
+  EXPECT_THAT(says("exec yes '{\"kind\": \"alive\"}'\n"),
+              HasSubstr("error: host lab1: expected its greeting first, and once, got 'alive'"));
+  EXPECT_THAT(says("exec \"$@\" | sed --unbuffered 's/agent_2/agent_77/'\n"),
+              HasSubstr("error: host lab1: expected words of its own processes, got agent_77"));
+  EXPECT_THAT(says("exec >&-; sleep 100\n"), HasSubstr("error: host lab1 has not answered for 9 s"));
+}
+
+TEST_F(OnOtherHosts, AreEachAMachineOfItsOwn) {
+  Connect();
+  const auto table = [&](const std::string& name, int agent) {
+    return fmt::format("[[hosts]]\nname = '{}'\nagents = '{}'\nlaunch = ['ssh', '-F', '{}', '10.79.0.11']\n", name,
+                       agent, folder_.File("ssh"));
+  };
+  const auto up = Fly(Experiment(3, 0.5, table("lab1", 1) + table("me@lab1", 2)));
+  EXPECT_EQ(up->Wait(), 1);
+  EXPECT_THAT(up->err(), HasSubstr(" are one machine: expected each machine once"));
+  ExpectNothingIsLeft();
+}
+
 }  // namespace
 }  // namespace mascot::test

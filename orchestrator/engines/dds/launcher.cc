@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "bus/local_socket.h"
+#include "experiment/toml/utf8.h"
 #include "orchestrator/engines/dds/route.h"
 #include "orchestrator/processes/build.h"
 #include "orchestrator/processes/line_pipe.h"
@@ -21,7 +22,9 @@ namespace {
 using namespace std::chrono_literals;
 using WallClock = std::chrono::steady_clock;
 
+constexpr std::size_t kLongestQuote = 200;
 constexpr double kShareOfStart = 0.9;  // of run.start_timeout_s, for a host to answer: its agents join after that
+constexpr int kMostLines = 10'000;     // read of a connection at once: the run must go on beside one that floods
 
 std::pair<Descriptor, Descriptor> Pipe() {
   int ends[2];
@@ -33,9 +36,19 @@ std::pair<Descriptor, Descriptor> Pipe() {
 
 /// A launch command that runs.
 struct Launcher::Connection {
-  Connection(Descriptor from, Descriptor to)
-      : from_hosts(std::move(from)), to_hosts(std::move(to)), input(from_hosts.number()), output(to_hosts.number()) {}
+  Connection(std::string process, Descriptor from, Descriptor to)
+      : name(std::move(process)),
+        from_hosts(std::move(from)),
+        to_hosts(std::move(to)),
+        input(from_hosts.number()),
+        output(to_hosts.number()) {}
+  /// The next line of its hosts, if there is one. Throws std::runtime_error, naming the connection, for one without
+  /// end.
+  std::optional<std::string> Next() try { return input.Next(); } catch (const std::runtime_error& failure) {
+    throw std::runtime_error(name + ": " + failure.what());
+  }
 
+  std::string name;
   Descriptor from_hosts, to_hosts;
   LineReader input;
   LineWriter output;
@@ -43,11 +56,19 @@ struct Launcher::Connection {
 
 /// A host.
 struct Launcher::Remote {
+  /// The log of a process of this host. Throws std::runtime_error if it has no such process.
+  Descriptor& LogOf(const std::string& process) {
+    const auto log = logs.find(process);
+    if (log != logs.end()) return log->second;
+    throw std::runtime_error(fmt::format("host {}: expected words of its own processes, got {}", config.name, process));
+  }
+
   const HostConfig& config;
   Connection& connection;
   Time heard = WallClock::now();
   bool greeted = false;
-  std::map<std::string, Descriptor> logs = {};  // of its processes: their lines go there
+  std::string machine = {};                     // as it says itself
+  std::map<std::string, Descriptor> logs = {};  // of its processes, until they end: their lines go there
   std::map<std::string, int> pids = {};         // to be compared with who joins the run
 };
 
@@ -71,7 +92,7 @@ Launcher::Connection& Launcher::Connect(const HostConfig& host) {
   words.insert(words.end(), {host.program.empty() ? ours : host.program, "host"});
   const std::string process = host.together ? "hosts" : "host_" + host.name;
   children_.Spawn(process, host.launch.front(), words, folder_.Log(process), {input.number(), output.number()});
-  connections_.push_back(std::make_unique<Connection>(std::move(from_host), std::move(to_host)));
+  connections_.push_back(std::make_unique<Connection>(process, std::move(from_host), std::move(to_host)));
   return *connections_.back();
 }
 
@@ -91,21 +112,28 @@ void Launcher::Pump() {
     TellAll({{"kind", "alive"}});
   }
   for (const auto& connection : connections_)
-    while (const auto line = connection->input.Next()) Hear(*connection, *line);
+    for (int lines = 0; lines < kMostLines; ++lines) {
+      const auto line = connection->Next();
+      if (!line) break;
+      Hear(*connection, *line);
+    }
   for (const auto& remote : remotes_) {
     CheckPids(*remote);
     CheckSilence(*remote);
   }
 }
 
-/// Throws std::runtime_error if nothing was heard of a host for too long. The end of a connection is told by Children.
+/// Throws std::runtime_error if nothing was heard of a host for too long.
 void Launcher::CheckSilence(const Remote& remote) const {
-  if (ending_ || remote.connection.input.ended()) return;
+  if (ending_) return;
   const std::chrono::duration<double> silence = WallClock::now() - remote.heard;
   const double limit_s = remote.greeted ? rules_.silence_s : kShareOfStart * rules_.start_timeout_s;
-  if (silence.count() > limit_s)
-    throw std::runtime_error(fmt::format("host {} has not {} for {:.3g} s", remote.config.name,
-                                         remote.greeted ? "been heard of" : "answered", limit_s));
+  if (silence.count() <= limit_s) return;
+  throw std::runtime_error(
+      remote.greeted
+          ? fmt::format("host {} has not been heard of for {:.3g} s", remote.config.name, limit_s)
+          : fmt::format("host {} has not answered for {:.3g} s (does its launch command ask for a password?)",
+                        remote.config.name, limit_s));
 }
 
 /// Throws std::runtime_error for what is no word of a host of this run.
@@ -117,7 +145,7 @@ void Launcher::Hear(const Connection& connection, const std::string& line) {
     throw std::runtime_error(
         fmt::format("host {}: expected the words of `orchestrator host`, got '{}' (does its login "
                     "print something?)",
-                    name, line.substr(0, 200)));
+                    name, CutUtf8(Utf8(line), kLongestQuote)));
   try {
     const std::string node = words.value("node", "");
     const auto speaks = [&](const auto& remote) {
@@ -135,18 +163,22 @@ void Launcher::Hear(const Connection& connection, const std::string& line) {
 void Launcher::Obey(Remote& remote, const nlohmann::json& words) {
   remote.heard = WallClock::now();
   const std::string kind = words["kind"];
-  if (kind == "hello") Greet(remote, words.get<HostHello>());
   if (kind == "error")
     throw std::runtime_error(fmt::format("host {}: {}", remote.config.name, words.at("text").get<std::string>()));
-  if (kind == "started") remote.pids[words.at("process")] = words.at("pid");
-  if (kind == "line") {
+  if ((kind == "hello") == remote.greeted)
+    throw std::runtime_error(
+        fmt::format("host {}: expected its greeting first, and once, got '{}'", remote.config.name, kind));
+  if (kind == "hello") Greet(remote, words.get<HostHello>());
+  if (!words.contains("process")) return;
+  const std::string process = words["process"];
+  Descriptor& log = remote.LogOf(process);
+  if (kind == "started") remote.pids[process] = words.at("pid");
+  if (kind == "line" && log.is_open()) {
     const std::string text = words.at("text").get<std::string>() + (words.at("more") ? "" : "\n");
-    const auto log = remote.logs.find(words.at("process"));
-    if (log != remote.logs.end() && write(log->second.number(), text.data(), text.size()) < 0) remote.logs.erase(log);
+    if (write(log.number(), text.data(), text.size()) < 0) log = Descriptor();
   }
   if (kind == "exit") {
-    const std::string process = words.at("process");
-    remote.logs.erase(process);
+    log = Descriptor();
     exits_.push_back({process, words.at("status")});
   }
 }
@@ -157,6 +189,10 @@ void Launcher::Greet(Remote& remote, const HostHello& hello) {
   if (hello.build != BuildText())
     throw std::runtime_error(
         fmt::format("host {} has another build of MASCOT: {}, expected {}", host.name, hello.build, BuildText()));
+  for (const auto& other : remotes_)
+    if (other->greeted && other->machine == hello.machine && hello.machine != MachineText())
+      throw std::runtime_error(
+          fmt::format("hosts {} and {} are one machine: expected each machine once", other->config.name, host.name));
   HostJob job = rules_.job(host, OurAddress(host, hello.seen_from));
   job.own_memory = hello.machine != MachineText();
   for (const HostProcess& process : job.processes)
@@ -165,6 +201,7 @@ void Launcher::Greet(Remote& remote, const HostHello& hello) {
   words["kind"] = "job";
   if (host.together) words["node"] = host.name;
   remote.connection.output.Write(words.dump());
+  remote.machine = hello.machine;
   remote.greeted = true;
 }
 
