@@ -320,6 +320,25 @@ TEST_F(OnOtherHosts, NeedTheirAddressWhereNeitherSshNorTheirNameTellsIt) {
   ExpectTheSameBytes();
 }
 
+TEST_F(OnOtherHosts, HaveAllThatTheirAgentsPrintedInTheLogs) {
+  Connect();
+  WriteFile(folder_.File("talkative.py"),
+            "def control(t, me, neighbours):\n  print((str(t) + 80 * 'x' + chr(10)) * 300)\n  return (0, 0, 0)\n");
+  WriteFile(folder_.File("team.toml"),
+            "[run]\nduration_s = 0.5\n[agents]\ncount = 3\nrandom = {}\n[graph]\ntopology = 'ring'\n[law]\nname = "
+            "'custom'\nfile = 'talkative.py'\n" +
+                laboratory_->Tables({"2", "3"}));
+  const auto up = Fly(folder_.File("team.toml"), {"--quiet"});
+  ASSERT_EQ(up->Wait(), 0) << up->err();
+  const auto lines = [&](int agent) {
+    const std::string log = ReadFile(folder_.File(fmt::format("run/logs/agent_{}.log", agent)));
+    return std::ranges::count(log, '\n');
+  };
+  EXPECT_GT(lines(1), 50 * 300);
+  EXPECT_EQ(lines(2), lines(1));
+  EXPECT_EQ(lines(3), lines(1));
+}
+
 TEST(HostsPage, HasAnExperimentThatIsOne) {
   const ScratchFolder folder;
   const std::string page = ReadFile(MASCOT_SOURCE_DIR "/docs/hosts.md"), begin = "```toml\n";

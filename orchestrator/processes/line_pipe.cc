@@ -90,8 +90,10 @@ void LineWriter::Run() {
     waiting_ -= line.size();
     for (std::size_t done = 0; done < line.size() && !broken_;) {
       lock.unlock();
+      const std::size_t before = done;
       const bool there = WriteSome(line, done);
       lock.lock();
+      if (until_ && done > before) until_ = std::chrono::steady_clock::now() + kLastWords;
       broken_ = !there || (until_ && std::chrono::steady_clock::now() > *until_);
     }
     if (broken_) lines_.clear();

@@ -35,7 +35,7 @@ class LineReader {
 class LineWriter {
  public:
   explicit LineWriter(int descriptor);
-  ~LineWriter();  ///< writes what is left, for at most 1 s
+  ~LineWriter();  ///< writes what is left, as long as the reader takes some of it within 1 s
   LineWriter(const LineWriter&) = delete;
   LineWriter& operator=(const LineWriter&) = delete;
 

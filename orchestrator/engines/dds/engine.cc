@@ -87,6 +87,7 @@ class DdsRun {
   void OnSignal(int signal);
   void Reap();
   void HearHosts();
+  void AwaitChildren();
   void CheckWire();
   void Steer();
   RunPhases::View Record();
@@ -496,13 +497,21 @@ void DdsRun::TakeReport() {
 bool DdsRun::End() {
   if (hub_) AskToEnd();
   const bool others = launcher_ && launcher_->End();
-  if (phases_.in_order() || others) children_.WaitAll(kExitGrace);
+  if (phases_.in_order() || others) AwaitChildren();
   children_.Stop(2s);
   CallLibrary([this] { LeaveDomain(); });
   if (library_hangs_) return false;
   if (lock_) SweepSharedMemory(lock_->domain());
   if (janitor_) janitor_->Dismiss();
   return true;
+}
+
+/// Waits until the children have exited by themselves. Until then other hosts tell what their processes still print.
+void DdsRun::AwaitChildren() {
+  const auto deadline = WallClock::now() + kExitGrace;
+  while (!children_.WaitAll(20ms) && WallClock::now() < deadline)
+    if (launcher_) HearHosts();
+  if (launcher_) HearHosts();
 }
 
 void DdsRun::LeaveDomain() {
