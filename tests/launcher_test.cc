@@ -320,6 +320,19 @@ TEST_F(OnOtherHosts, NeedTheirAddressWhereNeitherSshNorTheirNameTellsIt) {
   ExpectTheSameBytes();
 }
 
+TEST_F(OnOtherHosts, NeedTheirAddressBehindAJumpHost) {
+  Connect();
+  const std::string tables = fmt::format(
+      "[[hosts]]\nname = 'lab1'\nagents = '2'\nlaunch = ['ssh', '-F', '{}', '-J', '10.79.0.12', '10.79.0.11']\n",
+      folder_.File("ssh"));
+  const auto without = Fly(Experiment(3, 0.5, tables));
+  EXPECT_EQ(without->Wait(), 1);
+  EXPECT_THAT(without->err(), HasSubstr("host lab1: expected hosts.address"));
+  const auto up = Fly(Experiment(3, 0.5, tables + "address = '10.79.0.11'\n"));
+  ASSERT_EQ(up->Wait(), 0) << up->err();
+  ExpectTheSameBytes();
+}
+
 TEST_F(OnOtherHosts, HaveAllThatTheirAgentsPrintedInTheLogs) {
   Connect();
   WriteFile(folder_.File("talkative.py"),

@@ -29,6 +29,16 @@ std::string OurAddressFor(const in_addr& address) {
   return inet_ntop(AF_INET, &here.sin_addr, text, sizeof text) == nullptr ? "" : text;
 }
 
+/// Whether this host has an interface with that address, by which another host may reach it.
+bool IsOurs(const in_addr& address) {
+  const Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  sockaddr_in here{};
+  here.sin_family = AF_INET;
+  here.sin_addr = address;
+  const bool is_loopback = (ntohl(address.s_addr) >> 24U) == IN_LOOPBACKNET;
+  return !is_loopback && bind(socket.number(), reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0;
+}
+
 /// The address of a host by its name; nothing if it has none.
 std::optional<in_addr> AddressOf(const std::string& name) {
   addrinfo wanted{}, *found = nullptr;
@@ -46,7 +56,7 @@ std::string OurAddress(const HostConfig& host, const std::string& seen_from) {
   in_addr theirs{};
   if (!host.address.empty() && inet_pton(AF_INET, host.address.c_str(), &theirs) == 1)
     ours = OurAddressFor(theirs);
-  else if (inet_pton(AF_INET, seen_from.c_str(), &theirs) == 1)
+  else if (inet_pton(AF_INET, seen_from.c_str(), &theirs) == 1 && IsOurs(theirs))  // and not that of a jump host
     ours = seen_from;
   else if (const auto address = AddressOf(host.name))
     ours = OurAddressFor(*address);
