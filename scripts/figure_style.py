@@ -10,10 +10,13 @@ import numpy as np
 
 # Palette of Okabe and Ito, which colour-blind readers can distinguish; the palest colours last.
 OKABE_ITO = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442"]
+# Theirs, and a purple red and a brown that are at least as far from all others as these are from each other, for eyes of
+# all kinds.
+COLOURS = [*OKABE_ITO[:-1], "#882255", "#5C2D00", OKABE_ITO[-1]]
 # With more lines than colours, each colour but the palest comes in these; dashes are left for other uses.
 LINE_STYLES = ["-", ":", "-.", (0, (7, 1.5, 1, 1.5, 1, 1.5))]
 DASHED = "--"
-LOOKS_MAX = (len(OKABE_ITO) - 1) * len(LINE_STYLES)  # more lines than this share a colour bar
+LOOKS_MAX = (len(COLOURS) - 1) * len(LINE_STYLES)  # more lines than this share a colour bar
 # Their colours: viridis without its palest end.
 MANY = matplotlib.colors.ListedColormap(plt.get_cmap("viridis")(np.linspace(0, 0.95, 256)), "many")
 STYLE = {
@@ -110,13 +113,16 @@ def small():
     return {"fontsize": size().small_pt, "color": "0.3"}
 
 
+def fills(count):
+    """Colours of so many areas, which have no kinds of line."""
+    return COLOURS[:count] if count <= len(COLOURS) else [MANY(k / (count - 1)) for k in range(count)]
+
+
 def looks(count):
     """Colours and line styles of so many lines."""
-    if count <= len(OKABE_ITO):
-        return [(colour, "-") for colour in OKABE_ITO[:count]]
-    if count <= LOOKS_MAX:
-        return [(colour, style) for style in LINE_STYLES for colour in OKABE_ITO[:-1]][:count]
-    return [(MANY(k / (count - 1)), "-") for k in range(count)]
+    if len(COLOURS) < count <= LOOKS_MAX:
+        return [(colour, style) for style in LINE_STYLES for colour in COLOURS[:-1]][:count]
+    return [(colour, "-") for colour in fills(count)]
 
 
 def shades(palette, most=16):

@@ -10,7 +10,7 @@ import figure_style as style
 import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
-from figure_style import DASHED, LOOKS_MAX, MANY, OKABE_ITO, small
+from figure_style import COLOURS, DASHED, LOOKS_MAX, MANY, OKABE_ITO, small
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import Circle, Polygon, Rectangle
 from run_folder import FILTERED, INFEASIBLE, cells, disagreement, hull, separation, spanning_tree, waypoint_targets
@@ -48,19 +48,19 @@ def titled(figure, run, what):
     style.title(figure, f"{run.name}: {what}{some}" if run.name else f"{what}{some}")
 
 
-def name_agents(figure, axes, run):
-    """Adds a legend or, for more agents than there are looks, a colour bar beside all panels. To be called last: it
-    keeps free the place that it needs."""
+def name_agents(figure, axes, run, most=LOOKS_MAX):
+    """Adds a legend or, for more agents than `most`, a colour bar beside all panels. To be called last: it keeps free
+    the place that it needs."""
     found = {}
     for axis in axes:
         for handle, label in zip(*axis.get_legend_handles_labels()):
             found.setdefault(label, handle)
-    if run.size > LOOKS_MAX:
+    if run.size > most:
         scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(run.id[0], run.id[-1]), MANY)
         figure.colorbar(scale, ax=list(axes), label="agent", pad=0.02, aspect=40)
         found = {label: handle for label, handle in found.items()
                  if not label.startswith("agent ") or label.endswith(")")}
-    style.add_legend(figure, list(found.values()), list(found), is_below=run.size > LOOKS_MAX)
+    style.add_legend(figure, list(found.values()), list(found), is_below=run.size > most)
     style.wrap_labels(figure)
 
 
@@ -211,10 +211,12 @@ def draw_obstacles(axis, run):
     for obstacle in run.obstacles:
         (x, y), (width, depth) = obstacle["position_m"][:2], obstacle["size_m"][:2]
         if obstacle["shape"] == "box":
-            axis.add_patch(Rectangle((x - width / 2, y - depth / 2), width, depth, rotation_point="center",
-                                     angle=np.degrees(obstacle.get("heading_rad", 0)), **look))
+            shape = axis.add_patch(Rectangle((x - width / 2, y - depth / 2), width, depth, rotation_point="center",
+                                             angle=np.degrees(obstacle.get("heading_rad", 0)), **look))
         else:
-            axis.add_patch(Circle((x, y), width / 2, **look))
+            shape = axis.add_patch(Circle((x, y), width / 2, **look))
+    if run.obstacles:
+        shape.set_label("obstacles")
 
 
 def area_artists(axis, run, p):
@@ -532,7 +534,7 @@ def incidents(run):
     figure, axis = plt.subplots(figsize=(size.width, 0.6 + 0.5 * len(kinds)))
     tick_s = run.t[1] - run.t[0] if run.t.size > 1 else 1
     lane = 0.8 / run.size
-    palette, boxes, moments = np.array(colours(run), dtype=object), [], []
+    palette, boxes, moments = style.fills(run.size), [], []
     for incident in run.incidents:
         begin, end = incident.t_s, incident.until_s + tick_s
         for k in incident.indices:
@@ -549,7 +551,7 @@ def incidents(run):
     time_axis(axis, run.t[0], run.t[-1])
     mark_changes([axis], run)
     titled(figure, run, "what the run came up against")
-    name_agents(figure, [axis], run)
+    name_agents(figure, [axis], run, most=len(COLOURS))
     return figure
 
 

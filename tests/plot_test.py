@@ -261,7 +261,9 @@ class WhatIsInThem(PlotTest):
     def test_obstacles_are_drawn_where_they_stand(self):
         config = CONSENSUS + ('[[physics.obstacles]]\nshape = "box"\nposition_m = [1, 2, 0]\nsize_m = [2, 4, 1]\n'
                               '[[physics.obstacles]]\nshape = "sphere"\nposition_m = [5, 0, 1]\nsize_m = [2, 2, 2]\n')
-        box, sphere = self.figure("paths", config=config).axes[0].patches[:2]
+        figure = self.figure("paths", config=config)
+        box, sphere = figure.axes[0].patches[:2]
+        self.assertEqual([text.get_text() for text in figure.legends[0].get_texts()].count("obstacles"), 1)
         self.assertEqual((box.get_x(), box.get_y(), box.get_width(), box.get_height()), (0, 0, 2, 4))
         self.assertEqual((tuple(sphere.center), sphere.radius), ((5, 0), 1))
 
@@ -344,17 +346,18 @@ class WhatIsInThem(PlotTest):
         self.assertEqual(many.legends, [])
         self.assertEqual(many.axes[-1].get_ylabel(), "agent")
 
-    def test_no_two_agents_look_alike_and_colours_are_okabe_and_itos_if_they_suffice(self):
-        for agents in (1, 8, 9, 10, 28, 29, 50, 100):
+    def test_no_two_agents_look_alike_and_ten_differ_in_colour(self):
+        for agents in (1, 8, 9, 10, 11, 36, 37, 50, 100):
             with self.subTest(agents=agents):
                 looks = figure_style.looks(agents)
                 self.assertEqual(len(set(map(str, looks))), agents)
-                self.assertEqual(all(colour in figure_style.OKABE_ITO for colour, _ in looks), agents <= 28)
+                self.assertEqual(all(colour in figure_style.COLOURS for colour, _ in looks), agents <= 36)
                 self.assertNotIn(figure_style.DASHED, [line for _, line in looks], "dashes are those of liars")
-        self.assertEqual({line for _, line in figure_style.looks(8)}, {"-"})
-        lines = self.lines(self.figure("position", states=arrays(agents=10)).axes[0])
-        self.assertEqual(lines["agent 1"].get_color(), lines["agent 8"].get_color())
-        self.assertEqual([lines[f"agent {k}"].get_linestyle() for k in (1, 8)], ["-", ":"])
+                self.assertEqual(len(set(map(str, figure_style.fills(agents)))), agents)
+        self.assertEqual({line for _, line in figure_style.looks(10)}, {"-"})
+        lines = self.lines(self.figure("position", states=arrays(agents=11)).axes[0])
+        self.assertEqual(lines["agent 1"].get_color(), lines["agent 10"].get_color())
+        self.assertEqual([lines[f"agent {k}"].get_linestyle() for k in (1, 10)], ["-", ":"])
 
     def test_the_graph_and_the_prediction_are_drawn(self):
         summary = PATH | {"consensus": {"settling_time_s": None, "predicted": {"value_m": [1, 2, 3]}}}
@@ -554,6 +557,13 @@ class Changes(PlotTest):
                                     (2, 0.6 + lane, 0.1, lane), (3, low, 1.1, lane)])
         self.assertEqual(len(moments.get_paths()), 0, "a tick is two per cent of this run")
         self.assertEqual(axis.get_legend_handles_labels()[1], ["agent 1", "agent 2", "agent 3"])
+
+    def test_bars_of_more_agents_than_there_are_colours_have_those_of_a_colour_bar(self):
+        (self.folder / "events.csv").write_text(self.EVENTS)
+        named, = self.figure("incidents", states=arrays(agents=10)).legends
+        self.assertEqual([text.get_text() for text in named.get_texts()], ["agent 1", "agent 2", "agent 3"])
+        figure = self.figure("incidents", states=arrays(agents=11))
+        self.assertEqual((figure.legends, figure.axes[-1].get_ylabel()), ([], "agent"))
 
     def test_contacts_are_marked_where_they_were(self):
         (self.folder / "events.csv").write_text(self.EVENTS)

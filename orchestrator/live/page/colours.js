@@ -1,11 +1,14 @@
-// Colours: of agents as in the pictures of a run (Okabe and Ito's palette, which colour-blind readers can distinguish;
-// viridis for more agents than it has), the others from the style sheet.
+// Colours: of agents as in the pictures of a run (a palette that colour-blind readers can distinguish; viridis for more
+// agents than it has), the others from the style sheet.
 
-const OKABE_ITO = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#f0e442"];
+const AGENTS =
+    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#882255", "#5c2d00", "#f0e442"];
 const VIRIDIS = ["#440154", "#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b"];
 const ON_DARK = {
   "#0072b2": "#2f9be0",
-  "#000000": "#f2f2f2"
+  "#000000": "#f2f2f2",
+  "#882255": "#c4457f",
+  "#5c2d00": "#a0703c"
 };  // too dark on a dark ground
 const ON_LIGHT = {
   "#f0e442": "#c9b800"
@@ -16,7 +19,7 @@ export const isDark = () => document.documentElement.dataset.theme === "dark";
 /** Colours "#rrggbb" of `size` agents, in the scheme of now. */
 export function agentColours(size) {
   const changed = isDark() ? ON_DARK : ON_LIGHT;
-  if (size <= OKABE_ITO.length) return OKABE_ITO.slice(0, size).map((colour) => changed[colour] ?? colour);
+  if (size <= AGENTS.length) return AGENTS.slice(0, size).map((colour) => changed[colour] ?? colour);
   const first = isDark() ? 0.3 : 0, last = isDark() ? 1 : 0.9;
   return Array.from({length: size}, (_, k) => viridis(first + (last - first) * k / (size - 1)));
 }
