@@ -145,7 +145,7 @@ def keep_free(figure, right=0.0, below=0.0):
         engine.set(rect=(0, below, 1 - right, 1 - below))
 
 
-def add_legend(figure, handles, labels, is_below=False):
+def add_legend(figure, handles, labels, is_below=False, heading=None):
     """Adds a legend beside the panels, or below them, in as many columns as fit, and keeps its place free. A legend
     below makes the figure higher: the panels keep their height."""
     if not handles:
@@ -153,7 +153,7 @@ def add_legend(figure, handles, labels, is_below=False):
     width, height = figure.get_size_inches()
 
     def legend(columns, **where):
-        made = figure.legend(handles, labels, ncols=columns, borderaxespad=0.4, **where)
+        made = figure.legend(handles, labels, ncols=columns, title=heading, borderaxespad=0.4, **where)
         extent = made.get_window_extent(figure.canvas.get_renderer())
         pad = 0.8 * plt.rcParams["legend.fontsize"] / 72
         return made, extent.width / figure.dpi + pad, extent.height / figure.dpi + pad

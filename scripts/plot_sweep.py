@@ -174,7 +174,7 @@ class Curves:
         self.table, self.x = table, Axis(table, key)
         self.series_key = series
         self.series = Axis(table, series).cells if series else [None]
-        self.colours = {cell: OKABE_ITO[n % len(OKABE_ITO)] for n, cell in enumerate(self.series)}
+        self.looks = dict(zip(self.series, figure_style.looks(len(self.series))))
         values = table.values()
         self.is_log = is_wide([number(row["median"]) for row in table.points]) and is_wide(values)
         self.floor = min(values) / 2 if self.is_log else -np.inf
@@ -196,7 +196,7 @@ class Curves:
 
     def band(self, ax, cell, middle, low, high, name):
         rows = self.points(cell)
-        colour = self.colours[cell]
+        colour, line = self.looks[cell]
         x = [self.nudged(row) for row in rows]
         y, bottom, top = ([number(row[column]) for row in rows] for column in (middle, low, high))
         y, bottom, top = (np.array([np.nan if v is None else v for v in part]) for part in (y, bottom, top))
@@ -209,7 +209,7 @@ class Curves:
             ax.fill_between(x, bottom, top, where=shown, color=colour, alpha=0.2, linewidth=0)
         ax.vlines(np.array(x)[shown], bottom[shown], top[shown], color=colour, alpha=0.5, linewidth=1.5)
         y = np.where(np.isfinite(y), y, np.nan)
-        ax.plot(x, y, "o-" if self.x.is_numeric else "o", color=colour, markersize=3.5, label=text)
+        ax.plot(x, y, "o", linestyle=line if self.x.is_numeric else "none", color=colour, markersize=3.5, label=text)
 
     def marks(self, ax):
         """The runs without a value, and those that failed."""
@@ -222,7 +222,7 @@ class Curves:
                 places = sorted({self.nudged(row) for row in runs if self.is_of(row, cell)})
                 if not places:
                     continue
-                ax.plot(places, [y] * len(places), marker, color=self.colours[cell], markerfacecolor="none", markersize=5 + 2 * n,
+                ax.plot(places, [y] * len(places), marker, color=self.looks[cell][0], markerfacecolor="none", markersize=5 + 2 * n,
                         transform=transform, clip_on=False, zorder=3)
         if self.table.late and self.table.is_time:
             ax.axhline(self.table.end_s(), color="0.5", linestyle=":", linewidth=0.8)
@@ -231,8 +231,9 @@ class Curves:
         for cell in self.series:
             rows = self.points(cell)
             part = [1 - (int(row["failed"]) + int(row["without_value"])) / int(row["runs"]) for row in rows]
-            ax.plot([self.nudged(row) for row in rows], part, "o-" if self.x.is_numeric else "o",
-                    color=self.colours[cell], markersize=3)
+            colour, line = self.looks[cell]
+            ax.plot([self.nudged(row) for row in rows], part, "o", linestyle=line if self.x.is_numeric else "none",
+                    color=colour, markersize=3)
         ax.set_ylim(-0.06, 1.06)
         ax.set_yticks([0, 0.5, 1], ["0", "50 %", "100 %"])
         ax.set_ylabel(self.table.has_value())
@@ -289,10 +290,12 @@ class Curves:
         lowest = fractions if len(fractions) else panels
         for ax in lowest[-1:] if stacked else lowest:
             self.x.dress(ax.xaxis)
-        if self.series_key:
-            panels[0].legend(title=table.label(self.series_key))
+        figure.align_ylabels()
         if not size().is_paper:
             figure.suptitle(table.title(), x=0.01, ha="left", fontsize=9)
+        if self.series_key:
+            handles, labels = panels[0].get_legend_handles_labels()
+            figure_style.add_legend(figure, handles, labels, is_below=True, heading=table.label(self.series_key))
         return figure
 
 

@@ -980,6 +980,23 @@ class SweepTableTest(unittest.TestCase):
         band = axis.collections[0].get_paths()[0].vertices[:, 1]
         self.assertEqual((axis.get_yscale(), band.min(), band.max()), ("log", 0.5, 9000))
 
+    def test_series_differ_in_colour_or_kind_of_line_and_are_named_below_the_panels(self):
+        laws = [f"law_{n}" for n in range(12)]
+        points = [f"{law},{k},{self.COLUMN},1,0,0,{k},,,{k},," for law in laws for k in (1, 2)]
+        table = self.table_of([f"run,law.name,law.beta,error,{self.COLUMN},sim_s", *(f"0,{law},{k},,{k},1" for law in laws for k in (1, 2))],
+                              ["law.name,law.beta,metric,runs,failed,without_value,mean,mean_low_95,mean_high_95,median,decile_1,decile_9",
+                               *points], "law.name", "law.beta")
+        with laid_out():
+            plot_sweep.figure_style.use("column")
+            figure = plot_sweep.draw(table)
+        self.addCleanup(plot.plt.close, "all")
+        axis = figure.axes[0]
+        self.assertEqual(len({(line.get_color(), line.get_linestyle()) for line in axis.get_lines()}), len(laws))
+        figure.draw_without_rendering()
+        legend, = figure.legends
+        self.assertEqual(legend.get_title().get_text(), "law.name")
+        self.assertLess(legend.get_window_extent().y1, axis.xaxis.label.get_window_extent().y0)
+
     def test_equal_numbers_in_other_words_stand_in_one_order(self):
         cells = ["1.00", "1", "1.0", "0.5"]
         table = self.table_of([f"run,law.beta,error,{self.COLUMN},sim_s", *(f"0,{cell},,1,1" for cell in cells)],
