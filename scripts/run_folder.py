@@ -233,6 +233,19 @@ def read_text(path, parse):
         raise RunError(f"{path}: {error.strerror}") from None
 
 
+def why_no_states(folder):
+    """Why a folder has no states.npz, and how to get one."""
+    if not (folder / "config.toml").exists():
+        return "this is not the folder of a run"
+    if not read_text(folder / "config.toml", tomllib.loads).get("output", {}).get("save_data", True):
+        why = "output.save_data is off"
+    elif (folder / "summary.json").exists():
+        why = "it was removed"
+    else:
+        why = "the run was killed, or has not ended"
+    return f"{why}; orchestrator export {folder} --format npz writes it"
+
+
 def read_states(path):
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as states:
@@ -241,7 +254,7 @@ def read_states(path):
     except KeyError as error:
         raise RunError(f"{path}: {str(error.args[0]).split(' is not')[0]}: no such array") from None
     except FileNotFoundError:
-        raise RunError(f"{path}: no such file (output.save_data = false writes none)") from None
+        raise RunError(f"{path}: no such file: {why_no_states(path.parent)}") from None
     except OSError as error:
         raise RunError(f"{path}: {error.strerror or 'cannot be read'}") from None
     except (ValueError, TypeError, EOFError, RuntimeError, SyntaxError, zipfile.BadZipFile, zlib.error):

@@ -856,7 +856,16 @@ class Errors(PlotTest):
         self.check(2, f"{self.folder}: no such folder")
 
     def test_missing_states(self):
-        self.check(1, f"{self.folder}/states.npz: no such file (output.save_data = false writes none)")
+        missing = f"{self.folder}/states.npz: no such file: "
+        self.check(1, missing + "this is not the folder of a run")
+        export = f"; orchestrator export {self.folder} --format npz writes it"
+        for config, has_summary, why in ((CONSENSUS, False, "the run was killed, or has not ended"), (CONSENSUS, True, "it was removed"),
+                                         (CONSENSUS + "[output]\nsave_data = false\n", True, "output.save_data is off")):
+            self.write(config)
+            (self.folder / "states.npz").unlink()
+            if not has_summary:
+                (self.folder / "summary.json").unlink()
+            self.check(1, missing + why + export)
 
     def test_damaged_states(self):
         self.write()

@@ -35,8 +35,7 @@ TEST_F(PlotVerb, HandsItsOptionsToTheScript) {
 TEST_F(PlotVerb, WithoutOptionsItDrawsTheRun) {
   const Said said = Plot({});
   EXPECT_EQ(said.exit_code, 1);
-  EXPECT_EQ(said.err,
-            "error: " + scratch.File("states.npz") + ": no such file (output.save_data = false writes none)\n");
+  EXPECT_EQ(said.err, "error: " + scratch.File("states.npz") + ": no such file: this is not the folder of a run\n");
 }
 
 TEST_F(PlotVerb, WantsRunFolders) {
