@@ -14,10 +14,31 @@
 #include "orchestrator/sweeping/table.h"
 
 namespace mascot {
+namespace {
+
+/// Splits a list with commas between.
+std::vector<std::string> NamesIn(const std::string& list) {
+  std::vector<std::string> names;
+  std::istringstream text(list + ",");
+  for (std::string name; std::getline(text, name, ',');) names.push_back(name);
+  return names;
+}
+
+/// Returns what is wrong with a list of formats; "": nothing.
+std::string MistakeInFormats(const std::string& list) {
+  static const std::vector<std::string> kFormats{"png", "pdf", "svg"};
+  for (const std::string& name : NamesIn(list))
+    if (std::ranges::find(kFormats, name) == kFormats.end())
+      return "expected one or more of png, pdf, svg, with commas between, got '" + name + "'";
+  return "";
+}
+
+}  // namespace
 
 void SweepPicture::SetUp(CLI::App& command) {
   command.add_option("--plot", metric, "the column that the picture shows")->type_name("COLUMN");
   command.add_option("--format", format, "of the picture: png, pdf, svg; several with commas between (png)")
+      ->check(CLI::Validator(MistakeInFormats, ""))
       ->type_name("LIST");
   command.add_option("--size", size, "of the picture: screen, column or page, as of orchestrator plot (screen)")
       ->check(CLI::IsMember({"screen", "column", "page"}))
@@ -51,8 +72,7 @@ int SweepPicture::Draw(const std::string& out, const SweepPlan& plan, const Swee
 }
 
 void SweepPicture::PrintNames(const std::string& out) const {
-  std::istringstream formats(format);
-  for (std::string one; std::getline(formats, one, ',');)
+  for (const std::string& one : NamesIn(format))
     std::cout << "picture: " << FileBeside(out, "." + one).string() << "\n";
 }
 
