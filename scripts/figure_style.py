@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import matplotlib
 import matplotlib.pyplot as plt
+import matplotlib.ticker
 import numpy as np
 
 # Palette of Okabe and Ito, which colour-blind readers can distinguish; the palest colours last.
@@ -131,6 +132,12 @@ def shades(palette, most=16):
     rows = [np.linspace(matplotlib.colors.to_rgb(colour), (1, 1, 1), count, endpoint=False) for colour in palette]
     rows.append(np.linspace((0, 0, 0), (1, 1, 1), count))
     return np.rint(255 * np.concatenate(rows)).astype(np.uint8)
+
+
+def log_axis(axis):
+    """Makes y logarithmic. Below two decades, more than its powers of ten is named, for these may be one or none."""
+    axis.set_yscale("log")
+    axis.yaxis.set_minor_formatter(matplotlib.ticker.LogFormatterSciNotation(minor_thresholds=(2, 0.5)))
 
 
 def title(figure, text):

@@ -76,7 +76,7 @@ def disagreements(names, runs):
     for run, look, name in each(names, runs):
         largest_m = np.maximum(disagreement(run)[:, run.honest].max(axis=1), FLOOR_M)
         plot_lines(axis, run.t, largest_m[:, None], name, look)
-    axis.set_yscale("log")
+    style.log_axis(axis)
     axis.set_ylabel(f"largest distance to {in_a_word([name for run in runs for name in seen_from(run)])} (m)")
     all_time(axis, runs)
     return finished(figure, axis, "disagreement")

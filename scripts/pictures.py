@@ -340,7 +340,7 @@ def log_panel(run, distance_m, what, ylabel):
     figure, axis = plt.subplots(figsize=(style.size().width, style.size().single))
     visible = [k for k in drawn(run) if np.any(distance_m[:, k] > FLOOR_M)] or [0]
     plot_agents(axis, run, run.t, np.maximum(distance_m, FLOOR_M), visible)
-    axis.set_yscale("log")
+    style.log_axis(axis)
     axis.set_ylabel(ylabel)
     time_axis(axis, run.t[0], run.t[-1])
     titled(figure, run, what)

@@ -243,6 +243,17 @@ class WhatIsInThem(PlotTest):
         self.assertLess(np.abs(smooth[5:]).max(), 0.21)  # mean over five rows of +-1
         self.assertEqual(len(axis.collections[0].get_segments()), 3)
 
+    def test_a_log_axis_of_little_more_than_a_decade_names_several_values(self):
+        states = arrays()
+        states["position"] *= np.linspace(1, 0.3, states["t"].size)[:, None, None]
+        figure = self.figure("error", config=WAYPOINT, states=states)
+        low, high = figure.axes[0].get_ylim()
+        self.assertLess(high / low, 100)
+        figure.draw_without_rendering()
+        labels = figure.axes[0].get_yticklabels(which="both")
+        shown = [label for label in labels if label.get_text() and low <= label.get_position()[1] <= high]
+        self.assertGreaterEqual(len(shown), 3)
+
     def test_disagreement_is_the_distance_to_the_mean_on_a_log_axis(self):
         axis = self.figure("disagreement").axes[0]
         self.assertEqual((axis.get_yscale(), axis.get_ylabel()), ("log", "distance to the mean (m)"))
