@@ -59,6 +59,7 @@ class Completion:
     def test_verbs_are_those_of_the_program(self):
         self.assertGreater(len(HELPS.verbs), 10)
         self.assertEqual(self.offered(""), set(HELPS.verbs))
+        self.assertEqual(self.offered("help", ""), set(HELPS.verbs))
 
     def test_options_are_those_of_the_verb(self):
         answers = self.ask([(verb, "--") for verb in HELPS.verbs], ROOT)

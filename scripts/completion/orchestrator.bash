@@ -88,7 +88,7 @@ _orchestrator() {
   fi
   main=$("$program" --help 2>/dev/null </dev/null)
   [[ -z ${words[0]-} || ${words[0]} = -* ]] || verb=${words[0]}
-  if [ -z "$verb" ]; then
+  if [[ -z $verb || $verb = help ]]; then
     kind=Subcommands
     [[ $word != -* ]] || kind=Options
     mapfile -t COMPREPLY < <(compgen -W "$(_orchestrator_names $kind "$main")" -- "$word")
