@@ -2,9 +2,11 @@
 // of keys and laws, compared with the reader of experiment files (LoadExperiment) and with taplo, which editors use.
 #include "orchestrator/reference/reference.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <sstream>
@@ -93,6 +95,21 @@ TEST(LawPage, HasASectionOfEachLawAndItsPicture) {
     EXPECT_LT(fs::file_size(kPictures / (name + ".png")), 60'000) << name;
   }
   EXPECT_THAT(not_shown, testing::ElementsAre("plugin")) << "experiments with libraries are not shipped";
+}
+
+TEST(LawPage, HasATableOfAllLawsWhoseCellsAreNotCutByTheirFormulas) {
+  const std::string page = ReadFile(kSource / "docs/laws.md");
+  const std::size_t begin = page.find("\n### All laws on one page\n");
+  std::istringstream lines(page.substr(begin, page.find("\n### ", begin + 1) - begin));
+  std::vector<std::string> rows;
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("| [")) rows.push_back(line);
+  ASSERT_EQ(rows.size(), Laws().size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_THAT(rows[i], testing::StartsWith(fmt::format("| [{0}](#{0}) | <code>", Laws()[i].name)));
+    EXPECT_THAT(rows[i], HasSubstr(Laws()[i].source));
+    EXPECT_EQ(std::ranges::count(rows[i], '|'), 5) << rows[i];
+  }
 }
 
 TEST(LawPage, HasNoPictureOfAnotherLaw) {

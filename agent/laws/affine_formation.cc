@@ -1,5 +1,4 @@
-// Affine formation maneuvers; Zhao, "Affine formation maneuver control of multiagent systems", IEEE Trans. Automatic
-// Control 63 (2018):
+// Affine formation maneuvers; Zhao (2018):
 //   follower:  v_i = -gain sum_j omega_ij (p_i - p_j)
 //   leader:    v_i = (P_i(t + T) - P_i(t)) / T + leader_gain (P_i(t) - p_i),  P_i(t) = A(t) r_i + b(t)
 // The stresses omega_ij of the edges follow from places r and graph (agent/laws/stress_matrix.h): Omega r = 0, and
@@ -131,19 +130,20 @@ class AffineFormationMeter final : public LawMeter {
 }  // namespace
 
 LawEntry AffineFormationLaw() {
-  return {.name = "affine_formation",
-          .summary = "a few leaders turn, stretch, shear and shift a whole formation",
-          .equation = "follower: v_i = -gain sum_j omega_ij (p_i - p_j);  leader: to P_i(t) = A(t) r_i + b(t)",
-          .theory = "p_F tends to -Omega_FF^-1 Omega_FL p_L, the same affine map of the followers' places",
-          .source = "Zhao (2018)",
-          .parameters = kAffineFormationParameters,
-          .figures = kAffineFormationFigures,
-          .drawing = {.pictures = {}, .hull = kLeadersKey.name},
-          .read = ReadAffineFormation,
-          .make = MakeWithPeriod<AffineFormation>,
-          .wanted = WantsVelocity,
-          .predict = PredictAffineFormation,
-          .meter = MeterOf<AffineFormationMeter>};
+  return {
+      .name = "affine_formation",
+      .summary = "a few leaders turn, stretch, shear and shift a whole formation",
+      .equation = "follower: v_i = -gain sum_j omega_ij (p_i - p_j);  leader: to P_i(t) = A(t) r_i + b(t)",
+      .theory = "p_F tends to -Omega_FF^-1 Omega_FL p_L, the same affine map of the followers' places",
+      .source = "Zhao, Affine formation maneuver control of multiagent systems, IEEE Trans. Autom. Control 63 (2018)",
+      .parameters = kAffineFormationParameters,
+      .figures = kAffineFormationFigures,
+      .drawing = {.pictures = {}, .hull = kLeadersKey.name},
+      .read = ReadAffineFormation,
+      .make = MakeWithPeriod<AffineFormation>,
+      .wanted = WantsVelocity,
+      .predict = PredictAffineFormation,
+      .meter = MeterOf<AffineFormationMeter>};
 }
 
 }  // namespace mascot

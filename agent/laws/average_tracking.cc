@@ -1,6 +1,5 @@
 // Dynamic average consensus: agents follow the average of inputs that change, of which each knows only its own; Kia,
-// Van Scoy, Cortes, Freeman, Lynch & Martinez, "Tutorial on dynamic average consensus", IEEE Control Systems Magazine
-// 39 (2019), in discrete time:
+// Van Scoy, Cortes, Freeman, Lynch & Martinez (2019), in discrete time:
 //   x_i(k) = r_i(k) + q_i(k),  q_i(k+1) = q_i(k) + h gain sum_j a_ij (x_j(k) - x_i(k)),  q_i(0) = 0
 // Agents say their estimates x_i; a message takes one tick, which is the one of this iteration. On an undirected graph
 // the q_i sum up to 0: the sum of estimates is that of the inputs at every tick. Each agent flies to its place around
@@ -107,7 +106,9 @@ LawEntry AverageTrackingLaw() {
       .theory =
           "undirected and connected: sum x_i = sum r_i at every tick; x_i is off by |z - 1| / |z - 1 + h gain "
           "lambda| of a swing along each mode, z = exp(2 pi j f h), and by 1 / (gain lambda) of a ramp",
-      .source = "Kia, Van Scoy, Cortes, Freeman, Lynch & Martinez (2019)",
+      .source =
+          "Kia, Van Scoy, Cortes, Freeman, Lynch & Martinez, Tutorial on dynamic average consensus, IEEE Control "
+          "Systems Magazine 39 (2019)",
       .parameters = kAverageTrackingParameters,
       .figures = kTrackingErrorFigures,
       .agrees = true,

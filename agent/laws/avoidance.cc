@@ -1,5 +1,4 @@
-// Flight to a goal among obstacles and other agents, by an artificial potential; Khatib, "Real-time obstacle avoidance
-// for manipulators and mobile robots", Int. J. Robotics Research 5 (1986):
+// Flight to a goal among obstacles and other agents, by an artificial potential; Khatib (1986):
 //   f_i = [gain (w_i - p_i) + sum_j push(|p_i - p_j| - 2 R_i)]_s
 //   v_i = [f_i + sum_k push(|p_i - q_k| - R_i)]_s
 //   push(c) = repulsion (1/c - 1/c0) / c^2 for clearances c < c0, away from the other, else 0
@@ -127,7 +126,9 @@ LawEntry AvoidanceLaw() {
           .theory =
               "where one obstacle pushes at a time, the clearance stays above a bound: for single integrators, where "
               "the push is s; nothing is promised about arrival: the potential may have local minima",
-          .source = "Khatib (1986)",
+          .source =
+              "Khatib, Real-time obstacle avoidance for manipulators and mobile robots, Int. J. Robotics Research 5 "
+              "(1986)",
           .parameters = kAvoidanceParameters,
           .figures = kGoalFigures,
           .axes = Axes::kXyz,

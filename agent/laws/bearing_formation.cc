@@ -1,11 +1,11 @@
-// Bearing-only formation; Zhao & Zelazo, "Bearing rigidity and almost global bearing-only formation stabilization",
-// IEEE Trans. Automatic Control 61 (2016):
+// Bearing-only formation; Zhao & Zelazo (2016):
 //   v_i = -gain sum_j a_ij P(g_ij) g*_ij,  P(g) = I - g g'
 // g_ij is the direction from agent i to agent j, g*_ij the one between their places. An agent needs no distance. The
 // sum of v_i is 0 and P(g_ij) takes what is along g_ij, so the centroid and the scale (the rms distance from it) stay;
 // held for a tick, velocities across the way make the scale grow a little. On an infinitesimally bearing rigid
 // framework all directions are reached from almost any start: from all but those that lead to the shape mirrored in its
-// centroid.
+// centroid. Near the shape the sampled team is as stable as p+ = p - T gain H p, H the sum over edges of a_ij P(g) /
+// |z|.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -126,7 +126,9 @@ LawEntry BearingFormationLaw() {
       .equation = "v_i = -gain sum_j a_ij P(g_ij) g*_ij,  P(g) = I - g g'",
       .theory =
           "infinitesimally bearing rigid: all directions are reached from almost any start; centroid and scale stay",
-      .source = "Zhao & Zelazo (2016)",
+      .source =
+          "Zhao & Zelazo, Bearing rigidity and almost global bearing-only formation stabilization, IEEE Trans. Autom. "
+          "Control 61 (2016)",
       .parameters = kBearingFormationParameters,
       .figures = kBearingFormationFigures,
       .drawing = {},

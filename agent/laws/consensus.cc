@@ -1,7 +1,7 @@
 // Consensus of double integrators with absolute velocity damping; MASCOT (Pandit, Njattuvetty, Mulla), the laws
-// "leaderless" and "leader-follower"; Ren & Beard, "Distributed Consensus in Multi-vehicle Cooperative Control" (2008):
+// "leaderless" and "leader-follower"; Ren & Beard, (2008):
 //   a_i = p_gain sum_j a_ij (p_j - p_i) - beta v_i
-// and with damping of relative velocities, Ren & Atkins, Int. J. Robust Nonlinear Control 17 (2007):
+// and with damping of relative velocities, Ren & Atkins (2007):
 //         + v_gain sum_j a_ij (v_j - v_i)
 // A leader does not use what it hears: it keeps its velocity (a = 0), or flies waypoints.
 #include "agent/laws/consensus.h"
@@ -83,7 +83,11 @@ LawEntry ConsensusLaw() {
               "leaderless: meets at g'p(0) + g'v(0) / beta, g the left null vector of L, if a spanning tree exists and "
               "s^2 + (beta + v_gain lambda) s + p_gain lambda is stable for every eigenvalue lambda != 0 of L; "
               "a leader at constant v is followed with a constant lag",
-          .source = "Pandit, Njattuvetty, Mulla: MASCOT; Ren & Beard (2008)",
+          .source =
+              "Pandit, Njattuvetty & Mulla, ROS-based multi-agent systems control simulation testbed (MASCOT), Indian "
+              "Control Conference 2022; Ren & Beard, Distributed consensus in multi-vehicle cooperative control, "
+              "Springer 2008; with v_gain: Ren & Atkins, Distributed multi-vehicle coordinated control via local "
+              "information exchange, Int. J. Robust Nonlinear Control 17 (2007)",
           .parameters = kConsensusParameters,
           .agrees = true,
           .gathers = true,

@@ -1,5 +1,4 @@
-// Containment: followers go to places among several leaders; Ji, Ferrari-Trecate, Egerstedt & Buffa, "Containment
-// control in mobile networks", IEEE Trans. Automatic Control 53 (2008):
+// Containment: followers go to places among several leaders; Ji, Ferrari-Trecate, Egerstedt & Buffa (2008):
 //   follower:  v_i = gain sum_j a_ij (p_j - p_i)
 //   leader:    v_i = its own velocity, which may be 0
 // With L the Laplacian, split into leaders and followers, p_F tends to M p_L, M = -L_FF^-1 L_FL, if each follower hears
@@ -130,7 +129,9 @@ LawEntry ContainmentLaw() {
       .theory =
           "p_F tends to M p_L, M = -L_FF^-1 L_FL, which is in the leaders' hull; leaders with constant velocities are "
           "followed (1/gain) L_FF^-1 M v_L behind",
-      .source = "Ji, Ferrari-Trecate, Egerstedt & Buffa (2008)",
+      .source =
+          "Ji, Ferrari-Trecate, Egerstedt & Buffa, Containment control in mobile networks, IEEE Trans. Autom. Control "
+          "53 (2008)",
       .parameters = kContainmentParameters,
       .figures = kContainmentFigures,
       .drawing = {.pictures = {}, .hull = kLeadersKey.name},

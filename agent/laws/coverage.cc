@@ -1,5 +1,4 @@
-// Coverage of a region by single integrators; Cortes, Martinez, Karatas & Bullo, "Coverage control for mobile sensing
-// networks", IEEE Trans. Robotics and Automation 20 (2004):
+// Coverage of a region by single integrators; Cortes, Martinez, Karatas & Bullo (2004):
 //   v_i = -gain (p_i - C_i),   C_i the centroid of V_i, the part of the region that is nearer to i than to all it hears
 // (in x and y; heights are held). The cost H = sum_i (integral over V_i of |q - p_i|^2 phi(q)) / (integral of phi over
 // the region) is the mean square distance to the nearest agent. If all hear all, it falls at every tick, also sampled,
@@ -134,7 +133,9 @@ LawEntry CoverageLaw() {
       .theory =
           "if all hear all, the mean square distance to the nearest agent falls at every tick for gain T <= 2, to a "
           "centroidal Voronoi partition",
-      .source = "Cortes, Martinez, Karatas & Bullo (2004)",
+      .source =
+          "Cortes, Martinez, Karatas & Bullo, Coverage control for mobile sensing networks, IEEE Trans. Robotics and "
+          "Automation 20 (2004)",
       .parameters = kCoverageParameters,
       .figures = kCoverageFigures,
       .drawing = {.pictures = {}, .cells = "region_m"},

@@ -1,12 +1,9 @@
 // Cyclic pursuit: agent i flies after agent i + 1, agent N after agent 1, each turned by alpha to the right of it;
-// Marshall, Broucke & Francis, "Formations of vehicles in cyclic pursuit", IEEE Trans. Automatic Control 49 (2004);
-// Pavone & Frazzoli, "Decentralized policies for geometric pattern formation and path coverage", J. Dynamic Systems,
-// Measurement and Control 129 (2007):
+// Marshall, Broucke & Francis (2004), Pavone & Frazzoli (2007):
 //   v_i = gain R(alpha) (p_{i+1} - p_i),  R(alpha) = [cos alpha, sin alpha; -sin alpha, cos alpha] in x and y
 // The centre stays. A regular N-gon stays regular: its radius grows at the rate gain (cos(2 pi/N - alpha) - cos alpha),
 // its agents go round at the rate gain (sin(2 pi/N - alpha) + sin alpha) to the left. From almost any start agents
-// meet (|alpha| < pi/N), circle at 2 gain sin(pi/N) (alpha = pi/N), or fly on spirals that open (alpha > pi/N).
-// A velocity that is held for a tick opens the circle a little: theory predicts the sampled motion.
+// meet (|alpha| < pi/N), circle at 2 gain sin(pi/N) (alpha = pi/N), or spiral out. Theory has the sampled motion.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -136,7 +133,10 @@ LawEntry CyclicPursuitLaw() {
               "the centre stays; |alpha| < pi/N: agents meet; alpha = pi/N: they circle at 2 gain sin(pi/N); beyond: "
               "spirals that open; a regular N-gon stays regular, its radius grows at the rate gain (cos(2 pi/N - "
               "alpha) - cos alpha)",
-          .source = "Marshall, Broucke & Francis (2004); Pavone & Frazzoli (2007)",
+          .source =
+              "Marshall, Broucke & Francis, Formations of vehicles in cyclic pursuit, IEEE Trans. Autom. Control 49 "
+              "(2004); Pavone & Frazzoli, Decentralized policies for geometric pattern formation and path coverage, J. "
+              "Dyn. Syst. Meas. Control 129 (2007)",
           .parameters = kCyclicPursuitParameters,
           .figures = kCyclicPursuitFigures,
           .drawing = {.pictures = kDisagreementPicture},

@@ -1,5 +1,4 @@
-// Distance-based formation; Krick, Broucke & Francis, "Stabilisation of infinitesimally rigid formations of multi-robot
-// networks", Int. J. Control 82 (2009):
+// Distance-based formation; Krick, Broucke & Francis (2009):
 //   v_i = -gain sum_j a_ij (|z|^2 - d_ij^2) z,  z = p_i - p_j,  d_ij the distance between the places of i and j
 // The team goes down the gradient of V = (1/4) sum over edges a_ij (|z|^2 - d_ij^2)^2: V never grows, the centroid
 // stays. Near an infinitesimally rigid shape all distances are reached exponentially, wherever it is and however it is
@@ -136,7 +135,9 @@ LawEntry DistanceFormationLaw() {
           .theory =
               "infinitesimally rigid: the distances are reached exponentially from near the shape; the centroid stays; "
               "two agents: |z|^2 = d^2 / (1 + (d^2/|z(0)|^2 - 1) exp(-4 gain d^2 t))",
-          .source = "Krick, Broucke & Francis (2009)",
+          .source =
+              "Krick, Broucke & Francis, Stabilisation of infinitesimally rigid formations of multi-robot networks, "
+              "Int. J. Control 82 (2009)",
           .parameters = kDistanceFormationParameters,
           .figures = kDistanceFormationFigures,
           .drawing = {},

@@ -1,12 +1,9 @@
-// Consensus of single integrators that speak only when they have something to say; Seyboth, Dimarogonas & Johansson,
-// "Event-based broadcasting for multi-agent average consensus", Automatica 49 (2013):
+// Consensus of agents that speak only when they have something to say; Seyboth, Dimarogonas & Johansson (2013):
 //   v_i = gain sum_j a_ij (x_j - x_i)
-// where x_i is what agent i said last of where it is, also to itself. It speaks when |e_i| = |x_i - p_i| exceeds a
-// threshold (agent/laws/trigger.h). A message takes one tick to arrive: it says where the agent will be then, so that
-// |e_i| never exceeds the threshold, and the agent uses it itself from that tick on, so that the mean is kept. Sampled
-// with period h on a connected undirected graph, the disagreement d = p - mean obeys
+// where x_i is what i said last of where it is, also to itself. It speaks when |e_i| = |x_i - p_i| exceeds a threshold
+// (trigger.h). A message takes one tick: it says where the agent will be then, and the agent uses it from then on, so
+// that |e_i| never exceeds the threshold and the mean is kept. On a connected undirected graph d = p - mean then obeys
 //   |d(k+1)| <= r |d(k)| + h gain |L| sqrt(N) threshold(k),  r = max |1 - h gain lambda| < 1 over the modes
-// With the static threshold, |d| ends below |L| sqrt(N) c0 / lambda_2; with the dynamic one, at 0.
 #include <array>
 #include <cmath>
 #include <memory>
@@ -134,7 +131,10 @@ LawEntry EventTriggeredLaw() {
       .theory =
           "undirected and connected: the mean is kept, and |p - mean| <= |L| sqrt(N) c0 / lambda_2 in the end "
           "(static), or 0 (dynamic), for h gain lambda_n < 2, dynamic: < 1 - sigma / 2",
-      .source = "Seyboth, Dimarogonas & Johansson (2013); Girard (2015)",
+      .source =
+          "Seyboth, Dimarogonas & Johansson, Event-based broadcasting for multi-agent average consensus, Automatica 49 "
+          "(2013); Girard, Dynamic triggering mechanisms for event-triggered control, IEEE Trans. Autom. Control 60 "
+          "(2015)",
       .parameters = kEventTriggeredParameters,
       .figures = kEventTriggeredFigures,
       .agrees = true,

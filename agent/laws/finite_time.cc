@@ -1,7 +1,6 @@
 // Agreement of single integrators in finite time.
-//   form = "sign",  Cortes, Automatica 42 (2006):            v_i = -gain sgn(sum_j a_ij (p_i - p_j)), sgn(0) = 0
-//   form = "power", Wang & Xiao, IEEE Trans. Automatic Control 55 (2010):
-//                                                            v_i = gain sum_j a_ij sig(p_j - p_i)^alpha
+//   form = "sign",  Cortes (2006):       v_i = -gain sgn(sum_j a_ij (p_i - p_j)), sgn(0) = 0
+//   form = "power", Wang & Xiao (2010):  v_i = gain sum_j a_ij sig(p_j - p_i)^alpha
 // per axis, with sig(x)^alpha = sgn(x) |x|^alpha and 0 < alpha < 1. On a connected undirected graph,
 //   sign:  all agents meet at (max p(0) + min p(0)) / 2 after (max p(0) - min p(0)) / (2 gain)
 //   power: they meet at the mean of p(0), after at most 4 V^((1-alpha)/2) / ((1-alpha) (4 lambda)^((1+alpha)/2)), where
@@ -129,7 +128,10 @@ LawEntry FiniteTimeLaw() {
           "undirected and connected: power meets at the mean of p(0), after at most 4 V^((1-alpha)/2) / "
           "((1-alpha) (4 lambda)^((1+alpha)/2)); sign meets midway between the outermost agents, when these "
           "have flown there: (max p(0) - min p(0)) / (2 gain)",
-      .source = "Cortes (2006); Wang & Xiao (2010)",
+      .source =
+          "sign: Cortes, Finite-time convergent gradient flows with applications to network consensus, Automatica 42 "
+          "(2006); power: Wang & Xiao, Finite-time consensus problems for networks of dynamic agents, IEEE Trans. "
+          "Autom. Control 55 (2010)",
       .parameters = kFiniteTimeParameters,
       .figures = kAgreementTimeFigures,
       .agrees = true,

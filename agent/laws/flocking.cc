@@ -1,5 +1,4 @@
-// Flocking of double integrators; Olfati-Saber, "Flocking for multi-agent dynamic systems: algorithms and theory", IEEE
-// Trans. Automatic Control 51 (2006), Algorithm 2 (and Algorithm 1, with c1_gamma = c2_gamma = 0):
+// Flocking of double integrators; Olfati-Saber (2006), Algorithm 2 (and Algorithm 1, with c1_gamma = c2_gamma = 0):
 //   a_i = sum_j w_ij [ c1_alpha phi_alpha(|p_j - p_i|_sigma) n_ij
 //                      + c2_alpha rho_h(|p_j - p_i|_sigma / r_alpha) (v_j - v_i) ]
 //         - c1_gamma (p_i - q_r) - c2_gamma (v_i - p_r)
@@ -107,7 +106,9 @@ LawEntry FlockingLaw() {
           .theory =
               "undirected: the centre of mass obeys x'' = -c1_gamma (x - q_r) - c2_gamma (x' - p_r); the structural "
               "energy about it never grows, but for what holding a command costs; agents end at one velocity",
-          .source = "Olfati-Saber (2006)",
+          .source =
+              "Olfati-Saber, Flocking for multi-agent dynamic systems: algorithms and theory, IEEE Trans. Autom. "
+              "Control 51 (2006)",
           .parameters = kFlockingParameters,
           .figures = kFlockFigures,
           .drawing = {},

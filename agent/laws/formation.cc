@@ -1,5 +1,4 @@
-// Displacement-based formation of double integrators; Oh, Park & Ahn, "A survey of multi-agent formation control",
-// Automatica 53 (2015), section 4; Ren & Atkins, Int. J. Robust Nonlinear Control 17 (2007):
+// Displacement-based formation of double integrators; Oh, Park & Ahn (2015), section 4; Ren & Atkins (2007):
 //   a_i = -sum_j a_ij [ p_gain ((p_i - p_j) - (d_i - d_j)) + v_gain (v_i - v_j) ] - beta v_i
 // This is consensus on p_i - d_i. A leader does not use what it hears: it keeps its velocity (a = 0), or flies
 // waypoints.
@@ -80,7 +79,10 @@ LawEntry FormationLaw() {
           .theory =
               "consensus on p_i - d_i: the formation's point meets at the mean of p(0) - d plus that of v(0) / beta "
               "(undirected)",
-          .source = "Oh, Park & Ahn (2015); Ren & Atkins (2007)",
+          .source =
+              "Oh, Park & Ahn, A survey of multi-agent formation control, Automatica 53 (2015); with v_gain: Ren & "
+              "Atkins, Distributed multi-vehicle coordinated control via local information exchange, Int. J. Robust "
+              "Nonlinear Control 17 (2007)",
           .parameters = kFormationParameters,
           .agrees = true,
           .drawing = {.pictures = kDisagreementPicture},

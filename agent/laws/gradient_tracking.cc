@@ -1,6 +1,5 @@
 // Agents minimise the sum of their own costs f_i(x) = (x - b_i)' Q_i (x - b_i) / 2 by messages: DIGing of Nedic,
-// Olshevsky & Shi, "Achieving geometric convergence for distributed optimization over time-varying graphs", SIAM J.
-// Optimization 27 (2017). At each tick
+// Olshevsky & Shi (2017). At each tick
 //   x_i+ = sum_j w_ij x_j - step y_i,  y_i+ = sum_j w_ij y_j + grad f_i(x_i+) - grad f_i(x_i),  y_i = grad f_i(x_i) at
 //   first
 // with Metropolis weights w_ij = 1 / (1 + max(d_i, d_j)) of the numbers d of agents that i and j hear, and w_ii = 1 -
@@ -126,7 +125,9 @@ LawEntry GradientTrackingLaw() {
           .theory =
               "undirected and connected: x_i goes to (sum Q)^-1 sum Q b at a linear rate, that of the slowest mode "
               "of this iteration, for a small step",
-          .source = "Nedic, Olshevsky & Shi (2017)",
+          .source =
+              "Nedic, Olshevsky & Shi, Achieving geometric convergence for distributed optimization over time-varying "
+              "graphs, SIAM J. Optimization 27 (2017)",
           .parameters = kGradientTrackingParameters,
           .figures = kGradientTrackingFigures,
           .agrees = true,

@@ -135,7 +135,7 @@ LawEntry MinmaxLaw() {
           .theory =
               "a child meets a resting parent after sqrt(2 z (1/alpha + 1/beta_c)), any parent within 2 sqrt(z / "
               "alpha), from rest, alpha = beta_c - beta_p > 0",
-          .source = "Mulla et al. (2017)",
+          .source = "Mulla et al. (2017): reference 19 of Pandit, Njattuvetty & Mulla, MASCOT (2022)",
           .parameters = kMinmaxParameters,
           .agrees = true,
           .gathers = true,

@@ -1,6 +1,5 @@
-// A platoon of vehicles that follow their predecessors; Ploeg, van de Wouw & Nijmeijer, "Lp string stability of
-// cascaded systems", IEEE Trans. Control Systems Technology 22 (2014). Agent 1 drives a speed with a disturbance, v_r =
-// speed + disturbance sin(w t); agent i follows agent i - 1, along x:
+// A platoon of vehicles that follow their predecessors; Ploeg, van de Wouw & Nijmeijer (2014). Agent 1 drives a speed
+// with a disturbance, v_r = speed + disturbance sin(w t); agent i follows agent i - 1, along x:
 //   a_i = p_gain (x_{i-1} - x_i - spacing - headway v_i) + d_gain (v_{i-1} - v_i),   a_1 = v_r' + d_gain (v_r - v_1)
 // and keeps to its line, a_y = p_gain (y_{i-1} - y_i) + d_gain (v_y,{i-1} - v_y,i). Each vehicle passes on what its
 // predecessor does times Gamma(s) = (d s + p) / (s^2 + (d + p headway) s + p), p and d the gains. The string is stable,
@@ -136,7 +135,9 @@ LawEntry PlatoonLaw() {
       .theory =
           "swings grow by Gamma(s) = (d s + p) / (s^2 + (d + p headway) s + p) from one vehicle to the next; "
           "|Gamma(jw)| <= 1 for all w iff headway >= (sqrt(d^2 + 2 p) - d) / p",
-      .source = "Ploeg, van de Wouw & Nijmeijer (2014)",
+      .source =
+          "Ploeg, van de Wouw & Nijmeijer, Lp string stability of cascaded systems: application to vehicle platooning, "
+          "IEEE Trans. Control Systems Technology 22 (2014)",
       .parameters = kPlatoonParameters,
       .figures = kPlatoonFigures,
       .drawing = {.pictures = {}, .telling = "velocity"},

@@ -1,12 +1,10 @@
-// Agreement of single integrators at a prescribed time T; Wang, Song, Hill & Krstic, "Prescribed-time consensus and
-// containment control of networked multiagent systems", IEEE Trans. Cybernetics 49 (2019):
+// Agreement of single integrators at a prescribed time T; Wang, Song, Hill & Krstic (2019):
 //   v_i = (gain + mu_dot / mu) sum_j a_ij (p_j - p_i),  mu = (T / (T - t))^exponent,  mu_dot / mu = exponent / (T - t)
 // and from T on v_i = gain sum_j a_ij (p_j - p_i), which keeps the agreement. In continuous time, on a connected
 // undirected graph, the disagreement shrinks by exp(-gain lambda t) (1 - t / T)^(exponent lambda) along each mode: it
-// is 0 at T for any start. The velocity vanishes at T, too, if exponent lambda_2 > 1. A gain that grows without bound
-// cannot be sampled. Here it ends at 1 / (2 h d), with the control period h and the largest sum d of weights that an
-// agent hears: an agent goes at most half the way to its neighbours in one tick, so the team is stable. What this
-// leaves at T is the largest product over the ticks of |1 - h lambda gain(t)|.
+// is 0 at T for any start, and so is the velocity if exponent lambda_2 > 1. A gain that grows without bound cannot be
+// sampled. It ends at 1 / (2 h d), h the control period and d the largest sum of weights that an agent hears: in a tick
+// it goes at most half the way to its neighbours. What is left at T is the largest product of |1 - h lambda gain(t)|.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -134,7 +132,9 @@ LawEntry PrescribedTimeLaw() {
           .theory =
               "undirected and connected: all are at the mean of p(0) at T = time_s, but for a share that the "
               "control period h leaves, since it bounds the gain by 1 / (2 h max_i sum_j a_ij)",
-          .source = "Wang, Song, Hill & Krstic (2019)",
+          .source =
+              "Wang, Song, Hill & Krstic, Prescribed-time consensus and containment control of networked multiagent "
+              "systems, IEEE Trans. Cybernetics 49 (2019)",
           .parameters = kPrescribedTimeParameters,
           .figures = kPrescribedTimeFigures,
           .agrees = true,

@@ -1,5 +1,5 @@
-// Pursuit of one evader by single integrators with constant speeds; Isaacs, "Differential Games" (1965), simple motion;
-// of pure pursuit with several pursuers: Bakolas & Tsiotras, Automatica 48 (2012):
+// Pursuit of one evader by single integrators with constant speeds; Isaacs (1965), simple motion; several pursuers:
+// Bakolas & Tsiotras (2012):
 //   pursuer: v_i = pursuer_speed (p_e - p_i) / |p_e - p_i|           towards the evader, law.leader, if it is heard
 //   evader:  v_e = evader_speed (p_e - p_j) / |p_e - p_j|            away from j, the nearest that it hears
 // along the axes of the law, and 0 within the capture radius. Each pursuer that hears the evader comes closer by at
@@ -136,7 +136,9 @@ LawEntry PursuitEvasionLaw() {
           .theory =
               "a pursuer captures after at most min_i (|p_e - p_i| - capture_radius) / (pursuer_speed - evader_speed), "
               "over those that hear the evader; a single one exactly then",
-          .source = "Isaacs (1965); Bakolas & Tsiotras (2012)",
+          .source =
+              "Isaacs, Differential games, Wiley 1965 (simple motion); several pursuers: Bakolas & Tsiotras, Relay "
+              "pursuit of a maneuvering target using dynamic Voronoi diagrams, Automatica 48 (2012)",
           .parameters = kPursuitEvasionParameters,
           .figures = kPursuitEvasionFigures,
           .drawing = {.leader = "evader", .pictures = {}},

@@ -1,5 +1,4 @@
-// Rendezvous without losing anybody; Ji & Egerstedt, "Distributed coordination control of multiagent systems while
-// preserving connectedness", IEEE Trans. Robotics 23 (2007). Agents hear whoever is within D = graph.range_m:
+// Rendezvous without losing anybody; Ji & Egerstedt (2007). Agents hear whoever is within D = graph.range_m:
 //   v_i = gain sum_j (2 D - l_ij) / (D - l_ij)^2 (p_j - p_i),   l_ij = |p_j - p_i|
 // This is the gradient of a tension that grows beyond all bounds as an edge comes close to D: an edge that counts is
 // never lost, the mean stays, and a team that is connected meets there. A new neighbour counts from a distance of
@@ -128,7 +127,9 @@ LawEntry RendezvousLaw() {
           .theory =
               "undirected and connected: meets at the mean of p(0); no edge that counts is lost, because its tension "
               "grows beyond all bounds at D; sampled: for periods short against (D - l)^2 / (gain (2 D - l))",
-          .source = "Ji & Egerstedt (2007)",
+          .source =
+              "Ji & Egerstedt, Distributed coordination control of multiagent systems while preserving connectedness, "
+              "IEEE Trans. Robotics 23 (2007)",
           .parameters = kRendezvousParameters,
           .figures = kRendezvousFigures,
           .agrees = true,

@@ -1,7 +1,6 @@
 // Consensus in spite of agents that lie: W-MSR (weighted mean-subsequence-reduced) of LeBlanc, Zhang, Koutsoukos &
-// Sundaram, "Resilient asymptotic consensus in robust networks", IEEE J. Selected Areas in Communications 31 (2013). Of
-// the positions heard, per axis, agent i leaves out the F largest of those above its own and the F smallest of those
-// below, all of them if there are fewer:
+// Sundaram (2013). Of the positions heard, per axis, agent i leaves out the F largest of those above its own and the F
+// smallest of those below, all of them if there are fewer:
 //   v_i = gain sum over the rest of a_ij (p_j - p_i)
 // If an honest agent hears at most F that lie, what is left lies between what honest agents say: with h gain sum_j a_ij
 // <= 1 it never leaves the hull, per axis, of the honest starts. Honest agents agree on every (2F+1)-robust graph; on
@@ -132,7 +131,9 @@ LawEntry ResilientLaw() {
       .theory =
           "with at most F liars heard by an honest agent and h gain sum_j a_ij <= 1, honest agents stay in the "
           "hull of honest starts, and agree if the graph is (2F+1)-robust",
-      .source = "LeBlanc, Zhang, Koutsoukos & Sundaram (2013)",
+      .source =
+          "LeBlanc, Zhang, Koutsoukos & Sundaram, Resilient asymptotic consensus in robust networks, IEEE J. Selected "
+          "Areas in Communications 31 (2013)",
       .parameters = kResilientParameters,
       .figures = kResilientFigures,
       .agrees = true,

@@ -1,6 +1,5 @@
 // Tracking of a trajectory r(t) by double integrators, alone or in formation: feed-forward of its acceleration, and
-// feedback of the errors of position and velocity; Mellinger & Kumar, "Minimum snap trajectory generation and control
-// for quadrotors", ICRA 2011; Lee, Leok & McClamroch, CDC 2010:
+// feedback of the errors of position and velocity; Mellinger & Kumar (2011); Lee, Leok & McClamroch (2010):
 //   a_i = a_r + p_gain (r + d_i - p_i) + d_gain (v_r - v_i),  d_i the place of the agent
 // A command is held for a tick h: a_r is that of its middle, t + h / 2. The error e then obeys e'' + d_gain e' + p_gain
 // e = 0. Without feed-forward each oscillation e^(jwt) of r comes out as (p + j d w) / (p - w^2 + j d w) of itself (p,
@@ -131,7 +130,9 @@ LawEntry TrajectoryLaw() {
           .theory =
               "with feed-forward the error goes to 0: e'' + d_gain e' + p_gain e = 0; without, an oscillation w of r "
               "comes out times (p + j d w) / (p - w^2 + j d w), late",
-          .source = "Mellinger & Kumar (2011); Lee, Leok & McClamroch (2010)",
+          .source =
+              "Mellinger & Kumar, Minimum snap trajectory generation and control for quadrotors, ICRA 2011; Lee, Leok "
+              "& McClamroch, Geometric tracking control of a quadrotor UAV on SE(3), CDC 2010",
           .parameters = kTrajectoryParameters,
           .figures = kTrackingFigures,
           .axes = Axes::kXyz,

@@ -1,5 +1,4 @@
-// Consensus of single integrators; Olfati-Saber & Murray, "Consensus problems in networks of agents with switching
-// topology and time-delays", IEEE Trans. Automatic Control 49 (2004):
+// Consensus of single integrators; Olfati-Saber & Murray (2004):
 //   v_i = p_gain sum_j a_ij (p_j - p_i)
 // A leader does not use what it hears, and wants the velocity 0.
 #include <memory>
@@ -56,7 +55,9 @@ LawEntry VelocityConsensusLaw() {
       .theory =
           "meets at g'p(0), g the left null vector of L, if a spanning tree exists; sampled with period T: p(k+1) = "
           "(I - T p_gain L) p(k), stable for T < 2 / (p_gain lambda_max) (undirected)",
-      .source = "Olfati-Saber & Murray (2004)",
+      .source =
+          "Olfati-Saber & Murray, Consensus problems in networks of agents with switching topology and time-delays, "
+          "IEEE Trans. Autom. Control 49 (2004)",
       .parameters = kVelocityConsensusParameters,
       .agrees = true,
       .gathers = true,

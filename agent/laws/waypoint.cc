@@ -124,7 +124,9 @@ LawEntry WaypointLaw() {
           .summary = "every agent flies the same list of waypoints, by arrival or by time",
           .equation = "a_i = p_gain (w - p_i) - d_gain v_i",
           .theory = "modes s^2 + d_gain s + p_gain; no overshoot from rest for d_gain >= 2 sqrt(p_gain) without limits",
-          .source = "Pandit, Njattuvetty, Mulla: MASCOT",
+          .source =
+              "Pandit, Njattuvetty & Mulla, ROS-based multi-agent systems control simulation testbed (MASCOT), Indian "
+              "Control Conference 2022",
           .parameters = kWaypointParameters,
           .figures = kWaypointFigures,
           .axes = Axes::kXyz,

@@ -63,6 +63,28 @@ std::string Lines(std::string equation) {
   return equation;
 }
 
+/// Formulas for a cell of a table: no sign means anything to Markdown, and lines stay lines.
+std::string FormulaCell(std::string_view text) {
+  std::string cell;
+  for (const char c : text) {
+    if (std::string_view("*|<&").find(c) != std::string_view::npos)
+      cell += fmt::format("&#{};", static_cast<int>(c));
+    else
+      cell += c == '\n' ? std::string("<br>") : std::string(1, c);
+  }
+  return cell;
+}
+
+/// All laws on one page: what each does, why, and who found it.
+std::string Overview() {
+  std::string text =
+      "\n### All laws on one page\n\n| law | equation | what theory says of it | source |\n|---|---|---|---|\n";
+  for (const LawEntry& law : Laws())
+    text += fmt::format("| [{0}](#{0}) | <code>{1}</code> | {2} | {3} |\n", law.name,
+                        FormulaCell(Lines(std::string(law.equation))), FormulaCell(law.theory), Cell(law.source));
+  return text;
+}
+
 std::string TableOfFigures(std::span<const LawFigure> figures) {
   std::string text = "\n| figure | meaning |\n|---|---|\n";
   for (const LawFigure& figure : figures)
@@ -92,6 +114,7 @@ std::string LawPage(const std::string& page, const fs::path& configs) {
     throw std::runtime_error("docs/laws.md: the comments around the sections of the laws are missing");
   const std::vector<ShownBy> shipped = Shipped(configs);
   std::string text = page.substr(0, begin) + std::string(kBegin);
+  text += Overview();
   for (const LawEntry& law : Laws()) text += SectionOf(law, ShowOf(law.name, shipped));
   return text + "\n" + page.substr(end);
 }
