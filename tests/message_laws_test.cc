@@ -163,6 +163,12 @@ TEST(AverageTracking, TheSumOfEstimatesIsThatOfTheInputsAtEveryTick) {
   }
 }
 
+TEST(AverageTracking, TheSumIsKeptAlsoWhenAnAgentComesLate) {
+  const LawRun run(Five(100, 4, Tracking(kSeveral) + "[[agents.override]]\nid = 2\nstart_s = 1.0\n"));
+  EXPECT_LT(run.Measured("sum_off_m"), 1e-12) << "from then on; what the others say is heard by a law that just begins";
+  EXPECT_EQ(run.prediction.silent, "agents come or go");
+}
+
 TEST(AverageTracking, OfInputsThatStandStillItIsConsensusToTheirMean) {
   IdealNetwork network(Five(100, 20, "name = 'average_tracking'\n"));
   network.RunUntil(20);
