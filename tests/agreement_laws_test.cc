@@ -57,10 +57,28 @@ TEST(FiniteTime, IsPredictedAndMeasured) {
   EXPECT_NEAR(by_power.summary["consensus"]["predicted"]["value_m"][0].get<double>(), 0.4, 1e-12);
 }
 
+TEST(FiniteTime, WhoIsAloneHasAgreedAtOnce) {
+  const LawRun run("[run]\nduration_s = 0.1\n[agents]\ncount = 1\nmodel = 'single_integrator'\n[law]\n" + kPower);
+  EXPECT_EQ(run.Predicted("agreement_time_s"), 0);
+  EXPECT_EQ(run.Measured("agreement_time_s"), 0);
+}
+
 TEST(FiniteTime, TwiceTheGainHalvesTheTimeOfTheSignAndShortensThatOfThePower) {
   EXPECT_DOUBLE_EQ(LawRun(Five(100, 1, kSign + "gain = 2.0\n")).Predicted("agreement_time_s"), 2.25);
   EXPECT_NEAR(LawRun(Five(100, 1, kPower + "gain = 2.0\n")).Predicted("agreement_time_s"), 13.09 / 2, 0.01)
       << "time scales with the gain";
+}
+
+TEST(FiniteTime, BodiesThatFollowWithALagTrembleAboutWhereTheyMeet) {
+  const auto off_m = [](const std::string& model, const std::string& law) {
+    std::string toml = Five(100, 30, law);
+    toml.replace(toml.find("single_integrator"), 17, model);
+    return LawRun(toml).meter.aim().final_disagreement_m;
+  };
+  for (const char* model : {"double_integrator", "quadrotor"}) {
+    EXPECT_LT(off_m(model, kPower), 0.1) << model;
+    EXPECT_LT(off_m(model, kSign), 0.5) << model << ": commanded 1 m/s to and fro";
+  }
 }
 
 TEST(FiniteTime, TheoryIsSilentWhereItsClosedFormsDoNotHold) {

@@ -91,6 +91,7 @@ double LongestTime(const Experiment& experiment, const FiniteTimeParams& params)
   Eigen::Vector3d v = Eigen::Vector3d::Zero();  // V, per axis
   for (const AgentConfig& agent : experiment.agents) v += (agent.p_W - mean_W).cwiseAbs2() / 2;
   const double largest_v = v.head(CountOf(experiment.law.axes)).maxCoeff();
+  if (largest_v == 0) return 0;
   const double alpha = params.alpha, lambda = Lambda2OfPower(experiment.graph, params);
   return 4 * std::pow(largest_v, (1 - alpha) / 2) / ((1 - alpha) * std::pow(4 * lambda, (1 + alpha) / 2));
 }
