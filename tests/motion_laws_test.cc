@@ -229,7 +229,8 @@ TEST(Trajectory, TheoryIsSilentWhereTheLongRunIsNotReached) {
 // --- platoons ---------------------------------------------------------------------------------------------
 
 /// A platoon of four with p = 2, d = 1.5, that starts with its distances at 5 m/s. `law`: more lines of [law].
-std::string Driving(double headway_s, const std::string& law = "", const std::string& model = "double_integrator") {
+std::string Driving(double headway_s, const std::string& law = "", const std::string& model = "double_integrator",
+                    double period_s = 5) {
   std::string positions, velocities;
   for (int i = 0; i < 4; ++i) {
     positions += (i == 0 ? "[" : ", [") + ShortestFloat(-i * (3 + 5 * headway_s)) + ", 0, 1]";
@@ -238,8 +239,8 @@ std::string Driving(double headway_s, const std::string& law = "", const std::st
   return "[run]\nduration_s = 45\n[agents]\ncount = 4\nmodel = '" + model + "'\nposition_m = [" + positions +
          "]\nvelocity_m_per_s = [" + velocities +
          "]\n[graph]\ntopology = 'directed_path'\n[law]\nname = 'platoon'\nspacing_m = 3\np_gain = 2\nd_gain = 1.5\n"
-         "disturbance_period_s = 5\nheadway_s = " +
-         ShortestFloat(headway_s) + "\n" + law;
+         "disturbance_period_s = " +
+         ShortestFloat(period_s) + "\nheadway_s = " + ShortestFloat(headway_s) + "\n" + law;
 }
 
 TEST(Platoon, TheStringIsStableFromThePredictedHeadwayOnAndNotBelow) {
@@ -287,6 +288,16 @@ TEST(Platoon, SwingsGrowOrShrinkByThePredictedFactorFromVehicleToVehicle) {
       EXPECT_THAT(run.prediction.warnings[0], HasSubstr("a headway of 0.5 s would do"));
     }
   }
+}
+
+TEST(Platoon, ARunShorterThanThePeriodOfTheSwingIsNeitherMeasuredNorPredicted) {
+  const auto amplification = [](double period_s) {
+    const LawRun run(Driving(0.8, "", "double_integrator", period_s));
+    const auto& law = run.Law();
+    return std::pair(law["amplification"][0].is_null(), law["predicted"]["amplification"].is_null());
+  };
+  EXPECT_EQ(amplification(45), std::pair(false, true)) << "a period from the start on, which is not forgotten";
+  EXPECT_EQ(amplification(45.1), std::pair(true, true));
 }
 
 TEST(Platoon, WithAConstantSpacingSlowSwingsGrowFromVehicleToVehicle) {

@@ -112,8 +112,8 @@ LawTheory PredictPlatoon(const Experiment& experiment) {
         fmt::format("law.headway_s: the string is not stable: swings grow by up to {:.4g} from one "
                     "vehicle to the next; a headway of {:.4g} s would do",
                     string.LargestGain(), string.LeastHeadway_s()));
-  const double ticks = static_cast<double>(SwingMeter::FirstTick(experiment, params.w));
-  if (params.swing > 0 && string.RestOfStart(ticks, followers) < 1e-4)
+  const std::optional<std::int64_t> first = SwingMeter::FirstTick(experiment, params.w);
+  if (params.swing > 0 && first && string.RestOfStart(static_cast<double>(*first), followers) < 1e-4)
     theory.figures[0].values.assign(static_cast<std::size_t>(followers), string.Gain(params.w));
   return theory;
 }

@@ -17,9 +17,10 @@ SwingMeter::SwingMeter(const Experiment& experiment, std::span<const int> ids, d
     if (id > 1) followers_.push_back(id);
 }
 
-std::int64_t SwingMeter::FirstTick(const Experiment& experiment, double w) {
+std::optional<std::int64_t> SwingMeter::FirstTick(const Experiment& experiment, double w) {
   const double period = 2 * std::numbers::pi / w * experiment.control.rate_hz;  // in ticks
   const auto last = static_cast<double>(experiment.ticks());
+  if (std::round(period) > last) return std::nullopt;
   return static_cast<std::int64_t>(std::round(last - std::max(1.0, std::floor(last / 2 / period)) * period)) + 1;
 }
 
@@ -29,7 +30,8 @@ void SwingMeter::Add(const TeamRow& row) {
     const double gap_m = std::abs(x(id - 1) - x(id));
     least_gap_m_ = std::min(gap_m, least_gap_m_.value_or(gap_m));
   }
-  if (row.tick < FirstTick(*experiment_, w_)) return;
+  const std::optional<std::int64_t> first = FirstTick(*experiment_, w_);
+  if (!first || row.tick < *first) return;
   const double angle = w_ * experiment_->time_s(row.tick);
   const std::complex<double> turn(std::cos(angle), -std::sin(angle));
   for (std::size_t i = 0; i < swings_.size(); ++i) swings_[i] += turn * (row.motions[i].v_WB.x() - v_x_);

@@ -22,8 +22,8 @@ class SwingMeter final : public LawMeter {
   void Add(const TeamRow& row) override;
   std::vector<FigureValues> Figures() const override;
 
-  /// The first tick of the periods that are measured.
-  static std::int64_t FirstTick(const Experiment& experiment, double w);
+  /// The first tick of the periods that are measured; nullopt: the run is shorter than one.
+  static std::optional<std::int64_t> FirstTick(const Experiment& experiment, double w);
 
  private:
   const Experiment* experiment_;
