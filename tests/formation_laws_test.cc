@@ -5,10 +5,12 @@
 #include <complex>
 #include <numbers>
 
+#include "agent/laws/distance_descent.h"
 #include "agent/laws/leaders.h"
 #include "agent/laws/rigidity.h"
 #include "agent/laws/stress_matrix.h"
 #include "experiment/linear_algebra.h"
+#include "experiment/random.h"
 #include "tests/ideal_network.h"
 #include "tests/law_run.h"
 
@@ -297,6 +299,49 @@ TEST(DistanceFormation, ThePotentialNeverGrowsSoTheBoundHoldsFromAnyStart) {
   EXPECT_LT(run.Measured("distance_error_m"), run.Predicted("distance_error_m"));
 }
 
+TEST(DistanceFormation, FromStartsThatThePeriodIsTooLongForNothingIsPromised) {
+  const auto run = [](int rate_hz) {
+    return LawRun(Team(1, rate_hz, kSingles + "count = 3\nposition_m = [[0, 0, 1], [10, 0, 1], [0, 12, 1]]\n",
+                       "[graph]\ntopology = 'complete'\n[law]\nname = 'distance_formation'\nshape = 'circle'\n"
+                       "gain = 0.01\n"));
+  };
+  EXPECT_EQ(run(10).prediction.silent, "the start is too far from the shape for the control period");
+  const LawRun often(run(100));
+  EXPECT_LE(often.Measured("distance_error_m"), often.Predicted("distance_error_m"));
+  EXPECT_LT(often.Measured("centroid_drift_m"), 1e-9);
+}
+
+TEST(DistanceFormation, ThePotentialNeverGrowsWhereTheConditionHolds) {
+  // Random starts, with the longest step for which it holds: the potential falls at every tick.
+  const std::vector<Bar> bars = {{1, 2, 1}, {2, 3, 2}, {3, 1, 0.5}, {3, 4, 1}, {4, 1, 3}};
+  const std::vector<Eigen::Vector3d> places = {{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {0, 2, 0}};
+  const auto potential = [&](const std::vector<Eigen::Vector3d>& p) {
+    double v = 0;
+    for (const Bar& bar : bars)
+      v += bar.weight * std::pow(SquareOf(bar, p, Axes::kXy) - SquareOf(bar, places, Axes::kXy), 2) / 4;
+    return v;
+  };
+  Random random(7, Random::Stream::kPositions);
+  for (int start = 0; start < 50; ++start) {
+    std::vector<Eigen::Vector3d> p;
+    for (int i = 0; i < 4; ++i) p.emplace_back(random.In(-10, 10), random.In(-10, 10), 0);
+    double step = 1;
+    while (!PotentialNeverGrows(bars, places, p, Axes::kXy, step)) step *= 0.99;
+    for (int k = 0; k < 200; ++k) {
+      const double before = potential(p);
+      std::vector<Eigen::Vector3d> next = p;
+      for (const Bar& bar : bars) {
+        const Eigen::Vector3d z = SpanOf(bar, p, Axes::kXy);
+        const double e = step * bar.weight * (z.squaredNorm() - SquareOf(bar, places, Axes::kXy));
+        next[static_cast<std::size_t>(bar.i - 1)] += e * z;
+        next[static_cast<std::size_t>(bar.j - 1)] -= e * z;
+      }
+      p = next;
+      ASSERT_LE(potential(p), before * (1 + 1e-12)) << start << " at tick " << k;
+    }
+  }
+}
+
 TEST(DistanceFormation, FliesOnAllModels) {
   for (const char* model : {"single_integrator", "double_integrator", "quadrotor"}) {
     const LawRun run(Team(
@@ -351,6 +396,22 @@ TEST(BearingFormation, HeldVelocitiesMakeTheScaleGrowInProportionToThePeriod) {
   };
   EXPECT_GT(growth(50), 0);
   EXPECT_NEAR(growth(50) / growth(100), 2, 0.1);
+}
+
+TEST(BearingFormation, TheoryNamesTheRateBelowWhichTheSampledShapeIsUnstable) {
+  // Two agents 2 m apart: across the way between them, p_1 - p_2 is multiplied by 1 - T 2 gain / |z| = 1 - T gain.
+  const auto silent = [](double gain) {
+    return LawRun(Team(5, 10, kSingles + "count = 2\nposition_m = [[0, 0, 1], [2, 0, 1]]\n",
+                       "[graph]\ntopology = 'complete'\n[law]\nname = 'bearing_formation'\noffsets_m = [[0, 0, 0], "
+                       "[1, 1, 0]]\ngain = " +
+                           ShortestFloat(gain) + "\n"));
+  };
+  EXPECT_EQ(silent(19.9).prediction.silent, "");
+  const LawRun run = silent(20.1);
+  EXPECT_EQ(run.prediction.silent, "the sampled team is unstable");
+  EXPECT_THAT(run.prediction.warnings,
+              ::testing::Contains("control.rate_hz: unstable at this rate, it must be above 10.05, got 10"));
+  EXPECT_GT(run.Measured("scale_ratio"), 1.1) << "the held velocities push them apart";
 }
 
 TEST(BearingFormation, ASpaceShapeIsReachedInSpaceByAllModels) {

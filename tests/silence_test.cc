@@ -53,6 +53,9 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"cyclic_pursuit", "law.gain", "1000.0", "the radius is no finite multiple of that at the start"},
         Row{"cyclic_pursuit", "agents.position_m", kSixAtOnePlace,
             "the radius is no finite multiple of that at the start"},
+        Row{"bearing_formation", "agents.position_m", kSixAtOnePlace,
+            "all agents start at one place, from which there are no directions"},
+        Row{"distance_formation", "law.gain", "0.2", "the start is too far from the shape for the control period"},
         Row{"finite_time", "graph", kTwoPairs, "the graph is not connected"},
         Row{"gradient_tracking", "graph", kTwoPairs, "the graph is not connected"},
         Row{"prescribed_time", "graph", kTwoPairs, "the graph is not connected"}),
@@ -87,12 +90,13 @@ TEST_P(LargeTeams, AreBeyondWhatTheoryComputes) {
 
 INSTANTIATE_TEST_SUITE_P(
     OfLaws, LargeTeams,
-    testing::Values(
-        LargeTeam{"'finite_time'\n", 1000, "the modes of so many agents are not computed"},
-        LargeTeam{"'gradient_tracking'\n", 40, "the modes of so many agents are not computed"},
-        LargeTeam{"'containment'\nleaders = [1, 2]\n", 1000, "the team is large"},
-        LargeTeam{"'distance_formation'\nshape = 'circle'\n", 200, "the team is large: its rigidity is not checked"},
-        LargeTeam{"'bearing_formation'\nshape = 'circle'\n", 200, "the team is large: its rigidity is not checked"}),
+    testing::Values(LargeTeam{"'finite_time'\n", 1000, "the modes of so many agents are not computed"},
+                    LargeTeam{"'gradient_tracking'\n", 40, "the modes of so many agents are not computed"},
+                    LargeTeam{"'containment'\nleaders = [1, 2]\n", 1000, "the team is large"},
+                    LargeTeam{"'distance_formation'\nshape = 'circle'\ngain = 1e-6\n", 200,
+                              "the team is large: its rigidity is not checked"},
+                    LargeTeam{"'bearing_formation'\nshape = 'circle'\n", 200,
+                              "the team is large: its rigidity is not checked"}),
     [](const auto& row) { return test::ParamName(row.param.law.substr(1, row.param.law.find('\'', 1) - 1)); });
 
 // --- phases -----------------------------------------------------------------------------------------

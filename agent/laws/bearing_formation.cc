@@ -18,6 +18,7 @@
 #include "agent/laws/places.h"
 #include "agent/laws/rigidity.h"
 #include "agent/laws/row_parts.h"
+#include "agent/laws/stable_period.h"
 
 namespace mascot {
 namespace {
@@ -74,9 +75,21 @@ std::shared_ptr<const LawParams> ReadBearingFormation(const Experiment& experime
   return params;
 }
 
+/// The longest control period that is stable near the shape, at the scale `start_m` (s).
+double LongestPeriod_s(const Experiment& experiment, double start_m) {
+  const auto& params = ParamsOf<BearingFormationParams>(experiment.law);
+  std::vector<Eigen::Vector3d> shape_W = params.d_W;
+  const double larger = start_m / ScaleOf(shape_W, experiment.law.axes);
+  for (Eigen::Vector3d& p : shape_W) p *= larger;
+  return 2 / (params.gain * LargestTurnStiffness(BarsOf(experiment.graph), shape_W, experiment.law.axes));
+}
+
 LawTheory PredictBearingFormation(const Experiment& experiment) {
   if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty()) return {.silent = std::move(why)};
   if (experiment.size() > kMostAgentsOfRigidity) return {.silent = "the team is large: its rigidity is not checked"};
+  const double start_m = ScaleOf(StartsOf(experiment), experiment.law.axes);
+  if (start_m == 0) return {.silent = "all agents start at one place, from which there are no directions"};
+  if (auto unstable = WhyUnstable(experiment, LongestPeriod_s(experiment, start_m))) return *unstable;
   return {.figures = {{.values = {0.0}}, {.values = {1.0}}, {.values = {0.0}}}};
 }
 
@@ -84,23 +97,17 @@ class BearingFormationMeter final : public LawMeter {
  public:
   BearingFormationMeter(const Experiment& experiment, std::span<const int> ids) : now_(&experiment), id_(ids.front()) {
     start_W_ = StartsOf(experiment);
-    start_m_ = ScaleOf(start_W_);
+    start_m_ = ScaleOf(start_W_, axes());
   }
   void Adopt(const Experiment& now) override { now_ = &now; }
   void Add(const TeamRow& row) override { p_W_ = PositionsOf(row.motions); }
   std::vector<FigureValues> Figures() const override {
     const Eigen::Vector3d drift_W = CentroidOf(p_W_) - CentroidOf(start_W_);
-    return {{LargestError_deg()}, {ScaleOf(p_W_) / start_m_}, {Along(axes(), drift_W).norm()}};
+    return {{LargestError_deg()}, {ScaleOf(p_W_, axes()) / start_m_}, {Along(axes(), drift_W).norm()}};
   }
 
  private:
   Axes axes() const { return now_->agent(id_).law.axes; }
-  double ScaleOf(const std::vector<Eigen::Vector3d>& p_W) const {
-    const Eigen::Vector3d centre_W = CentroidOf(p_W);
-    double squares = 0;
-    for (const Eigen::Vector3d& p : p_W) squares += Along(axes(), p - centre_W).squaredNorm();
-    return std::sqrt(squares / static_cast<double>(p_W.size()));
-  }
   double LargestError_deg() const {
     const auto& d_W = ParamsOf<BearingFormationParams>(now_->agent(id_).law).d_W;
     double largest_rad = 0;

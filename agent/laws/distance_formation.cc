@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "agent/laws/distance_descent.h"
 #include "agent/laws/ideal.h"
 #include "agent/laws/places.h"
 #include "agent/laws/rigidity.h"
@@ -79,32 +79,24 @@ double LargestDistanceError(const Graph& graph, const LawConfig& law, std::span<
   return largest_m;
 }
 
-/// In the end. Of two agents: their distance z obeys z+ = z - 2 T gain a_12 (z^2 - d^2) z. Of more: what follows from 4
-/// V, which does not grow, as |z| - d = (|z|^2 - d^2) / (|z| + d).
-PredictedFigure PredictedError(const Experiment& experiment, const DistanceFormationParams& params) {
-  const std::vector<Bar> bars = BarsOf(experiment.graph);
-  const std::vector<Eigen::Vector3d> starts_W = StartsOf(experiment);
-  double v4 = 0, bound_m = 0;
-  for (const Bar& bar : bars) {
-    const double d2 = SquareOf(bar, params.d_W, experiment.law.axes);
-    v4 += bar.weight * std::pow(SquareOf(bar, starts_W, experiment.law.axes) - d2, 2);
-    bound_m = std::max(bound_m, 1 / std::sqrt(bar.weight * d2));
-  }
-  if (bars.size() > 1) return {.values = {bound_m * std::sqrt(v4)}, .bound = Bound::kAtMost};
-  double z_m = LengthOf(bars[0], starts_W, experiment.law.axes);
-  const double d2 = SquareOf(bars[0], params.d_W, experiment.law.axes);
-  const double step = 2 * experiment.period_s() * params.gain * bars[0].weight;  // 1/m^2
-  for (std::int64_t k = 0; k < experiment.ticks(); ++k) z_m -= step * (z_m * z_m - d2) * z_m;
-  return {.values = {std::abs(std::abs(z_m) - std::sqrt(d2))}};
-}
-
 LawTheory PredictDistanceFormation(const Experiment& experiment) {
   const auto& params = ParamsOf<DistanceFormationParams>(experiment.law);
   if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty()) return {.silent = std::move(why)};
   if (experiment.size() > kMostAgentsOfRigidity) return {.silent = "the team is large: its rigidity is not checked"};
-  const double stiffness_m2 = LargestStiffness(BarsOf(experiment.graph), params.d_W, experiment.law.axes);
+  const Axes axes = experiment.law.axes;
+  const std::vector<Bar> bars = BarsOf(experiment.graph);
+  const double stiffness_m2 = LargestStiffness(bars, params.d_W, axes);
   if (auto unstable = WhyUnstable(experiment, 1 / (params.gain * stiffness_m2))) return *unstable;
-  return {.figures = {PredictedError(experiment, params), {.values = {0.0}}}};
+  const std::vector<Eigen::Vector3d> starts_W = StartsOf(experiment);
+  const double step = experiment.period_s() * params.gain;
+  PredictedFigure error;
+  if (bars.size() == 1)
+    error = {.values = {ErrorOfTwo(bars[0], params.d_W, starts_W, axes, step, experiment.ticks())}};
+  else if (PotentialNeverGrows(bars, params.d_W, starts_W, axes, step))
+    error = {.values = {LargestErrorBelow(bars, params.d_W, starts_W, axes)}, .bound = Bound::kAtMost};
+  if (error.values.empty() || !std::isfinite(*error.values[0]))
+    return {.silent = "the start is too far from the shape for the control period"};
+  return {.figures = {std::move(error), {.values = {0.0}}}};
 }
 
 class DistanceFormationMeter final : public LawMeter {

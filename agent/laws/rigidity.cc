@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <cmath>
 #include <string>
 
 #include "experiment/linear_algebra.h"
@@ -69,6 +70,15 @@ Eigen::MatrixXd BearingRigidityMatrix(std::span<const Bar> bars, std::span<const
 
 int RankOfBearingRigid(int agents, Axes axes) { return CountOf(axes) * (agents - 1) - 1; }
 
+double LargestTurnStiffness(std::span<const Bar> bars, std::span<const Eigen::Vector3d> points, Axes axes) {
+  const Eigen::Index d = CountOf(axes);
+  const Eigen::MatrixXd turns = BearingRigidityMatrix(bars, points, axes);  // P(g) / |z|
+  Eigen::MatrixXd weighted = turns;
+  for (std::size_t k = 0; k < bars.size(); ++k)
+    weighted.middleRows(d * static_cast<Eigen::Index>(k), d) *= bars[k].weight * LengthOf(bars[k], points, axes);
+  return SymmetricEigenvalues(turns.transpose() * weighted).maxCoeff();
+}
+
 namespace {
 
 /// "expected ..., got ..."; empty: nothing is wrong.
@@ -107,6 +117,13 @@ Eigen::Vector3d CentroidOf(std::span<const Eigen::Vector3d> points) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& p : points) sum += p;
   return sum / static_cast<double>(points.size());
+}
+
+double ScaleOf(std::span<const Eigen::Vector3d> points, Axes axes) {
+  const Eigen::Vector3d centre = CentroidOf(points);
+  double squares = 0;
+  for (const Eigen::Vector3d& p : points) squares += Along(axes, p - centre).squaredNorm();
+  return std::sqrt(squares / static_cast<double>(points.size()));
 }
 
 std::vector<Eigen::Vector3d> PositionsOf(std::span<const Motion> motions) {

@@ -39,6 +39,9 @@ int RankOfRigid(int agents, Axes axes);
 Eigen::MatrixXd BearingRigidityMatrix(std::span<const Bar> bars, std::span<const Eigen::Vector3d> points, Axes axes);
 /// Its rank if directions fix the shape, up to its scale: all motions but shifts and scaling change a direction.
 int RankOfBearingRigid(int agents, Axes axes);
+/// The largest eigenvalue of the sum over bars of weight P(g) / |z|, with P(g) the projection across the bar and |z|
+/// its length (1/m).
+double LargestTurnStiffness(std::span<const Bar> bars, std::span<const Eigen::Vector3d> points, Axes axes);
 
 /// What is said of a graph that is not undirected.
 inline constexpr std::string_view kExpectedUndirected =
@@ -54,5 +57,7 @@ void ExpectRigid(const Experiment& experiment, std::span<const Eigen::Vector3d> 
 std::vector<Eigen::Vector3d> PositionsOf(std::span<const Motion> motions);
 std::vector<Eigen::Vector3d> StartsOf(const Experiment& experiment);
 Eigen::Vector3d CentroidOf(std::span<const Eigen::Vector3d> points);
+/// The rms distance from the centroid, along `axes` (m).
+double ScaleOf(std::span<const Eigen::Vector3d> points, Axes axes);
 
 }  // namespace mascot
