@@ -97,6 +97,16 @@ TEST(Rendezvous, TheoryIsSilentWhereItPromisesNothing) {
   EXPECT_EQ(silent({0, 3}, kRendezvous, "edges = [[1, 2]]\n"), "the closed forms are of undirected graphs");
 }
 
+TEST(Rendezvous, PromisesNothingWhereATeamIsTornOnTheWay) {
+  const std::string kMargin = "name = 'rendezvous'\nmargin_m = 0.4\n";
+  const LawRun torn(Within4m({0, 3.4, 6.8, 10.2, 13.6, 17, 20.4, 23.8}, kMargin + "gain = 2.0\n"));
+  EXPECT_GT(torn.Measured("edges_lost"), 0) << "though the tension is low enough at the start";
+  EXPECT_EQ(torn.prediction.silent, "an edge is lost on the way: the tension becomes too high for the control period");
+  const LawRun kept(Within4m({0, 3.4, 6.8, 10.2, 13.6, 17, 20.4, 23.8}, kMargin + "gain = 0.2\n", 40));
+  EXPECT_EQ(kept.prediction.silent, "");
+  EXPECT_EQ(kept.Measured("edges_lost"), 0);
+}
+
 TEST(Rendezvous, FliesDoubleIntegratorsAndQuadrotorsToo) {
   for (const std::string model : {"double_integrator", "quadrotor"}) {
     std::string toml = Within4m({0, 2, 4}, "name = 'rendezvous'\ngain = 0.5\n", 15);

@@ -5,6 +5,7 @@
 // D - margin_m on (the paper's hysteresis), because its tension would be unbounded at D; who counts for an agent also
 // counts the other way, since both see the same distance.
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -85,6 +86,9 @@ LawTheory PredictRendezvous(const Experiment& experiment) {
     return {.silent = "the agents within graph.range_m less law.margin_m at the start are not connected"};
   if (experiment.period_s() * LargestDegree(stiffness) >= 1)
     return {.silent = "the tension at the start is too high for the control period"};
+  const std::optional<bool> keeps = KeepsEveryEdge(experiment, params.tension);
+  if (!keeps) return {.silent = "so many agents are not flown ahead for so many ticks, to see that no edge is lost"};
+  if (!*keeps) return {.silent = "an edge is lost on the way: the tension becomes too high for the control period"};
   return {.figures = {{.values = {0}}}, .value_m = MeanStart(experiment)};
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "experiment/experiment.h"
 
 namespace mascot {
@@ -19,5 +21,9 @@ struct Tension {
 
 /// The edges that count at the start, each weighted by its stiffness (1/s).
 Graph StiffnessAtStart(const Experiment& experiment, const Tension& tension);
+/// Whether single integrators, whose velocities are held for a tick, keep every edge that has begun to count. They are
+/// flown from their starts until they are so near each other that none can be lost any more, or the run ends. Nullopt:
+/// there are too many of them, or of ticks.
+std::optional<bool> KeepsEveryEdge(const Experiment& experiment, const Tension& tension);
 
 }  // namespace mascot
