@@ -58,7 +58,8 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"distance_formation", "law.gain", "0.2", "the start is too far from the shape for the control period"},
         Row{"finite_time", "graph", kTwoPairs, "the graph is not connected"},
         Row{"gradient_tracking", "graph", kTwoPairs, "the graph is not connected"},
-        Row{"prescribed_time", "graph", kTwoPairs, "the graph is not connected"}),
+        Row{"prescribed_time", "graph", kTwoPairs, "the graph is not connected"},
+        Row{"prescribed_time", "law.time_s", "1e6", "law.time_s is after the end of the run"}),
     NameOf);
 
 // --- large teams ------------------------------------------------------------------------------------

@@ -35,8 +35,7 @@ constexpr LawFigure kPrescribedTimeFigures[] = {
 constexpr double kTogetherShare = 1e-3;  // of the largest spread at the start
 
 struct PrescribedTimeParams final : LawParams {
-  double time_s = 0;
-  double exponent = 0;
+  double time_s = 0, exponent = 0;
   double gain = 0;        ///< 1/s
   double largest = 0;     ///< 1/s: the gain that the control period allows
   std::int64_t tick = 0;  ///< the first at or after time_s
@@ -85,6 +84,7 @@ double LeftShare(const Experiment& experiment, const PrescribedTimeParams& param
 LawTheory PredictPrescribedTime(const Experiment& experiment) {
   const auto& params = ParamsOf<PrescribedTimeParams>(experiment.law);
   if (std::string why = WhyNotIdealUndirected(experiment); !why.empty()) return {.silent = std::move(why)};
+  if (params.tick > experiment.ticks()) return {.silent = "law.time_s is after the end of the run"};
   const double left = LeftShare(experiment, params);
   LawTheory theory{.figures = {{}, {.values = {left}, .bound = Bound::kAtMost}}, .value_m = MeanStart(experiment)};
   // Any two of N agents are at most sqrt(2) |d| apart, where |d| is at most sqrt(N) / 2 times the spread at the start.
