@@ -73,10 +73,6 @@ std::shared_ptr<const LawParams> ReadPursuitEvasion(const Experiment& experiment
   return params;
 }
 
-bool Hears(const Graph& graph, int hearer, int heard) {
-  return std::ranges::find(graph.HeardBy(hearer), heard, &Graph::Neighbour::id) != graph.HeardBy(hearer).end();
-}
-
 LawTheory PredictPursuitEvasion(const Experiment& experiment) {
   const auto& params = ParamsOf<PursuitEvasionParams>(experiment.law);
   if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty()) return {.silent = std::move(why)};
@@ -90,7 +86,7 @@ LawTheory PredictPursuitEvasion(const Experiment& experiment) {
   for (const AgentConfig& agent : experiment.agents) {
     if (agent.control.max_speed_m_per_s < params.pursuer_speed)
       return {.silent = "the limit of the speed cuts the pursuit"};
-    if (agent.id == evader || !Hears(experiment.graph, agent.id, evader)) continue;
+    if (agent.id == evader || !experiment.graph.Hears(agent.id, evader)) continue;
     nearest_m = std::min(nearest_m, Along(fleeing.law.axes, fleeing.p_W - agent.p_W).norm());
     ++pursuers;
   }
@@ -98,7 +94,7 @@ LawTheory PredictPursuitEvasion(const Experiment& experiment) {
   const double ticks = std::max(0.0, std::ceil((nearest_m - params.radius_m) / (closing * h) - 1e-6));
   const double closest_m = std::max(params.radius_m, nearest_m - closing * experiment.run.duration_s);
   const auto& heard = experiment.graph.HeardBy(evader);
-  const bool is_line = pursuers == 1 && heard.size() == 1 && Hears(experiment.graph, heard[0].id, evader);
+  const bool is_line = pursuers == 1 && heard.size() == 1 && experiment.graph.Hears(heard[0].id, evader);
   return {.figures = {{{ticks * h}, is_line ? Bound::kEqual : Bound::kAtMost}, {{closest_m}, Bound::kAtMost}}};
 }
 
