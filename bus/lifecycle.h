@@ -29,7 +29,7 @@ class Ended : public std::exception {
 struct Course {
   std::int64_t tick = 0;          ///< the newest one published
   std::uint32_t request = 0;      ///< number of the newest request carried out; 0: none yet
-  std::int64_t request_tick = 0;  ///< the first tick that it holds for; -1: the run was over
+  std::int64_t request_tick = 0;  ///< the first tick that it holds for; kOver or kTooLate: there is none
   bool paused = false;
   double pace = 0;  ///< simulated seconds a second; 0: as fast as it goes
 };

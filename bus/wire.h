@@ -51,6 +51,8 @@ constexpr bool IsLast(Life life) { return life >= Life::kDone; }
 Life CheckedLife(const mascot_msgs::msg::Status& status, std::int64_t last_tick);
 /// Values of Request::kind.
 enum class Ask : std::uint8_t { kReport = 0, kStop, kEnd, kPause, kResume, kStep, kPace, kEvent };
+/// Values of Status::request_tick for requests that hold for no tick: the run was over; an event came too late.
+inline constexpr std::int64_t kOver = -1, kTooLate = -2;
 
 /// A number that two processes compare to know that they fly the same experiment: the FNV-1a hash of its text. Never 0.
 std::uint64_t DigestOf(const mascot_msgs::msg::Experiment& experiment);

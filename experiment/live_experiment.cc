@@ -100,10 +100,13 @@ std::shared_ptr<const Experiment> LiveExperiment::Take(const Event& event) {
       std::erase_if(changes, [&](const Override& older) { return older.key == change.key; });
       changes.push_back(std::move(change));
     }
-    Section document = Section::FromText(text_, "config.toml", changes);
+    // All was legal before this event: what is wrong now is its mistake, also where another key shows it.
+    for (Override& change : changes) change.origin = event.where;
+    Section document = Section::FromWords(text_, event.where, changes);
     Experiment next = laws_ != nullptr
                           ? ReadExperiment(std::move(document), *laws_, start_.run.name, checked_, WithTheirOwnLaw())
                           : ReadWithoutLaws(std::move(document), start_.run.name);
+    CheckParams(event, next);
     next.cut = cut;
     const bool begins_phase = event.law && phase_tick_ != event.tick;
     next.phase = current().phase + (begins_phase ? 1 : 0);
@@ -212,7 +215,6 @@ void LiveExperiment::CheckKey(const Event& event, const std::string& key) const 
     for (const std::string& name : names) {
       const std::vector<Key> rows = KeysOfLaw(*laws_, name);
       row = FindRow(rows, rest);
-      if (row != nullptr && row->kind == ValueKind::kAny) CheckParams(event);
       if (row != nullptr && row->live) return;
       if (row != nullptr) break;
     }
@@ -228,8 +230,10 @@ void LiveExperiment::CheckKey(const Event& event, const std::string& key) const 
   Refuse(event, key + ": unknown key" + (nearest ? " (did you mean \"" + *nearest + "\"?)" : std::string()));
 }
 
-void LiveExperiment::CheckParams(const Event& event) const {
-  for (const AgentConfig& agent : current().agents) {
+void LiveExperiment::CheckParams(const Event& event, const Experiment& next) const {
+  const auto is_of_params = [](const auto& entry) { return (entry.first + ".").starts_with("law.params."); };
+  if (laws_ == nullptr || std::ranges::none_of(event.set, is_of_params)) return;
+  for (const AgentConfig& agent : next.agents) {
     const bool is_concerned = event.agents.empty() || std::ranges::find(event.agents, agent.id) != event.agents.end();
     if (is_concerned && !agent.law.params->fixed.empty()) Refuse(event, "law.params: " + agent.law.params->fixed);
   }

@@ -24,6 +24,8 @@ class LiveExperiment {
   /// taken before without a mistake: slow checks, which run the code of a law, are left out. Both must outlive this.
   LiveExperiment(const Experiment& start, const LawCatalog* laws, bool checked);
 
+  /// From now on every check of an experiment file is made.
+  void CheckAll() { checked_ = false; }
   /// The event of this tick that Event::Toml() is `toml` of. Throws ConfigError for other text.
   Event Parse(std::int64_t tick, const std::string& toml, const std::string& where) const;
   /// Takes the next event. Throws ConfigError, with event.where in front, and changes nothing, if it names a key that
@@ -71,8 +73,8 @@ class LiveExperiment {
   /// set for this agent alone, and what stands in it now; none: `key` is in no such table, or the agent has its own.
   std::optional<std::pair<std::string, Value>> TakenOver(const Own& own, const std::string& key) const;
   void CheckKey(const Event& event, const std::string& key) const;
-  /// Checks that the laws of those whom it concerns let their law.params change.
-  void CheckParams(const Event& event) const;
+  /// Checks that the laws of those whom it concerns let their law.params change. `next`: with the event.
+  void CheckParams(const Event& event, const Experiment& next) const;
   std::set<std::pair<int, int>> CutAfter(const Event& event) const;
   const Experiment& current() const { return now_ ? *now_ : start_; }
 

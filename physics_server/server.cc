@@ -190,7 +190,7 @@ void Server::OnRequest(const mascot_msgs::msg::Request& request) {
 
 std::int64_t Server::CarryOut(const mascot_msgs::msg::Request& request) {
   const std::int64_t next = ticks_.published() + 1;
-  if (ticks_.finished() || lifecycle_.stop_requested() || next > experiment_.ticks()) return -1;
+  if (ticks_.finished() || lifecycle_.stop_requested() || next > experiment_.ticks()) return kOver;
   switch (static_cast<Ask>(request.kind())) {
     case Ask::kPause:
       ticks_.gate().Pause();
@@ -205,6 +205,7 @@ std::int64_t Server::CarryOut(const mascot_msgs::msg::Request& request) {
       ticks_.gate().SetPace(request.value());
       break;
     case Ask::kEvent:
+      if (static_cast<double>(next) >= request.value()) return kTooLate;
       by_hand_.push_back(live_.Parse(next, request.toml(), "event by hand"));
       break;
     default:

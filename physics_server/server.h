@@ -51,7 +51,7 @@ class Server {
   // The functions below are called with mutex_ held.
   void Do(const TickProtocol::Actions& actions);
   void Publish();
-  /// Carries out a new request. Returns the first tick that it holds for; -1: the run is over.
+  /// Carries out a new request. Returns the first tick that it holds for, or why there is none.
   std::int64_t CarryOut(const mascot_msgs::msg::Request& request);
   /// Publishes the events that take effect at the world's tick: those of the file, then those by hand.
   void PublishEvents();

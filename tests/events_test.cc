@@ -126,6 +126,15 @@ TEST(Events, AreRefusedWithTheirPlaceAndTheWordsOfTheFile) {
             "folder/test.toml:13:7: events[0].set: expected live keys and their new values, got none");
 }
 
+TEST(Events, ThatSpoilAnotherKeyAreRefusedAtTheirOwnPlace) {
+  EXPECT_EQ(Refusal("[run]\nduration_s = 1.0\n[agents]\ncount = 3\nmodel = 'single_integrator'\n"
+                    "position_m = [[0, 0, 1], [1, 0, 1], [0, 2, 1]]\n[graph]\ntopology = 'complete'\n[law]\n"
+                    "name = 'distance_formation'\noffsets_m = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n" +
+                    Event("set = { \"law.offsets_m\" = [[0, 0, 0], [1, 0, 0], [2, 0, 0]] }")),
+            "folder/test.toml:14:7: law.name: expected a graph and places that are infinitesimally rigid in the plane, "
+            "got 3 pairs and a rigidity matrix of rank 2, not 3");
+}
+
 TEST(Events, AreOfOneKind) {
   EXPECT_EQ(RefusalOf(""), "folder/test.toml:11:1: events[0]: expected one of set, goto, graph, cut, mend, got none");
   EXPECT_EQ(RefusalOf("cut = [[1, 2]]\nmend = [[1, 3]]"),
@@ -397,7 +406,7 @@ TEST(Events, TellPluginsTheirNewParams) {
   EXPECT_EQ(FirstDifference(without, with, CommandOf), kTick);
   EXPECT_DOUBLE_EQ(with[50].commands[0].a_law_W.x() + with[50].motions[0].v_WB.x(),
                    2 * (without[50].commands[0].a_law_W.x() + without[50].motions[0].v_WB.x()));
-  EXPECT_THAT(Refusal(Three(library("talker")) + Event("set = { \"law.params.gain\" = 2.0 }")),
+  EXPECT_THAT(Refusal(Three(library("talker")) + Event("set = { \"law.params\" = {} }")),
               HasSubstr("law.params: expected a law with Set(PluginParams&), got none"));
 }
 

@@ -120,6 +120,61 @@ TEST(Helm, RefusesInTheWordsOfTheFileAndChangesNothing) {
   EXPECT_TRUE(run.kept.events.empty());
 }
 
+TEST(Helm, ChecksEventsAsTheFileDoesAlsoAfterOthers) {
+  const std::string shape =
+      "[run]\nduration_s = 1.0\n[agents]\ncount = 3\nmodel = 'single_integrator'\n"
+      "position_m = [[0, 0, 1], [1, 0, 1], [0, 2, 1]]\n[graph]\ntopology = 'complete'\n[law]\n"
+      "name = 'distance_formation'\noffsets_m = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n";
+  Paused flat(Paused::Long(shape));
+  EXPECT_EQ(flat.Event("set = { \"law.offsets_m\" = [[0, 0, 0], [1, 0, 0], [2, 0, 0]] }").words,
+            "event by hand: law.name: expected a graph and places that are infinitesimally rigid in the plane, got 3 "
+            "pairs and a rigidity matrix of rank 2, not 3");
+  const std::string law =
+      "name = 'custom'\nparams = { x = 1 }\n"
+      "python = '''\ndef control(t, me, neighbours):\n    return [0, 0]\n'''\n";
+  Paused without(Paused::Long(Three(law)));
+  EXPECT_TRUE(without.Event("set = { \"control.max_speed_m_per_s\" = 3 }").granted);
+  EXPECT_EQ(without.Event("set = { \"law.params.x\" = 2 }").words,
+            "event by hand: law.params: expected a law that defines set(me, params), got none");
+}
+
+constexpr const char* kFliesAndThenAgrees =
+    "name = 'waypoint'\nwaypoints_m = [[1, 1, 1]]\n[[law.schedule]]\nat_s = 0.5\nname = 'consensus'\n";
+constexpr const char* kGoTo = "goto = { agent = 2, position_m = [1, 1, 1] }";
+constexpr const char* kNoWaypoints =
+    "event by hand: goto: expected an agent that flies waypoints, or a leader, got agent 2 of law 'consensus'";
+
+TEST(Helm, AnEventAtTheTickOfAPhaseComesBehindIt) {
+  Steered run(Paused::Long(Three(kFliesAndThenAgrees)) + "[[events]]\nat_s = 0.3\nset = { \"run.pace\" = 0.001 }\n");
+  const auto await = [&](std::int64_t tick) {
+    while (run.helm.going().tick < tick) std::this_thread::yield();
+  };
+  await(30);
+  run.Ask({.kind = Kind::kPause});
+  run.Ask({.kind = Kind::kStep, .number = 18});
+  await(48);
+  EXPECT_EQ(run.Event(kGoTo).words, "takes effect at tick 49 (0.49 s)");
+  run.Ask({.kind = Kind::kStep, .number = 1});
+  await(49);
+  EXPECT_EQ(run.Event(kGoTo).words, kNoWaypoints);
+  run.Ask({.kind = Kind::kStop});
+  run.Join();
+  EXPECT_EQ(run.result.failure, "");
+}
+
+TEST(Helm, ChecksAnEventAgainThatAPhaseHasOvertaken) {
+  const Experiment experiment = Load(Three(kFliesAndThenAgrees));
+  Helm helm(experiment, 0);
+  helm.Open();
+  Answer answer{.granted = true};
+  std::jthread asking([&] { answer = helm.Ask({.kind = Kind::kEvent, .toml = kGoTo}); });
+  while (!helm.Next()) std::this_thread::yield();
+  EXPECT_EQ(helm.Next()->number, 50);
+  helm.CheckAgain();
+  asking.join();
+  EXPECT_EQ(answer, (Answer{false, kNoWaypoints}));
+}
+
 TEST(Helm, RefusesNumbersThatMakeNoSense) {
   Paused run;
   const auto refusal = [&](Kind kind, double number) {

@@ -155,9 +155,10 @@ Section Section::FromText(const std::string& text, const std::string& name, std:
   return Of(std::make_shared<Document>(text, name, overrides));
 }
 
-Section Section::FromWords(const std::string& text, const std::string& origin) {
+Section Section::FromWords(const std::string& text, const std::string& origin, std::span<const Override> overrides) {
   auto document = std::make_shared<Document>("", "", std::span<const Override>());
   document->root = ParseToml(text, origin);  // with the origin as the path of each node
+  for (const Override& override : overrides) Apply(override, document->root);
   return Of(document);
 }
 

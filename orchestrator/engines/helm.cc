@@ -46,26 +46,28 @@ Answer Helm::Ask(const Wish& wish) {
     if (is_over_) return too_late;
     if (!is_open_) return {false, "the run has not begun yet"};
   }
-  Wish checked;
-  try {
-    checked = Checked(wish);
-  } catch (const ConfigError& error) {
-    return {false, Refusal(error)};
-  } catch (const std::invalid_argument& error) {
-    return {false, error.what()};
+  for (std::int64_t from = 0;;) {
+    Wish checked;
+    try {
+      checked = Checked(wish, from);
+    } catch (const ConfigError& error) {
+      return {false, Refusal(error)};
+    } catch (const std::invalid_argument& error) {
+      return {false, error.what()};
+    }
+    std::unique_lock lock(mutex_);
+    if (is_over_) return too_late;
+    answer_.reset();
+    wish_ = checked;
+    changed_.notify_all();
+    if (wake_) wake_();
+    changed_.wait(lock, [this] { return answer_ || is_over_ || !wish_; });
+    if (std::exchange(wish_, std::nullopt) || is_over_) return answer_.value_or(too_late);
+    from = std::llround(checked.number);
   }
-  std::unique_lock lock(mutex_);
-  if (is_over_) return too_late;
-  answer_.reset();
-  wish_ = checked;
-  changed_.notify_all();
-  if (wake_) wake_();
-  changed_.wait(lock, [this] { return answer_ || is_over_; });
-  wish_.reset();
-  return answer_.value_or(too_late);
 }
 
-Wish Helm::Checked(const Wish& wish) {
+Wish Helm::Checked(const Wish& wish, std::int64_t from) {
   const bool realtime = experiment_.run.mode == Mode::kRealtime;
   switch (wish.kind) {
     case Wish::Kind::kPause:
@@ -86,26 +88,37 @@ Wish Helm::Checked(const Wish& wish) {
     case Wish::Kind::kSeek:
       throw std::invalid_argument("seek: expected a recording, got a run: nobody can go back in it, or ahead");
     case Wish::Kind::kEvent:
-      return {.kind = wish.kind, .toml = CheckedEvent(wish.toml).Toml()};
+      return CheckedEvent(wish.toml, from);
   }
   return wish;
 }
 
-Event Helm::CheckedEvent(const std::string& toml) {
+Wish Helm::CheckedEvent(const std::string& toml, std::int64_t from) {
   std::unique_lock lock(mutex_);
   LiveExperiment live = *live_;
   const std::deque<Event> granted = granted_;
-  const std::size_t of_file = of_file_;
-  const std::int64_t tick = std::min(going_.tick + 1, experiment_.ticks());
+  std::size_t next = of_file_;
+  from = std::max(from, granted.empty() ? going_.tick + 1 : granted.back().tick);
   lock.unlock();
-  const Event event = live.Parse(tick, toml, kByHand);
+  const std::int64_t last = experiment_.ticks();
+  const Event event = live.Parse(std::min(from, last), toml, kByHand);
   if (event.law)
     throw std::invalid_argument(std::string(kByHand) +
                                 ": law: expected a phase in [[law.schedule]] of the file, got one by hand");
-  for (const Event& other : granted) live.Take(other);
+  const std::vector<Event>& file = experiment_.events;
+  const auto take_file = [&](std::int64_t until) {  // those of the file come first
+    while (next < file.size() && file[next].tick <= until) live.Take(file[next++]);
+  };
+  for (const Event& other : granted) {
+    take_file(other.tick);
+    live.Take(other);
+  }
+  take_file(from);
+  const std::int64_t before = next < file.size() ? file[next].tick : last + 1;
+  live.CheckAll();
   live.Take(event);
-  for (std::size_t k = of_file; k < experiment_.events.size(); ++k) live.Take(experiment_.events[k]);
-  return event;
+  take_file(last);
+  return {.kind = Wish::Kind::kEvent, .number = static_cast<double>(before), .toml = event.Toml()};
 }
 
 Answer Helm::AnswerTo(const Wish& wish, std::optional<std::int64_t> tick) const {
@@ -178,6 +191,12 @@ void Helm::Done(std::optional<std::int64_t> tick) {
   if (!wish_ || answer_) return;
   answer_ = AnswerTo(*wish_, tick);
   if (tick && wish_->kind == Wish::Kind::kEvent) granted_.push_back(live_->Parse(*tick, wish_->toml, kByHand));
+  changed_.notify_all();
+}
+
+void Helm::CheckAgain() {
+  const std::lock_guard lock(mutex_);
+  if (!answer_) wish_.reset();
   changed_.notify_all();
 }
 

@@ -54,6 +54,8 @@ class Helm final : public RunControl, public RowSink {
   std::optional<Wish> Next() const;
   /// That wish is carried out: `tick` is the first that it holds for; nullopt: the run is over.
   void Done(std::optional<std::int64_t> tick);
+  /// That wish, an event, cannot take effect before the tick Wish::number: it is checked again for later ones.
+  void CheckAgain();
   /// How the ticks go on now.
   void SetGoing(bool paused, double pace);
   void SetDomain(int domain);
@@ -68,11 +70,12 @@ class Helm final : public RunControl, public RowSink {
   std::vector<int> numbers_by_hand() const;
 
  private:
-  /// What the wish asks for, with an event's text in its fixed form. Throws ConfigError or std::invalid_argument if it
-  /// is not legal.
-  Wish Checked(const Wish& wish);
-  /// Throws ConfigError if the event is not legal now, or an event of the file after it.
-  Event CheckedEvent(const std::string& toml);
+  /// What the wish asks for, with an event's text in its fixed form. An event takes effect at tick `from` or later.
+  /// Throws ConfigError or std::invalid_argument if it is not legal.
+  Wish Checked(const Wish& wish, std::int64_t from);
+  /// Throws ConfigError if the event is not legal, or an event of the file after it. That holds for ticks before the
+  /// file's next event: behind it there may be another law.
+  Wish CheckedEvent(const std::string& toml, std::int64_t from);
   Answer AnswerTo(const Wish& wish, std::optional<std::int64_t> tick) const;
 
   const Experiment& experiment_;

@@ -125,6 +125,10 @@ class Steering {
   /// Returns false if the run is to end.
   bool CarryOutWishes(std::int64_t tick) {
     while (const auto wish = helm_.Next()) {
+      if (wish->kind == Wish::Kind::kEvent && static_cast<double>(tick) >= wish->number) {
+        helm_.CheckAgain();
+        continue;
+      }
       const bool goes_on = CarryOut(*wish);
       helm_.SetGoing(gate_.paused(), gate_.pace());
       helm_.Done(tick);

@@ -8,7 +8,9 @@ namespace mascot {
 struct Wish {
   enum class Kind { kPause, kResume, kStep, kPace, kStop, kEvent, kSeek };
   Kind kind = Kind::kPause;
-  double number = 0;      ///< kStep: ticks; kPace: simulated seconds a second, 0: as fast as it goes; kSeek: time (s)
+  /// kStep: ticks; kPace: simulated seconds a second, 0: as fast as it goes; kSeek: time (s); kEvent, once it is
+  /// checked: it must take effect before this tick.
+  double number = 0;
   std::string toml = {};  ///< kEvent: the keys of one [[events]] table, without at_s
 };
 

@@ -357,8 +357,9 @@ void DdsRun::Steer() {
   if (!std::exchange(is_asked_, true)) ++requests_;
   if (!server || server->request() != requests_) return hub_->Steer(*wish, requests_);
   const std::int64_t tick = server->request_tick();
-  helm_->Done(tick < 0 ? std::nullopt : std::optional(tick));
   is_asked_ = false;
+  if (tick == kTooLate) return helm_->CheckAgain();
+  helm_->Done(tick == kOver ? std::nullopt : std::optional(tick));
 }
 
 void DdsRun::OnSignal(int signal) {
