@@ -41,14 +41,16 @@ constexpr Key kPhaseKeys[] = {
     kAgents,
 };
 
-/// Puts the leaves of `value` into `set`, under dotted keys: { law = { p_gain = 1 } } is { "law.p_gain" = 1 }.
-void Flatten(const std::string& key, const Value& value, std::map<std::string, Value>& set) {
+/// Puts the leaves of `value` into `set`, under dotted keys: { law = { p_gain = 1 } } is { "law.p_gain" = 1 }. Returns
+/// a key that is there twice; empty: none is.
+std::string Flatten(const std::string& key, const Value& value, std::map<std::string, Value>& set) {
   const auto* table = std::get_if<Value::Table>(&value.data);
-  if (table == nullptr || (table->empty() && !key.empty())) {
-    set[key] = value;
-    return;
-  }
-  for (const auto& [name, inner] : *table) Flatten(key.empty() ? name : key + "." + name, inner, set);
+  if (table == nullptr || (table->empty() && !key.empty())) return set.emplace(key, value).second ? "" : key;
+  std::string twice;
+  for (const auto& [name, inner] : *table)
+    if (std::string found = Flatten(key.empty() ? name : key + "." + name, inner, set); !found.empty())
+      twice = std::move(found);
+  return twice;
 }
 
 void ReadSet(Section& section, Event& event) {
@@ -56,7 +58,8 @@ void ReadSet(Section& section, Event& event) {
     section.Fail("set", "expected a table, got a " + section.Kind("set"));
     return;
   }
-  Flatten("", section.Free("set"), event.set);
+  const std::string twice = Flatten("", section.Free("set"), event.set);
+  if (!twice.empty()) section.Fail("set", "expected each key once, got " + twice + " twice");
   if (event.set.empty()) section.Fail("set", "expected live keys and their new values, got none");
 }
 
@@ -83,6 +86,7 @@ Event::GoTo ReadGoTo(Section section, int agents) {
 
 Event::Edges ReadGraph(Section section) {
   Event::Edges edges = ReadEdges(section, "edges");
+  if (!section.Has("edges")) section.Fail("edges", "expected edges [i, j] (i hears j), got nothing");
   section.Done();
   return edges;
 }

@@ -51,6 +51,19 @@ void AddKeys(const std::string& name, const Value& value, std::vector<std::strin
   }
 }
 
+/// The live key that was perhaps meant by `key`, also without the tables around it: "beta" for law.beta.
+std::optional<std::string> MeantBy(const std::string& key, const std::vector<LiveKey>& live) {
+  std::vector<std::string_view> paths, names;
+  for (const LiveKey& other : live) {
+    paths.push_back(other.path);
+    names.push_back(paths.back().substr(paths.back().rfind('.') + 1));
+  }
+  if (auto nearest = DidYouMean(key, paths)) return nearest;
+  const auto nearest = DidYouMean(key, names);
+  if (!nearest) return std::nullopt;
+  return live[static_cast<std::size_t>(std::ranges::find(names, *nearest) - names.begin())].path;
+}
+
 std::string EdgeText(const std::pair<int, int>& edge) {
   return "[" + std::to_string(edge.first) + ", " + std::to_string(edge.second) + "]";
 }
@@ -223,10 +236,7 @@ void LiveExperiment::CheckKey(const Event& event, const std::string& key) const 
     if (row != nullptr && row->live) return;
   }
   if (row != nullptr) Refuse(event, key + ": expected a live key, got one that no event changes");
-  const std::vector<LiveKey> live = LiveKeysOf(current(), *laws_);
-  std::vector<std::string_view> names;
-  for (const LiveKey& other : live) names.push_back(other.path);
-  const auto nearest = DidYouMean(key, names);
+  const auto nearest = MeantBy(key, LiveKeysOf(current(), *laws_));
   Refuse(event, key + ": unknown key" + (nearest ? " (did you mean \"" + *nearest + "\"?)" : std::string()));
 }
 

@@ -122,6 +122,9 @@ TEST(Events, AreRefusedWithTheirPlaceAndTheWordsOfTheFile) {
             "folder/test.toml:13:7: law.leader: expected a live key, got one that no event changes");
   EXPECT_EQ(RefusalOf("set = { \"agents.count\" = 4 }"),
             "folder/test.toml:13:7: agents.count: expected a live key, got one that no event changes");
+  EXPECT_EQ(RefusalOf("set = { beta = 1.0 }"), "folder/test.toml:13:7: beta: unknown key (did you mean \"law.beta\"?)");
+  EXPECT_EQ(RefusalOf("set = { law = { beta = 1 }, \"law.beta\" = 2 }"),
+            "folder/test.toml:13:7: events[0].set: expected each key once, got law.beta twice");
   EXPECT_EQ(RefusalOf("set = {}"),
             "folder/test.toml:13:7: events[0].set: expected live keys and their new values, got none");
 }
@@ -155,6 +158,8 @@ TEST(Events, NameAgentsAndEdgesThatExist) {
             "folder/test.toml:13:17: events[0].mend[1]: expected an edge [i, j] (i hears j)");
   EXPECT_EQ(RefusalOf("graph = { edges = [[1, 2.5]] }"),
             "folder/test.toml:13:20: events[0].graph.edges[0]: expected an edge [i, j] (i hears j)");
+  EXPECT_EQ(RefusalOf("graph = {}"),
+            "folder/test.toml:13:9: events[0].graph.edges: expected edges [i, j] (i hears j), got nothing");
   EXPECT_EQ(RefusalOf("goto = { agent = 2, position_m = [1, 1, 1] }"),
             "folder/test.toml:13:8: goto: expected an agent that flies waypoints, or a leader, got agent 2 of law "
             "'consensus'");

@@ -124,6 +124,9 @@ TEST(Send, SaysWhyTheRunRefuses) {
   EXPECT_EQ(refusal("set law.p_gain=-1"), "error: event by hand: law.p_gain: expected a number in [0, 1000], got -1\n");
   EXPECT_EQ(refusal("set law.p_gain=fast"),
             "error: event by hand: law.p_gain: expected a number in [0, 1000], got 'fast'\n");
+  EXPECT_EQ(refusal("set beta=2"), "error: event by hand: beta: unknown key (did you mean \"law.beta\"?)\n");
+  EXPECT_EQ(refusal("set 'law.p_gain=-1 # slow'"),
+            "error: event by hand: law.p_gain: expected a number in [0, 1000], got -1\n");
   EXPECT_EQ(refusal("pace -1"), "error: pace: expected a number in [0, 1000], got -1.0\n");
   const auto usage = [&](const std::string& words) {
     const Ran ran = run.Send(words);
@@ -136,6 +139,7 @@ TEST(Send, SaysWhyTheRunRefuses) {
   EXPECT_EQ(usage("goto one 2 3 4"), "error: send: expected an agent's number, got 'one'\n");
   EXPECT_EQ(usage("set law.p_gain"), "error: send: expected KEY=VALUE, got 'law.p_gain'\n");
   EXPECT_EQ(usage("set law.p_gain="), "error: send: expected a TOML value after '=', got 'law.p_gain='\n");
+  EXPECT_EQ(usage("set law.beta=1 law.beta=2"), "error: send: expected each key once, got 'law.beta=2'\n");
   EXPECT_EQ(usage("cut 21"), "error: send: expected an edge HEARER,HEARD, such as 2,1, got '21'\n");
   EXPECT_EQ(usage("--agents 1 pause"), "error: send: --agents: expected with set only, got it with pause\n");
   EXPECT_EQ(run.Send("stop").output, "stops\n");

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bus/standard_streams.h"
@@ -36,24 +37,23 @@ double NumberOf(const std::string& word, const std::string& what) {
   return number;
 }
 
-/// Whether this is a TOML value.
-bool IsToml(const std::string& text) try {
-  Section::FromWords("value = " + text, "");
-  return text.find('\n') == std::string::npos;
+/// The value that this TOML text is; nothing: it is none.
+std::optional<Value> TomlValue(const std::string& text) try {
+  if (text.find('\n') != std::string::npos) return std::nullopt;
+  return Section::FromWords("value = " + text, "").Free("value");
 } catch (const ConfigError&) {
-  return false;
+  return std::nullopt;
 }
 
-/// "law.p_gain=0.2" as TOML; as in --set, a word need not be quoted.
-std::string Assignment(const std::string& word) {
+/// "law.p_gain=0.2" as key and value; as in --set, a word need not be quoted.
+std::pair<std::string, Value> Assignment(const std::string& word) {
   const std::size_t equals = word.find('=');
   if (equals == std::string::npos || equals == 0) Expected("KEY=VALUE", word);
-  const std::string value = word.substr(equals + 1);
-  const bool is_word = !value.empty() && std::isalpha(static_cast<unsigned char>(value[0])) != 0;
-  const std::string key = ToToml(Value{word.substr(0, equals)});
-  if (is_word && !IsToml(value)) return key + " = " + ToToml(Value{value});
-  if (!IsToml(value)) Expected("a TOML value after '='", word);
-  return key + " = " + value;
+  const std::string key = word.substr(0, equals), text = word.substr(equals + 1);
+  if (auto value = TomlValue(text)) return {key, *std::move(value)};
+  const bool is_word = !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) != 0;
+  if (!is_word) Expected("a TOML value after '='", word);
+  return {key, Value{text}};
 }
 
 /// One thing that can be asked for: what comes after its name, how many words that is at least and at most, and the
@@ -78,9 +78,10 @@ Wish EdgesWish(const char* key, const std::vector<std::string>& words) {
 }
 
 Wish SetWish(const SendArgs& args, const std::vector<std::string>& words) {
-  std::string assignments;
-  for (const std::string& word : words) assignments += (assignments.empty() ? "" : ", ") + Assignment(word);
-  Wish wish{.kind = Wish::Kind::kEvent, .toml = "set = { " + assignments + " }"};
+  Value::Table set;
+  for (const std::string& word : words)
+    if (!set.insert(Assignment(word)).second) Expected("each key once", word);
+  Wish wish{.kind = Wish::Kind::kEvent, .toml = "set = " + ToToml(Value{std::move(set)})};
   if (!args.agents.empty()) wish.toml += fmt::format("\nagents = [{}]", fmt::join(args.agents, ", "));
   return wish;
 }
