@@ -35,6 +35,10 @@ TEST(TickGate, OpensEveryPeriodDividedByThePace) {
   EXPECT_EQ(gate.Opens(kT0 + 90ms), kT0 + 110ms) << "30 ms are not";
 }
 
+TEST(TickGate, APaceNextToNothingHoldsTheTick) {
+  for (const double pace : {1e-20, 1e-300, 5e-324}) EXPECT_GT(TickGate(kPeriod_s, pace).Opens(kT0), kT0 + 1h);
+}
+
 TEST(TickGate, ANewPaceCountsFromTheTickBefore) {
   TickGate gate(kPeriod_s, 1);
   gate.Opens(kT0);

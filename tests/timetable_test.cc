@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/made_up_time.h"
 
 namespace mascot {
@@ -20,6 +22,15 @@ TEST(Timetable, DoesNotAccumulateRoundingErrors) {
   const Timetable timetable(1.0 / 3, kT0);
   EXPECT_EQ(timetable.Due(1), kT0 + 333333333ns);
   EXPECT_EQ(timetable.Due(3'000'000), kT0 + 1'000'000s);
+}
+
+TEST(Timetable, HasNoTickButTheFirstIfThePeriodIsForEver) {
+  for (const double period_s : {1e12, 1e300, std::numeric_limits<double>::infinity()}) {
+    const Timetable timetable(period_s, kT0);
+    EXPECT_EQ(timetable.Due(0), kT0);
+    EXPECT_GT(timetable.Due(1), kT0 + 24h * 365);
+    EXPECT_GT(timetable.Due(1'000'000), kT0 + 24h * 365);
+  }
 }
 
 TEST(Timetable, StaysWhenATickIsLateByAPeriodOrLess) {
