@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
 
+#include "experiment/toml/number.h"
 #include "idl/schemas.h"
 
 namespace mascot {
@@ -135,13 +135,9 @@ constexpr Transport kTransports[] = {
 
 Locator_t ServerLocator(const std::string& address) {
   const std::size_t colon = address.rfind(':');
-  std::uint16_t port = 0;
+  const auto text = colon == std::string::npos ? std::string_view() : std::string_view(address).substr(colon + 1);
+  const std::uint16_t port = NumberFrom<std::uint16_t>(text).value_or(0);
   Locator_t locator;
-  if (colon != std::string::npos) {
-    const char* end = address.data() + address.size();
-    const auto [rest, error] = std::from_chars(address.data() + colon + 1, end, port);
-    if (error != std::errc{} || rest != end) port = 0;
-  }
   if (port == 0 || !IPLocator::setIPv4(locator, address.substr(0, colon)))
     throw std::invalid_argument("--discovery: expected IP-ADDRESS:PORT, got '" + address + "'");
   IPLocator::setPhysicalPort(locator, port);

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <string_view>
 
 #include "experiment/experiment.h"
+#include "experiment/toml/number.h"
 
 namespace mascot {
 namespace {
@@ -25,23 +26,18 @@ bool IsHostName(const std::string& name) {
 
 /// Whether it is an IPv4 address: 192.168.1.11.
 bool IsAddress(std::string_view text) {
-  constexpr int kParts = 4, kMostOfPart = 255;
+  constexpr int kParts = 4;
   for (int part = 0; part < kParts; ++part) {
     const std::size_t dot = std::min(text.find('.'), text.size());
-    int value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + dot, value);
-    const bool is_number =
-        error == std::errc() && end == text.data() + dot && text.front() != '-' && value <= kMostOfPart;
-    if (!is_number || (dot == text.size()) != (part == kParts - 1)) return false;
+    if (!NumberFrom<std::uint8_t>(text.substr(0, dot)) || (dot == text.size()) != (part == kParts - 1)) return false;
     text.remove_prefix(std::min(dot + 1, text.size()));
   }
   return true;
 }
 
 std::optional<int> ToId(std::string_view text) {
-  int id = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
-  return error == std::errc() && end == text.data() + text.size() && id > 0 ? std::optional(id) : std::nullopt;
+  const auto id = NumberFrom<int>(text);
+  return id > 0 ? id : std::nullopt;
 }
 
 /// "1-20" or "1-5,8"; nothing if it is not that, with agents up to `most`.

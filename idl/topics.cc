@@ -1,6 +1,6 @@
 #include "idl/topics.h"
 
-#include <charconv>
+#include "experiment/toml/number.h"
 
 namespace mascot {
 namespace {
@@ -29,10 +29,8 @@ constexpr std::string_view kAgentsPrefix = "agents_";
 
 /// All of `text` as the number of an agent, 1 or more, as we write it: without sign and leading zeros.
 std::optional<int> Number(std::string_view text) {
-  int number = 0;
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool is_number = error == std::errc{} && rest == text.data() + text.size() && text.front() != '0';
-  return is_number && number >= 1 ? std::optional(number) : std::nullopt;
+  const auto number = NumberFrom<int>(text);
+  return number >= 1 && text.front() != '0' ? number : std::nullopt;
 }
 
 std::optional<int> AgentNumber(std::string_view name) {

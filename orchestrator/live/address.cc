@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 
+#include "experiment/toml/number.h"
 #include "experiment/toml/section.h"
 
 namespace mascot {
@@ -31,9 +31,9 @@ LiveAddress ReadLiveAddress(const std::string& text, const std::string& option) 
   if (!IsHost(host) || (!is_bracketed && host.ends_with(".toml"))) fail();
   if (!host.empty()) at.address = host;
   if (colon == std::string::npos) return at;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, at.port);
-  if (error != std::errc{} || rest != end) fail();
+  const auto port = NumberFrom<decltype(at.port)>(std::string_view(text).substr(colon + 1));
+  if (!port) fail();
+  at.port = *port;
   return at;
 }
 

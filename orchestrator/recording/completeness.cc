@@ -3,26 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <map>
 
 #include "bus/wire.h"
 #include "experiment/read_experiment.h"
+#include "experiment/toml/number.h"
 #include "orchestrator/recording/topic_filter.h"
 
 namespace mascot {
 namespace {
-
-/// All of `text` as a number; nothing if it is something else.
-template <class Number>
-std::optional<Number> NumberFrom(const std::string& text) {
-  Number number = 0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc() && rest == end ? std::optional(number) : std::nullopt;
-}
 
 /// Whether a topic of this kind has a sample of every tick.
 bool IsPerTick(const Topic& topic, bool realtime) {

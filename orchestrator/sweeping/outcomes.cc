@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
+#include "experiment/toml/number.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/sweeping/statistics.h"
 #include "orchestrator/sweeping/table.h"
@@ -22,9 +22,7 @@ constexpr std::size_t kReasonLength = 200;  // of the characters printed of each
 
 std::optional<double> NumberIn(const std::string& cell) {
   if (cell == "true" || cell == "false") return cell == "true" ? 1 : 0;
-  double value = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return error == std::errc() && end == cell.data() + cell.size() ? std::optional(value) : std::nullopt;
+  return NumberFrom<double>(cell);
 }
 
 std::string CellOf(const std::optional<double>& value) {

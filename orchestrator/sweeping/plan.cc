@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -13,6 +12,7 @@
 #include <utility>
 
 #include "experiment/random.h"
+#include "experiment/toml/number.h"
 
 namespace mascot {
 namespace {
@@ -24,21 +24,13 @@ constexpr std::uint64_t kSamplesSeed = 1;
 }
 
 std::optional<double> ToNumber(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+  const auto value = NumberFrom<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 /// Whether one of the values of a key is no number.
 bool HasWords(const std::vector<std::string>& values) {
   return std::ranges::any_of(values, [](const std::string& value) { return !ToNumber(value); });
-}
-
-std::optional<std::int64_t> ToInteger(std::string_view text) {
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
 /// The TOML string at the front of `text`, with its quotes; empty if there is none.
@@ -83,7 +75,8 @@ double Rounded(double value) { return std::strtod(fmt::format("{:.15g}", value).
 
 /// The values of A:STEP:B in integer arithmetic; nothing if the three are not integers.
 std::optional<std::vector<std::string>> IntegerRange(const std::vector<std::string>& parts) {
-  const auto a = ToInteger(parts[0]), step = ToInteger(parts[1]), b = ToInteger(parts[2]);
+  const auto a = NumberFrom<std::int64_t>(parts[0]), step = NumberFrom<std::int64_t>(parts[1]),
+             b = NumberFrom<std::int64_t>(parts[2]);
   if (!a || !step || !b) return std::nullopt;
   std::vector<std::string> values;
   for (std::int64_t value = *a; *step > 0 ? value <= *b : value >= *b;) {
@@ -110,7 +103,7 @@ std::vector<std::string> RangeValues(const std::string& word, const std::vector<
 }
 
 std::optional<std::int64_t> ToSeed(std::string_view text) {
-  const auto seed = ToInteger(text);
+  const auto seed = NumberFrom<std::int64_t>(text);
   return seed && *seed >= 0 ? seed : std::nullopt;
 }
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <regex>
 #include <string_view>
 
+#include "experiment/toml/number.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/processes/environment.h"
 #include "orchestrator/sweeping/table.h"
@@ -16,17 +16,11 @@ namespace {
 
 constexpr std::size_t kMostShards = 1'000'000;
 
-std::optional<std::size_t> ToCount(std::string_view text) {
-  std::size_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
-}
-
 /// The number in an environment variable of Slurm. Throws ConfigError if it is none.
 std::optional<std::size_t> Variable(const char* name) {
   const std::string text = EnvironmentText(name);
   if (text.empty()) return std::nullopt;
-  if (const auto number = ToCount(text)) return number;
+  if (const auto number = NumberFrom<std::size_t>(text)) return number;
   throw ConfigError({fmt::format("{}: expected a number, as Slurm sets it, got '{}'", name, text)});
 }
 
@@ -40,8 +34,9 @@ std::string Shard::Text() const { return fmt::format("{}/{}", number, of); }
 
 Shard ParseShard(const std::string& option, const std::string& text) {
   const auto slash = std::min(text.find('/'), text.size());
-  const std::size_t number = ToCount(std::string_view(text).substr(0, slash)).value_or(0);
-  const std::size_t of = ToCount(std::string_view(text).substr(std::min(slash + 1, text.size()))).value_or(0);
+  const std::size_t number = NumberFrom<std::size_t>(std::string_view(text).substr(0, slash)).value_or(0);
+  const std::size_t of =
+      NumberFrom<std::size_t>(std::string_view(text).substr(std::min(slash + 1, text.size()))).value_or(0);
   if (number < 1 || number > of || of > kMostShards)
     throw ConfigError({fmt::format("{}: expected I/N with 1 <= I <= N <= {}, got '{}'", option, kMostShards, text)});
   return {number, of};

@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <optional>
 #include <stdexcept>
 
+#include "experiment/toml/number.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/formats/bytes.h"
 #include "orchestrator/formats/input_file.h"
@@ -148,11 +148,9 @@ TableRows::TableRows(const fs::path& path, const Cells& columns, bool lost) : fi
   std::uint64_t place = line.size() + 1;
   for (; std::getline(file_, line) && !file_.eof(); place += line.size() + 1) {
     const Cells cells = CsvCells(line);
-    std::size_t run = 0;
-    const auto [rest, wrong] = std::from_chars(cells[0].data(), cells[0].data() + cells[0].size(), run);
-    const bool whole = wrong == std::errc() && rest == cells[0].data() + cells[0].size() && run < kMostRuns &&
-                       cells.size() == columns.size();
-    if (whole && (lost || !cells[error].starts_with(kLostProcess))) places_.Add(run, place);
+    const auto run = NumberFrom<std::size_t>(cells[0]);
+    const bool whole = run && *run < kMostRuns && cells.size() == columns.size();
+    if (whole && (lost || !cells[error].starts_with(kLostProcess))) places_.Add(*run, place);
   }
   if (file_.bad()) FailToRead(path);
 }

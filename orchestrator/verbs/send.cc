@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cctype>
-#include <charconv>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "bus/standard_streams.h"
+#include "experiment/toml/number.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/live/run_socket.h"
 #include "orchestrator/verbs/verb.h"
@@ -31,10 +31,9 @@ struct SendArgs {
 }
 
 double NumberOf(const std::string& word, const std::string& what) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (error != std::errc() || end != word.data() + word.size()) Expected(what, word);
-  return number;
+  const auto number = NumberFrom<double>(word);
+  if (!number) Expected(what, word);
+  return *number;
 }
 
 /// The value that this TOML text is; nothing: it is none.
