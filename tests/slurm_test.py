@@ -9,6 +9,7 @@ import itertools
 import os
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -244,8 +245,9 @@ class Run(unittest.TestCase):
         few = ["--set", "run.duration_s=0.5", "--set", "output.save_plot=false", "--quiet"]
         with tempfile.TemporaryDirectory(prefix="mascot-slurm-") as folder:
             config = ROOT / "configs/formation.toml"
-            ran(CLUSTER, "--nodes", "3", "salloc", "--nodes=3", "--quiet", orchestrator, "up", config, "--slurm", "--out", "spread",
-                *few, cwd=folder)
+            up = shlex.join([orchestrator, "up", str(config), "--slurm", "--out", "spread", *few])
+            ran(CLUSTER, "--nodes", "3", "sbatch", "--wait", "--nodes=3", "--ntasks=5", "--output=log", "--wrap", up,
+                cwd=folder)  # 3 processors of a node, and one of each other
             ran(orchestrator, "up", config, "--engine", "inprocess", "--out", "one", *few, cwd=folder)
             spread, one = pathlib.Path(folder, "spread"), pathlib.Path(folder, "one")
             self.assertEqual((spread / "run.mcap").read_bytes(), (one / "run.mcap").read_bytes())

@@ -3,15 +3,34 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
+#include "experiment/toml/number.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/processes/environment.h"
 
 namespace mascot {
+namespace {
+
+/// How many processors of each node the job has at least; nothing if Slurm does not tell.
+std::optional<int> LeastProcessors() {
+  std::istringstream nodes(EnvironmentText("SLURM_JOB_CPUS_PER_NODE"));  // 72(x2),36
+  std::optional<int> least;
+  for (std::string node; std::getline(nodes, node, ',');) {
+    const auto processors = NumberFrom<int>(std::string_view(node).substr(0, node.find('(')));
+    if (!processors) return std::nullopt;
+    least = std::min(least.value_or(*processors), *processors);
+  }
+  return least;
+}
+
+}  // namespace
 
 std::vector<std::string> NodesOfTheJob() {
   if (EnvironmentText("SLURM_JOB_ID").empty() || EnvironmentText("SLURM_JOB_NODELIST").empty())
@@ -38,8 +57,7 @@ std::vector<std::string> OnEachNode(const std::vector<std::string>& nodes) {
                                  "--input=all",
                                  "--overlap",
                                  "--kill-on-bad-exit=0"};
-  if (const std::string processors = EnvironmentText("SLURM_CPUS_ON_NODE"); !processors.empty())
-    words.push_back("--cpus-per-task=" + processors);
+  if (const auto processors = LeastProcessors()) words.push_back(fmt::format("--cpus-per-task={}", *processors));
   return words;
 }
 
