@@ -46,6 +46,7 @@ TEST_F(SweepShards, MakeTogetherTheTableOfTheWholeSweep) {
   EXPECT_EQ(Table(out_).columns, Table(whole).columns);
   EXPECT_EQ(Table(out_).Repeatable(), Table(whole).Repeatable());
   EXPECT_EQ(ReadFile(Folder("sweep.stats.csv")), statistics);
+  EXPECT_EQ(Merge("sweep.csv --no-plot --quiet").output, "") << "merged again";
   EXPECT_EQ(Merge("sweep.*-of-4.csv --out again.csv --no-plot --quiet").output, "");
   EXPECT_EQ(Table(Folder("again.csv")).rows, Table(out_).rows);
 }
@@ -114,6 +115,8 @@ TEST_F(SweepShards, AreMergedOnlyIfTheyAreAllThereAndOfOneSweepAndBuild) {
             "nothing.csv, which is not there\n");
   EXPECT_EQ(refusal("small.toml --out sweep.csv"),
             "error: sweep merge: expected tables of shares, each with its .plan beside it, got small.toml\n");
+  EXPECT_EQ(refusal("sweep.csv --out sweep.2-of-3.csv --force"),
+            "error: sweep merge: expected --out FILE that is none of the shares, got sweep.2-of-3.csv\n");
   std::filesystem::copy(Folder("sweep.1-of-3.csv"), Folder("one"));
   std::filesystem::copy(Folder("sweep.1-of-3.csv.plan"), Folder("one.plan"));
   EXPECT_EQ(refusal("one"),
@@ -152,7 +155,7 @@ TEST_F(SweepShards, AreNotMergedIntoAnotherTable) {
   FlyShares(2, "--seeds 1..4");
   WriteFile(out_, "my own table\n");
   const Ran ran = Merge("sweep.csv --out sweep.csv sweep.1-of-2.csv sweep.2-of-2.csv");
-  EXPECT_EQ(ran.exit_code, 2) << "that is no share";
+  EXPECT_EQ(ran.exit_code, 2) << "each share is named twice";
   const Ran other = Merge("sweep.*-of-2.csv");
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.output, HasSubstr("expected a new file, or one of this very sweep, got another"));

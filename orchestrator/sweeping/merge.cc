@@ -65,7 +65,6 @@ SweepIdentity IdentityOf(const fs::path& table) {
 }
 
 std::vector<fs::path> TablesNamed(const std::string& word) {
-  if (fs::exists(word)) return {word};
   const fs::path folder = fs::path(word).has_parent_path() ? fs::path(word).parent_path() : ".";
   std::vector<fs::path> tables;
   if (fs::is_directory(folder))
@@ -75,6 +74,7 @@ std::vector<fs::path> TablesNamed(const std::string& word) {
         tables.push_back(fs::path(word).parent_path() / entry.path().filename());
     }
   std::ranges::sort(tables);
+  if (tables.empty() && fs::exists(word)) return {word};
   if (tables.empty())
     throw ConfigError(
         {fmt::format("sweep merge: expected the table of a share, or of shares called {}, got {}, which is "
@@ -99,6 +99,8 @@ Merged Merge(const std::vector<fs::path>& tables, const std::string& out, bool f
   RowPlaces share_of;  // of each run: the place of its share in `shares`, from 1 on
   for (const fs::path& table : tables) {
     CheckSame(identity, tables.front(), IdentityOf(table), table);
+    if (fs::exists(out) && fs::equivalent(out, table))
+      throw ConfigError({fmt::format("sweep merge: expected --out FILE that is none of the shares, got {}", out)});
     shares.push_back(std::make_unique<ShareTable>(ShareTable{table, TableRows(table, columns, /*lost=*/false)}));
     shares.back()->rows.places().ForEach([&](std::size_t run, std::uint64_t /*place*/) {
       if (run >= plan.size())

@@ -9,8 +9,8 @@
 
 namespace mascot {
 
-/// The tables that a word of the command line names: that file, or, if there is none, those of all shares of the table
-/// of that name. Throws ConfigError if there are none either.
+/// The tables that a word of the command line names: those of all shares of the table of that name, whether or not they
+/// have been merged before, or else that file. Throws ConfigError if there is neither.
 std::vector<std::filesystem::path> TablesNamed(const std::string& word);
 
 /// The table of all runs that `tables`, of shares of one sweep, are part of. Throws ConfigError if they do not tell, by
@@ -27,7 +27,7 @@ struct Merged {
 
 /// Makes of the tables of all shares of a sweep the one that the sweep would have made by itself, with its statistics,
 /// at `out`. Throws ConfigError, and leaves `out` as it is, if the tables are of different sweeps or builds, if a run
-/// is in two of them or in none, or if `out` is another table (without `force`).
+/// is in two of them or in none, or if `out` is one of them, or another table (without `force`).
 Merged Merge(const std::vector<std::filesystem::path>& tables, const std::string& out, bool force);
 
 }  // namespace mascot
