@@ -36,6 +36,16 @@ async function swipe(page, [x, y], [dx, dy]) {
   await touch("touchEnd");
 }
 
+/** Tests that follow each other in one window: opening one takes a second or two of the processor. */
+function inOneWindow(name, tests) {
+  test(name, (t) => watching({}, async (window) => {
+               for (const [what, body] of Object.entries(tests)) {
+                 window.fake.asked.length = 0;
+                 await t.test(what, () => body(window));
+               }
+             }));
+}
+
 // --- what it shows -----------------------------------------------------------------------------------------
 
 test(
@@ -98,6 +108,42 @@ test(
       assert.ok(await page.evaluate(() => help.open));
     }));
 
+inOneWindow("the view is looked at:", {
+  async "from above, where an agent is on the grid does not depend on its height"({page}) {
+    await pausedFromAbove(page);
+    const {wrong_px, heights_m} = await page.evaluate(() => {
+      const places = mascot.experiment.agents.map(
+          ({id}) => ({p: mascot.positions.slice(3 * id - 3, 3 * id), at: mascot.agentOnScreen(id)}));
+      const of = (pick) => [...places].sort((a, b) => pick(a) - pick(b));
+      const [west, east] = [0, -1].map((k) => of(({p}) => p[0]).at(k)),
+                   scale = (east.at[0] - west.at[0]) / (east.p[0] - west.p[0]);
+      const wrong = ({p, at}) =>
+          Math.hypot(at[0] - west.at[0] - scale * (p[0] - west.p[0]), at[1] - west.at[1] + scale * (p[1] - west.p[1]));
+      const [low, high] = [0, -1].map((k) => of(({p}) => p[2]).at(k).p[2]);
+      return {wrong_px: Math.max(...places.map(wrong)), heights_m: high - low};
+    });
+    assert.ok(heights_m > 0.5, `heights differ by ${heights_m} m`);
+    assert.ok(wrong_px < 2, `an agent is ${wrong_px} px from its place on the grid`);
+  },
+  async "from above, a drag with Shift raises an agent by what its pixels are on the ground"({page, fake}) {
+    const was = fake.run.p[3], px_per_m = await page.evaluate(() => {
+      const [a, b] = [4, 10].map((id) => [mascot.positions[3 * id - 3], mascot.agentOnScreen(id)[0]]);
+      return (b[1] - a[1]) / (b[0] - a[0]);
+    });
+    const [x, y] = await placeOf(page, "agentOnScreen", 4);
+    await page.keyboard.down("Shift");
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x, y - 60, {steps: 3});
+    await page.mouse.up();
+    await page.keyboard.up("Shift");
+    await until(page, () => mascot.events.length === 1);
+    const [, px, py, pz] = events(fake)[0].match(/-?\d+(\.\d+)?/g).map(Number), wanted = was[2] + 2 * 60 / px_per_m;
+    assert.ok(Math.hypot(px - was[0], py - was[1]) < 2e-3, `from ${was} to ${px}, ${py}`);
+    assert.ok(Math.abs(pz - wanted) < 0.1, `to ${pz} m, not ${wanted} m`);
+  },
+});
+
 test(
     "space pauses, also after the pointer has pressed something else",
     () => watching({}, async ({page, fake}) => {
@@ -115,16 +161,6 @@ test(
     }));
 
 // --- what it asks for --------------------------------------------------------------------------------------
-
-/** Tests that follow each other in one window: opening one takes a second or two of the processor. */
-function inOneWindow(name, tests) {
-  test(name, (t) => watching({}, async (window) => {
-               for (const [what, body] of Object.entries(tests)) {
-                 window.fake.asked.length = 0;
-                 await t.test(what, () => body(window));
-               }
-             }));
-}
 
 inOneWindow("the view is touched:", {
   async "pause stops time, and a step is one tick"({page, fake}) {

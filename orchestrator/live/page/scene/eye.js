@@ -1,4 +1,5 @@
-// The camera: turned by hand, or moved to fit all agents, to look from above, to keep up with one agent.
+// The camera: turned by hand, or moved to fit all agents, to look from above, to keep up with one agent. It sees in
+// perspective, but for a view from above, which is flat: where an agent is on the grid does not depend on its height.
 import {Vector3} from "/vendor/three/build/three.module.js";
 import {OrbitControls} from "/vendor/three/examples/jsm/controls/OrbitControls.js";
 
@@ -6,15 +7,32 @@ const MOVE_MS = 350;
 const FILLED = 0.78;  // part of the picture that points may fill
 const ROOM_M = 0.4;   // around each of them
 const LEAST_DISTANCE_M = 4;
+const UP = new Vector3(0, 0, 1);
 const FIRST_LOOK = new Vector3(0.35, -1, 0.72);
 const FROM_ABOVE = new Vector3(0, -1e-4, 1);
+const FIELD_DEG = 40, FLAT_FIELD_DEG = 1;
+const FLAT_TILT_DEG = 1, DEEP_TILT_DEG = 15;  // from the vertical: flat below, in full perspective above
 
 const wantsStillness = matchMedia("(prefers-reduced-motion: reduce)");
+
+/** The tangent of half a field of view. */
+const halfOf = (degrees) => Math.tan(degrees * Math.PI / 360);
+const FULL_HALF = halfOf(FIELD_DEG);
+
+/** From 0 to 1 as x goes there, slowly at both ends. */
+const smooth = (x) => x * x * (3 - 2 * x);
+
+/** The field of view, in degrees, of a camera to which `way` leads from what it looks at. */
+function fieldFor(way) {
+  const tilt_deg = way.angleTo(UP) * 180 / Math.PI,
+        share = Math.max(0, Math.min(1, (tilt_deg - FLAT_TILT_DEG) / (DEEP_TILT_DEG - FLAT_TILT_DEG)));
+  return FLAT_FIELD_DEG + (FIELD_DEG - FLAT_FIELD_DEG) * smooth(share);
+}
 
 export class Eye {
   #camera;
   #controls;
-  #move = null;   // {from, to, since}: places of camera and target
+  #move = null;   // {from, to, since}: targets, and ways from them to the camera in full perspective
   #followed = 0;  // number of an agent
   #last = null;   // where it was
 
@@ -29,17 +47,37 @@ export class Eye {
       minDistance: 0.3,
       maxDistance: 1e5
     });
-    this.#controls.addEventListener("change", onChange);
+    this.#controls.addEventListener("change", () => {
+      this.#flatten();
+      onChange();
+    });
     this.#controls.addEventListener("start", () => {
       this.#move = null;
     });
+    camera.fov = FIELD_DEG;
     camera.position.copy(FIRST_LOOK).multiplyScalar(12);
     this.#controls.update();
   }
 
   get target() { return this.#controls.target; }
   get followed() { return this.#followed; }
-  distance() { return this.#camera.position.distanceTo(this.target); }
+
+  /** From what it looks at to the camera; to where the camera would see as much in full perspective. */
+  get #way() { return this.#camera.position.clone().sub(this.target); }
+  get #fullWay() { return this.#way.multiplyScalar(halfOf(this.#camera.fov) / FULL_HALF); }
+  cameraDistance() { return this.#way.length(); }
+  distance() { return this.#fullWay.length(); }
+
+  /** How much the picture's height shows at the place that it looks at. */
+  get span_m() { return 2 * FULL_HALF * this.distance(); }
+
+  /** Gives the camera the field of view for where it is, and moves it so that it sees as much as before. */
+  #flatten() {
+    const way = this.#fullWay, field = fieldFor(way);
+    if (field === this.#camera.fov) return;
+    this.#camera.fov = field;
+    this.#camera.position.copy(way.multiplyScalar(FULL_HALF / halfOf(field)).add(this.target));
+  }
 
   /** Lets a drag turn the camera, or not. */
   set free(free) { this.#controls.enabled = free; }
@@ -55,7 +93,7 @@ export class Eye {
     if (this.#last)
       this.#shift(now.clone().sub(this.#last));
     else
-      this.#goTo(now, this.#camera.position.clone().sub(this.target).add(now));
+      this.#goTo(now, this.#fullWay);
     this.#last = now;
   }
 
@@ -63,46 +101,51 @@ export class Eye {
     this.#camera.position.add(by);
     this.target.add(by);
     if (this.#move)
-      for (const place of [...this.#move.from, ...this.#move.to]) place.add(by);
+      for (const {target} of [this.#move.from, this.#move.to]) target.add(by);
     this.#controls.update();
   }
 
   /** Looks at all points, from where it looks now. */
-  fit(points, isFirst = false) {
-    const way = isFirst ? FIRST_LOOK : this.#camera.position.clone().sub(this.target);
-    this.#lookAt(points, way, isFirst);
-  }
+  fit(points, isFirst = false) { this.#lookAt(points, isFirst ? FIRST_LOOK : this.#fullWay, isFirst); }
 
   fromAbove(points) { this.#lookAt(points, FROM_ABOVE); }
 
   #lookAt(points, way, atOnce = false) {
     this.follow(0);
     const middle = middleOf(points);
-    this.#goTo(middle, way.clone().setLength(this.#distanceFor(points, middle, way)).add(middle), atOnce);
+    this.#goTo(middle, way.clone().setLength(this.#distanceFor(points, middle, way)), atOnce);
   }
 
-  // How far from the middle the camera sees all points, with some room around them.
+  // How far from the middle the camera sees all points in full perspective, with some room around them.
   #distanceFor(points, middle, way) {
     const towards = way.clone().normalize(), right = this.#camera.up.clone().cross(towards).normalize(),
           up = towards.clone().cross(right);
-    const half = FILLED * Math.tan(this.#camera.fov * Math.PI / 360), from = new Vector3();
-    return points.reduce((most, [x, y, z]) => {
+    const half_now = halfOf(fieldFor(way)), half = FILLED * half_now, from = new Vector3();
+    const distance = points.reduce((most, [x, y, z]) => {
       from.set(x, y, z).sub(middle);
       const sideways = (Math.abs(from.dot(right)) + ROOM_M) / (half * this.#camera.aspect),
             upwards = (Math.abs(from.dot(up)) + ROOM_M) / half;
       return Math.max(most, from.dot(towards) + Math.max(sideways, upwards));
-    }, LEAST_DISTANCE_M);
+    }, 0);
+    return Math.max(LEAST_DISTANCE_M, distance * half_now / FULL_HALF);
   }
 
-  #goTo(target, place, atOnce = false) {
-    this.#move = {from: [this.target.clone(), this.#camera.position.clone()], to: [target.clone(), place], since: null};
+  // `way`: from the target to the camera, in full perspective.
+  #goTo(target, way, atOnce = false) {
+    this.#move = {
+      from: {target: this.target.clone(), way: this.#fullWay},
+      to: {target: target.clone(), way},
+      since: null
+    };
     if (atOnce || wantsStillness.matches) this.#moveTo(1);
   }
 
   #moveTo(share) {
-    const {from, to} = this.#move, s = share * share * (3 - 2 * share);
-    this.target.lerpVectors(from[0], to[0], s);
-    this.#camera.position.lerpVectors(from[1], to[1], s);
+    const {from, to} = this.#move, s = smooth(share);
+    this.target.lerpVectors(from.target, to.target, s);
+    const way = new Vector3().lerpVectors(from.way, to.way, s);
+    this.#camera.position.copy(way.multiplyScalar(FULL_HALF / halfOf(this.#camera.fov)).add(this.target));
+    this.#flatten();
     this.#controls.update();
     if (share >= 1) this.#move = null;
   }

@@ -3,6 +3,7 @@
 import {Plane, Raycaster, Vector2, Vector3} from "/vendor/three/build/three.module.js";
 
 import {edgesToml, gotoToml} from "../asking.js";
+import {fixed} from "../dom.js";
 import {EDGE, EDGE_WORDS} from "../model.js";
 
 const AGENT_PX = {
@@ -14,6 +15,8 @@ const EDGE_PX = {
   touch: 14
 };
 const STILL_PX = 5;  // a pointer that moved less was a click
+// A metre of height has at least this part of the pixels of a metre on the ground when it is dragged.
+const LEAST_UPRIGHT = 0.5;
 
 export class Hand {
   #view;
@@ -21,7 +24,7 @@ export class Hand {
   #asking;
   #tip;
   #card;
-  #down = null;  // {x, y, agent, moved, height}: while a button is pressed
+  #down = null;  // {x, y, at, agent, canGo, moved, p}: while a button is pressed; `at`: where the drag has come to
 
   constructor(view, asking, tip, card) {
     this.#view = view;
@@ -77,7 +80,7 @@ export class Hand {
     if (button !== 0 || !isPrimary || !this.#model.frame) return;
     const agent = this.#agentAt(x, y, pointerType);
     const canGo = agent > 0 && this.#model.agent(agent).goto && !this.#model.isRecording;
-    this.#down = {x, y, agent, canGo, moved: false, p: agent ? this.#model.vector("p", agent) : null};
+    this.#down = {x, y, at: [x, y], agent, canGo, moved: false, p: agent ? this.#model.vector("p", agent) : null};
     if (!canGo) return;
     this.#view.eye.free = false;
     this.#view.canvas.setPointerCapture(pointerId);
@@ -109,14 +112,13 @@ export class Hand {
     this.#view.touch();
   }
 
-  // --- dragging: at its height, with Shift straight up and down ---
+  // --- dragging: at its height, with Shift straight up and down; each move goes on from the one before ---
 
   #drag({offsetX: x, offsetY: y, shiftKey}) {
-    const {agent, p} = this.#down;
-    const p_W = this.#view.ghost?.p ?? p;
+    const {agent, p, at} = this.#down, p_W = this.#view.ghost?.p ?? p;
     this.#tip.hidden = true;
-    const found = shiftKey ? this.#heightAt(x, y, p_W) : this.#planeAt(x, y, p_W[2]);
-    if (found) this.#view.ghost = {agent, p: found};
+    this.#view.ghost = {agent, p: shiftKey ? this.#raised(p_W, at[1] - y) : this.#shifted(p_W, at, [x, y])};
+    this.#down.at = [x, y];
     this.#view.touch();
   }
 
@@ -126,19 +128,26 @@ export class Hand {
     return caster.ray;
   }
 
-  #planeAt(x, y, height) {
-    return this.#ray(x, y).intersectPlane(new Plane(new Vector3(0, 0, 1), -height), new Vector3())?.toArray();
+  #planeAt([x, y], height) {
+    return this.#ray(x, y).intersectPlane(new Plane(new Vector3(0, 0, 1), -height), new Vector3());
   }
 
-  #heightAt(x, y, [px, py]) {
-    const ray = this.#ray(x, y), away = new Vector3(ray.direction.x, ray.direction.y, 0).normalize();
-    const wall = new Plane().setFromNormalAndCoplanarPoint(away, new Vector3(px, py, 0));
-    const hit = ray.intersectPlane(wall, new Vector3());
-    return hit && [px, py, Math.max(0, hit.z)];
+  // Above the horizon there is no place: a pointer that is there moves nothing.
+  #shifted([px, py, pz], last, now) {
+    const from = this.#planeAt(last, pz), to = this.#planeAt(now, pz);
+    return from && to ? [px + to.x - from.x, py + to.y - from.y, pz] : [px, py, pz];
+  }
+
+  // By what these pixels are upright at its place. From above nothing upright is seen; then they count as on the
+  // ground.
+  #raised([px, py, pz], up_px) {
+    const [, foot] = this.#view.toScreen([px, py, pz]), [, head] = this.#view.toScreen([px, py, pz + 1]);
+    const px_per_m = Math.max(foot - head, LEAST_UPRIGHT * this.#view.pxPerM());
+    return [px, py, Math.max(0, pz + up_px / px_per_m)];
   }
 
   #send({agent, p}) {
-    return this.#asking.event(gotoToml(agent, p), `Send agent ${agent} to ${p.map((x) => x.toFixed(1)).join(", ")} m`);
+    return this.#asking.event(gotoToml(agent, p), `Send agent ${agent} to ${p.map((x) => fixed(x, 1)).join(", ")} m`);
   }
 
   // --- pointing and clicking ---

@@ -34,7 +34,7 @@ export class View {
   #renderer;
   #overlay;
   #scene = new Scene();
-  #camera = new PerspectiveCamera(40, 1, 0.1, 1000);
+  #camera = new PerspectiveCamera();
   #ground = new Ground();
   #stale = true;    // something has changed since the last picture
   #newRow = false;  // a row has come since
@@ -176,13 +176,12 @@ export class View {
   #render(frame) {
     this.#stale = false;
     ++this.renders;
-    const distance = this.eye.distance();
+    const distance = this.eye.cameraDistance();
     this.#camera.near = distance / 100;
     this.#camera.far = 20 * distance;
     this.#camera.updateProjectionMatrix();
-    this.#ground.fit(this.eye.target, distance);
-    this.layers.bodies?.setScale(
-        this.canvas.clientHeight / (2 * distance * Math.tan(this.#camera.fov * Math.PI / 360)));
+    this.#ground.fit(this.eye.target, this.eye.distance());
+    this.layers.bodies?.setScale(this.pxPerM());
     this.#renderer.setClearColor(new Color(styleColour("stage")), 1);
     this.#renderer.render(this.#scene, this.#camera);
     if (frame) this.#project(frame.p);
@@ -198,6 +197,9 @@ export class View {
     const place = this.#place.set(x, y, z).project(this.#camera);
     return [(place.x + 1) / 2 * this.canvas.clientWidth, (1 - place.y) / 2 * this.canvas.clientHeight, place.z];
   }
+
+  /** Pixels of a metre at the place that the camera looks at. */
+  pxPerM() { return this.canvas.clientHeight / this.eye.span_m; }
 
   // --- looking ---
 
