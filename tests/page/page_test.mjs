@@ -142,6 +142,17 @@ inOneWindow("the view is looked at:", {
     assert.ok(Math.hypot(px - was[0], py - was[1]) < 2e-3, `from ${was} to ${px}, ${py}`);
     assert.ok(Math.abs(pz - wanted) < 0.1, `to ${pz} m, not ${wanted} m`);
   },
+  async "an agent is chosen by a click on any part of it, however near it is"({page}) {
+    await page.keyboard.press("3");
+    await page.keyboard.press("f");
+    await page.locator("#scene").hover();
+    for (let k = 0; k < 40; ++k) await page.mouse.wheel(0, -200);
+    await until(page, () => mascot.radiusOnScreen(3) > 60);
+    await page.keyboard.press("Escape");
+    const [x, y] = await placeOf(page, "agentOnScreen", 3);
+    await page.mouse.click(x + 0.7 * await page.evaluate(() => mascot.radiusOnScreen(3)), y);
+    await until(page, () => mascot.selected === 3);
+  },
 });
 
 test(

@@ -134,6 +134,7 @@ window.mascot = {
     };
   },
   agentOnScreen: (number) => [...view.screen.subarray(3 * number - 3, 3 * number - 1)],
+  radiusOnScreen: (number) => view.radiusPx(number),
   edgeOnScreen(index) {  // its middle
     const [hearer, heard] = model.experiment.edges[index], a = this.agentOnScreen(heard),
                    b = this.agentOnScreen(hearer);

@@ -93,7 +93,7 @@ export class Ground extends Mesh {
   }
 }
 
-const metres = (x) => `${Number(x.toPrecision(6))} m`;
+const metres = (x) => `${String(Number(x.toPrecision(6))).replace("-", "−")} m`;
 
 // The next of ..., 0.1, 0.2, 1, 2, 10, 20, ...: five times each is a round number, too.
 function roundStep(x) {

@@ -44,10 +44,12 @@ export class Hand {
 
   #agentAt(x, y, kind) {
     const {screen} = this.#view;
-    let found = 0, least = AGENT_PX[kind] ?? AGENT_PX.touch;
-    for (let k = 0; k < screen.length; k += 3) {
-      const away = Math.hypot(screen[k] - x, screen[k + 1] - y);
-      if (screen[k + 2] <= 1 && away < least) [found, least] = [k / 3 + 1, away];
+    const reach_px = AGENT_PX[kind] ?? AGENT_PX.touch;
+    let found = 0, least = 1;  // of the reach, or of the body if that is larger
+    for (let k = 0, number = 1; k < screen.length; k += 3, ++number) {
+      if (screen[k + 2] > 1) continue;
+      const away = Math.hypot(screen[k] - x, screen[k + 1] - y) / Math.max(reach_px, this.#view.radiusPx(number));
+      if (away < least) [found, least] = [number, away];
     }
     return found;
   }

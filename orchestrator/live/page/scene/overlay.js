@@ -1,10 +1,13 @@
 // Texts and marks of constant size, above the picture: numbers of agents, the scale of the ground, waypoints, formation
 // places, the predicted meeting point, and where an agent is being sent.
 import {agentColours, styleColour} from "../colours.js";
+import {fixed} from "../dom.js";
 
 const FONT = '12px system-ui, "Segoe UI", "DejaVu Sans", sans-serif';
 const MOST_NUMBERS = 60;  // with more agents, only those of interest and those near the camera
 const NEAR_PX = 26;       // on the screen, between neighbouring numbers of a crowd
+const BESIDE = 0.65;      // of a body's radius to the right and up is where its number stands, between the arms
+const LEAST_RING_PX = 11;
 
 export class Overlay {
   #view;
@@ -62,11 +65,11 @@ export class Overlay {
     const {model, pointed} = this.#view;
     for (const {id, goto: canGo, leads} of agents) {
       if (id === model.selected)
-        this.#circle(id, 15, styleColour("accent"), 2.2);
+        this.#circle(id, 4, styleColour("accent"), 2.2);
       else if (id === pointed.agent)
-        this.#circle(id, 15, styleColour("accent"), 1.2);
+        this.#circle(id, 4, styleColour("accent"), 1.2);
       if (leads || (canGo && agents.length <= MOST_NUMBERS))
-        this.#circle(id, 11, styleColour("muted"), 1.2, leads ? [] : [2, 2]);
+        this.#circle(id, 0, styleColour("muted"), 1.2, leads ? [] : [2, 2]);
     }
   }
 
@@ -79,8 +82,10 @@ export class Overlay {
       if (depth > 1 || (isCrowd && taken.has(cell))) return;
       taken.add(cell);
       ++drawn;
+      const away = BESIDE * this.#view.radiusPx(id);
       this.#write(
-          x + 10, y - 9, leads ? `${id} leads` : String(id), styleColour("text"), id === model.selected || leads);
+          x + Math.max(10, away), y - Math.max(9, away), leads ? `${id} leads` : String(id), styleColour("text"),
+          id === model.selected || leads);
     };
     const isOfInterest = ({id, leads}) => id === model.selected || id === pointed.agent || leads;
     agents.filter(isOfInterest).forEach(write);
@@ -94,7 +99,7 @@ export class Overlay {
     this.#line([x, y], to, colour, [6, 4]);
     this.#line(to, foot, styleColour("muted"), [2, 3]);
     this.#mark(p, colour, cross(8));
-    this.#text(p, p.map((c) => c.toFixed(1)).join(", ") + " m", styleColour("text"), 12, -8);
+    this.#text(p, p.map((c) => fixed(c, 1)).join(", ") + " m", styleColour("text"), 12, -8);
   }
 
   // --- how ---
@@ -125,8 +130,10 @@ export class Overlay {
     this.#pen.restore();
   }
 
-  #circle(id, radius, colour, width, dash = []) {
+  /** A circle around the body of an agent, with some room. */
+  #circle(id, room_px, colour, width, dash = []) {
     const [x, y, depth] = this.#view.screen.subarray(3 * (id - 1), 3 * id);
+    const radius = Math.max(LEAST_RING_PX, this.#view.radiusPx(id)) + room_px;
     if (depth <= 1) this.#stroke(() => this.#pen.arc(x, y, radius, 0, 2 * Math.PI), colour, width, dash);
   }
 

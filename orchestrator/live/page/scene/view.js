@@ -201,6 +201,14 @@ export class View {
   /** Pixels of a metre at the place that the camera looks at. */
   pxPerM() { return this.canvas.clientHeight / this.eye.span_m; }
 
+  /** Pixels of the radius of an agent's body. */
+  radiusPx(number) {
+    const {p} = this.#model.frame, camera = this.#camera;
+    const depth_m = -this.#place.fromArray(p, 3 * (number - 1)).applyMatrix4(camera.matrixWorldInverse).z;
+    return this.layers.bodies.radii_m[number - 1] * camera.projectionMatrix.elements[5] * this.canvas.clientHeight /
+        (2 * depth_m);
+  }
+
   // --- looking ---
 
   fit() { this.eye.fit(this.#points()); }
