@@ -156,6 +156,20 @@ inOneWindow("the view is looked at:", {
 });
 
 test(
+    "a trail is gone after 8 s of simulated time, however few rows come",
+    () => watching({}, async ({page}) => {
+      const shares = await page.evaluate(async () => {
+        const {Trails} = await import("/scene/trails.js");
+        const trails = new Trails(1);
+        for (let t_s = 0; t_s <= 12; t_s += 2) trails.update({p: [t_s, 0, 1], t_s});
+        const {newest, lifetime} = trails.material.uniforms;
+        return [...trails.geometry.attributes.born.array.slice(0, trails.count)].map(
+            (born) => 1 - (newest.value - born) / lifetime.value);
+      });
+      assert.deepEqual(shares, [-0.25, 0, 0.25, 0.5, 0.75, 1]);
+    }));
+
+test(
     "space pauses, also after the pointer has pressed something else",
     () => watching({}, async ({page, fake}) => {
       for (const pressed of ["#tab-tune", "#view-top", "#tab-agents"]) {

@@ -60,8 +60,8 @@ export const setViewport = (width, height) => viewport.set(width, height);
 
 export class Ribbons extends Mesh {
   /**
-   * `head`: length of arrowheads, `trim`: least distance from both ends (px); `lifetime`: births until a line is gone,
-   * 0: lines do not fade.
+   * `head`: length of arrowheads, `trim`: least distance from both ends (px); `lifetime`: how far a
+   * line's birth is behind the newest when the line is gone, 0: lines do not fade.
    */
   constructor(capacity, {head = 0, trim = 0, lifetime = 0, order = 0} = {}) {
     const geometry = new InstancedBufferGeometry();
