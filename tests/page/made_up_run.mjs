@@ -27,11 +27,22 @@ export class MadeUpRun {
     end_s = DURATION_S,
     loss = "",
     incidents = "",
-    waits = false  // what is granted while the run is paused takes effect when it goes on
+    disagreement_m = null,  // as it is, unless given
+    waits = false           // what is granted while the run is paused takes effect when it goes on
   } = {}) {
-    Object.assign(
-        this,
-        {size: agents, source, name, lossy, range_m, end_s, loss, incidents, waits, leader: Math.min(leader, agents)});
+    Object.assign(this, {
+      size: agents,
+      source,
+      name,
+      lossy,
+      range_m,
+      end_s,
+      loss,
+      incidents,
+      disagreement_m,
+      waits,
+      leader: Math.min(leader, agents)
+    });
     const spread = 2.2 * Math.sqrt(agents);
     this.p = Array.from(
         {length: agents},
@@ -232,7 +243,7 @@ export class MadeUpRun {
               (state === 4     ? -1 :
                    state === 1 ? 0.01 :
                                  round(0.03 + 0.1 * dice(k)))),
-      disagreement_m: Math.max(...away),
+      disagreement_m: this.disagreement_m ?? Math.max(...away),
       speed_m_per_s: this.v.map((v) => round(Math.hypot(...v))),
       contacts: 0,
     };

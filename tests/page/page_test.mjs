@@ -170,6 +170,24 @@ test(
     }));
 
 test(
+    "curves say that they are empty, and end where the logarithmic axis does",
+    () => watching({run: {disagreement_m: 1e-9}}, async ({page, fake}) => {
+      await page.keyboard.press("Space");
+      await isPaused(page);
+      await page.reload();
+      await isPaused(page);
+      for (const id of ["disagreement", "speed"])
+        await until(page, (chart) => document.getElementById(chart).textContent.includes("begins here"), id);
+      await page.keyboard.press("Space");
+      await until(page, () => document.querySelectorAll("#speed canvas").length > 0 && mascot.drawn.chartRows > 2);
+      await until(page, () => disagreement.textContent === "Nothing above 1.0e−6 m yet.");
+      const [, measured, theory] = await page.evaluate(() => mascot.drawn.disagreement);
+      assert.deepEqual([measured, theory], [null, null]);
+      fake.run.disagreement_m = null;
+      await until(page, () => document.querySelectorAll("#disagreement canvas").length > 0);
+    }));
+
+test(
     "space pauses, also after the pointer has pressed something else",
     () => watching({}, async ({page, fake}) => {
       for (const pressed of ["#tab-tune", "#view-top", "#tab-agents"]) {

@@ -130,6 +130,7 @@ window.mascot = {
       edges: view.layers.edges?.count ?? 0,
       trails: view.layers.trails?.count ?? 0,
       chartRows: charts.rows,
+      disagreement: charts.newest,
       pictures: view.renders
     };
   },

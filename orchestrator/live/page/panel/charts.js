@@ -3,7 +3,7 @@ import {agentColours, styleColour} from "../colours.js";
 import {byId, element, figure, setText, throttled} from "../dom.js";
 
 const MOST_ROWS = 1200;
-const LEAST_M = 1e-6;  // bottom of the logarithmic axis
+const LEAST_M = 1e-6;  // bottom of the logarithmic axis: curves end there
 const MOST_LINES = 8;  // speeds of more agents are shown as fastest, mean, slowest and the selected one
 const DRAW_EVERY_MS = 120;
 const JUMP_S = 8;
@@ -55,6 +55,9 @@ export class Charts {
 
   get rows() { return this.#disagreement.rows.length; }
 
+  /** The newest point of the curves of disagreement: time, measured, theory; null: out of the chart. */
+  get newest() { return this.#disagreement.rows.at(-1) ?? null; }
+
   // --- what is collected ---
 
   #restart() {
@@ -79,7 +82,7 @@ export class Charts {
     this.#draw();
   }
 
-  #level(value_m) { return value_m === null ? null : Math.max(value_m, LEAST_M); }
+  #level(value_m) { return value_m === null || value_m < LEAST_M ? null : value_m; }
 
   #theory(t_s, value_m) {
     const {prediction} = this.#model.experiment;
@@ -123,11 +126,20 @@ export class Charts {
   }
 
   #show(id, rows, ranges, look) {
-    if (rows.length < 2) return;
+    if (rows.length < 2) return this.#say(id, "The curve begins here when time goes on.");
+    if (rows.every(([, ...values]) => values.every((value) => value === null)))
+      return this.#say(id, `Nothing above ${figure(LEAST_M)} m yet.`);
     if (this.#charts[id])
       this.#charts[id].updateOptions({file: rows, ...ranges});
     else
       this.#charts[id] = new Dygraph(byId(id), rows, {...this.#look(), ...look(), ...ranges});
+  }
+
+  // Where there is no curve, as on a page that is opened while the run is paused.
+  #say(id, words) {
+    this.#charts[id]?.destroy();
+    delete this.#charts[id];
+    byId(id).replaceChildren(element("p", {className: "muted hint", textContent: words}));
   }
 
   #look() {
