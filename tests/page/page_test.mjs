@@ -295,6 +295,14 @@ inOneWindow("keys are tuned:", {
     });
     assert.deepEqual(wrong, []);
   },
+  async "what the law has comes first, and what is not given last, and empty"({page}) {
+    await page.click("#tab-tune");
+    const keys = await page.locator("#tune .key").evaluateAll((rows) => rows.map(({dataset}) => dataset.key));
+    assert.deepEqual([keys[0], keys.at(-1)], ["law.p_gain", "law.safety.distance_m"]);
+    const box = page.locator("[data-key='law.safety.distance_m'] input[type=number]");
+    assert.equal(await box.inputValue(), "");
+    assert.equal(await box.getAttribute("placeholder"), "not given");
+  },
   async "a slider sets a gain, for one agent if asked"({page, fake}) {
     await page.keyboard.press("2");
     await page.click("#tab-tune");

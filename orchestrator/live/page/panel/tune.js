@@ -19,9 +19,9 @@ export class Tune {
   }
 
   #onExperiment() {
-    const keys = shown(this.#model.experiment.live_keys ?? []);
+    const keys = (this.#model.experiment.live_keys ?? []).filter(({key}) => key !== "run.pace");  // has its own control
     const wanted = JSON.stringify(keys.map(({value, ...key}) => key)) + this.#model.isRecording;
-    if (wanted !== this.#drawn) this.#make(keys);
+    if (wanted !== this.#drawn) this.#make(sorted(keys));
     this.#drawn = wanted;
     for (const {key, value} of keys) this.#controls.get(key)?.show(value);
   }
@@ -55,9 +55,7 @@ export class Tune {
     const {selected} = this.#model;
     this.only.disabled = !selected;
     if (!selected) this.only.checked = false;
-    setText(
-        this.onlyLabel.lastChild,
-        selected ? `only for agent ${selected}` : "for all agents (choose one to change it alone)");
+    setText(this.onlyLabel.lastChild, selected ? `only for agent ${selected}` : "only for one agent: choose it first");
   }
 
   #row(key) {
@@ -83,10 +81,10 @@ export class Tune {
   }
 }
 
-/** What is tuned most comes first. The pace has a control of its own. */
-function shown(keys) {
-  const isOfLaw = ({key}) => key.startsWith("law.");
-  return [...keys.filter(isOfLaw), ...keys.filter((key) => !isOfLaw(key) && key.key !== "run.pace")];
+/** What is tuned most comes first: what the law has, then what else there is; last, what the experiment leaves out. */
+function sorted(keys) {
+  const rank = ({key, value}) => 2 * (value === null) + !key.startsWith("law.");
+  return keys.toSorted((a, b) => rank(a) - rank(b));
 }
 
 const show = (value) =>
@@ -104,7 +102,8 @@ function number(key, ask) {
   const scale = new Scale(key), {low, high} = boundsOf(key);
   const slider =
       element("input", {type: "range", min: 0, max: Scale.STEPS, step: 1, id: idOf(key), "aria-label": key.key});
-  const box = element("input", {type: "number", step: "any", "aria-label": `${key.key}, value`});
+  const box =
+      element("input", {type: "number", step: "any", placeholder: "not given", "aria-label": `${key.key}, value`});
   slider.addEventListener("input", () => {
     box.value = scale.value(Number(slider.value));
   });
@@ -112,7 +111,7 @@ function number(key, ask) {
   box.addEventListener("change", () => box.value !== "" && ask(Number(box.value)));
   let latest = key.value;
   const showInBox = () => {
-    box.value = Number(Number(latest).toPrecision(6));
+    box.value = latest === null ? "" : Number(Number(latest).toPrecision(6));
   };
   box.addEventListener("blur", showInBox);
   return {
@@ -124,8 +123,8 @@ function number(key, ask) {
     show(value) {
       latest = value;
       if (document.activeElement !== box) showInBox();
-      if (!slider.matches(":active")) slider.value = scale.place(value);
-      slider.setAttribute("aria-valuetext", `${figure(value)} ${key.unit ?? ""}`);
+      if (!slider.matches(":active")) slider.value = scale.place(value ?? key.min);
+      slider.setAttribute("aria-valuetext", value === null ? "not given" : `${figure(value)} ${key.unit ?? ""}`);
     },
   };
 }
