@@ -153,6 +153,16 @@ inOneWindow("the view is looked at:", {
     await page.mouse.click(x + 0.7 * await page.evaluate(() => mascot.radiusOnScreen(3)), y);
     await until(page, () => mascot.selected === 3);
   },
+  async "the view has a frame for those who come to it by the keyboard, and none when it is clicked"({page}) {
+    const frame = () => page.evaluate(() => getComputedStyle(scene).outlineStyle);
+    await page.mouse.click(...await placeOf(page, "agentOnScreen", 3));
+    assert.equal(await page.evaluate(() => document.activeElement.id), "scene");
+    assert.equal(await frame(), "none");
+    await page.keyboard.press("Tab");
+    await page.keyboard.press("Shift+Tab");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "scene");
+    assert.equal(await frame(), "solid");
+  },
 });
 
 test(
@@ -185,6 +195,17 @@ test(
       assert.deepEqual([measured, theory], [null, null]);
       fake.run.disagreement_m = null;
       await until(page, () => document.querySelectorAll("#disagreement canvas").length > 0);
+    }));
+
+test(
+    "on a phone, what is opened is in the window, from its beginning",
+    () => watching({size: PHONE}, async ({page}) => {
+      await page.click("#layers summary");
+      const {x, width} = await page.locator("#layer-list").boundingBox();
+      assert.ok(x >= 0 && x + width <= PHONE.width, `from ${x} on, ${width} wide`);
+      await page.click("#help-open");
+      assert.equal(await page.evaluate(() => help.scrollTop), 0);
+      assert.ok(await page.evaluate(() => help.scrollHeight > help.clientHeight), "there is more than fits");
     }));
 
 test(

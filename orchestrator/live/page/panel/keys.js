@@ -56,6 +56,9 @@ export function bindKeys({model, view, transport, follow, layers}) {
     event.preventDefault();
     action(event);
   });
+  // The view takes the focus when it is pressed; a frame around it is for those who come to it by the keyboard.
+  addEventListener("pointerdown", () => document.body.classList.add("pointing"), true);
+  addEventListener("keydown", ({key}) => key === "Tab" && document.body.classList.remove("pointing"), true);
   // A control that was pressed with the pointer does not keep the focus: the next space pauses, and does not press it
   // again. (Clicks by the keyboard have no detail.)
   addEventListener("click", ({target, detail}) => {
@@ -77,11 +80,13 @@ export function fillHelp(dialog) {
       ...rows.flatMap(([key, words]) => [element("dt", {textContent: key}), element("dd", {textContent: words})]));
   const close = element("button", {type: "button", textContent: "Close"});
   close.addEventListener("click", () => dialog.close());
+  // The heading has the focus, so that a sheet that is longer than the screen is open at its beginning.
   dialog.replaceChildren(
-      element("h2", {id: "help-title", textContent: "Keys and pointer"}), table(SHEET), table(POINTER), element("p", {
+      element("h2", {id: "help-title", tabIndex: -1, autofocus: true, textContent: "Keys and pointer"}), table(SHEET),
+      table(POINTER), element("p", {
         className: "muted",
         textContent:
-            "Velocity arrows end where the agent is after a second; acceleration arrows are 1 m long for 1 m/s². The server decides about everything that you ask for, and says so here."
+            "Velocity arrows end where the agent is after a second; acceleration arrows are 1 m long for 1 m/s². The run decides about everything that you ask for, and says so in a corner of the view."
       }),
       close);
 }
