@@ -133,6 +133,7 @@ TEST(LiveView, SaysWhichBodiesRoll) {
   const Json agent = viewer.NextJsonOf("/ui/experiment")["agents"][0];
   EXPECT_EQ(agent["model"], "unicycle");
   EXPECT_EQ(agent["rolls"], true);
+  EXPECT_EQ(agent["actuator"], "forward speed (m/s), turning speed (rad/s), unused, unused");
 }
 
 TEST(LiveView, ShowsTheTickThatTheRunStandsAt) {

@@ -48,6 +48,7 @@ Json AgentJson(const AgentConfig& agent) {
   return {{"id", agent.id},
           {"model", agent.model},
           {"rolls", agent.traits().rolls},
+          {"actuator", agent.traits().actuator},
           {"size_m", ToJson(agent.size_m())},
           {"arm_m", agent.traits().has_airframe ? agent.airframe.arm_m : 0.0},
           {"law", agent.law.name},

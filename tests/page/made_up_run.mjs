@@ -129,6 +129,7 @@ export class MadeUpRun {
       id,
       model,
       rolls: model === "unicycle",
+      actuator: isQuadrotor ? "speeds of rotors 1..4 (rad/s)" : "speeds (m/s)",
       size_m: isQuadrotor ? [0.5, 0.5, 0.1] : [0.4, 0.4, 0.4],
       arm_m: isQuadrotor ? 0.25 : 0,
       law: "consensus",

@@ -131,6 +131,8 @@ class Detail {
           list.append(element("dt", {textContent: name}), value);
           return [name, value];
         }));
+    const what = element("small", {className: "muted", textContent: agent.actuator});
+    this.#values.actuators.after(element("dt"), element("dd", {}, what));
     const heard = element("div", {className: "heard"});
     this.#heard = this.#model.heardBy(selected).map((edge) => heard.appendChild(this.#heardRow(edge)));
     if (this.#heard.length === 0) heard.append(element("p", {className: "muted", textContent: "hears nobody"}));
