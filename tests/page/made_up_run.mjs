@@ -94,7 +94,8 @@ export class MadeUpRun {
       prediction: {stable: true, value_m: this.home[this.leader - 1], rate_per_s: 0.19, settling_time_s: 21, why: ""},
       live_keys: [
         live("law.safety.distance_m", "", null, 1e6), live("law.p_gain", "1/s^2", this.gains.p_gain, 1000),
-        live("law.beta", "1/s", this.gains.beta, 1000), live("link.loss", "", 0.2, 1), {
+        live("law.beta", "1/s", this.gains.beta, 1000), live("law.reach_m", "m", [0.5, 1, 1.5], 1000),
+        live("link.loss", "", 0.2, 1), {
           key: "physics.wind.mean_m_per_s",
           kind: "vector3",
           unit: "m/s",

@@ -324,6 +324,10 @@ inOneWindow("keys are tuned:", {
     assert.equal(await box.inputValue(), "");
     assert.equal(await box.getAttribute("placeholder"), "not given");
   },
+  async "numbers of the agents one by one, in place of one for all, are a list in a box"({page}) {
+    const row = page.locator("[data-key='law.reach_m']");
+    assert.equal(await row.locator("input").inputValue(), "[0.5,1,1.5]");
+  },
   async "a slider sets a gain, for one agent if asked"({page, fake}) {
     await page.keyboard.press("2");
     await page.click("#tab-tune");

@@ -20,7 +20,8 @@ export class Tune {
 
   #onExperiment() {
     const keys = (this.#model.experiment.live_keys ?? []).filter(({key}) => key !== "run.pace");  // has its own control
-    const wanted = JSON.stringify(keys.map(({value, ...key}) => key)) + this.#model.isRecording;
+    const wanted = JSON.stringify(keys.map(({value, ...key}) => ({...key, control: controlOf({...key, value})}))) +
+        this.#model.isRecording;
     if (wanted !== this.#drawn) this.#make(sorted(keys));
     this.#drawn = wanted;
     for (const {key, value} of keys) this.#controls.get(key)?.show(value);
@@ -61,7 +62,7 @@ export class Tune {
   #row(key) {
     const words = element("p", {className: "refusal", role: "alert"});
     const ask = (value) => this.#ask(key, value, words);
-    const {body, show} = (CONTROLS[key.kind] ?? CONTROLS.other)(key, ask);
+    const {body, show} = CONTROLS[controlOf(key)](key, ask);
     const name = element(
         "label", {title: key.meaning ?? "", htmlFor: `key-${key.key}`}, key.key,
         element("small", {className: "muted", textContent: key.unit ? ` ${key.unit}` : ""}));
@@ -195,3 +196,8 @@ const CONTROLS = {
   vector3,
   other
 };
+
+/** A number for each agent, where one for all would do, is no position on a slider. */
+function controlOf({kind, value}) {
+  return !(kind in CONTROLS) || Array.isArray(value) && kind !== "vector3" ? "other" : kind;
+}
