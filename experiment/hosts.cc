@@ -126,7 +126,8 @@ std::span<const Key> HostKeys() {
 std::vector<HostConfig> ReadHosts(Section& document, std::vector<AgentConfig>& agents) {
   std::vector<HostConfig> hosts;
   std::set<std::string> names;
-  for (Section& section : document.Children("hosts")) {
+  std::vector<Section> sections = document.Children("hosts");
+  for (Section& section : sections) {
     hosts.push_back(ReadHost(section, agents, names));
     const HostConfig& host = hosts.back();
     const auto other = std::ranges::find_if(hosts, &HostConfig::together);
@@ -134,6 +135,11 @@ std::vector<HostConfig> ReadHosts(Section& document, std::vector<AgentConfig>& a
       section.Fail("launch", "expected the launch command and the program of " + other->name +
                                  ", because they are started together");
   }
+  if (!std::ranges::all_of(hosts, &HostConfig::is_here) || std::ranges::any_of(agents, &AgentConfig::external))
+    for (std::size_t i = 0; i < hosts.size(); ++i)
+      if (hosts[i].is_here())
+        sections[i].Fail("address",
+                         "expected an address by which agents on other machines reach it, got " + hosts[i].address);
   return hosts;
 }
 

@@ -19,6 +19,9 @@ struct HostConfig {
   std::string program;              ///< path of orchestrator there; empty: as here
   bool together = false;            ///< one launch command starts all hosts that have this, each with its own name
   std::string address;              ///< IPv4 address of the interface that DDS uses there; empty: the system chooses
+
+  /// Whether it is this machine, by its address.
+  bool is_here() const { return address.starts_with("127."); }
 };
 
 /// The rows of a table of `hosts`.

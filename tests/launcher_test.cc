@@ -232,6 +232,15 @@ TEST_F(OnOtherHosts, ThirtyAgentsLeaveTheRecordingOfOneHost) {
   ExpectNothingIsLeft();
 }
 
+TEST_F(OnOtherHosts, MayAllBeThisOne) {
+  const std::string config = Experiment(4, 0.5,
+                                        "[[hosts]]\nname = 'lab1'\nagents = '1-2'\nlaunch = ['env']\naddress = "
+                                        "'127.0.0.1'\n");
+  Up up(folder_, "run", config, {"--force"});
+  ASSERT_EQ(up.Wait(), 0) << up.err();
+  ExpectTheSameBytes();
+}
+
 TEST_F(OnOtherHosts, ShareProcessesAndSayWhatTheyHear) {
   Connect();
   const std::string config = Experiment(9, 0.5, laboratory_->Tables({"2-4", "5-8"}));

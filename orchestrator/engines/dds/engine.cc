@@ -144,7 +144,7 @@ DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std:
       stop_(stop),
       ros_(ros),
       external_(std::ranges::any_of(experiment.agents, &AgentConfig::external)),
-      reaches_others_(external_ || !experiment.hosts.empty()),
+      reaches_others_(external_ || !std::ranges::all_of(experiment.hosts, &HostConfig::is_here)),
       processes_(AgentProcesses(experiment)),
       with_server_(std::ssize(processes_) + 2 > kMostPeers || !experiment.hosts.empty()),
       folder_(folder),
