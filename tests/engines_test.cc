@@ -111,7 +111,10 @@ axes = 'xyz'
   ExpectTheSameBitsWithoutFma(folder.File("heap.toml"));
 }
 
-TEST_P(Shipped, StartsTenTimesOutOfTen) {
+/// Few and many agents, a law in Python, models of all kinds: nothing else makes a start another one.
+class Starts : public testing::TestWithParam<std::string> {};
+
+TEST_P(Starts, TenTimesOutOfTen) {
   for (int start = 1; start <= 10; ++start) {
     ScratchFolder folder;
     Up up(folder, "run", Config(GetParam()), {"--duration-s", "0.1"});
@@ -129,6 +132,8 @@ TEST_P(Shipped, IsReproducedByItsResolvedFile) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Configs, Shipped, testing::ValuesIn(ShippedConfigs()),
+                         [](const auto& row) { return row.param; });
+INSTANTIATE_TEST_SUITE_P(Configs, Starts, testing::Values("leaderless", "leader_follower", "custom", "mixed"),
                          [](const auto& row) { return row.param; });
 
 TEST(Verify, FliesOverDdsWhatOneProcessRecordedAndEndsAtTheFirstDifference) {
