@@ -17,8 +17,9 @@ using Seconds = std::chrono::duration<double>;
 /// How long an orderly stop may take before the run is ended by force; also how long the server may be silent beyond
 /// the agents' timeout, and, in lockstep, how long the last rows may take.
 constexpr auto kGrace = 5s;
-/// In real time, how long the last rows wait for missing commands, which may never have been sent.
-constexpr auto kRealtimeDrain = 1s;
+/// In real time, how long the last rows wait for missing commands, which may never have been sent. A sample that was
+/// lost on its way is repaired after about 1.1 s (bus/qos.cc).
+constexpr auto kRealtimeDrain = 3s;
 /// Time beyond run.start_timeout_s. The server itself fails after that timeout, with a better error message than ours.
 constexpr auto kStartGrace = 5s;
 /// When systemd or a batch system ends a job, it signals all processes of the job, and the orchestrator perhaps a
