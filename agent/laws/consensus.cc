@@ -1,5 +1,5 @@
 // Consensus of double integrators with absolute velocity damping; MASCOT (Pandit, Njattuvetty, Mulla), the laws
-// "leaderless" and "leader-follower"; Ren & Beard, (2008):
+// "leaderless" and "leader-follower"; Ren & Beard (2008):
 //   a_i = p_gain sum_j a_ij (p_j - p_i) - beta v_i
 // and with damping of relative velocities, Ren & Atkins (2007):
 //         + v_gain sum_j a_ij (v_j - v_i)
