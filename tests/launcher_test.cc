@@ -361,6 +361,48 @@ TEST_F(OnOtherHosts, HaveAllThatTheirAgentsPrintedInTheLogs) {
   EXPECT_EQ(lines(3), lines(1));
 }
 
+/// Passes on what a host tells until it has begun to print much, and then waits until it has printed all of that.
+constexpr const char* kSlowReader = R"(
+import os, shutil, subprocess, sys, time
+host = subprocess.Popen(sys.argv[2:], stdout=subprocess.PIPE)
+for line in host.stdout:
+  sys.stdout.buffer.write(line)
+  sys.stdout.buffer.flush()
+  if b'much begins' in line: break
+while not os.path.exists(sys.argv[1]): time.sleep(0.01)
+shutil.copyfileobj(host.stdout, sys.stdout.buffer)
+)";
+
+TEST_F(OnOtherHosts, SayWhereLinesAreMissingBecauseTheConnectionIsTooSlow) {
+  WriteFile(folder_.File("slow_reader.py"), kSlowReader);
+  WriteFile(folder_.File("talkative.py"), fmt::format(R"(
+def control(t, me, neighbours):
+  if me.id == 1 and t < 0.2: print('much begins' if t == 0 else 400 * (3000 * 'x' + chr(10)))
+  if me.id == 1 and t > 0.2: open('{}', 'w')
+  return (0, 0, 0)
+)",
+                                                      folder_.File("printed")));
+  WriteFile(folder_.File("team.toml"),
+            fmt::format("[run]\nduration_s = 0.3\nagent_timeout_s = 60.0\n[agents]\ncount = 2\nrandom = {{}}\n"
+                        "[graph]\ntopology = 'ring'\n[law]\nname = 'custom'\nfile = 'talkative.py'\n[[hosts]]\n"
+                        "name = 'lab1'\nagents = '1'\naddress = '127.0.0.1'\nlaunch = ['python3', '{}', '{}']\n",
+                        folder_.File("slow_reader.py"), folder_.File("printed")));
+  Up up(folder_, "run", folder_.File("team.toml"), {"--force", "--quiet"});
+  ASSERT_EQ(up.Wait(), 0) << up.err();
+  EXPECT_THAT(up.File("logs/agent_1.log"),
+              HasSubstr("\norchestrator: lines are missing here, because `up` did not read them in time\n"));
+}
+
+TEST_F(OnOtherHosts, AreWarnedOfIfTheyDoNotEnd) {
+  const std::string config = Experiment(2, 0.5,
+                                        "[[hosts]]\nname = 'lab1'\nagents = '1'\naddress = '127.0.0.1'\nlaunch = "
+                                        "['sh', '-c', '\"$@\"; sleep 1000', 'sh', 'env']\n");
+  Up up(folder_, "run", config, {"--force"});
+  EXPECT_EQ(up.Wait(), 0);
+  EXPECT_THAT(up.err(), HasSubstr("warning: a host has not ended by itself; what its agents printed last may be "
+                                  "missing in the logs"));
+}
+
 TEST(HostsPage, HasAnExperimentThatIsOne) {
   const ScratchFolder folder;
   const std::string page = ReadFile(MASCOT_SOURCE_DIR "/docs/hosts.md"), begin = "```toml\n";

@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <array>
+#include <csignal>
 #include <stdexcept>
+#include <thread>
 
 namespace mascot {
 namespace {
@@ -74,9 +76,29 @@ TEST_F(LinePipe, WritesLinesInOrderHoweverLongTheReaderTakes) {
   EXPECT_FALSE(reader.Next());
 }
 
+TEST_F(LinePipe, TellsHowMuchWaits) {
+  LineReader reader(ends_[0]);
+  LineWriter writer(ends_[1]);
+  const std::string line(1'000'000, 'x');
+  writer.Write(line);
+  EXPECT_GT(writer.waiting(), 900'000U) << "a pipe holds 64 KiB";
+  for (pollfd more{ends_[0], POLLIN, 0}; reader.Next() != line;) poll(&more, 1, 1000);
+  while (writer.waiting() > 0) std::this_thread::yield();
+}
+
 TEST_F(LinePipe, EndsThoughNobodyReads) {
   LineWriter writer(ends_[1]);
   writer.Write(std::string(1'000'000, 'x'));
+}
+
+TEST_F(LinePipe, KnowsThatTheReaderHasGone) {
+  std::signal(SIGPIPE, SIG_IGN);
+  LineWriter writer(ends_[1]);
+  CloseReader();
+  writer.Write("nobody reads this");
+  while (!writer.broken()) std::this_thread::yield();
+  writer.Write("and not this");
+  std::signal(SIGPIPE, SIG_DFL);
 }
 
 }  // namespace

@@ -7,14 +7,16 @@
 #include <array>
 #include <cerrno>
 #include <stdexcept>
+#include <utility>
 
 namespace mascot {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t kLongest = 4U << 20U, kMostWaiting = 64U << 20U;
-constexpr auto kLastWords = 1s;
+constexpr std::size_t kLongest = 4U << 20U;
+constexpr std::size_t kAtOnce = 64U << 10U;  // what a pipe takes: many lines at once cost little more than one
+constexpr auto kLastWords = 5s;              // a busy machine may let the reader wait for seconds
 
 void DoNotBlock(int descriptor) { fcntl(descriptor, F_SETFL, fcntl(descriptor, F_GETFL) | O_NONBLOCK); }
 
@@ -23,22 +25,22 @@ void DoNotBlock(int descriptor) { fcntl(descriptor, F_SETFL, fcntl(descriptor, F
 LineReader::LineReader(int descriptor) : descriptor_(descriptor) { DoNotBlock(descriptor); }
 
 std::optional<std::string> LineReader::Next() {
-  std::size_t end = text_.find('\n');
-  std::array<char, 65536> buffer;
+  std::size_t end = text_.find('\n', taken_);
+  std::array<char, kAtOnce> buffer;
   while (end == text_.npos && !ended_) {
     const ssize_t got = read(descriptor_, buffer.data(), buffer.size());
     if (got < 0 && errno == EINTR) continue;
     if (got < 0 && errno == EAGAIN) return std::nullopt;
     ended_ = got <= 0;
+    text_.erase(0, std::exchange(taken_, 0));
     const std::size_t seen = text_.size();
     if (got > 0) text_.append(buffer.data(), static_cast<std::size_t>(got));
     end = text_.find('\n', seen);
     if (end == text_.npos && text_.size() > kLongest) throw std::runtime_error("a line of a pipe is too long");
   }
   if (end == text_.npos) return std::nullopt;
-  std::string line = text_.substr(0, end);
-  text_.erase(0, end + 1);
-  return line;
+  const std::size_t begin = std::exchange(taken_, end + 1);
+  return text_.substr(begin, end - begin);
 }
 
 LineWriter::LineWriter(int descriptor) : descriptor_(descriptor) {
@@ -58,11 +60,17 @@ LineWriter::~LineWriter() {
 void LineWriter::Write(const std::string& line) {
   {
     const std::lock_guard lock(mutex_);
-    if (broken_ || waiting_ + line.size() > kMostWaiting) return;
+    if (broken_) return;
+    lines_ += line;
+    lines_ += '\n';
     waiting_ += line.size() + 1;
-    lines_.push_back(line + "\n");
   }
   changed_.notify_one();
+}
+
+std::size_t LineWriter::waiting() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_;
 }
 
 bool LineWriter::broken() const {
@@ -70,34 +78,31 @@ bool LineWriter::broken() const {
   return broken_;
 }
 
-/// Writes as much of the rest of `bytes` as the pipe takes now, after a short wait for room. Returns whether the reader
-/// is there.
-bool LineWriter::WriteSome(const std::string& bytes, std::size_t& done) {
+/// Writes as much of `bytes` as the pipe takes now, after a short wait for room. Returns how much that was; nothing if
+/// the reader has gone.
+std::optional<std::size_t> LineWriter::WriteSome(std::string_view bytes) const {
   pollfd room{descriptor_, POLLOUT, 0};
   constexpr int kMoment_ms = 50;
-  if (poll(&room, 1, kMoment_ms) == 0) return true;
-  const ssize_t put = write(descriptor_, bytes.data() + done, bytes.size() - done);
-  if (put > 0) done += static_cast<std::size_t>(put);
-  return put >= 0 || errno == EAGAIN || errno == EINTR;
+  if (poll(&room, 1, kMoment_ms) == 0) return 0;
+  const ssize_t put = write(descriptor_, bytes.data(), bytes.size());
+  if (put >= 0) return static_cast<std::size_t>(put);
+  return errno == EAGAIN || errno == EINTR ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
 void LineWriter::Run() {
   for (std::unique_lock lock(mutex_);;) {
     changed_.wait(lock, [this] { return until_ || !lines_.empty(); });
-    if (lines_.empty()) return;  // the end
-    const std::string line = std::move(lines_.front());
-    lines_.pop_front();
-    waiting_ -= line.size();
-    for (std::size_t done = 0; done < line.size() && !broken_;) {
+    if (lines_.empty() || broken_) return;  // the end
+    const std::string lines = std::exchange(lines_, {});
+    for (std::string_view rest = lines; !rest.empty() && !broken_;) {
       lock.unlock();
-      const std::size_t before = done;
-      const bool there = WriteSome(line, done);
+      const auto done = WriteSome(rest);
       lock.lock();
-      if (until_ && done > before) until_ = std::chrono::steady_clock::now() + kLastWords;
-      broken_ = !there || (until_ && std::chrono::steady_clock::now() > *until_);
+      rest.remove_prefix(done.value_or(0));
+      waiting_ -= done.value_or(0);
+      if (until_ && done.value_or(0) > 0) until_ = std::chrono::steady_clock::now() + kLastWords;
+      broken_ = !done || (until_ && std::chrono::steady_clock::now() > *until_);
     }
-    if (broken_) lines_.clear();
-    if (broken_ && until_) return;
   }
 }
 

@@ -3,10 +3,10 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
-#include <deque>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 
 namespace mascot {
@@ -27,6 +27,7 @@ class LineReader {
  private:
   int descriptor_;
   std::string text_;
+  std::size_t taken_ = 0;  // how much of text_ has been given
   bool ended_ = false;
 };
 
@@ -35,24 +36,26 @@ class LineReader {
 class LineWriter {
  public:
   explicit LineWriter(int descriptor);
-  ~LineWriter();  ///< writes what is left, as long as the reader takes some of it within 1 s
+  ~LineWriter();  ///< writes what is left, as long as the reader takes some of it within 5 s
   LineWriter(const LineWriter&) = delete;
   LineWriter& operator=(const LineWriter&) = delete;
 
-  /// Appends a line. If 64 MiB wait already, the line is lost.
+  /// Appends a line; if the reader has gone, it is lost.
   void Write(const std::string& line);
+  /// How many bytes are not written yet.
+  std::size_t waiting() const;
   /// Whether the reader has gone.
   bool broken() const;
 
  private:
   void Run();
-  bool WriteSome(const std::string& bytes, std::size_t& done);
+  std::optional<std::size_t> WriteSome(std::string_view bytes) const;
 
   int descriptor_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::string> lines_;
-  std::size_t waiting_ = 0;                                     // bytes in lines_
+  std::string lines_;  // that the thread has not taken yet
+  std::size_t waiting_ = 0;
   std::optional<std::chrono::steady_clock::time_point> until_;  // set at the end
   bool broken_ = false;
   std::thread thread_;  // last: it uses the members above

@@ -38,8 +38,8 @@ using WallClock = std::chrono::steady_clock;
 
 /// Participants up to which peer-to-peer discovery is used; beyond, a discovery server is faster (50: 2 s, not 5 s).
 constexpr int kMostPeers = 20;
-/// How long children may take to exit by themselves at the end.
-constexpr auto kExitGrace = 5s;
+/// How long children may take to exit by themselves at the end; longer as long as other hosts tell what theirs printed.
+constexpr auto kExitGrace = 5s, kLastWords = 60s;
 /// How long the DDS library may take for a call at the end of a run.
 constexpr auto kLibraryGrace = 5s;
 /// A host is lost before its agents are: within this part of run.agent_timeout_s. A host is more patient with us.
@@ -86,7 +86,7 @@ class DdsRun {
   void Loop();
   void OnSignal(int signal);
   void Reap();
-  void HearHosts();
+  bool HearHosts();
   void AwaitChildren();
   void CheckWire();
   void Steer();
@@ -380,8 +380,10 @@ void DdsRun::Reap() {
   phases_.OnExits(exits, WallClock::now());
 }
 
-void DdsRun::HearHosts() try { launcher_->Pump(); } catch (const std::exception& failure) {
+/// Returns whether they have told anything.
+bool DdsRun::HearHosts() try { return launcher_->Pump(); } catch (const std::exception& failure) {
   phases_.Fail(InWords(failure));
+  return false;
 }
 
 void DdsRun::CheckWire() {
@@ -507,12 +509,18 @@ bool DdsRun::End() {
   return true;
 }
 
-/// Waits until the children have exited by themselves. Until then other hosts tell what their processes still print.
+/// Waits until the children have exited by themselves. Until then other hosts tell what their processes still print. A
+/// signal ends the wait.
 void DdsRun::AwaitChildren() {
-  const auto deadline = WallClock::now() + kExitGrace;
-  while (!children_.WaitAll(20ms) && WallClock::now() < deadline)
-    if (launcher_) HearHosts();
-  if (launcher_) HearHosts();
+  const auto begin = WallClock::now();
+  auto deadline = begin + kExitGrace;
+  while (!children_.WaitAll(20ms) && WallClock::now() < deadline && stop_.Within(0ms) == 0)
+    if (launcher_ && HearHosts() && phases_.in_order())
+      deadline = std::min(begin + kLastWords, WallClock::now() + kExitGrace);
+  if (!launcher_) return;
+  HearHosts();
+  if (!children_.empty())
+    console_.Line("warning: a host has not ended by itself; what its agents printed last may be missing in the logs");
 }
 
 void DdsRun::LeaveDomain() {

@@ -19,7 +19,8 @@ using namespace std::chrono_literals;
 using WallClock = std::chrono::steady_clock;
 
 constexpr std::size_t kLongestError = 150;
-constexpr auto kEndGrace = 5s;  // for processes that were told to end, over DDS
+constexpr std::size_t kMostWaiting = 16U << 20U;  // bytes that `up` has not read yet; what is printed beyond is lost
+constexpr auto kEndGrace = 5s;                    // for processes that were told to end, over DDS
 
 /// What this machine is called among those that were started together.
 std::string NodeName() {
@@ -42,9 +43,19 @@ HostShare::HostShare(StopSignal& stop)
       node_(NodeName()),
       input_(STDIN_FILENO),
       output_(STDOUT_FILENO),
-      logs_([this](const std::string& process, const std::string& line) { TellLine(process, line); }),
+      logs_([this](const std::string& process, const std::string& line) { TakeLine(process, line); }),
       children_(logs_),
       heard_(WallClock::now()) {}
+
+/// Passes a line on, unless too much waits already. Called in the thread that copies logs.
+void HostShare::TakeLine(const std::string& process, const std::string& line) {
+  if (output_.waiting() <= kMostWaiting) {
+    losing_.erase(process);
+    TellLine(process, line);
+  } else if (losing_.insert(process).second) {
+    TellLine(process, "orchestrator: lines are missing here, because `up` did not read them in time");
+  }
+}
 
 /// Tells a line in pieces: what merges the lines of several hosts may not keep a long one in one piece.
 void HostShare::TellLine(const std::string& process, std::string_view line) {

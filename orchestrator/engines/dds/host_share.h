@@ -3,6 +3,7 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -32,6 +33,7 @@ class HostShare {
   void Obey(const std::string& line);
   void Start(const HostJob& job);
   void TellExits();
+  void TakeLine(const std::string& process, const std::string& line);
   void TellLine(const std::string& process, std::string_view line);
   void Tell(nlohmann::json words);
   void Leave();
@@ -40,6 +42,7 @@ class HostShare {
   const std::string node_;
   LineReader input_;
   LineWriter output_;
+  std::set<std::string> losing_;  // processes whose newest line is lost; only for the thread that copies logs
   ChildLogs logs_;
   std::optional<DomainLock> lock_;
   std::optional<Janitor> janitor_;

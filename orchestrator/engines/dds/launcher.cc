@@ -105,8 +105,9 @@ void Launcher::Start() {
   }
 }
 
-void Launcher::Pump() {
+bool Launcher::Pump() {
   const auto now = WallClock::now();
+  bool told = false;
   if (now > next_sign_) {
     next_sign_ = now + kBetweenSigns;
     TellAll({{"kind", "alive"}});
@@ -115,12 +116,14 @@ void Launcher::Pump() {
     for (int lines = 0; lines < kMostLines; ++lines) {
       const auto line = connection->Next();
       if (!line) break;
+      told = true;
       Hear(*connection, *line);
     }
   for (const auto& remote : remotes_) {
     CheckPids(*remote);
     CheckSilence(*remote);
   }
+  return told;
 }
 
 /// Throws std::runtime_error if nothing was heard of a host for too long.

@@ -38,9 +38,9 @@ class Launcher {
 
   /// Starts the launch commands. Throws std::runtime_error if one cannot be started.
   void Start();
-  /// Reads what the hosts have told, and gives a sign of life. To be called at least ten times a second. Throws
-  /// std::runtime_error if a host is of another build, cannot do its job, or is lost.
-  void Pump();
+  /// Reads what the hosts have told, and gives a sign of life. To be called at least ten times a second. Returns
+  /// whether anything was told. Throws std::runtime_error if a host is of another build, cannot do its job, or is lost.
+  bool Pump();
   /// Processes on other hosts that have ended since the last call.
   std::vector<Exit> Reap();
   /// Tells the hosts to kill their processes.
