@@ -314,6 +314,12 @@ name = "consensus"
   EXPECT_EQ(run.control.wishes().back().toml, "goto = { agent = 2, position_m = [5.000000, 6.000000, 2.500000] }");
 }
 
+mascot_msgs::msg::Event EventIn(const std::string& bytes) {
+  mascot_msgs::msg::Event event;
+  Deserialize({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, event);
+  return event;
+}
+
 TEST(LiveView, TellsOfEvents) {
   Watched run(Load(kThree));
   Viewer viewer(run.view.url());
@@ -334,9 +340,7 @@ TEST(LiveView, TellsOfEvents) {
     "max":10.0,"open_min":true,"names":[],"value":0.5,"meaning":"pull"}])"));
   EXPECT_EQ(viewer.NextJsonOf("/ui/events"),
             Json::parse(R"([{"number":1,"tick":50,"t_s":0.5,"toml":"goto = {}","by_hand":true}])"));
-  const std::string bytes = viewer.NextOf("/event");
-  mascot_msgs::msg::Event event;
-  Deserialize({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, event);
+  const mascot_msgs::msg::Event event = EventIn(viewer.NextOf("/event"));
   EXPECT_EQ(event.number(), 1u);
   EXPECT_EQ(event.tick(), 50u);
   EXPECT_EQ(event.stamp().nanosec(), 500'000'000u);
@@ -356,6 +360,19 @@ TEST(LiveView, AViewerThatReadsLateGetsTheNewestEventsAllTheSame) {
   std::size_t newest = 0;
   while (newest < kEvents && !testing::Test::HasFailure()) newest = viewer.NextJsonOf("/ui/events").size();
   EXPECT_EQ(newest, static_cast<std::size_t>(kEvents));
+}
+
+TEST(LiveView, AViewerThatReadsLateGetsEverySampleOfEvents) {
+  constexpr std::uint32_t kEvents = 100;
+  Watched run(Load("[run]\nduration_s = 1.0\n[agents]\ncount = 400\nmodel = 'double_integrator'\nrandom = {}\n"));
+  Viewer viewer(run.view.url());
+  viewer.Subscribe("/event");
+  viewer.Subscribe("/ui/experiment");
+  viewer.NextJsonOf("/ui/experiment");
+  for (int number = 1; number <= static_cast<int>(kEvents); ++number)
+    run.view.OnEvent({.number = number, .tick = number, .toml = "cut = [[1, 2]]", .by_hand = true}, run.experiment, {});
+  for (std::uint32_t number = 1; number <= kEvents; ++number)
+    ASSERT_EQ(EventIn(viewer.NextOf("/event")).number(), number);
 }
 
 TEST(LiveView, SendsSamplesAsTheyAreRecorded) {

@@ -84,8 +84,10 @@ void LiveView::OnEvent(const ShownEvent& event, const Experiment& now, const std
   server_.Post([this, event] {
     events_.push_back(event);
     PublishEvents();
-    foxglove_.Publish(static_cast<Foxglove::ChannelId>(kFirstOfRos + ros_.event_channel()),
-                      StampNs(event.tick, experiment_.control.rate_hz), Shared(ros_.Message(event)));
+    const Foxglove::Payload message = Shared(ros_.Message(event));
+    for (const ClientId client : foxglove_.clients())  // slow ones too: it is said once
+      foxglove_.PublishTo(client, static_cast<Foxglove::ChannelId>(kFirstOfRos + ros_.event_channel()),
+                          StampNs(event.tick, experiment_.control.rate_hz), message);
   });
 }
 
