@@ -114,6 +114,14 @@ TEST(EventTriggered, WarnsOfAGainThatIsUnstable) {
               Contains("law.gain: unstable: expected below 5.528 1/s at this control period and graph"));
 }
 
+TEST(EventTriggered, ADynamicTriggerIsPromisedAMeetingAsFarAsThatIsProved) {
+  // h gain lambda_n < 1 - sigma / 2, lambda_n = 3.618
+  const auto silent = [](const std::string& keys) { return LawRun(Five(10, 1, kDynamic + keys)).prediction.silent; };
+  EXPECT_EQ(silent("gain = 2.07\n"), "");
+  EXPECT_EQ(silent("gain = 2.08\n"), "law.gain or law.sigma is too large for a proof");
+  EXPECT_EQ(silent("gain = 2.07\nsigma = 0.6\n"), "law.gain or law.sigma is too large for a proof");
+}
+
 TEST(EventTriggered, BodiesThatFollowWithALagAgreeToo) {
   for (const char* model : {"double_integrator", "quadrotor"}) {
     for (const std::string& trigger : {kStatic, kDynamic}) {

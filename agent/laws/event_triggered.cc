@@ -90,16 +90,16 @@ std::shared_ptr<const LawParams> ReadEventTriggered(const Experiment& experiment
 LawTheory PredictEventTriggered(const Experiment& experiment) {
   const TriggerParams& trigger = ParamsOf<EventTriggeredParams>(experiment.law).trigger;
   if (std::string why = WhyNotIdealUndirected(experiment); !why.empty()) return {.silent = std::move(why)};
-  const double h = experiment.period_s(), r = SlowestFactor(experiment, h * trigger.gain);
-  if (r >= 1) return {.warnings = {UnstableGain(experiment)}};
-  LawTheory theory{.figures = {{}, {}}, .value_m = MeanStart(experiment)};
-  if (trigger.is_dynamic) return theory;
-  const double norm = trigger.gain * LargestRoot(experiment) * std::sqrt(experiment.size());
+  const double step = experiment.period_s() * trigger.gain, largest = step * LargestRoot(experiment);
+  if (largest >= 2) return {.warnings = {UnstableGain(experiment)}};
+  if (trigger.is_dynamic && largest >= 1 - trigger.sigma / 2)
+    return {.silent = "law.gain or law.sigma is too large for a proof"};
+  if (trigger.is_dynamic) return {.figures = {{}, {}}, .value_m = MeanStart(experiment)};
+  const double r = SlowestFactor(experiment, step), most = largest * std::sqrt(experiment.size());
   double d_m = StartDisagreement_m(experiment);
   for (std::int64_t k = 1; k < experiment.ticks(); ++k)  // nothing is heard at tick 0
-    d_m = r * d_m + h * norm * (trigger.c0_m + trigger.c1_m * std::exp(-trigger.alpha * experiment.time_s(k)));
-  theory.figures[0] = {.values = {d_m}, .bound = Bound::kAtMost};
-  return theory;
+    d_m = r * d_m + most * (trigger.c0_m + trigger.c1_m * std::exp(-trigger.alpha * experiment.time_s(k)));
+  return {.figures = {{.values = {d_m}, .bound = Bound::kAtMost}, {}}, .value_m = MeanStart(experiment)};
 }
 
 class EventTriggeredMeter final : public LawMeter {
