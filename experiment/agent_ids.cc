@@ -1,5 +1,7 @@
 #include "experiment/agent_ids.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace mascot {
@@ -10,8 +12,7 @@ std::vector<int> ReadAgentIds(Section& section, const std::string& key, int agen
   for (std::size_t k = 0; k < numbers.size() && !section.Wrong(key); ++k) {
     const int id = static_cast<int>(numbers[k]);
     if (id != numbers[k] || (agents > 0 && id > agents))
-      section.FailRow(key, k,
-                      "expected an agent in 1.." + std::to_string(agents) + ", got " + ShortestFloat(numbers[k]));
+      section.FailRow(key, k, fmt::format("expected an agent in 1..{}, got {}", agents, numbers[k]));
     else if (std::ranges::find(ids, id) != ids.end())
       section.FailRow(key, k, "expected each agent once, got " + std::to_string(id) + " again");
     else

@@ -148,7 +148,7 @@ TEST(Events, AreOfOneKind) {
 
 TEST(Events, NameAgentsAndEdgesThatExist) {
   EXPECT_EQ(RefusalOf("set = { \"law.beta\" = 1 }\nagents = [4]"),
-            "folder/test.toml:14:11: events[0].agents[0]: expected an agent in 1..3, got 4.0");
+            "folder/test.toml:14:11: events[0].agents[0]: expected an agent in 1..3, got 4");
   EXPECT_EQ(RefusalOf("set = { \"link.loss\" = 1 }\nagents = [1]"),
             "folder/test.toml:13:7: agents: expected none, got some: link.loss is the same for all");
   EXPECT_EQ(RefusalOf("cut = [[2, 1]]"),
