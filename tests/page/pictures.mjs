@@ -22,7 +22,9 @@ const PICTURES = [
 
 const browser = await launch({fine: true});
 for (const [name, config, tick, keys, window] of PICTURES) {
-  const run = await startRun(config), {page, troubles} = await open(browser, run.url, window);
+  // Slowly: without a graphics card, drawing takes the processor that the agents fly by.
+  const run = await startRun(config, "--set", "run.pace=0.5");
+  const {page, troubles} = await open(browser, run.url, window);
   for (const key of keys) await page.keyboard.press(key);
   await page.waitForFunction((least) => mascot.tick >= least, tick, {timeout: 120_000});
   const path = join(FOLDER, `${name}.png`);
