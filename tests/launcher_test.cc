@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <functional>
 #include <memory>
@@ -361,31 +362,37 @@ TEST_F(OnOtherHosts, HaveAllThatTheirAgentsPrintedInTheLogs) {
   EXPECT_EQ(lines(3), lines(1));
 }
 
-/// Passes on what a host tells until it has begun to print much, and then waits until it has printed all of that.
+/// Passes on what a host tells until it has begun to print much, and then waits until the law, which has printed all of
+/// that, opens the other end of a named pipe.
 constexpr const char* kSlowReader = R"(
-import os, shutil, subprocess, sys, time
+import shutil, subprocess, sys
 host = subprocess.Popen(sys.argv[2:], stdout=subprocess.PIPE)
 for line in host.stdout:
   sys.stdout.buffer.write(line)
   sys.stdout.buffer.flush()
   if b'much begins' in line: break
-while not os.path.exists(sys.argv[1]): time.sleep(0.01)
+open(sys.argv[1]).close()
 shutil.copyfileobj(host.stdout, sys.stdout.buffer)
 )";
 
 TEST_F(OnOtherHosts, SayWhereLinesAreMissingBecauseTheConnectionIsTooSlow) {
   WriteFile(folder_.File("slow_reader.py"), kSlowReader);
+  ASSERT_EQ(mkfifo(folder_.File("printed").c_str(), 0600), 0);
   WriteFile(folder_.File("talkative.py"), fmt::format(R"(
+ticks = 0
 def control(t, me, neighbours):
-  if me.id == 1 and t < 0.2: print('much begins' if t == 0 else 400 * (3000 * 'x' + chr(10)))
-  if me.id == 1 and t > 0.2: open('{}', 'w')
+  global ticks
+  ticks += me.id == 1
+  if me.id == 1 and ticks <= 20: print('much begins' if ticks == 1 else 400 * (3000 * 'x' + chr(10)))
+  if me.id == 1 and ticks == 21: open('{}', 'w').close()
   return (0, 0, 0)
 )",
                                                       folder_.File("printed")));
   WriteFile(folder_.File("team.toml"),
             fmt::format("[run]\nduration_s = 0.3\nagent_timeout_s = 60.0\n[agents]\ncount = 2\nrandom = {{}}\n"
                         "[graph]\ntopology = 'ring'\n[law]\nname = 'custom'\nfile = 'talkative.py'\n[[hosts]]\n"
-                        "name = 'lab1'\nagents = '1'\naddress = '127.0.0.1'\nlaunch = ['python3', '{}', '{}']\n",
+                        "name = 'lab1'\nagents = '1'\naddress = '127.0.0.1'\nlaunch = ['python3', '{}', '{}']\n"
+                        "[output]\nfidelity = false\n",
                         folder_.File("slow_reader.py"), folder_.File("printed")));
   Up up(folder_, "run", folder_.File("team.toml"), {"--force", "--quiet"});
   ASSERT_EQ(up.Wait(), 0) << up.err();
