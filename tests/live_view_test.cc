@@ -347,14 +347,18 @@ TEST(LiveView, TellsOfEvents) {
   EXPECT_EQ(event.toml(), "goto = {}");
 }
 
+/// What a viewer is told of it after each event is long: a hundred times that is far more than the system keeps for one
+/// that reads nothing.
+constexpr const char* kLarge =
+    "[run]\nduration_s = 1.0\n[agents]\ncount = 400\nmodel = 'double_integrator'\nrandom = {}\n";
+
 TEST(LiveView, AViewerThatReadsLateGetsTheNewestEventsAllTheSame) {
   constexpr int kEvents = 100;
-  Watched run(Load("[run]\nduration_s = 1.0\n[agents]\ncount = 400\nmodel = 'double_integrator'\nrandom = {}\n"));
+  Watched run(Load(kLarge));
   Viewer viewer(run.view.url());
   viewer.Subscribe("/ui/experiment");
   viewer.Subscribe("/ui/events");
   EXPECT_EQ(viewer.NextJsonOf("/ui/events"), Json::array());
-  // Far more than the system keeps for a viewer that reads nothing.
   for (int number = 1; number <= kEvents; ++number)
     run.view.OnEvent({.number = number, .tick = number, .toml = "cut = [[1, 2]]", .by_hand = true}, run.experiment, {});
   std::size_t newest = 0;
@@ -364,7 +368,7 @@ TEST(LiveView, AViewerThatReadsLateGetsTheNewestEventsAllTheSame) {
 
 TEST(LiveView, AViewerThatReadsLateGetsEverySampleOfEvents) {
   constexpr std::uint32_t kEvents = 100;
-  Watched run(Load("[run]\nduration_s = 1.0\n[agents]\ncount = 400\nmodel = 'double_integrator'\nrandom = {}\n"));
+  Watched run(Load(kLarge));
   Viewer viewer(run.view.url());
   viewer.Subscribe("/event");
   viewer.Subscribe("/ui/experiment");
