@@ -11,6 +11,7 @@
 #include "orchestrator/report/summary.h"
 #include "orchestrator/sweeping/metrics.h"
 #include "orchestrator/sweeping/run_arrays.h"
+#include "orchestrator/sweeping/sweep_json.h"
 #include "orchestrator/theory/draws.h"
 #include "orchestrator/theory/theory.h"
 
