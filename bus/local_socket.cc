@@ -48,6 +48,10 @@ std::optional<ucred> PeerOf(const Descriptor& connection) {
   return peer;
 }
 
+bool IsTrusted(const ucred& peer) { return peer.uid == ::geteuid() || peer.uid == 0; }
+
+bool HasNoRoom(int error) { return error == EMFILE || error == ENFILE || error == ENOBUFS || error == ENOMEM; }
+
 std::string UserName(uid_t user) {
   const passwd* entry = ::getpwuid(user);
   return entry != nullptr ? entry->pw_name : std::to_string(user);

@@ -36,10 +36,17 @@ class Descriptor {
 Descriptor MakeLocalSocket(int flags);
 /// Gives the socket this name and listens. Returns whether it has the name; if not, errno says why.
 bool ListenAs(const std::string& name, const Descriptor& socket);
-/// Connects the socket with the one that has this name. Returns whether it is; if not, errno says why.
+/// Connects the socket with the one that has this name. Returns whether it is; if not, errno says why: EAGAIN if the
+/// other has not accepted those that came before, and this socket does not wait (SOCK_NONBLOCK).
 bool ConnectTo(const std::string& name, const Descriptor& socket);
-/// The process at the other end of a connection; nothing if that is not known.
+/// The process at the other end of a connection: who connected, or who listens. Nothing: it is not known.
 std::optional<ucred> PeerOf(const Descriptor& connection);
+/// Whether to speak with this process at all: it is of our user, or of root, who may do anything to us anyway. A name
+/// says nothing of who has it: any user can take any name.
+bool IsTrusted(const ucred& peer);
+/// Whether accept(2) failed because this process or the machine has no descriptor, or no memory, left: it fails again,
+/// and at once, until there is some.
+bool HasNoRoom(int error);
 /// The name of a user, or the number if there is no name.
 std::string UserName(uid_t user);
 

@@ -178,5 +178,19 @@ TEST(Send, WantsToKnowWhichOfSeveralRuns) {
   EXPECT_THAT(one.Info(), HasSubstr("the run ended early"));
 }
 
+TEST(Send, ToARunThatIsStoppedSaysSo) {
+  const ScratchFolder folder;
+  SteeredRun run(folder, "stopped", {"--engine", "inprocess"});
+  run.Signal(SIGSTOP);
+  ASSERT_TRUE(Until([&] { return run.Ps()["state"] == "stopped"; }));
+  const std::string lets_it_go_on = "stopped; `kill -CONT " + std::to_string(run.pid()) + "` lets it go on\n";
+  EXPECT_THAT(Orchestrator("ps").output, HasSubstr(std::to_string(run.pid()) + " "));
+  EXPECT_THAT(Orchestrator("ps").output, HasSubstr(lets_it_go_on));
+  EXPECT_THAT(run.Send("pause").output, HasSubstr("send: that run is not among those that answer; alive are:"));
+  EXPECT_THAT(run.Send("pause").output, HasSubstr("process " + std::to_string(run.pid()) + ", which is stopped"));
+  run.Signal(SIGCONT);
+  EXPECT_THAT(run.Send("pause").output, StartsWith("paused after tick "));
+}
+
 }  // namespace
 }  // namespace mascot::test

@@ -1,36 +1,22 @@
 #pragma once
 
-#include <sys/types.h>
-
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "bus/local_socket.h"
 #include "experiment/experiment.h"
 #include "orchestrator/engines/helm.h"
+#include "orchestrator/live/asker.h"
 
 namespace mascot {
 
-/// What `orchestrator ps` says of a run that is alive.
-struct RunningRun {
-  pid_t process = 0;
-  std::string user;
-  bool is_ours = false;  ///< its user may be asked by us; else all that follows is unknown
-  std::string name, folder, engine;
-  std::string page;  ///< address of its page; empty: none
-  int agents = 0;
-  int domain = -1;         ///< DDS domain; -1: none
-  std::int64_t tick = -1;  ///< newest one recorded; -1: none
-  double t_s = 0, duration_s = 0;
-  bool paused = false;
-  double pace = 0;  ///< simulated seconds a second; 0: as fast as it goes
-};
+/// How the name of a run's socket begins; its process id follows and, if somebody else has that name, "-" and a random
+/// number.
+inline constexpr std::string_view kRunSocketPrefix = "mascot-run-";
 
 /// Where other programs of this machine reach a run: a socket with an abstract name (unix(7)), in no folder, so that
-/// nothing of it is left. It speaks to its own user and to root only: one JSON object in a line comes in, one goes out.
+/// nothing of it is left. It speaks to its own user and to root only (others are gone before a byte of theirs is read):
+/// one JSON object in a line comes in, within 2 s, and one goes out.
 class RunSocket {
  public:
   /// Listens from now on. `experiment` and `helm` must outlive this object. Throws std::runtime_error.
@@ -43,20 +29,14 @@ class RunSocket {
  private:
   void Listen();
   void Serve(Descriptor client);
-  std::string AnswerTo(const std::string& request);
+  std::string WhoWeAre() const;
 
   const Experiment& experiment_;
   const std::string folder_, engine_, page_;
   Helm& helm_;
   const Descriptor socket_;
+  Asker asker_;  // so that a wish that takes long keeps nobody else waiting
   std::jthread thread_;
 };
-
-/// The runs that are alive on this machine, in this network namespace, by process id.
-std::vector<RunningRun> RunsAlive();
-/// The same as a JSON array, of which nothing but process and user is known for runs of others.
-std::string RunsJson(const std::vector<RunningRun>& runs);
-/// Asks a run. Nothing: it is gone, or ended before it answered.
-std::optional<Answer> AskRun(pid_t process, const Wish& wish);
 
 }  // namespace mascot

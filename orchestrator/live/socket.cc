@@ -20,6 +20,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "bus/local_socket.h"
 #include "orchestrator/live/origin.h"
 
 namespace mascot {
@@ -358,10 +359,10 @@ class SocketServer::Impl {
     });
   }
 
-  /// False if nobody can be let in now, because this process or the machine has no descriptor left.
+  /// False if nobody can be let in now, because this process or the machine has no descriptor, or no memory, left.
   bool Accept() {
     const int socket = ::accept4(acceptor_.native_handle(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (socket < 0) return errno != EMFILE && errno != ENFILE;
+    if (socket < 0) return !HasNoRoom(errno);
     setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &kSendBuffer_bytes, sizeof kSendBuffer_bytes);
     tcp::socket accepted(server_.io, acceptor_.local_endpoint().protocol(), socket);
     error_code ignored;

@@ -6,7 +6,7 @@
 
 #include "bus/standard_streams.h"
 #include "experiment/toml/section.h"
-#include "orchestrator/live/run_socket.h"
+#include "orchestrator/live/running_runs.h"
 #include "orchestrator/verbs/verb.h"
 
 namespace mascot {
@@ -19,7 +19,16 @@ std::string StateOf(const RunningRun& run) {
 }
 
 std::string LineOf(const RunningRun& run) {
-  if (!run.is_ours) return fmt::format("{:<8} run of user {}", run.process, run.user);
+  switch (run.voice) {
+    case RunningRun::Voice::kOfOthers:
+      return fmt::format("{:<8} run of user {}", run.process, run.user);
+    case RunningRun::Voice::kStopped:
+      return fmt::format("{:<8} stopped; `kill -CONT {}` lets it go on", run.process, run.process);
+    case RunningRun::Voice::kSilent:
+      return fmt::format("{:<8} does not answer", run.process);
+    case RunningRun::Voice::kAnswers:
+      break;
+  }
   return fmt::format("{:<8} {:<20} {:>6} {:>6} {:>18}  {:<12} {}{}", run.process, run.name,
                      run.domain < 0 ? "-" : std::to_string(run.domain), run.agents,
                      fmt::format("{:.2f} of {} s", run.t_s, ShortestFloat(run.duration_s)), StateOf(run), run.folder,

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <iostream>
@@ -13,7 +14,7 @@
 #include "bus/standard_streams.h"
 #include "experiment/toml/number.h"
 #include "experiment/toml/section.h"
-#include "orchestrator/live/run_socket.h"
+#include "orchestrator/live/running_runs.h"
 #include "orchestrator/verbs/verb.h"
 
 namespace mascot {
@@ -141,7 +142,10 @@ Wish WishOf(const SendArgs& args) {
 std::string ListOf(const std::vector<RunningRun>& runs) {
   std::string text;
   for (const RunningRun& run : runs)
-    text += fmt::format("\n  {}{}", run.domain < 0 ? "" : fmt::format("domain {}: ", run.domain), run.folder);
+    text += run.voice == RunningRun::Voice::kAnswers
+                ? fmt::format("\n  {}{}", run.domain < 0 ? "" : fmt::format("domain {}: ", run.domain), run.folder)
+                : fmt::format("\n  process {}, which {}", run.process,
+                              run.voice == RunningRun::Voice::kStopped ? "is stopped" : "does not answer");
   return text;
 }
 
@@ -151,26 +155,31 @@ RunningRun RunOf(const SendArgs& args) {
   std::vector<RunningRun> ours, meant;
   std::error_code ignored;
   for (RunningRun& run : RunsAlive())
-    if (run.is_ours) ours.push_back(std::move(run));
+    if (run.is_ours()) ours.push_back(std::move(run));
   for (const RunningRun& run : ours)
     if ((!args.run || fs::weakly_canonical(*args.run, ignored) == fs::weakly_canonical(run.folder, ignored)) &&
         (!args.domain || *args.domain == run.domain))
       meant.push_back(run);
   if (meant.size() == 1) return meant.front();
   if (ours.empty()) throw ConfigError({"send: no run of yours is alive on this machine"});
-  if (meant.empty()) throw ConfigError({"send: that run is not alive; these are:" + ListOf(ours)});
+  const bool all_answer =
+      std::ranges::all_of(ours, [](const RunningRun& run) { return run.voice == RunningRun::Voice::kAnswers; });
+  if (meant.empty())
+    throw ConfigError({(all_answer ? "send: that run is not alive; these are:"
+                                   : "send: that run is not among those that answer; alive are:") +
+                       ListOf(ours)});
   throw ConfigError({"send: several runs are alive; --run DIR or --domain D says which:" + ListOf(meant)});
 }
 
 int Send(const SendArgs& args) {
   const Wish wish = WishOf(args);
-  const auto answer = AskRun(RunOf(args).process, wish);
-  if (answer && answer->granted) {
-    std::cout << answer->words << "\n";
+  const Answer answer = AskRun(RunOf(args).process, wish);
+  if (answer.granted) {
+    std::cout << answer.words << "\n";
     FlushStandardOutput();
     return kExitDone;
   }
-  std::cerr << "error: " << (answer ? answer->words : "the run ended before it answered") << "\n";
+  std::cerr << "error: " << answer.words << "\n";
   return kExitFailed;
 }
 

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "orchestrator/engines/run_control.h"
+
+namespace mascot {
+
+/// What `orchestrator ps` says of a run that is alive.
+struct RunningRun {
+  enum class Voice {
+    kAnswers,
+    kStopped,   ///< it is stopped (SIGSTOP, Ctrl-Z); of this and the next ones only process and user are known
+    kSilent,    ///< it does not answer
+    kOfOthers,  ///< it is another user's, and is not asked
+  };
+  pid_t process = 0;
+  std::string user;
+  Voice voice = Voice::kOfOthers;
+  std::string name, folder, engine;
+  std::string page;  ///< address of its page; empty: none
+  int agents = 0;
+  int domain = -1;         ///< DDS domain; -1: none
+  std::int64_t tick = -1;  ///< newest one recorded; -1: none
+  double t_s = 0, duration_s = 0;
+  bool paused = false;
+  double pace = 0;  ///< simulated seconds a second; 0: as fast as it goes
+
+  bool is_ours() const { return voice != Voice::kOfOthers; }
+};
+
+// A run is found by the name of its socket, and that is anybody's to take. So the kernel is asked first who listens
+// there: the process whose id is in the name, of our user (or any user's, if we are root and it runs this very
+// program). Others are not even asked. What comes is checked as a message of a stranger is.
+
+/// The runs that are alive on this machine, in this network namespace, by process id. One that is stopped costs a
+/// quarter of a second, one that is silent 5 s.
+std::vector<RunningRun> RunsAlive();
+/// The same as a JSON array.
+std::string RunsJson(const std::vector<RunningRun>& runs);
+/// Asks a run, and waits at most 60 s for its answer. Not granted, with the reason: it is gone, stopped or another
+/// user's, too.
+Answer AskRun(pid_t process, const Wish& wish);
+
+}  // namespace mascot

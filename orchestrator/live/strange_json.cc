@@ -1,0 +1,76 @@
+#include "orchestrator/live/strange_json.h"
+
+namespace mascot {
+namespace {
+
+using StrangersJson = nlohmann::ordered_json;
+
+constexpr int kDeepest = 16;
+
+/// `text`, which is UTF-8, without control characters (C0, DEL, C1).
+std::string WithoutControls(const std::string& text, bool lines) {
+  std::string clean;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const bool is_c1 = byte == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
+    const bool is_control = byte < 0x20 || byte == 0x7F || is_c1;
+    if (is_control && !(lines && byte == '\n'))
+      clean += "\xEF\xBF\xBD";  // U+FFFD
+    else
+      clean += text[i];
+    if (is_c1) ++i;
+  }
+  return clean;
+}
+
+}  // namespace
+
+std::optional<nlohmann::ordered_json> StrangeJson(std::string_view line) {
+  bool too_deep = false;
+  const auto look = [&too_deep](int depth, StrangersJson::parse_event_t, const StrangersJson&) {
+    too_deep = too_deep || depth > kDeepest;
+    return !too_deep;
+  };
+  StrangersJson json = StrangersJson::parse(line, look, /*allow_exceptions=*/false);
+  return !too_deep && json.is_object() ? std::optional(std::move(json)) : std::nullopt;
+}
+
+const nlohmann::ordered_json* StrangeFields::Find(const char* field, bool (*is_right)(const nlohmann::ordered_json&)) {
+  const auto found = object_.find(field);
+  if (found != object_.end() && is_right(*found)) return &*found;
+  good_ = false;
+  return nullptr;
+}
+
+std::string StrangeFields::Text(const char* field, std::size_t longest, bool lines) {
+  const auto* value = Find(field, [](const StrangersJson& json) { return json.is_string(); });
+  if (value == nullptr) return "";
+  const auto& text = value->get_ref<const std::string&>();
+  good_ = good_ && text.size() <= longest;
+  return good_ ? WithoutControls(text, lines) : "";
+}
+
+bool StrangeFields::Boolean(const char* field) {
+  const auto* value = Find(field, [](const StrangersJson& json) { return json.is_boolean(); });
+  return value != nullptr && value->get<bool>();
+}
+
+double StrangeFields::Number(const char* field, double least, double most) {
+  const auto* value = Find(field, [](const StrangersJson& json) { return json.is_number(); });
+  const double number = value != nullptr ? value->get<double>() : least;
+  if (!(number >= least && number <= most)) good_ = false;
+  return number;
+}
+
+std::int64_t StrangeFields::Integer(const char* field, std::int64_t least, std::int64_t most) {
+  // An integer beyond 2^63 is unsigned, and one beyond 2^64 a floating-point number.
+  const auto* value = Find(field, [](const StrangersJson& json) {
+    return json.is_number_integer() &&
+           !(json.is_number_unsigned() && json.get<std::uint64_t>() > std::uint64_t{INT64_MAX});
+  });
+  const std::int64_t number = value != nullptr ? value->get<std::int64_t>() : least;
+  if (number < least || number > most) good_ = false;
+  return number;
+}
+
+}  // namespace mascot
