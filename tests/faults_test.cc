@@ -49,7 +49,7 @@ TEST(Faults, ADyingAgentEndsTheRunByNameAndSignal) {
   ScratchFolder folder;
   Up up = Endless(folder);
   ASSERT_TRUE(Flies(up));
-  kill(up.Child("agent_3"), SIGKILL);
+  SignalTo(up.Child("agent_3"), SIGKILL);
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(up.err(), HasSubstr("error: agent_3 was killed by signal 9 (Killed)"));
   EXPECT_EQ(up.Summary()["exit"], 1);
@@ -62,7 +62,7 @@ TEST(Faults, ADyingServerEndsTheRunByName) {
   ScratchFolder folder;
   Up up = Endless(folder);
   ASSERT_TRUE(Flies(up));
-  kill(up.Child("physics_server"), SIGSEGV);
+  SignalTo(up.Child("physics_server"), SIGSEGV);
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(up.err(), HasSubstr("error: physics_server was killed by signal 11 (Segmentation fault)"));
   EXPECT_TRUE(up.Summary()["safety"]["collisions"].is_null()) << "it knew, and did not tell";
@@ -81,7 +81,7 @@ TEST(Faults, ASilentAgentIsNamedAfterTheTimeout) {
   ScratchFolder folder;
   Up up = Endless(folder, {"--set", "run.agent_timeout_s=0.5"});
   ASSERT_TRUE(Flies(up));
-  kill(up.Child("agent_2"), SIGSTOP);
+  SignalTo(up.Child("agent_2"), SIGSTOP);
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(up.err(), NamesAgentTwo());
   EXPECT_TRUE(NothingIsLeft(up));
@@ -180,7 +180,7 @@ TEST(Faults, NotEvenAStoppedAgentOutlivesAKilledOrchestrator) {
   ASSERT_TRUE(Flies(up));
   const pid_t agent = up.Child("agent_2");
   ASSERT_GT(agent, 0);
-  kill(agent, SIGSTOP);
+  SignalTo(agent, SIGSTOP);
   up.Signal(SIGKILL);
   EXPECT_EQ(up.Wait(), -SIGKILL);
   EXPECT_TRUE(IsGone(agent));
@@ -287,7 +287,7 @@ TEST(Faults, ASilentServerIsNamed) {
   ScratchFolder folder;
   Up up = Endless(folder, {"--set", "run.agent_timeout_s=0.5"});
   ASSERT_TRUE(Flies(up));
-  kill(up.Child("physics_server"), SIGSTOP);
+  SignalTo(up.Child("physics_server"), SIGSTOP);
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(up.err(), HasSubstr("error: nothing came from physics_server for 5.5 s"));
   EXPECT_TRUE(up.Summary()["safety"]["collisions"].is_null());
@@ -300,9 +300,9 @@ TEST(Faults, ASignalToTheWholeJobIsNoFailure) {
   ASSERT_TRUE(Flies(up));
   std::vector<pid_t> others;  // looked up first: the run may end between signals; pid 0 is our own group
   for (const char* process : {"agent_2", "agent_3", "agent_4", "physics_server"}) others.push_back(up.Child(process));
-  kill(up.Child("agent_1"), SIGTERM);
+  SignalTo(up.Child("agent_1"), SIGTERM);
   up.Signal(SIGTERM);
-  for (const pid_t other : others) kill(other, SIGTERM);
+  for (const pid_t other : others) SignalTo(other, SIGTERM);
   EXPECT_EQ(up.Wait(), 128 + SIGTERM) << up.err();
   EXPECT_TRUE(up.Summary()["failure"].is_null());
   EXPECT_TRUE(NothingIsLeft(up));
@@ -312,7 +312,7 @@ TEST(Faults, AnAgentEndedAloneIsAFailure) {
   ScratchFolder folder;
   Up up = Endless(folder);
   ASSERT_TRUE(Flies(up));
-  kill(up.Child("agent_1"), SIGTERM);
+  SignalTo(up.Child("agent_1"), SIGTERM);
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(up.err(), HasSubstr("error: agent_1 exited with code 143"));
 }
@@ -352,7 +352,7 @@ TEST(Faults, ASecondCtrlCKillsWhatDoesNotStop) {
   ScratchFolder folder;
   Up up = Endless(folder, {"--set", "run.agent_timeout_s=1000"});
   ASSERT_TRUE(Flies(up));
-  kill(up.Child("agent_2"), SIGSTOP);  // now the run cannot stop in order
+  SignalTo(up.Child("agent_2"), SIGSTOP);  // now the run cannot stop in order
   up.Signal(SIGINT);
   ASSERT_TRUE(Until([&] { return up.Said("once more to kill"); }));
   up.Signal(SIGINT);
@@ -364,7 +364,7 @@ TEST(Faults, ACtrlCThatCannotStopInOrderKeepsWhatTheServerMeasured) {
   ScratchFolder folder;
   Up up = Endless(folder, {"--set", "run.agent_timeout_s=1000"});
   ASSERT_TRUE(Flies(up));
-  kill(up.Child("agent_2"), SIGSTOP);
+  SignalTo(up.Child("agent_2"), SIGSTOP);
   up.Signal(SIGINT);
   EXPECT_EQ(up.Wait(), 130);
   EXPECT_EQ(up.Summary()["safety"]["collisions"], 0);
@@ -467,7 +467,7 @@ TEST(Faults, AnAgentThatFallsSilentEndsARealtimeRunToo) {
   ScratchFolder folder;
   Up up = Endless(folder, {"--set", "run.mode=realtime", "--set", "run.agent_timeout_s=0.5"});
   ASSERT_TRUE(Flies(up));
-  kill(up.Child("agent_2"), SIGSTOP);
+  SignalTo(up.Child("agent_2"), SIGSTOP);
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(up.err(), NamesAgentTwo());
   EXPECT_GT(up.Summary()["realtime"]["misses"], 10);
@@ -492,7 +492,7 @@ TEST(Faults, WhatTheServerMeasuredIsReportedWhenAnAgentDies) {
   }));
   const pid_t agent = up.Child("agent_2");
   ASSERT_GT(agent, 0);
-  kill(agent, SIGKILL);
+  SignalTo(agent, SIGKILL);
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_GT(up.Summary()["realtime"]["tick_lateness_s"]["max"], 0);
   EXPECT_EQ(up.Summary()["safety"]["collisions"], 0);
@@ -503,7 +503,7 @@ TEST(Faults, WhatTheServerMeasuredIsReportedWhenAnAgentDiesInTheFirstTick) {
   for (int i = 0; i < 10; ++i) {
     Up up = Endless(folder, {"--set", "run.mode=realtime", "--force"});
     ASSERT_TRUE(Flies(up));
-    kill(up.Child("agent_2"), SIGKILL);
+    SignalTo(up.Child("agent_2"), SIGKILL);
     EXPECT_EQ(up.Wait(), 1);
     EXPECT_EQ(up.Summary()["safety"]["collisions"], 0);
   }
@@ -584,6 +584,18 @@ TEST(Faults, ADomainInUseIsRefused) {
   EXPECT_EQ(second.Wait(), 1);
   EXPECT_THAT(second.err(),
               HasSubstr("error: network.domain = " + domain + " is in use by another run on this machine"));
+}
+
+TEST(Faults, AHostWhoseJanitorCannotStartSaysSoAndKillsNobodyElse) {
+  ScratchFolder folder;
+  std::filesystem::copy_file(MASCOT_BINARY_DIR "/orchestrator", folder.File("orchestrator"));  // without its neighbours
+  WriteFile(folder.File("job"), R"({"kind": "job", "domain": 100, "own_memory": true, "shared_memory": 0, )"
+                                R"("silence_s": 10, "processes": []})"
+                                "\n");
+  const Ran ran = Shell("setsid -w sh -c '\"" + folder.File("orchestrator") + "\" host < \"" + folder.File("job") +
+                        "\"; echo code $?' 2>&1");
+  EXPECT_THAT(ran.output, HasSubstr("physics_server: No such file or directory"));
+  EXPECT_THAT(ran.output, HasSubstr("code 1\n")) << "the shell is of the same process group";
 }
 
 }  // namespace

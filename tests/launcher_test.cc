@@ -277,7 +277,7 @@ TEST_F(OnOtherHosts, EventsByHandReachThem) {
 
 TEST_F(OnOtherHosts, AHostThatDiesEndsTheRunAndIsNamed) {
   const auto up = FlyForLong();
-  for (const pid_t pid : laboratory_->On(2, "orchestrator host")) ::kill(pid, SIGKILL);
+  for (const pid_t pid : laboratory_->On(2, "orchestrator host")) SignalTo(pid, SIGKILL);
   EXPECT_EQ(up->Wait(), 1);
   EXPECT_THAT(up->err(), HasSubstr("host_lab2"));
   ExpectNothingIsLeft();
@@ -286,7 +286,7 @@ TEST_F(OnOtherHosts, AHostThatDiesEndsTheRunAndIsNamed) {
 TEST_F(OnOtherHosts, AnAgentThatDiesThereIsNamedWithItsHost) {
   const auto up = FlyForLong();
   for (const pid_t pid : laboratory_->On(2, "agent --domain")) {
-    ::kill(pid, SIGKILL);
+    SignalTo(pid, SIGKILL);
     break;
   }
   EXPECT_EQ(up->Wait(), 1);
@@ -304,14 +304,14 @@ TEST_F(OnOtherHosts, ACutLinkEndsTheRunOnBothOfItsEnds) {
 
 TEST_F(OnOtherHosts, NothingIsLeftOfAnOrchestratorThatIsKilled) {
   const auto up = FlyForLong();
-  for (const pid_t pid : laboratory_->On(0, "orchestrator up")) ::kill(pid, SIGKILL);
+  for (const pid_t pid : laboratory_->On(0, "orchestrator up")) SignalTo(pid, SIGKILL);
   up->Wait();
   ExpectNothingIsLeft();
 }
 
 TEST_F(OnOtherHosts, CtrlCEndsThemInOrder) {
   const auto up = FlyForLong();
-  for (const pid_t pid : laboratory_->On(0, "orchestrator up")) ::kill(pid, SIGINT);
+  for (const pid_t pid : laboratory_->On(0, "orchestrator up")) SignalTo(pid, SIGINT);
   EXPECT_EQ(up->Wait(), 130);
   ExpectNothingIsLeft();
 }

@@ -39,6 +39,13 @@ inline bool Until(const std::function<bool()>& condition) {
   return true;
 }
 
+/// Sends a signal to a process that exists. To kill(2), process 0, a child that was not found, is all of our process
+/// group, and -1, a program that was not started, everybody.
+inline void SignalTo(pid_t process, int signal) {
+  ASSERT_GT(process, 0) << "there is no such process";
+  kill(process, signal);
+}
+
 /// Starts a program; the destructor kills it if it still runs.
 class Running {
  public:
@@ -64,7 +71,7 @@ class Running {
   Running& operator=(const Running&) = delete;
 
   pid_t pid() const { return pid_; }
-  void Signal(int signal) const { kill(pid_, signal); }
+  void Signal(int signal) const { SignalTo(pid_, signal); }
   /// Waits for the end. Returns the exit code, or -signal if a signal ended the program.
   int Wait() {
     int status = 0;

@@ -163,14 +163,14 @@ TEST_F(RosView, IsNotThereUnlessAskedFor) {
 TEST_F(RosView, WhoComesLateToARunThatStandsStillSeesTheLastTick) {
   Up up = Fly("run", "100000.0", kOn);
   ASSERT_TRUE(Flies(up)) << up.err();
-  kill(up.Child("agent_2"), SIGSTOP);
+  SignalTo(up.Child("agent_2"), SIGSTOP);
   const RViz first(up, folder_.File("first"));
   ASSERT_TRUE(Until([&] { return first.Sees("markers") && first.Sees("transforms"); }));
   const RViz second(up, folder_.File("second"));
   ASSERT_TRUE(Until([&] { return second.Sees("markers") && second.Sees("transforms"); }));
   EXPECT_EQ(second.Seen("transforms").front(), first.Seen("transforms").back());
   EXPECT_EQ(second.Seen("markers").front(), first.Seen("markers").back());
-  kill(up.Child("agent_2"), SIGCONT);
+  SignalTo(up.Child("agent_2"), SIGCONT);
 }
 
 TEST_F(RosView, ChangesNoBitOfTheRecordingAlsoIfItsReaderHangs) {

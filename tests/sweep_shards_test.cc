@@ -84,7 +84,7 @@ TEST_F(SweepShards, GoOnAfterASignal) {
                   {"sweep", config_, "--out", out_, "--seeds", "1..5000", "--shard", "1/2"}, Folder("interrupted"));
     const std::size_t before = std::filesystem::exists(table) ? Table(table).rows.size() : 0;
     ASSERT_TRUE(Until([&] { return std::filesystem::exists(table) && Table(table).rows.size() > before + 2; }));
-    ::kill(sweep.pid(), signal);
+    SignalTo(sweep.pid(), signal);
     EXPECT_EQ(sweep.Wait(), code);
     EXPECT_THAT(sweep.err(), HasSubstr(" of 2500 runs are in the table; the same command goes on with the others"));
   }
@@ -194,7 +194,7 @@ TEST_F(SweepShards, ATaskWhoseTimeIsUpIsQueuedAgain) {
                 "bash", Folder("sweep.sbatch")},
                Folder("task"));
   ASSERT_TRUE(Until([&] { return std::filesystem::exists(table) && Table(table).rows.size() > 2; }));
-  ::kill(task.pid(), SIGUSR1);
+  SignalTo(task.pid(), SIGUSR1);
   EXPECT_EQ(task.Wait(), 138);
   EXPECT_EQ(ReadFile(Folder("asked")), "requeue 42_1\n");
   EXPECT_THAT(task.err(), HasSubstr(" of 5000 runs are in the table"));

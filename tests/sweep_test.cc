@@ -55,7 +55,7 @@ TEST_F(SweepTest, GoesOnAfterItWasKilledWithNoRowTwiceAndNoneHalf) {
                   {"sweep", config_, "--out", out_, "--set", "law.p_gain=0.01:0.01:2.0", "--no-plot"},
                   folder_.File("killed"));
     ASSERT_TRUE(Until([&] { return std::filesystem::exists(out_) && Table(out_).rows.size() > 5; }));
-    ::kill(sweep.pid(), SIGKILL);
+    SignalTo(sweep.pid(), SIGKILL);
     sweep.Wait();
   }
   const std::size_t there = Table(out_).rows.size();
@@ -70,7 +70,7 @@ TEST_F(SweepTest, CanBeInterruptedAndSaysHowToGoOn) {
   Running sweep(std::string(MASCOT_BINARY_DIR) + "/orchestrator",
                 {"sweep", config_, "--out", out_, "--seeds", "1..5000", "--no-plot"}, folder_.File("interrupted"));
   ASSERT_TRUE(Until([&] { return std::filesystem::exists(out_) && Table(out_).rows.size() > 2; }));
-  ::kill(sweep.pid(), SIGINT);
+  SignalTo(sweep.pid(), SIGINT);
   EXPECT_EQ(sweep.Wait(), 130);
   EXPECT_THAT(sweep.err(), HasSubstr(" of 5000 runs are in the table; the same command goes on with the others"));
 }
@@ -81,7 +81,7 @@ TEST_F(SweepTest, CanBeInterruptedWhileItLooksForAValidRun) {
                 folder_.File("looks"));
   const std::string pid = std::to_string(sweep.pid());
   ASSERT_TRUE(Until([&] { return !ReadFile("/proc/" + pid + "/task/" + pid + "/children").empty(); })) << "no worker";
-  ::kill(sweep.pid(), SIGINT);
+  SignalTo(sweep.pid(), SIGINT);
   EXPECT_EQ(sweep.Wait(), 130);
 }
 
@@ -378,7 +378,7 @@ TEST_F(SweepTest, RefusesATableThatAnotherSweepIsWriting) {
                                          ": expected a table of this sweep's own, got one "
                                          "that another is writing"));
   }
-  ::kill(sweep.pid(), SIGINT);
+  SignalTo(sweep.pid(), SIGINT);
   EXPECT_EQ(sweep.Wait(), 130) << "the first is not disturbed";
 }
 

@@ -19,6 +19,10 @@ using WallClock = std::chrono::steady_clock;
 
 std::filesystem::path ProgramFolder() { return std::filesystem::read_symlink("/proc/self/exe").parent_path(); }
 
+void SignalProcess(pid_t process, int signal) {
+  if (process > 0) kill(process, signal);
+}
+
 std::optional<int> Exit::code() const { return WIFEXITED(status) ? std::optional(WEXITSTATUS(status)) : std::nullopt; }
 
 std::string Exit::Text() const {
@@ -101,7 +105,7 @@ void Children::Kill() {
 }
 
 void Children::Signal(int signal) {
-  for (const auto& [pid, process] : running_) kill(pid, signal);
+  for (const auto& [pid, process] : running_) SignalProcess(pid, signal);
 }
 
 }  // namespace mascot

@@ -16,6 +16,11 @@ namespace mascot {
 /// Folder of the executable of this process.
 std::filesystem::path ProgramFolder();
 
+/// Sends a signal to a process. Not to one that was never started, or has been reaped: to kill(2), process 0 is all of
+/// our process group, -1 everybody, and a number that was reaped may be somebody else's by now. Whoever keeps the id of
+/// a process sets it to 0 when it has been reaped.
+void SignalProcess(pid_t process, int signal);
+
 /// How a child ended.
 struct Exit {
   std::string process;

@@ -4,6 +4,7 @@
 #include <spawn.h>
 #include <sys/wait.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <filesystem>
@@ -37,12 +38,14 @@ int RunProgram(std::vector<std::string> words, StopSignal& stop) {
   posix_spawnattr_destroy(&attributes);
   if (error != 0) throw std::runtime_error("cannot start " + words[0] + ": " + std::strerror(error));
   int status = 0, received = 0;
-  while (waitpid(pid, &status, WNOHANG) == 0) {
+  pid_t ended = 0;
+  while ((ended = waitpid(pid, &status, WNOHANG)) == 0) {
     const int signal = stop.Within(std::chrono::milliseconds(100));
     if (signal == 0) continue;
     received = signal;
-    kill(pid, SIGTERM);
+    SignalProcess(pid, SIGTERM);
   }
+  if (ended < 0) throw std::runtime_error("cannot tell how " + words[0] + " ended: " + std::strerror(errno));
   if (received != 0) return 128 + received;
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }

@@ -70,7 +70,7 @@ WorkerPool::WorkerPool(int workers, Work work) : work_(std::move(work)) {
 
 WorkerPool::~WorkerPool() {
   for (Worker& worker : workers_) {
-    ::kill(worker.pid, SIGKILL);
+    SignalProcess(worker.pid, SIGKILL);
     Reap(worker);
   }
 }
@@ -147,9 +147,11 @@ std::optional<WorkerPool::Done> WorkerPool::Wait(std::chrono::milliseconds timeo
 }
 
 std::string WorkerPool::Reap(Worker& worker) const {
+  const pid_t process = std::exchange(worker.pid, 0);
+  if (process <= 0) return "";  // it could not be forked again
   ::close(std::exchange(worker.socket, -1));
   int status = 0;
-  while (::waitpid(worker.pid, &status, 0) < 0 && errno == EINTR) {
+  while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
   }
   return Exit{"", status}.Text();
 }

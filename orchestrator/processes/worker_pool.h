@@ -42,7 +42,7 @@ class WorkerPool {
 
  private:
   struct Worker {
-    pid_t pid = -1;
+    pid_t pid = 0;  // 0: reaped, and not forked again yet
     int socket = -1;
     std::optional<std::size_t> task;
   };

@@ -161,7 +161,7 @@ void HostShare::Leave() {
   TellExits();
   if (!lock_) return;
   SweepSharedMemory(domain_);
-  janitor_->Dismiss();
+  if (janitor_) janitor_->Dismiss();  // none if it could not be started
 }
 
 }  // namespace mascot

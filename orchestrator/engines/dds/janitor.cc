@@ -11,6 +11,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "bus/process_main.h"
 #include "orchestrator/processes/children.h"
@@ -60,8 +61,8 @@ Janitor::Janitor(const DomainLock& lock) {
 Janitor::~Janitor() { close(lifeline_); }
 
 void Janitor::Dismiss() {
-  kill(pid_, SIGKILL);
-  waitpid(pid_, nullptr, 0);
+  SignalProcess(pid_, SIGKILL);
+  if (pid_ > 0) waitpid(std::exchange(pid_, 0), nullptr, 0);
 }
 
 }  // namespace mascot

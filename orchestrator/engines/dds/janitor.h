@@ -19,12 +19,12 @@ class Janitor {
 
   /// The end of the pipe that every process of the run has to inherit.
   int lifeline() const { return lifeline_; }
-  /// Ends the process: the caller has removed the shared memory itself.
+  /// Ends the process: the caller has removed the shared memory itself. May be called again.
   void Dismiss();
 
  private:
   int lifeline_ = -1;
-  pid_t pid_ = 0;
+  pid_t pid_ = 0;  // 0: not started, or reaped
 };
 
 }  // namespace mascot
