@@ -4,6 +4,7 @@
 
 #include "agent/laws.h"
 #include "agent/node.h"
+#include "bus/foreign_settings.h"
 #include "bus/privileges.h"
 #include "bus/process_main.h"
 #include "bus/standard_streams.h"
@@ -58,6 +59,7 @@ class AgentRole : public mascot::Role {
 
 int main(int argc, char** argv) {
   mascot::OpenStandardStreams();
+  mascot::ForgetForeignSettings();
   mascot::StopSignal stop;  // before anything that starts threads: they must inherit the mask
   CLI::App app("MASCOT agent: hears its neighbours, runs its law and its low-level stack, commands its actuators.");
   mascot::ProcessArgs args(/*agent_process=*/true);

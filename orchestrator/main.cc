@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bus/foreign_settings.h"
 #include "bus/leave.h"
 #include "bus/standard_streams.h"
 #include "bus/usage.h"
@@ -97,6 +98,7 @@ int Main(int argc, char** argv) {
 int main(int argc, char** argv) {
   const int code = mascot::ExitCodeOf([&] {
     mascot::OpenStandardStreams();
+    mascot::ForgetForeignSettings();
     std::signal(SIGCHLD, SIG_DFL);  // some supervisors leave it ignored; then waitpid cannot tell how a child ended
     std::signal(SIGPIPE, SIG_IGN);  // a closed terminal or pager must not kill the run
     std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the file size limit then fails with EFBIG, which is reported

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 
+#include "bus/foreign_settings.h"
 #include "bus/privileges.h"
 #include "bus/process_main.h"
 #include "bus/standard_streams.h"
@@ -32,6 +33,7 @@ class ServerRole : public mascot::Role {
 
 int main(int argc, char** argv) {
   mascot::OpenStandardStreams();
+  mascot::ForgetForeignSettings();
   mascot::StopSignal stop;  // before anything that starts threads: they must inherit the mask
   CLI::App app("MASCOT physics server: publishes every agent's state, gathers every command, steps the world.");
   mascot::ProcessArgs args(/*agent_process=*/false);
