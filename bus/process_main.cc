@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "bus/leave.h"
+#include "bus/resources.h"
 #include "bus/shared_memory.h"
 #include "bus/usage.h"
 #include "experiment/experiment.h"
@@ -145,6 +146,8 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
   args.options.name = args.is_agent ? ProcessName(args.agents) : kPhysicsServer;
   if (!args.options.server.empty()) args.options.role = DiscoveryRole::kClient;
   try {
+    RequireAddresses(args.options);
+    if (args.parent == 0) RequireResources({.shared_memory = SharedMemoryNeeded(args.options)});  // else it was asked
     return Join(args, stop, make_role);
   } catch (const std::invalid_argument& usage) {
     std::cerr << "error: " << usage.what() << std::endl;

@@ -36,6 +36,7 @@ Children::~Children() { Stop(0ms); }
 pid_t Children::Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments,
                       const std::filesystem::path& log, const Streams& streams) {
   const int output = logs_.Open(process, log);
+  close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);  // logs of other children, files of the run: not for it
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);

@@ -14,6 +14,7 @@
 
 #include "bus/bus.h"
 #include "bus/leave.h"
+#include "bus/resources.h"
 #include "bus/shared_memory.h"
 #include "experiment/processes.h"
 #include "experiment/toml/utf8.h"
@@ -23,7 +24,6 @@
 #include "orchestrator/engines/dds/janitor.h"
 #include "orchestrator/engines/dds/launcher.h"
 #include "orchestrator/engines/dds/recorder.h"
-#include "orchestrator/engines/dds/resources.h"
 #include "orchestrator/engines/dds/ros_publisher.h"
 #include "orchestrator/engines/dds/run_phases.h"
 #include "orchestrator/engines/dds/wire_audit.h"
@@ -40,6 +40,8 @@ using WallClock = std::chrono::steady_clock;
 constexpr int kMostPeers = 20;
 /// How long children may take to exit by themselves at the end; longer as long as other hosts tell what theirs printed.
 constexpr auto kExitGrace = 5s, kLastWords = 60s;
+/// File descriptors of the orchestrator: with viewers; and for each process of the run (2 were counted).
+constexpr int kOwnDescriptors = 120, kDescriptorsPerProcess = 3;
 /// How long the DDS library may take for a call at the end of a run.
 constexpr auto kLibraryGrace = 5s;
 /// A host is lost before its agents are: within this part of run.agent_timeout_s. A host is more patient with us.
@@ -74,6 +76,7 @@ class DdsRun {
   int PeersOf(AgentRange agents) const;
   int BundleRoom() const;
   std::uint64_t SharedMemoryOf(const std::string& host) const;
+  int ProcessesOn(const std::string& host) const;
   std::vector<std::string> ArgumentsOf(int participants) const;
   std::vector<std::string> ArgumentsOf(AgentRange agents) const;
   HostJob JobOf(const HostConfig& host, const std::string& our_address) const;
@@ -170,9 +173,13 @@ void DdsRun::Join() {
   lock_.emplace(experiment_.network.domain);
   if (helm_ != nullptr) helm_->SetDomain(lock_->domain());
   SweepSharedMemory(lock_->domain());  // left by runs of which also the janitor was killed
-  RequireResources(SharedMemoryOf(""));
+  RequireAddresses(Options(kOrchestrator, with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer));
+  RequireResources({.shared_memory = SharedMemoryOf(""),
+                    .processes = 2 + ProcessesOn(""),
+                    .descriptors = kOwnDescriptors + kDescriptorsPerProcess * static_cast<int>(processes_.size())});
   janitor_.emplace(*lock_);
   children_.Share(janitor_->lifeline());
+  for (const int descriptor : lock_->descriptors()) children_.Share(descriptor);
   Spawn();
   LowerPriority();
   auto wake = [this] { stop_.Wake(); };
@@ -313,6 +320,14 @@ std::uint64_t DdsRun::SharedMemoryOf(const std::string& host) const {
     need += SharedMemoryNeeded(options);
   }
   return need;
+}
+
+/// Processes of agents on a host; "": on this one.
+int DdsRun::ProcessesOn(const std::string& host) const {
+  return static_cast<int>(std::ranges::count_if(processes_, [&](const AgentRange& agents) {
+    const AgentConfig& agent = experiment_.agent(agents.first);
+    return !agent.external && agent.host == host;
+  }));
 }
 
 EngineResult DdsRun::Fly() {

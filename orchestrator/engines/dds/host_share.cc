@@ -6,9 +6,9 @@
 #include <iostream>
 
 #include "bus/leave.h"
+#include "bus/resources.h"
 #include "bus/shared_memory.h"
 #include "experiment/toml/utf8.h"
-#include "orchestrator/engines/dds/resources.h"
 #include "orchestrator/processes/build.h"
 #include "orchestrator/processes/environment.h"
 
@@ -139,8 +139,10 @@ void HostShare::Start(const HostJob& job) {
     SweepSharedMemory(job.domain);
     janitor_.emplace(*lock_);
     children_.Share(janitor_->lifeline());
+    for (const int descriptor : lock_->descriptors()) children_.Share(descriptor);
   }
-  RequireResources(job.shared_memory);
+  const int processes = static_cast<int>(job.processes.size());
+  RequireResources({.shared_memory = job.shared_memory, .processes = processes, .descriptors = 64 + 3 * processes});
   for (const HostProcess& process : job.processes) {
     std::vector<std::string> arguments = process.arguments;
     arguments.insert(arguments.end(), {"--parent", std::to_string(getpid())});

@@ -1,0 +1,243 @@
+#include "bus/resources.h"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace mascot {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+/// Processes of a run reserve 0.6 to 1.2 GiB if they may, mostly stacks and heaps of threads. With 180 to 300 MiB some
+/// start and some do not.
+constexpr std::uint64_t kAddressSpace = 512 * kMiB;
+/// Of which they use: with 60 MB some threads do not start, with 150 MB all do.
+constexpr std::uint64_t kData = 192 * kMiB;
+/// A process with a participant has 10 threads, the orchestrator up to 20.
+constexpr int kThreads = 10, kMoreThreads = 12;
+
+// --- memory -------------------------------------------------------------------------------------------
+
+void RequireMemory(__rlimit_resource_t which, const char* what, const char* option, std::uint64_t needed) {
+  rlimit limit{};
+  if (getrlimit(which, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur >= needed) return;
+  throw std::runtime_error(
+      fmt::format("the {} of a process is limited to {} MiB (ulimit {}), and a run over DDS needs {} MiB", what,
+                  limit.rlim_cur / kMiB, option, needed / kMiB));
+}
+
+void RequireSharedMemory(std::uint64_t needed) {
+  if (access("/dev/shm", W_OK | X_OK) != 0)
+    throw std::runtime_error(
+        fmt::format("/dev/shm cannot be written ({}), where Fast DDS has its shared memory: mount "
+                    "it, or set network.transport = \"udp\"",
+                    std::strerror(errno)));
+  struct statvfs info {};
+  if (statvfs("/dev/shm", &info) != 0) return;
+  const std::uint64_t free = static_cast<std::uint64_t>(info.f_bavail) * info.f_frsize;
+  if (needed <= free) return;
+  throw std::runtime_error(fmt::format(
+      "/dev/shm has {:.1f} MiB free, and this run needs {:.1f} MiB: enlarge it (mount -o remount,size=..., docker run "
+      "--shm-size=...), let agents share processes (network.agents_per_process), or set network.transport = \"udp\"",
+      static_cast<double>(free) / kMiB, static_cast<double>(needed) / kMiB));
+}
+
+// --- descriptors --------------------------------------------------------------------------------------
+
+void RequireDescriptors(int needed) {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= static_cast<rlim_t>(needed)) return;
+  const rlim_t was = limit.rlim_cur;
+  limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, static_cast<rlim_t>(needed));
+  if (limit.rlim_max >= static_cast<rlim_t>(needed) && setrlimit(RLIMIT_NOFILE, &limit) == 0) return;
+  throw std::runtime_error(
+      fmt::format("a process may have {} open files (ulimit -n), and this run needs {}: raise the limit{}", was, needed,
+                  needed > 256 ? ", or let agents share processes (network.agents_per_process)" : ""));
+}
+
+// --- threads ------------------------------------------------------------------------------------------
+
+/// Whether the limit of ulimit -u does not hold for us (setrlimit(2)).
+bool MayHaveAnyNumberOfThreads() {
+  constexpr unsigned kSysAdmin = 21, kSysResource = 24;  // capabilities(7)
+  if (getuid() == 0) return true;
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    unsigned long long effective = 0;
+    if (word == "CapEff:" && status >> std::hex >> effective)
+      return ((effective >> kSysAdmin) & 1U) != 0 || ((effective >> kSysResource) & 1U) != 0;
+  }
+  return false;
+}
+
+/// The number of threads in a line of /proc/PID/stat.
+int ThreadsIn(const std::string& stat) {
+  constexpr int kFields = 17;  // from the state to the number of threads
+  const auto end = stat.rfind(')');
+  if (end == std::string::npos) return 0;
+  std::istringstream fields(stat.substr(end + 1));
+  std::string skipped;
+  for (int field = 0; field < kFields; ++field) fields >> skipped;
+  int threads = 0;
+  fields >> threads;
+  return threads;
+}
+
+/// The threads of our user that can be seen.
+int ThreadsOfUser() {
+  int threads = 0;
+  std::error_code error;
+  for (fs::directory_iterator entry("/proc", error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename();
+    struct stat info {};
+    if (!std::ranges::all_of(name, [](unsigned char c) { return std::isdigit(c); }) ||
+        ::stat(entry->path().c_str(), &info) != 0 || info.st_uid != getuid())
+      continue;
+    std::string stat;
+    std::getline(std::ifstream(entry->path() / "stat"), stat, '\0');
+    threads += ThreadsIn(stat);
+  }
+  return threads;
+}
+
+[[noreturn]] void RefuseThreads(const std::string& who, const std::string& by, long limit, long used, int needed) {
+  throw std::runtime_error(fmt::format(
+      "{} may have {} processes and threads ({}) and has {}, and this run needs about {} more: raise the limit, or let "
+      "agents share processes (network.agents_per_process)",
+      who, limit, by, used, needed));
+}
+
+void RequireThreadsOfUser(int needed) {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NPROC, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || MayHaveAnyNumberOfThreads()) return;
+  const int used = ThreadsOfUser();
+  if (limit.rlim_cur >= static_cast<rlim_t>(used + needed)) return;
+  RefuseThreads("this user", "ulimit -u", static_cast<long>(limit.rlim_cur), used, needed);
+}
+
+/// A number in a file; -1: there is none.
+long NumberIn(const fs::path& file) {
+  long number = -1;
+  std::ifstream(file) >> number;
+  return number > 0 ? number : -1;
+}
+
+/// The control groups that we are in whose threads may be limited, innermost first.
+std::vector<fs::path> ControlGroups() {
+  std::vector<fs::path> groups;
+  std::ifstream table("/proc/self/cgroup");
+  for (std::string line; std::getline(table, line);) {
+    const bool is_v2 = line.starts_with("0::"), is_pids = line.find(":pids:") != std::string::npos;
+    if (!is_v2 && !is_pids) continue;
+    const fs::path root = is_v2 ? "/sys/fs/cgroup" : "/sys/fs/cgroup/pids";
+    for (fs::path path = line.substr(line.rfind(':') + 1); path.has_relative_path(); path = path.parent_path())
+      groups.push_back(root / path.relative_path());
+    groups.push_back(root);
+  }
+  return groups;
+}
+
+void RequireThreadsOfControlGroups(int needed) {
+  for (const fs::path& group : ControlGroups()) {
+    const long limit = NumberIn(group / "pids.max"), used = NumberIn(group / "pids.current");
+    if (limit > 0 && used > 0 && limit < used + needed)
+      RefuseThreads("this control group", (group / "pids.max").string(), limit, used, needed);
+  }
+}
+
+// --- addresses ----------------------------------------------------------------------------------------
+
+/// An IPv4 address of an interface.
+struct Interface {
+  std::string name, address;
+  bool is_up = false;
+};
+
+std::vector<Interface> Interfaces() {
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0)
+    throw std::runtime_error(std::string("cannot list network interfaces: ") + std::strerror(errno));
+  const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> owner(list, freeifaddrs);
+  std::vector<Interface> interfaces;
+  for (const ifaddrs* entry = list; entry != nullptr; entry = entry->ifa_next) {
+    const bool is_up = (entry->ifa_flags & IFF_UP) != 0;
+    if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET) {
+      interfaces.push_back({entry->ifa_name, "", is_up});
+      continue;
+    }
+    char text[INET_ADDRSTRLEN] = "";
+    inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(entry->ifa_addr)->sin_addr, text, sizeof text);
+    interfaces.push_back({entry->ifa_name, text, is_up});
+  }
+  return interfaces;
+}
+
+bool Has(const std::vector<Interface>& interfaces, const std::string& address) {
+  return std::ranges::any_of(interfaces, [&](const Interface& each) { return each.is_up && each.address == address; });
+}
+
+constexpr const char* kNone = "none";
+
+/// "127.0.0.1 (lo), 10.0.0.5 (eth0)": the addresses that are up.
+std::string AddressesText(const std::vector<Interface>& interfaces) {
+  std::string text;
+  for (const Interface& each : interfaces)
+    if (each.is_up && !each.address.empty())
+      text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", each.address, each.name);
+  return text.empty() ? kNone : text;
+}
+
+void RequireLoopback(const std::vector<Interface>& interfaces) {
+  const std::string loopback = "127.0.0.1";
+  if (Has(interfaces, loopback)) return;
+  const bool is_up = std::ranges::any_of(interfaces, [](const auto& each) { return each.name == "lo" && each.is_up; });
+  throw std::runtime_error(fmt::format(
+      "the network interface lo {}, by which the processes of a run on one host find each other: as root, `{}`",
+      is_up ? "does not have the address " + loopback : "is down",
+      is_up ? "ip address add " + loopback + "/8 dev lo" : "ip link set lo up"));
+}
+
+}  // namespace
+
+void RequireResources(const ResourceNeeds& needs) {
+  RequireMemory(RLIMIT_AS, "address space", "-v", kAddressSpace);
+  RequireMemory(RLIMIT_DATA, "data", "-d", kData);
+  if (needs.shared_memory > 0) RequireSharedMemory(needs.shared_memory);
+  RequireDescriptors(needs.descriptors);
+  const int threads = kThreads * needs.processes + kMoreThreads;
+  RequireThreadsOfUser(threads);
+  RequireThreadsOfControlGroups(threads);
+}
+
+void RequireAddresses(const DomainOptions& options) {
+  const std::vector<Interface> interfaces = Interfaces();
+  const bool without_udp = options.transport == "shm" && options.role == DiscoveryRole::kPeer;
+  if (!without_udp && (options.loopback || options.server.starts_with("127."))) RequireLoopback(interfaces);
+  if (!without_udp && AddressesText(interfaces) == kNone)
+    throw std::runtime_error("no network interface of this machine that is up has an IPv4 address, not even lo");
+  if (options.address.empty() || Has(interfaces, options.address)) return;
+  throw std::runtime_error(
+      fmt::format("no network interface of this machine that is up has the address {}; there are {}", options.address,
+                  AddressesText(interfaces)));
+}
+
+}  // namespace mascot
