@@ -1,41 +1,8 @@
 #include "agent/laws/polygon.h"
 
-#include <array>
-#include <cmath>
+#include <algorithm>
 
 namespace mascot {
-namespace {
-
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-double DensityAt(const Eigen::Vector2d& q, const std::vector<Bump>& bumps) {
-  double density = 0;
-  for (const Bump& bump : bumps)
-    density += bump.weight * std::exp(-(q - bump.centre_m).squaredNorm() / (2 * bump.width_m * bump.width_m));
-  return density;
-}
-
-/// Adds the integrals over a triangle, by the seven points of Radon (1948).
-void AddTriangle(const std::array<Eigen::Vector2d, 3>& corners, const Eigen::Vector2d& o,
-                 const std::vector<Bump>& bumps, Moments& moments) {
-  const double area = Cross(corners[1] - corners[0], corners[2] - corners[0]) / 2, root = std::sqrt(15.0);
-  const auto add = [&](double weight, double a, double b, double c) {
-    const Eigen::Vector2d q = a * corners[0] + b * corners[1] + c * corners[2];
-    const double part = weight * area * DensityAt(q, bumps);
-    moments.mass += part;
-    moments.first += part * (q - o);
-    moments.second += part * (q - o).squaredNorm();
-  };
-  add(9.0 / 40, 1.0 / 3, 1.0 / 3, 1.0 / 3);
-  for (const double sign : {-1.0, 1.0}) {
-    const double weight = (155 + sign * root) / 1200, near = (6 + sign * root) / 21, far = 1 - 2 * near;
-    add(weight, far, near, near);
-    add(weight, near, far, near);
-    add(weight, near, near, far);
-  }
-}
-
-}  // namespace
 
 bool IsConvex(const Polygon& polygon) {
   const std::size_t n = polygon.size();
@@ -50,13 +17,11 @@ bool IsConvex(const Polygon& polygon) {
   return n >= 3 && area > 0;
 }
 
-Polygon Nearer(const Polygon& polygon, const Eigen::Vector2d& p, const Eigen::Vector2d& other) {
-  const Eigen::Vector2d way = other - p, middle = (p + other) / 2;
-  if (way.isZero(0)) return polygon;
+Polygon Within(const Polygon& polygon, const Eigen::Vector2d& through, const Eigen::Vector2d& outward) {
   Polygon part;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Eigen::Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    const double beyond_a = (a - middle).dot(way), beyond_b = (b - middle).dot(way);
+    const double beyond_a = (a - through).dot(outward), beyond_b = (b - through).dot(outward);
     if (beyond_a <= 0) part.push_back(a);
     if ((beyond_a < 0 && beyond_b > 0) || (beyond_a > 0 && beyond_b < 0))
       part.emplace_back(a + beyond_a / (beyond_a - beyond_b) * (b - a));
@@ -64,21 +29,31 @@ Polygon Nearer(const Polygon& polygon, const Eigen::Vector2d& p, const Eigen::Ve
   return part;
 }
 
-Moments MomentsOf(const Polygon& polygon, const Eigen::Vector2d& o, const std::vector<Bump>& bumps) {
+Polygon Nearer(const Polygon& polygon, const Eigen::Vector2d& p, const Eigen::Vector2d& other) {
+  const Eigen::Vector2d way = other - p, middle = (p + other) / 2;
+  return way.isZero(0) ? polygon : Within(polygon, middle, way);
+}
+
+Eigen::Vector2d NearestPoint(const Polygon& polygon, const Eigen::Vector2d& p) {
+  bool inside = polygon.size() >= 3;
+  Eigen::Vector2d nearest = polygon.front();
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d &a = polygon[i], edge = polygon[(i + 1) % polygon.size()] - a;
+    if (edge.isZero(0)) continue;
+    inside = inside && Cross(edge, p - a) >= 0;
+    const Eigen::Vector2d q = a + std::clamp(edge.dot(p - a) / edge.squaredNorm(), 0.0, 1.0) * edge;
+    if ((q - p).squaredNorm() < (nearest - p).squaredNorm()) nearest = q;
+  }
+  return inside ? p : nearest;
+}
+
+Moments MomentsOf(const Polygon& polygon, const Eigen::Vector2d& o) {
   Moments moments;
-  for (std::size_t i = 0; bumps.empty() && i < polygon.size(); ++i) {
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Eigen::Vector2d a = polygon[i] - o, b = polygon[(i + 1) % polygon.size()] - o;
     moments.mass += Cross(a, b) / 2;
     moments.first += Cross(a, b) * (a + b) / 6;
     moments.second += Cross(a, b) * (a.squaredNorm() + a.dot(b) + b.squaredNorm()) / 12;
-  }
-  for (std::size_t i = 1; !bumps.empty() && i + 1 < polygon.size(); ++i) {
-    const Eigen::Vector2d &a = polygon[0], &b = polygon[i], &c = polygon[i + 1];
-    const Eigen::Vector2d ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
-    AddTriangle({a, ab, ca}, o, bumps, moments);
-    AddTriangle({ab, b, bc}, o, bumps, moments);
-    AddTriangle({ca, bc, c}, o, bumps, moments);
-    AddTriangle({ab, bc, ca}, o, bumps, moments);
   }
   return moments;
 }
