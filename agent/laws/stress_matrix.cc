@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "agent/laws/definite_matrix.h"
 #include "agent/laws/leaders.h"
 #include "agent/laws/reach.h"
 #include "experiment/linear_algebra.h"
@@ -13,7 +14,7 @@
 namespace mascot {
 namespace {
 
-constexpr int kMostSteps = 20000;
+constexpr int kFewSteps = 200, kMostSteps = 20000;
 constexpr double kZeroEigenvalue = 1e-12;  // of a Gram matrix, as a share of its largest one
 
 /// Points about their mean, with coordinates of at most 1, and a last column of ones: [p 1].
@@ -67,31 +68,35 @@ bool Span(std::span<const Eigen::Vector3d> points, Axes axes) {
   return !points.empty() && RankOf(Homogeneous(points, axes)) == CountOf(axes) + 1;
 }
 
-std::optional<Eigen::MatrixXd> StressMatrixOf(std::span<const Bar> bars, std::span<const Eigen::Vector3d> points,
-                                              Axes axes) {
-  if (bars.empty()) return std::nullopt;
+StressMatrix StressMatrixOf(std::span<const Bar> bars, std::span<const Eigen::Vector3d> points, Axes axes) {
+  if (bars.empty()) return {.omega = std::nullopt, .none = true};
   const Eigen::MatrixXd homogeneous = Homogeneous(points, axes);
   const Eigen::MatrixXd q = Kernel(homogeneous.transpose());  // Omega = q X q'
   const Eigen::MatrixXd stresses = EquilibriumStresses(bars, homogeneous);
-  if (q.cols() == 0 || stresses.cols() == 0) return std::nullopt;
+  if (q.cols() == 0 || stresses.cols() == 0) return {.omega = std::nullopt, .none = true};
   const Eigen::Index size = q.cols() * q.cols();
   Eigen::MatrixXd basis(size, stresses.cols());  // a column for each X that the stresses span
   for (Eigen::Index k = 0; k < stresses.cols(); ++k)
     basis.col(k) = (q.transpose() * MatrixOf(stresses.col(k), bars, homogeneous.rows()) * q).reshaped();
   const Eigen::MatrixXd gram = basis.transpose() * basis;
+  const auto omega = [&q](const Eigen::MatrixXd& x, double largest) -> Eigen::MatrixXd {
+    const Eigen::MatrixXd one = q * x * q.transpose() / largest;
+    return (one + one.transpose()) / 2;
+  };
 
-  // Projects by turns on the X of stresses, and on those with no eigenvalue below 1; X is unique up to its size.
+  // Projects by turns on the X of stresses, and on those with no eigenvalue below 1: quick, where the eigenvalues of
+  // the X sought differ little. Else it is found, or found missing, by a method that is slow where stresses are many.
   Eigen::MatrixXd x = Eigen::MatrixXd::Identity(q.cols(), q.cols());
+  DefiniteMatrix best;
   for (int step = 0; step < kMostSteps; ++step) {
+    if (step == kFewSteps && (best = MostDefinite(basis, q.cols())).none) return {.omega = std::nullopt, .none = true};
     x.reshaped() = basis * Solve(gram, basis.transpose() * x.reshaped());
     const SymmetricEigensystem system = SymmetricEigensystemOf(x);
-    if (system.values.minCoeff() > 0.5) {
-      const Eigen::MatrixXd omega = q * x * q.transpose() / system.values.maxCoeff();
-      return (omega + omega.transpose()) / 2;
-    }
+    if (system.values.minCoeff() > 0.5) return {.omega = omega(x, system.values.maxCoeff()), .none = false};
     x = system.vectors * system.values.cwiseMax(1.0).asDiagonal() * system.vectors.transpose();
   }
-  return std::nullopt;
+  if (!best.found) return {};
+  return {.omega = omega(*best.found, SymmetricEigenvalues(*best.found).maxCoeff()), .none = false};
 }
 
 namespace {
@@ -126,14 +131,16 @@ Eigen::MatrixXd ReadStressMatrix(const Experiment& experiment, std::span<const E
     return none;
   }
   const std::vector<Bar> bars = BarsOf(experiment.graph);
-  if (const auto omega = StressMatrixOf(bars, places_W, axes)) {
+  const StressMatrix stress = StressMatrixOf(bars, places_W, axes);
+  if (stress.omega) {
     const LedTeam team({leaders.begin(), leaders.end()}, agents);
-    return *omega / SymmetricEigenvalues(BlockOf(*omega, team.followers, team.followers)).minCoeff();
+    return *stress.omega / SymmetricEigenvalues(BlockOf(*stress.omega, team.followers, team.followers)).minCoeff();
   }
   section.Fail("name",
                fmt::format("expected a graph and places with a positive semidefinite stress matrix of rank {}, got "
-                           "{} pairs for which none was found: they are not universally rigid",
-                           agents - CountOf(axes) - 1, bars.size()));
+                           "{} pairs {}",
+                           agents - CountOf(axes) - 1, bars.size(),
+                           stress.none ? "that have none, but for rounding" : "for which none was found"));
   return none;
 }
 

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+namespace mascot {
+
+/// Above this many matrices, no positive definite one is sought among their combinations.
+inline constexpr Eigen::Index kMostCombined = 300;
+
+struct DefiniteMatrix {
+  std::optional<Eigen::MatrixXd> found;
+  /// No combination has a smallest eigenvalue of more than 1e-7 of the mean one. If nothing was found either, nobody
+  /// knows.
+  bool none = false;
+};
+
+/// Seeks the linear combination of symmetric `size` x `size` matrices, linearly independent, one to a column of
+/// `basis`, whose smallest eigenvalue is the largest share of their mean. It is found to a tenth of that eigenvalue.
+DefiniteMatrix MostDefinite(const Eigen::MatrixXd& basis, Eigen::Index size);
+
+}  // namespace mascot
