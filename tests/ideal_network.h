@@ -57,12 +57,14 @@ class IdealNetwork {
     }
     for (std::size_t i = 0; i < motions.size(); ++i) {
       if (laws[i]->wanted() == Wanted::kVelocity) {
+        motions[i].a_WB = (wants_W[i] - motions[i].v_WB) / h();
         motions[i].v_WB = wants_W[i];
         motions[i].p_WB += h() * motions[i].v_WB;
         continue;
       }
       motions[i].p_WB += h() * motions[i].v_WB + h() * h() / 2 * wants_W[i];
       motions[i].v_WB += h() * wants_W[i];
+      motions[i].a_WB = wants_W[i];
     }
     ++tick;
   }

@@ -43,7 +43,8 @@ std::string NameOf(const testing::TestParamInfo<Row>& row) {
 INSTANTIATE_TEST_SUITE_P(
     OfLaws, Silence,
     testing::Values(
-        Row{"platoon", "control.max_acceleration_m_per_s2", "0.1", "the limit of the acceleration cuts the swing"},
+        Row{"platoon", "control.max_acceleration_m_per_s2", "0.1",
+            "the limit of the acceleration cuts what the law asks for"},
         Row{"pursuit_evasion", "control.max_speed_m_per_s", "0.5", "the limit of the speed cuts the pursuit"},
         Row{"pursuit_evasion", "graph", "{ edges = [[1, 2], [1, 3], [1, 4]] }", "nobody hears the evader"},
         Row{"affine_formation", "law.gain", "0.0", "with gain = 0 followers stay where they are"},
