@@ -64,7 +64,7 @@ void Node::ListenToMessages(Domain& domain) {
 void Node::ListenToEvents(Domain& domain) {
   readers_.push_back(
       std::make_unique<Reader<EventType>>(domain, Topic::Event(), [this](const mascot_msgs::msg::Event& event) {
-        const int number = static_cast<int>(live_.events().size()) + 1;
+        const int number = live_.count() + 1;
         const std::int64_t tick = CheckedEvent(event, number, experiment_.ticks());
         const auto now = live_.Take(tick, number, event.toml());
         for (const auto& seat : seats_) seat->OnEvent(number, now);

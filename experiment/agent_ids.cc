@@ -3,17 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 namespace mascot {
 
 std::vector<int> ReadAgentIds(Section& section, const std::string& key, int agents) {
   std::vector<int> ids;
+  std::set<int> seen;
   const std::vector<double> numbers = section.Numbers(key);
   for (std::size_t k = 0; k < numbers.size() && !section.Wrong(key); ++k) {
     const int id = static_cast<int>(numbers[k]);
     if (id != numbers[k] || (agents > 0 && id > agents))
       section.FailRow(key, k, fmt::format("expected an agent in 1..{}, got {}", agents, numbers[k]));
-    else if (std::ranges::find(ids, id) != ids.end())
+    else if (!seen.insert(id).second)
       section.FailRow(key, k, "expected each agent once, got " + std::to_string(id) + " again");
     else
       ids.push_back(id);

@@ -7,6 +7,7 @@
 #include "experiment/control.h"
 #include "experiment/placement.h"
 #include "experiment/read_experiment.h"
+#include "experiment/toml/few_tables.h"
 
 namespace mascot {
 namespace {
@@ -181,7 +182,7 @@ std::vector<AgentOverride> ReadAgents(Section& agents, int count, Experiment& ex
   for (int id = 1; id <= count; ++id) experiment.agents[static_cast<std::size_t>(id - 1)].id = id;
   std::set<std::int64_t> seen;
   std::vector<AgentOverride> overrides;
-  for (Section& section : agents.Children("override"))
+  for (Section& section : FewTables(agents, "override", kMaxAgents))
     overrides.push_back(ReadOverride(section, experiment.agents, seen));
 
   ReadHeadings(agents, experiment.agents);

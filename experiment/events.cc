@@ -7,6 +7,8 @@
 
 #include "experiment/agent_ids.h"
 #include "experiment/experiment.h"
+#include "experiment/live_experiment.h"
+#include "experiment/toml/few_tables.h"
 
 namespace mascot {
 namespace {
@@ -192,7 +194,7 @@ Event ReadEventOfRun(Section& section, int agents) {
 
 std::vector<Event> ReadEvents(Section& document, int agents, int rate_hz, std::int64_t ticks) {
   std::vector<Event> events;
-  for (Section& section : document.Children("events")) {
+  for (Section& section : FewTables(document, "events", LiveExperiment::kMostEvents)) {
     const std::int64_t tick = ReadTick(section, rate_hz, ticks);
     events.push_back(ReadEvent(section, agents));
     events.back().tick = tick;

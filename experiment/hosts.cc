@@ -9,10 +9,13 @@
 #include <string_view>
 
 #include "experiment/experiment.h"
+#include "experiment/toml/few_tables.h"
 #include "experiment/toml/number.h"
 
 namespace mascot {
 namespace {
+
+constexpr std::size_t kMostHosts = 1000;
 
 /// A name that is a word for ssh and for a file, and no option.
 bool IsHostName(const std::string& name) {
@@ -126,7 +129,7 @@ std::span<const Key> HostKeys() {
 std::vector<HostConfig> ReadHosts(Section& document, std::vector<AgentConfig>& agents) {
   std::vector<HostConfig> hosts;
   std::set<std::string> names;
-  std::vector<Section> sections = document.Children("hosts");
+  std::vector<Section> sections = FewTables(document, "hosts", kMostHosts);
   for (Section& section : sections) {
     hosts.push_back(ReadHost(section, agents, names));
     const HostConfig& host = hosts.back();

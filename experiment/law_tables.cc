@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "experiment/safety.h"
+#include "experiment/toml/few_tables.h"
 
 namespace mascot {
 namespace {
@@ -45,7 +46,7 @@ class ScheduleReader {
   /// Phases that do not begin before `last_tick` are checked, but are no events.
   void Read(int rate_hz, std::int64_t last_tick, std::vector<Event>& events) {
     std::int64_t last = 0;
-    for (Section& phase : table_.Children("schedule")) {
+    for (Section& phase : FewTables(table_, "schedule", kMostPhases)) {
       Event event{.tick = ReadTick(phase, rate_hz, kLongAfter),
                   .agents = agent_ > 0 ? std::vector{agent_} : std::vector<int>(),
                   .where = phase.Where("")};
@@ -64,6 +65,7 @@ class ScheduleReader {
   }
 
  private:
+  static constexpr std::size_t kMostPhases = 1000;  // each looks for its keys in all those before it
   static constexpr std::int64_t kLongAfter = std::numeric_limits<std::int64_t>::max();
 
   void ReadPhase(Section& phase, Event& event) {
@@ -125,7 +127,7 @@ std::span<const Key> LawKeys() {
       key::Tables(
           "schedule", schedule,
           "what the law is from a time on: also any parameter of the law; a phase that names the law before, or "
-          "none, goes on with its parameters"),
+          "none, goes on with its parameters; at most 1000"),
   };
   return keys;
 }

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <array>
 
+#include "experiment/toml/few_tables.h"
+
 namespace mascot {
 namespace {
+
+constexpr std::size_t kMostOverrides = 10000;
 
 constexpr Key kBurstKeys[] = {
     key::Number("good_to_bad", {0, 1}, "probability per tick that a good link turns bad").Required().Live(),
@@ -43,7 +47,7 @@ constexpr auto kOverrideKeys = Joined(
 constexpr auto kLinkKeys =
     Joined(kCommonKeys, std::array{key::Tables("override", kOverrideKeys,
                                                "other links for some edges; what is left out is as in `[link]`, `loss` "
-                                               "and `gilbert_elliott` in place of each other")});
+                                               "and `gilbert_elliott` in place of each other; at most 10000")});
 
 GilbertElliott ReadBursts(Section section) {
   GilbertElliott bursts;
@@ -116,7 +120,7 @@ bool LinkTable::ArePerfect(const Graph& graph) const {
 LinkTable ReadLinks(Section& link, const Graph& graph) {
   const LinkConfig common = ReadLink(link);
   std::map<std::pair<int, int>, LinkConfig> special;
-  for (Section& section : link.Children("override")) {
+  for (Section& section : FewTables(link, "override", kMostOverrides)) {
     section.InheritFrom(link);
     const auto edges = ReadEdges(section, graph);
     const LinkConfig config = ReadLink(section);

@@ -1,6 +1,8 @@
 #include "experiment/live_experiment.h"
 
 #include <algorithm>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "experiment/live_keys.h"
@@ -64,6 +66,52 @@ std::optional<std::string> MeantBy(const std::string& key, const std::vector<Liv
   return live[static_cast<std::size_t>(std::ranges::find(names, *nearest) - names.begin())].path;
 }
 
+/// The table inside `table`; null: there is none.
+Value::Table* TableIn(Value::Table* table, const std::string& key) {
+  const auto found = table != nullptr ? table->find(key) : Value::Table::iterator();
+  return table != nullptr && found != table->end() ? std::get_if<Value::Table>(&found->second.data) : nullptr;
+}
+
+/// Takes the schedule out of the law table inside `table`, if there is one.
+void EraseSchedule(Value::Table* table) {
+  if (Value::Table* law = TableIn(table, "law")) law->erase("schedule");
+}
+
+/// The resolved experiment without what happens at a time: that is read once, and not again at each event.
+std::string WithoutEvents(const std::string& resolved) {
+  Value::Table whole = Section::FromText(resolved, "config.toml").InTheFile();
+  whole.erase("events");
+  EraseSchedule(&whole);
+  if (Value::Table* agents = TableIn(&whole, "agents"); agents != nullptr && agents->contains("override"))
+    if (auto* overrides = std::get_if<Value::List>(&agents->at("override").data))
+      for (Value& own : *overrides) EraseSchedule(std::get_if<Value::Table>(&own.data));
+  std::string text;
+  for (const auto& [key, value] : whole) text += key + " = " + ToToml(value) + "\n";
+  return text;
+}
+
+/// Adds `more` to `changes`, in place of older ones of the same keys. Returns whether there are any.
+bool Add(std::vector<Override> more, std::vector<Override>& changes) {
+  std::set<std::string_view> keys;
+  for (const Override& change : more) keys.insert(change.key);
+  std::erase_if(changes, [&](const Override& older) { return keys.contains(older.key); });
+  for (std::size_t k = 0; k < more.size(); ++k)  // of one key twice, the later holds
+    if (keys.erase(more[more.size() - 1 - k].key) == 0) more[more.size() - 1 - k].key.clear();
+  std::ranges::copy_if(more, std::back_inserter(changes), [](const Override& c) { return !c.key.empty(); });
+  return !more.empty();
+}
+
+/// The law tables of a resolved experiment: at 0 the team's, and those of agents with their own, by id.
+std::map<int, Value::Table> LawTablesOf(const std::string& resolved) {
+  std::map<int, Value::Table> tables;
+  Section document = Section::FromText(resolved, "config.toml");
+  document.Use(ExperimentKeys());
+  tables[0] = document.Child("law").InTheFile();
+  for (Section& section : document.Child("agents").Children("override"))
+    if (section.Has("law")) tables[static_cast<int>(section.Integer("id"))] = section.Child("law").InTheFile();
+  return tables;
+}
+
 std::string EdgeText(const std::pair<int, int>& edge) {
   return "[" + std::to_string(edge.first) + ", " + std::to_string(edge.second) + "]";
 }
@@ -76,19 +124,17 @@ bool LiveExperiment::Own::IsReachedBy(const std::string& key) const {
 }
 
 LiveExperiment::LiveExperiment(const Experiment& start, const LawCatalog* laws, bool checked)
-    : start_(start), laws_(laws), checked_(checked), text_(start.resolved) {
-  for (const char* key : {"events", "law.schedule"}) changes_.push_back({.key = key, .value = "[]"});
+    : start_(start), laws_(laws), checked_(checked), text_(WithoutEvents(start.resolved)) {
   Section document = Section::FromText(text_, "config.toml");
   document.Use(ExperimentKeys());
   law_tables_[0] = document.Child("law").InTheFile();
   since_.resize(start.agents.size());
+  places_.resize(start.agents.size());
   for (Section& section : document.Child("agents").Children("override")) {
     Own own{.id = static_cast<int>(section.Integer("id")), .keys = {}, .has_law = section.Has("law")};
-    if (own.has_law) {
-      law_tables_[own.id] = section.Child("law").InTheFile();
-      changes_.push_back({.key = OverrideKey(own_.size()) + "law.schedule", .value = "[]"});
-    }
+    if (own.has_law) law_tables_[own.id] = section.Child("law").InTheFile();
     for (const char* table : kWhoseKeys) AddKeys(table, section.Free(table), own.keys);
+    places_[static_cast<std::size_t>(own.id - 1)] = own_.size();
     own_.push_back(std::move(own));
   }
 }
@@ -106,21 +152,15 @@ std::shared_ptr<const Experiment> LiveExperiment::Take(const Event& event) {
   const std::vector<Own> own = own_;
   const bool team_had_changed = team_has_changed_;
   try {
-    const auto cut = CutAfter(event);
+    auto cut = CutAfter(event);
+    tables_now_.reset();
     std::vector<Override> changes = changes_;
     if (event.law) ForgetLaws(event, changes);
-    for (Override& change : Changes(event)) {
-      std::erase_if(changes, [&](const Override& older) { return older.key == change.key; });
-      changes.push_back(std::move(change));
-    }
-    // All was legal before this event: what is wrong now is its mistake, also where another key shows it.
-    for (Override& change : changes) change.origin = event.where;
-    Section document = Section::FromWords(text_, event.where, changes);
-    Experiment next = laws_ != nullptr
-                          ? ReadExperiment(std::move(document), *laws_, start_.run.name, checked_, WithTheirOwnLaw())
-                          : ReadWithoutLaws(std::move(document), start_.run.name);
+    const bool changes_keys = Add(Changes(event), changes);
+    // An event that changes no key, such as one that cuts an edge, leaves all that was read as it is.
+    Experiment next = now_ && !changes_keys && !event.law ? *now_ : Read(changes, event.where);
     CheckParams(event, next);
-    next.cut = cut;
+    next.cut = std::move(cut);
     const bool begins_phase = event.law && phase_tick_ != event.tick;
     next.phase = current().phase + (begins_phase ? 1 : 0);
     if (event.law && laws_ != nullptr) BeginLaws(event);
@@ -131,13 +171,21 @@ std::shared_ptr<const Experiment> LiveExperiment::Take(const Event& event) {
     now_ = std::make_shared<const Experiment>(std::move(next));
     changes_ = std::move(changes);
     if (event.law) phase_tick_ = event.tick;
-    events_.push_back(event);
+    ++count_;
     return now_;
   } catch (...) {
     own_ = own;
     team_has_changed_ = team_had_changed;
     throw;
   }
+}
+
+// All was legal before the event: what is wrong now is its mistake, also where another key shows it.
+Experiment LiveExperiment::Read(std::vector<Override>& changes, const std::string& where) const {
+  for (Override& change : changes) change.origin = where;
+  Section document = Section::FromWords(text_, where, changes);
+  return laws_ != nullptr ? ReadExperiment(std::move(document), *laws_, start_.run.name, checked_, WithTheirOwnLaw())
+                          : ReadWithoutLaws(std::move(document), start_.run.name);
 }
 
 std::set<std::pair<int, int>> LiveExperiment::CutAfter(const Event& event) const {
@@ -264,9 +312,9 @@ void LiveExperiment::Set(const Event& event, const std::string& key, const Value
 }
 
 std::size_t LiveExperiment::OwnOf(int agent, const std::string& where, std::vector<Override>& changes) {
-  const auto own = std::ranges::find(own_, agent, &Own::id);
-  const auto index = static_cast<std::size_t>(own - own_.begin());
-  if (own != own_.end()) return index;
+  std::size_t& place = places_[static_cast<std::size_t>(agent - 1)];
+  if (place < own_.size() && own_[place].id == agent) return place;
+  const std::size_t index = place = own_.size();
   own_.push_back({.id = agent, .keys = {}});
   changes.push_back(
       {.key = OverrideKey(index) + "id", .value = std::to_string(agent), .origin = where, .extends = true});
@@ -286,7 +334,7 @@ void LiveExperiment::SetFor(int agent, const std::string& where, const std::stri
   set(key, value);
 }
 
-std::optional<std::pair<std::string, Value>> LiveExperiment::TakenOver(const Own& own, const std::string& key) const {
+std::optional<std::pair<std::string, Value>> LiveExperiment::TakenOver(const Own& own, const std::string& key) {
   const auto [table, rest] = SplitFirst(key);
   if (table != "law" || laws_ == nullptr) return std::nullopt;
   const std::vector<Key> rows = KeysOfLaw(*laws_, current().agent(own.id).law.name);
@@ -295,11 +343,11 @@ std::optional<std::pair<std::string, Value>> LiveExperiment::TakenOver(const Own
   const std::string name(row->name), path = table + "." + name;
   const auto is_in_it = [&](const std::string& own_key) { return own_key == path || IsInside(own_key, path); };
   if (key == path || std::ranges::any_of(own.keys, is_in_it)) return std::nullopt;
-  Section document = Section::FromText(current().resolved, "config.toml");
-  document.Use(ExperimentKeys());
-  for (Section& section : document.Child("agents").Children("override"))
-    if (section.Integer("id") == own.id && section.Has("law")) return std::pair(path, section.Child("law").Free(name));
-  return std::pair(path, document.Child("law").Free(name));
+  if (!tables_now_) tables_now_ = LawTablesOf(current().resolved);
+  const auto whose = tables_now_->find(own.id);
+  const Value::Table& law = (whose != tables_now_->end() ? whose : tables_now_->find(0))->second;
+  const auto value = law.find(name);
+  return std::pair(path, value != law.end() ? value->second : Value());
 }
 
 }  // namespace mascot

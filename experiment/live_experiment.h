@@ -20,6 +20,8 @@ namespace mascot {
 /// const and shared: whoever flies by one keeps it as long as needed.
 class LiveExperiment {
  public:
+  static constexpr int kMostEvents = 100000;  ///< of a file, and of a run with those by hand, whose file holds them all
+
   /// `laws` null: the parameters of laws are neither read nor checked (the physics server). `checked`: the events were
   /// taken before without a mistake: slow checks, which run the code of a law, are left out. Both must outlive this.
   LiveExperiment(const Experiment& start, const LawCatalog* laws, bool checked);
@@ -28,19 +30,22 @@ class LiveExperiment {
   void CheckAll() { checked_ = false; }
   /// The event of this tick that Event::Toml() is `toml` of. Throws ConfigError for other text.
   Event Parse(std::int64_t tick, const std::string& toml, const std::string& where) const;
+  /// Event `number` of a run, as its recording or /event has it. Throws as above, with "event NUMBER" in front.
+  Event Parse(std::int64_t tick, int number, const std::string& toml) const {
+    return Parse(tick, toml, "event " + std::to_string(number));
+  }
   /// Takes the next event. Throws ConfigError, with event.where in front, and changes nothing, if it names a key that
   /// is not live, a value that is not legal, an edge that the file does not declare, or an agent that flies no
   /// waypoints.
   std::shared_ptr<const Experiment> Take(const Event& event);
-  /// Takes event `number` of a run, as its recording or /event has it: of this tick, with this Event::Toml(). Throws as
-  /// Parse() and Take() do, with "event NUMBER" in front.
+  /// Parses and takes an event of a run.
   std::shared_ptr<const Experiment> Take(std::int64_t tick, int number, const std::string& toml) {
-    return Take(Parse(tick, toml, "event " + std::to_string(number)));
+    return Take(Parse(tick, number, toml));
   }
   /// The experiment as it is now; null before the first event.
   const std::shared_ptr<const Experiment>& now() const { return now_; }
-  /// The events taken so far.
-  const std::vector<Event>& events() const { return events_; }
+  /// How many events were taken so far.
+  int count() const { return count_; }
 
  private:
   /// An agent's own table in the document, and the keys that stand in it: those of the file and those that events have
@@ -57,6 +62,8 @@ class LiveExperiment {
     bool IsReachedBy(const std::string& key) const;
   };
 
+  /// Reads the whole experiment with these changes. `where`: the place of the event that makes the last of them.
+  Experiment Read(std::vector<Override>& changes, const std::string& where) const;
   std::vector<Override> Changes(const Event& event);
   /// The agents whose own law tables inherit nothing: those of the file, once a phase has changed the team's.
   std::set<int> WithTheirOwnLaw() const;
@@ -71,7 +78,7 @@ class LiveExperiment {
               std::vector<Override>& changes);
   /// The table whose keys the user chooses that an agent takes over from the team when the dotted `key` inside it is
   /// set for this agent alone, and what stands in it now; none: `key` is in no such table, or the agent has its own.
-  std::optional<std::pair<std::string, Value>> TakenOver(const Own& own, const std::string& key) const;
+  std::optional<std::pair<std::string, Value>> TakenOver(const Own& own, const std::string& key);
   void CheckKey(const Event& event, const std::string& key) const;
   /// Checks that the laws of those whom it concerns let their law.params change. `next`: with the event.
   void CheckParams(const Event& event, const Experiment& next) const;
@@ -81,14 +88,16 @@ class LiveExperiment {
   const Experiment& start_;
   const LawCatalog* laws_;
   bool checked_;
-  std::string text_;  // the resolved experiment
+  std::string text_;  // the resolved experiment, without events
   std::vector<Own> own_;
+  std::vector<std::size_t> places_;                        // in own_, by id - 1; of agents without their own: any
+  std::optional<std::map<int, Value::Table>> tables_now_;  // LawTablesOf() the newest; empty: not asked for yet
   std::map<int, Value::Table> law_tables_;  // of agents with their own, by id; at 0 the team's; but for live keys
   std::vector<std::int64_t> since_;         // LawConfig::since, by id - 1
   bool team_has_changed_ = false;           // by a phase
   std::int64_t phase_tick_ = -1;            // at which the newest phase began; -1: there is only the first
   std::vector<Override> changes_;           // of all events so far
-  std::vector<Event> events_;
+  int count_ = 0;                           // of events
   std::shared_ptr<const Experiment> now_;
 };
 

@@ -1,6 +1,7 @@
 #include "experiment/phase.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace mascot {
 
@@ -22,9 +23,15 @@ std::vector<std::int64_t> PhasesOf(const Experiment& experiment) {
 }
 
 std::int64_t EndOfPhase(const Experiment& experiment, std::int64_t from) {
-  const std::vector<std::int64_t> phases = PhasesOf(experiment);
-  const auto next = std::ranges::upper_bound(phases, from);
-  return next != phases.end() ? *next : experiment.ticks();
+  const auto later = std::ranges::upper_bound(experiment.events, from, {}, &Event::tick);
+  const auto next = std::find_if(later, experiment.events.end(), [](const Event& event) { return event.law; });
+  return next != experiment.events.end() ? next->tick : experiment.ticks();
+}
+
+std::span<const Event> EventsWithin(const Experiment& experiment, std::int64_t from, std::int64_t to) {
+  const auto first = std::ranges::lower_bound(experiment.events, from, {}, &Event::tick);
+  const auto end = std::ranges::lower_bound(experiment.events, std::max(from, to), {}, &Event::tick);
+  return {first, end};
 }
 
 Experiment PhaseAsExperiment(const Experiment& start, const Experiment& now, std::int64_t from, std::int64_t to,
@@ -32,10 +39,10 @@ Experiment PhaseAsExperiment(const Experiment& start, const Experiment& now, std
   Experiment phase = now;
   const double from_s = now.time_s(from);
   phase.run.duration_s = now.time_s(to - from);
-  phase.events = start.events;
+  const std::span<const Event> within = EventsWithin(start, from, to);
+  phase.events.clear();
+  std::ranges::copy_if(within, std::back_inserter(phase.events), [](const Event& event) { return !event.law; });
   for (Event& event : phase.events) event.tick -= from;
-  std::erase_if(phase.events,
-                [&](const Event& event) { return event.law || event.tick < 0 || event.tick >= to - from; });
   for (AgentConfig& agent : phase.agents) {
     const Motion& motion = starts[static_cast<std::size_t>(agent.id - 1)];
     agent.p_W = motion.p_WB;

@@ -16,6 +16,8 @@ std::vector<Motion> MotionsAtStart(const Experiment& experiment);
 std::vector<std::int64_t> PhasesOf(const Experiment& experiment);
 /// The tick at which the phase that begins at `from` ends: the next one's first, or the last of the run.
 std::int64_t EndOfPhase(const Experiment& experiment, std::int64_t from);
+/// The events of the ticks from `from` up to but without `to`.
+std::span<const Event> EventsWithin(const Experiment& experiment, std::int64_t from, std::int64_t to);
 /// The ticks from `from` to `to` as an experiment of its own, for meters and theory: `start` is the experiment at tick
 /// 0, `now` what is flown at `from`, `starts` are the motions at tick `from` (by id - 1), and time counts from there.
 /// Without headings and phases; the graph's schedule is not moved.

@@ -1,10 +1,12 @@
 #include "experiment/physics.h"
 
 #include "experiment/toml/enum_names.h"
+#include "experiment/toml/few_tables.h"
 
 namespace mascot {
 namespace {
 
+constexpr std::size_t kMostObstacles = 1000, kMostFailures = 40000;
 constexpr Range kCentre_m = {-1e6, 1e6};
 constexpr Range kAirspeed_m_per_s = {-200, 200};
 constexpr Key kWindKeys[] = {
@@ -38,8 +40,8 @@ constexpr Key kPhysicsKeys[] = {
     key::Boolean("collisions", "bodies touch each other and obstacles (the ground: `ground`)").Default("true"),
     key::Boolean("ground", "a plane at z = 0").Default("true"),
     key::Table("wind", kWindKeys, "air that moves, the same for all quadrotors"),
-    key::Tables("obstacles", kObstacleKeys, "solid things that do not move"),
-    key::Tables("rotor_failures", kRotorFailureKeys, "rotors that lose thrust"),
+    key::Tables("obstacles", kObstacleKeys, "solid things that do not move; at most 1000"),
+    key::Tables("rotor_failures", kRotorFailureKeys, "rotors that lose thrust; at most 40000"),
 };
 
 WindConfig ReadWind(Section wind) {
@@ -91,9 +93,10 @@ PhysicsConfig ReadPhysics(Section& physics, int agents) {
   config.collisions = physics.Boolean("collisions");
   config.ground = physics.Boolean("ground");
   config.wind = ReadWind(physics.Child("wind"));
-  for (Section& obstacle : physics.Children("obstacles")) config.obstacles.push_back(ReadObstacle(obstacle));
+  for (Section& obstacle : FewTables(physics, "obstacles", kMostObstacles))
+    config.obstacles.push_back(ReadObstacle(obstacle));
   if (physics.Wrong("obstacles")) config.obstacles.clear();  // or agents inside a wrong one would be reported, too
-  for (Section& failure : physics.Children("rotor_failures"))
+  for (Section& failure : FewTables(physics, "rotor_failures", kMostFailures))
     config.rotor_failures.push_back(ReadRotorFailure(failure, agents));
   physics.Done();
   return config;

@@ -15,7 +15,8 @@ namespace mascot {
 namespace {
 
 constexpr double kMaxTicks = 1e9;  // recordings number their samples with 32 bits
-constexpr int kMaxDomain = 100;    // above, the ports of DDS overlap those that Linux hands out
+constexpr std::size_t kMostPatterns = 1000;
+constexpr int kMaxDomain = 100;  // above, the ports of DDS overlap those that Linux hands out
 
 constexpr std::string_view kAutomatic[] = {"auto"};
 constexpr std::string_view kTransports[] = {"auto", "udp", "shm"};  // bus/qos.cc has a row for each
@@ -155,6 +156,9 @@ void ReadRecord(Section& section, Experiment& experiment) {
   if (!section.Wrong("file") && (!plain || !record.file.ends_with(".mcap") || record.file.size() > 200))
     section.Fail("file", "expected a file name ending in .mcap, without folders, got '" + record.file + "'");
   record.topics = section.Texts("topics");
+  if (record.topics.size() > kMostPatterns)
+    section.Fail("topics", "expected at most " + std::to_string(kMostPatterns) + " patterns, got " +
+                               std::to_string(record.topics.size()));
   section.Done();
 }
 
@@ -297,7 +301,7 @@ std::span<const Key> ExperimentKeys() {
       key::Table("network", network_keys, "DDS"),
       key::Tables("hosts", HostKeys(),
                   "machines that have some of the agents, beside the one where `up` is; see [hosts.md](hosts.md)"),
-      key::Tables("events", EventKeys(), "what changes while the run goes on"),
+      key::Tables("events", EventKeys(), "what changes while the run goes on; at most 100000"),
   };
   return keys;
 }

@@ -149,18 +149,18 @@ void Server::Publish() {
   clock_.Write(clock);
   for (int id = 1; id <= experiment_.size(); ++id) {
     const auto i = static_cast<std::size_t>(id - 1);
-    ToWire(tick, rate, id, static_cast<int>(live_.events().size()), world_.State(id), samples_[i]);
+    ToWire(tick, rate, id, live_.count(), world_.State(id), samples_[i]);
     states_[i]->Write(samples_[i]);
   }
   PublishBundles();
 }
 
 void Server::PublishEvents() {
-  const std::size_t before = live_.events().size();
+  const int before = live_.count();
   while (next_event_ < experiment_.events.size() && experiment_.events[next_event_].tick == world_.tick())
     PublishEvent(experiment_.events[next_event_++]);
   for (const Event& event : std::exchange(by_hand_, {})) PublishEvent(event);
-  if (live_.events().size() > before) world_.Adopt(*live_.now());
+  if (live_.count() > before) world_.Adopt(*live_.now());
 }
 
 void Server::PublishEvent(const Event& event) {
@@ -171,7 +171,7 @@ void Server::PublishEvent(const Event& event) {
     lifecycle_.Wake();
   }
   mascot_msgs::msg::Event sample;
-  ToWire(event.tick, experiment_.control.rate_hz, static_cast<int>(live_.events().size()), event.Toml(), sample);
+  ToWire(event.tick, experiment_.control.rate_hz, live_.count(), event.Toml(), sample);
   events_.Write(sample);
 }
 

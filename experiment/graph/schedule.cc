@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiment/toml/few_tables.h"
+
 namespace mascot {
 
 namespace {
+
+constexpr std::size_t kMostGraphs = 10000;
+constexpr std::size_t kMostEdgesInAll = 20000000;  // 320 MB
 
 /// The keys of one graph, and `more`.
 std::vector<Key> WithGraphKeys(std::initializer_list<Key> more) {
@@ -40,7 +45,7 @@ std::span<const Key> ScheduleKeys() {
   static const std::vector<Key> phase_keys = WithGraphKeys(
       {key::Number("at_s", Above(0, 1e6), "when this graph takes over; later than the one before").Required()});
   static const std::vector<Key> keys = WithGraphKeys({
-      key::Tables("schedule", phase_keys, "graphs that take over later, in order of time"),
+      key::Tables("schedule", phase_keys, "graphs that take over later, in order of time; at most 10000"),
       key::Number("repeat_s", Above(0, 1e6), "after this time it starts over").Otherwise("never"),
       key::Number("range_m", Above(0, 1e6), "an edge works only while its agents are closer than this")
           .Otherwise("at any distance")
@@ -54,13 +59,18 @@ Schedule ReadSchedule(Section& graph, std::span<const Eigen::Vector3d> p_W, std:
   phases.push_back({0, ReadGraph(graph, p_W, seed)});
   constexpr std::uint64_t kNextStage = std::uint64_t{1} << 40;  // runs with seeds 1, 2, 3... then share no graph
   std::uint64_t stage_seed = seed;
-  for (Section& section : graph.Children("schedule")) {
+  std::size_t edges = phases.back().graph.edges();
+  for (Section& section : FewTables(graph, "schedule", kMostGraphs)) {
     const double at_s = section.Number("at_s");
     if (!section.Wrong("at_s") && at_s <= phases.back().at_s)
       section.Fail("at_s",
                    "expected a time after " + ShortestFloat(phases.back().at_s) + ", got " + ShortestFloat(at_s));
     phases.push_back({at_s, ReadGraph(section, p_W, stage_seed += kNextStage)});
     section.Done();
+    edges += phases.back().graph.edges();
+    if (edges <= kMostEdgesInAll) continue;
+    section.Fail("", "expected at most " + std::to_string(kMostEdgesInAll) + " edges in all graphs together, got more");
+    break;
   }
   double repeat_s = 0;
   if (graph.Has("repeat_s")) {

@@ -45,6 +45,8 @@ std::string ListText(const std::vector<std::string>& items) {
   return lines + "]";
 }
 
+constexpr std::size_t kMostItems = 1000000;  // of a list; some lists have lower limits
+
 bool IsBareKey(std::string_view key) { return !key.empty() && std::ranges::all_of(key, IsBare); }
 
 }  // namespace
@@ -203,8 +205,10 @@ Eigen::Vector3d Section::Table::Vector3(std::string_view key, const std::string&
 const toml::array* Section::Table::List(std::string_view key, const std::string& expected) {
   const toml::node* node = Find(key);
   if (node == nullptr) return nullptr;
-  if (!node->is_array()) Expected(key, PathOf(key), node, expected);
-  return node->as_array();
+  const toml::array* list = node->as_array();
+  if (list != nullptr && list->size() <= kMostItems) return list;
+  Expected(key, PathOf(key), node, list == nullptr ? expected : "a list of at most " + std::to_string(kMostItems));
+  return nullptr;
 }
 
 std::vector<std::string> Section::Table::Texts(std::string_view key, std::optional<std::vector<std::string>> fallback) {

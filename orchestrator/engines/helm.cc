@@ -24,6 +24,9 @@ const Key& PaceRow() {
   return *std::ranges::find(run, "pace", &Key::name);
 }
 
+/// Whether an event changes more than which edges work.
+bool ChangesKeys(const Event& event) { return !event.set.empty() || event.go_to || event.law; }
+
 std::string Refusal(const ConfigError& error) {
   std::string text;
   for (const std::string& line : error.mistakes()) text += (text.empty() ? "" : "\n") + line;
@@ -34,8 +37,9 @@ std::string Refusal(const ConfigError& error) {
 
 Helm::Helm(const Experiment& experiment, double pace)
     : experiment_(experiment),
+      ahead_(Ahead{.live = LiveExperiment(experiment, &LawTable(), /*checked=*/true)}),
       going_{.pace = experiment.run.mode == Mode::kRealtime ? experiment.run.speed : pace},
-      live_(std::in_place, experiment, &LawTable(), /*checked=*/true) {}
+      live_(ahead_->live) {}
 
 Answer Helm::Ask(const Wish& wish) {
   const std::lock_guard one_at_a_time(asking_);
@@ -94,31 +98,43 @@ Wish Helm::Checked(const Wish& wish, std::int64_t from) {
 }
 
 Wish Helm::CheckedEvent(const std::string& toml, std::int64_t from) {
-  std::unique_lock lock(mutex_);
-  LiveExperiment live = *live_;
-  const std::deque<Event> granted = granted_;
-  std::size_t next = of_file_;
-  from = std::max(from, granted.empty() ? going_.tick + 1 : granted.back().tick);
-  lock.unlock();
+  from = std::max(from, LookAhead());
   const std::int64_t last = experiment_.ticks();
-  const Event event = live.Parse(std::min(from, last), toml, kByHand);
+  const Event event = ahead_->live.Parse(std::min(from, last), toml, kByHand);
   if (event.law)
     throw std::invalid_argument(std::string(kByHand) +
                                 ": law: expected a phase in [[law.schedule]] of the file, got one by hand");
   const std::vector<Event>& file = experiment_.events;
-  const auto take_file = [&](std::int64_t until) {  // those of the file come first
-    while (next < file.size() && file[next].tick <= until) live.Take(file[next++]);
-  };
-  for (const Event& other : granted) {
-    take_file(other.tick);
-    live.Take(other);
-  }
-  take_file(from);
-  const std::int64_t before = next < file.size() ? file[next].tick : last + 1;
-  live.CheckAll();
-  live.Take(event);
-  take_file(last);
+  Ahead ahead = *ahead_;
+  if (ahead.by_hand + file.size() >= LiveExperiment::kMostEvents)
+    throw std::invalid_argument(
+        fmt::format("{}: expected at most {} events in a run, got one more", kByHand, LiveExperiment::kMostEvents));
+  TakeFile(ahead, from);
+  const std::int64_t before = ahead.of_file < file.size() ? file[ahead.of_file].tick : last + 1;
+  ahead.live.CheckAll();
+  ahead.live.Take(event);
+  if (ChangesKeys(event)) TakeFile(ahead, last);  // or what is legal stays legal
   return {.kind = Wish::Kind::kEvent, .number = static_cast<double>(before), .toml = event.Toml()};
+}
+
+std::int64_t Helm::LookAhead() {
+  std::unique_lock lock(mutex_);
+  if (ahead_->by_hand <= by_hand_.size()) ahead_.emplace(Ahead{*live_, of_file_, by_hand_.size()});
+  const auto known = static_cast<std::ptrdiff_t>(ahead_->by_hand - by_hand_.size());
+  const std::vector<Event> granted(granted_.begin() + known, granted_.end());
+  const std::int64_t first = granted_.empty() ? going_.tick + 1 : granted_.back().tick;
+  lock.unlock();
+  for (const Event& event : granted) {
+    TakeFile(*ahead_, event.tick);
+    ahead_->live.Take(event);
+    ++ahead_->by_hand;
+  }
+  return first;
+}
+
+void Helm::TakeFile(Ahead& ahead, std::int64_t until) const {
+  const std::vector<Event>& file = experiment_.events;
+  while (ahead.of_file < file.size() && file[ahead.of_file].tick <= until) ahead.live.Take(file[ahead.of_file++]);
 }
 
 Answer Helm::AnswerTo(const Wish& wish, std::optional<std::int64_t> tick) const {
@@ -149,16 +165,17 @@ Going Helm::going() const {
   return going_;
 }
 
-void Helm::Adopt(const LiveExperiment& live) {
+void Helm::Adopt(const LiveExperiment& live, std::span<const Event> events) {
   const std::lock_guard lock(mutex_);
   const std::vector<Event>& file = experiment_.events;
-  for (std::size_t k = live_->events().size(); k < live.events().size(); ++k) {
-    const Event& event = live.events()[k];
+  int number = live.count() - static_cast<int>(events.size());
+  for (const Event& event : events) {
+    ++number;
     if (of_file_ < file.size() && file[of_file_].tick == event.tick) {  // those of the file come first
       ++of_file_;
     } else {
       by_hand_.push_back(event);
-      numbers_by_hand_.push_back(static_cast<int>(k) + 1);
+      numbers_by_hand_.push_back(number);
       if (!granted_.empty()) granted_.pop_front();
     }
   }

@@ -39,7 +39,7 @@ class Helm final : public RunControl, public RowSink {
   Answer Ask(const Wish& wish) override;
   /// From any thread.
   Going going() const;
-  void Adopt(const LiveExperiment& live) override;
+  void Adopt(const LiveExperiment& live, std::span<const Event> events) override;
   void Add(const FlownRow& row) override;
   /// `tell` is called, in the run's thread, when how it goes on has changed by more than a tick.
   void CallWhenChanged(std::function<void(const Going&)> tell);
@@ -79,7 +79,20 @@ class Helm final : public RunControl, public RowSink {
   Answer AnswerTo(const Wish& wish, std::optional<std::int64_t> tick) const;
 
   const Experiment& experiment_;
-  std::mutex asking_;  // one wish at a time
+  std::mutex asking_;  // one wish at a time; guards ahead_
+
+  /// The run as it will be when all events that are granted have taken effect.
+  struct Ahead {
+    LiveExperiment live;
+    std::size_t of_file = 0;  ///< how many of the file's events are in it
+    std::size_t by_hand = 0;  ///< how many of those given by hand
+  };
+  /// Brings ahead_ up to date: each event is taken once, however many come after it. Returns the first tick at which
+  /// another may take effect.
+  std::int64_t LookAhead();
+  /// Takes into `ahead` the file's events up to and at a tick.
+  void TakeFile(Ahead& ahead, std::int64_t until) const;
+  std::optional<Ahead> ahead_;  // never empty
 
   mutable std::mutex mutex_;  // guards what is below
   mutable std::condition_variable changed_;

@@ -53,9 +53,13 @@ void RowFeed::Add(const Row& bytes) {
 void RowFeed::Add(std::int64_t tick, const DecodedRow& decoded) { HandOut(FromThisProcess(tick, decoded, encoder_)); }
 
 void RowFeed::HandOut(const FlownRow& row) {
-  for (const DecodedRow::Happening& event : row.decoded().events) live_.Take(row.tick(), event.number, event.toml);
-  if (!row.decoded().events.empty())
-    for (RowSink* sink : sinks_) sink->Adopt(live_);
+  events_.clear();
+  for (const auto& [number, toml] : row.decoded().events) {
+    events_.push_back(live_.Parse(row.tick(), number, toml));
+    live_.Take(events_.back());
+  }
+  if (!events_.empty())
+    for (RowSink* sink : sinks_) sink->Adopt(live_, events_);
   for (RowSink* sink : sinks_) sink->Add(row);
 }
 

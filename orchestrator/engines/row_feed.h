@@ -21,8 +21,6 @@ class RowFeed {
   void Add(const Row& bytes);
   /// Adds the next tick of a run in one process. Throws what a sink throws.
   void Add(std::int64_t tick, const DecodedRow& decoded);
-  /// The events so far.
-  const std::vector<Event>& events() const { return live_.events(); }
 
  private:
   void HandOut(const FlownRow& row);
@@ -31,6 +29,7 @@ class RowFeed {
   DecodedRow decoded_;  // newest row received: a command that is missing in the next row keeps its value
   RowEncoder encoder_;
   LiveExperiment live_;
+  std::vector<Event> events_;  // of the newest row
 };
 
 }  // namespace mascot

@@ -16,7 +16,7 @@ void RunMeter::Begin(const Experiment& now, std::int64_t tick, std::span<const M
   phases_.emplace_back(PhaseAsExperiment(experiment_, now, tick, EndOfPhase(experiment_, tick), motions), tick);
 }
 
-void RunMeter::Adopt(const LiveExperiment& live) {
+void RunMeter::Adopt(const LiveExperiment& live, std::span<const Event> /*events*/) {
   now_ = live.now();
   metrics_.Adopt(now_);
   links_.Adopt(now_);

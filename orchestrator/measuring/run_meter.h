@@ -21,7 +21,7 @@ class RunMeter final : public RowSink {
  public:
   explicit RunMeter(const Experiment& experiment);
 
-  void Adopt(const LiveExperiment& live) override;
+  void Adopt(const LiveExperiment& live, std::span<const Event> events) override;
   void Add(const FlownRow& row) override;
   Measured Result() const { return metrics_.Result(); }
   /// The phases so far, in order; at least the first.

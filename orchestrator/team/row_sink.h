@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "experiment/live_experiment.h"
 #include "orchestrator/team/row.h"
@@ -21,9 +22,9 @@ class FlownRow {
 class RowSink {
  public:
   virtual ~RowSink() = default;
-  /// Events have changed the experiment: from the next row on it is `live.now()`, which lives as long as the sink keeps
-  /// it. `live` itself goes on with the run.
-  virtual void Adopt(const LiveExperiment& /*live*/) {}
+  /// `events`, those of the next row, have changed the experiment: from that row on it is `live.now()`, which lives as
+  /// long as the sink keeps it. `live` itself goes on with the run.
+  virtual void Adopt(const LiveExperiment& /*live*/, std::span<const Event> /*events*/) {}
   /// Takes the next row, which is valid during the call. If this throws, the run fails.
   virtual void Add(const FlownRow& row) = 0;
 };

@@ -80,6 +80,19 @@ void AddInFlight(Dice::Stream stream, const Experiment& now, Keys& keys) {
   }
 }
 
+bool AnyLawDraws(const Experiment& experiment) {
+  return std::ranges::any_of(LawsIn(experiment), [](const LawEntry* law) { return law->draws != nullptr; });
+}
+
+/// Whether an event may change what is drawn. `laws_draw`: it may be a key of a law on which that depends.
+bool MayDraw(const Event& event, bool laws_draw) {
+  const auto may = [&](const auto& entry) {
+    const std::string table = entry.first.substr(0, entry.first.find('.'));
+    return table != "control" && table != "run" && (table != "law" || laws_draw);
+  };
+  return event.law.has_value() || std::ranges::any_of(event.set, may);
+}
+
 void AddAll(const Experiment& now, Keys& keys) {
   using enum Dice::Stream;
   for (const Dice::Stream stream : {kLink, kOwnSensor, kHeardSensor, kWind, kLie}) AddInFlight(stream, now, keys);
@@ -97,6 +110,9 @@ std::vector<std::string> DrawsOf(const Experiment& experiment) {
   using enum Random::Stream;
   for (const Random::Stream stream : {kPositions, kGraph, kSweep}) AddOnReading(stream, document, keys);
   AddAll(experiment, keys);
+  const bool laws_draw = AnyLawDraws(experiment);
+  const auto may_draw = [&](const Event& event) { return MayDraw(event, laws_draw); };
+  if (std::ranges::none_of(experiment.events, may_draw)) return keys;  // each event means another reading
   LiveExperiment live(experiment, &LawTable(), /*checked=*/true);
   for (const Event& event : experiment.events) AddAll(*live.Take(event), keys);
   return keys;

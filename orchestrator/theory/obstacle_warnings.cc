@@ -19,6 +19,16 @@ struct Blocked {
   int others = 0;            ///< so many more agents would meet one, too
 };
 
+/// Whether the straight way leads past the ball around the obstacle, at more than `clear_m`: most do, and this is
+/// quick.
+bool PassesFarOff(const Obstacle& obstacle, const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
+                  double clear_m) {
+  const Eigen::Vector3d way = to_W - from_W;
+  const double part = way.isZero() ? 0 : std::clamp((obstacle.p_W - from_W).dot(way) / way.squaredNorm(), 0.0, 1.0);
+  const double radius_m = obstacle.size_m.norm() / 2;  // of a box; other shapes are inside theirs
+  return (from_W + part * way - obstacle.p_W).norm() > radius_m + clear_m + 1e-6 * (radius_m + way.norm());
+}
+
 /// Where the agent's body first meets an obstacle: at its targets if its law keeps clear of obstacles, else along the
 /// straight ways from its start to its targets.
 std::optional<Blocked> FirstBlocked(const AgentConfig& agent, const std::vector<Obstacle>& obstacles) {
@@ -29,7 +39,8 @@ std::optional<Blocked> FirstBlocked(const AgentConfig& agent, const std::vector<
     if (agent.law.axes == Axes::kXy) to_W.z() = agent.p_W.z();
     if (EntryOf(agent.law).sees_obstacles) from_W = to_W;
     for (std::size_t k = 0; k < obstacles.size(); ++k)
-      if (DistanceOfWay_m(obstacles[k], from_W, to_W) < agent.radius_m())
+      if (!PassesFarOff(obstacles[k], from_W, to_W, agent.radius_m()) &&
+          DistanceOfWay_m(obstacles[k], from_W, to_W) < agent.radius_m())
         return Blocked{.agent = agent.id, .target = target, .obstacle = k + 1};
     from_W = to_W;
   }

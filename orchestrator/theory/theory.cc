@@ -178,11 +178,9 @@ Prediction PredictPhase(const Experiment& phase, const std::string& silent, bool
 /// Why events in the phase from tick `from` on keep theory silent; empty: they do not.
 std::string SilencingEvent(const Experiment& experiment, std::int64_t from) {
   const std::int64_t end = EndOfPhase(experiment, from);
-  const auto changes = [&](const Event& event) {
-    return !event.law && event.tick >= from && (event.tick < end || end == experiment.ticks());
-  };
-  const auto event = std::ranges::find_if(experiment.events, changes);
-  if (event == experiment.events.end()) return "";
+  const auto within = EventsWithin(experiment, from, end == experiment.ticks() ? end + 1 : end);
+  const auto event = std::ranges::find_if(within, [](const Event& other) { return !other.law; });
+  if (event == within.end()) return "";
   return SilentFrom(experiment, event->tick);
 }
 

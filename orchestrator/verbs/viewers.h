@@ -39,7 +39,7 @@ class Viewers {
   class Events final : public RowSink {
    public:
     Events(LiveView& view, const Helm& helm) : view_(view), helm_(helm) {}
-    void Adopt(const LiveExperiment& live) override { now_ = live.now(); }
+    void Adopt(const LiveExperiment& live, std::span<const Event> /*events*/) override { now_ = live.now(); }
     void Add(const FlownRow& row) override;
 
    private:
