@@ -186,13 +186,13 @@ TEST(RecordedRun, HasTheExperimentOfEachTick) {
   const Flown run(folder, kThree);
   RecordedRun recorded(run.path());
   using Cut = std::set<std::pair<int, int>>;
-  EXPECT_EQ(recorded.At(210).cut, (Cut{{2, 3}}));  // later ones first
-  EXPECT_EQ(WaypointsOf(recorded.At(210).agent(1)).back(), Eigen::Vector3d(5, 5, 2));
-  EXPECT_EQ(recorded.At(250).cut, Cut());
-  EXPECT_EQ(WaypointsOf(recorded.At(199).agent(1)).back(), Eigen::Vector3d(1, 1, 1));
-  EXPECT_EQ(ValueOf("law.p_gain", recorded.At(100)), "0.3");
-  EXPECT_NE(ValueOf("law.p_gain", recorded.At(99)), "0.3");
-  EXPECT_EQ(&recorded.At(99), &recorded.experiment());
+  EXPECT_EQ(recorded.At(210)->cut, (Cut{{2, 3}}));  // later ones first
+  EXPECT_EQ(WaypointsOf(recorded.At(210)->agent(1)).back(), Eigen::Vector3d(5, 5, 2));
+  EXPECT_EQ(recorded.At(250)->cut, Cut());
+  EXPECT_EQ(WaypointsOf(recorded.At(199)->agent(1)).back(), Eigen::Vector3d(1, 1, 1));
+  EXPECT_EQ(ValueOf("law.p_gain", *recorded.At(100)), "0.3");
+  EXPECT_NE(ValueOf("law.p_gain", *recorded.At(99)), "0.3");
+  EXPECT_EQ(recorded.At(99).get(), &recorded.experiment());
   std::vector<std::int64_t> ticks;
   for (const ShownEvent& event : recorded.Events()) ticks.push_back(event.tick);
   EXPECT_THAT(ticks, ElementsAre(100, 150, 200, 250));

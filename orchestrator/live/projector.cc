@@ -57,9 +57,9 @@ bool Projector::FollowEdges() try {
 }
 
 void Projector::Publish() {
-  const Experiment& now = run_.At(row_.tick);
-  if (&now != experiment_) view_.SetExperiment(now, ShownKeysOf(now));
-  experiment_ = &now;
+  const std::shared_ptr<const Experiment> now = run_.At(row_.tick);
+  if (now != experiment_) view_.SetExperiment(*now, ShownKeysOf(*now));
+  experiment_ = now;
   view_.Take(row_);
 }
 

@@ -30,10 +30,10 @@ class Projector {
   LiveView& view_;
   const std::function<void(const std::string&)> log_;
   ShownRow row_;
-  const Experiment* experiment_ = nullptr;  // that viewers know
-  bool has_edges_ = true;                   // row_.edges are known, or never will be
-  bool lacks_rows_ = false;                 // edges cannot be followed everywhere: the file is damaged
-  std::jthread thread_;                     // last: it uses the others
+  std::shared_ptr<const Experiment> experiment_;  // that viewers know
+  bool has_edges_ = true;                         // row_.edges are known, or never will be
+  bool lacks_rows_ = false;                       // edges cannot be followed everywhere: the file is damaged
+  std::jthread thread_;                           // last: it uses the others
 };
 
 }  // namespace mascot

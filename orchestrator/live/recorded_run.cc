@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "agent/laws.h"
 #include "orchestrator/live/incident_table.h"
@@ -15,7 +16,7 @@ RecordedRun::RecordedRun(const std::string& run)
                                  /*checked=*/true)),
       incidents_(FirstIncidentsBeside(rows_.path())),
       events_(rows_.Events()),
-      live_(experiment_, &LawTable(), /*checked=*/true),
+      live_(std::in_place, experiment_, &LawTable(), /*checked=*/true),
       edges_(experiment_, last_tick(),
              {.read = [this](std::int64_t tick, DecodedRow& row) { rows_.Read(tick, row); },
               .adopted_at =
@@ -42,23 +43,27 @@ std::size_t RecordedRun::EventsUpTo(std::int64_t tick) const {
 }
 
 std::shared_ptr<const Experiment> RecordedRun::StateAfter(std::size_t events) {
-  while (states_.size() < events) {
-    const auto& [tick, event] = events_[states_.size()];
-    states_.push_back(live_.Take(tick, event.number, event.toml));
+  if (events == 0) return nullptr;
+  const auto taken = [this] { return static_cast<std::size_t>(live_->count()); };
+  if (events < taken()) live_.emplace(marks_[events / kBetweenMarks]);
+  while (taken() < events) {
+    if (taken() == marks_.size() * kBetweenMarks) marks_.push_back(*live_);
+    const auto& [tick, event] = events_[taken()];
+    live_->Take(tick, event.number, event.toml);
   }
-  return events == 0 ? nullptr : states_[events - 1];
+  return live_->now();
 }
 
-const Experiment& RecordedRun::At(std::int64_t tick) {
+std::shared_ptr<const Experiment> RecordedRun::At(std::int64_t tick) {
   const std::size_t events = EventsUpTo(tick);
-  return events == 0 ? experiment_ : *StateAfter(events);
+  return events == 0 ? std::shared_ptr<const Experiment>(std::shared_ptr<void>(), &experiment_) : StateAfter(events);
 }
 
 void RecordedRun::Show(std::int64_t tick, ShownRow& row) {
   row.edges.clear();
   rows_.Read(tick, row.decoded);
   row.tick = tick;
-  row.disagreement_m = DisagreementOf(At(tick), row.decoded.motions);
+  row.disagreement_m = DisagreementOf(*At(tick), row.decoded.motions);
 }
 
 bool RecordedRun::FollowEdges(ShownRow& row, int rows) {

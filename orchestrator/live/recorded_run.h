@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,8 @@ class RecordedRun {
   std::vector<ShownEvent> Events() const;
 
   /// The experiment as events have changed it up to and at `tick`. Throws ConfigError for an event that this version
-  /// does not understand.
-  const Experiment& At(std::int64_t tick);
+  /// does not understand. This object keeps some of them: who needs one for longer keeps it.
+  std::shared_ptr<const Experiment> At(std::int64_t tick);
   /// What is seen at `tick`, without its edges. Throws std::runtime_error if the file is damaged there.
   void Show(std::int64_t tick, ShownRow& row);
   /// Goes on to find out the edges of the row that Show() gave, by at most so many rows of the recording. Returns
@@ -50,8 +51,9 @@ class RecordedRun {
   const Experiment experiment_;
   const std::string incidents_;
   const std::vector<IndexedRows::EventAt> events_;
-  LiveExperiment live_;                                    // after as many events as states_ has
-  std::vector<std::shared_ptr<const Experiment>> states_;  // after each event that was taken so far
+  static constexpr std::size_t kBetweenMarks = 64;
+  std::optional<LiveExperiment> live_;  // after the events that were asked for last; never empty
+  std::vector<LiveExperiment> marks_;   // as it was before the first event and every kBetweenMarks events later
   EdgeHistory edges_;
 };
 
