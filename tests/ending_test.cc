@@ -2,7 +2,9 @@
 #include "orchestrator/report/ending.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <stdexcept>
 
 #include "agent/laws.h"
@@ -88,13 +90,18 @@ TEST_F(EndingTest, ASummaryThatCanBeNeitherWrittenNorPrintedIsNotThere) {
 }
 
 TEST_F(EndingTest, AFullDiskIsNamedAndLeavesNoHalfFile) {
-  std::filesystem::create_symlink("/dev/full", folder_.File("summary.json.part"));
-  ending_.draw = [this] {
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{1, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  ending_.draw = [this, &before] {
+    ::setrlimit(RLIMIT_FSIZE, &before);
     EXPECT_FALSE(std::filesystem::exists(folder_.File("summary.json")));
     return 0;
   };
   EXPECT_EQ(End(0), 1);
-  EXPECT_EQ(said_, "error: cannot write " + folder_.File("summary.json.part").string() + ": No space left on device\n");
+  EXPECT_EQ(said_, "error: cannot write " + folder_.File("summary.json.part").string() + ": File too large\n");
   EXPECT_EQ(Written(), "1") << "there was space again";
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "orchestrator/formats/bytes.h"
+#include "orchestrator/formats/create_file.h"
 
 namespace mascot {
 namespace {
@@ -102,6 +103,7 @@ struct MatWriter::Impl {
 
 MatWriter::MatWriter(const std::string& path) : part_(path), impl_(std::make_unique<Impl>()) {
   constexpr const char* kHeader = "MATLAB 5.0 MAT-file, written by MASCOT";  // matio's own has the time of day
+  ::close(CreateFile(part_.name(), O_WRONLY));                               // matio would follow a link of that name
   impl_->file.reset(Mat_CreateVer(part_.name().c_str(), kHeader, MAT_FT_MAT5));
   if (!impl_->file)
     throw std::runtime_error("cannot create " + part_.name() + ": " + std::generic_category().message(errno));

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "orchestrator/formats/bytes.h"
+#include "orchestrator/formats/create_file.h"
 #include "orchestrator/formats/output_file.h"
 #include "orchestrator/formats/part_file.h"
 #include "orchestrator/formats/zip.h"
@@ -30,8 +31,7 @@ constexpr std::size_t kNpzBufferBytes = std::size_t{64} << 10;
 class Spool {
  public:
   explicit Spool(std::string path) : path_(std::move(path)) {
-    fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (fd_ < 0) Fail("create", path_);
+    fd_ = CreateFile(path_, O_RDWR);
     ::unlink(path_.c_str());
     buffer_.reserve(kNpzBufferBytes);
   }

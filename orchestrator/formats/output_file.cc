@@ -8,6 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include "orchestrator/formats/create_file.h"
+
 namespace mascot {
 
 bool WriteFully(int fd, std::span<const std::uint8_t> bytes) {
@@ -20,10 +22,7 @@ bool WriteFully(int fd, std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
-  fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (fd_ < 0) Fail("create", errno);
-}
+OutputFile::OutputFile(std::string path) : path_(std::move(path)), fd_(CreateFile(path_, O_WRONLY)) {}
 
 OutputFile::~OutputFile() {
   if (fd_ >= 0) ::close(fd_);

@@ -13,7 +13,7 @@ namespace mascot {
 /// reason. After a failure every further write fails too, so that the file has no gaps.
 class OutputFile {
  public:
-  /// Creates or truncates `path`.
+  /// Makes the file anew (CreateFile).
   explicit OutputFile(std::string path);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;

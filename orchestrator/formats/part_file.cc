@@ -1,5 +1,6 @@
 #include "orchestrator/formats/part_file.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -8,12 +9,15 @@
 #include <system_error>
 #include <utility>
 
+#include "orchestrator/formats/create_file.h"
+
 namespace mascot {
 
-PartFile::PartFile(std::string path) : path_(std::move(path)), part_(path_ + ".part") {}
+PartFile::PartFile(std::string path) : path_(std::move(path)), part_(path_ + ".part") { RequireReplaceable(path_); }
 
 PartFile::~PartFile() {
-  if (!part_.empty()) ::unlink(part_.c_str());
+  struct stat there {};  // what is no file was there before
+  if (!part_.empty() && ::lstat(part_.c_str(), &there) == 0 && S_ISREG(there.st_mode)) ::unlink(part_.c_str());
 }
 
 void PartFile::Commit() {

@@ -8,6 +8,7 @@ namespace mascot {
 /// half of it, and after a failure the earlier file at `path`, if any, is still there.
 class PartFile {
  public:
+  /// Throws std::runtime_error if `path` is the name of a folder, a device or the like.
   explicit PartFile(std::string path);
   ~PartFile();  ///< removes the unfinished file
   PartFile(const PartFile&) = delete;

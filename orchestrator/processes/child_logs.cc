@@ -39,6 +39,13 @@ void MakePipe(int (&ends)[2]) {
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
 }
 
+/// Makes the file of a log. A link in its place is not followed.
+void MakeLog(const std::filesystem::path& log) {
+  const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
+  if (file < 0) throw std::runtime_error("cannot write " + log.string() + ": " + std::strerror(errno));
+  close(file);
+}
+
 /// Takes the next line off the front of `text`; nothing if it is not over.
 std::optional<std::string> NextLine(std::string& text) {
   const auto end = text.find('\n');
@@ -74,6 +81,7 @@ int ChildLogs::Open(const std::string& process, const std::filesystem::path& log
   auto stream = std::make_unique<Stream>();
   stream->process = process;
   stream->descriptor = ends[0];
+  MakeLog(log);
   stream->file.open(log, std::ios::binary);
   if (!stream->file) throw std::runtime_error("cannot write " + log.string() + ": " + std::strerror(errno));
   {

@@ -80,7 +80,8 @@ std::vector<fs::path> NamesOfARun(const fs::path& folder, const std::string& rec
   for (const std::string_view file : kFiles)
     for (const char* suffix : {"", ".part"}) add(std::string(file) + suffix);
   for (const std::string_view picture : kPictures)
-    for (const std::string_view format : kPictureFormats) add(std::string(picture) + std::string(format));
+    for (const std::string_view format : kPictureFormats)
+      for (const char* suffix : {"", ".part"}) add(std::string(picture).append(format) + suffix);
   for (const std::string& file : std::set<std::string>{recording, "run.mcap"}) add(file);
   const fs::file_status logs = fs::symlink_status(folder / "logs");
   if (fs::exists(logs) && !fs::is_directory(logs)) names.emplace_back("logs");
