@@ -327,6 +327,25 @@ TEST(Mcap, HostileFilesAreDescribed) {
   }
 }
 
+TEST(Mcap, ChunksThatUnpackToVeryMuchMoreThanTheyTakeAreRefusedAllTogether) {
+  const Bytes zeros(std::size_t{63} << 20);
+  Bytes packed(ZSTD_compressBound(zeros.size()));
+  packed.resize(ZSTD_compress(packed.data(), packed.size(), zeros.data(), zeros.size(), 3));
+  const Bytes chunk = ChunkRecord(zeros.size(), "zstd", packed);
+  Bytes chunks;
+  for (int k = 0; k < 300; ++k) Append(chunks, ByteSpan(chunk));
+  const ScratchFolder scratch;
+  const std::string path = scratch.File("zeros.mcap");
+  WriteFile(path, Handmade(chunks));
+  const McapContents contents = ReadMcap(path);
+  const std::uint64_t refused = contents.chunks + 1;  // the first that is not unpacked
+  EXPECT_LT(refused * zeros.size(), std::uint64_t{400} << 20);
+  EXPECT_EQ(contents.damage, "its chunks up to here unpack to " + std::to_string(refused * zeros.size()) +
+                                 " bytes, above the limit of 268435456 and 300 times the " +
+                                 std::to_string(refused * packed.size()) + " that they take (record at byte " +
+                                 std::to_string(33 + contents.chunks * chunk.size()) + ")");
+}
+
 TEST(Mcap, AWrongLengthDoesNotTakeTheRestOfALargeFileIntoMemory) {
   const ScratchFolder scratch;
   const std::uint64_t large = std::uint64_t{300} << 20;
@@ -398,8 +417,16 @@ TEST(Mcap, AFileThatCannotBeOpenedOrIsNoMcapIsAnError) {
 }
 
 TEST(Mcap, AFullDiskIsAnErrorThatNamesTheFile) {
-  const auto write = [] { McapWriter writer("/dev/full"); };
-  EXPECT_THAT(write, ThrowsMessage<std::runtime_error>("cannot write /dev/full: No space left on device"));
+  const ScratchFolder scratch;
+  const std::string path = scratch.File("run.mcap");
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{4, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  EXPECT_THAT([&] { McapWriter writer(path); },
+              ThrowsMessage<std::runtime_error>("cannot write " + path + ": File too large"));
+  ::setrlimit(RLIMIT_FSIZE, &before);
 }
 
 /// The messages of all chunks, one chunk after the other.

@@ -4,7 +4,16 @@
 
 namespace mascot::mcap {
 
-Chunk OpenChunk(Fields body, bool whole, Decompressor& decompressor) {
+void UnpackLimit::Add(std::uint64_t stored_bytes, std::uint64_t bytes) {
+  stored_bytes_ += stored_bytes;
+  bytes_ += bytes;
+  if (bytes_ <= kFreeBytes + kMostTimes * stored_bytes_) return;
+  throw Malformed("its chunks up to here unpack to " + std::to_string(bytes_) + " bytes, above the limit of " +
+                  std::to_string(kFreeBytes) + " and " + std::to_string(kMostTimes) + " times the " +
+                  std::to_string(stored_bytes_) + " that they take");
+}
+
+Chunk OpenChunk(Fields body, bool whole, Decompressor& decompressor, UnpackLimit& limit) {
   body.U64();  // start time
   body.U64();  // end time
   const std::uint64_t size = body.U64();
@@ -17,6 +26,7 @@ Chunk OpenChunk(Fields body, bool whole, Decompressor& decompressor) {
                     std::to_string(kMaxChunkBytes));
   if (!compression.empty() && compression != "zstd") throw Malformed("unknown compression '" + compression + "'");
 
+  if (!compression.empty()) limit.Add(stored.size(), size);
   const ByteSpan raw = compression.empty() ? stored : decompressor.Decompress(stored, static_cast<std::size_t>(size));
   if (whole) {
     if (raw.size() != size)

@@ -8,6 +8,20 @@
 
 namespace mascot::mcap {
 
+/// How much the chunks of a file may unpack to, all together. Rows of a run take a fifth to a fiftieth of their size;
+/// zeros take a ten-thousandth, and a small file of them would keep whoever reads it busy for hours.
+class UnpackLimit {
+ public:
+  static constexpr std::uint64_t kFreeBytes = std::uint64_t{256} << 20;  ///< so much may be packed as tightly as can be
+  static constexpr std::uint64_t kMostTimes = 300;                       ///< and beyond it so many times what is stored
+
+  /// Counts one more chunk. Throws Malformed if it is too much.
+  void Add(std::uint64_t stored_bytes, std::uint64_t bytes);
+
+ private:
+  std::uint64_t stored_bytes_ = 0, bytes_ = 0;
+};
+
 /// A chunk, decompressed.
 struct Chunk {
   ByteSpan records;                ///< valid as long as the record's bytes, and until the decompressor's next call
@@ -16,8 +30,8 @@ struct Chunk {
 
 /// Opens the chunk record of this body. `whole`: all of the record is in the file; then size and CRC must be right.
 /// The CRC of a chunk that is cut off cannot be compared, but cutting changes none of the bytes before the cut:
-/// whatever can be decompressed is given. Throws Malformed.
-Chunk OpenChunk(Fields body, bool whole, Decompressor& decompressor);
+/// whatever can be decompressed is given. `limit` counts it before it is decompressed. Throws Malformed.
+Chunk OpenChunk(Fields body, bool whole, Decompressor& decompressor, UnpackLimit& limit);
 
 /// The next record of an open chunk: takes it off `records`. Throws Malformed where the chunk is cut off.
 struct InnerRecord {

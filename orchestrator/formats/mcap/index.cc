@@ -46,7 +46,10 @@ class McapIndex::Impl {
       return on_message(message_);
     }
     if (!Is(record_[0], Op::kChunk)) throw Malformed("the index points at no chunk");
-    for (ByteSpan records = mcap::OpenChunk(body, whole, decompressor_).records; !records.empty();) {
+    mcap::UnpackLimit limit;  // of this chunk; what all take together was looked at when the file was opened
+    const ByteSpan all = mcap::OpenChunk(body, whole, decompressor_, limit).records;
+    if (is_indexed_ && all.size() != chunk.bytes) throw Malformed("the index says another size of a chunk");
+    for (ByteSpan records = all; !records.empty();) {
       if (!TakeMessage(records, whole)) continue;
       on_message(message_);
     }
@@ -78,6 +81,8 @@ class McapIndex::Impl {
   Bytes record_;
   mcap::Decompressor decompressor_;
   McapContents::Message message_;
+  mcap::UnpackLimit limit_;
+  std::uint64_t chunks_end_ = 0;  // of those in the index so far
 };
 
 /// Reads the summary, which the footer at the end of the file points at, and what it points at besides chunks. Throws
@@ -126,14 +131,19 @@ void McapIndex::Impl::AddChunk(Fields body) {
   chunk.first_ns = body.U64();
   chunk.last_ns = body.U64();
   chunk.offset = body.U64();
-  body.U64();  // length of its record
+  const std::uint64_t end = chunk.offset + body.U64();
+  if (chunk.offset < chunks_end_ || end < chunk.offset) throw Malformed("the index names a part of the file twice");
+  chunks_end_ = end;
   for (Fields places(body.Raw(body.U32())); !places.rest().empty(); places.U64())
     chunk.channels.push_back(places.U16());
   std::ranges::sort(chunk.channels);
-  body.U64();     // length of its message indexes
-  body.String();  // compression
-  contents_.compressed_bytes += body.U64();
-  contents_.uncompressed_bytes += body.U64();
+  body.U64();  // length of its message indexes
+  const bool is_packed = !body.String().empty();
+  const std::uint64_t stored_bytes = body.U64();
+  chunk.bytes = body.U64();
+  if (is_packed) limit_.Add(stored_bytes, chunk.bytes);
+  contents_.compressed_bytes += stored_bytes;
+  contents_.uncompressed_bytes += chunk.bytes;
   chunks_.push_back(std::move(chunk));
 }
 
@@ -164,7 +174,7 @@ void McapIndex::Impl::ReadThrough() {
   McapReader reader(path_);
   while (const McapContents::Message* message = reader.Next()) {
     if (chunks_.empty() || chunks_.back().offset != reader.record_offset())
-      chunks_.push_back({reader.record_offset(), message->log_time, message->log_time, {}});
+      chunks_.push_back({reader.record_offset(), message->log_time, message->log_time, {}, 0});
     Chunk& chunk = chunks_.back();
     chunk.first_ns = std::min(chunk.first_ns, message->log_time);
     chunk.last_ns = std::max(chunk.last_ns, message->log_time);

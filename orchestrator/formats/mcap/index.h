@@ -18,6 +18,7 @@ class McapIndex {
     std::uint64_t offset = 0;  ///< of its record in the file
     std::uint64_t first_ns = 0, last_ns = 0;
     std::vector<std::uint16_t> channels;  ///< that have messages in it, in increasing order
+    std::uint64_t bytes = 0;              ///< unpacked, as the index says; 0: there is no index
   };
 
   /// Throws what McapReader throws.

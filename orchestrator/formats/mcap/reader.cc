@@ -88,6 +88,7 @@ class McapReader::Impl {
   ByteSpan chunk_;     // if it is a chunk: the records in it that are still to be read
   Bytes frame_;
   mcap::Decompressor decompressor_;
+  mcap::UnpackLimit limit_;
   std::uint32_t data_crc_ = 0;
 };
 
@@ -168,7 +169,7 @@ void McapReader::Impl::ReadMessage(Fields body) {
 }
 
 void McapReader::Impl::OpenChunk(Fields body) {
-  const mcap::Chunk chunk = mcap::OpenChunk(body, whole_, decompressor_);
+  const mcap::Chunk chunk = mcap::OpenChunk(body, whole_, decompressor_, limit_);
   if (whole_) {
     ++contents_.chunks;
     contents_.compressed_bytes += chunk.stored_bytes;
