@@ -2,6 +2,8 @@
 
 #include <cstdlib>
 #include <mutex>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include "agent/python_internal.h"
@@ -20,10 +22,28 @@ void PinToBaseline() {
          /*overwrite=*/1);
 }
 
+/// What PYTHONPATH names comes behind all other folders: a law may need it, and it takes the place of nothing.
+void AddPythonPath() {
+  const char* folders = std::getenv("PYTHONPATH");
+  if (folders == nullptr) return;
+  const py::object path = py::module_::import("sys").attr("path");
+  std::istringstream text(folders);
+  for (std::string folder; std::getline(text, folder, ':');)
+    if (!folder.empty()) path.attr("append")(py::module_::import("os").attr("fsdecode")(py::bytes(folder)));
+}
+
 void StartInterpreter() {
   PinToBaseline();
+  // No PYTHON* variables: a PYTHONHOME of another Python would keep this one from starting. Text is UTF-8, whatever the
+  // locale.
+  PyPreConfig first;
+  PyPreConfig_InitPythonConfig(&first);
+  first.use_environment = 0;
+  first.utf8_mode = 1;
+  Py_PreInitialize(&first);
   PyConfig config;
   PyConfig_InitPythonConfig(&config);
+  config.use_environment = 0;
   // NumPy would warn of those features in the list that this processor lacks.
   PyWideStringList_Append(&config.warnoptions, L"ignore:During parsing environment variable:RuntimeWarning");
   PyConfig_SetBytesString(&config, &config.program_name, "/usr/bin/python3");  // Debian's, whatever comes first in PATH
@@ -33,6 +53,7 @@ void StartInterpreter() {
   config.use_hash_seed = 1;  // the order of sets of strings is the same in every run
   config.hash_seed = 0;
   py::initialize_interpreter(&config);
+  AddPythonPath();
   TakePythonOutput();
   PyEval_SaveThread();
 }

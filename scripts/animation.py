@@ -150,7 +150,8 @@ def encoder(path, part, size, palette):
     of = {".mp4": ["-c:v", "libx264", "-preset", "fast", "-crf", "20", "-pix_fmt", "yuv420p",
                    "-movflags", "+faststart"],
           ".gif": ["-i", palette, "-lavfi", "paletteuse=dither=none:diff_mode=rectangle", "-loop", "0"]}[path.suffix]
-    return ["ffmpeg", "-loglevel", "error", "-y", *frames, *of, *exact, "-f", path.suffix[1:], part]
+    return ["ffmpeg", "-loglevel", "error", "-y", *frames, *of, *exact, "-f", path.suffix[1:],
+            f"file:{part}"]
 
 
 def write_palette(path, run):
@@ -166,17 +167,14 @@ def film(run, path, pace):
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     rows, pace = rows_of_frames(run.t, pace)
     drawing = Film(run, GIF_SCALE if path.suffix == ".gif" else 1, pace)
-    part = path.with_name(path.name + ".part")
     try:
-        with tempfile.TemporaryDirectory() as scratch:
+        with style.new_file(path) as part, tempfile.TemporaryDirectory() as scratch:
             palette = os.path.join(scratch, "palette.png")
             write_palette(palette, run)
             encode(drawing, rows, encoder(path, part, drawing.figure.canvas.get_width_height(), palette))
-        os.replace(part, path)
     except EncoderFailed as failure:
         raise RunError(f"{path}: ffmpeg failed: {failure}") from None
     finally:
-        part.unlink(missing_ok=True)
         plt.close(drawing.figure)
 
 

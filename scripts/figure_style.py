@@ -1,6 +1,9 @@
 """Style of the pictures of runs, sweeps and benchmarks: colours, sizes, legends, and how they are saved."""
 
+import contextlib
+import errno
 import math
+import os
 import textwrap
 from dataclasses import dataclass
 
@@ -203,4 +206,26 @@ def wrap_labels(figure):
 
 def save(figure, path):
     """Writes the picture in the format that the ending of its name says: for the same run, the same bytes."""
-    figure.savefig(path, metadata=NO_DATES[path.suffix[1:]])
+    kind = path.suffix[1:]
+    with new_file(path) as part, part.open("wb") as file:
+        figure.savefig(file, format=kind, metadata=NO_DATES[kind])
+
+
+@contextlib.contextmanager
+def new_file(path):
+    """An empty file to write, which then takes the place of a file or link at `path`. No link is followed, and what is no
+    file is left as it is: raises OSError."""
+    if path.is_dir() and not path.is_symlink():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if path.exists() and not path.is_symlink() and not path.is_file():
+        raise FileExistsError(errno.EEXIST, "expected a file, got something else of this name", str(path))
+    part = path.with_name(path.name + ".part")
+    if part.is_file() and not part.is_symlink():
+        part.unlink()
+    os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666))
+    try:
+        yield part
+        os.replace(part, path)
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/python3 -Es
 """Draws the pictures of runs (scripts/pictures.py), of several runs in one (overlay.py), or a film (animation.py).
 
 The same run always gives the same bytes. Exit codes: 0 done, 1 a run cannot be read, 2 wrong use.
@@ -9,15 +9,13 @@ import math
 import os
 import pathlib
 import sys
-
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+import traceback
 
 sys.dont_write_bytecode = True  # the folder of the scripts may be read-only
+import own_matplotlib  # noqa: F401: the first of all that draw
 import animation
 import figure_style
+import matplotlib.pyplot as plt
 from overlay import OVERLAYS, draw_overlay
 from pictures import PICTURES
 from run_folder import RunError, read_run
@@ -175,8 +173,13 @@ def main(arguments):
     except RunError as error:
         print(f"error: {error}", file=sys.stderr)
         return error.code
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        where = traceback.extract_tb(error.__traceback__)[-1]
+        print(f"error: config.toml or summary.json says something else than a run's does: {type(error).__name__}: "
+              f"{error} (in {pathlib.Path(where.filename).name}:{where.lineno})", file=sys.stderr)
+        return 1
     except OSError as error:
-        print(f"error: {error.filename}: {error.strerror}", file=sys.stderr)
+        print(f"error: {error.filename}: {error.strerror or error}", file=sys.stderr)
         return 1
     return 0
 

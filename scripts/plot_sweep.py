@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/python3 -Es
 """Draws the table of a sweep: plot_sweep.py TABLE.csv STATISTICS.csv PICTURE.png COLUMN [KEY [KEY]] [OPTION...]
 
 Without a key: a histogram of COLUMN. With one key: COLUMN over it, as the mean over all seeds with its 95 % confidence
@@ -13,15 +13,13 @@ import csv
 import pathlib
 import sys
 
+sys.dont_write_bytecode = True  # the folder of the scripts may be read-only
+import own_matplotlib  # noqa: F401: the first of all that draw
+import figure_style
 import matplotlib
-
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import matplotlib.ticker
 import numpy as np
-
-sys.dont_write_bytecode = True  # the folder of the scripts may be read-only
-import figure_style
 from figure_style import OKABE_ITO, size
 
 BLUE = OKABE_ITO[0]
@@ -41,15 +39,27 @@ def number(text):
         return None
 
 
+class TableError(Exception):
+    """What is wrong with a table, and where."""
+
+
 csv.field_size_limit(2**31 - 1)  # a cell may hold a whole law
 
 
 def rows_of(path, columns=None, having=""):
     """The cells of these columns (of all, without them), row by row, of the lines that have this text in them."""
     with open(path, newline="", encoding="utf-8") as file:
-        names = next(csv.reader([file.readline()]))
+        names = next(csv.reader([file.readline()]), [])
+        for name in columns or ():
+            if names.count(name) != 1:
+                raise TableError(f"{path}:1: expected the column {name} once, got it {names.count(name)} times")
         kept = [k for k, name in enumerate(names) if columns is None or name in columns]
-        for cells in csv.reader(line for line in file if having in line):  # a row is a line: sweep writes no others
+        for number, line in enumerate(file, 2):  # a row is a line: sweep writes no others
+            if having not in line:
+                continue
+            cells = next(csv.reader([line]), [])
+            if len(cells) != len(names):
+                raise TableError(f"{path}:{number}: expected {len(names)} cells, got {len(cells)}")
             yield {names[k]: cells[k] for k in kept}
 
 
@@ -389,17 +399,21 @@ def main():
     except ValueError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
-    table = Table(options)
+    try:
+        table = Table(options)
+    except TableError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        print(f"error: {options.table}: {getattr(error, 'strerror', None) or error}", file=sys.stderr)
+        return 1
     if not table.good:
         print(f"error: {options.table}: no run has a {options.column}", file=sys.stderr)
         return 1
     figure_style.use(options.size)
     for name in formats:
         figure = draw(table)  # anew: what was laid out before would change the bytes
-        path = pathlib.Path(options.picture).with_suffix("." + name)
-        part = path.with_suffix(".part." + name)
-        figure_style.save(figure, part)
-        part.replace(path)
+        figure_style.save(figure, pathlib.Path(options.picture).with_suffix("." + name))
     return 0
 
 

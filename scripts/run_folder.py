@@ -12,6 +12,7 @@ import numpy as np
 
 DRAWING = {"leader": "leader", "switches": False, "pictures": [], "telling": "paths", "hull": "", "cells": ""}
 ARRAYS = {"position": 3, "velocity": 3, "acceleration_command": 3}  # name -> numbers per agent and row
+UNPACKED_FREE, UNPACKED_TIMES = 256 << 20, 300  # bytes that a file may unpack to, and then so many times its own
 NUMBERS_AT_ONCE = 1 << 14  # in one array of a computation over rows, so that it stays in the cache
 FILTERED, INFEASIBLE = 16, 32  # bits of flags: law.safety changed the command; it found no safe one
 
@@ -225,8 +226,12 @@ def check_format(path, contents):
 
 
 def read_text(path, parse):
+    """The table in a file of TOML or JSON."""
     try:
-        return check_format(path, parse(path.read_text(encoding="utf-8")))
+        table = parse(path.read_text(encoding="utf-8"))
+        if not isinstance(table, dict):
+            raise RunError(f"{path}: expected a table, got a {type(table).__name__}")
+        return check_format(path, table)
     except (ValueError, RecursionError) as error:  # tomllib's and json's errors are ValueErrors
         raise RunError(f"{path}: {error}") from None
     except OSError as error:
@@ -246,11 +251,42 @@ def why_no_states(folder):
     return f"{why}; orchestrator export {folder} --format npz writes it"
 
 
+def check_unpacked(path, file):
+    """Refuses a small file that unpacks to very much."""
+    with zipfile.ZipFile(file) as archive:
+        unpacked = sum(entry.file_size for entry in archive.infolist())
+    packed = path.stat().st_size
+    if unpacked > UNPACKED_FREE + UNPACKED_TIMES * packed:
+        raise RunError(f"{path}: unpacks to {unpacked} bytes, above the limit of {UNPACKED_FREE} and "
+                       f"{UNPACKED_TIMES} times the {packed} that it takes")
+    file.seek(0)
+
+
+def check_states(path, arrays):
+    """Refuses what no run has: agents without numbers of their own, times that do not increase, what is no number."""
+    t, ids = arrays["t"], arrays["id"]
+    for name, array in arrays.items():
+        if array.dtype.kind not in "iuf":
+            raise RunError(f"{path}: {name}: expected numbers, got {array.dtype}")
+    if not np.isfinite(t).all() or (np.diff(t) <= 0).any():
+        raise RunError(f"{path}: t: expected times that increase, got others")
+    if (ids != np.round(ids)).any() or (ids < 1).any() or len(set(ids.tolist())) < len(ids):
+        raise RunError(f"{path}: id: expected each agent's number once, from 1 on, got others")
+    if (arrays["flags"] != np.round(arrays["flags"])).any() or (arrays["flags"] < 0).any():
+        raise RunError(f"{path}: flags: expected integers from 0 on, got others")
+    for name in ("position", "velocity"):
+        if not np.isfinite(arrays[name]).all():
+            row, agent = np.argwhere(~np.isfinite(arrays[name]))[0][:2]
+            raise RunError(f"{path}: {name}: expected finite numbers, got others at {t[row]:g} s of agent {ids[agent]}")
+
+
 def read_states(path):
     try:
+        with path.open("rb") as file:
+            check_unpacked(path, file)
         with path.open("rb") as file, np.load(file, allow_pickle=False) as states:
             arrays = {name: states[name] for name in ["t", "id", *ARRAYS]}
-            arrays["flags"] = states["flags"].astype(int) if "flags" in states else None
+            arrays["flags"] = states["flags"] if "flags" in states else None
     except KeyError as error:
         raise RunError(f"{path}: {str(error.args[0]).split(' is not')[0]}: no such array") from None
     except FileNotFoundError:
@@ -270,6 +306,8 @@ def read_states(path):
         raise RunError(f"{path}: flags: expected shape ({rows}, {agents}), got {arrays['flags'].shape}")
     if rows == 0 or agents == 0:
         raise RunError(f"{path}: holds no tick")
+    check_states(path, arrays)
+    arrays["flags"] = arrays["flags"].astype(int)
     return arrays
 
 
@@ -283,8 +321,16 @@ def read_incidents(path, ids):
 
     try:
         with path.open(encoding="utf-8", newline="") as file:
-            return [Incident(float(row["t_s"]), float(row["until_s"]), row["what"], indices(row))
-                    for row in csv.DictReader(file) if row["agent"]]
+            rows, found = csv.DictReader(file), []
+            for row in rows:
+                if not row["agent"]:
+                    continue
+                from_s, until_s = float(row["t_s"]), float(row["until_s"])
+                if not (np.isfinite(from_s) and np.isfinite(until_s)) or None in row or None in row.values():
+                    raise RunError(f"{path}:{rows.line_num}: expected an incident with its times, got {row['t_s']} and "
+                                   f"{row['until_s']}")
+                found.append(Incident(from_s, until_s, row["what"], indices(row)))
+            return found
     except FileNotFoundError:
         return []
     except OSError as error:

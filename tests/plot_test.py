@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zipfile
 from unittest import mock
 
 import numpy as np
@@ -27,6 +28,7 @@ import pictures
 import plot
 import plot_sweep
 import run_folder
+import matplotlib
 from matplotlib.quiver import Quiver
 
 loader = importlib.machinery.SourceFileLoader("law_pictures", str(pathlib.Path(plot.__file__).parent / "law_pictures"))
@@ -780,7 +782,7 @@ class Films(PlotTest):
             high = pixels.shape[0]
             for k in range(3):
                 x, y = film.axis.transData.transform(p[row, k])
-                colour = 255 * np.array(plot.matplotlib.colors.to_rgb(figure_style.OKABE_ITO[k]))
+                colour = 255 * np.array(matplotlib.colors.to_rgb(figure_style.OKABE_ITO[k]))
                 np.testing.assert_allclose(pixels[int(high - y), int(x), :3], colour, atol=8)
         x, y = film.axis.transData.transform(p[2, 0])
         self.assertLess(pixels[int(high - y) - 1:int(high - y) + 2, int(x), 0].min(), 200, "agent 1 came along here")
@@ -900,6 +902,55 @@ class Errors(PlotTest):
         self.write(states=arrays() | {"flags": np.zeros((51, 2))})
         self.check(1, f"{self.folder}/states.npz: flags: expected shape (51, 3), got (51, 2)")
 
+    def test_states_that_no_run_has(self):
+        path, good = f"{self.folder}/states.npz", arrays()
+        later, hole = good["t"].copy(), good["position"].copy()
+        later[7], hole[5, 1, 2] = later[6], np.nan
+        for name, array, why in (
+                ("t", later, "t: expected times that increase, got others"),
+                ("t", later * np.nan, "t: expected times that increase, got others"),
+                ("t", np.array(["now"] * 51), "t: expected numbers, got <U3"),
+                ("id", np.array([1, 2, 2]), "id: expected each agent's number once, from 1 on, got others"),
+                ("id", np.array([0, 1, 2]), "id: expected each agent's number once, from 1 on, got others"),
+                ("id", np.array([1, 2, 2.5]), "id: expected each agent's number once, from 1 on, got others"),
+                ("position", hole, "position: expected finite numbers, got others at 0.5 s of agent 2"),
+                ("velocity", good["velocity"] * 1j, "velocity: expected numbers, got complex128"),
+                ("flags", np.full((51, 3), 0.5), "flags: expected integers from 0 on, got others")):
+            with self.subTest(name=name, why=why):
+                self.write(states=good | {name: array})
+                self.check(1, f"{path}: {why}")
+
+    def test_states_that_unpack_to_very_much(self):
+        self.write()
+        path = self.folder / "states.npz"
+        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+            for name in ("t", "id", "position"):
+                with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
+                    for _ in range(100):
+                        file.write(bytes(1 << 20))
+        with self.assertRaisesRegex(run_folder.RunError, "unpacks to 314572800 bytes, above the limit of 1048576 and 10"):
+            with mock.patch.object(run_folder, "UNPACKED_FREE", 1 << 20), mock.patch.object(run_folder, "UNPACKED_TIMES", 10):
+                run_folder.read_states(path)
+
+    def test_incidents_that_no_run_has(self):
+        self.write()
+        path = self.folder / "events.csv"
+        head = "t_s,until_s,agent,what,with,value\n"
+        for row, why in (("nan,1,1,loss,,\n", ":2: expected an incident with its times, got nan and 1"),
+                         ("0,1,1,loss\n", ":2: expected an incident with its times, got 0 and 1"),
+                         ("soon,1,1,loss,,\n", ": damaged, or not a table of events")):
+            path.write_text(head + row)
+            self.check(1, f"{path}{why}")
+
+    def test_texts_of_another_kind(self):
+        self.write()
+        (self.folder / "summary.json").write_text("[1, 2]")
+        self.check(1, f"{self.folder}/summary.json: expected a table, got a list")
+        (self.folder / "summary.json").write_text('{"graph": 3}')
+        code, errors = self.run_plot()
+        self.assertEqual(code, 1)
+        self.assertRegex(errors, r"\nerror: config\.toml or summary\.json says something else than a run's does: .*\n$")
+
     def test_states_without_a_tick(self):
         self.write(states=arrays(rows=0))
         self.check(1, f"{self.folder}/states.npz: holds no tick")
@@ -940,6 +991,88 @@ class Errors(PlotTest):
         self.check(1, f"{self.folder}/paths.png: Is a directory")
 
 
+class OthersFiles(PlotTest):
+    """What has the name of a picture, or of one that is not finished yet."""
+
+    def setUp(self):
+        super().setUp()
+        self.write()
+        self.other = self.folder.parent / "other"
+        self.other.write_text("mine")
+
+    def test_a_link_gives_way_to_the_picture_and_what_it_leads_to_stays(self):
+        (self.folder / "paths.png").symlink_to(self.other)
+        self.assertEqual(self.run_plot("--only=paths"), (0, ""))
+        self.assertFalse((self.folder / "paths.png").is_symlink())
+        self.assertEqual(self.other.read_text(), "mine")
+
+    def test_a_link_at_the_name_of_an_unfinished_picture_is_refused(self):
+        (self.folder / "paths.png.part").symlink_to(self.other)
+        self.check(1, f"{self.folder}/paths.png.part: File exists", "--only=paths")
+        self.assertEqual(self.other.read_text(), "mine")
+
+    def test_what_a_killed_process_left_gives_way(self):
+        (self.folder / "paths.png.part").write_text("half a pic")
+        self.assertEqual(self.run_plot("--only=paths"), (0, ""))
+        self.assertEqual(self.pictures(), ["paths"])
+        self.assertFalse((self.folder / "paths.png.part").exists())
+
+    def test_a_pipe_is_refused(self):
+        os.mkfifo(self.folder / "paths.png")
+        self.check(1, f"{self.folder}/paths.png: expected a file, got something else of this name", "--only=paths")
+
+
+class Surroundings(PlotTest):
+    """The same run makes the same bytes, whoever draws it, and wherever."""
+
+    def setUp(self):
+        super().setUp()
+        self.write()
+        self.place = self.folder.parent / "place"
+        self.place.mkdir()
+
+    def drawn(self, **environment):
+        """Draws as the programs do, in a folder of its own. Returns the bytes of the picture."""
+        script = pathlib.Path(plot.__file__)
+        environment = {"PATH": "/usr/bin:/bin", **environment}
+        done = subprocess.run(["/usr/bin/python3", "-E", "-s", "-B", "-X", "utf8", script, self.folder, "--only=paths"],
+                              cwd=self.place, env=environment, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+        return (self.folder / "paths.png").read_bytes()
+
+    def test_no_matplotlibrc_no_module_and_no_variable_changes_a_picture(self):
+        usual = self.drawn(HOME=os.path.expanduser("~"))
+        home = self.folder.parent / "home"
+        for folder in (self.place, home / ".config/matplotlib", home / "modules"):
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / "matplotlibrc").write_text("backend: nonsense\nlines.linewidth: 9\nsavefig.dpi: 33\n")
+            for module in ("numpy", "matplotlib", "json", "sitecustomize", "usercustomize"):
+                (folder / f"{module}.py").write_text("raise SystemExit('not the one that was meant')\n")
+        others = str(home / "modules")
+        self.assertEqual(usual, self.drawn(
+            HOME=str(home), TMPDIR="/nowhere", MPLBACKEND="nonsense", MPLCONFIGDIR=str(home / ".config/matplotlib"),
+            MATPLOTLIBRC=str(self.place), PYTHONPATH=others, PYTHONHOME=others, PYTHONSTARTUP=others + "/numpy.py",
+            PYTHONOPTIMIZE="2", PYTHONWARNINGS="error", LC_ALL="C", TZ="Pacific/Auckland",
+            NPY_DISABLE_CPU_FEATURES="AVX2 NONSENSE", OPENBLAS_CORETYPE="Prescott"))
+        self.assertEqual(sorted(path.name for path in home.iterdir()), [".config", "modules"])
+
+    def test_nobody_needs_a_home_and_nothing_is_left_behind(self):
+        temporary = self.folder.parent / "temporary"
+        temporary.mkdir()
+        usual = self.drawn(HOME=os.path.expanduser("~"))
+        for environment in ({}, {"HOME": "/nowhere"}, {"HOME": "/proc/self"}, {"HOME": ""}):
+            self.assertEqual(usual, self.drawn(TMPDIR=str(temporary), **environment))
+            self.assertEqual(list(temporary.iterdir()), [])
+
+    def test_fonts_of_the_user_are_not_looked_at(self):
+        usual = self.drawn(HOME=os.path.expanduser("~"))
+        fonts = self.folder.parent / "home/.fonts"
+        fonts.mkdir(parents=True)
+        oblique = pathlib.Path(matplotlib.get_data_path()) / "fonts/ttf/DejaVuSans-Oblique.ttf"
+        (fonts / "DejaVuSans.ttf").write_bytes(oblique.read_bytes())
+        self.assertEqual(usual, self.drawn(HOME=str(fonts.parent)))
+
+
 class ManyAgentsTest(unittest.TestCase):
     """What is computed in bulk is, to the bit, what it is one by one."""
 
@@ -976,6 +1109,14 @@ class SweepTableTest(unittest.TestCase):
         for path, lines in zip(paths, (runs, statistics)):
             path.write_text("".join(f"{line}\n" for line in lines))
         return plot_sweep.Table(mock.Mock(table=paths[0], statistics=paths[1], column=self.COLUMN, keys=list(keys), label=[], time=False))
+
+    def test_a_table_that_no_sweep_has_written(self):
+        header = "run,error,sim_s,control.effort"
+        for runs, why in ((["run,error,sim_s"], r":1: expected the column control\.effort once, got it 0 times"),
+                          ([header + ",error"], ":1: expected the column error once, got it 2 times"),
+                          ([header, "0,,1,2", "1,,1"], ":3: expected 4 cells, got 3")):
+            with self.assertRaisesRegex(plot_sweep.TableError, why):
+                self.table_of(runs, ["metric,median"])
 
     def test_very_many_points(self):
         count = 20_000

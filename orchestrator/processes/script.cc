@@ -23,6 +23,11 @@ fs::path FindShared(const std::string& name, const std::string& folder) {
   throw std::runtime_error(name + " is missing: neither beside this program (../share/mascot) nor in its source tree");
 }
 
+std::string AsWord(const fs::path& path) {
+  const std::string word = path.string();
+  return word.starts_with('-') ? "./" + word : word;
+}
+
 int RunProgram(std::vector<std::string> words, StopSignal& stop) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -51,8 +56,9 @@ int RunProgram(std::vector<std::string> words, StopSignal& stop) {
 }
 
 int RunScript(const std::string& script, const std::vector<std::string>& arguments, StopSignal& stop) {
-  // The system's Python, for which matplotlib is installed; PATH may find another one first.
-  std::vector<std::string> words{"/usr/bin/python3", FindShared(script, "scripts")};
+  // The system's Python, for which matplotlib is installed; PATH may find another one first. It reads no PYTHON*
+  // variables (-E) and no packages of the user's (-s), writes no bytecode (-B), and takes names as they are (utf8).
+  std::vector<std::string> words{"/usr/bin/python3", "-E", "-s", "-B", "-X", "utf8", FindShared(script, "scripts")};
   words.insert(words.end(), arguments.begin(), arguments.end());
   return RunProgram(words, stop);
 }

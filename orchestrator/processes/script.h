@@ -12,6 +12,9 @@ namespace mascot {
 /// program was built from. Throws std::runtime_error if it is in neither.
 std::filesystem::path FindShared(const std::string& name, const std::string& folder);
 
+/// A path as a word of a command line that no program takes for an option: "./-x" of "-x".
+std::string AsWord(const std::filesystem::path& path);
+
 /// Runs a program, found by PATH, on our terminal. Returns its exit code, or 128 + the signal that ended it. A signal
 /// that `stop` receives meanwhile ends the program. Throws std::runtime_error if it cannot be started.
 int RunProgram(std::vector<std::string> words, StopSignal& stop);

@@ -30,7 +30,8 @@ int Compare(CompareArgs args) {
   std::cout << (args.json ? table.JsonText() : table.Text());
   if (args.plot.empty()) return kExitDone;
   StopSignal stop;
-  std::vector<std::string> words = std::move(args.runs);
+  std::vector<std::string> words;
+  for (const std::string& run : args.runs) words.push_back(AsWord(run));
   words.insert(words.end(), {"--overlay", "--out=" + args.plot});
   return RunScript("plot.py", words, stop);
 }

@@ -43,7 +43,8 @@ struct PlotArgs {
 };
 
 std::vector<std::string> Words(const CLI::App& command, const PlotArgs& args) {
-  std::vector<std::string> words = args.runs;
+  std::vector<std::string> words;
+  for (const std::string& run : args.runs) words.push_back(AsWord(run));
   for (std::size_t k = 0; k < std::size(kOptions); ++k)
     if (command.count(kOptions[k].name) > 0) words.push_back(std::string(kOptions[k].name) + "=" + args.values[k]);
   if (args.overlay) words.emplace_back("--overlay");
@@ -54,7 +55,7 @@ std::vector<std::string> Words(const CLI::App& command, const PlotArgs& args) {
 }  // namespace
 
 int PlotRun(const fs::path& folder, bool show, StopSignal& stop) {
-  std::vector<std::string> arguments{folder};
+  std::vector<std::string> arguments{AsWord(folder)};
   if (show) arguments.push_back("--show");
   return RunScript("plot.py", arguments, stop);
 }

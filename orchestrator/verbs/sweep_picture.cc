@@ -60,7 +60,7 @@ int SweepPicture::Draw(const std::string& out, const SweepPlan& plan, const Swee
                        StopSignal& stop) const {
   const std::string column = metric.value_or(identity.own.empty() ? kUsualMetric : identity.own.front().name);
   const auto own = std::ranges::find(identity.own, column, &PythonMetric::name);
-  std::vector<std::string> words{out, StatisticsBeside(out), FileBeside(out, ".png"), column};
+  std::vector<std::string> words{AsWord(out), AsWord(StatisticsBeside(out)), AsWord(FileBeside(out, ".png")), column};
   words.insert(words.end(), plan.varied().begin(), plan.varied().end());
   words.insert(words.end(),
                {"--label", column + "=" + (own != identity.own.end() ? LabelOfMetric(*own) : LabelOfColumn(column))});
