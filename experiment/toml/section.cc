@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "experiment/toml/input.h"
 #include "experiment/toml/section_internal.h"
 
 namespace mascot {
@@ -87,7 +88,7 @@ Section::Place Section::PlaceOfText(std::string_view key) const {
   const toml::node* node = table_->Get(key);
   const toml::source_region place = table_->PlaceOf(key);
   const bool overridden = place.path && *place.path != document_->name;
-  const std::filesystem::path file(overridden ? "" : document_->name);
+  const std::filesystem::path file(overridden || DescriptorOf(document_->name) ? "" : document_->name);
   Place text{overridden ? *place.path : file.filename().string(), file.parent_path().string(),
              overridden ? 1 : static_cast<int>(place.begin.line)};
   const auto value = node != nullptr ? node->value_exact<std::string>() : std::nullopt;
@@ -140,11 +141,13 @@ std::string Section::OneOf(std::string_view key, std::span<const std::string_vie
                            std::optional<std::string> fallback) {
   const toml::node* node = table_->Find(key);
   const auto text = node != nullptr ? node->value_exact<std::string>() : std::nullopt;
-  if (!fallback) fallback = table_->RowDefault<std::string>(key, TextIn);
-  std::string value = fallback.value_or(names.empty() ? "" : std::string(names.front()));
   if (text && std::find(names.begin(), names.end(), *text) != names.end()) {
-    value = *text;
-  } else if (text) {
+    table_->Record(key, QuotedToml(*text));
+    return *text;
+  }
+  if (!fallback) fallback = table_->RowDefault<std::string>(key, TextIn);
+  const std::string value = fallback.value_or(names.empty() ? "" : std::string(names.front()));
+  if (text) {
     const auto nearest = DidYouMean(*text, names);
     Fail(key, "expected one of " + Joined(names) + ", got '" + Printable(*text) + "'" +
                   (nearest ? " (did you mean \"" + *nearest + "\"?)" : ""));

@@ -1,32 +1,10 @@
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
-
+#include "experiment/toml/input.h"
 #include "experiment/toml/section_internal.h"
 
 namespace mascot {
 namespace {
 
-constexpr std::size_t kLargestFile = 16u << 20;  // ten thousand agents with their edges need about 1 MiB
 constexpr std::size_t kMostMistakes = 100;
-
-class File {
- public:
-  // Non-blocking: opening a FIFO that has no writer would wait for ever.
-  explicit File(const std::string& path) : fd_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
-  ~File() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  int fd() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 /// Throws ConfigError for a key of more than kDeepestKey parts: toml++ makes and frees one table per part recursively,
 /// and a key of a million parts would overflow the stack. Skips strings and comments as TOML does.
@@ -87,28 +65,6 @@ toml::table ParseToml(std::string_view text, const std::string& name) {
   }
 }
 
-std::string ReadRegularFile(const std::string& path) {
-  const auto refuse = [&](const std::string& why) -> std::string { throw ConfigError({OneLine(path) + ": " + why}); };
-  const auto unreadable = [&] { return refuse(std::string("cannot be read: ") + std::strerror(errno)); };
-  const auto too_large = [&] { return refuse("is larger than 16 MiB"); };
-  const File file(path);
-  struct stat status {};
-  if (file.fd() < 0 || ::fstat(file.fd(), &status) != 0) return unreadable();
-  if (S_ISDIR(status.st_mode)) return refuse("is a directory");
-  if (!S_ISREG(status.st_mode)) return refuse("is not a regular file");
-  if (static_cast<std::size_t>(status.st_size) > kLargestFile) return too_large();
-  std::string text;
-  char buffer[1 << 16];
-  for (;;) {
-    const ssize_t got = ::read(file.fd(), buffer, sizeof buffer);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return unreadable();
-    if (got == 0) return text;
-    text.append(buffer, static_cast<std::size_t>(got));
-    if (text.size() > kLargestFile) return too_large();  // it grew while we read
-  }
-}
-
 ConfigError::ConfigError(std::vector<std::string> mistakes)
     : std::runtime_error([&] {
         std::string text;
@@ -148,7 +104,7 @@ void Section::Document::ThrowIfWrong() const {
 }
 
 Section Section::FromFile(const std::string& path, std::span<const Override> overrides) {
-  return FromText(ReadRegularFile(path), path, overrides);
+  return FromText(ReadInput(path), NameOfInput(path), overrides);
 }
 
 Section Section::FromText(const std::string& text, const std::string& name, std::span<const Override> overrides) {

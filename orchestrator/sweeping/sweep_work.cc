@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "agent/laws.h"
+#include "experiment/toml/input.h"
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/report/summary.h"
@@ -58,7 +59,7 @@ std::map<std::string, std::string> FlyOne(const Sweep& sweep, std::size_t run) {
 
 Experiment Sweep::Load(const SweepPoint& point) const {
   const Section document = Section::FromText(text, name, laws.Fit(point.overrides));
-  Experiment experiment = LoadExperiment(document, fs::path(name).stem().string());
+  Experiment experiment = LoadExperiment(document, StemOfInput(name));
   if (experiment.run.mode == Mode::kRealtime)
     throw ConfigError({"sweep: expected run.mode = \"lockstep\", got \"realtime\""});
   return experiment;

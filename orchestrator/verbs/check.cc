@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 
+#include "experiment/toml/input.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/report/law_report.h"
@@ -132,7 +133,7 @@ void PrintGraph(const GraphFacts& facts, const Schedule& schedule) {
   PrintLine("roots", facts.roots.empty() ? "none: no spanning tree" : IdRanges(facts.roots));
 }
 
-int Check(const ConfigArgs& args, bool json) {
+int Check(ConfigArgs& args, bool json) {
   Experiment experiment = args.Load();
   const GraphFacts facts = FactsOf(experiment.graph, experiment.law.leader);
   Prediction prediction = Predict(experiment);
@@ -141,7 +142,7 @@ int Check(const ConfigArgs& args, bool json) {
     std::cout << JsonText(ToJson(experiment, facts, prediction));
     return 0;
   }
-  std::cout << args.path << ": valid\n";
+  std::cout << NameOfInput(args.path) << ": valid\n";
   PrintExperiment(experiment);
   PrintGraph(facts, experiment.schedule);
   for (const std::string& line : DelayLines(experiment)) PrintLine("delay in use", line);

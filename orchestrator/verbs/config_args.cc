@@ -1,9 +1,9 @@
 #include "orchestrator/verbs/config_args.h"
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 
 #include "agent/laws.h"
+#include "experiment/toml/input.h"
 
 namespace mascot {
 namespace {
@@ -19,7 +19,7 @@ Override ParseOverride(const std::string& set) {
 }  // namespace
 
 void ConfigArgs::AddTo(CLI::App& command) {
-  command.add_option("config", path, "experiment file (TOML)")->required()->type_name("CONFIG");
+  command.add_option("config", path, "experiment file (TOML); -: standard input")->required()->type_name("CONFIG");
   command.add_option("--set", sets, "replaces or adds a key: --set law.p_gain=0.5")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);  // otherwise it would take CONFIG as a second value
@@ -27,12 +27,14 @@ void ConfigArgs::AddTo(CLI::App& command) {
   command.add_option("--seed", seed, "instead of run.seed")->type_name("N");
 }
 
-Experiment ConfigArgs::Load() const {
+Experiment ConfigArgs::Load() {
+  if (!text_) text_ = ReadInput(path);
+  const std::string name = NameOfInput(path);
   std::vector<Override> all;
   for (const std::string& set : sets) all.push_back(ParseOverride(set));
   if (duration_s) all.push_back({"run.duration_s", *duration_s});
   if (seed) all.push_back({"run.seed", *seed});
-  return LoadExperiment(Section::FromFile(path, all), std::filesystem::path(path).stem().string());
+  return LoadExperiment(Section::FromText(*text_, name, all), StemOfInput(name));
 }
 
 }  // namespace mascot

@@ -20,8 +20,12 @@ struct ConfigArgs {
 
   /// Declares the arguments. `*this` must outlive the parsing.
   void AddTo(CLI::App& command);
-  /// Reads and checks the experiment. Throws ConfigError.
-  Experiment Load() const;
+  /// Reads and checks the experiment. A copy of these arguments does not read the file again, which may be a pipe.
+  /// Throws ConfigError.
+  Experiment Load();
+
+ private:
+  std::optional<std::string> text_;
 };
 
 }  // namespace mascot

@@ -126,7 +126,7 @@ void Print(const Graph& graph, const GraphFacts& facts, const Schedule& schedule
   PrintTree(facts);
 }
 
-int ShowGraph(const ConfigArgs& args, bool json, bool dot) {
+int ShowGraph(ConfigArgs& args, bool json, bool dot) {
   const Experiment experiment = args.Load();
   if (dot) {
     std::cout << ToDot(experiment.graph, experiment.law.leader, WhenEdgesWork(experiment.schedule));

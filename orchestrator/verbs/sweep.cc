@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bus/stop_signal.h"
+#include "experiment/toml/input.h"
 #include "orchestrator/formats/whole_file.h"
 #include "orchestrator/processes/children.h"
 #include "orchestrator/processes/script.h"
@@ -52,13 +53,13 @@ void CheckOut(const std::string& out) {
 
 /// The words that type this sweep again, without what concerns a share, the terminal or the picture.
 std::vector<std::string> CommandOf(const SweepArgs& args) {
-  std::vector<std::string> words{(ProgramFolder() / "orchestrator").string(), "sweep", args.config};
+  std::vector<std::string> words{(ProgramFolder() / "orchestrator").string(), "sweep", AsWord(args.config)};
   for (const std::string& word : args.words.sets) words.insert(words.end(), {"--set", word});
   for (const std::string& word : args.words.randoms) words.insert(words.end(), {"--random", word});
   if (!args.words.randoms.empty()) words.insert(words.end(), {"--samples", std::to_string(args.words.samples)});
   if (!args.words.seeds.empty()) words.insert(words.end(), {"--seeds", args.words.seeds});
-  if (!args.metric_file.empty()) words.insert(words.end(), {"--metric", args.metric_file});
-  words.insert(words.end(), {"--out", args.out});
+  if (!args.metric_file.empty()) words.insert(words.end(), {"--metric", AsWord(args.metric_file)});
+  words.insert(words.end(), {"--out", AsWord(args.out)});
   return words;
 }
 
@@ -87,7 +88,7 @@ int WriteJobArray(const SweepArgs& args, std::size_t runs, StopSignal& stop) {
     return kExitDone;
   }
   std::cout << std::flush;  // before sbatch prints
-  return RunProgram({"sbatch", script}, stop);
+  return RunProgram({"sbatch", AsWord(script)}, stop);
 }
 
 /// Throws ConfigError for options that exclude each other, in a way that the parser cannot say.
@@ -95,6 +96,9 @@ void CheckSlurm(const SweepArgs& args) {
   if (!args.slurm) return;
   if (!args.shard.empty())
     throw ConfigError({"--slurm: expected no --shard, because each task of the job array has its own"});
+  if (DescriptorOf(args.config))
+    throw ConfigError(
+        {"--slurm: expected a file, which each task of the job array reads, got " + NameOfInput(args.config)});
   if (args.force)
     throw ConfigError({"--slurm: expected no --force, because a task that is queued again goes on with what is there"});
 }
@@ -129,7 +133,7 @@ int Run(const SweepArgs& args) {
   CheckSlurm(args);
   const std::optional<Shard> shard = ShardOf(args);
   const std::string out = shard ? TableOfShard(args.out, *shard).string() : args.out;
-  const Sweeper sweeper(args.config, ReadRegularFile(args.config), args.words);
+  const Sweeper sweeper(NameOfInput(args.config), ReadInput(args.config), args.words);
   const std::size_t runs = sweeper.plan().size();
   MetricFile metric_file{args.metric_file, ""};
   if (!args.metric_file.empty()) metric_file.text = ReadRegularFile(args.metric_file);
@@ -168,7 +172,7 @@ int Run(const SweepArgs& args) {
 
 std::function<int()> SetUpSweep(CLI::App& command) {
   auto args = std::make_shared<SweepArgs>();
-  command.add_option("config", args->config, "experiment file (TOML)")->type_name("CONFIG");
+  command.add_option("config", args->config, "experiment file (TOML); -: standard input")->type_name("CONFIG");
   command
       .add_option("--set", args->words.sets,
                   "a key and its values: KEY=A:STEP:B, KEY=V1,V2,..., or one value; every combination is run")

@@ -88,7 +88,7 @@ std::string HostsOfTheJob(int agents) {
 }
 
 /// The experiment; with --slurm, on the nodes of the job.
-Experiment Load(const UpArgs& args) {
+Experiment Load(UpArgs& args) {
   Experiment experiment = args.config.Load();
   if (!args.slurm) return experiment;
   if (!experiment.hosts.empty())
@@ -99,7 +99,7 @@ Experiment Load(const UpArgs& args) {
   return on_nodes.Load();
 }
 
-int Up(const UpArgs& args) {
+int Up(UpArgs& args) {
   const auto launched = WallClock::now();
   StopSignal stop;
   const Experiment experiment = Load(args);
