@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "experiment/toml/section.h"
+#include "orchestrator/sweeping/plan.h"
 #include "orchestrator/sweeping/table.h"
 #include "tests/scratch.h"
 
@@ -92,13 +93,46 @@ TEST_F(SweepFileTest, ReplacesATableWithoutRows) {
   EXPECT_NO_THROW(SweepFile(path_, kSweepColumns, "plan", false));
 }
 
-TEST_F(SweepFileTest, DropsIncompleteRows) {
+TEST_F(SweepFileTest, DropsAnIncompleteLastRow) {
   SweepFile(path_, kSweepColumns, "plan", false).Add(7, {"0.5", ""});
-  WriteFile(path_, "run,law.beta,error\n0,0.5,\n1,0.5\nx,1,\n2,0.5,,3\n3,0.5,\"an error, the process too\"\n");
+  WriteFile(path_, "run,law.beta,error\n0,0.5,\n3,0.5,\"an error, the process too\"\n1,0.5,");
   SweepFile file(path_, kSweepColumns, "plan", false);
   EXPECT_EQ(file.rows(), 2);
   EXPECT_TRUE(file.Has(0));
   EXPECT_TRUE(file.Has(3)) << "it failed by itself";
+}
+
+TEST_F(SweepFileTest, NamesTheLineAndTheColumnOfWhatNoSweepHasWritten) {
+  const SweepFile::Cells columns = {"run", "law.beta", "error", "sim_s"};
+  const SweepPlan plan({.sets = {"law.beta=0.5,0.7"}, .randoms = {}, .samples = 1, .seeds = ""});
+  const auto refusal = [&](const std::string& rows) -> std::string {
+    std::filesystem::remove(path_);
+    SweepFile(path_, columns, "plan", true, &plan).Add(0, {"0.5", "", "1.0"});
+    WriteFile(path_, "run,law.beta,error,sim_s\n0,0.5,,1.0\n" + rows);
+    try {
+      const SweepFile file(path_, columns, "plan", false, &plan);
+    } catch (const ConfigError& error) {
+      const std::string text = error.what();
+      EXPECT_TRUE(text.starts_with(path_ + ":3: ")) << text;
+      return text.substr(std::min(text.size(), path_.size() + 4));
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal("1,0.7,,\n"), "");
+  EXPECT_EQ(refusal("1,0.7,,inf\n"), "");
+  EXPECT_EQ(refusal("1,0.7,an error,\n"), "");
+  EXPECT_EQ(refusal("1,0.7,\n"), "expected 4 cells, got 3");
+  EXPECT_EQ(refusal("1,0.7,,1.0,2\n"), "expected 4 cells, got 5");
+  EXPECT_EQ(refusal("\n"), "expected 4 cells, got 1");
+  EXPECT_EQ(refusal("x,0.7,,1.0\n"), "run: expected a number of a run below 2, got 'x'");
+  EXPECT_EQ(refusal("2,0.7,,1.0\n"), "run: expected a number of a run below 2, got '2'");
+  EXPECT_EQ(refusal("-1,0.7,,1.0\n"), "run: expected a number of a run below 2, got '-1'");
+  EXPECT_EQ(refusal("0,0.5,,1.0\n"), "run: expected each run once, got 0 again");
+  EXPECT_EQ(refusal("1,0.5,,1.0\n"), "law.beta: expected 0.7, which run 1 of this sweep has, got '0.5'");
+  EXPECT_EQ(refusal("1,0.7,,fast\n"), "sim_s: expected a number, true, false or nothing, got 'fast'");
+  EXPECT_EQ(refusal("1,0.7,,1.0\r\n"), "sim_s: expected a number, true, false or nothing, got '1.0\r'");
+  EXPECT_EQ(refusal("1,\"0.7\",,1.0\n"),
+            "expected cells as a sweep writes them, got other quotes or a carriage return");
 }
 
 /// Opens the table in another process, since locks are held by processes. Returns 0 if it opens, 2 if it is locked.

@@ -101,7 +101,7 @@ Merged Merge(const std::vector<fs::path>& tables, const std::string& out, bool f
     CheckSame(identity, tables.front(), IdentityOf(table), table);
     if (fs::exists(out) && fs::equivalent(out, table))
       throw ConfigError({fmt::format("sweep merge: expected --out FILE that is none of the shares, got {}", out)});
-    shares.push_back(std::make_unique<ShareTable>(ShareTable{table, TableRows(table, columns, /*lost=*/false)}));
+    shares.push_back(std::make_unique<ShareTable>(ShareTable{table, TableRows(table, columns, /*lost=*/false, &plan)}));
     shares.back()->rows.places().ForEach([&](std::size_t run, std::uint64_t /*place*/) {
       if (run >= plan.size())
         throw ConfigError(

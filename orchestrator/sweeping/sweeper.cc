@@ -141,7 +141,7 @@ Sweeper::Outcome Sweeper::Do(const Options& options, bool fly, StopSignal& stop)
     if (strict) looks.CheckSeeds(first);
     if (!fly) return outcome;
     if (!options.force) CheckBuild(begun, identity, options.out);
-    SweepFile table(options.out, SweepColumns(plan_, metrics), identity.Text(), options.force);
+    SweepFile table(options.out, SweepColumns(plan_, metrics), identity.Text(), options.force, &plan_);
     if (!options.quiet)
       for (const std::string& note : laws.Notes()) std::cerr << "sweep: " << note << "\n";
     try {

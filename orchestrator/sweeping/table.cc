@@ -53,7 +53,10 @@ int LockedPlan(const fs::path& table) {
   if (fs::exists(table) && !fs::is_regular_file(table))
     throw ConfigError({"--out " + table.string() + ": expected a file, got something else"});
   const fs::path path = PlanOf(table);
-  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  const auto status = fs::symlink_status(path);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw ConfigError({path.string() + ": expected the plan of a sweep, got something else than a file"});
+  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (fd < 0) throw std::runtime_error(path.string() + ": cannot be opened: " + std::strerror(errno));
   struct flock whole {};
   whole.l_type = F_WRLCK;
@@ -65,6 +68,56 @@ int LockedPlan(const fs::path& table) {
   throw ConfigError(
       {"--out " + table.string() + ": expected a table of this sweep's own, got one that another is writing"});
 }
+
+std::string OneLineOf(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return text;
+}
+
+/// Whether a cell is one of those that a sweep writes below a metric.
+bool IsValue(const std::string& cell) {
+  return cell.empty() || cell == "true" || cell == "false" || NumberFrom<double>(cell);
+}
+
+/// What a row of a table must be.
+class RowCheck {
+ public:
+  /// `plan`: what the runs set, if that is known.
+  RowCheck(const std::vector<std::string>& columns, const SweepPlan* plan)
+      : columns_(columns),
+        plan_(plan),
+        runs_(plan != nullptr ? plan->size() : kMostRuns),
+        error_(static_cast<std::size_t>(std::ranges::find(columns, kErrorColumn) - columns.begin())) {}
+
+  /// The column with the first mistake, what was expected and what is there; empty: the row is right.
+  std::string MistakeIn(const std::string& line, const std::vector<std::string>& cells) const {
+    if (cells.size() != columns_.size()) return fmt::format("expected {} cells, got {}", columns_.size(), cells.size());
+    const auto run = NumberFrom<std::size_t>(cells[0]);
+    if (!run || *run >= runs_) return Mistake(0, fmt::format("a number of a run below {}", runs_), cells);
+    if (plan_ != nullptr) {
+      const SweepPoint point = (*plan_)[*run];
+      for (std::size_t k = 0; k < point.overrides.size(); ++k)
+        if (const std::string value = OneLineOf(point.overrides[k].value); cells[k + 1] != value)
+          return Mistake(k + 1, fmt::format("{}, which run {} of this sweep has", value, *run), cells);
+    }
+    for (std::size_t k = error_ + 1; k < cells.size(); ++k)
+      if (!IsValue(cells[k])) return Mistake(k, "a number, true, false or nothing", cells);
+    return CsvLine(cells) == line + "\n"
+               ? ""
+               : "expected cells as a sweep writes them, got other quotes or a carriage return";
+  }
+
+ private:
+  std::string Mistake(std::size_t k, const std::string& expected, const std::vector<std::string>& cells) const {
+    constexpr std::size_t kLongest = 60;
+    return fmt::format("{}: expected {}, got '{}'", columns_[k], expected, cells[k].substr(0, kLongest));
+  }
+
+  const std::vector<std::string>& columns_;
+  const SweepPlan* plan_;
+  std::size_t runs_, error_;
+};
 
 std::string ReadWhole(int fd) {
   std::string text(static_cast<std::size_t>(std::max<off_t>(::lseek(fd, 0, SEEK_END), 0)), '\0');
@@ -84,9 +137,7 @@ std::string CsvLine(const std::vector<std::string>& cells) {
   std::string line;
   for (const std::string& cell : cells) {
     if (&cell != &cells.front()) line += ',';
-    std::string text = cell;
-    std::ranges::replace_if(
-        text, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    const std::string text = OneLineOf(cell);
     if (text.find_first_of(",\"") == std::string::npos) {
       line += text;
       continue;
@@ -139,18 +190,23 @@ void RowPlaces::ForEach(const std::function<void(std::size_t, std::uint64_t)>& t
     if (Has(run)) take(run, places_[run]);
 }
 
-TableRows::TableRows(const fs::path& path, const Cells& columns, bool lost) : file_(path, std::ios::binary) {
+TableRows::TableRows(const fs::path& path, const Cells& columns, bool lost, const SweepPlan* plan)
+    : file_(path, std::ios::binary) {
   std::string line;
   if (!file_ || !fs::is_regular_file(path)) FailToRead(path);
   if (!std::getline(file_, line) || file_.eof() || line + "\n" != CsvLine(columns))
     throw ConfigError({path.string() + ": expected the columns of this sweep, got others"});
   const auto error = static_cast<std::size_t>(std::ranges::find(columns, kErrorColumn) - columns.begin());
+  const RowCheck check(columns, plan);
   std::uint64_t place = line.size() + 1;
-  for (; std::getline(file_, line) && !file_.eof(); place += line.size() + 1) {
+  for (std::size_t number = 2; std::getline(file_, line) && !file_.eof(); place += line.size() + 1, ++number) {
     const Cells cells = CsvCells(line);
-    const auto run = NumberFrom<std::size_t>(cells[0]);
-    const bool whole = run && *run < kMostRuns && cells.size() == columns.size();
-    if (whole && (lost || !cells[error].starts_with(kLostProcess))) places_.Add(*run, place);
+    std::string mistake = check.MistakeIn(line, cells);
+    const std::size_t run = NumberFrom<std::size_t>(cells[0]).value_or(0);
+    const bool counts = lost || (mistake.empty() && !cells[error].starts_with(kLostProcess));
+    if (mistake.empty() && counts && !places_.Add(run, place))
+      mistake = fmt::format("run: expected each run once, got {} again", run);
+    if (!mistake.empty()) throw ConfigError({fmt::format("{}:{}: {}", path.string(), number, mistake)});
   }
   if (file_.bad()) FailToRead(path);
 }
@@ -168,12 +224,12 @@ void TableRows::ForEach(const std::function<void(std::size_t, const std::string&
   });
 }
 
-SweepFile::SweepFile(fs::path path, const Cells& columns, const std::string& plan, bool force)
+SweepFile::SweepFile(fs::path path, const Cells& columns, const std::string& plan, bool force, const SweepPlan* runs)
     : path_(fs::is_symlink(path) && fs::exists(path) ? fs::canonical(path) : std::move(path)),
       columns_(columns),
       plan_fd_(LockedPlan(path_)) {
   std::optional<TableRows> rows;
-  if (fs::exists(path_) && !force && IsOfThisSweep(plan)) rows.emplace(path_, columns_, /*lost=*/false);
+  if (fs::exists(path_) && !force && IsOfThisSweep(plan)) rows.emplace(path_, columns_, /*lost=*/false, runs);
   Rewrite(rows ? &*rows : nullptr);  // before the plan: rows must never be next to the plan of another sweep
   Overwrite(plan_fd_, plan, PlanOf(path_));
 }

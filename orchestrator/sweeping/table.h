@@ -11,6 +11,8 @@
 
 namespace mascot {
 
+class SweepPlan;
+
 /// Name of the column with the error of a run; its cell is empty if the run did not fail.
 inline constexpr const char* kErrorColumn = "error";
 
@@ -39,14 +41,15 @@ class RowPlaces {
   std::size_t size_ = 0;
 };
 
-/// The complete rows of a table that is only read; of a run that is there twice, the first.
+/// The complete rows of a table that is only read.
 class TableRows {
  public:
   using Cells = std::vector<std::string>;
 
-  /// `lost`: also runs whose process was lost. Throws ConfigError if the file does not begin with the names of
-  /// `columns`, and std::runtime_error if it cannot be read.
-  TableRows(const std::filesystem::path& path, const Cells& columns, bool lost);
+  /// `lost`: also runs whose process was lost. `plan`: the sweep that the rows must be of; null: any. Throws
+  /// ConfigError, naming line and column, if the file does not begin with the names of `columns`, or a row is none that
+  /// a sweep writes, or is there twice; std::runtime_error if it cannot be read. The last row may be incomplete.
+  TableRows(const std::filesystem::path& path, const Cells& columns, bool lost, const SweepPlan* plan = nullptr);
 
   const RowPlaces& places() const { return places_; }
   /// Hands over each row, with its line break, by the number of the run.
@@ -67,8 +70,9 @@ class SweepFile {
 
   /// Opens or creates the table at `path`. `plan` is text that identifies the sweep; it is stored beside the table, in
   /// PATH.plan. Throws ConfigError if the table has rows of another plan (with `force`, these are replaced instead), or
-  /// if another sweep is writing it.
-  SweepFile(std::filesystem::path path, const Cells& columns, const std::string& plan, bool force);
+  /// if another sweep is writing it, or as TableRows does. `runs`: the plan itself.
+  SweepFile(std::filesystem::path path, const Cells& columns, const std::string& plan, bool force,
+            const SweepPlan* runs = nullptr);
   ~SweepFile();
   SweepFile(const SweepFile&) = delete;
   SweepFile& operator=(const SweepFile&) = delete;
