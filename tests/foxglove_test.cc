@@ -7,6 +7,7 @@
 #include <random>
 
 #include "orchestrator/live/wish.h"
+#include "tests/repeated.h"
 #include "tests/scratch.h"
 
 namespace mascot {
@@ -185,6 +186,13 @@ TEST(Foxglove, DropsWhoSendsNoMessageOfTheProtocol) {
   Server server;
   for (const char* text : {"", "hello", "[]", "{}", "{\"op\":1}", "{\"op\":", "\xff\xfe"})
     EXPECT_EQ(server.Say(text), "expected a JSON object with \"op\"") << text;
+  for (const std::size_t levels : {65u, 100'000u, 300'000u}) {  // each a message of less than a megabyte
+    const std::string deep = Repeated(levels, "[") + Repeated(levels, "]");
+    for (const std::string& text :
+         {deep, R"({"op":"subscribe","subscriptions":)" + deep + "}",
+          R"({"op":"setParameters","parameters":[{"name":"law.p_gain","value":)" + deep + "}]}"})
+      EXPECT_EQ(server.Say(text), "expected a JSON object with \"op\"");
+  }
   EXPECT_EQ(server.SayBytes(""), "expected a binary message of kind 1, 2 or 3, got nothing");
   EXPECT_EQ(server.SayBytes("\x09zzz"), "expected a binary message of kind 1, 2 or 3, got another");
   EXPECT_EQ(server.SayBytes("\1\1"), "expected a message with a channel, got a shorter one");
@@ -205,12 +213,14 @@ TEST(Foxglove, AsksTheRunForWhatAServiceCallWants) {
   EXPECT_THAT(server.binaries[1], IsEmpty());
   server.Reply({true, "at tick 7"});
   EXPECT_THAT(server.binaries[1], ElementsAre(Bytes('\3', 0u, 5u, 4u) + R"(json{"granted":true,"words":"at tick 7"})"));
-  const std::tuple<const char*, const char*, std::uint32_t, const char*> kWrong[] = {
+  const std::tuple<std::string, const char*, std::uint32_t, const char*> kWrong[] = {
       {"{}", "json", 0, "expected {\"ask\": pause | resume | stop | step | pace | seek | event}"},
       {R"({"ask":"fly"})", "json", 0, "expected {\"ask\": pause | resume | stop | step | pace | seek | event}"},
       {R"({"ask":"pace"})", "json", 0, "pace: expected a number as \"value\""},
       {R"({"ask":"event","toml":1})", "json", 0, "event: expected a text as \"toml\""},
       {"not json", "json", 0, "expected {\"ask\": pause | resume | stop | step | pace | seek | event}"},
+      {R"({"ask":"event","toml":"x","more":)" + Repeated(300'000, "[") + Repeated(300'000, "]") + "}", "json", 0,
+       "expected {\"ask\": pause | resume | stop | step | pace | seek | event}"},
       {"{}", "cdr", 0, "expected the encoding json, got cdr"},
       {"{}", "json", 3, "there is no such service"}};
   for (const auto& [request, encoding, service, words] : kWrong) {

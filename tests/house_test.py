@@ -277,6 +277,20 @@ def faults_of_lengths(root):
             yield f"{path.relative_to(root)}: has {lines} lines, more than {LONGEST_LAW}"
 
 
+# --- text from outside ------------------------------------------------------------------------------------
+
+JSON_READER = "orchestrator/formats/outside_json.cc"
+READS_JSON = re.compile(r"\b\w*[Jj]son\s*::\s*(?:parse|accept|sax_parse|from_\w+)\b|\"_json\b|>>\s*\w*json\b")
+
+
+def faults_of_json(root):
+    """Of text that becomes JSON elsewhere than where the limits are."""
+    for path in sources(root, FOLDERS, CPP):
+        for number, line in enumerate((root / path).read_text().splitlines(), 1):
+            if path != JSON_READER and READS_JSON.search(line.split("//")[0]):
+                yield f"{path}:{number}: JSON is read by ReadJson(), which has limits ({JSON_READER})"
+
+
 # --- this tree ------------------------------------------------------------------------------------------
 
 
@@ -311,6 +325,10 @@ class ThisTree(HouseTest):
 
     def test_files_of_laws_can_be_read_in_one_go(self):
         self.check(faults_of_lengths(ROOT))
+
+    def test_json_from_outside_is_read_in_one_place(self):
+        self.assertTrue((ROOT / JSON_READER).exists())
+        self.check(faults_of_json(ROOT))
 
 
 # Functions of libm that give the same bits on every processor: exact, or rounded as IEEE 754 says, or made of such.
@@ -563,6 +581,23 @@ class Lengths(Planted):
         self.check(faults_of_lengths(self.root))
         self.plant({"agent/laws/flee.cc": "\n" * 151})
         self.check(faults_of_lengths(self.root), ["agent/laws/flee.cc: has 151 lines, more than 150"])
+
+
+class JsonOfOthers(Planted):
+    def broken(self, files, *lines):
+        self.plant(FILES | files)
+        self.check(faults_of_json(self.root), [f"{line}: JSON is read by ReadJson(), which has limits ({JSON_READER})"
+                                               for line in lines])
+
+    def test_a_sound_tree_has_no_faults(self):
+        self.broken({JSON_READER: "return Json::parse(text);\n",
+                     "orchestrator/a.cc": "// Json::parse\nauto json = ReadJson<Json>(text);\nJson::parser_callback_t f;\n"})
+
+    def test_every_way_in(self):
+        self.broken({"orchestrator/a.cc": "auto a = nlohmann::json::parse(text);\nbool b = Json::accept(text);\n"
+                                          "Json::sax_parse(text, &sax);\nauto d = ordered_json::from_cbor(bytes);\n"
+                                          "auto e = \"{}\"_json;\nfile >> json;\nauto g = Foxglove::Json::parse(t);\n"},
+                    *(f"orchestrator/a.cc:{line}" for line in range(1, 8)))
 
 
 if __name__ == "__main__":

@@ -301,6 +301,7 @@ TEST(RunsAlive, DoesNotListWhoAnswersOtherThanARun) {
                                     std::string(""),
                                     std::string("{\"name\": \"\xff\"}\n"),
                                     std::string(200'000, '[') + "\n",
+                                    "{\"name\": " + std::string(500'000, '[') + "\n",
                                     with("agents", "0"),
                                     with("agents", "1e400"),
                                     with("agents", "-1"),

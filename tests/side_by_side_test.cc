@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "experiment/toml/section.h"
+#include "tests/repeated.h"
 #include "tests/scratch.h"
 
 namespace mascot {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 using ::testing::ThrowsMessage;
 
 class SideBySideTest : public ::testing::Test {
@@ -80,7 +80,12 @@ TEST_F(SideBySideTest, RefusesWhatIsNoRun) {
   std::filesystem::remove(folder_.File("a/config.toml"));
   EXPECT_THAT([&] { SideBySide({a}); },
               ThrowsMessage<ConfigError>(a + ": expected the folder of a finished run, got no config.toml"));
-  EXPECT_THAT([&] { SideBySide({broken}); }, ThrowsMessage<ConfigError>(StartsWith(broken + "/summary.json: ")));
+  EXPECT_THAT([&] { SideBySide({broken}); },
+              ThrowsMessage<ConfigError>(broken + "/summary.json: expected JSON, got text that is no JSON (byte 2)"));
+  const std::string deep = Run("c", "", "{\"laws\": " + Repeated(500'000, "[") + Repeated(500'000, "]") + "}");
+  EXPECT_THAT([&] { SideBySide({deep}); },
+              ThrowsMessage<ConfigError>(
+                  deep + "/summary.json: expected JSON, got JSON with more than 64 lists and objects in each other"));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "orchestrator/formats/outside_json.h"
 #include "orchestrator/live/compact_json.h"
 #include "orchestrator/live/wish.h"
 
@@ -130,7 +131,7 @@ std::string Foxglove::OnText(ClientId id, Bytes text) {
       {"subscribeConnectionGraph", &Foxglove::OnSubscribeConnections},
       {"unsubscribeConnectionGraph", &Foxglove::OnUnsubscribeConnections},
   };
-  const Json message = Json::parse(text.begin(), text.end(), nullptr, /*allow_exceptions=*/false);
+  const auto message = JsonOrNull<Json>(TextOf(text));
   const std::string name = Text(message, "op");
   if (name.empty()) return "expected a JSON object with \"op\"";
   const auto* operation = std::ranges::find(kOperations, name, &Operation::name);
@@ -271,7 +272,7 @@ std::string Foxglove::OnServiceCall(ClientId id, Bytes message) {
   if (encoding != "json") return fail("expected the encoding json, got " + encoding.substr(0, kLongestEcho));
   Wish wish;
   try {
-    wish = ReadWish(Json::parse(bytes.rest().begin(), bytes.rest().end(), nullptr, /*allow_exceptions=*/false));
+    wish = ReadWish(JsonOrNull<Json>(TextOf(bytes.rest())));
   } catch (const std::invalid_argument& error) {
     return fail(error.what());
   }

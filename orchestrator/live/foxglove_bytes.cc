@@ -1,7 +1,8 @@
 #include "orchestrator/live/foxglove_bytes.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
+
+#include "orchestrator/formats/outside_json.h"
 
 namespace mascot {
 namespace {
@@ -24,12 +25,14 @@ std::optional<Goal> GoalFromCdr(std::span<const std::uint8_t> message) {
 }
 
 std::optional<Goal> GoalFromJson(std::span<const std::uint8_t> message) try {
-  const auto json = nlohmann::json::parse(message.begin(), message.end());
+  const auto json = ReadJson<nlohmann::json>(TextOf(message));
   const auto& position = json.at("pose").at("position");
   Goal goal{.frame_id = {}, .x = position.at("x"), .y = position.at("y"), .z = position.at("z")};
   if (json.contains("header")) goal.frame_id = json.at("header").value("frame_id", "");
   return goal;
 } catch (const nlohmann::json::exception&) {
+  return std::nullopt;
+} catch (const JsonError&) {
   return std::nullopt;
 }
 

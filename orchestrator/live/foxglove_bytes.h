@@ -15,6 +15,11 @@ struct Goal {
   double x = 0, y = 0, z = 0;
 };
 
+/// Bytes as text, in the same place.
+inline std::string_view TextOf(std::span<const std::uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 /// Reads the little-endian fields of a message of unknown origin. Beyond its end everything is 0 and ok() is false.
 class ByteReader {
  public:
@@ -30,10 +35,7 @@ class ByteReader {
     return value;
   }
   /// A u32 length, then so many bytes.
-  std::string_view TakeText() {
-    const auto bytes = TakeBytes(Take<std::uint32_t>());
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-  }
+  std::string_view TakeText() { return TextOf(TakeBytes(Take<std::uint32_t>())); }
   /// Goes to the next multiple of `bytes`, counted from the beginning.
   void Align(std::size_t bytes) { TakeBytes((bytes - (all_.size() - rest_.size()) % bytes) % bytes); }
   std::span<const std::uint8_t> TakeBytes(std::size_t count) {

@@ -6,6 +6,7 @@
 
 #include "bus/wire.h"
 #include "idl/topics.h"
+#include "orchestrator/formats/outside_json.h"
 
 namespace mascot {
 namespace {
@@ -120,7 +121,7 @@ void LiveView::SetExperiment(const Experiment& now, const std::vector<ShownKey>&
   server_.Post([this, json = ExperimentJson(now, prediction, source_, keys), keys]() mutable {
     PublishLatched(kExperimentChannel, std::move(json));
     std::vector<Foxglove::Parameter> parameters;
-    for (const ShownKey& key : keys) parameters.push_back({key.name, Foxglove::Json::parse(key.value, nullptr, false)});
+    for (const ShownKey& key : keys) parameters.push_back({key.name, JsonOrNull<Foxglove::Json>(key.value)});
     foxglove_.SetParameters(std::move(parameters));
   });
 }

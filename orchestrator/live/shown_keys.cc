@@ -4,6 +4,7 @@
 
 #include "agent/laws.h"
 #include "experiment/live_keys.h"
+#include "orchestrator/formats/outside_json.h"
 
 namespace mascot {
 namespace {
@@ -18,7 +19,7 @@ const Value* FindValue(const Value& table, const std::string& path) {
 /// Numbers, booleans, texts and lists of them are written alike in TOML and in JSON; other values are null.
 std::string JsonOf(const Value* value) {
   const std::string text = value == nullptr ? "null" : ToToml(*value);
-  return nlohmann::json::accept(text) ? text : "null";
+  return JsonOrNull<nlohmann::json>(text).is_null() ? "null" : text;
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "orchestrator/live/strange_json.h"
 
+#include "orchestrator/formats/outside_json.h"
+
 namespace mascot {
 namespace {
 
@@ -26,13 +28,8 @@ std::string WithoutControls(const std::string& text, bool lines) {
 }  // namespace
 
 std::optional<nlohmann::ordered_json> StrangeJson(std::string_view line) {
-  bool too_deep = false;
-  const auto look = [&too_deep](int depth, StrangersJson::parse_event_t, const StrangersJson&) {
-    too_deep = too_deep || depth > kDeepest;
-    return !too_deep;
-  };
-  StrangersJson json = StrangersJson::parse(line, look, /*allow_exceptions=*/false);
-  return !too_deep && json.is_object() ? std::optional(std::move(json)) : std::nullopt;
+  auto json = JsonOrNull<StrangersJson>(line, {.depth = kDeepest});
+  return json.is_object() ? std::optional(std::move(json)) : std::nullopt;
 }
 
 const nlohmann::ordered_json* StrangeFields::Find(const char* field, bool (*is_right)(const nlohmann::ordered_json&)) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "agent/laws.h"
+#include "orchestrator/formats/outside_json.h"
 #include "orchestrator/live/compact_json.h"
 
 namespace mascot {
@@ -93,7 +94,7 @@ Json KeysJson(const std::vector<ShownKey>& keys) {
                     {"max", is_integer ? static_cast<double>(key.row.max_integer) : key.row.range.max},
                     {"open_min", key.row.range.open_min},
                     {"names", names},
-                    {"value", Json::parse(key.value, nullptr, /*allow_exceptions=*/false)},
+                    {"value", JsonOrNull<Json>(key.value)},
                     {"meaning", key.row.meaning}});
   }
   return json;

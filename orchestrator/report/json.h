@@ -6,6 +6,8 @@
 #include <string>
 
 #include "experiment/toml/key.h"
+#include "experiment/toml/utf8.h"
+#include "orchestrator/formats/outside_json.h"
 
 namespace mascot {
 
@@ -26,6 +28,6 @@ Json OrNull(const std::optional<Value>& value) {
 inline Json OrNull(const std::optional<Eigen::Vector3d>& v) { return v ? VectorJson(*v) : Json(nullptr); }
 
 /// The default of a key, null if it has none. Defaults are TOML text that is also valid JSON.
-inline Json DefaultJson(const Key& key) { return key.fallback.empty() ? Json(nullptr) : Json::parse(key.fallback); }
+inline Json DefaultJson(const Key& key) { return key.fallback.empty() ? Json(nullptr) : ReadJson<Json>(key.fallback); }
 
 }  // namespace mascot

@@ -8,6 +8,7 @@
 
 #include "agent/laws.h"
 #include "experiment/toml/section.h"
+#include "orchestrator/formats/outside_json.h"
 
 namespace mascot {
 namespace {
@@ -90,7 +91,7 @@ std::vector<std::string> SweepMetricNames(const std::vector<std::string>& laws) 
 }
 
 std::map<std::string, std::string> SweepMetrics(const std::string& summary, const std::vector<std::string>& names) {
-  const nlohmann::json json = nlohmann::json::parse(summary);
+  const auto json = ReadJson<nlohmann::json>(summary);
   std::map<std::string, std::string> cells;
   for (const std::string& name : names) {
     const nlohmann::json::json_pointer place = PlaceOf(name);

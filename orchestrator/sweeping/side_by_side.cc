@@ -9,6 +9,7 @@
 
 #include "experiment/toml/section.h"
 #include "experiment/toml/utf8.h"
+#include "orchestrator/formats/outside_json.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/sweeping/labels.h"
 #include "orchestrator/sweeping/metrics.h"
@@ -54,12 +55,14 @@ std::vector<std::string> LawsIn(const nlohmann::json& summary) {
 }
 
 Cells SummaryOf(const std::string& run, const std::string& text) try {
-  const nlohmann::json json = nlohmann::json::parse(text);
+  const auto json = ReadJson<nlohmann::json>(text);
   Cells cells = SweepMetrics(text, SweepMetricNames(LawsIn(json)));
   if (json.contains("exit")) cells["exit"] = json["exit"].dump();
   return cells;
 } catch (const nlohmann::json::exception& error) {
   throw ConfigError({run + "/summary.json: " + error.what()});
+} catch (const JsonError& error) {
+  throw ConfigError({run + "/summary.json: expected JSON, got " + error.what()});
 }
 
 /// The keys of all runs, `first` ones first, then in alphabetical order.
@@ -98,7 +101,7 @@ std::vector<std::string> HeadsOf(const std::vector<std::string>& runs) {
 /// A cell as the text shows it.
 std::string Shown(const std::string& cell) {
   if (cell.empty()) return "-";
-  const nlohmann::json json = nlohmann::json::parse(cell, nullptr, /*allow_exceptions=*/false);
+  const auto json = JsonOrNull<nlohmann::json>(cell);
   if (json.is_number_float()) return fmt::format("{:.6g}", json.get<double>());
   return cell.size() <= kWidest ? cell : std::string(CutUtf8(cell, kWidest - 3)) + "...";
 }
@@ -135,7 +138,7 @@ SideBySide::SideBySide(const std::vector<std::string>& runs) : runs_(runs) {
     const std::string text = ReadRegularFile(FileOf(run, "summary.json"));
     configs.push_back(ConfigOf(run));
     summaries.push_back(SummaryOf(run, text));
-    for (const std::string& law : LawsIn(nlohmann::json::parse(text))) laws.insert(law);
+    for (const std::string& law : LawsIn(ReadJson<nlohmann::json>(text))) laws.insert(law);
   }
   const auto line_of = [](const std::string& key, std::vector<Cells>& all) {
     Line line{key, {}};
@@ -172,8 +175,8 @@ std::string SideBySide::Text() const {
 std::string SideBySide::JsonText() const {
   const auto value_of = [](const std::string& cell) {
     if (cell.empty()) return Json(nullptr);
-    const Json value = Json::parse(cell, nullptr, /*allow_exceptions=*/false);
-    return value.is_discarded() ? Json(cell) : value;  // TOML that is no JSON
+    const auto value = JsonOrNull<Json>(cell);
+    return value.is_null() ? Json(cell) : value;  // TOML that is no JSON
   };
   Json json{{"runs", runs_}, {"config", Json::object()}, {"summary", Json::object()}};
   for (const Line& line : config_)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "orchestrator/formats/outside_json.h"
 #include "orchestrator/sweeping/metrics.h"
 #include "orchestrator/sweeping/sweep_json.h"
 #include "orchestrator/sweeping/table.h"
@@ -53,7 +54,7 @@ std::string SweepIdentity::Text() const {
 
 std::optional<SweepIdentity> SweepIdentity::FromText(const std::string& text) {
   try {
-    const nlohmann::json json = nlohmann::json::parse(text);
+    const auto json = ReadJson<nlohmann::json>(text);
     if (json.at("format") != kPlanFormat) return std::nullopt;
     return SweepIdentity{.build = json.at("build"),
                          .experiment = json.at("experiment"),
@@ -64,6 +65,8 @@ std::optional<SweepIdentity> SweepIdentity::FromText(const std::string& text) {
                          .law_names = json.at("law_names"),
                          .laws = KnownLawsFrom(json.at("laws"))};
   } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  } catch (const JsonError&) {
     return std::nullopt;
   }
 }

@@ -8,6 +8,7 @@
 #include "agent/laws.h"
 #include "experiment/toml/input.h"
 #include "orchestrator/engines/inprocess.h"
+#include "orchestrator/formats/outside_json.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/report/summary.h"
 #include "orchestrator/sweeping/metrics.h"
@@ -84,12 +85,12 @@ WorkerPool::Work WorkOf(const Sweep& sweep) {
 }
 
 Looked LookedFrom(const std::string& answer) {
-  const nlohmann::json json = nlohmann::json::parse(answer);
+  const auto json = ReadJson<nlohmann::json>(answer);
   return {json["resolved"], json["draws"], json["laws"].get<RunLaws>()};
 }
 
 std::vector<PythonMetric> MetricsFrom(const std::string& answer) {
-  return nlohmann::json::parse(answer).get<std::vector<PythonMetric>>();
+  return ReadJson<nlohmann::json>(answer).get<std::vector<PythonMetric>>();
 }
 
 }  // namespace mascot

@@ -13,6 +13,8 @@
 #include <thread>
 #include <utility>
 
+#include "experiment/toml/utf8.h"
+#include "orchestrator/formats/outside_json.h"
 #include "orchestrator/processes/build.h"
 #include "orchestrator/processes/console.h"
 #include "orchestrator/processes/worker_pool.h"
@@ -56,7 +58,7 @@ SweepFile::Cells RowOf(const SweepPoint& point, const WorkerPool::Done& done, co
   for (const Override& override : point.overrides) cells.push_back(override.value);
   cells.push_back(done.failure);
   std::map<std::string, std::string> measured;
-  if (done.failure.empty()) nlohmann::json::parse(done.answer).get_to(measured);
+  if (done.failure.empty()) ReadJson<nlohmann::json>(done.answer).get_to(measured);
   for (const std::string& metric : metrics) cells.push_back(measured[metric]);
   return cells;
 }

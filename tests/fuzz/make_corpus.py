@@ -155,6 +155,10 @@ def viewers():
     def binaries(*messages):
         return b"".join(struct.pack("<BH", 1, len(one)) + one for one in messages)
 
+    def repeated(is_text, begin, part, times, end=b""):
+        return (struct.pack("<BH", 2 if is_text else 3, len(begin)) + begin + struct.pack("<B", len(part)) + part
+                + struct.pack("<IH", times, len(end)) + end)
+
     goal = b'{"op":"advertise","channels":[{"id":%d,"topic":"/goal","encoding":"%s","schemaName":"geometry_msgs/PoseStamped"}]}'
     pose = CDR + struct.pack("<iI", 0, 0) + text("agent_3") + bytes(4) + struct.pack("<7d", 1, 2, 3, 0, 0, 0, 1)
     pose_json = b'{"header":{"frame_id":"agent_3"},"pose":{"position":{"x":1,"y":2,"z":3}}}'
@@ -171,6 +175,11 @@ def viewers():
         "goal_json": texts(goal % (2, b"json")) + binaries(b"\1" + struct.pack("<I", 2) + pose_json)
                      + texts(b'{"op":"unadvertise","channelIds":[2]}'),
         "ask": binaries(b"\2" + struct.pack("<III", 0, 5, 4) + b"json" + ask),
+        "deep_text": repeated(True, b"", b"[", 1_000_000) + repeated(True, b"", b'{"op":', 100_000, b'"x"'),
+        "deep_value": repeated(True, b'{"op":"setParameters","parameters":[{"name":"x","value":', b"[", 900_000, b"]}]}"),
+        "deep_list": repeated(True, b'{"op":"subscribe","subscriptions":', b'[{"id":', 100_000),
+        "deep_ask": repeated(False, b"\2" + struct.pack("<III", 0, 5, 4) + b'json{"ask":', b"[", 900_000),
+        "deep_goal": texts(goal % (2, b"json")) + repeated(False, b"\1" + struct.pack("<I", 2) + b'{"pose":', b'{"pose":', 100_000),
         "playback": binaries(b"\3" + struct.pack("<BfBQI", 1, 2.0, 1, 1000, 2) + b"r1"),
     }
 

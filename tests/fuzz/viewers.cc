@@ -1,6 +1,7 @@
 // Fuzzer: messages of viewers to the Foxglove protocol. Nothing is thrown, every question is answered, and what is sent
-// back is a message of the protocol. The input is a list of messages: a byte that says whether it is text, two of its
-// length, and the message.
+// back is a message of the protocol. The input is a list of messages: a byte that says whether it is text, and whether
+// it repeats itself; two of its length, and the message. One that repeats itself is of up to a megabyte: its beginning
+// (two bytes of length), what is repeated (one byte of length), how often (four bytes), and its end.
 #include <algorithm>
 #include <memory>
 #include <span>
@@ -67,13 +68,40 @@ class FuzzedServer final : public Foxglove::Host {
 }  // namespace
 }  // namespace mascot
 
+namespace mascot {
+namespace {
+
+constexpr std::size_t kLongest = 1 << 20;  // SocketLimits::message_bytes
+
+std::span<const std::uint8_t> TakePart(ByteReader& input, std::size_t length) {
+  return input.TakeBytes(std::min(length, input.rest().size()));
+}
+
+std::vector<std::uint8_t> TakeRepeated(ByteReader& input) {
+  const auto begin = TakePart(input, input.Take<std::uint16_t>());
+  const auto part = TakePart(input, input.Take<std::uint8_t>());
+  std::size_t times = input.Take<std::uint32_t>();
+  const auto end = TakePart(input, input.Take<std::uint16_t>());
+  std::vector<std::uint8_t> message(begin.begin(), begin.end());
+  for (; times > 0 && !part.empty() && message.size() + part.size() + end.size() <= kLongest; --times)
+    message.insert(message.end(), part.begin(), part.end());
+  message.insert(message.end(), end.begin(), end.end());
+  return message;
+}
+
+}  // namespace
+}  // namespace mascot
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   mascot::ByteReader input({data, size});
   mascot::FuzzedServer server;
   while (!input.rest().empty()) {
-    const bool is_text = input.Take<std::uint8_t>() % 2 == 0;
-    const std::size_t length = input.Take<std::uint16_t>();
-    server.Take(is_text, input.TakeBytes(std::min(length, input.rest().size())));
+    const auto kind = input.Take<std::uint8_t>();
+    const bool is_text = kind % 2 == 0, repeats = kind / 2 % 2 != 0;
+    if (repeats)
+      server.Take(is_text, mascot::TakeRepeated(input));
+    else
+      server.Take(is_text, mascot::TakePart(input, input.Take<std::uint16_t>()));
   }
   return 0;
 }

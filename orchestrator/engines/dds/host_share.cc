@@ -9,6 +9,7 @@
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
 #include "experiment/toml/utf8.h"
+#include "orchestrator/formats/outside_json.h"
 #include "orchestrator/processes/build.h"
 #include "orchestrator/processes/environment.h"
 
@@ -119,7 +120,7 @@ bool HostShare::Look() {
 }
 
 void HostShare::Obey(const std::string& line) {
-  const nlohmann::json words = nlohmann::json::parse(line);
+  const auto words = ReadJson<nlohmann::json>(line);
   const std::string node = words.value("node", "");
   if (!node.empty() && node != node_) return;
   const std::string kind = words.at("kind");

@@ -13,6 +13,7 @@
 #include "bus/local_socket.h"
 #include "experiment/toml/utf8.h"
 #include "orchestrator/engines/dds/route.h"
+#include "orchestrator/formats/outside_json.h"
 #include "orchestrator/processes/build.h"
 #include "orchestrator/processes/line_pipe.h"
 
@@ -143,7 +144,7 @@ void Launcher::CheckSilence(const Remote& remote) const {
 void Launcher::Hear(const Connection& connection, const std::string& line) {
   const auto is_here = [&](const auto& remote) { return &remote->connection == &connection; };
   const std::string name = (*std::ranges::find_if(remotes_, is_here))->config.name;
-  const nlohmann::json words = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
+  const auto words = JsonOrNull<nlohmann::json>(line);
   if (!words.is_object() || !words.contains("kind"))
     throw std::runtime_error(
         fmt::format("host {}: expected the words of `orchestrator host`, got '{}' (does its login "
