@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 
+#include "tests/repeated.h"
 #include "tests/scratch.h"
 
 namespace mascot {
@@ -403,7 +404,35 @@ TEST(Section, RefusesKeysThatWouldRunTheParserOutOfStack) {
   EXPECT_THAT(SyntaxMistakes("# '\n[" + key + "]\n"), refusal);
   EXPECT_THAT(SyntaxMistakes("s = '''\"'''''\n" + key + " = 1\n"), refusal);
   EXPECT_THAT(SyntaxMistakes("s = \"\\\"#\"\n" + key + " = 1\n"), refusal);
-  EXPECT_THAT(SyntaxMistakes("x = " + std::string(1000000, '[')), ElementsAre(HasSubstr("nested value depth")));
+}
+
+TEST(Section, RefusesValuesThatWouldRunTheParserOrUsOutOfStack) {
+  const std::string many_parts = "a" + Repeated(31, ".a") + " = ";
+  const auto refusal = ElementsAre("a.toml:2:1: expected at most 64 lists and tables in each other, got more");
+  for (const std::size_t levels : {65u, 100'000u}) {
+    EXPECT_THAT(SyntaxMistakes("\nx = " + Repeated(levels, "[")), refusal);
+    EXPECT_THAT(SyntaxMistakes("\nx = " + Repeated(levels, "[") + Repeated(levels, "]")), refusal);
+    EXPECT_THAT(SyntaxMistakes("\nx = " + Repeated(levels, "{ a = ") + "1" + Repeated(levels, "}")), refusal);
+    EXPECT_THAT(SyntaxMistakes("\nx = " + Repeated(levels, "[{ \"#\" = ")), refusal);
+    EXPECT_THAT(SyntaxMistakes("\n" + Repeated(levels, "[") + "a" + Repeated(levels, "]")), refusal);
+    // Keys with dots are tables in each other, too: toml++ does not count them.
+    EXPECT_THAT(SyntaxMistakes("\nx = " + Repeated(levels, "{ " + many_parts)), refusal);
+  }
+  EXPECT_THAT(SyntaxMistakes("x = " + Repeated(64, "[") + Repeated(64, "]")), IsEmpty());
+  EXPECT_THAT(SyntaxMistakes("x = " + Repeated(64, "{ a = ") + "1.5" + Repeated(64, "}")), IsEmpty());
+  EXPECT_THAT(
+      SyntaxMistakes("x = [" + Repeated(1000, "[1.5, [2.5]], { a.b = 1.5 }, ") + "]\n" + Repeated(1000, "[[y]]\n")),
+      IsEmpty());
+}
+
+TEST(Section, AnOverrideOrAnEventOfManyLevelsIsRefusedInWords) {
+  const std::string deep = Repeated(100'000, "[") + Repeated(100'000, "]");
+  const std::vector<Override> overrides{{.key = "x", .value = deep}};
+  EXPECT_THAT([&] { Section::FromText("", "a.toml", overrides); },
+              testing::ThrowsMessage<ConfigError>(HasSubstr("x: expected a TOML value, got '[[[")));
+  EXPECT_THAT(
+      [&] { Section::FromWords("set = { x = " + deep + " }", "event"); },
+      testing::ThrowsMessage<ConfigError>("event:1:1: expected at most 64 lists and tables in each other, got more"));
 }
 
 TEST(Section, CountsDotsInKeysOnly) {

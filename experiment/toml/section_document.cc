@@ -1,3 +1,8 @@
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "experiment/toml/input.h"
 #include "experiment/toml/section_internal.h"
 
@@ -6,36 +11,79 @@ namespace {
 
 constexpr std::size_t kMostMistakes = 100;
 
-/// Throws ConfigError for a key of more than kDeepestKey parts: toml++ makes and frees one table per part recursively,
-/// and a key of a million parts would overflow the stack. Skips strings and comments as TOML does.
-void RefuseDeepKeys(std::string_view text, const std::string& name) {
-  unsigned line = 1;
-  std::size_t parts = 1;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '#') {
-      i = std::min(text.find('\n', i), text.size()) - 1;
-    } else if (c == '"' || c == '\'') {
-      const std::string triple(3, c);
-      const bool multiline = text.substr(i, 3) == triple;
-      const std::string_view closing = multiline ? std::string_view(triple) : std::string_view(triple).substr(0, 1);
-      for (i += closing.size(); i < text.size() && text.substr(i, closing.size()) != closing; ++i) {
-        if (text[i] == '\n' && !multiline) return;  // no TOML: the parser will stop here, and say why
-        if (text[i] == '\\' && c == '"') ++i;
-        if (i < text.size() && text[i] == '\n') ++line;
+/// Throws ConfigError for a key of more than kDeepestKey parts, and for a value of more than kDeepestValue levels:
+/// toml++ and we make, walk and free one table per part or level recursively, and a million of them would overflow the
+/// stack. Skips strings and comments as TOML does.
+class DepthCheck {
+ public:
+  DepthCheck(std::string_view text, const std::string& name) : text_(text), name_(name) {}
+
+  void Run() {
+    for (; at_ < text_.size(); ++at_) {
+      const char c = text_[at_];
+      if (c == '#') {
+        at_ = std::min(text_.find('\n', at_), text_.size()) - 1;
+      } else if (c == '"' || c == '\'') {
+        if (!SkipString(c)) return;  // no TOML: the parser will stop here, and say why
+      } else {
+        Take(c);
       }
-      i += closing.size() - 1;
-      for (int extra = 0; multiline && extra < 2 && i + 1 < text.size() && text[i + 1] == c; ++extra) ++i;
-    } else if (c == '.') {
-      if (++parts > kDeepestKey)
-        throw ConfigError({name + ":" + std::to_string(line) + ":1: expected a key of at most " +
-                           std::to_string(kDeepestKey) + " parts, got more"});
-    } else if (c == '\n' || c == '=' || c == ',' || c == '[' || c == '{') {
-      parts = 1;
-      if (c == '\n') ++line;
     }
   }
-}
+
+ private:
+  /// What is open: the document itself, a header, a list or an inline table, with the key that is read in it.
+  struct Level {
+    std::size_t parts = 1;
+    bool in_value = false;
+  };
+
+  [[noreturn]] void Refuse(const std::string& expected) const {
+    throw ConfigError({name_ + ":" + std::to_string(line_) + ":1: expected " + expected + ", got more"});
+  }
+
+  void Take(char c) {
+    Level& level = levels_.back();
+    if (c == '\n') ++line_;
+    if (c == '=') {
+      level.in_value = true;
+    } else if (c == '.' && !level.in_value) {
+      if (++level.parts > kDeepestKey) Refuse("a key of at most " + std::to_string(kDeepestKey) + " parts");
+    } else if (c == '[' || c == '{') {
+      outside_ += level.parts;
+      levels_.emplace_back();
+      if (outside_ > kDeepestValue)
+        Refuse("at most " + std::to_string(kDeepestValue) + " lists and tables in each other");
+    } else if ((c == ']' || c == '}') && levels_.size() > 1) {
+      levels_.pop_back();
+      outside_ -= levels_.back().parts;
+    } else if (c == ',' || (c == '\n' && levels_.size() == 1)) {
+      level = {};
+    }
+  }
+
+  /// Goes to the last character of a string that `quote` begins. False if it does not end where it must.
+  bool SkipString(char quote) {
+    const std::string triple(3, quote);
+    const bool multiline = text_.substr(at_, 3) == triple;
+    const std::string_view closing = multiline ? std::string_view(triple) : std::string_view(triple).substr(0, 1);
+    for (at_ += closing.size(); at_ < text_.size() && text_.substr(at_, closing.size()) != closing; ++at_) {
+      if (text_[at_] == '\n' && !multiline) return false;
+      if (text_[at_] == '\\' && quote == '"') ++at_;
+      if (at_ < text_.size() && text_[at_] == '\n') ++line_;
+    }
+    at_ += closing.size() - 1;
+    for (int extra = 0; multiline && extra < 2 && at_ + 1 < text_.size() && text_[at_ + 1] == quote; ++extra) ++at_;
+    return true;
+  }
+
+  std::string_view text_;
+  const std::string& name_;
+  std::size_t at_ = 0;
+  unsigned line_ = 1;
+  std::vector<Level> levels_ = std::vector<Level>(1);
+  std::size_t outside_ = 0;  // parts of the keys of all levels but the last
+};
 
 /// `place` in the document `name`, as messages say it.
 std::string PlaceIn(const toml::source_region& place, const std::string& name) {
@@ -57,7 +105,7 @@ std::string Why(std::string_view description) {
 }  // namespace
 
 toml::table ParseToml(std::string_view text, const std::string& name) {
-  RefuseDeepKeys(text, name);
+  DepthCheck(text, name).Run();
   try {
     return toml::parse(text, std::string_view(name));
   } catch (const toml::parse_error& error) {

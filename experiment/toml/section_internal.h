@@ -112,8 +112,8 @@ struct Section::Table {
   std::optional<std::string> ResolvedInline() const;
 };
 
-/// Largest number of parts of a dotted key.
-constexpr std::size_t kDeepestKey = 32;
+/// Largest number of parts of a dotted key, and of levels of a value: lists and tables in each other.
+constexpr std::size_t kDeepestKey = 32, kDeepestValue = 64;
 /// True for characters of keys that need no quotes.
 bool IsBare(char c);
 /// Throws ConfigError with the place in `name`.
