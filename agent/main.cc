@@ -59,6 +59,7 @@ class AgentRole : public mascot::Role {
 
 int main(int argc, char** argv) {
   mascot::OpenStandardStreams();
+  mascot::FitStandardStreams();
   mascot::ForgetForeignSettings();
   mascot::StopSignal stop;  // before anything that starts threads: they must inherit the mask
   CLI::App app("MASCOT agent: hears its neighbours, runs its law and its low-level stack, commands its actuators.");

@@ -58,7 +58,7 @@ class PythonTimeLimit {
   bool interrupted_ = false;
 };
 
-/// Makes sys.stdout print to stderr. Called once, with the GIL held.
+/// Makes sys.stdout and sys.stderr print to stderr what is fit for a terminal. Called once, with the GIL held.
 void TakePythonOutput();
 /// The text of a str in UTF-8. Half of a surrogate pair, which UTF-8 does not have, is escaped as on Python's stderr:
 /// \udc80.

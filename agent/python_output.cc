@@ -4,30 +4,37 @@
 #include <cstdlib>
 #include <mutex>
 #include <string>
+#include <string_view>
 
 #include "agent/python_internal.h"
+#include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {
 
 std::atomic<int> suppressed = 0;
 
-/// Python's stdout: what Python code prints goes to stderr, because stdout belongs to the program. It goes there in
-/// whole lines, so that those of several threads do not mix; a line that is not over appears when Python flushes it,
-/// when it gets long, and at the end of the process.
+/// Python's stdout and stderr: what Python code prints goes to stderr, because stdout belongs to the program, and is
+/// fit for a terminal. It goes there in whole lines, so that those of several threads do not mix; a line that is not
+/// over appears when Python flushes it, when it gets long, and at the end of the process.
 class PythonOutput {
  public:
-  static PythonOutput& Get() {
-    static PythonOutput& output = *new PythonOutput;  // lives as long as the process: Python uses it
+  // They live as long as the process: Python uses them.
+  static PythonOutput& OfOutput() {
+    static PythonOutput& output = *new PythonOutput(/*is_error=*/false);
+    return output;
+  }
+  static PythonOutput& OfErrors() {
+    static PythonOutput& output = *new PythonOutput(/*is_error=*/true);
     return output;
   }
 
   std::size_t Write(const py::str& text) {
-    if (suppressed == 0) Add(TextOf(text));
+    if (is_error_ || suppressed == 0) Add(TextOf(text));
     return py::len(text);
   }
   void Flush() {
-    if (suppressed == 0) PrintAll();
+    if (is_error_ || suppressed == 0) PrintAll();
   }
   void PrintAll() {
     const std::lock_guard lock(mutex_);
@@ -37,6 +44,8 @@ class PythonOutput {
  private:
   static constexpr std::size_t kLongestLine = 4096;
 
+  explicit PythonOutput(bool is_error) : is_error_(is_error) {}
+
   void Add(const std::string& text) {
     const std::lock_guard lock(mutex_);
     line_ += text;
@@ -44,12 +53,14 @@ class PythonOutput {
   }
   void Print(std::size_t bytes) {
     if (bytes == 0) return;
-    std::fwrite(line_.data(), 1, bytes, stderr);
+    const std::string text = Plain(std::string_view(line_).substr(0, bytes));
+    std::fwrite(text.data(), 1, text.size(), stderr);
     std::fflush(stderr);
     line_.erase(0, bytes);
   }
 
-  std::mutex mutex_;  // at the end of the process the GIL may be held by a law that hangs
+  const bool is_error_;  // errors are never suppressed
+  std::mutex mutex_;     // at the end of the process the GIL may be held by a law that hangs
   std::string line_;
 };
 
@@ -63,8 +74,13 @@ PYBIND11_EMBEDDED_MODULE(mascot_output, module) {
 
 void TakePythonOutput() {
   const py::module_ module = py::module_::import("mascot_output");
-  py::module_::import("sys").attr("stdout") = py::cast(&PythonOutput::Get(), py::return_value_policy::reference);
-  std::atexit([] { PythonOutput::Get().PrintAll(); });
+  const py::module_ sys = py::module_::import("sys");
+  sys.attr("stdout") = py::cast(&PythonOutput::OfOutput(), py::return_value_policy::reference);
+  sys.attr("stderr") = py::cast(&PythonOutput::OfErrors(), py::return_value_policy::reference);
+  std::atexit([] {
+    PythonOutput::OfOutput().PrintAll();
+    PythonOutput::OfErrors().PrintAll();
+  });
 }
 
 SuppressedPythonOutput::SuppressedPythonOutput() { ++suppressed; }

@@ -78,6 +78,17 @@ void ExplainBusError(int signal) {
   raise(signal);
 }
 
+/// Prints what others have said, without memory: a byte that is no printable ASCII as "\x1b".
+void PrintPlain(const char* text) {
+  for (; *text != '\0'; ++text) {
+    const auto byte = static_cast<unsigned char>(*text);
+    if ((byte >= ' ' && byte < 0x7F) || byte == '\n' || byte == '\t')
+      std::fputc(byte, stderr);
+    else
+      std::fprintf(stderr, "\\x%02x", static_cast<unsigned>(byte));
+  }
+}
+
 /// A terminate handler. There may be no memory for a string.
 [[noreturn]] void SayAndExit() {
   try {
@@ -85,7 +96,7 @@ void ExplainBusError(int signal) {
     std::fputs("error: the program ended itself (std::terminate)\n", stderr);
   } catch (const std::exception& failure) {
     const Words words = WordsFor(failure);
-    for (const char* piece : {"error: ", words.before, failure.what(), words.after, "\n"}) std::fputs(piece, stderr);
+    for (const char* piece : {"error: ", words.before, failure.what(), words.after, "\n"}) PrintPlain(piece);
   } catch (...) {
     std::fputs("error: an exception of unknown type\n", stderr);
   }

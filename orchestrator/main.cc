@@ -98,6 +98,7 @@ int Main(int argc, char** argv) {
 int main(int argc, char** argv) {
   const int code = mascot::ExitCodeOf([&] {
     mascot::OpenStandardStreams();
+    mascot::FitStandardStreams();
     mascot::ForgetForeignSettings();
     std::signal(SIGCHLD, SIG_DFL);  // some supervisors leave it ignored; then waitpid cannot tell how a child ended
     std::signal(SIGPIPE, SIG_IGN);  // a closed terminal or pager must not kill the run

@@ -33,6 +33,7 @@ class ServerRole : public mascot::Role {
 
 int main(int argc, char** argv) {
   mascot::OpenStandardStreams();
+  mascot::FitStandardStreams();
   mascot::ForgetForeignSettings();
   mascot::StopSignal stop;  // before anything that starts threads: they must inherit the mask
   CLI::App app("MASCOT physics server: publishes every agent's state, gathers every command, steps the world.");

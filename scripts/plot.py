@@ -16,6 +16,7 @@ import own_matplotlib  # noqa: F401: the first of all that draw
 import animation
 import figure_style
 import matplotlib.pyplot as plt
+import plain
 from overlay import OVERLAYS, draw_overlay
 from pictures import PICTURES
 from run_folder import RunError, read_run
@@ -185,4 +186,5 @@ def main(arguments):
 
 
 if __name__ == "__main__":
+    plain.fit_streams()
     sys.exit(main(sys.argv[1:]))

@@ -20,6 +20,7 @@ import matplotlib
 import matplotlib.pyplot as plt
 import matplotlib.ticker
 import numpy as np
+import plain
 from figure_style import OKABE_ITO, size
 
 BLUE = OKABE_ITO[0]
@@ -418,4 +419,5 @@ def main():
 
 
 if __name__ == "__main__":
+    plain.fit_streams()
     sys.exit(main())

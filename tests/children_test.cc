@@ -86,6 +86,13 @@ TEST_F(ChildrenTest, WhatIsNoUtf8IsReplacedInLinesAndKeptInTheLog) {
   EXPECT_EQ(ReadFile(folder_.File("agent_1.log")), "Gr\374n \xC3\xBC\n");
 }
 
+TEST_F(ChildrenTest, WhatActsOnATerminalIsEscapedInLinesAndKeptInTheLog) {
+  Spawn("agent_1", "printf '\\033[31mred\\342\\200\\256\\r\\n'");
+  AwaitExits(1);
+  EXPECT_THAT(logs_.LastLines("agent_1"), ElementsAre("\\u001b[31mred\\u202e\\r"));
+  EXPECT_EQ(ReadFile(folder_.File("agent_1.log")), "\033[31mred\u202e\r\n");
+}
+
 TEST_F(ChildrenTest, ALineThatIsNotOverIsInTheLogAtOnce) {
   Spawn("agent_1", "printf 'step 1 ...'; exec sleep 1000");
   const auto deadline = std::chrono::steady_clock::now() + kPatience;

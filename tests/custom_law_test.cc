@@ -275,7 +275,7 @@ TEST(CustomLaw, WhatCannotShowItselfIsShownByItsType) {
 
 TEST(CustomLaw, WhatCameBackIsCutBetweenCharacters) {
   const std::string failure = Failure("def control(t, me, neighbours): return 'x' + 150 * '\xC3\xBC'\n");
-  EXPECT_EQ(failure, Utf8(failure)) << "half a character was left";
+  EXPECT_EQ(failure, Plain(failure)) << "half a character was left";
   EXPECT_THAT(failure, HasSubstr("\xC3\xBC..., expected 3 numbers or 2"));
 }
 

@@ -25,6 +25,7 @@ import animation
 import figure_style
 import overlay
 import pictures
+import plain
 import plot
 import plot_sweep
 import run_folder
@@ -1071,6 +1072,25 @@ class Surroundings(PlotTest):
         oblique = pathlib.Path(matplotlib.get_data_path()) / "fonts/ttf/DejaVuSans-Oblique.ttf"
         (fonts / "DejaVuSans.ttf").write_bytes(oblique.read_bytes())
         self.assertEqual(usual, self.drawn(HOME=str(fonts.parent)))
+
+
+class PlainWords(unittest.TestCase):
+    def test_what_acts_on_other_text_is_escaped(self):
+        self.assertEqual(plain.plain("Gr\u00fc\u00dfe,\tline\n\U0001f681"), "Gr\u00fc\u00dfe,\tline\n\U0001f681")
+        self.assertEqual(plain.plain("\x1b[31m\r\x00\x7f\x9b"), "\\u001b[31m\\r\\u0000\\u007f\\u009b")
+        for code in [0x061c, 0x200e, 0x200f, *range(0x2028, 0x202f), *range(0x2066, 0x206a)]:
+            self.assertEqual(plain.plain(chr(code)), f"\\u{code:04x}")
+        self.assertEqual(plain.plain("\udcff"), "\ufffd")
+
+    def test_scripts_print_no_word_of_others_as_it_is(self):
+        evil = "no\x1b[31m\u202e"
+        for script, words in [("plot.py", [evil]), ("plot.py", ["runs", "--" + evil]),
+                              ("plot_sweep.py", ["t.csv", "s.csv", "p.png", "c", "--" + evil])]:
+            ran = subprocess.run(["/usr/bin/python3", ROOT / "scripts" / script, *words], capture_output=True)
+            said = (ran.stdout + ran.stderr).decode()
+            self.assertNotEqual(ran.returncode, 0)
+            self.assertIn("\\u001b[31m\\u202e", said)
+            self.assertEqual(plain.plain(said), said)
 
 
 class ManyAgentsTest(unittest.TestCase):

@@ -9,11 +9,15 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <functional>
+#include <iostream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "bus/standard_streams.h"
+#include "experiment/toml/utf8.h"
 #include "orchestrator/processes/console.h"
 #include "tests/scratch.h"
 
@@ -182,6 +186,124 @@ TEST_P(TerminalOfWidth, HoldsEachProgressLineOfASweep) {
   ExpectToFit(progress);
   EXPECT_THAT(progress.back(), StartsWith("10 of 10 runs | 0 failed | about "));
   EXPECT_EQ(progress.back().ends_with(" s left"), GetParam() == 120) << progress.back();
+}
+
+/// What `print` prints, in a process of its own whose streams are fit.
+std::string PrintedBy(const std::function<void()>& print) {
+  int ends[2];
+  if (pipe(ends) != 0) throw std::runtime_error("no pipe");
+  const pid_t child = fork();
+  if (child == 0) {
+    dup2(ends[1], STDOUT_FILENO);
+    dup2(ends[1], STDERR_FILENO);
+    close(ends[1]);
+    FitStandardStreams();
+    print();
+    std::cout << std::flush;
+    _exit(0);
+  }
+  close(ends[1]);
+  const std::string bytes = ReadAll(ends[0]);
+  close(ends[0]);
+  waitpid(child, nullptr, 0);
+  return bytes;
+}
+
+TEST(FitStreams, EscapeWhatActsOnATerminalAndKeepCharactersWhole) {
+  EXPECT_EQ(PrintedBy([] {
+              std::cout << "a\x1b[31m" << '\r' << "\xe2"
+                        << "\x80"
+                        << "\xae" << '\xc3' << '\xbc' << 7 << "\n\t";
+            }),
+            "a\\u001b[31m\\r\\u202e\u00fc7\n\t");
+  EXPECT_EQ(PrintedBy([] { std::cout << "cut \xe2\x80"; }), "cut \uFFFD");
+  EXPECT_EQ(PrintedBy([] { std::cerr << "\xe2\x80\xae\x7f\u00fc" << std::endl; }), "\\u202e\\u007f\u00fc\n");
+  EXPECT_EQ(PrintedBy([] {
+              std::cerr << "\xe2"
+                        << "\x80\xae";
+            }),
+            "\uFFFD\uFFFD\uFFFD")
+      << "never what it would be";
+  EXPECT_EQ(PrintedBy([] {
+              PrintToTerminal("\x1b[31m");
+              std::cerr << "\x1b[31m";
+            }),
+            "\x1b[31m\\u001b[31m");
+}
+
+TEST(Console, PrintsColoursOfItsOwnAndNoneOfOthers) {
+  EXPECT_EQ(PrintedBy([] {
+              Console console(/*quiet=*/false);
+              console.Line("warning: \x1b[2J\u202e");
+              console.ChildLine("agent_1", "\x1b]0;title\x07\r\xff");
+              console.Progress(0.5, "\x1b[31m\n");
+            }),
+            "warning: \\u001b[2J\\u202e\n[agent_1] \\u001b]0;title\\u0007\\r\uFFFD\n\\u001b[31m\\n\n");
+  const Terminal terminal(100);
+  Console console(/*quiet=*/false);
+  console.Progress(0.1, "at \x1b[2J\n");
+  EXPECT_THAT(terminal.Drawn(), ElementsAre("at \\u001b[2J\\n"));
+  console.ChildLine("agent_1", "\x1b[2J");
+  EXPECT_THAT(terminal.Drawn(), ElementsAre(testing::EndsWith("\\u001b[2J"), "at \\u001b[2J\\n"));
+}
+
+TEST(Words, OfOthersReachNoTerminalAsTheyAre) {
+  const ScratchFolder folder;
+  // As strangers, files and users write them: colours, text from right to left, no UTF-8.
+  const std::string evil = "\x1b[31m\u202e\x9b\u2066", program = "'" MASCOT_BINARY_DIR "/orchestrator' ";
+  WriteFile(folder.File("good.toml"),
+            "[run]\nname = \"x\"\nduration_s = 0.1\n[agents]\ncount = 2\nmodel = \"double_integrator\"\n[graph]\n"
+            "topology = \"ring\"\n[output]\nsave_plot = false\n[law]\nname = \"consensus\"\n");
+  WriteFile(folder.File("bad.toml"), "\"\\u001b[31m\\u202e\" = 1\n[law]\nname = \"\\u001b[31m\\u2066\"\n");
+  WriteFile(folder.File("law.toml"),
+            "[run]\nduration_s = 0.1\n[agents]\ncount = 1\nmodel = \"double_integrator\"\n[graph]\nedges = []\n"
+            "[output]\nsave_plot = false\nfidelity = false\n[law]\nname = \"custom\"\npython = '''\nimport sys\n"
+            "def control(t, me, neighbours):\n  print('printed \\x1b[31m\\u202e\\x9b')\n"
+            "  print('warned \\x1b[31m\\u202e\\x9b', file=sys.stderr)\n"
+            "  if t > 0.05:\n    raise ValueError('raised \\x1b[31m\\u202e\\x9b')\n  return 0, 0\n'''\n");
+  const std::string out = folder.File(evil), good = folder.File("good.toml");
+  const auto run = [&](const std::string& words) { return Shell(program + words + " </dev/null"); };
+  ASSERT_EQ(run("up '" + good + "' --engine inprocess --out '" + out + "'").exit_code, 0);
+  for (const std::string& words :
+       std::vector<std::string>{"'" + evil + "'",
+                                "check '" + folder.File("no" + evil) + "'",
+                                "check '" + folder.File("bad.toml") + "'",
+                                "check '" + good + "' --set 'law." + evil + "=1'",
+                                "check '" + good + "' --set 'law.p_gain=" + evil + "'",
+                                "check '" + good + "' '--" + evil + "'",
+                                "up '" + good + "' --engine inprocess --force --out '" + out + "'",
+                                "up '" + good + "' --engine '" + evil + "'",
+                                "up '" + good + "' '--view=" + evil + "'",
+                                "up '" + good + "' --view --allow-origin '" + evil + "'",
+                                "info '" + out + "'",
+                                "info --json '" + out + "'",
+                                "verify '" + out + "'",
+                                "compare '" + out + "' '" + out + "'",
+                                "compare --json '" + out + "' '" + out + "'",
+                                "export '" + out + "' --format csv",
+                                "recover '" + out + "'",
+                                "view '" + evil + "'",
+                                "send --run '" + evil + "' pause",
+                                "plot '" + evil + "'"}) {
+    const Ran ran = run(words);
+    EXPECT_EQ(Plain(ran.output), ran.output) << words;
+    EXPECT_THAT(ran.output, Not(IsEmpty())) << words;
+  }
+  const Ran law = run("up '" + folder.File("law.toml") + "' --engine inprocess --force --out '" + out + "'");
+  EXPECT_EQ(law.exit_code, 1);
+  EXPECT_EQ(Plain(law.output), law.output);
+  for (const char* how : {"printed", "warned", "raised"})
+    EXPECT_THAT(law.output, testing::HasSubstr(how + std::string(" \\u001b[31m\\u202e\\u009b")));
+  const std::string summary = ReadFile(out + "/summary.json");
+  EXPECT_THAT(summary, testing::HasSubstr("raised "));
+  EXPECT_EQ(Plain(summary), summary);
+}
+
+TEST(Words, OfAnAgentThatIsStartedByHandAreFit) {
+  const Ran ran = Shell("'" MASCOT_BINARY_DIR "/agent' --id 1 '--\x1b[31m\u202e' </dev/null");
+  EXPECT_EQ(ran.exit_code, 2);
+  EXPECT_EQ(Plain(ran.output), ran.output);
+  EXPECT_THAT(ran.output, testing::HasSubstr("\\u001b[31m\\u202e"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Widths, TerminalOfWidth, testing::Values(40, 120));

@@ -54,6 +54,14 @@ class WireAuditTest : public testing::Test {
   std::uint8_t endpoints_ = 0;
 };
 
+TEST_F(WireAuditTest, WhatAStrangerCallsItselfIsFitForATerminal) {
+  audit_.OnParticipant(Participant(7), "\x1b[2J\u202erviz\n\xff", "process 7 (\x1b]0;x\x07) on \u2066vm");
+  Writes(Participant(7), Topic::Command(1));
+  EXPECT_EQ(audit_.Violation(),
+            "'\\u001b[2J\\u202erviz\\n\uFFFD' writes /agent_1/command, which only agent_1 may "
+            "(process 7 (\\u001b]0;x\\u0007) on \\u2066vm)");
+}
+
 TEST_F(WireAuditTest, FindsNothingInARunAsItShouldBe) {
   Reads(Participant(101), Topic::State(1));
   Reads(Participant(101), Topic::State(2));

@@ -36,7 +36,7 @@ void Try(const LawLibrary& library, const Experiment& experiment, int id, Plugin
     plugin.wanted = library.Make(SetupOf(experiment, id, params))->wanted();
     FailUnknownParams(law, plugin.params, std::vector<std::string_view>(params.asked().begin(), params.asked().end()));
   } catch (const std::invalid_argument& refusal) {
-    NoteRefusal(law, Utf8(refusal.what()));
+    NoteRefusal(law, Plain(refusal.what()));
   } catch (...) {
     law.Fail("library", "expected a law of agent " + std::to_string(id) + ", got an exception: " + ExceptionText());
   }
@@ -92,7 +92,7 @@ std::string ExceptionText() {
   try {
     throw;
   } catch (const std::exception& error) {
-    return Utf8(error.what());
+    return Plain(error.what());
   } catch (...) {
     return "it threw something that is no std::exception";
   }

@@ -123,7 +123,7 @@ std::string Section::PathOfFile(std::string_view key) {
   const std::string given = table_->Read<std::string>(
       key, "the path of a file", std::nullopt, "", [](const toml::node& node) -> std::optional<std::string> {
         const std::optional<std::string> text = TextIn(node);
-        return text && !text->empty() && OneLine(*text) == *text ? text : std::nullopt;
+        return text && !text->empty() && !HasControls(*text) ? text : std::nullopt;
       });
   if (table_->Wrong(key)) return "";
   // Follows symbolic links to folders, so that ".." means what it means to the system; the file keeps its name.
@@ -242,7 +242,7 @@ Value Section::Free(std::string_view key, const Value& absent) {
 
 void Section::Fail(std::string_view key, const std::string& message) {
   table_->wrong.emplace(key);
-  document_->Note(table_->PlaceOf(key), table_->PathOf(key), OneLine(message));
+  document_->Note(table_->PlaceOf(key), table_->PathOf(key), PlainLine(message));
 }
 
 void Section::FailRow(std::string_view key, std::size_t row, const std::string& message) {
@@ -259,8 +259,8 @@ void Section::FailInside(std::string_view key, const std::string& inner, const s
   const toml::node* node = table_->Get(key);
   const toml::table* values = node != nullptr ? node->as_table() : nullptr;
   const toml::node* value = values != nullptr ? values->get(inner.substr(0, inner.find_first_of(".["))) : nullptr;
-  document_->Note(value != nullptr ? value->source() : table_->PlaceOf(key), table_->PathOf(key) + "." + OneLine(inner),
-                  OneLine(message));
+  document_->Note(value != nullptr ? value->source() : table_->PlaceOf(key),
+                  table_->PathOf(key) + "." + PlainLine(inner), PlainLine(message));
 }
 
 void Section::FailInText(std::string_view key, const std::string& place, const std::string& message) {

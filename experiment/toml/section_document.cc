@@ -109,13 +109,14 @@ toml::table ParseToml(std::string_view text, const std::string& name) {
   try {
     return toml::parse(text, std::string_view(name));
   } catch (const toml::parse_error& error) {
-    throw ConfigError({PlaceIn(error.source(), name) + ": " + OneLine(Why(error.description()))});
+    throw ConfigError({PlaceIn(error.source(), name) + ": " + PlainLine(Why(error.description()))});
   }
 }
 
 ConfigError::ConfigError(std::vector<std::string> mistakes)
     : std::runtime_error([&] {
         std::string text;
+        for (std::string& mistake : mistakes) mistake = Plain(mistake);
         for (const std::string& mistake : mistakes) text += (text.empty() ? "" : "\n") + mistake;
         return text;
       }()),
@@ -123,7 +124,7 @@ ConfigError::ConfigError(std::vector<std::string> mistakes)
 
 Section::Document::Document(std::string_view text, const std::string& document_name,
                             std::span<const Override> overrides)
-    : name(OneLine(document_name)), root(ParseToml(text, name)) {
+    : name(PlainLine(document_name)), root(ParseToml(text, name)) {
   for (const Override& override : overrides) Apply(override, root);
 }
 

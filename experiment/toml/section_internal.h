@@ -7,6 +7,7 @@
 #include <set>
 
 #include "experiment/toml/section.h"
+#include "experiment/toml/utf8.h"
 
 namespace mascot {
 
@@ -137,11 +138,11 @@ Value ToValue(const toml::node& node);
 std::string QuotedToml(std::string_view text);
 /// TOML string; a multi-line one for text of several lines, if possible.
 std::string StringToml(std::string_view text);
-/// `text` for a one-line message: control characters escaped.
-std::string OneLine(std::string_view text);
+/// Whether any character of ASCII in `text` is a control.
+bool HasControls(std::string_view text);
 /// `text`, or its first 60 bytes and "...".
 std::string CutShort(std::string_view text);
-/// OneLine() of CutShort(): text of the user, for a message.
+/// PlainLine() of CutShort(): text of the user, for a message.
 std::string Printable(std::string_view text);
 /// "a, b, c".
 template <class Names>

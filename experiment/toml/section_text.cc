@@ -77,11 +77,7 @@ std::string StringToml(std::string_view text) {
   return is_plain && fits ? "'''\n" + std::string(text) + "'''" : QuotedToml(text);
 }
 
-std::string OneLine(std::string_view text) {
-  std::string line;
-  for (const char c : text) line += IsControl(c) ? Escaped(c) : std::string(1, c);
-  return line;
-}
+bool HasControls(std::string_view text) { return std::any_of(text.begin(), text.end(), IsControl); }
 
 std::string CutShort(std::string_view text) {
   constexpr std::size_t kLongest = 60;
@@ -89,7 +85,7 @@ std::string CutShort(std::string_view text) {
   return std::string(CutUtf8(text, kLongest)) + "...";
 }
 
-std::string Printable(std::string_view text) { return OneLine(CutShort(text)); }
+std::string Printable(std::string_view text) { return PlainLine(CutShort(text)); }
 
 std::optional<std::string> DidYouMean(std::string_view word, std::span<const std::string_view> names) {
   constexpr std::size_t kLongest = 64;  // nobody mistypes more; keeps the distance cheap on junk

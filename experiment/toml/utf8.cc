@@ -1,5 +1,7 @@
 #include "experiment/toml/utf8.h"
 
+#include <algorithm>
+
 namespace mascot {
 namespace {
 
@@ -29,17 +31,69 @@ Piece First(std::string_view text) {
   return {size, true};
 }
 
-}  // namespace
+struct CodeRange {
+  unsigned first, last;
+};
+/// Characters that change what others look like, or where they stand, on a terminal: controls (C0, DEL, C1), line and
+/// paragraph separators, and what reverses the direction of text ("Trojan Source", CVE-2021-42574).
+constexpr CodeRange kUnfit[] = {{0x00, 0x1F},     {0x7F, 0x9F},     {0x061C, 0x061C},
+                                {0x200E, 0x200F}, {0x2028, 0x202E}, {0x2066, 0x2069}};
 
-std::string Utf8(std::string_view bytes) {
+/// The number of a character.
+unsigned CodeOf(std::string_view character) {
+  if (character.size() == 1) return ByteAt(character, 0);
+  unsigned code = ByteAt(character, 0) & (0x7Fu >> character.size());
+  for (std::size_t i = 1; i < character.size(); ++i) code = code << 6 | (ByteAt(character, i) & 0x3Fu);
+  return code;
+}
+
+/// `code` is at most U+FFFF.
+std::string EscapeOf(unsigned code) {
+  if (code == '\n') return "\\n";
+  if (code == '\r') return "\\r";
+  if (code == '\t') return "\\t";
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string escape = "\\u";
+  for (int shift = 12; shift >= 0; shift -= 4) escape += kDigits[code >> shift & 0xFu];
+  return escape;
+}
+
+/// `kept`: controls that stay.
+std::string Fit(std::string_view bytes, std::string_view kept) {
   std::string text;
   text.reserve(bytes.size());
   while (!bytes.empty()) {
     const Piece piece = First(bytes);
-    text += piece.valid ? bytes.substr(0, piece.bytes) : kReplacement;
+    const std::string_view character = piece.valid ? bytes.substr(0, piece.bytes) : kReplacement;
+    const unsigned code = CodeOf(character);
+    const bool is_kept = code < 0x80 && kept.find(static_cast<char>(code)) != std::string_view::npos;
+    const bool is_unfit = !is_kept && std::ranges::any_of(kUnfit, [code](const CodeRange& range) {
+      return code >= range.first && code <= range.last;
+    });
+    if (is_unfit)
+      text += EscapeOf(code);
+    else
+      text += character;
     bytes.remove_prefix(piece.bytes);
   }
   return text;
+}
+
+}  // namespace
+
+std::string Plain(std::string_view bytes) { return Fit(bytes, "\n\t"); }
+
+std::string PlainLine(std::string_view bytes) { return Fit(bytes, ""); }
+
+std::size_t UnfinishedUtf8(std::string_view text) {
+  for (std::size_t bytes = 1; bytes < 4 && bytes <= text.size(); ++bytes) {
+    const std::string_view tail = text.substr(text.size() - bytes);
+    if ((ByteAt(tail, 0) & 0xC0) == 0x80) continue;  // in the midst of a character
+    const Piece piece = First(tail);
+    // What follows the end might still make a character of it if it fails there, and not before.
+    return !piece.valid && piece.bytes == tail.size() && ByteAt(tail, 0) >= 0xC2 && ByteAt(tail, 0) <= 0xF4 ? bytes : 0;
+  }
+  return 0;
 }
 
 std::string_view CutUtf8(std::string_view text, std::size_t longest) {

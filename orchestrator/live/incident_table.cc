@@ -51,7 +51,7 @@ std::string FirstIncidentsBeside(const std::string& recording) {
   constexpr std::size_t kMost = 1 << 17;  // bytes
   std::string text = TableBeside(recording, kMost);
   if (text.size() == kMost) text.resize(text.find_last_of('\n') + 1);
-  return Utf8(text);
+  return Plain(text);
 }
 
 void TellByHand(const std::string& recording, const Experiment& experiment, std::vector<ShownEvent>& events) {

@@ -1,5 +1,6 @@
 #include "orchestrator/live/strange_json.h"
 
+#include "experiment/toml/utf8.h"
 #include "orchestrator/formats/outside_json.h"
 
 namespace mascot {
@@ -8,22 +9,6 @@ namespace {
 using StrangersJson = nlohmann::ordered_json;
 
 constexpr int kDeepest = 16;
-
-/// `text`, which is UTF-8, without control characters (C0, DEL, C1).
-std::string WithoutControls(const std::string& text, bool lines) {
-  std::string clean;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const bool is_c1 = byte == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
-    const bool is_control = byte < 0x20 || byte == 0x7F || is_c1;
-    if (is_control && !(lines && byte == '\n'))
-      clean += "\xEF\xBF\xBD";  // U+FFFD
-    else
-      clean += text[i];
-    if (is_c1) ++i;
-  }
-  return clean;
-}
 
 }  // namespace
 
@@ -44,7 +29,8 @@ std::string StrangeFields::Text(const char* field, std::size_t longest, bool lin
   if (value == nullptr) return "";
   const auto& text = value->get_ref<const std::string&>();
   good_ = good_ && text.size() <= longest;
-  return good_ ? WithoutControls(text, lines) : "";
+  if (!good_) return "";
+  return lines ? Plain(text) : PlainLine(text);
 }
 
 bool StrangeFields::Boolean(const char* field) {

@@ -17,8 +17,7 @@ class StrangeFields {
  public:
   explicit StrangeFields(const nlohmann::ordered_json& object) : object_(object) {}
 
-  /// A text of at most `longest` bytes, in which control characters, which a terminal would obey, are replaced; ends of
-  /// lines stay if `lines`.
+  /// A text of at most `longest` bytes, fit for a terminal: in one line (PlainLine()), or in several if `lines`.
   std::string Text(const char* field, std::size_t longest, bool lines = false);
   bool Boolean(const char* field);
   double Number(const char* field, double least, double most);

@@ -133,7 +133,7 @@ void ChildLogs::Read(Stream& stream) {
 }
 
 void ChildLogs::TakeLine(Stream& stream, const std::string& bytes) {
-  const std::string line = Utf8(bytes);
+  const std::string line = Plain(bytes);
   stream.last.push_back(line);
   if (stream.last.size() > kLastLines) stream.last.pop_front();
   on_line_(stream.process, line);

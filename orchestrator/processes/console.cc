@@ -5,8 +5,8 @@
 
 #include <cstdlib>
 #include <functional>
-#include <iostream>
 
+#include "bus/standard_streams.h"
 #include "experiment/toml/utf8.h"
 
 namespace mascot {
@@ -37,30 +37,31 @@ Console::Console(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO)), 
 
 void Console::EndProgress() {
   const std::lock_guard lock(mutex_);
-  if (!progress_.empty()) std::cerr << std::endl;
+  if (!progress_.empty()) PrintToTerminal("\n");
   progress_.clear();
 }
 
 void Console::EraseProgress() {
-  if (!progress_.empty()) std::cerr << "\r\x1b[K";
+  if (!progress_.empty()) PrintToTerminal("\r\x1b[K");
 }
 
 void Console::Print(const std::string& line) {
   EraseProgress();
-  std::cerr << line << "\n" << Fitting(progress_) << std::flush;
+  PrintToTerminal(line + "\n" + Fitting(progress_));
 }
 
 void Console::Line(const std::string& text) {
   if (quiet_) return;
   const std::lock_guard lock(mutex_);
-  Print(text);
+  Print(Plain(text));
 }
 
 void Console::ChildLine(const std::string& process, const std::string& text) {
   if (quiet_) return;
   const std::lock_guard lock(mutex_);
-  const std::string name = "[" + process + "] ";
-  Print(colour_ ? "\x1b[" + std::to_string(ColourOf(process)) + "m" + name + "\x1b[0m" + text : name + text);
+  const std::string name = "[" + PlainLine(process) + "] ";
+  const std::string in_colour = "\x1b[" + std::to_string(ColourOf(process)) + "m" + name + "\x1b[0m";
+  Print((colour_ ? in_colour : name) + Plain(text));
 }
 
 void Console::Progress(double fraction, const std::string& text) {
@@ -68,11 +69,11 @@ void Console::Progress(double fraction, const std::string& text) {
   const std::lock_guard lock(mutex_);
   if (terminal_) {
     EraseProgress();
-    progress_ = text;
-    std::cerr << Fitting(text) << std::flush;
+    progress_ = PlainLine(text);
+    PrintToTerminal(Fitting(progress_));
   } else if (const int tenths = static_cast<int>(fraction * 10); tenths > tenths_) {
     tenths_ = tenths;
-    Print(text);
+    Print(PlainLine(text));
   }
 }
 

@@ -6,8 +6,8 @@
 
 namespace mascot {
 
-/// Prints the progress of a run on stderr: log lines, and below them one progress line that is rewritten in place on a
-/// terminal (elsewhere, a line every 10 %). Thread-safe.
+/// Prints the progress of a run on stderr, fit for a terminal (Plain()) but for colours of its own: log lines, and
+/// below them one progress line that is rewritten in place on a terminal (elsewhere, a line every 10 %). Thread-safe.
 class Console {
  public:
   /// `quiet`: print nothing.

@@ -14,9 +14,10 @@ namespace mascot {
 /// JSON whose objects keep the insertion order of their keys.
 using Json = nlohmann::ordered_json;
 
-/// `json` as it is printed and written. Text that is no UTF-8, such as the name of a file, is replaced, not refused.
+/// `json` as it is printed and written. Text that is no UTF-8, such as the name of a file, is replaced, not refused;
+/// characters that are not fit for a terminal are escaped, so that it may be shown there.
 inline std::string JsonText(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return Plain(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 
 inline Json VectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }

@@ -56,7 +56,7 @@ class Progress {
 SweepFile::Cells RowOf(const SweepPoint& point, const WorkerPool::Done& done, const std::vector<std::string>& metrics) {
   SweepFile::Cells cells;
   for (const Override& override : point.overrides) cells.push_back(override.value);
-  cells.push_back(done.failure);
+  cells.push_back(Plain(done.failure));
   std::map<std::string, std::string> measured;
   if (done.failure.empty()) ReadJson<nlohmann::json>(done.answer).get_to(measured);
   for (const std::string& metric : metrics) cells.push_back(measured[metric]);

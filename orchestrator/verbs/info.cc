@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "experiment/toml/utf8.h"
 #include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/recording/completeness.h"
 #include "orchestrator/recording/recording.h"
@@ -99,19 +100,19 @@ Json ToJson(const Findings& findings) {
 void PrintTopics(const McapContents& contents) {
   std::size_t topic_width = 5, type_width = 4;
   for (const auto& [id, channel] : contents.channels) {
-    topic_width = std::max(topic_width, channel.topic.size());
-    type_width = std::max(type_width, channel.schema_name.size());
+    topic_width = std::max(topic_width, PlainLine(channel.topic).size());
+    type_width = std::max(type_width, PlainLine(channel.schema_name).size());
   }
   std::cout << fmt::format("  {:<{}}  {:<{}}{:>12}{:>12}\n", "topic", topic_width, "type", type_width, "count", "Hz");
   for (const auto& [id, channel] : contents.channels)
-    std::cout << fmt::format("  {:<{}}  {:<{}}{:>12}{:>12.2f}\n", channel.topic, topic_width, channel.schema_name,
-                             type_width, channel.messages, Hz(channel));
+    std::cout << fmt::format("  {:<{}}  {:<{}}{:>12}{:>12.2f}\n", PlainLine(channel.topic), topic_width,
+                             PlainLine(channel.schema_name), type_width, channel.messages, Hz(channel));
 }
 
 void PrintText(const Findings& findings) {
   const McapContents& contents = findings.contents;
   const auto print = [](std::string_view label, const std::string& text) {
-    std::cout << fmt::format("{:<14}{}\n", label, text);
+    std::cout << fmt::format("{:<14}{}\n", label, PlainLine(text));
   };
   print("file:", findings.file);
   print("size:", fmt::format("{} bytes", findings.size_bytes));
@@ -134,7 +135,8 @@ void PrintText(const Findings& findings) {
     print("ticks:", fmt::format("{}{}, recorded without a gap", *ticks,
                                 *ticks < planned ? fmt::format(" of {}: the run ended early", planned) : ""));
   }
-  std::cout << "complete: " << (findings.complete() ? "yes" : "no (" + findings.verdict.reason + ")") << "\n";
+  std::cout << "complete: " << (findings.complete() ? "yes" : "no (" + PlainLine(findings.verdict.reason) + ")")
+            << "\n";
 }
 
 int Info(const std::string& run, bool as_json) {

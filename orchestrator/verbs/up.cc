@@ -12,6 +12,7 @@
 #include "bus/leave.h"
 #include "bus/standard_streams.h"
 #include "bus/stop_signal.h"
+#include "experiment/toml/utf8.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/helm.h"
 #include "orchestrator/engines/progress.h"
@@ -141,6 +142,7 @@ int Up(UpArgs& args) {
   viewers.SayHowItEnded(result);
   if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
 
+  result.failure = Plain(result.failure);
   const Incidents incidents = IncidentsOf(meter, result, helm.numbers_by_hand());
   RunFacts facts{args.engine, {}, writer.topics(), writer.samples()};
   const auto summary = [&](std::optional<int> exit) {

@@ -86,7 +86,7 @@ int HostShare::Run() {
     }
   } catch (const std::exception& failure) {
     std::cerr << "error: " << InWords(failure) << std::endl;
-    Tell({{"kind", "error"}, {"text", CutUtf8(InWords(failure), kLongestError)}});
+    Tell({{"kind", "error"}, {"text", CutUtf8(Plain(InWords(failure)), kLongestError)}});
     code_ = 1;
   }
   Leave();

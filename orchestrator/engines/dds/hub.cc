@@ -1,5 +1,6 @@
 #include "orchestrator/engines/dds/hub.h"
 
+#include <fmt/format.h>
 #include <spdlog/sinks/basic_file_sink.h>
 
 #include <chrono>
@@ -7,6 +8,7 @@
 #include <utility>
 
 #include "experiment/processes.h"
+#include "experiment/toml/utf8.h"
 
 namespace mascot {
 
@@ -110,8 +112,10 @@ Hub::Hub(Domain& domain, const Peers& peers, const Experiment& experiment, const
 }
 
 Hub::~Hub() {
-  for (const std::string& line : peers_.Refusals()) log_.warn("{}", line);
+  for (const std::string& line : peers_.Refusals()) log_.warn("{}", PlainLine(line));
 }
+
+void Hub::Note(const std::string& words) { log_.info("{}", PlainLine(words)); }
 
 void Hub::HandOutExperiment() {
   {
@@ -127,7 +131,7 @@ void Hub::HandOutExperiment() {
     message_.processes().back().mask(key.mask());
   }
   experiments_.Write(message_);
-  log_.info("experiment '{}' handed out", message_.name());
+  Note(fmt::format("experiment '{}' handed out", message_.name()));
 }
 
 void Hub::SayReady(double pace) {
@@ -155,7 +159,7 @@ void Hub::Ask(mascot::Ask ask, const std::string& reason) {
   request.kind(static_cast<std::uint8_t>(ask));
   request.reason(reason);
   requests_.Write(request);
-  log_.info("request: {} ({})", Text(ask), reason);
+  Note(fmt::format("request: {} ({})", Text(ask), reason));
 }
 
 void Hub::Steer(const Wish& wish, std::uint32_t number) {
@@ -169,7 +173,7 @@ void Hub::Steer(const Wish& wish, std::uint32_t number) {
   request.value(wish.number);
   request.toml(wish.toml);
   requests_.Write(request);
-  if (is_new) log_.info("request {}: {} {} {}", number, Text(ask), wish.number, wish.toml);
+  if (is_new) Note(fmt::format("request {}: {} {} {}", number, Text(ask), wish.number, wish.toml));
 }
 
 std::int64_t Hub::server_words() const {
@@ -183,8 +187,8 @@ void Hub::OnStatus(const Status& status, const std::string& from) {
   const Roster::News news = roster_.OnStatus(from, status);
   if (from == kPhysicsServer) ++server_words_;
   if (news.changed)
-    log_.info("{} {}, tick {} {}", from, Text(static_cast<Life>(status.state())), status.tick(),
-              status.reason().to_string());
+    Note(fmt::format("{} {}, tick {} {}", from, Text(static_cast<Life>(status.state())), status.tick(),
+                     status.reason().to_string()));
   if (news.wake) wake_();
 }
 

@@ -54,6 +54,8 @@ class Hub {
 
  private:
   void OnStatus(const Status& status, const std::string& from);
+  /// Writes a line to the log.
+  void Note(const std::string& words);
 
   const Peers& peers_;
   std::function<void()> wake_;

@@ -27,6 +27,9 @@ constexpr std::size_t kLongestQuote = 200;
 constexpr double kShareOfStart = 0.9;  // of run.start_timeout_s, for a host to answer: its agents join after that
 constexpr int kMostLines = 10'000;     // read of a connection at once: the run must go on beside one that floods
 
+/// What a host said, for a message.
+std::string Quote(const std::string& text) { return std::string(CutUtf8(PlainLine(text), kLongestQuote)); }
+
 std::pair<Descriptor, Descriptor> Pipe() {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
@@ -61,7 +64,8 @@ struct Launcher::Remote {
   Descriptor& LogOf(const std::string& process) {
     const auto log = logs.find(process);
     if (log != logs.end()) return log->second;
-    throw std::runtime_error(fmt::format("host {}: expected words of its own processes, got {}", config.name, process));
+    throw std::runtime_error(
+        fmt::format("host {}: expected words of its own processes, got {}", config.name, Quote(process)));
   }
 
   const HostConfig& config;
@@ -149,7 +153,7 @@ void Launcher::Hear(const Connection& connection, const std::string& line) {
     throw std::runtime_error(
         fmt::format("host {}: expected the words of `orchestrator host`, got '{}' (does its login "
                     "print something?)",
-                    name, CutUtf8(Utf8(line), kLongestQuote)));
+                    name, Quote(line)));
   try {
     const std::string node = words.value("node", "");
     const auto speaks = [&](const auto& remote) {
@@ -157,7 +161,7 @@ void Launcher::Hear(const Connection& connection, const std::string& line) {
     };
     const auto remote = std::ranges::find_if(remotes_, speaks);
     if (remote == remotes_.end())
-      throw std::runtime_error(fmt::format("host {}: expected hosts of the run, got {}", name, node));
+      throw std::runtime_error(fmt::format("host {}: expected hosts of the run, got {}", name, Quote(node)));
     Obey(**remote, words);
   } catch (const nlohmann::json::exception& mistake) {
     throw std::runtime_error(fmt::format("host {}: {}", name, mistake.what()));
@@ -168,10 +172,11 @@ void Launcher::Obey(Remote& remote, const nlohmann::json& words) {
   remote.heard = WallClock::now();
   const std::string kind = words["kind"];
   if (kind == "error")
-    throw std::runtime_error(fmt::format("host {}: {}", remote.config.name, words.at("text").get<std::string>()));
+    throw std::runtime_error(
+        fmt::format("host {}: {}", remote.config.name, Quote(words.at("text").get<std::string>())));
   if ((kind == "hello") == remote.greeted)
     throw std::runtime_error(
-        fmt::format("host {}: expected its greeting first, and once, got '{}'", remote.config.name, kind));
+        fmt::format("host {}: expected its greeting first, and once, got '{}'", remote.config.name, Quote(kind)));
   if (kind == "hello") Greet(remote, words.get<HostHello>());
   if (!words.contains("process")) return;
   const std::string process = words["process"];
@@ -191,8 +196,8 @@ void Launcher::Obey(Remote& remote, const nlohmann::json& words) {
 void Launcher::Greet(Remote& remote, const HostHello& hello) {
   const HostConfig& host = remote.config;
   if (hello.build != BuildText())
-    throw std::runtime_error(
-        fmt::format("host {} has another build of MASCOT: {}, expected {}", host.name, hello.build, BuildText()));
+    throw std::runtime_error(fmt::format("host {} has another build of MASCOT: {}, expected {}", host.name,
+                                         Quote(hello.build), BuildText()));
   for (const auto& other : remotes_)
     if (other->greeted && other->machine == hello.machine && hello.machine != MachineText())
       throw std::runtime_error(

@@ -33,7 +33,7 @@ Roster::News Roster::OnStatus(const std::string& process, const Status& status) 
   const auto agents = AgentsOf(process);
   const bool external = agents && rules_.external.at(static_cast<std::size_t>(agents->first - 1));
   if (life == Life::kFailed && external)
-    throw std::runtime_error(Utf8(process + " failed: " + status.reason().to_string()));
+    throw std::runtime_error(Plain(process + " failed: " + status.reason().to_string()));
   if (status.experiment() != 0 && status.experiment() != rules_.experiment)
     throw std::runtime_error(
         fmt::format("{} has received another experiment than this run's (digest {:016x}, expected {:016x}): somebody "

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "experiment/processes.h"
+#include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {
@@ -108,8 +109,8 @@ void WireAudit::on_publisher_discovery(DomainParticipant*, rtps::WriterDiscovery
 
 void WireAudit::OnParticipant(const GuidPrefix& participant, const std::string& name, const std::string& whereabouts) {
   const std::lock_guard lock(mutex_);
-  const std::string where = name.empty() && whereabouts.empty() ? Text(participant) : whereabouts;
-  const Participant& known = participants_[participant] = {name, where, peers_.Claim(participant, name)};
+  const std::string where = name.empty() && whereabouts.empty() ? Text(participant) : PlainLine(whereabouts);
+  const Participant& known = participants_[participant] = {PlainLine(name), where, peers_.Claim(participant, name)};
   // Its endpoints may be gone before we are told of them: to call itself so is enough.
   if (known.process.empty() && IsProcess(name))
     Find("two processes say that they are " + name + (where.empty() ? "" : " (" + where + ")"));
