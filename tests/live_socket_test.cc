@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "bus/local_socket.h"
+#include "experiment/toml/section.h"
 #include "orchestrator/live/origin.h"
 #include "orchestrator/live/pages.h"
 #include "orchestrator/live/socket.h"
@@ -21,8 +23,11 @@
 namespace mascot::test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 /// Sends every message back, "bad" apart, for which it drops the client, and tells everybody each period.
@@ -43,9 +48,7 @@ class Echo final : public SocketUser {
     server_ = owned_.get();
     server_->Start();
   }
-  HttpAnswer Get(std::string_view target, std::string_view host) override {
-    return Pages(folder_.path()).Get(target, host);
-  }
+  HttpAnswer Get(std::string_view target) override { return Pages(folder_.path()).Get(target); }
   void OnOpen(ClientId client, const std::string& subprotocol) override {
     ++open;
     clients_.push_back(client);
@@ -65,16 +68,19 @@ class Echo final : public SocketUser {
   }
   void OnTimer() override {
     ++periods;
+    if (breaks) throw std::runtime_error("made up");
     if (told_->empty()) return;
     for (const ClientId client : clients_) server_->Send(client, {.body = told_});
   }
 
+  SocketServer& server() { return *server_; }
   std::string url() const { return server_->url(); }
   void End() { owned_.reset(); }
   std::string log() {
     const std::lock_guard lock(mutex_);
     return log_;
   }
+  std::atomic<bool> breaks = false;
   std::atomic<int> open = 0;
   std::atomic<std::int64_t> periods = 0;
 
@@ -88,22 +94,234 @@ class Echo final : public SocketUser {
   std::unique_ptr<SocketServer> owned_;
 };
 
-TEST(Origin, OnlyAddressesAndOurOwnNamesAreOurHost) {
-  for (const char* host :
-       {"127.0.0.1:8765", "127.0.0.1", "localhost:9999", "LOCALHOST", "[::1]:8765", "192.168.1.11:80", "lab1:8765"})
-    EXPECT_TRUE(IsOurHost(host, "lab1")) << host;
-  for (const char* host : {"", "evil.example", "evil.example:8765", "localhost.evil.example", "127.0.0.1.evil.example",
-                           "127.0.0.1@evil.example"})
-    EXPECT_FALSE(IsOurHost(host, "127.0.0.1")) << host;
+/// Whether a request with these headers may talk to a server that was asked to listen at `asked`.
+bool MayTalk(const std::string& asked, const std::vector<std::string_view>& hosts,
+             const std::vector<std::string_view>& origins = {}, const std::string& allowed = "",
+             std::string_view target = "/") {
+  std::vector<std::string> let_in;
+  if (!allowed.empty()) let_in.push_back(ReadAllowedOrigin(allowed));
+  return !Doorkeeper(asked, asked, let_in).Judge({.hosts = hosts, .origins = origins, .target = target});
 }
 
-TEST(Origin, OnlyPagesOfTheSameHostMayTalk) {
-  const std::string host = "127.0.0.1:8765";
-  for (const char* origin : {"", "http://127.0.0.1:8765", "https://127.0.0.1:8765", "file://", "app://foxglove"})
-    EXPECT_TRUE(MayTalk(origin, host)) << origin;
-  for (const char* origin : {"null", "http://evil.example", "http://127.0.0.1", "http://127.0.0.1:8766",
-                             "http://localhost:8765", "https://evil.example:8765"})
-    EXPECT_FALSE(MayTalk(origin, host)) << origin;
+std::string NameOfThisMachine() {
+  char name[256] = "";
+  gethostname(name, sizeof name - 1);
+  return name;
+}
+
+TEST(Origin, OnlyThisMachineAndTheAddressAskedForAreOurHost) {
+  for (const char* host : {"127.0.0.1:8765", "127.0.0.1", "127.255.0.3:1", "localhost:9999", "LOCALHOST",
+                           "LocalHost:80", "[::1]:8765", "[::1]", "[0:0:0:0:0:0:0:1]:65535"})
+    EXPECT_TRUE(MayTalk("127.0.0.1", {host})) << host;
+  for (const char* host : {"",
+                           ":",
+                           ":8765",
+                           "evil.example",
+                           "evil.example:8765",
+                           "localhost.evil.example",
+                           "127.0.0.1.evil.example",
+                           "127.0.0.1@evil.example",
+                           "evil.example@127.0.0.1",
+                           "user:password@localhost",
+                           "[::1",
+                           "::1",
+                           "[::1]]",
+                           "[]",
+                           "[",
+                           "[::1]8765",
+                           "[::1]:",
+                           "[::1%lo]",
+                           "[::1%25lo]:8765",
+                           "[::ffff:127.0.0.1]:8765",
+                           "[::127.0.0.1]",
+                           "localhost.",
+                           "127.0.0.1.",
+                           "localhost:",
+                           "localhost:0",
+                           "localhost:65536",
+                           "localhost:99999999999999999999",
+                           "localhost:+1",
+                           "localhost:-1",
+                           "localhost:8765 ",
+                           " localhost",
+                           "localhost :8765",
+                           "localhost:87 65",
+                           "localhost\t",
+                           "localhost:0x1",
+                           "localhost:8765:8765",
+                           "localhost/",
+                           "localhost?",
+                           "localhost#",
+                           "localhost,localhost",
+                           "localhost;",
+                           "loc%61lhost",
+                           "127.0.0.%31",
+                           "127.1",
+                           "127.0.1",
+                           "0x7f.0.0.1",
+                           "0x7f000001",
+                           "2130706433",
+                           "017700000001",
+                           "127.0.0.01",
+                           "0.0.0.0",
+                           "0",
+                           "192.168.1.11",
+                           "10.0.0.1:80",
+                           "[fe80::1]",
+                           "*",
+                           "localhost_",
+                           "localhost:1; script-src * 'unsafe-inline'",
+                           "localhost\r\nX: 1",
+                           "\xff",
+                           "l\u0585calhost"})
+    EXPECT_FALSE(MayTalk("127.0.0.1", {host})) << host;
+  EXPECT_FALSE(MayTalk("127.0.0.1", {std::string_view("localhost\0", 10)}));
+  EXPECT_FALSE(MayTalk("127.0.0.1", {std::string(300, 'a')}));
+  EXPECT_FALSE(MayTalk("127.0.0.1", {})) << "no Host";
+  EXPECT_FALSE(MayTalk("127.0.0.1", {"localhost", "localhost"})) << "two";
+}
+
+TEST(Origin, WhoListensElsewhereIsAskedForByThatAddressOrName) {
+  EXPECT_TRUE(MayTalk("192.168.1.11", {"192.168.1.11:8765"}));
+  EXPECT_TRUE(MayTalk("192.168.1.11", {NameOfThisMachine()}));
+  EXPECT_TRUE(MayTalk("Lab1", {"lab1:8765"}));
+  EXPECT_TRUE(MayTalk("fe80::1", {"[FE80:0::1]:8765"}));
+  EXPECT_TRUE(Doorkeeper("lab1", "192.168.1.11", {}).Judge({{"192.168.1.12"}, {}, "/"}));
+  EXPECT_FALSE(Doorkeeper("lab1", "192.168.1.11", {}).Judge({{"192.168.1.11"}, {}, "/"}));
+  EXPECT_FALSE(MayTalk("192.168.1.11", {"192.168.1.12"}));
+  EXPECT_FALSE(MayTalk("192.168.1.11", {"evil.example"}));
+  for (const char* all : {"0.0.0.0", "::", "[::]"}) {
+    EXPECT_TRUE(MayTalk(all, {"192.168.1.11:8765"})) << all;
+    EXPECT_TRUE(MayTalk(all, {"[2001:db8::1]:8765"})) << all;
+    EXPECT_TRUE(MayTalk(all, {NameOfThisMachine()})) << all;
+    EXPECT_FALSE(MayTalk(all, {"evil.example"})) << all;
+    EXPECT_FALSE(MayTalk(all, {"0x7f.1"})) << all;
+  }
+}
+
+TEST(Origin, OnlyPagesOfTheSameHostAndPortMayTalk) {
+  const std::string_view host = "127.0.0.1:8765";
+  EXPECT_TRUE(MayTalk("127.0.0.1", {host}, {}));
+  for (const char* origin : {"http://127.0.0.1:8765", "https://127.0.0.1:8765", "HTTP://127.0.0.1:8765"})
+    EXPECT_TRUE(MayTalk("127.0.0.1", {host}, {origin})) << origin;
+  EXPECT_TRUE(MayTalk("127.0.0.1", {"localhost"}, {"http://localhost"}));
+  EXPECT_TRUE(MayTalk("127.0.0.1", {"localhost"}, {"http://localhost:80"}));
+  EXPECT_TRUE(MayTalk("127.0.0.1", {"LOCALHOST:443"}, {"https://localhost"}));
+  EXPECT_TRUE(MayTalk("127.0.0.1", {"[::1]:8765"}, {"http://[::1]:8765"}));
+  for (const char* origin : {"null",
+                             "",
+                             " ",
+                             "http://evil.example",
+                             "http://127.0.0.1",
+                             "http://127.0.0.1:8766",
+                             "http://localhost:8765",
+                             "https://evil.example:8765",
+                             "file://",
+                             "file:///",
+                             "file://127.0.0.1:8765",
+                             "data://127.0.0.1:8765",
+                             "data://x",
+                             "data:text/html,x",
+                             "blob://x",
+                             "blob:http://127.0.0.1:8765",
+                             "ftp://127.0.0.1:8765",
+                             "ws://127.0.0.1:8765",
+                             "app://foxglove",
+                             "chrome-extension://abc",
+                             "about:blank",
+                             "javascript:0",
+                             "//127.0.0.1:8765",
+                             "127.0.0.1:8765",
+                             "http:127.0.0.1:8765",
+                             "http:/127.0.0.1:8765",
+                             "http:///127.0.0.1:8765",
+                             "http://127.0.0.1:8765/",
+                             "http://127.0.0.1:8765/x",
+                             "http://127.0.0.1:8765?x",
+                             "http://127.0.0.1:8765#x",
+                             "http://x@127.0.0.1:8765",
+                             "http://127.0.0.1:8765@evil.example",
+                             "http://127.0.0.1:8765.evil.example",
+                             "http://127.0.0.1.:8765",
+                             "http://127.0.0.1:08765x",
+                             "http://127.0.0.1:",
+                             " http://127.0.0.1:8765",
+                             "http://127.0.0.1:8765 ",
+                             "http://127.0.0.1:8765 http://127.0.0.1:8765",
+                             "http://127.0.0.1:8765,null",
+                             "http://127.0.0.%31:8765",
+                             "http://[::ffff:127.0.0.1]:8765",
+                             "http://[::1",
+                             "http://*",
+                             "*"})
+    EXPECT_FALSE(MayTalk("127.0.0.1", {host}, {origin})) << origin;
+  EXPECT_FALSE(MayTalk("127.0.0.1", {host}, {"http://127.0.0.1:8765", "http://evil.example"})) << "two";
+  EXPECT_FALSE(MayTalk("127.0.0.1", {host}, {"http://127.0.0.1:8765", "http://127.0.0.1:8765"})) << "two";
+  EXPECT_FALSE(MayTalk("127.0.0.1", {"evil.example"}, {"http://evil.example"})) << "DNS rebinding";
+}
+
+TEST(Origin, PagesOfAllowedOriginsMayTalkToo) {
+  const std::string foxglove = "https://app.foxglove.dev";
+  EXPECT_TRUE(MayTalk("127.0.0.1", {"localhost:8765"}, {foxglove}, foxglove));
+  EXPECT_TRUE(MayTalk("127.0.0.1", {"localhost:8765"}, {foxglove}, "HTTPS://App.Foxglove.dev:443"));
+  EXPECT_TRUE(MayTalk("127.0.0.1", {"localhost:8765"}, {"http://localhost:8080"}, "http://localhost:8080"));
+  EXPECT_TRUE(MayTalk("127.0.0.1", {"localhost:8765"}, {"file://"}, "file://"));
+  EXPECT_TRUE(MayTalk("127.0.0.1", {"localhost:8765"}, {"http://localhost:8765"}, foxglove)) << "and its own still may";
+  for (const char* origin :
+       {"http://app.foxglove.dev", "https://app.foxglove.dev:8443", "https://foxglove.dev",
+        "https://evil.app.foxglove.dev", "https://app.foxglove.dev.evil.example", "file://", "null"})
+    EXPECT_FALSE(MayTalk("127.0.0.1", {"localhost:8765"}, {origin}, foxglove)) << origin;
+  EXPECT_FALSE(MayTalk("127.0.0.1", {"evil.example"}, {foxglove}, foxglove)) << "by another name of this machine";
+}
+
+TEST(Origin, WhatIsAllowedIsAnOriginAndNothingElse) {
+  EXPECT_EQ(ReadAllowedOrigin("HTTP://LocalHost:80"), "http://localhost");
+  EXPECT_EQ(ReadAllowedOrigin("https://[0::1]:8443"), "https://[::1]:8443");
+  for (const char* text : {"", "*", "null", "app.foxglove.dev", "https://", "https://*.foxglove.dev", "https://a/",
+                           "https://a b", "https://a:b", "ftp://a", "file:///", "https://a@b", "https://a,https://b"})
+    EXPECT_THAT(
+        [&] { ReadAllowedOrigin(text); },
+        testing::ThrowsMessage<ConfigError>(
+            "--allow-origin: expected the origin of a page, such as https://app.foxglove.dev, or file://, got '" +
+            std::string(text) + "'"))
+        << text;
+  EXPECT_THAT([] { ReadAllowedOrigin("https://\x1b[31m\u202e"); },
+              testing::ThrowsMessage<ConfigError>(EndsWith("got 'https://\\u001b[31m\\u202e'")));
+}
+
+TEST(Origin, RequestsThatNameNoPathAreRefused) {
+  for (const char* target : {"http://evil.example/", "http://localhost/", "*", "localhost:80", "", "index.html", "?x"})
+    EXPECT_FALSE(MayTalk("127.0.0.1", {"localhost"}, {}, "", target)) << target;
+}
+
+TEST(Origin, RefusalsSayWhoAndHowToLetThemIn) {
+  const Doorkeeper door("127.0.0.1", "127.0.0.1", {});
+  const auto words = [&](std::string_view host, std::string_view origin) {
+    const auto refusal = door.Judge({.hosts = {host}, .origins = {origin}, .target = "/"});
+    return refusal ? refusal->words : "";
+  };
+  EXPECT_EQ(words("localhost:8765", "https://app.foxglove.dev"),
+            "a page of https://app.foxglove.dev (--allow-origin https://app.foxglove.dev lets it in)");
+  EXPECT_EQ(words("localhost:8765", "file://"), "a page of file:// (--allow-origin file:// lets it in)");
+  EXPECT_EQ(words("localhost:8765", "null"), "a page of 'null', which is no address of a page");
+  EXPECT_EQ(words("localhost:8765", "\x1b[2J\u202e\n"),
+            "a page of '\\u001b[2J\\u202e\\n', which is no address of a page");
+  EXPECT_EQ(words("evil.example\x7f", ""),
+            "a request to 'evil.example\\u007f', which is not the address of this server");
+  EXPECT_THAT(words(std::string(8000, 'x'), ""), HasSubstr("'" + std::string(100, 'x') + "...'"));
+}
+
+TEST(Origin, AFloodOfRefusalsIsNoFloodOfLines) {
+  RefusalCount count;
+  std::vector<std::string> lines;
+  for (int i = 0; i < 100'000; ++i) {
+    if (auto line = count.Line("a page of x")) lines.push_back(*line);
+    if (auto line = count.Line("a page of " + std::to_string(i))) lines.push_back(*line);
+  }
+  EXPECT_EQ(lines.front(), "a page of x");
+  EXPECT_THAT(lines, testing::Contains("a page of x, 10 times"));
+  EXPECT_THAT(lines, testing::Contains("others, 10000 times"));
+  EXPECT_LE(lines.size(), 40u);
 }
 
 TEST(LiveSocket, ServesFilesOfThePageAndNoOthers) {
@@ -114,11 +332,11 @@ TEST(LiveSocket, ServesFilesOfThePageAndNoOthers) {
   EXPECT_THAT(page, EndsWith("\r\n\r\n<p>here</p>"));
   EXPECT_THAT(page, HasSubstr("Content-Type: text/html; charset=utf-8\r\n"));
   EXPECT_THAT(page, HasSubstr("default-src 'none'; script-src 'self';"));
-  EXPECT_THAT(page, HasSubstr("connect-src 'self' ws://" + client.host() + ";"));
+  EXPECT_THAT(page, HasSubstr("connect-src 'self';"));
+  EXPECT_THAT(page, Not(HasSubstr(client.host()))) << "nothing of a request is in the answer";
   EXPECT_EQ(client.Get("/index.html?x=1"), page);
-  for (const char* path :
-       {"/nothing.html", "/secret.txt", "/.hidden.html", "/../index.html", "/%2e%2e/index.html", "//index.html",
-        "/vendor/three/../../../../etc/passwd", "/vendor/nobody/x.js", "/vendor/", "index.html"})
+  for (const char* path : {"/nothing.html", "/secret.txt", "/.hidden.html", "/../index.html", "/%2e%2e/index.html",
+                           "//index.html", "/vendor/three/../../../../etc/passwd", "/vendor/nobody/x.js", "/vendor/"})
     EXPECT_THAT(WebClient(echo.url()).Get(path), StartsWith("HTTP/1.1 404")) << path;
   EXPECT_THAT(WebClient(echo.url()).Ask("POST / HTTP/1.1\r\nHost: localhost\r\n\r\n"), StartsWith("HTTP/1.1 405"));
 }
@@ -129,12 +347,64 @@ TEST(LiveSocket, RefusesAForeignHostAndAForeignOrigin) {
     return WebClient(echo.url()).Ask("GET / HTTP/1.1\r\nHost: " + host + "\r\n" + more + "\r\n");
   };
   EXPECT_THAT(ask("evil.example", ""), StartsWith("HTTP/1.1 403"));
-  EXPECT_THAT(ask("localhost", "Origin: http://evil.example\r\n"), StartsWith("HTTP/1.1 403"));
-  EXPECT_THAT(WebClient(echo.url()).Upgrade("foxglove.sdk.v1", "Origin: http://evil.example\r\n"),
-              StartsWith("HTTP/1.1 403"));
-  EXPECT_THAT(WebClient(echo.url()).Upgrade("foxglove.sdk.v1", "Origin: null\r\n"), StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(ask("[::1", ""), StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(ask("localhost:1; script-src * 'unsafe-inline'", ""),
+              AllOf(StartsWith("HTTP/1.1 403"), Not(HasSubstr("script-src"))));
+  EXPECT_THAT(ask("localhost", "Host: localhost\r\n"), StartsWith("HTTP/1.1 400"));
+  EXPECT_THAT(ask("localhost", "Origin: http://evil.example\r\n"),
+              AllOf(StartsWith("HTTP/1.1 403"), Not(HasSubstr("evil.example"))));
+  EXPECT_THAT(ask("localhost", "Origin: http://localhost\r\nOrigin: http://localhost\r\n"), StartsWith("HTTP/1.1 403"));
+  for (const char* origin : {"http://evil.example", "null", "file://", "data://x", "blob://x", "ftp://localhost",
+                             "http://localhost:8080", "https://app.foxglove.dev"})
+    EXPECT_THAT(WebClient(echo.url()).Upgrade("foxglove.sdk.v1", "Origin: " + std::string(origin) + "\r\n"),
+                StartsWith("HTTP/1.1 403"))
+        << origin;
+  for (const char* target : {"http://localhost/", "index.html", "*"})
+    EXPECT_THAT(WebClient(echo.url()).Ask("GET " + std::string(target) + " HTTP/1.1\r\nHost: localhost\r\n\r\n"),
+                StartsWith("HTTP/1.1 400"))
+        << target;
+  EXPECT_THAT(WebClient(echo.url()).Ask("GET / HTTP/1.0\r\n\r\n"), StartsWith("HTTP/1.0 400")) << "no Host";
   WebClient own(echo.url());
   EXPECT_THAT(own.Upgrade("foxglove.sdk.v1", "Origin: http://" + own.host() + "\r\n"), StartsWith("HTTP/1.1 101"));
+}
+
+TEST(LiveSocket, SaysWhomItRefusesAndLetsInWhoIsAllowed) {
+  const std::string foxglove = "Origin: https://app.foxglove.dev\r\n";
+  Echo strict;
+  for (int i = 0; i < 12; ++i)
+    EXPECT_THAT(WebClient(strict.url()).Upgrade("foxglove.sdk.v1", foxglove), StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(strict.log(),
+              MatchesRegex("viewer 127\\.0\\.0\\.1:[0-9]+: refused: a page of https://app\\.foxglove\\.dev "
+                           "\\(--allow-origin https://app\\.foxglove\\.dev lets it in\\)\n"
+                           "viewer [0-9.:]+: refused: .* lets it in\\), 10 times\n"));
+  SocketOptions options;
+  options.allowed_origins = {"https://app.foxglove.dev"};
+  Echo open(options);
+  EXPECT_THAT(WebClient(open.url()).Upgrade("foxglove.sdk.v1", foxglove), StartsWith("HTTP/1.1 101"));
+  EXPECT_THAT(WebClient(open.url()).Upgrade("foxglove.sdk.v1", "Origin: https://evil.example\r\n"),
+              StartsWith("HTTP/1.1 403"));
+}
+
+TEST(LiveSocket, AnErrorOfOursEndsTheServerAndNothingElse) {
+  for (const bool by_timer : {true, false}) {
+    Echo echo;
+    WebClient client(echo.url()), visitor(echo.url());
+    client.Upgrade();
+    EXPECT_TRUE(client.NextWith("hello"));
+    EXPECT_THAT(visitor.Get("/"), StartsWith("HTTP/1.1 200"));
+    if (by_timer)
+      echo.breaks = true;
+    else
+      echo.server().Fail("made up");
+    EXPECT_TRUE(client.IsClosed());
+    EXPECT_TRUE(visitor.IsClosed());
+    EXPECT_TRUE(Until([&] { return !echo.log().empty(); }));
+    EXPECT_EQ(echo.log(), "viewers: the view has ended because of an error of ours, and nothing else has: made up\n");
+    EXPECT_TRUE(echo.server().has_failed());
+    EXPECT_EQ(WebClient(echo.url()).Get("/"), "") << "the port is closed";
+    echo.server().Post([] { FAIL() << "nobody is there to do it"; });
+    echo.server().Fail("again");
+  }
 }
 
 TEST(LiveSocket, TakesTheSubprotocolThatItKnows) {

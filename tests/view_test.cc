@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/orchestrator.h"
+#include "tests/repeated.h"
 #include "tests/viewer.h"
 
 namespace mascot::test {
@@ -109,6 +110,73 @@ TEST(UpWithView, TakesTheNextPortIfAnotherRunHasTheFirst) {
   for (Up* up : {&first, &second}) EXPECT_EQ(up->Wait(), 130);
 }
 
+/// Waits until a program has said this in words on stderr.
+bool Says(const Running& program, const std::string& words) {
+  return Until([&] { return program.Said(words) || program.IsOver(); }) && program.Said(words);
+}
+
+TEST(UpWithView, OutlivesAMessageOfManyLevels) {
+  const ScratchFolder folder;
+  WriteFile(folder.File("run.toml"), kRecordedRun);
+  Up up(folder, "run", folder.File("run.toml"),
+        {"--engine", "inprocess", "--set", "run.mode='lockstep'", "--view", "127.0.0.1:0"});
+  const std::string url = UrlOf(up);
+  const std::string lists = Repeated(400'000, "[") + Repeated(400'000, "]");
+  const std::string call = "\x02" + std::string("\0\0\0\0\1\0\0\0\4\0\0\0json", 16);
+  const std::pair<int, std::string> kAttacks[] = {
+      {WebClient::kText, lists},
+      {WebClient::kText, R"({"op":"setParameters","parameters":[{"name":"law.p_gain","value":)" + lists + "}]}"},
+      {WebClient::kBinary, call + R"({"ask":)" + lists + "}"},
+      {WebClient::kBinary, call + R"({"ask":"event","toml":"set = { law.p_gain = )" + lists + R"( }"})"},
+      {WebClient::kBinary, call + R"({"ask":"event","toml":"set = { a)" + Repeated(200'000, ".") + R"(a = 1 }"})"}};
+  for (const auto& [opcode, message] : kAttacks) {
+    Viewer viewer(url);
+    viewer.Send(opcode, message);
+    if (opcode == WebClient::kText)
+      EXPECT_TRUE(viewer.IsClosed());
+    else
+      EXPECT_TRUE(viewer.Next());
+    EXPECT_EQ(Viewer(url).Ask({{"ask", "pace"}, {"value", 2.0}})["granted"], true) << up.err();
+  }
+  EXPECT_TRUE(Says(up, ": dropped: expected a JSON object with \"op\"\n"));
+  EXPECT_EQ(Viewer(url).Ask({{"ask", "stop"}})["granted"], true);
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  EXPECT_EQ(up.Summary()["exit"], 0);
+  EXPECT_THAT(up.File("logs/viewers.log"), HasSubstr(": dropped: expected a JSON object with \"op\"\n"));
+}
+
+TEST(UpWithView, SaysWhomItRefusesAlsoInItsLogAndLetsInWhoIsAllowed) {
+  const ScratchFolder folder;
+  WriteFile(folder.File("run.toml"), kRecordedRun);
+  Up up(folder, "run", folder.File("run.toml"),
+        {"--engine", "inprocess", "--set", "run.mode='lockstep'", "--view", "127.0.0.1:0", "--allow-origin",
+         "http://localhost:8080", "--allow-origin", "HTTPS://app.foxglove.dev"});
+  const std::string url = UrlOf(up);
+  const auto upgrade = [&](const std::string& origin) {
+    return WebClient(url).Upgrade("foxglove.sdk.v1", "Origin: " + origin + "\r\n").substr(0, 12);
+  };
+  EXPECT_EQ(upgrade("http://localhost:8080"), "HTTP/1.1 101");
+  EXPECT_EQ(upgrade("https://app.foxglove.dev"), "HTTP/1.1 101");
+  EXPECT_EQ(upgrade("https://evil.example"), "HTTP/1.1 403");
+  const std::string line =
+      ": refused: a page of https://evil.example (--allow-origin https://evil.example lets it in)\n";
+  EXPECT_TRUE(Says(up, line)) << up.err();
+  EXPECT_TRUE(Until([&] { return up.File("logs/viewers.log").find(line) != std::string::npos; }));
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130);
+}
+
+TEST(UpWithView, SaysWhatAnOriginIs) {
+  const ScratchFolder folder;
+  Up wrong(folder, "run", Config("leaderless"), {"--view", "--allow-origin", "app.foxglove.dev"});
+  EXPECT_EQ(wrong.Wait(), 2);
+  EXPECT_THAT(wrong.err(), HasSubstr("--allow-origin: expected the origin of a page, such as https://app.foxglove.dev, "
+                                     "or file://, got 'app.foxglove.dev'"));
+  Up alone(folder, "run", Config("leaderless"), {"--allow-origin", "https://app.foxglove.dev"});
+  EXPECT_EQ(alone.Wait(), 2);
+  EXPECT_EQ(alone.err(), "error: --allow-origin: expected --view with it\n");
+}
+
 TEST(UpWithView, SaysWhatAnAddressIs) {
   const ScratchFolder folder;
   for (const char* address : {"127.0.0.1:x", "127.0.0.1:99999", "[::1", "a b", "run.toml"}) {
@@ -205,6 +273,24 @@ TEST(View, PlaysACutRecordingUpToTheCutAndSaysThatItIsCut) {
   EXPECT_LT(recorded["end_s"], 5);
   EXPECT_THAT(viewer.Ask({{"ask", "seek"}, {"t_s", 4.9}})["words"].get<std::string>(),
               HasSubstr(", where the recording ends"));
+}
+
+TEST(View, SaysWhomItRefusesAndLetsInWhoIsAllowed) {
+  const ScratchFolder folder;
+  const std::string recording = Record(folder);
+  const auto upgrade = [&](const Running& view, const std::string& origin) {
+    return WebClient(UrlOf(view)).Upgrade("foxglove.sdk.v1", "Origin: " + origin + "\r\n").substr(0, 12);
+  };
+  ViewOf strict(folder, recording);
+  EXPECT_EQ(upgrade(strict, "http://localhost:8080"), "HTTP/1.1 403");
+  EXPECT_TRUE(
+      Says(strict, ": refused: a page of http://localhost:8080 (--allow-origin http://localhost:8080 lets it in)\n"))
+      << strict.err();
+  Running open(MASCOT_BINARY_DIR "/orchestrator",
+               {"view", recording, "--at", "127.0.0.1:0", "--allow-origin", "http://localhost:8080"},
+               folder.File("open"));
+  EXPECT_EQ(upgrade(open, "http://localhost:8080"), "HTTP/1.1 101");
+  EXPECT_EQ(upgrade(open, "null"), "HTTP/1.1 403");
 }
 
 TEST(View, SaysWhatItCannotServe) {

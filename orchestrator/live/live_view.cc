@@ -22,6 +22,7 @@ SocketOptions OptionsOf(const LiveView::Options& options) {
   return {.address = options.address,
           .port = options.port,
           .subprotocols = {std::begin(kSubprotocols), std::end(kSubprotocols)},
+          .allowed_origins = options.allowed_origins,
           .period = std::chrono::milliseconds(1000 / kFramesPerSecond)};
 }
 

@@ -30,14 +30,15 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   struct Options {
     std::string address = "127.0.0.1";
     std::uint16_t port = 8765;
-    std::filesystem::path page;  ///< folder of index.html
+    std::vector<std::string> allowed_origins = {};  ///< of pages that may watch and touch, too (live/origin.h)
+    std::filesystem::path page;                     ///< folder of index.html
     ShownSource source = {};
     double pace = 0;  ///< simulated seconds a second that the run asks for; 0: as fast as it goes
   };
 
   /// Listens from now on; all arguments but `options` must outlive this object. `meter` must get each row before this
-  /// object does. `log` takes a line about a viewer that was dropped, from any thread. Throws std::runtime_error if no
-  /// port can be had.
+  /// object does. `log` takes a line about a viewer that was dropped or refused, from any thread. Throws
+  /// std::runtime_error if no port can be had.
   LiveView(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter, RunControl& control,
            const Options& options, std::function<void(const std::string&)> log);
   /// As above, but of a recording: rows come by Take(), not by Add().
@@ -50,6 +51,10 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   void Add(const FlownRow& row) override;
 
   // From any thread.
+  /// Ends the view, because of an error of ours, and says so in the log.
+  void Fail(const std::string& why) { server_.Fail(why); }
+  /// Whether an error of ours has ended the view.
+  bool has_failed() const { return server_.has_failed(); }
   /// Shows this row from now on, whether it is later or earlier than the one before.
   void Take(const ShownRow& row);
   /// Says how the run goes. real_time_factor is not used: it is measured here.
@@ -69,7 +74,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
            const Options& options, std::function<void(const std::string&)> log);
 
   // SocketUser, in the server's thread.
-  HttpAnswer Get(std::string_view target, std::string_view host) override { return pages_.Get(target, host); }
+  HttpAnswer Get(std::string_view target) override { return pages_.Get(target); }
   void OnOpen(ClientId client, const std::string& subprotocol) override;
   std::string OnMessage(ClientId client, bool is_text, std::span<const std::uint8_t> message) override;
   void OnClose(ClientId client) override;

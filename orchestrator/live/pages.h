@@ -14,8 +14,8 @@ class Pages {
   explicit Pages(std::filesystem::path page) : page_(std::move(page)) {}
   /// The answer to GET `target`: "/" is index.html, "/vendor/<name>/..." a file of a library of Debian, anything else a
   /// file of the page. 404 for what is missing, hidden, or outside of these folders. The page that is sent may load
-  /// nothing from elsewhere, and talk to nobody but `host`.
-  HttpAnswer Get(std::string_view target, std::string_view host) const;
+  /// nothing from elsewhere, and talk to nobody but the server that it came from.
+  HttpAnswer Get(std::string_view target) const;
 
  private:
   std::filesystem::path page_;

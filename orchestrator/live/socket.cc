@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
@@ -17,6 +18,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <thread>
 
@@ -53,7 +55,10 @@ struct Server {
   SocketOptions options;
   SocketUser& user;
   std::function<void(const std::string&)> log;
-  std::map<ClientId, Session*> sessions = {};     // those that are open
+  Doorkeeper doorkeeper;
+  std::map<ClientId, Session*> sessions = {};  // those that are open
+  std::set<beast::tcp_stream*> streams = {};   // of all connections
+  RefusalCount refusals = {};
   std::size_t connections = 0, by_websocket = 0;  // of both kinds; by WebSocket, also those that are being closed
   ClientId last_id = 0;
   int lines = 0;
@@ -63,6 +68,10 @@ struct Server {
   void Log(const std::string& line) {
     if (lines > kMostLines) return;
     log(++lines > kMostLines ? "viewers: too many were dropped; no more lines about them" : line);
+  }
+  /// Says who was not let in, and why.
+  void LogRefusal(const std::string& name, const std::string& words) {
+    if (const auto line = refusals.Line(words)) log(name + ": refused: " + *line);
   }
 };
 
@@ -79,8 +88,10 @@ class Session : public std::enable_shared_from_this<Session> {
       : server_(server), id_(++server.last_id), name_(NameOf(socket)), stream_(std::move(socket)) {
     ++server_.connections;
     ++server_.by_websocket;
+    server_.streams.insert(&beast::get_lowest_layer(stream_));
   }
   ~Session() {
+    server_.streams.erase(&beast::get_lowest_layer(stream_));
     --server_.connections;
     --server_.by_websocket;
   }
@@ -210,8 +221,14 @@ class Session : public std::enable_shared_from_this<Session> {
 /// A connection by HTTP, until it ends or becomes a Session.
 class Visit : public std::enable_shared_from_this<Visit> {
  public:
-  Visit(Server& server, tcp::socket socket) : server_(server), stream_(std::move(socket)) { ++server_.connections; }
-  ~Visit() { --server_.connections; }
+  Visit(Server& server, tcp::socket socket) : server_(server), name_(NameOf(socket)), stream_(std::move(socket)) {
+    ++server_.connections;
+    server_.streams.insert(&stream_);
+  }
+  ~Visit() {
+    server_.streams.erase(&stream_);
+    --server_.connections;
+  }
   Visit(const Visit&) = delete;
   Visit& operator=(const Visit&) = delete;
 
@@ -227,34 +244,51 @@ class Visit : public std::enable_shared_from_this<Visit> {
   void OnRead(error_code error) {
     if (error || server_.ending) return;  // the socket closes with this object
     const Request& request = parser_->get();
-    const std::string_view host = View(request[http::field::host]), origin = View(request[http::field::origin]);
-    if (!IsOurHost(host, server_.options.address)) return Answer({403, {}, "this server is not called so\n"});
-    if (!MayTalk(origin, host)) return Answer({403, {}, "a page from elsewhere may not talk to this server\n"});
+    if (const auto refusal = server_.doorkeeper.Judge(CallerOf(request)))
+      return Refuse(refusal->status, refusal->answer, refusal->words);
     if (websocket::is_upgrade(request)) return Upgrade(request);
     if (request.method() != http::verb::get && request.method() != http::verb::head)
       return Answer({405, {{"Allow", "GET, HEAD"}}, "expected GET\n"});
     try {
-      Answer(server_.user.Get(View(request.target()), host));
+      Answer(server_.user.Get(View(request.target())));
     } catch (const std::exception& failure) {
       Answer({500, {}, std::string(failure.what()) + "\n"});
     }
   }
 
+  static Caller CallerOf(const Request& request) {
+    const auto all = [&](http::field field) {
+      std::vector<std::string_view> values;
+      const auto range = request.equal_range(field);
+      for (auto header = range.first; header != range.second; ++header) values.push_back(View(header->value()));
+      return values;
+    };
+    return {.hosts = all(http::field::host), .origins = all(http::field::origin), .target = View(request.target())};
+  }
+
+  void Refuse(unsigned status, const std::string& answer, const std::string& words) {
+    server_.LogRefusal(name_, words);
+    Answer({status, {}, answer});
+  }
+
   void Upgrade(const Request& request) {
-    if (server_.sessions.size() >= server_.options.limits.clients) return Answer({503, {}, "too many viewers\n"});
+    if (server_.sessions.size() >= server_.options.limits.clients)
+      return Refuse(503, "too many viewers\n", "there are " + std::to_string(server_.sessions.size()) + " viewers");
     http::token_list offered(request[http::field::sec_websocket_protocol]);
     for (const std::string& ours : server_.options.subprotocols)
       if (offered.exists(ours)) {
         stream_.expires_never();
         return std::make_shared<Session>(server_, stream_.release_socket())->Accept(request, ours);
       }
-    Answer({400, {}, "expected a WebSocket subprotocol that this server speaks\n"});
+    Refuse(400, "expected a WebSocket subprotocol that this server speaks\n",
+           "a WebSocket without a subprotocol that this server speaks");
   }
 
   void Answer(const HttpAnswer& answer) {
     const Request& request = parser_->get();
     response_.emplace(http::status(answer.status), request.version());
     response_->set(http::field::content_type, "text/plain; charset=utf-8");
+    response_->set("X-Content-Type-Options", "nosniff");
     for (const auto& [name, value] : answer.headers) response_->set(name, value);
     response_->content_length(answer.body.size());
     if (request.method() != http::verb::head) response_->body() = answer.body;
@@ -271,6 +305,7 @@ class Visit : public std::enable_shared_from_this<Visit> {
   }
 
   Server& server_;
+  const std::string name_;
   beast::tcp_stream stream_;
   beast::flat_buffer in_;
   std::optional<http::request_parser<http::empty_body>> parser_;
@@ -295,15 +330,18 @@ int Listen(const tcp::endpoint& at) {
 class SocketServer::Impl {
  public:
   Impl(SocketOptions options, SocketUser& user, std::function<void(const std::string&)> log)
-      : server_{.options = std::move(options), .user = user, .log = std::move(log)},
+      : server_{.options = std::move(options), .user = user, .log = std::move(log), .doorkeeper = {"", "", {}}},
         acceptor_(server_.io),
         timer_(server_.io),
         pause_(server_.io) {
     Bind();
+    const std::string address = acceptor_.local_endpoint().address().to_string();
+    url_ = UrlOf(acceptor_.local_endpoint());
+    server_.doorkeeper = {server_.options.address, address, server_.options.allowed_origins};
   }
   ~Impl() {
     if (!thread_.joinable()) return;
-    asio::post(server_.io, [this] { End(); });
+    Post([this] { End(); });
     thread_.join();
   }
   Impl(const Impl&) = delete;
@@ -312,15 +350,14 @@ class SocketServer::Impl {
   void Start() {
     Await();
     Tick();
-    thread_ = std::thread([this] { server_.io.run(); });
+    thread_ = std::thread([this] { Run(); });
   }
 
-  std::string url() const {
-    const tcp::endpoint at = acceptor_.local_endpoint();
-    const std::string address = at.address().to_string();
-    return "http://" + (at.address().is_v6() ? "[" + address + "]" : address) + ":" + std::to_string(at.port());
+  const std::string& url() const { return url_; }
+  void Post(std::function<void()> function) {
+    if (!has_failed_) asio::post(server_.io, std::move(function));
   }
-  void Post(std::function<void()> function) { asio::post(server_.io, std::move(function)); }
+  bool has_failed() const { return has_failed_; }
   void Send(ClientId client, Frame frame) {
     if (const auto session = server_.sessions.find(client); session != server_.sessions.end())
       session->second->Send(std::move(frame));
@@ -331,6 +368,34 @@ class SocketServer::Impl {
   }
 
  private:
+  static std::string UrlOf(const tcp::endpoint& at) {
+    const std::string address = at.address().to_string();
+    return "http://" + (at.address().is_v6() ? "[" + address + "]" : address) + ":" + std::to_string(at.port());
+  }
+
+  void Run() {
+    try {
+      server_.io.run();
+    } catch (const std::exception& failure) {
+      GiveUp(failure.what());
+    } catch (...) {
+      GiveUp("an exception of unknown type");
+    }
+  }
+
+  /// Ends everything at once: nothing here is to be trusted any more. What waits in server_.io is freed with it.
+  void GiveUp(const std::string& why) {
+    has_failed_ = true;
+    server_.ending = true;
+    error_code ignored;
+    acceptor_.close(ignored);
+    for (beast::tcp_stream* stream : server_.streams) stream->socket().close(ignored);
+    try {
+      server_.log("viewers: the view has ended because of an error of ours, and nothing else has: " + why);
+    } catch (const std::exception&) {  // out of memory, say
+    }
+  }
+
   void Bind() {
     const SocketOptions& options = server_.options;
     const auto fail = [&](const std::string& why) {
@@ -367,7 +432,10 @@ class SocketServer::Impl {
     tcp::socket accepted(server_.io, acceptor_.local_endpoint().protocol(), socket);
     error_code ignored;
     accepted.set_option(tcp::no_delay(true), ignored);
-    if (server_.connections >= server_.options.limits.connections) return true;
+    if (server_.connections >= server_.options.limits.connections) {
+      server_.LogRefusal(NameOf(accepted), "there are " + std::to_string(server_.connections) + " connections");
+      return true;
+    }
     std::make_shared<Visit>(server_, std::move(accepted))->Read();
     return true;
   }
@@ -377,11 +445,7 @@ class SocketServer::Impl {
     timer_.expires_at(std::max(now, timer_.expiry() + server_.options.period));
     timer_.async_wait([this](error_code error) {
       if (error || server_.ending) return;
-      try {
-        server_.user.OnTimer();
-      } catch (const std::exception& failure) {
-        server_.Log(std::string("viewers: an error of ours: ") + failure.what());
-      }
+      server_.user.OnTimer();
       Tick();
     });
   }
@@ -404,6 +468,8 @@ class SocketServer::Impl {
   Server server_;
   tcp::acceptor acceptor_;
   asio::steady_timer timer_, pause_;
+  std::string url_;
+  std::atomic<bool> has_failed_ = false;
   std::thread thread_;
 };
 
@@ -413,6 +479,10 @@ SocketServer::~SocketServer() = default;
 void SocketServer::Start() { impl_->Start(); }
 std::string SocketServer::url() const { return impl_->url(); }
 void SocketServer::Post(std::function<void()> function) { impl_->Post(std::move(function)); }
+void SocketServer::Fail(const std::string& why) {
+  impl_->Post([why] { throw std::runtime_error(why); });
+}
+bool SocketServer::has_failed() const { return impl_->has_failed(); }
 void SocketServer::Send(ClientId client, Frame frame) { impl_->Send(client, std::move(frame)); }
 std::size_t SocketServer::Waiting(ClientId client) const { return impl_->Waiting(client); }
 

@@ -39,20 +39,21 @@ struct SocketLimits {
 };
 
 struct SocketOptions {
-  std::string address = "127.0.0.1";           ///< an IP address or a name
-  std::uint16_t port = 8765;                   ///< if it is taken, one of the next hundred; 0: any free one
-  std::vector<std::string> subprotocols = {};  ///< the first one that a client offers is taken
-  std::chrono::milliseconds period{33};        ///< of SocketUser::OnTimer()
+  std::string address = "127.0.0.1";              ///< an IP address or a name
+  std::uint16_t port = 8765;                      ///< if it is taken, one of the next hundred; 0: any free one
+  std::vector<std::string> subprotocols = {};     ///< the first one that a client offers is taken
+  std::vector<std::string> allowed_origins = {};  ///< of pages that may speak to it, beside its own (live/origin.h)
+  std::chrono::milliseconds period{33};           ///< of SocketUser::OnTimer()
   SocketLimits limits = {};
 };
 
-/// What a SocketServer serves. All functions are called in the server's thread. What they throw is logged; the client
-/// is dropped.
+/// What a SocketServer serves. All functions are called in the server's thread. What they throw about a client is
+/// logged, and the client is dropped; what OnTimer() throws ends the server.
 class SocketUser {
  public:
   virtual ~SocketUser() = default;
-  /// The answer to GET `target` (path and query as sent). `host`: the Host header, which is one of ours.
-  virtual HttpAnswer Get(std::string_view target, std::string_view host) = 0;
+  /// The answer to GET `target`, a path and perhaps a query, as sent.
+  virtual HttpAnswer Get(std::string_view target) = 0;
   /// `subprotocol`: that of SocketOptions::subprotocols on which both sides agreed.
   virtual void OnOpen(ClientId client, const std::string& subprotocol) = 0;
   /// A message, text in UTF-8 or bytes. Returns why the client is to be dropped; empty: it is not.
@@ -62,10 +63,11 @@ class SocketUser {
 };
 
 /// HTTP and WebSocket on one port, in a thread of its own. Refuses requests whose Host or Origin is foreign
-/// (live/origin.h). Its sockets are not inherited by child processes.
+/// (live/origin.h). Its sockets are not inherited by child processes. An exception that leaves the thread ends the
+/// server and nothing else: it says so in the log, drops all clients, and closes the port.
 class SocketServer {
  public:
-  /// Listens from now on. `log` takes a line about a client that was dropped, in the server's thread. Throws
+  /// Listens from now on. `log` takes a line about a client that was dropped or refused, in the server's thread. Throws
   /// std::runtime_error if no port can be had. `user` must outlive this object, and is called only after Start().
   SocketServer(SocketOptions options, SocketUser& user, std::function<void(const std::string&)> log);
   /// Says goodbye to the clients, sends what is waiting for them for at most a second, and ends the thread.
@@ -79,6 +81,10 @@ class SocketServer {
   std::string url() const;
   /// Calls `function` in the server's thread, soon. From any thread.
   void Post(std::function<void()> function);
+  /// Ends the server, because of an error of ours. From any thread.
+  void Fail(const std::string& why);
+  /// Whether an error of ours has ended the server. From any thread.
+  bool has_failed() const;
 
   // In the server's thread only.
   /// Sends a message; nothing if the client is gone.

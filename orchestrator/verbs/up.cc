@@ -42,7 +42,7 @@ using WallClock = std::chrono::steady_clock;
 struct UpArgs {
   ConfigArgs config;
   std::optional<std::string> out;
-  std::optional<LiveAddress> view;
+  ViewerArgs viewers;
   std::string engine = kOverDds;
   bool force = false, json = false, quiet = false;
   bool slurm = false;
@@ -103,16 +103,19 @@ Experiment Load(UpArgs& args) {
 int Up(UpArgs& args) {
   const auto launched = WallClock::now();
   StopSignal stop;
+  if (!args.viewers.at && !args.viewers.allowed_origins.empty())
+    throw ConfigError({"--allow-origin: expected --view with it"});
   const Experiment experiment = Load(args);
   RefuseEngine(args.engine, experiment);
   Prediction prediction = Predict(experiment);
 
   Console console(args.quiet || args.json);
   RunMeter meter(experiment);
-  Helm helm(experiment, experiment.run.pace.value_or(args.view ? 1 : 0));
-  Viewers viewers(args.view, args.engine, experiment, prediction, meter, helm, console);
+  Helm helm(experiment, experiment.run.pace.value_or(args.viewers.at ? 1 : 0));
+  Viewers viewers(args.viewers, args.engine, experiment, prediction, meter, helm, console);
 
   const RunFolder folder(args.out, experiment, args.force);
+  viewers.LogTo(folder);
   folder.Write("config.toml", experiment.resolved);
   console.Line(FirstLine(experiment, args.engine, folder));
   for (const std::string& warning : prediction.warnings) console.Line("warning: " + warning);
@@ -139,10 +142,10 @@ int Up(UpArgs& args) {
   } catch (const std::exception& failure) {
     if (result.failure.empty()) result.failure = InWords(failure);
   }
+  result.failure = Plain(result.failure);
   viewers.SayHowItEnded(result);
   if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
 
-  result.failure = Plain(result.failure);
   const Incidents incidents = IncidentsOf(meter, result, helm.numbers_by_hand());
   RunFacts facts{args.engine, {}, writer.topics(), writer.samples()};
   const auto summary = [&](std::optional<int> exit) {
@@ -178,11 +181,12 @@ std::function<int()> SetUpUp(CLI::App& command) {
       ->check(CLI::IsMember({kOverDds, kInProcess}));
   command
       .add_option_function<std::string>(
-          "--view", [args](const std::string& address) { args->view = ReadLiveAddress(address); },
+          "--view", [args](const std::string& address) { args->viewers.at = ReadLiveAddress(address); },
           "a page to watch the run, and Foxglove's protocol, at this address (default: 127.0.0.1:8765, or the next "
           "free port)")
       ->expected(0, 1)
       ->type_name("[ADDRESS:PORT]");
+  AddAllowOrigin(command, args->viewers.allowed_origins);
   command.add_flag("--slurm", args->slurm,
                    "inside of a Slurm allocation: spread the agents evenly over its nodes, by one srun");
   command.add_flag("--force", args->force,

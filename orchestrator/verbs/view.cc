@@ -3,6 +3,7 @@
 #include <chrono>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bus/stop_signal.h"
 #include "orchestrator/live/address.h"
@@ -14,6 +15,7 @@
 #include "orchestrator/processes/script.h"
 #include "orchestrator/theory/theory.h"
 #include "orchestrator/verbs/verb.h"
+#include "orchestrator/verbs/viewers.h"
 
 namespace mascot {
 namespace {
@@ -21,11 +23,15 @@ namespace {
 struct ViewArgs {
   std::string run;
   LiveAddress at;
+  std::vector<std::string> allowed_origins;
 };
 
-int WaitForSignal(StopSignal& stop) {
-  for (;;)
-    if (const int signal = stop.Within(std::chrono::hours(1)); signal != 0) return 128 + signal;
+/// Returns the exit code: a signal ends the view, or an error of ours has.
+int WaitForTheEnd(StopSignal& stop, const LiveView& view) {
+  constexpr auto kLook = std::chrono::milliseconds(200);
+  while (!view.has_failed())
+    if (const int signal = stop.Within(kLook); signal != 0) return 128 + signal;
+  return 1;
 }
 
 int View(const ViewArgs& args) {
@@ -39,6 +45,7 @@ int View(const ViewArgs& args) {
   Playback playback(run.experiment().control.rate_hz, run.last_tick());
   const LiveView::Options options{.address = args.at.address,
                                   .port = args.at.port,
+                                  .allowed_origins = args.allowed_origins,
                                   .page = FindShared("page", "orchestrator/live"),
                                   .source = {.recorded = run.part()},
                                   .pace = 1};
@@ -51,7 +58,7 @@ int View(const ViewArgs& args) {
   }();
   const Projector projector(run, playback, *view, log);
   console.Line("view           " + view->url());
-  return WaitForSignal(stop);
+  return WaitForTheEnd(stop, *view);
 }
 
 }  // namespace
@@ -66,6 +73,7 @@ std::function<int()> SetUpView(CLI::App& command) {
           "--at", [args](const std::string& address) { args->at = ReadLiveAddress(address, "--at"); },
           "where to listen (default: 127.0.0.1:8765, or the next free port)")
       ->type_name("ADDRESS:PORT");
+  AddAllowOrigin(command, args->allowed_origins);
   command.footer(
       "Serves the page of a run, and Foxglove's protocol, until Ctrl-C. Only the recording is read, and of it the "
       "parts\nthat are looked at; what was cut short plays up to the cut. docs/live.md says what is to be seen.");

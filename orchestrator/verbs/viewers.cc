@@ -1,23 +1,41 @@
 #include "orchestrator/verbs/viewers.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <fstream>
 
+#include "experiment/toml/utf8.h"
+#include "orchestrator/live/origin.h"
 #include "orchestrator/live/shown_keys.h"
 #include "orchestrator/processes/script.h"
 
 namespace mascot {
 
-Viewers::Viewers(const std::optional<LiveAddress>& at, const std::string& engine, const Experiment& experiment,
+void AddAllowOrigin(CLI::App& command, std::vector<std::string>& origins) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--allow-origin",
+          [&origins](const std::vector<std::string>& given) {
+            origins.clear();
+            for (const std::string& origin : given) origins.push_back(ReadAllowedOrigin(origin));
+          },
+          "let pages of this origin watch and touch, such as https://app.foxglove.dev; may be given several times")
+      ->type_name("ORIGIN")
+      ->allow_extra_args(false);  // otherwise it would take CONFIG as a second value
+}
+
+Viewers::Viewers(const ViewerArgs& args, const std::string& engine, const Experiment& experiment,
                  const Prediction& prediction, const RunMeter& meter, Helm& helm, Console& console) try
-    : helm_(helm) {
-  if (!at) return;
+    : helm_(helm), console_(console) {
+  if (!args.at) return;
   view_.emplace(experiment, prediction, meter, helm,
-                LiveView::Options{.address = at->address,
-                                  .port = at->port,
+                LiveView::Options{.address = args.at->address,
+                                  .port = args.at->port,
+                                  .allowed_origins = args.allowed_origins,
                                   .page = FindShared("page", "orchestrator/live"),
                                   .source = {.engine = engine},
                                   .pace = helm.going().pace},
-                [&console](const std::string& line) { console.Line(line); });
+                [this](const std::string& line) { Log(line); });
   view_->SetExperiment(experiment, ShownKeysOf(experiment));
   events_.emplace(*view_, helm);
   helm.CallWhenChanged([this](const Going& going) {
@@ -30,6 +48,22 @@ Viewers::Viewers(const std::optional<LiveAddress>& at, const std::string& engine
 }
 
 Viewers::~Viewers() { helm_.CallWhenChanged(nullptr); }
+
+void Viewers::Log(const std::string& line) {
+  const std::lock_guard lock(mutex_);
+  console_.Line(line);
+  if (log_)
+    std::ofstream(*log_, std::ios::app) << PlainLine(line) << "\n";
+  else
+    lines_.push_back(line);
+}
+
+void Viewers::LogTo(const RunFolder& folder) {
+  const std::lock_guard lock(mutex_);
+  log_ = folder.Log("viewers");
+  for (const std::string& line : lines_) std::ofstream(*log_, std::ios::app) << PlainLine(line) << "\n";
+  lines_.clear();
+}
 
 void Viewers::AddTo(std::vector<RowSink*>& sinks) {
   if (!view_) return;

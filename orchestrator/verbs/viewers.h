@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,15 +15,29 @@
 #include "orchestrator/live/live_view.h"
 #include "orchestrator/processes/console.h"
 
+#include "orchestrator/recording/run_folder.h"
+
+namespace CLI {
+class App;
+}
 namespace mascot {
 
 /// The live view of a run of `up`, if the user asked for --view; else an object that does nothing.
+/// What --view and --allow-origin ask for.
+struct ViewerArgs {
+  std::optional<LiveAddress> at;
+  std::vector<std::string> allowed_origins = {};
+};
+
+/// Adds the option --allow-origin, which may be given several times.
+void AddAllowOrigin(CLI::App& command, std::vector<std::string>& origins);
+
 class Viewers {
  public:
-  /// Listens at `at`, if it is given, and prints where. All arguments but the first two must outlive this object.
+  /// Listens at `args.at`, if it is given, and prints where. All arguments but the first two must outlive this object.
   /// Throws ConfigError if nobody could watch.
-  Viewers(const std::optional<LiveAddress>& at, const std::string& engine, const Experiment& experiment,
-          const Prediction& prediction, const RunMeter& meter, Helm& helm, Console& console);
+  Viewers(const ViewerArgs& args, const std::string& engine, const Experiment& experiment, const Prediction& prediction,
+          const RunMeter& meter, Helm& helm, Console& console);
   ~Viewers();
   Viewers(const Viewers&) = delete;
   Viewers& operator=(const Viewers&) = delete;
@@ -30,6 +46,8 @@ class Viewers {
   std::string url() const { return view_ ? view_->url() : ""; }
 
   /// To be called when the helm is among the sinks.
+  /// From now on what is said of viewers is also in logs/viewers.log; the file is made with the first line.
+  void LogTo(const RunFolder& folder);
   void AddTo(std::vector<RowSink*>& sinks);
   /// Viewers see how the run ended until this object ends, which closes their connections.
   void SayHowItEnded(const EngineResult& result);
@@ -49,7 +67,15 @@ class Viewers {
   };
 
   Helm& helm_;
+  /// Prints a line about viewers, and keeps it in the log. From any thread.
+  void Log(const std::string& line);
+
   std::optional<LiveView> view_;
+  Console& console_;
+  std::mutex mutex_;                // guards what follows
+  std::vector<std::string> lines_;  // until there is a log
+  std::optional<std::filesystem::path> log_;
+
   std::optional<Events> events_;
 };
 
