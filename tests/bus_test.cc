@@ -20,6 +20,7 @@
 #include "bus/stop_signal.h"
 #include "bus/wire.h"
 #include "orchestrator/engines/dds/domain_lock.h"
+#include "orchestrator/engines/dds/ros_publisher.h"
 #include "tests/orchestrator.h"
 
 namespace mascot::test {
@@ -441,6 +442,34 @@ TEST_F(Bus, ASampleReachesItsReadersBeforeItsWriterLeaves) {
 std::string UserName() {
   const passwd* entry = getpwuid(geteuid());
   return entry != nullptr ? entry->pw_name : std::to_string(geteuid());
+}
+
+/// Has a tick, and throws when somebody wants to see it.
+class BrokenSource final : public RosSource {
+ public:
+  std::int64_t TakeNewest() override { return 1; }
+  Bytes Transforms() const override { throw std::runtime_error("made up"); }
+  Bytes Scene() const override { throw std::runtime_error("made up"); }
+};
+
+TEST_F(Bus, AnErrorOfTheViewForRosEndsThatViewAndNothingElse) {
+  std::mutex mutex;
+  std::string log;
+  BrokenSource source;
+  const RosPublisher publisher(
+      Options("ros_view"), source,
+      [&](const std::string& line) {
+        const std::lock_guard lock(mutex);
+        log += line + "\n";
+      },
+      nullptr);
+  const RawReader reader(there_, Topic::Tf(), [](const RawReader::Bytes&, const Sender&) {});
+  EXPECT_TRUE(Until([&] {
+    const std::lock_guard lock(mutex);
+    return !log.empty();
+  }));
+  EXPECT_EQ(log, "ros_view: it has ended because of an error of ours, and nothing else has: made up\n");
+  EXPECT_NO_THROW(there_.RethrowFailure());
 }
 
 TEST(DomainLock, GivesEachRunADomainOfItsOwn) {

@@ -4,12 +4,15 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <mutex>
+#include <optional>
 
 #include "agent/laws.h"
 #include "bus/wire.h"
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/live/ros_view.h"
+#include "orchestrator/live/view_sink.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/run_writer.h"
 #include "tests/orchestrator.h"
@@ -53,12 +56,14 @@ class Control final : public RunControl {
   Answer Ask(const Wish& wish) override {
     const std::lock_guard lock(mutex_);
     wishes_.push_back(wish);
+    if (breaks) throw std::runtime_error("made up");
     return {wish.kind != Wish::Kind::kStop, "asked"};
   }
   std::vector<Wish> wishes() {
     const std::lock_guard lock(mutex_);
     return wishes_;
   }
+  std::atomic<bool> breaks = false;
 
  private:
   std::mutex mutex_;
@@ -74,7 +79,10 @@ class Watched {
         meter_(experiment),
         view(experiment, prediction_, meter_, control,
              {.port = 0, .page = MASCOT_SOURCE_DIR "/orchestrator/live/page", .source = {.engine = "inprocess"}},
-             [](const std::string&) {}),
+             [this](const std::string& line) {
+               const std::lock_guard lock(mutex_);
+               log_ += line + "\n";
+             }),
         sinks_(std::move(more)) {
     sinks_.insert(sinks_.begin(), {&meter_, &view});
   }
@@ -90,6 +98,12 @@ class Watched {
     return result;
   }
 
+  void AddSink(RowSink& sink) { sinks_.push_back(&sink); }
+  std::string log() {
+    const std::lock_guard lock(mutex_);
+    return log_;
+  }
+
   const Experiment experiment;
   Control control;
   bool over = false;  // the run ends before the next tick
@@ -97,6 +111,8 @@ class Watched {
  private:
   Prediction prediction_;
   RunMeter meter_;
+  std::mutex mutex_;
+  std::string log_;
 
  public:
   LiveView view;
@@ -420,6 +436,64 @@ TEST(LiveView, WatchedRunsRecordTheSameBytesAndAViewerThatDiesHoldsUpNothing) {
   const std::string unwatched = fly("unwatched", 0);
   EXPECT_FALSE(unwatched.empty());
   EXPECT_TRUE(unwatched == fly("watched", 20));
+}
+
+/// Throws something at tick 100.
+class Broken final : public RowSink {
+ public:
+  explicit Broken(bool by_exception) : by_exception_(by_exception) {}
+  void Add(const FlownRow& row) override {
+    ++rows;
+    if (row.tick() != 100) return;
+    if (by_exception_) throw std::runtime_error("made up");
+    throw 1;
+  }
+  int rows = 0;
+
+ private:
+  bool by_exception_;
+};
+
+TEST(LiveView, AnErrorOfTheViewEndsTheViewAndNotTheRun) {
+  const ScratchFolder folder;
+  const auto fly = [&](const std::string& name, const std::function<void(Watched&)>& breaks, RowSink* more) {
+    const Experiment experiment = Load(kThree);
+    const RunFolder out(folder.File(name), experiment, false);
+    RunWriter writer(experiment, out, experiment.resolved);
+    std::vector<RowSink*> sinks{&writer};
+    Watched run(experiment, sinks);
+    std::optional<ViewSink> guarded;
+    if (more != nullptr) run.AddSink(guarded.emplace(*more, run.view));
+    Viewer viewer(run.view.url());
+    const EngineResult result = run.Fly([&](std::int64_t tick) {
+      if (tick == 100 && breaks) breaks(run);
+    });
+    EXPECT_EQ(result.failure, "") << name;
+    writer.Close(experiment.resolved);
+    if (breaks || more != nullptr) {
+      EXPECT_TRUE(viewer.IsClosed()) << name;
+      EXPECT_TRUE(Until([&] { return run.view.has_failed(); }));
+      EXPECT_EQ(WebClient(run.view.url()).Get("/"), "") << "the port is closed";
+      EXPECT_EQ(run.log(), "viewers: the view has ended because of an error of ours, and nothing else has: " +
+                               std::string(name == "unknown" ? "an exception of unknown type" : "made up") + "\n");
+    }
+    return ReadFile(folder.File(name + "/run.mcap"));
+  };
+  const std::string whole = fly("whole", {}, nullptr);
+  EXPECT_FALSE(whole.empty());
+  EXPECT_TRUE(whole == fly(
+                           "in_its_thread", [](Watched& run) { run.view.Fail("made up"); }, nullptr));
+  Broken broken(/*by_exception=*/true), unknown(/*by_exception=*/false);
+  EXPECT_TRUE(whole == fly("in_a_sink", {}, &broken));
+  EXPECT_TRUE(whole == fly("unknown", {}, &unknown));
+  EXPECT_EQ(broken.rows, 101) << "rows go to it no more";
+}
+
+TEST(LiveView, AQuestionThatThrowsIsAnswered) {
+  Watched run(Load(kThree, "run.duration_s", "100000.0"));
+  run.control.breaks = true;
+  Viewer viewer(run.view.url());
+  EXPECT_EQ(viewer.Ask({{"ask", "pause"}}), (Json{{"granted", false}, {"words", "made up"}}));
 }
 
 /// wscheck against a server; ends once it has seen all.

@@ -23,6 +23,8 @@ void Asker::Run(const std::stop_token& over) {
       answer = control_.Ask(question.wish);
     } catch (const std::exception& failure) {
       answer = {false, failure.what()};
+    } catch (...) {
+      answer = {false, "an exception of unknown type"};
     }
     question.answered(answer);
   }

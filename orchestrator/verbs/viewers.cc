@@ -67,8 +67,8 @@ void Viewers::LogTo(const RunFolder& folder) {
 
 void Viewers::AddTo(std::vector<RowSink*>& sinks) {
   if (!view_) return;
-  sinks.push_back(&*view_);
-  sinks.push_back(&*events_);
+  for (RowSink* inner : {static_cast<RowSink*>(&*view_), static_cast<RowSink*>(&*events_)})
+    sinks.push_back(sinks_.emplace_back(std::make_unique<ViewSink>(*inner, *view_)).get());
 }
 
 void Viewers::SayHowItEnded(const EngineResult& result) {

@@ -13,16 +13,16 @@
 #include "orchestrator/engines/helm.h"
 #include "orchestrator/live/address.h"
 #include "orchestrator/live/live_view.h"
+#include "orchestrator/live/view_sink.h"
 #include "orchestrator/processes/console.h"
-
 #include "orchestrator/recording/run_folder.h"
 
 namespace CLI {
 class App;
 }
+
 namespace mascot {
 
-/// The live view of a run of `up`, if the user asked for --view; else an object that does nothing.
 /// What --view and --allow-origin ask for.
 struct ViewerArgs {
   std::optional<LiveAddress> at;
@@ -32,6 +32,7 @@ struct ViewerArgs {
 /// Adds the option --allow-origin, which may be given several times.
 void AddAllowOrigin(CLI::App& command, std::vector<std::string>& origins);
 
+/// The live view of a run of `up`, if the user asked for --view; else an object that does nothing.
 class Viewers {
  public:
   /// Listens at `args.at`, if it is given, and prints where. All arguments but the first two must outlive this object.
@@ -45,9 +46,9 @@ class Viewers {
   /// Address of the page; empty: there is none.
   std::string url() const { return view_ ? view_->url() : ""; }
 
-  /// To be called when the helm is among the sinks.
   /// From now on what is said of viewers is also in logs/viewers.log; the file is made with the first line.
   void LogTo(const RunFolder& folder);
+  /// To be called when the helm is among the sinks.
   void AddTo(std::vector<RowSink*>& sinks);
   /// Viewers see how the run ended until this object ends, which closes their connections.
   void SayHowItEnded(const EngineResult& result);
@@ -66,17 +67,18 @@ class Viewers {
     std::shared_ptr<const Experiment> now_;
   };
 
-  Helm& helm_;
   /// Prints a line about viewers, and keeps it in the log. From any thread.
   void Log(const std::string& line);
 
-  std::optional<LiveView> view_;
+  Helm& helm_;
   Console& console_;
   std::mutex mutex_;                // guards what follows
   std::vector<std::string> lines_;  // until there is a log
   std::optional<std::filesystem::path> log_;
 
+  std::optional<LiveView> view_;
   std::optional<Events> events_;
+  std::vector<std::unique_ptr<ViewSink>> sinks_;
 };
 
 }  // namespace mascot

@@ -197,7 +197,8 @@ void DdsRun::Join() {
 void DdsRun::ShowToRos() {
   DomainOptions options = Options("ros_view", DiscoveryRole::kPeer);
   options.transport = "udp";
-  ros_publisher_.emplace(options, *ros_, *domain_, with_server_ ? &audit_ : nullptr);
+  ros_publisher_.emplace(
+      options, *ros_, [this](const std::string& line) { console_.Line(line); }, with_server_ ? &audit_ : nullptr);
 }
 
 DomainOptions DdsRun::Options(const std::string& name, DiscoveryRole role) const {

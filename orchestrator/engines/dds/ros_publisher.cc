@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <utility>
 
 namespace mascot {
 namespace {
@@ -20,10 +21,10 @@ RosPublisher::Clock::duration TimeToSend(std::size_t bytes) {
 
 }  // namespace
 
-RosPublisher::RosPublisher(const DomainOptions& options, RosSource& source, Domain& run,
+RosPublisher::RosPublisher(const DomainOptions& options, RosSource& source, std::function<void(const std::string&)> log,
                            eprosima::fastdds::dds::DomainParticipantListener* discovery)
     : source_(source),
-      run_(run),
+      log_(std::move(log)),
       domain_(
           options, [] {}, nullptr, discovery),
       tf_{.writer = {domain_, Topic::Tf()}, .period = kTfPeriod},
@@ -41,8 +42,8 @@ void RosPublisher::Run(const std::stop_token& over) try {
     Show(tf_, tick, &RosSource::Transforms);
     Show(scene_, tick, &RosSource::Scene);
   }
-} catch (...) {
-  run_.Fail(std::current_exception());
+} catch (const std::exception& failure) {
+  log_(std::string("ros_view: it has ended because of an error of ours, and nothing else has: ") + failure.what());
 }
 
 void RosPublisher::Show(Shown& topic, std::int64_t tick, RosSource::Bytes (RosSource::*make)() const) {

@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <stop_token>
+#include <string>
 #include <thread>
 
 #include "bus/bus.h"
@@ -18,9 +20,10 @@ class RosPublisher {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Joins as `options` say, and begins. `discovery`, if given, is told of all who are found. A failure of `source` is
-  /// one of `run`, which, like the others, must outlive this object. Throws what Domain() throws.
-  RosPublisher(const DomainOptions& options, RosSource& source, Domain& run,
+  /// Joins as `options` say, and begins. `discovery`, if given, is told of all who are found. What `source` throws ends
+  /// the publishing, and not the run: `log` takes a line about it, in the publisher's thread. Both must outlive this
+  /// object. Throws what Domain() throws.
+  RosPublisher(const DomainOptions& options, RosSource& source, std::function<void(const std::string&)> log,
                eprosima::fastdds::dds::DomainParticipantListener* discovery);
 
  private:
@@ -39,7 +42,7 @@ class RosPublisher {
   void Show(Shown& topic, std::int64_t tick, RosSource::Bytes (RosSource::*make)() const);
 
   RosSource& source_;
-  Domain& run_;
+  const std::function<void(const std::string&)> log_;
   Domain domain_;
   Shown tf_, scene_;
   std::jthread thread_;  // last: it uses the others

@@ -1,0 +1,42 @@
+#include "orchestrator/live/view_sink.h"
+
+#include <exception>
+#include <string>
+
+namespace mascot {
+namespace {
+
+/// What was thrown, in words.
+std::string Thrown() {
+  try {
+    throw;
+  } catch (const std::exception& failure) {
+    return failure.what();
+  } catch (...) {
+    return "an exception of unknown type";
+  }
+}
+
+}  // namespace
+
+void ViewSink::Adopt(const LiveExperiment& live) {
+  if (broken_) return;
+  try {
+    inner_.Adopt(live);
+  } catch (...) {
+    broken_ = true;
+    view_.Fail(Thrown());
+  }
+}
+
+void ViewSink::Add(const FlownRow& row) {
+  if (broken_) return;
+  try {
+    inner_.Add(row);
+  } catch (...) {
+    broken_ = true;
+    view_.Fail(Thrown());
+  }
+}
+
+}  // namespace mascot
