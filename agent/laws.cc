@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "experiment/toml/blame.h"
+#include "experiment/toml/input.h"
+
 namespace mascot {
 
 using Row = LawEntry();
@@ -120,6 +123,25 @@ const LawCatalog& LawTable() {
 
 Experiment LoadExperiment(Section document, const std::string& default_name, bool checked) {
   return ReadExperiment(std::move(document), LawTable(), default_name, checked);
+}
+
+Experiment LoadExperiment(const std::string& text, const std::string& path, std::span<const Override> overrides) {
+  const auto load = [&](std::span<const Override> with) {
+    return LoadExperiment(Section::FromText(text, path, with), StemOfInput(path));
+  };
+  const auto mistakes_with = [&](std::span<const Override> with) -> std::vector<std::string> {
+    try {
+      load(with);
+      return {};
+    } catch (const ConfigError& error) {
+      return error.mistakes();
+    }
+  };
+  try {
+    return load(overrides);
+  } catch (const ConfigError& error) {
+    throw ConfigError(BlameOverrides(error.mistakes(), path, overrides, mistakes_with));
+  }
 }
 
 }  // namespace mascot

@@ -122,6 +122,9 @@ const LawCatalog& LawTable();
 /// Reads a complete experiment with the laws of the table. `checked`: it was read before, without a mistake, so slow
 /// checks are left out. Throws ConfigError with all mistakes.
 Experiment LoadExperiment(Section document, const std::string& default_name, bool checked = false);
+/// Reads the text of the file `path` with `overrides` in place of its keys; the file's name is the default one.
+/// Mistakes that the file alone does not have are said to be of the overrides that make them.
+Experiment LoadExperiment(const std::string& text, const std::string& path, std::span<const Override> overrides);
 
 /// The parameters of `law` as the type that its own file in agent/laws/ defines.
 template <class Params>

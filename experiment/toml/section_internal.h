@@ -119,6 +119,8 @@ constexpr std::size_t kDeepestKey = 32, kDeepestValue = 64;
 bool IsBare(char c);
 /// Throws ConfigError with the place in `name`.
 toml::table ParseToml(std::string_view text, const std::string& name);
+/// Where messages say that an override comes from: "--set law.p_gain=0.5".
+std::string OriginOf(const Override& override);
 /// Replaces or adds a key of the document. Throws ConfigError.
 void Apply(const Override& override, toml::table& root);
 

@@ -105,11 +105,19 @@ class Place {
   const Step& step_;
 };
 
+/// An empty table or list, `toml`, that stands where the value of `source` does: what is wrong with it, or missing in
+/// it, is the mistake of the override that made it.
+template <class Node>
+Node Empty(std::string_view toml, const toml::source_region& source) {
+  toml::table table = ParseToml("value = " + std::string(toml), source.path ? *source.path : "");
+  return std::move(*table.get_as<Node>("value"));
+}
+
 /// If `step` of `inside` is the index one beyond the end of its list: adds a table there.
-void Extend(toml::node& inside, const Step& step) {
+void Extend(toml::node& inside, const Step& step, const toml::source_region& source) {
   const auto* index = std::get_if<std::size_t>(&step);
   toml::array* list = inside.as_array();
-  if (index != nullptr && list != nullptr && *index == list->size()) list->push_back(toml::table());
+  if (index != nullptr && list != nullptr && *index == list->size()) list->push_back(Empty<toml::table>("{}", source));
 }
 
 /// Puts a value where the steps lead, and makes the tables that the document lacks. `extends`: and the tables of lists
@@ -117,7 +125,7 @@ void Extend(toml::node& inside, const Step& step) {
 void Put(toml::table& root, std::span<const Step> steps, toml::node&& value, bool extends) {
   toml::node* node = &root;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
-    if (extends) Extend(*node, steps[i]);
+    if (extends) Extend(*node, steps[i], value.source());
     const Place place(*node, steps, i);
     if (place.Find() == nullptr) {
       const bool is_list = std::holds_alternative<std::size_t>(steps[i + 1]);
@@ -125,9 +133,9 @@ void Put(toml::table& root, std::span<const Step> steps, toml::node&& value, boo
         throw std::invalid_argument(PathOf(steps.first(i + 1)) + ": expected a list to set " +
                                     PathOf(steps.subspan(i + 1, 1)) + " in, got nothing");
       if (is_list)
-        place.Put(toml::array(), value.source());
+        place.Put(Empty<toml::array>("[]", value.source()), value.source());
       else
-        place.Put(toml::table(), value.source());
+        place.Put(Empty<toml::table>("{}", value.source()), value.source());
     }
     node = place.Find();
   }
@@ -148,9 +156,12 @@ void Remove(toml::table& root, std::span<const Step> steps) {
 
 }  // namespace
 
+std::string OriginOf(const Override& override) {
+  return override.origin.empty() ? "--set " + Printable(override.key + "=" + override.value) : override.origin;
+}
+
 void Apply(const Override& override, toml::table& root) {
-  const std::string name =
-      override.origin.empty() ? "--set " + Printable(override.key + "=" + override.value) : override.origin;
+  const std::string name = OriginOf(override);
   const std::vector<Step> steps = Steps(override.key);
   if (steps.empty())
     throw ConfigError({name + ": expected a dotted key such as law.p_gain or agents.override[0].start_s, got '" +

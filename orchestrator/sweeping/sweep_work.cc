@@ -59,8 +59,7 @@ std::map<std::string, std::string> FlyOne(const Sweep& sweep, std::size_t run) {
 }  // namespace
 
 Experiment Sweep::Load(const SweepPoint& point) const {
-  const Section document = Section::FromText(text, name, laws.Fit(point.overrides));
-  Experiment experiment = LoadExperiment(document, StemOfInput(name));
+  Experiment experiment = LoadExperiment(text, name, laws.Fit(point.overrides));
   if (experiment.run.mode == Mode::kRealtime)
     throw ConfigError({"sweep: expected run.mode = \"lockstep\", got \"realtime\""});
   return experiment;

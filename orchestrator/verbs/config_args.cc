@@ -32,9 +32,9 @@ Experiment ConfigArgs::Load() {
   const std::string name = NameOfInput(path);
   std::vector<Override> all;
   for (const std::string& set : sets) all.push_back(ParseOverride(set));
-  if (duration_s) all.push_back({"run.duration_s", *duration_s});
-  if (seed) all.push_back({"run.seed", *seed});
-  return LoadExperiment(Section::FromText(*text_, name, all), StemOfInput(name));
+  if (duration_s) all.push_back({"run.duration_s", *duration_s, "--duration-s " + *duration_s});
+  if (seed) all.push_back({"run.seed", *seed, "--seed " + *seed});
+  return LoadExperiment(*text_, name, all);
 }
 
 }  // namespace mascot
