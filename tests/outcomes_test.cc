@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "orchestrator/sweeping/table.h"
+
 namespace mascot {
 namespace {
 
@@ -11,7 +13,7 @@ using ::testing::IsEmpty;
 
 const Outcomes::Cells kColumns = {"run", "law.name", "run.seed", "error", "consensus.settling_time_s", "laws.a.cost"};
 
-SweepPlan Plan() { return SweepPlan({.sets = {"law.name=a,'b'"}, .randoms = {}, .seeds = "1..3"}); }
+SweepPlan Plan() { return SweepPlan({.sets = {"law.name=a,b"}, .randoms = {}, .seeds = "1..3"}); }
 
 /// Runs of the law of their law.name each: a, whose agents agree, and b, whose agents do not.
 KnownLaws LawsOf(const SweepPlan& plan) {
@@ -51,9 +53,9 @@ TEST(Outcomes, CountWhatFailedAndWhatDidNotSettle) {
   const auto lines = LinesOf({{"0", "a", "1", "it fell", "", ""},
                               {"1", "a", "2", "", "", ""},
                               {"2", "a", "3", "it fell", "", ""},
-                              {"3", "'b'", "1", std::string(300, 'x'), "", ""},
-                              {"4", "'b'", "2", "c", "", ""},
-                              {"5", "'b'", "3", "d", "", ""}});
+                              {"3", "b", "1", std::string(300, 'x'), "", ""},
+                              {"4", "b", "2", "c", "", ""},
+                              {"5", "b", "3", "d", "", ""}});
   EXPECT_THAT(
       lines,
       ElementsAre("failed: 5 of 6 runs", "  run 0 and 1 more: it fell",
@@ -68,22 +70,51 @@ TEST(Outcomes, HaveStatisticsOverTheSeedsOfEachPoint) {
       StatisticsOf({"consensus.settling_time_s", "laws.a.cost"}, {{"0", "a", "1", "", "4.0", "1"},
                                                                   {"1", "a", "2", "", "6.0", ""},
                                                                   {"2", "a", "3", "", "5.0", ""},
-                                                                  {"3", "'b'", "1", "it fell", "", ""},
-                                                                  {"4", "'b'", "2", "", "", ""},
-                                                                  {"5", "'b'", "3", "", "2.0", ""}});
+                                                                  {"3", "b", "1", "it fell", "", ""},
+                                                                  {"4", "b", "2", "", "", ""},
+                                                                  {"5", "b", "3", "", "2.0", ""}});
   EXPECT_EQ(csv,
             "law.name,metric,runs,failed,without_value,mean,mean_low_95,mean_high_95,median,decile_1,decile_9\n"
             "a,consensus.settling_time_s,3,0,0,5.0,2.5158622882496724,7.484137711750328,5.0,4.2,5.8\n"
-            "'b',consensus.settling_time_s,3,1,1,2.0,,,inf,inf,inf\n"
+            "b,consensus.settling_time_s,3,1,1,2.0,,,inf,inf,inf\n"
             "a,laws.a.cost,3,0,2,1.0,,,1.0,1.0,1.0\n")
       << "a run that does not settle is later than all others; a cost that is missing is none";
+}
+
+TEST(Outcomes, TakeNoPredictionAndNoDeviationForLate) {
+  const SweepPlan plan({.sets = {}, .randoms = {}, .seeds = "1..4"});
+  const KnownLaws none;
+  const SweepLaws laws(plan, none);
+  Outcomes outcomes(plan, laws,
+                    {"run", "run.seed", "error", "consensus.settling_time_s", "consensus.predicted.settling_time_s",
+                     "consensus.deviation.settling_time_s", "laws.a.predicted.agreement_time_s"});
+  outcomes.Add({"0", "1", "", "4.0", "5.0", "-1.0", "7.0"});
+  outcomes.Add({"1", "2", "", "8.0", "5.0", "3.0", ""});
+  outcomes.Add({"2", "3", "", "", "5.0", "", ""});     // not settled, and so off by nobody knows how much
+  outcomes.Add({"3", "4", "", "9.0", "", "", "9.0"});  // not predicted
+  std::string csv;
+  const std::vector<std::string> metrics = {"consensus.settling_time_s", "consensus.predicted.settling_time_s",
+                                            "consensus.deviation.settling_time_s", "laws.a.predicted.agreement_time_s"};
+  outcomes.WriteStatistics(metrics, [&](std::string_view line) {
+    const auto cells = CsvCells(line);
+    csv += cells[0] + " " + cells[1] + " " + cells[3] + ", " + cells[4] + ", " + cells[7] + ", " + cells[9] + "\n";
+  });
+  EXPECT_THAT(csv, EndsWith("consensus.settling_time_s 4 1, 7.0, 8.5, inf\n"
+                            "consensus.predicted.settling_time_s 4 1, 5.0, 5.0, 5.0\n"
+                            "consensus.deviation.settling_time_s 4 2, 1.0, 1.0, 2.6\n"
+                            "laws.a.predicted.agreement_time_s 4 2, 8.0, 8.0, 8.8\n"));
+  for (const char* column : {"consensus.settling_time_s", "laws.a.agreement_time_s", "gather_time_s"})
+    EXPECT_TRUE(IsTimeOfEvent(column)) << column;
+  for (const char* column : {"consensus.predicted.settling_time_s", "consensus.deviation.settling_time_s",
+                             "laws.a.predicted.agreement_time_s", "consensus.rate_per_s", "wall_s"})
+    EXPECT_FALSE(IsTimeOfEvent(column)) << column;
 }
 
 TEST(Outcomes, CallARunLateOnlyIfItsLawMakesAgentsAgreeOrHasSettledInAnother) {
   const std::vector<std::string> time = {"consensus.settling_time_s"};
   const std::vector<Outcomes::Cells> never = {{"0", "a", "1", "", "4.0", ""}, {"1", "a", "2", "", "", ""},
-                                              {"2", "a", "3", "", "", ""},    {"3", "'b'", "1", "", "", ""},
-                                              {"4", "'b'", "2", "", "", ""},  {"5", "'b'", "3", "", "", ""}};
+                                              {"2", "a", "3", "", "", ""},    {"3", "b", "1", "", "", ""},
+                                              {"4", "b", "2", "", "", ""},    {"5", "b", "3", "", "", ""}};
   EXPECT_THAT(LinesOf(never), ElementsAre("not settled by the end: 2 of 3 runs whose law makes agents agree (no "
                                           "consensus.settling_time_s), first run 1"));
   EXPECT_THAT(StatisticsOf(time, never), EndsWith("decile_9\na,consensus.settling_time_s,3,0,2,4.0,,,inf,inf,inf\n"));
@@ -91,7 +122,7 @@ TEST(Outcomes, CallARunLateOnlyIfItsLawMakesAgentsAgreeOrHasSettledInAnother) {
   once[5][4] = "2.0";
   EXPECT_THAT(LinesOf(once),
               ElementsAre("not settled by the end: 4 of 6 runs (no consensus.settling_time_s), first run 1"));
-  EXPECT_THAT(StatisticsOf(time, once), EndsWith("\n'b',consensus.settling_time_s,3,0,2,2.0,,,inf,inf,inf\n"));
+  EXPECT_THAT(StatisticsOf(time, once), EndsWith("\nb,consensus.settling_time_s,3,0,2,2.0,,,inf,inf,inf\n"));
 }
 
 TEST(Outcomes, LeaveOutWhatNoRunHas) {

@@ -71,6 +71,14 @@ TEST_F(SweepFileTest, IsNotMixedWithAnotherSweep) {
       ThrowsMessage<ConfigError>("--out " + path_ +
                                  ": expected a new file, or one of this very sweep, got another (--force begins "
                                  "anew)"));
+  const auto differs = [](const std::string& theirs) { return theirs == "plan" ? "a word" : ""; };
+  EXPECT_THAT([&] { SweepFile(path_, kSweepColumns, "other plan", false, differs); },
+              ThrowsMessage<ConfigError>(HasSubstr("got another, which differs in a word (--force begins anew)")));
+  {
+    const SweepFile same(path_, kSweepColumns, "the same in other words", false, [](const auto&) { return ""; });
+    EXPECT_EQ(same.rows(), 1u);
+  }
+  SweepFile(path_, kSweepColumns, "plan", true).Add(0, {"0.5", ""});
   WriteFile(path_, "something else\n");
   EXPECT_THAT([&] { SweepFile(path_, kSweepColumns, "plan", false); },
               ThrowsMessage<ConfigError>(path_ + ": expected the columns of this sweep, got others"));
@@ -80,8 +88,10 @@ TEST_F(SweepFileTest, IsNotMixedWithAnotherSweep) {
 
 TEST_F(SweepFileTest, DoesNotReplaceAFileThatIsNotItsTable) {
   WriteFile(path_, "a person's own table\n");
-  EXPECT_THAT([&] { SweepFile(path_, kSweepColumns, "plan", false); },
-              ThrowsMessage<ConfigError>(HasSubstr(": expected a new file, or one of this very sweep, got another")));
+  EXPECT_THAT(
+      [&] { SweepFile(path_, kSweepColumns, "plan", false); },
+      ThrowsMessage<ConfigError>(HasSubstr(": expected a new file, or one of this very sweep, got another, without the "
+                                           "sweep.csv.plan that says what it is of (--force")));
   EXPECT_EQ(Text(), "a person's own table\n");
   EXPECT_FALSE(std::filesystem::exists(path_ + ".plan"));
   EXPECT_THAT([&] { SweepFile("/dev/null", kSweepColumns, "plan", true); },
@@ -107,10 +117,10 @@ TEST_F(SweepFileTest, NamesTheLineAndTheColumnOfWhatNoSweepHasWritten) {
   const SweepPlan plan({.sets = {"law.beta=0.5,0.7"}, .randoms = {}, .samples = 1, .seeds = ""});
   const auto refusal = [&](const std::string& rows) -> std::string {
     std::filesystem::remove(path_);
-    SweepFile(path_, columns, "plan", true, &plan).Add(0, {"0.5", "", "1.0"});
+    SweepFile(path_, columns, "plan", true, {}, &plan).Add(0, {"0.5", "", "1.0"});
     WriteFile(path_, "run,law.beta,error,sim_s\n0,0.5,,1.0\n" + rows);
     try {
-      const SweepFile file(path_, columns, "plan", false, &plan);
+      const SweepFile file(path_, columns, "plan", false, {}, &plan);
     } catch (const ConfigError& error) {
       const std::string text = error.what();
       EXPECT_TRUE(text.starts_with(path_ + ":3: ")) << text;

@@ -57,9 +57,9 @@ TEST(SweepPlan, TakesListsAndSingleValues) {
       Sets({"graph.topology=ring,path", "law.leader_waypoints_m=[[1, 2, 3], [4, 5, 6]]", "law.leader=1"}));
   EXPECT_THAT(Runs(plan), ElementsAre("ring [[1, 2, 3], [4, 5, 6]] 1", "path [[1, 2, 3], [4, 5, 6]] 1"));
   EXPECT_THAT(plan.varied(), ElementsAre("graph.topology"));
-  EXPECT_THAT(Runs(SweepPlan(Sets({"run.name='a,b','c:d:e'"}))), ElementsAre("'a,b'", "'c:d:e'"));
-  EXPECT_THAT(Runs(SweepPlan(Sets({R"(a="x\",y",'z\',"")"}))), ElementsAre(R"("x\",y")", R"('z\')", R"("")"));
-  EXPECT_THAT(Runs(SweepPlan(Sets({"a=\"\"\"x\",y\"\"\",1"}))), ElementsAre("\"\"\"x\",y\"\"\"", "1"));
+  EXPECT_THAT(Runs(SweepPlan(Sets({"run.name='a,b','c:d:e'"}))), ElementsAre("a,b", "c:d:e"));
+  EXPECT_THAT(Runs(SweepPlan(Sets({R"(a="x\",y",'z\',"")"}))), ElementsAre(R"(x",y)", R"(z\)", R"("")"));
+  EXPECT_THAT(Runs(SweepPlan(Sets({"a=\"\"\"x\",y\"\"\",1"}))), ElementsAre("x\",y", "1"));
 }
 
 TEST(SweepPlan, CombinesEveryKeyWithEveryOtherAndSeedsFastest) {
@@ -146,11 +146,45 @@ TEST(SweepPlan, KnowsWhichRunsAreAlikeButForTheirSeeds) {
   const SweepPlan plan({.sets = {"a=x,y", "b=1,2"}, .randoms = {}, .seeds = "1..2"});
   EXPECT_THAT(firsts(plan, SweepPlan::Alike::kInValues), ElementsAre(0, 0, 2, 2, 4, 4, 6, 6));
   EXPECT_THAT(firsts(plan, SweepPlan::Alike::kInWords), ElementsAre(0, 0, 0, 0, 4, 4, 4, 4));
-  const SweepPlan drawn({.sets = {"a=x,x"}, .randoms = {"b=0:1", "c=1:1"}, .samples = 2, .seeds = ""});
-  EXPECT_THAT(firsts(drawn, SweepPlan::Alike::kInValues), ElementsAre(0, 1, 0, 1));
-  EXPECT_THAT(firsts(drawn, SweepPlan::Alike::kInWords), ElementsAre(0, 0, 0, 0));
-  const SweepPlan same({.sets = {"a=1"}, .randoms = {"b=1:1"}, .samples = 2, .seeds = ""});
-  EXPECT_THAT(firsts(same, SweepPlan::Alike::kInValues), ElementsAre(0, 0));
+  const SweepPlan drawn({.sets = {"a=x,y"}, .randoms = {"b=0:1", "c=1:1"}, .samples = 2, .seeds = ""});
+  EXPECT_THAT(firsts(drawn, SweepPlan::Alike::kInValues), ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(firsts(drawn, SweepPlan::Alike::kInWords), ElementsAre(0, 0, 2, 2));
+}
+
+TEST(SweepPlan, FliesEqualValuesOnceHoweverTheyAreTyped) {
+  const SweepPlan gains(Sets({"law.p_gain=0.1,0.1,0.10,1e-1,0x1,1.0"}));
+  EXPECT_THAT(Runs(gains), ElementsAre("0.1", "1"));
+  EXPECT_THAT(gains.notes(), ElementsAre("law.p_gain: 4 of the 6 values are equal to others: each is flown once"));
+  EXPECT_THAT(gains.varied(), ElementsAre("law.p_gain"));
+  EXPECT_THAT(Runs(SweepPlan(Sets({"law.name=consensus,'consensus',\"minmax\""}))), ElementsAre("consensus", "minmax"));
+  EXPECT_THAT(Runs(SweepPlan(Sets({"law={name='consensus',p_gain=1},{p_gain=1.0, name=\"consensus\"}"}))),
+              ElementsAre("{name = \"consensus\", p_gain = 1}"));
+  EXPECT_THAT(SweepPlan(Sets({"law.p_gain=0.5,0.50"})).varied(), IsEmpty());
+  const SweepPlan seeds({.sets = {}, .randoms = {}, .seeds = "3,1,03,1"});
+  EXPECT_THAT(Runs(seeds), ElementsAre("3", "1"));
+  EXPECT_THAT(seeds.notes(), ElementsAre("run.seed: 2 of the 4 values are equal to others: each is flown once"));
+  const SweepPlan samples({.sets = {"a=1,2"}, .randoms = {"b=1:1"}, .samples = 9, .seeds = ""});
+  EXPECT_EQ(samples.size(), 2u);
+  EXPECT_THAT(samples.notes(), ElementsAre("--samples: the 9 are equal: one is flown"));
+  EXPECT_EQ(SweepPlan({.sets = {}, .randoms = {"b=1:1", "c=0:1"}, .samples = 9, .seeds = ""}).size(), 9u);
+  EXPECT_THAT(SweepPlan(Sets({"law.p_gain=0.1,0.2"})).notes(), IsEmpty());
+}
+
+TEST(SweepPlan, HasWordsThatGiveItAgain) {
+  const std::vector<Words> typed = {Sets({"law.p_gain=0.10,1e0", "law.name='consensus',minmax"}),
+                                    Sets({"a=0.1:0.1:0.3", "run.name='a,b','c:d:e','f\"g','h[i'"}),
+                                    Sets({"law={name='consensus',p_gain=1.0},{name='minmax'}"}),
+                                    {.sets = {"a=1"}, .randoms = {"b=1.0:1e1:log"}, .samples = 7, .seeds = "5,6,7"},
+                                    {.sets = {"run.seed=1,2"}, .randoms = {}, .seeds = ""}};
+  for (const Words& words : typed) {
+    const SweepPlan plan(words), again(plan.words());
+    EXPECT_EQ(again.Text(), plan.Text());
+    EXPECT_EQ(again.words(), plan.words());
+    EXPECT_EQ(Runs(again), Runs(plan));
+  }
+  EXPECT_EQ(SweepPlan(typed[3]).words().seeds, "5..7");
+  EXPECT_THAT(SweepPlan(typed[3]).words().randoms, ElementsAre("b=1:10:log"));
+  EXPECT_THAT(SweepPlan(typed[1]).words().sets[0], "a=0.1:0.1:0.3");
 }
 
 TEST(SweepPlan, SaysWhatItExpected) {

@@ -124,7 +124,8 @@ TEST_F(SweepTest, HasColumnsOfMetricsInPythonOverTheArraysOfStatesNpz) {
             "' && /usr/bin/python3 -c 'import numpy, own; print(float(own.fingerprint(dict(numpy.load(\"" +
             (up.path() / "states.npz").string() + "\")))))'");
   EXPECT_EQ(table.At(4, "fingerprint") + "\n", numpy.output);
-  EXPECT_THAT(Sweep("--set law.p_gain=0.1,0.2 --seeds 4..6").output, HasSubstr("got another (--force begins anew)"));
+  EXPECT_THAT(Sweep("--set law.p_gain=0.1,0.2 --seeds 4..6").output,
+              HasSubstr("got another, which differs in the file of --metric (--force begins anew)"));
 }
 
 TEST_F(SweepTest, RefusesMetricsWithMistakesAndNamesTheLineOfThoseInARun) {
@@ -387,7 +388,8 @@ TEST_F(SweepTest, DoesNotMixTwoSweepsInOneTable) {
   const std::string before = ReadFile(out_);
   const Ran other = Sweep("--seeds 1..3 --no-plot");
   EXPECT_EQ(other.exit_code, 2);
-  EXPECT_THAT(other.output, HasSubstr("expected a new file, or one of this very sweep, got another"));
+  EXPECT_THAT(other.output, HasSubstr("expected a new file, or one of this very sweep, got another, which differs in "
+                                      "--seeds: 1, 2 there, 1, 2, 3 here (--force begins anew)"));
   EXPECT_EQ(ReadFile(out_), before);
   EXPECT_EQ(Sweep("--seeds 1..3 --no-plot --force").exit_code, 0);
   EXPECT_THAT(Table(out_).rows, SizeIs(3));

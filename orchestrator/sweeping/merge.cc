@@ -24,13 +24,12 @@ void CheckSame(const SweepIdentity& first, const fs::path& first_table, const Sw
   if (other.build != first.build)
     throw ConfigError({fmt::format("sweep merge: expected shares by one build, got {} ({}) and {} ({})", first.build,
                                    first_table.string(), other.build, table.string())});
-  if (other.Text() != first.Text())
-    throw ConfigError({fmt::format("sweep merge: expected shares of one sweep, got {} and {}, which differ in {}",
-                                   first_table.string(), table.string(),
-                                   other.experiment != first.experiment     ? "the experiment file"
-                                   : other.words != first.words             ? "what their runs set"
-                                   : other.metric_file != first.metric_file ? "the user's metrics"
-                                                                            : "files that the experiment names")});
+  if (other.Text() == first.Text()) return;
+  if (const std::string difference = other.DifferenceFrom(first.Text()); !difference.empty())
+    throw ConfigError(
+        {fmt::format("sweep merge: expected shares of one sweep, got {} (there) and {} (here), which differ "
+                     "in {}",
+                     first_table.string(), table.string(), difference)});
 }
 
 /// Throws ConfigError if runs are missing, naming the first.
@@ -112,7 +111,8 @@ Merged Merge(const std::vector<fs::path>& tables, const std::string& out, bool f
     });
   }
   CheckComplete(share_of, plan.size());
-  SweepFile all(out, columns, identity.Text(), force);
+  SweepFile all(out, columns, identity.Text(), force,
+                [&](const std::string& theirs) { return identity.DifferenceFrom(theirs); });
   for (const auto& share : shares)
     share->rows.ForEach([&](std::size_t run, const std::string& line) {
       if (!all.Has(run)) all.AddLine(run, line);

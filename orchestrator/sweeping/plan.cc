@@ -4,15 +4,19 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <map>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "experiment/random.h"
 #include "experiment/toml/number.h"
+#include "orchestrator/sweeping/values.h"
 
 namespace mascot {
 namespace {
@@ -88,7 +92,8 @@ std::optional<std::vector<std::string>> IntegerRange(const std::vector<std::stri
 
 /// The values of A:STEP:B, both ends included: A + i STEP, without accumulation. B is included even if a rounding error
 /// would miss it.
-std::vector<std::string> RangeValues(const std::string& word, const std::vector<std::string>& parts) {
+std::vector<std::string> RangeValues(std::string_view key, const std::string& word,
+                                     const std::vector<std::string>& parts) {
   const auto first = ToNumber(parts[0]), step = ToNumber(parts[1]), last = ToNumber(parts[2]);
   if (!first || !step || !last || *step == 0 || (*last - *first) / *step < 0)
     Refuse("--set", "a:step:b, three numbers with b on step's side of a", word);
@@ -96,16 +101,19 @@ std::vector<std::string> RangeValues(const std::string& word, const std::vector<
   const double steps = std::floor((*last - *first) / *step + kRounding);
   if (steps >= static_cast<double>(kMostRuns)) Refuse("--set", "at most 10000000 values", word);
   if (auto integers = IntegerRange(parts)) return *integers;
-  std::vector<std::string> values;
+  std::vector<double> values;
   for (std::size_t i = 0; i <= static_cast<std::size_t>(steps); ++i)
-    values.push_back(ShortestFloat(Rounded(*first + static_cast<double>(i) * *step)));
-  return values;
+    values.push_back(Rounded(*first + static_cast<double>(i) * *step));
+  return PlainNumbers(key, values);
 }
 
 std::optional<std::int64_t> ToSeed(std::string_view text) {
   const auto seed = NumberFrom<std::int64_t>(text);
   return seed && *seed >= 0 ? seed : std::nullopt;
 }
+
+/// The bounds of a range in their shortest form: "0.1:1".
+std::string RangeText(const std::vector<double>& bounds) { return fmt::format("{}", fmt::join(bounds, ":")); }
 
 std::vector<std::string> ParseSeeds(const std::string& text) {
   std::vector<std::string> seeds;
@@ -118,9 +126,17 @@ std::vector<std::string> ParseSeeds(const std::string& text) {
   }
   for (const std::string& part : Split(text, ',')) {
     if (!ToSeed(part)) Refuse("--seeds", "a..b or a,b,... of integers from 0 on", text);
-    seeds.push_back(part);
+    seeds.push_back(std::to_string(*ToSeed(part)));
   }
   return seeds;
+}
+
+/// "4..6", "1,3".
+std::string SeedsText(const std::vector<std::string>& seeds) {
+  const std::int64_t first = *ToSeed(seeds.front());
+  for (std::size_t k = 0; k < seeds.size(); ++k)
+    if (ToSeed(seeds[k]) != first + static_cast<std::int64_t>(k)) return fmt::format("{}", fmt::join(seeds, ","));
+  return fmt::format("{}..{}", seeds.front(), seeds.back());
 }
 
 /// Whether `key` is `table` itself, or a key or list element in it.
@@ -133,9 +149,14 @@ bool IsInside(std::string_view key, std::string_view table) {
 SweepPlan::Axis SweepPlan::ParseSet(const std::string& word) {
   const auto [key, text] = SplitKey("--set", word);
   const std::vector<std::string> range = Split(text, ':');
-  if (range.size() == 3 && ToNumber(range[0])) return {key, RangeValues(word, range), /*is_range=*/true};
+  if (range.size() == 3 && ToNumber(range[0]))
+    return {.key = key,
+            .values = RangeValues(key, word, range),
+            .is_range = true,
+            .range = RangeText({*ToNumber(range[0]), *ToNumber(range[1]), *ToNumber(range[2])})};
   Axis axis{key, Split(text, ',')};
   if (std::ranges::find(axis.values, "") != axis.values.end()) Refuse("--set", "values between commas", word);
+  for (std::string& value : axis.values) value = PlainValue(key, value);
   return axis;
 }
 
@@ -149,12 +170,32 @@ SweepPlan::Axis SweepPlan::ParseRandom(const std::string& word, std::uint64_t pl
     Refuse("--random", "key=min:max or key=min:max:log with 0 < min", word);
   if (!std::isfinite(log ? *max / *min : *max - *min)) Refuse("--random", "a range that a double can span", word);
   Random random(kSamplesSeed + place, Random::Stream::kSweep);
-  Axis axis{.key = key, .values = {}, .range = text};
+  Axis axis{.key = key, .values = {}, .range = RangeText({*min, *max}) + (log ? ":log" : "")};
   for (std::int64_t i = 0; i < samples; ++i) {
     const double fraction = random.Unit();
     axis.drawn.push_back(log ? *min * std::pow(*max / *min, fraction) : *min + fraction * (*max - *min));
   }
   return axis;
+}
+
+/// Leaves the first of equal values, and says so: equal runs are no sample.
+void SweepPlan::KeepEachOnce(Axis& axis) {
+  const std::size_t given = axis.values.size();
+  std::unordered_set<std::string> there;
+  std::erase_if(axis.values, [&](const std::string& value) { return !there.insert(value).second; });
+  if (axis.values.size() < given)
+    notes_.push_back(fmt::format("{}: {} of the {} values are equal to others: each is flown once", axis.key,
+                                 given - axis.values.size(), given));
+}
+
+/// Leaves one of the samples if all are equal: ranges from a number to itself.
+void SweepPlan::KeepOneIfEqual(std::vector<Axis>& drawn) {
+  const auto is_one = [](const Axis& axis) {
+    return std::ranges::adjacent_find(axis.drawn, std::not_equal_to<>()) == axis.drawn.end();
+  };
+  if (drawn.empty() || drawn.front().size() == 1 || !std::ranges::all_of(drawn, is_one)) return;
+  notes_.push_back(fmt::format("--samples: the {} are equal: one is flown", drawn.front().size()));
+  for (Axis& axis : drawn) axis.drawn.resize(1);
 }
 
 /// Notes a key and its values. Throws ConfigError if another axis sets the key, or what is inside of it.
@@ -189,14 +230,21 @@ void SweepPlan::AddTrials(std::size_t sets) {
 
 SweepPlan::SweepPlan(const Words& words) {
   for (const std::string& word : words.sets) {
-    const Axis axis = ParseSet(word);
+    Axis axis = ParseSet(word);
+    KeepEachOnce(axis);
     Multiply(axis.size());
     AddAxis(axis);
   }
-  if (!words.randoms.empty()) Multiply(static_cast<std::size_t>(words.samples));
-  for (std::size_t k = 0; k < words.randoms.size(); ++k) AddAxis(ParseRandom(words.randoms[k], k, words.samples));
+  std::vector<Axis> drawn;
+  for (std::size_t k = 0; k < words.randoms.size(); ++k)
+    drawn.push_back(ParseRandom(words.randoms[k], k, words.samples));
+  KeepOneIfEqual(drawn);
+  if (!drawn.empty()) Multiply(drawn.front().size());
+  for (const Axis& axis : drawn) AddAxis(axis);
   if (!words.seeds.empty()) {
-    const Axis seeds{.key = std::string(kSeedKey), .values = ParseSeeds(words.seeds)};
+    Axis seeds{.key = std::string(kSeedKey), .values = ParseSeeds(words.seeds)};
+    KeepEachOnce(seeds);
+    has_seeds_ = true;
     Multiply(seeds.size());
     AddAxis(seeds);
   }
@@ -211,12 +259,41 @@ SweepPoint SweepPlan::operator[](std::size_t run) const {
   return point;
 }
 
+SweepPlan::Words SweepPlan::words() const {
+  // A string without quotes, as it stands in the table, may look like several values, or like a range.
+  const auto typed = [](const std::string& value) {
+    const bool is_word = std::isalpha(static_cast<unsigned char>(value.front())) != 0;
+    return is_word && value.find_first_of(",:[]{}\"'") != std::string::npos ? ToToml({value}) : value;
+  };
+  Words words;
+  for (const Axis& axis : axes_) {
+    if (!axis.drawn.empty()) {
+      words.randoms.push_back(axis.key + "=" + axis.range);
+      words.samples = static_cast<std::int64_t>(axis.drawn.size());
+    } else if (&axis == &axes_.back() && has_seeds_) {
+      words.seeds = SeedsText(axis.values);
+    } else {
+      std::string values;
+      for (const std::string& value : axis.values) values += (values.empty() ? "" : ",") + typed(value);
+      words.sets.push_back(axis.key + "=" + (axis.is_range ? axis.range : values));
+    }
+  }
+  return words;
+}
+
 std::string SweepPlan::Text() const {
   std::string text;
   for (const Axis& axis : axes_)
     text += axis.drawn.empty() ? fmt::format("{}={}\n", axis.key, fmt::join(axis.values, ","))
                                : fmt::format("{}={}, {} samples\n", axis.key, axis.range, axis.drawn.size());
   return text;
+}
+
+std::string SweepPlan::SettingOf(std::string_view key) const {
+  const auto axis = std::ranges::find(axes_, key, &Axis::key);
+  if (axis == axes_.end()) return "";
+  return axis->drawn.empty() ? fmt::format("{}", fmt::join(axis->values, ", "))
+                             : fmt::format("{}, {} samples", axis->range, axis->drawn.size());
 }
 
 std::span<const std::string> SweepPlan::ValuesOf(std::string_view key) const {

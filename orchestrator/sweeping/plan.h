@@ -37,13 +37,19 @@ class SweepPlan {
   /// Throws ConfigError for an invalid option, naming the option and what was expected.
   explicit SweepPlan(const Words& words);
 
+  /// The options that give the same plan, however they were typed: with values as PlainValue() (values.h) has them,
+  /// each once.
+  Words words() const;
+  /// For the terminal: of which keys equal values were given more than once.
+  const std::vector<std::string>& notes() const { return notes_; }
+
   /// The keys that are set: those of --set and --random as typed, then run.seed if --seeds was given.
   const std::vector<std::string>& keys() const { return keys_; }
   std::size_t size() const { return size_; }
   SweepPoint operator[](std::size_t run) const;
   /// Keys with more than one value, without run.seed: the axes of a plot.
   const std::vector<std::string>& varied() const { return varied_; }
-  /// The values of a key, as typed; empty if it is not set by --set or --seeds.
+  /// The values of a key, in plain text (values.h); empty if it is not set by --set or --seeds.
   std::span<const std::string> ValuesOf(std::string_view key) const;
   /// The first run with each other value that --set gives a key; of A:STEP:B only with the last one.
   const std::vector<SweepPoint>& trials() const { return trials_; }
@@ -69,13 +75,15 @@ class SweepPlan {
   std::vector<std::size_t> WithFirstSeed() const;
   /// What tells this plan from others: a line for each key.
   std::string Text() const;
+  /// What a key is set to, in words: "0.1, 0.5", "0.1:1, 20 samples"; empty: it is not set.
+  std::string SettingOf(std::string_view key) const;
 
  private:
   struct Axis {
     std::string key;
     std::vector<std::string> values;
     bool is_range = false;   ///< of A:STEP:B
-    std::string range = {};  ///< of --random, as typed; it has `drawn` in the place of values
+    std::string range = {};  ///< "0.1:0.1:1", or of --random "0.1:1:log", which has `drawn` in the place of values
     std::vector<double> drawn = {};
     std::size_t stride = 1;  ///< the value changes after so many runs
 
@@ -85,12 +93,16 @@ class SweepPlan {
   static Axis ParseSet(const std::string& word);
   static Axis ParseRandom(const std::string& word, std::uint64_t place, std::int64_t samples);
   void AddAxis(const Axis& axis);
+  void KeepEachOnce(Axis& axis);
+  void KeepOneIfEqual(std::vector<Axis>& drawn);
   void Multiply(std::size_t by);
   void AddTrials(std::size_t sets);
 
   std::vector<std::string> keys_;
   std::vector<Axis> axes_;  // of keys_
+  bool has_seeds_ = false;  // the last axis is that of --seeds
   std::vector<std::string> varied_;
+  std::vector<std::string> notes_;
   std::size_t size_ = 1;
   std::vector<SweepPoint> trials_;
 };

@@ -13,6 +13,7 @@
 #include "orchestrator/report/json.h"
 #include "orchestrator/sweeping/labels.h"
 #include "orchestrator/sweeping/metrics.h"
+#include "orchestrator/sweeping/values.h"
 
 namespace mascot {
 namespace {
@@ -40,10 +41,16 @@ std::string FileOf(const std::string& run, const char* name) {
   return path.string();
 }
 
-Cells ConfigOf(const std::string& run) {
-  Cells cells;
-  Flatten(Section::FromFile(FileOf(run, "config.toml")).InTheFile(), "", cells);
-  return cells;
+/// The keys of a run's experiment, and the same in plain text, in which equal values are equal.
+struct Config {
+  Cells cells, plain;
+};
+
+Config ConfigOf(const std::string& run) {
+  const Value::Table keys = Section::FromFile(FileOf(run, "config.toml")).InTheFile();
+  Config config{.cells = {}, .plain = PlainKeys(keys)};
+  Flatten(keys, "", config.cells);
+  return config;
 }
 
 /// Names of the laws whose figures a summary has.
@@ -132,11 +139,13 @@ std::string Aligned(const std::vector<std::vector<std::string>>& lines) {
 }  // namespace
 
 SideBySide::SideBySide(const std::vector<std::string>& runs) : runs_(runs) {
-  std::vector<Cells> configs, summaries;
+  std::vector<Cells> configs, plain, summaries;
   std::set<std::string> laws;
   for (const std::string& run : runs) {
     const std::string text = ReadRegularFile(FileOf(run, "summary.json"));
-    configs.push_back(ConfigOf(run));
+    Config config = ConfigOf(run);
+    configs.push_back(std::move(config.cells));
+    plain.push_back(std::move(config.plain));
     summaries.push_back(SummaryOf(run, text));
     for (const std::string& law : LawsIn(ReadJson<nlohmann::json>(text))) laws.insert(law);
   }
@@ -146,8 +155,9 @@ SideBySide::SideBySide(const std::vector<std::string>& runs) : runs_(runs) {
     return line;
   };
   for (const std::string& key : KeysOf(configs, {})) {
-    Line line = line_of(key, configs);
-    if (std::ranges::adjacent_find(line.cells, std::not_equal_to<>()) != line.cells.end()) config_.push_back(line);
+    const std::vector<std::string> values = line_of(key, plain).cells;
+    if (std::ranges::adjacent_find(values, std::not_equal_to<>()) != values.end())
+      config_.push_back(line_of(key, configs));
   }
   std::vector<std::string> first{"exit"};
   for (const std::string& name : SweepMetricNames({laws.begin(), laws.end()})) first.push_back(name);

@@ -105,8 +105,8 @@ void CheckBuild(const std::optional<SweepIdentity>& begun, const SweepIdentity& 
 
 }  // namespace
 
-Sweeper::Sweeper(std::string name, std::string text, SweepPlan::Words words)
-    : name_(std::move(name)), text_(std::move(text)), words_(std::move(words)), plan_(words_) {}
+Sweeper::Sweeper(std::string name, std::string text, const SweepPlan::Words& words)
+    : name_(std::move(name)), text_(std::move(text)), plan_(words) {}
 
 Sweeper::Outcome Sweeper::Fly(const Options& options, StopSignal& stop) const { return Do(options, true, stop); }
 
@@ -129,7 +129,7 @@ Sweeper::Outcome Sweeper::Do(const Options& options, bool fly, StopSignal& stop)
                 .experiment = text_,
                 .first_run = first.resolved,
                 .metric_file = options.metric_file.text,
-                .words = words_,
+                .words = plan_.words(),
                 .own = {},
                 .law_names = {},
                 .laws = looks.Laws()};
@@ -143,9 +143,12 @@ Sweeper::Outcome Sweeper::Do(const Options& options, bool fly, StopSignal& stop)
     if (strict) looks.CheckSeeds(first);
     if (!fly) return outcome;
     if (!options.force) CheckBuild(begun, identity, options.out);
-    SweepFile table(options.out, SweepColumns(plan_, metrics), identity.Text(), options.force, &plan_);
+    SweepFile table(
+        options.out, SweepColumns(plan_, metrics), identity.Text(), options.force,
+        [&](const std::string& theirs) { return identity.DifferenceFrom(theirs); }, &plan_);
     if (!options.quiet)
-      for (const std::string& note : laws.Notes()) std::cerr << "sweep: " << note << "\n";
+      for (const std::vector<std::string>& notes : {plan_.notes(), laws.Notes()})
+        for (const std::string& note : notes) std::cerr << "sweep: " << note << "\n";
     try {
       ExecuteMissing(plan_, options.shard.value_or(Shard{}), metrics, pool, table, options.quiet, stop, outcome);
       table.Sort();

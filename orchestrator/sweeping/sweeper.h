@@ -36,7 +36,7 @@ class Sweeper {
 
   /// `name`: path of the experiment file as typed. `text`: its contents, read once, so that later edits have no effect.
   /// (Files that it names are read for each run.)
-  Sweeper(std::string name, std::string text, SweepPlan::Words words);
+  Sweeper(std::string name, std::string text, const SweepPlan::Words& words);
 
   /// Executes every run that is missing in the table. Only that of a whole sweep has statistics beside it. Throws
   /// ConfigError if no run is a valid experiment (with the mistakes of the first run), if the table would not have the
@@ -51,7 +51,6 @@ class Sweeper {
   Outcome Do(const Options& options, bool fly, StopSignal& stop) const;
 
   std::string name_, text_;
-  SweepPlan::Words words_;
   SweepPlan plan_;
 };
 

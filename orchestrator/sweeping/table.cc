@@ -224,12 +224,14 @@ void TableRows::ForEach(const std::function<void(std::size_t, const std::string&
   });
 }
 
-SweepFile::SweepFile(fs::path path, const Cells& columns, const std::string& plan, bool force, const SweepPlan* runs)
+SweepFile::SweepFile(fs::path path, const Cells& columns, const std::string& plan, bool force,
+                     const Difference& difference, const SweepPlan* runs)
     : path_(fs::is_symlink(path) && fs::exists(path) ? fs::canonical(path) : std::move(path)),
       columns_(columns),
       plan_fd_(LockedPlan(path_)) {
   std::optional<TableRows> rows;
-  if (fs::exists(path_) && !force && IsOfThisSweep(plan)) rows.emplace(path_, columns_, /*lost=*/false, runs);
+  if (fs::exists(path_) && !force && IsOfThisSweep(plan, difference))
+    rows.emplace(path_, columns_, /*lost=*/false, runs);
   Rewrite(rows ? &*rows : nullptr);  // before the plan: rows must never be next to the plan of another sweep
   Overwrite(plan_fd_, plan, PlanOf(path_));
 }
@@ -241,14 +243,21 @@ SweepFile::~SweepFile() {
 
 /// Whether the table that is there has rows of this sweep. One without rows belongs to no sweep, and is replaced.
 /// Throws ConfigError if it is another's.
-bool SweepFile::IsOfThisSweep(const std::string& plan) const {
+bool SweepFile::IsOfThisSweep(const std::string& plan, const Difference& difference) const {
   const auto bytes = fs::file_size(path_);
   if (bytes == 0 || (bytes == CsvLine(columns_).size() && ReadAll(path_) == CsvLine(columns_))) return false;
   const std::string theirs = ReadWhole(plan_fd_);
   if (theirs == plan) return true;
-  if (theirs.empty()) fs::remove(PlanOf(path_));  // it did not exist: LockedPlan created it
-  throw ConfigError({"--out " + path_.string() + ": expected a new file, or one of this very sweep, got another " +
-                     "(--force begins anew)"});
+  std::string why = "another, without the " + PlanOf(path_).filename().string() + " that says what it is of";
+  if (theirs.empty()) {
+    fs::remove(PlanOf(path_));  // it did not exist: LockedPlan created it
+  } else {
+    const std::string differs = difference ? difference(theirs) : "";
+    if (difference && differs.empty()) return true;
+    why = differs.empty() ? "another" : "another, which differs in " + differs;
+  }
+  throw ConfigError({"--out " + path_.string() + ": expected a new file, or one of this very sweep, got " + why +
+                     " (--force begins anew)"});
 }
 
 /// Replaces the file by one with these rows, sorted; null: none.

@@ -70,9 +70,11 @@ class SweepFile {
 
   /// Opens or creates the table at `path`. `plan` is text that identifies the sweep; it is stored beside the table, in
   /// PATH.plan. Throws ConfigError if the table has rows of another plan (with `force`, these are replaced instead), or
-  /// if another sweep is writing it, or as TableRows does. `runs`: the plan itself.
+  /// if another sweep is writing it, or as TableRows does. `runs`: the plan itself. `difference` says in what the plan
+  /// beside the table differs from this one; empty: it is the same in other words.
+  using Difference = std::function<std::string(const std::string& theirs)>;
   SweepFile(std::filesystem::path path, const Cells& columns, const std::string& plan, bool force,
-            const SweepPlan* runs = nullptr);
+            const Difference& difference = {}, const SweepPlan* runs = nullptr);
   ~SweepFile();
   SweepFile(const SweepFile&) = delete;
   SweepFile& operator=(const SweepFile&) = delete;
@@ -89,7 +91,7 @@ class SweepFile {
   void Sort();
 
  private:
-  bool IsOfThisSweep(const std::string& plan) const;
+  bool IsOfThisSweep(const std::string& plan, const Difference& difference) const;
   void Rewrite(TableRows* rows);
 
   std::filesystem::path path_;
