@@ -2,11 +2,13 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "experiment/experiment.h"
@@ -26,6 +28,10 @@ struct LawFigure {
   std::string_view name;       ///< with its unit, as in summary.json: "agreement_time_s"
   std::string_view meaning;    ///< "from which on all agents are within 1 mm"
   std::string_view each = {};  ///< a list, with a value for each of these: "waypoint"; empty: one value
+  /// A predicted bound that is not above `least`, or not below `most`, says nothing: theory is then silent about the
+  /// figure.
+  double least = 0, most = std::numeric_limits<double>::infinity();
+  std::string_view unpredicted = {};  ///< why theory never predicts it, in words that follow "because"; empty: it may
 };
 
 /// The values of a LawFigure: one, or one for each entry of its list. Absent: there is none, or none yet.
@@ -52,9 +58,19 @@ class LawMeter {
 
 /// A figure as theory predicts it.
 struct PredictedFigure {
-  FigureValues values;  ///< empty: theory does not say
+  FigureValues values = {};  ///< empty: theory does not say
   Bound bound = Bound::kEqual;
+  /// Why some or all of the values are absent, in words that follow "because".
+  std::string why = {};
+  /// That of the numbers from which the figure is computed, in its unit, where it is larger than the figure: where they
+  /// cancel, as in a share of what was there at the start. For lengths, that of positions is added. Rounding puts the figure off by a share of it (agent/laws/rounding.h).
+  double magnitude = 0;
+  /// So much rounding may put the measured figure off. Bounds have it in them. Made by Predict(), not by laws.
+  double rounding = 0;
 };
+
+/// A figure that theory does not predict, because of `why`.
+inline PredictedFigure NotPredicted(std::string why) { return {.why = std::move(why)}; }
 
 /// How fast the modes of a law that wants velocities decay on bodies that have them at once: x' = -rate x.
 struct LawRates {

@@ -148,6 +148,16 @@ TEST(Avoidance, NoGoalsHoweverTheyJumpBringAnAgentNearerThanTheBound) {
     }
 }
 
+TEST(Avoidance, ABoundThatIsNotAboveZeroIsNotTold) {
+  const LawRun run(PastAPillar("double_integrator", {0, 0.3, 2}, {9, 0, 2}, "repulsion = 0.01\nspeed_m_per_s = 3.0\n",
+                               "[control]\nmax_acceleration_m_per_s2 = 20.0\n"));
+  EXPECT_TRUE(run.Law()["predicted"]["clearance_m"].is_null());
+  EXPECT_EQ(run.Law()["reasons"]["clearance_m"], "the bound is not above 0: an agent may touch an obstacle");
+  EXPECT_THAT(run.prediction.warnings, Contains("law.repulsion: too weak for law.speed_m_per_s: an agent that flies "
+                                                "straight at an obstacle may touch it"));
+  EXPECT_EQ(run.Law()["reasons"]["arrival_time_s"], "nothing is promised about arrival");
+}
+
 TEST(Avoidance, TheBoundCountsFromAStartThatIsNearer) {
   const LawRun run(PastAPillar("single_integrator", {4.2, 0, 2}, {0, 0, 2}));
   EXPECT_NEAR(run.Predicted("clearance_m"), 0.2, 1e-12);

@@ -178,8 +178,30 @@ TEST(Flocking, IsNotDisturbedByARangeOfHearingBeyondItsOwn) {
   const LawRun wide(Nine(kMoving, "[graph]\nrange_m = 2.4\n", "double_integrator", 2));
   EXPECT_EQ(wide.prediction.silent, "");
   EXPECT_NEAR(wide.Measured("centre_off_m"), wide.Predicted("centre_off_m"), 1e-9);
-  EXPECT_EQ(LawRun(Nine(kMoving, "[graph]\nrange_m = 2.3\n", "double_integrator", 1)).prediction.silent,
-            "the graph changes");
+  EXPECT_TRUE(wide.Law()["predicted"]["energy_growth_share"].is_number());
+  const LawRun narrow(Nine(kMoving, "[graph]\nrange_m = 2.3\n", "double_integrator", 1));
+  EXPECT_EQ(narrow.Law()["reasons"]["energy_growth_share"],
+            "graph.range_m is less than the 2.4 m that the law reaches");
+  EXPECT_NEAR(narrow.Measured("centre_off_m"), narrow.Predicted("centre_off_m"), 1e-9)
+      << "two hear each other, or neither does: the centre moves by itself";
+}
+
+TEST(Flocking, RangeOfHearingIsInSpaceAndTheLawInThePlane) {
+  const auto at_heights = [](const std::string& range_m, const std::string& law = "") {
+    return "[run]\nduration_s = 6\n[physics]\ncollisions = false\nground = false\n[agents]\ncount = 5\nmodel = "
+           "'double_integrator'\nposition_m = [[-1.6, -0.4, 6], [0.8, -2.8, 7], [2, 2, 8], [-2.5, 1, 9], [0.5, 0.5, "
+           "10]]\n[graph]\nrange_m = " +
+           range_m + "\n[law]\nname = 'flocking'\n" + law;
+  };
+  const LawRun cut(at_heights("2.6"));
+  EXPECT_EQ(cut.Law()["reasons"]["energy_growth_share"],
+            "graph.range_m is of distances in space: at heights 4 m apart it takes 4.665 m to hear all that the law "
+            "reaches");
+  EXPECT_NEAR(cut.Measured("centre_off_m"), cut.Predicted("centre_off_m"), 1e-9);
+  const LawRun heard(at_heights("4.67"));
+  EXPECT_LE(heard.Measured("energy_growth_share"), heard.Predicted("energy_growth_share"));
+  const LawRun in_space(at_heights("2.6", "axes = 'xyz'\ntarget_m = [0, 0, 8]\n"));
+  EXPECT_LE(in_space.Measured("energy_growth_share"), in_space.Predicted("energy_growth_share"));
 }
 
 TEST(Flocking, AnEventSendsTheFlockElsewhere) {

@@ -27,7 +27,9 @@ double SquaredDisagreement(std::span<const Motion> motions, std::span<const int>
 
 /// The figure of an AgreementTime.
 inline constexpr LawFigure kAgreementTimeFigures[] = {
-    {.name = "agreement_time_s", .meaning = "from which on all agents are together"},
+    {.name = "agreement_time_s",
+     .meaning = "from which on all agents are together",
+     .unpredicted = "more of the disagreement may be left than counts as together"},
 };
 
 /// Measures since when agents agree: along each axis of their law, all of them are within a tolerance for good.

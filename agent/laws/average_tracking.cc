@@ -87,7 +87,7 @@ LawTheory PredictAverageTracking(const Experiment& experiment) {
   if (std::string why = WhyNotAllHeard(experiment); !why.empty()) return {.silent = std::move(why)};
   if (std::string why = WhyNotUndirected(experiment); !why.empty()) return {.silent = std::move(why)};
   const double step = experiment.period_s() * params.gain;
-  if (SlowestFactor(experiment, step) >= 1) return {.warnings = {UnstableGain(experiment)}};
+  if (SlowestFactor(experiment, step) >= 1) return UnstableGain(experiment);
   return {.figures = PredictTrackingError(experiment, params.inputs, step)};
 }
 

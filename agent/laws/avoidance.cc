@@ -108,7 +108,11 @@ LawTheory PredictAvoidance(const Experiment& experiment) {
   const auto& params = ParamsOf<AvoidanceParams>(experiment.law);
   ClearanceBound bound{.gain = params.repulsion, .influence_m = params.influence_m, .speed = params.speed};
   if (std::string why = bound.WhyNot(experiment); !why.empty()) return {.silent = std::move(why)};
-  return {.figures = {{{bound.Least_m(experiment)}, Bound::kAtLeast}, {}}};
+  LawTheory theory{.figures = {bound.Predicted(experiment), {}}};
+  if (theory.figures[0].values.empty())
+    theory.warnings.emplace_back(
+        "law.repulsion: too weak for law.speed_m_per_s: an agent that flies straight at an obstacle may touch it");
+  return theory;
 }
 
 std::unique_ptr<LawMeter> MeterOfAvoidance(const Experiment& experiment, std::span<const int> ids) {

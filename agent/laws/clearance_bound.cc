@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "agent/laws/repulsion.h"
+#include "agent/laws/rounding.h"
 #include "experiment/obstacles.h"
 
 namespace mascot {
@@ -34,8 +35,9 @@ double LeastOfApproach_m(const Repulsion& repulsion, double start_m, double spee
   const double dt = std::min(0.01 / k, 1e-3 * repulsion.reach / speed);
   double c = start_m, y = speed;
   for (int n = 0; n < kMostSteps && y > kAtRest && c > 0; ++n) {
-    y -= dt * k * (LeastAway(repulsion.Push(c + speed * h), speed) + y);
-    c -= dt * std::clamp(y, 0.0, speed);
+    const double away = LeastAway(repulsion.Push(c + speed * h), speed);
+    c -= dt * std::clamp(y, 0.0, speed);     // the speed falls: that at the begin of a step takes too much
+    y = (y - dt * k * away) / (1 + dt * k);  // and this leaves too much: exp(-x) < 1 / (1 + x)
   }
   return c;
 }
@@ -83,10 +85,13 @@ std::string ClearanceBound::WhyNot(const Experiment& experiment) const {
   return "";
 }
 
-double ClearanceBound::Least_m(const Experiment& experiment) const {
+PredictedFigure ClearanceBound::Predicted(const Experiment& experiment) const {
   double least_m = std::numeric_limits<double>::infinity();
   for (const AgentConfig& agent : experiment.agents) least_m = std::min(least_m, Least_m(experiment, agent));
-  return least_m;
+  if (least_m <= 0) return NotPredicted("the bound is not above 0: an agent may touch an obstacle");
+  return {.values = {least_m},
+          .bound = Bound::kAtLeast,
+          .magnitude = LargestStart_m(experiment) + speed * experiment.run.duration_s};
 }
 
 double ClearanceBound::Least_m(const Experiment& experiment, const AgentConfig& agent) const {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "agent/law_figures.h"
 #include "experiment/experiment.h"
 
 namespace mascot {
@@ -31,8 +32,8 @@ struct ClearanceBound {
 
   /// Why there is no such bound; empty: there is.
   std::string WhyNot(const Experiment& experiment) const;
-  /// The least clearance of any agent in an experiment that has obstacles.
-  double Least_m(const Experiment& experiment) const;
+  /// The least clearance of any agent in an experiment that has obstacles: not predicted where agents may touch one.
+  PredictedFigure Predicted(const Experiment& experiment) const;
 
  private:
   double Least_m(const Experiment& experiment, const AgentConfig& agent) const;

@@ -68,8 +68,8 @@ LawTheory PredictCoverage(const Experiment& experiment) {
       return {.silent = "agents that do not hear all others do not know what is nearer to them"};
   if (params.gain * experiment.period_s() > 2) return {.silent = "law.gain is more than 2 per control period"};
   const double start_m2 = CoverageCost(params, ids, starts_W);
-  const double rounding_m2 = (params.bumps.empty() ? 1e-12 : 1e-10) * start_m2;  // of the integrals
-  return {.figures = {{{start_m2}}, {{start_m2 + rounding_m2}, Bound::kAtMost}, {{rounding_m2}, Bound::kAtMost}},
+  const double off_m2 = params.bumps.empty() ? 0 : 1e-10 * start_m2;  // of the integrals of a density, beside rounding
+  return {.figures = {{{start_m2}}, {{start_m2 + off_m2}, Bound::kAtMost}, {{off_m2}, Bound::kAtMost}},
           .warnings = WarningsOfOnePlace(ids, starts_W)};
 }
 

@@ -32,7 +32,7 @@ constexpr auto kEventTriggeredParameters = Joined(
 
 constexpr LawFigure kEventTriggeredFigures[] = {
     {.name = "disagreement_m", .meaning = "at the end: root of the sum of squares of distances from the mean"},
-    {.name = "messages", .meaning = "sent", .each = "agent"},
+    {.name = "messages", .meaning = "sent", .each = "agent", .unpredicted = "it takes the whole motion"},
 };
 
 struct EventTriggeredParams final : LawParams {
@@ -91,10 +91,10 @@ LawTheory PredictEventTriggered(const Experiment& experiment) {
   const TriggerParams& trigger = ParamsOf<EventTriggeredParams>(experiment.law).trigger;
   if (std::string why = WhyNotIdealUndirected(experiment); !why.empty()) return {.silent = std::move(why)};
   const double step = experiment.period_s() * trigger.gain, largest = step * LargestRoot(experiment);
-  if (largest >= 2) return {.warnings = {UnstableGain(experiment)}};
+  if (largest >= 2) return UnstableGain(experiment);
   if (trigger.is_dynamic && largest >= 1 - trigger.sigma / 2)
     return {.silent = "law.gain or law.sigma is too large for a proof"};
-  if (trigger.is_dynamic) return {.figures = {{}, {}}, .value_m = MeanStart(experiment)};
+  if (trigger.is_dynamic) return {.figures = {NotPredicted(kOfStatic), {}}, .value_m = MeanStart(experiment)};
   const double r = SlowestFactor(experiment, step), most = largest * std::sqrt(experiment.size());
   double d_m = StartDisagreement_m(experiment);
   for (std::int64_t k = 1; k < experiment.ticks(); ++k)  // nothing is heard at tick 0

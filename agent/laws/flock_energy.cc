@@ -1,5 +1,8 @@
 #include "agent/laws/flock_energy.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "agent/laws/agreement.h"
@@ -29,6 +32,25 @@ double FlockEnergy(const FlockParams& params, const Graph& graph, std::span<cons
     energy += (Along(axes, motion.v_WB) - centre.v_W).squaredNorm() / 2;
   }
   return energy;
+}
+
+std::string WhyRangeCuts(const Experiment& experiment, const FlockParams& params) {
+  const double range_m = experiment.schedule.range_m(), reach_m = params.pair.range_m();
+  if (range_m == 0) return "";
+  if (range_m < reach_m) return fmt::format("graph.range_m is less than the {:.4g} m that the law reaches", reach_m);
+  if (experiment.law.axes == Axes::kXyz) return "";
+  double low_m = experiment.agents.front().p_W.z(), high_m = low_m;
+  for (const AgentConfig& agent : experiment.agents) {
+    if (agent.v_W.z() != 0) return "graph.range_m is of distances in space, and agents start with a vertical speed";
+    low_m = std::min(low_m, agent.p_W.z());
+    high_m = std::max(high_m, agent.p_W.z());
+  }
+  const double needed_m = std::hypot(reach_m, high_m - low_m);
+  if (range_m >= needed_m) return "";
+  return fmt::format(
+      "graph.range_m is of distances in space: at heights {:.4g} m apart it takes {:.4g} m to hear all "
+      "that the law reaches",
+      high_m - low_m, needed_m);
 }
 
 // Deviations x from the centre obey x'' = -grad U(x) - D x', with a force that is held for a tick h. With F = grad U

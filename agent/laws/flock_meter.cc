@@ -5,6 +5,7 @@
 
 #include "agent/laws.h"
 #include "agent/laws/flock_energy.h"
+#include "agent/laws/rounding.h"
 
 namespace mascot {
 std::vector<PredictedFigure> PredictFlock(const Experiment& experiment) {
@@ -18,6 +19,9 @@ std::vector<PredictedFigure> PredictFlock(const Experiment& experiment) {
     start[ids.size() - 1].v_WB = agent.v_W;
   }
   FlockCentre centre = CentreOf(start, ids, experiment.law.axes);
+  // About the centre no agent is faster than all the energy would make it.
+  const double about_m_per_s = std::sqrt(2 * FlockEnergy(params, experiment.graph, start, ids, experiment.law.axes));
+  double fastest_m_per_s = centre.v_W.norm();
   const Eigen::Vector3d v_r_W = Along(experiment.law.axes, params.target_velocity_W);
   Eigen::Vector3d off_W = centre.p_W - Along(experiment.law.axes, params.target_W);
   double squares = 0;
@@ -26,11 +30,26 @@ std::vector<PredictedFigure> PredictFlock(const Experiment& experiment) {
     const Eigen::Vector3d a_W = -params.c1_gamma * off_W - params.c2_gamma * (centre.v_W - v_r_W);
     off_W += h * (centre.v_W - v_r_W) + h * h / 2 * a_W;
     centre.v_W += h * a_W;
+    fastest_m_per_s = std::max(fastest_m_per_s, centre.v_W.norm());
   }
   const double rms_m = std::sqrt((squares + off_W.squaredNorm()) / static_cast<double>(experiment.ticks() + 1));
-  PredictedFigure growth{.values = {}, .bound = Bound::kAtMost};
+  const double speed_m_per_s = about_m_per_s + fastest_m_per_s + v_r_W.norm();
+  const double largest_m =
+      LargestStart_m(experiment) + params.target_W.norm() + speed_m_per_s * experiment.run.duration_s;
+  PredictedFigure growth{.bound = Bound::kAtMost};
   if (const auto share = FlockEnergyGrowth(experiment, params)) growth.values = {*share};
-  return {{}, {}, {}, {}, {{rms_m}}, {{off_W.norm()}}, {{(centre.v_W - v_r_W).norm()}}, growth};
+  growth.why = !growth.values.empty()
+                   ? WhyRangeCuts(experiment, params)
+                   : "the control period is too long for the gains and for how many agents may be near";
+  if (!growth.why.empty()) growth.values.clear();
+  return {{},
+          {},
+          {},
+          {},
+          {.values = {rms_m}, .magnitude = largest_m},
+          {.values = {off_W.norm()}, .magnitude = largest_m},
+          {.values = {(centre.v_W - v_r_W).norm()}, .magnitude = speed_m_per_s},
+          growth};
 }
 
 FlockMeter::FlockMeter(const Experiment& experiment, std::span<const int> ids)

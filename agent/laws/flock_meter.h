@@ -13,13 +13,21 @@ namespace mascot {
 
 // What the law flocking measures and predicts. Neighbours: agents that hear each other and are within law's range.
 
+inline constexpr std::string_view kEndUnknown = "where the energy has minima is not known";
 inline constexpr LawFigure kFlockFigures[] = {
-    {.name = "order", .meaning = "length of the mean of the agents' directions of flight at the end: 1 if all are one"},
-    {.name = "velocity_off_m_per_s", .meaning = "the most that a velocity is off the mean at the end"},
+    {.name = "order",
+     .meaning = "length of the mean of the agents' directions of flight at the end: 1 if all are one",
+     .unpredicted = kEndUnknown},
+    {.name = "velocity_off_m_per_s",
+     .meaning = "the most that a velocity is off the mean at the end",
+     .unpredicted = kEndUnknown},
     {.name = "least_distance_m",
      .meaning = "the smallest distance, along the axes of the law, of agents that hear "
-                "each other"},
-    {.name = "groups", .meaning = "into how many parts the flock falls at the end, by who is within range of whom"},
+                "each other",
+     .unpredicted = kEndUnknown},
+    {.name = "groups",
+     .meaning = "into how many parts the flock falls at the end, by who is within range of whom",
+     .unpredicted = kEndUnknown},
     {.name = "centre_rms_m", .meaning = "rms distance of the centre of mass to the gamma agent"},
     {.name = "centre_off_m", .meaning = "the same distance at the end"},
     {.name = "centre_off_m_per_s", .meaning = "how far its velocity is off that of the gamma agent at the end"},

@@ -85,11 +85,9 @@ std::shared_ptr<const LawParams> ReadFlocking(const Experiment& /*experiment*/, 
 }
 
 LawTheory PredictFlocking(const Experiment& experiment) {
-  const auto& params = ParamsOf<FlockParams>(experiment.law);
-  Experiment anywhere = experiment;  // a range of hearing beyond that of the law changes nothing
-  if (experiment.schedule.range_m() >= params.pair.range_m())
-    anywhere.schedule = Schedule({experiment.schedule.phases().begin(), experiment.schedule.phases().end()},
-                                 experiment.schedule.repeat_s(), 0);
+  Experiment anywhere = experiment;  // two agents are in range of each other or are not: their forces cancel
+  anywhere.schedule = Schedule({experiment.schedule.phases().begin(), experiment.schedule.phases().end()},
+                               experiment.schedule.repeat_s(), 0);
   if (std::string why = WhyNotIdeal(anywhere, Wanted::kAcceleration); !why.empty()) return {.silent = std::move(why)};
   if (!experiment.graph.IsSymmetric()) return {.silent = "the closed forms are of undirected graphs"};
   return {.figures = PredictFlock(experiment)};

@@ -25,7 +25,9 @@ std::map<std::string, Value> GoToGoal(std::vector<Eigen::Vector3d> goals_W, int 
 /// The figures of a GoalMeter.
 inline constexpr LawFigure kGoalFigures[] = {
     {.name = "clearance_m", .meaning = "smallest distance of the balls around the bodies to an obstacle"},
-    {.name = "arrival_time_s", .meaning = "when the last agent was first within 0.2 m of its goal"},
+    {.name = "arrival_time_s",
+     .meaning = "when the last agent was first within 0.2 m of its goal",
+     .unpredicted = "nothing is promised about arrival"},
 };
 
 /// Measures how near agents come to obstacles on the way to their goals, and when they arrive. A goal that an event has

@@ -19,6 +19,7 @@
 #include "agent/laws/ideal.h"
 #include "agent/laws/quadratic_costs.h"
 #include "agent/laws/row_parts.h"
+#include "agent/laws/stable_period.h"
 
 namespace mascot {
 namespace {
@@ -103,10 +104,13 @@ LawTheory PredictGradientTracking(const Experiment& experiment) {
   if (std::string why = WhyNotUndirected(experiment); !why.empty()) return {.silent = std::move(why)};
   if (experiment.size() > kMostGradientModes) return {.silent = "the modes of so many agents are not computed"};
   const double radius = GradientRadius(experiment.graph, params.costs, params.step);
-  if (radius >= 1) return {.warnings = {UnstableStep(experiment.graph, params.costs, params.step)}};
+  if (radius >= 1)
+    return {.silent = kUnstable, .warnings = {UnstableStep(experiment.graph, params.costs, params.step)}};
   Eigen::Vector3d value_W = Minimiser(params.costs);
   if (experiment.law.axes == Axes::kXy) value_W.z() = MeanStart(experiment).z();
-  return {.figures = {{.values = {-std::log(radius) * experiment.control.rate_hz}}, {}}, .value_m = value_W};
+  return {.figures = {{.values = {-std::log(radius) * experiment.control.rate_hz}},
+                      NotPredicted("what is known is how fast it falls, rate_per_s, and not from where")},
+          .value_m = value_W};
 }
 
 std::unique_ptr<LawMeter> MeterOfGradientTracking(const Experiment& experiment, std::span<const int> ids) {

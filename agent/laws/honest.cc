@@ -1,6 +1,10 @@
 #include "agent/laws/honest.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+
+#include "experiment/graph/robustness.h"
 
 namespace mascot {
 
@@ -19,6 +23,18 @@ std::pair<int, std::size_t> MostLiesHeard(const Experiment& experiment) {
     if (liars > most.second) most = {agent.id, liars};
   }
   return most;
+}
+
+std::vector<std::string> RobustnessWarnings(std::optional<int> robustness, int f) {
+  if (!robustness) return {fmt::format("graph: its robustness is not checked: beyond {} agents", kMostRobustness)};
+  if (*robustness <= f)
+    return {
+        fmt::format("graph: {}-robust: {} that lie can keep honest agents apart; they agree on every {}-robust graph",
+                    *robustness, f, 2 * f + 1)};
+  if (*robustness <= 2 * f)
+    return {fmt::format("graph: {}-robust: that honest agents agree is proved for every {}-robust graph only",
+                        *robustness, 2 * f + 1)};
+  return {};
 }
 
 HonestHull::HonestHull(const Experiment& experiment, std::span<const int> ids)

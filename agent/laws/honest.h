@@ -18,6 +18,9 @@ Experiment WithoutLies(Experiment experiment);
 /// The honest agent that hears the most that lie, and how many these are.
 std::pair<int, std::size_t> MostLiesHeard(const Experiment& experiment);
 
+/// What W-MSR against `f` liars asks of a graph of this robustness; nullopt: it is not known.
+std::vector<std::string> RobustnessWarnings(std::optional<int> robustness, int f);
+
 /// Measures how honest agents stay within the hull of their starts, per axis of their law.
 class HonestHull {
  public:

@@ -66,8 +66,13 @@ LawTheory PredictPlatoon(const Experiment& experiment) {
   const FigureValues& flown = ahead->figures.front();
   const bool forgets = std::ranges::all_of(
       flown, [&](const auto& one) { return one && std::abs(*one - gain) < kForgotten * std::max(1.0, gain); });
+  if (flown.empty()) return {.silent = "nobody follows"};
   if (forgets) theory.figures[0].values.assign(flown.size(), gain);
   if (forgets || params.swing == 0) theory.figures[1].values = {largest};
+  const char* const unsteady = "the run ends before the start has been forgotten for two periods of the swing";
+  if (!forgets) theory.figures[0].why = params.swing == 0 ? "law.disturbance_m_per_s is 0: nothing swings" : unsteady;
+  if (theory.figures[1].values.empty()) theory.figures[1].why = unsteady;
+  if (!headway_s) theory.figures[3].why = "no headway up to 100 s is enough";
   if (!forgets && params.swing > 0)
     theory.warnings.emplace_back(
         "run.duration_s: the run ends before the start has been forgotten for two periods of the swing, so that its "

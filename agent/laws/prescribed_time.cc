@@ -72,21 +72,21 @@ std::shared_ptr<const LawParams> ReadPrescribedTime(const Experiment& experiment
 }
 
 /// The largest share of a disagreement that is left at time_s, over the modes.
-double LeftShare(const Experiment& experiment, const PrescribedTimeParams& params) {
+PredictedFigure LeftShare(const Experiment& experiment, const PrescribedTimeParams& params) {
   const Eigen::VectorXcd lambda = experiment.graph.Eigenvalues();
   Eigen::ArrayXd shares = Eigen::ArrayXd::Ones(lambda.size());
   shares(0) = 0;  // the mean is no disagreement
   for (std::int64_t k = 0; k < params.tick; ++k)
     shares *= 1 - experiment.period_s() * params.At(experiment.time_s(k)) * lambda.array().real();
-  return shares.abs().maxCoeff();
+  return {{shares.abs().maxCoeff()}, Bound::kAtMost, "", SizeOfStart_m(experiment) / StartDisagreement_m(experiment)};
 }
 
 LawTheory PredictPrescribedTime(const Experiment& experiment) {
   const auto& params = ParamsOf<PrescribedTimeParams>(experiment.law);
   if (std::string why = WhyNotIdealUndirected(experiment); !why.empty()) return {.silent = std::move(why)};
   if (params.tick > experiment.ticks()) return {.silent = "law.time_s is after the end of the run"};
-  const double left = LeftShare(experiment, params);
-  LawTheory theory{.figures = {{}, {.values = {left}, .bound = Bound::kAtMost}}, .value_m = MeanStart(experiment)};
+  LawTheory theory{.figures = {{}, LeftShare(experiment, params)}, .value_m = MeanStart(experiment)};
+  const double left = *theory.figures[1].values[0];
   // Any two of N agents are at most sqrt(2) |d| apart, where |d| is at most sqrt(N) / 2 times the spread at the start.
   if (left * std::sqrt(experiment.size() / 2.0) <= kTogetherShare)
     theory.figures[0] = {.values = {experiment.time_s(params.tick)}, .bound = Bound::kAtMost};

@@ -19,12 +19,11 @@
 namespace mascot {
 namespace {
 
-constexpr Range kPursuitSpeed = Above(0, 1000);
 constexpr Key kPursuitEvasionParameters[] = {
     key::Integer("leader", 1, kMaxAgents, "the evader, 1..N").Required(),
-    key::Number("pursuer_speed_m_per_s", kPursuitSpeed, "of each pursuer").Default("1.0").Live(),
+    key::Number("pursuer_speed_m_per_s", Above(0, 1000), "of each pursuer").Default("1.0").Live(),
     key::Number("evader_speed_m_per_s", {0, 1000}, "of the evader").Default("0.6").Live(),
-    key::Number("capture_radius_m", kPursuitSpeed, "a pursuer this close to the evader has captured it").Default("0.3"),
+    key::Number("capture_radius_m", Above(0, 1000), "a pursuer this close has captured the evader").Default("0.3"),
 };
 
 constexpr LawFigure kPursuitEvasionFigures[] = {
@@ -79,23 +78,26 @@ LawTheory PredictPursuitEvasion(const Experiment& experiment) {
   if (params.pursuer_speed <= params.evader_speed) return {.silent = "pursuers are not faster than the evader"};
   const double h = experiment.period_s(), closing = params.pursuer_speed - params.evader_speed;
   if (params.radius_m < params.pursuer_speed * h) return {.silent = "a pursuer may fly past the evader within a tick"};
-  const int evader = experiment.law.leader;
-  const AgentConfig& fleeing = experiment.agent(evader);
+  const AgentConfig& evader = experiment.agent(experiment.law.leader);
   double nearest_m = std::numeric_limits<double>::infinity();
   int pursuers = 0;
   for (const AgentConfig& agent : experiment.agents) {
     if (agent.control.max_speed_m_per_s < params.pursuer_speed)
       return {.silent = "the limit of the speed cuts the pursuit"};
-    if (agent.id == evader || !experiment.graph.Hears(agent.id, evader)) continue;
-    nearest_m = std::min(nearest_m, Along(fleeing.law.axes, fleeing.p_W - agent.p_W).norm());
+    if (agent.id == evader.id || !experiment.graph.Hears(agent.id, evader.id)) continue;
+    nearest_m = std::min(nearest_m, Along(evader.law.axes, evader.p_W - agent.p_W).norm());
     ++pursuers;
   }
   if (pursuers == 0) return {.silent = "nobody hears the evader"};
-  const double ticks = std::max(0.0, std::ceil((nearest_m - params.radius_m) / (closing * h) - 1e-6));
+  const double way_m = LargestStart_m(experiment) + params.pursuer_speed * experiment.run.duration_s;
+  const double left_m = nearest_m - params.radius_m, off_m = RoundingShare(experiment) * way_m;
+  const auto ticks = [&](double m) { return std::max(0.0, std::ceil(m / (closing * h))); };
   const double closest_m = std::max(params.radius_m, nearest_m - closing * experiment.run.duration_s);
-  const auto& heard = experiment.graph.HeardBy(evader);
-  const bool is_line = pursuers == 1 && heard.size() == 1 && experiment.graph.Hears(heard[0].id, evader);
-  return {.figures = {{{ticks * h}, is_line ? Bound::kEqual : Bound::kAtMost}, {{closest_m}, Bound::kAtMost}}};
+  const auto& heard = experiment.graph.HeardBy(evader.id);
+  const bool is_line = pursuers == 1 && heard.size() == 1 && experiment.graph.Hears(heard[0].id, evader.id);
+  const bool is_sure = ticks(left_m - off_m) == ticks(left_m + off_m);  // else rounding decides: a tick more or less
+  const Bound bound = is_line && is_sure ? Bound::kEqual : Bound::kAtMost;
+  return {.figures = {{{ticks(left_m + off_m) * h}, bound}, {{closest_m}, Bound::kAtMost, "", way_m}}};
 }
 
 class CaptureMeter final : public LawMeter {

@@ -31,8 +31,12 @@ constexpr Key kResilientParameters[] = {
 
 constexpr LawFigure kResilientFigures[] = {
     {.name = "outside_m", .meaning = "farthest that an honest agent was outside the hull of honest starts, per axis"},
-    {.name = "apart_m", .meaning = "largest distance between honest agents along an axis, at the end"},
-    {.name = "robustness", .meaning = "r of the graph: 2F + 1 makes honest agents agree, F + 1 is needed"},
+    {.name = "apart_m",
+     .meaning = "largest distance between honest agents along an axis, at the end",
+     .unpredicted = "how fast they agree depends on what is left out"},
+    {.name = "robustness",
+     .meaning = "r of the graph: 2F + 1 makes honest agents agree, F + 1 is needed",
+     .unpredicted = "it is not computed for so many agents"},
 };
 
 struct ResilientParams final : LawParams {
@@ -74,28 +78,16 @@ std::shared_ptr<const LawParams> ReadResilient(const Experiment& /*experiment*/,
   return params;
 }
 
-/// What theory asks of the graph.
-std::vector<std::string> GraphWarnings(std::optional<int> robustness, int f) {
-  if (!robustness) return {fmt::format("graph: its robustness is not checked: beyond {} agents", kMostRobustness)};
-  if (*robustness <= f)
-    return {
-        fmt::format("graph: {}-robust: {} that lie can keep honest agents apart; they agree on every {}-robust graph",
-                    *robustness, f, 2 * f + 1)};
-  if (*robustness <= 2 * f)
-    return {fmt::format("graph: {}-robust: that honest agents agree is proved for every {}-robust graph only",
-                        *robustness, 2 * f + 1)};
-  return {};
-}
-
 LawTheory PredictResilient(const Experiment& experiment) {
   const auto& params = ParamsOf<ResilientParams>(experiment.law);
   if (std::string why = WhyNotIdeal(WithoutLies(experiment), Wanted::kVelocity); !why.empty())
     return {.silent = std::move(why)};
   const std::optional<int> robustness = RobustnessOf(experiment.graph);
-  LawTheory theory{.figures = {{}, {}, {}}, .warnings = GraphWarnings(robustness, static_cast<int>(params.f))};
+  LawTheory theory{.figures = {{}, {}, {}}, .warnings = RobustnessWarnings(robustness, static_cast<int>(params.f))};
   if (robustness) theory.figures[2] = {.values = {*robustness}};
   const double largest = 1 / (experiment.period_s() * LargestDegree(experiment.graph));
   const auto [hearer, liars] = MostLiesHeard(experiment);
+  theory.figures[0].why = params.gain > largest ? "law.gain is too high" : "more lie than law.f leaves out";
   if (params.gain > largest)
     theory.warnings.push_back(fmt::format(
         "law.gain: expected at most {:.4g} 1/s at this control period and graph: agents overshoot", largest));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "agent/laws.h"
+#include "agent/laws/rounding.h"
 
 namespace mascot {
 

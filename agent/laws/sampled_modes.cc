@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "agent/laws/stable_period.h"
+
 namespace mascot {
 
 double LargestRoot(const Experiment& experiment) {
@@ -19,9 +21,10 @@ double SlowestFactor(const Experiment& experiment, double step) {
   return factor;
 }
 
-std::string UnstableGain(const Experiment& experiment) {
-  return fmt::format("law.gain: unstable: expected below {:.4g} 1/s at this control period and graph",
-                     2 / (experiment.period_s() * LargestRoot(experiment)));
+LawTheory UnstableGain(const Experiment& experiment) {
+  return {.silent = kUnstable,
+          .warnings = {fmt::format("law.gain: unstable: expected below {:.4g} 1/s at this control period and graph",
+                                   2 / (experiment.period_s() * LargestRoot(experiment)))}};
 }
 
 }  // namespace mascot

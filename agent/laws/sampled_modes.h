@@ -1,7 +1,6 @@
 #pragma once
 
-#include <string>
-
+#include "agent/law_figures.h"
 #include "experiment/experiment.h"
 
 namespace mascot {
@@ -13,7 +12,7 @@ double LargestRoot(const Experiment& experiment);
 /// max |1 - step lambda| over the modes other than that of the mean: what a disagreement keeps from tick to tick at
 /// most.
 double SlowestFactor(const Experiment& experiment, double step);
-/// The warning of a law.gain with which that is 1 or more.
-std::string UnstableGain(const Experiment& experiment);
+/// What theory says of a law.gain with which that is 1 or more.
+LawTheory UnstableGain(const Experiment& experiment);
 
 }  // namespace mascot

@@ -19,7 +19,7 @@ double LongestPeriodOf(const Eigen::MatrixXd& rates) {
 
 std::optional<LawTheory> WhyUnstable(const Experiment& experiment, double longest_s) {
   if (experiment.period_s() < longest_s) return std::nullopt;
-  return LawTheory{.silent = "the sampled team is unstable",
+  return LawTheory{.silent = kUnstable,
                    .warnings = {fmt::format("control.rate_hz: unstable at this rate, it must be above {:.4g}, got {}",
                                             1 / longest_s, experiment.control.rate_hz)}};
 }

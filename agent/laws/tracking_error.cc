@@ -15,14 +15,13 @@ namespace {
 
 std::int64_t SecondHalf(const Experiment& experiment) { return experiment.ticks() / 2; }
 
-/// What rounding may add up to in the sum of estimates: some units in the last place of each term at each tick (m).
-double Rounding_m(const Experiment& experiment, const std::vector<Input>& inputs) {
+/// The magnitude of inputs and estimates (m).
+double LargestInput_m(const Experiment& experiment, const std::vector<Input>& inputs) {
   double largest_m = 0;
   for (const Input& input : inputs)
     for (const double t_s : {0.0, experiment.run.duration_s})
       largest_m = std::max(largest_m, (input.constant_m + t_s * input.ramp_m_per_s).norm() + input.amplitude_m.norm());
-  const double terms = static_cast<double>(experiment.graph.edges()) + experiment.size();
-  return 4 * std::numeric_limits<double>::epsilon() * largest_m * terms * static_cast<double>(experiment.ticks() + 1);
+  return largest_m;
 }
 
 using Phasors = Eigen::MatrixX3cd;  // a row for each agent
@@ -78,8 +77,12 @@ double ErrorBound_m(const Experiment& experiment, const std::vector<Input>& inpu
 
 std::vector<PredictedFigure> PredictTrackingError(const Experiment& experiment, const std::vector<Input>& inputs,
                                                   double step) {
-  return {{.values = {ErrorBound_m(experiment, inputs, step, SecondHalf(experiment))}, .bound = Bound::kAtMost},
-          {.values = {Rounding_m(experiment, inputs)}, .bound = Bound::kAtMost}};
+  const double largest_m = LargestInput_m(experiment, inputs);
+  const double terms = static_cast<double>(experiment.graph.edges()) + experiment.size();  // in the sum, at each tick
+  return {{.values = {ErrorBound_m(experiment, inputs, step, SecondHalf(experiment))},
+           .bound = Bound::kAtMost,
+           .magnitude = largest_m},
+          {.values = {0.0}, .bound = Bound::kAtMost, .magnitude = largest_m * terms}};
 }
 
 void TrackingErrorMeter::Add(const TeamRow& row) {

@@ -7,6 +7,9 @@
 
 namespace mascot {
 
+/// Why a dynamic trigger has no bound.
+inline constexpr const char* kOfStatic = "the bound is of the static trigger";
+
 inline constexpr std::string_view kTriggers[] = {"static", "dynamic"};
 
 inline constexpr auto kTriggerKeys = std::array{

@@ -4,6 +4,7 @@
 // A double integrator, whose acceleration is held for a tick h, moves by e+ = [1 - h^2 p/2, h - h^2 d/2; -h p, 1 - h d]
 // e about each target, e = (p_i - w, v_i), p and d the gains: theory flies the list by this map. From rest and for
 // small h it overshoots by exp(-pi z / sqrt(1 - z^2)) of the way, z = d / (2 sqrt(p)).
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <utility>
@@ -113,7 +114,11 @@ LawTheory PredictWaypoints(const Experiment& experiment) {
     if (!track) return {.silent = "the limit of the acceleration cuts what the law asks for"};
     tracks.push_back(*track);
   }
-  return {.figures = Equal(WaypointTrack::FiguresOf(tracks))};
+  LawTheory theory{.figures = Equal(WaypointTrack::FiguresOf(tracks))};
+  for (PredictedFigure& figure : theory.figures)
+    if (!std::ranges::all_of(figure.values, [](const auto& value) { return value.has_value(); }))
+      figure.why = "the run ends before that";
+  return theory;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "agent/laws.h"
 
@@ -28,7 +29,8 @@ std::string Text(const PredictedFigure& figure) {
   const std::string_view bound = figure.bound == Bound::kEqual    ? ""
                                  : figure.bound == Bound::kAtMost ? "at most "
                                                                   : "at least ";
-  return std::string(bound) + Text(figure.values);
+  const std::string text = std::string(bound) + Text(figure.values);
+  return figure.why.empty() ? text : fmt::format("{}, because {}", text, figure.why);
 }
 
 /// Whether theory says anything of the figure.
@@ -36,21 +38,49 @@ bool Says(const PredictedFigure& figure) {
   return std::ranges::any_of(figure.values, [](const std::optional<double>& value) { return value.has_value(); });
 }
 
-/// "; theory: 4.5, +1.2 % off", "; theory: at most 9.3"; empty if theory is silent.
-std::string TheoryText(const LawFigure& figure, const FigureValues& measured, const PredictedFigure& predicted) {
-  if (!Says(predicted)) return "";
-  const std::string text = fmt::format("; theory: {}", Text(predicted));
-  const bool comparable = predicted.bound == Bound::kEqual && figure.each.empty() && measured.front();
-  const double value = predicted.values.front().value_or(0);
-  if (!comparable || value == 0) return text;
-  return text + fmt::format(", {:+.3g} % off", 100 * (*measured.front() / value - 1));
+/// ", +1.2 % off"; ", but for rounding" where that may be all of the difference; empty if the two are not comparable.
+std::string OffText(const LawFigure& figure, const FigureValues& measured, const PredictedFigure& predicted) {
+  if (predicted.bound != Bound::kEqual || !figure.each.empty() || !measured.front()) return "";
+  const double value = *predicted.values.front(), off = *measured.front() - value;
+  if (off != 0 && std::abs(off) <= predicted.rounding) return ", but for rounding";
+  return value == 0 ? "" : fmt::format(", {:+.3g} % off", 100 * off / value);
 }
 
-/// The prediction of figure `k` of `law`; empty if theory is silent.
+/// "; theory: 4.5, +1.2 % off", "; theory: at most 9.3"; "; not predicted, because ..." if theory is silent about the
+/// figure alone.
+std::string TheoryText(const LawFigure& figure, const FigureValues& measured, const PredictedFigure& predicted) {
+  if (Says(predicted)) return fmt::format("; theory: {}{}", Text(predicted), OffText(figure, measured, predicted));
+  return predicted.why.empty() ? "" : "; not predicted, because " + predicted.why;
+}
+
+/// What theory says of figure `k` of `law`. Where it is silent about all of them, that is the reason.
 PredictedFigure Predicted(const Experiment& experiment, const LawEntry& law, std::size_t k,
                           const Prediction& prediction) {
-  const bool speaks = &law == &EntryOf(experiment.law) && !prediction.law_figures.empty();
-  return speaks ? prediction.law_figures[k] : PredictedFigure();
+  if (&law != &EntryOf(experiment.law)) return NotPredicted("agents have laws of their own");
+  if (!prediction.law_figures.empty()) return prediction.law_figures[k];
+  return NotPredicted(prediction.figures_silent.empty() ? prediction.silent : prediction.figures_silent);
+}
+
+/// Whether theory says anything of the figures of the law, or why it does not of some.
+bool SaysSome(const Prediction& prediction) { return !prediction.law_figures.empty(); }
+
+Json TextOrNull(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+/// The tables by figure of what theory says: the value, its bound, what rounding may put the measured value off, and
+/// why a value is missing.
+struct Tables {
+  const char *value, *bound, *rounding, *reason;
+};
+constexpr Tables kInSummary{"predicted", "bounds", "rounding", "reasons"};
+constexpr Tables kInCheck{"figures", "figure_bounds", "figure_rounding", "figure_reasons"};
+
+void AddPredicted(const LawFigure& figure, const PredictedFigure& predicted, const Tables& tables, Json& json) {
+  const std::string name(figure.name);
+  const bool says = Says(predicted);
+  json[tables.value][name] = says ? ToJson(figure, predicted.values) : Json(nullptr);
+  json[tables.bound][name] = says ? Json(kBounds.Name(predicted.bound)) : Json(nullptr);
+  json[tables.rounding][name] = says ? Json(predicted.rounding) : Json(nullptr);
+  json[tables.reason][name] = TextOrNull(predicted.why);
 }
 
 }  // namespace
@@ -61,11 +91,8 @@ Json LawsJson(const Experiment& experiment, std::span<const LawMeasured> measure
     Json& entry = json[std::string(law->name)];
     for (std::size_t k = 0; k < figures.size(); ++k) {
       const LawFigure& figure = law->figures[k];
-      const std::string name(figure.name);
-      entry[name] = ToJson(figure, figures[k]);
-      const PredictedFigure predicted = Predicted(experiment, *law, k, prediction);
-      entry["predicted"][name] = Says(predicted) ? ToJson(figure, predicted.values) : Json(nullptr);
-      entry["bounds"][name] = Says(predicted) ? Json(kBounds.Name(predicted.bound)) : Json(nullptr);
+      entry[std::string(figure.name)] = ToJson(figure, figures[k]);
+      AddPredicted(figure, Predicted(experiment, *law, k, prediction), kInSummary, entry);
     }
   }
   return json;
@@ -77,19 +104,20 @@ std::string LawsText(const Experiment& experiment, std::span<const LawMeasured> 
   for (const auto& [law, figures] : measured)
     for (std::size_t k = 0; k < figures.size(); ++k) {
       const LawFigure& figure = law->figures[k];
+      const PredictedFigure predicted =
+          SaysSome(prediction) ? Predicted(experiment, *law, k, prediction) : PredictedFigure();
       text += fmt::format("{:<14} {} ({}){}\n", figure.name, Text(figures[k]), figure.meaning,
-                          TheoryText(figure, figures[k], Predicted(experiment, *law, k, prediction)));
+                          TheoryText(figure, figures[k], predicted));
     }
   return text;
 }
 
-Json PredictedFiguresJson(const Experiment& experiment, const Prediction& prediction) {
-  Json json = Json::object();
+void AddPredictedFigures(const Experiment& experiment, const Prediction& prediction, Json& json) {
   const LawEntry& law = EntryOf(experiment.law);
-  for (std::size_t k = 0; k < prediction.law_figures.size(); ++k)
-    json[std::string(law.figures[k].name)] =
-        Says(prediction.law_figures[k]) ? ToJson(law.figures[k], prediction.law_figures[k].values) : Json(nullptr);
-  return json;
+  for (const char* table : {kInCheck.value, kInCheck.bound, kInCheck.rounding, kInCheck.reason})
+    json[table] = Json::object();
+  for (std::size_t k = 0; k < law.figures.size(); ++k)
+    AddPredicted(law.figures[k], Predicted(experiment, law, k, prediction), kInCheck, json);
 }
 
 std::vector<std::pair<std::string, std::string>> PredictedFigureLines(const Experiment& experiment,
@@ -98,8 +126,8 @@ std::vector<std::pair<std::string, std::string>> PredictedFigureLines(const Expe
   const LawEntry& law = EntryOf(experiment.law);
   for (std::size_t k = 0; k < prediction.law_figures.size(); ++k) {
     const PredictedFigure& predicted = prediction.law_figures[k];
-    if (Says(predicted))
-      lines.emplace_back(law.figures[k].name, fmt::format("{} ({})", Text(predicted), law.figures[k].meaning));
+    const std::string text = Says(predicted) ? Text(predicted) : "not predicted, because " + predicted.why;
+    lines.emplace_back(law.figures[k].name, fmt::format("{} ({})", text, law.figures[k].meaning));
   }
   return lines;
 }

@@ -318,7 +318,10 @@ std::string WhyNot(const Experiment& experiment, const Linearity& linearity, con
 }  // namespace
 
 void PredictLinear(const Experiment& experiment, const Timeline& timeline, Prediction& prediction) {
-  if (!prediction.persistence->joint) return;  // PersistenceWarnings has warned
+  if (!prediction.persistence->joint) {  // PersistenceWarnings has said more
+    prediction.silent = "the graph has no spanning tree: agents do not agree from every start";
+    return;
+  }
   const Linearity linearity = LinearTeamOf(experiment);
   prediction.silent = WhyNot(experiment, linearity, timeline);
   if (prediction.silent.empty()) LinearCase(experiment, *linearity.team, timeline, prediction).Predict();

@@ -146,6 +146,9 @@ void PredictPursuit(const Experiment& experiment, const Timeline& timeline, cons
       if (const auto edge = PredictEdge(experiment, law, agent.id)) prediction.minmax_edges.push_back(*edge);
     }
   }
+  if (prediction.silent.empty() && prediction.minmax_edges.empty() && experiment.size() > 1)
+    (prediction.value_m ? prediction.figures_silent : prediction.silent) =
+        "limits leave no child the acceleration that it takes to catch up";
   for (const MinmaxEdge& edge : prediction.minmax_edges) {
     prediction.minmax_time_s = std::max(edge.time_s, prediction.minmax_time_s.value_or(0));
   }

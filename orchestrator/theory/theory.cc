@@ -13,6 +13,7 @@
 #include "orchestrator/team/team.h"
 #include "orchestrator/theory/crowding.h"
 #include "orchestrator/theory/flight_envelope.h"
+#include "orchestrator/theory/law_figures.h"
 #include "orchestrator/theory/links_on_average.h"
 #include "orchestrator/theory/obstacle_warnings.h"
 #include "orchestrator/theory/parts.h"
@@ -87,6 +88,7 @@ void PredictFigures(const Experiment& experiment, Prediction& prediction) {
   LawTheory theory = goes_on ? LawTheory{.silent = "the law goes on with what it remembers of the phase before"}
                      : alone ? EntryOf(experiment.law).predict(experiment)
                              : LawTheory{.silent = "agents have laws of their own"};
+  Complete(experiment, EntryOf(experiment.law), theory.figures);
   prediction.law_figures = std::move(theory.figures);
   if (!theory.silent.empty()) (prediction.stable ? prediction.figures_silent : prediction.silent) = theory.silent;
   if (theory.value_m) prediction.value_m = theory.value_m;

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <utility>
 
 #include "experiment/toml/input.h"
 #include "orchestrator/engines/dds/delivery.h"
@@ -59,33 +60,36 @@ std::vector<std::string> DelayLines(const Experiment& experiment) {
 /// The phases after the first.
 Json PhasesJson(const Experiment& experiment, const Prediction& prediction) {
   Json phases = Json::array();
-  for (const LaterPhase& phase : prediction.later)
-    phases.push_back({{"at_s", experiment.time_s(phase.from)},
-                      {"law", phase.experiment->law.name},
-                      {"leader", phase.experiment->law.leader},
-                      {"predicted", PredictionJson(phase.prediction)},
-                      {"figures", PredictedFiguresJson(*phase.experiment, phase.prediction)}});
+  for (const LaterPhase& phase : prediction.later) {
+    Json json = {{"at_s", experiment.time_s(phase.from)},
+                 {"law", phase.experiment->law.name},
+                 {"leader", phase.experiment->law.leader},
+                 {"predicted", PredictionJson(phase.prediction)}};
+    AddPredictedFigures(*phase.experiment, phase.prediction, json);
+    phases.push_back(std::move(json));
+  }
   return phases;
 }
 
 Json ToJson(const Experiment& experiment, const GraphFacts& facts, const Prediction& prediction) {
-  return {{"experiment", experiment.run.name},
-          {"duration_s", experiment.run.duration_s},
-          {"ticks", experiment.ticks()},
-          {"control_rate_hz", experiment.control.rate_hz},
-          {"agents", experiment.size()},
-          {"models", CountModels(experiment)},
-          {"law", experiment.law.name},
-          {"axes", kAxes.Name(experiment.law.axes)},
-          {"leader", experiment.law.leader},
-          {"graph", ToJson(facts)},
-          {"draws", DrawsOf(experiment)},
-          {"delays", DelaysJson(experiment)},
-          {"predicted", PredictionJson(prediction)},
-          {"safety", SafetyPredictionJson(prediction)},
-          {"figures", PredictedFiguresJson(experiment, prediction)},
-          {"phases", PhasesJson(experiment, prediction)},
-          {"warnings", prediction.warnings}};
+  Json json = {{"experiment", experiment.run.name},
+               {"duration_s", experiment.run.duration_s},
+               {"ticks", experiment.ticks()},
+               {"control_rate_hz", experiment.control.rate_hz},
+               {"agents", experiment.size()},
+               {"models", CountModels(experiment)},
+               {"law", experiment.law.name},
+               {"axes", kAxes.Name(experiment.law.axes)},
+               {"leader", experiment.law.leader},
+               {"graph", ToJson(facts)},
+               {"draws", DrawsOf(experiment)},
+               {"delays", DelaysJson(experiment)},
+               {"predicted", PredictionJson(prediction)},
+               {"safety", SafetyPredictionJson(prediction)}};
+  AddPredictedFigures(experiment, prediction, json);
+  json["phases"] = PhasesJson(experiment, prediction);
+  json["warnings"] = prediction.warnings;
+  return json;
 }
 
 void PrintLine(std::string_view label, std::string_view text) {

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "experiment/experiment.h"
+
+namespace mascot {
+
+/// What rounding may put a figure of a run off by the tick `ticks`, as a share of the magnitude of the numbers that it
+/// is computed from: the one place that says so, for all that theory predicts exactly or bounds.
+///
+/// Each number that a tick changes is rounded a few times: in the law, in the command, and at each step of the physics.
+/// A rounding is off by half a unit in the last place, epsilon / 2 of the number. The agents of a stable team do not
+/// let these errors grow, so that they add up to no more than their sum. That is far above what is seen: errors of
+/// different signs cancel.
+inline double RoundingShare(const Experiment& experiment, std::int64_t ticks) {
+  constexpr double kRoundings = 16;  // of a tick, in the law, the command and the figure
+  const double of_a_tick = kRoundings + 2 * experiment.steps_per_tick();
+  return std::numeric_limits<double>::epsilon() / 2 * of_a_tick * static_cast<double>(ticks + 1);
+}
+/// Of a figure at the end of the run, or of all of it.
+inline double RoundingShare(const Experiment& experiment) { return RoundingShare(experiment, experiment.ticks()); }
+
+/// The largest component of the agents' positions at the start (m): the magnitude of the positions of a team that stays
+/// where it starts.
+inline double LargestStart_m(const Experiment& experiment) {
+  double largest_m = 0;
+  for (const AgentConfig& agent : experiment.agents) largest_m = std::max(largest_m, agent.p_W.cwiseAbs().maxCoeff());
+  return largest_m;
+}
+
+/// The same of the root of the sum of squares over all agents (m).
+inline double SizeOfStart_m(const Experiment& experiment) {
+  return LargestStart_m(experiment) * std::sqrt(experiment.size());
+}
+
+}  // namespace mascot
