@@ -122,14 +122,17 @@ TEST(SafetyOfVelocities, KeepsTheDistanceAndTheRateOfEveryPairInACrowd) {
 TEST(SafetyOfVelocities, IsPredictedAndMeasured) {
   const LawRun run(TeamOf("single_integrator", Circle(6, 3, 0.2), kMeet + Safety(1)));
   const auto& safety = run.summary["safety"];
-  EXPECT_EQ(safety["predicted"]["min_separation_m"], 1.0);
+  EXPECT_NEAR(safety["predicted"]["min_separation_m"].get<double>(), 1.0, 1e-9);
+  EXPECT_EQ(safety["predicted"]["min_separation_along_axes_m"], safety["predicted"]["min_separation_m"]);
+  EXPECT_GE(safety["min_separation_along_axes_m"], safety["predicted"]["min_separation_along_axes_m"])
+      << "to the last bit: they press against each other";
   EXPECT_TRUE(safety["predicted"]["assumes"].is_null()) << "a velocity of 0 is always safe";
   EXPECT_TRUE(safety["predicted"]["silent"].is_null());
   EXPECT_GE(safety["min_separation_m"].get<double>(), 1 - 1e-9);
   EXPECT_LT(safety["min_separation_m"].get<double>(), 1.01);
   EXPECT_GT(safety["filtered_fraction"].get<double>(), 0.5);
   EXPECT_EQ(safety["infeasible_ticks"], 0);
-  EXPECT_THAT(run.text, HasSubstr("\n  predicted    at least 1.0000 m (law.safety)\n"));
+  EXPECT_THAT(run.text, HasSubstr("\n  predicted    at least 1.0000 m in the plane (law.safety)\n"));
   EXPECT_THAT(run.text, HasSubstr(" % of commands by law.safety; 0 ticks without a safe one\n"));
   EXPECT_EQ(run.prediction.silent, "law.safety may change what the law asks for");
   EXPECT_LT(LawRun(TeamOf("single_integrator", Circle(6, 3, 0.2), kMeet, kNoBodies))
@@ -154,6 +157,34 @@ TEST(SafetyOfVelocities, LeadsAgentsThatStartTooCloseApart) {
   EXPECT_NEAR(Distance_m(team, 1, 2), 1, 1e-3);
 }
 
+TEST(SafetyOfVelocities, IsOfDistancesAlongTheAxesOfTheLaw) {
+  // Two that want to the same place in the plane, one 2 m above the other.
+  const std::string toml = TeamOf("single_integrator", {{-3, 0, 3}, {3, 0.1, 5}}, kMeet + Safety(1));
+  const LawRun run(toml);
+  const auto& safety = run.summary["safety"];
+  const double along_m = safety["min_separation_along_axes_m"], in_space_m = safety["min_separation_m"];
+  EXPECT_GE(along_m, safety["predicted"]["min_separation_along_axes_m"]);
+  EXPECT_LT(along_m, 1.01) << "what is promised is what is kept, and no more";
+  EXPECT_NEAR(in_space_m, std::hypot(along_m, 2), 1e-6);
+  EXPECT_THAT(run.text, HasSubstr("separation     2.23"));
+  EXPECT_THAT(run.text, HasSubstr(" m at least (1.00"));
+  EXPECT_THAT(run.text, HasSubstr(" m in the plane), 0 collisions"));
+  const LawRun free(TeamOf("single_integrator", {{-3, 0, 3}, {3, 0.1, 5}}, kMeet));
+  EXPECT_LT(free.summary["safety"]["min_separation_along_axes_m"], 0.01) << "measured without law.safety, too";
+  EXPECT_TRUE(free.summary["safety"]["predicted"].is_null());
+  const LawRun in_space(TeamOf("single_integrator", {{-3, 0, 3}, {3, 0.1, 5}}, kMeet + "axes = 'xyz'\n"));
+  EXPECT_EQ(in_space.summary["safety"]["min_separation_along_axes_m"], in_space.summary["safety"]["min_separation_m"]);
+}
+
+TEST(SafetyOfAccelerations, PromisesNothingWhereBrakingTakesMoreThanTheDistance) {
+  const auto prediction = PredictSafety(Read(TeamOf("double_integrator", {{-3, 0, 2}, {3, 0, 2}},
+                                                    kMeetByForce + Safety(0.01, 0.5), "[control]\nrate_hz = 5\n")));
+  ASSERT_TRUE(prediction);
+  EXPECT_FALSE(prediction->min_separation_m) << "0.01 m less (3 + 3) 0.2^2 / 8 m is not above 0";
+  EXPECT_EQ(prediction->silent,
+            "braking within a control period takes more than law.safety.distance_m: agents may touch");
+}
+
 // --- driven by acceleration -------------------------------------------------------------------------------
 
 TEST(SafetyOfAccelerations, BrakesInTimeFromAnySpeedThatCanBeStopped) {
@@ -168,7 +199,7 @@ TEST(SafetyOfAccelerations, BrakesInTimeFromAnySpeedThatCanBeStopped) {
       const double dip_m = a / rate_hz / rate_hz / 8;
       const auto prediction = PredictSafety(Read(toml));
       ASSERT_TRUE(prediction && prediction->min_separation_m) << prediction->silent;
-      EXPECT_DOUBLE_EQ(*prediction->min_separation_m, D - dip_m);
+      EXPECT_NEAR(*prediction->min_separation_m, D - dip_m, 1e-9);
       EXPECT_EQ(prediction->assumes, "");
       const double least_m = LeastDistance_m(toml);
       EXPECT_GE(least_m, D - dip_m - 1e-9) << rate_hz << " Hz, " << share;

@@ -20,20 +20,26 @@ std::int64_t CommandedByAcceleration(const Experiment& experiment) {
 }  // namespace
 
 Metrics::Metrics(const Experiment& experiment)
-    : experiment_(experiment), min_separation2_(std::numeric_limits<double>::infinity()) {
+    : experiment_(experiment),
+      min_separation2_(std::numeric_limits<double>::infinity()),
+      min_separation_along_axes2_(min_separation2_) {
   const SuppressedPythonOutput suppressed;  // the laws run a second time; discard what they print
   if (experiment.output.fidelity) ideal_.emplace(experiment);
   accelerated_ = CommandedByAcceleration(experiment);
-  TakeSafety(experiment);
+  Take(experiment);
 }
 
-void Metrics::TakeSafety(const Experiment& experiment) {
-  for (const AgentConfig& agent : experiment.agents) has_safety_ = has_safety_ || agent.law.safety;
+void Metrics::Take(const Experiment& experiment) {
+  axes_.clear();
+  for (const AgentConfig& agent : experiment.agents) {
+    has_safety_ = has_safety_ || agent.law.safety;
+    axes_.push_back(agent.law.axes);
+  }
 }
 
 void Metrics::Adopt(std::shared_ptr<const Experiment> now) {
   accelerated_ = std::max(accelerated_, CommandedByAcceleration(*now));
-  TakeSafety(*now);
+  Take(*now);
   now_ = std::move(now);
 }
 
@@ -60,16 +66,20 @@ void Metrics::MeasureControl(std::span<const Command> commands) {
   infeasible_ticks_ += !is_feasible;
 }
 
-/// Updates the smallest separation. Agents are sorted by x, so that the inner loop ends where x alone differs by more.
+/// Updates the smallest separations; that along axes is never the larger one. Agents are sorted by x, so that the inner
+/// loop ends where x alone differs by more.
 void Metrics::MeasureSeparation(std::span<const Motion> motions) {
   by_x_.clear();
-  for (const Motion& motion : motions) by_x_.push_back(motion.p_WB);
-  std::sort(by_x_.begin(), by_x_.end(), [](const auto& a, const auto& b) { return a.x() < b.x(); });
+  for (std::size_t i = 0; i < motions.size(); ++i) by_x_.push_back({motions[i].p_WB, axes_[i] == Axes::kXy});
+  std::sort(by_x_.begin(), by_x_.end(), [](const Place& a, const Place& b) { return a.p_W.x() < b.p_W.x(); });
   for (std::size_t i = 0; i < by_x_.size(); ++i)
     for (std::size_t j = i + 1; j < by_x_.size(); ++j) {
-      const double dx = by_x_[j].x() - by_x_[i].x();
-      if (dx * dx >= min_separation2_) break;
-      min_separation2_ = std::min(min_separation2_, (by_x_[j] - by_x_[i]).squaredNorm());
+      const Eigen::Vector3d dp_W = by_x_[j].p_W - by_x_[i].p_W;
+      if (dp_W.x() * dp_W.x() >= min_separation2_) break;
+      const double in_space2 = dp_W.squaredNorm();
+      const double along_axes2 = by_x_[i].in_plane || by_x_[j].in_plane ? dp_W.head<2>().squaredNorm() : in_space2;
+      min_separation2_ = std::min(min_separation2_, in_space2);
+      min_separation_along_axes2_ = std::min(min_separation_along_axes2_, along_axes2);
     }
 }
 
@@ -110,7 +120,10 @@ Measured Metrics::Result() const {
   result.saturated_fraction = static_cast<double>(saturated_) / samples;
   result.tilt_limited_fraction = static_cast<double>(tilt_limited_) / samples;
   result.rotor_limited_fraction = static_cast<double>(rotor_limited_) / samples;
-  if (experiment_.size() > 1) result.min_separation_m = std::sqrt(min_separation2_);
+  if (experiment_.size() > 1) {
+    result.min_separation_m = std::sqrt(min_separation2_);
+    result.min_separation_along_axes_m = std::sqrt(min_separation_along_axes2_);
+  }
   if (has_safety_) {
     result.filtered_fraction = static_cast<double>(filtered_) / samples;
     result.infeasible_ticks = infeasible_ticks_;

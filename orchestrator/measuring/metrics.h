@@ -20,10 +20,12 @@ struct Measured {
   /// Integral of |acceleration command|^2, mean over the agents that are commanded accelerations; absent: there are
   /// none.
   std::optional<double> effort_m2_per_s3;
-  double saturated_fraction = 0;            ///< fraction of commands cut at the acceleration limit
-  double tilt_limited_fraction = 0;         ///< fraction of commands cut at the tilt limit
-  double rotor_limited_fraction = 0;        ///< fraction of commands cut at a rotor's limit
-  std::optional<double> min_separation_m;   ///< absent for one agent
+  double saturated_fraction = 0;           ///< fraction of commands cut at the acceleration limit
+  double tilt_limited_fraction = 0;        ///< fraction of commands cut at the tilt limit
+  double rotor_limited_fraction = 0;       ///< fraction of commands cut at a rotor's limit
+  std::optional<double> min_separation_m;  ///< in space; absent for one agent
+  /// The same along the axes of the agents' laws, in the plane if those of one of the two are: what law.safety keeps.
+  std::optional<double> min_separation_along_axes_m;
   std::optional<double> filtered_fraction;  ///< fraction of commands that law.safety changed; absent: nobody has it
   std::optional<std::int64_t> infeasible_ticks;  ///< ticks at which some agent had no safe command; absent likewise
   double travelled_m = 0;                        ///< mean path length of the agents
@@ -47,7 +49,7 @@ class Metrics {
   Measured Result() const;
 
  private:
-  void TakeSafety(const Experiment& experiment);
+  void Take(const Experiment& experiment);
   void MeasureControl(std::span<const Command> commands);
   void MeasureSeparation(std::span<const Motion> motions);
   void MeasureFidelity(std::span<const Motion> motions);
@@ -64,12 +66,18 @@ class Metrics {
   std::int64_t saturated_ = 0, tilt_limited_ = 0, rotor_limited_ = 0;
   bool has_safety_ = false;  // some agent has, or had, law.safety
   std::int64_t filtered_ = 0, infeasible_ticks_ = 0;
-  double min_separation2_;
+  double min_separation2_, min_separation_along_axes2_;
   double squared_deviation_ = 0;
   double max_deviation2_ = 0;
   double path_m_ = 0;
   std::vector<Eigen::Vector3d> last_p_W_;
-  std::vector<Eigen::Vector3d> by_x_;  // scratch
+  /// Where an agent is, and whether its law is in the plane alone.
+  struct Place {
+    Eigen::Vector3d p_W;
+    bool in_plane = false;
+  };
+  std::vector<Axes> axes_;   // of the agents' laws, by id - 1
+  std::vector<Place> by_x_;  // scratch
 };
 
 }  // namespace mascot

@@ -98,14 +98,17 @@ Json PredictionJson(const Prediction& prediction) {
 std::string SafetyText(const SafetyPrediction& safety) {
   if (!safety.silent.empty()) return "no distance, because " + safety.silent;
   if (!safety.min_separation_m) return "nothing: there is one agent";
-  return fmt::format("at least {:.4f} m (law.safety){}", *safety.min_separation_m,
+  return fmt::format("at least {:.4f} m{} (law.safety){}", *safety.min_separation_m,
+                     safety.axes == Axes::kXy ? " in the plane" : "",
                      safety.assumes.empty() ? "" : ", if " + safety.assumes);
 }
 
 Json SafetyPredictionJson(const Prediction& prediction) {
   if (!prediction.safety) return nullptr;
   const auto text = [](const std::string& words) { return words.empty() ? Json(nullptr) : Json(words); };
+  // What is kept along the axes is kept in space, too.
   return {{"min_separation_m", OrNull(prediction.safety->min_separation_m)},
+          {"min_separation_along_axes_m", OrNull(prediction.safety->min_separation_m)},
           {"assumes", text(prediction.safety->assumes)},
           {"silent", text(prediction.safety->silent)}};
 }

@@ -51,6 +51,7 @@ Json Safety(const Experiment& experiment, const Measured& measured, const std::o
             const Prediction& prediction) {
   Json safety;
   safety["min_separation_m"] = OrNull(measured.min_separation_m);
+  safety["min_separation_along_axes_m"] = OrNull(measured.min_separation_along_axes_m);
   safety["collisions"] = contacts ? Json(contacts->total()) : Json(nullptr);
   safety["contacts"] = nullptr;
   if (contacts)
@@ -148,11 +149,17 @@ std::string AlsoLimited(const Measured& m) {
                      100 * m.rotor_limited_fraction);
 }
 
+/// " (1.002 m in the plane)", where that is another distance than in space.
+std::string InPlaneText(const Measured& m) {
+  if (m.min_separation_along_axes_m == m.min_separation_m) return "";
+  return fmt::format(" ({:.3f} m in the plane)", *m.min_separation_along_axes_m);
+}
+
 /// Text on the distance of agents, and what law.safety has to do with it.
 std::string SeparationText(const Measured& m, const std::optional<Contacts>& contacts, const Prediction& prediction) {
   std::string text;
   if (m.min_separation_m)
-    text += Line("separation     {:.3f} m at least, {} collisions", *m.min_separation_m,
+    text += Line("separation     {:.3f} m at least{}, {} collisions", *m.min_separation_m, InPlaneText(m),
                  contacts ? std::to_string(contacts->total()) : "an unknown number of");
   if (prediction.safety) text += Line("  predicted    {}", SafetyText(*prediction.safety));
   if (m.filtered_fraction)

@@ -1,5 +1,6 @@
 // What the filter of [law.safety] (agent/safety.cc) promises, if every agent hears all others at once, and its body
-// does as it is told. T is the control period, D = distance_m:
+// does as it is told. Distances are along law.axes: with heights held, in the plane. T is the control period, D =
+// distance_m:
 //   driven by velocity      h(k+1) = h + 2 T dp.du + T^2 |du|^2 >= (1 - gamma T) h(k): no loss if gamma T <= 1
 //   driven by acceleration  on h = 0, full braking stays on h = 0 from tick to tick; only the last tick before D, in
 //                           which agents come to rest, takes distance: at most (a_i + a_j) T^2 / 8 if gamma T <= 1/2
@@ -12,6 +13,7 @@
 #include <functional>
 
 #include "agent/laws/ideal.h"
+#include "agent/laws/rounding.h"
 #include "agent/safety.h"
 
 namespace mascot {
@@ -109,11 +111,14 @@ std::optional<SafetyPrediction> PredictSafety(const Experiment& experiment) {
   if (std::ranges::none_of(experiment.agents, [](const AgentConfig& a) { return a.law.safety.has_value(); }))
     return std::nullopt;
   const OfPairs found = Look(experiment);
+  const double kept_m = found.kept_m - RoundingShare(experiment) * (LargestStart_m(experiment) + found.kept_m);
   std::vector<std::string> reasons;
   if (found.deaf.count > 0) reasons.push_back(found.deaf.Text("do not both hear each other"));
   AddReasons(experiment, reasons);
   if (found.close.count > 0) reasons.push_back(found.close.Text("start closer than law.safety.distance_m"));
   if (found.fast.count > 0) reasons.push_back(found.fast.Text("start too fast to stop before law.safety.distance_m"));
+  if (kept_m <= 0)
+    reasons.emplace_back("braking within a control period takes more than law.safety.distance_m: agents may touch");
 
   SafetyPrediction prediction;
   for (const std::string& reason : reasons)
@@ -125,7 +130,8 @@ std::optional<SafetyPrediction> PredictSafety(const Experiment& experiment) {
   if (!reasons.empty())
     prediction.silent = fmt::format("{}", fmt::join(reasons, "; "));
   else if (experiment.size() > 1) {
-    prediction.min_separation_m = found.kept_m;
+    prediction.min_separation_m = kept_m;
+    prediction.axes = experiment.agents.front().law.axes;
     prediction.assumes = Assumptions(experiment);
   }
   return prediction;

@@ -10,10 +10,12 @@ namespace mascot {
 
 /// What theory says of [law.safety].
 struct SafetyPrediction {
-  std::optional<double> min_separation_m = {};  ///< the distance that is kept between any two agents; absent: none is
-  std::string assumes = {};                     ///< what must hold for it that is not known in advance; empty: nothing
-  std::string silent = {};                      ///< why no distance is promised; empty: one is
-  std::vector<std::string> warnings = {};       ///< "key: text"
+  /// The distance, along `axes`, that is kept between any two agents; absent: none is. In space they are no nearer.
+  std::optional<double> min_separation_m = {};
+  Axes axes = Axes::kXyz;                  ///< of all laws
+  std::string assumes = {};                ///< what must hold for it that is not known in advance; empty: nothing
+  std::string silent = {};                 ///< why no distance is promised; empty: one is
+  std::vector<std::string> warnings = {};  ///< "key: text"
 };
 
 /// Absent: no agent has a filter.
