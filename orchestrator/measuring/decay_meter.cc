@@ -15,11 +15,10 @@ void DecayMeter::Add(double t_s, double value) {
   if (!first_) first_ = value;
   if (*first_ == 0) return;
   const double fraction = value / *first_;
-  if (fraction > kUpperEnd) {
+  if (fraction > kUpperEnd) {  // the decline begins anew, with this row
     now_ = {};
     declines_ = {};
     from_s_ = t_s;
-    return;
   }
   constexpr double kFloor = 1e-9;  // least fraction used: a zero crossing must not give log(0)
   const double t = t_s - from_s_, y = std::log(std::max(fraction, kFloor));

@@ -7,9 +7,9 @@
 namespace mascot {
 
 /// Measures the exponential decay rate of a value, row by row: minus the slope of a straight line fitted to its
-/// logarithm (least squares), from the last row above 10 % of its first value to the last row above 0.02 %, or, if it
-/// does not fall that far, above 0.1 %. The last crossings of so wide a range average out the oscillations of a value
-/// that oscillates.
+/// logarithm (least squares), from the last row above 10 % of its first value to the last row above 0.02 %, both
+/// included, or, if it does not stay below that, above 0.1 %. The last crossings of so wide a range average out the
+/// oscillations of a value that oscillates.
 class DecayMeter {
  public:
   /// Adds a row; times increase.
@@ -26,7 +26,7 @@ class DecayMeter {
 
   std::optional<double> first_;
   double from_s_ = 0;               // time of the last row above 10 %; sums use t_s - from_s_
-  Sums now_;                        // over the rows since from_s_
+  Sums now_;                        // over the rows from from_s_ on
   std::array<Sums, 2> declines_{};  // the same, up to the last row above each lower end
 };
 
