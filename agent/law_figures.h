@@ -63,10 +63,12 @@ struct PredictedFigure {
   /// Why some or all of the values are absent, in words that follow "because".
   std::string why = {};
   /// That of the numbers from which the figure is computed, in its unit, where it is larger than the figure: where they
-  /// cancel, as in a share of what was there at the start. For lengths, that of positions is added. Rounding puts the figure off by a share of it (agent/laws/rounding.h).
+  /// cancel, as in a share of what was there at the start. For lengths, that of positions is added. Rounding puts the
+  /// figure off by a share of it (agent/laws/rounding.h).
   double magnitude = 0;
   /// So much rounding may put the measured figure off. Bounds have it in them. Made by Predict(), not by laws.
   double rounding = 0;
+  std::string beside = {};  ///< what else is to be known of it, in a few words: "slowest mode 5.1"
 };
 
 /// A figure that theory does not predict, because of `why`.
@@ -79,12 +81,20 @@ struct LawRates {
   double gain = 0;
 };
 
+/// The time since the law began from which on holds what theory says of the end of a run: kEqual: from then on and not
+/// before; kAtMost: from then on, or sooner.
+struct HoldsFrom {
+  double time_s = 0;
+  Bound bound = Bound::kEqual;
+};
+
 /// What theory says about an experiment whose agents all fly one law.
 struct LawTheory {
   std::string silent = {};                      ///< why theory says nothing; empty: it speaks
   std::vector<PredictedFigure> figures = {};    ///< in the order of LawEntry::figures; empty if it is silent
   std::optional<Eigen::Vector3d> value_m = {};  ///< where agents meet, in W
   std::optional<LawRates> rates = {};           ///< to be judged on bodies that have no velocity at once
+  std::optional<HoldsFrom> holds_from = {};     ///< absent: at any time, or theory does not know
   std::vector<std::string> warnings = {};       ///< "key: text": what will not work, or not as expected
 };
 

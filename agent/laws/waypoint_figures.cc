@@ -9,12 +9,11 @@ namespace {
 constexpr double kSettledShare = 0.02;
 constexpr double kArrivedByTime_m = 0.2;  // with times_s, which has no radius of its own
 
-/// Absent if one of them is.
+}  // namespace
+
 std::optional<double> Later(const std::optional<double>& a, const std::optional<double>& b) {
   return a && b ? std::optional(std::max(*a, *b)) : std::nullopt;
 }
-
-}  // namespace
 
 WaypointTrack::WaypointTrack(const WaypointParams& params, Axes axes, const Eigen::Vector3d& start_W)
     : axes_(axes), params_(params), flight_(params, axes, start_W), arrivals_s_(params.waypoints_W.size()) {}
@@ -60,6 +59,11 @@ std::optional<double> WaypointTrack::settling_time_s() const {
   return is_last ? settled_s_ : std::nullopt;
 }
 
+std::optional<double> WaypointTrack::there_s() const {
+  const std::optional<double> settled_s = settling_time_s();
+  return settled_s ? std::optional(begun_s_ + *settled_s) : std::nullopt;
+}
+
 std::vector<FigureValues> WaypointTrack::FiguresOf(const std::vector<WaypointTrack>& tracks) {
   FigureValues arrivals_s;
   std::optional<double> settled_s = 0;
@@ -78,12 +82,12 @@ std::vector<FigureValues> WaypointTrack::FiguresOf(const std::vector<WaypointTra
 }
 
 std::optional<WaypointTrack> IdealTrack(const Experiment& experiment, const AgentConfig& agent,
-                                        const WaypointParams& params) {
+                                        const WaypointParams& params, std::int64_t ticks) {
   WaypointTrack track(params, agent.law.axes, agent.p_W);
   WaypointFlight flight(params, agent.law.axes, agent.p_W);
   Motion motion{.p_WB = agent.p_W, .v_WB = agent.v_W};
   const double h = experiment.period_s();
-  for (std::int64_t tick = 0; tick <= experiment.ticks(); ++tick) {
+  for (std::int64_t tick = 0; tick <= ticks; ++tick) {
     track.Add(experiment.time_s(tick), motion.p_WB);
     const Eigen::Vector3d a_W = Along(agent.law.axes, flight.Accel_W(experiment.time_s(tick), motion));
     if (a_W.cwiseAbs().maxCoeff() > agent.control.max_acceleration_m_per_s2) return std::nullopt;
@@ -91,6 +95,17 @@ std::optional<WaypointTrack> IdealTrack(const Experiment& experiment, const Agen
     motion.v_WB += h * a_W;
   }
   return track;
+}
+
+std::optional<double> ThereAfter(const Experiment& experiment, const AgentConfig& agent, const WaypointParams& params) {
+  constexpr std::int64_t kTimesTheRun = 64, kMostTicks = 200'000;
+  const std::int64_t most = std::max(experiment.ticks(), std::min(kTimesTheRun * experiment.ticks(), kMostTicks));
+  for (std::int64_t ticks = experiment.ticks(); ticks <= most; ticks *= 2) {
+    const std::optional<WaypointTrack> track = IdealTrack(experiment, agent, params, ticks);
+    if (!track) return std::nullopt;
+    if (const auto there_s = track->there_s()) return there_s;
+  }
+  return std::nullopt;
 }
 
 }  // namespace mascot

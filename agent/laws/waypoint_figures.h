@@ -16,6 +16,8 @@ class WaypointTrack {
   /// Flies by other parameters from now on. Another list of waypoints begins anew.
   void Adopt(const WaypointParams& params);
   void Add(double t_s, const Eigen::Vector3d& p_W);
+  /// Since when the agent stays within 2 % of the way to its last waypoint; absent: it does not yet.
+  std::optional<double> there_s() const;
   /// The figures of several flights: latest arrival at each waypoint, largest overshoot, latest settling, rms distance.
   static std::vector<FigureValues> FiguresOf(const std::vector<WaypointTrack>& tracks);
 
@@ -34,9 +36,13 @@ class WaypointTrack {
   double overshoot_m_ = 0, squares_m2_ = 0, ticks_ = 0;
 };
 
-/// The flight of an ideal double integrator, whose acceleration is held for a tick; nullopt: the agent's limit would
-/// cut what the law asks for.
+/// The flight of an ideal double integrator for `ticks`, whose acceleration is held for a tick; nullopt: the agent's
+/// limit would cut what the law asks for.
 std::optional<WaypointTrack> IdealTrack(const Experiment& experiment, const AgentConfig& agent,
-                                        const WaypointParams& params);
+                                        const WaypointParams& params, std::int64_t ticks);
+/// When such an agent is at its last waypoint, in the run or long after its end; absent: then neither, or a limit cuts.
+std::optional<double> ThereAfter(const Experiment& experiment, const AgentConfig& agent, const WaypointParams& params);
+/// The later of two times; absent if one of them is.
+std::optional<double> Later(const std::optional<double>& a, const std::optional<double>& b);
 
 }  // namespace mascot

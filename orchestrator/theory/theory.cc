@@ -17,6 +17,7 @@
 #include "orchestrator/theory/links_on_average.h"
 #include "orchestrator/theory/obstacle_warnings.h"
 #include "orchestrator/theory/parts.h"
+#include "orchestrator/theory/short_phase.h"
 #include "orchestrator/theory/turning.h"
 
 namespace mascot {
@@ -73,14 +74,6 @@ void WarnOfFirstCommands(const Experiment& experiment, Prediction& prediction) {
         first->agent, first->asked, first->limit));
 }
 
-void WarnOfShortPhase(const Experiment& phase, bool is_last, Prediction& prediction) {
-  for (const auto& time_s : {prediction.settling_time_s, prediction.minmax_time_s})
-    if (time_s && *time_s > phase.run.duration_s)
-      prediction.warnings.push_back(fmt::format("{} ends after {:.4g} s, before what theory expects at {:.4g} s",
-                                                is_last ? "run.duration_s: the run" : "law.schedule: the phase",
-                                                phase.run.duration_s, *time_s));
-}
-
 /// Adds what the team's law itself has to say about the experiment.
 void PredictFigures(const Experiment& experiment, Prediction& prediction) {
   const bool alone = std::ranges::none_of(experiment.agents, &AgentConfig::has_own_law);
@@ -92,6 +85,7 @@ void PredictFigures(const Experiment& experiment, Prediction& prediction) {
   prediction.law_figures = std::move(theory.figures);
   if (!theory.silent.empty()) (prediction.stable ? prediction.figures_silent : prediction.silent) = theory.silent;
   if (theory.value_m) prediction.value_m = theory.value_m;
+  if (theory.holds_from) prediction.holds_from = theory.holds_from;
   if (theory.rates) JudgeTurning(experiment, *theory.rates, prediction);
   for (std::string& warning : theory.warnings) prediction.warnings.push_back(std::move(warning));
 }
@@ -166,7 +160,8 @@ Prediction PredictPhase(const Experiment& phase, const std::string& silent, bool
   PredictFirstCommand(phase, prediction);
   WarnOfFirstCommands(phase, prediction);
   WarnOfSilence(phase, prediction);
-  WarnOfShortPhase(phase, is_last, prediction);
+  if (std::string warning = ShortPhaseWarning(phase, is_last, prediction); !warning.empty())
+    prediction.warnings.push_back(std::move(warning));
   for (std::string& warning : LiftWarnings(phase)) prediction.warnings.push_back(std::move(warning));
   for (std::string& warning : RotorFailureWarnings(phase)) prediction.warnings.push_back(std::move(warning));
   for (std::string& warning : CrowdingWarnings(phase)) prediction.warnings.push_back(std::move(warning));

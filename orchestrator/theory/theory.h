@@ -49,15 +49,17 @@ struct Prediction {
   /// Decay rate of the slowest mode: agents agree at least as fast in the long run. With `of_agreement` false, that of
   /// each agent's flight to its waypoint.
   std::optional<double> slowest_rate_per_s;
-  /// The decay rate to measure: that of the slowest mode, or, where there are many modes, as with delays, that of a
-  /// team that starts as the experiment's agents do.
+  /// The decay rate to measure: that of a linear team that starts as the experiment's agents do, which may hardly
+  /// excite the slowest mode. With `of_agreement` false, that of the slowest mode.
   std::optional<double> rate_per_s;
   /// When the agents settle, as AgreementMeter measures it.
   std::optional<double> settling_time_s;
-  /// Whether `settling_time_s` is of a linear team that starts as the experiment's agents do. Otherwise it is the time
-  /// until the slowest mode has decayed from rest to 2 %; along directed chains agents settle later than that, because
-  /// the modes of a directed graph are not orthogonal.
+  /// Whether `settling_time_s` and `rate_per_s` are of a linear team that starts as the experiment's agents do.
+  /// Otherwise there is no rate, and the time is that until the slowest mode has decayed from rest to 2 %; along
+  /// directed chains agents settle later than that, because the modes of a directed graph are not orthogonal.
   bool from_start = false;
+  /// From when on holds what the law says of the end (short_phase.h).
+  std::optional<HoldsFrom> holds_from;
   std::optional<double> control_period_bound_s;    ///< the loop is unstable from this control period on, without delays
   std::optional<DelayMargin> delay_margin;         ///< delay of neighbours' samples
   std::optional<double> own_delay_margin_s;        ///< equal delay of neighbours' samples and own states
