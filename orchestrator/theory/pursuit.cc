@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "agent/laws/reach.h"
 #include "orchestrator/theory/flight_envelope.h"
+#include "orchestrator/theory/flown_pursuit.h"
 #include "orchestrator/theory/lagged_pursuit.h"
 #include "orchestrator/theory/minmax_time.h"
 #include "orchestrator/theory/parts.h"
@@ -97,6 +100,56 @@ void WarnOfTrembling(Prediction& prediction) {
       AgentList(trembling), trembling.size() == 1 ? "about " : "up to ", most.radius_m, kCaughtUp_m, most.lag_s));
 }
 
+/// Takes back edges whose times do not hold because commands are held for a control period: the law is a relay, which
+/// then overshoots, and a child may not stay near its parent, or come there later. Sets from when on the others are
+/// together, and warns of those.
+void JudgeHeldCommands(const Experiment& experiment, const PursuitForm& law, Prediction& prediction) {
+  const auto is_ideal = [](const AgentConfig& agent) { return !agent.traits().has_airframe; };
+  if (!experiment.sensors.own.IsNone() || !experiment.sensors.heard.IsNone()) return;  // noise does more
+  if (prediction.minmax_edges.empty() || !std::ranges::all_of(experiment.agents, is_ideal)) return;
+  double latest_s = 0;
+  for (const MinmaxEdge& edge : prediction.minmax_edges) latest_s = std::max(latest_s, edge.time_s);
+  const double h = experiment.period_s();
+  const auto flown = FlyPursuit(experiment, 1.2 * latest_s + 200 * h);
+  double together_s = 0;
+  const auto holds = [&](const MinmaxEdge& edge) {
+    const auto c = static_cast<std::size_t>(edge.child - 1);
+    if (!flown)
+      return 2 * TrembleRadius(law.beta[c] - law.parent_beta[c], law.beta[c], h) <= kCaughtUp_m || !law.switches;
+    const auto of = std::ranges::find(*flown, edge.child, &PursuitMeter::Edge::child);
+    if (!of->time_s || *of->time_s > edge.time_s + 2.5 * h) return false;
+    together_s = std::max(together_s, *of->time_s);
+    return true;
+  };
+  std::vector<int> late;
+  for (const MinmaxEdge& edge : prediction.minmax_edges)
+    if (!holds(edge)) late.push_back(edge.child);
+  std::erase_if(prediction.minmax_edges,
+                [&](const MinmaxEdge& edge) { return std::ranges::find(late, edge.child) != late.end(); });
+  if (flown && !prediction.minmax_edges.empty()) prediction.holds_from = {together_s};
+  if (late.empty()) return;
+  const std::string who =
+      fmt::format("{} will not be with {} parent within {:g} m for good in the time of the closed form",
+                  AgentList(late), late.size() == 1 ? "its" : "their", kCaughtUp_m);
+  prediction.warnings.push_back(
+      law.switches
+          ? fmt::format("control.rate_hz: {}, because commands are held for {:.4g} s; a higher rate, a smaller "
+                        "beta or law.boundary_layer does it",
+                        who, h)
+          : fmt::format("law.boundary_layer: {}, because the last of the way is flown gently", who));
+}
+
+/// From when on the edges' times hold, where no flight has said so.
+std::optional<HoldsFrom> WhenCaughtUp(const Experiment& experiment, const std::vector<MinmaxEdge>& edges) {
+  HoldsFrom exact, bound{0, Bound::kAtMost};
+  for (const MinmaxEdge& edge : edges) {
+    double& time_s = edge.exact ? exact.time_s : bound.time_s;
+    time_s = std::max(time_s, edge.time_s);
+  }
+  if (edges.empty()) return std::nullopt;
+  return exact.time_s > experiment.run.duration_s || exact.time_s >= bound.time_s ? exact : bound;
+}
+
 void WarnOfWeakEdges(const PursuitForm& law, Prediction& prediction) {
   std::vector<int> weak;
   for (std::size_t i = 0; i < law.parent.size(); ++i) {
@@ -149,6 +202,8 @@ void PredictPursuit(const Experiment& experiment, const Timeline& timeline, cons
   if (prediction.silent.empty() && prediction.minmax_edges.empty() && experiment.size() > 1)
     (prediction.value_m ? prediction.figures_silent : prediction.silent) =
         "limits leave no child the acceleration that it takes to catch up";
+  JudgeHeldCommands(experiment, law, prediction);
+  if (!prediction.holds_from) prediction.holds_from = WhenCaughtUp(experiment, prediction.minmax_edges);
   for (const MinmaxEdge& edge : prediction.minmax_edges) {
     prediction.minmax_time_s = std::max(edge.time_s, prediction.minmax_time_s.value_or(0));
   }

@@ -1,0 +1,28 @@
+#include "orchestrator/theory/flown_pursuit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include "orchestrator/team/ideal_team.h"
+
+namespace mascot {
+
+std::optional<std::vector<PursuitMeter::Edge>> FlyPursuit(const Experiment& experiment, double longest_s) {
+  const double ticks = std::max(static_cast<double>(experiment.ticks()), longest_s * experiment.control.rate_hz);
+  if (!(ticks * experiment.size() <= kMostFlownAgents)) return std::nullopt;
+  IdealTeam team(experiment);
+  PursuitMeter meter(experiment);
+  meter.Add(team.motions());
+  try {
+    for (double tick = 0; tick < ticks; ++tick) {
+      team.Step();
+      meter.Add(team.motions());
+    }
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+  return meter.Result();
+}
+
+}  // namespace mascot
