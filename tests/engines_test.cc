@@ -647,14 +647,14 @@ TEST(Up, SaysWhatWasMeasuredAndBesideItWhatTheoryPredicted) {
   ScratchFolder folder;
   Up whole(folder, "whole", Config("leaderless"), {"--engine", "inprocess"});
   ASSERT_EQ(whole.Wait(), 0) << whole.err();
-  EXPECT_THAT(whole.out(),
-              ContainsRegex("decayed        at 0\\.29.. 1/s\n  predicted    0\\.2996 1/s .slowest mode.: [+-]"));
+  EXPECT_THAT(whole.out(), ContainsRegex("decayed        at 0\\.29.. 1/s\n  predicted    0\\.2988 1/s .from this "
+                                         "start; slowest mode 0\\.2996.: [+-]"));
   EXPECT_THAT(whole.out(),
               ContainsRegex("settled        after 15\\... s .2 %.\n  predicted    15\\.34 s .from this start.: [+-]"));
   Up cut(folder, "cut", Config("leaderless"), {"--engine", "inprocess", "--duration-s", "3"});
   ASSERT_EQ(cut.Wait(), 0) << cut.err();
   EXPECT_THAT(cut.out(), HasSubstr("decayed        not far enough, or not for good, to say how fast\n"
-                                   "  predicted    0.2996 1/s (slowest mode)\n"
+                                   "  predicted    0.2988 1/s (from this start; slowest mode 0.2996)\n"
                                    "settled        not by the end (2 %)\n"
                                    "  predicted    15.34 s (from this start)\n"));
 }

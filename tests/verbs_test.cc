@@ -147,7 +147,7 @@ TEST_F(Verbs, CheckPrintsTheSameAsJson) {
 }
 
 TEST_F(Verbs, CheckSaysHowLongPeriodsAndDelaysMayBe) {
-  EXPECT_THAT(Printed(SetUpCheck, {path()}), AllOf(HasSubstr("  decays         at 0.4939 1/s (slowest mode)\n"),
+  EXPECT_THAT(Printed(SetUpCheck, {path()}), AllOf(HasSubstr(" 1/s (from this start; slowest mode 0.4939)\n"),
                                                    HasSubstr("  control period below 0.5858 s (now 0.01 s)\n"),
                                                    HasSubstr("  delay          of neighbours' samples: below "),
                                                    HasSubstr("; of these and the own: below ")));

@@ -105,6 +105,8 @@ std::string AimText(const Experiment& experiment, const Aim& m, const Prediction
   if (of_rate)
     text += Line("  predicted    {:.4f} 1/s ({}){}", *prediction.rate_per_s, RateBasis(prediction),
                  DeviationText(deviation.rate_per_s, prediction.rate_per_s));
+  else if (prediction.slowest_rate_per_s && prediction.of_agreement)
+    text += Line("  predicted    {}", SlowestRateText(prediction));
   const bool of_settling = prediction.settling_time_s && prediction.of_agreement;
   if (m.settling_time_s)
     text += Line("settled        after {:.2f} s (2 %)", *m.settling_time_s);

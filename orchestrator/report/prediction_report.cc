@@ -64,6 +64,10 @@ std::string RateBasis(const Prediction& prediction) {
   return fmt::format("from this start; slowest mode {:.4g}", *prediction.slowest_rate_per_s);
 }
 
+std::string SlowestRateText(const Prediction& prediction) {
+  return fmt::format("in the long run at {:.4g} 1/s or faster (slowest mode)", *prediction.slowest_rate_per_s);
+}
+
 std::string SettlingBasis(const Experiment& experiment, const Prediction& prediction) {
   if (prediction.from_start) return "from this start";
   return experiment.graph.IsSymmetric() ? "slowest mode" : "slowest mode; later along chains";
@@ -127,6 +131,8 @@ std::vector<std::pair<std::string, std::string>> PredictionLines(const Experimen
   if (prediction.rate_per_s)
     lines.emplace_back("decays",
                        fmt::format("at {:.4g} 1/s ({}){}", *prediction.rate_per_s, RateBasis(prediction), average));
+  else if (prediction.slowest_rate_per_s)
+    lines.emplace_back("decays", SlowestRateText(prediction) + average);
   if (prediction.settling_time_s)
     lines.emplace_back("settles in", fmt::format("{} (2 %, {}){}", SecondsText(*prediction.settling_time_s),
                                                  SettlingBasis(experiment, prediction), average));

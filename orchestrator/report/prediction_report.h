@@ -20,6 +20,8 @@ Json SafetyPredictionJson(const Prediction& prediction);
 std::string SafetyText(const SafetyPrediction& safety);
 /// What the predicted rate, and the predicted settling time, are those of.
 std::string RateBasis(const Prediction& prediction);
+/// The rate of the slowest mode, where that of the start is not known. Must be predicted.
+std::string SlowestRateText(const Prediction& prediction);
 std::string SettlingBasis(const Experiment& experiment, const Prediction& prediction);
 
 }  // namespace mascot

@@ -118,13 +118,16 @@ FromStart FlyFromStart(const Experiment& experiment, const LinearTeam& team, con
   const double first_m = meter.disagreement_m();
   constexpr double kAgreed = 1e-7;   // of the first disagreement
   std::int64_t tick = 0, apart = 0;  // apart: the newest tick with more disagreement
+  FromStart by_the_end;              // of the run, whose rows are those that are measured
   while (static_cast<double>(tick) < longest && tick - apart <= apart / 5 + flight.reach() + 1) {
     flight.Step();
     ++tick;
     meter.Add(flight.q());
     if (meter.disagreement_m() > kAgreed * first_m) apart = tick;
+    if (tick == experiment.ticks()) by_the_end = {meter.settling_time_s(), meter.rate_per_s()};
   }
-  return {meter.settling_time_s(), meter.rate_per_s()};
+  return {by_the_end.settling_time_s ? by_the_end.settling_time_s : meter.settling_time_s(),
+          by_the_end.rate_per_s ? by_the_end.rate_per_s : meter.rate_per_s()};
 }
 
 }  // namespace mascot

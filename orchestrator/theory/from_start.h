@@ -7,10 +7,11 @@
 
 namespace mascot {
 
-/// How a linear team comes to agree from where and as fast as the experiment's agents start.
+/// How a linear team comes to agree from where and as fast as the experiment's agents start: as AgreementMeter measures
+/// it by the end of the run, or, where that ends too early for it, later.
 struct FromStart {
-  std::optional<double> settling_time_s;  ///< as AgreementMeter measures it; nothing: it does not settle in time
-  std::optional<double> rate_per_s;       ///< likewise
+  std::optional<double> settling_time_s;  ///< nothing: it does not settle in time
+  std::optional<double> rate_per_s;       ///< likewise, or there are too few rows to measure it
 };
 
 /// Steps the sampled team (sampled_team.h) tick by tick, on average where links lose samples, until it agrees for good,

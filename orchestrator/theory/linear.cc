@@ -224,7 +224,7 @@ bool LinearCase::PredictMotion() {
   if (!IsModal() || IsDelayed()) return PredictSampled();
   prediction_.stable = true;
   if (modes_.empty()) return true;
-  prediction_.slowest_rate_per_s = prediction_.rate_per_s = DecayRate(modes_, experiment_.period_s());
+  prediction_.slowest_rate_per_s = DecayRate(modes_, experiment_.period_s());
   prediction_.settling_time_s = SettlingTime(modes_, experiment_.period_s());
   return true;
 }
@@ -244,7 +244,7 @@ bool LinearCase::PredictSampled() {
     return Warn("law: unstable with these gains on these graphs");
   }
   if (sampled.slowest() == 0) return true;  // no agent follows another
-  prediction_.slowest_rate_per_s = prediction_.rate_per_s = sampled.rate_per_s();
+  prediction_.slowest_rate_per_s = sampled.rate_per_s();
   if (timeline_.cycle_from == 0)
     prediction_.settling_time_s = std::log(50) / sampled.rate_per_s();  // nothing begins later
   return true;
@@ -268,8 +268,8 @@ void LinearCase::PredictValue() {
     prediction_.value_m->z() = HeldHeight(experiment_, team_);
 }
 
-/// Replaces the settling time of the slowest mode by that of the experiment's own start; and the rate of the slowest
-/// mode too, where that mode may hardly take part in the motion, because there are many.
+/// Replaces the settling time of the slowest mode by that of the experiment's own start, in which that mode may hardly
+/// take part; the rate to measure is that of this start alone.
 void LinearCase::PredictFromStart() {
   const std::vector<int> leaders = team_.Leaders();
   const bool leader_stands = leaders.empty() || (agent(leaders.front()).v_W.isZero(0) && prediction_.value_m);
@@ -279,10 +279,10 @@ void LinearCase::PredictFromStart() {
       prediction_.slowest_rate_per_s ? kLonger * std::log(50) / *prediction_.slowest_rate_per_s : 0;
   const FromStart from_start =
       FlyFromStart(experiment_, team_, timeline_, std::max(experiment_.run.duration_s, settled_s));
-  if (!from_start.settling_time_s || !from_start.rate_per_s) return;
+  if (!from_start.settling_time_s) return;
   prediction_.from_start = true;
   prediction_.settling_time_s = from_start.settling_time_s;
-  if (!IsModal() || IsDelayed()) prediction_.rate_per_s = from_start.rate_per_s;
+  prediction_.rate_per_s = from_start.rate_per_s;
 }
 
 /// Warns that followers of a leader with constant velocity v stay behind by p_L - p = (b / p) v L_FF^-1 1.
