@@ -75,7 +75,11 @@ AgreementTime::AgreementTime(const Experiment& experiment, std::span<const int> 
 void AgreementTime::Add(const TeamRow& row) {
   newest_ = row.tick;
   const auto p_W = [&](int id) { return row.motions[static_cast<std::size_t>(id - 1)].p_WB; };
-  if (Extent(ids_, experiment_.agent(ids_.front()).law.axes, p_W) > tolerance_m_) last_apart_ = row.tick;
+  const double apart_m = Extent(ids_, experiment_.agent(ids_.front()).law.axes, p_W);
+  if (apart_m > tolerance_m_) last_apart_ = row.tick;
+  if (row.tick > experiment_.ticks()) return;  // flown ahead, beyond the end
+  const bool ends = 10 * row.tick > 9 * experiment_.ticks();
+  band_m_ = ends ? std::max(apart_m, band_m_) : apart_m;
 }
 
 std::optional<double> AgreementTime::time_s() const {

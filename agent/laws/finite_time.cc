@@ -5,15 +5,18 @@
 //   sign:  all agents meet at (max p(0) + min p(0)) / 2 after (max p(0) - min p(0)) / (2 gain)
 //   power: they meet at the mean of p(0), after at most 4 V^((1-alpha)/2) / ((1-alpha) (4 lambda)^((1+alpha)/2)), where
 //          V = |p(0) - mean|^2 / 2 and lambda is lambda_2 of the Laplacian of the weights (gain a_ij)^(2/(1+alpha)).
-// A held command overshoots the meeting point by at most one tick's way: agents tremble by that in the end.
+// Both are of continuous time. Commands that are held for a tick h overshoot: agents do not meet exactly, but tremble
+// in the end, with power by about (h gain sum_j a_ij)^(1/(1-alpha)), with sign by some ticks' ways, which add up along
+// chains. Theory flies the sampled team ahead.
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
-#include <vector>
 
 #include "agent/laws/agreement.h"
+#include "agent/laws/flown_agreement.h"
 #include "agent/laws/ideal.h"
+#include "agent/laws/power_bound.h"
 #include "agent/laws/pull.h"
 #include "agent/laws/row_parts.h"
 #include "agent/laws/sgn.h"
@@ -36,6 +39,11 @@ constexpr Key kFiniteTimeParameters[] = {
     key::Number("alpha", Above(0, 0.99), "with power: the exponent").Default("0.5").Live(),
 };
 
+constexpr LawFigure kFiniteTimeFigures[] = {
+    {.name = "agreement_time_s",
+     .meaning = "from which on all are within 0.1 % of their first spread, or with sign 4 gain T, along each axis"},
+    {.name = "band_m", .meaning = "largest distance of two agents along an axis, in the last tenth of the run"},
+};
 constexpr double kAgreedShare = 1e-3;
 
 struct FiniteTimeParams final : LawParams {
@@ -52,8 +60,7 @@ class FiniteTime final : public Law {
 
   Eigen::Vector3d Want_W(double /*t_s*/, const Motion& self, std::span<const Heard> heard) override {
     const bool is_power = params_->form == FiniteTimeForm::kPower;
-    const double alpha = params_->alpha;
-    const auto sig = [alpha](double x) { return Sgn(x) * std::pow(std::abs(x), alpha); };
+    const auto sig = [alpha = params_->alpha](double x) { return Sgn(x) * std::pow(std::abs(x), alpha); };
     Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();
     for (const Heard& j : heard) {
       const Eigen::Vector3d way_W = j.motion.p_WB - self.p_WB;
@@ -75,47 +82,42 @@ std::shared_ptr<const LawParams> ReadFiniteTime(const Experiment& /*experiment*/
   return params;
 }
 
-/// lambda_2 of the Laplacian of the weights (gain a_ij)^(2/(1+alpha)).
-double Lambda2OfPower(const Graph& graph, const FiniteTimeParams& params) {
-  std::vector<std::vector<Graph::Neighbour>> heard;
-  for (int id = 1; id <= graph.size(); ++id) {
-    heard.push_back(graph.HeardBy(id));
-    for (Graph::Neighbour& j : heard.back()) j.weight = std::pow(params.gain * j.weight, 2 / (1 + params.alpha));
-  }
-  return Graph(std::move(heard)).Lambda2();
+/// With sign, all fly at one speed, and change direction at every tick or every other: this near counts as together.
+double Together_m(const Experiment& experiment, const FiniteTimeParams& params) {
+  return params.form == FiniteTimeForm::kSign ? 4 * params.gain * experiment.period_s() : 0;
 }
 
-/// The longest time until the agents meet along one axis of the law (Wang & Xiao).
-double LongestTime(const Experiment& experiment, const FiniteTimeParams& params) {
-  const Eigen::Vector3d mean_W = MeanStart(experiment);
-  Eigen::Vector3d v = Eigen::Vector3d::Zero();  // V, per axis
-  for (const AgentConfig& agent : experiment.agents) v += (agent.p_W - mean_W).cwiseAbs2() / 2;
-  const double largest_v = v.head(CountOf(experiment.law.axes)).maxCoeff();
-  if (largest_v == 0) return 0;
-  const double alpha = params.alpha, lambda = Lambda2OfPower(experiment.graph, params);
-  return 4 * std::pow(largest_v, (1 - alpha) / 2) / ((1 - alpha) * std::pow(4 * lambda, (1 + alpha) / 2));
+/// The law of all agents at once.
+WantedOfAll WantedOfTeam(const Experiment& experiment, const FiniteTimeParams& params) {
+  return [edges = EdgesOf(experiment.graph), &params](std::int64_t, std::span<const Eigen::Vector3d> p_W, auto v_W) {
+    const bool is_power = params.form == FiniteTimeForm::kPower;
+    std::ranges::fill(v_W, Eigen::Vector3d::Zero());
+    for (const HeardEdge& edge : edges) {
+      const Eigen::Array3d way_W = p_W[edge.heard] - p_W[edge.hearer];
+      v_W[edge.hearer] += edge.weight * (is_power ? way_W.sign() * way_W.abs().pow(params.alpha) : way_W).matrix();
+    }
+    for (Eigen::Vector3d& v : v_W) v = params.gain * (is_power ? v : v.cwiseSign().eval());
+  };
+}
+
+/// The time that the closed forms of continuous time allow.
+double LongestTime_s(const Experiment& experiment, const FiniteTimeParams& params) {
+  if (params.form == FiniteTimeForm::kPower) return LongestTimeOfPower_s(experiment, params.gain, params.alpha);
+  double slowest = params.gain;
+  for (const AgentConfig& agent : experiment.agents) slowest = std::min(slowest, agent.control.max_speed_m_per_s);
+  return LargestSpread(experiment, AgentsWith(EntryOf(experiment.law), experiment)) / (2 * slowest);
 }
 
 LawTheory PredictFiniteTime(const Experiment& experiment) {
   const auto& params = ParamsOf<FiniteTimeParams>(experiment.law);
   if (std::string why = WhyNotIdealUndirected(experiment); !why.empty()) return {.silent = std::move(why)};
-  if (params.form == FiniteTimeForm::kSign)
-    return {.figures = {{.values = {LargestSpread(experiment, AgentsWith(EntryOf(experiment.law), experiment)) /
-                                    (2 * params.gain)}}},
-            .value_m = MiddleStart(experiment)};
-  return {.figures = {{.values = {LongestTime(experiment, params)}, .bound = Bound::kAtMost}},
-          .value_m = MeanStart(experiment)};
-}
-
-/// Agents that fly at the same speed and change direction at every tick or every other are at most this far apart in
-/// the end (m).
-double Trembling_m(const Experiment& experiment, const FiniteTimeParams& params) {
-  return params.form == FiniteTimeForm::kSign ? 4 * params.gain * experiment.period_s() : 0;
+  return PredictAgreement(experiment, WantedOfTeam(experiment, params), 2 * LongestTime_s(experiment, params) + 1,
+                          kAgreedShare, Together_m(experiment, params));
 }
 
 std::unique_ptr<LawMeter> MeterOfFiniteTime(const Experiment& experiment, std::span<const int> ids) {
   const auto& params = ParamsOf<FiniteTimeParams>(experiment.agent(ids.front()).law);
-  return std::make_unique<AgreementTime>(experiment, ids, kAgreedShare, Trembling_m(experiment, params));
+  return std::make_unique<AgreementTime>(experiment, ids, kAgreedShare, Together_m(experiment, params));
 }
 
 }  // namespace
@@ -123,18 +125,18 @@ std::unique_ptr<LawMeter> MeterOfFiniteTime(const Experiment& experiment, std::s
 LawEntry FiniteTimeLaw() {
   return {
       .name = "finite_time",
-      .summary = "single integrators meet in finite time, exactly: the law wants a velocity",
+      .summary = "single integrators meet in finite time, but for a trembling: the law wants a velocity",
       .equation = "v_i = gain sum_j a_ij sig(p_j - p_i)^alpha, per axis;  or  v_i = -gain sgn(sum_j a_ij (p_i - p_j))",
       .theory =
           "undirected and connected: power meets at the mean of p(0), after at most 4 V^((1-alpha)/2) / "
           "((1-alpha) (4 lambda)^((1+alpha)/2)); sign meets midway between the outermost agents, when these "
-          "have flown there: (max p(0) - min p(0)) / (2 gain)",
+          "have flown there: (max p(0) - min p(0)) / (2 gain). Sampled, agents tremble about it: predicted as flown",
       .source =
           "sign: Cortes, Finite-time convergent gradient flows with applications to network consensus, Automatica 42 "
           "(2006); power: Wang & Xiao, Finite-time consensus problems for networks of dynamic agents, IEEE Trans. "
           "Autom. Control 55 (2010)",
       .parameters = kFiniteTimeParameters,
-      .figures = kAgreementTimeFigures,
+      .figures = kFiniteTimeFigures,
       .agrees = true,
       .gathers = true,
       .drawing = {.pictures = kDisagreementPicture, .telling = "disagreement"},

@@ -2,9 +2,8 @@
 //   v_i = (gain + mu_dot / mu) sum_j a_ij (p_j - p_i),  mu = (T / (T - t))^exponent,  mu_dot / mu = exponent / (T - t)
 // and from T on v_i = gain sum_j a_ij (p_j - p_i), which keeps the agreement. In continuous time, on a connected
 // undirected graph, the disagreement shrinks by exp(-gain lambda t) (1 - t / T)^(exponent lambda) along each mode: it
-// is 0 at T for any start, and so is the velocity if exponent lambda_2 > 1. A gain that grows without bound cannot be
-// sampled. It ends at 1 / (2 h d), h the control period and d the largest sum of weights that an agent hears: in a tick
-// it goes at most half the way to its neighbours. What is left at T is the largest product of |1 - h lambda gain(t)|.
+// is 0 at T for any start, and so is the velocity if exponent lambda_2 > 1. A gain without bound cannot be sampled: it
+// ends at 1 / (2 h d), d the largest sum of weights that is heard. At T, max prod |1 - h lambda gain(t)| is left.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,14 +28,15 @@ constexpr Key kPrescribedTimeParameters[] = {
 };
 
 constexpr LawFigure kPrescribedTimeFigures[] = {
-    kAgreementTimeFigures[0],
+    {.name = "agreement_time_s",
+     .meaning = "from which on all are within 0.1 % of their first spread, along each axis",
+     .unpredicted = "more of the disagreement may be left than counts as together"},
     {.name = "left_share", .meaning = "disagreement at time_s, in the mean square, as a share of that at the start"},
 };
 constexpr double kTogetherShare = 1e-3;  // of the largest spread at the start
 
 struct PrescribedTimeParams final : LawParams {
-  double time_s = 0, exponent = 0;
-  double gain = 0;        ///< 1/s
+  double time_s = 0, exponent = 0, gain = 0;
   double largest = 0;     ///< 1/s: the gain that the control period allows
   std::int64_t tick = 0;  ///< the first at or after time_s
 
@@ -84,7 +84,8 @@ PredictedFigure LeftShare(const Experiment& experiment, const PrescribedTimePara
 LawTheory PredictPrescribedTime(const Experiment& experiment) {
   const auto& params = ParamsOf<PrescribedTimeParams>(experiment.law);
   if (std::string why = WhyNotIdealUndirected(experiment); !why.empty()) return {.silent = std::move(why)};
-  if (params.tick > experiment.ticks()) return {.silent = "law.time_s is after the end of the run"};
+  if (params.tick > experiment.ticks())
+    return {.silent = "law.time_s is after the end of the run", .holds_from = HoldsFrom{params.time_s, Bound::kAtMost}};
   LawTheory theory{.figures = {{}, LeftShare(experiment, params)}, .value_m = MeanStart(experiment)};
   const double left = *theory.figures[1].values[0];
   // Any two of N agents are at most sqrt(2) |d| apart, where |d| is at most sqrt(N) / 2 times the spread at the start.
