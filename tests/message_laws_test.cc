@@ -290,10 +290,17 @@ TEST(GradientTracking, TheTrackersSumUpToTheGradientsAtEveryTick) {
 TEST(GradientTracking, OfEqualCostsOnACompleteGraphTheRateIsThatOfTheMean) {
   // W = J / 5: the mean of x obeys m+ = (1 - step) m, and disagreement is gone after two ticks but for what the step
   // brings: x+ = -step y, y+ = -x - step y, whose roots are below sqrt(step) for a step below 1.
-  std::string toml = Five(100, 10, kGradient + "step = 0.1\n");
-  toml.replace(toml.find("'path'"), 6, "'complete'");
-  const LawRun run(toml);
-  EXPECT_NEAR(run.Predicted("rate_per_s"), -100 * std::log(0.9), 1e-6);
+  const auto run = [](const std::string& targets) {
+    std::string toml = Five(100, 10, kGradient + "step = 0.1\n" + targets);
+    toml.replace(toml.find("'path'"), 6, "'complete'");
+    return LawRun(toml);
+  };
+  const double rate_per_s = -100 * std::log(0.9);
+  const LawRun far = run("targets_m = [[5, 1, 0], [5, 2, 0], [5, 3, 0], [5, 4, 0], [5, 5, 0]]\n");
+  EXPECT_NEAR(far.Predicted("rate_per_s"), rate_per_s, 0.01 * rate_per_s) << "between whole ticks";
+  EXPECT_NEAR(far.Measured("rate_per_s"), far.Predicted("rate_per_s"), 0.01 * rate_per_s);
+  // Where each starts at its own target, the mean is there from the start.
+  EXPECT_GT(run("").Predicted("rate_per_s"), 5 * rate_per_s);
 }
 
 TEST(GradientTracking, TheRateIsPredictedAndMeasured) {

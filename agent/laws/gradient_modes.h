@@ -20,6 +20,36 @@ double GradientRadius(const Graph& graph, const std::vector<QuadraticCost>& cost
 /// The warning of a law.step with which that is 1 or more.
 std::string UnstableStep(const Graph& graph, const std::vector<QuadraticCost>& costs, double step);
 
+/// The rate at which estimates approach the minimum in the long run, from any start (1/s), for a GradientRadius()
+/// below 1.
+double SlowestGradientRate(const Experiment& experiment, double radius);
+
+/// How estimates approach the minimum from where the experiment's agents start.
+struct GradientApproach {
+  std::string silent = {};  ///< why there is no rate; empty: there is
+  double rate_per_s = 0;    ///< as GradientMeter measures it, by the end of the run or later
+  double from_s = 0;        ///< from when on it can be measured
+};
+/// Iterates the errors, which obey the same equations as the estimates, tick by tick.
+GradientApproach ApproachOf(const Experiment& experiment, const std::vector<QuadraticCost>& costs, double step,
+                            double radius);
+
+/// When the largest distance of an estimate from the minimum was how far from it, row by row.
+class ApproachTicks {
+ public:
+  void Add(std::int64_t tick, double largest_m);
+  double newest_m() const { return newest_m_; }
+  /// The last tick with 1e-12 of the first distance or more.
+  std::int64_t last_near() const { return last_near_; }
+  /// Between the last ticks with 1e-7 and with 1e-12 of the first distance or more, by a tick of `period_s`. Absent:
+  /// the newest is one of these, or the first was 0.
+  std::optional<double> rate_per_s(double period_s) const;
+
+ private:
+  double first_m_ = -1, newest_m_ = 0;
+  std::int64_t newest_ = -1, last_far_ = -1, last_near_ = -1;
+};
+
 /// Measures how estimates, the first 3 numbers of each message, approach `minimum_W`.
 class GradientMeter final : public LawMeter {
  public:
@@ -32,8 +62,7 @@ class GradientMeter final : public LawMeter {
   const Experiment& experiment_;
   std::vector<int> ids_;
   Eigen::Vector3d minimum_W_;
-  double first_m_ = -1, newest_m_ = 0;                         // largest distances of an estimate
-  std::int64_t newest_ = -1, last_far_ = -1, last_near_ = -1;  // ticks: of 1e-7, of 1e-12 of the first or more
+  ApproachTicks ticks_;
 };
 
 }  // namespace mascot

@@ -5,11 +5,12 @@
 // with Metropolis weights w_ij = 1 / (1 + max(d_i, d_j)) of the numbers d of agents that i and j hear, and w_ii = 1 -
 // sum_j w_ij. Agents say x_i, y_i and d_i; a message takes one tick, which is the one of this iteration. On a connected
 // undirected graph W is doubly stochastic, so that sum y = sum grad f(x) at every tick; for a small step x_i goes to
-// (sum Q)^-1 sum Q b at a linear rate, which is exactly that of the slowest mode of
+// (sum Q)^-1 sum Q b at a linear rate: that of the slowest mode that the start excites of
 //   x+ = W x - step y,  y+ = W y + Q (x+ - x)
 // Each agent starts at its own place, and flies to its estimate: v_i = p_gain (x_i - p_i).
+#include <fmt/format.h>
+
 #include <array>
-#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -34,7 +35,9 @@ constexpr auto kGradientTrackingParameters = Joined(
     kCostKeys);
 
 constexpr LawFigure kGradientTrackingFigures[] = {
-    {.name = "rate_per_s", .meaning = "at which the estimates approach the minimum, from 1e-7 to 1e-12 of the start"},
+    {.name = "rate_per_s",
+     .meaning =
+         "at which estimates approach the minimum, from the last row above 1e-7 of the start to that above 1e-12"},
     {.name = "error_m", .meaning = "largest distance of an estimate from the minimum, at the end"},
 };
 
@@ -108,9 +111,13 @@ LawTheory PredictGradientTracking(const Experiment& experiment) {
     return {.silent = kUnstable, .warnings = {UnstableStep(experiment.graph, params.costs, params.step)}};
   Eigen::Vector3d value_W = Minimiser(params.costs);
   if (experiment.law.axes == Axes::kXy) value_W.z() = MeanStart(experiment).z();
-  return {.figures = {{.values = {-std::log(radius) * experiment.control.rate_hz}},
-                      NotPredicted("what is known is how fast it falls, rate_per_s, and not from where")},
-          .value_m = value_W};
+  const GradientApproach approach = ApproachOf(experiment, params.costs, params.step, radius);
+  if (!approach.silent.empty()) return {.silent = approach.silent, .value_m = value_W};
+  PredictedFigure rate{.values = {approach.rate_per_s}};
+  rate.beside = fmt::format("slowest mode {:.4g}", SlowestGradientRate(experiment, radius));
+  return {.figures = {rate, NotPredicted("what is known is how fast it falls, rate_per_s, and not from where")},
+          .value_m = value_W,
+          .holds_from = HoldsFrom{approach.from_s}};
 }
 
 std::unique_ptr<LawMeter> MeterOfGradientTracking(const Experiment& experiment, std::span<const int> ids) {
@@ -128,7 +135,7 @@ LawEntry GradientTrackingLaw() {
               "p_i)",
           .theory =
               "undirected and connected: x_i goes to (sum Q)^-1 sum Q b at a linear rate, that of the slowest mode "
-              "of this iteration, for a small step",
+              "of this iteration that the start excites, for a small step",
           .source =
               "Nedic, Olshevsky & Shi, Achieving geometric convergence for distributed optimization over time-varying "
               "graphs, SIAM J. Optimization 27 (2017)",

@@ -33,6 +33,9 @@ std::string Text(const PredictedFigure& figure) {
   return figure.why.empty() ? text : fmt::format("{}, because {}", text, figure.why);
 }
 
+/// "; slowest mode 5.1"; empty if there is nothing beside the figure.
+std::string BesideText(const PredictedFigure& figure) { return figure.beside.empty() ? "" : "; " + figure.beside; }
+
 /// Whether theory says anything of the figure.
 bool Says(const PredictedFigure& figure) {
   return std::ranges::any_of(figure.values, [](const std::optional<double>& value) { return value.has_value(); });
@@ -49,7 +52,9 @@ std::string OffText(const LawFigure& figure, const FigureValues& measured, const
 /// "; theory: 4.5, +1.2 % off", "; theory: at most 9.3"; "; not predicted, because ..." if theory is silent about the
 /// figure alone.
 std::string TheoryText(const LawFigure& figure, const FigureValues& measured, const PredictedFigure& predicted) {
-  if (Says(predicted)) return fmt::format("; theory: {}{}", Text(predicted), OffText(figure, measured, predicted));
+  if (Says(predicted))
+    return fmt::format("; theory: {}{}{}", Text(predicted), OffText(figure, measured, predicted),
+                       BesideText(predicted));
   return predicted.why.empty() ? "" : "; not predicted, because " + predicted.why;
 }
 
@@ -127,7 +132,8 @@ std::vector<std::pair<std::string, std::string>> PredictedFigureLines(const Expe
   for (std::size_t k = 0; k < prediction.law_figures.size(); ++k) {
     const PredictedFigure& predicted = prediction.law_figures[k];
     const std::string text = Says(predicted) ? Text(predicted) : "not predicted, because " + predicted.why;
-    lines.emplace_back(law.figures[k].name, fmt::format("{} ({})", text, law.figures[k].meaning));
+    lines.emplace_back(law.figures[k].name,
+                       fmt::format("{} ({}{})", text, law.figures[k].meaning, BesideText(predicted)));
   }
   return lines;
 }
