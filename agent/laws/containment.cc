@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "agent/laws/flown_lag.h"
 #include "agent/laws/ideal.h"
 #include "agent/laws/leaders.h"
 #include "agent/laws/pull.h"
@@ -97,8 +98,11 @@ LawTheory PredictContainment(const Experiment& experiment) {
   const Eigen::MatrixXd laplacian = experiment.graph.Laplacian();
   const Eigen::MatrixXd l_FF = BlockOf(laplacian, params.team.followers, params.team.followers);
   if (auto unstable = WhyUnstable(experiment, LongestPeriodOf(params.gain * l_FF))) return *unstable;
-  const Eigen::MatrixX3d lag = SolveColumns(l_FF, SharesOfLeaders(laplacian, params.team) * params.v_L_W) / params.gain;
-  return {.figures = {{.values = {LongestRow(lag, experiment.law.axes)}}}};
+  const Eigen::MatrixXd shares = SharesOfLeaders(laplacian, params.team);
+  const Eigen::MatrixX3d lag = SolveColumns(l_FF, shares * params.v_L_W) / params.gain;
+  const auto flown = FlyToPlaces(experiment, params.team, params.gain, shares, lag);
+  if (!flown) return {.silent = "so many agents are not flown ahead for so many ticks"};
+  return {.figures = {{.values = {flown->lag_m}}}, .holds_from = flown->settled};
 }
 
 class ContainmentMeter final : public LawMeter {

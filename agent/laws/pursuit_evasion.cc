@@ -5,7 +5,8 @@
 // along the axes of the law, and 0 within the capture radius. Each pursuer that hears the evader comes closer by at
 // least pursuer_speed - evader_speed, whatever the evader does, also while both hold their velocities for a tick T and
 // are farther apart than pursuer_speed T. Hence one captures after at most min_i (|p_e(0) - p_i(0)| - capture_radius) /
-// (pursuer_speed - evader_speed), and exactly then if a single pursuer drives the evader away in a straight line.
+// (pursuer_speed - evader_speed), and exactly then if a single pursuer drives the evader straight away, past nobody
+// else.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "agent/laws/ideal.h"
+#include "agent/laws/passing.h"
 #include "agent/laws/row_parts.h"
 
 namespace mascot {
@@ -80,24 +82,27 @@ LawTheory PredictPursuitEvasion(const Experiment& experiment) {
   if (params.radius_m < params.pursuer_speed * h) return {.silent = "a pursuer may fly past the evader within a tick"};
   const AgentConfig& evader = experiment.agent(experiment.law.leader);
   double nearest_m = std::numeric_limits<double>::infinity();
-  int pursuers = 0;
+  std::vector<const AgentConfig*> pursuers;
   for (const AgentConfig& agent : experiment.agents) {
     if (agent.control.max_speed_m_per_s < params.pursuer_speed)
       return {.silent = "the limit of the speed cuts the pursuit"};
     if (agent.id == evader.id || !experiment.graph.Hears(agent.id, evader.id)) continue;
     nearest_m = std::min(nearest_m, Along(evader.law.axes, evader.p_W - agent.p_W).norm());
-    ++pursuers;
+    pursuers.push_back(&agent);
   }
-  if (pursuers == 0) return {.silent = "nobody hears the evader"};
+  if (pursuers.empty()) return {.silent = "nobody hears the evader"};
   const double way_m = LargestStart_m(experiment) + params.pursuer_speed * experiment.run.duration_s;
   const double left_m = nearest_m - params.radius_m, off_m = RoundingShare(experiment) * way_m;
   const auto ticks = [&](double m) { return std::max(0.0, std::ceil(m / (closing * h))); };
+  const double time_s = ticks(left_m + off_m) * h;
   const double closest_m = std::max(params.radius_m, nearest_m - closing * experiment.run.duration_s);
-  const auto& heard = experiment.graph.HeardBy(evader.id);
-  const bool is_line = pursuers == 1 && heard.size() == 1 && experiment.graph.Hears(heard[0].id, evader.id);
   const bool is_sure = ticks(left_m - off_m) == ticks(left_m + off_m);  // else rounding decides: a tick more or less
-  const Bound bound = is_line && is_sure ? Bound::kEqual : Bound::kAtMost;
-  return {.figures = {{{ticks(left_m + off_m) * h}, bound}, {{closest_m}, Bound::kAtMost, "", way_m}}};
+  const bool is_exact = is_sure && pursuers.size() == 1 && experiment.graph.HeardBy(evader.id).size() == 1 &&
+                        experiment.graph.Hears(evader.id, pursuers[0]->id) &&
+                        !FliesPast(experiment, evader, *pursuers[0], params.evader_speed * time_s, params.radius_m);
+  const HoldsFrom capture{time_s, is_exact ? Bound::kEqual : Bound::kAtMost};
+  return {.figures = {{{capture.time_s}, capture.bound}, {{closest_m}, Bound::kAtMost, "", way_m}},
+          .holds_from = capture};
 }
 
 class CaptureMeter final : public LawMeter {

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <algorithm>
+
+#include "experiment/experiment.h"
+
+namespace mascot {
+
+/// Whether `flies`, which goes `way_m` from its start straight away from that of `chaser`, comes within `radius_m` of
+/// the start of anybody, along the axes of its law. What rounding decides counts as that.
+inline bool FliesPast(const Experiment& experiment, const AgentConfig& flies, const AgentConfig& chaser, double way_m,
+                      double radius_m) {
+  const auto along = [&](const Eigen::Vector3d& v_W) { return Along(flies.law.axes, v_W); };
+  const Eigen::Vector3d away_W = along(flies.p_W - chaser.p_W).normalized();
+  return std::ranges::any_of(experiment.agents, [&](const AgentConfig& other) {
+    const Eigen::Vector3d to_W = along(other.p_W - flies.p_W);
+    const double along_m = std::clamp(to_W.dot(away_W), 0.0, way_m);
+    return other.id != flies.id && (to_W - along_m * away_W).norm() <= radius_m * (1 + 1e-9);
+  });
+}
+
+}  // namespace mascot
