@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "agent/laws/beta_agents.h"
 #include "agent/laws/sigma_norm.h"
 #include "experiment/experiment.h"
 
@@ -10,6 +11,7 @@ namespace mascot {
 /// The parameters of the law flocking, as its meter and its theory know them, too.
 struct FlockParams final : LawParams {
   AlphaPair pair{1, 2, 1, 0};
+  BetaAgents beta;
   double c1_alpha = 0, c2_alpha = 0, c1_gamma = 0, c2_gamma = 0;
   Eigen::Vector3d target_W = Eigen::Vector3d::Zero();           ///< where the gamma agent is at the time 0
   Eigen::Vector3d target_velocity_W = Eigen::Vector3d::Zero();  ///< it keeps this velocity

@@ -12,6 +12,12 @@ constexpr int kKnots = 64;
 
 }  // namespace
 
+double Bump(double share, double from) {
+  if (share < from) return 1;
+  if (share >= 1) return 0;
+  return (1 + std::cos(std::numbers::pi * (share - from) / (1 - from))) / 2;
+}
+
 AlphaPair::AlphaPair(double distance_m, double range_m, double epsilon, double bump)
     : range_m_(range_m),
       epsilon_(epsilon),
@@ -25,15 +31,9 @@ AlphaPair::AlphaPair(double distance_m, double range_m, double epsilon, double b
   }
 }
 
-double AlphaPair::Bump(double share) const {
-  if (share < bump_) return 1;
-  if (share >= 1) return 0;
-  return (1 + std::cos(std::numbers::pi * (share - bump_) / (1 - bump_))) / 2;
-}
-
 double AlphaPair::Action(double s) const {
   const double off = s - d_alpha_;
-  return Bump(s / r_alpha_) * off / std::sqrt(1 + off * off);
+  return Bump(s / r_alpha_, bump_) * off / std::sqrt(1 + off * off);
 }
 
 double AlphaPair::TillRange(double s) const {
