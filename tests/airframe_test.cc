@@ -161,5 +161,26 @@ TEST(ReadAirframe, RefusesAnInertiaThatNoBodyHas) {
               ThrowsMessage<ConfigError>(HasSubstr("got [0.0, 0.1, 0.1]")));
 }
 
+TEST(ReadAirframe, RefusesMomentsOfInertiaThatAreTooSmallForMassAndSize) {
+  const auto refuses = [](const std::string& table, const std::string& words) {
+    EXPECT_THAT([&] { Read("airframe = { base = 'crazyflie', " + table + " }"); },
+                ThrowsMessage<ConfigError>("a.toml:1:" + words + ": with them a body sinks into what it lies on"));
+  };
+  refuses("mass_kg = 27",
+          "44: airframe.mass_kg: expected moments of inertia of at least [0.00058, 0.00058, 0.00095], a twentieth of "
+          "those of a solid box of 27.0 kg and [0.065, 0.065, 0.03] m, got inertia_kg_m2 = [1.657e-05, 1.666e-05, "
+          "2.926e-05]");
+  refuses(
+      "inertia_kg_m2 = [1e-9, 1e-9, 1e-9]",
+      "50: airframe.inertia_kg_m2: expected moments of inertia of at least [5.8e-07, 5.8e-07, 9.5e-07], a twentieth "
+      "of those of a solid box of 0.027 kg and [0.065, 0.065, 0.03] m, got inertia_kg_m2 = [1e-09, 1e-09, 1e-09]");
+  refuses("size_m = [1, 1, 0.1]",
+          "43: airframe.size_m: expected moments of inertia of at least [0.00011, 0.00011, 0.00022], a twentieth of "
+          "those of a solid box of 0.027 kg and [1.0, 1.0, 0.1] m, got inertia_kg_m2 = [1.657e-05, 1.666e-05, "
+          "2.926e-05]");
+  EXPECT_EQ(Read("airframe = { base = 'crazyflie', mass_kg = 27, inertia_kg_m2 = [0.017, 0.017, 0.029] }").mass_kg, 27);
+  EXPECT_EQ(Read("airframe = { base = 'crazyflie', mass_kg = 0.6 }").mass_kg, 0.6);
+}
+
 }  // namespace
 }  // namespace mascot

@@ -555,6 +555,31 @@ TEST(World, LandsABodyOnTheGroundWhereItRests) {
   }
 }
 
+// The smallest moments of inertia that ReadAirframe() takes for mass and size; dropped with a tumble.
+TEST(World, RestsOnTheGroundWithTheSmallestMomentsOfInertiaThatAnAirframeMayHave) {
+  for (Airframe airframe : Airframes()) {
+    const Vector3d squares = airframe.size_m.cwiseAbs2();
+    airframe.inertia_kg_m2 = 0.05 * airframe.mass_kg / 12 * (Vector3d::Constant(squares.sum()) - squares);
+    World world(Bodies("quadrotor", {{0, 0, 2}}, airframe));
+    const double hover = airframe.HoverRotorSpeed(kG);
+    Fly(world, {hover, 0.99 * hover, 0.98 * hover, hover}, 20);
+    double deepest_m = 0;
+    for (int tick = 0; tick < 1500; ++tick) {
+      Fly(world, Rotors(0), 1);
+      const Motion now = world.State(1);
+      const double below_m =
+          now.q_WB.toRotationMatrix().row(2).cwiseAbs().transpose().dot(airframe.size_m / 2) - now.p_WB.z();
+      deepest_m = std::max(deepest_m, below_m);
+    }
+    EXPECT_LT(deepest_m, airframe.size_m.minCoeff()) << airframe.name;
+    const Motion rest = world.State(1);
+    EXPECT_NEAR(rest.p_WB.z(), rest.q_WB.toRotationMatrix().row(2).cwiseAbs().transpose().dot(airframe.size_m / 2),
+                2e-3)
+        << airframe.name;
+    EXPECT_LT(rest.v_WB.norm(), 0.01) << airframe.name;
+  }
+}
+
 TEST(World, HasNoGroundIfItIsOff) {
   Experiment e = Bodies("quadrotor", {{0, 0, 1}});
   e.physics.ground = false;
