@@ -228,6 +228,26 @@ TEST(Theory, WarnsOfRotorsThatCannotLiftTheirQuadrotor) {
       << "a double integrator has no rotors";
 }
 
+TEST(Theory, WarnsOfBodiesThatAStepOfThePhysicsTakesFartherThanTheyAreThick) {
+  const std::string thrown =
+      "[run]\nduration_s = 1.0\n[agents]\ncount = 1\nmodel = 'double_integrator'\nposition_m = [[0, 0, 5]]\n"
+      "velocity_m_per_s = [[30, 0, 0]]\n[law]\nname = 'consensus'\n[control]\nrate_hz = 100\n[physics]\n";
+  EXPECT_THAT(
+      Of(thrown + "rate_hz = 100\n").warnings,
+      Contains("physics.rate_hz: agent 1 goes 0.3 m in a step of the physics, at 30 m/s, and is 0.2 m thick: it "
+               "may pass through what is in its way; above 150 Hz it does not"));
+  EXPECT_THAT(Of(thrown + "rate_hz = 200\n").warnings, Not(Contains(HasSubstr("physics.rate_hz"))));
+  EXPECT_THAT(Of(thrown + "rate_hz = 100\nground = false\ncollisions = false\n").warnings,
+              Not(Contains(HasSubstr("physics.rate_hz"))))
+      << "there is nothing to touch";
+  const std::string driven =
+      "[run]\nduration_s = 1.0\n[agents]\ncount = 2\nmodel = 'single_integrator'\nposition_m = [[0, 0, 5], [50, 0, "
+      "6]]\n"
+      "[law]\nname = 'velocity_consensus'\n[physics]\nrate_hz = 100\n[control]\nrate_hz = 100\n";
+  EXPECT_THAT(Of(driven + "max_speed_m_per_s = 40\n").warnings, Contains(HasSubstr("agent 1 goes 0.4 m in a step")));
+  EXPECT_THAT(Of(driven + "max_speed_m_per_s = 20\n").warnings, Not(Contains(HasSubstr("in a step of the physics"))));
+}
+
 TEST(Theory, WarnsOfRotorsWhoseLeastThrustIsMoreThanTheWeight) {
   EXPECT_THAT(Of(kQuadrotors + "[physics]\ngravity_m_per_s2 = 2.0\n").warnings,
               Contains("agents.airframe: agent 1 climbs away: its rotors are driven to 3 N at least (10 % of "

@@ -18,6 +18,7 @@
 #include "orchestrator/theory/obstacle_warnings.h"
 #include "orchestrator/theory/parts.h"
 #include "orchestrator/theory/short_phase.h"
+#include "orchestrator/theory/step_length.h"
 #include "orchestrator/theory/turning.h"
 
 namespace mascot {
@@ -166,6 +167,9 @@ Prediction PredictPhase(const Experiment& phase, const std::string& silent, bool
   for (std::string& warning : RotorFailureWarnings(phase)) prediction.warnings.push_back(std::move(warning));
   for (std::string& warning : CrowdingWarnings(phase)) prediction.warnings.push_back(std::move(warning));
   for (std::string& warning : ObstacleWarnings(phase)) prediction.warnings.push_back(std::move(warning));
+  const auto& driven = prediction.first_speed;
+  for (std::string& warning : StepLengthWarnings(phase, driven ? std::min(driven->asked, driven->limit) : 0))
+    prediction.warnings.push_back(std::move(warning));
   if (prediction.safety)
     prediction.warnings.insert(prediction.warnings.end(), prediction.safety->warnings.begin(),
                                prediction.safety->warnings.end());
