@@ -75,6 +75,16 @@ std::vector<const LawEntry*> LawsIn(const Experiment& experiment) {
   return laws;
 }
 
+std::vector<std::string_view> DetailsOf(const LawEntry& law) {
+  std::vector<std::string_view> paragraphs;
+  for (std::string_view rest = law.details; !rest.empty();) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    paragraphs.push_back(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return paragraphs;
+}
+
 std::vector<int> AgentsWith(const LawEntry& law, const Experiment& experiment) {
   std::vector<int> ids;
   for (const AgentConfig& agent : experiment.agents)

@@ -58,6 +58,8 @@ struct LawEntry {
   std::string_view name;
   std::string_view summary;
   std::string_view equation;
+  /// What the program does that the equation leaves out: a paragraph a line. Empty: nothing.
+  std::string_view details = {};
   std::string_view theory;                  ///< known results on convergence
   std::string_view source;                  ///< paper
   std::span<const Key> parameters;          ///< its own keys in [law], besides LawKeys()
@@ -97,6 +99,8 @@ struct LawEntry {
 std::span<const LawEntry> Laws();
 /// The rows of the laws that agents of the experiment fly, in the order in which they first appear.
 std::vector<const LawEntry*> LawsIn(const Experiment& experiment);
+/// LawEntry::details, paragraph by paragraph.
+std::vector<std::string_view> DetailsOf(const LawEntry& law);
 /// The agents that fly `law`, in increasing id.
 std::vector<int> AgentsWith(const LawEntry& law, const Experiment& experiment);
 std::span<const std::string_view> LawNames();

@@ -134,6 +134,11 @@ LawEntry AffineFormationLaw() {
       .name = "affine_formation",
       .summary = "a few leaders turn, stretch, shear and shift a whole formation",
       .equation = "follower: v_i = -gain sum_j omega_ij (p_i - p_j);  leader: to P_i(t) = A(t) r_i + b(t)",
+      .details =
+          "omega is the stress matrix that projections by turns find, beginning at the identity; it is "
+          "scaled so that the smallest eigenvalue of its followers' block is 1. It depends on places and "
+          "edges: weights of the graph do not count.\n"
+          "Leaders: v_i = (P_i(t + h) - P_i(t)) / h + leader_gain (P_i(t) - p_i).",
       .theory = "p_F tends to -Omega_FF^-1 Omega_FL p_L, the same affine map of the followers' places",
       .source = "Zhao, Affine formation maneuver control of multiagent systems, IEEE Trans. Autom. Control 63 (2018)",
       .parameters = kAffineFormationParameters,

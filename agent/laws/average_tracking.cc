@@ -103,6 +103,12 @@ LawEntry AverageTrackingLaw() {
       .name = "average_tracking",
       .summary = "agents follow the average of inputs that change, of which each knows its own: by messages",
       .equation = "x_i = r_i + q_i,  dq_i/dt = gain sum_j a_ij (x_j - x_i);  v_i = p_gain (x_i + d_i - p_i) + dx_i/dt",
+      .details =
+          "Sampled: q_i(k+1) = q_i(k) + h gain sum_j a_ij (x_j(k) - x_i(k)), q_i(0) = 0, with the estimates "
+          "x_j of the tick before, which messages bring. dx_i/dt is the backward difference (x_i(k) - "
+          "x_i(k-1)) / h, and 0 at the first tick.\n"
+          "r_i(t) = inputs_m + ramps_m_per_s t + amplitudes_m sin(2 pi frequencies_hz t + phases_rad); "
+          "inputs_m is by default the agent's start. d_i is 0 without offsets_m and shape.",
       .theory =
           "undirected and connected: sum x_i = sum r_i at every tick; x_i is off by |z - 1| / |z - 1 + h gain "
           "lambda| of a swing along each mode, z = exp(2 pi j f h), and by 1 / (gain lambda) of a ramp",

@@ -127,6 +127,12 @@ LawEntry AvoidanceLaw() {
               "each agent flies to its goal, repelled by obstacles that it sees and agents that it hears: the law "
               "wants a velocity",
           .equation = "v_i = [[gain (w_i - p_i) + sum_j push]_s + sum_k push]_s,  push = repulsion (1/c - 1/c0) / c^2",
+          .details =
+              "[.]_s is cut to the length speed_m_per_s. c is the clearance: the distance less the radius R_i "
+              "of the own body from the nearest point of an obstacle, less 2 R_i from an agent. It counts as 1 "
+              "mm at least. c0 is influence_m less the same radii, and there is no push from c0 on.\n"
+              "Obstacles push that are seen, within sensors.range_m, and agents that are heard. Distances are "
+              "in space; pushes and the pull towards the goal act along law.axes.",
           .theory =
               "where one obstacle pushes at a time, the clearance stays above a bound: for single integrators, where "
               "the push is s; nothing is promised about arrival: the potential may have local minima",

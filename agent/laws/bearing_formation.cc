@@ -131,6 +131,9 @@ LawEntry BearingFormationLaw() {
       .name = "bearing_formation",
       .summary = "agents reach the directions of a formation, with its scale and place as they were",
       .equation = "v_i = -gain sum_j a_ij P(g_ij) g*_ij,  P(g) = I - g g'",
+      .details =
+          "g_ij is the direction from i to j and g*_ij that from the place of i to the place of j, along "
+          "law.axes. Of an agent in the same place, g_ij = 0.",
       .theory =
           "infinitesimally bearing rigid: all directions are reached from almost any start; centroid and scale stay",
       .source =

@@ -79,6 +79,11 @@ LawEntry ConsensusLaw() {
           .summary = "agents meet, or gather at a leader, by what they hear of their neighbours",
           .equation =
               "a_i = sum_j a_ij [p_gain (p_j - p_i) + v_gain (v_j - v_i)] - beta v_i;  leader: a = 0, or its waypoints",
+          .details =
+              "Position and velocity of j are the newest that i has heard; whoever is not heard at a tick does "
+              "not pull.\n"
+              "A leader uses nothing of what it hears. Without leader_waypoints_m it wants the acceleration 0; "
+              "with them it flies as the law waypoint does, with leader_p_gain and leader_d_gain.",
           .theory =
               "leaderless: meets at g'p(0) + g'v(0) / beta, g the left null vector of L, if a spanning tree exists and "
               "s^2 + (beta + v_gain lambda) s + p_gain lambda is stable for every eigenvalue lambda != 0 of L; "

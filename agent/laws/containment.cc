@@ -130,6 +130,7 @@ LawEntry ContainmentLaw() {
       .name = "containment",
       .summary = "followers go to places within the convex hull of several leaders, who rest or move",
       .equation = "follower: v_i = gain sum_j a_ij (p_j - p_i);  leader: v_i = its own, 0 by default",
+      .details = "A leader flies its velocity of leader_velocities_m_per_s, and uses nothing of what it hears.",
       .theory =
           "p_F tends to M p_L, M = -L_FF^-1 L_FL, which is in the leaders' hull; leaders with constant velocities are "
           "followed (1/gain) L_FF^-1 M v_L behind",

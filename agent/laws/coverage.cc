@@ -98,6 +98,9 @@ LawEntry CoverageLaw() {
       .name = "coverage",
       .summary = "agents spread over a region, each to the centroid of what is nearest to it: the law wants a velocity",
       .equation = "v_i = -gain (p_i - C_i), C_i the centroid of i's Voronoi cell among what it hears",
+      .details =
+          "Positions count in x and y alone. The cell is that part of the region which is at least as near "
+          "to i as to every agent that i hears; an agent whose cell is empty wants the velocity 0.",
       .theory =
           "if all hear all, the mean square distance to the nearest agent falls at every tick for gain T <= 2, to a "
           "centroidal Voronoi partition",

@@ -102,29 +102,38 @@ LawTheory PredictCyclicPursuit(const Experiment& experiment) {
 }  // namespace
 
 LawEntry CyclicPursuitLaw() {
-  return {.name = "cyclic_pursuit",
-          .summary = "each agent flies after the next one of a ring: to a point, on a circle, on spirals",
-          .equation =
-              "linear: v_i = gain R(alpha) (p_{i+1} - p_i), R(alpha) a turn to the right in x and y;  unicycles: at "
-              "speed_m_per_s, or gain |p_{i+1} - p_i|, and turning by turn_gain times the angle to the next",
-          .theory =
-              "the centre stays; |alpha| < pi/N: agents meet; alpha = pi/N: they circle at 2 gain sin(pi/N); beyond: "
-              "spirals that open; a regular N-gon stays regular, its radius grows at the rate gain (cos(2 pi/N - "
-              "alpha) - cos alpha); unicycles near a circle of one turn: to the radius N speed / (pi turn_gain) at "
-              "constant speed, else they close in for turn_gain > 2 N gain sin(pi/N) / pi, and part below",
-          .source =
-              "Marshall, Broucke & Francis, Formations of vehicles in cyclic pursuit, IEEE Trans. Autom. Control 49 "
-              "(2004), and Pursuit formations of unicycles, Automatica 42 (2006); Pavone & Frazzoli, Decentralized "
-              "policies for geometric pattern formation and path coverage, J. "
-              "Dyn. Syst. Meas. Control 129 (2007)",
-          .parameters = kCyclicPursuitParameters,
-          .figures = kRingFigures,
-          .drawing = {.pictures = kDisagreementPicture},
-          .read = ReadCyclicPursuit,
-          .make = MakeCyclicPursuit,
-          .wanted = WantsVelocity,
-          .predict = PredictCyclicPursuit,
-          .meter = MeterOf<RingMeter>};
+  return {
+      .name = "cyclic_pursuit",
+      .summary = "each agent flies after the next one of a ring: to a point, on a circle, on spirals",
+      .equation =
+          "linear: v_i = gain R(alpha) (p_{i+1} - p_i), R(alpha) a turn to the right in x and y;  unicycles: at "
+          "speed_m_per_s, or gain |p_{i+1} - p_i|, and turning by turn_gain times the angle to the next",
+      .details =
+          "Weights of the graph do not count, and neither does any agent but the next one; while it is not heard, i "
+          "wants the velocity 0.\n"
+          "pursuit = \"linear\": R(alpha) = [cos alpha, sin alpha; -sin alpha, cos alpha], alpha = alpha_deg; z is "
+          "pulled by gain alone. It is the law of bodies without a heading: unicycles that fly by it follow with the "
+          "point control.look_ahead_m ahead of them.\n"
+          "pursuit = \"constant_speed\" and \"proportional_speed\": v = speed_m_per_s, or gain r, and w = turn_gain "
+          "a, r the distance to the next and a, in (-pi, pi], the angle to the left from the heading to it.",
+      .theory =
+          "the centre stays; |alpha| < pi/N: agents meet; alpha = pi/N: they circle at 2 gain sin(pi/N); beyond: "
+          "spirals that open; a regular N-gon stays regular, its radius grows at the rate gain (cos(2 pi/N - "
+          "alpha) - cos alpha); unicycles near a circle of one turn: to the radius N speed / (pi turn_gain) at "
+          "constant speed, else they close in for turn_gain > 2 N gain sin(pi/N) / pi, and part below",
+      .source =
+          "Marshall, Broucke & Francis, Formations of vehicles in cyclic pursuit, IEEE Trans. Autom. Control 49 "
+          "(2004), and Pursuit formations of unicycles, Automatica 42 (2006); Pavone & Frazzoli, Decentralized "
+          "policies for geometric pattern formation and path coverage, J. "
+          "Dyn. Syst. Meas. Control 129 (2007)",
+      .parameters = kCyclicPursuitParameters,
+      .figures = kRingFigures,
+      .drawing = {.pictures = kDisagreementPicture},
+      .read = ReadCyclicPursuit,
+      .make = MakeCyclicPursuit,
+      .wanted = WantsVelocity,
+      .predict = PredictCyclicPursuit,
+      .meter = MeterOf<RingMeter>};
 }
 
 }  // namespace mascot

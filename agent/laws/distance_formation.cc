@@ -124,6 +124,7 @@ LawEntry DistanceFormationLaw() {
   return {.name = "distance_formation",
           .summary = "agents keep the distances of a formation, at any place and turned somehow",
           .equation = "v_i = -gain sum_j a_ij (|z|^2 - d_ij^2) z,  z = p_i - p_j",
+          .details = "d_ij is the distance between the places of i and j. Distances are along law.axes.",
           .theory =
               "infinitesimally rigid: the distances are reached exponentially from near the shape; the centroid stays; "
               "two agents: |z|^2 = d^2 / (1 + (d^2/|z(0)|^2 - 1) exp(-4 gain d^2 t))",

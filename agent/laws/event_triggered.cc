@@ -128,13 +128,22 @@ LawEntry EventTriggeredLaw() {
       .name = "event_triggered",
       .summary = "single integrators meet, and speak only when they have something to say: the law wants a velocity",
       .equation = "v_i = gain sum_j a_ij (x_j - x_i);  i says x_i = p_i when |x_i - p_i| > c0 + c1 exp(-alpha t)",
+      .details =
+          "x_i is what i said last, also for i itself. A message takes one tick: it says where i will be by "
+          "then, p_i + h v_i, and i is compared with what it said there, too. Before an agent has said "
+          "anything it does not count.\n"
+          "With trigger = \"dynamic\", i speaks when theta gain (d |e|^2 - sigma / 4 q) > eta, e = x_i - "
+          "p_i, d = sum_j a_ij, q = sum_j a_ij |x_j - x_i|^2 / 2, and h times (-beta eta - gain (d |e|^2 - "
+          "sigma / 4 q)) is added to eta at each tick. Distances are along law.axes.",
       .theory =
           "undirected and connected: the mean is kept, and |p - mean| <= |L| sqrt(N) c0 / lambda_2 in the end "
           "(static), or 0 (dynamic), for h gain lambda_n < 2, dynamic: < 1 - sigma / 2",
       .source =
           "Seyboth, Dimarogonas & Johansson, Event-based broadcasting for multi-agent average consensus, Automatica 49 "
-          "(2013); Girard, Dynamic triggering mechanisms for event-triggered control, IEEE Trans. Autom. Control 60 "
-          "(2015)",
+          "(2013); dynamic trigger: Girard, Dynamic triggering mechanisms for event-triggered control, IEEE Trans. "
+          "Autom. "
+          "Control 60 (2015), for a network as in Yi, Liu, Dimarogonas & Johansson, Dynamic event-triggered and "
+          "self-triggered control for multi-agent systems, ibid. 64 (2019)",
       .parameters = kEventTriggeredParameters,
       .figures = kEventTriggeredFigures,
       .agrees = true,

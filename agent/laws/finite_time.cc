@@ -127,6 +127,9 @@ LawEntry FiniteTimeLaw() {
       .name = "finite_time",
       .summary = "single integrators meet in finite time, but for a trembling: the law wants a velocity",
       .equation = "v_i = gain sum_j a_ij sig(p_j - p_i)^alpha, per axis;  or  v_i = -gain sgn(sum_j a_ij (p_i - p_j))",
+      .details =
+          "sig(x)^alpha = sgn(x) |x|^alpha and sgn(0) = 0. Both forms are per axis; with sign, the weighted "
+          "sum is taken first and its sign then.",
       .theory =
           "undirected and connected: power meets at the mean of p(0), after at most 4 V^((1-alpha)/2) / "
           "((1-alpha) (4 lambda)^((1+alpha)/2)); sign meets midway between the outermost agents, when these "

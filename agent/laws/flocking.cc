@@ -125,6 +125,18 @@ LawEntry FlockingLaw() {
           "a_i = sum_j a_ij [c1_alpha phi_alpha(|p_j - p_i|_s) n_ij + c2_alpha rho_h(|p_j - p_i|_s / r_alpha) "
           "(v_j - v_i)] + sum_k [c1_beta phi_beta(|q_k - p_i|_s) n_ik + c2_beta rho_h(|q_k - p_i|_s / d_beta) "
           "(p_k - v_i)] - c1_gamma (p_i - q_r) - c2_gamma (v_i - p_r)",
+      .details =
+          "|z|_s = (sqrt(1 + epsilon |z|^2) - 1) / epsilon, n_ij = (p_j - p_i) / sqrt(1 + epsilon |p_j - p_i|^2), "
+          "r_alpha "
+          "= |range_ratio distance_m|_s, d_alpha = |distance_m|_s, d_beta = |obstacle_distance_m|_s.\n"
+          "phi_alpha(s) = rho_h(s / r_alpha) phi(s - d_alpha) with the paper's phi for a = b = 1: phi(s) = s / sqrt(1 "
+          "+ "
+          "s^2). rho_h is 1 up to the share bump, 0 from 1 on, and (1 + cos(pi (s - bump) / (1 - bump))) / 2 between. "
+          "phi_beta(s) = rho_h(s / d_beta) (phi(s - d_beta) - 1), where rho_h has the share 0.9.\n"
+          "Distances between agents are along law.axes. The gamma agent is at q_r = target_m + t "
+          "target_velocity_m_per_s, with the constant velocity p_r.\n"
+          "q_k is the nearest point, in space, of each obstacle that is seen, within sensors.range_m; p_k is how fast "
+          "that point moves as the agent flies past. Beta agents at least obstacle_distance_m away do nothing.",
       .theory =
           "undirected, no obstacle in sight: the centre of mass obeys x'' = -c1_gamma (x - q_r) - c2_gamma (x' - "
           "p_r); the structural energy about it never grows, but for what holding a command costs; agents end at one "

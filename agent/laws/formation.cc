@@ -76,6 +76,10 @@ LawEntry FormationLaw() {
           .equation =
               "a_i = -sum_j a_ij [p_gain ((p_i - p_j) - (d_i - d_j)) + v_gain (v_i - v_j)] - beta v_i;  leader: a = "
               "0, or its waypoints",
+          .details =
+              "d_i is the agent's place, from offsets_m or shape.\n"
+              "A leader uses nothing of what it hears. Without leader_waypoints_m it wants the acceleration 0; "
+              "with them it flies as the law waypoint does, with leader_p_gain and leader_d_gain.",
           .theory =
               "consensus on p_i - d_i: the formation's point meets at the mean of p(0) - d plus that of v(0) / beta "
               "(undirected)",

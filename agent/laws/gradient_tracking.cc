@@ -133,6 +133,11 @@ LawEntry GradientTrackingLaw() {
           .equation =
               "x_i+ = sum_j w_ij x_j - step y_i,  y_i+ = sum_j w_ij y_j + Q_i (x_i+ - x_i);  v_i = p_gain (x_i - "
               "p_i)",
+          .details =
+              "x_i and y_i start as the agent's position and Q_i (x_i - b_i). An iteration takes a tick: x_j "
+              "and y_j are those of the message of the tick before.\n"
+              "w_ij = 1 / (1 + max(d_i, d_j)), d the number of agents that i and j hear, and w_ii = 1 - sum_j "
+              "w_ij (Metropolis weights); weights of the graph do not count.",
           .theory =
               "undirected and connected: x_i goes to (sum Q)^-1 sum Q b at a linear rate, that of the slowest mode "
               "of this iteration that the start excites, for a small step",

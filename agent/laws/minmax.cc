@@ -132,6 +132,15 @@ LawEntry MinmaxLaw() {
           .equation =
               "a_c = -beta_c sgn(2 (beta_c - beta_p) z + w |w|),  z = p_c - p_p,  w = v_c - v_p, per axis;  root: a = "
               "0, or its waypoints",
+          .details =
+              "sgn(0) = 0. p is c's parent in a tree: the agent with the lowest number, of those that c hears, "
+              "that is one step nearer to the root. beta_p is the parent's own beta, or with weak_edges = "
+              "\"root\" the root's.\n"
+              "A child that does not hear its parent at a tick wants the acceleration 0. The root's waypoints "
+              "are flown within the root's own beta, per axis.\n"
+              "With boundary_layer = l > 0: a_c = -beta_c sat((w + f(z)) / s), s = sqrt(alpha l / 2), alpha = "
+              "beta_c - beta_p, where f(z) = z sqrt(alpha / (2 l)) for |z| <= l and sgn(z) (sqrt(2 alpha |z|) - "
+              "s) beyond; sat is cut to -1..1 (Workman, Kosut & Franklin, ACC 1987).",
           .theory =
               "a child meets a resting parent after sqrt(2 z (1/alpha + 1/beta_c)), any parent within 2 sqrt(z / "
               "alpha), from rest, alpha = beta_c - beta_p > 0",

@@ -98,6 +98,23 @@ LawEntry PlatoonLaw() {
           "headway u_i' = -u_i + p_gain e_i + d_gain e_i' + dd_gain e_i'' + u_{i-1}(t - theta), e_i = x_{i-1} - x_i - "
           "spacing - headway v_i;  tau a_i' = -a_i + u_i(t - phi);  agent 1: u_1 = v_r' + tau v_r'' + d_gain (v_r - "
           "v_1)",
+      .details =
+          "Sampled: what a controller knows is held for a tick, of which u goes the share 1 - exp(-h / headway) to "
+          "where "
+          "it would end (all of it for headway = 0). e_i' is v_{i-1} - v_i - headway times the mean acceleration of "
+          "the "
+          "tick before; e_i'' is the backward difference of e_i', and 0 at first. theta is message_delay_s, a whole "
+          "number of ticks, and one at least.\n"
+          "Bodies have no lag tau and no delay phi: the law has them, and what it commands is the mean of the "
+          "vehicle's "
+          "acceleration over the tick. Agents keep to their line by a = p_gain (y_{i-1} - y_i) + d_gain (v_{i-1} - "
+          "v_i) "
+          "across, agent 1 by -d_gain v. The v_r' and v_r'' of agent 1 are those of the middle of the tick in which "
+          "its "
+          "vehicle does what it is told. While i does not hear i - 1 at a tick, its u decays to 0 with the time "
+          "constant "
+          "headway.\n"
+          "direction = \"west\" turns the sign of x.",
       .theory =
           "from one vehicle to the next swings grow by Gamma(s) = (1/H) (G K + D) / (1 + G K), H = headway s + 1, G = "
           "exp(-phi s) / (s^2 (tau s + 1)), K = p_gain + d_gain s + dd_gain s^2, D = exp(-theta s), or 0 without "

@@ -130,6 +130,9 @@ LawEntry PrescribedTimeLaw() {
   return {.name = "prescribed_time",
           .summary = "single integrators meet at a time that is given, wherever they start: the law wants a velocity",
           .equation = "v_i = (gain + exponent / (T - t)) sum_j a_ij (p_j - p_i);  from T on v_i = gain sum_j ...",
+          .details =
+              "The factor in front of the sum is at most 1 / (2 h d), h the control period and d the largest "
+              "sum_j a_ij of an agent: in a tick no agent goes more than half the way to its neighbours.",
           .theory =
               "undirected and connected: all are at the mean of p(0) at T = time_s, but for a share that the "
               "control period h leaves, since it bounds the gain by 1 / (2 h max_i sum_j a_ij)",

@@ -136,6 +136,11 @@ LawEntry PursuitEvasionLaw() {
           .summary = "pursuers fly towards an evader, which flies away from the nearest: the law wants a velocity",
           .equation =
               "v_i = pursuer_speed (p_e - p_i) / |p_e - p_i|;  evader: v_e = evader_speed (p_e - p_j) / |p_e - p_j|",
+          .details =
+              "e is the agent law.leader. It flees from j, the nearest agent that it hears, pursuer or not. "
+              "Distances are along law.axes.\n"
+              "Whoever is within capture_radius_m of the agent that it pursues, or flees from, stops; so does a "
+              "pursuer that does not hear the evader.",
           .theory =
               "a pursuer captures after at most min_i (|p_e - p_i| - capture_radius) / (pursuer_speed - evader_speed), "
               "over those that hear the evader; a single one exactly then",

@@ -128,6 +128,11 @@ LawEntry RendezvousLaw() {
   return {.name = "rendezvous",
           .summary = "single integrators that hear each other within graph.range_m meet, and lose nobody on the way",
           .equation = "v_i = gain sum_j (2 D - l) / (D - l)^2 (p_j - p_i),  l = |p_j - p_i|, D = graph.range_m",
+          .details =
+              "l and D are distances in space, also where law.axes is \"xy\" and agents only move in the plane: "
+              "heights count. Weights of the graph do not.\n"
+              "j counts for i from the moment at which l < D - margin_m, and then as long as it is heard, which "
+              "is up to D.",
           .theory =
               "undirected and connected: meets at the mean of p(0); no edge that counts is lost, because its tension "
               "grows beyond all bounds at D; sampled: for periods short against (D - l)^2 / (gain (2 D - l))",

@@ -127,6 +127,11 @@ LawEntry TrajectoryLaw() {
   return {.name = "trajectory",
           .summary = "agents follow a circle, a figure eight or samples over time, alone or in formation",
           .equation = "a_i = a_r + p_gain (r + d_i - p_i) + d_gain (v_r - v_i);  a_r only with feed_forward",
+          .details =
+              "r and v_r are those of the time t of the tick; a_r is that of t + h / 2, the middle of the tick "
+              "over which it is held.\n"
+              "A lone agent without offsets_m and shape has d_i = 0. Samples are joined by a cubic spline; the "
+              "reference rests at the first one before its time, and at the last one after it.",
           .theory =
               "with feed-forward the error goes to 0: e'' + d_gain e' + p_gain e = 0; without, an oscillation w of r "
               "comes out times (p + j d w) / (p - w^2 + j d w), late",

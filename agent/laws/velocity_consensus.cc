@@ -52,6 +52,7 @@ LawEntry VelocityConsensusLaw() {
       .name = "velocity_consensus",
       .summary = "single integrators meet: the law wants a velocity",
       .equation = "v_i = p_gain sum_j a_ij (p_j - p_i)",
+      .details = "A leader wants the velocity 0.",
       .theory =
           "meets at g'p(0), g the left null vector of L, if a spanning tree exists; sampled with period T: p(k+1) = "
           "(I - T p_gain L) p(k), stable for T < 2 / (p_gain lambda_max) (undirected)",

@@ -131,6 +131,11 @@ LawEntry WaypointLaw() {
   return {.name = "waypoint",
           .summary = "every agent flies the same list of waypoints, by arrival or by time",
           .equation = "a_i = p_gain (w - p_i) - d_gain v_i",
+          .details =
+              "w is the first waypoint. It becomes the next one when the agent has been within arrival_radius_m "
+              "of w, along law.axes, for dwell_s without a break; the last one stays.\n"
+              "With times_s, w is the latest waypoint whose time has come, and before the first of these times "
+              "the agent's start.",
           .theory = "modes s^2 + d_gain s + p_gain; no overshoot from rest for d_gain >= 2 sqrt(p_gain) without limits",
           .source =
               "Pandit, Njattuvetty & Mulla, ROS-based multi-agent systems control simulation testbed (MASCOT), Indian "

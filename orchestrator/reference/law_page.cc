@@ -96,6 +96,7 @@ std::string TableOfFigures(std::span<const LawFigure> figures) {
 std::string SectionOf(const LawEntry& law, const ShownBy* show) {
   std::string text = fmt::format("\n### {}\n\n{} Default of `axes`: `\"{}\"`.\n\n```\n{}\n```\n\n", law.name,
                                  Sentence(law.summary), kAxes.Name(law.axes), Lines(std::string(law.equation)));
+  for (const std::string_view paragraph : DetailsOf(law)) text += fmt::format("{}\n\n", paragraph);
   text += fmt::format("* Theory: {}.\n* Source: {}.\n", law.theory, law.source);
   if (show != nullptr)
     text += fmt::format(

@@ -27,8 +27,9 @@ Json ToJson(const LawEntry& law) {
   Json figures = Json::array();
   for (const LawFigure& figure : law.figures)
     figures.push_back({{"name", figure.name}, {"each", figure.each}, {"meaning", figure.meaning}});
-  return {{"name", law.name},     {"summary", law.summary},       {"equation", law.equation}, {"theory", law.theory},
-          {"source", law.source}, {"axes", kAxes.Name(law.axes)}, {"parameters", parameters}, {"figures", figures}};
+  return {{"name", law.name},     {"summary", law.summary}, {"equation", law.equation},     {"details", law.details},
+          {"theory", law.theory}, {"source", law.source},   {"axes", kAxes.Name(law.axes)}, {"parameters", parameters},
+          {"figures", figures}};
 }
 
 /// Prints `label`, then `text` from column `indent` on, broken between words at column 110.
@@ -53,6 +54,7 @@ void Print(const LawEntry& law) {
   std::cout << law.name << "\n";
   PrintWrapped("  ", law.summary, 2);
   PrintWrapped("  equation", law.equation, 12);
+  for (const std::string_view paragraph : DetailsOf(law)) PrintWrapped("", paragraph, 12);
   PrintWrapped("  theory", law.theory, 12);
   PrintWrapped("  source", law.source, 12);
   std::cout << fmt::format("  keys of [law]; axes = \"{}\" unless said otherwise; * required, ~ live\n",
