@@ -38,7 +38,7 @@ TEST(LawAxis, LeavesOutWhatOnlyOtherLawsKnow) {
   EXPECT_THAT(axis.laws(), ElementsAre("consensus", "velocity_consensus"));
   EXPECT_THAT(TextOf(axis.Fit(plan[0].overrides)), ElementsAre("law.name=consensus", "law.v_gain=0.1", "law.p_gain=1"));
   EXPECT_THAT(TextOf(axis.Fit(plan[3].overrides)),
-              ElementsAre("-law.beta", "-law.v_gain", "law.name=\"velocity_consensus\"", "law.p_gain=2"))
+              ElementsAre("-law.beta", "-law.v_gain", "law.name=velocity_consensus", "law.p_gain=2"))
       << "no law knows bta, so that it stays a mistake";
   EXPECT_THAT(axis.Notes(), ElementsAre("law.name = velocity_consensus: without law.beta, law.v_gain, which it does "
                                         "not have"));
