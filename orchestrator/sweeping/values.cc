@@ -94,12 +94,12 @@ std::optional<Value> ValueOf(const std::string& typed) {
   }
 }
 
-void Flatten(const Value::Table& table, const Where& where, const std::string& prefix,
-             std::map<std::string, std::string>& keys) {
+void AddPlainKeys(const Value::Table& table, const Where& where, const std::string& prefix,
+                  std::map<std::string, std::string>& keys) {
   for (const auto& [key, value] : table) {
     const auto* inner = std::get_if<Value::Table>(&value.data);
     if (inner != nullptr && !inner->empty())
-      Flatten(*inner, Inside(where, key), prefix + key + ".", keys);
+      AddPlainKeys(*inner, Inside(where, key), prefix + key + ".", keys);
     else
       keys[prefix + key] = Plain(Inside(where, key), value);
   }
@@ -126,7 +126,7 @@ std::vector<std::string> PlainNumbers(std::string_view key, const std::vector<do
 
 std::map<std::string, std::string> PlainKeys(const Value::Table& document) {
   std::map<std::string, std::string> keys;
-  Flatten(document, {.tables = {ExperimentKeys()}}, "", keys);
+  AddPlainKeys(document, {.tables = {ExperimentKeys()}}, "", keys);
   return keys;
 }
 
