@@ -53,7 +53,7 @@ const Override& MakerOf(const std::string& mistake, std::span<const Override> ov
 std::vector<std::string> BlameOverrides(const std::vector<std::string>& mistakes, const std::string& name,
                                         std::span<const Override> overrides, const MistakesWith& mistakes_with) {
   if (overrides.empty()) return mistakes;
-  const std::string shown = OneLine(name);
+  const std::string shown = PlainLine(name);
   if (std::ranges::none_of(mistakes, [&](const std::string& mistake) { return Split(mistake, shown).has_value(); }))
     return mistakes;
   const std::vector<std::string> before = mistakes_with({});

@@ -35,7 +35,7 @@ class Descriptor {
 };
 
 [[noreturn]] void Refuse(const std::string& name, const std::string& why) {
-  throw ConfigError({OneLine(name) + ": " + why});
+  throw ConfigError({PlainLine(name) + ": " + why});
 }
 
 [[noreturn]] void FailToRead(const std::string& name) {
