@@ -32,7 +32,7 @@ Eigen::Vector3d BetaAgents::PushOfOne_W(const Motion& self, const Eigen::Vector3
   const double l = way_W.norm();
   if (l >= distance_m) return Eigen::Vector3d::Zero();
   const double z = SigmaNorm(l, epsilon), d_beta = SigmaNorm(distance_m, epsilon), off = z - d_beta;
-  const double weight = Bump(z / d_beta, kBump), phi = weight * (off / std::sqrt(1 + off * off) - 1);
+  const double weight = Rho(z / d_beta, kBump), phi = weight * (off / std::sqrt(1 + off * off) - 1);
   return c1 * phi / std::sqrt(1 + epsilon * l * l) * way_W + c2 * weight * (p_W - self.v_WB);
 }
 

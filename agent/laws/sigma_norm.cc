@@ -12,7 +12,7 @@ constexpr int kKnots = 64;
 
 }  // namespace
 
-double Bump(double share, double from) {
+double Rho(double share, double from) {
   if (share < from) return 1;
   if (share >= 1) return 0;
   return (1 + std::cos(std::numbers::pi * (share - from) / (1 - from))) / 2;
@@ -33,7 +33,7 @@ AlphaPair::AlphaPair(double distance_m, double range_m, double epsilon, double b
 
 double AlphaPair::Action(double s) const {
   const double off = s - d_alpha_;
-  return Bump(s / r_alpha_, bump_) * off / std::sqrt(1 + off * off);
+  return Rho(s / r_alpha_, bump_) * off / std::sqrt(1 + off * off);
 }
 
 double AlphaPair::TillRange(double s) const {

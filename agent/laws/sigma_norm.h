@@ -9,7 +9,7 @@ namespace mascot {
 inline double SigmaNorm(double l, double epsilon) { return (std::sqrt(1 + epsilon * l * l) - 1) / epsilon; }
 
 /// rho_h(share): 1 up to the share `from`, 0 from 1 on, smooth between them.
-double Bump(double share, double from);
+double Rho(double share, double from);
 
 /// What two alpha agents do to each other in Olfati-Saber's flocking (2006), with |a| = |b| = 1 in its phi: they repel
 /// each other below the distance d, attract each other above it, and do nothing from the range r on.
@@ -20,7 +20,7 @@ class AlphaPair {
 
   double range_m() const { return range_m_; }
   /// a_ij = rho_h(|z|_sigma / r_alpha) at a distance of `l` (m): 1 when near, 0 from the range on.
-  double Weight(double l) const { return Bump(SigmaNorm(l, epsilon_) / r_alpha_, bump_); }
+  double Weight(double l) const { return Rho(SigmaNorm(l, epsilon_) / r_alpha_, bump_); }
   /// phi_alpha(|z|_sigma) / sqrt(1 + epsilon |z|^2): the pull along z, per length of z.
   double Stiffness(double l) const { return Action(SigmaNorm(l, epsilon_)) / std::sqrt(1 + epsilon_ * l * l); }
   /// psi_alpha(|z|_sigma) = integral of phi_alpha from |d|_sigma on: the potential of that pull, 0 at the distance d.

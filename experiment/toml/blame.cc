@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "experiment/toml/section_internal.h"
+#include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {

@@ -12,6 +12,7 @@
 
 #include "experiment/toml/number.h"
 #include "experiment/toml/section_internal.h"
+#include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {
