@@ -36,6 +36,9 @@ std::atomic<std::size_t> g_bytes = 0;
 namespace mascot {
 namespace {
 
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
 double BytesOf(const std::function<void()>& work) {
   const std::size_t before = g_bytes;
   work();
@@ -142,7 +145,7 @@ const List kLists[] = {
      }},
     {"overrides_of_links", 500,
      [](int n) {
-       return Team("[link]\n", 500 * 2) + Repeated(n, [](int k) {
+       return Team("[link]\n", 1001) + Repeated(n, [](int k) {
                 return "[[link.override]]\nedges = [[" + std::to_string(k + 2) + ", " + std::to_string(k + 1) +
                        "]]\nloss = 0.1\n";
               });
@@ -169,6 +172,54 @@ TEST_P(Work, OfReadingAListGrowsWithItsLength) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Lists, Work, testing::ValuesIn(kLists), [](const auto& param) { return param.param.name; });
+
+TEST(Limits, OfListsAreSaidInWords) {
+  const auto tables = [](const std::string& name, int count) {
+    return Repeated(count, [&](int) { return "[[" + name + "]]\n"; });
+  };
+  const auto refusal = [](const std::string& more) -> std::string {
+    try {
+      Load(Team(more));
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "nothing";
+  };
+  EXPECT_THAT(refusal(tables("events", 100001)), HasSubstr(": events: expected at most 100000 tables, got 100001"));
+  EXPECT_THAT(refusal(tables("law.schedule", 1001)),
+              HasSubstr(": law.schedule: expected at most 1000 tables, got 1001"));
+  EXPECT_THAT(refusal(tables("graph.schedule", 10001)),
+              HasSubstr(": graph.schedule: expected at most 10000 tables, got 10001"));
+  EXPECT_THAT(refusal(tables("physics.obstacles", 1001)),
+              HasSubstr(": physics.obstacles: expected at most 1000 tables, got 1001"));
+  EXPECT_THAT(refusal(tables("physics.rotor_failures", 40001)),
+              HasSubstr(": physics.rotor_failures: expected at most 40000 tables, got 40001"));
+  EXPECT_THAT(refusal(tables("link.override", 10001)),
+              HasSubstr(": link.override: expected at most 10000 tables, got 10001"));
+  EXPECT_THAT(refusal(tables("hosts", 1001)), HasSubstr(": hosts: expected at most 1000 tables, got 1001"));
+  EXPECT_THAT(refusal("[record]\ntopics = " + Listed(1001, [](int) { return "'*'"; })),
+              HasSubstr(": record.topics: expected at most 1000 patterns, got 1001"));
+  EXPECT_THAT(refusal("[[events]]\nat_s = 1\ncut = " + Listed(1000001, [](int) { return "1"; })),
+              HasSubstr(": events[0].cut: expected a list of at most 1000000, got a list of 1000001"));
+}
+
+TEST(Limits, OfEdgesHoldForAllGraphsOfAScheduleTogether) {
+  const std::string graphs = Repeated(
+      210, [](int k) { return "[[graph.schedule]]\nat_s = " + std::to_string(k + 1) + "\ntopology = 'complete'\n"; });
+  EXPECT_THAT(
+      [&] { Load(Team(graphs, 320)); },
+      ThrowsMessage<ConfigError>(HasSubstr(": expected at most 10000000 edges in all graphs together, got more")));
+}
+
+TEST(Limits, OfEventsHoldForARunToo) {
+  Experiment experiment = Load(Team());
+  experiment.events.resize(100000);
+  Helm helm(experiment, 0);
+  helm.Open();
+  const Answer answer = helm.Ask({.kind = Wish::Kind::kEvent, .toml = "cut = [[1, 2]]"});
+  EXPECT_FALSE(answer.granted);
+  EXPECT_EQ(answer.words, "event by hand: expected at most 100000 events in a run, got one more");
+}
 
 /// Takes all events of a file, as every process of a run does.
 double Taking(const Experiment& experiment) {

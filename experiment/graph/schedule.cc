@@ -10,7 +10,7 @@ namespace mascot {
 namespace {
 
 constexpr std::size_t kMostGraphs = 10000;
-constexpr std::size_t kMostEdgesInAll = 20000000;  // 320 MB
+constexpr std::size_t kMostEdgesInAll = 10000000;  // 160 MB
 
 /// The keys of one graph, and `more`.
 std::vector<Key> WithGraphKeys(std::initializer_list<Key> more) {
