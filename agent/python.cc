@@ -52,7 +52,8 @@ void StartInterpreter() {
   config.write_bytecode = 0;
   config.use_hash_seed = 1;  // the order of sets of strings is the same in every run
   config.hash_seed = 0;
-  py::initialize_interpreter(&config);
+  config.safe_path = 1;
+  py::initialize_interpreter(&config, 0, nullptr, /*add_program_dir_to_path=*/false);  // nor the current folder
   AddPythonPath();
   TakePythonOutput();
   PyEval_SaveThread();
