@@ -56,6 +56,7 @@ void StartInterpreter() {
   py::initialize_interpreter(&config, 0, nullptr, /*add_program_dir_to_path=*/false);  // nor the current folder
   AddPythonPath();
   TakePythonOutput();
+  GuardProcess();
   PyEval_SaveThread();
 }
 

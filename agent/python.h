@@ -5,13 +5,9 @@
 #include <string>
 #include <string_view>
 
-namespace mascot {
+#include "agent/law_at_work.h"
 
-/// How long a piece of Python code may take (wall clock), and the key that says so, for messages.
-struct TimeLimit {
-  double limit_s = 0;
-  std::string_view source;
-};
+namespace mascot {
 
 /// Modules that a law imports and that stand beside it: texts by paths from the folder of the law ("shapes.py").
 using PythonModules = std::map<std::string, std::string>;

@@ -34,30 +34,38 @@ class PythonLock {
   PyGILState_STATE state_;
 };
 
-/// Python code that runs longer than `limit` while an object of this class lives gets a TimeoutError at the line where
-/// it is, and another one each time it catches that (it is no Exception: only a bare except, or one of BaseException,
-/// does). A call that does not return to Python is not interrupted. Made and destroyed with the GIL held, in one
+/// Python code that runs longer than its limit while an object of this class lives gets a TimeoutError at the line
+/// where it is, and another one each time it catches that (it is no Exception: only a bare except, or one of
+/// BaseException, does); if the process takes too much memory, a MemoryError of that kind. A call that does not return
+/// to Python is not interrupted; then LawAtWork ends the process, later. Made and destroyed with the GIL held, in one
 /// thread; one at a time in each thread.
-class PythonTimeLimit {
+class LimitedPython {
  public:
-  explicit PythonTimeLimit(const TimeLimit& limit);
-  ~PythonTimeLimit();
-  PythonTimeLimit(const PythonTimeLimit&) = delete;
-  PythonTimeLimit& operator=(const PythonTimeLimit&) = delete;
+  /// `who`: as of LawAtWork.
+  LimitedPython(const LawLimits& limits, const std::string& who);
+  ~LimitedPython();
+  LimitedPython(const LimitedPython&) = delete;
+  LimitedPython& operator=(const LimitedPython&) = delete;
 
  private:
   friend class PythonWatchdog;
   void SetDeadline();
   bool IsLate() const;
+  bool TakesTooMuch(double memory_mb) const;
   void Interrupt(const py::object& error);
 
   // Used with the GIL held, also by the watchdog's thread.
-  const TimeLimit limit_;
+  const LawAtWork at_work_;
+  const LawLimits limits_;
   const unsigned long thread_;
   std::int64_t deadline_ns_ = 0;
-  bool interrupted_ = false;
+  bool interrupted_ = false, told_of_memory_ = false;
 };
 
+/// Takes from Python code what would end or change the process that it shares with others: os._exit, os.kill of
+/// ourselves, signal.signal, ... raise instead, in the process that runs the law; children that the law forks have them
+/// all, and die with it. Called once, with the GIL held.
+void GuardProcess();
 /// Makes sys.stdout and sys.stderr print to stderr what is fit for a terminal. Called once, with the GIL held.
 void TakePythonOutput();
 /// The text of a str in UTF-8. Half of a surrogate pair, which UTF-8 does not have, is escaped as on Python's stderr:

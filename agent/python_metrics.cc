@@ -65,12 +65,12 @@ struct PythonMetrics::Functions {
 };
 
 PythonMetrics::PythonMetrics(const std::string& text, const std::string& file, const std::string& folder,
-                             const TimeLimit& limit)
-    : file_(file), limit_(limit), functions_(std::make_unique<Functions>()) {
+                             const LawLimits& limits)
+    : file_(file), limits_(limits), functions_(std::make_unique<Functions>()) {
   const PythonModules modules = ModulesBeside(text, folder);
   const PythonLock lock;
   try {
-    const PythonTimeLimit in_time(limit_);
+    const LimitedPython limited(limits_, file_);
     const py::dict space = RunPython(text, file, 1, modules);
     list_ = space.contains("METRICS") ? Declared(space["METRICS"], file) : Defined(space);
     for (const PythonMetric& metric : list_) {
@@ -103,7 +103,7 @@ std::vector<std::optional<double>> PythonMetrics::Of(std::span<const RunArray> a
   for (std::size_t k = 0; k < list_.size(); ++k) {
     const std::string metric = "metric " + list_[k].name + ": ";
     try {
-      const PythonTimeLimit in_time(limit_);
+      const LimitedPython limited(limits_, file_);
       py::dict run;
       for (const auto& [name, array] : made) run[name] = array;
       const py::object value = functions_->calls[k](run);

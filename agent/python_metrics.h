@@ -29,9 +29,9 @@ struct RunArray {
 /// without; else every function that the file defines whose name does not begin with an underscore.
 class PythonMetrics {
  public:
-  /// Runs `text`, which messages call `file` and whose modules stand in `folder`. `limit`: for this, and for each call
+  /// Runs `text`, which messages call `file` and whose modules stand in `folder`. `limits`: for this, and for each call
   /// of a metric. Throws std::runtime_error, "FILE:LINE: ...", for mistakes in it.
-  PythonMetrics(const std::string& text, const std::string& file, const std::string& folder, const TimeLimit& limit);
+  PythonMetrics(const std::string& text, const std::string& file, const std::string& folder, const LawLimits& limits);
   ~PythonMetrics();
   PythonMetrics(const PythonMetrics&) = delete;
   PythonMetrics& operator=(const PythonMetrics&) = delete;
@@ -46,7 +46,7 @@ class PythonMetrics {
   struct Functions;
 
   std::string file_;
-  TimeLimit limit_;
+  LawLimits limits_;
   std::vector<PythonMetric> list_;
   std::unique_ptr<Functions> functions_;
 };

@@ -1,9 +1,10 @@
-// Interrupts Python code that takes too long.
+// Interrupts Python code that takes too long, or too much memory.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <limits>
 #include <sstream>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -14,21 +15,27 @@ namespace {
 
 std::int64_t NowNs() { return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1); }
 
-/// An exception class for code that takes too long: PyThreadState_SetAsyncExc() takes a class. It is no Exception,
-/// because loops that try something until it works catch those.
-py::object MakeTimeoutError(const TimeLimit& limit) {
+/// An exception class of this name and text: PyThreadState_SetAsyncExc() takes a class. It is no Exception, because
+/// loops that try something until it works catch those.
+py::object MakeError(const char* name, const std::string& text) {
   py::dict space;
-  std::ostringstream text;
-  text << "took longer than " << limit.source << " = " << limit.limit_s << " s";
-  space["text"] = text.str();
+  space["text"] = text;
+  space["name"] = name;
   py::exec(R"(
-class TimeoutError(BaseException):
-    __module__ = "builtins"
-    def __str__(self):
-        return text
+error = type(name, (BaseException,), {"__module__": "builtins", "__str__": lambda self: text})
 )",
            space);
-  return space["TimeoutError"];
+  return space["error"];
+}
+
+py::object MakeTimeoutError(const LawLimits& limits) {
+  std::ostringstream text;
+  text << "took longer than " << limits.source << " = " << limits.limit_s << " s";
+  return MakeError("TimeoutError", text.str());
+}
+
+py::object MakeMemoryError(const LawLimits& limits) {
+  return MakeError("MemoryError", "needs more than control.python_memory_mb = " + std::to_string(limits.memory_mb));
 }
 
 }  // namespace
@@ -41,11 +48,11 @@ class PythonWatchdog {
     static PythonWatchdog& watchdog = *new PythonWatchdog;  // its thread lives as long as the process
     return watchdog;
   }
-  void Begin(PythonTimeLimit& call) {
+  void Begin(LimitedPython& call) {
     calls_.push_back(&call);
     SetNextDeadline();
   }
-  void End(PythonTimeLimit& call) {
+  void End(LimitedPython& call) {
     std::erase(calls_, &call);
     SetNextDeadline();
   }
@@ -57,51 +64,74 @@ class PythonWatchdog {
   PythonWatchdog() {
     std::thread([this] {
       for (;; std::this_thread::sleep_for(kCheckEvery))
-        if (NowNs() > next_deadline_ns_) InterruptLate();
+        if (NowNs() > next_deadline_ns_ || IsMemoryDue()) InterruptDue();
     }).detach();
   }
 
   void SetNextDeadline() {
     std::int64_t next = kNever;
-    for (const PythonTimeLimit* call : calls_) next = std::min(next, call->deadline_ns_);
+    double memory_mb = std::numeric_limits<double>::infinity();
+    for (const LimitedPython* call : calls_) {
+      next = std::min(next, call->deadline_ns_);
+      if (call->limits_.memory_mb > 0 && !call->told_of_memory_)
+        memory_mb = std::min<double>(memory_mb, call->limits_.memory_mb);
+    }
     next_deadline_ns_ = next;
+    least_memory_mb_ = memory_mb;
   }
 
-  /// The call that is late, if any.
-  PythonTimeLimit* Late() const {
-    const auto late = std::ranges::find_if(calls_, [](const auto* call) { return call->IsLate(); });
-    return late == calls_.end() ? nullptr : *late;
+  bool IsMemoryDue() const {
+    const double least_mb = least_memory_mb_;
+    return least_mb < std::numeric_limits<double>::infinity() && OwnMemory_mb() > least_mb;
   }
 
-  void InterruptLate() {
+  /// A call that is to be interrupted now, if any.
+  LimitedPython* Due() const {
+    const double memory_mb = OwnMemory_mb();
+    const auto due =
+        std::ranges::find_if(calls_, [=](const auto* call) { return call->IsLate() || call->TakesTooMuch(memory_mb); });
+    return due == calls_.end() ? nullptr : *due;
+  }
+
+  void InterruptDue() {
     const PyGILState_STATE state = PyGILState_Ensure();  // code that hangs releases the GIL every few milliseconds
-    while (const PythonTimeLimit* seen = Late()) {       // it still runs after we waited
-      const py::object error = MakeTimeoutError(seen->limit_);
-      if (PythonTimeLimit* late = Late(); late == seen) late->Interrupt(error);  // making the error let others run
+    while (const LimitedPython* seen = Due()) {          // it still runs after we waited
+      const bool is_late = seen->IsLate();
+      const py::object error = is_late ? MakeTimeoutError(seen->limits_) : MakeMemoryError(seen->limits_);
+      LimitedPython* due = Due();
+      if (due != seen) continue;  // making the error let others run
+      due->told_of_memory_ = due->told_of_memory_ || !is_late;
+      due->Interrupt(error);
     }
     SetNextDeadline();
     PyGILState_Release(state);
   }
 
   std::atomic<std::int64_t> next_deadline_ns_ = kNever;
-  std::vector<PythonTimeLimit*> calls_;  // used with the GIL held
+  std::atomic<double> least_memory_mb_ = std::numeric_limits<double>::infinity();
+  std::vector<LimitedPython*> calls_;  // used with the GIL held
 };
 
-PythonTimeLimit::PythonTimeLimit(const TimeLimit& limit) : limit_(limit), thread_(PyThread_get_thread_ident()) {
+LimitedPython::LimitedPython(const LawLimits& limits, const std::string& who)
+    : at_work_(who, limits), limits_(limits), thread_(PyThread_get_thread_ident()) {
   SetDeadline();
   PythonWatchdog::Get().Begin(*this);
 }
 
-PythonTimeLimit::~PythonTimeLimit() {
+LimitedPython::~LimitedPython() {
   PythonWatchdog::Get().End(*this);
   if (interrupted_) PyThreadState_SetAsyncExc(thread_, nullptr);  // cancels it if it is pending
 }
 
-void PythonTimeLimit::SetDeadline() { deadline_ns_ = NowNs() + static_cast<std::int64_t>(limit_.limit_s * 1e9); }
+void LimitedPython::SetDeadline() { deadline_ns_ = NowNs() + static_cast<std::int64_t>(limits_.limit_s * 1e9); }
 
-bool PythonTimeLimit::IsLate() const { return NowNs() > deadline_ns_; }
+bool LimitedPython::IsLate() const { return NowNs() > deadline_ns_; }
 
-void PythonTimeLimit::Interrupt(const py::object& error) {
+bool LimitedPython::TakesTooMuch(double memory_mb) const {
+  return !told_of_memory_ && limits_.memory_mb > 0 && memory_mb > limits_.memory_mb;
+}
+
+void LimitedPython::Interrupt(const py::object& error) {
   SetDeadline();
   interrupted_ = true;
   PyThreadState_SetAsyncExc(thread_, error.ptr());

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "bus/descendants.h"
 #include "bus/leave.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
@@ -97,6 +98,7 @@ int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role
     std::cerr << "error: " << InWords(failure) << std::endl;
     lifecycle.SetFinal(Life::kFailed, InWords(failure));
   }
+  KillDescendants();
   Leave(args, kTimeToLeave, code);
   return code;
 }
@@ -137,6 +139,7 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
     std::cerr << "error: " << UsageText(app, error) << std::endl;
     return 2;
   }
+  AdoptDescendants();
   std::signal(SIGPIPE, SIG_IGN);  // clean up even if stderr is the pipe of a dead orchestrator
   close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);  // what a law starts is no process of the run (Janitor)
   if (args.parent != 0) {
@@ -154,7 +157,8 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
     return 2;
   } catch (const std::exception& failure) {
     std::cerr << "error: " << InWords(failure) << std::endl;
-    return 1;
+    if (args.parent != 0) return 1;  // the orchestrator sweeps
+    LeaveNow({.code = 1, .process = args.options.name, .says_so = false, .sweeps = true});
   }
 }
 

@@ -42,7 +42,10 @@ constexpr std::array kAgentKeys = {
 
 constexpr auto kControlKeys = Joined(
     std::array{
-        key::Integer("rate_hz", 1, 100000, "ticks per simulated second; divides `physics.rate_hz`").Default("100")},
+        key::Integer("rate_hz", 1, 100000, "ticks per simulated second; divides `physics.rate_hz`").Default("100"),
+        key::Integer("python_memory_mb", 100, 1'000'000,
+                     "how much memory a process may take while it runs a law in Python; then the law fails")
+            .Otherwise("2000")},
     kAgentKeys);
 
 /// Reads the gains of one loop, if given, in place of the airframe's.

@@ -128,6 +128,7 @@ struct Experiment {
   std::vector<AgentConfig> agents;
   struct {
     int rate_hz = 100;
+    int python_memory_mb = 2000;  ///< limit on the memory of a process that runs a law in Python
   } control;
   /// All edges of all phases of `schedule`: who may ever hear whom. DDS readers exist for these edges.
   Graph graph{{}};

@@ -217,6 +217,8 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
   std::vector<AgentOverride> overrides = ReadAgents(agents, count, experiment);
   CheckRotorFailures(physics, experiment);
   experiment.control.rate_hz = static_cast<int>(control.Integer("rate_hz"));
+  if (control.Has("python_memory_mb"))
+    experiment.control.python_memory_mb = static_cast<int>(control.Integer("python_memory_mb"));
   ReadControl(control, experiment.agents);
   for (AgentOverride& override : overrides) FinishOverride(override, control, law, alone, count, laws, experiment);
   CheckTime(run, physics, control, experiment);

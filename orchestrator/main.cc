@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bus/descendants.h"
 #include "bus/foreign_settings.h"
 #include "bus/leave.h"
 #include "bus/standard_streams.h"
@@ -104,8 +105,10 @@ int main(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_IGN);  // a closed terminal or pager must not kill the run
     std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the file size limit then fails with EFBIG, which is reported
     mascot::SayWhatIsUncaught();
+    mascot::AdoptDescendants();
     return mascot::Main(argc, argv);
   });
+  mascot::KillDescendants();
   mascot::LeaveWithin(std::chrono::seconds(5), {.code = code, .process = "orchestrator", .on_signals = true});
   return code;  // and destroy what the DDS library keeps in static variables
 }

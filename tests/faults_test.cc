@@ -228,20 +228,68 @@ TEST(Faults, NoLawThatHangsOutlivesAKilledOrchestrator) {
   EXPECT_TRUE(NothingIsLeft(up));
 }
 
-TEST(Faults, ARunDoesNotWaitForWhatALawHasStarted) {
-  ScratchFolder folder;  // laws are also created by the check and the metrics, in the orchestrator
+/// A law that starts processes in three ways, and writes their ids to a file of `folder`.
+std::string StartingProcesses(const ScratchFolder& folder) {
+  return "import os, subprocess\ndef start(me, params):\n  pids = '" + folder.File("pids") +
+         "'\n  helper = subprocess.Popen(['sleep', '1000'], start_new_session=True)\n"
+         "  child = os.fork()\n  if child == 0:\n    __import__('time').sleep(1000)\n"
+         "  open(pids, 'a').write(f'{helper.pid} {child}\\n')\n"
+         "  os.system(f'setsid sh -c \"echo \\$\\$ >> {pids}; exec sleep 1000\" > /dev/null 2>&1 &')\n"
+         "def control(t, me, neighbours):\n  return [0, 0]\n";
+}
+
+TEST(Faults, WhatALawHasStartedEndsWithTheRun) {
+  for (const char* engine : {"dds", "inprocess"}) {
+    SCOPED_TRACE(engine);
+    const ScratchFolder folder;  // over DDS laws are also made by the metrics, in the orchestrator
+    Up up(folder, "run", Python(folder, 1, StartingProcesses(folder)), {"--engine", engine});
+    EXPECT_EQ(up.Wait(), 0) << up.err();
+    int started = 0;
+    std::istringstream pids(ReadFile(folder.File("pids")));
+    for (pid_t pid = 0; pids >> pid; ++started) EXPECT_TRUE(IsGone(pid)) << pid;
+    EXPECT_GE(started, 3);
+    EXPECT_TRUE(NothingIsLeft(up));
+  }
+}
+
+TEST(Faults, WhatALawHasForkedDoesNotOutliveAKilledOrchestrator) {
+  const ScratchFolder folder;
   const std::string law =
-      "import subprocess\ndef start(me, params):\n  helper = subprocess.Popen(['sleep', '1000'])\n"
-      "  open('" +
-      folder.File("pids") +
-      "', 'a').write(f'{helper.pid}\\n')\n"
-      "def control(t, me, neighbours):\n  return [0, 0]\n";
-  Up up(folder, "run", Python(folder, 1, law));
-  EXPECT_EQ(up.Wait(), 0) << up.err();
-  int helpers = 0;
-  std::istringstream pids(ReadFile(folder.File("pids")));
-  for (pid_t pid = 0; pids >> pid; ++helpers) EXPECT_EQ(kill(pid, SIGKILL), 0) << "it lived";
-  EXPECT_GE(helpers, 1);
+      "import os, subprocess, time\ndef start(me, params):\n"
+      "  helper = subprocess.Popen(['sleep', '1000'], start_new_session=True)\n  child = os.fork()\n"
+      "  if child == 0: time.sleep(1000)\n  print('started', helper.pid, child, flush=True)\n"
+      "def control(t, me, neighbours):\n  if t > 0.1: time.sleep(1)\n  return [0, 0]\n";
+  Up up(folder, "run", Python(folder, 1, law, "fidelity = false\n"));
+  ASSERT_TRUE(Until([&] { return up.Said("[agent_1] started "); })) << up.err();
+  std::istringstream words(up.err().substr(up.err().find("started ") + 8));
+  pid_t helper = 0, child = 0;
+  words >> helper >> child;
+  up.Signal(SIGKILL);
+  EXPECT_EQ(up.Wait(), -SIGKILL);
+  EXPECT_TRUE(IsGone(helper));
+  EXPECT_TRUE(IsGone(child));
+  EXPECT_TRUE(NothingIsLeft(up));
+}
+
+TEST(Faults, WhateverALawDoesToItsProcessThereIsASummaryThatNamesTheAgent) {
+  const std::pair<const char*, const char*> tries[] = {
+      {"os._exit(0)", "the law of agent 2 failed at t = "},
+      {"sys.exit()", "the law of agent 2 failed at t = "},
+      {"os.kill(os.getpid(), 9)", "the law of agent 2 failed at t = "},
+      {"ctypes.string_at(0)", "error: the law of agent 2 crashed: SIGSEGV"},
+      {"ctypes.CDLL(None)._exit(0)", "agent_2 exited with code 0"},
+      {"[ctypes.CDLL(None).close(fd) for fd in range(1024)]", "2"}};
+  for (const auto& [act, words] : tries) {
+    SCOPED_TRACE(act);
+    const ScratchFolder folder;
+    const std::string law = std::string("import ctypes, os, sys\ndef control(t, me, neighbours):\n") +
+                            "  if me.id == 2 and t > 0.1:\n    " + act + "\n  return 0, 0\n";
+    Up up(folder, "run", Python(folder, 3, law, "fidelity = false\n"), {"--set", "run.agent_timeout_s=1.0"});
+    EXPECT_EQ(up.Wait(), 1);
+    EXPECT_EQ(up.Summary()["exit"], 1);
+    EXPECT_THAT(up.Summary()["failure"].get<std::string>(), HasSubstr(words));
+    EXPECT_TRUE(NothingIsLeft(up));
+  }
 }
 
 TEST(Faults, WhatALawPrintsMayBeNoText) {

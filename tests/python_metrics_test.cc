@@ -14,7 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::StartsWith;
 using ::testing::ThrowsMessage;
 
-constexpr TimeLimit kLimit{10, "the limit of a test"};
+constexpr LawLimits kLimit{10, "the limit of a test"};
 
 std::vector<std::string> NamesOf(const PythonMetrics& metrics) {
   std::vector<std::string> names;
@@ -23,7 +23,7 @@ std::vector<std::string> NamesOf(const PythonMetrics& metrics) {
 }
 
 /// What the metrics of `text` say of a run of two ticks and two agents.
-std::vector<std::optional<double>> Say(const std::string& text, const TimeLimit& limit = kLimit) {
+std::vector<std::optional<double>> Say(const std::string& text, const LawLimits& limit = kLimit) {
   const PythonMetrics metrics(text, "own.py", "", limit);
   const std::vector<double> t{0, 0.5}, id{1, 2}, x{1, 2, 3, 4};
   const RunArray arrays[] = {{"t", {2}, t}, {"id", {2}, id, true}, {"x", {2, 2}, x}};

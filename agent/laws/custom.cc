@@ -34,10 +34,6 @@ constexpr Key kCustomParameters[] = {
         .Otherwise("where it stands"),
 };
 
-// Part of run.agent_timeout_s that a call of the law may take: less than all, so that the law is interrupted first and
-// the message says where it hangs.
-constexpr double kTimeShare = 0.8;
-
 /// Reads the modules of the law: those of the key, else those in `folder`.
 void ReadModules(const std::string& folder, Section& law, CustomParams& params) {
   Value modules;
@@ -100,7 +96,12 @@ void ReadKeys(bool checked, Section& law, CustomParams& params) {
 bool SendsMessages(const Experiment& experiment, CustomParams& params, Section& law) {
   // A checked experiment has the key: reading it need not start Python.
   if ((experiment.checked && law.Has("messages")) || law.Wrong("")) return law.Boolean("messages", false);
-  const bool can_send = TryText(law, params, {experiment.run.start_timeout_s, "run.start_timeout_s"});
+  LawLimits limits = LimitsOfLaws(experiment);
+  if (experiment.run.start_timeout_s < limits.limit_s) {
+    limits.limit_s = experiment.run.start_timeout_s;
+    limits.source = "run.start_timeout_s";
+  }
+  const bool can_send = TryText(law, params, limits);
   const bool sends = law.Boolean("messages", can_send);
   if (sends && !can_send && !law.Wrong("")) law.Fail("messages", "expected a law that defines message(me), got none");
   return sends;
@@ -116,10 +117,11 @@ std::shared_ptr<const LawParams> ReadCustom(const Experiment& experiment, const 
 std::unique_ptr<Law> MakeCustom(const Experiment& experiment, int id) {
   const LawConfig& law = experiment.agent(id).law;
   const auto& params = ParamsOf<CustomParams>(law);
-  const TimeLimit time_limit{kTimeShare * experiment.run.agent_timeout_s, "0.8 run.agent_timeout_s"};
-  if (params.style == PythonStyle::kMascot)
-    return MakePublishedLaw(params, time_limit, id, experiment.size(), law.leader);
-  return MakeStandardLaw(params, time_limit, experiment.run.seed, id);
+  const LawLimits call = LimitsOfLaws(experiment);
+  // The text has run in time before; now all agents may make their laws at once.
+  const CustomLimits limits{call, {experiment.run.start_timeout_s, "run.start_timeout_s", call.memory_mb}};
+  if (params.style == PythonStyle::kMascot) return MakePublishedLaw(params, limits, id, experiment.size(), law.leader);
+  return MakeStandardLaw(params, limits, experiment.run.seed, id);
 }
 
 bool DrawsByCustom(const LawConfig& law) { return CanDraw(ParamsOf<CustomParams>(law)); }

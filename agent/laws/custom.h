@@ -56,8 +56,13 @@ class PythonModule {
 /// The base of both styles: the time limit, and errors that name the agent, the time and the returned value.
 class PythonLaw : public Law {
  public:
-  PythonLaw(int id, const CustomParams& params, TimeLimit time_limit, const char* function)
-      : id_(id), time_limit_(time_limit), wanted_(params.wanted), file_(params.file), function_(function) {}
+  PythonLaw(int id, const CustomParams& params, const LawLimits& limits, const char* function)
+      : id_(id),
+        who_("the law of agent " + std::to_string(id)),
+        limits_(limits),
+        wanted_(params.wanted),
+        file_(params.file),
+        function_(function) {}
   Wanted wanted() const override { return wanted_; }
 
  protected:
@@ -67,11 +72,22 @@ class PythonLaw : public Law {
   template <class Call>
   auto Guarded(Call call) const {
     try {
-      const PythonTimeLimit limit(time_limit_);
+      const LimitedPython limited(limits_, who_);
       return call();
     } catch (py::error_already_set& error) {
-      throw std::runtime_error("the law of agent " + std::to_string(id_) + " failed at t = " + ShortestFloat(t_s_) +
-                               " s\n" + Explain(error, file_).what());
+      throw std::runtime_error(who_ + " failed at t = " + ShortestFloat(t_s_) + " s\n" + Explain(error, file_).what());
+    }
+  }
+  /// Runs `call`, which runs the user's text for the first time, with `limits`. Throws std::runtime_error likewise.
+  template <class Call>
+  void GuardedImport(const LawLimits& limits, Call call) const {
+    try {
+      const LimitedPython limited(limits, who_);
+      call();
+    } catch (py::error_already_set& error) {
+      throw std::runtime_error(who_ + " failed when it was made\n" + Explain(error, file_).what());
+    } catch (const PythonError& error) {
+      throw std::runtime_error(who_ + " failed when it was made\n" + error.what());
     }
   }
   void SetTime(double t_s) { t_s_ = t_s; }
@@ -88,24 +104,29 @@ class PythonLaw : public Law {
   }
 
   [[noreturn]] void Refuse(const py::object& value, const std::string& why) const {
-    throw std::runtime_error("the law of agent " + std::to_string(id_) + " failed at t = " + ShortestFloat(t_s_) +
-                             " s: " + function_ + " returned " + Repr(value) + why);
+    throw std::runtime_error(who_ + " failed at t = " + ShortestFloat(t_s_) + " s: " + function_ + " returned " +
+                             Repr(value) + why);
   }
 
  private:
   int id_;
-  TimeLimit time_limit_;
+  std::string who_;
+  LawLimits limits_;
   Wanted wanted_;
   std::string file_;
   std::string function_;
   double t_s_ = 0;
 };
 
+/// Limits of the user's code: of a call, and of making the law.
+struct CustomLimits {
+  LawLimits call, import;
+};
 /// Makes a law of style "standard".
-std::unique_ptr<Law> MakeStandardLaw(const CustomParams& params, const TimeLimit& time_limit, std::uint64_t seed,
+std::unique_ptr<Law> MakeStandardLaw(const CustomParams& params, const CustomLimits& limits, std::uint64_t seed,
                                      int id);
 /// Makes a law of style "mascot", for a team of `agents`. `leader`: 0: none.
-std::unique_ptr<Law> MakePublishedLaw(const CustomParams& params, const TimeLimit& time_limit, int id, int agents,
+std::unique_ptr<Law> MakePublishedLaw(const CustomParams& params, const CustomLimits& limits, int id, int agents,
                                       int leader);
 
 /// Whether its code can draw random numbers by run.seed.
@@ -114,6 +135,6 @@ bool CanDraw(const CustomParams& params);
 /// The key of `law` that holds the text, or names its file.
 const char* TextKey(const Section& law);
 /// Runs the text once, to find mistakes in it and the functions that it defines. Returns whether it can send messages.
-bool TryText(Section& law, CustomParams& params, const TimeLimit& time_limit);
+bool TryText(Section& law, CustomParams& params, const LawLimits& limits);
 
 }  // namespace mascot

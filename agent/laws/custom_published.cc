@@ -11,14 +11,14 @@ namespace {
 /// not hear are NaN.
 class Published final : public PythonLaw {
  public:
-  Published(const CustomParams& params, TimeLimit time_limit, int id, int agents, int leader)
-      : PythonLaw(id, params, time_limit, "control_user"),
+  Published(const CustomParams& params, const CustomLimits& limits, int id, int agents, int leader)
+      : PythonLaw(id, params, limits.call, "control_user"),
         agents_(static_cast<std::size_t>(agents)),
         leader_(leader - 1),
         columns_(6, std::vector<double>(agents_)) {
     const PythonLock lock;
-    control_user_.emplace(PythonModule(params).Function("control_user"));
     py::module_::import("numpy");
+    GuardedImport(limits.import, [&] { control_user_.emplace(PythonModule(params).Function("control_user")); });
   }
   ~Published() override {
     const PythonLock lock;
@@ -64,9 +64,9 @@ class Published final : public PythonLaw {
 
 }  // namespace
 
-std::unique_ptr<Law> MakePublishedLaw(const CustomParams& params, const TimeLimit& time_limit, int id, int agents,
+std::unique_ptr<Law> MakePublishedLaw(const CustomParams& params, const CustomLimits& limits, int id, int agents,
                                       int leader) {
-  return std::make_unique<Published>(params, time_limit, id, agents, leader);
+  return std::make_unique<Published>(params, limits, id, agents, leader);
 }
 
 }  // namespace mascot

@@ -25,10 +25,11 @@ struct Names {
 
 class Standard final : public PythonLaw {
  public:
-  Standard(const CustomParams& params, TimeLimit time_limit, std::uint64_t seed, int id)
-      : PythonLaw(id, params, time_limit, "control"), params_(ToToml(params.params)) {
+  Standard(const CustomParams& params, const CustomLimits& limits, std::uint64_t seed, int id)
+      : PythonLaw(id, params, limits.call, "control"), params_(ToToml(params.params)) {
     const PythonLock lock;
-    objects_.emplace(params);
+    py::module_::import("numpy");  // now, so that the first tick does not wait for it
+    GuardedImport(limits.import, [&] { objects_.emplace(params); });
     Objects& o = *objects_;
     if (!o.start.is_none() || !o.set.is_none()) o.TakeParams(params.params);
     o.me = o.agent_class();
@@ -95,7 +96,6 @@ class Standard final : public PythonLaw {
       py::dict space;
       py::exec(kClasses, space);
       agent_class = space["Agent"];
-      py::module_::import("numpy");  // now, so that the first tick does not wait for it
     }
     /// The law's params become the defaults of PARAMETERS, with `given` in their places.
     void TakeParams(const Value& given) {
@@ -141,9 +141,9 @@ class Standard final : public PythonLaw {
 
 }  // namespace
 
-std::unique_ptr<Law> MakeStandardLaw(const CustomParams& params, const TimeLimit& time_limit, std::uint64_t seed,
+std::unique_ptr<Law> MakeStandardLaw(const CustomParams& params, const CustomLimits& limits, std::uint64_t seed,
                                      int id) {
-  return std::make_unique<Standard>(params, time_limit, seed, id);
+  return std::make_unique<Standard>(params, limits, seed, id);
 }
 
 }  // namespace mascot

@@ -69,16 +69,26 @@ void CheckParameters(Section& law, const CustomParams& params, const PythonModul
   }
 }
 
+/// Not at the expense of the law, which has the time of a call for its own imports.
+void LoadNumPy() {
+  try {
+    py::module_::import("numpy");
+  } catch (const py::error_already_set&) {  // making the law will say that it is missing
+  }
+}
+
 }  // namespace
 
 const char* TextKey(const Section& law) { return law.Has("file") ? "file" : "python"; }
 
-bool TryText(Section& law, CustomParams& params, const TimeLimit& time_limit) {
+bool TryText(Section& law, CustomParams& params, const LawLimits& limits) {
   const SuppressedPythonOutput suppressed;
   const PythonLock lock;
   const char* key = TextKey(law);
+  const std::string who = "the law in " + params.file;
+  LoadNumPy();
   try {
-    const PythonTimeLimit limit(time_limit);
+    const LimitedPython limited(limits, who);
     const PythonModule module(params);
     for (const Callback& callback : CallbacksOf(params.style)) CheckCallback(law, params, module, callback);
     CheckParameters(law, params, module);

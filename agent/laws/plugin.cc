@@ -18,11 +18,17 @@ constexpr Key kPluginParameters[] = {
     key::Integer("leader", 0, kMaxAgents, "for the law, if it asks; 0: none").Default("0"),
 };
 
+std::string NameOfLaw(int id) { return "the law of agent " + std::to_string(id); }
+
 /// The user's law; its exceptions get the agent and the time in front.
 class Plugin final : public Law {
  public:
-  Plugin(const PluginConfig& plugin, const PluginSetup& setup)
-      : id_(setup.id), library_(plugin.library), params_(ToToml(plugin.params)), law_(library_.Make(setup)) {}
+  Plugin(const PluginConfig& plugin, const PluginSetup& setup, const LawLimits& limits)
+      : who_(NameOfLaw(setup.id)),
+        limits_(limits),
+        library_(plugin.library),
+        params_(ToToml(plugin.params)),
+        law_(library_.Make(setup)) {}
 
   Wanted wanted() const override {
     return Guarded([&] { return law_->wanted(); });
@@ -55,15 +61,16 @@ class Plugin final : public Law {
  private:
   template <class Call>
   std::invoke_result_t<Call> Guarded(Call call) const {
+    const LawAtWork at_work(who_, limits_);
     try {
       return call();
     } catch (...) {
-      throw std::runtime_error("the law of agent " + std::to_string(id_) + " failed at t = " + ShortestFloat(t_s_) +
-                               " s: " + ExceptionText());
+      throw std::runtime_error(who_ + " failed at t = " + ShortestFloat(t_s_) + " s: " + ExceptionText());
     }
   }
 
-  int id_;
+  std::string who_;
+  LawLimits limits_;
   LawLibrary library_;
   std::string params_;  // as TOML
   std::unique_ptr<Law> law_;
@@ -72,11 +79,14 @@ class Plugin final : public Law {
 
 std::unique_ptr<Law> MakePlugin(const Experiment& experiment, int id) {
   const auto& plugin = ParamsOf<PluginConfig>(experiment.agent(id).law);
+  const std::string who = NameOfLaw(id);
+  const LawLimits limits = LimitsOfPlugins(experiment);
+  const LawAtWork at_work(who, limits);
   try {
     PluginParams params(plugin.params);
-    return std::make_unique<Plugin>(plugin, SetupOf(experiment, id, params));
+    return std::make_unique<Plugin>(plugin, SetupOf(experiment, id, params), limits);
   } catch (...) {
-    throw std::runtime_error("cannot make the law of agent " + std::to_string(id) + ": " + ExceptionText() +
+    throw std::runtime_error("cannot make " + who + ": " + ExceptionText() +
                              " (every host that flies it needs the same library at the same path)");
   }
 }

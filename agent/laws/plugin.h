@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "agent/law_at_work.h"
 #include "agent/law_library.h"
 #include "agent/laws.h"
 
@@ -19,6 +20,8 @@ struct PluginConfig final : LawParams {
 
 /// What the library gets to make the law of agent `id` from.
 PluginSetup SetupOf(const Experiment& experiment, int id, PluginParams& params);
+/// How long a call of the law may take.
+LawLimits LimitsOfPlugins(const Experiment& experiment);
 /// Text of the exception that is being handled.
 std::string ExceptionText();
 /// LawEntry::read: lets the library make the law of each agent once, to check its parameters and what it wants.

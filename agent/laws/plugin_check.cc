@@ -52,6 +52,8 @@ std::vector<int> AgentsOf(const Experiment& experiment, const LawConfig& law) {
 
 /// Opens the library and lets it make a law for each agent. Returns whether it can send messages.
 bool TryAll(const Experiment& experiment, const LawConfig& config, PluginConfig& plugin, Section& law) {
+  const std::string who = "the law in " + plugin.library;
+  const LawAtWork at_work(who, LimitsOfPlugins(experiment));
   try {
     const LawLibrary library(plugin.library);
     for (const int id : AgentsOf(experiment, config)) {
@@ -85,6 +87,12 @@ PluginSetup SetupOf(const Experiment& experiment, int id, PluginParams& params) 
           .rate_hz = static_cast<double>(experiment.control.rate_hz),
           .seed = experiment.run.seed,
           .params = params};
+}
+
+LawLimits LimitsOfPlugins(const Experiment& experiment) {
+  LawLimits limits = LimitsOfLaws(experiment);
+  limits.memory_mb = 0;  // that is a key for laws in Python
+  return limits;
 }
 
 /// Text of the exception that is being handled.

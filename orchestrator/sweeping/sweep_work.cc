@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr TimeLimit kMetricLimit{60, "the limit of a metric"};
+constexpr LawLimits kMetricLimit{60, "the limit of a metric"};
 
 /// The metrics of the user's file.
 const PythonMetrics& OwnMetrics(const Sweep& sweep) {

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "bus/bus.h"
+#include "bus/descendants.h"
 #include "bus/leave.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
@@ -518,8 +519,11 @@ bool DdsRun::End() {
   const bool others = launcher_ && launcher_->End();
   if (phases_.in_order() || others) AwaitChildren();
   children_.Stop(2s);
+  KillDescendants({janitor_ ? janitor_->process() : 0});
+  const bool is_half_made = janitor_ && !domain_;
   CallLibrary([this] { LeaveDomain(); });
   if (library_hangs_) return false;
+  if (is_half_made) return true;  // a participant that failed to join has files open until our end: the janitor sweeps
   if (lock_) SweepSharedMemory(lock_->domain());
   if (janitor_) janitor_->Dismiss();
   return true;

@@ -5,6 +5,7 @@
 #include <climits>
 #include <iostream>
 
+#include "bus/descendants.h"
 #include "bus/leave.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
@@ -162,6 +163,7 @@ void HostShare::TellExits() {
 void HostShare::Leave() {
   children_.Stop(code_ == 0 ? 2s : 500ms);
   TellExits();
+  KillDescendants({janitor_ ? janitor_->process() : 0});
   if (!lock_) return;
   SweepSharedMemory(domain_);
   if (janitor_) janitor_->Dismiss();  // none if it could not be started

@@ -19,6 +19,7 @@ class Janitor {
 
   /// The end of the pipe that every process of the run has to inherit.
   int lifeline() const { return lifeline_; }
+  pid_t process() const { return pid_; }
   /// Ends the process: the caller has removed the shared memory itself. May be called again.
   void Dismiss();
 

@@ -1,0 +1,195 @@
+#include "agent/law_at_work.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "experiment/experiment.h"
+
+namespace mascot {
+namespace {
+
+using namespace std::chrono_literals;
+
+thread_local const char* at_work = nullptr;  // whose law runs in this thread
+std::atomic<bool> forked_by_law = false;
+
+// --- signals ------------------------------------------------------------------------------------------
+
+struct Fatal {
+  int signal;
+  const char* name;
+};
+constexpr Fatal kFatal[] = {{SIGSEGV, "SIGSEGV"}, {SIGABRT, "SIGABRT"}, {SIGFPE, "SIGFPE"}, {SIGILL, "SIGILL"}};
+
+void Say(const char* text) {
+  if (write(STDERR_FILENO, text, std::strlen(text)) < 0) return;
+}
+
+/// A signal handler, called once: then the signal ends the process.
+void ExplainCrash(int signal) {
+  if (at_work != nullptr) {
+    const auto* row =
+        std::find_if(std::begin(kFatal), std::end(kFatal), [=](const Fatal& f) { return f.signal == signal; });
+    for (const char* piece : {"error: ", at_work, " crashed: ", row->name, "\n"}) Say(piece);
+  }
+  raise(signal);
+}
+
+/// A stack for signal handlers of this thread: its own may be what has overflown.
+class SignalStack {
+ public:
+  SignalStack() : memory_(std::make_unique<char[]>(kSize)) {
+    stack_t stack{};
+    stack.ss_sp = memory_.get();
+    stack.ss_size = kSize;
+    sigaltstack(&stack, nullptr);
+  }
+  ~SignalStack() {
+    stack_t none{};
+    none.ss_flags = SS_DISABLE;
+    sigaltstack(&none, nullptr);
+  }
+  SignalStack(const SignalStack&) = delete;
+  SignalStack& operator=(const SignalStack&) = delete;
+
+ private:
+  static constexpr std::size_t kSize = std::size_t{64} * 1024;
+  std::unique_ptr<char[]> memory_;
+};
+
+/// In a process that was just forked. A law's dies with the thread that forked it.
+void OnFork() {
+  if (at_work != nullptr) MarkAsForkedByLaw();
+}
+
+void PrepareProcess() {
+  static const bool prepared = [] {
+    for (const Fatal& fatal : kFatal) {
+      struct sigaction before {};
+      if (sigaction(fatal.signal, nullptr, &before) != 0 || before.sa_handler != SIG_DFL) continue;  // a sanitizer's
+      struct sigaction action {};
+      action.sa_handler = ExplainCrash;
+      action.sa_flags = static_cast<int>(SA_RESETHAND | SA_ONSTACK | SA_NODEFER);
+      sigaction(fatal.signal, &action, nullptr);
+    }
+    pthread_atfork(nullptr, nullptr, OnFork);
+    return true;
+  }();
+  (void)prepared;
+  thread_local const SignalStack stack;
+}
+
+}  // namespace
+
+// --- the last resort ----------------------------------------------------------------------------------
+
+/// Ends the process if a law goes far beyond its limits. A thread of its own looks now and then: it needs nothing that
+/// a law may hold, such as Python's interpreter.
+class LastResort {
+ public:
+  static LastResort& Get() {
+    static LastResort& last_resort = *new LastResort;  // its thread lives as long as the process
+    return last_resort;
+  }
+  void Begin(LawAtWork& law) {
+    const std::lock_guard lock(mutex_);
+    const double grace_s = std::max(1.0, kGrace * law.limits_.limit_s);
+    law.until_ns_ = seen_ns_ + static_cast<std::int64_t>((law.limits_.limit_s + grace_s) * 1e9);
+    laws_.push_back(&law);
+  }
+  void End(LawAtWork& law) {
+    const std::lock_guard lock(mutex_);
+    std::erase(laws_, &law);
+  }
+
+ private:
+  static constexpr double kGrace = 0.5, kMoreMemory_mb = 256;
+  static constexpr auto kLookEvery = 20ms, kLongestGap = 200ms;
+
+  LastResort() {
+    std::thread([this] { Watch(); }).detach();
+  }
+
+  [[noreturn]] void Watch() {
+    auto last = std::chrono::steady_clock::now();
+    for (;;) {
+      std::this_thread::sleep_for(kLookEvery);
+      const auto now = std::chrono::steady_clock::now();
+      const auto gap = std::min<std::chrono::nanoseconds>(now - std::exchange(last, now), kLongestGap);
+      const std::lock_guard lock(mutex_);
+      seen_ns_ += gap.count();
+      const bool has_limit = std::ranges::any_of(laws_, [](const auto* law) { return law->limits_.memory_mb > 0; });
+      const double memory_mb = has_limit ? OwnMemory_mb() : 0;
+      for (const LawAtWork* law : laws_) Look(*law, memory_mb);
+    }
+  }
+
+  void Look(const LawAtWork& law, double memory_mb) const {
+    const LawLimits& limits = law.limits_;
+    if (limits.limit_s > 0 && seen_ns_ > law.until_ns_)
+      EndProcess(fmt::format("error: {} took longer than {} = {:g} s and cannot be interrupted: the process ends\n",
+                             law.who_, limits.source, limits.limit_s));
+    if (limits.memory_mb > 0 && memory_mb > (1 + kGrace) * limits.memory_mb + kMoreMemory_mb)
+      EndProcess(fmt::format(
+          "error: {} needs more than control.python_memory_mb = {} and cannot be interrupted: the process ends\n",
+          law.who_, limits.memory_mb));
+  }
+
+  [[noreturn]] static void EndProcess(const std::string& words) {
+    Say(words.c_str());
+    _exit(1);
+  }
+
+  std::mutex mutex_;
+  std::int64_t seen_ns_ = 0;  // how long this thread has been looking
+  std::vector<const LawAtWork*> laws_;
+};
+
+LawAtWork::LawAtWork(const std::string& who, const LawLimits& limits) : who_(who), limits_(limits), before_(at_work) {
+  PrepareProcess();
+  LastResort::Get().Begin(*this);
+  at_work = who_.c_str();
+}
+
+LawAtWork::~LawAtWork() {
+  if (IsForkedByLaw()) _exit(0);  // it was forked by the law, and is none of ours
+  LastResort::Get().End(*this);
+  at_work = before_;
+}
+
+LawLimits LimitsOfLaws(const Experiment& experiment) {
+  // Less than run.agent_timeout_s, so that the law is interrupted first and the message says where it hangs.
+  constexpr double kTimeShare = 0.8;
+  return {kTimeShare * experiment.run.agent_timeout_s, "0.8 run.agent_timeout_s", experiment.control.python_memory_mb};
+}
+
+void MarkAsForkedByLaw() {
+  forked_by_law = true;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+}
+
+bool IsForkedByLaw() { return forked_by_law; }
+
+double OwnMemory_mb() {
+  std::uint64_t size = 0, resident = 0, shared = 0;
+  std::ifstream("/proc/self/statm") >> size >> resident >> shared;
+  static const auto page = static_cast<double>(sysconf(_SC_PAGESIZE));
+  return resident > shared ? static_cast<double>(resident - shared) * page / 1e6 : 0;
+}
+
+}  // namespace mascot
