@@ -22,16 +22,19 @@ void Prepare(const Leaving& leaving) {
   leaving_code = leaving.code;
   leaving_sweeps = leaving.sweeps ? 1 : 0;
   std::snprintf(leaving_code_text, sizeof leaving_code_text, "%d", leaving.code);
-  leaving_line_size = std::snprintf(leaving_line, sizeof leaving_line,
-                                    "%.48s: the DDS library does not end: leaving by force\n", leaving.process.c_str());
+  leaving_line_size = !leaving.says_so ? 0
+                                       : std::snprintf(leaving_line, sizeof leaving_line,
+                                                       "%.48s: the DDS library does not end: leaving by force\n",
+                                                       leaving.process.c_str());
 }
 
 /// A signal handler. Fast DDS still maps the segments that this process has read; exec unmaps them, and closing all
 /// files releases its own locks.
 void LeaveByForce(int) {
   alarm(0);
-  const ssize_t written = write(STDERR_FILENO, leaving_line, static_cast<std::size_t>(leaving_line_size));
-  if (leaving_sweeps != 0 && written != 0) {
+  const auto size = static_cast<std::size_t>(leaving_line_size);
+  const bool lives = size == 0 || write(STDERR_FILENO, leaving_line, size) != 0;
+  if (leaving_sweeps != 0 && lives) {
     close_range(STDERR_FILENO + 1, ~0U, 0);
     execl("/proc/self/exe", "sweep", kSweep, leaving_code_text, nullptr);
   }

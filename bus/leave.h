@@ -11,6 +11,7 @@ struct Leaving {
   int code = 0;
   std::string process;      ///< its name
   bool on_signals = false;  ///< SIGINT, SIGTERM and SIGHUP, too, end it by force
+  bool says_so = true;      ///< it prints that the DDS library does not end
   bool sweeps = false;      ///< it replaces itself by a process that sweeps (kSweep), since nobody else does
 };
 

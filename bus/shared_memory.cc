@@ -9,12 +9,15 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -44,13 +47,68 @@ bool IsOurs(const std::string& path) {
   return lstat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode) && info.st_uid == geteuid();
 }
 
-/// Whether a run in `domain` owns the port of this name; true for segments, whose names are random.
-bool IsSegmentOrPortOf(int domain, const std::string& name) {
+/// The port of this name; 0: it is a segment, whose name is random.
+int PortOf(const std::string& name) {
   constexpr std::string_view kPort = "fastrtps_port";
-  if (!name.starts_with(kPort)) return true;
   int port = 0;
-  std::from_chars(name.data() + kPort.size(), name.data() + name.size(), port);
-  return domain != kNoDomain && FirstPort(domain) <= port && port < FirstPort(domain + kDomainsPerRun);
+  if (name.starts_with(kPort)) std::from_chars(name.data() + kPort.size(), name.data() + name.size(), port);
+  return port;
+}
+
+/// Whether somebody has reserved this byte of a file (Reserve). Asks, and takes nothing.
+bool IsReserved(int file, int byte) {
+  struct flock place {};
+  place.l_type = F_WRLCK;
+  place.l_whence = SEEK_SET;
+  place.l_start = byte;
+  place.l_len = 1;
+  return ::fcntl(file, F_OFD_GETLK, &place) != 0 || place.l_type != F_UNLCK;
+}
+
+/// Reserves a byte of a file, which can be locked for reading only; so everybody locks first, and then asks whether a
+/// lock for writing would be in somebody's way. Returns whether nobody else has it.
+bool Reserve(int file, int byte) {
+  struct flock place {};
+  place.l_type = F_RDLCK;
+  place.l_whence = SEEK_SET;
+  place.l_start = byte;
+  place.l_len = 1;
+  if (::fcntl(file, F_OFD_SETLK, &place) != 0) throw std::runtime_error(std::strerror(errno));
+  return !IsReserved(file, byte);
+}
+
+/// /dev/shm, to reserve domains in.
+class Reservations {
+ public:
+  Reservations() : folder_(::open(kFolder, O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {}
+  /// Whether a run may have the port beyond its own: that of a domain, or one that the domain before it runs over into.
+  bool IsOfARun(int port) const {
+    const int domain = DomainOf(port);
+    return !folder_.is_open() || IsReserved(folder_.number(), domain) || IsReserved(folder_.number(), domain - 1);
+  }
+  /// Keeps runs from it for as long as this object lives. Returns whether none has it.
+  bool Take(int port) const {
+    const int domain = DomainOf(port);
+    return folder_.is_open() && Reserve(folder_.number(), domain) && Reserve(folder_.number(), domain - 1);
+  }
+
+ private:
+  static int DomainOf(int port) { return (port - kPortBase) / kPortsPerDomain; }
+  Descriptor folder_;
+};
+
+/// Whether the name is a segment's, or that of a port of a run in `domain`.
+bool IsSegmentOrPortOf(int domain, const std::string& name) {
+  const int port = PortOf(name);
+  return port == 0 || (domain != kNoDomain && FirstPort(domain) <= port && port < FirstPort(domain + kDomainsPerRun));
+}
+
+/// Whether it is a port beyond those of a run in `domain`, which its participants have taken if they could not open
+/// their own: Fast DDS tries two ports more each time (mutation_tries in bus/qos.cc).
+bool IsPortBeyond(int domain, const std::string& name) {
+  constexpr int kMostTries = 1000;
+  const int first = FirstPort(domain + kDomainsPerRun), port = PortOf(name);
+  return domain != kNoDomain && first <= port && port < first + 2 * kMostTries;
 }
 
 /// Paths in a folder; those that can be read, if it vanishes with its process.
@@ -67,8 +125,9 @@ std::map<std::string, std::vector<std::string>> Segments(int domain) {
   std::map<std::string, std::vector<std::string>> segments;
   for (const fs::path& path : PathsIn(kFolder)) {
     const std::string name = SegmentOf(path.filename());
-    if (name.starts_with("fastrtps_") && IsSegmentOrPortOf(domain, name) && IsOurs(path))
-      segments[name].push_back(path);
+    const bool is_ours =
+        IsSegmentOrPortOf(domain, name) || (IsPortBeyond(domain, name) && !Reservations().IsOfARun(PortOf(name)));
+    if (name.starts_with("fastrtps_") && is_ours && IsOurs(path)) segments[name].push_back(path);
   }
   return segments;
 }
@@ -128,6 +187,12 @@ bool IsLocked(const std::string& path) {
 
 }  // namespace
 
+Descriptor ReserveInSharedMemory(int domain) {
+  Descriptor folder(::open(kFolder, O_RDONLY | O_DIRECTORY));  // without O_CLOEXEC: children inherit it
+  if (!folder.is_open()) throw std::runtime_error(std::strerror(errno));
+  return Reserve(folder.number(), domain) ? std::move(folder) : Descriptor();
+}
+
 std::vector<std::string> StaleSharedMemory(int domain) {
   const auto segments = Segments(domain);  // before FilesInUse(): what is made later is not stale
   if (segments.empty()) return {};
@@ -142,10 +207,15 @@ std::vector<std::string> StaleSharedMemory(int domain) {
 void SweepSharedMemory(int domain) {
   const std::vector<std::string> once = StaleSharedMemory(domain);
   if (once.empty()) return;
-  poll(nullptr, 0, 50);  // milliseconds: the kernel shows a new file a moment before its maker has it open
+  poll(nullptr, 0, 50);             // milliseconds: the kernel shows a new file a moment before its maker has it open
+  const Reservations reservations;  // so that no run begins to use a port beyond ours
+  const auto may_remove = [&](const std::string& file) {
+    const std::string name = SegmentOf(fs::path(file).filename());
+    return IsSegmentOrPortOf(domain, name) || reservations.Take(PortOf(name));
+  };
   const std::vector<std::string> again = StaleSharedMemory(domain);
   for (const std::string& file : once)
-    if (std::ranges::find(again, file) != again.end()) unlink(file.c_str());
+    if (std::ranges::find(again, file) != again.end() && may_remove(file)) unlink(file.c_str());
 }
 
 }  // namespace mascot

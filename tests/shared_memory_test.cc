@@ -102,12 +102,31 @@ TEST(SharedMemory, ASemaphoreOfAPortIsNotStaleWhileItsMakerMapsItUnderAnotherNam
 TEST(SharedMemory, PortsOfOtherDomainsAreLeftToThoseWhoLockThem) {
   const std::string path = "/dev/shm/fastrtps_port" + std::to_string(FirstPort(kDomainOfOthers));
   close(open(path.c_str(), O_CREAT | O_WRONLY, 0644));
+  const Descriptor reserved = ReserveInSharedMemory(kDomainOfOthers);
+  ASSERT_TRUE(reserved.is_open());
+  EXPECT_FALSE(ReserveInSharedMemory(kDomainOfOthers).is_open()) << "two runs have one domain";
   for (const int other : {kNoDomain, kDomainOfOthers - kDomainsPerRun, kDomainOfOthers + 1}) {
     SweepSharedMemory(other);
     EXPECT_TRUE(std::filesystem::exists(path)) << other;
   }
   SweepSharedMemory(kDomainOfOthers);
   EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+TEST(SharedMemory, PortsBeyondItsOwnThatARunHasLeftAreRemovedUnlessARunHasThem) {
+  constexpr int kDomainOfHalfMade = 220, kNext = kDomainOfHalfMade + kDomainsPerRun;
+  const std::string path = "/dev/shm/fastrtps_port" + std::to_string(FirstPort(kNext + 1) + 12);
+  close(open(path.c_str(), O_CREAT | O_WRONLY, 0644));
+  {
+    const Descriptor reserved = ReserveInSharedMemory(kNext);  // the run of this domain runs over into the next
+    SweepSharedMemory(kDomainOfHalfMade);
+    EXPECT_TRUE(std::filesystem::exists(path));
+  }
+  SweepSharedMemory(kNoDomain);
+  EXPECT_TRUE(std::filesystem::exists(path));
+  SweepSharedMemory(kDomainOfHalfMade);
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_TRUE(ReserveInSharedMemory(kNext).is_open()) << "it was given back";
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "orchestrator/engines/dds/domain_lock.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/socket.h>
 
@@ -14,6 +13,7 @@
 #include <stdexcept>
 
 #include "bus/ports.h"
+#include "bus/shared_memory.h"
 
 namespace mascot {
 namespace {
@@ -32,21 +32,11 @@ Descriptor TakeName(int domain) {
 }
 
 /// Reserves the domain in /dev/shm, where Fast DDS names files by domain and port, whatever the network namespace, as
-/// long as the result is open; it is not if another run has it. A folder can be locked for reading only; so everybody
-/// locks first, and then asks whether a lock for writing would be in somebody's way.
-Descriptor TakeSharedMemory(int domain) {
-  Descriptor folder(::open("/dev/shm", O_RDONLY | O_DIRECTORY));  // without O_CLOEXEC: children inherit it
-  struct flock place {};
-  place.l_whence = SEEK_SET;
-  place.l_start = domain;
-  place.l_len = 1;
-  place.l_type = F_RDLCK;
-  struct flock other = place;
-  other.l_type = F_WRLCK;
-  if (!folder.is_open() || ::fcntl(folder.number(), F_OFD_SETLK, &place) != 0 ||
-      ::fcntl(folder.number(), F_OFD_GETLK, &other) != 0)
-    throw std::runtime_error(fmt::format("cannot reserve DDS domain {} in /dev/shm: {}", domain, std::strerror(errno)));
-  return other.l_type == F_UNLCK ? std::move(folder) : Descriptor();
+/// long as the result is open; it is not if another run has it.
+Descriptor TakeSharedMemory(int domain) try {
+  return ReserveInSharedMemory(domain);
+} catch (const std::runtime_error& failure) {
+  throw std::runtime_error(fmt::format("cannot reserve DDS domain {} in /dev/shm: {}", domain, failure.what()));
 }
 
 /// The process that reserved the domain; nothing if it does not answer.
