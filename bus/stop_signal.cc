@@ -1,5 +1,6 @@
 #include "bus/stop_signal.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <pthread.h>
 #include <signal.h>
@@ -39,8 +40,14 @@ int Checked(int fd, const char* what) {
 StopSignal::StopSignal() {
   const sigset_t set = Signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  signals_ = Checked(signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK), "signalfd");
-  wakeups_ = Checked(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK), "eventfd");
+  Open();
+}
+
+/// Makes the descriptors that are not there, or not any more.
+void StopSignal::Open() {
+  const sigset_t set = Signals();
+  if (fcntl(signals_, F_GETFD) < 0) signals_ = Checked(signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK), "signalfd");
+  if (fcntl(wakeups_, F_GETFD) < 0) wakeups_ = Checked(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK), "eventfd");
 }
 
 StopSignal::~StopSignal() {
@@ -54,19 +61,31 @@ StopSignal::~StopSignal() {
 }
 
 int StopSignal::Within(std::chrono::nanoseconds timeout) {
-  pollfd fds[] = {{signals_, POLLIN, 0}, {wakeups_, POLLIN, 0}};
-  const auto left = std::max(timeout, std::chrono::nanoseconds::zero());
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(left);
-  const timespec limit{seconds.count(), (left - seconds).count()};
-  if (ppoll(fds, 2, &limit, nullptr) <= 0) return 0;
-  signalfd_siginfo info;
-  if ((fds[0].revents & POLLIN) && read(signals_, &info, sizeof info) == sizeof info)
-    return info.ssi_signo == SIGCHLD ? 0 : static_cast<int>(info.ssi_signo);
-  eventfd_t count;
-  eventfd_read(wakeups_, &count);
-  return 0;
+  constexpr std::chrono::nanoseconds kLongest = std::chrono::milliseconds(500);  // descriptors may have been closed
+  for (auto left = std::max(timeout, std::chrono::nanoseconds::zero());; left -= kLongest) {
+    pollfd fds[] = {{signals_, POLLIN, 0}, {wakeups_, POLLIN, 0}};
+    const timespec limit{0, std::min(left, kLongest).count()};
+    const int ready = ppoll(fds, 2, &limit, nullptr);
+    if (ready > 0 && ((fds[0].revents | fds[1].revents) & POLLNVAL) != 0) {
+      Open();
+      ppoll(nullptr, 0, &limit, nullptr);
+    }
+    signalfd_siginfo info;
+    if (ready > 0 && (fds[0].revents & POLLIN) != 0 && read(signals_, &info, sizeof info) == sizeof info)
+      return info.ssi_signo == SIGCHLD ? 0 : static_cast<int>(info.ssi_signo);
+    if (ready > 0 && (fds[1].revents & POLLIN) != 0) {
+      eventfd_t count;
+      eventfd_read(wakeups_, &count);
+      woken_ = false;
+      return 0;
+    }
+    if (woken_.exchange(false) || ready < 0 || left <= kLongest) return 0;
+  }
 }
 
-void StopSignal::Wake() { eventfd_write(wakeups_, 1); }
+void StopSignal::Wake() {
+  woken_ = true;
+  eventfd_write(wakeups_, 1);
+}
 
 }  // namespace mascot

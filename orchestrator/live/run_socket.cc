@@ -24,7 +24,7 @@ using namespace std::chrono_literals;
 
 /// How long a client may take to ask, and to take its answer.
 constexpr auto kClientLimit = 2s;
-constexpr int kRoomPause_ms = 100;
+constexpr int kRoomPause_ms = 100, kLookPause_ms = 500;
 
 LocalLines::Time ClientDeadline() { return std::chrono::steady_clock::now() + kClientLimit; }
 
@@ -51,26 +51,30 @@ RunSocket::RunSocket(const Experiment& experiment, const std::string& folder, co
       engine_(engine),
       page_(page),
       helm_(helm),
-      socket_(MakeLocalSocket(SOCK_CLOEXEC)),
+      socket_(MakeLocalSocket(SOCK_CLOEXEC | SOCK_NONBLOCK)),
       asker_(helm) {
   mascot::Listen(socket_);
-  thread_ = std::jthread([this] { Listen(); });
+  thread_ = std::jthread([this](const std::stop_token& over) { Listen(over); });
 }
 
 RunSocket::~RunSocket() {
+  thread_.request_stop();
   ::shutdown(socket_.number(), SHUT_RDWR);  // Listen() sees it, and returns
 }
 
-void RunSocket::Listen() {
-  for (;;) {
+void RunSocket::Listen(const std::stop_token& over) {
+  while (!over.stop_requested()) {
+    pollfd socket{socket_.number(), POLLIN, 0};
+    if (::poll(&socket, 1, kLookPause_ms) <= 0) continue;
+    if ((socket.revents & POLLNVAL) != 0) return;  // a law has closed it
     Descriptor client(::accept4(socket_.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     if (client.is_open()) {
       const auto peer = PeerOf(client);
       if (peer && IsTrusted(*peer)) Serve(std::move(client));
-    } else if (errno == EINVAL) {
-      return;
     } else if (HasNoRoom(errno)) {
       ::poll(nullptr, 0, kRoomPause_ms);
+    } else if (errno == EINVAL || errno == EBADF || errno == ENOTSOCK) {
+      return;
     }
   }
 }

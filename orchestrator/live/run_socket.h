@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -27,7 +28,7 @@ class RunSocket {
   RunSocket& operator=(const RunSocket&) = delete;
 
  private:
-  void Listen();
+  void Listen(const std::stop_token& over);
   void Serve(Descriptor client);
   std::string WhoWeAre() const;
 
