@@ -19,7 +19,11 @@ template <class Visit>
 void ForEachFrequency(const Following& law, const Visit& visit) {
   const double slow = std::min(std::sqrt(law.p), law.p / (law.d + law.p * law.headway_s + 1e-9));
   const double step = 0.2 / (law.h * (law.delay_ticks + law.message_ticks + 1)), end = std::numbers::pi / law.h;
-  for (double w = 1e-3 * std::min(slow, end); w < end; w += std::min(0.02 * w, step)) visit(w);
+  double w = 1e-3 * std::min(slow, end);
+  while (w < end) {
+    visit(w);
+    w += std::min(0.02 * w, step);
+  }
   visit(end);
 }
 
