@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -56,7 +57,8 @@ constexpr const char* kTwentyOnAPath =
     "[0.38, -3.84, 17.79], [-1.7, 1.23, 19.32], [2.88, 2.77, 20.84], [-1.97, 1.13, 22.37], [-0.47, 4.17, 23.89], "
     "[-3.66, -4.6, 25.42], [-0.97, 0.29, 26.95], [-2.97, -0.41, 28.47], [-2.38, -4.38, 30.0]";
 
-/// Agents end no farther apart than is predicted, and come there when it is predicted, within two ticks or 1 %.
+/// Agents end no farther apart than is predicted, and come there when it is predicted, within two ticks or 1 %, about
+/// the predicted point.
 void ExpectAgreementAsPredicted(const LawRun& run, const std::string& what) {
   const auto& law = run.Law();
   EXPECT_EQ(run.prediction.silent, "") << what;
@@ -72,6 +74,8 @@ void ExpectAgreementAsPredicted(const LawRun& run, const std::string& what) {
     return;
   }
   EXPECT_EQ(law["bounds"]["agreement_time_s"], "equal") << what;
+  if (run.prediction.value_m)
+    EXPECT_LE(run.summary["consensus"]["deviation"]["value_m"].get<double>(), run.Predicted("band_m")) << what;
   ASSERT_TRUE(IsNumber(law["agreement_time_s"])) << what << ": " << time_s;
   EXPECT_NEAR(run.Measured("agreement_time_s"), time_s, std::max(2.01 * run.experiment.period_s(), 0.01 * time_s))
       << what;
@@ -203,7 +207,7 @@ TEST(HeldCommands, EstimatesApproachTheMinimumAsPredictedFromAnyStart) {
 
 // --- when it holds ----------------------------------------------------------------------------------------
 
-constexpr const char* kThree = "[0, 0, 1], [5, 0, 2], [9, 3, 3]";
+constexpr const char* kThreeApart = "[0, 0, 1], [5, 0, 2], [9, 3, 3]";
 
 TEST(HeldCommands, TheLagOfFollowersAtTheEndIsThatOfTheStart) {
   RandomTeams teams(6);
@@ -221,7 +225,7 @@ TEST(HeldCommands, ARunThatEndsBeforeWhatTheoryExpectsIsWarnedOf) {
         "name = 'finite_time'\nform = 'sign'\ngain = 0.2\n", "name = 'velocity_consensus'\n",
         "name = 'pursuit_evasion'\nleader = 1\ncapture_radius_m = 0.1\n", "name = 'gradient_tracking'\n"}) {
     const auto warnings = [&](double duration_s) {
-      const std::string toml = Placed(kThree, duration_s, "topology = 'complete'", law);
+      const std::string toml = Placed(kThreeApart, duration_s, "topology = 'complete'", law);
       return Predict(LoadExperiment(Section::FromText(toml, "test.toml"), "test")).warnings;
     };
     EXPECT_THAT(warnings(0.1), Contains(HasSubstr("run.duration_s: the run ends after 0.1 s"))) << law;
@@ -231,7 +235,7 @@ TEST(HeldCommands, ARunThatEndsBeforeWhatTheoryExpectsIsWarnedOf) {
 
 TEST(HeldCommands, ARunThatIsLongerThanTheExactTimeIsNotWarnedOfABound) {
   // The bound of Wang & Xiao is several times as long as these agents need.
-  const LawRun run(Placed(kThree, 6, "topology = 'complete'", "name = 'finite_time'\n"));
+  const LawRun run(Placed(kThreeApart, 6, "topology = 'complete'", "name = 'finite_time'\n"));
   EXPECT_LT(run.Predicted("agreement_time_s"), 6);
   EXPECT_THAT(run.prediction.warnings, IsEmpty());
 }
@@ -239,7 +243,7 @@ TEST(HeldCommands, ARunThatIsLongerThanTheExactTimeIsNotWarnedOfABound) {
 TEST(HeldCommands, OfABoundTheWarningSaysThatItIsOne) {
   // Two pursuers: the first captures after at most (5 - 0.1) / 0.4 s, and perhaps sooner.
   const auto warnings = [](double duration_s) {
-    return LawRun(Placed(kThree, duration_s, "topology = 'complete'",
+    return LawRun(Placed(kThreeApart, duration_s, "topology = 'complete'",
                          "name = 'pursuit_evasion'\nleader = 1\ncapture_radius_m = 0.1\n"))
         .prediction.warnings;
   };
@@ -279,6 +283,18 @@ TEST(HeldCommands, ARelayThatIsHeldTooLongIsNotPromisedToMeet) {
   EXPECT_LT(slow.prediction.minmax_edges.size(), 2u);
   EXPECT_THAT(slow.prediction.warnings, Contains(HasSubstr("because commands are held for 0.5 s; a higher rate, a "
                                                            "smaller beta or law.boundary_layer does it")));
+}
+
+TEST(HeldCommands, ARunOfMinMaxIsLongEnoughOnceTheChildrenAreThere) {
+  const std::string law = "beta = [0.5, 2.0, 3.0]\n";
+  const LawRun whole(MinMax(100, 20, law));
+  double there_s = 0;
+  for (const auto& edge : whole.summary["consensus"]["minmax_edges"])
+    there_s = std::max(there_s, edge["time_s"].get<double>());
+  ASSERT_LT(there_s + 0.05, *whole.prediction.minmax_time_s) << "within 0.05 m, which is before the closed form";
+  EXPECT_THAT(LawRun(MinMax(100, there_s + 0.05, law)).prediction.warnings, IsEmpty());
+  EXPECT_THAT(LawRun(MinMax(100, there_s - 0.05, law)).prediction.warnings,
+              Contains(HasSubstr("run.duration_s: the run ends after")));
 }
 
 TEST(HeldCommands, WaypointsAreTimedByTheFlightAndNotByOneLeg) {

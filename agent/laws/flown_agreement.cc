@@ -109,7 +109,8 @@ LawTheory PredictAgreement(const Experiment& experiment, const WantedOfAll& want
     band_m = std::max(band_m, 1.1 * other.band_m + h * other.fastest);
     if (!time_s || !other.time_s || std::abs(*time_s - *other.time_s) > std::max(2.01 * h, 0.01 * *time_s))
       time_s.reset();
-    if ((other.mean_W - own.mean_W).cwiseAbs().maxCoeff() > h * own.fastest + 1e-6) theory.value_m.reset();
+    if ((other.mean_W - own.mean_W).cwiseAbs().maxCoeff() > std::max(meter.tolerance_m(), h * own.fastest))
+      theory.value_m.reset();
   }
   theory.figures = {
       {.values = {time_s}, .why = time_s ? "" : "agents do not meet exactly: commands are held for a tick"},

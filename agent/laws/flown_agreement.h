@@ -33,8 +33,8 @@ std::vector<HeardEdge> EdgesOf(const Graph& graph);
 /// The time is that of the flight, if the others take as long, within two ticks or 1 %. If there is none, a warning
 /// says how far apart agents tremble. The distance in the end is at most a tenth, and a tick's way, more than in any
 /// flight. The meeting point is the mean of all agents at the end of the run, or when they are together if it ends
-/// before; nothing where rounding moves it by more than a tick's way. Silent if all this is more work than
-/// kMostFlownEdges.
+/// before; nothing where rounding moves it by more than what counts as together, and a tick's way. Silent if all this
+/// is more work than kMostFlownEdges.
 LawTheory PredictAgreement(const Experiment& experiment, const WantedOfAll& want, double longest_s, double share,
                            double least_m);
 
