@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 
 #include "orchestrator/team/ideal_team.h"
@@ -15,7 +16,7 @@ std::optional<std::vector<PursuitMeter::Edge>> FlyPursuit(const Experiment& expe
   PursuitMeter meter(experiment);
   meter.Add(team.motions());
   try {
-    for (double tick = 0; tick < ticks; ++tick) {
+    for (auto left = static_cast<std::int64_t>(std::ceil(ticks)); left > 0; --left) {
       team.Step();
       meter.Add(team.motions());
     }
