@@ -54,10 +54,6 @@ std::string UnstableStep(const Graph& graph, const std::vector<QuadraticCost>& c
   return fmt::format("law.step: unstable: expected below {:.4g} with these costs and this graph", stable);
 }
 
-double SlowestGradientRate(const Experiment& experiment, double radius) {
-  return -std::log(radius) * experiment.control.rate_hz;
-}
-
 void ApproachTicks::Add(std::int64_t tick, double largest_m) {
   newest_ = tick;
   newest_m_ = largest_m;
@@ -127,7 +123,11 @@ GradientApproach ApproachOf(const Experiment& experiment, const std::vector<Quad
     ticks.Add(tick, errors.largest_m());
     rate_per_s = ticks.rate_per_s(experiment.period_s());
     const bool for_good = tick == experiment.ticks() || tick - ticks.last_near() > ticks.last_near() / 4 + 100;
-    if (rate_per_s && for_good) return {.rate_per_s = *rate_per_s, .from_s = experiment.time_s(ticks.last_near() + 1)};
+    if (rate_per_s && for_good) {
+      const double slowest = -std::log(radius) * experiment.control.rate_hz;
+      return {.rate = {.values = {*rate_per_s}, .beside = fmt::format("slowest mode {:.4g}", slowest)},
+              .holds_from = HoldsFrom{experiment.time_s(ticks.last_near() + 1)}};
+    }
     errors.Iterate();
   }
   return {.silent = "estimates approach the minimum for so many ticks that they are not flown ahead"};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,15 +21,11 @@ double GradientRadius(const Graph& graph, const std::vector<QuadraticCost>& cost
 /// The warning of a law.step with which that is 1 or more.
 std::string UnstableStep(const Graph& graph, const std::vector<QuadraticCost>& costs, double step);
 
-/// The rate at which estimates approach the minimum in the long run, from any start (1/s), for a GradientRadius()
-/// below 1.
-double SlowestGradientRate(const Experiment& experiment, double radius);
-
 /// How estimates approach the minimum from where the experiment's agents start.
 struct GradientApproach {
-  std::string silent = {};  ///< why there is no rate; empty: there is
-  double rate_per_s = 0;    ///< as GradientMeter measures it, by the end of the run or later
-  double from_s = 0;        ///< from when on it can be measured
+  std::string silent = {};                   ///< why there is no rate; empty: there is
+  PredictedFigure rate = {};                 ///< 1/s: as GradientMeter measures it, by the end of the run or later
+  std::optional<HoldsFrom> holds_from = {};  ///< from when on it can be measured
 };
 /// Iterates the errors, which obey the same equations as the estimates, tick by tick.
 GradientApproach ApproachOf(const Experiment& experiment, const std::vector<QuadraticCost>& costs, double step,

@@ -8,8 +8,6 @@
 // (sum Q)^-1 sum Q b at a linear rate: that of the slowest mode that the start excites of
 //   x+ = W x - step y,  y+ = W y + Q (x+ - x)
 // Each agent starts at its own place, and flies to its estimate: v_i = p_gain (x_i - p_i).
-#include <fmt/format.h>
-
 #include <array>
 #include <memory>
 #include <utility>
@@ -113,11 +111,10 @@ LawTheory PredictGradientTracking(const Experiment& experiment) {
   if (experiment.law.axes == Axes::kXy) value_W.z() = MeanStart(experiment).z();
   const GradientApproach approach = ApproachOf(experiment, params.costs, params.step, radius);
   if (!approach.silent.empty()) return {.silent = approach.silent, .value_m = value_W};
-  PredictedFigure rate{.values = {approach.rate_per_s}};
-  rate.beside = fmt::format("slowest mode {:.4g}", SlowestGradientRate(experiment, radius));
-  return {.figures = {rate, NotPredicted("what is known is how fast it falls, rate_per_s, and not from where")},
-          .value_m = value_W,
-          .holds_from = HoldsFrom{approach.from_s}};
+  return {
+      .figures = {approach.rate, NotPredicted("what is known is how fast it falls, rate_per_s, and not from where")},
+      .value_m = value_W,
+      .holds_from = approach.holds_from};
 }
 
 std::unique_ptr<LawMeter> MeterOfGradientTracking(const Experiment& experiment, std::span<const int> ids) {

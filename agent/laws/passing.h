@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 
 #include "experiment/experiment.h"
 
@@ -17,6 +18,15 @@ inline bool FliesPast(const Experiment& experiment, const AgentConfig& flies, co
     const double along_m = std::clamp(to_W.dot(away_W), 0.0, way_m);
     return other.id != flies.id && (to_W - along_m * away_W).norm() <= radius_m * (1 + 1e-9);
   });
+}
+
+/// Whether agent `flies` hears one other only, which is the only one of `chasers`, and flies past nobody: its way is
+/// then a straight line.
+inline bool IsDrivenAway(const Experiment& experiment, const AgentConfig& flies,
+                         std::span<const AgentConfig* const> chasers, double way_m, double radius_m) {
+  const std::span<const Graph::Neighbour> heard = experiment.graph.HeardBy(flies.id);
+  return chasers.size() == 1 && heard.size() == 1 && heard[0].id == chasers[0]->id &&
+         !FliesPast(experiment, flies, *chasers[0], way_m, radius_m);
 }
 
 }  // namespace mascot

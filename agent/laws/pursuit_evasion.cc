@@ -5,8 +5,7 @@
 // along the axes of the law, and 0 within the capture radius. Each pursuer that hears the evader comes closer by at
 // least pursuer_speed - evader_speed, whatever the evader does, also while both hold their velocities for a tick T and
 // are farther apart than pursuer_speed T. Hence one captures after at most min_i (|p_e(0) - p_i(0)| - capture_radius) /
-// (pursuer_speed - evader_speed), and exactly then if a single pursuer drives the evader straight away, past nobody
-// else.
+// (pursuer_speed - evader_speed), and exactly then if a single pursuer drives it straight away, past nobody.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -94,13 +93,11 @@ LawTheory PredictPursuitEvasion(const Experiment& experiment) {
   const double way_m = LargestStart_m(experiment) + params.pursuer_speed * experiment.run.duration_s;
   const double left_m = nearest_m - params.radius_m, off_m = RoundingShare(experiment) * way_m;
   const auto ticks = [&](double m) { return std::max(0.0, std::ceil(m / (closing * h))); };
-  const double time_s = ticks(left_m + off_m) * h;
   const double closest_m = std::max(params.radius_m, nearest_m - closing * experiment.run.duration_s);
+  HoldsFrom capture{ticks(left_m + off_m) * h, Bound::kAtMost};
   const bool is_sure = ticks(left_m - off_m) == ticks(left_m + off_m);  // else rounding decides: a tick more or less
-  const bool is_exact = is_sure && pursuers.size() == 1 && experiment.graph.HeardBy(evader.id).size() == 1 &&
-                        experiment.graph.Hears(evader.id, pursuers[0]->id) &&
-                        !FliesPast(experiment, evader, *pursuers[0], params.evader_speed * time_s, params.radius_m);
-  const HoldsFrom capture{time_s, is_exact ? Bound::kEqual : Bound::kAtMost};
+  if (is_sure && IsDrivenAway(experiment, evader, pursuers, params.evader_speed * capture.time_s, params.radius_m))
+    capture.bound = Bound::kEqual;
   return {.figures = {{{capture.time_s}, capture.bound}, {{closest_m}, Bound::kAtMost, "", way_m}},
           .holds_from = capture};
 }

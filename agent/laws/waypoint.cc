@@ -109,18 +109,16 @@ class WaypointMeter final : public LawMeter {
 LawTheory PredictWaypoints(const Experiment& experiment) {
   if (std::string why = WhyNotIdeal(experiment, Wanted::kAcceleration); !why.empty()) return {.silent = std::move(why)};
   std::vector<WaypointTrack> tracks;
-  std::optional<double> there_s = 0;
   for (const AgentConfig& agent : experiment.agents) {
     const std::optional<WaypointTrack> track = IdealTrack(experiment, agent, FlightOf(agent), experiment.ticks());
     if (!track) return {.silent = "the limit of the acceleration cuts what the law asks for"};
     tracks.push_back(*track);
-    if (there_s) there_s = Later(there_s, ThereAfter(experiment, agent, FlightOf(agent)));
   }
-  LawTheory theory{.figures = Equal(WaypointTrack::FiguresOf(tracks))};
+  LawTheory theory{.figures = Equal(WaypointTrack::FiguresOf(tracks)),
+                   .holds_from = AllThereFrom(experiment, FlightOf)};
   for (PredictedFigure& figure : theory.figures)
     if (!std::ranges::all_of(figure.values, [](const auto& value) { return value.has_value(); }))
       figure.why = "the run ends before that";
-  if (there_s) theory.holds_from = HoldsFrom{*there_s};
   return theory;
 }
 

@@ -9,11 +9,12 @@ namespace {
 constexpr double kSettledShare = 0.02;
 constexpr double kArrivedByTime_m = 0.2;  // with times_s, which has no radius of its own
 
-}  // namespace
-
+/// Absent if one of them is.
 std::optional<double> Later(const std::optional<double>& a, const std::optional<double>& b) {
   return a && b ? std::optional(std::max(*a, *b)) : std::nullopt;
 }
+
+}  // namespace
 
 WaypointTrack::WaypointTrack(const WaypointParams& params, Axes axes, const Eigen::Vector3d& start_W)
     : axes_(axes), params_(params), flight_(params, axes, start_W), arrivals_s_(params.waypoints_W.size()) {}
@@ -97,6 +98,9 @@ std::optional<WaypointTrack> IdealTrack(const Experiment& experiment, const Agen
   return track;
 }
 
+namespace {
+
+/// When one agent is there.
 std::optional<double> ThereAfter(const Experiment& experiment, const AgentConfig& agent, const WaypointParams& params) {
   constexpr std::int64_t kTimesTheRun = 64, kMostTicks = 200'000;
   const std::int64_t most = std::max(experiment.ticks(), std::min(kTimesTheRun * experiment.ticks(), kMostTicks));
@@ -106,6 +110,16 @@ std::optional<double> ThereAfter(const Experiment& experiment, const AgentConfig
     if (const auto there_s = track->there_s()) return there_s;
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<HoldsFrom> AllThereFrom(const Experiment& experiment,
+                                      const WaypointParams& (*flight_of)(const AgentConfig& agent)) {
+  std::optional<double> there_s = 0;
+  for (const AgentConfig& agent : experiment.agents)
+    if (there_s) there_s = Later(there_s, ThereAfter(experiment, agent, flight_of(agent)));
+  return there_s ? std::optional(HoldsFrom{*there_s}) : std::nullopt;
 }
 
 }  // namespace mascot

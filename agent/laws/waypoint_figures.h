@@ -40,9 +40,9 @@ class WaypointTrack {
 /// limit would cut what the law asks for.
 std::optional<WaypointTrack> IdealTrack(const Experiment& experiment, const AgentConfig& agent,
                                         const WaypointParams& params, std::int64_t ticks);
-/// When such an agent is at its last waypoint, in the run or long after its end; absent: then neither, or a limit cuts.
-std::optional<double> ThereAfter(const Experiment& experiment, const AgentConfig& agent, const WaypointParams& params);
-/// The later of two times; absent if one of them is.
-std::optional<double> Later(const std::optional<double>& a, const std::optional<double>& b);
+/// From when on all such agents are at their last waypoints, in the run or long after its end; absent: then neither, or
+/// a limit cuts.
+std::optional<HoldsFrom> AllThereFrom(const Experiment& experiment,
+                                      const WaypointParams& (*flight_of)(const AgentConfig& agent));
 
 }  // namespace mascot
