@@ -95,7 +95,9 @@ TEST(Leaderless, DecaysAndSettlesAsPredicted) {
   const auto consensus = Flight("leaderless").summary["consensus"];
   const double rate_per_s = consensus["predicted"]["rate_per_s"],
                settling_s = consensus["predicted"]["settling_time_s"];
-  EXPECT_NEAR(rate_per_s, 0.3, 0.001);  // s^2 + 0.9 s + 0.18 = (s + 0.3) (s + 0.6)
+  const double slowest_per_s = consensus["predicted"]["slowest_rate_per_s"];
+  EXPECT_NEAR(slowest_per_s, 0.3, 0.001);  // s^2 + 0.9 s + 0.18 = (s + 0.3) (s + 0.6)
+  EXPECT_NEAR(rate_per_s, slowest_per_s, 0.01 * slowest_per_s) << "from this start";
   EXPECT_NEAR(consensus["rate_per_s"].get<double>(), rate_per_s, 0.01 * rate_per_s);
   EXPECT_NEAR(consensus["settling_time_s"].get<double>(), settling_s, 0.01 * settling_s);
   EXPECT_NEAR(consensus["deviation"]["settling_time_s"].get<double>(),
@@ -359,9 +361,9 @@ TEST(FormationInWind, DecaysAsFastAsItsLossyLinksAllowOnAverage) {
     const auto consensus = Flight("formation", {"run.seed=" + std::to_string(seed)}).summary["consensus"];
     EXPECT_EQ(consensus["predicted"]["on_average"], true);
     rate_per_s += consensus["rate_per_s"].get<double>() / kSeeds;
-    predicted_per_s = consensus["predicted"]["rate_per_s"];
+    predicted_per_s += consensus["predicted"]["rate_per_s"].get<double>() / kSeeds;
   }
-  EXPECT_NEAR(rate_per_s, predicted_per_s, 0.2 * predicted_per_s);  // its slowest mode swings once as it decays
+  EXPECT_NEAR(rate_per_s, predicted_per_s, 0.1 * predicted_per_s);  // a gust and a limit move the last crossings
 }
 
 TEST(SwitchingGraph, StillMeetsAtTheMean) {
