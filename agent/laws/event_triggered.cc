@@ -41,7 +41,7 @@ struct EventTriggeredParams final : LawParams {
 
 class EventTriggered final : public Law {
  public:
-  explicit EventTriggered(const AgentConfig& agent) { Adopt(agent); }
+  explicit EventTriggered(const AgentConfig& agent) : flies_as_wanted_(FliesAsWanted(agent)) { Adopt(agent); }
   Wanted wanted() const override { return Wanted::kVelocity; }
   void Adopt(const AgentConfig& agent) override {
     params_ = &ParamsOf<EventTriggeredParams>(agent.law).trigger;
@@ -60,7 +60,7 @@ class EventTriggered final : public Law {
       v_W += params_->gain * j.weight * way_W;
       next.q_m2 += j.weight * way_W.squaredNorm() / 2;
     }
-    const Eigen::Vector3d next_p_W = self.p_WB + params_->period_s * v_W;
+    const Eigen::Vector3d next_p_W = self.p_WB + params_->period_s * (flies_as_wanted_ ? v_W : self.v_WB);
     if (x_i_W_) next.squared_error_m2 = Along(axes_, *x_i_W_ - next_p_W).squaredNorm();
     speaks_ = trigger_.Fires(*params_, next) || !x_i_W_;
     if (speaks_) x_i_W_ = next_p_W;
@@ -71,8 +71,13 @@ class EventTriggered final : public Law {
   }
 
  private:
+  static bool FliesAsWanted(const AgentConfig& agent) {
+    return agent.traits().driven_by == Wanted::kVelocity && !agent.traits().rolls;
+  }
+
   const TriggerParams* params_ = nullptr;  // the experiment owns them
   Axes axes_ = Axes::kXy;
+  bool flies_as_wanted_;  // else its velocity lags, and is the best guess of where it goes in a tick
   Trigger trigger_;
   Said said_;
   std::optional<Eigen::Vector3d> x_i_W_;  // what this agent said last
