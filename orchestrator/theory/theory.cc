@@ -18,6 +18,7 @@
 #include "orchestrator/theory/obstacle_warnings.h"
 #include "orchestrator/theory/parts.h"
 #include "orchestrator/theory/short_phase.h"
+#include "orchestrator/theory/stack_rate.h"
 #include "orchestrator/theory/step_length.h"
 #include "orchestrator/theory/turning.h"
 
@@ -122,6 +123,11 @@ void PredictLaw(const Experiment& experiment, Prediction& prediction) {
     prediction.silent = "law.safety may change what the law asks for";
     return;
   }
+  if (const auto loop = FindUnstableLoop(experiment)) {
+    prediction.stable = false;
+    prediction.silent = fmt::format("the {} loop of agent {} is unstable", loop->name, loop->agent);
+    return;
+  }
   if (pursuit && !lies)
     PredictPursuit(experiment, *timeline, *pursuit, prediction);
   else if (linear && linear->listens && !lies)
@@ -163,6 +169,7 @@ Prediction PredictPhase(const Experiment& phase, const std::string& silent, bool
   WarnOfSilence(phase, prediction);
   if (std::string warning = ShortPhaseWarning(phase, is_last, prediction); !warning.empty())
     prediction.warnings.push_back(std::move(warning));
+  if (const auto loop = FindUnstableLoop(phase)) prediction.warnings.push_back(Warning(*loop, phase));
   for (std::string& warning : LiftWarnings(phase)) prediction.warnings.push_back(std::move(warning));
   for (std::string& warning : RotorFailureWarnings(phase)) prediction.warnings.push_back(std::move(warning));
   for (std::string& warning : CrowdingWarnings(phase)) prediction.warnings.push_back(std::move(warning));

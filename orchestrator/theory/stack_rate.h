@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "experiment/experiment.h"
+
+namespace mascot {
+
+/// A loop of an agent's low-level stack that does not decay at the control rate, since it computes once in a control
+/// period and holds.
+struct UnstableLoop {
+  int agent = 0;
+  std::string_view name;          ///< "attitude", "altitude", "heading", "position", "velocity"
+  std::optional<double> rate_hz;  ///< the control rate that must be exceeded; absent: it decays at none
+};
+
+/// Of all loops of all agents the one that needs the highest rate; nothing: all decay. Errors are taken to be small: no
+/// limit is reached. Loops without gains are none, and those that nothing brings off what they hold.
+std::optional<UnstableLoop> FindUnstableLoop(const Experiment& experiment);
+/// As a warning: "key: text".
+std::string Warning(const UnstableLoop& loop, const Experiment& experiment);
+
+}  // namespace mascot
