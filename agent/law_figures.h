@@ -17,10 +17,9 @@
 namespace mascot {
 
 /// What the predicted value of a figure is to the measured one.
-enum class Bound { kEqual, kAtMost, kAtLeast };
-inline constexpr EnumNames<Bound, 3> kBounds({{Bound::kEqual, "equal"},
-                                              {Bound::kAtMost, "at_most"},
-                                              {Bound::kAtLeast, "at_least"}});
+enum class Bound { kEqual, kAtMost, kAtLeast, kWithin };
+inline constexpr EnumNames<Bound, 4> kBounds(
+    {{Bound::kEqual, "equal"}, {Bound::kAtMost, "at_most"}, {Bound::kAtLeast, "at_least"}, {Bound::kWithin, "within"}});
 
 /// A figure that a law measures in a run, beyond those that all laws share (orchestrator/measuring/metrics.h), and that
 /// theory may predict.
@@ -68,7 +67,8 @@ struct PredictedFigure {
   double magnitude = 0;
   /// So much rounding may put the measured figure off. Bounds have it in them. Made by Predict(), not by laws.
   double rounding = 0;
-  std::string beside = {};  ///< what else is to be known of it, in a few words: "slowest mode 5.1"
+  std::string beside = {};       ///< what else is to be known of it, in a few words: "slowest mode 5.1"
+  FigureValues tolerances = {};  ///< of kWithin: how far from `values` the measured ones are at most; else empty
 };
 
 /// A figure that theory does not predict, because of `why`.

@@ -44,7 +44,8 @@ double LeastOfApproach_m(const Repulsion& repulsion, double start_m, double spee
 
 std::string WhyNotOf(const AgentConfig& agent, double speed, double period_s) {
   const ControlConfig& control = agent.control;
-  if (agent.traits().rolls) return "the bound is of bodies that go where they are wanted";
+  if (agent.traits().rolls || agent.traits().has_airframe)
+    return "the bound is of bodies that go where they are wanted";
   if (agent.law.axes != Axes::kXyz) return "heights are held (law.axes), and the bound is of motion in space";
   if (agent.start_s > 0 || std::isfinite(agent.stop_s)) return "agents come or go";
   if (control.max_speed_m_per_s < speed) return "control.max_speed_m_per_s cuts what the law asks for";

@@ -1,10 +1,23 @@
 #include "agent/laws/ideal.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mascot {
 
+namespace {
+
+bool LagsOrRolls(const AgentConfig& agent) { return agent.traits().has_airframe || agent.traits().rolls; }
+
+}  // namespace
+
 std::string WhyNotIdeal(const Experiment& experiment, Wanted wanted) {
+  if (std::ranges::any_of(experiment.agents, LagsOrRolls))
+    return "the closed form is of " + std::string(wanted == Wanted::kVelocity ? "single" : "double") + " integrators";
+  return WhyNotNearlyIdeal(experiment, wanted);
+}
+
+std::string WhyNotNearlyIdeal(const Experiment& experiment, Wanted wanted) {
   for (const AgentConfig& agent : experiment.agents)
     if (agent.traits().driven_by != wanted || agent.traits().rolls)
       return "the closed form is of " + std::string(wanted == Wanted::kVelocity ? "single" : "double") + " integrators";

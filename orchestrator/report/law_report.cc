@@ -25,11 +25,23 @@ std::string Text(const FigureValues& values) {
   return text.empty() ? "none" : text;
 }
 
+/// "4.5 +- 0.1", "2.1 +- 0.1, 4.3 +- 0.2, none"
+std::string BandText(const PredictedFigure& figure) {
+  std::string text;
+  for (std::size_t k = 0; k < figure.values.size(); ++k)
+    text += (k == 0 ? "" : ", ") + (figure.values[k] && figure.tolerances[k]
+                                        ? fmt::format("{:.4g} +- {:.2g}", *figure.values[k], *figure.tolerances[k])
+                                        : "none");
+  return text;
+}
+
 std::string Text(const PredictedFigure& figure) {
   const std::string_view bound = figure.bound == Bound::kEqual    ? ""
                                  : figure.bound == Bound::kAtMost ? "at most "
+                                 : figure.bound == Bound::kWithin ? "within "
                                                                   : "at least ";
-  const std::string text = std::string(bound) + Text(figure.values);
+  const bool is_band = figure.bound == Bound::kWithin;
+  const std::string text = std::string(bound) + (is_band ? BandText(figure) : Text(figure.values));
   return figure.why.empty() ? text : fmt::format("{}, because {}", text, figure.why);
 }
 
@@ -58,6 +70,12 @@ std::string TheoryText(const LawFigure& figure, const FigureValues& measured, co
   return predicted.why.empty() ? "" : "; not predicted, because " + predicted.why;
 }
 
+/// How wide a band is; null: it is none.
+Json ToleranceJson(const LawFigure& figure, const PredictedFigure& predicted) {
+  const bool is_band = Says(predicted) && predicted.bound == Bound::kWithin;
+  return is_band ? ToJson(figure, predicted.tolerances) : Json(nullptr);
+}
+
 /// What theory says of figure `k` of `law`. Where it is silent about all of them, that is the reason.
 PredictedFigure Predicted(const Experiment& experiment, const LawEntry& law, std::size_t k,
                           const Prediction& prediction) {
@@ -71,19 +89,20 @@ bool SaysSome(const Prediction& prediction) { return !prediction.law_figures.emp
 
 Json TextOrNull(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
-/// The tables by figure of what theory says: the value, its bound, what rounding may put the measured value off, and
-/// why a value is missing.
+/// The tables by figure of what theory says: the value, its bound, how wide a band is, what rounding may put the
+/// measured value off, and why a value is missing.
 struct Tables {
-  const char *value, *bound, *rounding, *reason;
+  const char *value, *bound, *tolerance, *rounding, *reason;
 };
-constexpr Tables kInSummary{"predicted", "bounds", "rounding", "reasons"};
-constexpr Tables kInCheck{"figures", "figure_bounds", "figure_rounding", "figure_reasons"};
+constexpr Tables kInSummary{"predicted", "bounds", "tolerances", "rounding", "reasons"};
+constexpr Tables kInCheck{"figures", "figure_bounds", "figure_tolerances", "figure_rounding", "figure_reasons"};
 
 void AddPredicted(const LawFigure& figure, const PredictedFigure& predicted, const Tables& tables, Json& json) {
   const std::string name(figure.name);
   const bool says = Says(predicted);
   json[tables.value][name] = says ? ToJson(figure, predicted.values) : Json(nullptr);
   json[tables.bound][name] = says ? Json(kBounds.Name(predicted.bound)) : Json(nullptr);
+  json[tables.tolerance][name] = ToleranceJson(figure, predicted);
   json[tables.rounding][name] = says ? Json(predicted.rounding) : Json(nullptr);
   json[tables.reason][name] = TextOrNull(predicted.why);
 }
@@ -119,7 +138,7 @@ std::string LawsText(const Experiment& experiment, std::span<const LawMeasured> 
 
 void AddPredictedFigures(const Experiment& experiment, const Prediction& prediction, Json& json) {
   const LawEntry& law = EntryOf(experiment.law);
-  for (const char* table : {kInCheck.value, kInCheck.bound, kInCheck.rounding, kInCheck.reason})
+  for (const char* table : {kInCheck.value, kInCheck.bound, kInCheck.tolerance, kInCheck.rounding, kInCheck.reason})
     json[table] = Json::object();
   for (std::size_t k = 0; k < law.figures.size(); ++k)
     AddPredicted(law.figures[k], Predicted(experiment, law, k, prediction), kInCheck, json);

@@ -13,13 +13,13 @@ namespace mascot {
 
 // The figures that laws measure beyond those that all laws share. `prediction` is about the law of the team.
 
-/// "laws" in summary.json: for each law its figures as measured, "predicted", "bounds", "rounding" and
-/// "reasons".
+/// "laws" in summary.json: for each law its figures as measured, "predicted", "bounds", "tolerances",
+/// "rounding" and "reasons".
 Json LawsJson(const Experiment& experiment, std::span<const LawMeasured> measured, const Prediction& prediction);
 /// The same as lines of the text summary.
 std::string LawsText(const Experiment& experiment, std::span<const LawMeasured> measured, const Prediction& prediction);
-/// Adds the predicted figures by name: "figures", "figure_bounds", "figure_rounding" and "figure_reasons" of
-/// `check --json`.
+/// Adds the predicted figures by name: "figures", "figure_bounds", "figure_tolerances", "figure_rounding" and
+/// "figure_reasons" of `check --json`.
 void AddPredictedFigures(const Experiment& experiment, const Prediction& prediction, Json& json);
 /// The same: label and text of each line of `check`.
 std::vector<std::pair<std::string, std::string>> PredictedFigureLines(const Experiment& experiment,

@@ -15,6 +15,7 @@
 #include "orchestrator/theory/flight_envelope.h"
 #include "orchestrator/theory/law_figures.h"
 #include "orchestrator/theory/links_on_average.h"
+#include "orchestrator/theory/loop_bands.h"
 #include "orchestrator/theory/obstacle_warnings.h"
 #include "orchestrator/theory/parts.h"
 #include "orchestrator/theory/short_phase.h"
@@ -164,6 +165,7 @@ Prediction PredictPhase(const Experiment& phase, const std::string& silent, bool
   prediction.silent = silent;
   prediction.safety = PredictSafety(phase);
   if (silent.empty()) PredictLaw(phase, prediction);
+  if (silent.empty()) PredictOnLoops(phase, prediction);
   PredictFirstCommand(phase, prediction);
   WarnOfFirstCommands(phase, prediction);
   WarnOfSilence(phase, prediction);

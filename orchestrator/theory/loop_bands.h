@@ -1,0 +1,15 @@
+#pragma once
+
+#include "experiment/experiment.h"
+#include "orchestrator/theory/theory.h"
+
+namespace mascot {
+
+/// Predicts, as bands, the figures of the team's law that its own theory leaves out, where bodies lag behind what the
+/// law wants: quadrotors, and bodies driven by acceleration under a law that wants velocities. Where it cannot, it says
+/// why. docs/theory.md says how, and how wide the bands are.
+void PredictOnLoops(const Experiment& experiment, Prediction& prediction);
+
+inline constexpr double kMostLoopWork = 6e5;  ///< of one flight (WorkOfLoops); five take about a second
+
+}  // namespace mascot

@@ -1,0 +1,167 @@
+// Bands that theory predicts of laws on bodies that lag: that they hold in flight, and why there are none.
+#include "orchestrator/theory/loop_bands.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <string>
+
+#include "orchestrator/theory/loop_team.h"
+#include "tests/law_run.h"
+#include "tests/load.h"
+
+namespace mascot {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// Expects that every figure is measured where it is predicted, and that `least` of them are predicted.
+void ExpectTrue(const LawRun& run, int least, const std::string& what) {
+  int predicted = 0;
+  const auto& law = run.Law();
+  for (const auto& [name, of_theory] : law["predicted"].items()) {
+    if (of_theory.is_null()) continue;
+    const nlohmann::json values = of_theory.is_array() ? of_theory : nlohmann::json::array({of_theory});
+    const nlohmann::json measured = of_theory.is_array() ? law[name] : nlohmann::json::array({law[name]});
+    const nlohmann::json& width = law["tolerances"][name];
+    const nlohmann::json widths = width.is_array() ? width : nlohmann::json::array({width});
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (values[k].is_null()) continue;
+      ++predicted;
+      ASSERT_EQ(law["bounds"][name], "within") << what;
+      ASSERT_TRUE(measured[k].is_number()) << what << ": " << name;
+      EXPECT_NEAR(measured[k].get<double>(), values[k].get<double>(), widths[k].get<double>()) << what << ": " << name;
+    }
+  }
+  EXPECT_GE(predicted, least) << what << ": " << run.prediction.silent << run.prediction.figures_silent;
+}
+
+const std::string kFive = "position_m = [[3, 0, 1], [-1, 1, 2], [4, 2, 3], [1, 3, 4], [-5, 4, 5]]\n";
+
+/// Quadrotors, unless `agents` says otherwise.
+std::string Team(double duration_s, const std::string& agents, const std::string& law,
+                 const std::string& graph = "topology = 'path'\n", const std::string& more = "") {
+  return "[run]\nduration_s = " + ShortestFloat(duration_s) + "\n[agents]\ncount = 5\n" + kFive + agents + "[graph]\n" +
+         graph + more + "[law]\n" + law;
+}
+
+TEST(LoopBands, HoldForAFlockOfQuadrotorsWhoseEnergyBoundDidNot) {
+  const LawRun run(
+      "[run]\nduration_s = 30.0\n[physics]\ncollisions = false\nground = false\n[agents]\ncount = 5\nposition_m = "
+      "[[0, 0, 5], [3, 1, 6], [-2, 2, 7], [1, -3, 8], [4, 4, 9]]\n[law]\nname = 'flocking'\n");
+  ExpectTrue(run, 1, "flocking");
+}
+
+TEST(LoopBands, HoldForEventTriggeredQuadrotorsWhoSayWhereTheyAre) {
+  const LawRun run(Team(20, "", "name = 'event_triggered'\nc0_m = 0.01\nc1_m = 0.0\n"));
+  ExpectTrue(run, 1, "event_triggered");
+}
+
+TEST(EventTriggered, SaysOfABodyThatLagsWhereItWillBeAndNotWhereItWouldLikeToBe) {
+  for (const std::string model : {"quadrotor", "double_integrator"}) {
+    const LawRun run(Team(5, "model = '" + model + "'\n", "name = 'event_triggered'\nc0_m = 0.01\nc1_m = 0.0\n"));
+    const Experiment& experiment = run.experiment;
+    const auto law = MakeLaw(experiment, 1);
+    Motion self;
+    self.p_WB = {1, 2, 3};
+    self.v_WB = {0.5, 0, 0};
+    law->Want_W(0, self, {});
+    ASSERT_EQ(law->Message().size(), 3U);
+    EXPECT_NEAR(law->Message()[0], 1 + 0.5 * experiment.period_s(), 1e-12) << model;
+  }
+}
+
+/// On a circle, r = R e^(iwt), the law a = a_r + p (r - x) + d (v_r - v) on a body with v = G(iw) a; see
+/// tests/low_level_loop_test.cc for G.
+double TrackingErrorOfCircle_m(const Airframe& body, double radius_m, double period_s, double p, double d) {
+  const std::complex<double> s(0, 2 * std::numbers::pi / period_s);
+  const std::complex<double> tilt = body.attitude.kp / (s * s + body.attitude.kd * s + body.attitude.kp);
+  const std::complex<double> pull = body.position.kd + body.position.kp / s;
+  const std::complex<double> place = tilt * (1.0 + pull / s) / (s + tilt * pull) / s;
+  const std::complex<double> follows = place * (s * s + d * s + p) / (1.0 + place * (d * s + p));
+  return radius_m * std::abs(1.0 - follows);
+}
+
+TEST(LoopBands, OfACircleAreThoseOfTheFrequencyResponseOfTheLoop) {
+  const LawRun run(
+      "[run]\nduration_s = 60.0\n[agents]\ncount = 1\nposition_m = [[3, 0, 8]]\n[control]\nrate_hz = 200\n[law]\nname "
+      "= 'trajectory'\npath = 'circle'\ncentre_m = [0, 0, 8]\nradius_m = 3.0\nperiod_s = 12.0\np_gain = 1.2\nd_gain = "
+      "1.0\n");
+  ExpectTrue(run, 1, "circle");
+  const double error_m = TrackingErrorOfCircle_m(run.experiment.agent(1).airframe, 3, 12, 1.2, 1.0);
+  EXPECT_NEAR(run.Predicted("tracking_rms_m"), error_m, 0.1 * error_m + 0.001);
+}
+
+TEST(LoopBands, HoldForAFigureEightWhoseFeedForwardComesLate) {
+  const LawRun run(
+      "[run]\nduration_s = 60.0\n[physics]\ncollisions = false\nground = false\n[agents]\ncount = 1\nposition_m = "
+      "[[0, 0, 8]]\n[law]\nname = 'trajectory'\npath = 'figure_eight'\ncentre_m = [0, 0, 8]\nradius_m = 3.0\nperiod_s "
+      "= 11.2\np_gain = 1.2\nd_gain = 0.5\n");
+  ExpectTrue(run, 1, "figure eight");
+  EXPECT_GT(run.Predicted("tracking_rms_m"), 0.03) << "and not 2e-5";
+  EXPECT_THAT(run.text, HasSubstr("; theory: within "));
+  EXPECT_THAT(run.text, HasSubstr(" +- "));
+}
+
+TEST(LoopBands, HoldForLawsThatWantVelocities) {
+  const struct {
+    std::string law, graph;
+  } rows[] = {{"name = 'containment'\nleaders = [1, 5]\ngain = 0.5\n", "topology = 'path'\n"},
+              {"name = 'cyclic_pursuit'\ngain = 0.3\nalpha_deg = 20.0\n", "topology = 'ring'\n"},
+              {"name = 'bearing_formation'\nshape = 'circle'\ngain = 0.4\n", "topology = 'complete'\n"}};
+  for (const std::string agents : {"", "airframe = 'crazyflie'\n", "model = 'double_integrator'\n"})
+    for (const auto& row : rows) ExpectTrue(LawRun(Team(20, agents, row.law, row.graph)), 1, row.law + agents);
+}
+
+TEST(LoopBands, AreSilentAboutTimesThatBodiesThatLagDoNotReach) {
+  EXPECT_EQ(Predict(Load(Team(20, "", "name = 'finite_time'\nform = 'sign'\ngain = 0.3\n"))).silent,
+            "agreement_time_s: bodies that lag do not come to it");
+}
+
+TEST(LoopBands, AreSilentWhereTheLimitOfTheTiltCutsOften) {
+  EXPECT_EQ(Predict(Load(Team(5, "airframe = 'mascot_published'\n", "name = 'event_triggered'\ngain = 2.0\n"))).silent,
+            "the limit of the tilt cuts more than 2 % of what quadrotors are commanded");
+}
+
+TEST(LoopBands, AreSilentInWordsWhereTheLoopDoesNotDescribeTheFlight) {
+  const auto silent = [](const std::string& agents, const std::string& more = "") {
+    const Prediction prediction =
+        Predict(Load(Team(10, agents, "name = 'containment'\nleaders = [1, 5]\n", "topology = 'path'\n", more)));
+    EXPECT_THAT(prediction.law_figures, IsEmpty());
+    return prediction.silent;
+  };
+  EXPECT_EQ(silent("", "[link]\nloss = 0.1\n"), "samples are lost at random");
+  EXPECT_EQ(silent("", "[sensors.own]\nposition_std_m = 0.01\n"), "what agents measure is noisy or late");
+  EXPECT_EQ(silent("", "[physics.wind]\ngust_std_m_per_s = 1.0\n"), "the wind has gusts");
+  EXPECT_EQ(silent("", "[[physics.rotor_failures]]\nagent = 1\nrotor = 1\nat_s = 5.0\nremaining = 0.9\n"),
+            "rotors fail");
+  EXPECT_EQ(silent("heading_rad = [1.0, 0, 0, 0, 0]\n"), "agent 1 turns to control.heading_rad on its way");
+  EXPECT_EQ(silent("airframe = { max_thrust_n = 10 }\n"), "quadrotors cannot keep their height");
+  EXPECT_EQ(silent("", "[control]\nrate_hz = 10\n"), "the attitude loop of agent 1 is unstable");
+}
+
+TEST(LoopBands, AreSilentWhereBodiesMayTouch) {
+  const std::string level =
+      "[run]\nduration_s = 20.0\n[agents]\ncount = 2\nposition_m = [[0, 0, 2], [4, 0, 2]]\n[law]\nname = "
+      "'event_triggered'\ngain = 0.3\n";
+  EXPECT_THAT(Predict(Load(level)).silent, HasSubstr("agents 1 and 2 may touch, "));
+  EXPECT_EQ(Predict(Load(level + "[physics]\ncollisions = false\n")).silent, "");
+  const std::string low =
+      "[run]\nduration_s = 10.0\n[agents]\ncount = 2\nposition_m = [[0, 0, 0.07], [4, 0, 2]]\n[law]\nname = "
+      "'event_triggered'\ngain = 0.3\n";
+  EXPECT_THAT(Predict(Load(low)).silent, HasSubstr("agent 1 may touch the ground, "));
+}
+
+TEST(LoopBands, AreSilentBeyondTheirBudgetOfWork) {
+  std::string toml =
+      Team(600, "", "name = 'finite_time'\ngain = 0.3\n", "topology = 'complete'\n", "[control]\nrate_hz = 200\n");
+  EXPECT_GT(WorkOfLoops(Load(toml)), kMostLoopWork);
+  EXPECT_EQ(Predict(Load(toml)).silent,
+            "so many agents, edges and ticks are more than are flown ahead on lagging bodies");
+}
+
+}  // namespace
+}  // namespace mascot
