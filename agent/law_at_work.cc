@@ -25,7 +25,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-thread_local const char* at_work = nullptr;  // whose law runs in this thread
+thread_local const char* whose_law = nullptr;  // whose law runs in this thread
 std::atomic<bool> forked_by_law = false;
 
 // --- signals ------------------------------------------------------------------------------------------
@@ -42,10 +42,10 @@ void Say(const char* text) {
 
 /// A signal handler, called once: then the signal ends the process.
 void ExplainCrash(int signal) {
-  if (at_work != nullptr) {
+  if (whose_law != nullptr) {
     const auto* row =
         std::find_if(std::begin(kFatal), std::end(kFatal), [=](const Fatal& f) { return f.signal == signal; });
-    for (const char* piece : {"error: ", at_work, " crashed: ", row->name, "\n"}) Say(piece);
+    for (const char* piece : {"error: ", whose_law, " crashed: ", row->name, "\n"}) Say(piece);
   }
   raise(signal);
 }
@@ -74,7 +74,7 @@ class SignalStack {
 
 /// In a process that was just forked. A law's dies with the thread that forked it.
 void OnFork() {
-  if (at_work != nullptr) MarkAsForkedByLaw();
+  if (whose_law != nullptr) MarkAsForkedByLaw();
 }
 
 void PrepareProcess() {
@@ -160,16 +160,16 @@ class LastResort {
   std::vector<const LawAtWork*> laws_;
 };
 
-LawAtWork::LawAtWork(const std::string& who, const LawLimits& limits) : who_(who), limits_(limits), before_(at_work) {
+LawAtWork::LawAtWork(const std::string& who, const LawLimits& limits) : who_(who), limits_(limits), before_(whose_law) {
   PrepareProcess();
   LastResort::Get().Begin(*this);
-  at_work = who_.c_str();
+  whose_law = who_.c_str();
 }
 
 LawAtWork::~LawAtWork() {
   if (IsForkedByLaw()) _exit(0);  // it was forked by the law, and is none of ours
   LastResort::Get().End(*this);
-  at_work = before_;
+  whose_law = before_;
 }
 
 LawLimits LimitsOfLaws(const Experiment& experiment) {

@@ -188,9 +188,10 @@ TEST(PrescribedTime, BodiesThatFollowWithALagAreNearlyTogetherAtTheGivenTime) {
     EXPECT_LT(run.meter.aim().final_disagreement_m, 0.02 * 5.4) << model << ": in the end";
     EXPECT_EQ(run.prediction.silent,
               model[0] == 'q' ? "the limit of the tilt cuts more than 2 % of what quadrotors are commanded" : "");
-    if (run.prediction.silent.empty())
+    if (run.prediction.silent.empty()) {
       EXPECT_NEAR(run.Measured("left_share"), run.Predicted("left_share"),
                   run.Law()["tolerances"]["left_share"].get<double>());
+    }
   }
 }
 

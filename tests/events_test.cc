@@ -30,7 +30,7 @@ std::int64_t FirstDifference(const std::vector<DecodedRow>& a, const std::vector
 Eigen::Vector3d CommandOf(const DecodedRow& row, std::size_t i) { return row.commands[i].a_limited_W; }
 Eigen::Vector3d PositionOf(const DecodedRow& row, std::size_t i) { return row.motions[i].p_WB; }
 
-std::string Event(const std::string& lines, const std::string& at_s = "0.5") {
+std::string EventTable(const std::string& lines, const std::string& at_s = "0.5") {
   return "[[events]]\nat_s = " + at_s + "\n" + lines + "\n";
 }
 
@@ -55,7 +55,7 @@ TEST_P(LiveKeys, ChangeTheRunFromTheirTickOn) {
   const LiveKey& row = GetParam();
   const std::string base = Three(row.law) + row.more;
   const auto without = Fly(base);
-  const auto with = Fly(base + Event("set = { \"" + row.key + "\" = " + row.value + " }"));
+  const auto with = Fly(base + EventTable("set = { \"" + row.key + "\" = " + row.value + " }"));
   EXPECT_EQ(FirstDifference(without, with, CommandOf), row.command);
   EXPECT_EQ(FirstDifference(without, with, PositionOf), row.position);
 }
@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 /// The file's line of an event behind Three("name = 'consensus'\n").
 std::string RefusalOf(const std::string& event, const std::string& law = "name = 'consensus'\n") {
-  return Refusal(Three(law) + Event(event));
+  return Refusal(Three(law) + EventTable(event));
 }
 
 TEST(Events, AreRefusedWithTheirPlaceAndTheWordsOfTheFile) {
@@ -133,7 +133,7 @@ TEST(Events, ThatSpoilAnotherKeyAreRefusedAtTheirOwnPlace) {
   EXPECT_EQ(Refusal("[run]\nduration_s = 1.0\n[agents]\ncount = 3\nmodel = 'single_integrator'\n"
                     "position_m = [[0, 0, 1], [1, 0, 1], [0, 2, 1]]\n[graph]\ntopology = 'complete'\n[law]\n"
                     "name = 'distance_formation'\noffsets_m = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n" +
-                    Event("set = { \"law.offsets_m\" = [[0, 0, 0], [1, 0, 0], [2, 0, 0]] }")),
+                    EventTable("set = { \"law.offsets_m\" = [[0, 0, 0], [1, 0, 0], [2, 0, 0]] }")),
             "folder/test.toml:14:7: law.name: expected a graph and places that are infinitesimally rigid in the plane, "
             "got 3 pairs and a rigidity matrix of rank 2, not 3");
 }
@@ -167,16 +167,16 @@ TEST(Events, NameAgentsAndEdgesThatExist) {
 
 TEST(Events, AreAtWholeTicksOfTheRun) {
   const std::string base = Three("name = 'consensus'\n");
-  EXPECT_EQ(Refusal(base + Event("cut = [[1, 2]]", "0.123")),
+  EXPECT_EQ(Refusal(base + EventTable("cut = [[1, 2]]", "0.123")),
             "folder/test.toml:12:8: events[0].at_s: expected a whole number of periods of control.rate_hz (100), got "
             "0.123");
-  EXPECT_EQ(Refusal(base + Event("cut = [[1, 2]]", "2.0")),
+  EXPECT_EQ(Refusal(base + EventTable("cut = [[1, 2]]", "2.0")),
             "folder/test.toml:12:8: events[0].at_s: expected at most run.duration_s, got 2.0");
 }
 
 TEST(Events, AreReadInOrderOfTime) {
-  const Experiment experiment = Load(Three("name = 'consensus'\n") + Event("cut = [[1, 2]]", "0.7") +
-                                     Event("mend = [[1, 2]]", "0.2") + Event("cut = [[1, 3]]", "0.2"));
+  const Experiment experiment = Load(Three("name = 'consensus'\n") + EventTable("cut = [[1, 2]]", "0.7") +
+                                     EventTable("mend = [[1, 2]]", "0.2") + EventTable("cut = [[1, 3]]", "0.2"));
   std::vector<std::int64_t> ticks;
   for (const auto& event : experiment.events) ticks.push_back(event.tick);
   EXPECT_THAT(ticks, ElementsAre(20, 20, 70));
@@ -184,10 +184,10 @@ TEST(Events, AreReadInOrderOfTime) {
 }
 
 TEST(Events, AreInTheResolvedFileAndReadBackAsTheSame) {
-  const Experiment experiment =
-      Load(Three("name = 'consensus'\nleader = 1\n") + Event("set = { law = { p_gain = 2 }, \"link.loss\" = 0.5 }") +
-           Event("set = { \"law.beta\" = 2 }\nagents = [3, 2]") +
-           Event("goto = { agent = 1, position_m = [1, 2, 3] }") + Event("graph = { edges = [[1, 2]] }"));
+  const Experiment experiment = Load(
+      Three("name = 'consensus'\nleader = 1\n") + EventTable("set = { law = { p_gain = 2 }, \"link.loss\" = 0.5 }") +
+      EventTable("set = { \"law.beta\" = 2 }\nagents = [3, 2]") +
+      EventTable("goto = { agent = 1, position_m = [1, 2, 3] }") + EventTable("graph = { edges = [[1, 2]] }"));
   const Experiment again = Load(experiment.resolved);
   EXPECT_EQ(again.resolved, experiment.resolved);
   std::string events, events_again;
@@ -205,7 +205,7 @@ TEST(Events, AreInTheResolvedFileAndReadBackAsTheSame) {
 
 TEST(Events, ConcernThoseWhomTheyName) {
   const std::string base = Three("name = 'consensus'\n");
-  const auto without = Fly(base), with = Fly(base + Event("set = { \"law.beta\" = 5.0 }\nagents = [1]"));
+  const auto without = Fly(base), with = Fly(base + EventTable("set = { \"law.beta\" = 5.0 }\nagents = [1]"));
   const auto one = [](const DecodedRow& row, std::size_t i) {
     return i == 0 ? Eigen::Vector3d::Zero().eval() : CommandOf(row, i);
   };
@@ -216,7 +216,7 @@ TEST(Events, ConcernThoseWhomTheyName) {
 TEST(Events, ReachAgentsWithALawOfTheirOwn) {
   const std::string base =
       Three("name = 'consensus'\nbeta = 1.0\n", "[[agents.override]]\nid = 1\nlaw = { beta = 2.0 }\n");
-  const Experiment experiment = Load(base + Event("set = { \"law.beta\" = 3.0 }"));
+  const Experiment experiment = Load(base + EventTable("set = { \"law.beta\" = 3.0 }"));
   LiveExperiment live(experiment, &LawTable(), false);
   const auto now = live.Take(experiment.events.front());
   for (int id = 1; id <= 3; ++id) EXPECT_EQ(LinearFormOf(now->agent(id).law)->beta, 3.0) << id;
@@ -248,8 +248,8 @@ TEST(Events, ForAllChangeTheParamsOfAgentsWithTheirOwn) {
       "def start(me, params):\n    me.gain = params['gain']\n"
       "def set(me, params):\n    me.gain = params['gain']\n"
       "def control(t, me, neighbours):\n    return [me.gain, 0, 0]\n'''\n";
-  const auto rows = Fly(Three(law) + Event("set = { \"law.params.gain\" = 0.25 }\nagents = [2]", "0.3") +
-                        Event("set = { \"law.params.gain\" = 0.5 }"));
+  const auto rows = Fly(Three(law) + EventTable("set = { \"law.params.gain\" = 0.25 }\nagents = [2]", "0.3") +
+                        EventTable("set = { \"law.params.gain\" = 0.5 }"));
   EXPECT_EQ(rows[49].commands[0].a_law_W.x(), 1.0);
   EXPECT_EQ(rows[49].commands[1].a_law_W.x(), 0.25);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(rows[50].commands[i].a_law_W.x(), 0.5) << i;
@@ -280,16 +280,16 @@ constexpr const char* kOneParamOfAgent2 = "set = { \"law.params.x\" = 0.25 }\nag
 constexpr const char* kNoParamsOfAgent2 = "set = { \"law.params\" = {} }\nagents = [2]";
 
 TEST(Events, ForOneParamOfAnAgentLeaveItTheOthers) {
-  const auto params = ParamsOf("", Event(kOneParamOfAgent2, "0.1"));
+  const auto params = ParamsOf("", EventTable(kOneParamOfAgent2, "0.1"));
   EXPECT_THAT(params[0], ElementsAre(Pair(1, 1), Pair(1, 1)));
   EXPECT_THAT(params[1], ElementsAre(Pair(1, 1), Pair(0.25, 1)));
 }
 
 TEST(Events, ForAllThatSetATableReachAgentsWithOneParamOfTheirOwn) {
   const auto params =
-      ParamsOf("", Event(kOneParamOfAgent2, "0.1") + Event("set = { \"law.params\" = { y = 0.5 } }", "0.2") +
-                       Event("set = { \"law.params\" = { x = 0.5 } }", "0.3") + Event(kOneParamOfAgent2, "0.4") +
-                       Event("set = { \"law.params\" = {} }", "0.5"));
+      ParamsOf("", EventTable(kOneParamOfAgent2, "0.1") + EventTable("set = { \"law.params\" = { y = 0.5 } }", "0.2") +
+                       EventTable("set = { \"law.params\" = { x = 0.5 } }", "0.3") +
+                       EventTable(kOneParamOfAgent2, "0.4") + EventTable("set = { \"law.params\" = {} }", "0.5"));
   EXPECT_THAT(params[2], ElementsAre(Pair(1, 0.5), Pair(0.25, 0.5))) << "a table stands for the keys in it";
   EXPECT_THAT(params[3], ElementsAre(Pair(0.5, 0.5), Pair(0.5, 0.5)));
   EXPECT_THAT(params[4], ElementsAre(Pair(0.5, 0.5), Pair(0.25, 0.5)));
@@ -298,9 +298,9 @@ TEST(Events, ForAllThatSetATableReachAgentsWithOneParamOfTheirOwn) {
 
 TEST(Events, ForAllThatSetOneParamReachAgentsWithATableOfTheirOwn) {
   const auto params =
-      ParamsOf("", Event(kNoParamsOfAgent2, "0.1") + Event("set = { \"law.params.y\" = 0.5 }", "0.2") +
-                       Event("set = { \"law.params.x\" = 0.75 }", "0.3") + Event(kNoParamsOfAgent2, "0.4") +
-                       Event("set = { \"law.params\" = { x = 2.0 } }", "0.5"));
+      ParamsOf("", EventTable(kNoParamsOfAgent2, "0.1") + EventTable("set = { \"law.params.y\" = 0.5 }", "0.2") +
+                       EventTable("set = { \"law.params.x\" = 0.75 }", "0.3") + EventTable(kNoParamsOfAgent2, "0.4") +
+                       EventTable("set = { \"law.params\" = { x = 2.0 } }", "0.5"));
   EXPECT_THAT(params[1], ElementsAre(Pair(1, 1), Pair(0, 0)));
   EXPECT_THAT(params[2], ElementsAre(Pair(1, 0.5), Pair(0, 0.5)));
   EXPECT_THAT(params[3], ElementsAre(Pair(0.75, 0.5), Pair(0.75, 0.5)));
@@ -309,19 +309,19 @@ TEST(Events, ForAllThatSetOneParamReachAgentsWithATableOfTheirOwn) {
 }
 
 TEST(Events, ForAllThatSetAParamReachAgentsWithATableInItsPlace) {
-  const auto params = ParamsOf("", Event("set = { \"law.params.table.inner\" = 7.0 }", "0.05") +
-                                       Event("set = { \"law.params.table.inner\" = 8.0 }\nagents = [2]", "0.1") +
-                                       Event("set = { \"law.params.table\" = 0.5 }", "0.2"));
+  const auto params = ParamsOf("", EventTable("set = { \"law.params.table.inner\" = 7.0 }", "0.05") +
+                                       EventTable("set = { \"law.params.table.inner\" = 8.0 }\nagents = [2]", "0.1") +
+                                       EventTable("set = { \"law.params.table\" = 0.5 }", "0.2"));
   EXPECT_THAT(params[1], ElementsAre(Pair(7, 1), Pair(8, 1)));
   EXPECT_THAT(params[2], ElementsAre(Pair(0.5, 1), Pair(0.5, 1)));
 }
 
 TEST(Events, ForAllReachWhatTheTableOfAnAgentInTheFileHas) {
-  const auto params =
-      ParamsOf("[[agents.override]]\nid = 2\nlaw = { params = { x = 2.0 } }\n",
-               Event("set = { \"law.params.y\" = 0.5 }", "0.1") + Event("set = { \"law.params.x\" = 0.75 }", "0.2") +
-                   Event(kOneParamOfAgent2, "0.3") + Event("set = { \"law.params.y\" = 0.25 }", "0.4") +
-                   Event("set = { \"law.params\" = {} }", "0.5"));
+  const auto params = ParamsOf(
+      "[[agents.override]]\nid = 2\nlaw = { params = { x = 2.0 } }\n",
+      EventTable("set = { \"law.params.y\" = 0.5 }", "0.1") + EventTable("set = { \"law.params.x\" = 0.75 }", "0.2") +
+          EventTable(kOneParamOfAgent2, "0.3") + EventTable("set = { \"law.params.y\" = 0.25 }", "0.4") +
+          EventTable("set = { \"law.params\" = {} }", "0.5"));
   EXPECT_THAT(params[0], ElementsAre(Pair(1, 1), Pair(2, 0)));
   EXPECT_THAT(params[1], ElementsAre(Pair(1, 0.5), Pair(2, 0))) << "its table has no y";
   EXPECT_THAT(params[2], ElementsAre(Pair(0.75, 0.5), Pair(0.75, 0)));
@@ -331,8 +331,8 @@ TEST(Events, ForAllReachWhatTheTableOfAnAgentInTheFileHas) {
 }
 
 TEST(Events, ForAllTakeTheWaypointsOfAnAgentThatAnEventSentElsewhere) {
-  const auto rows = Fly(Three(kFlies) + Event("goto = { agent = 2, position_m = [9, 9, 9] }", "0.3") +
-                        Event("set = { \"law.waypoints_m\" = [[1, 0, 2]] }"));
+  const auto rows = Fly(Three(kFlies) + EventTable("goto = { agent = 2, position_m = [9, 9, 9] }", "0.3") +
+                        EventTable("set = { \"law.waypoints_m\" = [[1, 0, 2]] }"));
   EXPECT_GT(rows[49].commands[1].a_law_W.x(), 0);
   EXPECT_LE(rows[50].commands[1].a_law_W.x(), 0) << "it is beyond [1, 0, 2] and flies on";
 }
@@ -355,12 +355,14 @@ TEST(Events, ThatAreRefusedChangeNothing) {
 
 TEST(Events, CutAndMendEdges) {
   const std::string base = Three("name = 'consensus'\n");
-  const auto all = Fly(base), cut = Fly(base + Event("cut = [[1, 2], [1, 3]]") + Event("mend = [[1, 2]]", "0.7"));
+  const auto all = Fly(base),
+             cut = Fly(base + EventTable("cut = [[1, 2], [1, 3]]") + EventTable("mend = [[1, 2]]", "0.7"));
   EXPECT_EQ(FirstDifference(all, cut, CommandOf), kTick);
   for (std::size_t k = 50; k < 70; ++k)
     EXPECT_EQ(cut[k].commands[0].a_law_W.head<2>(), -cut[k].motions[0].v_WB.head<2>()) << "nobody is heard at " << k;
   EXPECT_GT(cut[70].commands[0].a_law_W.x(), 0.1) << "2 is at x = 1, and is heard again";
-  const auto graph = Fly(base + Event("graph = { edges = [] }") + Event("graph = { edges = [[1, 2]] }", "0.7"));
+  const auto graph =
+      Fly(base + EventTable("graph = { edges = [] }") + EventTable("graph = { edges = [[1, 2]] }", "0.7"));
   EXPECT_EQ(FirstDifference(cut, graph, PositionOf), -1);
 }
 
@@ -373,7 +375,7 @@ TEST(Events, SendALeaderAndThoseWhoFlyWaypointsElsewhere) {
         "[run]\nduration_s = 12.0\n[agents]\ncount = 3\nmodel = 'double_integrator'\n"
         "position_m = [[0, 0, 1], [1, 0, 2], [0, 2, 3]]\n[graph]\nedges = " +
         graph + "\n[law]\n" + law;
-    const auto rows = Fly(base + Event("goto = { agent = 1, position_m = [2, 1, 1] }"));
+    const auto rows = Fly(base + EventTable("goto = { agent = 1, position_m = [2, 1, 1] }"));
     EXPECT_LT((rows.back().motions[0].p_WB.head<2>() - Eigen::Vector2d(2, 1)).norm(), 0.05) << law;
   }
 }
@@ -382,7 +384,7 @@ TEST(Events, OfTheWindMoveQuadrotorsFromTheNextTickOn) {
   const std::string base = "[run]\nduration_s = 1.0\n[agents]\ncount = 1\nposition_m = [[0, 0, 5]]\n";
   const auto without = Fly(base);
   for (const char* set : {"physics.wind.mean_m_per_s\" = [5, 0, 0]", "physics.wind.gust_std_m_per_s\" = 5.0"}) {
-    const auto with = Fly(base + Event("set = { \"" + std::string(set) + " }"));
+    const auto with = Fly(base + EventTable("set = { \"" + std::string(set) + " }"));
     EXPECT_EQ(FirstDifference(without, with, PositionOf), kTick + 1) << set;
   }
 }
@@ -393,12 +395,12 @@ TEST(Events, TellPythonLawsTheirNewParams) {
       "def start(me, params):\n    me.gain = params['gain']\n"
       "def set(me, params):\n    me.gain = -params['gain']\n"
       "def control(t, me, neighbours):\n    return [me.gain, 0, 0]\n'''\n";
-  const auto rows = Fly(Three(law) + Event("set = { \"law.params.gain\" = 0.25 }"));
+  const auto rows = Fly(Three(law) + EventTable("set = { \"law.params.gain\" = 0.25 }"));
   EXPECT_EQ(rows[49].commands[0].a_law_W.x(), 1.0);
   EXPECT_EQ(rows[50].commands[0].a_law_W.x(), -0.25);
   const std::string without =
       "name = 'custom'\npython = '''\ndef control(t, me, neighbours):\n    return [0, 0, 0]\n'''\n";
-  EXPECT_THAT(Refusal(Three(without) + Event("set = { \"law.params.gain\" = 0.25 }")),
+  EXPECT_THAT(Refusal(Three(without) + EventTable("set = { \"law.params.gain\" = 0.25 }")),
               HasSubstr("law.params: expected a law that defines set(me, params), got none"));
 }
 
@@ -407,11 +409,11 @@ TEST(Events, TellPluginsTheirNewParams) {
     return "name = 'plugin'\nlibrary = '" MASCOT_BINARY_DIR "/tests/plugins/lib" + name + ".so'\n";
   };
   const auto without = Fly(Three(library("mirror"))),
-             with = Fly(Three(library("mirror")) + Event("set = { \"law.params.gain\" = 2.0 }"));
+             with = Fly(Three(library("mirror")) + EventTable("set = { \"law.params.gain\" = 2.0 }"));
   EXPECT_EQ(FirstDifference(without, with, CommandOf), kTick);
   EXPECT_DOUBLE_EQ(with[50].commands[0].a_law_W.x() + with[50].motions[0].v_WB.x(),
                    2 * (without[50].commands[0].a_law_W.x() + without[50].motions[0].v_WB.x()));
-  EXPECT_THAT(Refusal(Three(library("talker")) + Event("set = { \"law.params\" = {} }")),
+  EXPECT_THAT(Refusal(Three(library("talker")) + EventTable("set = { \"law.params\" = {} }")),
               HasSubstr("law.params: expected a law with Set(PluginParams&), got none"));
 }
 

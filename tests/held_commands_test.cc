@@ -74,8 +74,9 @@ void ExpectAgreementAsPredicted(const LawRun& run, const std::string& what) {
     return;
   }
   EXPECT_EQ(law["bounds"]["agreement_time_s"], "equal") << what;
-  if (run.prediction.value_m)
+  if (run.prediction.value_m) {
     EXPECT_LE(run.summary["consensus"]["deviation"]["value_m"].get<double>(), run.Predicted("band_m")) << what;
+  }
   ASSERT_TRUE(IsNumber(law["agreement_time_s"])) << what << ": " << time_s;
   EXPECT_NEAR(run.Measured("agreement_time_s"), time_s, std::max(2.01 * run.experiment.period_s(), 0.01 * time_s))
       << what;

@@ -51,7 +51,8 @@ TEST(Input, ADescriptorIsKnownByTheNamesThatASystemHasForIt) {
   EXPECT_EQ(DescriptorOf("/dev/stdin"), 0);
   EXPECT_EQ(DescriptorOf("/dev/fd/63"), 63);
   EXPECT_EQ(DescriptorOf("/proc/self/fd/4"), 4);
-  for (const char* path : {"", "--", "./-", "stdin", "/dev/fd", "/dev/fd/", "/dev/fd/x", "/dev/fd/3/a", "/dev/null", "-x"})
+  for (const char* path :
+       {"", "--", "./-", "stdin", "/dev/fd", "/dev/fd/", "/dev/fd/x", "/dev/fd/3/a", "/dev/null", "-x"})
     EXPECT_FALSE(DescriptorOf(path)) << path;
 }
 
@@ -71,7 +72,8 @@ TEST(Input, APipeThatDoesNotEndIsRefused) {
 }
 
 TEST(Input, WhatIsNotOpenOrAFolderIsRefusedAndSoIsAPipeInTheFileSystem) {
-  EXPECT_THAT([] { ReadInput("/dev/fd/99"); }, ThrowsMessage<ConfigError>("/dev/fd/99: cannot be read: Bad file descriptor"));
+  EXPECT_THAT([] { ReadInput("/dev/fd/99"); },
+              ThrowsMessage<ConfigError>("/dev/fd/99: cannot be read: Bad file descriptor"));
   const int folder = ::open("/", O_RDONLY | O_CLOEXEC);
   const std::string path = "/proc/self/fd/" + std::to_string(folder);
   EXPECT_THAT([&] { ReadInput(path); }, ThrowsMessage<ConfigError>(path + ": is a directory"));
@@ -79,7 +81,8 @@ TEST(Input, WhatIsNotOpenOrAFolderIsRefusedAndSoIsAPipeInTheFileSystem) {
   const ScratchFolder scratch;
   ASSERT_EQ(::mkfifo(scratch.File("a.toml").c_str(), 0600), 0);
   EXPECT_THAT([&] { ReadInput(scratch.File("a.toml")); },
-              ThrowsMessage<ConfigError>(scratch.File("a.toml") + ": is not a regular file")) << "nobody may ever write to it";
+              ThrowsMessage<ConfigError>(scratch.File("a.toml") + ": is not a regular file"))
+      << "nobody may ever write to it";
 }
 
 TEST(Input, MistakesNameThePipeAndItsLine) {
@@ -112,7 +115,8 @@ TEST(Input, APipeHasNoNameOfItsOwn) {
 TEST(Input, APathIsAPathWhateverItBeginsWith) {
   const ScratchFolder scratch;
   std::filesystem::create_directories(scratch.path() / "http:/x");
-  for (const char* name : {"-x.toml", "--set", "~", "$HOME", "a b.toml", "a\nb.toml", "http:/x/y.toml", "%s", "\xff.toml"}) {
+  for (const char* name :
+       {"-x.toml", "--set", "~", "$HOME", "a b.toml", "a\nb.toml", "http:/x/y.toml", "%s", "\xff.toml"}) {
     WriteFile(scratch.File(name), "a = 1\n");
     EXPECT_EQ(ReadInput(scratch.File(name)), "a = 1\n") << name;
   }

@@ -490,7 +490,7 @@ std::string Chase(const std::string& positions, int agents, const std::string& m
          "\nmodel = '" + model + "'\nposition_m = " + positions + "\n[law]\nname = 'pursuit_evasion'\nleader = 1\n" +
          more;
 }
-const std::string kThree = "[[0, 0, 1], [-3, -4, 1], [7, 0, 1], [-2, 6, 1]]";
+const std::string kEvaderAndThree = "[[0, 0, 1], [-3, -4, 1], [7, 0, 1], [-2, 6, 1]]";
 
 TEST(PursuitEvasion, ASinglePursuerCapturesExactlyWhenTheDifferenceOfSpeedsHasClosedTheDistance) {
   const LawRun run(Chase("[[0, 0, 1], [-3, -4, 2]]", 2));
@@ -500,7 +500,7 @@ TEST(PursuitEvasion, ASinglePursuerCapturesExactlyWhenTheDifferenceOfSpeedsHasCl
 }
 
 TEST(PursuitEvasion, SeveralCaptureWithinTheBoundOfTheNearest) {
-  const LawRun run(Chase(kThree, 4));
+  const LawRun run(Chase(kEvaderAndThree, 4));
   EXPECT_DOUBLE_EQ(run.Predicted("capture_time_s"), 11.75);
   EXPECT_EQ(run.Law()["bounds"]["capture_time_s"], "at_most");
   EXPECT_LT(run.Measured("capture_time_s"), 11.75);
@@ -508,7 +508,7 @@ TEST(PursuitEvasion, SeveralCaptureWithinTheBoundOfTheNearest) {
 }
 
 TEST(PursuitEvasion, EachPursuerComesCloserAtEveryTickByTheDifferenceOfSpeedsAtLeast) {
-  IdealNetwork network(Chase(kThree, 4));
+  IdealNetwork network(Chase(kEvaderAndThree, 4));
   const auto distance_m = [&](int id) { return (network.agent(id).p_WB - network.agent(1).p_WB).norm(); };
   for (int k = 0; k < 500; ++k) {
     const double before[] = {distance_m(2), distance_m(3), distance_m(4)};
@@ -523,12 +523,12 @@ TEST(PursuitEvasion, ASlowPursuerNeverCapturesAndTheorySaysNothing) {
   EXPECT_TRUE(run.Law()["capture_time_s"].is_null());
   EXPECT_EQ(run.prediction.silent, "pursuers are not faster than the evader");
   EXPECT_NEAR(run.Measured("closest_m"), 5, 1e-9) << "at the start";
-  EXPECT_EQ(LawRun(Chase(kThree, 4, "capture_radius_m = 0.005\n")).prediction.silent,
+  EXPECT_EQ(LawRun(Chase(kEvaderAndThree, 4, "capture_radius_m = 0.005\n")).prediction.silent,
             "a pursuer may fly past the evader within a tick");
 }
 
 TEST(PursuitEvasion, WhoDoesNotHearTheEvaderStaysWhereItIs) {
-  IdealNetwork network(Chase(kThree, 4) + "[graph]\nedges = [[1, 2], [2, 1], [1, 3]]\n");
+  IdealNetwork network(Chase(kEvaderAndThree, 4) + "[graph]\nedges = [[1, 2], [2, 1], [1, 3]]\n");
   network.RunUntil(3);
   EXPECT_EQ(network.agent(3).p_WB, Eigen::Vector3d(7, 0, 1));
   EXPECT_NEAR((network.agent(2).p_WB - Eigen::Vector3d(-3, -4, 1)).norm(), 3, 1e-9);

@@ -23,8 +23,7 @@ std::string Circle(double radius_m, const std::string& law, double duration_s = 
   }
   return "[run]\nduration_s = " + ShortestFloat(duration_s) +
          "\n[physics]\ncollisions = false\n[agents]\ncount = 5\nmodel = 'unicycle'\nposition_m = [" + positions +
-         "]\nheading_rad = [" + headings + "]\n[graph]\ntopology = 'ring'\n[law]\nname = 'cyclic_pursuit'\n" +
-         law;
+         "]\nheading_rad = [" + headings + "]\n[graph]\ntopology = 'ring'\n[law]\nname = 'cyclic_pursuit'\n" + law;
 }
 
 TEST(UnicyclePursuit, TellsTheWheelsTheSpeedAndTheTurningSpeedOfThePaper) {

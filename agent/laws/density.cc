@@ -16,7 +16,7 @@
 namespace mascot {
 namespace {
 
-constexpr double kFar = 9;  // e^-(kFar^2 / 2) is nothing
+constexpr double kFarWidths = 9;  // e^-(kFarWidths^2 / 2) is nothing
 
 /// A bump as seen from the point of a polygon that is nearest to it.
 struct BumpFrame {
@@ -37,11 +37,11 @@ struct BumpFrame {
 Polygon PartThatCounts(const Polygon& polygon, const BumpFrame& frame) {
   Polygon seen;
   for (const Eigen::Vector2d& q : polygon) seen.push_back(frame.Of(q));
-  const double d = frame.distance, depth = kFar * kFar / (std::sqrt(d * d + kFar * kFar) + d);
+  const double d = frame.distance, depth = kFarWidths * kFarWidths / (std::sqrt(d * d + kFarWidths * kFarWidths) + d);
   seen = Within(seen, {depth, 0}, {1, 0});
-  seen = Within(seen, {-kFar, 0}, {-1, 0});
-  seen = Within(seen, {0, kFar}, {0, 1});
-  return Within(seen, {0, -kFar}, {0, -1});
+  seen = Within(seen, {-kFarWidths, 0}, {-1, 0});
+  seen = Within(seen, {0, kFarWidths}, {0, 1});
+  return Within(seen, {0, -kFarWidths}, {0, -1});
 }
 
 /// An edge of a slab: its y at both ends.

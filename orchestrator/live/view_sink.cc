@@ -19,10 +19,10 @@ std::string Thrown() {
 
 }  // namespace
 
-void ViewSink::Adopt(const LiveExperiment& live) {
+void ViewSink::Adopt(const LiveExperiment& live, std::span<const Event> events) {
   if (broken_) return;
   try {
-    inner_.Adopt(live);
+    inner_.Adopt(live, events);
   } catch (...) {
     broken_ = true;
     view_.Fail(Thrown());

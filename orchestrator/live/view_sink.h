@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "orchestrator/live/live_view.h"
 #include "orchestrator/team/row_sink.h"
 
@@ -9,7 +11,7 @@ namespace mascot {
 class ViewSink final : public RowSink {
  public:
   ViewSink(RowSink& inner, LiveView& view) : inner_(inner), view_(view) {}
-  void Adopt(const LiveExperiment& live) override;
+  void Adopt(const LiveExperiment& live, std::span<const Event> events) override;
   void Add(const FlownRow& row) override;
 
  private:
