@@ -41,7 +41,7 @@ TEST(MistakesOfSet, StandAtSet) {
       {"law.p_gain=-1", "law.p_gain: expected a number in [0, 1000], got -1"},
       {"law=3", "law: expected a table, got 3"},
       {"law={name='nobody'}", "law.name: expected one of "},
-      {"law.safety.gamma=2", "law.safety.distance_m: expected "},
+      {"law.safety.gamma=2", "law.safety.gamma: expected distance_m with it, got none"},
       {"agents.random.min_m=[0, 0]", "agents.random.min_m: expected three numbers in [-1e+06, 1e+06], got a list of 2"},
       {"agents.count.x=1", "agents.count: expected a table to set x in, got 4"},
       {"agents.override[0].id=1", "agents.override: expected a list to set [0] in, got nothing"},
