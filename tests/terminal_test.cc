@@ -300,7 +300,7 @@ TEST(Words, OfOthersReachNoTerminalAsTheyAre) {
 }
 
 TEST(Words, OfAnAgentThatIsStartedByHandAreFit) {
-  const Ran ran = Shell("'" MASCOT_BINARY_DIR "/agent' --id 1 '--\x1b[31m\u202e' </dev/null");
+  const Ran ran = Shell("'" MASCOT_BINARY_DIR "/agent' --id 1 --domain 3 '--\x1b[31m\u202e' </dev/null");
   EXPECT_EQ(ran.exit_code, 2);
   EXPECT_EQ(Plain(ran.output), ran.output);
   EXPECT_THAT(ran.output, testing::HasSubstr("\\u001b[31m\\u202e"));

@@ -22,7 +22,7 @@ std::optional<HostAndPort> ReadHostAndPort(std::string_view text);
 /// scheme's own port. Nothing unless it is a scheme http or https with a host and perhaps a port.
 std::optional<std::string> ReadOrigin(std::string_view text);
 
-/// What --allow-origin names: an origin, or "file://", which desktop programs made of a browser send, and so do pages
+/// What --allow-origin names: an origin, or "file://", which desktop programs made of a browser send, and so may pages
 /// that were opened from a disk. Throws ConfigError.
 std::string ReadAllowedOrigin(const std::string& text);
 
