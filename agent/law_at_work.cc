@@ -141,13 +141,16 @@ class LastResort {
 
   void Look(const LawAtWork& law, double memory_mb) const {
     const LawLimits& limits = law.limits_;
-    if (limits.limit_s > 0 && seen_ns_ > law.until_ns_)
-      EndProcess(fmt::format("error: {} took longer than {} = {:g} s and cannot be interrupted: the process ends\n",
-                             law.who_, limits.source, limits.limit_s));
-    if (limits.memory_mb > 0 && memory_mb > (1 + kGrace) * limits.memory_mb + kMoreMemory_mb)
+    const bool is_late = limits.limit_s > 0 && seen_ns_ > law.until_ns_;
+    if (limits.memory_mb > 0 && memory_mb > limits.memory_mb) law.took_too_much_ = true;
+    if ((is_late && law.took_too_much_) ||
+        (limits.memory_mb > 0 && memory_mb > (1 + kGrace) * limits.memory_mb + kMoreMemory_mb))
       EndProcess(fmt::format(
           "error: {} needs more than control.python_memory_mb = {} and cannot be interrupted: the process ends\n",
           law.who_, limits.memory_mb));
+    if (is_late)
+      EndProcess(fmt::format("error: {} took longer than {} = {:g} s and cannot be interrupted: the process ends\n",
+                             law.who_, limits.source, limits.limit_s));
   }
 
   [[noreturn]] static void EndProcess(const std::string& words) {

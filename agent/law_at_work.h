@@ -35,8 +35,9 @@ class LawAtWork {
   friend class LastResort;
   const std::string& who_;
   const LawLimits limits_;
-  const char* const before_;   // who was at work in this thread before
-  std::int64_t until_ns_ = 0;  // in time that LastResort has seen
+  const char* const before_;            // who was at work in this thread before
+  std::int64_t until_ns_ = 0;           // in time that LastResort has seen
+  mutable bool took_too_much_ = false;  // memory; then its time is up because it does not let go of it
 };
 
 /// Those of the laws of an experiment that their users wrote.

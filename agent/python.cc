@@ -70,10 +70,20 @@ void KeepThreadState() {
   (void)kept;
 }
 
-/// The innermost line of `file` that the exception came through; 0: none.
+/// How many calls deep a traceback is looked at as a whole: a recursion without end may have millions.
+constexpr int kDeep = 5000;
+
+/// Whether an exception came through more than kDeep calls.
+bool IsDeep(py::object trace) {
+  int calls = 0;
+  while (trace && !trace.is_none() && ++calls <= kDeep) trace = trace.attr("tb_next");
+  return calls > kDeep;
+}
+
+/// The innermost line of `file` that the exception came through, among its first kDeep calls; 0: none.
 int LineOf(const py::error_already_set& error, const std::string& file) {
-  int line = 0;
-  for (py::object trace = error.trace(); trace && !trace.is_none(); trace = trace.attr("tb_next"))
+  int line = 0, calls = 0;
+  for (py::object trace = error.trace(); trace && !trace.is_none() && ++calls <= kDeep; trace = trace.attr("tb_next"))
     if (trace.attr("tb_frame").attr("f_code").attr("co_filename").cast<std::string>() == file)
       line = trace.attr("tb_lineno").cast<int>();
   return line;
@@ -126,7 +136,8 @@ PythonError Explain(py::error_already_set& error, const std::string& file) {
   const std::string only = text(traceback.attr("format_exception_only")(error.type(), error.value()));
   const std::string summary = only.substr(only.rfind('\n') + 1);
   const py::object trace = error.trace() ? error.trace() : py::none();  // a SyntaxError has none
-  const std::string full = text(traceback.attr("format_exception")(error.type(), error.value(), trace));
+  const py::object limit = IsDeep(trace) ? py::object(py::int_(-20)) : py::object(py::none());  // the last 20 calls
+  const std::string full = text(traceback.attr("format_exception")(error.type(), error.value(), trace, limit));
   return PythonError(full, summary, is_syntax ? IntOr0(error.value(), "lineno") : LineOf(error, file),
                      is_syntax ? IntOr0(error.value(), "offset") : 0);
 }

@@ -5,6 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <iostream>
+
 #include "tests/custom_law.h"
 #include "tests/scratch.h"
 
@@ -28,7 +30,8 @@ std::string InControl(const std::string& line) {
 }
 
 Experiment Limited(const std::string& python, const std::string& control = "") {
-  return Load("[run]\nduration_s = 1.0\nagent_timeout_s = 0.5\n[control]\n" + control +
+  const std::string timeout_s = control.empty() ? "0.5" : "100.0";  // of a limit of memory that is not what is tested
+  return Load("[run]\nduration_s = 1.0\nagent_timeout_s = " + timeout_s + "\n[control]\n" + control +
               "[agents]\ncount = 1\nmodel = 'double_integrator'\nposition_m = [[0, 0, 1]]\n[law]\nname = 'custom'\n" +
               "python = '''\n" + python + "'''\n");
 }
@@ -121,9 +124,20 @@ constexpr const char* kRecursion =
     "def control(t, me, neighbours):\n  return deeper(0), 0\n";
 
 TEST(LawAtWork, ThatTakesTooMuchMemoryFailsInWords) {
-  EXPECT_THAT(FirstCall(kRecursion, "python_memory_mb = 300\n"),
+  EXPECT_THAT(FirstCall("def control(t, me, neighbours):\n  data = []\n"
+                        "  while True: data.append(bytearray(b'x') * 100_000)\n",
+                        "python_memory_mb = 300\n"),
               AllOf(HasSubstr("the law of agent 1 failed at t = 0.0 s\n"),
                     HasSubstr("MemoryError: needs more than control.python_memory_mb = 300")));
+}
+
+TEST_F(LawAtWorkDeathTest, ARecursionWithoutLimitEndsInWordsBeforeOrWhileItUnwinds) {
+  EXPECT_EXIT(
+      {
+        std::cerr << FirstCall(kRecursion, "python_memory_mb = 300\n");
+        _exit(1);
+      },
+      ExitedWithCode(1), HasSubstr("needs more than control.python_memory_mb = 300"));
 }
 
 TEST(LawAtWork, MayTakeTheMemoryThatItIsGranted) {
@@ -131,15 +145,15 @@ TEST(LawAtWork, MayTakeTheMemoryThatItIsGranted) {
       "import numpy as np, time\ndef control(t, me, neighbours):\n  a = np.ones(25_000_000)\n"
       "  for _ in range(30): time.sleep(0.01)\n  return 0, 0\n";  // 200 MB
   EXPECT_EQ(FirstCall(law, "python_memory_mb = 1500\n"), "");
-  EXPECT_THAT(FirstCall(law, "python_memory_mb = 150\n"), HasSubstr("needs more than control.python_memory_mb = 150"));
+  EXPECT_THAT(FirstCall(law, "python_memory_mb = 200\n"), HasSubstr("needs more than control.python_memory_mb = 200"));
 }
 
 TEST_F(LawAtWorkDeathTest, OneThatTakesMuchMemoryInACallThatDoesNotReturnEndsTheProcessInWords) {
   EXPECT_EXIT(FirstCall("import numpy as np\ndef control(t, me, neighbours):\n  a = np.ones(2_000_000_000)\n"
                         "  return 0, 0\n",
-                        "python_memory_mb = 100\n"),
+                        "python_memory_mb = 200\n"),
               ExitedWithCode(1),
-              HasSubstr("error: the law of agent 1 needs more than control.python_memory_mb = 100 and cannot be "
+              HasSubstr("error: the law of agent 1 needs more than control.python_memory_mb = 200 and cannot be "
                         "interrupted: the process ends\n"));
 }
 
