@@ -26,13 +26,13 @@ TEST(Polygons, MomentsOfASquareAreThoseOfTheTextbook) {
 }
 
 /// The same integrals in units of 1.
-Moments Plain(Moments moments) {
+Moments InUnitsOfOne(Moments moments) {
   const double unit = std::exp(moments.log_unit);
   return {.mass = unit * moments.mass, .first = unit * moments.first, .second = unit * moments.second};
 }
 
-Moments PlainMomentsOf(const Polygon& polygon, const Eigen::Vector2d& o, const Bump& bump) {
-  return Plain(MomentsOf(polygon, o, std::span(&bump, 1)));
+Moments PlainMomentsOf(const Polygon& polygon, const Eigen::Vector2d& o, const GaussianBump& bump) {
+  return InUnitsOfOne(MomentsOf(polygon, o, std::span(&bump, 1)));
 }
 
 /// The largest difference, as a share of the second one's values.
@@ -43,7 +43,7 @@ double Difference(const Moments& a, const Moments& b) {
 
 TEST(Density, OfABumpInsideThePolygonTheMomentsAreThoseOfTheWholePlane) {
   for (const double s : {1e-6, 0.001, 0.05, 0.1}) {
-    const Bump bump{.centre_m = {0.8, 1.1}, .width_m = s, .weight = 3};
+    const GaussianBump bump{.centre_m = {0.8, 1.1}, .width_m = s, .weight = 3};
     const double mass = 3 * 2 * std::numbers::pi * s * s;
     const Moments about_centre = PlainMomentsOf(kSquare, bump.centre_m, bump);
     EXPECT_NEAR(about_centre.mass, mass, 1e-13 * mass) << s;
@@ -95,7 +95,7 @@ TEST(Density, PartsOfAPolygonAddUpAndItMayBeShiftedAndTurned) {
   const Polygon region = {{0, 0}, {4, -1}, {6, 1}, {6, 4}, {3, 6}, {0, 4}};
   for (int round = 0; round < 200; ++round) {
     const double x = number(-8, 14), y = number(-8, 14);
-    const Bump bump{.centre_m = {x, y}, .width_m = std::pow(10, number(-0.5, 2)), .weight = 2};
+    const GaussianBump bump{.centre_m = {x, y}, .width_m = std::pow(10, number(-0.5, 2)), .weight = 2};
     const Eigen::Vector2d o(number(0, 6), number(0, 6)), through(number(1, 5), number(1, 4));
     const Eigen::Rotation2Dd turn(number(0, 6.28));
     const Eigen::Vector2d outward = turn * Eigen::Vector2d(1, 0), shift(number(-9, 9), number(-9, 9));
@@ -115,26 +115,26 @@ TEST(Density, PartsOfAPolygonAddUpAndItMayBeShiftedAndTurned) {
 TEST(Density, OfABumpFarAwayTheCentroidIsTheNearestPoint) {
   // At the distance d the density falls by e in s^2 / d, on an edge, and as fast along both edges of a corner.
   for (const double s : {1e-5, 0.001, 0.02}) {
-    const Moments edge = MomentsOf(kSquare, {1.2, 2}, std::vector{Bump{{1.2, 9}, s, 1}});
+    const Moments edge = MomentsOf(kSquare, {1.2, 2}, std::vector{GaussianBump{{1.2, 9}, s, 1}});
     EXPECT_NEAR(edge.first.x() / edge.mass, 0, 1e-9 * s) << s;
     EXPECT_NEAR(edge.first.y() / edge.mass, -s * s / 7, 1e-3 * s * s) << s;
     EXPECT_NEAR(edge.log_unit, -49 / (2 * s * s), 1e-12 * 49 / (s * s)) << s << ": too small a number without a unit";
-    const Moments corner = MomentsOf(kSquare, {2, 2}, std::vector{Bump{{5, 6}, s, 1}});
+    const Moments corner = MomentsOf(kSquare, {2, 2}, std::vector{GaussianBump{{5, 6}, s, 1}});
     EXPECT_NEAR(corner.first.x() / corner.mass, -s * s / 3, 1e-3 * s * s) << s;
     EXPECT_NEAR(corner.first.y() / corner.mass, -s * s / 4, 1e-3 * s * s) << s;
   }
 }
 
 TEST(Density, OfSeveralBumpsIsTheirSum) {
-  const std::vector<Bump> bumps = {{{0.5, 0.5}, 0.3, 1}, {{1.5, 1}, 0.5, 2}, {{9, 1}, 0.02, 7}};
+  const std::vector<GaussianBump> bumps = {{{0.5, 0.5}, 0.3, 1}, {{1.5, 1}, 0.5, 2}, {{9, 1}, 0.02, 7}};
   Moments sum;
-  for (const Bump& bump : bumps) {
+  for (const GaussianBump& bump : bumps) {
     const Moments one = PlainMomentsOf(kSquare, {1, 0}, bump);
     sum.mass += one.mass;
     sum.first += one.first;
     sum.second += one.second;
   }
-  EXPECT_LT(Difference(Plain(MomentsOf(kSquare, {1, 0}, bumps)), sum), 1e-13);
+  EXPECT_LT(Difference(InUnitsOfOne(MomentsOf(kSquare, {1, 0}, bumps)), sum), 1e-13);
   EXPECT_EQ(MomentsOf({}, {1, 0}, bumps).mass, 0) << "no corners";
 }
 

@@ -100,7 +100,8 @@ LawEntry CoverageLaw() {
       .equation = "v_i = -gain (p_i - C_i), C_i the centroid of i's Voronoi cell among what it hears",
       .details =
           "Positions count in x and y alone. The cell is that part of the region which is at least as near "
-          "to i as to every agent that i hears; an agent whose cell is empty wants the velocity 0.",
+          "to i as to every agent that i hears; an agent whose cell is empty wants the velocity 0. C_i is that of the "
+          "density sum weight exp(-|q - [x, y]|^2 / (2 width^2)), of whatever width and wherever the bumps are.",
       .theory =
           "if all hear all, the mean square distance to the nearest agent falls at every tick for gain T <= 2, to a "
           "centroidal Voronoi partition",

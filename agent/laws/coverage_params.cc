@@ -24,9 +24,9 @@ void CheckBumps(const CoverageParams& params, Section& section) {
                       "farthest corner of the region, got {}",
                       kNarrowest * farthest_m, ShortestFloat(params.bumps[n].width_m)));
   }
-  if (!params.bumps.empty() && !section.Wrong("density") && std::ranges::none_of(params.bumps, [&](const Bump& bump) {
-        return DistanceInWidths(params.region, bump) < kFarthest;
-      }))
+  if (!params.bumps.empty() && !section.Wrong("density") &&
+      std::ranges::none_of(params.bumps,
+                           [&](const GaussianBump& bump) { return DistanceInWidths(params.region, bump) < kFarthest; }))
     section.Fail("density",
                  fmt::format("expected a bump less than {} widths away from the region, got none: all of the "
                              "region would count for nothing",

@@ -24,8 +24,8 @@ struct CoverageParams final : LawParams {
   }
 
   Polygon region;
-  std::vector<Bump> bumps;  ///< none: the density is 1
-  double gain = 0;          ///< 1/s
+  std::vector<GaussianBump> bumps;  ///< none: the density is 1
+  double gain = 0;                  ///< 1/s
 };
 
 /// Reads the keys above, as LawEntry::read does.

@@ -16,11 +16,11 @@
 namespace mascot {
 namespace {
 
-constexpr double kFarWidths = 9;  // e^-(kFarWidths^2 / 2) is nothing
+constexpr double kSightWidths = 9;  // e^-(kSightWidths^2 / 2) is nothing
 
 /// A bump as seen from the point of a polygon that is nearest to it.
 struct BumpFrame {
-  BumpFrame(const Polygon& polygon, const Bump& bump)
+  BumpFrame(const Polygon& polygon, const GaussianBump& bump)
       : q0(NearestPoint(polygon, bump.centre_m)), width_m(bump.width_m) {
     const Eigen::Vector2d way = q0 - bump.centre_m;
     distance = way.norm() / width_m;
@@ -37,11 +37,12 @@ struct BumpFrame {
 Polygon PartThatCounts(const Polygon& polygon, const BumpFrame& frame) {
   Polygon seen;
   for (const Eigen::Vector2d& q : polygon) seen.push_back(frame.Of(q));
-  const double d = frame.distance, depth = kFarWidths * kFarWidths / (std::sqrt(d * d + kFarWidths * kFarWidths) + d);
+  const double d = frame.distance,
+               depth = kSightWidths * kSightWidths / (std::sqrt(d * d + kSightWidths * kSightWidths) + d);
   seen = Within(seen, {depth, 0}, {1, 0});
-  seen = Within(seen, {-kFarWidths, 0}, {-1, 0});
-  seen = Within(seen, {0, kFarWidths}, {0, 1});
-  return Within(seen, {0, -kFarWidths}, {0, -1});
+  seen = Within(seen, {-kSightWidths, 0}, {-1, 0});
+  seen = Within(seen, {0, kSightWidths}, {0, 1});
+  return Within(seen, {0, -kSightWidths}, {0, -1});
 }
 
 /// An edge of a slab: its y at both ends.
@@ -66,7 +67,7 @@ std::pair<SlabEdge, SlabEdge> EdgesBetween(const Polygon& polygon, double from, 
   return edges;
 }
 
-Moments MomentsOfBump(const Polygon& polygon, const Eigen::Vector2d& o, const Bump& bump) {
+Moments MomentsOfBump(const Polygon& polygon, const Eigen::Vector2d& o, const GaussianBump& bump) {
   const BumpFrame frame(polygon, bump);
   const Polygon seen = PartThatCounts(polygon, frame);
   const Eigen::Vector2d about = frame.Of(o);
@@ -105,12 +106,12 @@ Moments MomentsOfBump(const Polygon& polygon, const Eigen::Vector2d& o, const Bu
 
 }  // namespace
 
-double DistanceInWidths(const Polygon& polygon, const Bump& bump) { return BumpFrame(polygon, bump).distance; }
+double DistanceInWidths(const Polygon& polygon, const GaussianBump& bump) { return BumpFrame(polygon, bump).distance; }
 
-Moments MomentsOf(const Polygon& polygon, const Eigen::Vector2d& o, std::span<const Bump> bumps) {
+Moments MomentsOf(const Polygon& polygon, const Eigen::Vector2d& o, std::span<const GaussianBump> bumps) {
   if (polygon.size() < 3) return {};
   std::vector<Moments> parts;
-  for (const Bump& bump : bumps)
+  for (const GaussianBump& bump : bumps)
     if (Moments part = MomentsOfBump(polygon, o, bump); part.mass > 0) parts.push_back(part);
   if (parts.empty()) return {};
   Moments sum{.log_unit = std::ranges::max(parts, {}, &Moments::log_unit).log_unit};

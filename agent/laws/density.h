@@ -8,7 +8,7 @@
 namespace mascot {
 
 /// A Gaussian bump of a density: weight exp(-|q - centre|^2 / (2 width^2)).
-struct Bump {
+struct GaussianBump {
   Eigen::Vector2d centre_m;
   double width_m = 1, weight = 1;
 };
@@ -17,9 +17,9 @@ struct Bump {
 /// and second are exact but for a share of 1e-11, and so is the centroid, as a share of its distance from `o` or of the
 /// width of what the bump leaves in the polygon. The unit is that of the heaviest bump there: a mass is 0 only if the
 /// polygon has no area.
-Moments MomentsOf(const Polygon& polygon, const Eigen::Vector2d& o, std::span<const Bump> bumps);
+Moments MomentsOf(const Polygon& polygon, const Eigen::Vector2d& o, std::span<const GaussianBump> bumps);
 
 /// The distance of a bump's centre from a polygon, in widths.
-double DistanceInWidths(const Polygon& polygon, const Bump& bump);
+double DistanceInWidths(const Polygon& polygon, const GaussianBump& bump);
 
 }  // namespace mascot
