@@ -1,6 +1,7 @@
 // Flocking: what two agents do to each other, the closed forms of the whole flock, on the law alone and in whole runs.
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 
 #include "agent/laws/sigma_norm.h"
@@ -46,6 +47,50 @@ TEST(AlphaPairs, PotentialIsTheClosedFormWhereNothingFades) {
     const double off = SigmaNorm(l, 0.1) - d;
     EXPECT_NEAR(pair.Potential(l), std::sqrt(1 + off * off) - 1, 1e-12) << l;
   }
+}
+
+TEST(AlphaPairs, PotentialAndCurvatureAreRightHoweverSharpThePairIs) {
+  // With a small epsilon and long distances phi is nearly a sign: it turns within 1 of s, which reaches to 5e7 here.
+  for (const auto& [distance_m, range_m, epsilon, bump] : {std::array{2.0, 2.4, 0.1, 0.2},
+                                                           {2.0, 3.0, 0.1, 0.95},
+                                                           {100.0, 120.0, 1e-3, 0.2},
+                                                           {5000.0, 1e4, 1e-6, 0.5},
+                                                           {0.1, 5.0, 1000.0, 0.0},
+                                                           {30.0, 2000.0, 0.5, 0.99}}) {
+    const AlphaPair pair(distance_m, range_m, epsilon, bump);
+    const double most = pair.LargestCurvature() * (1 + 1e-5);
+    // The pull, summed up by Simpson's rule in steps that are short near the distance.
+    const auto pull = [&pair](double l) { return pair.Stiffness(l) * l; };
+    for (const double side : {-1.0, 1.0}) {
+      const double end_m = side < 0 ? 0 : range_m * (1 - 1e-9), longest_m = std::abs(end_m - distance_m);
+      const double shortest_m = 1e-9 * longest_m;
+      double sum = 0, from_m = 0;
+      for (int n = 0; n < 4000; ++n) {
+        const double to_m = shortest_m * std::pow(longest_m / shortest_m, n / 3999.0);
+        const auto at = [&](double beside_m) { return pull(distance_m + side * beside_m); };
+        sum += (to_m - from_m) / 6 * (at(from_m) + 4 * at((from_m + to_m) / 2) + at(to_m));
+        from_m = to_m;
+      }
+      EXPECT_NEAR(pair.Potential(end_m), side * sum, 1e-6 * std::abs(sum)) << distance_m << " " << side;
+      for (int n = 0; n < 500; ++n) {
+        const double beside_m = longest_m * std::pow(1e-5, n / 500.0) * 0.999;
+        const double l = distance_m + side * beside_m, step = 1e-4 * beside_m;
+        const double curvature = (pull(l + step) - pull(l - step)) / (2 * step);
+        ASSERT_LE(std::abs(curvature), most) << distance_m << " at " << l;
+      }
+    }
+  }
+}
+
+TEST(AlphaPairs, TheBoundOfTheCurvatureIsTight) {
+  double largest = 0;
+  for (int n = 1; n < 30000; ++n) {
+    const double l = n * 1e-4, step = 1e-5;
+    const double curvature =
+        (kPair.Stiffness(l + step) * (l + step) - kPair.Stiffness(l - step) * (l - step)) / (2 * step);
+    largest = std::max({largest, std::abs(curvature), std::abs(kPair.Stiffness(l))});
+  }
+  EXPECT_LT(kPair.LargestCurvature(), 1.03 * largest);
 }
 
 // --- flocks -----------------------------------------------------------------------------------------------

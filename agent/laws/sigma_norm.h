@@ -32,10 +32,17 @@ class AlphaPair {
   double Action(double s) const;  // phi_alpha
   /// The integral of phi_alpha from `s` to r_alpha.
   double TillRange(double s) const;
-  double ByQuadrature(double from, double to) const;
+  /// The same between two v, where agents fade.
+  double Fading(double from, double to) const;
+  /// At least the largest curvature at |z|_sigma between two values.
+  double CurvatureBetween(double s_a, double s_b) const;
+  /// The largest |rho_h'| between two shares of r_alpha.
+  double SteepestFading(double share_a, double share_b) const;
+  double Knot(std::size_t n) const { return first_knot_ + static_cast<double>(n) * knot_step_; }
 
   double range_m_, epsilon_, bump_, r_alpha_, d_alpha_;
-  std::vector<double> till_range_;  // from knots that divide [0, r_alpha]
+  double first_knot_, knot_step_;   // of v = asinh(s - d_alpha), from where agents begin to fade to the range
+  std::vector<double> till_range_;  // TillRange() at the knots
 };
 
 }  // namespace mascot
