@@ -4,22 +4,19 @@
 // The stresses omega_ij of the edges follow from places r and graph (agent/laws/stress_matrix.h): Omega r = 0, and
 // Omega is positive semidefinite of rank N - d - 1. If the leaders' places span the plane, or space, followers tend to
 // M p_L, M = -Omega_FF^-1 Omega_FL: the affine map of the leaders' places, applied to their own. While leaders move, e
-// = p_F - M p_L obeys e+ = (I - T gain Omega_FF) e - M (p_L+ - p_L), which gives the bounds.
+// = p_F - M p_L obeys e+ = (I - T gain Omega_FF) e - M (p_L+ - p_L), which theory computes tick by tick.
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
 
-#include "agent/laws/ideal.h"
+#include "agent/laws/affine_theory.h"
 #include "agent/laws/leaders.h"
 #include "agent/laws/maneuver.h"
 #include "agent/laws/places.h"
 #include "agent/laws/row_parts.h"
-#include "agent/laws/stable_period.h"
 #include "agent/laws/stress_matrix.h"
-#include "experiment/linear_algebra.h"
 
 namespace mascot {
 namespace {
@@ -34,14 +31,6 @@ constexpr auto kAffineFormationParameters =
 constexpr LawFigure kAffineFormationFigures[] = {
     {.name = "place_error_m", .meaning = "how far the farthest follower is from where the leaders put it, at the end"},
     {.name = "largest_place_error_m", .meaning = "the same at its largest in the run"},
-};
-
-struct AffineFormationParams final : LawParams {
-  double gain = 0;                   ///< 1/s
-  std::vector<Eigen::Vector3d> r_W;  ///< each agent's place, by id - 1 (m)
-  Maneuver maneuver;                 ///< of the leaders
-  LedTeam team{{}, 0};
-  Eigen::MatrixXd omega;
 };
 
 class AffineFormation final : public Law {
@@ -76,35 +65,6 @@ std::shared_ptr<const LawParams> ReadAffineFormation(const Experiment& experimen
   return params;
 }
 
-LawTheory PredictAffineFormation(const Experiment& experiment) {
-  const auto& params = ParamsOf<AffineFormationParams>(experiment.law);
-  if (params.gain == 0) return {.silent = "with gain = 0 followers stay where they are"};
-  const LedTeam& team = params.team;
-  const Eigen::VectorXd rates =
-      SymmetricEigenvalues(params.gain * BlockOf(params.omega, team.followers, team.followers));
-  if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty())
-    return {.silent = std::move(why), .rates = LawRates{{rates.begin(), rates.end()}, "law.gain", params.gain}};
-  const double h_s = experiment.period_s();
-  if (auto unstable = WhyUnstable(experiment, 2 / std::max(rates.maxCoeff(), params.maneuver.gain_per_s())))
-    return *unstable;
-  const double kept = (1 - h_s * rates.array()).abs().maxCoeff();  // |I - T gain Omega_FF|
-  const Eigen::MatrixXd shares = SharesOfLeaders(params.omega, team);
-  const auto size_m = [&](const Eigen::MatrixX3d& rows) { return rows.leftCols(CountOf(experiment.law.axes)).norm(); };
-  Eigen::MatrixX3d p_L = StartsOf(experiment, team.leaders), step_L = p_L;
-  double error_m = size_m(StartsOf(experiment, team.followers) - shares * p_L), largest_m = error_m;
-  for (std::int64_t k = 0; k < experiment.ticks(); ++k) {
-    for (Eigen::Index l = 0; l < p_L.rows(); ++l) {
-      const Eigen::Vector3d& r = params.r_W[static_cast<std::size_t>(team.leaders[static_cast<std::size_t>(l)] - 1)];
-      step_L.row(l) = h_s * params.maneuver.Velocity_W(experiment.time_s(k), h_s, r, p_L.row(l).transpose());
-    }
-    error_m = kept * error_m + size_m(shares * step_L);
-    largest_m = std::max(largest_m, error_m);
-    p_L += step_L;
-  }
-  return {
-      .figures = {{.values = {error_m}, .bound = Bound::kAtMost}, {.values = {largest_m}, .bound = Bound::kAtMost}}};
-}
-
 class AffineFormationMeter final : public LawMeter {
  public:
   AffineFormationMeter(const Experiment& experiment, std::span<const int> ids) : id_(ids.front()) { Adopt(experiment); }
@@ -135,7 +95,8 @@ LawEntry AffineFormationLaw() {
       .summary = "a few leaders turn, stretch, shear and shift a whole formation",
       .equation = "follower: v_i = -gain sum_j omega_ij (p_i - p_j);  leader: to P_i(t) = A(t) r_i + b(t)",
       .details =
-          "omega is the stress matrix that projections by turns find, beginning at the identity; it is "
+          "omega is the stress matrix that projections by turns find, beginning at the identity, or, where they find "
+          "none, a semidefinite program, whose answer has the largest smallest eigenvalue, to a tenth of it; it is "
           "scaled so that the smallest eigenvalue of its followers' block is 1. It depends on places and "
           "edges: weights of the graph do not count.\n"
           "Leaders: v_i = (P_i(t + h) - P_i(t)) / h + leader_gain (P_i(t) - p_i).",
