@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(LargeTeam{"'finite_time'\n", 1000, "the modes of so many agents are not computed"},
                     LargeTeam{"'gradient_tracking'\n", 40, "the modes of so many agents are not computed"},
                     LargeTeam{"'containment'\nleaders = [1, 2]\n", 1000, "the team is large"},
-                    LargeTeam{"'distance_formation'\nshape = 'circle'\ngain = 1e-6\n", 200,
+                    LargeTeam{"'distance_formation'\nshape = 'circle'\ngain = 1e-9\n", 200,
                               "the team is large: its rigidity is not checked"},
                     LargeTeam{"'bearing_formation'\nshape = 'circle'\n", 200,
                               "the team is large: its rigidity is not checked"}),

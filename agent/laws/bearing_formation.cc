@@ -1,24 +1,21 @@
 // Bearing-only formation; Zhao & Zelazo (2016):
 //   v_i = -gain sum_j a_ij P(g_ij) g*_ij,  P(g) = I - g g'
 // g_ij is the direction from agent i to agent j, g*_ij the one between their places. An agent needs no distance. The
-// sum of v_i is 0 and P(g_ij) takes what is along g_ij, so the centroid and the scale (the rms distance from it) stay;
-// held for a tick, velocities across the way make the scale grow a little. On an infinitesimally bearing rigid
-// framework all directions are reached from almost any start: from all but those that lead to the shape mirrored in its
-// centroid. Near the shape the sampled team is as stable as p+ = p - T gain H p, H the sum over edges of a_ij P(g) /
-// |z|.
-#include <algorithm>
+// sum of v_i is 0 and P(g_ij) takes what is along g_ij, so the centroid and the scale (the rms distance from it) stay.
+// Held for a tick, velocities across the way make the scale s grow: N s^2 by T^2 sum |v_i|^2. On an infinitesimally
+// bearing rigid framework all directions are reached from almost any start: from all but those that lead to the shape
+// mirrored in its centroid. Near the shape the sampled team is as stable as p+ = p - T gain H p, H the sum over edges
+// of a_ij P(g) / |z|. What becomes of a start is found by flying the sampled law ahead.
 #include <array>
-#include <cmath>
 #include <memory>
-#include <numbers>
 #include <utility>
 #include <vector>
 
-#include "agent/laws/ideal.h"
+#include "agent/laws/bearing_theory.h"
+#include "agent/laws/fly_ahead.h"
 #include "agent/laws/places.h"
 #include "agent/laws/rigidity.h"
 #include "agent/laws/row_parts.h"
-#include "agent/laws/stable_period.h"
 
 namespace mascot {
 namespace {
@@ -36,11 +33,7 @@ constexpr LawFigure kBearingFormationFigures[] = {
     {.name = "bearing_error_deg", .meaning = "largest error of the direction to a neighbour, at the end"},
     {.name = "scale_ratio", .meaning = "rms distance from the agents' mean, as a multiple of that at the start"},
     {.name = "centroid_drift_m", .meaning = "way of the agents' mean from its start, at the end"},
-};
-
-struct BearingFormationParams final : LawParams {
-  std::vector<Eigen::Vector3d> d_W;  ///< each agent's place, by id - 1 (m)
-  double gain = 0;                   ///< m/s
+    {.name = "settling_time_s", .meaning = "from which on every direction is within 1 degree of its own"},
 };
 
 class BearingFormation final : public Law {
@@ -75,24 +68,6 @@ std::shared_ptr<const LawParams> ReadBearingFormation(const Experiment& experime
   return params;
 }
 
-/// The longest control period that is stable near the shape, at the scale `start_m` (s).
-double LongestPeriod_s(const Experiment& experiment, double start_m) {
-  const auto& params = ParamsOf<BearingFormationParams>(experiment.law);
-  std::vector<Eigen::Vector3d> shape_W = params.d_W;
-  const double larger = start_m / ScaleOf(shape_W, experiment.law.axes);
-  for (Eigen::Vector3d& p : shape_W) p *= larger;
-  return 2 / (params.gain * LargestTurnStiffness(BarsOf(experiment.graph), shape_W, experiment.law.axes));
-}
-
-LawTheory PredictBearingFormation(const Experiment& experiment) {
-  if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty()) return {.silent = std::move(why)};
-  if (experiment.size() > kMostAgentsOfRigidity) return {.silent = "the team is large: its rigidity is not checked"};
-  const double start_m = ScaleOf(StartsOf(experiment), experiment.law.axes);
-  if (start_m == 0) return {.silent = "all agents start at one place, from which there are no directions"};
-  if (auto unstable = WhyUnstable(experiment, LongestPeriod_s(experiment, start_m))) return *unstable;
-  return {.figures = {{.values = {0.0}}, {.values = {1.0}}, {.values = {0.0}}}};
-}
-
 class BearingFormationMeter final : public LawMeter {
  public:
   BearingFormationMeter(const Experiment& experiment, std::span<const int> ids) : now_(&experiment), id_(ids.front()) {
@@ -100,28 +75,27 @@ class BearingFormationMeter final : public LawMeter {
     start_m_ = ScaleOf(start_W_, axes());
   }
   void Adopt(const Experiment& now) override { now_ = &now; }
-  void Add(const TeamRow& row) override { p_W_ = PositionsOf(row.motions); }
+  void Add(const TeamRow& row) override {
+    p_W_ = PositionsOf(row.motions);
+    error_deg_ = LargestTurn_deg(BarsOf(now_->graph), now_->agent(id_).law, p_W_);
+    settling_.Add(row.tick, error_deg_);
+  }
   std::vector<FigureValues> Figures() const override {
     const Eigen::Vector3d drift_W = CentroidOf(p_W_) - CentroidOf(start_W_);
-    return {{LargestError_deg()}, {ScaleOf(p_W_, axes()) / start_m_}, {Along(axes(), drift_W).norm()}};
+    const auto from = settling_.from();
+    return {{error_deg_},
+            {ScaleOf(p_W_, axes()) / start_m_},
+            {Along(axes(), drift_W).norm()},
+            {from ? std::optional(now_->time_s(*from)) : std::nullopt}};
   }
 
  private:
   Axes axes() const { return now_->agent(id_).law.axes; }
-  double LargestError_deg() const {
-    const auto& d_W = ParamsOf<BearingFormationParams>(now_->agent(id_).law).d_W;
-    double largest_rad = 0;
-    for (const Bar& bar : BarsOf(now_->graph)) {
-      const Eigen::Vector3d is_W = SpanOf(bar, p_W_, axes()), wanted_W = SpanOf(bar, d_W, axes());
-      largest_rad = std::max(largest_rad, std::atan2(is_W.cross(wanted_W).norm(), is_W.dot(wanted_W)));
-    }
-    return largest_rad * 180 / std::numbers::pi;
-  }
-
   const Experiment* now_;
   int id_;
   std::vector<Eigen::Vector3d> start_W_, p_W_;
-  double start_m_ = 0;
+  double start_m_ = 0, error_deg_ = 0;
+  SettlingMeter settling_{kSettled_deg};
 };
 
 }  // namespace
@@ -135,7 +109,8 @@ LawEntry BearingFormationLaw() {
           "g_ij is the direction from i to j and g*_ij that from the place of i to the place of j, along "
           "law.axes. Of an agent in the same place, g_ij = 0.",
       .theory =
-          "infinitesimally bearing rigid: all directions are reached from almost any start; centroid and scale stay",
+          "infinitesimally bearing rigid: all directions are reached from almost any start; the centroid stays, and "
+          "the scale but for what holding a command adds",
       .source =
           "Zhao & Zelazo, Bearing rigidity and almost global bearing-only formation stabilization, IEEE Trans. Autom. "
           "Control 61 (2016)",

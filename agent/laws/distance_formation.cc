@@ -3,20 +3,18 @@
 // The team goes down the gradient of V = (1/4) sum over edges a_ij (|z|^2 - d_ij^2)^2: V never grows, the centroid
 // stays. Near an infinitesimally rigid shape all distances are reached exponentially, wherever it is and however it is
 // turned. From far away they may end up wrong. Two agents: |z|^2 = d^2 / (1 + (d^2/|z(0)|^2 - 1) exp(-4 gain d^2 t)).
-// Near the shape the sampled team is as stable as p+ = p - T 2 gain R'R p, with R the rigidity matrix.
-#include <algorithm>
+// Near the shape the sampled team is as stable as p+ = p - T 2 gain R'R p, with R the rigidity matrix. What becomes of
+// a start is found by flying the sampled law ahead.
 #include <array>
-#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
 
-#include "agent/laws/distance_descent.h"
-#include "agent/laws/ideal.h"
+#include "agent/laws/distance_theory.h"
+#include "agent/laws/fly_ahead.h"
 #include "agent/laws/places.h"
 #include "agent/laws/rigidity.h"
 #include "agent/laws/row_parts.h"
-#include "agent/laws/stable_period.h"
 
 namespace mascot {
 namespace {
@@ -32,11 +30,7 @@ constexpr auto kDistanceFormationParameters =
 constexpr LawFigure kDistanceFormationFigures[] = {
     {.name = "distance_error_m", .meaning = "largest error of the distance between neighbours, at the end"},
     {.name = "centroid_drift_m", .meaning = "way of the agents' mean from its start, at the end"},
-};
-
-struct DistanceFormationParams final : LawParams {
-  std::vector<Eigen::Vector3d> d_W;  ///< each agent's place, by id - 1 (m)
-  double gain = 0;                   ///< 1/(m^2 s)
+    {.name = "settling_time_s", .meaning = "from which on every distance between neighbours is within 1 % of its own"},
 };
 
 class DistanceFormation final : public Law {
@@ -70,35 +64,6 @@ std::shared_ptr<const LawParams> ReadDistanceFormation(const Experiment& experim
   return params;
 }
 
-/// The largest error of a distance between neighbours (m).
-double LargestDistanceError(const Graph& graph, const LawConfig& law, std::span<const Eigen::Vector3d> p_W) {
-  const auto& d_W = ParamsOf<DistanceFormationParams>(law).d_W;
-  double largest_m = 0;
-  for (const Bar& bar : BarsOf(graph))
-    largest_m = std::max(largest_m, std::abs(LengthOf(bar, p_W, law.axes) - LengthOf(bar, d_W, law.axes)));
-  return largest_m;
-}
-
-LawTheory PredictDistanceFormation(const Experiment& experiment) {
-  const auto& params = ParamsOf<DistanceFormationParams>(experiment.law);
-  if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty()) return {.silent = std::move(why)};
-  if (experiment.size() > kMostAgentsOfRigidity) return {.silent = "the team is large: its rigidity is not checked"};
-  const Axes axes = experiment.law.axes;
-  const std::vector<Bar> bars = BarsOf(experiment.graph);
-  const double stiffness_m2 = LargestStiffness(bars, params.d_W, axes);
-  if (auto unstable = WhyUnstable(experiment, 1 / (params.gain * stiffness_m2))) return *unstable;
-  const std::vector<Eigen::Vector3d> starts_W = StartsOf(experiment);
-  const double step = experiment.period_s() * params.gain;
-  PredictedFigure error;
-  if (bars.size() == 1)
-    error = {.values = {ErrorOfTwo(bars[0], params.d_W, starts_W, axes, step, experiment.ticks())}};
-  else if (PotentialNeverGrows(bars, params.d_W, starts_W, axes, step))
-    error = {.values = {LargestErrorBelow(bars, params.d_W, starts_W, axes)}, .bound = Bound::kAtMost};
-  if (error.values.empty() || !std::isfinite(*error.values[0]))
-    return {.silent = "the start is too far from the shape for the control period"};
-  return {.figures = {std::move(error), {.values = {0.0}}}};
-}
-
 class DistanceFormationMeter final : public LawMeter {
  public:
   DistanceFormationMeter(const Experiment& experiment, std::span<const int> ids)
@@ -107,15 +72,22 @@ class DistanceFormationMeter final : public LawMeter {
   void Add(const TeamRow& row) override {
     const LawConfig& law = now_->agent(id_).law;
     const std::vector<Eigen::Vector3d> p_W = PositionsOf(row.motions);
-    figures_ = {{LargestDistanceError(now_->graph, law, p_W)}, {Along(law.axes, CentroidOf(p_W) - start_W_).norm()}};
+    const std::vector<Bar> bars = BarsOf(now_->graph);
+    error_m_ = LargestDistanceError(bars, law, p_W, false);
+    drift_m_ = Along(law.axes, CentroidOf(p_W) - start_W_).norm();
+    settling_.Add(row.tick, LargestDistanceError(bars, law, p_W, true));
   }
-  std::vector<FigureValues> Figures() const override { return figures_; }
+  std::vector<FigureValues> Figures() const override {
+    const auto from = settling_.from();
+    return {{error_m_}, {drift_m_}, {from ? std::optional(now_->time_s(*from)) : std::nullopt}};
+  }
 
  private:
   const Experiment* now_;
   int id_;
   Eigen::Vector3d start_W_;
-  std::vector<FigureValues> figures_ = {{{}}, {{}}};
+  std::optional<double> error_m_, drift_m_;
+  SettlingMeter settling_{kShapeShare};
 };
 
 }  // namespace
