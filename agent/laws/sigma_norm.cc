@@ -54,7 +54,7 @@ double AlphaPair::Fading(double from, double to) const {
   double sum = 0;
   ForEachGaussPoint(kTenPoints, from, to, [&](double v, double weight) {
     const double off = std::sinh(v);
-    sum += weight * Bump((d_alpha_ + off) / r_alpha_, bump_) * off;
+    sum += weight * Rho((d_alpha_ + off) / r_alpha_, bump_) * off;
   });
   return sum;
 }
@@ -88,7 +88,7 @@ double AlphaPair::CurvatureBetween(double s_a, double s_b) const {
   const auto root = [&](double s) { return 1 + epsilon_ * s; };  // sqrt(1 + epsilon l^2)
   const double off_a = s_a - d_alpha_, off_b = s_b - d_alpha_;
   const double nearest = off_a > 0 ? off_a : off_b < 0 ? off_b : 0;
-  const double rho = Bump(s_a / r_alpha_, bump_), steepest = 1 / std::pow(1 + nearest * nearest, 1.5);
+  const double rho = Rho(s_a / r_alpha_, bump_), steepest = 1 / std::pow(1 + nearest * nearest, 1.5);
   const double fade = SteepestFading(s_a / r_alpha_, s_b / r_alpha_) / r_alpha_;
   const double w2 = (root(s_b) * root(s_b) - 1) / (epsilon_ * root(s_b) * root(s_b));
   const double pull = std::max(0.0, phi(off_b)), push = std::max(0.0, -phi(off_a));
