@@ -92,6 +92,19 @@ TEST_F(Verify, ARunRepeatsBitForBit) {
   EXPECT_EQ(Check(recording).out, said.out) << "the recording alone";
 }
 
+TEST_F(Verify, ARunOfALawThatSendsMessagesRepeatsToo) {
+  const std::string three =
+      "[run]\nduration_s = 0.5\n[agents]\ncount = 3\nmodel = 'double_integrator'\nposition_m = [[0, 0, 1], [-5, 0, 1], "
+      "[-10, 0, 1]]\n[graph]\ntopology = 'path'\n[law]\nname = ";
+  for (const std::string law : {"'platoon'", "'event_triggered'", "'gradient_tracking'"}) {
+    const std::string recording = Fly(three + law + "\n");
+    ASSERT_EQ(flown_.exit_code, kExitDone) << flown_.err;
+    const Said said = Check(recording);
+    EXPECT_EQ(said.out, recording + ": the same, bit for bit: 51 ticks, 510 messages\n") << law << said.err;
+    std::filesystem::remove_all(File("run"));
+  }
+}
+
 TEST_F(Verify, WritesNothing) {
   Fly();
   const auto files = [&] {

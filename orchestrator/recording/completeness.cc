@@ -29,14 +29,21 @@ bool IsPerTick(const Topic& topic, bool realtime) {
   }
 }
 
-/// Which agents have a law that sends messages (law.messages of the resolved experiment), by id - 1.
-std::vector<bool> SendersOf(Section& config, std::size_t agents) {
+/// Which agents have a law that sends messages, by id - 1: one that says so in the resolved experiment (law.messages of
+/// users' laws), or whose messages have a channel. Laws of the table have no such key, and no reader of recordings
+/// knows them.
+std::vector<bool> SendersOf(Section& config, const McapContents& contents, std::size_t agents) {
   const auto sends = [](Section law) { return law.Boolean("messages", false); };
   std::vector<bool> senders(agents, sends(config.Child("law")));
   for (Section& override : config.Child("agents").Children("override")) {
     const auto id = override.Integer("id");
     if (override.Has("law") && id >= 1 && static_cast<std::size_t>(id) <= agents)
       senders[static_cast<std::size_t>(id - 1)] = sends(override.Child("law"));
+  }
+  for (const auto& [id, channel] : contents.channels) {
+    const auto topic = Topic::Parse(channel.topic);
+    if (topic && topic->kind == TopicKind::kMessage && static_cast<std::size_t>(topic->agent) <= agents)
+      senders[static_cast<std::size_t>(topic->agent - 1)] = true;
   }
   return senders;
 }
@@ -267,7 +274,7 @@ RecordingPlan PlanOf(const McapContents& contents, const std::string& path) {
   plan.ticks = static_cast<std::uint64_t>(std::llround(run.Number("duration_s") * plan.rate_hz)) + 1;
   const std::vector<std::string> patterns = config.Child("record").Texts("topics");
   config.ThrowIfWrong();  // before `agents` is used as a size
-  plan.topics = TopicsOf(patterns, SendersOf(config, static_cast<std::size_t>(plan.agents)));
+  plan.topics = TopicsOf(patterns, SendersOf(config, contents, static_cast<std::size_t>(plan.agents)));
   config.ThrowIfWrong();
   return plan;
 }
