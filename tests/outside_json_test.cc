@@ -60,7 +60,7 @@ TEST(OutsideJson, SaysWhereTextIsNoJson) {
   EXPECT_EQ(Refusal("[1,"), "text that is no JSON (byte 4)");
   EXPECT_EQ(Refusal("{\"a\": 1} x"), "text that is no JSON (byte 10)");
   EXPECT_EQ(Refusal("\"\xff\""), "text that is no JSON (byte 2)");
-  EXPECT_EQ(Refusal("[NaN]"), "text that is no JSON (byte 3)");
+  EXPECT_EQ(Refusal("[NaN]"), "text that is no JSON (byte 2)");
   EXPECT_EQ(Refusal("1e999"), "JSON with a number beyond those of a double");
   for (const char* text : {"", "[", "1e999", "\xff"}) EXPECT_TRUE(JsonOrNull<json>(text).is_null()) << text;
 }
