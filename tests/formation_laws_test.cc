@@ -359,7 +359,7 @@ TEST(DistanceFormation, TheoryIsSilentIfBodiesTouchOnTheWay) {
                   "\n[agents]\nmodel = 'single_integrator'\ncount = 3\nposition_m = [[0, 0, 5], [4, 0, 5], [2, 0.1, " +
                   ShortestFloat(height_m) +
                   "]]\n[graph]\nedges = [[1, 2], [2, 1], [2, 3], [3, 2], [1, 3], [3, 1]]\n"
-                  "[law]\nname = 'distance_formation'\noffsets_m = [[0, 0, 0], [0.3, 0, 0], [0, 3, 0]]\n");
+                  "[law]\nname = 'distance_formation'\noffsets_m = [[0, 0, 0], [3, 0, 0], [0.04, 0.03, 0]]\n");
   };
   EXPECT_EQ(run("true", 5).prediction.silent, "bodies touch on the way");
   const LawRun above(run("true", 6));
