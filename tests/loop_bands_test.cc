@@ -117,8 +117,11 @@ TEST(LoopBands, HoldForLawsThatWantVelocities) {
 }
 
 TEST(LoopBands, AreSilentAboutTimesThatBodiesThatLagDoNotReach) {
-  EXPECT_EQ(Predict(Load(Team(20, "", "name = 'finite_time'\nform = 'sign'\ngain = 0.3\n"))).silent,
-            "agreement_time_s: bodies that lag do not come to it");
+  const LawRun run(Team(20, "", "name = 'finite_time'\nform = 'sign'\ngain = 0.3\n"));
+  EXPECT_TRUE(run.Law()["agreement_time_s"].is_null());
+  EXPECT_TRUE(run.Law()["predicted"]["agreement_time_s"].is_null());
+  EXPECT_THAT(run.Law()["reasons"]["agreement_time_s"].get<std::string>(),
+              HasSubstr("bodies that lag do not come to it"));
 }
 
 TEST(LoopBands, AreSilentWhereTheLimitOfTheTiltCutsOften) {
