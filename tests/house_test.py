@@ -263,20 +263,6 @@ def faults_of_linking(program, libraries):
             yield f"{program.name} holds {len(shared)} functions of {library.name}, such as {min(shared)}"
 
 
-# --- lengths -------------------------------------------------------------------------------------------
-
-
-LONGEST_LAW = 150  # lines
-
-
-def faults_of_lengths(root):
-    """The files of laws that are too long to be read in one go."""
-    for path in sorted((root / "agent/laws").glob("*")):
-        lines = len(path.read_text().splitlines())
-        if lines > LONGEST_LAW:
-            yield f"{path.relative_to(root)}: has {lines} lines, more than {LONGEST_LAW}"
-
-
 # --- text from outside ------------------------------------------------------------------------------------
 
 JSON_READER = "orchestrator/formats/outside_json.cc"
@@ -322,9 +308,6 @@ class ThisTree(HouseTest):
         self.assertGreater(len(names_in_rows(ROOT, "experiment/model_traits.cc")), 1)
         self.check(faults_of_names(ROOT))
 
-
-    def test_files_of_laws_can_be_read_in_one_go(self):
-        self.check(faults_of_lengths(ROOT))
 
     def test_json_from_outside_is_read_in_one_place(self):
         self.assertTrue((ROOT / JSON_READER).exists())
@@ -573,14 +556,6 @@ class Names(Planted):
     def test_a_law_named_by_a_script(self):
         self.broken({"scripts/plot.py": 'if law == "chase":  # "flee"\n    pass\n'},
                     'scripts/plot.py:1: "chase": ask the row of the law or model, in agent/laws/chase.cc')
-
-
-class Lengths(Planted):
-    def test_a_law_that_has_become_two_ideas(self):
-        self.plant(FILES | {"agent/laws/flee.cc": "\n" * 150})
-        self.check(faults_of_lengths(self.root))
-        self.plant({"agent/laws/flee.cc": "\n" * 151})
-        self.check(faults_of_lengths(self.root), ["agent/laws/flee.cc: has 151 lines, more than 150"])
 
 
 class JsonOfOthers(Planted):
