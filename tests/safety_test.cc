@@ -428,7 +428,8 @@ TEST(SafetyTheory, SpeaksOfTeamsThatHearEachOtherAndStartApart) {
   EXPECT_EQ(prediction.silent, "");
   EXPECT_THAT(prediction.warnings, IsEmpty());
   EXPECT_EQ(prediction.assumes, "agents always find a safe command");
-  EXPECT_EQ(SafetyText(prediction), "at least 0.9999 m in the plane (law.safety), if agents always find a safe command");
+  EXPECT_EQ(SafetyText(prediction),
+            "at least 0.9999 m in the plane (law.safety), if agents always find a safe command");
   EXPECT_EQ(PredictionOf(Safety(1), "", "", Circle(4, 5), "quadrotor").assumes,
             "agents always find a safe command and quadrotors accelerate as soon as they are told");
   EXPECT_FALSE(PredictSafety(Read(TeamOf("double_integrator", Circle(4, 5), kMeetByForce))));

@@ -107,7 +107,8 @@ class WaypointMeter final : public LawMeter {
 };
 
 LawTheory PredictWaypoints(const Experiment& experiment) {
-  if (std::string why = WhyNotNearlyIdeal(experiment, Wanted::kAcceleration); !why.empty()) return {.silent = std::move(why)};
+  if (std::string why = WhyNotNearlyIdeal(experiment, Wanted::kAcceleration); !why.empty())
+    return {.silent = std::move(why)};
   std::vector<WaypointTrack> tracks;
   for (const AgentConfig& agent : experiment.agents) {
     const std::optional<WaypointTrack> track = IdealTrack(experiment, agent, FlightOf(agent), experiment.ticks());

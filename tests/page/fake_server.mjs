@@ -25,10 +25,8 @@ async function serve({url}, response) {
       path.startsWith("/vendor/") ? join(VENDOR, path.slice(8)) : join(PAGE, path === "/" ? "index.html" : path);
   try {
     const body = await readFile(file);
-    response.writeHead(200, {
-      "Content-Type": TYPES[extname(file)] ?? "application/octet-stream",
-      "Content-Security-Policy": POLICY
-    });
+    response.writeHead(
+        200, {"Content-Type": TYPES[extname(file)] ?? "application/octet-stream", "Content-Security-Policy": POLICY});
     response.end(body);
   } catch {
     response.writeHead(404).end();
@@ -36,8 +34,7 @@ async function serve({url}, response) {
 }
 
 // As strict as the real one.
-const POLICY =
-    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; " +
+const POLICY = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; " +
     "font-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 /** Starts a server on a free port, with a row each `frame_ms`. `asked` has all that clients asked for. */
