@@ -76,7 +76,8 @@ TEST(TurningOf, ASlowAttitudeIsUnstableWithAnyGain) {
   const LawRun run(Two("mascot_published", "name = 'velocity_consensus'\np_gain = 0.01\n", "velocity_gain = 6.0\n"));
   EXPECT_EQ(run.prediction.stable, false);
   EXPECT_THAT(run.prediction.warnings,
-              Contains("law.p_gain: unstable, however small it is: quadrotors turn before they accelerate"));
+              Contains("agents.airframe: the velocity loop of agent 1 is unstable at every control.rate_hz, by "
+                       "control.velocity_gain"));
 }
 
 }  // namespace
