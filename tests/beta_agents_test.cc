@@ -110,7 +110,9 @@ TEST(BetaAgents, TurnAFlockOfBodiesAsideWithoutAContact) {
   for (const std::string model : {"double_integrator", "quadrotor"}) {
     const LawRun run(Six(kThree + kSight, "", 2, model));
     EXPECT_EQ(run.summary["safety"]["contacts"]["obstacles"], 0) << model;
-    EXPECT_EQ(run.prediction.figures_silent + run.prediction.silent, "obstacles push the agents that see them");
+    EXPECT_EQ(run.prediction.figures_silent + run.prediction.silent,
+              model == "quadrotor" ? "agents 3 and 4 may touch, 3.3 s from the start"
+                                   : "obstacles push the agents that see them");
     EXPECT_LT(run.Measured("centre_off_m"), 4) << model;
   }
 }

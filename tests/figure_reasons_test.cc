@@ -86,7 +86,9 @@ INSTANTIATE_TEST_SUITE_P(OfLaws, FigureReasons, testing::ValuesIn(LawsWithFigure
                          [](const auto& law) { return test::ParamName(std::string(law.param)); });
 
 TEST(FigureReasonsOfCheck, AreLinesOfTheirOwn) {
-  const Experiment experiment = LoadExperiment(Section::FromFile(MASCOT_SOURCE_DIR "/configs/flocking.toml"), "test");
+  const Override ideal[] = {{.key = "agents.model", .value = "\"double_integrator\""}};
+  const Experiment experiment =
+      LoadExperiment(Section::FromFile(MASCOT_SOURCE_DIR "/configs/flocking.toml", ideal), "test");
   std::string text;
   for (const auto& [label, line] : PredictedFigureLines(experiment, Predict(experiment)))
     text += label + ": " + line + "\n";
