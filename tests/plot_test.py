@@ -630,7 +630,7 @@ class Paper(PlotTest):
             figure_style.use("column")
             figure = pictures.PICTURES[name].draw(run_folder.read_run(self.folder))
             self.assertIsNone(figure._suptitle)
-            sizes = {text.get_fontsize() for text in figure.findobj(plot.matplotlib.text.Text) if text.get_text()}
+            sizes = {text.get_fontsize() for text in figure.findobj(matplotlib.text.Text) if text.get_text()}
             self.assertEqual(sizes, {8.0}, name)
 
     def test_nothing_is_clipped_or_covered(self):

@@ -60,7 +60,7 @@ TEST(Reference, SaysRangeDefaultAndMeaning) {
   EXPECT_THAT(text, HasSubstr("| `duration_s` | (0, 1e+06] | *required* | | "));
   EXPECT_THAT(text, HasSubstr("| `mode` | lockstep \\| realtime | `\"lockstep\"` | | "));
   EXPECT_THAT(text, HasSubstr("\n### [[link.override]]\n"));
-  EXPECT_THAT(text, HasSubstr("\nKeys as in `[control]`, but for `rate_hz`.\n"));
+  EXPECT_THAT(text, HasSubstr("\nKeys as in `[control]`, but for `rate_hz`, `python_memory_mb`.\n"));
   for (const LawEntry& law : Laws()) EXPECT_THAT(text, HasSubstr("law.name = \"" + std::string(law.name) + "\""));
 }
 

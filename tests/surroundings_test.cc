@@ -90,14 +90,14 @@ TEST_F(Surroundings, APathIsAPathWhateverItBeginsWith) {
     Write(name, kConsensus);
     ExpectDone(std::string("\"$O\" check -- '") + name + "'");
   }
-  ExpectDone("\"$O\" up --engine inprocess --quiet --out=-run -- -x.toml");
+  ExpectDone("\"$O\" up --engine inprocess --quiet --set output.save_plot=true --out=-run -- -x.toml");
   ExpectDone("\"$O\" plot --only paths --format svg -- -run && test -s ./-run/paths.svg");
   ExpectDone("\"$O\" sweep --set law.p_gain=0.1,0.2 --out=-s.csv --quiet -- -x.toml && test -s ./-s.png");
 }
 
 TEST_F(Surroundings, SomeoneWithoutAHomeGetsPictures) {
-  Write("experiment.toml", kRing.substr(0, kRing.find("output")) +
-                               "output = { position_plot = false, velocity_plot = false }\nlaw.name = 'consensus'\n");
+  Write("experiment.toml",
+        kRing.substr(0, kRing.find("output")) + "output = { velocity_plot = false }\nlaw.name = 'consensus'\n");
   ExpectDone(
       "chmod 777 . && env -i PATH=/usr/bin:/bin HOME=/nowhere TMPDIR=/nowhere \"$O\" up experiment.toml --engine "
       "inprocess --quiet --out o && test -s o/paths.png");

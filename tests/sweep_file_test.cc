@@ -140,7 +140,7 @@ TEST_F(SweepFileTest, NamesTheLineAndTheColumnOfWhatNoSweepHasWritten) {
   EXPECT_EQ(refusal("0,0.5,,1.0\n"), "run: expected each run once, got 0 again");
   EXPECT_EQ(refusal("1,0.5,,1.0\n"), "law.beta: expected 0.7, which run 1 of this sweep has, got '0.5'");
   EXPECT_EQ(refusal("1,0.7,,fast\n"), "sim_s: expected a number, true, false or nothing, got 'fast'");
-  EXPECT_EQ(refusal("1,0.7,,1.0\r\n"), "sim_s: expected a number, true, false or nothing, got '1.0\r'");
+  EXPECT_EQ(refusal("1,0.7,,1.0\r\n"), "sim_s: expected a number, true, false or nothing, got '1.0\\r'");
   EXPECT_EQ(refusal("1,\"0.7\",,1.0\n"),
             "expected cells as a sweep writes them, got other quotes or a carriage return");
 }

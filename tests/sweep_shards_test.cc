@@ -129,8 +129,8 @@ TEST_F(SweepShards, AreMergedOnlyIfTheyAreAllThereAndOfOneSweepAndBuild) {
   FlyShares(3, "--seeds 2..8");
   out_ = Folder("sweep.csv");
   EXPECT_EQ(refusal("sweep.csv other.csv --out sweep.csv"),
-            "error: sweep merge: expected shares of one sweep, got sweep.1-of-3.csv and other.1-of-3.csv, which differ "
-            "in what their runs set\n");
+            "error: sweep merge: expected shares of one sweep, got sweep.1-of-3.csv (there) and other.1-of-3.csv "
+            "(here), which differ in --seeds: 1, 2, 3, 4, 5, 6, 7 there, 2, 3, 4, 5, 6, 7, 8 here\n");
 
   const std::string plan = ReadFile(Folder("sweep.2-of-3.csv.plan"));
   std::string older = plan;
@@ -148,7 +148,7 @@ TEST_F(SweepShards, AreMergedOnlyIfTheyAreAllThereAndOfOneSweepAndBuild) {
   std::string rows = ReadFile(Folder("sweep.2-of-3.csv"));
   rows.replace(rows.find("\n1,") + 1, 1, "9");
   WriteFile(Folder("sweep.2-of-3.csv"), rows);
-  EXPECT_EQ(refusal("sweep.csv"), "error: sweep merge: expected runs below 7, got run 9 in sweep.2-of-3.csv\n");
+  EXPECT_EQ(refusal("sweep.csv"), "error: sweep.2-of-3.csv:2: run: expected a number of a run below 7, got '9'\n");
 }
 
 TEST_F(SweepShards, AreNotMergedIntoAnotherTable) {

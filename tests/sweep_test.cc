@@ -267,7 +267,7 @@ TEST_F(SweepTest, HasTheFiguresOfEveryLawThatARunEndsWith) {
 
   WriteFile(config_,
             team + "[[law.schedule]]\nat_s = 0.5\nname = 'coverage'\nregion_m = [[-5, -5], [5, -5], [0, 5]]\n");
-  EXPECT_THAT(points_with_cost("--set run.duration_s=0.5:0.5:1"), testing::ElementsAre("1.0"))
+  EXPECT_THAT(points_with_cost("--set run.duration_s=0.5:0.5:1"), testing::ElementsAre("1"))
       << "a phase that the shorter run does not reach";
 }
 

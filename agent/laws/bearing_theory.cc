@@ -81,10 +81,11 @@ LawTheory PredictBearingFormation(const Experiment& experiment) {
       .warnings = BearingWarnings(ahead, LargestTurn_deg(bars, experiment.law, starts_W), experiment.run.duration_s)};
   constexpr double kRounding_deg = 1e-9;
   if (ahead.silent.empty())
-    theory.figures = {{.values = {ahead.error < kRounding_deg ? 0 : ahead.error}},
-                      {.values = {ScaleOf(ahead.p_W, experiment.law.axes) / start_m}},
-                      {.values = {0.0}},
-                      {.values = {ahead.settled_s}}};
+    theory.figures = {
+        {.values = {ahead.error < kRounding_deg ? 0 : ahead.error}},
+        {.values = {ScaleOf(ahead.p_W, experiment.law.axes) / start_m}},
+        {.values = {0.0}},
+        {.values = {ahead.settled_s}, .why = ahead.settled_s ? "" : "that is not so by the end of the run"}};
   return theory;
 }
 

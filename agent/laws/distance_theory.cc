@@ -84,7 +84,9 @@ LawTheory PredictIdealDistances(const Experiment& experiment, std::span<const Ba
     constexpr double kNothing_m = 1e-11;  // rounding
     const double error_m = LargestDistanceError(bars, experiment.law, ahead.p_W, false);
     theory.figures = {
-        {.values = {error_m < kNothing_m ? 0 : error_m}}, {.values = {0.0}}, {.values = {ahead.settled_s}}};
+        {.values = {error_m < kNothing_m ? 0 : error_m}},
+        {.values = {0.0}},
+        {.values = {ahead.settled_s}, .why = ahead.settled_s ? "" : "that is not so by the end of the run"}};
   }
   return theory;
 }

@@ -65,7 +65,9 @@ RunSocket::~RunSocket() {
 void RunSocket::Listen(const std::stop_token& over) {
   while (!over.stop_requested()) {
     pollfd socket{socket_.number(), POLLIN, 0};
-    if (::poll(&socket, 1, kLookPause_ms) <= 0) continue;
+    const int ready = ::poll(&socket, 1, kLookPause_ms);
+    if (ready < 0 && errno != EINTR) ::poll(nullptr, 0, kRoomPause_ms);  // the limit of descriptors is below 1
+    if (ready <= 0) continue;
     if ((socket.revents & POLLNVAL) != 0) return;  // a law has closed it
     Descriptor client(::accept4(socket_.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     if (client.is_open()) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -59,7 +60,7 @@ std::string OfAgent(const Experiment& experiment, const AgentConfig& agent) {
   if (agent.traits().rolls) return "a unicycle turns before it goes where it is wanted";
   if (!agent.traits().has_airframe) return "";
   if (experiment.phase > 0) return "how quadrotors are tilted when a later phase begins is not predicted";
-  if (std::abs(std::remainder(agent.control.heading_rad - agent.heading_rad, 2 * EIGEN_PI)) > 1e-3)
+  if (std::abs(std::remainder(agent.control.heading_rad - agent.heading_rad, 2 * std::numbers::pi)) > 1e-3)
     return fmt::format("agent {} turns to control.heading_rad on its way", agent.id);
   return "";
 }
