@@ -130,7 +130,7 @@ void RequireThreadsOfUser(int needed) {
   rlimit limit{};
   if (getrlimit(RLIMIT_NPROC, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || MayHaveAnyNumberOfThreads()) return;
   const int used = ThreadsOfUser();
-  if (limit.rlim_cur >= static_cast<rlim_t>(used + needed)) return;
+  if (limit.rlim_cur >= static_cast<rlim_t>(used) + static_cast<rlim_t>(needed)) return;
   RefuseThreads("this user", "ulimit -u", static_cast<long>(limit.rlim_cur), used, needed);
 }
 

@@ -60,8 +60,9 @@ std::string Six(const std::string& more, const std::string& law = "", std::uint6
   Random random(seed, Random::Stream::kPositions);
   std::string positions, velocities;
   for (int n = 0; n < 6; ++n) {
+    const int row = n / 2;
     positions += fmt::format("{}[{}, {}, 1.0]", n == 0 ? "" : ", ", -8 + 2 * (n % 2) + random.In(-0.4, 0.4),
-                             -2 + 2 * (n / 2) + random.In(-0.4, 0.4));
+                             -2 + 2 * row + random.In(-0.4, 0.4));
     velocities += fmt::format("{}[{}, {}, 0]", n == 0 ? "" : ", ", random.In(-1, 1), random.In(-1, 1));
   }
   return "[run]\nduration_s = 30\n[agents]\nmodel = '" + model + "'\ncount = 6\nposition_m = [" + positions +

@@ -51,12 +51,13 @@ TEST(AlphaPairs, PotentialIsTheClosedFormWhereNothingFades) {
 
 TEST(AlphaPairs, PotentialAndCurvatureAreRightHoweverSharpThePairIs) {
   // With a small epsilon and long distances phi is nearly a sign: it turns within 1 of s, which reaches to 5e7 here.
-  for (const auto& [distance_m, range_m, epsilon, bump] : {std::array{2.0, 2.4, 0.1, 0.2},
-                                                           {2.0, 3.0, 0.1, 0.95},
-                                                           {100.0, 120.0, 1e-3, 0.2},
-                                                           {5000.0, 1e4, 1e-6, 0.5},
-                                                           {0.1, 5.0, 1000.0, 0.0},
-                                                           {30.0, 2000.0, 0.5, 0.99}}) {
+  for (const auto& [distance, range_m, epsilon, bump] : {std::array{2.0, 2.4, 0.1, 0.2},
+                                                         {2.0, 3.0, 0.1, 0.95},
+                                                         {100.0, 120.0, 1e-3, 0.2},
+                                                         {5000.0, 1e4, 1e-6, 0.5},
+                                                         {0.1, 5.0, 1000.0, 0.0},
+                                                         {30.0, 2000.0, 0.5, 0.99}}) {
+    const double distance_m = distance;  // which a lambda may capture
     const AlphaPair pair(distance_m, range_m, epsilon, bump);
     const double most = pair.LargestCurvature() * (1 + 1e-5);
     // The pull, summed up by Simpson's rule in steps that are short near the distance.

@@ -86,8 +86,9 @@ Moments MomentsOfBump(const Polygon& polygon, const Eigen::Vector2d& o, const Ga
     const double panels = std::max(1.0, std::ceil(length / kLongestPanel));
     for (double panel = 0; panel < panels; ++panel)
       ForEachGaussPoint(GaussRuleFor(length / panels), panel / panels, (panel + 1) / panels,
-                        [&](double share, double weight) {
-                          const double x = from + share * (to - from), low = lower.At(share), high = upper.At(share);
+                        [&, &low_edge = lower, &high_edge = upper](double share, double weight) {
+                          const double x = from + share * (to - from), low = low_edge.At(share),
+                                       high = high_edge.At(share);
                           if (!(high > low)) return;
                           const double part = weight * (to - from) * std::exp(-x * (x / 2 + d));
                           const auto [y0, y1, y2] = GaussMoments(low, high, about.y());
