@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
@@ -192,6 +193,7 @@ TEST_P(TerminalOfWidth, HoldsEachProgressLineOfASweep) {
 std::string PrintedBy(const std::function<void()>& print) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("no pipe");
+  std::fflush(stdout);  // what is buffered here would be the child's to print, too
   const pid_t child = fork();
   if (child == 0) {
     dup2(ends[1], STDOUT_FILENO);
