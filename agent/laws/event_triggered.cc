@@ -79,7 +79,7 @@ class EventTriggered final : public Law {
   Axes axes_ = Axes::kXy;
   bool flies_as_wanted_;  // else its velocity lags, and is the best guess of where it goes in a tick
   Trigger trigger_;
-  Said said_;
+  LastBroadcast said_;
   std::optional<Eigen::Vector3d> x_i_W_;  // what this agent said last
   bool speaks_ = false;
 };

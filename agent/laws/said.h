@@ -9,7 +9,7 @@
 namespace mascot {
 
 /// What each neighbour said last: the messages that an agent has heard. A tick without a message changes nothing.
-class Said {
+class LastBroadcast {
  public:
   void Hear(std::span<const Heard> heard) {
     for (const Heard& j : heard)
