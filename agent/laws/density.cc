@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -84,18 +85,18 @@ Moments MomentsOfBump(const Polygon& polygon, const Eigen::Vector2d& o, const Ga
     const double length = std::max({(to - from) * (1 + d / 3), std::hypot(to - from, lower.to - lower.from),
                                     std::hypot(to - from, upper.to - upper.from)});
     const double panels = std::max(1.0, std::ceil(length / kLongestPanel));
-    for (double panel = 0; panel < panels; ++panel)
-      ForEachGaussPoint(GaussRuleFor(length / panels), panel / panels, (panel + 1) / panels,
-                        [&, &low_edge = lower, &high_edge = upper](double share, double weight) {
-                          const double x = from + share * (to - from), low = low_edge.At(share),
-                                       high = high_edge.At(share);
-                          if (!(high > low)) return;
-                          const double part = weight * (to - from) * std::exp(-x * (x / 2 + d));
-                          const auto [y0, y1, y2] = GaussMoments(low, high, about.y());
-                          sum.mass += part * y0;
-                          sum.first += part * Eigen::Vector2d((x - about.x()) * y0, y1);
-                          sum.second += part * ((x - about.x()) * (x - about.x()) * y0 + y2);
-                        });
+    for (std::int64_t panel = 0; panel < static_cast<std::int64_t>(panels); ++panel)
+      ForEachGaussPoint(
+          GaussRuleFor(length / panels), static_cast<double>(panel) / panels, static_cast<double>(panel + 1) / panels,
+          [&, &low_edge = lower, &high_edge = upper](double share, double weight) {
+            const double x = from + share * (to - from), low = low_edge.At(share), high = high_edge.At(share);
+            if (!(high > low)) return;
+            const double part = weight * (to - from) * std::exp(-x * (x / 2 + d));
+            const auto [y0, y1, y2] = GaussMoments(low, high, about.y());
+            sum.mass += part * y0;
+            sum.first += part * Eigen::Vector2d((x - about.x()) * y0, y1);
+            sum.second += part * ((x - about.x()) * (x - about.x()) * y0 + y2);
+          });
   }
   const double s = bump.width_m;
   const Eigen::Vector2d y(-frame.x.y(), frame.x.x());
