@@ -87,9 +87,12 @@ int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role
   const Refusals refusals(peers);
   Lifecycle lifecycle(domain, peers, stop, args.options.name, args.agents.size() == 1 ? args.agents.first : 0);
   std::unique_ptr<Role> role;  // destroyed after the exit code is known: that may hang
+  bool may_have_run_laws = false;
   int code = 1;
   try {
-    role = make_role(domain, lifecycle, lifecycle.AwaitExperiment(std::chrono::seconds(args.wait_s)));
+    const auto experiment = lifecycle.AwaitExperiment(std::chrono::seconds(args.wait_s));
+    may_have_run_laws = true;
+    role = make_role(domain, lifecycle, experiment);
     role->Run();
   } catch (const Ended& ended) {
     code = ended.signal() == 0 ? 0 : 128 + ended.signal();
@@ -98,7 +101,7 @@ int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role
     std::cerr << "error: " << InWords(failure) << std::endl;
     lifecycle.SetFinal(Life::kFailed, InWords(failure));
   }
-  KillDescendants();
+  if (may_have_run_laws) KillDescendants();
   Leave(args, kTimeToLeave, code);
   return code;
 }
