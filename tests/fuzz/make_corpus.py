@@ -155,8 +155,9 @@ def viewers():
     def binaries(*messages):
         return b"".join(struct.pack("<BH", 1, len(one)) + one for one in messages)
 
-    def repeated(is_text, begin, part, times, end=b""):
-        return (struct.pack("<BH", 2 if is_text else 3, len(begin)) + begin + struct.pack("<B", len(part)) + part
+    def repeated(is_text, begin, part, times, end=b"", may_be_longest=False):
+        kind = (254 if may_be_longest else 2) + (not is_text)
+        return (struct.pack("<BH", kind, len(begin)) + begin + struct.pack("<B", len(part)) + part
                 + struct.pack("<IH", times, len(end)) + end)
 
     goal = b'{"op":"advertise","channels":[{"id":%d,"topic":"/goal","encoding":"%s","schemaName":"geometry_msgs/PoseStamped"}]}'
@@ -176,6 +177,7 @@ def viewers():
                      + texts(b'{"op":"unadvertise","channelIds":[2]}'),
         "ask": binaries(b"\2" + struct.pack("<III", 0, 5, 4) + b"json" + ask),
         "deep_text": repeated(True, b"", b"[", 1_000_000) + repeated(True, b"", b'{"op":', 100_000, b'"x"'),
+        "deepest_text": repeated(True, b"", b"[", 1_000_000, may_be_longest=True),
         "deep_value": repeated(True, b'{"op":"setParameters","parameters":[{"name":"x","value":', b"[", 900_000, b"]}]}"),
         "deep_list": repeated(True, b'{"op":"subscribe","subscriptions":', b'[{"id":', 100_000),
         "deep_ask": repeated(False, b"\2" + struct.pack("<III", 0, 5, 4) + b'json{"ask":', b"[", 900_000),

@@ -1,7 +1,8 @@
 // Fuzzer: messages of viewers to the Foxglove protocol. Nothing is thrown, every question is answered, and what is sent
 // back is a message of the protocol. The input is a list of messages: a byte that says whether it is text, and whether
-// it repeats itself; two of its length, and the message. One that repeats itself is of up to a megabyte: its beginning
-// (two bytes of length), what is repeated (one byte of length), how often (four bytes), and its end.
+// it repeats itself; two of its length, and the message. One that repeats itself has a beginning (two bytes of length),
+// what is repeated (one byte of length), how often (four bytes), and its end. It is of up to 16 KiB, and, so that a
+// round is not spent on few long ones, only where the first byte is 254 or 255 of up to a megabyte.
 #include <algorithm>
 #include <memory>
 #include <span>
@@ -71,20 +72,23 @@ class FuzzedServer final : public Foxglove::Host {
 namespace mascot {
 namespace {
 
-constexpr std::size_t kLongest = 1 << 20;  // SocketLimits::message_bytes
+constexpr int kMayBeLongest = 254;
+constexpr std::size_t kLong = 1 << 14, kLongest = 1 << 20;  // SocketLimits::message_bytes
 
 std::span<const std::uint8_t> TakePart(ByteReader& input, std::size_t length) {
   return input.TakeBytes(std::min(length, input.rest().size()));
 }
 
-std::vector<std::uint8_t> TakeRepeated(ByteReader& input) {
+std::vector<std::uint8_t> TakeRepeated(ByteReader& input, std::size_t longest) {
   const auto begin = TakePart(input, input.Take<std::uint16_t>());
   const auto part = TakePart(input, input.Take<std::uint8_t>());
-  std::size_t times = input.Take<std::uint32_t>();
+  const std::size_t times = input.Take<std::uint32_t>();
   const auto end = TakePart(input, input.Take<std::uint16_t>());
   std::vector<std::uint8_t> message(begin.begin(), begin.end());
-  for (; times > 0 && !part.empty() && message.size() + part.size() + end.size() <= kLongest; --times)
-    message.insert(message.end(), part.begin(), part.end());
+  const std::size_t room = longest - std::min(longest, begin.size() + end.size());
+  const std::size_t size = part.empty() ? 0 : std::min(times, room / part.size()) * part.size();
+  message.reserve(begin.size() + size + end.size());
+  for (std::size_t i = 0; i < size; ++i) message.push_back(part[i % part.size()]);
   message.insert(message.end(), end.begin(), end.end());
   return message;
 }
@@ -99,7 +103,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto kind = input.Take<std::uint8_t>();
     const bool is_text = kind % 2 == 0, repeats = kind / 2 % 2 != 0;
     if (repeats)
-      server.Take(is_text, mascot::TakeRepeated(input));
+      server.Take(is_text,
+                  mascot::TakeRepeated(input, kind >= mascot::kMayBeLongest ? mascot::kLongest : mascot::kLong));
     else
       server.Take(is_text, mascot::TakePart(input, input.Take<std::uint16_t>()));
   }
