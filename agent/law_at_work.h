@@ -40,7 +40,7 @@ class LawAtWork {
   mutable bool took_too_much_ = false;  // memory; then its time is up because it does not let go of it
 };
 
-/// Those of the laws of an experiment that their users wrote.
+/// The limits of the laws that users wrote, in this experiment.
 LawLimits LimitsOfLaws(const Experiment& experiment);
 /// Whether this process is one that a law has forked.
 bool IsForkedByLaw();

@@ -61,9 +61,9 @@ struct PredictedFigure {
   Bound bound = Bound::kEqual;
   /// Why some or all of the values are absent, in words that follow "because".
   std::string why = {};
-  /// That of the numbers from which the figure is computed, in its unit, where it is larger than the figure: where they
-  /// cancel, as in a share of what was there at the start. For lengths, that of positions is added. Rounding puts the
-  /// figure off by a share of it (agent/laws/rounding.h).
+  /// The magnitude of the numbers from which the figure is computed, in its unit, where it is larger than the figure
+  /// because they cancel, as in a share of what was there at the start. For lengths, that of the positions is added.
+  /// Rounding puts the figure off by a share of this magnitude (agent/laws/rounding.h).
   double magnitude = 0;
   /// So much rounding may put the measured figure off. Bounds have it in them. Made by Predict(), not by laws.
   double rounding = 0;

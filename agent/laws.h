@@ -39,7 +39,7 @@ struct PursuitForm {
 /// A child has caught up with its parent when they are at most this far apart along each axis of the law (m).
 inline constexpr double kCaughtUp_m = 0.05;
 
-/// Of Drawing::pictures: how fast agents agree.
+/// The one of Drawing::pictures that shows how fast agents agree.
 inline constexpr std::string_view kDisagreementPicture[] = {"disagreement"};
 
 /// Plot settings of a law: summary.json passes them to scripts/plot.py.

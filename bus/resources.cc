@@ -30,7 +30,7 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 /// Processes of a run reserve 0.6 to 1.2 GiB if they may, mostly stacks and heaps of threads. With 180 to 300 MiB some
 /// start and some do not.
 constexpr std::uint64_t kAddressSpace = 512 * kMiB;
-/// Of which they use: with 60 MB some threads do not start, with 150 MB all do.
+/// They use a part of it: with 60 MB some threads do not start, with 150 MB all do.
 constexpr std::uint64_t kData = 192 * kMiB;
 /// A process with a participant has 10 threads, the orchestrator up to 20.
 constexpr int kThreads = 10, kMoreThreads = 12;

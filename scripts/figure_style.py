@@ -61,7 +61,7 @@ PAPER = {  # in addition, at true size
 
 @dataclass(frozen=True)
 class Size:
-    """Of pictures: widths and heights in inches."""
+    """Widths and heights of pictures in inches."""
 
     width: float
     panel: float  # height of a panel over time

@@ -1,4 +1,4 @@
-// Of every figure that a law measures, theory says what it will be, or why it does not say.
+// Theory says what each figure that a law measures will be, or why it does not say.
 #include <gmock/gmock.h>
 
 #include <set>

@@ -108,7 +108,7 @@ def includes(root, paths):
 
 
 def faults_of_rooms(root, house):
-    """Of the table and of the includes that go from room to room."""
+    """Faults of the table and of the includes that go from room to room."""
     paths = sources(root, FOLDERS, CPP)
     rooms = {path: house.rooms_of(path) for path in paths}
     for path, claims in rooms.items():
@@ -138,7 +138,7 @@ def faults_of_rooms(root, house):
 
 
 def faults_of_headers(root, house):
-    """Of includes of what is not ours, and of the table about them. Standard C++ headers have no dot: all may."""
+    """Faults of includes of what is not ours, and of the table about them. Standard C++ headers have no dot: all may."""
     paths = sources(root, FOLDERS, CPP)
     used = set()
     for include in includes(root, paths):
@@ -161,7 +161,7 @@ def faults_of_headers(root, house):
 
 
 def faults_of_bans(house):
-    """Of arrows that the table may not have, whatever rides on them."""
+    """Arrows that the table may not have, whatever rides on them."""
     for ban in house.bans:
         for name in [*ban.rooms, *ban.never]:
             if name not in house.by_name:
@@ -173,7 +173,7 @@ def faults_of_bans(house):
 
 
 def faults_of_libraries(cmake, house):
-    """Of the column of libraries."""
+    """Faults of the column of libraries."""
     built = {f"mascot_{name}" for name in re.findall(r"^\s*mascot_room\((\w+)", cmake, re.M)}
     programs = set(re.findall(r"^\s*add_executable\((\w+)", cmake, re.M))
     listed = {room.library for room in house.rooms}
@@ -227,7 +227,7 @@ def python_literals(path):
 
 
 def faults_of_names(root):
-    """Of string literals that are the name of a law or a model, outside its own files and rows."""
+    """String literals that are the name of a law or a model, outside its own files and rows."""
     homes = {name: [f"agent/laws/{name}.cc", f"agent/laws/{name}.h"] for name in names_of_laws(root)}
     for name in names_in_rows(root, "experiment/model_traits.cc"):
         homes[name] = ["experiment/model_traits.cc", "agent/controllers.cc", "physics_server/models.cc",
@@ -270,7 +270,7 @@ READS_JSON = re.compile(r"\b\w*[Jj]son\s*::\s*(?:parse|accept|sax_parse|from_\w+
 
 
 def faults_of_json(root):
-    """Of text that becomes JSON elsewhere than where the limits are."""
+    """Places where text becomes JSON elsewhere than where the limits are."""
     for path in sources(root, FOLDERS, CPP):
         for number, line in enumerate((root / path).read_text().splitlines(), 1):
             if path != JSON_READER and READS_JSON.search(line.split("//")[0]):

@@ -19,7 +19,7 @@ using ::testing::ExitedWithCode;
 using ::testing::HasSubstr;
 using ::testing::KilledBySignal;
 
-/// Of laws that end their process: each in a process of its own, which begins anew, since others have threads.
+/// Tests of laws that end their process. Each runs in a process of its own, which begins anew, as others have threads.
 class LawAtWorkDeathTest : public testing::Test {
  protected:
   LawAtWorkDeathTest() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }

@@ -24,7 +24,7 @@ struct BetaAgents {
 
   /// The acceleration of agent `self` by the beta agents that it sees: `nearest_W` as for Law::See().
   Eigen::Vector3d Push_W(const Motion& self, std::span<const Eigen::Vector3d> nearest_W) const;
-  /// That of one of them, at `q_W` with the velocity `p_W`:
+  /// The acceleration by one of them, at `q_W` with the velocity `p_W`:
   ///   c1 phi_beta(|q - x|_sigma) n + c2 rho_h(|q - x|_sigma / d_beta) (p - v),  n = (q - x) / sqrt(1 + epsilon |q -
   ///   x|^2) phi_beta(z) = rho_h(z / d_beta) (sigma_1(z - d_beta) - 1),  sigma_1(z) = z / sqrt(1 + z^2),  h = 0.9
   Eigen::Vector3d PushOfOne_W(const Motion& self, const Eigen::Vector3d& q_W, const Eigen::Vector3d& p_W) const;

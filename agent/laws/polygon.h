@@ -26,7 +26,7 @@ Polygon Within(const Polygon& polygon, const Eigen::Vector2d& through, const Eig
 Polygon Nearer(const Polygon& polygon, const Eigen::Vector2d& p, const Eigen::Vector2d& other);
 /// The point of a polygon with at least one corner that is nearest to `p`: `p`, if that lies within.
 Eigen::Vector2d NearestPoint(const Polygon& polygon, const Eigen::Vector2d& p);
-/// Of the density 1, about `o`.
+/// The moments of the density 1, about `o`.
 Moments MomentsOf(const Polygon& polygon, const Eigen::Vector2d& o);
 
 }  // namespace mascot

@@ -21,7 +21,7 @@ inline double RoundingShare(const Experiment& experiment, std::int64_t ticks) {
   const double of_a_tick = kRoundings + 2 * experiment.steps_per_tick();
   return std::numeric_limits<double>::epsilon() / 2 * of_a_tick * static_cast<double>(ticks + 1);
 }
-/// Of a figure at the end of the run, or of all of it.
+/// The same share for a figure at the end of the run, or of the whole run.
 inline double RoundingShare(const Experiment& experiment) { return RoundingShare(experiment, experiment.ticks()); }
 
 /// The largest component of the agents' positions at the start (m): the magnitude of the positions of a team that stays

@@ -11,7 +11,7 @@
 namespace mascot {
 namespace {
 
-/// That of the SDK, then that of the clients before it.
+/// The protocol of the SDK, then the one of the clients before it.
 constexpr const char* kSubprotocols[] = {"foxglove.sdk.v1", "foxglove.websocket.v1"};
 constexpr int kFramesPerSecond = 30;
 constexpr auto kPaceWindow = std::chrono::seconds(1);

@@ -26,15 +26,15 @@ std::optional<std::string> ReadOrigin(std::string_view text);
 /// that were opened from a disk. Throws ConfigError.
 std::string ReadAllowedOrigin(const std::string& text);
 
-/// Of a request, what says who speaks to whom. Each list has all headers of its name.
+/// The part of a request that says who speaks to whom. Each list has all headers of its name.
 struct Caller {
   std::vector<std::string_view> hosts = {}, origins = {};
   std::string_view target = {};
 };
 
-/// Who may speak to a server that listens on this machine. A browser sends the address of the page that asks (Origin)
-/// and the name under which it knows us (Host); a page from elsewhere must not steer a run, and neither must one whose
-/// name was made to lead here (DNS rebinding). Programs that are no browsers send no Origin.
+/// Decides who may speak to a server that listens on this machine. A browser sends the address of the page that asks
+/// (Origin) and the name under which it knows us (Host); no page from elsewhere may steer a run, and none whose name
+/// was made to lead here (DNS rebinding). Programs that are no browsers send no Origin.
 class Doorkeeper {
  public:
   struct Refusal {

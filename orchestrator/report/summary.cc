@@ -25,7 +25,7 @@ Json EdgesOf(const Graph& graph) {
   return edges;
 }
 
-/// Who hears whom at any time and, if the graph switches, when.
+/// Edges: who hears whom at any time and, if the graph switches, when.
 Json GraphJson(const Experiment& experiment) {
   Json graph = {{"edges", EdgesOf(experiment.graph)}};
   if (experiment.schedule.phases().size() == 1) return graph;

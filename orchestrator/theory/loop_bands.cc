@@ -29,9 +29,9 @@ namespace {
 constexpr double kTimes = 1.5;
 constexpr double kWidest = 0.5;  // share of the value
 constexpr double kFloorShare = 0.01;
-// Of times at which something is passed for the last time: of a swing that dies out, the next may be a period away.
+// For times at which something is passed for the last time: a swing that dies out may pass it again a period later.
 constexpr double kFloorShareOfTimes = 0.1;
-// Of what is counted, beyond a few.
+// For what is counted, where it is more than a few.
 constexpr double kCounted = 3, kFloorOfCounts = 2, kFloorShareOfCounts = 0.03;
 
 constexpr double kQuadrotorTurn = 0.05, kQuadrotorPush = 0.01, kOtherPush = 0.001;

@@ -120,7 +120,7 @@ class StackLoop {
     return Part(map, kept);
   }
 
-  /// Those that the loop brings to 0: without a proportional gain, it leaves the place, or the angle, where it is.
+  /// The states that the loop brings to 0: without a proportional gain, it leaves the place, or the angle, where it is.
   std::vector<Eigen::Index> States() const {
     std::vector<Eigen::Index> states;
     if (kind == Kind::kTurning) {

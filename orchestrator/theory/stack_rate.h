@@ -16,8 +16,8 @@ struct UnstableLoop {
   std::optional<double> rate_hz;  ///< the control rate that must be exceeded; absent: it decays at none
 };
 
-/// Of all loops of all agents the one that needs the highest rate; nothing: all decay. Errors are taken to be small: no
-/// limit is reached. Loops without gains are none, and those that nothing brings off what they hold.
+/// The loop of an agent that needs the highest rate; nothing: all loops decay. Errors are taken to be small, so that no
+/// limit is reached. A loop without gains does not count, nor does one that nothing brings off what it holds.
 std::optional<UnstableLoop> FindUnstableLoop(const Experiment& experiment);
 /// As a warning: "key: text".
 std::string Warning(const UnstableLoop& loop, const Experiment& experiment);

@@ -70,7 +70,7 @@ struct Prediction {
   std::optional<FirstCommand> first_lean;  ///< m/s^2: horizontal, after limits; `limit` follows from the tilt limit
   std::optional<Persistence> persistence;
   std::optional<SafetyPrediction> safety;  ///< absent: no agent has law.safety
-  /// Of the figures that the team's law measures, in the order of its row; empty: theory does not speak of them.
+  /// The figures that the team's law measures, in the order of its row; empty: theory does not speak of them.
   std::vector<PredictedFigure> law_figures;
   bool of_agreement = true;  ///< false: rate and settling time are those of each agent's flight to its waypoint
   bool on_average = false;   ///< samples are lost or noisy: the above holds on average

@@ -120,7 +120,7 @@ def recording(chunked):
 
 
 def real_recording(programs):
-    """Of one agent, for three ticks."""
+    """Samples of one agent, for three ticks."""
     with tempfile.TemporaryDirectory() as folder:
         config = pathlib.Path(folder) / "seed.toml"
         config.write_text("[run]\nduration_s = 0.02\n[agents]\ncount = 1\nmodel = 'double_integrator'\n[graph]\n"
