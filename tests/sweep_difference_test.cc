@@ -37,21 +37,21 @@ TEST(SweepDifference, IsNoneOfSpelling) {
 
 TEST(SweepDifference, NamesTheKeyThatIsSetOtherwise) {
   EXPECT_EQ(DifferenceOf({.sets = {"law.p_gain=0.1,0.7", "graph.topology=ring"}, .randoms = {}, .seeds = "1..3"}),
-            "--set law.p_gain: 0.1, 0.5 there, 0.1, 0.7 here");
+            "--set law.p_gain: 0.1, 0.5 there and 0.1, 0.7 here");
   EXPECT_EQ(DifferenceOf({.sets = {"law.p_gain=0.1,0.5", "graph.topology=ring"}, .randoms = {}, .seeds = "4..5"}),
-            "--seeds: 1, 2, 3 there, 4, 5 here");
+            "--seeds: 1, 2, 3 there and 4, 5 here");
   EXPECT_EQ(DifferenceOf({.sets = {"law.p_gain=0.1,0.5"}, .randoms = {}, .seeds = "1..3"}),
-            "--set graph.topology: ring there, nothing here");
+            "--set graph.topology: ring there and nothing here");
   EXPECT_EQ(
       DifferenceOf(
           {.sets = {"law.p_gain=0.1,0.5", "graph.topology=ring", "link.loss=0.1"}, .randoms = {}, .seeds = "1..3"}),
-      "--set link.loss: nothing there, 0.1 here");
+      "--set link.loss: nothing there and 0.1 here");
   EXPECT_EQ(
       DifferenceOf({.sets = {"graph.topology=ring"}, .randoms = {"law.p_gain=0:1"}, .samples = 4, .seeds = "1..3"}),
-      "--random law.p_gain: 0.1, 0.5 there, 0:1, 4 samples here");
+      "--random law.p_gain: 0.1, 0.5 there and 0:1, 4 samples here");
   EXPECT_EQ(
       DifferenceOf({.sets = {"graph.topology=ring", "law.p_gain=0.1,0.5"}, .randoms = {}, .seeds = "1..3"}),
-      "the order of what is set: law.p_gain, graph.topology, run.seed there, graph.topology, law.p_gain, run.seed "
+      "the order of what is set: law.p_gain, graph.topology, run.seed there and graph.topology, law.p_gain, run.seed "
       "here");
 }
 
@@ -59,18 +59,19 @@ TEST(SweepDifference, NamesTheKeyOfTheFileAndTheBuild) {
   const std::string begun = IdentityOfWords(kBegun).Text();
   SweepIdentity now = IdentityOfWords(kBegun);
   now.build = "1.2.4";
-  EXPECT_EQ(now.DifferenceFrom(begun), "the build: 1.2.3 there, 1.2.4 here");
+  EXPECT_EQ(now.DifferenceFrom(begun), "the build: 1.2.3 there and 1.2.4 here");
   now = IdentityOfWords(kBegun);
   now.experiment = "run.duration_s = 3\nlaw = { name = 'consensus' }\n";
-  EXPECT_EQ(now.DifferenceFrom(begun), "run.duration_s of the experiment file: 2 there, 3 here");
+  EXPECT_EQ(now.DifferenceFrom(begun), "run.duration_s of the experiment file: 2 there and 3 here");
   now.experiment = "run.duration_s = 2.0  # as before\nlaw = { name = 'consensus' }\n";
   EXPECT_EQ(now.DifferenceFrom(begun), "the text of the experiment file, though in no value");
   now.experiment = "a = 1\nb = 1\nc = 1\nd = 1\n";
-  EXPECT_THAT(now.DifferenceFrom(begun), HasSubstr("a of the experiment file: nothing there, 1 here; "));
+  EXPECT_THAT(now.DifferenceFrom(begun), HasSubstr("a of the experiment file: nothing there and 1 here; "));
   EXPECT_THAT(now.DifferenceFrom(begun), HasSubstr("; 3 more keys of the experiment file"));
   now = IdentityOfWords(kBegun);
   now.first_run = "run.duration_s = 2.0\nlaw = { name = 'consensus', p_gain = 0.2 }\n";
-  EXPECT_EQ(now.DifferenceFrom(begun), "law.p_gain of the first run: 0.1 there, 0.2 here") << "a default has changed";
+  EXPECT_EQ(now.DifferenceFrom(begun), "law.p_gain of the first run: 0.1 there and 0.2 here")
+      << "a default has changed";
   now = IdentityOfWords(kBegun);
   now.metric_file = "def a(run): return 1\n";
   EXPECT_EQ(now.DifferenceFrom(begun), "the file of --metric");

@@ -187,6 +187,13 @@ TEST(SweepPlan, HasWordsThatGiveItAgain) {
   EXPECT_THAT(SweepPlan(typed[1]).words().sets[0], "a=0.1:0.1:0.3");
 }
 
+TEST(SweepPlan, SaysWhichOptionGaveAValue) {
+  const SweepPlan plan({.sets = {"a=1,2"}, .randoms = {"b=1.0:1e0:log"}, .samples = 1, .seeds = "7,9"});
+  std::vector<std::string> origins;
+  for (const Override& override : plan[3].overrides) origins.push_back(override.origin);
+  EXPECT_THAT(origins, ElementsAre("", "--random b=1:1:log (1.0)", "--seeds 9"));
+}
+
 TEST(SweepPlan, SaysWhatItExpected) {
   const auto of = [](Words words) { return [words] { SweepPlan plan(words); }; };
   EXPECT_THAT(of(Sets({"law.beta"})), ThrowsMessage<ConfigError>("--set: expected key=values (such as "
@@ -207,7 +214,10 @@ TEST(SweepPlan, SaysWhatItExpected) {
               ThrowsMessage<ConfigError>("--random: expected key=min:max[:log], got 'a'"));
   EXPECT_THAT(
       of({.sets = {}, .randoms = {"a=0:1:log"}, .seeds = ""}),
-      ThrowsMessage<ConfigError>("--random: expected key=min:max or key=min:max:log with 0 < min, got 'a=0:1:log'"));
+      ThrowsMessage<ConfigError>(
+          "--random: expected key=min:max with min <= max, or key=min:max:log with 0 < min <= max, got 'a=0:1:log'"));
+  EXPECT_THAT(of({.sets = {}, .randoms = {}, .seeds = "0..10000000"}),
+              ThrowsMessage<ConfigError>("--seeds: expected at most 10000000 seeds, got '0..10000000'"));
   for (const char* seeds : {"2..1", "a..b", "-1..3", "1,x"})
     EXPECT_THAT(of({.sets = {}, .randoms = {}, .seeds = seeds}),
                 ThrowsMessage<ConfigError>("--seeds: expected a..b or a,b,... of integers from 0 on, got '" +

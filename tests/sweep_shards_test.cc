@@ -130,7 +130,7 @@ TEST_F(SweepShards, AreMergedOnlyIfTheyAreAllThereAndOfOneSweepAndBuild) {
   out_ = Folder("sweep.csv");
   EXPECT_EQ(refusal("sweep.csv other.csv --out sweep.csv"),
             "error: sweep merge: expected shares of one sweep, got sweep.1-of-3.csv (there) and other.1-of-3.csv "
-            "(here), which differ in --seeds: 1, 2, 3, 4, 5, 6, 7 there, 2, 3, 4, 5, 6, 7, 8 here\n");
+            "(here), which differ in --seeds: 1, 2, 3, 4, 5, 6, 7 there and 2, 3, 4, 5, 6, 7, 8 here\n");
 
   const std::string plan = ReadFile(Folder("sweep.2-of-3.csv.plan"));
   std::string older = plan;

@@ -203,7 +203,9 @@ TEST_F(SweepTest, RefusesMisspeltKeysBeforeTheFirstRun) {
     EXPECT_FALSE(std::filesystem::exists(out_));
   };
   refuses("--set law.pgain=0.1:0.1:100000", "--set law.pgain=0.1: law.pgain: unknown key (did you mean \"p_gain\"?)");
-  refuses("--random lw.beta=0:1 --samples 100000", "--set lw.beta=");
+  refuses("--random lw.beta=0:1 --samples 100000", "--random lw.beta=0:1 (0.3721453822554983): lw: unknown key");
+  refuses("--random law.beta=-2.0:-1e0 --samples 3",
+          "--random law.beta=-2:-1 (-1.6278546177445017): law.beta: expected a number in [0, 1000], got -1.62785");
   refuses("--set graph.topology=ring,paht", "sweep: the first run with graph.topology = paht: ");
   refuses("--set law.p_gain=1:1000:2001", "sweep: the first run with law.p_gain = 2001: ");
 }
@@ -389,7 +391,7 @@ TEST_F(SweepTest, DoesNotMixTwoSweepsInOneTable) {
   const Ran other = Sweep("--seeds 1..3 --no-plot");
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.output, HasSubstr("expected a new file, or one of this very sweep, got another, which differs in "
-                                      "--seeds: 1, 2 there, 1, 2, 3 here (--force begins anew)"));
+                                      "--seeds: 1, 2 there and 1, 2, 3 here (--force begins anew)"));
   EXPECT_EQ(ReadFile(out_), before);
   EXPECT_EQ(Sweep("--seeds 1..3 --no-plot --force").exit_code, 0);
   EXPECT_THAT(Table(out_).rows, SizeIs(3));

@@ -119,8 +119,9 @@ std::vector<std::string> ParseSeeds(const std::string& text) {
   std::vector<std::string> seeds;
   if (const auto dots = text.find(".."); dots != std::string::npos) {
     const auto first = ToSeed(text.substr(0, dots)), last = ToSeed(text.substr(dots + 2));
-    if (!first || !last || *last < *first || *last - *first >= static_cast<std::int64_t>(kMostRuns))
-      Refuse("--seeds", "a..b or a,b,... of integers from 0 on", text);
+    if (!first || !last || *last < *first) Refuse("--seeds", "a..b or a,b,... of integers from 0 on", text);
+    if (*last - *first >= static_cast<std::int64_t>(kMostRuns))
+      Refuse("--seeds", fmt::format("at most {} seeds", kMostRuns), text);
     for (std::int64_t seed = *first; seed <= *last; ++seed) seeds.push_back(std::to_string(seed));
     return seeds;
   }
@@ -167,7 +168,7 @@ SweepPlan::Axis SweepPlan::ParseRandom(const std::string& word, std::uint64_t pl
   const auto min = ToNumber(parts[0]), max = parts.size() > 1 ? ToNumber(parts[1]) : std::nullopt;
   const bool log = parts.size() == 3 && parts[2] == "log";
   if (!min || !max || *min > *max || (parts.size() == 3 && !log) || parts.size() > 3 || (log && *min <= 0))
-    Refuse("--random", "key=min:max or key=min:max:log with 0 < min", word);
+    Refuse("--random", "key=min:max with min <= max, or key=min:max:log with 0 < min <= max", word);
   if (!std::isfinite(log ? *max / *min : *max - *min)) Refuse("--random", "a range that a double can span", word);
   Random random(kSamplesSeed + place, Random::Stream::kSweep);
   Axis axis{.key = key, .values = {}, .range = RangeText({*min, *max}) + (log ? ":log" : "")};
@@ -255,7 +256,15 @@ std::string SweepPlan::Axis::Value(std::size_t k) const { return drawn.empty() ?
 
 SweepPoint SweepPlan::operator[](std::size_t run) const {
   SweepPoint point;
-  for (const Axis& axis : axes_) point.overrides.push_back({axis.key, axis.Value(run / axis.stride % axis.size())});
+  for (const Axis& axis : axes_) {
+    Override& set = point.overrides.emplace_back();
+    set.key = axis.key;
+    set.value = axis.Value(run / axis.stride % axis.size());
+    if (!axis.drawn.empty())
+      set.origin = fmt::format("--random {}={} ({})", axis.key, axis.range, set.value);
+    else if (IsOfSeeds(axis))
+      set.origin = "--seeds " + set.value;
+  }
   return point;
 }
 
@@ -270,7 +279,7 @@ SweepPlan::Words SweepPlan::words() const {
     if (!axis.drawn.empty()) {
       words.randoms.push_back(axis.key + "=" + axis.range);
       words.samples = static_cast<std::int64_t>(axis.drawn.size());
-    } else if (&axis == &axes_.back() && has_seeds_) {
+    } else if (IsOfSeeds(axis)) {
       words.seeds = SeedsText(axis.values);
     } else {
       std::string values;

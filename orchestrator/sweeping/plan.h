@@ -17,7 +17,8 @@ inline constexpr std::string_view kSeedKey = "run.seed", kLawKey = "law.name";
 /// A sweep has at most so many runs.
 inline constexpr std::size_t kMostRuns = 10'000'000;
 
-/// One run of a sweep: the keys that it sets, in addition to the experiment file.
+/// One run of a sweep: the keys that it sets, in addition to the experiment file. Mistakes that their values make are
+/// said to be of the option that gave them: "--set law.beta=-1", "--random law.beta=-1:1 (-0.25)", "--seeds 3".
 struct SweepPoint {
   std::vector<Override> overrides;  ///< in the order of SweepPlan::keys()
 };
@@ -97,6 +98,7 @@ class SweepPlan {
   void KeepOneIfEqual(std::vector<Axis>& drawn);
   void Multiply(std::size_t by);
   void AddTrials(std::size_t sets);
+  bool IsOfSeeds(const Axis& axis) const { return has_seeds_ && &axis == &axes_.back(); }
 
   std::vector<std::string> keys_;
   std::vector<Axis> axes_;  // of keys_

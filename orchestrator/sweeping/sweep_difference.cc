@@ -17,13 +17,13 @@ namespace {
 constexpr std::size_t kMostKeys = 3;         // named, of those that differ
 constexpr std::size_t kLongestSetting = 60;  // of the characters of a value
 
-/// "NAME: 0.1, 0.5 there, 0.1, 0.7 here"; "nothing" stands for what is not set.
+/// "NAME: 0.1, 0.5 there and 0.1, 0.7 here"; "nothing" stands for what is not set.
 std::string BothText(const std::string& name, const std::string& there, const std::string& here) {
   const auto shown = [](const std::string& setting) {
     if (setting.empty()) return std::string("nothing");
     return setting.size() <= kLongestSetting ? setting : std::string(CutUtf8(setting, kLongestSetting)) + "...";
   };
-  return fmt::format("{}: {} there, {} here", name, shown(there), shown(here));
+  return fmt::format("{}: {} there and {} here", name, shown(there), shown(here));
 }
 
 /// The option that sets a key.

@@ -26,8 +26,8 @@ struct SweepIdentity {
   /// Nothing if `text` is not that of an identity.
   static std::optional<SweepIdentity> FromText(const std::string& text);
 
-  /// In what the sweep of another table differs from this one, in words: "--set law.beta: 0.3 there, 0.5 here"; empty:
-  /// in nothing. `theirs`: the text beside that table.
+  /// In what the sweep of another table differs from this one, in words: "--set law.beta: 0.3 there and 0.5 here";
+  /// empty: in nothing. `theirs`: the text beside that table.
   std::string DifferenceFrom(const std::string& theirs) const;
 
   /// The columns of numbers: measured, predicted and the user's, at the end those that depend on the machine.
