@@ -139,7 +139,10 @@ TEST(LiveView, DescribesTheExperiment) {
   EXPECT_EQ(leader["waypoints_m"], Json::parse("[[1.0,1.0,1.0]]"));
   EXPECT_EQ(experiment["agents"][1]["goto"], false);
   EXPECT_EQ(experiment["agents"][1]["waypoints_m"], Json::array());
-  EXPECT_EQ(experiment["prediction"]["stable"], true);
+  const Json& prediction = experiment["prediction"];
+  EXPECT_EQ(prediction["stable"], true);
+  EXPECT_EQ(prediction["rate_per_s"], nullptr) << "the leader flies, so that no start is flown ahead";
+  EXPECT_GT(prediction["slowest_rate_per_s"], 0);
 }
 
 TEST(LiveView, SaysWhichBodiesRoll) {

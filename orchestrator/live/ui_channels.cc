@@ -165,6 +165,7 @@ std::string ExperimentJson(const Experiment& experiment, const Prediction& predi
                        {{"stable", OrNull(prediction.stable)},
                         {"value_m", prediction.value_m ? ToJson(*prediction.value_m) : Json(nullptr)},
                         {"rate_per_s", OrNull(prediction.rate_per_s)},
+                        {"slowest_rate_per_s", OrNull(prediction.slowest_rate_per_s)},
                         {"settling_time_s", OrNull(prediction.settling_time_s)},
                         {"why", prediction.silent}}},
                       {"live_keys", KeysJson(keys)}});

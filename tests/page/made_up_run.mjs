@@ -28,6 +28,7 @@ export class MadeUpRun {
     loss = "",
     incidents = "",
     disagreement_m = null,  // as it is, unless given
+    rate_per_s = 0.19,      // that theory predicts from the start
     waits = false           // what is granted while the run is paused takes effect when it goes on
   } = {}) {
     Object.assign(this, {
@@ -40,6 +41,7 @@ export class MadeUpRun {
       loss,
       incidents,
       disagreement_m,
+      rate_per_s,
       waits,
       leader: Math.min(leader, agents)
     });
@@ -91,7 +93,14 @@ export class MadeUpRun {
                                     {kind: "sphere", position_m: [2, -5, 0.8], size_m: [1.6, 1.6, 1.6]}
                                   ],
       wind_m_per_s: [3, 1.5, 0],
-      prediction: {stable: true, value_m: this.home[this.leader - 1], rate_per_s: 0.19, settling_time_s: 21, why: ""},
+      prediction: {
+        stable: true,
+        value_m: this.home[this.leader - 1],
+        rate_per_s: this.rate_per_s,
+        slowest_rate_per_s: 0.15,
+        settling_time_s: 21,
+        why: ""
+      },
       live_keys: [
         live("law.safety.distance_m", "", null, 1e6), live("law.p_gain", "1/s^2", this.gains.p_gain, 1000),
         live("law.beta", "1/s", this.gains.beta, 1000), live("law.reach_m", "m", [0.5, 1, 1.5], 1000),

@@ -450,6 +450,16 @@ test(
       await until(page, () => mascot.t_s === 40);
     }));
 
+test(
+    "a rate that theory has of the slowest mode alone is said, and no line is drawn",
+    () => watching({run: {rate_per_s: null}}, async ({page}) => {
+      await until(page, () => mascot.drawn.disagreement?.length > 0);
+      assert.equal(await page.textContent("#prediction"), "Theory: in the long run decays at 0.150 1/s or faster");
+      const [, measured, theory] = await page.evaluate(() => mascot.drawn.disagreement);
+      assert.ok(measured > 0);
+      assert.equal(theory, null);
+    }));
+
 test("a lost connection is said, and mended by itself, also to another run", async () => {
   const first = await startFake({agents: 5});
   const {page} = await open(browser, first.url);

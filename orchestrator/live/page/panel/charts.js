@@ -101,7 +101,7 @@ export class Charts {
 
   // A rate that an event has changed is compared from then on.
   #onPrediction() {
-    const {stable, rate_per_s, settling_time_s, why} = this.#model.experiment.prediction ?? {};
+    const {stable, rate_per_s, slowest_rate_per_s, settling_time_s, why} = this.#model.experiment.prediction ?? {};
     if (this.#anchor && this.#anchor.rate_per_s !== rate_per_s) this.#anchor = null;
     const settles = settling_time_s ? `, settled (2 %) after ${figure(settling_time_s, 2)} s` : "";
     byId("prediction").classList.toggle("has-line", Boolean(rate_per_s));
@@ -110,7 +110,8 @@ export class Charts {
         rate_per_s ? `Theory: decays at ${figure(rate_per_s)} 1/s${settles}` :
             stable === false ? `Theory: does not agree${why ? `: ${why}` : ""}` :
             why                                             ? `No prediction: ${why}` :
-                                                              "");
+                                                        slowest_rate_per_s ? `Theory: in the long run decays at ${figure(slowest_rate_per_s)} 1/s or faster` :
+                                                                             "");
   }
 
   // --- what is drawn ---
