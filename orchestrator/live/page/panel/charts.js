@@ -101,17 +101,10 @@ export class Charts {
 
   // A rate that an event has changed is compared from then on.
   #onPrediction() {
-    const {stable, rate_per_s, slowest_rate_per_s, settling_time_s, why} = this.#model.experiment.prediction ?? {};
+    const prediction = this.#model.experiment.prediction ?? {}, {rate_per_s} = prediction;
     if (this.#anchor && this.#anchor.rate_per_s !== rate_per_s) this.#anchor = null;
-    const settles = settling_time_s ? `, settled (2 %) after ${figure(settling_time_s, 2)} s` : "";
     byId("prediction").classList.toggle("has-line", Boolean(rate_per_s));
-    setText(
-        byId("prediction"),
-        rate_per_s ? `Theory: decays at ${figure(rate_per_s)} 1/s${settles}` :
-            stable === false ? `Theory: does not agree${why ? `: ${why}` : ""}` :
-            why                                             ? `No prediction: ${why}` :
-                                                        slowest_rate_per_s ? `Theory: in the long run decays at ${figure(slowest_rate_per_s)} 1/s or faster` :
-                                                                             "");
+    setText(byId("prediction"), wordsOf(prediction));
   }
 
   // --- what is drawn ---
@@ -215,6 +208,17 @@ function powersOfTen(low, high) {
 function shortLabel(m, k) {
   if (k >= -3 && k <= 3) return String(Number((m * 10 ** k).toPrecision(2)));
   return `${m === 1 ? "" : `${m}·`}10${[...String(k)].map((c) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] ?? "⁻").join("")}`;
+}
+
+/** What theory says of the disagreement. */
+function wordsOf({stable, rate_per_s, slowest_rate_per_s, settling_time_s, why}) {
+  if (rate_per_s) {
+    const settles = settling_time_s ? `, settled (2 %) after ${figure(settling_time_s, 2)} s` : "";
+    return `Theory: decays at ${figure(rate_per_s)} 1/s${settles}`;
+  }
+  if (stable === false) return `Theory: does not agree${why ? `: ${why}` : ""}`;
+  if (why) return `No prediction: ${why}`;
+  return slowest_rate_per_s ? `Theory: in the long run decays at ${figure(slowest_rate_per_s)} 1/s or faster` : "";
 }
 
 /** The values under the pointer. */
