@@ -185,6 +185,9 @@ TEST(UpWithView, SaysWhatAnAddressIs) {
     EXPECT_THAT(up.err(), HasSubstr(std::string("--view: expected ADDRESS:PORT (such as 127.0.0.1:8765), got \"") +
                                     address + "\""));
   }
+  Up port(folder, "run", Config("leaderless"), {"--view", "9000"});
+  EXPECT_EQ(port.Wait(), 2);
+  EXPECT_THAT(port.err(), HasSubstr("got \"9000\" (a port alone is :9000)"));
   Up up(folder, "run", Config("leaderless"), {"--view", "203.0.113.1"});
   EXPECT_EQ(up.Wait(), 2);
   EXPECT_EQ(up.err(), "error: --view: cannot listen on 203.0.113.1:8765: Cannot assign requested address\n");

@@ -25,17 +25,6 @@ Eigen::Vector3d MeanStart(const Experiment& experiment) {
   return mean_W;
 }
 
-Eigen::Vector3d MiddleStart(const Experiment& experiment) {
-  Eigen::Vector3d least = experiment.agents.front().p_W, most = least, middle_W = MeanStart(experiment);
-  for (const AgentConfig& agent : experiment.agents) {
-    least = least.cwiseMin(agent.p_W);
-    most = most.cwiseMax(agent.p_W);
-  }
-  const Eigen::Index axes = CountOf(experiment.law.axes);
-  middle_W.head(axes) = (least + most).head(axes) / 2;
-  return middle_W;
-}
-
 double LargestSpread(const Experiment& experiment, std::span<const int> ids) {
   return Extent(ids, experiment.agent(ids.front()).law.axes, [&](int id) { return experiment.agent(id).p_W; });
 }

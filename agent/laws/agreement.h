@@ -13,8 +13,6 @@ namespace mascot {
 
 /// Mean of the starting positions, in W: where teams meet that keep their mean.
 Eigen::Vector3d MeanStart(const Experiment& experiment);
-/// The middle between the outermost starts along the axes of the law, in W.
-Eigen::Vector3d MiddleStart(const Experiment& experiment);
 /// The largest distance along one axis of the law between the starts of agents `ids` (m).
 double LargestSpread(const Experiment& experiment, std::span<const int> ids);
 

@@ -130,7 +130,8 @@ LawEntry AvoidanceLaw() {
           .details =
               "[.]_s is cut to the length speed_m_per_s. c is the clearance: the distance less the radius R_i "
               "of the own body from the nearest point of an obstacle, less 2 R_i from an agent. It counts as 1 "
-              "mm at least. c0 is influence_m less the same radii, and there is no push from c0 on.\n"
+              "mm at least. c0 is influence_m less the same radii, and there is no push from c0 on, nor within "
+              "an obstacle, where there is no way out to point along.\n"
               "Obstacles push that are seen, within sensors.range_m, and agents that are heard. Distances are "
               "in space; pushes and the pull towards the goal act along law.axes.",
           .theory =

@@ -135,8 +135,9 @@ LawEntry EventTriggeredLaw() {
       .equation = "v_i = gain sum_j a_ij (x_j - x_i);  i says x_i = p_i when |x_i - p_i| > c0 + c1 exp(-alpha t)",
       .details =
           "x_i is what i said last, also for i itself. A message takes one tick: it says where i will be by "
-          "then, p_i + h v_i, and i is compared with what it said there, too. Before an agent has said "
-          "anything it does not count.\n"
+          "then, p_i + h v_i, and i is compared with what it said there, too. There v_i is what the law "
+          "wants for a single integrator, and the body's own velocity for others, which lag. Before an agent "
+          "has said anything it does not count.\n"
           "With trigger = \"dynamic\", i speaks when theta gain (d |e|^2 - sigma / 4 q) > eta, e = x_i - "
           "p_i, d = sum_j a_ij, q = sum_j a_ij |x_j - x_i|^2 / 2, and h times (-beta eta - gain (d |e|^2 - "
           "sigma / 4 q)) is added to eta at each tick. Distances are along law.axes.",

@@ -54,8 +54,7 @@ class FlockMeter final : public LawMeter {
 
   const Experiment* experiment_;
   std::vector<int> ids_;
-  std::vector<bool> is_member_;  // by id - 1
-  std::vector<Motion> newest_;   // of all agents, by id - 1
+  std::vector<Motion> newest_;  // of all agents, by id - 1
   std::optional<double> energy_, first_energy_, growth_, least_distance_m_;
   Eigen::Vector3d off_W_ = Eigen::Vector3d::Zero(), speed_off_W_ = Eigen::Vector3d::Zero();  // of the centre, newest
   double squares_ = 0, ticks_ = 0;
