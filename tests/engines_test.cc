@@ -790,6 +790,8 @@ TEST(Up, SaysWhatIsWrongWithItsArguments) {
               HasSubstr("error: unknown verb 'upp' (did you mean \"up\"?); expected one of up, ps, send, check"));
   EXPECT_THAT(refusal({}), HasSubstr("Usage: "));
   EXPECT_THAT(refusal({"up"}), HasSubstr("error: config is required"));
+  EXPECT_THAT(refusal({"up", "--duratio-s", "5"}),
+              HasSubstr("error: unknown option '--duratio-s' (did you mean \"--duration-s\"?)"));
   EXPECT_THAT(refusal({"up", Config("leaderless"), "--duration", "5"}),
               HasSubstr("error: unknown option '--duration' (did you mean \"--duration-s\"?)"));
   EXPECT_THAT(refusal({"check", Config("leaderless"), "5", "6"}), HasSubstr("error: unexpected argument '5'"));

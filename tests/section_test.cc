@@ -487,6 +487,18 @@ TEST(Section, RefusesMalformedOverrides) {
   const auto read = [](Section&) {};
   EXPECT_THAT(Mistakes("a = 1\n", read, {{"a", "[1"}}), ElementsAre("--set a=[1: a: expected a TOML value, got '[1'"));
   EXPECT_THAT(Mistakes("a = 1\n", read, {{"a", ""}}), ElementsAre("--set a=: a: expected a TOML value, got ''"));
+  const auto hint = [&](const char* value) {
+    const std::string mistake = Mistakes("a = 1\n", read, {{"a", value}}).at(0), begin = "a: expected a TOML value";
+    const std::size_t at = mistake.find(begin) + begin.size();
+    return mistake.substr(at, mistake.rfind(", got '") - at);
+  };
+  for (const char* text : {"1.2.3.4", "../x", "/agent_1/state", "- 1"})
+    EXPECT_EQ(hint(text), " (text that does not begin with a letter needs quotes)") << text;
+  for (const char* number : {".5", "5.", "-.5", "007"})
+    EXPECT_EQ(hint(number), " (a number has no zeros in front, and digits on both sides of its point)") << number;
+  for (const char* number : {"1e400", "-1e400", "99999999999999999999"})
+    EXPECT_EQ(hint(number), " (the number is too large)") << number;
+  for (const char* open : {"'a", "\"a", "{a=1"}) EXPECT_EQ(hint(open), "") << open;
   EXPECT_THAT(Mistakes("a = 1\n", read, {{"a", "1\nb = 2"}}),
               ElementsAre("--set a=1\\nb = 2: a: expected a TOML value, got '1\\nb = 2'"));
   EXPECT_THAT(Mistakes("a = 1\n", read, {{"a.b", "1"}}),

@@ -90,6 +90,10 @@ TEST_F(Surroundings, APathIsAPathWhateverItBeginsWith) {
     Write(name, kConsensus);
     ExpectDone(std::string("\"$O\" check -- '") + name + "'");
   }
+  const Ran wrong = In("\"$O\" check -x.toml");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.output,
+              HasSubstr("error: unknown option '-x.toml' (a path that begins with a dash stands behind --)"));
   ExpectDone("\"$O\" up --engine inprocess --quiet --set output.save_plot=true --out=-run -- -x.toml");
   ExpectDone("\"$O\" plot --only paths --format svg -- -run && test -s ./-run/paths.svg");
   ExpectDone("\"$O\" sweep --set law.p_gain=0.1,0.2 --out=-s.csv --quiet -- -x.toml && test -s ./-s.png");

@@ -1,11 +1,27 @@
 #include <cctype>
 #include <charconv>
+#include <cmath>
+#include <cstdlib>
 #include <variant>
 
 #include "experiment/toml/section_internal.h"
 
 namespace mascot {
 namespace {
+
+/// What is known of a value that is not TOML, in brackets; empty: nothing.
+std::string HintAt(const std::string& value) {
+  char* end = nullptr;
+  const double number = std::strtod(value.c_str(), &end);
+  if (end != value.c_str() && *end == '\0') {
+    if (std::abs(number) >= 0x1p63) return " (the number is too large)";
+    return " (a number has no zeros in front, and digits on both sides of its point)";
+  }
+  const bool is_closed = value.empty() || value.find('\n') != std::string::npos;
+  return is_closed || std::string_view("[{\"'").find(value[0]) != std::string_view::npos
+             ? ""
+             : " (text that does not begin with a letter needs quotes)";
+}
 
 /// The value of an override, in a table of its own under the key "value". A word that is no TOML value (`--set
 /// graph.topology=ring`) is taken as a string: a shell would remove its quotes.
@@ -18,8 +34,8 @@ toml::table ParseValue(const Override& override, const std::string& name) {
     throw ConfigError({name + ": expected one TOML value"});
   } catch (const ConfigError&) {
     if (word) return ParseToml("value = " + QuotedToml(override.value), name);
-    throw ConfigError(
-        {name + ": " + override.key + ": expected a TOML value, got '" + Printable(override.value) + "'"});
+    throw ConfigError({name + ": " + override.key + ": expected a TOML value" + HintAt(override.value) + ", got '" +
+                       Printable(override.value) + "'"});
   }
 }
 
