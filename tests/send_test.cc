@@ -135,6 +135,8 @@ TEST(Send, SaysWhyTheRunRefuses) {
   };
   EXPECT_THAT(usage("wait"),
               AllOf(StartsWith("error: send: expected pause | resume | step [TICKS] | "), EndsWith(", got 'wait'\n")));
+  EXPECT_THAT(usage(""),
+              AllOf(StartsWith("error: send: expected pause | resume | step [TICKS] | "), EndsWith(", got nothing\n")));
   EXPECT_EQ(usage("goto 1 2"), "error: send: expected goto AGENT X Y Z, got 2 words behind it\n");
   EXPECT_EQ(usage("goto one 2 3 4"), "error: send: expected an agent's number, got 'one'\n");
   EXPECT_EQ(usage("set law.p_gain"), "error: send: expected KEY=VALUE, got 'law.p_gain'\n");

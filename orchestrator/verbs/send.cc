@@ -193,7 +193,7 @@ std::function<int()> SetUpSend(CLI::App& command) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("ID,...");
-  command.add_option("words", args->words, Usage())->type_name("WHAT")->required();
+  command.add_option("words", args->words, Usage())->type_name("WHAT");
   command.footer("Exit code: 0 done; 1 the run refused, and says why; 2 no such run, or wrong usage.");
   return [args] { return Send(*args); };
 }

@@ -47,7 +47,7 @@ _orchestrator_offer() {
       ;;
     VERB) mapfile -t COMPREPLY < <(compgen -W "$(_orchestrator_names Subcommands "$main")" -- "$1") ;;
     WHAT)  # "pause | step [TICKS] | ...": the first word of each
-      alternatives=" | ${3#*REQUIRED} |"
+      alternatives=" | ${3#*...} |"
       while [[ $alternatives =~ \|\ +([a-z]+) ]]; do
         COMPREPLY+=("${BASH_REMATCH[1]}")
         alternatives=${alternatives#*"${BASH_REMATCH[0]}"}
