@@ -21,8 +21,16 @@ export const edgeInTheOpen = (page) => page.evaluate(() => {
 });
 
 export async function pausedFromAbove(page) {
+  await page.evaluate(() => {
+    globalThis.answered = mascot.lastAnswer;
+  });
   await page.keyboard.press("Space");
   await isPaused(page);
+  // The rows before a pause may come after the state. A real run's answer names the last one.
+  await until(page, () => {
+    const answer = mascot.lastAnswer, last = /paused after tick (\d+)/.exec(answer?.words);
+    return answer !== globalThis.answered && (!last || mascot.tick === Number(last[1]));
+  });
   await page.keyboard.press("t");
   // The picture with this view is drawn before the second of these: one that was under way may come in between.
   await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
