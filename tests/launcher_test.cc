@@ -476,6 +476,18 @@ TEST_F(OnOtherHosts, AreNamedWhenTheySayWhatNoHostSays) {
               HasSubstr("error: host lab1: expected its greeting first, and once, got 'alive'"));
   EXPECT_THAT(says("exec \"$@\" | sed --unbuffered 's/agent_2/agent_77/'\n"),
               HasSubstr("error: host lab1: expected words of its own processes, got agent_77"));
+  const auto alters = [&](const std::string& sed) { return says("exec \"$@\" | sed --unbuffered '" + sed + "'\n"); };
+  EXPECT_THAT(alters("s/\"pid\":[0-9]*/\"pid\":\"many\"/"),
+              HasSubstr("error: host lab1: expected an integer in [1, 4194304] as \"pid\", got \"many\""));
+  EXPECT_THAT(alters("s/\"pid\":[0-9]*/\"pid\":1e300/"), HasSubstr("as \"pid\", got 1e+300"));
+  EXPECT_THAT(alters("/\"started\"/p"),
+              HasSubstr("error: host lab1: expected \"started\" of agent_2 once, got it again"));
+  EXPECT_THAT(alters("s/\"started\"/\"exit\",\"status\":4991/"),
+              HasSubstr("error: host lab1: expected how agent_2 has ended as \"status\", got 4991"));
+  EXPECT_THAT(alters("s/\"started\"/\"begun\"/"),
+              HasSubstr("error: host lab1: expected the words of `orchestrator host`, got 'begun'"));
+  EXPECT_THAT(alters("s/\"machine\":\"[^\"]*\"/\"machine\":null/"),
+              HasSubstr("error: host lab1: expected a text of at most 10000 bytes as \"machine\", got null"));
   EXPECT_THAT(says("exec >&-; sleep 100\n"), HasSubstr("error: host lab1 has not answered for 9 s"));
 }
 

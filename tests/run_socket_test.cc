@@ -15,7 +15,6 @@
 
 #include "agent/laws.h"
 #include "orchestrator/live/running_runs.h"
-#include "orchestrator/live/strange_json.h"
 #include "tests/repeated.h"
 #include "tests/three_agents.h"
 
@@ -335,15 +334,6 @@ TEST(RunsAlive, AnAnswerToAWishIsOneOrIsNotBelieved) {
                            "{\"granted\": true, \"words\": [[]]}\n"})
     EXPECT_EQ(answer(text), (Answer{false, "the answer is none that a run gives"})) << text;
   EXPECT_EQ(answer("{\"granted\": true, \"wo"), (Answer{false, "the run ended before it answered"}));
-}
-
-TEST(StrangeJson, IsAnObjectInUtf8ThatIsNotDeep) {
-  EXPECT_TRUE(StrangeJson("{\"a\": [[[1]]]}"));
-  EXPECT_FALSE(StrangeJson(std::string(20, '[') + std::string(20, ']')));
-  EXPECT_FALSE(StrangeJson("{\"a\": " + std::string(20, '[') + std::string(20, ']') + "}"));
-  EXPECT_FALSE(StrangeJson("{\"a\": \"\xc3\"}"));
-  EXPECT_FALSE(StrangeJson("{\"a\": NaN}"));
-  EXPECT_FALSE(StrangeJson("{} {}"));
 }
 
 }  // namespace

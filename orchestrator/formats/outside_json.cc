@@ -1,5 +1,7 @@
 #include "orchestrator/formats/outside_json.h"
 
+#include <utility>
+
 namespace mascot {
 
 template <class Json>
@@ -18,6 +20,12 @@ Json ReadJson(std::string_view text, const JsonLimits& limits) {
   } catch (const nlohmann::detail::out_of_range&) {
     throw JsonError("JSON with a number beyond those of a double");
   }
+}
+
+std::optional<nlohmann::ordered_json> ObjectOrNothing(std::string_view line) {
+  constexpr int kDeepest = 16;
+  auto json = JsonOrNull<nlohmann::ordered_json>(line, {.depth = kDeepest});
+  return json.is_object() ? std::optional(std::move(json)) : std::nullopt;
 }
 
 template nlohmann::json ReadJson<nlohmann::json>(std::string_view text, const JsonLimits& limits);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -36,5 +37,9 @@ Json JsonOrNull(std::string_view text, const JsonLimits& limits = {}) {
     return nullptr;
   }
 }
+
+/// The object in a line that another process sent, of few levels; nothing: it is none. How long lines may be decides
+/// who reads them; OutsideFields reads the fields.
+std::optional<nlohmann::ordered_json> ObjectOrNothing(std::string_view line);
 
 }  // namespace mascot

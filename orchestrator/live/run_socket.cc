@@ -12,9 +12,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "orchestrator/formats/outside_json.h"
 #include "orchestrator/live/compact_json.h"
 #include "orchestrator/live/local_lines.h"
-#include "orchestrator/live/strange_json.h"
 #include "orchestrator/live/wish.h"
 
 namespace mascot {
@@ -87,7 +87,7 @@ void RunSocket::Serve(Descriptor client) {
   if (lines->Read(ClientDeadline(), line) != LocalLines::End::kLine) return;
   const auto answer = [lines](const Answer& given) { lines->Write(AnswerJson(given), ClientDeadline()); };
   try {
-    const auto request = StrangeJson(line);
+    const auto request = ObjectOrNothing(line);
     if (!request) throw std::invalid_argument("expected a JSON object");
     if (request->contains("who"))
       lines->Write(WhoWeAre(), ClientDeadline());

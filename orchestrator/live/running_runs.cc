@@ -14,10 +14,12 @@
 
 #include "bus/local_socket.h"
 #include "experiment/experiment.h"
+#include "experiment/toml/utf8.h"
+#include "orchestrator/formats/outside_fields.h"
+#include "orchestrator/formats/outside_json.h"
 #include "orchestrator/live/compact_json.h"
 #include "orchestrator/live/local_lines.h"
 #include "orchestrator/live/run_socket.h"
-#include "orchestrator/live/strange_json.h"
 #include "orchestrator/live/wish.h"
 
 namespace mascot {
@@ -97,7 +99,7 @@ Said Hear(LocalLines& run, const ucred& peer, LineTime until) {
     const auto look = std::min(until, std::chrono::steady_clock::now() + kStoppedLimit);
     switch (run.Read(look, line)) {
       case LocalLines::End::kLine:
-        return {Voice::kAnswers, peer.uid, StrangeJson(line)};
+        return {Voice::kAnswers, peer.uid, ObjectOrNothing(line)};
       case LocalLines::End::kGone:
         return {Voice::kAnswers, peer.uid};
       case LocalLines::End::kLate:
@@ -137,11 +139,11 @@ std::optional<Said> AskBy(const Names& names, pid_t process, const RunsAnswer& q
 
 /// Reads what a run says of itself. Returns whether it is what runs say.
 bool Take(const RunsAnswer& answer, RunningRun& run) {
-  StrangeFields fields(answer);
-  run.name = fields.Text("name", kLongestName);
-  run.folder = fields.Text("folder", kLongestPath);
-  run.engine = fields.Text("engine", kLongestName);
-  run.page = fields.Text("page", kLongestName);
+  OutsideFields fields(answer);
+  run.name = PlainLine(fields.Text("name", kLongestName));
+  run.folder = PlainLine(fields.Text("folder", kLongestPath));
+  run.engine = PlainLine(fields.Text("engine", kLongestName));
+  run.page = PlainLine(fields.Text("page", kLongestName));
   run.agents = static_cast<int>(fields.Integer("agents", 1, kMaxAgents));
   run.domain = static_cast<int>(fields.Integer("domain", -1, 232));
   run.tick = fields.Integer("tick", -1, INT64_MAX);
@@ -209,8 +211,8 @@ Answer AskRun(pid_t process, const Wish& wish) {
       break;
   }
   if (!said->answer) return {false, kEnded};
-  StrangeFields fields(*said->answer);
-  const Answer answer{fields.Boolean("granted"), fields.Text("words", kLongestWords, /*lines=*/true)};
+  OutsideFields fields(*said->answer);
+  const Answer answer{fields.Boolean("granted"), Plain(fields.Text("words", kLongestWords))};
   return fields.are_good() ? answer : Answer{false, "the answer is none that a run gives"};
 }
 

@@ -10,6 +10,7 @@
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
 #include "experiment/toml/utf8.h"
+#include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
 #include "orchestrator/processes/build.h"
 #include "orchestrator/processes/environment.h"
@@ -20,7 +21,7 @@ namespace {
 using namespace std::chrono_literals;
 using WallClock = std::chrono::steady_clock;
 
-constexpr std::size_t kLongestError = 150;
+constexpr std::size_t kLongestError = 150, kLongestName = 1000;
 constexpr std::size_t kMostWaiting = 16U << 20U;  // bytes that `up` has not read yet; what is printed beyond is lost
 constexpr auto kEndGrace = 5s;                    // for processes that were told to end, over DDS
 
@@ -69,15 +70,13 @@ void HostShare::TellLine(const std::string& process, std::string_view line) {
   } while (!line.empty());
 }
 
-void HostShare::Tell(nlohmann::json words) {
+void HostShare::Tell(HostWords words) {
   words["node"] = node_;
   output_.Write(words.dump());
 }
 
 int HostShare::Run() {
-  nlohmann::json hello = HostHello{.build = BuildText(), .machine = MachineText(), .seen_from = SeenFrom()};
-  hello["kind"] = "hello";
-  Tell(hello);
+  Tell(WordsOf(HostHello{.build = BuildText(), .machine = MachineText(), .seen_from = SeenFrom()}));
   try {
     while (Look()) {
       const int signal = stop_.Within(20ms);
@@ -121,11 +120,14 @@ bool HostShare::Look() {
 }
 
 void HostShare::Obey(const std::string& line) {
-  const auto words = ReadJson<nlohmann::json>(line);
-  const std::string node = words.value("node", "");
+  const auto words = ObjectOrNothing(line);
+  if (!words) throw JsonError("expected the words of `up`, got something else");
+  OutsideFields fields(*words);
+  const std::string kind = fields.Text("kind", kLongestName);
+  const std::string node = fields.Has("node") ? fields.Text("node", kLongestName) : "";
+  fields.Require();
   if (!node.empty() && node != node_) return;
-  const std::string kind = words.at("kind");
-  if (kind == "job") Start(words.get<HostJob>());
+  if (kind == "job") Start(ReadJob(*words));
   if (kind == "kill") children_.Kill();
   if (kind == "end" && !ending_) {
     ending_ = true;
@@ -134,6 +136,7 @@ void HostShare::Obey(const std::string& line) {
 }
 
 void HostShare::Start(const HostJob& job) {
+  if (domain_ >= 0) throw JsonError("expected one job, got another");
   domain_ = job.domain;
   silence_ = std::chrono::duration<double>(job.silence_s);
   if (job.own_memory) {

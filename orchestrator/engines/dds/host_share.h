@@ -35,7 +35,7 @@ class HostShare {
   void TellExits();
   void TakeLine(const std::string& process, const std::string& line);
   void TellLine(const std::string& process, std::string_view line);
-  void Tell(nlohmann::json words);
+  void Tell(HostWords words);
   void Leave();
 
   StopSignal& stop_;

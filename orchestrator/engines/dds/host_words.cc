@@ -3,8 +3,77 @@
 #include <sys/stat.h>
 
 #include <fstream>
+#include <set>
+
+#include "experiment/experiment.h"
+#include "orchestrator/formats/outside_fields.h"
+#include "orchestrator/formats/outside_json.h"
 
 namespace mascot {
+namespace {
+
+constexpr std::size_t kLongestText = 10'000;
+constexpr double kMostMemory = 1e15, kLongestSilence_s = 1e9;
+
+/// A text of a list of arguments.
+std::string ArgumentFrom(const HostWords& argument) {
+  if (!argument.is_string() || argument.get_ref<const std::string&>().size() > kLongestText)
+    throw JsonError("expected a text as each of the \"arguments\", got something else");
+  return argument.get<std::string>();
+}
+
+HostProcess ReadProcess(const HostWords& words) {
+  if (!words.is_object()) throw JsonError("expected an object as each of the \"processes\", got something else");
+  OutsideFields fields(words);
+  HostProcess process{.name = fields.Text("name", kLongestText), .arguments = {}};
+  for (const HostWords& argument : fields.List("arguments", 1000)) process.arguments.push_back(ArgumentFrom(argument));
+  fields.Require();
+  return process;
+}
+
+}  // namespace
+
+HostWords WordsOf(const HostHello& hello) {
+  return {{"kind", "hello"}, {"build", hello.build}, {"machine", hello.machine}, {"seen_from", hello.seen_from}};
+}
+
+HostWords WordsOf(const HostJob& job) {
+  HostWords words{{"kind", "job"},
+                  {"domain", job.domain},
+                  {"own_memory", job.own_memory},
+                  {"shared_memory", job.shared_memory},
+                  {"silence_s", job.silence_s},
+                  {"processes", HostWords::array()}};
+  for (const HostProcess& process : job.processes)
+    words["processes"].push_back({{"name", process.name}, {"arguments", process.arguments}});
+  return words;
+}
+
+HostHello ReadHello(const HostWords& words) {
+  OutsideFields fields(words);
+  HostHello hello{.build = fields.Text("build", kLongestText),
+                  .machine = fields.Text("machine", kLongestText),
+                  .seen_from = fields.Text("seen_from", kLongestText)};
+  fields.Require();
+  return hello;
+}
+
+HostJob ReadJob(const HostWords& words) {
+  OutsideFields fields(words);
+  HostJob job{.domain = static_cast<int>(fields.Integer("domain", 0, 232)),
+              .own_memory = fields.Boolean("own_memory"),
+              .shared_memory = static_cast<std::uint64_t>(fields.Number("shared_memory", 0, kMostMemory)),
+              .silence_s = fields.Number("silence_s", 0, kLongestSilence_s),
+              .processes = {}};
+  std::set<std::string> names;
+  for (const HostWords& process : fields.List("processes", kMaxAgents)) {
+    job.processes.push_back(ReadProcess(process));
+    if (!names.insert(job.processes.back().name).second)
+      throw JsonError("expected each of the \"processes\" once, got one twice");
+  }
+  fields.Require();
+  return job;
+}
 
 std::string MachineText() {
   std::string boot;

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -11,6 +10,8 @@ namespace mascot {
 
 // What `up` and `orchestrator host` tell each other: a JSON object a line, with its kind under "kind". Lines for one
 // host of several that were started together have its name under "node"; those of a host always have.
+
+using HostWords = nlohmann::ordered_json;
 
 /// From one sign of life, {"kind": "alive"}, to the next, in both directions.
 constexpr std::chrono::milliseconds kBetweenSigns{500};
@@ -38,8 +39,11 @@ struct HostJob {
   std::vector<HostProcess> processes;
 };
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HostHello, build, machine, seen_from)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HostProcess, name, arguments)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HostJob, domain, own_memory, shared_memory, silence_s, processes)
+HostWords WordsOf(const HostHello& hello);
+HostWords WordsOf(const HostJob& job);
+/// What the other side said. Throw JsonError if that is something else: the one side may be a script that its owner
+/// took for `orchestrator host`, and the other a terminal.
+HostHello ReadHello(const HostWords& words);
+HostJob ReadJob(const HostWords& words);
 
 }  // namespace mascot

@@ -2,17 +2,20 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "bus/local_socket.h"
 #include "experiment/toml/utf8.h"
 #include "orchestrator/engines/dds/route.h"
+#include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
 #include "orchestrator/processes/build.h"
 #include "orchestrator/processes/line_pipe.h"
@@ -23,7 +26,8 @@ namespace {
 using namespace std::chrono_literals;
 using WallClock = std::chrono::steady_clock;
 
-constexpr std::size_t kLongestQuote = 200;
+constexpr std::size_t kLongestQuote = 200, kLongestName = 1000, kLongestText = 10'000;
+constexpr int kMostPid = 1 << 22, kMostStatus = 0xffff;  // of Linux; of waitpid(2)
 constexpr double kShareOfStart = 0.9;  // of run.start_timeout_s, for a host to answer: its agents join after that
 constexpr int kMostLines = 10'000;     // read of a connection at once: the run must go on beside one that floods
 
@@ -75,6 +79,7 @@ struct Launcher::Remote {
   std::string machine = {};                     // as it says itself
   std::map<std::string, Descriptor> logs = {};  // of its processes, until they end: their lines go there
   std::map<std::string, int> pids = {};         // to be compared with who joins the run
+  std::set<std::string> ended = {};
 };
 
 Launcher::Launcher(const Experiment& experiment, const RunFolder& folder, Rules rules, Children& children,
@@ -148,47 +153,77 @@ void Launcher::CheckSilence(const Remote& remote) const {
 void Launcher::Hear(const Connection& connection, const std::string& line) {
   const auto is_here = [&](const auto& remote) { return &remote->connection == &connection; };
   const std::string name = (*std::ranges::find_if(remotes_, is_here))->config.name;
-  const auto words = JsonOrNull<nlohmann::json>(line);
-  if (!words.is_object() || !words.contains("kind"))
+  const auto words = ObjectOrNothing(line);
+  if (!words || !words->contains("kind"))
     throw std::runtime_error(
         fmt::format("host {}: expected the words of `orchestrator host`, got '{}' (does its login "
                     "print something?)",
                     name, Quote(line)));
   try {
-    const std::string node = words.value("node", "");
+    OutsideFields fields(*words);
+    const std::string node = fields.Has("node") ? fields.Text("node", kLongestName) : "";
+    fields.Require();
     const auto speaks = [&](const auto& remote) {
       return is_here(remote) && (!remote->config.together || remote->config.name == node);
     };
     const auto remote = std::ranges::find_if(remotes_, speaks);
     if (remote == remotes_.end())
       throw std::runtime_error(fmt::format("host {}: expected hosts of the run, got {}", name, Quote(node)));
-    Obey(**remote, words);
-  } catch (const nlohmann::json::exception& mistake) {
+    Obey(**remote, *words);
+  } catch (const JsonError& mistake) {
     throw std::runtime_error(fmt::format("host {}: {}", name, mistake.what()));
   }
 }
 
-void Launcher::Obey(Remote& remote, const nlohmann::json& words) {
+void Launcher::Obey(Remote& remote, const HostWords& words) {
   remote.heard = WallClock::now();
-  const std::string kind = words["kind"];
-  if (kind == "error")
-    throw std::runtime_error(
-        fmt::format("host {}: {}", remote.config.name, Quote(words.at("text").get<std::string>())));
+  OutsideFields fields(words);
+  const std::string kind = fields.Text("kind", kLongestName);
+  fields.Require();
+  if (kind == "error") {
+    const std::string text = fields.Text("text", kLongestText);
+    fields.Require();
+    throw std::runtime_error(fmt::format("host {}: {}", remote.config.name, Quote(text)));
+  }
   if ((kind == "hello") == remote.greeted)
     throw std::runtime_error(
         fmt::format("host {}: expected its greeting first, and once, got '{}'", remote.config.name, Quote(kind)));
-  if (kind == "hello") Greet(remote, words.get<HostHello>());
-  if (!words.contains("process")) return;
-  const std::string process = words["process"];
+  if (kind == "hello")
+    Greet(remote, ReadHello(words));
+  else if (kind == "started" || kind == "line" || kind == "exit")
+    TakeWordOf(remote, kind, fields);
+  else if (kind != "alive")
+    throw std::runtime_error(
+        fmt::format("host {}: expected the words of `orchestrator host`, got '{}'", remote.config.name, Quote(kind)));
+}
+
+/// Takes what a host tells of one of its processes.
+void Launcher::TakeWordOf(Remote& remote, const std::string& kind, OutsideFields& fields) {
+  const std::string process = fields.Text("process", kLongestName);
+  fields.Require();
   Descriptor& log = remote.LogOf(process);
-  if (kind == "started") remote.pids[process] = words.at("pid");
-  if (kind == "line" && log.is_open()) {
-    const std::string text = words.at("text").get<std::string>() + (words.at("more") ? "" : "\n");
-    if (write(log.number(), text.data(), text.size()) < 0) log = Descriptor();
-  }
-  if (kind == "exit") {
+  const auto refuse_repetition = [&](bool is_repeated) {
+    if (is_repeated)
+      throw std::runtime_error(
+          fmt::format("host {}: expected \"{}\" of {} once, got it again", remote.config.name, kind, process));
+  };
+  if (kind == "started") {
+    const auto pid = static_cast<int>(fields.Integer("pid", 1, kMostPid));
+    fields.Require();
+    refuse_repetition(!remote.pids.emplace(process, pid).second);
+  } else if (kind == "line") {
+    std::string text = fields.Text("text", kLongestText);
+    if (!fields.Boolean("more")) text += '\n';
+    fields.Require();
+    if (log.is_open() && write(log.number(), text.data(), text.size()) < 0) log = Descriptor();
+  } else {
+    const auto status = static_cast<int>(fields.Integer("status", 0, kMostStatus));
+    fields.Require();
+    if (!WIFEXITED(status) && !WIFSIGNALED(status))
+      throw JsonError(fmt::format("expected how {} has ended as \"status\", got {}", process, status));
+    refuse_repetition(!remote.ended.insert(process).second);
     log = Descriptor();
-    exits_.push_back({process, words.at("status")});
+    exits_.push_back({process, status});
   }
 }
 
@@ -206,8 +241,7 @@ void Launcher::Greet(Remote& remote, const HostHello& hello) {
   job.own_memory = hello.machine != MachineText();
   for (const HostProcess& process : job.processes)
     remote.logs.emplace(process.name, Descriptor(logs_.Open(process.name, folder_.Log(process.name))));
-  nlohmann::json words = job;
-  words["kind"] = "job";
+  HostWords words = WordsOf(job);
   if (host.together) words["node"] = host.name;
   remote.connection.output.Write(words.dump());
   remote.machine = hello.machine;
@@ -227,7 +261,7 @@ void Launcher::CheckPids(const Remote& remote) const {
 
 std::vector<Exit> Launcher::Reap() { return std::exchange(exits_, {}); }
 
-void Launcher::TellAll(const nlohmann::json& words) {
+void Launcher::TellAll(const HostWords& words) {
   for (const auto& connection : connections_) connection->output.Write(words.dump());
 }
 

@@ -17,6 +17,8 @@
 
 namespace mascot {
 
+class OutsideFields;
+
 /// The other hosts of a run (`[[hosts]]`): starts `orchestrator host` on each by its launch command, tells it what to
 /// start, and hears what its processes print and how they end. A connection that ends is a child that has ended, called
 /// host_NAME, or `hosts` for those that were started together.
@@ -55,11 +57,12 @@ class Launcher {
 
   Connection& Connect(const HostConfig& host);
   void Hear(const Connection& connection, const std::string& line);
-  void Obey(Remote& remote, const nlohmann::json& words);
+  void Obey(Remote& remote, const HostWords& words);
+  void TakeWordOf(Remote& remote, const std::string& kind, OutsideFields& fields);
   void Greet(Remote& remote, const HostHello& hello);
   void CheckPids(const Remote& remote) const;
   void CheckSilence(const Remote& remote) const;
-  void TellAll(const nlohmann::json& words);
+  void TellAll(const HostWords& words);
 
   const Experiment& experiment_;
   const RunFolder& folder_;
