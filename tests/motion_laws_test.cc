@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "agent/laws/path_samples.h"
 #include "agent/laws/string_stability.h"
 #include "orchestrator/sweeping/metrics.h"
 #include "tests/ideal_network.h"
@@ -207,8 +208,45 @@ TEST(Trajectory, AMistakeInAFileNamesTheFileAndTheLine) {
     FAIL() << "it was read";
   } catch (const ConfigError& error) {
     EXPECT_STREQ(error.what(),
-                 "way.csv:3: law.file: expected four numbers in [-1e+06, 1e+06], t,x,y,z, got '1,far,0,1'");
+                 "way.csv:3:3: law.file: expected four numbers in [-1e+06, 1e+06], t,x,y,z, got '1,far,0,1'");
   }
+}
+
+TEST(PathSamples, AreFourFiniteNumbersInEachLineAndElseItsPlaceIsNamed) {
+  struct Case {
+    std::string text;
+    int line, column;
+    const char* got;
+  };
+  const std::string good = "t,x,y,z\n 0 , 0,\t0,1 \r\n\n", longer(100, '1');
+  for (const Case& wrong : std::vector<Case>{{"1,2,3\n", 4, 6, "'1,2,3'"},
+                                             {"1,2,3,4,5\n", 4, 7, "'1,2,3,4,5'"},
+                                             {"1 0,2,3,4\n", 4, 1, "'1 0,2,3,4'"},
+                                             {"1,2,nan,4\n", 4, 5, "'1,2,nan,4'"},
+                                             {"1,2,3,inf\n", 4, 7, "'1,2,3,inf'"},
+                                             {"1,2,3,1e7\n", 4, 7, "'1,2,3,1e7'"},
+                                             {"1,1e999,3,4\n", 4, 3, "'1,1e999,3,4'"},
+                                             {"1,,3,4\n", 4, 3, "'1,,3,4'"},
+                                             {"1;2;3;4\n", 4, 1, "'1;2;3;4'"},
+                                             {"1,+2,3,4\n", 4, 3, "'1,+2,3,4'"},
+                                             {"1,0x2,3,4\n", 4, 3, "'1,0x2,3,4'"},
+                                             {"t,x,y,z\n", 4, 1, "'t,x,y,z'"},
+                                             {longer + "\n", 4, 1, "'1111"},
+                                             {"1,2,3," + longer + "\n", 4, 7, "'1,2,3,1111"},
+                                             {"0,2,3,4\n", 4, 1, "times that increase, got '0,2,3,4'"},
+                                             {"", 3, 1, "two lines t,x,y,z, got 1"}}) {
+    PathSamples samples;
+    PathSamples::Place place;
+    const std::string mistake = samples.Read(good + wrong.text, place);
+    EXPECT_THAT(mistake, HasSubstr(wrong.got)) << wrong.text;
+    EXPECT_LT(mistake.size(), 150U) << wrong.text;
+    EXPECT_EQ(place.line, wrong.line) << wrong.text;
+    EXPECT_EQ(place.column, wrong.column) << wrong.text;
+  }
+  PathSamples samples;
+  PathSamples::Place place;
+  EXPECT_EQ(samples.Read(good + "1.5,-2e-1,3,4", place), "");
+  EXPECT_EQ(samples.duration_s(), 1.5);
 }
 
 TEST(Trajectory, FliesOnQuadrotorsAndSingleIntegrators) {

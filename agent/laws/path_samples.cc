@@ -2,44 +2,65 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
+#include <optional>
 #include <sstream>
+#include <string_view>
+
+#include "experiment/toml/number.h"
+#include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {
 
 constexpr double kLargestSample = 1e6;
+constexpr std::size_t kLongestQuote = 60;
 
-/// The four numbers of a line "t,x,y,z"; nullopt: it has others, or other things.
-std::optional<std::array<double, 4>> FourNumbers(std::string line) {
-  std::erase_if(line, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
-  std::array<double, 4> numbers{};
-  const char *at = line.data(), *end = at + line.size();
+bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+/// Reads the four numbers of a line "t,x,y,z", with blanks around them, into `numbers`. Returns at which character of
+/// the line it is something else; nothing: it is that.
+std::optional<std::size_t> ReadFour(std::string_view line, std::array<double, 4>& numbers) {
+  std::size_t begin = 0;
   for (std::size_t n = 0; n < numbers.size(); ++n) {
-    if (n > 0 && (at == end || *at++ != ',')) return std::nullopt;
-    const auto [after, error] = std::from_chars(at, end, numbers[n]);
-    if (error != std::errc() || !(std::abs(numbers[n]) <= kLargestSample)) return std::nullopt;
-    at = after;
+    const std::size_t end = n + 1 < numbers.size() ? line.find(',', begin) : line.size();
+    std::string_view cell = line.substr(begin, std::min(end, line.size()) - begin);
+    const std::size_t at = begin + static_cast<std::size_t>(std::ranges::find_if_not(cell, IsBlank) - cell.begin());
+    cell.remove_prefix(std::min(at - begin, cell.size()));
+    while (!cell.empty() && IsBlank(cell.back())) cell.remove_suffix(1);
+    const auto number = NumberFrom<double>(cell);
+    if (!number || !(std::abs(*number) <= kLargestSample)) return at;
+    if (end == line.npos) return line.size();
+    numbers[n] = *number;
+    begin = end + 1;
   }
-  return at == end ? std::optional(numbers) : std::nullopt;
+  return std::nullopt;
 }
+
+/// A line as a message quotes it.
+std::string Quote(std::string_view line) { return "'" + std::string(CutUtf8(line, kLongestQuote)) + "'"; }
 
 }  // namespace
 
-std::string PathSamples::Read(const std::string& text, int& line) {
+std::string PathSamples::Read(const std::string& text, Place& place) {
   std::istringstream lines(text);
-  line = 0;
+  place = {};
   for (std::string row; std::getline(lines, row);) {
-    ++line;
-    if (row.find_first_not_of(" \t\r") == std::string::npos) continue;
-    const auto numbers = FourNumbers(row);
-    if (!numbers && knots_.empty() && row.find_first_of("0123456789") == std::string::npos) continue;  // a heading
-    if (!numbers) return "expected four numbers in [-1e+06, 1e+06], t,x,y,z, got '" + row.substr(0, 60) + "'";
-    const auto& [t_s, x, y, z] = *numbers;
-    if (!knots_.empty() && t_s <= knots_.back().t_s) return "expected times that increase, got '" + row + "'";
+    ++place.line;
+    place.column = 1;
+    if (std::ranges::all_of(row, IsBlank)) continue;
+    std::array<double, 4> numbers{};
+    const auto wrong = ReadFour(row, numbers);
+    if (wrong && knots_.empty() && row.find_first_of("0123456789") == std::string::npos) continue;  // a heading
+    if (wrong) {
+      place.column = static_cast<int>(*wrong) + 1;
+      return "expected four numbers in [-1e+06, 1e+06], t,x,y,z, got " + Quote(row);
+    }
+    const auto& [t_s, x, y, z] = numbers;
+    if (!knots_.empty() && t_s <= knots_.back().t_s) return "expected times that increase, got " + Quote(row);
     knots_.push_back({.t_s = t_s, .p_W = {x, y, z}});
   }
+  place.line = std::max(place.line, 1);  // of an empty text, too
   if (knots_.size() < 2) return "expected at least two lines t,x,y,z, got " + std::to_string(knots_.size());
   FindVelocities();
   return "";

@@ -16,9 +16,14 @@ struct PathPoint {
 /// the first and the last sample, where it is at rest; before and after it stays there.
 class PathSamples {
  public:
+  /// A place in a text; both count from 1.
+  struct Place {
+    int line = 0, column = 1;
+  };
+
   /// Reads text of lines "t,x,y,z", of which the first may be a heading. Empty: it was read; else the mistake and, in
-  /// `line`, its line.
-  std::string Read(const std::string& text, int& line);
+  /// `place`, where it is.
+  std::string Read(const std::string& text, Place& place);
   PathPoint At(double t_s) const;
   /// From the first to the last sample; at least two have been read.
   double duration_s() const { return knots_.back().t_s - knots_.front().t_s; }

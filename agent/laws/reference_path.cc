@@ -23,13 +23,13 @@ std::optional<PathSamples> ReadSamples(Section& law) {
       in_file ? law.TextOfFile("file", "samples") : Section::FileText{law.Text("samples"), ""};
   if (law.Wrong(in_file ? "file" : "samples")) return std::nullopt;
   PathSamples samples;
-  int line = 0;
-  const std::string mistake = samples.Read(text.text, line);
+  PathSamples::Place at;
+  const std::string mistake = samples.Read(text.text, at);
   if (mistake.empty()) return samples;
   if (in_file)
-    law.FailInText("file", text.name + ":" + std::to_string(line), mistake);
+    law.FailInText("file", text.name + ":" + std::to_string(at.line) + ":" + std::to_string(at.column), mistake);
   else
-    law.Fail("samples", "line " + std::to_string(line) + ": " + mistake);
+    law.Fail("samples", "line " + std::to_string(at.line) + ", column " + std::to_string(at.column) + ": " + mistake);
   return std::nullopt;
 }
 
