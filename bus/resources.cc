@@ -21,6 +21,8 @@
 #include <string>
 #include <vector>
 
+#include "bus/control_groups.h"
+
 namespace mascot {
 namespace {
 
@@ -32,6 +34,8 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::uint64_t kAddressSpace = 512 * kMiB;
 /// They use a part of it: with 60 MB some threads do not start, with 150 MB all do.
 constexpr std::uint64_t kData = 192 * kMiB;
+/// Memory of its own that a process takes at least; one without shared memory of the run and without Python.
+constexpr std::uint64_t kMemory = 8 * kMiB;
 /// A process with a participant has 10 threads, the orchestrator up to 20.
 constexpr int kThreads = 10, kMoreThreads = 12;
 
@@ -59,6 +63,16 @@ void RequireSharedMemory(std::uint64_t needed) {
       "/dev/shm has {:.1f} MiB free, and this run needs {:.1f} MiB: enlarge it (mount -o remount,size=..., docker run "
       "--shm-size=...), let agents share processes (network.agents_per_process), or set network.transport = \"udp\"",
       static_cast<double>(free) / kMiB, static_cast<double>(needed) / kMiB));
+}
+
+void RequireMemoryOfControlGroups(std::uint64_t needed) {
+  for (const fs::path& group : ControlGroups("memory"))
+    if (const auto memory = MemoryOfGroup(group); memory && memory->used + needed > memory->limit)
+      throw std::runtime_error(
+          fmt::format("this control group may have {} MiB of memory ({}) and has {} MiB, and this run needs about {} "
+                      "MiB more: raise "
+                      "the limit, or let agents share processes (network.agents_per_process)",
+                      memory->limit / kMiB, memory->file.string(), memory->used / kMiB, needed / kMiB));
 }
 
 // --- descriptors --------------------------------------------------------------------------------------
@@ -134,33 +148,12 @@ void RequireThreadsOfUser(int needed) {
   RefuseThreads("this user", "ulimit -u", static_cast<long>(limit.rlim_cur), used, needed);
 }
 
-/// A number in a file; -1: there is none.
-long NumberIn(const fs::path& file) {
-  long number = -1;
-  std::ifstream(file) >> number;
-  return number > 0 ? number : -1;
-}
-
-/// The control groups that we are in whose threads may be limited, innermost first.
-std::vector<fs::path> ControlGroups() {
-  std::vector<fs::path> groups;
-  std::ifstream table("/proc/self/cgroup");
-  for (std::string line; std::getline(table, line);) {
-    const bool is_v2 = line.starts_with("0::"), is_pids = line.find(":pids:") != std::string::npos;
-    if (!is_v2 && !is_pids) continue;
-    const fs::path root = is_v2 ? "/sys/fs/cgroup" : "/sys/fs/cgroup/pids";
-    for (fs::path path = line.substr(line.rfind(':') + 1); path.has_relative_path(); path = path.parent_path())
-      groups.push_back(root / path.relative_path());
-    groups.push_back(root);
-  }
-  return groups;
-}
-
 void RequireThreadsOfControlGroups(int needed) {
-  for (const fs::path& group : ControlGroups()) {
-    const long limit = NumberIn(group / "pids.max"), used = NumberIn(group / "pids.current");
-    if (limit > 0 && used > 0 && limit < used + needed)
-      RefuseThreads("this control group", (group / "pids.max").string(), limit, used, needed);
+  for (const fs::path& group : ControlGroups("pids")) {
+    const auto limit = NumberInGroup(group / "pids.max"), used = NumberInGroup(group / "pids.current");
+    if (limit && used && *limit < *used + static_cast<std::uint64_t>(needed))
+      RefuseThreads("this control group", (group / "pids.max").string(), static_cast<long>(*limit),
+                    static_cast<int>(*used), needed);
   }
 }
 
@@ -222,6 +215,7 @@ void RequireResources(const ResourceNeeds& needs) {
   RequireMemory(RLIMIT_AS, "address space", "-v", kAddressSpace);
   RequireMemory(RLIMIT_DATA, "data", "-d", kData);
   if (needs.shared_memory > 0) RequireSharedMemory(needs.shared_memory);
+  RequireMemoryOfControlGroups(needs.shared_memory + kMemory * static_cast<std::uint64_t>(needs.processes));
   RequireDescriptors(needs.descriptors);
   const int threads = kThreads * needs.processes + kMoreThreads;
   RequireThreadsOfUser(threads);

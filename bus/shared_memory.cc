@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -24,6 +23,7 @@
 #include <vector>
 
 #include "bus/ports.h"
+#include "experiment/toml/number.h"
 
 namespace mascot {
 namespace {
@@ -47,32 +47,32 @@ bool IsOurs(const std::string& path) {
   return lstat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode) && info.st_uid == geteuid();
 }
 
-/// The port of this name; 0: it is a segment, whose name is random.
+/// The port of this name; 0: it is a segment, whose name is random; -1: neither.
 int PortOf(const std::string& name) {
   constexpr std::string_view kPort = "fastrtps_port";
-  int port = 0;
-  if (name.starts_with(kPort)) std::from_chars(name.data() + kPort.size(), name.data() + name.size(), port);
-  return port;
+  return name.starts_with(kPort) ? NumberFrom<int>(std::string_view(name).substr(kPort.size())).value_or(-1) : 0;
+}
+
+/// A lock of a byte of a file, or the question for one.
+struct flock LockOf(int byte, short type) {
+  struct flock place {};
+  place.l_type = type;
+  place.l_whence = SEEK_SET;
+  place.l_start = byte;
+  place.l_len = 1;
+  return place;
 }
 
 /// Whether somebody has reserved this byte of a file (Reserve). Asks, and takes nothing.
 bool IsReserved(int file, int byte) {
-  struct flock place {};
-  place.l_type = F_WRLCK;
-  place.l_whence = SEEK_SET;
-  place.l_start = byte;
-  place.l_len = 1;
+  struct flock place = LockOf(byte, F_WRLCK);
   return ::fcntl(file, F_OFD_GETLK, &place) != 0 || place.l_type != F_UNLCK;
 }
 
 /// Reserves a byte of a file, which can be locked for reading only; so everybody locks first, and then asks whether a
 /// lock for writing would be in somebody's way. Returns whether nobody else has it.
 bool Reserve(int file, int byte) {
-  struct flock place {};
-  place.l_type = F_RDLCK;
-  place.l_whence = SEEK_SET;
-  place.l_start = byte;
-  place.l_len = 1;
+  struct flock place = LockOf(byte, F_RDLCK);
   if (::fcntl(file, F_OFD_SETLK, &place) != 0) throw std::runtime_error(std::strerror(errno));
   return !IsReserved(file, byte);
 }

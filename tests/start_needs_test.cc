@@ -91,6 +91,39 @@ TEST(StartNeeds, TooLittleMemoryForDataIsRefusedInWords) {
                                     "needs 192 MiB\n"));
 }
 
+/// A control group of this test whose memory is limited; its name is empty if it cannot be made.
+class SmallGroup {
+ public:
+  explicit SmallGroup(const std::string& limit) {
+    const std::string name = "/mascot-test-" + std::to_string(getpid());
+    const bool is_v1 = std::filesystem::exists("/sys/fs/cgroup/memory/memory.limit_in_bytes");
+    path_ = (is_v1 ? "/sys/fs/cgroup/memory" : "/sys/fs/cgroup") + name;
+    const std::string file = path_ + (is_v1 ? "/memory.limit_in_bytes" : "/memory.max");
+    if (Shell("mkdir " + path_ + " && echo " + limit + " > " + file).exit_code != 0) path_.clear();
+  }
+  ~SmallGroup() {
+    if (!path_.empty()) Until([this] { return Shell("rmdir " + path_).exit_code == 0; });
+  }
+  SmallGroup(const SmallGroup&) = delete;
+  SmallGroup& operator=(const SmallGroup&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+TEST(StartNeeds, TooLittleMemoryOfTheControlGroupIsRefusedInWords) {
+  const SmallGroup group("41943040");
+  if (group.path().empty()) GTEST_SKIP() << "needs root, to make a control group";
+  const ScratchFolder folder;
+  const Ran run = ShortRun(folder, "echo $$ > " + group.path() + "/cgroup.procs && exec");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.output,
+              testing::ContainsRegex("error: this control group may have 40 MiB of memory \\(" + group.path() +
+                                     "/memory[a-z._]+\\) and has [0-9]+ MiB, and this run needs about "
+                                     "[0-9]+ MiB more: raise the limit, or let agents share processes"));
+}
+
 TEST(StartNeeds, TooFewThreadsAreRefusedInWordsAndLeaveNothing) {
   if (geteuid() != 0) GTEST_SKIP() << "needs root, to be a user without other processes";
   const std::string as_user = "setpriv --reuid 12345 --regid 12345 --clear-groups prlimit --nproc=30";
