@@ -21,8 +21,7 @@ py::array_t<double> Rows(std::span<const Eigen::Vector3d> points) {
 
 std::string Repr(const py::handle& value) try {
   constexpr std::size_t kLongest = 200;
-  const std::string text = TextOf(py::repr(value));
-  return text.size() <= kLongest ? text : std::string(CutUtf8(text, kLongest)) + "...";
+  return Shortened(TextOf(py::repr(value)), kLongest);
 } catch (py::error_already_set&) {
   return "an object of type " + TextOf(py::type::of(value).attr("__name__"));
 }

@@ -8,6 +8,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstring>
 #include <functional>
 #include <stdexcept>
@@ -15,6 +16,7 @@
 #include "orchestrator/formats/csv.h"
 #include "orchestrator/formats/mat_file.h"
 #include "orchestrator/formats/npz.h"
+#include "orchestrator/formats/output_file.h"
 #include "orchestrator/formats/whole_file.h"
 #include "tests/scratch.h"
 
@@ -22,6 +24,16 @@ namespace mascot {
 namespace {
 
 using ::testing::ThrowsMessage;
+
+TEST(OutputFile, ThatIsRemovedWhileItIsWrittenIsNoFile) {
+  const ScratchFolder folder;
+  OutputFile file(folder.File("run.mcap"));
+  file.Write(std::array<std::uint8_t, 3>{1, 2, 3});
+  ASSERT_EQ(unlink(folder.File("run.mcap").c_str()), 0);
+  EXPECT_THAT(
+      [&] { file.SyncAndClose(); },
+      ThrowsMessage<std::runtime_error>("cannot complete " + folder.File("run.mcap") + ": No such file or directory"));
+}
 
 /// A kind of file, and how it is written at a path.
 struct Kind {

@@ -394,6 +394,12 @@ TEST(CustomLaw, OfThePublishedTestbedIsToldOfPeekingOnlyIfItsNumbersAreMissing) 
 
 // --- what it prints ---------------------------------------------------------------------------------
 
+TEST(CustomLaw, AnExceptionOfManyMegabytesIsCut) {
+  const std::string failure = Failure("def control(t, me, neighbours):\n  raise RuntimeError('z' * 50_000_000)\n");
+  EXPECT_LT(failure.size(), 50'000U);
+  EXPECT_THAT(failure, HasSubstr("RuntimeError: zzz"));
+}
+
 TEST(CustomLaw, PrintsToStandardErrorInWholeLinesAndNotIfMuted) {
   Experiment experiment =
       Custom("def control(t, me, neighbours):\n  print('at', t, end='')\n  print(' s')\n  return 0, 0\n");

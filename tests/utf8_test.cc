@@ -94,6 +94,28 @@ TEST(Utf8, IsCutBetweenCharacters) {
   EXPECT_EQ(CutUtf8("\x80\x80\x80\x80\x80\x80", 5).size(), 5u) << "no UTF-8: cut anywhere, but cut";
 }
 
+TEST(Utf8, IsShortenedBetweenCharactersAndSaysSo) {
+  EXPECT_EQ(Shortened("abcdef", 6), "abcdef");
+  EXPECT_EQ(Shortened("abc\xC3\xBC", 4), "abc...");
+}
+
+TEST(ConfigError, ShortensAMistakeThatQuotesMuch) {
+  const std::string longer(1'000'000, 'x');
+  for (const std::string& toml : {"name = '" + longer + "'", longer + " = 1"}) {
+    try {
+      Section section = Section::FromText(toml, "test.toml");
+      section.Number("name", 1);
+      section.Fail("name", "got '" + longer + "'");
+      section.Done();
+      section.ThrowIfWrong();
+      FAIL() << "it was taken";
+    } catch (const ConfigError& error) {
+      EXPECT_LT(std::string(error.what()).size(), 100'000U);
+      EXPECT_EQ(std::string(error.what()).substr(0, 10), "test.toml:");
+    }
+  }
+}
+
 TEST(Utf8, MistakesInExperimentsAreFitToBePrinted) {
   const std::string bad = "\x1b[31m\xE2\x80\xAE\xFF";
   try {

@@ -113,10 +113,13 @@ toml::table ParseToml(std::string_view text, const std::string& name) {
   }
 }
 
+/// Of one mistake: a message quotes what a file has, which may be long. Tracebacks of Python are shorter.
+constexpr std::size_t kLongestMistake = 30'000;
+
 ConfigError::ConfigError(std::vector<std::string> mistakes)
     : std::runtime_error([&] {
         std::string text;
-        for (std::string& mistake : mistakes) mistake = Plain(mistake);
+        for (std::string& mistake : mistakes) mistake = Shortened(Plain(mistake), kLongestMistake);
         for (const std::string& mistake : mistakes) text += (text.empty() ? "" : "\n") + mistake;
         return text;
       }()),

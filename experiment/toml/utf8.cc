@@ -96,6 +96,10 @@ std::size_t UnfinishedUtf8(std::string_view text) {
   return 0;
 }
 
+std::string Shortened(std::string_view text, std::size_t longest) {
+  return text.size() <= longest ? std::string(text) : std::string(CutUtf8(text, longest)) + "...";
+}
+
 std::string_view CutUtf8(std::string_view text, std::size_t longest) {
   if (text.size() <= longest) return text;
   for (std::size_t end = longest; end + 4 > longest; --end)

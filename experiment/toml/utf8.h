@@ -21,5 +21,7 @@ std::size_t UnfinishedUtf8(std::string_view text);
 
 /// The first characters of `text` that fit into `longest` bytes (at least 4).
 std::string_view CutUtf8(std::string_view text, std::size_t longest);
+/// The text, or as much of it as fits into `longest` bytes, and "...".
+std::string Shortened(std::string_view text, std::size_t longest);
 
 }  // namespace mascot

@@ -1,6 +1,7 @@
 #include "orchestrator/formats/output_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -36,6 +37,8 @@ void OutputFile::Write(std::span<const std::uint8_t> bytes) {
 
 void OutputFile::SyncAndClose() {
   if (error_ != 0) Fail("close", error_);
+  struct stat info {};
+  if (::fstat(fd_, &info) == 0 && info.st_nlink == 0) Fail("complete", ENOENT);  // it was removed meanwhile
   if (::fsync(fd_) != 0) Fail("flush", errno);
   if (::close(std::exchange(fd_, -1)) != 0) Fail("close", errno);
 }
