@@ -466,7 +466,7 @@ TEST(LiveView, AnErrorOfTheViewEndsTheViewAndNotTheRun) {
     std::vector<RowSink*> sinks{&writer};
     Watched run(experiment, sinks);
     std::optional<ViewSink> guarded;
-    if (more != nullptr) run.AddSink(guarded.emplace(*more, run.view));
+    if (more != nullptr) run.AddSink(guarded.emplace(*more, [&run](const std::string& why) { run.view.Fail(why); }));
     Viewer viewer(run.view.url());
     const EngineResult result = run.Fly([&](std::int64_t tick) {
       if (tick == 100 && breaks) breaks(run);
@@ -490,6 +490,17 @@ TEST(LiveView, AnErrorOfTheViewEndsTheViewAndNotTheRun) {
   EXPECT_TRUE(whole == fly("in_a_sink", {}, &broken));
   EXPECT_TRUE(whole == fly("unknown", {}, &unknown));
   EXPECT_EQ(broken.rows, 101) << "rows go to it no more";
+}
+
+TEST(RosView, IsToldWhatHasEndedItAndTellsItsThread) {
+  const Experiment experiment = Load(kThree);
+  RunMeter meter(experiment);
+  RosView view(experiment, meter);
+  Broken broken(/*by_exception=*/true);
+  ViewSink guarded(broken, [&view](const std::string& why) { view.Fail(why); });
+  const EngineResult result = RunInProcess(experiment, {&meter, &view, &guarded}, [] { return true; });
+  EXPECT_EQ(result.failure, "");
+  EXPECT_THAT([&] { view.TakeNewest(); }, testing::ThrowsMessage<std::runtime_error>("made up"));
 }
 
 TEST(LiveView, AQuestionThatThrowsIsAnswered) {

@@ -1,5 +1,6 @@
 #include "orchestrator/live/ros_view.h"
 
+#include <stdexcept>
 #include <utility>
 
 #include "bus/wire.h"
@@ -28,9 +29,15 @@ void RosView::Add(const FlownRow& row) {
   if (experiment_.graph.edges() <= kMostEdgesShown) meter_.EdgesNow(newest_.edges);
 }
 
+void RosView::Fail(const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  failure_ = why;
+}
+
 std::int64_t RosView::TakeNewest() {
   {
     const std::lock_guard lock(mutex_);
+    if (!failure_.empty()) throw std::runtime_error(failure_);
     if (newest_.tick <= shown_.tick) return shown_.tick;
     std::swap(newest_, shown_);
   }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <mutex>
+#include <string>
 
 #include "experiment/experiment.h"
 #include "orchestrator/engines/ros_source.h"
@@ -21,6 +22,9 @@ class RosView final : public RowSink, public RosSource {
   /// Takes the next row, from the run's thread.
   void Add(const FlownRow& row) override;
 
+  /// Ends the view: the run's rows go on without it, and its thread is told why.
+  void Fail(const std::string& why);
+
   // RosSource, in a thread of its own.
   std::int64_t TakeNewest() override;
   Bytes Transforms() const override;
@@ -33,7 +37,8 @@ class RosView final : public RowSink, public RosSource {
   const RunMeter& meter_;
 
   std::mutex mutex_;
-  ShownRow newest_;  // guarded by mutex_
+  ShownRow newest_;      // guarded by mutex_
+  std::string failure_;  // likewise
 
   // The thread of RosSource alone.
   ShownRow shown_;

@@ -25,7 +25,7 @@ void ViewSink::Adopt(const LiveExperiment& live, std::span<const Event> events) 
     inner_.Adopt(live, events);
   } catch (...) {
     broken_ = true;
-    view_.Fail(Thrown());
+    fail_(Thrown());
   }
 }
 
@@ -35,7 +35,7 @@ void ViewSink::Add(const FlownRow& row) {
     inner_.Add(row);
   } catch (...) {
     broken_ = true;
-    view_.Fail(Thrown());
+    fail_(Thrown());
   }
 }
 

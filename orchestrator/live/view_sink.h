@@ -1,8 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <span>
+#include <string>
+#include <utility>
 
-#include "orchestrator/live/live_view.h"
 #include "orchestrator/team/row_sink.h"
 
 namespace mascot {
@@ -10,13 +12,14 @@ namespace mascot {
 /// A sink for viewers: what it throws ends the view, and not the run, whose other sinks go on.
 class ViewSink final : public RowSink {
  public:
-  ViewSink(RowSink& inner, LiveView& view) : inner_(inner), view_(view) {}
+  /// `fail` ends the view, and is told why.
+  ViewSink(RowSink& inner, std::function<void(const std::string& why)> fail) : inner_(inner), fail_(std::move(fail)) {}
   void Adopt(const LiveExperiment& live, std::span<const Event> events) override;
   void Add(const FlownRow& row) override;
 
  private:
   RowSink& inner_;
-  LiveView& view_;
+  const std::function<void(const std::string&)> fail_;
   bool broken_ = false;  // it gets no more rows
 };
 

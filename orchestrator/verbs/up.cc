@@ -19,6 +19,7 @@
 #include "orchestrator/live/address.h"
 #include "orchestrator/live/ros_view.h"
 #include "orchestrator/live/run_socket.h"
+#include "orchestrator/live/view_sink.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/processes/console.h"
 #include "orchestrator/processes/slurm.h"
@@ -126,7 +127,11 @@ int Up(UpArgs& args) {
   std::vector<RowSink*> sinks{&writer, &meter, &progress, &helm};
   viewers.AddTo(sinks);
   std::optional<RosView> ros_view;
-  if (experiment.network.ros_view) sinks.push_back(&ros_view.emplace(experiment, meter));
+  std::optional<ViewSink> ros_sink;
+  if (experiment.network.ros_view) {
+    ros_view.emplace(experiment, meter);
+    sinks.push_back(&ros_sink.emplace(*ros_view, [&ros_view](const std::string& why) { ros_view->Fail(why); }));
+  }
   const RunSocket socket(experiment, std::filesystem::absolute(folder.path()).string(), args.engine, viewers.url(),
                          helm);
   Flight flight(args.engine, experiment, folder, sinks, &helm, console, stop, ros_view ? &*ros_view : nullptr);

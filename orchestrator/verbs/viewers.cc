@@ -2,7 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <fstream>
+#include <stdexcept>
+#include <utility>
 
 #include "experiment/toml/utf8.h"
 #include "orchestrator/live/origin.h"
@@ -52,23 +53,29 @@ Viewers::~Viewers() { helm_.CallWhenChanged(nullptr); }
 void Viewers::Log(const std::string& line) {
   const std::lock_guard lock(mutex_);
   console_.Line(line);
-  if (log_)
-    std::ofstream(*log_, std::ios::app) << PlainLine(line) << "\n";
-  else
-    lines_.push_back(line);
+  Keep(line);
 }
 
 void Viewers::LogTo(const RunFolder& folder) {
   const std::lock_guard lock(mutex_);
   log_ = folder.Log("viewers");
-  for (const std::string& line : lines_) std::ofstream(*log_, std::ios::app) << PlainLine(line) << "\n";
-  lines_.clear();
+  for (const std::string& line : std::exchange(lines_, {})) Keep(line);
+}
+
+void Viewers::Keep(const std::string& line) try {
+  if (!log_) return lines_.push_back(line);
+  if (!file_) file_.emplace(log_->string());
+  const std::string text = PlainLine(line) + "\n";
+  file_->Write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+} catch (const std::runtime_error&) {  // a disk that is full ends neither view nor run; the terminal has the line
 }
 
 void Viewers::AddTo(std::vector<RowSink*>& sinks) {
   if (!view_) return;
   for (RowSink* inner : {static_cast<RowSink*>(&*view_), static_cast<RowSink*>(&*events_)})
-    sinks.push_back(sinks_.emplace_back(std::make_unique<ViewSink>(*inner, *view_)).get());
+    sinks.push_back(
+        sinks_.emplace_back(std::make_unique<ViewSink>(*inner, [this](const std::string& why) { view_->Fail(why); }))
+            .get());
 }
 
 void Viewers::SayHowItEnded(const EngineResult& result) {

@@ -11,6 +11,7 @@
 #include "experiment/experiment.h"
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/engines/helm.h"
+#include "orchestrator/formats/output_file.h"
 #include "orchestrator/live/address.h"
 #include "orchestrator/live/live_view.h"
 #include "orchestrator/live/view_sink.h"
@@ -69,12 +70,15 @@ class Viewers {
 
   /// Prints a line about viewers, and keeps it in the log. From any thread.
   void Log(const std::string& line);
+  /// Adds it to the log.
+  void Keep(const std::string& line);
 
   Helm& helm_;
   Console& console_;
   std::mutex mutex_;                // guards what follows
   std::vector<std::string> lines_;  // until there is a log
   std::optional<std::filesystem::path> log_;
+  std::optional<OutputFile> file_;
 
   std::optional<LiveView> view_;
   std::optional<Events> events_;
