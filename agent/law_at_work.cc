@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "agent/last_words.h"
 #include "experiment/experiment.h"
 
 namespace mascot {
@@ -34,19 +35,27 @@ struct Fatal {
   int signal;
   const char* name;
 };
-constexpr Fatal kFatal[] = {{SIGSEGV, "SIGSEGV"}, {SIGABRT, "SIGABRT"}, {SIGFPE, "SIGFPE"}, {SIGILL, "SIGILL"}};
+constexpr Fatal kFatal[] = {{SIGSEGV, "SIGSEGV"}, {SIGABRT, "SIGABRT"}, {SIGFPE, "SIGFPE"}, {SIGILL, "SIGILL"},
+                            {SIGTRAP, "SIGTRAP"}, {SIGSYS, "SIGSYS"},   {SIGBUS, "SIGBUS"}};
 
 void Say(const char* text) {
   if (write(STDERR_FILENO, text, std::strlen(text)) < 0) return;
 }
 
-/// A signal handler, called once: then the signal ends the process.
+struct sigaction before_bus_error {};  // whose SIGBUS is explained elsewhere if no law is at work
+
+/// A signal handler, called once: then the signal ends the process. In a thread that a law has started, and no one
+/// knows of, it is not known whose law it is.
 void ExplainCrash(int signal) {
-  if (whose_law != nullptr) {
-    const auto* row =
-        std::find_if(std::begin(kFatal), std::end(kFatal), [=](const Fatal& f) { return f.signal == signal; });
-    for (const char* piece : {"error: ", whose_law, " crashed: ", row->name, "\n"}) Say(piece);
-  }
+  if (signal == SIGBUS && whose_law == nullptr && before_bus_error.sa_handler != SIG_DFL)
+    before_bus_error.sa_handler(signal);
+  const auto* row =
+      std::find_if(std::begin(kFatal), std::end(kFatal), [=](const Fatal& f) { return f.signal == signal; });
+  const char* const reason[] = {whose_law != nullptr ? whose_law : "this process", " crashed: ", row->name};
+  Say("error: ");
+  for (const char* piece : reason) Say(piece);
+  Say("\n");
+  if (!IsForkedByLaw()) LastWords::Leave(reason, std::size(reason), 128 + signal);
   raise(signal);
 }
 
@@ -79,14 +88,7 @@ void OnFork() {
 
 void PrepareProcess() {
   static const bool prepared = [] {
-    for (const Fatal& fatal : kFatal) {
-      struct sigaction before {};
-      if (sigaction(fatal.signal, nullptr, &before) != 0 || before.sa_handler != SIG_DFL) continue;  // a sanitizer's
-      struct sigaction action {};
-      action.sa_handler = ExplainCrash;
-      action.sa_flags = static_cast<int>(SA_RESETHAND | SA_ONSTACK | SA_NODEFER);
-      sigaction(fatal.signal, &action, nullptr);
-    }
+    ExplainCrashes();
     pthread_atfork(nullptr, nullptr, OnFork);
     return true;
   }();
@@ -95,6 +97,25 @@ void PrepareProcess() {
 }
 
 }  // namespace
+
+void ExplainCrashes() {
+  static const bool explained = [] {
+    for (const Fatal& fatal : kFatal) {
+      struct sigaction before {};
+      if (sigaction(fatal.signal, nullptr, &before) != 0 || (before.sa_flags & SA_SIGINFO) != 0) continue;
+      if (fatal.signal == SIGBUS)
+        before_bus_error = before;
+      else if (before.sa_handler != SIG_DFL)
+        continue;
+      struct sigaction action {};
+      action.sa_handler = ExplainCrash;
+      action.sa_flags = static_cast<int>(SA_RESETHAND | SA_ONSTACK | SA_NODEFER);
+      sigaction(fatal.signal, &action, nullptr);
+    }
+    return true;
+  }();
+  (void)explained;
+}
 
 // --- the last resort ----------------------------------------------------------------------------------
 
@@ -145,16 +166,17 @@ class LastResort {
     if (limits.memory_mb > 0 && memory_mb > limits.memory_mb) law.took_too_much_ = true;
     if ((is_late && law.took_too_much_) ||
         (limits.memory_mb > 0 && memory_mb > (1 + kGrace) * limits.memory_mb + kMoreMemory_mb))
-      EndProcess(fmt::format(
-          "error: {} needs more than control.python_memory_mb = {} and cannot be interrupted: the process ends\n",
-          law.who_, limits.memory_mb));
+      EndProcess(fmt::format("{} needs more than control.python_memory_mb = {} and cannot be interrupted", law.who_,
+                             limits.memory_mb));
     if (is_late)
-      EndProcess(fmt::format("error: {} took longer than {} = {:g} s and cannot be interrupted: the process ends\n",
-                             law.who_, limits.source, limits.limit_s));
+      EndProcess(fmt::format("{} took longer than {} = {:g} s and cannot be interrupted", law.who_, limits.source,
+                             limits.limit_s));
   }
 
   [[noreturn]] static void EndProcess(const std::string& words) {
-    Say(words.c_str());
+    Say(("error: " + words + ": the process ends\n").c_str());
+    const char* const reason = words.c_str();
+    LastWords::Leave(&reason, 1, 1);
     _exit(1);
   }
 

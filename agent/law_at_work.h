@@ -18,11 +18,11 @@ struct LawLimits {
 /// While an object of this class lives, its thread runs code of a user's law. Whatever that does to the process, the
 /// process says whose law it was:
 /// * A signal by which it would end silently (SIGSEGV, from a stack overflow, say, SIGABRT, SIGFPE, SIGILL) is named
-///   first: "error: the law of agent 3 crashed: SIGSEGV".
+///   first: "error: the law of agent 3 crashed: SIGSEGV"; from then on also in other threads, which laws may start.
 /// * Long after the limit, 1.5 times and at least 1 s more, the process ends with exit code 1 and says so: the code has
 ///   not let itself be interrupted, or cannot be. Likewise if it takes 1.5 times the memory, and 256 MB more.
 /// * A process that the code forks dies with the thread that forked it, and does not outlive the object.
-/// Time in which the process was stopped does not count.
+/// Either way the process leaves its LastWords. Time in which the process was stopped does not count.
 class LawAtWork {
  public:
   /// `who`: "the law of agent 3"; must live as long as this object.
@@ -40,6 +40,9 @@ class LawAtWork {
   mutable bool took_too_much_ = false;  // memory; then its time is up because it does not let go of it
 };
 
+/// From now on signals that end this process without a word (SIGSEGV, SIGABRT, ...) are named first, whoever crashes;
+/// and LastWords are left. Handlers that others have set, such as a sanitizer's, stay.
+void ExplainCrashes();
 /// The limits of the laws that users wrote, in this experiment.
 LawLimits LimitsOfLaws(const Experiment& experiment);
 /// Whether this process is one that a law has forked.

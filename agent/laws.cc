@@ -75,6 +75,18 @@ std::vector<const LawEntry*> LawsIn(const Experiment& experiment) {
   return laws;
 }
 
+bool FliesCodeOfUsers(const Experiment& experiment) {
+  const auto is_of_user = [](std::string_view name) {
+    return std::ranges::any_of(Laws(), [&](const LawEntry& law) { return law.is_of_user && law.name == name; });
+  };
+  const auto begins_one = [&](const Event& event) {
+    const auto* name = event.law && event.law->contains("name") ? &event.law->at("name").data : nullptr;
+    return name != nullptr && std::holds_alternative<std::string>(*name) && is_of_user(std::get<std::string>(*name));
+  };
+  return std::ranges::any_of(LawsIn(experiment), &LawEntry::is_of_user) ||
+         std::ranges::any_of(experiment.events, begins_one);
+}
+
 std::vector<std::string_view> DetailsOf(const LawEntry& law) {
   std::vector<std::string_view> paragraphs;
   for (std::string_view rest = law.details; !rest.empty();) {

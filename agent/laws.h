@@ -67,6 +67,7 @@ struct LawEntry {
   Axes axes = Axes::kXy;                    ///< default of law.axes
   bool agrees = false;                      ///< agents agree by what they hear, which takes a spanning tree
   bool gathers = false;                     ///< agents meet in one place, where only their heights keep them apart
+  bool is_of_user = false;                  ///< it runs code that a user of this program has written
   bool sees_obstacles = false;              ///< uses what it sees of obstacles (Law::See), to keep clear of them
   Drawing drawing;
 
@@ -99,6 +100,8 @@ struct LawEntry {
 std::span<const LawEntry> Laws();
 /// The rows of the laws that agents of the experiment fly, in the order in which they first appear.
 std::vector<const LawEntry*> LawsIn(const Experiment& experiment);
+/// Whether agents fly a law that runs code of a user, at the start or later.
+bool FliesCodeOfUsers(const Experiment& experiment);
 /// LawEntry::details, paragraph by paragraph.
 std::vector<std::string_view> DetailsOf(const LawEntry& law);
 /// The agents that fly `law`, in increasing id.

@@ -9,7 +9,7 @@ namespace {
 // functions in os and signal, as everybody does. Those of signal raise what they do in any thread but the main one: a
 // law runs in that in some engines, and not in others. subprocess uses fork(2): then children die with the law.
 constexpr const char* kGuard = R"python(
-import functools, os, posix, signal, subprocess
+import functools, os, posix, resource, signal, subprocess
 
 
 def guard(names, modules, error, is_refused=lambda *arguments, **options: True):
@@ -50,6 +50,9 @@ def is_not_a_group(group, number):
 
 SYSTEM = os, posix
 guard(["_exit", "abort", "execv", "execve", "setsid", "setpgrp", "closerange"], SYSTEM, RuntimeError)
+guard(["chroot", "setuid", "seteuid", "setreuid", "setresuid", "setgid", "setegid", "setregid", "setresgid",
+       "setgroups", "initgroups", "umask"], SYSTEM, RuntimeError)
+guard(["setrlimit", "prlimit"], (resource,), RuntimeError)
 guard(["kill"], SYSTEM, RuntimeError, is_not_a_child)
 guard(["killpg"], SYSTEM, RuntimeError, is_not_a_group)
 guard(["setpgid"], SYSTEM, RuntimeError, lambda pid, group: pid in (0, os.getpid()))

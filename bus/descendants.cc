@@ -7,13 +7,16 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <random>
 #include <sstream>
 #include <string>
+
+#include "experiment/toml/number.h"
 
 namespace mascot {
 namespace {
@@ -33,7 +36,9 @@ std::multimap<pid_t, Kin> ProcessesByParent() {
   for (fs::directory_iterator entry("/proc", error), end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename();
     Kin process;
-    if (std::from_chars(name.data(), name.data() + name.size(), process.pid).ptr != name.data() + name.size()) continue;
+    const auto pid = NumberFrom<pid_t>(name);
+    if (!pid) continue;
+    process.pid = *pid;
     std::string stat;
     std::getline(std::ifstream(entry->path() / "stat"), stat, '\0');
     const auto begin = stat.find('('), close = stat.rfind(')');
@@ -60,7 +65,36 @@ void AddDescendants(const std::multimap<pid_t, Kin>& processes, pid_t parent, co
   }
 }
 
+constexpr const char* kMark = "MASCOT_RUN";
+
+/// Whether the environment with which a process began has this variable.
+bool Has(pid_t process, const std::string& variable) {
+  std::ifstream environment("/proc/" + std::to_string(process) + "/environ", std::ios::binary);
+  for (std::string entry; std::getline(environment, entry, '\0');)
+    if (entry == variable) return true;
+  return false;
+}
+
 }  // namespace
+
+void MarkDescendants() {
+  const std::string mark = std::to_string(getpid()) + "-" + std::to_string(std::random_device()());
+  setenv(kMark, mark.c_str(), /*overwrite=*/1);
+}
+
+void KillMarked() {
+  const char* const mark = std::getenv(kMark);
+  if (mark == nullptr) return;
+  const std::string variable = std::string(kMark) + "=" + mark;
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+  for (bool any = true; any && std::chrono::steady_clock::now() < deadline; poll(nullptr, 0, 2)) {
+    any = false;  // until none is left: one that dies may just have started another
+    for (const auto& [parent, kin] : ProcessesByParent()) {
+      if (kin.pid == getpid() || kin.is_zombie || kin.is_ssh || !Has(kin.pid, variable)) continue;
+      any = kill(kin.pid, SIGKILL) == 0 || any;
+    }
+  }
+}
 
 void AdoptDescendants() { prctl(PR_SET_CHILD_SUBREAPER, 1); }
 

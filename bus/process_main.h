@@ -48,8 +48,9 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
 // What ProcessMain does instead if this is its first argument; the second is a number.
 /// Removes segments of dead processes. The number is the exit code.
 inline constexpr const char* kSweep = "--sweep-shared-memory";
-/// Waits until stdin ends, then removes the shared memory of a run. The number is its domain. The caller holds the
-/// domain's lock (Janitor).
+/// Waits until stdin ends, then kills what bears the mark of the run (MarkDescendants()), and removes its shared
+/// memory. The number is its domain, whose lock the caller holds (Janitor), or kNoDomain. What it reads is the name of
+/// a file, a zero byte, and what the file gets if nobody has made it by then; or nothing.
 inline constexpr const char* kSweepAfterRun = "--sweep-after-run";
 
 }  // namespace mascot

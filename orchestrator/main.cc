@@ -106,6 +106,7 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the file size limit then fails with EFBIG, which is reported
     mascot::SayWhatIsUncaught();
     mascot::AdoptDescendants();
+    mascot::MarkDescendants();  // before a law is looked at
     return mascot::Main(argc, argv);
   });
   mascot::KillDescendants();

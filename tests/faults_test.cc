@@ -271,6 +271,62 @@ TEST(Faults, WhatALawHasForkedDoesNotOutliveAKilledOrchestrator) {
   EXPECT_TRUE(NothingIsLeft(up));
 }
 
+TEST(Faults, WhatALawHasStartedBySystemDoesNotOutliveAKilledOrchestratorEither) {
+  for (const char* engine : {"dds", "inprocess"}) {
+    SCOPED_TRACE(engine);
+    const ScratchFolder folder;
+    const std::string law = "import os, time\ndef start(me, params):\n  os.system('setsid sleep 1000 & echo $! >> " +
+                            folder.File("pids") +
+                            "')\ndef control(t, me, neighbours):\n  if t > 0.1: time.sleep(1)\n  return [0, 0]\n";
+    Up up(folder, "run", Python(folder, 1, law, "fidelity = false\n"), {"--engine", engine});
+    pid_t sleeper = 0;
+    ASSERT_TRUE(Until([&] {
+      std::istringstream pids(ReadFile(folder.File("pids")));
+      return static_cast<bool>(pids >> sleeper);
+    })) << up.err();
+    ASSERT_TRUE(Until([&] { return up.Said("t = 0.00"); })) << up.err();
+    up.Signal(SIGKILL);
+    EXPECT_EQ(up.Wait(), -SIGKILL);
+    EXPECT_TRUE(IsGone(sleeper));
+    ASSERT_TRUE(Until([&] { return up.File("summary.json").ends_with("}\n"); }));
+    EXPECT_THAT(up.File("summary.json"), HasSubstr("the orchestrator was killed (SIGKILL"));
+  }
+}
+
+TEST(Faults, WhateverALawDoesToTheOneProcessOfARunThereIsASummaryThatSaysWhy) {
+  struct Try {
+    const char* act;
+    int end;
+    nlohmann::json exit;
+    const char* words;
+  };
+  const Try tries[] = {
+      {"ctypes.string_at(0)", -SIGSEGV, 128 + SIGSEGV,
+       "the law of agent 2 crashed: SIGSEGV; the process has ended amid"},
+      {"ctypes.CDLL(None)['raise'](7)", -SIGBUS, 128 + SIGBUS, "the law of agent 2 crashed: SIGBUS"},
+      {"threading.Thread(target=lambda: ctypes.string_at(0)).start(); time.sleep(100)", -SIGSEGV, 128 + SIGSEGV,
+       "this process crashed: SIGSEGV"},
+      {"time.sleep(100)", 1, 1, "the law of agent 2 took longer than 0.8 run.agent_timeout_s = 0.8 s and cannot be"},
+      {"ctypes.CDLL(None).exit(0)", 1, 1, "a law, or what it has called, has ended the process by exit()"},
+      {"ctypes.CDLL(None)._exit(0)", 0, nullptr, "the orchestrator was killed (SIGKILL: by somebody, or for want of"},
+      {"ctypes.CDLL(None).kill(os.getpid(), 9)", -SIGKILL, nullptr, "the orchestrator was killed (SIGKILL"}};
+  for (const Try& each : tries) {
+    SCOPED_TRACE(each.act);
+    const ScratchFolder folder;
+    const std::string law = std::string("import ctypes, os, threading, time\ndef control(t, me, neighbours):\n") +
+                            "  if me.id == 2 and t > 0.1:\n    " + each.act + "\n  return 0, 0\n";
+    Up up(folder, "run", Python(folder, 3, law, "fidelity = false\n"),
+          {"--set", "run.agent_timeout_s=1.0", "--engine", "inprocess"});
+    EXPECT_EQ(up.Wait(), each.end) << up.err();
+    ASSERT_TRUE(Until([&] { return up.File("summary.json").ends_with("}\n"); }));
+    const auto summary = nlohmann::json::parse(up.File("summary.json"));
+    EXPECT_EQ(summary["exit"], each.exit);
+    EXPECT_THAT(summary["failure"].get<std::string>(), HasSubstr(each.words));
+    EXPECT_EQ(summary["agents"], 3);
+    EXPECT_FALSE(summary.contains("ticks")) << "nobody knows";
+  }
+}
+
 TEST(Faults, WhateverALawDoesToItsProcessThereIsASummaryThatNamesTheAgent) {
   const std::pair<const char*, const char*> tries[] = {
       {"os._exit(0)", "the law of agent 2 failed at t = "},

@@ -26,7 +26,7 @@ class LawAtWorkDeathTest : public testing::Test {
 };
 
 std::string InControl(const std::string& line) {
-  return "import os, signal, sys, time\ndef control(t, me, neighbours):\n  " + line + "\n  return 0, 0\n";
+  return "import os, resource, signal, sys, time\ndef control(t, me, neighbours):\n  " + line + "\n  return 0, 0\n";
 }
 
 Experiment Limited(const std::string& python, const std::string& control = "") {
@@ -51,12 +51,29 @@ std::string FirstCall(const std::string& python, const std::string& control = ""
 // --- what is refused --------------------------------------------------------------------------------
 
 TEST(LawAtWork, MayNotEndOrChangeItsProcess) {
-  for (const char* call :
-       {"os._exit(0)", "os.abort()", "os.kill(os.getpid(), 9)", "os.kill(0, 9)", "os.kill(-1, 9)",
-        "os.kill(os.getppid(), 9)", "os.killpg(os.getpgrp(), 9)", "os.execv('/bin/true', ['true'])",
-        "os.execlp('true', 'true')", "os.closerange(0, 1024)", "os.close(2)", "os.dup2(1, 2)", "os.setsid()",
-        "os.setpgid(0, 0)", "signal.signal(signal.SIGTERM, signal.SIG_IGN)", "signal.raise_signal(signal.SIGKILL)",
-        "signal.alarm(1)", "signal.pthread_kill(__import__('threading').get_ident(), 9)"})
+  for (const char* call : {"os._exit(0)",
+                           "os.abort()",
+                           "os.kill(os.getpid(), 9)",
+                           "os.kill(0, 9)",
+                           "os.kill(-1, 9)",
+                           "os.kill(os.getppid(), 9)",
+                           "os.killpg(os.getpgrp(), 9)",
+                           "os.execv('/bin/true', ['true'])",
+                           "os.execlp('true', 'true')",
+                           "os.closerange(0, 1024)",
+                           "os.close(2)",
+                           "os.dup2(1, 2)",
+                           "os.setsid()",
+                           "os.setpgid(0, 0)",
+                           "signal.signal(signal.SIGTERM, signal.SIG_IGN)",
+                           "signal.raise_signal(signal.SIGKILL)",
+                           "resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))",
+                           "resource.prlimit(0, resource.RLIMIT_CPU, (1, 1))",
+                           "os.setuid(65534)",
+                           "os.chroot('/tmp')",
+                           "os.umask(0o777)",
+                           "signal.alarm(1)",
+                           "signal.pthread_kill(__import__('threading').get_ident(), 9)"})
     EXPECT_THAT(Failure(InControl(call)), AllOf(HasSubstr("tick 3: the law of agent 1 failed at t = "),
                                                 HasSubstr("refused, because the process is not the law's alone")))
         << call;

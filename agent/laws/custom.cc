@@ -137,6 +137,7 @@ LawEntry CustomLaw() {
           .theory = "none: check knows only built-in laws",
           .source = "docs/laws.md",
           .parameters = kCustomParameters,
+          .is_of_user = true,
           .sees_obstacles = true,
           .drawing = {.pictures = kDisagreementPicture},
           .read = ReadCustom,

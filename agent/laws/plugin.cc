@@ -105,6 +105,7 @@ LawEntry PluginLaw() {
           .theory = "none: check knows only built-in laws",
           .source = "docs/plugin_law.md",
           .parameters = kPluginParameters,
+          .is_of_user = true,
           .sees_obstacles = true,
           .drawing = {.pictures = kDisagreementPicture},
           .read = ReadPlugin,

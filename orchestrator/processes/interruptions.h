@@ -5,7 +5,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <thread>
+#include <utility>
 
 #include "bus/stop_signal.h"
 #include "orchestrator/processes/console.h"
@@ -16,8 +18,12 @@ namespace mascot {
 /// the run to stop; the second ends the process at once, which leaves the recording without its end.
 class Interruptions {
  public:
-  Interruptions(StopSignal& stop, Console& console)
-      : stop_(stop), console_(console), thread_([this](const std::stop_token& over) { Listen(over); }) {}
+  /// `before_kill` is called with the exit code right before the second signal ends the process.
+  Interruptions(StopSignal& stop, Console& console, std::function<void(int code)> before_kill)
+      : stop_(stop),
+        console_(console),
+        before_kill_(std::move(before_kill)),
+        thread_([this](const std::stop_token& over) { Listen(over); }) {}
   ~Interruptions() {
     thread_.request_stop();
     stop_.Wake();
@@ -33,7 +39,10 @@ class Interruptions {
     while (!over.stop_requested()) {
       const int signal = stop_.Within(std::chrono::hours(1));
       if (signal == 0) continue;
-      if (signal_ != 0) _exit(128 + signal);  // without destructors, which would wait for the blocked thread
+      if (signal_ != 0) {
+        before_kill_(128 + signal);
+        _exit(128 + signal);  // without destructors, which would wait for the blocked thread
+      }
       signal_ = signal;
       console_.Line("stopping (once more to kill)");
     }
@@ -41,6 +50,7 @@ class Interruptions {
 
   StopSignal& stop_;
   Console& console_;
+  const std::function<void(int)> before_kill_;
   std::atomic<int> signal_ = 0;
   std::jthread thread_;
 };

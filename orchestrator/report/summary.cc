@@ -195,20 +195,28 @@ std::string IdealBodies(const Experiment& experiment) {
                                             : "ideal single and double integrators";
 }
 
+/// The first keys of a summary.
+Json WhoseSummary(const Experiment& experiment, const std::string& engine) {
+  return {{"format", kFormat}, {"experiment", experiment.run.name},        {"seed", experiment.run.seed},
+          {"engine", engine},  {"mode", kModes.Name(experiment.run.mode)}, {"agents", experiment.size()}};
+}
+
 }  // namespace
+
+std::string SummaryOfTheUnknown(const Experiment& experiment, const std::string& engine, std::optional<int> exit,
+                                const std::string& failure) {
+  Json json = WhoseSummary(experiment, engine);
+  json["exit"] = OrNull(exit);
+  json["failure"] = failure;
+  return JsonText(json);
+}
 
 std::string SummaryJson(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
                         const EngineResult& engine, const RunFacts& facts) {
   const Measured measured = meter.Result();
   const std::int64_t ticks = std::max<std::int64_t>(measured.rows - 1, 0);  // periods flown: rows are 0 .. ticks
   const double sim_s = experiment.time_s(ticks);
-  Json json;
-  json["format"] = kFormat;
-  json["experiment"] = experiment.run.name;
-  json["seed"] = experiment.run.seed;
-  json["engine"] = facts.engine;
-  json["mode"] = kModes.Name(experiment.run.mode);
-  json["agents"] = experiment.size();
+  Json json = WhoseSummary(experiment, facts.engine);
   json["ticks"] = ticks;
   json["sim_s"] = sim_s;
   json["wall_s"] = engine.wall_s;

@@ -20,6 +20,9 @@ struct RunFacts {
   double total_s = 0;           ///< wall-clock time from the start of `up` until summary.json is written
 };
 
+/// Text of summary.json of a run of which nothing is known but why it ended: its first keys, and no figure.
+std::string SummaryOfTheUnknown(const Experiment& experiment, const std::string& engine, std::optional<int> exit,
+                                const std::string& failure);
 /// Text of summary.json; docs/recording.md describes the keys.
 std::string SummaryJson(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter,
                         const EngineResult& engine, const RunFacts& facts);

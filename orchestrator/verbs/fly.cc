@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "agent/last_words.h"
 #include "agent/laws.h"
 #include "bus/leave.h"
 #include "orchestrator/engines/dds/delivery.h"
@@ -31,12 +32,23 @@ void RefuseEngine(const std::string& engine, const Experiment& experiment) {
 Flight::Flight(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
                const std::vector<RowSink*>& sinks, Helm* helm, Console& console, StopSignal& stop, RosSource* ros)
     : experiment_(experiment), sinks_(sinks), helm_(helm), console_(console), stop_(stop) {
-  if (engine == kOverDds) dds_.emplace(experiment, folder, sinks, helm, console, stop, ros);
+  if (engine == kOverDds)
+    dds_.emplace(experiment, folder, sinks, helm, console, stop, ros);
+  else if (FliesCodeOfUsers(experiment))
+    janitor_.emplace();
+}
+
+void Flight::LeaveIfKilled(const std::string& path, const std::string& text) {
+  if (dds_) dds_->LeaveIfKilled(path, text);
+  if (janitor_) janitor_->LeaveWords(path, text);
 }
 
 EngineResult Flight::Fly() {
   if (dds_) return dds_->Fly();
-  const Interruptions interruptions(stop_, console_);
+  const Interruptions interruptions(stop_, console_, [](int code) {
+    const char* const reason = "a second signal has ended the process at once";
+    LastWords::Leave(&reason, 1, code);
+  });
   EngineResult result = RunInProcess(
       experiment_, sinks_, [&] { return interruptions.signal() == 0; }, helm_);
   result.signal = interruptions.signal();
@@ -44,6 +56,7 @@ EngineResult Flight::Fly() {
 }
 
 void Flight::End() {
+  if (janitor_) janitor_->Dismiss();  // the orchestrator kills what laws have started at its own end
   if (dds_) hangs_ = !dds_->End();
 }
 

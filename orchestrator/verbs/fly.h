@@ -7,6 +7,7 @@
 #include "bus/stop_signal.h"
 #include "experiment/experiment.h"
 #include "orchestrator/engines/dds/engine.h"
+#include "orchestrator/engines/dds/janitor.h"
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/engines/helm.h"
 #include "orchestrator/processes/console.h"
@@ -32,6 +33,9 @@ class Flight {
   Flight(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
          const std::vector<RowSink*>& sinks, Helm* helm, Console& console, StopSignal& stop, RosSource* ros = nullptr);
 
+  /// What this file gets if this process is killed, by whatever, over DDS or with laws of users. To be called before
+  /// Fly().
+  void LeaveIfKilled(const std::string& path, const std::string& text);
   /// Flies. The first signal ends the run after its tick. A failure is reported in the result, which is final: to be
   /// written to files before End() is called.
   EngineResult Fly();
@@ -46,7 +50,8 @@ class Flight {
   Helm* const helm_;
   Console& console_;
   StopSignal& stop_;
-  std::optional<DdsEngine> dds_;  // absent: in this process
+  std::optional<DdsEngine> dds_;    // absent: in this process
+  std::optional<Janitor> janitor_;  // in this process, with laws of users
   bool hangs_ = false;
 };
 

@@ -7,8 +7,11 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "agent/last_words.h"
+#include "agent/law_at_work.h"
 #include "bus/leave.h"
 #include "bus/standard_streams.h"
 #include "bus/stop_signal.h"
@@ -76,6 +79,15 @@ std::string FirstLine(const Experiment& experiment, const std::string& engine, c
                      folder.path().string());
 }
 
+/// The summary of a run whose process ends by force with this exit code, if it is known, for this reason.
+std::string SummaryIfKilled(const Experiment& experiment, const std::string& engine, std::optional<int> exit,
+                            std::string_view reason) {
+  return SummaryOfTheUnknown(experiment, engine, exit,
+                             std::string(reason) +
+                                 "; the process has ended amid the run, of which only run.mcap, up to its last chunk, "
+                                 "and logs are left (orchestrator info, orchestrator recover)");
+}
+
 /// `--set hosts=...` that gives each node of the Slurm job an equal share of the agents.
 std::string HostsOfTheJob(int agents) {
   std::vector<std::string> nodes = NodesOfTheJob();
@@ -123,6 +135,10 @@ int Up(UpArgs& args) {
   if (args.engine == kOverDds)
     for (const std::string& warning : DeliveryWarnings(experiment)) console.Line("warning: " + warning);
   RunWriter writer(experiment, folder, WithoutEvents(experiment));
+  ExplainCrashes();
+  const std::string summary_file = std::filesystem::absolute(folder.File("summary.json")).string();
+  std::optional<LastWords> last_words(
+      std::in_place, summary_file, SummaryIfKilled(experiment, args.engine, LastWords::kExitCode, LastWords::kReason));
   Progress progress(experiment, meter, console);
   std::vector<RowSink*> sinks{&writer, &meter, &progress, &helm};
   viewers.AddTo(sinks);
@@ -135,6 +151,10 @@ int Up(UpArgs& args) {
   const RunSocket socket(experiment, std::filesystem::absolute(folder.path()).string(), args.engine, viewers.url(),
                          helm);
   Flight flight(args.engine, experiment, folder, sinks, &helm, console, stop, ros_view ? &*ros_view : nullptr);
+  flight.LeaveIfKilled(summary_file,
+                       SummaryIfKilled(experiment, args.engine, std::nullopt,
+                                       "the orchestrator was killed (SIGKILL: by somebody, or for want of memory), or "
+                                       "code in C of a law has ended it"));
   EngineResult result = flight.Fly();
   console.EndProgress();
   try {
@@ -148,6 +168,7 @@ int Up(UpArgs& args) {
     if (result.failure.empty()) result.failure = InWords(failure);
   }
   result.failure = Plain(result.failure);
+  last_words.reset();
   viewers.SayHowItEnded(result);
   if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
 

@@ -69,6 +69,7 @@ class DdsRun {
  public:
   DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Helm* helm,
          Console& console, StopSignal& stop, RosSource* ros);
+  void LeaveIfKilled(const std::string& path, const std::string& text) { last_words_ = {path, text}; }
   EngineResult Fly();
   bool End();
 
@@ -125,6 +126,7 @@ class DdsRun {
   const RunFolder& folder_;
   std::optional<DomainLock> lock_;
   std::optional<Janitor> janitor_;
+  std::pair<std::string, std::string> last_words_;  // a file, and what it gets if we are killed
   bool library_hangs_ = false;
   ChildLogs logs_;
   Children children_;
@@ -179,6 +181,7 @@ void DdsRun::Join() {
                     .processes = 2 + ProcessesOn(""),
                     .descriptors = kOwnDescriptors + kDescriptorsPerProcess * static_cast<int>(processes_.size())});
   janitor_.emplace(*lock_);
+  if (!last_words_.first.empty()) janitor_->LeaveWords(last_words_.first, last_words_.second);
   children_.Share(janitor_->lifeline());
   for (const int descriptor : lock_->descriptors()) children_.Share(descriptor);
   Spawn();
@@ -559,6 +562,8 @@ DdsEngine::DdsEngine(const Experiment& experiment, const RunFolder& folder, cons
     : run_(std::make_unique<DdsRun>(experiment, folder, sinks, helm, console, stop, ros)) {}
 
 DdsEngine::~DdsEngine() { End(); }
+
+void DdsEngine::LeaveIfKilled(const std::string& path, const std::string& text) { run_->LeaveIfKilled(path, text); }
 
 EngineResult DdsEngine::Fly() { return run_->Fly(); }
 

@@ -27,6 +27,8 @@ class DdsEngine {
   DdsEngine(const DdsEngine&) = delete;
   DdsEngine& operator=(const DdsEngine&) = delete;
 
+  /// What this file gets if this process is killed while it flies (Janitor::LeaveWords()). To be called before Fly().
+  void LeaveIfKilled(const std::string& path, const std::string& text);
   /// Flies until the run is over, for whatever reason. A failure is reported in the result. The result is final; the
   /// caller should write it to files before it calls End().
   EngineResult Fly();

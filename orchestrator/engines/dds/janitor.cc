@@ -6,14 +6,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "bus/process_main.h"
+#include "bus/shared_memory.h"
 #include "orchestrator/processes/children.h"
 
 extern char** environ;
@@ -23,7 +24,7 @@ namespace {
 
 /// Starts `program` as a janitor of `domain`, with these files: stdin, null output, the lock. Signals for the run, and
 /// a terminal that hangs up, do not reach it. Returns 0 or an error number.
-int SpawnJanitor(pid_t* pid, std::string program, std::string domain, int input, std::array<int, 2> lock) {
+int SpawnJanitor(pid_t* pid, std::string program, std::string domain, int input, std::span<const int> lock) {
   std::string name = "janitor", option = kSweepAfterRun;
   char* const argv[] = {name.data(), option.data(), domain.data(), nullptr};
   posix_spawn_file_actions_t files;
@@ -46,12 +47,16 @@ int SpawnJanitor(pid_t* pid, std::string program, std::string domain, int input,
 
 }  // namespace
 
-Janitor::Janitor(const DomainLock& lock) {
+Janitor::Janitor(const DomainLock& lock) { Start(lock.domain(), lock.descriptors()); }
+
+Janitor::Janitor() { Start(kNoDomain, {}); }
+
+void Janitor::Start(int domain, std::span<const int> lock) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
   lifeline_ = ends[1];
   const std::string program = ProgramFolder() / "physics_server";
-  const int error = SpawnJanitor(&pid_, program, std::to_string(lock.domain()), ends[0], lock.descriptors());
+  const int error = SpawnJanitor(&pid_, program, std::to_string(domain), ends[0], lock);
   close(ends[0]);
   if (error == 0) return;
   close(lifeline_);
@@ -59,6 +64,15 @@ Janitor::Janitor(const DomainLock& lock) {
 }
 
 Janitor::~Janitor() { close(lifeline_); }
+
+void Janitor::LeaveWords(const std::string& path, const std::string& text) const {
+  const std::string words = path + '\0' + text;
+  for (std::string_view rest = words; !rest.empty();) {
+    const ssize_t put = write(lifeline_, rest.data(), rest.size());
+    if (put <= 0) return;  // it has ended: then nobody sweeps either, and that is all
+    rest.remove_prefix(static_cast<std::size_t>(put));
+  }
+}
 
 void Janitor::Dismiss() {
   SignalProcess(pid_, SIGKILL);

@@ -2,21 +2,28 @@
 
 #include <sys/types.h>
 
+#include <span>
+#include <string>
+
 #include "orchestrator/engines/dds/domain_lock.h"
 
 namespace mascot {
 
-/// A process that outlives the others of a run, and removes what they leave in shared memory. It waits for the end of a
+/// A process that outlives the others of a run, kills what their laws have started, if it bears the mark of the run
+/// (MarkDescendants(), to be called before), and removes what they leave in shared memory. It waits for the end of a
 /// pipe whose other end the orchestrator and all processes that it spawned have open: when the last of them has ended,
-/// in whatever way, it sweeps. Until then it also keeps the domain locked.
+/// in whatever way, it sweeps. Until then it also keeps the domain locked, if there is one.
 class Janitor {
  public:
   /// Starts the process. Throws std::runtime_error if it cannot be started.
   explicit Janitor(const DomainLock& lock);
+  Janitor();   ///< of a run in one process, without a domain
   ~Janitor();  ///< leaves the process to its work
   Janitor(const Janitor&) = delete;
   Janitor& operator=(const Janitor&) = delete;
 
+  /// What this file gets if the run ends without being dismissed, and nobody has made the file.
+  void LeaveWords(const std::string& path, const std::string& text) const;
   /// The end of the pipe that every process of the run has to inherit.
   int lifeline() const { return lifeline_; }
   pid_t process() const { return pid_; }
@@ -24,6 +31,8 @@ class Janitor {
   void Dismiss();
 
  private:
+  void Start(int domain, std::span<const int> lock);
+
   int lifeline_ = -1;
   pid_t pid_ = 0;  // 0: not started, or reaped
 };
