@@ -50,9 +50,10 @@ def is_not_a_group(group, number):
 
 SYSTEM = os, posix
 guard(["_exit", "abort", "execv", "execve", "setsid", "setpgrp", "closerange"], SYSTEM, RuntimeError)
-guard(["chroot", "setuid", "seteuid", "setreuid", "setresuid", "setgid", "setegid", "setregid", "setresgid",
+guard(["chdir", "fchdir", "chroot", "setuid", "seteuid", "setreuid", "setresuid", "setgid", "setegid", "setregid", "setresgid",
        "setgroups", "initgroups", "umask"], SYSTEM, RuntimeError)
-guard(["setrlimit", "prlimit"], (resource,), RuntimeError)
+guard(["setrlimit"], (resource,), RuntimeError)
+guard(["prlimit"], (resource,), RuntimeError, lambda pid, which, limits=None: limits is not None)
 guard(["kill"], SYSTEM, RuntimeError, is_not_a_child)
 guard(["killpg"], SYSTEM, RuntimeError, is_not_a_group)
 guard(["setpgid"], SYSTEM, RuntimeError, lambda pid, group: pid in (0, os.getpid()))

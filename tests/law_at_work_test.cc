@@ -69,6 +69,7 @@ TEST(LawAtWork, MayNotEndOrChangeItsProcess) {
                            "signal.raise_signal(signal.SIGKILL)",
                            "resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))",
                            "resource.prlimit(0, resource.RLIMIT_CPU, (1, 1))",
+                           "os.chdir('/')",
                            "os.setuid(65534)",
                            "os.chroot('/tmp')",
                            "os.umask(0o777)",
