@@ -12,7 +12,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kLongestWords = 20'000;  // of an exception: they go to terminals, logs and summaries
+constexpr std::size_t kLongestException = 20'000;  // of an exception: they go to terminals, logs and summaries
 
 /// What NumPy and linear algebra choose by the processor, chosen here: results then have the same bits on each.
 void PinToBaseline() {
@@ -134,7 +134,7 @@ PythonError Explain(py::error_already_set& error, const std::string& file) {
   const auto text = [&](const py::object& lines) {
     std::string joined = TextOf(py::str("").attr("join")(lines));
     while (joined.ends_with('\n')) joined.pop_back();
-    return Shortened(joined, kLongestWords);
+    return Shortened(joined, kLongestException);
   };
   const std::string only = text(traceback.attr("format_exception_only")(error.type(), error.value()));
   const std::string summary = only.substr(only.rfind('\n') + 1);

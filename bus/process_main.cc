@@ -41,8 +41,11 @@ AgentRange ParseIds(const std::string& text) {
 /// Writes a file that nobody else has written. Nobody is there to be told if that fails.
 void LeaveWords(const std::string& path, std::string_view words) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-  for (ssize_t put = 0; file >= 0 && !words.empty(); words.remove_prefix(static_cast<std::size_t>(put)))
-    if ((put = write(file, words.data(), words.size())) <= 0) break;
+  while (file >= 0 && !words.empty()) {
+    const ssize_t put = write(file, words.data(), words.size());
+    if (put <= 0) break;
+    words.remove_prefix(static_cast<std::size_t>(put));
+  }
   if (file >= 0) close(file);
 }
 

@@ -11,7 +11,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-HostJob ThreeAgents() {
+HostJob JobOfThree() {
   return {.domain = 7,
           .own_memory = false,
           .shared_memory = 123'456,
@@ -22,13 +22,13 @@ HostJob ThreeAgents() {
 TEST(HostWords, AreReadAsTheyWereSaid) {
   const HostHello hello = ReadHello(WordsOf(HostHello{.build = "1.0", .machine = "a 7", .seen_from = "10.0.0.1"}));
   EXPECT_EQ(hello.build + hello.machine + hello.seen_from, "1.0a 710.0.0.1");
-  const HostJob job = ReadJob(WordsOf(ThreeAgents()));
-  EXPECT_EQ(WordsOf(job), WordsOf(ThreeAgents()));
+  const HostJob job = ReadJob(WordsOf(JobOfThree()));
+  EXPECT_EQ(WordsOf(job), WordsOf(JobOfThree()));
 }
 
 TEST(HostWords, ThatAreNotOfTheirKindAreNamed) {
   const auto expect = [](const char* field, const HostWords& value, const std::string& words) {
-    HostWords job = WordsOf(ThreeAgents());
+    HostWords job = WordsOf(JobOfThree());
     job[field] = value;
     EXPECT_THAT([&] { ReadJob(job); }, ThrowsMessage<JsonError>(HasSubstr(words)));
   };
@@ -39,10 +39,11 @@ TEST(HostWords, ThatAreNotOfTheirKindAreNamed) {
   expect("silence_s", nullptr, "as \"silence_s\", got null");
   expect("processes", "agent_1", "as \"processes\", got \"agent_1\"");
   expect("processes", {1}, "expected an object as each of the \"processes\"");
-  expect("processes", HostWords::array({{{"name", "agent_1"}}}), "expected a list of at most 1000 values as \"arguments\"");
+  expect("processes", HostWords::array({{{"name", "agent_1"}}}),
+         "expected a list of at most 1000 values as \"arguments\"");
   expect("processes", HostWords::array({{{"name", "agent_1"}, {"arguments", {1}}}}),
          "expected a text as each of the \"arguments\"");
-  HostWords twice = WordsOf(ThreeAgents());
+  HostWords twice = WordsOf(JobOfThree());
   twice["processes"].push_back(twice["processes"][0]);
   EXPECT_THAT([&] { ReadJob(twice); },
               ThrowsMessage<JsonError>("expected each of the \"processes\" once, got one twice"));

@@ -436,6 +436,28 @@ TEST(Slurm, IsExpectedAroundARunOnItsNodes) {
             "error: --slurm: expected a file without hosts, because the job's nodes are the hosts\n");
 }
 
+TEST(Slurm, WhatScontrolTellsIsReadAsNamesOfNodes) {
+  const ScratchFolder folder;
+  WriteFile(folder.File("two.toml"), "[run]\nduration_s = 1.0\n[agents]\ncount = 2\n[law]\nname = 'consensus'\n");
+  const auto told = [&](const std::string& script) {
+    WriteFile(folder.File("scontrol"), "#!/bin/sh\n" + script + "\n");
+    std::filesystem::permissions(folder.File("scontrol"), std::filesystem::perms::owner_all);
+    const Ran ran = Shell("env SLURM_JOB_ID=1 SLURM_JOB_NODELIST=n PATH=" + folder.path().string() +
+                          ":$PATH '" MASCOT_BINARY_DIR "/orchestrator' up " + folder.File("two.toml") +
+                          " --slurm --out " + folder.File("run"));
+    EXPECT_EQ(ran.exit_code, 1) << script;
+    EXPECT_FALSE(std::filesystem::exists(folder.File("run")));
+    return ran.output;
+  };
+  const std::string expected = "error: scontrol: expected the name of each node of this job once, got ";
+  EXPECT_EQ(told("echo n1; echo n1"), expected + "'n1' again\n");
+  EXPECT_EQ(told("printf \"n1', launch = ['sh\""), expected + "'n1','\n");
+  EXPECT_EQ(told("printf 'n\\033[31m1'"), expected + "'n\\u001b[31m1'\n");
+  EXPECT_EQ(told("head -c 300 /dev/zero | tr '\\0' n"), expected + "'" + std::string(255, 'n') + "...'\n");
+  for (const char* silent : {"true", "exit 1", "yes n | head -c 20000000 | tr -d '\\n'"})
+    EXPECT_THAT(told(silent), HasSubstr("error: scontrol")) << silent;
+}
+
 TEST_F(OnOtherHosts, RefuseWhatIsNotTheSameProgram) {
   Connect();
   const auto launch = [&](const std::string& words) {

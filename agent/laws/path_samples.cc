@@ -14,7 +14,7 @@ namespace mascot {
 namespace {
 
 constexpr double kLargestSample = 1e6;
-constexpr std::size_t kLongestQuote = 60;
+constexpr std::size_t kLongestSampleQuote = 60;
 
 bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
@@ -38,7 +38,7 @@ std::optional<std::size_t> ReadFour(std::string_view line, std::array<double, 4>
 }
 
 /// A line as a message quotes it.
-std::string Quote(std::string_view line) { return "'" + std::string(CutUtf8(line, kLongestQuote)) + "'"; }
+std::string Quote(std::string_view line) { return "'" + std::string(CutUtf8(line, kLongestSampleQuote)) + "'"; }
 
 }  // namespace
 

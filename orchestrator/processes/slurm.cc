@@ -5,18 +5,23 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdio>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
 
 #include "experiment/toml/number.h"
 #include "experiment/toml/section.h"
+#include "experiment/toml/utf8.h"
 #include "orchestrator/processes/environment.h"
 
 namespace mascot {
 namespace {
+
+constexpr std::size_t kLongestNode = 255, kLongestAnswer = std::size_t{16} << 20;
 
 /// How many processors of each node the job has at least; nothing if Slurm does not tell.
 std::optional<int> LeastProcessors() {
@@ -24,10 +29,29 @@ std::optional<int> LeastProcessors() {
   std::optional<int> least;
   for (std::string node; std::getline(nodes, node, ',');) {
     const auto processors = NumberFrom<int>(std::string_view(node).substr(0, node.find('(')));
-    if (!processors) return std::nullopt;
+    if (!processors || *processors < 1) return std::nullopt;
     least = std::min(least.value_or(*processors), *processors);
   }
   return least;
+}
+
+/// The names of nodes that scontrol has told, a line each.
+std::vector<std::string> NodesIn(const std::string& text) {
+  std::istringstream lines(text);
+  std::vector<std::string> nodes;
+  std::set<std::string> known;
+  for (std::string node; lines >> node;) {
+    const bool is_name = node.size() <= kLongestNode && std::ranges::all_of(node, [](unsigned char c) {
+                           return std::isalnum(c) != 0 || c == '-' || c == '.' || c == '_';
+                         });
+    if (!is_name || !known.insert(node).second)
+      throw std::runtime_error(fmt::format("scontrol: expected the name of each node of this job once, got '{}'{}",
+                                           Shortened(PlainLine(node), kLongestNode), is_name ? " again" : ""));
+    nodes.push_back(node);
+  }
+  if (nodes.empty() || text.size() >= kLongestAnswer)
+    throw std::runtime_error("scontrol does not tell the nodes of this job");
+  return nodes;
 }
 
 }  // namespace
@@ -39,13 +63,11 @@ std::vector<std::string> NodesOfTheJob() {
   if (pipe == nullptr) throw std::runtime_error("cannot start scontrol");
   std::string text;
   std::array<char, 4096> buffer;
-  while (const std::size_t got = fread(buffer.data(), 1, buffer.size(), pipe)) text.append(buffer.data(), got);
+  while (const std::size_t got = fread(buffer.data(), 1, buffer.size(), pipe))
+    if (text.size() < kLongestAnswer) text.append(buffer.data(), got);  // read to its end, or pclose() would wait
   const int status = pclose(pipe);
-  std::istringstream lines(text);
-  std::vector<std::string> nodes;
-  for (std::string node; lines >> node;) nodes.push_back(node);
-  if (status != 0 || nodes.empty()) throw std::runtime_error("scontrol does not tell the nodes of this job");
-  return nodes;
+  if (status != 0) throw std::runtime_error("scontrol does not tell the nodes of this job");
+  return NodesIn(text);
 }
 
 std::vector<std::string> OnEachNode(const std::vector<std::string>& nodes) {

@@ -21,7 +21,7 @@ namespace {
 using namespace std::chrono_literals;
 using WallClock = std::chrono::steady_clock;
 
-constexpr std::size_t kLongestError = 150, kLongestName = 1000;
+constexpr std::size_t kLongestError = 150, kLongestWord = 1000;
 constexpr std::size_t kMostWaiting = 16U << 20U;  // bytes that `up` has not read yet; what is printed beyond is lost
 constexpr auto kEndGrace = 5s;                    // for processes that were told to end, over DDS
 
@@ -123,8 +123,8 @@ void HostShare::Obey(const std::string& line) {
   const auto words = ObjectOrNothing(line);
   if (!words) throw JsonError("expected the words of `up`, got something else");
   OutsideFields fields(*words);
-  const std::string kind = fields.Text("kind", kLongestName);
-  const std::string node = fields.Has("node") ? fields.Text("node", kLongestName) : "";
+  const std::string kind = fields.Text("kind", kLongestWord);
+  const std::string node = fields.Has("node") ? fields.Text("node", kLongestWord) : "";
   fields.Require();
   if (!node.empty() && node != node_) return;
   if (kind == "job") Start(ReadJob(*words));

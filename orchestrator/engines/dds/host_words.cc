@@ -12,12 +12,12 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kLongestText = 10'000;
+constexpr std::size_t kLongestField = 10'000;
 constexpr double kMostMemory = 1e15, kLongestSilence_s = 1e9;
 
 /// A text of a list of arguments.
 std::string ArgumentFrom(const HostWords& argument) {
-  if (!argument.is_string() || argument.get_ref<const std::string&>().size() > kLongestText)
+  if (!argument.is_string() || argument.get_ref<const std::string&>().size() > kLongestField)
     throw JsonError("expected a text as each of the \"arguments\", got something else");
   return argument.get<std::string>();
 }
@@ -25,7 +25,7 @@ std::string ArgumentFrom(const HostWords& argument) {
 HostProcess ReadProcess(const HostWords& words) {
   if (!words.is_object()) throw JsonError("expected an object as each of the \"processes\", got something else");
   OutsideFields fields(words);
-  HostProcess process{.name = fields.Text("name", kLongestText), .arguments = {}};
+  HostProcess process{.name = fields.Text("name", kLongestField), .arguments = {}};
   for (const HostWords& argument : fields.List("arguments", 1000)) process.arguments.push_back(ArgumentFrom(argument));
   fields.Require();
   return process;
@@ -51,9 +51,9 @@ HostWords WordsOf(const HostJob& job) {
 
 HostHello ReadHello(const HostWords& words) {
   OutsideFields fields(words);
-  HostHello hello{.build = fields.Text("build", kLongestText),
-                  .machine = fields.Text("machine", kLongestText),
-                  .seen_from = fields.Text("seen_from", kLongestText)};
+  HostHello hello{.build = fields.Text("build", kLongestField),
+                  .machine = fields.Text("machine", kLongestField),
+                  .seen_from = fields.Text("seen_from", kLongestField)};
   fields.Require();
   return hello;
 }
