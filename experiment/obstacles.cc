@@ -26,6 +26,37 @@ Eigen::Vector3d NearestPoint(const Obstacle& obstacle, const Eigen::Vector3d& p)
   return nearest;
 }
 
+/// `v` without what is along `way` from the middle of a ball or disc, and as much slower as its surface, `radius_m`
+/// from the middle, is nearer than the end of `way`.
+template <typename Vector>
+Vector AlongRound(const Vector& way, const Vector& v, double radius_m) {
+  const double l = way.norm();
+  if (l <= radius_m) return v;
+  const Vector out = way / l;
+  return radius_m / l * (v - out * out.dot(v));
+}
+
+/// How fast the nearest point moves along the obstacle's own axes: the derivative of NearestPoint().
+Eigen::Vector3d VelocityOfNearest(const Obstacle& obstacle, const Eigen::Vector3d& p, const Eigen::Vector3d& v) {
+  const Eigen::Vector3d half_m = obstacle.size_m / 2;
+  const auto beyond = [&](int axis) { return std::abs(p[axis]) > half_m[axis]; };
+  Eigen::Vector3d along = v;
+  switch (obstacle.shape) {
+    case Shape::kBox:
+      for (int axis = 0; axis < 3; ++axis)
+        if (beyond(axis)) along[axis] = 0;
+      break;
+    case Shape::kSphere:
+      along = AlongRound(p, v, half_m.x());
+      break;
+    case Shape::kCylinder:
+      along.head<2>() = AlongRound<Eigen::Vector2d>(p.head<2>(), v.head<2>(), half_m.x());
+      if (beyond(2)) along.z() = 0;
+      break;
+  }
+  return along;
+}
+
 }  // namespace
 
 Eigen::Vector3d NearestPoint_W(const Obstacle& obstacle, const Eigen::Vector3d& p_W) {
@@ -33,6 +64,11 @@ Eigen::Vector3d NearestPoint_W(const Obstacle& obstacle, const Eigen::Vector3d& 
   const Eigen::Vector3d p = to_W.inverse() * (p_W - obstacle.p_W);
   const Eigen::Vector3d nearest = NearestPoint(obstacle, p);
   return nearest == p ? p_W : obstacle.p_W + to_W * nearest;
+}
+
+Eigen::Vector3d VelocityOfNearest_W(const Obstacle& obstacle, const Eigen::Vector3d& p_W, const Eigen::Vector3d& v_W) {
+  const Eigen::AngleAxisd to_W(obstacle.heading_rad, Eigen::Vector3d::UnitZ());
+  return to_W * VelocityOfNearest(obstacle, to_W.inverse() * (p_W - obstacle.p_W), to_W.inverse() * v_W);
 }
 
 // The distance to a convex body is convex along a line: a search that keeps the middle third or more finds its least.

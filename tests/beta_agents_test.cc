@@ -25,11 +25,11 @@ TEST(BetaAgents, FlyAlongWallsAsTheAgentDoesAndOnSpheresAsMuchSlowerAsTheseAreNa
   for (int n = 0; n < 100; ++n) {
     const Eigen::Vector3d v_W(random.In(-2, 2), random.In(-2, 2), random.In(-2, 2));
     const Eigen::Vector3d x_W(random.In(-3, 3.9), random.In(-9, 9), random.In(-9, 9));
-    EXPECT_LT((VelocityOfNearest_W(kWall, x_W, v_W) - Eigen::Vector3d(0, v_W.y(), v_W.z())).norm(), 1e-5) << n;
+    EXPECT_LT((VelocityOfNearest_W(kWall, x_W, v_W) - Eigen::Vector3d(0, v_W.y(), v_W.z())).norm(), 1e-12) << n;
     const Eigen::Vector3d way_W = x_W - kBall.p_W, a_W = way_W.normalized();
     if (way_W.norm() < 1.6) continue;
     const Eigen::Vector3d p_W = 1.5 / way_W.norm() * (v_W - a_W * a_W.dot(v_W));  // mu P v
-    EXPECT_LT((VelocityOfNearest_W(kBall, x_W, v_W) - p_W).norm(), 1e-5) << n;
+    EXPECT_LT((VelocityOfNearest_W(kBall, x_W, v_W) - p_W).norm(), 1e-12) << n;
   }
 }
 

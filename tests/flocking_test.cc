@@ -40,6 +40,14 @@ TEST(AlphaPairs, PullIsTheGradientOfThePotentialWhichIsLeastAtTheDistance) {
   EXPECT_NEAR(kPair.Potential(2), 0, 1e-15);
 }
 
+TEST(AlphaPairs, TheSmoothNormKeepsItsDigitsHoweverSmallEpsilonIs) {
+  for (const double l : {1e-3, 0.1, 2.0})
+    for (const double epsilon : {1e-12, 1e-9, 1e-6}) {
+      const double e = epsilon * l * l;
+      EXPECT_NEAR(SigmaNorm(l, epsilon) / (l * l / 2 * (1 - e / 4 + e * e / 8)), 1, 4e-16) << l << " " << epsilon;
+    }
+}
+
 TEST(AlphaPairs, PotentialIsTheClosedFormWhereNothingFades) {
   const AlphaPair pair(2, 3, 0.1, 0.99);
   const double d = SigmaNorm(2, 0.1);
@@ -201,8 +209,9 @@ TEST(Flocking, TheBoundOfTheEnergyComesDownWithThePeriod) {
 
 TEST(Flocking, ABoundOfTheEnergyThatIsNoneIsNotTold) {
   for (const double duration_s : {1.0, 10.0}) {
-    const LawRun run(Nine("c1_alpha = 2.0\nc2_alpha = 2.0\nc2_gamma = 20.0\n", "[control]\nrate_hz = 40\n",
-                          "double_integrator", duration_s));
+    const LawRun run(Nine("c1_alpha = 2.0\nc2_alpha = 2.0\nc2_gamma = 20.0\n",
+                          "[control]\nrate_hz = 40\nmax_acceleration_m_per_s2 = 1000.0\n", "double_integrator",
+                          duration_s));
     EXPECT_EQ(run.Law()["predicted"]["energy_growth_share"].is_null(), duration_s > 1)
         << "each tick may add 3 %: after 10 s that is more than everything";
     EXPECT_FALSE(run.Law()["predicted"]["centre_rms_m"].is_null());

@@ -46,6 +46,21 @@ double DistanceTo(const Obstacle& obstacle, const Eigen::Vector3d& p_W) {
   return (NearestPoint_W(obstacle, p_W) - p_W).norm();
 }
 
+TEST(Obstacles, NearestPointsMoveAsTheirDerivativeSays) {
+  Random random(7, Random::Stream::kPositions);
+  for (const Obstacle& obstacle : {kBox, kSphere, kCylinder})
+    for (int n = 0; n < 300; ++n) {
+      const Eigen::Vector3d p_W = Somewhere(random), v_W = Somewhere(random) / 3;
+      constexpr double kMoment_s = 1e-5;  // nobody passes an edge in it, but for a few
+      const Eigen::Vector3d way_W =
+          NearestPoint_W(obstacle, p_W + kMoment_s * v_W) - NearestPoint_W(obstacle, p_W - kMoment_s * v_W);
+      EXPECT_LT((VelocityOfNearest_W(obstacle, p_W, v_W) - way_W / (2 * kMoment_s)).norm(), 1e-8) << n;
+    }
+  Obstacle far = kSphere;  // where a difference of two points would leave five digits of a velocity
+  far.p_W.x() = 1e5;
+  EXPECT_LT((VelocityOfNearest_W(far, {1e5, 4, 2}, {3, 1, 0}) - Eigen::Vector3d(1.5 / 4 * 3, 0, 0)).norm(), 1e-12);
+}
+
 TEST(Obstacles, NearestPointsAreTheClosedFormsOnFacesEdgesAndRound) {
   const Obstacle box{.shape = Shape::kBox, .p_W = {0, 0, 0}, .size_m = {2, 4, 6}, .heading_rad = 0};
   EXPECT_EQ(NearestPoint_W(box, {5, 0.5, -1}), Eigen::Vector3d(1, 0.5, -1)) << "a face";

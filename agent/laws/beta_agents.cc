@@ -8,8 +8,7 @@
 namespace mascot {
 namespace {
 
-constexpr double kBump = 0.9;       // h of the paper's phi_beta
-constexpr double kMoment_s = 1e-6;  // in which nothing turns noticeably
+constexpr double kBump = 0.9;  // h of the paper's phi_beta
 
 }  // namespace
 
@@ -42,10 +41,6 @@ std::vector<std::string> BetaAgents::Warnings(const Experiment& experiment) cons
   if (range_m == 0) return {"sensors.range_m: with 0, the default, the flock does not see the obstacles"};
   return {"sensors.range_m: the flock sees obstacles from " + ShortestFloat(range_m) +
           " m on, nearer than law.obstacle_distance_m = " + ShortestFloat(distance_m)};
-}
-
-Eigen::Vector3d VelocityOfNearest_W(const Obstacle& obstacle, const Eigen::Vector3d& x_W, const Eigen::Vector3d& v_W) {
-  return (NearestPoint_W(obstacle, x_W + kMoment_s * v_W) - NearestPoint_W(obstacle, x_W)) / kMoment_s;
 }
 
 }  // namespace mascot

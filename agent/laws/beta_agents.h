@@ -14,7 +14,7 @@ namespace mascot {
 /// What obstacles do to an agent in Olfati-Saber's flocking (2006), algorithm 3: on each that is near sits a beta
 /// agent, at the point q nearest to the agent, and flies along its surface as the agent flies past, with the velocity p
 /// of that point. That is P v on a wall, with P = I - n n' and n its normal, and R / |x - y| P v on a sphere about y of
-/// radius R.
+/// radius R (VelocityOfNearest_W in experiment/obstacles.h).
 struct BetaAgents {
   double distance_m = 1;  ///< beta agents farther away do nothing
   double epsilon = 0.1;   ///< of the smooth norm (1/m^2)
@@ -33,8 +33,5 @@ struct BetaAgents {
   /// What is amiss with how the agents see obstacles.
   std::vector<std::string> Warnings(const Experiment& experiment) const;
 };
-
-/// p, for an agent at `x_W` with the velocity `v_W`.
-Eigen::Vector3d VelocityOfNearest_W(const Obstacle& obstacle, const Eigen::Vector3d& x_W, const Eigen::Vector3d& v_W);
 
 }  // namespace mascot

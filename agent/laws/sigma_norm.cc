@@ -90,7 +90,7 @@ double AlphaPair::CurvatureBetween(double s_a, double s_b) const {
   const double nearest = off_a > 0 ? off_a : off_b < 0 ? off_b : 0;
   const double rho = Rho(s_a / r_alpha_, bump_), steepest = 1 / std::pow(1 + nearest * nearest, 1.5);
   const double fade = SteepestFading(s_a / r_alpha_, s_b / r_alpha_) / r_alpha_;
-  const double w2 = (root(s_b) * root(s_b) - 1) / (epsilon_ * root(s_b) * root(s_b));
+  const double w2 = s_b * (2 + epsilon_ * s_b) / (root(s_b) * root(s_b));
   const double pull = std::max(0.0, phi(off_b)), push = std::max(0.0, -phi(off_a));
   const double most = w2 * (fade * push + rho * steepest) + rho * pull / std::pow(root(s_a), 3);
   const double least = w2 * fade * pull + rho * push / std::pow(root(s_a), 3);

@@ -5,8 +5,9 @@
 
 namespace mascot {
 
-/// |z|_sigma = (sqrt(1 + epsilon |z|^2) - 1) / epsilon, of a vector of length `l`: a norm that is smooth at 0.
-inline double SigmaNorm(double l, double epsilon) { return (std::sqrt(1 + epsilon * l * l) - 1) / epsilon; }
+/// |z|_sigma = (sqrt(1 + epsilon |z|^2) - 1) / epsilon, of a vector of length `l`: a norm that is smooth at 0. In this
+/// form nothing cancels, however small epsilon |z|^2 is.
+inline double SigmaNorm(double l, double epsilon) { return l * l / (std::sqrt(1 + epsilon * l * l) + 1); }
 
 /// rho_h(share): 1 up to the share `from`, 0 from 1 on, smooth between them.
 double Rho(double share, double from);
