@@ -351,6 +351,30 @@ TEST(Safety, CountsTheTicksAtWhichSomebodyHadNoSafeCommand) {
   EXPECT_LE(run.summary["safety"]["infeasible_ticks"].get<int>(), 201);
 }
 
+TEST(Safety, SaysOfARunInWhichTheConditionOfThePromiseDidNotHoldThatItDidNot) {
+  const auto run = [](const std::string& model) {
+    return LawRun(
+        "[run]\nduration_s = 10\n[physics]\ncollisions = false\nground = false\n[agents]\ncount = 3\n"
+        "model = '" +
+        model +
+        "'\nposition_m = [[-3, 0, 3], [3, 0.1, 4], [0, 3, 5]]\n[control]\nrate_hz = 20\n[law]\n"
+        "name = 'velocity_consensus'\nsafety = { distance_m = 1.0, gamma = 2.0 }\n");
+  };
+  const LawRun late(run("quadrotor"));
+  const auto& safety = late.summary["safety"];
+  ASSERT_LT(safety["min_separation_along_axes_m"].get<double>(),
+            safety["predicted"]["min_separation_along_axes_m"].get<double>());
+  const std::string why = safety["infeasible_ticks"].get<int>() > 0
+                              ? "at " + safety["infeasible_ticks"].dump() + " ticks an agent had no safe command"
+                              : "quadrotors accelerated later than they were told";
+  EXPECT_EQ(safety["condition_broken"], why);
+  EXPECT_THAT(late.text, HasSubstr("but          the condition did not hold in this run: " + why));
+  const LawRun kept(run("single_integrator"));
+  EXPECT_FALSE(kept.summary["safety"]["predicted"]["min_separation_m"].is_null());
+  EXPECT_TRUE(kept.summary["safety"]["condition_broken"].is_null());
+  EXPECT_THAT(kept.text, Not(HasSubstr("condition did not hold")));
+}
+
 // --- the shipped experiment -------------------------------------------------------------------------------
 
 TEST(Crossing, KeepsTenQuadrotorsApartOnTheirWayToThePlacesOpposite) {

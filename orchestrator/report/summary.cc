@@ -47,6 +47,17 @@ Json FirstContacts(const Experiment& experiment, const Contacts& contacts) {
   return first;
 }
 
+/// Why the promise of law.safety does not stand in this run, by what was measured; empty: its condition held, as far as
+/// is known, or it has none.
+std::string BrokenCondition(const Measured& measured, const Prediction& prediction) {
+  const auto& safety = prediction.safety;
+  if (!safety || !safety->min_separation_m || safety->assumes.empty()) return "";
+  if (measured.infeasible_ticks && *measured.infeasible_ticks > 0)
+    return fmt::format("at {} ticks an agent had no safe command", *measured.infeasible_ticks);
+  const bool nearer = measured.min_separation_along_axes_m < safety->min_separation_m;
+  return safety->assumes_prompt_bodies && nearer ? "quadrotors accelerated later than they were told" : "";
+}
+
 Json Safety(const Experiment& experiment, const Measured& measured, const std::optional<Contacts>& contacts,
             const Prediction& prediction) {
   Json safety;
@@ -62,6 +73,8 @@ Json Safety(const Experiment& experiment, const Measured& measured, const std::o
   safety["filtered_fraction"] = OrNull(measured.filtered_fraction);
   safety["infeasible_ticks"] = OrNull(measured.infeasible_ticks);
   safety["predicted"] = SafetyPredictionJson(prediction);
+  const std::string broken = BrokenCondition(measured, prediction);
+  safety["condition_broken"] = broken.empty() ? Json(nullptr) : Json(broken);
   return safety;
 }
 
@@ -162,6 +175,8 @@ std::string SeparationText(const Measured& m, const std::optional<Contacts>& con
     text += Line("separation     {:.3f} m at least{}, {} collisions", *m.min_separation_m, InPlaneText(m),
                  contacts ? std::to_string(contacts->total()) : "an unknown number of");
   if (prediction.safety) text += Line("  predicted    {}", SafetyText(*prediction.safety));
+  if (const std::string broken = BrokenCondition(m, prediction); !broken.empty())
+    text += Line("  but          the condition did not hold in this run: {}", broken);
   if (m.filtered_fraction)
     text += Line("filtered       {:.3g} % of commands by law.safety; {} ticks without a safe one",
                  100 * *m.filtered_fraction, *m.infeasible_ticks);

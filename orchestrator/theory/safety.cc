@@ -96,13 +96,14 @@ void AddReasons(const Experiment& experiment, std::vector<std::string>& reasons)
   }
 }
 
-std::string Assumptions(const Experiment& experiment) {
-  std::string text;
-  if (experiment.size() > 2 && !std::ranges::all_of(experiment.agents, IsByVelocity))
-    text = "agents always find a safe command";
-  if (std::ranges::any_of(experiment.agents, [](const AgentConfig& a) { return a.traits().has_airframe; }))
+void Assume(const Experiment& experiment, SafetyPrediction& prediction) {
+  prediction.assumes_safe_commands = experiment.size() > 2 && !std::ranges::all_of(experiment.agents, IsByVelocity);
+  prediction.assumes_prompt_bodies =
+      std::ranges::any_of(experiment.agents, [](const AgentConfig& a) { return a.traits().has_airframe; });
+  std::string& text = prediction.assumes;
+  if (prediction.assumes_safe_commands) text = "agents always find a safe command";
+  if (prediction.assumes_prompt_bodies)
     text += fmt::format("{}quadrotors accelerate as soon as they are told", text.empty() ? "" : " and ");
-  return text;
 }
 
 }  // namespace
@@ -132,7 +133,7 @@ std::optional<SafetyPrediction> PredictSafety(const Experiment& experiment) {
   else if (experiment.size() > 1) {
     prediction.min_separation_m = kept_m;
     prediction.axes = experiment.agents.front().law.axes;
-    prediction.assumes = Assumptions(experiment);
+    Assume(experiment, prediction);
   }
   return prediction;
 }

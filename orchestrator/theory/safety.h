@@ -13,7 +13,9 @@ struct SafetyPrediction {
   /// The distance, along `axes`, that is kept between any two agents; absent: none is. In space they are no nearer.
   std::optional<double> min_separation_m = {};
   Axes axes = Axes::kXyz;                  ///< of all laws
-  std::string assumes = {};                ///< what must hold for it that is not known in advance; empty: nothing
+  bool assumes_safe_commands = false;      ///< it holds if agents find a safe command at every tick
+  bool assumes_prompt_bodies = false;      ///< and if quadrotors accelerate as soon as they are told
+  std::string assumes = {};                ///< these two in words; empty: nothing
   std::string silent = {};                 ///< why no distance is promised; empty: one is
   std::vector<std::string> warnings = {};  ///< "key: text"
 };
