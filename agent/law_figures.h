@@ -82,10 +82,11 @@ struct LawRates {
 };
 
 /// The time since the law began from which on holds what theory says of the end of a run: kEqual: from then on and not
-/// before; kAtMost: from then on, or sooner.
+/// before; kAtMost: from then on, or sooner; kAtLeast: not yet then.
 struct HoldsFrom {
   double time_s = 0;
   Bound bound = Bound::kEqual;
+  std::string until_then = {};  ///< what is so if a run ends before, in a few words: "distances are off by up to 1 m"
 };
 
 /// What theory says about an experiment whose agents all fly one law.
@@ -94,6 +95,8 @@ struct LawTheory {
   std::vector<PredictedFigure> figures = {};    ///< in the order of LawEntry::figures; empty if it is silent
   std::optional<Eigen::Vector3d> value_m = {};  ///< where agents meet, in W
   std::optional<LawRates> rates = {};           ///< to be judged on bodies that have no velocity at once
+  bool unlimited = false;                       ///< all this holds only where no limit cuts what the law asks for
+  bool of_messages = false;                     ///< it is of what agents say, wherever their bodies are
   std::optional<HoldsFrom> holds_from = {};     ///< absent: at any time, or theory does not know
   std::vector<std::string> warnings = {};       ///< "key: text": what will not work, or not as expected
 };

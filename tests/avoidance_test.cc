@@ -150,7 +150,7 @@ TEST(Avoidance, NoGoalsHoweverTheyJumpBringAnAgentNearerThanTheBound) {
 }
 
 TEST(Avoidance, ABoundThatIsNotAboveZeroIsNotTold) {
-  const LawRun run(PastAPillar("double_integrator", {0, 0.3, 2}, {9, 0, 2}, "repulsion = 0.01\nspeed_m_per_s = 3.0\n",
+  const LawRun run(PastAPillar("double_integrator", {0, 1.3, 2}, {9, 0, 2}, "repulsion = 0.01\nspeed_m_per_s = 3.0\n",
                                "[control]\nmax_acceleration_m_per_s2 = 20.0\n"));
   EXPECT_TRUE(run.Law()["predicted"]["clearance_m"].is_null());
   EXPECT_EQ(run.Law()["reasons"]["clearance_m"], "the bound is not above 0: an agent may touch an obstacle");

@@ -53,8 +53,9 @@ TEST(Rounding, BreaksNoBound) {
           RoundedTeam(seed, 4, "name = 'event_triggered'\nc0_m = 0.0\nc1_m = 0.5\nalpha = 0.3\n", offset_m));
       ExpectTrueThoughRounded(RoundedTeam(seed, 4, "name = 'prescribed_time'\ntime_s = 3.0\n", offset_m));
       ExpectTrueThoughRounded(RoundedTeam(seed, 3, "name = 'pursuit_evasion'\nleader = 1\n", offset_m));
-      ExpectTrueThoughRounded(
-          RoundedTeam(seed, 3, "name = 'flocking'\ntarget_m = [0, 0, 5]\n", offset_m, "double_integrator"));
+      const std::string target = ShortestFloat(offset_m) + ", " + ShortestFloat(-offset_m);  // else a limit cuts
+      ExpectTrueThoughRounded(RoundedTeam(seed, 3, "name = 'flocking'\ntarget_m = [" + target + ", 5]\n", offset_m,
+                                          "double_integrator", "[control]\nmax_acceleration_m_per_s2 = 1000.0\n"));
     }
 }
 

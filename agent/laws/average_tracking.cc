@@ -88,7 +88,7 @@ LawTheory PredictAverageTracking(const Experiment& experiment) {
   if (std::string why = WhyNotUndirected(experiment); !why.empty()) return {.silent = std::move(why)};
   const double step = experiment.period_s() * params.gain;
   if (SlowestFactor(experiment, step) >= 1) return UnstableGain(experiment);
-  return {.figures = PredictTrackingError(experiment, params.inputs, step)};
+  return {.figures = PredictTrackingError(experiment, params.inputs, step), .of_messages = true};
 }
 
 std::unique_ptr<LawMeter> MeterOfAverageTracking(const Experiment& experiment, std::span<const int> ids) {

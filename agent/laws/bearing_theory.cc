@@ -54,15 +54,18 @@ FlownAhead FlyDirectionsAhead(const Experiment& experiment, std::span<const Bar>
 }
 
 /// What flying ahead has shown of the start.
-std::vector<std::string> BearingWarnings(const FlownAhead& ahead, double start_deg, double duration_s) {
+std::vector<std::string> BearingWarnings(const Experiment& experiment, std::span<const Bar> bars,
+                                         const FlownAhead& ahead) {
+  const double start_deg = LargestTurn_deg(bars, experiment.law, StartsOf(experiment));
   if (ahead.rests_at_start && start_deg > kSettled_deg)
     return {
         fmt::format("agents.position_m: the law moves nobody from this start, where directions are off by up to {:.4g} "
                     "deg: they are opposite to those of the formation",
                     start_deg)};
-  if (!ahead.silent.empty() || ahead.settled_s) return {};
-  return {fmt::format("run.duration_s: after {:.4g} s directions are still off by up to {:.4g} deg", duration_s,
-                      ahead.error)};
+  if (ahead.rest_W.empty()) return {};
+  return {
+      fmt::format("agents.position_m: from this start the law comes to rest with directions off by up to {:.4g} deg",
+                  LargestTurn_deg(bars, experiment.law, ahead.rest_W))};
 }
 
 }  // namespace
@@ -76,9 +79,10 @@ LawTheory PredictBearingFormation(const Experiment& experiment) {
   if (auto unstable = WhyUnstable(experiment, LongestPeriod_s(experiment, start_m))) return *unstable;
   const std::vector<Bar> bars = BarsOf(experiment.graph);
   const FlownAhead ahead = FlyDirectionsAhead(experiment, bars);
-  LawTheory theory{
-      .silent = ahead.silent,
-      .warnings = BearingWarnings(ahead, LargestTurn_deg(bars, experiment.law, starts_W), experiment.run.duration_s)};
+  LawTheory theory{.silent = ahead.silent,
+                   .holds_from = WhenShaped(experiment, ahead,
+                                            fmt::format("directions are still off by up to {:.4g} deg", ahead.error)),
+                   .warnings = BearingWarnings(experiment, bars, ahead)};
   constexpr double kRounding_deg = 1e-9;
   if (ahead.silent.empty())
     theory.figures = {

@@ -102,7 +102,7 @@ LawTheory PredictContainment(const Experiment& experiment) {
   const Eigen::MatrixX3d lag = SolveColumns(l_FF, shares * params.v_L_W) / params.gain;
   const auto flown = FlyToPlaces(experiment, params.team, params.gain, shares, lag);
   if (!flown) return {.silent = "so many agents are not flown ahead for so many ticks"};
-  return {.figures = {{.values = {flown->lag_m}}}, .holds_from = flown->settled};
+  return {.figures = {{.values = {flown->lag_m}}}, .unlimited = true, .holds_from = flown->settled};
 }
 
 class ContainmentMeter final : public LawMeter {

@@ -19,6 +19,7 @@
 #include "agent/laws/cyclic_modes.h"
 #include "agent/laws/ideal.h"
 #include "agent/laws/ring_meter.h"
+#include "agent/laws/rounding.h"
 #include "agent/laws/row_parts.h"
 
 namespace mascot {
@@ -42,6 +43,8 @@ constexpr Key kCyclicPursuitParameters[] = {
         .Unit("1/s")
         .Live(),
 };
+
+constexpr double kMostRounded = 1e-3;  // share of a turn that may be rounding, beyond 1e-6 rad/s
 
 int NextOf(int id, int agents) { return id == agents ? 1 : id + 1; }
 
@@ -93,8 +96,16 @@ LawTheory PredictCyclicPursuit(const Experiment& experiment) {
   const auto [radius_m, turn_rate_rad_per_s] = modes.At(experiment.ticks(), experiment.period_s());
   if (!std::isfinite(radius_m) || start_m < kRoundedRadius_m)
     return {.silent = "the radius is no finite multiple of that at the start"};
-  LawTheory theory{
-      .figures = {{.values = {radius_m}}, {.values = {radius_m / start_m}}, {.values = {turn_rate_rad_per_s}}}};
+  // Agents turn by the angle between two places, which rounding moves by `off_m` at the most.
+  const double off_m = RoundingShare(experiment) * SizeOfStart_m(experiment);
+  PredictedFigure turn_rate{.values = {turn_rate_rad_per_s},
+                            .magnitude = SizeOfStart_m(experiment) / radius_m / experiment.period_s()};
+  if (off_m / (radius_m * experiment.period_s()) > 1e-6 + kMostRounded * std::abs(turn_rate_rad_per_s))
+    turn_rate = NotPredicted("agents are together by the end, and rounding decides where each of them is");
+  LawTheory theory{.figures = {{.values = {radius_m}},
+                               {.values = {radius_m / start_m}, .magnitude = SizeOfStart_m(experiment) / start_m},
+                               std::move(turn_rate)},
+                   .unlimited = true};
   if (modes.Meet()) theory.value_m = MeanStart(experiment);
   return theory;
 }

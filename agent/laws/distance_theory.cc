@@ -62,15 +62,11 @@ std::vector<std::string> DistanceEndWarnings(const Experiment& experiment, std::
                                              const FlownAhead& ahead) {
   if (ahead.rests_at_start && LargestDistanceError(bars, experiment.law, StartsOf(experiment), true) > kShapeShare)
     return {"agents.position_m: the law moves nobody from this start, which is not the formation"};
-  if (!ahead.silent.empty() || ahead.settled_s) return {};
-  const double error_m = LargestDistanceError(bars, experiment.law, ahead.p_W, false);
-  if (ahead.rests)
-    return {
-        fmt::format("agents.position_m: from this start the law comes to rest in another shape, with distances off "
-                    "by up to {:.4g} m",
-                    error_m)};
-  return {fmt::format("run.duration_s: after {:.4g} s distances are still off by up to {:.4g} m",
-                      experiment.run.duration_s, error_m)};
+  if (ahead.rest_W.empty()) return {};
+  return {
+      fmt::format("agents.position_m: from this start the law comes to rest in another shape, with distances off "
+                  "by up to {:.4g} m",
+                  LargestDistanceError(bars, experiment.law, ahead.rest_W, false))};
 }
 
 LawTheory PredictIdealDistances(const Experiment& experiment, std::span<const Bar> bars) {
@@ -83,6 +79,8 @@ LawTheory PredictIdealDistances(const Experiment& experiment, std::span<const Ba
   if (ahead.silent.empty()) {
     constexpr double kNothing_m = 1e-11;  // rounding
     const double error_m = LargestDistanceError(bars, experiment.law, ahead.p_W, false);
+    theory.holds_from =
+        WhenShaped(experiment, ahead, fmt::format("distances are still off by up to {:.4g} m", error_m));
     theory.figures = {
         {.values = {error_m < kNothing_m ? 0 : error_m}},
         {.values = {0.0}},

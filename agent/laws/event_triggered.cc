@@ -99,12 +99,14 @@ LawTheory PredictEventTriggered(const Experiment& experiment) {
   if (largest >= 2) return UnstableGain(experiment);
   if (trigger.is_dynamic && largest >= 1 - trigger.sigma / 2)
     return {.silent = "law.gain or law.sigma is too large for a proof"};
-  if (trigger.is_dynamic) return {.figures = {NotPredicted(kOfStatic), {}}, .value_m = MeanStart(experiment)};
+  if (trigger.is_dynamic)
+    return {.figures = {NotPredicted(kOfStatic), {}}, .value_m = MeanStart(experiment), .unlimited = true};
   const double r = SlowestFactor(experiment, step), most = largest * std::sqrt(experiment.size());
   double d_m = StartDisagreement_m(experiment);
   for (std::int64_t k = 1; k < experiment.ticks(); ++k)  // nothing is heard at tick 0
     d_m = r * d_m + most * (trigger.c0_m + trigger.c1_m * std::exp(-trigger.alpha * experiment.time_s(k)));
-  return {.figures = {{.values = {d_m}, .bound = Bound::kAtMost}, {}}, .value_m = MeanStart(experiment)};
+  return {
+      .figures = {{.values = {d_m}, .bound = Bound::kAtMost}, {}}, .value_m = MeanStart(experiment), .unlimited = true};
 }
 
 class EventTriggeredMeter final : public LawMeter {

@@ -107,6 +107,7 @@ LawTheory PredictFlocking(const Experiment& experiment) {
   anywhere.schedule = Schedule({experiment.schedule.phases().begin(), experiment.schedule.phases().end()},
                                experiment.schedule.repeat_s(), 0);
   LawTheory theory{.silent = WhyNotIdeal(anywhere, Wanted::kAcceleration),
+                   .unlimited = true,
                    .warnings = params.beta.Warnings(experiment)};
   if (!theory.silent.empty()) return theory;
   if (!experiment.graph.IsSymmetric()) theory.silent = "the closed forms are of undirected graphs";

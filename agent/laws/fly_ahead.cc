@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "agent/laws/rigidity.h"
 #include "experiment/random.h"
@@ -10,6 +11,7 @@ namespace mascot {
 namespace {
 
 constexpr double kMostFlownSteps = 5e6, kDisturbance = 1e-9, kMostGrowth = 1e4, kFarAway_m = 1e9;
+constexpr double kLongerRun = 10;  // at most so many times as long
 
 using Points = std::vector<Eigen::Vector3d>;
 
@@ -46,6 +48,25 @@ bool BodiesTouch(const Experiment& experiment, const Points& p_W) {
 
 void Move(Points& p_W, const Points& v_W, double period_s) {
   for (std::size_t i = 0; i < p_W.size(); ++i) p_W[i] += period_s * v_W[i];
+}
+
+/// Flies on a team that does not have the shape at the end of the run, up to tick `last`, until it has kept it for a
+/// fifth of its time. `rest_m_per_s`: who is slower rests.
+void FlyOn(const Experiment& experiment, const ShapeLaw& law, double rest_m_per_s, std::int64_t last,
+           FlownAhead& ahead) {
+  SettlingMeter settling(law.settled);
+  Points p_W = ahead.p_W, v_W = law.velocities_W(p_W);
+  for (std::int64_t tick = experiment.ticks() + 1; tick <= last && LargestNorm(v_W) > rest_m_per_s; ++tick) {
+    if (LimitCuts(experiment, v_W) || (experiment.physics.collisions && BodiesTouch(experiment, p_W))) return;
+    Move(p_W, v_W, experiment.period_s());
+    settling.Add(tick, law.error(p_W));
+    if (settling.from() && 5 * tick >= 6 * *settling.from()) break;
+    v_W = law.velocities_W(p_W);
+  }
+  if (settling.from())
+    ahead.later_s = experiment.time_s(*settling.from());
+  else if (LargestNorm(v_W) <= rest_m_per_s)
+    ahead.rest_W = std::move(p_W);
 }
 
 }  // namespace
@@ -90,9 +111,21 @@ FlownAhead FlyAhead(const Experiment& experiment, const ShapeLaw& law) {
   if (!(LargestDifference(ahead.p_W, beside_W) <= kMostGrowth * disturbance_m))
     ahead.silent = "the least disturbance decides where the team goes from this start";
   ahead.error = law.error(ahead.p_W);
-  ahead.rests = LargestNorm(v_W) <= 1e-6 * first_m_per_s;
   if (settling.from()) ahead.settled_s = experiment.time_s(*settling.from());
+  if (!ahead.silent.empty() || ahead.settled_s) return ahead;
+  const double last =
+      std::min(kMostFlownSteps / std::max(1.0, looks), kLongerRun * static_cast<double>(experiment.ticks()));
+  constexpr double kRest = 1e-6;  // of the first speed
+  FlyOn(experiment, law, kRest * first_m_per_s, static_cast<std::int64_t>(last), ahead);
   return ahead;
+}
+
+std::optional<HoldsFrom> WhenShaped(const Experiment& experiment, const FlownAhead& ahead, std::string still_off) {
+  if (!ahead.silent.empty()) return std::nullopt;
+  if (ahead.settled_s) return HoldsFrom{.time_s = *ahead.settled_s};
+  if (!ahead.rest_W.empty()) return std::nullopt;  // it never has it
+  if (ahead.later_s) return HoldsFrom{.time_s = *ahead.later_s, .until_then = std::move(still_off)};
+  return HoldsFrom{.time_s = experiment.run.duration_s, .bound = Bound::kAtLeast, .until_then = std::move(still_off)};
 }
 
 }  // namespace mascot

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "agent/law_figures.h"
 #include "experiment/experiment.h"
 
 namespace mascot {
@@ -43,14 +44,18 @@ struct FlownAhead {
   bool rests_at_start = false;            ///< the law moves nobody at the start, though it would move who is beside it
   std::vector<Eigen::Vector3d> p_W = {};  ///< at the end
   double error = 0;                       ///< at the end
-  bool rests = false;                     ///< at the end nearly nobody moves
   std::optional<double> settled_s = {};   ///< from when on it has the shape
+  // Of a team that does not have it by the end, and flies on.
+  std::optional<double> later_s = {};        ///< from when on it has the shape; absent: not soon
+  std::vector<Eigen::Vector3d> rest_W = {};  ///< where it comes to rest without it; empty: it does not, or not soon
 };
 
 /// Flies two teams: that of the experiment, and one whose start is disturbed by 1e-9 of the team's size. If they end
 /// more than 1e-5 of it apart, rounding may decide where a run ends, and this says nothing; nor if a limit cuts a
 /// velocity, if bodies that can touch do, if the team flies away, or if the run is more than 5e6 steps of an edge, or
-/// of a pair of bodies.
+/// of a pair of bodies. A team without the shape at the end flies on by itself, for up to ten times as long in all.
 FlownAhead FlyAhead(const Experiment& experiment, const ShapeLaw& law);
+/// From when on the team has the shape. `still_off`: what is so if the run ends before.
+std::optional<HoldsFrom> WhenShaped(const Experiment& experiment, const FlownAhead& ahead, std::string still_off);
 
 }  // namespace mascot

@@ -110,10 +110,11 @@ LawTheory PredictGradientTracking(const Experiment& experiment) {
   Eigen::Vector3d value_W = Minimiser(params.costs);
   if (experiment.law.axes == Axes::kXy) value_W.z() = MeanStart(experiment).z();
   const GradientApproach approach = ApproachOf(experiment, params.costs, params.step, radius);
-  if (!approach.silent.empty()) return {.silent = approach.silent, .value_m = value_W};
+  if (!approach.silent.empty()) return {.silent = approach.silent, .value_m = value_W, .of_messages = true};
   return {
       .figures = {approach.rate, NotPredicted("what is known is how fast it falls, rate_per_s, and not from where")},
       .value_m = value_W,
+      .of_messages = true,
       .holds_from = approach.holds_from};
 }
 

@@ -86,7 +86,7 @@ LawTheory PredictPrescribedTime(const Experiment& experiment) {
   if (std::string why = WhyNotIdealUndirected(experiment); !why.empty()) return {.silent = std::move(why)};
   if (params.tick > experiment.ticks())
     return {.silent = "law.time_s is after the end of the run", .holds_from = HoldsFrom{params.time_s, Bound::kAtMost}};
-  LawTheory theory{.figures = {{}, LeftShare(experiment, params)}, .value_m = MeanStart(experiment)};
+  LawTheory theory{.figures = {{}, LeftShare(experiment, params)}, .value_m = MeanStart(experiment), .unlimited = true};
   const double left = *theory.figures[1].values[0];
   // Any two of N agents are at most sqrt(2) |d| apart, where |d| is at most sqrt(N) / 2 times the spread at the start.
   if (left * std::sqrt(experiment.size() / 2.0) <= kTogetherShare)

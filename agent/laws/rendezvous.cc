@@ -89,7 +89,7 @@ LawTheory PredictRendezvous(const Experiment& experiment) {
   const std::optional<bool> keeps = KeepsEveryEdge(experiment, params.tension);
   if (!keeps) return {.silent = "so many agents are not flown ahead for so many ticks, to see that no edge is lost"};
   if (!*keeps) return {.silent = "an edge is lost on the way: the tension becomes too high for the control period"};
-  return {.figures = {{.values = {0}}}, .value_m = MeanStart(experiment)};
+  return {.figures = {{.values = {0}}}, .value_m = MeanStart(experiment), .unlimited = true};
 }
 
 class RendezvousMeter final : public LawMeter {

@@ -109,6 +109,11 @@ class WaypointMeter final : public LawMeter {
 LawTheory PredictWaypoints(const Experiment& experiment) {
   if (std::string why = WhyNotNearlyIdeal(experiment, Wanted::kAcceleration); !why.empty())
     return {.silent = std::move(why)};
+  if (std::string why = WhyNotIdeal(experiment, Wanted::kAcceleration); !why.empty()) {
+    std::optional<HoldsFrom> holds_from = AllThereFrom(experiment, FlightOf);  // of bodies that do not lag
+    if (holds_from) holds_from->bound = Bound::kAtMost;
+    return {.silent = std::move(why), .holds_from = std::move(holds_from)};
+  }
   std::vector<WaypointTrack> tracks;
   for (const AgentConfig& agent : experiment.agents) {
     const std::optional<WaypointTrack> track = IdealTrack(experiment, agent, FlightOf(agent), experiment.ticks());

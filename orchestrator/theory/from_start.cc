@@ -1,13 +1,18 @@
 #include "orchestrator/theory/from_start.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "agent/laws.h"
+#include "agent/laws/rounding.h"
 #include "orchestrator/measuring/agreement_meter.h"
 #include "orchestrator/theory/links_on_average.h"
 
 namespace mascot {
 namespace {
+
+constexpr double kRoundedShare = 1e-14;  // of positions: what a mean of equal ones is off by
 
 using Vectors = std::vector<Eigen::Vector3d>;  // one an agent, by id - 1
 
@@ -38,6 +43,15 @@ class Flight {
   double size() const { return static_cast<double>(edges_.size() + u_.size()); }
   std::int64_t reach() const { return std::ssize(past_) - 1; }
   const Vectors& q() const { return At(0).q; }
+  /// The largest component of a velocity (m/s).
+  double fastest() const {
+    double fastest = 0;
+    for (const Eigen::Vector3d& v : At(0).v) fastest = std::max(fastest, v.cwiseAbs().maxCoeff());
+    return fastest;
+  }
+  std::int64_t tick() const { return tick_; }
+  /// Whether a limit has cut what a law asks for, along its axes.
+  bool is_cut() const { return is_cut_; }
   void Step();
 
  private:
@@ -53,6 +67,9 @@ class Flight {
   }
   void Weigh(const Timeline::Interval& now);
   void Couple();
+  /// What the limits leave of what agent `i` wants: an acceleration, or a velocity, while it knows itself at `v`.
+  Eigen::Vector3d Limited(std::size_t i, const Eigen::Vector3d& u, const Eigen::Vector3d& v);
+  Eigen::Vector3d Clamped(std::size_t i, const Eigen::Vector3d& u, double limit);
 
   const Experiment& experiment_;
   const LinearTeam& team_;
@@ -63,6 +80,7 @@ class Flight {
   Vectors u_;                    // what the laws want; scratch
   TeamState next_;               // scratch
   std::int64_t tick_ = 0;
+  bool is_cut_ = false;
 };
 
 void Flight::Weigh(const Timeline::Interval& now) {
@@ -83,6 +101,33 @@ void Flight::Couple() {
   }
 }
 
+Eigen::Vector3d Flight::Clamped(std::size_t i, const Eigen::Vector3d& u, double limit) {
+  const Eigen::Vector3d clamped = u.cwiseMin(limit).cwiseMax(-limit);
+  const auto along = CountOf(experiment_.agents[i].law.axes);
+  is_cut_ = is_cut_ || clamped.head(along) != u.head(along);
+  return clamped;
+}
+
+// As Agent::Want() does. What is not cut keeps its bits.
+Eigen::Vector3d Flight::Limited(std::size_t i, const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+  const AgentConfig& agent = experiment_.agents[i];
+  const double most_m_per_s2 = agent.control.max_acceleration_m_per_s2, most_m_per_s = agent.control.max_speed_m_per_s;
+  const bool by_velocity = agent.traits().driven_by == Wanted::kVelocity;
+  if (team_.agents[i].order == 1) return Clamped(i, u, most_m_per_s);
+  if (by_velocity) {  // it integrates what the law wants
+    const double h = experiment_.period_s();
+    const Eigen::Vector3d a = Clamped(i, u, most_m_per_s2), next_v = v + h * a;
+    return next_v.cwiseAbs().maxCoeff() <= most_m_per_s ? a : (Clamped(i, next_v, most_m_per_s) - v) / h;
+  }
+  if (WantedBy(agent.law) == Wanted::kVelocity) {
+    const double k_v = agent.control.velocity_gain;
+    const Eigen::Vector3d wanted_v = u / k_v + v;
+    if (wanted_v.cwiseAbs().maxCoeff() > most_m_per_s)
+      return Clamped(i, k_v * (Clamped(i, wanted_v, most_m_per_s) - v), most_m_per_s2);
+  }
+  return Clamped(i, u, most_m_per_s2);
+}
+
 void Flight::Step() {
   const Timeline::Interval& now = timeline_.At(tick_);
   Weigh(now);
@@ -93,7 +138,8 @@ void Flight::Step() {
   for (std::size_t i = 0; i < u_.size(); ++i) {
     const LinearAgent& agent = team_.agents[i];
     const bool on = now.on[i];
-    u_[i] -= ((on ? agent.b : agent.off_b) - agent.drag_b) * known.v[i] + agent.drag_b * next.v[i];
+    u_[i] -= ((on ? agent.b : agent.off_b) - agent.drag_b) * known.v[i];
+    u_[i] = Limited(i, u_[i], known.v[i]) - agent.drag_b * next.v[i];
     if (agent.order == 2 && (on || agent.hold < 1)) {
       next.q[i] += h * next.v[i] + agent.hold * h * h * u_[i];
       next.v[i] += h * u_[i];
@@ -116,6 +162,10 @@ FromStart FlyFromStart(const Experiment& experiment, const LinearTeam& team, con
   AgreementMeter meter(experiment);
   meter.Add(flight.q());
   const double first_m = meter.disagreement_m();
+  if (first_m <= kRoundedShare * LargestStart_m(experiment)) {
+    while (static_cast<double>(flight.tick()) < longest) flight.Step();  // together
+    return {.agrees = true, .is_cut = flight.is_cut()};
+  }
   constexpr double kAgreed = 1e-7;   // of the first disagreement
   std::int64_t tick = 0, apart = 0;  // apart: the newest tick with more disagreement
   FromStart by_the_end;              // of the run, whose rows are those that are measured
@@ -126,8 +176,13 @@ FromStart FlyFromStart(const Experiment& experiment, const LinearTeam& team, con
     if (meter.disagreement_m() > kAgreed * first_m) apart = tick;
     if (tick == experiment.ticks()) by_the_end = {meter.settling_time_s(), meter.rate_per_s()};
   }
-  return {by_the_end.settling_time_s ? by_the_end.settling_time_s : meter.settling_time_s(),
-          by_the_end.rate_per_s ? by_the_end.rate_per_s : meter.rate_per_s()};
+  constexpr double kMet = 1e-3;  // of the first disagreement
+  const double drift_m = flight.fastest() * experiment.time_s(tick);
+  const bool met = meter.disagreement_m() <= kMet * first_m && drift_m <= kMet * first_m;
+  return {.settling_time_s = by_the_end.settling_time_s ? by_the_end.settling_time_s : meter.settling_time_s(),
+          .rate_per_s = by_the_end.rate_per_s ? by_the_end.rate_per_s : meter.rate_per_s(),
+          .is_cut = flight.is_cut(),
+          .value_m = met ? std::optional(meter.mean_W()) : std::nullopt};
 }
 
 }  // namespace mascot

@@ -68,6 +68,7 @@ class LinearCase {
   bool PredictSampled();
   void PredictValue();
   void PredictFromStart();
+  bool TakeLimited(const FromStart& limited);
   void WarnOfLag(int leader) const;
   bool Silent(const std::string& why) const {
     prediction_.silent = why;
@@ -268,6 +269,26 @@ void LinearCase::PredictValue() {
     prediction_.value_m->z() = HeldHeight(experiment_, team_);
 }
 
+/// Takes where agents meet, and when, from a flight in which limits cut: neither is that of the linear team. False,
+/// with the reason, if nothing is known.
+bool LinearCase::TakeLimited(const FromStart& limited) {
+  prediction_.settling_time_s.reset();
+  if (team_.Leaders().empty() && FreeRoot() == 0) {  // else all meet at one that does not move
+    const Eigen::Index axes = CountOf(experiment_.law.axes);
+    if (prediction_.value_m && limited.value_m)
+      prediction_.value_m->head(axes) = limited.value_m->head(axes);
+    else
+      prediction_.value_m.reset();
+  }
+  if (prediction_.on_average) {
+    prediction_.value_m.reset();
+    return Silent("a limit cuts what the law asks for, and samples are lost: neither is linear");
+  }
+  if (limited.agrees) return Silent("a limit cuts what the law asks for, and agents do not stop where they would");
+  return limited.settling_time_s ||
+         Silent("a limit cuts what the law asks for, and the team, which is flown ahead, does not settle soon");
+}
+
 /// Replaces the settling time of the slowest mode by that of the experiment's own start, in which that mode may hardly
 /// take part; the rate to measure is that of this start alone.
 void LinearCase::PredictFromStart() {
@@ -279,6 +300,8 @@ void LinearCase::PredictFromStart() {
       prediction_.slowest_rate_per_s ? kLonger * std::log(50) / *prediction_.slowest_rate_per_s : 0;
   const FromStart from_start =
       FlyFromStart(experiment_, team_, timeline_, std::max(experiment_.run.duration_s, settled_s));
+  if (from_start.agrees) prediction_.settling_time_s.reset();
+  if (from_start.is_cut && !TakeLimited(from_start)) return;
   if (!from_start.settling_time_s) return;
   prediction_.from_start = true;
   prediction_.settling_time_s = from_start.settling_time_s;

@@ -65,23 +65,6 @@ std::string OfAgent(const Experiment& experiment, const AgentConfig& agent) {
   return "";
 }
 
-/// Why LowLevelLoops do not describe the bodies; empty: they may.
-std::string WhyNotLoops(const Experiment& experiment) {
-  for (const AgentConfig& agent : experiment.agents)
-    if (std::string why = OfAgent(experiment, agent); !why.empty()) return why;
-  if (experiment.run.mode == Mode::kRealtime) return "in real time commands may come late";
-  if (!experiment.sensors.own.IsNone() || !experiment.sensors.heard.IsNone() || experiment.sensors.own_delay_s > 0)
-    return "what agents measure is noisy or late";
-  if (LosesSome(experiment)) return "samples are lost at random";
-  if (std::string random = RandomAge(experiment); !random.empty()) return random;
-  if (experiment.physics.wind.gust_std_m_per_s > 0) return "the wind has gusts";
-  if (!experiment.physics.rotor_failures.empty()) return "rotors fail";
-  if (!LiftWarnings(experiment).empty()) return "quadrotors cannot keep their height";
-  if (WorkOfLoops(experiment) > kMostLoopWork)
-    return "so many agents, edges and ticks are more than are flown ahead on lagging bodies";
-  return "";
-}
-
 /// How far bodies may be from their model: where they are quadrotors, the model leaves out more.
 LoopError Scaled(const LoopError& share, const Experiment& experiment) {
   const bool quadrotors =
@@ -95,7 +78,7 @@ Flights Fly(const Experiment& experiment) {
   Flights flights;
   for (const LoopError& share : kErrors) {
     LoopFlight flight = FlyLoops(experiment, Scaled(share, experiment));
-    if (!flight.silent.empty()) return {std::move(flight.silent), {}};
+    if (!flight.silent.empty()) return {.silent = std::move(flight.silent), .flown = {}};
     flights.flown.push_back(std::move(flight));
   }
   return flights;
@@ -131,7 +114,7 @@ double Floor(std::string_view name, std::span<const double> values, double perio
 }
 
 constexpr std::string_view kWide = "it hangs on more than is known of the bodies";
-constexpr std::string_view kNone = "bodies that lag do not come to it";
+constexpr std::string_view kNone = "bodies that lag do not come to it by the end of the run";
 
 /// The band of figure `figure`; without some or all values, and with the reason, if there is none or a wide one.
 PredictedFigure Band(const Flights& flights, std::size_t figure, std::string_view name, double period_s) {
@@ -152,6 +135,22 @@ PredictedFigure Band(const Flights& flights, std::size_t figure, std::string_vie
 }
 
 }  // namespace
+
+std::string WhyNotLoops(const Experiment& experiment) {
+  for (const AgentConfig& agent : experiment.agents)
+    if (std::string why = OfAgent(experiment, agent); !why.empty()) return why;
+  if (experiment.run.mode == Mode::kRealtime) return "in real time commands may come late";
+  if (!experiment.sensors.own.IsNone() || !experiment.sensors.heard.IsNone() || experiment.sensors.own_delay_s > 0)
+    return "what agents measure is noisy or late";
+  if (LosesSome(experiment)) return "samples are lost at random";
+  if (std::string random = RandomAge(experiment); !random.empty()) return random;
+  if (experiment.physics.wind.gust_std_m_per_s > 0) return "the wind has gusts";
+  if (!experiment.physics.rotor_failures.empty()) return "rotors fail";
+  if (!LiftWarnings(experiment).empty()) return "quadrotors cannot keep their height";
+  if (WorkOfLoops(experiment) > kMostLoopWork)
+    return "so many agents, edges and ticks are more than are flown ahead on lagging bodies";
+  return "";
+}
 
 void PredictOnLoops(const Experiment& experiment, Prediction& prediction) {
   const LawEntry& law = EntryOf(experiment.law);

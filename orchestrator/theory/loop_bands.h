@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "experiment/experiment.h"
 #include "orchestrator/theory/theory.h"
 
@@ -9,6 +11,9 @@ namespace mascot {
 /// law wants: quadrotors, and bodies driven by acceleration under a law that wants velocities. Where it cannot, it says
 /// why. docs/theory.md says how, and how wide the bands are.
 void PredictOnLoops(const Experiment& experiment, Prediction& prediction);
+
+/// Why LowLevelLoops do not describe the bodies; empty: they may.
+std::string WhyNotLoops(const Experiment& experiment);
 
 inline constexpr double kMostLoopWork = 6e5;  ///< of one flight (WorkOfLoops); five take about a second
 

@@ -10,8 +10,9 @@
 
 #include "agent/laws.h"
 #include "agent/python.h"
-#include "experiment/obstacles.h"
+#include "orchestrator/measuring/agreement_meter.h"
 #include "orchestrator/team/team.h"
+#include "orchestrator/theory/may_touch.h"
 
 namespace mascot {
 namespace {
@@ -21,9 +22,13 @@ constexpr double kMostTiltsCut = 0.02;  // share of all commands: with more, bot
 constexpr double kMargin_m = 0.1;       // of bodies to what they might touch
 constexpr double kFarthest_m = 1e5;
 
-/// Half of the lengths of the box around a body, however it is tilted, along the axes of W (m).
-Eigen::Vector3d HalfBox_W(const AgentConfig& agent, const Motion& motion) {
-  return motion.q_WB.toRotationMatrix().cwiseAbs() * agent.size_m() / 2;
+/// What agents agree on: their positions, less their places in a formation.
+std::vector<Eigen::Vector3d> WithoutPlaces(const Experiment& experiment, std::span<const Motion> motions) {
+  const std::span<const Eigen::Vector3d> places_W = PlacesOf(experiment.law);
+  std::vector<Eigen::Vector3d> q_W;
+  for (const Motion& motion : motions) q_W.push_back(motion.p_WB);
+  for (std::size_t i = 0; i < places_W.size(); ++i) q_W[i] -= places_W[i];
+  return q_W;
 }
 
 class LoopTeam {
@@ -66,26 +71,7 @@ class LoopTeam {
   }
 
   /// What might touch what; empty: nothing.
-  std::string MayTouch() {
-    halves_W_.clear();
-    for (const AgentConfig& agent : experiment_.agents)
-      halves_W_.push_back(HalfBox_W(agent, motions_[static_cast<std::size_t>(agent.id - 1)]));
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      if (experiment_.physics.ground && motions_[i].p_WB.z() - halves_W_[i].z() < kMargin_m / 4)
-        return Agent(i) + " may touch the ground";
-      if (!experiment_.physics.collisions) continue;
-      for (std::size_t j = 0; j < i; ++j)
-        if (((motions_[i].p_WB - motions_[j].p_WB).cwiseAbs().array() <
-             (halves_W_[i] + halves_W_[j]).array() + kMargin_m)
-                .all())
-          return fmt::format("agents {} and {} may touch", j + 1, i + 1);
-      for (const Obstacle& obstacle : experiment_.physics.obstacles) {
-        const Eigen::Vector3d away_W = NearestPoint_W(obstacle, motions_[i].p_WB) - motions_[i].p_WB;
-        if (away_W.norm() < experiment_.agents[i].radius_m() + kMargin_m) return Agent(i) + " may touch an obstacle";
-      }
-    }
-    return "";
-  }
+  std::string MayTouch() const { return WhatMayTouch(experiment_, motions_, kMargin_m); }
 
   /// Why the limits were reached too often for the model; empty: they were not.
   std::string Cut() const {
@@ -106,7 +92,6 @@ class LoopTeam {
   std::vector<Motion> motions_;
   std::vector<Command> commands_;
   std::vector<std::vector<double>> messages_;
-  std::vector<Eigen::Vector3d> halves_W_;
   std::int64_t tick_ = 0, tilts_cut_ = 0;
 };
 
@@ -116,22 +101,33 @@ LoopFlight FlyLoops(const Experiment& experiment, const LoopError& error) {
   const SuppressedPythonOutput suppressed;
   const LawEntry& law = EntryOf(experiment.law);
   const std::vector<int> ids = AgentsWith(law, experiment);
-  const std::unique_ptr<LawMeter> meter = law.meter(experiment, ids);
+  const std::unique_ptr<LawMeter> meter = law.meter == nullptr ? nullptr : law.meter(experiment, ids);
+  AgreementMeter agreement(experiment);
+  LoopFlight flight;
   LoopTeam team(experiment, error);
   try {
     for (;;) {
       std::string why = team.Astray();
       if (why.empty()) why = team.MayTouch();
-      if (!why.empty()) return {fmt::format("{}, {:.3g} s from the start", why, experiment.time_s(team.tick())), {}};
-      meter->Add(team.Decide());
+      if (!why.empty())
+        return {.silent = fmt::format("{}, {:.3g} s from the start", why, experiment.time_s(team.tick()))};
+      const TeamRow row = team.Decide();
+      if (meter) meter->Add(row);
+      agreement.Add(WithoutPlaces(experiment, row.motions));
+      if (team.tick() == 0) flight.agreement.first_m = agreement.disagreement_m();
       if (team.tick() == experiment.ticks()) break;
       team.Move();
     }
-    if (std::string why = team.Cut(); !why.empty()) return {std::move(why), {}};
-    return {"", meter->Figures()};
+    if (std::string why = team.Cut(); !why.empty()) return {.silent = std::move(why)};
   } catch (const std::exception& failure) {
-    return {fmt::format("a law fails: {}", failure.what()), {}};
+    return {.silent = fmt::format("a law fails: {}", failure.what())};
   }
+  if (meter) flight.figures = meter->Figures();
+  flight.agreement.settling_time_s = agreement.settling_time_s();
+  flight.agreement.rate_per_s = agreement.rate_per_s();
+  flight.agreement.mean_W = agreement.mean_W();
+  flight.agreement.last_m = agreement.disagreement_m();
+  return flight;
 }
 
 double WorkOfLoops(const Experiment& experiment) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,14 +11,23 @@
 
 namespace mascot {
 
-/// What the law of a team measures of a flight on LowLevelLoops, or why this is not the flight of the experiment.
+/// How a flight comes to agree, as AgreementMeter measures it.
+struct LoopAgreement {
+  std::optional<double> settling_time_s = {}, rate_per_s = {};
+  Eigen::Vector3d mean_W = Eigen::Vector3d::Zero();  ///< at the end
+  double first_m = 0, last_m = 0;                    ///< disagreement at the start and at the end
+};
+
+/// What is measured of a flight on LowLevelLoops, or why this is not the flight of the experiment.
 struct LoopFlight {
-  std::string silent;                 ///< empty: it is
-  std::vector<FigureValues> figures;  ///< in the order of LawEntry::figures; empty if it is silent
+  std::string silent = {};  ///< empty: it is
+  std::vector<FigureValues> figures =
+      {};  ///< of the team's law, in the order of LawEntry::figures; empty if it is silent
+  LoopAgreement agreement = {};
 };
 
 /// Flies the agents' own laws, graph, links and limits on LowLevelLoops, to the end of the experiment. All agents must
-/// fly the team's law, which must have a meter.
+/// fly the team's law.
 LoopFlight FlyLoops(const Experiment& experiment, const LoopError& error);
 
 /// How much work that is: ticks times agents and edges.

@@ -3,6 +3,13 @@
 #include <fmt/format.h>
 
 namespace mascot {
+namespace {
+
+bool HoldsAt(const HoldsFrom& holds, double time_s) {
+  return holds.bound == Bound::kAtLeast ? holds.time_s < time_s : holds.time_s <= time_s;
+}
+
+}  // namespace
 
 std::optional<HoldsFrom> WhenItHolds(const Prediction& prediction) {
   if (prediction.holds_from) return prediction.holds_from;
@@ -14,12 +21,14 @@ std::optional<HoldsFrom> WhenItHolds(const Prediction& prediction) {
 
 std::string ShortPhaseWarning(const Experiment& phase, bool is_last, const Prediction& prediction) {
   const std::optional<HoldsFrom> holds = WhenItHolds(prediction);
-  if (!holds || holds->time_s <= phase.run.duration_s) return "";
+  if (!holds || HoldsAt(*holds, phase.run.duration_s)) return "";
   const std::string ends = fmt::format(
       "{} ends after {:.4g} s", is_last ? "run.duration_s: the run" : "law.schedule: the phase", phase.run.duration_s);
-  if (holds->bound == Bound::kEqual)
-    return fmt::format("{}, before what theory expects at {:.4g} s", ends, holds->time_s);
-  return fmt::format("{}; what theory expects may take until {:.4g} s", ends, holds->time_s);
+  const std::string so = holds->until_then.empty() ? "" : ": " + holds->until_then;
+  if (holds->bound == Bound::kAtMost)
+    return fmt::format("{}; what theory expects may take until {:.4g} s{}", ends, holds->time_s, so);
+  if (holds->bound == Bound::kAtLeast) return fmt::format("{}, before what theory expects{}", ends, so);
+  return fmt::format("{}, before what theory expects at {:.4g} s{}", ends, holds->time_s, so);
 }
 
 }  // namespace mascot

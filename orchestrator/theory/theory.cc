@@ -13,8 +13,10 @@
 #include "orchestrator/team/team.h"
 #include "orchestrator/theory/crowding.h"
 #include "orchestrator/theory/flight_envelope.h"
+#include "orchestrator/theory/free_flight.h"
 #include "orchestrator/theory/law_figures.h"
 #include "orchestrator/theory/links_on_average.h"
+#include "orchestrator/theory/loop_agreement.h"
 #include "orchestrator/theory/loop_bands.h"
 #include "orchestrator/theory/obstacle_warnings.h"
 #include "orchestrator/theory/parts.h"
@@ -84,6 +86,12 @@ void PredictFigures(const Experiment& experiment, Prediction& prediction) {
   LawTheory theory = goes_on ? LawTheory{.silent = "the law goes on with what it remembers of the phase before"}
                      : alone ? EntryOf(experiment.law).predict(experiment)
                              : LawTheory{.silent = "agents have laws of their own"};
+  if (theory.silent.empty()) {
+    const auto& first = prediction.first_speed ? prediction.first_speed : prediction.first_acceleration;
+    const Freedom needed{.from_limits = theory.unlimited, .from_contacts = !theory.of_messages};
+    if (std::string why = WhyNotFree(experiment, needed, first); !why.empty())
+      theory = {.silent = std::move(why), .warnings = std::move(theory.warnings)};
+  }
   Complete(experiment, EntryOf(experiment.law), theory.figures);
   prediction.law_figures = std::move(theory.figures);
   if (!theory.silent.empty()) (prediction.stable ? prediction.figures_silent : prediction.silent) = theory.silent;
@@ -164,9 +172,10 @@ Prediction PredictPhase(const Experiment& phase, const std::string& silent, bool
   prediction.on_average = LosesSome(phase) || !phase.sensors.own.IsNone() || !phase.sensors.heard.IsNone();
   prediction.silent = silent;
   prediction.safety = PredictSafety(phase);
-  if (silent.empty()) PredictLaw(phase, prediction);
-  if (silent.empty()) PredictOnLoops(phase, prediction);
   PredictFirstCommand(phase, prediction);
+  if (silent.empty()) PredictLaw(phase, prediction);
+  if (silent.empty()) JudgeAgreementOnLoops(phase, prediction);
+  if (silent.empty()) PredictOnLoops(phase, prediction);
   WarnOfFirstCommands(phase, prediction);
   WarnOfSilence(phase, prediction);
   if (std::string warning = ShortPhaseWarning(phase, is_last, prediction); !warning.empty())
