@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "orchestrator/theory/loop_bands.h"
 #include "orchestrator/theory/loop_team.h"
@@ -12,12 +15,29 @@ namespace {
 
 constexpr double kSettlingOff = 0.03, kRateOff = 0.05;  // shares of what is predicted
 constexpr double kValueOff = 0.01, kMet = 1e-3;         // of the disagreement at the start
+// What the flights of bodies beside the model may differ by, of the same.
+constexpr double kSettlingSpread = 0.05, kRateSpread = 0.1, kValueSpread = 0.02;
 
 void Silence(std::string why, Prediction& prediction) {
   prediction.settling_time_s.reset();
   prediction.rate_per_s.reset();
   prediction.from_start = false;
   if (prediction.silent.empty()) prediction.silent = std::move(why);
+}
+
+/// Whether what a flight comes to hangs on no more than is known of the bodies: flights `beside` it come to the same.
+bool IsSure(const Experiment& experiment, const LoopAgreement& flown, const std::vector<LoopFlight>& beside) {
+  const auto alike = [](const std::optional<double>& a, const std::optional<double>& b, double share, double least) {
+    if (!a || !b) return a.has_value() == b.has_value();
+    return std::abs(*a - *b) <= share * std::abs(*a) + least;
+  };
+  return std::ranges::all_of(beside, [&](const LoopFlight& flight) {
+    if (!flight.silent.empty()) return false;
+    const LoopAgreement& other = flight.agreement;
+    const double apart_m = (other.mean_W - flown.mean_W).head(CountOf(experiment.law.axes)).norm();
+    return apart_m <= kValueSpread * flown.first_m && alike(flown.rate_per_s, other.rate_per_s, kRateSpread, 0) &&
+           alike(flown.settling_time_s, other.settling_time_s, kSettlingSpread, 2 * experiment.period_s());
+  });
 }
 
 void JudgeTimes(const Experiment& experiment, const LoopAgreement& flown, Prediction& prediction) {
@@ -52,12 +72,22 @@ void JudgeAgreementOnLoops(const Experiment& experiment, Prediction& prediction)
   if (std::ranges::none_of(experiment.agents, flies) || !WhyNotLoops(experiment).empty()) return;
   if (std::ranges::any_of(experiment.agents, &AgentConfig::has_own_law)) return;
   const LoopFlight flight = FlyLoops(experiment, {.turn = 0, .push = 0});
-  if (!flight.silent.empty()) {
-    if (experiment.law.leader == 0) prediction.value_m.reset();
-    return Silence(flight.silent, prediction);
+  std::string silent = flight.silent;
+  if (silent.empty()) {
+    const std::optional<Eigen::Vector3d> value_m = prediction.value_m;
+    const std::optional<double> settling_time_s = prediction.settling_time_s, rate_per_s = prediction.rate_per_s;
+    JudgeTimes(experiment, flight.agreement, prediction);
+    JudgeValue(experiment, flight.agreement, prediction);
+    const bool is_off = prediction.value_m != value_m || prediction.settling_time_s != settling_time_s ||
+                        prediction.rate_per_s != rate_per_s;
+    if (flight.is_tilt_cut && prediction.value_m != value_m)  // how it is cut is what the model knows least
+      silent = "the limit of the tilt cuts what quadrotors are commanded, and moves where they meet";
+    else if ((is_off || flight.is_tilt_cut) && !IsSure(experiment, flight.agreement, FlyBeside(experiment)))
+      silent = "where and when quadrotors meet hangs on more than is known of them";
   }
-  JudgeTimes(experiment, flight.agreement, prediction);
-  JudgeValue(experiment, flight.agreement, prediction);
+  if (silent.empty()) return;
+  if (experiment.law.leader == 0) prediction.value_m.reset();
+  Silence(std::move(silent), prediction);
 }
 
 }  // namespace mascot

@@ -27,19 +27,16 @@ namespace mascot {
 namespace {
 
 constexpr double kTimes = 1.5;
-constexpr double kWidest = 0.5;  // share of the value
-constexpr double kFloorShare = 0.01;
+constexpr double kWidest = 0.5;                               // share of the value
+constexpr double kFloorShare = 0.01, kFloorShareOfCut = 0.1;  // the latter where the limit of the tilt has cut
 // For times at which something is passed for the last time: a swing that dies out may pass it again a period later.
 constexpr double kFloorShareOfTimes = 0.1;
 // For what is counted, where it is more than a few.
 constexpr double kCounted = 3, kFloorOfCounts = 2, kFloorShareOfCounts = 0.03;
 
 constexpr double kQuadrotorTurn = 0.05, kQuadrotorPush = 0.01, kOtherPush = 0.001;
-constexpr std::array<LoopError, 5> kErrors = {{{.turn = 0, .push = 0},
-                                               {.turn = 1, .push = 1},
-                                               {.turn = -1, .push = -1},
-                                               {.turn = 0.5, .push = -0.5},
-                                               {.turn = -0.5, .push = 0.5}}};
+constexpr std::array<LoopError, 4> kErrors = {
+    {{.turn = 1, .push = 1}, {.turn = -1, .push = -1}, {.turn = 0.5, .push = -0.5}, {.turn = -0.5, .push = 0.5}}};
 
 /// The figures of all flights, and why there are none.
 struct Flights {
@@ -73,14 +70,13 @@ LoopError Scaled(const LoopError& share, const Experiment& experiment) {
           .push = (quadrotors ? kQuadrotorPush : kOtherPush) * share.push};
 }
 
-/// All flights, up to the first that is silent.
+/// All flights, that of the model first; none, and why, if one is silent.
 Flights Fly(const Experiment& experiment) {
   Flights flights;
-  for (const LoopError& share : kErrors) {
-    LoopFlight flight = FlyLoops(experiment, Scaled(share, experiment));
-    if (!flight.silent.empty()) return {.silent = std::move(flight.silent), .flown = {}};
-    flights.flown.push_back(std::move(flight));
-  }
+  flights.flown.push_back(FlyLoops(experiment, {.turn = 0, .push = 0}));
+  if (flights.flown.front().silent.empty())
+    for (LoopFlight& flight : FlyBeside(experiment)) flights.flown.push_back(std::move(flight));
+  if (!flights.flown.back().silent.empty()) return {.silent = std::move(flights.flown.back().silent), .flown = {}};
   return flights;
 }
 
@@ -103,14 +99,16 @@ bool NobodyHas(const Flights& flights, std::size_t figure, std::size_t k) {
   });
 }
 
-/// What a figure may be off by in any case, from the unit in its name, or if it counts something.
-double Floor(std::string_view name, std::span<const double> values, double period_s) {
+/// What a figure may be off by in any case, from the unit in its name, or if it counts something. `is_tilt_cut`: then
+/// lengths that differ between flights are known less.
+double Floor(std::string_view name, std::span<const double> values, double period_s, bool is_tilt_cut) {
   const double size = std::abs(values.front());
   if (name.ends_with("_time_s")) return 3 * period_s + kFloorShareOfTimes * size;
   if (name.ends_with("_deg")) return 0.05 + kFloorShare * size;
   const bool counts = std::ranges::all_of(values, [](double value) { return value == std::round(value); });
   if (counts && std::ranges::max(values) > kCounted) return kFloorOfCounts + kFloorShareOfCounts * size;
-  return 0.002 + kFloorShare * size;
+  const bool differ = std::ranges::min(values) < std::ranges::max(values);
+  return 0.002 + (is_tilt_cut && differ && name.ends_with("_m") ? kFloorShareOfCut : kFloorShare) * size;
 }
 
 constexpr std::string_view kWide = "it hangs on more than is known of the bodies";
@@ -124,7 +122,8 @@ PredictedFigure Band(const Flights& flights, std::size_t figure, std::string_vie
     const std::vector<double> values = ValuesOf(flights, figure, k);
     if (!values.empty()) {
       const auto [least, most] = std::ranges::minmax(values);
-      const double floor = Floor(name, values, period_s), width = kTimes * (most - least) + floor;
+      const double floor = Floor(name, values, period_s, flights.flown.front().is_tilt_cut),
+                   width = kTimes * (most - least) + floor;
       if (width <= std::max(kWidest * std::abs(values.front()), 3 * floor)) value = values.front(), tolerance = width;
     }
     if (!value) band.why = values.empty() && NobodyHas(flights, figure, k) ? kNone : kWide;
@@ -135,6 +134,15 @@ PredictedFigure Band(const Flights& flights, std::size_t figure, std::string_vie
 }
 
 }  // namespace
+
+std::vector<LoopFlight> FlyBeside(const Experiment& experiment) {
+  std::vector<LoopFlight> flights;
+  for (const LoopError& share : kErrors) {
+    flights.push_back(FlyLoops(experiment, Scaled(share, experiment)));
+    if (!flights.back().silent.empty()) break;
+  }
+  return flights;
+}
 
 std::string WhyNotLoops(const Experiment& experiment) {
   for (const AgentConfig& agent : experiment.agents)

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "experiment/experiment.h"
+#include "orchestrator/theory/loop_team.h"
 #include "orchestrator/theory/theory.h"
 
 namespace mascot {
@@ -11,6 +13,10 @@ namespace mascot {
 /// law wants: quadrotors, and bodies driven by acceleration under a law that wants velocities. Where it cannot, it says
 /// why. docs/theory.md says how, and how wide the bands are.
 void PredictOnLoops(const Experiment& experiment, Prediction& prediction);
+
+/// Flights of bodies that turn and accelerate somewhat more or less than their model: all, or those up to the first
+/// that is silent.
+std::vector<LoopFlight> FlyBeside(const Experiment& experiment);
 
 /// Why LowLevelLoops do not describe the bodies; empty: they may.
 std::string WhyNotLoops(const Experiment& experiment);

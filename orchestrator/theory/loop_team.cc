@@ -17,9 +17,11 @@
 namespace mascot {
 namespace {
 
-constexpr double kSteepest_rad = 0.6;   // beyond, roll and pitch are not two loops by themselves
-constexpr double kMostTiltsCut = 0.02;  // share of all commands: with more, both tilts at once are not two loops
-constexpr double kMargin_m = 0.1;       // of bodies to what they might touch
+constexpr double kSteepest_rad = 0.6;  // beyond, roll and pitch are not two loops by themselves
+// Share of all commands, with more of which both tilts at once are not two loops; in a longer run, of the commands of
+// so many seconds: a team that rests for long has been cut no less.
+constexpr double kMostTiltsCut = 0.02, kLongestCounted_s = 20;
+constexpr double kMargin_m = 0.1;  // of bodies to what they might touch
 constexpr double kFarthest_m = 1e5;
 
 /// What agents agree on: their positions, less their places in a formation.
@@ -75,12 +77,14 @@ class LoopTeam {
 
   /// Why the limits were reached too often for the model; empty: they were not.
   std::string Cut() const {
-    const double commands = static_cast<double>(tick_) * static_cast<double>(bodies_.size());
+    const double ticks = std::min(static_cast<double>(tick_), kLongestCounted_s * experiment_.control.rate_hz);
+    const double commands = ticks * static_cast<double>(bodies_.size());
     return static_cast<double>(tilts_cut_) > kMostTiltsCut * commands
                ? "the limit of the tilt cuts more than 2 % of what quadrotors are commanded"
                : "";
   }
 
+  bool is_tilt_cut() const { return tilts_cut_ > 0; }
   std::int64_t tick() const { return tick_; }
 
  private:
@@ -123,6 +127,7 @@ LoopFlight FlyLoops(const Experiment& experiment, const LoopError& error) {
     return {.silent = fmt::format("a law fails: {}", failure.what())};
   }
   if (meter) flight.figures = meter->Figures();
+  flight.is_tilt_cut = team.is_tilt_cut();
   flight.agreement.settling_time_s = agreement.settling_time_s();
   flight.agreement.rate_per_s = agreement.rate_per_s();
   flight.agreement.mean_W = agreement.mean_W();

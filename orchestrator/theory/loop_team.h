@@ -24,6 +24,7 @@ struct LoopFlight {
   std::vector<FigureValues> figures =
       {};  ///< of the team's law, in the order of LawEntry::figures; empty if it is silent
   LoopAgreement agreement = {};
+  bool is_tilt_cut = false;  ///< at some time the limit of the tilt has cut a command
 };
 
 /// Flies the agents' own laws, graph, links and limits on LowLevelLoops, to the end of the experiment. All agents must
