@@ -45,7 +45,7 @@ struct FlownAhead {
   std::vector<Eigen::Vector3d> p_W = {};  ///< at the end
   double error = 0;                       ///< at the end
   std::optional<double> settled_s = {};   ///< from when on it has the shape
-  // Of a team that does not have it by the end, and flies on.
+  // These two are set only if the team has no shape by the end of the run, and is flown on.
   std::optional<double> later_s = {};        ///< from when on it has the shape; absent: not soon
   std::vector<Eigen::Vector3d> rest_W = {};  ///< where it comes to rest without it; empty: it does not, or not soon
 };

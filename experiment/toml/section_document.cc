@@ -113,7 +113,8 @@ toml::table ParseToml(std::string_view text, const std::string& name) {
   }
 }
 
-/// Of one mistake: a message quotes what a file has, which may be long. Tracebacks of Python are shorter.
+/// The longest text of one mistake, in bytes. A message quotes what a file has, which may be long; a traceback of
+/// Python is shorter than this.
 constexpr std::size_t kLongestMistake = 30'000;
 
 ConfigError::ConfigError(std::vector<std::string> mistakes)
