@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 
@@ -105,12 +106,11 @@ int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role
   const Refusals refusals(peers);
   Lifecycle lifecycle(domain, peers, stop, args.options.name, args.agents.size() == 1 ? args.agents.first : 0);
   std::unique_ptr<Role> role;  // destroyed after the exit code is known: that may hang
-  bool may_have_run_laws = false;
+  std::optional<mascot_msgs::msg::Experiment> experiment;
   int code = 1;
   try {
-    const auto experiment = lifecycle.AwaitExperiment(std::chrono::seconds(args.wait_s));
-    may_have_run_laws = true;
-    role = make_role(domain, lifecycle, experiment);
+    experiment = lifecycle.AwaitExperiment(std::chrono::seconds(args.wait_s));
+    role = make_role(domain, lifecycle, *experiment);
     role->Run();
   } catch (const Ended& ended) {
     code = ended.signal() == 0 ? 0 : 128 + ended.signal();
@@ -119,7 +119,7 @@ int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role
     std::cerr << "error: " << InWords(failure) << std::endl;
     lifecycle.SetFinal(Life::kFailed, InWords(failure));
   }
-  if (may_have_run_laws) KillDescendants();
+  if (experiment) KillDescendants();  // of laws: without an experiment none has run
   Leave(args, kTimeToLeave, code);
   return code;
 }
