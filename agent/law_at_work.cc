@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 #include <pthread.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -28,6 +30,7 @@ using namespace std::chrono_literals;
 
 thread_local const char* whose_law = nullptr;  // whose law runs in this thread
 std::atomic<bool> forked_by_law = false;
+std::atomic<pid_t> this_process = 0;  // as long as no law has run: 0
 
 // --- signals ------------------------------------------------------------------------------------------
 
@@ -81,14 +84,39 @@ class SignalStack {
   std::unique_ptr<char[]> memory_;
 };
 
+// --- ends without a signal ----------------------------------------------------------------------------
+
+/// Ends the process at once: no handler, and none of a law's code, sees it.
+[[noreturn]] void EndNow(int code) {
+  syscall(SYS_exit_group, code);
+  __builtin_unreachable();
+}
+
+/// To be called by the thread that ends this process, through `call`. If it runs the code of a law, the process says so
+/// and ends with an exit code that is not 0. A process that a law has started may end as it likes.
+void ExplainEnd(int code, const char* call) {
+  if (whose_law == nullptr || getpid() != this_process || IsForkedByLaw()) return;
+  const char* const reason[] = {whose_law, " has ended the process by ", call};
+  Say("error: ");
+  for (const char* piece : reason) Say(piece);
+  Say("\n");
+  LastWords::Leave(reason, std::size(reason), code != 0 ? code : 1);
+  EndNow(code != 0 ? code : 1);
+}
+
 /// In a process that was just forked. A law's dies with the thread that forked it.
 void OnFork() {
-  if (whose_law != nullptr) MarkAsForkedByLaw();
+  if (whose_law != nullptr)
+    MarkAsForkedByLaw();
+  else
+    this_process = getpid();
 }
 
 void PrepareProcess() {
   static const bool prepared = [] {
     ExplainCrashes();
+    this_process = getpid();
+    on_exit([](int code, void* /*nothing*/) { ExplainEnd(code, "exit()"); }, nullptr);
     pthread_atfork(nullptr, nullptr, OnFork);
     return true;
   }();
@@ -218,3 +246,13 @@ double OwnMemory_mb() {
 }
 
 }  // namespace mascot
+
+// In place of libc's, for all libraries: code in C that a law calls may end the process by them. Our own code, and all
+// that runs when no law is at work, ends as it always does.
+// NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp): libc's names
+extern "C" [[gnu::visibility("default")]] void _exit(int code) {
+  mascot::ExplainEnd(code, "_exit()");
+  mascot::EndNow(code);
+}
+extern "C" [[gnu::visibility("default")]] void _Exit(int code) { _exit(code); }
+// NOLINTEND(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp)

@@ -1,6 +1,7 @@
 // Faults in runs over DDS, with the real processes: each is detected, reported by name, and cleaned up after.
 
 #include <gmock/gmock.h>
+#include <sys/syscall.h>
 
 #include <cstring>
 #include <sstream>
@@ -293,6 +294,8 @@ TEST(Faults, WhatALawHasStartedBySystemDoesNotOutliveAKilledOrchestratorEither) 
   }
 }
 
+const std::string kExitGroup = "ctypes.CDLL(None).syscall(" + std::to_string(SYS_exit_group) + ", 0)";
+
 TEST(Faults, WhateverALawDoesToTheOneProcessOfARunThereIsASummaryThatSaysWhy) {
   struct Try {
     const char* act;
@@ -308,7 +311,8 @@ TEST(Faults, WhateverALawDoesToTheOneProcessOfARunThereIsASummaryThatSaysWhy) {
        "this process crashed: SIGSEGV"},
       {"time.sleep(100)", 1, 1, "the law of agent 2 took longer than 0.8 run.agent_timeout_s = 0.8 s and cannot be"},
       {"ctypes.CDLL(None).exit(0)", 1, 1, "a law, or what it has called, has ended the process by exit()"},
-      {"ctypes.CDLL(None)._exit(0)", 0, nullptr, "the orchestrator was killed (SIGKILL: by somebody, or for want of"},
+      {"ctypes.CDLL(None)._exit(0)", 1, 1, "the law of agent 2 has ended the process by _exit()"},
+      {kExitGroup.c_str(), 0, nullptr, "the orchestrator was killed (SIGKILL: by somebody, or for"},
       {"ctypes.CDLL(None).kill(os.getpid(), 9)", -SIGKILL, nullptr, "the orchestrator was killed (SIGKILL"}};
   for (const Try& each : tries) {
     SCOPED_TRACE(each.act);
@@ -333,7 +337,8 @@ TEST(Faults, WhateverALawDoesToItsProcessThereIsASummaryThatNamesTheAgent) {
       {"sys.exit()", "the law of agent 2 failed at t = "},
       {"os.kill(os.getpid(), 9)", "the law of agent 2 failed at t = "},
       {"ctypes.string_at(0)", "agent_2: the law of agent 2 crashed: SIGSEGV"},
-      {"ctypes.CDLL(None)._exit(0)", "agent_2 exited with code 0"}};
+      {"ctypes.CDLL(None)._exit(0)", "agent_2: the law of agent 2 has ended the process by _exit()"},
+      {kExitGroup.c_str(), "agent_2 exited with code 0"}};
   for (const auto& [act, words] : tries) {
     SCOPED_TRACE(act);
     const ScratchFolder folder;

@@ -191,5 +191,19 @@ TEST_F(LawAtWorkDeathTest, AStackThatOverflowsIsNamedWithTheAgent) {
               KilledBySignal(SIGSEGV), HasSubstr("error: the law of agent 1 crashed: SIGSEGV\n"));
 }
 
+TEST_F(LawAtWorkDeathTest, AnEndByCodeInCIsNamedWithTheAgent) {
+  for (const char* call : {"exit", "_exit", "_Exit"}) {
+    SCOPED_TRACE(call);
+    const std::string law = std::string("ctypes.CDLL(None).") + call;
+    const std::string words = std::string(" has ended the process by ") + (call[0] == 'e' ? "exit" : "_exit") + "()\n";
+    EXPECT_EXIT(FirstCall("import ctypes\ndef control(t, me, neighbours):\n  " + law + "(0)\n  return 0, 0\n"),
+                ExitedWithCode(1), HasSubstr("error: the law of agent 1" + words));
+    EXPECT_EXIT(FirstCall("import ctypes\ndef control(t, me, neighbours):\n  " + law + "(7)\n  return 0, 0\n"),
+                ExitedWithCode(7), HasSubstr("error: the law of agent 1" + words));
+    EXPECT_EXIT(Limited("import ctypes\n" + law + "(0)\n"), ExitedWithCode(1),
+                HasSubstr("error: the law in test.toml" + words));
+  }
+}
+
 }  // namespace
 }  // namespace mascot
