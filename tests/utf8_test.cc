@@ -104,7 +104,7 @@ TEST(ConfigError, ShortensAMistakeThatQuotesMuch) {
   for (const std::string& toml : {"name = '" + longer + "'", longer + " = 1"}) {
     try {
       Section section = Section::FromText(toml, "test.toml");
-      section.Number("name", 1);
+      section.Number("name", 0, 1, 0);
       section.Fail("name", "got '" + longer + "'");
       section.Done();
       section.ThrowIfWrong();

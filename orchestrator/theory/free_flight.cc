@@ -55,9 +55,10 @@ std::string WhyNotFree(const Experiment& experiment, const Freedom& needed, cons
     return "so many agents are not flown ahead for so many ticks, to see whether a limit cuts what the law asks for";
   }
   IdealTeam team(experiment);
+  ContactWatch watch(experiment, kReach_m);
   try {
     for (std::int64_t tick = 0; tick < experiment.ticks(); ++tick) {
-      if (std::string near = touches ? WhatMayTouch(experiment, team.motions(), kReach_m) : ""; !near.empty())
+      if (std::string near = touches ? watch.WhatMayTouch(team.motions()) : ""; !near.empty())
         return fmt::format("{}, {:.3g} s from the start", near, experiment.time_s(tick));
       team.Step();
       if (!needed.from_limits) continue;

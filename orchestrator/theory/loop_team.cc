@@ -24,19 +24,15 @@ constexpr double kMostTiltsCut = 0.02, kLongestCounted_s = 20;
 constexpr double kMargin_m = 0.1;  // of bodies to what they might touch
 constexpr double kFarthest_m = 1e5;
 
-/// What agents agree on: their positions, less their places in a formation.
-std::vector<Eigen::Vector3d> WithoutPlaces(const Experiment& experiment, std::span<const Motion> motions) {
-  const std::span<const Eigen::Vector3d> places_W = PlacesOf(experiment.law);
-  std::vector<Eigen::Vector3d> q_W;
-  for (const Motion& motion : motions) q_W.push_back(motion.p_WB);
-  for (std::size_t i = 0; i < places_W.size(); ++i) q_W[i] -= places_W[i];
-  return q_W;
-}
-
 class LoopTeam {
  public:
   LoopTeam(const Experiment& experiment, const LoopError& error)
-      : experiment_(experiment), team_(experiment), commands_(experiment.agents.size()), messages_(commands_.size()) {
+      : experiment_(experiment),
+        team_(experiment),
+        commands_(experiment.agents.size()),
+        messages_(commands_.size()),
+        agreed_W_(commands_.size()),
+        watch_(experiment, kMargin_m) {
     bodies_.reserve(experiment.agents.size());
     for (const AgentConfig& agent : experiment.agents) bodies_.emplace_back(experiment, agent, error);
     for (const LowLevelLoop& body : bodies_) motions_.push_back(body.motion());
@@ -73,7 +69,17 @@ class LoopTeam {
   }
 
   /// What might touch what; empty: nothing.
-  std::string MayTouch() const { return WhatMayTouch(experiment_, motions_, kMargin_m); }
+  std::string MayTouch() { return watch_.WhatMayTouch(motions_); }
+
+  /// What agents agree on: their positions, less their places in a formation.
+  const std::vector<Eigen::Vector3d>& WithoutPlaces() {
+    const std::span<const Eigen::Vector3d> places_W = PlacesOf(experiment_.law);
+    for (std::size_t i = 0; i < motions_.size(); ++i) {
+      agreed_W_[i] = motions_[i].p_WB;
+      if (i < places_W.size()) agreed_W_[i] -= places_W[i];
+    }
+    return agreed_W_;
+  }
 
   /// Why the limits were reached too often for the model; empty: they were not.
   std::string Cut() const {
@@ -96,6 +102,8 @@ class LoopTeam {
   std::vector<Motion> motions_;
   std::vector<Command> commands_;
   std::vector<std::vector<double>> messages_;
+  std::vector<Eigen::Vector3d> agreed_W_;  // scratch
+  ContactWatch watch_;
   std::int64_t tick_ = 0, tilts_cut_ = 0;
 };
 
@@ -117,7 +125,7 @@ LoopFlight FlyLoops(const Experiment& experiment, const LoopError& error) {
         return {.silent = fmt::format("{}, {:.3g} s from the start", why, experiment.time_s(team.tick()))};
       const TeamRow row = team.Decide();
       if (meter) meter->Add(row);
-      agreement.Add(WithoutPlaces(experiment, row.motions));
+      agreement.Add(team.WithoutPlaces());
       if (team.tick() == 0) flight.agreement.first_m = agreement.disagreement_m();
       if (team.tick() == experiment.ticks()) break;
       team.Move();

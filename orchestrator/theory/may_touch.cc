@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstddef>
-#include <vector>
 
 #include "experiment/obstacles.h"
 
@@ -26,21 +25,21 @@ bool AreNear(const AgentConfig& a, const AgentConfig& b, const Eigen::Vector3d& 
 
 }  // namespace
 
-std::string WhatMayTouch(const Experiment& experiment, std::span<const Motion> motions, double margin_m) {
-  std::vector<Eigen::Vector3d> halves_W;
-  for (std::size_t i = 0; i < motions.size(); ++i) halves_W.push_back(HalfBox_W(experiment.agents[i], motions[i]));
+std::string ContactWatch::WhatMayTouch(std::span<const Motion> motions) {
+  halves_W_.clear();
+  for (std::size_t i = 0; i < motions.size(); ++i) halves_W_.push_back(HalfBox_W(experiment_.agents[i], motions[i]));
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    const bool stands = experiment.agents[i].traits().rolls;
-    if (experiment.physics.ground && !stands && motions[i].p_WB.z() - halves_W[i].z() < margin_m / 4)
+    const bool stands = experiment_.agents[i].traits().rolls;
+    if (experiment_.physics.ground && !stands && motions[i].p_WB.z() - halves_W_[i].z() < margin_m_ / 4)
       return fmt::format("agent {} may touch the ground", i + 1);
-    if (!experiment.physics.collisions) continue;
+    if (!experiment_.physics.collisions) continue;
     for (std::size_t j = 0; j < i; ++j)
-      if (AreNear(experiment.agents[i], experiment.agents[j], motions[i].p_WB - motions[j].p_WB,
-                  halves_W[i] + halves_W[j], margin_m))
+      if (AreNear(experiment_.agents[i], experiment_.agents[j], motions[i].p_WB - motions[j].p_WB,
+                  halves_W_[i] + halves_W_[j], margin_m_))
         return fmt::format("agents {} and {} may touch", j + 1, i + 1);
-    for (const Obstacle& obstacle : experiment.physics.obstacles) {
+    for (const Obstacle& obstacle : experiment_.physics.obstacles) {
       const Eigen::Vector3d away_W = NearestPoint_W(obstacle, motions[i].p_WB) - motions[i].p_WB;
-      if (away_W.norm() < experiment.agents[i].radius_m() + margin_m)
+      if (away_W.norm() < experiment_.agents[i].radius_m() + margin_m_)
         return fmt::format("agent {} may touch an obstacle", i + 1);
     }
   }

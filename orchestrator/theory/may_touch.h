@@ -1,16 +1,29 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "experiment/experiment.h"
 #include "experiment/motion.h"
 
 namespace mascot {
 
-/// What is nearer to what than `margin_m`, of what can touch in the experiment: "agents 1 and 2 may touch", "agent 3
-/// may touch the ground", "agent 3 may touch an obstacle"; empty: nothing. Bodies with an airframe are boxes, as they
-/// are tilted, others balls.
-std::string WhatMayTouch(const Experiment& experiment, std::span<const Motion> motions, double margin_m);
+/// Looks, tick by tick, for what may touch what.
+class ContactWatch {
+ public:
+  /// Of what can touch in the experiment, all that is nearer than `margin_m`.
+  ContactWatch(const Experiment& experiment, double margin_m) : experiment_(experiment), margin_m_(margin_m) {}
+
+  /// "agents 1 and 2 may touch", "agent 3 may touch the ground", "agent 3 may touch an obstacle"; empty: nothing.
+  /// Bodies with an airframe are boxes, as they are tilted, others balls. `motions`: one an agent, by id - 1.
+  std::string WhatMayTouch(std::span<const Motion> motions);
+
+ private:
+  const Experiment& experiment_;
+  double margin_m_;
+  std::vector<Eigen::Vector3d> halves_W_;  // of the boxes around bodies; scratch
+};
 
 }  // namespace mascot
