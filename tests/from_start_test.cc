@@ -24,7 +24,7 @@ FromStart FlyIdeal(const Experiment& experiment) {
       q_W.push_back(team.p_W(id) - place_W[static_cast<std::size_t>(id - 1)]);
     meter.Add(q_W);
   }
-  return {meter.settling_time_s(), meter.rate_per_s()};
+  return {.settling_time_s = meter.settling_time_s(), .rate_per_s = meter.rate_per_s()};
 }
 
 FromStart FromMatrices(const Experiment& experiment) {
@@ -91,6 +91,7 @@ TEST(FromStart, IsUnknownWhereItIsTooMuchWork) {
   const Experiment experiment =
       Load(Agents(random, 3, "double_integrator") + "[graph]\ntopology = 'ring'\n[law]\nname = 'consensus'\n");
   const FromStart from_start = FlyFromStart(experiment, *LinearTeamOf(experiment).team, *TimelineOf(experiment), 1e6);
+  EXPECT_FALSE(from_start.is_flown);
   EXPECT_FALSE(from_start.settling_time_s);
   EXPECT_FALSE(from_start.rate_per_s);
 }

@@ -274,9 +274,13 @@ TEST(Check, PredictsFiniteValuesForEveryShippedExperiment) {
     EXPECT_EQ(predicted["persistence"]["joint"],
               predicted["persistence"]["always"].get<bool>() || !predicted["persistence"]["window_s"].is_null())
         << entry.path();
-    const bool says_something =
-        predicted["stable"] == true || !predicted["minmax_time_s"].is_null() || !check["figures"].empty();
-    EXPECT_NE(says_something, !predicted["silent"].is_null()) << entry.path();
+    const bool says_something = predicted["stable"] == true || !predicted["value_m"].is_null() ||
+                                !predicted["minmax_time_s"].is_null() || !check["figures"].empty();
+    EXPECT_TRUE(says_something || !predicted["silent"].is_null()) << entry.path();
+    // Of a linear team it predicts when it settles, or says why not.
+    EXPECT_TRUE(predicted["stable"] != true || !predicted["settling_time_s"].is_null() ||
+                !predicted["silent"].is_null())
+        << entry.path();
   }
 }
 
@@ -354,11 +358,14 @@ TEST(FormationInWind, KeepsItsDisplacementsOverABadNetwork) {
   EXPECT_EQ(flight.summary["safety"]["collisions"], 0);
 }
 
-TEST(FormationInWind, DecaysAsFastAsItsLossyLinksAllowOnAverage) {
+// As shipped, the first commands exceed the limit of acceleration.
+TEST(FormationInWind, DecaysAsFastAsItsLossyLinksAllowOnAverageWhereNoLimitCuts) {
   double rate_per_s = 0, predicted_per_s = 0;
   constexpr int kSeeds = 5;
   for (int seed = 1; seed <= kSeeds; ++seed) {
-    const auto consensus = Flight("formation", {"run.seed=" + std::to_string(seed)}).summary["consensus"];
+    const auto consensus =
+        Flight("formation", {"run.seed=" + std::to_string(seed), "control.max_acceleration_m_per_s2=30.0"})
+            .summary["consensus"];
     EXPECT_EQ(consensus["predicted"]["on_average"], true);
     rate_per_s += consensus["rate_per_s"].get<double>() / kSeeds;
     predicted_per_s += consensus["predicted"]["rate_per_s"].get<double>() / kSeeds;

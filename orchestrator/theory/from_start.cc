@@ -164,7 +164,7 @@ FromStart FlyFromStart(const Experiment& experiment, const LinearTeam& team, con
   const double first_m = meter.disagreement_m();
   if (first_m <= kRoundedShare * LargestStart_m(experiment)) {
     while (static_cast<double>(flight.tick()) < longest) flight.Step();  // together
-    return {.agrees = true, .is_cut = flight.is_cut()};
+    return {.is_flown = true, .agrees = true, .is_cut = flight.is_cut()};
   }
   constexpr double kAgreed = 1e-7;   // of the first disagreement
   std::int64_t tick = 0, apart = 0;  // apart: the newest tick with more disagreement
@@ -174,12 +174,14 @@ FromStart FlyFromStart(const Experiment& experiment, const LinearTeam& team, con
     ++tick;
     meter.Add(flight.q());
     if (meter.disagreement_m() > kAgreed * first_m) apart = tick;
-    if (tick == experiment.ticks()) by_the_end = {meter.settling_time_s(), meter.rate_per_s()};
+    if (tick == experiment.ticks())
+      by_the_end = {.settling_time_s = meter.settling_time_s(), .rate_per_s = meter.rate_per_s()};
   }
   constexpr double kMet = 1e-3;  // of the first disagreement
   const double drift_m = flight.fastest() * experiment.time_s(tick);
   const bool met = meter.disagreement_m() <= kMet * first_m && drift_m <= kMet * first_m;
-  return {.settling_time_s = by_the_end.settling_time_s ? by_the_end.settling_time_s : meter.settling_time_s(),
+  return {.is_flown = true,
+          .settling_time_s = by_the_end.settling_time_s ? by_the_end.settling_time_s : meter.settling_time_s(),
           .rate_per_s = by_the_end.rate_per_s ? by_the_end.rate_per_s : meter.rate_per_s(),
           .is_cut = flight.is_cut(),
           .value_m = met ? std::optional(meter.mean_W()) : std::nullopt};

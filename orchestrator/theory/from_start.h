@@ -11,6 +11,7 @@ namespace mascot {
 /// How a linear team comes to agree from where and as fast as the experiment's agents start: as AgreementMeter measures
 /// it by the end of the run, or, where that ends too early for it, later.
 struct FromStart {
+  bool is_flown = false;                        ///< false: that is too much work
   std::optional<double> settling_time_s = {};   ///< nothing: it does not settle in time
   std::optional<double> rate_per_s = {};        ///< likewise, or there are too few rows to measure it
   bool agrees = false;                          ///< agents agree already when they start: there is nothing to settle

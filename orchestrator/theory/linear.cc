@@ -294,15 +294,26 @@ bool LinearCase::TakeLimited(const FromStart& limited) {
 void LinearCase::PredictFromStart() {
   const std::vector<int> leaders = team_.Leaders();
   const bool leader_stands = leaders.empty() || (agent(leaders.front()).v_W.isZero(0) && prediction_.value_m);
-  if (!leader_stands) return;
+  if (!leader_stands) {
+    Silent(fmt::format("agents settle after their leader, agent {}, which does not stand still", leaders.front()));
+    return;
+  }
   constexpr double kLonger = 3;  // than the slowest mode: along chains agents settle later
   const double settled_s =
       prediction_.slowest_rate_per_s ? kLonger * std::log(50) / *prediction_.slowest_rate_per_s : 0;
   const FromStart from_start =
       FlyFromStart(experiment_, team_, timeline_, std::max(experiment_.run.duration_s, settled_s));
-  if (from_start.agrees) prediction_.settling_time_s.reset();
+  if (from_start.agrees) {
+    prediction_.settling_time_s.reset();
+    Silent("agents agree when they start: there is nothing to settle");
+  }
   if (from_start.is_cut && !TakeLimited(from_start)) return;
-  if (!from_start.settling_time_s) return;
+  if (!from_start.settling_time_s) {
+    if (!prediction_.settling_time_s && prediction_.silent.empty())
+      Silent(from_start.is_flown ? "the team, which is flown ahead from its start, does not settle soon"
+                                 : "so many agents are not flown ahead from their start for so long");
+    return;
+  }
   prediction_.from_start = true;
   prediction_.settling_time_s = from_start.settling_time_s;
   prediction_.rate_per_s = from_start.rate_per_s;
