@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "experiment/agent_ids.h"
@@ -68,12 +70,19 @@ void ReadSet(Section& section, Event& event) {
 Event::Edges ReadEdges(Section& section, std::string_view key) {
   Event::Edges edges;
   const auto rows = section.Rows(key);
+  std::set<std::pair<int, int>> seen;
   for (std::size_t k = 0; k < rows.size() && !section.Wrong(key); ++k) {
     const auto whole = [](double number) { return number == std::floor(number); };
-    if (rows[k].size() == 2 && std::ranges::all_of(rows[k], whole))
-      edges.emplace_back(static_cast<int>(rows[k][0]), static_cast<int>(rows[k][1]));
-    else
+    if (rows[k].size() != 2 || !std::ranges::all_of(rows[k], whole)) {
       section.FailRow(key, k, "expected an edge [i, j] (i hears j)");
+      break;
+    }
+    const std::pair edge(static_cast<int>(rows[k][0]), static_cast<int>(rows[k][1]));
+    if (!seen.insert(edge).second)
+      section.FailRow(key, k,
+                      "expected each edge once, got [" + std::to_string(edge.first) + ", " +
+                          std::to_string(edge.second) + "] again");
+    edges.push_back(edge);
   }
   return edges;
 }

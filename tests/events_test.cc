@@ -153,6 +153,8 @@ TEST(Events, NameAgentsAndEdgesThatExist) {
             "folder/test.toml:13:7: agents: expected none, got some: link.loss is the same for all");
   EXPECT_EQ(RefusalOf("cut = [[2, 1]]"),
             "folder/test.toml:13:7: expected an edge of the graph (i hears j), got [2, 1]");
+  EXPECT_EQ(RefusalOf("cut = [[1, 2], [1, 3], [1, 2]]"),
+            "folder/test.toml:13:24: events[0].cut[2]: expected each edge once, got [1, 2] again");
   EXPECT_EQ(RefusalOf("cut = []"), "folder/test.toml:13:7: events[0].cut: expected edges [i, j] (i hears j), got none");
   EXPECT_EQ(RefusalOf("mend = [[1, 2], [1, 2, 3]]"),
             "folder/test.toml:13:17: events[0].mend[1]: expected an edge [i, j] (i hears j)");
