@@ -347,7 +347,7 @@ TEST(LiveView, TellsOfEvents) {
   viewer.Subscribe("/ui/events");
   const Json before = viewer.NextJsonOf("/ui/experiment");
   EXPECT_EQ(before["live_keys"], Json::array());
-  EXPECT_EQ(before["prediction"]["why"], "");
+  EXPECT_THAT(before["prediction"]["why"], HasSubstr("agents settle after their leader"));
   EXPECT_EQ(viewer.NextJsonOf("/ui/events"), Json::array());
   const Experiment now = Load(kThree, "law.leader_waypoints_m", "[[7, 8, 1]]");
   const Key gain = key::Number("p_gain", Above(0, 10), "pull").Unit("1/s^2");

@@ -97,7 +97,14 @@ const List kLists[] = {
     {"events_that_cut", 3000,
      [](int n) { return Team() + Events(n, [](int k) { return k % 2 == 0 ? "cut = [[1, 2]]" : "mend = [[1, 2]]"; }); }},
     {"edges_in_an_event", 10000,
-     [](int n) { return Team() + "[[events]]\nat_s = 1\ncut = " + Listed(n, [](int) { return "[1, 2]"; }); }},
+     [](int n) {
+       return "run.duration_s = 1\nagents = { count = 150, model = 'double_integrator', random.max_m = [999, 999, 999] "
+              "}\nlaw.name = 'consensus'\ngraph.topology = 'complete'\n[[events]]\nat_s = 1\ncut = " +
+              Listed(n, [](int k) {  // [1, 2], [2, 3] and so on, then [1, 3], [2, 4]
+                return "[" + std::to_string(k % 150 + 1) + ", " + std::to_string((k % 150 + k / 150 + 1) % 150 + 1) +
+                       "]";
+              });
+     }},
     {"phases_of_the_law", 60,
      [](int n) {
        return Team() + Repeated(n, [](int k) {

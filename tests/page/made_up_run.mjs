@@ -29,6 +29,7 @@ export class MadeUpRun {
     incidents = "",
     disagreement_m = null,  // as it is, unless given
     rate_per_s = 0.19,      // that theory predicts from the start
+    why = "",               // it is silent of the rest
     waits = false           // what is granted while the run is paused takes effect when it goes on
   } = {}) {
     Object.assign(this, {
@@ -42,6 +43,7 @@ export class MadeUpRun {
       incidents,
       disagreement_m,
       rate_per_s,
+      why,
       waits,
       leader: Math.min(leader, agents)
     });
@@ -99,7 +101,7 @@ export class MadeUpRun {
         rate_per_s: this.rate_per_s,
         slowest_rate_per_s: 0.15,
         settling_time_s: 21,
-        why: ""
+        why: this.why
       },
       live_keys: [
         live("law.safety.distance_m", "", null, 1e6), live("law.p_gain", "1/s^2", this.gains.p_gain, 1000),

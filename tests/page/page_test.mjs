@@ -452,7 +452,7 @@ test(
 
 test(
     "a rate that theory has of the slowest mode alone is said, and no line is drawn",
-    () => watching({run: {rate_per_s: null}}, async ({page}) => {
+    () => watching({run: {rate_per_s: null, why: "agents settle after their leader"}}, async ({page}) => {
       await until(page, () => mascot.drawn.disagreement?.length > 0);
       assert.equal(await page.textContent("#prediction"), "Theory: in the long run decays at 0.150 1/s or faster");
       const [, measured, theory] = await page.evaluate(() => mascot.drawn.disagreement);

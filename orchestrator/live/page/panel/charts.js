@@ -217,8 +217,8 @@ function wordsOf({stable, rate_per_s, slowest_rate_per_s, settling_time_s, why})
     return `Theory: decays at ${figure(rate_per_s)} 1/s${settles}`;
   }
   if (stable === false) return `Theory: does not agree${why ? `: ${why}` : ""}`;
-  if (why) return `No prediction: ${why}`;
-  return slowest_rate_per_s ? `Theory: in the long run decays at ${figure(slowest_rate_per_s)} 1/s or faster` : "";
+  if (slowest_rate_per_s) return `Theory: in the long run decays at ${figure(slowest_rate_per_s)} 1/s or faster`;
+  return why ? `No prediction: ${why}` : "";
 }
 
 /** The values under the pointer. */
