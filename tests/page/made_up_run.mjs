@@ -30,6 +30,7 @@ export class MadeUpRun {
     disagreement_m = null,  // as it is, unless given
     rate_per_s = 0.19,      // that theory predicts from the start
     why = "",               // it is silent of the rest
+    places_m = 0,           // radius of a circle that the agents are to form; 0: none
     waits = false           // what is granted while the run is paused takes effect when it goes on
   } = {}) {
     Object.assign(this, {
@@ -44,6 +45,7 @@ export class MadeUpRun {
       disagreement_m,
       rate_per_s,
       why,
+      places_m,
       waits,
       leader: Math.min(leader, agents)
     });
@@ -147,7 +149,7 @@ export class MadeUpRun {
       law: "consensus",
       leads: id === this.leader,
       waypoints_m: id === this.leader ? [this.home[id - 1], [6, -2, 3]] : [],
-      place_m: null,
+      place_m: this.places_m ? [this.places_m * Math.cos(id), this.places_m * Math.sin(id), 0] : null,
       parent: 0,
       goto: id === this.leader
     };

@@ -450,6 +450,17 @@ test(
       await until(page, () => mascot.t_s === 40);
     }));
 
+test("the first look shows where a formation will be, though all start near its middle", async () => {
+  const radii = [];
+  for (const places_m of [0, 100]) {
+    await watching({run: {places_m}}, async ({page}) => {
+      await until(page, () => mascot.drawn.pictures > 0 && mascot.tick > 0);
+      radii.push(await page.evaluate(() => mascot.radiusOnScreen(1)));
+    });
+  }
+  assert.ok(radii[1] < 0.3 * radii[0], `${radii}`);
+});
+
 test(
     "a rate that theory has of the slowest mode alone is said, and no line is drawn",
     () => watching({run: {rate_per_s: null, why: "agents settle after their leader"}}, async ({page}) => {

@@ -154,8 +154,8 @@ export class Overlay {
   }
 }
 
-// Where the places of a formation are: it has no place of its own, so it is drawn around the agents' mean.
-function places(agents, p) {
+/** [place, agent] of a formation: it has no place of its own, so it is drawn around the agents' mean. */
+export function places(agents, p) {
   const placed = agents.filter(({place_m}) => place_m);
   if (placed.length === 0) return [];
   const middle = [0, 1, 2].map(

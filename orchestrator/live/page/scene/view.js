@@ -10,7 +10,7 @@ import {Edges} from "./edges.js";
 import {Eye} from "./eye.js";
 import {Ground} from "./ground.js";
 import {Obstacles, WaypointPaths} from "./marks.js";
-import {Overlay} from "./overlay.js";
+import {Overlay, places} from "./overlay.js";
 import {setViewport} from "./ribbons.js";
 import {Trails} from "./trails.js";
 
@@ -217,6 +217,7 @@ export class View {
   #points() {
     const {frame, experiment} = this.#model, points = [];
     for (let k = 0; k < (frame?.p.length ?? 0); k += 3) points.push(frame.p.slice(k, k + 3));
+    if (frame) points.push(...places(experiment?.agents ?? [], frame.p).map(([place]) => place));
     for (const {waypoints_m} of experiment?.agents ?? []) points.push(...(waypoints_m ?? []));
     for (const {position_m} of experiment?.obstacles ?? []) points.push(position_m);
     if (experiment?.prediction?.value_m) points.push(experiment.prediction.value_m);
