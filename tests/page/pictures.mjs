@@ -16,7 +16,7 @@ from PIL import Image
 Image.open(sys.argv[1]).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(sys.argv[1], optimize=True)`;
 // Name, experiment, tick from which on, keys that are pressed, window.
 const PICTURES = [
-  ["live", "formation.toml", 800, "2", {size: WIDE, colorScheme: "light"}],
+  ["live", "formation.toml", 500, "2", {size: WIDE, colorScheme: "light"}],
   ["live_phone", "minmax.toml", 700, "3v", {size: PHONE, colorScheme: "dark"}],
 ];
 
