@@ -117,6 +117,7 @@ void PrepareProcess() {
     ExplainCrashes();
     this_process = getpid();
     on_exit([](int code, void* /*nothing*/) { ExplainEnd(code, "exit()"); }, nullptr);
+    at_quick_exit([] { ExplainEnd(1, "quick_exit()"); });
     pthread_atfork(nullptr, nullptr, OnFork);
     return true;
   }();

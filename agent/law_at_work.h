@@ -19,7 +19,7 @@ struct LawLimits {
 /// process says whose law it was:
 /// * A signal by which it would end silently (SIGSEGV, from a stack overflow, say, SIGABRT, SIGFPE, SIGILL) is named
 ///   first: "error: the law of agent 3 crashed: SIGSEGV"; from then on also in other threads, which laws may start.
-/// * Code in C that ends the process by exit() or _exit() is named likewise; the exit code is then not 0.
+/// * Code in C that ends the process by exit(), quick_exit() or _exit() is named likewise; the exit code is then not 0.
 /// * Long after the limit, 1.5 times and at least 1 s more, the process ends with exit code 1 and says so: the code has
 ///   not let itself be interrupted, or cannot be. Likewise if it takes 1.5 times the memory, and 256 MB more.
 /// * A process that the code forks dies with the thread that forked it, and does not outlive the object.
