@@ -40,28 +40,33 @@ bool IsSure(const Experiment& experiment, const LoopAgreement& flown, const std:
   });
 }
 
-void JudgeTimes(const Experiment& experiment, const LoopAgreement& flown, Prediction& prediction) {
+/// Takes the times and the rate of the flight where those predicted are off. Returns whether any was.
+bool JudgeTimes(const Experiment& experiment, const LoopAgreement& flown, Prediction& prediction) {
   const double off_s = kSettlingOff * *prediction.settling_time_s + experiment.period_s();
+  bool is_off = false;
   if (flown.settling_time_s) {
-    if (std::abs(*flown.settling_time_s - *prediction.settling_time_s) > off_s)
-      prediction.settling_time_s = flown.settling_time_s;
+    is_off = std::abs(*flown.settling_time_s - *prediction.settling_time_s) > off_s;
+    if (is_off) prediction.settling_time_s = flown.settling_time_s;
   } else if (*prediction.settling_time_s + off_s < experiment.run.duration_s) {
-    return Silence(
-        "quadrotors, flown ahead with the lag and the limit of their tilt, do not settle by the end of the run",
-        prediction);
+    Silence("quadrotors, flown ahead with the lag and the limit of their tilt, do not settle by the end of the run",
+            prediction);
+    return true;
   }
-  if (!prediction.rate_per_s || !flown.rate_per_s) return;
-  if (std::abs(*flown.rate_per_s - *prediction.rate_per_s) > kRateOff * *prediction.rate_per_s)
-    prediction.rate_per_s = flown.rate_per_s;
+  if (!prediction.rate_per_s || !flown.rate_per_s) return is_off;
+  if (std::abs(*flown.rate_per_s - *prediction.rate_per_s) <= kRateOff * *prediction.rate_per_s) return is_off;
+  prediction.rate_per_s = flown.rate_per_s;
+  return true;
 }
 
-void JudgeValue(const Experiment& experiment, const LoopAgreement& flown, Prediction& prediction) {
-  if (!prediction.value_m || experiment.law.leader > 0) return;
+/// Takes the meeting point of the flight where that predicted is off. Returns whether it was.
+bool JudgeValue(const Experiment& experiment, const LoopAgreement& flown, Prediction& prediction) {
+  if (!prediction.value_m || experiment.law.leader > 0) return false;
   const Eigen::Index axes = CountOf(experiment.law.axes);
   const double off_m = (flown.mean_W - *prediction.value_m).head(axes).norm();
   const bool met = flown.last_m <= kMet * flown.first_m;
-  if (!met || off_m <= kValueOff * flown.first_m) return;
+  if (!met || off_m <= kValueOff * flown.first_m) return false;
   prediction.value_m->head(axes) = flown.mean_W.head(axes);
+  return true;
 }
 
 }  // namespace
@@ -74,15 +79,12 @@ void JudgeAgreementOnLoops(const Experiment& experiment, Prediction& prediction)
   const LoopFlight flight = FlyLoops(experiment, {.turn = 0, .push = 0});
   std::string silent = flight.silent;
   if (silent.empty()) {
-    const std::optional<Eigen::Vector3d> value_m = prediction.value_m;
-    const std::optional<double> settling_time_s = prediction.settling_time_s, rate_per_s = prediction.rate_per_s;
-    JudgeTimes(experiment, flight.agreement, prediction);
-    JudgeValue(experiment, flight.agreement, prediction);
-    const bool is_off = prediction.value_m != value_m || prediction.settling_time_s != settling_time_s ||
-                        prediction.rate_per_s != rate_per_s;
-    if (flight.is_tilt_cut && prediction.value_m != value_m)  // how it is cut is what the model knows least
+    const bool is_late = JudgeTimes(experiment, flight.agreement, prediction);
+    const bool is_elsewhere = JudgeValue(experiment, flight.agreement, prediction);
+    if (flight.is_tilt_cut && is_elsewhere)  // how it is cut is what the model knows least
       silent = "the limit of the tilt cuts what quadrotors are commanded, and moves where they meet";
-    else if ((is_off || flight.is_tilt_cut) && !IsSure(experiment, flight.agreement, FlyBeside(experiment)))
+    else if ((is_late || is_elsewhere || flight.is_tilt_cut) &&
+             !IsSure(experiment, flight.agreement, FlyBeside(experiment)))
       silent = "where and when quadrotors meet hangs on more than is known of them";
   }
   if (silent.empty()) return;
