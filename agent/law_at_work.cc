@@ -16,6 +16,7 @@
 #include <iterator>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -45,6 +46,13 @@ void Say(const char* text) {
   if (write(STDERR_FILENO, text, std::strlen(text)) < 0) return;
 }
 
+/// `reason`: pieces of a text. Calls only what a signal handler may call.
+void SayError(std::span<const char* const> reason) {
+  Say("error: ");
+  for (const char* piece : reason) Say(piece);
+  Say("\n");
+}
+
 struct sigaction before_bus_error {};  // whose SIGBUS is explained elsewhere if no law is at work
 
 /// A signal handler, called once: then the signal ends the process. In a thread that a law has started, and no one
@@ -55,9 +63,7 @@ void ExplainCrash(int signal) {
   const auto* row =
       std::find_if(std::begin(kFatal), std::end(kFatal), [=](const Fatal& f) { return f.signal == signal; });
   const char* const reason[] = {whose_law != nullptr ? whose_law : "this process", " crashed: ", row->name};
-  Say("error: ");
-  for (const char* piece : reason) Say(piece);
-  Say("\n");
+  SayError(reason);
   if (!IsForkedByLaw()) LastWords::Leave(reason, std::size(reason), 128 + signal);
   raise(signal);
 }
@@ -97,11 +103,10 @@ class SignalStack {
 void ExplainEnd(int code, const char* call) {
   if (whose_law == nullptr || getpid() != this_process || IsForkedByLaw()) return;
   const char* const reason[] = {whose_law, " has ended the process by ", call};
-  Say("error: ");
-  for (const char* piece : reason) Say(piece);
-  Say("\n");
-  LastWords::Leave(reason, std::size(reason), code != 0 ? code : 1);
-  EndNow(code != 0 ? code : 1);
+  SayError(reason);
+  const int failure = code != 0 ? code : 1;
+  LastWords::Leave(reason, std::size(reason), failure);
+  EndNow(failure);
 }
 
 /// In a process that was just forked. A law's dies with the thread that forked it.

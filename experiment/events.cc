@@ -75,7 +75,7 @@ Event::Edges ReadEdges(Section& section, std::string_view key) {
     const auto whole = [](double number) { return number == std::floor(number); };
     if (rows[k].size() != 2 || !std::ranges::all_of(rows[k], whole)) {
       section.FailRow(key, k, "expected an edge [i, j] (i hears j)");
-      break;
+      continue;
     }
     const std::pair edge(static_cast<int>(rows[k][0]), static_cast<int>(rows[k][1]));
     if (!seen.insert(edge).second)
