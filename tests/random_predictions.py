@@ -11,7 +11,8 @@ The same seed gives the same experiments, also of a law alone. Those with a brok
 What is equal: a figure within 2 % (--equal) and, by its unit, 1 mm, 2 ticks or 0.001 of what is predicted; a meeting
 point within 2 % of how far the agents were apart; a settling time within 5 % and 2 ticks; a rate within 10 %. Where
 `check` warns that the run is too short, the meeting point is not held, nor a time after the end. Bounds
-may be passed by 1e-9 of themselves. A rate that is predicted and not measured is not broken. Predictions on average (docs/theory.md) are not held against a single run.
+may be passed by 1e-9 of themselves. A rate that is predicted and not measured is not broken. Predictions on average
+(docs/theory.md) are not held against a single run.
 """
 
 import argparse

@@ -277,7 +277,7 @@ TEST(Check, PredictsFiniteValuesForEveryShippedExperiment) {
     const bool says_something = predicted["stable"] == true || !predicted["value_m"].is_null() ||
                                 !predicted["minmax_time_s"].is_null() || !check["figures"].empty();
     EXPECT_TRUE(says_something || !predicted["silent"].is_null()) << entry.path();
-    // Of a linear team it predicts when it settles, or says why not.
+    // Theory predicts when a linear team settles, or says why it does not.
     EXPECT_TRUE(predicted["stable"] != true || !predicted["settling_time_s"].is_null() ||
                 !predicted["silent"].is_null())
         << entry.path();

@@ -10,10 +10,11 @@
 
 namespace mascot {
 
-/// Looks, tick by tick, for what may touch what.
+/// Finds out, tick by tick, which bodies may touch each other, the ground or an obstacle, if the experiment's physics
+/// lets them.
 class ContactWatch {
  public:
-  /// Of what can touch in the experiment, all that is nearer than `margin_m`.
+  /// Bodies may touch what they are nearer to than `margin_m`; the ground: than a quarter of that.
   ContactWatch(const Experiment& experiment, double margin_m) : experiment_(experiment), margin_m_(margin_m) {}
 
   /// "agents 1 and 2 may touch", "agent 3 may touch the ground", "agent 3 may touch an obstacle"; empty: nothing.
