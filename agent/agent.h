@@ -8,8 +8,8 @@
 #include "agent/neighbours.h"
 #include "agent/safety.h"
 #include "agent/sensor.h"
+#include "base/motion.h"
 #include "experiment/experiment.h"
-#include "experiment/motion.h"
 
 namespace mascot {
 

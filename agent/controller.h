@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "agent/law.h"
+#include "base/motion.h"
 #include "experiment/experiment.h"
-#include "experiment/motion.h"
 
 namespace mascot {
 

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/motion.h"
 #include "experiment/experiment.h"
-#include "experiment/motion.h"
 
 namespace mascot {
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <span>
 
+#include "base/motion.h"
+#include "base/random.h"
 #include "experiment/lie.h"
-#include "experiment/motion.h"
-#include "experiment/random.h"
 
 namespace mascot {
 

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "base/motion.h"
+#include "base/random.h"
 #include "experiment/link.h"
-#include "experiment/motion.h"
-#include "experiment/random.h"
 
 namespace mascot {
 

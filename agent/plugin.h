@@ -12,7 +12,7 @@
 //   };
 //   MASCOT_PLUGIN_LAW(MyLaw)
 //
-// Frames and units are those of agent/law.h and experiment/motion.h: SI, world frame (x east, y north, z up).
+// Frames and units are those of agent/law.h and base/motion.h: SI, world frame (x east, y north, z up).
 //
 // Lifetime: `orchestrator check` and `up` make the law of every agent to check its parameters, ask it for its first
 // command and destroy it. In a run there is one object per agent, made before the first tick and destroyed after the
@@ -36,8 +36,8 @@
 
 #include "agent/law.h"
 #include "agent/plugin_params.h"
-#include "experiment/motion.h"
-#include "experiment/toml/value.h"
+#include "base/motion.h"
+#include "base/value.h"
 
 namespace mascot {
 

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "experiment/toml/value.h"
+#include "base/value.h"
 
 namespace mascot {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "agent/python_internal.h"
-#include "experiment/toml/utf8.h"
+#include "base/utf8.h"
 
 namespace mascot {
 namespace {

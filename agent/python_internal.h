@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "agent/python.h"
-#include "experiment/toml/value.h"
+#include "base/value.h"
 
 namespace mascot {
 

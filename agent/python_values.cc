@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "agent/python_internal.h"
-#include "experiment/toml/utf8.h"
+#include "base/utf8.h"
 
 namespace mascot {
 

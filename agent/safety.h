@@ -6,8 +6,8 @@
 
 #include "agent/law.h"
 #include "agent/safety_qp.h"
+#include "base/motion.h"
 #include "experiment/experiment.h"
-#include "experiment/motion.h"
 
 namespace mascot {
 

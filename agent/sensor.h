@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "experiment/motion.h"
+#include "base/motion.h"
+#include "base/random.h"
 #include "experiment/physics.h"
-#include "experiment/random.h"
 #include "experiment/sensors.h"
 
 namespace mascot {

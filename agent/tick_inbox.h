@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "agent/link.h"
-#include "experiment/motion.h"
+#include "base/motion.h"
 
 namespace mascot {
 

@@ -16,7 +16,7 @@
 #include <sstream>
 #include <string>
 
-#include "experiment/toml/number.h"
+#include "base/number.h"
 
 namespace mascot {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "experiment/toml/utf8.h"
+#include "base/utf8.h"
 
 namespace mascot {
 

@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
+#include "base/contacts.h"
+#include "base/pacing.h"
 #include "bus/bus.h"
 #include "bus/stop_signal.h"
 #include "bus/wire.h"
-#include "experiment/contacts.h"
-#include "experiment/pacing.h"
 
 namespace mascot {
 

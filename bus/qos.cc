@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "experiment/toml/number.h"
+#include "base/number.h"
 #include "idl/schemas.h"
 
 namespace mascot {

@@ -22,8 +22,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/number.h"
 #include "bus/ports.h"
-#include "experiment/toml/number.h"
 
 namespace mascot {
 namespace {

@@ -15,7 +15,7 @@
 #include <system_error>
 #include <utility>
 
-#include "experiment/toml/utf8.h"
+#include "base/utf8.h"
 
 namespace mascot {
 namespace {

@@ -9,7 +9,7 @@ namespace mascot {
 void OpenStandardStreams();
 
 /// From now on all that is printed to std::cout and std::cerr is fit for a terminal and a log (Plain(),
-/// experiment/toml/utf8.h), whoever wrote the words: names, reasons and paths come from files and from other processes.
+/// base/utf8.h), whoever wrote the words: names, reasons and paths come from files and from other processes.
 /// JSON that is printed stays the same JSON.
 void FitStandardStreams();
 

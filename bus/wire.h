@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "base/contacts.h"
+#include "base/motion.h"
+#include "base/pacing.h"
 #include "bus/cdr.h"
-#include "experiment/contacts.h"
-#include "experiment/motion.h"
-#include "experiment/pacing.h"
 #include "idl/topics.h"
 
 namespace mascot {

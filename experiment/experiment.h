@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/enum_names.h"
 #include "experiment/airframe.h"
 #include "experiment/events.h"
 #include "experiment/graph/graph.h"
@@ -21,7 +22,6 @@
 #include "experiment/physics.h"
 #include "experiment/safety.h"
 #include "experiment/sensors.h"
-#include "experiment/toml/enum_names.h"
 
 namespace mascot {
 

@@ -8,9 +8,9 @@
 #include <set>
 #include <string_view>
 
+#include "base/number.h"
 #include "experiment/experiment.h"
 #include "experiment/toml/few_tables.h"
-#include "experiment/toml/number.h"
 
 namespace mascot {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "experiment/toml/enum_names.h"
+#include "base/enum_names.h"
 #include "experiment/toml/section.h"
 
 namespace mascot {

@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-#include "experiment/motion.h"
+#include "base/motion.h"
 
 namespace mascot {
 

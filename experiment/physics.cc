@@ -1,6 +1,6 @@
 #include "experiment/physics.h"
 
-#include "experiment/toml/enum_names.h"
+#include "base/enum_names.h"
 #include "experiment/toml/few_tables.h"
 
 namespace mascot {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiment/motion.h"
-#include "experiment/random.h"
+#include "base/motion.h"
+#include "base/random.h"
 
 namespace mascot {
 namespace {

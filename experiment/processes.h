@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "experiment/agent_range.h"
+#include "base/agent_range.h"
 #include "experiment/experiment.h"
 
 namespace mascot {

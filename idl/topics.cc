@@ -1,6 +1,6 @@
 #include "idl/topics.h"
 
-#include "experiment/toml/number.h"
+#include "base/number.h"
 
 namespace mascot {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "experiment/agent_range.h"
+#include "base/agent_range.h"
 
 namespace mascot {
 

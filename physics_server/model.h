@@ -6,8 +6,8 @@
 #include <span>
 #include <string_view>
 
+#include "base/motion.h"
 #include "experiment/experiment.h"
-#include "experiment/motion.h"
 
 namespace mascot {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "experiment/pacing.h"
+#include "base/pacing.h"
 
 namespace mascot {
 

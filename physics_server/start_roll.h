@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiment/agent_range.h"
+#include "base/agent_range.h"
 
 namespace mascot {
 

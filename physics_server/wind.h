@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "base/random.h"
 #include "experiment/physics.h"
-#include "experiment/random.h"
 
 namespace mascot {
 

@@ -4,9 +4,9 @@
 #include <memory>
 #include <span>
 
-#include "experiment/contacts.h"
+#include "base/contacts.h"
+#include "base/motion.h"
 #include "experiment/experiment.h"
-#include "experiment/motion.h"
 
 namespace mascot {
 

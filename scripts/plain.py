@@ -1,4 +1,4 @@
-"""Words that are fit for a terminal, as the programs print them (experiment/toml/utf8.h)."""
+"""Words that are fit for a terminal, as the programs print them (base/utf8.h)."""
 
 import re
 import sys

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "experiment/random.h"
+#include "base/random.h"
 #include "orchestrator/sweeping/metrics.h"
 #include "tests/five_on_a_path.h"
 #include "tests/law_run.h"

@@ -5,8 +5,8 @@
 
 #include "agent/laws/clearance_bound.h"
 #include "agent/laws/repulsion.h"
+#include "base/random.h"
 #include "experiment/live_experiment.h"
-#include "experiment/random.h"
 #include "tests/ideal_network.h"
 #include "tests/law_run.h"
 #include "tests/scratch.h"

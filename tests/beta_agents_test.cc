@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "experiment/random.h"
+#include "base/random.h"
 #include "tests/ideal_network.h"
 #include "tests/law_run.h"
 

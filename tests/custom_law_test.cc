@@ -9,7 +9,7 @@
 
 #include "agent/agent.h"
 #include "agent/python.h"
-#include "experiment/toml/utf8.h"
+#include "base/utf8.h"
 #include "tests/scratch.h"
 #include "tests/three_agents.h"
 

@@ -11,8 +11,8 @@
 #include "agent/laws/leaders.h"
 #include "agent/laws/rigidity.h"
 #include "agent/laws/stress_matrix.h"
-#include "experiment/linear_algebra.h"
-#include "experiment/random.h"
+#include "base/linear_algebra.h"
+#include "base/random.h"
 #include "tests/ideal_network.h"
 #include "tests/law_run.h"
 

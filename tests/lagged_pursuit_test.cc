@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "experiment/random.h"
+#include "base/random.h"
 #include "orchestrator/theory/minmax_time.h"
 #include "orchestrator/theory/theory.h"
 #include "tests/flown_network.h"

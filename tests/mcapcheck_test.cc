@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/motion.h"
 #include "bus/bus.h"
 #include "bus/wire.h"
-#include "experiment/motion.h"
 #include "idl/schemas.h"
 #include "idl/topics.h"
 #include "orchestrator/formats/bytes.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiment/random.h"
+#include "base/random.h"
 #include "tests/five_on_a_path.h"
 #include "tests/law_run.h"
 

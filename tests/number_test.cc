@@ -1,4 +1,4 @@
-#include "experiment/toml/number.h"
+#include "base/number.h"
 
 #include <gtest/gtest.h>
 

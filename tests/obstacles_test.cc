@@ -11,7 +11,7 @@
 
 #include "agent/agent.h"
 #include "agent/laws.h"
-#include "experiment/random.h"
+#include "base/random.h"
 
 namespace mascot {
 namespace {

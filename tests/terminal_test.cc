@@ -17,8 +17,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/utf8.h"
 #include "bus/standard_streams.h"
-#include "experiment/toml/utf8.h"
 #include "orchestrator/processes/console.h"
 #include "tests/scratch.h"
 

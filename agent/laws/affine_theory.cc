@@ -9,7 +9,7 @@
 #include "agent/laws/ideal.h"
 #include "agent/laws/row_parts.h"
 #include "agent/laws/stable_period.h"
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 
 namespace mascot {
 namespace {

@@ -18,7 +18,7 @@
 #include "agent/laws/reach.h"
 #include "agent/laws/row_parts.h"
 #include "agent/laws/stable_period.h"
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 
 namespace mascot {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "agent/laws/flocking.h"
-#include "experiment/motion.h"
+#include "base/motion.h"
 
 namespace mascot {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "agent/laws/rigidity.h"
-#include "experiment/random.h"
+#include "base/random.h"
 
 namespace mascot {
 namespace {

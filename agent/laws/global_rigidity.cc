@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "experiment/linear_algebra.h"
-#include "experiment/random.h"
+#include "base/linear_algebra.h"
+#include "base/random.h"
 
 namespace mascot {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 
 namespace mascot {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "base/linear_algebra.h"
 #include "experiment/agent_ids.h"
-#include "experiment/linear_algebra.h"
 
 namespace mascot {
 

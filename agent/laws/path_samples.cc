@@ -7,8 +7,8 @@
 #include <sstream>
 #include <string_view>
 
-#include "experiment/toml/number.h"
-#include "experiment/toml/utf8.h"
+#include "base/number.h"
+#include "base/utf8.h"
 
 namespace mascot {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "agent/laws/plugin.h"
 #include "agent/laws/user_params.h"
-#include "experiment/toml/utf8.h"
+#include "base/utf8.h"
 
 namespace mascot {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "agent/laws/inputs.h"
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 
 namespace mascot {
 namespace {

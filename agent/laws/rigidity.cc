@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 
 namespace mascot {
 

@@ -6,7 +6,7 @@
 #include <complex>
 #include <limits>
 
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 
 namespace mascot {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 
 namespace mascot {
 namespace {

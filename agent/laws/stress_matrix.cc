@@ -9,7 +9,7 @@
 #include "agent/laws/definite_matrix.h"
 #include "agent/laws/leaders.h"
 #include "agent/laws/reach.h"
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 
 namespace mascot {
 namespace {

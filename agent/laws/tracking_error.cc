@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "agent/laws/sampled_modes.h"
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 
 namespace mascot {
 namespace {

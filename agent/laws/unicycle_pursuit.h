@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "experiment/motion.h"
+#include "base/motion.h"
 
 namespace mascot {
 

@@ -3,8 +3,8 @@
 #include <cassert>
 #include <set>
 
+#include "base/random.h"
 #include "experiment/graph/graph.h"
-#include "experiment/random.h"
 
 namespace mascot {
 namespace {

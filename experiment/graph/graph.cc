@@ -4,7 +4,7 @@
 #include <cassert>
 #include <complex>
 
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 
 namespace mascot {
 namespace {

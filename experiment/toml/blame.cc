@@ -5,8 +5,8 @@
 #include <optional>
 #include <string_view>
 
+#include "base/utf8.h"
 #include "experiment/toml/section_internal.h"
-#include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {

@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <string_view>
 
-#include "experiment/toml/number.h"
+#include "base/number.h"
+#include "base/utf8.h"
 #include "experiment/toml/section_internal.h"
-#include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/value.h"
 #include "experiment/toml/key.h"
-#include "experiment/toml/value.h"
 
 namespace mascot {
 

@@ -6,8 +6,8 @@
 
 #include <set>
 
+#include "base/utf8.h"
 #include "experiment/toml/section.h"
-#include "experiment/toml/utf8.h"
 
 namespace mascot {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/utf8.h"
 #include "experiment/toml/section_internal.h"
-#include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {

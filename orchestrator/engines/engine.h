@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "experiment/contacts.h"
-#include "experiment/pacing.h"
+#include "base/contacts.h"
+#include "base/pacing.h"
 
 namespace mascot {
 

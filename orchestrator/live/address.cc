@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "experiment/toml/number.h"
+#include "base/number.h"
 #include "experiment/toml/section.h"
 
 namespace mascot {

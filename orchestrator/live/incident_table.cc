@@ -8,7 +8,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "experiment/toml/utf8.h"
+#include "base/utf8.h"
 
 namespace mascot {
 namespace {

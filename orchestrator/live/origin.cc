@@ -9,9 +9,9 @@
 #include <cctype>
 #include <utility>
 
-#include "experiment/toml/number.h"
+#include "base/number.h"
+#include "base/utf8.h"
 #include "experiment/toml/section.h"
-#include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {

@@ -12,9 +12,9 @@
 #include <optional>
 #include <utility>
 
+#include "base/utf8.h"
 #include "bus/local_socket.h"
 #include "experiment/experiment.h"
-#include "experiment/toml/utf8.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
 #include "orchestrator/live/compact_json.h"

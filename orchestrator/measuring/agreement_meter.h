@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "base/motion.h"
 #include "experiment/experiment.h"
-#include "experiment/motion.h"
 #include "orchestrator/measuring/decay_meter.h"
 
 namespace mascot {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "base/motion.h"
 #include "experiment/experiment.h"
-#include "experiment/motion.h"
 #include "orchestrator/measuring/agreement_meter.h"
 #include "orchestrator/measuring/pursuit_meter.h"
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "experiment/contacts.h"
-#include "experiment/episode.h"
+#include "base/contacts.h"
+#include "base/episode.h"
+#include "base/pacing.h"
 #include "experiment/experiment.h"
-#include "experiment/pacing.h"
 #include "orchestrator/measuring/link_meter.h"
 #include "orchestrator/team/row_sink.h"
 

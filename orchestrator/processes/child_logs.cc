@@ -14,7 +14,7 @@
 #include <string_view>
 #include <utility>
 
-#include "experiment/toml/utf8.h"
+#include "base/utf8.h"
 
 namespace mascot {
 

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <functional>
 
+#include "base/utf8.h"
 #include "bus/standard_streams.h"
-#include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {

@@ -13,9 +13,9 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "experiment/toml/number.h"
+#include "base/number.h"
+#include "base/utf8.h"
 #include "experiment/toml/section.h"
-#include "experiment/toml/utf8.h"
 #include "orchestrator/processes/environment.h"
 
 namespace mascot {

@@ -7,9 +7,9 @@
 #include <cstring>
 #include <map>
 
+#include "base/number.h"
 #include "bus/wire.h"
 #include "experiment/read_experiment.h"
-#include "experiment/toml/number.h"
 #include "orchestrator/recording/topic_filter.h"
 
 namespace mascot {

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "experiment/contacts.h"
+#include "base/contacts.h"
 #include "experiment/experiment.h"
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/measuring/run_meter.h"

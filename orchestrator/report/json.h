@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "base/utf8.h"
 #include "experiment/toml/key.h"
-#include "experiment/toml/utf8.h"
 #include "orchestrator/formats/outside_json.h"
 
 namespace mascot {

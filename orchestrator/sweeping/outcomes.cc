@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "experiment/toml/number.h"
+#include "base/number.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/sweeping/statistics.h"
 #include "orchestrator/sweeping/table.h"

@@ -14,8 +14,8 @@
 #include <unordered_set>
 #include <utility>
 
-#include "experiment/random.h"
-#include "experiment/toml/number.h"
+#include "base/number.h"
+#include "base/random.h"
 #include "orchestrator/sweeping/values.h"
 
 namespace mascot {

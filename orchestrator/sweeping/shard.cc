@@ -6,7 +6,7 @@
 #include <regex>
 #include <string_view>
 
-#include "experiment/toml/number.h"
+#include "base/number.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/processes/environment.h"
 #include "orchestrator/sweeping/table.h"

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/utf8.h"
 #include "experiment/toml/section.h"
-#include "experiment/toml/utf8.h"
 #include "orchestrator/formats/outside_json.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/sweeping/labels.h"

@@ -12,7 +12,7 @@ namespace {
 constexpr double kConfidence = 0.95;
 
 /// The probability that |t| < sqrt(degrees) tan(angle), as a finite sum (Abramowitz & Stegun 26.7.3, 26.7.4).
-/// Boost.Math has it too, but takes functions of long double from libm, which experiment/libm.cc does not replace.
+/// Boost.Math has it too, but takes functions of long double from libm, which base/libm.cc does not replace.
 double ProbabilityWithin(double angle, std::size_t degrees) {
   const double cosine = std::cos(angle), sine = std::sin(angle);
   const bool odd = degrees % 2 == 1;

@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
+#include "base/utf8.h"
 #include "experiment/toml/section.h"
-#include "experiment/toml/utf8.h"
 #include "orchestrator/sweeping/sweep_identity.h"
 #include "orchestrator/sweeping/values.h"
 

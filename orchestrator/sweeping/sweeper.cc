@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include "experiment/toml/utf8.h"
+#include "base/utf8.h"
 #include "orchestrator/formats/outside_json.h"
 #include "orchestrator/processes/build.h"
 #include "orchestrator/processes/console.h"

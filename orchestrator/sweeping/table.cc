@@ -10,7 +10,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "experiment/toml/number.h"
+#include "base/number.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/formats/bytes.h"
 #include "orchestrator/formats/input_file.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiment/motion.h"
+#include "base/motion.h"
 
 namespace mascot {
 

@@ -22,7 +22,7 @@
 #include <numbers>
 #include <vector>
 
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 
 namespace mascot {
 namespace {

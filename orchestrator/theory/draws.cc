@@ -1,12 +1,12 @@
-// Every random number of a run comes from a stream of Random or Dice (experiment/random.h), or from a law that is given
+// Every random number of a run comes from a stream of Random or Dice (base/random.h), or from a law that is given
 // run.seed. Each stream has a case below: the compiler refuses a stream without one.
 #include "orchestrator/theory/draws.h"
 
 #include <algorithm>
 
 #include "agent/laws.h"
+#include "base/random.h"
 #include "experiment/live_experiment.h"
-#include "experiment/random.h"
 #include "experiment/toml/section.h"
 
 namespace mascot {

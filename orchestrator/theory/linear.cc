@@ -9,7 +9,7 @@
 #include "agent/laws.h"
 #include "agent/laws/reach.h"
 #include "agent/link.h"
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 #include "orchestrator/theory/from_start.h"
 #include "orchestrator/theory/linear_team.h"
 #include "orchestrator/theory/links_on_average.h"

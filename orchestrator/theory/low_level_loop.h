@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "base/motion.h"
 #include "experiment/experiment.h"
-#include "experiment/motion.h"
 
 namespace mascot {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/motion.h"
 #include "experiment/experiment.h"
-#include "experiment/motion.h"
 
 namespace mascot {
 

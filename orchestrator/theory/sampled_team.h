@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 #include "orchestrator/theory/linear_team.h"
 #include "orchestrator/theory/timeline.h"
 

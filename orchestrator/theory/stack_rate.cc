@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "agent/laws.h"
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 
 namespace mascot {
 namespace {

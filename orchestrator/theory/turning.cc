@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "agent/laws/ideal.h"
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 
 namespace mascot {
 namespace {

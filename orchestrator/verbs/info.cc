@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "experiment/toml/utf8.h"
+#include "base/utf8.h"
 #include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/recording/completeness.h"
 #include "orchestrator/recording/recording.h"

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/number.h"
 #include "bus/standard_streams.h"
-#include "experiment/toml/number.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/live/running_runs.h"
 #include "orchestrator/verbs/verb.h"

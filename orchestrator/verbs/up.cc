@@ -12,10 +12,10 @@
 
 #include "agent/last_words.h"
 #include "agent/law_at_work.h"
+#include "base/utf8.h"
 #include "bus/leave.h"
 #include "bus/standard_streams.h"
 #include "bus/stop_signal.h"
-#include "experiment/toml/utf8.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/helm.h"
 #include "orchestrator/engines/progress.h"

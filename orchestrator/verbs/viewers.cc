@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "experiment/toml/utf8.h"
+#include "base/utf8.h"
 #include "orchestrator/live/origin.h"
 #include "orchestrator/live/shown_keys.h"
 #include "orchestrator/processes/script.h"

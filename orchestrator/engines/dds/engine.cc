@@ -12,13 +12,13 @@
 #include <thread>
 #include <utility>
 
+#include "base/utf8.h"
 #include "bus/bus.h"
 #include "bus/descendants.h"
 #include "bus/leave.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
 #include "experiment/processes.h"
-#include "experiment/toml/utf8.h"
 #include "orchestrator/engines/dds/bounded_call.h"
 #include "orchestrator/engines/dds/domain_lock.h"
 #include "orchestrator/engines/dds/hub.h"

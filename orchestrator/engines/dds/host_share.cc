@@ -5,11 +5,11 @@
 #include <climits>
 #include <iostream>
 
+#include "base/utf8.h"
 #include "bus/descendants.h"
 #include "bus/leave.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
-#include "experiment/toml/utf8.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
 #include "orchestrator/processes/build.h"

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/utf8.h"
 #include "experiment/processes.h"
-#include "experiment/toml/utf8.h"
 
 namespace mascot {
 

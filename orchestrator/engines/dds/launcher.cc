@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/utf8.h"
 #include "bus/local_socket.h"
-#include "experiment/toml/utf8.h"
 #include "orchestrator/engines/dds/route.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"

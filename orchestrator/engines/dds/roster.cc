@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/utf8.h"
 #include "bus/wire.h"
-#include "experiment/toml/utf8.h"
 #include "idl/topics.h"
 
 namespace mascot {

@@ -9,8 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "base/utf8.h"
 #include "experiment/processes.h"
-#include "experiment/toml/utf8.h"
 
 namespace mascot {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "experiment/episode.h"
+#include "base/episode.h"
 
 namespace mascot {
 

@@ -1,4 +1,4 @@
-#include "experiment/linear_algebra.h"
+#include "base/linear_algebra.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>

@@ -1,4 +1,4 @@
-#include "experiment/toml/utf8.h"
+#include "base/utf8.h"
 
 #include <algorithm>
 
