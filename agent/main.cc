@@ -7,8 +7,8 @@
 #include "bus/foreign_settings.h"
 #include "bus/privileges.h"
 #include "bus/process_main.h"
-#include "bus/standard_streams.h"
 #include "experiment/processes.h"
+#include "system/standard_streams.h"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include "base/contacts.h"
 #include "base/pacing.h"
 #include "bus/bus.h"
-#include "bus/stop_signal.h"
 #include "bus/wire.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 

@@ -15,12 +15,12 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "bus/descendants.h"
 #include "bus/leave.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
-#include "bus/usage.h"
 #include "experiment/experiment.h"
+#include "system/descendants.h"
+#include "system/usage.h"
 
 namespace mascot {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "bus/bus.h"
 #include "bus/lifecycle.h"
-#include "bus/stop_signal.h"
 #include "experiment/toml/section.h"
+#include "system/stop_signal.h"
 
 namespace CLI {
 class App;

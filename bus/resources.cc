@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "bus/control_groups.h"
+#include "system/control_groups.h"
 
 namespace mascot {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bus/local_socket.h"
+#include "system/local_socket.h"
 
 namespace mascot {
 

@@ -7,13 +7,13 @@
 #include <string_view>
 #include <vector>
 
-#include "bus/descendants.h"
 #include "bus/foreign_settings.h"
 #include "bus/leave.h"
-#include "bus/standard_streams.h"
-#include "bus/usage.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/verbs/verb.h"
+#include "system/descendants.h"
+#include "system/standard_streams.h"
+#include "system/usage.h"
 
 namespace mascot {
 namespace {

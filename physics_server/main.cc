@@ -3,9 +3,9 @@
 #include "bus/foreign_settings.h"
 #include "bus/privileges.h"
 #include "bus/process_main.h"
-#include "bus/standard_streams.h"
 #include "experiment/read_experiment.h"
 #include "physics_server/server.h"
+#include "system/standard_streams.h"
 
 namespace {
 

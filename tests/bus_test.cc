@@ -17,10 +17,10 @@
 
 #include "bus/leave.h"
 #include "bus/lifecycle.h"
-#include "bus/stop_signal.h"
 #include "bus/wire.h"
 #include "orchestrator/engines/dds/domain_lock.h"
 #include "orchestrator/engines/dds/ros_publisher.h"
+#include "system/stop_signal.h"
 #include "tests/orchestrator.h"
 
 namespace mascot::test {

@@ -1,5 +1,5 @@
 // Child processes and their output, tested with programs that every system has.
-#include "orchestrator/processes/children.h"
+#include "system/children.h"
 
 #include <gmock/gmock.h>
 #include <signal.h>

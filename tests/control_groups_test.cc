@@ -1,5 +1,5 @@
 // What control groups let a run have, as their folders tell.
-#include "bus/control_groups.h"
+#include "system/control_groups.h"
 
 #include <gmock/gmock.h>
 

@@ -15,7 +15,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DOCUMENT = "docs/architecture.md"
-FOLDERS = ["base", "experiment", "idl", "bus", "agent", "physics_server", "orchestrator"]
+FOLDERS = ["base", "system", "experiment", "idl", "bus", "agent", "physics_server", "orchestrator"]
 CPP = {".h", ".hpp", ".cc", ".cpp", ".inc"}
 
 Room = collections.namedtuple("Room", "line floor name patterns library may_use")

@@ -12,11 +12,11 @@
 #include <mutex>
 #include <vector>
 
-#include "bus/local_socket.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/live/origin.h"
 #include "orchestrator/live/pages.h"
 #include "orchestrator/live/socket.h"
+#include "system/local_socket.h"
 #include "tests/orchestrator.h"
 #include "tests/web_client.h"
 

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "base/utf8.h"
-#include "bus/standard_streams.h"
-#include "orchestrator/processes/console.h"
+#include "system/console.h"
+#include "system/standard_streams.h"
 #include "tests/scratch.h"
 
 namespace mascot::test {

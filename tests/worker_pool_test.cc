@@ -1,4 +1,4 @@
-#include "orchestrator/processes/worker_pool.h"
+#include "system/worker_pool.h"
 
 #include <gmock/gmock.h>
 #include <signal.h>

@@ -5,8 +5,8 @@
 
 #include "experiment/experiment.h"
 #include "orchestrator/measuring/run_meter.h"
-#include "orchestrator/processes/console.h"
 #include "orchestrator/team/row_sink.h"
+#include "system/console.h"
 
 namespace mascot {
 

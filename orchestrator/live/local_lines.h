@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "bus/local_socket.h"
+#include "system/local_socket.h"
 
 namespace mascot {
 

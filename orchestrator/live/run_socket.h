@@ -4,10 +4,10 @@
 #include <string>
 #include <thread>
 
-#include "bus/local_socket.h"
 #include "experiment/experiment.h"
 #include "orchestrator/engines/helm.h"
 #include "orchestrator/live/asker.h"
+#include "system/local_socket.h"
 
 namespace mascot {
 

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "base/utf8.h"
-#include "bus/local_socket.h"
 #include "experiment/experiment.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
@@ -21,6 +20,7 @@
 #include "orchestrator/live/local_lines.h"
 #include "orchestrator/live/run_socket.h"
 #include "orchestrator/live/wish.h"
+#include "system/local_socket.h"
 
 namespace mascot {
 namespace {

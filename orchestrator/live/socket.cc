@@ -22,8 +22,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "bus/local_socket.h"
 #include "orchestrator/live/origin.h"
+#include "system/local_socket.h"
 
 namespace mascot {
 namespace {

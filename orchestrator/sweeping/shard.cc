@@ -8,8 +8,8 @@
 
 #include "base/number.h"
 #include "experiment/toml/section.h"
-#include "orchestrator/processes/environment.h"
 #include "orchestrator/sweeping/table.h"
+#include "system/environment.h"
 
 namespace mascot {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "bus/stop_signal.h"
-#include "orchestrator/processes/worker_pool.h"
 #include "orchestrator/sweeping/sweep_work.h"
+#include "system/stop_signal.h"
+#include "system/worker_pool.h"
 
 namespace mascot {
 

@@ -8,10 +8,10 @@
 
 #include "agent/python_metrics.h"
 #include "experiment/experiment.h"
-#include "orchestrator/processes/worker_pool.h"
 #include "orchestrator/sweeping/law_axis.h"
 #include "orchestrator/sweeping/plan.h"
 #include "orchestrator/sweeping/run_laws.h"
+#include "system/worker_pool.h"
 
 namespace mascot {
 

@@ -15,13 +15,13 @@
 
 #include "base/utf8.h"
 #include "orchestrator/formats/outside_json.h"
-#include "orchestrator/processes/build.h"
-#include "orchestrator/processes/console.h"
-#include "orchestrator/processes/worker_pool.h"
 #include "orchestrator/sweeping/conclusion.h"
 #include "orchestrator/sweeping/metrics.h"
 #include "orchestrator/sweeping/sweep_looks.h"
 #include "orchestrator/sweeping/table.h"
+#include "system/build.h"
+#include "system/console.h"
+#include "system/worker_pool.h"
 
 namespace mascot {
 namespace {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "bus/stop_signal.h"
 #include "orchestrator/sweeping/plan.h"
 #include "orchestrator/sweeping/shard.h"
 #include "orchestrator/sweeping/sweep_identity.h"
 #include "orchestrator/sweeping/sweep_work.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 

@@ -16,8 +16,8 @@
 #include "orchestrator/formats/input_file.h"
 #include "orchestrator/formats/output_file.h"
 #include "orchestrator/formats/whole_file.h"
-#include "orchestrator/processes/worker_pool.h"
 #include "orchestrator/sweeping/plan.h"
+#include "system/worker_pool.h"
 
 namespace mascot {
 namespace {

@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "bus/stop_signal.h"
 #include "experiment/toml/section.h"
-#include "orchestrator/processes/script.h"
 #include "orchestrator/recording/recording.h"
 #include "orchestrator/sweeping/side_by_side.h"
 #include "orchestrator/verbs/verb.h"
+#include "system/script.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 namespace {

@@ -7,7 +7,7 @@
 #include "bus/leave.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/inprocess.h"
-#include "orchestrator/processes/interruptions.h"
+#include "system/interruptions.h"
 
 namespace mascot {
 namespace {

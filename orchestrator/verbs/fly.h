@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "bus/stop_signal.h"
 #include "experiment/experiment.h"
 #include "orchestrator/engines/dds/engine.h"
 #include "orchestrator/engines/dds/janitor.h"
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/engines/helm.h"
-#include "orchestrator/processes/console.h"
 #include "orchestrator/recording/run_folder.h"
+#include "system/console.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 

@@ -3,9 +3,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "bus/stop_signal.h"
 #include "orchestrator/engines/dds/host_share.h"
 #include "orchestrator/verbs/verb.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "experiment/toml/section.h"
-#include "orchestrator/processes/script.h"
 #include "orchestrator/recording/recording.h"
 #include "orchestrator/verbs/verb.h"
+#include "system/script.h"
 
 namespace mascot {
 namespace {

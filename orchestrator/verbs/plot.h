@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "bus/stop_signal.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 

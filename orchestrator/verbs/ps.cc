@@ -4,10 +4,10 @@
 #include <iostream>
 #include <memory>
 
-#include "bus/standard_streams.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/live/running_runs.h"
 #include "orchestrator/verbs/verb.h"
+#include "system/standard_streams.h"
 
 namespace mascot {
 namespace {

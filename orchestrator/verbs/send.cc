@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "base/number.h"
-#include "bus/standard_streams.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/live/running_runs.h"
 #include "orchestrator/verbs/verb.h"
+#include "system/standard_streams.h"
 
 namespace mascot {
 namespace {

@@ -12,11 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "bus/stop_signal.h"
 #include "experiment/toml/input.h"
 #include "orchestrator/formats/whole_file.h"
-#include "orchestrator/processes/children.h"
-#include "orchestrator/processes/script.h"
 #include "orchestrator/sweeping/job_array.h"
 #include "orchestrator/sweeping/shard.h"
 #include "orchestrator/sweeping/sweeper.h"
@@ -24,6 +21,9 @@
 #include "orchestrator/verbs/sweep_merge.h"
 #include "orchestrator/verbs/sweep_picture.h"
 #include "orchestrator/verbs/verb.h"
+#include "system/children.h"
+#include "system/script.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 namespace {

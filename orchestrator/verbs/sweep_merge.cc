@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "bus/stop_signal.h"
 #include "orchestrator/sweeping/merge.h"
 #include "orchestrator/sweeping/metrics.h"
 #include "orchestrator/verbs/sweep_picture.h"
 #include "orchestrator/verbs/verb.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 namespace {

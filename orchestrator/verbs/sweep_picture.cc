@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "experiment/toml/section.h"
-#include "orchestrator/processes/script.h"
 #include "orchestrator/sweeping/labels.h"
 #include "orchestrator/sweeping/metrics.h"
 #include "orchestrator/sweeping/outcomes.h"
 #include "orchestrator/sweeping/table.h"
+#include "system/script.h"
 
 namespace mascot {
 namespace {

@@ -3,9 +3,9 @@
 #include <optional>
 #include <string>
 
-#include "bus/stop_signal.h"
 #include "orchestrator/sweeping/plan.h"
 #include "orchestrator/sweeping/sweep_identity.h"
+#include "system/stop_signal.h"
 
 namespace CLI {
 class App;

@@ -14,8 +14,6 @@
 #include "agent/law_at_work.h"
 #include "base/utf8.h"
 #include "bus/leave.h"
-#include "bus/standard_streams.h"
-#include "bus/stop_signal.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/helm.h"
 #include "orchestrator/engines/progress.h"
@@ -24,8 +22,6 @@
 #include "orchestrator/live/run_socket.h"
 #include "orchestrator/live/view_sink.h"
 #include "orchestrator/measuring/run_meter.h"
-#include "orchestrator/processes/console.h"
-#include "orchestrator/processes/slurm.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/run_writer.h"
 #include "orchestrator/report/ending.h"
@@ -37,6 +33,10 @@
 #include "orchestrator/verbs/plot.h"
 #include "orchestrator/verbs/verb.h"
 #include "orchestrator/verbs/viewers.h"
+#include "system/console.h"
+#include "system/slurm.h"
+#include "system/standard_streams.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 namespace {

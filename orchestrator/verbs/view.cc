@@ -5,17 +5,17 @@
 #include <string>
 #include <vector>
 
-#include "bus/stop_signal.h"
 #include "orchestrator/live/address.h"
 #include "orchestrator/live/live_view.h"
 #include "orchestrator/live/playback.h"
 #include "orchestrator/live/projector.h"
 #include "orchestrator/live/recorded_run.h"
-#include "orchestrator/processes/console.h"
-#include "orchestrator/processes/script.h"
 #include "orchestrator/theory/theory.h"
 #include "orchestrator/verbs/verb.h"
 #include "orchestrator/verbs/viewers.h"
+#include "system/console.h"
+#include "system/script.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 namespace {

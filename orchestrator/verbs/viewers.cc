@@ -8,7 +8,7 @@
 #include "base/utf8.h"
 #include "orchestrator/live/origin.h"
 #include "orchestrator/live/shown_keys.h"
-#include "orchestrator/processes/script.h"
+#include "system/script.h"
 
 namespace mascot {
 

@@ -15,8 +15,8 @@
 #include "orchestrator/live/address.h"
 #include "orchestrator/live/live_view.h"
 #include "orchestrator/live/view_sink.h"
-#include "orchestrator/processes/console.h"
 #include "orchestrator/recording/run_folder.h"
+#include "system/console.h"
 
 namespace CLI {
 class App;

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <functional>
 
-#include "bus/stop_signal.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 

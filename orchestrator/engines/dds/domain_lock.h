@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "bus/local_socket.h"
+#include "system/local_socket.h"
 
 namespace mascot {
 

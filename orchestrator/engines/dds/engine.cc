@@ -14,7 +14,6 @@
 
 #include "base/utf8.h"
 #include "bus/bus.h"
-#include "bus/descendants.h"
 #include "bus/leave.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
@@ -29,7 +28,8 @@
 #include "orchestrator/engines/dds/run_phases.h"
 #include "orchestrator/engines/dds/wire_audit.h"
 #include "orchestrator/engines/row_feed.h"
-#include "orchestrator/processes/children.h"
+#include "system/children.h"
+#include "system/descendants.h"
 
 namespace mascot {
 namespace {

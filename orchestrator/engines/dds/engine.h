@@ -3,14 +3,14 @@
 #include <memory>
 #include <vector>
 
-#include "bus/stop_signal.h"
 #include "experiment/experiment.h"
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/engines/helm.h"
 #include "orchestrator/engines/ros_source.h"
-#include "orchestrator/processes/console.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/team/row_sink.h"
+#include "system/console.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 

@@ -6,14 +6,14 @@
 #include <iostream>
 
 #include "base/utf8.h"
-#include "bus/descendants.h"
 #include "bus/leave.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
-#include "orchestrator/processes/build.h"
-#include "orchestrator/processes/environment.h"
+#include "system/build.h"
+#include "system/descendants.h"
+#include "system/environment.h"
 
 namespace mascot {
 namespace {

@@ -7,13 +7,13 @@
 #include <string>
 #include <string_view>
 
-#include "bus/stop_signal.h"
 #include "orchestrator/engines/dds/domain_lock.h"
 #include "orchestrator/engines/dds/host_words.h"
 #include "orchestrator/engines/dds/janitor.h"
-#include "orchestrator/processes/child_logs.h"
-#include "orchestrator/processes/children.h"
-#include "orchestrator/processes/line_pipe.h"
+#include "system/child_logs.h"
+#include "system/children.h"
+#include "system/line_pipe.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 

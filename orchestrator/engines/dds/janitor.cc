@@ -15,7 +15,7 @@
 
 #include "bus/process_main.h"
 #include "bus/shared_memory.h"
-#include "orchestrator/processes/children.h"
+#include "system/children.h"
 
 extern char** environ;
 

@@ -13,12 +13,12 @@
 #include <utility>
 
 #include "base/utf8.h"
-#include "bus/local_socket.h"
 #include "orchestrator/engines/dds/route.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
-#include "orchestrator/processes/build.h"
-#include "orchestrator/processes/line_pipe.h"
+#include "system/build.h"
+#include "system/line_pipe.h"
+#include "system/local_socket.h"
 
 namespace mascot {
 namespace {

@@ -11,9 +11,9 @@
 #include "bus/peers.h"
 #include "experiment/experiment.h"
 #include "orchestrator/engines/dds/host_words.h"
-#include "orchestrator/processes/child_logs.h"
-#include "orchestrator/processes/children.h"
 #include "orchestrator/recording/run_folder.h"
+#include "system/child_logs.h"
+#include "system/children.h"
 
 namespace mascot {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "bus/local_socket.h"
+#include "system/local_socket.h"
 
 namespace mascot {
 namespace {

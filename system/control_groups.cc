@@ -1,4 +1,4 @@
-#include "bus/control_groups.h"
+#include "system/control_groups.h"
 
 #include <fstream>
 #include <string>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bus/stop_signal.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 

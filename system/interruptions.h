@@ -9,8 +9,8 @@
 #include <thread>
 #include <utility>
 
-#include "bus/stop_signal.h"
-#include "orchestrator/processes/console.h"
+#include "system/console.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 

@@ -1,4 +1,4 @@
-#include "orchestrator/processes/console.h"
+#include "system/console.h"
 
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "base/utf8.h"
-#include "bus/standard_streams.h"
+#include "system/standard_streams.h"
 
 namespace mascot {
 namespace {

@@ -1,4 +1,4 @@
-#include "orchestrator/processes/line_pipe.h"
+#include "system/line_pipe.h"
 
 #include <fcntl.h>
 #include <poll.h>

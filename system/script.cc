@@ -1,4 +1,4 @@
-#include "orchestrator/processes/script.h"
+#include "system/script.h"
 
 #include <signal.h>
 #include <spawn.h>
@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "orchestrator/processes/children.h"
+#include "system/children.h"
 
 extern char** environ;
 

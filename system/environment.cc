@@ -1,4 +1,4 @@
-#include "orchestrator/processes/environment.h"
+#include "system/environment.h"
 
 #include <cstdlib>
 

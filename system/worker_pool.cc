@@ -1,4 +1,4 @@
-#include "orchestrator/processes/worker_pool.h"
+#include "system/worker_pool.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -15,7 +15,7 @@
 #include <system_error>
 #include <utility>
 
-#include "orchestrator/processes/children.h"
+#include "system/children.h"
 
 namespace mascot {
 namespace {

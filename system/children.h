@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "orchestrator/processes/child_logs.h"
+#include "system/child_logs.h"
 
 namespace mascot {
 

@@ -1,4 +1,4 @@
-#include "bus/local_socket.h"
+#include "system/local_socket.h"
 
 #include <pwd.h>
 #include <sys/un.h>

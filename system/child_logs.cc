@@ -1,4 +1,4 @@
-#include "orchestrator/processes/child_logs.h"
+#include "system/child_logs.h"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -1,4 +1,4 @@
-#include "bus/descendants.h"
+#include "system/descendants.h"
 
 #include <poll.h>
 #include <signal.h>

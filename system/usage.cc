@@ -1,4 +1,4 @@
-#include "bus/usage.h"
+#include "system/usage.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "orchestrator/processes/children.h"
+#include "system/children.h"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -1,4 +1,4 @@
-#include "orchestrator/processes/slurm.h"
+#include "system/slurm.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,7 +16,7 @@
 #include "base/number.h"
 #include "base/utf8.h"
 #include "experiment/toml/section.h"
-#include "orchestrator/processes/environment.h"
+#include "system/environment.h"
 
 namespace mascot {
 namespace {

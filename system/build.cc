@@ -1,4 +1,4 @@
-#include "orchestrator/processes/build.h"
+#include "system/build.h"
 
 #include <elf.h>
 #include <fmt/format.h>

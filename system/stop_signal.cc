@@ -1,4 +1,4 @@
-#include "bus/stop_signal.h"
+#include "system/stop_signal.h"
 
 #include <fcntl.h>
 #include <poll.h>
