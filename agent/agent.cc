@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 
 namespace mascot {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "agent/controller.h"
-#include "agent/law.h"
+#include "agent/laws/law.h"
 #include "agent/neighbours.h"
 #include "agent/safety.h"
 #include "agent/sensor.h"

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "agent/law.h"
+#include "agent/laws/law.h"
 #include "base/motion.h"
 #include "experiment/experiment.h"
 

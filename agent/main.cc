@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <iostream>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "agent/node.h"
 #include "bus/foreign_settings.h"
 #include "bus/privileges.h"

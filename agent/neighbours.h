@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "agent/law.h"
+#include "agent/laws/law.h"
 #include "agent/lie.h"
 #include "agent/link.h"
 #include "agent/sensor.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "agent/law.h"
+#include "agent/laws/law.h"
 #include "agent/safety_qp.h"
 #include "base/motion.h"
 #include "experiment/experiment.h"

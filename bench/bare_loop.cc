@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "agent/controller.h"
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "physics_server/world.h"
 
 namespace {

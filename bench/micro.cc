@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "agent/agent.h"
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/engines/row_feed.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/recording/run_writer.h"

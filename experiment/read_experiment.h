@@ -20,13 +20,13 @@ inline constexpr int kFormat = 1;
 /// ExperimentKeys().
 void CheckFormat(Section& document);
 
-/// All keys that an experiment file may have, except the parameters of single laws (agent/laws.h).
+/// All keys that an experiment file may have, except the parameters of single laws (agent/laws/laws.h).
 std::span<const Key> ExperimentKeys();
 /// The keys of [law] that all laws share.
 std::span<const Key> LawKeys();
 
 /// The laws that an experiment file may name: an interface, because their table is in a library above this one
-/// (agent/laws.h).
+/// (agent/laws/laws.h).
 class LawCatalog {
  public:
   virtual ~LawCatalog() = default;

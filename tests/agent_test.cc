@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 
 namespace mascot {
 namespace {

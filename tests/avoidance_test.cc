@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "agent/laws/clearance_bound.h"
-#include "agent/laws/repulsion.h"
+#include "agent/laws/avoidance/clearance_bound.h"
+#include "agent/laws/avoidance/repulsion.h"
 #include "base/random.h"
 #include "experiment/live_experiment.h"
 #include "tests/ideal_network.h"

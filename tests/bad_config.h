@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 
 namespace mascot::test {
 

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "tests/bad_config.h"
 #include "tests/param_name.h"
 #include "tests/scratch.h"

@@ -1,5 +1,5 @@
 // Beta agents: what obstacles do to a flock, on one agent, on the law alone and in whole runs.
-#include "agent/laws/beta_agents.h"
+#include "agent/laws/flocking/beta_agents.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/formats/bytes.h"
 #include "orchestrator/formats/mcap/reader.h"

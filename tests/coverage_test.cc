@@ -7,8 +7,8 @@
 #include <random>
 #include <span>
 
-#include "agent/laws/density.h"
-#include "agent/laws/polygon.h"
+#include "agent/laws/coverage/density.h"
+#include "agent/laws/coverage/polygon.h"
 #include "tests/ideal_network.h"
 #include "tests/law_run.h"
 

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "agent/agent.h"
-#include "agent/python.h"
+#include "agent/python/python.h"
 #include "base/utf8.h"
 #include "tests/scratch.h"
 #include "tests/three_agents.h"

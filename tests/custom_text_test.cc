@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "agent/agent.h"
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "tests/custom_law.h"
 #include "tests/scratch.h"
 #include "tests/three_agents.h"

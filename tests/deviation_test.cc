@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "tests/load.h"
 
 namespace mascot {

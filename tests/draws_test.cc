@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/engines/inprocess.h"
 #include "tests/scratch.h"
 

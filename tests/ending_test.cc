@@ -7,7 +7,7 @@
 #include <csignal>
 #include <stdexcept>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "tests/scratch.h"
 
 namespace mascot {

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/live_experiment.h"
 #include "tests/fly_rows.h"
 #include "tests/param_name.h"

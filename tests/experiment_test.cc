@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/placement.h"
 #include "experiment/processes.h"
 

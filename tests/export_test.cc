@@ -5,7 +5,7 @@
 #include <map>
 #include <sstream>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "bus/wire.h"
 #include "orchestrator/engines/row_feed.h"
 #include "orchestrator/formats/mcap/reader.h"

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/model_traits.h"
 #include "orchestrator/report/law_report.h"
 #include "orchestrator/theory/theory.h"

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "agent/laws/sigma_norm.h"
+#include "agent/laws/flocking/sigma_norm.h"
 #include "tests/ideal_network.h"
 #include "tests/law_run.h"
 #include "tests/scratch.h"

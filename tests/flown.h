@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/recording/run_folder.h"

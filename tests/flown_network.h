@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/team/team.h"
 #include "physics_server/world.h"
 

@@ -5,12 +5,12 @@
 #include <complex>
 #include <numbers>
 
-#include "agent/laws/definite_matrix.h"
-#include "agent/laws/distance_descent.h"
-#include "agent/laws/global_rigidity.h"
-#include "agent/laws/leaders.h"
-#include "agent/laws/rigidity.h"
-#include "agent/laws/stress_matrix.h"
+#include "agent/laws/affine_formation/definite_matrix.h"
+#include "agent/laws/affine_formation/stress_matrix.h"
+#include "agent/laws/distance_formation/distance_descent.h"
+#include "agent/laws/distance_formation/global_rigidity.h"
+#include "agent/laws/parts/leaders.h"
+#include "agent/laws/parts/rigidity.h"
 #include "base/linear_algebra.h"
 #include "base/random.h"
 #include "tests/ideal_network.h"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/engines/inprocess.h"
 #include "tests/three_agents.h"
 

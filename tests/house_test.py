@@ -183,6 +183,36 @@ def faults_of_libraries(cmake, house):
     yield from (f"CMakeLists.txt: {name} is in no row of {DOCUMENT}" for name in sorted(built - listed))
 
 
+# --- pieces of laws -------------------------------------------------------------------------------------
+
+LAWS = "agent/laws"
+SHARED = f"{LAWS}/parts"
+FOR_USERS = {"agent/laws/plugin/plugin.h", "agent/laws/plugin/plugin_params.h"}  # installed
+
+
+def faults_of_pieces(root):
+    """Pieces of one law that others use, and pieces in the folder of what laws share that only one law uses."""
+    paths = sources(root, FOLDERS, CPP)
+    users = collections.defaultdict(set)
+    for include in includes(root, paths):
+        home, folder = [os.path.dirname(path) for path in (include.name, include.path)]
+        if os.path.splitext(include.name)[0] != os.path.splitext(include.path)[0]:
+            users[include.name].add(folder)
+        if include.name in paths and is_inside(home, LAWS) and folder != home and include.name not in FOR_USERS \
+                and not is_inside(home, SHARED, or_itself=True):
+            yield (f"{include.path}:{include.line}: includes {include.name}, a piece of another law: what laws share is in "
+                   f"{SHARED}/")
+    for path in paths:
+        folders = users[path]
+        if os.path.dirname(path) == SHARED and path.endswith(".h") and len(folders) == 1 and is_inside(*folders, LAWS) \
+                and folders != {SHARED}:
+            yield f"{path}:1: only {min(folders)}/ uses it: it belongs there"
+
+
+def is_inside(folder, parent, or_itself=False):
+    return folder.startswith(f"{parent}/") or or_itself and folder == parent
+
+
 # --- names of laws and models ---------------------------------------------------------------------------
 
 
@@ -190,10 +220,10 @@ def names_in_rows(root, path):
     return re.findall(r'\.name = "(\w+)"', (root / path).read_text())
 
 
-def names_of_laws(root):
-    """A law's file ends with the function that returns its row."""
-    return [name for path in sorted((root / "agent/laws").glob("*.cc"))
-            for name in re.findall(r'return \{\.name = "(\w+)"', path.read_text())]
+def files_of_laws(root):
+    """The file of each law, by the law's name: it ends with the function that returns the law's row."""
+    return {name: path.relative_to(root).as_posix() for path in sorted((root / LAWS).rglob("*.cc"))
+            for name in re.findall(r'return \{\.name = "(\w+)"', path.read_text())}
 
 
 CPP_TOKEN = re.compile(r"""//[^\n]* | /\*.*?\*/                                # comments
@@ -228,7 +258,7 @@ def python_literals(path):
 
 def faults_of_names(root):
     """String literals that are the name of a law or a model, outside its own files and rows."""
-    homes = {name: [f"agent/laws/{name}.cc", f"agent/laws/{name}.h"] for name in names_of_laws(root)}
+    homes = {name: [path, path.removesuffix("cc") + "h"] for name, path in files_of_laws(root).items()}
     for name in names_in_rows(root, "experiment/model_traits.cc"):
         homes[name] = ["experiment/model_traits.cc", "agent/controllers.cc", "physics_server/models.cc",
                        f"agent/controllers/{name}.cc", f"physics_server/models/{name}.cc"]
@@ -304,10 +334,12 @@ class ThisTree(HouseTest):
         self.check(faults_of_libraries((ROOT / "CMakeLists.txt").read_text(), self.house))
 
     def test_laws_and_models_are_named_in_their_own_places_only(self):
-        self.assertGreater(len(names_of_laws(ROOT)), 1)
+        self.assertGreater(len(files_of_laws(ROOT)), 1)
         self.assertGreater(len(names_in_rows(ROOT, "experiment/model_traits.cc")), 1)
         self.check(faults_of_names(ROOT))
 
+    def test_a_piece_of_a_law_stays_in_its_folder(self):
+        self.check(faults_of_pieces(ROOT))
 
     def test_json_from_outside_is_read_in_one_place(self):
         self.assertTrue((ROOT / JSON_READER).exists())
@@ -370,7 +402,7 @@ DOCUMENT_OF_PLANTED = """
 |---|---|---|---|---|---|
 | 0 | `base` | `experiment/` | `mascot_base` | | a |
 | 1 | `wire` | `bus/` | `mascot_wire` | `base` | b |
-| 1 | `law` | `agent/law*`, `agent/laws/` | `mascot_law` | `base` | c |
+| 1 | `law` | `agent/laws/`, `agent/laws/chase/` | `mascot_law` | `base` | c |
 | 2 | `agent` | `agent/` | `mascot_agent` | `base`, `law` | d |
 | 3 | `process` | `agent/main.cc` | `program` | `agent`, `wire` | e |
 
@@ -388,11 +420,11 @@ FILES = {
     "experiment/a.h": "#pragma once\n#include <vector>\n",
     "experiment/a.cc": '#include "experiment/a.h"\n#include <zlib.h>\n#include <Eigen/Core>\n',
     "bus/bus.h": '#include <fastdds/x.hpp>\n#include "experiment/a.h"\n',
-    "agent/law.h": '#include "experiment/a.h"\n',
-    "agent/laws.cc": 'Row Chase, Flee;  // "chase"\n',
-    "agent/laws/chase.cc": '#include "agent/law.h"\nreturn {.name = "chase"};\n',
-    "agent/laws/flee.cc": 'return {.name = "flee"};\n',
-    "agent/agent.h": '#include "agent/law.h"\n#include "experiment/a.h"\n//   #include "bus/bus.h"\n',
+    "agent/laws/law.h": '#include "experiment/a.h"\n',
+    "agent/laws/laws.cc": 'Row Chase, Flee;  // "chase"\n',
+    "agent/laws/chase/chase.cc": '#include "agent/laws/law.h"\nreturn {.name = "chase"};\n',
+    "agent/laws/flee/flee.cc": 'return {.name = "flee"};\n',
+    "agent/agent.h": '#include "agent/laws/law.h"\n#include "experiment/a.h"\n//   #include "bus/bus.h"\n',
     "agent/main.cc": '#include "agent/agent.h"\n#include "bus/bus.h"\nint n = 1\'000; char c = \'"\';\n',
     "agent/controllers.cc": '{"ball", MakeBall}\n',
     "experiment/model_traits.cc": '{.name = "ball"}, {.name = "cart"}\n',
@@ -428,8 +460,8 @@ class Rooms(Planted):
         self.broken()
 
     def test_an_include_of_a_room_that_may_not_be_used(self):
-        self.broken("agent/laws/chase.cc:2: includes bus/bus.h: law may not use wire (docs/architecture.md)",
-                    files={"agent/laws/chase.cc": '#include "agent/law.h"\n  #  include "bus/bus.h"\n'})
+        self.broken("agent/laws/chase/chase.cc:2: includes bus/bus.h: law may not use wire (docs/architecture.md)",
+                    files={"agent/laws/chase/chase.cc": '#include "agent/laws/law.h"\n  #  include "bus/bus.h"\n'})
 
     def test_an_include_that_runs_up(self):
         self.broken("experiment/b.h:1: includes bus/bus.h: base may not use wire (docs/architecture.md)",
@@ -452,9 +484,8 @@ class Rooms(Planted):
         self.broken("orchestrator/main.cc:1: is in no room (docs/architecture.md)", files={"orchestrator/main.cc": ""})
 
     def test_a_file_in_two_rooms(self):
-        self.broken("agent/laws/chase.cc:1: is in two rooms: agent, law (docs/architecture.md)",
-                    "agent/laws/flee.cc:1: is in two rooms: agent, law (docs/architecture.md)",
-                    replace=("| `agent/` |", "| `agent/`, `agent/laws/` |"))
+        self.broken("agent/laws/chase/chase.cc:1: is in two rooms: agent, law (docs/architecture.md)",
+                    replace=("| `agent/` |", "| `agent/`, `agent/laws/chase/` |"))
 
     def test_a_room_without_files(self):
         self.broken("docs/architecture.md:9: attic: there is no file physics_server/",
@@ -479,16 +510,16 @@ class Headers(Planted):
         self.broken()
 
     def test_a_header_in_a_room_where_it_does_not_belong(self):
-        self.broken("agent/law.h:2: includes fastdds/x.hpp: only wire may (docs/architecture.md:13)",
-                    files={"agent/law.h": '#include "experiment/a.h"\n#include <fastdds/x.hpp>\n'})
+        self.broken("agent/laws/law.h:2: includes fastdds/x.hpp: only wire may (docs/architecture.md:13)",
+                    files={"agent/laws/law.h": '#include "experiment/a.h"\n#include <fastdds/x.hpp>\n'})
 
     def test_a_header_in_another_file_than_the_one_that_may(self):
         self.broken("experiment/b.cc:1: includes zlib.h: only experiment/a.cc may (docs/architecture.md:14)",
                     files={"experiment/b.cc": "#include <zlib.h>\n"})
 
     def test_a_header_that_nobody_has_heard_of(self):
-        self.broken("agent/law.h:1: includes boost/any.hpp: it is not ours, and in no row of the table of headers "
-                    "(docs/architecture.md)", files={"agent/law.h": "#include <boost/any.hpp>\n"})
+        self.broken("agent/laws/law.h:1: includes boost/any.hpp: it is not ours, and in no row of the table of headers "
+                    "(docs/architecture.md)", files={"agent/laws/law.h": "#include <boost/any.hpp>\n"})
 
     def test_a_permission_that_nobody_uses(self):
         self.broken("docs/architecture.md:13: law may include fastdds/*, but does not",
@@ -528,11 +559,11 @@ class Names(Planted):
 
     def test_a_law_named_by_the_agent(self):
         self.broken({"agent/agent.cc": '// "flee"\nint n = 1\'000;\nif (law.name == "chase") n = 2;  /* "flee" */\n'},
-                    'agent/agent.cc:3: "chase": ask the row of the law or model, in agent/laws/chase.cc')
+                    'agent/agent.cc:3: "chase": ask the row of the law or model, in agent/laws/chase/chase.cc')
 
     def test_a_law_named_by_another_law(self):
-        self.broken({"agent/laws/flee.cc": 'return {.name = "flee"};\nauto other = R"(chase)";\n'},
-                    'agent/laws/flee.cc:2: "chase": ask the row of the law or model, in agent/laws/chase.cc')
+        self.broken({"agent/laws/flee/flee.cc": 'return {.name = "flee"};\nauto other = R"(chase)";\n'},
+                    'agent/laws/flee/flee.cc:2: "chase": ask the row of the law or model, in agent/laws/chase/chase.cc')
 
     def test_a_model_named_as_a_toml_value(self):
         self.broken({"experiment/agents.cc": 'auto fallback = "\\"ball\\"";\n'},
@@ -549,13 +580,41 @@ class Names(Planted):
     def test_a_list_of_names_is_no_key(self):
         self.broken({"orchestrator/a.cc": 'auto f = ["chase"] {};\n',
                      "scripts/plot.py": 'if law in ["chase"]:\n    x = {"flee": 1}\n'},
-                    'orchestrator/a.cc:1: "chase": ask the row of the law or model, in agent/laws/chase.cc',
-                    'scripts/plot.py:1: "chase": ask the row of the law or model, in agent/laws/chase.cc',
-                    'scripts/plot.py:2: "flee": ask the row of the law or model, in agent/laws/flee.cc')
+                    'orchestrator/a.cc:1: "chase": ask the row of the law or model, in agent/laws/chase/chase.cc',
+                    'scripts/plot.py:1: "chase": ask the row of the law or model, in agent/laws/chase/chase.cc',
+                    'scripts/plot.py:2: "flee": ask the row of the law or model, in agent/laws/flee/flee.cc')
 
     def test_a_law_named_by_a_script(self):
         self.broken({"scripts/plot.py": 'if law == "chase":  # "flee"\n    pass\n'},
-                    'scripts/plot.py:1: "chase": ask the row of the law or model, in agent/laws/chase.cc')
+                    'scripts/plot.py:1: "chase": ask the row of the law or model, in agent/laws/chase/chase.cc')
+
+
+class Pieces(Planted):
+    SOUND = {"agent/laws/chase/path.h": "", "agent/laws/chase/path.cc": '#include "agent/laws/chase/path.h"\n',
+             "agent/laws/parts/near.h": "", "agent/laws/parts/far.h": '#include "agent/laws/parts/near.h"\n',
+             "agent/laws/chase/chase.cc": '#include "agent/laws/chase/path.h"\n#include "agent/laws/parts/far.h"\n',
+             "agent/laws/flee/flee.cc": '#include "agent/laws/parts/far.h"\n',
+             "agent/laws/plugin/plugin.h": "", "agent/user.cc": '#include "agent/laws/plugin/plugin.h"\n'}
+
+    def broken(self, files, *faults):
+        self.plant(FILES | self.SOUND | files)
+        self.check(faults_of_pieces(self.root), faults)
+
+    def test_a_sound_tree_has_no_faults(self):
+        self.broken({})
+
+    def test_a_piece_that_another_law_uses(self):
+        self.broken({"agent/laws/flee/turn.cc": '\n#include "agent/laws/chase/path.h"\n'},
+                    "agent/laws/flee/turn.cc:2: includes agent/laws/chase/path.h, a piece of another law: what laws share "
+                    "is in agent/laws/parts/")
+
+    def test_a_piece_that_is_used_from_outside(self):
+        self.broken({"orchestrator/a.cc": '#include "agent/laws/chase/path.h"\n'},
+                    "orchestrator/a.cc:1: includes agent/laws/chase/path.h, a piece of another law: what laws share is in "
+                    "agent/laws/parts/")
+
+    def test_a_piece_that_is_shared_with_nobody(self):
+        self.broken({"agent/laws/flee/flee.cc": ""}, "agent/laws/parts/far.h:1: only agent/laws/chase/ uses it: it belongs there")
 
 
 class JsonOfOthers(Planted):

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "agent/sensor.h"
 #include "experiment/experiment.h"
 

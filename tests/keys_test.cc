@@ -8,7 +8,7 @@
 #include <array>
 #include <map>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/recording/state_arrays.h"
 #include "orchestrator/team/row_sink.h"

@@ -1,5 +1,5 @@
 // What a user's law may do to its process, and what the process says of it.
-#include "agent/law_at_work.h"
+#include "agent/user_code/law_at_work.h"
 
 #include <gmock/gmock.h>
 #include <sys/wait.h>

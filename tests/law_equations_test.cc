@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/engines/inprocess.h"
 #include "tests/param_name.h"
 

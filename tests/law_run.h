@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/report/incident_report.h"

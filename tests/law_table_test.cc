@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "tests/ideal_network.h"
 #include "tests/scratch.h"
 
@@ -101,8 +101,8 @@ std::string With(const Trial& trial, std::string_view law, const std::string& li
 
 TEST(LawTable, HasTheLawOfEveryFileThatDefinesOne) {
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(MASCOT_SOURCE_DIR "/agent/laws"))
-    if (ReadFile(entry.path()).find("LawEntry ") != std::string::npos && entry.path().extension() == ".cc")
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(MASCOT_SOURCE_DIR "/agent/laws"))
+    if (entry.path().extension() == ".cc" && ReadFile(entry.path()).find("\nLawEntry ") != std::string::npos)
       files.push_back(entry.path().stem());
   EXPECT_THAT(files, ::testing::UnorderedElementsAreArray(LawNames()));
   EXPECT_EQ(LawNames().front(), "consensus") << "the default of law.name";

@@ -1,4 +1,4 @@
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

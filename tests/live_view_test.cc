@@ -8,7 +8,7 @@
 #include <mutex>
 #include <optional>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "bus/wire.h"
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/live/ros_view.h"

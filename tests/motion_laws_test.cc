@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "agent/laws/path_samples.h"
-#include "agent/laws/string_stability.h"
+#include "agent/laws/platoon/string_stability.h"
+#include "agent/laws/trajectory/path_samples.h"
 #include "orchestrator/sweeping/metrics.h"
 #include "tests/ideal_network.h"
 #include "tests/law_run.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "agent/agent.h"
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "base/random.h"
 
 namespace mascot {

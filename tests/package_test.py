@@ -230,7 +230,7 @@ class Age(unittest.TestCase):
     def test_all_that_is_installed_counts(self):
         counted = {path.relative_to(ROOT).as_posix() for path in packaged_files() if path.is_relative_to(ROOT)}
         self.assertLess({"README.md", "docs/sweep.md", "scripts/plot.py", "scripts/run_folder.py", "configs/leaderless.toml",
-                         "orchestrator/live/page/index.html", "scripts/completion/_orchestrator", "agent/plugin.h",
+                         "orchestrator/live/page/index.html", "scripts/completion/_orchestrator", "agent/laws/plugin/plugin.h",
                          "docs/mascot.schema.json", "cmake/package.cmake"}, counted)
         self.assertIn(PROGRAM, packaged_files())
 

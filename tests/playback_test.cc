@@ -7,7 +7,7 @@
 #include <mutex>
 #include <set>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/live/projector.h"
 #include "orchestrator/live/recorded_run.h"
 #include "orchestrator/live/shown_keys.h"

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "agent/agent.h"
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "tests/scratch.h"
 #include "tests/three_agents.h"
 

@@ -1,10 +1,9 @@
-#include "agent/python_metrics.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <stdexcept>
 
+#include "agent/python/metrics.h"
 #include "tests/scratch.h"
 
 namespace mascot {

@@ -11,7 +11,7 @@
 #include <set>
 #include <sstream>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "tests/scratch.h"
 
 namespace mascot {

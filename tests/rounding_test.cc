@@ -1,5 +1,5 @@
 // What theory says exactly is true of numbers that are rounded: at large coordinates, at any instant, of what cancels.
-#include "agent/laws/rounding.h"
+#include "agent/laws/parts/rounding.h"
 
 #include <gmock/gmock.h>
 

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/formats/mcap/writer.h"
 #include "tests/scratch.h"
 

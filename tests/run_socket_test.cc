@@ -13,7 +13,7 @@
 #include <future>
 #include <nlohmann/json.hpp>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/live/running_runs.h"
 #include "tests/repeated.h"
 #include "tests/three_agents.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "tests/delayed_recursion.h"
 
 namespace mascot {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/toml/blame.h"
 
 namespace mascot {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "bus/wire.h"
 #include "orchestrator/formats/mcap/reader.h"
 #include "tests/bad_config.h"

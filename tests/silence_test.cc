@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/theory/theory.h"
 #include "tests/param_name.h"
 

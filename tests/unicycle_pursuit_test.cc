@@ -1,5 +1,5 @@
 // Unicycles in cyclic pursuit: what their wheels are told, and the polygons on which they end.
-#include "agent/laws/unicycle_pursuit.h"
+#include "agent/laws/cyclic_pursuit/unicycle_pursuit.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

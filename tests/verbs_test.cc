@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "bus/qos.h"
 #include "experiment/airframe.h"
 #include "experiment/read_experiment.h"

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 
 namespace mascot {
 namespace {

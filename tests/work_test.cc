@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/live_experiment.h"
 #include "orchestrator/engines/helm.h"
 #include "tests/load.h"

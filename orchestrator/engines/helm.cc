@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/toml/section.h"
 
 namespace mascot {

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/live_experiment.h"
 #include "orchestrator/engines/row_feed.h"
 #include "orchestrator/team/team.h"

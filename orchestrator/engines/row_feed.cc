@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 
 namespace mascot {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/live/incident_table.h"
 #include "orchestrator/measuring/agreement_meter.h"
 

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/live_keys.h"
 #include "orchestrator/formats/outside_json.h"
 

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/formats/outside_json.h"
 #include "orchestrator/live/compact_json.h"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/experiment.h"
 #include "orchestrator/team/row.h"
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "agent/laws.h"
-#include "agent/python.h"
+#include "agent/laws/laws.h"
+#include "agent/python/python.h"
 
 namespace mascot {
 namespace {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/reference/markdown.h"
 #include "orchestrator/reference/reference.h"

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/experiment.h"
 #include "experiment/toml/key.h"
 #include "orchestrator/reference/markdown.h"

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/experiment.h"
 #include "experiment/toml/key.h"
 #include "orchestrator/reference/reference.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/report/deviation.h"
 #include "orchestrator/report/prediction_report.h"
 #include "orchestrator/report/text_line.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 
 namespace mascot {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/recording/row_codec.h"
 #include "orchestrator/report/aim_report.h"
 #include "orchestrator/report/incident_report.h"

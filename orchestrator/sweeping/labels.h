@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "agent/python_metrics.h"
+#include "agent/python/metrics.h"
 
 namespace mascot {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 
 namespace mascot {
 namespace {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/formats/outside_json.h"
 

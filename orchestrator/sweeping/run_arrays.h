@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "agent/python_metrics.h"
+#include "agent/python/metrics.h"
 #include "orchestrator/recording/state_arrays.h"
 #include "orchestrator/team/row_sink.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/live_experiment.h"
 #include "experiment/phase.h"
 #include "orchestrator/sweeping/law_axis.h"

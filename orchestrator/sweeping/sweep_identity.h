@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "agent/python_metrics.h"
+#include "agent/python/metrics.h"
 #include "orchestrator/sweeping/plan.h"
 #include "orchestrator/sweeping/run_laws.h"
 

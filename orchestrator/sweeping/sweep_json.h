@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "agent/python_metrics.h"
+#include "agent/python/metrics.h"
 #include "orchestrator/sweeping/plan.h"
 #include "orchestrator/sweeping/run_laws.h"
 

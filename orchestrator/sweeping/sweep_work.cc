@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/toml/input.h"
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/formats/outside_json.h"

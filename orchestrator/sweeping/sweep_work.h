@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "agent/python_metrics.h"
+#include "agent/python/metrics.h"
 #include "experiment/experiment.h"
 #include "orchestrator/sweeping/law_axis.h"
 #include "orchestrator/sweeping/plan.h"

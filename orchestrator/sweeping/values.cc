@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 
 namespace mascot {
 namespace {

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <optional>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 
 namespace mascot {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "base/random.h"
 #include "experiment/live_experiment.h"
 #include "experiment/toml/section.h"

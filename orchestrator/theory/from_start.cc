@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "agent/laws.h"
-#include "agent/laws/rounding.h"
+#include "agent/laws/laws.h"
+#include "agent/laws/parts/rounding.h"
 #include "orchestrator/measuring/agreement_meter.h"
 #include "orchestrator/theory/links_on_average.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "agent/laws/rounding.h"
+#include "agent/laws/parts/rounding.h"
 
 namespace mascot {
 namespace {

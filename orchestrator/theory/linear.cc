@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "agent/laws.h"
-#include "agent/laws/reach.h"
+#include "agent/laws/laws.h"
+#include "agent/laws/parts/reach.h"
 #include "agent/link.h"
 #include "base/linear_algebra.h"
 #include "orchestrator/theory/from_start.h"

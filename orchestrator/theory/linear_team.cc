@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "agent/laws.h"
-#include "agent/laws/reach.h"
+#include "agent/laws/laws.h"
+#include "agent/laws/parts/reach.h"
 
 namespace mascot {
 namespace {

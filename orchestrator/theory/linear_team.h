@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/experiment.h"
 #include "orchestrator/theory/modes.h"
 

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/theory/flight_envelope.h"
 #include "orchestrator/theory/links_on_average.h"
 #include "orchestrator/theory/loop_team.h"

@@ -8,8 +8,8 @@
 #include <memory>
 #include <optional>
 
-#include "agent/laws.h"
-#include "agent/python.h"
+#include "agent/laws/laws.h"
+#include "agent/python/python.h"
 #include "orchestrator/measuring/agreement_meter.h"
 #include "orchestrator/team/team.h"
 #include "orchestrator/theory/may_touch.h"

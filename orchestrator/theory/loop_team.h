@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "agent/law_figures.h"
+#include "agent/laws/law_figures.h"
 #include "experiment/experiment.h"
 #include "orchestrator/theory/low_level_loop.h"
 

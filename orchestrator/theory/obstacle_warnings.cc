@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/obstacles.h"
 
 namespace mascot {

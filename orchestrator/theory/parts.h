@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/experiment.h"
 #include "orchestrator/theory/modes.h"
 #include "orchestrator/theory/theory.h"

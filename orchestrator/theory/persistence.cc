@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-#include "agent/laws/reach.h"
+#include "agent/laws/parts/reach.h"
 #include "orchestrator/theory/links_on_average.h"
 
 namespace mascot {

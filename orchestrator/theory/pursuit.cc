@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "agent/laws/reach.h"
+#include "agent/laws/parts/reach.h"
 #include "orchestrator/theory/flight_envelope.h"
 #include "orchestrator/theory/flown_pursuit.h"
 #include "orchestrator/theory/lagged_pursuit.h"

@@ -12,8 +12,8 @@
 #include <cmath>
 #include <functional>
 
-#include "agent/laws/ideal.h"
-#include "agent/laws/rounding.h"
+#include "agent/laws/parts/ideal.h"
+#include "agent/laws/parts/rounding.h"
 #include "agent/safety.h"
 
 namespace mascot {

@@ -17,7 +17,7 @@
 #include <limits>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "base/linear_algebra.h"
 
 namespace mascot {

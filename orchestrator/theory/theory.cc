@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "agent/laws.h"
-#include "agent/python.h"
+#include "agent/laws/laws.h"
+#include "agent/python/python.h"
 #include "experiment/live_experiment.h"
 #include "experiment/phase.h"
 #include "orchestrator/team/ideal_team.h"

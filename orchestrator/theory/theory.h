@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "agent/law_figures.h"
+#include "agent/laws/law_figures.h"
 #include "experiment/experiment.h"
 #include "orchestrator/theory/delay_margin.h"
 #include "orchestrator/theory/persistence.h"

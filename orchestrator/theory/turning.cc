@@ -12,7 +12,7 @@
 #include <complex>
 #include <vector>
 
-#include "agent/laws/ideal.h"
+#include "agent/laws/parts/ideal.h"
 #include "base/linear_algebra.h"
 
 namespace mascot {

@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-#include "agent/law_figures.h"
+#include "agent/laws/law_figures.h"
 #include "experiment/experiment.h"
 #include "orchestrator/theory/linear_team.h"
 #include "orchestrator/theory/modes.h"

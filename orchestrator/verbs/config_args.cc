@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/toml/input.h"
 
 namespace mascot {

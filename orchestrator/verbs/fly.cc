@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "agent/last_words.h"
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
+#include "agent/user_code/last_words.h"
 #include "bus/leave.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/inprocess.h"

@@ -6,7 +6,7 @@
 #include <iostream>
 #include <memory>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "experiment/model_traits.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/verbs/verb.h"

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "agent/last_words.h"
-#include "agent/law_at_work.h"
+#include "agent/user_code/last_words.h"
+#include "agent/user_code/law_at_work.h"
 #include "base/utf8.h"
 #include "bus/leave.h"
 #include "orchestrator/engines/dds/delivery.h"

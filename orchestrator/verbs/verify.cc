@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "orchestrator/formats/mcap/writer.h"
 #include "orchestrator/recording/compare.h"
 #include "orchestrator/recording/fingerprint.h"

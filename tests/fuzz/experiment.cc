@@ -2,7 +2,7 @@
 // code of a law is run: laws in Python and in shared libraries are read as laws without parameters.
 #include <regex>
 
-#include "agent/laws.h"
+#include "agent/laws/laws.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace mascot {

@@ -11,7 +11,7 @@
 #include <iterator>
 #include <string>
 
-#include "agent/plugin.h"
+#include "agent/laws/plugin/plugin.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "agent/plugin.h"
+#include "agent/laws/plugin/plugin.h"
 
 namespace {
 

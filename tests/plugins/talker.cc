@@ -2,7 +2,7 @@
 #include <random>
 #include <vector>
 
-#include "agent/plugin.h"
+#include "agent/laws/plugin/plugin.h"
 
 namespace {
 

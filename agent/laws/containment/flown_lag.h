@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "agent/laws/law_figures.h"
+#include "agent/laws/parts/leaders.h"
+
+namespace mascot {
+
+/// How followers come to their places among leaders at constant velocities, flown from the experiment's start.
+struct FlownLag {
+  double lag_m = 0;                    ///< LargestLag() at the end of the run
+  std::optional<HoldsFrom> settled{};  ///< when the farthest from where it ends stays within 2 %; absent: far too late
+};
+/// Followers want v_i = gain sum_j a_ij (p_j - p_i). `shares`: their places among the leaders, behind which they end by
+/// `lag`, one row each (m). Flies on beyond the end of the run until they have settled. Nothing if the run alone is
+/// more work than kMostFlownFollowers.
+std::optional<FlownLag> FlyToPlaces(const Experiment& experiment, const LedTeam& team, double gain,
+                                    const Eigen::MatrixXd& shares, const Eigen::MatrixX3d& lag);
+
+inline constexpr double kMostFlownFollowers = 2e7;  ///< agents and edges times ticks
+
+}  // namespace mascot

@@ -1,0 +1,149 @@
+// A law written by the user in Python: control(t, me, neighbours) -> acceleration or velocity in W.
+#include "agent/laws/custom/custom.h"
+
+namespace mascot {
+namespace {
+
+constexpr EnumNames<PythonStyle, 2> kPythonStyles({{PythonStyle::kStandard, "standard"},
+                                                   {PythonStyle::kMascot, "mascot"}});
+constexpr EnumNames<Wanted, 2> kPythonOutputs({{Wanted::kAcceleration, "acceleration"},
+                                               {Wanted::kVelocity, "velocity"}});
+
+constexpr Key kCustomParameters[] = {
+    key::Text("python",
+              "the law itself: defines control(t, me, neighbours), may define start(me, params), message(me), set(me, "
+              "params)"),
+    key::Text("file", "a file that holds the law, instead of python; its path from the folder of this file"),
+    key::Any("params", "goes to start(me, params) as a dict, and to set(me, params) when an event has changed it")
+        .Default("{}")
+        .Live(),
+    key::Any("modules", "texts of the modules that the law imports, by their paths from its folder")
+        .Otherwise("those that stand beside it"),
+    key::OneOf("style", kPythonStyles.names(),
+               "mascot: the published testbed's control_user(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, "
+               "leader)")
+        .Default("\"standard\""),
+    key::OneOf("output", kPythonOutputs.names(), "what control returns, 3 numbers or 2 (x, y), in W")
+        .Default("\"acceleration\""),
+    key::Boolean("messages", "whether it sends messages").Otherwise("whether it defines message"),
+    key::Integer("leader", 0, kMaxAgents,
+                 "for control_user, which counts agents from 0: given as leader - 1, -1 if there is none")
+        .Default("0"),
+    key::Text("python_file", "what python goes by in messages").Otherwise("this file"),
+    key::Integer("python_line", 1, 1'000'000, "the line of python_file at which python begins")
+        .Otherwise("where it stands"),
+};
+
+/// Reads the modules of the law: those of the key, else those in `folder`.
+void ReadModules(const std::string& folder, Section& law, CustomParams& params) {
+  Value modules;
+  if (!law.Has("modules")) {
+    try {
+      auto& found = std::get<Value::Table>(modules.data);
+      for (const auto& [path, text] : ModulesBeside(params.text, folder)) found[path].data = text;
+    } catch (const PythonError& error) {
+      law.Fail(TextKey(law), "expected modules that can be read, got " + error.summary());
+    }
+    if (std::get<Value::Table>(modules.data).empty()) return;  // the resolved file is shorter
+  }
+  modules = law.Free("modules", modules);
+  const auto* texts = std::get_if<Value::Table>(&modules.data);
+  if (texts == nullptr) return law.Fail("modules", "expected a table, got a " + law.Kind("modules"));
+  for (const auto& [path, text] : *texts) {
+    if (const auto* words = std::get_if<std::string>(&text.data))
+      params.modules[path] = *words;
+    else
+      law.FailInside("modules", path, "expected text");
+  }
+}
+
+/// Reads the text of the law, and the file and line for messages.
+void ReadText(bool checked, Section& law, CustomParams& params) {
+  law.Supersede("file", {"python", "python_file", "python_line", "modules"});
+  law.Supersede("python", {"file", "python_file", "python_line", "modules"});
+  if (law.Has("python") == law.Has("file")) {
+    law.Fail(law.Has("file") ? "file" : "",
+             std::string("expected one of python, file, got ") + (law.Has("file") ? "both" : "none"));
+    return;
+  }
+  Section::FileText text;
+  int line = 1;
+  if (law.Has("file")) {
+    text = law.TextOfFile("file", "python");
+  } else {
+    const Section::Place place = law.PlaceOfText("python");
+    text = {law.Text("python"), place.file, place.folder};
+    line = place.line;
+  }
+  params.text = text.text;
+  params.file = law.Text("python_file", text.name);
+  params.line = static_cast<int>(law.Integer("python_line", 1, 1'000'000, line));
+  if (params.text.find('\0') != std::string::npos) law.Fail(TextKey(law), "expected text, got a NUL byte");
+  if (!law.Wrong("") && (law.Has("modules") || !checked)) ReadModules(text.folder, law, params);
+}
+
+void ReadKeys(bool checked, Section& law, CustomParams& params) {
+  ReadText(checked, law, params);
+  params.style = kPythonStyles.Value(law.OneOf("style"));
+  params.wanted = kPythonOutputs.Value(law.OneOf("output"));
+  if (law.Has("params") && law.Kind("params") != "table")
+    law.Fail("params", "expected a table, got a " + law.Kind("params"));
+  else
+    params.params = law.Free("params");
+}
+
+/// Whether the law sends messages: as the key says, else whether the text defines message().
+bool SendsMessages(const Experiment& experiment, CustomParams& params, Section& law) {
+  // A checked experiment has the key: reading it need not start Python.
+  if ((experiment.checked && law.Has("messages")) || law.Wrong("")) return law.Boolean("messages", false);
+  LawLimits limits = LimitsOfLaws(experiment);
+  if (experiment.run.start_timeout_s < limits.limit_s) {
+    limits.limit_s = experiment.run.start_timeout_s;
+    limits.source = "run.start_timeout_s";
+  }
+  const bool can_send = TryText(law, params, limits);
+  const bool sends = law.Boolean("messages", can_send);
+  if (sends && !can_send && !law.Wrong("")) law.Fail("messages", "expected a law that defines message(me), got none");
+  return sends;
+}
+
+std::shared_ptr<const LawParams> ReadCustom(const Experiment& experiment, const LawConfig& /*law*/, Section& section) {
+  auto params = std::make_shared<CustomParams>();
+  ReadKeys(experiment.checked, section, *params);
+  params->sends_messages = SendsMessages(experiment, *params, section);
+  return params;
+}
+
+std::unique_ptr<Law> MakeCustom(const Experiment& experiment, int id) {
+  const LawConfig& law = experiment.agent(id).law;
+  const auto& params = ParamsOf<CustomParams>(law);
+  const LawLimits call = LimitsOfLaws(experiment);
+  // The text has run in time before; now all agents may make their laws at once.
+  const CustomLimits limits{call, {experiment.run.start_timeout_s, "run.start_timeout_s", call.memory_mb}};
+  if (params.style == PythonStyle::kMascot) return MakePublishedLaw(params, limits, id, experiment.size(), law.leader);
+  return MakeStandardLaw(params, limits, experiment.run.seed, id);
+}
+
+bool DrawsByCustom(const LawConfig& law) { return CanDraw(ParamsOf<CustomParams>(law)); }
+Wanted WantedByCustom(const LawConfig& law) { return ParamsOf<CustomParams>(law).wanted; }
+
+}  // namespace
+
+LawEntry CustomLaw() {
+  return {.name = "custom",
+          .summary =
+              "your own law, in Python: what one agent wants, from what it knows of itself and heard of its neighbours",
+          .equation = "control(t, me, neighbours) -> [a_x, a_y, a_z] or [a_x, a_y]",
+          .theory = "none: check knows only built-in laws",
+          .source = "docs/laws.md",
+          .parameters = kCustomParameters,
+          .is_of_user = true,
+          .sees_obstacles = true,
+          .drawing = {.pictures = kDisagreementPicture},
+          .read = ReadCustom,
+          .make = MakeCustom,
+          .draws = DrawsByCustom,
+          .wanted = WantedByCustom};
+}
+
+}  // namespace mascot

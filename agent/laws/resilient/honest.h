@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "agent/laws/law_figures.h"
+#include "experiment/experiment.h"
+
+namespace mascot {
+
+// Agents that tell the truth, and those that lie (experiment/lie.h).
+
+/// The experiment as if all told the truth.
+Experiment WithoutLies(Experiment experiment);
+/// The honest agent that hears the most that lie, and how many these are.
+std::pair<int, std::size_t> MostLiesHeard(const Experiment& experiment);
+
+/// What W-MSR against `f` liars asks of a graph of this robustness; nullopt: it is not known.
+std::vector<std::string> RobustnessWarnings(std::optional<int> robustness, int f);
+
+/// Measures how honest agents stay within the hull of their starts, per axis of their law.
+class HonestHull {
+ public:
+  HonestHull(const Experiment& experiment, std::span<const int> ids);
+  void Add(const TeamRow& row);
+  /// The farthest that an honest agent was outside, below 1 nm 0; absent: all lie.
+  std::optional<double> outside_m() const;
+  /// The largest distance between honest agents along an axis, in the newest row.
+  std::optional<double> apart_m() const;
+
+ private:
+  std::vector<int> ids_;  // of honest agents
+  Axes axes_;
+  Eigen::Vector3d least_W_ = Eigen::Vector3d::Zero(), most_W_ = Eigen::Vector3d::Zero();  // of the starts
+  double outside_m_ = 0, apart_m_ = 0;
+};
+
+}  // namespace mascot

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "agent/user_code/law_at_work.h"
+
+namespace mascot {
+
+/// Modules that a law imports and that stand beside it: texts by paths from the folder of the law ("shapes.py").
+using PythonModules = std::map<std::string, std::string>;
+
+/// The modules in `folder` that `text` imports, itself or through each other. Throws PythonError if one cannot be read.
+PythonModules ModulesBeside(const std::string& text, const std::string& folder);
+
+/// While an object of this class lives, what Python code in this process prints is dropped: for laws that run a second
+/// time, for comparison.
+class SuppressedPythonOutput {
+ public:
+  SuppressedPythonOutput();
+  ~SuppressedPythonOutput();
+  SuppressedPythonOutput(const SuppressedPythonOutput&) = delete;
+  SuppressedPythonOutput& operator=(const SuppressedPythonOutput&) = delete;
+};
+
+/// A mistake in the user's Python code.
+class PythonError : public std::runtime_error {
+ public:
+  /// `traceback` as Python prints it; `line`, `column` of the user's file (0: not known); `summary`: its last line.
+  PythonError(const std::string& traceback, std::string summary, int line, int column)
+      : std::runtime_error(traceback), summary_(std::move(summary)), line_(line), column_(column) {}
+  const std::string& summary() const { return summary_; }
+  int line() const { return line_; }
+  int column() const { return column_; }
+
+ private:
+  std::string summary_;
+  int line_;
+  int column_;
+};
+
+}  // namespace mascot
