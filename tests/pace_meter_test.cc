@@ -1,4 +1,4 @@
-#include "physics_server/pace_meter.h"
+#include "physics_server/process/pace_meter.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "physics_server/start_roll.h"
+#include "physics_server/process/start_roll.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "agent/tick_inbox.h"
+#include "agent/process/tick_inbox.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "physics_server/tick_protocol.h"
+#include "physics_server/process/tick_protocol.h"
 
 #include <gtest/gtest.h>
 

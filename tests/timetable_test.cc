@@ -1,4 +1,4 @@
-#include "physics_server/timetable.h"
+#include "physics_server/process/timetable.h"
 
 #include <gtest/gtest.h>
 

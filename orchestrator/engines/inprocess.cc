@@ -11,7 +11,7 @@
 #include "experiment/live_experiment.h"
 #include "orchestrator/engines/row_feed.h"
 #include "orchestrator/team/team.h"
-#include "physics_server/tick_gate.h"
+#include "physics_server/process/tick_gate.h"
 #include "physics_server/world.h"
 
 namespace mascot {

@@ -7,14 +7,14 @@
 #include <stdexcept>
 #include <vector>
 
-#include "agent/tick_inbox.h"
+#include "agent/process/tick_inbox.h"
 #include "bus/wire.h"
 #include "orchestrator/engines/dds/roster.h"
 #include "orchestrator/engines/dds/row_window.h"
 #include "orchestrator/engines/dds/run_phases.h"
 #include "orchestrator/recording/row_assembler.h"
-#include "physics_server/start_roll.h"
-#include "physics_server/tick_protocol.h"
+#include "physics_server/process/start_roll.h"
+#include "physics_server/process/tick_protocol.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace mascot {

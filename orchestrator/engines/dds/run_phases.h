@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "physics_server/progress_watch.h"
+#include "physics_server/process/progress_watch.h"
 
 namespace mascot {
 

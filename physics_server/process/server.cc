@@ -1,4 +1,4 @@
-#include "physics_server/server.h"
+#include "physics_server/process/server.h"
 
 #include <algorithm>
 #include <stdexcept>

@@ -8,9 +8,9 @@
 
 #include "bus/lifecycle.h"
 #include "experiment/live_experiment.h"
-#include "physics_server/pace_meter.h"
-#include "physics_server/start_roll.h"
-#include "physics_server/tick_protocol.h"
+#include "physics_server/process/pace_meter.h"
+#include "physics_server/process/start_roll.h"
+#include "physics_server/process/tick_protocol.h"
 #include "physics_server/world.h"
 
 namespace mascot {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "agent/seat.h"
+#include "agent/process/seat.h"
 #include "bus/lifecycle.h"
 #include "experiment/live_experiment.h"
 #include "experiment/processes.h"

@@ -1,4 +1,4 @@
-#include "physics_server/tick_gate.h"
+#include "physics_server/process/tick_gate.h"
 
 namespace mascot {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "physics_server/progress_watch.h"
-#include "physics_server/tick_barrier.h"
-#include "physics_server/tick_gate.h"
+#include "physics_server/process/progress_watch.h"
+#include "physics_server/process/tick_barrier.h"
+#include "physics_server/process/tick_gate.h"
 
 namespace mascot {
 

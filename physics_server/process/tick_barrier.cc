@@ -1,4 +1,4 @@
-#include "physics_server/tick_barrier.h"
+#include "physics_server/process/tick_barrier.h"
 
 #include <cassert>
 

@@ -1,4 +1,4 @@
-#include "physics_server/progress_watch.h"
+#include "physics_server/process/progress_watch.h"
 
 namespace mascot {
 

@@ -1,4 +1,4 @@
-#include "physics_server/agents_text.h"
+#include "physics_server/process/agents_text.h"
 
 namespace mascot {
 

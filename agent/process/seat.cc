@@ -1,4 +1,4 @@
-#include "agent/seat.h"
+#include "agent/process/seat.h"
 
 #include "experiment/processes.h"
 

@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "agent/laws/laws.h"
-#include "agent/node.h"
+#include "agent/process/node.h"
 #include "bus/foreign_settings.h"
 #include "bus/privileges.h"
 #include "bus/process_main.h"

@@ -4,7 +4,7 @@
 #include "bus/privileges.h"
 #include "bus/process_main.h"
 #include "experiment/read_experiment.h"
-#include "physics_server/server.h"
+#include "physics_server/process/server.h"
 #include "system/standard_streams.h"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "physics_server/timetable.h"
+#include "physics_server/process/timetable.h"
 
 namespace mascot {
 

@@ -1,9 +1,9 @@
-#include "physics_server/start_roll.h"
+#include "physics_server/process/start_roll.h"
 
 #include <algorithm>
 
 #include "experiment/toml/section.h"
-#include "physics_server/agents_text.h"
+#include "physics_server/process/agents_text.h"
 
 namespace mascot {
 

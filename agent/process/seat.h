@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "agent/agent.h"
-#include "agent/tick_inbox.h"
+#include "agent/process/tick_inbox.h"
 #include "bus/bus.h"
 #include "bus/wire.h"
 

@@ -1,4 +1,4 @@
-#include "agent/node.h"
+#include "agent/process/node.h"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
-#include "physics_server/tick_protocol.h"
+#include "physics_server/process/tick_protocol.h"
 
 #include <algorithm>
 
 #include "experiment/toml/section.h"
-#include "physics_server/agents_text.h"
+#include "physics_server/process/agents_text.h"
 
 namespace mascot {
 
