@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "orchestrator/live/wish.h"
+#include "orchestrator/control/wish.h"
 #include "tests/repeated.h"
 #include "tests/scratch.h"
 

@@ -1,5 +1,5 @@
 // People steer a run: what they ask, what is answered, and what becomes of the run.
-#include "orchestrator/engines/helm.h"
+#include "orchestrator/control/helm.h"
 
 #include <gmock/gmock.h>
 

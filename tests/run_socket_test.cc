@@ -1,5 +1,5 @@
 // RunSocket and RunsAlive: which users reach a run on this machine, what it answers, and who is taken for a run.
-#include "orchestrator/live/run_socket.h"
+#include "orchestrator/control/run_socket.h"
 
 #include <gmock/gmock.h>
 #include <poll.h>
@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "agent/laws/laws.h"
-#include "orchestrator/live/running_runs.h"
+#include "orchestrator/control/running_runs.h"
 #include "tests/repeated.h"
 #include "tests/three_agents.h"
 

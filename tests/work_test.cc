@@ -15,7 +15,7 @@
 
 #include "agent/laws/laws.h"
 #include "experiment/live_experiment.h"
-#include "orchestrator/engines/helm.h"
+#include "orchestrator/control/helm.h"
 #include "tests/load.h"
 
 namespace {

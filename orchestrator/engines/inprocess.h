@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "experiment/experiment.h"
+#include "orchestrator/control/helm.h"
 #include "orchestrator/engines/engine.h"
-#include "orchestrator/engines/helm.h"
 #include "orchestrator/team/row_sink.h"
 
 namespace mascot {

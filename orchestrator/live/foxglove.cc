@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "orchestrator/control/compact_json.h"
+#include "orchestrator/control/wish.h"
 #include "orchestrator/formats/outside_json.h"
-#include "orchestrator/live/compact_json.h"
-#include "orchestrator/live/wish.h"
 
 namespace mascot {
 namespace {

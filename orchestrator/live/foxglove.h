@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "orchestrator/engines/run_control.h"
+#include "orchestrator/control/run_control.h"
 #include "orchestrator/live/foxglove_bytes.h"
 #include "orchestrator/live/socket.h"
 

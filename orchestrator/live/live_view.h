@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "experiment/experiment.h"
+#include "orchestrator/control/asker.h"
 #include "orchestrator/live/about.h"
-#include "orchestrator/live/asker.h"
 #include "orchestrator/live/foxglove.h"
 #include "orchestrator/live/pages.h"
 #include "orchestrator/live/ros_channels.h"

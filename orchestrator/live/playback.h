@@ -7,7 +7,7 @@
 #include <mutex>
 #include <stop_token>
 
-#include "orchestrator/engines/run_control.h"
+#include "orchestrator/control/run_control.h"
 
 namespace mascot {
 

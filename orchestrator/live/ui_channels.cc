@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "agent/laws/laws.h"
+#include "orchestrator/control/compact_json.h"
 #include "orchestrator/formats/outside_json.h"
-#include "orchestrator/live/compact_json.h"
 
 namespace mascot {
 namespace {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "experiment/experiment.h"
+#include "orchestrator/control/helm.h"
 #include "orchestrator/engines/dds/engine.h"
 #include "orchestrator/engines/dds/janitor.h"
 #include "orchestrator/engines/engine.h"
-#include "orchestrator/engines/helm.h"
 #include "orchestrator/recording/run_folder.h"
 #include "system/console.h"
 #include "system/stop_signal.h"

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "experiment/toml/section.h"
-#include "orchestrator/live/running_runs.h"
+#include "orchestrator/control/running_runs.h"
 #include "orchestrator/verbs/verb.h"
 #include "system/standard_streams.h"
 

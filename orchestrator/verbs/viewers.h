@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "experiment/experiment.h"
+#include "orchestrator/control/helm.h"
 #include "orchestrator/engines/engine.h"
-#include "orchestrator/engines/helm.h"
 #include "orchestrator/formats/output_file.h"
 #include "orchestrator/live/address.h"
 #include "orchestrator/live/live_view.h"

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "experiment/experiment.h"
+#include "orchestrator/control/helm.h"
 #include "orchestrator/engines/engine.h"
-#include "orchestrator/engines/helm.h"
 #include "orchestrator/engines/ros_source.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/team/row_sink.h"

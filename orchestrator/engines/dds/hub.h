@@ -10,8 +10,8 @@
 #include "bus/bus.h"
 #include "bus/wire.h"
 #include "experiment/experiment.h"
+#include "orchestrator/control/run_control.h"
 #include "orchestrator/engines/dds/roster.h"
-#include "orchestrator/engines/run_control.h"
 
 namespace mascot {
 

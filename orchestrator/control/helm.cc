@@ -1,4 +1,4 @@
-#include "orchestrator/engines/helm.h"
+#include "orchestrator/control/helm.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "orchestrator/engines/run_control.h"
+#include "orchestrator/control/run_control.h"
 
 namespace mascot {
 

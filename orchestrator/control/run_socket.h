@@ -5,8 +5,8 @@
 #include <thread>
 
 #include "experiment/experiment.h"
-#include "orchestrator/engines/helm.h"
-#include "orchestrator/live/asker.h"
+#include "orchestrator/control/asker.h"
+#include "orchestrator/control/helm.h"
 #include "system/local_socket.h"
 
 namespace mascot {

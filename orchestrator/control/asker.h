@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <thread>
 
-#include "orchestrator/engines/run_control.h"
+#include "orchestrator/control/run_control.h"
 
 namespace mascot {
 

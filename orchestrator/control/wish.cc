@@ -1,9 +1,9 @@
-#include "orchestrator/live/wish.h"
+#include "orchestrator/control/wish.h"
 
 #include <stdexcept>
 #include <string_view>
 
-#include "orchestrator/live/compact_json.h"
+#include "orchestrator/control/compact_json.h"
 
 namespace mascot {
 namespace {

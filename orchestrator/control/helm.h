@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "experiment/live_experiment.h"
-#include "orchestrator/engines/run_control.h"
+#include "orchestrator/control/run_control.h"
 #include "orchestrator/team/row_sink.h"
 
 namespace mascot {

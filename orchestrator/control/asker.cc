@@ -1,4 +1,4 @@
-#include "orchestrator/live/asker.h"
+#include "orchestrator/control/asker.h"
 
 #include <exception>
 #include <utility>

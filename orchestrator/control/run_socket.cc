@@ -1,4 +1,4 @@
-#include "orchestrator/live/run_socket.h"
+#include "orchestrator/control/run_socket.h"
 
 #include <poll.h>
 #include <sys/socket.h>
@@ -12,10 +12,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "orchestrator/control/compact_json.h"
+#include "orchestrator/control/local_lines.h"
+#include "orchestrator/control/wish.h"
 #include "orchestrator/formats/outside_json.h"
-#include "orchestrator/live/compact_json.h"
-#include "orchestrator/live/local_lines.h"
-#include "orchestrator/live/wish.h"
 
 namespace mascot {
 namespace {

@@ -1,4 +1,4 @@
-#include "orchestrator/live/running_runs.h"
+#include "orchestrator/control/running_runs.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -14,12 +14,12 @@
 
 #include "base/utf8.h"
 #include "experiment/experiment.h"
+#include "orchestrator/control/compact_json.h"
+#include "orchestrator/control/local_lines.h"
+#include "orchestrator/control/run_socket.h"
+#include "orchestrator/control/wish.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
-#include "orchestrator/live/compact_json.h"
-#include "orchestrator/live/local_lines.h"
-#include "orchestrator/live/run_socket.h"
-#include "orchestrator/live/wish.h"
 #include "system/local_socket.h"
 
 namespace mascot {

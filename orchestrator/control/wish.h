@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "orchestrator/engines/run_control.h"
+#include "orchestrator/control/run_control.h"
 
 namespace mascot {
 

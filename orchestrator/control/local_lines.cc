@@ -1,4 +1,4 @@
-#include "orchestrator/live/local_lines.h"
+#include "orchestrator/control/local_lines.h"
 
 #include <poll.h>
 #include <sys/socket.h>
