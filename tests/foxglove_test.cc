@@ -1,6 +1,6 @@
 // The Foxglove protocol without sockets: what clients ask, and what is said to them.
 
-#include "orchestrator/live/foxglove.h"
+#include "orchestrator/live/server/foxglove.h"
 
 #include <gmock/gmock.h>
 

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "experiment/toml/section.h"
-#include "orchestrator/live/origin.h"
-#include "orchestrator/live/pages.h"
-#include "orchestrator/live/socket.h"
+#include "orchestrator/live/server/origin.h"
+#include "orchestrator/live/server/pages.h"
+#include "orchestrator/live/server/socket.h"
 #include "system/local_socket.h"
 #include "tests/orchestrator.h"
 #include "tests/web_client.h"

@@ -1,6 +1,6 @@
 // A run as its viewers see it: fly in this process, watched by clients by hand and by Foxglove's own packages.
 
-#include "orchestrator/live/live_view.h"
+#include "orchestrator/live/shown/live_view.h"
 
 #include <gmock/gmock.h>
 
@@ -11,8 +11,8 @@
 #include "agent/laws/laws.h"
 #include "bus/wire.h"
 #include "orchestrator/engines/inprocess.h"
-#include "orchestrator/live/ros_view.h"
-#include "orchestrator/live/view_sink.h"
+#include "orchestrator/live/shown/ros_view.h"
+#include "orchestrator/live/shown/view_sink.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/run_writer.h"
 #include "tests/orchestrator.h"

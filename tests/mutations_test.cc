@@ -13,7 +13,7 @@
 #include <regex>
 
 #include "experiment/read_experiment.h"
-#include "orchestrator/live/recorded_run.h"
+#include "orchestrator/live/recorded/recorded_run.h"
 #include "tests/call.h"
 #include "tests/scratch.h"
 

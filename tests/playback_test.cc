@@ -1,5 +1,5 @@
 // A recording as viewers see it: any tick, in any order, as in the run; and which tick is to be seen when.
-#include "orchestrator/live/playback.h"
+#include "orchestrator/live/recorded/playback.h"
 
 #include <gmock/gmock.h>
 
@@ -8,9 +8,9 @@
 #include <set>
 
 #include "agent/laws/laws.h"
-#include "orchestrator/live/projector.h"
-#include "orchestrator/live/recorded_run.h"
-#include "orchestrator/live/shown_keys.h"
+#include "orchestrator/live/recorded/projector.h"
+#include "orchestrator/live/recorded/recorded_run.h"
+#include "orchestrator/live/shown/shown_keys.h"
 #include "tests/flown.h"
 #include "tests/orchestrator.h"
 #include "tests/viewer.h"

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "orchestrator/live/address.h"
-#include "orchestrator/live/live_view.h"
-#include "orchestrator/live/playback.h"
-#include "orchestrator/live/projector.h"
-#include "orchestrator/live/recorded_run.h"
+#include "orchestrator/live/recorded/playback.h"
+#include "orchestrator/live/recorded/projector.h"
+#include "orchestrator/live/recorded/recorded_run.h"
+#include "orchestrator/live/server/address.h"
+#include "orchestrator/live/shown/live_view.h"
 #include "orchestrator/theory/theory.h"
 #include "orchestrator/verbs/verb.h"
 #include "orchestrator/verbs/viewers.h"

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/utf8.h"
-#include "orchestrator/live/origin.h"
-#include "orchestrator/live/shown_keys.h"
+#include "orchestrator/live/server/origin.h"
+#include "orchestrator/live/shown/shown_keys.h"
 #include "system/script.h"
 
 namespace mascot {

@@ -12,9 +12,9 @@
 #include "orchestrator/control/helm.h"
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/formats/output_file.h"
-#include "orchestrator/live/address.h"
-#include "orchestrator/live/live_view.h"
-#include "orchestrator/live/view_sink.h"
+#include "orchestrator/live/server/address.h"
+#include "orchestrator/live/shown/live_view.h"
+#include "orchestrator/live/shown/view_sink.h"
 #include "orchestrator/recording/run_folder.h"
 #include "system/console.h"
 

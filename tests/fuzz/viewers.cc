@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "orchestrator/live/foxglove.h"
+#include "orchestrator/live/server/foxglove.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace mascot {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
-#include "orchestrator/live/foxglove.h"
+#include "orchestrator/live/server/foxglove.h"
 
 namespace mascot {
 

@@ -1,4 +1,4 @@
-#include "orchestrator/live/view_sink.h"
+#include "orchestrator/live/shown/view_sink.h"
 
 #include <exception>
 #include <string>

@@ -1,4 +1,4 @@
-#include "orchestrator/live/foxglove_bytes.h"
+#include "orchestrator/live/server/foxglove_bytes.h"
 
 #include <cmath>
 

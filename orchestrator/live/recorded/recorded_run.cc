@@ -1,11 +1,11 @@
-#include "orchestrator/live/recorded_run.h"
+#include "orchestrator/live/recorded/recorded_run.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <utility>
 
 #include "agent/laws/laws.h"
-#include "orchestrator/live/incident_table.h"
+#include "orchestrator/live/recorded/incident_table.h"
 #include "orchestrator/measuring/agreement_meter.h"
 
 namespace mascot {

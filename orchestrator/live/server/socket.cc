@@ -1,4 +1,4 @@
-#include "orchestrator/live/socket.h"  // first: Asio needs <utility>, and does not include it
+#include "orchestrator/live/server/socket.h"  // first: Asio needs <utility>, and does not include it
 
 #include <sys/socket.h>
 #include <unistd.h>
@@ -22,7 +22,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "orchestrator/live/origin.h"
+#include "orchestrator/live/server/origin.h"
 #include "system/local_socket.h"
 
 namespace mascot {

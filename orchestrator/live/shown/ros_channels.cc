@@ -1,10 +1,10 @@
-#include "orchestrator/live/ros_channels.h"
+#include "orchestrator/live/shown/ros_channels.h"
 
 #include <utility>
 
 #include "bus/wire.h"
 #include "idl/schemas.h"
-#include "orchestrator/live/ros_scene.h"
+#include "orchestrator/live/shown/ros_scene.h"
 #include "orchestrator/recording/topic_filter.h"
 
 namespace mascot {

@@ -1,4 +1,4 @@
-#include "orchestrator/live/pages.h"
+#include "orchestrator/live/server/pages.h"
 
 #include <algorithm>
 #include <fstream>

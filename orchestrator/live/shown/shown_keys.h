@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
-#include "orchestrator/live/ui_channels.h"
+#include "orchestrator/live/shown/ui_channels.h"
 
 namespace mascot {
 

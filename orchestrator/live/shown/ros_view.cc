@@ -1,4 +1,4 @@
-#include "orchestrator/live/ros_view.h"
+#include "orchestrator/live/shown/ros_view.h"
 
 #include <stdexcept>
 #include <utility>

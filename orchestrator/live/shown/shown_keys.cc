@@ -1,4 +1,4 @@
-#include "orchestrator/live/shown_keys.h"
+#include "orchestrator/live/shown/shown_keys.h"
 
 #include <nlohmann/json.hpp>
 

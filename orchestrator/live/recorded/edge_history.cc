@@ -1,4 +1,4 @@
-#include "orchestrator/live/edge_history.h"
+#include "orchestrator/live/recorded/edge_history.h"
 
 #include <algorithm>
 #include <utility>

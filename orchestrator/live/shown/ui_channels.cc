@@ -1,4 +1,4 @@
-#include "orchestrator/live/ui_channels.h"
+#include "orchestrator/live/shown/ui_channels.h"
 
 #include <charconv>
 #include <cmath>

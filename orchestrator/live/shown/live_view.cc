@@ -1,4 +1,4 @@
-#include "orchestrator/live/live_view.h"
+#include "orchestrator/live/shown/live_view.h"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
-#include "orchestrator/live/projector.h"
+#include "orchestrator/live/recorded/projector.h"
 
 #include <exception>
 #include <utility>
 
-#include "orchestrator/live/shown_keys.h"
+#include "orchestrator/live/shown/shown_keys.h"
 
 namespace mascot {
 namespace {

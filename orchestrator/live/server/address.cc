@@ -1,4 +1,4 @@
-#include "orchestrator/live/address.h"
+#include "orchestrator/live/server/address.h"
 
 #include <algorithm>
 #include <cctype>

@@ -8,8 +8,8 @@
 
 #include "experiment/experiment.h"
 #include "experiment/live_experiment.h"
-#include "orchestrator/live/edge_history.h"
-#include "orchestrator/live/ui_channels.h"
+#include "orchestrator/live/recorded/edge_history.h"
+#include "orchestrator/live/shown/ui_channels.h"
 #include "orchestrator/recording/indexed_rows.h"
 
 namespace mascot {

@@ -1,4 +1,4 @@
-#include "orchestrator/live/ros_scene.h"
+#include "orchestrator/live/shown/ros_scene.h"
 
 #include <cmath>
 #include <utility>

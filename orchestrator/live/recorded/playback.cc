@@ -1,4 +1,4 @@
-#include "orchestrator/live/playback.h"
+#include "orchestrator/live/recorded/playback.h"
 
 #include <fmt/format.h>
 

@@ -7,8 +7,8 @@
 
 #include "experiment/experiment.h"
 #include "idl/topics.h"
-#include "orchestrator/live/foxglove.h"
-#include "orchestrator/live/ui_channels.h"
+#include "orchestrator/live/server/foxglove.h"
+#include "orchestrator/live/shown/ui_channels.h"
 #include "orchestrator/recording/row_codec.h"
 
 namespace mascot {

@@ -1,4 +1,4 @@
-#include "orchestrator/live/foxglove.h"
+#include "orchestrator/live/server/foxglove.h"
 
 #include <fmt/format.h>
 

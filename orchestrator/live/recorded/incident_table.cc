@@ -1,4 +1,4 @@
-#include "orchestrator/live/incident_table.h"
+#include "orchestrator/live/recorded/incident_table.h"
 
 #include <fmt/format.h>
 

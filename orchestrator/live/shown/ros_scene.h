@@ -9,7 +9,7 @@
 
 #include "bus/cdr.h"
 #include "experiment/experiment.h"
-#include "orchestrator/live/ui_channels.h"
+#include "orchestrator/live/shown/ui_channels.h"
 
 namespace mascot {
 

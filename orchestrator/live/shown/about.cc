@@ -1,4 +1,4 @@
-#include "orchestrator/live/about.h"
+#include "orchestrator/live/shown/about.h"
 
 #include <chrono>
 #include <utility>

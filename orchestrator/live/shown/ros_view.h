@@ -6,8 +6,8 @@
 
 #include "experiment/experiment.h"
 #include "orchestrator/engines/ros_source.h"
-#include "orchestrator/live/ros_scene.h"
-#include "orchestrator/live/ui_channels.h"
+#include "orchestrator/live/shown/ros_scene.h"
+#include "orchestrator/live/shown/ui_channels.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/team/row_sink.h"
 

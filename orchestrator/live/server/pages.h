@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "orchestrator/live/socket.h"
+#include "orchestrator/live/server/socket.h"
 
 namespace mascot {
 

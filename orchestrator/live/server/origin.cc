@@ -1,4 +1,4 @@
-#include "orchestrator/live/origin.h"
+#include "orchestrator/live/server/origin.h"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>

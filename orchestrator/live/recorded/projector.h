@@ -6,9 +6,9 @@
 #include <string>
 #include <thread>
 
-#include "orchestrator/live/live_view.h"
-#include "orchestrator/live/playback.h"
-#include "orchestrator/live/recorded_run.h"
+#include "orchestrator/live/recorded/playback.h"
+#include "orchestrator/live/recorded/recorded_run.h"
+#include "orchestrator/live/shown/live_view.h"
 
 namespace mascot {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "orchestrator/control/run_control.h"
-#include "orchestrator/live/foxglove_bytes.h"
-#include "orchestrator/live/socket.h"
+#include "orchestrator/live/server/foxglove_bytes.h"
+#include "orchestrator/live/server/socket.h"
 
 namespace mascot {
 
