@@ -26,7 +26,7 @@
 #include "bus/shared_memory.h"
 #include "bus/wire.h"
 #include "experiment/graph/graph.h"
-#include "orchestrator/engines/dds/domain_lock.h"
+#include "orchestrator/engines/dds/machine/domain_lock.h"
 
 extern char** environ;
 

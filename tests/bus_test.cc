@@ -18,7 +18,7 @@
 #include "bus/leave.h"
 #include "bus/lifecycle.h"
 #include "bus/wire.h"
-#include "orchestrator/engines/dds/domain_lock.h"
+#include "orchestrator/engines/dds/machine/domain_lock.h"
 #include "orchestrator/engines/dds/ros_publisher.h"
 #include "system/stop_signal.h"
 #include "tests/orchestrator.h"

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <thread>
 
-#include "orchestrator/engines/dds/domain_lock.h"
+#include "orchestrator/engines/dds/machine/domain_lock.h"
 #include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/formats/mcap/writer.h"
 #include "tests/orchestrator.h"

@@ -8,7 +8,7 @@
 
 #include "bus/shared_memory.h"
 #include "bus/wire.h"
-#include "orchestrator/engines/dds/domain_lock.h"
+#include "orchestrator/engines/dds/machine/domain_lock.h"
 #include "orchestrator/formats/mcap/reader.h"
 #include "tests/intruder.h"
 #include "tests/param_name.h"

@@ -1,5 +1,5 @@
 // What `up` and `orchestrator host` tell each other: read as the words of a stranger.
-#include "orchestrator/engines/dds/host_words.h"
+#include "orchestrator/engines/dds/hosts/host_words.h"
 
 #include <gmock/gmock.h>
 

@@ -7,7 +7,7 @@
 #include "experiment/experiment.h"
 #include "orchestrator/control/helm.h"
 #include "orchestrator/engines/dds/engine.h"
-#include "orchestrator/engines/dds/janitor.h"
+#include "orchestrator/engines/dds/machine/janitor.h"
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/recording/run_folder.h"
 #include "system/console.h"

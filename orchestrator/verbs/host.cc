@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "orchestrator/engines/dds/host_share.h"
+#include "orchestrator/engines/dds/hosts/host_share.h"
 #include "orchestrator/verbs/verb.h"
 #include "system/stop_signal.h"
 

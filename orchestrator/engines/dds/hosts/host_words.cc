@@ -1,4 +1,4 @@
-#include "orchestrator/engines/dds/host_words.h"
+#include "orchestrator/engines/dds/hosts/host_words.h"
 
 #include <sys/stat.h>
 

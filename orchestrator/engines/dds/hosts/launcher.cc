@@ -1,4 +1,4 @@
-#include "orchestrator/engines/dds/launcher.h"
+#include "orchestrator/engines/dds/hosts/launcher.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "base/utf8.h"
-#include "orchestrator/engines/dds/route.h"
+#include "orchestrator/engines/dds/hosts/route.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
 #include "system/build.h"

@@ -1,4 +1,4 @@
-#include "orchestrator/engines/dds/domain_lock.h"
+#include "orchestrator/engines/dds/machine/domain_lock.h"
 
 #include <fmt/format.h>
 #include <sys/socket.h>

@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include "orchestrator/engines/dds/domain_lock.h"
-#include "orchestrator/engines/dds/host_words.h"
-#include "orchestrator/engines/dds/janitor.h"
+#include "orchestrator/engines/dds/hosts/host_words.h"
+#include "orchestrator/engines/dds/machine/domain_lock.h"
+#include "orchestrator/engines/dds/machine/janitor.h"
 #include "system/child_logs.h"
 #include "system/children.h"
 #include "system/line_pipe.h"

@@ -1,4 +1,4 @@
-#include "orchestrator/engines/dds/host_share.h"
+#include "orchestrator/engines/dds/hosts/host_share.h"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include "orchestrator/engines/dds/route.h"
+#include "orchestrator/engines/dds/hosts/route.h"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>

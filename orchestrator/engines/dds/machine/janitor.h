@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "orchestrator/engines/dds/domain_lock.h"
+#include "orchestrator/engines/dds/machine/domain_lock.h"
 
 namespace mascot {
 

@@ -1,4 +1,4 @@
-#include "orchestrator/engines/dds/janitor.h"
+#include "orchestrator/engines/dds/machine/janitor.h"
 
 #include <fcntl.h>
 #include <signal.h>

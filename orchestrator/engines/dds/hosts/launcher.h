@@ -10,7 +10,7 @@
 
 #include "bus/peers.h"
 #include "experiment/experiment.h"
-#include "orchestrator/engines/dds/host_words.h"
+#include "orchestrator/engines/dds/hosts/host_words.h"
 #include "orchestrator/recording/run_folder.h"
 #include "system/child_logs.h"
 #include "system/children.h"
