@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "orchestrator/sweeping/metrics.h"
+#include "orchestrator/sweeping/table/metrics.h"
 #include "tests/five_on_a_path.h"
 #include "tests/law_run.h"
 

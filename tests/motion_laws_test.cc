@@ -12,7 +12,7 @@
 
 #include "agent/laws/platoon/string_stability.h"
 #include "agent/laws/trajectory/path_samples.h"
-#include "orchestrator/sweeping/metrics.h"
+#include "orchestrator/sweeping/table/metrics.h"
 #include "tests/ideal_network.h"
 #include "tests/law_run.h"
 #include "tests/scratch.h"

@@ -1,8 +1,8 @@
-#include "orchestrator/sweeping/outcomes.h"
+#include "orchestrator/sweeping/table/outcomes.h"
 
 #include <gmock/gmock.h>
 
-#include "orchestrator/sweeping/table.h"
+#include "orchestrator/sweeping/table/table.h"
 
 namespace mascot {
 namespace {

@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/shard.h"
+#include "orchestrator/sweeping/cluster/shard.h"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,7 @@
 #include <map>
 
 #include "experiment/toml/section.h"
-#include "orchestrator/sweeping/job_array.h"
+#include "orchestrator/sweeping/cluster/job_array.h"
 
 namespace mascot {
 namespace {

@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/side_by_side.h"
+#include "orchestrator/sweeping/table/side_by_side.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 // In what a sweep differs from the one whose table it would go on with.
 #include <gmock/gmock.h>
 
-#include "orchestrator/sweeping/sweep_identity.h"
+#include "orchestrator/sweeping/table/sweep_identity.h"
 
 namespace mascot {
 namespace {

@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "experiment/toml/section.h"
-#include "orchestrator/sweeping/plan.h"
-#include "orchestrator/sweeping/table.h"
+#include "orchestrator/sweeping/plan/plan.h"
+#include "orchestrator/sweeping/table/table.h"
 #include "tests/scratch.h"
 
 namespace mascot {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "orchestrator/sweeping/plan.h"
+#include "orchestrator/sweeping/plan/plan.h"
 
 namespace mascot {
 namespace {

@@ -11,9 +11,9 @@
 #include "orchestrator/formats/outside_json.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/report/summary.h"
-#include "orchestrator/sweeping/metrics.h"
-#include "orchestrator/sweeping/run_arrays.h"
-#include "orchestrator/sweeping/sweep_json.h"
+#include "orchestrator/sweeping/table/metrics.h"
+#include "orchestrator/sweeping/table/run_arrays.h"
+#include "orchestrator/sweeping/table/sweep_json.h"
 #include "orchestrator/theory/draws.h"
 #include "orchestrator/theory/theory.h"
 

@@ -8,9 +8,9 @@
 
 #include "agent/python/metrics.h"
 #include "experiment/experiment.h"
-#include "orchestrator/sweeping/law_axis.h"
-#include "orchestrator/sweeping/plan.h"
-#include "orchestrator/sweeping/run_laws.h"
+#include "orchestrator/sweeping/plan/law_axis.h"
+#include "orchestrator/sweeping/plan/plan.h"
+#include "orchestrator/sweeping/plan/run_laws.h"
 #include "system/worker_pool.h"
 
 namespace mascot {

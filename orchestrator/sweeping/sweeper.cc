@@ -15,10 +15,10 @@
 
 #include "base/utf8.h"
 #include "orchestrator/formats/outside_json.h"
-#include "orchestrator/sweeping/conclusion.h"
-#include "orchestrator/sweeping/metrics.h"
 #include "orchestrator/sweeping/sweep_looks.h"
-#include "orchestrator/sweeping/table.h"
+#include "orchestrator/sweeping/table/conclusion.h"
+#include "orchestrator/sweeping/table/metrics.h"
+#include "orchestrator/sweeping/table/table.h"
 #include "system/build.h"
 #include "system/console.h"
 #include "system/worker_pool.h"

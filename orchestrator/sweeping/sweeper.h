@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "orchestrator/sweeping/plan.h"
-#include "orchestrator/sweeping/shard.h"
-#include "orchestrator/sweeping/sweep_identity.h"
+#include "orchestrator/sweeping/cluster/shard.h"
+#include "orchestrator/sweeping/plan/plan.h"
 #include "orchestrator/sweeping/sweep_work.h"
+#include "orchestrator/sweeping/table/sweep_identity.h"
 #include "system/stop_signal.h"
 
 namespace mascot {

@@ -9,7 +9,7 @@
 
 #include "experiment/toml/section.h"
 #include "orchestrator/recording/recording.h"
-#include "orchestrator/sweeping/side_by_side.h"
+#include "orchestrator/sweeping/table/side_by_side.h"
 #include "orchestrator/verbs/verb.h"
 #include "system/script.h"
 #include "system/stop_signal.h"

@@ -14,10 +14,10 @@
 
 #include "experiment/toml/input.h"
 #include "orchestrator/formats/whole_file.h"
-#include "orchestrator/sweeping/job_array.h"
-#include "orchestrator/sweeping/shard.h"
+#include "orchestrator/sweeping/cluster/job_array.h"
+#include "orchestrator/sweeping/cluster/shard.h"
 #include "orchestrator/sweeping/sweeper.h"
-#include "orchestrator/sweeping/table.h"
+#include "orchestrator/sweeping/table/table.h"
 #include "orchestrator/verbs/sweep_merge.h"
 #include "orchestrator/verbs/sweep_picture.h"
 #include "orchestrator/verbs/verb.h"

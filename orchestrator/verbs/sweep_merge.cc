@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "orchestrator/sweeping/merge.h"
-#include "orchestrator/sweeping/metrics.h"
+#include "orchestrator/sweeping/cluster/merge.h"
+#include "orchestrator/sweeping/table/metrics.h"
 #include "orchestrator/verbs/sweep_picture.h"
 #include "orchestrator/verbs/verb.h"
 #include "system/stop_signal.h"

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "experiment/toml/section.h"
-#include "orchestrator/sweeping/labels.h"
-#include "orchestrator/sweeping/metrics.h"
-#include "orchestrator/sweeping/outcomes.h"
-#include "orchestrator/sweeping/table.h"
+#include "orchestrator/sweeping/plan/labels.h"
+#include "orchestrator/sweeping/table/metrics.h"
+#include "orchestrator/sweeping/table/outcomes.h"
+#include "orchestrator/sweeping/table/table.h"
 #include "system/script.h"
 
 namespace mascot {

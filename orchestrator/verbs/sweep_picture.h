@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "orchestrator/sweeping/plan.h"
-#include "orchestrator/sweeping/sweep_identity.h"
+#include "orchestrator/sweeping/plan/plan.h"
+#include "orchestrator/sweeping/table/sweep_identity.h"
 #include "system/stop_signal.h"
 
 namespace CLI {

@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/run_arrays.h"
+#include "orchestrator/sweeping/table/run_arrays.h"
 
 #include "experiment/experiment.h"
 

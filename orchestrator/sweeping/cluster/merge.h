@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "orchestrator/sweeping/sweep_identity.h"
+#include "orchestrator/sweeping/table/sweep_identity.h"
 
 namespace mascot {
 

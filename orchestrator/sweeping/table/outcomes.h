@@ -10,8 +10,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "orchestrator/sweeping/plan.h"
-#include "orchestrator/sweeping/run_laws.h"
+#include "orchestrator/sweeping/plan/plan.h"
+#include "orchestrator/sweeping/plan/run_laws.h"
 
 namespace mascot {
 

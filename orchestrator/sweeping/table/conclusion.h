@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "orchestrator/sweeping/plan.h"
-#include "orchestrator/sweeping/sweep_identity.h"
-#include "orchestrator/sweeping/table.h"
+#include "orchestrator/sweeping/plan/plan.h"
+#include "orchestrator/sweeping/table/sweep_identity.h"
+#include "orchestrator/sweeping/table/table.h"
 
 namespace mascot {
 

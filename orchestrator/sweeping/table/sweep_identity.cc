@@ -1,12 +1,12 @@
-#include "orchestrator/sweeping/sweep_identity.h"
+#include "orchestrator/sweeping/table/sweep_identity.h"
 
 #include <algorithm>
 #include <map>
 
 #include "orchestrator/formats/outside_json.h"
-#include "orchestrator/sweeping/metrics.h"
-#include "orchestrator/sweeping/sweep_json.h"
-#include "orchestrator/sweeping/table.h"
+#include "orchestrator/sweeping/table/metrics.h"
+#include "orchestrator/sweeping/table/sweep_json.h"
+#include "orchestrator/sweeping/table/table.h"
 
 namespace mascot {
 

@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/labels.h"
+#include "orchestrator/sweeping/plan/labels.h"
 
 #include <algorithm>
 #include <span>

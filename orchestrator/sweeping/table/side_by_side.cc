@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/side_by_side.h"
+#include "orchestrator/sweeping/table/side_by_side.h"
 
 #include <fmt/format.h>
 
@@ -11,9 +11,9 @@
 #include "experiment/toml/section.h"
 #include "orchestrator/formats/outside_json.h"
 #include "orchestrator/report/json.h"
-#include "orchestrator/sweeping/labels.h"
-#include "orchestrator/sweeping/metrics.h"
-#include "orchestrator/sweeping/values.h"
+#include "orchestrator/sweeping/plan/labels.h"
+#include "orchestrator/sweeping/plan/values.h"
+#include "orchestrator/sweeping/table/metrics.h"
 
 namespace mascot {
 namespace {

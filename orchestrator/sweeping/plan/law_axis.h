@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "experiment/toml/section.h"
-#include "orchestrator/sweeping/plan.h"
+#include "orchestrator/sweeping/plan/plan.h"
 
 namespace mascot {
 

@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/merge.h"
+#include "orchestrator/sweeping/cluster/merge.h"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "experiment/toml/section.h"
-#include "orchestrator/sweeping/conclusion.h"
-#include "orchestrator/sweeping/shard.h"
-#include "orchestrator/sweeping/table.h"
+#include "orchestrator/sweeping/cluster/shard.h"
+#include "orchestrator/sweeping/table/conclusion.h"
+#include "orchestrator/sweeping/table/table.h"
 
 namespace mascot {
 namespace {

@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/plan.h"
+#include "orchestrator/sweeping/plan/plan.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,7 +16,7 @@
 
 #include "base/number.h"
 #include "base/random.h"
-#include "orchestrator/sweeping/values.h"
+#include "orchestrator/sweeping/plan/values.h"
 
 namespace mascot {
 namespace {

@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/values.h"
+#include "orchestrator/sweeping/plan/values.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "agent/python/metrics.h"
-#include "orchestrator/sweeping/plan.h"
-#include "orchestrator/sweeping/run_laws.h"
+#include "orchestrator/sweeping/plan/plan.h"
+#include "orchestrator/sweeping/plan/run_laws.h"
 
 namespace mascot {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
-#include "orchestrator/sweeping/plan.h"
+#include "orchestrator/sweeping/plan/plan.h"
 
 namespace mascot {
 

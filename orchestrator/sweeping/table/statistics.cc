@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/statistics.h"
+#include "orchestrator/sweeping/table/statistics.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/run_laws.h"
+#include "orchestrator/sweeping/plan/run_laws.h"
 
 #include <algorithm>
 #include <memory>
@@ -6,7 +6,7 @@
 #include "agent/laws/laws.h"
 #include "experiment/live_experiment.h"
 #include "experiment/phase.h"
-#include "orchestrator/sweeping/law_axis.h"
+#include "orchestrator/sweeping/plan/law_axis.h"
 
 namespace mascot {
 namespace {

@@ -1,12 +1,12 @@
-#include "orchestrator/sweeping/conclusion.h"
+#include "orchestrator/sweeping/table/conclusion.h"
 
 #include <filesystem>
 #include <span>
 
 #include "orchestrator/formats/whole_file.h"
-#include "orchestrator/sweeping/metrics.h"
-#include "orchestrator/sweeping/outcomes.h"
-#include "orchestrator/sweeping/run_laws.h"
+#include "orchestrator/sweeping/plan/run_laws.h"
+#include "orchestrator/sweeping/table/metrics.h"
+#include "orchestrator/sweeping/table/outcomes.h"
 
 namespace mascot {
 

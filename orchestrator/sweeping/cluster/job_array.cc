@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/job_array.h"
+#include "orchestrator/sweeping/cluster/job_array.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "experiment/toml/section.h"
-#include "orchestrator/sweeping/shard.h"
-#include "orchestrator/sweeping/table.h"
+#include "orchestrator/sweeping/cluster/shard.h"
+#include "orchestrator/sweeping/table/table.h"
 
 namespace mascot {
 namespace {

@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/law_axis.h"
+#include "orchestrator/sweeping/plan/law_axis.h"
 
 #include <algorithm>
 #include <set>

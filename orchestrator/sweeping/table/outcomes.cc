@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/outcomes.h"
+#include "orchestrator/sweeping/table/outcomes.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 
 #include "base/number.h"
 #include "experiment/toml/section.h"
-#include "orchestrator/sweeping/statistics.h"
-#include "orchestrator/sweeping/table.h"
+#include "orchestrator/sweeping/table/statistics.h"
+#include "orchestrator/sweeping/table/table.h"
 
 namespace mascot {
 namespace {

@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/shard.h"
+#include "orchestrator/sweeping/cluster/shard.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "base/number.h"
 #include "experiment/toml/section.h"
-#include "orchestrator/sweeping/table.h"
+#include "orchestrator/sweeping/table/table.h"
 #include "system/environment.h"
 
 namespace mascot {

@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/table.h"
+#include "orchestrator/sweeping/table/table.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 #include "orchestrator/formats/input_file.h"
 #include "orchestrator/formats/output_file.h"
 #include "orchestrator/formats/whole_file.h"
-#include "orchestrator/sweeping/plan.h"
+#include "orchestrator/sweeping/plan/plan.h"
 #include "system/worker_pool.h"
 
 namespace mascot {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "agent/python/metrics.h"
-#include "orchestrator/sweeping/plan.h"
-#include "orchestrator/sweeping/run_laws.h"
+#include "orchestrator/sweeping/plan/plan.h"
+#include "orchestrator/sweeping/plan/run_laws.h"
 
 namespace mascot {
 

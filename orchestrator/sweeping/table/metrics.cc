@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/metrics.h"
+#include "orchestrator/sweeping/table/metrics.h"
 
 #include <fmt/format.h>
 

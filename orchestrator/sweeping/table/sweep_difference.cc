@@ -8,8 +8,8 @@
 
 #include "base/utf8.h"
 #include "experiment/toml/section.h"
-#include "orchestrator/sweeping/sweep_identity.h"
-#include "orchestrator/sweeping/values.h"
+#include "orchestrator/sweeping/plan/values.h"
+#include "orchestrator/sweeping/table/sweep_identity.h"
 
 namespace mascot {
 namespace {
