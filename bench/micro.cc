@@ -10,7 +10,7 @@
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/recording/run_writer.h"
 #include "physics_server/world.h"
-#include "tests/scratch.h"
+#include "tests/support/scratch.h"
 
 namespace mascot {
 namespace {

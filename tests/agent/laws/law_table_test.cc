@@ -1,0 +1,184 @@
+// The table of laws: every law is in it with its keys, each key does something, and the resolved file keeps it.
+#include <gmock/gmock.h>
+#include <toml++/toml.h>
+
+#include <filesystem>
+
+#include "agent/laws/laws.h"
+#include "tests/support/ideal_network.h"
+#include "tests/support/scratch.h"
+
+namespace mascot {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::vector<std::string> Mistakes(const std::string& toml) {
+  try {
+    LoadExperiment(Section::FromText(toml, "test.toml"), "test");
+  } catch (const ConfigError& error) {
+    return error.mistakes();
+  }
+  return {};
+}
+
+/// A test that `parameter` of a law has an effect: two sets of keys of [law].
+struct Setting {
+  std::string parameter;
+  std::string base;     ///< lines of [law]
+  std::string changed;  ///< lines of [law] that differ in the parameter alone
+};
+
+/// How a law is tried.
+struct Trial {
+  std::string experiment;  ///< everything in front of the lines of [law]
+  std::vector<Setting> settings;
+};
+
+const std::string kFiveOnAPath =
+    "[run]\nduration_s = 1.0\n"
+    "[agents]\ncount = 5\nmodel = 'double_integrator'\n"
+    "position_m = [[3, 0, 1], [-1, 2, 2], [4, 1, 3], [1, -3, 4], [-5, 5, 5]]\n[graph]\ntopology = 'path'\n";
+
+/// Settings for the law in Python; custom_law_test.cc tests the rest.
+std::vector<Setting> CustomSettings() {
+  const auto law = [](const std::string& gain) {
+    return "python = '''\ndef start(me, params):\n  me.gain = params.get('gain', 1.0)\n"
+           "def control(t, me, neighbours):\n"
+           "  return -me.velocity + sum(me.gain * " +
+           gain + " * (j.position - me.position) for j in neighbours)\n'''\n";
+  };
+  const std::string published =
+      "style = 'mascot'\npython = '''\ndef control_user(px, vx, ax, py, vy, ay, i, n, leader):\n"
+      "  return 0.1 * leader - vx[i], -vy[i]\n'''\n";
+  const auto with_module = [](const std::string& gain) {
+    return "modules = { 'gains.py' = 'GAIN = " + gain +
+           "' }\npython = '''\nimport gains\ndef control(t, me, neighbours):\n"
+           "  return -me.velocity + sum(gains.GAIN * (j.position - me.position) for j in neighbours)\n'''\n";
+  };
+  return {{"python", law("1.0"), law("1.1")},
+          {"modules", with_module("1.0"), with_module("1.1")},
+          {"params", law("1.0"), law("1.0") + "params = { gain = 0.5 }\n"},
+          {"style", law("1.0"), published},
+          {"leader", published, published + "leader = 2\n"},
+          {"output", law("1.0"), law("1.0") + "output = 'velocity'\n"}};
+}
+
+/// Settings for laws in shared libraries, with those of tests/plugins.
+std::vector<Setting> PluginSettings() {
+  const auto library = [](const std::string& name) {
+    return "library = '" MASCOT_BINARY_DIR "/tests/plugins/lib" + name + ".so'\n";
+  };
+  const std::string base = library("mirror");
+  return {{"library", base, library("talker")},
+          {"params", base, base + "params = { gain = 0.5 }\n"},
+          {"leader", base, base + "leader = 2\n"}};
+}
+
+/// Reads tests/law_settings/LAW.toml. Each of its [keys] has the lines of [law] that change it, added to `base`, or two
+/// sets of lines that differ in it. `experiment`: another team than five on a path.
+Trial ReadTrial(std::string_view law) {
+  const toml::table file = toml::parse_file(MASCOT_SOURCE_DIR "/tests/law_settings/" + std::string(law) + ".toml");
+  const std::string base = file["base"].value_or("");
+  Trial trial{.experiment = file["experiment"].value_or(kFiveOnAPath), .settings = {}};
+  for (const auto& [key, lines] : *file["keys"].as_table()) {
+    const auto* two = lines.as_array();
+    trial.settings.push_back({std::string(key.str()), two != nullptr ? two->at(0).value_or("") : base,
+                              two != nullptr ? two->at(1).value_or("") : base + lines.value_or("")});
+  }
+  return trial;
+}
+
+Trial TrialOf(std::string_view law) {
+  if (law == "custom") return {kFiveOnAPath, CustomSettings()};
+  if (law == "plugin") return {kFiveOnAPath, PluginSettings()};
+  return ReadTrial(law);
+}
+
+std::string With(const Trial& trial, std::string_view law, const std::string& lines) {
+  return trial.experiment + "[law]\nname = '" + std::string(law) + "'\n" + lines;
+}
+
+TEST(LawTable, HasTheLawOfEveryFileThatDefinesOne) {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(MASCOT_SOURCE_DIR "/agent/laws"))
+    if (entry.path().extension() == ".cc" && ReadFile(entry.path()).find("\nLawEntry ") != std::string::npos)
+      files.push_back(entry.path().stem());
+  EXPECT_THAT(files, ::testing::UnorderedElementsAreArray(LawNames()));
+  EXPECT_EQ(LawNames().front(), "consensus") << "the default of law.name";
+}
+
+TEST(LawTable, NamesOnlyParametersWhoseChangeChangesTheResultAndAllOfThem) {
+  for (const LawEntry& law : Laws()) {
+    std::vector<std::string> tried;
+    const Trial trial = TrialOf(law.name);
+    for (const Setting& setting : trial.settings) {
+      IdealNetwork base(With(trial, law.name, setting.base));
+      IdealNetwork changed(With(trial, law.name, setting.changed));
+      base.RunUntil(20);
+      changed.RunUntil(20);
+      double difference = 0;
+      for (std::size_t i = 0; i < base.motions.size(); ++i)
+        difference += (base.motions[i].p_WB - changed.motions[i].p_WB).norm();
+      EXPECT_GT(difference, 1e-4) << law.name << " " << setting.parameter;
+      tried.push_back(setting.parameter);
+    }
+    // These are tested in custom_law_test.cc, custom_text_test.cc and plugin_law_test.cc: files, messages, places of
+    // errors.
+    const std::vector<std::string_view> elsewhere = {"file", "messages", "python_file", "python_line"};
+    std::vector<std::string> named;
+    for (const Key& parameter : law.parameters)
+      if (std::ranges::find(elsewhere, parameter.name) == elsewhere.end()) named.emplace_back(parameter.name);
+    EXPECT_THAT(tried, ::testing::UnorderedElementsAreArray(named)) << law.name;
+  }
+}
+
+TEST(LawTable, ListsTheRightDefaults) {
+  for (const LawEntry& law : Laws()) {
+    const Trial trial = TrialOf(law.name);
+    for (const Key& parameter : law.parameters) {
+      if (parameter.fallback.empty()) continue;
+      std::string lines;  // [law] with the parameter at its default
+      for (const Setting& setting : trial.settings)
+        if (setting.parameter == parameter.name) lines = setting.base;
+      Section document = Section::FromText(With(trial, law.name, lines), "test.toml");
+      LoadExperiment(document, "test");
+      const std::string line = "\n" + std::string(parameter.name) + " = " + std::string(parameter.fallback) + "\n";
+      EXPECT_THAT(document.Resolved(), HasSubstr(line)) << law.name;
+    }
+  }
+}
+
+TEST(LawTable, ListsTheRequiredParameters) {
+  for (const LawEntry& law : Laws()) {
+    std::vector<std::string> required;
+    for (const Key& parameter : law.parameters) {
+      if (parameter.required) required.push_back("law." + std::string(parameter.name) + ": ");
+    }
+    std::vector<std::string> mistakes = Mistakes(With(TrialOf(law.name), law.name, ""));
+    std::erase_if(mistakes, [](const std::string& mistake) {  // the user chooses one of two keys
+      return mistake.ends_with(", got none");
+    });
+    ASSERT_EQ(mistakes.size(), required.size()) << law.name;
+    for (const std::string& key : required) EXPECT_THAT(mistakes, ::testing::Contains(HasSubstr(key)));
+  }
+}
+
+TEST(LawTable, ReproducesTheLawFromTheResolvedFile) {
+  for (const LawEntry& law : Laws()) {
+    const Trial trial = TrialOf(law.name);
+    for (const Setting& setting : trial.settings) {
+      Section document = Section::FromText(With(trial, law.name, setting.changed), "test.toml");
+      LoadExperiment(document, "test");
+      IdealNetwork original(With(trial, law.name, setting.changed));
+      IdealNetwork again(document.Resolved());
+      original.RunUntil(5);
+      again.RunUntil(5);
+      for (std::size_t i = 0; i < original.motions.size(); ++i)
+        EXPECT_EQ(original.motions[i].p_WB, again.motions[i].p_WB) << setting.changed;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mascot

@@ -1,0 +1,74 @@
+#pragma once
+
+// Sweeps with the real `orchestrator`, and reads their tables, for end-to-end tests.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/orchestrator.h"
+
+namespace mascot::test {
+
+using Cells = std::vector<std::string>;
+
+/// Splits a CSV line at the commas outside quotes.
+inline Cells Split(const std::string& line) {
+  Cells cells(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      cells.emplace_back();
+    else
+      cells.back() += c;
+  }
+  return cells;
+}
+
+/// The table of a sweep.
+struct Table {
+  explicit Table(const std::string& path) {
+    std::istringstream lines(ReadFile(path));
+    std::string line;
+    std::getline(lines, line);
+    columns = Split(line);
+    while (std::getline(lines, line)) rows.push_back(Split(line));
+  }
+  std::string At(std::size_t row, const std::string& column) const {
+    const auto place = std::ranges::find(columns, column);
+    return place == columns.end() ? "no such column"
+                                  : rows.at(row).at(static_cast<std::size_t>(place - columns.begin()));
+  }
+  /// The rows without the columns that depend on wall-clock time.
+  std::vector<Cells> Repeatable() const {
+    std::vector<Cells> all = rows;
+    for (Cells& row : all) row.resize(row.size() - 2);
+    return all;
+  }
+  Cells columns;
+  std::vector<Cells> rows;
+};
+
+/// A folder with a small experiment, and where its sweep goes.
+class SweepTest : public ::testing::Test {
+ protected:
+  SweepTest() {
+    WriteFile(config_,
+              "[run]\nduration_s = 2.0\n[agents]\ncount = 3\n[graph]\ntopology = 'ring'\n[law]\np_gain = 0.3\n");
+  }
+  std::string Words(const std::string& more) const {
+    return std::string(MASCOT_BINARY_DIR) + "/orchestrator sweep " + config_ + " --out " + out_ + " " + more;
+  }
+  Ran Sweep(const std::string& more) const { return Shell(Words(more)); }
+
+  ScratchFolder folder_;
+  std::string config_ = folder_.File("small.toml");
+  std::string out_ = folder_.File("sweep.csv");
+};
+
+}  // namespace mascot::test

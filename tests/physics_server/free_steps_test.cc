@@ -1,0 +1,169 @@
+// Steps in which nothing can touch are computed without Bullet's contact detection. They must give the same bits as
+// Bullet, and Bullet must take over before anything touches.
+#include <gmock/gmock.h>
+
+#include <cstring>
+#include <random>
+
+#include "physics_server/world.h"
+#include "tests/physics_server/one_body.h"
+
+namespace mascot {
+namespace {
+
+using Eigen::Vector3d;
+using Look = World::LookForContacts;
+
+std::vector<double> Numbers(const World& world, int count) {
+  std::vector<double> numbers;
+  for (int id = 1; id <= count; ++id) {
+    const Motion s = world.State(id);
+    numbers.insert(numbers.end(), s.p_WB.begin(), s.p_WB.end());
+    numbers.insert(numbers.end(), s.v_WB.begin(), s.v_WB.end());
+    numbers.insert(numbers.end(), s.q_WB.coeffs().begin(), s.q_WB.coeffs().end());
+    numbers.insert(numbers.end(), s.w_WB_B.begin(), s.w_WB_B.end());
+  }
+  return numbers;
+}
+
+bool SameBits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+/// The same experiment in two worlds: as we run it, and with Bullet's contact detection at every step.
+struct Twins {
+  explicit Twins(const Experiment& e) : ours(e, Look::kWhenClose), bullet(e, Look::kAlways), count(e.size()) {}
+  void Step(const std::vector<Actuation>& commands) {
+    ours.Step(commands);
+    bullet.Step(commands);
+  }
+  bool Same() const { return SameBits(Numbers(ours, count), Numbers(bullet, count)); }
+  World ours, bullet;
+  int count;
+};
+
+/// Agents of all models in wind, with crossing paths, some of them on the ground.
+Experiment Swarm(unsigned seed, int count) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> place(-4, 4), height(0.5, 4), speed(-3, 3);
+  std::vector<Vector3d> places;
+  for (int i = 0; i < count; ++i) places.push_back({place(random), place(random), height(random)});
+  Experiment e = Bodies("quadrotor", places);
+  e.physics.wind.gust_std_m_per_s = 1;
+  e.physics.obstacles = {{Shape::kBox, {0, 0, 2}, {0.5, 0.5, 4}, 0.3}, {Shape::kSphere, {3, 3, 3}, {1, 1, 1}, 0}};
+  for (AgentConfig& agent : e.agents) {
+    agent.v_W = {speed(random), speed(random), 0};
+    agent.heading_rad = place(random);
+    if (agent.id % 4 == 1) agent.model = "double_integrator";
+    if (agent.id % 4 == 2) agent.model = "single_integrator";
+    if (agent.id % 4 == 3) agent.model = "unicycle";
+    if (agent.id % 8 == 0) agent.airframe = Built("crazyflie");
+  }
+  return e;
+}
+
+std::vector<Actuation> RandomCommands(const Experiment& e, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<Actuation> commands;
+  for (const AgentConfig& agent : e.agents) {
+    const double hover = agent.airframe.HoverRotorSpeed(9.81);
+    Actuation command{};
+    for (double& value : command)
+      value = agent.model == "quadrotor" ? hover * (1 + 0.01 * unit(random)) : 2 * unit(random);
+    commands.push_back(command);
+  }
+  return commands;
+}
+
+TEST(FreeSteps, GiveTheBitsOfBulletAsLongAsNothingTouches) {
+  constexpr int kCount = 8;
+  int flown = 0, near_misses = 0;
+  std::int64_t with_contacts = 0, steps = 0;
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    const Experiment e = Swarm(seed, kCount);
+    Twins twins(e);
+    std::mt19937_64 random(seed);
+    bool near_miss = false;
+    for (int tick = 0; tick < 150; ++tick) {
+      twins.Step(RandomCommands(e, random));
+      if (twins.bullet.collisions() > 0) break;
+      ASSERT_TRUE(twins.Same()) << "seed " << seed << ", tick " << tick;
+      ASSERT_EQ(twins.ours.collisions(), 0);
+      near_miss = near_miss || twins.ours.steps_with_contacts() > 0;  // close, but nothing touched
+      ++flown;
+    }
+    near_misses += near_miss;
+    with_contacts += twins.ours.steps_with_contacts();
+    steps += twins.bullet.steps_with_contacts();
+  }
+  EXPECT_GT(flown, 1000);
+  EXPECT_GT(near_misses, 20);
+  EXPECT_LT(with_contacts, steps / 2) << "most of the time nobody was close";
+}
+
+TEST(FreeSteps, CountTheSameContactsAsBullet) {
+  for (unsigned seed = 100; seed < 130; ++seed) {
+    const Experiment e = Swarm(seed, 8);
+    Twins twins(e);
+    std::mt19937_64 random(seed);
+    // Until the first contact, which both worlds must detect at the same tick.
+    for (int tick = 0; tick < 300 && twins.bullet.collisions() == 0; ++tick) twins.Step(RandomCommands(e, random));
+    EXPECT_EQ(twins.ours.contacts().agents, twins.bullet.contacts().agents) << seed;
+    EXPECT_EQ(twins.ours.contacts().ground, twins.bullet.contacts().ground) << seed;
+    EXPECT_EQ(twins.ours.contacts().obstacles, twins.bullet.contacts().obstacles) << seed;
+  }
+}
+
+TEST(FreeSteps, HandOverBeforeFastBodiesTouch) {
+  for (const double speed : {0.1, 1.0, 10.0, 60.0}) {  // 6 cm in a step: less than the bodies are thick
+    Experiment e = Bodies("double_integrator", {{-5, 0, 10}, {5, 0.05, 10}});
+    e.agents[0].v_W = {speed, 0, 0};
+    e.agents[1].v_W = {-speed, 0, 0};
+    Twins twins(e);
+    const std::vector<Actuation> nothing(2);
+    while (twins.ours.State(1).p_WB.x() < 3 && twins.ours.State(1).v_WB.x() > 0.5 * speed && twins.ours.tick() < 10'000)
+      twins.Step(nothing);
+    EXPECT_EQ(twins.ours.contacts().agents, 1) << speed;
+    EXPECT_TRUE(twins.Same()) << speed;
+  }
+}
+
+TEST(FreeSteps, LeaveStackedBodiesToBullet) {
+  Experiment e = Bodies("quadrotor", {{0, 0, 0.1}, {0, 0, 0.3}, {0.1, 0, 0.5}, {5, 5, 3}});
+  Twins twins(e);
+  const std::vector<Actuation> rotors_off(4);
+  for (int tick = 0; tick < 300; ++tick) twins.Step(rotors_off);
+  EXPECT_EQ(twins.ours.contacts().total(), twins.bullet.contacts().total());
+  EXPECT_GT(twins.ours.contacts().total(), 3);
+  EXPECT_GT(twins.ours.steps_with_contacts(), 2500) << "they lie there from soon on";
+  for (int id = 1; id <= 3; ++id)
+    EXPECT_LT((twins.ours.State(id).p_WB - twins.bullet.State(id).p_WB).norm(), 1e-3) << id;
+}
+
+TEST(FreeSteps, AreTakenAgainWhenBodiesHaveSeparated) {
+  Experiment e = Bodies("double_integrator", {{-1, 0, 10}, {1, 0, 10}});
+  e.agents[0].v_W = {2, 0, 0};
+  World world(e);
+  const std::vector<Actuation> nothing(2);
+  std::int64_t last = -1;
+  for (int tick = 0; tick < 400; ++tick) {
+    if (tick == 300) last = world.steps_with_contacts();
+    std::vector<Actuation> commands = nothing;
+    if (tick > 100) commands[0][0] = -5;  // away from each other
+    world.Step(commands);
+  }
+  EXPECT_GE(world.contacts().agents, 1);
+  EXPECT_EQ(world.steps_with_contacts(), last);
+  EXPECT_LT(last, 1500);
+}
+
+TEST(FreeSteps, DetectNoContactsForHoveringTeams) {
+  World world(Bodies("quadrotor", {{0, 0, 1}, {0, 0, 1.5}, {0, 0, 2}}));  // above each other, as after a meeting
+  const double hover = Built("mascot").HoverRotorSpeed(9.81);
+  const std::vector<Actuation> commands(3, Actuation{hover, hover, hover, hover});
+  for (int tick = 0; tick < 500; ++tick) world.Step(commands);
+  EXPECT_EQ(world.steps_with_contacts(), 0);
+}
+
+}  // namespace
+}  // namespace mascot

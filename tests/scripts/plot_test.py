@@ -1,0 +1,1191 @@
+#!/usr/bin/python3
+"""Tests of scripts/plot.py and scripts/law_pictures: which pictures and films they make, what these contain, how large
+they are, and error messages."""
+
+import contextlib
+import importlib.machinery
+import importlib.util
+import io
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+import zipfile
+from unittest import mock
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+sys.dont_write_bytecode = True
+import animation
+import figure_style
+import overlay
+import pictures
+import plain
+import plot
+import plot_sweep
+import run_folder
+import matplotlib
+from matplotlib.quiver import Quiver
+
+loader = importlib.machinery.SourceFileLoader("law_pictures", str(pathlib.Path(plot.__file__).parent / "law_pictures"))
+law_pictures = importlib.util.module_from_spec(importlib.util.spec_from_loader("law_pictures", loader))
+loader.exec_module(law_pictures)
+
+ROOT = pathlib.Path(plot.__file__).parent.parent
+CONSENSUS = '[run]\nname = "demo"\n[law]\nname = "consensus"\n'
+LEADER = CONSENSUS + "leader = 2\n"
+MINMAX = '[law]\nname = "minmax"\nleader = 1\n'
+WAYPOINT = '[law]\nname = "waypoint"\naxes = "xyz"\nwaypoints_m = [[4, 0, 1], [4, 4, 1]]\ndwell_s = 0.5\n'
+AGREEMENT = {"leader": "leader", "switches": False, "pictures": ["disagreement"]}
+PURSUIT = {"leader": "root", "switches": True, "pictures": ["disagreement", "tracking"]}
+FLIGHT = {"leader": "leader", "switches": False, "pictures": ["error"]}
+PATH = {"graph": {"edges": [[1, 2, 1.0], [2, 1, 1.0], [2, 3, 1.0], [3, 2, 1.0]]}}
+
+
+def arrays(agents=3, rows=51):
+    """States of agents on a circle that contract exponentially to (1, 2), each at its own height."""
+    t = np.arange(rows) / 10
+    angle = 2 * np.pi * np.arange(agents) / agents
+    start = np.stack([5 * np.cos(angle), 5 * np.sin(angle), 1 + np.arange(agents)], axis=1)
+    shrink = np.exp(-t)[:, None, None] * np.array([1, 1, 0])
+    end = np.array([1, 2, 0]) + start * np.array([0, 0, 1])
+    offset = start * np.array([1, 1, 0])
+    return {"t": t, "id": np.arange(1, agents + 1), "position": end + shrink * offset, "velocity": -shrink * offset,
+            "acceleration_command": shrink * offset}
+
+
+def setUpModule():
+    figure_style.STYLE |= {"figure.dpi": 30, "figure.constrained_layout.use": False}  # fast: nobody looks at these
+
+
+@contextlib.contextmanager
+def laid_out(dpi=30):
+    """Panels have their true places meanwhile."""
+    changed = {"figure.constrained_layout.use": True, "figure.dpi": dpi}
+    with mock.patch.dict(figure_style.STYLE, changed), mock.patch.dict(figure_style.PAPER, {"figure.dpi": dpi}):
+        yield
+
+
+class PlotTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name) / "a run"
+        self.folder.mkdir()
+        self.addCleanup(plot.plt.close, "all")
+
+    def write(self, config=CONSENSUS, summary=None, states=None):
+        np.savez(self.folder / "states.npz", **(arrays() if states is None else states))
+        (self.folder / "config.toml").write_text(config)
+        drawing = PURSUIT if "minmax" in config else FLIGHT if "waypoint\"" in config else AGREEMENT
+        (self.folder / "summary.json").write_text(json.dumps({"drawing": drawing} | (summary or {})))
+
+    def run_plot(self, *options):
+        """Runs plot.py. Returns its exit code and its stderr."""
+        errors = io.StringIO()
+        with contextlib.redirect_stderr(errors):
+            code = plot.main([str(self.folder), *options])
+        return code, errors.getvalue()
+
+    def check(self, code, message, *options):
+        self.assertEqual(self.run_plot(*options), (code, f"error: {message}\n"))
+
+    def pictures(self):
+        return sorted(path.stem for path in self.folder.glob("*.png"))
+
+    def clipped(self, name, size):
+        """What of the picture is not whole: beyond the page, or covered by the legend."""
+        figure_style.use(size)
+        figure = pictures.PICTURES[name].draw(run_folder.read_run(self.folder))
+        figure.canvas.draw()
+        renderer = figure.canvas.get_renderer()
+        tight, (wide, high) = figure.get_tightbbox(renderer), figure.get_size_inches()
+        over = max(-tight.x0, -tight.y0, tight.x1 - wide, tight.y1 - high)
+        covered = [axis for axis in figure.axes for legend in figure.legends
+                   if axis.get_visible() and legend.get_window_extent(renderer).overlaps(axis.get_tightbbox(renderer))]
+        plot.plt.close(figure)
+        return (["beyond the page"] if over > 0.002 else []) + covered
+
+    def figure(self, name, size="screen", **what):
+        self.write(**what)
+        figure_style.use(size)
+        return pictures.PICTURES[name].draw(run_folder.read_run(self.folder))
+
+
+class Pictures(PlotTest):
+    def test_consensus_gets_five(self):
+        self.write()
+        self.assertEqual(self.run_plot(), (0, ""))
+        self.assertEqual(self.pictures(), ["acceleration", "disagreement", "paths", "position", "velocity"])
+
+    def test_minmax_also_gets_tracking(self):
+        self.write(MINMAX, PATH)
+        self.assertEqual(self.run_plot(), (0, ""))
+        self.assertIn("tracking", self.pictures())
+
+    def test_waypoint_gets_error_and_no_disagreement(self):
+        self.write(WAYPOINT)
+        self.assertEqual(self.run_plot(), (0, ""))
+        self.assertEqual(self.pictures(), ["acceleration", "error", "paths", "position", "velocity"])
+
+    def test_without_its_summary_a_law_gets_what_all_laws_have(self):
+        self.write()
+        (self.folder / "summary.json").unlink()
+        code, errors = self.run_plot()
+        self.assertEqual(code, 0)
+        self.assertRegex(errors, r"summary\.json does not say how the law is drawn: only what all laws have is\n$")
+        self.assertEqual(self.pictures(), ["acceleration", "paths", "position", "velocity"])
+
+    def test_one_agent_one_row_and_many_agents_are_drawn(self):
+        for agents, rows in ((1, 51), (3, 1), (11, 5), (201, 2)):
+            with self.subTest(agents=agents, rows=rows):
+                self.write(states=arrays(agents, rows))
+                for name in ["paths", "velocity"] + ["disagreement"] * (agents > 1):
+                    self.assertEqual(self.run_plot("--only", name), (0, ""))
+
+    def test_up_replaces_all_pictures_by_name(self):
+        told = (ROOT / "orchestrator/recording/run_folder.cc").read_text()
+        names = re.search(r"kPictures\[\] = \{(.*?)\}", told, re.S)[1]
+        self.assertEqual(sorted(re.findall(r'"(\w+)"', names)), sorted(pictures.PICTURES))
+        endings = re.search(r"kPictureFormats\[\] = \{(.*?)\}", told, re.S)[1]
+        self.assertEqual(re.findall(r'"\.(\w+)"', endings), list(figure_style.FORMATS))
+
+    def test_the_program_tells_the_words_of_its_options(self):
+        told = dict(re.findall(r'\{"--(\w+)", "\w+:\{(.*?)\}"', (ROOT / "orchestrator/verbs/plot.cc").read_text()))
+        self.assertEqual({option: words.split(",") for option, words in told.items()}, {
+            "only": list(pictures.PICTURES), "format": list(figure_style.FORMATS), "size": list(figure_style.SIZES)})
+
+    def test_only_draws_those_that_it_names(self):
+        self.write()
+        self.assertEqual(self.run_plot("--only", "velocity"), (0, ""))
+        self.assertEqual(self.pictures(), ["velocity"])
+        self.assertEqual(self.run_plot("--only", "position,paths"), (0, ""))
+        self.assertEqual(self.pictures(), ["paths", "position", "velocity"])
+
+    def test_the_same_run_gives_the_same_bytes(self):
+        self.write(LEADER, PATH)
+        for name in ("paths", "disagreement"):
+            self.run_plot("--only", name)
+        first = {path.name: path.read_bytes() for path in self.folder.glob("*.png")}
+        self.run_plot()
+        self.assertEqual({path.name: path.read_bytes() for path in self.folder.glob("*.png") if path.name in first}, first)
+        self.assertNotIn(b"tEXt", first["paths.png"])
+
+
+class Switches(PlotTest):
+    def test_position_plot_off_leaves_velocity_and_acceleration(self):
+        self.write(CONSENSUS + "[output]\nposition_plot = false\n")
+        self.assertEqual(self.run_plot()[0], 0)
+        self.assertEqual(self.pictures(), ["acceleration", "velocity"])
+
+    def test_velocity_plot_off_leaves_the_others(self):
+        self.write(MINMAX + "[output]\nvelocity_plot = false\n", PATH)
+        self.assertEqual(self.run_plot()[0], 0)
+        self.assertEqual(self.pictures(), ["disagreement", "graph", "paths", "position", "tracking"])
+
+    def test_save_plot_off_writes_none_and_says_so(self):
+        self.write(CONSENSUS + "[output]\nsave_plot = false\n")
+        code, errors = self.run_plot()
+        self.assertEqual((code, self.pictures()), (0, []))
+        self.assertIn("no picture drawn", errors)
+
+    def test_show_without_a_display_still_writes_and_exits_0(self):
+        kept = {key: os.environ.pop(key) for key in ("DISPLAY", "WAYLAND_DISPLAY") if key in os.environ}
+        self.addCleanup(os.environ.update, kept)
+        self.write(CONSENSUS + "[output]\nshow_plot = true\n")
+        for options in ((), ("--show",)):
+            self.assertEqual(self.run_plot("--only", "paths", *options), (0, "no display: no window is opened\n"))
+        self.assertEqual(self.pictures(), ["paths"])
+
+
+class WhatIsInThem(PlotTest):
+    def lines(self, axis):
+        return {line.get_label(): line for line in axis.get_lines()}
+
+    def test_axes_are_labelled_with_units(self):
+        position = self.figure("position").axes
+        self.assertEqual([axis.get_ylabel() for axis in position], ["x (m)", "y (m)", "z (m)"])
+        self.assertEqual(position[-1].get_xlabel(), "time (s)")
+        velocity = self.figure("velocity").axes
+        self.assertEqual([axis.get_ylabel() for axis in velocity], [f"$v_{k}$ (m/s)" for k in "xyz"])
+        paths = self.figure("paths").axes[0]
+        self.assertEqual((paths.get_xlabel(), paths.get_ylabel()), ("x, east (m)", "y, north (m)"))
+        self.assertEqual(paths.get_aspect(), 1)
+
+    def test_acceleration_shows_the_axes_of_the_law_and_the_limit(self):
+        axes = self.figure("acceleration").axes
+        self.assertEqual([axis.get_ylabel() for axis in axes], ["$a_x$ (m/s²)", "$a_y$ (m/s²)"])
+        self.assertNotIn("limit ±3 m/s²", self.lines(axes[0]))
+        self.assertEqual(axes[0].get_title(loc="right"), "some agents have other limits")
+        axes = self.figure("acceleration", config=CONSENSUS + "[control]\nmax_acceleration_m_per_s2 = 5\n").axes
+        self.assertEqual(self.lines(axes[0])["limit ±5 m/s²"].get_ydata()[0], 5)
+        self.assertEqual(len(self.figure("acceleration", config=WAYPOINT).axes), 3)
+
+    def test_acceleration_says_that_none_is_commanded(self):
+        states = arrays()
+        states["acceleration_command"] *= 0
+        axes = self.figure("acceleration", states=states).axes
+        self.assertEqual(axes[0].get_title(loc="right"), "none is commanded")
+
+    def test_a_limit_far_away_does_not_flatten_the_lines(self):
+        axes = self.figure("acceleration", config=CONSENSUS + "[control]\nmax_acceleration_m_per_s2 = 100\n").axes
+        self.assertLess(axes[0].get_ylim()[1], 10)
+        self.assertEqual(axes[0].get_title(loc="right"), "limit ±100 m/s², out of view")
+
+    def test_an_acceleration_that_switches_is_smoothed(self):
+        states = arrays(rows=51)
+        states["acceleration_command"] = np.tile(np.array([1.0, -1.0, 1, -1, 1, -1])[:, None, None], (9, 3, 3))[:51]
+        axis = self.figure("acceleration", config=MINMAX, states=states).axes[0]
+        smooth = self.lines(axis)["agent 2"].get_ydata()
+        self.assertEqual(smooth[0], 1)
+        self.assertLess(np.abs(smooth[5:]).max(), 0.21)  # mean over five rows of +-1
+        self.assertEqual(len(axis.collections[0].get_segments()), 3)
+
+    def test_a_log_axis_of_little_more_than_a_decade_names_several_values(self):
+        states = arrays()
+        states["position"] *= np.linspace(1, 0.3, states["t"].size)[:, None, None]
+        figure = self.figure("error", config=WAYPOINT, states=states)
+        low, high = figure.axes[0].get_ylim()
+        self.assertLess(high / low, 100)
+        figure.draw_without_rendering()
+        labels = figure.axes[0].get_yticklabels(which="both")
+        shown = [label for label in labels if label.get_text() and low <= label.get_position()[1] <= high]
+        self.assertGreaterEqual(len(shown), 3)
+
+    def test_disagreement_is_the_distance_to_the_mean_on_a_log_axis(self):
+        axis = self.figure("disagreement").axes[0]
+        self.assertEqual((axis.get_yscale(), axis.get_ylabel()), ("log", "distance to the mean (m)"))
+        np.testing.assert_allclose(self.lines(axis)["largest"].get_ydata(), 5 * np.exp(-arrays()["t"]), rtol=1e-12)
+
+    def test_disagreement_of_a_formation_leaves_the_places_out(self):
+        config = '[law]\nname = "formation"\n'
+        states = arrays()
+        offsets = [[0, 0, 0], [3, 0, 0], [0, 4, 0]]
+        states["position"] = states["position"] + np.array(offsets)
+        summary = {"formation": {"offsets_m": offsets}}
+        axis = self.figure("disagreement", config=config, summary=summary, states=states).axes[0]
+        self.assertEqual(axis.get_ylabel(), "distance from its place, seen from the mean (m)")
+        np.testing.assert_allclose(self.lines(axis)["largest"].get_ydata(), 5 * np.exp(-arrays()["t"]), rtol=1e-12)
+
+    def test_obstacles_are_drawn_where_they_stand(self):
+        config = CONSENSUS + ('[[physics.obstacles]]\nshape = "box"\nposition_m = [1, 2, 0]\nsize_m = [2, 4, 1]\n'
+                              '[[physics.obstacles]]\nshape = "sphere"\nposition_m = [5, 0, 1]\nsize_m = [2, 2, 2]\n')
+        figure = self.figure("paths", config=config)
+        box, sphere = figure.axes[0].patches[:2]
+        self.assertEqual([text.get_text() for text in figure.legends[0].get_texts()].count("obstacles"), 1)
+        self.assertEqual((box.get_x(), box.get_y(), box.get_width(), box.get_height()), (0, 0, 2, 4))
+        self.assertEqual((tuple(sphere.center), sphere.radius), ((5, 0), 1))
+
+    def test_a_liar_is_dashed_and_named_and_does_not_count_in_the_disagreement(self):
+        config = CONSENSUS + '[[agents.override]]\nid = 2\nlie = { kind = "constant", offset_m = [9, 0, 0] }\n'
+        lines = self.lines(self.figure("paths", config=config).axes[0])
+        self.assertEqual([lines[f"agent {name}"].get_linestyle() for name in ("1", "2 (lies)", "3")], ["-", "--", "-"])
+        states = arrays()
+        states["position"][:, 1] = [100, 0, 1]
+        axis = self.figure("disagreement", config=config, states=states).axes[0]
+        p = states["position"][0, [0, 2], :2]
+        self.assertAlmostEqual(self.lines(axis)["largest"].get_ydata()[0], np.linalg.norm(p[0] - p[1]) / 2)
+
+    def test_the_hull_of_listed_leaders_is_drawn_at_the_end(self):
+        config = '[law]\nname = "chase"\nguides = [1, 2, 3, 5]\n'
+        states = arrays(agents=5)
+        states["position"][-1] = [[0, 0, 1], [2, 0, 1], [1, 2, 1], [9, 9, 1], [1, 1, 1]]
+        axis = self.figure("paths", config=config, states=states, summary={"drawing": {"hull": "guides"}}).axes[0]
+        corners = axis.patches[0].get_xy()[:-1]  # without the first one again
+        self.assertEqual(corners.tolist(), [[0, 0], [2, 0], [1, 2]])
+        lines = self.lines(axis)
+        self.assertEqual([lines[name].get_linewidth() for name in ("agent 1 (leader)", "agent 4")], [1.8 * 1.2, 1.2])
+        self.assertIn("hull of leaders", axis.get_legend_handles_labels()[1])
+
+    def test_the_hull_of_two_leaders_is_a_line(self):
+        self.assertEqual(run_folder.hull(np.array([[1, 0], [0, 0]])).tolist(), [[0, 0], [1, 0]])
+
+    def test_cells_divide_their_region_at_the_end(self):
+        config = '[law]\nname = "chase"\nfield = [[0, 0], [4, 0], [4, 2], [0, 2]]\n'
+        states = arrays(agents=2)
+        states["position"][-1] = [[1, 1, 1], [3, 1, 1]]
+        axis = self.figure("paths", config=config, states=states, summary={"drawing": {"cells": "field"}}).axes[0]
+        found = [sorted(map(tuple, patch.get_xy()[:-1].tolist())) for patch in axis.patches]
+        self.assertEqual(found, [[(0, 0), (0, 2), (2, 0), (2, 2)], [(2, 0), (2, 2), (4, 0), (4, 2)]])
+
+    def test_disagreement_with_a_leader_is_the_distance_to_it(self):
+        axis = self.figure("disagreement", config=LEADER).axes[0]
+        self.assertEqual(axis.get_ylabel(), "distance to agent 2 (m)")
+        self.assertNotIn("agent 2 (leader)", self.lines(axis))
+        np.testing.assert_allclose(self.lines(axis)["largest"].get_ydata()[0], 5 * np.sqrt(3), rtol=1e-12)
+
+    def test_tracking_is_relative_to_the_parent_in_the_tree(self):
+        figure = self.figure("tracking", config=MINMAX, summary=PATH)
+        x, y, v_x, _ = figure.axes
+        self.assertEqual(x.get_ylabel(), "x relative to parent (m)")
+        self.assertEqual(v_x.get_ylabel(), "$v_x$ relative to parent (m/s)")
+        p = arrays()["position"]
+        np.testing.assert_array_equal(self.lines(x)["agent 3"].get_ydata(), p[:, 2, 0] - p[:, 1, 0])
+        self.assertNotIn("agent 1 (root)", self.lines(y))
+
+    def test_the_tree_takes_the_lowest_parent_one_level_up(self):
+        edges = [[2, 1, 1], [3, 1, 1], [4, 3, 1], [4, 2, 1], [3, 4, 1], [2, 3, 1]]
+        self.write(MINMAX, {"graph": {"edges": edges}}, arrays(agents=4))
+        self.assertEqual(run_folder.spanning_tree(run_folder.read_run(self.folder)), [(1, 0), (2, 0), (3, 1)])
+
+    def test_a_waypoint_is_left_after_dwelling_within_its_radius(self):
+        states = arrays(agents=1, rows=21)
+        states["position"][:] = [0, 0, 1]
+        states["position"][5:] = [4, 0.1, 1]  # arrives at 0.5 s and dwells 0.5 s
+        self.write(WAYPOINT, states=states)
+        targets = run_folder.waypoint_targets(run_folder.read_run(self.folder), 0)
+        np.testing.assert_array_equal(targets[:10], np.tile([4, 0, 1], (10, 1)))
+        np.testing.assert_array_equal(targets[10:], np.tile([4, 4, 1], (11, 1)))
+
+    def test_timed_waypoints_begin_at_their_times(self):
+        self.write(WAYPOINT.replace("dwell_s = 0.5", "times_s = [1, 2]"), states=arrays(agents=1))
+        run = run_folder.read_run(self.folder)
+        targets = run_folder.waypoint_targets(run, 0)
+        np.testing.assert_array_equal(targets[9], run.position[0, 0])
+        np.testing.assert_array_equal(targets[10], [4, 0, 1])
+        np.testing.assert_array_equal(targets[20], [4, 4, 1])
+
+    def test_agents_are_named_in_a_legend_and_many_by_a_colour_bar(self):
+        legend = self.figure("paths", config=LEADER).legends[0]
+        names = [text.get_text() for text in legend.get_texts()]
+        self.assertEqual(names, ["agent 1", "agent 2 (leader)", "agent 3", "start", "end"])
+        several = self.figure("position", states=arrays(agents=figure_style.LOOKS_MAX))
+        self.assertEqual(len(several.legends[0].get_texts()), figure_style.LOOKS_MAX)
+        many = self.figure("position", states=arrays(agents=50))
+        self.assertEqual(many.legends, [])
+        self.assertEqual(many.axes[-1].get_ylabel(), "agent")
+
+    def test_no_two_agents_look_alike_and_ten_differ_in_colour(self):
+        for agents in (1, 8, 9, 10, 11, 36, 37, 50, 100):
+            with self.subTest(agents=agents):
+                looks = figure_style.looks(agents)
+                self.assertEqual(len(set(map(str, looks))), agents)
+                self.assertEqual(all(colour in figure_style.COLOURS for colour, _ in looks), agents <= 36)
+                self.assertNotIn(figure_style.DASHED, [line for _, line in looks], "dashes are those of liars")
+                self.assertEqual(len(set(map(str, figure_style.fills(agents)))), agents)
+        self.assertEqual({line for _, line in figure_style.looks(10)}, {"-"})
+        lines = self.lines(self.figure("position", states=arrays(agents=11)).axes[0])
+        self.assertEqual(lines["agent 1"].get_color(), lines["agent 10"].get_color())
+        self.assertEqual([lines[f"agent {k}"].get_linestyle() for k in (1, 10)], ["-", ":"])
+
+    def test_the_graph_and_the_prediction_are_drawn(self):
+        summary = PATH | {"consensus": {"settling_time_s": None, "predicted": {"value_m": [1, 2, 3]}}}
+        axis = self.figure("paths", summary=summary).axes[0]
+        self.assertEqual(len(axis.collections[0].get_segments()), 2)  # two pairs that hear each other
+        self.assertEqual([c for c in axis.collections if isinstance(c, Quiver)], [])
+        self.assertEqual([list(d) for d in self.lines(axis)["predicted"].get_data()], [[1], [2]])
+
+    def test_an_edge_in_one_direction_is_an_arrow_to_who_hears(self):
+        edges = [[1, 2, 1.0], [2, 1, 1.0], [3, 1, 1.0]]  # 3 hears 1, and not the other way round
+        axis = self.figure("paths", summary={"graph": {"edges": edges}}).axes[0]
+        self.assertEqual(len(axis.collections[0].get_segments()), 2)
+        (arrows,) = (c for c in axis.collections if isinstance(c, Quiver))
+        start = arrays()["position"][0, :, :2]  # the agents end close together: the graph is where they start
+        way = start[2] - start[0]
+        np.testing.assert_allclose([arrows.U[0], arrows.V[0]], way / np.linalg.norm(way))
+        np.testing.assert_allclose(arrows.XY[0], start[0] + 0.62 * way)
+        self.assertLessEqual({"hear each other", "arrow to who hears"}, self.lines(axis).keys())
+
+
+class Graphs(PlotTest):
+    """The picture of who hears whom, and when."""
+
+    A, B = [[1, 2, 1.0], [2, 1, 1.0]], [[3, 2, 1.0]]
+    TWO = {"graph": {"edges": A + B, "schedule": [{"at_s": 0, "edges": A}, {"at_s": 1.5, "edges": B}]}}
+
+    EVENTS = CONSENSUS + ('[[events]]\nat_s = 1.0\ncut = [[1, 2]]\n[[events]]\nat_s = 2.0\nmend = [[1, 2]]\n'
+                          '[[events]]\nat_s = 3.0\ngraph = { edges = [[3, 2]] }\n'
+                          '[[events]]\nat_s = 9.0\ncut = [[3, 2]]\n')
+
+    def titles(self, figure):
+        return [axis.get_title() for axis in figure.axes]
+
+    def test_a_graph_that_stays_has_one_panel(self):
+        self.assertEqual(self.titles(self.figure("graph", summary=PATH)), ["at any time"])
+
+    def test_each_distinct_graph_has_a_panel_with_its_times(self):
+        figure = self.figure("graph", summary=self.TWO)
+        self.assertEqual(self.titles(figure), ["0 to 1.5 s", "1.5 to 5 s"])
+        self.assertEqual([sum(isinstance(c, Quiver) for c in axis.collections) for axis in figure.axes], [0, 1])
+        figure = self.figure("graph", summary=self.TWO, config=CONSENSUS + "[graph]\nrepeat_s = 2.0\n")
+        self.assertEqual(self.titles(figure), ["0 to 1.5 s\nof each 2 s", "1.5 to 2 s\nof each 2 s"])
+        figure = self.figure("graph", summary=PATH, config=CONSENSUS + "[graph]\nrange_m = 2.5\n")
+        self.assertEqual(self.titles(figure), ["at any time\nwithin 2.5 m"])
+
+    def test_events_change_the_graph(self):
+        figure = self.figure("graph", summary=PATH, config=self.EVENTS)
+        self.assertEqual(self.titles(figure), ["0 to 1 s, 2 to 3 s", "1 to 2 s", "3 to 5 s"])
+        run = run_folder.read_run(self.folder)
+        whole = set(run.edges)
+        self.assertEqual([set(edges) for _, _, edges in run.graphs], [whole, whole - {(0, 1)}, whole, {(2, 1)}])
+
+    def test_a_graph_that_repeats_goes_on_between_events(self):
+        config = CONSENSUS + ("[graph]\nrepeat_s = 2.0\n[[events]]\nat_s = 3.0\ncut = [[3, 2], [1, 2]]\n"
+                              "[[events]]\nat_s = 4.5\ncut = [[2, 1]]\n")
+        self.write(config, self.TWO)
+        a, b, less = {(0, 1), (1, 0)}, {(2, 1)}, {(1, 0)}
+        self.assertEqual([(begin, end, set(edges)) for begin, end, edges in run_folder.read_run(self.folder).graphs],
+                         [(0, 1.5, a), (1.5, 2, b), (2, 3, a), (3, 3.5, less), (3.5, 4, set()), (4, 4.5, less), (4.5, 5, set())])
+
+    def test_at_most_twelve_graphs_are_drawn(self):
+        phases = [{"at_s": 0.25 * k, "edges": [[k % 5 + 1, k // 5 + 6, 1.0]]} for k in range(20)]
+        figure = self.figure("graph", states=arrays(agents=9), summary={
+            "graph": {"edges": [edge for phase in phases for edge in phase["edges"]], "schedule": phases}})
+        self.assertEqual(len(figure.axes), 12)
+        self.assertIn("(12 of 20 graphs)", figure._suptitle.get_text())
+
+    def test_circles_are_whole(self):
+        for size in figure_style.SIZES:
+            for summary, config in ((PATH, CONSENSUS), (self.TWO, CONSENSUS), (PATH, self.EVENTS)):
+                figure = self.figure("graph", summary=summary, config=config, size=size)
+                figure.canvas.draw()
+                for axis in figure.axes:
+                    panel = axis.get_window_extent()
+                    for line in axis.get_lines():
+                        if line.get_marker() != "o":
+                            continue
+                        (x, y), radius = axis.transData.transform(line.get_xydata()[0]), line.get_markersize() / 72 * figure.dpi / 2
+                        self.assertTrue(panel.x0 <= x - radius and x + radius <= panel.x1, size)
+                        self.assertTrue(panel.y0 <= y - radius and y + radius <= panel.y1, size)
+                plot.plt.close(figure)
+
+    def test_agents_have_their_numbers_if_there_is_room(self):
+        for agents, numbers in ((10, 10), (200, 0)):
+            figure = self.figure("graph", states=arrays(agents, 2), summary=PATH)
+            self.assertEqual(len(figure.axes[0].texts), numbers)
+
+
+class Changes(PlotTest):
+    """Phases of [[law.schedule]], events, and commands that law.safety changed."""
+
+    PHASES = ('[law]\nname = "chase"\nleader = 1\n[[law.schedule]]\nat_s = 2.0\nname = "chase"\nleader = 3\n'
+              '[[law.schedule]]\nat_s = 4.0\nname = "flee"\nleader = 0\n')
+    TOLD = {"phases": [{"at_s": at_s, "law": law, "drawing": AGREEMENT, "consensus": {"settling_time_s": settled_s}}
+                       for at_s, law, settled_s in ((0, "chase", 1.5), (2, "chase", None), (4, "flee", 0.5))]}
+
+    def marks(self, axis):
+        return [text.get_text() for text in axis.texts]
+
+    def vertical(self, axis):
+        return sorted(line.get_xdata()[0] for line in axis.get_lines() if list(line.get_ydata()) == [0, 1]
+                      and line.get_xdata()[0] == line.get_xdata()[1])
+
+    def test_disagreement_is_seen_from_the_leader_of_each_phase(self):
+        axis = self.figure("disagreement", config=self.PHASES, summary=self.TOLD).axes[0]
+        p, t = arrays()["position"][:, :, :2], arrays()["t"]
+        lines = {line.get_label(): line.get_ydata() for line in axis.get_lines()}
+        for rows, reference, leader in ((t < 2, p[:, 0], 0), ((t >= 2) & (t < 4), p[:, 2], 2),
+                                        (t >= 4, p.mean(axis=1), None)):
+            for k in range(3):
+                expected = np.linalg.norm(p[rows, k] - reference[rows], axis=1)
+                found = lines[f"agent {k + 1}"][rows]
+                if k == leader:
+                    self.assertTrue(np.isnan(found).all(), "a leader is not far from itself")
+                else:
+                    np.testing.assert_allclose(found, expected, rtol=1e-12)
+        self.assertEqual(self.marks(axis), ["chase, to agent 1", "chase, to agent 3", "flee, to the mean"])
+        self.assertEqual(axis.get_ylabel(), "distance to the mean or the leader (m)")
+        self.assertLessEqual({"settled at 1.50 s", "settled at 4.50 s"}, lines.keys())
+
+    def test_a_phase_whose_law_does_not_agree_has_no_disagreement(self):
+        first, _, last = self.TOLD["phases"]
+        self.write(self.PHASES, {"phases": [first, {"at_s": 2, "law": "chase", "drawing": FLIGHT}, last]})
+        distance = run_folder.disagreement(run_folder.read_run(self.folder))
+        self.assertEqual([np.isnan(distance[row]).all() for row in (0, 19, 20, 39, 40, 50)],
+                         [False, False, True, True, False, False])
+
+    def test_phases_and_events_are_marked_and_named(self):
+        config = self.PHASES + ('[[events]]\nat_s = 1.0\nset = { "law.p_gain" = 0.25 }\nagents = [1, 2]\n'
+                                '[[events]]\nat_s = 3.0\ngoto = { agent = 3, position_m = [1, 2, 3] }\n'
+                                '[[events]]\nat_s = 3.0\ncut = [[1, 2], [2, 1], [3, 1]]\n'
+                                '[[events]]\nat_s = 3.5\nmend = [[1, 2]]\n'
+                                '[[events]]\nat_s = 4.5\ngraph = { edges = [] }\n'
+                                '[[events]]\nat_s = 8.0\nset = { "law.p_gain" = 1 }\n')
+        for name in ("position", "velocity", "acceleration"):
+            axes = self.figure(name, config=config, summary=self.TOLD).axes
+            self.assertEqual(self.marks(axes[0]), [
+                "chase", "chase", "flee", "p_gain = 0.25, of 1, 2", "goto 3, cut 1,2 and 2 more", "mend 1,2",
+                "another graph"])
+            for axis in axes:
+                self.assertEqual(self.vertical(axis), [1, 2, 3, 3.5, 4, 4.5])
+
+    def test_names_of_changes_do_not_cover_each_other(self):
+        events = "".join(f'[[events]]\nat_s = {at_s}\nset = {{ "law.a_long_name" = 1 }}\n'
+                         for at_s in (0.1, 0.5, 2.1, 2.2, 4.9))
+        for size in figure_style.SIZES:
+            with self.subTest(size=size), laid_out(dpi=100):
+                self.write(self.PHASES + events, self.TOLD)
+                figure_style.use(size)
+                figure = pictures.PICTURES["velocity"].draw(run_folder.read_run(self.folder))
+                figure.canvas.draw()
+                boxes = [text.get_window_extent() for text in figure.axes[0].texts]
+                self.assertEqual(len(boxes), 8)
+                for k, box in enumerate(boxes):
+                    self.assertEqual([other for other in boxes[:k] if box.overlaps(other)], [])
+
+    def test_a_crowd_of_events_leaves_room_for_the_panels(self):
+        events = "".join(f'[[events]]\nat_s = {k / 50}\nset = {{ "law.p_gain" = {k} }}\n' for k in range(1, 200))
+        figure = self.figure("velocity", config=CONSENSUS + events)
+        self.assertEqual(len(self.vertical(figure.axes[0])), 199)
+        self.assertLess(len(self.marks(figure.axes[0])), 60)
+        self.assertLess(figure.get_figheight(), 9)
+
+    def test_commands_that_the_safety_filter_changed_are_drawn(self):
+        states = arrays()
+        states["flags"] = np.zeros((51, 3))
+        self.write(states=states)
+        self.assertEqual(self.run_plot("--only", "safety")[0], 2, "it changed none")
+        states["flags"][10:20, 1] = 16 + 1
+        states["flags"][15:17, 1] += 32
+        states["flags"][50, 2] = 16
+        config = CONSENSUS + "[law.safety]\ndistance_m = 1.5\n"
+        near, when = self.figure("safety", config=config, states=states).axes
+        bars = [[path.get_extents().bounds for path in bars.get_paths()] for bars in when.collections]
+        bars = [of_agent for of_agent in bars if of_agent]
+        np.testing.assert_allclose(bars, [[(1, 1.6, 1, 0.8)], [(5, 2.6, 0.1, 0.8)], [(1.5, 1.6, 0.2, 0.8)]])
+        lines = {line.get_label(): line.get_ydata() for line in near.get_lines()}
+        np.testing.assert_allclose(lines["smallest distance"], 5 * np.sqrt(3) * np.exp(-arrays()["t"]))
+        self.assertEqual(lines["to be kept: 1.5 m"][0], 1.5)
+
+    EVENTS = ('t_s,until_s,what,count,agent,with,detail\n'
+              '0,0.5,tilt_limit,6,2,,\n'
+              '1,1,contact,1,1,agent 3,2.5 m/s\n'
+              '2,2,contact,1,2,obstacle 1,0.5 m/s\n'
+              '2.5,2.5,event,1,,event 1,"set = { ""law.p_gain"" = 2.0 }"\n'
+              '3,4,tilt_limit,9,2,,\n')
+
+    def test_what_the_run_came_up_against_is_drawn_for_those_whom_it_concerns(self):
+        (self.folder / "events.csv").write_text(self.EVENTS)
+        axis, = self.figure("incidents").axes
+        self.assertEqual([label.get_text() for label in axis.get_yticklabels()], ["tilt limit", "contact"])
+        boxes, moments = axis.collections
+        lane = 0.8 / 3
+        low = -0.4 + lane  # of agent 2 in the first row
+        np.testing.assert_allclose([path.get_extents().bounds for path in boxes.get_paths()],
+                                   [(0, low, 0.6, lane), (1, 0.6, 0.1, lane), (1, 0.6 + 2 * lane, 0.1, lane),
+                                    (2, 0.6 + lane, 0.1, lane), (3, low, 1.1, lane)])
+        self.assertEqual(len(moments.get_paths()), 0, "a tick is two per cent of this run")
+        self.assertEqual(axis.get_legend_handles_labels()[1], ["agent 1", "agent 2", "agent 3"])
+
+    def test_bars_of_more_agents_than_there_are_colours_have_those_of_a_colour_bar(self):
+        (self.folder / "events.csv").write_text(self.EVENTS)
+        named, = self.figure("incidents", states=arrays(agents=10)).legends
+        self.assertEqual([text.get_text() for text in named.get_texts()], ["agent 1", "agent 2", "agent 3"])
+        figure = self.figure("incidents", states=arrays(agents=11))
+        self.assertEqual((figure.legends, figure.axes[-1].get_ylabel()), ([], "agent"))
+
+    def test_contacts_are_marked_where_they_were(self):
+        (self.folder / "events.csv").write_text(self.EVENTS)
+        axis, = self.figure("paths").axes
+        stars, = [marks for marks in axis.collections if marks.get_label() == "contact"]
+        p = arrays()["position"][:, :, :2]
+        np.testing.assert_allclose(stars.get_offsets(), [p[10, 0], p[10, 2], p[20, 1]])
+
+    def test_no_picture_is_drawn_of_what_only_the_start_brings(self):
+        for text in ("", "t_s,until_s,what,count,agent,with,detail\n0,0.9,rotor_limit,6,2,,\n"):
+            self.write()
+            (self.folder / "events.csv").write_text(text)
+            self.check(2, "--only incidents: it needs an events.csv in which something happened after the first second", "--only", "incidents")
+
+    def test_a_damaged_table_is_said(self):
+        self.write()
+        for text in (b"t_s,until_s,what,count,agent,with,detail\nsoon,1,contact,1,1,ground,\n", b"a,b\n1,2\n", b"\xff"):
+            (self.folder / "events.csv").write_bytes(text)
+            code, errors = self.run_plot()
+            self.assertEqual((code, errors), (1, f"error: {self.folder / 'events.csv'}: damaged, or not a table of events\n"))
+
+
+class Paper(PlotTest):
+    """Pictures at true size."""
+
+    POINTS = {"column": 252, "page": 515.52}
+
+    def test_pages_are_as_wide_as_asked_with_embedded_fonts_and_without_dates(self):
+        for size, wide in self.POINTS.items():
+            with self.subTest(size=size):
+                self.write(LEADER, PATH)
+                options = ("--only", "disagreement", "--size", size, "--format", "svg,pdf")
+                self.assertEqual(self.run_plot(*options), (0, ""))
+                pdf, svg = ((self.folder / f"disagreement.{ending}").read_bytes() for ending in ("pdf", "svg"))
+                box = re.search(rb"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]", pdf)
+                self.assertAlmostEqual(float(box[1]), wide)
+                self.assertIn(f'width="{wide}pt"'.encode(), svg)
+                self.assertIn(b"/FontFile2", pdf)
+                self.assertNotIn(b"/Type3", pdf)
+                self.assertEqual(re.findall(rb"Date|dc:date|Matplotlib v", pdf + svg), [])
+                self.run_plot(*options)
+                self.assertEqual((self.folder / "disagreement.pdf").read_bytes(), pdf)
+                self.assertEqual((self.folder / "disagreement.svg").read_bytes(), svg)
+        self.assertEqual(self.pictures(), [], "PNG was not asked for")
+
+    def test_letters_are_of_8_points_and_there_is_no_title(self):
+        config, summary = Changes.PHASES, Changes.TOLD | PATH
+        for name in ("paths", "acceleration", "disagreement", "graph"):
+            self.write(config, summary)
+            figure_style.use("column")
+            figure = pictures.PICTURES[name].draw(run_folder.read_run(self.folder))
+            self.assertIsNone(figure._suptitle)
+            sizes = {text.get_fontsize() for text in figure.findobj(matplotlib.text.Text) if text.get_text()}
+            self.assertEqual(sizes, {8.0}, name)
+
+    def test_nothing_is_clipped_or_covered(self):
+        with laid_out():
+            self.write(Graphs.EVENTS, PATH)
+            for size in figure_style.SIZES:
+                self.assertEqual(self.clipped("graph", size), [], "three panels")
+            for agents, names in ((3, ("paths", "disagreement")), (10, ("paths", "graph")), (28, ("paths", "velocity")),
+                                  (50, ("disagreement", "graph"))):
+                edges = [[k, k % agents + 1, 1.0] for k in range(1, agents + 1)]
+                self.write(Changes.PHASES, Changes.TOLD | {"graph": {"edges": edges}}, arrays(agents, 51))
+                for name in names:
+                    for size in ("column", "screen" if agents == 50 else "page")[:1 if agents < 28 else 2]:
+                        with self.subTest(agents=agents, size=size, name=name):
+                            self.assertEqual(self.clipped(name, size), [])
+
+    def test_the_last_label_of_time_is_on_the_page(self):
+        states = arrays(6, 201)  # 20 s: with steps of 2.5 s the last label is wide
+        self.write(states=states | {"acceleration_command": 0 * states["velocity"]})
+        with laid_out(dpi=100):
+            self.assertEqual(self.clipped("acceleration", "column"), [])
+
+    def test_a_long_label_is_broken(self):
+        offsets = [[0, 0, 0], [3, 0, 0], [0, 4, 0]]
+        told = {"phases": [phase | {"formation": {"offsets_m": offsets}} for phase in Changes.TOLD["phases"]]}
+        with laid_out():
+            self.write(Changes.PHASES, told)
+            self.assertEqual(self.clipped("disagreement", "column"), [])
+            figure = pictures.PICTURES["disagreement"].draw(run_folder.read_run(self.folder))
+            self.assertEqual(figure.axes[0].get_ylabel().replace("\n", " "),
+                             "distance from its place, seen from the mean or the leader (m)")
+            self.assertIn("\n", figure.axes[0].get_ylabel())
+
+    def test_pictures_go_where_they_are_asked_to(self):
+        self.write()
+        out = self.folder.parent / "for/the paper"
+        self.assertEqual(self.run_plot("--only", "paths", "--format", "png,pdf", "--out", str(out)), (0, ""))
+        self.assertEqual(sorted(path.name for path in out.iterdir()), ["paths.pdf", "paths.png"])
+        self.assertEqual(self.pictures(), [])
+
+
+class Overlays(PlotTest):
+    def setUp(self):
+        super().setUp()
+        self.out = self.folder.parent / "both"
+        self.folders = [self.folder.parent / name for name in ("slow", "fast")]
+
+    def write_two(self, configs=(CONSENSUS, CONSENSUS), states=(None, None)):
+        for self.folder, config, of in zip(self.folders, configs, states):
+            self.folder.mkdir(exist_ok=True)
+            self.write(config, states=of)
+
+    def overlay(self, *options):
+        errors = io.StringIO()
+        with contextlib.redirect_stderr(errors):
+            code = plot.main([*map(str, self.folders), "--overlay", *options])
+        return code, errors.getvalue()
+
+    def test_all_pictures_that_apply_to_all_runs_are_drawn(self):
+        self.write_two((CONSENSUS, WAYPOINT))
+        self.assertEqual(self.overlay("--out", str(self.out), "--format", "png,svg", "--size", "column"), (0, ""))
+        names = ("acceleration", "paths", "position", "velocity")
+        self.assertEqual(sorted(path.name for path in self.out.iterdir()),
+                         [f"{name}.{ending}" for name in names for ending in ("png", "svg")])
+
+    def test_a_run_has_one_colour_and_one_name(self):
+        self.write_two(states=(arrays(3), arrays(4)))
+        figure_style.use("screen")
+        runs = [run_folder.read_run(folder) for folder in self.folders]
+        figures = dict(overlay.draw_overlay(self.folders, runs, None))
+        self.assertEqual(list(figures), ["paths", "position", "velocity", "acceleration", "disagreement"])
+        lines = figures["position"].axes[0].get_lines()
+        blue, orange = figure_style.OKABE_ITO[:2]
+        self.assertEqual([line.get_color() for line in lines], [blue] * 3 + [orange] * 4)
+        np.testing.assert_array_equal(lines[4].get_ydata(), runs[1].position[:, 1, 0])
+        names = [text.get_text() for text in figures["position"].legends[0].get_texts()]
+        self.assertEqual(names, ["slow", "fast"], "the runs have the same name: those of their folders")
+        (slow, fast) = figures["disagreement"].axes[0].get_lines()
+        np.testing.assert_allclose(slow.get_ydata(), 5 * np.exp(-runs[0].t), rtol=1e-12)
+        self.assertEqual(figures["disagreement"].axes[0].get_ylabel(), "largest distance to the mean (m)")
+
+    def test_disagreement_is_labelled_by_what_it_is_measured_against(self):
+        self.write_two((CONSENSUS, LEADER))
+        runs = [run_folder.read_run(folder) for folder in self.folders]
+        for several, against in [((0, 1), "the mean or the leader"), ((1, 1), "agent 2"), ((0, 0), "the mean")]:
+            figures = dict(overlay.draw_overlay(self.folders, [runs[k] for k in several], ["disagreement"]))
+            label = figures["disagreement"].axes[0].get_ylabel().replace("\n", " ")  # it is broken where it is long
+            self.assertEqual(label, f"largest distance to {against} (m)")
+
+    def test_runs_have_their_own_names_if_they_differ(self):
+        self.write_two((CONSENSUS, CONSENSUS.replace("demo", "other")))
+        runs = [run_folder.read_run(folder) for folder in self.folders]
+        self.assertEqual(overlay.names_of(self.folders, runs), ["demo", "other"])
+
+    def test_wrong_use(self):
+        self.write_two((CONSENSUS, WAYPOINT))
+        out = ("--out", str(self.out))
+        for options, message in (
+                ((), "--overlay: it needs --out FOLDER, for the pictures belong to no single run"),
+                ((*out, "--only", "graph"), "--only graph: expected one of paths, position, velocity, acceleration, "
+                                            "disagreement with --overlay"),
+                ((*out, "--only", "disagreement"),
+                 f"--only disagreement: {self.folders[1]}: it needs several agents and a law of agreement")):
+            self.assertEqual(self.overlay(*options), (2, f"error: {message}\n"))
+        self.folders.pop()
+        self.assertEqual(self.overlay(*out), (2, "error: --overlay: expected at least 2 runs, got 1\n"))
+
+
+def probe(path):
+    """Codec, width, height, number of frames and frames per second of a film."""
+    wanted = ("codec_name", "width", "height", "nb_read_frames", "r_frame_rate")
+    told = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-of", "json", "-show_entries",
+                           "stream=" + ",".join(wanted), path], check=True, capture_output=True)
+    return tuple(json.loads(told.stdout)["streams"][0][name] for name in wanted)
+
+
+class Films(PlotTest):
+    """They need ffmpeg: scripts/setup --test."""
+
+    def test_a_film_has_its_frames_and_size_and_the_same_bytes_each_time(self):
+        self.write(LEADER, PATH)
+        for ending, codec, scale in ((".mp4", "h264", 30), (".gif", "gif", 20)):
+            path = self.folder.parent / f"film{ending}"
+            self.assertEqual(self.run_plot("--animate", str(path), "--pace", "5"), (0, ""))
+            self.assertEqual(probe(path), (codec, 8 * scale, 6 * scale, "26", "25/1"))
+            first = path.read_bytes()
+            self.run_plot("--animate", str(path), "--pace", "5")
+            self.assertEqual(path.read_bytes(), first)
+        self.assertEqual(sorted(path.name for path in self.folder.parent.iterdir()), ["a run", "film.gif", "film.mp4"])
+        self.assertEqual(self.pictures(), [])
+
+    def test_frames_begin_with_the_first_row_and_end_with_the_last(self):
+        t = np.arange(1001) / 10
+        for pace, frames, used in ((None, 501, 5), (1.0, 2501, 1.0), (7.0, 359, 7.0), (1e9, 2, 1e9)):
+            rows, found = animation.rows_of_frames(t, pace)
+            self.assertEqual((len(rows), rows[0], rows[-1], found), (frames, 0, 1000, used))
+            self.assertTrue(np.all(np.diff(rows) >= 0))
+        self.assertEqual(animation.rows_of_frames(t[:1], None)[0].tolist(), [0])
+
+    def film(self, **what):
+        self.write(**what)
+        figure_style.use("screen")
+        return animation.Film(run_folder.read_run(self.folder), 3, 1)
+
+    def test_agents_are_where_they_were_and_their_ways_remain(self):
+        film = self.film(states=arrays(agents=3))
+        p = film.p
+        for row, before in ((0, 0), (5, 0), (10, 5)):
+            pixels = np.asarray(film.frame(row, before))
+            high = pixels.shape[0]
+            for k in range(3):
+                x, y = film.axis.transData.transform(p[row, k])
+                colour = 255 * np.array(matplotlib.colors.to_rgb(figure_style.OKABE_ITO[k]))
+                np.testing.assert_allclose(pixels[int(high - y), int(x), :3], colour, atol=8)
+        x, y = film.axis.transData.transform(p[2, 0])
+        self.assertLess(pixels[int(high - y) - 1:int(high - y) + 2, int(x), 0].min(), 200, "agent 1 came along here")
+
+    def test_edges_are_those_of_their_time_and_of_agents_that_are_near(self):
+        film = self.film(summary=Graphs.TWO, config=CONSENSUS + "[graph]\nrange_m = 5.0\n")
+        near = np.zeros((3, 3))
+        self.assertEqual([film.edges(t_s, near).tolist() for t_s in (0, 1.4, 1.5, 5)],
+                         [[[0, 1], [1, 0]]] * 2 + [[[2, 1]]] * 2)
+        self.assertEqual(film.edges(0, np.array([[0, 0, 0], [0, 0, 6], [0, 0, 0]])).tolist(), [])
+
+    def test_it_tells_the_time_the_phase_and_events_of_late(self):
+        film = self.film(config=Changes.PHASES + "[[events]]\nat_s = 1.0\ncut = [[1, 2]]\n", summary=Changes.TOLD)
+        self.assertEqual([film.words(t_s) for t_s in (0.94, 1, 2.9, 4)], [
+            "t = 0.9 s   chase\n", "t = 1.0 s   chase\ncut 1,2", "t = 2.9 s   chase\ncut 1,2", "t = 4.0 s   flee\n"])
+        self.assertEqual(self.film().words(1), "t = 1.0 s")
+
+    def test_hull_and_cells_move(self):
+        film = self.film(config='[law]\nname = "chase"\nguides = [1, 2, 3]\n', summary={"drawing": {"hull": "guides"}})
+        first = np.array(film.frame(0, 0))
+        self.assertGreater(np.count_nonzero(first != np.array(film.frame(20, 20))), 0)
+        self.assertEqual(list(film.axis.patches), [], "each frame has its own")
+
+    def test_wrong_use(self):
+        self.write()
+        film = ("--animate", str(self.folder / "film.mp4"))
+        for options, code, message in (
+                (("--animate", "film.avi"), 2,
+                 "--animate: expected a file whose name ends in .mp4 or .gif, got 'film.avi'"),
+                ((*film, "--only", "paths"), 2, "--animate: it draws a film and nothing else, got --only too"),
+                ((*film, "--format", "svg"), 2, "--animate: it draws a film and nothing else, got --format too"),
+                ((*film, "--show"), 2, "--animate: it draws a film and nothing else, got --show too"),
+                ((*film, "--pace", "0"), 2, "--pace: expected a number above 0, got '0'"),
+                ((*film, "--pace", "fast"), 2, "--pace: expected a number above 0, got 'fast'"),
+                (("--pace", "2"), 2, "--pace: it is that of a film, and needs --animate"),
+                ((str(self.folder), *film), 2, "--animate: expected one run, got 2")):
+            self.check(code, message, *options)
+
+    def test_without_ffmpeg_it_says_what_to_install(self):
+        self.write()
+        with mock.patch.dict(os.environ, {"PATH": str(self.folder)}):
+            self.check(1, "--animate: it needs the program ffmpeg, which is not installed (Debian: apt-get install ffmpeg)",
+                       "--animate", str(self.folder / "film.mp4"))
+
+    def test_a_failure_of_ffmpeg_is_told_and_leaves_no_file(self):
+        self.write()
+        ffmpeg = self.folder / "ffmpeg"
+        ffmpeg.write_text("#!/bin/sh\n[ -z \"$KEEPS_ON\" ] || /bin/cat > /dev/null\necho no room for it >&2\nexit 1\n")
+        ffmpeg.chmod(0o755)
+        path = self.folder / "film.gif"
+        for keeps_on in ("", "yes"):
+            with mock.patch.dict(os.environ, {"PATH": str(self.folder), "KEEPS_ON": keeps_on}):
+                self.assertEqual(self.run_plot("--animate", str(path), "--pace", "5"),
+                                 (1, f"error: {path}: ffmpeg failed: no room for it\n"))
+            self.assertEqual(list(self.folder.glob("film*")), [])
+
+
+class PicturesOfLaws(PlotTest):
+    """scripts/law_pictures, which draws the pictures in docs/laws.md."""
+
+    def test_each_experiment_that_the_page_names_has_its_picture(self):
+        named = law_pictures.experiments()
+        self.assertGreater(len(named), 20)
+        self.assertEqual(sorted(named), sorted(path.stem for path in law_pictures.PICTURES.glob("*.png")))
+        for experiment in named.values():
+            self.assertTrue((law_pictures.ROOT / experiment).is_file(), experiment)
+
+    def test_the_picture_that_tells_most_is_drawn_in_few_colours_without_axes_where_nothing_moves(self):
+        self.write(summary={"drawing": {"telling": "velocity"}})
+        run = run_folder.read_run(self.folder)
+        self.assertEqual(law_pictures.moving(run.velocity), [0, 1])
+        self.assertEqual(law_pictures.moving(0 * run.velocity), [0])
+        for name in ("a", "b"):
+            law_pictures.draw(run, self.folder / f"{name}.png")
+        first, second = ((self.folder / f"{name}.png").read_bytes() for name in ("a", "b"))
+        self.assertEqual(first[:4], b"\x89PNG")
+        self.assertEqual(first[25], 3, "the colours are those of a palette")
+        self.assertEqual(first, second)
+
+
+class Errors(PlotTest):
+    def test_missing_folder(self):
+        self.folder = self.folder / "gone"
+        self.check(2, f"{self.folder}: no such folder")
+
+    def test_missing_states(self):
+        missing = f"{self.folder}/states.npz: no such file: "
+        self.check(1, missing + "this is not the folder of a run")
+        export = f"; orchestrator export {self.folder} --format npz writes it"
+        for config, has_summary, why in ((CONSENSUS, False, "the run was killed, or has not ended"), (CONSENSUS, True, "it was removed"),
+                                         (CONSENSUS + "[output]\nsave_data = false\n", True, "output.save_data is off")):
+            self.write(config)
+            (self.folder / "states.npz").unlink()
+            if not has_summary:
+                (self.folder / "summary.json").unlink()
+            self.check(1, missing + why + export)
+
+    def test_damaged_states(self):
+        self.write()
+        path = self.folder / "states.npz"
+        whole = path.read_bytes()
+        for damaged in (b"", b"no zip", whole[: len(whole) // 2], whole[:200] + b"\xff" * 50 + whole[250:]):
+            path.write_bytes(damaged)
+            self.check(1, f"{path}: damaged, or not an .npz file of numbers")
+
+    def test_states_that_lack_an_array(self):
+        states = arrays()
+        del states["velocity"]
+        self.write(states=states)
+        self.check(1, f"{self.folder}/states.npz: velocity: no such array")
+
+    def test_states_of_the_wrong_shape(self):
+        self.write(states=arrays() | {"velocity": np.zeros((51, 2, 3))})
+        self.check(1, f"{self.folder}/states.npz: velocity: expected shape (51, 3, 3), got (51, 2, 3)")
+
+    def test_flags_of_the_wrong_shape(self):
+        self.write(states=arrays() | {"flags": np.zeros((51, 2))})
+        self.check(1, f"{self.folder}/states.npz: flags: expected shape (51, 3), got (51, 2)")
+
+    def test_states_that_no_run_has(self):
+        path, good = f"{self.folder}/states.npz", arrays()
+        later, hole = good["t"].copy(), good["position"].copy()
+        later[7], hole[5, 1, 2] = later[6], np.nan
+        for name, array, why in (
+                ("t", later, "t: expected times that increase, got others"),
+                ("t", later * np.nan, "t: expected times that increase, got others"),
+                ("t", np.array(["now"] * 51), "t: expected numbers, got <U3"),
+                ("id", np.array([1, 2, 2]), "id: expected each agent's number once, from 1 on, got others"),
+                ("id", np.array([0, 1, 2]), "id: expected each agent's number once, from 1 on, got others"),
+                ("id", np.array([1, 2, 2.5]), "id: expected each agent's number once, from 1 on, got others"),
+                ("position", hole, "position: expected finite numbers, got others at 0.5 s of agent 2"),
+                ("velocity", good["velocity"] * 1j, "velocity: expected numbers, got complex128"),
+                ("flags", np.full((51, 3), 0.5), "flags: expected integers from 0 on, got others")):
+            with self.subTest(name=name, why=why):
+                self.write(states=good | {name: array})
+                self.check(1, f"{path}: {why}")
+
+    def test_states_that_unpack_to_very_much(self):
+        self.write()
+        path = self.folder / "states.npz"
+        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+            for name in ("t", "id", "position"):
+                with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
+                    for _ in range(100):
+                        file.write(bytes(1 << 20))
+        with self.assertRaisesRegex(run_folder.RunError, "unpacks to 314572800 bytes, above the limit of 1048576 and 10"):
+            with mock.patch.object(run_folder, "UNPACKED_FREE", 1 << 20), mock.patch.object(run_folder, "UNPACKED_TIMES", 10):
+                run_folder.read_states(path)
+
+    def test_incidents_that_no_run_has(self):
+        self.write()
+        path = self.folder / "events.csv"
+        head = "t_s,until_s,agent,what,with,value\n"
+        for row, why in (("nan,1,1,loss,,\n", ":2: expected an incident with its times, got nan and 1"),
+                         ("0,1,1,loss\n", ":2: expected an incident with its times, got 0 and 1"),
+                         ("soon,1,1,loss,,\n", ": damaged, or not a table of events")):
+            path.write_text(head + row)
+            self.check(1, f"{path}{why}")
+
+    def test_texts_of_another_kind(self):
+        self.write()
+        (self.folder / "summary.json").write_text("[1, 2]")
+        self.check(1, f"{self.folder}/summary.json: expected a table, got a list")
+        (self.folder / "summary.json").write_text('{"graph": 3}')
+        code, errors = self.run_plot()
+        self.assertEqual(code, 1)
+        self.assertRegex(errors, r"\nerror: config\.toml or summary\.json says something else than a run's does: .*\n$")
+
+    def test_states_without_a_tick(self):
+        self.write(states=arrays(rows=0))
+        self.check(1, f"{self.folder}/states.npz: holds no tick")
+
+    def test_missing_and_damaged_texts(self):
+        self.write()
+        (self.folder / "summary.json").write_text("{")
+        code, errors = self.run_plot()
+        self.assertEqual(code, 1)
+        self.assertRegex(errors, r"^error: .*/summary\.json: Expecting .*\n$")
+        (self.folder / "config.toml").unlink()
+        self.check(1, f"{self.folder}/config.toml: No such file or directory")
+
+    def test_a_newer_format_is_refused(self):
+        self.write(summary={"format": 2})
+        self.check(2, f"{self.folder}/summary.json: it is of format 2, newer than the 1 that this version reads")
+        self.write(config="format = 2\n" + CONSENSUS)
+        self.check(2, f"{self.folder}/config.toml: it is of format 2, newer than the 1 that this version reads")
+
+    def test_wrong_use(self):
+        self.write()
+        code, errors = self.run_plot("--only", "speed")
+        self.assertEqual(code, 2)
+        self.assertEqual(errors, "error: --only: expected one or more of paths, position, velocity, disagreement, acceleration, "
+                                 "tracking, error, graph, safety, incidents, with commas between, got 'speed'\n")
+        self.check(2, "--only error: it needs a law that flies to waypoints, from start to end", "--only", "error")
+        self.check(2, "--only tracking: it needs a law of pursuit, from start to end, and the graph in summary.json", "--only", "tracking")
+        self.check(2, "unrecognized arguments: --fast", "--fast")
+        self.check(2, "--format: expected one or more of png, pdf, svg, with commas between, got 'bmp'",
+                   "--format", "pdf,bmp")
+        self.check(2, "--size: expected one of screen, column, page, got 'poster'", "--size", "poster")
+        self.check(2, "--out: expected one run, or --overlay, got 2 runs, whose pictures have the same names",
+                   str(self.folder), "--out", "x")
+
+    def test_a_folder_that_cannot_be_written(self):
+        self.write()
+        (self.folder / "paths.png").mkdir()
+        self.check(1, f"{self.folder}/paths.png: Is a directory")
+
+
+class OthersFiles(PlotTest):
+    """What has the name of a picture, or of one that is not finished yet."""
+
+    def setUp(self):
+        super().setUp()
+        self.write()
+        self.other = self.folder.parent / "other"
+        self.other.write_text("mine")
+
+    def test_a_link_gives_way_to_the_picture_and_what_it_leads_to_stays(self):
+        (self.folder / "paths.png").symlink_to(self.other)
+        self.assertEqual(self.run_plot("--only=paths"), (0, ""))
+        self.assertFalse((self.folder / "paths.png").is_symlink())
+        self.assertEqual(self.other.read_text(), "mine")
+
+    def test_a_link_at_the_name_of_an_unfinished_picture_is_refused(self):
+        (self.folder / "paths.png.part").symlink_to(self.other)
+        self.check(1, f"{self.folder}/paths.png.part: File exists", "--only=paths")
+        self.assertEqual(self.other.read_text(), "mine")
+
+    def test_what_a_killed_process_left_gives_way(self):
+        (self.folder / "paths.png.part").write_text("half a pic")
+        self.assertEqual(self.run_plot("--only=paths"), (0, ""))
+        self.assertEqual(self.pictures(), ["paths"])
+        self.assertFalse((self.folder / "paths.png.part").exists())
+
+    def test_a_pipe_is_refused(self):
+        os.mkfifo(self.folder / "paths.png")
+        self.check(1, f"{self.folder}/paths.png: expected a file, got something else of this name", "--only=paths")
+
+
+class Surroundings(PlotTest):
+    """The same run makes the same bytes, whoever draws it, and wherever."""
+
+    def setUp(self):
+        super().setUp()
+        self.write()
+        self.place = self.folder.parent / "place"
+        self.place.mkdir()
+
+    def drawn(self, **environment):
+        """Draws as the programs do, in a folder of its own. Returns the bytes of the picture."""
+        script = pathlib.Path(plot.__file__)
+        environment = {"PATH": "/usr/bin:/bin", **environment}
+        done = subprocess.run(["/usr/bin/python3", "-E", "-s", "-B", "-X", "utf8", script, self.folder, "--only=paths"],
+                              cwd=self.place, env=environment, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+        return (self.folder / "paths.png").read_bytes()
+
+    def test_no_matplotlibrc_no_module_and_no_variable_changes_a_picture(self):
+        usual = self.drawn(HOME=os.path.expanduser("~"))
+        home = self.folder.parent / "home"
+        for folder in (self.place, home / ".config/matplotlib", home / "modules"):
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / "matplotlibrc").write_text("backend: nonsense\nlines.linewidth: 9\nsavefig.dpi: 33\n")
+            for module in ("numpy", "matplotlib", "json", "sitecustomize", "usercustomize"):
+                (folder / f"{module}.py").write_text("raise SystemExit('not the one that was meant')\n")
+        others = str(home / "modules")
+        self.assertEqual(usual, self.drawn(
+            HOME=str(home), TMPDIR="/nowhere", MPLBACKEND="nonsense", MPLCONFIGDIR=str(home / ".config/matplotlib"),
+            MATPLOTLIBRC=str(self.place), PYTHONPATH=others, PYTHONHOME=others, PYTHONSTARTUP=others + "/numpy.py",
+            PYTHONOPTIMIZE="2", PYTHONWARNINGS="error", LC_ALL="C", TZ="Pacific/Auckland",
+            NPY_DISABLE_CPU_FEATURES="AVX2 NONSENSE", OPENBLAS_CORETYPE="Prescott"))
+        self.assertEqual(sorted(path.name for path in home.iterdir()), [".config", "modules"])
+
+    def test_nobody_needs_a_home_and_nothing_is_left_behind(self):
+        temporary = self.folder.parent / "temporary"
+        temporary.mkdir()
+        usual = self.drawn(HOME=os.path.expanduser("~"))
+        for environment in ({}, {"HOME": "/nowhere"}, {"HOME": "/proc/self"}, {"HOME": ""}):
+            self.assertEqual(usual, self.drawn(TMPDIR=str(temporary), **environment))
+            self.assertEqual(list(temporary.iterdir()), [])
+
+    def test_fonts_of_the_user_are_not_looked_at(self):
+        usual = self.drawn(HOME=os.path.expanduser("~"))
+        fonts = self.folder.parent / "home/.fonts"
+        fonts.mkdir(parents=True)
+        oblique = pathlib.Path(matplotlib.get_data_path()) / "fonts/ttf/DejaVuSans-Oblique.ttf"
+        (fonts / "DejaVuSans.ttf").write_bytes(oblique.read_bytes())
+        self.assertEqual(usual, self.drawn(HOME=str(fonts.parent)))
+
+
+class PlainWords(unittest.TestCase):
+    def test_what_acts_on_other_text_is_escaped(self):
+        self.assertEqual(plain.plain("Gr\u00fc\u00dfe,\tline\n\U0001f681"), "Gr\u00fc\u00dfe,\tline\n\U0001f681")
+        self.assertEqual(plain.plain("\x1b[31m\r\x00\x7f\x9b"), "\\u001b[31m\\r\\u0000\\u007f\\u009b")
+        for code in [0x061c, 0x200e, 0x200f, *range(0x2028, 0x202f), *range(0x2066, 0x206a)]:
+            self.assertEqual(plain.plain(chr(code)), f"\\u{code:04x}")
+        self.assertEqual(plain.plain("\udcff"), "\ufffd")
+
+    def test_scripts_print_no_word_of_others_as_it_is(self):
+        evil = "no\x1b[31m\u202e"
+        for script, words in [("plot.py", [evil]), ("plot.py", ["runs", "--" + evil]),
+                              ("plot_sweep.py", ["t.csv", "s.csv", "p.png", "c", "--" + evil])]:
+            ran = subprocess.run(["/usr/bin/python3", ROOT / "scripts" / script, *words], capture_output=True)
+            said = (ran.stdout + ran.stderr).decode()
+            self.assertNotEqual(ran.returncode, 0)
+            self.assertIn("\\u001b[31m\\u202e", said)
+            self.assertEqual(plain.plain(said), said)
+
+
+class ManyAgentsTest(unittest.TestCase):
+    """What is computed in bulk is, to the bit, what it is one by one."""
+
+    def test_separation(self):
+        position = np.random.default_rng(1).normal(size=(1203, 40, 3))
+        for axes in ([0, 1], [0, 1, 2]):
+            p = position[:, :, axes]
+            pairs = [np.linalg.norm(p[:, i] - p[:, j], axis=1) for i in range(40) for j in range(i)]
+            run = mock.Mock(position=position, axes=axes, size=40, t=np.arange(1203))
+            np.testing.assert_array_equal(run_folder.separation(run), np.min(pairs, axis=0))
+
+    def test_edges(self):
+        rng = np.random.default_rng(2)
+        at = rng.normal(size=(60, 2))
+        edges = {(int(i), int(j)) for i, j in rng.integers(60, size=(700, 2)) if i != j}
+        lines = sorted(edge for edge in edges if edge[0] < edge[1] or edge[::-1] not in edges)
+        arrows = [edge for edge in lines if edge[::-1] not in edges]
+        self.assertNotIn(len(arrows), (0, len(lines)), "edges of both kinds")
+        with mock.patch.object(pictures, "arrow_heads") as heads:
+            drawn = pictures.edge_artists(pictures.plt.figure().add_subplot(), at, pictures.in_order(edges))[0]
+        np.testing.assert_array_equal(drawn.get_segments(), [at[list(edge)] for edge in lines])
+        np.testing.assert_array_equal(heads.call_args.args[1:3], [at[[j for _, j in arrows]], at[[i for i, _ in arrows]]])
+        pictures.plt.close("all")
+
+
+class SweepTableTest(unittest.TestCase):
+    COLUMN = "control.effort"
+
+    def table_of(self, runs, statistics, *keys):
+        """The Table of CSV files with these lines."""
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        paths = [pathlib.Path(scratch.name) / name for name in ("sweep.csv", "sweep.stats.csv")]
+        for path, lines in zip(paths, (runs, statistics)):
+            path.write_text("".join(f"{line}\n" for line in lines))
+        return plot_sweep.Table(mock.Mock(table=paths[0], statistics=paths[1], column=self.COLUMN, keys=list(keys), label=[], time=False))
+
+    def test_a_table_that_no_sweep_has_written(self):
+        header = "run,error,sim_s,control.effort"
+        for runs, why in ((["run,error,sim_s"], r":1: expected the column control\.effort once, got it 0 times"),
+                          ([header + ",error"], ":1: expected the column error once, got it 2 times"),
+                          ([header, "0,,1,2", "1,,1"], ":3: expected 4 cells, got 3")):
+            with self.assertRaisesRegex(plot_sweep.TableError, why):
+                self.table_of(runs, ["metric,median"])
+
+    def test_very_many_points(self):
+        count = 20_000
+        runs = [f'{k},{k / 2},"a, b",why,{k + 1}.0,9' for k in range(count)]
+        points = [f"{k / 2},{metric},1,{k + 1}.0" for metric in ("ticks", self.COLUMN) for k in range(count)]
+        table = self.table_of([f"run,law.p_gain,word,error,{self.COLUMN},sim_s", *runs],
+                              ["law.p_gain,metric,runs,mean", *points], "law.p_gain")
+        self.assertEqual(set(table.runs[0]), {"law.p_gain", "error", self.COLUMN, "sim_s"}, "what is drawn, and no more")
+        self.assertEqual([row["mean"] for row in table.points], [f"{k + 1}.0" for k in range(count)])
+        axis = plot_sweep.Axis(table, "law.p_gain")
+        self.assertEqual([axis.of(row["law.p_gain"]) for row in table.points], [k / 2 for k in range(count)])
+        self.assertEqual(axis.rank()[(count - 1) / 2], count - 1)
+
+    def test_a_band_that_goes_below_zero_ends_at_the_foot_of_a_log_axis(self):
+        table = self.table_of([f"run,law.beta,error,{self.COLUMN},sim_s", *(f"0,{k},,{y},1" for k in (1, 2) for y in (1, 9e3))],
+                              ["law.beta,metric,runs,failed,without_value,mean,mean_low_95,mean_high_95,median,decile_1,decile_9",
+                               f"1,{self.COLUMN},2,0,0,5,1,9,5,1,9", f"2,{self.COLUMN},2,0,0,4000,-500,9000,4000,1,9000"],
+                              "law.beta")
+        plot_sweep.figure_style.use("screen")
+        axis = plot_sweep.Curves(table, "law.beta", None).draw().axes[0]
+        self.addCleanup(plot.plt.close, "all")
+        band = axis.collections[0].get_paths()[0].vertices[:, 1]
+        self.assertEqual((axis.get_yscale(), band.min(), band.max()), ("log", 0.5, 9000))
+
+    def test_series_differ_in_colour_or_kind_of_line_and_are_named_below_the_panels(self):
+        laws = [f"law_{n}" for n in range(12)]
+        points = [f"{law},{k},{self.COLUMN},1,0,0,{k},,,{k},," for law in laws for k in (1, 2)]
+        table = self.table_of([f"run,law.name,law.beta,error,{self.COLUMN},sim_s", *(f"0,{law},{k},,{k},1" for law in laws for k in (1, 2))],
+                              ["law.name,law.beta,metric,runs,failed,without_value,mean,mean_low_95,mean_high_95,median,decile_1,decile_9",
+                               *points], "law.name", "law.beta")
+        with laid_out():
+            plot_sweep.figure_style.use("column")
+            figure = plot_sweep.draw(table)
+        self.addCleanup(plot.plt.close, "all")
+        axis = figure.axes[0]
+        self.assertEqual(len({(line.get_color(), line.get_linestyle()) for line in axis.get_lines()}), len(laws))
+        figure.draw_without_rendering()
+        legend, = figure.legends
+        self.assertEqual(legend.get_title().get_text(), "law.name")
+        self.assertLess(legend.get_window_extent().y1, axis.xaxis.label.get_window_extent().y0)
+
+    def test_equal_numbers_in_other_words_stand_in_one_order(self):
+        cells = ["1.00", "1", "1.0", "0.5"]
+        table = self.table_of([f"run,law.beta,error,{self.COLUMN},sim_s", *(f"0,{cell},,1,1" for cell in cells)],
+                              ["law.beta,metric"], "law.beta")
+        axis = plot_sweep.Axis(table, "law.beta")
+        self.assertEqual(axis.cells, ["0.5", "1", "1.0", "1.00"], "not in that of a set, which is another every time")
+        self.assertEqual(axis.rank(), {0.5: 0, 1.0: 1})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,40 @@
+#pragma once
+
+// Participants that do not belong to a run, for tests of what they can do to it.
+
+#include <string>
+
+#include "bus/bus.h"
+#include "tests/support/orchestrator.h"
+
+namespace mascot::test {
+
+/// The DDS domain that `up` prints.
+inline int DomainOf(const Running& up) {
+  const std::string text = up.err();
+  return std::stoi(text.substr(text.find("domain ") + 7));
+}
+
+/// How a participant of this name joins the domain of `up`.
+inline DomainOptions Intruder(const Running& up, const std::string& name) {
+  DomainOptions options;
+  options.domain = DomainOf(up);
+  options.name = name;
+  options.loopback = true;
+  return options;
+}
+
+/// Writes this sample on `topic` again and again, as a participant of this name, until the run is over. Returns its
+/// exit code.
+template <class PubSub>
+int Harass(Running& up, const std::string& name, const Topic& topic, typename PubSub::type sample) {
+  Domain domain(Intruder(up, name), [] {});
+  Writer<PubSub> writer(domain, topic);
+  EXPECT_TRUE(Until([&] {
+    writer.Write(sample);
+    return up.IsOver();
+  }));
+  return up.Wait();
+}
+
+}  // namespace mascot::test

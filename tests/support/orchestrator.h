@@ -1,0 +1,147 @@
+#pragma once
+
+// Runs the real `orchestrator` for end-to-end tests.
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/scratch.h"
+
+extern char** environ;
+
+namespace mascot::test {
+
+inline std::string Config(const std::string& name) {
+  return std::string(MASCOT_SOURCE_DIR) + "/configs/" + name + ".toml";
+}
+
+/// Waits until `condition` holds, at most 60 s. Returns whether it does.
+inline bool Until(const std::function<bool()>& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    poll(nullptr, 0, 5);  // milliseconds
+  }
+  return true;
+}
+
+/// Sends a signal to a process that exists. To kill(2), process 0, a child that was not found, is all of our process
+/// group, and -1, a program that was not started, everybody.
+inline void SignalTo(pid_t process, int signal) {
+  ASSERT_GT(process, 0) << "there is no such process";
+  kill(process, signal);
+}
+
+/// Starts a program; the destructor kills it if it still runs.
+class Running {
+ public:
+  Running(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& output)
+      : out_(output.string() + ".out"), err_(output.string() + ".err") {
+    std::vector<char*> argv{const_cast<char*>(program.c_str())};
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&files, 1, out_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    posix_spawn_file_actions_addopen(&files, 2, err_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    if (posix_spawnp(&pid_, program.c_str(), &files, nullptr, argv.data(), environ) != 0) pid_ = -1;
+    posix_spawn_file_actions_destroy(&files);
+  }
+  ~Running() {
+    if (pid_ <= 0) return;
+    kill(pid_, SIGKILL);
+    Wait();
+  }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  pid_t pid() const { return pid_; }
+  void Signal(int signal) const { SignalTo(pid_, signal); }
+  /// Waits for the end. Returns the exit code, or -signal if a signal ended the program.
+  int Wait() {
+    int status = 0;
+    waitpid(std::exchange(pid_, -1), &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+  /// Whether the program has ended; Wait() then returns at once.
+  bool IsOver() const {
+    siginfo_t info{};
+    return waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == pid_;
+  }
+  std::string out() const { return ReadFile(out_); }
+  std::string err() const { return ReadFile(err_); }
+  bool Said(const std::string& text) const { return err().find(text) != std::string::npos; }
+
+ private:
+  std::string out_, err_;
+  pid_t pid_ = -1;
+};
+
+/// Starts `orchestrator up` for one configuration, with results in folder/name, without plots.
+class Up : public Running {
+ public:
+  Up(const ScratchFolder& folder, const std::string& name, const std::string& config,
+     std::vector<std::string> more = {})
+      : Running(std::string(MASCOT_BINARY_DIR) + "/orchestrator", Words(folder, name, config, std::move(more)),
+                folder.File(name)),
+        path_(folder.File(name)) {}
+
+  const std::filesystem::path& path() const { return path_; }
+  std::string File(const std::string& name) const { return ReadFile(path_ / name); }
+  nlohmann::json Summary() const { return nlohmann::json::parse(File("summary.json")); }
+  /// What `orchestrator info` says of the recording.
+  std::string Info() const {
+    return Shell("'" MASCOT_BINARY_DIR "/orchestrator' info '" + path_.string() + "'").output;
+  }
+  /// Process id of a child; 0 before it has been spawned.
+  pid_t Child(const std::string& process) const;
+
+ private:
+  static std::vector<std::string> Words(const ScratchFolder& folder, const std::string& name, const std::string& config,
+                                        std::vector<std::string> more) {
+    std::vector<std::string> words{"up", config, "--out", folder.File(name), "--set", "output.save_plot=false"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  std::filesystem::path path_;
+};
+
+/// Process id of the child of `parent` whose command line contains `words`, or 0.
+inline pid_t ChildOf(pid_t parent, const std::string& words) {
+  const std::string pid = std::to_string(parent);
+  std::ifstream children("/proc/" + pid + "/task/" + pid + "/children");
+  for (pid_t child; children >> child;) {
+    std::string command = ReadFile("/proc/" + std::to_string(child) + "/cmdline");
+    for (char& c : command)
+      if (c == '\0') c = ' ';
+    if (command.find(words) != std::string::npos) return child;
+  }
+  return 0;
+}
+
+inline pid_t Up::Child(const std::string& process) const {
+  if (process == "physics_server") return ChildOf(pid(), "/physics_server ");
+  return ChildOf(pid(), "--id " + process.substr(std::string("agent_").size()) + " ");
+}
+
+/// Waits until the ticks of a run have begun: then `up` prints its first progress line.
+inline bool Flies(const Running& up) {
+  return Until([&] { return up.Said("x real time"); });
+}
+
+}  // namespace mascot::test

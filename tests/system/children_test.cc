@@ -1,0 +1,172 @@
+// Child processes and their output, tested with programs that every system has.
+#include "system/children.h"
+
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "tests/support/scratch.h"
+
+namespace mascot {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Pair;
+using testing::SizeIs;
+using testing::ThrowsMessage;
+
+constexpr auto kPatience = 20s;
+
+class ChildrenTest : public testing::Test {
+ protected:
+  void Spawn(const std::string& process, const std::string& script) {
+    children_.Spawn(process, "/bin/sh", {"-c", script}, folder_.File(process + ".log"));
+  }
+  std::vector<std::pair<std::string, std::string>> lines() {
+    const std::lock_guard lock(mutex_);
+    return lines_;
+  }
+  void AwaitLines(std::size_t count) {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (lines().size() < count && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  }
+  /// Waits for `count` exits, at most kPatience.
+  std::vector<Exit> AwaitExits(std::size_t count) {
+    std::vector<Exit> exits;
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (exits.size() < count && std::chrono::steady_clock::now() < deadline) {
+      const std::vector<Exit> more = children_.Reap();
+      exits.insert(exits.end(), more.begin(), more.end());
+      std::this_thread::yield();
+    }
+    return exits;
+  }
+
+  ScratchFolder folder_;
+  std::mutex mutex_;
+  std::vector<std::pair<std::string, std::string>> lines_;
+  ChildLogs logs_{[this](const std::string& process, const std::string& line) {
+    const std::lock_guard lock(mutex_);
+    lines_.emplace_back(process, line);
+  }};
+  Children children_{logs_};
+};
+
+TEST_F(ChildrenTest, EveryLineGoesToTheSinkAndToTheLogOfItsProcess) {
+  Spawn("agent_1", "echo one; echo two >&2; printf three");
+  Spawn("agent_2", "echo other");
+  EXPECT_THAT(AwaitExits(2), SizeIs(2));
+  EXPECT_THAT(logs_.LastLines("agent_1"), ElementsAre("one", "two", "three"));
+  EXPECT_THAT(logs_.LastLines("agent_2"), ElementsAre("other"));
+  EXPECT_THAT(lines(), testing::UnorderedElementsAre(Pair("agent_1", "one"), Pair("agent_1", "two"),
+                                                     Pair("agent_1", "three"), Pair("agent_2", "other")));
+  EXPECT_EQ(ReadFile(folder_.File("agent_1.log")), "one\ntwo\nthree\n");
+  EXPECT_EQ(ReadFile(folder_.File("agent_2.log")), "other\n");
+}
+
+TEST_F(ChildrenTest, OnlyTheLastTenLinesAreKept) {
+  Spawn("agent_1", "for i in 1 2 3 4 5 6 7 8 9 10 11 12; do echo $i; done");
+  AwaitExits(1);
+  EXPECT_THAT(logs_.LastLines("agent_1"), ElementsAre("3", "4", "5", "6", "7", "8", "9", "10", "11", "12"));
+}
+
+TEST_F(ChildrenTest, WhatIsNoUtf8IsReplacedInLinesAndKeptInTheLog) {
+  Spawn("agent_1", "printf 'Gr\\374n \\303\\274\\n'");
+  AwaitExits(1);
+  EXPECT_THAT(logs_.LastLines("agent_1"), ElementsAre("Gr\xEF\xBF\xBDn \xC3\xBC"));
+  EXPECT_EQ(ReadFile(folder_.File("agent_1.log")), "Gr\374n \xC3\xBC\n");
+}
+
+TEST_F(ChildrenTest, WhatActsOnATerminalIsEscapedInLinesAndKeptInTheLog) {
+  Spawn("agent_1", "printf '\\033[31mred\\342\\200\\256\\r\\n'");
+  AwaitExits(1);
+  EXPECT_THAT(logs_.LastLines("agent_1"), ElementsAre("\\u001b[31mred\\u202e\\r"));
+  EXPECT_EQ(ReadFile(folder_.File("agent_1.log")), "\033[31mred\u202e\r\n");
+}
+
+TEST_F(ChildrenTest, ALineThatIsNotOverIsInTheLogAtOnce) {
+  Spawn("agent_1", "printf 'step 1 ...'; exec sleep 1000");
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (ReadFile(folder_.File("agent_1.log")) != "step 1 ..." && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::yield();
+  EXPECT_EQ(ReadFile(folder_.File("agent_1.log")), "step 1 ...");
+  EXPECT_THAT(lines(), IsEmpty()) << "it may go on";
+}
+
+TEST_F(ChildrenTest, ALineWithoutEndIsTakenInPieces) {
+  Spawn("agent_1", "printf '%05000d' 1; exec sleep 1000");
+  AwaitLines(1);
+  EXPECT_THAT(lines(), ElementsAre(Pair("agent_1", std::string(4096, '0'))));
+  children_.Kill();
+  EXPECT_THAT(logs_.LastLines("agent_1"), ElementsAre(std::string(4096, '0'), std::string(903, '0') + "1"));
+  EXPECT_EQ(ReadFile(folder_.File("agent_1.log")), std::string(4999, '0') + "1\n");
+}
+
+TEST_F(ChildrenTest, ALongLineIsCutBetweenCharacters) {
+  Spawn("agent_1", "printf '%04095d\\303\\274\\n' 0");
+  AwaitExits(1);
+  EXPECT_THAT(logs_.LastLines("agent_1"), ElementsAre(std::string(4095, '0'), "\xC3\xBC"));
+}
+
+TEST_F(ChildrenTest, AnExitSaysItsCodeOrItsSignal) {
+  Spawn("polite", "exit 3");
+  const std::vector<Exit> polite = AwaitExits(1);
+  ASSERT_THAT(polite, SizeIs(1));
+  EXPECT_EQ(polite[0].process, "polite");
+  EXPECT_EQ(polite[0].Text(), "exited with code 3");
+  Spawn("killed", "kill -SEGV $$");
+  const std::vector<Exit> killed = AwaitExits(1);
+  ASSERT_THAT(killed, SizeIs(1));
+  EXPECT_EQ(killed[0].Text(), "was killed by signal 11 (Segmentation fault)");
+}
+
+TEST_F(ChildrenTest, AChildThatIgnoresSigtermIsKilled) {
+  Spawn("deaf", "trap '' TERM; echo up; while :; do :; done");
+  AwaitLines(1);
+  children_.Stop(50ms);
+  EXPECT_THAT(children_.Reap(), IsEmpty());
+  EXPECT_TRUE(children_.WaitAll(0ms));
+}
+
+TEST_F(ChildrenTest, AChildThatHandlesSigtermEndsByItself) {
+  Spawn("orderly", "trap 'echo down; exit 0' TERM; echo up; while :; do :; done");
+  AwaitLines(1);
+  children_.Stop(kPatience);
+  EXPECT_THAT(logs_.LastLines("orderly"), ElementsAre("up", "down"));
+}
+
+TEST_F(ChildrenTest, AProgramThatIsNotThereIsNamed) {
+  EXPECT_THAT([&] { children_.Spawn("agent_1", "/nowhere/agent", {}, folder_.File("agent_1.log")); },
+              ThrowsMessage<std::runtime_error>("cannot start /nowhere/agent: No such file or directory"));
+}
+
+TEST_F(ChildrenTest, ALogThatCannotBeWrittenIsNamed) {
+  EXPECT_THAT(
+      [&] {
+        children_.Spawn("agent_1", "/bin/sh", {"-c", "true"}, "/nowhere/agent_1.log");
+      },
+      ThrowsMessage<std::runtime_error>("cannot write /nowhere/agent_1.log: No such file or directory"));
+}
+
+int urgent = 0;
+
+TEST(SignalProcess, ReachesNobodyIfThereIsNoProcess) {
+  const auto before = ::signal(SIGURG, [](int) { ++urgent; });  // whoever has no handler ignores this one
+  SignalProcess(getpid(), SIGURG);
+  EXPECT_EQ(urgent, 1);
+  for (const pid_t nobody : {0, -1, -getpgrp()}) SignalProcess(nobody, SIGURG);
+  EXPECT_EQ(urgent, 1) << "to kill(2), 0 is all of our process group, and -1 everybody";
+  ::signal(SIGURG, before);
+}
+
+}  // namespace
+}  // namespace mascot
