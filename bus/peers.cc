@@ -7,30 +7,27 @@
 namespace mascot {
 
 bool MayWrite(std::string_view process, const Topic& topic) {
-  switch (topic.kind) {
-    case TopicKind::kBundle:
-    case TopicKind::kState:
-    case TopicKind::kClock:
-    case TopicKind::kEvent:
+  switch (topic.traits().writer) {
+    case TopicWriter::kServer:
       return process == kPhysicsServer;
-    case TopicKind::kCommand:
-    case TopicKind::kMessage: {
+    case TopicWriter::kAgent: {
       const auto agents = AgentsOf(process);
       return agents && agents->Holds(topic.agent);
     }
-    case TopicKind::kExperiment:
-    case TopicKind::kScene:
-    case TopicKind::kTf:
+    case TopicWriter::kOrchestrator:
       return process == kOrchestrator;
-    case TopicKind::kRequest:  // the server may ask for reports (Lifecycle)
+    case TopicWriter::kOrchestratorOrServer:  // the server may ask for reports (Lifecycle)
       return process == kOrchestrator || process == kPhysicsServer;
-    case TopicKind::kStatus:
+    case TopicWriter::kEverybody:
       return true;
   }
   return false;
 }
 
-bool HasOneWriter(const Topic& topic) { return topic.kind != TopicKind::kRequest && topic.kind != TopicKind::kStatus; }
+bool HasOneWriter(const Topic& topic) {
+  const TopicWriter writer = topic.traits().writer;
+  return writer != TopicWriter::kOrchestratorOrServer && writer != TopicWriter::kEverybody;
+}
 
 void Peers::Know(const std::string& process, const ProcessKey& key) {
   const std::lock_guard lock(mutex_);

@@ -23,41 +23,12 @@ using eprosima::fastrtps::rtps::DiscoveryProtocol;
 using eprosima::fastrtps::rtps::IPLocator;
 using eprosima::fastrtps::rtps::Locator_t;
 
-// --- profiles: one row a topic kind -------------------------------------------------------------------
-
-struct Profile {
-  TopicKind kind;
-  int writer_depth;
-  int reader_depth;
-  bool per_tick;  // sent at every tick: tuned for the round trip of lockstep
-  bool late_joiners;
-  bool large;  // may need fragments
-};
-
-constexpr Profile kProfiles[] = {
-    // topics of agents come first: ReaderNumber() counts these rows
-    {TopicKind::kBundle, 4, 4, true, false, false},  // large, and not recorded
-    {TopicKind::kState, kHistoryDepth, 8, true, false, false},
-    {TopicKind::kCommand, kHistoryDepth, 8, true, false, false},
-    {TopicKind::kMessage, kHistoryDepth, 8, true, false, false},
-    {TopicKind::kClock, kHistoryDepth, 8, true, false, false},
-    {TopicKind::kEvent, kHistoryDepth, kHistoryDepth, false, false, false},
-    {TopicKind::kStatus, 256, 256, false, false, false},
-    {TopicKind::kRequest, 32, 32, false, false, false},
-    {TopicKind::kExperiment, 1, 1, false, true, true},
-    {TopicKind::kScene, 1, 1, false, true, true},
-    {TopicKind::kTf, 10, 10, false, false, true},
-};
-
-const Profile& ProfileOf(TopicKind kind) {
-  return *std::find_if(std::begin(kProfiles), std::end(kProfiles),
-                       [&](const Profile& row) { return row.kind == kind; });
-}
+// --- topics: what their table says (idl/topics.cc) -------------------------------------------------------
 
 template <class Qos>
-void SetCommon(Qos& qos, const Profile& profile, int depth) {
+void SetCommon(Qos& qos, const TopicTraits& traits, int depth) {
   qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
-  qos.durability().kind = profile.late_joiners ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+  qos.durability().kind = traits.for_late_joiners ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = depth;
   qos.resource_limits().max_samples = 0;  // unlimited: the depth is the limit
@@ -72,18 +43,17 @@ void SetCommon(Qos& qos, const Profile& profile, int depth) {
 /// readers have the same id, Fast DDS writes it into the message. Otherwise the receiving process tries each of its
 /// readers, hundreds in the recorder's process.
 std::int16_t ReaderNumber(const Topic& topic) {
-  constexpr int kFirst = 256;  // smaller ids are those that Fast DDS picks
-  constexpr int kAgents = 8000;
+  constexpr int kFirst = 256;    // smaller ids are those that Fast DDS picks
+  constexpr int kAgents = 8000;  // four kinds of topics have agents, and are the first of TopicKind
+  static_assert(static_cast<int>(TopicKind::kState) == 3);
   const bool of_agents = topic.agent > 0 && topic.agent < kAgents;
   if (!of_agents) return -1;
-  const auto row = std::find_if(std::begin(kProfiles), std::end(kProfiles),
-                                [&](const Profile& profile) { return profile.kind == topic.kind; });
-  return static_cast<std::int16_t>(kFirst + kAgents * (row - std::begin(kProfiles)) + topic.agent);
+  return static_cast<std::int16_t>(kFirst + kAgents * static_cast<int>(topic.kind) + topic.agent);
 }
 
-dds::DataReaderQos MakeReaderQos(const Topic& topic, const Profile& profile, int depth) {
+dds::DataReaderQos MakeReaderQos(const Topic& topic, int depth) {
   dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
-  SetCommon(qos, profile, depth);
+  SetCommon(qos, topic.traits(), depth);
   qos.endpoint().entity_id = ReaderNumber(topic);
   return qos;
 }
@@ -238,15 +208,15 @@ dds::DomainParticipantQos ParticipantQos(const DomainOptions& options) {
 }
 
 dds::DataWriterQos WriterQos(TopicKind kind) {
-  const Profile& profile = ProfileOf(kind);
+  const TopicTraits& traits = TraitsOf(kind);
   dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
-  SetCommon(qos, profile, profile.writer_depth);
-  qos.publish_mode().kind = profile.large ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
+  SetCommon(qos, traits, traits.writer_depth);
+  qos.publish_mode().kind = traits.is_large ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
   const std::string type = fmt::format("typehash={};", SchemaOf(kind).type_hash);  // as ROS 2 tells it
   qos.user_data().setValue({type.begin(), type.end()});
   auto& reliable = qos.reliable_writer_qos();
   reliable.times.heartbeatPeriod = Duration_t(0, 200'000'000);  // repairs a lost last sample; see per_tick
-  if (profile.per_tick) {
+  if (traits.rhythm != TopicRhythm::kRare) {
     // 0 would wake the event thread at every write. A sample that a network lost is sent again after 1 s.
     reliable.times.nackSupressionDuration = Duration_t(1, 0);
     reliable.disable_heartbeat_piggyback = true;
@@ -254,16 +224,8 @@ dds::DataWriterQos WriterQos(TopicKind kind) {
   return qos;
 }
 
-dds::DataReaderQos ReaderQos(const Topic& topic) {
-  const Profile& profile = ProfileOf(topic.kind);
-  return MakeReaderQos(topic, profile, profile.reader_depth);
-}
+dds::DataReaderQos ReaderQos(const Topic& topic) { return MakeReaderQos(topic, topic.traits().reader_depth); }
 
-dds::DataReaderQos RecorderQos(const Topic& topic) {
-  const Profile& profile = ProfileOf(topic.kind);
-  return MakeReaderQos(topic, profile, profile.writer_depth);
-}
-
-int WriterDepth(TopicKind kind) { return ProfileOf(kind).writer_depth; }
+dds::DataReaderQos RecorderQos(const Topic& topic) { return MakeReaderQos(topic, topic.traits().writer_depth); }
 
 }  // namespace mascot

@@ -12,12 +12,6 @@
 
 namespace mascot {
 
-/// History depth of per-tick topics (bundles have less: they are not recorded), for writers and for the recorder. The
-/// server publishes tick k only after the recorder has confirmed tick k - kRecorderWindow, so no sample is overwritten
-/// before it was recorded.
-inline constexpr int kHistoryDepth = 128;
-inline constexpr int kRecorderWindow = 64;
-
 /// Role of a participant in DDS discovery.
 enum class DiscoveryRole {
   kPeer,      ///< finds all others by multicast; fine up to about 20 participants
@@ -50,7 +44,5 @@ eprosima::fastdds::dds::DataWriterQos WriterQos(TopicKind kind);
 eprosima::fastdds::dds::DataReaderQos ReaderQos(const Topic& topic);
 /// As ReaderQos(), but as deep as the writers' history: for the recorder.
 eprosima::fastdds::dds::DataReaderQos RecorderQos(const Topic& topic);
-/// Number of samples that a writer of this kind keeps.
-int WriterDepth(TopicKind kind);
 
 }  // namespace mascot

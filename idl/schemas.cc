@@ -21,33 +21,7 @@ const TypeSchema& SchemaOf(std::string_view name) {
   return *row;
 }
 
-const TypeSchema& SchemaOf(TopicKind kind) {
-  switch (kind) {
-    case TopicKind::kBundle:
-      return SchemaOf("mascot_msgs/msg/AgentBundle");
-    case TopicKind::kCommand:
-      return SchemaOf("mascot_msgs/msg/AgentCommand");
-    case TopicKind::kMessage:
-      return SchemaOf("mascot_msgs/msg/AgentMessage");
-    case TopicKind::kEvent:
-      return SchemaOf("mascot_msgs/msg/Event");
-    case TopicKind::kState:
-      return SchemaOf("mascot_msgs/msg/AgentState");
-    case TopicKind::kClock:
-      return SchemaOf("rosgraph_msgs/msg/Clock");
-    case TopicKind::kExperiment:
-      return SchemaOf("mascot_msgs/msg/Experiment");
-    case TopicKind::kRequest:
-      return SchemaOf("mascot_msgs/msg/Request");
-    case TopicKind::kScene:
-      return SchemaOf("visualization_msgs/msg/MarkerArray");
-    case TopicKind::kStatus:
-      return SchemaOf("mascot_msgs/msg/Status");
-    case TopicKind::kTf:
-      return SchemaOf("tf2_msgs/msg/TFMessage");
-  }
-  throw std::out_of_range("no schema for this kind of topic");
-}
+const TypeSchema& SchemaOf(TopicKind kind) { return SchemaOf(TraitsOf(kind).type); }
 
 std::string OfferedQos(int depth) {
   // Keep last, reliable, volatile, automatic liveliness; rmw writes an infinite duration as this number of seconds.

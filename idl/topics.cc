@@ -5,24 +5,101 @@
 namespace mascot {
 namespace {
 
-struct KindName {
-  TopicKind kind;
-  std::string_view name;
-  bool per_agent;
-};
-
-constexpr KindName kKinds[] = {
-    {TopicKind::kBundle, "bundle", true},
-    {TopicKind::kCommand, "command", true},
-    {TopicKind::kMessage, "message", true},
-    {TopicKind::kState, "state", true},
-    {TopicKind::kClock, "clock", false},
-    {TopicKind::kEvent, "event", false},
-    {TopicKind::kExperiment, "experiment", false},
-    {TopicKind::kRequest, "request", false},
-    {TopicKind::kScene, "scene", false},
-    {TopicKind::kStatus, "status", false},
-    {TopicKind::kTf, "tf", false},
+// In the order of TopicKind. The samples of a bundle are recorded, each for itself, as states.
+constexpr TopicTraits kKinds[] = {
+    {.kind = TopicKind::kBundle,
+     .name = "bundle",
+     .per_agent = true,
+     .type = "mascot_msgs/msg/AgentBundle",
+     .writer = TopicWriter::kServer,
+     .rhythm = TopicRhythm::kTick,
+     .writer_depth = 4,
+     .reader_depth = 4},
+    {.kind = TopicKind::kCommand,
+     .name = "command",
+     .per_agent = true,
+     .type = "mascot_msgs/msg/AgentCommand",
+     .writer = TopicWriter::kAgent,
+     .rhythm = TopicRhythm::kAnswer,
+     .writer_depth = kHistoryDepth,
+     .reader_depth = 8,
+     .is_recorded = true},
+    {.kind = TopicKind::kMessage,
+     .name = "message",
+     .per_agent = true,
+     .type = "mascot_msgs/msg/AgentMessage",
+     .writer = TopicWriter::kAgent,
+     .rhythm = TopicRhythm::kAnswer,
+     .writer_depth = kHistoryDepth,
+     .reader_depth = 8,
+     .is_recorded = true},
+    {.kind = TopicKind::kState,
+     .name = "state",
+     .per_agent = true,
+     .type = "mascot_msgs/msg/AgentState",
+     .writer = TopicWriter::kServer,
+     .rhythm = TopicRhythm::kTick,
+     .writer_depth = kHistoryDepth,
+     .reader_depth = 8,
+     .is_recorded = true},
+    {.kind = TopicKind::kClock,
+     .name = "clock",
+     .type = "rosgraph_msgs/msg/Clock",
+     .writer = TopicWriter::kServer,
+     .rhythm = TopicRhythm::kTick,
+     .writer_depth = kHistoryDepth,
+     .reader_depth = 8,
+     .is_recorded = true},
+    {.kind = TopicKind::kEvent,
+     .name = "event",
+     .type = "mascot_msgs/msg/Event",
+     .writer = TopicWriter::kServer,
+     .rhythm = TopicRhythm::kRare,
+     .writer_depth = kHistoryDepth,
+     .reader_depth = kHistoryDepth,
+     .is_recorded = true},
+    {.kind = TopicKind::kExperiment,
+     .name = "experiment",
+     .type = "mascot_msgs/msg/Experiment",
+     .writer = TopicWriter::kOrchestrator,
+     .rhythm = TopicRhythm::kRare,
+     .writer_depth = 1,
+     .reader_depth = 1,
+     .for_late_joiners = true,
+     .is_large = true},
+    {.kind = TopicKind::kRequest,
+     .name = "request",
+     .type = "mascot_msgs/msg/Request",
+     .writer = TopicWriter::kOrchestratorOrServer,
+     .rhythm = TopicRhythm::kRare,
+     .writer_depth = 32,
+     .reader_depth = 32},
+    {.kind = TopicKind::kScene,
+     .name = "scene",
+     .type = "visualization_msgs/msg/MarkerArray",
+     .writer = TopicWriter::kOrchestrator,
+     .rhythm = TopicRhythm::kRare,
+     .writer_depth = 1,
+     .reader_depth = 1,
+     .for_late_joiners = true,
+     .is_large = true,
+     .is_for_ros = true},
+    {.kind = TopicKind::kStatus,
+     .name = "status",
+     .type = "mascot_msgs/msg/Status",
+     .writer = TopicWriter::kEverybody,
+     .rhythm = TopicRhythm::kRare,
+     .writer_depth = 256,
+     .reader_depth = 256},
+    {.kind = TopicKind::kTf,
+     .name = "tf",
+     .type = "tf2_msgs/msg/TFMessage",
+     .writer = TopicWriter::kOrchestrator,
+     .rhythm = TopicRhythm::kRare,
+     .writer_depth = 10,
+     .reader_depth = 10,
+     .is_large = true,
+     .is_for_ros = true},
 };
 constexpr std::string_view kAgentPrefix = "agent_";
 constexpr std::string_view kAgentsPrefix = "agents_";
@@ -59,10 +136,10 @@ std::optional<AgentRange> AgentsOf(std::string_view process) {
   return first && last && *first < *last ? std::optional(AgentRange{*first, *last}) : std::nullopt;
 }
 
+const TopicTraits& TraitsOf(TopicKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
+
 std::string Topic::Name() const {
-  for (const KindName& row : kKinds)
-    if (row.kind == kind) return (row.per_agent ? "/" + AgentName(agent) : "") + "/" + std::string(row.name);
-  return {};
+  return (traits().per_agent ? "/" + AgentName(agent) : "") + "/" + std::string(traits().name);
 }
 
 std::optional<Topic> Topic::Parse(std::string_view name) {
@@ -78,7 +155,7 @@ std::optional<Topic> Topic::Parse(std::string_view name) {
     topic.agent = *agent;
     name.remove_prefix(slash + 1);
   }
-  for (const KindName& row : kKinds)
+  for (const TopicTraits& row : kKinds)
     if (row.per_agent == per_agent && row.name == name) {
       topic.kind = row.kind;
       return topic;

@@ -31,6 +31,48 @@ enum class TopicKind {
   kTf
 };
 
+/// Which process may write a topic.
+enum class TopicWriter {
+  kServer,                ///< the physics server
+  kAgent,                 ///< the process of the agent whose number the topic has
+  kOrchestrator,          ///< the orchestrator
+  kOrchestratorOrServer,  ///< both: the server asks for reports
+  kEverybody,             ///< each process of the run
+};
+
+/// When a topic has a sample.
+enum class TopicRhythm {
+  kTick,    ///< at each tick
+  kAnswer,  ///< with each agent's answer to a tick; in real time an answer may be missing
+  kRare,    ///< when something happens
+};
+
+/// All that is known of the topics of one kind, but what they carry in C++ (bus/wire.h) and who reads them
+/// (orchestrator/engines/dds/wire_audit.cc).
+struct TopicTraits {
+  TopicKind kind;
+  std::string_view name;   ///< its last word: "state"
+  bool per_agent = false;  ///< one for each agent, under the agent's name
+  std::string_view type;   ///< the message type: "mascot_msgs/msg/AgentState"
+  TopicWriter writer;
+  TopicRhythm rhythm;
+  int writer_depth;               ///< samples that a writer keeps
+  int reader_depth;               ///< samples that a reader keeps
+  bool for_late_joiners = false;  ///< who joins later receives the last sample, too
+  bool is_large = false;          ///< a sample may need fragments
+  bool is_recorded = false;       ///< run.mcap has it
+  bool is_for_ros = false;        ///< only tools of ROS 2 read it (network.ros_view)
+};
+
+/// The row of a kind in the table of topics.
+const TopicTraits& TraitsOf(TopicKind kind);
+
+/// Samples that the writers of recorded topics keep (bundles are not recorded), and their reader in the recorder. The
+/// server publishes tick k only after the recorder has confirmed tick k - kRecorderWindow, so no sample is overwritten
+/// before it was recorded.
+inline constexpr int kHistoryDepth = 128;
+inline constexpr int kRecorderWindow = 64;
+
 /// A topic of a run. `agent` is 1..N for the per-agent kinds, else 0.
 struct Topic {
   TopicKind kind = TopicKind::kClock;
@@ -48,6 +90,7 @@ struct Topic {
   static Topic Status() { return {TopicKind::kStatus, 0}; }
   static Topic Tf() { return {TopicKind::kTf, 0}; }
 
+  const TopicTraits& traits() const { return TraitsOf(kind); }
   /// The ROS name: "/agent_3/state", "/clock".
   std::string Name() const;
   /// The DDS name that ROS 2 maps it to: "rt/agent_3/state".

@@ -17,16 +17,8 @@ namespace {
 
 /// Whether a topic of this kind has a sample of every tick.
 bool IsPerTick(const Topic& topic, bool realtime) {
-  switch (topic.kind) {
-    case TopicKind::kState:
-    case TopicKind::kClock:
-      return true;
-    case TopicKind::kCommand:
-    case TopicKind::kMessage:
-      return !realtime;
-    default:
-      return false;
-  }
+  const TopicRhythm rhythm = topic.traits().rhythm;
+  return rhythm == TopicRhythm::kTick || (rhythm == TopicRhythm::kAnswer && !realtime);
 }
 
 /// Which agents have a law that sends messages, by id - 1: one that says so in the resolved experiment (law.messages of

@@ -20,10 +20,8 @@ std::unique_ptr<McapIndex> OpenIndex(const std::string& path) try {
 }
 
 bool BelongsToRows(const Topic& topic, int agents) {
-  if (topic.kind == TopicKind::kEvent) return true;
-  const bool is_of_agent =
-      topic.kind == TopicKind::kState || topic.kind == TopicKind::kCommand || topic.kind == TopicKind::kMessage;
-  return is_of_agent && topic.agent >= 1 && topic.agent <= agents;
+  if (!topic.traits().per_agent) return topic.kind == TopicKind::kEvent;
+  return topic.traits().is_recorded && topic.agent >= 1 && topic.agent <= agents;
 }
 
 }  // namespace

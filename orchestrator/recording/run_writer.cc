@@ -37,7 +37,7 @@ std::optional<std::uint16_t> RunWriter::AddChannel(const Topic& topic) {
   return mcap_.AddChannel({name,
                            std::string(schema.name),
                            std::string(schema.text),
-                           {{"offered_qos_profiles", OfferedQos(WriterDepth(topic.kind))},
+                           {{"offered_qos_profiles", OfferedQos(topic.traits().writer_depth)},
                             {"topic_type_hash", std::string(schema.type_hash)}}});
 }
 

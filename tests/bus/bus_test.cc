@@ -18,6 +18,7 @@
 #include "bus/leave.h"
 #include "bus/lifecycle.h"
 #include "bus/wire.h"
+#include "idl/schemas.h"
 #include "orchestrator/engines/dds/machine/domain_lock.h"
 #include "orchestrator/engines/dds/ros_publisher.h"
 #include "system/stop_signal.h"
@@ -38,6 +39,21 @@ TEST(Topic, IsMadeAndParsedAlike) {
   }
   EXPECT_EQ(Topic::State(3).DdsName(), "rt/agent_3/state");
   EXPECT_EQ(Topic::Clock().DdsName(), "rt/clock");
+}
+
+TEST(Topic, HasARowOfItsOwnForEachKindInTheOrderOfTheirNames) {
+  for (int i = 0; i <= static_cast<int>(TopicKind::kTf); ++i) {
+    const auto kind = static_cast<TopicKind>(i);
+    const TopicTraits& traits = TraitsOf(kind);
+    EXPECT_EQ(traits.kind, kind);
+    EXPECT_EQ(SchemaOf(kind).name, traits.type);
+    EXPECT_GE(traits.writer_depth, 1) << traits.name;
+    EXPECT_GE(traits.reader_depth, 1) << traits.name;
+    if (i == 0) continue;
+    const TopicTraits& before = TraitsOf(static_cast<TopicKind>(i - 1));
+    EXPECT_GE(before.per_agent, traits.per_agent) << traits.name;
+    EXPECT_TRUE(before.per_agent != traits.per_agent || before.name < traits.name) << traits.name;
+  }
 }
 
 TEST(Topic, AgentsAreNamedAndNumberedAlike) {

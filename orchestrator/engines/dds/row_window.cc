@@ -18,7 +18,7 @@ RowWindow::RowWindow(Rules rules)
 void RowWindow::CheckSequence(std::size_t index, std::int64_t sequence) {
   const TopicKind kind = rules_.topics[index].kind;
   const std::int64_t missing = sequence - sequences_[index] - 1;
-  const bool may_lack = rules_.realtime && (kind == TopicKind::kCommand || kind == TopicKind::kMessage);
+  const bool may_lack = rules_.realtime && TraitsOf(kind).rhythm == TopicRhythm::kAnswer;
   if (missing > 0 && may_lack) {  // no flow control here: a writer may overwrite samples that are not read yet
     lost_ += static_cast<std::uint64_t>(missing);
   } else if (missing != 0) {

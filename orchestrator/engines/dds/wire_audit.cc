@@ -57,12 +57,12 @@ bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic
 
 /// Whether a run of this experiment has such a topic.
 bool IsOfTheRun(const Experiment& experiment, const Topic& topic) {
-  return experiment.network.ros_view || (topic.kind != TopicKind::kScene && topic.kind != TopicKind::kTf);
+  return experiment.network.ros_view || !topic.traits().is_for_ros;
 }
 
 /// The name of the process that may write `topic`, as error messages say it.
 std::string RightfulWriter(const Experiment& experiment, const Topic& topic) {
-  if (topic.kind == TopicKind::kStatus) return "processes of the run";
+  if (topic.traits().writer == TopicWriter::kEverybody) return "processes of the run";
   for (const char* process : {kOrchestrator, kPhysicsServer})
     if (MayWrite(process, topic)) return process;
   for (const AgentRange& agents : AgentProcesses(experiment))
