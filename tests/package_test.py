@@ -40,11 +40,86 @@ HELPS = Helps()
 LAWS = {line for line in output_of(PROGRAM, "laws").splitlines() if re.match(r"\w+$", line)}
 
 
-class Readme(unittest.TestCase):
-    def test_its_command_line_has_each_verb_once_and_help(self):
-        block = re.search(r"## Command line\n.*?```\n(.*?)```", (ROOT / "README.md").read_text(), re.S)[1]
-        shown = re.findall(r"^orchestrator ((?:\w+ \| )*\w+)", block, re.M)
-        self.assertEqual(sorted(verb for verbs in shown for verb in verbs.split(" | ")), sorted(["help", *HELPS.verbs]))
+def options_of(text):
+    """Of the first column of tables of Markdown: {"--at": "ADDRESS:PORT", ...}."""
+    rows = re.findall(r"^\| `(--[a-z-]+) ?((?:[^`])*)` \|", text, re.M)
+    return {name: value.replace("\\|", "|") for name, value in rows}
+
+
+def typed_in(text):
+    """The commands of `orchestrator` in a page of Markdown, each as a list of words: in blocks, and between backticks."""
+    lines = [line for block in re.findall(r"^```(?:console|bash)?(?: [^\n]*)?\n(.*?)^```$", text, re.M | re.S)
+             for line in block.splitlines() if not line.startswith("  ")]  # drawings are indented
+    lines += [line for line in re.findall(r"`([^`\n]+)`", re.sub(r"^```.*?^```$", "", text, flags=re.M | re.S))]
+    commands = [command for line in lines
+                for command in re.findall(r"(?:^|[ /(\"'])orchestrator (?! )((?:[^|;#`&]|(?<! )\|)+)", line)]
+    return [command.replace("\\|", "|").split() for command in commands]
+
+
+class CommandLine(unittest.TestCase):
+    """docs/command_line.md has every verb and every option, and no page names one that is not there."""
+
+    PAGE = (ROOT / "docs/command_line.md").read_text()
+
+    def sections(self):
+        found = re.findall(r"^### ([a-z ]+)\n(.*?)(?=^##|\Z)", self.PAGE, re.M | re.S)
+        self.assertEqual(len(dict(found)), len(found), "a verb has two sections")
+        return dict(found)
+
+    def helps(self):
+        """{verb: {option: value, ...}, ...}, as the program tells it; -h and --help, which all have, left out."""
+        texts = {**HELPS.helps, "sweep merge": output_of(PROGRAM, "sweep", "merge", "--help")}
+        return {verb: {name for name in ",".join(names(text, "Options")).split(",") if name not in ("-h", "--help")}
+                for verb, text in texts.items()}
+
+    def test_it_has_each_verb_and_no_other(self):
+        self.assertEqual(set(self.sections()), set(self.helps()))
+        self.assertEqual(set(re.findall(r"\]\(#([a-z-]+)\)", self.PAGE)), {verb.replace(" ", "-") for verb in self.helps()})
+
+    def test_it_has_each_option_of_a_verb_and_no_other(self):
+        self.assertGreater(sum(len(options) for options in self.helps().values()), 60)
+        for verb, options in self.helps().items():
+            with self.subTest(verb=verb):
+                self.assertEqual(set(options_of(self.sections()[verb])), options)
+
+    def test_it_has_the_choices_of_an_option(self):
+        for verb, text in {**HELPS.helps, "sweep merge": output_of(PROGRAM, "sweep", "merge", "--help")}.items():
+            for name, choices in re.findall(r"^  (--[a-z-]+) \w+:\{(.*?)\}", text, re.M):
+                with self.subTest(verb=verb, option=name):
+                    row = re.search(rf"^\| `{name}\b.*", self.sections()[verb], re.M)[0]
+                    for choice in choices.split(","):
+                        self.assertRegex(row, rf"\b{choice}\b")
+
+    def test_it_has_what_may_be_sent_to_a_run(self):
+        usage = re.search(r"words WHAT \.\.\. +(.*)", HELPS.helps["send"])[1]
+        requests = re.findall(r"^\| ((?:`[^`]+`(?:, )?)+) \|", self.sections()["send"], re.M)
+        shown = [request for row in requests for request in re.findall(r"`([^`]+)`", row) if not request.startswith("--")]
+        self.assertEqual(set(shown), set(usage.split(" | ")))
+
+    def test_it_has_the_options_of_the_programs_that_a_run_starts(self):
+        section = self.PAGE.partition("## The programs that a run starts")[2]
+        told = set().union(*(names(output_of(BUILD / program, "--help"), "Options") for program in ("agent", "physics_server")))
+        self.assertEqual(set(options_of(section)), told - {"-h,--help"})
+
+    def test_pages_name_no_verb_and_no_option_that_is_not_there(self):
+        helps = self.helps()
+        pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+        commands = [(page.name, words) for page in pages for words in typed_in(page.read_text())]
+        self.assertGreater(len(commands), 100)
+        for page, words in commands:
+            with self.subTest(page=page, command=" ".join(words)):
+                verb = " ".join(words[:2]) if " ".join(words[:2]) in helps else words[0]
+                if verb in ("--help", "--version", "help", "VERB"):
+                    continue
+                self.assertIn(verb.rstrip(","), {*helps, "..."})
+                ours = re.sub(r"(--slurm-option)[ =]\S+", r"\1", " ".join(words))  # what follows is an option of sbatch
+                named = set(re.findall(r"(?<![^ \[(|])--[a-z][a-z-]*", ours))
+                self.assertLessEqual(named, {*helps.get(verb, ()), "--help"})
+
+    def test_such_a_name_would_be_found(self):
+        text = "```\n$ orchestrator up a.toml --vieuw  # no --such\n```\n`orchestrator plott RUN --size column\\|page` here\n"
+        self.assertEqual(typed_in(text), [["up", "a.toml", "--vieuw"], ["plott", "RUN", "--size", "column|page"]])
+        self.assertEqual(options_of("| `--size screen\\|column` | x |\n| `--json` | y |\n"), {"--size": "screen|column", "--json": ""})
 
 
 class Completion:
