@@ -20,23 +20,23 @@ namespace {
 
 // All verbs; `orchestrator --help` prints this table.
 constexpr VerbEntry kVerbs[] = {
-    {"up", "run an experiment: spawn, record, measure, plot", SetUpUp},
+    {"up", "run an experiment: start its processes, record, measure, draw", SetUpUp},
     {"ps", "the runs that are alive on this machine", SetUpPs},
     {"send", "steer a run that is alive: pause, pace, set a key, send an agent somewhere", SetUpSend},
     {"check", "validate an experiment and say what theory predicts; starts nothing", SetUpCheck},
-    {"graph", "matrix, lambda_2, components and roots of an experiment's graph", SetUpGraph},
+    {"graph", "matrices, lambda_2, components and roots of an experiment's graph", SetUpGraph},
     {"laws", "the control laws: equation, source, parameters", SetUpLaws},
     {"models", "the agent models", SetUpModels},
     {"airframes", "the built-in quadrotors: parameters, gains, limits", SetUpAirframes},
-    {"info", "what a recording holds, and the proof that it is complete", SetUpInfo},
-    {"plot", "the pictures of a run again", SetUpPlot},
-    {"view", "a recording on the page of a run: play, pause, seek", SetUpView},
+    {"info", "what a recording holds, and whether it is complete, with the proof", SetUpInfo},
+    {"plot", "draw the pictures of a run again", SetUpPlot},
+    {"view", "play a recording on the page of a run", SetUpView},
     {"sweep", "run an experiment over values of its keys and seeds: a table, a picture", SetUpSweep},
     {"compare", "the summaries of several runs side by side", SetUpCompare},
     {"verify", "fly a recorded experiment again, and compare bit for bit", SetUpVerify},
-    {"recover", "a whole recording of what a cut or damaged one still holds", SetUpRecover},
-    {"export", "a recording as NumPy arrays, as CSV or as a MATLAB file", SetUpExport},
-    {"host", "a host's share of a run, told on standard input; `up` starts it", SetUpHost},
+    {"recover", "make a whole recording of what a cut or damaged one still holds", SetUpRecover},
+    {"export", "write a recording as NumPy arrays, as CSV or as a MATLAB file", SetUpExport},
+    {"host", "fly one host's share of a run; `up` starts it, nobody types it", SetUpHost},
 };
 
 bool IsVerb(std::string_view word) {

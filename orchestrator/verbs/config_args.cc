@@ -23,8 +23,8 @@ void ConfigArgs::AddTo(CLI::App& command) {
   command.add_option("--set", sets, "replaces or adds a key: --set law.p_gain=0.5")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);  // otherwise it would take CONFIG as a second value
-  command.add_option("--duration-s", duration_s, "instead of run.duration_s")->type_name("S");
-  command.add_option("--seed", seed, "instead of run.seed")->type_name("N");
+  command.add_option("--duration-s", duration_s, "in place of run.duration_s, in simulated seconds")->type_name("S");
+  command.add_option("--seed", seed, "in place of run.seed")->type_name("N");
 }
 
 Experiment ConfigArgs::Load() {

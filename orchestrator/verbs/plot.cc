@@ -63,7 +63,7 @@ int PlotRun(const fs::path& folder, bool show, StopSignal& stop) {
 std::function<int()> SetUpPlot(CLI::App& command) {
   auto args = std::make_shared<PlotArgs>();
   command.add_option("run", args->runs, "run folders")->required()->type_name("RUN");
-  command.add_flag("--overlay", args->overlay, "several runs in the same pictures, in the folder --out");
+  command.add_flag("--overlay", args->overlay, "draw several runs into the same pictures, in the folder --out");
   for (std::size_t k = 0; k < std::size(kOptions); ++k)
     command.add_option(kOptions[k].name, args->values[k], kOptions[k].meaning)->type_name(kOptions[k].value);
   command.add_flag("--show", args->show, "open windows too");

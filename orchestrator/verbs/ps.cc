@@ -54,7 +54,7 @@ int Ps(bool json) {
 
 std::function<int()> SetUpPs(CLI::App& command) {
   auto json = std::make_shared<bool>(false);
-  command.add_flag("--json", *json, "as JSON");
+  command.add_flag("--json", *json, "print the list as JSON");
   return [json] { return Ps(*json); };
 }
 

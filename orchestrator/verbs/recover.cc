@@ -41,7 +41,7 @@ int Recover(const RecoverArgs& args) {
 
 std::function<int()> SetUpRecover(CLI::App& command) {
   auto args = std::make_shared<RecoverArgs>();
-  command.add_option("file", args->file, "an .mcap file that was cut or damaged, or its run folder")
+  command.add_option("file", args->file, "a recording (.mcap file) that was cut or damaged, or its run folder")
       ->required()
       ->type_name("FILE");
   command.add_option("--out", args->out, "file, or folder to put it into (default: beside FILE, NAME.recovered.mcap)")

@@ -189,7 +189,8 @@ std::function<int()> SetUpSend(CLI::App& command) {
   auto args = std::make_shared<SendArgs>();
   command.add_option("--run", args->run, "the folder of the run; not needed if only one is alive")->type_name("DIR");
   command.add_option("--domain", args->domain, "the DDS domain of the run")->type_name("D");
-  command.add_option("--agents", args->agents, "with set: whom it is for (default: all whom it can concern)")
+  command
+      .add_option("--agents", args->agents, "with set: for which agents (default: all agents that the key can concern)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("ID,...");

@@ -175,47 +175,53 @@ std::function<int()> SetUpSweep(CLI::App& command) {
   command.add_option("config", args->config, "experiment file (TOML); -: standard input")->type_name("CONFIG");
   command
       .add_option("--set", args->words.sets,
-                  "a key and its values: KEY=A:STEP:B, KEY=V1,V2,..., or one value; every combination is run")
+                  "a key and its values: KEY=A:STEP:B, KEY=V1,V2,..., or one value; every combination is flown")
       ->type_name("KEY=VALUES")
       ->allow_extra_args(false);
   auto* random =
       command.add_option("--random", args->words.randoms, "a key and the range that its values are drawn from")
           ->type_name("KEY=MIN:MAX[:log]")
           ->allow_extra_args(false);
-  auto* samples = command.add_option("--samples", args->words.samples, "draws of all --random keys")
-                      ->check(CLI::Range(1, 10'000'000))
-                      ->type_name("N");
+  auto* samples =
+      command.add_option("--samples", args->words.samples, "how many times all --random keys are drawn together")
+          ->check(CLI::Range(1, 10'000'000))
+          ->type_name("N");
   random->needs(samples);
   samples->needs(random);
-  command.add_option("--seeds", args->words.seeds, "each combination with each of these: A..B or A,B,...")
+  command.add_option("--seeds", args->words.seeds, "fly each combination with each of these seeds: A..B or A,B,...")
       ->type_name("SEEDS");
-  command.add_option("--jobs", args->jobs, "processes at work (default: one per core)")
+  command.add_option("--jobs", args->jobs, "processes that fly at the same time (default: one per core)")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
   command.add_option("--out", args->out, "the table (default: sweep.csv)")->type_name("FILE");
   command
       .add_option("--metric", args->metric_file,
-                  "a Python file: each of its functions of the arrays of a run is a column")
+                  "a Python file: each of its functions of the arrays of a run becomes a column")
       ->type_name("FILE");
   args->picture.SetUp(command);
   command
       .add_option("--shard", args->shard,
-                  "only the I-th of N shares of the runs, in a table of its own (default in a Slurm job array: the "
-                  "task's)")
+                  "fly only the I-th of N shares of the runs, into a table of its own (default in a task of a Slurm "
+                  "job array: the task's share)")
       ->type_name("I/N");
-  auto* slurm = command.add_flag("--slurm", args->slurm, "fly nothing: write a job array for Slurm, beside --out");
-  command.add_option("--tasks", args->tasks, "of the job array: shares (default: of 100 runs each, at most 1000)")
+  auto* slurm =
+      command.add_flag("--slurm", args->slurm, "fly nothing, but write a job array for Slurm beside the table");
+  command
+      .add_option("--tasks", args->tasks,
+                  "with --slurm: how many tasks the job array has (default: one for 100 runs, at most 1000)")
       ->check(CLI::Range(1, 1'000'000))
       ->needs(slurm)
       ->type_name("N");
-  command.add_option("--slurm-option", args->slurm_options, "of sbatch, such as --time=12:00:00; can be given again")
+  command
+      .add_option("--slurm-option", args->slurm_options,
+                  "with --slurm: an option for sbatch, such as --time=12:00:00; may be given several times")
       ->needs(slurm)
       ->allow_extra_args(false)
       ->type_name("OPTION");
-  command.add_flag("--submit", args->submit, "hand the job array to sbatch")->needs(slurm);
+  command.add_flag("--submit", args->submit, "with --slurm: hand the job array to sbatch")->needs(slurm);
   command.add_flag(
       "--force", args->force,
-      "begin anew where --out holds another sweep; fly also where values are mistakes or seeds change nothing");
+      "begin anew if the table is that of another sweep; fly even if values are mistakes or seeds change nothing");
   command.add_flag("--quiet", args->quiet, "print errors only");
   CLI::App& merge = *command.add_subcommand("merge", "the tables of all shares as the table of the whole sweep");
   return [args, &merge, run_merge = SetUpSweepMerge(merge)] { return merge.parsed() ? run_merge() : Run(*args); };

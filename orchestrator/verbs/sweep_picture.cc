@@ -37,13 +37,13 @@ std::string MistakeInFormats(const std::string& list) {
 
 void SweepPicture::SetUp(CLI::App& command) {
   command.add_option("--plot", metric, "the column that the picture shows")->type_name("COLUMN");
-  command.add_option("--format", format, "of the picture: png, pdf, svg; several with commas between (png)")
+  command.add_option("--format", format, "formats of the picture: png, pdf, svg; several with commas between (png)")
       ->check(CLI::Validator(MistakeInFormats, ""))
       ->type_name("LIST");
-  command.add_option("--size", size, "of the picture: screen, column or page, as of orchestrator plot (screen)")
+  command.add_option("--size", size, "size of the picture: screen, column or page, as of orchestrator plot (screen)")
       ->check(CLI::IsMember({"screen", "column", "page"}))
       ->type_name("SIZE");
-  command.add_flag("--no-plot", none, "no picture");
+  command.add_flag("--no-plot", none, "draw no picture");
 }
 
 bool SweepPicture::IsDrawable(const SweepPlan& plan) const {

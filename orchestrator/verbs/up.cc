@@ -208,15 +208,15 @@ std::function<int()> SetUpUp(CLI::App& command) {
   command
       .add_option_function<std::string>(
           "--view", [args](const std::string& address) { args->viewers.at = ReadLiveAddress(address); },
-          "a page to watch the run, and Foxglove's protocol, at this address (default: 127.0.0.1:8765, or the next "
-          "free port)")
+          "serve a page to watch and steer the run, and Foxglove's protocol, at this address (default: 127.0.0.1:8765, "
+          "or the next free port)")
       ->expected(0, 1)
       ->type_name("[ADDRESS:PORT]");
   AddAllowOrigin(command, args->viewers.allowed_origins);
   command.add_flag("--slurm", args->slurm,
-                   "inside of a Slurm allocation: spread the agents evenly over its nodes, by one srun");
+                   "inside of a Slurm job: spread the agents evenly over its nodes, by one srun");
   command.add_flag("--force", args->force,
-                   "write into a folder that is not empty: an earlier run's files are replaced, others kept");
+                   "write into a folder that is not empty: files of an earlier run are replaced, other files stay");
   command.add_flag("--json", args->json, "print the summary as JSON on stdout, and nothing else");
   command.add_flag("--quiet", args->quiet, "print errors only");
   return [args] { return Up(*args); };

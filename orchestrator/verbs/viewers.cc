@@ -20,7 +20,7 @@ void AddAllowOrigin(CLI::App& command, std::vector<std::string>& origins) {
             origins.clear();
             for (const std::string& origin : given) origins.push_back(ReadAllowedOrigin(origin));
           },
-          "let pages of this origin watch and touch, such as https://app.foxglove.dev; may be given several times")
+          "let web pages of this origin watch and steer, such as https://app.foxglove.dev; may be given several times")
       ->type_name("ORIGIN")
       ->allow_extra_args(false);  // otherwise it would take CONFIG as a second value
 }
