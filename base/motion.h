@@ -7,18 +7,18 @@
 
 namespace mascot {
 
-/// Motion of one body at one tick. W is the world (x east, y north, z up), B the body (x forward, y left,
-/// z up); SI units.
+/// Motion of one body at one tick. W is the world frame (x east, y north, z up), B the body frame (x forward, y left, z
+/// up), whose origin is the body's centre of mass. All components are in W, unless the name ends in _B.
 struct Motion {
-  Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();            ///< position in W (m)
-  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();  ///< takes B components to W; w, x, y, z
-  Eigen::Vector3d v_WB = Eigen::Vector3d::Zero();            ///< velocity in W (m/s)
-  Eigen::Vector3d w_WB_B = Eigen::Vector3d::Zero();          ///< angular velocity expressed in B (rad/s)
-  Eigen::Vector3d a_WB = Eigen::Vector3d::Zero();            ///< (v(k) - v(k-1)) * control rate, in W; 0 at tick 0
+  Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();            ///< position of the body (m)
+  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();  ///< unit; takes components in B to components in W
+  Eigen::Vector3d v_WB = Eigen::Vector3d::Zero();            ///< velocity of the body (m/s)
+  Eigen::Vector3d w_WB_B = Eigen::Vector3d::Zero();          ///< angular velocity of B in W, components in B (rad/s)
+  Eigen::Vector3d a_WB = Eigen::Vector3d::Zero();            ///< (v(k) - v(k-1)) * control rate (m/s^2); 0 at tick 0
 };
 
-/// The inputs of an agent's actuators: rotor speeds 1..4 (rad/s) for a quadrotor, otherwise the model's own
-/// (ModelTraits::actuator; double integrator: force in W in newton, then 0).
+/// The inputs of an agent's actuators: for a quadrotor the speeds of its rotors 1..4 (rad/s), otherwise what
+/// ModelTraits::actuator says (for a double integrator the force on it in W (N), then 0).
 using Actuation = std::array<double, 4>;
 
 /// A quantity that a law can want, and that can drive a model.
@@ -31,24 +31,24 @@ inline constexpr double kBallRadius_m = 0.1;
 
 /// Bits of Command::flags.
 enum CommandFlag : std::uint32_t {
-  kAccelerationLimited = 1u << 0,  ///< the law asked for more than control.max_acceleration_m_per_s2
-  kTiltLimited = 1u << 1,          ///< roll or pitch target cut at the airframe's tilt limit
-  kRotorLimited = 1u << 2,         ///< a rotor speed cut to what the rotor can do
-  kSpeedLimited = 1u << 3,         ///< the law asked for more than control.max_speed_m_per_s
-  kSafetyFiltered = 1u << 4,       ///< law.safety changed what the law asked for, beyond these limits
-  kSafetyInfeasible = 1u << 5,     ///< no command within the limits is as safe as law.safety asks for
+  kAccelerationLimited = 1u << 0,  ///< the law wanted more than control.max_acceleration_m_per_s2 along an axis
+  kTiltLimited = 1u << 1,          ///< the target of roll or pitch was cut at the tilt limit
+  kRotorLimited = 1u << 2,         ///< a rotor speed was cut at what the rotor can do
+  kSpeedLimited = 1u << 3,         ///< the law wanted more than control.max_speed_m_per_s along an axis
+  kSafetyFiltered = 1u << 4,       ///< law.safety changed what the law wanted, beyond these limits
+  kSafetyInfeasible = 1u << 5,     ///< no command within the limits is as safe as law.safety demands
 };
 
-/// An agent's answer to one tick. A wanted velocity v* is an acceleration k_v (v* - v) for a model driven by
-/// acceleration. For a model driven by velocity it is none: both accelerations are then 0.
+/// An agent's answer to one tick. If the law wants a velocity v*, a model driven by acceleration is commanded the
+/// acceleration k_v (v* - v), k_v = control.velocity_gain; a model driven by velocity takes v*, and both accelerations
+/// are 0.
 struct Command {
   Actuation actuator{};
-  Eigen::Vector3d a_law_W = Eigen::Vector3d::Zero();  ///< the law's acceleration before all limits (m/s^2)
-  Eigen::Vector3d a_limited_W =
-      Eigen::Vector3d::Zero();  ///< after law.safety and those of acceleration and speed (m/s^2)
-  std::uint32_t flags = 0;      ///< CommandFlag bits
-  // Not on the wire: the wanted velocity before and after its limit (m/s), if the law wants one, or the model is driven
-  // by it.
+  Eigen::Vector3d a_law_W = Eigen::Vector3d::Zero();      ///< the law's acceleration in W before all limits (m/s^2)
+  Eigen::Vector3d a_limited_W = Eigen::Vector3d::Zero();  ///< after law.safety and the limits of acceleration and speed
+  std::uint32_t flags = 0;                                ///< CommandFlag bits
+  // The wanted velocity in W before and after its limit (m/s), if the law wants a velocity or the model is driven by
+  // one; else 0. These two are not on the wire.
   Eigen::Vector3d v_law_W = Eigen::Vector3d::Zero();
   Eigen::Vector3d v_limited_W = Eigen::Vector3d::Zero();
 };

@@ -11,16 +11,23 @@
 
 namespace mascot {
 
-/// How the name of a run's socket begins; its process id follows and, if somebody else has that name, "-" and a random
-/// number.
+/// The beginning of the name of a run's socket. The process id of the run follows and, if another process has that
+/// name,
+/// "-" and a random number.
 inline constexpr std::string_view kRunSocketPrefix = "mascot-run-";
 
-/// Where other programs of this machine reach a run: a socket with an abstract name (unix(7)), in no folder, so that
-/// nothing of it is left. It speaks to its own user and to root only (others are gone before a byte of theirs is read):
-/// one JSON object in a line comes in, within 2 s, and one goes out.
+/// The socket through which other programs of this machine (`orchestrator ps` and `send`) reach a run. Its name is
+/// abstract (unix(7)), in no folder, so that nothing of it is left when the run ends.
+///
+/// A client sends one JSON object in one line, within 2 s, and gets one back: to {"who": ...} what the run is and how
+/// far it has come; to any other object, which is a request (wish.h), {"granted": bool, "words": text}. The run answers
+/// only clients of its own user and of root; it closes the connections of others before it reads a byte. A client that
+/// sends no line in time is dropped; a request that is wrong is refused in words.
 class RunSocket {
  public:
-  /// Listens from now on. `experiment` and `helm` must outlive this object. Throws std::runtime_error.
+  /// Listens from now on, in a thread of its own, until this object is destroyed. `folder` is that of the results,
+  /// `engine` "dds" or "inprocess", `page` the address of the run's page, or empty. `experiment` and `helm` must
+  /// outlive this object. Throws std::runtime_error if there can be no such socket.
   RunSocket(const Experiment& experiment, const std::string& folder, const std::string& engine, const std::string& page,
             Helm& helm);
   ~RunSocket();
@@ -36,7 +43,7 @@ class RunSocket {
   const std::string folder_, engine_, page_;
   Helm& helm_;
   const Descriptor socket_;
-  Asker asker_;  // so that a wish that takes long keeps nobody else waiting
+  Asker asker_;  // asks in a thread of its own, so that a slow request keeps no other client waiting
   std::jthread thread_;
 };
 

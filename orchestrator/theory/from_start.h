@@ -8,23 +8,25 @@
 
 namespace mascot {
 
-/// How a linear team comes to agree from where and as fast as the experiment's agents start: as AgreementMeter measures
-/// it by the end of the run, or, where that ends too early for it, later.
+/// How a linear team comes to agree, from the positions and velocities with which the experiment's agents start. Times
+/// and rates are what AgreementMeter measures by the end of the run or, if the run ends too early for a value, by the
+/// end of this flight.
 struct FromStart {
-  bool is_flown = false;                        ///< false: that is too much work
-  std::optional<double> settling_time_s = {};   ///< nothing: it does not settle in time
-  std::optional<double> rate_per_s = {};        ///< likewise, or there are too few rows to measure it
-  bool agrees = false;                          ///< agents agree already when they start: there is nothing to settle
-  bool is_cut = false;                          ///< a limit of acceleration or speed has cut what the laws ask for
-  std::optional<Eigen::Vector3d> value_m = {};  ///< where agents meet, along their axes; nothing: not in time
+  bool is_flown = false;                       ///< false: the flight is too much work, and all else is unset
+  std::optional<double> settling_time_s = {};  ///< from the start (s); nothing: the team does not settle in this flight
+  std::optional<double> rate_per_s = {};       ///< decay rate (1/s); nothing: it is too slow, or the rows are too few
+  bool agrees = false;                         ///< the agents agree when they start: there is nothing to settle
+  bool is_cut = false;                         ///< a limit of acceleration or speed has cut what the laws want
+  std::optional<Eigen::Vector3d> value_m = {};  ///< mean of q = p - d at the end, in W (m); nothing: they have not met
 };
 
-/// Steps the sampled team (sampled_team.h) tick by tick, with the limits of what agents may ask for, on average where
-/// links lose samples, until it agrees for good, but for at most `longest_s` of simulated time. Nothing if that is more
-/// work than kMostSteps. Leaders must stand still.
+/// Steps the sampled team (sampled_team.h) tick by tick, with the limits of acceleration and speed, until it agrees for
+/// good, but for at most `longest_s` of simulated time. If links lose samples, the flight is that of the mean over many
+/// seeds. If ticks times agents and edges are more than kMostSteps, nothing is flown. `team` and `timeline` must be
+/// those of `experiment`; its leaders must stand still.
 FromStart FlyFromStart(const Experiment& experiment, const LinearTeam& team, const Timeline& timeline,
                        double longest_s);
 
-inline constexpr double kMostSteps = 2e7;  ///< ticks times agents and edges; takes about 0.3 s
+inline constexpr double kMostSteps = 2e7;  ///< as many take about 0.3 s
 
 }  // namespace mascot
