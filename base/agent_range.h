@@ -4,7 +4,7 @@
 
 namespace mascot {
 
-/// Agents `first` to `last`, which share a process.
+/// The agents `first` to `last`, which share a process; both are among them.
 struct AgentRange {
   int first = 0;
   int last = 0;

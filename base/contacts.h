@@ -10,13 +10,13 @@ namespace mascot {
 struct Contact {
   static constexpr int kGround = 0;
 
-  std::int64_t tick = 0;     ///< it began between this tick and the next
+  std::int64_t tick = 0;     ///< the contact began between this tick and the next
   int agent = 0;             ///< 1..N
   int other = kGround;       ///< another agent, with a larger id; kGround; -k: obstacle k, from 1 on
-  double speed_m_per_s = 0;  ///< of the agent's centre relative to the other's, at that tick
+  double speed_m_per_s = 0;  ///< speed of the agent's centre relative to the other's, at that tick
 };
 
-/// A run tells of so many contacts one by one; beyond, it counts them.
+/// A run reports this many contacts one by one, and only counts further ones.
 inline constexpr std::size_t kMostContactsTold = 256;
 
 /// The contacts begun so far, by what an agent touched; a contact that lasts counts once.

@@ -5,17 +5,17 @@
 
 namespace mascot {
 
-/// What comes again within so much simulated time goes on, and is told as one.
+/// If something happens again within this simulated time, it counts as one episode.
 inline constexpr double kEpisodeGap_s = 0.5;
 
 inline std::int64_t EpisodeGapTicks(double rate_hz) { return std::llround(kEpisodeGap_s * rate_hz); }
 
-/// Ticks at which something was so, with gaps of at most kEpisodeGap_s.
+/// Ticks at which something happened, with gaps of at most kEpisodeGap_s.
 struct Episode {
-  std::int64_t from = 0, to = 0;  ///< the first and the last of them
-  std::int64_t count = 0;         ///< how many, or how often; 0: none yet
+  std::int64_t from = 0, to = 0;  ///< the first and the last of these ticks
+  std::int64_t count = 0;         ///< how many ticks, or how often it happened; 0: not yet
 
-  /// Whether what happens at `tick` begins another episode.
+  /// Whether something that happens at `tick` begins another episode. `gap_ticks`: EpisodeGapTicks().
   bool IsOver(std::int64_t tick, std::int64_t gap_ticks) const { return count > 0 && tick - to > gap_ticks; }
   void Add(std::int64_t tick, std::int64_t times = 1) {
     if (count == 0) from = tick;

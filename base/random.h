@@ -31,13 +31,13 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// Random numbers by name instead of by order (a counter-based generator): each is a hash of what it is for, so that it
-/// does not depend on which others were drawn, or when, or in which process.
+/// Random numbers by name instead of by order (a counter-based generator): each number is a hash of its purpose, so
+/// that it does not depend on which others were drawn, or when, or in which process.
 class Dice {
  public:
   enum class Stream : std::uint64_t { kLink = 1, kOwnSensor, kHeardSensor, kWind, kLie };
 
-  /// `a`, `b`: the owner of the numbers, an agent or an edge.
+  /// `a` and `b` name the owner of the numbers: an agent, or the two agents of an edge.
   Dice(std::uint64_t seed, Stream stream, std::uint64_t a = 0, std::uint64_t b = 0)
       : key_(Mix(Mix(Mix(Mix(seed) + static_cast<std::uint64_t>(stream)) + a) + b)) {}
 

@@ -9,8 +9,8 @@ namespace mascot {
 /// `bytes` as text that is fit for a terminal, a log and a summary: valid UTF-8 (each broken character becomes U+FFFD)
 /// in which no character acts on others. Controls but line breaks and tabs, marks of direction, line and paragraph
 /// separators stand as escapes that JSON and TOML read as these characters: "\u001b[31m" is no colour any more.
-/// Everything that comes from outside passes through here where it comes in: what children print, what other processes
-/// say of themselves, what the laws of others throw. So does, once more, all that our programs print (FitStreams).
+/// Everything from outside passes through here where it comes in: what child processes print, what other processes say
+/// of themselves, what users' laws throw. Everything that our programs print passes once more (FitStandardStreams).
 std::string Plain(std::string_view bytes);
 
 /// As Plain(), in one line: line breaks and tabs are escapes, too.

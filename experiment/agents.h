@@ -12,7 +12,7 @@ namespace mascot {
 struct AgentOverride {
   int id = 0;  ///< 0: unknown because of a mistake
   Section section;
-  std::optional<Section> law = {};  ///< its own law table, whose parameters are still to be read
+  std::optional<Section> law = {};  ///< the agent's own law table, whose parameters are still to be read
 };
 
 /// The keys of [agents].

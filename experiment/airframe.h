@@ -16,7 +16,7 @@ struct PdGains {
 };
 
 /// A quadrotor's body, rotors, default gains and limits. Physics and controller share it, so that both work with the
-/// same machine.
+/// same machine. B is the body frame: x forward, y left, z up.
 ///
 /// Rotors i = 1..4 ("plus" layout, seen from above): 1 front (+x), 2 left (+y), 3 back (-x), 4 right (-y). Rotors 1 and
 /// 3 spin so that their drag torque on the body is along +z, 2 and 4 along -z. With b = lift, k = drag, d = arm:
@@ -33,10 +33,10 @@ struct Airframe {
   double lift_n_s2 = 0;                                     ///< b, thrust per squared rotor speed
   double drag_n_m_s2 = 0;                                   ///< k, torque per squared rotor speed
   double linear_drag_kg_per_s = 0;                          ///< B, force per airspeed, isotropic
-  double max_thrust_n = 0;                                  ///< all four rotors together
+  double max_thrust_n = 0;                                  ///< thrust of all four rotors together
   double rotor_time_constant_s = 0;                         ///< first-order lag of the rotor speed; 0 = none
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();         ///< collision box, full lengths
-  double tilt_limit_rad = 0;                                ///< on each of roll and pitch targets
+  double tilt_limit_rad = 0;                                ///< limit on each of the targets of roll and pitch
   PdGains altitude;                                         ///< m/s^2 per m and per m/s (times the mass)
   PdGains heading;                                          ///< rad/s^2 per rad and per rad/s (times J)
   PdGains attitude;  ///< roll and pitch alike; rad/s^2 per rad and per rad/s (times J)
@@ -55,7 +55,7 @@ struct Airframe {
   double MostThrust() const { return kMostThrustShare * max_thrust_n; }    ///< N
   Eigen::Matrix4d Allocation() const;                                      ///< A above
   double MaxRotorSpeed() const;                                            ///< rad/s, from max_thrust_n
-  double HoverRotorSpeed(double gravity_m_per_s2) const;                   ///< rad/s, at which the thrust is the weight
+  double HoverRotorSpeed(double gravity_m_per_s2) const;  ///< rad/s; the thrust at this speed is the weight
 };
 
 /// The built-in airframes: `mascot`, `mascot_published`, `crazyflie`.
@@ -63,8 +63,8 @@ std::span<const Airframe> Airframes();
 std::span<const std::string_view> AirframeNames();
 /// The keys of a table that describes an airframe.
 std::span<const Key> AirframeKeys();
-/// Reads `key` of `agents`: the name of a built-in airframe, or a table whose keys are the fields above. What the table
-/// leaves out comes from the built-in airframe `base`, by default "mascot".
+/// Reads `key` of `agents`: the name of a built-in airframe, or a table whose keys are the fields above. Keys that the
+/// table leaves out are those of the built-in airframe `base`, by default "mascot". Mistakes are noted in `agents`.
 Airframe ReadAirframe(Section& agents, std::string_view key);
 
 }  // namespace mascot

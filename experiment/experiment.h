@@ -51,8 +51,9 @@ struct ControlConfig {
   double heading_rad = 0;
   double max_acceleration_m_per_s2 = 3;
   double max_speed_m_per_s = 100;  ///< limit on a wanted velocity, per axis; accelerations may add up to more
-  double velocity_gain = 2;   ///< k_v (1/s): a wanted velocity v* asks a model driven by acceleration for k_v (v* - v)
-  double look_ahead_m = 0.1;  ///< unicycle: distance to the point ahead that moves as wanted
+  /// k_v (1/s): for a wanted velocity v*, a model driven by acceleration is commanded k_v (v* - v).
+  double velocity_gain = 2;
+  double look_ahead_m = 0.1;  ///< unicycle: distance to the point ahead that moves with the wanted velocity
   Inversion inversion = Inversion::kSmallAngle;
   bool drag_compensation = true;  ///< adds the known drag B v / m to the wanted acceleration
 };
@@ -71,9 +72,9 @@ struct LawConfig {
   std::string name;
   int leader = 0;  ///< 0 = none
   Axes axes = Axes::kXy;
-  std::optional<SafetyConfig> safety = {};  ///< absent: nothing changes what the law wants but the limits
+  std::optional<SafetyConfig> safety = {};  ///< absent: only the limits change what the law wants
   std::shared_ptr<const LawParams> params;  ///< null if the experiment was read without laws (the physics server)
-  std::int64_t since = 0;  ///< tick at which the law began, with nothing to remember ([[law.schedule]])
+  std::int64_t since = 0;                   ///< tick at which the law began anew ([[law.schedule]])
 };
 
 /// What an experiment says about one agent.
@@ -87,21 +88,21 @@ struct AgentConfig {
   ControlConfig control;
   LawConfig law;
   bool has_own_law = false;     ///< `law` is the agent's own, not the team's
-  bool sends_messages = false;  ///< its law sends messages, at least in some phase: it has a topic for them
-  /// From start_s until before stop_s its law is on, and others may hear it; before and after, it is commanded the
-  /// velocity 0.
+  bool sends_messages = false;  ///< the agent's law sends messages in some phase: the agent has a topic for them
+  /// From start_s to stop_s the agent's law is on, and other agents may hear it; before start_s and from stop_s on, the
+  /// agent is commanded the velocity 0.
   double start_s = 0;
   double stop_s = std::numeric_limits<double>::infinity();
-  bool external = false;              ///< started by hand and waited for
-  std::string host = {};              ///< one of Experiment::hosts, by name; empty: where the physics server is
-  std::optional<LieConfig> lie = {};  ///< absent: it tells the truth
+  bool external = false;              ///< the agent is started by hand, and the run waits for it
+  std::string host = {};              ///< name of one of Experiment::hosts; empty: the host of the physics server
+  std::optional<LieConfig> lie = {};  ///< absent: the agent tells the truth
 
   const ModelTraits& traits() const { return TraitsOf(model); }
-  /// Full lengths of its collision shape along the axes of B (m).
+  /// Full lengths of the agent's collision shape along the axes of B (m).
   Eigen::Vector3d size_m() const {
     return traits().has_airframe ? airframe.size_m : Eigen::Vector3d::Constant(2 * kBallRadius_m);
   }
-  /// Radius of the smallest ball around its position that holds its body, however it is turned (m).
+  /// Radius of the smallest ball around the agent's position that holds its body, however the body is turned (m).
   double radius_m() const { return traits().has_airframe ? airframe.size_m.norm() / 2 : kBallRadius_m; }
 };
 
@@ -109,7 +110,7 @@ struct AgentConfig {
 struct Experiment {
   /// TOML text with every default: the file that reproduces the run.
   std::string resolved;
-  /// True if it was read before without a mistake: slow checks (which run the code of a law) are left out.
+  /// True if the experiment was read before without a mistake: slow checks (which run the code of a law) are left out.
   bool checked = false;
   struct {
     std::string name;
@@ -119,7 +120,7 @@ struct Experiment {
     double agent_timeout_s = 5;
     double start_timeout_s = 60;
     double speed = 1;
-    std::optional<double> pace = {};  ///< simulated seconds a second in lockstep; 0: as fast as it goes
+    std::optional<double> pace = {};  ///< simulated seconds per second in lockstep; 0: as fast as the machine can
     Scheduler scheduler = Scheduler::kOther;
     bool pin_cores = false;
     bool lock_memory = false;
@@ -130,11 +131,11 @@ struct Experiment {
     int rate_hz = 100;
     int python_memory_mb = 2000;  ///< limit on the memory of a process that runs a law in Python
   } control;
-  /// All edges of all phases of `schedule`: who may ever hear whom. DDS readers exist for these edges.
+  /// All edges of all phases of `schedule`: which agent may ever hear which. DDS readers exist for these edges.
   Graph graph{{}};
-  /// The graph over time: who hears whom when.
+  /// The graph over time: which agent hears which, and when.
   Schedule schedule;
-  std::set<std::pair<int, int>> cut;  ///< edges (hearer, heard) that an event has cut: nothing is sent on them
+  std::set<std::pair<int, int>> cut;  ///< edges (hearer, heard) that an event has cut: no sample is sent on them
   LinkTable links;
   SensorConfig sensors;
   LawConfig law;  ///< the team's; each agent has its own copy
@@ -148,9 +149,9 @@ struct Experiment {
     bool save_plot = true;
     bool show_plot = false;
     bool save_data = true;
-    bool fidelity = true;  ///< compare with ideal bodies; their laws run in the orchestrator too
+    bool fidelity = true;  ///< the run is compared with ideal bodies; their laws run in the orchestrator too
 
-    /// As files or in windows.
+    /// Whether pictures are to be drawn, as files or in windows.
     bool wants_pictures() const { return (save_plot || show_plot) && (position_plot || velocity_plot); }
   } output;
   struct {
@@ -160,9 +161,9 @@ struct Experiment {
     Delivery delivery = Delivery::kTopics;
     bool ros_view = false;
   } network;
-  std::vector<HostConfig> hosts;      ///< beside the one with the physics server
-  std::size_t phase = 0;              ///< how many phases of [[law.schedule]] have begun after the first
-  std::vector<double> late_phases_s;  ///< when phases of [[law.schedule]] were to begin that the run does not reach
+  std::vector<HostConfig> hosts;      ///< besides the host of the physics server
+  std::size_t phase = 0;              ///< number of phases of [[law.schedule]] that have begun after the first
+  std::vector<double> late_phases_s;  ///< times of phases of [[law.schedule]] that the run does not reach
   std::vector<Event> events;          ///< of the file, with the phases of [[law.schedule]], in order of time
 
   int size() const { return static_cast<int>(agents.size()); }

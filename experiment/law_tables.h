@@ -12,19 +12,21 @@
 
 namespace mascot {
 
-/// Reads the keys of a law table that all laws share. `team`: for an agent's own law, the table that it inherits from,
-/// if it does. `laws` null: the document is a resolved one, which has them all.
+/// Reads the keys of a law table that all laws share. `team` is, for an agent's own law, the table from which it
+/// inherits, if it does. If `laws` is null, the document is a resolved one, which has all keys. Mistakes are noted in
+/// `section`.
 LawConfig ReadLaw(Section& section, std::optional<Section> team, int count, const LawCatalog* laws);
-/// Reads an agent's own law table, if its override has one; what it leaves out is as in [law] (`team`), if that has the
-/// same law and the agent is not one of `alone`.
+/// Reads an agent's own law table, if its override has one. Keys that the table leaves out are as in [law] (`team`), if
+/// the law is the same and the agent is not one of `alone`.
 void ReadOwnLaw(AgentOverride& override, const Section& team, const std::set<int>& alone, int count,
                 const LawCatalog* laws, Experiment& experiment);
-/// Reads the parameters of the team's law and of agents' own laws. All else of the experiment has been read.
+/// Reads the parameters of the team's law and of agents' own laws. Everything else of the experiment must have been
+/// read.
 void ReadLawParameters(const LawCatalog& laws, Section& team, std::vector<AgentOverride>& overrides,
                        Experiment& experiment);
 /// Reads [[law.schedule]], the team's and those of agents, as events; after ReadLawParameters(). Agents that send
-/// messages in some phase are marked. `laws` null: the document is a resolved one, and its tables are not read further.
-/// `rate_hz` = 0: times are unknown because of a mistake.
+/// messages in some phase get AgentConfig::sends_messages. If `laws` is null, the document is a resolved one, and its
+/// tables are not read further. If `rate_hz` is 0, times are unknown because of a mistake.
 std::vector<Event> ReadLawSchedules(const LawCatalog* laws, Section& team, std::vector<AgentOverride>& overrides,
                                     int rate_hz, std::int64_t last_tick, Experiment& experiment);
 

@@ -13,13 +13,13 @@ inline constexpr EnumNames<LieKind, 3> kLieKinds({{LieKind::kConstant, "constant
                                                   {LieKind::kOscillating, "oscillating"},
                                                   {LieKind::kRandom, "random"}});
 
-/// `lie` of [[agents.override]]: from a time on, what others hear of the agent is false. It itself, its body and the
-/// recording know the truth.
+/// `lie` of [[agents.override]]: from a time on, what others hear of the agent is false. The agent itself, its body and
+/// the recording have the truth.
 struct LieConfig {
   LieKind kind = LieKind::kConstant;
   double from_s = 0;
   Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
-  double period_s = 0;  ///< of an oscillating lie
+  double period_s = 0;  ///< period of an oscillating lie
 };
 
 /// The keys of `lie`.

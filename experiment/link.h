@@ -28,12 +28,12 @@ struct LinkConfig {
   double jitter_s = 0;     ///< the delay of each sample lies within delay_s -+ jitter_s, uniformly
   double reordering = 0;   ///< probability that a sample skips the delay and so overtakes others
   bool symmetric = false;  ///< i -> j and j -> i lose and delay the same samples
-  double hold_s = 0;       ///< how old the last sample may grow while no newer one comes, beyond its delay
+  double hold_s = 0;       ///< how long the last sample is used, beyond its delay, while no newer one arrives
 
   bool IsPerfect() const { return loss == 0 && !bursts && delay_s == 0 && jitter_s == 0; }
 };
 
-/// [link]: what the links are like, and the overrides for single edges.
+/// [link]: the configuration of all links, and the overrides for single edges.
 class LinkTable {
  public:
   LinkTable() = default;
@@ -55,7 +55,8 @@ class LinkTable {
 
 /// The keys of [link].
 std::span<const Key> LinkKeys();
-/// Reads [link] for the edges of `graph` (no agents: unknown because of a mistake elsewhere).
+/// Reads [link] for the edges of `graph`, which has no agents if they are unknown because of a mistake elsewhere.
+/// Mistakes are noted in `link`.
 LinkTable ReadLinks(Section& link, const Graph& graph);
 
 }  // namespace mascot

@@ -19,7 +19,8 @@ struct ModelTraits {
   bool has_airframe = false;
   /// The body turns to control.heading_rad. Other bodies keep their initial heading, or steer by it.
   bool turns_to_heading = false;
-  /// The body rolls in a horizontal plane, on the ground if there is one, and turns before it goes where it is wanted.
+  /// The body rolls in a horizontal plane, on the ground if there is one, and must turn before it moves in a wanted
+  /// direction.
   bool rolls = false;
 };
 

@@ -18,9 +18,9 @@ std::vector<std::int64_t> PhasesOf(const Experiment& experiment);
 std::int64_t EndOfPhase(const Experiment& experiment, std::int64_t from);
 /// The events of the ticks from `from` up to but without `to`.
 std::span<const Event> EventsWithin(const Experiment& experiment, std::int64_t from, std::int64_t to);
-/// The ticks from `from` to `to` as an experiment of its own, for meters and theory: `start` is the experiment at tick
-/// 0, `now` what is flown at `from`, `starts` are the motions at tick `from` (by id - 1), and time counts from there.
-/// Without headings and phases; the graph's schedule is not moved.
+/// The ticks from `from` to `to` as an experiment of its own, for meters and theory. `start` is the experiment at tick
+/// 0, `now` the experiment that is flown at `from`, `starts` are the motions at tick `from` (by id - 1); times count
+/// from `from`. The result has no headings and no phases, and its graph's schedule is not moved.
 Experiment PhaseAsExperiment(const Experiment& start, const Experiment& now, std::int64_t from, std::int64_t to,
                              std::span<const Motion> starts);
 

@@ -21,11 +21,12 @@ inline constexpr EnumNames<Shape, 3> kShapes({{Shape::kBox, "box"},
                                               {Shape::kSphere, "sphere"},
                                               {Shape::kCylinder, "cylinder"}});
 
-/// Something solid that does not move.
+/// A solid body that does not move.
 struct Obstacle {
   Shape shape = Shape::kBox;
-  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< its centre (m)
-  /// Full lengths. A sphere has its diameter three times; a cylinder, which stands on end, twice, then its height.
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< centre (m)
+  /// Full lengths (m). For a sphere its diameter three times; for a cylinder, which stands upright, its diameter twice,
+  /// then its height.
   Eigen::Vector3d size_m = Eigen::Vector3d::Ones();
   double heading_rad = 0;  ///< yaw
 };
@@ -35,7 +36,7 @@ struct RotorFailure {
   int agent = 0;
   int rotor = 0;  ///< 1 front, 2 left, 3 back, 4 right
   double at_s = 0;
-  double remaining = 0;  ///< part of its thrust and torque that is left, 0..1
+  double remaining = 0;  ///< fraction of the rotor's thrust and torque that remains, 0..1
 };
 
 struct PhysicsConfig {
@@ -50,8 +51,8 @@ struct PhysicsConfig {
 
 /// The keys of [physics].
 std::span<const Key> PhysicsKeys();
-/// Reads [physics]. `agents`: their number; 0: unknown because of a mistake. Whether the agent of a rotor failure is a
-/// quadrotor is checked later.
+/// Reads [physics]. `agents` is the number of agents; 0: it is unknown because of a mistake. Mistakes are noted in
+/// `physics`. Whether the agent of a rotor failure is a quadrotor is checked later.
 PhysicsConfig ReadPhysics(Section& physics, int agents);
 
 }  // namespace mascot

@@ -10,8 +10,8 @@ namespace mascot {
 /// The processes of agents, in increasing id. Each has network.agents_per_process agents, or fewer next to agents of
 /// other hosts, and next to those that are started by hand, which have a process each.
 std::vector<AgentRange> AgentProcesses(const Experiment& experiment);
-/// By id - 1, the number of processes that need the agent's states: those with the agent itself or with one that may
-/// ever hear it. `heard_only`: only those with one that may hear it.
+/// By id - 1, the number of processes that need the agent's states: processes with the agent itself, or with an agent
+/// that may ever hear it. With `heard_only`, only processes with an agent that may hear it count.
 std::vector<int> HearingProcesses(const Experiment& experiment, bool heard_only);
 
 }  // namespace mascot

@@ -12,9 +12,9 @@
 
 namespace mascot {
 
-/// The version of what a run leaves behind: config.toml, summary.json and the recording all say it, as `format`. It is
-/// raised when a reader of the version before would misunderstand one of them. Readers refuse a newer one; a file that
-/// says no format is of version 1.
+/// The version of the files that a run leaves: config.toml, summary.json and the recording state it, as `format`. It is
+/// raised when a reader of the version before would misunderstand one of them. Readers refuse a newer version; a file
+/// without `format` has version 1.
 inline constexpr int kFormat = 1;
 /// Reads `format` of an experiment file; notes a mistake if it is newer than kFormat. The document uses
 /// ExperimentKeys().
@@ -45,9 +45,9 @@ class LawCatalog {
                                                 Section& section) const = 0;
 };
 
-/// Reads a complete experiment. `default_name`: for run.name. `checked`: it was read before, without a mistake.
-/// `alone`: agents whose own law tables are complete, and inherit nothing from [law]. Throws ConfigError with all
-/// mistakes.
+/// Reads a complete experiment. `default_name` is the default of run.name. `checked` says that the experiment was read
+/// before, without a mistake. `alone` lists agents whose own law tables are complete, and inherit nothing from [law].
+/// Throws ConfigError with all mistakes.
 Experiment ReadExperiment(Section document, const LawCatalog& laws, const std::string& default_name, bool checked,
                           const std::set<int>& alone = {});
 /// Reads a resolved and checked experiment without the parameters of laws, for the physics server, which runs none.

@@ -8,7 +8,7 @@ namespace mascot {
 
 /// [law.safety], or `safety` of an agent's own law: the filter between the law and the limits (agent/safety.h).
 struct SafetyConfig {
-  double distance_m = 0;  ///< D: how far apart agents are kept, along law.axes
+  double distance_m = 0;  ///< D: distance at which the filter keeps agents, along law.axes (m)
   double gamma = 0;       ///< 1/s
 };
 

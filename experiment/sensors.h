@@ -19,10 +19,11 @@ struct NoiseConfig {
 
 /// [sensors]: how an agent measures its own motion, and those of the agents that it hears.
 struct SensorConfig {
-  NoiseConfig own;         ///< a bias per agent; law and low-level stack both get the measured motion
+  NoiseConfig own;  ///< errors of an agent's measurement of itself, with one bias per agent; law and low-level stack
+                    ///< both get the measured motion
   double own_delay_s = 0;  ///< delay of position, velocity and acceleration; attitude has none
-  NoiseConfig heard;       ///< noise and bias per directed edge
-  double range_m = 0;      ///< how far an agent sees obstacles; 0: it sees none
+  NoiseConfig heard;       ///< errors of the measurement of an agent that is heard, with one bias per directed edge
+  double range_m = 0;      ///< how far an agent sees obstacles (m); 0: it sees none
 };
 
 /// The keys of [sensors].

@@ -26,7 +26,7 @@ class Graph {
   int size() const { return static_cast<int>(heard_.size()); }
   /// In-neighbours of agent `id`, in increasing id.
   const std::vector<Neighbour>& HeardBy(int id) const { return heard_[static_cast<std::size_t>(id - 1)]; }
-  /// True if agent `hearer` hears agent `heard`; false for numbers of no agent.
+  /// True if agent `hearer` hears agent `heard`; false if one of them does not exist.
   bool Hears(int hearer, int heard) const;
   /// Number of directed edges.
   std::size_t edges() const;
@@ -48,8 +48,9 @@ class Graph {
   std::vector<std::vector<int>> Components() const;
   /// Agents that all others hear, directly or through others; sorted; empty if there is no spanning tree.
   std::vector<int> Roots() const;
-  /// Directed spanning tree by breadth-first search from `root`: parent[i - 1] is the agent that i hears in the tree,
-  /// the lowest id one level up; 0 for the root. nullopt if an agent is not reached.
+  /// Directed spanning tree by breadth-first search from `root`. Entry i - 1 is the parent of agent i: of the agents
+  /// that i hears one level up, the one with the lowest id; 0 for the root. nullopt if the search does not reach an
+  /// agent.
   std::optional<std::vector<int>> SpanningTree(int root) const;
 
  private:

@@ -8,7 +8,8 @@
 
 namespace mascot {
 
-/// The graph over time: each phase has a graph until the next phase begins. After the last phase it may start over.
+/// The graph over time: each phase has a graph until the next phase begins. After the last phase the schedule may start
+/// again.
 class Schedule {
  public:
   struct Phase {

@@ -9,8 +9,8 @@
 
 namespace mascot {
 
-/// The tables of [[key]], for a list that has a limit because each of its tables makes work. With more than `most` it
-/// notes the mistake, and gives none.
+/// The tables of [[key]], for a list that has a limit because each of its tables makes work. If there are more than
+/// `most`, the mistake is noted, and the result is empty.
 inline std::vector<Section> FewTables(Section& section, std::string_view key, std::size_t most) {
   std::vector<Section> tables = section.Children(key);
   if (tables.size() <= most) return tables;

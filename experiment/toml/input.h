@@ -5,15 +5,15 @@
 
 namespace mascot {
 
-/// The open descriptor of this process that a path names: 0 of "-" and /dev/stdin, N of /dev/fd/N and /proc/self/fd/N,
-/// which is what a shell puts for <(COMMAND). Nothing for all other paths.
+/// The open descriptor of this process that a path names: 0 for "-" and /dev/stdin, N for /dev/fd/N and
+/// /proc/self/fd/N, which a shell makes of <(COMMAND). Nothing for all other paths.
 std::optional<int> DescriptorOf(const std::string& path);
 
 /// What messages call the file at `path`: "<stdin>", or the path itself.
 std::string NameOfInput(const std::string& path);
 
-/// The file's name without folder and ending, as the name of what it describes; "" of a descriptor, which has none.
-/// `name`: as NameOfInput() says it.
+/// The file's name without folder and ending, which is the name of what the file describes; "" for a descriptor, which
+/// has no name. `name` is that of NameOfInput().
 std::string StemOfInput(const std::string& name);
 
 /// The text at `path`: that of a regular file, or all that comes out of an open descriptor, which can be read only

@@ -54,7 +54,7 @@ struct Key {
   std::span<const Key> keys = {};                ///< keys inside kTable and kTables
   ValueKind or_kind = ValueKind::kNone;          ///< another kind that the value may have
   std::string_view fallback = {};                ///< the default, as a TOML value; empty: none
-  std::string_view otherwise = {};               ///< what holds without the key, in words, if that is no fixed value
+  std::string_view otherwise = {};               ///< what holds without the key, in words, if that is not a fixed value
   std::string_view unit = {};                    ///< the unit, if the name does not end in it
   bool required = false;
   bool live = false;  ///< an event may change it while a run goes on

@@ -32,8 +32,8 @@ struct Override {
   std::string key;          ///< dotted: "law.p_gain"
   std::string value;        ///< a TOML value: "0.5", "[1, 2]", "'ring'"
   std::string origin = {};  ///< what messages say in place of a file and line; empty: "--set key=value"
-  bool extends = false;     ///< an index one beyond the end of a list of tables adds a table, and a list if need be
-  bool removes = false;     ///< the key of a table is taken out, if it is there; there is no value
+  bool extends = false;  ///< an index one beyond the end of a list of tables adds a table, and the list if it is absent
+  bool removes = false;  ///< the key is removed, if it is there; there is no value
 };
 
 /// One table of a TOML file, read strictly. Each reader checks type and range; a mistake is noted (not thrown) and the
@@ -119,8 +119,8 @@ class Section {
   /// From now on, keys that this table lacks are read from `base`, but for `own`. Mistakes in them are left to the
   /// reader of `base`.
   void InheritFrom(const Section& base, std::initializer_list<std::string_view> own = {});
-  /// If this table has `key` itself, `others` are not inherited from now on: they contradict it, or belong to what it
-  /// replaces.
+  /// If this table itself has `key`, it does not inherit `others` from now on: they contradict `key`, or belong to what
+  /// it replaces.
   void Supersede(std::string_view key, std::initializer_list<std::string_view> others);
   /// The value of `key`, of any kind; `absent` if there is none.
   Value Free(std::string_view key, const Value& absent = {});
