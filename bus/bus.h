@@ -41,10 +41,10 @@ using Handle = std::unique_ptr<Entity, std::function<void(Entity*)>>;
 class Domain {
  public:
   /// `wake` is called, from any thread, when a waiting loop should check again: a reader or writer was matched or
-  /// unmatched, a callback failed, or Wake() was called. `peers`: the processes of the run; readers take samples from
-  /// nobody else, and nobody else is counted as matched. Without them everybody is believed, as by one who only
-  /// listens. `discovery`, if given, is told of every discovered participant and endpoint. Both must outlive this
-  /// object. Throws BusError, and what ParticipantQos() throws.
+  /// unmatched, a callback failed, or Wake() was called. `peers` are the processes of the run: readers take samples
+  /// only from these, and only these count as matched. Without `peers`, all participants are believed, which is right
+  /// for a process that only listens. `discovery`, if given, is told of every discovered participant and endpoint. Both
+  /// must outlive this object. Throws BusError, and what ParticipantQos() throws.
   Domain(const DomainOptions& options, std::function<void()> wake, Peers* peers = nullptr,
          eprosima::fastdds::dds::DomainParticipantListener* discovery = nullptr);
 
@@ -75,8 +75,8 @@ class WriterBase {
  public:
   /// Number of the run's processes that have a matched reader now; without Peers, the number of those readers.
   int matched() const;
-  /// Waits until all matched readers have acknowledged every sample, at most `timeout`. Returns whether they have. To
-  /// be called before a process ends: its shared memory goes with it, and samples that are not read by then are lost.
+  /// Waits until all matched readers have acknowledged every sample, at most `timeout`. Returns whether they have. Call
+  /// it before the process ends: its shared memory goes with it, and samples that are not read by then are lost.
   bool AwaitReaders(std::chrono::milliseconds timeout);
 
  protected:
@@ -94,7 +94,7 @@ class WriterBase {
 
 /// The sender of a sample.
 struct Sender {
-  const std::string& process;  ///< of the run; empty without Peers
+  const std::string& process;  ///< name of a process of the run; empty without Peers
   std::int64_t sequence = 0;   ///< the writer's sequence number, from 1
 };
 
@@ -109,7 +109,7 @@ class ReaderBase {
  protected:
   using OnBytes = std::function<void(const Bytes&, const Sender&)>;
   /// The reception thread calls `on_bytes` for every sample of a writer that is believed (Peers), one at a time. On a
-  /// topic that only one process may write, that is the first writer of that process and no other. `type` must hand out
+  /// topic that only one process may write, only the first writer of that process is believed. `type` must hand out
   /// samples as Bytes.
   ReaderBase(Domain& domain, const Topic& topic, eprosima::fastdds::dds::TypeSupport type,
              const eprosima::fastdds::dds::DataReaderQos& qos, OnBytes on_bytes);
@@ -121,7 +121,7 @@ class ReaderBase {
   Handle<eprosima::fastdds::dds::DataReader> reader_;
 };
 
-/// Bytes on a topic that are no sample of its type, although its rightful writer sent them.
+/// Throws std::runtime_error: the rightful writer of `topic` has sent `bytes` bytes that are not a sample of `type`.
 [[noreturn]] void ThrowNoSample(const Topic& topic, std::size_t bytes, const std::string& type);
 
 /// Publishes samples of a fastddsgen type (PubSub is, e.g., AgentStatePubSubType). Thread-safe.
@@ -135,7 +135,7 @@ class Writer : public WriterBase {
 };
 
 /// Calls `on_sample` for every sample, in Fast DDS's reception thread: a hop to another thread would cost half a round
-/// trip. An exception that `on_sample` throws goes to Domain::Fail(), and so does one for bytes that are no sample.
+/// trip. An exception that `on_sample` throws goes to Domain::Fail(), and so does one for bytes that are not a sample.
 template <class PubSub>
 class Reader : public ReaderBase {
  public:

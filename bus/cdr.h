@@ -21,8 +21,8 @@ class ZeroPadded : public PubSub {
   }
 };
 
-/// A type as our participants register it: what they write is ZeroPadded, and what they receive stays bytes (a
-/// std::vector<std::uint8_t>) until it is known who sent it.
+/// A type as our participants register it: samples that they write are ZeroPadded; samples that they receive stay bytes
+/// (a std::vector<std::uint8_t>) until it is known which process sent them.
 template <class PubSub>
 class WireType : public ZeroPadded<PubSub> {
  public:
@@ -50,7 +50,8 @@ bool HoldsItsSequence(std::span<const std::uint8_t> bytes) {
   return count * std::uint64_t{Sequence::kElement} <= bytes.size();
 }
 
-/// Decodes a sample from `bytes`: a 4-byte encapsulation header, then CDR. Returns false if they are no such sample.
+/// Decodes a sample from `bytes`: a 4-byte encapsulation header, then CDR. Returns false if `bytes` is not such a
+/// sample.
 template <class PubSub>
 bool Decode(std::span<const std::uint8_t> bytes, typename PubSub::type& sample) {
   if (!HoldsItsSequence<PubSub>(bytes)) return false;

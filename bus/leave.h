@@ -6,28 +6,30 @@
 
 namespace mascot {
 
-/// How a process ends that takes too long to end by itself.
+/// How a process is ended that takes too long to end by itself.
 struct Leaving {
   int code = 0;
   std::string process;      ///< its name
-  bool on_signals = false;  ///< SIGINT, SIGTERM and SIGHUP, too, end it by force
-  bool says_so = true;      ///< it prints that the DDS library does not end
-  bool sweeps = false;      ///< it replaces itself by a process that sweeps (kSweep), since nobody else does
+  bool on_signals = false;  ///< SIGINT, SIGTERM and SIGHUP also end the process by force
+  bool says_so = true;      ///< the process prints that the DDS library does not end
+  /// The process replaces itself by one that removes its shared memory (kSweep), because no other process does that.
+  bool sweeps = false;
 };
 
-/// From now on the calling process leaves: after `limit` it ends by force, and says so in a line on stderr. To be
-/// called by the main thread before it destroys DDS entities: that waits for threads of Fast DDS and, in them, of laws,
-/// and these may hang. A later call replaces an earlier one.
+/// If the calling process has not ended after `limit`, it is ended by force, and a line on stderr says so. The main
+/// thread calls this before it destroys DDS entities: that waits for threads of Fast DDS, and for laws in them, and
+/// these may hang. A later call replaces an earlier one.
 void LeaveWithin(std::chrono::seconds limit, const Leaving& leaving);
 
-/// Leaves by force at once.
+/// Ends the calling process by force, at once.
 [[noreturn]] void LeaveNow(const Leaving& leaving);
 
-/// Makes an exception that nobody catches, in a thread of Fast DDS, say, an error in words and exit code 1 (the default
-/// is SIGABRT). Also explains SIGBUS, by which a full /dev/shm ends a process.
+/// Turns an exception that is not caught (for example in a thread of Fast DDS) into an error in words and exit code 1
+/// (the default is SIGABRT). Also explains SIGBUS, by which a full /dev/shm ends a process.
 void SayWhatIsUncaught();
 
-/// What went wrong, in words: what() of most exceptions; one that is thrown for want of memory or threads says so.
+/// What went wrong, in words: what() of most exceptions; for an exception because of missing memory or threads, words
+/// that say so.
 std::string InWords(const std::exception& failure);
 
 }  // namespace mascot

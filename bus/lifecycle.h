@@ -25,23 +25,24 @@ class Ended : public std::exception {
   int signal_;
 };
 
-/// How the ticks of a run go on, as the physics server reports it.
+/// How far a run has come, as the physics server reports it.
 struct Course {
-  std::int64_t tick = 0;          ///< the newest one published
+  std::int64_t tick = 0;          ///< the newest tick that is published
   std::uint32_t request = 0;      ///< number of the newest request carried out; 0: none yet
-  std::int64_t request_tick = 0;  ///< the first tick that it holds for; kOver or kTooLate: there is none
+  std::int64_t request_tick = 0;  ///< the first tick for which this request holds; kOver or kTooLate: there is none
   bool paused = false;
-  double pace = 0;  ///< simulated seconds a second; 0: as fast as it goes
+  double pace = 0;  ///< simulated seconds per second; 0: as fast as the machine can
 };
 
-/// The lifecycle of a process of a run (the server or agents; the orchestrator has none). Publishes its state on
-/// /status, again on a REPORT request; receives the experiment on /experiment; ends on an END request or a signal.
-/// Nothing relies on a match event or a single delivery: a process that lacks something keeps asking. Only the
-/// orchestrator is obeyed; the physics server may ask for reports.
+/// The life cycle of a process of a run (the server or agents; the orchestrator has none). It publishes the state of
+/// the process on /status, and again on a REPORT request; receives the experiment on /experiment; ends the process on
+/// an END request or a signal. Nothing relies on a match event or a single delivery: a process that lacks something
+/// keeps asking. A process obeys only the orchestrator; the physics server may ask it for reports.
 class Lifecycle {
  public:
-  /// `process`: its name (ProcessName). `agent`: its agent; 0 if it has none, or several. `peers` learns from the
-  /// orchestrator who the processes of the run are; it is that of `domain`.
+  /// `process` is the name of the process (ProcessName), `agent` the number of its agent, or 0 if it has none or
+  /// several. `peers`, which must be that of `domain`, learns from the orchestrator which participants are the
+  /// processes of the run.
   Lifecycle(Domain& domain, Peers& peers, StopSignal& stop, const std::string& process, int agent);
 
   /// Publishes WAITING every 0.2 s until the experiment comes. Throws std::runtime_error after `timeout`, and what
@@ -54,7 +55,7 @@ class Lifecycle {
   void SetFinal(Life life, const std::string& reason = {});
   /// Publishes new counters with the current state. Thread-safe.
   void Report(std::uint64_t tick, const Pacing& pacing, const Contacts& contacts);
-  /// Publishes how the ticks go on, with the current state. Thread-safe.
+  /// Publishes how far the run has come, with the current state. Thread-safe.
   void Report(const Course& course);
   /// Waits for a wake-up, at most `timeout`. Throws Ended after a signal or an END request, and std::runtime_error when
   /// the orchestrator has left the domain. Rethrows what a callback of the domain threw.

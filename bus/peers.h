@@ -22,40 +22,41 @@ bool MayWrite(std::string_view process, const Topic& topic);
 /// Whether only one process may write this topic, by one writer.
 bool HasOneWriter(const Topic& topic);
 
-/// The processes of a run, as one of them knows them: decides whether a participant is one of theirs, and whether it is
-/// believed on a topic. Each process has a place, which whoever fits its key first takes for good.
+/// The processes of a run, as one of them knows them. Decides whether a participant belongs to one of them, and whether
+/// it is believed on a topic. Each process has a place, which the first participant that fits its key takes for good.
 ///
 /// The orchestrator knows its children by their process ids, and gives the place of an agent that was started by hand
-/// to the first that has its name. It hands out what it knows with the experiment. Thread-safe; plain data, without DDS
-/// entities.
+/// to the first participant that has its name. It hands out what it knows with the experiment. Thread-safe; plain data,
+/// without DDS entities.
 class Peers {
  public:
   using GuidPrefix = ProcessKey::GuidPrefix;
-  using Place = std::pair<std::string, ProcessKey>;  ///< name of a process, and who that is
+  using Place = std::pair<std::string, ProcessKey>;  ///< name of a process, and the participants that fit it
 
-  /// There is such a process, and this is what is known of it. An exact key replaces what was known, another one does
-  /// not.
+  /// Notes that there is such a process, and what is known of it. An exact key replaces what was known before; another
+  /// key does not.
   void Know(const std::string& process, const ProcessKey& key);
-  /// All places, to be told to others.
+  /// All places, for other processes.
   std::vector<Place> Places() const;
-  /// Goes up whenever a place is taken by name, or left: others must be told.
+  /// A number that grows whenever a place is taken by name, or becomes free: other processes must then be told.
   std::uint64_t version() const;
 
-  /// A participant of this name has been discovered. If it fits, it takes the place of its name: that of a process with
-  /// its process id, or one that nobody has. Returns the name of its process; empty: it is none of the run.
+  /// Call it when a participant of this name has been discovered. If the participant fits, it takes the place of its
+  /// name: that of a process with its process id, or a place that is free. Returns the name of its process; empty: it
+  /// is not of the run.
   std::string Claim(const GuidPrefix& participant, const std::string& name);
-  /// A participant that had taken a place by nothing but its name has left: the place is free again.
+  /// Call it when a participant has left. If it had taken a place by nothing but its name, the place is free again.
   void Leave(const GuidPrefix& participant);
-  /// Name of the process of this participant; empty: it is none of the run.
+  /// Name of the process of this participant; empty: it is not of the run.
   std::string ProcessOf(const GuidPrefix& participant) const;
 
-  /// Name of the process, if this participant is one that may write `topic`; else counts a sample that was not taken,
-  /// and returns an empty name.
+  /// Name of the process of this participant, if it may write `topic`; else counts a sample that was not taken, and
+  /// returns an empty name.
   std::string Believe(const Topic& topic, const GuidPrefix& writer);
-  /// The same, without counting.
+  /// As Believe(), without counting.
   std::string WriterOf(const Topic& topic, const GuidPrefix& writer) const;
-  /// What was not taken, one line for each writer and topic: "not taken: 3 samples of /request from 01.0f.78.fd..., who
-  /// may not write it". Samples of a process that was not known yet when they came do not count.
+  /// The samples that were not taken, one line for each writer and topic: "not taken: 3 samples of /request from
+  /// 01.0f.78.fd..., who may not write it". Samples of a process that was not known yet when they came do not count.
   std::vector<std::string> Refusals() const;
 
  private:

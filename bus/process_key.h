@@ -8,26 +8,26 @@
 
 namespace mascot {
 
-/// First bytes of the name that DDS gives a participant (its GUID prefix), as far as they are known of a process. Fast
-/// DDS puts there, two bytes each: its own vendor id, the host, the low bits of the process id, a number that the
-/// process has drawn. They are the same in all participants of a process; the last four bytes differ.
+/// The first eight bytes of the GUID prefixes of a process's participants, as far as they are known. Fast DDS puts into
+/// them, two bytes each: its own vendor id, the host, the low bits of the process id, a number that the process has
+/// drawn. They are the same for all participants of a process; the last four bytes of the prefix differ.
 class ProcessKey {
  public:
   using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
 
-  /// Fits nobody: the process is not known yet.
+  /// Fits no participant: the process is not known yet.
   ProcessKey() = default;
-  /// Fits everybody: whoever comes first is believed.
+  /// Fits every participant: the first one that comes is believed.
   static ProcessKey Anybody() { return {0, 0}; }
-  /// Fits a process that this host has started, which is known by its process id alone until it shows up.
+  /// Fits a process that this host has started, of which only the process id is known until it joins the domain.
   static ProcessKey WithPid(pid_t pid);
   /// Fits exactly the process of this participant.
   static ProcessKey Of(const GuidPrefix& participant);
-  /// What bits() and mask() of another key have told.
+  /// The key with these bits() and mask(), which another process has sent.
   ProcessKey(std::uint64_t bits, std::uint64_t mask) : bits_(bits), mask_(mask) {}
 
   bool Fits(const GuidPrefix& participant) const;
-  /// The same for a process of which an exact key is known.
+  /// Whether this key fits the process with this exact key.
   bool Fits(const ProcessKey& exact) const { return (exact.bits_ & mask_) == bits_; }
   /// Whether no other process can fit.
   bool IsExact() const { return mask_ == ~std::uint64_t{0}; }

@@ -19,9 +19,10 @@ namespace mascot {
 /// Command-line options of a process that joins a run.
 struct ProcessArgs {
   DomainOptions options;
-  AgentRange agents;     ///< 0..0: none (the physics server)
-  int wait_s = 60;       ///< how long to wait for the experiment
-  int parent = 0;        ///< pid of the process that spawned this one: ends with it; 0: started by hand
+  AgentRange agents;  ///< the agents of this process; 0..0: none (the physics server)
+  int wait_s = 60;    ///< how long to wait for the experiment
+  /// Pid of the process that started this one, which ends with it; 0: this one was started by hand.
+  int parent = 0;
   int orchestrator = 0;  ///< pid of the orchestrator, if that is not the parent but on another host
   bool is_agent = false;
 
@@ -33,7 +34,7 @@ struct ProcessArgs {
 class Role {
  public:
   virtual ~Role() = default;
-  /// Ends by an exception, such as Ended.
+  /// Returns only by an exception, such as Ended.
   [[noreturn]] virtual void Run() = 0;
 };
 using RoleFactory = std::function<std::unique_ptr<Role>(Domain&, Lifecycle&, const mascot_msgs::msg::Experiment&)>;
@@ -45,12 +46,13 @@ using RoleFactory = std::function<std::unique_ptr<Role>(Domain&, Lifecycle&, con
 int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSignal& stop,
                 const RoleFactory& make_role);
 
-// What ProcessMain does instead if this is its first argument; the second is a number.
-/// Removes segments of dead processes. The number is the exit code.
+// If the first argument of a program is one of these, ProcessMain does this instead; the second argument is a number.
+/// Removes segments of shared memory that dead processes left. The number is the exit code.
 inline constexpr const char* kSweep = "--sweep-shared-memory";
-/// Waits until stdin ends, then kills what bears the mark of the run (MarkDescendants()), and removes its shared
-/// memory. The number is its domain, whose lock the caller holds (Janitor), or kNoDomain. What it reads is the name of
-/// a file, a zero byte, and what the file gets if nobody has made it by then; or nothing.
+/// Waits until stdin ends, then kills the processes that bear the mark of the run (MarkDescendants()), and removes the
+/// run's shared memory. The number is the run's domain, whose lock the caller holds (Janitor), or kNoDomain. Standard
+/// input holds nothing, or the name of a file, a zero byte, and the contents that the file gets if it does not exist by
+/// then.
 inline constexpr const char* kSweepAfterRun = "--sweep-after-run";
 
 }  // namespace mascot

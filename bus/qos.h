@@ -28,14 +28,15 @@ struct DomainOptions {
   DiscoveryRole role = DiscoveryRole::kPeer;
   std::string server;        ///< "HOST:PORT" of the discovery server, for all roles but kPeer
   bool loopback = false;     ///< use 127.0.0.1 only; off if agents run on other hosts
-  std::string address = {};  ///< IPv4 address of the interface to use, beside 127.0.0.1; empty: all
+  std::string address = {};  ///< IPv4 address of the interface to use, besides 127.0.0.1; empty: all interfaces
   int participants = 2;      ///< about how many processes this one talks to; sizes buffers
 };
 
 /// The legal values of DomainOptions::transport.
 std::span<const std::string_view> TransportNames();
 
-/// Bytes of /dev/shm that such a participant takes. Throws std::invalid_argument for an unknown transport.
+/// Bytes of /dev/shm that a participant with these options takes. Throws std::invalid_argument for an unknown
+/// transport.
 std::uint64_t SharedMemoryNeeded(const DomainOptions& options);
 
 /// Throws std::invalid_argument for an unknown transport or an unreadable server address.

@@ -6,20 +6,21 @@
 
 namespace mascot {
 
-// Laws may start processes, and these others. None of them outlives the run: whoever runs laws adopts what descends
-// from it, in whatever session or process group, and kills it at its end.
+// Laws may start processes, and these may start others. None of them outlives the run: a process that runs laws adopts
+// all processes that descend from it, in whatever session or process group, and kills them at its end.
 
 /// From now on processes that descend from this one and have lost their parent become its children, not those of init.
 void AdoptDescendants();
 /// Kills all processes that descend from this one, without `spared`, and without ssh, which may have left a connection
-/// for its user (ControlPersist). Gives up after 2 s. The caller has reaped the children that it knows.
+/// for its user (ControlPersist). Gives up after 2 s. The caller must have reaped the children that it knows.
 void KillDescendants(const std::vector<pid_t>& spared = {});
 
-/// Gives a mark to what this process starts from now on: a variable of the environment, which programs hand on to those
-/// that they start. So it is found also when its parents have died.
+/// Gives a mark to all processes that this process starts from now on: a variable of the environment, which programs
+/// hand on to the programs that they start. By it they are found even after their parents have died.
 void MarkDescendants();
 /// Kills the processes of this user that bear the mark with which this process was started, without this one and ssh.
-/// Gives up after 2 s. For who outlives the marker (Janitor); what has cleared its environment is not found.
+/// Gives up after 2 s. It is for a process that outlives the one that gave the mark (Janitor). Processes that have
+/// cleared their environment are not found.
 void KillMarked();
 
 }  // namespace mascot

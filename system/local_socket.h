@@ -27,25 +27,26 @@ class Descriptor {
   int number_;
 };
 
-// Stream sockets between processes of this machine, with abstract names (unix(7)): a name is in no folder, one socket
-// at a time can have it, whosever it is, and no file is left, or can be in the way. Network namespaces have names of
-// their own.
+// Stream sockets between processes of this machine, with abstract names (unix(7)): a name is in no folder, so that no
+// file is left, or can be in the way. One socket at a time can have a name, of whatever user. Each network namespace
+// has names of its own.
 
 /// Makes a socket. `flags`: SOCK_CLOEXEC, without which children inherit it, and others of socket(2). Throws
 /// std::runtime_error.
 Descriptor MakeLocalSocket(int flags);
 /// Gives the socket this name and listens. Returns whether it has the name; if not, errno says why.
 bool ListenAs(const std::string& name, const Descriptor& socket);
-/// Connects the socket with the one that has this name. Returns whether it is; if not, errno says why: EAGAIN if the
-/// other has not accepted those that came before, and this socket does not wait (SOCK_NONBLOCK).
+/// Connects the socket with the socket that has this name. Returns whether it is connected; if not, errno says why:
+/// EAGAIN if the other one has not accepted earlier connections, and this socket does not wait (SOCK_NONBLOCK).
 bool ConnectTo(const std::string& name, const Descriptor& socket);
-/// The process at the other end of a connection: who connected, or who listens. Nothing: it is not known.
+/// The process at the other end of a connection: the one that connected, or the one that listens. Nothing: it is not
+/// known.
 std::optional<ucred> PeerOf(const Descriptor& connection);
-/// Whether to speak with this process at all: it is of our user, or of root, who may do anything to us anyway. A name
-/// says nothing of who has it: any user can take any name.
+/// Whether to speak with this process at all: whether it belongs to our user, or to root, who may do anything to us
+/// anyway. The name of a socket does not say whose it is, because any user can take any name.
 bool IsTrusted(const ucred& peer);
-/// Whether accept(2) failed because this process or the machine has no descriptor, or no memory, left: it fails again,
-/// and at once, until there is some.
+/// Whether accept(2) failed with this errno because this process or the machine has no descriptor, or no memory, left:
+/// it then fails again, and at once, until there is some.
 bool HasNoRoom(int error);
 /// The name of a user, or the number if there is no name.
 std::string UserName(uid_t user);

@@ -8,7 +8,7 @@ namespace mascot {
 /// Blocks SIGINT, SIGTERM, SIGUSR1, by which batch systems say that the time of a job is nearly up, SIGCHLD and, unless
 /// it is ignored (nohup), SIGHUP, so that a loop can wait in one call for a signal, for a wake-up from another thread,
 /// or for a timeout. No handlers, no globals. Make it first in main: libraries start threads, which must inherit the
-/// blocked mask. It goes on hearing if a law closes its descriptors. Throws std::system_error.
+/// blocked mask. If a law closes its descriptors, it opens new ones. Throws std::system_error.
 class StopSignal {
  public:
   StopSignal();
