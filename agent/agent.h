@@ -13,18 +13,19 @@
 
 namespace mascot {
 
-/// One agent without its communication: what it hears and measures, its law, its limits and its low-level stack. Both
-/// engines run this class. The experiment must outlive it.
+/// One agent without its communication: it decides what the agent hears and measures, and runs its law, its limits and
+/// its low-level stack. Both engines run this class. The experiment must outlive it.
 class Agent {
  public:
   Agent(const Experiment& experiment, int id);
 
   int id() const { return id_; }
-  /// Events have changed the experiment: from the next Want() or Decide() on, it is `now`.
+  /// Call it when events have changed the experiment: from the next Want() or Decide() on, the experiment is `now`.
   void Adopt(std::shared_ptr<const Experiment> now);
-  /// Evaluates the law and its limits: fills in the command's accelerations, velocities and their flags. `self`: the
-  /// true motion at `tick`. `samples`: what the agents in graph.HeardBy(id) sent at this tick, in that order. Ticks
-  /// increase. Throws std::runtime_error naming agent and tick if the law fails or its answer is not finite.
+  /// Evaluates the law and its limits: fills in the command's accelerations, velocities and their flags. `self` is the
+  /// true motion at `tick`, `samples` are what the agents in graph.HeardBy(id) sent at this tick, in that order. Ticks
+  /// increase from call to call. Throws std::runtime_error naming agent and tick if the law fails or its answer is not
+  /// finite.
   Command Want(std::int64_t tick, const Motion& self, std::span<const Sample> samples);
   /// Want() and then the low-level stack: the complete command. Throws as Want() does.
   Command Decide(std::int64_t tick, const Motion& self, std::span<const Sample> samples);
@@ -40,8 +41,8 @@ class Agent {
   void LimitVelocity(const Eigen::Vector3d& v_W, Command& command);
   void AccelerateTowards(const Eigen::Vector3d& v_W, Command& command);
   void Integrate(const Eigen::Vector3d& a_W, Command& command);
-  /// What is commanded for `wanted_W`, which is `limited_W` after its limit: that, or what the safety filter makes of
-  /// what is wanted, with its flags.
+  /// The command for `wanted_W`, which the limit has made `limited_W`: this, or what the safety filter makes of
+  /// `wanted_W`, whose flags are set.
   Eigen::Vector3d Safe(const Eigen::Vector3d& wanted_W, const Eigen::Vector3d& limited_W, double limit,
                        Command& command);
 

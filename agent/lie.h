@@ -9,14 +9,14 @@
 
 namespace mascot {
 
-/// What an agent says instead of the truth: the same to all who hear it. Depends only on the seed, the agent and the
-/// tick.
+/// What an agent that lies says instead of the truth: the same to all agents that hear it. Depends only on the seed,
+/// the agent and the tick.
 class Lie {
  public:
   Lie(const LieConfig& config, std::uint64_t seed, int id);
   bool IsToldAt(double t_s) const;
-  /// Makes what the agent sends at `tick` false: its position is off by the lie, its velocity by the change of an
-  /// oscillating one, number n of its message by component n modulo 3.
+  /// Makes what the agent sends at `tick` false: its position is off by the lie, its velocity by the rate of change of
+  /// an oscillating lie, number n of its message by component n modulo 3 of the lie.
   void Tell(std::int64_t tick, double t_s, Motion& motion, std::span<double> message) const;
 
  private:

@@ -14,14 +14,15 @@ namespace mascot {
 struct Sample {
   const Motion* motion = nullptr;
   std::span<const double> message = {};
-  std::int64_t message_age = 1;  ///< ticks since the answer that the message came with; in real time also more
+  /// Number of ticks since the answer with which the message was sent; more than 1 only in real time.
+  std::int64_t message_age = 1;
 };
 
 /// Counters of one directed edge since the start of the run.
 struct EdgeCount {
   std::uint64_t sent = 0;
   std::uint64_t lost = 0;
-  std::uint64_t late = 0;     ///< arrived after, or with, a newer sample and were not used
+  std::uint64_t late = 0;     ///< number of samples that arrived after a newer sample, or with it, and were not used
   std::uint64_t numbers = 0;  ///< values in the messages sent
 
   EdgeCount& operator+=(const EdgeCount& other) {
@@ -49,7 +50,8 @@ class Link {
 
   /// `hearer`, `heard`: ids; `heard` sends.
   Link(const LinkConfig& config, int rate_hz, std::uint64_t seed, int hearer, int heard);
-  /// From now on the link is like this: samples in transit arrive as they would have. config.symmetric stays.
+  /// From now on the link has this configuration: samples in transit arrive as they would have. config.symmetric does
+  /// not change.
   void Adopt(const LinkConfig& config);
   /// Sends a sample; at most one per tick, ticks increasing. `weight`: a_ij at this tick.
   void Send(std::int64_t tick, double weight, const Sample& sample);

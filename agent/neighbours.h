@@ -16,27 +16,27 @@ namespace mascot {
 /// What became of the samples on one edge, at one tick.
 struct EdgeNow {
   enum class State : std::uint8_t {
-    kNoEdge,      ///< the graph of this tick does not have it, or one of the agents is off
+    kNoEdge,      ///< the graph of this tick does not have the edge, or one of the agents is off
     kHeard,       ///< the law gets a sample
-    kLost,        ///< the law gets none, though others have arrived before
-    kOutOfRange,  ///< likewise, and the agents are too far apart
+    kLost,        ///< the law gets no sample, although samples have arrived before
+    kOutOfRange,  ///< the law gets no sample, and the agents are too far apart
     kNothingYet,  ///< no sample has ever arrived
   };
   State state = State::kNothingYet;
   double age_s = -1;  ///< simulated time since the newest sample that has arrived was sent; -1: none has
 };
 
-/// Decides what one agent hears of its neighbours: applies start and stop times, the schedule of graphs, the range, the
-/// lies, the links and the noise, so that its law never sees a sample that it could not have heard.
+/// Decides what one agent hears of its neighbours: it applies start and stop times, the schedule of graphs, the range,
+/// the lies, the links and the noise, so that the agent's law never sees a sample that the agent could not have heard.
 class Neighbours {
  public:
   Neighbours(const Experiment& experiment, int id);
 
   /// From now on links, range and edges are those of `experiment`, which must outlive this object or the next Adopt().
   void Adopt(const Experiment& experiment);
-  /// What the law hears at `tick` (increasing). `samples`: what the agents in experiment.graph.HeardBy(id) sent at this
-  /// tick, in that order. `self`: the agent's true motion, for the range. Valid until the next call, and as long as
-  /// `samples`.
+  /// What the law hears at `tick` (increasing). `samples` are what the agents in experiment.graph.HeardBy(id) sent at
+  /// this tick, in that order. `self` is the agent's true motion, for the range. Valid until the next call, and as long
+  /// as `samples`.
   std::span<const Heard> Hear(std::int64_t tick, const Motion& self, std::span<const Sample> samples);
   /// Counters of the edges from experiment.graph.HeardBy(id), in that order.
   std::vector<EdgeCount> counts() const;
@@ -76,7 +76,7 @@ class Neighbours {
   std::vector<EdgeCount> plain_counts_;  // by index in may_hear_: of ticks at which plain_ held
 };
 
-/// True from start_s until before stop_s: the agent's law is on, and others may hear it.
+/// Whether the agent's law is on, and other agents may hear the agent: from start_s to stop_s, without the latter.
 bool IsOn(const AgentConfig& agent, double t_s);
 
 }  // namespace mascot

@@ -12,7 +12,8 @@
 namespace mascot {
 
 /// The safety filter of one agent ([law.safety]): changes what its law wants as little as is needed to stay away from
-/// the agents that it hears. Each agent keeps its own share of the constraint of a pair; the pair is safe if both do.
+/// the agents that it hears. Each agent keeps its own share of the constraint of a pair; the pair is safe if both
+/// agents do.
 class SafetyFilter {
  public:
   SafetyFilter(const Experiment& experiment, int id);
@@ -22,10 +23,10 @@ class SafetyFilter {
 
   struct Answer {
     Eigen::Vector3d u_W = Eigen::Vector3d::Zero();
-    bool is_feasible = true;  ///< false: no command within the limit is safe, u_W is the least unsafe
+    bool is_feasible = true;  ///< false: no command within the limit is safe, and u_W is the least unsafe one
   };
-  /// The velocity or acceleration, whichever drives the agent's model, that is nearest to `wanted_W` among those that
-  /// are safe and at most `limit` along each axis. Must be on.
+  /// The velocity (m/s) or acceleration (m/s^2), whichever drives the agent's model, that is nearest to `wanted_W`
+  /// among those that are safe and at most `limit` along each axis, in W. The filter must be on.
   Answer Nearest(const Eigen::Vector3d& wanted_W, double limit, const Motion& self, std::span<const Heard> heard);
 
  private:
@@ -41,8 +42,8 @@ class SafetyFilter {
   std::vector<HalfSpace> halves_;  // the limits, then the shares; grows only while more agents are heard than before
 };
 
-/// The bound on the acceleration of an agent as others count on it (m/s^2): 0 for a model driven by velocity, whose
-/// acceleration says nothing.
+/// The bound on the acceleration of an agent on which other agents count (m/s^2): 0 for a model driven by velocity,
+/// whose acceleration says nothing.
 double BrakingOf(const AgentConfig& agent);
 
 }  // namespace mascot

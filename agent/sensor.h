@@ -47,7 +47,8 @@ class OwnSensor {
 };
 
 /// An agent's sensor for obstacles (sensors.range_m): knows where they stand, and sees them from where the agent
-/// measures itself to be. Other agents and the ground are none: agents know of others what they hear.
+/// measures itself to be. Other agents and the ground are not obstacles; an agent knows of other agents only what it
+/// hears.
 class RangeSensor {
  public:
   RangeSensor(double range_m, std::vector<Obstacle> obstacles);

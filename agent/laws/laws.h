@@ -16,7 +16,7 @@
 
 namespace mascot {
 
-/// A linear law as the theory sees it, in q = p - d, where d is the agent's place in the formation (docs/theory.md):
+/// A linear law as theory sees it, in q = p - d, where d is the agent's place in the formation (docs/theory.md):
 ///   wanted acceleration  a_i = sum_j a_ij [p (q_j - q_i) + g (v_j - v_i)] - beta v_i
 ///   wanted velocity      v_i = p sum_j a_ij (q_j - q_i)
 /// For a law that does not listen, each agent goes to its target w by itself:  a_i = p (w - p_i) - beta v_i
@@ -39,7 +39,7 @@ struct PursuitForm {
 /// A child has caught up with its parent when they are at most this far apart along each axis of the law (m).
 inline constexpr double kCaughtUp_m = 0.05;
 
-/// The one of Drawing::pictures that shows how fast agents agree.
+/// The picture (Drawing::pictures) that shows how fast agents agree.
 inline constexpr std::string_view kDisagreementPicture[] = {"disagreement"};
 
 /// Plot settings of a law: summary.json passes them to scripts/plot.py.
@@ -52,23 +52,24 @@ struct Drawing {
   std::string_view cells = {};                 ///< the key of a region that agents divide by nearness; empty: none
 };
 
-/// A row of the table of laws: all that other libraries may know about a law. `orchestrator laws` prints the texts.
-/// Each law's file in agent/laws/ makes its own row; agent/laws/laws.cc lists them.
+/// A row of the table of laws: everything that other libraries may know about a law. `orchestrator laws` prints the
+/// texts. Each law's file in agent/laws/ makes its own row; agent/laws/laws.cc lists them.
 struct LawEntry {
   std::string_view name;
   std::string_view summary;
   std::string_view equation;
-  /// What the program does that the equation leaves out: a paragraph a line. Empty: nothing.
+  /// What the program does that the equation leaves out, one paragraph in each line. Empty: nothing.
   std::string_view details = {};
   std::string_view theory;                  ///< known results on convergence
   std::string_view source;                  ///< paper
   std::span<const Key> parameters;          ///< its own keys in [law], besides LawKeys()
   std::span<const LawFigure> figures = {};  ///< what it measures beyond the figures that all laws share
   Axes axes = Axes::kXy;                    ///< default of law.axes
-  bool agrees = false;                      ///< agents agree by what they hear, which takes a spanning tree
+  bool agrees = false;                      ///< agents agree by what they hear, which needs a spanning tree
   bool gathers = false;                     ///< agents meet in one place, where only their heights keep them apart
   bool is_of_user = false;                  ///< it runs code that a user of this program has written
-  bool sees_obstacles = false;              ///< uses what it sees of obstacles (Law::See), to keep clear of them
+  /// The law uses what the agent sees of obstacles (Law::See), to keep clear of them.
+  bool sees_obstacles = false;
   Drawing drawing;
 
   /// Reads and checks the parameters, as LawCatalog::Read() does.
@@ -81,19 +82,20 @@ struct LawEntry {
   Wanted (*wanted)(const LawConfig& law) = nullptr;
   /// d_i: each agent's place in the formation, in W (m), by id - 1; null: no places.
   std::span<const Eigen::Vector3d> (*places_W)(const LawConfig& law) = nullptr;
-  /// The parameters, with their values, that make an agent fly to `p_W` from `t_s` on, in place of its waypoints; empty
-  /// for an agent that flies none. Null: nobody flies waypoints.
+  /// The parameters, with their values, that make an agent fly to `p_W` (m) from `t_s` on, in place of its waypoints;
+  /// empty for an agent that flies no waypoints. Null: no agent with this law flies waypoints.
   std::map<std::string, Value> (*go_to)(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s) = nullptr;
-  /// Targets of an agent, in W (m), of the leader alone if there is one; null: none.
+  /// The targets of an agent, in W (m); only the leader has some, if there is a leader. Null: no agent has targets.
   std::span<const Eigen::Vector3d> (*waypoints_W)(const AgentConfig& agent) = nullptr;
   /// Null: the law is not linear.
   LinearForm (*linear)(const LawConfig& law) = nullptr;
-  /// Null: the law is no pursuit on a tree.
+  /// Null: the law is not a pursuit on a tree.
   PursuitForm (*pursuit)(const LawConfig& law) = nullptr;
-  /// Predicts the figures, for an experiment without events in which no agent has a law of its own. Null: nothing.
+  /// Predicts the figures, for an experiment without events in which no agent has a law of its own. Null: theory
+  /// predicts nothing.
   LawTheory (*predict)(const Experiment& experiment) = nullptr;
   /// Makes the meter of the figures, over the agents `ids` (increasing, at least one), whose law.name is this row's.
-  /// The experiment outlives it. Null: there are none.
+  /// The experiment must outlive the meter. Null: the law has no figures.
   std::unique_ptr<LawMeter> (*meter)(const Experiment& experiment, std::span<const int> ids) = nullptr;
 };
 
@@ -116,7 +118,7 @@ Wanted WantedBy(const LawConfig& law);
 bool IsCommandedByVelocity(const AgentConfig& agent);
 /// Each agent's place in the formation, in W (m), by id - 1; empty: no places. Valid as long as `law`.
 std::span<const Eigen::Vector3d> PlacesOf(const LawConfig& law);
-/// The targets that this agent flies, in W (m); empty: it flies none. Valid as long as `agent`.
+/// The targets to which this agent flies, in W (m); empty: it flies to none. Valid as long as `agent`.
 std::span<const Eigen::Vector3d> WaypointsOf(const AgentConfig& agent);
 std::optional<LinearForm> LinearFormOf(const LawConfig& law);
 std::optional<PursuitForm> PursuitFormOf(const LawConfig& law);
@@ -129,8 +131,8 @@ const LawCatalog& LawTable();
 /// Reads a complete experiment with the laws of the table. `checked`: it was read before, without a mistake, so slow
 /// checks are left out. Throws ConfigError with all mistakes.
 Experiment LoadExperiment(Section document, const std::string& default_name, bool checked = false);
-/// Reads the text of the file `path` with `overrides` in place of its keys; the file's name is the default one.
-/// Mistakes that the file alone does not have are said to be of the overrides that make them.
+/// Reads `text`, the contents of the file `path`, with `overrides` in place of its keys. The name of the file is the
+/// default of run.name. For a mistake that the file alone does not have, the message names the override that made it.
 Experiment LoadExperiment(const std::string& text, const std::string& path, std::span<const Override> overrides);
 
 /// The parameters of `law` as the type that its own file in agent/laws/ defines.

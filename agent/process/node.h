@@ -23,7 +23,7 @@ class Node {
   [[noreturn]] void Run();
 
  private:
-  /// A seat that a sample is for, and the sender's index among the sources of that seat.
+  /// A seat that needs a sample, and the sender's index among the sources of that seat.
   struct Listener {
     Seat* seat;
     std::size_t source;
@@ -34,7 +34,7 @@ class Node {
   void ListenToBundles(Domain& domain);
   void ListenToMessages(Domain& domain);
   void ListenToEvents(Domain& domain);
-  /// For each agent, by id, the seats that listen to it. `own`: agents listen to themselves, too.
+  /// For each agent, by id, the seats that listen to it. With `own`, an agent's seat listens to the agent itself, too.
   std::map<int, std::vector<Listener>> Listeners(bool own) const;
 
   Lifecycle& lifecycle_;

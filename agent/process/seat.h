@@ -17,9 +17,9 @@
 
 namespace mascot {
 
-/// The DDS side of one agent: collects its samples (TickInbox), and answers each complete tick with a command and
-/// perhaps a message. The thread that brings the last sample of a tick decides and writes. Several seats may share a
-/// process (Node) and its readers.
+/// The DDS side of one agent: it collects the agent's samples (TickInbox), and answers each complete tick with a
+/// command and perhaps a message. The thread that receives the last sample of a tick decides and writes. Several seats
+/// may share a process (Node) and its readers.
 class Seat {
  public:
   /// `on_first_answer` is called once, in the thread that answers first.
@@ -34,7 +34,7 @@ class Seat {
   // the order of graph.HeardBy(id). Called by the readers of Node, in their threads.
   void OnState(std::size_t source, std::int64_t tick, const Motion& motion, int events);
   void OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data);
-  /// `now`: the experiment after event `number`.
+  /// `now` is the experiment after event `number`.
   void OnEvent(int number, const std::shared_ptr<const Experiment>& now);
   /// The bundle must hold the states of all sources, in order; else throws std::runtime_error.
   void OnBundle(const mascot_msgs::msg::AgentBundle& bundle);

@@ -30,8 +30,9 @@ class TickInbox {
   struct CompleteTick {
     std::int64_t tick = -1;
     const Motion* self = nullptr;
-    std::span<const Sample> samples = {};  ///< one per peer, in order, with its last message before
-    int events = 0;                        ///< how many events have taken effect up to this tick
+    /// One for each peer, in order, with the peer's last message before this tick.
+    std::span<const Sample> samples = {};
+    int events = 0;  ///< how many events have taken effect up to this tick
   };
 
   /// The state of one agent in a bundle.
@@ -45,16 +46,16 @@ class TickInbox {
   TickInbox(int id, const std::vector<Peer>& peers, bool realtime);
 
   // Each takes what arrives and returns the tick that becomes complete with it, if any. `source`: 0 is the agent
-  // itself, then its peers in order. What is late, doubled or of a negative tick is ignored.
+  // itself, then its peers in order. A sample that is late, doubled or of a negative tick is ignored.
   std::optional<CompleteTick> OnState(std::size_t source, std::int64_t tick, const Motion& motion, int events = 0);
   std::optional<CompleteTick> OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data);
-  /// All events up to `number` have arrived.
+  /// Call it when all events up to `number` have arrived.
   std::optional<CompleteTick> OnEvent(int number);
   /// The states must be those of all sources, in order; else throws std::runtime_error.
   std::optional<CompleteTick> OnBundle(std::span<const State> states);
 
  private:
-  /// A message and the tick that its sender answered with it; -1 and empty: none has come.
+  /// A message and the tick that its sender answered with it; -1 and empty: no message has arrived.
   struct Message {
     std::int64_t tick = -1;
     std::vector<double> data;

@@ -35,13 +35,13 @@ class PythonLock {
 };
 
 /// Python code that runs longer than its limit while an object of this class lives gets a TimeoutError at the line
-/// where it is, and another one each time it catches that (it is no Exception: only a bare except, or one of
-/// BaseException, does); if the process takes too much memory, a MemoryError of that kind. A call that does not return
-/// to Python is not interrupted; then LawAtWork ends the process, later. Made and destroyed with the GIL held, in one
-/// thread; one at a time in each thread.
+/// where it is, and another one each time it catches that (the error is not an Exception: only a bare except, or one of
+/// BaseException, catches it). If the process takes too much memory, the code gets a MemoryError of the same kind. A
+/// call that does not return to Python is not interrupted; then LawAtWork ends the process, later. Made and destroyed
+/// with the GIL held, in one thread; one at a time in each thread.
 class LimitedPython {
  public:
-  /// `who`: as of LawAtWork.
+  /// `who` is that of LawAtWork.
   LimitedPython(const LawLimits& limits, const std::string& who);
   ~LimitedPython();
   LimitedPython(const LimitedPython&) = delete;
@@ -62,18 +62,19 @@ class LimitedPython {
   bool interrupted_ = false, told_of_memory_ = false;
 };
 
-/// Takes from Python code what would end or change the process that it shares with others: os._exit, os.kill of
-/// ourselves, signal.signal, ... raise instead, in the process that runs the law; children that the law forks have them
+/// Keeps Python code from ending or changing the process that it shares with MASCOT: os._exit, os.kill of this process,
+/// signal.signal, ... raise an exception in the process that runs the law. Children that the law forks may use them
 /// all, and die with it. Called once, with the GIL held.
 void GuardProcess();
-/// Makes sys.stdout and sys.stderr print to stderr what is fit for a terminal. Called once, with the GIL held.
+/// Makes sys.stdout and sys.stderr print to stderr, as text that is safe for a terminal. Called once, with the GIL
+/// held.
 void TakePythonOutput();
 /// The text of a str in UTF-8. Half of a surrogate pair, which UTF-8 does not have, is escaped as on Python's stderr:
 /// \udc80.
 std::string TextOf(const py::handle& text);
 
-/// What a law has as __builtins__: those of Python, with an import statement that knows `modules`. Each call makes new
-/// objects of them, so that laws share nothing.
+/// The __builtins__ of a law: those of Python, with an import statement that knows `modules`. Each call makes new
+/// objects of the modules, so that laws share nothing.
 py::object BuiltinsOf(const PythonModules& modules);
 /// Runs `text` in a namespace of its own, which it returns. `file`, `line`: where `text` begins, for messages. Throws
 /// PythonError.

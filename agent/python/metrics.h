@@ -13,8 +13,8 @@ namespace mascot {
 
 /// A measure of a run that a user wrote in Python: a function of the run's arrays that returns a number.
 struct PythonMetric {
-  std::string name;  ///< of the function
-  std::string unit;  ///< empty: none was said
+  std::string name;  ///< name of the function
+  std::string unit;  ///< empty: METRICS names no unit
 };
 
 /// An array of a run, in C order.
@@ -25,21 +25,22 @@ struct RunArray {
   bool of_integers = false;
 };
 
-/// The metrics of one Python file: those that its METRICS names, {"overshoot": "m"} with units or ["overshoot"]
-/// without; else every function that the file defines whose name does not begin with an underscore.
+/// The metrics of one Python file: the functions that its METRICS names, as {"overshoot": "m"} with units or
+/// ["overshoot"] without; if it has no METRICS, every function that the file defines whose name does not begin with an
+/// underscore.
 class PythonMetrics {
  public:
-  /// Runs `text`, which messages call `file` and whose modules stand in `folder`. `limits`: for this, and for each call
-  /// of a metric. Throws std::runtime_error, "FILE:LINE: ...", for mistakes in it.
+  /// Runs `text`, which messages call `file` and whose modules are in `folder`. `limits` holds for this, and for each
+  /// call of a metric. Throws std::runtime_error, "FILE:LINE: ...", for mistakes in the text.
   PythonMetrics(const std::string& text, const std::string& file, const std::string& folder, const LawLimits& limits);
   ~PythonMetrics();
   PythonMetrics(const PythonMetrics&) = delete;
   PythonMetrics& operator=(const PythonMetrics&) = delete;
 
-  /// In the order of METRICS, or of the file.
+  /// The metrics, in the order of METRICS, or of the file.
   const std::vector<PythonMetric>& list() const { return list_; }
-  /// What each metric says of a run; nullopt for None and NaN. Each gets a dict of read-only NumPy arrays. Throws
-  /// std::runtime_error, "FILE:LINE: metric NAME: ...", if one fails or returns anything else.
+  /// The value of each metric for a run; nullopt for None and NaN. Each metric gets a dict of read-only NumPy arrays.
+  /// Throws std::runtime_error, "FILE:LINE: metric NAME: ...", if one fails or returns anything else.
   std::vector<std::optional<double>> Of(std::span<const RunArray> arrays) const;
 
  private:

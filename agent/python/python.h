@@ -9,14 +9,14 @@
 
 namespace mascot {
 
-/// Modules that a law imports and that stand beside it: texts by paths from the folder of the law ("shapes.py").
+/// The modules beside a law that it imports: their texts by their paths from the folder of the law ("shapes.py").
 using PythonModules = std::map<std::string, std::string>;
 
 /// The modules in `folder` that `text` imports, itself or through each other. Throws PythonError if one cannot be read.
 PythonModules ModulesBeside(const std::string& text, const std::string& folder);
 
-/// While an object of this class lives, what Python code in this process prints is dropped: for laws that run a second
-/// time, for comparison.
+/// While an object of this class lives, text that Python code in this process prints is dropped: for laws that run a
+/// second time, on ideal bodies.
 class SuppressedPythonOutput {
  public:
   SuppressedPythonOutput();
@@ -28,7 +28,8 @@ class SuppressedPythonOutput {
 /// A mistake in the user's Python code.
 class PythonError : public std::runtime_error {
  public:
-  /// `traceback` as Python prints it; `line`, `column` of the user's file (0: not known); `summary`: its last line.
+  /// `traceback` is as Python prints it, `summary` is its last line; `line` and `column` are places in the user's file
+  /// (0: not known).
   PythonError(const std::string& traceback, std::string summary, int line, int column)
       : std::runtime_error(traceback), summary_(std::move(summary)), line_(line), column_(column) {}
   const std::string& summary() const { return summary_; }

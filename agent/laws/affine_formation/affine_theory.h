@@ -17,7 +17,7 @@ struct AffineFormationParams final : LawParams {
   Eigen::MatrixXd omega;
 };
 
-/// LawEntry::predict of that law.
+/// LawEntry::predict of the law affine_formation.
 LawTheory PredictAffineFormation(const Experiment& experiment);
 
 }  // namespace mascot

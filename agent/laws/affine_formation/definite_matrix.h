@@ -10,8 +10,8 @@ inline constexpr Eigen::Index kMostCombined = 300;
 
 struct DefiniteMatrix {
   std::optional<Eigen::MatrixXd> found;
-  /// No combination has a smallest eigenvalue of more than 1e-7 of the mean one. If nothing was found either, nobody
-  /// knows.
+  /// True: no combination has a smallest eigenvalue of more than 1e-7 of its mean eigenvalue. False, and nothing found:
+  /// it is not known whether one has.
   bool none = false;
 };
 

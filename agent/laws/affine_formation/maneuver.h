@@ -27,10 +27,10 @@ class Maneuver {
  public:
   /// Reads the keys of kManeuverKeys; without times_s the map is r itself. Mistakes are noted in `section`.
   static Maneuver Read(Section& section);
-  /// Where the place `r` is at `t_s`, in W (m).
+  /// Where the place `r` (m) is at `t_s`, in W (m).
   Eigen::Vector3d At(double t_s, const Eigen::Vector3d& r) const;
-  /// The wanted velocity of a leader with the place `r`, in W (m/s): in a tick of `period_s` it goes as far as its
-  /// place does, and is pulled there.
+  /// The wanted velocity, in W (m/s), of a leader with the place `r`: in a tick of `period_s` the leader moves as far
+  /// as its place does, and is pulled towards it.
   Eigen::Vector3d Velocity_W(double t_s, double period_s, const Eigen::Vector3d& r, const Eigen::Vector3d& p_WB) const;
   double gain_per_s() const { return gain_per_s_; }
 

@@ -15,9 +15,9 @@ namespace mascot {
 std::optional<double> Clearance_m(const AgentConfig& agent, const Eigen::Vector3d& p_W,
                                   const std::vector<Obstacle>& obstacles);
 
-/// How near agents come to obstacles. An obstacle pushes as Repulsion says, along n, the direction away from it. What
-/// an agent wants besides, f, is limited to the speed s = `speed`, and so is the sum: v* = [f + push n]_s, |f| <= s.
-/// The distance to a convex body is a convex function, so that the clearance c of an agent with velocity v and
+/// A bound of how near agents come to obstacles. An obstacle pushes as Repulsion says, along n, the direction away from
+/// it. What an agent wants besides, f, is limited to the speed s = `speed`, and so is the sum: v* = [f + push n]_s, |f|
+/// <= s. The distance to a convex body is a convex function, so that the clearance c of an agent with velocity v and
 /// acceleration a falls no faster than on a straight way to the body:
 ///   c(t + T) >= c(t) + T n v      and      c'' >= n a
 /// An agent driven by velocity has v = v*, held for a tick T: n v >= push(c) - s wherever that is negative. Its c never
@@ -30,7 +30,7 @@ std::optional<double> Clearance_m(const AgentConfig& agent, const Eigen::Vector3
 struct ClearanceBound {
   double gain = 0, influence_m = 0, speed = 0;
 
-  /// Why there is no such bound; empty: there is.
+  /// Why there is no such bound; empty: there is one.
   std::string WhyNot(const Experiment& experiment) const;
   /// The least clearance of any agent in an experiment that has obstacles: not predicted where agents may touch one.
   PredictedFigure Predicted(const Experiment& experiment) const;

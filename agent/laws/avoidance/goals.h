@@ -30,8 +30,8 @@ inline constexpr LawFigure kGoalFigures[] = {
      .unpredicted = "nothing is promised about arrival"},
 };
 
-/// Measures how near agents come to obstacles on the way to their goals, and when they arrive. A goal that an event has
-/// moved is to be reached anew.
+/// Measures how near agents come to obstacles on the way to their goals, and when they arrive. If an event moves a
+/// goal, its agent must reach it anew.
 class GoalMeter final : public LawMeter {
  public:
   using GoalOf = const Eigen::Vector3d&(const AgentConfig& agent);

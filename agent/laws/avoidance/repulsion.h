@@ -12,7 +12,7 @@ struct Repulsion {
   double gain = 0;   ///< m^4/s
   double reach = 0;  ///< at this clearance and beyond there is no push (m)
 
-  /// Away from the body (m/s).
+  /// The wanted speed away from the body (m/s).
   double Push(double clearance) const {
     const double c = std::max(clearance, kTouching_m);
     return c < reach ? gain * (1 / c - 1 / reach) / (c * c) : 0;

@@ -14,12 +14,12 @@ struct BearingFormationParams final : LawParams {
   double gain = 0;                   ///< m/s
 };
 
-/// A team whose directions are off by less than this has its shape.
+/// A team has its shape if its directions are off by less than this.
 inline constexpr double kSettled_deg = 1;
 /// The largest error of the direction from an agent to a neighbour (degrees).
 double LargestTurn_deg(std::span<const Bar> bars, const LawConfig& law, std::span<const Eigen::Vector3d> p_W);
 
-/// LawEntry::predict of that law.
+/// LawEntry::predict of the law bearing_formation.
 LawTheory PredictBearingFormation(const Experiment& experiment);
 
 }  // namespace mascot

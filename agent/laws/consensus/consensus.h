@@ -38,7 +38,7 @@ inline constexpr auto kConsensusParameters = Joined(
 /// Reads the keys of kConsensusParameters into `params`, for consensus and formation. Mistakes are noted in `section`.
 void ReadGains(const LawConfig& law, Section& section, ConsensusParams& params);
 LinearForm LinearFormOf(const ConsensusParams& params);
-/// How the leader flies, of consensus and formation.
+/// How the leader flies in the laws consensus and formation.
 const std::optional<WaypointParams>& FlightOfLeader(const LawConfig& law);
 
 }  // namespace mascot

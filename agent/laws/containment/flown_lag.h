@@ -10,12 +10,13 @@ namespace mascot {
 
 /// How followers come to their places among leaders at constant velocities, flown from the experiment's start.
 struct FlownLag {
-  double lag_m = 0;                    ///< LargestLag() at the end of the run
-  std::optional<HoldsFrom> settled{};  ///< when the farthest from where it ends stays within 2 %; absent: far too late
+  double lag_m = 0;  ///< LargestLag() at the end of the run
+  /// From when on the follower that is farthest from its final place stays within 2 %; absent: far too late.
+  std::optional<HoldsFrom> settled{};
 };
-/// Followers want v_i = gain sum_j a_ij (p_j - p_i). `shares`: their places among the leaders, behind which they end by
-/// `lag`, one row each (m). Flies on beyond the end of the run until they have settled. Nothing if the run alone is
-/// more work than kMostFlownFollowers.
+/// Followers want v_i = gain sum_j a_ij (p_j - p_i). `shares` has their places among the leaders, and `lag` how far
+/// behind these they end (m), one row for each follower. The flight goes on beyond the end of the run until the
+/// followers have settled. Nothing if the run alone is more work than kMostFlownFollowers.
 std::optional<FlownLag> FlyToPlaces(const Experiment& experiment, const LedTeam& team, double gain,
                                     const Eigen::MatrixXd& shares, const Eigen::MatrixX3d& lag);
 

@@ -31,8 +31,8 @@ struct CoverageParams final : LawParams {
 /// Reads the keys above, as LawEntry::read does.
 std::shared_ptr<const LawParams> ReadCoverage(const Experiment& experiment, const LawConfig& law, Section& section);
 
-/// The part of the region that is nearer to agent `id` than to the others of `ids`, with agents at `p`, by id - 1; of
-/// agents at one place the first has it.
+/// The part of the region that is nearer to agent `id` than to the other agents of `ids`; the agents are at `p_W` (m),
+/// by id - 1. If agents are at one place, the first of them has the part.
 Polygon CellOf(const CoverageParams& params, int id, std::span<const int> ids, std::span<const Eigen::Vector3d> p_W);
 /// H: the mean square distance of the region to the nearest of agents `ids` (m^2).
 double CoverageCost(const CoverageParams& params, std::span<const int> ids, std::span<const Eigen::Vector3d> p_W);

@@ -14,9 +14,9 @@ struct GaussianBump {
 };
 
 /// Integrals of the sum of the bumps over `polygon`, about `o`. However narrow, broad or far away the bumps are, mass
-/// and second are exact but for a share of 1e-11, and so is the centroid, as a share of its distance from `o` or of the
-/// width of what the bump leaves in the polygon. The unit is that of the heaviest bump there: a mass is 0 only if the
-/// polygon has no area.
+/// and second are exact to a share of 1e-11, and so is the centroid, as a share of its distance from `o` or of the
+/// width of the part of the bump in the polygon. Moments::log_unit is chosen for the heaviest bump there: a mass is 0
+/// only if the polygon has no area.
 Moments MomentsOf(const Polygon& polygon, const Eigen::Vector2d& o, std::span<const GaussianBump> bumps);
 
 /// The distance of a bump's centre from a polygon, in widths.

@@ -78,7 +78,8 @@ class PythonLaw : public Law {
       throw std::runtime_error(who_ + " failed at t = " + ShortestFloat(t_s_) + " s\n" + Explain(error, file_).what());
     }
   }
-  /// Runs `call`, which runs the user's text for the first time, with `limits`. Throws std::runtime_error likewise.
+  /// Runs `call`, which runs the user's text for the first time, with `limits`. Throws std::runtime_error as Guarded()
+  /// does.
   template <class Call>
   void GuardedImport(const LawLimits& limits, Call call) const {
     try {

@@ -11,20 +11,20 @@ namespace mascot {
 // The motion of agents in cyclic pursuit, as complex numbers x + i y: exact for single integrators with held
 // velocities.
 
-/// The radius of agents who are all at one place is below this: a sum of rounding errors (m).
+/// The radius of agents that are all at one place is below this, a sum of rounding errors (m).
 inline constexpr double kRoundedRadius_m = 1e-9;
 
-/// What two figures of a moving ring are at one tick.
+/// The two figures of a moving ring at one tick.
 struct RingMotion {
   double radius_m = 0;             ///< rms distance from the centre
   double turn_rate_rad_per_s = 0;  ///< mean rate, weighted by the squares of distances, at which agents go round it
 };
 
-/// The figures from where the agents are at two consecutive ticks, `period_s` apart.
+/// The figures, from the agents' places (m) at two consecutive ticks, `period_s` apart.
 RingMotion RingMotionOf(std::span<const Eigen::Vector2d> before, std::span<const Eigen::Vector2d> now, double period_s);
 
 /// Modes of z_i+ = z_i + step R (z_{i+1} - z_i) on the ring, with R a turn to the right by `alpha_rad`. Mode m of N,
-/// from 1, has z_i = exp(2 pi m i / N): each tick multiplies it by 1 + step R (exp(2 pi m / N) - 1). They are
+/// from 1, has z_i = exp(2 pi m i / N): each tick multiplies it by 1 + step R (exp(2 pi m / N) - 1). The modes are
 /// orthogonal.
 class CyclicModes {
  public:

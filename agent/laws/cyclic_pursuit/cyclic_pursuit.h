@@ -8,7 +8,7 @@
 
 namespace mascot {
 
-/// How an agent pursues the next one: by a velocity towards it, or, a unicycle, by its own speed and steering.
+/// How an agent pursues the next one: by a velocity towards it or, if it is a unicycle, by its own speed and steering.
 enum class PursuitKind { kLinear, kConstantSpeed, kProportionalSpeed };
 inline constexpr EnumNames<PursuitKind, 3> kPursuits({{PursuitKind::kLinear, "linear"},
                                                       {PursuitKind::kConstantSpeed, "constant_speed"},

@@ -10,9 +10,10 @@ namespace mascot {
 inline constexpr int kMostAgentsOfGlobalRigidity = 60;
 
 /// Whether the lengths of a rigid graph fix the shape of generic points, but for mirroring: no other points have the
-/// same lengths. A graph that is rigid but not so has at least one agent, or a part, that may be flipped or folded
-/// over. By a random stress of random points; Gortler, Healy & Thurston, "Characterizing generic global rigidity",
-/// American J. Math. 132 (2010), theorem 1.14: its matrix has the rank N - d - 1, or it is not.
+/// same lengths. A graph that is rigid but not globally rigid has an agent, or a part, that may be flipped or folded
+/// over. A random stress of random points decides; Gortler, Healy & Thurston, "Characterizing generic global rigidity",
+/// American J. Math. 132 (2010), theorem 1.14: the graph is globally rigid if and only if the matrix of the stress has
+/// the rank N - d - 1.
 bool IsGloballyRigid(std::span<const Bar> bars, int agents, Axes axes);
 
 }  // namespace mascot

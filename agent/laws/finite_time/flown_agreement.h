@@ -11,10 +11,10 @@
 
 namespace mascot {
 
-// How single integrators come together that hold a velocity for a control period: found out by flying them ahead, tick
-// by tick, from the experiment's own start.
+// How single integrators that hold a velocity for a control period come together. This is found by flying them ahead,
+// tick by tick, from the experiment's own start.
 
-/// Writes what the law wants of each agent at `tick`, in W (m/s), by id - 1, where all are at `p_W`.
+/// Writes into `v_W` what the law wants of each agent at `tick`, in W (m/s), by id - 1; the agents are at `p_W` (m).
 using WantedOfAll =
     std::function<void(std::int64_t tick, std::span<const Eigen::Vector3d> p_W, std::span<Eigen::Vector3d> v_W)>;
 
@@ -30,11 +30,11 @@ std::vector<HeardEdge> EdgesOf(const Graph& graph);
 /// agrees, but for at most `longest_s`: once as it starts, and twice from starts that are off by up to a nanometre,
 /// which shows what rounding decides.
 ///
-/// The time is that of the flight, if the others take as long, within two ticks or 1 %. If there is none, a warning
-/// says how far apart agents tremble. The distance in the end is at most a tenth, and a tick's way, more than in any
-/// flight. The meeting point is the mean of all agents at the end of the run, or when they are together if it ends
-/// before; nothing where rounding moves it by more than what counts as together, and a tick's way. Silent if all this
-/// is more work than kMostFlownEdges.
+/// The predicted time is that of the first flight, if the other two take as long, within two ticks or 1 %. If no time
+/// is predicted, a warning says how far apart agents tremble. The predicted distance in the end is at most a tenth,
+/// plus the way of one tick, more than in any flight. The meeting point is the mean of all agents at the end of the
+/// run, or when they are together if the run ends before; nothing, if rounding moves it by more than the tolerance and
+/// the way of one tick. Theory is silent if all this is more work than kMostFlownEdges.
 LawTheory PredictAgreement(const Experiment& experiment, const WantedOfAll& want, double longest_s, double share,
                            double least_m);
 

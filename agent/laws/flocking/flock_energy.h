@@ -33,11 +33,12 @@ void ForEachPair(const Graph& graph, std::span<const Motion> motions, std::span<
 /// The structural energy: potentials of all pairs and of the pull to the centre, and kinetic energy about the centre.
 double FlockEnergy(const FlockParams& params, const Graph& graph, std::span<const Motion> motions,
                    std::span<const int> ids, Axes axes);
-/// Why graph.range_m cuts pairs off that the energy has in it, and so lets it jump; empty: it does not. The range is of
-/// distances in space, the law is of those along its axes.
+/// Why graph.range_m cuts off pairs that are part of the energy, so that the energy jumps; empty: it does not. The
+/// range is a distance in space; the law uses distances along its axes.
 std::string WhyRangeCuts(const Experiment& experiment, const FlockParams& params);
-/// The most by which that energy may grow in a tick, as a share of that at the start: what holding a command costs.
-/// Nullopt: theory does not say, because the period is too long for the gains and for how many agents may be near.
+/// The most by which this energy may grow in a tick because a command holds, as a share of the energy at the start.
+/// Nullopt: theory does not say, because the period is too long for the gains and for the number of agents that may be
+/// near.
 std::optional<double> FlockEnergyGrowth(const Experiment& experiment, const FlockParams& params);
 
 }  // namespace mascot

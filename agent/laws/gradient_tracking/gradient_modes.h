@@ -15,31 +15,32 @@ inline double MetropolisWeight(double d_i, double d_j) { return 1 / (1 + std::ma
 
 /// Above this many agents, the modes below are not computed.
 inline constexpr int kMostGradientModes = 40;
-/// The largest |root| of x+ = W x - step y, y+ = W y + Q (x+ - x), but for the three of sum (y - Q x), which stays as
-/// it is: what an error keeps from tick to tick in the long run.
+/// The largest |root| of x+ = W x - step y, y+ = W y + Q (x+ - x), except the three roots of sum (y - Q x), which is
+/// constant: the share of an error that remains from tick to tick in the long run.
 double GradientRadius(const Graph& graph, const std::vector<QuadraticCost>& costs, double step);
-/// The warning of a law.step with which that is 1 or more.
+/// The warning of a law.step with which GradientRadius() is 1 or more.
 std::string UnstableStep(const Graph& graph, const std::vector<QuadraticCost>& costs, double step);
 
-/// How estimates approach the minimum from where the experiment's agents start.
+/// How estimates approach the minimum from the starts of the experiment's agents.
 struct GradientApproach {
-  std::string silent = {};                   ///< why there is no rate; empty: there is
+  std::string silent = {};                   ///< why no rate is predicted; empty: one is
   PredictedFigure rate = {};                 ///< 1/s: as GradientMeter measures it, by the end of the run or later
-  std::optional<HoldsFrom> holds_from = {};  ///< from when on it can be measured
+  std::optional<HoldsFrom> holds_from = {};  ///< the time from which on the rate can be measured
 };
 /// Iterates the errors, which obey the same equations as the estimates, tick by tick.
 GradientApproach ApproachOf(const Experiment& experiment, const std::vector<QuadraticCost>& costs, double step,
                             double radius);
 
-/// When the largest distance of an estimate from the minimum was how far from it, row by row.
+/// Remembers the last ticks at which the largest distance of an estimate from the minimum was above certain shares of
+/// the first one.
 class ApproachTicks {
  public:
   void Add(std::int64_t tick, double largest_m);
   double newest_m() const { return newest_m_; }
   /// The last tick with 1e-12 of the first distance or more.
   std::int64_t last_near() const { return last_near_; }
-  /// Between the last ticks with 1e-7 and with 1e-12 of the first distance or more, by a tick of `period_s`. Absent:
-  /// the newest is one of these, or the first was 0.
+  /// The rate (1/s) between the last ticks with 1e-7 and with 1e-12 of the first distance or more; a tick takes
+  /// `period_s`. Absent: the newest tick is one of these, or the first distance was 0.
   std::optional<double> rate_per_s(double period_s) const;
 
  private:

@@ -25,7 +25,7 @@ struct QuadraticCost {
 /// Reads the keys above: one cost for each agent, by id - 1. Notes a mistake unless every Q_i is positive semidefinite
 /// and their sum positive definite.
 std::vector<QuadraticCost> ReadCosts(const Experiment& experiment, Section& law);
-/// Where the sum of the costs is least: (sum Q)^-1 sum Q b.
+/// The point, in W (m), at which the sum of the costs is least: (sum Q)^-1 sum Q b.
 Eigen::Vector3d Minimiser(const std::vector<QuadraticCost>& costs);
 
 }  // namespace mascot

@@ -23,7 +23,7 @@ inline constexpr std::array kPursuitTreeParameters = {
         .Default("\"refuse\""),
 };
 
-/// Reads these keys. Mistakes are noted in `section`: a root whom some agents do not hear, by their numbers; an edge
+/// Reads these keys. Mistakes are noted in `section`: a root that some agents do not hear, with their numbers; an edge
 /// whose child is not stronger than its parent.
 PursuitForm ReadPursuitTree(const Experiment& experiment, const LawConfig& law, Section& section);
 

@@ -11,7 +11,7 @@
 
 namespace mascot {
 
-/// Mean of the starting positions, in W: where teams meet that keep their mean.
+/// Mean of the starting positions, in W (m), at which a team meets that keeps its mean.
 Eigen::Vector3d MeanStart(const Experiment& experiment);
 /// The largest distance along one axis of the law between the starts of agents `ids` (m).
 double LargestSpread(const Experiment& experiment, std::span<const int> ids);
@@ -23,15 +23,15 @@ double StartDisagreement_m(const Experiment& experiment);
 /// Sum over agents `ids` of their squared distances from their mean, along `axes` (m^2).
 double SquaredDisagreement(std::span<const Motion> motions, std::span<const int> ids, Axes axes);
 
-/// Measures since when agents agree: along each axis of their law, all of them are within a tolerance for good; and how
-/// far apart they are in the end.
+/// Measures the time from which on agents agree, which they do if along each axis of their law all of them are within a
+/// tolerance for good; and how far apart they are in the end.
 class AgreementTime final : public LawMeter {
  public:
-  /// `share`: the tolerance as a share of LargestSpread(); `least_m`: it is at least this.
+  /// The tolerance is `share` of LargestSpread(), but at least `least_m`.
   AgreementTime(const Experiment& experiment, std::span<const int> ids, double share, double least_m);
   void Add(const TeamRow& row) override;
   std::vector<FigureValues> Figures() const override { return {{time_s()}, {band_m_}}; }
-  /// Absent: they do not agree in the newest row.
+  /// The time from which on the agents agree (s); absent: they do not agree in the newest row.
   std::optional<double> time_s() const;
   /// The largest distance of two agents along an axis of the law, in the last tenth of the run; of a shorter run, at
   /// its end (m).

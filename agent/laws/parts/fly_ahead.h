@@ -20,7 +20,7 @@ struct ShapeLaw {
   double settled = 0;                                                 ///< an error at which it has the shape
 };
 
-/// Follows when the error is small for good.
+/// Finds the tick from which on the error is small for good.
 class SettlingMeter {
  public:
   explicit SettlingMeter(double settled) : settled_(settled) {}
@@ -30,7 +30,7 @@ class SettlingMeter {
     else if (!from_)
       from_ = tick;
   }
-  /// The tick from which on the error has been small; absent: it is not.
+  /// The tick from which on the error has been small; absent: it is not small now.
   std::optional<std::int64_t> from() const { return from_; }
 
  private:
@@ -40,22 +40,25 @@ class SettlingMeter {
 
 /// A team that was flown without bodies: p+ = p + T v, from the start to the end of the run.
 struct FlownAhead {
-  std::string silent = {};                ///< why this says nothing about the run; empty: it does
-  bool rests_at_start = false;            ///< the law moves nobody at the start, though it would move who is beside it
+  std::string silent = {};  ///< why the flight says nothing about the run; empty: it does
+  /// The law moves no agent from the start, though it would from a start beside it.
+  bool rests_at_start = false;
   std::vector<Eigen::Vector3d> p_W = {};  ///< at the end
   double error = 0;                       ///< at the end
   std::optional<double> settled_s = {};   ///< from when on it has the shape
   // These two are set only if the team has no shape by the end of the run, and is flown on.
-  std::optional<double> later_s = {};        ///< from when on it has the shape; absent: not soon
-  std::vector<Eigen::Vector3d> rest_W = {};  ///< where it comes to rest without it; empty: it does not, or not soon
+  std::optional<double> later_s = {};  ///< time from which on the team has the shape; absent: not soon
+  /// Where the team comes to rest without the shape; empty: it does not, or not soon.
+  std::vector<Eigen::Vector3d> rest_W = {};
 };
 
 /// Flies two teams: that of the experiment, and one whose start is disturbed by 1e-9 of the team's size. If they end
-/// more than 1e-5 of it apart, rounding may decide where a run ends, and this says nothing; nor if a limit cuts a
-/// velocity, if bodies that can touch do, if the team flies away, or if the run is more than 5e6 steps of an edge, or
-/// of a pair of bodies. A team without the shape at the end flies on by itself, for up to ten times as long in all.
+/// more than 1e-5 of this size apart, rounding may decide where a run ends, and the flight says nothing. It says
+/// nothing either if a limit cuts a velocity, if bodies touch that can, if the team flies away, or if the run is more
+/// than 5e6 steps of an edge, or of a pair of bodies. If the team does not have the shape at the end of the run, it
+/// flies on, for up to ten times as long in all.
 FlownAhead FlyAhead(const Experiment& experiment, const ShapeLaw& law);
-/// From when on the team has the shape. `still_off`: what is so if the run ends before.
+/// The time from which on the team has the shape. `still_off` says what is the case if the run ends before.
 std::optional<HoldsFrom> WhenShaped(const Experiment& experiment, const FlownAhead& ahead, std::string still_off);
 
 }  // namespace mascot

@@ -13,7 +13,7 @@ namespace mascot {
 /// Closed forms of ideal agents do not hold if bodies are not driven by what the law wants, samples are lost, late,
 /// noisy or out of range, the graph changes, or agents come and go.
 std::string WhyNotIdeal(const Experiment& experiment, Wanted wanted);
-/// The same, but quadrotors are taken for the double integrators that they follow.
+/// As WhyNotIdeal(), but quadrotors are taken for the double integrators that they follow.
 std::string WhyNotNearlyIdeal(const Experiment& experiment, Wanted wanted);
 /// Closed forms of what agents compute from each other's messages do not hold if some of these do not arrive at the
 /// next tick.

@@ -8,7 +8,7 @@
 
 namespace mascot {
 
-// What each agent is to know of the world in average tracking: r_i(t) = input + ramp t + amplitude sin(2 pi f t +
+// What each agent knows of the world in average tracking, its input: r_i(t) = input + ramp t + amplitude sin(2 pi f t +
 // phase).
 
 inline constexpr Range kInputs_m = {-1e6, 1e6};

@@ -8,7 +8,7 @@
 
 namespace mascot {
 
-// Teams in which several agents lead, and the places of the others follow from those of the leaders.
+// Teams in which several agents lead, and the places of the other agents follow from those of the leaders.
 
 /// Above this many agents the matrices below would be too large: theory is silent, and nothing is measured.
 inline constexpr int kMostAgentsOfMatrices = 1000;
@@ -31,8 +31,8 @@ std::vector<int> ReadLeaders(const Experiment& experiment, Section& section);
 Eigen::MatrixXd BlockOf(const Eigen::MatrixXd& matrix, std::span<const int> rows, std::span<const int> columns);
 /// The starting positions of agents `ids`, one row each, in W (m).
 Eigen::MatrixX3d StartsOf(const Experiment& experiment, std::span<const int> ids);
-/// -M_FF^-1 M_FL, for a matrix M whose M_FF is invertible: times the positions of the leaders it gives the places at
-/// which M p = 0 in the rows of the followers.
+/// -M_FF^-1 M_FL, for a matrix M whose M_FF is invertible. This matrix times the positions of the leaders (one row
+/// each) gives the places of the followers at which M p = 0 in their rows.
 Eigen::MatrixXd SharesOfLeaders(const Eigen::MatrixXd& matrix, const LedTeam& team);
 
 /// The largest distance, along `axes`, of a follower from the place that `shares` gives it among the leaders (m).

@@ -9,10 +9,10 @@ namespace mascot {
 
 /// How each vehicle of a string follows the one before it, along one axis; Ploeg, Scheepers, van Nunen, van de Wouw &
 /// Nijmeijer, "Design and experimental evaluation of cooperative adaptive cruise control" (ITSC 2011):
-///   tau a' = -a + u(t - phi)                          the vehicle: acceleration a in answer to what it is told, u
+/// tau a' = -a + u(t - phi)                          the vehicle: its acceleration a follows its command u
 ///   e = x_before - x - spacing - headway v            the error of the distance
-///   headway u' = -u + p e + d e' + dd e'' + u_before(t - theta)    the controller; without u_before: ACC
-/// Here both are sampled: what a controller knows is held for a tick of `h` seconds.
+/// headway u' = -u + p e + d e' + dd e'' + u_before(t - theta)    the controller; without u_before: ACC Here vehicle
+/// and controller are sampled: what a controller knows is held for a tick of `h` seconds.
 struct Following {
   double p = 0;   ///< 1/s^2
   double d = 0;   ///< 1/s
@@ -21,17 +21,18 @@ struct Following {
   double lag_s = 0;          ///< tau
   int delay_ticks = 0;       ///< phi
   bool feed_forward = true;  ///< u_before, by message
-  int message_ticks = 1;     ///< theta: how old it is, at least 1
+  int message_ticks = 1;     ///< theta: age of the message in ticks, at least 1
   double h = 0;              ///< the control period (s)
 
-  /// How much of the way to where it would end u goes in a tick.
+  /// The fraction of the way to its final value that u goes in a tick.
   double Approach() const { return headway_s > 0 ? -std::expm1(-h / headway_s) : 1; }
-  /// The same of the vehicle's acceleration, and how much of the old one its mean over the tick still has.
+  /// Answer(): the same fraction for the vehicle's acceleration. MeanOfOld(): the fraction of its old value in its mean
+  /// over the tick.
   double Answer() const { return lag_s > 0 ? -std::expm1(-h / lag_s) : 1; }
   double MeanOfOld() const { return lag_s / h * Answer(); }
 };
 
-/// Gives back what was put in `ticks` calls ago; 0 before that.
+/// Returns the value that was put in `ticks` calls ago; 0 before that.
 class DelayLine {
  public:
   explicit DelayLine(int ticks) : ring_(static_cast<std::size_t>(ticks), 0.0) {}
@@ -69,7 +70,8 @@ class FollowingControl {
  public:
   explicit FollowingControl(int message_ticks) : told_(message_ticks - 1) {}
   double u() const { return u_; }
-  /// The next tick, with the error e (m), its rate e' (m/s), and the newest u that the vehicle before has told of.
+  /// Computes u of the next tick from the error e (m), its rate e' (m/s), and the newest u that the vehicle before has
+  /// sent.
   void Follow(const Following& law, double error_m, double rate_m_per_s, double u_before) {
     double r = law.p * error_m + law.d * rate_m_per_s;
     if (has_rate_) r += law.dd * (rate_m_per_s - rate_m_per_s_) / law.h;
@@ -79,7 +81,7 @@ class FollowingControl {
     rate_m_per_s_ = rate_m_per_s;
     has_rate_ = true;
   }
-  /// A tick at which nothing is known of the vehicle before: u goes to 0.
+  /// Computes u of a tick at which nothing is known of the vehicle before: u goes to 0.
   void LetGo(const Following& law) {
     u_ -= law.Approach() * u_;
     has_rate_ = false;

@@ -30,7 +30,7 @@ class Platoon final : public Law {
   std::span<const double> Message() override { return {&u_, 1}; }
 
  private:
-  // Both set u_, along x, and return the accelerations across.
+  // Both functions set u_, the command along x, and return the accelerations across.
   Eigen::Vector3d Lead_W(double t_s, const Motion& self);
   Eigen::Vector3d Follow_W(const Motion& self, std::span<const Heard> heard);
 

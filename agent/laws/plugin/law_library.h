@@ -11,12 +11,12 @@ namespace mascot {
 /// last law is gone (what() of an exception that it threw, destructors of threads).
 class LawLibrary {
  public:
-  /// `path` is absolute. Throws std::runtime_error ("expected ..., got ...") if this is no library with a law, or if it
-  /// does not fit this program.
+  /// `path` is absolute. Throws std::runtime_error ("expected ..., got ...") if the file is not a library with a law,
+  /// or if the library does not fit this program.
   explicit LawLibrary(const std::string& path);
 
   bool sends_messages() const { return law_->sends_messages; }
-  /// Gives a law of this library new parameters; null: it takes none (PluginExport::set).
+  /// Gives a law of this library new parameters; null: the law takes none (PluginExport::set).
   auto set() const { return law_->set; }
   /// Makes a law. Throws what the law's constructor throws.
   std::unique_ptr<Law> Make(const PluginSetup& setup) const { return std::unique_ptr<Law>(law_->make(setup)); }

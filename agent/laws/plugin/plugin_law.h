@@ -18,7 +18,7 @@ struct PluginConfig final : LawParams {
   Wanted wanted = Wanted::kAcceleration;
 };
 
-/// What the library gets to make the law of agent `id` from.
+/// What the library gets to make the law of agent `id`.
 PluginSetup SetupOf(const Experiment& experiment, int id, PluginParams& params);
 /// How long a call of the law may take.
 LawLimits LimitsOfPlugins(const Experiment& experiment);

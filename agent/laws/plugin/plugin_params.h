@@ -15,9 +15,9 @@
 namespace mascot {
 
 /// Reads [law.params] strictly: for a value that is not as expected it throws std::invalid_argument("params.gain:
-/// expected a number in [0, 10], got 'fast'"), which MASCOT reports with file, line and column. A key that the law
-/// never asked for is reported, too. A key without fallback is required. All in this header, because a plugin links
-/// nothing of MASCOT.
+/// expected a number in [0, 10], got 'fast'"), which MASCOT reports with file, line and column. A key of the table that
+/// the law has never asked for is reported, too. A key without fallback is required. All in this header, because a
+/// plugin links nothing of MASCOT.
 class PluginParams {
  public:
   explicit PluginParams(Value table) : table_(std::move(table)) {}
@@ -72,7 +72,7 @@ class PluginParams {
     throw std::invalid_argument("params." + key + ": " + message);
   }
 
-  /// Keys that were asked for.
+  /// The keys that the law has asked for.
   const std::set<std::string>& asked() const { return asked_; }
 
  private:

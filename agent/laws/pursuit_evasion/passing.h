@@ -7,8 +7,8 @@
 
 namespace mascot {
 
-/// Whether `flies`, which goes `way_m` from its start straight away from that of `chaser`, comes within `radius_m` of
-/// the start of anybody, along the axes of its law. What rounding decides counts as that.
+/// Whether the agent `flies`, which moves `way_m` from its start straight away from the start of `chaser`, comes within
+/// `radius_m` of the start of any other agent, along the axes of its law. If rounding decides, it counts as within.
 inline bool FliesPast(const Experiment& experiment, const AgentConfig& flies, const AgentConfig& chaser, double way_m,
                       double radius_m) {
   const auto along = [&](const Eigen::Vector3d& v_W) { return Along(flies.law.axes, v_W); };
@@ -20,8 +20,8 @@ inline bool FliesPast(const Experiment& experiment, const AgentConfig& flies, co
   });
 }
 
-/// Whether agent `flies` hears one other only, which is the only one of `chasers`, and flies past nobody: its way is
-/// then a straight line.
+/// Whether the agent `flies` hears only one other agent, which is the only one of `chasers`, and flies past no other:
+/// its way is then a straight line.
 inline bool IsDrivenAway(const Experiment& experiment, const AgentConfig& flies,
                          std::span<const AgentConfig* const> chasers, double way_m, double radius_m) {
   const std::span<const Graph::Neighbour> heard = experiment.graph.HeardBy(flies.id);

@@ -13,12 +13,12 @@ namespace mascot {
 
 // Agents that tell the truth, and those that lie (experiment/lie.h).
 
-/// The experiment as if all told the truth.
+/// The experiment without the lies: all agents tell the truth.
 Experiment WithoutLies(Experiment experiment);
-/// The honest agent that hears the most that lie, and how many these are.
+/// The honest agent that hears the most agents that lie, and how many these are.
 std::pair<int, std::size_t> MostLiesHeard(const Experiment& experiment);
 
-/// What W-MSR against `f` liars asks of a graph of this robustness; nullopt: it is not known.
+/// Warnings if W-MSR against `f` liars needs more than a graph of this robustness; nullopt: it is not known.
 std::vector<std::string> RobustnessWarnings(std::optional<int> robustness, int f);
 
 /// Measures how honest agents stay within the hull of their starts, per axis of their law.
@@ -26,9 +26,9 @@ class HonestHull {
  public:
   HonestHull(const Experiment& experiment, std::span<const int> ids);
   void Add(const TeamRow& row);
-  /// The farthest that an honest agent was outside, below 1 nm 0; absent: all lie.
+  /// The largest distance by which an honest agent was outside (m), 0 if below 1 nm; absent: all agents lie.
   std::optional<double> outside_m() const;
-  /// The largest distance between honest agents along an axis, in the newest row.
+  /// The largest distance between honest agents along an axis in the newest row (m).
   std::optional<double> apart_m() const;
 
  private:

@@ -7,13 +7,13 @@
 
 namespace mascot {
 
-/// Where a reference is at some time, in W.
+/// Position (m), velocity (m/s) and acceleration (m/s^2) of a reference at some time, in W.
 struct PathPoint {
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero(), v_W = Eigen::Vector3d::Zero(), a_W = Eigen::Vector3d::Zero();
 };
 
 /// A way through samples (t, x, y, z), as a cubic spline: position, velocity and acceleration are continuous between
-/// the first and the last sample, where it is at rest; before and after it stays there.
+/// the first and the last sample. At these two the reference is at rest; before and after them it stays there.
 class PathSamples {
  public:
   /// A place in a text; both count from 1.
@@ -21,11 +21,11 @@ class PathSamples {
     int line = 0, column = 1;
   };
 
-  /// Reads text of lines "t,x,y,z", of which the first may be a heading. Empty: it was read; else the mistake and, in
-  /// `place`, where it is.
+  /// Reads text of lines "t,x,y,z" (s, m), of which the first may be a heading. Returns an empty text if it was read;
+  /// else the mistake and, in `place`, where the mistake is.
   std::string Read(const std::string& text, Place& place);
   PathPoint At(double t_s) const;
-  /// From the first to the last sample; at least two have been read.
+  /// Time from the first to the last sample. At least two samples must have been read.
   double duration_s() const { return knots_.back().t_s - knots_.front().t_s; }
 
  private:

@@ -20,14 +20,14 @@ struct ReferencePath {
     Eigen::Vector3cd size_W;
   };
 
-  /// Counterclockwise, from the east.
+  /// A circle, flown counterclockwise from its eastern point.
   static ReferencePath Circle(const Eigen::Vector3d& centre_W, double radius_m, double period_s);
   /// The lemniscate of Gerono, (r sin wt, r sin wt cos wt), from its crossing to the north-east.
   static ReferencePath FigureEight(const Eigen::Vector3d& centre_W, double radius_m, double period_s);
   PathPoint At(double t_s) const;
 
   Eigen::Vector3d centre_W = Eigen::Vector3d::Zero();
-  double period_s = 0;  ///< of samples: from the first to the last
+  double period_s = 0;  ///< for samples: time from the first to the last
   std::vector<Oscillation> oscillations = {};
   std::optional<PathSamples> samples = {};  ///< in place of all oscillations
 };
