@@ -6,8 +6,8 @@
 
 namespace mascot {
 
-/// Tells cheaply when no body can touch anything. Each body has an upright bounding box. A check of all pairs puts a
-/// larger free box around it, which meets no other free box, nothing fixed and not the floor. As long as every body's
+/// Finds out cheaply that no body can touch anything. Each body has an upright bounding box. A check of all pairs puts
+/// a larger free box around it, which meets no other free box, nothing fixed and not the floor. As long as every body's
 /// box stays in its free box nothing can touch, and knowing that costs six comparisons per body. When a box leaves its
 /// free box, the next check is due.
 class Clearance {
@@ -26,14 +26,13 @@ class Clearance {
   };
   explicit Clearance(Scene scene);
 
-  /// True if all `boxes`, by body, are apart from each other and from what is fixed, as far as the scene lets them
-  /// touch.
+  /// True if all `boxes`, by body, are apart from each other and from fixed boxes, as far as the scene lets them touch.
   bool IsClear(std::span<const Box> boxes);
 
  private:
   /// True if no box has left its free box.
   bool AreInFreeBoxes(std::span<const Box> boxes) const;
-  /// Compares all boxes, and makes new free boxes. Returns true if nothing meets.
+  /// Compares all boxes, and makes new free boxes. Returns true if no boxes meet.
   bool Check(std::span<const Box> boxes);
   bool CheckFixed(std::span<const Box> boxes);
   bool CheckPairs(std::span<const Box> boxes);

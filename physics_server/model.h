@@ -26,7 +26,7 @@ struct Push {
 /// Time and wind of one physics step.
 struct Surroundings {
   double t_s = 0;                                    ///< simulated time at which the step begins
-  double dt_s = 0;                                   ///< its length
+  double dt_s = 0;                                   ///< length of the step
   Eigen::Vector3d wind_W = Eigen::Vector3d::Zero();  ///< m/s
 };
 
@@ -44,7 +44,8 @@ class Model {
   virtual Eigen::Vector3d inertia_kg_m2() const = 0;  ///< principal moments about x, y, z of B
   virtual Eigen::Vector3d half_size_m() const = 0;    ///< half of the collision box; zero: a sphere of kBallRadius_m
   virtual bool feels_gravity() const = 0;
-  /// False: the body rolls on the ground without contacts; it keeps its height and stays upright, whatever hits it.
+  /// False: the body rolls on the ground without contacts with it; it keeps its height and stays upright, even if other
+  /// bodies hit it.
   virtual bool touches_ground() const { return true; }
   /// Advances the actuators by one step and returns how they move the body. `command`: the model's four inputs
   /// (ModelTraits::actuator).

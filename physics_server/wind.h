@@ -13,7 +13,7 @@ namespace mascot {
 class Wind {
  public:
   Wind(const WindConfig& config, std::uint64_t seed, double dt_s);
-  /// From the next step on: the gusts go on from where they are.
+  /// From the next step on, the wind is that of `config`; the gusts go on from their present value.
   void Adopt(const WindConfig& config);
   /// The wind of the next physics step, in W (m/s). The first call is for step 0.
   Eigen::Vector3d Next();

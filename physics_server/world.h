@@ -23,7 +23,7 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// Events have changed the experiment: from the next Step() on, the wind is that of `now`.
+  /// Call it when events have changed the experiment: from the next Step() on, the wind is that of `now`.
   void Adopt(const Experiment& now);
   /// Motion of agent `id` (1..N) at the current tick. a_WB is (v(k) - v(k-1)) * control rate, 0 at tick 0.
   Motion State(int id) const;

@@ -12,9 +12,9 @@ class PaceMeter {
  public:
   explicit PaceMeter(double rate_hz) : rate_hz_(rate_hz) {}
 
-  /// The states of a tick were out `lateness_s` after the tick was due.
+  /// Notes that the states of a tick were sent `lateness_s` after the tick was due.
   void AddTick(double lateness_s) { lateness_s_.push_back(lateness_s); }
-  /// At `tick` the world is stepped with a command of `agent` that answered the states of `age` ticks ago.
+  /// Notes that at `tick` the world is stepped with a command of `agent` that answered the states of `age` ticks ago.
   void AddCommand(int agent, std::int64_t tick, std::int64_t age);
   Pacing Result() const;
 

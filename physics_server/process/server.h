@@ -15,10 +15,10 @@
 
 namespace mascot {
 
-/// The tick loop over DDS: publishes every agent's state, gathers every agent's command, steps the world. In lockstep
-/// the world is stepped in the reception thread that brings a tick's last command. In real time the thread that calls
-/// Run() paces the ticks, and a late agent's last command is held. StartRoll and TickProtocol decide what happens when;
-/// Server does it.
+/// The tick loop over DDS: it publishes every agent's state, gathers every agent's command, and steps the world. In
+/// lockstep, the reception thread that receives a tick's last command steps the world. In real time the thread that
+/// calls Run() paces the ticks, and a late agent's last command is held. StartRoll and TickProtocol decide what to do
+/// when; Server does it.
 class Server {
  public:
   Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment);
@@ -38,25 +38,25 @@ class Server {
   bool Matched() const;
   void RunTicks();
   void Start();
-  /// Does what is due now. Throws std::runtime_error naming the late agents or the recorder.
+  /// Does what is due now. Throws std::runtime_error that names the late agents or the recorder.
   TickProtocol::Turn Look();
   void Report();
-  /// Tells the others how the ticks go on: the answer to a request, and, while the gate holds a tick, a sign of life.
+  /// Publishes how far the run has come: the answer to a request, and, while the gate holds a tick, a sign of life.
   void ReportCourse();
 
   void OnCommand(int id, const mascot_msgs::msg::AgentCommand& command);
   void OnStatus(const mascot_msgs::msg::Status& status, const std::string& from);
-  /// Carries out what people ask of the ticks. A request comes again until it is answered.
+  /// Carries out what people ask of the ticks. The orchestrator repeats a request until it is answered.
   void OnRequest(const mascot_msgs::msg::Request& request);
   // The functions below are called with mutex_ held.
   void Do(const TickProtocol::Actions& actions);
   void Publish();
-  /// Carries out a new request. Returns the first tick that it holds for, or why there is none.
+  /// Carries out a new request. Returns the first tick for which it holds, or why there is none (kOver, kTooLate).
   std::int64_t CarryOut(const mascot_msgs::msg::Request& request);
   /// Publishes the events that take effect at the world's tick: those of the file, then those by hand.
   void PublishEvents();
   void PublishEvent(const Event& event);
-  /// Publishes to each agent one bundle with those of samples_ that it may hear.
+  /// Publishes to each agent one bundle with the states of samples_ that it may hear.
   void PublishBundles();
   /// Notes the age of the commands with which the world is stepped.
   void MeasureCommands();

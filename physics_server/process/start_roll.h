@@ -8,8 +8,8 @@
 
 namespace mascot {
 
-/// The roll call at the start of a run: which processes are ready, when to ask again, which are missing when the time
-/// is up. No clock: the caller passes in the time.
+/// The roll call at the start of a run: it knows which processes are ready, when to ask again, and which are missing
+/// when the time is up. No clock: the caller passes in the time.
 class StartRoll {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -22,9 +22,9 @@ class StartRoll {
 
   /// `start_timeout_s`: how long the roll call may take.
   StartRoll(int agents, double start_timeout_s);
-  /// The process of these agents is ready, or not; the last call counts. Ids that do not exist are ignored.
+  /// Notes that the process of these agents is ready, or not; the last call counts. Ids that do not exist are ignored.
   void OnAgents(AgentRange agents, bool ready);
-  /// The recorder is ready, or not; the last call counts.
+  /// Notes that the recorder is ready, or not; the last call counts.
   void OnRecorder(bool ready);
   /// Starts the roll call and its time limit.
   void Begin(Time now);
@@ -34,7 +34,7 @@ class StartRoll {
   std::string Failure() const;
 
  private:
-  /// "agents 2, 5 and the recorder"; empty: none.
+  /// What is missing: "agents 2, 5 and the recorder"; empty: nothing.
   std::string Missing() const;
   bool IsComplete() const;
 

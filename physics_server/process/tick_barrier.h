@@ -11,8 +11,8 @@ class TickBarrier {
   explicit TickBarrier(int agents);
   /// Starts waiting for the answers to `tick`.
   void Open(std::int64_t tick);
-  /// Agent `id` (1..N) answered `tick`. Returns true if this was the last answer that the open tick waited for. An
-  /// answer to another tick, or a second one, changes nothing.
+  /// Notes that agent `id` (1..N) answered `tick`. Returns true if this was the last answer for which the open tick
+  /// waited. An answer to another tick, or a second one, changes nothing.
   bool Answer(int id, std::int64_t tick);
   /// Agents that have not answered the open tick, in increasing id.
   std::vector<int> Late() const;

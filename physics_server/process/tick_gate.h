@@ -8,31 +8,31 @@
 
 namespace mascot {
 
-/// When the next tick of a run may happen, as people ask for it while they watch: pause, single steps, pace. It decides
-/// when ticks happen, and nothing about what happens in them. No clock: the caller passes in the time.
+/// Decides when the next tick of a run may happen, as people who watch the run ask for it: pause, single steps, pace.
+/// It decides nothing about what happens in a tick. No clock: the caller passes in the time.
 class TickGate {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// `period_s`: simulated time between two ticks. `pace`: simulated seconds a second; 0: as fast as it goes.
+  /// `period_s`: simulated time between two ticks. `pace`: simulated seconds per second; 0: as fast as the machine can.
   TickGate(double period_s, double pace) : period_s_(period_s), pace_(pace) {}
 
-  /// A slower or faster pace counts from the tick before. A pause goes on.
+  /// Sets the pace, which counts from the tick before. A pause goes on.
   void SetPace(double pace);
   void Pause();
   /// Ends a pause: the next tick is due a period later.
   void Resume();
-  /// Pauses after `ticks` more ticks, of which each may happen at once.
+  /// Pauses after `ticks` more ticks, each of which may happen at once.
   void Step(std::int64_t ticks);
 
   bool paused() const { return paused_; }
   double pace() const { return pace_; }
   /// Whether ticks may happen at any time.
   bool IsOpen() const { return !paused_ && pace_ == 0; }
-  /// The earliest time of the next tick; nullopt: not before something is asked. The first call without a pause is when
-  /// the tick before happened.
+  /// The earliest time of the next tick; nullopt: there is none until Resume(), Step() or SetPace(). Without a pause,
+  /// the tick before counts as having happened at the first call.
   std::optional<Time> Opens(Time now);
-  /// The next tick happens at `now`.
+  /// Notes that the next tick happens at `now`.
   void OnTick(Time now);
 
  private:

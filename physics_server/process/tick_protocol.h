@@ -15,11 +15,11 @@ namespace mascot {
 /// The server's side of the tick protocol: decides when states are published, which commands count, when the world
 /// steps, and when waiting has taken too long. In lockstep a tick ends with the last agent's command. In real time it
 /// ends when the next one is due, and a late agent's last command is held; only the first and the last tick wait for
-/// every command. In both, a TickGate says when a tick may happen: in lockstep it is published no earlier, in real time
-/// it ends the tick before.
+/// every command. In both modes, a TickGate says when a tick may happen: in lockstep the tick is published no earlier;
+/// in real time the tick before ends then.
 ///
-/// No world, DDS, clock or lock: the caller passes in what arrives, and the time when it looks. It must carry out the
-/// answer to each event at once, before the next event.
+/// No world, DDS, clock or lock: the caller passes in what arrives, and the time when it looks. The caller must carry
+/// out the returned actions of each call at once, before the next call.
 class TickProtocol {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -28,7 +28,7 @@ class TickProtocol {
     int agents = 0;
     std::int64_t last_tick = 0;
     double period_s = 0;               ///< simulated time between two ticks
-    double pace = 0;                   ///< simulated seconds a second; 0: as fast as it goes
+    double pace = 0;                   ///< simulated seconds per second; 0: as fast as the machine can
     bool realtime = false;             ///< real time, with a pace above 0; else lockstep
     double agent_timeout_s = 0;        ///< run.agent_timeout_s
     std::int64_t recorder_window = 0;  ///< tick k is published once the recorder has tick k - recorder_window
@@ -54,17 +54,17 @@ class TickProtocol {
 
   explicit TickProtocol(const Rules& rules);
 
-  /// Starts the ticks: all processes are ready. Before this, commands are ignored and nothing is published.
+  /// Call it when all processes are ready: the ticks start. Before this, commands are ignored and nothing is published.
   Actions Start();
-  /// The recorder has confirmed all rows before row `rows`.
+  /// Call it when the recorder has confirmed all rows before row `rows`.
   Actions OnRecorded(std::int64_t rows);
-  /// Agent `id` (1..N) answered `tick`. The command counts only if `tick` is published and later than the agent's last
-  /// answer.
+  /// Call it when agent `id` (1..N) has answered `tick`. The command counts only if `tick` is published and later than
+  /// the agent's last answer.
   Actions OnCommand(int id, std::int64_t tick, bool stop_requested);
-  /// To be called by the loop after Start(), and when the gate has changed: lets ticks happen that are due, and fails
-  /// if an agent or the recorder is late.
+  /// The loop calls it after Start(), when the gate has changed, and when Turn::look_again says so: it lets ticks
+  /// happen that are due, and fails if an agent or the recorder is late.
   Turn Look(Time now, bool stop_requested);
-  /// When ticks may happen; to be changed at any time.
+  /// Decides when ticks may happen; it may be changed at any time.
   TickGate& gate() { return gate_; }
 
   /// True when the last tick is answered or a requested stop has taken effect. From then on no command counts and
@@ -83,7 +83,8 @@ class TickProtocol {
   bool IsOpen() const { return rules_.realtime || gate_.IsOpen(); }
   /// Notes that the world's tick is published.
   void NotePublished();
-  /// The same, and returns true, if it is not published yet, and neither the recorder nor the gate is in the way.
+  /// Notes that the world's tick is published, and returns true, if it is not published yet and neither the recorder
+  /// nor the gate prevents it.
   bool Publish();
   /// Moves on to the next tick.
   Actions Step();
@@ -99,7 +100,7 @@ class TickProtocol {
   std::vector<int> HeldTooLong() const;
   /// "tick 12: no command from agents 2, 5 within run.agent_timeout_s = 5.0 s".
   std::string NoCommandFrom(const std::vector<int>& agents) const;
-  /// The same of those who have not answered this tick; or that the recorder is late.
+  /// The message about the agents that have not answered this tick, or about the recorder, if that is late.
   std::string WhoIsLate() const;
 
   const Rules rules_;

@@ -16,7 +16,7 @@ bool Span(std::span<const Eigen::Vector3d> points, Axes axes);
 
 struct StressMatrix {
   std::optional<Eigen::MatrixXd> omega;
-  bool none = false;  ///< there is none: DefiniteMatrix::none. If omega is missing, too, nobody knows.
+  bool none = false;  ///< it is known that there is none (DefiniteMatrix::none); false, and no omega: it is not known
 };
 /// A stress matrix of a framework whose points span the plane, or space: symmetric, 0 outside the diagonal and the
 /// bars, Omega [p 1] = 0, positive semidefinite of rank N - d - 1 with d = CountOf(axes), largest eigenvalue 1. For

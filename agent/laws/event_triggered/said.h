@@ -8,7 +8,7 @@
 
 namespace mascot {
 
-/// What each neighbour said last: the messages that an agent has heard. A tick without a message changes nothing.
+/// The last message of each neighbour that an agent has heard. A tick without a message changes nothing.
 class LastBroadcast {
  public:
   void Hear(std::span<const Heard> heard) {

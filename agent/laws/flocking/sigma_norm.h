@@ -16,7 +16,7 @@ double Rho(double share, double from);
 /// each other below the distance d, attract each other above it, and do nothing from the range r on.
 class AlphaPair {
  public:
-  /// `bump`: from which share of r_alpha = |r|_sigma on they fade.
+  /// From the share `bump` of r_alpha = |r|_sigma on, the forces fade.
   AlphaPair(double distance_m, double range_m, double epsilon, double bump);
 
   double range_m() const { return range_m_; }
@@ -24,7 +24,7 @@ class AlphaPair {
   double Weight(double l) const { return Rho(SigmaNorm(l, epsilon_) / r_alpha_, bump_); }
   /// phi_alpha(|z|_sigma) / sqrt(1 + epsilon |z|^2): the pull along z, per length of z.
   double Stiffness(double l) const { return Action(SigmaNorm(l, epsilon_)) / std::sqrt(1 + epsilon_ * l * l); }
-  /// psi_alpha(|z|_sigma) = integral of phi_alpha from |d|_sigma on: the potential of that pull, 0 at the distance d.
+  /// psi_alpha(|z|_sigma) = integral of phi_alpha from |d|_sigma on: the potential of the pull, 0 at the distance d.
   double Potential(double l) const { return TillRange(d_alpha_) - TillRange(SigmaNorm(l, epsilon_)); }
   /// At least the largest curvature of the potential, in any direction.
   double LargestCurvature() const;

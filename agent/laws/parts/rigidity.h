@@ -23,30 +23,31 @@ struct Bar {
 std::vector<Bar> BarsOf(const Graph& graph);
 /// The vector from agent i to agent j along `axes`.
 Eigen::Vector3d SpanOf(const Bar& bar, std::span<const Eigen::Vector3d> points, Axes axes);
-/// Its length, and the square of that.
+/// The length of a bar along `axes` (m), and its square (m^2).
 double LengthOf(const Bar& bar, std::span<const Eigen::Vector3d> points, Axes axes);
 double SquareOf(const Bar& bar, std::span<const Eigen::Vector3d> points, Axes axes);
 
 /// A row for each bar, CountOf(axes) columns for each agent: d/dp of half the squares of all lengths.
 Eigen::MatrixXd RigidityMatrix(std::span<const Bar> bars, std::span<const Eigen::Vector3d> points, Axes axes);
-/// The largest eigenvalue of R'WR, with R that matrix and W the weights of the bars (m^2).
+/// The largest eigenvalue of R'WR, where R is the rigidity matrix and W has the weights of the bars (m^2).
 double LargestStiffness(std::span<const Bar> bars, std::span<const Eigen::Vector3d> points, Axes axes);
-/// Rank of the rigidity matrix if lengths fix the shape against small changes: all motions but those of a rigid body
-/// change a length.
+/// The rank of the rigidity matrix of a shape that its lengths fix against small changes: all motions but those of a
+/// rigid body change a length.
 int RankOfRigid(int agents, Axes axes);
 
 /// CountOf(axes) rows for each bar: d/dp of all directions. The points of a bar must differ.
 Eigen::MatrixXd BearingRigidityMatrix(std::span<const Bar> bars, std::span<const Eigen::Vector3d> points, Axes axes);
-/// Its rank if directions fix the shape, up to its scale: all motions but shifts and scaling change a direction.
+/// The rank of the bearing rigidity matrix of a shape that its directions fix, up to its scale: all motions but shifts
+/// and scaling change a direction.
 int RankOfBearingRigid(int agents, Axes axes);
 /// The largest eigenvalue of the sum over bars of weight P(g) / |z|, with P(g) the projection across the bar and |z|
 /// its length (1/m).
 double LargestTurnStiffness(std::span<const Bar> bars, std::span<const Eigen::Vector3d> points, Axes axes);
 
-/// What is said of a graph that is not undirected.
+/// The message about a graph that is not undirected.
 inline constexpr std::string_view kExpectedUndirected =
     "expected a graph in which both agents of an edge hear each other with the same weight, got one without";
-/// What a framework is checked for.
+/// What must fix the shape of a framework: its lengths, or its directions.
 enum class Rigidity { kLengths, kBearings };
 /// Notes a mistake in `section`, a law's table without others, unless graph and places suit a law that keeps the shape
 /// by lengths or directions. Ranks are left out above kMostAgentsOfRigidity.

@@ -9,13 +9,14 @@
 
 namespace mascot {
 
-/// What rounding may put a figure of a run off by the tick `ticks`, as a share of the magnitude of the numbers that it
-/// is computed from: the one place that says so, for all that theory predicts exactly or bounds.
+/// How far off rounding may put a figure of a run by the tick `ticks`, as a share of the magnitude of the numbers from
+/// which the figure is computed. This is the one place that says so, for everything that theory predicts exactly or
+/// bounds.
 ///
 /// Each number that a tick changes is rounded a few times: in the law, in the command, and at each step of the physics.
-/// A rounding is off by half a unit in the last place, epsilon / 2 of the number. The agents of a stable team do not
-/// let these errors grow, so that they add up to no more than their sum. That is far above what is seen: errors of
-/// different signs cancel.
+/// A rounding is off by half a unit in the last place, epsilon / 2 of the number. In a stable team these errors do not
+/// grow, so that together they are at most their sum. This is far above what runs show, because errors of different
+/// signs cancel.
 inline double RoundingShare(const Experiment& experiment, std::int64_t ticks) {
   constexpr double kRoundings = 16;  // of a tick, in the law, the command and the figure
   const double of_a_tick = kRoundings + 2 * experiment.steps_per_tick();
@@ -32,7 +33,7 @@ inline double LargestStart_m(const Experiment& experiment) {
   return largest_m;
 }
 
-/// The same of the root of the sum of squares over all agents (m).
+/// The same magnitude for the root of the sum of squares over all agents (m).
 inline double SizeOfStart_m(const Experiment& experiment) {
   return LargestStart_m(experiment) * std::sqrt(experiment.size());
 }

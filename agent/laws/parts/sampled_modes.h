@@ -9,10 +9,10 @@ namespace mascot {
 
 /// lambda_n, the largest eigenvalue of L: its norm.
 double LargestRoot(const Experiment& experiment);
-/// max |1 - step lambda| over the modes other than that of the mean: what a disagreement keeps from tick to tick at
-/// most.
+/// max |1 - step lambda| over the modes other than that of the mean: the largest share of a disagreement that remains
+/// from tick to tick.
 double SlowestFactor(const Experiment& experiment, double step);
-/// What theory says of a law.gain with which that is 1 or more.
+/// What theory says of a law.gain with which SlowestFactor() is 1 or more.
 LawTheory UnstableGain(const Experiment& experiment);
 
 }  // namespace mascot

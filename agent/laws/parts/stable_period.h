@@ -13,7 +13,7 @@ namespace mascot {
 double LongestPeriodOf(const Eigen::MatrixXd& rates);
 /// Why theory says nothing of a team whose modes do not all decay.
 inline constexpr const char* kUnstable = "the sampled team is unstable";
-/// What theory says of a law whose control period must be below `longest_s`; absent: it is.
+/// What theory says of a law whose control period must be below `longest_s`; absent: the period is below.
 std::optional<LawTheory> WhyUnstable(const Experiment& experiment, double longest_s);
 
 }  // namespace mascot

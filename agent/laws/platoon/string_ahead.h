@@ -10,10 +10,10 @@
 
 namespace mascot {
 
-/// A run of a string of vehicles, each of which hears the one before it alone, flown ahead on double integrators.
+/// A run of a string of vehicles, each of which hears only the one before it, flown ahead on double integrators.
 struct StringAhead {
   std::vector<FigureValues> figures;  ///< as `meter` has them at the end
-  bool is_cut = false;                ///< an agent asked for more than its limit of the acceleration
+  bool is_cut = false;                ///< an agent wanted more than its limit of the acceleration
 };
 
 /// Flies the whole experiment with `laws`, of all agents, by id - 1. Nullopt: it is too long for so many agents.

@@ -7,8 +7,8 @@
 
 namespace mascot {
 
-/// How a vehicle that follows its predecessor (Following) passes on what that one does, if its body is a double
-/// integrator that takes the acceleration of a tick exactly: from one vehicle to the next speeds, accelerations and
+/// How a vehicle that follows its predecessor (Following) passes on the predecessor's motion, if its body is a double
+/// integrator that takes the acceleration of a tick exactly. From one vehicle to the next, speeds, accelerations and
 /// errors of the distance are multiplied by
 ///   Gamma(z) = C [(p P + K V) F + z^-m] / (1 + C [p (P + headway V) + K (V + headway / z)] F)
 ///   C = k z / (z - 1 + k), k = 1 - exp(-h / headway)               the filter of the controller
@@ -25,8 +25,8 @@ class StringStability {
   double Gain(double w) const { return std::abs(At(w).gamma); }
   /// Whether the vehicle forgets its start: all poles of Gamma lie within the unit circle.
   bool Decays() const;
-  /// The largest |Gamma| at any frequency: 1, at rest, for a string that is stable. Of vehicles that forget their
-  /// start.
+  /// The largest |Gamma| at any frequency, which for a stable string is 1, at frequency 0. For vehicles that forget
+  /// their start.
   double LargestGain() const;
   /// The smallest headway from which on the string is stable; nullopt: not even one of a hundred seconds does it.
   std::optional<double> LeastHeadway_s() const;
@@ -34,7 +34,7 @@ class StringStability {
  private:
   struct Point {
     std::complex<double> gamma;
-    std::complex<double> below;  ///< (z - 1)^2 times its denominator
+    std::complex<double> below;  ///< (z - 1)^2 times the denominator of gamma
   };
   Point At(double w) const;
 

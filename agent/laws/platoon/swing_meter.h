@@ -30,12 +30,14 @@ class SwingFit {
 };
 
 /// Measures how a swing of the speed along x grows from each agent i - 1 to agent i in the long run: in the last whole
-/// periods of the run, once they are as the same number of periods before. Half of the run, or two periods, are looked
-/// at. And the smallest distance by which an agent is behind the one before it. The order of figures: amplification of
-/// each follower, the largest of them, the distance, and the least headway, which no run shows: none.
+/// periods of the run, once they are as the same number of periods before. It looks at half of the run, or at two
+/// periods. It also measures the smallest distance by which an agent is behind the one before it. The order of the
+/// figures: amplification of each follower, the largest of them, the distance, and the least headway, which no run
+/// shows: none.
 class SwingMeter final : public LawMeter {
  public:
-  /// `w`: of the swing (rad/s); 0: nothing swings. `forward`: 1 for agents that drive along x, -1 for those against it.
+  /// `w` is the frequency of the swing (rad/s); 0: nothing swings. `forward` is 1 for agents that drive along x, -1 for
+  /// agents that drive against it.
   SwingMeter(const Experiment& experiment, std::span<const int> ids, double w, double forward);
   void Adopt(const Experiment& now) override { experiment_ = &now; }
   void Add(const TeamRow& row) override;

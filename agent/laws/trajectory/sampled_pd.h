@@ -18,7 +18,7 @@ struct SampledPd {
     const Complex s = z - 1.0;
     return h * h / 2 * (z + 1.0) / (s * s + s * (h * d + h * h * p / 2) + h * h * p);
   }
-  /// The largest magnitude of the poles: by it, or faster, a tick makes the start be forgotten.
+  /// The largest magnitude of the poles: by this factor, or faster, the effect of the start decays in a tick.
   double Radius() const {
     const double half = (h * d + h * h * p / 2) / 2, square = half * half - h * h * p;
     if (square < 0) return std::sqrt((1 - half) * (1 - half) - square);
