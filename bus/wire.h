@@ -74,7 +74,7 @@ std::int64_t CheckedTick(const Topic& topic, std::uint32_t agent, std::uint64_t 
 std::int64_t CheckedEvent(const mascot_msgs::msg::Event& event, int number, std::int64_t last_tick);
 
 // The only conversions between our types and the types of the wire. Units and frames are the same on both sides (SI;
-// W and B as in experiment/motion.h); quaternions are x, y, z, w on the wire. ToWire() overwrites all fields of
+// W and B as in base/motion.h); quaternions are x, y, z, w on the wire. ToWire() overwrites all fields of
 // `sample`, whose stamp becomes the time of `tick` at `rate_hz`; agents are numbered from 1.
 /// The state of an agent. `events` is the number of events that have taken effect up to this tick.
 void ToWire(std::int64_t tick, int rate_hz, int agent, int events, const Motion& motion,

@@ -1,8 +1,10 @@
 #!/usr/bin/python3
-"""The documentation as a site, built by scripts/site: all links lead somewhere, nothing comes from other hosts."""
+"""The documentation as a site, built by scripts/site: all links lead somewhere, nothing comes from other hosts, and code that
+it quotes is that of the file."""
 
 import html.parser
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -67,6 +69,27 @@ class Checks(unittest.TestCase):
             site = Site(folder)
             self.assertEqual(site.broken(), [("index.html", link) for link in ("two.html#there", "no.html", "no.png")])
             self.assertEqual(site.from_elsewhere(), [("index.html", "https://example.org/x.js")])
+
+
+def quotations(text):
+    """(file, lines) of the code that a page quotes: a block below a line that ends with "From `FILE`:"; "..." leaves out."""
+    found = []
+    for file, block in re.findall(r"From\s+`([^`]+)`:\n\n```\w+\n(.*?)^```$", text, re.M | re.S):
+        found += [(file, piece.strip("\n")) for piece in re.split(r"^ *\.\.\.\n", block, flags=re.M)]
+    return found
+
+
+class Quotations(unittest.TestCase):
+    def test_are_what_the_file_says(self):
+        found = quotations((ROOT / "CONTRIBUTING.md").read_text())
+        self.assertGreater(len(found), 5)
+        for file, piece in found:
+            unindented = lambda text: "\n".join(line.strip() for line in text.splitlines())
+            self.assertIn(unindented(piece), unindented((ROOT / file).read_text()), file)
+
+    def test_are_found_piece_by_piece(self):
+        page = "so. From\n`a/b.cc`:\n\n```cpp\nint a;\n...\n  int b;\n```\n\nFrom there:\n\n```cpp\nint c;\n```\n"
+        self.assertEqual(quotations(page), [("a/b.cc", "int a;"), ("a/b.cc", "  int b;")])
 
 
 class Documentation(unittest.TestCase):
