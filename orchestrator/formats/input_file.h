@@ -7,7 +7,7 @@
 
 namespace mascot {
 
-/// Reads a regular file at any offset. Its size is that at the opening: what is appended later is not read.
+/// Reads a regular file at any offset. Its size is that at the opening: bytes that are appended later are not read.
 /// Failures throw std::runtime_error with the file's name and the system's reason.
 class InputFile {
  public:

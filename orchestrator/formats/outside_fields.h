@@ -7,9 +7,10 @@
 
 namespace mascot {
 
-/// Reads the fields of a JSON object that another process sent, which may be anything. What is missing, of another kind
-/// or out of range spoils the whole: its reader gets a value in range nevertheless, and mistake() says what was
-/// expected first. Texts are as they were sent: who prints them makes them fit (Plain()).
+/// Reads the fields of a JSON object that another process sent, which may be anything. If a field is missing, of
+/// another kind or out of range, the whole object is wrong: the reader of the field gets a value in range nevertheless,
+/// and mistake() says what was expected first. Texts are as they were sent: the code that prints them makes them safe
+/// (Plain()).
 class OutsideFields {
  public:
   using Object = nlohmann::ordered_json;

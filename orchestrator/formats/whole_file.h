@@ -12,7 +12,8 @@ namespace mascot {
 /// std::runtime_error with the file's name and the system's reason.
 void WriteWhole(const std::string& path, std::string_view text);
 
-/// The same for text that comes in pieces, of which only little is in memory. Without Commit() there is no file.
+/// Writes a file completely or not at all, from text that comes in pieces, of which only little is in memory. Without
+/// Commit() there is no file.
 class WholeFile {
  public:
   explicit WholeFile(const std::string& path) : part_(path), file_(part_.name()) {}

@@ -12,7 +12,8 @@
 
 namespace mascot {
 
-/// Disagreement of agents at one tick: of their positions, or in a formation of those less their places.
+/// Disagreement of agents at one tick: that of their positions or, in a formation, of their positions less their
+/// places.
 double DisagreementOf(const Experiment& experiment, std::span<const Motion> motions);
 
 /// Measures how far agents that do not lie are from agreement, tick by tick. The disagreement is the largest distance,
@@ -20,17 +21,18 @@ double DisagreementOf(const Experiment& experiment, std::span<const Motion> moti
 class AgreementMeter {
  public:
   explicit AgreementMeter(const Experiment& experiment);
-  /// Adds the next tick. `q_W`: what the agents agree on, by id - 1: their positions, less their places in a formation.
+  /// Adds the next tick. `q_W` is what the agents agree on, by id - 1, in W (m): their positions, in a formation less
+  /// their places.
   void Add(std::span<const Eigen::Vector3d> q_W);
 
   /// Mean of q in the newest tick.
   const Eigen::Vector3d& mean_W() const { return mean_W_; }
   /// Disagreement in the newest tick.
   double disagreement_m() const { return disagreement_m_; }
-  /// Time from which on the disagreement stays at or below 2 % of its first value. Nothing if it does not, or was
-  /// 0 from the start.
+  /// Time (s) from which on the disagreement stays at or below 2 % of its first value. Nothing if it does not, or if it
+  /// was 0 from the start.
   std::optional<double> settling_time_s() const;
-  /// Decay rate of the disagreement (decay_meter.h).
+  /// Decay rate (1/s) of the disagreement (decay_meter.h).
   std::optional<double> rate_per_s() const { return decay_.rate_per_s(); }
 
  private:

@@ -14,7 +14,7 @@
 
 namespace mascot {
 
-/// How far agents have come to what the team's law is for, in one phase of a run; docs/recording.md has the
+/// How far the agents have reached the aim of the team's law, in one phase of a run; docs/recording.md has the
 /// definitions.
 struct Aim {
   std::int64_t rows = 0;
@@ -39,7 +39,7 @@ class AimMeter {
  public:
   /// `phase`: the phase as an experiment of its own (experiment/phase.h), which must outlive this object.
   explicit AimMeter(const Experiment& phase);
-  /// Events have changed the experiment, but not the law: from the next row on it is `now`.
+  /// Call it when events have changed the experiment, but not the law: from the next row on, the experiment is `now`.
   void Adopt(const Experiment& now);
   /// Adds the next tick.
   void Add(std::span<const Motion> motions);

@@ -7,15 +7,15 @@
 namespace mascot {
 
 /// Measures the exponential decay rate of a value, row by row: minus the slope of a straight line fitted to its
-/// logarithm (least squares), from the last row above 10 % of its first value to the last row above 0.02 %, both
-/// included, or, if it does not stay below that, above 0.1 %. The last crossings of so wide a range average out the
-/// oscillations of a value that oscillates.
+/// logarithm (least squares). The fit begins with the last row above 10 % of the first value and ends with the last row
+/// above 0.02 % or, if the value does not stay below that, above 0.1 %; both rows are included. The last crossings of
+/// so wide a range average out the oscillations of a value that oscillates.
 class DecayMeter {
  public:
   /// Adds a row; times increase.
   void Add(double t_s, double value);
-  /// The rate (1/s). Nothing if the value does not fall below 0.1 %, or has not stayed below for at least a tenth of
-  /// the rows of the decline, or if these are fewer than 3.
+  /// The rate (1/s). Nothing if the value does not fall below 0.1 %, if it has stayed below for less than a tenth of
+  /// the rows of the fit, or if the fit has fewer than 3 rows.
   std::optional<double> rate_per_s() const;
 
  private:

@@ -14,15 +14,15 @@
 
 namespace mascot {
 
-/// What a run came up against, or what was done to it: a line of events.csv.
+/// Something that happened to a run, or that was done to it: a line of events.csv.
 struct Incident {
   enum class Kind {
     kContact,            ///< `other` as Contact::other
     kRotorFailure,       ///< `other`: the rotor
-    kNoSafeCommand,      ///< law.safety found none within the limits
-    kLateCommand,        ///< its tick had ended before the command came; in real time only
+    kNoSafeCommand,      ///< law.safety found no safe command within the limits
+    kLateCommand,        ///< the command's tick had ended before it arrived; in real time only
     kLostSamples,        ///< `other`: the agent that sent them
-    kAccelerationLimit,  ///< the law asked for more, and so for the other limits
+    kAccelerationLimit,  ///< the law wanted more than the limit; so for the other limits
     kSpeedLimit,
     kTiltLimit,
     kRotorLimit,
@@ -30,30 +30,32 @@ struct Incident {
   };
   Kind kind = Kind::kEvent;
   std::int64_t from = 0, to = 0;  ///< the first and the last tick
-  std::int64_t count = 1;         ///< of the ticks in between, at how many; of kLostSamples: how many samples
-  int agent = 0;                  ///< 1..N; 0: no agent in particular
-  int other = 0;                  ///< of kEvent: its number
-  double speed_m_per_s = 0;       ///< of kContact: Contact::speed_m_per_s
-  std::string toml = {};          ///< of kEvent: Event::Toml()
-  bool by_hand = false;           ///< of kEvent: it was given while the run went on, and is not of the file
+  /// At how many ticks from `from` to `to` it happened; for kLostSamples: number of samples.
+  std::int64_t count = 1;
+  int agent = 0;             ///< 1..N; 0: no agent in particular
+  int other = 0;             ///< of kEvent: its number
+  double speed_m_per_s = 0;  ///< of kContact: Contact::speed_m_per_s
+  std::string toml = {};     ///< of kEvent: Event::Toml()
+  bool by_hand = false;      ///< for kEvent: the event was given by hand, and is not of the file
 };
 
-/// So many are told one by one, beside contacts and rotor failures; beyond, they are counted.
+/// This many are reported one by one, besides contacts and rotor failures; further ones are only counted.
 inline constexpr std::size_t kMostIncidentsTold = 100'000;
 
 struct Incidents {
   std::vector<Incident> told;      ///< in the order of their first ticks, then of kind, agent and other
-  std::int64_t more = 0;           ///< not told of, beside contacts
-  std::int64_t more_contacts = 0;  ///< contacts not told of
+  std::int64_t more = 0;           ///< number of incidents that are not reported, besides contacts
+  std::int64_t more_contacts = 0;  ///< number of contacts that are not reported
 };
 
 /// Gathers the incidents of a run, row by row.
 class IncidentMeter {
  public:
   explicit IncidentMeter(const Experiment& experiment);
-  /// Adds the next tick. `links`: has the same row already.
+  /// Adds the next tick. `links` must have the same row already.
   void Add(const FlownRow& row, const LinkMeter& links);
-  /// All up to the newest tick, with the contacts and the late commands of the run, which the physics server counts.
+  /// All incidents up to the newest tick, with the contacts and the late commands of the run, which the physics server
+  /// counts.
   Incidents Result(const Contacts& contacts, const std::vector<LateCommands>& late) const;
 
  private:
@@ -72,7 +74,7 @@ class IncidentMeter {
     Episode open = {};
   };
   std::vector<Edge> edges_;          // in LinkMeter's order; empty as long as nothing can be lost
-  std::vector<std::uint64_t> lost_;  // likewise: so far; scratch
+  std::vector<std::uint64_t> lost_;  // by index in edges_: samples that the edge has lost so far; room for LossesSoFar
   std::int64_t tick_ = -1;           // the newest
   Incidents closed_;                 // not in order
 };

@@ -17,15 +17,16 @@ struct LawMeasured {
   std::vector<FigureValues> figures;  ///< in the order of law->figures
 };
 
-/// Measures, row by row, what the laws in flight measure beyond the figures that all laws share: of each law from when
-/// it began, over phases of [[law.schedule]] in which it goes on with what it remembers.
+/// Measures, row by row, the figures of the laws that are flown, beyond those that all laws share: for each law from
+/// when it began, also over phases of [[law.schedule]] in which it goes on with what it remembers.
 class LawMeters {
  public:
   /// The experiment at tick 0 must outlive this object.
   explicit LawMeters(const Experiment& start) : start_(start) {}
-  /// A phase begins at `tick`, with these motions (by id - 1): the run flies `now`.
+  /// Call it when a phase begins at `tick`, with these motions (by id - 1): from then on the run flies `now`.
   void Begin(const Experiment& now, std::int64_t tick, std::span<const Motion> motions);
-  /// Events have changed the experiment, but begun no phase: from the next row on it is `now`.
+  /// Call it when events have changed the experiment, but begun no phase: from the next row on, the experiment is
+  /// `now`.
   void Adopt(const Experiment& now);
   /// Adds the next tick.
   void Add(std::int64_t tick, const DecodedRow& row);

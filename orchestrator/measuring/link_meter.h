@@ -24,7 +24,7 @@ struct EdgeTraffic {
 class LinkMeter {
  public:
   explicit LinkMeter(const Experiment& experiment);
-  /// Events have changed the experiment: from the next row on it is `now`.
+  /// Call it when events have changed the experiment: from the next row on, the experiment is `now`.
   void Adopt(const std::shared_ptr<const Experiment>& now);
   /// Adds the next tick.
   void Add(std::int64_t tick, const DecodedRow& row);

@@ -24,11 +24,13 @@ struct Measured {
   double tilt_limited_fraction = 0;        ///< fraction of commands cut at the tilt limit
   double rotor_limited_fraction = 0;       ///< fraction of commands cut at a rotor's limit
   std::optional<double> min_separation_m;  ///< in space; absent for one agent
-  /// The same along the axes of the agents' laws, in the plane if those of one of the two are: what law.safety keeps.
+  /// The smallest distance along the axes of the agents' laws (m), in the plane if the law of one of the two is:
+  /// law.safety limits this distance.
   std::optional<double> min_separation_along_axes_m;
-  std::optional<double> filtered_fraction;  ///< fraction of commands that law.safety changed; absent: nobody has it
-  std::optional<std::int64_t> infeasible_ticks;  ///< ticks at which some agent had no safe command; absent likewise
-  double travelled_m = 0;                        ///< mean path length of the agents
+  std::optional<double> filtered_fraction;  ///< fraction of commands that law.safety changed; absent: no agent has it
+  /// Ticks at which some agent had no safe command; absent: no agent has law.safety.
+  std::optional<std::int64_t> infeasible_ticks;
+  double travelled_m = 0;  ///< mean path length of the agents
   /// Distance of the agents from ideal bodies under the same laws, over all agents and rows.
   struct Fidelity {
     double rms_m = 0;
@@ -42,7 +44,7 @@ struct Measured {
 class Metrics {
  public:
   explicit Metrics(const Experiment& experiment);
-  /// Events have changed the experiment: from the next row on it is `now`.
+  /// Call it when events have changed the experiment: from the next row on, the experiment is `now`.
   void Adopt(std::shared_ptr<const Experiment> now);
   /// Adds the next tick.
   void Add(const DecodedRow& row);

@@ -20,11 +20,13 @@ class PhaseMeter {
   PhaseMeter(Experiment phase, std::int64_t from)
       : from_(from), experiment_(std::make_unique<const Experiment>(std::move(phase))), aim_(*experiment_) {}
 
-  /// Events have changed the experiment, but begun no phase: from the next row on it is `now`.
+  /// Call it when events have changed the experiment, but begun no phase: from the next row on, the experiment is
+  /// `now`.
   void Adopt(const Experiment& now) { aim_.Adopt(now); }
   /// Adds the next row of the run.
   void Add(std::span<const Motion> motions) { aim_.Add(motions); }
-  /// The next phase begins with these motions, which are the last of this one. `laws`: what the laws have measured.
+  /// Call it when the next phase begins, with these motions, which are the last of this phase. `laws` is what the laws
+  /// have measured.
   void End(std::span<const Motion> motions, std::vector<LawMeasured> laws) {
     aim_.Add(motions);
     laws_ = std::move(laws);
@@ -34,7 +36,7 @@ class PhaseMeter {
   /// The phase as an experiment of its own, as it began.
   const Experiment& experiment() const { return *experiment_; }
   Aim aim() const { return aim_.Result(); }
-  /// What the laws had measured at its end.
+  /// What the laws had measured at the end of the phase.
   const std::vector<LawMeasured>& laws() const { return laws_; }
   double disagreement_m() const { return aim_.disagreement_m(); }
 

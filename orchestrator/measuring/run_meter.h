@@ -16,7 +16,8 @@
 
 namespace mascot {
 
-/// Measures a run row by row: metrics, link traffic, and, phase by phase of [[law.schedule]], what its laws are for.
+/// Measures a run row by row: metrics, link traffic, and, for each phase of [[law.schedule]], how far its law's aim is
+/// reached.
 class RunMeter final : public RowSink {
  public:
   explicit RunMeter(const Experiment& experiment);
@@ -28,15 +29,15 @@ class RunMeter final : public RowSink {
   const std::deque<PhaseMeter>& phases() const { return phases_; }
   /// What the laws have measured by the end of a phase, or by now.
   std::vector<LawMeasured> LawsOf(std::size_t phase) const;
-  /// What the newest phase has come to.
+  /// How far the aim of the newest phase is reached.
   Aim aim() const { return phases_.back().aim(); }
   std::vector<EdgeTraffic> Traffic() const { return links_.Result(); }
   void EdgesNow(std::vector<EdgeNow>& edges) const { links_.EdgesNow(edges); }
-  /// What the run came up against, with the contacts and the late commands that the physics server counted.
+  /// The incidents of the run, with the contacts and the late commands that the physics server counted.
   Incidents IncidentsWith(const Contacts& contacts, const std::vector<LateCommands>& late) const {
     return incidents_.Result(contacts, late);
   }
-  /// Disagreement in the newest row, for those who watch.
+  /// Disagreement in the newest row (m), for the progress line and for viewers.
   double disagreement_m() const { return phases_.back().disagreement_m(); }
 
  private:

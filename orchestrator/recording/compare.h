@@ -19,14 +19,14 @@ class Comparison final : public RowSink {
   /// Compares the next tick. Throws std::runtime_error at the first difference, which ends the run. Ticks after the end
   /// of the recording are not compared.
   void Add(const FlownRow& row) override;
-  /// Notes a difference if the recording goes on. To be called after the last tick of the run.
+  /// Notes a difference if the recording goes on. Call it after the last tick of the run.
   void Finish();
 
   /// The first difference: topic, tick, field, both values. Empty: none.
   const std::string& difference() const { return difference_; }
-  /// Messages that are equal.
+  /// Number of messages that are equal.
   std::uint64_t messages() const { return messages_; }
-  /// Whole ticks that are equal, from 0 on.
+  /// Number of whole ticks that are equal, from tick 0 on.
   std::int64_t ticks() const { return ticks_; }
 
  private:

@@ -27,7 +27,7 @@ struct RecordingPlan {
 /// The metadata of a recording that says which version of the format it is.
 inline constexpr const char* kMetadata = "mascot";
 inline constexpr const char* kFormatKey = "format";
-/// Why this version cannot read a recording: it is of a newer one. Empty: it can. A recording that says no format is of
+/// Why this program cannot read a recording: its format is newer. Empty: it can. A recording without a format has
 /// version 1.
 std::string TooNew(const McapContents& contents);
 
@@ -37,10 +37,10 @@ inline constexpr const char* kConfigFile = "config.toml";
 inline constexpr const char* kExperimentFile = "experiment.toml";
 inline constexpr const char* kToml = "application/toml";
 
-/// In that metadata: the damage of the file that the recording was recovered from.
+/// In that metadata, the key of the damage of the file from which the recording was recovered.
 inline constexpr const char* kRecoveredKey = "recovered";
-/// Why ticks may be missing at the end: the damage of the file, or of the file that it was recovered from. Empty:
-/// nothing is missing there.
+/// Why ticks may be missing at the end: the damage of the file, or of the file from which it was recovered. Empty: none
+/// is missing there.
 std::string LossOf(const McapContents& contents);
 
 /// Reads the plan from the attached config.toml. Throws ConfigError if the recording is of a newer format, if there is

@@ -14,8 +14,8 @@
 
 namespace mascot {
 
-/// Reads rows of a recording in any order, by its index (formats/mcap/index.h): only the chunks that hold them. What it
-/// gives of a tick depends on that tick alone, not on what was read before. Needs no other file of the run.
+/// Reads rows of a recording in any order, by its index (formats/mcap/index.h): only the chunks that hold them. The row
+/// of a tick depends on that tick alone, not on what was read before. Needs no other file of the run.
 class IndexedRows {
  public:
   /// Throws ConfigError if `run` is not a recording of a run, and std::runtime_error as RowsIn().

@@ -10,16 +10,18 @@
 
 namespace mascot {
 
-/// The run that is meant: `run` itself if it is a run folder or a file; if it is a folder with runs in it, at most two
-/// folders deep (`runs`, `runs/NAME`), the newest of them; for "latest", unless something has this name, the newest in
-/// `runs`. What is none of this is returned as it is. Throws ConfigError for "latest" if there is no folder `runs`.
+/// The path of the run that a user means by `run`: `run` itself if it is a run folder or a file; if it is a folder with
+/// runs in it, at most two folders deep (`runs`, `runs/NAME`), the newest of them; for "latest", unless something has
+/// this name, the newest in `runs`. Any other text is returned as it is. Throws ConfigError for "latest" if there is no
+/// folder `runs`.
 std::string FindRun(const std::string& run);
 
 /// Path of the recording of FindRun(`run`): a file, or a run folder. In a folder it is run.mcap, or else the only .mcap
 /// file (record.file may have another name). Throws ConfigError if there is no run.mcap and not exactly one .mcap file.
 std::string FindRecording(const std::string& run);
 
-/// `contents`, those of `path`; a cut recording also has the config.toml that it would have, had the run ended there.
+/// Returns `contents`, which are those of `path`. If the recording was cut, they also have the config.toml that it
+/// would have, had the run ended there.
 McapContents WithConfig(McapContents contents, const std::string& path);
 /// What `path` holds, as ReadMcap, WithConfig(). Throws ConfigError if it cannot be read or is no MCAP file.
 McapContents ReadRecording(const std::string& path);

@@ -8,17 +8,18 @@
 
 namespace mascot {
 
-/// Makes a whole recording of what a damaged one holds in front of its damage: every whole message, with its time.
+/// Makes a whole recording of the messages that a damaged one holds before its damage: every whole message, with its
+/// time.
 class Repair {
  public:
   /// Reads through the recording. Throws ConfigError if it is not the recording of a run, and std::runtime_error if it
   /// holds no whole message or has gaps.
   explicit Repair(const std::string& recording);
 
-  /// What is wrong with the recording, and at which byte; empty: nothing, it is whole.
+  /// What is wrong with the recording, and at which byte; empty: it is whole.
   const std::string& damage() const { return contents_.damage; }
   std::uint64_t messages() const { return contents_.messages; }
-  /// Where its whole ticks end (Proof::End).
+  /// Where the whole ticks of the recording end (Proof::End).
   std::string End() const { return proof_.End(plan_.ticks); }
   /// Whether nothing is lost: the damage is behind the last message of the run.
   bool keeps_all() const {

@@ -11,9 +11,9 @@ namespace mascot {
 /// Folder for the results of a run: `runs/<name>/<time>/`, or the folder given with --out.
 class RunFolder {
  public:
-  /// Creates the folder. Throws ConfigError if that fails, or if `out` exists and is not empty; with `force`, the files
-  /// of an earlier run are removed from it instead, and nothing else: what has the name of such a file, in a folder
-  /// that no run has made, is an error.
+  /// Creates the folder. Throws ConfigError if that fails, or if `out` exists and is not empty. With `force`, the files
+  /// of an earlier run are removed from it instead, and no others; in a folder that no run has made, something with the
+  /// name of such a file is an error.
   RunFolder(const std::optional<std::string>& out, const Experiment& experiment, bool force);
 
   const std::filesystem::path& path() const { return path_; }

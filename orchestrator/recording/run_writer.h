@@ -19,8 +19,8 @@ namespace mascot {
 /// byte-identical files. Failures throw std::runtime_error.
 class RunWriter final : public RowSink {
  public:
-  /// `without_events`: the resolved experiment as TOML, without events, to be attached to the recording: what a cut
-  /// recording still says of it.
+  /// `without_events` is the resolved experiment as TOML, without events. It is attached to the recording before the
+  /// messages, so that a cut recording has it.
   RunWriter(const Experiment& experiment, const RunFolder& folder, const std::string& without_events);
 
   void Add(const FlownRow& row) override;

@@ -12,7 +12,7 @@ namespace mascot {
 /// Where two samples differ.
 struct SampleDifference {
   std::string field;  ///< "pose.position.x", as in the message definition; "byte 37" if no field differs; "size"
-  std::string first, second;  ///< its values; numbers read back as the same bits
+  std::string first, second;  ///< the values of the field; a number reads back as the same bits
 };
 
 /// The first field in which two samples of a per-tick topic of this kind differ; nothing if their bytes are equal.

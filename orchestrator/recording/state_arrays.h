@@ -12,7 +12,8 @@ namespace mascot {
 /// One of the arrays of states.npz, which have one row per tick. docs/recording.md says what each contains.
 struct StateArray {
   std::string_view name;
-  /// Per agent, one letter each; "1": one number per agent; empty: one number per row, not per agent.
+  /// The components for each agent, one letter each; "1": one number for each agent; empty: one number for the row, not
+  /// for each agent.
   std::string_view components;
   bool of_command = false;  ///< taken from the commands, not from the states
 

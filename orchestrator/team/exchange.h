@@ -15,8 +15,8 @@ class Exchange {
   explicit Exchange(const Experiment& experiment)
       : experiment_(experiment), messages_(experiment.agents.size()), next_messages_(experiment.agents.size()) {}
 
-  /// Samples of the neighbours of agent `id` at this tick: their `motions` (of all agents, by id - 1) and their
-  /// messages of the previous tick. Valid until the next call.
+  /// The samples of the neighbours of agent `id` at this tick, with their motions (`motions` has those of all agents,
+  /// by id - 1) and their messages of the previous tick. Valid until the next call.
   std::span<const Sample> SamplesFor(int id, std::span<const Motion> motions) {
     samples_.clear();
     for (const Graph::Neighbour& neighbour : experiment_.graph.HeardBy(id)) {
@@ -25,7 +25,7 @@ class Exchange {
     }
     return samples_;
   }
-  /// Agent `id` sends `message` at this tick. Its neighbours get it at the next tick.
+  /// Sends `message` from agent `id` at this tick. Its neighbours get it at the next tick.
   void Send(int id, std::span<const double> message) {
     next_messages_[static_cast<std::size_t>(id - 1)].assign(message.begin(), message.end());
   }

@@ -20,9 +20,9 @@ class IdealTeam {
   const Eigen::Vector3d& p_W(int id) const { return motions_[static_cast<std::size_t>(id - 1)].p_WB; }
   /// Motions of all agents at the current tick, by id - 1.
   std::span<const Motion> motions() const { return motions_; }
-  /// What the agents asked for in the last step, by id - 1.
+  /// What the agents were commanded in the last step, by id - 1.
   std::span<const Command> commands() const { return commands_; }
-  /// Events have changed the experiment: it is `now` from the current tick on.
+  /// Call it when events have changed the experiment: from the current tick on, the experiment is `now`.
   void Adopt(const std::shared_ptr<const Experiment>& now) { team_.Adopt(now); }
   /// Goes on to the next tick. Throws what a law throws.
   void Step();

@@ -17,7 +17,7 @@ struct Row {
   std::vector<Bytes> states;
   std::vector<Bytes> commands;
   std::vector<Bytes> messages;  ///< empty for agents that send none
-  std::vector<Bytes> events;    ///< those that take effect at this tick, in order
+  std::vector<Bytes> events;    ///< the events that take effect at this tick, in order
 
   explicit Row(int agents = 0)
       : states(static_cast<std::size_t>(agents)),
@@ -40,7 +40,7 @@ struct DecodedRow {
   std::vector<Command> commands;              ///< a missing command keeps the value of the previous row (zero at first)
   std::vector<std::vector<double>> messages;  ///< empty: none was sent
   std::vector<Happening> events;              ///< in order
-  int events_so_far = 0;                      ///< number of the last event up to this tick; 0: there was none
+  int events_so_far = 0;                      ///< number of the last event up to this tick; 0: there was no event
 };
 
 }  // namespace mascot

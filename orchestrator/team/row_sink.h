@@ -22,8 +22,8 @@ class FlownRow {
 class RowSink {
  public:
   virtual ~RowSink() = default;
-  /// `events`, those of the next row, have changed the experiment: from that row on it is `live.now()`, which lives as
-  /// long as the sink keeps it. `live` itself goes on with the run.
+  /// Called when `events`, those of the next row, have changed the experiment: from that row on, the experiment is
+  /// `live.now()`, which lives as long as the sink keeps it. `live` itself changes with further events.
   virtual void Adopt(const LiveExperiment& /*live*/, std::span<const Event> /*events*/) {}
   /// Takes the next row, which is valid during the call. If this throws, the run fails.
   virtual void Add(const FlownRow& row) = 0;

@@ -15,7 +15,7 @@ class Team {
  public:
   explicit Team(const Experiment& experiment);
 
-  /// Events have changed the experiment: it is `now` from the next tick on.
+  /// Call it when events have changed the experiment: from the next tick on, the experiment is `now`.
   void Adopt(const std::shared_ptr<const Experiment>& now) {
     for (const auto& agent : agents_) agent->Adopt(now);
   }
@@ -25,7 +25,7 @@ class Team {
   Command Want(int id, std::int64_t tick, std::span<const Motion> motions);
   /// The message that agent `id` sent last.
   std::span<const double> message(int id) const { return agents_[static_cast<std::size_t>(id - 1)]->message(); }
-  /// Ends the tick: messages sent during it are received at the next one.
+  /// Ends the tick: messages that were sent during it arrive at the next tick.
   void EndTick() { exchange_.EndTick(); }
 
  private:

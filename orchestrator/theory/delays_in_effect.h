@@ -13,8 +13,8 @@ struct DelayInEffect {
   std::string key;
   double asked_s = 0;
   double jitter_s = 0;           ///< each sample's own delay lies within asked_s -+ jitter_s
-  std::int64_t least_ticks = 0;  ///< of the samples that come soonest, without reordering
-  std::int64_t most_ticks = 0;   ///< of those that come latest
+  std::int64_t least_ticks = 0;  ///< delay of the samples that arrive soonest, without reordering
+  std::int64_t most_ticks = 0;   ///< delay of the samples that arrive latest
 
   bool operator==(const DelayInEffect&) const = default;
 };

@@ -11,8 +11,8 @@
 
 namespace mascot {
 
-/// Dynamics of one agent whose law and model together are linear in q = p - d, where d is its place in a formation,
-/// else 0:
+/// Dynamics of one agent whose law and model together are linear in q = p - d, where d is the agent's place in a
+/// formation, or 0 without a formation:
 ///   order 1:  v_i = p sum_j a_ij (q_j - q_i)
 ///   order 2:  dv_i/dt = sum_j a_ij [p (q_j - q_i) + g (v_j - v_i)] - b v_i
 /// A law that wants a velocity, on a model driven by acceleration, gives order 2 with k_v p in place of p, and b = k_v.
@@ -45,7 +45,7 @@ struct LinearTeam {
   std::vector<int> Leaders() const;
   /// The dynamics that all agents but the leaders have in common; nothing if they differ, or if all are leaders.
   std::optional<LinearAgent> Common() const;
-  /// `graph` without the edges on which leaders hear: leaders do not listen.
+  /// `graph` without the edges on which leaders hear, because leaders use nothing of what they hear.
   Graph Followed(const Graph& graph) const;
 };
 
@@ -56,7 +56,7 @@ struct Linearity {
 };
 
 Linearity LinearTeamOf(const Experiment& experiment);
-/// Dynamics of an agent that is no leader, under a law of this form, whose output is `wanted`.
+/// Dynamics of an agent that is not a leader, under a law of this form, whose output is `wanted`.
 LinearAgent FollowingAgent(const AgentConfig& agent, const LinearForm& form, Wanted wanted);
 /// Dynamics of an agent that flies to its target by itself, under a law of this form that does not listen.
 LinearAgent FlyingAgent(const AgentConfig& agent, const LinearForm& form);

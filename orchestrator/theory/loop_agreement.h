@@ -5,10 +5,10 @@
 
 namespace mascot {
 
-/// Holds what is predicted of a linear team from its start, where agents meet and how fast, against a flight of its
-/// quadrotors on LowLevelLoops, which turn before they accelerate and have a limit of the tilt. What is off there by
-/// more than it may be is that of this flight; where the loops do not describe the flight, it is not predicted, and the
-/// reason is told.
+/// Compares the predictions for a linear team from its start (where agents meet, and how fast) with a flight of its
+/// quadrotors on LowLevelLoops, which turn before they accelerate and have a limit of the tilt. A prediction that is
+/// off by more than its tolerance is replaced by the value of this flight. If the loops do not describe the flight, the
+/// prediction is removed, with the reason.
 void JudgeAgreementOnLoops(const Experiment& experiment, Prediction& prediction);
 
 }  // namespace mascot

@@ -9,7 +9,7 @@
 
 namespace mascot {
 
-/// Predicts, as bands, the figures of the team's law that its own theory leaves out, where bodies lag behind what the
+/// Predicts, as bands, the figures of the team's law that its own theory leaves out because bodies lag behind what the
 /// law wants: quadrotors, and bodies driven by acceleration under a law that wants velocities. Where it cannot, it says
 /// why. docs/theory.md says how, and how wide the bands are.
 void PredictOnLoops(const Experiment& experiment, Prediction& prediction);
@@ -21,6 +21,7 @@ std::vector<LoopFlight> FlyBeside(const Experiment& experiment);
 /// Why LowLevelLoops do not describe the bodies; empty: they may.
 std::string WhyNotLoops(const Experiment& experiment);
 
-inline constexpr double kMostLoopWork = 6e5;  ///< of one flight (WorkOfLoops); five take about a second
+/// Work of one flight (WorkOfLoops); five flights of this take about a second.
+inline constexpr double kMostLoopWork = 6e5;
 
 }  // namespace mascot

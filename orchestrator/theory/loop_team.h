@@ -18,9 +18,9 @@ struct LoopAgreement {
   double first_m = 0, last_m = 0;                    ///< disagreement at the start and at the end
 };
 
-/// What is measured of a flight on LowLevelLoops, or why this is not the flight of the experiment.
+/// What is measured of a flight on LowLevelLoops, or why this flight does not describe the experiment's.
 struct LoopFlight {
-  std::string silent = {};  ///< empty: it is
+  std::string silent = {};  ///< empty: it describes it
   std::vector<FigureValues> figures =
       {};  ///< of the team's law, in the order of LawEntry::figures; empty if it is silent
   LoopAgreement agreement = {};
@@ -31,7 +31,7 @@ struct LoopFlight {
 /// fly the team's law.
 LoopFlight FlyLoops(const Experiment& experiment, const LoopError& error);
 
-/// How much work that is: ticks times agents and edges.
+/// The work of such a flight: ticks times agents and edges.
 double WorkOfLoops(const Experiment& experiment);
 
 }  // namespace mascot

@@ -7,11 +7,10 @@
 
 namespace mascot {
 
-/// By how much a LowLevelLoop differs from what the airframe says: the parts of its model that are left out may do as
-/// much.
+/// How much a LowLevelLoop differs from its airframe: the parts that its model leaves out may have this effect.
 struct LoopError {
-  double turn = 0;  ///< share by which a torque turns it more
-  double push = 0;  ///< share by which it accelerates more, along x and y
+  double turn = 0;  ///< share by which a torque turns the body more
+  double push = 0;  ///< share by which the body accelerates more, along x and y
 };
 
 /// A body that follows the commands of its law by its low-level stack, as theory sees both. A model driven by velocity
@@ -21,10 +20,10 @@ struct LoopError {
 /// moves in the steps of the physics.
 ///
 /// The limits of the airframe are part of the model: tilt, rate of turning, torque, thrust, restart of the reference.
-/// Left out are the yaw, gyroscopic torques, and what rotors do together but not one by one. Contacts do not exist.
+/// The model leaves out the yaw, gyroscopic torques, effects of the rotors together that none has alone, and contacts.
 class LowLevelLoop {
  public:
-  /// `agent` must not roll; a quadrotor is heading where it is to head, or turns there at once. The experiment must
+  /// `agent` must not be a unicycle; a quadrotor has its wanted heading, or turns to it at once. The experiment must
   /// outlive this object.
   LowLevelLoop(const Experiment& experiment, const AgentConfig& agent, const LoopError& error);
 
@@ -58,8 +57,8 @@ class LowLevelLoop {
   Eigen::Vector3d p_ref_W_, v_ref_W_;
   Eigen::Vector2d tilt_rad_ = Eigen::Vector2d::Zero();   // roll, pitch
   Eigen::Vector2d tilt_rate_ = Eigen::Vector2d::Zero();  // rad/s
-  Eigen::Vector2d turning_ = Eigen::Vector2d::Zero();    // what the rotors give now (rad/s^2)
-  double lift_n_;                                        // likewise (N)
+  Eigen::Vector2d turning_ = Eigen::Vector2d::Zero();    // angular acceleration that the rotors give now (rad/s^2)
+  double lift_n_;                                        // thrust that the rotors give now (N)
   bool is_tilt_cut_ = false;
 };
 

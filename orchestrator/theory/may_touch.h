@@ -14,11 +14,13 @@ namespace mascot {
 /// lets them.
 class ContactWatch {
  public:
-  /// Bodies may touch what they are nearer to than `margin_m`; the ground: than a quarter of that.
+  /// A body may touch another one, or an obstacle, if it is nearer than `margin_m`, and the ground if it is nearer than
+  /// a quarter of that.
   ContactWatch(const Experiment& experiment, double margin_m) : experiment_(experiment), margin_m_(margin_m) {}
 
   /// "agents 1 and 2 may touch", "agent 3 may touch the ground", "agent 3 may touch an obstacle"; empty: nothing.
-  /// Bodies with an airframe are boxes, as they are tilted, others balls. `motions`: one an agent, by id - 1.
+  /// Bodies with an airframe are boxes, tilted as they are; other bodies are balls. `motions` has one for each agent,
+  /// by id - 1.
   std::string WhatMayTouch(std::span<const Motion> motions);
 
  private:

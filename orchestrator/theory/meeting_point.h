@@ -11,7 +11,7 @@ namespace mascot {
 /// meeting_point.cc. Nothing if the graph has no spanning tree, if delays differ, if there are delays and agents do not
 /// start from rest, or if no agent with gamma_i > 0 has damping (except from rest, with agents that are alike).
 std::optional<Eigen::Vector3d> MeetingPoint(const Experiment& experiment, const LinearTeam& team, const Graph& graph);
-/// Where a leader comes to rest, as q in W (m); nothing if it does not.
+/// Where the leader comes to rest, as q in W (m); nothing if it does not.
 std::optional<Eigen::Vector3d> RestingPlace(const Experiment& experiment, const LinearTeam& team, int leader);
 /// Mean z of all q (m). With law.axes = "xy" every agent keeps its own height.
 double HeldHeight(const Experiment& experiment, const LinearTeam& team);

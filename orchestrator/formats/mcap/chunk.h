@@ -9,13 +9,14 @@
 namespace mascot::mcap {
 
 /// How much the chunks of a file may unpack to, all together. Rows of a run take a fifth to a fiftieth of their size;
-/// zeros take a ten-thousandth, and a small file of them would keep whoever reads it busy for hours.
+/// zeros take a ten-thousandth, and a small file of them would keep its reader busy for hours.
 class UnpackLimit {
  public:
-  static constexpr std::uint64_t kFreeBytes = std::uint64_t{256} << 20;  ///< so much may be packed as tightly as can be
-  static constexpr std::uint64_t kMostTimes = 300;                       ///< and beyond it so many times what is stored
+  static constexpr std::uint64_t kFreeBytes = std::uint64_t{256} << 20;  ///< this much may be compressed by any factor
+  /// And beyond it, at most this many times the stored size.
+  static constexpr std::uint64_t kMostTimes = 300;
 
-  /// Counts one more chunk. Throws Malformed if it is too much.
+  /// Counts one more chunk. Throws Malformed if all chunks together are too much.
   void Add(std::uint64_t stored_bytes, std::uint64_t bytes);
 
  private:

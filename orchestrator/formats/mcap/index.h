@@ -15,10 +15,10 @@ namespace mascot {
 class McapIndex {
  public:
   struct Chunk {
-    std::uint64_t offset = 0;  ///< of its record in the file
+    std::uint64_t offset = 0;  ///< offset of the chunk's record in the file
     std::uint64_t first_ns = 0, last_ns = 0;
-    std::vector<std::uint16_t> channels;  ///< that have messages in it, in increasing order
-    std::uint64_t bytes = 0;              ///< unpacked, as the index says; 0: there is no index
+    std::vector<std::uint16_t> channels;  ///< channels that have messages in the chunk, in increasing order
+    std::uint64_t bytes = 0;              ///< size of the unpacked chunk, as the index says; 0: there is no index
   };
 
   /// Throws what McapReader throws.
