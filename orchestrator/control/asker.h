@@ -11,7 +11,8 @@
 
 namespace mascot {
 
-/// Asks a RunControl in a thread of its own, because an answer may take a second or two. One wish after the other.
+/// Passes requests to a RunControl, one after the other, in a thread of its own, because an answer may take a second or
+/// two.
 class Asker {
  public:
   /// `control` must outlive this object.

@@ -8,8 +8,8 @@
 
 namespace mascot {
 
-/// Passes lines to and fro over a local socket. Every call ends by a time that it is told, however slowly, and in
-/// however small pieces, the other side reads or writes.
+/// Passes lines to and fro over a local socket. Every call returns by its deadline, however slowly, and in however
+/// small pieces, the other side reads or writes.
 class LocalLines {
  public:
   using Time = std::chrono::steady_clock::time_point;

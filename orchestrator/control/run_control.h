@@ -4,7 +4,7 @@
 
 namespace mascot {
 
-/// What somebody asks of a run while it goes on, or of a recording.
+/// A request to a run while it goes on, or to the playback of a recording.
 struct Wish {
   enum class Kind { kPause, kResume, kStep, kPace, kStop, kEvent, kSeek };
   Kind kind = Kind::kPause;
@@ -20,7 +20,7 @@ struct Answer {
   bool operator==(const Answer&) const = default;
 };
 
-/// Takes wishes from any thread; an answer comes within a second or two.
+/// Takes requests from any thread; an answer comes within a second or two.
 class RunControl {
  public:
   virtual ~RunControl() = default;

@@ -12,8 +12,7 @@
 namespace mascot {
 
 /// The beginning of the name of a run's socket. The process id of the run follows and, if another process has that
-/// name,
-/// "-" and a random number.
+/// name, "-" and a random number.
 inline constexpr std::string_view kRunSocketPrefix = "mascot-run-";
 
 /// The socket through which other programs of this machine (`orchestrator ps` and `send`) reach a run. Its name is

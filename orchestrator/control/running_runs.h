@@ -14,9 +14,10 @@ namespace mascot {
 struct RunningRun {
   enum class Voice {
     kAnswers,
-    kStopped,   ///< it is stopped (SIGSTOP, Ctrl-Z); of this and the next ones only process and user are known
-    kSilent,    ///< it does not answer
-    kOfOthers,  ///< it is another user's, and is not asked
+    /// The run is stopped (SIGSTOP, Ctrl-Z); of this kind and the next ones only process and user are known.
+    kStopped,
+    kSilent,    ///< the run does not answer
+    kOfOthers,  ///< the run is another user's, and is not asked
   };
   pid_t process = 0;
   std::string user;
@@ -33,17 +34,18 @@ struct RunningRun {
   bool is_ours() const { return voice != Voice::kOfOthers; }
 };
 
-// A run is found by the name of its socket, and that is anybody's to take. So the kernel is asked first who listens
-// there: the process whose id is in the name, of our user (or any user's, if we are root and it runs this very
-// program). Others are not even asked. What comes is checked as a message of a stranger is.
+// A run is found by the name of its socket, which any process can take. The kernel therefore says first which process
+// listens there: it must be the process whose id is in the name, of our user (or of any user, if we are root and the
+// process runs this very program). Other processes are not even asked. Their answers are checked like messages from
+// strangers.
 
-/// The runs that are alive on this machine, in this network namespace, by process id. One that is stopped costs a
-/// quarter of a second, one that is silent 5 s.
+/// The runs that are alive on this machine, in this network namespace, by process id. A run that is stopped costs a
+/// quarter of a second, a run that is silent 5 s.
 std::vector<RunningRun> RunsAlive();
-/// The same as a JSON array.
+/// These runs as a JSON array.
 std::string RunsJson(const std::vector<RunningRun>& runs);
-/// Asks a run, and waits at most 60 s for its answer. Not granted, with the reason: it is gone, stopped or another
-/// user's, too.
+/// Asks a run, and waits at most 60 s for its answer. The answer is not granted, with the reason, also if the run is
+/// gone, stopped or another user's.
 Answer AskRun(pid_t process, const Wish& wish);
 
 }  // namespace mascot

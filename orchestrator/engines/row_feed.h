@@ -26,7 +26,7 @@ class RowFeed {
   void HandOut(const FlownRow& row);
 
   std::vector<RowSink*> sinks_;
-  DecodedRow decoded_;  // newest row received: a command that is missing in the next row keeps its value
+  DecodedRow decoded_;  // newest row received; a command that is missing in the next row keeps its value
   RowEncoder encoder_;
   LiveExperiment live_;
   std::vector<Event> events_;  // of the newest row

@@ -16,9 +16,9 @@ namespace mascot {
 
 class DdsRun;
 
-/// Runs an experiment as separate processes in a DDS domain of its own: a physics server and the agent processes.
-/// External agents are waited for, not started. The calling process records: `sinks` get every row, in tick order.
-/// `helm`: where people steer the run; null: nowhere. `ros`, if given, is published for RViz2.
+/// Runs an experiment as separate processes in a DDS domain of its own: a physics server and the agent processes. It
+/// waits for external agents, and does not start them. The calling process records: `sinks` get every row, in tick
+/// order. People steer the run by `helm`; null: they cannot. `ros`, if given, is published for RViz2.
 class DdsEngine {
  public:
   DdsEngine(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Helm* helm,
@@ -27,10 +27,11 @@ class DdsEngine {
   DdsEngine(const DdsEngine&) = delete;
   DdsEngine& operator=(const DdsEngine&) = delete;
 
-  /// What this file gets if this process is killed while it flies (Janitor::LeaveWords()). To be called before Fly().
+  /// Sets the contents that this file gets if this process is killed while it flies (Janitor::LeaveWords()). Call it
+  /// before Fly().
   void LeaveIfKilled(const std::string& path, const std::string& text);
-  /// Flies until the run is over, for whatever reason. A failure is reported in the result. The result is final; the
-  /// caller should write it to files before it calls End().
+  /// Flies until the run is over, for whatever reason. The result reports a failure. It is final; the caller should
+  /// write it to files before it calls End().
   EngineResult Fly();
   /// Ends every child process, leaves the domain and removes the run's shared memory. Returns whether the DDS library
   /// let go within 5 s and before a signal. If not, its threads go on, and this process has to end by _exit(); the

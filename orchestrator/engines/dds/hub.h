@@ -21,18 +21,18 @@ class Hub {
  public:
   using Status = Roster::Status;
 
-  /// `peers`: the processes of the run, which are handed out with the experiment. `log` is the path of the log file.
+  /// `peers` are the processes of the run, which are handed out with the experiment. `log` is the path of the log file.
   /// `wake` is called, from any thread, when the loop should look without delay.
   Hub(Domain& domain, const Peers& peers, const Experiment& experiment, const std::string& log,
       std::function<void()> wake);
-  /// Logs what was not taken from whom.
+  /// Logs which samples were not taken, and from which participants.
   ~Hub();
 
-  /// Publishes the experiment if a process has asked for it, or if there are news of who is who: an agent that comes
-  /// late gets what was published before it came, and so need not ask. Cheap to call often.
+  /// Publishes the experiment if a process has asked for it, or if the places of the run's processes have changed. An
+  /// agent that comes late gets what was published before, and so need not ask. Cheap to call often.
   void HandOutExperiment();
-  /// Publishes that the recorder is ready, at most five times a second. Cheap to call often.
-  /// `pace`: simulated seconds a second to begin with; 0: as fast as it goes.
+  /// Publishes that the recorder is ready, at most five times a second. Cheap to call often. `pace` is the pace at the
+  /// start, in simulated seconds per second; 0: as fast as the machine can.
   void SayReady(double pace);
   /// Publishes that rows 0 .. rows - 1 are recorded.
   void Confirm(std::int64_t rows);

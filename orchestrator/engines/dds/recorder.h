@@ -21,11 +21,11 @@ class Recorder {
 
   /// Whether every reader has matched a writer.
   bool Matched() const;
-  /// Feeds complete rows, in tick order; in real time also rows whose missing commands have been waited for long
-  /// enough, or at all if `give_up`. Returns the number of rows fed since the start. Returns after 50 ms even if rows
-  /// are left, and then wakes the loop to call it again. Throws what the feed throws.
+  /// Feeds complete rows, in tick order; in real time also rows that have waited long enough for missing commands, or,
+  /// with `give_up`, that lack commands. Returns the number of rows fed since the start. Returns after 50 ms even if
+  /// rows are left, and then wakes the loop to call it again. Throws what the feed throws.
   std::int64_t Drain(bool give_up = false);
-  /// Samples known to be missing, or too late for their row.
+  /// Number of samples that are known to be missing, or that came too late for their row.
   std::uint64_t lost() const;
   /// Wall-clock time from the first sample to the newest command (s).
   double wall_s() const;
@@ -37,7 +37,7 @@ class Recorder {
  private:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// `index`: index of the topic's reader in readers_.
+  /// `index` is the index of the topic's reader in readers_.
   void OnEvent(const RawReader::Bytes& bytes, std::int64_t sequence);
   void OnSample(std::size_t index, const Topic& topic, const RawReader::Bytes& bytes, std::int64_t sequence);
   /// Throws std::runtime_error unless the sample is of this topic's agent and of a tick of the run.

@@ -21,23 +21,24 @@ class Roster {
 
   struct Rules {
     std::vector<std::string> processes;  ///< names of all processes, the physics server first
-    std::vector<bool> external;          ///< by agent id - 1: started by hand, so that its exit is not seen
-    std::uint64_t experiment = 0;        ///< digest of the experiment of this run
-    std::int64_t last_tick = 0;          ///< of the run
+    /// By agent id - 1: the agent was started by hand, so that its exit is not seen.
+    std::vector<bool> external;
+    std::uint64_t experiment = 0;  ///< digest of the experiment of this run
+    std::int64_t last_tick = 0;    ///< of the run
   };
 
   /// What a status changes.
   struct News {
-    bool changed = false;  ///< it is the first of its process, or its state differs from the last
+    bool changed = false;  ///< the status is the first of its process, or its state differs from the last
     bool wake = false;     ///< the loop should look without delay
   };
 
   explicit Roster(Rules rules);
 
   /// Takes a status of `process`. Throws std::runtime_error if an external agent reports that it has failed, if a
-  /// process has received another experiment than that of this run, or if the status cannot be one of this run.
+  /// process has received another experiment than that of this run, or if the status is impossible in this run.
   News OnStatus(const std::string& process, const Status& status);
-  /// As if a process had asked for the experiment.
+  /// Acts as if a process had asked for the experiment.
   void WantExperiment() { experiment_wanted_ = true; }
   /// Whether to publish the experiment now: a process has asked for it since the last time, and that is at least 0.1 s
   /// ago. All processes receive it each time, so that a hundred agents that ask at once need it only once.

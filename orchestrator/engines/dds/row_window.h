@@ -20,7 +20,7 @@ class RowWindow {
     std::vector<Topic> topics;  ///< clock, states, commands, and the messages of agents that send them
     int agents = 0;
     std::int64_t last_tick = 0;
-    bool realtime = false;   ///< agents may miss ticks: a row may lack commands and messages
+    bool realtime = false;   ///< agents may miss ticks, so that a row may lack commands and messages
     std::int64_t ticks = 0;  ///< capacity in ticks, counted from the next row to write
     /// In real time: a row that lacks only commands or messages is ready when the newest tick is this far ahead.
     std::int64_t patience = 0;
@@ -32,8 +32,9 @@ class RowWindow {
 
   /// Takes a sample of topic `index` of the rules; `sequence` is its writer's sequence number, from 1. Returns whether
   /// rows should be taken without delay. Throws std::runtime_error if an earlier sample of the topic is missing (but
-  /// for commands and messages in real time), if the sample came twice, or if its tick is too far ahead.
-  /// `events`: of a state, how many events have taken effect up to its tick, without which no row of it is complete.
+  /// for commands and messages in real time), if the sample came twice, or if its tick is too far ahead. For a state,
+  /// `events` is the number of events that have taken effect up to its tick; the row of that tick is complete only with
+  /// these events.
   bool Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t sequence,
             std::int64_t events = 0);
   /// Takes event number `sequence`, which takes effect at `tick`. Returns and throws as Take() does.
@@ -42,11 +43,11 @@ class RowWindow {
   /// waited `patience` ticks for them, or at all if `give_up`. Returns whether it did.
   bool Next(bool give_up, Row& row);
 
-  /// Rows taken so far; the next row has this tick.
+  /// Number of rows taken so far; the next row has this tick.
   std::int64_t rows() const { return rows_; }
   /// Newest tick with a sample; -1 before the first sample.
   std::int64_t newest_tick() const { return newest_; }
-  /// Samples known to be missing, or that came after their row was taken.
+  /// Number of samples that are known to be missing, or that came after their row was taken.
   std::uint64_t lost() const { return lost_; }
 
  private:

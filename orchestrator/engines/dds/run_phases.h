@@ -11,8 +11,8 @@
 
 namespace mascot {
 
-/// The orchestrator's decisions during a run over DDS: when the recorder is ready, when and why the run is over, which
-/// process is waited for and for how long.
+/// The orchestrator's decisions during a run over DDS: when the recorder is ready, when and why the run is over, for
+/// which process to wait and for how long.
 ///
 /// Without DDS, processes, clock and files: events, the time and the state of the run are passed in. The caller carries
 /// out the returned Actions at once.
@@ -69,21 +69,22 @@ class RunPhases {
 
   RunPhases(Rules rules, Time launched);
 
-  /// SIGINT, SIGTERM or SIGHUP came. The first stops the run in order, the second kills the children; during
-  /// kReporting, a signal only ends that wait.
+  /// Call it when SIGINT, SIGTERM or SIGHUP has come. The first stops the run in order, the second kills the children;
+  /// during kReporting, a signal only ends that wait.
   Actions OnSignal(int signal, Time now);
-  /// Somebody asks for the end of the run: as the first signal, but the run counts as one that has ended by itself.
+  /// Call it when a user asks for the end of the run: as the first signal, but the run counts as one that has ended by
+  /// itself.
   Actions OnWishToStop(Time now);
-  /// Children have exited by themselves. Before the run is over that is a failure.
+  /// Call it when children have exited by themselves. Before the run is over, that is a failure.
   void OnExits(const std::vector<Exit>& exits, Time now);
-  /// The run fails, because of `why`. Only the first failure is kept; if the DDS endpoints differ from the graph, that
-  /// difference is given as the reason instead.
+  /// Makes the run fail, because of `why`. Only the first failure is kept; if the DDS endpoints differ from the graph,
+  /// that difference is given as the reason instead.
   void Fail(const std::string& why);
-  /// The DDS endpoints differ from the graph, as `violation` says: the run fails.
+  /// Call it when the DDS endpoints differ from the graph, as `violation` says: the run fails.
   void OnViolation(const std::string& violation);
-  /// To be called regularly and whenever something has happened: goes on to the next phase when it is time.
+  /// Call it regularly, and whenever something has happened: it goes on to the next phase when it is time.
   Actions Look(const View& view, Time now);
-  /// Every row that came has been recorded: the collecting is done.
+  /// Call it when every row that came has been recorded: the collecting is done.
   Actions Collected(const View& view, Time now);
 
   Phase phase() const { return phase_; }

@@ -14,9 +14,9 @@ namespace mascot {
 /// Compares the readers and writers that DDS discovery reports with the graph. This proves that a run was
 /// decentralised: it relies on the endpoints that exist in the domain, not on what our code intends.
 ///
-/// A process hears what all of its participants hear. Others may listen, under names that are not those of processes of
-/// the run, and may not write what a run reads. What was found once stays found, also when the endpoint has gone.
-/// Thread-safe.
+/// A process hears what all of its participants hear. Other programs may listen, under names that are not those of
+/// processes of the run, and may not write what a run reads. A violation that was found stays found, also when the
+/// endpoint has gone. Thread-safe.
 class WireAudit : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   using Guid = eprosima::fastrtps::rtps::GUID_t;
@@ -25,9 +25,9 @@ class WireAudit : public eprosima::fastdds::dds::DomainParticipantListener {
   /// `peers` knows the processes of the run; this audit gives agents that are started by hand their places there.
   WireAudit(const Experiment& experiment, Peers& peers) : experiment_(experiment), peers_(peers) {}
 
-  /// The first violation that was found: who reads or writes a topic that it must not. Empty if there was none.
+  /// The first violation that was found: which process reads or writes a topic that it must not. Empty: there was none.
   std::string Violation() const;
-  /// Whether every reader that the graph asks for, and every writer of the agents, has been discovered.
+  /// Whether every reader that the graph requires, and every writer of the agents, has been discovered.
   bool IsComplete() const;
 
   // What discovery reports.

@@ -10,15 +10,16 @@
 
 namespace mascot {
 
-/// What became of each edge at any tick of a recording. A link remembers (what is on its way, what it holds, bursts of
-/// losses), so that the states of a tick follow from all rows up to it: they are followed from the start, or from one
-/// of some places that are kept. As long as every sample arrives at once, no row is needed.
+/// The state of each edge at any tick of a recording. What a link delivers depends on its past (samples on their way,
+/// samples that it holds, bursts of losses), so the states of a tick follow from all rows up to it. They are computed
+/// from the start, or from one of some ticks whose states are kept. As long as every sample arrives at once, no row is
+/// needed.
 class EdgeHistory {
  public:
   /// Where rows and changes come from.
   struct Source {
     std::function<void(std::int64_t tick, DecodedRow& row)> read;
-    /// The experiment as events change it at exactly this tick; null: they do not.
+    /// The experiment after the events of exactly this tick; null: there are none.
     std::function<std::shared_ptr<const Experiment>(std::int64_t tick)> adopted_at;
     /// The first tick after this one at which events change the experiment; INT64_MAX: none.
     std::function<std::int64_t(std::int64_t tick)> next_change;
@@ -26,8 +27,8 @@ class EdgeHistory {
   /// `experiment`, which must outlive this object: as it was at the start. `last_tick`: of the recording.
   EdgeHistory(const Experiment& experiment, std::int64_t last_tick, Source source);
 
-  /// Goes on towards `tick`, by at most so many rows. Returns whether it is there; `edges` are then those of the tick,
-  /// in increasing order of hearer, then of heard. Throws what reading throws.
+  /// Goes on towards `tick`, by at most this many rows. Returns whether it has reached `tick`; `edges` are then those
+  /// of the tick, in increasing order of hearer, then of heard. Throws what reading throws.
   bool Follow(std::int64_t tick, int rows, std::vector<EdgeNow>& edges);
 
  private:

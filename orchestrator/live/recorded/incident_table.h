@@ -11,8 +11,9 @@ namespace mascot {
 /// The first lines of the events.csv beside the recording at this path, as many as a page can mark; empty: there is
 /// none.
 std::string FirstIncidentsBeside(const std::string& recording);
-/// Notes in `events` which of them that events.csv says were given by hand, and which were not. An event that it does
-/// not have, or has at another time or with another text, stays as it is: nobody knows.
+/// Notes in `events` which of them, according to that events.csv, were given by hand, and which were not. If events.csv
+/// does not have an event, or has it at another time or with another text, the event stays as it is: it is not known
+/// how it was given.
 void TellByHand(const std::string& recording, const Experiment& experiment, std::vector<ShownEvent>& events);
 
 }  // namespace mascot

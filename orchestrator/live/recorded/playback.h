@@ -11,12 +11,12 @@
 
 namespace mascot {
 
-/// Which tick of a recording is to be seen, as viewers ask for it and as time goes on. Begins at tick 0, paused; at the
-/// last tick it pauses, and resumed there it plays from the start. Thread-safe.
+/// Decides which tick of a recording is shown, by the requests of viewers and by time. Playback begins at tick 0,
+/// paused; it pauses at the last tick, and if it is resumed there, it plays from the start. Thread-safe.
 class Playback final : public RunControl {
  public:
   using WallClock = std::chrono::steady_clock;
-  static constexpr double kSlowest = 0.1, kFastest = 100;  ///< simulated seconds a second
+  static constexpr double kSlowest = 0.1, kFastest = 100;  ///< simulated seconds per second
 
   struct Standing {
     std::int64_t tick = 0;
@@ -25,13 +25,13 @@ class Playback final : public RunControl {
     bool operator==(const Standing&) const = default;
   };
 
-  /// `clock`: what time it is.
+  /// `clock` returns the present time.
   Playback(int rate_hz, std::int64_t last_tick, std::function<WallClock::time_point()> clock = WallClock::now)
       : rate_hz_(rate_hz), last_tick_(last_tick), clock_(std::move(clock)), since_(clock_()) {}
 
   Answer Ask(const Wish& wish) override;
   Standing Now();
-  /// Waits for a wish, `over` or this time.
+  /// Waits for a request, for `over` or until this time.
   void Wait(const std::stop_token& over, WallClock::time_point until);
 
  private:

@@ -15,8 +15,9 @@ namespace mascot {
 /// Shows viewers the ticks of a recording that playback asks for, in a thread of its own.
 class Projector {
  public:
-  /// All must outlive this object; nobody else may use `run` meanwhile. `log` takes a line about a damaged file; where
-  /// it is damaged playback pauses, and behind that the states of edges are not known, if they take all rows.
+  /// All arguments must outlive this object; no other code may use `run` meanwhile. `log` takes a line about a damaged
+  /// file. Where the file is damaged, playback pauses; behind that place the states of edges are not known, if they
+  /// depend on all rows.
   Projector(RecordedRun& run, Playback& playback, LiveView& view, std::function<void(const std::string&)> log);
 
  private:

@@ -15,7 +15,7 @@
 namespace mascot {
 
 /// A recording as viewers see it, tick by tick in any order. What is shown of a tick depends on that tick alone. Reads
-/// the parts of the file that are asked for.
+/// only the parts of the file that are asked for.
 class RecordedRun {
  public:
   /// Throws what IndexedRows throws, and ConfigError if its experiment cannot be read.
@@ -23,26 +23,28 @@ class RecordedRun {
   RecordedRun(const RecordedRun&) = delete;
   RecordedRun& operator=(const RecordedRun&) = delete;
 
-  /// As it was at the start.
+  /// The experiment at the start.
   const Experiment& experiment() const { return experiment_; }
   const IndexedRows& rows() const { return rows_; }
   std::int64_t last_tick() const { return rows_.ticks() - 1; }
   RecordedPart part() const { return {last_tick(), rows_.loss(), incidents_}; }
-  /// All events. Which of them were given by hand the events.csv beside the recording says, not the recording: that is
-  /// the same, byte for byte, when the run is flown again from its config.toml.
+  /// All events. The events.csv beside the recording says which of them were given by hand. The recording does not say
+  /// it: it is the same, byte for byte, when the run is flown again from its config.toml.
   std::vector<ShownEvent> Events() const;
 
   /// The experiment as events have changed it up to and at `tick`. Throws ConfigError for an event that this version
-  /// does not understand. This object keeps some of them: who needs one for longer keeps it.
+  /// does not understand. This object keeps only some of these experiments; a caller that needs one for longer keeps
+  /// it.
   std::shared_ptr<const Experiment> At(std::int64_t tick);
-  /// What is seen at `tick`, without its edges. Throws std::runtime_error if the file is damaged there.
+  /// The row of `tick` as viewers see it, without its edges. Throws std::runtime_error if the file is damaged there.
   void Show(std::int64_t tick, ShownRow& row);
-  /// Goes on to find out the edges of the row that Show() gave, by at most so many rows of the recording. Returns
-  /// whether row.edges are known now, or never will be: there are more than kMostEdgesShown. Throws likewise.
+  /// Goes on to compute the edges of the row that Show() returned, by at most this many rows of the recording. Returns
+  /// whether row.edges are known now, or never will be because there are more than kMostEdgesShown. Throws as Show()
+  /// does.
   bool FollowEdges(ShownRow& row, int rows);
 
  private:
-  /// The experiment from this event on; null: as at the start.
+  /// The experiment from this event on; null: that of the start.
   std::shared_ptr<const Experiment> StateAfter(std::size_t events);
   /// How many events have taken effect up to and at `tick`.
   std::size_t EventsUpTo(std::int64_t tick) const;

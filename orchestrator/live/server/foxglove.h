@@ -17,7 +17,7 @@
 namespace mascot {
 
 /// The server's side of the Foxglove WebSocket protocol (subprotocols foxglove.sdk.v1 and foxglove.websocket.v1), for
-/// any number of clients: no socket, no thread, no clock. Clients may send whatever they like: nothing is thrown.
+/// any number of clients: no socket, no thread, no clock. Whatever clients send, nothing is thrown.
 class Foxglove {
  public:
   using Json = nlohmann::ordered_json;
@@ -53,7 +53,7 @@ class Foxglove {
   /// What does not change.
   struct About {
     std::string name, session;  ///< a client that connects again to the same session knows the channels
-    std::uint64_t end_ns = 0;   ///< of the run, which begins at 0
+    std::uint64_t end_ns = 0;   ///< end time of the run, which begins at 0
     std::vector<Channel> channels;
     std::function<Connections()> connections;
     std::string service;  ///< the service, which takes and gives JSON
@@ -65,9 +65,9 @@ class Foxglove {
    public:
     virtual ~Host() = default;
     virtual void Send(ClientId client, Frame frame) = 0;
-    /// Whether messages for this client should be left out, because it has not read older ones.
+    /// Whether to leave out messages for this client, because it has not read older ones.
     virtual bool IsSlow(ClientId client) const = 0;
-    /// A client has subscribed: what it has missed may be sent to it now.
+    /// Called when a client has subscribed: messages that it has missed may be sent to it now.
     virtual void OnSubscribe(ClientId client, ChannelId channel) = 0;
     // Ask the run. `reply` is to be called later, not before the call returns.
     virtual void Ask(const Wish& wish, Reply reply) = 0;
@@ -77,26 +77,26 @@ class Foxglove {
   /// `host` must outlive this object.
   Foxglove(About about, Host& host) : about_(std::move(about)), host_(host) {}
 
-  /// `controls_playback`: the client speaks foxglove.sdk.v1, which has more kinds of messages.
+  /// `controls_playback` says that the client speaks foxglove.sdk.v1, which has more kinds of messages.
   void OnOpen(ClientId client, bool controls_playback);
-  /// Returns why the client is to be dropped; empty: it is not.
+  /// Returns why to drop the client; empty: it stays.
   std::string OnMessage(ClientId client, bool is_text, std::span<const std::uint8_t> message);
   void OnClose(ClientId client) { clients_.erase(client); }
 
   std::vector<ClientId> clients() const;
   bool HasSubscriber(ChannelId channel) const;
-  /// Sends a message to all who have subscribed to the channel and are not slow.
+  /// Sends a message to all clients that have subscribed to the channel and are not slow.
   void Publish(ChannelId channel, std::uint64_t time_ns, const Payload& payload);
   /// Sends a message to one client, slow or not, if it has subscribed to the channel.
   void PublishTo(ClientId client, ChannelId channel, std::uint64_t time_ns, const Payload& payload);
-  /// Tells the simulated time to all who are not slow.
+  /// Sends the simulated time to all clients that are not slow.
   void SendTime(std::uint64_t time_ns);
-  /// What the parameters are from now on; who has subscribed to one that changed is told.
+  /// Sets the parameters; clients that have subscribed to one that changed are told.
   void SetParameters(std::vector<Parameter> parameters);
-  /// How the run goes; everybody is told if more than the time has changed.
+  /// Sets how the run goes; all clients are told if more than the time has changed.
   void SetPlayback(const Playback& playback);
 
-  // What one client may have at a time.
+  // Limits of what one client may have at a time.
   static constexpr std::size_t kMostClientChannels = 16;
   static constexpr std::size_t kMostQuestions = 16;
 
@@ -125,9 +125,10 @@ class Foxglove {
   std::string OnServiceCall(ClientId id, Bytes message);
   std::string OnPlaybackControl(ClientId id, Bytes message);
 
-  /// Asks for the wishes one after the other, as long as they are granted; `reply` gets the last answer.
+  /// Makes the requests one after the other, as long as they are granted; `reply` gets the last answer.
   void AskAll(ClientId id, std::vector<Wish> wishes, Reply reply);
-  /// Passes a question on with `ask`, which gets the reply to call. With too many questions it is refused at once.
+  /// Passes a request on with `ask`, which gets the reply to call. If the client has too many unanswered requests, this
+  /// one is refused at once.
   void Question(ClientId id, Reply reply, const std::function<void(Reply)>& ask);
 
   void SendText(ClientId id, const Json& message);

@@ -9,7 +9,7 @@
 
 namespace mascot {
 
-/// Where somebody wants an agent to go, as a geometry_msgs/PoseStamped says it: frame_id and position.
+/// Where a viewer sends an agent, as a geometry_msgs/PoseStamped says it: frame_id, and position in W (m).
 struct Goal {
   std::string frame_id;
   double x = 0, y = 0, z = 0;
@@ -34,7 +34,7 @@ class ByteReader {
     if (!bytes.empty()) std::memcpy(&value, bytes.data(), sizeof value);
     return value;
   }
-  /// A u32 length, then so many bytes.
+  /// A u32 length, then this many bytes.
   std::string_view TakeText() { return TextOf(TakeBytes(Take<std::uint32_t>())); }
   /// Goes to the next multiple of `bytes`, counted from the beginning.
   void Align(std::size_t bytes) { TakeBytes((bytes - (all_.size() - rest_.size()) % bytes) % bytes); }
@@ -60,7 +60,8 @@ void PutBytes(std::string& out, T value) {
   out.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// A geometry_msgs/msg/PoseStamped in cdr or json. Nullopt for bytes that are none, or numbers that are not finite.
+/// Reads a geometry_msgs/msg/PoseStamped in cdr or json. Nullopt if the bytes are not one, or if numbers are not
+/// finite.
 std::optional<Goal> ReadGoal(std::string_view encoding, std::span<const std::uint8_t> message);
 
 }  // namespace mascot

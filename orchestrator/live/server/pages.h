@@ -13,8 +13,8 @@ class Pages {
   /// `page`: folder of index.html.
   explicit Pages(std::filesystem::path page) : page_(std::move(page)) {}
   /// The answer to GET `target`: "/" is index.html, "/vendor/<name>/..." a file of a library of Debian, anything else a
-  /// file of the page. 404 for what is missing, hidden, or outside of these folders. The page that is sent may load
-  /// nothing from elsewhere, and talk to nobody but the server that it came from.
+  /// file of the page. 404 for a file that is missing, hidden, or outside of these folders. Headers make the page load
+  /// files only from the server that it came from, and talk only to this server.
   HttpAnswer Get(std::string_view target) const;
 
  private:

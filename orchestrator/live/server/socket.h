@@ -18,8 +18,8 @@ using ClientId = std::uint64_t;
 /// One message to a client, of two parts.
 struct Frame {
   bool is_text = false;
-  std::string head = {};                         ///< what differs from client to client
-  std::shared_ptr<const std::string> body = {};  ///< what clients share, behind the head; null: nothing
+  std::string head = {};                         ///< the part that differs from client to client
+  std::shared_ptr<const std::string> body = {};  ///< the part that clients share, behind the head; null: nothing
 };
 
 /// The answer to a GET.
@@ -31,24 +31,25 @@ struct HttpAnswer {
 
 /// Limits of a server.
 struct SocketLimits {
-  std::size_t clients = 64;                           ///< by WebSocket; who comes then gets 503
-  std::size_t connections = 256;                      ///< of both kinds; who comes then is not answered
+  std::size_t clients = 64;                           ///< clients by WebSocket; a further one gets 503
+  std::size_t connections = 256;                      ///< connections of both kinds; a further one is not answered
   std::size_t message_bytes = std::size_t{1} << 20;   ///< longest message of a client
-  std::size_t waiting_bytes = std::size_t{64} << 20;  ///< a client that leaves so much unread is dropped
+  std::size_t waiting_bytes = std::size_t{64} << 20;  ///< a client that leaves more than this unread is dropped
   std::chrono::seconds handshake{5};                  ///< time for a request to arrive
 };
 
 struct SocketOptions {
-  std::string address = "127.0.0.1";              ///< an IP address or a name
-  std::uint16_t port = 8765;                      ///< if it is taken, one of the next hundred; 0: any free one
-  std::vector<std::string> subprotocols = {};     ///< the first one that a client offers is taken
-  std::vector<std::string> allowed_origins = {};  ///< of pages that may speak to it, beside its own (live/origin.h)
-  std::chrono::milliseconds period{33};           ///< of SocketUser::OnTimer()
+  std::string address = "127.0.0.1";           ///< an IP address or a name
+  std::uint16_t port = 8765;                   ///< if it is taken, one of the next hundred; 0: any free one
+  std::vector<std::string> subprotocols = {};  ///< the first one that a client offers is taken
+  /// Origins of pages that may speak to the server, besides its own (origin.h).
+  std::vector<std::string> allowed_origins = {};
+  std::chrono::milliseconds period{33};  ///< of SocketUser::OnTimer()
   SocketLimits limits = {};
 };
 
-/// What a SocketServer serves. All functions are called in the server's thread. What they throw about a client is
-/// logged, and the client is dropped; what OnTimer() throws ends the server.
+/// What a SocketServer serves. All functions are called in the server's thread. If a function for a client throws, the
+/// error is logged, and the client is dropped; if OnTimer() throws, the server ends.
 class SocketUser {
  public:
   virtual ~SocketUser() = default;
@@ -56,7 +57,7 @@ class SocketUser {
   virtual HttpAnswer Get(std::string_view target) = 0;
   /// `subprotocol`: that of SocketOptions::subprotocols on which both sides agreed.
   virtual void OnOpen(ClientId client, const std::string& subprotocol) = 0;
-  /// A message, text in UTF-8 or bytes. Returns why the client is to be dropped; empty: it is not.
+  /// Called for a message, text in UTF-8 or bytes. Returns why to drop the client; empty: it stays.
   virtual std::string OnMessage(ClientId client, bool is_text, std::span<const std::uint8_t> message) = 0;
   virtual void OnClose(ClientId client) = 0;
   virtual void OnTimer() = 0;
@@ -68,9 +69,9 @@ class SocketUser {
 class SocketServer {
  public:
   /// Listens from now on. `log` takes a line about a client that was dropped or refused, in the server's thread. Throws
-  /// std::runtime_error if no port can be had. `user` must outlive this object, and is called only after Start().
+  /// std::runtime_error if no port is free. `user` must outlive this object, and is called only after Start().
   SocketServer(SocketOptions options, SocketUser& user, std::function<void(const std::string&)> log);
-  /// Says goodbye to the clients, sends what is waiting for them for at most a second, and ends the thread.
+  /// Closes the connections in order, sends waiting messages for at most a second, and ends the thread.
   ~SocketServer();
   SocketServer(const SocketServer&) = delete;
   SocketServer& operator=(const SocketServer&) = delete;
@@ -81,9 +82,9 @@ class SocketServer {
   std::string url() const;
   /// Calls `function` in the server's thread, soon. From any thread.
   void Post(std::function<void()> function);
-  /// Ends the server, because of an error of ours. From any thread.
+  /// Ends the server, because of an error in our own code. From any thread.
   void Fail(const std::string& why);
-  /// Whether an error of ours has ended the server. From any thread.
+  /// Whether an error in our own code has ended the server. From any thread.
   bool has_failed() const;
 
   // In the server's thread only.

@@ -23,17 +23,18 @@
 
 namespace mascot {
 
-/// A page to watch and touch a run, or a recording, and the Foxglove WebSocket protocol, on one port. The run's thread
-/// only copies each row; all else happens in the server's thread. A slow viewer loses frames.
+/// A page to watch and steer a run, or to watch a recording, and the Foxglove WebSocket protocol, on one port. The
+/// run's thread only copies each row; everything else happens in the server's thread. A slow viewer loses frames.
 class LiveView final : public RowSink, private SocketUser, private Foxglove::Host {
  public:
   struct Options {
     std::string address = "127.0.0.1";
     std::uint16_t port = 8765;
-    std::vector<std::string> allowed_origins = {};  ///< of pages that may watch and touch, too (live/origin.h)
-    std::filesystem::path page;                     ///< folder of index.html
+    /// Origins of further pages that may watch and steer (live/server/origin.h).
+    std::vector<std::string> allowed_origins = {};
+    std::filesystem::path page;  ///< folder of index.html
     ShownSource source = {};
-    double pace = 0;  ///< simulated seconds a second that the run asks for; 0: as fast as it goes
+    double pace = 0;  ///< simulated seconds per second that the run shall fly; 0: as fast as the machine can
   };
 
   /// Listens from now on; all arguments but `options` must outlive this object. `meter` must get each row before this
@@ -41,7 +42,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   /// std::runtime_error if no port can be had.
   LiveView(const Experiment& experiment, const Prediction& prediction, const RunMeter& meter, RunControl& control,
            const Options& options, std::function<void(const std::string&)> log);
-  /// As above, but of a recording: rows come by Take(), not by Add().
+  /// As above, but for a recording, whose rows come by Take(), not by Add().
   LiveView(const Experiment& experiment, const Prediction& prediction, RunControl& control, const Options& options,
            std::function<void(const std::string&)> log);
 
@@ -51,20 +52,20 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   void Add(const FlownRow& row) override;
 
   // From any thread.
-  /// Ends the view, because of an error of ours, and says so in the log.
+  /// Ends the view, because of an error in our own code, and says so in the log.
   void Fail(const std::string& why) { server_.Fail(why); }
-  /// Whether an error of ours has ended the view.
+  /// Whether an error in our own code has ended the view.
   bool has_failed() const { return server_.has_failed(); }
   /// Shows this row from now on, whether it is later or earlier than the one before.
   void Take(const ShownRow& row);
   /// Says how the run goes. real_time_factor is not used: it is measured here.
   void SetState(const RunState& state);
-  /// The experiment is `now`.
+  /// Sets the experiment to `now`.
   void SetExperiment(const Experiment& now, const std::vector<ShownKey>& keys);
   /// An event has taken effect: `now` is the experiment with it, `keys` are all that may be changed.
   /// From the first event by hand on, theory is silent.
   void OnEvent(const ShownEvent& event, const Experiment& now, const std::vector<ShownKey>& keys);
-  /// These are all the events.
+  /// Sets the list of all events.
   void SetEvents(std::vector<ShownEvent> events);
 
  private:
@@ -80,7 +81,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   void OnClose(ClientId client) override;
   void OnTimer() override;
 
-  // Foxglove::Host, likewise.
+  // Foxglove::Host, in the server's thread.
   void Send(ClientId client, Frame frame) override { server_.Send(client, std::move(frame)); }
   bool IsSlow(ClientId client) const override { return slow_.contains(client); }
   void OnSubscribe(ClientId client, Foxglove::ChannelId channel) override;
@@ -116,7 +117,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   const std::size_t ros_channels_;
   std::set<ClientId> slow_;
   Foxglove::Payload latched_[kFirstOfRos];  // the newest message of each UiChannel
-  std::set<ClientId> missed_[kFirstOfRos];  // who was too slow for it
+  std::set<ClientId> missed_[kFirstOfRos];  // clients that were too slow for this message
   std::vector<ShownEvent> events_;
   std::optional<WallClock::time_point> measured_at_;
   std::int64_t measured_tick_ = 0;

@@ -13,9 +13,9 @@
 
 namespace mascot {
 
-/// What tools of ROS 2 read of a run, in cdr: /tf (world to agent_<id>), /scene (markers: bodies, numbers, trails,
-/// edges of the graph, obstacles), and the run's own recorded topics: of each tick, and its events. No clock, no
-/// socket.
+/// The channels of a run that tools of ROS 2 read, in cdr: /tf (world to agent_<id>), /scene (markers: bodies, numbers,
+/// trails, edges of the graph, obstacles), and the run's own recorded topics: of each tick, and its events. No clock,
+/// no socket.
 class RosChannels {
  public:
   /// Every how many rows /scene holds all markers; in between, if there are few, it holds the edges alone.
@@ -31,13 +31,13 @@ class RosChannels {
   std::vector<Foxglove::Channel> channels() const;
   /// Goes on to another row, which must outlive the calls of Message().
   void SetRow(const ShownRow& row);
-  /// What a channel says of the row: empty if it says nothing of it.
+  /// The message of a channel about the row; empty: there is none.
   std::string Message(std::size_t channel);
-  /// The channel of events, which Message() says nothing of.
+  /// The channel of events, of which Message() has none.
   std::size_t event_channel() const { return kTopicsBefore + topics_.size(); }
-  /// What that channel says of an event.
+  /// The message of that channel about an event.
   std::string Message(const ShownEvent& event) const;
-  /// What somebody who begins to listen now has to know.
+  /// The message that a client needs when it subscribes to a channel.
   std::string FirstMessage(std::size_t channel);
 
  private:

@@ -27,14 +27,14 @@ std::string CdrOf(typename PubSub::type& sample) {
 
 std_msgs::msg::Header HeaderOf(std::uint64_t time_ns, const std::string& frame);
 
-/// Where the agents are: from kWorldFrame to a frame for each agent, which has its name.
+/// The places of the agents: from kWorldFrame to a frame for each agent, which has the agent's name.
 tf2_msgs::msg::TFMessage TransformsOf(const ShownRow& row, std::uint64_t time_ns);
 
 /// A run as markers of RViz. Bodies and numbers are in the frames of their agents, which /tf moves.
 class RosScene {
  public:
   explicit RosScene(const Experiment& experiment) : experiment_(experiment), trails_(experiment.agents.size()) {}
-  /// Remembers where the agents have been.
+  /// Adds the places of the agents to their trails.
   void AddToTrails(const ShownRow& row);
   void ClearTrails();
   /// All markers.

@@ -13,7 +13,7 @@
 
 namespace mascot {
 
-/// What RViz2 is shown of a run. The run's thread only copies each row; another one makes samples of the newest.
+/// The view of a run for RViz2. The run's thread only copies each row; another thread makes samples of the newest one.
 class RosView final : public RowSink, public RosSource {
  public:
   /// Both arguments must outlive this object. `meter` must get each row before this object does.
@@ -22,7 +22,7 @@ class RosView final : public RowSink, public RosSource {
   /// Takes the next row, from the run's thread.
   void Add(const FlownRow& row) override;
 
-  /// Ends the view: the run's rows go on without it, and its thread is told why.
+  /// Ends the view: the run goes on without it, and the view's thread learns why.
   void Fail(const std::string& why);
 
   // RosSource, in a thread of its own.
@@ -38,7 +38,7 @@ class RosView final : public RowSink, public RosSource {
 
   std::mutex mutex_;
   ShownRow newest_;      // guarded by mutex_
-  std::string failure_;  // likewise
+  std::string failure_;  // guarded by mutex_
 
   // The thread of RosSource alone.
   ShownRow shown_;

@@ -14,7 +14,7 @@
 
 namespace mascot {
 
-// What the page is told, as JSON. Distances in m, times in s, agents by id - 1; docs/live.md has the fields.
+// The messages to the page, as JSON. Distances are in m, times in s, agents by id - 1.
 
 /// Edges beyond which a frame says nothing about them.
 inline constexpr std::size_t kMostEdgesShown = 20000;
@@ -33,8 +33,9 @@ struct ShownRow {
 struct RunState {
   enum class Phase { kRunning, kPaused, kDone, kFailed };
   Phase phase = Phase::kRunning;
-  double pace = 0;                             ///< simulated seconds a second that are asked for; 0: as fast as it goes
-  double real_time_factor = 0;                 ///< those that are flown
+  /// Simulated seconds per second that the run shall fly; 0: as fast as the machine can.
+  double pace = 0;
+  double real_time_factor = 0;                 ///< simulated seconds per second that the run flies
   std::optional<std::uint64_t> contacts = {};  ///< absent: not known before the end
 };
 
@@ -49,10 +50,10 @@ struct ShownKey {
 struct ShownEvent {
   std::int64_t number = 0, tick = 0;
   std::string toml = {};
-  std::optional<bool> by_hand = {};  ///< absent: nobody knows
+  std::optional<bool> by_hand = {};  ///< absent: it is not known
 };
 
-/// What there is of a recording.
+/// What is there of a recording.
 struct RecordedPart {
   std::int64_t last_tick = 0;
   std::string loss = {};       ///< why later ticks may be missing; empty: there are none

@@ -9,10 +9,10 @@
 
 namespace mascot {
 
-/// A sink for viewers: what it throws ends the view, and not the run, whose other sinks go on.
+/// A sink for viewers: if it throws, the view ends, and not the run, whose other sinks go on.
 class ViewSink final : public RowSink {
  public:
-  /// `fail` ends the view, and is told why.
+  /// `fail` ends the view, and gets the reason.
   ViewSink(RowSink& inner, std::function<void(const std::string& why)> fail) : inner_(inner), fail_(std::move(fail)) {}
   void Adopt(const LiveExperiment& live, std::span<const Event> events) override;
   void Add(const FlownRow& row) override;

@@ -17,13 +17,13 @@
 
 namespace mascot {
 
-/// A host's share of a run: what `orchestrator host` does there. It is told on standard input which processes to start,
-/// and tells on standard output what they print and how they end. Its input is its lifeline: when that ends, when
-/// nothing comes for a while, or when a signal comes, it ends its processes, and leaves nothing.
+/// A host's share of a run: what `orchestrator host` does there. It reads from standard input which processes to start,
+/// and writes to standard output what they print and how they end. When its input ends, when nothing comes for a while,
+/// or when a signal comes, it ends its processes, and leaves nothing.
 class HostShare {
  public:
   explicit HostShare(StopSignal& stop);
-  /// Returns an exit code: 0 in order, 1 its input ended early or it cannot do its job, 128 + signal.
+  /// Returns an exit code: 0 the share ended in order; 1 its input ended early, or it cannot do its job; 128 + signal.
   int Run();
 
  private:

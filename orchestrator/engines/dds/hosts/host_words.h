@@ -16,11 +16,11 @@ using HostWords = nlohmann::ordered_json;
 /// From one sign of life, {"kind": "alive"}, to the next, in both directions.
 constexpr std::chrono::milliseconds kBetweenSigns{500};
 
-/// A host's first words: who it is.
+/// The first message of a host: its name and its build.
 struct HostHello {
   std::string build;      ///< BuildText()
-  std::string machine;    ///< equal: the same memory, so that one domain lock and one sweep are for both
-  std::string seen_from;  ///< our address as that host sees us; empty: unknown
+  std::string machine;    ///< equal for hosts that share memory, so that one domain lock and one sweep are for both
+  std::string seen_from;  ///< our address, as that host sees it; empty: unknown
 };
 /// This machine, as HostHello has it.
 std::string MachineText();
@@ -35,14 +35,14 @@ struct HostJob {
   int domain = 0;
   bool own_memory = true;  ///< lock the domain there, and sweep
   std::uint64_t shared_memory = 0;
-  double silence_s = 10;  ///< end if nothing is heard for so long
+  double silence_s = 10;  ///< the host ends its share if it hears nothing for this time
   std::vector<HostProcess> processes;
 };
 
 HostWords WordsOf(const HostHello& hello);
 HostWords WordsOf(const HostJob& job);
-/// What the other side said. Throw JsonError if that is something else: the one side may be a script that its owner
-/// took for `orchestrator host`, and the other a terminal.
+/// Read a message of the other side. They throw JsonError for anything else, because the other side may be another
+/// program than `orchestrator host`, or a terminal.
 HostHello ReadHello(const HostWords& words);
 HostJob ReadJob(const HostWords& words);
 

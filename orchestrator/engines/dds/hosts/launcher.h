@@ -26,8 +26,8 @@ class Launcher {
  public:
   struct Rules {
     double start_timeout_s = 0;
-    double silence_s = 0;  ///< a host of which nothing is heard for so long is lost
-    /// What a host shall do. `our_address`: where it reaches us.
+    double silence_s = 0;  ///< a host from which nothing is heard for this time is lost
+    /// What a host shall do. `our_address` is the address at which it reaches this machine.
     std::function<HostJob(const HostConfig& host, const std::string& our_address)> job;
   };
 
@@ -40,14 +40,14 @@ class Launcher {
 
   /// Starts the launch commands. Throws std::runtime_error if one cannot be started.
   void Start();
-  /// Reads what the hosts have told, and gives a sign of life. To be called at least ten times a second. Returns
-  /// whether anything was told. Throws std::runtime_error if a host is of another build, cannot do its job, or is lost.
+  /// Reads the messages of the hosts, and sends a sign of life. Call it at least ten times a second. Returns whether
+  /// there was a message. Throws std::runtime_error if a host is of another build, cannot do its job, or is lost.
   bool Pump();
   /// Processes on other hosts that have ended since the last call.
   std::vector<Exit> Reap();
   /// Tells the hosts to kill their processes.
   void Kill();
-  /// Tells the hosts to leave when their processes have ended. Returns whether there are any that have answered.
+  /// Tells the hosts to leave when their processes have ended. Returns whether any host has answered.
   bool End();
 
  private:

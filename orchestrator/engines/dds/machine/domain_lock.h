@@ -12,11 +12,11 @@ namespace mascot {
 class DomainLock {
  public:
   /// Reserves domain `wanted`; if `wanted` < 0, any free domain. Throws std::runtime_error if it is in use or none is
-  /// free, and says who has it, or them.
+  /// free; the message names the user that has it, or them.
   explicit DomainLock(int wanted);
 
   int domain() const { return domain_; }
-  /// What holds the reservation.
+  /// The descriptor that holds the reservation.
   std::array<int, 2> descriptors() const { return {name_.number(), memory_.number()}; }
   /// UDP port for the run's discovery server; RTPS assigns it to no participant of this domain.
   int discovery_port() const;

@@ -9,10 +9,10 @@
 
 namespace mascot {
 
-/// A process that outlives the others of a run, kills what their laws have started, if it bears the mark of the run
-/// (MarkDescendants(), to be called before), and removes what they leave in shared memory. It waits for the end of a
-/// pipe whose other end the orchestrator and all processes that it spawned have open: when the last of them has ended,
-/// in whatever way, it sweeps. Until then it also keeps the domain locked, if there is one.
+/// A process that outlives the other processes of a run, kills the processes that their laws have started and that bear
+/// the mark of the run (MarkDescendants(), to be called before), and removes what they leave in shared memory. It waits
+/// for the end of a pipe whose other end the orchestrator and all processes that it spawned have open: when the last of
+/// them has ended, in whatever way, it sweeps. Until then it also keeps the domain locked, if there is one.
 class Janitor {
  public:
   /// Starts the process. Throws std::runtime_error if it cannot be started.
@@ -22,7 +22,7 @@ class Janitor {
   Janitor(const Janitor&) = delete;
   Janitor& operator=(const Janitor&) = delete;
 
-  /// What this file gets if the run ends without being dismissed, and nobody has made the file.
+  /// Sets the contents that this file gets if the run ends without Dismiss() and the file does not exist.
   void LeaveWords(const std::string& path, const std::string& text) const;
   /// The end of the pipe that every process of the run has to inherit.
   int lifeline() const { return lifeline_; }
