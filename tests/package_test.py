@@ -40,6 +40,22 @@ HELPS = Helps()
 LAWS = {line for line in output_of(PROGRAM, "laws").splitlines() if re.match(r"\w+$", line)}
 
 
+class Readme(unittest.TestCase):
+    def test_its_first_experiment_gives_the_summary_that_it_shows(self):
+        page = (ROOT / "README.md").read_text().partition("## A first experiment")[2].partition("\n## ")[0]
+        blocks = re.findall(r"^```(\w*)\n(.*?)^```$", page, re.M | re.S)
+        experiment = next(block for language, block in blocks if language == "toml")
+        shown = next(block for _, block in blocks if "predicted" in block)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "first.toml"
+            path.write_text(experiment)
+            output_of(PROGRAM, "check", path)
+            printed = output_of(PROGRAM, "up", path, "--engine", "inprocess", "--set", "output.save_plot=false",
+                                "--out", pathlib.Path(folder) / "first")
+        rounded = lambda text: re.sub(r"\S+ m off", "... m off", text)  # what rounding leaves
+        self.assertIn(rounded(shown), rounded(printed))
+
+
 def options_of(text):
     """Of the first column of tables of Markdown: {"--at": "ADDRESS:PORT", ...}."""
     rows = re.findall(r"^\| `(--[a-z-]+) ?((?:[^`])*)` \|", text, re.M)
