@@ -17,15 +17,16 @@ constexpr Range kTime_s = {0, 1e6};
 constexpr std::string_view kHosts[] = {"local", "external"};
 
 constexpr Key kRandomKeys[] = {
-    key::Vector3("min_m", kPlace_m, "a corner of the box that they start in").Default("[-10, -10, 1]"),
-    key::Vector3("max_m", kPlace_m, "the corner opposite").Otherwise("[10, 10, 4], larger for many agents"),
-    key::Number("min_separation_m", {0, 1e6}, "smallest distance between any two; in z alone where `law.axes = \"xy\"`")
+    key::Vector3("min_m", kPlace_m, "a corner of the box in which the agents start").Default("[-10, -10, 1]"),
+    key::Vector3("max_m", kPlace_m, "the opposite corner").Otherwise("[10, 10, 4], larger for many agents"),
+    key::Number("min_separation_m", {0, 1e6},
+                "smallest distance between any two starts; with `law.axes = \"xy\"` in z alone")
         .Default("0.5"),
 };
 
 Key AirframeKey() {
-  Key row =
-      key::OneOf("airframe", AirframeNames(), "a built-in airframe, or a table of one's own").Or(ValueKind::kTable);
+  Key row = key::OneOf("airframe", AirframeNames(), "a built-in airframe, or a table that describes one")
+                .Or(ValueKind::kTable);
   row.keys = AirframeKeys();
   return row;
 }
@@ -144,30 +145,35 @@ void ReadHeadings(Section& agents, std::vector<AgentConfig>& team) {
 
 std::span<const Key> AgentsKeys() {
   static const Key override_keys[] = {
-      key::Integer("id", 1, kMaxAgents, "number of the agent that this is for").Required(),
-      key::OneOf("model", ModelNames(), "its model").Otherwise("the team's"),
+      key::Integer("id", 1, kMaxAgents, "number of the agent that this table is about").Required(),
+      key::OneOf("model", ModelNames(), "the agent's model").Otherwise("the team's"),
       AirframeKey().Otherwise("the team's"),
-      key::Table("control", AgentControlKeys(), "what is left out is as in `[control]`"),
+      key::Table("control", AgentControlKeys(),
+                 "`[control]` for this agent; keys that are left out are as in `[control]`"),
       key::Table("law", LawKeys(),
-                 "a law of its own; what is left out is as in `[law]`, if its name is the same or left out"),
-      key::Number("start_s", kTime_s, "before this time its law is off: it comes to rest, and nobody hears it")
+                 "a law of the agent's own; if its name is that of `[law]`, or left out, keys that are left out are as "
+                 "in `[law]`"),
+      key::Number("start_s", kTime_s,
+                  "before this time the agent's law is off: the agent comes to rest, and no other agent hears it")
           .Default("0.0"),
       key::Number("stop_s", kTime_s,
-                  "from this time on its law is off again: driven by acceleration, it coasts about v / "
+                  "from this time on the agent's law is off again; a model driven by acceleration coasts about v / "
                   "`control.velocity_gain` from the speed v")
           .Otherwise("never"),
-      key::OneOf("host", kHosts, "external: started by hand, on this host or another, and waited for")
+      key::OneOf("host", kHosts,
+                 "external: the agent is started by hand, on this host or another, and the run waits for it")
           .Default("\"local\""),
-      key::Table("lie", LieKeys(), "what others hear of it is false: state and messages"),
+      key::Table("lie", LieKeys(), "the agent lies: the state and the messages that others hear of it are false"),
   };
   static const Key keys[] = {
-      key::Integer("count", 1, kMaxAgents, "how many; they are numbered from 1").Required(),
-      key::OneOf("model", ModelNames(), "see `orchestrator models`").Default(DefaultModel()),
+      key::Integer("count", 1, kMaxAgents, "number of agents; they are numbered from 1").Required(),
+      key::OneOf("model", ModelNames(), "kind of body; `orchestrator models` describes each").Default(DefaultModel()),
       AirframeKey().Default("\"mascot\""),
-      key::Points("position_m", kPlace_m, "where each starts, in W"),
+      key::Points("position_m", kPlace_m, "where each agent starts, in W"),
       key::Table("random", kRandomKeys, "places drawn by `run.seed`; used without `position_m`"),
-      key::Points("velocity_m_per_s", {-1000, 1000}, "velocity with which each starts, in W").Otherwise("all zero"),
-      key::Numbers("heading_rad", {-10, 10}, "yaw with which each starts").Otherwise("all zero"),
+      key::Points("velocity_m_per_s", {-1000, 1000}, "velocity with which each agent starts, in W")
+          .Otherwise("all zero"),
+      key::Numbers("heading_rad", {-10, 10}, "yaw with which each agent starts").Otherwise("all zero"),
       key::Tables("override", override_keys, "what is different about one agent"),
   };
   return keys;

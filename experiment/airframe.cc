@@ -95,23 +95,24 @@ constexpr Key kAirframeGainKeys[] = {
 };
 
 constexpr Key kAirframeKeys[] = {
-    key::OneOf("base", kAirframeNames, "the built-in airframe that gives what this table leaves out")
+    key::OneOf("base", kAirframeNames, "the built-in airframe from which this table takes the keys that it leaves out")
         .Default("\"mascot\""),
     key::Text("name", "name of the airframe").Otherwise(kOfBase),
     key::Number("mass_kg", Above(0, 1e4), "mass").Otherwise(kOfBase),
     key::Vector3("inertia_kg_m2", {0, 1e6}, "moments of inertia about x, y, z of B").Otherwise(kOfBase),
-    key::Number("arm_m", Above(0, 100), "d: centre to rotor").Otherwise(kOfBase),
+    key::Number("arm_m", Above(0, 100), "d: distance from the centre to a rotor").Otherwise(kOfBase),
     key::Number("lift_n_s2", Above(0, 1), "b: thrust of a rotor per squared speed").Otherwise(kOfBase),
     key::Number("drag_n_m_s2", Above(0, 1), "k: torque of a rotor per squared speed").Otherwise(kOfBase),
     key::Number("linear_drag_kg_per_s", {0, 1e3}, "B: force per airspeed").Otherwise(kOfBase),
     key::Number("max_thrust_n", Above(0, 1e6), "thrust of all four rotors together").Otherwise(kOfBase),
-    key::Number("rotor_time_constant_s", {0, 10}, "lag of the rotor speed; 0: none").Otherwise(kOfBase),
+    key::Number("rotor_time_constant_s", {0, 10}, "time constant of the lag of the rotor speed; 0: no lag")
+        .Otherwise(kOfBase),
     key::Vector3("size_m", {1e-3, 100}, "collision box, full lengths").Otherwise(kOfBase),
     key::Number("tilt_limit_rad", Above(0, 1.5), "limit on roll and on pitch").Otherwise(kOfBase),
-    key::Table("altitude", kAirframeGainKeys, "m/s^2 per m and per m/s"),
-    key::Table("heading", kAirframeGainKeys, "rad/s^2 per rad and per rad/s"),
-    key::Table("attitude", kAirframeGainKeys, "roll and pitch: rad/s^2 per rad and per rad/s"),
-    key::Table("position", kAirframeGainKeys, "m/s^2 per m and per m/s, in x and y"),
+    key::Table("altitude", kAirframeGainKeys, "gains of the altitude loop: m/s^2 per m and per m/s"),
+    key::Table("heading", kAirframeGainKeys, "gains of the heading loop: rad/s^2 per rad and per rad/s"),
+    key::Table("attitude", kAirframeGainKeys, "gains of the roll and pitch loops: rad/s^2 per rad and per rad/s"),
+    key::Table("position", kAirframeGainKeys, "gains of the position loop in x and y: m/s^2 per m and per m/s"),
 };
 
 PdGains ReadGains(Section& table, std::string_view key, const PdGains& base) {

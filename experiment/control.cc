@@ -15,27 +15,32 @@ constexpr Key kLoopGainKeys[] = {
 
 constexpr std::array kAgentKeys = {
     key::Table("altitude", kLoopGainKeys, "gains of the altitude loop: m/s^2 per m and per m/s").Otherwise(kOfAirframe),
-    key::Table("heading", kLoopGainKeys, "rad/s^2 per rad and per rad/s").Otherwise(kOfAirframe),
-    key::Table("attitude", kLoopGainKeys, "roll and pitch: rad/s^2 per rad and per rad/s").Otherwise(kOfAirframe),
-    key::Table("position", kLoopGainKeys, "x and y: m/s^2 per m and per m/s").Otherwise(kOfAirframe),
+    key::Table("heading", kLoopGainKeys, "gains of the heading loop: rad/s^2 per rad and per rad/s")
+        .Otherwise(kOfAirframe),
+    key::Table("attitude", kLoopGainKeys, "gains of the roll and pitch loops: rad/s^2 per rad and per rad/s")
+        .Otherwise(kOfAirframe),
+    key::Table("position", kLoopGainKeys, "gains of the position loop in x and y: m/s^2 per m and per m/s")
+        .Otherwise(kOfAirframe),
     key::Number("heading_rad", {-10, 10}, "wanted yaw").Default("0.0"),
-    key::Number("max_acceleration_m_per_s2", Above(0, 1000), "limit on what the law wants, per axis; cuts are counted")
+    key::Number("max_acceleration_m_per_s2", Above(0, 1000),
+                "limit on the acceleration that the law wants, per axis; the run counts how often it cuts")
         .Default("3.0")
         .Live(),
-    key::Number("max_speed_m_per_s", Above(0, 1000), "limit on a wanted velocity, per axis; cuts are counted")
+    key::Number("max_speed_m_per_s", Above(0, 1000),
+                "limit on the velocity that the law wants, per axis; the run counts how often it cuts")
         .Default("100.0")
         .Live(),
     key::Number("velocity_gain", Above(0, 1000),
-                "k_v: a wanted velocity v* asks a model driven by acceleration for k_v (v* - v)")
+                "k_v: to reach a wanted velocity v*, a model driven by acceleration is commanded k_v (v* - v)")
         .Default("2.0")
         .Unit("1/s")
         .Live(),
     key::Number("look_ahead_m", Above(0, 100),
-                "unicycle: distance from its centre to the point ahead of it that moves as wanted")
+                "unicycle: distance from its centre to the point ahead of it that moves with the wanted velocity")
         .Default("0.1"),
     key::Number("tilt_limit_rad", Above(0, 1.5), "limit on roll and on pitch").Otherwise(kOfAirframe),
     key::OneOf("inversion", kInversions.names(),
-               "how a wanted acceleration becomes roll, pitch and thrust; the paper's is small_angle")
+               "how a wanted acceleration becomes roll, pitch and thrust; the paper has small_angle")
         .Default("\"small_angle\""),
     key::Boolean("drag_compensation", "adds the known drag to the wanted acceleration").Default("true"),
 };
@@ -44,7 +49,7 @@ constexpr auto kControlKeys = Joined(
     std::array{
         key::Integer("rate_hz", 1, 100000, "ticks per simulated second; divides `physics.rate_hz`").Default("100"),
         key::Integer("python_memory_mb", 100, 1'000'000,
-                     "how much memory a process may take while it runs a law in Python; then the law fails")
+                     "how much memory a process may take while it runs a law in Python; a law that exceeds it fails")
             .Otherwise("2000")},
     kAgentKeys);
 

@@ -110,17 +110,18 @@ HostConfig ReadHost(Section& section, std::vector<AgentConfig>& agents, std::set
 
 std::span<const Key> HostKeys() {
   static const Key keys[] = {
-      key::Text("name", "the machine").Required(),
-      key::Text("agents", "those that are on it: \"1-20\" or \"1-5,8\"; all others are where `up` is").Required(),
-      key::Texts("launch", "a command that runs its arguments there")
+      key::Text("name", "name of the machine").Required(),
+      key::Text("agents", "the agents on this machine: \"1-20\" or \"1-5,8\"; all others run where `up` runs")
+          .Required(),
+      key::Texts("launch", "a command that runs its arguments on the machine")
           .Otherwise("`ssh -oBatchMode=yes -oConnectTimeout=10 NAME`"),
       key::Boolean(
           "together",
-          "one launch command starts `orchestrator host` on all such hosts at once, hands its standard input to "
-          "each, and merges what they print; `name` is then what Slurm calls the node, or its own host name")
+          "one launch command starts `orchestrator host` on all such machines at once, hands its standard input to "
+          "each, and merges their output; `name` is then Slurm's name of the node, or its own host name")
           .Default("false"),
-      key::Text("program", "path of `orchestrator` there; empty: the same as here").Default("\"\""),
-      key::Text("address", "the interface that DDS uses there, by its IPv4 address; empty: the system chooses")
+      key::Text("program", "path of `orchestrator` on the machine; empty: the same as here").Default("\"\""),
+      key::Text("address", "IPv4 address of the interface that DDS uses on the machine; empty: the system chooses")
           .Default("\"\""),
   };
   return keys;

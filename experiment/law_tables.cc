@@ -109,25 +109,24 @@ class ScheduleReader {
 
 std::span<const Key> LawKeys() {
   static const Key schedule[] = {
-      key::Number("at_s", Above(0, 1e6), "when the phase begins; a whole number of ticks").Required(),
+      key::Number("at_s", Above(0, 1e6), "time at which the phase begins; a whole number of ticks").Required(),
       key::Text("name", "one of the laws below").Otherwise("the law before"),
-      key::Integer("leader", 0, kMaxAgents, "agent that leads; 0: none")
+      key::Integer("leader", 0, kMaxAgents, "number of the agent that leads; 0: none")
           .Otherwise("that before, if the law stays; else 0"),
       key::OneOf("axes", kAxes.names(), "the axes that the law controls, always those of the first phase")
           .Otherwise("those before"),
-      key::Table("safety", SafetyKeys(), "a barrier that keeps agents apart, around any law")
+      key::Table("safety", SafetyKeys(), "a filter around any law that keeps agents apart")
           .Otherwise("that before, also around another law"),
   };
   static const Key keys[] = {
       key::Text("name", "one of the laws below").Otherwise("the first of the laws"),
-      key::Integer("leader", 0, kMaxAgents, "agent that leads; 0: none").Default("0"),
-      key::OneOf("axes", kAxes.names(), "the axes that the law controls; with xy the initial heights are held")
+      key::Integer("leader", 0, kMaxAgents, "number of the agent that leads; 0: none").Default("0"),
+      key::OneOf("axes", kAxes.names(), "the axes that the law controls; with xy each agent holds its initial height")
           .Otherwise("the law's own"),
-      key::Table("safety", SafetyKeys(), "a barrier that keeps agents apart, around any law").Otherwise("none"),
-      key::Tables(
-          "schedule", schedule,
-          "what the law is from a time on: also any parameter of the law; a phase that names the law before, or "
-          "none, goes on with its parameters; at most 1000"),
+      key::Table("safety", SafetyKeys(), "a filter around any law that keeps agents apart").Otherwise("none"),
+      key::Tables("schedule", schedule,
+                  "the law from a time on; also any parameter of that law; a phase that names the law of the phase "
+                  "before, or no law, keeps its parameters; at most 1000"),
   };
   return keys;
 }

@@ -5,12 +5,12 @@ namespace mascot {
 std::span<const Key> LieKeys() {
   static const Key keys[] = {
       key::OneOf("kind", kLieKinds.names(),
-                 "constant: off by offset_m; oscillating: by a sine of that amplitude; random: by up to that, anew at "
-                 "each tick")
+                 "constant: the position is off by offset_m; oscillating: by a sine of this amplitude; random: by up "
+                 "to this, drawn anew at each tick")
           .Default("\"constant\""),
-      key::Number("from_s", {0, 1e6}, "it tells the truth before").Default("0.0"),
-      key::Vector3("offset_m", {-1e6, 1e6}, "how far off its position is in what others hear").Required(),
-      key::Number("period_s", Above(0, 1e6), "of an oscillating lie").Default("5.0"),
+      key::Number("from_s", {0, 1e6}, "before this time the agent tells the truth").Default("0.0"),
+      key::Vector3("offset_m", {-1e6, 1e6}, "how far off the position is that others hear of the agent").Required(),
+      key::Number("period_s", Above(0, 1e6), "period of an oscillating lie").Default("5.0"),
   };
   return keys;
 }

@@ -13,20 +13,20 @@ constexpr std::size_t kMostOverrides = 10000;
 constexpr Key kBurstKeys[] = {
     key::Number("good_to_bad", {0, 1}, "probability per tick that a good link turns bad").Required().Live(),
     key::Number("bad_to_good", {0, 1}, "probability per tick that a bad link turns good").Required().Live(),
-    key::Number("loss_good", {0, 1}, "probability of a loss while it is good").Default("0.0").Live(),
-    key::Number("loss_bad", {0, 1}, "probability of a loss while it is bad").Default("1.0").Live(),
+    key::Number("loss_good", {0, 1}, "probability of a loss while the link is good").Default("0.0").Live(),
+    key::Number("loss_bad", {0, 1}, "probability of a loss while the link is bad").Default("1.0").Live(),
 };
 
 constexpr std::array kCommonKeys = {
     key::Number("loss", {0, 1}, "probability that a sample is lost, independent of all others").Default("0.0").Live(),
     key::Table("gilbert_elliott", kBurstKeys, "loss in bursts, instead of `loss` (Gilbert 1960, Elliott 1963)"),
     key::Number("delay_s", {0, kLongestDelay_s},
-                "how late samples are, rounded up to whole ticks; `orchestrator check` prints the delay in effect")
+                "delay of samples, rounded up to whole ticks; `orchestrator check` prints the delay in effect")
         .Default("0.0")
         .Live(),
     key::Number("jitter_s", {0, kLongestDelay_s},
-                "the delay of each sample lies within `delay_s` -+ this, uniformly, before it is rounded up; at most "
-                "`delay_s`")
+                "the delay of each sample is uniformly distributed within `delay_s` plus or minus this, and then "
+                "rounded up; at most `delay_s`")
         .Default("0.0")
         .Live(),
     key::Number("reordering", {0, 1}, "probability that a sample skips the delay, and so overtakes others")
@@ -35,19 +35,20 @@ constexpr std::array kCommonKeys = {
     key::Boolean("symmetric", "i -> j and j -> i lose and delay the same samples").Default("false"),
     key::Number(
         "hold_s", {0, 1e6},
-        "how old the last sample may grow, beyond its delay, while no newer one comes; rounded down to whole ticks")
+        "how long the last sample is used, beyond its delay, while no newer one arrives; rounded down to whole ticks")
         .Default("0.0")
         .Live(),
 };
 
 constexpr auto kOverrideKeys = Joined(
-    std::array{key::Rows("edges", {1, 10000}, "`[i, j]`, ...: the edges that this is for (i hears j)").Required()},
+    std::array{
+        key::Rows("edges", {1, 10000}, "`[i, j]`, ...: the edges that this table is about (i hears j)").Required()},
     kCommonKeys);
 
 constexpr auto kLinkKeys =
     Joined(kCommonKeys, std::array{key::Tables("override", kOverrideKeys,
-                                               "other links for some edges; what is left out is as in `[link]`, `loss` "
-                                               "and `gilbert_elliott` in place of each other; at most 10000")});
+                                               "other links for some edges; keys that are left out are as in `[link]`, "
+                                               "but `loss` and `gilbert_elliott` replace each other; at most 10000")});
 
 GilbertElliott ReadBursts(Section section) {
   GilbertElliott bursts;

@@ -10,7 +10,7 @@ constexpr std::size_t kMostObstacles = 1000, kMostFailures = 40000;
 constexpr Range kCentre_m = {-1e6, 1e6};
 constexpr Range kAirspeed_m_per_s = {-200, 200};
 constexpr Key kWindKeys[] = {
-    key::Vector3("mean_m_per_s", kAirspeed_m_per_s, "in W").Default("[0, 0, 0]").Live(),
+    key::Vector3("mean_m_per_s", kAirspeed_m_per_s, "mean wind, in W").Default("[0, 0, 0]").Live(),
     key::Number("gust_std_m_per_s", {0, 200}, "standard deviation of the gusts, per axis").Default("0.0").Live(),
     key::Number("gust_time_s", Above(0, 1e4), "correlation time of the gusts, a first-order Gauss-Markov process")
         .Default("1.0")
@@ -18,11 +18,11 @@ constexpr Key kWindKeys[] = {
 };
 
 constexpr Key kObstacleKeys[] = {
-    key::OneOf("shape", kShapes.names(), "its form").Required(),
-    key::Vector3("position_m", kCentre_m, "its centre").Required(),
+    key::OneOf("shape", kShapes.names(), "shape of the obstacle").Required(),
+    key::Vector3("position_m", kCentre_m, "centre of the obstacle, in W").Required(),
     key::Vector3("size_m", {1e-3, 1e4},
-                 "full lengths; of a sphere its diameter three times; of a cylinder, which stands on end, its diameter "
-                 "twice, then its height")
+                 "full lengths; for a sphere its diameter three times; for a cylinder, which stands upright, its "
+                 "diameter twice, then its height")
         .Required(),
     key::Number("heading_rad", {-10, 10}, "yaw").Default("0.0"),
 };
@@ -30,15 +30,16 @@ constexpr Key kObstacleKeys[] = {
 constexpr Key kRotorFailureKeys[] = {
     key::Integer("agent", 1, 10000, "a quadrotor's number").Required(),
     key::Integer("rotor", 1, 4, "1 front, 2 left, 3 back, 4 right").Required(),
-    key::Number("at_s", {0, 1e6}, "when").Required(),
-    key::Number("remaining", {0, 1}, "part of its thrust and torque that is left").Default("0.0"),
+    key::Number("at_s", {0, 1e6}, "time of the failure").Required(),
+    key::Number("remaining", {0, 1}, "fraction of the rotor's thrust and torque that remains").Default("0.0"),
 };
 
 constexpr Key kPhysicsKeys[] = {
     key::Integer("rate_hz", 1, 100000, "steps of the physics per simulated second").Default("1000"),
-    key::Number("gravity_m_per_s2", {0, 100}, "downwards; integrators feel none").Default("9.81"),
-    key::Boolean("collisions", "bodies touch each other and obstacles (the ground: `ground`)").Default("true"),
-    key::Boolean("ground", "a plane at z = 0").Default("true"),
+    key::Number("gravity_m_per_s2", {0, 100}, "gravity, downwards; integrators feel none").Default("9.81"),
+    key::Boolean("collisions", "bodies can touch each other and obstacles (the ground has its own key, `ground`)")
+        .Default("true"),
+    key::Boolean("ground", "the ground, a plane at z = 0, exists").Default("true"),
     key::Table("wind", kWindKeys, "air that moves, the same for all quadrotors"),
     key::Tables("obstacles", kObstacleKeys, "solid things that do not move; at most 1000"),
     key::Tables("rotor_failures", kRotorFailureKeys, "rotors that lose thrust; at most 40000"),

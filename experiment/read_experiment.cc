@@ -22,40 +22,46 @@ constexpr std::string_view kAutomatic[] = {"auto"};
 constexpr std::string_view kTransports[] = {"auto", "udp", "shm"};  // bus/qos.cc has a row for each
 
 constexpr Key kRunKeys[] = {
-    key::Text("name", "names the run's folder, and the run").Otherwise("the file's"),
+    key::Text("name", "name of the run, and of the folder with its results").Otherwise("the file's"),
     key::Number("duration_s", Above(0, 1e6), "simulated time; a whole number of ticks").Required(),
     key::OneOf("mode", kModes.names(),
-               "lockstep: as fast as it goes, deterministic; realtime: paced by the wall clock, late commands held")
+               "lockstep: as fast as the machine can, deterministic; realtime: the wall clock paces the run, and if a "
+               "command is late, the last one holds")
         .Default("\"lockstep\""),
     key::Integer("seed", 0, INT64_MAX, "seed of all random numbers").Default("1"),
-    key::Number("agent_timeout_s", Above(0, 3600), "how long a command may keep the server waiting, wall clock")
+    key::Number("agent_timeout_s", Above(0, 3600),
+                "wall-clock time that the server waits for a command before the run fails")
         .Default("5.0"),
-    key::Number("start_timeout_s", Above(0, 3600), "how long the start may take, wall clock").Default("60.0"),
+    key::Number("start_timeout_s", Above(0, 3600), "wall-clock time that the start may take before the run fails")
+        .Default("60.0"),
     key::Number("speed", Above(0, 1000), "in realtime: simulated seconds per second").Default("1.0"),
-    key::Number("pace", {0, 1000}, "in lockstep: simulated seconds per second, for people who watch; changes no result")
-        .Otherwise("as fast as it goes, which is 0; with --view 1")
+    key::Number("pace", {0, 1000},
+                "in lockstep: simulated seconds per second, for people who watch; 0: as fast as the machine can; "
+                "changes no result")
+        .Otherwise("0; with --view 1")
         .Live(),
     key::OneOf("scheduler", kSchedulers.names(),
                "fifo: the server and the agents run at a real-time priority (SCHED_FIFO), if the system permits it; "
-               "other: as any process, in lockstep as a batch job (SCHED_BATCH)")
+               "other: they run as ordinary processes, in lockstep as batch jobs (SCHED_BATCH)")
         .Default("\"other\""),
-    key::Boolean("pin_cores", "each process over DDS keeps to one core").Default("false"),
-    key::Boolean("lock_memory", "memory of these processes is never swapped out, if the system permits it")
+    key::Boolean("pin_cores", "each process of a run over DDS stays on one core").Default("false"),
+    key::Boolean("lock_memory", "the memory of these processes is never swapped out, if the system permits it")
         .Default("false"),
 };
 
 constexpr Key kRecordKeys[] = {
     key::Text("file", "name of the recording in the run's folder, ending in .mcap").Default("\"run.mcap\""),
-    key::Texts("topics", "which topics it holds; shell patterns").Default("[\"*\"]"),
+    key::Texts("topics", "topics that the recording holds; shell patterns").Default("[\"*\"]"),
 };
 
 constexpr Key kOutputKeys[] = {
-    key::Boolean("position_plot", "pictures of positions").Default("true"),
-    key::Boolean("velocity_plot", "pictures of velocities").Default("true"),
-    key::Boolean("save_plot", "pictures as files").Default("true"),
-    key::Boolean("show_plot", "pictures in windows, at the end").Default("false"),
-    key::Boolean("save_data", "states.npz").Default("true"),
-    key::Boolean("fidelity", "compares with ideal bodies; their laws run in the orchestrator too").Default("true"),
+    key::Boolean("position_plot", "draws pictures of positions").Default("true"),
+    key::Boolean("velocity_plot", "draws pictures of velocities and accelerations").Default("true"),
+    key::Boolean("save_plot", "writes pictures as files").Default("true"),
+    key::Boolean("show_plot", "shows pictures in windows, at the end").Default("false"),
+    key::Boolean("save_data", "writes states.npz").Default("true"),
+    key::Boolean("fidelity", "compares the run with ideal bodies; their laws run in the process of the orchestrator")
+        .Default("true"),
 };
 
 Key DomainKey() {
@@ -277,32 +283,33 @@ std::span<const Key> ExperimentKeys() {
   static const Key network_keys[] = {
       DomainKey(),
       key::OneOf("transport", kTransports, "auto: shared memory on one host, UDP between hosts").Default("\"auto\""),
-      key::Integer("agents_per_process", 1, kMaxAgents, "how many agents share a process; each keeps its topics")
+      key::Integer("agents_per_process", 1, kMaxAgents,
+                   "how many agents share a process; each agent keeps its own topics")
           .Default("1"),
-      key::OneOf(
-          "delivery", kDeliveries.names(),
-          "topics: a reader for each agent that is heard; bundled: one sample with all that an agent may hear, for "
-          "dense graphs")
+      key::OneOf("delivery", kDeliveries.names(),
+                 "topics: a process has a reader for each agent that its agents hear; bundled: the server sends each "
+                 "agent one sample with all states that it may hear, for dense graphs")
           .Default("\"topics\""),
       key::Boolean("ros_view", "publishes `/tf` and `/scene`, for RViz2").Default("false"),
   };
   static const Key keys[] = {
-      key::Integer("format", 1, kFormat, "version of the file's format; a run's own config.toml says it").Default("1"),
-      key::Table("run", kRunKeys, "how long, how fast, from which seed"),
+      key::Integer("format", 1, kFormat, "version of the file's format; the config.toml of a run has it").Default("1"),
+      key::Table("run", kRunKeys, "duration, pace, seed and scheduling of the run"),
       key::Table("physics", PhysicsKeys(), "the world"),
-      key::Table("agents", AgentsKeys(), "who flies"),
+      key::Table("agents", AgentsKeys(), "the agents of the team"),
       key::Table("control", ControlKeys(), "the low-level stack under the law"),
       key::Table("sensors", SensorKeys(), "what agents measure; standard deviations are of zero-mean Gaussian errors"),
       key::Table("graph", ScheduleKeys(),
-                 "who hears whom: one of `topology`, `laplacian`, `adjacency`, `edges`, `random`"),
+                 "which agent hears which: one of `topology`, `laplacian`, `adjacency`, `edges`, `random`"),
       key::Table("link", LinkKeys(),
-                 "the network between agents: seeded, in simulated time, each directed edge by itself"),
-      key::Table("law", LawKeys(), "what agents want"),
+                 "the links between agents: random by `run.seed`, in simulated time, each directed edge by itself"),
+      key::Table("law", LawKeys(), "the control law: what the agents want"),
       key::Table("record", kRecordKeys, "the recording"),
-      key::Table("output", kOutputKeys, "what else a run leaves behind"),
-      key::Table("network", network_keys, "DDS"),
-      key::Tables("hosts", HostKeys(),
-                  "machines that have some of the agents, beside the one where `up` is; see [hosts.md](hosts.md)"),
+      key::Table("output", kOutputKeys, "other files that a run leaves"),
+      key::Table("network", network_keys, "the network between the processes of a run (DDS)"),
+      key::Tables(
+          "hosts", HostKeys(),
+          "machines on which some of the agents run, besides the one where `up` runs; see [hosts.md](hosts.md)"),
       key::Tables("events", EventKeys(), "what changes while the run goes on; at most 100000"),
   };
   return keys;

@@ -5,10 +5,10 @@ namespace mascot {
 std::span<const Key> SafetyKeys() {
   static constexpr Key kKeys[] = {
       key::Number("distance_m", Above(0, 1e6),
-                  "how far apart the centres of agents are kept along `law.axes`: of those that hear each other")
+                  "the distance along `law.axes` at which the filter keeps the centres of agents that hear each other")
           .Otherwise("required; in an agent's own law the team's")
           .Live(),
-      key::Number("gamma", Above(0, 1000), "how fast agents may use up what is left of the barrier: h' >= -gamma h")
+      key::Number("gamma", Above(0, 1000), "how fast agents may use up what is left of the distance: h' >= -gamma h")
           .Default("1.0")
           .Unit("1/s")
           .Live(),

@@ -17,17 +17,15 @@ constexpr std::array kHeardKeys = {
                 "standard deviation of a constant error of the velocity, drawn once")
         .Default("0.0"),
 };
-constexpr auto kOwnKeys = Joined(
-    kHeardKeys,
-    std::array{
-        key::Number("delay_s", {0, kLongestDelay_s},
-                    "how late an agent knows its own position and velocity, rounded up to whole ticks; it knows its "
-                    "attitude at once")
-            .Default("0.0")});
+constexpr auto kOwnKeys =
+    Joined(kHeardKeys, std::array{key::Number("delay_s", {0, kLongestDelay_s},
+                                              "delay with which an agent knows its own position and velocity, rounded "
+                                              "up to whole ticks; it knows its attitude at once")
+                                      .Default("0.0")});
 constexpr Key kSensorKeys[] = {
     key::Number("range_m", {0, 1e6},
-                "how far, from its measured position, an agent sees the nearest point of each obstacle, for laws that "
-                "ask; 0: no such sensor")
+                "how far from its measured position an agent sees the nearest point of each obstacle, for laws that "
+                "use it; 0: the agent has no such sensor")
         .Default("0.0"),
     key::Table("own", kOwnKeys, "what an agent measures of itself: law and low-level stack both get this"),
     key::Table("heard", kHeardKeys, "what an agent measures of each agent that it hears"),

@@ -87,15 +87,15 @@ struct Family : Topology {
 };
 
 constexpr std::array kFamilies = {
-    Family{{"complete", "everybody hears everybody"}, Complete},
+    Family{{"complete", "each agent hears all others"}, Complete},
     Family{{"ring", "i hears i - 1 and i + 1, 1 and N hear each other"}, Ring},
     Family{{"path", "i hears i - 1 and i + 1"}, Path},
-    Family{{"star", "1 hears everybody, everybody hears 1"}, Star},
+    Family{{"star", "1 hears all others, and all others hear 1"}, Star},
     Family{{"wheel", "a star whose rim 2..N is a ring"}, Wheel},
     Family{{"binary_tree", "i and i / 2 (rounded down) hear each other"}, BinaryTree},
     Family{{"directed_ring", "i hears i - 1, 1 hears N"}, DirectedRing},
     Family{{"directed_path", "i hears i - 1"}, DirectedPath},
-    Family{{"directed_star", "everybody hears 1"}, DirectedStar},
+    Family{{"directed_star", "all others hear 1"}, DirectedStar},
     Family{{"directed_tree", "i hears i / 2 (rounded down)"}, DirectedTree},
 };
 

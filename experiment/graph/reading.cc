@@ -137,11 +137,11 @@ Graph FromRandom(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint
 
 std::span<const Key> GraphKeys() {
   static const Key keys[] = {
-      key::OneOf("topology", TopologyNames(), "a family of graphs, as below").Default("\"complete\""),
-      key::Rows("laplacian", {-1e10, 1e10}, "N x N: row i is what agent i needs; rows sum to 0 (the paper's L-mat)"),
-      key::Rows("adjacency", kWeight, "N x N: a_ij, with which agent i hears agent j"),
+      key::OneOf("topology", TopologyNames(), "a family of graphs, in the table below").Default("\"complete\""),
+      key::Rows("laplacian", {-1e10, 1e10}, "N x N: row i has what agent i hears; rows sum to 0 (the paper's L-mat)"),
+      key::Rows("adjacency", kWeight, "N x N: a_ij, the weight with which agent i hears agent j"),
       key::Rows("edges", kWeight, "`[i, j]` or `[i, j, weight]`, ...: i hears j"),
-      key::Table("random", kRandomGraphKeys, "drawn by `run.seed`; undirected"),
+      key::Table("random", kRandomGraphKeys, "a random undirected graph, drawn by `run.seed`"),
   };
   return keys;
 }

@@ -43,10 +43,10 @@ Graph Schedule::Union() const {
 
 std::span<const Key> ScheduleKeys() {
   static const std::vector<Key> phase_keys = WithGraphKeys(
-      {key::Number("at_s", Above(0, 1e6), "when this graph takes over; later than the one before").Required()});
+      {key::Number("at_s", Above(0, 1e6), "when this graph takes over; later than the graph before").Required()});
   static const std::vector<Key> keys = WithGraphKeys({
-      key::Tables("schedule", phase_keys, "graphs that take over later, in order of time; at most 10000"),
-      key::Number("repeat_s", Above(0, 1e6), "after this time it starts over").Otherwise("never"),
+      key::Tables("schedule", phase_keys, "graphs that replace this one later, in order of time; at most 10000"),
+      key::Number("repeat_s", Above(0, 1e6), "after this time the schedule starts again").Otherwise("never"),
       key::Number("range_m", Above(0, 1e6), "an edge works only while its agents are closer than this")
           .Otherwise("at any distance")
           .Live(),

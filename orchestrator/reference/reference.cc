@@ -114,7 +114,7 @@ class Writer {
   }
 
   void WriteTopologies() {
-    text_ += "\n| topology | who hears whom |\n|---|---|\n";
+    text_ += "\n| topology | which agent hears which |\n|---|---|\n";
     for (const Topology& family : Topologies()) text_ += fmt::format("| `{}` | {} |\n", family.name, family.meaning);
   }
 

@@ -80,7 +80,7 @@ LawEntry ConsensusLaw() {
           .equation =
               "a_i = sum_j a_ij [p_gain (p_j - p_i) + v_gain (v_j - v_i)] - beta v_i;  leader: a = 0, or its waypoints",
           .details =
-              "Position and velocity of j are the newest that i has heard; whoever is not heard at a tick does "
+              "Position and velocity of j are the newest that i has heard; an agent that is not heard at a tick does "
               "not pull.\n"
               "A leader uses nothing of what it hears. Without leader_waypoints_m it wants the acceleration 0; "
               "with them it flies as the law waypoint does, with leader_p_gain and leader_d_gain.",

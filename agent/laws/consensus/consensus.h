@@ -22,7 +22,8 @@ inline constexpr auto kVelocityAndLeaderParameters = Joined(
             .Unit("1/s")
             .Live(),
         key::Number("beta", kGain, "damping of the agent's own velocity").Default("1.0").Unit("1/s").Live(),
-        key::Integer("leader", 0, kMaxAgents, "agent that leads and listens to nobody, 1..N; 0: none").Default("0"),
+        key::Integer("leader", 0, kMaxAgents, "agent that leads, and uses nothing of what it hears, 1..N; 0: none")
+            .Default("0"),
     },
     kLeaderFlightParameters);
 

@@ -128,7 +128,7 @@ class ContainmentMeter final : public LawMeter {
 LawEntry ContainmentLaw() {
   return {
       .name = "containment",
-      .summary = "followers go to places within the convex hull of several leaders, who rest or move",
+      .summary = "followers go to places within the convex hull of several leaders, which rest or move",
       .equation = "follower: v_i = gain sum_j a_ij (p_j - p_i);  leader: v_i = its own, 0 by default",
       .details = "A leader flies its velocity of leader_velocities_m_per_s, and uses nothing of what it hears.",
       .theory =

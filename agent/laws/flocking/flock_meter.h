@@ -26,7 +26,7 @@ inline constexpr LawFigure kFlockFigures[] = {
                 "each other",
      .unpredicted = kEndUnknown},
     {.name = "groups",
-     .meaning = "into how many parts the flock falls at the end, by who is within range of whom",
+     .meaning = "into how many parts the flock falls at the end, by which agents are within range of each other",
      .unpredicted = kEndUnknown},
     {.name = "centre_rms_m", .meaning = "rms distance of the centre of mass to the gamma agent"},
     {.name = "centre_off_m", .meaning = "the same distance at the end"},

@@ -136,11 +136,12 @@ LawEntry PursuitEvasionLaw() {
           .details =
               "e is the agent law.leader. It flees from j, the nearest agent that it hears, pursuer or not. "
               "Distances are along law.axes.\n"
-              "Whoever is within capture_radius_m of the agent that it pursues, or flees from, stops; so does a "
-              "pursuer that does not hear the evader, and an evader that hears nobody.",
+              "An agent within capture_radius_m of the agent that it pursues, or flees from, stops; so does a "
+              "pursuer that does not hear the evader, and an evader that hears no agent.",
           .theory =
               "a pursuer captures after at most min_i (|p_e - p_i| - capture_radius) / (pursuer_speed - evader_speed), "
-              "over those that hear the evader; a single one that drives it past nobody exactly then",
+              "over those that hear the evader; a single one that does not drive it past another agent captures "
+              "exactly then",
           .source =
               "Isaacs, Differential games, Wiley 1965 (simple motion); several pursuers: Bakolas & Tsiotras, Relay "
               "pursuit of a maneuvering target using dynamic Voronoi diagrams, Automatica 48 (2012)",

@@ -126,7 +126,7 @@ class RendezvousMeter final : public LawMeter {
 
 LawEntry RendezvousLaw() {
   return {.name = "rendezvous",
-          .summary = "single integrators that hear each other within graph.range_m meet, and lose nobody on the way",
+          .summary = "single integrators that hear each other within graph.range_m meet, and lose no neighbour",
           .equation = "v_i = gain sum_j (2 D - l) / (D - l)^2 (p_j - p_i),  l = |p_j - p_i|, D = graph.range_m",
           .details =
               "l and D are distances in space, also where law.axes is \"xy\" and agents only move in the plane: "

@@ -121,8 +121,8 @@ LawEntry ResilientLaw() {
       .summary = "single integrators meet in spite of agents that lie: the law wants a velocity",
       .equation = "v_i = gain sum_j a_ij (p_j - p_i), per axis without the F largest above and the F smallest below",
       .details =
-          "Of the positions above its own (below, likewise) an agent leaves out the F farthest, or all if "
-          "there are fewer. Positions equal to its own are never left out.",
+          "Of the positions above its own, an agent leaves out the F farthest, or all if there are fewer, and so it "
+          "does of the positions below. Positions equal to its own are never left out.",
       .theory =
           "with at most F liars heard by an honest agent and h gain sum_j a_ij <= 1, honest agents stay in the "
           "hull of honest starts, and agree if the graph is (2F+1)-robust",
