@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The documentation as a site, built by scripts/site: all links lead somewhere, nothing comes from other hosts, and code that
-it quotes is that of the file."""
+"""The documentation as a site, built by scripts/site: all links lead somewhere, nothing comes from other hosts. Code that
+pages quote is that of its file, and the files and tests that they name are there."""
 
 import html.parser
 import pathlib
@@ -90,6 +90,50 @@ class Quotations(unittest.TestCase):
     def test_are_found_piece_by_piece(self):
         page = "so. From\n`a/b.cc`:\n\n```cpp\nint a;\n...\n  int b;\n```\n\nFrom there:\n\n```cpp\nint c;\n```\n"
         self.assertEqual(quotations(page), [("a/b.cc", "int a;"), ("a/b.cc", "  int b;")])
+
+
+def paths(text):
+    """The files and folders of the source tree that a page names between backticks, alone or to begin a command."""
+    rooms = "agent|base|bench|bus|cmake|configs|docs|experiment|idl|orchestrator|physics_server|scripts|system|tests"
+    return re.findall(rf"`((?:{rooms})/[\w./-]*\w/?)(?=[` ])", text)
+
+
+def selections(text):
+    """The regular expressions of `ctest -R` that a page names, each alternative by itself."""
+    found = re.findall(r"ctest (?:--test-dir \S+ |-V )*-R (?:'([^']+)'|([^\s`]+))", text)
+    return [one for quoted, bare in found for one in (quoted or bare).replace("\\|", "|").split("|")]
+
+
+def tests_of_this_tree():
+    """Names as ctest has them, but for the parameters of a test."""
+    found = set(re.findall(r"add_test\(NAME (\w+)", (ROOT / "CMakeLists.txt").read_text()))
+    for path in (ROOT / "tests").rglob("*.cc"):
+        text = path.read_text()
+        prefixes = {suite: prefix for prefix, suite in re.findall(r"INSTANTIATE_TEST_SUITE_P\(\s*(\w+),\s*(\w+)", text)}
+        for suite, name in re.findall(r"^TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", text, re.M):
+            found.add(f"{prefixes[suite]}/{suite}.{name}" if suite in prefixes else f"{suite}.{name}")
+    return found
+
+
+class Names(unittest.TestCase):
+    PAGES = [*(ROOT / "docs").glob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
+
+    def test_of_files_are_those_of_the_tree(self):
+        named = {(page.name, path) for page in self.PAGES for path in paths(page.read_text())}
+        self.assertGreater(len(named), 200)
+        self.assertEqual({(page, path) for page, path in named if not (ROOT / path).exists()}, set())
+
+    def test_of_tests_are_those_of_the_tree(self):
+        tests = tests_of_this_tree()
+        named = {(page.name, one) for page in self.PAGES for one in selections(page.read_text())}
+        self.assertGreater(len(named), 100)
+        self.assertEqual({(page, one) for page, one in named if not any(re.search(one, test) for test in tests)}, set())
+
+    def test_are_found(self):
+        page = ("`tests/a_test.py Errors`, `bus/b.cc`, `bus/`, `experiment/*.cc`, `agent/laws/<law>.cc`; "
+                "`ctest -R 'A.B\\|^C'`, `ctest -V -R D`")
+        self.assertEqual(paths(page), ["tests/a_test.py", "bus/b.cc"])
+        self.assertEqual(selections(page), ["A.B", "^C", "D"])
 
 
 class Documentation(unittest.TestCase):
