@@ -11,8 +11,8 @@ namespace mascot {
 /// the thrust that carries its weight (at least Airframe::LeastThrust()).
 double LeanLimit(const AgentConfig& quadrotor, double gravity_m_per_s2);
 
-/// How late (s) the acceleration of a quadrotor along x or y follows a wanted one that jumps from -a to a, in the mean
-/// over the jump. Assumes that nothing but this turn occupies the rotors. docs/theory.md has the formula.
+/// The mean lag (s) of a quadrotor's acceleration along x or y behind a wanted one that jumps from -a to a. Assumes
+/// that nothing but this turn occupies the rotors. docs/theory.md has the formula.
 double AccelerationLag(const Experiment& experiment, const AgentConfig& quadrotor, double a_m_per_s2);
 
 /// Warnings ("key: text") about quadrotors that cannot keep their height: their weight is outside the thrust that the

@@ -10,11 +10,11 @@ namespace mascot {
 
 /// What theory says of [law.safety].
 struct SafetyPrediction {
-  /// The distance, along `axes`, that is kept between any two agents; absent: none is. In space they are no nearer.
+  /// The distance (m), along `axes`, that any two agents keep; absent: they keep none. In space they are no nearer.
   std::optional<double> min_separation_m = {};
-  Axes axes = Axes::kXyz;                  ///< of all laws
-  bool assumes_safe_commands = false;      ///< it holds if agents find a safe command at every tick
-  bool assumes_prompt_bodies = false;      ///< and if quadrotors accelerate as soon as they are told
+  Axes axes = Axes::kXyz;                  ///< axes of all laws
+  bool assumes_safe_commands = false;      ///< the distance holds only if agents find a safe command at every tick
+  bool assumes_prompt_bodies = false;      ///< and only if quadrotors accelerate as soon as they are commanded
   std::string assumes = {};                ///< these two in words; empty: nothing
   std::string silent = {};                 ///< why no distance is promised; empty: one is
   std::vector<std::string> warnings = {};  ///< "key: text"

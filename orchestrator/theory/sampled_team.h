@@ -10,8 +10,9 @@
 
 namespace mascot {
 
-/// Discrete-time model of a linear team along one axis, with its timeline and its delays; on average where links lose
-/// samples. Computes eigenvalues of dense matrices, and is thus for small teams only (IsSmall).
+/// Discrete-time model of a linear team along one axis, with its timeline and its delays. If links lose samples, it is
+/// the model of the mean over many seeds. It computes eigenvalues of dense matrices, and is thus for small teams only
+/// (IsSmall).
 ///
 /// The state is q_i of all agents, then v_i of all agents, then both as of 1, 2, ... ticks ago, up to the longest
 /// delay.
@@ -23,14 +24,14 @@ class SampledTeam {
   /// Whether the state is small enough: at most 200 numbers.
   static bool IsSmall(const Experiment& experiment);
 
-  /// Whether agents come to rest together: all eigenvalues of the map over one cycle, but that of agreement, lie inside
-  /// the unit circle.
+  /// Whether agents come to rest together: all eigenvalues of the map over one cycle, except that of agreement, lie
+  /// inside the unit circle.
   bool Decays() const { return radius_ < 1; }
   /// The largest magnitude of the eigenvalues of disagreement, over one cycle.
   double slowest() const { return slowest_; }
   /// Decay rate of the disagreement (1/s).
   double rate_per_s() const;
-  /// Where a team without leader meets, as q in W (m). Decays() must be true.
+  /// Where a team without a leader meets, as q in W (m). Decays() must be true.
   Eigen::Vector3d MeetingPoint() const;
 
  private:

@@ -7,11 +7,11 @@
 
 namespace mascot {
 
-/// From when on holds what theory says of the end of a phase. Of several times for one thing the law's own counts; a
-/// time of modes, which is not from the experiment's start, is no more than a hint, and taken as a bound. Absent: it
-/// holds at any time, or theory does not know.
+/// The time from which on predictions about the end of a phase hold. If there are several such times, the law's own
+/// counts. A time of modes, which is not that of the experiment's start, is only a hint, and is taken as a bound.
+/// Absent: the predictions hold at any time, or theory does not know since when.
 std::optional<HoldsFrom> WhenItHolds(const Prediction& prediction);
-/// The warning of a phase that ends before that; empty: it does not.
+/// The warning of a phase that ends before this time; empty: it does not.
 std::string ShortPhaseWarning(const Experiment& phase, bool is_last, const Prediction& prediction);
 
 }  // namespace mascot

@@ -17,7 +17,7 @@ struct UnstableLoop {
 };
 
 /// The loop of an agent that needs the highest rate; nothing: all loops decay. Errors are taken to be small, so that no
-/// limit is reached. A loop without gains does not count, nor does one that nothing brings off what it holds.
+/// limit is reached. A loop without gains does not count, nor does a loop that nothing disturbs.
 std::optional<UnstableLoop> FindUnstableLoop(const Experiment& experiment);
 /// As a warning: "key: text".
 std::string Warning(const UnstableLoop& loop, const Experiment& experiment);

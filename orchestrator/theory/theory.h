@@ -15,24 +15,25 @@
 
 namespace mascot {
 
-/// How a quadrotor's attitude makes it late, and tremble around a parent that does not accelerate.
+/// How the lag of a quadrotor's attitude makes it tremble around a parent that does not accelerate.
 struct Trembling {
-  double lag_s = 0;              ///< how late its acceleration is (flight_envelope.h)
-  double radius_m = 0;           ///< largest distance from the parent in the end, per axis
-  std::optional<double> time_s;  ///< from which on it stays within 2 radius_m; absent: takes too long to compute
+  double lag_s = 0;     ///< lag of the quadrotor's acceleration (flight_envelope.h)
+  double radius_m = 0;  ///< largest distance from the parent in the end, per axis
+  /// Time from which on it stays within 2 radius_m; absent: it takes too long to compute.
+  std::optional<double> time_s;
 };
 
 /// Prediction for one edge of the tree of min-max time consensus.
 struct MinmaxEdge {
   int child = 0;
   int parent = 0;
-  double time_s = 0;   ///< until the child has the position and velocity of its parent, for the slowest axis
-  bool exact = false;  ///< exact for the initial condition; else a bound for any motion of the parent
+  double time_s = 0;   ///< time until the child has the position and velocity of its parent, along the slowest axis
+  bool exact = false;  ///< time_s is exact for the initial condition; else it is a bound for any motion of the parent
   std::optional<Trembling> trembling = {};  ///< only for quadrotors whose time is exact, with a law that switches
 };
 
-/// The largest component of the command that a law asks for at tick 0, if all neighbours are heard without delay, and
-/// its limit; of the agent for which the ratio of the two is largest.
+/// The largest component of the command that a law wants at tick 0, if each agent hears all its neighbours without
+/// delay, and its limit; for the agent with the largest ratio of the two.
 struct FirstCommand {
   int agent = 0;
   double asked = 0;
@@ -43,22 +44,23 @@ struct LaterPhase;
 
 /// Predictions about an experiment; docs/theory.md has the formulas and sources. Absent values cannot be predicted.
 struct Prediction {
-  /// Where agents meet, in W; in a formation, p - d. With axes "xy", z is the mean of the heights that are held.
+  /// Where agents meet, in W (m); in a formation, as p - d. With axes "xy", z is the mean of the heights that the
+  /// agents hold.
   std::optional<Eigen::Vector3d> value_m;
   std::optional<bool> stable;  ///< whether all modes decay, sampled and with the delays of the experiment
-  /// Decay rate of the slowest mode: agents agree at least as fast in the long run. With `of_agreement` false, that of
-  /// each agent's flight to its waypoint.
+  /// Decay rate (1/s) of the slowest mode: agents agree at least as fast in the long run. With `of_agreement` false,
+  /// the rate of each agent's flight to its waypoint.
   std::optional<double> slowest_rate_per_s;
-  /// The decay rate to measure: that of a linear team that starts as the experiment's agents do, which may hardly
-  /// excite the slowest mode. With `of_agreement` false, that of the slowest mode.
+  /// The decay rate (1/s) that a run measures: that of a linear team that starts as the experiment's agents do, which
+  /// may hardly excite the slowest mode. With `of_agreement` false, the rate of the slowest mode.
   std::optional<double> rate_per_s;
-  /// When the agents settle, as AgreementMeter measures it.
+  /// Time (s) at which the agents settle, as AgreementMeter measures it.
   std::optional<double> settling_time_s;
   /// Whether `settling_time_s` and `rate_per_s` are of a linear team that starts as the experiment's agents do.
   /// Otherwise there is no rate, and the time is that until the slowest mode has decayed from rest to 2 %; along
   /// directed chains agents settle later than that, because the modes of a directed graph are not orthogonal.
   bool from_start = false;
-  /// From when on holds what the law says of the end (short_phase.h).
+  /// The time from which on the law's predictions about the end hold (short_phase.h).
   std::optional<HoldsFrom> holds_from;
   std::optional<double> control_period_bound_s;    ///< the loop is unstable from this control period on, without delays
   std::optional<DelayMargin> delay_margin;         ///< delay of neighbours' samples
@@ -70,26 +72,27 @@ struct Prediction {
   std::optional<FirstCommand> first_lean;  ///< m/s^2: horizontal, after limits; `limit` follows from the tilt limit
   std::optional<Persistence> persistence;
   std::optional<SafetyPrediction> safety;  ///< absent: no agent has law.safety
-  /// The figures that the team's law measures, in the order of its row; empty: theory does not speak of them.
+  /// The figures that the team's law measures, in the order of its row; empty: theory predicts none of them.
   std::vector<PredictedFigure> law_figures;
   bool of_agreement = true;  ///< false: rate and settling time are those of each agent's flight to its waypoint
-  bool on_average = false;   ///< samples are lost or noisy: the above holds on average
-  std::string silent;        ///< why predictions are missing; empty: none is
-  /// Why the figures of the law are not predicted, while theory says something else; empty: it says all.
+  bool on_average = false;   ///< samples are lost or noisy, so that the above holds on average
+  std::string silent;        ///< why predictions are missing; empty: none is missing
+  /// Why theory predicts something, but not the figures of the law; empty: it predicts them.
   std::string figures_silent;
-  std::vector<std::string> warnings;  ///< "key: text": what will not work, or not as expected
-  /// The phases of [[law.schedule]] after the first, of which all the above is, but for `safety` and the warnings,
-  /// which are those of all.
+  std::vector<std::string> warnings;  ///< "key: text": what will not work, or will not work as expected
+  /// The phases of [[law.schedule]] after the first. All of the above is about the first phase, except `safety` and the
+  /// warnings, which are about all phases.
   std::vector<LaterPhase> later;
 };
 
-/// A phase of [[law.schedule]] as an experiment of its own that begins where ideal bodies are by then.
+/// A phase of [[law.schedule]] as an experiment of its own, which begins at the places that ideal bodies have reached
+/// by then.
 struct LaterPhase {
   std::int64_t from = 0;  ///< tick
   std::shared_ptr<const Experiment> experiment;
-  Prediction prediction;  ///< times count from the phase's begin
+  Prediction prediction;  ///< times count from the beginning of the phase
 };
-/// What is predicted of phase `index`; 0 is the first.
+/// The prediction for phase `index`; 0 is the first.
 inline const Prediction& PredictionOf(const Prediction& run, std::size_t index) {
   return index == 0 ? run : run.later.at(index - 1).prediction;
 }

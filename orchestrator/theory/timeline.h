@@ -8,8 +8,8 @@
 
 namespace mascot {
 
-/// The graph over time, in ticks: which agent hears which, from the schedule, the agents that are there, and the
-/// average losses of the links. graph.range_m is ignored.
+/// The graph over time, in ticks: which agent hears which, from the schedule, the start and stop times of the agents,
+/// and the average losses of the links. graph.range_m is ignored.
 struct Timeline {
   /// Ticks during which the graph is constant, up to the next interval.
   struct Interval {
@@ -25,7 +25,8 @@ struct Timeline {
   bool IsConstant() const { return intervals.size() == 1; }
   /// The interval of any tick.
   const Interval& At(std::int64_t tick) const;
-  /// Weight with which `hearer` hears what `heard` sent at `tick`; 0: it does not, or `tick` is before the first.
+  /// Weight with which `hearer` hears the sample that `heard` sent at `tick`; 0: it does not hear it, or `tick` is
+  /// before the first.
   double WeightOf(int hearer, int heard, std::int64_t tick) const;
 };
 

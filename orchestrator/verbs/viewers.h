@@ -37,7 +37,7 @@ void AddAllowOrigin(CLI::App& command, std::vector<std::string>& origins);
 class Viewers {
  public:
   /// Listens at `args.at`, if it is given, and prints where. All arguments but the first two must outlive this object.
-  /// Throws ConfigError if nobody could watch.
+  /// Throws ConfigError if no viewer could watch.
   Viewers(const ViewerArgs& args, const std::string& engine, const Experiment& experiment, const Prediction& prediction,
           const RunMeter& meter, Helm& helm, Console& console);
   ~Viewers();
@@ -47,9 +47,9 @@ class Viewers {
   /// Address of the page; empty: there is none.
   std::string url() const { return view_ ? view_->url() : ""; }
 
-  /// From now on what is said of viewers is also in logs/viewers.log; the file is made with the first line.
+  /// From now on, lines about viewers are also written to logs/viewers.log; the first line creates the file.
   void LogTo(const RunFolder& folder);
-  /// To be called when the helm is among the sinks.
+  /// Call it when the helm is among the sinks.
   void AddTo(std::vector<RowSink*>& sinks);
   /// Viewers see how the run ended until this object ends, which closes their connections.
   void SayHowItEnded(const EngineResult& result);
