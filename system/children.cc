@@ -17,21 +17,20 @@ namespace mascot {
 using namespace std::chrono_literals;
 using WallClock = std::chrono::steady_clock;
 
-std::filesystem::path ProgramFolder() { return std::filesystem::read_symlink("/proc/self/exe").parent_path(); }
+namespace {
 
-void SignalProcess(pid_t process, int signal) {
-  if (process > 0) kill(process, signal);
-}
+constexpr auto kLongestDeath = 10s;  // of a child that was killed: then it is given up
+
+}  // namespace
+
+std::filesystem::path ProgramFolder() { return std::filesystem::read_symlink("/proc/self/exe").parent_path(); }
 
 std::optional<int> Exit::code() const { return WIFEXITED(status) ? std::optional(WEXITSTATUS(status)) : std::nullopt; }
 
-std::string Exit::Text() const {
-  if (WIFSIGNALED(status))
-    return "was killed by signal " + std::to_string(WTERMSIG(status)) + " (" + strsignal(WTERMSIG(status)) + ")";
-  return "exited with code " + std::to_string(WEXITSTATUS(status));
+Children::~Children() {
+  Stop(0ms);
+  for (Child& child : running_) child.process.Release();  // in a call of the kernel that does not end
 }
-
-Children::~Children() { Stop(0ms); }
 
 pid_t Children::Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments,
                       const std::filesystem::path& log, const Streams& streams) {
@@ -66,21 +65,15 @@ pid_t Children::Spawn(const std::string& process, const std::string& program, co
   posix_spawn_file_actions_destroy(&files);
   close(output);
   if (error != 0) throw std::runtime_error("cannot start " + program + ": " + std::strerror(error));
-  running_[pid] = process;
+  running_.push_back({process, ChildProcess(pid)});
   return pid;
 }
 
 std::vector<Exit> Children::Reap() {
   std::vector<Exit> exits;
-  for (auto child = running_.begin(); child != running_.end();) {
-    int status = 0;
-    if (const pid_t gone = waitpid(child->first, &status, WNOHANG); gone != 0) {  // < 0: already reaped elsewhere
-      exits.push_back({child->second, status});
-      child = running_.erase(child);
-    } else {
-      ++child;
-    }
-  }
+  for (Child& child : running_)
+    if (const auto status = child.process.ReapIfEnded()) exits.push_back({child.name, *status});
+  std::erase_if(running_, [](const Child& child) { return child.process.number() == 0; });
   return exits;
 }
 
@@ -102,11 +95,11 @@ void Children::Stop(std::chrono::milliseconds grace) {
 
 void Children::Kill() {
   Signal(SIGKILL);
-  WaitAll(10s);
+  WaitAll(kLongestDeath);
 }
 
 void Children::Signal(int signal) {
-  for (const auto& [pid, process] : running_) SignalProcess(pid, signal);
+  for (const Child& child : running_) child.process.Signal(signal);
 }
 
 }  // namespace mascot

@@ -4,31 +4,26 @@
 
 #include <chrono>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "system/child_logs.h"
+#include "system/child_process.h"
 
 namespace mascot {
 
 /// Folder of the executable of this process.
 std::filesystem::path ProgramFolder();
 
-/// Sends a signal to a process. Not to one that was never started, or has been reaped: to kill(2), process 0 is all of
-/// our process group, -1 everybody, and a number that was reaped may be somebody else's by now. Whoever keeps the id of
-/// a process sets it to 0 when it has been reaped.
-void SignalProcess(pid_t process, int signal);
-
 /// How a child ended.
 struct Exit {
   std::string process;
-  int status = 0;  ///< status from waitpid
+  int status = 0;  ///< status from waitpid, or kUnknownEnd
   /// Exit code; nothing if a signal killed the child.
   std::optional<int> code() const;
   /// "exited with code 3", "was killed by signal 11 (Segmentation fault)"
-  std::string Text() const;
+  std::string Text() const { return EndText(status); }
 };
 
 /// Child processes of a run. Each has its own process group, so that Ctrl-C reaches only the orchestrator, and default
@@ -69,7 +64,11 @@ class Children {
 
   ChildLogs& logs_;
   std::vector<int> shared_;
-  std::map<pid_t, std::string> running_;
+  struct Child {
+    std::string name;
+    ChildProcess process;
+  };
+  std::vector<Child> running_;
 };
 
 }  // namespace mascot

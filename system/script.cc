@@ -4,10 +4,10 @@
 #include <spawn.h>
 #include <sys/wait.h>
 
-#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 
 #include "system/children.h"
@@ -42,17 +42,18 @@ int RunProgram(std::vector<std::string> words, StopSignal& stop) {
   const int error = posix_spawnp(&pid, argv[0], nullptr, &attributes, argv.data(), environ);
   posix_spawnattr_destroy(&attributes);
   if (error != 0) throw std::runtime_error("cannot start " + words[0] + ": " + std::strerror(error));
-  int status = 0, received = 0;
-  pid_t ended = 0;
-  while ((ended = waitpid(pid, &status, WNOHANG)) == 0) {
+  ChildProcess process(pid);
+  int received = 0;
+  std::optional<int> status;
+  while (!(status = process.ReapIfEnded())) {
     const int signal = stop.Within(std::chrono::milliseconds(100));
     if (signal == 0) continue;
     received = signal;
-    SignalProcess(pid, SIGTERM);
+    process.Signal(SIGTERM);
   }
-  if (ended < 0) throw std::runtime_error("cannot tell how " + words[0] + " ended: " + std::strerror(errno));
+  if (*status == kUnknownEnd) throw std::runtime_error(words[0] + " " + EndText(*status));
   if (received != 0) return 128 + received;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return WIFEXITED(*status) ? WEXITSTATUS(*status) : 128 + WTERMSIG(*status);
 }
 
 int RunScript(const std::string& script, const std::vector<std::string>& arguments, StopSignal& stop) {

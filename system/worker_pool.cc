@@ -5,17 +5,13 @@
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <stdexcept>
 #include <system_error>
 #include <utility>
-
-#include "system/children.h"
 
 namespace mascot {
 namespace {
@@ -68,16 +64,10 @@ WorkerPool::WorkerPool(int workers, Work work) : work_(std::move(work)) {
   for (int i = 0; i < workers; ++i) workers_.push_back(Fork());
 }
 
-WorkerPool::~WorkerPool() {
-  for (Worker& worker : workers_) {
-    SignalProcess(worker.pid, SIGKILL);
-    Reap(worker);
-  }
-}
-
-WorkerPool::Worker WorkerPool::Fork() {
+WorkerPool::Worker WorkerPool::Fork() const {
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) Fail("socketpair");
+  Descriptor ours(ends[0]), theirs(ends[1]);
   const pid_t parent = ::getpid();
   const pid_t pid = ::fork();
   if (pid < 0) Fail("fork");
@@ -86,13 +76,12 @@ WorkerPool::Worker WorkerPool::Fork() {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(1);
     for (const Worker& other : workers_)
-      if (other.socket >= 0) ::close(other.socket);
-    ::close(ends[0]);
+      if (other.socket.is_open()) ::close(other.socket.number());
+    ::close(ours.number());
     SilenceOutput();
-    Serve(ends[1]);
+    Serve(theirs.number());
   }
-  ::close(ends[1]);
-  return {pid, ends[0], std::nullopt};
+  return {.process = ChildProcess(pid), .socket = std::move(ours)};
 }
 
 void WorkerPool::Serve(int socket) const {
@@ -119,41 +108,31 @@ bool WorkerPool::IsBusy() const {
 
 void WorkerPool::Start(std::size_t task) {
   Worker& worker = *std::ranges::find_if(workers_, [](const Worker& each) { return !each.task; });
-  worker.task = task;
+  if (worker.process.number() == 0) worker = Fork();
   // If the worker has died meanwhile, Wait notices the closed socket.
-  if (::send(worker.socket, &task, sizeof task, MSG_NOSIGNAL) < 0 && errno != EPIPE && errno != ECONNRESET)
+  if (::send(worker.socket.number(), &task, sizeof task, MSG_NOSIGNAL) < 0 && errno != EPIPE && errno != ECONNRESET)
     Fail("send to a worker");
+  worker.task = task;
 }
 
 std::optional<WorkerPool::Done> WorkerPool::Wait(std::chrono::milliseconds timeout) {
   std::vector<pollfd> sockets;
-  for (const Worker& worker : workers_) sockets.push_back({worker.socket, POLLIN, 0});
+  for (const Worker& worker : workers_) sockets.push_back({worker.socket.number(), POLLIN, 0});  // -1 is passed over
   if (::poll(sockets.data(), sockets.size(), static_cast<int>(timeout.count())) <= 0) return std::nullopt;
   for (std::size_t i = 0; i < workers_.size(); ++i) {
     if (sockets[i].revents == 0) continue;
     Worker& worker = workers_[i];
-    if (const auto reply = ReceiveReply(worker.socket)) {
+    if (const auto reply = ReceiveReply(worker.socket.number())) {
       Done done{worker.task.value(), reply->substr(1), ""};
       if (reply->front() == kFailure) std::swap(done.answer, done.failure);
       worker.task.reset();
       return done;
     }
-    const std::optional<std::size_t> task = worker.task;
-    const std::string exit_text = Reap(worker);
-    worker = Fork();
-    if (task) return Done{*task, "", std::string(kLostProcess) + exit_text};
+    Worker lost = std::exchange(worker, Worker{.process = ChildProcess(), .socket = Descriptor()});
+    const int status = lost.process.Reap().value_or(kUnknownEnd);
+    if (lost.task) return Done{*lost.task, "", std::string(kLostProcess) + EndText(status)};
   }
   return std::nullopt;
-}
-
-std::string WorkerPool::Reap(Worker& worker) const {
-  const pid_t process = std::exchange(worker.pid, 0);
-  if (process <= 0) return "";  // it could not be forked again
-  ::close(std::exchange(worker.socket, -1));
-  int status = 0;
-  while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
-  return Exit{"", status}.Text();
 }
 
 }  // namespace mascot

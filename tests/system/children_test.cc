@@ -2,8 +2,6 @@
 #include "system/children.h"
 
 #include <gmock/gmock.h>
-#include <signal.h>
-#include <sys/wait.h>
 
 #include <chrono>
 #include <mutex>
@@ -155,17 +153,6 @@ TEST_F(ChildrenTest, ALogThatCannotBeWrittenIsNamed) {
         children_.Spawn("agent_1", "/bin/sh", {"-c", "true"}, "/nowhere/agent_1.log");
       },
       ThrowsMessage<std::runtime_error>("cannot write /nowhere/agent_1.log: No such file or directory"));
-}
-
-int urgent = 0;
-
-TEST(SignalProcess, ReachesNobodyIfThereIsNoProcess) {
-  const auto before = ::signal(SIGURG, [](int) { ++urgent; });  // whoever has no handler ignores this one
-  SignalProcess(getpid(), SIGURG);
-  EXPECT_EQ(urgent, 1);
-  for (const pid_t nobody : {0, -1, -getpgrp()}) SignalProcess(nobody, SIGURG);
-  EXPECT_EQ(urgent, 1) << "to kill(2), 0 is all of our process group, and -1 everybody";
-  ::signal(SIGURG, before);
 }
 
 }  // namespace

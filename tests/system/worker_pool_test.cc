@@ -1,12 +1,17 @@
 #include "system/worker_pool.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <system_error>
 
 namespace mascot {
 namespace {
@@ -94,6 +99,51 @@ TEST(WorkerPool, LeavesNoProcessBehind) {
     pool.Start(1);  // does not end by itself
   }
   EXPECT_EQ(::kill(pid, 0), -1);
+}
+
+/// While it lives, this process can open only `more` descriptors. A worker needs two at its start.
+class DescriptorsLeft {
+ public:
+  explicit DescriptorsLeft(rlim_t more) {
+    EXPECT_EQ(::getrlimit(RLIMIT_NOFILE, &before_), 0);
+    const int next = ::open("/dev/null", O_RDONLY | O_CLOEXEC);  // all below are in use
+    ::close(next);
+    const rlimit few{static_cast<rlim_t>(next) + more, before_.rlim_max};
+    EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+  }
+  ~DescriptorsLeft() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+  DescriptorsLeft(const DescriptorsLeft&) = delete;
+  DescriptorsLeft& operator=(const DescriptorsLeft&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+bool HasChildren() { return ::waitpid(-1, nullptr, WNOHANG) == 0; }
+
+TEST(WorkerPool, GoesOnAfterAWorkerCouldNotBeReplaced) {
+  WorkerPool pool(1, [](std::size_t task) -> std::string {
+    if (task == 0) ::kill(::getpid(), SIGKILL);
+    return "fine";
+  });
+  EXPECT_EQ(RunAll(pool, 1).at(0).failure, "the process was killed by signal 9 (Killed)");
+  {
+    const DescriptorsLeft none(0);
+    EXPECT_THROW(pool.Start(1), std::system_error);
+    EXPECT_THROW(pool.Start(1), std::system_error) << "nobody has the task";
+    EXPECT_FALSE(pool.IsBusy());
+    EXPECT_FALSE(HasChildren());
+  }
+  pool.Start(1);
+  std::optional<WorkerPool::Done> done;
+  while (!done) done = pool.Wait(60s);
+  EXPECT_EQ(done->answer, "fine");
+}
+
+TEST(WorkerPool, ThatIsHalfMadeLeavesNoProcessBehind) {
+  const DescriptorsLeft few(4);
+  EXPECT_THROW(WorkerPool(8, [](std::size_t) { return ""; }), std::system_error);
+  EXPECT_FALSE(HasChildren());
 }
 
 }  // namespace

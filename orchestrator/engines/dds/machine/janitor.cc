@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,7 +10,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "bus/process_main.h"
 #include "bus/shared_memory.h"
@@ -56,14 +54,21 @@ void Janitor::Start(int domain, std::span<const int> lock) {
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
   lifeline_ = ends[1];
   const std::string program = ProgramFolder() / "physics_server";
-  const int error = SpawnJanitor(&pid_, program, std::to_string(domain), ends[0], lock);
+  pid_t pid = 0;
+  const int error = SpawnJanitor(&pid, program, std::to_string(domain), ends[0], lock);
   close(ends[0]);
-  if (error == 0) return;
+  if (error == 0) {
+    process_ = ChildProcess(pid);
+    return;
+  }
   close(lifeline_);
   throw std::runtime_error("cannot start " + program + ": " + std::strerror(error));
 }
 
-Janitor::~Janitor() { close(lifeline_); }
+Janitor::~Janitor() {
+  process_.Release();
+  close(lifeline_);
+}
 
 void Janitor::LeaveWords(const std::string& path, const std::string& text) const {
   const std::string words = path + '\0' + text;
@@ -75,8 +80,8 @@ void Janitor::LeaveWords(const std::string& path, const std::string& text) const
 }
 
 void Janitor::Dismiss() {
-  SignalProcess(pid_, SIGKILL);
-  if (pid_ > 0) waitpid(std::exchange(pid_, 0), nullptr, 0);
+  process_.Signal(SIGKILL);
+  process_.Reap();
 }
 
 }  // namespace mascot

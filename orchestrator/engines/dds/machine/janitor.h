@@ -6,6 +6,7 @@
 #include <string>
 
 #include "orchestrator/engines/dds/machine/domain_lock.h"
+#include "system/child_process.h"
 
 namespace mascot {
 
@@ -26,7 +27,7 @@ class Janitor {
   void LeaveWords(const std::string& path, const std::string& text) const;
   /// The end of the pipe that every process of the run has to inherit.
   int lifeline() const { return lifeline_; }
-  pid_t process() const { return pid_; }
+  pid_t process() const { return process_.number(); }
   /// Ends the process: the caller has removed the shared memory itself. May be called again.
   void Dismiss();
 
@@ -34,7 +35,7 @@ class Janitor {
   void Start(int domain, std::span<const int> lock);
 
   int lifeline_ = -1;
-  pid_t pid_ = 0;  // 0: not started, or reaped
+  ChildProcess process_;
 };
 
 }  // namespace mascot
