@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -24,9 +23,9 @@ using WallClock = std::chrono::steady_clock;
 struct ChildLogs::Stream {
   std::string process;
   int descriptor = -1;
-  std::ofstream file;
-  std::string partial;           // what came since the last line
-  std::deque<std::string> last;  // the last kLastLines lines
+  LogFile file;
+  std::string partial = {};           // what came since the last line
+  std::deque<std::string> last = {};  // the last kLastLines lines
 };
 
 namespace {
@@ -37,13 +36,6 @@ constexpr auto kPipeIsEmpty = 2s;           // by then, the last output of a dea
 
 void MakePipe(int (&ends)[2]) {
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
-}
-
-/// Makes the file of a log. A link in its place is not followed.
-void MakeLog(const std::filesystem::path& log) {
-  const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
-  if (file < 0) throw std::runtime_error("cannot write " + log.string() + ": " + std::strerror(errno));
-  close(file);
 }
 
 /// Takes the next line off the front of `text`; nothing if it is not over.
@@ -58,7 +50,8 @@ std::optional<std::string> NextLine(std::string& text) {
 
 }  // namespace
 
-ChildLogs::ChildLogs(LineSink on_line) : on_line_(std::move(on_line)) {
+ChildLogs::ChildLogs(LineSink on_line, LogFile::Tell on_loss)
+    : on_line_(std::move(on_line)), on_loss_(std::move(on_loss)) {
   MakePipe(wake_);
   thread_ = std::thread([this] { Copy(); });
 }
@@ -75,15 +68,11 @@ ChildLogs::~ChildLogs() {
 }
 
 int ChildLogs::Open(const std::string& process, const std::filesystem::path& log) {
+  LogFile file(log, on_loss_);
   int ends[2];
   MakePipe(ends);
   fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  auto stream = std::make_unique<Stream>();
-  stream->process = process;
-  stream->descriptor = ends[0];
-  MakeLog(log);
-  stream->file.open(log, std::ios::binary);
-  if (!stream->file) throw std::runtime_error("cannot write " + log.string() + ": " + std::strerror(errno));
+  auto stream = std::make_unique<Stream>(Stream{process, ends[0], std::move(file)});
   {
     const std::lock_guard lock(mutex_);
     streams_.push_back(std::move(stream));
@@ -115,7 +104,7 @@ void ChildLogs::Copy() {
 
 void ChildLogs::Close(Stream& stream) {
   if (!stream.partial.empty()) {
-    stream.file << std::endl;
+    stream.file.Write("\n");
     TakeLine(stream, std::exchange(stream.partial, {}));
   }
   if (stream.descriptor >= 0) close(std::exchange(stream.descriptor, -1));
@@ -127,7 +116,7 @@ void ChildLogs::Read(Stream& stream) {
   if (size < 0 && (errno == EAGAIN || errno == EINTR)) return;
   if (size <= 0) return Close(stream);
   const std::string_view text(buffer, static_cast<std::size_t>(size));
-  stream.file << text << std::flush;
+  stream.file.Write(text);
   stream.partial += text;
   while (const auto line = NextLine(stream.partial)) TakeLine(stream, *line);
 }

@@ -9,16 +9,20 @@
 #include <thread>
 #include <vector>
 
+#include "system/log_file.h"
+
 namespace mascot {
 
 /// Copies the output of children to their log files, byte for byte and at once; passes every line to a sink, as valid
-/// UTF-8, and keeps each child's last 10 lines. A line that is not over is passed on at 4096 bytes and at the end.
+/// UTF-8, and keeps each child's last 10 lines. A line that is not over is passed on at 4096 bytes and at the end. A
+/// log that cannot be written any more is told of (LogFile); the lines are still passed on.
 class ChildLogs {
  public:
   /// Called for each line, in the copying thread.
   using LineSink = std::function<void(const std::string& process, const std::string& line)>;
 
-  explicit ChildLogs(LineSink on_line);
+  /// `on_loss` is called in the same thread.
+  ChildLogs(LineSink on_line, LogFile::Tell on_loss);
   ~ChildLogs();  ///< copies what is left in the pipes; call it after the children have ended
   ChildLogs(const ChildLogs&) = delete;
   ChildLogs& operator=(const ChildLogs&) = delete;
@@ -38,6 +42,7 @@ class ChildLogs {
   void TakeLine(Stream& stream, const std::string& bytes);
 
   const LineSink on_line_;
+  const LogFile::Tell on_loss_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<Stream>> streams_;
   int wake_[2];

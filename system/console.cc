@@ -56,6 +56,11 @@ void Console::Line(const std::string& text) {
   Print(Plain(text));
 }
 
+void Console::Warning(const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  Print("warning: " + Plain(text));
+}
+
 void Console::ChildLine(const std::string& process, const std::string& text) {
   if (quiet_) return;
   const std::lock_guard lock(mutex_);

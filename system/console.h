@@ -10,12 +10,14 @@ namespace mascot {
 /// below them one progress line that is rewritten in place on a terminal (elsewhere, a line every 10 %). Thread-safe.
 class Console {
  public:
-  /// `quiet`: print nothing.
+  /// `quiet`: print nothing but warnings.
   explicit Console(bool quiet);
   ~Console() { EndProgress(); }
 
   /// Prints a line.
   void Line(const std::string& text);
+  /// Prints a line in any case: something is lost.
+  void Warning(const std::string& text);
   /// Prints a line of a child's output, with the child's name in front.
   void ChildLine(const std::string& process, const std::string& text);
   /// Shows `text` as the progress line; `fraction` (0 to 1) of the run is done. Without a terminal, prints only when

@@ -64,10 +64,12 @@ void Viewers::LogTo(const RunFolder& folder) {
 
 void Viewers::Keep(const std::string& line) try {
   if (!log_) return lines_.push_back(line);
-  if (!file_) file_.emplace(log_->string());
-  const std::string text = PlainLine(line) + "\n";
-  file_->Write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-} catch (const std::runtime_error&) {  // a disk that is full ends neither view nor run; the terminal has the line
+  if (no_file_) return;
+  if (!file_) file_.emplace(*log_, [this](const std::string& words) { console_.Warning(words); });
+  file_->Write(PlainLine(line) + "\n");
+} catch (const std::runtime_error& failure) {  // it ends neither view nor run
+  no_file_ = true;
+  console_.Warning(failure.what());
 }
 
 void Viewers::AddTo(std::vector<RowSink*>& sinks) {

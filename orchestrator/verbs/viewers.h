@@ -11,12 +11,12 @@
 #include "experiment/experiment.h"
 #include "orchestrator/control/helm.h"
 #include "orchestrator/engines/engine.h"
-#include "orchestrator/formats/output_file.h"
 #include "orchestrator/live/server/address.h"
 #include "orchestrator/live/shown/live_view.h"
 #include "orchestrator/live/shown/view_sink.h"
 #include "orchestrator/recording/run_folder.h"
 #include "system/console.h"
+#include "system/log_file.h"
 
 namespace CLI {
 class App;
@@ -78,7 +78,8 @@ class Viewers {
   std::mutex mutex_;                // guards what follows
   std::vector<std::string> lines_;  // until there is a log
   std::optional<std::filesystem::path> log_;
-  std::optional<OutputFile> file_;
+  std::optional<LogFile> file_;
+  bool no_file_ = false;  // it could not be made
 
   std::optional<LiveView> view_;
   std::optional<Events> events_;

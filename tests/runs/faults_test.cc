@@ -540,6 +540,18 @@ TEST(Faults, AFullDiskFailsTheRun) {
   }
 }
 
+TEST(Faults, ALogThatCannotBeWrittenIsSaidAndTheRunGoesOn) {
+  ScratchFolder folder;
+  const std::string law = "def control(t, me, neighbours):\n  print('x' * 60000, flush=True)\n  return [0, 0]\n";
+  const Ran run = Shell("ulimit -f 4000; '" MASCOT_BINARY_DIR "/orchestrator' up " + Python(folder, 2, law) +
+                        " --quiet --out " + folder.File("run"));
+  EXPECT_EQ(run.exit_code, 0) << run.output;
+  for (const char* agent : {"agent_1", "agent_2"})
+    EXPECT_THAT(run.output, HasSubstr("warning: cannot write " + folder.File("run/logs/") + agent +
+                                      ".log: File too large: this log ends here, and what would follow is lost\n"));
+  EXPECT_EQ(nlohmann::json::parse(ReadFile(folder.File("run/summary.json")))["ticks"], 100);
+}
+
 TEST(Faults, ASecondAgentWithTheSameIdEndsTheRun) {
   ScratchFolder folder;
   Up up = Endless(folder);

@@ -29,6 +29,10 @@ class ChildrenTest : public testing::Test {
   void Spawn(const std::string& process, const std::string& script) {
     children_.Spawn(process, "/bin/sh", {"-c", script}, folder_.File(process + ".log"));
   }
+  void Take(const std::string& process, const std::string& line) {
+    const std::lock_guard lock(mutex_);
+    lines_.emplace_back(process, line);
+  }
   std::vector<std::pair<std::string, std::string>> lines() {
     const std::lock_guard lock(mutex_);
     return lines_;
@@ -52,10 +56,8 @@ class ChildrenTest : public testing::Test {
   ScratchFolder folder_;
   std::mutex mutex_;
   std::vector<std::pair<std::string, std::string>> lines_;
-  ChildLogs logs_{[this](const std::string& process, const std::string& line) {
-    const std::lock_guard lock(mutex_);
-    lines_.emplace_back(process, line);
-  }};
+  ChildLogs logs_{[this](const std::string& process, const std::string& line) { Take(process, line); },
+                  [this](const std::string& words) { Take("", words); }};
   Children children_{logs_};
 };
 
@@ -145,6 +147,16 @@ TEST_F(ChildrenTest, AChildThatHandlesSigtermEndsByItself) {
 TEST_F(ChildrenTest, AProgramThatIsNotThereIsNamed) {
   EXPECT_THAT([&] { children_.Spawn("agent_1", "/nowhere/agent", {}, folder_.File("agent_1.log")); },
               ThrowsMessage<std::runtime_error>("cannot start /nowhere/agent: No such file or directory"));
+}
+
+TEST_F(ChildrenTest, ALogOnAFullDiskSaysSoOnceAndLinesAreStillPassedOn) {
+  children_.Spawn("agent_1", "/bin/sh", {"-c", "echo one; echo two; sleep 0.05; echo three"}, "/dev/full");
+  AwaitExits(1);
+  EXPECT_THAT(logs_.LastLines("agent_1"), ElementsAre("one", "two", "three"));
+  const std::string words =
+      "cannot write /dev/full: No space left on device: this log ends here, and what would follow is lost";
+  EXPECT_THAT(lines(), testing::UnorderedElementsAre(Pair("agent_1", "one"), Pair("agent_1", "two"),
+                                                     Pair("agent_1", "three"), Pair("", words)));
 }
 
 TEST_F(ChildrenTest, ALogThatCannotBeWrittenIsNamed) {

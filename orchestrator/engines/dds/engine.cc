@@ -154,9 +154,9 @@ DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std:
       processes_(AgentProcesses(experiment)),
       with_server_(std::ssize(processes_) + 2 > kMostPeers || !experiment.hosts.empty()),
       folder_(folder),
-      logs_([this](const std::string& process, const std::string& line) {
-        console_.ChildLine(PlacedName(process), line);
-      }),
+      logs_([this](const std::string& process,
+                   const std::string& line) { console_.ChildLine(PlacedName(process), line); },
+            [this](const std::string& words) { console_.Warning(words); }),
       children_(logs_),
       audit_(experiment, peers_),
       feed_(experiment, sinks),
@@ -191,7 +191,9 @@ void DdsRun::Join() {
   domain_.emplace(Options(kOrchestrator, with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake, &peers_,
                   &audit_);
   peers_.Know(kOrchestrator, ProcessKey::Of(domain_->guid_prefix()));
-  hub_.emplace(*domain_, peers_, experiment_, folder_.Log("orchestrator").string(), wake);
+  hub_.emplace(*domain_, peers_, experiment_,
+               LogFile(folder_.Log("orchestrator"), [this](const std::string& words) { console_.Warning(words); }),
+               wake);
   recorder_.emplace(*domain_, experiment_, feed_);
   if (ros_ != nullptr) ShowToRos();
 }

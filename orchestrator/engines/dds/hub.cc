@@ -1,7 +1,7 @@
 #include "orchestrator/engines/dds/hub.h"
 
 #include <fmt/format.h>
-#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/base_sink.h>
 
 #include <chrono>
 #include <stdexcept>
@@ -92,24 +92,37 @@ Ask AskOf(Wish::Kind kind) {
   }
 }
 
+/// The lines of a logger go to a file.
+class LogSink final : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  explicit LogSink(LogFile file) : file_(std::move(file)) {}
+
+ private:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    spdlog::memory_buf_t line;
+    formatter_->format(message, line);
+    file_.Write({line.data(), line.size()});
+  }
+  void flush_() override {}
+
+  LogFile file_;
+};
+
 Roster::Time Now() { return std::chrono::steady_clock::now(); }
 
 }  // namespace
 
-Hub::Hub(Domain& domain, const Peers& peers, const Experiment& experiment, const std::string& log,
-         std::function<void()> wake)
+Hub::Hub(Domain& domain, const Peers& peers, const Experiment& experiment, LogFile log, std::function<void()> wake)
     : peers_(peers),
       wake_(std::move(wake)),
-      log_("orchestrator", std::make_shared<spdlog::sinks::basic_file_sink_mt>(log)),
+      log_("orchestrator", std::make_shared<LogSink>(std::move(log))),
       message_(MessageOf(experiment)),
       roster_(RosterRules(experiment, DigestOf(message_))),
       experiments_(domain, Topic::Experiment()),
       requests_(domain, Topic::Request()),
       recorder_(domain, Topic::Status()),
       status_(domain, Topic::Status(),
-              [this](const Status& status, const Sender& sender) { OnStatus(status, sender.process); }) {
-  log_.flush_on(spdlog::level::info);
-}
+              [this](const Status& status, const Sender& sender) { OnStatus(status, sender.process); }) {}
 
 Hub::~Hub() {
   for (const std::string& line : peers_.Refusals()) log_.warn("{}", PlainLine(line));

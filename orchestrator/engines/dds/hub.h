@@ -12,6 +12,7 @@
 #include "experiment/experiment.h"
 #include "orchestrator/control/run_control.h"
 #include "orchestrator/engines/dds/roster.h"
+#include "system/log_file.h"
 
 namespace mascot {
 
@@ -21,10 +22,9 @@ class Hub {
  public:
   using Status = Roster::Status;
 
-  /// `peers` are the processes of the run, which are handed out with the experiment. `log` is the path of the log file.
-  /// `wake` is called, from any thread, when the loop should look without delay.
-  Hub(Domain& domain, const Peers& peers, const Experiment& experiment, const std::string& log,
-      std::function<void()> wake);
+  /// `peers` are the processes of the run, which are handed out with the experiment. `wake` is called, from any thread,
+  /// when the loop should look without delay.
+  Hub(Domain& domain, const Peers& peers, const Experiment& experiment, LogFile log, std::function<void()> wake);
   /// Logs which samples were not taken, and from which participants.
   ~Hub();
 

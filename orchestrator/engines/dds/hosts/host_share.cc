@@ -46,7 +46,8 @@ HostShare::HostShare(StopSignal& stop)
       node_(NodeName()),
       input_(STDIN_FILENO),
       output_(STDOUT_FILENO),
-      logs_([this](const std::string& process, const std::string& line) { TakeLine(process, line); }),
+      logs_([this](const std::string& process, const std::string& line) { TakeLine(process, line); },
+            [](const std::string& words) { std::cerr << words << std::endl; }),  // its logs are with `up`
       children_(logs_),
       heard_(WallClock::now()) {}
 

@@ -215,7 +215,8 @@ void Launcher::TakeWordOf(Remote& remote, const std::string& kind, OutsideFields
     std::string text = fields.Text("text", kLongestText);
     if (!fields.Boolean("more")) text += '\n';
     fields.Require();
-    if (log.is_open() && write(log.number(), text.data(), text.size()) < 0) log = Descriptor();
+    if (log.is_open() && write(log.number(), text.data(), text.size()) != std::ssize(text))
+      throw std::runtime_error("cannot pass on what " + process + " prints: " + std::strerror(errno));
   } else {
     const auto status = static_cast<int>(fields.Integer("status", 0, kMostStatus));
     fields.Require();
