@@ -3,15 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
 #include <system_error>
 
+#include "base/number.h"
 #include "base/utf8.h"
 
 namespace mascot {
 namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{1} << 28;  // of a table: nobody is told of what is beyond
 
 /// At most so many bytes of the table beside the recording; empty: there is none.
 std::string TableBeside(const std::string& recording, std::size_t most) {
@@ -55,18 +59,21 @@ std::string FirstIncidentsBeside(const std::string& recording) {
 }
 
 void TellByHand(const std::string& recording, const Experiment& experiment, std::vector<ShownEvent>& events) {
-  const std::string table = TableBeside(recording, std::string::npos);
-  std::string_view text = table;
-  auto event = events.begin();
-  while (!text.empty() && event != events.end()) {
+  constexpr std::string_view kEvent = "event ", kByHand = " by hand";
+  const std::string table = TableBeside(recording, kMostBytes);
+  for (std::string_view text = table; !text.empty();) {
     const std::vector<std::string> fields = TakeLine(text);  // t_s, until_s, what, count, agent, with, detail
     if (fields.size() != 7 || fields[2] != "event") continue;
-    const auto number = fmt::format("event {}", event->number);
-    const bool by_hand = fields[5] == number + " by hand";
-    if (!by_hand && fields[5] != number) continue;
+    std::string_view with = fields[5];
+    if (!with.starts_with(kEvent)) continue;
+    const bool by_hand = with.ends_with(kByHand);
+    if (by_hand) with.remove_suffix(kByHand.size());
+    const auto number = NumberFrom<std::int64_t>(with.substr(kEvent.size()));
+    if (!number) continue;
+    const auto event = std::ranges::lower_bound(events, *number, {}, &ShownEvent::number);
+    if (event == events.end() || event->number != *number) continue;
     if (fields[0] == fmt::format("{}", experiment.time_s(event->tick)) && fields[6] == event->toml)
       event->by_hand = by_hand;
-    ++event;
   }
 }
 
