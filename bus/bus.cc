@@ -211,8 +211,11 @@ class ReaderBase::Listener : public dds::DataReaderListener {
   bool IsBelieved(const Guid& writer) {
     if (domain_.peers_ == nullptr || writer == writer_) return true;
     std::string process = domain_.peers_->Believe(topic_, writer.guidPrefix);
-    const bool is_second = HasOneWriter(topic_) && !process_.empty();
-    if (process.empty() || is_second) return false;
+    if (process.empty()) return false;
+    if (HasOneWriter(topic_) && !process_.empty()) {
+      domain_.peers_->RefuseSecond(topic_, writer.guidPrefix);
+      return false;
+    }
     writer_ = writer;
     process_ = std::move(process);
     return true;

@@ -117,13 +117,26 @@ std::string Peers::Believe(const Topic& topic, const GuidPrefix& writer) {
   return {};
 }
 
+void Peers::RefuseSecond(const Topic& topic, const GuidPrefix& writer) {
+  const std::lock_guard lock(mutex_);
+  ++seconds_[{topic, writer}];
+}
+
 std::vector<std::string> Peers::Refusals() const {
   const std::lock_guard lock(mutex_);
   std::vector<std::string> lines;
-  for (const auto& [from, samples] : refused_)
-    if (!FindWriter(from.first, from.second))  // it may have come before we were told who that is
-      lines.push_back(fmt::format("not taken: {} sample{} of {} from {}, who may not write it", samples,
-                                  samples == 1 ? "" : "s", from.first.Name(), Text(from.second)));
+  const auto add = [&](const Counts::value_type& refused, const std::string& why) {
+    const auto& [from, samples] = refused;
+    lines.push_back(fmt::format("not taken: {} sample{} of {} from {}, {}", samples, samples == 1 ? "" : "s",
+                                from.first.Name(), Text(from.second), why));
+  };
+  for (const auto& refused : refused_)
+    if (!FindWriter(refused.first.first, refused.first.second))  // it may have come before we were told who that is
+      add(refused, "who may not write it");
+  for (const auto& refused : seconds_) {
+    const auto writer = FindWriter(refused.first.first, refused.first.second);
+    add(refused, "a second writer" + (writer ? " of " + entries_[*writer].process : std::string()));
+  }
   return lines;
 }
 

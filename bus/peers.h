@@ -55,8 +55,11 @@ class Peers {
   std::string Believe(const Topic& topic, const GuidPrefix& writer);
   /// As Believe(), without counting.
   std::string WriterOf(const Topic& topic, const GuidPrefix& writer) const;
+  /// Counts a sample that was not taken because its process writes `topic` already, by another writer.
+  void RefuseSecond(const Topic& topic, const GuidPrefix& writer);
   /// The samples that were not taken, one line for each writer and topic: "not taken: 3 samples of /request from
-  /// 01.0f.78.fd..., who may not write it". Samples of a process that was not known yet when they came do not count.
+  /// 01.0f.78.fd..., who may not write it", "not taken: 1 sample of /clock from 01.0f.78.fd..., a second writer of
+  /// physics_server". Samples of a process that was not known yet when they came do not count.
   std::vector<std::string> Refusals() const;
 
  private:
@@ -73,7 +76,8 @@ class Peers {
   mutable std::mutex mutex_;
   std::vector<Entry> entries_;
   std::uint64_t version_ = 0;
-  std::map<std::pair<Topic, GuidPrefix>, std::uint64_t> refused_;
+  using Counts = std::map<std::pair<Topic, GuidPrefix>, std::uint64_t>;  // of samples, by where they came from
+  Counts refused_, seconds_;
 };
 
 }  // namespace mascot

@@ -27,6 +27,7 @@
 namespace mascot::test {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
@@ -193,7 +194,7 @@ TEST_F(Bus, SamplesAreTakenFromTheProcessWhoseTopicItIsAndFromNobodyElse) {
   EXPECT_TRUE(Until([&] { return heard > 0; })) << "who knows no peers listens to everybody";
 }
 
-TEST_F(Bus, ASecondWriterOfAProcessIsNotHeardBesideTheFirst) {
+TEST_F(Bus, ASecondWriterOfAProcessIsCountedAndNotHeardBesideTheFirst) {
   Peers peers;
   peers.Know("physics_server", ProcessKey::WithPid(getpid()));
   Domain believer(
@@ -217,6 +218,9 @@ TEST_F(Bus, ASecondWriterOfAProcessIsNotHeardBesideTheFirst) {
   first.Write(sample);
   ASSERT_TRUE(Until([&] { return newest == 2; }));
   EXPECT_EQ(wrong, 0);
+  ASSERT_TRUE(Until([&] { return !peers.Refusals().empty(); }));
+  EXPECT_THAT(peers.Refusals(), ElementsAre("not taken: 1 sample of /agent_1/state from " + Text(there_.guid_prefix()) +
+                                            ", a second writer of physics_server"));
 }
 
 TEST_F(Bus, AWriterCountsTheProcessesOfTheRunThatHearIt) {

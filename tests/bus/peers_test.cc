@@ -117,6 +117,12 @@ TEST_F(PeersTest, WhatIsNotTakenIsCountedByWriterAndTopic) {
                           HasSubstr("3 samples of /request from 01.0f.01.00.e7.03")));
 }
 
+TEST_F(PeersTest, WhatASecondWriterOfAProcessSaysIsCountedToo) {
+  for (int i = 0; i < 2; ++i) peers_.RefuseSecond(Topic::State(1), ParticipantOf(1, 100));
+  EXPECT_THAT(peers_.Refusals(), ElementsAre("not taken: 2 samples of /agent_1/state from "
+                                             "01.0f.01.00.64.00.07.00.00.00.00.00, a second writer of physics_server"));
+}
+
 TEST_F(PeersTest, WhatCameBeforeItsProcessWasKnownIsNoOffence) {
   peers_.Believe(Topic::Status(), ParticipantOf(2, 500));
   peers_.Know("agent_2", ProcessKey::Of(ParticipantOf(2, 500)));
