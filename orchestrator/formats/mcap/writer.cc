@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
-#include <future>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "orchestrator/formats/input_file.h"
+#include "orchestrator/formats/mcap/background_compressor.h"
 #include "orchestrator/formats/mcap/records.h"
-#include "orchestrator/formats/mcap/zstd.h"
 #include "orchestrator/formats/output_file.h"
 
 namespace mascot {
@@ -70,22 +69,21 @@ struct McapWriter::Impl {
   OutputFile file;
   std::uint32_t data_crc = 0;
   bool closed = false;
-  mcap::Compressor compressor;
   Bytes record;  // scratch: a record outside chunks
   std::vector<SchemaState> schemas;
   std::vector<ChannelState> channels;
 
-  /// A full chunk. It is compressed in a thread of its own while the next one fills. The caller's thread writes it when
-  /// the next one is full or something else is to be written.
+  /// A full chunk. It is compressed in another thread while the next one fills. The caller's thread writes it when the
+  /// next one is full or something else is to be written.
   struct Closed {
     Bytes raw;
     std::uint64_t start_ns = 0;
     std::uint64_t end_ns = 0;
     std::vector<Bytes> index;  // message indexes, by channel - 1
-    std::future<ByteSpan> compressed;
   };
   Closed full;
-  Bytes chunk;  // the open chunk, uncompressed
+  mcap::BackgroundCompressor compressor;  // of full.raw; busy: it is to be written
+  Bytes chunk;                            // the open chunk, uncompressed
   std::uint64_t chunk_messages = 0;
   std::uint64_t chunk_start_ns = 0;
   std::uint64_t chunk_end_ns = 0;
@@ -240,7 +238,7 @@ void McapWriter::Impl::CloseChunk() {
   full.raw.swap(chunk);
   full.start_ns = chunk_start_ns;
   full.end_ns = chunk_end_ns;
-  full.compressed = std::async(std::launch::async, [this] { return compressor.Compress(full.raw); });
+  compressor.Begin(full.raw);
   start_ns = messages == 0 ? chunk_start_ns : std::min(start_ns, chunk_start_ns);
   end_ns = messages == 0 ? chunk_end_ns : std::max(end_ns, chunk_end_ns);
   messages += chunk_messages;
@@ -249,8 +247,8 @@ void McapWriter::Impl::CloseChunk() {
 }
 
 void McapWriter::Impl::WriteClosed() {
-  if (!full.compressed.valid()) return;
-  const ByteSpan compressed = full.compressed.get();
+  if (!compressor.IsBusy()) return;
+  const ByteSpan compressed = compressor.End();
   const ByteSpan stored = compressed.empty() ? ByteSpan(full.raw) : compressed;
   const std::string_view compression = compressed.empty() ? "" : "zstd";
   const std::uint64_t offset = file.size();

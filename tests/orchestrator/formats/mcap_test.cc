@@ -3,9 +3,13 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <random>
+#include <set>
+#include <thread>
 #include <tuple>
 
 #include "orchestrator/formats/mcap/index.h"
@@ -171,6 +175,41 @@ TEST(Mcap, AChunkClosesAtTheFirstTickBoundaryThatSpansOneSecond) {
   }
   writer.Close();
   EXPECT_EQ(ReadMcap(scratch.File("run.mcap")).chunks, 3u);
+}
+
+/// The threads of this process.
+std::set<std::string> Threads() {
+  std::set<std::string> threads;
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task"))
+    threads.insert(thread.path().filename());
+  return threads;
+}
+
+/// Whether this process soon has one thread: the kernel lists one that was joined for another moment.
+bool HasSoonOneThread() {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (Threads().size() != 1 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  return Threads().size() == 1;
+}
+
+TEST(Mcap, AllChunksAreCompressedByOneThreadThatLivesAsLongAsTheWriter) {
+  const ScratchFolder scratch;
+  ASSERT_TRUE(HasSoonOneThread());
+  {
+    McapWriter writer(scratch.File("run.mcap"));
+    const auto channel = writer.AddChannel(Numbers("/one"));
+    std::set<std::string> seen;
+    for (std::uint64_t k = 0; k < 50; ++k) {
+      writer.Write(channel, k * 1000 * kMs, Bytes(100'000));
+      writer.Write(channel, (k + 1) * 1000 * kMs, Bytes(100'000));
+      writer.EndTick();
+      seen.merge(Threads());
+    }
+    EXPECT_EQ(seen.size(), 2u);
+    writer.Close();
+  }
+  EXPECT_TRUE(HasSoonOneThread());
+  EXPECT_EQ(ReadMcap(scratch.File("run.mcap")).chunks, 50u);
 }
 
 TEST(Mcap, NeverWritesAChunkThatItWouldRefuseToRead) {
