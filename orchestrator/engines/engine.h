@@ -11,14 +11,16 @@ namespace mascot {
 
 /// Result of a run; the same for both engines.
 struct EngineResult {
-  std::string failure;                     ///< why the run failed; empty: it ran to its end, or was stopped in order
-  int signal = 0;                          ///< the signal that stopped the run early; 0: none
-  double wall_s = 0;                       ///< wall-clock time from tick 0 to the last command
-  double startup_s = 0;                    ///< wall-clock time from the launch to tick 0
-  std::optional<Contacts> contacts;        ///< absent: the physics server died before it reported them
-  std::optional<Pacing> pacing;            ///< in real time only; absent as contacts is
-  std::uint64_t lost = 0;                  ///< samples that the recorder missed, or that came too late
-  std::optional<bool> wire_matches_graph;  ///< absent: the run ended before every endpoint was discovered
+  std::string failure;               ///< why the run failed; empty: it ran to its end, or was stopped in order
+  int signal = 0;                    ///< the signal that stopped the run early; 0: none
+  double wall_s = 0;                 ///< wall-clock time from tick 0 to the last command
+  double startup_s = 0;              ///< wall-clock time from the launch to tick 0
+  std::optional<Contacts> contacts;  ///< absent: the physics server died before it reported them
+  std::optional<Pacing> pacing;      ///< in real time only; absent as contacts is
+  std::uint64_t lost = 0;            ///< samples that the recorder missed, or that came too late
+  /// Absent: nobody has looked, because the run ended before every endpoint was discovered, or because there is no
+  /// wire.
+  std::optional<bool> wire_matches_graph;
 };
 
 }  // namespace mascot

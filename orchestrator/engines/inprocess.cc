@@ -169,7 +169,6 @@ class Steering {
 EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSink*>& sinks,
                           const std::function<bool()>& go_on, Helm* helm) {
   EngineResult result;
-  result.wire_matches_graph = true;  // no wire here: each agent gets only the samples that the graph allows
   const auto launched = WallClock::now();
   auto start = launched;
   std::optional<Flight> flight;
