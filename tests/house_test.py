@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The tree against docs/architecture.md: rooms use what its tables say, and nothing else. The name of a law or a model
-stands in its own files and rows only. The physics server links neither laws nor Python."""
+stands in its own files and rows only. The physics server links neither laws nor Python. What the document names is where
+it says."""
 
 import collections
 import fnmatch
@@ -307,6 +308,105 @@ def faults_of_json(root):
                 yield f"{path}:{number}: JSON is read by ReadJson(), which has limits ({JSON_READER})"
 
 
+# --- where things are ------------------------------------------------------------------------------------
+
+OURS = [*FOLDERS, "tests", "scripts", "cmake", "docs", "configs"]
+IS_PATH = re.compile(r"[\w.*<>/-]+(?:/|\.(?:cc|h|inc|py|mjs|idl|cmake|yml))")
+NAME = re.compile(r"[A-Za-z_]\w*(?:::\w+)*(?:\.\.\.)?")
+
+
+def files_of(root, words, near=None):
+    """The files that a path in the document is of. `near`: a path before it, whose folder a bare name may be in."""
+    pattern = re.sub(r"<\w+>", "*", words)
+    folders = [""] if pattern.split("/")[0] in OURS or near is None else [f"{folder}/" for folder in parents(near)] + [""]
+    for folder in folders:
+        if found := sorted(path for path in root.glob(folder + pattern.rstrip("/"))):
+            return found
+    if "/" not in pattern:
+        return [path for folder in OURS for path in sorted((root / folder).rglob(pattern))]
+    return []
+
+
+def parents(path):
+    """The folder of a path, and those around it: the nearest first."""
+    folders = path.rstrip("/").split("/")[:-1] if not path.endswith("/") else path.rstrip("/").split("/")
+    return ["/".join(folders[:count]) for count in range(len(folders), 0, -1)]
+
+
+def text_of(paths):
+    """What stands in files, their headers and sources, and in all files of folders."""
+    all_files = set()
+    for path in paths:
+        if path.is_dir():
+            all_files |= {file for file in path.rglob("*") if file.suffix in CPP | {".py"}}
+        else:
+            all_files |= {path, *(path.with_suffix(suffix) for suffix in CPP if path.with_suffix(suffix).exists())}
+    return "\n".join(file.read_text(errors="replace") for file in sorted(all_files))
+
+
+USES = {"and", "case", "co_return", "co_yield", "delete", "else", "goto", "in", "new", "not", "or", "return", "throw"}
+
+
+def is_made_in(name, paths):
+    """Whether files define or declare a name, and not only use it: a type or a keyword stands before it, or its class."""
+    text = re.sub(r"//[^\n]*|/\*.*?\*/", "", text_of(paths), flags=re.S)
+    *scopes, last = name.split("::")
+    last = re.escape(last.removesuffix("...")) + (r"\w*" if last.endswith("...") else r"\b")
+    scope = rf"(?:{scopes[-1]}::)?" if scopes else r"(?:\w+::)*"
+    made = re.finditer(rf"(?P<before>[\w>&*\]]+)(?:[\s*&]+|\s*\(\*){scope}{last}|^{last} =", text, re.M)
+    return any(found["before"] not in USES for found in made) and all(re.search(rf"\b{part}\b", text) for part in scopes)
+
+
+def paths_in(words):
+    return [word for word in quoted(words) if IS_PATH.fullmatch(word) and not word.startswith("/")]
+
+
+def names_in(words):
+    return [word for word in quoted(words) if NAME.fullmatch(word) and not IS_PATH.fullmatch(word)]
+
+
+def found_by(root, cell):
+    """For each group of paths in a cell, divided by semicolons: what is there of it."""
+    near, groups = None, []
+    for group in cell.split(";"):
+        groups.append([])
+        for words in paths_in(group):
+            groups[-1] += files_of(root, words, near)
+            near = words if "/" in words else near
+    return groups
+
+
+def faults_of_paths(root, text):
+    """Paths in the document of which there is nothing. Headers of others are not ours to find."""
+    of_others = {number for number, row in table(text, "header", "who may include it")}
+    for number, line in enumerate(text.splitlines(), 1):
+        near = None
+        if number in of_others:
+            continue
+        for words in paths_in(line):
+            if not files_of(root, words, near):
+                yield f"{DOCUMENT}:{number}: there is no {words}"
+            near = words if "/" in words else near
+
+
+def faults_of_whereabouts(root, text):
+    """Names that are not in the file that the document names with them: in the table of where to look, and as
+    `file` `Name`, `Name` in `file`, `Name` (`file`), (`Name`, `file`) elsewhere."""
+    for number, row in table(text, "what", "file", "name"):
+        groups, names = found_by(root, row["file"]), row["name"].split(";")
+        if len(groups) != len(names):
+            groups, names = [sum(groups, [])], [row["name"]]
+        for paths, words in zip(groups, names):
+            for name in names_in(words):
+                if not is_made_in(name, paths):
+                    yield f"{DOCUMENT}:{number}: {name} is not in {row['file']}"
+    path, name = r"`(?P<path>[\w/<>-]+\.(?:cc|h|py))`", r"`(?P<name>\w+(?:::\w+)*)`"
+    for pair in (f"{path} {name}", f"{name} in {path}", f"{name} \\({path}\\)", f"\\({name}, {path}\\)"):
+        for found in re.finditer(pair.replace(" ", r"\s+"), text):
+            if not is_made_in(found["name"], files_of(root, found["path"])):
+                yield f"{DOCUMENT}:{text.count(chr(10), 0, found.start()) + 1}: {found['name']} is not in {found['path']}"
+
+
 # --- this tree ------------------------------------------------------------------------------------------
 
 
@@ -340,6 +440,10 @@ class ThisTree(HouseTest):
 
     def test_a_piece_of_a_law_stays_in_its_folder(self):
         self.check(faults_of_pieces(ROOT))
+
+    def test_what_the_document_names_is_where_it_says(self):
+        text = (ROOT / DOCUMENT).read_text()
+        self.check([*faults_of_paths(ROOT, text), *faults_of_whereabouts(ROOT, text)])
 
     def test_json_from_outside_is_read_in_one_place(self):
         self.assertTrue((ROOT / JSON_READER).exists())
@@ -615,6 +719,33 @@ class Pieces(Planted):
 
     def test_a_piece_that_is_shared_with_nobody(self):
         self.broken({"agent/laws/flee/flee.cc": ""}, "agent/laws/parts/far.h:1: only agent/laws/chase/ uses it: it belongs there")
+
+
+class Whereabouts(Planted):
+    TABLE = "| header | who may include it |\n|---|---|\n| `zlib.h` | `law` |\n\n| what | file | name |\n|---|---|---|\n"
+
+    def broken(self, text, *faults):
+        self.plant({"agent/laws/chase.h": "class Chase {};\nvoid Flee();\n", "agent/laws/chase.cc": "// none\n",
+                    "agent/agent.cc": "void Agent::Want() {\n  Go(Flee());  // class Chase\n  return Flee();\n}\n", "tests/agent/want_test.cc": "bool Wanted();\n"})
+        self.check([*faults_of_paths(self.root, self.TABLE + text), *faults_of_whereabouts(self.root, self.TABLE + text)],
+                   [f"{DOCUMENT}:{fault}" for fault in faults])
+
+    def test_a_sound_document_has_no_faults(self):
+        self.broken("| a | `agent/laws/<law>.cc`; `agent/agent.cc` | `Chase`, `Fl...`; `Agent::Want` |\n"
+                    "| b | `agent/laws/chase.cc`, `chase.h` | `Flee` |\n| c | `agent/` | |\n\n"
+                    "`agent/agent.cc` `Agent::Want`, `Flee` in `agent/laws/chase.cc`, `Chase`\n(`agent/laws/chase.h`), "
+                    "a test (`Wanted`, `tests/agent/want_test.cc`), held by `want_test.cc`, `run.mcap`, `/agent_1/state`\n")
+
+    def test_a_path_of_nothing(self):
+        self.broken("| a | `agent/laws/chase.cc`, `flea.cc` | `Chase` |\n\n`agent/main/` and `tests/flee_test.cc`\n",
+                    "7: there is no flea.cc", "9: there is no agent/main/", "9: there is no tests/flee_test.cc")
+
+    def test_a_name_that_stands_elsewhere(self):
+        self.broken("| a | `agent/agent.cc`; `agent/laws/chase.cc` | `Chase`; `Flee` |\n\n`agent/agent.cc` `Agent::Flee`, which it uses\n"
+                    "`Want` in `agent/laws/chase.cc`, `Chase` (`agent/agent.cc`), (`Wan`,\n`agent/agent.cc`)\n",
+                    "7: Chase is not in `agent/agent.cc`; `agent/laws/chase.cc`", "9: Agent::Flee is not in agent/agent.cc",
+                    "10: Want is not in agent/laws/chase.cc", "10: Chase is not in agent/agent.cc",
+                    "10: Wan is not in agent/agent.cc")
 
 
 class JsonOfOthers(Planted):
