@@ -20,6 +20,7 @@
 #include "bus/shared_memory.h"
 #include "experiment/experiment.h"
 #include "system/descendants.h"
+#include "system/new_file.h"
 #include "system/usage.h"
 
 namespace mascot {
@@ -39,17 +40,6 @@ AgentRange ParseIds(const std::string& text) {
   return *agents;
 }
 
-/// Writes a file that nobody else has written. Nobody is there to be told if that fails.
-void LeaveWords(const std::string& path, std::string_view words) {
-  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-  while (file >= 0 && !words.empty()) {
-    const ssize_t put = write(file, words.data(), words.size());
-    if (put <= 0) break;
-    words.remove_prefix(static_cast<std::size_t>(put));
-  }
-  if (file >= 0) close(file);
-}
-
 /// See kSweepAfterRun. What laws have started has outlived the run if its orchestrator was killed. Files of a process
 /// that is just ending are in use for another moment: sweeps until that is over.
 int SweepAfterRun(int domain) {
@@ -63,7 +53,7 @@ int SweepAfterRun(int domain) {
     if (got > 0) words.append(bytes.data(), static_cast<std::size_t>(got));
   } while (got > 0 || (got < 0 && errno == EINTR));
   KillMarked();
-  if (const auto end = words.find('\0'); end != words.npos) LeaveWords(words.substr(0, end), words.substr(end + 1));
+  if (const auto end = words.find('\0'); end != words.npos) NewFile(words.c_str()).Write(words.substr(end + 1));
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     SweepSharedMemory(domain);
     poll(nullptr, 0, kMoment_ms);

@@ -1,28 +1,19 @@
 #include "system/log_file.h"
 
 #include <fcntl.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
 
+#include "system/new_file.h"
+
 namespace mascot {
 namespace {
 
 std::string CannotWrite(const std::string& path, int error) {
   return "cannot write " + path + ": " + std::strerror(error);
-}
-
-/// Writes all of `text`. Returns false on failure, with errno set.
-bool WriteAll(int file, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t put = write(file, text.data(), text.size());
-    if (put < 0 && errno != EINTR) return false;
-    if (put > 0) text.remove_prefix(static_cast<std::size_t>(put));
-  }
-  return true;
 }
 
 }  // namespace

@@ -29,6 +29,8 @@ class LastWords {
   /// are not printable ASCII are replaced, and quotes too. Calls only functions that a signal handler may call. The
   /// file is not written twice, and never replaces another.
   static void Leave(const char* const* reason, std::size_t pieces, int exit_code);
+  /// Whether an object lives whose file has not been written: the process is not to end now.
+  static bool Await();
 
  private:
   void Write(const char* const* reason, std::size_t pieces, int exit_code) const;

@@ -11,18 +11,19 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <memory>
 #include <mutex>
 #include <span>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "agent/user_code/last_words.h"
 #include "experiment/experiment.h"
+#include "system/new_file.h"
 
 namespace mascot {
 namespace {
@@ -42,8 +43,8 @@ struct Fatal {
 constexpr Fatal kFatal[] = {{SIGSEGV, "SIGSEGV"}, {SIGABRT, "SIGABRT"}, {SIGFPE, "SIGFPE"}, {SIGILL, "SIGILL"},
                             {SIGTRAP, "SIGTRAP"}, {SIGSYS, "SIGSYS"},   {SIGBUS, "SIGBUS"}};
 
-void Say(const char* text) {
-  if (write(STDERR_FILENO, text, std::strlen(text)) < 0) return;
+void Say(std::string_view text) {
+  if (!WriteAll(STDERR_FILENO, text)) return;
 }
 
 /// `reason`: pieces of a text. Calls only what a signal handler may call.
@@ -98,15 +99,22 @@ class SignalStack {
   __builtin_unreachable();
 }
 
-/// To be called by the thread that ends this process, through `call`. If it runs the code of a law, the process says so
-/// and ends with an exit code that is not 0. A process that a law has started may end as it likes.
-void ExplainEnd(int code, const char* call) {
-  if (whose_law == nullptr || getpid() != this_process || IsForkedByLaw()) return;
-  const char* const reason[] = {whose_law, " has ended the process by ", call};
+/// To be called by the thread that ends this process, through `call`. If that is `who`, the process says so and ends
+/// with an exit code that is not 0; null: it is no law. A process that a law has started may end as it likes.
+void ExplainEnd(int code, const char* call, const char* who = whose_law) {
+  if (who == nullptr || getpid() != this_process || IsForkedByLaw()) return;
+  const char* const reason[] = {who, " has ended the process by ", call};
   SayError(reason);
   const int failure = code != 0 ? code : 1;
   LastWords::Leave(reason, std::size(reason), failure);
   EndNow(failure);
+}
+
+/// A handler of exit(), which our own code does not call while there are words to leave: then a thread that a law has
+/// started may have.
+void OnExit(int code, void* /*nothing*/) {
+  const bool is_too_early = whose_law == nullptr && LastWords::Await();
+  ExplainEnd(code, "exit()", is_too_early ? "a law, or what it has called," : whose_law);
 }
 
 /// In a process that was just forked. A law's dies with the thread that forked it.
@@ -121,7 +129,7 @@ void PrepareProcess() {
   static const bool prepared = [] {
     ExplainCrashes();
     this_process = getpid();
-    on_exit([](int code, void* /*nothing*/) { ExplainEnd(code, "exit()"); }, nullptr);
+    on_exit(OnExit, nullptr);
     at_quick_exit([] { ExplainEnd(1, "quick_exit()"); });
     pthread_atfork(nullptr, nullptr, OnFork);
     return true;
@@ -208,7 +216,7 @@ class LastResort {
   }
 
   [[noreturn]] static void EndProcess(const std::string& words) {
-    Say(("error: " + words + ": the process ends\n").c_str());
+    Say("error: " + words + ": the process ends\n");
     const char* const reason = words.c_str();
     LastWords::Leave(&reason, 1, 1);
     _exit(1);

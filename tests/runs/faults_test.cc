@@ -310,7 +310,9 @@ TEST(Faults, WhateverALawDoesToTheOneProcessOfARunThereIsASummaryThatSaysWhy) {
       {"threading.Thread(target=lambda: ctypes.string_at(0)).start(); time.sleep(100)", -SIGSEGV, 128 + SIGSEGV,
        "this process crashed: SIGSEGV"},
       {"time.sleep(100)", 1, 1, "the law of agent 2 took longer than 0.8 run.agent_timeout_s = 0.8 s and cannot be"},
-      {"ctypes.CDLL(None).exit(0)", 1, 1, "a law, or what it has called, has ended the process by exit()"},
+      {"ctypes.CDLL(None).exit(0)", 1, 1, "the law of agent 2 has ended the process by exit()"},
+      {"threading.Thread(target=lambda: ctypes.CDLL(None).exit(0)).start(); time.sleep(100)", 1, 1,
+       "a law, or what it has called, has ended the process by exit()"},
       {"ctypes.CDLL(None)._exit(0)", 1, 1, "the law of agent 2 has ended the process by _exit()"},
       {kExitGroup.c_str(), 0, nullptr, "the orchestrator was killed (SIGKILL: by somebody, or for"},
       {"ctypes.CDLL(None).kill(os.getpid(), 9)", -SIGKILL, nullptr, "the orchestrator was killed (SIGKILL"}};

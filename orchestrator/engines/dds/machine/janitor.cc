@@ -9,11 +9,11 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 
 #include "bus/process_main.h"
 #include "bus/shared_memory.h"
 #include "system/children.h"
+#include "system/new_file.h"
 
 extern char** environ;
 
@@ -71,12 +71,8 @@ Janitor::~Janitor() {
 }
 
 void Janitor::LeaveWords(const std::string& path, const std::string& text) const {
-  const std::string words = path + '\0' + text;
-  for (std::string_view rest = words; !rest.empty();) {
-    const ssize_t put = write(lifeline_, rest.data(), rest.size());
-    if (put <= 0) return;  // it has ended: then nobody sweeps either, and that is all
-    rest.remove_prefix(static_cast<std::size_t>(put));
-  }
+  // If it has ended, nobody sweeps either, and that is all.
+  static_cast<void>(WriteAll(lifeline_, path + '\0' + text));
 }
 
 void Janitor::Dismiss() {
