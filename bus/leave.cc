@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "bus/process_main.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 namespace {
@@ -41,13 +42,8 @@ void LeaveByForce(int) {
   _exit(leaving_code);
 }
 
-bool IsIgnoredNow(int signal) {
-  struct sigaction action {};
-  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
-}
-
 void LeaveOn(int signal) {
-  if (IsIgnoredNow(signal)) return;  // nohup
+  if (IsIgnored(signal)) return;  // nohup
   struct sigaction action {};
   action.sa_handler = LeaveByForce;
   sigaction(signal, &action, nullptr);

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -21,6 +20,7 @@
 #include "experiment/experiment.h"
 #include "system/descendants.h"
 #include "system/new_file.h"
+#include "system/spawn.h"
 #include "system/usage.h"
 
 namespace mascot {
@@ -153,10 +153,8 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
   AdoptDescendants();
   std::signal(SIGPIPE, SIG_IGN);  // clean up even if stderr is the pipe of a dead orchestrator
   close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);  // what a law starts is no process of the run (Janitor)
-  if (args.parent != 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);        // it may be stopped, or hang in a law or in Fast DDS; the Janitor sweeps
-    if (getppid() != args.parent) return 1;  // the orchestrator died before this line
-  }
+  // This process may be stopped, or hang in a law or in Fast DDS, when the orchestrator dies; the Janitor sweeps.
+  if (args.parent != 0 && !DieWith(args.parent)) return 1;
   args.options.name = args.is_agent ? ProcessName(args.agents) : kPhysicsServer;
   if (!args.options.server.empty()) args.options.role = DiscoveryRole::kClient;
   try {

@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -22,7 +21,7 @@ using WallClock = std::chrono::steady_clock;
 
 struct ChildLogs::Stream {
   std::string process;
-  int descriptor = -1;
+  Descriptor output;
   LogFile file;
   std::string partial = {};           // what came since the last line
   std::deque<std::string> last = {};  // the last kLastLines lines
@@ -33,10 +32,6 @@ namespace {
 constexpr std::size_t kLastLines = 10;
 constexpr std::size_t kLongestLine = 4096;  // a longer one is taken for several
 constexpr auto kPipeIsEmpty = 2s;           // by then, the last output of a dead child has been copied from its pipe
-
-void MakePipe(int (&ends)[2]) {
-  if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
-}
 
 /// Takes the next line off the front of `text`; nothing if it is not over.
 std::optional<std::string> NextLine(std::string& text) {
@@ -52,7 +47,6 @@ std::optional<std::string> NextLine(std::string& text) {
 
 ChildLogs::ChildLogs(LineSink on_line, LogFile::Tell on_loss)
     : on_line_(std::move(on_line)), on_loss_(std::move(on_loss)) {
-  MakePipe(wake_);
   thread_ = std::thread([this] { Copy(); });
 }
 
@@ -61,39 +55,36 @@ ChildLogs::~ChildLogs() {
     const std::lock_guard lock(mutex_);
     closing_ = true;
   }
-  if (write(wake_[1], "", 1) < 0) std::perror("pipe");
+  if (write(wake_.writes.number(), "", 1) < 0) std::perror("pipe");
   thread_.join();
-  close(wake_[0]);
-  close(wake_[1]);
 }
 
-int ChildLogs::Open(const std::string& process, const std::filesystem::path& log) {
+Descriptor ChildLogs::Open(const std::string& process, const std::filesystem::path& log) {
   LogFile file(log, on_loss_);
-  int ends[2];
-  MakePipe(ends);
-  fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  auto stream = std::make_unique<Stream>(Stream{process, ends[0], std::move(file)});
+  Pipe pipe = MakePipe();
+  fcntl(pipe.reads.number(), F_SETFL, O_NONBLOCK);
+  auto stream = std::make_unique<Stream>(Stream{process, std::move(pipe.reads), std::move(file)});
   {
     const std::lock_guard lock(mutex_);
     streams_.push_back(std::move(stream));
   }
-  if (write(wake_[1], "", 1) < 0) throw std::runtime_error("cannot wake the thread that copies logs");
-  return ends[1];
+  if (write(wake_.writes.number(), "", 1) < 0) throw std::runtime_error("cannot wake the thread that copies logs");
+  return std::move(pipe.writes);
 }
 
 void ChildLogs::Copy() {
   for (bool closing = false;;) {
-    std::vector<pollfd> polled{{wake_[0], POLLIN, 0}};
+    std::vector<pollfd> polled{{wake_.reads.number(), POLLIN, 0}};
     {
       const std::lock_guard lock(mutex_);
-      for (const auto& stream : streams_) polled.push_back({stream->descriptor, POLLIN, 0});
+      for (const auto& stream : streams_) polled.push_back({stream->output.number(), POLLIN, 0});
       closing = closing_;
     }
     // At closing the children have ended, but processes that they started may hold the pipes open for ever: do not
     // wait.
     if (poll(polled.data(), polled.size(), closing ? 0 : -1) == 0) break;
     char buffer[256];
-    if (polled[0].revents != 0 && read(wake_[0], buffer, sizeof buffer) < 0) break;
+    if (polled[0].revents != 0 && read(wake_.reads.number(), buffer, sizeof buffer) < 0) break;
     const std::lock_guard lock(mutex_);
     for (std::size_t i = 1; i < polled.size(); ++i)
       if (polled[i].revents != 0) Read(*streams_[i - 1]);
@@ -107,12 +98,12 @@ void ChildLogs::Close(Stream& stream) {
     stream.file.Write("\n");
     TakeLine(stream, std::exchange(stream.partial, {}));
   }
-  if (stream.descriptor >= 0) close(std::exchange(stream.descriptor, -1));
+  stream.output = Descriptor();
 }
 
 void ChildLogs::Read(Stream& stream) {
   char buffer[4096];
-  const ssize_t size = read(stream.descriptor, buffer, sizeof buffer);
+  const ssize_t size = read(stream.output.number(), buffer, sizeof buffer);
   if (size < 0 && (errno == EAGAIN || errno == EINTR)) return;
   if (size <= 0) return Close(stream);
   const std::string_view text(buffer, static_cast<std::size_t>(size));
@@ -132,7 +123,7 @@ std::vector<std::string> ChildLogs::LastLines(const std::string& process) {
   for (const auto deadline = WallClock::now() + kPipeIsEmpty;; poll(nullptr, 0, 1)) {
     const std::lock_guard lock(mutex_);
     for (const auto& stream : streams_)
-      if (stream->process == process && (stream->descriptor < 0 || WallClock::now() > deadline))
+      if (stream->process == process && (!stream->output.is_open() || WallClock::now() > deadline))
         return {stream->last.begin(), stream->last.end()};
     if (WallClock::now() > deadline) return {};
   }

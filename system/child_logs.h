@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "system/descriptor.h"
 #include "system/log_file.h"
 
 namespace mascot {
@@ -27,9 +28,9 @@ class ChildLogs {
   ChildLogs(const ChildLogs&) = delete;
   ChildLogs& operator=(const ChildLogs&) = delete;
 
-  /// Creates a pipe, whose output goes to the file `log`. Returns its write end, which the caller closes. Throws
-  /// std::runtime_error if the pipe or the file cannot be created.
-  int Open(const std::string& process, const std::filesystem::path& log);
+  /// Creates a pipe, whose output goes to the file `log`. Returns its end to write to. Throws std::runtime_error if the
+  /// pipe or the file cannot be created.
+  Descriptor Open(const std::string& process, const std::filesystem::path& log);
   /// The last lines that `process` printed. Waits up to 2 s for the end of its output, so that the lines in the pipe of
   /// a dead child are included.
   std::vector<std::string> LastLines(const std::string& process);
@@ -45,7 +46,7 @@ class ChildLogs {
   const LogFile::Tell on_loss_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<Stream>> streams_;
-  int wake_[2];
+  Pipe wake_ = MakePipe();
   bool closing_ = false;
   std::thread thread_;  // last: it uses the members above
 };

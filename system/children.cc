@@ -1,16 +1,12 @@
 #include "system/children.h"
 
-#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
-#include <cstring>
-#include <stdexcept>
+#include <utility>
 
-extern char** environ;
+#include "system/spawn.h"
 
 namespace mascot {
 
@@ -34,39 +30,19 @@ Children::~Children() {
 
 pid_t Children::Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments,
                       const std::filesystem::path& log, const Streams& streams) {
-  const int output = logs_.Open(process, log);
-  close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);  // logs of other children, files of the run: not for it
-  std::vector<char*> argv{const_cast<char*>(program.c_str())};
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
-
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  if (streams.input >= 0)
-    posix_spawn_file_actions_adddup2(&files, streams.input, STDIN_FILENO);
-  else
-    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&files, streams.output >= 0 ? streams.output : output, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&files, output, STDERR_FILENO);
-  for (const int shared : shared_) posix_spawn_file_actions_adddup2(&files, shared, shared);  // not closed by exec
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none, all;
-  sigemptyset(&none);
-  sigfillset(&all);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setsigdefault(&attributes, &all);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-
-  pid_t pid = 0;
-  const int error = posix_spawnp(&pid, program.c_str(), &files, &attributes, argv.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&files);
-  close(output);
-  if (error != 0) throw std::runtime_error("cannot start " + program + ": " + std::strerror(error));
-  running_.push_back({process, ChildProcess(pid)});
-  return pid;
+  const Descriptor output = logs_.Open(process, log);
+  std::vector<std::string> words{program};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  ChildProcess child = mascot::Spawn({.words = std::move(words),
+                                      .group = Program::Group::kOwn,
+                                      .signals = Program::Signals::kDefault,
+                                      .input = streams.input >= 0 ? streams.input : Program::kNowhere,
+                                      .output = streams.output >= 0 ? streams.output : output.number(),
+                                      .errors = output.number(),
+                                      .shared = shared_});
+  const pid_t number = child.number();
+  running_.push_back({process, std::move(child)});
+  return number;
 }
 
 std::vector<Exit> Children::Reap() {

@@ -25,10 +25,6 @@ bool WithName(const std::string& name, const Descriptor& socket, Call call) {
 
 }  // namespace
 
-Descriptor::~Descriptor() {
-  if (is_open()) ::close(number_);
-}
-
 Descriptor MakeLocalSocket(int flags) {
   Descriptor made(::socket(AF_UNIX, SOCK_STREAM | flags, 0));
   if (!made.is_open()) throw std::runtime_error(std::string("cannot make a socket: ") + std::strerror(errno));

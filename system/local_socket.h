@@ -5,27 +5,10 @@
 
 #include <optional>
 #include <string>
-#include <utility>
+
+#include "system/descriptor.h"
 
 namespace mascot {
-
-/// Owns a file descriptor, or none (-1).
-class Descriptor {
- public:
-  explicit Descriptor(int number = -1) : number_(number) {}
-  ~Descriptor();
-  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-
-  int number() const { return number_; }
-  bool is_open() const { return number_ >= 0; }
-
- private:
-  int number_;
-};
 
 // Stream sockets between processes of this machine, with abstract names (unix(7)): a name is in no folder, so that no
 // file is left, or can be in the way. One socket at a time can have a name, of whatever user. Each network namespace

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "system/local_socket.h"
+#include "system/descriptor.h"
 
 namespace mascot {
 

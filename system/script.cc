@@ -1,18 +1,15 @@
 #include "system/script.h"
 
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 
 #include <chrono>
-#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
 
 #include "system/children.h"
-
-extern char** environ;
+#include "system/spawn.h"
 
 namespace mascot {
 namespace fs = std::filesystem;
@@ -28,21 +25,8 @@ std::string AsWord(const fs::path& path) {
   return word.starts_with('-') ? "./" + word : word;
 }
 
-int RunProgram(std::vector<std::string> words, StopSignal& stop) {
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigemptyset(&none);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-  pid_t pid = 0;
-  const int error = posix_spawnp(&pid, argv[0], nullptr, &attributes, argv.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  if (error != 0) throw std::runtime_error("cannot start " + words[0] + ": " + std::strerror(error));
-  ChildProcess process(pid);
+int RunProgram(const std::vector<std::string>& words, StopSignal& stop) {
+  ChildProcess process = Spawn({.words = words});
   int received = 0;
   std::optional<int> status;
   while (!(status = process.ReapIfEnded())) {

@@ -17,7 +17,7 @@ std::string AsWord(const std::filesystem::path& path);
 
 /// Runs a program, found by PATH, on our terminal. Returns its exit code, or 128 + the signal that ended it. A signal
 /// that `stop` receives meanwhile ends the program. Throws std::runtime_error if it cannot be started.
-int RunProgram(std::vector<std::string> words, StopSignal& stop);
+int RunProgram(const std::vector<std::string>& words, StopSignal& stop);
 
 /// Runs the Python script `script` of scripts/ (installed or in the source tree) with `arguments`. Returns its exit
 /// code as RunProgram() does. Throws std::runtime_error if the script is missing or cannot be started.

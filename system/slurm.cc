@@ -2,21 +2,25 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdio>
+#include <cerrno>
 #include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 
 #include "base/number.h"
 #include "base/utf8.h"
 #include "experiment/toml/section.h"
+#include "system/descriptor.h"
 #include "system/environment.h"
+#include "system/spawn.h"
 
 namespace mascot {
 namespace {
@@ -54,19 +58,29 @@ std::vector<std::string> NodesIn(const std::string& text) {
   return nodes;
 }
 
+/// What can be read, but at most kLongestAnswer: it is read to its end all the same, or its writer would wait.
+std::string AllOf(const Descriptor& input) {
+  std::string text;
+  std::array<char, 4096> buffer;
+  for (ssize_t got = 1; got != 0;) {
+    got = read(input.number(), buffer.data(), buffer.size());
+    if (got < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category(), "cannot read from scontrol");
+    if (got > 0 && text.size() < kLongestAnswer) text.append(buffer.data(), static_cast<std::size_t>(got));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::vector<std::string> NodesOfTheJob() {
   if (EnvironmentText("SLURM_JOB_ID").empty() || EnvironmentText("SLURM_JOB_NODELIST").empty())
     throw ConfigError({"--slurm: expected a Slurm allocation (sbatch, salloc) around this command, got none"});
-  FILE* pipe = popen("scontrol show hostnames \"$SLURM_JOB_NODELIST\"", "r");  // NOLINT(cert-env33-c): fixed words
-  if (pipe == nullptr) throw std::runtime_error("cannot start scontrol");
-  std::string text;
-  std::array<char, 4096> buffer;
-  while (const std::size_t got = fread(buffer.data(), 1, buffer.size(), pipe))
-    if (text.size() < kLongestAnswer) text.append(buffer.data(), got);  // read to its end, or pclose() would wait
-  const int status = pclose(pipe);
-  if (status != 0) throw std::runtime_error("scontrol does not tell the nodes of this job");
+  Pipe answer = MakePipe();
+  ChildProcess scontrol = Spawn({.words = {"scontrol", "show", "hostnames", EnvironmentText("SLURM_JOB_NODELIST")},
+                                 .output = answer.writes.number()});
+  answer.writes = Descriptor();
+  const std::string text = AllOf(answer.reads);
+  if (scontrol.Reap() != 0) throw std::runtime_error("scontrol does not tell the nodes of this job");
   return NodesIn(text);
 }
 

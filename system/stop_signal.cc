@@ -15,13 +15,6 @@
 namespace mascot {
 namespace {
 
-/// True if this process ignores `signal`. Blocked signals are queued even if ignored, so a SIGHUP that nohup made us
-/// ignore must not be blocked.
-bool IsIgnored(int signal) {
-  struct sigaction action {};
-  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
-}
-
 sigset_t Signals() {
   sigset_t set;
   sigemptyset(&set);
@@ -36,6 +29,11 @@ int Checked(int fd, const char* what) {
 }
 
 }  // namespace
+
+bool IsIgnored(int signal) {
+  struct sigaction action {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
 
 StopSignal::StopSignal() {
   const sigset_t set = Signals();

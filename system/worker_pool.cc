@@ -2,8 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <signal.h>
-#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -12,6 +10,8 @@
 #include <cstring>
 #include <system_error>
 #include <utility>
+
+#include "system/spawn.h"
 
 namespace mascot {
 namespace {
@@ -61,27 +61,22 @@ void SilenceOutput() {
 }  // namespace
 
 WorkerPool::WorkerPool(int workers, Work work) : work_(std::move(work)) {
-  for (int i = 0; i < workers; ++i) workers_.push_back(Fork());
+  for (int i = 0; i < workers; ++i) workers_.push_back(StartWorker());
 }
 
-WorkerPool::Worker WorkerPool::Fork() const {
+WorkerPool::Worker WorkerPool::StartWorker() const {
   int ends[2];
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) Fail("socketpair");
-  Descriptor ours(ends[0]), theirs(ends[1]);
-  const pid_t parent = ::getpid();
-  const pid_t pid = ::fork();
-  if (pid < 0) Fail("fork");
-  if (pid == 0) {
-    ::setpgid(0, 0);  // Ctrl-C must reach the parent only
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) ::_exit(1);
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) Fail("cannot make a pair of sockets");
+  Descriptor ours(ends[0]);
+  const Descriptor theirs(ends[1]);
+  ChildProcess process = Fork([&] {
     for (const Worker& other : workers_)
       if (other.socket.is_open()) ::close(other.socket.number());
     ::close(ours.number());
     SilenceOutput();
     Serve(theirs.number());
-  }
-  return {.process = ChildProcess(pid), .socket = std::move(ours)};
+  });
+  return {.process = std::move(process), .socket = std::move(ours)};
 }
 
 void WorkerPool::Serve(int socket) const {
@@ -93,9 +88,8 @@ void WorkerPool::Serve(int socket) const {
     } catch (const std::exception& error) {
       reply = kFailure + std::string(error.what());
     }
-    if (!SendReply(socket, reply)) break;
+    if (!SendReply(socket, reply)) return;
   }
-  ::_exit(0);
 }
 
 bool WorkerPool::HasIdle() const {
@@ -108,7 +102,7 @@ bool WorkerPool::IsBusy() const {
 
 void WorkerPool::Start(std::size_t task) {
   Worker& worker = *std::ranges::find_if(workers_, [](const Worker& each) { return !each.task; });
-  if (worker.process.number() == 0) worker = Fork();
+  if (worker.process.number() == 0) worker = StartWorker();
   // If the worker has died meanwhile, Wait notices the closed socket.
   if (::send(worker.socket.number(), &task, sizeof task, MSG_NOSIGNAL) < 0 && errno != EPIPE && errno != ECONNRESET)
     Fail("send to a worker");

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "system/child_process.h"
-#include "system/local_socket.h"
+#include "system/descriptor.h"
 
 namespace mascot {
 
@@ -48,8 +48,8 @@ class WorkerPool {
     Descriptor socket;
     std::optional<std::size_t> task = {};
   };
-  Worker Fork() const;
-  [[noreturn]] void Serve(int socket) const;
+  Worker StartWorker() const;
+  void Serve(int socket) const;
 
   Work work_;
   std::vector<Worker> workers_;

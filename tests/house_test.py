@@ -308,6 +308,35 @@ def faults_of_json(root):
                 yield f"{path}:{number}: JSON is read by ReadJson(), which has limits ({JSON_READER})"
 
 
+# --- the operating system ---------------------------------------------------------------------------------
+
+# What is asked of the operating system in one place each, for all: the call, where, and what others use.
+ONE_PLACE = [
+    (r"(?<![\w.>])(?:v?fork|posix_spawnp?|popen|system|execl[pe]?|execv\w*)\s*\(", ["system/spawn.cc", "bus/leave.cc"],
+     "programs are started by Spawn() and Fork() (system/spawn.h)"),
+    (r"\bpipe2?\s*\(", ["system/descriptor.cc"], "pipes are made by MakePipe() (system/descriptor.h)"),
+    (r"\bwait(?:pid|id|3|4)\s*\(|(?<![\w.>])kill(?:pg)?\s*\(", ["system/child_process.cc", "system/descendants.cc"],
+     "a child process is owned by a ChildProcess (system/child_process.h)"),
+    (r"\bPR_SET_PDEATHSIG\b", ["system/spawn.cc", "agent/user_code/law_at_work.cc"],
+     "a process dies with another by DieWith() (system/spawn.h)"),
+    (r"==\s*SIG_IGN\b", ["system/stop_signal.cc"], "IsIgnored() tells (system/stop_signal.h)"),
+    (r"\bofstream\b|\bbasic_file_sink\w*", [],
+     "files are written by what checks each write: WholeFile, OutputFile, LogFile, NewFile"),
+]
+
+
+def faults_of_calls(root):
+    """Calls of the operating system elsewhere than where they are made for all."""
+    for path in sources(root, FOLDERS, CPP):
+        text = re.sub(r"//[^\n]*", "", (root / path).read_text())
+        if path == "agent/python/guard.cc":  # Python's words
+            continue
+        for number, line in enumerate(text.splitlines(), 1):
+            for call, places, words in ONE_PLACE:
+                if path not in places and re.search(call, re.sub(r'"(?:\\.|[^"\\])*"', '""', line)):
+                    yield f"{path}:{number}: {words}"
+
+
 # --- where things are ------------------------------------------------------------------------------------
 
 OURS = [*FOLDERS, "tests", "scripts", "cmake", "docs", "configs"]
@@ -440,6 +469,12 @@ class ThisTree(HouseTest):
 
     def test_a_piece_of_a_law_stays_in_its_folder(self):
         self.check(faults_of_pieces(ROOT))
+
+    def test_the_operating_system_is_asked_in_one_place(self):
+        for _, places, _ in ONE_PLACE:
+            for place in places:
+                self.assertTrue((ROOT / place).exists(), place)
+        self.check(faults_of_calls(ROOT))
 
     def test_what_the_document_names_is_where_it_says(self):
         text = (ROOT / DOCUMENT).read_text()
@@ -746,6 +781,25 @@ class Whereabouts(Planted):
                     "7: Chase is not in `agent/agent.cc`; `agent/laws/chase.cc`", "9: Agent::Flee is not in agent/agent.cc",
                     "10: Want is not in agent/laws/chase.cc", "10: Chase is not in agent/agent.cc",
                     "10: Wan is not in agent/agent.cc")
+
+
+class Calls(Planted):
+    def broken(self, files, *faults):
+        self.plant(FILES | files)
+        self.check(faults_of_calls(self.root), faults)
+
+    def test_a_sound_tree_has_no_faults(self):
+        self.broken({"system/spawn.cc": "const pid_t number = fork();\n",
+                     "bus/a.cc": "// fork()\nFork(work);\ncalls.fork();\nthrow Error(\"fork() failed\");\nprocess.kill(1);\n"
+                                 "std::ifstream file(path);\nskill(3);\nsystem_clock::now();\n"})
+
+    def test_every_call(self):
+        lines = ["if (fork() == 0) return;", "posix_spawnp(&pid, path, 0, 0, argv, environ);", 'FILE* p = popen("ls", "r");',
+                 "::pipe2(ends, O_CLOEXEC);", "waitpid(pid, &status, 0);", "::kill(pid, SIGKILL);",
+                 "prctl(PR_SET_PDEATHSIG, SIGKILL);", "return action.sa_handler == SIG_IGN;", "std::ofstream file(path);"]
+        words = [0, 0, 0, 1, 2, 2, 3, 4, 5]
+        self.broken({"agent/b.cc": "\n".join(lines) + "\n"},
+                    *(f"agent/b.cc:{number}: {ONE_PLACE[row][2]}" for number, row in enumerate(words, 1)))
 
 
 class JsonOfOthers(Planted):

@@ -17,8 +17,8 @@
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
 #include "system/build.h"
+#include "system/descriptor.h"
 #include "system/line_pipe.h"
-#include "system/local_socket.h"
 
 namespace mascot {
 namespace {
@@ -33,12 +33,6 @@ constexpr int kMostLines = 10'000;     // read of a connection at once: the run 
 
 /// What a host said, for a message.
 std::string Quote(const std::string& text) { return std::string(CutUtf8(PlainLine(text), kLongestQuote)); }
-
-std::pair<Descriptor, Descriptor> Pipe() {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
-  return {Descriptor(ends[0]), Descriptor(ends[1])};
-}
 
 }  // namespace
 
@@ -95,8 +89,8 @@ Launcher::~Launcher() = default;
 
 /// Starts the launch command of a host.
 Launcher::Connection& Launcher::Connect(const HostConfig& host) {
-  auto [input, to_host] = Pipe();
-  auto [from_host, output] = Pipe();
+  auto [input, to_host] = MakePipe();
+  auto [from_host, output] = MakePipe();
   std::vector<std::string> words(host.launch.begin() + 1, host.launch.end());
   const std::string ours = (ProgramFolder() / "orchestrator").string();
   words.insert(words.end(), {host.program.empty() ? ours : host.program, "host"});
@@ -241,7 +235,7 @@ void Launcher::Greet(Remote& remote, const HostHello& hello) {
   HostJob job = rules_.job(host, OurAddress(host, hello.seen_from));
   job.own_memory = hello.machine != MachineText();
   for (const HostProcess& process : job.processes)
-    remote.logs.emplace(process.name, Descriptor(logs_.Open(process.name, folder_.Log(process.name))));
+    remote.logs.emplace(process.name, logs_.Open(process.name, folder_.Log(process.name)));
   HostWords words = WordsOf(job);
   if (host.together) words["node"] = host.name;
   remote.connection.output.Write(words.dump());

@@ -7,6 +7,7 @@
 
 #include "orchestrator/engines/dds/machine/domain_lock.h"
 #include "system/child_process.h"
+#include "system/descriptor.h"
 
 namespace mascot {
 
@@ -26,7 +27,7 @@ class Janitor {
   /// Sets the contents that this file gets if the run ends without Dismiss() and the file does not exist.
   void LeaveWords(const std::string& path, const std::string& text) const;
   /// The end of the pipe that every process of the run has to inherit.
-  int lifeline() const { return lifeline_; }
+  int lifeline() const { return lifeline_.number(); }
   pid_t process() const { return process_.number(); }
   /// Ends the process: the caller has removed the shared memory itself. May be called again.
   void Dismiss();
@@ -34,7 +35,7 @@ class Janitor {
  private:
   void Start(int domain, std::span<const int> lock);
 
-  int lifeline_ = -1;
+  Descriptor lifeline_;
   ChildProcess process_;
 };
 
