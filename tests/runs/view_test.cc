@@ -166,6 +166,26 @@ TEST(UpWithView, SaysWhomItRefusesAlsoInItsLogAndLetsInWhoIsAllowed) {
   EXPECT_EQ(up.Wait(), 130);
 }
 
+TEST(UpWithView, SaysOnceThatTheLogOfViewersCannotBeWritten) {
+  const ScratchFolder folder;
+  WriteFile(folder.File("run.toml"), kRecordedRun);
+  Up up(folder, "run", folder.File("run.toml"),
+        {"--engine", "inprocess", "--set", "run.mode='lockstep'", "--set", "run.pace=1.0", "--view", "127.0.0.1:0"});
+  const std::string url = UrlOf(up);
+  EXPECT_TRUE(Until([&] { return std::filesystem::exists(up.path() / "logs"); }));
+  std::filesystem::create_directories(up.path() / "logs/viewers.log");
+  for (const char* page : {"https://evil.example", "https://worse.example"}) {
+    WebClient(url).Upgrade("foxglove.sdk.v1", std::string("Origin: ") + page + "\r\n");
+    EXPECT_TRUE(Says(up, std::string(": refused: a page of ") + page)) << up.err();
+  }
+  const std::string warning =
+      "warning: cannot write " + (up.path() / "logs/viewers.log").string() + ": Is a directory\n";
+  EXPECT_TRUE(Says(up, warning)) << up.err();
+  EXPECT_EQ(up.err().find(warning), up.err().rfind(warning));
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130);
+}
+
 TEST(UpWithView, SaysWhatAnOriginIs) {
   const ScratchFolder folder;
   Up wrong(folder, "run", Config("leaderless"), {"--view", "--allow-origin", "app.foxglove.dev"});
