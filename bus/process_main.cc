@@ -19,7 +19,7 @@
 #include "bus/shared_memory.h"
 #include "experiment/experiment.h"
 #include "system/descendants.h"
-#include "system/new_file.h"
+#include "system/left_file.h"
 #include "system/spawn.h"
 #include "system/usage.h"
 
@@ -53,7 +53,7 @@ int SweepAfterRun(int domain) {
     if (got > 0) words.append(bytes.data(), static_cast<std::size_t>(got));
   } while (got > 0 || (got < 0 && errno == EINTR));
   KillMarked();
-  if (const auto end = words.find('\0'); end != words.npos) NewFile(words.c_str()).Write(words.substr(end + 1));
+  if (const auto end = words.find('\0'); end != words.npos) LeftFile(words.c_str()).Write(words.substr(end + 1));
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     SweepSharedMemory(domain);
     poll(nullptr, 0, kMoment_ms);

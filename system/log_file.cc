@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "system/new_file.h"
+#include "system/left_file.h"
 
 namespace mascot {
 namespace {

@@ -321,7 +321,7 @@ ONE_PLACE = [
      "a process dies with another by DieWith() (system/spawn.h)"),
     (r"==\s*SIG_IGN\b", ["system/stop_signal.cc"], "IsIgnored() tells (system/stop_signal.h)"),
     (r"\bofstream\b|\bbasic_file_sink\w*", [],
-     "files are written by what checks each write: WholeFile, OutputFile, LogFile, NewFile"),
+     "files are written by what checks each write: WholeFile, OutputFile, LogFile, LeftFile"),
 ]
 
 

@@ -7,7 +7,7 @@
 #include <exception>
 #include <utility>
 
-#include "system/new_file.h"
+#include "system/left_file.h"
 
 namespace mascot {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 std::atomic<const LastWords*> living = nullptr;
 
 /// Writes a reason, as it may stand within a text of JSON.
-void WriteReason(NewFile& file, const char* text) {
+void WriteReason(LeftFile& file, const char* text) {
   for (; *text != 0; ++text) {
     const bool is_plain = *text >= ' ' && *text <= '~' && *text != '\\';
     const char byte = *text == '"' ? '\'' : is_plain ? *text : '?';
@@ -61,7 +61,7 @@ void LastWords::Leave(const char* const* reason, std::size_t pieces, int exit_co
 bool LastWords::Await() { return living != nullptr; }
 
 void LastWords::Write(const char* const* reason, std::size_t pieces, int exit_code) const {
-  NewFile file(path_.c_str());
+  LeftFile file(path_.c_str());
   for (std::size_t part = 0; part < parts_.size(); ++part) {
     file.Write(parts_[part]);
     if (behind_[part] == 'r')

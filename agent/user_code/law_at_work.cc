@@ -23,7 +23,7 @@
 
 #include "agent/user_code/last_words.h"
 #include "experiment/experiment.h"
-#include "system/new_file.h"
+#include "system/left_file.h"
 
 namespace mascot {
 namespace {

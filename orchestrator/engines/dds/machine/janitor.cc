@@ -8,7 +8,7 @@
 #include "bus/process_main.h"
 #include "bus/shared_memory.h"
 #include "system/children.h"
-#include "system/new_file.h"
+#include "system/left_file.h"
 #include "system/spawn.h"
 
 namespace mascot {

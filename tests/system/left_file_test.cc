@@ -1,4 +1,4 @@
-#include "system/new_file.h"
+#include "system/left_file.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -12,29 +12,29 @@
 namespace mascot {
 namespace {
 
-TEST(NewFile, HasWhatWasWritten) {
+TEST(LeftFile, HasWhatWasWritten) {
   const ScratchFolder folder;
   const std::string path = folder.File("words");
   {
-    NewFile file(path.c_str());
+    LeftFile file(path.c_str());
     file.Write("one, ");
     file.Write("two");
   }
   EXPECT_EQ(ReadFile(path), "one, two");
 }
 
-TEST(NewFile, TakesNobodysPlace) {
+TEST(LeftFile, TakesNobodysPlace) {
   const ScratchFolder folder;
   const std::string path = folder.File("words"), link = folder.File("link"), target = folder.File("target");
   WriteFile(path, "earlier");
   std::filesystem::create_symlink(target, link);
-  NewFile(path.c_str()).Write("later");
-  NewFile(link.c_str()).Write("later");
+  LeftFile(path.c_str()).Write("later");
+  LeftFile(link.c_str()).Write("later");
   EXPECT_EQ(ReadFile(path), "earlier");
   EXPECT_FALSE(std::filesystem::exists(target));
 }
 
-TEST(NewFile, ThatCannotBeWrittenWholeIsRemoved) {
+TEST(LeftFile, ThatCannotBeWrittenWholeIsRemoved) {
   const ScratchFolder folder;
   const std::string path = folder.File("words");
   const auto before = ::signal(SIGXFSZ, SIG_IGN);
@@ -43,7 +43,7 @@ TEST(NewFile, ThatCannotBeWrittenWholeIsRemoved) {
   const rlimit small{10, unlimited.rlim_max};
   setrlimit(RLIMIT_FSIZE, &small);
   {
-    NewFile file(path.c_str());
+    LeftFile file(path.c_str());
     file.Write("{\"exit\": 1,");
     file.Write(" }");
   }

@@ -1,4 +1,4 @@
-#include "system/new_file.h"
+#include "system/left_file.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -17,16 +17,16 @@ bool WriteAll(int descriptor, std::string_view bytes) {
   return true;
 }
 
-NewFile::NewFile(const char* path)
+LeftFile::LeftFile(const char* path)
     : path_(path), file_(open(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666)) {}
 
-NewFile::~NewFile() {
+LeftFile::~LeftFile() {
   if (file_ < 0) return;
   if (close(file_) != 0) is_whole_ = false;
   if (!is_whole_) unlink(path_);
 }
 
-void NewFile::Write(std::string_view bytes) {
+void LeftFile::Write(std::string_view bytes) {
   if (file_ >= 0 && is_whole_) is_whole_ = WriteAll(file_, bytes);
 }
 

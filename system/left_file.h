@@ -10,12 +10,12 @@ namespace mascot {
 /// A small file that a process leaves at its end, maybe from a signal handler: it calls only what may be called there.
 /// Made only if nothing has its name; no link is followed. What cannot be written whole is removed: nobody is there any
 /// more to be told.
-class NewFile {
+class LeftFile {
  public:
-  explicit NewFile(const char* path);
-  ~NewFile();
-  NewFile(const NewFile&) = delete;
-  NewFile& operator=(const NewFile&) = delete;
+  explicit LeftFile(const char* path);
+  ~LeftFile();
+  LeftFile(const LeftFile&) = delete;
+  LeftFile& operator=(const LeftFile&) = delete;
 
   void Write(std::string_view bytes);
 
