@@ -278,9 +278,10 @@ def output_of(*command):
     return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=True).stdout
 
 
-def functions_of(path):
-    """Functions that others can call, of a program or library."""
-    functions = set(re.findall(r"^[0-9a-f]+ T (.+)$", output_of("nm", "-C", "--defined-only", path), re.M))
+def functions_of(path, kinds):
+    """Functions of a program or library, by their letters in nm: T can be called from elsewhere, t cannot. The linker makes
+    t of what a library hides from other programs (CXX_VISIBILITY_PRESET)."""
+    functions = set(re.findall(rf"^[0-9a-f]+ [{kinds}] (.+)$", output_of("nm", "-C", "--defined-only", path), re.M))
     if not functions:
         raise ValueError(f"{path}: expected functions, got none: stripped?")
     return functions
@@ -290,7 +291,7 @@ def faults_of_linking(program, libraries):
     if "libpython" in output_of("ldd", program):
         yield f"{program.name} links Python"
     for library in libraries:
-        if shared := functions_of(program) & functions_of(library):
+        if shared := functions_of(program, "Tt") & functions_of(library, "T"):
             yield f"{program.name} holds {len(shared)} functions of {library.name}, such as {min(shared)}"
 
 
@@ -467,6 +468,11 @@ class ThisTree(HouseTest):
         self.assertGreater(len(names_in_rows(ROOT, "experiment/model_traits.cc")), 1)
         self.check(faults_of_names(ROOT))
 
+    def test_clang_tidy_reads_the_headers_of_all_rooms(self):
+        headers = re.search(r"^HeaderFilterRegex: '(.*)'$", (ROOT / ".clang-tidy").read_text(), re.M)[1]
+        folders = {path.split("/")[0] for path in sources(ROOT, [*FOLDERS, "bench", "tests"], {".h"})}
+        self.assertEqual({folder for folder in folders if not re.search(headers, f"/{folder}/a/b.h")}, set())
+
     def test_a_piece_of_a_law_stays_in_its_folder(self):
         self.check(faults_of_pieces(ROOT))
 
@@ -506,7 +512,7 @@ def taken_from_libm(path, libm):
 class Programs(HouseTest):
     def setUp(self):
         self.folder = pathlib.Path(os.environ["MASCOT_BINARY_DIR"])
-        self.libraries = [self.folder / "libmascot_laws.a", self.folder / "libmascot_agent.a"]
+        self.libraries = [self.folder / f"libmascot_{room}.a" for room in ["laws", "python", "agent"]]
 
     def test_the_physics_server_links_neither_laws_nor_python(self):
         self.check(faults_of_linking(self.folder / "physics_server", self.libraries))
@@ -528,9 +534,10 @@ class Programs(HouseTest):
             self.assertEqual(taken_from_libm(library, libm) - SAME_EVERYWHERE - given, set(), library)
 
     def test_what_links_them_is_found_out(self):
-        python, laws, agent = faults_of_linking(self.folder / "agent", self.libraries)
-        self.assertEqual(python, "agent links Python")
+        linked, laws, python, agent = faults_of_linking(self.folder / "agent", self.libraries)
+        self.assertEqual(linked, "agent links Python")
         self.assertRegex(laws, r"^agent holds \d+ functions of libmascot_laws\.a, such as (mascot::|_)")
+        self.assertRegex(python, r"^agent holds \d+ functions of libmascot_python\.a, such as mascot::")
         self.assertRegex(agent, r"^agent holds \d+ functions of libmascot_agent\.a, such as mascot::")
 
 
