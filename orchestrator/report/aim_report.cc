@@ -40,13 +40,6 @@ Json Edges(const std::vector<PursuitMeter::Edge>& measured, const Prediction& pr
   return edges;
 }
 
-Json ToJson(const Deviation& deviation) {
-  return {{"value_m", OrNull(deviation.value_m)},
-          {"settling_time_s", OrNull(deviation.settling_time_s)},
-          {"rate_per_s", OrNull(deviation.rate_per_s)},
-          {"minmax_time_s", OrNull(deviation.minmax_time_s)}};
-}
-
 /// ": +1.2 %", or empty if there is no deviation.
 std::string DeviationText(std::optional<double> deviation, std::optional<double> predicted) {
   if (!deviation || *predicted == 0) return "";
@@ -71,57 +64,70 @@ std::string NotCaughtUpText(const Aim& m, const Prediction& prediction) {
 
 }  // namespace
 
-Json AimJson(const Experiment& experiment, const Aim& measured, const Prediction& prediction) {
-  Json consensus;
-  consensus["value_m"] = VectorJson(measured.value_m);
-  consensus["final_disagreement_m"] = measured.final_disagreement_m;
-  consensus["final_speed_m_per_s"] = measured.final_speed_m_per_s;
-  consensus["settling_time_s"] = OrNull(measured.settling_time_s);
-  consensus["rate_per_s"] = OrNull(measured.rate_per_s);
-  if (!measured.minmax_edges.empty()) consensus["minmax_edges"] = Edges(measured.minmax_edges, prediction);
-  consensus["predicted"] = PredictionJson(prediction);
-  consensus["deviation"] = ToJson(Compare(experiment, measured, prediction));
-  return consensus;
+void AddAim(const Experiment& experiment, const Aim& measured, const Prediction& prediction, Figures& figures) {
+  const Deviation deviation = Compare(experiment, measured, prediction);
+  figures.AddVector("consensus.value_m", measured.value_m);
+  figures.Add("consensus.final_disagreement_m", measured.final_disagreement_m);
+  figures.Add("consensus.final_speed_m_per_s", measured.final_speed_m_per_s);
+  figures.Add("consensus.settling_time_s", measured.settling_time_s);
+  figures.Add("consensus.rate_per_s", measured.rate_per_s);
+  if (!measured.minmax_edges.empty())
+    figures.Add("consensus.minmax_edges",
+                [edges = measured.minmax_edges, &prediction] { return Edges(edges, prediction); });
+  AddPrediction(prediction, "consensus.predicted.", figures);
+  figures.Add("consensus.deviation.value_m", deviation.value_m);
+  figures.Add("consensus.deviation.settling_time_s", deviation.settling_time_s);
+  figures.Add("consensus.deviation.rate_per_s", deviation.rate_per_s);
+  figures.Add("consensus.deviation.minmax_time_s", deviation.minmax_time_s);
+  if (!measured.formation) return;
+  figures.Add("formation.final_rms_m", measured.formation->final_rms_m);
+  figures.Add("formation.worst_rms_m", measured.formation->worst_rms_m);
+  figures.Add("formation.offsets_m", [offsets_m = measured.formation->offsets_m] {
+    Json offsets = Json::array();
+    for (const Eigen::Vector3d& d_W : offsets_m) offsets.push_back(VectorJson(d_W));
+    return offsets;
+  });
 }
 
-Json FormationJson(const Aim::Formation& formation) {
-  Json offsets = Json::array();
-  for (const Eigen::Vector3d& d_W : formation.offsets_m) offsets.push_back(VectorJson(d_W));
-  return {{"final_rms_m", formation.final_rms_m}, {"worst_rms_m", formation.worst_rms_m}, {"offsets_m", offsets}};
-}
-
-std::string AimText(const Experiment& experiment, const Aim& m, const Prediction& prediction) {
-  const Deviation deviation = Compare(experiment, m, prediction);
-  std::string text = Line("mean position  {:.4f}, {:.4f}, {:.4f} m", m.value_m.x(), m.value_m.y(), m.value_m.z());
-  if (const auto& value = prediction.value_m)
-    text += Line("  predicted    {:.4f}, {:.4f}, {:.4f} m{}: {:.2g} m off", value->x(), value->y(), value->z(),
-                 prediction.on_average ? " on average" : "", *deviation.value_m);
-  text += Line("disagreement   {:.3g} m, speed {:.2g} m/s at the end", m.final_disagreement_m, m.final_speed_m_per_s);
-  const bool of_rate = prediction.rate_per_s && prediction.of_agreement;
-  if (m.rate_per_s && m.minmax_edges.empty())
-    text += Line("decayed        at {:.4f} 1/s", *m.rate_per_s);
+std::string AimText(const Experiment& experiment, const Aim& m, const Prediction& prediction, const Figures& figures) {
+  const auto figure = [&](const char* name) { return figures.Number(std::string("consensus.") + name); };
+  const Eigen::Vector3d mean_m = *figures.Vector("consensus.value_m");
+  std::string text = Line("mean position  {:.4f}, {:.4f}, {:.4f} m", mean_m.x(), mean_m.y(), mean_m.z());
+  if (const auto value_m = figures.Vector("consensus.predicted.value_m"))
+    text += Line("  predicted    {:.4f}, {:.4f}, {:.4f} m{}: {:.2g} m off", value_m->x(), value_m->y(), value_m->z(),
+                 prediction.on_average ? " on average" : "", *figure("deviation.value_m"));
+  text += Line("disagreement   {:.3g} m, speed {:.2g} m/s at the end", *figure("final_disagreement_m"),
+               *figure("final_speed_m_per_s"));
+  const auto rate = figure("rate_per_s"), predicted_rate = figure("predicted.rate_per_s");
+  const bool of_rate = predicted_rate && prediction.of_agreement;
+  if (rate && m.minmax_edges.empty())
+    text += Line("decayed        at {:.4f} 1/s", *rate);
   else if (of_rate)
     text += "decayed        not far enough, or not for good, to say how fast\n";
   if (of_rate)
-    text += Line("  predicted    {:.4f} 1/s ({}){}", *prediction.rate_per_s, RateBasis(prediction),
-                 DeviationText(deviation.rate_per_s, prediction.rate_per_s));
+    text += Line("  predicted    {:.4f} 1/s ({}){}", *predicted_rate, RateBasis(prediction),
+                 DeviationText(figure("deviation.rate_per_s"), predicted_rate));
   else if (prediction.slowest_rate_per_s && prediction.of_agreement)
     text += Line("  predicted    {}", SlowestRateText(prediction));
-  const bool of_settling = prediction.settling_time_s && prediction.of_agreement;
-  if (m.settling_time_s)
-    text += Line("settled        after {:.2f} s (2 %)", *m.settling_time_s);
+  const auto settling_s = figure("settling_time_s"), predicted_s = figure("predicted.settling_time_s");
+  const bool of_settling = predicted_s && prediction.of_agreement;
+  if (settling_s)
+    text += Line("settled        after {:.2f} s (2 %)", *settling_s);
   else if (of_settling)
     text += "settled        not by the end (2 %)\n";
   if (of_settling)
-    text += Line("  predicted    {:.2f} s ({}){}", *prediction.settling_time_s, SettlingBasis(experiment, prediction),
-                 DeviationText(deviation.settling_time_s, prediction.settling_time_s));
+    text += Line("  predicted    {:.2f} s ({}){}", *predicted_s, SettlingBasis(experiment, prediction),
+                 DeviationText(figure("deviation.settling_time_s"), predicted_s));
   if (const auto caught_up_s = MinmaxTime(m, prediction))
     text += Line("caught up      after {:.2f} s (latest edge, within {:g} m)", *caught_up_s, kCaughtUp_m);
   else
     text += NotCaughtUpText(m, prediction);
-  if (prediction.minmax_time_s)
-    text += Line("  predicted    {}{:.2f} s (min-max, latest edge){}", AtMost(prediction.minmax_edges),
-                 *prediction.minmax_time_s, DeviationText(deviation.minmax_time_s, prediction.minmax_time_s));
+  if (const auto minmax_s = figure("predicted.minmax_time_s"))
+    text += Line("  predicted    {}{:.2f} s (min-max, latest edge){}", AtMost(prediction.minmax_edges), *minmax_s,
+                 DeviationText(figure("deviation.minmax_time_s"), minmax_s));
+  if (m.formation)
+    text += Line("formation      {:.4f} m rms off at the end, {:.4f} m at worst in the second half",
+                 figures.Known("formation.final_rms_m"), figures.Known("formation.worst_rms_m"));
   return text;
 }
 

@@ -10,11 +10,10 @@
 namespace mascot {
 namespace {
 
-Json ToJson(const LawFigure& figure, const FigureValues& values) {
-  if (figure.each.empty()) return OrNull(values.front());
-  Json list = Json::array();
-  for (const std::optional<double>& value : values) list.push_back(OrNull(value));
-  return list;
+/// One number, or the list.
+FigureValue ValueOf(const LawFigure& figure, const FigureValues& values) {
+  if (!figure.each.empty()) return values;
+  return values.front() ? FigureValue(*values.front()) : FigureValue();
 }
 
 /// "4.5", "2.1, 4.3, never"
@@ -70,10 +69,10 @@ std::string TheoryText(const LawFigure& figure, const FigureValues& measured, co
   return predicted.why.empty() ? "" : "; not predicted, because " + predicted.why;
 }
 
-/// How wide a band is; null: it is none.
-Json ToleranceJson(const LawFigure& figure, const PredictedFigure& predicted) {
+/// How wide a band is; nothing: it is none.
+FigureValue ToleranceOf(const LawFigure& figure, const PredictedFigure& predicted) {
   const bool is_band = Says(predicted) && predicted.bound == Bound::kWithin;
-  return is_band ? ToJson(figure, predicted.tolerances) : Json(nullptr);
+  return is_band ? ValueOf(figure, predicted.tolerances) : FigureValue();
 }
 
 /// What theory says of figure `k` of `law`. Where it is silent about all of them, that is the reason.
@@ -87,8 +86,6 @@ PredictedFigure Predicted(const Experiment& experiment, const LawEntry& law, std
 /// Whether theory says anything of the figures of the law, or why it does not of some.
 bool SaysSome(const Prediction& prediction) { return !prediction.law_figures.empty(); }
 
-Json TextOrNull(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
-
 /// The tables by figure of what theory says: the value, its bound, how wide a band is, what rounding may put the
 /// measured value off, and why a value is missing.
 struct Tables {
@@ -97,29 +94,30 @@ struct Tables {
 constexpr Tables kInSummary{"predicted", "bounds", "tolerances", "rounding", "reasons"};
 constexpr Tables kInCheck{"figures", "figure_bounds", "figure_tolerances", "figure_rounding", "figure_reasons"};
 
-void AddPredicted(const LawFigure& figure, const PredictedFigure& predicted, const Tables& tables, Json& json) {
-  const std::string name(figure.name);
+/// `prefix`: in front of the names of the tables.
+void AddPredicted(const LawFigure& figure, const PredictedFigure& predicted, const Tables& tables,
+                  const std::string& prefix, Figures& figures) {
   const bool says = Says(predicted);
-  json[tables.value][name] = says ? ToJson(figure, predicted.values) : Json(nullptr);
-  json[tables.bound][name] = says ? Json(kBounds.Name(predicted.bound)) : Json(nullptr);
-  json[tables.tolerance][name] = ToleranceJson(figure, predicted);
-  json[tables.rounding][name] = says ? Json(predicted.rounding) : Json(nullptr);
-  json[tables.reason][name] = TextOrNull(predicted.why);
+  const auto in = [&](const char* table) { return fmt::format("{}{}.{}", prefix, table, figure.name); };
+  figures.Add(in(tables.value), says ? ValueOf(figure, predicted.values) : FigureValue());
+  figures.Add(in(tables.bound), says ? FigureValue(std::string(kBounds.Name(predicted.bound))) : FigureValue());
+  figures.Add(in(tables.tolerance), ToleranceOf(figure, predicted));
+  figures.Add(in(tables.rounding), says ? FigureValue(predicted.rounding) : FigureValue());
+  figures.AddWords(in(tables.reason), predicted.why);
 }
 
 }  // namespace
 
-Json LawsJson(const Experiment& experiment, std::span<const LawMeasured> measured, const Prediction& prediction) {
-  Json json = Json::object();
-  for (const auto& [law, figures] : measured) {
-    Json& entry = json[std::string(law->name)];
-    for (std::size_t k = 0; k < figures.size(); ++k) {
+void AddLaws(const Experiment& experiment, std::span<const LawMeasured> measured, const Prediction& prediction,
+             Figures& figures) {
+  for (const auto& [law, values] : measured) {
+    const std::string prefix = fmt::format("laws.{}.", law->name);
+    for (std::size_t k = 0; k < values.size(); ++k) {
       const LawFigure& figure = law->figures[k];
-      entry[std::string(figure.name)] = ToJson(figure, figures[k]);
-      AddPredicted(figure, Predicted(experiment, *law, k, prediction), kInSummary, entry);
+      figures.Add(prefix + std::string(figure.name), ValueOf(figure, values[k]));
+      AddPredicted(figure, Predicted(experiment, *law, k, prediction), kInSummary, prefix, figures);
     }
   }
-  return json;
 }
 
 std::string LawsText(const Experiment& experiment, std::span<const LawMeasured> measured,
@@ -140,8 +138,10 @@ void AddPredictedFigures(const Experiment& experiment, const Prediction& predict
   const LawEntry& law = EntryOf(experiment.law);
   for (const char* table : {kInCheck.value, kInCheck.bound, kInCheck.tolerance, kInCheck.rounding, kInCheck.reason})
     json[table] = Json::object();
+  Figures figures;
   for (std::size_t k = 0; k < law.figures.size(); ++k)
-    AddPredicted(law.figures[k], Predicted(experiment, law, k, prediction), kInCheck, json);
+    AddPredicted(law.figures[k], Predicted(experiment, law, k, prediction), kInCheck, "", figures);
+  AddTo(json, figures);
 }
 
 std::vector<std::pair<std::string, std::string>> PredictedFigureLines(const Experiment& experiment,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "orchestrator/measuring/law_meters.h"
+#include "orchestrator/report/figures.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/theory/theory.h"
 
@@ -13,9 +14,9 @@ namespace mascot {
 
 // The figures that laws measure beyond those that all laws share. `prediction` is about the law of the team.
 
-/// "laws" in summary.json: for each law its figures as measured, "predicted", "bounds", "tolerances",
-/// "rounding" and "reasons".
-Json LawsJson(const Experiment& experiment, std::span<const LawMeasured> measured, const Prediction& prediction);
+/// Adds for each law its figures as measured, "predicted", "bounds", "tolerances", "rounding" and "reasons".
+void AddLaws(const Experiment& experiment, std::span<const LawMeasured> measured, const Prediction& prediction,
+             Figures& figures);
 /// The same as lines of the text summary.
 std::string LawsText(const Experiment& experiment, std::span<const LawMeasured> measured, const Prediction& prediction);
 /// Adds the predicted figures by name: "figures", "figure_bounds", "figure_tolerances", "figure_rounding" and

@@ -73,30 +73,36 @@ std::string SettlingBasis(const Experiment& experiment, const Prediction& predic
   return experiment.graph.IsSymmetric() ? "slowest mode" : "slowest mode; later along chains";
 }
 
-Json PredictionJson(const Prediction& prediction) {
+void AddPrediction(const Prediction& prediction, const std::string& prefix, Figures& figures) {
   const auto& margin = prediction.delay_margin;
-  const auto why = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
+  const auto add = [&](const char* name, const auto& value) { figures.Add(prefix + name, value); };
   const auto asked = [](const std::optional<FirstCommand>& first) {
-    return first ? Json(first->asked) : Json(nullptr);
+    return first ? FigureValue(first->asked) : FigureValue();
   };
-  return {{"value_m", OrNull(prediction.value_m)},
-          {"on_average", prediction.on_average},
-          {"stable", OrNull(prediction.stable)},
-          {"slowest_rate_per_s", OrNull(prediction.slowest_rate_per_s)},
-          {"from_start", prediction.from_start},
-          {"rate_per_s", OrNull(prediction.rate_per_s)},
-          {"settling_time_s", OrNull(prediction.settling_time_s)},
-          {"control_period_bound_s", OrNull(prediction.control_period_bound_s)},
-          {"delay_margin_s", margin ? OrNull(margin->margin_s) : Json(nullptr)},
-          {"delay_independent", margin ? Json(margin->independent) : Json(nullptr)},
-          {"own_delay_margin_s", OrNull(prediction.own_delay_margin_s)},
-          {"minmax_time_s", OrNull(prediction.minmax_time_s)},
-          {"minmax_edges", ToJson(prediction.minmax_edges)},
-          {"persistence", ToJson(prediction.persistence)},
-          {"first_command_m_per_s2", asked(prediction.first_acceleration)},
-          {"first_speed_m_per_s", asked(prediction.first_speed)},
-          {"silent", why(prediction.silent)},
-          {"figures_silent", why(prediction.figures_silent)}};
+  figures.AddVector(prefix + "value_m", prediction.value_m);
+  add("on_average", prediction.on_average);
+  add("stable", prediction.stable);
+  add("slowest_rate_per_s", prediction.slowest_rate_per_s);
+  add("from_start", prediction.from_start);
+  add("rate_per_s", prediction.rate_per_s);
+  add("settling_time_s", prediction.settling_time_s);
+  add("control_period_bound_s", prediction.control_period_bound_s);
+  add("delay_margin_s", margin ? margin->margin_s : std::nullopt);
+  add("delay_independent", margin ? FigureValue(margin->independent) : FigureValue());
+  add("own_delay_margin_s", prediction.own_delay_margin_s);
+  add("minmax_time_s", prediction.minmax_time_s);
+  add("minmax_edges", [&prediction] { return ToJson(prediction.minmax_edges); });
+  add("persistence", [&prediction] { return ToJson(prediction.persistence); });
+  add("first_command_m_per_s2", asked(prediction.first_acceleration));
+  add("first_speed_m_per_s", asked(prediction.first_speed));
+  figures.AddWords(prefix + "silent", prediction.silent);
+  figures.AddWords(prefix + "figures_silent", prediction.figures_silent);
+}
+
+Json PredictionJson(const Prediction& prediction) {
+  Figures figures;
+  AddPrediction(prediction, "", figures);
+  return JsonOf(figures);
 }
 
 std::string SafetyText(const SafetyPrediction& safety) {
@@ -107,14 +113,19 @@ std::string SafetyText(const SafetyPrediction& safety) {
                      safety.assumes.empty() ? "" : ", if " + safety.assumes);
 }
 
+void AddSafetyPrediction(const SafetyPrediction& safety, const std::string& prefix, Figures& figures) {
+  figures.Add(prefix + "min_separation_m", safety.min_separation_m);
+  // What is kept along the axes is kept in space, too.
+  figures.Add(prefix + "min_separation_along_axes_m", safety.min_separation_m);
+  figures.AddWords(prefix + "assumes", safety.assumes);
+  figures.AddWords(prefix + "silent", safety.silent);
+}
+
 Json SafetyPredictionJson(const Prediction& prediction) {
   if (!prediction.safety) return nullptr;
-  const auto text = [](const std::string& words) { return words.empty() ? Json(nullptr) : Json(words); };
-  // What is kept along the axes is kept in space, too.
-  return {{"min_separation_m", OrNull(prediction.safety->min_separation_m)},
-          {"min_separation_along_axes_m", OrNull(prediction.safety->min_separation_m)},
-          {"assumes", text(prediction.safety->assumes)},
-          {"silent", text(prediction.safety->silent)}};
+  Figures figures;
+  AddSafetyPrediction(*prediction.safety, "", figures);
+  return JsonOf(figures);
 }
 
 std::vector<std::pair<std::string, std::string>> PredictionLines(const Experiment& experiment,

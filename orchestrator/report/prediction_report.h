@@ -4,18 +4,23 @@
 #include <utility>
 #include <vector>
 
+#include "orchestrator/report/figures.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/theory/theory.h"
 
 namespace mascot {
 
-/// JSON for "predicted" in `check --json` and summary.json; docs/theory.md describes the keys.
+/// Adds what theory predicts, with `prefix` in front of each name; docs/theory.md describes the figures. The prediction
+/// must outlive them.
+void AddPrediction(const Prediction& prediction, const std::string& prefix, Figures& figures);
+/// The same for "predicted" in `check --json`.
 Json PredictionJson(const Prediction& prediction);
 /// The same as text: label and text of each line.
 std::vector<std::pair<std::string, std::string>> PredictionLines(const Experiment& experiment,
                                                                  const Prediction& prediction);
-/// The same of law.safety: JSON for "safety" in `check --json` and for "safety.predicted" in summary.json, null if no
-/// agent has it; and the text of its line.
+/// Adds what law.safety keeps.
+void AddSafetyPrediction(const SafetyPrediction& safety, const std::string& prefix, Figures& figures);
+/// The same for "safety" in `check --json`, null if no agent has law.safety; and the text of its line.
 Json SafetyPredictionJson(const Prediction& prediction);
 std::string SafetyText(const SafetyPrediction& safety);
 /// What the predicted rate, and the predicted settling time, are those of.

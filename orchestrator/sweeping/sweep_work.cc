@@ -10,7 +10,7 @@
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/formats/outside_json.h"
 #include "orchestrator/measuring/run_meter.h"
-#include "orchestrator/report/summary.h"
+#include "orchestrator/report/run_figures.h"
 #include "orchestrator/sweeping/table/metrics.h"
 #include "orchestrator/sweeping/table/run_arrays.h"
 #include "orchestrator/sweeping/table/sweep_json.h"
@@ -38,7 +38,7 @@ void AddOwn(const PythonMetrics& own, const RunArrays& arrays, std::map<std::str
     cells[own.list()[k].name] = numbers[k] ? ShortestFloat(*numbers[k]) : "";
 }
 
-/// Executes one run. Returns the cells of its metric columns. Throws ConfigError if the experiment is not valid, and
+/// Executes one run. Returns its cells by column. Throws ConfigError if the experiment is not valid, and
 /// std::runtime_error if the run fails.
 std::map<std::string, std::string> FlyOne(const Sweep& sweep, std::size_t run) {
   const Experiment experiment = sweep.Load(sweep.plan[run]);
@@ -49,9 +49,8 @@ std::map<std::string, std::string> FlyOne(const Sweep& sweep, std::size_t run) {
   if (sweep.own) sinks.push_back(&arrays);
   const EngineResult result = RunInProcess(experiment, sinks, [] { return true; });
   if (!result.failure.empty()) throw std::runtime_error(result.failure);
-  const RunFacts facts{.engine = "inprocess"};
-  auto cells = SweepMetrics(SummaryJson(experiment, prediction, meter, result, facts),
-                            SweepMetricNames(LawsAtTheEnd(experiment).names));
+  const FlownRun flown{.experiment = experiment, .prediction = prediction, .meter = meter, .engine = result};
+  auto cells = SweepMetrics(RunFigures(flown).all());
   if (sweep.own) AddOwn(OwnMetrics(sweep), arrays, cells);
   return cells;
 }

@@ -173,18 +173,22 @@ int Up(UpArgs& args) {
   if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
 
   const Incidents incidents = IncidentsOf(meter, result, helm.numbers_by_hand());
-  RunFacts facts{args.engine, {}, writer.topics(), writer.samples()};
+  const FlownRun flown{.experiment = experiment,
+                       .prediction = prediction,
+                       .meter = meter,
+                       .engine = result,
+                       .engine_name = args.engine,
+                       .topics = writer.topics(),
+                       .samples = writer.samples()};
+  const RunFigures figures(flown);
   const auto summary = [&](std::optional<int> exit) {
-    facts.exit = exit;
-    facts.total_s = std::chrono::duration<double>(WallClock::now() - launched).count();
-    return SummaryJson(experiment, prediction, meter, result, facts);
+    return SummaryJson(figures, exit, std::chrono::duration<double>(WallClock::now() - launched).count());
   };
   const auto print = [&](const std::string& json) {
     if (args.json)
       std::cout << json;
     else if (!args.quiet)
-      std::cout << SummaryText(experiment, prediction, meter, result, facts, incidents) << "results        "
-                << folder.path().string() << "\n";
+      std::cout << SummaryText(figures, incidents) << "results        " << folder.path().string() << "\n";
     FlushStandardOutput();
   };
   const auto draw = [&] {

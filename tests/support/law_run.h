@@ -10,6 +10,7 @@
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/report/incident_report.h"
+#include "orchestrator/report/run_figures.h"
 #include "orchestrator/report/summary.h"
 #include "orchestrator/theory/theory.h"
 
@@ -23,8 +24,15 @@ struct LawRun {
         meter(experiment) {
     const EngineResult result = RunInProcess(experiment, {&meter}, [] { return true; });
     EXPECT_EQ(result.failure, "");
-    summary = nlohmann::json::parse(SummaryJson(experiment, prediction, meter, result, {.engine = "inprocess"}));
-    text = SummaryText(experiment, prediction, meter, result, {.engine = "inprocess"}, IncidentsOf(meter, result, {}));
+    const FlownRun flown{.experiment = experiment,
+                         .prediction = prediction,
+                         .meter = meter,
+                         .engine = result,
+                         .engine_name = "inprocess"};
+    const RunFigures run(flown);
+    figures = run.all();
+    summary = nlohmann::json::parse(SummaryJson(run, 0, 0));
+    text = SummaryText(run, IncidentsOf(meter, result, {}));
   }
   /// A figure of the team's law, as measured and as predicted. Both must be numbers.
   double Measured(const std::string& figure) const { return Law()[figure].get<double>(); }
@@ -35,6 +43,7 @@ struct LawRun {
   Experiment experiment;
   Prediction prediction;
   RunMeter meter;
+  Figures figures;  ///< their tables are not to be made: the run's result is gone
   nlohmann::json summary;
   std::string text;
 };

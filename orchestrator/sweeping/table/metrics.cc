@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <variant>
 
 #include "agent/laws/laws.h"
 #include "experiment/toml/section.h"
@@ -82,6 +86,17 @@ std::string Cell(const nlohmann::json& value) {
   return value.dump();
 }
 
+/// The cell of a figure; empty: it is none that a cell has, or has no value.
+struct ToCell {
+  std::string operator()(bool value) const { return value ? "true" : "false"; }
+  std::string operator()(std::int64_t value) const { return std::to_string(value); }
+  std::string operator()(double value) const { return std::isfinite(value) ? ShortestFloat(value) : ""; }
+  template <class Value>
+  std::string operator()(const Value& /*value*/) const {
+    return "";
+  }
+};
+
 }  // namespace
 
 std::vector<std::string> SweepMetricNames(const std::vector<std::string>& laws) {
@@ -90,6 +105,13 @@ std::vector<std::string> SweepMetricNames(const std::vector<std::string>& laws) 
     if (std::ranges::find(laws, law.name) != laws.end()) AddFigures(law, names);
   names.insert(names.end(), std::begin(kWallClockMetrics), std::end(kWallClockMetrics));
   return names;
+}
+
+std::map<std::string, std::string> SweepMetrics(const Figures& figures) {
+  std::map<std::string, std::string> cells;
+  for (const Figure& figure : figures.all())
+    if (std::string cell = std::visit(ToCell(), figure.value); !cell.empty()) cells[figure.name] = std::move(cell);
+  return cells;
 }
 
 std::map<std::string, std::string> SweepMetrics(const std::string& summary, const std::vector<std::string>& names) {

@@ -203,7 +203,7 @@ TEST(LawFigures, HaveColumnsInSweepsOfTheirLaw) {
   EXPECT_THAT(names, Contains("laws.finite_time.predicted.agreement_time_s"));
   EXPECT_THAT(SweepMetricNames({"consensus"}), ::testing::Not(Contains(HasSubstr("laws."))));
   const LawRun run(Five(100, 6, kSign));
-  const auto cells = SweepMetrics(run.summary.dump(), names);
+  const auto cells = SweepMetrics(run.figures);
   EXPECT_EQ(std::stod(cells.at("laws.finite_time.predicted.agreement_time_s")), run.Predicted("agreement_time_s"));
   EXPECT_EQ(std::stod(cells.at("laws.finite_time.agreement_time_s")), run.Measured("agreement_time_s"));
   EXPECT_EQ(cells.at("consensus.value_m.y"), "0.0");

@@ -108,8 +108,7 @@ TEST(Waypoints, HaveColumnsInSweeps) {
   EXPECT_THAT(names, Contains("laws.waypoint.overshoot_m"));
   EXPECT_THAT(names, Contains("laws.waypoint.predicted.settling_time_s"));
   const LawRun run(Step(kTenMetres));
-  EXPECT_EQ(std::stod(SweepMetrics(run.summary.dump(), names).at("laws.waypoint.tracking_rms_m")),
-            run.Measured("tracking_rms_m"));
+  EXPECT_EQ(std::stod(SweepMetrics(run.figures).at("laws.waypoint.tracking_rms_m")), run.Measured("tracking_rms_m"));
 }
 
 // --- trajectories -----------------------------------------------------------------------------------------
