@@ -198,6 +198,7 @@ void ReadNetwork(Section& section, Experiment& experiment) {
 
 /// Flies through all events, without agents: each must be legal after those before it. Throws ConfigError.
 void CheckEvents(const Experiment& experiment, const LawCatalog* laws) {
+  if (experiment.events.empty()) return;
   LiveExperiment live(experiment, laws, /*checked=*/false);
   for (const Event& event : experiment.events) live.Take(event);
 }

@@ -26,7 +26,6 @@ class Flight {
       : experiment_(experiment),
         world_(experiment),
         team_(experiment),
-        live_(experiment, &LawTable(), /*checked=*/true),
         actuation_(static_cast<std::size_t>(experiment.size())),
         row_(experiment.size()) {}
 
@@ -51,12 +50,19 @@ class Flight {
 
   void Step() { world_.Step(actuation_); }
   /// An event by hand, which takes effect at the next Exchange().
-  void Take(const std::string& toml) { by_hand_.push_back(live_.Parse(world_.tick(), toml, "event by hand")); }
+  void Take(const std::string& toml) { by_hand_.push_back(Live().Parse(world_.tick(), toml, "event by hand")); }
   /// The pace that an event of the newest tick has set; nullopt: none has.
   std::optional<double> new_pace() const { return new_pace_; }
   Contacts contacts() const { return world_.contacts(); }
 
  private:
+  /// The experiment as events change it. It is read at the first event: most runs have none, and to read a file is
+  /// slow.
+  LiveExperiment& Live() {
+    if (!live_) live_.emplace(experiment_, &LawTable(), /*checked=*/true);
+    return *live_;
+  }
+
   /// Takes the events of this tick: first the file's, then those given by hand.
   void TakeEvents(std::int64_t tick) {
     row_.events.clear();
@@ -65,21 +71,21 @@ class Flight {
       TakeEvent(experiment_.events[next_event_++]);
     for (const Event& event : std::exchange(by_hand_, {})) TakeEvent(event);
     if (row_.events.empty()) return;
-    world_.Adopt(*live_.now());
-    team_.Adopt(live_.now());
+    world_.Adopt(*Live().now());
+    team_.Adopt(Live().now());
   }
 
   void TakeEvent(const Event& event) {
-    live_.Take(event);
-    if (event.set.contains("run.pace")) new_pace_ = live_.now()->run.pace.value_or(0);
+    Live().Take(event);
+    if (event.set.contains("run.pace")) new_pace_ = Live().now()->run.pace.value_or(0);
     row_.events.push_back({++row_.events_so_far, event.Toml()});
   }
 
   const Experiment& experiment_;
   World world_;
   Team team_;
-  LiveExperiment live_;
-  std::size_t next_event_ = 0;  // in experiment_.events
+  std::optional<LiveExperiment> live_;  // absent before the first event
+  std::size_t next_event_ = 0;          // in experiment_.events
   std::vector<Event> by_hand_;
   std::optional<double> new_pace_;
   std::vector<Actuation> actuation_;

@@ -40,10 +40,7 @@ class FromThisProcess final : public FlownRow {
 }  // namespace
 
 RowFeed::RowFeed(const Experiment& experiment, std::vector<RowSink*> sinks)
-    : sinks_(std::move(sinks)),
-      decoded_(experiment.size()),
-      encoder_(experiment),
-      live_(experiment, &LawTable(), /*checked=*/true) {}
+    : sinks_(std::move(sinks)), decoded_(experiment.size()), encoder_(experiment), experiment_(experiment) {}
 
 void RowFeed::Add(const Row& bytes) {
   Decode(bytes, decoded_);
@@ -55,11 +52,12 @@ void RowFeed::Add(std::int64_t tick, const DecodedRow& decoded) { HandOut(FromTh
 void RowFeed::HandOut(const FlownRow& row) {
   events_.clear();
   for (const auto& [number, toml] : row.decoded().events) {
-    events_.push_back(live_.Parse(row.tick(), number, toml));
-    live_.Take(events_.back());
+    if (!live_) live_.emplace(experiment_, &LawTable(), /*checked=*/true);
+    events_.push_back(live_->Parse(row.tick(), number, toml));
+    live_->Take(events_.back());
   }
   if (!events_.empty())
-    for (RowSink* sink : sinks_) sink->Adopt(live_, events_);
+    for (RowSink* sink : sinks_) sink->Adopt(*live_, events_);
   for (RowSink* sink : sinks_) sink->Add(row);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "experiment/live_experiment.h"
@@ -13,7 +14,7 @@ namespace mascot {
 /// decoded once and encoded at most once.
 class RowFeed {
  public:
-  /// The sinks must outlive this object.
+  /// All arguments must outlive this object.
   RowFeed(const Experiment& experiment, std::vector<RowSink*> sinks);
 
   /// Adds the next tick as received over DDS. Throws std::runtime_error for bytes that are not valid samples, and what
@@ -28,7 +29,9 @@ class RowFeed {
   std::vector<RowSink*> sinks_;
   DecodedRow decoded_;  // newest row received; a command that is missing in the next row keeps its value
   RowEncoder encoder_;
-  LiveExperiment live_;
+  const Experiment& experiment_;
+  std::optional<LiveExperiment>
+      live_;                   // absent before the first event: most runs have none, and to read a file is slow
   std::vector<Event> events_;  // of the newest row
 };
 
