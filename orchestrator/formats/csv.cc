@@ -1,5 +1,6 @@
 #include "orchestrator/formats/csv.h"
 
+#include <algorithm>
 #include <charconv>
 
 #include "orchestrator/formats/bytes.h"
@@ -9,12 +10,57 @@ namespace {
 
 constexpr std::size_t kCsvBufferBytes = std::size_t{64} << 10;
 
+void AppendCell(std::string_view cell, std::string& row) {
+  if (cell.find_first_of(",\"\r\n") == std::string_view::npos) {
+    row += cell;
+    return;
+  }
+  row += '"';
+  for (const char c : cell) row.append(c == '"' ? 2 : 1, c);
+  row += '"';
+}
+
 }  // namespace
 
-CsvWriter::CsvWriter(const std::string& path, std::span<const std::string> columns) : part_(path), file_(part_.name()) {
-  for (const std::string& column : columns) buffer_.append(column).push_back(',');
-  EndRow();
+std::string CsvRow(std::span<const std::string> cells) {
+  std::string row;
+  for (const std::string& cell : cells) {
+    if (&cell != &cells.front()) row += ',';
+    AppendCell(cell, row);
+  }
+  return row + "\n";
 }
+
+std::vector<std::string> TakeCsvRow(std::string_view& text) {
+  std::vector<std::string> cells(1);
+  bool is_quoted = false;
+  std::size_t at = 0;
+  for (; at < text.size() && (is_quoted || text[at] != '\n'); ++at) {
+    if (text[at] == '"' && is_quoted && text.substr(at + 1).starts_with('"'))
+      cells.back() += text[++at];
+    else if (text[at] == '"')
+      is_quoted = !is_quoted;
+    else if (text[at] == ',' && !is_quoted)
+      cells.emplace_back();
+    else
+      cells.back() += text[at];
+  }
+  text.remove_prefix(std::min(at + 1, text.size()));
+  return cells;
+}
+
+std::string_view WholeCsvRows(std::string_view text) {
+  bool is_quoted = false;
+  std::size_t whole = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] == '"') is_quoted = !is_quoted;  // a doubled quote changes it twice
+    if (text[at] == '\n' && !is_quoted) whole = at + 1;
+  }
+  return text.substr(0, whole);
+}
+
+CsvWriter::CsvWriter(const std::string& path, std::span<const std::string> columns)
+    : part_(path), file_(part_.name()), buffer_(CsvRow(columns)) {}
 
 void CsvWriter::Add(double value) { Put(value); }
 void CsvWriter::Add(std::int64_t value) { Put(value); }

@@ -21,6 +21,11 @@ constexpr double kRounding = 1e-6;  // in ticks: 0.29 s at 100 Hz is tick 29
 
 }  // namespace
 
+std::string_view EventInTable(std::string_view toml) {
+  if (toml.ends_with('\n')) toml.remove_suffix(1);
+  return toml;
+}
+
 IncidentMeter::IncidentMeter(const Experiment& experiment)
     : experiment_(experiment), gap_(EpisodeGapTicks(experiment.control.rate_hz)), open_(experiment.agents.size()) {}
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/contacts.h"
@@ -38,6 +39,9 @@ struct Incident {
   std::string toml = {};     ///< of kEvent: Event::Toml()
   bool by_hand = false;      ///< for kEvent: the event was given by hand, and is not of the file
 };
+
+/// An event as events.csv has it: Event::Toml() without the line break at its end.
+std::string_view EventInTable(std::string_view toml);
 
 /// This many are reported one by one, besides contacts and rotor failures; further ones are only counted.
 inline constexpr std::size_t kMostIncidentsTold = 100'000;

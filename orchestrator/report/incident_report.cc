@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "orchestrator/formats/csv.h"
 #include "orchestrator/report/text_line.h"
 
 namespace mascot {
@@ -52,17 +53,9 @@ std::string WithWhat(const Incident& incident) {
   }
 }
 
-/// A field of a table of comma-separated values (RFC 4180).
-std::string Field(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string DetailOf(const Incident& incident) {
   if (incident.kind == Kind::kContact) return fmt::format("{} m/s", incident.speed_m_per_s);
-  return incident.toml;
+  return std::string(EventInTable(incident.toml));
 }
 
 std::string TimeText(const Experiment& experiment, const Incident& incident) {
@@ -85,13 +78,14 @@ Incidents IncidentsOf(const RunMeter& meter, const EngineResult& engine, std::sp
 }
 
 std::string IncidentsCsv(const Experiment& experiment, const Incidents& incidents) {
-  std::string csv = "t_s,until_s,what,count,agent,with,detail\n";
+  using TableRow = std::array<std::string, 7>;
+  const auto time = [&](std::int64_t tick) { return fmt::format("{}", experiment.time_s(tick)); };
+  std::string csv = CsvRow(TableRow{"t_s", "until_s", "what", "count", "agent", "with", "detail"});
   for (const Incident& incident : incidents.told)
-    csv += fmt::format("{},{},{},{},{},{},{}\n", experiment.time_s(incident.from), experiment.time_s(incident.to),
-                       WordsFor(incident.kind).name, incident.count,
-                       incident.agent > 0 ? std::to_string(incident.agent) : "", Field(WithWhat(incident)),
-                       Field(DetailOf(incident)));
-  if (incidents.more > 0) csv += fmt::format(",,more,{},,,\n", incidents.more);
+    csv += CsvRow(TableRow{time(incident.from), time(incident.to), std::string(WordsFor(incident.kind).name),
+                           std::to_string(incident.count), incident.agent > 0 ? std::to_string(incident.agent) : "",
+                           WithWhat(incident), DetailOf(incident)});
+  if (incidents.more > 0) csv += CsvRow(TableRow{"", "", "more", std::to_string(incidents.more), "", "", ""});
   return csv;
 }
 

@@ -11,6 +11,8 @@
 
 #include "base/number.h"
 #include "base/utf8.h"
+#include "orchestrator/formats/csv.h"
+#include "orchestrator/measuring/incident_meter.h"
 
 namespace mascot {
 namespace {
@@ -30,31 +32,12 @@ std::string TableBeside(const std::string& recording, std::size_t most) {
   return text;
 }
 
-/// Takes the next line off `text`, as its fields; quoted ones may hold commas, lines and doubled quotes (RFC 4180).
-std::vector<std::string> TakeLine(std::string_view& text) {
-  std::vector<std::string> fields(1);
-  bool is_quoted = false;
-  std::size_t at = 0;
-  for (; at < text.size() && (is_quoted || text[at] != '\n'); ++at) {
-    if (text[at] == '"' && is_quoted && text.substr(at + 1).starts_with('"'))
-      fields.back() += text[++at];
-    else if (text[at] == '"')
-      is_quoted = !is_quoted;
-    else if (text[at] == ',' && !is_quoted)
-      fields.emplace_back();
-    else
-      fields.back() += text[at];
-  }
-  text.remove_prefix(std::min(at + 1, text.size()));
-  return fields;
-}
-
 }  // namespace
 
 std::string FirstIncidentsBeside(const std::string& recording) {
   constexpr std::size_t kMost = 1 << 17;  // bytes
   std::string text = TableBeside(recording, kMost);
-  if (text.size() == kMost) text.resize(text.find_last_of('\n') + 1);
+  if (text.size() == kMost) text.resize(WholeCsvRows(text).size());
   return Plain(text);
 }
 
@@ -62,7 +45,7 @@ void TellByHand(const std::string& recording, const Experiment& experiment, std:
   constexpr std::string_view kEvent = "event ", kByHand = " by hand";
   const std::string table = TableBeside(recording, kMostBytes);
   for (std::string_view text = table; !text.empty();) {
-    const std::vector<std::string> fields = TakeLine(text);  // t_s, until_s, what, count, agent, with, detail
+    const std::vector<std::string> fields = TakeCsvRow(text);  // t_s, until_s, what, count, agent, with, detail
     if (fields.size() != 7 || fields[2] != "event") continue;
     std::string_view with = fields[5];
     if (!with.starts_with(kEvent)) continue;
@@ -72,7 +55,8 @@ void TellByHand(const std::string& recording, const Experiment& experiment, std:
     if (!number) continue;
     const auto event = std::ranges::lower_bound(events, *number, {}, &ShownEvent::number);
     if (event == events.end() || event->number != *number) continue;
-    if (fields[0] == fmt::format("{}", experiment.time_s(event->tick)) && fields[6] == event->toml)
+    if (fields[0] == fmt::format("{}", experiment.time_s(event->tick)) &&
+        EventInTable(fields[6]) == EventInTable(event->toml))
       event->by_hand = by_hand;
   }
 }

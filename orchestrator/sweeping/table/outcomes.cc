@@ -139,7 +139,7 @@ void Outcomes::WriteStatistics(std::span<const std::string> metrics,
   for (const char* name : {"metric", "runs", "failed", "without_value", "mean", "mean_low_95", "mean_high_95", "median",
                            "decile_1", "decile_9"})
     header.emplace_back(name);
-  write(CsvLine(header));
+  write(SweepRow(header));
   const std::vector<Group> groups = Groups();
   for (const std::string& metric : metrics) {
     const std::vector<double>& values = ValuesOf(metric);
@@ -171,7 +171,7 @@ std::string Outcomes::StatisticsLine(const std::string& metric, const std::vecto
   line.push_back(bounded ? CellOf(*spread.mean - *spread.half_width) : "");
   line.push_back(bounded ? CellOf(*spread.mean + *spread.half_width) : "");
   for (const auto& value : {spread.median, spread.decile_1, spread.decile_9}) line.push_back(CellOf(value));
-  return CsvLine(line);
+  return SweepRow(std::move(line));
 }
 
 }  // namespace mascot

@@ -13,6 +13,7 @@
 #include "base/number.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/formats/bytes.h"
+#include "orchestrator/formats/csv.h"
 #include "orchestrator/formats/input_file.h"
 #include "orchestrator/formats/output_file.h"
 #include "orchestrator/formats/whole_file.h"
@@ -103,7 +104,7 @@ class RowCheck {
     }
     for (std::size_t k = error_ + 1; k < cells.size(); ++k)
       if (!IsValue(cells[k])) return Mistake(k, "a number, true, false or nothing", cells);
-    return CsvLine(cells) == line + "\n"
+    return SweepRow(cells) == line + "\n"
                ? ""
                : "expected cells as a sweep writes them, got other quotes or a carriage return";
   }
@@ -133,36 +134,9 @@ void Overwrite(int fd, const std::string& text, const fs::path& path) {
 
 }  // namespace
 
-std::string CsvLine(const std::vector<std::string>& cells) {
-  std::string line;
-  for (const std::string& cell : cells) {
-    if (&cell != &cells.front()) line += ',';
-    const std::string text = OneLineOf(cell);
-    if (text.find_first_of(",\"") == std::string::npos) {
-      line += text;
-      continue;
-    }
-    line += '"';
-    for (const char c : text) line.append(c == '"' ? 2 : 1, c);
-    line += '"';
-  }
-  return line + "\n";
-}
-
-std::vector<std::string> CsvCells(std::string_view line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size() && (quoted || line[i] != '\n'); ++i) {
-    if (line[i] == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
-      cells.back() += line[i++];
-    else if (line[i] == '"')
-      quoted = !quoted;
-    else if (line[i] == ',' && !quoted)
-      cells.emplace_back();
-    else
-      cells.back() += line[i];
-  }
-  return cells;
+std::string SweepRow(std::vector<std::string> cells) {
+  for (std::string& cell : cells) cell = OneLineOf(std::move(cell));
+  return CsvRow(cells);
 }
 
 fs::path FileBeside(fs::path table, std::string_view ending) {
@@ -194,7 +168,7 @@ TableRows::TableRows(const fs::path& path, const Cells& columns, bool lost, cons
     : file_(path, std::ios::binary) {
   std::string line;
   if (!file_ || !fs::is_regular_file(path)) FailToRead(path);
-  if (!std::getline(file_, line) || file_.eof() || line + "\n" != CsvLine(columns))
+  if (!std::getline(file_, line) || file_.eof() || line + "\n" != SweepRow(columns))
     throw ConfigError({path.string() + ": expected the columns of this sweep, got others"});
   const auto error = static_cast<std::size_t>(std::ranges::find(columns, kErrorColumn) - columns.begin());
   const RowCheck check(columns, plan);
@@ -245,7 +219,7 @@ SweepFile::~SweepFile() {
 /// Throws ConfigError if it is another's.
 bool SweepFile::IsOfThisSweep(const std::string& plan, const Difference& difference) const {
   const auto bytes = fs::file_size(path_);
-  if (bytes == 0 || (bytes == CsvLine(columns_).size() && ReadAll(path_) == CsvLine(columns_))) return false;
+  if (bytes == 0 || (bytes == SweepRow(columns_).size() && ReadAll(path_) == SweepRow(columns_))) return false;
   const std::string theirs = ReadWhole(plan_fd_);
   if (theirs == plan) return true;
   std::string why = "another, without the " + PlanOf(path_).filename().string() + " that says what it is of";
@@ -263,7 +237,7 @@ bool SweepFile::IsOfThisSweep(const std::string& plan, const Difference& differe
 /// Replaces the file by one with these rows, sorted; null: none.
 void SweepFile::Rewrite(TableRows* rows) {
   WholeFile file(path_.string());
-  const std::string header = CsvLine(columns_);
+  const std::string header = SweepRow(columns_);
   file.Write(header);
   size_ = header.size();
   places_ = {};
@@ -288,7 +262,7 @@ void SweepFile::ForEachRow(const std::function<void(const Cells&)>& take) const 
 void SweepFile::Add(std::size_t run, const Cells& cells) {
   Cells all{std::to_string(run)};
   all.insert(all.end(), cells.begin(), cells.end());
-  AddLine(run, CsvLine(all));
+  AddLine(run, SweepRow(all));
 }
 
 void SweepFile::AddLine(std::size_t run, const std::string& line) {

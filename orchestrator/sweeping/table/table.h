@@ -102,9 +102,8 @@ class SweepFile {
   int fd_ = -1;             // of the table, at its end
 };
 
-/// Joins cells to a CSV line with its line break. Cells are quoted where necessary; line breaks in them become spaces.
-std::string CsvLine(const std::vector<std::string>& cells);
-/// Splits a CSV line into its cells.
-std::vector<std::string> CsvCells(std::string_view line);
+/// A row of the table, or of its statistics: of one line, for it ends where its line does. Line breaks in cells become
+/// spaces.
+std::string SweepRow(std::vector<std::string> cells);
 
 }  // namespace mascot

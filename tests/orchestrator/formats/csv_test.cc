@@ -3,13 +3,16 @@
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <bit>
 #include <csignal>
 #include <cstdint>
 #include <limits>
+#include <random>
 #include <sstream>
 
 #include "tests/support/scratch.h"
+#include "tests/support/strict_csv.h"
 
 namespace mascot {
 namespace {
@@ -49,6 +52,58 @@ TEST(Csv, AFloatReadsBackAsTheSameBits) {
     EXPECT_EQ(std::bit_cast<std::uint64_t>(back), std::bit_cast<std::uint64_t>(value)) << line;
   }
   EXPECT_THAT(ReadFile(scratch.File("x.csv")), testing::HasSubstr("\n40.01\n")) << "and as the shortest such text";
+}
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// Rows of cells with all that a table may stumble over.
+Rows HardRows() {
+  Rows rows = {{"", "", ""}, {"\"", ",", "\n"}, {"\"\"", "a\"b", "\"a\""}, {"\r\n", " a ", "a\n\nb,\"c\"\n"}};
+  std::mt19937 draw(1);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same rows each time
+  constexpr std::string_view kLetters = "a,\"\n\r;' ";
+  for (int row = 0; row < 500; ++row) {
+    rows.emplace_back(3);
+    for (std::string& cell : rows.back())
+      for (auto left = draw() % 6; left > 0; --left) cell += kLetters[draw() % kLetters.size()];
+  }
+  return rows;
+}
+
+TEST(Csv, RowsReadBackWhateverStandsInTheirCells) {
+  const Rows rows = HardRows();
+  std::string table;
+  for (const auto& row : rows) table += CsvRow(row);
+  EXPECT_EQ(StrictCsv(table), rows) << "by a strict reader";
+  std::string_view text = table;
+  for (const auto& row : rows) ASSERT_EQ(TakeCsvRow(text), row);
+  EXPECT_EQ(text, "");
+  EXPECT_EQ(CsvCells("a,\"b,c\""), (std::vector<std::string>{"a", "b,c"})) << "also without a line feed";
+}
+
+TEST(Csv, ATableThatIsCutAnywhereHasTheRowsThatEndBeforeTheCut) {
+  Rows rows = HardRows();
+  rows.resize(60);
+  std::string table;
+  std::vector<std::size_t> ends;
+  for (const auto& row : rows) {
+    table += CsvRow(row);
+    ends.push_back(table.size());
+  }
+  for (std::size_t bytes = 0; bytes <= table.size(); ++bytes) {
+    const std::string_view whole = WholeCsvRows(std::string_view(table).substr(0, bytes));
+    const auto count = std::ranges::upper_bound(ends, bytes) - ends.begin();
+    ASSERT_EQ(StrictCsv(std::string(whole)), Rows(rows.begin(), rows.begin() + count)) << bytes;
+  }
+}
+
+TEST(Csv, NamesOfColumnsMayBeAnyText) {
+  const std::vector<std::string> columns = {"a,b", "\"c\"", "d\ne"};
+  const ScratchFolder scratch;
+  CsvWriter csv(scratch.File("x.csv"), columns);
+  for (const double value : {1.0, -0.5, 2.0}) csv.Add(value);
+  csv.EndRow();
+  csv.Close();
+  EXPECT_EQ(StrictCsv(ReadFile(scratch.File("x.csv"))), (Rows{columns, {"1", "-0.5", "2"}}));
 }
 
 TEST(Csv, WithoutCloseThereIsNoFile) {

@@ -16,6 +16,7 @@
 #include "bus/wire.h"
 #include "orchestrator/report/incident_report.h"
 #include "tests/support/law_run.h"
+#include "tests/support/strict_csv.h"
 #include "tests/support/three_agents.h"
 
 namespace mascot {
@@ -106,6 +107,25 @@ TEST(Incidents, AreToldInOrderWithContactsAndLateCommandsAmongThem) {
             "happened       0.05 s: agent 1 touches agent 3 at 2.5 m/s; 2 more of this kind\n"
             "               0.06 to 0.08 s: commands of agent 2 come too late, for 2 ticks\n"
             "               0.07 s: agent 3 at its acceleration limit, at 1 tick\n");
+}
+
+TEST(Incidents, AreATableThatAStrictReaderReadsWhateverAnEventSays) {
+  const Experiment experiment = LoadThree();
+  const LinkMeter links(experiment);
+  IncidentMeter meter(experiment);
+  DecodedRow row(3);
+  row.commands[2].flags = kAccelerationLimited;
+  const std::string text = "set = { \"law.params.a,b\" = \"x, \\\"y\\\"\" }\nlaw = { text = '''\nif a:\n  b\n''' }";
+  row.events = {
+      {.number = 1, .toml = text + "\n"}, {.number = 2, .toml = ""}, {.number = 3, .toml = "cut = [[1, 2]]\n"}};
+  meter.Add(MadeRow(7, row), links);
+  const auto table = StrictCsv(IncidentsCsv(experiment, meter.Result({}, {})));
+  const std::vector<std::vector<std::string>> rows = {{"t_s", "until_s", "what", "count", "agent", "with", "detail"},
+                                                      {"0.07", "0.07", "acceleration_limit", "1", "3", "", ""},
+                                                      {"0.07", "0.07", "event", "1", "", "event 1", text},
+                                                      {"0.07", "0.07", "event", "1", "", "event 2", ""},
+                                                      {"0.07", "0.07", "event", "1", "", "event 3", "cut = [[1, 2]]"}};
+  EXPECT_EQ(table, rows) << "no line break at the end of a cell";
 }
 
 TEST(Incidents, BeyondAHundredThousandAreCounted) {
@@ -224,9 +244,9 @@ TEST(Incidents, SayWhichEventsWereGivenByHand) {
   const int by_hand[] = {2};
   EXPECT_EQ(IncidentsCsv(experiment, IncidentsOf(meter, result, by_hand)),
             "t_s,until_s,what,count,agent,with,detail\n"
-            "0.3,0.3,event,1,,event 1,\"cut = [[1, 2]]\n\"\n"
-            "0.3,0.3,event,1,,event 2 by hand,\"mend = [[1, 2]]\n\"\n"
-            "0.6,0.6,event,1,,event 3,\"cut = [[1, 3]]\n\"\n");
+            "0.3,0.3,event,1,,event 1,\"cut = [[1, 2]]\"\n"
+            "0.3,0.3,event,1,,event 2 by hand,\"mend = [[1, 2]]\"\n"
+            "0.6,0.6,event,1,,event 3,\"cut = [[1, 3]]\"\n");
 }
 
 TEST(Incidents, OfALinkThatAnEventMakesLossyBeginWithTheEventAndAreAllThatIsLost) {

@@ -5,39 +5,23 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "tests/support/orchestrator.h"
+#include "tests/support/strict_csv.h"
 
 namespace mascot::test {
 
 using Cells = std::vector<std::string>;
 
-/// Splits a CSV line at the commas outside quotes.
-inline Cells Split(const std::string& line) {
-  Cells cells(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      cells.emplace_back();
-    else
-      cells.back() += c;
-  }
-  return cells;
-}
-
 /// The table of a sweep.
 struct Table {
   explicit Table(const std::string& path) {
-    std::istringstream lines(ReadFile(path));
-    std::string line;
-    std::getline(lines, line);
-    columns = Split(line);
-    while (std::getline(lines, line)) rows.push_back(Split(line));
+    rows = StrictCsv(ReadFile(path));
+    if (rows.empty()) return;
+    columns = rows.front();
+    rows.erase(rows.begin());
   }
   std::string At(std::size_t row, const std::string& column) const {
     const auto place = std::ranges::find(columns, column);

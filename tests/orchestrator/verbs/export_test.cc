@@ -15,6 +15,7 @@
 #include "tests/orchestrator/formats/mat.h"
 #include "tests/support/call.h"
 #include "tests/support/scratch.h"
+#include "tests/support/strict_csv.h"
 
 namespace mascot {
 namespace {
@@ -50,13 +51,14 @@ using Table = std::vector<std::vector<double>>;
 
 /// Reads the numbers of a CSV file, and its first line into `columns`.
 Table ReadCsv(const std::string& path, std::string& columns) {
-  std::istringstream lines(ReadFile(path));
-  std::getline(lines, columns);
+  const std::string text = ReadFile(path);
+  columns = text.substr(0, text.find('\n'));
+  auto rows = StrictCsv(text);
+  rows.erase(rows.begin());
   Table table;
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream fields(line);
+  for (const auto& row : rows) {
     table.emplace_back();
-    for (std::string field; std::getline(fields, field, ',');) table.back().push_back(std::stod(field));
+    for (const std::string& cell : row) table.back().push_back(std::stod(cell));
   }
   return table;
 }

@@ -8,6 +8,7 @@
 #include "orchestrator/sweeping/plan/plan.h"
 #include "orchestrator/sweeping/table/table.h"
 #include "tests/support/scratch.h"
+#include "tests/support/strict_csv.h"
 
 namespace mascot {
 namespace {
@@ -178,9 +179,17 @@ TEST_F(SweepFileTest, FollowsLinks) {
   EXPECT_EQ(ReadFile(folder_.File("table.csv")), "run,law.beta,error\n0,0.5,\n");
 }
 
-TEST(Csv, CellsAreReadBackFromTheirLine) {
-  const std::vector<std::string> cells = {"0", "", "a, \"b\"", "\"", "", "x"};
-  EXPECT_EQ(CsvCells(CsvLine(cells)), cells);
+TEST_F(SweepFileTest, IsReadByAStrictReaderWhateverStandsInItsCells) {
+  const SweepFile::Cells columns = {"run", "law.params.\"a,b\"", "error", "c\"d"};
+  SweepFile file(path_, columns, "plan", false);
+  file.Add(0, {"'x, \"y\"'", "a\nb\r, c", "0.5"});
+  file.Add(1, {"\"", "", "true"});
+  file.Sort();
+  const std::vector<SweepFile::Cells> rows = {columns, {"0", "'x, \"y\"'", "a b , c", "0.5"}, {"1", "\"", "", "true"}};
+  EXPECT_EQ(StrictCsv(Text()), rows) << "a row is one line";
+  std::vector<SweepFile::Cells> read{columns};
+  file.ForEachRow([&](const SweepFile::Cells& cells) { read.push_back(cells); });
+  EXPECT_EQ(read, rows);
 }
 
 TEST_F(SweepFileTest, SaysThatItCannotBeWritten) {

@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include "orchestrator/formats/csv.h"
 #include "orchestrator/sweeping/table/table.h"
+#include "tests/support/strict_csv.h"
 
 namespace mascot {
 namespace {
@@ -108,6 +110,23 @@ TEST(Outcomes, TakeNoPredictionAndNoDeviationForLate) {
   for (const char* column : {"consensus.predicted.settling_time_s", "consensus.deviation.settling_time_s",
                              "laws.a.predicted.agreement_time_s", "consensus.rate_per_s", "wall_s"})
     EXPECT_FALSE(IsTimeOfEvent(column)) << column;
+}
+
+TEST(Outcomes, HaveStatisticsThatAStrictReaderReadsWhateverTheValuesAre) {
+  const std::string key = "law.params.\"a,b\"";
+  const SweepPlan plan({.sets = {key + "='x, \"y\"','z'"}, .randoms = {}, .seeds = "1..2"});
+  const KnownLaws none;
+  const SweepLaws laws(plan, none);
+  Outcomes outcomes(plan, laws, {"run", key, "run.seed", "error", "consensus.settling_time_s", "control.effort"});
+  for (std::size_t run = 0; run < plan.size(); ++run)
+    outcomes.Add({std::to_string(run), plan[run].overrides[0].value, "1", "", "4.0", "1.0"});
+  std::string csv;
+  outcomes.WriteStatistics(std::vector<std::string>{"control.effort"}, [&](std::string_view row) { csv += row; });
+  const auto rows = StrictCsv(csv);
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0][0], key);
+  EXPECT_EQ(rows[1][0], plan[0].overrides[0].value);
+  EXPECT_THAT(rows[1][0], ::testing::HasSubstr("x, \"y\""));
 }
 
 TEST(Outcomes, CallARunLateOnlyIfItsLawMakesAgentsAgreeOrHasSettledInAnother) {
