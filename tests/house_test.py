@@ -15,6 +15,7 @@ import tokenize
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+LIMIT_S = 240  # of a command; ctest ends the test after 300 s, without a word
 DOCUMENT = "docs/architecture.md"
 FOLDERS = ["base", "system", "experiment", "idl", "bus", "agent", "physics_server", "orchestrator"]
 CPP = {".h", ".hpp", ".cc", ".cpp", ".inc"}
@@ -275,7 +276,8 @@ def faults_of_names(root):
 
 
 def output_of(*command):
-    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=True).stdout
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=True,
+                          timeout=LIMIT_S).stdout
 
 
 def functions_of(path, kinds):

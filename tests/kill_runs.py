@@ -24,6 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 CONFIG = ROOT / "configs/leaderless.toml"
 SHARED_MEMORY = pathlib.Path("/dev/shm")
 SOCKETS = pathlib.Path("/proc/net/unix")
+RUN_LIMIT_S = 200.0  # of a run whose process was killed
 DEADLINE_S = 30.0  # what still lives then is left behind
 
 
@@ -77,7 +78,7 @@ def kill_one(dice, span, programs):
             os.kill(dice.choice(victims), signal.SIGKILL)
         except ProcessLookupError:
             name = "nobody"
-    up.wait()
+    up.wait(RUN_LIMIT_S)
     shutil.rmtree(folder, ignore_errors=True)
     return name
 
@@ -113,7 +114,7 @@ def main():
         mounts = "mount -t tmpfs tmpfs /dev/shm && mount -t tmpfs tmpfs /tmp"
         here = ["sh", "-c", mounts + ' && exec "$@"', "sh", sys.executable, *sys.argv]
         os.execvp("unshare", ["unshare", "--mount", "--net", "--pid", "--fork", "--mount-proc", *here])
-    subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
+    subprocess.run(["ip", "link", "set", "lo", "up"], check=True, timeout=DEADLINE_S)
     dice = random.Random(args.seed)
     killed, failures = {}, 0
     for number in range(1, args.kills + 1):

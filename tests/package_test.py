@@ -14,11 +14,13 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = pathlib.Path(os.environ["MASCOT_BINARY_DIR"]).resolve()
 PROGRAM = BUILD / "orchestrator"
+LIMIT_S = 120  # of a command
 COMPLETION = ROOT / "scripts/completion"
 
 
 def output_of(*command, **options):
-    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=True, **options).stdout
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=True, timeout=LIMIT_S,
+                          **options).stdout
 
 
 def names(text, section):

@@ -11,6 +11,7 @@ import unittest
 import urllib.parse
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+LIMIT_S = 240  # of a command; ctest ends the test after 300 s, without a word
 
 
 class Page(html.parser.HTMLParser):
@@ -140,7 +141,7 @@ class Documentation(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory())).resolve()
-        built = subprocess.run([ROOT / "scripts/site", cls.folder], capture_output=True, text=True)
+        built = subprocess.run([ROOT / "scripts/site", cls.folder], capture_output=True, text=True, timeout=LIMIT_S)
         assert built.returncode == 0, built.stdout + built.stderr
         assert built.stdout == f"{cls.folder}/index.html\n", built.stdout
         cls.site = Site(cls.folder)

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 
+LIMIT_S = 60  # of a command
 TUNSETIFF, IFF_TAP, IFF_NO_PI = 0x400454CA, 0x0002, 0x1000
 
 
@@ -20,7 +21,7 @@ def end(name, namespace):
     file = os.open("/dev/net/tun", os.O_RDWR | os.O_NONBLOCK)
     made = f"t{os.getpid()}"  # there is none of this name here
     fcntl.ioctl(file, TUNSETIFF, struct.pack("16sH", made.encode(), IFF_TAP | IFF_NO_PI))
-    subprocess.run(["ip", "link", "set", made, "netns", namespace, "name", name], check=True)
+    subprocess.run(["ip", "link", "set", made, "netns", namespace, "name", name], check=True, timeout=LIMIT_S)
     return file
 
 

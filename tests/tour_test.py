@@ -68,7 +68,7 @@ class Hosts:
         self.names = []
 
     def __enter__(self):
-        if subprocess.run(["unshare", "--mount", "--net", "true"], capture_output=True).returncode == 0 and shutil.which("ip"):
+        if subprocess.run(["unshare", "--mount", "--net", "true"], capture_output=True, timeout=LIMIT_S).returncode == 0 and shutil.which("ip"):
             self.names = [f"mascot-tour-{side}{os.getpid()}" for side in "ab"]
             for name in self.names:
                 self.ip("netns", "add", name)
@@ -90,7 +90,7 @@ class Hosts:
 
     @staticmethod
     def ip(*words):
-        subprocess.run(["ip", *words], check=True)
+        subprocess.run(["ip", *words], check=True, timeout=LIMIT_S)
 
 
 class Terminal:
@@ -123,7 +123,7 @@ class Terminal:
     def close(self):
         if self.running:
             os.killpg(self.running.pid, signal.SIGKILL)
-            self.running.wait()
+            self.running.wait(LIMIT_S)
 
 
 class Matching(unittest.TestCase):

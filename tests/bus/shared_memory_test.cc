@@ -14,6 +14,7 @@
 #include <string>
 
 #include "bus/ports.h"
+#include "tests/support/waits.h"
 
 namespace mascot {
 namespace {
@@ -38,9 +39,7 @@ class Stalled {
       for (;;) pause();
     }
     close(ready[1]);
-    char nothing;
-    while (read(ready[0], &nothing, 1) > 0) {
-    }
+    test::AwaitInput(ready[0], "a process that stalls");  // its end of the pipe is closed
     close(ready[0]);
   }
   ~Stalled() { Kill(); }
@@ -50,7 +49,7 @@ class Stalled {
   void Kill() {
     if (pid_ <= 0) return;
     kill(pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
+    test::AwaitEndOf(pid_, "the process that stalled");
     pid_ = 0;
   }
 

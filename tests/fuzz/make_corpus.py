@@ -126,7 +126,7 @@ def real_recording(programs):
         config.write_text("[run]\nduration_s = 0.02\n[agents]\ncount = 1\nmodel = 'double_integrator'\n[graph]\n"
                           "edges = []\n[law]\nname = 'waypoint'\nwaypoints_m = [[1, 1, 1]]\n")
         subprocess.run([programs / "orchestrator", "up", config, "--engine", "inprocess", "--out", f"{folder}/run",
-                        "--quiet", "--set", "output.save_plot=false"], check=True)
+                        "--quiet", "--set", "output.save_plot=false"], timeout=60, check=True)
         return (pathlib.Path(folder) / "run/run.mcap").read_bytes()
 
 

@@ -1,10 +1,11 @@
 // The page in a real browser, on made-up runs: what it shows, what it asks for, and what it says of the answers.
 import assert from "node:assert/strict";
-import {after, before, test} from "node:test";
+import {after, before} from "node:test";
 
 import {launch, open, PHONE, WIDE} from "./browser.mjs";
 import {startFake} from "./fake_server.mjs";
 import {clickEdge, drag, edgeInTheOpen, edgeShowsAs, isPaused, pausedFromAbove, placeOf, until} from "./hand.mjs";
+import {test} from "./waits.mjs";
 
 let browser;
 before(async () => {

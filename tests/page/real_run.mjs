@@ -7,13 +7,15 @@ import {join} from "node:path";
 import {createInterface} from "node:readline";
 import {fileURLToPath} from "node:url";
 
+import {within} from "./waits.mjs";
+
 const ROOT = fileURLToPath(new URL("../..", import.meta.url));
 const ORCHESTRATOR = join(process.env.MASCOT_BINARY_DIR ?? join(ROOT, "build/release"), "orchestrator");
 
 /**
  * Starts an experiment of configs/, in lockstep and at one simulated second a second unless `options` say otherwise.
- * Returns the address of its page; `ended`, a promise of its exit code; `read`, to read a file of its results; and
- * `stop`, which ends it and throws its results away.
+ * Returns the address of its page; `ended`, which gives its exit code once it has ended; `read`, to read a file of its
+ * results; and `stop`, which ends it and throws its results away.
  */
 export async function startRun(config, ...options) {
   const folder = await mkdtemp(join(tmpdir(), "mascot-page-"));
@@ -33,7 +35,7 @@ export async function startRecording(toml) {
       ORCHESTRATOR,
       ["up", file, "--engine", "inprocess", "--set", "output.save_plot=false", "--out", join(folder, "run"), "--quiet"],
       {stdio: ["ignore", "ignore", "inherit"]});
-  await once(flight, "exit");
+  await within("the end of a flight", once(flight, "exit"));
   return serve(folder, ["view", join(folder, "run")]);
 }
 
@@ -48,14 +50,23 @@ async function written(toml) {
 
 async function serve(folder, words) {
   const run = spawn(ORCHESTRATOR, words, {stdio: ["ignore", "ignore", "pipe"]});
-  const ended = once(run, "exit").then(([code]) => code);
+  const exit = once(run, "exit").then(([code]) => code), name = `the end of orchestrator ${words.join(" ")}`;
   const stop = async () => {
     run.kill("SIGINT");
-    await ended;
-    await rm(folder, {recursive: true});
+    try {
+      await within(name, exit);
+    } finally {
+      run.kill("SIGKILL");
+      await rm(folder, {recursive: true});
+    }
   };
   try {
-    return {url: await addressOf(run), ended, read: (name) => readFile(join(folder, "run", name), "utf8"), stop};
+    return {
+      url: await within("the address of a page", addressOf(run)),
+      ended: () => within(name, exit),
+      read: (file) => readFile(join(folder, "run", file), "utf8"),
+      stop,
+    };
   } catch (error) {
     await stop();
     throw error;

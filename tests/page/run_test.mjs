@@ -1,10 +1,10 @@
 // The page on a real run, eight agents over DDS in lockstep, and on a real recording, in a real browser.
 import assert from "node:assert/strict";
-import {test} from "node:test";
 
 import {launch, open} from "./browser.mjs";
 import {clickEdge, drag, edgeInTheOpen, edgeShowsAs, pausedFromAbove, until} from "./hand.mjs";
 import {startRecording, startRun, startRunOf, textOf} from "./real_run.mjs";
+import {test} from "./waits.mjs";
 
 /** What follows each other on one run, which `body` functions get with its page. */
 const TOUCHES = {
@@ -97,7 +97,7 @@ const TOUCHES = {
     const done = await page.evaluate(() => mascot.events.map(({toml}) => toml.trim()));
     await page.click("#stop");
     await page.click("#confirm-yes");
-    assert.equal(await run.ended, 0);
+    assert.equal(await run.ended(), 0);
     const config = await run.read("config.toml");
     assert.deepEqual(done.map((toml) => toml.split(" = ")[0]), ["goto", "cut", "mend", "set"]);
     assert.equal(config.split("[[events]]").length - 1, done.length);

@@ -123,7 +123,7 @@ class Laboratory {
   /// A program whose standard input we keep open, and read what it prints.
   class Piped {
    public:
-    explicit Piped(const std::string& command) : file_(nullptr) {
+    explicit Piped(const std::string& command) : command_(command) {
       int in[2], out[2];
       if (pipe2(in, O_CLOEXEC) != 0 || pipe2(out, O_CLOEXEC) != 0) return;
       std::vector<std::string> words{"sh", "-c", command};
@@ -139,25 +139,27 @@ class Laboratory {
       close(in[0]);
       close(out[1]);
       input_ = in[1];
-      file_ = fdopen(out[0], "r");
+      output_ = out[0];
     }
     ~Piped() {
       close(input_);
-      if (file_ != nullptr) fclose(file_);
-      if (pid_ > 0) waitpid(pid_, nullptr, 0);
+      close(output_);
+      if (pid_ > 0) AwaitEndOf(pid_, "the end of: " + command_);
     }
     Piped(const Piped&) = delete;
     Piped& operator=(const Piped&) = delete;
-    std::string Line() {
-      char line[100] = "";
-      if (file_ == nullptr || fgets(line, sizeof line, file_) == nullptr) return "";
-      return std::string(line).substr(0, std::string(line).find('\n'));
+    std::string Line() const {
+      std::string line;
+      char byte = 0;
+      while (AwaitInput(output_, "a line of: " + command_) && read(output_, &byte, 1) == 1 && byte != '\n')
+        line += byte;
+      return line;
     }
 
    private:
     pid_t pid_ = -1;
-    int input_ = -1;
-    FILE* file_;
+    int input_ = -1, output_ = -1;
+    std::string command_;
   };
 
   const ScratchFolder& folder_;

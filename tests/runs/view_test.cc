@@ -58,13 +58,6 @@ class ViewOf : public Running {
       : Running(MASCOT_BINARY_DIR "/orchestrator", {"view", run, "--at", at}, folder.File("view")) {}
 };
 
-/// The next frame that is at this tick.
-nlohmann::json FrameAt(Viewer& viewer, std::int64_t tick) {
-  nlohmann::json frame = viewer.NextJsonOf("/ui/frame");
-  while (frame["tick"] != tick) frame = viewer.NextJsonOf("/ui/frame");
-  return frame;
-}
-
 TEST(UpWithView, IsReadByFoxglovesOwnPackagesOverDds) {
   const ScratchFolder folder;
   WriteFile(folder.File("run.toml"), kRecordedRun);
@@ -227,19 +220,19 @@ TEST(View, PlaysARecordingWhereverAViewerWantsItUntilCtrlC) {
   EXPECT_EQ(experiment["recorded"]["loss"], "");
   EXPECT_EQ(experiment["recorded"]["incidents"], ReadFile(folder.File("run/events.csv")));
   viewer.Subscribe("/ui/frame");
-  EXPECT_EQ(FrameAt(viewer, 0)["state"], "paused");
+  EXPECT_EQ(viewer.FrameAt(0)["state"], "paused");
   const auto granted = [](const char* words) { return nlohmann::json{{"granted", true}, {"words", words}}; };
   EXPECT_EQ(viewer.Ask({{"ask", "seek"}, {"t_s", 2.5}}), granted("at tick 250 (2.5 s)"));
-  const nlohmann::json there = FrameAt(viewer, 250);
+  const nlohmann::json there = viewer.FrameAt(250);
   EXPECT_EQ(viewer.Ask({{"ask", "seek"}, {"t_s", 1.0}}), granted("at tick 100 (1 s)"));
-  FrameAt(viewer, 100);
+  viewer.FrameAt(100);
   EXPECT_EQ(viewer.Ask({{"ask", "event"}, {"toml", "cut = [[1, 2]]"}}),
             (nlohmann::json{{"granted", false}, {"words", "a recording cannot be changed"}}));
   viewer.Ask({{"ask", "pace"}, {"value", 100}});
   viewer.Ask({{"ask", "resume"}});
-  EXPECT_EQ(FrameAt(viewer, 500)["state"], "paused");
+  EXPECT_EQ(viewer.FrameAt(500)["state"], "paused");
   viewer.Ask({{"ask", "seek"}, {"t_s", 2.5}});  // the end is not the end
-  EXPECT_EQ(FrameAt(viewer, 250)["p"], there["p"]);
+  EXPECT_EQ(viewer.FrameAt(250)["p"], there["p"]);
   viewer.Ask({{"ask", "pace"}, {"value", 0.1}});
   viewer.Ask({{"ask", "resume"}});
   const Ran check = WsCheck(url);  // which sets the pace to 1

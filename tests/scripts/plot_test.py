@@ -37,6 +37,7 @@ law_pictures = importlib.util.module_from_spec(importlib.util.spec_from_loader("
 loader.exec_module(law_pictures)
 
 ROOT = pathlib.Path(plot.__file__).parent.parent
+LIMIT_S = 240  # of a command; ctest ends the test after 300 s, without a word
 CONSENSUS = '[run]\nname = "demo"\n[law]\nname = "consensus"\n'
 LEADER = CONSENSUS + "leader = 2\n"
 MINMAX = '[law]\nname = "minmax"\nleader = 1\n'
@@ -743,7 +744,7 @@ def probe(path):
     """Codec, width, height, number of frames and frames per second of a film."""
     wanted = ("codec_name", "width", "height", "nb_read_frames", "r_frame_rate")
     told = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-of", "json", "-show_entries",
-                           "stream=" + ",".join(wanted), path], check=True, capture_output=True)
+                           "stream=" + ",".join(wanted), path], check=True, capture_output=True, timeout=LIMIT_S)
     return tuple(json.loads(told.stdout)["streams"][0][name] for name in wanted)
 
 
@@ -1037,7 +1038,7 @@ class Surroundings(PlotTest):
         script = pathlib.Path(plot.__file__)
         environment = {"PATH": "/usr/bin:/bin", **environment}
         done = subprocess.run(["/usr/bin/python3", "-E", "-s", "-B", "-X", "utf8", script, self.folder, "--only=paths"],
-                              cwd=self.place, env=environment, capture_output=True, text=True)
+                              cwd=self.place, env=environment, capture_output=True, text=True, timeout=LIMIT_S)
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
         return (self.folder / "paths.png").read_bytes()
 
@@ -1086,7 +1087,8 @@ class PlainWords(unittest.TestCase):
         evil = "no\x1b[31m\u202e"
         for script, words in [("plot.py", [evil]), ("plot.py", ["runs", "--" + evil]),
                               ("plot_sweep.py", ["t.csv", "s.csv", "p.png", "c", "--" + evil])]:
-            ran = subprocess.run(["/usr/bin/python3", ROOT / "scripts" / script, *words], capture_output=True)
+            ran = subprocess.run(["/usr/bin/python3", ROOT / "scripts" / script, *words], capture_output=True,
+                                 timeout=LIMIT_S)
             said = (ran.stdout + ran.stderr).decode()
             self.assertNotEqual(ran.returncode, 0)
             self.assertIn("\\u001b[31m\\u202e", said)

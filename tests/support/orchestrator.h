@@ -4,22 +4,20 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "tests/support/scratch.h"
+#include "tests/support/waits.h"
 
 extern char** environ;
 
@@ -27,16 +25,6 @@ namespace mascot::test {
 
 inline std::string Config(const std::string& name) {
   return std::string(MASCOT_SOURCE_DIR) + "/configs/" + name + ".toml";
-}
-
-/// Waits until `condition` holds, at most 60 s. Returns whether it does.
-inline bool Until(const std::function<bool()>& condition) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    poll(nullptr, 0, 5);  // milliseconds
-  }
-  return true;
 }
 
 /// Sends a signal to a process that exists. To kill(2), process 0, a child that was not found, is all of our process
@@ -50,9 +38,12 @@ inline void SignalTo(pid_t process, int signal) {
 class Running {
  public:
   Running(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& output)
-      : out_(output.string() + ".out"), err_(output.string() + ".err") {
+      : out_(output.string() + ".out"), err_(output.string() + ".err"), command_(program) {
     std::vector<char*> argv{const_cast<char*>(program.c_str())};
-    for (std::string& argument : arguments) argv.push_back(argument.data());
+    for (std::string& argument : arguments) {
+      argv.push_back(argument.data());
+      command_ += " " + argument;
+    }
     argv.push_back(nullptr);
     posix_spawn_file_actions_t files;
     posix_spawn_file_actions_init(&files);
@@ -72,10 +63,11 @@ class Running {
 
   pid_t pid() const { return pid_; }
   void Signal(int signal) const { SignalTo(pid_, signal); }
-  /// Waits for the end. Returns the exit code, or -signal if a signal ended the program.
-  int Wait() {
-    int status = 0;
-    waitpid(std::exchange(pid_, -1), &status, 0);
+  /// Waits for the end. Returns the exit code, or -signal if a signal ended the program. The test fails if the program
+  /// goes on for longer than `patience`, and kills it.
+  int Wait(std::chrono::milliseconds patience = kPatienceForRuns) {
+    if (pid_ <= 0) return kNotStarted;
+    const int status = AwaitEndOf(std::exchange(pid_, -1), "the end of: " + command_, patience);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
   /// Whether the program has ended; Wait() then returns at once.
@@ -88,7 +80,9 @@ class Running {
   bool Said(const std::string& text) const { return err().find(text) != std::string::npos; }
 
  private:
-  std::string out_, err_;
+  static constexpr int kNotStarted = 127;  // what a shell says of a program that it has not found
+
+  std::string out_, err_, command_;
   pid_t pid_ = -1;
 };
 

@@ -6,23 +6,22 @@
 #include <chrono>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "tests/support/scratch.h"
+#include "tests/support/waits.h"
 
 namespace mascot {
 namespace {
 
 using namespace std::chrono_literals;
+using test::Await;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pair;
 using testing::SizeIs;
 using testing::ThrowsMessage;
-
-constexpr auto kPatience = 20s;
 
 class ChildrenTest : public testing::Test {
  protected:
@@ -38,18 +37,16 @@ class ChildrenTest : public testing::Test {
     return lines_;
   }
   void AwaitLines(std::size_t count) {
-    const auto deadline = std::chrono::steady_clock::now() + kPatience;
-    while (lines().size() < count && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+    Await(std::to_string(count) + " lines", [&] { return lines().size() >= count; });
   }
-  /// Waits for `count` exits, at most kPatience.
+  /// Waits for `count` exits.
   std::vector<Exit> AwaitExits(std::size_t count) {
     std::vector<Exit> exits;
-    const auto deadline = std::chrono::steady_clock::now() + kPatience;
-    while (exits.size() < count && std::chrono::steady_clock::now() < deadline) {
+    Await(std::to_string(count) + " exits", [&] {
       const std::vector<Exit> more = children_.Reap();
       exits.insert(exits.end(), more.begin(), more.end());
-      std::this_thread::yield();
-    }
+      return exits.size() >= count;
+    });
     return exits;
   }
 
@@ -95,10 +92,7 @@ TEST_F(ChildrenTest, WhatActsOnATerminalIsEscapedInLinesAndKeptInTheLog) {
 
 TEST_F(ChildrenTest, ALineThatIsNotOverIsInTheLogAtOnce) {
   Spawn("agent_1", "printf 'step 1 ...'; exec sleep 1000");
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (ReadFile(folder_.File("agent_1.log")) != "step 1 ..." && std::chrono::steady_clock::now() < deadline)
-    std::this_thread::yield();
-  EXPECT_EQ(ReadFile(folder_.File("agent_1.log")), "step 1 ...");
+  EXPECT_TRUE(Await("the line in the log", [&] { return ReadFile(folder_.File("agent_1.log")) == "step 1 ..."; }));
   EXPECT_THAT(lines(), IsEmpty()) << "it may go on";
 }
 
@@ -140,7 +134,7 @@ TEST_F(ChildrenTest, AChildThatIgnoresSigtermIsKilled) {
 TEST_F(ChildrenTest, AChildThatHandlesSigtermEndsByItself) {
   Spawn("orderly", "trap 'echo down; exit 0' TERM; echo up; while :; do :; done");
   AwaitLines(1);
-  children_.Stop(kPatience);
+  children_.Stop(test::kPatience);
   EXPECT_THAT(logs_.LastLines("orderly"), ElementsAre("up", "down"));
 }
 

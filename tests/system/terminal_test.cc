@@ -21,6 +21,7 @@
 #include "system/console.h"
 #include "system/standard_streams.h"
 #include "tests/support/scratch.h"
+#include "tests/support/waits.h"
 
 namespace mascot::test {
 namespace {
@@ -56,12 +57,24 @@ winsize Columns(int width) {
   return size;
 }
 
-/// All that comes from a terminal until its other end is closed.
+/// All that there is to read from a terminal, which does not wait.
 std::string ReadAll(int terminal) {
   std::string bytes;
   char buffer[4096];
   for (ssize_t count; (count = read(terminal, buffer, sizeof buffer)) > 0;)
     bytes.append(buffer, static_cast<std::size_t>(count));
+  return bytes;
+}
+
+/// All that comes from a descriptor until nobody has its other end any more.
+std::string ReadToEnd(int descriptor) {
+  std::string bytes;
+  char buffer[4096];
+  while (AwaitInput(descriptor, "the end of what is printed", kPatienceForRuns)) {
+    const ssize_t count = read(descriptor, buffer, sizeof buffer);
+    if (count <= 0) break;
+    bytes.append(buffer, static_cast<std::size_t>(count));
+  }
   return bytes;
 }
 
@@ -139,9 +152,8 @@ std::vector<std::string> DrawnBy(const std::vector<std::string>& words, const st
     if (chdir(folder.c_str()) == 0) execv(MASCOT_BINARY_DIR "/orchestrator", argv.data());
     _exit(127);
   }
-  const std::string bytes = ReadAll(terminal);
-  int status = -1;
-  waitpid(child, &status, 0);
+  const std::string bytes = ReadToEnd(terminal);
+  const int status = AwaitEndOf(child, "the end of a program that has closed its terminal");
   close(terminal);
   EXPECT_EQ(status, 0) << bytes;
   return Drawn(bytes);
@@ -205,9 +217,9 @@ std::string PrintedBy(const std::function<void()>& print) {
     _exit(0);
   }
   close(ends[1]);
-  const std::string bytes = ReadAll(ends[0]);
+  const std::string bytes = ReadToEnd(ends[0]);
   close(ends[0]);
-  waitpid(child, nullptr, 0);
+  AwaitEndOf(child, "the end of a process that has printed");
   return bytes;
 }
 

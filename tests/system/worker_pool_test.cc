@@ -24,7 +24,10 @@ std::map<std::size_t, WorkerPool::Done> RunAll(WorkerPool& pool, std::size_t tas
   std::size_t next = 0;
   while (done.size() < tasks) {
     while (next < tasks && pool.HasIdle()) pool.Start(next++);
-    if (auto one = pool.Wait(60s)) done.emplace(one->task, *one);
+    const auto one = pool.Wait(60s);
+    if (!one) ADD_FAILURE() << "waited 60 s in vain for a task; " << done.size() << " of " << tasks << " are done";
+    if (!one) return done;
+    done.emplace(one->task, *one);
   }
   EXPECT_FALSE(pool.IsBusy());
   return done;
@@ -94,8 +97,9 @@ TEST(WorkerPool, LeavesNoProcessBehind) {
       return std::to_string(::getpid());
     });
     pool.Start(0);
-    while (pid == 0)
-      if (const auto done = pool.Wait(60s)) pid = std::stoi(done->answer);
+    const auto done = pool.Wait(60s);
+    ASSERT_TRUE(done) << "waited 60 s in vain for a process id";
+    pid = std::stoi(done->answer);
     pool.Start(1);  // does not end by itself
   }
   EXPECT_EQ(::kill(pid, 0), -1);

@@ -12,6 +12,7 @@
 #include "base/utf8.h"
 #include "tests/support/scratch.h"
 #include "tests/support/three_agents.h"
+#include "tests/support/waits.h"
 
 namespace mascot {
 namespace {
@@ -354,10 +355,11 @@ TEST(CustomLaw, ThatHangsIsEndedThoughAnotherOfItsProcessEnds) {
       "test");
   Agent hangs(experiment, 1), ends(experiment, 2);
   std::thread other([&] {  // as in a process with several agents: another thread, which takes turns
-    while (!std::filesystem::exists(folder.File("hangs"))) std::this_thread::yield();
+    test::Await("the law that hangs", [&] { return std::filesystem::exists(folder.File("hangs")); });
     ends.Want(0, Motion{}, {});
   });
   EXPECT_THAT([&] { hangs.Want(0, Motion{}, {}); }, ThrowsMessage<std::runtime_error>(HasSubstr("TimeoutError: ")));
+  const test::Deadline deadline("the thread of the other agent");
   other.join();
 }
 

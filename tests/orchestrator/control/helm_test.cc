@@ -14,6 +14,7 @@
 #include "agent/laws/laws.h"
 #include "orchestrator/engines/inprocess.h"
 #include "tests/support/three_agents.h"
+#include "tests/support/waits.h"
 
 namespace mascot {
 namespace {
@@ -36,6 +37,12 @@ class Kept final : public RowSink {
   std::atomic<std::int64_t> newest = -1;
 };
 
+/// Waits for a thread that asks.
+void JoinSoon(std::jthread& thread) {
+  const test::Deadline deadline("the end of a thread that asks");
+  thread.join();
+}
+
 /// A run in this process, in a thread of its own, which pauses after tick 0.
 class Steered {
  public:
@@ -45,12 +52,24 @@ class Steered {
               experiment, {&kept, &helm}, [] { return true; }, &helm);
         }) {}
   ~Steered() {
-    if (thread_.joinable()) Ask({.kind = Kind::kStop});
+    if (!thread_.joinable()) return;
+    Ask({.kind = Kind::kStop});
+    Join();
   }
 
-  Answer Ask(const Wish& wish) { return helm.Ask(wish); }
+  Answer Ask(const Wish& wish) {
+    const test::Deadline deadline("an answer of the run");
+    return helm.Ask(wish);
+  }
   Answer Event(const std::string& toml) { return Ask({.kind = Kind::kEvent, .toml = toml}); }
-  void Join() { thread_.join(); }
+  void Join() {
+    const test::Deadline deadline("the end of the run");
+    thread_.join();
+  }
+  /// Waits until the run has come to this tick.
+  void Reach(std::int64_t tick) const {
+    test::Await("tick " + std::to_string(tick), [&] { return helm.going().tick >= tick; });
+  }
 
   const Experiment experiment;
   Helm helm;
@@ -146,16 +165,13 @@ constexpr const char* kNoWaypoints =
 
 TEST(Helm, AnEventAtTheTickOfAPhaseComesBehindIt) {
   Steered run(Paused::Long(Three(kFliesAndThenAgrees)) + "[[events]]\nat_s = 0.3\nset = { \"run.pace\" = 0.001 }\n");
-  const auto await = [&](std::int64_t tick) {
-    while (run.helm.going().tick < tick) std::this_thread::yield();
-  };
-  await(30);
+  run.Reach(30);
   run.Ask({.kind = Kind::kPause});
   run.Ask({.kind = Kind::kStep, .number = 18});
-  await(48);
+  run.Reach(48);
   EXPECT_EQ(run.Event(kGoTo).words, "takes effect at tick 49 (0.49 s)");
   run.Ask({.kind = Kind::kStep, .number = 1});
-  await(49);
+  run.Reach(49);
   EXPECT_EQ(run.Event(kGoTo).words, kNoWaypoints);
   run.Ask({.kind = Kind::kStop});
   run.Join();
@@ -168,10 +184,10 @@ TEST(Helm, ChecksAnEventAgainThatAPhaseHasOvertaken) {
   helm.Open();
   Answer answer{.granted = true};
   std::jthread asking([&] { answer = helm.Ask({.kind = Kind::kEvent, .toml = kGoTo}); });
-  while (!helm.Next()) std::this_thread::yield();
+  test::Await("a wish", [&] { return helm.Next().has_value(); });
   EXPECT_EQ(helm.Next()->number, 50);
   helm.CheckAgain();
-  asking.join();
+  JoinSoon(asking);
   EXPECT_EQ(answer, (Answer{false, kNoWaypoints}));
 }
 
@@ -199,7 +215,7 @@ TEST(Helm, LetsAWishThatComesEarlyWaitForTheRunAndRefusesWhatComesLate) {
                 experiment, {&kept, &helm}, [] { return true; }, &helm)
                 .failure,
             "");
-  asking.join();
+  JoinSoon(asking);
   EXPECT_TRUE(early.granted || early.words == "the run is over") << early.words;
   const Answer late = helm.Ask({.kind = Kind::kPause});
   EXPECT_FALSE(late.granted);
@@ -212,9 +228,9 @@ TEST(Helm, TellsWhoWaitsWhenTheRunEnds) {
   helm.Open();
   Answer answer{.granted = true};
   std::jthread asking([&] { answer = helm.Ask({.kind = Kind::kPause}); });
-  while (!helm.Next()) std::this_thread::yield();
+  test::Await("a wish", [&] { return helm.Next().has_value(); });
   helm.Close();
-  asking.join();
+  JoinSoon(asking);
   EXPECT_FALSE(answer.granted);
   EXPECT_EQ(answer.words, "the run is over");
 }
@@ -222,7 +238,7 @@ TEST(Helm, TellsWhoWaitsWhenTheRunEnds) {
 TEST(Helm, StopsARunInOrder) {
   Paused run;
   run.Ask({.kind = Kind::kStep, .number = 10});
-  while (run.helm.going().tick < 10) std::this_thread::yield();
+  run.Reach(10);
   EXPECT_TRUE(run.Ask({.kind = Kind::kStop}).granted);
   run.Join();
   EXPECT_EQ(run.result.failure, "");
@@ -231,7 +247,7 @@ TEST(Helm, StopsARunInOrder) {
 
 TEST(Helm, AnEventOfTheFileMayChangeThePace) {
   Steered run(Paused::Long(Three(kFirstLeads)) + "[[events]]\nat_s = 0.5\nset = { \"run.pace\" = 0.001 }\n");
-  while (run.helm.going().tick < 50) std::this_thread::yield();
+  run.Reach(50);
   run.Ask({.kind = Kind::kPause});
   EXPECT_EQ(run.helm.going().pace, 0.001);
   EXPECT_EQ(run.kept.newest, 50) << "the next tick is due 10 s later";
@@ -268,12 +284,12 @@ TEST(Helm, EventsOfTwoSendersAtRandomMomentsFlyAgainFromTheFile) {
           "goto = { agent = 1, position_m = [" + number + ", 1, 2] }", "cut = [[1, 2]]", "mend = [[1, 2]]"};
       run.Event(events[random() % std::size(events)]);
       const std::int64_t until = run.kept.newest + static_cast<std::int64_t>(random() % 8);
-      while (run.kept.newest < until) std::this_thread::yield();
+      test::Await("a row of tick " + std::to_string(until), [&] { return run.kept.newest >= until; });
     }
   };
   std::jthread first([&] { send(1); }), second([&] { send(2); });
-  first.join();
-  second.join();
+  JoinSoon(first);
+  JoinSoon(second);
   run.Ask({.kind = Kind::kPace, .number = 0});
   run.Join();
   ASSERT_EQ(run.result.failure, "");

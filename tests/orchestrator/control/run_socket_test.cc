@@ -2,10 +2,8 @@
 #include "orchestrator/control/run_socket.h"
 
 #include <gmock/gmock.h>
-#include <poll.h>
 #include <signal.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -17,10 +15,14 @@
 #include "orchestrator/control/running_runs.h"
 #include "tests/support/repeated.h"
 #include "tests/support/three_agents.h"
+#include "tests/support/waits.h"
 
 namespace mascot {
 namespace {
 
+using test::AwaitEndOf;
+using test::AwaitInput;
+using test::Until;
 using ::testing::HasSubstr;
 using Voice = RunningRun::Voice;
 
@@ -35,22 +37,11 @@ RunningRun ListedAs(pid_t process) {
   return {};
 }
 
-/// Waits until a condition holds, for half a minute.
-bool SoonHolds(const std::function<bool()>& condition) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    poll(nullptr, 0, 5);
-  }
-  return true;
-}
-
 /// Whether `condition` holds in a process of another user.
 bool HoldsForNobody(const std::function<bool()>& condition) {
   const pid_t child = fork();
   if (child == 0) _exit(setgid(kNobody) == 0 && setuid(kNobody) == 0 && condition() ? 0 : 1);
-  int status = 0;
-  waitpid(child, &status, 0);
+  const int status = AwaitEndOf(child, "the process of another user");
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
@@ -86,15 +77,13 @@ class Listener {
       for (;;) act(Descriptor(accept4(socket.number(), nullptr, nullptr, SOCK_CLOEXEC)));
     }
     close(ready[1]);
-    char nothing;
-    while (read(ready[0], &nothing, 1) > 0) {
-    }
+    AwaitInput(ready[0], "a process that listens");  // or has ended: then nobody has the pipe's other end
     close(ready[0]);
   }
   ~Listener() {
     if (pid_ <= 0) return;
     kill(pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
+    AwaitEndOf(pid_, "the process that listened");
   }
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;
@@ -143,6 +132,7 @@ TEST_F(RunSocketTest, WhoWaitsForAnAnswerKeepsNobodyElseWaiting) {
   auto answer = std::async(std::launch::async, [] { return AskRun(getpid(), {.kind = Wish::Kind::kPause}); });
   EXPECT_EQ(ListedAs(getpid()).voice, Voice::kAnswers) << "the run has not begun, so that the wish waits";
   helm_.Close();
+  const test::Deadline deadline("an answer to the wish");
   EXPECT_EQ(answer.get().words, "the run is over");
 }
 
@@ -167,14 +157,15 @@ TEST_F(RunSocketTest, ClosesTheConnectionOfAnotherUserBeforeItHasSaidAnything) {
   EXPECT_TRUE(HoldsForNobody([process] {
     const Descriptor client = MakeLocalSocket(SOCK_CLOEXEC);
     char byte = 0;
-    return ConnectTo(RunNameOf(process), client) && read(client.number(), &byte, 1) == 0;
+    return ConnectTo(RunNameOf(process), client) && AwaitInput(client.number(), "the end of the connection") &&
+           read(client.number(), &byte, 1) == 0;
   }));
 }
 
 TEST_F(RunSocketTest, DropsAClientThatSpeaksByTheByte) {
   const Descriptor client = MakeLocalSocket(SOCK_CLOEXEC);
   ASSERT_TRUE(ConnectTo(RunNameOf(getpid()), client));
-  EXPECT_TRUE(SoonHolds([&client] { return send(client.number(), "{", 1, MSG_NOSIGNAL) < 0; }));
+  EXPECT_TRUE(Until([&client] { return send(client.number(), "{", 1, MSG_NOSIGNAL) < 0; }));
   EXPECT_EQ(ListedAs(getpid()).voice, Voice::kAnswers);
 }
 
@@ -203,7 +194,8 @@ TEST_F(RunSocketTest, WaitsWhileTheProcessHasNoDescriptorLeft) {
   EXPECT_GE(Waits(), before + 5) << "it tries again and again without a pause";
   setrlimit(RLIMIT_NOFILE, &limit);
   char byte = 0;
-  EXPECT_EQ(read(client.number(), &byte, 1), 1) << "now it is let in";
+  EXPECT_TRUE(AwaitInput(client.number(), "an answer")) << "now it is let in";
+  EXPECT_EQ(read(client.number(), &byte, 1), 1);
 }
 
 TEST_F(RunSocketTest, HasAnotherNameIfItsOwnIsTaken) {
@@ -215,7 +207,7 @@ TEST_F(RunSocketTest, HasAnotherNameIfItsOwnIsTaken) {
 
 TEST(RunsAlive, KnowsWhoIsStopped) {
   const Listener stopped(RunNameOf, [](const Descriptor&) { raise(SIGSTOP); });
-  EXPECT_TRUE(SoonHolds([&] { return ListedAs(stopped.pid()).voice == Voice::kStopped; }));
+  EXPECT_TRUE(Until([&] { return ListedAs(stopped.pid()).voice == Voice::kStopped; }));
   EXPECT_EQ(AskRun(stopped.pid(), {.kind = Wish::Kind::kPause}),
             (Answer{false, "the run is stopped; `kill -CONT " + std::to_string(stopped.pid()) + "` lets it go on"}));
   EXPECT_EQ(nlohmann::json::parse(RunsJson({ListedAs(stopped.pid())}))[0]["state"], "stopped");
@@ -250,7 +242,10 @@ TEST(RunsAlive, DoesNotAskAProcessOfAnotherUser) {
   EXPECT_TRUE(
       HoldsForNobody([pid] { return !ListedAs(pid).is_ours() && !AskRun(pid, {.kind = Wish::Kind::kStop}).granted; }));
   char heard[2] = {};
-  for (char& each : heard) EXPECT_EQ(read(told[0], &each, 1), 1);
+  for (char& each : heard) {
+    ASSERT_TRUE(AwaitInput(told[0], "what the stranger has heard"));
+    EXPECT_EQ(read(told[0], &each, 1), 1);
+  }
   EXPECT_EQ(std::string_view(heard, 2), "nn") << "it was told something";
   close(told[0]);
   close(told[1]);
@@ -273,10 +268,10 @@ while True:
     _exit(1);
   }
   const std::string words = "process " + std::to_string(pid) + " is user nobody's, who alone may ask it";
-  EXPECT_TRUE(SoonHolds([&] { return AskRun(pid, {.kind = Wish::Kind::kPause}).words == words; }));
+  EXPECT_TRUE(Until([&] { return AskRun(pid, {.kind = Wish::Kind::kPause}).words == words; }));
   EXPECT_EQ(ListedAs(pid).process, 0);
   kill(pid, SIGKILL);
-  waitpid(pid, nullptr, 0);
+  AwaitEndOf(pid, "the impostor");
 }
 
 TEST(RunsAlive, DoesNotListWhoAnswersOtherThanARun) {

@@ -241,9 +241,7 @@ TEST(Projector, PausesWhereTheFileIsDamagedAndShowsWhatFollowsWithoutEdges) {
     const Projector projector(run, playback, view, log);
     const auto go_to = [&](double t_s, std::int64_t tick) {
       viewer.Ask({{"ask", "seek"}, {"t_s", t_s}});
-      nlohmann::json frame = viewer.NextJsonOf("/ui/frame");
-      while (frame["tick"] != tick) frame = viewer.NextJsonOf("/ui/frame");
-      return frame;
+      return viewer.FrameAt(tick);
     };
     EXPECT_EQ(go_to(0.5, 50)["edge"].size(), 3u);
     EXPECT_EQ(go_to(2.6, 260)["edge"], nullptr);

@@ -562,6 +562,7 @@ TEST(LiveSocket, SaysGoodbyeAtTheEnd) {
   client.Send(WebClient::kClose, goodbye ? goodbye->payload : "");
   EXPECT_TRUE(client.IsClosed());
   client.Close();
+  const Deadline deadline("the end of the server");
   end.join();
   ASSERT_TRUE(goodbye);
   EXPECT_EQ(goodbye->opcode, WebClient::kClose);

@@ -8,11 +8,14 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include "tests/support/waits.h"
 
 namespace mascot::test {
 
@@ -97,15 +100,20 @@ class WebClient {
     in_.erase(0, head + length);
     return frame;
   }
-  /// The next frame that holds `text`; nothing: the connection was closed before.
+  /// The next frame that holds `text`; nothing: the connection was closed before, or a minute has passed.
   std::optional<Frame> NextWith(std::string_view text) {
-    for (auto frame = Next(); frame; frame = Next())
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    for (auto frame = Next(); frame && std::chrono::steady_clock::now() < deadline; frame = Next())
       if (frame->payload.find(text) != std::string::npos) return frame;
     return std::nullopt;
   }
-  /// Whether the server closes the connection, after whatever it still sends.
+  /// Whether the server closes the connection, after whatever it still sends for a while.
   bool IsClosed() {
-    while (Receive()) in_.clear();
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (Receive()) {
+      in_.clear();
+      if (std::chrono::steady_clock::now() > deadline) return false;
+    }
     return !timed_out_;
   }
 

@@ -162,8 +162,7 @@ TEST(LiveView, ShowsTheTickThatTheRunStandsAt) {
     if (tick != 100) return;  // 0 to 99 are flown, and the run stands still: who comes now sees the newest
     viewer.emplace(run.view.url());
     viewer->Subscribe("/ui/frame");
-    Json frame = viewer->NextJsonOf("/ui/frame");
-    while (frame["tick"] != 99) frame = viewer->NextJsonOf("/ui/frame");
+    const Json frame = viewer->FrameAt(99);
     EXPECT_EQ(frame["t_s"], 0.99);
     EXPECT_EQ(frame["state"], "running");
     EXPECT_EQ(frame["p"].size(), 9u);
@@ -176,8 +175,8 @@ TEST(LiveView, ShowsTheTickThatTheRunStandsAt) {
     EXPECT_EQ(frame["contacts"], nullptr);
   });
   EXPECT_EQ(result.failure, "");
-  Json frame;
-  while (frame.is_null() || frame["state"] != "done") frame = viewer->NextJsonOf("/ui/frame");
+  const Json frame =
+      viewer->NextWhere("/ui/frame", "the last frame", [](const Json& f) { return f.value("state", "") == "done"; });
   EXPECT_EQ(frame["tick"], 300);
   EXPECT_EQ(frame["contacts"], 0);
   EXPECT_TRUE(viewer->NextWith("\x05\x03"));  // playback has ended
@@ -206,16 +205,11 @@ name = "consensus"
 )"));
   Viewer viewer(run.view.url());
   viewer.Subscribe("/ui/frame");
-  const auto frame_at = [&](std::int64_t tick) {
-    Json frame = viewer.NextJsonOf("/ui/frame");
-    while (frame["tick"] != tick) frame = viewer.NextJsonOf("/ui/frame");
-    return frame;
-  };
   run.Fly([&](std::int64_t tick) {
     if (tick == 6) {
-      EXPECT_EQ(frame_at(5)["edge"], Json::parse("[4,4,3]"));
+      EXPECT_EQ(viewer.FrameAt(5)["edge"], Json::parse("[4,4,3]"));
     } else if (tick == 21) {
-      const Json frame = frame_at(20);
+      const Json frame = viewer.FrameAt(20);
       EXPECT_EQ(frame["edge"], Json::parse("[4,1,3]"));
       EXPECT_NEAR(frame["age_s"][1], 0.1, 1e-6);
       EXPECT_EQ(frame["age_s"][0], -1);
@@ -380,9 +374,9 @@ TEST(LiveView, AViewerThatReadsLateGetsTheNewestEventsAllTheSame) {
   EXPECT_EQ(viewer.NextJsonOf("/ui/events"), Json::array());
   for (int number = 1; number <= kEvents; ++number)
     run.view.OnEvent({.number = number, .tick = number, .toml = "cut = [[1, 2]]", .by_hand = true}, run.experiment, {});
-  std::size_t newest = 0;
-  while (newest < kEvents && !testing::Test::HasFailure()) newest = viewer.NextJsonOf("/ui/events").size();
-  EXPECT_EQ(newest, static_cast<std::size_t>(kEvents));
+  const Json newest =
+      viewer.NextWhere("/ui/events", "the last event", [](const Json& events) { return events.size() >= kEvents; });
+  EXPECT_EQ(newest.size(), static_cast<std::size_t>(kEvents));
 }
 
 TEST(LiveView, AViewerThatReadsLateGetsEverySampleOfEvents) {

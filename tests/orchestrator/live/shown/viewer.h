@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <deque>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,6 +13,7 @@
 #include <utility>
 
 #include "tests/orchestrator/live/server/web_client.h"
+#include "tests/support/waits.h"
 
 namespace mascot::test {
 
@@ -36,6 +39,23 @@ class Viewer : public WebClient {
     for (auto frame = NextKept(); frame; frame = NextKept())
       if (frame->payload.starts_with(head)) return frame->payload.substr(13);
     return {};
+  }
+  /// The next message of a topic, decoded, that fits; null, and a failure that says `what` was waited for, if none
+  /// comes.
+  nlohmann::json NextWhere(const std::string& topic, const std::string& what,
+                           const std::function<bool(const nlohmann::json&)>& fits) {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    for (std::string text = NextOf(topic); !text.empty(); text = NextOf(topic)) {
+      if (nlohmann::json message = nlohmann::json::parse(text); fits(message)) return message;
+      if (std::chrono::steady_clock::now() > deadline) break;
+    }
+    ADD_FAILURE() << InVain(what + " on " + topic, kPatience) << ", or until the connection was closed";
+    return {};
+  }
+  /// The next frame of the page that is at this tick.
+  nlohmann::json FrameAt(std::int64_t tick) {
+    return NextWhere("/ui/frame", "a frame at tick " + std::to_string(tick),
+                     [&](const nlohmann::json& frame) { return frame.value("tick", std::int64_t{-1}) == tick; });
   }
   nlohmann::json NextJsonOf(const std::string& topic) { return nlohmann::json::parse(NextOf(topic)); }
   /// Messages that come before the answer are kept for NextOf().

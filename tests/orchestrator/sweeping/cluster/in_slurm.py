@@ -62,7 +62,8 @@ def why_not():
     os.environ["PATH"] += ":/usr/sbin:/sbin"
     if missing := [program for program in PROGRAMS if not shutil.which(program)]:
         return f"there is no {', '.join(missing)}: scripts/setup --test installs Slurm"
-    may = subprocess.run([*NAMESPACES, "ip", "link", "add", "bridge", "type", "bridge"], capture_output=True, text=True)
+    may = subprocess.run([*NAMESPACES, "ip", "link", "add", "bridge", "type", "bridge"], capture_output=True, text=True,
+                         timeout=LIMIT_S)
     return f"namespaces may not be made here: {may.stderr.strip()}" if may.returncode else None
 
 
@@ -149,15 +150,15 @@ def address(k):
 
 
 def run(*words):
-    subprocess.run([str(word) for word in words], check=True)
+    subprocess.run([str(word) for word in words], check=True, timeout=LIMIT_S)
 
 
 def succeeds(*words):
-    return subprocess.run(words, capture_output=True).returncode == 0
+    return subprocess.run(words, capture_output=True, timeout=LIMIT_S).returncode == 0
 
 
 def output_of(*words):
-    return subprocess.run(words, capture_output=True, text=True).stdout
+    return subprocess.run(words, capture_output=True, text=True, timeout=LIMIT_S).stdout
 
 
 def main():
@@ -170,7 +171,8 @@ def main():
         parser.error(f"expected a command, on 1 to {MOST_NODES} hosts")
     if args.inside:
         Cluster(args.nodes)
-        return subprocess.run(args.command).returncode
+        # As long as it takes: what it does, only its caller knows.
+        return subprocess.run(args.command, timeout=None).returncode
     if reason := why_not():
         raise SystemExit(f"error: no Slurm here: {reason}")
     outside(args.nodes, args.command)

@@ -14,6 +14,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 
@@ -26,6 +27,7 @@ INSIDE = "--inside"
 SKIPPED = 77
 END = "--- end of the command"
 LIMIT_S = 120  # for Slurm to do what was asked
+TOTAL_LIMIT_S = 280  # ctest ends the test after 300 s, without a word
 WALL_COLUMNS = ["wall_s", "real_time_factor"]
 NAME = "it's a \"100%j\" #1"  # of folders and files: all that a shell, sbatch and Slurm's file names take for their own
 SWEEP = ["--set", "law.p_gain=0.05,0.1", "--set", "run.duration_s=0.5", "--seeds", "1..6"]
@@ -48,7 +50,7 @@ def last_x(run):
 
 def ran(*words, code=0, **options):
     """What a command has printed."""
-    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, **options)
+    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=LIMIT_S, **options)
     if done.returncode != code:
         raise AssertionError(f"{words}: expected code {code}, got {done.returncode}\n{done.stdout}{done.stderr}")
     return done.stdout
@@ -79,8 +81,11 @@ print(socket.gethostname(), *os.listdir("/dev/shm"))
 """
         srun = subprocess.Popen([CLUSTER, "--nodes", "3", "srun", "--nodes=3", sys.executable, "-c", call], text=True,
                                 stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        late = threading.Timer(LIMIT_S, srun.kill)  # what is read then ends, and is not what is expected
+        late.start()
+        self.addCleanup(late.cancel)
         self.assertEqual([srun.stdout.readline() for _ in range(3)], ["open\n"] * 3)
-        said, _ = srun.communicate("all\n")
+        said, _ = srun.communicate("all\n", timeout=LIMIT_S)
         self.assertEqual(sorted(said.splitlines()), ["node1 1", "node2 2", "node3 3"])
         self.assertEqual(srun.returncode, 0)
 
@@ -95,7 +100,7 @@ print(socket.gethostname(), *os.listdir("/dev/shm"))
             broken.write_text("#!/bin/sh\necho no luck; exit 3\n")
             broken.chmod(0o755)
             done = subprocess.run([CLUSTER, "true"], env={**os.environ, "PATH": f"{folder}:{os.environ['PATH']}"},
-                                  capture_output=True, text=True)
+                                  capture_output=True, text=True, timeout=LIMIT_S)
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, "error: Slurm: expected that .*, got: slurmctld has ended with code 3\n(.*\n)*no luck\n")
 
@@ -113,7 +118,7 @@ class JobArrays(unittest.TestCase):
         self.metric = self.folder / "metric.py"
         self.metric.write_text(METRIC)
         self.table = self.results / f"{NAME}.csv"
-        self.addCleanup(subprocess.run, ["scancel", "--user=root"])
+        self.addCleanup(subprocess.run, ["scancel", "--user=root"], timeout=LIMIT_S)
 
     def orchestrator(self, *words, **options):
         return ran(f'{os.environ["MASCOT_BINARY_DIR"]}/orchestrator', *words, cwd=self.folder, **options)
@@ -268,7 +273,7 @@ class Page(unittest.TestCase):
         with tempfile.TemporaryDirectory(prefix="mascot-slurm-") as folder:
             shutil.copy(ROOT / "configs/leaderless.toml", f"{folder}/mine.toml")
             done = subprocess.run([CLUSTER, "bash", "-c", script], cwd=folder, env={**os.environ, "PATH": path},
-                                  capture_output=True, text=True)
+                                  capture_output=True, text=True, timeout=TOTAL_LIMIT_S)
             logs = "".join(f"--- {log}\n{log.read_text()}" for log in sorted(pathlib.Path(folder).glob("*.log")))
         for (command, wanted), output in itertools.zip_longest(told, done.stdout.split(f"{END}\n")[:-1], fillvalue=""):
             self.assertTrue(tour_test.fits(output, wanted), f"$ {command}\n{output}\n{done.stdout}{done.stderr}{logs}")

@@ -9,6 +9,7 @@
 #include "orchestrator/sweeping/table/table.h"
 #include "tests/support/scratch.h"
 #include "tests/support/strict_csv.h"
+#include "tests/support/waits.h"
 
 namespace mascot {
 namespace {
@@ -158,8 +159,7 @@ int OpenedElsewhere(const std::string& path) {
       _exit(error.what() == "--out " + path + expected ? 2 : 3);
     }
   }
-  int status = 0;
-  waitpid(pid, &status, 0);
+  const int status = test::AwaitEndOf(pid, "a process that opens a table");
   return WEXITSTATUS(status);
 }
 
