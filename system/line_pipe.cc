@@ -12,11 +12,8 @@
 namespace mascot {
 namespace {
 
-using namespace std::chrono_literals;
-
 constexpr std::size_t kLongest = 4U << 20U;
 constexpr std::size_t kAtOnce = 64U << 10U;  // what a pipe takes: many lines at once cost little more than one
-constexpr auto kLastWords = 5s;              // a busy machine may let the reader wait for seconds
 
 void DoNotBlock(int descriptor) { fcntl(descriptor, F_SETFL, fcntl(descriptor, F_GETFL) | O_NONBLOCK); }
 
@@ -43,7 +40,8 @@ std::optional<std::string> LineReader::Next() {
   return text_.substr(begin, end - begin);
 }
 
-LineWriter::LineWriter(int descriptor) : descriptor_(descriptor) {
+LineWriter::LineWriter(int descriptor, std::chrono::milliseconds last_words)
+    : descriptor_(descriptor), last_words_(last_words) {
   DoNotBlock(descriptor);
   thread_ = std::thread([this] { Run(); });
 }
@@ -51,7 +49,7 @@ LineWriter::LineWriter(int descriptor) : descriptor_(descriptor) {
 LineWriter::~LineWriter() {
   {
     const std::lock_guard lock(mutex_);
-    until_ = std::chrono::steady_clock::now() + kLastWords;
+    until_ = std::chrono::steady_clock::now() + last_words_;
   }
   changed_.notify_one();
   thread_.join();
@@ -100,7 +98,7 @@ void LineWriter::Run() {
       lock.lock();
       rest.remove_prefix(done.value_or(0));
       waiting_ -= done.value_or(0);
-      if (until_ && done.value_or(0) > 0) until_ = std::chrono::steady_clock::now() + kLastWords;
+      if (until_ && done.value_or(0) > 0) until_ = std::chrono::steady_clock::now() + last_words_;
       broken_ = !done || (until_ && std::chrono::steady_clock::now() > *until_);
     }
   }

@@ -35,8 +35,10 @@ class LineReader {
 /// the descriptor, which becomes non-blocking.
 class LineWriter {
  public:
-  explicit LineWriter(int descriptor);
-  ~LineWriter();  ///< writes what is left, as long as the reader takes some of it within 5 s
+  /// `last_words`: how long it waits at its end for a reader who takes nothing; a busy machine may keep one for
+  /// seconds.
+  explicit LineWriter(int descriptor, std::chrono::milliseconds last_words = std::chrono::seconds(5));
+  ~LineWriter();  ///< writes what is left, as long as the reader takes some of it within `last_words`
   LineWriter(const LineWriter&) = delete;
   LineWriter& operator=(const LineWriter&) = delete;
 
@@ -52,6 +54,7 @@ class LineWriter {
   std::optional<std::size_t> WriteSome(std::string_view bytes) const;
 
   int descriptor_;
+  std::chrono::milliseconds last_words_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::string lines_;  // that the thread has not taken yet

@@ -67,5 +67,52 @@ TEST(Waits, ForACommandThatGoesOnKillAllOfItAndNameIt) {
   EXPECT_TRUE(Until([&] { return ReadFile("/proc/" + pid.substr(0, pid.size() - 1) + "/cmdline").empty(); }));
 }
 
+/// The text of a call in Python, up to the bracket that ends it.
+std::string_view CallAt(std::string_view text, std::size_t begin) {
+  int open = 0;
+  for (std::size_t at = begin; at < text.size(); ++at) {
+    open += (text[at] == '(') - (text[at] == ')');
+    if (text[at] == ')' && open == 0) return text.substr(begin, at + 1 - begin);
+  }
+  return text.substr(begin);
+}
+
+/// What waits in a file without a deadline, or may.
+std::vector<std::string> EndlessWaits(const std::filesystem::path& file) {
+  const std::string text = ReadFile(file);
+  std::vector<std::string> found;
+  const auto each = [&](const char* words, auto&& is_endless) {
+    for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1))
+      if (is_endless(at)) found.push_back(text.substr(at, 60));
+  };
+  const auto always = [](std::size_t) { return true; };
+  const auto without_limit = [&](std::size_t at) {
+    const std::string_view call = CallAt(text, at);
+    return call.find("timeout=") == std::string_view::npos && call.find("LIMIT_S") == std::string_view::npos;
+  };
+  if (file.extension() == ".cc" || file.extension() == ".h")
+    for (const char* words : {"this_thread::yield", "this_thread::sleep_for", " waitpid(", "::waitpid(", "popen("})
+      each(words, always);
+  if (file.extension() == ".py")
+    for (const char* words : {"subprocess.run(", "subprocess.check_", "subprocess.call(", ".communicate(", "up.wait("})
+      each(words, without_limit);
+  if (file.extension() == ".mjs" && file.filename() != "waits.mjs") each("test} from \"node:test\"", always);
+  return found;
+}
+
+TEST(Waits, HaveADeadlineInAllTests) {
+  // These give the others their deadlines; the stranger is a program that a test ends.
+  const std::vector<std::string> apart = {"waits.h", "waits_test.cc", "scratch.h", "cyclone_note.cc"};
+  int files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(MASCOT_SOURCE_DIR "/tests")) {
+    if (!entry.is_regular_file()) continue;
+    if (std::ranges::find(apart, entry.path().filename().string()) != apart.end()) continue;
+    if (entry.path().string().find("node_modules") != std::string::npos) continue;
+    ++files;
+    EXPECT_THAT(EndlessWaits(entry.path()), ::testing::IsEmpty()) << entry.path();
+  }
+  EXPECT_GT(files, 100);
+}
+
 }  // namespace
 }  // namespace mascot::test
