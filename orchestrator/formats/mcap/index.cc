@@ -16,6 +16,7 @@ using mcap::Malformed;
 using mcap::Op;
 
 constexpr std::uint64_t kFooterBytes = mcap::kFrameBytes + 20;  // two offsets and a CRC
+constexpr std::uint64_t kLeastMessageBytes = mcap::kFrameBytes + 22;
 constexpr std::uint64_t kFooterCovered = mcap::kFrameBytes + 16;
 
 bool Is(std::uint8_t code, Op op) { return code == static_cast<std::uint8_t>(op); }
@@ -64,6 +65,8 @@ class McapIndex::Impl {
 
  private:
   void ReadSummary();
+  bool IsAllIndexed(std::uint64_t summary_start, const std::vector<Place>& attachments,
+                    const std::vector<Place>& metadata);
   void AddChunk(Fields body);
   void AddCounts(Fields body);
   void ReadIndexed(const std::vector<Place>& places, Op op, void (mcap::ContentsBuilder::*add)(Fields));
@@ -82,7 +85,7 @@ class McapIndex::Impl {
   mcap::Decompressor decompressor_;
   McapContents::Message message_;
   mcap::UnpackLimit limit_;
-  std::uint64_t chunks_end_ = 0;  // of those in the index so far
+  std::uint64_t chunks_end_ = 0, chunk_bytes_ = 0;  // of those in the index so far
 };
 
 /// Reads the summary, which the footer at the end of the file points at, and what it points at besides chunks. Throws
@@ -121,9 +124,24 @@ void McapIndex::Impl::ReadSummary() {
     }
   }
   if (!has_statistics || chunks_.size() != contents_.chunks) throw Malformed("the summary does not index every chunk");
+  if (!IsAllIndexed(start, attachments, metadata)) throw Malformed("the summary does not index all of the file");
   ReadIndexed(attachments, Op::kAttachment, &mcap::ContentsBuilder::AddAttachment);
   ReadIndexed(metadata, Op::kMetadata, &mcap::ContentsBuilder::AddMetadata);
   contents_.complete = contents_.data_complete = true;
+}
+
+/// Whether the chunks and what else the summary indexes leave no room for a message in front of it: MCAP lets messages
+/// lie outside of chunks, too, and has no index of those.
+bool McapIndex::Impl::IsAllIndexed(std::uint64_t summary_start, const std::vector<Place>& attachments,
+                                   const std::vector<Place>& metadata) {
+  constexpr std::uint64_t kDataEndBytes = mcap::kFrameBytes + 4;
+  if (!ReadRecord(mcap::kMagic.size())) throw Malformed("no header");
+  std::uint64_t room = summary_start - std::min(summary_start, mcap::kMagic.size() + record_.size() + kDataEndBytes);
+  const auto fill = [&room](std::uint64_t bytes) { room -= std::min(room, bytes); };
+  fill(chunk_bytes_);
+  for (const std::vector<Place>* places : {&attachments, &metadata})
+    for (const Place& place : *places) fill(place.bytes);
+  return room < kLeastMessageBytes;
 }
 
 void McapIndex::Impl::AddChunk(Fields body) {
@@ -131,16 +149,18 @@ void McapIndex::Impl::AddChunk(Fields body) {
   chunk.first_ns = body.U64();
   chunk.last_ns = body.U64();
   chunk.offset = body.U64();
-  const std::uint64_t end = chunk.offset + body.U64();
+  const std::uint64_t length = body.U64(), end = chunk.offset + length;
   if (chunk.offset < chunks_end_ || end < chunk.offset) throw Malformed("the index names a part of the file twice");
   chunks_end_ = end;
   for (Fields places(body.Raw(body.U32())); !places.rest().empty(); places.U64())
     chunk.channels.push_back(places.U16());
   std::ranges::sort(chunk.channels);
-  body.U64();  // length of its message indexes
+  chunk_bytes_ += length + body.U64();  // with its message indexes
   const bool is_packed = !body.String().empty();
   const std::uint64_t stored_bytes = body.U64();
   chunk.bytes = body.U64();
+  if (chunk.channels.empty() && chunk.bytes >= kLeastMessageBytes)
+    throw Malformed("the index does not say which channels a chunk has");
   if (is_packed) limit_.Add(stored_bytes, chunk.bytes);
   contents_.compressed_bytes += stored_bytes;
   contents_.uncompressed_bytes += chunk.bytes;

@@ -11,7 +11,8 @@
 namespace mascot {
 
 /// Reads an MCAP file in any order, by the index at its end: opening it reads its summary, and a chunk is read when it
-/// is asked for. A file without a whole index, because it was cut or damaged, is read through once instead.
+/// is asked for. A file without a whole index, because it was cut or damaged, has messages outside of chunks or
+/// chunks without message indexes, is read through once instead.
 class McapIndex {
  public:
   struct Chunk {

@@ -68,7 +68,7 @@ class McapReader::Impl {
   bool ReadChunkRecord();
   void ReadDataEnd(Fields body);
   void ReadSummary();
-  void ReadFooter(std::uint64_t summary_start, std::uint32_t crc);
+  void ReadFooter(std::uint64_t summary_start, bool has_summary, std::uint32_t crc);
   void CompareStatistics(Fields body) const;
 
   std::string path_;
@@ -196,28 +196,25 @@ void McapReader::Impl::ReadDataEnd(Fields body) {
   contents_.complete = over_ = true;
 }
 
-/// Reads the summary and compares its statistics and chunk count with the data section.
+/// Reads the summary, if there is one, and compares its statistics and chunk indexes, if it has any, with the data
+/// section.
 void McapReader::Impl::ReadSummary() {
   const std::uint64_t summary_start = next_;
   std::uint32_t crc = 0;
   std::uint64_t chunk_indexes = 0;
-  bool statistics = false;
   while (NextRecord()) {
     if (!whole_) throw Truncated("the file ends inside its summary");
     const Fields body(ByteSpan(record_).subspan(mcap::kFrameBytes));
     if (op_ == Code(Op::kFooter)) {
-      if (!statistics) throw Malformed("the summary holds no statistics");
-      if (chunk_indexes != contents_.chunks) throw Malformed("the summary does not index every chunk");
-      return ReadFooter(summary_start, crc);
+      if (chunk_indexes > 0 && chunk_indexes != contents_.chunks)
+        throw Malformed("the summary does not index every chunk");
+      return ReadFooter(summary_start, /*has_summary=*/offset_ != summary_start, crc);
     }
     crc = Crc32(crc, record_);
     if (op_ == Code(Op::kSchema)) builder_.AddSchema(body);
     if (op_ == Code(Op::kChannel)) builder_.AddChannel(body);
     if (op_ == Code(Op::kChunkIndex)) ++chunk_indexes;
-    if (op_ == Code(Op::kStatistics)) {
-      CompareStatistics(body);
-      statistics = true;
-    }
+    if (op_ == Code(Op::kStatistics)) CompareStatistics(body);
   }
   throw Truncated("the file ends inside its summary");
 }
@@ -239,13 +236,14 @@ void McapReader::Impl::CompareStatistics(Fields body) const {
 }
 
 /// `crc` is the CRC of the summary so far; it also covers the footer's frame and its two offsets.
-void McapReader::Impl::ReadFooter(std::uint64_t summary_start, std::uint32_t crc) {
+void McapReader::Impl::ReadFooter(std::uint64_t summary_start, bool has_summary, std::uint32_t crc) {
   Fields body(ByteSpan(record_).subspan(mcap::kFrameBytes));
   const std::uint64_t claimed_start = body.U64();
   body.U64();  // start of the summary offsets
   const std::uint32_t claimed_crc = body.U32();
   const std::size_t covered = mcap::kFrameBytes + 2 * sizeof(std::uint64_t);
-  if (claimed_start != summary_start) throw Malformed("the footer does not point at the summary");
+  const bool is_told_as_none = claimed_start == 0 && !has_summary;
+  if (claimed_start != summary_start && !is_told_as_none) throw Malformed("the footer does not point at the summary");
   if (claimed_crc != 0 && claimed_crc != Crc32(crc, ByteSpan(record_).first(covered)))
     throw Malformed("the CRC of the summary is wrong");
   file_.Read(next_, mcap::kMagic.size() + 1, frame_);

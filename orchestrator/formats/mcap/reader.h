@@ -31,7 +31,7 @@ struct McapContents {
   std::map<std::string, std::string> media_types;  ///< of the attachments, by name
   std::map<std::string, std::map<std::string, std::string>> metadata;
   std::uint64_t chunks = 0, messages = 0, compressed_bytes = 0, uncompressed_bytes = 0;
-  bool complete = false;       ///< the file has DataEnd, summary and footer, and every CRC is right
+  bool complete = false;  ///< the file has DataEnd and footer, every CRC is right, and so is what its summary counts
   bool data_complete = false;  ///< at least all in front of the summary is there, and every CRC of it is right
   std::string damage;          ///< what is wrong, and at which byte; empty: nothing
   bool cut = false;            ///< the damage is that the file ends where more must follow
