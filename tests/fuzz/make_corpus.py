@@ -150,10 +150,10 @@ def protocols():
 def viewers():
     """Lists of messages, as tests/fuzz/viewers.cc reads them."""
     def texts(*messages):
-        return b"".join(struct.pack("<BH", 0, len(one)) + one for one in messages)
+        return b"".join(struct.pack("<BI", 0, len(one)) + one for one in messages)
 
     def binaries(*messages):
-        return b"".join(struct.pack("<BH", 1, len(one)) + one for one in messages)
+        return b"".join(struct.pack("<BI", 1, len(one)) + one for one in messages)
 
     def repeated(is_text, begin, part, times, end=b"", may_be_longest=False):
         kind = (254 if may_be_longest else 2) + (not is_text)

@@ -1,8 +1,9 @@
 // Fuzzer: messages of viewers to the Foxglove protocol. Nothing is thrown, every question is answered, and what is sent
 // back is a message of the protocol. The input is a list of messages: a byte that says whether it is text, and whether
-// it repeats itself; two of its length, and the message. One that repeats itself has a beginning (two bytes of length),
-// what is repeated (one byte of length), how often (four bytes), and its end. It is of up to 16 KiB, and, so that a
-// round is not spent on few long ones, only where the first byte is 254 or 255 of up to a megabyte.
+// it repeats itself; four bytes of its length, and the message. One that repeats itself has a beginning (two bytes of
+// length), what is repeated (one byte of length), how often (four bytes), and its end. Each may be as long as a socket
+// lets a message be; one that repeats itself only where the first byte is 254 or 255, and else 16 KiB, so that a round
+// is not spent on few long ones.
 #include <algorithm>
 #include <memory>
 #include <span>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "orchestrator/live/server/foxglove.h"
+#include "orchestrator/live/server/socket.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace mascot {
@@ -73,7 +75,8 @@ namespace mascot {
 namespace {
 
 constexpr int kMayBeLongest = 254;
-constexpr std::size_t kLong = 1 << 14, kLongest = 1 << 20;  // SocketLimits::message_bytes
+constexpr std::size_t kLong = 1 << 14;
+const std::size_t kLongest = SocketLimits().message_bytes;
 
 std::span<const std::uint8_t> TakePart(ByteReader& input, std::size_t length) {
   return input.TakeBytes(std::min(length, input.rest().size()));
@@ -106,7 +109,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       server.Take(is_text,
                   mascot::TakeRepeated(input, kind >= mascot::kMayBeLongest ? mascot::kLongest : mascot::kLong));
     else
-      server.Take(is_text, mascot::TakePart(input, input.Take<std::uint16_t>()));
+      server.Take(is_text, mascot::TakePart(input, std::min<std::size_t>(input.Take<std::uint32_t>(), mascot::kLongest)));
   }
   return 0;
 }
