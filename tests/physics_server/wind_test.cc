@@ -70,9 +70,54 @@ TEST(Wind, WithoutGustsIsExactlyTheMean) {
   for (int n = 0; n < 10; ++n) EXPECT_EQ(wind.Next(), kMean);
 }
 
-TEST(Wind, IsTheSameForTheSameSeedAndAnotherForAnother) {
-  EXPECT_EQ(Record(100, 1, 7), Record(100, 1, 7));
-  EXPECT_NE(Record(100, 1, 7), Record(100, 1, 8));
+TEST_P(GustsAtARate, AreRenewedByIndependentNormalNumbers) {
+  // xi = (g+ - rho g) / (sigma sqrt(1 - rho^2)): mean 0, variance 1, kurtosis 3, and nothing of the last one is in it.
+  // Of n numbers, their means have the standard deviations sqrt(1/n), sqrt(2/n), sqrt(96/n) and sqrt(1/n).
+  const int rate_hz = GetParam();
+  const double rho = std::exp(-1 / (rate_hz * kTau_s));
+  const std::vector<Vector3d> gusts = Record(rate_hz, 4000.0 * 5 / rate_hz);
+  double mean = 0, square = 0, fourth = 0, with_last = 0;
+  Vector3d last = Vector3d::Zero();
+  const double n = 3.0 * static_cast<double>(gusts.size() - 1);
+  for (std::size_t k = 1; k < gusts.size(); ++k) {
+    const Vector3d xi = (gusts[k] - rho * gusts[k - 1]) / (kStd * std::sqrt(1 - rho * rho));
+    mean += xi.sum() / n;
+    square += xi.squaredNorm() / n;
+    fourth += xi.array().pow(4).sum() / n;
+    with_last += xi.dot(last) / n;
+    last = xi;
+  }
+  EXPECT_NEAR(mean, 0, 5 * std::sqrt(1 / n));
+  EXPECT_NEAR(square, 1, 5 * std::sqrt(2 / n));
+  EXPECT_NEAR(fourth, 3, 5 * std::sqrt(96 / n));
+  EXPECT_NEAR(with_last, 0, 5 * std::sqrt(1 / n));
+}
+
+TEST(Wind, IsTheSameForTheSameSeedAndHasNothingOfItForAnother) {
+  const std::vector<Vector3d> seven = Record(100, kLong_s, 7), eight = Record(100, kLong_s, 8);
+  EXPECT_EQ(Record(100, 1, 7), std::vector<Vector3d>(seven.begin(), seven.begin() + 100));
+  Eigen::Matrix3d common = Eigen::Matrix3d::Zero();
+  for (std::size_t n = 0; n < seven.size(); ++n)
+    common += seven[n] * eight[n].transpose() / static_cast<double>(seven.size());
+  EXPECT_LT(common.cwiseAbs().maxCoeff(), kTolerance * kStd * kStd);
+}
+
+TEST(Wind, GoesOnFromItsGustWhenAnEventChangesIt) {
+  Wind as_it_was(Gusts(), 1, 0.01), changed(Gusts(), 1, 0.01);
+  Vector3d gust = Vector3d::Zero();
+  for (int n = 0; n < 10; ++n) gust = changed.Next() - kMean;
+  for (int n = 0; n < 10; ++n) as_it_was.Next();
+  Vector3d last_before = gust;
+  const WindConfig now = {{1, 1, 1}, 5, 0.7};
+  changed.Adopt(now);
+  for (int n = 0; n < 10; ++n) {  // the same numbers are drawn, and taken as the new deviation and time have it
+    const Vector3d before = as_it_was.Next() - kMean, after = changed.Next() - now.mean_m_per_s;
+    const double rho_was = std::exp(-0.01 / kTau_s), rho = std::exp(-0.01 / 0.7);
+    const Vector3d xi = (before - rho_was * last_before) / (kStd * std::sqrt(1 - rho_was * rho_was));
+    EXPECT_LT((after - (rho * gust + 5 * std::sqrt(1 - rho * rho) * xi)).norm(), 1e-9);
+    last_before = before;
+    gust = after;
+  }
 }
 
 TEST(Wind, ScalesItsGustsWithTheirStandardDeviation) {

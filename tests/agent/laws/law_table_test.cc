@@ -3,6 +3,10 @@
 #include <toml++/toml.h>
 
 #include <filesystem>
+#include <functional>
+#include <map>
+#include <random>
+#include <set>
 
 #include "agent/laws/laws.h"
 #include "tests/support/ideal_network.h"
@@ -178,6 +182,144 @@ TEST(LawTable, ReproducesTheLawFromTheResolvedFile) {
         EXPECT_EQ(original.motions[i].p_WB, again.motions[i].p_WB) << setting.changed;
     }
   }
+}
+
+// --- what rows promise --------------------------------------------------------------------------------
+
+/// Calls `look` with an experiment for each way in which a law is tried, and with its row.
+void ForEachTrial(const std::function<void(const LawEntry& law, const std::string& toml)>& look) {
+  for (const LawEntry& law : Laws()) {
+    const Trial trial = TrialOf(law.name);
+    for (const Setting& setting : trial.settings)
+      for (const std::string& lines : {setting.base, setting.changed}) {
+        SCOPED_TRACE(std::string(law.name) + ", " + setting.parameter + ":\n" + lines);
+        look(law, With(trial, law.name, lines));
+      }
+  }
+}
+
+/// The agents somewhere, and with some velocity, along law.axes.
+void PutAnywhere(IdealNetwork& network, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> coordinate(-5, 5);
+  for (Motion& motion : network.motions)
+    for (int axis = 0; axis < CountOf(network.experiment.law.axes); ++axis) {
+      motion.p_WB[axis] = coordinate(random);
+      motion.v_WB[axis] = coordinate(random) / 5;
+    }
+}
+
+TEST(LawTable, WantsWhatItsRowsSay) {
+  ForEachTrial([](const LawEntry& /*law*/, const std::string& toml) {
+    IdealNetwork network(toml);
+    for (const auto& law : network.laws) EXPECT_EQ(law->wanted(), WantedBy(network.experiment.law));
+  });
+}
+
+/// What a linear form says that an agent wants.
+Eigen::Vector3d WantedByForm(const LinearForm& form, IdealNetwork& network, int id) {
+  const std::span<const Eigen::Vector3d> places_W = PlacesOf(network.experiment.law);
+  const auto q_W = [&](int k) -> Eigen::Vector3d {
+    const Eigen::Vector3d p_W = network.agent(k).p_WB;
+    return places_W.empty() ? p_W : p_W - places_W[static_cast<std::size_t>(k - 1)];
+  };
+  const Motion& self = network.agent(id);
+  Eigen::Vector3d wanted_W = -form.beta * self.v_WB;
+  for (const Graph::Neighbour& j : network.experiment.graph.HeardBy(id)) {
+    wanted_W += j.weight * form.p * (q_W(j.id) - q_W(id));
+    wanted_W += j.weight * form.g * (network.agent(j.id).v_WB - self.v_WB);
+  }
+  if (network.experiment.law.axes == Axes::kXy) wanted_W.z() = 0;
+  return wanted_W;
+}
+
+TEST(LawTable, IsAsLinearAsItsRowsSay) {
+  std::set<std::string_view> linear;
+  ForEachTrial([&](const LawEntry& law, const std::string& toml) {
+    IdealNetwork network(toml);
+    const LawConfig& config = network.experiment.law;
+    const std::optional<LinearForm> form = LinearFormOf(config);
+    if (!form || !form->listens) return;
+    linear.insert(law.name);
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      PutAnywhere(network, seed);
+      const std::vector<Eigen::Vector3d> wants_W = network.Wants();
+      for (int id = 1; id <= network.experiment.size(); ++id) {
+        const Eigen::Vector3d& wants = wants_W[static_cast<std::size_t>(id - 1)];
+        if (id != config.leader) {
+          EXPECT_LT((wants - WantedByForm(*form, network, id)).norm(), 1e-9) << "agent " << id;
+        } else if (!form->leader_flies) {
+          EXPECT_EQ(wants.norm(), 0) << "the leader";
+        }
+      }
+    }
+  });
+  EXPECT_THAT(linear, ::testing::IsSupersetOf({"consensus", "formation", "velocity_consensus"}));
+}
+
+TEST(LawTable, PursuesWithinTheBoundsAndOnTheTreeOfItsRows) {
+  int pursuits = 0;
+  ForEachTrial([&](const LawEntry& /*law*/, const std::string& toml) {
+    IdealNetwork network(toml);
+    const std::optional<PursuitForm> form = PursuitFormOf(network.experiment.law);
+    if (!form) return;
+    ++pursuits;
+    PutAnywhere(network, 1);
+    const std::vector<Eigen::Vector3d> wants_W = network.Wants();
+    for (std::size_t i = 0; i < wants_W.size(); ++i)
+      EXPECT_LE(wants_W[i].cwiseAbs().maxCoeff(), form->beta[i] * (1 + 1e-12)) << "agent " << i + 1;
+    for (int moved = 1; moved <= network.experiment.size(); ++moved) {  // only its children mind where an agent is
+      IdealNetwork other(toml);
+      PutAnywhere(other, 1);
+      other.agent(moved).p_WB += Eigen::Vector3d(100, 100, 0);
+      const std::vector<Eigen::Vector3d> others_W = other.Wants();
+      for (std::size_t i = 0; i < others_W.size(); ++i)
+        EXPECT_TRUE(form->parent[i] == moved || static_cast<int>(i) + 1 == moved || others_W[i] == wants_W[i])
+            << "agent " << i + 1 << " when " << moved << " moves";
+    }
+  });
+  EXPECT_GT(pursuits, 0);
+}
+
+/// Places of all agents after some seconds, with another seed.
+std::vector<Eigen::Vector3d> FlownWith(const std::string& toml, int seed) {
+  std::string text = toml;
+  text.replace(text.find("[run]\n"), 6, "[run]\nseed = " + std::to_string(seed) + "\n");
+  IdealNetwork network(text);
+  network.RunUntil(3);
+  std::vector<Eigen::Vector3d> places_W;
+  for (const Motion& motion : network.motions) places_W.push_back(motion.p_WB);
+  return places_W;
+}
+
+TEST(LawTable, DrawsOnlyWhereItsRowsSay) {
+  ForEachTrial([](const LawEntry& law, const std::string& toml) {
+    if (law.is_of_user || toml.find("[run]\n") == std::string::npos || toml.find("seed") != std::string::npos) return;
+    const bool draws = law.draws != nullptr && law.draws(IdealNetwork(toml).experiment.law);
+    EXPECT_EQ(FlownWith(toml, 1) != FlownWith(toml, 2), draws);
+  });
+}
+
+TEST(LawTable, MindsWhatItSeesOfObstaclesOnlyWhereItsRowsSaySo) {
+  std::map<std::string_view, bool> minds;
+  ForEachTrial([&](const LawEntry& law, const std::string& toml) {
+    if (law.is_of_user) return;  // as its user likes
+    const std::string with_sensor = "[sensors]\nrange_m = 5.0\n" + toml;
+    const std::string text = Mistakes(with_sensor).empty() ? with_sensor : toml;
+    IdealNetwork blind(text), seeing(text);
+    std::vector<std::vector<Eigen::Vector3d>> nearest_W;  // lives until the laws have answered
+    for (std::size_t i = 0; i < seeing.laws.size(); ++i) {
+      nearest_W.push_back({seeing.motions[i].p_WB + Eigen::Vector3d(0.4, 0.1, 0)});
+      blind.laws[i]->See({});
+      seeing.laws[i]->See(nearest_W.back());
+    }
+    for (IdealNetwork* network : {&blind, &seeing}) network->ranges.assign(network->motions.size(), RangeSensor(0, {}));
+    minds[law.name] = minds[law.name] || blind.Wants() != seeing.Wants();
+  });
+  // Those that see obstacles may do so only with keys that no trial has.
+  for (const auto& [name, does] : minds)
+    EXPECT_TRUE(!does || std::ranges::find(Laws(), name, &LawEntry::name)->sees_obstacles) << name;
+  EXPECT_TRUE(minds.at("avoidance"));
 }
 
 }  // namespace
