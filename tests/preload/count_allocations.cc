@@ -1,8 +1,11 @@
 // Preloaded into the processes of a run (LD_PRELOAD). Counts the malloc calls of each executable and library, and
-// writes the counts to MASCOT_ALLOCATIONS/<program>.<pid> when the process ends, in lines "count object".
+// writes the counts to MASCOT_ALLOCATIONS/<program>.<pid> when the process ends, in lines "count object". If there is a
+// file MASCOT_ALLOCATIONS/window, only those count that are made while its first byte is 1.
 #include <dlfcn.h>
 #include <execinfo.h>
+#include <fcntl.h>
 #include <link.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <array>
@@ -30,6 +33,8 @@ struct Object {
 
 std::array<Object, 64> objects;
 std::atomic<bool> counting = false;
+const volatile char always = '1';
+const volatile char* window = &always;                                        // what another process writes
 thread_local bool inside __attribute__((tls_model("initial-exec"))) = false;  // in Count(): the unwinder allocates too
 
 /// The executable or library that contains the code at this address; nullptr: none.
@@ -59,7 +64,7 @@ void CountFor(const link_map* loaded) {
 
 /// `caller`: the return address of the function that allocates.
 void Count(void* caller) {
-  if (!counting || inside) return;
+  if (!counting || inside || *window != '1') return;
   inside = true;
   const link_map* object = ObjectOf(caller);
   if (IsGoBetween(object)) {
@@ -74,6 +79,14 @@ void Count(void* caller) {
 __attribute__((constructor)) void Begin() {
   std::array<void*, 1> frame;
   ::backtrace(frame.data(), 1);  // loads the unwinder
+  if (const char* folder = std::getenv("MASCOT_ALLOCATIONS")) {
+    char path[512];
+    std::snprintf(path, sizeof path, "%s/window", folder);
+    const int file = ::open(path, O_RDONLY | O_CLOEXEC);
+    void* place = file < 0 ? MAP_FAILED : ::mmap(nullptr, 1, PROT_READ, MAP_SHARED, file, 0);
+    if (place != MAP_FAILED) window = static_cast<const volatile char*>(place);
+    if (file >= 0) ::close(file);
+  }
   counting = true;
 }
 

@@ -1,12 +1,14 @@
 // Our code allocates no memory during ticks, in the real processes. The allocations of the middleware are printed.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <map>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "tests/support/orchestrator.h"
 #include "tests/support/param_name.h"
@@ -23,76 +25,63 @@ Allocations Read(const std::filesystem::path& folder) {
   Allocations all;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {  // agent.1234
     std::istringstream lines(ReadFile(entry.path().string()));
+    auto& of_program = all[entry.path().stem().string()];  // also if it has made none
     long count = 0;
     for (std::string file; lines >> count >> file;)
-      all[entry.path().stem().string()][std::filesystem::path(file).filename().string()] += count;
+      of_program[std::filesystem::path(file).filename().string()] += count;
   }
   return all;
 }
 
-constexpr int kAgents = 4;
 constexpr std::array kPrograms = {"agent", "physics_server", "orchestrator"};
 
-/// What to put in front of a command so that it has a /dev/shm of its own; empty where that is not allowed. The
-/// orchestrator looks at first through all processes of the machine if there is shared memory of other runs.
-std::string Alone() {
-  constexpr const char* kApart = "unshare --mount sh -c 'mount -t tmpfs none /dev/shm && exec \"$@\"' sh env ";
-  static const bool allowed = Shell(std::string(kApart) + "true").exit_code == 0;
-  return allowed ? kApart : "";
+/// Writes an experiment of four agents that draws no picture.
+void WriteExperiment(const std::string& path, const std::string& more) {
+  WriteFile(
+      path,
+      "[output]\nsave_plot = false\n[agents]\ncount = 4\nrandom = { min_m = [-9, -9, 1], max_m = [9, 9, 9] }\n" + more);
 }
 
-/// Allocations of a whole run of `ticks` ticks.
-Allocations AllocationsOf(int ticks, const std::string& engine, const std::string& more) {
+const std::string kPreload = "LD_PRELOAD=" MASCOT_BINARY_DIR "/tests/preload/libcount_allocations.so";
+// --- over DDS: what is allocated between two ticks of one run ---------------------------------------
+
+/// Waits until the recording of a run has become longer so many times. Each time, a chunk of 100 ticks has been
+/// written.
+void AwaitChunks(const std::filesystem::path& recording, int count, const Running& up) {
+  std::uintmax_t size = 0, last = 0;
+  int chunks = -1;  // the first look sees what was there before
+  const auto are_there = [&] {
+    std::error_code none_yet;
+    const std::uintmax_t now = std::filesystem::file_size(recording, none_yet);
+    const bool is_being_written = std::exchange(last, now) != now;
+    if (none_yet || is_being_written || now == size) return false;
+    size = now;
+    return ++chunks >= count;
+  };
+  EXPECT_TRUE(Await(std::to_string(count) + " chunks of a recording", are_there, kPatienceForRuns)) << up.err();
+}
+
+/// What is allocated while a run flies `ticks` ticks, to within 100. Neither its start nor its end counts, which take
+/// longer on a machine that has others to do, and look at all its processes.
+Allocations AllocationsInFlight(const std::string& experiment, int ticks) {
   ScratchFolder folder;
-  const std::filesystem::path counts = folder.path() / "counts";
+  const std::filesystem::path counts = folder.path() / "counts", recording = folder.path() / "run/run.mcap";
   std::filesystem::create_directory(counts);
-  WriteFile(folder.File("a.toml"), "[run]\nduration_s = " + std::to_string(ticks / 100) +
-                                       ".0\n[output]\nsave_plot = false\n[agents]\ncount = " + std::to_string(kAgents) +
-                                       "\nrandom = { min_m = [-9, -9, 1], max_m = [9, 9, 9] }\n" + more);
-  const std::string preload = MASCOT_BINARY_DIR "/tests/preload/libcount_allocations.so";
-  const Ran ran = Shell(Alone() + "LD_PRELOAD=" + preload + " MASCOT_ALLOCATIONS=" + counts.string() +
-                        " " MASCOT_BINARY_DIR "/orchestrator up " + folder.File("a.toml") + " --engine " + engine +
-                        " --quiet --out " + folder.File("run"));
-  EXPECT_EQ(ran.exit_code, 0) << ran.output;
+  const std::string window = counts / "window";
+  WriteFile(window, "0");
+  const auto count = [&](char whether) { std::fstream(window, std::ios::in | std::ios::out) << whether; };
+  WriteExperiment(folder.File("a.toml"), experiment);
+  Running up("env",
+             {kPreload, "MASCOT_ALLOCATIONS=" + counts.string(), MASCOT_BINARY_DIR "/orchestrator", "up",
+              folder.File("a.toml"), "--duration-s", "10000", "--out", folder.File("run")},
+             folder.File("up"));
+  AwaitChunks(recording, 2, up);  // buffers find their size in the first ticks
+  count('1');
+  AwaitChunks(recording, ticks / 100, up);
+  count('0');
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130) << up.err();
   return Read(counts);
-}
-
-constexpr int kFew = 500, kMore = 10500, kTicks = kMore - kFew;
-/// How many allocations of its own a program over DDS may make in kTicks ticks; one per tick would be kTicks. The
-/// number of reports during the start varies, and on a busy machine a process waits again and again. The orchestrator
-/// allocates a little for each chunk of 100 ticks of the recording, and more for chunks that end up larger than all
-/// before.
-constexpr int kTolerable = kTicks / 2;
-
-/// For each program and file, the smaller of two counts.
-void TakeFewer(const Allocations& other, Allocations& counts) {
-  for (const auto& [program, files] : other)
-    for (const auto& [file, count] : files) {
-      const auto known = counts[program].emplace(file, count).first;
-      known->second = std::min(known->second, count);
-    }
-}
-
-/// Allocations of kTicks ticks: the difference between a longer and a shorter run, whose start and end are the same.
-/// On a busy machine they are not: processes wait longer for each other. So a difference that is too large counts only
-/// if more runs do not reduce it.
-Allocations AllocationsOfTicks(const std::string& engine, const std::string& experiment) {
-  constexpr int kMostAttempts = 4;
-  Allocations few, more, ticks;
-  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-    TakeFewer(AllocationsOf(kFew, engine, experiment), few);
-    TakeFewer(AllocationsOf(kMore, engine, experiment), more);
-    ticks = more;
-    for (const auto& [program, files] : few)
-      for (const auto& [file, count] : files) ticks[program][file] -= count;
-    if (std::ranges::all_of(kPrograms, [&](const char* p) { return ticks[p][p] < kTolerable; })) break;
-  }
-  EXPECT_FALSE(few.empty()) << "nobody counted";
-  for (const auto& [program, files] : few) EXPECT_GT(files.at(program), 0) << "those of the start are counted";
-  for (const auto& [program, files] : ticks)
-    for (const auto& [file, count] : files)
-      if (count > kTolerable) std::cout << program << ": " << count * 1.0 / kTicks << " per tick by " << file << '\n';
-  return ticks;
 }
 
 /// An experiment and its name.
@@ -108,8 +97,15 @@ std::string NameOf(const testing::TestParamInfo<Setup>& row) { return ParamName(
 class AllocationsOverDds : public testing::TestWithParam<Setup> {};
 
 TEST_P(AllocationsOverDds, AreNeverMadeByOurCodeInATick) {
-  Allocations counted = AllocationsOfTicks("dds", GetParam().toml);
-  for (const char* program : kPrograms) EXPECT_LT(counted.at(program)[program], kTolerable) << program;
+  constexpr int kTicks = 1000;
+  Allocations counted = AllocationsInFlight(GetParam().toml, kTicks);
+  for (const char* program : kPrograms) {
+    ASSERT_TRUE(counted.contains(program)) << program << " has not counted";
+    EXPECT_LT(counted[program][program], kTicks / 2) << program << ": one in each tick would be " << kTicks;
+  }
+  for (const auto& [program, files] : counted)
+    for (const auto& [file, count] : files)
+      std::cout << program << ": " << static_cast<double>(count) / kTicks << " per tick by " << file << '\n';
 }
 
 INSTANTIATE_TEST_SUITE_P(Experiments, AllocationsOverDds,
@@ -119,10 +115,30 @@ INSTANTIATE_TEST_SUITE_P(Experiments, AllocationsOverDds,
                                                "agents_per_process = 2\n"}),
                          NameOf);
 
+// --- in one process: the difference between a longer and a shorter run ------------------------------
+
+/// Allocations of a whole run of `ticks` ticks, in one thread: they do not depend on what else the machine does.
+Allocations AllocationsOf(int ticks, const std::string& more) {
+  ScratchFolder folder;
+  const std::filesystem::path counts = folder.path() / "counts";
+  std::filesystem::create_directory(counts);
+  WriteExperiment(folder.File("a.toml"), more);
+  const Ran ran =
+      Shell(kPreload + " MASCOT_ALLOCATIONS=" + counts.string() + " " MASCOT_BINARY_DIR "/orchestrator up " +
+            folder.File("a.toml") + " --engine inprocess --quiet --duration-s " + std::to_string(ticks / 100) +
+            " --out " + folder.File("run"));
+  EXPECT_EQ(ran.exit_code, 0) << ran.output;
+  return Read(counts);
+}
+
 class AllocationsInOneProcess : public testing::TestWithParam<Setup> {};
 
 TEST_P(AllocationsInOneProcess, AreNeverMadeByOurCodeInATick) {
-  EXPECT_LT(AllocationsOfTicks("inprocess", GetParam().toml).at("orchestrator")["orchestrator"], kTicks / 10);
+  constexpr int kFew = 500, kMore = 5500;
+  Allocations few = AllocationsOf(kFew, GetParam().toml), more = AllocationsOf(kMore, GetParam().toml);
+  const long of_start = few["orchestrator"]["orchestrator"], of_all = more["orchestrator"]["orchestrator"];
+  EXPECT_GT(of_start, 0) << "those of the start are counted";
+  EXPECT_LT(of_all - of_start, (kMore - kFew) / 10) << "chunks of the recording are closed every 100 ticks";
 }
 
 INSTANTIATE_TEST_SUITE_P(
