@@ -109,7 +109,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       server.Take(is_text,
                   mascot::TakeRepeated(input, kind >= mascot::kMayBeLongest ? mascot::kLongest : mascot::kLong));
     else
-      server.Take(is_text, mascot::TakePart(input, std::min<std::size_t>(input.Take<std::uint32_t>(), mascot::kLongest)));
+      server.Take(is_text,
+                  mascot::TakePart(input, std::min<std::size_t>(input.Take<std::uint32_t>(), mascot::kLongest)));
   }
   return 0;
 }

@@ -90,9 +90,11 @@ std::vector<std::string> EndlessWaits(const std::filesystem::path& file) {
     const std::string_view call = CallAt(text, at);
     return call.find("timeout=") == std::string_view::npos && call.find("LIMIT_S") == std::string_view::npos;
   };
-  if (file.extension() == ".cc" || file.extension() == ".h")
-    for (const char* words : {"this_thread::yield", "this_thread::sleep_for", " waitpid(", "::waitpid(", "popen("})
-      each(words, always);
+  if (file.extension() == ".cc" || file.extension() == ".h") {
+    for (const char* words : {"this_thread::yield", "this_thread::sleep_for", "popen("}) each(words, always);
+    for (const char* words : {" waitpid(", ":waitpid("})
+      each(words, [&](std::size_t at) { return CallAt(text, at).find("WNOHANG") == std::string_view::npos; });
+  }
   if (file.extension() == ".py")
     for (const char* words : {"subprocess.run(", "subprocess.check_", "subprocess.call(", ".communicate(", "up.wait("})
       each(words, without_limit);

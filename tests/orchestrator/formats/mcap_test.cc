@@ -3,13 +3,11 @@
 #include <zstd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <random>
 #include <set>
-#include <thread>
 #include <tuple>
 
 #include "orchestrator/formats/mcap/index.h"
@@ -18,6 +16,7 @@
 #include "orchestrator/formats/mcap/writer.h"
 #include "tests/orchestrator/formats/mcap_files.h"
 #include "tests/support/scratch.h"
+#include "tests/support/waits.h"
 
 namespace mascot {
 namespace {
@@ -187,9 +186,7 @@ std::set<std::string> Threads() {
 
 /// Whether this process soon has one thread: the kernel lists one that was joined for another moment.
 bool HasSoonOneThread() {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (Threads().size() != 1 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-  return Threads().size() == 1;
+  return test::Until([] { return Threads().size() == 1; });
 }
 
 TEST(Mcap, AllChunksAreCompressedByOneThreadThatLivesAsLongAsTheWriter) {
