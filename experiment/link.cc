@@ -120,7 +120,7 @@ bool LinkTable::ArePerfect(const Graph& graph) const {
 
 LinkTable ReadLinks(Section& link, const Graph& graph) {
   const LinkConfig common = ReadLink(link);
-  std::map<std::pair<int, int>, LinkConfig> special;
+  LinkTable::Special special;
   for (Section& section : FewTables(link, "override", kMostOverrides)) {
     section.InheritFrom(link);
     const auto edges = ReadEdges(section, graph);

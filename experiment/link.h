@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -33,24 +34,25 @@ struct LinkConfig {
   bool IsPerfect() const { return loss == 0 && !bursts && delay_s == 0 && jitter_s == 0; }
 };
 
-/// [link]: the configuration of all links, and the overrides for single edges.
+/// [link]: the configuration of all links, and the overrides for single edges. Copies share the latter.
 class LinkTable {
  public:
-  LinkTable() = default;
-  LinkTable(LinkConfig common, std::map<std::pair<int, int>, LinkConfig> special)
-      : common_(common), special_(std::move(special)) {}
+  using Special = std::map<std::pair<int, int>, LinkConfig>;  ///< by hearer, heard
+  LinkTable() : LinkTable({}, {}) {}
+  LinkTable(LinkConfig common, Special special)
+      : common_(common), special_(std::make_shared<const Special>(std::move(special))) {}
 
   /// The link on which agent `hearer` hears agent `heard`.
   const LinkConfig& Of(int hearer, int heard) const {
-    const auto special = special_.find({hearer, heard});
-    return special == special_.end() ? common_ : special->second;
+    const auto special = special_->find({hearer, heard});
+    return special == special_->end() ? common_ : special->second;
   }
   /// True if every link of `graph` delivers every sample at once.
   bool ArePerfect(const Graph& graph) const;
 
  private:
   LinkConfig common_;
-  std::map<std::pair<int, int>, LinkConfig> special_;  // by hearer, heard
+  std::shared_ptr<const Special> special_;  // never null
 };
 
 /// The keys of [link].

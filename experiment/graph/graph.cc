@@ -77,8 +77,9 @@ class Tarjan {
 
 }  // namespace
 
-Graph::Graph(std::vector<std::vector<Neighbour>> heard) : heard_(std::move(heard)) {
-  for ([[maybe_unused]] const auto& row : heard_)
+Graph::Graph(std::vector<std::vector<Neighbour>> heard)
+    : heard_(std::make_shared<const std::vector<std::vector<Neighbour>>>(std::move(heard))) {
+  for ([[maybe_unused]] const auto& row : *heard_)
     assert(std::is_sorted(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.id < b.id; }));
 }
 
@@ -91,7 +92,7 @@ bool Graph::Hears(int hearer, int heard) const {
 
 std::size_t Graph::edges() const {
   std::size_t count = 0;
-  for (const auto& row : heard_) count += row.size();
+  for (const auto& row : *heard_) count += row.size();
   return count;
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,7 +13,8 @@
 
 namespace mascot {
 
-/// The communication graph: agent i hears agent j with weight a_ij > 0. Agents are numbered 1..N. Immutable.
+/// The communication graph: agent i hears agent j with weight a_ij > 0. Agents are numbered 1..N. Immutable; copies
+/// share its edges.
 class Graph {
  public:
   struct Neighbour {
@@ -23,9 +25,9 @@ class Graph {
   /// `heard[i - 1]`: the agents that agent i hears, in increasing id, weights > 0, without i itself.
   explicit Graph(std::vector<std::vector<Neighbour>> heard);
 
-  int size() const { return static_cast<int>(heard_.size()); }
+  int size() const { return static_cast<int>(heard_->size()); }
   /// In-neighbours of agent `id`, in increasing id.
-  const std::vector<Neighbour>& HeardBy(int id) const { return heard_[static_cast<std::size_t>(id - 1)]; }
+  const std::vector<Neighbour>& HeardBy(int id) const { return (*heard_)[static_cast<std::size_t>(id - 1)]; }
   /// True if agent `hearer` hears agent `heard`; false if one of them does not exist.
   bool Hears(int hearer, int heard) const;
   /// Number of directed edges.
@@ -54,7 +56,7 @@ class Graph {
   std::optional<std::vector<int>> SpanningTree(int root) const;
 
  private:
-  std::vector<std::vector<Neighbour>> heard_;
+  std::shared_ptr<const std::vector<std::vector<Neighbour>>> heard_;  // never null
 };
 
 /// A family of graphs: a value of `graph.topology`, and its meaning.

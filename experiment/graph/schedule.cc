@@ -25,14 +25,14 @@ const Graph& Schedule::At(double t_s) const {
   constexpr double kRounding_s = 1e-9;  // tolerance for rounding, far below a physics step
   double t = t_s + kRounding_s;
   if (repeat_s_ > 0) t = std::fmod(t, repeat_s_);
-  const auto next = std::upper_bound(phases_.begin() + 1, phases_.end(), t,
+  const auto next = std::upper_bound(phases_->begin() + 1, phases_->end(), t,
                                      [](double at, const Phase& phase) { return at < phase.at_s; });
   return std::prev(next)->graph;
 }
 
 Graph Schedule::Union() const {
-  std::vector<std::vector<Graph::Neighbour>> heard(static_cast<std::size_t>(phases_.front().graph.size()));
-  for (const Phase& phase : phases_)
+  std::vector<std::vector<Graph::Neighbour>> heard(static_cast<std::size_t>(phases_->front().graph.size()));
+  for (const Phase& phase : *phases_)
     for (std::size_t i = 0; i < heard.size(); ++i)
       for (const Graph::Neighbour& neighbour : phase.graph.HeardBy(static_cast<int>(i) + 1)) {
         const auto place = std::ranges::lower_bound(heard[i], neighbour.id, {}, &Graph::Neighbour::id);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -9,7 +10,7 @@
 namespace mascot {
 
 /// The graph over time: each phase has a graph until the next phase begins. After the last phase the schedule may start
-/// again.
+/// again. Copies share the phases.
 class Schedule {
  public:
   struct Phase {
@@ -22,20 +23,29 @@ class Schedule {
   /// `phases`: the first begins at 0 s, at_s increases. `repeat_s`: after this time it starts over; 0: never.
   /// `range_m`: edges work only between agents closer than this; 0: at any distance.
   Schedule(std::vector<Phase> phases, double repeat_s, double range_m)
-      : phases_(std::move(phases)), repeat_s_(repeat_s), range_m_(range_m) {}
+      : phases_(std::make_shared<const std::vector<Phase>>(std::move(phases))),
+        repeat_s_(repeat_s),
+        range_m_(range_m) {}
 
-  std::span<const Phase> phases() const { return phases_; }
+  /// The same with another range.
+  Schedule WithRange(double range_m) const {
+    Schedule other = *this;
+    other.range_m_ = range_m;
+    return other;
+  }
+
+  std::span<const Phase> phases() const { return *phases_; }
   double repeat_s() const { return repeat_s_; }
   double range_m() const { return range_m_; }
   /// True if there is one graph for the whole run, at any distance.
-  bool IsConstant() const { return phases_.size() == 1 && range_m_ == 0; }
+  bool IsConstant() const { return phases_->size() == 1 && range_m_ == 0; }
   /// The graph at simulated time `t_s`, without the range. A rounding error in `t_s` does not delay a phase by a tick.
   const Graph& At(double t_s) const;
   /// The edges of all phases, each with the weight in its first phase.
   Graph Union() const;
 
  private:
-  std::vector<Phase> phases_;
+  std::shared_ptr<const std::vector<Phase>> phases_;  // never null, nor empty
   double repeat_s_;
   double range_m_;
 };

@@ -104,8 +104,7 @@ std::shared_ptr<const LawParams> ReadFlocking(const Experiment& experiment, cons
 LawTheory PredictFlocking(const Experiment& experiment) {
   const auto& params = ParamsOf<FlockParams>(experiment.law);
   Experiment anywhere = experiment;  // two agents are in range of each other or are not: their forces cancel
-  anywhere.schedule = Schedule({experiment.schedule.phases().begin(), experiment.schedule.phases().end()},
-                               experiment.schedule.repeat_s(), 0);
+  anywhere.schedule = experiment.schedule.WithRange(0);
   LawTheory theory{.silent = WhyNotIdeal(anywhere, Wanted::kAcceleration),
                    .unlimited = true,
                    .warnings = params.beta.Warnings(experiment)};

@@ -78,8 +78,7 @@ std::shared_ptr<const LawParams> ReadRendezvous(const Experiment& experiment, co
 LawTheory PredictRendezvous(const Experiment& experiment) {
   const auto& params = ParamsOf<RendezvousParams>(experiment.law);
   Experiment anywhere = experiment;
-  anywhere.schedule = Schedule({experiment.schedule.phases().begin(), experiment.schedule.phases().end()},
-                               experiment.schedule.repeat_s(), 0);
+  anywhere.schedule = experiment.schedule.WithRange(0);
   if (std::string why = WhyNotIdealUndirected(anywhere); !why.empty()) return {.silent = std::move(why)};
   const Graph stiffness = StiffnessAtStart(experiment, params.tension);
   if (stiffness.Roots().empty())
