@@ -16,7 +16,7 @@ std::vector<int> ReadAgentIds(Section& section, const std::string& key, int agen
     if (id != numbers[k] || (agents > 0 && id > agents))
       section.FailRow(key, k, fmt::format("expected an agent in 1..{}, got {}", agents, numbers[k]));
     else if (!seen.insert(id).second)
-      section.FailRow(key, k, "expected each agent once, got " + std::to_string(id) + " again");
+      section.FailRow(key, k, EachOnce("agent", std::to_string(id)));
     else
       ids.push_back(id);
   }

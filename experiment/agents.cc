@@ -110,8 +110,7 @@ void ReadRandom(Section& agents, Experiment& experiment) {
 AgentOverride ReadOverride(Section& section, std::vector<AgentConfig>& agents, std::set<std::int64_t>& seen) {
   const auto last = agents.empty() ? kMaxAgents : static_cast<std::int64_t>(agents.size());
   const std::int64_t id = section.Integer("id", 1, last);
-  if (!section.Wrong("id") && !seen.insert(id).second)
-    section.Fail("id", "expected each agent once, got " + std::to_string(id) + " again");
+  if (!section.Wrong("id") && !seen.insert(id).second) section.Fail("id", EachOnce("agent", std::to_string(id)));
   AgentConfig unknown;
   AgentConfig& agent = agents.empty() ? unknown : agents[static_cast<std::size_t>(id - 1)];
   if (section.Has("model")) agent.model = section.OneOf("model");

@@ -70,18 +70,15 @@ void ReadSet(Section& section, Event& event) {
 Event::Edges ReadEdges(Section& section, std::string_view key) {
   Event::Edges edges;
   const auto rows = section.Rows(key);
-  std::set<std::pair<int, int>> seen;
+  std::set<Edge> seen;
   for (std::size_t k = 0; k < rows.size() && !section.Wrong(key); ++k) {
     const auto whole = [](double number) { return number == std::floor(number); };
     if (rows[k].size() != 2 || !std::ranges::all_of(rows[k], whole)) {
       section.FailRow(key, k, "expected an edge [i, j] (i hears j)");
       continue;
     }
-    const std::pair edge(static_cast<int>(rows[k][0]), static_cast<int>(rows[k][1]));
-    if (!seen.insert(edge).second)
-      section.FailRow(key, k,
-                      "expected each edge once, got [" + std::to_string(edge.first) + ", " +
-                          std::to_string(edge.second) + "] again");
+    const Edge edge(static_cast<int>(rows[k][0]), static_cast<int>(rows[k][1]));
+    if (!seen.insert(edge).second) section.FailRow(key, k, EachOnce("edge", EdgeText(edge)));
     edges.push_back(edge);
   }
   return edges;

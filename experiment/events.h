@@ -5,9 +5,9 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "experiment/graph/edge.h"
 #include "experiment/toml/section.h"
 
 namespace mascot {
@@ -15,7 +15,7 @@ namespace mascot {
 /// What changes a run while it goes on: one [[events]] table of the file, or the same keys given by hand. It takes
 /// effect at a tick, before anybody answers that tick.
 struct Event {
-  using Edges = std::vector<std::pair<int, int>>;  ///< hearer, heard
+  using Edges = std::vector<Edge>;
   struct GoTo {
     int agent = 0;
     Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< where to (m)

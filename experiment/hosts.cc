@@ -81,7 +81,7 @@ HostConfig ReadHost(Section& section, std::vector<AgentConfig>& agents, std::set
   if (!section.Wrong("name") && !IsHostName(host.name))
     section.Fail("name", "expected a host name, got '" + host.name + "'");
   else if (!section.Wrong("name") && !names.insert(host.name).second)
-    section.Fail("name", "expected each host once, got " + host.name + " again");
+    section.Fail("name", EachOnce("host", host.name));
   const std::string words = section.Text("agents");
   const int most = agents.empty() ? static_cast<int>(kMaxAgents) : static_cast<int>(agents.size());
   if (!section.Wrong("agents")) {

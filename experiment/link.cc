@@ -128,8 +128,7 @@ LinkTable ReadLinks(Section& link, const Graph& graph) {
     section.Done();
     for (const auto& edge : edges)
       if (!special.emplace(edge, config).second)
-        section.Fail("edges", "expected each edge in one override, got [" + std::to_string(edge.first) + ", " +
-                                  std::to_string(edge.second) + "] again");
+        section.Fail("edges", EachOnce("edge", EdgeText(edge), "in one override"));
   }
   link.Done();
   return LinkTable(common, std::move(special));

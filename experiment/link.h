@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "experiment/graph/edge.h"
 #include "experiment/graph/graph.h"
 #include "experiment/toml/section.h"
 
@@ -37,7 +38,7 @@ struct LinkConfig {
 /// [link]: the configuration of all links, and the overrides for single edges. Copies share the latter.
 class LinkTable {
  public:
-  using Special = std::map<std::pair<int, int>, LinkConfig>;  ///< by hearer, heard
+  using Special = std::map<Edge, LinkConfig>;
   LinkTable() : LinkTable({}, {}) {}
   LinkTable(LinkConfig common, Special special)
       : common_(common), special_(std::make_shared<const Special>(std::move(special))) {}

@@ -112,10 +112,6 @@ std::map<int, Value::Table> LawTablesOf(const std::string& resolved) {
   return tables;
 }
 
-std::string EdgeText(const std::pair<int, int>& edge) {
-  return "[" + std::to_string(edge.first) + ", " + std::to_string(edge.second) + "]";
-}
-
 }  // namespace
 
 bool LiveExperiment::Own::IsReachedBy(const std::string& key) const {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "experiment/graph/edge.h"
 #include "experiment/graph/graph.h"
 
 namespace mascot {
@@ -102,7 +103,7 @@ Heard FromEdges(Section& graph, int count) {
     const std::vector<double>& row = rows[k];
     std::string mistake = EdgeMistake(row, count);
     if (mistake.empty() && !seen.insert({row[0], row[1]}).second)
-      mistake = "expected each edge once, got [" + Number(row[0]) + ", " + Number(row[1]) + "] again";
+      mistake = EachOnce("edge", EdgeText({static_cast<int>(row[0]), static_cast<int>(row[1])}));
     if (!mistake.empty())
       graph.FailRow("edges", k, mistake);
     else if (count > 0)

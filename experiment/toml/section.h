@@ -160,6 +160,9 @@ std::string ReadRegularFile(const std::string& path);
 /// The name among `names` that is closest to `word`, if it is close enough for a typing mistake.
 std::optional<std::string> DidYouMean(std::string_view word, std::span<const std::string_view> names);
 
+/// What is wrong with a thing that is in the file for the second time: "expected each edge once, got [1, 2] again".
+std::string EachOnce(std::string_view kind, const std::string& thing, std::string_view once = "once");
+
 /// `value` as TOML on one line.
 std::string ToToml(const Value& value);
 

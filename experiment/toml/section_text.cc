@@ -87,6 +87,10 @@ std::string CutShort(std::string_view text) {
 
 std::string Printable(std::string_view text) { return PlainLine(CutShort(text)); }
 
+std::string EachOnce(std::string_view kind, const std::string& thing, std::string_view once) {
+  return fmt::format("expected each {} {}, got {} again", kind, once, thing);
+}
+
 std::optional<std::string> DidYouMean(std::string_view word, std::span<const std::string_view> names) {
   constexpr std::size_t kLongest = 64;  // nobody mistypes more; keeps the distance cheap on junk
   if (word.size() > kLongest) return std::nullopt;

@@ -178,8 +178,7 @@ TableRows::TableRows(const fs::path& path, const Cells& columns, bool lost, cons
     std::string mistake = check.MistakeIn(line, cells);
     const std::size_t run = NumberFrom<std::size_t>(cells[0]).value_or(0);
     const bool counts = lost || (mistake.empty() && !cells[error].starts_with(kLostProcess));
-    if (mistake.empty() && counts && !places_.Add(run, place))
-      mistake = fmt::format("run: expected each run once, got {} again", run);
+    if (mistake.empty() && counts && !places_.Add(run, place)) mistake = "run: " + EachOnce("run", std::to_string(run));
     if (!mistake.empty()) throw ConfigError({fmt::format("{}:{}: {}", path.string(), number, mistake)});
   }
   if (file_.bad()) FailToRead(path);
