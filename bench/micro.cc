@@ -1,11 +1,16 @@
 // Cost of single operations: a call of a law, a tick of the world, a row of the recording. Google Benchmark.
 #include <benchmark/benchmark.h>
 
+#include <chrono>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "agent/agent.h"
 #include "agent/laws/laws.h"
+#include "experiment/live_experiment.h"
+#include "orchestrator/control/helm.h"
 #include "orchestrator/engines/row_feed.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/recording/run_writer.h"
@@ -92,6 +97,53 @@ void RecordRow(benchmark::State& state) {
 }
 
 BENCHMARK(RecordRow)->Arg(10)->Arg(100);
+
+// --- events: one by hand, in a team whose file has some for later ---------------------------------------
+
+constexpr int kTeam = 200;
+
+/// A law with a list of places, one for each agent; the events of the file set another of its keys than the one by
+/// hand.
+Experiment WithEvents(int events) {
+  std::string offsets, later;
+  for (int id = 1; id <= kTeam; ++id) offsets += "[" + std::to_string(id) + ".5, 0, 0], ";
+  for (int k = 1; k <= events; ++k)
+    later += "[[events]]\nat_s = " + std::to_string(50000 + k) + ".0\nset = { \"law.v_gain\" = " + std::to_string(k) +
+             ".5 }\n";
+  return Load(kTeam, "[graph]\ntopology = 'ring'\n[law]\nname = 'formation'\noffsets_m = [" + offsets +
+                         "]\n[output]\nfidelity = false\n" + later);
+}
+
+constexpr const char* kByHand = "set = { \"law.p_gain\" = 0.5 }";
+
+/// Until it is granted, in the orchestrator.
+void AskForEvent(benchmark::State& state) {
+  const Experiment experiment = WithEvents(static_cast<int>(state.range(0)));
+  Helm helm(experiment, 0);
+  helm.Open();
+  const std::jthread run([&helm](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      helm.WaitUntil(std::chrono::steady_clock::now() + std::chrono::milliseconds(10));
+      if (helm.Next()) helm.Done(7);
+    }
+  });
+  for ([[maybe_unused]] auto _ : state)
+    if (!helm.Ask({.kind = Wish::Kind::kEvent, .toml = kByHand}).granted) state.SkipWithError("refused");
+}
+
+BENCHMARK(AskForEvent)->Arg(0)->Arg(100)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+/// What each process of a run does with one that has come.
+void TakeEvent(benchmark::State& state) {
+  const Experiment experiment = WithEvents(static_cast<int>(state.range(0)));
+  LiveExperiment live(experiment, &LawTable(), /*checked=*/true);
+  for ([[maybe_unused]] auto _ : state) {
+    live.Take(EventFrom(7, kByHand, kTeam, "event by hand"));
+    benchmark::DoNotOptimize(live.now());
+  }
+}
+
+BENCHMARK(TakeEvent)->Arg(0)->Arg(100)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace mascot

@@ -86,14 +86,6 @@ std::int64_t CheckedTick(const Topic& topic, std::uint32_t agent, std::uint64_t 
                            std::to_string(agent));
 }
 
-std::int64_t CheckedEvent(const mascot_msgs::msg::Event& event, int number, std::int64_t last_tick) {
-  if (std::cmp_equal(event.number(), number) && std::cmp_less_equal(event.tick(), last_tick))
-    return static_cast<std::int64_t>(event.tick());
-  throw std::runtime_error("/event: expected event " + std::to_string(number) + " with a tick of 0 to " +
-                           std::to_string(last_tick) + ", got event " + std::to_string(event.number()) + " with tick " +
-                           std::to_string(event.tick()));
-}
-
 std::uint64_t StampNs(std::int64_t tick, int rate_hz) {
   const auto rate = static_cast<std::uint64_t>(rate_hz);
   const auto k = static_cast<std::uint64_t>(tick);
@@ -237,6 +229,19 @@ Command FromWire(const mascot_msgs::msg::AgentCommand& sample) {
   command.a_limited_W = FromVector3(sample.acceleration_limited());
   command.flags = sample.flags();
   return command;
+}
+
+Event FromWire(const mascot_msgs::msg::Event& sample, int agents) {
+  return EventFrom(static_cast<std::int64_t>(sample.tick()), sample.toml(), agents,
+                   "event " + std::to_string(sample.number()));
+}
+
+Event FromWire(const mascot_msgs::msg::Event& sample, int agents, int number, std::int64_t last_tick) {
+  if (!std::cmp_equal(sample.number(), number) || std::cmp_greater(sample.tick(), last_tick))
+    throw std::runtime_error("/event: expected event " + std::to_string(number) + " with a tick of 0 to " +
+                             std::to_string(last_tick) + ", got event " + std::to_string(sample.number()) +
+                             " with tick " + std::to_string(sample.tick()));
+  return FromWire(sample, agents);
 }
 
 void Serialize(mascot_msgs::msg::AgentState& sample, std::vector<std::uint8_t>& bytes) {

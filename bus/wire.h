@@ -11,6 +11,7 @@
 #include "base/motion.h"
 #include "base/pacing.h"
 #include "bus/cdr.h"
+#include "experiment/events.h"
 #include "idl/topics.h"
 
 namespace mascot {
@@ -69,10 +70,6 @@ std::uint64_t StampNs(std::int64_t tick, int rate_hz);
 /// `topic` is not that agent's, or if the tick is beyond `last_tick`, the last tick of the run.
 std::int64_t CheckedTick(const Topic& topic, std::uint32_t agent, std::uint64_t tick, std::int64_t last_tick);
 
-/// The tick of `event`. Throws std::runtime_error if its number is not `number`, or if its tick is beyond `last_tick`,
-/// the last tick of the run.
-std::int64_t CheckedEvent(const mascot_msgs::msg::Event& event, int number, std::int64_t last_tick);
-
 // The only conversions between our types and the types of the wire. Units and frames are the same on both sides (SI;
 // W and B as in base/motion.h); quaternions are x, y, z, w on the wire. ToWire() overwrites all fields of
 // `sample`, whose stamp becomes the time of `tick` at `rate_hz`; agents are numbered from 1.
@@ -83,7 +80,7 @@ void ToWire(std::int64_t tick, int rate_hz, int agent, const Command& command, m
 void ToWire(std::int64_t tick, int rate_hz, int agent, std::span<const double> message,
             mascot_msgs::msg::AgentMessage& sample);
 void ToWire(std::int64_t tick, int rate_hz, rosgraph_msgs::msg::Clock& sample);
-/// An event with its number and its text as TOML.
+/// An event with its number and its text as TOML (Event::Toml()).
 void ToWire(std::int64_t tick, int rate_hz, int number, const std::string& toml, mascot_msgs::msg::Event& sample);
 /// Puts what the physics server reports of its timing and of contacts into its status; other fields of `status` stay.
 void ToWire(const Pacing& pacing, const Contacts& contacts, mascot_msgs::msg::Status& status);
@@ -94,6 +91,11 @@ void FromWire(const mascot_msgs::msg::Status& status, int agents, std::size_t ob
 Motion FromWire(const mascot_msgs::msg::AgentState& sample);
 /// The velocities of the result, which are not on the wire, are 0.
 Command FromWire(const mascot_msgs::msg::AgentCommand& sample);
+/// The event in a run of `agents` agents. Throws ConfigError, with "event NUMBER" in front, if it is none.
+Event FromWire(const mascot_msgs::msg::Event& sample, int agents);
+/// Also throws std::runtime_error if the sample is of another event than `number`, or its tick is none of the run,
+/// whose last is `last_tick`.
+Event FromWire(const mascot_msgs::msg::Event& sample, int agents, int number, std::int64_t last_tick);
 
 /// Replaces `bytes` by the bytes that the bus sends for `sample`: a 4-byte encapsulation header, then CDR with zeroed
 /// padding. `bytes` keeps its capacity from call to call.

@@ -115,6 +115,18 @@ std::string ReadKind(Section& section) {
   return count == 1 ? found : "";
 }
 
+Event ReadPhase(Section& section, int agents) {
+  Event event;
+  event.where = section.Where("");
+  const Value law = section.Free("law");
+  if (const auto* table = std::get_if<Value::Table>(&law.data))
+    event.law = *table;
+  else
+    section.Fail("law", "expected a table, got a " + section.Kind("law"));
+  if (section.Has("agents")) event.agents = ReadAgentIds(section, "agents", agents);
+  return event;
+}
+
 std::string EdgesText(const Event::Edges& edges) {
   Value::List list;
   for (const auto& [hearer, heard] : edges)
@@ -181,20 +193,14 @@ Event ReadEvent(Section& section, int agents) {
 
 bool IsPhase(const std::string& toml) { return Section::FromWords(toml, "event").Has("law"); }
 
-Event ReadEventOfRun(Section& section, int agents) {
-  if (!section.Has("law")) {
-    section.Use(kEventKeys);
-    return ReadEvent(section, agents);
-  }
-  section.Use(kPhaseKeys);
-  Event event;
-  event.where = section.Where("");
-  const Value law = section.Free("law");
-  if (const auto* table = std::get_if<Value::Table>(&law.data))
-    event.law = *table;
-  else
-    section.Fail("law", "expected a table, got a " + section.Kind("law"));
-  if (section.Has("agents")) event.agents = ReadAgentIds(section, "agents", agents);
+Event EventFrom(std::int64_t tick, const std::string& toml, int agents, const std::string& where) {
+  Section section = Section::FromWords(toml, where);
+  const bool is_phase = section.Has("law");
+  section.Use(is_phase ? std::span<const Key>(kPhaseKeys) : kEventKeys);
+  Event event = is_phase ? ReadPhase(section, agents) : ReadEvent(section, agents);
+  section.Done();
+  section.ThrowIfWrong();
+  event.tick = tick;
   return event;
 }
 

@@ -51,8 +51,9 @@ std::span<const Key> EventKeys();
 Event ReadEvent(Section& section, int agents);
 /// Whether Event::Toml() is that of a phase.
 bool IsPhase(const std::string& toml);
-/// Reads Event::Toml() of any event of a run, also of a phase, from a section without rows.
-Event ReadEventOfRun(Section& section, int agents);
+/// The event of this tick that Event::Toml() is `toml` of: of any event of a run of so many agents, also of a phase.
+/// Throws ConfigError, with `where` in front, for other text.
+Event EventFrom(std::int64_t tick, const std::string& toml, int agents, const std::string& where);
 /// Reads [[events]], in the order of the file. `ticks`: the last tick.
 std::vector<Event> ReadEvents(Section& document, int agents, int rate_hz, std::int64_t ticks);
 

@@ -30,7 +30,9 @@ const Key* FindRow(std::span<const Key> rows, const std::string& path) {
 }
 
 std::vector<Key> KeysOfLaw(const LawCatalog& laws, const std::string& law) {
-  std::vector<Key> rows(LawKeys().begin(), LawKeys().end());
+  std::vector<Key> rows;
+  rows.reserve(LawKeys().size() + laws.Parameters(law).size());
+  rows.assign(LawKeys().begin(), LawKeys().end());
   for (const Key& row : laws.Parameters(law)) {  // a law may describe `leader` more closely
     const auto common = std::ranges::find(rows, row.name, &Key::name);
     if (common == rows.end())

@@ -45,15 +45,6 @@ constexpr Key kPhysicsKeys[] = {
     key::Tables("rotor_failures", kRotorFailureKeys, "rotors that lose thrust; at most 40000"),
 };
 
-WindConfig ReadWind(Section wind) {
-  WindConfig config;
-  config.mean_m_per_s = wind.Vector3("mean_m_per_s");
-  config.gust_std_m_per_s = wind.Number("gust_std_m_per_s");
-  config.gust_time_s = wind.Number("gust_time_s");
-  wind.Done();
-  return config;
-}
-
 Obstacle ReadObstacle(Section& section) {
   Obstacle obstacle;
   obstacle.shape = kShapes.Value(section.OneOf("shape"));
@@ -86,6 +77,15 @@ RotorFailure ReadRotorFailure(Section& section, int agents) {
 }  // namespace
 
 std::span<const Key> PhysicsKeys() { return kPhysicsKeys; }
+
+WindConfig ReadWind(Section wind) {
+  WindConfig config;
+  config.mean_m_per_s = wind.Vector3("mean_m_per_s");
+  config.gust_std_m_per_s = wind.Number("gust_std_m_per_s");
+  config.gust_time_s = wind.Number("gust_time_s");
+  wind.Done();
+  return config;
+}
 
 PhysicsConfig ReadPhysics(Section& physics, int agents) {
   PhysicsConfig config;

@@ -54,5 +54,7 @@ std::span<const Key> PhysicsKeys();
 /// Reads [physics]. `agents` is the number of agents; 0: it is unknown because of a mistake. Mistakes are noted in
 /// `physics`. Whether the agent of a rotor failure is a quadrotor is checked later.
 PhysicsConfig ReadPhysics(Section& physics, int agents);
+/// Reads physics.wind.
+WindConfig ReadWind(Section wind);
 
 }  // namespace mascot

@@ -101,9 +101,7 @@ void ReadRun(Section& section, const std::string& default_name, Experiment& expe
   run.agent_timeout_s = section.Number("agent_timeout_s");
   run.start_timeout_s = section.Number("start_timeout_s");
   run.speed = section.Number("speed");
-  if (section.Has("pace")) run.pace = section.Number("pace");
-  if (run.pace && !section.Wrong("pace") && run.mode == Mode::kRealtime)
-    section.Fail("pace", "expected run.mode = \"lockstep\" with it (run.speed paces real time), got \"realtime\"");
+  run.pace = ReadPace(section, run.mode);
   run.scheduler = kSchedulers.Value(section.OneOf("scheduler"));
   run.pin_cores = section.Boolean("pin_cores");
   run.lock_memory = section.Boolean("lock_memory");
@@ -272,6 +270,14 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
 }
 
 }  // namespace
+
+std::optional<double> ReadPace(Section& run, Mode mode) {
+  if (!run.Has("pace")) return std::nullopt;
+  const double pace = run.Number("pace");
+  if (!run.Wrong("pace") && mode == Mode::kRealtime)
+    run.Fail("pace", "expected run.mode = \"lockstep\" with it (run.speed paces real time), got \"realtime\"");
+  return pace;
+}
 
 void CheckFormat(Section& document) {
   const std::int64_t format = document.Integer("format", 1, INT64_MAX, 1);

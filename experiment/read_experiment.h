@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -19,6 +20,8 @@ inline constexpr int kFormat = 1;
 /// Reads `format` of an experiment file; notes a mistake if it is newer than kFormat. The document uses
 /// ExperimentKeys().
 void CheckFormat(Section& document);
+/// Reads run.pace; nullopt: there is none. Notes a mistake if the run is in real time.
+std::optional<double> ReadPace(Section& run, Mode mode);
 
 /// All keys that an experiment file may have, except the parameters of single laws (agent/laws/laws.h).
 std::span<const Key> ExperimentKeys();

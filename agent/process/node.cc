@@ -65,8 +65,7 @@ void Node::ListenToEvents(Domain& domain) {
   readers_.push_back(
       std::make_unique<Reader<EventType>>(domain, Topic::Event(), [this](const mascot_msgs::msg::Event& event) {
         const int number = live_.count() + 1;
-        const std::int64_t tick = CheckedEvent(event, number, experiment_.ticks());
-        const auto now = live_.Take(tick, number, event.toml());
+        const auto now = live_.After(FromWire(event, experiment_.size(), number, experiment_.ticks()));
         for (const auto& seat : seats_) seat->OnEvent(number, now);
       }));
 }

@@ -54,6 +54,8 @@ std::span<const Key> ScheduleKeys() {
   return keys;
 }
 
+double ReadRange(Section& graph) { return graph.Has("range_m") ? graph.Number("range_m") : 0; }
+
 Schedule ReadSchedule(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint64_t seed) {
   std::vector<Schedule::Phase> phases;
   phases.push_back({0, ReadGraph(graph, p_W, seed)});
@@ -79,7 +81,7 @@ Schedule ReadSchedule(Section& graph, std::span<const Eigen::Vector3d> p_W, std:
       graph.Fail("repeat_s", "expected a time after the last of graph.schedule (" + ShortestFloat(phases.back().at_s) +
                                  "), got " + ShortestFloat(repeat_s));
   }
-  const double range_m = graph.Has("range_m") ? graph.Number("range_m") : 0;
+  const double range_m = ReadRange(graph);
   return Schedule(std::move(phases), repeat_s, range_m);
 }
 

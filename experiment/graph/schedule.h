@@ -52,6 +52,8 @@ class Schedule {
 
 /// The keys of [graph].
 std::span<const Key> ScheduleKeys();
+/// Reads graph.range_m; 0: there is none.
+double ReadRange(Section& graph);
 /// Reads [graph]: one graph (ReadGraph), then one for each [[graph.schedule]], repeat_s and range_m. `p_W`: where the
 /// agents start, in W (m). `seed`: for random graphs. With no agents (unknown because of a mistake elsewhere) sizes are
 /// not checked and the graphs are empty.

@@ -87,12 +87,12 @@ std::string Section::Text(std::string_view key, std::optional<std::string> fallb
 Section::Place Section::PlaceOfText(std::string_view key) const {
   const toml::node* node = table_->Get(key);
   const toml::source_region place = table_->PlaceOf(key);
-  const bool overridden = place.path && *place.path != document_->name;
-  const std::filesystem::path file(overridden || DescriptorOf(document_->name) ? "" : document_->name);
-  Place text{overridden ? *place.path : file.filename().string(), file.parent_path().string(),
-             overridden ? 1 : static_cast<int>(place.begin.line)};
+  const auto origin = document_->OriginOf(place);
+  const std::filesystem::path file(origin || DescriptorOf(document_->name) ? "" : document_->name);
+  Place text{origin.value_or(file.filename().string()), file.parent_path().string(),
+             origin ? 1 : static_cast<int>(place.begin.line)};
   const auto value = node != nullptr ? node->value_exact<std::string>() : std::nullopt;
-  if (!value || overridden) return text;
+  if (!value || origin) return text;
   // TOML drops a line break right after the opening quotes: the node then spans one line more than the text.
   const auto breaks = std::count(value->begin(), value->end(), '\n');
   if (static_cast<std::ptrdiff_t>(place.end.line - place.begin.line) == breaks + 1) ++text.line;
@@ -220,6 +220,13 @@ std::vector<Section> Section::Children(std::string_view key) {
     table_->entries.push_back(std::move(entry));
   }
   return children;
+}
+
+Section Section::Child(std::string_view key, std::size_t index) {
+  const toml::array* list = table_->Find(key)->as_array();
+  auto child = table_->MakeChild(key, list->get(index), Indexed(table_->PathOf(key), index));
+  table_->entries.push_back({std::string(key), "", {child}, true});
+  return {document_, child};
 }
 
 void Section::InheritFrom(const Section& base, std::initializer_list<std::string_view> own) {

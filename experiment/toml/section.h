@@ -27,13 +27,12 @@ class ConfigError : public std::runtime_error {
   std::vector<std::string> mistakes_;
 };
 
-/// A key given on the command line or by an event, which replaces the file's.
+/// A key given on the command line, which replaces the file's.
 struct Override {
   std::string key;          ///< dotted: "law.p_gain"
   std::string value;        ///< a TOML value: "0.5", "[1, 2]", "'ring'"
   std::string origin = {};  ///< what messages say in place of a file and line; empty: "--set key=value"
-  bool extends = false;  ///< an index one beyond the end of a list of tables adds a table, and the list if it is absent
-  bool removes = false;  ///< the key is removed, if it is there; there is no value
+  bool removes = false;     ///< the key is removed, if it is there; there is no value
 };
 
 /// One table of a TOML file, read strictly. Each reader checks type and range; a mistake is noted (not thrown) and the
@@ -47,8 +46,7 @@ class Section {
   static Section FromFile(const std::string& path, std::span<const Override> overrides = {});
   static Section FromText(const std::string& text, const std::string& name, std::span<const Override> overrides = {});
   /// As FromText, of text that is in no file: messages say `origin` without line and column.
-  static Section FromWords(const std::string& text, const std::string& origin,
-                           std::span<const Override> overrides = {});
+  static Section FromWords(const std::string& text, const std::string& origin);
 
   /// True if `key` is present, here or in the base (InheritFrom).
   bool Has(std::string_view key) const;
@@ -115,6 +113,8 @@ class Section {
   Section Child(std::string_view key);
   /// An array of tables ([[key]]); absent reads as none.
   std::vector<Section> Children(std::string_view key);
+  /// Table `index` (from 0) of that array alone, which must be there.
+  Section Child(std::string_view key, std::size_t index);
 
   /// From now on, keys that this table lacks are read from `base`, but for `own`. Mistakes in them are left to the
   /// reader of `base`.
@@ -145,6 +145,7 @@ class Section {
   Value::Table InTheFile() const;
 
  private:
+  friend class ValueTables;
   struct Document;
   struct Table;
   Section(std::shared_ptr<Document> document, std::shared_ptr<Table> table);

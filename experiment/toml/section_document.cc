@@ -87,7 +87,6 @@ class DepthCheck {
 
 /// `place` in the document `name`, as messages say it.
 std::string PlaceIn(const toml::source_region& place, const std::string& name) {
-  if (place.path && *place.path != name) return *place.path;  // a value given on the command line
   return name + ":" + std::to_string(std::max(place.begin.line, 1u)) + ":" +
          std::to_string(std::max(place.begin.column, 1u));
 }
@@ -132,14 +131,24 @@ Section::Document::Document(std::string_view text, const std::string& document_n
   for (const Override& override : overrides) Apply(override, root);
 }
 
-std::string Section::Document::PlaceText(const toml::source_region& place) const { return PlaceIn(place, name); }
+Section::Document::Document(std::string of_all) : origin(std::move(of_all)) {}
+
+std::optional<std::string> Section::Document::OriginOf(const toml::source_region& place) const {
+  if (!origin.empty()) return origin;
+  const bool is_overridden = place.path && *place.path != name;  // a value given on the command line
+  return is_overridden ? std::optional(*place.path) : std::nullopt;
+}
+
+std::string Section::Document::PlaceText(const toml::source_region& place) const {
+  return OriginOf(place).value_or(PlaceIn(place, name));
+}
 
 void Section::Document::Note(const toml::source_region& place, const std::string& path, const std::string& message) {
   NoteText(place, PlaceText(place) + ": " + (path.empty() ? "" : path + ": ") + message);
 }
 
 void Section::Document::NoteText(const toml::source_region& place, const std::string& text) {
-  const bool overridden = place.path && *place.path != name;
+  const bool overridden = OriginOf(place).has_value();
   Mistake mistake{overridden, overridden ? 0 : place.begin.line, overridden ? 0 : place.begin.column, text};
   if (mistakes_.size() < kMostMistakes) {
     mistakes_.insert(std::move(mistake));
@@ -164,10 +173,9 @@ Section Section::FromText(const std::string& text, const std::string& name, std:
   return Of(std::make_shared<Document>(text, name, overrides));
 }
 
-Section Section::FromWords(const std::string& text, const std::string& origin, std::span<const Override> overrides) {
-  auto document = std::make_shared<Document>("", "", std::span<const Override>());
-  document->root = ParseToml(text, origin);  // with the origin as the path of each node
-  for (const Override& override : overrides) Apply(override, document->root);
+Section Section::FromWords(const std::string& text, const std::string& origin) {
+  auto document = std::make_shared<Document>(origin);
+  document->root = ParseToml(text, origin);
   return Of(document);
 }
 

@@ -4,7 +4,9 @@
 
 #include <toml++/toml.h>
 
+#include <optional>
 #include <set>
+#include <variant>
 
 #include "base/utf8.h"
 #include "experiment/toml/section.h"
@@ -14,6 +16,8 @@ namespace mascot {
 /// A parsed TOML document and the mistakes noted in it so far.
 struct Section::Document {
   Document(std::string_view text, const std::string& document_name, std::span<const Override> overrides);
+  /// Of what is in no file: messages say `origin` in place of file, line and column.
+  explicit Document(std::string origin);
 
   /// Stores a mistake; noted again, it counts once (laws are made once per agent, and each may note it).
   void Note(const toml::source_region& place, const std::string& path, const std::string& message);
@@ -22,8 +26,12 @@ struct Section::Document {
   void ThrowIfWrong() const;
   /// A place as messages say it.
   std::string PlaceText(const toml::source_region& place) const;
+  /// What messages say in place of file, line and column; nullopt: `place` is in the file.
+  std::optional<std::string> OriginOf(const toml::source_region& place) const;
 
-  std::string name;  ///< as the user typed it
+  std::string name;         ///< as the user typed it
+  std::string origin;       ///< of what is in no file; empty: it is in a file
+  bool is_recorded = true;  ///< what is read is remembered, for Resolved()
   toml::table root;
   std::shared_ptr<Table> top;  ///< the table of the root
 
@@ -119,6 +127,20 @@ constexpr std::size_t kDeepestKey = 32, kDeepestValue = 64;
 bool IsBare(char c);
 /// Throws ConfigError with the place in `name`.
 toml::table ParseToml(std::string_view text, const std::string& name);
+/// One step of a dotted key: a key of a table, or an index in a list.
+using Step = std::variant<std::string, std::size_t>;
+/// "agents.override[0].start_s" as its steps; empty if it is not of that form.
+std::vector<Step> Steps(std::string_view key);
+/// "expected a dotted key ...", of a key without steps.
+std::string ExpectedKey(std::string_view key);
+/// Where the steps lead; null: nothing is there.
+toml::node* Find(toml::table& root, std::span<const Step> steps);
+/// Puts a value where the steps lead, and makes the tables that the document lacks. `extends`: and the tables of lists:
+/// an index one beyond the end of a list of tables adds a table, and a list if need be. Throws std::invalid_argument if
+/// the steps do not fit.
+void Put(toml::table& root, std::span<const Step> steps, toml::node&& value, bool extends);
+/// Takes out what is where the steps lead; of a list only its last element. Nothing is done if they lead nowhere.
+void Remove(toml::table& root, std::span<const Step> steps);
 /// Where messages say that an override comes from: "--set law.p_gain=0.5".
 std::string OriginOf(const Override& override);
 /// Replaces or adds a key of the document. Throws ConfigError.
@@ -136,6 +158,8 @@ std::string Indexed(std::string_view path, std::size_t index);
 
 /// A node as a Value. Dates and times become text.
 Value ToValue(const toml::node& node);
+/// The inverse, but for dates and times.
+toml::table ToTable(const Value::Table& table);
 /// TOML basic string, quoted and escaped.
 std::string QuotedToml(std::string_view text);
 /// TOML string; a multi-line one for text of several lines, if possible.

@@ -39,10 +39,8 @@ toml::table ParseValue(const Override& override, const std::string& name) {
   }
 }
 
-/// One step of a dotted key: a key of a table, or an index in a list.
-using Step = std::variant<std::string, std::size_t>;
+}  // namespace
 
-/// "agents.override[0].start_s" as its steps; empty if it is not of that form.
 std::vector<Step> Steps(std::string_view key) {
   std::vector<Step> steps;
   for (std::size_t i = 0; i < key.size();) {
@@ -64,6 +62,12 @@ std::vector<Step> Steps(std::string_view key) {
   }
   return steps.size() <= kDeepestKey ? steps : std::vector<Step>{};
 }
+
+std::string ExpectedKey(std::string_view key) {
+  return "expected a dotted key such as law.p_gain or agents.override[0].start_s, got '" + Printable(key) + "'";
+}
+
+namespace {
 
 std::string PathOf(std::span<const Step> steps) {
   std::string path;
@@ -136,8 +140,20 @@ void Extend(toml::node& inside, const Step& step, const toml::source_region& sou
   if (index != nullptr && list != nullptr && *index == list->size()) list->push_back(Empty<toml::table>("{}", source));
 }
 
-/// Puts a value where the steps lead, and makes the tables that the document lacks. `extends`: and the tables of lists
-/// (Override::extends).
+}  // namespace
+
+toml::node* Find(toml::table& root, std::span<const Step> steps) {
+  toml::node* node = &root;
+  for (const Step& step : steps) {
+    const auto* key = std::get_if<std::string>(&step);
+    toml::table* table = key != nullptr ? node->as_table() : nullptr;
+    toml::array* list = key == nullptr ? node->as_array() : nullptr;
+    node = table != nullptr ? table->get(*key) : list != nullptr ? list->get(std::get<std::size_t>(step)) : nullptr;
+    if (node == nullptr) return nullptr;
+  }
+  return node;
+}
+
 void Put(toml::table& root, std::span<const Step> steps, toml::node&& value, bool extends) {
   toml::node* node = &root;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
@@ -159,18 +175,15 @@ void Put(toml::table& root, std::span<const Step> steps, toml::node&& value, boo
   Place(*node, steps, steps.size() - 1).Put(std::move(value), source);
 }
 
-/// Takes out the key to which the steps lead, through tables.
 void Remove(toml::table& root, std::span<const Step> steps) {
-  toml::table* table = &root;
-  for (const Step& step : steps.first(steps.size() - 1)) {
-    const auto* key = std::get_if<std::string>(&step);
-    table = key != nullptr ? table->get_as<toml::table>(*key) : nullptr;
-    if (table == nullptr) return;
-  }
-  if (const auto* key = std::get_if<std::string>(&steps.back())) table->erase(*key);
+  toml::node* around = Find(root, steps.first(steps.size() - 1));
+  if (around == nullptr) return;
+  const auto* key = std::get_if<std::string>(&steps.back());
+  toml::table* table = around->as_table();
+  toml::array* list = around->as_array();
+  if (key != nullptr && table != nullptr) table->erase(*key);
+  if (key == nullptr && list != nullptr && list->size() == std::get<std::size_t>(steps.back()) + 1) list->pop_back();
 }
-
-}  // namespace
 
 std::string OriginOf(const Override& override) {
   return override.origin.empty() ? "--set " + Printable(override.key + "=" + override.value) : override.origin;
@@ -179,13 +192,11 @@ std::string OriginOf(const Override& override) {
 void Apply(const Override& override, toml::table& root) {
   const std::string name = OriginOf(override);
   const std::vector<Step> steps = Steps(override.key);
-  if (steps.empty())
-    throw ConfigError({name + ": expected a dotted key such as law.p_gain or agents.override[0].start_s, got '" +
-                       Printable(override.key) + "'"});
+  if (steps.empty()) throw ConfigError({name + ": " + ExpectedKey(override.key)});
   if (override.removes) return Remove(root, steps);
   toml::table parsed = ParseValue(override, name);
   try {
-    Put(root, steps, std::move(*parsed.get("value")), override.extends);
+    Put(root, steps, std::move(*parsed.get("value")), /*extends=*/false);
   } catch (const std::invalid_argument& why) {
     throw ConfigError({name + ": " + why.what()});
   }

@@ -131,6 +131,7 @@ Section::Table::Entry* Section::Table::Recorded(std::string_view key) {
 }
 
 void Section::Table::Record(std::string_view key, std::string value) {
+  if (!document->is_recorded) return;
   if (Entry* entry = Recorded(key))
     entry->value = std::move(value);
   else
@@ -176,7 +177,7 @@ double Section::Table::Number(std::string_view key, const Range& range, std::opt
   const std::string expected = ExpectedNumber(Get(key), range);
   const double value = Read<double>(key, expected, fallback, range.Legal(),
                                     [&](const toml::node& node) { return NumberIn(node, range); });
-  Record(key, ShortestFloat(value));
+  if (document->is_recorded) Record(key, ShortestFloat(value));
   return value;
 }
 
@@ -232,7 +233,7 @@ Eigen::Vector3d Section::Table::Vector3(std::string_view key, const Range& range
                                         const std::optional<Eigen::Vector3d>& fallback) {
   const toml::node* node = Find(key);
   const Eigen::Vector3d value = node == nullptr && fallback ? *fallback : Vector3(key, PathOf(key), node, range);
-  Record(key, ListText(NumberTexts({value.data(), 3})));
+  if (document->is_recorded) Record(key, ListText(NumberTexts({value.data(), 3})));
   return value;
 }
 
@@ -240,7 +241,7 @@ std::vector<double> Section::Table::Numbers(std::string_view key, const Range& r
   const toml::array* list = List(key, "a list of numbers");
   if (list == nullptr) return {};
   const std::vector<double> values = Numbers(key, PathOf(key), *list, range);
-  Record(key, ListText(NumberTexts(values)));
+  if (document->is_recorded) Record(key, ListText(NumberTexts(values)));
   return values;
 }
 
@@ -257,9 +258,9 @@ std::vector<std::vector<double>> Section::Table::Lists(std::string_view key, con
       continue;
     }
     lists[i] = Numbers(key, where, *numbers, range);
-    texts.push_back(ListText(AsWritten(*numbers, lists[i])));
+    if (document->is_recorded) texts.push_back(ListText(AsWritten(*numbers, lists[i])));
   }
-  Record(key, ListText(texts));
+  if (document->is_recorded) Record(key, ListText(texts));
   return lists;
 }
 
@@ -270,9 +271,9 @@ std::vector<Eigen::Vector3d> Section::Table::Points(std::string_view key, const 
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < list->size(); ++i) {
     points.push_back(Vector3(key, Indexed(PathOf(key), i), list->get(i), range));
-    texts.push_back(ListText(NumberTexts({points.back().data(), 3})));
+    if (document->is_recorded) texts.push_back(ListText(NumberTexts({points.back().data(), 3})));
   }
-  Record(key, ListText(texts));
+  if (document->is_recorded) Record(key, ListText(texts));
   return points;
 }
 

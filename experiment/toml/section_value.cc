@@ -1,4 +1,5 @@
 #include <sstream>
+#include <utility>
 
 #include "experiment/toml/section_internal.h"
 
@@ -22,6 +23,43 @@ Value ToValue(const toml::node& node) {
   std::ostringstream text;  // a date or a time
   node.visit([&](const auto& typed) { text << typed; });
   return {text.str()};
+}
+
+namespace {
+
+toml::array ToArray(const Value::List& list);
+
+/// Calls `add` with `value` as toml++ takes it.
+template <class Add>
+void AddValue(const Value& value, Add add) {
+  if (const auto* list = std::get_if<Value::List>(&value.data))
+    add(ToArray(*list));
+  else if (const auto* table = std::get_if<Value::Table>(&value.data))
+    add(ToTable(*table));
+  else if (const auto* text = std::get_if<std::string>(&value.data))
+    add(*text);
+  else if (const auto* number = std::get_if<double>(&value.data))
+    add(*number);
+  else if (const auto* integer = std::get_if<std::int64_t>(&value.data))
+    add(*integer);
+  else
+    add(std::get<bool>(value.data));
+}
+
+toml::array ToArray(const Value::List& list) {
+  toml::array array;
+  array.reserve(list.size());
+  for (const Value& item : list) AddValue(item, [&](auto&& one) { array.push_back(std::forward<decltype(one)>(one)); });
+  return array;
+}
+
+}  // namespace
+
+toml::table ToTable(const Value::Table& table) {
+  toml::table values;
+  for (const auto& [key, item] : table)
+    AddValue(item, [&, &name = key](auto&& one) { values.insert(name, std::forward<decltype(one)>(one)); });
+  return values;
 }
 
 std::string ToToml(const Value& value) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -23,9 +24,6 @@ const Key& PaceRow() {
   const std::span<const Key> run = std::ranges::find(ExperimentKeys(), "run", &Key::name)->keys;
   return *std::ranges::find(run, "pace", &Key::name);
 }
-
-/// Whether an event changes more than which edges work.
-bool ChangesKeys(const Event& event) { return !event.set.empty() || event.go_to || event.law; }
 
 std::string Refusal(const ConfigError& error) {
   std::string text;
@@ -51,7 +49,7 @@ Answer Helm::Ask(const Wish& wish) {
     if (!is_open_) return {false, "the run has not begun yet"};
   }
   for (std::int64_t from = 0;;) {
-    Wish checked;
+    Order checked;
     try {
       checked = Checked(wish, from);
     } catch (const ConfigError& error) {
@@ -62,16 +60,16 @@ Answer Helm::Ask(const Wish& wish) {
     std::unique_lock lock(mutex_);
     if (is_over_) return too_late;
     answer_.reset();
-    wish_ = checked;
+    order_ = checked;
     changed_.notify_all();
     if (wake_) wake_();
-    changed_.wait(lock, [this] { return answer_ || is_over_ || !wish_; });
-    if (std::exchange(wish_, std::nullopt) || is_over_) return answer_.value_or(too_late);
+    changed_.wait(lock, [this] { return answer_ || is_over_ || !order_; });
+    if (std::exchange(order_, std::nullopt) || is_over_) return answer_.value_or(too_late);
     from = std::llround(checked.number);
   }
 }
 
-Wish Helm::Checked(const Wish& wish, std::int64_t from) {
+Helm::Order Helm::Checked(const Wish& wish, std::int64_t from) {
   const bool realtime = experiment_.run.mode == Mode::kRealtime;
   switch (wish.kind) {
     case Wish::Kind::kPause:
@@ -94,13 +92,13 @@ Wish Helm::Checked(const Wish& wish, std::int64_t from) {
     case Wish::Kind::kEvent:
       return CheckedEvent(wish.toml, from);
   }
-  return wish;
+  return {.kind = wish.kind, .number = wish.number};
 }
 
-Wish Helm::CheckedEvent(const std::string& toml, std::int64_t from) {
+Helm::Order Helm::CheckedEvent(const std::string& toml, std::int64_t from) {
   from = std::max(from, LookAhead());
   const std::int64_t last = experiment_.ticks();
-  const Event event = ahead_->live.Parse(std::min(from, last), toml, kByHand);
+  const Event event = EventFrom(std::min(from, last), toml, experiment_.size(), kByHand);
   if (event.law)
     throw std::invalid_argument(std::string(kByHand) +
                                 ": law: expected a phase in [[law.schedule]] of the file, got one by hand");
@@ -113,8 +111,9 @@ Wish Helm::CheckedEvent(const std::string& toml, std::int64_t from) {
   const std::int64_t before = ahead.of_file < file.size() ? file[ahead.of_file].tick : last + 1;
   ahead.live.CheckAll();
   ahead.live.Take(event);
-  if (ChangesKeys(event)) TakeFile(ahead, last);  // or what is legal stays legal
-  return {.kind = Wish::Kind::kEvent, .number = static_cast<double>(before), .toml = event.Toml()};
+  for (const Event& later : std::span(file).subspan(ahead.of_file))  // what is legal there stays legal in other tables
+    if (ShareATable(event, later)) ahead.live.Take(later);
+  return {.kind = Wish::Kind::kEvent, .number = static_cast<double>(before), .event = event};
 }
 
 std::int64_t Helm::LookAhead() {
@@ -137,22 +136,22 @@ void Helm::TakeFile(Ahead& ahead, std::int64_t until) const {
   while (ahead.of_file < file.size() && file[ahead.of_file].tick <= until) ahead.live.Take(file[ahead.of_file++]);
 }
 
-Answer Helm::AnswerTo(const Wish& wish, std::optional<std::int64_t> tick) const {
+Answer Helm::AnswerTo(const Order& order, std::optional<std::int64_t> tick) const {
   if (!tick) return {false, "the run is over"};
   const auto at = [&](std::int64_t k) {
     return fmt::format("tick {} ({} s)", k, ShortestFloat(experiment_.time_s(k)));
   };
-  switch (wish.kind) {
+  switch (order.kind) {
     case Wish::Kind::kPause:
       return {true, "paused after " + at(*tick - 1)};
     case Wish::Kind::kResume:
       return {true, "goes on with " + at(*tick)};
     case Wish::Kind::kStep:
-      return {true,
-              "pauses after " + at(std::min<std::int64_t>(*tick - 1 + std::llround(wish.number), experiment_.ticks()))};
+      return {true, "pauses after " +
+                        at(std::min<std::int64_t>(*tick - 1 + std::llround(order.number), experiment_.ticks()))};
     case Wish::Kind::kPace:
-      return {true, wish.number > 0 ? fmt::format("{} simulated seconds a second", ShortestFloat(wish.number))
-                                    : "as fast as it goes"};
+      return {true, order.number > 0 ? fmt::format("{} simulated seconds a second", ShortestFloat(order.number))
+                                     : "as fast as it goes"};
     case Wish::Kind::kStop:
       return {true, "stops"};
     default:
@@ -198,22 +197,25 @@ void Helm::Open() {
   changed_.notify_all();
 }
 
-std::optional<Wish> Helm::Next() const {
+std::optional<Helm::Order> Helm::Next() const {
   const std::lock_guard lock(mutex_);
-  return answer_ ? std::nullopt : wish_;
+  return answer_ ? std::nullopt : order_;
 }
 
 void Helm::Done(std::optional<std::int64_t> tick) {
   const std::lock_guard lock(mutex_);
-  if (!wish_ || answer_) return;
-  answer_ = AnswerTo(*wish_, tick);
-  if (tick && wish_->kind == Wish::Kind::kEvent) granted_.push_back(live_->Parse(*tick, wish_->toml, kByHand));
+  if (!order_ || answer_) return;
+  answer_ = AnswerTo(*order_, tick);
+  if (tick && order_->event) {
+    granted_.push_back(*order_->event);
+    granted_.back().tick = *tick;
+  }
   changed_.notify_all();
 }
 
 void Helm::CheckAgain() {
   const std::lock_guard lock(mutex_);
-  if (!answer_) wish_.reset();
+  if (!answer_) order_.reset();
   changed_.notify_all();
 }
 
@@ -244,7 +246,7 @@ void Helm::Close() {
 
 void Helm::WaitUntil(Time time) const {
   std::unique_lock lock(mutex_);
-  changed_.wait_until(lock, time, [this] { return wish_ && !answer_; });
+  changed_.wait_until(lock, time, [this] { return order_ && !answer_; });
 }
 
 std::vector<Event> Helm::by_hand() const {

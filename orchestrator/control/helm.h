@@ -49,12 +49,17 @@ class Helm final : public RunControl, public RowSink {
   void CallWhenAsked(std::function<void()> wake);
   /// The run has begun: wishes are taken from now on.
   void Open();
-  /// The wish that is to be carried out, the same until Done(); nothing: there is none. An event's text is
-  /// Event::Toml().
-  std::optional<Wish> Next() const;
-  /// That wish is carried out: `tick` is the first that it holds for; nullopt: the run is over.
+  /// A wish that has been checked, for the run to carry out.
+  struct Order {
+    Wish::Kind kind = Wish::Kind::kPause;
+    double number = 0;  ///< as in Wish; kEvent: it must take effect before this tick
+    std::optional<Event> event = {};
+  };
+  /// The next order, the same until Done(); nothing: there is none.
+  std::optional<Order> Next() const;
+  /// That order is carried out: `tick` is the first that it holds for; nullopt: the run is over.
   void Done(std::optional<std::int64_t> tick);
-  /// That wish, an event, cannot take effect before the tick Wish::number: it is checked again for later ones.
+  /// That order, an event, cannot take effect before the tick Order::number: the wish is checked again for later ones.
   void CheckAgain();
   /// How the ticks go on now.
   void SetGoing(bool paused, double pace);
@@ -70,13 +75,13 @@ class Helm final : public RunControl, public RowSink {
   std::vector<int> numbers_by_hand() const;
 
  private:
-  /// What the wish asks for, with an event's text in its fixed form. An event takes effect at tick `from` or later.
-  /// Throws ConfigError or std::invalid_argument if it is not legal.
-  Wish Checked(const Wish& wish, std::int64_t from);
+  /// What the wish asks for. An event takes effect at tick `from` or later. Throws ConfigError or std::invalid_argument
+  /// if it is not legal.
+  Order Checked(const Wish& wish, std::int64_t from);
   /// Throws ConfigError if the event is not legal, or an event of the file after it. That holds for ticks before the
   /// file's next event: behind it there may be another law.
-  Wish CheckedEvent(const std::string& toml, std::int64_t from);
-  Answer AnswerTo(const Wish& wish, std::optional<std::int64_t> tick) const;
+  Order CheckedEvent(const std::string& toml, std::int64_t from);
+  Answer AnswerTo(const Order& order, std::optional<std::int64_t> tick) const;
 
   const Experiment& experiment_;
   std::mutex asking_;  // one wish at a time; guards ahead_
@@ -100,7 +105,7 @@ class Helm final : public RunControl, public RowSink {
   std::function<void(const Going&)> tell_;
   bool is_open_ = false, is_over_ = false;
   Going going_;
-  std::optional<Wish> wish_;
+  std::optional<Order> order_;
   std::optional<Answer> answer_;
   std::optional<LiveExperiment> live_;  // as of the newest row; never empty
   std::size_t of_file_ = 0;             // how many of the file's events are in live_

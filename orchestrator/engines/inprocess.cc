@@ -50,7 +50,10 @@ class Flight {
 
   void Step() { world_.Step(actuation_); }
   /// An event by hand, which takes effect at the next Exchange().
-  void Take(const std::string& toml) { by_hand_.push_back(Live().Parse(world_.tick(), toml, "event by hand")); }
+  void Take(Event event) {
+    event.tick = world_.tick();
+    by_hand_.push_back(std::move(event));
+  }
   /// The pace that an event of the newest tick has set; nullopt: none has.
   std::optional<double> new_pace() const { return new_pace_; }
   Contacts contacts() const { return world_.contacts(); }
@@ -78,7 +81,7 @@ class Flight {
   void TakeEvent(const Event& event) {
     Live().Take(event);
     if (event.set.contains("run.pace")) new_pace_ = Live().now()->run.pace.value_or(0);
-    row_.events.push_back({++row_.events_so_far, event.Toml()});
+    row_.events.push_back({++row_.events_so_far, event});
   }
 
   const Experiment& experiment_;
@@ -130,12 +133,12 @@ class Steering {
 
   /// Returns false if the run is to end.
   bool CarryOutWishes(std::int64_t tick) {
-    while (const auto wish = helm_.Next()) {
-      if (wish->kind == Wish::Kind::kEvent && static_cast<double>(tick) >= wish->number) {
+    while (const auto order = helm_.Next()) {
+      if (order->kind == Wish::Kind::kEvent && static_cast<double>(tick) >= order->number) {
         helm_.CheckAgain();
         continue;
       }
-      const bool goes_on = CarryOut(*wish);
+      const bool goes_on = CarryOut(*order);
       helm_.SetGoing(gate_.paused(), gate_.pace());
       helm_.Done(tick);
       if (!goes_on) return false;
@@ -143,8 +146,8 @@ class Steering {
     return true;
   }
 
-  bool CarryOut(const Wish& wish) {
-    switch (wish.kind) {
+  bool CarryOut(const Helm::Order& order) {
+    switch (order.kind) {
       case Wish::Kind::kPause:
         gate_.Pause();
         return true;
@@ -152,13 +155,13 @@ class Steering {
         gate_.Resume();
         return true;
       case Wish::Kind::kStep:
-        gate_.Step(std::llround(wish.number));
+        gate_.Step(std::llround(order.number));
         return true;
       case Wish::Kind::kPace:
-        gate_.SetPace(wish.number);
+        gate_.SetPace(order.number);
         return true;
       case Wish::Kind::kEvent:
-        flight_.Take(wish.toml);
+        flight_.Take(*order.event);
         return true;
       default:
         return false;

@@ -51,10 +51,10 @@ void RowFeed::Add(std::int64_t tick, const DecodedRow& decoded) { HandOut(FromTh
 
 void RowFeed::HandOut(const FlownRow& row) {
   events_.clear();
-  for (const auto& [number, toml] : row.decoded().events) {
+  for (const DecodedRow::Happening& happening : row.decoded().events) {
     if (!live_) live_.emplace(experiment_, &LawTable(), /*checked=*/true);
-    events_.push_back(live_->Parse(row.tick(), number, toml));
-    live_->Take(events_.back());
+    live_->Take(happening.event);
+    events_.push_back(happening.event);
   }
   if (!events_.empty())
     for (RowSink* sink : sinks_) sink->Adopt(*live_, events_);

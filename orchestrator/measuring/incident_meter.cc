@@ -69,7 +69,7 @@ void IncidentMeter::Add(const FlownRow& row, const LinkMeter& links) {
   NoteLimits(tick_, row.decoded().commands);
   NoteLosses(tick_, links);
   for (const DecodedRow::Happening& event : row.decoded().events)
-    Close({.kind = Kind::kEvent, .from = tick_, .to = tick_, .other = event.number, .toml = event.toml});
+    Close({.kind = Kind::kEvent, .from = tick_, .to = tick_, .other = event.number, .toml = event.event.Toml()});
 }
 
 Incidents IncidentMeter::Result(const Contacts& contacts, const std::vector<LateCommands>& late) const {

@@ -121,7 +121,7 @@ std::vector<IndexedRows::EventAt> IndexedRows::Events() {
         mascot_msgs::msg::Event event;
         Deserialize(sample.data, event);
         const auto tick = static_cast<std::int64_t>(event.tick());
-        if (tick < ticks()) events.push_back({tick, {static_cast<int>(event.number()), event.toml()}});
+        if (tick < ticks()) events.push_back({tick, static_cast<int>(event.number()), event.toml()});
       }
     }
   }

@@ -38,7 +38,8 @@ class IndexedRows {
 
   struct EventAt {
     std::int64_t tick = 0;
-    DecodedRow::Happening event;
+    int number = 0;
+    std::string toml;  ///< Event::Toml()
   };
   /// All events of the complete ticks, in order; none if record.topics left them out. Reads the chunks that hold one.
   std::vector<EventAt> Events();

@@ -37,7 +37,8 @@ void DecodeEvents(const Row& row, DecodedRow& decoded) try {
   mascot_msgs::msg::Event event;
   for (const Row::Bytes& bytes : row.events) {
     Deserialize(bytes, event);
-    decoded.events.push_back({static_cast<int>(event.number()), event.toml()});
+    decoded.events.push_back(
+        {static_cast<int>(event.number()), FromWire(event, static_cast<int>(decoded.motions.size()))});
   }
 } catch (const std::runtime_error& error) {
   throw std::runtime_error(fmt::format("tick {}: {}: {}", row.tick, Topic::Event().Name(), error.what()));
@@ -76,7 +77,7 @@ const Row& RowEncoder::Encode(std::int64_t tick, const DecodedRow& decoded) {
   Serialize(clock_, row_.clock);
   row_.events.resize(decoded.events.size());
   for (std::size_t k = 0; k < decoded.events.size(); ++k) {
-    ToWire(tick, rate, decoded.events[k].number, decoded.events[k].toml, event_);
+    ToWire(tick, rate, decoded.events[k].number, decoded.events[k].event.Toml(), event_);
     Serialize(event_, row_.events[k]);
   }
   for (std::size_t i = 0; i < decoded.motions.size(); ++i) {

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "base/motion.h"
+#include "experiment/events.h"
 
 namespace mascot {
 
@@ -29,8 +29,8 @@ struct Row {
 struct DecodedRow {
   /// An event that takes effect at this tick.
   struct Happening {
-    int number = 0;    ///< from 1 on, over the whole run
-    std::string toml;  ///< Event::Toml()
+    int number = 0;  ///< from 1 on, over the whole run
+    Event event = {};
   };
 
   explicit DecodedRow(int agents)

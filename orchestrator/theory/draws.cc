@@ -114,7 +114,7 @@ std::vector<std::string> DrawsOf(const Experiment& experiment) {
   const auto may_draw = [&](const Event& event) { return MayDraw(event, laws_draw); };
   if (std::ranges::none_of(experiment.events, may_draw)) return keys;  // each event means another reading
   LiveExperiment live(experiment, &LawTable(), /*checked=*/true);
-  for (const Event& event : experiment.events) AddAll(*live.Take(event), keys);
+  for (const Event& event : experiment.events) AddAll(*live.After(event), keys);
   return keys;
 }
 

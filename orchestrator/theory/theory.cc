@@ -221,7 +221,7 @@ std::vector<LaterPhase> PredictLater(const Experiment& start) {
   std::string failure;
   auto event = start.events.begin();
   for (std::int64_t tick = 0; tick <= phases.back(); ++tick) {
-    for (; event != start.events.end() && event->tick == tick; ++event) team.Adopt(live.Take(*event));
+    for (; event != start.events.end() && event->tick == tick; ++event) team.Adopt(live.After(*event));
     if (std::ranges::binary_search(phases, tick)) {
       const auto phase = std::make_shared<const Experiment>(
           PhaseAsExperiment(start, *live.now(), tick, EndOfPhase(start, tick), team.motions()));

@@ -88,17 +88,21 @@ void Viewers::SayHowItEnded(const EngineResult& result) {
   view_->SetState(state);
 }
 
+void Viewers::Events::Adopt(const LiveExperiment& live, std::span<const Event> /*events*/) {
+  now_ = live.now();
+  keys_ = ShownKeysOf(live);
+}
+
 void Viewers::Events::Add(const FlownRow& row) {
   const auto& events = row.decoded().events;
   if (events.empty()) return;
   const std::vector<int> by_hand = helm_.numbers_by_hand();
-  const std::vector<ShownKey> keys = ShownKeysOf(*now_);
   for (const DecodedRow::Happening& event : events)
     view_.OnEvent({.number = event.number,
                    .tick = row.tick(),
-                   .toml = event.toml,
+                   .toml = event.event.Toml(),
                    .by_hand = std::ranges::binary_search(by_hand, event.number)},
-                  *now_, keys);
+                  *now_, keys_);
 }
 
 }  // namespace mascot

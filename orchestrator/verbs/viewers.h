@@ -59,13 +59,14 @@ class Viewers {
   class Events final : public RowSink {
    public:
     Events(LiveView& view, const Helm& helm) : view_(view), helm_(helm) {}
-    void Adopt(const LiveExperiment& live, std::span<const Event> /*events*/) override { now_ = live.now(); }
+    void Adopt(const LiveExperiment& live, std::span<const Event> events) override;
     void Add(const FlownRow& row) override;
 
    private:
     LiveView& view_;
     const Helm& helm_;
     std::shared_ptr<const Experiment> now_;
+    std::vector<ShownKey> keys_;
   };
 
   /// Prints a line about viewers, and keeps it in the log. From any thread.

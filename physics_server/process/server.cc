@@ -206,7 +206,7 @@ std::int64_t Server::CarryOut(const mascot_msgs::msg::Request& request) {
       break;
     case Ask::kEvent:
       if (static_cast<double>(next) >= request.value()) return kTooLate;
-      by_hand_.push_back(live_.Parse(next, request.toml(), "event by hand"));
+      by_hand_.push_back(EventFrom(next, request.toml(), experiment_.size(), "event by hand"));
       break;
     default:
       throw std::runtime_error("an unknown kind of request: " + std::to_string(request.kind()));

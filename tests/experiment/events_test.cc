@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <map>
+#include <random>
+
 #include "agent/laws/laws.h"
 #include "experiment/live_experiment.h"
 #include "tests/experiment/fly_rows.h"
@@ -220,14 +223,14 @@ TEST(Events, ReachAgentsWithALawOfTheirOwn) {
       Three("name = 'consensus'\nbeta = 1.0\n", "[[agents.override]]\nid = 1\nlaw = { beta = 2.0 }\n");
   const Experiment experiment = Load(base + EventTable("set = { \"law.beta\" = 3.0 }"));
   LiveExperiment live(experiment, &LawTable(), false);
-  const auto now = live.Take(experiment.events.front());
+  const auto now = live.After(experiment.events.front());
   for (int id = 1; id <= 3; ++id) EXPECT_EQ(LinearFormOf(now->agent(id).law)->beta, 3.0) << id;
 }
 
 TEST(Events, ForAllReachAgentsToWhichAnEarlierOneGaveAValueOfTheirOwn) {
   const Experiment experiment = Load(Three("name = 'consensus'\n"));
   LiveExperiment live(experiment, &LawTable(), false);
-  const auto take = [&](const std::string& toml) { return live.Take(live.Parse(3, toml, "event by hand")); };
+  const auto take = [&](const std::string& toml) { return live.After(EventFrom(3, toml, 3, "event by hand")); };
   const auto betas = [](const Experiment& now) {
     std::vector<double> each;
     for (const AgentConfig& agent : now.agents) each.push_back(LinearFormOf(agent.law)->beta);
@@ -342,7 +345,7 @@ TEST(Events, ForAllTakeTheWaypointsOfAnAgentThatAnEventSentElsewhere) {
 TEST(Events, ThatAreRefusedChangeNothing) {
   const Experiment experiment = Load(Three("name = 'consensus'\n"));
   LiveExperiment live(experiment, &LawTable(), false);
-  const auto refused = live.Parse(3, "set = { \"law.beta\" = -3.0 }\nagents = [1]", "event by hand");
+  const auto refused = EventFrom(3, "set = { \"law.beta\" = -3.0 }\nagents = [1]", 3, "event by hand");
   try {
     live.Take(refused);
     ADD_FAILURE() << "was taken";
@@ -350,9 +353,120 @@ TEST(Events, ThatAreRefusedChangeNothing) {
     EXPECT_STREQ(error.what(), "event by hand: agents.override[0].law.beta: expected a number in [0, 1000], got -3.0");
   }
   EXPECT_EQ(live.now(), nullptr);
-  const auto now = live.Take(live.Parse(3, "set = { \"law.beta\" = 3.0 }\nagents = [2]", "event by hand"));
+  const auto now = live.After(EventFrom(3, "set = { \"law.beta\" = 3.0 }\nagents = [2]", 3, "event by hand"));
   EXPECT_EQ(LinearFormOf(now->agent(1).law)->beta, 1.0);
   EXPECT_EQ(LinearFormOf(now->agent(2).law)->beta, 3.0);
+}
+
+/// Values of live keys: at 0 those that are the same for all, else of an agent, by id.
+using Values = std::map<int, std::map<std::string, double>>;
+
+constexpr const char* kOfAll[] = {"run.pace",        "physics.wind.gust_std_m_per_s",
+                                  "graph.range_m",   "physics.wind.gust_time_s",
+                                  "link.loss",       "link.delay_s",
+                                  "link.reordering", "link.hold_s"};
+constexpr const char* kOfAgents[] = {"law.p_gain",
+                                     "law.v_gain",
+                                     "law.beta",
+                                     "law.safety.distance_m",
+                                     "law.safety.gamma",
+                                     "control.max_acceleration_m_per_s2",
+                                     "control.max_speed_m_per_s",
+                                     "control.velocity_gain"};
+
+std::string Lines(const std::map<std::string, double>& values) {
+  std::string text;
+  for (const auto& [key, value] : values) text += key + " = " + ShortestFloat(value) + "\n";
+  return text;
+}
+
+/// An experiment in which each agent has all its keys itself.
+std::string FileWith(const Values& values) {
+  std::string text =
+      "run.duration_s = 1.0\nlaw.name = 'consensus'\ngraph.edges = [[1, 2, 0.5], [1, 3]]\nagents.count = 3\n"
+      "agents.model = 'double_integrator'\nagents.position_m = [[0, 0, 1], [1, 0, 2], [0, 2, 3]]\n" +
+      Lines(values.at(0)) + "[[link.override]]\nedges = [[1, 3]]\nsymmetric = true\n";
+  for (int id = 1; id <= 3; ++id)
+    text += "[[agents.override]]\nid = " + std::to_string(id) + "\n" + Lines(values.at(id));
+  return text;
+}
+
+/// What events can change in an experiment, and some of what they cannot.
+std::string LiveText(const Experiment& now) {
+  std::string text;
+  const auto add = [&](auto... numbers) { ((text += ShortestFloat(numbers) + " "), ...); };
+  add(now.run.pace.value_or(-1), now.physics.wind.gust_std_m_per_s, now.physics.wind.gust_time_s,
+      now.schedule.range_m());
+  const LinkConfig& link = now.links.Of(1, 2);
+  add(link.loss, link.delay_s, link.jitter_s, link.reordering, link.hold_s, now.links.Of(1, 3).symmetric ? 1.0 : 0.0);
+  for (const AgentConfig& agent : now.agents) {
+    const LinearForm law = *LinearFormOf(agent.law);
+    add(law.p, law.g, law.beta, agent.law.safety->distance_m, agent.law.safety->gamma,
+        agent.control.max_acceleration_m_per_s2, agent.control.max_speed_m_per_s, agent.control.velocity_gain,
+        agent.airframe.tilt_limit_rad, agent.airframe.altitude.kp);
+  }
+  return text + "\n";
+}
+
+TEST(Events, InAnyOrderMakeTheExperimentOfTheFileThatHasTheirValues) {
+  std::mt19937 random(7);
+  const auto drawn = [&](std::size_t most) { return random() % most; };
+  Values values;
+  for (const char* key : kOfAll) values[0][key] = 0.5;
+  for (int id = 1; id <= 3; ++id)
+    for (const char* key : kOfAgents) values[id][key] = 0.5;
+  // At the start the team has the values of agents, and one agent has two of them itself.
+  const std::string file = FileWith(values);
+  const Experiment experiment = Load(Lines(values[1]) + file.substr(0, file.find("[[agents.override]]")) +
+                                     "[[agents.override]]\nid = 3\nlaw.beta = 0.5\ncontrol.velocity_gain = 0.5\n");
+  LiveExperiment live(experiment, &LawTable(), /*checked=*/false);
+  for (int k = 0; k < 300; ++k) {
+    Event event{.tick = k / 10, .where = "test"};
+    const double value = 0.01 * static_cast<double>(1 + drawn(99));
+    const bool of_agents = drawn(3) > 0;
+    const std::string key = of_agents ? kOfAgents[drawn(std::size(kOfAgents))] : kOfAll[drawn(std::size(kOfAll))];
+    event.set[key] = Value{value};
+    if (of_agents && drawn(2) > 0) event.agents = drawn(2) > 0 ? std::vector{2} : std::vector{1, 3};
+    if (!of_agents) values[0][key] = value;
+    for (int id = 1; of_agents && id <= 3; ++id)
+      if (event.agents.empty() || std::ranges::find(event.agents, id) != event.agents.end()) values[id][key] = value;
+    live.Take(event);
+    if (k % 10 != 0) continue;
+    ASSERT_EQ(LiveText(*live.now()), LiveText(Load(FileWith(values)))) << k << ": " << event.Toml();
+  }
+}
+
+TEST(Events, ThatAreRefusedLeaveEveryTableAsItWas) {
+  const Experiment experiment =
+      Load(Three("name = 'custom'\nparams = { x = 1.0 }\npython = '''\n"
+                 "def set(me, params):\n    pass\ndef control(t, me, neighbours):\n    return [0, 0, 0]\n'''\n"));
+  LiveExperiment live(experiment, &LawTable(), /*checked=*/true);
+  const auto refusal = [&](const std::string& toml) -> std::string {
+    try {
+      live.Take(EventFrom(3, toml, 3, "event by hand"));
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  EXPECT_EQ(refusal("set = { \"law.params.x.y\" = 1.0 }"),
+            "event by hand: law.params.x: expected a table to set y in, got 1.0");
+  EXPECT_EQ(refusal("set = { \"law.params.z.y[3]\" = 1.0 }"),
+            "event by hand: law.params.z.y: expected a place in a list of 0, got [3]");
+  EXPECT_EQ(
+      refusal("set = { \"law.params.a b\" = 1.0 }"),
+      "event by hand: expected a dotted key such as law.p_gain or agents.override[0].start_s, got 'law.params.a b'");
+  EXPECT_EQ(refusal("set = { \"law.params.new\" = 1.0, \"link.loss\" = 2.0 }"),
+            "event by hand: link.loss: expected a number in [0, 1], got 2.0");
+  EXPECT_EQ(refusal("set = { \"law.params.x\" = 5.0, \"control.velocity_gain\" = -1 }\nagents = [2, 3]"),
+            "event by hand: agents.override[0].control.velocity_gain: expected a number in (0, 1000], got -1\n"
+            "event by hand: agents.override[1].control.velocity_gain: expected a number in (0, 1000], got -1");
+  EXPECT_EQ(live.count(), 0);
+  EXPECT_EQ(ToToml(*live.ValueOf("law.params")), "{ \"x\" = 1.0 }");
+  EXPECT_EQ(live.ValueOf("agents.override[0]"), std::nullopt);
+  live.Take(EventFrom(3, "set = { \"law.params.y\" = 2.0 }\nagents = [3]", 3, "event by hand"));
+  EXPECT_EQ(ToToml(*live.ValueOf("agents.override")),
+            "[{ \"id\" = 3, \"law\" = { \"params\" = { \"x\" = 1.0, \"y\" = 2.0 } } }]");
 }
 
 TEST(Events, CutAndMendEdges) {

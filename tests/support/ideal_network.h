@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "agent/laws/laws.h"
@@ -18,7 +19,8 @@ namespace mascot {
 class IdealNetwork {
  public:
   explicit IdealNetwork(const std::string& toml)
-      : experiment(LoadExperiment(Section::FromText(toml, "test.toml"), "test")) {
+      : IdealNetwork(LoadExperiment(Section::FromText(toml, "test.toml"), "test")) {}
+  explicit IdealNetwork(Experiment flown) : experiment(std::move(flown)) {
     for (const AgentConfig& agent : experiment.agents) {
       laws.push_back(MakeLaw(experiment, agent.id));
       ranges.emplace_back(experiment.sensors.range_m, experiment.physics.obstacles);

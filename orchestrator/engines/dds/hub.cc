@@ -175,18 +175,18 @@ void Hub::Ask(mascot::Ask ask, const std::string& reason) {
   Note(fmt::format("request: {} ({})", Text(ask), reason));
 }
 
-void Hub::Steer(const Wish& wish, std::uint32_t number) {
+void Hub::Steer(const Helm::Order& order, std::uint32_t number) {
   const bool is_new = std::exchange(newest_request_, number) != number;
   if (!is_new && Now() < next_request_) return;
   next_request_ = Now() + 200ms;
-  const mascot::Ask ask = AskOf(wish.kind);
+  const mascot::Ask ask = AskOf(order.kind);
   mascot_msgs::msg::Request request;
   request.kind(static_cast<std::uint8_t>(ask));
   request.number(number);
-  request.value(wish.number);
-  request.toml(wish.toml);
+  request.value(order.number);
+  if (order.event) request.toml(order.event->Toml());
   requests_.Write(request);
-  if (is_new) Note(fmt::format("request {}: {} {} {}", number, Text(ask), wish.number, wish.toml));
+  if (is_new) Note(fmt::format("request {}: {} {} {}", number, Text(ask), order.number, request.toml()));
 }
 
 std::int64_t Hub::server_words() const {

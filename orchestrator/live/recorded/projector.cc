@@ -3,8 +3,6 @@
 #include <exception>
 #include <utility>
 
-#include "orchestrator/live/shown/shown_keys.h"
-
 namespace mascot {
 namespace {
 
@@ -58,7 +56,7 @@ bool Projector::FollowEdges() try {
 
 void Projector::Publish() {
   const std::shared_ptr<const Experiment> now = run_.At(row_.tick);
-  if (now != experiment_) view_.SetExperiment(*now, ShownKeysOf(*now));
+  if (now != experiment_) view_.SetExperiment(*now, run_.KeysAt(row_.tick));
   experiment_ = now;
   view_.Take(row_);
 }

@@ -6,6 +6,7 @@
 
 #include "agent/laws/laws.h"
 #include "orchestrator/live/recorded/incident_table.h"
+#include "orchestrator/live/shown/shown_keys.h"
 #include "orchestrator/measuring/agreement_meter.h"
 
 namespace mascot {
@@ -32,7 +33,7 @@ RecordedRun::RecordedRun(const std::string& run)
 
 std::vector<ShownEvent> RecordedRun::Events() const {
   std::vector<ShownEvent> shown;
-  for (const auto& [tick, event] : events_) shown.push_back({.number = event.number, .tick = tick, .toml = event.toml});
+  for (const auto& [tick, number, toml] : events_) shown.push_back({.number = number, .tick = tick, .toml = toml});
   if (!shown.empty()) TellByHand(rows_.path(), experiment_, shown);
   return shown;
 }
@@ -48,8 +49,8 @@ std::shared_ptr<const Experiment> RecordedRun::StateAfter(std::size_t events) {
   if (events < taken()) live_.emplace(marks_[events / kBetweenMarks]);
   while (taken() < events) {
     if (taken() == marks_.size() * kBetweenMarks) marks_.push_back(*live_);
-    const auto& [tick, event] = events_[taken()];
-    live_->Take(tick, event.number, event.toml);
+    const auto& [tick, number, toml] = events_[taken()];
+    live_->Take(EventFrom(tick, toml, experiment_.size(), "event " + std::to_string(number)));
   }
   return live_->now();
 }
@@ -57,6 +58,13 @@ std::shared_ptr<const Experiment> RecordedRun::StateAfter(std::size_t events) {
 std::shared_ptr<const Experiment> RecordedRun::At(std::int64_t tick) {
   const std::size_t events = EventsUpTo(tick);
   return events == 0 ? std::shared_ptr<const Experiment>(std::shared_ptr<void>(), &experiment_) : StateAfter(events);
+}
+
+std::vector<ShownKey> RecordedRun::KeysAt(std::int64_t tick) {
+  const std::size_t events = EventsUpTo(tick);
+  if (events == 0) return ShownKeysOf(experiment_);
+  StateAfter(events);
+  return ShownKeysOf(*live_);
 }
 
 void RecordedRun::Show(std::int64_t tick, ShownRow& row) {

@@ -9,33 +9,35 @@
 namespace mascot {
 namespace {
 
-/// The value of a dotted key; null: the experiment has none, as of a parameter of another agent's law.
-const Value* FindValue(const Value& table, const std::string& path) {
-  const std::size_t dot = path.find('.');
-  const Value* value = table.Find(path.substr(0, dot));
-  return value == nullptr || dot == std::string::npos ? value : FindValue(*value, path.substr(dot + 1));
+/// The value of a key that holds numbers, or lists of them: with a point, however it was written.
+Value WithPoint(const Value& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value.data)) return {static_cast<double>(*integer)};
+  const auto* list = std::get_if<Value::List>(&value.data);
+  if (list == nullptr) return value;
+  Value::List numbers;
+  for (const Value& item : *list) numbers.push_back(WithPoint(item));
+  return {std::move(numbers)};
 }
 
-/// Numbers, booleans, texts and lists of them are written alike in TOML and in JSON; other values are null.
-std::string JsonOf(const Value* value) {
-  const std::string text = value == nullptr ? "null" : ToToml(*value);
+/// Numbers, booleans, texts and lists of them are written alike in TOML and in JSON; other values, and none, are null.
+std::string JsonOf(const Key& row, const std::optional<Value>& value) {
+  using enum ValueKind;
+  const bool has_points = row.kind == kNumber || row.kind == kVector3 || row.kind == kNumbers || row.kind == kPoints;
+  const std::string text = !value ? "null" : ToToml(has_points ? WithPoint(*value) : *value);
   return JsonOrNull<nlohmann::json>(text).is_null() ? "null" : text;
 }
 
 }  // namespace
 
-std::vector<ShownKey> ShownKeysOf(const Experiment& now) {
-  Section document = Section::FromText(now.resolved, "config.toml");
-  std::map<std::string, Value> tables;
+std::vector<ShownKey> ShownKeysOf(const LiveExperiment& live) {
   std::vector<ShownKey> keys;
-  for (const LiveKey& key : LiveKeysOf(now, LawTable())) {
-    const std::size_t dot = key.path.find('.');
-    const std::string table = key.path.substr(0, dot);
-    const Value& values = tables.try_emplace(table, document.Free(table)).first->second;
-    const Value* value = dot == std::string::npos ? &values : FindValue(values, key.path.substr(dot + 1));
-    keys.push_back({key.path, key.row, JsonOf(value)});
-  }
+  for (const LiveKey& key : LiveKeysOf(live.current(), LawTable()))
+    keys.push_back({key.path, key.row, JsonOf(key.row, live.ValueOf(key.path))});
   return keys;
+}
+
+std::vector<ShownKey> ShownKeysOf(const Experiment& start) {
+  return ShownKeysOf(LiveExperiment(start, &LawTable(), /*checked=*/true));
 }
 
 }  // namespace mascot

@@ -13,11 +13,10 @@ namespace {
 
 /// The experiment as its last phase flies it.
 std::shared_ptr<const Experiment> AtTheEnd(const Experiment& start) {
-  auto now = std::make_shared<const Experiment>(start);
-  if (PhasesOf(start).empty()) return now;
+  if (PhasesOf(start).empty()) return std::make_shared<const Experiment>(start);
   LiveExperiment live(start, &LawTable(), /*checked=*/true);
-  for (const Event& event : start.events) now = live.Take(event);
-  return now;
+  for (const Event& event : start.events) live.Take(event);
+  return live.now();
 }
 
 /// The value of law.name in a run; empty: the sweep does not set it.

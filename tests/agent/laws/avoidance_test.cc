@@ -117,7 +117,7 @@ double LeastOfRestlessFlight(const std::string& toml, std::uint64_t seed) {
   for (int tick = 0; tick < 6000; ++tick) {
     if (tick % 150 == 0) {
       const std::string goal = Point({random.In(3, 7), random.In(-2, 2), random.In(0, 4)});
-      holder = live.Take(live.Parse(tick, "set = { \"law.goals_m\" = [" + goal + "] }", "test"));
+      holder = live.After(EventFrom(tick, "set = { \"law.goals_m\" = [" + goal + "] }", first->size(), "test"));
       net.laws[0]->Adopt(holder->agent(1));
     }
     const Eigen::Vector3d want_W = net.Wants()[0];

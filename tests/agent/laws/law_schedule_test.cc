@@ -109,10 +109,10 @@ TEST(LawSchedule, ALawOfTheSameNameGoesOnIfOnlyLiveKeysDiffer) {
   EXPECT_EQ(DistanceAt(goes_on, 60), DistanceAt(goes_on, 100)) << "all is over";
   const Experiment begins = Load(Pair(law + Phase("0.5", "time_s = 0.3"), "1.0"));
   LiveExperiment live(begins, &LawTable(), true);
-  EXPECT_EQ(live.Take(begins.events.front())->agent(1).law.since, 50) << "time_s is not live";
+  EXPECT_EQ(live.After(begins.events.front())->agent(1).law.since, 50) << "time_s is not live";
   const Experiment same = Load(Pair(law + Phase("0.5", "gain = 1.0"), "1.0"));
   LiveExperiment other(same, &LawTable(), true);
-  EXPECT_EQ(other.Take(same.events.front())->agent(1).law.since, 0);
+  EXPECT_EQ(other.After(same.events.front())->agent(1).law.since, 0);
 }
 
 TEST(LawSchedule, OfAnAgentConcernsItAlone) {
@@ -187,7 +187,7 @@ TEST(LawSchedule, AgentsWithALawOfTheirOwnInheritNothingOfATeamsPhase) {
   const std::string phase = Phase("0.5", "leader = 1\nleader_waypoints_m = [[1, 1, 1]]\nsafety = { distance_m = 0.5 }");
   const Experiment experiment = Load(Pair("name = 'consensus'\n" + phase) + own);
   LiveExperiment live(experiment, &LawTable(), false);
-  const auto now = live.Take(experiment.events.front());
+  const auto now = live.After(experiment.events.front());
   EXPECT_TRUE(now->agent(1).law.safety);
   EXPECT_FALSE(now->agent(2).law.safety);
   EXPECT_EQ(now->agent(2).law.leader, 0);
@@ -202,7 +202,7 @@ TEST(LawSchedule, ASafetyFilterStaysAroundAnotherLaw) {
                                                 "'xy'") +
                                           Phase("1.0", "name = 'consensus'\nsafety = { distance_m = 2.5 }")));
   LiveExperiment live(experiment, &LawTable(), false);
-  const auto second = live.Take(experiment.events[0]), third = live.Take(experiment.events[1]);
+  const auto second = live.After(experiment.events[0]), third = live.After(experiment.events[1]);
   EXPECT_EQ(second->agent(1).law.safety->distance_m, 1.5);
   EXPECT_EQ(second->agent(1).law.safety->gamma, 0.5);
   EXPECT_EQ(third->agent(1).law.safety->distance_m, 2.5);
@@ -210,7 +210,7 @@ TEST(LawSchedule, ASafetyFilterStaysAroundAnotherLaw) {
   EXPECT_EQ(third->agent(1).law.since, 100);
   const Experiment changed = Load(Pair(filtered + Phase("0.5", "safety = { distance_m = 2.0 }")));
   LiveExperiment other(changed, &LawTable(), false);
-  EXPECT_EQ(other.Take(changed.events[0])->agent(1).law.since, 0) << "a filter is nothing that a law remembers";
+  EXPECT_EQ(other.After(changed.events[0])->agent(1).law.since, 0) << "a filter is nothing that a law remembers";
 }
 
 TEST(LawSchedule, APythonLawBeginsAnewWithOtherParams) {

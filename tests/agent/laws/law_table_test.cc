@@ -5,10 +5,13 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <random>
 #include <set>
 
 #include "agent/laws/laws.h"
+#include "experiment/live_experiment.h"
+#include "experiment/live_keys.h"
 #include "tests/support/ideal_network.h"
 #include "tests/support/scratch.h"
 
@@ -134,6 +137,78 @@ TEST(LawTable, NamesOnlyParametersWhoseChangeChangesTheResultAndAllOfThem) {
     for (const Key& parameter : law.parameters)
       if (std::ranges::find(elsewhere, parameter.name) == elsewhere.end()) named.emplace_back(parameter.name);
     EXPECT_THAT(tried, ::testing::UnorderedElementsAreArray(named)) << law.name;
+  }
+}
+
+/// The law table of the resolved experiment.
+Value::Table LawOf(const std::string& toml) {
+  Section document = Section::FromText(toml, "test.toml");
+  LoadExperiment(document, "test");
+  return Section::FromText(document.Resolved(), "test.toml").Child("law").InTheFile();
+}
+
+/// The keys of [law] in which the second experiment differs from the first, and their values in it; nullopt: not all of
+/// them are live.
+std::optional<std::map<std::string, Value>> LiveDifference(const std::string& law, const std::string& first,
+                                                           const std::string& second) {
+  const Value::Table before = LawOf(first), after = LawOf(second);
+  const std::vector<Key> rows = KeysOfLaw(LawTable(), law);
+  for (const auto& [key, value] : before)
+    if (!after.contains(key)) return std::nullopt;
+  std::map<std::string, Value> set;
+  for (const auto& [key, value] : after) {
+    if (const auto was = before.find(key); was != before.end() && was->second == value) continue;
+    const Key* row = FindRow(rows, key);
+    if (row == nullptr || !row->live || row->kind == ValueKind::kAny) return std::nullopt;
+    set["law." + key] = value;
+  }
+  return set;
+}
+
+/// Where agents are after three seconds, or why the experiment is none.
+std::string FlightOf(const std::function<Experiment()>& experiment) {
+  try {
+    IdealNetwork network(experiment());
+    network.RunUntil(3);
+    std::string places;
+    for (const Motion& motion : network.motions)
+      for (const double coordinate : motion.p_WB) places += ShortestFloat(coordinate) + " ";
+    return places;
+  } catch (const ConfigError& error) {
+    return error.mistakes().front().substr(error.mistakes().front().find(": "));
+  }
+}
+
+TEST(LawTable, HasLiveKeysWhoseEventsMakeTheExperimentOfTheFileThatHasTheirValues) {
+  for (const LawEntry& law : Laws()) {
+    const std::string name(law.name);
+    const Trial trial = TrialOf(name);
+    std::set<std::string> tried;
+    for (const Setting& setting : trial.settings) {
+      const std::string base = With(trial, name, setting.base), changed = With(trial, name, setting.changed);
+      const auto set = LiveDifference(name, base, changed);
+      if (!set || set->empty()) continue;
+      const Experiment start = LoadExperiment(Section::FromText(base, "test.toml"), "test");
+      std::string own;
+      for (const auto& [key, value] : *set) {
+        tried.insert(key);
+        own += (own.empty() ? "" : ", ") + key.substr(key.find('.') + 1) + " = " + ToToml(value);
+      }
+      const std::string for_one = base + "[[agents.override]]\nid = 2\nlaw = { " + own + " }\n";
+      for (const std::vector<int>& agents : {std::vector<int>(), {2}}) {
+        const std::string flown = FlightOf([&] {
+          LiveExperiment live(start, &LawTable(), /*checked=*/false);
+          return *live.After({.tick = 1, .set = *set, .agents = agents, .where = "test"});
+        });
+        const std::string of_file = FlightOf(
+            [&] { return LoadExperiment(Section::FromText(agents.empty() ? changed : for_one, "test.toml"), "test"); });
+        EXPECT_EQ(flown, of_file) << name << ", " << agents.size() << " agents: " << own;
+      }
+    }
+    for (const Key& row : law.parameters) {
+      if (!row.live || row.kind == ValueKind::kAny) continue;
+      EXPECT_TRUE(tried.contains("law." + std::string(row.name))) << name << ": " << row.name;
+    }
   }
 }
 

@@ -29,7 +29,7 @@ class Kept final : public RowSink {
  public:
   void Add(const FlownRow& row) override {
     for (const Motion& motion : row.decoded().motions) positions.push_back(motion.p_WB);
-    for (const auto& event : row.decoded().events) events.emplace_back(row.tick(), event.toml);
+    for (const auto& event : row.decoded().events) events.emplace_back(row.tick(), event.event.Toml());
     newest = row.tick();
   }
   std::vector<Eigen::Vector3d> positions;

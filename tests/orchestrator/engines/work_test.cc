@@ -228,7 +228,7 @@ TEST(Limits, OfEventsHoldForARunToo) {
   EXPECT_EQ(answer.words, "event by hand: expected at most 100000 events in a run, got one more");
 }
 
-/// Takes all events of a file, as every process of a run does.
+/// What a process of a run does with all events of a file.
 double Taking(const Experiment& experiment) {
   LiveExperiment live(experiment, &LawTable(), /*checked=*/true);
   return BytesOf([&] {
@@ -242,31 +242,91 @@ TEST(Work, OfAnEventDoesNotDependOnHowManyThereAre) {
   EXPECT_LT(Taking(many) / 500, 1.1 * Taking(few) / 50);
 }
 
-TEST(Work, OfAnEventThatCutsAnEdgeIsNoReadingOfTheExperiment) {
-  const auto toml = [](const std::string& keys) { return Team() + Events(100, [&](int) { return keys; }); };
-  EXPECT_LT(Taking(Load(toml("cut = [[1, 2]]"))), 0.1 * Taking(Load(toml("set = { law.p_gain = 0.3 }"))));
+/// A team in a file that says where each agent starts.
+std::string Placed(int agents) {
+  return "run.duration_s = 1000\ngraph.topology = 'ring'\nlaw.name = 'consensus'\noutput.fidelity = false\n"
+         "agents = { count = " +
+         std::to_string(agents) + ", position_m = [" +
+         Repeated(agents, [](int k) { return "[" + std::to_string(2 * k) + ".25, 0.5, 1.5], "; }) + "] }\n";
 }
 
-TEST(Work, OfAnEventByHandDoesNotDependOnHowManyWereGivenBefore) {
-  const Experiment experiment = Load(Team());
-  Helm helm(experiment, 0);
-  helm.Open();
-  const std::jthread run([&helm](const std::stop_token& stop) {  // it stands still: all take effect at the same tick
-    while (!stop.stop_requested()) {
-      helm.WaitUntil(std::chrono::steady_clock::now() + std::chrono::milliseconds(10));
-      if (helm.Next()) helm.Done(7);
-    }
-  });
-  const auto ask = [&](int count) {
+constexpr const char* kSmallEvents[] = {"set = { law.p_gain = 0.3 }",
+                                        "set = { control.max_speed_m_per_s = 2.0 }\nagents = [2]",
+                                        "set = { link.loss = 0.1, graph.range_m = 500.0 }",
+                                        "set = { physics.wind.gust_std_m_per_s = 0.1 }",
+                                        "set = { run.pace = 2.0 }",
+                                        "cut = [[2, 1]]"};
+
+TEST(Work, OfAnEventIsNoReadingOfTheExperiment) {
+  const std::string team = Placed(200);
+  Load(team);
+  const double reading = BytesOf([&] { Load(team); });
+  for (const char* keys : kSmallEvents)
+    EXPECT_LT(Taking(Load(team + Events(100, [&](int) { return keys; }))) / 100, 0.05 * reading) << keys;
+}
+
+TEST(Work, OfAnEventDoesNotGrowWithTheTeam) {
+  for (const char* keys : kSmallEvents) {
+    const auto taking = [&](int agents) {
+      return Taking(Load(Team("", agents) + Events(100, [&](int) { return keys; })));
+    };
+    EXPECT_LT(taking(400), 1.2 * taking(4)) << keys;
+  }
+}
+
+/// Asks a run that stands still; what is granted takes effect at its next tick, the 7th.
+class Asked {
+ public:
+  explicit Asked(const std::string& toml) : experiment_(Load(toml)), helm_(experiment_, 0) { helm_.Open(); }
+  /// What the orchestrator does until so many events are granted.
+  double Work(const std::string& event, int count = 1) {
     return BytesOf([&] {
-      for (int k = 0; k < count; ++k)
-        EXPECT_TRUE(helm.Ask({.kind = Wish::Kind::kEvent, .toml = "set = { law.p_gain = 0.3 }"}).granted);
+      for (int k = 0; k < count; ++k) EXPECT_TRUE(helm_.Ask({.kind = Wish::Kind::kEvent, .toml = event}).granted);
     });
+  }
+
+ private:
+  const Experiment experiment_;
+  Helm helm_;
+  const std::jthread run_{[this](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      helm_.WaitUntil(std::chrono::steady_clock::now() + std::chrono::milliseconds(10));
+      if (helm_.Next()) helm_.Done(7);
+    }
+  }};
+};
+
+constexpr const char* kByHand = "set = { law.p_gain = 0.3 }";
+
+TEST(Work, OfAnEventByHandDoesNotDependOnHowManyWereGivenBefore) {
+  Asked run(Team());
+  run.Work(kByHand);
+  const double first = run.Work(kByHand, 50);
+  run.Work(kByHand, 400);
+  EXPECT_LT(run.Work(kByHand, 50), 1.1 * first);
+}
+
+TEST(Work, OfAnEventByHandDoesNotDependOnLaterEventsOfTheFileInOtherTables) {
+  const auto work = [](int later) {
+    Asked run(Team("", 200) + Events(later, [](int k) {
+                return k < 10 ? "cut = [[2, 1]]" : "set = { link.loss = 0.1, control.velocity_gain = 1.5 }";
+              }));
+    run.Work(kByHand);
+    return run.Work(kByHand);
   };
-  ask(1);
-  const double first = ask(50);
-  ask(400);
-  EXPECT_LT(ask(50), 1.1 * first);
+  EXPECT_LT(work(400), 1.1 * work(0));
+}
+
+TEST(Work, OfAnEventByHandReadsForEachLaterEventOfItsTableThatTableAlone) {
+  const std::string team = Placed(200);
+  Load(team);
+  const double reading = BytesOf([&] { Load(team); });
+  const auto work = [&](int later) {
+    Asked run(team + Events(later, [](int) { return "set = { law.beta = 2.0 }"; }));
+    run.Work(kByHand);
+    return run.Work(kByHand);
+  };
+  EXPECT_LT((work(400) - work(100)) / 300, 0.05 * reading);
 }
 
 }  // namespace

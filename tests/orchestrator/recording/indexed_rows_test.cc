@@ -49,10 +49,10 @@ TEST(IndexedRows, NameAllEventsWithTheirTicks) {
   const auto events = IndexedRows(run.path()).Events();
   ASSERT_EQ(events.size(), 2u);
   EXPECT_EQ(events[0].tick, 150);
-  EXPECT_EQ(events[0].event.number, 1);
-  EXPECT_THAT(events[0].event.toml, HasSubstr("law.p_gain"));
+  EXPECT_EQ(events[0].number, 1);
+  EXPECT_THAT(events[0].toml, HasSubstr("law.p_gain"));
   EXPECT_EQ(events[1].tick, 225);
-  EXPECT_THAT(events[1].event.toml, HasSubstr("cut"));
+  EXPECT_THAT(events[1].toml, HasSubstr("cut"));
 }
 
 TEST(IndexedRows, OfACutRecordingGoUpToTheCut) {

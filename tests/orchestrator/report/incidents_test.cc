@@ -86,7 +86,7 @@ TEST(Incidents, AreToldInOrderWithContactsAndLateCommandsAmongThem) {
   IncidentMeter meter(experiment);
   DecodedRow row(3);
   row.commands[2].flags = kAccelerationLimited;
-  row.events.push_back({.number = 1, .toml = "set = { \"law.beta\" = 2.0 }"});
+  row.events.push_back({.number = 1, .event = {.set = {{"law.beta", Value{2.0}}}}});
   meter.Add(MadeRow(7, row), links);
   const Incidents all = meter.Result({.agents = 1,
                                       .ground = 1,
@@ -101,7 +101,7 @@ TEST(Incidents, AreToldInOrderWithContactsAndLateCommandsAmongThem) {
             "0.06,0.08,late_command,2,2,,\n"
             "0.07,0.07,contact,1,2,ground,0.25 m/s\n"
             "0.07,0.07,acceleration_limit,1,3,,\n"
-            "0.07,0.07,event,1,,event 1,\"set = { \"\"law.beta\"\" = 2.0 }\"\n"
+            "0.07,0.07,event,1,,event 1,\"set = { \"\"law.beta\"\" = 2.0 }\n\"\n"
             "0.09,0.09,contact,1,1,obstacle 4,1 m/s\n");
   EXPECT_EQ(IncidentsText(experiment, all),
             "happened       0.05 s: agent 1 touches agent 3 at 2.5 m/s; 2 more of this kind\n"
@@ -133,7 +133,7 @@ TEST(Incidents, BeyondAHundredThousandAreCounted) {
   const LinkMeter links(experiment);
   IncidentMeter meter(experiment);
   DecodedRow row(3);
-  for (int k = 0; k < 10; ++k) row.events.push_back({.number = 1, .toml = ""});
+  for (int k = 0; k < 10; ++k) row.events.push_back({.number = 1});
   for (int tick = 0; tick < 10'001; ++tick) meter.Add(MadeRow(tick, row), links);
   const Incidents all = meter.Result({.ground = 3, .first = {{.tick = 1, .agent = 1, .other = 0}}}, {});
   EXPECT_EQ(all.told.size(), 100'001u);
