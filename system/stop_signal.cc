@@ -59,10 +59,10 @@ StopSignal::~StopSignal() {
 }
 
 int StopSignal::Within(std::chrono::nanoseconds timeout) {
-  constexpr std::chrono::nanoseconds kLongest = std::chrono::milliseconds(500);  // descriptors may have been closed
-  for (auto left = std::max(timeout, std::chrono::nanoseconds::zero());; left -= kLongest) {
+  constexpr std::chrono::nanoseconds kLongestPause = std::chrono::milliseconds(500);  // descriptors may have been closed
+  for (auto left = std::max(timeout, std::chrono::nanoseconds::zero());; left -= kLongestPause) {
     pollfd fds[] = {{signals_, POLLIN, 0}, {wakeups_, POLLIN, 0}};
-    const timespec limit{0, std::min(left, kLongest).count()};
+    const timespec limit{0, std::min(left, kLongestPause).count()};
     const int ready = ppoll(fds, 2, &limit, nullptr);
     if (ready > 0 && ((fds[0].revents | fds[1].revents) & POLLNVAL) != 0) {
       Open();
@@ -77,7 +77,7 @@ int StopSignal::Within(std::chrono::nanoseconds timeout) {
       woken_ = false;
       return 0;
     }
-    if (woken_.exchange(false) || ready < 0 || left <= kLongest) return 0;
+    if (woken_.exchange(false) || ready < 0 || left <= kLongestPause) return 0;
   }
 }
 
