@@ -101,7 +101,7 @@ TEST(Incidents, AreToldInOrderWithContactsAndLateCommandsAmongThem) {
             "0.06,0.08,late_command,2,2,,\n"
             "0.07,0.07,contact,1,2,ground,0.25 m/s\n"
             "0.07,0.07,acceleration_limit,1,3,,\n"
-            "0.07,0.07,event,1,,event 1,\"set = { \"\"law.beta\"\" = 2.0 }\n\"\n"
+            "0.07,0.07,event,1,,event 1,\"set = { \"\"law.beta\"\" = 2.0 }\"\n"
             "0.09,0.09,contact,1,1,obstacle 4,1 m/s\n");
   EXPECT_EQ(IncidentsText(experiment, all),
             "happened       0.05 s: agent 1 touches agent 3 at 2.5 m/s; 2 more of this kind\n"
@@ -115,9 +115,9 @@ TEST(Incidents, AreATableThatAStrictReaderReadsWhateverAnEventSays) {
   IncidentMeter meter(experiment);
   DecodedRow row(3);
   row.commands[2].flags = kAccelerationLimited;
-  const std::string text = "set = { \"law.params.a,b\" = \"x, \\\"y\\\"\" }\nlaw = { text = '''\nif a:\n  b\n''' }";
-  row.events = {
-      {.number = 1, .toml = text + "\n"}, {.number = 2, .toml = ""}, {.number = 3, .toml = "cut = [[1, 2]]\n"}};
+  const Event lines = {.set = {{"law.params.a,b", Value{std::string("x, \"y\"")}}}, .cut = {{1, 2}, {2, 3}}};
+  const std::string text = "set = { \"law.params.a,b\" = \"x, \\\"y\\\"\" }\ncut = [[1, 2], [2, 3]]";
+  row.events = {{.number = 1, .event = lines}, {.number = 2}, {.number = 3, .event = {.cut = {{1, 2}}}}};
   meter.Add(MadeRow(7, row), links);
   const auto table = StrictCsv(IncidentsCsv(experiment, meter.Result({}, {})));
   const std::vector<std::vector<std::string>> rows = {{"t_s", "until_s", "what", "count", "agent", "with", "detail"},

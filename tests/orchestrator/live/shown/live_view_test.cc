@@ -335,8 +335,11 @@ mascot_msgs::msg::Event EventIn(const std::string& bytes) {
 
 TEST(LiveView, TellsOfEvents) {
   Watched run(Load(kThree));
+  Viewer listener(run.view.url());  // of its own: what a viewer skips while it waits for another topic is gone
+  listener.Subscribe("/event");
+  listener.Subscribe("/ui/events");
+  EXPECT_EQ(listener.NextJsonOf("/ui/events"), Json::array()) << "both subscriptions are known";
   Viewer viewer(run.view.url());
-  viewer.Subscribe("/event");
   viewer.Subscribe("/ui/experiment");
   viewer.Subscribe("/ui/events");
   const Json before = viewer.NextJsonOf("/ui/experiment");
@@ -353,7 +356,7 @@ TEST(LiveView, TellsOfEvents) {
     "max":10.0,"open_min":true,"names":[],"value":0.5,"meaning":"pull"}])"));
   EXPECT_EQ(viewer.NextJsonOf("/ui/events"),
             Json::parse(R"([{"number":1,"tick":50,"t_s":0.5,"toml":"goto = {}","by_hand":true}])"));
-  const mascot_msgs::msg::Event event = EventIn(viewer.NextOf("/event"));
+  const mascot_msgs::msg::Event event = EventIn(listener.NextOf("/event"));
   EXPECT_EQ(event.number(), 1u);
   EXPECT_EQ(event.tick(), 50u);
   EXPECT_EQ(event.stamp().nanosec(), 500'000'000u);
