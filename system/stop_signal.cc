@@ -59,7 +59,8 @@ StopSignal::~StopSignal() {
 }
 
 int StopSignal::Within(std::chrono::nanoseconds timeout) {
-  constexpr std::chrono::nanoseconds kLongestPause = std::chrono::milliseconds(500);  // descriptors may have been closed
+  constexpr std::chrono::nanoseconds kLongestPause =
+      std::chrono::milliseconds(500);  // descriptors may have been closed
   for (auto left = std::max(timeout, std::chrono::nanoseconds::zero());; left -= kLongestPause) {
     pollfd fds[] = {{signals_, POLLIN, 0}, {wakeups_, POLLIN, 0}};
     const timespec limit{0, std::min(left, kLongestPause).count()};

@@ -102,8 +102,7 @@ TEST(Send, SteersARunThatFliesAgainFromItsFileInBothEngines) {
   EXPECT_EQ(dds.File("run.mcap"), run.File("run.mcap"));
   EXPECT_EQ(inprocess.File("run.mcap"), run.File("run.mcap"));
   EXPECT_EQ(dds.Summary()["consensus"], run.Summary()["consensus"]) << "predictions too";
-  EXPECT_THAT(run.File("events.csv"),
-              HasSubstr(" by hand,\"goto = { agent = 1, position_m = [-2.0, 3.5, 2.0] }\n\"\n"));
+  EXPECT_THAT(run.File("events.csv"), HasSubstr(" by hand,\"goto = { agent = 1, position_m = [-2.0, 3.5, 2.0] }\"\n"));
   EXPECT_THAT(run.File("events.csv"), HasSubstr("\n1,1,event,1,,event "));
   EXPECT_THAT(dds.File("events.csv"), Not(HasSubstr("by hand"))) << "all are of its file";
   EXPECT_THAT(run.Info(), EndsWith("complete: yes\n"));

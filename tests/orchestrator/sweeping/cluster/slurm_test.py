@@ -19,9 +19,11 @@ import time
 import unittest
 
 import in_slurm
-import tour_test
 
 ROOT = pathlib.Path(__file__).resolve().parents[4]
+sys.path.insert(0, str(ROOT / "tests"))
+import tour_test
+
 CLUSTER = ROOT / "tests/orchestrator/sweeping/cluster/in_slurm.py"
 INSIDE = "--inside"
 SKIPPED = 77
