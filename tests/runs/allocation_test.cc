@@ -71,9 +71,10 @@ Allocations AllocationsInFlight(const std::string& experiment, int ticks) {
   WriteFile(window, "0");
   const auto count = [&](char whether) { std::fstream(window, std::ios::in | std::ios::out) << whether; };
   WriteExperiment(folder.File("a.toml"), experiment);
+  const std::string program = MASCOT_BINARY_DIR "/orchestrator";
   Running up("env",
-             {kPreload, "MASCOT_ALLOCATIONS=" + counts.string(), MASCOT_BINARY_DIR "/orchestrator", "up",
-              folder.File("a.toml"), "--duration-s", "10000", "--out", folder.File("run")},
+             {kPreload, "MASCOT_ALLOCATIONS=" + counts.string(), program, "up", folder.File("a.toml"), "--duration-s",
+              "10000", "--out", folder.File("run")},
              folder.File("up"));
   AwaitChunks(recording, 2, up);  // buffers find their size in the first ticks
   count('1');

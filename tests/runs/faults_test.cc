@@ -123,12 +123,14 @@ class Orphaned : public testing::TestWithParam<Moment> {};
 
 TEST_P(Orphaned, RunsClearUpAfterAnOrchestratorThatWasKilled) {
   ScratchFolder folder;
+  const std::string program = MASCOT_BINARY_DIR "/orchestrator";
   // It dies by its own write (tests/preload/killed_at.cc): a signal from here would come later, or too late.
-  Running up("env",
-             {"LD_PRELOAD=" MASCOT_BINARY_DIR "/tests/preload/libkilled_at.so", "MASCOT_KILLED=orchestrator",
-              "MASCOT_KILLED_AT=" + GetParam().written, MASCOT_BINARY_DIR "/orchestrator", "up", Config("leaderless"),
-              "--duration-s", "2", "--out", folder.File("run"), "--set", "output.save_plot=false"},
-             folder.File("up"));
+  const std::string preload = "LD_PRELOAD=" MASCOT_BINARY_DIR "/tests/preload/libkilled_at.so";
+  Running up(
+      "env",
+      {preload, "MASCOT_KILLED=orchestrator", "MASCOT_KILLED_AT=" + GetParam().written, program, "up",
+       Config("leaderless"), "--duration-s", "2", "--out", folder.File("run"), "--set", "output.save_plot=false"},
+      folder.File("up"));
   EXPECT_EQ(up.Wait(), -SIGKILL) << "it has never written " << GetParam().written << "; it ended by itself";
   EXPECT_TRUE(Until([&] { return IsFree(DomainIn(up.err())); })) << "some process still lives";
   EXPECT_TRUE(NothingIsLeft(up));
