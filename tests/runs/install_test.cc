@@ -115,5 +115,14 @@ TEST(Install, TakesLawsThatWereBuiltWithoutCmakeIfTheyFit) {
   EXPECT_FALSE(fs::exists(installed.folder.File("misaligned"))) << "nothing was started";
 }
 
+TEST(Install, HasHeadersAtTheirEarlierPlacesToo) {
+  const Installed installed;
+  std::string includes;
+  for (const char* header : {"agent/law.h", "agent/plugin_params.h", "experiment/motion.h", "experiment/toml/value.h"})
+    includes += "#include \"mascot/" + std::string(header) + "\"\n";
+  WriteFile(installed.folder.File("earlier.cc"), includes + DocumentedLaw());
+  BuildByHand(installed, installed.folder.File("earlier.cc"), "", installed.folder.path() / "libearlier.so");
+}
+
 }  // namespace
 }  // namespace mascot::test
