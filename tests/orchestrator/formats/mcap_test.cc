@@ -200,7 +200,8 @@ TEST(Mcap, AllChunksAreCompressedByOneThreadThatLivesAsLongAsTheWriter) {
     EXPECT_EQ(seen.size(), 1u);
     writer.Close();
   }
-  EXPECT_TRUE(test::Until([&] { return ThreadsBeside(known).empty(); })) << "the kernel lists a joined one for a moment";
+  EXPECT_TRUE(test::Until([&] { return ThreadsBeside(known).empty(); }))
+      << "the kernel lists a joined one for a moment";
   EXPECT_EQ(ReadMcap(scratch.File("run.mcap")).chunks, 50u);
 }
 
