@@ -74,8 +74,9 @@ class Deadline {
       : watch_([what = std::move(what), patience](const std::stop_token& over) {
           std::mutex mutex;
           std::unique_lock lock(mutex);
-          if (std::condition_variable_any().wait_for(lock, over, patience, [&] { return over.stop_requested(); }))
-            return;
+          // What it returns says nothing: libstdc++ 12 gives false also if the stop is requested as it begins to wait.
+          std::condition_variable_any().wait_for(lock, over, patience, [&] { return over.stop_requested(); });
+          if (over.stop_requested()) return;
           std::fprintf(stderr, "%s\n", InVain(what, patience).c_str());
           std::abort();
         }) {}
