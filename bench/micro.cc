@@ -10,7 +10,7 @@
 #include "agent/agent.h"
 #include "agent/laws/laws.h"
 #include "experiment/live_experiment.h"
-#include "orchestrator/control/helm.h"
+#include "orchestrator/control/run_requests.h"
 #include "orchestrator/engines/row_feed.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/recording/run_writer.h"
@@ -119,16 +119,16 @@ constexpr const char* kByHand = "set = { \"law.p_gain\" = 0.5 }";
 /// Until it is granted, in the orchestrator.
 void AskForEvent(benchmark::State& state) {
   const Experiment experiment = WithEvents(static_cast<int>(state.range(0)));
-  Helm helm(experiment, 0);
-  helm.Open();
-  const std::jthread run([&helm](const std::stop_token& stop) {
+  RunRequests requests(experiment, 0);
+  requests.Open();
+  const std::jthread run([&requests](const std::stop_token& stop) {
     while (!stop.stop_requested()) {
-      helm.WaitUntil(std::chrono::steady_clock::now() + std::chrono::milliseconds(10));
-      if (helm.Next()) helm.Done(7);
+      requests.WaitUntil(std::chrono::steady_clock::now() + std::chrono::milliseconds(10));
+      if (requests.Next()) requests.Done(7);
     }
   });
   for ([[maybe_unused]] auto _ : state)
-    if (!helm.Ask({.kind = Wish::Kind::kEvent, .toml = kByHand}).granted) state.SkipWithError("refused");
+    if (!requests.Ask({.kind = Request::Kind::kEvent, .toml = kByHand}).granted) state.SkipWithError("refused");
 }
 
 BENCHMARK(AskForEvent)->Arg(0)->Arg(100)->UseRealTime()->Unit(benchmark::kMillisecond);

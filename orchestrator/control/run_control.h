@@ -5,7 +5,7 @@
 namespace mascot {
 
 /// A request to a run while it goes on, or to the playback of a recording.
-struct Wish {
+struct Request {
   enum class Kind { kPause, kResume, kStep, kPace, kStop, kEvent, kSeek };
   Kind kind = Kind::kPause;
   /// kStep: ticks; kPace: simulated seconds a second, 0: as fast as it goes; kSeek: time (s); kEvent, once it is
@@ -24,7 +24,7 @@ struct Answer {
 class RunControl {
  public:
   virtual ~RunControl() = default;
-  virtual Answer Ask(const Wish& wish) = 0;
+  virtual Answer Ask(const Request& request) = 0;
 };
 
 }  // namespace mascot

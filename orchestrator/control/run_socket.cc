@@ -14,7 +14,7 @@
 
 #include "orchestrator/control/compact_json.h"
 #include "orchestrator/control/local_lines.h"
-#include "orchestrator/control/wish.h"
+#include "orchestrator/control/request.h"
 #include "orchestrator/formats/outside_json.h"
 
 namespace mascot {
@@ -45,14 +45,14 @@ std::string AnswerJson(const Answer& answer) {
 }  // namespace
 
 RunSocket::RunSocket(const Experiment& experiment, const std::string& folder, const std::string& engine,
-                     const std::string& page, Helm& helm)
+                     const std::string& page, RunRequests& requests)
     : experiment_(experiment),
       folder_(folder),
       engine_(engine),
       page_(page),
-      helm_(helm),
+      requests_(requests),
       socket_(MakeLocalSocket(SOCK_CLOEXEC | SOCK_NONBLOCK)),
-      asker_(helm) {
+      request_queue_(requests) {
   mascot::Listen(socket_);
   thread_ = std::jthread([this](const std::stop_token& over) { Listen(over); });
 }
@@ -92,25 +92,25 @@ void RunSocket::Serve(Descriptor client) {
     if (request->contains("who"))
       lines->Write(WhoWeAre(), ClientDeadline());
     else
-      asker_.Ask(ReadWish(*request), answer);
+      request_queue_.Ask(ReadRequest(*request), answer);
   } catch (const std::exception& error) {
     answer({false, error.what()});
   }
 }
 
 std::string RunSocket::WhoWeAre() const {
-  const Going going = helm_.going();
+  const RunStatus status = requests_.status();
   return CompactJson({{"name", experiment_.run.name},
                       {"folder", folder_},
                       {"engine", engine_},
                       {"page", page_},
                       {"agents", experiment_.size()},
-                      {"domain", going.domain},
-                      {"tick", going.tick},
-                      {"t_s", experiment_.time_s(std::max<std::int64_t>(going.tick, 0))},
+                      {"domain", status.domain},
+                      {"tick", status.tick},
+                      {"t_s", experiment_.time_s(std::max<std::int64_t>(status.tick, 0))},
                       {"duration_s", experiment_.run.duration_s},
-                      {"paused", going.paused},
-                      {"pace", going.pace}});
+                      {"paused", status.paused},
+                      {"pace", status.pace}});
 }
 
 }  // namespace mascot

@@ -5,8 +5,8 @@
 #include <thread>
 
 #include "experiment/experiment.h"
-#include "orchestrator/control/asker.h"
-#include "orchestrator/control/helm.h"
+#include "orchestrator/control/request_queue.h"
+#include "orchestrator/control/run_requests.h"
 #include "system/local_socket.h"
 
 namespace mascot {
@@ -19,16 +19,16 @@ inline constexpr std::string_view kRunSocketPrefix = "mascot-run-";
 /// abstract (unix(7)), in no folder, so that nothing of it is left when the run ends.
 ///
 /// A client sends one JSON object in one line, within 2 s, and gets one back: to {"who": ...} what the run is and how
-/// far it has come; to any other object, which is a request (wish.h), {"granted": bool, "words": text}. The run answers
-/// only clients of its own user and of root; it closes the connections of others before it reads a byte. A client that
-/// sends no line in time is dropped; a request that is wrong is refused in words.
+/// far it has come; to any other object, which is a request (request.h), {"granted": bool, "words": text}. The run
+/// answers only clients of its own user and of root; it closes the connections of others before it reads a byte. A
+/// client that sends no line in time is dropped; a request that is wrong is refused in words.
 class RunSocket {
  public:
   /// Listens from now on, in a thread of its own, until this object is destroyed. `folder` is that of the results,
-  /// `engine` "dds" or "inprocess", `page` the address of the run's page, or empty. `experiment` and `helm` must
+  /// `engine` "dds" or "inprocess", `page` the address of the run's page, or empty. `experiment` and `requests` must
   /// outlive this object. Throws std::runtime_error if there can be no such socket.
   RunSocket(const Experiment& experiment, const std::string& folder, const std::string& engine, const std::string& page,
-            Helm& helm);
+            RunRequests& requests);
   ~RunSocket();
   RunSocket(const RunSocket&) = delete;
   RunSocket& operator=(const RunSocket&) = delete;
@@ -40,9 +40,9 @@ class RunSocket {
 
   const Experiment& experiment_;
   const std::string folder_, engine_, page_;
-  Helm& helm_;
+  RunRequests& requests_;
   const Descriptor socket_;
-  Asker asker_;  // asks in a thread of its own, so that a slow request keeps no other client waiting
+  RequestQueue request_queue_;  // asks in a thread of its own, so that a slow request keeps no other client waiting
   std::jthread thread_;
 };
 

@@ -16,8 +16,8 @@
 #include "experiment/experiment.h"
 #include "orchestrator/control/compact_json.h"
 #include "orchestrator/control/local_lines.h"
+#include "orchestrator/control/request.h"
 #include "orchestrator/control/run_socket.h"
-#include "orchestrator/control/wish.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
 #include "system/local_socket.h"
@@ -30,9 +30,9 @@ using RunsAnswer = nlohmann::ordered_json;
 using Voice = RunningRun::Voice;
 using LineTime = LocalLines::Time;
 
-/// How long a run may take to take a question; to answer who it is; to answer a wish, since its laws may be slow; how
-/// long one that is stopped is waited for.
-constexpr auto kQuestionLimit = 1s, kWhoLimit = 5s, kWishLimit = 60s;
+/// How long a run may take to take a question; to answer who it is; to answer a request, since its laws may be slow;
+/// how long one that is stopped is waited for.
+constexpr auto kQuestionLimit = 1s, kWhoLimit = 5s, kRequestLimit = 60s;
 constexpr auto kStoppedLimit = 250ms;
 constexpr std::size_t kLongestPath = 4096, kLongestName = 1000, kLongestWords = 100'000;
 constexpr double kLongest_s = 1e12, kFastest = 1e12;
@@ -196,8 +196,8 @@ std::string RunsJson(const std::vector<RunningRun>& runs) {
   return list.dump(2, ' ', false, RunsAnswer::error_handler_t::replace);
 }
 
-Answer AskRun(pid_t process, const Wish& wish) {
-  const auto said = AskBy(NamesInUse(), process, WishJson(wish), kWishLimit);
+Answer AskRun(pid_t process, const Request& request) {
+  const auto said = AskBy(NamesInUse(), process, RequestJson(request), kRequestLimit);
   constexpr const char* kEnded = "the run ended before it answered";
   if (!said) return {false, kEnded};
   switch (said->voice) {
@@ -206,7 +206,7 @@ Answer AskRun(pid_t process, const Wish& wish) {
     case Voice::kStopped:
       return {false, fmt::format("the run is stopped; `kill -CONT {}` lets it go on", process)};
     case Voice::kSilent:
-      return {false, fmt::format("the run has not answered within {} s", kWishLimit.count())};
+      return {false, fmt::format("the run has not answered within {} s", kRequestLimit.count())};
     case Voice::kAnswers:
       break;
   }

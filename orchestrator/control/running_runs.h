@@ -46,6 +46,6 @@ std::vector<RunningRun> RunsAlive();
 std::string RunsJson(const std::vector<RunningRun>& runs);
 /// Asks a run, and waits at most 60 s for its answer. The answer is not granted, with the reason, also if the run is
 /// gone, stopped or another user's.
-Answer AskRun(pid_t process, const Wish& wish);
+Answer AskRun(pid_t process, const Request& request);
 
 }  // namespace mascot

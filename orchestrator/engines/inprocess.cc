@@ -95,30 +95,30 @@ class Flight {
   DecodedRow row_;
 };
 
-/// Carries out what people ask at the helm, and says when it is time for the next tick.
+/// Carries out what people ask at the requests, and says when it is time for the next tick.
 class Steering {
  public:
-  Steering(const Experiment& experiment, Helm& helm, Flight& flight)
-      : helm_(helm), flight_(flight), gate_(experiment.period_s(), helm.going().pace) {}
-  ~Steering() { helm_.Close(); }
+  Steering(const Experiment& experiment, RunRequests& requests, Flight& flight)
+      : requests_(requests), flight_(flight), gate_(experiment.period_s(), requests.status().pace) {}
+  ~Steering() { requests_.Close(); }
   Steering(const Steering&) = delete;
   Steering& operator=(const Steering&) = delete;
 
-  /// Waits until it is time for tick `tick`, the next one. Returns false if the run is to end before: by a wish, or
+  /// Waits until it is time for tick `tick`, the next one. Returns false if the run is to end before: by a request, or
   /// because `go_on` says so.
   bool Await(std::int64_t tick, const std::function<bool()>& go_on) {
     if (tick == 0) return go_on();
-    helm_.Open();
+    requests_.Open();
     if (const auto pace = flight_.new_pace()) SetPace(*pace);
     while (go_on()) {
-      if (!CarryOutWishes(tick)) return false;
+      if (!CarryOutRequests(tick)) return false;
       const auto now = WallClock::now();
       const auto opens = gate_.Opens(now);
       if (opens && now >= *opens) {
         gate_.OnTick(now);
         return true;
       }
-      helm_.WaitUntil(std::min(now + kLookEvery, opens.value_or(now + kLookEvery)));
+      requests_.WaitUntil(std::min(now + kLookEvery, opens.value_or(now + kLookEvery)));
     }
     return false;
   }
@@ -128,39 +128,39 @@ class Steering {
 
   void SetPace(double pace) {
     gate_.SetPace(pace);
-    helm_.SetGoing(gate_.paused(), pace);
+    requests_.SetStatus(gate_.paused(), pace);
   }
 
   /// Returns false if the run is to end.
-  bool CarryOutWishes(std::int64_t tick) {
-    while (const auto order = helm_.Next()) {
-      if (order->kind == Wish::Kind::kEvent && static_cast<double>(tick) >= order->number) {
-        helm_.CheckAgain();
+  bool CarryOutRequests(std::int64_t tick) {
+    while (const auto order = requests_.Next()) {
+      if (order->kind == Request::Kind::kEvent && static_cast<double>(tick) >= order->number) {
+        requests_.CheckAgain();
         continue;
       }
       const bool goes_on = CarryOut(*order);
-      helm_.SetGoing(gate_.paused(), gate_.pace());
-      helm_.Done(tick);
+      requests_.SetStatus(gate_.paused(), gate_.pace());
+      requests_.Done(tick);
       if (!goes_on) return false;
     }
     return true;
   }
 
-  bool CarryOut(const Helm::Order& order) {
+  bool CarryOut(const RunRequests::Order& order) {
     switch (order.kind) {
-      case Wish::Kind::kPause:
+      case Request::Kind::kPause:
         gate_.Pause();
         return true;
-      case Wish::Kind::kResume:
+      case Request::Kind::kResume:
         gate_.Resume();
         return true;
-      case Wish::Kind::kStep:
+      case Request::Kind::kStep:
         gate_.Step(std::llround(order.number));
         return true;
-      case Wish::Kind::kPace:
+      case Request::Kind::kPace:
         gate_.SetPace(order.number);
         return true;
-      case Wish::Kind::kEvent:
+      case Request::Kind::kEvent:
         flight_.Take(*order.event);
         return true;
       default:
@@ -168,7 +168,7 @@ class Steering {
     }
   }
 
-  Helm& helm_;
+  RunRequests& requests_;
   Flight& flight_;
   TickGate gate_;
 };
@@ -176,7 +176,7 @@ class Steering {
 }  // namespace
 
 EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSink*>& sinks,
-                          const std::function<bool()>& go_on, Helm* helm) {
+                          const std::function<bool()>& go_on, RunRequests* requests) {
   EngineResult result;
   const auto launched = WallClock::now();
   auto start = launched;
@@ -184,7 +184,7 @@ EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSin
   std::optional<Steering> steering;
   try {
     flight.emplace(experiment);
-    if (helm != nullptr) steering.emplace(experiment, *helm, *flight);
+    if (requests != nullptr) steering.emplace(experiment, *requests, *flight);
     RowFeed feed(experiment, sinks);
     start = WallClock::now();
     for (std::int64_t tick = 0; steering ? steering->Await(tick, go_on) : go_on(); ++tick) {

@@ -30,10 +30,11 @@ void RefuseEngine(const std::string& engine, const Experiment& experiment) {
 }
 
 Flight::Flight(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
-               const std::vector<RowSink*>& sinks, Helm* helm, Console& console, StopSignal& stop, RosSource* ros)
-    : experiment_(experiment), sinks_(sinks), helm_(helm), console_(console), stop_(stop) {
+               const std::vector<RowSink*>& sinks, RunRequests* requests, Console& console, StopSignal& stop,
+               RosSource* ros)
+    : experiment_(experiment), sinks_(sinks), requests_(requests), console_(console), stop_(stop) {
   if (engine == kOverDds)
-    dds_.emplace(experiment, folder, sinks, helm, console, stop, ros);
+    dds_.emplace(experiment, folder, sinks, requests, console, stop, ros);
   else if (FliesCodeOfUsers(experiment))
     janitor_.emplace();
 }
@@ -50,7 +51,7 @@ EngineResult Flight::Fly() {
     LastWords::Leave(&reason, 1, code);
   });
   EngineResult result = RunInProcess(
-      experiment_, sinks_, [&] { return interruptions.signal() == 0; }, helm_);
+      experiment_, sinks_, [&] { return interruptions.signal() == 0; }, requests_);
   result.signal = interruptions.signal();
   return result;
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
-#include "orchestrator/control/helm.h"
+#include "orchestrator/control/run_requests.h"
 #include "orchestrator/engines/dds/engine.h"
 #include "orchestrator/engines/dds/machine/janitor.h"
 #include "orchestrator/engines/engine.h"
@@ -28,10 +28,11 @@ void RefuseEngine(const std::string& engine, const Experiment& experiment);
 /// One experiment on one engine.
 class Flight {
  public:
-  /// Every sink gets every row, in tick order. `helm`: where people steer the run, one of the sinks; null: nowhere.
+  /// Every sink gets every row, in tick order. `requests`: where people steer the run, one of the sinks; null: nowhere.
   /// `ros`, if given, is published for RViz2. All arguments must outlive this object.
   Flight(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
-         const std::vector<RowSink*>& sinks, Helm* helm, Console& console, StopSignal& stop, RosSource* ros = nullptr);
+         const std::vector<RowSink*>& sinks, RunRequests* requests, Console& console, StopSignal& stop,
+         RosSource* ros = nullptr);
 
   /// What this file gets if this process is killed, by whatever, over DDS or with laws of users. To be called before
   /// Fly().
@@ -47,7 +48,7 @@ class Flight {
  private:
   const Experiment& experiment_;
   const std::vector<RowSink*>& sinks_;
-  Helm* const helm_;
+  RunRequests* const requests_;
   Console& console_;
   StopSignal& stop_;
   std::optional<DdsEngine> dds_;    // absent: in this process

@@ -57,15 +57,15 @@ std::pair<std::string, Value> Assignment(const std::string& word) {
 }
 
 /// One thing that can be asked for: what comes after its name, how many words that is at least and at most, and the
-/// wish that it makes.
+/// request that it makes.
 struct Sentence {
   std::string_view name;
   const char* words;
   std::size_t least, most;
-  Wish (*wish)(const SendArgs& args, const std::vector<std::string>& words);
+  Request (*request)(const SendArgs& args, const std::vector<std::string>& words);
 };
 
-Wish EdgesWish(const char* key, const std::vector<std::string>& words) {
+Request EdgesRequest(const char* key, const std::vector<std::string>& words) {
   std::string edges;
   for (const std::string& word : words) {
     const std::size_t comma = word.find(',');
@@ -74,46 +74,47 @@ Wish EdgesWish(const char* key, const std::vector<std::string>& words) {
     edges += fmt::format("{}[{}, {}]", edges.empty() ? "" : ", ", NumberOf(word.substr(0, comma), what),
                          NumberOf(word.substr(comma + 1), what));
   }
-  return {.kind = Wish::Kind::kEvent, .toml = fmt::format("{} = [{}]", key, edges)};
+  return {.kind = Request::Kind::kEvent, .toml = fmt::format("{} = [{}]", key, edges)};
 }
 
-Wish SetWish(const SendArgs& args, const std::vector<std::string>& words) {
+Request SetRequest(const SendArgs& args, const std::vector<std::string>& words) {
   Value::Table set;
   for (const std::string& word : words)
     if (!set.insert(Assignment(word)).second) Expected("each key once", word);
-  Wish wish{.kind = Wish::Kind::kEvent, .toml = "set = " + ToToml(Value{std::move(set)})};
-  if (!args.agents.empty()) wish.toml += fmt::format("\nagents = [{}]", fmt::join(args.agents, ", "));
-  return wish;
+  Request request{.kind = Request::Kind::kEvent, .toml = "set = " + ToToml(Value{std::move(set)})};
+  if (!args.agents.empty()) request.toml += fmt::format("\nagents = [{}]", fmt::join(args.agents, ", "));
+  return request;
 }
 
-Wish GoToWish(const SendArgs& /*args*/, const std::vector<std::string>& words) {
+Request GoToRequest(const SendArgs& /*args*/, const std::vector<std::string>& words) {
   const double agent = NumberOf(words[0], "an agent's number"), x = NumberOf(words[1], "a number as X"),
                y = NumberOf(words[2], "a number as Y"), z = NumberOf(words[3], "a number as Z");
-  return {.kind = Wish::Kind::kEvent,
+  return {.kind = Request::Kind::kEvent,
           .toml = fmt::format("goto = {{ agent = {}, position_m = [{}, {}, {}] }}", agent, ShortestFloat(x),
                               ShortestFloat(y), ShortestFloat(z))};
 }
 
 constexpr std::size_t kAny = 1000;
 constexpr Sentence kSentences[] = {
-    {"pause", "", 0, 0, [](const auto&, const auto&) { return Wish{.kind = Wish::Kind::kPause}; }},
-    {"resume", "", 0, 0, [](const auto&, const auto&) { return Wish{.kind = Wish::Kind::kResume}; }},
+    {"pause", "", 0, 0, [](const auto&, const auto&) { return Request{.kind = Request::Kind::kPause}; }},
+    {"resume", "", 0, 0, [](const auto&, const auto&) { return Request{.kind = Request::Kind::kResume}; }},
     {"step", "[TICKS]", 0, 1,
      [](const auto&, const auto& words) {
-       return Wish{.kind = Wish::Kind::kStep, .number = words.empty() ? 1 : NumberOf(words[0], "a number of ticks")};
+       return Request{.kind = Request::Kind::kStep,
+                      .number = words.empty() ? 1 : NumberOf(words[0], "a number of ticks")};
      }},
     {"pace", "FACTOR", 1, 1,
      [](const auto&, const auto& words) {
-       return Wish{.kind = Wish::Kind::kPace,
-                   .number = NumberOf(words[0], "simulated seconds a second, or 0: as fast as it goes")};
+       return Request{.kind = Request::Kind::kPace,
+                      .number = NumberOf(words[0], "simulated seconds a second, or 0: as fast as it goes")};
      }},
-    {"stop", "", 0, 0, [](const auto&, const auto&) { return Wish{.kind = Wish::Kind::kStop}; }},
-    {"goto", "AGENT X Y Z", 4, 4, GoToWish},
-    {"set", "KEY=VALUE...", 1, kAny, SetWish},
-    {"cut", "HEARER,HEARD...", 1, kAny, [](const auto&, const auto& words) { return EdgesWish("cut", words); }},
-    {"mend", "HEARER,HEARD...", 1, kAny, [](const auto&, const auto& words) { return EdgesWish("mend", words); }},
+    {"stop", "", 0, 0, [](const auto&, const auto&) { return Request{.kind = Request::Kind::kStop}; }},
+    {"goto", "AGENT X Y Z", 4, 4, GoToRequest},
+    {"set", "KEY=VALUE...", 1, kAny, SetRequest},
+    {"cut", "HEARER,HEARD...", 1, kAny, [](const auto&, const auto& words) { return EdgesRequest("cut", words); }},
+    {"mend", "HEARER,HEARD...", 1, kAny, [](const auto&, const auto& words) { return EdgesRequest("mend", words); }},
     {"event", "TOML", 1, 1,
-     [](const auto&, const auto& words) { return Wish{.kind = Wish::Kind::kEvent, .toml = words[0]}; }},
+     [](const auto&, const auto& words) { return Request{.kind = Request::Kind::kEvent, .toml = words[0]}; }},
 };
 
 std::string Usage() {
@@ -124,7 +125,7 @@ std::string Usage() {
   return text;
 }
 
-Wish WishOf(const SendArgs& args) {
+Request RequestOf(const SendArgs& args) {
   for (const Sentence& sentence : kSentences) {
     if (args.words.empty() || sentence.name != args.words.front()) continue;
     const std::vector<std::string> words(args.words.begin() + 1, args.words.end());
@@ -134,7 +135,7 @@ Wish WishOf(const SendArgs& args) {
                        sentence.words, words.size(), words.size() == 1 ? "" : "s")});
     if (!args.agents.empty() && sentence.name != "set")
       throw ConfigError({"send: --agents: expected with set only, got it with " + std::string(sentence.name)});
-    return sentence.wish(args, words);
+    return sentence.request(args, words);
   }
   Expected(Usage(), args.words.empty() ? "" : args.words.front());
 }
@@ -172,8 +173,8 @@ RunningRun RunOf(const SendArgs& args) {
 }
 
 int Send(const SendArgs& args) {
-  const Wish wish = WishOf(args);
-  const Answer answer = AskRun(RunOf(args).process, wish);
+  const Request request = RequestOf(args);
+  const Answer answer = AskRun(RunOf(args).process, request);
   if (answer.granted) {
     std::cout << answer.words << "\n";
     FlushStandardOutput();

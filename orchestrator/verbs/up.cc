@@ -14,7 +14,7 @@
 #include "agent/user_code/law_at_work.h"
 #include "base/utf8.h"
 #include "bus/leave.h"
-#include "orchestrator/control/helm.h"
+#include "orchestrator/control/run_requests.h"
 #include "orchestrator/control/run_socket.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/progress.h"
@@ -124,8 +124,8 @@ int Up(UpArgs& args) {
 
   Console console(args.quiet || args.json);
   RunMeter meter(experiment);
-  Helm helm(experiment, experiment.run.pace.value_or(args.viewers.at ? 1 : 0));
-  Viewers viewers(args.viewers, args.engine, experiment, prediction, meter, helm, console);
+  RunRequests requests(experiment, experiment.run.pace.value_or(args.viewers.at ? 1 : 0));
+  Viewers viewers(args.viewers, args.engine, experiment, prediction, meter, requests, console);
 
   const RunFolder folder(args.out, experiment, args.force);
   viewers.LogTo(folder);
@@ -140,7 +140,7 @@ int Up(UpArgs& args) {
   std::optional<LastWords> last_words(
       std::in_place, summary_file, SummaryIfKilled(experiment, args.engine, LastWords::kExitCode, LastWords::kReason));
   Progress progress(experiment, meter, console);
-  std::vector<RowSink*> sinks{&writer, &meter, &progress, &helm};
+  std::vector<RowSink*> sinks{&writer, &meter, &progress, &requests};
   viewers.AddTo(sinks);
   std::optional<RosView> ros_view;
   std::optional<ViewSink> ros_sink;
@@ -149,8 +149,8 @@ int Up(UpArgs& args) {
     sinks.push_back(&ros_sink.emplace(*ros_view, [&ros_view](const std::string& why) { ros_view->Fail(why); }));
   }
   const RunSocket socket(experiment, std::filesystem::absolute(folder.path()).string(), args.engine, viewers.url(),
-                         helm);
-  Flight flight(args.engine, experiment, folder, sinks, &helm, console, stop, ros_view ? &*ros_view : nullptr);
+                         requests);
+  Flight flight(args.engine, experiment, folder, sinks, &requests, console, stop, ros_view ? &*ros_view : nullptr);
   flight.LeaveIfKilled(summary_file,
                        SummaryIfKilled(experiment, args.engine, std::nullopt,
                                        "the orchestrator was killed (SIGKILL: by somebody, or for want of memory), or "
@@ -158,8 +158,8 @@ int Up(UpArgs& args) {
   EngineResult result = flight.Fly();
   console.EndProgress();
   try {
-    const Experiment flown = WithEvents(experiment, helm.by_hand());
-    if (!helm.by_hand().empty()) {
+    const Experiment flown = WithEvents(experiment, requests.by_hand());
+    if (!requests.by_hand().empty()) {
       folder.Write("config.toml", flown.resolved);
       prediction = Predict(flown);
     }
@@ -172,7 +172,7 @@ int Up(UpArgs& args) {
   viewers.SayHowItEnded(result);
   if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
 
-  const Incidents incidents = IncidentsOf(meter, result, helm.numbers_by_hand());
+  const Incidents incidents = IncidentsOf(meter, result, requests.numbers_by_hand());
   const FlownRun flown{.experiment = experiment,
                        .prediction = prediction,
                        .meter = meter,

@@ -26,29 +26,29 @@ void AddAllowOrigin(CLI::App& command, std::vector<std::string>& origins) {
 }
 
 Viewers::Viewers(const ViewerArgs& args, const std::string& engine, const Experiment& experiment,
-                 const Prediction& prediction, const RunMeter& meter, Helm& helm, Console& console) try
-    : helm_(helm), console_(console) {
+                 const Prediction& prediction, const RunMeter& meter, RunRequests& requests, Console& console) try
+    : requests_(requests), console_(console) {
   if (!args.at) return;
-  view_.emplace(experiment, prediction, meter, helm,
+  view_.emplace(experiment, prediction, meter, requests,
                 LiveView::Options{.address = args.at->address,
                                   .port = args.at->port,
                                   .allowed_origins = args.allowed_origins,
                                   .page = FindShared("page", "orchestrator/live"),
                                   .source = {.engine = engine},
-                                  .pace = helm.going().pace},
+                                  .pace = requests.status().pace},
                 [this](const std::string& line) { Log(line); });
   view_->SetExperiment(experiment, ShownKeysOf(experiment));
-  events_.emplace(*view_, helm);
-  helm.CallWhenChanged([this](const Going& going) {
-    const auto phase = going.paused ? RunState::Phase::kPaused : RunState::Phase::kRunning;
-    view_->SetState({.phase = phase, .pace = going.pace});
+  events_.emplace(*view_, requests);
+  requests.CallWhenChanged([this](const RunStatus& status) {
+    const auto phase = status.paused ? RunState::Phase::kPaused : RunState::Phase::kRunning;
+    view_->SetState({.phase = phase, .pace = status.pace});
   });
   console.Line("view           " + view_->url());
 } catch (const std::runtime_error& failure) {
   throw ConfigError({std::string("--view: ") + failure.what()});
 }
 
-Viewers::~Viewers() { helm_.CallWhenChanged(nullptr); }
+Viewers::~Viewers() { requests_.CallWhenChanged(nullptr); }
 
 void Viewers::Log(const std::string& line) {
   const std::lock_guard lock(mutex_);
@@ -83,7 +83,7 @@ void Viewers::AddTo(std::vector<RowSink*>& sinks) {
 void Viewers::SayHowItEnded(const EngineResult& result) {
   if (!view_) return;
   const auto phase = result.failure.empty() ? RunState::Phase::kDone : RunState::Phase::kFailed;
-  RunState state{.phase = phase, .pace = helm_.going().pace};
+  RunState state{.phase = phase, .pace = requests_.status().pace};
   if (result.contacts) state.contacts = static_cast<std::uint64_t>(result.contacts->total());
   view_->SetState(state);
 }
@@ -96,7 +96,7 @@ void Viewers::Events::Adopt(const LiveExperiment& live, std::span<const Event> /
 void Viewers::Events::Add(const FlownRow& row) {
   const auto& events = row.decoded().events;
   if (events.empty()) return;
-  const std::vector<int> by_hand = helm_.numbers_by_hand();
+  const std::vector<int> by_hand = requests_.numbers_by_hand();
   for (const DecodedRow::Happening& event : events)
     view_.OnEvent({.number = event.number,
                    .tick = row.tick(),

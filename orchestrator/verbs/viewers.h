@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
-#include "orchestrator/control/helm.h"
+#include "orchestrator/control/run_requests.h"
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/live/server/address.h"
 #include "orchestrator/live/shown/live_view.h"
@@ -39,7 +39,7 @@ class Viewers {
   /// Listens at `args.at`, if it is given, and prints where. All arguments but the first two must outlive this object.
   /// Throws ConfigError if no viewer could watch.
   Viewers(const ViewerArgs& args, const std::string& engine, const Experiment& experiment, const Prediction& prediction,
-          const RunMeter& meter, Helm& helm, Console& console);
+          const RunMeter& meter, RunRequests& requests, Console& console);
   ~Viewers();
   Viewers(const Viewers&) = delete;
   Viewers& operator=(const Viewers&) = delete;
@@ -49,7 +49,7 @@ class Viewers {
 
   /// From now on, lines about viewers are also written to logs/viewers.log; the first line creates the file.
   void LogTo(const RunFolder& folder);
-  /// Call it when the helm is among the sinks.
+  /// Call it when the requests is among the sinks.
   void AddTo(std::vector<RowSink*>& sinks);
   /// Viewers see how the run ended until this object ends, which closes their connections.
   void SayHowItEnded(const EngineResult& result);
@@ -58,13 +58,13 @@ class Viewers {
   /// Tells viewers of the events that rows bring.
   class Events final : public RowSink {
    public:
-    Events(LiveView& view, const Helm& helm) : view_(view), helm_(helm) {}
+    Events(LiveView& view, const RunRequests& requests) : view_(view), requests_(requests) {}
     void Adopt(const LiveExperiment& live, std::span<const Event> events) override;
     void Add(const FlownRow& row) override;
 
    private:
     LiveView& view_;
-    const Helm& helm_;
+    const RunRequests& requests_;
     std::shared_ptr<const Experiment> now_;
     std::vector<ShownKey> keys_;
   };
@@ -74,7 +74,7 @@ class Viewers {
   /// Adds it to the log.
   void Keep(const std::string& line);
 
-  Helm& helm_;
+  RunRequests& requests_;
   Console& console_;
   std::mutex mutex_;                // guards what follows
   std::vector<std::string> lines_;  // until there is a log

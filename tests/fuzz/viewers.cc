@@ -49,7 +49,7 @@ class FuzzedServer final : public Foxglove::Host {
     Require(foxglove_.HasSubscriber(channel), "who has just subscribed has not");
     foxglove_.PublishTo(client, channel, 1, std::make_shared<const std::string>("payload"));
   }
-  void Ask(const Wish& /*wish*/, Foxglove::Reply reply) override { replies_.push_back(std::move(reply)); }
+  void Ask(const Request& /*request*/, Foxglove::Reply reply) override { replies_.push_back(std::move(reply)); }
   void AskForGoal(const Goal& /*goal*/, Foxglove::Reply reply) override { replies_.push_back(std::move(reply)); }
 
   void Take(bool is_text, std::span<const std::uint8_t> message) {

@@ -67,8 +67,8 @@ void LowerPriority() {
 /// them out.
 class DdsRun {
  public:
-  DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Helm* helm,
-         Console& console, StopSignal& stop, RosSource* ros);
+  DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
+         RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros);
   void LeaveIfKilled(const std::string& path, const std::string& text) { last_words_ = {path, text}; }
   EngineResult Fly();
   bool End();
@@ -109,7 +109,7 @@ class DdsRun {
   void LeaveDomain();
 
   const Experiment& experiment_;
-  Helm* const helm_;  // may be null
+  RunRequests* const run_requests_;  // may be null
   Console& console_;
   StopSignal& stop_;
   RosSource* const ros_;
@@ -117,9 +117,9 @@ class DdsRun {
   const bool external_;        // some agents are started by hand
   const bool reaches_others_;  // agents may be on other hosts
   EngineResult result_;
-  std::int64_t confirmed_ = 0;  // rows recorded so far
-  std::uint32_t requests_ = 0;  // number of the newest request to the physics server
-  bool is_asked_ = false;       // it is that of the wish that helm_ has now
+  std::int64_t confirmed_ = 0;        // rows recorded so far
+  std::uint32_t request_number_ = 0;  // number of the newest request to the physics server
+  bool is_asked_ = false;             // it is that of the order that run_requests_ has now
 
   const std::vector<AgentRange> processes_;
   const bool with_server_;
@@ -142,10 +142,10 @@ class DdsRun {
   RunPhases phases_;
 };
 
-DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Helm* helm,
-               Console& console, StopSignal& stop, RosSource* ros)
+DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
+               RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros)
     : experiment_(experiment),
-      helm_(helm),
+      run_requests_(requests),
       console_(console),
       stop_(stop),
       ros_(ros),
@@ -174,7 +174,7 @@ RunPhases::Rules DdsRun::Rules() {
 
 void DdsRun::Join() {
   lock_.emplace(experiment_.network.domain);
-  if (helm_ != nullptr) helm_->SetDomain(lock_->domain());
+  if (run_requests_ != nullptr) run_requests_->SetDomain(lock_->domain());
   SweepSharedMemory(lock_->domain());  // left by runs of which also the janitor was killed
   RequireAddresses(Options(kOrchestrator, with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer));
   RequireResources({.shared_memory = SharedMemoryOf(""),
@@ -339,13 +339,13 @@ int DdsRun::ProcessesOn(const std::string& host) const {
 
 EngineResult DdsRun::Fly() {
   try {
-    if (helm_ != nullptr) helm_->CallWhenAsked([this] { stop_.Wake(); });
+    if (run_requests_ != nullptr) run_requests_->CallWhenAsked([this] { stop_.Wake(); });
     Join();
     Loop();
   } catch (const std::exception& failure) {
     phases_.Fail(InWords(failure));
   }
-  if (helm_ != nullptr) helm_->Close();
+  if (run_requests_ != nullptr) run_requests_->Close();
   if (recorder_) Collect();
   result_.failure = phases_.failure();
   result_.signal = phases_.signal();
@@ -361,27 +361,28 @@ void DdsRun::Loop() {
     CheckWire();
     const RunPhases::View view = Record();
     Do(phases_.Look(view, WallClock::now()));
-    if (helm_ != nullptr && phases_.phase() == RunPhases::Phase::kFlying) Steer();
+    if (run_requests_ != nullptr && phases_.phase() == RunPhases::Phase::kFlying) Steer();
   }
 }
 
-/// Passes a wish on to the physics server, and its answer back.
+/// Passes a order on to the physics server, and its answer back.
 void DdsRun::Steer() {
-  helm_->Open();
+  run_requests_->Open();
   const auto server = hub_->StatusOf(kPhysicsServer);
-  if (server && static_cast<Life>(server->state()) == Life::kRunning) helm_->SetGoing(server->paused(), server->pace());
-  const auto wish = helm_->Next();
-  if (!wish) return;
-  if (wish->kind == Wish::Kind::kStop) {
-    Do(phases_.OnWishToStop(WallClock::now()));
-    return helm_->Done(confirmed_);
+  if (server && static_cast<Life>(server->state()) == Life::kRunning)
+    run_requests_->SetStatus(server->paused(), server->pace());
+  const auto order = run_requests_->Next();
+  if (!order) return;
+  if (order->kind == Request::Kind::kStop) {
+    Do(phases_.OnRequestToStop(WallClock::now()));
+    return run_requests_->Done(confirmed_);
   }
-  if (!std::exchange(is_asked_, true)) ++requests_;
-  if (!server || server->request() != requests_) return hub_->Steer(*wish, requests_);
+  if (!std::exchange(is_asked_, true)) ++request_number_;
+  if (!server || server->request() != request_number_) return hub_->Steer(*order, request_number_);
   const std::int64_t tick = server->request_tick();
   is_asked_ = false;
-  if (tick == kTooLate) return helm_->CheckAgain();
-  helm_->Done(tick == kOver ? std::nullopt : std::optional(tick));
+  if (tick == kTooLate) return run_requests_->CheckAgain();
+  run_requests_->Done(tick == kOver ? std::nullopt : std::optional(tick));
 }
 
 void DdsRun::OnSignal(int signal) {
@@ -446,7 +447,7 @@ void DdsRun::Do(const RunPhases::Actions& actions) {
 
 /// Simulated seconds a second to begin with; where nobody steers, lockstep goes as fast as it can.
 double DdsRun::Pace() const {
-  if (helm_ != nullptr) return helm_->going().pace;
+  if (run_requests_ != nullptr) return run_requests_->status().pace;
   return experiment_.run.mode == Mode::kRealtime ? experiment_.run.speed : 0;
 }
 
@@ -560,8 +561,8 @@ void DdsRun::LeaveDomain() {
 }
 
 DdsEngine::DdsEngine(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
-                     Helm* helm, Console& console, StopSignal& stop, RosSource* ros)
-    : run_(std::make_unique<DdsRun>(experiment, folder, sinks, helm, console, stop, ros)) {}
+                     RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros)
+    : run_(std::make_unique<DdsRun>(experiment, folder, sinks, requests, console, stop, ros)) {}
 
 DdsEngine::~DdsEngine() { End(); }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
-#include "orchestrator/control/helm.h"
+#include "orchestrator/control/run_requests.h"
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/engines/ros_source.h"
 #include "orchestrator/recording/run_folder.h"
@@ -18,11 +18,11 @@ class DdsRun;
 
 /// Runs an experiment as separate processes in a DDS domain of its own: a physics server and the agent processes. It
 /// waits for external agents, and does not start them. The calling process records: `sinks` get every row, in tick
-/// order. People steer the run by `helm`; null: they cannot. `ros`, if given, is published for RViz2.
+/// order. People steer the run by `requests`; null: they cannot. `ros`, if given, is published for RViz2.
 class DdsEngine {
  public:
-  DdsEngine(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks, Helm* helm,
-            Console& console, StopSignal& stop, RosSource* ros = nullptr);
+  DdsEngine(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
+            RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros = nullptr);
   ~DdsEngine();  ///< calls End()
   DdsEngine(const DdsEngine&) = delete;
   DdsEngine& operator=(const DdsEngine&) = delete;

@@ -74,21 +74,21 @@ Roster::Rules RosterRules(const Experiment& experiment, std::uint64_t digest) {
   return rules;
 }
 
-/// What is asked of the physics server for a wish about its ticks.
-Ask AskOf(Wish::Kind kind) {
+/// What is asked of the physics server for a request about its ticks.
+Ask AskOf(Request::Kind kind) {
   switch (kind) {
-    case Wish::Kind::kPause:
+    case Request::Kind::kPause:
       return Ask::kPause;
-    case Wish::Kind::kResume:
+    case Request::Kind::kResume:
       return Ask::kResume;
-    case Wish::Kind::kStep:
+    case Request::Kind::kStep:
       return Ask::kStep;
-    case Wish::Kind::kPace:
+    case Request::Kind::kPace:
       return Ask::kPace;
-    case Wish::Kind::kEvent:
+    case Request::Kind::kEvent:
       return Ask::kEvent;
     default:
-      throw std::logic_error("no wish about ticks");
+      throw std::logic_error("no request about ticks");
   }
 }
 
@@ -175,7 +175,7 @@ void Hub::Ask(mascot::Ask ask, const std::string& reason) {
   Note(fmt::format("request: {} ({})", Text(ask), reason));
 }
 
-void Hub::Steer(const Helm::Order& order, std::uint32_t number) {
+void Hub::Steer(const RunRequests::Order& order, std::uint32_t number) {
   const bool is_new = std::exchange(newest_request_, number) != number;
   if (!is_new && Now() < next_request_) return;
   next_request_ = Now() + 200ms;

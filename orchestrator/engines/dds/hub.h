@@ -10,7 +10,7 @@
 #include "bus/bus.h"
 #include "bus/wire.h"
 #include "experiment/experiment.h"
-#include "orchestrator/control/helm.h"
+#include "orchestrator/control/run_requests.h"
 #include "orchestrator/engines/dds/roster.h"
 #include "system/log_file.h"
 
@@ -39,7 +39,7 @@ class Hub {
   /// Publishes a request to all processes.
   void Ask(mascot::Ask ask, const std::string& reason);
   /// Publishes a numbered request to the physics server: again at most five times a second. Cheap to call often.
-  void Steer(const Helm::Order& order, std::uint32_t number);
+  void Steer(const RunRequests::Order& order, std::uint32_t number);
   /// Number of statuses that the physics server has sent.
   std::int64_t server_words() const;
   /// Number of processes that listen to requests.

@@ -95,7 +95,7 @@ RunPhases::Actions RunPhases::OnSignal(int signal, Time now) {
   return {.ask_to_stop = true};
 }
 
-RunPhases::Actions RunPhases::OnWishToStop(Time now) {
+RunPhases::Actions RunPhases::OnRequestToStop(Time now) {
   if (IsOver() || stop_deadline_) return {};
   stop_deadline_ = now + kGrace;
   return {.ask_to_stop = true};

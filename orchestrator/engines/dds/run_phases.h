@@ -74,7 +74,7 @@ class RunPhases {
   Actions OnSignal(int signal, Time now);
   /// Call it when a user asks for the end of the run: as the first signal, but the run counts as one that has ended by
   /// itself.
-  Actions OnWishToStop(Time now);
+  Actions OnRequestToStop(Time now);
   /// Call it when children have exited by themselves. Before the run is over, that is a failure.
   void OnExits(const std::vector<Exit>& exits, Time now);
   /// Makes the run fail, because of `why`. Only the first failure is kept; if the DDS endpoints differ from the graph,

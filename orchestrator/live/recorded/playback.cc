@@ -7,38 +7,38 @@
 
 namespace mascot {
 
-Answer Playback::Ask(const Wish& wish) {
+Answer Playback::Ask(const Request& request) {
   const std::lock_guard lock(mutex_);
   Advance();
-  const Answer answer = Grant(wish);
-  if (answer.granted) ++wishes_;
+  const Answer answer = Grant(request);
+  if (answer.granted) ++requests_;
   asked_.notify_all();
   return answer;
 }
 
-Answer Playback::Grant(const Wish& wish) {
-  switch (wish.kind) {
-    case Wish::Kind::kPause:
+Answer Playback::Grant(const Request& request) {
+  switch (request.kind) {
+    case Request::Kind::kPause:
       plays_ = false;
       return {true, "paused at " + Where()};
-    case Wish::Kind::kResume:
+    case Request::Kind::kResume:
       if (tick_ >= static_cast<double>(last_tick_)) tick_ = 0;
       plays_ = true;
       return {true, "plays from " + Where()};
-    case Wish::Kind::kStep:
-      if (!std::isfinite(wish.number)) return {false, "step: expected a number of ticks"};
+    case Request::Kind::kStep:
+      if (!std::isfinite(request.number)) return {false, "step: expected a number of ticks"};
       plays_ = false;
-      return GoTo(std::floor(tick_) + std::round(wish.number));
-    case Wish::Kind::kSeek:
-      if (!std::isfinite(wish.number)) return {false, "seek: expected a time in seconds"};
-      return GoTo(std::round(wish.number * rate_hz_));
-    case Wish::Kind::kPace:
-      if (!(wish.number >= kSlowest && wish.number <= kFastest))
-        return {false, fmt::format("speed: expected a number in [{}, {}], got {}", kSlowest, kFastest, wish.number)};
-      speed_ = wish.number;
+      return GoTo(std::floor(tick_) + std::round(request.number));
+    case Request::Kind::kSeek:
+      if (!std::isfinite(request.number)) return {false, "seek: expected a time in seconds"};
+      return GoTo(std::round(request.number * rate_hz_));
+    case Request::Kind::kPace:
+      if (!(request.number >= kSlowest && request.number <= kFastest))
+        return {false, fmt::format("speed: expected a number in [{}, {}], got {}", kSlowest, kFastest, request.number)};
+      speed_ = request.number;
       return {true, fmt::format("plays {} simulated seconds a second", speed_)};
-    case Wish::Kind::kStop:
-    case Wish::Kind::kEvent:
+    case Request::Kind::kStop:
+    case Request::Kind::kEvent:
       break;
   }
   return {false, "a recording cannot be changed"};
@@ -69,13 +69,13 @@ std::string Playback::Where() const {
 Playback::Standing Playback::Now() {
   const std::lock_guard lock(mutex_);
   Advance();
-  heard_ = wishes_;
+  heard_ = requests_;
   return {static_cast<std::int64_t>(tick_), plays_, speed_};
 }
 
 void Playback::Wait(const std::stop_token& over, WallClock::time_point until) {
   std::unique_lock lock(mutex_);
-  asked_.wait_until(lock, over, until, [this] { return wishes_ != heard_; });
+  asked_.wait_until(lock, over, until, [this] { return requests_ != heard_; });
 }
 
 }  // namespace mascot

@@ -29,13 +29,13 @@ class Playback final : public RunControl {
   Playback(int rate_hz, std::int64_t last_tick, std::function<WallClock::time_point()> clock = WallClock::now)
       : rate_hz_(rate_hz), last_tick_(last_tick), clock_(std::move(clock)), since_(clock_()) {}
 
-  Answer Ask(const Wish& wish) override;
+  Answer Ask(const Request& request) override;
   Standing Now();
   /// Waits for a request, for `over` or until this time.
   void Wait(const std::stop_token& over, WallClock::time_point until);
 
  private:
-  Answer Grant(const Wish& wish);
+  Answer Grant(const Request& request);
   void Advance();
   Answer GoTo(double tick);
   std::string Where() const;
@@ -46,8 +46,8 @@ class Playback final : public RunControl {
 
   std::mutex mutex_;  // guards what follows
   std::condition_variable_any asked_;
-  std::uint64_t wishes_ = 0, heard_ = 0;  // granted; of these, seen by Now()
-  double tick_ = 0;                       // with its fraction, at since_
+  std::uint64_t requests_ = 0, heard_ = 0;  // granted; of these, seen by Now()
+  double tick_ = 0;                         // with its fraction, at since_
   WallClock::time_point since_;
   bool plays_ = false;
   double speed_ = 1;

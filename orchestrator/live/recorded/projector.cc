@@ -29,7 +29,7 @@ void Projector::Run(const std::stop_token& over) {
         if ((has_edges_ = FollowEdges())) Publish();
     } catch (const std::exception& error) {
       log_(std::string("error: ") + error.what());
-      playback_.Ask({.kind = Wish::Kind::kPause});
+      playback_.Ask({.kind = Request::Kind::kPause});
       row_.tick = now.tick;  // not again
       has_edges_ = true;
     }

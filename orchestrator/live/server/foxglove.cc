@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "orchestrator/control/compact_json.h"
-#include "orchestrator/control/wish.h"
+#include "orchestrator/control/request.h"
 #include "orchestrator/formats/outside_json.h"
 
 namespace mascot {
@@ -200,15 +200,15 @@ void Foxglove::OnGetParameters(ClientId id, const Json& message) {
 }
 
 void Foxglove::OnSetParameters(ClientId id, const Json& message) {
-  std::vector<Wish> wishes;
+  std::vector<Request> requests;
   std::set<std::string> names;
   for (const Json& parameter : List(message, "parameters")) {
     names.insert(Text(parameter, "name"));
-    wishes.push_back(
+    requests.push_back(
         SetKey(Text(parameter, "name"), parameter.is_object() ? parameter.value("value", Json()) : Json()));
   }
-  if (wishes.size() > kMostQuestions) return SendStatus(id, kError, "setParameters: too many at once");
-  AskAll(id, std::move(wishes), [this, id, names, request = RequestOf(message)](const Answer& answer) {
+  if (requests.size() > kMostQuestions) return SendStatus(id, kError, "setParameters: too many at once");
+  AskAll(id, std::move(requests), [this, id, names, request = RequestOf(message)](const Answer& answer) {
     if (!answer.granted) SendStatus(id, kError, "setParameters: " + answer.words);
     SendParameters(
         id, [&](const Parameter& parameter) { return names.contains(parameter.name); }, request);
@@ -270,13 +270,13 @@ std::string Foxglove::OnServiceCall(ClientId id, Bytes message) {
   };
   if (service != kServiceId) return fail("there is no such service");
   if (encoding != "json") return fail("expected the encoding json, got " + encoding.substr(0, kLongestEcho));
-  Wish wish;
+  Request request;
   try {
-    wish = ReadWish(JsonOrNull<Json>(TextOf(bytes.rest())));
+    request = ReadRequest(JsonOrNull<Json>(TextOf(bytes.rest())));
   } catch (const std::invalid_argument& error) {
     return fail(error.what());
   }
-  AskAll(id, {wish}, [this, id, service, call](const Answer& answer) {
+  AskAll(id, {request}, [this, id, service, call](const Answer& answer) {
     std::string response = Begin(FromServer::kServiceResponse);
     for (const std::uint32_t number : {service, call, std::uint32_t{4}}) PutBytes(response, number);
     SendBytes(id, response + "json" + CompactJson({{"granted", answer.granted}, {"words", answer.words}}));
@@ -292,23 +292,23 @@ std::string Foxglove::OnPlaybackControl(ClientId id, Bytes message) {
   const auto time_ns = bytes.Take<std::uint64_t>();
   const std::string request(bytes.TakeText().substr(0, kLongestEcho));
   if (!bytes.ok() || command > 1) return "expected a request to control playback, got something else";
-  std::vector<Wish> wishes;
-  if (seeks) wishes.push_back({.kind = Wish::Kind::kSeek, .number = static_cast<double>(time_ns) * 1e-9});
-  if (speed != playback_.speed) wishes.push_back({.kind = Wish::Kind::kPace, .number = speed});
-  wishes.push_back({.kind = command == 0 ? Wish::Kind::kResume : Wish::Kind::kPause});
-  AskAll(id, std::move(wishes), [this, id, request](const Answer& answer) {
+  std::vector<Request> requests;
+  if (seeks) requests.push_back({.kind = Request::Kind::kSeek, .number = static_cast<double>(time_ns) * 1e-9});
+  if (speed != playback_.speed) requests.push_back({.kind = Request::Kind::kPace, .number = speed});
+  requests.push_back({.kind = command == 0 ? Request::Kind::kResume : Request::Kind::kPause});
+  AskAll(id, std::move(requests), [this, id, request](const Answer& answer) {
     if (!answer.granted) SendStatus(id, kError, answer.words);
     SendPlayback(id, request);
   });
   return {};
 }
 
-void Foxglove::AskAll(ClientId id, std::vector<Wish> wishes, Reply reply) {
-  if (wishes.empty()) return reply({.granted = true});
-  const Wish first = wishes.front();
-  wishes.erase(wishes.begin());
-  const Reply next = [this, id, wishes = std::move(wishes), reply](const Answer& answer) {
-    if (answer.granted && !wishes.empty()) return AskAll(id, wishes, reply);
+void Foxglove::AskAll(ClientId id, std::vector<Request> requests, Reply reply) {
+  if (requests.empty()) return reply({.granted = true});
+  const Request first = requests.front();
+  requests.erase(requests.begin());
+  const Reply next = [this, id, requests = std::move(requests), reply](const Answer& answer) {
+    if (answer.granted && !requests.empty()) return AskAll(id, requests, reply);
     reply(answer);
   };
   Question(id, next, [&](Reply later) { host_.Ask(first, std::move(later)); });

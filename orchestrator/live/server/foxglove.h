@@ -70,7 +70,7 @@ class Foxglove {
     /// Called when a client has subscribed: messages that it has missed may be sent to it now.
     virtual void OnSubscribe(ClientId client, ChannelId channel) = 0;
     // Ask the run. `reply` is to be called later, not before the call returns.
-    virtual void Ask(const Wish& wish, Reply reply) = 0;
+    virtual void Ask(const Request& request, Reply reply) = 0;
     virtual void AskForGoal(const Goal& goal, Reply reply) = 0;
   };
 
@@ -126,7 +126,7 @@ class Foxglove {
   std::string OnPlaybackControl(ClientId id, Bytes message);
 
   /// Makes the requests one after the other, as long as they are granted; `reply` gets the last answer.
-  void AskAll(ClientId id, std::vector<Wish> wishes, Reply reply);
+  void AskAll(ClientId id, std::vector<Request> requests, Reply reply);
   /// Passes a request on with `ask`, which gets the reply to call. If the client has too many unanswered requests, this
   /// one is refused at once.
   void Question(ClientId id, Reply reply, const std::function<void(Reply)>& ask);

@@ -34,7 +34,7 @@ namespace http = beast::http;
 namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
-using Request = http::request<http::empty_body>;
+using HttpRequest = http::request<http::empty_body>;
 using Response = http::response<http::string_body>;
 
 constexpr int kPortsToTry = 100;
@@ -98,7 +98,7 @@ class Session : public std::enable_shared_from_this<Session> {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  void Accept(const Request& request, const std::string& subprotocol) {
+  void Accept(const HttpRequest& request, const std::string& subprotocol) {
     server_.sessions[id_] = this;
     stream_.set_option(websocket::stream_base::timeout{
         .handshake_timeout = server_.options.limits.handshake, .idle_timeout = kIdle, .keep_alive_pings = true});
@@ -243,7 +243,7 @@ class Visit : public std::enable_shared_from_this<Visit> {
  private:
   void OnRead(error_code error) {
     if (error || server_.ending) return;  // the socket closes with this object
-    const Request& request = parser_->get();
+    const HttpRequest& request = parser_->get();
     if (const auto refusal = server_.doorkeeper.Judge(CallerOf(request)))
       return Refuse(refusal->status, refusal->answer, refusal->words);
     if (websocket::is_upgrade(request)) return Upgrade(request);
@@ -256,7 +256,7 @@ class Visit : public std::enable_shared_from_this<Visit> {
     }
   }
 
-  static Caller CallerOf(const Request& request) {
+  static Caller CallerOf(const HttpRequest& request) {
     const auto all = [&](http::field field) {
       std::vector<std::string_view> values;
       const auto range = request.equal_range(field);
@@ -271,7 +271,7 @@ class Visit : public std::enable_shared_from_this<Visit> {
     Answer({status, {}, answer});
   }
 
-  void Upgrade(const Request& request) {
+  void Upgrade(const HttpRequest& request) {
     if (server_.sessions.size() >= server_.options.limits.clients)
       return Refuse(503, "too many viewers\n", "there are " + std::to_string(server_.sessions.size()) + " viewers");
     http::token_list offered(request[http::field::sec_websocket_protocol]);
@@ -285,7 +285,7 @@ class Visit : public std::enable_shared_from_this<Visit> {
   }
 
   void Answer(const HttpAnswer& answer) {
-    const Request& request = parser_->get();
+    const HttpRequest& request = parser_->get();
     response_.emplace(http::status(answer.status), request.version());
     response_->set(http::field::content_type, "text/plain; charset=utf-8");
     response_->set("X-Content-Type-Options", "nosniff");

@@ -10,10 +10,10 @@ namespace mascot {
 namespace {
 
 constexpr const char* kServiceName = "/mascot/ask";
-constexpr std::string_view kWishSchema = R"({"type":"object","required":["ask"],"properties":{)"
-                                         R"("ask":{"enum":["pause","resume","stop","step","pace","event","seek"]},)"
-                                         R"("count":{"type":"integer"},"value":{"type":"number"},)"
-                                         R"("toml":{"type":"string"},"t_s":{"type":"number"}}})";
+constexpr std::string_view kRequestSchema = R"({"type":"object","required":["ask"],"properties":{)"
+                                            R"("ask":{"enum":["pause","resume","stop","step","pace","event","seek"]},)"
+                                            R"("count":{"type":"integer"},"value":{"type":"number"},)"
+                                            R"("toml":{"type":"string"},"t_s":{"type":"number"}}})";
 constexpr std::string_view kAnswerSchema =
     R"({"type":"object","properties":{"granted":{"type":"boolean"},"words":{"type":"string"}}})";
 
@@ -63,7 +63,7 @@ Foxglove::About AboutTheRun(const Experiment& experiment, std::vector<Foxglove::
                                      JsonChannel("/ui/events", "array")},
                         .connections = [&experiment] { return ConnectionsOf(experiment); },
                         .service = kServiceName,
-                        .request = {"mascot/Wish", "jsonschema", std::string(kWishSchema)},
+                        .request = {"mascot/Wish", "jsonschema", std::string(kRequestSchema)},
                         .response = {"mascot/Answer", "jsonschema", std::string(kAnswerSchema)}};
   for (Foxglove::Channel& channel : ros) about.channels.push_back(std::move(channel));
   return about;

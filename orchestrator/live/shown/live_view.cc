@@ -55,7 +55,7 @@ LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, c
           AboutTheRun(experiment, ros_.channels(), source_.recorded ? source_.recorded->last_tick : experiment.ticks()),
           *this),
       server_(OptionsOf(options), *this, std::move(log)),
-      asker_(control) {
+      request_queue_(control) {
   server_.Start();
 }
 
@@ -214,8 +214,8 @@ void LiveView::OnTimer() {
   SendMissed();
 }
 
-void LiveView::Ask(const Wish& wish, Foxglove::Reply reply) {
-  asker_.Ask(wish, [this, reply = std::move(reply)](const Answer& answer) {
+void LiveView::Ask(const Request& request, Foxglove::Reply reply) {
+  request_queue_.Ask(request, [this, reply = std::move(reply)](const Answer& answer) {
     server_.Post([reply, answer] { reply(answer); });
   });
 }
@@ -232,7 +232,7 @@ void LiveView::AskForGoal(const Goal& goal, Foxglove::Reply reply) {
   const auto i = static_cast<std::size_t>(agent - 1);
   const double z = goal.z != 0 || shown_.tick < 0 ? goal.z : shown_.decoded.motions[i].p_WB.z();
   const std::string position = fmt::format("[{:.6f}, {:.6f}, {:.6f}]", goal.x, goal.y, z);
-  Ask({.kind = Wish::Kind::kEvent, .toml = fmt::format("goto = {{ agent = {}, position_m = {} }}", agent, position)},
+  Ask({.kind = Request::Kind::kEvent, .toml = fmt::format("goto = {{ agent = {}, position_m = {} }}", agent, position)},
       std::move(reply));
 }
 

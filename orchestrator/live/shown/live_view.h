@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
-#include "orchestrator/control/asker.h"
+#include "orchestrator/control/request_queue.h"
 #include "orchestrator/live/server/foxglove.h"
 #include "orchestrator/live/server/pages.h"
 #include "orchestrator/live/server/socket.h"
@@ -85,7 +85,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   void Send(ClientId client, Frame frame) override { server_.Send(client, std::move(frame)); }
   bool IsSlow(ClientId client) const override { return slow_.contains(client); }
   void OnSubscribe(ClientId client, Foxglove::ChannelId channel) override;
-  void Ask(const Wish& wish, Foxglove::Reply reply) override;
+  void Ask(const Request& request, Foxglove::Reply reply) override;
   void AskForGoal(const Goal& goal, Foxglove::Reply reply) override;
 
   void PublishEvents();
@@ -123,8 +123,8 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   std::int64_t measured_tick_ = 0;
 
   Foxglove foxglove_;
-  SocketServer server_;  // its thread uses all of the above
-  Asker asker_;          // its thread uses server_
+  SocketServer server_;         // its thread uses all of the above
+  RequestQueue request_queue_;  // its thread uses server_
 };
 
 }  // namespace mascot

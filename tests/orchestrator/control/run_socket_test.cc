@@ -50,11 +50,11 @@ class RunSocketTest : public testing::Test {
  protected:
   RunSocketTest()
       : experiment_(Load(Three("name = 'consensus'\n"))),
-        helm_(experiment_, 0),
-        socket_(experiment_, "/some/folder", "inprocess", "http://127.0.0.1:8765", helm_) {}
+        requests_(experiment_, 0),
+        socket_(experiment_, "/some/folder", "inprocess", "http://127.0.0.1:8765", requests_) {}
 
   const Experiment experiment_;
-  Helm helm_;
+  RunRequests requests_;
   const RunSocket socket_;
 };
 
@@ -122,30 +122,30 @@ TEST_F(RunSocketTest, TellsWhatRunItIs) {
   EXPECT_EQ(json[0]["tick"], nullptr);
 }
 
-TEST_F(RunSocketTest, PassesWishesOnAndAnswersBack) {
-  helm_.Close();
-  EXPECT_EQ(AskRun(getpid(), {.kind = Wish::Kind::kPause}), (Answer{false, "the run is over"}));
-  EXPECT_EQ(AskRun(1, {.kind = Wish::Kind::kPause}), (Answer{false, "the run ended before it answered"}));
+TEST_F(RunSocketTest, PassesRequestsOnAndAnswersBack) {
+  requests_.Close();
+  EXPECT_EQ(AskRun(getpid(), {.kind = Request::Kind::kPause}), (Answer{false, "the run is over"}));
+  EXPECT_EQ(AskRun(1, {.kind = Request::Kind::kPause}), (Answer{false, "the run ended before it answered"}));
 }
 
 TEST_F(RunSocketTest, WhoWaitsForAnAnswerKeepsNobodyElseWaiting) {
-  auto answer = std::async(std::launch::async, [] { return AskRun(getpid(), {.kind = Wish::Kind::kPause}); });
-  EXPECT_EQ(ListedAs(getpid()).voice, Voice::kAnswers) << "the run has not begun, so that the wish waits";
-  helm_.Close();
-  const test::Deadline deadline("an answer to the wish");
+  auto answer = std::async(std::launch::async, [] { return AskRun(getpid(), {.kind = Request::Kind::kPause}); });
+  EXPECT_EQ(ListedAs(getpid()).voice, Voice::kAnswers) << "the run has not begun, so that the request waits";
+  requests_.Close();
+  const test::Deadline deadline("an answer to the request");
   EXPECT_EQ(answer.get().words, "the run is over");
 }
 
 TEST_F(RunSocketTest, ListensToItsOwnUserAndRootOnly) {
   if (geteuid() != 0) GTEST_SKIP() << "needs root, to be another user";
-  helm_.Close();
+  requests_.Close();
   const pid_t process = getpid();
   EXPECT_TRUE(HoldsForNobody([process] {
     const RunningRun run = ListedAs(process);
     return run.process == process && run.user == "root" && !run.is_ours();
   }));
   EXPECT_TRUE(HoldsForNobody([process] {
-    const Answer answer = AskRun(process, {.kind = Wish::Kind::kStop});
+    const Answer answer = AskRun(process, {.kind = Request::Kind::kStop});
     return !answer.granted &&
            answer.words == "process " + std::to_string(process) + " is user root's, who alone may ask it";
   }));
@@ -199,16 +199,16 @@ TEST_F(RunSocketTest, WaitsWhileTheProcessHasNoDescriptorLeft) {
 }
 
 TEST_F(RunSocketTest, HasAnotherNameIfItsOwnIsTaken) {
-  const Helm helm(experiment_, 0);
-  Helm second_helm(experiment_, 0);
-  const RunSocket second(experiment_, "/other/folder", "inprocess", "", second_helm);
+  const RunRequests requests(experiment_, 0);
+  RunRequests second_requests(experiment_, 0);
+  const RunSocket second(experiment_, "/other/folder", "inprocess", "", second_requests);
   EXPECT_EQ(ListedAs(getpid()).voice, Voice::kAnswers);
 }
 
 TEST(RunsAlive, KnowsWhoIsStopped) {
   const Listener stopped(RunNameOf, [](const Descriptor&) { raise(SIGSTOP); });
   EXPECT_TRUE(Until([&] { return ListedAs(stopped.pid()).voice == Voice::kStopped; }));
-  EXPECT_EQ(AskRun(stopped.pid(), {.kind = Wish::Kind::kPause}),
+  EXPECT_EQ(AskRun(stopped.pid(), {.kind = Request::Kind::kPause}),
             (Answer{false, "the run is stopped; `kill -CONT " + std::to_string(stopped.pid()) + "` lets it go on"}));
   EXPECT_EQ(nlohmann::json::parse(RunsJson({ListedAs(stopped.pid())}))[0]["state"], "stopped");
 }
@@ -239,8 +239,8 @@ TEST(RunsAlive, DoesNotAskAProcessOfAnotherUser) {
     if (write(told[1], &heard, 1) != 1) _exit(1);
   });
   const pid_t pid = stranger.pid();
-  EXPECT_TRUE(
-      HoldsForNobody([pid] { return !ListedAs(pid).is_ours() && !AskRun(pid, {.kind = Wish::Kind::kStop}).granted; }));
+  EXPECT_TRUE(HoldsForNobody(
+      [pid] { return !ListedAs(pid).is_ours() && !AskRun(pid, {.kind = Request::Kind::kStop}).granted; }));
   char heard[2] = {};
   for (char& each : heard) {
     ASSERT_TRUE(AwaitInput(told[0], "what the stranger has heard"));
@@ -268,7 +268,7 @@ while True:
     _exit(1);
   }
   const std::string words = "process " + std::to_string(pid) + " is user nobody's, who alone may ask it";
-  EXPECT_TRUE(Until([&] { return AskRun(pid, {.kind = Wish::Kind::kPause}).words == words; }));
+  EXPECT_TRUE(Until([&] { return AskRun(pid, {.kind = Request::Kind::kPause}).words == words; }));
   EXPECT_EQ(ListedAs(pid).process, 0);
   kill(pid, SIGKILL);
   AwaitEndOf(pid, "the impostor");
@@ -318,10 +318,10 @@ TEST(RunsAlive, DoesNotListWhoAnswersOtherThanARun) {
   }
 }
 
-TEST(RunsAlive, AnAnswerToAWishIsOneOrIsNotBelieved) {
+TEST(RunsAlive, AnAnswerToARequestIsOneOrIsNotBelieved) {
   const auto answer = [](const std::string& text) {
     const Listener listener(RunNameOf, AnswersWith(text));
-    return AskRun(listener.pid(), {.kind = Wish::Kind::kPause});
+    return AskRun(listener.pid(), {.kind = Request::Kind::kPause});
   };
   EXPECT_EQ(answer("{\"granted\": true, \"words\": \"so be it\"}\n"), (Answer{true, "so be it"}));
   EXPECT_EQ(answer("{\"granted\": true, \"words\": \"a\\nb\\u009b\"}\n"), (Answer{true, "a\nb\\u009b"}));

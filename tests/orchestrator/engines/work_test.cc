@@ -15,7 +15,7 @@
 
 #include "agent/laws/laws.h"
 #include "experiment/live_experiment.h"
-#include "orchestrator/control/helm.h"
+#include "orchestrator/control/run_requests.h"
 #include "tests/support/load.h"
 
 namespace {
@@ -221,9 +221,9 @@ TEST(Limits, OfEdgesHoldForAllGraphsOfAScheduleTogether) {
 TEST(Limits, OfEventsHoldForARunToo) {
   Experiment experiment = Load(Team());
   experiment.events.resize(100000);
-  Helm helm(experiment, 0);
-  helm.Open();
-  const Answer answer = helm.Ask({.kind = Wish::Kind::kEvent, .toml = "cut = [[1, 2]]"});
+  RunRequests requests(experiment, 0);
+  requests.Open();
+  const Answer answer = requests.Ask({.kind = Request::Kind::kEvent, .toml = "cut = [[1, 2]]"});
   EXPECT_FALSE(answer.granted);
   EXPECT_EQ(answer.words, "event by hand: expected at most 100000 events in a run, got one more");
 }
@@ -277,21 +277,22 @@ TEST(Work, OfAnEventDoesNotGrowWithTheTeam) {
 /// Asks a run that stands still; what is granted takes effect at its next tick, the 7th.
 class Asked {
  public:
-  explicit Asked(const std::string& toml) : experiment_(Load(toml)), helm_(experiment_, 0) { helm_.Open(); }
+  explicit Asked(const std::string& toml) : experiment_(Load(toml)), requests_(experiment_, 0) { requests_.Open(); }
   /// What the orchestrator does until so many events are granted.
   double Work(const std::string& event, int count = 1) {
     return BytesOf([&] {
-      for (int k = 0; k < count; ++k) EXPECT_TRUE(helm_.Ask({.kind = Wish::Kind::kEvent, .toml = event}).granted);
+      for (int k = 0; k < count; ++k)
+        EXPECT_TRUE(requests_.Ask({.kind = Request::Kind::kEvent, .toml = event}).granted);
     });
   }
 
  private:
   const Experiment experiment_;
-  Helm helm_;
+  RunRequests requests_;
   const std::jthread run_{[this](const std::stop_token& stop) {
     while (!stop.stop_requested()) {
-      helm_.WaitUntil(std::chrono::steady_clock::now() + std::chrono::milliseconds(10));
-      if (helm_.Next()) helm_.Done(7);
+      requests_.WaitUntil(std::chrono::steady_clock::now() + std::chrono::milliseconds(10));
+      if (requests_.Next()) requests_.Done(7);
     }
   }};
 };

@@ -413,10 +413,10 @@ TEST_F(RunPhasesTest, APausedServerThatGivesSignsOfLifeIsNotSilent) {
   EXPECT_EQ(phases_.failure(), "nothing came from physics_server for 7.0 s");
 }
 
-TEST_F(RunPhasesTest, AWishToStopEndsTheRunInOrder) {
+TEST_F(RunPhasesTest, ARequestToStopEndsTheRunInOrder) {
   Fly();
-  EXPECT_EQ(phases_.OnWishToStop(now_), (Actions{.ask_to_stop = true}));
-  EXPECT_EQ(phases_.OnWishToStop(now_), Actions{}) << "once";
+  EXPECT_EQ(phases_.OnRequestToStop(now_), (Actions{.ask_to_stop = true}));
+  EXPECT_EQ(phases_.OnRequestToStop(now_), Actions{}) << "once";
   view_.newest_tick = 3;
   view_.last_tick = 3;
   view_.rows = 4;
@@ -428,7 +428,7 @@ TEST_F(RunPhasesTest, AWishToStopEndsTheRunInOrder) {
 
 TEST_F(RunPhasesTest, AServerThatDoesNotStopWhenAskedToFailsTheRun) {
   Fly();
-  phases_.OnWishToStop(now_);
+  phases_.OnRequestToStop(now_);
   LookAfter(5001ms);
   EXPECT_EQ(phases_.failure(), "asked to stop, physics_server did not within 5 s");
 }

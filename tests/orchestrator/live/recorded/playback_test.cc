@@ -21,7 +21,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-using Kind = Wish::Kind;
+using Kind = Request::Kind;
 
 /// Playback of 1001 ticks, 100 a second, by a clock that the test moves.
 class PlaybackOfTenSeconds : public testing::Test {

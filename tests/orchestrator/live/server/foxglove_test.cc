@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "orchestrator/control/wish.h"
+#include "orchestrator/control/request.h"
 #include "tests/support/repeated.h"
 #include "tests/support/scratch.h"
 
@@ -57,8 +57,8 @@ class Server final : public Foxglove::Host {
   }
   bool IsSlow(ClientId client) const override { return client == slow; }
   void OnSubscribe(ClientId client, Foxglove::ChannelId channel) override { subscribed.emplace_back(client, channel); }
-  void Ask(const Wish& wish, Foxglove::Reply reply) override {
-    wishes.push_back(wish);
+  void Ask(const Request& request, Foxglove::Reply reply) override {
+    requests.push_back(request);
     replies.push_back(std::move(reply));
   }
   void AskForGoal(const Goal& goal, Foxglove::Reply reply) override {
@@ -91,7 +91,7 @@ class Server final : public Foxglove::Host {
 
   std::map<ClientId, std::vector<std::string>> texts, binaries;
   std::vector<std::pair<ClientId, Foxglove::ChannelId>> subscribed;
-  std::vector<Wish> wishes;
+  std::vector<Request> requests;
   std::vector<Goal> goals;
   std::vector<Foxglove::Reply> replies;
   ClientId slow = 0;
@@ -207,9 +207,9 @@ TEST(Foxglove, AsksTheRunForWhatAServiceCallWants) {
   };
   server.Forget();
   EXPECT_EQ(call(R"({"ask":"event","toml":"goto = {}"})"), "");
-  ASSERT_THAT(server.wishes, SizeIs(1));
-  EXPECT_EQ(server.wishes[0].kind, Wish::Kind::kEvent);
-  EXPECT_EQ(server.wishes[0].toml, "goto = {}");
+  ASSERT_THAT(server.requests, SizeIs(1));
+  EXPECT_EQ(server.requests[0].kind, Request::Kind::kEvent);
+  EXPECT_EQ(server.requests[0].toml, "goto = {}");
   EXPECT_THAT(server.binaries[1], IsEmpty());
   server.Reply({true, "at tick 7"});
   EXPECT_THAT(server.binaries[1], ElementsAre(Bytes('\3', 0u, 5u, 4u) + R"(json{"granted":true,"words":"at tick 7"})"));
@@ -231,16 +231,16 @@ TEST(Foxglove, AsksTheRunForWhatAServiceCallWants) {
     EXPECT_EQ(failure[0]["message"], words);
     EXPECT_EQ(failure[0]["callId"], 5);
   }
-  EXPECT_THAT(server.wishes, SizeIs(1));
+  EXPECT_THAT(server.requests, SizeIs(1));
 }
 
-TEST(Foxglove, ReadsEveryWish) {
-  EXPECT_EQ(ReadWish({{"ask", "pause"}}).kind, Wish::Kind::kPause);
-  EXPECT_EQ(ReadWish({{"ask", "resume"}}).kind, Wish::Kind::kResume);
-  EXPECT_EQ(ReadWish({{"ask", "stop"}}).kind, Wish::Kind::kStop);
-  EXPECT_EQ(ReadWish({{"ask", "step"}, {"count", 3}}).number, 3);
-  EXPECT_EQ(ReadWish({{"ask", "pace"}, {"value", 2.5}}).number, 2.5);
-  EXPECT_EQ(ReadWish({{"ask", "seek"}, {"t_s", 12}}).number, 12);
+TEST(Foxglove, ReadsEveryRequest) {
+  EXPECT_EQ(ReadRequest({{"ask", "pause"}}).kind, Request::Kind::kPause);
+  EXPECT_EQ(ReadRequest({{"ask", "resume"}}).kind, Request::Kind::kResume);
+  EXPECT_EQ(ReadRequest({{"ask", "stop"}}).kind, Request::Kind::kStop);
+  EXPECT_EQ(ReadRequest({{"ask", "step"}, {"count", 3}}).number, 3);
+  EXPECT_EQ(ReadRequest({{"ask", "pace"}, {"value", 2.5}}).number, 2.5);
+  EXPECT_EQ(ReadRequest({{"ask", "seek"}, {"t_s", 12}}).number, 12);
 }
 
 TEST(Foxglove, SetsParametersByEventsAndTellsWhoWantsToKnow) {
@@ -254,7 +254,7 @@ TEST(Foxglove, SetsParametersByEventsAndTellsWhoWantsToKnow) {
                 R"({"op":"parameterValues","parameters":[{"name":"law.p_gain","value":1.0,"type":"float64"},)"
                 R"({"name":"physics.wind.mean_m_per_s","value":[0,0,0],"type":"float64_array"}],"id":"all"})")});
   server.Say(R"({"op":"setParameters","parameters":[{"name":"law.p_gain","value":0.5}],"id":"set"})");
-  EXPECT_EQ(server.wishes.at(0).toml, R"(set = { "law.p_gain" = 0.5 })");
+  EXPECT_EQ(server.requests.at(0).toml, R"(set = { "law.p_gain" = 0.5 })");
   server.foxglove->SetParameters({{"law.p_gain", 0.5}, {"physics.wind.mean_m_per_s", {0, 0, 0}}});
   server.Reply({true, ""});
   EXPECT_EQ(server.Texts(1, "parameterValues")[1]["parameters"][0]["value"], 0.5);
@@ -304,12 +304,12 @@ TEST(Foxglove, ControlsPlayback) {
   server.Forget();
   EXPECT_EQ(server.SayBytes(Bytes('\3', '\1', 2.0f, '\1', std::uint64_t{1'500'000'000}, 2u) + "r1"), "");
   server.Reply({true, ""});
-  ASSERT_THAT(server.wishes, SizeIs(3));
-  EXPECT_EQ(server.wishes[0].kind, Wish::Kind::kSeek);
-  EXPECT_EQ(server.wishes[0].number, 1.5);
-  EXPECT_EQ(server.wishes[1].kind, Wish::Kind::kPace);
-  EXPECT_EQ(server.wishes[1].number, 2);
-  EXPECT_EQ(server.wishes[2].kind, Wish::Kind::kPause);
+  ASSERT_THAT(server.requests, SizeIs(3));
+  EXPECT_EQ(server.requests[0].kind, Request::Kind::kSeek);
+  EXPECT_EQ(server.requests[0].number, 1.5);
+  EXPECT_EQ(server.requests[1].kind, Request::Kind::kPace);
+  EXPECT_EQ(server.requests[1].number, 2);
+  EXPECT_EQ(server.requests[2].kind, Request::Kind::kPause);
   EXPECT_THAT(server.binaries[1], ElementsAre(Bytes('\5', '\0', std::uint64_t{5}, 1.0f, 2u) + "r1"));
   server.Forget();
   server.foxglove->SetPlayback({Foxglove::Playing::kPlaying, 6, 1});
@@ -322,7 +322,7 @@ TEST(Foxglove, AsksNoFurtherOnceAWishIsRefused) {
   Server server;
   server.SayBytes(Bytes('\3', '\0', 3.0f, '\1', std::uint64_t{0}, 0u));
   server.Reply({false, "a run does not seek"});
-  EXPECT_THAT(server.wishes, SizeIs(1));
+  EXPECT_THAT(server.requests, SizeIs(1));
   EXPECT_EQ(server.Texts(1, "status").at(0)["message"], "a run does not seek");
 }
 
@@ -340,7 +340,7 @@ TEST(Foxglove, LimitsQuestionsAndForgetsThoseOfClientsThatLeft) {
   Server server;
   const std::string pause = Bytes('\2', 0u, 5u, 4u) + R"(json{"ask":"pause"})";
   for (std::size_t i = 0; i < Foxglove::kMostQuestions + 1; ++i) server.SayBytes(pause);
-  EXPECT_THAT(server.wishes, SizeIs(Foxglove::kMostQuestions));
+  EXPECT_THAT(server.requests, SizeIs(Foxglove::kMostQuestions));
   EXPECT_THAT(server.binaries[1].back(), HasSubstr("too many requests are not answered yet"));
   server.Forget();
   server.foxglove->OnClose(1);

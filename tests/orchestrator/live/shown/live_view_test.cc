@@ -53,21 +53,21 @@ Experiment Load(const std::string& toml, const std::string& key = "", const std:
 /// Grants everything but stop.
 class Control final : public RunControl {
  public:
-  Answer Ask(const Wish& wish) override {
+  Answer Ask(const Request& request) override {
     const std::lock_guard lock(mutex_);
-    wishes_.push_back(wish);
+    requests_.push_back(request);
     if (breaks) throw std::runtime_error("made up");
-    return {wish.kind != Wish::Kind::kStop, "asked"};
+    return {request.kind != Request::Kind::kStop, "asked"};
   }
-  std::vector<Wish> wishes() {
+  std::vector<Request> requests() {
     const std::lock_guard lock(mutex_);
-    return wishes_;
+    return requests_;
   }
   std::atomic<bool> breaks = false;
 
  private:
   std::mutex mutex_;
-  std::vector<Wish> wishes_;
+  std::vector<Request> requests_;
 };
 
 /// A run in this process, which goes on tick by tick as the test says.
@@ -279,7 +279,7 @@ TEST(RosView, StandsAtATickUntilItIsToldToGoOn) {
   EXPECT_EQ(view.TakeNewest(), 300);
 }
 
-TEST(LiveView, PassesWishesToTheRunAndItsAnswersBack) {
+TEST(LiveView, PassesRequestsToTheRunAndItsAnswersBack) {
   Watched run(Load(kThree));
   Viewer viewer(run.view.url());
   EXPECT_EQ(viewer.Ask({{"ask", "pause"}}), (Json{{"granted", true}, {"words", "asked"}}));
@@ -290,7 +290,7 @@ TEST(LiveView, PassesWishesToTheRunAndItsAnswersBack) {
     const auto status = viewer.NextWith("/goal: ");
     return status ? Json::parse(status->payload)["message"].get<std::string>() : "";
   };
-  const auto asked = [&] { return run.control.wishes().back().toml; };
+  const auto asked = [&] { return run.control.requests().back().toml; };
   viewer.Send(WebClient::kText, R"({"op":"advertise","channels":[{"id":1,"topic":"/goal","encoding":"json",)"
                                 R"("schemaName":"geometry_msgs/msg/PoseStamped"}]})");
   EXPECT_EQ(publish("agent_2"), "/goal: asked");
@@ -324,7 +324,7 @@ name = "consensus"
   EXPECT_THAT(publish(R"({"pose":{"position":{"x":5,"y":6,"z":0}}})"),
               HasSubstr("/goal: expected an agent's name as frame_id, such as agent_1, because there is no leader"));
   publish(R"({"header":{"frame_id":"agent_2"},"pose":{"position":{"x":5,"y":6,"z":0}}})");
-  EXPECT_EQ(run.control.wishes().back().toml, "goto = { agent = 2, position_m = [5.000000, 6.000000, 2.500000] }");
+  EXPECT_EQ(run.control.requests().back().toml, "goto = { agent = 2, position_m = [5.000000, 6.000000, 2.500000] }");
 }
 
 mascot_msgs::msg::Event EventIn(const std::string& bytes) {

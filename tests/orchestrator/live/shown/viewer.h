@@ -59,9 +59,10 @@ class Viewer : public WebClient {
   }
   nlohmann::json NextJsonOf(const std::string& topic) { return nlohmann::json::parse(NextOf(topic)); }
   /// Messages that come before the answer are kept for NextOf().
-  nlohmann::json Ask(const nlohmann::json& wish) {
+  nlohmann::json Ask(const nlohmann::json& request) {
     const std::uint32_t numbers[] = {0, 1, 4};
-    Send(kBinary, "\x02" + std::string(reinterpret_cast<const char*>(numbers), sizeof numbers) + "json" + wish.dump());
+    Send(kBinary,
+         "\x02" + std::string(reinterpret_cast<const char*>(numbers), sizeof numbers) + "json" + request.dump());
     for (auto frame = Next(); frame; kept_.push_back(*frame), frame = Next())
       if (frame->payload.starts_with('\3'))
         return nlohmann::json::parse(frame->payload.substr(frame->payload.find('{')));

@@ -17,56 +17,57 @@
 namespace mascot {
 
 /// How a run goes on.
-struct Going {
+struct RunStatus {
   bool paused = false;
   double pace = 0;         ///< simulated seconds a second that are asked for; 0: as fast as it goes
   std::int64_t tick = -1;  ///< newest one recorded; -1: none
   int domain = -1;         ///< DDS domain; -1: none
 };
 
-/// Where those who steer a run meet the run: wishes come in from any thread, are checked, and wait, one after the
+/// Where those who steer a run meet the run: requests come in from any thread, are checked, and wait, one after the
 /// other, until the run's own thread has carried them out. Gets the run's rows, to know what events have made of the
 /// experiment.
-class Helm final : public RunControl, public RowSink {
+class RunRequests final : public RunControl, public RowSink {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
   /// `pace`: simulated seconds a second to begin with. `experiment` must outlive this object.
-  Helm(const Experiment& experiment, double pace);
+  RunRequests(const Experiment& experiment, double pace);
 
-  /// Returns when the wish is carried out or refused: at once if it is no legal one, after 5 s if the run has not begun
-  /// by then, and when the run is over before the wish is carried out.
-  Answer Ask(const Wish& wish) override;
+  /// Returns when the request is carried out or refused: at once if it is no legal one, after 5 s if the run has not
+  /// begun by then, and when the run is over before the request is carried out.
+  Answer Ask(const Request& request) override;
   /// From any thread.
-  Going going() const;
+  RunStatus status() const;
   void Adopt(const LiveExperiment& live, std::span<const Event> events) override;
   void Add(const FlownRow& row) override;
   /// `tell` is called, in the run's thread, when how it goes on has changed by more than a tick.
-  void CallWhenChanged(std::function<void(const Going&)> tell);
+  void CallWhenChanged(std::function<void(const RunStatus&)> tell);
 
   // For the run's thread.
-  /// `wake` is called, from any thread, when a wish has come; null: nobody needs to be woken.
+  /// `wake` is called, from any thread, when a request has come; null: nobody needs to be woken.
   void CallWhenAsked(std::function<void()> wake);
-  /// The run has begun: wishes are taken from now on.
+  /// The run has begun: requests are taken from now on.
   void Open();
-  /// A wish that has been checked, for the run to carry out.
+  /// A request that has been checked, for the run to carry out.
   struct Order {
-    Wish::Kind kind = Wish::Kind::kPause;
-    double number = 0;  ///< as in Wish; kEvent: it must take effect before this tick
+    Request::Kind kind = Request::Kind::kPause;
+    double number = 0;  ///< as in Request; kEvent: it must take effect before this tick
     std::optional<Event> event = {};
   };
   /// The next order, the same until Done(); nothing: there is none.
   std::optional<Order> Next() const;
   /// That order is carried out: `tick` is the first that it holds for; nullopt: the run is over.
   void Done(std::optional<std::int64_t> tick);
-  /// That order, an event, cannot take effect before the tick Order::number: the wish is checked again for later ones.
+  /// That order, an event, cannot take effect before the tick Order::number: the request is checked again for later
+  /// ones.
   void CheckAgain();
   /// How the ticks go on now.
-  void SetGoing(bool paused, double pace);
+  void SetStatus(bool paused, double pace);
   void SetDomain(int domain);
-  /// The run is over: whoever waits is told so, and no more wishes are taken.
+  /// The run is over: whoever waits is told so, and no more requests are taken.
   void Close();
-  /// Waits for a wish, at most until `time`.
+  /// Waits for a request, at most until `time`.
   void WaitUntil(Time time) const;
 
   /// Events that were given by hand and have taken effect, in order.
@@ -75,16 +76,16 @@ class Helm final : public RunControl, public RowSink {
   std::vector<int> numbers_by_hand() const;
 
  private:
-  /// What the wish asks for. An event takes effect at tick `from` or later. Throws ConfigError or std::invalid_argument
-  /// if it is not legal.
-  Order Checked(const Wish& wish, std::int64_t from);
+  /// What the request asks for. An event takes effect at tick `from` or later. Throws ConfigError or
+  /// std::invalid_argument if it is not legal.
+  Order Checked(const Request& request, std::int64_t from);
   /// Throws ConfigError if the event is not legal, or an event of the file after it. That holds for ticks before the
   /// file's next event: behind it there may be another law.
   Order CheckedEvent(const std::string& toml, std::int64_t from);
   Answer AnswerTo(const Order& order, std::optional<std::int64_t> tick) const;
 
   const Experiment& experiment_;
-  std::mutex asking_;  // one wish at a time; guards ahead_
+  std::mutex asking_;  // one request at a time; guards ahead_
 
   /// The run as it will be when all events that are granted have taken effect.
   struct Ahead {
@@ -102,9 +103,9 @@ class Helm final : public RunControl, public RowSink {
   mutable std::mutex mutex_;  // guards what is below
   mutable std::condition_variable changed_;
   std::function<void()> wake_;
-  std::function<void(const Going&)> tell_;
+  std::function<void(const RunStatus&)> tell_;
   bool is_open_ = false, is_over_ = false;
-  Going going_;
+  RunStatus status_;
   std::optional<Order> order_;
   std::optional<Answer> answer_;
   std::optional<LiveExperiment> live_;  // as of the newest row; never empty

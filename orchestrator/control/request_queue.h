@@ -13,18 +13,18 @@ namespace mascot {
 
 /// Passes requests to a RunControl, one after the other, in a thread of its own, because an answer may take a second or
 /// two.
-class Asker {
+class RequestQueue {
  public:
   /// `control` must outlive this object.
-  explicit Asker(RunControl& control)
+  explicit RequestQueue(RunControl& control)
       : control_(control), thread_([this](const std::stop_token& over) { Run(over); }) {}
 
   /// `answered` gets the answer in the asker's thread; it is not called if this object ends before.
-  void Ask(const Wish& wish, std::function<void(const Answer&)> answered);
+  void Ask(const Request& request, std::function<void(const Answer&)> answered);
 
  private:
   struct Question {
-    Wish wish;
+    Request request;
     std::function<void(const Answer&)> answered;
   };
   void Run(const std::stop_token& over);

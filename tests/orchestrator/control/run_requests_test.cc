@@ -1,5 +1,5 @@
 // People steer a run: what they ask, what is answered, and what becomes of the run.
-#include "orchestrator/control/helm.h"
+#include "orchestrator/control/run_requests.h"
 
 #include <gmock/gmock.h>
 
@@ -20,7 +20,7 @@ namespace mascot {
 namespace {
 
 using ::testing::StartsWith;
-using Kind = Wish::Kind;
+using Kind = Request::Kind;
 
 const std::string kFirstLeads = "name = 'consensus'\nleader = 1\n";
 
@@ -47,9 +47,9 @@ void JoinSoon(std::jthread& thread) {
 class Steered {
  public:
   explicit Steered(const std::string& toml, double pace = 0)
-      : experiment(Load(toml)), helm(experiment, pace), thread_([this] {
+      : experiment(Load(toml)), requests(experiment, pace), thread_([this] {
           result = RunInProcess(
-              experiment, {&kept, &helm}, [] { return true; }, &helm);
+              experiment, {&kept, &requests}, [] { return true; }, &requests);
         }) {}
   ~Steered() {
     if (!thread_.joinable()) return;
@@ -57,9 +57,9 @@ class Steered {
     Join();
   }
 
-  Answer Ask(const Wish& wish) {
+  Answer Ask(const Request& request) {
     const test::Deadline deadline("an answer of the run");
-    return helm.Ask(wish);
+    return requests.Ask(request);
   }
   Answer Event(const std::string& toml) { return Ask({.kind = Kind::kEvent, .toml = toml}); }
   void Join() {
@@ -68,11 +68,11 @@ class Steered {
   }
   /// Waits until the run has come to this tick.
   void Reach(std::int64_t tick) const {
-    test::Await("tick " + std::to_string(tick), [&] { return helm.going().tick >= tick; });
+    test::Await("tick " + std::to_string(tick), [&] { return requests.status().tick >= tick; });
   }
 
   const Experiment experiment;
-  Helm helm;
+  RunRequests requests;
   Kept kept;
   EngineResult result;
 
@@ -93,12 +93,12 @@ class Paused : public Steered {
   }
 };
 
-TEST(Helm, AnswersWhatWillHappen) {
+TEST(RunRequests, AnswersWhatWillHappen) {
   Paused run;
-  const std::int64_t at = run.helm.going().tick;
+  const std::int64_t at = run.requests.status().tick;
   const auto seconds = [](std::int64_t tick) { return ShortestFloat(static_cast<double>(tick) / 100) + " s)"; };
-  const auto says = [&](const Wish& wish, const std::string& words) {
-    const Answer answer = run.Ask(wish);
+  const auto says = [&](const Request& request, const std::string& words) {
+    const Answer answer = run.Ask(request);
     EXPECT_TRUE(answer.granted);
     EXPECT_EQ(answer.words, words);
   };
@@ -110,7 +110,7 @@ TEST(Helm, AnswersWhatWillHappen) {
   says({.kind = Kind::kStop}, "stops");
 }
 
-TEST(Helm, RefusesInTheWordsOfTheFileAndChangesNothing) {
+TEST(RunRequests, RefusesInTheWordsOfTheFileAndChangesNothing) {
   Paused run;
   const auto refusal = [&](const std::string& toml) {
     const Answer answer = run.Event(toml);
@@ -139,7 +139,7 @@ TEST(Helm, RefusesInTheWordsOfTheFileAndChangesNothing) {
   EXPECT_TRUE(run.kept.events.empty());
 }
 
-TEST(Helm, ChecksEventsAsTheFileDoesAlsoAfterOthers) {
+TEST(RunRequests, ChecksEventsAsTheFileDoesAlsoAfterOthers) {
   const std::string shape =
       "[run]\nduration_s = 1.0\n[agents]\ncount = 3\nmodel = 'single_integrator'\n"
       "position_m = [[0, 0, 1], [1, 0, 1], [0, 2, 1]]\n[graph]\ntopology = 'complete'\n[law]\n"
@@ -163,7 +163,7 @@ constexpr const char* kGoTo = "goto = { agent = 2, position_m = [1, 1, 1] }";
 constexpr const char* kNoWaypoints =
     "event by hand: goto: expected an agent that flies waypoints, or a leader, got agent 2 of law 'consensus'";
 
-TEST(Helm, AnEventAtTheTickOfAPhaseComesBehindIt) {
+TEST(RunRequests, AnEventAtTheTickOfAPhaseComesBehindIt) {
   Steered run(Paused::Long(Three(kFliesAndThenAgrees)) + "[[events]]\nat_s = 0.3\nset = { \"run.pace\" = 0.001 }\n");
   run.Reach(30);
   run.Ask({.kind = Kind::kPause});
@@ -178,20 +178,20 @@ TEST(Helm, AnEventAtTheTickOfAPhaseComesBehindIt) {
   EXPECT_EQ(run.result.failure, "");
 }
 
-TEST(Helm, ChecksAnEventAgainThatAPhaseHasOvertaken) {
+TEST(RunRequests, ChecksAnEventAgainThatAPhaseHasOvertaken) {
   const Experiment experiment = Load(Three(kFliesAndThenAgrees));
-  Helm helm(experiment, 0);
-  helm.Open();
+  RunRequests requests(experiment, 0);
+  requests.Open();
   Answer answer{.granted = true};
-  std::jthread asking([&] { answer = helm.Ask({.kind = Kind::kEvent, .toml = kGoTo}); });
-  test::Await("a wish", [&] { return helm.Next().has_value(); });
-  EXPECT_EQ(helm.Next()->number, 50);
-  helm.CheckAgain();
+  std::jthread asking([&] { answer = requests.Ask({.kind = Kind::kEvent, .toml = kGoTo}); });
+  test::Await("a request", [&] { return requests.Next().has_value(); });
+  EXPECT_EQ(requests.Next()->number, 50);
+  requests.CheckAgain();
   JoinSoon(asking);
   EXPECT_EQ(answer, (Answer{false, kNoWaypoints}));
 }
 
-TEST(Helm, RefusesNumbersThatMakeNoSense) {
+TEST(RunRequests, RefusesNumbersThatMakeNoSense) {
   Paused run;
   const auto refusal = [&](Kind kind, double number) {
     const Answer answer = run.Ask({.kind = kind, .number = number});
@@ -205,37 +205,37 @@ TEST(Helm, RefusesNumbersThatMakeNoSense) {
   EXPECT_EQ(refusal(Kind::kSeek, 1), "seek: expected a recording, got a run: nobody can go back in it, or ahead");
 }
 
-TEST(Helm, LetsAWishThatComesEarlyWaitForTheRunAndRefusesWhatComesLate) {
+TEST(RunRequests, LetsARequestThatComesEarlyWaitForTheRunAndRefusesWhatComesLate) {
   const Experiment experiment = Load(Three(kFirstLeads));
-  Helm helm(experiment, 0);
+  RunRequests requests(experiment, 0);
   Answer early;
-  std::jthread asking([&] { early = helm.Ask({.kind = Kind::kPace, .number = 0}); });
+  std::jthread asking([&] { early = requests.Ask({.kind = Kind::kPace, .number = 0}); });
   Kept kept;
   EXPECT_EQ(RunInProcess(
-                experiment, {&kept, &helm}, [] { return true; }, &helm)
+                experiment, {&kept, &requests}, [] { return true; }, &requests)
                 .failure,
             "");
   JoinSoon(asking);
   EXPECT_TRUE(early.granted || early.words == "the run is over") << early.words;
-  const Answer late = helm.Ask({.kind = Kind::kPause});
+  const Answer late = requests.Ask({.kind = Kind::kPause});
   EXPECT_FALSE(late.granted);
   EXPECT_EQ(late.words, "the run is over");
 }
 
-TEST(Helm, TellsWhoWaitsWhenTheRunEnds) {
+TEST(RunRequests, TellsWhoWaitsWhenTheRunEnds) {
   const Experiment experiment = Load(Three(kFirstLeads));
-  Helm helm(experiment, 0);
-  helm.Open();
+  RunRequests requests(experiment, 0);
+  requests.Open();
   Answer answer{.granted = true};
-  std::jthread asking([&] { answer = helm.Ask({.kind = Kind::kPause}); });
-  test::Await("a wish", [&] { return helm.Next().has_value(); });
-  helm.Close();
+  std::jthread asking([&] { answer = requests.Ask({.kind = Kind::kPause}); });
+  test::Await("a request", [&] { return requests.Next().has_value(); });
+  requests.Close();
   JoinSoon(asking);
   EXPECT_FALSE(answer.granted);
   EXPECT_EQ(answer.words, "the run is over");
 }
 
-TEST(Helm, StopsARunInOrder) {
+TEST(RunRequests, StopsARunInOrder) {
   Paused run;
   run.Ask({.kind = Kind::kStep, .number = 10});
   run.Reach(10);
@@ -245,15 +245,15 @@ TEST(Helm, StopsARunInOrder) {
   EXPECT_EQ(run.result.signal, 0);
 }
 
-TEST(Helm, AnEventOfTheFileMayChangeThePace) {
+TEST(RunRequests, AnEventOfTheFileMayChangeThePace) {
   Steered run(Paused::Long(Three(kFirstLeads)) + "[[events]]\nat_s = 0.5\nset = { \"run.pace\" = 0.001 }\n");
   run.Reach(50);
   run.Ask({.kind = Kind::kPause});
-  EXPECT_EQ(run.helm.going().pace, 0.001);
+  EXPECT_EQ(run.requests.status().pace, 0.001);
   EXPECT_EQ(run.kept.newest, 50) << "the next tick is due 10 s later";
 }
 
-TEST(Helm, PausesStepsAndPacesLeaveNoTrace) {
+TEST(RunRequests, PausesStepsAndPacesLeaveNoTrace) {
   const std::string toml = Three(kFirstLeads);
   Kept plain;
   const Experiment experiment = Load(toml);
@@ -271,7 +271,7 @@ TEST(Helm, PausesStepsAndPacesLeaveNoTrace) {
   EXPECT_TRUE(run.kept.events.empty());
 }
 
-TEST(Helm, EventsOfTwoSendersAtRandomMomentsFlyAgainFromTheFile) {
+TEST(RunRequests, EventsOfTwoSendersAtRandomMomentsFlyAgainFromTheFile) {
   const std::string toml = Three(kFirstLeads) + "[[events]]\nat_s = 0.3\ncut = [[1, 3]]\n[[events]]\nat_s = 0.6\n" +
                            "set = { \"law.p_gain\" = 0.4 }\n";
   Steered run(toml, 1);
@@ -293,10 +293,10 @@ TEST(Helm, EventsOfTwoSendersAtRandomMomentsFlyAgainFromTheFile) {
   run.Ask({.kind = Kind::kPace, .number = 0});
   run.Join();
   ASSERT_EQ(run.result.failure, "");
-  EXPECT_EQ(run.helm.by_hand().size() + 2, run.kept.events.size());
-  EXPECT_GT(run.helm.by_hand().size(), 5u);
+  EXPECT_EQ(run.requests.by_hand().size() + 2, run.kept.events.size());
+  EXPECT_GT(run.requests.by_hand().size(), 5u);
   std::string text = run.experiment.resolved;
-  for (const auto& event : run.helm.by_hand()) text = WithEvent(text, event.tick, 100, event.Toml());
+  for (const auto& event : run.requests.by_hand()) text = WithEvent(text, event.tick, 100, event.Toml());
   Kept again;
   const Experiment flown = Load(text);
   EXPECT_EQ(RunInProcess(flown, {&again}, [] { return true; }).failure, "");

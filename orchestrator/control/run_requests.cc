@@ -1,4 +1,4 @@
-#include "orchestrator/control/helm.h"
+#include "orchestrator/control/run_requests.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kByHand = "event by hand";
 constexpr double kMostSteps = 1e9;
-/// How long a wish that comes early waits for the first tick.
+/// How long a request that comes early waits for the first tick.
 constexpr auto kStartPatience = std::chrono::seconds(5);
 
 /// The row of run.pace.
@@ -33,13 +33,13 @@ std::string Refusal(const ConfigError& error) {
 
 }  // namespace
 
-Helm::Helm(const Experiment& experiment, double pace)
+RunRequests::RunRequests(const Experiment& experiment, double pace)
     : experiment_(experiment),
       ahead_(Ahead{.live = LiveExperiment(experiment, &LawTable(), /*checked=*/true)}),
-      going_{.pace = experiment.run.mode == Mode::kRealtime ? experiment.run.speed : pace},
+      status_{.pace = experiment.run.mode == Mode::kRealtime ? experiment.run.speed : pace},
       live_(ahead_->live) {}
 
-Answer Helm::Ask(const Wish& wish) {
+Answer RunRequests::Ask(const Request& request) {
   const std::lock_guard one_at_a_time(asking_);
   const Answer too_late{false, "the run is over"};
   {
@@ -51,7 +51,7 @@ Answer Helm::Ask(const Wish& wish) {
   for (std::int64_t from = 0;;) {
     Order checked;
     try {
-      checked = Checked(wish, from);
+      checked = Checked(request, from);
     } catch (const ConfigError& error) {
       return {false, Refusal(error)};
     } catch (const std::invalid_argument& error) {
@@ -69,33 +69,33 @@ Answer Helm::Ask(const Wish& wish) {
   }
 }
 
-Helm::Order Helm::Checked(const Wish& wish, std::int64_t from) {
+RunRequests::Order RunRequests::Checked(const Request& request, std::int64_t from) {
   const bool realtime = experiment_.run.mode == Mode::kRealtime;
-  switch (wish.kind) {
-    case Wish::Kind::kPause:
-    case Wish::Kind::kResume:
-    case Wish::Kind::kStop:
+  switch (request.kind) {
+    case Request::Kind::kPause:
+    case Request::Kind::kResume:
+    case Request::Kind::kStop:
       break;
-    case Wish::Kind::kStep:
-      if (!(wish.number >= 1 && wish.number <= kMostSteps && wish.number == std::floor(wish.number)))
+    case Request::Kind::kStep:
+      if (!(request.number >= 1 && request.number <= kMostSteps && request.number == std::floor(request.number)))
         throw std::invalid_argument(
-            fmt::format("step: expected an integer in [1, {:.0f}], got {}", kMostSteps, ShortestFloat(wish.number)));
+            fmt::format("step: expected an integer in [1, {:.0f}], got {}", kMostSteps, ShortestFloat(request.number)));
       break;
-    case Wish::Kind::kPace:
+    case Request::Kind::kPace:
       if (realtime) throw std::invalid_argument("pace: expected a run in lockstep, got one in real time (run.speed)");
-      if (!PaceRow().range.Holds(wish.number))
-        throw std::invalid_argument(
-            fmt::format("pace: expected a number in {}, got {}", PaceRow().range.Text(), ShortestFloat(wish.number)));
+      if (!PaceRow().range.Holds(request.number))
+        throw std::invalid_argument(fmt::format("pace: expected a number in {}, got {}", PaceRow().range.Text(),
+                                                ShortestFloat(request.number)));
       break;
-    case Wish::Kind::kSeek:
+    case Request::Kind::kSeek:
       throw std::invalid_argument("seek: expected a recording, got a run: nobody can go back in it, or ahead");
-    case Wish::Kind::kEvent:
-      return CheckedEvent(wish.toml, from);
+    case Request::Kind::kEvent:
+      return CheckedEvent(request.toml, from);
   }
-  return {.kind = wish.kind, .number = wish.number};
+  return {.kind = request.kind, .number = request.number};
 }
 
-Helm::Order Helm::CheckedEvent(const std::string& toml, std::int64_t from) {
+RunRequests::Order RunRequests::CheckedEvent(const std::string& toml, std::int64_t from) {
   from = std::max(from, LookAhead());
   const std::int64_t last = experiment_.ticks();
   const Event event = EventFrom(std::min(from, last), toml, experiment_.size(), kByHand);
@@ -113,15 +113,15 @@ Helm::Order Helm::CheckedEvent(const std::string& toml, std::int64_t from) {
   ahead.live.Take(event);
   for (const Event& later : std::span(file).subspan(ahead.of_file))  // what is legal there stays legal in other tables
     if (ShareATable(event, later)) ahead.live.Take(later);
-  return {.kind = Wish::Kind::kEvent, .number = static_cast<double>(before), .event = event};
+  return {.kind = Request::Kind::kEvent, .number = static_cast<double>(before), .event = event};
 }
 
-std::int64_t Helm::LookAhead() {
+std::int64_t RunRequests::LookAhead() {
   std::unique_lock lock(mutex_);
   if (ahead_->by_hand <= by_hand_.size()) ahead_.emplace(Ahead{*live_, of_file_, by_hand_.size()});
   const auto known = static_cast<std::ptrdiff_t>(ahead_->by_hand - by_hand_.size());
   const std::vector<Event> granted(granted_.begin() + known, granted_.end());
-  const std::int64_t first = granted_.empty() ? going_.tick + 1 : granted_.back().tick;
+  const std::int64_t first = granted_.empty() ? status_.tick + 1 : granted_.back().tick;
   lock.unlock();
   for (const Event& event : granted) {
     TakeFile(*ahead_, event.tick);
@@ -131,40 +131,40 @@ std::int64_t Helm::LookAhead() {
   return first;
 }
 
-void Helm::TakeFile(Ahead& ahead, std::int64_t until) const {
+void RunRequests::TakeFile(Ahead& ahead, std::int64_t until) const {
   const std::vector<Event>& file = experiment_.events;
   while (ahead.of_file < file.size() && file[ahead.of_file].tick <= until) ahead.live.Take(file[ahead.of_file++]);
 }
 
-Answer Helm::AnswerTo(const Order& order, std::optional<std::int64_t> tick) const {
+Answer RunRequests::AnswerTo(const Order& order, std::optional<std::int64_t> tick) const {
   if (!tick) return {false, "the run is over"};
   const auto at = [&](std::int64_t k) {
     return fmt::format("tick {} ({} s)", k, ShortestFloat(experiment_.time_s(k)));
   };
   switch (order.kind) {
-    case Wish::Kind::kPause:
+    case Request::Kind::kPause:
       return {true, "paused after " + at(*tick - 1)};
-    case Wish::Kind::kResume:
+    case Request::Kind::kResume:
       return {true, "goes on with " + at(*tick)};
-    case Wish::Kind::kStep:
+    case Request::Kind::kStep:
       return {true, "pauses after " +
                         at(std::min<std::int64_t>(*tick - 1 + std::llround(order.number), experiment_.ticks()))};
-    case Wish::Kind::kPace:
+    case Request::Kind::kPace:
       return {true, order.number > 0 ? fmt::format("{} simulated seconds a second", ShortestFloat(order.number))
                                      : "as fast as it goes"};
-    case Wish::Kind::kStop:
+    case Request::Kind::kStop:
       return {true, "stops"};
     default:
       return {true, "takes effect at " + at(*tick)};
   }
 }
 
-Going Helm::going() const {
+RunStatus RunRequests::status() const {
   const std::lock_guard lock(mutex_);
-  return going_;
+  return status_;
 }
 
-void Helm::Adopt(const LiveExperiment& live, std::span<const Event> events) {
+void RunRequests::Adopt(const LiveExperiment& live, std::span<const Event> events) {
   const std::lock_guard lock(mutex_);
   const std::vector<Event>& file = experiment_.events;
   int number = live.count() - static_cast<int>(events.size());
@@ -181,28 +181,28 @@ void Helm::Adopt(const LiveExperiment& live, std::span<const Event> events) {
   live_.emplace(live);
 }
 
-void Helm::Add(const FlownRow& row) {
+void RunRequests::Add(const FlownRow& row) {
   const std::lock_guard lock(mutex_);
-  going_.tick = row.tick();
+  status_.tick = row.tick();
 }
 
-void Helm::CallWhenAsked(std::function<void()> wake) {
+void RunRequests::CallWhenAsked(std::function<void()> wake) {
   const std::lock_guard lock(mutex_);
   wake_ = std::move(wake);
 }
 
-void Helm::Open() {
+void RunRequests::Open() {
   const std::lock_guard lock(mutex_);
   if (std::exchange(is_open_, true)) return;
   changed_.notify_all();
 }
 
-std::optional<Helm::Order> Helm::Next() const {
+std::optional<RunRequests::Order> RunRequests::Next() const {
   const std::lock_guard lock(mutex_);
   return answer_ ? std::nullopt : order_;
 }
 
-void Helm::Done(std::optional<std::int64_t> tick) {
+void RunRequests::Done(std::optional<std::int64_t> tick) {
   const std::lock_guard lock(mutex_);
   if (!order_ || answer_) return;
   answer_ = AnswerTo(*order_, tick);
@@ -213,48 +213,48 @@ void Helm::Done(std::optional<std::int64_t> tick) {
   changed_.notify_all();
 }
 
-void Helm::CheckAgain() {
+void RunRequests::CheckAgain() {
   const std::lock_guard lock(mutex_);
   if (!answer_) order_.reset();
   changed_.notify_all();
 }
 
-void Helm::CallWhenChanged(std::function<void(const Going&)> tell) {
+void RunRequests::CallWhenChanged(std::function<void(const RunStatus&)> tell) {
   const std::lock_guard lock(mutex_);
   tell_ = std::move(tell);
 }
 
-void Helm::SetGoing(bool paused, double pace) {
+void RunRequests::SetStatus(bool paused, double pace) {
   const std::lock_guard lock(mutex_);
-  if (going_.paused == paused && going_.pace == pace) return;
-  going_.paused = paused;
-  going_.pace = pace;
-  if (tell_) tell_(going_);
+  if (status_.paused == paused && status_.pace == pace) return;
+  status_.paused = paused;
+  status_.pace = pace;
+  if (tell_) tell_(status_);
 }
 
-void Helm::SetDomain(int domain) {
+void RunRequests::SetDomain(int domain) {
   const std::lock_guard lock(mutex_);
-  going_.domain = domain;
+  status_.domain = domain;
 }
 
-void Helm::Close() {
+void RunRequests::Close() {
   const std::lock_guard lock(mutex_);
   is_over_ = true;
   wake_ = nullptr;
   changed_.notify_all();
 }
 
-void Helm::WaitUntil(Time time) const {
+void RunRequests::WaitUntil(Time time) const {
   std::unique_lock lock(mutex_);
   changed_.wait_until(lock, time, [this] { return order_ && !answer_; });
 }
 
-std::vector<Event> Helm::by_hand() const {
+std::vector<Event> RunRequests::by_hand() const {
   const std::lock_guard lock(mutex_);
   return by_hand_;
 }
 
-std::vector<int> Helm::numbers_by_hand() const {
+std::vector<int> RunRequests::numbers_by_hand() const {
   const std::lock_guard lock(mutex_);
   return numbers_by_hand_;
 }

@@ -1,17 +1,17 @@
-#include "orchestrator/control/asker.h"
+#include "orchestrator/control/request_queue.h"
 
 #include <exception>
 #include <utility>
 
 namespace mascot {
 
-void Asker::Ask(const Wish& wish, std::function<void(const Answer&)> answered) {
+void RequestQueue::Ask(const Request& request, std::function<void(const Answer&)> answered) {
   const std::lock_guard lock(mutex_);
-  questions_.push_back({wish, std::move(answered)});
+  questions_.push_back({request, std::move(answered)});
   come_.notify_one();
 }
 
-void Asker::Run(const std::stop_token& over) {
+void RequestQueue::Run(const std::stop_token& over) {
   for (;;) {
     std::unique_lock lock(mutex_);
     if (!come_.wait(lock, over, [this] { return !questions_.empty(); })) return;
@@ -20,7 +20,7 @@ void Asker::Run(const std::stop_token& over) {
     lock.unlock();
     Answer answer;
     try {
-      answer = control_.Ask(question.wish);
+      answer = control_.Ask(question.request);
     } catch (const std::exception& failure) {
       answer = {false, failure.what()};
     } catch (...) {
