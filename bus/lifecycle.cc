@@ -66,14 +66,14 @@ void Lifecycle::Report(std::uint64_t tick, const Pacing& pacing, const Contacts&
   Publish();
 }
 
-void Lifecycle::Report(const Course& course) {
+void Lifecycle::Report(const RunProgress& progress) {
   {
     const std::lock_guard lock(mutex_);
-    status_.tick(static_cast<std::uint64_t>(std::max<std::int64_t>(course.tick, 0)));
-    status_.request(course.request);
-    status_.request_tick(course.request_tick);
-    status_.paused(course.paused);
-    status_.pace(course.pace);
+    status_.tick(static_cast<std::uint64_t>(std::max<std::int64_t>(progress.tick, 0)));
+    status_.request(progress.request);
+    status_.request_tick(progress.request_tick);
+    status_.paused(progress.paused);
+    status_.pace(progress.pace);
   }
   Publish();
 }

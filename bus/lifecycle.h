@@ -26,7 +26,7 @@ class Ended : public std::exception {
 };
 
 /// How far a run has come, as the physics server reports it.
-struct Course {
+struct RunProgress {
   std::int64_t tick = 0;          ///< the newest tick that is published
   std::uint32_t request = 0;      ///< number of the newest request carried out; 0: none yet
   std::int64_t request_tick = 0;  ///< the first tick for which this request holds; kOver or kTooLate: there is none
@@ -56,7 +56,7 @@ class Lifecycle {
   /// Publishes new counters with the current state. Thread-safe.
   void Report(std::uint64_t tick, const Pacing& pacing, const Contacts& contacts);
   /// Publishes how far the run has come, with the current state. Thread-safe.
-  void Report(const Course& course);
+  void Report(const RunProgress& progress);
   /// Waits for a wake-up, at most `timeout`. Throws Ended after a signal or an END request, and std::runtime_error when
   /// the orchestrator has left the domain. Rethrows what a callback of the domain threw.
   void Wait(std::chrono::nanoseconds timeout);

@@ -54,7 +54,7 @@ std::optional<std::size_t> Peers::Find(const GuidPrefix& participant, std::strin
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const auto& [process, key, claimant] = entries_[i];
-    if (!key.IsAnybody() && key.Fits(participant) && (!found || process == name)) found = i;
+    if (!key.IsWildcard() && key.Fits(participant) && (!found || process == name)) found = i;
   }
   return found;
 }
@@ -63,7 +63,7 @@ std::optional<std::size_t> Peers::FindWriter(const Topic& topic, const GuidPrefi
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const auto& [process, key, claimant] = entries_[i];
     // Only the experiment says who the orchestrator is, to those that it has not started.
-    const bool fits = key.Fits(writer) && (!key.IsAnybody() || topic.kind == TopicKind::kExperiment);
+    const bool fits = key.Fits(writer) && (!key.IsWildcard() || topic.kind == TopicKind::kExperiment);
     if (fits && MayWrite(process, topic)) return i;
   }
   return {};

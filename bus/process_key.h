@@ -32,7 +32,7 @@ class ProcessKey {
   /// Whether no other process can fit.
   bool IsExact() const { return mask_ == ~std::uint64_t{0}; }
   bool IsNobody() const { return mask_ == 0 && bits_ != 0; }
-  bool IsAnybody() const { return mask_ == 0 && bits_ == 0; }
+  bool IsWildcard() const { return mask_ == 0 && bits_ == 0; }
   std::uint64_t bits() const { return bits_; }
   std::uint64_t mask() const { return mask_; }
 

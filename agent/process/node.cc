@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 Node::Node(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment, AgentRange agents)
     : lifecycle_(lifecycle), experiment_(experiment), live_(experiment, &LawTable(), /*checked=*/true) {
   for (int id = agents.first; id <= agents.last; ++id)
-    seats_.push_back(std::make_unique<Seat>(domain, experiment, id, [this] { lifecycle_.Wake(); }));
+    runners_.push_back(std::make_unique<AgentRunner>(domain, experiment, id, [this] { lifecycle_.Wake(); }));
   experiment.network.delivery == Delivery::kBundled ? ListenToBundles(domain) : ListenToStates(domain);
   ListenToMessages(domain);
   ListenToEvents(domain);
@@ -19,10 +19,10 @@ Node::Node(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment, A
 
 std::map<int, std::vector<Node::Listener>> Node::Listeners(bool own) const {
   std::map<int, std::vector<Listener>> listeners;
-  for (const auto& seat : seats_) {
-    if (own) listeners[seat->id()].push_back({seat.get(), 0});
-    const auto& heard = experiment_.graph.HeardBy(seat->id());
-    for (std::size_t k = 0; k < heard.size(); ++k) listeners[heard[k].id].push_back({seat.get(), k + 1});
+  for (const auto& runner : runners_) {
+    if (own) listeners[runner->id()].push_back({runner.get(), 0});
+    const auto& heard = experiment_.graph.HeardBy(runner->id());
+    for (std::size_t k = 0; k < heard.size(); ++k) listeners[heard[k].id].push_back({runner.get(), k + 1});
   }
   return listeners;
 }
@@ -36,15 +36,15 @@ void Node::ListenToStates(Domain& domain) {
           const std::int64_t tick = CheckedTick(topic, state.agent(), state.tick(), last);
           const Motion motion = FromWire(state);
           for (const Listener& listener : listeners)
-            listener.seat->OnState(listener.source, tick, motion, static_cast<int>(state.events()));
+            listener.runner->OnState(listener.source, tick, motion, static_cast<int>(state.events()));
         }));
 }
 
 void Node::ListenToBundles(Domain& domain) {
-  for (const auto& seat : seats_)
+  for (const auto& runner : runners_)
     readers_.push_back(std::make_unique<Reader<BundleType>>(
-        domain, Topic::Bundle(seat->id()),
-        [seat = seat.get()](const mascot_msgs::msg::AgentBundle& bundle) { seat->OnBundle(bundle); }));
+        domain, Topic::Bundle(runner->id()),
+        [runner = runner.get()](const mascot_msgs::msg::AgentBundle& bundle) { runner->OnBundle(bundle); }));
 }
 
 void Node::ListenToMessages(Domain& domain) {
@@ -56,7 +56,7 @@ void Node::ListenToMessages(Domain& domain) {
          listeners = std::move(listeners)](const mascot_msgs::msg::AgentMessage& message) {
           const std::int64_t tick = CheckedTick(topic, message.agent(), message.tick(), last);
           const std::span<const double> data(message.data().begin(), message.data().end());
-          for (const Listener& listener : listeners) listener.seat->OnMessage(listener.source, tick, data);
+          for (const Listener& listener : listeners) listener.runner->OnMessage(listener.source, tick, data);
         }));
   }
 }
@@ -66,7 +66,7 @@ void Node::ListenToEvents(Domain& domain) {
       std::make_unique<Reader<EventType>>(domain, Topic::Event(), [this](const mascot_msgs::msg::Event& event) {
         const int number = live_.count() + 1;
         const auto now = live_.After(FromWire(event, experiment_.size(), number, experiment_.ticks()));
-        for (const auto& seat : seats_) seat->OnEvent(number, now);
+        for (const auto& runner : runners_) runner->OnEvent(number, now);
       }));
 }
 
@@ -74,13 +74,13 @@ void Node::Run() {
   lifecycle_.Set(Life::kMatching);
   while (!Matched()) lifecycle_.Wait(50ms);
   lifecycle_.Set(Life::kReady);
-  while (!std::ranges::all_of(seats_, [](const auto& seat) { return seat->has_answered(); })) lifecycle_.Wait(1s);
+  while (!std::ranges::all_of(runners_, [](const auto& runner) { return runner->has_answered(); })) lifecycle_.Wait(1s);
   lifecycle_.Set(Life::kRunning);
   for (;;) lifecycle_.Wait(1s);
 }
 
 bool Node::Matched() const {
-  return std::ranges::all_of(seats_, [](const auto& seat) { return seat->Matched(); }) &&
+  return std::ranges::all_of(runners_, [](const auto& runner) { return runner->Matched(); }) &&
          std::ranges::all_of(readers_, [](const auto& reader) { return reader->matched() >= 1; });
 }
 

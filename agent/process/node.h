@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "agent/process/seat.h"
+#include "agent/process/agent_runner.h"
 #include "bus/lifecycle.h"
 #include "experiment/live_experiment.h"
 #include "experiment/processes.h"
@@ -23,9 +23,9 @@ class Node {
   [[noreturn]] void Run();
 
  private:
-  /// A seat that needs a sample, and the sender's index among the sources of that seat.
+  /// A runner that needs a sample, and the sender's index among the sources of that runner.
   struct Listener {
-    Seat* seat;
+    AgentRunner* runner;
     std::size_t source;
   };
 
@@ -34,12 +34,13 @@ class Node {
   void ListenToBundles(Domain& domain);
   void ListenToMessages(Domain& domain);
   void ListenToEvents(Domain& domain);
-  /// For each agent, by id, the seats that listen to it. With `own`, an agent's seat listens to the agent itself, too.
+  /// For each agent, by id, the runners that listen to it. With `own`, an agent's runner listens to the agent itself,
+  /// too.
   std::map<int, std::vector<Listener>> Listeners(bool own) const;
 
   Lifecycle& lifecycle_;
   const Experiment& experiment_;
-  std::vector<std::unique_ptr<Seat>> seats_;
+  std::vector<std::unique_ptr<AgentRunner>> runners_;
   LiveExperiment live_;                               // used by the reader of events alone
   std::vector<std::unique_ptr<ReaderBase>> readers_;  // last, so destroyed first: they call the members above
 };

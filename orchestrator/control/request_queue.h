@@ -19,7 +19,7 @@ class RequestQueue {
   explicit RequestQueue(RunControl& control)
       : control_(control), thread_([this](const std::stop_token& over) { Run(over); }) {}
 
-  /// `answered` gets the answer in the asker's thread; it is not called if this object ends before.
+  /// `answered` gets the answer in this object's thread; it is not called if this object ends before.
   void Ask(const Request& request, std::function<void(const Answer&)> answered);
 
  private:

@@ -95,7 +95,7 @@ class Flight {
   DecodedRow row_;
 };
 
-/// Carries out what people ask at the requests, and says when it is time for the next tick.
+/// Carries out what people ask of the run, and says when it is time for the next tick.
 class Steering {
  public:
   Steering(const Experiment& experiment, RunRequests& requests, Flight& flight)

@@ -49,7 +49,7 @@ class Viewers {
 
   /// From now on, lines about viewers are also written to logs/viewers.log; the first line creates the file.
   void LogTo(const RunFolder& folder);
-  /// Call it when the requests is among the sinks.
+  /// Call it when the RunRequests are among the sinks, too.
   void AddTo(std::vector<RowSink*>& sinks);
   /// Viewers see how the run ended until this object ends, which closes their connections.
   void SayHowItEnded(const EngineResult& result);

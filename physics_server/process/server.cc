@@ -29,7 +29,7 @@ TickProtocol::Rules RulesOf(const Experiment& experiment) {
 Server::Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment)
     : lifecycle_(lifecycle),
       experiment_(experiment),
-      roll_(experiment.size(), experiment.run.start_timeout_s),
+      join_list_(experiment.size(), experiment.run.start_timeout_s),
       ticks_(RulesOf(experiment)),
       world_(experiment),
       live_(experiment, nullptr, /*checked=*/true),
@@ -83,26 +83,26 @@ void Server::Report() {
 // --- start ----------------------------------------------------------------------------------------------
 
 void Server::AwaitEveryone() {
-  BeginRollCall();
+  BeginJoining();
   lifecycle_.Set(Life::kMatching);
   for (;;) {
     lifecycle_.Wait(50ms);
-    const StartRoll::Next next = LookAtRoll();
-    if (next == StartRoll::Next::kStart) return;
-    if (next == StartRoll::Next::kAsk) AskForReports();
+    const JoinList::Next next = LookAtJoinList();
+    if (next == JoinList::Next::kStart) return;
+    if (next == JoinList::Next::kAsk) AskForReports();
   }
 }
 
-void Server::BeginRollCall() {
+void Server::BeginJoining() {
   const std::lock_guard lock(mutex_);
-  roll_.Begin(WallClock::now());
+  join_list_.Begin(WallClock::now());
 }
 
-StartRoll::Next Server::LookAtRoll() {
+JoinList::Next Server::LookAtJoinList() {
   const bool matched = Matched();  // without our lock: it takes the locks of readers and writers
   const std::lock_guard lock(mutex_);
-  const StartRoll::Next next = roll_.Look(WallClock::now(), matched);
-  if (next == StartRoll::Next::kFail) throw std::runtime_error(roll_.Failure());
+  const JoinList::Next next = join_list_.Look(WallClock::now(), matched);
+  if (next == JoinList::Next::kFail) throw std::runtime_error(join_list_.Failure());
   return next;
 }
 
@@ -124,11 +124,11 @@ void Server::OnStatus(const mascot_msgs::msg::Status& status, const std::string&
   const bool ready = life == Life::kReady || life == Life::kRunning;
   const std::lock_guard lock(mutex_);
   if (from == kOrchestrator) {
-    roll_.OnRecorder(ready);
+    join_list_.OnRecorder(ready);
     if (life == Life::kReady && ticks_.published() < 0) ticks_.gate().SetPace(status.pace());
     Do(ticks_.OnRecorded(static_cast<std::int64_t>(status.tick())));
   } else if (const auto agents = AgentsOf(from)) {
-    roll_.OnAgents(*agents, ready);
+    join_list_.OnAgents(*agents, ready);
   }
 }
 
@@ -167,7 +167,7 @@ void Server::PublishEvent(const Event& event) {
   live_.Take(event);
   if (event.set.contains("run.pace")) {
     ticks_.gate().SetPace(live_.now()->run.pace.value_or(0));
-    course_is_new_ = true;
+    progress_is_new_ = true;
     lifecycle_.Wake();
   }
   mascot_msgs::msg::Event sample;
@@ -179,12 +179,12 @@ void Server::OnRequest(const mascot_msgs::msg::Request& request) {
   if (request.number() == 0) return;  // for Lifecycle
   {
     const std::lock_guard lock(mutex_);
-    if (request.number() > course_.request) {
-      course_.request_tick = CarryOut(request);
-      course_.request = request.number();
+    if (request.number() > progress_.request) {
+      progress_.request_tick = CarryOut(request);
+      progress_.request = request.number();
     }
   }
-  ReportCourse();
+  ReportProgress();
   lifecycle_.Wake();
 }
 
@@ -214,16 +214,16 @@ std::int64_t Server::CarryOut(const mascot_msgs::msg::Request& request) {
   return next;
 }
 
-void Server::ReportCourse() {
-  Course course;
+void Server::ReportProgress() {
+  RunProgress progress;
   {
     const std::lock_guard lock(mutex_);
-    course = course_;
-    course.tick = ticks_.published();
-    course.paused = ticks_.gate().paused();
-    course.pace = ticks_.gate().pace();
+    progress = progress_;
+    progress.tick = ticks_.published();
+    progress.paused = ticks_.gate().paused();
+    progress.pace = ticks_.gate().pace();
   }
-  lifecycle_.Report(course);
+  lifecycle_.Report(progress);
 }
 
 void Server::PublishBundles() {
@@ -249,10 +249,10 @@ void Server::RunTicks() {
   Start();
   for (;;) {
     const TickProtocol::Turn turn = Look();
-    if (!turn.look_again) return;
-    const bool is_long = turn.held && *turn.look_again - WallClock::now() > 100ms;
-    if (course_is_new_.exchange(false) || is_long) ReportCourse();
-    lifecycle_.Wait(*turn.look_again - WallClock::now());
+    if (!turn.next_deadline) return;
+    const bool is_long = turn.held && *turn.next_deadline - WallClock::now() > 100ms;
+    if (progress_is_new_.exchange(false) || is_long) ReportProgress();
+    lifecycle_.Wait(*turn.next_deadline - WallClock::now());
   }
 }
 

@@ -8,8 +8,8 @@
 
 #include "bus/lifecycle.h"
 #include "experiment/live_experiment.h"
+#include "physics_server/process/join_list.h"
 #include "physics_server/process/pace_meter.h"
-#include "physics_server/process/start_roll.h"
 #include "physics_server/process/tick_protocol.h"
 #include "physics_server/world.h"
 
@@ -17,7 +17,7 @@ namespace mascot {
 
 /// The tick loop over DDS: it publishes every agent's state, gathers every agent's command, and steps the world. In
 /// lockstep, the reception thread that receives a tick's last command steps the world. In real time the thread that
-/// calls Run() paces the ticks, and a late agent's last command is held. StartRoll and TickProtocol decide what to do
+/// calls Run() paces the ticks, and a late agent's last command is held. JoinList and TickProtocol decide what to do
 /// when; Server does it.
 class Server {
  public:
@@ -30,9 +30,9 @@ class Server {
 
  private:
   void AwaitEveryone();
-  void BeginRollCall();
+  void BeginJoining();
   /// Throws std::runtime_error if run.start_timeout_s is over.
-  StartRoll::Next LookAtRoll();
+  JoinList::Next LookAtJoinList();
   /// Asks every process to publish its status again, in case it was missed.
   void AskForReports();
   bool Matched() const;
@@ -42,7 +42,7 @@ class Server {
   TickProtocol::Turn Look();
   void Report();
   /// Publishes how far the run has come: the answer to a request, and, while the gate holds a tick, a sign of life.
-  void ReportCourse();
+  void ReportProgress();
 
   void OnCommand(int id, const mascot_msgs::msg::AgentCommand& command);
   void OnStatus(const mascot_msgs::msg::Status& status, const std::string& from);
@@ -65,15 +65,15 @@ class Server {
   const Experiment& experiment_;
 
   std::mutex mutex_;  // guards what is below except the endpoints
-  StartRoll roll_;
+  JoinList join_list_;
   TickProtocol ticks_;
   World world_;
   LiveExperiment live_;
   std::size_t next_event_ = 0;  // in experiment_.events
   std::vector<Event> by_hand_;  // events of the next tick to be published
-  Course course_;
-  std::atomic<bool> course_is_new_ = true;  // others have not been told
-  std::vector<Actuation> commands_;         // by id - 1: the commands with which the world is stepped
+  RunProgress progress_;
+  std::atomic<bool> progress_is_new_ = true;  // others have not been told
+  std::vector<Actuation> commands_;           // by id - 1: the commands with which the world is stepped
   PaceMeter pace_;
 
   std::vector<std::unique_ptr<Writer<StateType>>> states_;

@@ -79,11 +79,12 @@ TickProtocol::Turn TickProtocol::LookAtGate(Time now, bool stop_requested) {
     return {};
   }
   const std::optional<Time> opens = gate_.Opens(now);
-  const Time look_again = now + kLookWhileHeldEvery;
-  if (!opens || now < *opens) return {.look_again = std::min(look_again, opens.value_or(look_again)), .held = true};
+  const Time next_deadline = now + kLookWhileHeldEvery;
+  if (!opens || now < *opens)
+    return {.next_deadline = std::min(next_deadline, opens.value_or(next_deadline)), .held = true};
   gate_.OnTick(now);
   NotePublished();
-  return {.actions = {.publish = true}, .look_again = now + kLookEvery};
+  return {.actions = {.publish = true}, .next_deadline = now + kLookEvery};
 }
 
 TickProtocol::Turn TickProtocol::LookAtClock(Time now, bool stop_requested) {
@@ -95,8 +96,8 @@ TickProtocol::Turn TickProtocol::LookAtClock(Time now, bool stop_requested) {
   if (AwaitsRecorder() || (gate_.paused() && !barrier_.Late().empty())) return Watch(now);
   const std::optional<Time> due = gate_.Opens(now);
   timed_ = true;
-  if (!due) return {.look_again = now + kLookWhileHeldEvery, .held = true};
-  return now < *due ? Turn{.look_again = due} : EndTick(*due, now, stop_requested);
+  if (!due) return {.next_deadline = now + kLookWhileHeldEvery, .held = true};
+  return now < *due ? Turn{.next_deadline = due} : EndTick(*due, now, stop_requested);
 }
 
 TickProtocol::Turn TickProtocol::Watch(Time now) {
@@ -104,7 +105,7 @@ TickProtocol::Turn TickProtocol::Watch(Time now) {
   const ProgressWatch::Seconds grace(AwaitsRecorder() ? (rules_.agents - 1) * rules_.agent_timeout_s : 0);
   const std::int64_t progress = tick_ + published_;  // agents have their time from a tick's publication
   const bool overdue = watch_.IsOverdue(progress, now, grace);
-  return {.look_again = now + kLookEvery, .failure = overdue ? WhoIsLate() : ""};
+  return {.next_deadline = now + kLookEvery, .failure = overdue ? WhoIsLate() : ""};
 }
 
 TickProtocol::Turn TickProtocol::EndTick(Time due, Time now, bool stop_requested) {
@@ -113,7 +114,7 @@ TickProtocol::Turn TickProtocol::EndTick(Time due, Time now, bool stop_requested
   Turn turn{.actions = Step(), .due = due};
   paced_ = tick_ < rules_.last_tick;
   finished_ = stop_requested;
-  if (!finished_) turn.look_again = now;
+  if (!finished_) turn.next_deadline = now;
   return turn;
 }
 

@@ -46,10 +46,10 @@ class TickProtocol {
   /// The answer to Look().
   struct Turn {
     Actions actions = {};
-    std::optional<Time> due = {};         ///< set if a tick ends in real time: when the next one was due
-    std::optional<Time> look_again = {};  ///< when to call Look() at the latest; nullopt: the run is over
-    bool held = false;                    ///< nothing but the gate keeps the next tick from happening
-    std::string failure = {};             ///< why the run has failed; empty: it has not
+    std::optional<Time> due = {};            ///< set if a tick ends in real time: when the next one was due
+    std::optional<Time> next_deadline = {};  ///< when to call Look() at the latest; nullopt: the run is over
+    bool held = false;                       ///< nothing but the gate keeps the next tick from happening
+    std::string failure = {};                ///< why the run has failed; empty: it has not
   };
 
   explicit TickProtocol(const Rules& rules);
@@ -61,7 +61,7 @@ class TickProtocol {
   /// Call it when agent `id` (1..N) has answered `tick`. The command counts only if `tick` is published and later than
   /// the agent's last answer.
   Actions OnCommand(int id, std::int64_t tick, bool stop_requested);
-  /// The loop calls it after Start(), when the gate has changed, and when Turn::look_again says so: it lets ticks
+  /// The loop calls it after Start(), when the gate has changed, and when Turn::next_deadline says so: it lets ticks
   /// happen that are due, and fails if an agent or the recorder is late.
   Turn Look(Time now, bool stop_requested);
   /// Decides when ticks may happen; it may be changed at any time.

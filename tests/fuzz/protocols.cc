@@ -13,7 +13,7 @@
 #include "orchestrator/engines/dds/row_window.h"
 #include "orchestrator/engines/dds/run_phases.h"
 #include "orchestrator/recording/row_assembler.h"
-#include "physics_server/process/start_roll.h"
+#include "physics_server/process/join_list.h"
 #include "physics_server/process/tick_protocol.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -115,16 +115,16 @@ void FuzzTickProtocol(Events& events) {
   }
 }
 
-void FuzzStartRoll(Events& events) {
-  StartRoll roll(events.ConsumeIntegralInRange<int>(1, 5), 10);
+void FuzzJoinList(Events& events) {
+  JoinList list(events.ConsumeIntegralInRange<int>(1, 5), 10);
   Time now{};
-  roll.Begin(now);
+  list.Begin(now);
   while (events.remaining_bytes() > 0) {
-    roll.OnAgents({events.ConsumeIntegral<int>(), events.ConsumeIntegral<int>()}, events.ConsumeBool());
-    roll.OnRecorder(events.ConsumeBool());
+    list.OnAgents({events.ConsumeIntegral<int>(), events.ConsumeIntegral<int>()}, events.ConsumeBool());
+    list.OnRecorder(events.ConsumeBool());
     Pass(events, now);
-    if (roll.Look(now, events.ConsumeBool()) == StartRoll::Next::kFail)
-      Require(!roll.Failure().empty(), "failed without a reason");
+    if (list.Look(now, events.ConsumeBool()) == JoinList::Next::kFail)
+      Require(!list.Failure().empty(), "failed without a reason");
   }
 }
 
@@ -245,7 +245,7 @@ void FuzzRunPhases(Events& events) {
   }
 }
 
-constexpr void (*kFuzz[])(Events& events) = {FuzzTickInbox,    FuzzTickProtocol, FuzzStartRoll, FuzzRowWindow,
+constexpr void (*kFuzz[])(Events& events) = {FuzzTickInbox,    FuzzTickProtocol, FuzzJoinList, FuzzRowWindow,
                                              FuzzRowAssembler, FuzzRoster,       FuzzRunPhases};
 
 }  // namespace

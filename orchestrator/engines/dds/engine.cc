@@ -365,7 +365,7 @@ void DdsRun::Loop() {
   }
 }
 
-/// Passes a order on to the physics server, and its answer back.
+/// Passes an order on to the physics server, and its answer back.
 void DdsRun::Steer() {
   run_requests_->Open();
   const auto server = hub_->StatusOf(kPhysicsServer);

@@ -15,7 +15,7 @@
 namespace mascot {
 namespace {
 
-using Request = std::function<Eigen::Vector3d(double t_s)>;  // acceleration (m/s^2)
+using Wanted = std::function<Eigen::Vector3d(double t_s)>;  // acceleration (m/s^2)
 
 std::string OneQuadrotor(const std::string& airframe, const std::string& more = "") {
   return "[run]\nduration_s = 10.0\n[agents]\ncount = 1\nairframe = '" + airframe +
@@ -27,7 +27,7 @@ struct Apart {
   double place_m = 0, speed = 0;
 };
 
-Apart FlyBoth(const std::string& toml, const Request& request, double duration_s, const LoopError& error = {}) {
+Apart FlyBoth(const std::string& toml, const Wanted& request, double duration_s, const LoopError& error = {}) {
   const Experiment experiment = Load(toml);
   World world(experiment);
   const auto controller = MakeController(experiment, 1);
@@ -49,21 +49,21 @@ Apart FlyBoth(const std::string& toml, const Request& request, double duration_s
 class LowLevelLoopOf : public testing::TestWithParam<std::string> {};
 
 TEST_P(LowLevelLoopOf, AnswersASmallStepAsTheBodyDoes) {
-  const Request step = [](double t_s) { return Eigen::Vector3d(t_s < 2 ? 0.2 : 0, t_s < 1 ? -0.1 : 0, 0); };
+  const Wanted step = [](double t_s) { return Eigen::Vector3d(t_s < 2 ? 0.2 : 0, t_s < 1 ? -0.1 : 0, 0); };
   const Apart apart = FlyBoth(OneQuadrotor(GetParam()), step, 4);  // by then it has flown 1.2 m
   EXPECT_LT(apart.place_m, 0.005);
   EXPECT_LT(apart.speed, 0.005);
 }
 
 TEST_P(LowLevelLoopOf, AnswersAStepThatCutsTorqueAndRateOfTurning) {
-  const Request jumps = [](double t_s) { return Eigen::Vector3d(std::fmod(t_s, 2) < 1 ? 0.9 : -0.9, 0, 0); };
+  const Wanted jumps = [](double t_s) { return Eigen::Vector3d(std::fmod(t_s, 2) < 1 ? 0.9 : -0.9, 0, 0); };
   const Apart apart = FlyBoth(OneQuadrotor(GetParam()), jumps, 6);
   EXPECT_LT(apart.place_m, 0.03);
   EXPECT_LT(apart.speed, 0.03) << "it swings by 0.45 m/s";
 }
 
 TEST_P(LowLevelLoopOf, AnswersASwingInSpace) {
-  const Request swing = [](double t_s) {
+  const Wanted swing = [](double t_s) {
     return Eigen::Vector3d(0.3 * std::cos(2 * t_s), 0.3 * std::sin(2 * t_s), 0.2 * std::sin(t_s));
   };
   const Apart apart = FlyBoth(OneQuadrotor(GetParam(), "axes = 'xyz'\n"), swing, 10);
@@ -72,7 +72,7 @@ TEST_P(LowLevelLoopOf, AnswersASwingInSpace) {
 }
 
 TEST_P(LowLevelLoopOf, IsBlownOffAsTheBodyIsAndInvertsItsTiltAsItsStackDoes) {
-  const Request swing = [](double t_s) { return Eigen::Vector3d(0.3 * std::cos(t_s), 0.3 * std::sin(t_s), 0); };
+  const Wanted swing = [](double t_s) { return Eigen::Vector3d(0.3 * std::cos(t_s), 0.3 * std::sin(t_s), 0); };
   const Apart apart = FlyBoth(OneQuadrotor(GetParam(),
                                            "[physics.wind]\nmean_m_per_s = [1.0, -0.5, 0.0]\n[control]\ninversion = "
                                            "'exact'\ndrag_compensation = false\n"),

@@ -81,7 +81,7 @@ Exchange Realtime(int agents, std::int64_t last_tick = 1'000'000) {
 Exchange Paced(int agents, std::int64_t last_tick = 1'000'000) {
   Exchange exchange = Realtime(agents, last_tick);
   EXPECT_EQ(exchange.OnAllCommands(), kTakeAndWake);
-  EXPECT_EQ(exchange.Look(kT0).look_again, kT0 + 250ms);
+  EXPECT_EQ(exchange.Look(kT0).next_deadline, kT0 + 250ms);
   return exchange;
 }
 
@@ -146,7 +146,7 @@ TEST(TickProtocol, FinishesWithTheLastCommandOfTheLastTickAndDoesNotStep) {
   EXPECT_FALSE(exchange.finished());
   EXPECT_EQ(exchange.OnCommand(2, 1), kTakeAndWake);
   EXPECT_TRUE(exchange.finished());
-  EXPECT_EQ(exchange.Look(kT0).look_again, std::nullopt);
+  EXPECT_EQ(exchange.Look(kT0).next_deadline, std::nullopt);
 }
 
 TEST(TickProtocol, IgnoresCommandsWhenItIsFinished) {
@@ -253,7 +253,7 @@ TEST(TickProtocol, LooksTwentyTimesASecondInLockstepAndDoesNothing) {
   for (const Time now : {kT0, kT0 + 1s, kT0 + 2s}) {
     const Turn turn = exchange.Look(now);
     EXPECT_EQ(turn.actions, kNothing);
-    EXPECT_EQ(turn.look_again, now + 50ms);
+    EXPECT_EQ(turn.next_deadline, now + 50ms);
     EXPECT_EQ(turn.due, std::nullopt);
   }
 }
@@ -268,7 +268,7 @@ TEST(TickProtocol, WaitsInRealTimeForEveryAgentsFirstCommand) {
   EXPECT_EQ(exchange.OnCommand(1, 0), kTakeAndWake);
   const Turn turn = exchange.Look(kT0 + 4s + 1ms);
   EXPECT_EQ(turn.actions, kNothing);
-  EXPECT_EQ(turn.look_again, kT0 + 4s + 251ms) << "a whole period for tick 0, too";
+  EXPECT_EQ(turn.next_deadline, kT0 + 4s + 251ms) << "a whole period for tick 0, too";
 }
 
 TEST(TickProtocol, NamesAgentsThatAreSilentFromTheStartInRealTime) {
@@ -288,8 +288,8 @@ TEST(TickProtocol, StepsInRealTimeWhenTheNextTickIsDueAndNotBefore) {
   const Turn turn = exchange.Look(kT0 + 500ms);
   EXPECT_EQ(turn.actions, kStepAndPublish);
   EXPECT_EQ(turn.due, kT0 + 500ms);
-  EXPECT_EQ(turn.look_again, kT0 + 500ms);
-  EXPECT_EQ(exchange.Look(kT0 + 500ms).look_again, kT0 + 750ms);
+  EXPECT_EQ(turn.next_deadline, kT0 + 500ms);
+  EXPECT_EQ(exchange.Look(kT0 + 500ms).next_deadline, kT0 + 750ms);
 }
 
 TEST(TickProtocol, HoldsACommandThatIsLateInRealTime) {
@@ -325,7 +325,7 @@ TEST(TickProtocol, FallsBehindInRealTimeOnASlowMachine) {
   EXPECT_EQ(turn.due, kT0 + 250ms) << "from when its lateness counts";
   turn = exchange.Look(kT0 + 1s);
   EXPECT_EQ(turn.actions, kNothing);
-  EXPECT_EQ(turn.look_again, kT0 + 1250ms) << "agents have a whole period";
+  EXPECT_EQ(turn.next_deadline, kT0 + 1250ms) << "agents have a whole period";
   exchange.Look(kT0 + 1500ms);
   EXPECT_EQ(exchange.Look(kT0 + 1500ms).actions, kStepAndPublish) << "one period is made up for";
 }
@@ -338,7 +338,7 @@ TEST(TickProtocol, WaitsForTheRecorderInRealTime) {
   }
   const Time due = kT0 + 64 * 250ms;
   EXPECT_EQ(exchange.Look(due).actions, (Actions{.step = true}));
-  EXPECT_EQ(exchange.Look(due).look_again, due + 50ms);
+  EXPECT_EQ(exchange.Look(due).next_deadline, due + 50ms);
   EXPECT_EQ(exchange.Look(due + 10s).failure, "");
   EXPECT_EQ(exchange.Look(due + 10s).actions, kNothing) << "what nobody has seen is not stepped from";
   EXPECT_EQ(exchange.OnRecorded(1), (Actions{.publish = true, .wake = true}));
@@ -388,11 +388,11 @@ TEST(TickProtocol, StopsInRealTimeWhenTheNextTickIsDue) {
   Exchange exchange = Paced(2);
   exchange.Look(kT0 + 250ms);
   EXPECT_EQ(exchange.OnAllCommands(kStop), kTake);
-  EXPECT_EQ(exchange.Look(kT0 + 300ms, kStop).look_again, kT0 + 500ms);
+  EXPECT_EQ(exchange.Look(kT0 + 300ms, kStop).next_deadline, kT0 + 500ms);
   EXPECT_FALSE(exchange.finished());
   const Turn turn = exchange.Look(kT0 + 500ms, kStop);
   EXPECT_EQ(turn.actions, kStepAndPublish);
-  EXPECT_EQ(turn.look_again, std::nullopt);
+  EXPECT_EQ(turn.next_deadline, std::nullopt);
   EXPECT_TRUE(exchange.finished());
   EXPECT_EQ(exchange.OnCommand(1, 2, kStop), kNothing);
 }
@@ -412,7 +412,7 @@ TEST(TickProtocol, StopsInRealTimeWhereItWaitsForTheRecorderAndDoesNotStep) {
   Exchange exchange = PacedBeyondTheWindow();
   const Turn turn = exchange.Look(kT0 + 20s, kStop);
   EXPECT_EQ(turn.actions, kNothing) << "nobody has seen the states of tick 64";
-  EXPECT_EQ(turn.look_again, std::nullopt);
+  EXPECT_EQ(turn.next_deadline, std::nullopt);
   EXPECT_TRUE(exchange.finished());
 }
 
@@ -428,11 +428,11 @@ TEST(TickProtocol, PublishesNothingWhenItIsFinished) {
 TEST(TickProtocol, StopsInRealTimeAtTickZeroWithoutAStep) {
   Exchange exchange = Realtime(2);
   EXPECT_EQ(exchange.OnCommand(1, 0, kStop), kTake);
-  EXPECT_EQ(exchange.Look(kT0, kStop).look_again, kT0 + 50ms) << "tick 0 is waited for all the same";
+  EXPECT_EQ(exchange.Look(kT0, kStop).next_deadline, kT0 + 50ms) << "tick 0 is waited for all the same";
   EXPECT_EQ(exchange.OnCommand(2, 0, kStop), kTakeAndWake);
   const Turn turn = exchange.Look(kT0 + 1ms, kStop);
   EXPECT_EQ(turn.actions, kNothing);
-  EXPECT_EQ(turn.look_again, std::nullopt);
+  EXPECT_EQ(turn.next_deadline, std::nullopt);
   EXPECT_TRUE(exchange.finished());
   EXPECT_EQ(exchange.published(), 0);
 }
@@ -448,7 +448,7 @@ TEST(TickProtocol, PublishesATickOfLockstepWhenTheGateOpens) {
   Turn turn = exchange.Look(kT0);
   EXPECT_EQ(turn.actions, kNothing);
   EXPECT_TRUE(turn.held);
-  EXPECT_EQ(turn.look_again, kT0 + 10ms);
+  EXPECT_EQ(turn.next_deadline, kT0 + 10ms);
   EXPECT_EQ(exchange.Look(kT0 + 9ms).actions, kNothing);
   EXPECT_EQ(exchange.Look(kT0 + 10ms).actions, kPublish);
   EXPECT_EQ(exchange.published(), 1);
@@ -463,7 +463,7 @@ TEST(TickProtocol, APausedRunOutlivesTheTimeOutOfAgents) {
     const Turn turn = exchange.Look(kT0 + hour * 1h);
     EXPECT_EQ(turn.failure, "");
     EXPECT_TRUE(turn.held);
-    EXPECT_EQ(turn.look_again, kT0 + hour * 1h + 500ms);
+    EXPECT_EQ(turn.next_deadline, kT0 + hour * 1h + 500ms);
   }
   exchange.gate().Resume();
   EXPECT_EQ(exchange.Look(kT0 + 100h).actions, kPublish);
@@ -491,7 +491,7 @@ TEST(TickProtocol, AStopEndsAPausedRunAtOnce) {
     exchange.gate().Pause();
     if (!realtime) exchange.OnAllCommands();
     EXPECT_TRUE(exchange.Look(kT0 + 1s).held);
-    EXPECT_EQ(exchange.Look(kT0 + 1s, kStop).look_again, std::nullopt);
+    EXPECT_EQ(exchange.Look(kT0 + 1s, kStop).next_deadline, std::nullopt);
     EXPECT_TRUE(exchange.finished());
     EXPECT_EQ(exchange.published(), 0);
   }
@@ -512,7 +512,7 @@ TEST(TickProtocol, APauseStopsTheClockOfRealTime) {
   EXPECT_TRUE(exchange.Look(kT0 + 10h).held);
   EXPECT_EQ(exchange.published(), 0);
   exchange.gate().Resume();
-  EXPECT_EQ(exchange.Look(kT0 + 10h).look_again, kT0 + 10h + 250ms);
+  EXPECT_EQ(exchange.Look(kT0 + 10h).next_deadline, kT0 + 10h + 250ms);
   EXPECT_EQ(exchange.Look(kT0 + 10h + 250ms).actions, kStepAndPublish);
 }
 

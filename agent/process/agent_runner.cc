@@ -1,4 +1,4 @@
-#include "agent/process/seat.h"
+#include "agent/process/agent_runner.h"
 
 #include "experiment/processes.h"
 
@@ -14,7 +14,7 @@ std::vector<TickInbox::Peer> PeersOf(const Experiment& experiment, int id) {
 
 }  // namespace
 
-Seat::Seat(Domain& domain, const Experiment& experiment, int id, std::function<void()> on_first_answer)
+AgentRunner::AgentRunner(Domain& domain, const Experiment& experiment, int id, std::function<void()> on_first_answer)
     : experiment_(experiment),
       id_(id),
       on_first_answer_(std::move(on_first_answer)),
@@ -27,28 +27,28 @@ Seat::Seat(Domain& domain, const Experiment& experiment, int id, std::function<v
   message_readers_ = HearingProcesses(experiment, /*heard_only=*/true)[static_cast<std::size_t>(id - 1)] + recorder;
 }
 
-bool Seat::Matched() const {
+bool AgentRunner::Matched() const {
   const int command_readers = 2;  // the physics server and the recorder
   return commands_.matched() >= command_readers && (!messages_ || messages_->matched() >= message_readers_);
 }
 
-void Seat::OnState(std::size_t source, std::int64_t tick, const Motion& motion, int events) {
+void AgentRunner::OnState(std::size_t source, std::int64_t tick, const Motion& motion, int events) {
   const std::lock_guard lock(mutex_);
   if (const auto complete = inbox_.OnState(source, tick, motion, events)) Answer(*complete);
 }
 
-void Seat::OnEvent(int number, const std::shared_ptr<const Experiment>& now) {
+void AgentRunner::OnEvent(int number, const std::shared_ptr<const Experiment>& now) {
   const std::lock_guard lock(mutex_);
   events_.emplace_back(number, now);
   if (const auto complete = inbox_.OnEvent(number)) Answer(*complete);
 }
 
-void Seat::OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data) {
+void AgentRunner::OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data) {
   const std::lock_guard lock(mutex_);
   if (const auto complete = inbox_.OnMessage(source, tick, data)) Answer(*complete);
 }
 
-void Seat::OnBundle(const mascot_msgs::msg::AgentBundle& bundle) {
+void AgentRunner::OnBundle(const mascot_msgs::msg::AgentBundle& bundle) {
   const std::lock_guard lock(mutex_);
   states_.clear();
   for (const mascot_msgs::msg::AgentState& state : bundle.states()) {
@@ -59,13 +59,13 @@ void Seat::OnBundle(const mascot_msgs::msg::AgentBundle& bundle) {
   if (const auto complete = inbox_.OnBundle(states_)) Answer(*complete);
 }
 
-void Seat::TakeEvents(int events) {
+void AgentRunner::TakeEvents(int events) {
   std::shared_ptr<const Experiment> now;
   for (; !events_.empty() && events_.front().first <= events; events_.pop_front()) now = events_.front().second;
   if (now) agent_.Adopt(now);
 }
 
-void Seat::Answer(const TickInbox::CompleteTick& complete) {
+void AgentRunner::Answer(const TickInbox::CompleteTick& complete) {
   const std::int64_t tick = complete.tick;
   TakeEvents(complete.events);
   const Command command = agent_.Decide(tick, *complete.self, complete.samples);

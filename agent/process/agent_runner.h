@@ -18,12 +18,12 @@
 namespace mascot {
 
 /// The DDS side of one agent: it collects the agent's samples (TickInbox), and answers each complete tick with a
-/// command and perhaps a message. The thread that receives the last sample of a tick decides and writes. Several seats
-/// may share a process (Node) and its readers.
-class Seat {
+/// command and perhaps a message. The thread that receives the last sample of a tick decides and writes. Several
+/// runners may share a process (Node) and its readers.
+class AgentRunner {
  public:
   /// `on_first_answer` is called once, in the thread that answers first.
-  Seat(Domain& domain, const Experiment& experiment, int id, std::function<void()> on_first_answer);
+  AgentRunner(Domain& domain, const Experiment& experiment, int id, std::function<void()> on_first_answer);
 
   int id() const { return id_; }
   /// True when all readers of what this agent writes are matched.

@@ -1,4 +1,4 @@
-#include "physics_server/process/start_roll.h"
+#include "physics_server/process/join_list.h"
 
 #include <algorithm>
 
@@ -11,19 +11,19 @@ namespace {
 constexpr auto kAskEvery = std::chrono::milliseconds(250);
 }  // namespace
 
-StartRoll::StartRoll(int agents, double start_timeout_s)
+JoinList::JoinList(int agents, double start_timeout_s)
     : start_timeout_s_(start_timeout_s), ready_(static_cast<std::size_t>(agents), false) {}
 
-void StartRoll::OnAgents(AgentRange agents, bool ready) {
+void JoinList::OnAgents(AgentRange agents, bool ready) {
   const int last = std::min(agents.last, static_cast<int>(ready_.size()));
   for (int id = std::max(agents.first, 1); id <= last; ++id) ready_[static_cast<std::size_t>(id - 1)] = ready;
 }
 
-void StartRoll::OnRecorder(bool ready) { recorder_ready_ = ready; }
+void JoinList::OnRecorder(bool ready) { recorder_ready_ = ready; }
 
-void StartRoll::Begin(Time now) { begun_ = ask_again_ = now; }
+void JoinList::Begin(Time now) { begun_ = ask_again_ = now; }
 
-StartRoll::Next StartRoll::Look(Time now, bool matched) {
+JoinList::Next JoinList::Look(Time now, bool matched) {
   if (matched && IsComplete()) return Next::kStart;
   if (now - begun_ >= std::chrono::duration<double>(start_timeout_s_)) return Next::kFail;
   if (now < ask_again_) return Next::kWait;
@@ -31,9 +31,9 @@ StartRoll::Next StartRoll::Look(Time now, bool matched) {
   return Next::kAsk;
 }
 
-bool StartRoll::IsComplete() const { return recorder_ready_ && std::ranges::count(ready_, false) == 0; }
+bool JoinList::IsComplete() const { return recorder_ready_ && std::ranges::count(ready_, false) == 0; }
 
-std::string StartRoll::Missing() const {
+std::string JoinList::Missing() const {
   std::vector<int> ids;
   for (std::size_t i = 0; i < ready_.size(); ++i)
     if (!ready_[i]) ids.push_back(static_cast<int>(i) + 1);
@@ -42,7 +42,7 @@ std::string StartRoll::Missing() const {
   return missing;
 }
 
-std::string StartRoll::Failure() const {
+std::string JoinList::Failure() const {
   return "not ready within run.start_timeout_s = " + ShortestFloat(start_timeout_s_) +
          " s: " + (IsComplete() ? "the wire (readers or writers that have not found each other)" : Missing());
 }

@@ -8,9 +8,9 @@
 
 namespace mascot {
 
-/// The roll call at the start of a run: it knows which processes are ready, when to ask again, and which are missing
+/// Who has joined at the start of a run: it knows which processes are ready, when to ask again, and which are missing
 /// when the time is up. No clock: the caller passes in the time.
-class StartRoll {
+class JoinList {
  public:
   using Time = std::chrono::steady_clock::time_point;
   enum class Next {
@@ -20,13 +20,13 @@ class StartRoll {
     kFail,   ///< the time is up; Failure() says why
   };
 
-  /// `start_timeout_s`: how long the roll call may take.
-  StartRoll(int agents, double start_timeout_s);
+  /// `start_timeout_s`: how long the processes may take to be ready.
+  JoinList(int agents, double start_timeout_s);
   /// Notes that the process of these agents is ready, or not; the last call counts. Ids that do not exist are ignored.
   void OnAgents(AgentRange agents, bool ready);
   /// Notes that the recorder is ready, or not; the last call counts.
   void OnRecorder(bool ready);
-  /// Starts the roll call and its time limit.
+  /// Starts the time limit.
   void Begin(Time now);
   /// What to do at `now`. `matched`: all readers and writers of the caller are matched.
   Next Look(Time now, bool matched);
