@@ -9,7 +9,7 @@
 
 #include "agent/process/tick_inbox.h"
 #include "bus/wire.h"
-#include "orchestrator/engines/dds/roster.h"
+#include "orchestrator/engines/dds/process_table.h"
 #include "orchestrator/engines/dds/row_window.h"
 #include "orchestrator/engines/dds/run_phases.h"
 #include "orchestrator/recording/row_assembler.h"
@@ -178,13 +178,13 @@ void FuzzRowAssembler(Events& events) {
   }
 }
 
-void FuzzRoster(Events& events) {
+void FuzzProcessTable(Events& events) {
   const std::vector<std::string> processes = {"physics_server", "agent_1", "agent_2"};
-  Roster roster({.processes = processes, .external = {false, true}, .last_tick = 50});
+  ProcessTable table({.processes = processes, .external = {false, true}, .last_tick = 50});
   Time now{};
   while (events.remaining_bytes() > 0) {
     const std::string& process = processes[events.ConsumeIntegralInRange<std::size_t>(0, processes.size() - 1)];
-    Roster::Status status;
+    ProcessTable::Status status;
     status.process(events.ConsumeRandomLengthString(80).c_str());
     status.agent(events.ConsumeIntegral<std::uint32_t>());
     status.state(events.ConsumeBool() ? events.ConsumeIntegralInRange<std::uint8_t>(0, 6)
@@ -192,14 +192,14 @@ void FuzzRoster(Events& events) {
     status.tick(static_cast<std::uint64_t>(SomeTick(events, 50)));
     status.reason(events.ConsumeRandomLengthString(20).c_str());
     try {
-      roster.OnStatus(process, status);
-      Require(roster.Of(process).has_value(), "a status was forgotten");
+      table.OnStatus(process, status);
+      Require(table.Of(process).has_value(), "a status was forgotten");
     } catch (const std::runtime_error&) {  // an external agent failed, or the status is none of this run
     }
     Pass(events, now);
-    roster.IsTimeToHandOut(now);
-    roster.IsTimeForHello(now);
-    roster.Missing();
+    table.IsTimeToHandOut(now);
+    table.IsTimeForHello(now);
+    table.Missing();
   }
 }
 
@@ -246,7 +246,7 @@ void FuzzRunPhases(Events& events) {
 }
 
 constexpr void (*kFuzz[])(Events& events) = {FuzzTickInbox,    FuzzTickProtocol, FuzzJoinList, FuzzRowWindow,
-                                             FuzzRowAssembler, FuzzRoster,       FuzzRunPhases};
+                                             FuzzRowAssembler, FuzzProcessTable, FuzzRunPhases};
 
 }  // namespace
 }  // namespace mascot

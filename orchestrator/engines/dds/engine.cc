@@ -20,11 +20,11 @@
 #include "experiment/processes.h"
 #include "orchestrator/engines/dds/bounded_call.h"
 #include "orchestrator/engines/dds/hosts/launcher.h"
-#include "orchestrator/engines/dds/hub.h"
 #include "orchestrator/engines/dds/machine/domain_lock.h"
 #include "orchestrator/engines/dds/machine/janitor.h"
 #include "orchestrator/engines/dds/recorder.h"
 #include "orchestrator/engines/dds/ros_publisher.h"
+#include "orchestrator/engines/dds/run_links.h"
 #include "orchestrator/engines/dds/run_phases.h"
 #include "orchestrator/engines/dds/wire_audit.h"
 #include "orchestrator/engines/row_feed.h"
@@ -101,7 +101,7 @@ class DdsRun {
   double Pace() const;
   void AskToEnd();
   void CallLibrary(const std::function<void()>& call);
-  std::optional<Hub::Status> ServerReport() const;
+  std::optional<RunLinks::Status> ServerReport() const;
   void DrainAll();
   void AwaitReport();
   void Collect();
@@ -135,7 +135,7 @@ class DdsRun {
   WireAudit audit_;
   std::optional<Domain> discovery_server_;
   std::optional<Domain> domain_;
-  std::optional<Hub> hub_;
+  std::optional<RunLinks> links_;
   RowFeed feed_;
   std::optional<Recorder> recorder_;
   std::optional<RosPublisher> ros_publisher_;
@@ -168,7 +168,7 @@ RunPhases::Rules DdsRun::Rules() {
           .agent_timeout_s = run.agent_timeout_s,
           .period_s = run.mode == Mode::kRealtime ? experiment_.period_s() / run.speed : 0,
           .violation = [this] { return audit_.Violation(); },
-          .missing = [this] { return hub_->Missing(); },
+          .missing = [this] { return links_->Missing(); },
           .last_lines = [this](const std::string& process) { return logs_.LastLines(process); }};
 }
 
@@ -191,9 +191,9 @@ void DdsRun::Join() {
   domain_.emplace(Options(kOrchestrator, with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake, &peers_,
                   &audit_);
   peers_.Know(kOrchestrator, ProcessKey::Of(domain_->guid_prefix()));
-  hub_.emplace(*domain_, peers_, experiment_,
-               LogFile(folder_.Log("orchestrator"), [this](const std::string& words) { console_.Warning(words); }),
-               wake);
+  links_.emplace(*domain_, peers_, experiment_,
+                 LogFile(folder_.Log("orchestrator"), [this](const std::string& words) { console_.Warning(words); }),
+                 wake);
   recorder_.emplace(*domain_, experiment_, feed_);
   if (ros_ != nullptr) ShowToRos();
 }
@@ -357,7 +357,7 @@ void DdsRun::Loop() {
     OnSignal(stop_.Within(50ms));
     domain_->RethrowFailure();
     Reap();
-    hub_->HandOutExperiment();
+    links_->HandOutExperiment();
     CheckWire();
     const RunPhases::View view = Record();
     Do(phases_.Look(view, WallClock::now()));
@@ -368,7 +368,7 @@ void DdsRun::Loop() {
 /// Passes an order on to the physics server, and its answer back.
 void DdsRun::Steer() {
   run_requests_->Open();
-  const auto server = hub_->StatusOf(kPhysicsServer);
+  const auto server = links_->StatusOf(kPhysicsServer);
   if (server && static_cast<Life>(server->state()) == Life::kRunning)
     run_requests_->SetStatus(server->paused(), server->pace());
   const auto order = run_requests_->Next();
@@ -378,7 +378,7 @@ void DdsRun::Steer() {
     return run_requests_->Done(confirmed_);
   }
   if (!std::exchange(is_asked_, true)) ++request_number_;
-  if (!server || server->request() != request_number_) return hub_->Steer(*order, request_number_);
+  if (!server || server->request() != request_number_) return links_->Steer(*order, request_number_);
   const std::int64_t tick = server->request_tick();
   is_asked_ = false;
   if (tick == kTooLate) return run_requests_->CheckAgain();
@@ -415,11 +415,11 @@ void DdsRun::CheckWire() {
 
 /// Records the complete rows and confirms them to the server. Returns the state of the run afterwards.
 RunPhases::View DdsRun::Record() {
-  const auto server = hub_->StatusOf(kPhysicsServer);  // before draining: all samples up to its tick have been sent
+  const auto server = links_->StatusOf(kPhysicsServer);  // before draining: all samples up to its tick have been sent
   const bool done = server && static_cast<Life>(server->state()) == Life::kDone;
   const bool give_up = phases_.gives_up(WallClock::now());
   const std::int64_t rows = recorder_->Drain(give_up);
-  if (rows > confirmed_) hub_->Confirm(rows);
+  if (rows > confirmed_) links_->Confirm(rows);
   confirmed_ = rows;
   RunPhases::View view = Look();
   view.gave_up = give_up;
@@ -429,17 +429,18 @@ RunPhases::View DdsRun::Record() {
 
 RunPhases::View DdsRun::Look() const {
   const bool starting = phases_.phase() == RunPhases::Phase::kStarting;
-  return {.everybody_found = starting && recorder_->Matched() && audit_.IsComplete() && hub_->HaveTheExperiment(),
+  return {.everybody_found = starting && recorder_->Matched() && audit_.IsComplete() && links_->HaveTheExperiment(),
           .newest_tick = recorder_->newest_tick(),
           .rows = confirmed_,
           .last_tick = {},
-          .server_words = hub_->server_words(),
+          .server_words = links_->server_words(),
           .reported = ServerReport().has_value()};
 }
 
 void DdsRun::Do(const RunPhases::Actions& actions) {
-  if (actions.say_ready) hub_->SayReady(Pace());
-  if (actions.ask_to_stop) hub_->Ask(Ask::kStop, phases_.signal() != 0 ? strsignal(phases_.signal()) : "asked to stop");
+  if (actions.say_ready) links_->SayReady(Pace());
+  if (actions.ask_to_stop)
+    links_->Ask(Ask::kStop, phases_.signal() != 0 ? strsignal(phases_.signal()) : "asked to stop");
   if (actions.ask_to_end) AskToEnd();
   if (actions.kill && launcher_) launcher_->Kill();
   if (actions.kill) children_.Kill();
@@ -453,7 +454,7 @@ double DdsRun::Pace() const {
 
 void DdsRun::AskToEnd() {
   CallLibrary(
-      [this] { hub_->Ask(Ask::kEnd, phases_.in_order() ? "done" : std::string(CutUtf8(phases_.failure(), 1000))); });
+      [this] { links_->Ask(Ask::kEnd, phases_.in_order() ? "done" : std::string(CutUtf8(phases_.failure(), 1000))); });
 }
 
 /// Calls the DDS library once the run is over. If it fails or hangs, End() still stops the processes with signals.
@@ -464,8 +465,8 @@ void DdsRun::CallLibrary(const std::function<void()>& call) try {
 }
 
 /// The physics server's last status, with what it measured in the run; nothing before the server has sent it.
-std::optional<Hub::Status> DdsRun::ServerReport() const {
-  auto server = hub_->StatusOf(kPhysicsServer);
+std::optional<RunLinks::Status> DdsRun::ServerReport() const {
+  auto server = links_->StatusOf(kPhysicsServer);
   if (recorder_->newest_tick() < 0 || !server || !IsLast(static_cast<Life>(server->state()))) return std::nullopt;
   return server;
 }
@@ -521,7 +522,7 @@ void DdsRun::TakeReport() {
 }
 
 bool DdsRun::End() {
-  if (hub_) AskToEnd();
+  if (links_) AskToEnd();
   const bool others = launcher_ && launcher_->End();
   if (phases_.in_order() || others) AwaitChildren();
   children_.Stop(2s);
@@ -552,10 +553,11 @@ void DdsRun::AwaitChildren() {
 void DdsRun::LeaveDomain() {
   // Agents that were started by hand are not our children: wait until they have left the domain.
   const auto deadline = WallClock::now() + 2s;
-  while (external_ && hub_ && hub_->listeners() > 0 && WallClock::now() < deadline) std::this_thread::sleep_for(20ms);
+  while (external_ && links_ && links_->listeners() > 0 && WallClock::now() < deadline)
+    std::this_thread::sleep_for(20ms);
   ros_publisher_.reset();
   recorder_.reset();
-  hub_.reset();
+  links_.reset();
   domain_.reset();
   discovery_server_.reset();
 }

@@ -48,13 +48,13 @@ void RosPublisher::Run(const std::stop_token& over) try {
 
 void RosPublisher::Show(Shown& topic, std::int64_t tick, RosSource::Bytes (RosSource::*make)() const) {
   const int readers = topic.writer.matched();
-  if (readers > topic.readers) topic.owed = 2;
+  if (readers > topic.readers) topic.pending = 2;
   topic.readers = readers;
   const auto now = Clock::now();
   if (readers == 0 || now < topic.next) return;
-  const bool pays = topic.owed == 2 || (topic.owed == 1 && topic.writer.AwaitReaders(0ms));
+  const bool pays = topic.pending == 2 || (topic.pending == 1 && topic.writer.AwaitReaders(0ms));
   if (!pays && tick == topic.tick) return;
-  if (pays) --topic.owed;
+  if (pays) --topic.pending;
   RosSource::Bytes sample = (source_.*make)();
   topic.tick = tick;
   topic.next = now + std::max(topic.period, TimeToSend(sample.size()));

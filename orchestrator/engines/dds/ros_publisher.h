@@ -34,7 +34,7 @@ class RosPublisher {
     Clock::duration period;
     std::int64_t tick = -1;
     int readers = 0;
-    int owed = 0;                 // number of samples that a new reader still gets
+    int pending = 0;              // number of samples that a new reader still gets
     Clock::time_point next = {};  // time before which there is no other sample
   };
   void Run(const std::stop_token& over);

@@ -13,8 +13,8 @@ namespace mascot {
 
 /// The latest status of every process of a run, as published on /status, and what the orchestrator does next.
 ///
-/// Without DDS, clock, log or lock: Hub passes in the statuses and the time.
-class Roster {
+/// Without DDS, clock, log or lock: RunLinks passes in the statuses and the time.
+class ProcessTable {
  public:
   using Status = mascot_msgs::msg::Status;
   using Time = std::chrono::steady_clock::time_point;
@@ -33,7 +33,7 @@ class Roster {
     bool wake = false;     ///< the loop should look without delay
   };
 
-  explicit Roster(Rules rules);
+  explicit ProcessTable(Rules rules);
 
   /// Takes a status of `process`. Throws std::runtime_error if an external agent reports that it has failed, if a
   /// process has received another experiment than that of this run, or if the status is impossible in this run.

@@ -1,4 +1,4 @@
-#include "orchestrator/engines/dds/roster.h"
+#include "orchestrator/engines/dds/process_table.h"
 
 #include <fmt/format.h>
 
@@ -21,9 +21,9 @@ constexpr auto kBetweenHellos = 200ms;
 
 }  // namespace
 
-Roster::Roster(Rules rules) : rules_(std::move(rules)) {}
+ProcessTable::ProcessTable(Rules rules) : rules_(std::move(rules)) {}
 
-Roster::News Roster::OnStatus(const std::string& process, const Status& status) {
+ProcessTable::News ProcessTable::OnStatus(const std::string& process, const Status& status) {
   const Life life = CheckedLife(status, rules_.last_tick);
   const auto [known, is_new] = statuses_.try_emplace(process);
   const bool changed = is_new || known->second.state() != status.state();
@@ -42,32 +42,32 @@ Roster::News Roster::OnStatus(const std::string& process, const Status& status) 
   return {.changed = changed, .wake = life == Life::kWaiting || life == Life::kDone || answers};
 }
 
-bool Roster::IsTimeToHandOut(Time now) {
+bool ProcessTable::IsTimeToHandOut(Time now) {
   if (now < next_hand_out_ || !std::exchange(experiment_wanted_, false)) return false;
   next_hand_out_ = now + kBetweenHandOuts;
   return true;
 }
 
-bool Roster::IsTimeForHello(Time now) {
+bool ProcessTable::IsTimeForHello(Time now) {
   if (now < next_hello_) return false;
   next_hello_ = now + kBetweenHellos;
   return true;
 }
 
-std::optional<Roster::Status> Roster::Of(const std::string& process) const {
+std::optional<ProcessTable::Status> ProcessTable::Of(const std::string& process) const {
   const auto found = statuses_.find(process);
   if (found == statuses_.end()) return std::nullopt;
   return found->second;
 }
 
-bool Roster::HaveTheExperiment() const {
+bool ProcessTable::HaveTheExperiment() const {
   return std::ranges::all_of(rules_.processes, [this](const std::string& process) {
     const auto found = statuses_.find(process);
     return found != statuses_.end() && found->second.experiment() == rules_.experiment;
   });
 }
 
-std::string Roster::Missing() const {
+std::string ProcessTable::Missing() const {
   std::string names;
   for (const std::string& process : rules_.processes)
     if (!statuses_.contains(process)) names += (names.empty() ? "nothing was heard of " : ", ") + process;

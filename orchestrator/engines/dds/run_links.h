@@ -11,22 +11,22 @@
 #include "bus/wire.h"
 #include "experiment/experiment.h"
 #include "orchestrator/control/run_requests.h"
-#include "orchestrator/engines/dds/roster.h"
+#include "orchestrator/engines/dds/process_table.h"
 #include "system/log_file.h"
 
 namespace mascot {
 
 /// The orchestrator's readers and writers on /status, /request and /experiment (bus/lifecycle.h has those of all other
 /// processes). Also sends the recorder's status. Logs what is received and sent.
-class Hub {
+class RunLinks {
  public:
-  using Status = Roster::Status;
+  using Status = ProcessTable::Status;
 
   /// `peers` are the processes of the run, which are handed out with the experiment. `wake` is called, from any thread,
   /// when the loop should look without delay.
-  Hub(Domain& domain, const Peers& peers, const Experiment& experiment, LogFile log, std::function<void()> wake);
+  RunLinks(Domain& domain, const Peers& peers, const Experiment& experiment, LogFile log, std::function<void()> wake);
   /// Logs which samples were not taken, and from which participants.
-  ~Hub();
+  ~RunLinks();
 
   /// Publishes the experiment if a process has asked for it, or if the places of the run's processes have changed. An
   /// agent that comes late gets what was published before, and so need not ask. Cheap to call often.
@@ -61,11 +61,11 @@ class Hub {
   std::function<void()> wake_;
   spdlog::logger log_;
   mascot_msgs::msg::Experiment message_;
-  std::uint64_t told_ = 0;            // version of peers_ at the last look
-  std::uint32_t newest_request_ = 0;  // number of the last request of Steer()
-  Roster::Time next_request_{};       // when it may be sent again
-  mutable std::mutex mutex_;          // guards what follows
-  Roster roster_;
+  std::uint64_t told_ = 0;             // version of peers_ at the last look
+  std::uint32_t newest_request_ = 0;   // number of the last request of Steer()
+  ProcessTable::Time next_request_{};  // when it may be sent again
+  mutable std::mutex mutex_;           // guards what follows
+  ProcessTable process_table_;
   std::int64_t server_words_ = 0;
 
   Writer<ExperimentType> experiments_;

@@ -1,4 +1,4 @@
-#include "orchestrator/engines/dds/hub.h"
+#include "orchestrator/engines/dds/run_links.h"
 
 #include <fmt/format.h>
 #include <spdlog/sinks/base_sink.h>
@@ -66,8 +66,8 @@ mascot_msgs::msg::Experiment MessageOf(const Experiment& experiment) {
 }
 
 /// `digest`: of the experiment as it is handed out.
-Roster::Rules RosterRules(const Experiment& experiment, std::uint64_t digest) {
-  Roster::Rules rules{
+ProcessTable::Rules ProcessTableRules(const Experiment& experiment, std::uint64_t digest) {
+  ProcessTable::Rules rules{
       .processes = {kPhysicsServer}, .external = {}, .experiment = digest, .last_tick = experiment.ticks()};
   for (const AgentRange& agents : AgentProcesses(experiment)) rules.processes.push_back(ProcessName(agents));
   for (const AgentConfig& agent : experiment.agents) rules.external.push_back(agent.external);
@@ -108,33 +108,35 @@ class LogSink final : public spdlog::sinks::base_sink<std::mutex> {
   LogFile file_;
 };
 
-Roster::Time Now() { return std::chrono::steady_clock::now(); }
+ProcessTable::Time Now() { return std::chrono::steady_clock::now(); }
 
 }  // namespace
 
-Hub::Hub(Domain& domain, const Peers& peers, const Experiment& experiment, LogFile log, std::function<void()> wake)
+RunLinks::RunLinks(Domain& domain, const Peers& peers, const Experiment& experiment, LogFile log,
+                   std::function<void()> wake)
     : peers_(peers),
       wake_(std::move(wake)),
       log_("orchestrator", std::make_shared<LogSink>(std::move(log))),
       message_(MessageOf(experiment)),
-      roster_(RosterRules(experiment, DigestOf(message_))),
+      process_table_(ProcessTableRules(experiment, DigestOf(message_))),
       experiments_(domain, Topic::Experiment()),
       requests_(domain, Topic::Request()),
       recorder_(domain, Topic::Status()),
       status_(domain, Topic::Status(),
               [this](const Status& status, const Sender& sender) { OnStatus(status, sender.process); }) {}
 
-Hub::~Hub() {
+RunLinks::~RunLinks() {
   for (const std::string& line : peers_.Refusals()) log_.warn("{}", PlainLine(line));
 }
 
-void Hub::Note(const std::string& words) { log_.info("{}", PlainLine(words)); }
+void RunLinks::Note(const std::string& words) { log_.info("{}", PlainLine(words)); }
 
-void Hub::HandOutExperiment() {
+void RunLinks::HandOutExperiment() {
   {
     const std::lock_guard lock(mutex_);
-    if (const auto version = peers_.version(); std::exchange(told_, version) != version) roster_.WantExperiment();
-    if (!roster_.IsTimeToHandOut(Now())) return;
+    if (const auto version = peers_.version(); std::exchange(told_, version) != version)
+      process_table_.WantExperiment();
+    if (!process_table_.IsTimeToHandOut(Now())) return;
   }
   message_.processes().clear();
   for (const auto& [process, key] : peers_.Places()) {
@@ -147,10 +149,10 @@ void Hub::HandOutExperiment() {
   Note(fmt::format("experiment '{}' handed out", message_.name()));
 }
 
-void Hub::SayReady(double pace) {
+void RunLinks::SayReady(double pace) {
   {
     const std::lock_guard lock(mutex_);
-    if (!roster_.IsTimeForHello(Now())) return;
+    if (!process_table_.IsTimeForHello(Now())) return;
   }
   Status status;
   status.process("recorder");
@@ -159,7 +161,7 @@ void Hub::SayReady(double pace) {
   recorder_.Write(status);
 }
 
-void Hub::Confirm(std::int64_t rows) {
+void RunLinks::Confirm(std::int64_t rows) {
   Status status;
   status.process("recorder");
   status.state(static_cast<std::uint8_t>(Life::kRunning));
@@ -167,7 +169,7 @@ void Hub::Confirm(std::int64_t rows) {
   recorder_.Write(status);
 }
 
-void Hub::Ask(mascot::Ask ask, const std::string& reason) {
+void RunLinks::Ask(mascot::Ask ask, const std::string& reason) {
   mascot_msgs::msg::Request request;
   request.kind(static_cast<std::uint8_t>(ask));
   request.reason(reason);
@@ -175,7 +177,7 @@ void Hub::Ask(mascot::Ask ask, const std::string& reason) {
   Note(fmt::format("request: {} ({})", Text(ask), reason));
 }
 
-void Hub::Steer(const RunRequests::Order& order, std::uint32_t number) {
+void RunLinks::Steer(const RunRequests::Order& order, std::uint32_t number) {
   const bool is_new = std::exchange(newest_request_, number) != number;
   if (!is_new && Now() < next_request_) return;
   next_request_ = Now() + 200ms;
@@ -189,15 +191,15 @@ void Hub::Steer(const RunRequests::Order& order, std::uint32_t number) {
   if (is_new) Note(fmt::format("request {}: {} {} {}", number, Text(ask), order.number, request.toml()));
 }
 
-std::int64_t Hub::server_words() const {
+std::int64_t RunLinks::server_words() const {
   const std::lock_guard lock(mutex_);
   return server_words_;
 }
 
-void Hub::OnStatus(const Status& status, const std::string& from) {
+void RunLinks::OnStatus(const Status& status, const std::string& from) {
   if (from == kOrchestrator) return;  // our own, as the recorder
   const std::lock_guard lock(mutex_);
-  const Roster::News news = roster_.OnStatus(from, status);
+  const ProcessTable::News news = process_table_.OnStatus(from, status);
   if (from == kPhysicsServer) ++server_words_;
   if (news.changed)
     Note(fmt::format("{} {}, tick {} {}", from, Text(static_cast<Life>(status.state())), status.tick(),
@@ -205,19 +207,19 @@ void Hub::OnStatus(const Status& status, const std::string& from) {
   if (news.wake) wake_();
 }
 
-std::optional<Hub::Status> Hub::StatusOf(const std::string& process) const {
+std::optional<RunLinks::Status> RunLinks::StatusOf(const std::string& process) const {
   const std::lock_guard lock(mutex_);
-  return roster_.Of(process);
+  return process_table_.Of(process);
 }
 
-bool Hub::HaveTheExperiment() const {
+bool RunLinks::HaveTheExperiment() const {
   const std::lock_guard lock(mutex_);
-  return roster_.HaveTheExperiment();
+  return process_table_.HaveTheExperiment();
 }
 
-std::string Hub::Missing() const {
+std::string RunLinks::Missing() const {
   const std::lock_guard lock(mutex_);
-  return roster_.Missing();
+  return process_table_.Missing();
 }
 
 }  // namespace mascot
