@@ -21,10 +21,11 @@ Neighbours::Neighbours(const Experiment& experiment, int id)
                          Dice(experiment.run.seed, Dice::Stream::kHeardSensor, static_cast<std::uint64_t>(id),
                               static_cast<std::uint64_t>(neighbour.id)));
     const auto& lie = experiment.agent(neighbour.id).lie;
-    lies_.push_back(lie ? std::optional<Lie>(std::in_place, *lie, experiment.run.seed, neighbour.id) : std::nullopt);
+    false_data_.push_back(lie ? std::optional<FalseData>(std::in_place, *lie, experiment.run.seed, neighbour.id)
+                              : std::nullopt);
   }
   heard_.reserve(may_hear_.size());
-  ways_.resize(may_hear_.size());
+  edge_states_.resize(may_hear_.size());
   plain_ = IsPlain();
   plain_counts_.resize(may_hear_.size());
 }
@@ -79,7 +80,9 @@ std::span<const Heard> Neighbours::Hear(std::int64_t tick, const Motion& self, s
   for (std::size_t k = 0; k < may_hear_.size(); ++k) {
     const double weight = WeightOf(graph, t_s, may_hear_[k].id);
     const bool in_range = range_m == 0 || (samples[k].motion->p_WB - self.p_WB).norm() < range_m;
-    ways_[k] = weight == 0 ? EdgeNow::State::kNoEdge : in_range ? EdgeNow::State::kLost : EdgeNow::State::kOutOfRange;
+    edge_states_[k] = weight == 0 ? EdgeNow::State::kNoEdge
+                      : in_range  ? EdgeNow::State::kLost
+                                  : EdgeNow::State::kOutOfRange;
     if (weight > 0 && in_range) links_[k].Send(tick, weight, SaidBy(k, tick, samples[k]));
     Deliver(k, tick);
   }
@@ -88,7 +91,7 @@ std::span<const Heard> Neighbours::Hear(std::int64_t tick, const Motion& self, s
 
 Sample Neighbours::SaidBy(std::size_t k, std::int64_t tick, const Sample& truth) {
   const double t_s = experiment_->time_s(tick);
-  const std::optional<Lie>& lie = lies_[k];
+  const std::optional<FalseData>& lie = false_data_[k];
   if (!lie || !lie->IsToldAt(t_s)) return truth;
   false_motion_ = *truth.motion;
   false_message_.assign(truth.message.begin(), truth.message.end());
@@ -113,8 +116,8 @@ EdgeNow Neighbours::EdgeAt(std::size_t k) const {
   const Link::Packet* newest = links_[k].newest();
   const double age_s = newest != nullptr ? experiment_->time_s(tick_ - newest->sent) : -1;
   if (std::ranges::binary_search(heard_, may_hear_[k].id, {}, &Heard::id)) return {EdgeNow::State::kHeard, age_s};
-  const bool is_silent = newest == nullptr && ways_[k] == EdgeNow::State::kLost;
-  return {is_silent ? EdgeNow::State::kNothingYet : ways_[k], age_s};
+  const bool is_silent = newest == nullptr && edge_states_[k] == EdgeNow::State::kLost;
+  return {is_silent ? EdgeNow::State::kNothingYet : edge_states_[k], age_s};
 }
 
 void Neighbours::AddEdgesTo(std::vector<EdgeNow>& edges) const {

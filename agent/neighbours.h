@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "agent/false_data.h"
 #include "agent/laws/law.h"
-#include "agent/lie.h"
 #include "agent/link.h"
 #include "agent/sensor.h"
 #include "experiment/experiment.h"
@@ -64,14 +64,14 @@ class Neighbours {
   const Experiment* experiment_;
   int id_;
   const std::vector<Graph::Neighbour> may_hear_;
-  std::vector<Link> links_;               // by index in may_hear_
-  std::vector<Noise> noises_;             // by index in may_hear_
-  std::vector<std::optional<Lie>> lies_;  // by index in may_hear_
+  std::vector<Link> links_;                           // by index in may_hear_
+  std::vector<Noise> noises_;                         // by index in may_hear_
+  std::vector<std::optional<FalseData>> false_data_;  // by index in may_hear_
   Motion false_motion_;
   std::vector<double> false_message_;
   std::vector<Heard> heard_;
-  std::vector<EdgeNow::State> ways_;  // by index in may_hear_: kNoEdge, kOutOfRange, or else kLost
-  std::int64_t tick_ = -1;            // of the last Hear()
+  std::vector<EdgeNow::State> edge_states_;  // by index in may_hear_: kNoEdge, kOutOfRange, or else kLost
+  std::int64_t tick_ = -1;                   // of the last Hear()
   bool plain_;
   std::vector<EdgeCount> plain_counts_;  // by index in may_hear_: of ticks at which plain_ held
 };

@@ -125,7 +125,7 @@ AgentOverride ReadOverride(Section& section, std::vector<AgentConfig>& agents, s
   agent.external = section.OneOf("host") == "external";
   if (section.Has("lie")) {
     Section lie = section.Child("lie");
-    agent.lie = ReadLie(lie);
+    agent.lie = ReadFalseData(lie);
   }
   return {.id = agents.empty() || section.Wrong("id") ? 0 : static_cast<int>(id), .section = section};
 }
@@ -162,7 +162,7 @@ std::span<const Key> AgentsKeys() {
       key::OneOf("host", kHosts,
                  "external: the agent is started by hand, on this host or another, and the run waits for it")
           .Default("\"local\""),
-      key::Table("lie", LieKeys(), "the agent lies: the state and the messages that others hear of it are false"),
+      key::Table("lie", FalseDataKeys(), "the agent lies: the state and the messages that others hear of it are false"),
   };
   static const Key keys[] = {
       key::Integer("count", 1, kMaxAgents, "number of agents; they are numbered from 1").Required(),

@@ -13,10 +13,10 @@
 #include "base/enum_names.h"
 #include "experiment/airframe.h"
 #include "experiment/events.h"
+#include "experiment/false_data.h"
 #include "experiment/graph/graph.h"
 #include "experiment/graph/schedule.h"
 #include "experiment/hosts.h"
-#include "experiment/lie.h"
 #include "experiment/link.h"
 #include "experiment/model_traits.h"
 #include "experiment/physics.h"
@@ -93,9 +93,9 @@ struct AgentConfig {
   /// agent is commanded the velocity 0.
   double start_s = 0;
   double stop_s = std::numeric_limits<double>::infinity();
-  bool external = false;              ///< the agent is started by hand, and the run waits for it
-  std::string host = {};              ///< name of one of Experiment::hosts; empty: the host of the physics server
-  std::optional<LieConfig> lie = {};  ///< absent: the agent tells the truth
+  bool external = false;                    ///< the agent is started by hand, and the run waits for it
+  std::string host = {};                    ///< name of one of Experiment::hosts; empty: the host of the physics server
+  std::optional<FalseDataConfig> lie = {};  ///< absent: the agent tells the truth
 
   const ModelTraits& traits() const { return TraitsOf(model); }
   /// Full lengths of the agent's collision shape along the axes of B (m).

@@ -73,9 +73,10 @@ void AddInFlight(Dice::Stream stream, const Experiment& now, Keys& keys) {
                      !now.sensors.heard.IsNone() && std::ranges::any_of(now.agents, is_heard, &AgentConfig::id), keys);
     case Dice::Stream::kWind:
       return AddOnce("physics.wind.gust_std_m_per_s", now.physics.wind.gust_std_m_per_s > 0, keys);
-    case Dice::Stream::kLie:
+    case Dice::Stream::kFalseData:
       for (const AgentConfig& agent : now.agents)
-        AddOnce("agents.override.lie", agent.lie && agent.lie->kind == LieKind::kRandom && is_heard(agent.id), keys);
+        AddOnce("agents.override.lie", agent.lie && agent.lie->kind == FalseDataKind::kRandom && is_heard(agent.id),
+                keys);
       return;
   }
 }
@@ -95,7 +96,7 @@ bool MayDraw(const Event& event, bool laws_draw) {
 
 void AddAll(const Experiment& now, Keys& keys) {
   using enum Dice::Stream;
-  for (const Dice::Stream stream : {kLink, kOwnSensor, kHeardSensor, kWind, kLie}) AddInFlight(stream, now, keys);
+  for (const Dice::Stream stream : {kLink, kOwnSensor, kHeardSensor, kWind, kFalseData}) AddInFlight(stream, now, keys);
   for (const AgentConfig& agent : now.agents) {
     const LawEntry& law = EntryOf(agent.law);
     AddOnce("law", law.draws != nullptr && law.draws(agent.law), keys);

@@ -8,12 +8,12 @@
 
 namespace mascot {
 
-Experiment WithoutLies(Experiment experiment) {
+Experiment WithoutFalseData(Experiment experiment) {
   for (AgentConfig& agent : experiment.agents) agent.lie.reset();
   return experiment;
 }
 
-std::pair<int, std::size_t> MostLiesHeard(const Experiment& experiment) {
+std::pair<int, std::size_t> MaxLiarsHeard(const Experiment& experiment) {
   std::pair<int, std::size_t> most = {0, 0};
   for (const AgentConfig& agent : experiment.agents) {
     if (agent.lie) continue;
@@ -37,7 +37,7 @@ std::vector<std::string> RobustnessWarnings(std::optional<int> robustness, int f
   return {};
 }
 
-HonestHull::HonestHull(const Experiment& experiment, std::span<const int> ids)
+InitialHull::InitialHull(const Experiment& experiment, std::span<const int> ids)
     : axes_(experiment.agent(ids.front()).law.axes) {
   for (const int id : ids) {
     const AgentConfig& agent = experiment.agent(id);
@@ -48,7 +48,7 @@ HonestHull::HonestHull(const Experiment& experiment, std::span<const int> ids)
   }
 }
 
-void HonestHull::Add(const TeamRow& row) {
+void InitialHull::Add(const TeamRow& row) {
   if (ids_.empty()) return;
   const auto p_W = [&](int id) -> const Eigen::Vector3d& { return row.motions[static_cast<std::size_t>(id - 1)].p_WB; };
   Eigen::Vector3d least_W = p_W(ids_.front()), most_W = least_W;
@@ -61,12 +61,12 @@ void HonestHull::Add(const TeamRow& row) {
   apart_m_ = Along(axes_, most_W - least_W).maxCoeff();
 }
 
-std::optional<double> HonestHull::outside_m() const {
+std::optional<double> InitialHull::outside_m() const {
   constexpr double kRounding_m = 1e-9;
   if (ids_.empty()) return std::nullopt;
   return outside_m_ < kRounding_m ? 0 : outside_m_;
 }
 
-std::optional<double> HonestHull::apart_m() const { return ids_.empty() ? std::nullopt : std::optional(apart_m_); }
+std::optional<double> InitialHull::apart_m() const { return ids_.empty() ? std::nullopt : std::optional(apart_m_); }
 
 }  // namespace mascot

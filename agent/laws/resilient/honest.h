@@ -11,20 +11,20 @@
 
 namespace mascot {
 
-// Agents that tell the truth, and those that lie (experiment/lie.h).
+// Agents that tell the truth, and those that lie (experiment/false_data.h).
 
 /// The experiment without the lies: all agents tell the truth.
-Experiment WithoutLies(Experiment experiment);
+Experiment WithoutFalseData(Experiment experiment);
 /// The honest agent that hears the most agents that lie, and how many these are.
-std::pair<int, std::size_t> MostLiesHeard(const Experiment& experiment);
+std::pair<int, std::size_t> MaxLiarsHeard(const Experiment& experiment);
 
 /// Warnings if W-MSR against `f` liars needs more than a graph of this robustness; nullopt: it is not known.
 std::vector<std::string> RobustnessWarnings(std::optional<int> robustness, int f);
 
 /// Measures how honest agents stay within the hull of their starts, per axis of their law.
-class HonestHull {
+class InitialHull {
  public:
-  HonestHull(const Experiment& experiment, std::span<const int> ids);
+  InitialHull(const Experiment& experiment, std::span<const int> ids);
   void Add(const TeamRow& row);
   /// The largest distance by which an honest agent was outside (m), 0 if below 1 nm; absent: all agents lie.
   std::optional<double> outside_m() const;

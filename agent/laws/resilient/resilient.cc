@@ -80,13 +80,13 @@ std::shared_ptr<const LawParams> ReadResilient(const Experiment& /*experiment*/,
 
 LawTheory PredictResilient(const Experiment& experiment) {
   const auto& params = ParamsOf<ResilientParams>(experiment.law);
-  if (std::string why = WhyNotIdeal(WithoutLies(experiment), Wanted::kVelocity); !why.empty())
+  if (std::string why = WhyNotIdeal(WithoutFalseData(experiment), Wanted::kVelocity); !why.empty())
     return {.silent = std::move(why)};
   const std::optional<int> robustness = RobustnessOf(experiment.graph);
   LawTheory theory{.figures = {{}, {}, {}}, .warnings = RobustnessWarnings(robustness, static_cast<int>(params.f))};
   if (robustness) theory.figures[2] = {.values = {*robustness}};
   const double largest = 1 / (experiment.period_s() * LargestDegree(experiment.graph));
-  const auto [hearer, liars] = MostLiesHeard(experiment);
+  const auto [hearer, liars] = MaxLiarsHeard(experiment);
   theory.figures[0].why = params.gain > largest ? "law.gain is too high" : "more lie than law.f leaves out";
   if (params.gain > largest)
     theory.warnings.push_back(fmt::format(
@@ -109,7 +109,7 @@ class ResilientMeter final : public LawMeter {
   }
 
  private:
-  HonestHull honest_;
+  InitialHull honest_;
   std::optional<double> robustness_;
 };
 

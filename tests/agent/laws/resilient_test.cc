@@ -92,7 +92,7 @@ std::vector<Heard> HeardAt(Neighbours& neighbours, std::int64_t tick, const Moti
   return {heard.front(), heard.back()};
 }
 
-TEST(Lie, IsHeardFromItsTimeOnOfTheLiarAlone) {
+TEST(FalseData, IsHeardFromItsTimeOnOfTheLiarAlone) {
   const Experiment experiment = LoadExperiment(
       Section::FromText(Seven("velocity_consensus", "offset_m = [1.0, 2.0, 3.0], from_s = 0.05"), "test.toml"), "test");
   Neighbours neighbours(experiment, 1);
@@ -109,7 +109,7 @@ TEST(Lie, IsHeardFromItsTimeOnOfTheLiarAlone) {
   }
 }
 
-TEST(Lie, OscillatesWithItsVelocity) {
+TEST(FalseData, OscillatesWithItsVelocity) {
   const Experiment experiment = LoadExperiment(
       Section::FromText(Seven("velocity_consensus", "kind = 'oscillating', offset_m = [2.0, 0.0, 0.0], period_s = 1.0"),
                         "test.toml"),
@@ -121,7 +121,7 @@ TEST(Lie, OscillatesWithItsVelocity) {
   EXPECT_NEAR(HeardAt(neighbours, 75, still, {})[1].motion.p_WB.x(), -2, 1e-12);
 }
 
-TEST(Lie, AtRandomIsTheSameForAllWhoHearItAndAnotherWithAnotherSeed) {
+TEST(FalseData, AtRandomIsTheSameForAllWhoHearItAndAnotherWithAnotherSeed) {
   const auto heard_by = [](int id, int seed) {
     std::string toml = Seven("velocity_consensus", "kind = 'random', offset_m = [2.0, 2.0, 0.0]");
     toml.insert(6, "seed = " + std::to_string(seed) + "\n");
@@ -142,7 +142,7 @@ TEST(Lie, AtRandomIsTheSameForAllWhoHearItAndAnotherWithAnotherSeed) {
   EXPECT_LT(*std::ranges::min_element(x), -1.5);
 }
 
-TEST(Lie, SilencesTheoryOfWhatAgentsHear) {
+TEST(FalseData, SilencesTheoryOfWhatAgentsHear) {
   EXPECT_EQ(LawRun(Seven("velocity_consensus", "offset_m = [1.0, 0.0, 0.0]", 0.1)).prediction.silent, "agent 7 lies");
   EXPECT_EQ(LawRun(Seven("finite_time", "offset_m = [1.0, 0.0, 0.0]", 0.1)).prediction.silent, "an agent lies");
 }

@@ -5,22 +5,22 @@
 
 #include "base/motion.h"
 #include "base/random.h"
-#include "experiment/lie.h"
+#include "experiment/false_data.h"
 
 namespace mascot {
 
 /// What an agent that lies says instead of the truth: the same to all agents that hear it. Depends only on the seed,
 /// the agent and the tick.
-class Lie {
+class FalseData {
  public:
-  Lie(const LieConfig& config, std::uint64_t seed, int id);
+  FalseData(const FalseDataConfig& config, std::uint64_t seed, int id);
   bool IsToldAt(double t_s) const;
   /// Makes what the agent sends at `tick` false: its position is off by the lie, its velocity by the rate of change of
   /// an oscillating lie, number n of its message by component n modulo 3 of the lie.
   void Tell(std::int64_t tick, double t_s, Motion& motion, std::span<double> message) const;
 
  private:
-  LieConfig config_;
+  FalseDataConfig config_;
   Dice dice_;
 };
 

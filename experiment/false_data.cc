@@ -1,10 +1,10 @@
-#include "experiment/lie.h"
+#include "experiment/false_data.h"
 
 namespace mascot {
 
-std::span<const Key> LieKeys() {
+std::span<const Key> FalseDataKeys() {
   static const Key keys[] = {
-      key::OneOf("kind", kLieKinds.names(),
+      key::OneOf("kind", kFalseDataKinds.names(),
                  "constant: the position is off by offset_m; oscillating: by a sine of this amplitude; random: by up "
                  "to this, drawn anew at each tick")
           .Default("\"constant\""),
@@ -15,11 +15,11 @@ std::span<const Key> LieKeys() {
   return keys;
 }
 
-LieConfig ReadLie(Section& lie) {
-  LieConfig config{.kind = kLieKinds.Value(lie.OneOf("kind")),
-                   .from_s = lie.Number("from_s"),
-                   .offset_m = lie.Vector3("offset_m"),
-                   .period_s = lie.Number("period_s")};
+FalseDataConfig ReadFalseData(Section& lie) {
+  FalseDataConfig config{.kind = kFalseDataKinds.Value(lie.OneOf("kind")),
+                         .from_s = lie.Number("from_s"),
+                         .offset_m = lie.Vector3("offset_m"),
+                         .period_s = lie.Number("period_s")};
   lie.Done();
   return config;
 }
