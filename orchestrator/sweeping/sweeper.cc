@@ -15,7 +15,7 @@
 
 #include "base/utf8.h"
 #include "orchestrator/formats/outside_json.h"
-#include "orchestrator/sweeping/sweep_looks.h"
+#include "orchestrator/sweeping/sweep_checks.h"
 #include "orchestrator/sweeping/table/conclusion.h"
 #include "orchestrator/sweeping/table/metrics.h"
 #include "orchestrator/sweeping/table/table.h"
@@ -118,12 +118,12 @@ Sweeper::Outcome Sweeper::Do(const Options& options, bool fly, StopSignal& stop)
   if (!options.metric_file.path.empty()) sweep.own = std::make_shared<std::optional<PythonMetrics>>();
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   WorkerPool pool(options.jobs > 0 ? options.jobs : cores, WorkOf(sweep));
-  SweepLooks looks(sweep, pool, stop);
+  SweepChecks checks(sweep, pool, stop);
   Outcome outcome;
   try {
     const auto begun = BegunAt(options.out);
     const bool strict = !options.force && !IsBegun(begun, text_, plan_);
-    const Looked first = looks.FirstValid(strict);
+    const Looked first = checks.FirstValid(strict);
     SweepIdentity& identity = outcome.identity;
     identity = {.build = BuildText(),
                 .experiment = text_,
@@ -132,15 +132,15 @@ Sweeper::Outcome Sweeper::Do(const Options& options, bool fly, StopSignal& stop)
                 .words = plan_.words(),
                 .own = {},
                 .law_names = {},
-                .laws = looks.Laws()};
+                .laws = checks.Laws()};
     std::set<std::string> names = SweepLaws(plan_, identity.laws).AllNames();
     names.insert(laws.laws().begin(), laws.laws().end());
     identity.law_names.assign(names.begin(), names.end());
-    identity.own = looks.Metrics(SweepColumns(plan_, SweepMetricNames(identity.law_names)));
+    identity.own = checks.Metrics(SweepColumns(plan_, SweepMetricNames(identity.law_names)));
     const std::vector<std::string> metrics = identity.Metrics();
     if (!options.metric.empty()) CheckPlotted(options.metric, metrics);
-    if (strict) looks.CheckTrials();
-    if (strict) looks.CheckSeeds(first);
+    if (strict) checks.CheckTrials();
+    if (strict) checks.CheckSeeds(first);
     if (!fly) return outcome;
     if (!options.force) CheckBuild(begun, identity, options.out);
     SweepFile table(

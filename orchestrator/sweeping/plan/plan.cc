@@ -310,7 +310,7 @@ std::span<const std::string> SweepPlan::ValuesOf(std::string_view key) const {
   return axis == axes_.end() ? std::span<const std::string>() : axis->values;
 }
 
-std::size_t SweepPlan::Firsts::operator[](std::size_t run) const {
+std::size_t SweepPlan::Representatives::operator[](std::size_t run) const {
   std::size_t first = run;
   for (const Digit& digit : digits_) {
     const std::size_t k = run / digit.stride % digit.first.size();
@@ -319,7 +319,7 @@ std::size_t SweepPlan::Firsts::operator[](std::size_t run) const {
   return first;
 }
 
-SweepPlan::Firsts SweepPlan::FirstsAlike(Alike alike) const {
+SweepPlan::Representatives SweepPlan::RepresentativesOf(Alike alike) const {
   std::map<std::size_t, std::vector<std::string>> digits;  // by stride: what must be equal, for each value
   for (const Axis& axis : axes_) {
     if (axis.size() == 1) continue;
@@ -328,15 +328,15 @@ SweepPlan::Firsts SweepPlan::FirstsAlike(Alike alike) const {
     if (axis.key == kSeedKey || (alike == Alike::kInWords && !HasWords(axis.values))) continue;
     for (std::size_t k = 0; k < axis.size(); ++k) compared[k].append(axis.Value(k)).push_back('\0');
   }
-  Firsts firsts;
+  Representatives representatives;
   for (const auto& [stride, compared] : digits) {
     std::unordered_map<std::string_view, std::size_t> first_with;
-    Firsts::Digit digit{.stride = stride, .first = {}};
+    Representatives::Digit digit{.stride = stride, .first = {}};
     for (std::size_t k = 0; k < compared.size(); ++k)
       digit.first.push_back(first_with.emplace(compared[k], k).first->second);
-    firsts.digits_.push_back(std::move(digit));
+    representatives.digits_.push_back(std::move(digit));
   }
-  return firsts;
+  return representatives;
 }
 
 std::vector<std::size_t> SweepPlan::WithFirstSeed() const {

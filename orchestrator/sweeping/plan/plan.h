@@ -58,7 +58,7 @@ class SweepPlan {
   /// In both, run.seed may differ.
   enum class Alike { kInValues, kInWords };
   /// For each run the first one that is alike.
-  class Firsts {
+  class Representatives {
    public:
     std::size_t operator[](std::size_t run) const;
 
@@ -71,7 +71,7 @@ class SweepPlan {
     };
     std::vector<Digit> digits_;
   };
-  Firsts FirstsAlike(Alike alike) const;
+  Representatives RepresentativesOf(Alike alike) const;
   /// The runs with the first value of run.seed, if it has several; else none.
   std::vector<std::size_t> WithFirstSeed() const;
   /// What tells this plan from others: a line for each key.

@@ -36,10 +36,10 @@ RunLaws LawsAtTheEnd(const Experiment& experiment) {
 }
 
 SweepLaws::SweepLaws(const SweepPlan& plan, const KnownLaws& known)
-    : plan_(plan), known_(known), firsts_(plan.FirstsAlike(known.alike)) {}
+    : plan_(plan), known_(known), representatives_(plan.RepresentativesOf(known.alike)) {}
 
 const RunLaws* SweepLaws::Of(std::size_t run) const {
-  const auto laws = known_.of_run.find(firsts_[run]);
+  const auto laws = known_.of_run.find(representatives_[run]);
   return laws == known_.of_run.end() ? nullptr : &laws->second;
 }
 

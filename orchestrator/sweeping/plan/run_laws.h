@@ -44,7 +44,7 @@ class SweepLaws {
  private:
   const SweepPlan& plan_;
   const KnownLaws& known_;
-  SweepPlan::Firsts firsts_;
+  SweepPlan::Representatives representatives_;
 };
 
 }  // namespace mascot

@@ -120,12 +120,12 @@ std::vector<std::string> Outcomes::Lines() const {
 
 /// In the order of their first runs.
 std::vector<Outcomes::Group> Outcomes::Groups() const {
-  const SweepPlan::Firsts firsts = plan_.FirstsAlike(SweepPlan::Alike::kInValues);
+  const SweepPlan::Representatives representatives = plan_.RepresentativesOf(SweepPlan::Alike::kInValues);
   std::vector<std::size_t> group_of(has_failed_.size());
   std::vector<Group> groups;
   for (std::size_t run = 0; run < has_failed_.size(); ++run) {
-    if (firsts[run] == run) groups.emplace_back();
-    group_of[run] = firsts[run] == run ? groups.size() - 1 : group_of[firsts[run]];
+    if (representatives[run] == run) groups.emplace_back();
+    group_of[run] = representatives[run] == run ? groups.size() - 1 : group_of[representatives[run]];
     groups[group_of[run]].push_back(run);
   }
   return groups;

@@ -138,17 +138,17 @@ TEST(SweepPlan, DrawsTheSameSamplesEveryTime) {
 }
 
 TEST(SweepPlan, KnowsWhichRunsAreAlikeButForTheirSeeds) {
-  const auto firsts = [](const SweepPlan& plan, SweepPlan::Alike alike) {
+  const auto representatives = [](const SweepPlan& plan, SweepPlan::Alike alike) {
     std::vector<std::size_t> all;
-    for (std::size_t run = 0; run < plan.size(); ++run) all.push_back(plan.FirstsAlike(alike)[run]);
+    for (std::size_t run = 0; run < plan.size(); ++run) all.push_back(plan.RepresentativesOf(alike)[run]);
     return all;
   };
   const SweepPlan plan({.sets = {"a=x,y", "b=1,2"}, .randoms = {}, .seeds = "1..2"});
-  EXPECT_THAT(firsts(plan, SweepPlan::Alike::kInValues), ElementsAre(0, 0, 2, 2, 4, 4, 6, 6));
-  EXPECT_THAT(firsts(plan, SweepPlan::Alike::kInWords), ElementsAre(0, 0, 0, 0, 4, 4, 4, 4));
+  EXPECT_THAT(representatives(plan, SweepPlan::Alike::kInValues), ElementsAre(0, 0, 2, 2, 4, 4, 6, 6));
+  EXPECT_THAT(representatives(plan, SweepPlan::Alike::kInWords), ElementsAre(0, 0, 0, 0, 4, 4, 4, 4));
   const SweepPlan drawn({.sets = {"a=x,y"}, .randoms = {"b=0:1", "c=1:1"}, .samples = 2, .seeds = ""});
-  EXPECT_THAT(firsts(drawn, SweepPlan::Alike::kInValues), ElementsAre(0, 1, 2, 3));
-  EXPECT_THAT(firsts(drawn, SweepPlan::Alike::kInWords), ElementsAre(0, 0, 2, 2));
+  EXPECT_THAT(representatives(drawn, SweepPlan::Alike::kInValues), ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(representatives(drawn, SweepPlan::Alike::kInWords), ElementsAre(0, 0, 2, 2));
 }
 
 TEST(SweepPlan, FliesEqualValuesOnceHoweverTheyAreTyped) {

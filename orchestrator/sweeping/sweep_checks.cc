@@ -1,4 +1,4 @@
-#include "orchestrator/sweeping/sweep_looks.h"
+#include "orchestrator/sweeping/sweep_checks.h"
 
 #include <fmt/format.h>
 
@@ -38,7 +38,7 @@ void ThrowIfInterrupted(StopSignal& stop) {
   if (const int signal = stop.Within(std::chrono::nanoseconds::zero()); signal != 0) throw Interrupted{signal};
 }
 
-Looked SweepLooks::FirstValid(bool first_alone) {
+Looked SweepChecks::FirstValid(bool first_alone) {
   std::string mistakes;
   std::optional<Looked> valid;
   for (std::size_t run = 0; run < (first_alone ? 1 : sweep_.plan.size()) && !valid; ++run) {
@@ -53,15 +53,15 @@ Looked SweepLooks::FirstValid(bool first_alone) {
   return *valid;
 }
 
-KnownLaws SweepLooks::Laws() {
+KnownLaws SweepChecks::Laws() {
   KnownLaws known;
   bool by_numbers = false;
   for (const auto alike : {SweepPlan::Alike::kInWords, SweepPlan::Alike::kInValues}) {
     known.alike = alike;
-    const SweepPlan::Firsts firsts = sweep_.plan.FirstsAlike(alike);
+    const SweepPlan::Representatives representatives = sweep_.plan.RepresentativesOf(alike);
     std::vector<std::size_t> tasks;
     for (std::size_t run = 0; run < sweep_.plan.size(); ++run)
-      if (firsts[run] == run && !known.of_run.contains(run)) tasks.push_back(tasks_.LookAtRun(run));
+      if (representatives[run] == run && !known.of_run.contains(run)) tasks.push_back(tasks_.LookAtRun(run));
     ExecuteTasks(tasks, pool_, stop_, [&](const WorkerPool::Done& done) {
       const std::size_t run = tasks_.RunOfLook(done.task);
       const bool valid = done.failure.empty();
@@ -74,7 +74,7 @@ KnownLaws SweepLooks::Laws() {
   return known;
 }
 
-std::vector<PythonMetric> SweepLooks::Metrics(const std::vector<std::string>& other_columns) {
+std::vector<PythonMetric> SweepChecks::Metrics(const std::vector<std::string>& other_columns) {
   std::vector<PythonMetric> list;
   if (!sweep_.own) return list;
   const std::size_t task = tasks_.ListMetrics();
@@ -89,7 +89,7 @@ std::vector<PythonMetric> SweepLooks::Metrics(const std::vector<std::string>& ot
   return list;
 }
 
-void SweepLooks::CheckTrials() {
+void SweepChecks::CheckTrials() {
   std::vector<std::size_t> tasks(sweep_.plan.trials().size());
   std::iota(tasks.begin(), tasks.end(), tasks_.LookAtTrial(0));
   std::map<std::size_t, std::string> mistakes;
@@ -103,7 +103,7 @@ void SweepLooks::CheckTrials() {
                                  DifferenceOf(sweep_.plan.trials()[trial], sweep_.plan[0]), text)});
 }
 
-void SweepLooks::CheckSeeds(const Looked& first) {
+void SweepChecks::CheckSeeds(const Looked& first) {
   std::vector<std::size_t> runs = sweep_.plan.WithFirstSeed();
   if (runs.empty() || !first.draws.empty()) return;
   for (std::size_t& run : runs) run = tasks_.LookAtRun(run);

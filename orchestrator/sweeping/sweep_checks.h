@@ -19,10 +19,10 @@ struct Interrupted {
 void ThrowIfInterrupted(StopSignal& stop);
 
 /// Looks at the runs of a sweep before they fly. Throws Interrupted if a signal comes.
-class SweepLooks {
+class SweepChecks {
  public:
   /// All arguments must outlive this object. `pool` executes WorkOf(sweep).
-  SweepLooks(const Sweep& sweep, WorkerPool& pool, StopSignal& stop)
+  SweepChecks(const Sweep& sweep, WorkerPool& pool, StopSignal& stop)
       : sweep_(sweep), tasks_(sweep.plan), pool_(pool), stop_(stop) {}
 
   /// The first valid experiment of the sweep. Throws ConfigError with the mistakes of the first run if no run is valid;
