@@ -191,10 +191,10 @@ Event ReadEvent(Section& section, int agents) {
   return event;
 }
 
-bool IsPhase(const std::string& toml) { return Section::FromWords(toml, "event").Has("law"); }
+bool IsPhase(const std::string& toml) { return Section::FromInlineTable(toml, "event").Has("law"); }
 
 Event EventFrom(std::int64_t tick, const std::string& toml, int agents, const std::string& where) {
-  Section section = Section::FromWords(toml, where);
+  Section section = Section::FromInlineTable(toml, where);
   const bool is_phase = section.Has("law");
   section.Use(is_phase ? std::span<const Key>(kPhaseKeys) : kEventKeys);
   Event event = is_phase ? ReadPhase(section, agents) : ReadEvent(section, agents);

@@ -199,7 +199,7 @@ void LiveExperiment::PutLaw(const Event& phase, TouchedTables& touched) {
     touched.of_all.insert("law");
   }
   for (const int agent : phase.agents) {
-    const std::size_t k = OwnOf(agent, phase.where);
+    const std::size_t k = OverrideIndex(agent, phase.where);
     tables_.Set(OverrideKey(k) + "law", {*phase.law}, phase.where);
     touched.own["law"].insert(k);
   }
@@ -228,7 +228,7 @@ void LiveExperiment::Set(const Event& event, const std::string& key, const Value
     if (IsReached(k, key)) SetFor(own_[k].id, event.where, key, value, touched);
 }
 
-std::size_t LiveExperiment::OwnOf(int agent, const std::string& where) {
+std::size_t LiveExperiment::OverrideIndex(int agent, const std::string& where) {
   std::size_t& place = places_[static_cast<std::size_t>(agent - 1)];
   if (place < own_.size() && own_[place].id == agent) return place;
   place = own_.size();
@@ -239,7 +239,7 @@ std::size_t LiveExperiment::OwnOf(int agent, const std::string& where) {
 
 void LiveExperiment::SetFor(int agent, const std::string& where, const std::string& key, const Value& value,
                             TouchedTables& touched) {
-  const std::size_t k = OwnOf(agent, where);
+  const std::size_t k = OverrideIndex(agent, where);
   const auto set = [&](const std::string& own_key, const Value& own_value) {
     std::vector<std::string>& keys = own_[k].set;
     if (std::ranges::find(keys, own_key) == keys.end()) keys.push_back(own_key);

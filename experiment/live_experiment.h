@@ -69,7 +69,7 @@ class LiveExperiment {
   void Set(const Event& event, const std::string& key, const Value& value, TouchedTables& touched);
   void SetFor(int agent, const std::string& where, const std::string& key, const Value& value, TouchedTables& touched);
   /// The index of an agent's own table, which begins if there is none.
-  std::size_t OwnOf(int agent, const std::string& where);
+  std::size_t OverrideIndex(int agent, const std::string& where);
   /// The table whose keys the user chooses that an agent takes over from the team when the dotted `key` inside it is
   /// set for this agent alone, and what stands in it now; none: `key` is in no such table, or the agent has its own.
   std::optional<std::pair<std::string, Value>> TakenOver(std::size_t k, const std::string& key) const;

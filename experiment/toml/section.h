@@ -46,7 +46,7 @@ class Section {
   static Section FromFile(const std::string& path, std::span<const Override> overrides = {});
   static Section FromText(const std::string& text, const std::string& name, std::span<const Override> overrides = {});
   /// As FromText, of text that is in no file: messages say `origin` without line and column.
-  static Section FromWords(const std::string& text, const std::string& origin);
+  static Section FromInlineTable(const std::string& text, const std::string& origin);
 
   /// True if `key` is present, here or in the base (InheritFrom).
   bool Has(std::string_view key) const;

@@ -173,7 +173,7 @@ Section Section::FromText(const std::string& text, const std::string& name, std:
   return Of(std::make_shared<Document>(text, name, overrides));
 }
 
-Section Section::FromWords(const std::string& text, const std::string& origin) {
+Section Section::FromInlineTable(const std::string& text, const std::string& origin) {
   auto document = std::make_shared<Document>(origin);
   document->root = ParseToml(text, origin);
   return Of(document);

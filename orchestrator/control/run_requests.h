@@ -72,7 +72,7 @@ class RunRequests final : public RunControl, public RowSink {
 
   /// Events that were given by hand and have taken effect, in order.
   std::vector<Event> by_hand() const;
-  /// The numbers that these have in the run, increasing: DecodedRow::Happening::number.
+  /// The numbers that these have in the run, increasing: DecodedRow::RowEvent::number.
   std::vector<int> numbers_by_hand() const;
 
  private:

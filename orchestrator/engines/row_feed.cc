@@ -51,10 +51,10 @@ void RowFeed::Add(std::int64_t tick, const DecodedRow& decoded) { HandOut(FromTh
 
 void RowFeed::HandOut(const FlownRow& row) {
   events_.clear();
-  for (const DecodedRow::Happening& happening : row.decoded().events) {
+  for (const DecodedRow::RowEvent& event : row.decoded().events) {
     if (!live_) live_.emplace(experiment_, &LawTable(), /*checked=*/true);
-    live_->Take(happening.event);
-    events_.push_back(happening.event);
+    live_->Take(event.event);
+    events_.push_back(event.event);
   }
   if (!events_.empty())
     for (RowSink* sink : sinks_) sink->Adopt(*live_, events_);

@@ -68,7 +68,7 @@ void IncidentMeter::Add(const FlownRow& row, const LinkMeter& links) {
   tick_ = row.tick();
   NoteLimits(tick_, row.decoded().commands);
   NoteLosses(tick_, links);
-  for (const DecodedRow::Happening& event : row.decoded().events)
+  for (const DecodedRow::RowEvent& event : row.decoded().events)
     Close({.kind = Kind::kEvent, .from = tick_, .to = tick_, .other = event.number, .toml = event.event.Toml()});
 }
 

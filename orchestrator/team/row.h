@@ -28,7 +28,7 @@ struct Row {
 /// The decoded samples of one tick, by id - 1.
 struct DecodedRow {
   /// An event that takes effect at this tick.
-  struct Happening {
+  struct RowEvent {
     int number = 0;  ///< from 1 on, over the whole run
     Event event = {};
   };
@@ -39,7 +39,7 @@ struct DecodedRow {
   std::vector<Motion> motions;
   std::vector<Command> commands;              ///< a missing command keeps the value of the previous row (zero at first)
   std::vector<std::vector<double>> messages;  ///< empty: none was sent
-  std::vector<Happening> events;              ///< in order
+  std::vector<RowEvent> events;               ///< in order
   int events_so_far = 0;                      ///< number of the last event up to this tick; 0: there was no event
 };
 

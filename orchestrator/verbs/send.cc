@@ -40,7 +40,7 @@ double NumberOf(const std::string& word, const std::string& what) {
 /// The value that this TOML text is; nothing: it is none.
 std::optional<Value> TomlValue(const std::string& text) try {
   if (text.find('\n') != std::string::npos) return std::nullopt;
-  return Section::FromWords("value = " + text, "").Free("value");
+  return Section::FromInlineTable("value = " + text, "").Free("value");
 } catch (const ConfigError&) {
   return std::nullopt;
 }

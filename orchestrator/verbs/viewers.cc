@@ -97,7 +97,7 @@ void Viewers::Events::Add(const FlownRow& row) {
   const auto& events = row.decoded().events;
   if (events.empty()) return;
   const std::vector<int> by_hand = requests_.numbers_by_hand();
-  for (const DecodedRow::Happening& event : events)
+  for (const DecodedRow::RowEvent& event : events)
     view_.OnEvent({.number = event.number,
                    .tick = row.tick(),
                    .toml = event.event.Toml(),

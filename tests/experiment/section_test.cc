@@ -431,7 +431,7 @@ TEST(Section, AnOverrideOrAnEventOfManyLevelsIsRefusedInWords) {
   EXPECT_THAT([&] { Section::FromText("", "a.toml", overrides); },
               testing::ThrowsMessage<ConfigError>(HasSubstr("x: expected a TOML value, got '[[[")));
   EXPECT_THAT(
-      [&] { Section::FromWords("set = { x = " + deep + " }", "event"); },
+      [&] { Section::FromInlineTable("set = { x = " + deep + " }", "event"); },
       testing::ThrowsMessage<ConfigError>("event:1:1: expected at most 64 lists and tables in each other, got more"));
 }
 

@@ -41,7 +41,7 @@ std::string FirstIncidentsBeside(const std::string& recording) {
   return Plain(text);
 }
 
-void TellByHand(const std::string& recording, const Experiment& experiment, std::vector<ShownEvent>& events) {
+void MarkManualEvents(const std::string& recording, const Experiment& experiment, std::vector<ShownEvent>& events) {
   constexpr std::string_view kEvent = "event ", kByHand = " by hand";
   const std::string table = TableBeside(recording, kMostBytes);
   for (std::string_view text = table; !text.empty();) {

@@ -66,7 +66,7 @@ std::string Playback::Where() const {
   return fmt::format("tick {} ({} s)", static_cast<std::int64_t>(tick), tick / rate_hz_);
 }
 
-Playback::Standing Playback::Now() {
+Playback::PlaybackState Playback::Now() {
   const std::lock_guard lock(mutex_);
   Advance();
   heard_ = requests_;

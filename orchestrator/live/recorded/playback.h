@@ -18,11 +18,11 @@ class Playback final : public RunControl {
   using WallClock = std::chrono::steady_clock;
   static constexpr double kSlowest = 0.1, kFastest = 100;  ///< simulated seconds per second
 
-  struct Standing {
+  struct PlaybackState {
     std::int64_t tick = 0;
     bool plays = false;
     double speed = 1;
-    bool operator==(const Standing&) const = default;
+    bool operator==(const PlaybackState&) const = default;
   };
 
   /// `clock` returns the present time.
@@ -30,7 +30,7 @@ class Playback final : public RunControl {
       : rate_hz_(rate_hz), last_tick_(last_tick), clock_(std::move(clock)), since_(clock_()) {}
 
   Answer Ask(const Request& request) override;
-  Standing Now();
+  PlaybackState Now();
   /// Waits for a request, for `over` or until this time.
   void Wait(const std::stop_token& over, WallClock::time_point until);
 

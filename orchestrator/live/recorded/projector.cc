@@ -19,10 +19,10 @@ Projector::Projector(RecordedRun& run, Playback& playback, LiveView& view, std::
 }
 
 void Projector::Run(const std::stop_token& over) {
-  std::optional<Playback::Standing> shown;
+  std::optional<Playback::PlaybackState> shown;
   while (!over.stop_requested()) {
     const auto frame_ends = Playback::WallClock::now() + kFramePeriod;
-    const Playback::Standing now = playback_.Now();
+    const Playback::PlaybackState now = playback_.Now();
     try {
       if (now != shown) Show(now);
       while (!has_edges_ && Playback::WallClock::now() < frame_ends && !over.stop_requested())
@@ -38,7 +38,7 @@ void Projector::Run(const std::stop_token& over) {
   }
 }
 
-void Projector::Show(const Playback::Standing& now) {
+void Projector::Show(const Playback::PlaybackState& now) {
   view_.SetState({.phase = now.plays ? RunState::Phase::kRunning : RunState::Phase::kPaused, .pace = now.speed});
   if (now.tick == row_.tick) return;
   run_.Show(now.tick, row_);

@@ -22,7 +22,7 @@ class Projector {
 
  private:
   void Run(const std::stop_token& over);
-  void Show(const Playback::Standing& now);
+  void Show(const Playback::PlaybackState& now);
   bool FollowEdges();
   void Publish();
 

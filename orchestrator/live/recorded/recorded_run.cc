@@ -34,7 +34,7 @@ RecordedRun::RecordedRun(const std::string& run)
 std::vector<ShownEvent> RecordedRun::Events() const {
   std::vector<ShownEvent> shown;
   for (const auto& [tick, number, toml] : events_) shown.push_back({.number = number, .tick = tick, .toml = toml});
-  if (!shown.empty()) TellByHand(rows_.path(), experiment_, shown);
+  if (!shown.empty()) MarkManualEvents(rows_.path(), experiment_, shown);
   return shown;
 }
 

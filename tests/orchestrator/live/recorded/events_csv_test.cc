@@ -39,7 +39,7 @@ TEST(EventsCsv, SaysWhichEventsWereGivenByHandAlsoWithALineBreakAtTheEndOfACell)
               CsvRow(kNames) + CsvRow(std::vector<std::string>{"0", "0", "event", "1", "", "event 1 by hand",
                                                                "set = { \"law.beta\" = 2.0 }" + std::string(end)}));
     std::vector<ShownEvent> events = {{.number = 1, .tick = 0, .toml = "set = { \"law.beta\" = 2.0 }\n"}};
-    TellByHand(folder.File("run.mcap"), Experiment(), events);
+    MarkManualEvents(folder.File("run.mcap"), Experiment(), events);
     EXPECT_EQ(events[0].by_hand, std::optional(true));
   }
 }

@@ -22,7 +22,7 @@ std::vector<std::optional<bool>> ByHand(const std::string& table) {
   experiment.control.rate_hz = 100;
   std::vector<ShownEvent> events;
   for (const int number : {1, 2, 3, 4}) events.push_back({.number = number, .tick = number, .toml = "cut = []"});
-  TellByHand(folder.File("run.mcap"), experiment, events);
+  MarkManualEvents(folder.File("run.mcap"), experiment, events);
   std::vector<std::optional<bool>> by_hand;
   for (const ShownEvent& event : events) by_hand.push_back(event.by_hand);
   return by_hand;

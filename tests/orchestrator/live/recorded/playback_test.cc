@@ -37,7 +37,7 @@ class PlaybackOfTenSeconds : public testing::Test {
 
 TEST_F(PlaybackOfTenSeconds, StandsAtItsStartUntilItIsToPlay) {
   Pass(5);
-  EXPECT_EQ(playback_.Now(), Playback::Standing());
+  EXPECT_EQ(playback_.Now(), Playback::PlaybackState());
   EXPECT_EQ(Ask(Kind::kResume).words, "plays from tick 0 (0 s)");
   Pass(0.5);
   EXPECT_EQ(Tick(), 50);
