@@ -83,7 +83,7 @@ SafetyFilter::Answer SafetyFilter::Nearest(const Eigen::Vector3d& wanted_W, doub
   }
   const Eigen::Vector3d limited_W = wanted_W.cwiseMin(limit).cwiseMax(-limit);
   if (IsIn(halves_, limited_W)) return {.u_W = limited_W, .is_feasible = are_apart};  // exactly what it is without
-  const LeastViolation nearest = NearestWithin(halves_, limits, wanted_W);
+  const MinViolation nearest = NearestWithin(halves_, limits, wanted_W);
   return {.u_W = nearest.u.cwiseMin(limit).cwiseMax(-limit), .is_feasible = are_apart && nearest.violation == 0};
 }
 

@@ -20,8 +20,8 @@ namespace {
 
 constexpr double kTolerance = 1e-10;  // of half-spaces, relative to the size of the numbers
 constexpr double kParallel = 1e-12;   // squared sine of the angle between a normal and the span of others
-constexpr int kMostRounds = 200;      // far more than problems in space take: a guard against rounding
-constexpr int kMostBisections = 200;  // of the least violation
+constexpr int kMaxRounds = 200;       // far more than problems in space take: a guard against rounding
+constexpr int kMaxBisections = 200;   // of the least violation
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The active constraints: at most three, of linearly independent normals.
@@ -110,7 +110,7 @@ std::optional<Eigen::Vector3d> Solve(const Problem& problem, const Eigen::Vector
   ActiveSet active;
   std::optional<std::size_t> p = problem.MostViolated(u);
   double multiplier = 0;  // of p
-  for (int round = 0; p && round < kMostRounds; ++round) {
+  for (int round = 0; p && round < kMaxRounds; ++round) {
     const Eigen::Vector3d& n = problem.halves[*p].n;
     std::array<double, 3> r{};
     const Eigen::Vector3d z = active.Reduce(n, r);
@@ -143,16 +143,16 @@ std::optional<Eigen::Vector3d> NearestIn(std::span<const HalfSpace> halves, cons
   return Solve({.halves = halves}, wanted);
 }
 
-LeastViolation NearestWithin(std::span<const HalfSpace> halves, std::size_t kept, const Eigen::Vector3d& wanted) {
+MinViolation NearestWithin(std::span<const HalfSpace> halves, std::size_t kept, const Eigen::Vector3d& wanted) {
   Problem problem{.halves = halves, .kept = kept};
   if (const auto u = Solve(problem, wanted)) return {*u, 0};
   const auto start = Solve({.halves = halves.first(kept), .kept = kept}, wanted);
   assert(start);
-  LeastViolation best{start.value_or(Eigen::Vector3d::Zero()), 0};
+  MinViolation best{start.value_or(Eigen::Vector3d::Zero()), 0};
   for (std::size_t k = kept; k < halves.size(); ++k)
     best.violation = std::max(best.violation, problem.Violation(k, best.u));
   double too_narrow = 0;
-  for (int i = 0; i < kMostBisections && best.violation - too_narrow > kTolerance * (1 + best.violation); ++i) {
+  for (int i = 0; i < kMaxBisections && best.violation - too_narrow > kTolerance * (1 + best.violation); ++i) {
     problem.widened = too_narrow + (best.violation - too_narrow) / 2;
     if (const auto u = Solve(problem, wanted))
       best = {*u, problem.widened};

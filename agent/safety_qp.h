@@ -23,10 +23,10 @@ std::optional<Eigen::Vector3d> NearestIn(std::span<const HalfSpace> halves, cons
 /// The result of NearestIn(), if there is one. Otherwise all half-spaces but the first `kept` are made wider by the
 /// same distance, the smallest with which all have a point in common (the least violation), and the result is the point
 /// nearest to `wanted` in them. The first `kept` must have a point in common.
-struct LeastViolation {
+struct MinViolation {
   Eigen::Vector3d u = Eigen::Vector3d::Zero();
   double violation = 0;  ///< distance by which the half-spaces were made wider; 0: none was needed
 };
-LeastViolation NearestWithin(std::span<const HalfSpace> halves, std::size_t kept, const Eigen::Vector3d& wanted);
+MinViolation NearestWithin(std::span<const HalfSpace> halves, std::size_t kept, const Eigen::Vector3d& wanted);
 
 }  // namespace mascot

@@ -17,14 +17,14 @@ struct Contact {
 };
 
 /// A run reports this many contacts one by one, and only counts further ones.
-inline constexpr std::size_t kMostContactsTold = 256;
+inline constexpr std::size_t kMaxContactsTold = 256;
 
 /// The contacts begun so far, by what an agent touched; a contact that lasts counts once.
 struct Contacts {
   std::int64_t agents = 0;  ///< between two agents
   std::int64_t ground = 0;
   std::int64_t obstacles = 0;
-  std::vector<Contact> first;  ///< the first kMostContactsTold, in the order in which they began
+  std::vector<Contact> first;  ///< the first kMaxContactsTold, in the order in which they began
 
   std::int64_t total() const { return agents + ground + obstacles; }
 };

@@ -16,14 +16,14 @@ struct LateCommands {
 };
 
 /// A run reports this many of them one by one, and only counts further ones.
-inline constexpr std::size_t kMostLatesTold = 256;
+inline constexpr std::size_t kMaxLatesTold = 256;
 
 /// Timing statistics of a run in real time.
 struct Pacing {
   /// Median, 99th percentile, largest.
   using Spread = std::array<double, 3>;
   std::uint64_t misses = 0;             ///< number of commands that were missing when their tick ended
-  std::vector<LateCommands> late = {};  ///< the first kMostLatesTold of them
+  std::vector<LateCommands> late = {};  ///< the first kMaxLatesTold of them
   Spread tick_lateness_s = {};          ///< time from when a tick was due until its states were sent
   Spread command_age_s = {};  ///< age of the states that the applied commands answered; 0: those of the same tick
 };

@@ -36,7 +36,7 @@ using namespace std::chrono_literals;
 using namespace mascot;
 using WallClock = std::chrono::steady_clock;
 
-constexpr int kMostPeers = 20;  // as in orchestrator/engines/dds/engine.cc
+constexpr int kMaxPeers = 20;  // as in orchestrator/engines/dds/engine.cc
 constexpr std::uint64_t kWarmUpTicks = 50;
 
 struct Setting {
@@ -185,7 +185,7 @@ int main(int argc, char** argv) {
   if (batch && sched_setscheduler(0, SCHED_BATCH, &no_priority) != 0) return 1;
   const DomainLock lock(-1);
   Setting setting{std::atoi(argv[1]), argv[2], lock.domain(), ""};
-  if (setting.agents + 2 > kMostPeers) setting.discovery = "127.0.0.1:" + std::to_string(lock.discovery_port());
+  if (setting.agents + 2 > kMaxPeers) setting.discovery = "127.0.0.1:" + std::to_string(lock.discovery_port());
   std::vector<pid_t> agents;
   for (int id = 1; id <= setting.agents; ++id) agents.push_back(Spawn(setting, id));
   {

@@ -106,9 +106,9 @@ bool IsSegmentOrPortOf(int domain, const std::string& name) {
 /// Whether it is a port beyond those of a run in `domain`, which its participants have taken if they could not open
 /// their own: Fast DDS tries two ports more each time (mutation_tries in bus/qos.cc).
 bool IsPortBeyond(int domain, const std::string& name) {
-  constexpr int kMostTries = 1000;
+  constexpr int kMaxTries = 1000;
   const int first = FirstPort(domain + kDomainsPerRun), port = PortOf(name);
-  return domain != kNoDomain && first <= port && port < first + 2 * kMostTries;
+  return domain != kNoDomain && first <= port && port < first + 2 * kMaxTries;
 }
 
 /// Paths in a folder; those that can be read, if it vanishes with its process.

@@ -132,7 +132,7 @@ bool IsPossibleInertia(const Eigen::Vector3d& moments) {
 // The contact solver divides an impulse between moving and turning a body. It takes ever more iterations as moments of
 // inertia become small for mass and size, and below this share of those of a solid box a body sinks into what it lies
 // on. Built-in airframes have 1.4 to 1.9 of them.
-constexpr double kLeastBoxShare = 0.05;
+constexpr double kMinBoxShare = 0.05;
 
 /// The moments of inertia of a solid box.
 Eigen::Vector3d BoxInertia(double mass_kg, const Eigen::Vector3d& size_m) {
@@ -147,7 +147,7 @@ std::string ListText(const Eigen::Vector3d& v) {
 /// Notes a mistake where mass and size are not those of a body with these moments of inertia. Each of the three may be
 /// that of `base`.
 void ExpectInertiaOfMassAndSize(const Airframe& body, Section& table) {
-  const Eigen::Vector3d least = kLeastBoxShare * BoxInertia(body.mass_kg, body.size_m);
+  const Eigen::Vector3d least = kMinBoxShare * BoxInertia(body.mass_kg, body.size_m);
   if ((body.inertia_kg_m2.array() >= least.array()).all()) return;
   std::string_view changed = "inertia_kg_m2";
   if (!table.Has(changed)) changed = table.Has("mass_kg") ? "mass_kg" : "size_m";

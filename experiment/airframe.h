@@ -44,17 +44,17 @@ struct Airframe {
 
   /// The low-level stack keeps the thrust within these shares of max_thrust_n, so that the rotors can always give some
   /// torque.
-  static constexpr double kLeastThrustShare = 0.1;
-  static constexpr double kMostThrustShare = 0.9;
+  static constexpr double kMinCommandedShare = 0.1;
+  static constexpr double kMaxCommandedShare = 0.9;
 
   /// The low-level stack keeps the rates at which roll and pitch approach their targets below this (rad/s). The rotors
   /// of the built-in airframes can brake it within the tilts that are flown.
-  static constexpr double kMostTurnRate = 3.0;
+  static constexpr double kMaxTurnRate = 3.0;
 
-  double LeastThrust() const { return kLeastThrustShare * max_thrust_n; }  ///< N
-  double MostThrust() const { return kMostThrustShare * max_thrust_n; }    ///< N
-  Eigen::Matrix4d Allocation() const;                                      ///< A above
-  double MaxRotorSpeed() const;                                            ///< rad/s, from max_thrust_n
+  double MinCommandedThrust() const { return kMinCommandedShare * max_thrust_n; }  ///< N
+  double MaxCommandedThrust() const { return kMaxCommandedShare * max_thrust_n; }  ///< N
+  Eigen::Matrix4d Allocation() const;                                              ///< A above
+  double MaxRotorSpeed() const;                                                    ///< rad/s, from max_thrust_n
   double HoverRotorSpeed(double gravity_m_per_s2) const;  ///< rad/s; the thrust at this speed is the weight
 };
 

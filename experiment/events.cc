@@ -206,7 +206,7 @@ Event EventFrom(std::int64_t tick, const std::string& toml, int agents, const st
 
 std::vector<Event> ReadEvents(Section& document, int agents, int rate_hz, std::int64_t ticks) {
   std::vector<Event> events;
-  for (Section& section : FewTables(document, "events", LiveExperiment::kMostEvents)) {
+  for (Section& section : FewTables(document, "events", LiveExperiment::kMaxEvents)) {
     const std::int64_t tick = ReadTick(section, rate_hz, ticks);
     events.push_back(ReadEvent(section, agents));
     events.back().tick = tick;

@@ -15,7 +15,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kMostHosts = 1000;
+constexpr std::size_t kMaxHosts = 1000;
 
 /// A name that is a word for ssh and for a file, and no option.
 bool IsHostName(const std::string& name) {
@@ -130,7 +130,7 @@ std::span<const Key> HostKeys() {
 std::vector<HostConfig> ReadHosts(Section& document, std::vector<AgentConfig>& agents) {
   std::vector<HostConfig> hosts;
   std::set<std::string> names;
-  std::vector<Section> sections = FewTables(document, "hosts", kMostHosts);
+  std::vector<Section> sections = FewTables(document, "hosts", kMaxHosts);
   for (Section& section : sections) {
     hosts.push_back(ReadHost(section, agents, names));
     const HostConfig& host = hosts.back();

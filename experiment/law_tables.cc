@@ -46,7 +46,7 @@ class ScheduleReader {
   /// Phases that do not begin before `last_tick` are checked, but are no events.
   void Read(int rate_hz, std::int64_t last_tick, std::vector<Event>& events) {
     std::int64_t last = 0;
-    for (Section& phase : FewTables(table_, "schedule", kMostPhases)) {
+    for (Section& phase : FewTables(table_, "schedule", kMaxPhases)) {
       Event event{.tick = ReadTick(phase, rate_hz, kLongAfter),
                   .agents = agent_ > 0 ? std::vector{agent_} : std::vector<int>(),
                   .where = phase.Where("")};
@@ -65,7 +65,7 @@ class ScheduleReader {
   }
 
  private:
-  static constexpr std::size_t kMostPhases = 1000;  // each looks for its keys in all those before it
+  static constexpr std::size_t kMaxPhases = 1000;  // each looks for its keys in all those before it
   static constexpr std::int64_t kLongAfter = std::numeric_limits<std::int64_t>::max();
 
   void ReadPhase(Section& phase, Event& event) {

@@ -8,7 +8,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kMostOverrides = 10000;
+constexpr std::size_t kMaxOverrides = 10000;
 
 constexpr Key kBurstKeys[] = {
     key::Number("good_to_bad", {0, 1}, "probability per tick that a good link turns bad").Required().Live(),
@@ -121,7 +121,7 @@ bool LinkTable::ArePerfect(const Graph& graph) const {
 LinkTable ReadLinks(Section& link, const Graph& graph) {
   const LinkConfig common = ReadLink(link);
   LinkTable::Special special;
-  for (Section& section : FewTables(link, "override", kMostOverrides)) {
+  for (Section& section : FewTables(link, "override", kMaxOverrides)) {
     section.InheritFrom(link);
     const auto edges = ReadEdges(section, graph);
     const LinkConfig config = ReadLink(section);

@@ -23,7 +23,7 @@ namespace mascot {
 /// and refused, in the same way, and a gain costs what the reader of its law does, however long the file is.
 class LiveExperiment {
  public:
-  static constexpr int kMostEvents = 100000;  ///< of a file, and of a run with those by hand, whose file holds them all
+  static constexpr int kMaxEvents = 100000;  ///< of a file, and of a run with those by hand, whose file holds them all
 
   /// `laws` null: the parameters of laws are neither read nor checked (the physics server). `checked`: the events were
   /// taken before without a mistake: slow checks, which run the code of a law, are left out. `laws` must outlive this.

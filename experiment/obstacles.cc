@@ -92,10 +92,10 @@ double DistanceOfWay_m(const Obstacle& obstacle, const Eigen::Vector3d& from_W, 
 // Points that are each the nearest to the last, on one obstacle and the other in turn, tend to the two that are nearest
 // (Cheney & Goldstein 1959).
 double Distance_m(const Obstacle& a, const Obstacle& b) {
-  constexpr int kMostTurns = 10000;
+  constexpr int kMaxTurns = 10000;
   constexpr double kClose_m = 1e-9;
   Eigen::Vector3d of_a_W = NearestPoint_W(a, b.p_W), of_b_W = NearestPoint_W(b, of_a_W);
-  for (int n = 0; n < kMostTurns; ++n) {
+  for (int n = 0; n < kMaxTurns; ++n) {
     const double before_m = (of_b_W - of_a_W).norm();
     of_a_W = NearestPoint_W(a, of_b_W);
     of_b_W = NearestPoint_W(b, of_a_W);

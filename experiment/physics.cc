@@ -6,7 +6,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kMostObstacles = 1000, kMostFailures = 40000;
+constexpr std::size_t kMaxObstacles = 1000, kMaxFailures = 40000;
 constexpr Range kCentre_m = {-1e6, 1e6};
 constexpr Range kAirspeed_m_per_s = {-200, 200};
 constexpr Key kWindKeys[] = {
@@ -94,10 +94,10 @@ PhysicsConfig ReadPhysics(Section& physics, int agents) {
   config.collisions = physics.Boolean("collisions");
   config.ground = physics.Boolean("ground");
   config.wind = ReadWind(physics.Child("wind"));
-  for (Section& obstacle : FewTables(physics, "obstacles", kMostObstacles))
+  for (Section& obstacle : FewTables(physics, "obstacles", kMaxObstacles))
     config.obstacles.push_back(ReadObstacle(obstacle));
   if (physics.Wrong("obstacles")) config.obstacles.clear();  // or agents inside a wrong one would be reported, too
-  for (Section& failure : FewTables(physics, "rotor_failures", kMostFailures))
+  for (Section& failure : FewTables(physics, "rotor_failures", kMaxFailures))
     config.rotor_failures.push_back(ReadRotorFailure(failure, agents));
   physics.Done();
   return config;

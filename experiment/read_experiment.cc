@@ -15,7 +15,7 @@ namespace mascot {
 namespace {
 
 constexpr double kMaxTicks = 1e9;  // recordings number their samples with 32 bits
-constexpr std::size_t kMostPatterns = 1000;
+constexpr std::size_t kMaxPatterns = 1000;
 constexpr int kMaxDomain = 100;  // above, the ports of DDS overlap those that Linux hands out
 
 constexpr std::string_view kAutomatic[] = {"auto"};
@@ -160,8 +160,8 @@ void ReadRecord(Section& section, Experiment& experiment) {
   if (!section.Wrong("file") && (!plain || !record.file.ends_with(".mcap") || record.file.size() > 200))
     section.Fail("file", "expected a file name ending in .mcap, without folders, got '" + record.file + "'");
   record.topics = section.Texts("topics");
-  if (record.topics.size() > kMostPatterns)
-    section.Fail("topics", "expected at most " + std::to_string(kMostPatterns) + " patterns, got " +
+  if (record.topics.size() > kMaxPatterns)
+    section.Fail("topics", "expected at most " + std::to_string(kMaxPatterns) + " patterns, got " +
                                std::to_string(record.topics.size()));
   section.Done();
 }

@@ -206,7 +206,7 @@ class ContactCounter {
   explicit ContactCounter(std::size_t bodies) {
     lasting_.reserve(4 * bodies);
     now_.reserve(4 * bodies);
-    begun_.first.reserve(kMostContactsTold);
+    begun_.first.reserve(kMaxContactsTold);
   }
   /// To be called after each step. `tick`: the one before the step; `bodies`: the agents', by id - 1. Returns true if
   /// any two bodies are so close that Bullet keeps contact points for them.
@@ -240,7 +240,7 @@ class ContactCounter {
   void Begin(const Pair& pair, std::int64_t tick, std::span<const Body> bodies) {
     const bool is_of_agents = pair.first > kGroundIndex;
     ++(is_of_agents ? begun_.agents : pair.first == kGroundIndex ? begun_.ground : begun_.obstacles);
-    if (begun_.first.size() == kMostContactsTold) return;
+    if (begun_.first.size() == kMaxContactsTold) return;
     const int agent = is_of_agents ? pair.first : pair.second;
     const int other = is_of_agents ? pair.second : pair.first;
     // At the tick: the solver slows bodies down in the steps before they touch.

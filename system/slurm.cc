@@ -28,7 +28,7 @@ namespace {
 constexpr std::size_t kLongestNode = 255, kLongestAnswer = std::size_t{16} << 20;
 
 /// How many processors of each node the job has at least; nothing if Slurm does not tell.
-std::optional<int> LeastProcessors() {
+std::optional<int> MinProcessors() {
   std::istringstream nodes(EnvironmentText("SLURM_JOB_CPUS_PER_NODE"));  // 72(x2),36
   std::optional<int> least;
   for (std::string node; std::getline(nodes, node, ',');) {
@@ -93,7 +93,7 @@ std::vector<std::string> OnEachNode(const std::vector<std::string>& nodes) {
                                  "--input=all",
                                  "--overlap",
                                  "--kill-on-bad-exit=0"};
-  if (const auto processors = LeastProcessors()) words.push_back(fmt::format("--cpus-per-task={}", *processors));
+  if (const auto processors = MinProcessors()) words.push_back(fmt::format("--cpus-per-task={}", *processors));
   return words;
 }
 

@@ -10,20 +10,20 @@ namespace mascot {
 
 /// Turns thrust and torques into rotor speeds within [0, max]: [w1^2 .. w4^2] = A^-1 [T, tau] (A: Airframe).
 ///
-/// Thrust is kept within the airframe's LeastThrust() and MostThrust(). If the rotors cannot give all of the torque,
-/// roll and pitch are scaled down together, so that their direction stays; yaw, which a quadrotor needs least, gets
-/// what is left.
+/// Thrust is kept within the airframe's MinCommandedThrust() and MaxCommandedThrust(). If the rotors cannot give all of
+/// the torque, roll and pitch are scaled down together, so that their direction stays; yaw, which a quadrotor needs
+/// least, gets what is left.
 class Mixer {
  public:
   explicit Mixer(const Airframe& airframe)
       : inverse_(airframe.Allocation().inverse()),
-        least_thrust_n_(airframe.LeastThrust()),
-        most_thrust_n_(airframe.MostThrust()),
+        min_thrust_n_(airframe.MinCommandedThrust()),
+        max_thrust_n_(airframe.MaxCommandedThrust()),
         max_squared_(airframe.max_thrust_n / (4 * airframe.lift_n_s2)) {}
 
   /// `thrust_n`: along z_B; `tau_B`: in B (N m). Sets kRotorLimited if anything was cut.
   Controller::Output Mix(double thrust_n, const Eigen::Vector3d& tau_B) const {
-    const double kept_n = std::clamp(thrust_n, least_thrust_n_, most_thrust_n_);
+    const double kept_n = std::clamp(thrust_n, min_thrust_n_, max_thrust_n_);
     Eigen::Vector4d squared = inverse_.col(0) * kept_n;
     bool limited = kept_n != thrust_n;
     limited |= AddWhatFits(inverse_.col(1) * tau_B.x() + inverse_.col(2) * tau_B.y(), squared);
@@ -48,7 +48,7 @@ class Mixer {
   }
 
   Eigen::Matrix4d inverse_;  // A^-1
-  double least_thrust_n_, most_thrust_n_;
+  double min_thrust_n_, max_thrust_n_;
   double max_squared_;  // (rad/s)^2
 };
 

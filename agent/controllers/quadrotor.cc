@@ -61,10 +61,10 @@ double Yaw(const Eigen::Matrix3d& R_WB) { return std::atan2(R_WB(1, 0), R_WB(0, 
 
 double Pd(PdGains gains, double error, double error_rate) { return gains.kp * error + gains.kd * error_rate; }
 
-// PD law with a limited proportional part, so that the rate towards the target settles at kMostTurnRate at most
+// PD law with a limited proportional part, so that the rate towards the target settles at kMaxTurnRate at most
 // (without damping there is no such limit).
 double TiltAccel(PdGains gains, double error_rad, double rate) {
-  const double most = gains.kd > 0 ? gains.kd * Airframe::kMostTurnRate : std::numeric_limits<double>::infinity();
+  const double most = gains.kd > 0 ? gains.kd * Airframe::kMaxTurnRate : std::numeric_limits<double>::infinity();
   return std::clamp(gains.kp * error_rad, -most, most) - gains.kd * rate;
 }
 
@@ -122,7 +122,7 @@ class QuadrotorController final : public Controller {
   }
 
   Tilt ToTilt(const HeadingAccel& a) const {
-    const double min_up = airframe_.LeastThrust() / airframe_.mass_kg;
+    const double min_up = airframe_.MinCommandedThrust() / airframe_.mass_kg;
     return exact_ ? ExactTilt(a, gravity_, min_up) : SmallAngleTilt(a, gravity_, min_up);
   }
 

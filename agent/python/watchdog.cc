@@ -77,12 +77,12 @@ class PythonWatchdog {
         memory_mb = std::min<double>(memory_mb, call->limits_.memory_mb);
     }
     next_deadline_ns_ = next;
-    least_memory_mb_ = memory_mb;
+    min_memory_mb_ = memory_mb;
   }
 
   bool IsMemoryDue() const {
-    const double least_mb = least_memory_mb_;
-    return least_mb < std::numeric_limits<double>::infinity() && OwnMemory_mb() > least_mb;
+    const double min_mb = min_memory_mb_;
+    return min_mb < std::numeric_limits<double>::infinity() && OwnMemory_mb() > min_mb;
   }
 
   /// A call that is to be interrupted now, if any.
@@ -108,7 +108,7 @@ class PythonWatchdog {
   }
 
   std::atomic<std::int64_t> next_deadline_ns_ = kNever;
-  std::atomic<double> least_memory_mb_ = std::numeric_limits<double>::infinity();
+  std::atomic<double> min_memory_mb_ = std::numeric_limits<double>::infinity();
   std::vector<LimitedPython*> calls_;  // used with the GIL held
 };
 

@@ -11,7 +11,7 @@ namespace mascot {
 // of a group within S. Then r is the smallest max(reach[S], least[not S]).
 std::optional<int> RobustnessOf(const Graph& graph) {
   const int count = graph.size();
-  if (count > kMostRobustness) return std::nullopt;
+  if (count > kMaxRobustness) return std::nullopt;
   if (count < 2) return 1;
   std::vector<std::uint32_t> heard(static_cast<std::size_t>(count));
   for (int id = 1; id <= count; ++id)

@@ -9,8 +9,8 @@ namespace mascot {
 
 namespace {
 
-constexpr std::size_t kMostGraphs = 10000;
-constexpr std::size_t kMostEdgesInAll = 10000000;  // 160 MB
+constexpr std::size_t kMaxGraphs = 10000;
+constexpr std::size_t kMaxEdgesInAll = 10000000;  // 160 MB
 
 /// The keys of one graph, and `more`.
 std::vector<Key> WithGraphKeys(std::initializer_list<Key> more) {
@@ -62,7 +62,7 @@ Schedule ReadSchedule(Section& graph, std::span<const Eigen::Vector3d> p_W, std:
   constexpr std::uint64_t kNextStage = std::uint64_t{1} << 40;  // runs with seeds 1, 2, 3... then share no graph
   std::uint64_t stage_seed = seed;
   std::size_t edges = phases.back().graph.edges();
-  for (Section& section : FewTables(graph, "schedule", kMostGraphs)) {
+  for (Section& section : FewTables(graph, "schedule", kMaxGraphs)) {
     const double at_s = section.Number("at_s");
     if (!section.Wrong("at_s") && at_s <= phases.back().at_s)
       section.Fail("at_s",
@@ -70,8 +70,8 @@ Schedule ReadSchedule(Section& graph, std::span<const Eigen::Vector3d> p_W, std:
     phases.push_back({at_s, ReadGraph(section, p_W, stage_seed += kNextStage)});
     section.Done();
     edges += phases.back().graph.edges();
-    if (edges <= kMostEdgesInAll) continue;
-    section.Fail("", "expected at most " + std::to_string(kMostEdgesInAll) + " edges in all graphs together, got more");
+    if (edges <= kMaxEdgesInAll) continue;
+    section.Fail("", "expected at most " + std::to_string(kMaxEdgesInAll) + " edges in all graphs together, got more");
     break;
   }
   double repeat_s = 0;

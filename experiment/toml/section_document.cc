@@ -9,7 +9,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kMostMistakes = 100;
+constexpr std::size_t kMaxMistakes = 100;
 
 /// Throws ConfigError for a key of more than kDeepestKey parts, and for a value of more than kDeepestValue levels:
 /// toml++ and we make, walk and free one table per part or level recursively, and a million of them would overflow the
@@ -150,7 +150,7 @@ void Section::Document::Note(const toml::source_region& place, const std::string
 void Section::Document::NoteText(const toml::source_region& place, const std::string& text) {
   const bool overridden = OriginOf(place).has_value();
   Mistake mistake{overridden, overridden ? 0 : place.begin.line, overridden ? 0 : place.begin.column, text};
-  if (mistakes_.size() < kMostMistakes) {
+  if (mistakes_.size() < kMaxMistakes) {
     mistakes_.insert(std::move(mistake));
   } else if (!mistakes_.contains(mistake)) {
     left_out_ = true;

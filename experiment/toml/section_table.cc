@@ -45,7 +45,7 @@ std::string ListText(const std::vector<std::string>& items) {
   return lines + "]";
 }
 
-constexpr std::size_t kMostItems = 1000000;  // of a list; some lists have lower limits
+constexpr std::size_t kMaxItems = 1000000;  // of a list; some lists have lower limits
 
 bool IsBareKey(std::string_view key) { return !key.empty() && std::ranges::all_of(key, IsBare); }
 
@@ -207,8 +207,8 @@ const toml::array* Section::Table::List(std::string_view key, const std::string&
   const toml::node* node = Find(key);
   if (node == nullptr) return nullptr;
   const toml::array* list = node->as_array();
-  if (list != nullptr && list->size() <= kMostItems) return list;
-  Expected(key, PathOf(key), node, list == nullptr ? expected : "a list of at most " + std::to_string(kMostItems));
+  if (list != nullptr && list->size() <= kMaxItems) return list;
+  Expected(key, PathOf(key), node, list == nullptr ? expected : "a list of at most " + std::to_string(kMaxItems));
   return nullptr;
 }
 

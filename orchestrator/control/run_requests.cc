@@ -15,7 +15,7 @@ namespace mascot {
 namespace {
 
 constexpr const char* kByHand = "event by hand";
-constexpr double kMostSteps = 1e9;
+constexpr double kMaxSteps = 1e9;
 /// How long a request that comes early waits for the first tick.
 constexpr auto kStartPatience = std::chrono::seconds(5);
 
@@ -77,9 +77,9 @@ RunRequests::Order RunRequests::Checked(const Request& request, std::int64_t fro
     case Request::Kind::kStop:
       break;
     case Request::Kind::kStep:
-      if (!(request.number >= 1 && request.number <= kMostSteps && request.number == std::floor(request.number)))
+      if (!(request.number >= 1 && request.number <= kMaxSteps && request.number == std::floor(request.number)))
         throw std::invalid_argument(
-            fmt::format("step: expected an integer in [1, {:.0f}], got {}", kMostSteps, ShortestFloat(request.number)));
+            fmt::format("step: expected an integer in [1, {:.0f}], got {}", kMaxSteps, ShortestFloat(request.number)));
       break;
     case Request::Kind::kPace:
       if (realtime) throw std::invalid_argument("pace: expected a run in lockstep, got one in real time (run.speed)");
@@ -104,9 +104,9 @@ RunRequests::Order RunRequests::CheckedEvent(const std::string& toml, std::int64
                                 ": law: expected a phase in [[law.schedule]] of the file, got one by hand");
   const std::vector<Event>& file = experiment_.events;
   Ahead ahead = *ahead_;
-  if (ahead.by_hand + file.size() >= LiveExperiment::kMostEvents)
+  if (ahead.by_hand + file.size() >= LiveExperiment::kMaxEvents)
     throw std::invalid_argument(
-        fmt::format("{}: expected at most {} events in a run, got one more", kByHand, LiveExperiment::kMostEvents));
+        fmt::format("{}: expected at most {} events in a run, got one more", kByHand, LiveExperiment::kMaxEvents));
   TakeFile(ahead, from);
   const std::int64_t before = ahead.of_file < file.size() ? file[ahead.of_file].tick : last + 1;
   ahead.live.CheckAll();

@@ -5,9 +5,9 @@
 namespace mascot {
 
 void WholeFile::Write(std::string_view text) {
-  constexpr std::size_t kMostPending = 1 << 16;
+  constexpr std::size_t kMaxPending = 1 << 16;
   pending_ += text;
-  if (pending_.size() >= kMostPending) Flush();
+  if (pending_.size() >= kMaxPending) Flush();
 }
 
 void WholeFile::Flush() {

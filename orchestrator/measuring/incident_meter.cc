@@ -30,7 +30,7 @@ IncidentMeter::IncidentMeter(const Experiment& experiment)
     : experiment_(experiment), gap_(EpisodeGapTicks(experiment.control.rate_hz)), open_(experiment.agents.size()) {}
 
 void IncidentMeter::Close(Incident incident) {
-  if (closed_.told.size() < kMostIncidentsTold)
+  if (closed_.told.size() < kMaxIncidentsTold)
     closed_.told.push_back(std::move(incident));
   else
     ++closed_.more;

@@ -44,7 +44,7 @@ struct Incident {
 std::string_view EventInTable(std::string_view toml);
 
 /// This many are reported one by one, besides contacts and rotor failures; further ones are only counted.
-inline constexpr std::size_t kMostIncidentsTold = 100'000;
+inline constexpr std::size_t kMaxIncidentsTold = 100'000;
 
 struct Incidents {
   std::vector<Incident> told;      ///< in the order of their first ticks, then of kind, agent and other

@@ -11,7 +11,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kMostLoaded = 4;  // chunks
+constexpr std::size_t kMaxLoaded = 4;  // chunks
 
 std::unique_ptr<McapIndex> OpenIndex(const std::string& path) try {
   return std::make_unique<McapIndex>(path);
@@ -51,7 +51,7 @@ const IndexedRows::Samples& IndexedRows::Load(std::size_t chunk) {
     if (topics_.contains(sample.channel)) loaded.samples.push_back(sample);
   });
   std::ranges::stable_sort(loaded.samples, {}, &McapContents::Message::log_time);
-  if (loaded_.size() == kMostLoaded) loaded_.pop_back();
+  if (loaded_.size() == kMaxLoaded) loaded_.pop_back();
   loaded_.push_front(std::move(loaded));
   return loaded_.front().samples;
 }

@@ -36,14 +36,14 @@ std::string PaceText(const Figures& figures) {
 
 /// Text on the distance of agents, and what law.safety has to do with it.
 std::string SeparationText(const Prediction& prediction, const Figures& figures) {
-  const auto least_m = figures.Number("safety.min_separation_m");
+  const auto min_m = figures.Number("safety.min_separation_m");
   const auto in_plane_m = figures.Number("safety.min_separation_along_axes_m");
   const auto collisions = figures.Number("safety.collisions");
   const auto filtered = figures.Number("safety.filtered_fraction");
   std::string text;
-  if (least_m)
-    text += Line("separation     {:.3f} m at least{}, {} collisions", *least_m,
-                 in_plane_m == least_m ? "" : fmt::format(" ({:.3f} m in the plane)", *in_plane_m),
+  if (min_m)
+    text += Line("separation     {:.3f} m at least{}, {} collisions", *min_m,
+                 in_plane_m == min_m ? "" : fmt::format(" ({:.3f} m in the plane)", *in_plane_m),
                  collisions ? fmt::format("{}", figures.Count("safety.collisions")) : "an unknown number of");
   if (prediction.safety) text += Line("  predicted    {}", SafetyText(*prediction.safety));
   if (const std::string broken = figures.Words("safety.condition_broken"); !broken.empty())

@@ -12,9 +12,9 @@ namespace mascot {
 struct DelayInEffect {
   std::string key;
   double asked_s = 0;
-  double jitter_s = 0;           ///< each sample's own delay lies within asked_s -+ jitter_s
-  std::int64_t least_ticks = 0;  ///< delay of the samples that arrive soonest, without reordering
-  std::int64_t most_ticks = 0;   ///< delay of the samples that arrive latest
+  double jitter_s = 0;         ///< each sample's own delay lies within asked_s -+ jitter_s
+  std::int64_t min_ticks = 0;  ///< delay of the samples that arrive soonest, without reordering
+  std::int64_t max_ticks = 0;  ///< delay of the samples that arrive latest
 
   bool operator==(const DelayInEffect&) const = default;
 };

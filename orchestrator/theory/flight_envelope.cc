@@ -13,7 +13,7 @@ std::string CannotLift(const AgentConfig& agent, double weight_n) {
   return fmt::format(
       "agents.airframe: agent {} cannot lift itself: its rotors are driven to {:.4g} N at most ({:g} % of "
       "max_thrust_n), its weight is {:.4g} N (mass_kg, physics.gravity_m_per_s2)",
-      agent.id, airframe.MostThrust(), 100 * Airframe::kMostThrustShare, weight_n);
+      agent.id, airframe.MaxCommandedThrust(), 100 * Airframe::kMaxCommandedShare, weight_n);
 }
 
 std::string ClimbsAway(const AgentConfig& agent, double weight_n) {
@@ -21,7 +21,7 @@ std::string ClimbsAway(const AgentConfig& agent, double weight_n) {
   return fmt::format(
       "agents.airframe: agent {} climbs away: its rotors are driven to {:.4g} N at least ({:g} % of max_thrust_n), its "
       "weight is {:.4g} N (mass_kg, physics.gravity_m_per_s2)",
-      agent.id, airframe.LeastThrust(), 100 * Airframe::kLeastThrustShare, weight_n);
+      agent.id, airframe.MinCommandedThrust(), 100 * Airframe::kMinCommandedShare, weight_n);
 }
 
 std::string FallsWithout(const RotorFailure& failure, double left_n, double needed_n) {
@@ -33,7 +33,7 @@ std::string FallsWithout(const RotorFailure& failure, double left_n, double need
 
 /// What the thrust gives at a constant height (m/s^2), or the least thrust where that is more.
 double UpAccel(const Airframe& airframe, double gravity_m_per_s2) {
-  return std::max(gravity_m_per_s2, airframe.LeastThrust() / airframe.mass_kg);
+  return std::max(gravity_m_per_s2, airframe.MinCommandedThrust() / airframe.mass_kg);
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ double AccelerationLag(const Experiment& experiment, const AgentConfig& quadroto
   const double up = UpAccel(body, gravity);
   const double angle_rad = 2 * a_m_per_s2 / up;
   const double pd_s = body.attitude.kd / body.attitude.kp;
-  const double rate = Airframe::kMostTurnRate;
+  const double rate = Airframe::kMaxTurnRate;
   const double slew_s = angle_rad > rate * pd_s ? angle_rad / (2 * rate) + rate * pd_s * pd_s / (2 * angle_rad) : pd_s;
   const double hover_n = body.mass_kg * up;
   const double torque_nm = body.arm_m / 2 * std::min(hover_n, body.max_thrust_n - hover_n);
@@ -67,8 +67,8 @@ std::vector<std::string> LiftWarnings(const Experiment& experiment) {
   for (const AgentConfig& agent : experiment.agents) {
     if (!agent.traits().has_airframe) continue;
     const double weight_n = agent.airframe.mass_kg * experiment.physics.gravity_m_per_s2;
-    if (weight_n > agent.airframe.MostThrust()) return {CannotLift(agent, weight_n)};
-    if (weight_n < agent.airframe.LeastThrust()) return {ClimbsAway(agent, weight_n)};
+    if (weight_n > agent.airframe.MaxCommandedThrust()) return {CannotLift(agent, weight_n)};
+    if (weight_n < agent.airframe.MinCommandedThrust()) return {ClimbsAway(agent, weight_n)};
   }
   return {};
 }

@@ -8,7 +8,7 @@
 namespace mascot {
 
 /// The largest acceleration along x or y (m/s^2) that a quadrotor reaches within the tilt limit of its airframe, with
-/// the thrust that carries its weight (at least Airframe::LeastThrust()).
+/// the thrust that carries its weight (at least Airframe::MinCommandedThrust()).
 double LeanLimit(const AgentConfig& quadrotor, double gravity_m_per_s2);
 
 /// The mean lag (s) of a quadrotor's acceleration along x or y behind a wanted one that jumps from -a to a. Assumes

@@ -11,7 +11,7 @@ namespace mascot {
 
 std::optional<std::vector<PursuitMeter::Edge>> FlyPursuit(const Experiment& experiment, double longest_s) {
   const double ticks = std::max(static_cast<double>(experiment.ticks()), longest_s * experiment.control.rate_hz);
-  if (!(ticks * experiment.size() <= kMostFlownAgents)) return std::nullopt;
+  if (!(ticks * experiment.size() <= kMaxFlownAgents)) return std::nullopt;
   IdealTeam team(experiment);
   PursuitMeter meter(experiment);
   meter.Add(team.motions());

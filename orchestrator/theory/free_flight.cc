@@ -50,7 +50,7 @@ std::string WhyNotFree(const Experiment& experiment, const Freedom& needed, cons
   if (!needed.from_limits && !touches) return "";
   const auto agents = static_cast<double>(experiment.size());
   const double each_tick = static_cast<double>(experiment.graph.edges()) + agents + (touches ? agents * agents / 2 : 0);
-  if (each_tick * static_cast<double>(experiment.ticks()) > kMostFreeSteps) {
+  if (each_tick * static_cast<double>(experiment.ticks()) > kMaxFreeSteps) {
     if (!needed.from_limits || (first && first->asked > 0 && first->asked < kFarBelow * first->limit)) return "";
     return "so many agents are not flown ahead for so many ticks, to see whether a limit cuts what the law asks for";
   }

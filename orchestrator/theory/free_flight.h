@@ -15,10 +15,10 @@ struct Freedom {
 };
 
 /// Why the flight of the run is not free, found by a flight of ideal bodies to the end of the run; empty: it is free.
-/// Above kMostFreeSteps there is no such flight: then `first`, the first command, must be far below its limit, and
+/// Above kMaxFreeSteps there is no such flight: then `first`, the first command, must be far below its limit, and
 /// nothing is known of contacts.
 std::string WhyNotFree(const Experiment& experiment, const Freedom& needed, const std::optional<FirstCommand>& first);
 
-inline constexpr double kMostFreeSteps = 2e6;  ///< ticks times agents and edges; takes about 0.5 s
+inline constexpr double kMaxFreeSteps = 2e6;  ///< ticks times agents and edges; takes about 0.5 s
 
 }  // namespace mascot

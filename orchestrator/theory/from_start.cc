@@ -111,21 +111,21 @@ Eigen::Vector3d Flight::Clamped(std::size_t i, const Eigen::Vector3d& u, double 
 // As Agent::Want() does. What is not cut keeps its bits.
 Eigen::Vector3d Flight::Limited(std::size_t i, const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
   const AgentConfig& agent = experiment_.agents[i];
-  const double most_m_per_s2 = agent.control.max_acceleration_m_per_s2, most_m_per_s = agent.control.max_speed_m_per_s;
+  const double max_m_per_s2 = agent.control.max_acceleration_m_per_s2, max_m_per_s = agent.control.max_speed_m_per_s;
   const bool by_velocity = agent.traits().driven_by == Wanted::kVelocity;
-  if (team_.agents[i].order == 1) return Clamped(i, u, most_m_per_s);
+  if (team_.agents[i].order == 1) return Clamped(i, u, max_m_per_s);
   if (by_velocity) {  // it integrates what the law wants
     const double h = experiment_.period_s();
-    const Eigen::Vector3d a = Clamped(i, u, most_m_per_s2), next_v = v + h * a;
-    return next_v.cwiseAbs().maxCoeff() <= most_m_per_s ? a : (Clamped(i, next_v, most_m_per_s) - v) / h;
+    const Eigen::Vector3d a = Clamped(i, u, max_m_per_s2), next_v = v + h * a;
+    return next_v.cwiseAbs().maxCoeff() <= max_m_per_s ? a : (Clamped(i, next_v, max_m_per_s) - v) / h;
   }
   if (WantedBy(agent.law) == Wanted::kVelocity) {
     const double k_v = agent.control.velocity_gain;
     const Eigen::Vector3d wanted_v = u / k_v + v;
-    if (wanted_v.cwiseAbs().maxCoeff() > most_m_per_s)
-      return Clamped(i, k_v * (Clamped(i, wanted_v, most_m_per_s) - v), most_m_per_s2);
+    if (wanted_v.cwiseAbs().maxCoeff() > max_m_per_s)
+      return Clamped(i, k_v * (Clamped(i, wanted_v, max_m_per_s) - v), max_m_per_s2);
   }
-  return Clamped(i, u, most_m_per_s2);
+  return Clamped(i, u, max_m_per_s2);
 }
 
 void Flight::Step() {
@@ -158,7 +158,7 @@ FromStart FlyFromStart(const Experiment& experiment, const LinearTeam& team, con
                        double longest_s) {
   Flight flight(experiment, team, timeline);
   const double longest = longest_s * experiment.control.rate_hz;
-  if (longest * flight.size() > kMostSteps) return {};
+  if (longest * flight.size() > kMaxSteps) return {};
   AgreementMeter meter(experiment);
   meter.Add(flight.q());
   const double first_m = meter.disagreement_m();

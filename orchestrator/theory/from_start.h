@@ -22,11 +22,11 @@ struct FromStart {
 
 /// Steps the sampled team (sampled_team.h) tick by tick, with the limits of acceleration and speed, until it agrees for
 /// good, but for at most `longest_s` of simulated time. If links lose samples, the flight is that of the mean over many
-/// seeds. If ticks times agents and edges are more than kMostSteps, nothing is flown. `team` and `timeline` must be
+/// seeds. If ticks times agents and edges are more than kMaxSteps, nothing is flown. `team` and `timeline` must be
 /// those of `experiment`; its leaders must stand still.
 FromStart FlyFromStart(const Experiment& experiment, const LinearTeam& team, const Timeline& timeline,
                        double longest_s);
 
-inline constexpr double kMostSteps = 2e7;  ///< as many take about 0.3 s
+inline constexpr double kMaxSteps = 2e7;  ///< as many take about 0.3 s
 
 }  // namespace mascot

@@ -112,8 +112,7 @@ GainBound LinearCase::Gain() const {
   const bool relative = all.g > 0, velocity = WantedBy(experiment_.law) == Wanted::kVelocity;
   double least = 0;
   for (Eigen::Index i = 1; i < lambda_.size(); ++i)
-    least =
-        std::max(least, relative ? LeastRelativeDamping(all.p, all.b, lambda_(i)) : LeastDamping(all.p, 0, lambda_(i)));
+    least = std::max(least, relative ? MinRelativeDamping(all.p, all.b, lambda_(i)) : MinDamping(all.p, 0, lambda_(i)));
   if (relative) return {"law.v_gain", least, all.g};
   const double own = all.b - all.drag_b;
   if (velocity) {

@@ -44,7 +44,7 @@ bool LosesSome(const Experiment& experiment) {
   return AnyLink(experiment, [](const LinkConfig& link) { return Delivered(link) > 0 && Delivered(link) < 1; });
 }
 
-double LeastDeliveredUnheld(const Experiment& experiment) {
+double MinDeliveredUnheld(const Experiment& experiment) {
   double least = 1;
   AnyLink(experiment, [&](const LinkConfig& link) {
     if (!Holds(link, experiment.control.rate_hz) && Delivered(link) > 0) least = std::min(least, Delivered(link));

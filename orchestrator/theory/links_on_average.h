@@ -16,7 +16,7 @@ Graph OnAverage(const Graph& graph, const LinkTable& links);
 bool LosesSome(const Experiment& experiment);
 /// The least fraction of samples that a link delivers which loses some of them and holds none in their place
 /// (link.hold_s below one tick); 1 if there is no such link.
-double LeastDeliveredUnheld(const Experiment& experiment);
+double MinDeliveredUnheld(const Experiment& experiment);
 /// The delay, without jitter, of the link on which `hearer` hears `heard`, in ticks.
 std::int64_t DelayTicks(const Experiment& experiment, int hearer, int heard);
 /// The delay of agents' own position and velocity, in ticks.

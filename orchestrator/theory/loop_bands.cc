@@ -155,7 +155,7 @@ std::string WhyNotLoops(const Experiment& experiment) {
   if (experiment.physics.wind.gust_std_m_per_s > 0) return "the wind has gusts";
   if (!experiment.physics.rotor_failures.empty()) return "rotors fail";
   if (!LiftWarnings(experiment).empty()) return "quadrotors cannot keep their height";
-  if (WorkOfLoops(experiment) > kMostLoopWork)
+  if (WorkOfLoops(experiment) > kMaxLoopWork)
     return "so many agents, edges and ticks are more than are flown ahead on lagging bodies";
   return "";
 }

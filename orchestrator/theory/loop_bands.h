@@ -22,6 +22,6 @@ std::vector<LoopFlight> FlyBeside(const Experiment& experiment);
 std::string WhyNotLoops(const Experiment& experiment);
 
 /// Work of one flight (WorkOfLoops); five flights of this take about a second.
-inline constexpr double kMostLoopWork = 6e5;
+inline constexpr double kMaxLoopWork = 6e5;
 
 }  // namespace mascot

@@ -20,7 +20,7 @@ namespace {
 constexpr double kSteepest_rad = 0.6;  // beyond, roll and pitch are not two loops by themselves
 // Share of all commands, with more of which both tilts at once are not two loops; in a longer run, of the commands of
 // so many seconds: a team that rests for long has been cut no less.
-constexpr double kMostTiltsCut = 0.02, kLongestCounted_s = 20;
+constexpr double kMaxTiltsCut = 0.02, kLongestCounted_s = 20;
 constexpr double kMargin_m = 0.1;  // of bodies to what they might touch
 constexpr double kFarthest_m = 1e5;
 
@@ -85,7 +85,7 @@ class LoopTeam {
   std::string Cut() const {
     const double ticks = std::min(static_cast<double>(tick_), kLongestCounted_s * experiment_.control.rate_hz);
     const double commands = ticks * static_cast<double>(bodies_.size());
-    return static_cast<double>(tilts_cut_) > kMostTiltsCut * commands
+    return static_cast<double>(tilts_cut_) > kMaxTiltsCut * commands
                ? "the limit of the tilt cuts more than 2 % of what quadrotors are commanded"
                : "";
   }

@@ -10,10 +10,10 @@ namespace {
 
 // As in agent/controllers/quadrotor.cc: the largest correction towards the reference, and the least part of the thrust
 // that points up for which the exact inversion raises it.
-constexpr double kMostCorrection = 1.0;
-constexpr double kLeastUpright = 0.5;
+constexpr double kMaxCorrection = 1.0;
+constexpr double kMinUpright = 0.5;
 // More steps of the physics in a control period change nothing that counts here.
-constexpr int kMostStepsOfPeriod = 10;
+constexpr int kMaxStepsOfPeriod = 10;
 
 double PdAccel(PdGains gains, double error, double rate) { return gains.kp * error + gains.kd * rate; }
 
@@ -24,7 +24,7 @@ LowLevelLoop::LowLevelLoop(const Experiment& experiment, const AgentConfig& agen
       error_(error),
       h_(experiment.period_s()),
       gravity_(experiment.physics.gravity_m_per_s2),
-      steps_(std::min(experiment.steps_per_tick(), kMostStepsOfPeriod)),
+      steps_(std::min(experiment.steps_per_tick(), kMaxStepsOfPeriod)),
       holds_altitude_(agent.law.axes == Axes::kXy),
       wind_W_(experiment.physics.wind.mean_m_per_s),
       p_ref_W_(agent.p_W),
@@ -67,7 +67,7 @@ Eigen::Vector3d LowLevelLoop::Correction_W() {
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const PdGains& gains = axis < 2 ? agent_.airframe.position : agent_.airframe.altitude;
     correction_W[axis] = PdAccel(gains, p_ref_W_[axis] - motion_.p_WB[axis], v_ref_W_[axis] - motion_.v_WB[axis]);
-    if (std::abs(correction_W[axis]) <= kMostCorrection || (axis == 2 && holds_altitude_)) continue;
+    if (std::abs(correction_W[axis]) <= kMaxCorrection || (axis == 2 && holds_altitude_)) continue;
     p_ref_W_[axis] = motion_.p_WB[axis];
     v_ref_W_[axis] = motion_.v_WB[axis];
     correction_W[axis] = 0;
@@ -78,7 +78,7 @@ Eigen::Vector3d LowLevelLoop::Correction_W() {
 // Roll and pitch that give a_W, within the limit of the tilt.
 Eigen::Vector2d LowLevelLoop::Target_rad(const Eigen::Vector3d& a_W) {
   const Eigen::Vector3d a_H = R_WH_.transpose() * a_W;
-  const double least = agent_.airframe.LeastThrust() / agent_.airframe.mass_kg;
+  const double least = agent_.airframe.MinCommandedThrust() / agent_.airframe.mass_kg;
   const bool exact = agent_.control.inversion == Inversion::kExact;
   const double up = std::max(exact ? a_H.z() + gravity_ : gravity_, least);
   Eigen::Vector2d target_rad(-a_H.y() / up, a_H.x() / up);
@@ -91,8 +91,8 @@ Eigen::Vector2d LowLevelLoop::Target_rad(const Eigen::Vector3d& a_W) {
 double LowLevelLoop::Thrust_n(double a_up) const {
   double thrust_n = agent_.airframe.mass_kg * (a_up + gravity_);
   if (agent_.control.inversion == Inversion::kExact)
-    thrust_n /= std::max(std::cos(tilt_rad_.x()) * std::cos(tilt_rad_.y()), kLeastUpright);
-  return std::clamp(thrust_n, agent_.airframe.LeastThrust(), agent_.airframe.MostThrust());
+    thrust_n /= std::max(std::cos(tilt_rad_.x()) * std::cos(tilt_rad_.y()), kMinUpright);
+  return std::clamp(thrust_n, agent_.airframe.MinCommandedThrust(), agent_.airframe.MaxCommandedThrust());
 }
 
 // What the PD law of the tilt asks for, as far as the rotors can give both at once: each of roll and pitch takes a
@@ -100,7 +100,7 @@ double LowLevelLoop::Thrust_n(double a_up) const {
 Eigen::Vector2d LowLevelLoop::TurnAccel(const Eigen::Vector2d& target_rad, double thrust_n) const {
   const Airframe& body = agent_.airframe;
   const double fastest =
-      body.attitude.kd > 0 ? body.attitude.kd * Airframe::kMostTurnRate : std::numeric_limits<double>::infinity();
+      body.attitude.kd > 0 ? body.attitude.kd * Airframe::kMaxTurnRate : std::numeric_limits<double>::infinity();
   const Eigen::Vector2d towards = body.attitude.kp * (target_rad - tilt_rad_);
   const Eigen::Vector2d wanted = towards.cwiseMin(fastest).cwiseMax(-fastest) - body.attitude.kd * tilt_rate_;
   const double torque_nm = body.arm_m / 2 * std::min(thrust_n, body.max_thrust_n - thrust_n);

@@ -117,13 +117,13 @@ bool DecaysSampled(const LinearMode& mode, double period_s) {
 }
 
 // The condition of Decays with lambda = x + i y: x b^2 + g (2 x^2 + y^2) b + g^2 x |lambda|^2 - p y^2 > 0.
-double LeastDamping(double p, double g, std::complex<double> lambda) {
+double MinDamping(double p, double g, std::complex<double> lambda) {
   const double x = lambda.real(), y2 = lambda.imag() * lambda.imag();
   return PositiveRoot(x, g * (2 * x * x + y2), g * g * x * std::norm(lambda) - p * y2);
 }
 
 // The same as a condition on g: x |lambda|^2 g^2 + b (2 x^2 + y^2) g + x b^2 - p y^2 > 0.
-double LeastRelativeDamping(double p, double b, std::complex<double> lambda) {
+double MinRelativeDamping(double p, double b, std::complex<double> lambda) {
   const double x = lambda.real(), y2 = lambda.imag() * lambda.imag();
   return PositiveRoot(x * std::norm(lambda), b * (2 * x * x + y2), x * b * b - p * y2);
 }

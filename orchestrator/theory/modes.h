@@ -23,9 +23,9 @@ bool Decays(const LinearMode& mode);
 /// Whether the mode decays if the law is evaluated every `period_s` and its output is held in between.
 bool DecaysSampled(const LinearMode& mode, double period_s);
 /// The absolute damping b (1/s) above which s^2 + (b + g lambda) s + p lambda decays.
-double LeastDamping(double p, double g, std::complex<double> lambda);
+double MinDamping(double p, double g, std::complex<double> lambda);
 /// The gain g of relative velocities (1/s) above which the same decays (for b = 0: Ren & Atkins, 2007).
-double LeastRelativeDamping(double p, double b, std::complex<double> lambda);
+double MinRelativeDamping(double p, double b, std::complex<double> lambda);
 /// The control period (s) below which all modes decay. They must decay in continuous time. Infinite without modes.
 double LongestPeriod(std::span<const LinearMode> modes);
 /// Decay rate of the slowest mode when sampled (1/s).

@@ -28,7 +28,7 @@ using RowVector = Eigen::RowVectorXd;
 
 enum Quantity : Eigen::Index { kPlace, kSpeed, kTilt, kTurn, kRotor, kHeld, kQuantities };
 
-constexpr double kMostRate_hz = 1e5;
+constexpr double kMaxRate_hz = 1e5;
 
 Matrix PowerOf(Matrix matrix, int exponent) {
   Matrix power = Matrix::Identity(matrix.rows(), matrix.cols());
@@ -173,11 +173,11 @@ std::vector<StackLoop> LoopsOf(const Experiment& experiment, const AgentConfig& 
 }
 
 /// The control rate above which the loop decays, upwards of one at which it does not; nothing: there is none.
-std::optional<double> LeastRate_hz(const StackLoop& loop, double rate_hz) {
+std::optional<double> MinRate_hz(const StackLoop& loop, double rate_hz) {
   constexpr double kStep = 1.1;
   double bad = rate_hz, good = rate_hz * kStep;
   for (; !loop.Decays(1 / good); good *= kStep) {
-    if (good > kMostRate_hz) return std::nullopt;
+    if (good > kMaxRate_hz) return std::nullopt;
     bad = good;
   }
   while (good - bad > 1e-4 * good) {
@@ -210,7 +210,7 @@ std::optional<UnstableLoop> FindUnstableLoop(const Experiment& experiment) {
     before = &agent;
     for (const StackLoop& loop : LoopsOf(experiment, agent)) {
       if (loop.Decays(experiment.period_s())) continue;
-      const UnstableLoop found{agent.id, loop.name, LeastRate_hz(loop, experiment.control.rate_hz)};
+      const UnstableLoop found{agent.id, loop.name, MinRate_hz(loop, experiment.control.rate_hz)};
       if (!worst || rate_of(found) > rate_of(*worst)) worst = found;
     }
   }

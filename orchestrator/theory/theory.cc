@@ -120,9 +120,8 @@ void PredictLaw(const Experiment& experiment, Prediction& prediction) {
     return;
   }
   if (!timeline) {
-    prediction.silent =
-        fmt::format("graph.repeat_s: the schedule is not back at the same tick soon, or changes more than {} times",
-                    kMostIntervals);
+    prediction.silent = fmt::format(
+        "graph.repeat_s: the schedule is not back at the same tick soon, or changes more than {} times", kMaxIntervals);
     return;
   }
   if (EntryOf(experiment.law).agrees)
@@ -148,7 +147,7 @@ void PredictLaw(const Experiment& experiment, Prediction& prediction) {
 
 /// Warns of links on which a lost sample is silence for a tick, with what that costs.
 void WarnOfSilence(const Experiment& experiment, Prediction& prediction) {
-  const double delivered = LeastDeliveredUnheld(experiment);
+  const double delivered = MinDeliveredUnheld(experiment);
   if (delivered == 1) return;
   std::string cost = fmt::format("what is heard counts for {:.3g} of its weight", delivered);
   if (prediction.slowest_rate_per_s && LongestDelayTicks(experiment) == 0) {

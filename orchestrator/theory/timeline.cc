@@ -11,7 +11,7 @@
 namespace mascot {
 namespace {
 
-constexpr int kMostRepeats = 100;  // most repetitions of repeat_s that are tried to get a whole number of ticks
+constexpr int kMaxRepeats = 100;  // most repetitions of repeat_s that are tried to get a whole number of ticks
 
 /// Times within the run at which an agent's law is switched on or off (s).
 std::set<double> SwitchTimes(const Experiment& experiment) {
@@ -28,10 +28,10 @@ void AddTicks(double time_s, int rate_hz, std::set<std::int64_t>& ticks) {
   ticks.insert({before, before + 1});
 }
 
-/// Number of repetitions of the schedule that take a whole number of ticks; 0: none up to kMostRepeats does.
+/// Number of repetitions of the schedule that take a whole number of ticks; 0: none up to kMaxRepeats does.
 int RepeatsPerCycle(const Experiment& experiment) {
   const double ticks = experiment.schedule.repeat_s() * experiment.control.rate_hz;
-  for (int repeats = 1; repeats <= kMostRepeats; ++repeats)
+  for (int repeats = 1; repeats <= kMaxRepeats; ++repeats)
     if (std::abs(repeats * ticks - std::round(repeats * ticks)) < 1e-6 && repeats * ticks > 0.5) return repeats;
   return 0;
 }
@@ -86,7 +86,7 @@ std::optional<Timeline> TimelineOf(const Experiment& experiment) {
     const std::int64_t cycles = *ticks.rbegin() / timeline.cycle_ticks + (*ticks.rbegin() > 0);
     timeline.cycle_from = cycles * timeline.cycle_ticks;
     const std::int64_t repetitions = (cycles + 1) * per_cycle;
-    if (static_cast<double>(repetitions) * static_cast<double>(schedule.phases().size()) > kMostIntervals)
+    if (static_cast<double>(repetitions) * static_cast<double>(schedule.phases().size()) > kMaxIntervals)
       return std::nullopt;
     for (std::int64_t n = 0; n < repetitions; ++n)
       for (const Schedule::Phase& phase : schedule.phases())

@@ -31,9 +31,9 @@ struct Timeline {
 };
 
 /// The timeline of an experiment. Nothing if no small multiple of graph.repeat_s is a whole number of ticks, or if
-/// there are more than kMostIntervals intervals.
+/// there are more than kMaxIntervals intervals.
 std::optional<Timeline> TimelineOf(const Experiment& experiment);
 
-inline constexpr int kMostIntervals = 1000;
+inline constexpr int kMaxIntervals = 1000;
 
 }  // namespace mascot

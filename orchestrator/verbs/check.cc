@@ -39,20 +39,20 @@ Json DelaysJson(const Experiment& experiment) {
   for (const DelayInEffect& delay : DelaysInEffect(experiment))
     delays.push_back({{"key", delay.key},
                       {"asked_s", delay.asked_s},
-                      {"least_s", experiment.time_s(delay.least_ticks)},
-                      {"most_s", experiment.time_s(delay.most_ticks)}});
+                      {"least_s", experiment.time_s(delay.min_ticks)},
+                      {"most_s", experiment.time_s(delay.max_ticks)}});
   return delays;
 }
 
 std::vector<std::string> DelayLines(const Experiment& experiment) {
   std::vector<std::string> lines;
   for (const DelayInEffect& delay : DelaysInEffect(experiment)) {
-    const bool jitters = delay.least_ticks != delay.most_ticks;
+    const bool jitters = delay.min_ticks != delay.max_ticks;
     lines.push_back(fmt::format("{} = {:g} s{} is {}{} ticks, {}{:g} s", delay.key, delay.asked_s,
                                 delay.jitter_s > 0 ? fmt::format(" -+ {:g} s", delay.jitter_s) : "",
-                                jitters ? fmt::format("{} to ", delay.least_ticks) : "", delay.most_ticks,
-                                jitters ? fmt::format("{:g} to ", experiment.time_s(delay.least_ticks)) : "",
-                                experiment.time_s(delay.most_ticks)));
+                                jitters ? fmt::format("{} to ", delay.min_ticks) : "", delay.max_ticks,
+                                jitters ? fmt::format("{:g} to ", experiment.time_s(delay.min_ticks)) : "",
+                                experiment.time_s(delay.max_ticks)));
   }
   return lines;
 }

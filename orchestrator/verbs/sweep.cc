@@ -65,8 +65,8 @@ std::vector<std::string> CommandOf(const SweepArgs& args) {
 
 /// How many tasks a job array has unless told: of a hundred runs each, and no more than clusters usually take.
 std::size_t UsualTasks(std::size_t runs) {
-  constexpr std::size_t kRunsOfATask = 100, kMostTasks = 1000;
-  return std::clamp((runs + kRunsOfATask - 1) / kRunsOfATask, std::size_t{1}, kMostTasks);
+  constexpr std::size_t kRunsOfATask = 100, kMaxTasks = 1000;
+  return std::clamp((runs + kRunsOfATask - 1) / kRunsOfATask, std::size_t{1}, kMaxTasks);
 }
 
 /// Writes the script of a job array, and submits it if asked to.

@@ -47,13 +47,13 @@ void SweepPicture::SetUp(CLI::App& command) {
 }
 
 bool SweepPicture::IsDrawable(const SweepPlan& plan) const {
-  constexpr std::size_t kMostKeys = 2;
+  constexpr std::size_t kMaxKeys = 2;
   if (metric && plan.size() < 2) throw ConfigError({"--plot: expected at least 2 runs to draw, got 1"});
   if (none || plan.size() < 2) return false;
-  if (plan.varied().size() > kMostKeys && metric)
+  if (plan.varied().size() > kMaxKeys && metric)
     throw ConfigError({"--plot: expected at most 2 keys of several values to draw over, got " +
                        std::to_string(plan.varied().size())});
-  return plan.varied().size() <= kMostKeys;
+  return plan.varied().size() <= kMaxKeys;
 }
 
 int SweepPicture::Draw(const std::string& out, const SweepPlan& plan, const SweepIdentity& identity,

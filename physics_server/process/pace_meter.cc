@@ -27,7 +27,7 @@ void PaceMeter::NoteLate(int agent, std::int64_t tick) {
   const auto i = static_cast<std::size_t>(agent - 1);
   if (lasting_.size() <= i) lasting_.resize(i + 1);
   if (lasting_[i].IsOver(tick, EpisodeGapTicks(rate_hz_))) {
-    if (late_.size() < kMostLatesTold) late_.push_back({agent, lasting_[i]});
+    if (late_.size() < kMaxLatesTold) late_.push_back({agent, lasting_[i]});
     lasting_[i] = {};
   }
   lasting_[i].Add(tick);
@@ -38,7 +38,7 @@ std::vector<LateCommands> PaceMeter::Late() const {
   for (std::size_t i = 0; i < lasting_.size(); ++i)
     if (lasting_[i].count > 0) all.push_back({static_cast<int>(i) + 1, lasting_[i]});
   std::ranges::stable_sort(all, {}, [](const LateCommands& late) { return late.ticks.from; });
-  if (all.size() > kMostLatesTold) all.resize(kMostLatesTold);
+  if (all.size() > kMaxLatesTold) all.resize(kMaxLatesTold);
   return all;
 }
 

@@ -167,9 +167,9 @@ TEST(QuadrotorController, WithoutGravityItsLeastThrustAcceleratesIt) {
     e.agents[0].control.inversion = inversion;
     const Airframe& body = e.agents[0].airframe;
     const Eigen::Vector4d idle = WrenchOf(e, First(e, AtStart(e)));
-    EXPECT_NEAR(idle[0], body.LeastThrust(), 1e-9);
+    EXPECT_NEAR(idle[0], body.MinCommandedThrust(), 1e-9);
     EXPECT_NEAR(idle.tail<3>().norm(), 0, 1e-12) << "stays level";
-    const double up = body.LeastThrust() / body.mass_kg;
+    const double up = body.MinCommandedThrust() / body.mass_kg;
     const double pitch_rad = inversion == Inversion::kExact ? std::atan(0.4 / up) : 0.4 / up;
     EXPECT_NEAR(Target(e, {0.4, 0, 0})[1], pitch_rad, 1e-12);
   }

@@ -136,7 +136,7 @@ TEST(SafetyQp, ViolatesInfeasibleHalfSpacesByTheLeastAndTheBoxNotAtAll) {
   int infeasible = 0;
   for (std::uint64_t seed = 0; seed < 10000; ++seed) {
     const RandomProblem problem(seed);
-    const LeastViolation found = NearestWithin(problem.halves, problem.box, problem.wanted);
+    const MinViolation found = NearestWithin(problem.halves, problem.box, problem.wanted);
     if (const auto nearest = NearestIn(problem.halves, problem.wanted)) {
       ASSERT_EQ(found.violation, 0);
       ASSERT_EQ(found.u, *nearest);

@@ -61,16 +61,16 @@ Experiment Read(const std::string& toml) { return LoadExperiment(Section::FromTe
 double Distance_m(const IdealTeam& team, int i, int j) { return (team.p_W(i) - team.p_W(j)).norm(); }
 
 /// The smallest distance between two agents over all ticks of ideal bodies.
-double LeastDistance_m(const std::string& toml) {
+double MinDistance_m(const std::string& toml) {
   const Experiment experiment = Read(toml);
   IdealTeam team(experiment);
-  double least_m = Distance_m(team, 1, 2);
+  double min_m = Distance_m(team, 1, 2);
   for (std::int64_t tick = 0; tick < experiment.ticks(); ++tick) {
     team.Step();
     for (int i = 1; i <= experiment.size(); ++i)
-      for (int j = 1; j < i; ++j) least_m = std::min(least_m, Distance_m(team, i, j));
+      for (int j = 1; j < i; ++j) min_m = std::min(min_m, Distance_m(team, i, j));
   }
-  return least_m;
+  return min_m;
 }
 
 // --- driven by velocity -----------------------------------------------------------------------------------
@@ -99,7 +99,7 @@ TEST(SafetyOfVelocities, KeepsTheDistanceAndTheRateOfEveryPairInACrowd) {
     for (std::size_t k = 0; k < places.size(); k += 2) places[k].z() = 4;
     const Experiment experiment = Read(TeamOf("single_integrator", places, kMeet + axes + Safety(1, 2)));
     IdealTeam team(experiment);
-    double least_m = 10;
+    double min_m = 10;
     for (int tick = 0; tick < 400; ++tick) {
       std::vector<double> before;
       const auto each = [&](auto visit) {
@@ -110,12 +110,12 @@ TEST(SafetyOfVelocities, KeepsTheDistanceAndTheRateOfEveryPairInACrowd) {
       team.Step();
       std::size_t pair = 0;
       each([&](const Eigen::Vector3d& dp) {
-        least_m = std::min(least_m, dp.norm());
+        min_m = std::min(min_m, dp.norm());
         ASSERT_GE(dp.squaredNorm() - 1, (1 - 2 * experiment.period_s()) * before[pair++] - 1e-9) << tick;
       });
     }
-    EXPECT_GE(least_m, 1 - 1e-9);
-    EXPECT_LT(least_m, 1.01) << "they were held back, and no more than needed";
+    EXPECT_GE(min_m, 1 - 1e-9);
+    EXPECT_LT(min_m, 1.01) << "they were held back, and no more than needed";
   }
 }
 
@@ -144,10 +144,10 @@ TEST(SafetyOfVelocities, IsPredictedAndMeasured) {
 
 TEST(SafetyOfVelocities, FiltersTheIntegralOfALawThatWantsAccelerations) {
   const PlaceList places = {{0, 0, 2}, {6, 0, 2}};
-  EXPECT_LT(LeastDistance_m(TeamOf("single_integrator", places, kMeetByForce)), 0.1);
-  const double least_m = LeastDistance_m(TeamOf("single_integrator", places, kMeetByForce + Safety(1)));
-  EXPECT_GE(least_m, 1 - 1e-9);
-  EXPECT_LT(least_m, 1.01);
+  EXPECT_LT(MinDistance_m(TeamOf("single_integrator", places, kMeetByForce)), 0.1);
+  const double min_m = MinDistance_m(TeamOf("single_integrator", places, kMeetByForce + Safety(1)));
+  EXPECT_GE(min_m, 1 - 1e-9);
+  EXPECT_LT(min_m, 1.01);
 }
 
 TEST(SafetyOfVelocities, LeadsAgentsThatStartTooCloseApart) {
@@ -201,9 +201,9 @@ TEST(SafetyOfAccelerations, BrakesInTimeFromAnySpeedThatCanBeStopped) {
       ASSERT_TRUE(prediction && prediction->min_separation_m) << prediction->silent;
       EXPECT_NEAR(*prediction->min_separation_m, D - dip_m, 1e-9);
       EXPECT_EQ(prediction->assumes, "");
-      const double least_m = LeastDistance_m(toml);
-      EXPECT_GE(least_m, D - dip_m - 1e-9) << rate_hz << " Hz, " << share;
-      EXPECT_LT(least_m, D + 0.05) << rate_hz << " Hz, " << share;
+      const double min_m = MinDistance_m(toml);
+      EXPECT_GE(min_m, D - dip_m - 1e-9) << rate_hz << " Hz, " << share;
+      EXPECT_LT(min_m, D + 0.05) << rate_hz << " Hz, " << share;
     }
   }
 }
@@ -221,9 +221,9 @@ TEST(SafetyOfAccelerations, KeepsPairsApartThatPassEachOtherInEveryDirection) {
                                     "", "velocity_m_per_s = [" + velocities + "]\n", 5);
     const auto prediction = PredictSafety(Read(toml));
     if (!prediction || !prediction->min_separation_m) continue;  // some start too fast to stop
-    const double least_m = LeastDistance_m(toml);
-    EXPECT_GE(least_m, *prediction->min_separation_m - 1e-6) << "flight " << flight;
-    close += least_m < 1.1;
+    const double min_m = MinDistance_m(toml);
+    EXPECT_GE(min_m, *prediction->min_separation_m - 1e-6) << "flight " << flight;
+    close += min_m < 1.1;
   }
   EXPECT_GT(close, 20);
 }
@@ -240,9 +240,9 @@ TEST(SafetyOfAccelerations, AlwaysFindsASafeCommandForTwo) {
 }
 
 TEST(SafetyOfAccelerations, FiltersTheAccelerationThatAVelocityMeans) {
-  const double least_m = LeastDistance_m(TeamOf("double_integrator", {{0, 0, 2}, {6, 0, 2}}, kMeet + Safety(1)));
-  EXPECT_GE(least_m, 1 - 6e-4 / 8 - 1e-9);
-  EXPECT_LT(least_m, 1.05);
+  const double min_m = MinDistance_m(TeamOf("double_integrator", {{0, 0, 2}, {6, 0, 2}}, kMeet + Safety(1)));
+  EXPECT_GE(min_m, 1 - 6e-4 / 8 - 1e-9);
+  EXPECT_LT(min_m, 1.05);
 }
 
 TEST(SafetyOfAccelerations, SharesTheBrakingByWhatEachAgentCan) {
@@ -310,8 +310,8 @@ TEST(Safety, IsAroundLawsOfPythonAndOfLibraries) {
   const std::string library = "name = 'plugin'\nlibrary = '" MASCOT_BINARY_DIR "/tests/plugins/libmirror.so'\n";
   for (const std::string& law : {python, library}) {
     const PlaceList places = {{0, 0, 2}, {5, 0, 2}};
-    const double without_m = LeastDistance_m(TeamOf("single_integrator", places, law, "", "", 5));
-    const double with_m = LeastDistance_m(TeamOf("single_integrator", places, law + Safety(2), "", "", 5));
+    const double without_m = MinDistance_m(TeamOf("single_integrator", places, law, "", "", 5));
+    const double with_m = MinDistance_m(TeamOf("single_integrator", places, law + Safety(2), "", "", 5));
     EXPECT_LT(without_m, 1.5) << law;
     EXPECT_GE(with_m, 2 - 1e-9) << law;
   }

@@ -166,7 +166,7 @@ inline std::vector<Eigen::Vector4d> Commanded(const Stack& stack, const Flight& 
   const double g = flight.experiment.physics.gravity_m_per_s2, T = flight.T(), m = body.mass_kg;
   const auto pd = [](const PdGains& gains, double error, double rate) { return gains.kp * error + gains.kd * rate; };
   const auto turn = [&](double target, double angle, double rate) {
-    const double most = Airframe::kMostTurnRate * stack.attitude.kd;
+    const double most = Airframe::kMaxTurnRate * stack.attitude.kd;
     return std::clamp(stack.attitude.kp * (target - angle), -most, most) - stack.attitude.kd * rate;
   };
   Eigen::Vector3d p_ref = flight.at(id, 0).p_WB, v_ref = flight.at(id, 0).v_WB;

@@ -88,10 +88,10 @@ TEST(Obstacles, NoPointOfABodyIsNearerThanItsNearest) {
     const std::vector<Eigen::Vector3d> points = PointsOf(obstacle);
     for (int n = 0; n < 20; ++n) {
       const Eigen::Vector3d p_W = Somewhere(random);
-      double least_m = std::numeric_limits<double>::infinity();
-      for (const Eigen::Vector3d& point : points) least_m = std::min(least_m, (point - p_W).norm());
-      EXPECT_LE(DistanceTo(obstacle, p_W), least_m + 1e-12);
-      EXPECT_NEAR(DistanceTo(obstacle, p_W), least_m, 0.1) << "as near as the grid is fine";
+      double min_m = std::numeric_limits<double>::infinity();
+      for (const Eigen::Vector3d& point : points) min_m = std::min(min_m, (point - p_W).norm());
+      EXPECT_LE(DistanceTo(obstacle, p_W), min_m + 1e-12);
+      EXPECT_NEAR(DistanceTo(obstacle, p_W), min_m, 0.1) << "as near as the grid is fine";
     }
   }
 }
@@ -101,10 +101,10 @@ TEST(Obstacles, AWayComesAsNearAsItsNearestPoint) {
   for (const Obstacle& obstacle : {kBox, kSphere, kCylinder})
     for (int n = 0; n < 50; ++n) {
       const Eigen::Vector3d a_W = Somewhere(random), b_W = Somewhere(random);
-      double least_m = std::numeric_limits<double>::infinity();
-      for (int k = 0; k <= 1000; ++k) least_m = std::min(least_m, DistanceTo(obstacle, a_W + k / 1000.0 * (b_W - a_W)));
-      EXPECT_LE(DistanceOfWay_m(obstacle, a_W, b_W), least_m + 1e-9);
-      EXPECT_NEAR(DistanceOfWay_m(obstacle, a_W, b_W), least_m, (b_W - a_W).norm() / 2000 + 1e-9);
+      double min_m = std::numeric_limits<double>::infinity();
+      for (int k = 0; k <= 1000; ++k) min_m = std::min(min_m, DistanceTo(obstacle, a_W + k / 1000.0 * (b_W - a_W)));
+      EXPECT_LE(DistanceOfWay_m(obstacle, a_W, b_W), min_m + 1e-9);
+      EXPECT_NEAR(DistanceOfWay_m(obstacle, a_W, b_W), min_m, (b_W - a_W).norm() / 2000 + 1e-9);
     }
   EXPECT_NEAR(DistanceOfWay_m(kSphere, {-9, 0, 2}, {9, 0, 2}), 0, 1e-12) << "through it";
   EXPECT_NEAR(DistanceOfWay_m(kSphere, {-9, 4, 2}, {9, 4, 2}), 2.5, 1e-9) << "past it";
@@ -126,9 +126,9 @@ TEST(Obstacles, AreAsFarApartAsTheirNearestPoints) {
       << "of the plane of a turned face";
   wall.p_W = {40, 0, 0};
   wall.size_m = {1, 2, 2};
-  double least_m = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& point : PointsOf(wall)) least_m = std::min(least_m, DistanceTo(kBox, point));
-  EXPECT_NEAR(Distance_m(wall, kBox), least_m, 1e-6) << "of two boxes: a corner is among the points";
+  double min_m = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& point : PointsOf(wall)) min_m = std::min(min_m, DistanceTo(kBox, point));
+  EXPECT_NEAR(Distance_m(wall, kBox), min_m, 1e-6) << "of two boxes: a corner is among the points";
 }
 
 TEST(RangeSensor, SeesTheNearestPointOfEachObstacleInRangeInTheirOrder) {

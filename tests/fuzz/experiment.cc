@@ -8,7 +8,7 @@
 namespace mascot {
 namespace {
 
-constexpr int kMostAgents = 40;  // more take long, and are no other code
+constexpr int kMaxAgentsFuzzed = 40;  // more take long, and are no other code
 
 class LawsWithoutCode final : public LawCatalog {
  public:
@@ -38,7 +38,7 @@ Experiment Read(const std::string& text) {
 bool IsLarge(const std::string& text) {
   Section document = Section::FromText(text, "fuzz.toml");
   document.Use(ExperimentKeys());
-  return document.Child("agents").Integer("count") > kMostAgents;
+  return document.Child("agents").Integer("count") > kMaxAgentsFuzzed;
 }
 
 void FuzzExperiment(const std::string& text) try {

@@ -22,7 +22,7 @@
 namespace mascot {
 namespace {
 
-constexpr int kMostAgents = 100;  // of the attached experiment; more take long, and are no other code
+constexpr int kMaxAgentsFuzzed = 100;  // of the attached experiment; more take long, and are no other code
 
 /// A file in memory, with a name.
 class MemoryFile {
@@ -97,7 +97,7 @@ void FuzzRecording(std::span<const std::uint8_t> bytes) {
   RecordingPlan plan;
   InWords([&] { plan = PlanOf(contents, "fuzz.mcap"); });
   Prove(contents, plan).End(plan.ticks);
-  if (plan.agents == 0 || plan.agents > kMostAgents) return;
+  if (plan.agents == 0 || plan.agents > kMaxAgentsFuzzed) return;
   InWords([&] { ReadRows(file.path()); });
   InWords([&] { ReadSomeRows(file.path()); });
   InWords([&] { RecoverTo(target, file.path(), messages.size()); });

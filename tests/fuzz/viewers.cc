@@ -54,7 +54,7 @@ class FuzzedServer final : public Foxglove::Host {
 
   void Take(bool is_text, std::span<const std::uint8_t> message) {
     foxglove_.OnMessage(kClient, is_text, message);
-    Require(replies_.size() <= Foxglove::kMostQuestions, "too many questions");
+    Require(replies_.size() <= Foxglove::kMaxQuestions, "too many questions");
     for (bool granted = true; !replies_.empty(); granted = !granted) {
       const Foxglove::Reply reply = std::move(replies_.back());
       replies_.pop_back();

@@ -11,8 +11,8 @@
 namespace mascot {
 namespace {
 
-constexpr double kLeastEigenvalue = 1e-7;  // of a mean one of 1
-constexpr int kMostNewtonSteps = 2000;
+constexpr double kMinEigenvalue = 1e-7;  // of a mean one of 1
+constexpr int kMaxNewtonSteps = 2000;
 
 /// Orthonormal columns that are orthogonal to `a`, which is not 0.
 Eigen::MatrixXd Across(const Eigen::VectorXd& a) {
@@ -58,7 +58,7 @@ class Barrier {
 DefiniteMatrix MostDefinite(const Eigen::MatrixXd& basis, Eigen::Index size) {
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(size, size);
   if (basis.cols() == 0) return {.found = std::nullopt, .none = true};
-  if (basis.cols() > kMostCombined) return {};
+  if (basis.cols() > kMaxCombined) return {};
   const Eigen::VectorXd traces = basis.transpose() * identity.reshaped();
   const auto m = static_cast<double>(size);
   if (traces.norm() < 1e-12 * basis.norm()) return {.found = std::nullopt, .none = true};  // all have the trace 0
@@ -69,12 +69,12 @@ DefiniteMatrix MostDefinite(const Eigen::MatrixXd& basis, Eigen::Index size) {
 
   double t = SymmetricEigenvalues(x).minCoeff() - 1, mu = 1, decrement = 0;
   Barrier barrier(x - t * identity, std::move(directions));
-  for (int step = 0; step < kMostNewtonSteps; ++step) {
+  for (int step = 0; step < kMaxNewtonSteps; ++step) {
     t += barrier.Step(mu, decrement);
     if (!std::isfinite(t)) return {};
     if (decrement > 1e-3) continue;
-    if (t > kLeastEigenvalue && m * mu < 0.1 * t) return {.found = barrier.s() + t * identity, .none = false};
-    if (t + 2 * m * mu < kLeastEigenvalue) return {.found = std::nullopt, .none = true};
+    if (t > kMinEigenvalue && m * mu < 0.1 * t) return {.found = barrier.s() + t * identity, .none = false};
+    if (t + 2 * m * mu < kMinEigenvalue) return {.found = std::nullopt, .none = true};
     mu /= 5;
   }
   return {};

@@ -6,7 +6,7 @@
 namespace mascot {
 
 /// Above this many matrices, no positive definite one is sought among their combinations.
-inline constexpr Eigen::Index kMostCombined = 300;
+inline constexpr Eigen::Index kMaxCombined = 300;
 
 struct DefiniteMatrix {
   std::optional<Eigen::MatrixXd> found;

@@ -14,7 +14,7 @@
 namespace mascot {
 namespace {
 
-constexpr int kFewSteps = 200, kMostSteps = 20000;
+constexpr int kFewSteps = 200, kManySteps = 20000;
 constexpr double kZeroEigenvalue = 1e-12;  // of a Gram matrix, as a share of its largest one
 
 /// Points about their mean, with coordinates of at most 1, and a last column of ones: [p 1].
@@ -88,7 +88,7 @@ StressMatrix StressMatrixOf(std::span<const Bar> bars, std::span<const Eigen::Ve
   // the X sought differ little. Else it is found, or found missing, by a method that is slow where stresses are many.
   Eigen::MatrixXd x = Eigen::MatrixXd::Identity(q.cols(), q.cols());
   DefiniteMatrix best;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kManySteps; ++step) {
     if (step == kFewSteps && (best = MostDefinite(basis, q.cols())).none) return {.omega = std::nullopt, .none = true};
     x.reshaped() = basis * Solve(gram, basis.transpose() * x.reshaped());
     const SymmetricEigensystem system = SymmetricEigensystemOf(x);
@@ -121,9 +121,9 @@ Eigen::MatrixXd ReadStressMatrix(const Experiment& experiment, std::span<const E
   if (section.Wrong("") || experiment.graph.size() != agents) return none;
   CheckSpan(places_W, leaders, axes, section);
   if (section.Wrong("leaders")) return none;
-  if (agents > kMostAgentsOfStress) {
+  if (agents > kMaxAgentsOfStress) {
     section.Fail("name",
-                 fmt::format("expected at most {} agents, for a stress matrix, got {}", kMostAgentsOfStress, agents));
+                 fmt::format("expected at most {} agents, for a stress matrix, got {}", kMaxAgentsOfStress, agents));
     return none;
   }
   if (!experiment.graph.IsSymmetric()) {

@@ -9,7 +9,7 @@
 namespace mascot {
 
 /// Above this many agents no stress matrix is sought.
-inline constexpr int kMostAgentsOfStress = 60;
+inline constexpr int kMaxAgentsOfStress = 60;
 
 /// Whether points span the plane, or space: three that are not on a line, or four that are not in a plane.
 bool Span(std::span<const Eigen::Vector3d> points, Axes axes);

@@ -22,20 +22,20 @@ double Balance_m(const Repulsion& repulsion, double speed) {
 }
 
 /// The least speed away from an obstacle that the law wants where the obstacle pushes with `push`.
-double LeastAway(double push, double speed) {
+double MinAway(double push, double speed) {
   if (push < speed) return push - speed;
   return std::min(push - speed, speed * std::sqrt(1 - speed * speed / (push * push)));
 }
 
 /// The least clearance of a body that approaches an obstacle from `start_m` away, with `speed` at first. The body's
 /// velocity follows, at the rate `k` (1/s), what its law wanted one tick (`h`, in s) before.
-double LeastOfApproach_m(const Repulsion& repulsion, double start_m, double speed, double k, double h) {
+double MinOfApproach_m(const Repulsion& repulsion, double start_m, double speed, double k, double h) {
   constexpr int kMaxSteps = 1'000'000;
   constexpr double kAtRest = 1e-6;  // m/s
   const double dt = std::min(0.01 / k, 1e-3 * repulsion.reach / speed);
   double c = start_m, y = speed;
   for (int n = 0; n < kMaxSteps && y > kAtRest && c > 0; ++n) {
-    const double away = LeastAway(repulsion.Push(c + speed * h), speed);
+    const double away = MinAway(repulsion.Push(c + speed * h), speed);
     c -= dt * std::clamp(y, 0.0, speed);     // the speed falls: that at the begin of a step takes too much
     y = (y - dt * k * away) / (1 + dt * k);  // and this leaves too much: exp(-x) < 1 / (1 + x)
   }
@@ -62,9 +62,9 @@ std::string WhyNotOf(const AgentConfig& agent, double speed, double period_s) {
 std::optional<double> Clearance_m(const AgentConfig& agent, const Eigen::Vector3d& p_W,
                                   const std::vector<Obstacle>& obstacles) {
   if (obstacles.empty()) return std::nullopt;
-  double least_m = std::numeric_limits<double>::infinity();
-  for (const Obstacle& obstacle : obstacles) least_m = std::min(least_m, (NearestPoint_W(obstacle, p_W) - p_W).norm());
-  return least_m - agent.radius_m();
+  double min_m = std::numeric_limits<double>::infinity();
+  for (const Obstacle& obstacle : obstacles) min_m = std::min(min_m, (NearestPoint_W(obstacle, p_W) - p_W).norm());
+  return min_m - agent.radius_m();
 }
 
 std::string ClearanceBound::WhyNot(const Experiment& experiment) const {
@@ -87,10 +87,10 @@ std::string ClearanceBound::WhyNot(const Experiment& experiment) const {
 }
 
 PredictedFigure ClearanceBound::Predicted(const Experiment& experiment) const {
-  double least_m = std::numeric_limits<double>::infinity();
-  for (const AgentConfig& agent : experiment.agents) least_m = std::min(least_m, Least_m(experiment, agent));
-  if (least_m <= 0) return NotPredicted("the bound is not above 0: an agent may touch an obstacle");
-  return {.values = {least_m},
+  double min_m = std::numeric_limits<double>::infinity();
+  for (const AgentConfig& agent : experiment.agents) min_m = std::min(min_m, Least_m(experiment, agent));
+  if (min_m <= 0) return NotPredicted("the bound is not above 0: an agent may touch an obstacle");
+  return {.values = {min_m},
           .bound = Bound::kAtLeast,
           .magnitude = LargestStart_m(experiment) + speed * experiment.run.duration_s};
 }
@@ -99,8 +99,8 @@ double ClearanceBound::Least_m(const Experiment& experiment, const AgentConfig& 
   const Repulsion repulsion{.gain = gain, .reach = influence_m - agent.radius_m()};
   const double start_m = Clearance_m(agent, agent.p_W, experiment.physics.obstacles).value_or(repulsion.reach);
   if (agent.traits().driven_by == Wanted::kVelocity) return std::min(start_m, Balance_m(repulsion, speed));
-  return LeastOfApproach_m(repulsion, std::min(start_m, repulsion.reach), speed, agent.control.velocity_gain,
-                           experiment.period_s());
+  return MinOfApproach_m(repulsion, std::min(start_m, repulsion.reach), speed, agent.control.velocity_gain,
+                         experiment.period_s());
 }
 
 }  // namespace mascot

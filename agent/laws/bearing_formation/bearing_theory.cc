@@ -72,7 +72,7 @@ std::vector<std::string> BearingWarnings(const Experiment& experiment, std::span
 
 LawTheory PredictBearingFormation(const Experiment& experiment) {
   if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty()) return {.silent = std::move(why)};
-  if (experiment.size() > kMostAgentsOfRigidity) return {.silent = "the team is large: its rigidity is not checked"};
+  if (experiment.size() > kMaxAgentsOfRigidity) return {.silent = "the team is large: its rigidity is not checked"};
   const std::vector<Eigen::Vector3d> starts_W = StartsOf(experiment);
   const double start_m = ScaleOf(starts_W, experiment.law.axes);
   if (start_m == 0) return {.silent = "all agents start at one place, from which there are no directions"};

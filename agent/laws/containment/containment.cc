@@ -93,7 +93,7 @@ std::shared_ptr<const LawParams> ReadContainment(const Experiment& experiment, c
 LawTheory PredictContainment(const Experiment& experiment) {
   const auto& params = ParamsOf<ContainmentParams>(experiment.law);
   if (std::string why = WhyNotIdeal(experiment, Wanted::kVelocity); !why.empty()) return {.silent = std::move(why)};
-  if (experiment.size() > kMostAgentsOfMatrices) return {.silent = "the team is large"};
+  if (experiment.size() > kMaxAgentsOfMatrices) return {.silent = "the team is large"};
   if (params.gain == 0) return {.silent = "with gain = 0 followers stay where they are"};
   const Eigen::MatrixXd laplacian = experiment.graph.Laplacian();
   const Eigen::MatrixXd l_FF = BlockOf(laplacian, params.team.followers, params.team.followers);
@@ -108,7 +108,7 @@ LawTheory PredictContainment(const Experiment& experiment) {
 class ContainmentMeter final : public LawMeter {
  public:
   ContainmentMeter(const Experiment& experiment, std::span<const int> ids) : law_(experiment.agent(ids.front()).law) {
-    if (experiment.size() <= kMostAgentsOfMatrices) shares_ = SharesOfLeaders(experiment.graph.Laplacian(), team());
+    if (experiment.size() <= kMaxAgentsOfMatrices) shares_ = SharesOfLeaders(experiment.graph.Laplacian(), team());
   }
   void Add(const TeamRow& row) override {
     if (shares_.size() > 0) lag_m_ = LargestLag(team(), shares_, law_.axes, row.motions);

@@ -32,7 +32,7 @@ std::optional<FlownLag> FlyToPlaces(const Experiment& experiment, const LedTeam&
   constexpr double kSettledShare = 0.02, kThere = 1e-12;
   const Axes axes = experiment.law.axes;
   const std::vector<FollowersEdge> edges = EdgesOfFollowers(experiment.graph, team);
-  const double most = kMostFlownFollowers / static_cast<double>(edges.size() + team.followers.size());
+  const double most = kMaxFlownFollowers / static_cast<double>(edges.size() + team.followers.size());
   if (static_cast<double>(experiment.ticks()) > most) return std::nullopt;
   const double step = experiment.period_s() * gain;
   Eigen::MatrixX3d d = StartsOf(experiment, team.followers) - shares * StartsOf(experiment, team.leaders) + lag;

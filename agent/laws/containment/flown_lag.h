@@ -16,10 +16,10 @@ struct FlownLag {
 };
 /// Followers want v_i = gain sum_j a_ij (p_j - p_i). `shares` has their places among the leaders, and `lag` how far
 /// behind these they end (m), one row for each follower. The flight goes on beyond the end of the run until the
-/// followers have settled. Nothing if the run alone is more work than kMostFlownFollowers.
+/// followers have settled. Nothing if the run alone is more work than kMaxFlownFollowers.
 std::optional<FlownLag> FlyToPlaces(const Experiment& experiment, const LedTeam& team, double gain,
                                     const Eigen::MatrixXd& shares, const Eigen::MatrixX3d& lag);
 
-inline constexpr double kMostFlownFollowers = 2e7;  ///< agents and edges times ticks
+inline constexpr double kMaxFlownFollowers = 2e7;  ///< agents and edges times ticks
 
 }  // namespace mascot

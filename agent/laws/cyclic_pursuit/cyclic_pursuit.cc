@@ -44,7 +44,7 @@ constexpr Key kCyclicPursuitParameters[] = {
         .Live(),
 };
 
-constexpr double kMostRounded = 1e-3;  // share of a turn that may be rounding, beyond 1e-6 rad/s
+constexpr double kMaxRounded = 1e-3;  // share of a turn that may be rounding, beyond 1e-6 rad/s
 
 int NextOf(int id, int agents) { return id == agents ? 1 : id + 1; }
 
@@ -100,7 +100,7 @@ LawTheory PredictCyclicPursuit(const Experiment& experiment) {
   const double off_m = RoundingShare(experiment) * SizeOfStart_m(experiment);
   PredictedFigure turn_rate{.values = {turn_rate_rad_per_s},
                             .magnitude = SizeOfStart_m(experiment) / radius_m / experiment.period_s()};
-  if (off_m / (radius_m * experiment.period_s()) > 1e-6 + kMostRounded * std::abs(turn_rate_rad_per_s))
+  if (off_m / (radius_m * experiment.period_s()) > 1e-6 + kMaxRounded * std::abs(turn_rate_rad_per_s))
     turn_rate = NotPredicted("agents are together by the end, and rounding decides where each of them is");
   LawTheory theory{.figures = {{.values = {radius_m}},
                                {.values = {radius_m / start_m}, .magnitude = SizeOfStart_m(experiment) / start_m},

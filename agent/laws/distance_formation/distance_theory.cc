@@ -93,7 +93,7 @@ LawTheory PredictIdealDistances(const Experiment& experiment, std::span<const Ba
 
 LawTheory PredictDistanceFormation(const Experiment& experiment) {
   if (!experiment.graph.IsSymmetric()) return {.silent = "the closed forms are of undirected graphs"};
-  if (experiment.size() > kMostAgentsOfRigidity) return {.silent = "the team is large: its rigidity is not checked"};
+  if (experiment.size() > kMaxAgentsOfRigidity) return {.silent = "the team is large: its rigidity is not checked"};
   const std::vector<Bar> bars = BarsOf(experiment.graph);
   LawTheory theory = PredictIdealDistances(experiment, bars);
   std::vector<std::string> warnings = DistanceStartWarnings(experiment, bars);

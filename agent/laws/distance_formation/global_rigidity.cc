@@ -36,7 +36,7 @@ int RankOfStress(std::span<const Bar> bars, int agents, Axes axes, Random& rando
 }  // namespace
 
 bool IsGloballyRigid(std::span<const Bar> bars, int agents, Axes axes) {
-  if (std::ssize(bars) == agents * (agents - 1) / 2 || agents > kMostAgentsOfGlobalRigidity) return true;
+  if (std::ssize(bars) == agents * (agents - 1) / 2 || agents > kMaxAgentsOfGlobalRigidity) return true;
   Random random(1, Random::Stream::kPositions);
   for (int attempt = 0; attempt < 3; ++attempt)  // a rank that rounding spoils is too small
     if (RankOfStress(bars, agents, axes, random) == agents - CountOf(axes) - 1) return true;

@@ -7,7 +7,7 @@
 namespace mascot {
 
 /// Above this many agents a graph that is not complete counts as globally rigid.
-inline constexpr int kMostAgentsOfGlobalRigidity = 60;
+inline constexpr int kMaxAgentsOfGlobalRigidity = 60;
 
 /// Whether the lengths of a rigid graph fix the shape of generic points, but for mirroring: no other points have the
 /// same lengths. A graph that is rigid but not globally rigid has an agent, or a part, that may be flipped or folded

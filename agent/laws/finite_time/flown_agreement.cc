@@ -92,14 +92,14 @@ std::vector<HeardEdge> EdgesOf(const Graph& graph) {
 }
 
 LawTheory PredictAgreement(const Experiment& experiment, const WantedOfAll& want, double longest_s, double share,
-                           double least_m) {
+                           double min_m) {
   const double each_tick = kFlights * static_cast<double>(experiment.graph.edges() + experiment.agents.size());
-  const double most = kMostFlownEdges / each_tick, h = experiment.period_s();
+  const double most = kMaxFlownEdges / each_tick, h = experiment.period_s();
   if (static_cast<double>(experiment.ticks()) > most)
     return {.silent = "so many agents are not flown ahead for so many ticks"};
   const auto longest = static_cast<std::int64_t>(std::min(most, longest_s * experiment.control.rate_hz));
   const std::vector<int> ids = AgentsWith(EntryOf(experiment.law), experiment);
-  const AgreementTime meter(experiment, ids, share, least_m);
+  const AgreementTime meter(experiment, ids, share, min_m);
   const FlownTeam own = FlyOnce(experiment, want, longest, meter, 0);
   LawTheory theory{.value_m = own.mean_W};
   std::optional<double> time_s = own.time_s;

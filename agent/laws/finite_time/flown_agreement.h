@@ -26,7 +26,7 @@ struct HeardEdge {
 std::vector<HeardEdge> EdgesOf(const Graph& graph);
 
 /// What theory says of a team whose law measures the figures of an AgreementTime, in their order, with the tolerance
-/// that `share` and `least_m` give. The team is flown, with its limits of speed, to the end of the run, and on until it
+/// that `share` and `min_m` give. The team is flown, with its limits of speed, to the end of the run, and on until it
 /// agrees, but for at most `longest_s`: once as it starts, and twice from starts that are off by up to a nanometre,
 /// which shows what rounding decides.
 ///
@@ -34,10 +34,10 @@ std::vector<HeardEdge> EdgesOf(const Graph& graph);
 /// is predicted, a warning says how far apart agents tremble. The predicted distance in the end is at most a tenth,
 /// plus the way of one tick, more than in any flight. The meeting point is the mean of all agents at the end of the
 /// run, or when they are together if the run ends before; nothing, if rounding moves it by more than the tolerance and
-/// the way of one tick. Theory is silent if all this is more work than kMostFlownEdges.
+/// the way of one tick. Theory is silent if all this is more work than kMaxFlownEdges.
 LawTheory PredictAgreement(const Experiment& experiment, const WantedOfAll& want, double longest_s, double share,
-                           double least_m);
+                           double min_m);
 
-inline constexpr double kMostFlownEdges = 2e7;  ///< edges and agents times ticks, of all three flights
+inline constexpr double kMaxFlownEdges = 2e7;  ///< edges and agents times ticks, of all three flights
 
 }  // namespace mascot

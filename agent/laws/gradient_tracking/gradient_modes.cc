@@ -111,7 +111,7 @@ double RoundedError_m(const Experiment& experiment, const std::vector<QuadraticC
 
 GradientApproach ApproachOf(const Experiment& experiment, const std::vector<QuadraticCost>& costs, double step,
                             double radius) {
-  constexpr std::int64_t kMostTicks = 1'000'000;
+  constexpr std::int64_t kMaxTicks = 1'000'000;
   GradientErrors errors(experiment, costs, step);
   const double first_m = errors.largest_m();
   if (first_m == 0) return {.silent = "all estimates start where the sum of costs is least"};
@@ -119,7 +119,7 @@ GradientApproach ApproachOf(const Experiment& experiment, const std::vector<Quad
     return {.silent = "rounding hides the last part of so small an error so far from the origin"};
   ApproachTicks ticks;
   std::optional<double> rate_per_s;
-  for (std::int64_t tick = 0; tick < kMostTicks; ++tick) {
+  for (std::int64_t tick = 0; tick < kMaxTicks; ++tick) {
     ticks.Add(tick, errors.largest_m());
     rate_per_s = ticks.rate_per_s(experiment.period_s());
     const bool for_good = tick == experiment.ticks() || tick - ticks.last_near() > ticks.last_near() / 4 + 100;

@@ -14,7 +14,7 @@ namespace mascot {
 inline double MetropolisWeight(double d_i, double d_j) { return 1 / (1 + std::max(d_i, d_j)); }
 
 /// Above this many agents, the modes below are not computed.
-inline constexpr int kMostGradientModes = 40;
+inline constexpr int kMaxGradientModes = 40;
 /// The largest |root| of x+ = W x - step y, y+ = W y + Q (x+ - x), except the three roots of sum (y - Q x), which is
 /// constant: the share of an error that remains from tick to tick in the long run.
 double GradientRadius(const Graph& graph, const std::vector<QuadraticCost>& costs, double step);

@@ -103,7 +103,7 @@ LawTheory PredictGradientTracking(const Experiment& experiment) {
   const auto& params = ParamsOf<GradientTrackingParams>(experiment.law);
   if (std::string why = WhyNotAllHeard(experiment); !why.empty()) return {.silent = std::move(why)};
   if (std::string why = WhyNotUndirected(experiment); !why.empty()) return {.silent = std::move(why)};
-  if (experiment.size() > kMostGradientModes) return {.silent = "the modes of so many agents are not computed"};
+  if (experiment.size() > kMaxGradientModes) return {.silent = "the modes of so many agents are not computed"};
   const double radius = GradientRadius(experiment.graph, params.costs, params.step);
   if (radius >= 1)
     return {.silent = kUnstable, .warnings = {UnstableStep(experiment.graph, params.costs, params.step)}};

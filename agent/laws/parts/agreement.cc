@@ -56,10 +56,10 @@ double SquaredDisagreement(std::span<const Motion> motions, std::span<const int>
   return sum;
 }
 
-AgreementTime::AgreementTime(const Experiment& experiment, std::span<const int> ids, double share, double least_m)
+AgreementTime::AgreementTime(const Experiment& experiment, std::span<const int> ids, double share, double min_m)
     : experiment_(experiment),
       ids_(ids.begin(), ids.end()),
-      tolerance_m_(std::max(share * LargestSpread(experiment, ids), least_m)) {}
+      tolerance_m_(std::max(share * LargestSpread(experiment, ids), min_m)) {}
 
 void AgreementTime::Add(const TeamRow& row) {
   newest_ = row.tick;

@@ -27,8 +27,8 @@ double SquaredDisagreement(std::span<const Motion> motions, std::span<const int>
 /// tolerance for good; and how far apart they are in the end.
 class AgreementTime final : public LawMeter {
  public:
-  /// The tolerance is `share` of LargestSpread(), but at least `least_m`.
-  AgreementTime(const Experiment& experiment, std::span<const int> ids, double share, double least_m);
+  /// The tolerance is `share` of LargestSpread(), but at least `min_m`.
+  AgreementTime(const Experiment& experiment, std::span<const int> ids, double share, double min_m);
   void Add(const TeamRow& row) override;
   std::vector<FigureValues> Figures() const override { return {{time_s()}, {band_m_}}; }
   /// The time from which on the agents agree (s); absent: they do not agree in the newest row.

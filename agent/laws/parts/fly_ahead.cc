@@ -10,7 +10,7 @@
 namespace mascot {
 namespace {
 
-constexpr double kMostFlownSteps = 5e6, kDisturbance = 1e-9, kMostGrowth = 1e4, kFarAway_m = 1e9;
+constexpr double kMaxFlownSteps = 5e6, kDisturbance = 1e-9, kMaxGrowth = 1e4, kFarAway_m = 1e9;
 constexpr double kLongerRun = 10;  // at most so many times as long
 
 using Points = std::vector<Eigen::Vector3d>;
@@ -74,7 +74,7 @@ void FlyOn(const Experiment& experiment, const ShapeLaw& law, double rest_m_per_
 FlownAhead FlyAhead(const Experiment& experiment, const ShapeLaw& law) {
   const double pairs = static_cast<double>(experiment.size()) * static_cast<double>(experiment.size());
   const double looks = static_cast<double>(experiment.graph.edges()) + (experiment.physics.collisions ? pairs / 2 : 0);
-  if (looks * static_cast<double>(experiment.ticks()) > kMostFlownSteps)
+  if (looks * static_cast<double>(experiment.ticks()) > kMaxFlownSteps)
     return {.silent = "so many agents are not flown ahead for so many ticks"};
   const double h_s = experiment.period_s();
   FlownAhead ahead{.p_W = StartsOf(experiment)};
@@ -108,13 +108,13 @@ FlownAhead FlyAhead(const Experiment& experiment, const ShapeLaw& law) {
     v_W = law.velocities_W(ahead.p_W);
     settling.Add(tick, law.error(ahead.p_W));
   }
-  if (!(LargestDifference(ahead.p_W, beside_W) <= kMostGrowth * disturbance_m))
+  if (!(LargestDifference(ahead.p_W, beside_W) <= kMaxGrowth * disturbance_m))
     ahead.silent = "the least disturbance decides where the team goes from this start";
   ahead.error = law.error(ahead.p_W);
   if (settling.from()) ahead.settled_s = experiment.time_s(*settling.from());
   if (!ahead.silent.empty() || ahead.settled_s) return ahead;
   const double last =
-      std::min(kMostFlownSteps / std::max(1.0, looks), kLongerRun * static_cast<double>(experiment.ticks()));
+      std::min(kMaxFlownSteps / std::max(1.0, looks), kLongerRun * static_cast<double>(experiment.ticks()));
   constexpr double kRest = 1e-6;  // of the first speed
   FlyOn(experiment, law, kRest * first_m_per_s, static_cast<std::int64_t>(last), ahead);
   return ahead;

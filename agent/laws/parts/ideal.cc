@@ -38,7 +38,7 @@ std::string WhyNotAllHeard(const Experiment& experiment) {
 
 std::string WhyNotUndirected(const Experiment& experiment) {
   if (!experiment.graph.IsSymmetric()) return "the closed forms are of undirected graphs";
-  if (experiment.size() > kMostModes) return "the modes of so many agents are not computed";
+  if (experiment.size() > kMaxModes) return "the modes of so many agents are not computed";
   return experiment.graph.Roots().empty() ? "the graph is not connected" : "";
 }
 

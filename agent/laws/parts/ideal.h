@@ -24,6 +24,6 @@ std::string WhyNotUndirected(const Experiment& experiment);
 std::string WhyNotIdealUndirected(const Experiment& experiment);
 
 /// Above this many agents, eigenvalues are not computed.
-inline constexpr int kMostModes = 1000;
+inline constexpr int kMaxModes = 1000;
 
 }  // namespace mascot

@@ -11,7 +11,7 @@ namespace mascot {
 // Teams in which several agents lead, and the places of the other agents follow from those of the leaders.
 
 /// Above this many agents the matrices below would be too large: theory is silent, and nothing is measured.
-inline constexpr int kMostAgentsOfMatrices = 1000;
+inline constexpr int kMaxAgentsOfMatrices = 1000;
 
 inline constexpr Key kLeadersKey =
     key::Numbers("leaders", {1, kMaxAgents}, "agents that lead: they use nothing of what they hear").Required();

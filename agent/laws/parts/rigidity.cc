@@ -91,7 +91,7 @@ std::string WhyNotRigid(const Experiment& experiment, std::span<const Eigen::Vec
   for (const Bar& bar : bars)
     if (LengthOf(bar, places_W, axes) == 0)
       return fmt::format("expected two places for agents {} and {}, who hear each other, got one", bar.i, bar.j);
-  if (agents > kMostAgentsOfRigidity) return "";
+  if (agents > kMaxAgentsOfRigidity) return "";
   const bool by_lengths = rigidity == Rigidity::kLengths;
   const int rank =
       RankOf(by_lengths ? RigidityMatrix(bars, places_W, axes) : BearingRigidityMatrix(bars, places_W, axes));

@@ -12,7 +12,7 @@ namespace mascot {
 // Frameworks: an undirected graph whose agents have places.
 
 /// Above this many agents no rank is computed.
-inline constexpr int kMostAgentsOfRigidity = 200;
+inline constexpr int kMaxAgentsOfRigidity = 200;
 
 /// A pair of agents that hear each other: i < j.
 struct Bar {
@@ -50,7 +50,7 @@ inline constexpr std::string_view kExpectedUndirected =
 /// What must fix the shape of a framework: its lengths, or its directions.
 enum class Rigidity { kLengths, kBearings };
 /// Notes a mistake in `section`, a law's table without others, unless graph and places suit a law that keeps the shape
-/// by lengths or directions. Ranks are left out above kMostAgentsOfRigidity.
+/// by lengths or directions. Ranks are left out above kMaxAgentsOfRigidity.
 void ExpectRigid(const Experiment& experiment, std::span<const Eigen::Vector3d> places_W, Axes axes, Rigidity rigidity,
                  Section& section);
 

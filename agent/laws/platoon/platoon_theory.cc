@@ -52,7 +52,7 @@ LawTheory PredictPlatoon(const Experiment& experiment) {
   const StringStability string(params.following);
   if (!string.Decays()) return {.silent = "the loop of law.p_gain and law.d_gain does not decay"};
   const double largest = string.LargestGain(), gain = string.Gain(params.w);
-  const std::optional<double> headway_s = string.LeastHeadway_s();
+  const std::optional<double> headway_s = string.MinHeadway_s();
   LawTheory theory;
   if (largest > 1)
     theory.warnings.push_back(fmt::format(

@@ -5,7 +5,7 @@
 namespace mascot {
 namespace {
 
-constexpr double kMostStringSteps = 1e7;  // of one agent: about a second
+constexpr double kMaxStringSteps = 1e7;  // of one agent: about a second
 
 }  // namespace
 
@@ -13,7 +13,7 @@ std::optional<StringAhead> FlyString(const Experiment& experiment, std::span<con
                                      LawMeter& meter) {
   const std::size_t count = laws.size();
   const double h = experiment.period_s();
-  if (static_cast<double>(count) * static_cast<double>(experiment.ticks()) > kMostStringSteps) return std::nullopt;
+  if (static_cast<double>(count) * static_cast<double>(experiment.ticks()) > kMaxStringSteps) return std::nullopt;
   StringAhead ahead;
   std::vector<Motion> motions(count);
   std::vector<Eigen::Vector3d> wanted_W(count);

@@ -10,7 +10,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kMostHeadway_s = 100;
+constexpr double kMaxHeadway_s = 100;
 constexpr double kRounding = 1e-9;  // of the largest gain
 
 /// Calls visit(w) for frequencies from far below all that the loop does up to half the control rate: 2 % apart, and
@@ -67,7 +67,7 @@ StringStability::Point StringStability::At(double w) const {
 // far outside: all its zeros lie within, too, if it turns twice about 0 on the way around the circle (argument
 // principle).
 bool StringStability::Decays() const {
-  constexpr int kMostHalvings = 40;
+  constexpr int kMaxHalvings = 40;
   const auto turn = [this](const auto& self, double from, Complex at_from, double to, Complex at_to,
                            int halvings) -> double {
     const double angle = std::arg(at_to * std::conj(at_from));
@@ -81,7 +81,7 @@ bool StringStability::Decays() const {
   Complex at_before = At(0).below;
   ForEachFrequency(law_, [&](double w) {
     const Complex at_w = At(w).below;
-    turned += turn(turn, before, at_before, w, at_w, kMostHalvings);
+    turned += turn(turn, before, at_before, w, at_w, kMaxHalvings);
     before = w;
     at_before = at_w;
   });
@@ -101,7 +101,7 @@ double StringStability::LargestGain() const {
   return largest <= 1 + kRounding ? 1 : largest;
 }
 
-std::optional<double> StringStability::LeastHeadway_s() const {
+std::optional<double> StringStability::MinHeadway_s() const {
   constexpr int kHalvings = 40;
   const auto is_stable = [this](double headway_s) {
     Following law = law_;
@@ -111,8 +111,8 @@ std::optional<double> StringStability::LeastHeadway_s() const {
   };
   double low = 0, high = 0.1;
   while (!is_stable(high)) {
-    if (high == kMostHeadway_s) return std::nullopt;
-    low = std::exchange(high, std::min(2 * high, kMostHeadway_s));
+    if (high == kMaxHeadway_s) return std::nullopt;
+    low = std::exchange(high, std::min(2 * high, kMaxHeadway_s));
   }
   for (int n = 0; n < kHalvings && high - low > 1e-5 * high; ++n) {
     const double middle = (low + high) / 2;

@@ -29,7 +29,7 @@ class StringStability {
   /// their start.
   double LargestGain() const;
   /// The smallest headway from which on the string is stable; nullopt: not even one of a hundred seconds does it.
-  std::optional<double> LeastHeadway_s() const;
+  std::optional<double> MinHeadway_s() const;
 
  private:
   struct Point {

@@ -9,7 +9,7 @@ namespace mascot {
 namespace {
 
 constexpr double kNoSwing_m_per_s = 1e-9;
-constexpr double kMostChange = 0.01;  // of a swing of the long run, as a share of it
+constexpr double kMaxChange = 0.01;  // of a swing of the long run, as a share of it
 
 /// Which half of what is looked at a tick belongs to: 0, 1, or -1 for neither.
 int HalfOf(std::int64_t tick, const Experiment& experiment, double w) {
@@ -51,7 +51,7 @@ void SwingMeter::Add(const TeamRow& row) {
 std::optional<std::complex<double>> SwingMeter::SwingOf(int id) const {
   const auto& [before, last] = fits_[static_cast<std::size_t>(id - 1)];
   const std::complex<double> swing = last.Swing();
-  const bool settled = std::abs(swing - before.Swing()) <= kMostChange * std::abs(swing);
+  const bool settled = std::abs(swing - before.Swing()) <= kMaxChange * std::abs(swing);
   return settled && std::abs(swing) > kNoSwing_m_per_s ? std::optional(swing) : std::nullopt;
 }
 

@@ -21,7 +21,7 @@ Graph StiffnessAtStart(const Experiment& experiment, const Tension& tension) {
 
 namespace {
 
-constexpr double kMostEdgesFlown = 5e6;  // times ticks
+constexpr double kMaxEdgesFlown = 5e6;  // times ticks
 
 /// The diagonal of the box around `points`, which no two of them are farther apart than (m).
 double Diagonal_m(const std::vector<Eigen::Vector3d>& points) {
@@ -47,7 +47,7 @@ std::optional<bool> KeepsEveryEdge(const Experiment& experiment, const Tension& 
     if (diagonal_m < tension.range_m - tension.margin_m &&
         h * tension.Stiffness(diagonal_m) * (experiment.size() - 1) <= 1)
       return true;
-    if ((steps += static_cast<double>(experiment.graph.edges())) > kMostEdgesFlown) return std::nullopt;
+    if ((steps += static_cast<double>(experiment.graph.edges())) > kMaxEdgesFlown) return std::nullopt;
     std::ranges::fill(v_W, Eigen::Vector3d::Zero());
     for (int i = 1; i <= experiment.size(); ++i)
       for (const Graph::Neighbour& j : experiment.graph.HeardBy(i)) {

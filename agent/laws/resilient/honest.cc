@@ -26,7 +26,7 @@ std::pair<int, std::size_t> MaxLiarsHeard(const Experiment& experiment) {
 }
 
 std::vector<std::string> RobustnessWarnings(std::optional<int> robustness, int f) {
-  if (!robustness) return {fmt::format("graph: its robustness is not checked: beyond {} agents", kMostRobustness)};
+  if (!robustness) return {fmt::format("graph: its robustness is not checked: beyond {} agents", kMaxRobustness)};
   if (*robustness <= f)
     return {
         fmt::format("graph: {}-robust: {} that lie can keep honest agents apart; they agree on every {}-robust graph",
@@ -42,8 +42,8 @@ InitialHull::InitialHull(const Experiment& experiment, std::span<const int> ids)
   for (const int id : ids) {
     const AgentConfig& agent = experiment.agent(id);
     if (agent.lie) continue;
-    least_W_ = ids_.empty() ? agent.p_W : least_W_.cwiseMin(agent.p_W).eval();
-    most_W_ = ids_.empty() ? agent.p_W : most_W_.cwiseMax(agent.p_W).eval();
+    min_W_ = ids_.empty() ? agent.p_W : min_W_.cwiseMin(agent.p_W).eval();
+    max_W_ = ids_.empty() ? agent.p_W : max_W_.cwiseMax(agent.p_W).eval();
     ids_.push_back(id);
   }
 }
@@ -51,14 +51,14 @@ InitialHull::InitialHull(const Experiment& experiment, std::span<const int> ids)
 void InitialHull::Add(const TeamRow& row) {
   if (ids_.empty()) return;
   const auto p_W = [&](int id) -> const Eigen::Vector3d& { return row.motions[static_cast<std::size_t>(id - 1)].p_WB; };
-  Eigen::Vector3d least_W = p_W(ids_.front()), most_W = least_W;
+  Eigen::Vector3d min_W = p_W(ids_.front()), max_W = min_W;
   for (const int id : ids_) {
-    least_W = least_W.cwiseMin(p_W(id));
-    most_W = most_W.cwiseMax(p_W(id));
+    min_W = min_W.cwiseMin(p_W(id));
+    max_W = max_W.cwiseMax(p_W(id));
   }
-  const Eigen::Vector3d outside = (least_W_ - least_W).cwiseMax(most_W - most_W_);
+  const Eigen::Vector3d outside = (min_W_ - min_W).cwiseMax(max_W - max_W_);
   outside_m_ = std::max(outside_m_, Along(axes_, outside).maxCoeff());
-  apart_m_ = Along(axes_, most_W - least_W).maxCoeff();
+  apart_m_ = Along(axes_, max_W - min_W).maxCoeff();
 }
 
 std::optional<double> InitialHull::outside_m() const {

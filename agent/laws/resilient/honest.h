@@ -34,7 +34,7 @@ class InitialHull {
  private:
   std::vector<int> ids_;  // of honest agents
   Axes axes_;
-  Eigen::Vector3d least_W_ = Eigen::Vector3d::Zero(), most_W_ = Eigen::Vector3d::Zero();  // of the starts
+  Eigen::Vector3d min_W_ = Eigen::Vector3d::Zero(), max_W_ = Eigen::Vector3d::Zero();  // of the starts
   double outside_m_ = 0, apart_m_ = 0;
 };
 

@@ -102,8 +102,8 @@ namespace {
 
 /// When one agent is there.
 std::optional<double> ThereAfter(const Experiment& experiment, const AgentConfig& agent, const WaypointParams& params) {
-  constexpr std::int64_t kTimesTheRun = 64, kMostTicks = 200'000;
-  const std::int64_t most = std::max(experiment.ticks(), std::min(kTimesTheRun * experiment.ticks(), kMostTicks));
+  constexpr std::int64_t kTimesTheRun = 64, kMaxTicks = 200'000;
+  const std::int64_t most = std::max(experiment.ticks(), std::min(kTimesTheRun * experiment.ticks(), kMaxTicks));
   for (std::int64_t ticks = experiment.ticks(); ticks <= most; ticks *= 2) {
     const std::optional<WaypointTrack> track = IdealTrack(experiment, agent, params, ticks);
     if (!track) return std::nullopt;

@@ -15,7 +15,7 @@ namespace {
 constexpr double kDense = 10;
 // Agent processes on one host. The ports of one DDS domain suffice for 120 participants, which include the physics
 // server, the orchestrator and the discovery server.
-constexpr std::ptrdiff_t kMostProcesses = 110;
+constexpr std::ptrdiff_t kMaxProcesses = 110;
 
 }  // namespace
 
@@ -35,12 +35,12 @@ void RefuseTooManyProcesses(const Experiment& experiment) {
     if (!agent.external) ++processes_on[agent.host];
   }
   for (const auto& [host, processes] : processes_on)
-    if (processes > kMostProcesses)
+    if (processes > kMaxProcesses)
       throw ConfigError(
           {fmt::format("network.agents_per_process: expected at most {} processes of agents on {} host, such as "
                        "by {}, got {} processes",
-                       kMostProcesses, host.empty() ? "this" : "each",
-                       (experiment.size() + kMostProcesses - 1) / kMostProcesses, processes)});
+                       kMaxProcesses, host.empty() ? "this" : "each",
+                       (experiment.size() + kMaxProcesses - 1) / kMaxProcesses, processes)});
 }
 
 }  // namespace mascot

@@ -38,7 +38,7 @@ using namespace std::chrono_literals;
 using WallClock = std::chrono::steady_clock;
 
 /// Participants up to which peer-to-peer discovery is used; beyond, a discovery server is faster (50: 2 s, not 5 s).
-constexpr int kMostPeers = 20;
+constexpr int kMaxPeers = 20;
 /// How long children may take to exit by themselves at the end; longer as long as other hosts tell what theirs printed.
 constexpr auto kExitGrace = 5s, kLastWords = 60s;
 /// File descriptors of the orchestrator: with viewers; and for each process of the run (2 were counted).
@@ -46,7 +46,7 @@ constexpr int kOwnDescriptors = 120, kDescriptorsPerProcess = 3;
 /// How long the DDS library may take for a call at the end of a run.
 constexpr auto kLibraryGrace = 5s;
 /// A host is lost before its agents are: within this part of run.agent_timeout_s. A host is more patient with us.
-constexpr double kShareOfTimeout = 0.6, kLeastSilence_s = 2, kHostPatience_s = 10;
+constexpr double kShareOfTimeout = 0.6, kMinSilence_s = 2, kHostPatience_s = 10;
 
 /// Agent ids as `agent --id` takes them: "3" or "3-5".
 std::string IdsText(AgentRange agents) {
@@ -152,7 +152,7 @@ DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std:
       external_(std::ranges::any_of(experiment.agents, &AgentConfig::external)),
       reaches_others_(external_ || !std::ranges::all_of(experiment.hosts, &HostConfig::is_here)),
       processes_(AgentProcesses(experiment)),
-      with_server_(std::ssize(processes_) + 2 > kMostPeers || !experiment.hosts.empty()),
+      with_server_(std::ssize(processes_) + 2 > kMaxPeers || !experiment.hosts.empty()),
       folder_(folder),
       logs_([this](const std::string& process,
                    const std::string& line) { console_.ChildLine(PlacedName(process), line); },
@@ -294,7 +294,7 @@ void DdsRun::Spawn() {
       experiment_, folder_,
       Launcher::Rules{
           .start_timeout_s = experiment_.run.start_timeout_s,
-          .silence_s = std::max(kLeastSilence_s, kShareOfTimeout * experiment_.run.agent_timeout_s),
+          .silence_s = std::max(kMinSilence_s, kShareOfTimeout * experiment_.run.agent_timeout_s),
           .job = [this](const HostConfig& host, const std::string& our_address) { return JobOf(host, our_address); }},
       children_, logs_, peers_);
   launcher_->Start();

@@ -12,10 +12,10 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kTfPeriod = 20ms, kScenePeriod = 100ms;
-constexpr double kMostBytesPerSecond = 5e6;  // of a topic
+constexpr double kMaxBytesPerSecond = 5e6;  // of a topic
 
 RosPublisher::Clock::duration TimeToSend(std::size_t bytes) {
-  const std::chrono::duration<double> time(static_cast<double>(bytes) / kMostBytesPerSecond);
+  const std::chrono::duration<double> time(static_cast<double>(bytes) / kMaxBytesPerSecond);
   return std::chrono::duration_cast<RosPublisher::Clock::duration>(time);
 }
 

@@ -7,9 +7,9 @@ namespace mascot::mcap {
 void UnpackLimit::Add(std::uint64_t stored_bytes, std::uint64_t bytes) {
   stored_bytes_ += stored_bytes;
   bytes_ += bytes;
-  if (bytes_ <= kFreeBytes + kMostTimes * stored_bytes_) return;
+  if (bytes_ <= kFreeBytes + kMaxTimes * stored_bytes_) return;
   throw Malformed("its chunks up to here unpack to " + std::to_string(bytes_) + " bytes, above the limit of " +
-                  std::to_string(kFreeBytes) + " and " + std::to_string(kMostTimes) + " times the " +
+                  std::to_string(kFreeBytes) + " and " + std::to_string(kMaxTimes) + " times the " +
                   std::to_string(stored_bytes_) + " that they take");
 }
 

@@ -14,7 +14,7 @@ class UnpackLimit {
  public:
   static constexpr std::uint64_t kFreeBytes = std::uint64_t{256} << 20;  ///< this much may be compressed by any factor
   /// And beyond it, at most this many times the stored size.
-  static constexpr std::uint64_t kMostTimes = 300;
+  static constexpr std::uint64_t kMaxTimes = 300;
 
   /// Counts one more chunk. Throws Malformed if all chunks together are too much.
   void Add(std::uint64_t stored_bytes, std::uint64_t bytes);

@@ -16,7 +16,7 @@ using mcap::Malformed;
 using mcap::Op;
 
 constexpr std::uint64_t kFooterBytes = mcap::kFrameBytes + 20;  // two offsets and a CRC
-constexpr std::uint64_t kLeastMessageBytes = mcap::kFrameBytes + 22;
+constexpr std::uint64_t kMinMessageBytes = mcap::kFrameBytes + 22;
 constexpr std::uint64_t kFooterCovered = mcap::kFrameBytes + 16;
 
 bool Is(std::uint8_t code, Op op) { return code == static_cast<std::uint8_t>(op); }
@@ -141,7 +141,7 @@ bool McapIndex::Impl::IsAllIndexed(std::uint64_t summary_start, const std::vecto
   fill(chunk_bytes_);
   for (const std::vector<Place>* places : {&attachments, &metadata})
     for (const Place& place : *places) fill(place.bytes);
-  return room < kLeastMessageBytes;
+  return room < kMinMessageBytes;
 }
 
 void McapIndex::Impl::AddChunk(Fields body) {
@@ -159,7 +159,7 @@ void McapIndex::Impl::AddChunk(Fields body) {
   const bool is_packed = !body.String().empty();
   const std::uint64_t stored_bytes = body.U64();
   chunk.bytes = body.U64();
-  if (chunk.channels.empty() && chunk.bytes >= kLeastMessageBytes)
+  if (chunk.channels.empty() && chunk.bytes >= kMinMessageBytes)
     throw Malformed("the index does not say which channels a chunk has");
   if (is_packed) limit_.Add(stored_bytes, chunk.bytes);
   contents_.compressed_bytes += stored_bytes;

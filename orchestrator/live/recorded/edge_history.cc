@@ -7,11 +7,11 @@ namespace mascot {
 namespace {
 
 /// Places that are kept: fewer if there are many edges, for each of which a place takes about a kilobyte.
-constexpr std::int64_t kMostPlaces = 60, kMostEdgesKept = 200'000;
+constexpr std::int64_t kMaxPlaces = 60, kMaxEdgesKept = 200'000;
 
 std::int64_t PlacesFor(const Experiment& experiment) {
   const auto edges = static_cast<std::int64_t>(std::max<std::size_t>(experiment.graph.edges(), 1));
-  return std::clamp<std::int64_t>(kMostEdgesKept / edges, 1, kMostPlaces);
+  return std::clamp<std::int64_t>(kMaxEdgesKept / edges, 1, kMaxPlaces);
 }
 
 }  // namespace

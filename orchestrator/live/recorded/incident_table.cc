@@ -17,7 +17,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 28;  // of a table: nobody is told of what is beyond
+constexpr std::size_t kMaxBytes = std::size_t{1} << 28;  // of a table: nobody is told of what is beyond
 
 /// At most so many bytes of the table beside the recording; empty: there is none.
 std::string TableBeside(const std::string& recording, std::size_t most) {
@@ -43,7 +43,7 @@ std::string FirstIncidentsBeside(const std::string& recording) {
 
 void MarkManualEvents(const std::string& recording, const Experiment& experiment, std::vector<ShownEvent>& events) {
   constexpr std::string_view kEvent = "event ", kByHand = " by hand";
-  const std::string table = TableBeside(recording, kMostBytes);
+  const std::string table = TableBeside(recording, kMaxBytes);
   for (std::string_view text = table; !text.empty();) {
     const std::vector<std::string> fields = TakeCsvRow(text);  // t_s, until_s, what, count, agent, with, detail
     if (fields.size() != 7 || fields[2] != "event") continue;

@@ -75,7 +75,7 @@ void RecordedRun::Show(std::int64_t tick, ShownRow& row) {
 }
 
 bool RecordedRun::FollowEdges(ShownRow& row, int rows) {
-  if (experiment_.graph.edges() > kMostEdgesShown) return true;
+  if (experiment_.graph.edges() > kMaxEdgesShown) return true;
   return edges_.Follow(row.tick, rows, row.edges);
 }
 

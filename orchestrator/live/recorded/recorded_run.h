@@ -41,7 +41,7 @@ class RecordedRun {
   /// The row of `tick` as viewers see it, without its edges. Throws std::runtime_error if the file is damaged there.
   void Show(std::int64_t tick, ShownRow& row);
   /// Goes on to compute the edges of the row that Show() returned, by at most this many rows of the recording. Returns
-  /// whether row.edges are known now, or never will be because there are more than kMostEdgesShown. Throws as Show()
+  /// whether row.edges are known now, or never will be because there are more than kMaxEdgesShown. Throws as Show()
   /// does.
   bool FollowEdges(ShownRow& row, int rows);
 

@@ -176,7 +176,7 @@ void Foxglove::OnAdvertise(ClientId id, const Json& message) {
       SendStatus(id, kError,
                  fmt::format("advertise: expected {} of {} in cdr or json, got {}", kGoalTopic, kGoalType,
                              channel.topic.substr(0, kLongestEcho)));
-    else if (channels.contains(*number) || channels.size() >= kMostClientChannels)
+    else if (channels.contains(*number) || channels.size() >= kMaxClientChannels)
       SendStatus(id, kError, "advertise: this number is taken, or there are too many channels");
     else
       channels[*number] = channel;
@@ -207,7 +207,7 @@ void Foxglove::OnSetParameters(ClientId id, const Json& message) {
     requests.push_back(
         SetKey(Text(parameter, "name"), parameter.is_object() ? parameter.value("value", Json()) : Json()));
   }
-  if (requests.size() > kMostQuestions) return SendStatus(id, kError, "setParameters: too many at once");
+  if (requests.size() > kMaxQuestions) return SendStatus(id, kError, "setParameters: too many at once");
   AskAll(id, std::move(requests), [this, id, names, request = RequestOf(message)](const Answer& answer) {
     if (!answer.granted) SendStatus(id, kError, "setParameters: " + answer.words);
     SendParameters(
@@ -315,7 +315,7 @@ void Foxglove::AskAll(ClientId id, std::vector<Request> requests, Reply reply) {
 }
 
 void Foxglove::Question(ClientId id, Reply reply, const std::function<void(Reply)>& ask) {
-  if (clients_[id].questions >= kMostQuestions) return reply({false, "too many requests are not answered yet"});
+  if (clients_[id].questions >= kMaxQuestions) return reply({false, "too many requests are not answered yet"});
   ++clients_[id].questions;
   ask([this, id, reply = std::move(reply)](const Answer& answer) {
     const auto client = clients_.find(id);

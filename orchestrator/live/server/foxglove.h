@@ -97,8 +97,8 @@ class Foxglove {
   void SetPlayback(const Playback& playback);
 
   // Limits of what one client may have at a time.
-  static constexpr std::size_t kMostClientChannels = 16;
-  static constexpr std::size_t kMostQuestions = 16;
+  static constexpr std::size_t kMaxClientChannels = 16;
+  static constexpr std::size_t kMaxQuestions = 16;
 
  private:
   struct Client {

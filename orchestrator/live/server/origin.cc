@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view kFile = "file://";
 constexpr std::size_t kLongestQuoted = 100;  // of what a client sent, in the log
-constexpr std::size_t kMostKinds = 20;       // of refusals
+constexpr std::size_t kMaxKinds = 20;        // of refusals
 
 struct Scheme {
   std::string_view prefix;
@@ -166,7 +166,7 @@ std::optional<Doorkeeper::Refusal> Doorkeeper::Judge(const Caller& caller) const
 }
 
 std::optional<std::string> RefusalCount::Line(const std::string& words) {
-  const bool is_known = times_.contains(words) || times_.size() < kMostKinds;
+  const bool is_known = times_.contains(words) || times_.size() < kMaxKinds;
   const std::string kind = is_known ? words : "others";
   const std::size_t times = ++times_[kind];
   std::size_t power = 1;

@@ -38,7 +38,7 @@ using HttpRequest = http::request<http::empty_body>;
 using Response = http::response<http::string_body>;
 
 constexpr int kPortsToTry = 100;
-constexpr int kMostLines = 100;  // of the log: a hostile client could fill a disk
+constexpr int kMaxLines = 100;  // of the log: a hostile client could fill a disk
 constexpr auto kGoodbye = std::chrono::seconds(1);
 constexpr auto kGoodbyeLook = std::chrono::milliseconds(5);
 constexpr auto kFullPause = std::chrono::milliseconds(10);  // until somebody is let in, without descriptors
@@ -66,8 +66,8 @@ struct Server {
   asio::io_context io{1};  // last: what it still holds at the end uses the rest
 
   void Log(const std::string& line) {
-    if (lines > kMostLines) return;
-    log(++lines > kMostLines ? "viewers: too many were dropped; no more lines about them" : line);
+    if (lines > kMaxLines) return;
+    log(++lines > kMaxLines ? "viewers: too many were dropped; no more lines about them" : line);
   }
   /// Says who was not let in, and why.
   void LogRefusal(const std::string& name, const std::string& words) {

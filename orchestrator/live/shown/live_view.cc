@@ -64,7 +64,7 @@ void LiveView::Add(const FlownRow& row) {
   newest_.tick = row.tick();
   newest_.decoded = row.decoded();
   newest_.disagreement_m = meter_->disagreement_m();
-  if (experiment_.graph.edges() <= kMostEdgesShown) meter_->EdgesNow(newest_.edges);
+  if (experiment_.graph.edges() <= kMaxEdgesShown) meter_->EdgesNow(newest_.edges);
   row_is_new_ = is_new_ = true;
 }
 

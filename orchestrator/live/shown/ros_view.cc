@@ -26,7 +26,7 @@ void RosView::Add(const FlownRow& row) {
   const std::lock_guard lock(mutex_);
   newest_.tick = row.tick();
   newest_.decoded = row.decoded();
-  if (experiment_.graph.edges() <= kMostEdgesShown) meter_.EdgesNow(newest_.edges);
+  if (experiment_.graph.edges() <= kMaxEdgesShown) meter_.EdgesNow(newest_.edges);
 }
 
 void RosView::Fail(const std::string& why) {

@@ -62,7 +62,7 @@ Json AgentJson(const AgentConfig& agent) {
 
 Json EdgesJson(const Graph& graph) {
   Json edges = Json::array();
-  if (graph.edges() > kMostEdgesShown) return edges;
+  if (graph.edges() > kMaxEdgesShown) return edges;
   for (int id = 1; id <= graph.size(); ++id)
     for (const Graph::Neighbour& heard : graph.HeardBy(id)) edges.push_back({id, heard.id, heard.weight});
   return edges;

@@ -17,7 +17,7 @@ namespace mascot {
 // The messages to the page, as JSON. Distances are in m, times in s, agents by id - 1.
 
 /// Edges beyond which a frame says nothing about them.
-inline constexpr std::size_t kMostEdgesShown = 20000;
+inline constexpr std::size_t kMaxEdgesShown = 20000;
 
 /// One tick of a run, as viewers see it.
 struct ShownRow {
@@ -25,7 +25,7 @@ struct ShownRow {
 
   std::int64_t tick = -1;  ///< -1: none yet
   DecodedRow decoded;
-  std::vector<EdgeNow> edges;  ///< in increasing order of hearer, then of heard; empty beyond kMostEdgesShown
+  std::vector<EdgeNow> edges;  ///< in increasing order of hearer, then of heard; empty beyond kMaxEdgesShown
   double disagreement_m = 0;
 };
 

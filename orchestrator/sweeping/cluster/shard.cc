@@ -14,7 +14,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kMostShards = 1'000'000;
+constexpr std::size_t kMaxShards = 1'000'000;
 
 /// The number in an environment variable of Slurm. Throws ConfigError if it is none.
 std::optional<std::size_t> Variable(const char* name) {
@@ -37,8 +37,8 @@ Shard ParseShard(const std::string& option, const std::string& text) {
   const std::size_t number = NumberFrom<std::size_t>(std::string_view(text).substr(0, slash)).value_or(0);
   const std::size_t of =
       NumberFrom<std::size_t>(std::string_view(text).substr(std::min(slash + 1, text.size()))).value_or(0);
-  if (number < 1 || number > of || of > kMostShards)
-    throw ConfigError({fmt::format("{}: expected I/N with 1 <= I <= N <= {}, got '{}'", option, kMostShards, text)});
+  if (number < 1 || number > of || of > kMaxShards)
+    throw ConfigError({fmt::format("{}: expected I/N with 1 <= I <= N <= {}, got '{}'", option, kMaxShards, text)});
   return {number, of};
 }
 

@@ -99,7 +99,7 @@ std::vector<std::string> RangeValues(std::string_view key, const std::string& wo
     Refuse("--set", "a:step:b, three numbers with b on step's side of a", word);
   constexpr double kRounding = 1e-9;
   const double steps = std::floor((*last - *first) / *step + kRounding);
-  if (steps >= static_cast<double>(kMostRuns)) Refuse("--set", "at most 10000000 values", word);
+  if (steps >= static_cast<double>(kMaxRuns)) Refuse("--set", "at most 10000000 values", word);
   if (auto integers = IntegerRange(parts)) return *integers;
   std::vector<double> values;
   for (std::size_t i = 0; i <= static_cast<std::size_t>(steps); ++i)
@@ -120,8 +120,8 @@ std::vector<std::string> ParseSeeds(const std::string& text) {
   if (const auto dots = text.find(".."); dots != std::string::npos) {
     const auto first = ToSeed(text.substr(0, dots)), last = ToSeed(text.substr(dots + 2));
     if (!first || !last || *last < *first) Refuse("--seeds", "a..b or a,b,... of integers from 0 on", text);
-    if (*last - *first >= static_cast<std::int64_t>(kMostRuns))
-      Refuse("--seeds", fmt::format("at most {} seeds", kMostRuns), text);
+    if (*last - *first >= static_cast<std::int64_t>(kMaxRuns))
+      Refuse("--seeds", fmt::format("at most {} seeds", kMaxRuns), text);
     for (std::int64_t seed = *first; seed <= *last; ++seed) seeds.push_back(std::to_string(seed));
     return seeds;
   }
@@ -212,7 +212,7 @@ void SweepPlan::AddAxis(const Axis& axis) {
 
 /// Every run so far becomes `by` runs. Throws ConfigError if these are too many.
 void SweepPlan::Multiply(std::size_t by) {
-  if (size_ > kMostRuns / std::max<std::size_t>(by, 1))
+  if (size_ > kMaxRuns / std::max<std::size_t>(by, 1))
     throw ConfigError({"sweep: expected at most 10000000 runs, got more"});
   size_ *= by;
   for (Axis& axis : axes_) axis.stride *= by;

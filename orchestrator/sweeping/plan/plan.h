@@ -15,7 +15,7 @@ namespace mascot {
 inline constexpr std::string_view kSeedKey = "run.seed", kLawKey = "law.name";
 
 /// A sweep has at most so many runs.
-inline constexpr std::size_t kMostRuns = 10'000'000;
+inline constexpr std::size_t kMaxRuns = 10'000'000;
 
 /// One run of a sweep: the keys that it sets, in addition to the experiment file. Mistakes that their values make are
 /// said to be of the option that gave them: "--set law.beta=-1", "--random law.beta=-1:1 (-0.25)", "--seeds 3".

@@ -14,7 +14,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kMostKeys = 3;         // named, of those that differ
+constexpr std::size_t kMaxKeys = 3;          // named, of those that differ
 constexpr std::size_t kLongestSetting = 60;  // of the characters of a value
 
 /// "NAME: 0.1, 0.5 there and 0.1, 0.7 here"; "nothing" stands for what is not set.
@@ -69,8 +69,8 @@ void AddKeys(const std::string& whose, const std::string& there_text, const std:
     if (there[key] != here[key]) differ.insert(key);
   std::size_t named = 0;
   for (const std::string& key : differ)
-    if (named++ < kMostKeys) parts.push_back(BothText(fmt::format("{} of {}", key, whose), there[key], here[key]));
-  if (differ.size() > kMostKeys) parts.push_back(fmt::format("{} more keys of {}", differ.size() - kMostKeys, whose));
+    if (named++ < kMaxKeys) parts.push_back(BothText(fmt::format("{} of {}", key, whose), there[key], here[key]));
+  if (differ.size() > kMaxKeys) parts.push_back(fmt::format("{} more keys of {}", differ.size() - kMaxKeys, whose));
   if (differ.empty()) parts.push_back(fmt::format("the text of {}, though in no value", whose));
 }
 

@@ -88,7 +88,7 @@ class RowCheck {
   RowCheck(const std::vector<std::string>& columns, const SweepPlan* plan)
       : columns_(columns),
         plan_(plan),
-        runs_(plan != nullptr ? plan->size() : kMostRuns),
+        runs_(plan != nullptr ? plan->size() : kMaxRuns),
         error_(static_cast<std::size_t>(std::ranges::find(columns, kErrorColumn) - columns.begin())) {}
 
   /// The column with the first mistake, what was expected and what is there; empty: the row is right.

@@ -103,13 +103,13 @@ TEST(Avoidance, ADoubleIntegratorThatIsPressedComesNearlyAsCloseAsTheBound) {
 }
 
 /// The least clearance of an ideal agent among obstacles whose goal jumps somewhere else at random times.
-double LeastOfRestlessFlight(const std::string& toml, std::uint64_t seed) {
+double MinOfRestlessFlight(const std::string& toml, std::uint64_t seed) {
   auto now = std::make_shared<Experiment>(LoadExperiment(Section::FromText(toml, "test.toml"), "test"));
   Random random(seed, Random::Stream::kPositions);
   const std::shared_ptr<const Experiment> first = now;
   LiveExperiment live(*first, &LawTable(), /*checked=*/true);
   IdealNetwork net(toml);
-  double least_m = 1e9;
+  double min_m = 1e9;
   Eigen::Vector3d v_W = Eigen::Vector3d::Zero();
   const AgentConfig& agent = first->agent(1);
   const bool by_velocity = agent.traits().driven_by == Wanted::kVelocity;
@@ -127,9 +127,9 @@ double LeastOfRestlessFlight(const std::string& toml, std::uint64_t seed) {
                                             : Eigen::Vector3d(agent.control.velocity_gain * (want_W - v_W));
     motion.p_WB += by_velocity ? Eigen::Vector3d(h * want_W) : Eigen::Vector3d(h * v_W + h * h / 2 * a_W);
     v_W += h * a_W;
-    least_m = std::min(least_m, *Clearance_m(agent, motion.p_WB, first->physics.obstacles));
+    min_m = std::min(min_m, *Clearance_m(agent, motion.p_WB, first->physics.obstacles));
   }
-  return least_m;
+  return min_m;
 }
 
 TEST(Avoidance, NoGoalsHoweverTheyJumpBringAnAgentNearerThanTheBound) {
@@ -142,10 +142,10 @@ TEST(Avoidance, NoGoalsHoweverTheyJumpBringAnAgentNearerThanTheBound) {
       ASSERT_FALSE(prediction.law_figures.empty()) << prediction.silent;
       const double bound_m = *prediction.law_figures[0].values[0];
       EXPECT_GT(bound_m, 0);
-      double least_m = 1e9;
-      for (std::uint64_t seed = 1; seed <= 10; ++seed) least_m = std::min(least_m, LeastOfRestlessFlight(toml, seed));
-      EXPECT_GE(least_m, bound_m) << model << law;
-      EXPECT_LT(least_m, bound_m + 0.1) << "the bound is not idle: " << model << law;
+      double min_m = 1e9;
+      for (std::uint64_t seed = 1; seed <= 10; ++seed) min_m = std::min(min_m, MinOfRestlessFlight(toml, seed));
+      EXPECT_GE(min_m, bound_m) << model << law;
+      EXPECT_LT(min_m, bound_m + 0.1) << "the bound is not idle: " << model << law;
     }
 }
 

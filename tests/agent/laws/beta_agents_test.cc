@@ -77,11 +77,11 @@ const std::string kThree =
 const std::string kSight = "[sensors]\nrange_m = 2.0\n";
 
 TEST(BetaAgents, KeepAFlockOutOfObstaclesThatItWouldFlyThrough) {
-  double least_m = 1e9, blind_m = 1e9;
+  double min_m = 1e9, blind_m = 1e9;
   for (std::uint64_t seed = 1; seed <= 10; ++seed)
     for (const bool sees : {true, false}) {
       IdealNetwork network(Six(kThree + (sees ? kSight : ""), "", seed));
-      double& clearance_m = sees ? least_m : blind_m;
+      double& clearance_m = sees ? min_m : blind_m;
       while (network.time_s() < 30) {
         network.Step();
         for (const Motion& motion : network.motions)
@@ -92,7 +92,7 @@ TEST(BetaAgents, KeepAFlockOutOfObstaclesThatItWouldFlyThrough) {
       for (const Motion& motion : network.motions) centre_W += motion.p_WB / 6;
       EXPECT_GT(centre_W.x(), 3) << seed << ": it passes";
     }
-  EXPECT_GT(least_m, 0.3);
+  EXPECT_GT(min_m, 0.3);
   EXPECT_EQ(blind_m, 0) << "without seeing them it flies into them";
 }
 

@@ -306,7 +306,7 @@ double GammaOf(const Following& law, double w) {
 TEST(Platoon, ThePublishedLeastHeadwaysAreThoseFromWhichOnTheStringIsStable) {
   for (const auto& [theta_s, published_s] : {std::pair(0.0, 3.16), std::pair(0.15, 0.67)}) {
     const StringStability string(Published(published_s, theta_s));
-    EXPECT_NEAR(string.LeastHeadway_s().value_or(0), published_s, 0.005) << "published with two decimals";
+    EXPECT_NEAR(string.MinHeadway_s().value_or(0), published_s, 0.005) << "published with two decimals";
     EXPECT_NEAR(string.LargestGain(), 1, 2e-4) << published_s;
     EXPECT_EQ(StringStability(Published(published_s + 0.01, theta_s)).LargestGain(), 1) << published_s;
     EXPECT_GT(StringStability(Published(published_s - 0.05, theta_s)).LargestGain(), 1 + 1e-6) << published_s;
@@ -320,7 +320,7 @@ TEST(Platoon, WithoutMessagesLagAndDelayOfTheVehicleDoNotChangeTheLeastHeadway) 
       Following law = Published(1, 0);
       law.lag_s = lag_s;
       law.delay_ticks = delay_ticks;
-      EXPECT_NEAR(StringStability(law).LeastHeadway_s().value_or(0), std::sqrt(2 / 0.2), 1e-3) << lag_s << delay_ticks;
+      EXPECT_NEAR(StringStability(law).MinHeadway_s().value_or(0), std::sqrt(2 / 0.2), 1e-3) << lag_s << delay_ticks;
     }
 }
 

@@ -46,8 +46,8 @@ TEST(Robustness, OfKnownGraphsIsAsPublished) {
   }
   EXPECT_EQ(RobustnessOf(MakeTopology("path", 1)), 1);
   EXPECT_EQ(RobustnessOf(Graph({{}, {}})), 0) << "two that do not hear each other";
-  EXPECT_EQ(RobustnessOf(MakeTopology("complete", kMostRobustness)), kMostRobustness / 2);
-  EXPECT_EQ(RobustnessOf(MakeTopology("complete", kMostRobustness + 1)), std::nullopt);
+  EXPECT_EQ(RobustnessOf(MakeTopology("complete", kMaxRobustness)), kMaxRobustness / 2);
+  EXPECT_EQ(RobustnessOf(MakeTopology("complete", kMaxRobustness + 1)), std::nullopt);
 }
 
 TEST(Robustness, IsWhatAllPairsOfGroupsSay) {

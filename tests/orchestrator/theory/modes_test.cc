@@ -55,8 +55,8 @@ TEST(Modes, OfRealStiffnessDecayWithAnyDamping) {
 }
 
 TEST(Modes, OfComplexStiffnessNeedDampingAboveItsImaginaryPartOverTheRootOfItsRealPart) {
-  EXPECT_DOUBLE_EQ(LeastDamping(1, 0, {4.0, 3.0}), 1.5);
-  EXPECT_DOUBLE_EQ(LeastDamping(4, 0, {1.0, 0.75}), 1.5);
+  EXPECT_DOUBLE_EQ(MinDamping(1, 0, {4.0, 3.0}), 1.5);
+  EXPECT_DOUBLE_EQ(MinDamping(4, 0, {1.0, 0.75}), 1.5);
   EXPECT_TRUE(Decays({1.51, {4.0, 3.0}}));
   EXPECT_FALSE(Decays({1.49, {4.0, 3.0}}));
 }
@@ -64,7 +64,7 @@ TEST(Modes, OfComplexStiffnessNeedDampingAboveItsImaginaryPartOverTheRootOfItsRe
 TEST(Modes, OfADirectedCycleOfTenNeedTheRelativeDampingOfRenAndAtkins) {
   double least = 0;
   for (int k = 1; k < 10; ++k)
-    least = std::max(least, LeastRelativeDamping(1, 0, 1.0 - std::polar(1.0, 2 * std::numbers::pi * k / 10)));
+    least = std::max(least, MinRelativeDamping(1, 0, 1.0 - std::polar(1.0, 2 * std::numbers::pi * k / 10)));
   EXPECT_NEAR(least, 2.1763, 5e-5);
 }
 
@@ -72,7 +72,7 @@ TEST(Modes, DecayIffEitherGainIsAboveItsLeastValue) {
   for (const Complex lambda : {Complex(1.0, 0.9), {0.2, -0.6}, {3.0, 0.0}, {0.5, 2.0}}) {
     for (const double p : {0.3, 1.0, 4.0}) {
       for (const double other : {0.0, 0.2, 1.0}) {
-        const double g = LeastRelativeDamping(p, other, lambda), b = LeastDamping(p, other, lambda);
+        const double g = MinRelativeDamping(p, other, lambda), b = MinDamping(p, other, lambda);
         EXPECT_TRUE(Decays({other + (g + 1e-6) * lambda, p * lambda}));
         EXPECT_TRUE(Decays({b + 1e-6 + other * lambda, p * lambda}));
         if (g > 0) {

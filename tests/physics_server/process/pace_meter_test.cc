@@ -49,7 +49,7 @@ TEST(PaceMeter, TellsWhoseCommandsWereLateAndWhen) {
 TEST(PaceMeter, TellsOfTheFirstLateCommandsOnly) {
   PaceMeter meter(100);
   for (int k = 0; k < 1000; ++k) meter.AddCommand(1, 51 * k, 1);
-  EXPECT_EQ(meter.Result().late.size(), kMostLatesTold);
+  EXPECT_EQ(meter.Result().late.size(), kMaxLatesTold);
   EXPECT_EQ(meter.Result().misses, 1000u);
 }
 

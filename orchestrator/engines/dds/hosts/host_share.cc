@@ -22,8 +22,8 @@ using namespace std::chrono_literals;
 using WallClock = std::chrono::steady_clock;
 
 constexpr std::size_t kLongestError = 150, kLongestWord = 1000;
-constexpr std::size_t kMostWaiting = 16U << 20U;  // bytes that `up` has not read yet; what is printed beyond is lost
-constexpr auto kEndGrace = 5s;                    // for processes that were told to end, over DDS
+constexpr std::size_t kMaxWaiting = 16U << 20U;  // bytes that `up` has not read yet; what is printed beyond is lost
+constexpr auto kEndGrace = 5s;                   // for processes that were told to end, over DDS
 
 /// What this machine is called among those that were started together.
 std::string NodeName() {
@@ -53,7 +53,7 @@ HostShare::HostShare(StopSignal& stop)
 
 /// Passes a line on, unless too much waits already. Called in the thread that copies logs.
 void HostShare::TakeLine(const std::string& process, const std::string& line) {
-  if (output_.waiting() <= kMostWaiting) {
+  if (output_.waiting() <= kMaxWaiting) {
     losing_.erase(process);
     TellLine(process, line);
   } else if (losing_.insert(process).second) {

@@ -13,7 +13,7 @@ namespace mascot {
 namespace {
 
 constexpr std::size_t kLongestField = 10'000;
-constexpr double kMostMemory = 1e15, kLongestSilence_s = 1e9;
+constexpr double kMaxMemory = 1e15, kLongestSilence_s = 1e9;
 
 /// A text of a list of arguments.
 std::string ArgumentFrom(const HostWords& argument) {
@@ -62,7 +62,7 @@ HostJob ReadJob(const HostWords& words) {
   OutsideFields fields(words);
   HostJob job{.domain = static_cast<int>(fields.Integer("domain", 0, 232)),
               .own_memory = fields.Boolean("own_memory"),
-              .shared_memory = static_cast<std::uint64_t>(fields.Number("shared_memory", 0, kMostMemory)),
+              .shared_memory = static_cast<std::uint64_t>(fields.Number("shared_memory", 0, kMaxMemory)),
               .silence_s = fields.Number("silence_s", 0, kLongestSilence_s),
               .processes = {}};
   std::set<std::string> names;

@@ -27,9 +27,9 @@ using namespace std::chrono_literals;
 using WallClock = std::chrono::steady_clock;
 
 constexpr std::size_t kLongestQuote = 200, kLongestName = 1000, kLongestText = 10'000;
-constexpr int kMostPid = 1 << 22, kMostStatus = 0xffff;  // of Linux; of waitpid(2)
+constexpr int kMaxPid = 1 << 22, kMaxStatus = 0xffff;  // of Linux; of waitpid(2)
 constexpr double kShareOfStart = 0.9;  // of run.start_timeout_s, for a host to answer: its agents join after that
-constexpr int kMostLines = 10'000;     // read of a connection at once: the run must go on beside one that floods
+constexpr int kMaxLines = 10'000;      // read of a connection at once: the run must go on beside one that floods
 
 /// What a host said, for a message.
 std::string Quote(const std::string& text) { return std::string(CutUtf8(PlainLine(text), kLongestQuote)); }
@@ -117,7 +117,7 @@ bool Launcher::Pump() {
     TellAll({{"kind", "alive"}});
   }
   for (const auto& connection : connections_)
-    for (int lines = 0; lines < kMostLines; ++lines) {
+    for (int lines = 0; lines < kMaxLines; ++lines) {
       const auto line = connection->Next();
       if (!line) break;
       told = true;
@@ -202,7 +202,7 @@ void Launcher::TakeWordOf(Remote& remote, const std::string& kind, OutsideFields
           fmt::format("host {}: expected \"{}\" of {} once, got it again", remote.config.name, kind, process));
   };
   if (kind == "started") {
-    const auto pid = static_cast<int>(fields.Integer("pid", 1, kMostPid));
+    const auto pid = static_cast<int>(fields.Integer("pid", 1, kMaxPid));
     fields.Require();
     refuse_repetition(!remote.pids.emplace(process, pid).second);
   } else if (kind == "line") {
@@ -212,7 +212,7 @@ void Launcher::TakeWordOf(Remote& remote, const std::string& kind, OutsideFields
     if (log.is_open() && write(log.number(), text.data(), text.size()) != std::ssize(text))
       throw std::runtime_error("cannot pass on what " + process + " prints: " + std::strerror(errno));
   } else {
-    const auto status = static_cast<int>(fields.Integer("status", 0, kMostStatus));
+    const auto status = static_cast<int>(fields.Integer("status", 0, kMaxStatus));
     fields.Require();
     if (!WIFEXITED(status) && !WIFSIGNALED(status))
       throw JsonError(fmt::format("expected how {} has ended as \"status\", got {}", process, status));

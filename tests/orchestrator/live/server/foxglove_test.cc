@@ -339,8 +339,8 @@ TEST(Foxglove, KnowsWhoHearsWhom) {
 TEST(Foxglove, LimitsQuestionsAndForgetsThoseOfClientsThatLeft) {
   Server server;
   const std::string pause = Bytes('\2', 0u, 5u, 4u) + R"(json{"ask":"pause"})";
-  for (std::size_t i = 0; i < Foxglove::kMostQuestions + 1; ++i) server.SayBytes(pause);
-  EXPECT_THAT(server.requests, SizeIs(Foxglove::kMostQuestions));
+  for (std::size_t i = 0; i < Foxglove::kMaxQuestions + 1; ++i) server.SayBytes(pause);
+  EXPECT_THAT(server.requests, SizeIs(Foxglove::kMaxQuestions));
   EXPECT_THAT(server.binaries[1].back(), HasSubstr("too many requests are not answered yet"));
   server.Forget();
   server.foxglove->OnClose(1);
