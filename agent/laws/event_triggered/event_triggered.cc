@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "agent/laws/event_triggered/said.h"
+#include "agent/laws/event_triggered/last_broadcast.h"
 #include "agent/laws/event_triggered/trigger.h"
 #include "agent/laws/parts/agreement.h"
 #include "agent/laws/parts/ideal.h"
@@ -49,11 +49,11 @@ class EventTriggered final : public Law {
   }
 
   Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> heard) override {
-    said_.Hear(heard);
+    last_broadcast_.Hear(heard);
     Eigen::Vector3d v_W = Eigen::Vector3d::Zero();
     Trigger::Next next{.t_s = t_s + params_->period_s};
     for (const Heard& j : heard) {
-      const std::span<const double> x_j = said_.By(j.id);
+      const std::span<const double> x_j = last_broadcast_.By(j.id);
       next.degree += j.weight;
       if (!x_i_W_ || x_j.size() != 3) continue;
       const Eigen::Vector3d way_W = Along(axes_, Eigen::Map<const Eigen::Vector3d>(x_j.data()) - *x_i_W_);
@@ -79,7 +79,7 @@ class EventTriggered final : public Law {
   Axes axes_ = Axes::kXy;
   bool flies_as_wanted_;  // else its velocity lags, and is the best guess of where it goes in a tick
   Trigger trigger_;
-  LastBroadcast said_;
+  LastBroadcast last_broadcast_;
   std::optional<Eigen::Vector3d> x_i_W_;  // what this agent said last
   bool speaks_ = false;
 };
