@@ -38,13 +38,13 @@ void ThrowIfInterrupted(StopSignal& stop) {
   if (const int signal = stop.Within(std::chrono::nanoseconds::zero()); signal != 0) throw Interrupted{signal};
 }
 
-Looked SweepChecks::FirstValid(bool first_alone) {
+CheckedRun SweepChecks::FirstValid(bool first_alone) {
   std::string mistakes;
-  std::optional<Looked> valid;
+  std::optional<CheckedRun> valid;
   for (std::size_t run = 0; run < (first_alone ? 1 : sweep_.plan.size()) && !valid; ++run) {
-    const std::size_t task = tasks_.LookAtRun(run);
+    const std::size_t task = tasks_.CheckOfRun(run);
     ExecuteTasks({&task, 1}, pool_, stop_, [&](const WorkerPool::Done& done) {
-      if (done.failure.empty()) valid = LookedFrom(done.answer);
+      if (done.failure.empty()) valid = CheckedRunFrom(done.answer);
       if (mistakes.empty()) mistakes = done.failure;
       return true;
     });
@@ -61,11 +61,11 @@ KnownLaws SweepChecks::Laws() {
     const SweepPlan::Representatives representatives = sweep_.plan.RepresentativesOf(alike);
     std::vector<std::size_t> tasks;
     for (std::size_t run = 0; run < sweep_.plan.size(); ++run)
-      if (representatives[run] == run && !known.of_run.contains(run)) tasks.push_back(tasks_.LookAtRun(run));
+      if (representatives[run] == run && !known.of_run.contains(run)) tasks.push_back(tasks_.CheckOfRun(run));
     ExecuteTasks(tasks, pool_, stop_, [&](const WorkerPool::Done& done) {
-      const std::size_t run = tasks_.RunOfLook(done.task);
+      const std::size_t run = tasks_.RunOfCheck(done.task);
       const bool valid = done.failure.empty();
-      if (valid) known.of_run[run] = LookedFrom(done.answer).laws;
+      if (valid) known.of_run[run] = CheckedRunFrom(done.answer).laws;
       by_numbers = by_numbers || !valid || known.of_run[run].depend_on_numbers;
       return true;
     });
@@ -91,7 +91,7 @@ std::vector<PythonMetric> SweepChecks::Metrics(const std::vector<std::string>& o
 
 void SweepChecks::CheckTrials() {
   std::vector<std::size_t> tasks(sweep_.plan.trials().size());
-  std::iota(tasks.begin(), tasks.end(), tasks_.LookAtTrial(0));
+  std::iota(tasks.begin(), tasks.end(), tasks_.CheckOfTrial(0));
   std::map<std::size_t, std::string> mistakes;
   ExecuteTasks(tasks, pool_, stop_, [&](const WorkerPool::Done& done) {
     if (!done.failure.empty()) mistakes[done.task - tasks.front()] = done.failure;
@@ -103,13 +103,13 @@ void SweepChecks::CheckTrials() {
                                  DifferenceOf(sweep_.plan.trials()[trial], sweep_.plan[0]), text)});
 }
 
-void SweepChecks::CheckSeeds(const Looked& first) {
+void SweepChecks::CheckSeeds(const CheckedRun& first) {
   std::vector<std::size_t> runs = sweep_.plan.WithFirstSeed();
   if (runs.empty() || !first.draws.empty()) return;
-  for (std::size_t& run : runs) run = tasks_.LookAtRun(run);
+  for (std::size_t& run : runs) run = tasks_.CheckOfRun(run);
   bool draws = false;
   ExecuteTasks(runs, pool_, stop_, [&](const WorkerPool::Done& done) {
-    draws = done.failure.empty() && !LookedFrom(done.answer).draws.empty();
+    draws = done.failure.empty() && !CheckedRunFrom(done.answer).draws.empty();
     return !draws;
   });
   if (!draws)

@@ -27,7 +27,7 @@ class SweepChecks {
 
   /// The first valid experiment of the sweep. Throws ConfigError with the mistakes of the first run if no run is valid;
   /// with `first_alone`, if that one is not.
-  Looked FirstValid(bool first_alone);
+  CheckedRun FirstValid(bool first_alone);
   /// The laws of every run, from a look at the first of those that are alike. Numbers count only where they decide
   /// about laws, or where a run is not valid: another number may be.
   KnownLaws Laws();
@@ -36,7 +36,7 @@ class SweepChecks {
   /// Throws ConfigError with the mistakes of the first trial of the plan that is not valid.
   void CheckTrials();
   /// Throws ConfigError if the sweep goes over several seeds, but no run depends on its seed. `first`: FirstValid().
-  void CheckSeeds(const Looked& first);
+  void CheckSeeds(const CheckedRun& first);
 
  private:
   const Sweep& sweep_;

@@ -67,22 +67,22 @@ Experiment Sweep::Load(const SweepPoint& point) const {
 WorkerPool::Work WorkOf(const Sweep& sweep) {
   return [sweep](std::size_t task) -> std::string {
     const SweepTasks tasks(sweep.plan);
-    if (task < tasks.LookAtRun(0)) return nlohmann::json(FlyOne(sweep, task)).dump();
+    if (task < tasks.CheckOfRun(0)) return nlohmann::json(FlyOne(sweep, task)).dump();
     if (task == tasks.ListMetrics()) {
       nlohmann::json list = nlohmann::json::array();
       for (const PythonMetric& metric : OwnMetrics(sweep).list()) list.push_back(metric);
       return list.dump();
     }
-    const bool of_run = task < tasks.LookAtTrial(0);
+    const bool of_run = task < tasks.CheckOfTrial(0);
     const Experiment experiment =
-        sweep.Load(of_run ? sweep.plan[tasks.RunOfLook(task)] : sweep.plan.trials()[task - tasks.LookAtTrial(0)]);
+        sweep.Load(of_run ? sweep.plan[tasks.RunOfCheck(task)] : sweep.plan.trials()[task - tasks.CheckOfTrial(0)]);
     return nlohmann::json(
                {{"resolved", experiment.resolved}, {"draws", DrawsOf(experiment)}, {"laws", LawsAtTheEnd(experiment)}})
         .dump();
   };
 }
 
-Looked LookedFrom(const std::string& answer) {
+CheckedRun CheckedRunFrom(const std::string& answer) {
   const auto json = ReadJson<nlohmann::json>(answer);
   return {json["resolved"], json["draws"], json["laws"].get<RunLaws>()};
 }

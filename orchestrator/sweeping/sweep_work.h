@@ -35,7 +35,7 @@ struct Sweep {
 };
 
 /// What is found out about an experiment without flying it.
-struct Looked {
+struct CheckedRun {
   std::string resolved;
   std::vector<std::string> draws;  ///< DrawsOf()
   RunLaws laws;
@@ -47,11 +47,11 @@ class SweepTasks {
  public:
   explicit SweepTasks(const SweepPlan& plan) : runs_(plan.size()), trials_(plan.trials().size()) {}
 
-  std::size_t LookAtRun(std::size_t run) const { return runs_ + run; }
-  std::size_t LookAtTrial(std::size_t trial) const { return 2 * runs_ + trial; }
+  std::size_t CheckOfRun(std::size_t run) const { return runs_ + run; }
+  std::size_t CheckOfTrial(std::size_t trial) const { return 2 * runs_ + trial; }
   std::size_t ListMetrics() const { return 2 * runs_ + trials_; }
-  /// The run of a task that LookAtRun() gave.
-  std::size_t RunOfLook(std::size_t task) const { return task - runs_; }
+  /// The run of a task that CheckOfRun() gave.
+  std::size_t RunOfCheck(std::size_t task) const { return task - runs_; }
 
  private:
   std::size_t runs_, trials_;
@@ -59,7 +59,7 @@ class SweepTasks {
 
 /// Executes the tasks of a sweep. Answers are JSON.
 WorkerPool::Work WorkOf(const Sweep& sweep);
-Looked LookedFrom(const std::string& answer);
+CheckedRun CheckedRunFrom(const std::string& answer);
 std::vector<PythonMetric> MetricsFrom(const std::string& answer);
 
 }  // namespace mascot

@@ -123,7 +123,7 @@ Sweeper::Outcome Sweeper::Do(const Options& options, bool fly, StopSignal& stop)
   try {
     const auto begun = BegunAt(options.out);
     const bool strict = !options.force && !IsBegun(begun, text_, plan_);
-    const Looked first = checks.FirstValid(strict);
+    const CheckedRun first = checks.FirstValid(strict);
     SweepIdentity& identity = outcome.identity;
     identity = {.build = BuildText(),
                 .experiment = text_,

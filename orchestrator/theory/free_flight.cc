@@ -7,7 +7,7 @@
 #include <exception>
 
 #include "orchestrator/team/ideal_team.h"
-#include "orchestrator/theory/may_touch.h"
+#include "orchestrator/theory/contact_watch.h"
 
 namespace mascot {
 namespace {

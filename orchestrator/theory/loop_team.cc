@@ -12,7 +12,7 @@
 #include "agent/python/python.h"
 #include "orchestrator/measuring/agreement_meter.h"
 #include "orchestrator/team/team.h"
-#include "orchestrator/theory/may_touch.h"
+#include "orchestrator/theory/contact_watch.h"
 
 namespace mascot {
 namespace {

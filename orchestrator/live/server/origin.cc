@@ -132,7 +132,7 @@ std::string ReadAllowedOrigin(const std::string& text) {
                      std::string(kFile) + ", got " + Quoted(text)});
 }
 
-Doorkeeper::Doorkeeper(std::string_view asked, std::string_view bound, std::vector<std::string> allowed)
+OriginCheck::OriginCheck(std::string_view asked, std::string_view bound, std::vector<std::string> allowed)
     : allowed_(std::move(allowed)) {
   names_ = {AsInUrl(asked), AsInUrl(bound)};
   any_address_ =
@@ -141,12 +141,12 @@ Doorkeeper::Doorkeeper(std::string_view asked, std::string_view bound, std::vect
   if (const std::string name = NameOfThisMachine(); is_reached_from_elsewhere && !name.empty()) names_.push_back(name);
 }
 
-bool Doorkeeper::IsOurs(const std::string& host) const {
+bool OriginCheck::IsOurs(const std::string& host) const {
   if (IsLoopback(host) || std::ranges::find(names_, host) != names_.end()) return true;
   return any_address_ && (IsIpV4(host) || host.starts_with('['));  // no page can be of another machine's address
 }
 
-std::optional<Doorkeeper::Refusal> Doorkeeper::Judge(const Caller& caller) const {
+std::optional<OriginCheck::Refusal> OriginCheck::Judge(const Caller& caller) const {
   if (!caller.target.starts_with('/'))
     return Refusal{400, "expected a path\n", "a request for something that is no path"};
   if (caller.hosts.size() != 1) return Refusal{400, "expected one Host\n", "a request without a Host, or with several"};

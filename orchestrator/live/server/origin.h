@@ -35,7 +35,7 @@ struct Caller {
 /// Decides which requests a server that listens on this machine answers. A browser sends the address of the page that
 /// asks (Origin) and the name under which it knows this server (Host). No page of another server may steer a run, and
 /// none whose name was made to lead here (DNS rebinding). Programs that are not browsers send no Origin.
-class Doorkeeper {
+class OriginCheck {
  public:
   struct Refusal {
     unsigned status = 403;
@@ -45,7 +45,7 @@ class Doorkeeper {
 
   /// `asked` is the address that the user has named, `bound` the one at which the server listens. `allowed` are further
   /// origins that may speak to it (ReadAllowedOrigin()).
-  Doorkeeper(std::string_view asked, std::string_view bound, std::vector<std::string> allowed);
+  OriginCheck(std::string_view asked, std::string_view bound, std::vector<std::string> allowed);
 
   /// Why the request is refused. Nothing: it is not.
   std::optional<Refusal> Judge(const Caller& caller) const;

@@ -55,7 +55,7 @@ struct Server {
   SocketOptions options;
   SocketUser& user;
   std::function<void(const std::string&)> log;
-  Doorkeeper doorkeeper;
+  OriginCheck origin_check;
   std::map<ClientId, Session*> sessions = {};  // those that are open
   std::set<beast::tcp_stream*> streams = {};   // of all connections
   RefusalCount refusals = {};
@@ -244,7 +244,7 @@ class Visit : public std::enable_shared_from_this<Visit> {
   void OnRead(error_code error) {
     if (error || server_.ending) return;  // the socket closes with this object
     const HttpRequest& request = parser_->get();
-    if (const auto refusal = server_.doorkeeper.Judge(CallerOf(request)))
+    if (const auto refusal = server_.origin_check.Judge(CallerOf(request)))
       return Refuse(refusal->status, refusal->answer, refusal->words);
     if (websocket::is_upgrade(request)) return Upgrade(request);
     if (request.method() != http::verb::get && request.method() != http::verb::head)
@@ -330,14 +330,14 @@ int Listen(const tcp::endpoint& at) {
 class SocketServer::Impl {
  public:
   Impl(SocketOptions options, SocketUser& user, std::function<void(const std::string&)> log)
-      : server_{.options = std::move(options), .user = user, .log = std::move(log), .doorkeeper = {"", "", {}}},
+      : server_{.options = std::move(options), .user = user, .log = std::move(log), .origin_check = {"", "", {}}},
         acceptor_(server_.io),
         timer_(server_.io),
         pause_(server_.io) {
     Bind();
     const std::string address = acceptor_.local_endpoint().address().to_string();
     url_ = UrlOf(acceptor_.local_endpoint());
-    server_.doorkeeper = {server_.options.address, address, server_.options.allowed_origins};
+    server_.origin_check = {server_.options.address, address, server_.options.allowed_origins};
   }
   ~Impl() {
     if (!thread_.joinable()) return;

@@ -100,7 +100,7 @@ bool MayTalk(const std::string& asked, const std::vector<std::string_view>& host
              std::string_view target = "/") {
   std::vector<std::string> let_in;
   if (!allowed.empty()) let_in.push_back(ReadAllowedOrigin(allowed));
-  return !Doorkeeper(asked, asked, let_in).Judge({.hosts = hosts, .origins = origins, .target = target});
+  return !OriginCheck(asked, asked, let_in).Judge({.hosts = hosts, .origins = origins, .target = target});
 }
 
 std::string NameOfThisMachine() {
@@ -186,8 +186,8 @@ TEST(Origin, WhoListensElsewhereIsAskedForByThatAddressOrName) {
   EXPECT_TRUE(MayTalk("192.168.1.11", {NameOfThisMachine()}));
   EXPECT_TRUE(MayTalk("Lab1", {"lab1:8765"}));
   EXPECT_TRUE(MayTalk("fe80::1", {"[FE80:0::1]:8765"}));
-  EXPECT_TRUE(Doorkeeper("lab1", "192.168.1.11", {}).Judge({{"192.168.1.12"}, {}, "/"}));
-  EXPECT_FALSE(Doorkeeper("lab1", "192.168.1.11", {}).Judge({{"192.168.1.11"}, {}, "/"}));
+  EXPECT_TRUE(OriginCheck("lab1", "192.168.1.11", {}).Judge({{"192.168.1.12"}, {}, "/"}));
+  EXPECT_FALSE(OriginCheck("lab1", "192.168.1.11", {}).Judge({{"192.168.1.11"}, {}, "/"}));
   EXPECT_FALSE(MayTalk("192.168.1.11", {"192.168.1.12"}));
   EXPECT_FALSE(MayTalk("192.168.1.11", {"evil.example"}));
   for (const char* all : {"0.0.0.0", "::", "[::]"}) {
@@ -295,7 +295,7 @@ TEST(Origin, RequestsThatNameNoPathAreRefused) {
 }
 
 TEST(Origin, RefusalsSayWhoAndHowToLetThemIn) {
-  const Doorkeeper door("127.0.0.1", "127.0.0.1", {});
+  const OriginCheck door("127.0.0.1", "127.0.0.1", {});
   const auto words = [&](std::string_view host, std::string_view origin) {
     const auto refusal = door.Judge({.hosts = {host}, .origins = {origin}, .target = "/"});
     return refusal ? refusal->words : "";

@@ -1,4 +1,4 @@
-#include "orchestrator/theory/may_touch.h"
+#include "orchestrator/theory/contact_watch.h"
 
 #include <fmt/format.h>
 
