@@ -5,8 +5,6 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <new>
-#include <system_error>
 
 #include "bus/process_main.h"
 #include "system/stop_signal.h"
@@ -53,55 +51,6 @@ void LeaveOn(int signal) {
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
 }
 
-/// What stands before and after what() of an exception.
-struct Words {
-  const char *before = "", *after = "";
-};
-
-Words WordsFor(const std::exception& failure) {
-  if (dynamic_cast<const std::bad_alloc*>(&failure) != nullptr)
-    return {"out of memory (", "); is there a limit, such as ulimit -v?"};
-  const auto* refused = dynamic_cast<const std::system_error*>(&failure);
-  if (refused != nullptr && refused->code() == std::errc::resource_unavailable_try_again)
-    return {"no thread can be started (", "); is there a limit, such as ulimit -u or -v?"};
-  if (refused != nullptr &&
-      refused->code() == std::errc::invalid_argument)  // Fast DDS joins a thread it could not start
-    return {"a thread was not started (", "); is there a limit, such as ulimit -u or -v?"};
-  return {};
-}
-
-/// A signal handler, called once: then SIGBUS ends the process.
-void ExplainBusError(int signal) {
-  constexpr char kWords[] = "error: /dev/shm is probably full: its memory cannot be had (SIGBUS)\n";
-  if (write(STDERR_FILENO, kWords, sizeof kWords - 1) < 0) _exit(128 + signal);
-  raise(signal);
-}
-
-/// Prints what others have said, without memory: a byte that is no printable ASCII as "\x1b".
-void PrintPlain(const char* text) {
-  for (; *text != '\0'; ++text) {
-    const auto byte = static_cast<unsigned char>(*text);
-    if ((byte >= ' ' && byte < 0x7F) || byte == '\n' || byte == '\t')
-      std::fputc(byte, stderr);
-    else
-      std::fprintf(stderr, "\\x%02x", static_cast<unsigned>(byte));
-  }
-}
-
-/// A terminate handler. There may be no memory for a string.
-[[noreturn]] void SayAndExit() {
-  try {
-    if (const auto uncaught = std::current_exception()) std::rethrow_exception(uncaught);
-    std::fputs("error: the program ended itself (std::terminate)\n", stderr);
-  } catch (const std::exception& failure) {
-    const Words words = WordsFor(failure);
-    for (const char* piece : {"error: ", words.before, failure.what(), words.after, "\n"}) PrintPlain(piece);
-  } catch (...) {
-    std::fputs("error: an exception of unknown type\n", stderr);
-  }
-  _exit(1);
-}
-
 }  // namespace
 
 void LeaveWithin(std::chrono::seconds limit, const Leaving& leaving) {
@@ -117,19 +66,6 @@ void LeaveNow(const Leaving& leaving) {
   Prepare(leaving);
   LeaveByForce(0);
   _exit(leaving.code);
-}
-
-void SayWhatIsUncaught() {
-  std::set_terminate(SayAndExit);
-  struct sigaction action {};
-  action.sa_handler = ExplainBusError;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGBUS, &action, nullptr);
-}
-
-std::string InWords(const std::exception& failure) {
-  const Words words = WordsFor(failure);
-  return std::string(words.before) + failure.what() + words.after;
 }
 
 }  // namespace mascot

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <exception>
 #include <string>
 
 namespace mascot {
@@ -23,13 +22,5 @@ void LeaveWithin(std::chrono::seconds limit, const Leaving& leaving);
 
 /// Ends the calling process by force, at once.
 [[noreturn]] void LeaveNow(const Leaving& leaving);
-
-/// Turns an exception that is not caught (for example in a thread of Fast DDS) into an error in words and exit code 1
-/// (the default is SIGABRT). Also explains SIGBUS, by which a full /dev/shm ends a process.
-void SayWhatIsUncaught();
-
-/// What went wrong, in words: what() of most exceptions; for an exception because of missing memory or threads, words
-/// that say so.
-std::string InWords(const std::exception& failure);
 
 }  // namespace mascot

@@ -14,11 +14,13 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "bus/addresses.h"
 #include "bus/leave.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
 #include "experiment/experiment.h"
 #include "system/descendants.h"
+#include "system/failure.h"
 #include "system/left_file.h"
 #include "system/spawn.h"
 #include "system/usage.h"

@@ -2,8 +2,6 @@
 
 #include <cstdint>
 
-#include "bus/qos.h"
-
 namespace mascot {
 
 /// What the processes of a run that join a DDS domain need of this machine, together.
@@ -19,8 +17,5 @@ struct ResourceNeeds {
 /// Throws std::runtime_error, in words, if this machine does not grant these processes memory, descriptors or threads.
 /// The soft limit of descriptors is raised if the hard one allows it.
 void RequireResources(const ResourceNeeds& needs);
-/// Throws std::runtime_error, in words, if this machine lacks an address at which such a participant is to be reached:
-/// 127.0.0.1, if the participant uses it, or DomainOptions::address.
-void RequireAddresses(const DomainOptions& options);
 
 }  // namespace mascot

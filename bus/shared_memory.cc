@@ -4,16 +4,12 @@
 #include <poll.h>
 #include <sys/file.h>
 #include <sys/stat.h>
-#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -24,6 +20,7 @@
 
 #include "base/number.h"
 #include "bus/ports.h"
+#include "system/files_in_use.h"
 
 namespace mascot {
 namespace {
@@ -111,15 +108,6 @@ bool IsPortBeyond(int domain, const std::string& name) {
   return domain != kNoDomain && first <= port && port < first + 2 * kMaxTries;
 }
 
-/// Paths in a folder; those that can be read, if it vanishes with its process.
-std::vector<fs::path> PathsIn(const fs::path& folder) {
-  std::vector<fs::path> paths;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    paths.push_back(entry->path());
-  return paths;
-}
-
 /// Paths of the files of each segment or port, by its name.
 std::map<std::string, std::vector<std::string>> Segments(int domain) {
   std::map<std::string, std::vector<std::string>> segments;
@@ -130,48 +118,6 @@ std::map<std::string, std::vector<std::string>> Segments(int domain) {
     if (name.starts_with("fastrtps_") && is_ours && IsOurs(path)) segments[name].push_back(path);
   }
   return segments;
-}
-
-/// A file, whatever its name: Fast DDS maps semaphores under a temporary one.
-using FileId = std::pair<dev_t, ino_t>;
-
-FileId IdOf(const std::string& path) {
-  struct stat info {};
-  return stat(path.c_str(), &info) == 0 ? FileId{info.st_dev, info.st_ino} : FileId{};
-}
-
-/// The files in /dev/shm that a process has open (`process`: its folder in /proc).
-void AddOpen(const fs::path& process, std::set<FileId>& used) {
-  std::error_code error;
-  for (const fs::path& descriptor : PathsIn(process / "fd"))
-    if (fs::read_symlink(descriptor, error).string().starts_with(kPrefix)) used.insert(IdOf(descriptor));
-}
-
-/// The files in /dev/shm that a process maps.
-void AddMapped(const fs::path& process, std::set<FileId>& used) {
-  std::ifstream maps(process / "maps");
-  for (std::string line; std::getline(maps, line);) {
-    unsigned major = 0, minor = 0;
-    unsigned long inode = 0;
-    if (line.find(kPrefix) != line.npos &&
-        std::sscanf(line.c_str(), "%*s %*s %*s %x:%x %lu", &major, &minor, &inode) == 3)
-      used.emplace(makedev(major, minor), inode);
-  }
-}
-
-/// The files in /dev/shm that other processes use. This process does not count: it has no participant any more, but
-/// Fast DDS may still map segments of peers that died. A process that makes a file keeps it open until it maps it; so
-/// looking at what it has open first, and then at what it maps, misses no file.
-std::set<FileId> FilesInUse() {
-  std::set<FileId> used;
-  for (const fs::path& process : PathsIn("/proc")) {
-    const std::string pid = process.filename();
-    if (pid == std::to_string(getpid())) continue;
-    if (!std::ranges::all_of(pid, [](unsigned char c) { return std::isdigit(c); })) continue;
-    AddOpen(process, used);
-    AddMapped(process, used);
-  }
-  return used;
 }
 
 /// True if the file's owner is alive, perhaps in another container that shares /dev/shm, where we do not see what it
@@ -196,7 +142,8 @@ Descriptor ReserveInSharedMemory(int domain) {
 std::vector<std::string> StaleSharedMemory(int domain) {
   const auto segments = Segments(domain);  // before FilesInUse(): what is made later is not stale
   if (segments.empty()) return {};
-  const std::set<FileId> used = FilesInUse();
+  // This process does not count: it has no participant any more, but Fast DDS may still map segments of dead peers.
+  const std::set<FileId> used = FilesInUse(kPrefix);
   const auto in_use = [&](const std::string& path) { return used.contains(IdOf(path)) || IsLocked(path); };
   std::vector<std::string> stale;
   for (const auto& [segment, files] : segments)

@@ -12,6 +12,7 @@
 #include "experiment/toml/section.h"
 #include "orchestrator/verbs/verb.h"
 #include "system/descendants.h"
+#include "system/failure.h"
 #include "system/standard_streams.h"
 #include "system/usage.h"
 

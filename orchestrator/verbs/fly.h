@@ -56,16 +56,4 @@ class Flight {
   bool hangs_ = false;
 };
 
-/// The keys that say how an experiment is delivered, as this one has them.
-std::vector<Override> DeliveryOf(const Experiment& experiment);
-/// The resolved experiment with other values.
-std::string Changed(const Experiment& experiment, const std::vector<Override>& changes);
-/// The experiment with these events, given by hand, behind its own.
-Experiment WithEvents(const Experiment& experiment, const std::vector<Event>& by_hand);
-/// The resolved experiment as attached to the recording: with the default domain, processes, delivery and pace,
-/// without hosts and a view for RViz2, so that runs that differ only in these have the same recording.
-std::string WithoutDelivery(const Experiment& experiment);
-/// The same without events.
-std::string WithoutEvents(const Experiment& experiment);
-
 }  // namespace mascot

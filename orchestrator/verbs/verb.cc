@@ -2,8 +2,8 @@
 
 #include <iostream>
 
-#include "bus/leave.h"
 #include "experiment/toml/section.h"
+#include "system/failure.h"
 
 namespace mascot {
 

@@ -16,6 +16,7 @@
 
 #include "agent/laws/laws.h"
 #include "orchestrator/formats/mcap/writer.h"
+#include "orchestrator/recording/attached_experiment.h"
 #include "orchestrator/recording/compare.h"
 #include "orchestrator/recording/fingerprint.h"
 #include "orchestrator/recording/recording.h"
@@ -88,7 +89,7 @@ Experiment Load(const std::string& toml, const std::string& name, const Subject&
   Experiment whole = LoadExperiment(Section::FromText(toml, name), subject.plan.name);
   if (subject.ticks >= subject.plan.ticks) return whole;
   const auto last = static_cast<std::int64_t>(std::max<std::uint64_t>(subject.ticks - 1, 1));
-  std::string text = Changed(whole, {{.key = "events", .value = "[]"}});
+  std::string text = WithOverrides(whole, {{.key = "events", .value = "[]"}});
   for (const Event& event : whole.events)
     if (event.tick <= last && !event.law)
       text = WithEvent(std::move(text), event.tick, subject.plan.rate_hz, event.Toml());
@@ -126,7 +127,7 @@ Experiment ExperimentOf(const std::string& run, const Subject& subject, std::str
     return ours;
   }
   change = FirstChange(WithoutEvents(ours), WithoutEvents(recorded));
-  const std::vector<Override> delivery = DeliveryOf(ours);
+  const std::vector<Override> delivery = DeliveryOverrides(ours);
   return LoadExperiment(Section::FromText(recorded.resolved, subject.file, delivery), subject.plan.name,
                         /*checked=*/true);
 }

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "base/utf8.h"
+#include "bus/addresses.h"
 #include "bus/bus.h"
 #include "bus/leave.h"
 #include "bus/resources.h"
@@ -30,6 +31,7 @@
 #include "orchestrator/engines/row_feed.h"
 #include "system/children.h"
 #include "system/descendants.h"
+#include "system/failure.h"
 
 namespace mascot {
 namespace {

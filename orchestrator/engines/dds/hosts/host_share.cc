@@ -6,7 +6,6 @@
 #include <iostream>
 
 #include "base/utf8.h"
-#include "bus/leave.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
 #include "orchestrator/formats/outside_fields.h"
@@ -14,6 +13,7 @@
 #include "system/build.h"
 #include "system/descendants.h"
 #include "system/environment.h"
+#include "system/failure.h"
 
 namespace mascot {
 namespace {
