@@ -15,7 +15,7 @@ constexpr const char* kWhoseKeys[] = {"law", "control"};  // tables of which an 
 [[noreturn]] void Refuse(const Event& event, const std::string& why) { throw ConfigError({event.where + ": " + why}); }
 
 bool IsOfAgents(const std::string& key) {
-  return std::ranges::find(kWhoseKeys, SplitFirst(key).first) != std::end(kWhoseKeys);
+  return std::ranges::find(kWhoseKeys, SplitKey(key).first) != std::end(kWhoseKeys);
 }
 
 /// The key of override `index`, with which those of its keys begin.
@@ -217,11 +217,11 @@ void LiveExperiment::Set(const Event& event, const std::string& key, const Value
     for (const int agent : event.agents) SetFor(agent, event.where, key, value, touched);
     return;
   }
-  const auto [table, rest] = SplitFirst(key);
+  const auto [table, rest] = SplitKey(key);
   const bool is_of_team = table != "law" || laws_ == nullptr || FindRow(KeysOfLaw(*laws_, now_.law.name), rest);
   if (is_of_team) {
     tables_.Set(key, value, event.where);
-    touched.of_all.insert(table);
+    touched.of_all.emplace(table);
   }
   if (!IsOfAgents(key)) return;
   for (std::size_t k = 0; k < own_.size(); ++k)
@@ -247,16 +247,16 @@ void LiveExperiment::SetFor(int agent, const std::string& where, const std::stri
   };
   if (const auto table = TakenOver(k, key)) set(table->first, table->second);
   set(key, value);
-  touched.own[SplitFirst(key).first].insert(k);
+  touched.own[std::string(SplitKey(key).first)].insert(k);
 }
 
 std::optional<std::pair<std::string, Value>> LiveExperiment::TakenOver(std::size_t k, const std::string& key) const {
-  const auto [table, rest] = SplitFirst(key);
+  const auto [table, rest] = SplitKey(key);
   if (table != "law" || laws_ == nullptr) return std::nullopt;
   const std::vector<Key> rows = KeysOfLaw(*laws_, now_.agent(own_[k].id).law.name);
   const Key* row = FindRow(rows, rest);
   if (row == nullptr || row->kind != ValueKind::kAny) return std::nullopt;
-  const std::string path = table + "." + std::string(row->name);
+  const std::string path = "law." + std::string(row->name);
   if (key == path || tables_.Has(OverrideKey(k) + path)) return std::nullopt;
   return std::pair(path, tables_.Get(path).value_or(Value()));
 }
@@ -264,7 +264,7 @@ std::optional<std::pair<std::string, Value>> LiveExperiment::TakenOver(std::size
 // --- what no table says ---------------------------------------------------------------------------------
 
 void LiveExperiment::CheckKey(const Event& event, const std::string& key) const {
-  const auto [table, rest] = SplitFirst(key);
+  const auto [table, rest] = SplitKey(key);
   if (table == "law" && laws_ == nullptr) return;
   const Key* row = nullptr;
   if (table == "law") {

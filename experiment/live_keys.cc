@@ -16,13 +16,13 @@ void AddLive(const std::string& prefix, std::span<const Key> rows, std::vector<L
 
 }  // namespace
 
-std::pair<std::string, std::string> SplitFirst(const std::string& path) {
+std::pair<std::string_view, std::string_view> SplitKey(std::string_view path) {
   const std::size_t dot = path.find('.');
-  return {path.substr(0, dot), dot == std::string::npos ? "" : path.substr(dot + 1)};
+  return {path.substr(0, dot), dot == path.npos ? "" : path.substr(dot + 1)};
 }
 
-const Key* FindRow(std::span<const Key> rows, const std::string& path) {
-  const auto [name, rest] = SplitFirst(path);
+const Key* FindRow(std::span<const Key> rows, std::string_view path) {
+  const auto [name, rest] = SplitKey(path);
   const auto row = std::ranges::find(rows, name, &Key::name);
   if (row == rows.end()) return nullptr;
   if (rest.empty() || row->kind == ValueKind::kAny) return &*row;

@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,10 +23,10 @@ std::vector<LiveKey> LiveKeysOf(const Experiment& experiment, const LawCatalog& 
 std::vector<Key> KeysOfLaw(const LawCatalog& laws, const std::string& law);
 /// The names of all laws in the experiment, the team's first.
 std::vector<std::string> LawNamesIn(const Experiment& experiment);
-/// A dotted key as its first part and the rest.
-std::pair<std::string, std::string> SplitFirst(const std::string& path);
+/// A dotted key as its first part and the rest, which `path` must outlive.
+std::pair<std::string_view, std::string_view> SplitKey(std::string_view path);
 /// The row of the dotted key `path` in `rows`; null if there is none. Inside a table whose keys the user chooses, every
 /// key has the row of that table.
-const Key* FindRow(std::span<const Key> rows, const std::string& path);
+const Key* FindRow(std::span<const Key> rows, std::string_view path);
 
 }  // namespace mascot

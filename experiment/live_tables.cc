@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "experiment/control.h"
+#include "experiment/live_keys.h"
 #include "experiment/read_experiment.h"
 
 namespace mascot {
@@ -121,13 +122,12 @@ ValueTables LiveTablesOf(const std::string& resolved) {
 }
 
 bool ShareATable(const Event& a, const Event& b) {
-  const auto table_of = [](std::string_view key) { return key.substr(0, key.find('.')); };
   const auto changes = [&](const Event& event, std::string_view table) {
     return (table == "law" && (event.law || event.go_to)) ||
-           std::ranges::any_of(event.set, [&](const auto& entry) { return table_of(entry.first) == table; });
+           std::ranges::any_of(event.set, [&](const auto& entry) { return SplitKey(entry.first).first == table; });
   };
   return ((a.law || a.go_to) && changes(b, "law")) ||
-         std::ranges::any_of(a.set, [&](const auto& entry) { return changes(b, table_of(entry.first)); });
+         std::ranges::any_of(a.set, [&](const auto& entry) { return changes(b, SplitKey(entry.first).first); });
 }
 
 std::vector<Change> ReadAgain(const TouchedTables& touched, Section& tables, const std::vector<int>& owners,
