@@ -27,8 +27,8 @@ constexpr Key kGraphKeys[] = {
     key::Rows("edges", {1, kMaxAgents}, "`[i, j]`, ... (i hears j)").Required(),
 };
 
-constexpr Key kAgents =
-    key::Numbers("agents", {1, kMaxAgents}, "with set: whom it is for").Otherwise("all whom it can concern");
+constexpr Key kAgents = key::Numbers("agents", {1, kMaxAgents}, "with set: the agents for which it is")
+                            .Otherwise("all agents that have the key");
 
 constexpr Key kEventKeys[] = {
     key::Number("at_s", {0, 1e6}, "when; a whole number of ticks").Required(),

@@ -23,7 +23,7 @@ struct Event {
 
   std::int64_t tick = 0;
   std::map<std::string, Value> set = {};  ///< live keys, dotted, and their new values
-  std::vector<int> agents = {};           ///< of `set`: whom it is for; empty: all whom it can concern
+  std::vector<int> agents = {};           ///< of `set`: the agents for which it is; empty: all agents that have the key
   std::optional<GoTo> go_to = {};         ///< replaces that agent's waypoints by this one
   std::optional<Edges> graph = {};        ///< the edges that work from now on, of those that the file declares
   Edges cut = {};                         ///< edges that work no more

@@ -335,7 +335,7 @@ void LinearCase::WarnOfLag(int leader) const {
 /// Why the linear theory does not apply to the team; empty: it does.
 std::string WhyNot(const Experiment& experiment, const Linearity& linearity, const Timeline& timeline) {
   if (!linearity.team) return linearity.why_not;
-  if (experiment.schedule.range_m() > 0) return "graph.range_m: who hears whom depends on where they go";
+  if (experiment.schedule.range_m() > 0) return "graph.range_m: which agents hear which depends on where they go";
   if (experiment.size() > kLargestSpectrum) return fmt::format("there are more than {} agents", kLargestSpectrum);
   for (const AgentConfig& agent : experiment.agents)
     if (agent.stop_s < experiment.run.duration_s)

@@ -115,7 +115,7 @@ void Print(const Graph& graph, const GraphFacts& facts, const Schedule& schedule
                            facts.symmetric ? "symmetric" : "directed");
   if (const std::string when = WhenEdgesWork(schedule); !when.empty()) std::cout << when << "\n";
   if (graph.size() <= kLargestPrinted) {
-    PrintMatrix("adjacency (row i: whom agent i hears)", Adjacency(graph));
+    PrintMatrix("adjacency (row i: the agents that agent i hears)", Adjacency(graph));
     PrintMatrix("laplacian", graph.Laplacian());
     PrintSpectrum(graph);
   }

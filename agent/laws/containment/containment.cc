@@ -86,7 +86,7 @@ std::shared_ptr<const LawParams> ReadContainment(const Experiment& experiment, c
   if (section.Wrong("leaders") || experiment.graph.size() != experiment.size()) return params;
   if (const auto alone = NotReached(experiment.graph, params->team.leaders); !alone.empty())
     section.Fail("leaders",
-                 "expected leaders whom every other agent hears, directly or not, got none for " + AgentList(alone));
+                 "expected leaders that every other agent hears, directly or not, got none for " + AgentList(alone));
   return params;
 }
 

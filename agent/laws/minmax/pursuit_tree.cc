@@ -34,8 +34,8 @@ std::vector<int> ReadTree(const Experiment& experiment, int root, Section& law) 
     return nobody;
   }
   if (const auto tree = experiment.graph.SpanningTree(root)) return *tree;
-  law.Fail("leader", "expected a root whom everyone hears, directly or not, got " + std::to_string(root) +
-                         ", who does not reach " + AgentList(NotReached(experiment.graph, root)));
+  law.Fail("leader", "expected a root that every agent hears, directly or not, got " + std::to_string(root) +
+                         ", which does not reach " + AgentList(NotReached(experiment.graph, root)));
   return nobody;
 }
 

@@ -530,11 +530,11 @@ TEST(LawErrors, OfMinmaxNameTheEdge) {
 
 TEST(LawErrors, OfMinmaxNameAgentsThatTheRootDoesNotReach) {
   const std::string beta = "leader = 1\nbeta = [0.5, 1.0, 1.5, 2.0, 2.5]";
-  EXPECT_EQ(
-      Mistake("minmax", beta, "edges = [[2, 1], [3, 2], [4, 5], [5, 4]]"),
-      "law.leader: expected a root whom everyone hears, directly or not, got 1, who does not reach agents 4 and 5");
+  EXPECT_EQ(Mistake("minmax", beta, "edges = [[2, 1], [3, 2], [4, 5], [5, 4]]"),
+            "law.leader: expected a root that every agent hears, directly or not, got 1, which does not reach agents 4 "
+            "and 5");
   EXPECT_EQ(Mistake("minmax", beta, "edges = [[2, 1], [3, 2], [4, 3], [1, 5]]"),
-            "law.leader: expected a root whom everyone hears, directly or not, got 1, who does not reach agent 5");
+            "law.leader: expected a root that every agent hears, directly or not, got 1, which does not reach agent 5");
 }
 
 TEST(LawErrors, AreNotedOnceHoweverManyAgentsThereAre) {

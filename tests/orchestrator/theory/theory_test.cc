@@ -709,7 +709,7 @@ TEST(Theory, SaysWhyItIsSilent) {
   EXPECT_EQ(Of(consensus + "[link]\ndelay_s = 0.5\n[[link.override]]\nedges = [[1, 2]]\ndelay_s = 0.4\n").silent,
             "so many agents, different or with so long delays, are more than its eigenvalues are computed for");
   EXPECT_EQ(Of(kFive + "[graph]\ntopology = 'path'\nrange_m = 10.0\n[law]\nname = 'consensus'\n").silent,
-            "graph.range_m: who hears whom depends on where they go");
+            "graph.range_m: which agents hear which depends on where they go");
   EXPECT_EQ(Of(consensus + "[[agents.override]]\nid = 5\nstop_s = 3.0\n").silent,
             "agents.override.stop_s: agent 5 stays behind");
   EXPECT_EQ(Of(kFive + "[law]\nname = 'custom'\npython = 'def control(t, me, neighbours): return 0, 0'\n").silent,

@@ -190,7 +190,8 @@ TEST_F(Verbs, CheckSaysWhyTheoryIsSilent) {
   EXPECT_THAT(
       Printed(SetUpCheck, {path(), "--set", "graph.range_m=100.0"}),
       AllOf(HasSubstr("  spanning tree  at every time, and within range at the start\n"),
-            HasSubstr("  theory         silent, because graph.range_m: who hears whom depends on where they go\n")));
+            HasSubstr(
+                "  theory         silent, because graph.range_m: which agents hear which depends on where they go\n")));
 }
 
 TEST_F(Verbs, CheckTimesTheEdgesOfMinMax) {
@@ -222,11 +223,12 @@ TEST_F(Verbs, GraphPrintsMatricesAndWhatTheyImply) {
   EXPECT_THAT(text, AllOf(HasSubstr("4 agents, 4 edges, directed\n"), HasSubstr("laplacian\n"),
                           HasSubstr("components     {1-4}\n"), HasSubstr("roots          1-4\n"),
                           HasSubstr("spanning tree  root 1; follows:")));
-  EXPECT_THAT(Printed(SetUpGraph, {path()}),
-              AllOf(HasSubstr("adjacency (row i: whom agent i hears)\n  0 1 0 0\n  1 0 1 0\n  0 1 0 1\n  0 0 1 0\n"),
-                    HasSubstr("laplacian\n   1 -1  0  0\n  -1  2 -1  0\n   0 -1  2 -1\n   0  0 -1  1\n"),
-                    HasSubstr("eigenvalues of the laplacian\n  0 0.585786 2 3.41421\n"),
-                    HasSubstr("lambda_2       0.585786\n"), HasSubstr("follows: 2->1 3->2 4->3\n")));
+  EXPECT_THAT(
+      Printed(SetUpGraph, {path()}),
+      AllOf(HasSubstr("adjacency (row i: the agents that agent i hears)\n  0 1 0 0\n  1 0 1 0\n  0 1 0 1\n  0 0 1 0\n"),
+            HasSubstr("laplacian\n   1 -1  0  0\n  -1  2 -1  0\n   0 -1  2 -1\n   0  0 -1  1\n"),
+            HasSubstr("eigenvalues of the laplacian\n  0 0.585786 2 3.41421\n"), HasSubstr("lambda_2       0.585786\n"),
+            HasSubstr("follows: 2->1 3->2 4->3\n")));
 }
 
 TEST_F(Verbs, GraphSaysWhatIsMissingInADisconnectedGraph) {
