@@ -11,11 +11,11 @@ namespace mascot {
 
 // What a phase of a run has come to, beside what theory predicts. `phase`: the phase as an experiment of its own.
 
-/// Adds "consensus" and, if the law has one, "formation", measured and predicted. The prediction must outlive the
-/// figures.
+/// Adds the figures of "consensus", measured, predicted and the difference of both, and, if a formation was measured,
+/// those of "formation". `prediction` must outlive `figures`.
 void AddAim(const Experiment& phase, const Aim& measured, const Prediction& prediction, Figures& figures);
-/// Mean position, decay rate, settling time and formation in the lines of the text summary. `figures`: as AddAim() has
-/// added them.
+/// Mean position, decay rate, settling time and formation as lines of the text summary. `figures` must have those that
+/// AddAim() adds.
 std::string AimText(const Experiment& phase, const Aim& measured, const Prediction& prediction, const Figures& figures);
 
 }  // namespace mascot

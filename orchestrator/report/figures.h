@@ -15,9 +15,9 @@
 
 namespace mascot {
 
-/// What a figure comes to. Nothing: it does not apply, or was never reached. FigureValues: one for each waypoint or the
-/// like. Words say why there is no number, or what a number is. A table, such as that of all edges, is made only for
-/// who prints it.
+/// The value of a figure. std::monostate: the figure does not apply, or its value was never reached. FigureValues: one
+/// value for each waypoint or the like. A string: why there is no number, or what a number means. A function makes a
+/// table, such as that of all edges; it is called only when the table is printed.
 using FigureValue =
     std::variant<std::monostate, bool, std::int64_t, double, FigureValues, std::string, std::function<Json()>>;
 
@@ -33,7 +33,7 @@ struct Figure {
 /// (JSON, terminal, tables) take it from here, by its name.
 class Figures {
  public:
-  /// No two figures have the same name.
+  /// Adds a figure. No other one may have this name.
   void Add(std::string name, FigureValue value);
   template <class Value>
   void Add(std::string name, const std::optional<Value>& value) {
@@ -42,20 +42,21 @@ class Figures {
   void AddVector(const std::string& name, const Eigen::Vector3d& value);
   /// A vector; if there is none, one figure called `name` without a value.
   void AddVector(const std::string& name, const std::optional<Eigen::Vector3d>& value);
-  /// Words; empty: there are none.
+  /// Adds words; with empty ones, a figure without a value.
   void AddWords(std::string name, const std::string& words);
   /// Adds all figures of `part`.
   void Add(const Figures& part);
 
   const std::vector<Figure>& all() const { return all_; }
-  /// The number that a figure has come to, or none. There must be a figure of this name, as in all that follow.
+  /// The number of a figure; nothing: it has none. Here and below, there must be a figure of this name.
   std::optional<double> Number(std::string_view name) const;
-  /// The number of a figure that always has one.
+  /// The number of a figure that always has one. Throws std::bad_optional_access if it has none.
   double Known(std::string_view name) const { return Number(name).value(); }
-  /// A count, of what is always counted.
+  /// The number of a figure that always is a count. Throws std::bad_variant_access if it is none.
   std::int64_t Count(std::string_view name) const { return std::get<std::int64_t>(Find(name)); }
+  /// The vector that AddVector() added under this name; nothing: it was added without a value.
   std::optional<Eigen::Vector3d> Vector(const std::string& name) const;
-  /// Words; empty: there are none.
+  /// The words of a figure; empty: it has none.
   std::string Words(std::string_view name) const;
 
  private:
@@ -67,7 +68,7 @@ class Figures {
 
 /// The figures as a JSON object: each step of a dotted name is an object in it, each vector a list of three.
 Json JsonOf(const Figures& figures);
-/// The same, added to an object.
+/// Adds the figures to a JSON object, in the form of JsonOf().
 void AddTo(Json& object, const Figures& figures);
 
 }  // namespace mascot

@@ -17,12 +17,12 @@ namespace mascot {
 /// Adds for each law its figures as measured, "predicted", "bounds", "tolerances", "rounding" and "reasons".
 void AddLaws(const Experiment& experiment, std::span<const LawMeasured> measured, const Prediction& prediction,
              Figures& figures);
-/// The same as lines of the text summary.
+/// The figures of AddLaws() as lines of the text summary.
 std::string LawsText(const Experiment& experiment, std::span<const LawMeasured> measured, const Prediction& prediction);
 /// Adds the predicted figures by name: "figures", "figure_bounds", "figure_tolerances", "figure_rounding" and
 /// "figure_reasons" of `check --json`.
 void AddPredictedFigures(const Experiment& experiment, const Prediction& prediction, Json& json);
-/// The same: label and text of each line of `check`.
+/// The predicted figures as text: label and text of each line that `check` prints.
 std::vector<std::pair<std::string, std::string>> PredictedFigureLines(const Experiment& experiment,
                                                                       const Prediction& prediction);
 

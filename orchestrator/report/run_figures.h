@@ -48,7 +48,7 @@ class RunFigures {
   const FlownRun& run() const { return run_; }
   /// Rows of the run: one more than ticks, or none.
   std::int64_t rows() const { return rows_; }
-  /// All figures but those of earlier phases, as summary.json has them. Nothing is known yet of "exit" and "total_s".
+  /// The figures of summary.json, without those of earlier phases alone. "exit" and "total_s" have no value yet.
   const Figures& all() const { return all_; }
   /// By phase; at least one. The figures of the last are among all().
   const std::vector<PhaseFigures>& phases() const { return phases_; }

@@ -28,17 +28,17 @@ void RefuseEngine(const std::string& engine, const Experiment& experiment);
 /// One experiment on one engine.
 class Flight {
  public:
-  /// Every sink gets every row, in tick order. `requests`: where people steer the run, one of the sinks; null: nowhere.
-  /// `ros`, if given, is published for RViz2. All arguments must outlive this object.
+  /// Every sink gets every row, in tick order. `requests`: what people ask of the run, also one of the sinks; null:
+  /// they cannot ask anything. `ros`, if given, is published for RViz2. All arguments must outlive this object.
   Flight(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
          const std::vector<RowSink*>& sinks, RunRequests* requests, Console& console, StopSignal& stop,
          RosSource* ros = nullptr);
 
-  /// What this file gets if this process is killed, by whatever, over DDS or with laws of users. To be called before
-  /// Fly().
+  /// Sets the contents that the file `path` gets if this process is killed during a run over DDS, or during one with
+  /// laws of users in this process. Call it before Fly().
   void LeaveIfKilled(const std::string& path, const std::string& text);
-  /// Flies. The first signal ends the run after its tick. A failure is reported in the result, which is final: to be
-  /// written to files before End() is called.
+  /// Flies. The first signal ends the run after its tick. A failure is reported in the result. The result is final:
+  /// write it to files before calling End().
   EngineResult Fly();
   /// Ends what the run has started (DdsEngine::End()).
   void End();

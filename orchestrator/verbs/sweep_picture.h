@@ -23,7 +23,7 @@ struct SweepPicture {
   /// Whether the sweep can be plotted: over at most two keys, or over seeds alone. Throws ConfigError if --plot asks
   /// for a plot that is not possible.
   bool IsDrawable(const SweepPlan& plan) const;
-  /// Draws the complete table `out`. Returns an exit code.
+  /// Draws the complete table at the path `out` by scripts/plot_sweep.py. Returns its exit code, as RunScript() does.
   int Draw(const std::string& out, const SweepPlan& plan, const SweepIdentity& identity, StopSignal& stop) const;
   /// Prints the names of the pictures that Draw() made.
   void PrintNames(const std::string& out) const;

@@ -11,9 +11,9 @@ namespace mascot {
 
 /// Exit codes. A verb that a signal interrupts returns 128 + signal.
 inline constexpr int kExitDone = 0;
-inline constexpr int kExitFailed = 1;      ///< the run failed; what was to be proved is not so
-inline constexpr int kExitUsage = 2;       ///< wrong arguments or experiment; thrown as ConfigError
-inline constexpr int kExitIncomplete = 3;  ///< done, as far as a recording goes that was cut
+inline constexpr int kExitFailed = 1;  ///< a run failed, a request was refused, or a recording is not what it should be
+inline constexpr int kExitUsage = 2;   ///< wrong arguments or experiment; thrown as ConfigError
+inline constexpr int kExitIncomplete = 3;  ///< done for what is left of a recording that was cut or damaged
 
 /// Calls `action`, and returns its exit code. What it throws becomes lines on stderr and kExitUsage or kExitFailed.
 int ExitCodeOf(const std::function<int()>& action);

@@ -49,7 +49,8 @@ class Viewers {
 
   /// From now on, lines about viewers are also written to logs/viewers.log; the first line creates the file.
   void LogTo(const RunFolder& folder);
-  /// Call it when the RunRequests are among the sinks, too.
+  /// Adds sinks that show viewers the rows and the events of the run. The RunRequests must be among `sinks` already,
+  /// because they know which events were given by hand.
   void AddTo(std::vector<RowSink*>& sinks);
   /// Viewers see how the run ended until this object ends, which closes their connections.
   void SayHowItEnded(const EngineResult& result);
@@ -71,16 +72,16 @@ class Viewers {
 
   /// Prints a line about viewers, and keeps it in the log. From any thread.
   void Log(const std::string& line);
-  /// Adds it to the log.
+  /// Adds a line to the log, or to `lines_` until there is one. The caller holds `mutex_`.
   void Keep(const std::string& line);
 
   RunRequests& requests_;
   Console& console_;
   std::mutex mutex_;                // guards what follows
-  std::vector<std::string> lines_;  // until there is a log
+  std::vector<std::string> lines_;  // lines for the log, until its folder is known
   std::optional<std::filesystem::path> log_;
   std::optional<LogFile> file_;
-  bool no_file_ = false;  // it could not be made
+  bool no_file_ = false;  // the log file could not be made
 
   std::optional<LiveView> view_;
   std::optional<Events> events_;
