@@ -8,22 +8,23 @@
 
 namespace mascot {
 
-/// Sends a signal to a process. Not to one that was never started, or has been reaped: to kill(2), process 0 is all of
-/// our process group, -1 everybody, and a number that was reaped may be somebody else's by now.
+/// Sends a signal to a process; does nothing if `process` is not positive, because kill(2) takes 0 for all of our
+/// process group and -1 for every process. The process must not have been reaped: another one may have its number by
+/// now.
 void SignalProcess(pid_t process, int signal);
 
-/// In place of a status from waitpid: how the process ended cannot be told, because somebody else has reaped it.
+/// In place of a status from waitpid: how the process ended cannot be told, because other code has reaped it.
 inline constexpr int kUnknownEnd = -1;
 
-/// "exited with code 3", "was killed by signal 11 (Segmentation fault)", of a status from waitpid.
+/// "exited with code 3", "was killed by signal 11 (Segmentation fault)", for a status from waitpid or kUnknownEnd.
 std::string EndText(int status);
 
-/// Owns a child process, or none. Nobody else reaps it, and its number is forgotten when it is reaped: so a signal can
-/// reach no other process that got the same number later.
+/// Owns a child process, or none. No other code reaps the process, and this object forgets its number when it reaps it:
+/// so a signal can reach no other process that got the same number later.
 class ChildProcess {
  public:
   ChildProcess() = default;
-  /// `number`: of a process that this one has just started.
+  /// `number`: the id of a process that this process has just started.
   explicit ChildProcess(pid_t number) : number_(number) {}
   ~ChildProcess();  ///< kills and reaps
   ChildProcess(ChildProcess&& other) noexcept : number_(std::exchange(other.number_, 0)) {}
@@ -39,7 +40,8 @@ class ChildProcess {
   /// Reaps the process if it has ended. Returns its status from waitpid, or kUnknownEnd; nothing: it still runs, or
   /// there is none.
   std::optional<int> ReapIfEnded() { return Reap(/*wait=*/false); }
-  /// Waits until the process has ended, and reaps it. Returns likewise.
+  /// Waits until the process has ended, and reaps it. Returns its status from waitpid, or kUnknownEnd; nothing: there
+  /// is none.
   std::optional<int> Reap() { return Reap(/*wait=*/true); }
   /// Leaves the process to itself: it is neither killed nor reaped.
   void Release() { number_ = 0; }

@@ -37,13 +37,13 @@ class Children {
   Children(const Children&) = delete;
   Children& operator=(const Children&) = delete;
 
-  /// Starts `program` (a path, or a name in PATH) with `arguments`, under the name `process`; its output goes to the
-  /// file `log`. Returns its process id. Throws std::runtime_error if it cannot be started.
+  /// Starts `program` (a path, or a name in PATH) with `arguments`; messages call it `process`, and its output goes to
+  /// the file `log`. Returns its process id. Throws std::runtime_error if it cannot be started.
   pid_t Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments,
               const std::filesystem::path& log) {
     return Spawn(process, program, arguments, log, {});
   }
-  /// Descriptors for a child's standard input and output; -1: /dev/null, and the log.
+  /// Descriptors for a child's standard input and output; -1: the input is /dev/null, the output goes to the log.
   struct Streams {
     int input = -1, output = -1;
   };

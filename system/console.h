@@ -16,7 +16,7 @@ class Console {
 
   /// Prints a line.
   void Line(const std::string& text);
-  /// Prints a line in any case: something is lost.
+  /// Prints a line also if the console is quiet: something is lost.
   void Warning(const std::string& text);
   /// Prints a line of a child's output, with the child's name in front.
   void ChildLine(const std::string& process, const std::string& text);

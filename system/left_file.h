@@ -7,9 +7,9 @@ namespace mascot {
 /// Writes all of `bytes`. Returns false on failure, with errno set. May be called by a signal handler.
 [[nodiscard]] bool WriteAll(int descriptor, std::string_view bytes);
 
-/// A small file that a process leaves at its end, maybe from a signal handler: it calls only what may be called there.
-/// Made only if nothing has its name; no link is followed. What cannot be written whole is removed: nobody is there any
-/// more to be told.
+/// A small file that a process leaves behind at its end. Signal handlers may use this class. The file is made only if
+/// nothing has its name; a link in its place is not followed. A file that cannot be written whole is removed, because
+/// the process can report it no more.
 class LeftFile {
  public:
   explicit LeftFile(const char* path);

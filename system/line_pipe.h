@@ -27,26 +27,26 @@ class LineReader {
  private:
   int descriptor_;
   std::string text_;
-  std::size_t taken_ = 0;  // how much of text_ has been given
+  std::size_t taken_ = 0;  // bytes of text_ that Next() has given
   bool ended_ = false;
 };
 
-/// Writes lines into a pipe from a thread of its own, so that a reader who does not read holds up nobody. Does not own
-/// the descriptor, which becomes non-blocking.
+/// Writes lines into a pipe from a thread of its own, so that the caller never waits for the process that reads. Does
+/// not own the descriptor, which becomes non-blocking.
 class LineWriter {
  public:
-  /// `last_words`: how long it waits at its end for a reader who takes nothing; a busy machine may keep one for
-  /// seconds.
+  /// `last_words`: how long the destructor waits for a reader that takes nothing; on a busy machine it may take nothing
+  /// for seconds.
   explicit LineWriter(int descriptor, std::chrono::milliseconds last_words = std::chrono::seconds(5));
   ~LineWriter();  ///< writes what is left, as long as the reader takes some of it within `last_words`
   LineWriter(const LineWriter&) = delete;
   LineWriter& operator=(const LineWriter&) = delete;
 
-  /// Appends a line; if the reader has gone, it is lost.
+  /// Appends a line; if the reader has closed the pipe, the line is lost.
   void Write(const std::string& line);
   /// How many bytes are not written yet.
   std::size_t waiting() const;
-  /// Whether the reader has gone.
+  /// Whether the reader has closed the pipe.
   bool broken() const;
 
  private:
@@ -57,9 +57,9 @@ class LineWriter {
   std::chrono::milliseconds last_words_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::string lines_;  // that the thread has not taken yet
+  std::string lines_;  // lines that the thread has not taken yet
   std::size_t waiting_ = 0;
-  std::optional<std::chrono::steady_clock::time_point> until_;  // set at the end
+  std::optional<std::chrono::steady_clock::time_point> until_;  // set by the destructor: when to give up
   bool broken_ = false;
   std::thread thread_;  // last: it uses the members above
 };

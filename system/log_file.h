@@ -9,12 +9,12 @@
 
 namespace mascot {
 
-/// A log, to which text is appended at once. A log that cannot be written any more, on a full disk, say, ends nothing
-/// else: it ends there, without a gap, and says so once. Not thread-safe.
+/// A log, to which text is appended at once. A log that cannot be written any more, for example on a full disk, ends
+/// there, without a gap, and says so once; the program goes on. Not thread-safe.
 class LogFile {
  public:
-  /// Is told once, by the thread that writes: "cannot write PATH: No space left on device: this log ends here, and
-  /// what would follow is lost".
+  /// Called once, in the thread that writes, with the words "cannot write PATH: No space left on device: this log ends
+  /// here, and what would follow is lost".
   using Tell = std::function<void(const std::string& words)>;
 
   /// Makes the file, or empties it. A link in its place is not followed. Throws std::runtime_error: "cannot write PATH:

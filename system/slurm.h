@@ -9,8 +9,8 @@ namespace mascot {
 /// std::runtime_error if `scontrol` does not tell them.
 std::vector<std::string> NodesOfTheJob();
 
-/// Words that start what follows them once on each of these nodes, hand it their standard input and merge what it
-/// prints, line by line.
+/// Words in front of a command that start it once on each of these nodes, hand it their standard input, and merge what
+/// it prints, line by line.
 std::vector<std::string> OnEachNode(const std::vector<std::string>& nodes);
 
 }  // namespace mascot

@@ -29,7 +29,7 @@ struct Program {
   Group group = Group::kOurs;
   Signals signals = Signals::kUnblocked;
   int input = kOursToo, output = kOursToo, errors = kOursToo;  ///< a descriptor, kOursToo, or kNowhere: /dev/null
-  std::vector<int> shared = {};  ///< further descriptors that it gets, under the same numbers; of others it gets none
+  std::vector<int> shared = {};  ///< further descriptors that it gets, under the same numbers; it gets no others
 };
 
 /// Starts a program. Throws std::runtime_error if it cannot be started: "cannot start PROGRAM: No such file or
@@ -42,7 +42,7 @@ ChildProcess Spawn(const Program& program);
 ChildProcess Fork(const std::function<void()>& work);
 
 /// From now on the kernel kills this process when the thread that started it ends. Returns whether `parent` still is
-/// its parent: if not, that ended before.
+/// its parent; if not, `parent` had ended before.
 [[nodiscard]] bool DieWith(pid_t parent);
 
 }  // namespace mascot

@@ -5,14 +5,14 @@
 
 namespace mascot {
 
-/// Whether this process ignores `signal`. What nohup made it ignore must not be blocked: blocked signals are queued
-/// even if they are ignored.
+/// Whether this process ignores `signal`. A signal that nohup made this process ignore must not be blocked: blocked
+/// signals are queued even if they are ignored.
 bool IsIgnored(int signal);
 
 /// Blocks SIGINT, SIGTERM, SIGUSR1, by which batch systems say that the time of a job is nearly up, SIGCHLD and, unless
 /// it is ignored (nohup), SIGHUP, so that a loop can wait in one call for a signal, for a wake-up from another thread,
 /// or for a timeout. No handlers, no globals. Make it first in main: libraries start threads, which must inherit the
-/// blocked mask. If a law closes its descriptors, it opens new ones. Throws std::system_error.
+/// blocked mask. If a law closes the descriptors of this object, the object opens new ones. Throws std::system_error.
 class StopSignal {
  public:
   StopSignal();
