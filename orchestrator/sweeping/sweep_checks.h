@@ -10,7 +10,7 @@
 
 namespace mascot {
 
-/// Thrown where a signal ends a sweep early.
+/// Thrown when a signal ends a sweep early.
 struct Interrupted {
   int signal;
 };
@@ -18,20 +18,21 @@ struct Interrupted {
 /// Throws Interrupted if a signal has come.
 void ThrowIfInterrupted(StopSignal& stop);
 
-/// Looks at the runs of a sweep before they fly. Throws Interrupted if a signal comes.
+/// Checks the runs of a sweep before they fly. All functions throw Interrupted if a signal comes.
 class SweepChecks {
  public:
   /// All arguments must outlive this object. `pool` executes WorkOf(sweep).
   SweepChecks(const Sweep& sweep, WorkerPool& pool, StopSignal& stop)
       : sweep_(sweep), tasks_(sweep.plan), pool_(pool), stop_(stop) {}
 
-  /// The first valid experiment of the sweep. Throws ConfigError with the mistakes of the first run if no run is valid;
-  /// with `first_alone`, if that one is not.
+  /// The first run of the sweep that is a valid experiment. Throws ConfigError with the mistakes of the first run if no
+  /// run is valid; with `first_alone`, already if the first run is not.
   CheckedRun FirstValid(bool first_alone);
-  /// The laws of every run, from a look at the first of those that are alike. Numbers count only where they decide
-  /// about laws, or where a run is not valid: another number may be.
+  /// The laws of every run, from checks of the representatives. Runs that differ in numbers alone count as alike,
+  /// unless numbers decide which laws a run has, or a representative is not valid: with other numbers it may be.
   KnownLaws Laws();
-  /// The user's metrics. Throws ConfigError for mistakes in their file, or if a name is that of another column.
+  /// The user's metrics. Throws ConfigError for mistakes in their file, or if a metric has the name of one of
+  /// `other_columns`.
   std::vector<PythonMetric> Metrics(const std::vector<std::string>& other_columns);
   /// Throws ConfigError with the mistakes of the first trial of the plan that is not valid.
   void CheckTrials();

@@ -21,28 +21,29 @@ struct MetricFile {
   std::string text;
 };
 
-/// Experiment file and plan of a sweep. All that it refers to must outlive it.
+/// Experiment file and plan of a sweep. All that this object refers to must outlive it.
 struct Sweep {
   const std::string& name;  ///< path of the experiment file as typed
   const std::string& text;  ///< its contents
   const SweepPlan& plan;
   const LawAxis& laws;
   const MetricFile& metric_file;
-  std::shared_ptr<std::optional<PythonMetrics>> own = {};  ///< made by each worker for itself, when it needs them
+  /// Made by each worker process for itself, when it needs them; null: there is no metric file.
+  std::shared_ptr<std::optional<PythonMetrics>> own = {};
 
-  /// Throws ConfigError if it is no valid experiment, or one in real time.
+  /// The experiment of a run or a trial. Throws ConfigError if it is not valid, or runs in real time.
   Experiment Load(const SweepPoint& point) const;
 };
 
-/// What is found out about an experiment without flying it.
+/// What the check of an experiment finds without flying it.
 struct CheckedRun {
   std::string resolved;
   std::vector<std::string> draws;  ///< DrawsOf()
   RunLaws laws;
 };
 
-/// The tasks of the worker processes of a sweep of n runs: task k < n executes run k and answers with its metric cells,
-/// the others answer with what they look at.
+/// The tasks of the worker processes of a sweep of n runs: task k < n executes run k and answers with its metric cells;
+/// the other tasks check a run or a trial, or list the user's metrics.
 class SweepTasks {
  public:
   explicit SweepTasks(const SweepPlan& plan) : runs_(plan.size()), trials_(plan.trials().size()) {}
@@ -57,7 +58,7 @@ class SweepTasks {
   std::size_t runs_, trials_;
 };
 
-/// Executes the tasks of a sweep. Answers are JSON.
+/// A function that executes the tasks of a sweep in a worker process. Its answers are JSON.
 WorkerPool::Work WorkOf(const Sweep& sweep);
 CheckedRun CheckedRunFrom(const std::string& answer);
 std::vector<PythonMetric> MetricsFrom(const std::string& answer);

@@ -19,7 +19,7 @@ class Sweeper {
   struct Options {
     int jobs = 0;                     ///< number of processes; 0: one per core
     std::string out;                  ///< path of the table
-    std::optional<Shard> shard = {};  ///< only these runs
+    std::optional<Shard> shard = {};  ///< fly only the runs of this share; nothing: all
     std::string metric;               ///< a column that the table must have; "": none
     MetricFile metric_file = {};
     bool force = false;  ///< overwrite the table of another sweep
@@ -29,21 +29,21 @@ class Sweeper {
     std::size_t flown = 0;                ///< runs executed by this call
     std::size_t failed = 0;               ///< how many of these failed
     std::optional<std::size_t> in_table;  ///< rows in the table, also from earlier calls; absent: no table was opened
-    std::vector<std::string> lines;       ///< of a whole sweep that was not interrupted: what became of its runs
+    std::vector<std::string> lines;       ///< what became of the runs of a whole sweep that came to its end
     SweepIdentity identity = {};
     int signal = 0;  ///< the signal that ended the sweep early; 0: none
   };
 
   /// `name`: path of the experiment file as typed. `text`: its contents, read once, so that later edits have no effect.
-  /// (Files that it names are read for each run.)
+  /// (Files that the experiment names are read for each run.)
   Sweeper(std::string name, std::string text, const SweepPlan::Words& words);
 
-  /// Executes every run that is missing in the table. Only that of a whole sweep has statistics beside it. Throws
+  /// Executes every run that is missing in the table. Only the table of a whole sweep gets statistics beside it. Throws
   /// ConfigError if no run is a valid experiment (with the mistakes of the first run), if the table would not have the
   /// column `metric`, or if SweepFile refuses the table; std::runtime_error if the table cannot be written.
   Outcome Fly(const Options& options, StopSignal& stop) const;
-  /// Finds what Fly() would refuse before the first run, and flies nothing. Throws ConfigError. The outcome says
-  /// whether a signal came.
+  /// Makes the checks that Fly() makes before it opens the table, and flies nothing. Throws ConfigError. The outcome
+  /// says whether a signal came.
   Outcome Check(const Options& options, StopSignal& stop) const;
   const SweepPlan& plan() const { return plan_; }
 

@@ -8,12 +8,13 @@
 
 namespace mascot {
 
-/// A column of measured numbers as a picture says it: "consensus.settling_time_s" as "settling time (s)".
+/// The label in a picture of a column of measured numbers: "settling time (s)" for "consensus.settling_time_s".
 std::string LabelOfColumn(std::string_view column);
-/// A metric in Python: words of its name, and the unit that it says.
+/// The label of a user's metric: the words of its name, and the unit that the metric declares, or else that of its
+/// name.
 std::string LabelOfMetric(const PythonMetric& metric);
-/// A key of the experiment file as a picture says it, with the unit of its row: "law.p_gain" as "law.p_gain (1/s²)".
-/// `laws`: those whose keys [law] may have.
+/// The label of a key of the experiment file, with the unit of its row: "law.p_gain (1/s²)" for "law.p_gain". `laws`:
+/// names of the laws whose keys [law] may have.
 std::string LabelOfKey(std::string_view key, const std::vector<std::string>& laws);
 
 }  // namespace mascot

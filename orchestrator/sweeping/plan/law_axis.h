@@ -9,12 +9,12 @@
 
 namespace mascot {
 
-/// A string of TOML, or a word as the command line has it, without quotes.
+/// A value as typed, without the quotes of TOML, if it has some.
 std::string Unquoted(const std::string& value);
 
-/// The laws of a sweep over `law.name`. The file's [law] table has the keys of one law: what another one does not know
-/// is left out of its runs, if one of these laws knows it. So is a key that --set gives one value. A key with several
-/// values must be known to every law.
+/// The laws of a sweep over `law.name`. The file's [law] table has the keys of one law. A key in it that another law
+/// does not know is left out of the runs of that law, if at least one law of the sweep or the file's own knows it. The
+/// same holds for a key to which --set gives one value; a key with several values must be known to every law.
 class LawAxis {
  public:
   /// `document`: the experiment file, parsed.
@@ -22,7 +22,8 @@ class LawAxis {
 
   /// The values of law.name; empty: the sweep does not set it.
   const std::vector<std::string>& laws() const { return laws_; }
-  /// What a run sets, without the keys that its law does not know.
+  /// The overrides of a run, without the keys that its law does not know, and with orders to remove these from the
+  /// file's table.
   std::vector<Override> Fit(const std::vector<Override>& overrides) const;
   /// For each law with keys left out: "law.name = velocity_consensus: without law.beta".
   std::vector<std::string> Notes() const;

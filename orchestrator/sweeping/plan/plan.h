@@ -11,20 +11,20 @@
 
 namespace mascot {
 
-/// Keys that mean more to a sweep than others.
+/// Keys that a sweep treats in a way of their own.
 inline constexpr std::string_view kSeedKey = "run.seed", kLawKey = "law.name";
 
-/// A sweep has at most so many runs.
+/// The most runs that a sweep may have.
 inline constexpr std::size_t kMaxRuns = 10'000'000;
 
-/// One run of a sweep: the keys that it sets, in addition to the experiment file. Mistakes that their values make are
-/// said to be of the option that gave them: "--set law.beta=-1", "--random law.beta=-1:1 (-0.25)", "--seeds 3".
+/// One run of a sweep: the keys that it sets, in addition to the experiment file. A mistake that a value makes is
+/// reported with the option that gave it: "--set law.beta=-1", "--random law.beta=-1:1 (-0.25)", "--seeds 3".
 struct SweepPoint {
   std::vector<Override> overrides;  ///< in the order of SweepPlan::keys()
 };
 
 /// The runs of a sweep: every combination of key values, random samples and seeds, in this order; seeds change fastest.
-/// The same options give the same plan. Runs are made when asked for: a plan takes the memory of its keys' values.
+/// The same options give the same plan. A run is made when it is asked for: a plan keeps only the values of its keys.
 class SweepPlan {
  public:
   /// Command-line options, as typed.
@@ -41,23 +41,25 @@ class SweepPlan {
   /// The options that give the same plan, however they were typed: with values as PlainValue() (values.h) has them,
   /// each once.
   Words words() const;
-  /// For the terminal: of which keys equal values were given more than once.
+  /// Lines for the terminal: the keys to which equal values were given more than once.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// The keys that are set: those of --set and --random as typed, then run.seed if --seeds was given.
+  /// The dotted keys that are set: those of --set and --random in the order of the options, then run.seed if --seeds
+  /// was given.
   const std::vector<std::string>& keys() const { return keys_; }
   std::size_t size() const { return size_; }
   SweepPoint operator[](std::size_t run) const;
   /// Keys with more than one value, without run.seed: the axes of a plot.
   const std::vector<std::string>& varied() const { return varied_; }
-  /// The values of a key, in plain text (values.h); empty if it is not set by --set or --seeds.
+  /// The values of a key, in plain text (values.h); empty if neither --set nor --seeds sets it.
   std::span<const std::string> ValuesOf(std::string_view key) const;
-  /// The first run with each other value that --set gives a key; of A:STEP:B only with the last one.
+  /// For each value but the first that --set gives a key, the first run that has it. Of the values of A:STEP:B, only
+  /// the last one counts.
   const std::vector<SweepPoint>& trials() const { return trials_; }
-  /// Which runs count as alike: those that set the same values, or those that set the same words, whatever the numbers.
-  /// In both, run.seed may differ.
+  /// Which runs count as alike: those that set the same values (kInValues), or the same values of the keys whose values
+  /// are not all numbers (kInWords). run.seed may differ in both.
   enum class Alike { kInValues, kInWords };
-  /// For each run the first one that is alike.
+  /// The representative of each run: the first run that is alike.
   class Representatives {
    public:
     std::size_t operator[](std::size_t run) const;
@@ -66,15 +68,15 @@ class SweepPlan {
     friend SweepPlan;
     /// Keys whose values change together.
     struct Digit {
-      std::size_t stride = 1;          ///< they change after so many runs
-      std::vector<std::size_t> first;  ///< for each value the place of the first one that is alike
+      std::size_t stride = 1;          ///< the values change after so many runs
+      std::vector<std::size_t> first;  ///< for each value, the index of the first one that is alike
     };
     std::vector<Digit> digits_;
   };
   Representatives RepresentativesOf(Alike alike) const;
   /// The runs with the first value of run.seed, if it has several; else none.
   std::vector<std::size_t> WithFirstSeed() const;
-  /// What tells this plan from others: a line for each key.
+  /// A line for each key with its values, by which plans are compared.
   std::string Text() const;
   /// What a key is set to, in words: "0.1, 0.5", "0.1:1, 20 samples"; empty: it is not set.
   std::string SettingOf(std::string_view key) const;

@@ -9,7 +9,8 @@
 
 namespace mascot {
 
-/// Writes the statistics of a complete table beside it, `out`. Returns what there is to say on the terminal.
+/// Writes the statistics of a complete table to a file beside it (StatisticsBeside(out)); `out` is the path of the
+/// table. Returns lines for the terminal.
 std::vector<std::string> Conclude(const SweepPlan& plan, const SweepIdentity& identity, const SweepFile& table,
                                   const std::string& out);
 

@@ -9,7 +9,7 @@
 
 namespace mascot {
 
-/// The column that is drawn unless another is asked for.
+/// The column that a picture shows unless the user asks for another.
 inline constexpr const char* kUsualMetric = "consensus.final_disagreement_m";
 
 /// The last columns of a table, which depend on the machine, not only on the experiment.
@@ -20,10 +20,11 @@ inline constexpr std::size_t kWallClockColumns = 2;
 std::vector<std::string> SweepMetricNames(const std::vector<std::string>& laws);
 /// Throws ConfigError, naming --plot, if `column` is not one of `metrics`, or depends on the machine.
 void CheckPlotted(const std::string& column, const std::vector<std::string>& metrics);
-/// The cells of a run by the names of their columns, and of figures that have none; those without a number are left
-/// out.
+/// The numbers of all figures of a run as cells, by the names of the figures; figures without a number are left out.
+/// The table has columns for some of them.
 std::map<std::string, std::string> SweepMetrics(const Figures& figures);
-/// Cells of these columns by name, from the text of the summary.json that a run has left; empty where it has no number.
+/// Cells of the columns `names`, by name, from the text of the summary.json of a run; a cell is empty where this has no
+/// number.
 std::map<std::string, std::string> SweepMetrics(const std::string& summary, const std::vector<std::string>& names);
 
 }  // namespace mascot

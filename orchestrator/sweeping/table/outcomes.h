@@ -19,14 +19,14 @@ namespace mascot {
 /// that has no value there counts as later than all others.
 bool IsTimeOfEvent(std::string_view column);
 
-/// The rows of a sweep's table as numbers, and what they say together. There may be very many of them.
+/// The rows of a sweep's table as numbers, and what they say together. There may be up to kMaxRuns of them.
 class Outcomes {
  public:
   using Cells = std::vector<std::string>;
 
-  /// `laws`: of the runs; outlives this object, as does `plan`. `columns`: of the table.
+  /// `columns`: names of the columns of the table. `plan` and `laws`, those of its runs, must outlive this object.
   Outcomes(const SweepPlan& plan, const SweepLaws& laws, Cells columns);
-  /// Adds the row of the next run: all runs of the plan, by their number.
+  /// Adds the row of the next run. Call it for all runs of the plan, in order of their number.
   void Add(const Cells& row);
 
   /// For the terminal: how many runs failed and why, and how many did not settle by the end, of those that may: by its
@@ -58,8 +58,8 @@ class Outcomes {
   const SweepPlan& plan_;
   const SweepLaws& laws_;
   Cells columns_;
-  std::size_t error_;                        // place of this column
-  std::vector<std::vector<double>> values_;  // of the columns behind it
+  std::size_t error_;                        // index of the column kErrorColumn
+  std::vector<std::vector<double>> values_;  // of the columns behind error_, each by the number of the run
   std::vector<bool> has_failed_;             // by the number of the run
   std::vector<Reason> reasons_;              // in order of their first runs
   std::unordered_map<std::string, std::size_t> place_of_reason_;

@@ -15,7 +15,7 @@ class RunArrays final : public RowSink {
   explicit RunArrays(const Experiment& experiment);
 
   void Add(const FlownRow& row) override;
-  /// As np.load gives them of states.npz. Valid until the next Add().
+  /// The arrays as np.load() would read them from states.npz. Valid until the next Add().
   std::vector<RunArray> All() const;
 
  private:

@@ -14,7 +14,7 @@ class SideBySide {
   /// Reads config.toml and summary.json of run folders. Throws ConfigError, "RUN: ...", for a folder that lacks one.
   explicit SideBySide(const std::vector<std::string>& runs);
 
-  /// A table with a column for each run; lines for what no run has are left out. "-": this run has none.
+  /// A table with a column for each run. Figures and keys that no run has are left out; "-": this run has no value.
   std::string Text() const;
   /// {"runs": [...], "config": {key: [...]}, "summary": {column: [...]}}, lists by run, null where a run has none.
   std::string JsonText() const;

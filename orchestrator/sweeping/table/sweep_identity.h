@@ -10,8 +10,8 @@
 
 namespace mascot {
 
-/// What the table of a sweep is of: all that its rows depend on, and what else it takes to conclude from them. It
-/// stands as JSON beside the table, and beside that of every share of it.
+/// Tells which sweep a table is of: all that its rows depend on, and what else the statistics need. It is kept as JSON
+/// beside the table (TABLE.plan), and beside the table of every share.
 struct SweepIdentity {
   std::string build;                   ///< BuildText() of the program that flies the runs
   std::string experiment;              ///< text of the experiment file
@@ -19,22 +19,22 @@ struct SweepIdentity {
   std::string metric_file;             ///< text of the file with the user's metrics
   SweepPlan::Words words;              ///< what each run sets
   std::vector<PythonMetric> own;       ///< the user's metrics
-  std::vector<std::string> law_names;  ///< of the laws whose figures have columns
+  std::vector<std::string> law_names;  ///< names of the laws whose figures have columns
   KnownLaws laws;
 
   std::string Text() const;
-  /// Nothing if `text` is not that of an identity.
+  /// The inverse of Text(); nothing if `text` is not that of an identity.
   static std::optional<SweepIdentity> FromText(const std::string& text);
 
-  /// In what the sweep of another table differs from this one, in words: "--set law.beta: 0.3 there and 0.5 here";
-  /// empty: in nothing. `theirs`: the text beside that table.
+  /// How the sweep of another table differs from this one, in words: "--set law.beta: 0.3 there and 0.5 here"; empty:
+  /// not at all. `theirs`: the text of its TABLE.plan.
   std::string DifferenceFrom(const std::string& theirs) const;
 
-  /// The columns of numbers: measured, predicted and the user's, at the end those that depend on the machine.
+  /// Names of the columns of numbers: measured, predicted and the user's, at the end those that depend on the machine.
   std::vector<std::string> Metrics() const;
 };
 
-/// The columns of a table of `plan` with these columns of numbers.
+/// Names of all columns of a table of `plan`; `metrics`: those of its columns of numbers.
 std::vector<std::string> SweepColumns(const SweepPlan& plan, const std::vector<std::string>& metrics);
 
 }  // namespace mascot

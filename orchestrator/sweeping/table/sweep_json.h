@@ -8,7 +8,7 @@
 
 namespace mascot {
 
-// What of a sweep stands in JSON, between processes and beside tables.
+// Conversions to and from JSON for what processes of a sweep send each other, and for what is kept beside tables.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PythonMetric, name, unit)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunLaws, team, team_agrees, names, depend_on_numbers)
 

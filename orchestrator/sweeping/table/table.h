@@ -16,24 +16,25 @@ class SweepPlan;
 /// Name of the column with the error of a run; its cell is empty if the run did not fail.
 inline constexpr const char* kErrorColumn = "error";
 
-/// A file beside a table: sweep.png with the ending ".png" of sweep.csv. Of a table without the ending .csv the whole
-/// name stays: gain.v1.png of gain.v1.
+/// Path of a file beside a table: with the ending ".png", sweep.png for sweep.csv. A name without the ending .csv is
+/// kept whole: gain.v1.png for gain.v1.
 std::filesystem::path FileBeside(std::filesystem::path table, std::string_view ending);
-/// The file with the statistics of a table: sweep.stats.csv of sweep.csv.
+/// Path of the file with the statistics of a table: sweep.stats.csv for sweep.csv.
 std::filesystem::path StatisticsBeside(const std::filesystem::path& table);
-/// The text beside a table that says what it is of, in TABLE.plan; empty: there is none.
+/// The text of TABLE.plan, which says which sweep a table is of; empty: there is no such file.
 std::string PlanBeside(const std::filesystem::path& table);
 
-/// Where the rows of a table stand in its file, by the number of the run. Only this much of a table is in memory.
+/// Where the rows of a table begin in its file, in bytes, by the number of the run. Only this much of a table is in
+/// memory.
 class RowPlaces {
  public:
   bool Has(std::size_t run) const { return run < places_.size() && places_[run] != 0; }
   std::size_t size() const { return size_; }
   /// Has(run) must be true.
   std::uint64_t At(std::size_t run) const { return places_[run]; }
-  /// False if it has that run.
+  /// Notes where the row of a run begins. Returns false, and notes nothing, if that run has a row already.
   bool Add(std::size_t run, std::uint64_t place);
-  /// Hands over each run and its place, by the number of the run.
+  /// Calls `take` with each run and the place of its row, in order of the runs.
   void ForEach(const std::function<void(std::size_t run, std::uint64_t place)>& take) const;
 
  private:
@@ -46,13 +47,15 @@ class TableRows {
  public:
   using Cells = std::vector<std::string>;
 
-  /// `lost`: also runs whose process was lost. `plan`: the sweep that the rows must be of; null: any. Throws
-  /// ConfigError, naming line and column, if the file does not begin with the names of `columns`, or a row is none that
-  /// a sweep writes, or is there twice; std::runtime_error if it cannot be read. The last row may be incomplete.
+  /// Reads where the rows are. `lost`: whether rows of runs whose process was lost count. `plan`: the sweep that the
+  /// rows must be of; null: any. The last row may be incomplete: it does not count. Throws ConfigError if the file does
+  /// not begin with the names of `columns`, and, naming line and column, if a row is none that a sweep writes, or is
+  /// there twice; std::runtime_error if the file cannot be read.
   TableRows(const std::filesystem::path& path, const Cells& columns, bool lost, const SweepPlan* plan = nullptr);
 
   const RowPlaces& places() const { return places_; }
-  /// Hands over each row, with its line break, by the number of the run.
+  /// Calls `take` with each row, as a line with its line break, in order of the runs. Throws std::runtime_error if the
+  /// file has become shorter meanwhile.
   void ForEach(const std::function<void(std::size_t run, const std::string& line)>& take);
 
  private:
@@ -68,11 +71,12 @@ class SweepFile {
  public:
   using Cells = std::vector<std::string>;
 
-  /// Opens or creates the table at `path`. `plan` is text that identifies the sweep; it is stored beside the table, in
-  /// PATH.plan. Throws ConfigError if the table has rows of another plan (with `force`, these are replaced instead), or
-  /// if another sweep is writing it, or as TableRows does. `runs`: the plan itself. `difference` says in what the plan
-  /// beside the table differs from this one; empty: it is the same in other words.
+  /// Says how the sweep of the table differs from this one. `theirs`: the text of its PATH.plan. Empty: not at all, it
+  /// is only written in other words.
   using Difference = std::function<std::string(const std::string& theirs)>;
+  /// Opens or creates the table at `path`. `plan` is text that identifies the sweep; it is stored in PATH.plan. `runs`:
+  /// the plan itself. Throws ConfigError if the table has rows of another plan (with `force`, the table is emptied
+  /// instead), if another sweep is writing it, or as TableRows does.
   SweepFile(std::filesystem::path path, const Cells& columns, const std::string& plan, bool force,
             const Difference& difference = {}, const SweepPlan* runs = nullptr);
   ~SweepFile();
@@ -81,11 +85,12 @@ class SweepFile {
 
   bool Has(std::size_t run) const { return places_.Has(run); }
   std::size_t rows() const { return places_.size(); }
-  /// Hands over the cells of each row, by the number of the run, which is the first cell.
+  /// Calls `take` with the cells of each row, in order of the runs; the first cell is the number of the run.
   void ForEachRow(const std::function<void(const Cells&)>& take) const;
-  /// Appends the row of a run; `cells` without the run number.
+  /// Appends the row of a run; `cells` are those behind the number of the run. Throws std::logic_error if the run has a
+  /// row already.
   void Add(std::size_t run, const Cells& cells);
-  /// Appends the row of a run as it stands in another table.
+  /// Appends the row of a run as another table has it. Throws as Add() does.
   void AddLine(std::size_t run, const std::string& line);
   /// Sorts the rows by run number. The file is replaced atomically.
   void Sort();
@@ -97,13 +102,13 @@ class SweepFile {
   std::filesystem::path path_;
   Cells columns_;
   RowPlaces places_;
-  std::uint64_t size_ = 0;  // of the file
-  int plan_fd_ = -1;        // PATH.plan, locked while this object lives
-  int fd_ = -1;             // of the table, at its end
+  std::uint64_t size_ = 0;  // bytes of the file
+  int plan_fd_ = -1;        // descriptor of PATH.plan, locked while this object lives
+  int fd_ = -1;             // descriptor of the table, at its end
 };
 
-/// A row of the table, or of its statistics: of one line, for it ends where its line does. Line breaks in cells become
-/// spaces.
+/// A row of a table, or of its statistics, as one line of CSV. Line breaks in cells become spaces, because a row ends
+/// where its line does.
 std::string SweepRow(std::vector<std::string> cells);
 
 }  // namespace mascot
