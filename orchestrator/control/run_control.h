@@ -20,7 +20,7 @@ struct Answer {
   bool operator==(const Answer&) const = default;
 };
 
-/// Takes requests from any thread; an answer comes within a second or two.
+/// Takes requests from any thread. Ask() returns with the answer, usually within a second or two.
 class RunControl {
  public:
   virtual ~RunControl() = default;

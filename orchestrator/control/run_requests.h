@@ -16,7 +16,7 @@
 
 namespace mascot {
 
-/// How a run goes on.
+/// What a run is doing.
 struct RunStatus {
   bool paused = false;
   double pace = 0;         ///< simulated seconds a second that are asked for; 0: as fast as it goes
@@ -24,9 +24,9 @@ struct RunStatus {
   int domain = -1;         ///< DDS domain; -1: none
 };
 
-/// Where those who steer a run meet the run: requests come in from any thread, are checked, and wait, one after the
-/// other, until the run's own thread has carried them out. Gets the run's rows, to know what events have made of the
-/// experiment.
+/// Takes requests to a run from any thread and checks them. One after the other, they then wait until the run's own
+/// thread has carried them out. As a sink, this object gets the run's rows, and so knows the experiment as events have
+/// changed it.
 class RunRequests final : public RunControl, public RowSink {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -34,18 +34,18 @@ class RunRequests final : public RunControl, public RowSink {
   /// `pace`: simulated seconds a second to begin with. `experiment` must outlive this object.
   RunRequests(const Experiment& experiment, double pace);
 
-  /// Returns when the request is carried out or refused: at once if it is no legal one, after 5 s if the run has not
-  /// begun by then, and when the run is over before the request is carried out.
+  /// Returns when the request is carried out or refused. It is refused at once if it is not legal, after 5 s if the run
+  /// has not begun by then, and when the run ends before the request is carried out.
   Answer Ask(const Request& request) override;
   /// From any thread.
   RunStatus status() const;
   void Adopt(const LiveExperiment& live, std::span<const Event> events) override;
   void Add(const FlownRow& row) override;
-  /// `tell` is called, in the run's thread, when how it goes on has changed by more than a tick.
+  /// `tell` is called, in the run's thread, when RunStatus::paused or RunStatus::pace has changed; null: no more calls.
   void CallWhenChanged(std::function<void(const RunStatus&)> tell);
 
   // For the run's thread.
-  /// `wake` is called, from any thread, when a request has come; null: nobody needs to be woken.
+  /// `wake` is called, from any thread, when a request has come; null: no thread needs to be woken.
   void CallWhenAsked(std::function<void()> wake);
   /// The run has begun: requests are taken from now on.
   void Open();
@@ -57,22 +57,22 @@ class RunRequests final : public RunControl, public RowSink {
   };
   /// The next order, the same until Done(); nothing: there is none.
   std::optional<Order> Next() const;
-  /// That order is carried out: `tick` is the first that it holds for; nullopt: the run is over.
+  /// The order of Next() is carried out: `tick` is the first that it holds for; nullopt: the run is over.
   void Done(std::optional<std::int64_t> tick);
-  /// That order, an event, cannot take effect before the tick Order::number: the request is checked again for later
-  /// ones.
+  /// The order of Next(), an event, cannot take effect before the tick Order::number: its request is checked again, for
+  /// later ticks.
   void CheckAgain();
   /// How the ticks go on now.
   void SetStatus(bool paused, double pace);
   void SetDomain(int domain);
-  /// The run is over: whoever waits is told so, and no more requests are taken.
+  /// The run is over: every Ask() that waits returns and says so, and no more requests are taken.
   void Close();
   /// Waits for a request, at most until `time`.
   void WaitUntil(Time time) const;
 
   /// Events that were given by hand and have taken effect, in order.
   std::vector<Event> by_hand() const;
-  /// The numbers that these have in the run, increasing: DecodedRow::RowEvent::number.
+  /// The numbers that these events have in the run, increasing: DecodedRow::RowEvent::number.
   std::vector<int> numbers_by_hand() const;
 
  private:
@@ -85,7 +85,7 @@ class RunRequests final : public RunControl, public RowSink {
   Answer AnswerTo(const Order& order, std::optional<std::int64_t> tick) const;
 
   const Experiment& experiment_;
-  std::mutex asking_;  // one request at a time; guards ahead_
+  std::mutex asking_;  // held by Ask(): one request at a time; guards ahead_
 
   /// The run as it will be when all events that are granted have taken effect.
   struct Ahead {
@@ -112,7 +112,7 @@ class RunRequests final : public RunControl, public RowSink {
   std::size_t of_file_ = 0;             // how many of the file's events are in live_
   std::deque<Event> granted_;           // by hand, not in live_ yet
   std::vector<Event> by_hand_;          // by hand, in live_
-  std::vector<int> numbers_by_hand_;    // likewise
+  std::vector<int> numbers_by_hand_;    // the numbers of these, increasing
 };
 
 }  // namespace mascot

@@ -14,7 +14,7 @@ namespace mascot {
 struct RunningRun {
   enum class Voice {
     kAnswers,
-    /// The run is stopped (SIGSTOP, Ctrl-Z); of this kind and the next ones only process and user are known.
+    /// The run is stopped (SIGSTOP, Ctrl-Z); of runs of this kind and the next ones, only process and user are known.
     kStopped,
     kSilent,    ///< the run does not answer
     kOfOthers,  ///< the run is another user's, and is not asked
@@ -36,7 +36,7 @@ struct RunningRun {
 
 // A run is found by the name of its socket, which any process can take. The kernel therefore says first which process
 // listens there: it must be the process whose id is in the name, of our user (or of any user, if we are root and the
-// process runs this very program). Other processes are not even asked. Their answers are checked like messages from
+// process runs this very program). Other processes are not even asked. Answers are checked like messages from
 // strangers.
 
 /// The runs that are alive on this machine, in this network namespace, by process id. A run that is stopped costs a

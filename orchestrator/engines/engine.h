@@ -18,8 +18,8 @@ struct EngineResult {
   std::optional<Contacts> contacts;  ///< absent: the physics server died before it reported them
   std::optional<Pacing> pacing;      ///< in real time only; absent as contacts is
   std::uint64_t lost = 0;            ///< samples that the recorder missed, or that came too late
-  /// Absent: nobody has looked, because the run ended before every endpoint was discovered, or because there is no
-  /// wire.
+  /// Whether processes read and write only the topics that they may (WireAudit). Absent: not checked, because the run
+  /// ended before every endpoint was discovered, or because there is no wire.
   std::optional<bool> wire_matches_graph;
 };
 

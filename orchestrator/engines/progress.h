@@ -10,7 +10,7 @@
 
 namespace mascot {
 
-/// The progress line of a run: simulated time, real-time factor, agents, disagreement.
+/// Shows the progress line of a run: simulated time (s), real-time factor, agents, disagreement (m).
 class Progress final : public RowSink {
  public:
   /// `meter` must get each row before this object does.

@@ -11,7 +11,8 @@ class RosSource {
  public:
   using Bytes = std::vector<std::uint8_t>;
   virtual ~RosSource() = default;
-  /// Goes on to the newest tick, and returns its number; -1: there is none yet. Throws what has ended the view.
+  /// Goes on to the newest tick, and returns its number; -1: there is none yet. Throws the exception that has ended the
+  /// view.
   virtual std::int64_t TakeNewest() = 0;
   /// A sample of /tf. Call it only when there is a tick.
   virtual Bytes Transforms() const = 0;

@@ -10,8 +10,8 @@
 
 namespace mascot {
 
-/// Passes the rows of a run to its sinks, one sink after the other, and the experiment as events change it. Each row is
-/// decoded once and encoded at most once.
+/// Passes the rows of a run, and the experiment as events change it, to the sinks of the run, one sink after the other.
+/// Each row is decoded once and encoded at most once.
 class RowFeed {
  public:
   /// All arguments must outlive this object.
