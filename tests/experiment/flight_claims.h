@@ -1,5 +1,5 @@
-// What can be claimed of a flight that has an experiment's key as it is, and of one that has it changed: what its
-// commands are, by the law's equation, by that of the low-level stack, and what its bodies do.
+// Claims about two flights, one before and one after a key of the experiment is changed: which commands agents give, by
+// the equations of the law and of the low-level stack, and how their bodies move.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@
 
 namespace mascot::test {
 
-/// What a recording has of every tick of a run.
+/// A run in the process of the test, with all that a recording has of every tick.
 class Flight final : private RowSink {
  public:
   /// Flies configs/leaderless.toml with these overrides.
@@ -44,7 +44,7 @@ class Flight final : private RowSink {
   Eigen::Vector4d ThrustAndTorque(int id, int tick) const {
     return airframe(id).Allocation() * Eigen::Vector4d::Map(command(id, tick).actuator.data()).cwiseAbs2();
   }
-  /// The row of a tick, number by number.
+  /// All numbers of the row of a tick, in the order of states.npz.
   std::vector<double> Numbers(int tick) const {
     std::vector<double> numbers;
     StateRow row(agents());
@@ -60,7 +60,7 @@ class Flight final : private RowSink {
   std::vector<DecodedRow> rows_;
 };
 
-/// Calls `look(id, tick)` for all agents and the ticks of [from, to).
+/// Calls `look(id, tick)` for all agents and all ticks in [from, to).
 inline void ForAll(const Flight& flight, const std::function<void(int, int)>& look, int from = 0, int to = 1 << 30) {
   for (int tick = from; tick < std::min(to, flight.ticks()); ++tick)
     for (int id = 1; id <= flight.agents(); ++id) look(id, tick);
@@ -68,13 +68,13 @@ inline void ForAll(const Flight& flight, const std::function<void(int, int)>& lo
 
 // --- the law ----------------------------------------------------------------------------------------
 
-/// Weight with which agent i hears what agent j has said at a tick; 0: it does not.
+/// Weight with which agent i hears what agent j has sent at a tick; 0: i does not hear j.
 using Weight = std::function<double(const Flight& flight, int i, int j, int tick)>;
 
 inline Weight Everyone() {
   return [](const Flight&, int i, int j, int) { return i == j ? 0.0 : 1.0; };
 }
-/// Rows of weights: i hears j with weights[i - 1][j - 1].
+/// Agent i hears agent j with weights[i - 1][j - 1].
 inline Weight Matrix(std::vector<std::vector<double>> weights) {
   return [weights = std::move(weights)](const Flight&, int i, int j, int) {
     return weights[static_cast<std::size_t>(i - 1)][static_cast<std::size_t>(j - 1)];
@@ -91,7 +91,7 @@ inline Weight Within(double range_m) {
     return i != j && (flight.at(i, tick).p_WB - flight.at(j, tick).p_WB).norm() < range_m ? 1.0 : 0.0;
   };
 }
-/// `first` in front of a tick, `then` from it on.
+/// `first` before the tick, `then` from it on.
 inline Weight Then(Weight first, int tick, Weight then) {
   return [=](const Flight& flight, int i, int j, int now) { return (now < tick ? first : then)(flight, i, j, now); };
 }
@@ -121,7 +121,7 @@ inline Eigen::Vector3d Wanted(const Equation& law, const Flight& flight, int i, 
   return a_W.cwiseMin(law.limit).cwiseMax(-law.limit);
 }
 
-/// What a claim says of two flights: before a key is changed, and after.
+/// Checks what is claimed of two flights, before (`was`) and after (`is`) a key is changed.
 using Claim = std::function<void(const Flight& was, const Flight& is)>;
 
 inline double FarthestOff(const Equation& law, const Flight& flight, const std::function<bool(int, int)>& counts) {
@@ -139,7 +139,7 @@ inline std::function<bool(int, int)> AllBut(int agent) {
   return [agent](int id, int) { return id != agent; };
 }
 
-/// All commands are those of this equation; those of the flight before are not.
+/// All commands for which `counts` is true are those of this equation; those of the flight before are not.
 inline Claim Obeys(const Equation& law, const std::function<bool(int, int)>& counts = Always) {
   return [=](const Flight& was, const Flight& is) {
     EXPECT_LT(FarthestOff(law, is, counts), 1e-9);
@@ -223,8 +223,8 @@ inline double FarthestOff(const Stack& stack, const Flight& flight, int id) {
   return farthest;
 }
 
-/// Thrust and torques of all agents are those of the airframe's stack, changed like this; those before are not. With
-/// `agent`, those of this agent alone, and all others are those of the airframe's.
+/// Thrust and torques of all agents are those of their airframe's stack, changed by `change`; in the flight before they
+/// are not. If `agent` is not 0, this holds for that agent alone: the others keep the stack of their airframe.
 inline Claim Steers(const std::function<void(Stack&)>& change, int agent = 0) {
   return [=](const Flight& was, const Flight& is) {
     double before = 0;
@@ -241,7 +241,7 @@ inline Claim Steers(const std::function<void(Stack&)>& change, int agent = 0) {
 
 // --- flights in general -----------------------------------------------------------------------------
 
-/// The flights are the same, bit for bit, up to a time, and at it they are not.
+/// The flights are the same, bit for bit, before `t_s`, and differ at it.
 inline Claim DiffersFrom(double t_s) {
   return [t_s](const Flight& was, const Flight& is) {
     const int from = static_cast<int>(std::lround(t_s / is.T()));
@@ -259,25 +259,25 @@ inline Claim Both(const Claim& one, const Claim& two) {
 
 using Figure = std::function<double(const Flight&)>;
 
-/// A figure is this, within a tolerance. It was another: by more than the tolerance.
+/// A figure is `value`, within `tolerance`. Before, it was off by more than the tolerance.
 inline Claim Becomes(const Figure& figure, double value, double tolerance) {
   return [=](const Flight& was, const Flight& is) {
     EXPECT_NEAR(figure(is), value, tolerance);
     EXPECT_GT(std::abs(figure(was) - value), tolerance) << "without the change, too";
   };
 }
-/// As Becomes(), of a figure that depends on the flights themselves.
+/// As above, with a value that depends on the flight after the change.
 inline Claim Becomes(const Figure& figure, const Figure& value, double tolerance) {
   return [=](const Flight& was, const Flight& is) { Becomes(figure, value(is), tolerance)(was, is); };
 }
-/// A figure was one number and is another.
+/// A figure was `from` and is `to`, both within `tolerance`.
 inline Claim Goes(const Figure& figure, double from, double to, double tolerance) {
   return [=](const Flight& was, const Flight& is) {
     EXPECT_NEAR(figure(was), from, tolerance);
     EXPECT_NEAR(figure(is), to, tolerance);
   };
 }
-/// A figure is larger than before: at least so many times.
+/// A figure is more than `times` times as large as before.
 inline Claim Grows(const Figure& figure, double times = 1) {
   return [=](const Flight& was, const Flight& is) { EXPECT_GT(figure(is), times * figure(was)); };
 }

@@ -1,7 +1,7 @@
-// Every key of an experiment file does what it says: each row of these tables changes one, and claims what comes of it,
-// by the equations of the law, of the low-level stack and of the bodies where they say it. output_keys_test.cc tests
-// the keys of what a run leaves behind, engines_test.cc and faults_test.cc those for DDS and real time, laws_test.cc
-// also the parameters of laws.
+// Every key of an experiment file does what it says: each row of these tables changes one key, and claims how the
+// flight then differs, by the equations of the law, of the low-level stack and of the bodies where these tell it.
+// output_keys_test.cc tests the keys of what a run leaves behind, engines_test.cc and faults_test.cc those for DDS and
+// real time, laws_test.cc also the parameters of laws.
 
 #include <gmock/gmock.h>
 
@@ -16,8 +16,8 @@
 namespace mascot::test {
 namespace {
 
-/// A test of what comes of setting `key` to `value`, in addition to `base`. `name` is the name of the test: the key
-/// that is changed and, if several tests change it, how or for which agents.
+/// A test of how a flight changes when `key` is set to `value`, in addition to `base`. `name` is the name of the test:
+/// the key that is changed and, if several tests change it, how or for which agents.
 struct Row {
   std::string key, value;
   Claim claim;
@@ -25,7 +25,7 @@ struct Row {
   std::string name = key;
 };
 
-/// Sets `key` to `value`.
+/// A row that sets `key` to `value`.
 Row Set(const std::string& key, const std::string& value, Claim claim, std::vector<std::string> base = {},
         const std::string& name = "") {
   return {key, value, std::move(claim), std::move(base), name.empty() ? key : name};
@@ -85,7 +85,7 @@ Figure HeadingOf(int id) {
     return std::atan2(ahead.y(), ahead.x());
   };
 }
-/// Smallest distance of two agents in height, at the start.
+/// Smallest difference of the heights of two agents at the start (m).
 Figure NearestInHeight() {
   return [](const Flight& flight) {
     double nearest = 1e9;
@@ -95,7 +95,7 @@ Figure NearestInHeight() {
     return nearest;
   };
 }
-/// Largest component of a command.
+/// Largest component of any command (m/s^2).
 Figure LargestCommand() {
   return [](const Flight& flight) {
     double largest = 0;
@@ -134,7 +134,7 @@ Figure SquaredSpeeds(int id) {
 
 // --- [physics] --------------------------------------------------------------------------------------
 
-/// What the first tick adds to a velocity.
+/// How far the velocity of agent `id` after the first tick differs between the flights (m/s, in W).
 Eigen::Vector3d Kick(const Flight& was, const Flight& is, int id) { return is.at(id, 1).v_WB - was.at(id, 1).v_WB; }
 
 /// The first tick adds B/m w T to each velocity: the drag in a wind of w.
@@ -145,7 +145,8 @@ void IsDragged(const Flight& was, const Flight& is, const Eigen::Vector3d& wind_
   }
 }
 
-/// Mean square of how much the wind changes from tick to tick, as the velocities show it against a calm flight.
+/// Mean square of the change of the wind from tick to tick ((m/s)^2), from the velocities of this flight and of a calm
+/// one.
 double Gustiness(const Flight& flight) {
   const Flight calm = Fly({"run.duration_s=1.0"});
   const double per_s = flight.airframe(1).linear_drag_kg_per_s / flight.airframe(1).mass_kg;
@@ -164,7 +165,7 @@ double Gustiness(const Flight& flight) {
 /// The wind pulls east.
 void IsDraggedEast(const Flight& was, const Flight& is) { IsDragged(was, is, {1, 0, 0}, 0.02); }
 
-/// All feel the same gusts, along all axes.
+/// All agents feel the same gusts, along all axes.
 void IsGusty(const Flight& was, const Flight& is) {
   const double per_s = is.airframe(1).linear_drag_kg_per_s / is.airframe(1).mass_kg;
   const Eigen::Vector3d gust_W = Kick(was, is, 1) / (per_s * is.T());
@@ -173,7 +174,8 @@ void IsGusty(const Flight& was, const Flight& is) {
   IsDragged(was, is, gust_W, 0.02);  // all feel the same
 }
 
-/// Of a process with time tau, E|g(tick + T) - g(tick)|^2 = 6 sigma^2 (1 - exp(-T/tau)); here tau becomes 3 s.
+/// The gusts change more slowly: with the time tau, E|g(tick + T) - g(tick)|^2 = 6 sigma^2 (1 - exp(-T/tau)); here tau
+/// becomes 3 s.
 void ChangesAsRarely(const Flight& was, const Flight& is) {
   const double tau_was = was.experiment.physics.wind.gust_time_s;
   const double ratio = std::expm1(-is.T() / 3.0) / std::expm1(-is.T() / tau_was);
@@ -195,7 +197,7 @@ std::string Block(const std::string& shape = "box", const std::string& place = "
   return "[{ shape = '" + shape + "', position_m = " + place + ", size_m = " + size + more + " }]";
 }
 
-/// Sets `key` to `value` for an agent that flies along x into `obstacle`.
+/// A row that sets `key` to `value` for an agent that flies along x into `obstacle`.
 Row Passing(const std::string& obstacle, const std::string& key, const std::string& value, const Claim& claim) {
   return {key,
           value,
@@ -204,14 +206,14 @@ Row Passing(const std::string& obstacle, const std::string& key, const std::stri
            "physics.obstacles=" + obstacle}};
 }
 
-/// Replaces Block() by another obstacle; `what` names the difference.
+/// A row that replaces Block() by another obstacle; `what` names the difference.
 Row OtherBlock(const std::string& what, const std::string& block, const Claim& claim) {
   Row row = Passing(Block(), "physics.obstacles", block, claim);
   row.name = "physics.obstacles." + what;
   return row;
 }
 
-/// The agent comes to the face of the box, at x = 0.7, but for half its own size and what it sinks in.
+/// The x of the face of the box, to which the front of the agent comes, and how far the agent sinks in (m).
 constexpr double kFace_m = 0.7, kSinks_m = 0.03;
 double HalfLength(const Flight& flight) { return flight.airframe(1).size_m.x() / 2; }
 Figure Front() {
@@ -231,8 +233,9 @@ INSTANTIATE_TEST_SUITE_P(
         Passing(Block(), "physics.collisions", "false", Grows(Front(), 2))),
     NameOf);
 
-/// A rotor of an agent gives no more than `remaining` of its thrust: what is left turns the body, with the arm d, at
-/// (1 - remaining) m g d / 4 J, to within a fifth: the rotors carry more than the weight, or less.
+/// At `at_s`, a rotor of an agent gives only the share `remaining` of the thrust of its commanded speed: in one tick
+/// the body turns as the torque of all four rotors then has it, to within 5 %. `begins`: before that, the flights are
+/// the same.
 Claim Tips(int agent, int rotor, double at_s, double remaining, bool begins = true) {
   return [=](const Flight& was, const Flight& is) {
     if (begins) DiffersFrom(at_s + is.T())(was, is);
@@ -251,7 +254,8 @@ Claim Tips(int agent, int rotor, double at_s, double remaining, bool begins = tr
   };
 }
 
-/// Replaces the failure of rotor 1 of agent 1 at 0.5 s by another rotor failure; `what` names the difference.
+/// A row that replaces the failure of rotor 1 of agent 1 at 0.5 s by another rotor failure; `what` names the
+/// difference.
 Row Failing(const std::string& what, int agent, int rotor, const std::string& at_s, const Claim& claim,
             const std::string& more = "") {
   return {
@@ -297,13 +301,13 @@ void MovesInSteps(const Flight& was, const Flight& is) {
   EXPECT_EQ(steps(is), 5);
 }
 
-/// Of two agents that meet head-on.
+/// Two agents that meet head-on fly through each other, and did not before.
 void PassThroughEachOther(const Flight& was, const Flight& is) {
   EXPECT_LT(OvertakenBy()(was), -0.9 * was.airframe(1).size_m.x()) << "a body's length";
   EXPECT_GT(OvertakenBy()(is), 0);
 }
 
-/// An agent that is thrown down.
+/// An agent that is thrown down falls below the ground, and before did not.
 void FallsBelowTheGround(const Flight& was, const Flight& is) {
   EXPECT_GT(Lowest()(was), 0);
   EXPECT_LT(Lowest()(is), -0.5);
@@ -322,7 +326,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // --- [run] and [agents] -----------------------------------------------------------------------------
 
-/// All start where one point of [0, 1]^3 each is in another box.
+/// Each agent starts at the same point of [0, 1]^3 as before, scaled to another box.
 Claim StartsIn(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   return [=](const Flight& was, const Flight& is) {
     const Eigen::Vector3d low_was(-10, -10, 1), high_was(10, 10, 4);
@@ -333,7 +337,7 @@ Claim StartsIn(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   };
 }
 
-/// All start in a box, in which not all started.
+/// All agents start in this box; before, not all did.
 Claim StartsWithin(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   return [=](const Flight& was, const Flight& is) {
     const auto outside = [&](const Flight& flight) {
@@ -359,7 +363,8 @@ void StartElsewhere(const Flight& was, const Flight& is) {
   }
 }
 
-/// Nobody slips sideways: velocities are along the heading, but for the turn of a tick.
+/// The largest share of its velocity that an agent has sideways: 0 for a unicycle, which moves along its heading, but
+/// for the turn of a tick.
 double Slip(const Flight& flight, int id) {
   double most = 0;
   for (int tick = 1; tick < flight.ticks(); ++tick) {
@@ -373,7 +378,7 @@ Figure SlipOf(int id) {
   return [=](const Flight& flight) { return Slip(flight, id); };
 }
 
-/// The force on a double integrator of 1 kg is what is commanded.
+/// A double integrator of 1 kg is pushed with the commanded acceleration as its force.
 void IsPushed(const Flight& /*was*/, const Flight& is, int id) {
   for (int tick = 0; tick < is.ticks(); ++tick) {
     const Command& command = is.command(id, tick);
@@ -407,7 +412,7 @@ void IsHeavier(const Flight& was, const Flight& is) {
   EXPECT_NEAR(SquaredSpeeds(1)(is) / SquaredSpeeds(1)(was), 2.0 / was.airframe(1).mass_kg, 1e-9);
 }
 
-/// Nobody starts nearer than 6 m to the height of another: with law.axes = "xy" that is what counts.
+/// No two agents start at heights less than 6 m apart: with law.axes = "xy", heights are what counts.
 void StartsFartherApart(const Flight& was, const Flight& is) {
   EXPECT_LT(NearestInHeight()(was), 6);
   EXPECT_GE(NearestInHeight()(is), 6);
@@ -455,7 +460,7 @@ Claim PartsTheSecond(double distance_m, double gamma) {
               Becomes(CommandOf(2, 0, 0), Parts(distance_m, gamma), 1e-9));
 }
 
-/// Agent 1 flies to a waypoint, and the others by the law.
+/// Agent 1 flies to a waypoint, the others by the law.
 void LeadsTo(const Eigen::Vector2d& waypoint, const Flight& was, const Flight& is) {
   EXPECT_LT(was.command(1, 0).a_limited_W.norm(), 1e-12) << "a leader without waypoints keeps its velocity";
   const Eigen::Vector2d way = waypoint - is.at(1, 0).p_WB.head<2>();
@@ -474,7 +479,7 @@ void FliesTo(const Eigen::Vector2d& waypoint, const Flight& is) {
   }
 }
 
-/// All fly to [5, 0].
+/// All agents fly to [5, 0].
 void AllFlyToTheWaypoint(const Flight& /*was*/, const Flight& is) { FliesTo({5, 0}, is); }
 
 /// All but agent 2 fly by the law.
@@ -528,7 +533,8 @@ INSTANTIATE_TEST_SUITE_P(
         Set("graph.repeat_s", "0.8", Obeys({.weight = Then(kAt, 80, Everyone())}), {kSwitch})),
     NameOf);
 
-/// Whom each agent hears at a tick, with weights 1: the only set of others whose pull is its command.
+/// The edges (i, j) of one tick, where agent i hears agent j with weight 1: for each i the only set of others whose
+/// pull is its command.
 using Edges = std::set<std::pair<int, int>>;
 
 Edges HeardAt(const Flight& flight, int tick) {
@@ -576,7 +582,7 @@ bool IsMutual(const Edges& edges) {
   return std::ranges::all_of(edges, [&](const auto& edge) { return edges.contains({edge.second, edge.first}); });
 }
 
-/// Replaces the random graph `was` by `is`; `what` names the difference.
+/// A row that replaces the random graph `was` by `is`; `what` names the difference.
 Row OtherRandomGraph(const std::string& what, const std::string& was, const std::string& is, const Claim& claim) {
   return {"graph",
           "{ random = { " + is + " } }",
@@ -586,12 +592,12 @@ Row OtherRandomGraph(const std::string& what, const std::string& was, const std:
           "graph.random." + what};
 }
 
-/// `look` at the edges before and after.
+/// Calls `look` with the edges at tick 0 of both flights.
 Claim Hears(const std::function<void(const Edges& was, const Edges& is)>& look) {
   return [=](const Flight& was, const Flight& is) { look(HeardAt(was, 0), HeardAt(is, 0)); };
 }
 
-/// From 0.4 s on, who hears whom is drawn: some of all pairs, both ways, the same at all ticks.
+/// From 0.4 s on, the edges are drawn: some of all pairs, both ways, the same at all ticks.
 void IsDrawnFromThen(const Flight& was, const Flight& is) {
   EXPECT_EQ(HeardAt(is, 39).size(), 12u);
   const Edges drawn = HeardAt(is, 40);
@@ -654,7 +660,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // --- [link] -----------------------------------------------------------------------------------------
 
-/// Two agents that hear each other, for so long.
+/// Two agents that hear each other, for `duration_s`.
 std::vector<std::string> Two(const std::string& duration_s, std::vector<std::string> more = {}) {
   std::vector<std::string> sets = {
       "agents={ count = 2, position_m = [[0, 0, 1], [5, 0, 2]], velocity_m_per_s = [[0, 1, 0], [0, -1, 0]] }",
@@ -665,7 +671,8 @@ std::vector<std::string> Two(const std::string& duration_s, std::vector<std::str
 
 constexpr int kNothing = -1;  // in place of an age
 
-/// Of two agents: how many ticks old is what an agent goes by at a tick, as its command shows.
+/// Age (ticks) of the sample of the other one of two agents that agent `id` uses at a tick, as its command shows;
+/// kNothing: it uses none.
 int AgeAt(const Flight& flight, int id, int tick) {
   for (int age = 0; age <= std::min(tick, 40); ++age) {
     Equation law;
@@ -683,7 +690,7 @@ std::vector<int> AgesOf(const Flight& flight, int id) {
   return ages;
 }
 
-/// Share of the samples of both agents whose age is in [least, most].
+/// Share of the samples used by both agents whose age (ticks) is in [least, most].
 double ShareOf(const Flight& flight, int least, int most) {
   double count = 0;
   for (const int id : {1, 2})
@@ -708,7 +715,7 @@ Figure OneSided() {
   };
 }
 
-/// From tick `from` on, what an agent goes by is so old.
+/// From tick `from` on, the samples that agent `id` uses are `age` ticks old.
 Claim HasAge(int id, int age, int from = 0) {
   return [=](const Flight&, const Flight& is) {
     for (int tick = from; tick < is.ticks(); ++tick)
@@ -735,7 +742,7 @@ void Overtakes(const Flight& was, const Flight& is) {
   EXPECT_NEAR(Aged(0, 0)(is) + Aged(5, 5)(is) + Lost()(is), 1, 1e-9);
 }
 
-/// As many are lost, and others.
+/// As many samples are lost as before, but others.
 void LosesOthers(const Flight& was, const Flight& is) {
   EXPECT_NE(AgesOf(was, 1), AgesOf(is, 1)) << "others are lost";
   Goes(Lost(), 0.3, 0.3, kOfShare)(was, is);
@@ -763,13 +770,14 @@ INSTANTIATE_TEST_SUITE_P(
         Set("run.seed", "2", LosesOthers, Two("10.0", {"link.loss=0.3"}), "run.seed with losses")),
     NameOf);
 
-/// Replaces the link override that delays what 1 hears of 2 by another one; `what` names the difference.
+/// A row that replaces the link override that delays what agent 1 hears of agent 2 by another one; `what` names the
+/// difference.
 Row OtherLinks(const std::string& what, const std::string& value, const Claim& claim) {
   return {"link.override", "[{ " + value + " }]", claim,
           Two("10.0", {"link.override=[{ edges = [[1, 2]], delay_s = 0.05 }]"}), "link.override." + what};
 }
 
-/// A figure of what agent 1 hears, while agent 2 hears everything at once.
+/// Calls `look` with the ages (ticks) of what agent 1 hears; agent 2 hears everything at once.
 Claim FirstHears(const std::function<void(const std::vector<int>& ages)>& look) {
   return [=](const Flight&, const Flight& is) {
     look(AgesOf(is, 1));
@@ -820,7 +828,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 // --- [sensors] --------------------------------------------------------------------------------------
 
-/// By how much a command differs from that of what is true, along x and y.
+/// By how much the commands of an agent differ from those that `law` gives for the true motions, along x and y, for
+/// each tick (m/s^2).
 std::vector<Eigen::Vector2d> Errors(const Flight& flight, int id, const Equation& law) {
   std::vector<Eigen::Vector2d> errors;
   for (int tick = 0; tick < flight.ticks(); ++tick)
@@ -828,7 +837,7 @@ std::vector<Eigen::Vector2d> Errors(const Flight& flight, int id, const Equation
   return errors;
 }
 
-/// Commands of two agents for a minute, whose errors have the standard deviation `std` on each axis, and are
+/// The errors of two agents' commands, over a minute, have the standard deviation `std` (m/s^2) on each axis, and are
 /// independent from tick to tick: to within 5 %, five standard deviations of the estimate.
 Claim Errs(double std, const Equation& law = {}) {
   return [=](const Flight& was, const Flight& is) {
@@ -846,8 +855,8 @@ Claim Errs(double std, const Equation& law = {}) {
   };
 }
 
-/// Commands whose errors are the same at all ticks, and another one for each agent; `std` is that from which they are
-/// drawn.
+/// The error of the commands of an agent is the same at all ticks, and another one for each agent; it is drawn with the
+/// standard deviation `std` (m/s^2).
 Claim IsBiased(double std, const Equation& law = {}) {
   return [=](const Flight& was, const Flight& is) {
     EXPECT_LT(FarthestOff(law, was, Always), 1e-9);
@@ -865,7 +874,7 @@ const Equation kMatches{.v_gain = 0.5};
 const std::string kCountsRanges =
     "law={ name = 'custom', python = \"def control(tick, me, neighbours): return len(me.ranges), 0\" }";
 
-/// Commands are how many obstacles an agent sees.
+/// The command of each agent along x is the number of obstacles that its range sensor sees: none before.
 void CountsWhatIsInRange(const Flight& was, const Flight& is) {
   double seen = 0;
   for (int id = 1; id <= 4; ++id) {
@@ -878,7 +887,7 @@ void CountsWhatIsInRange(const Flight& was, const Flight& is) {
   EXPECT_THAT(seen, testing::AllOf(testing::Gt(0), testing::Lt(4)));
 }
 
-/// Agents start at the same places, and err by other amounts.
+/// Agents start at the same places, and their commands have other errors.
 void ErrsOtherwise(const Flight& was, const Flight& is) {
   EXPECT_NE(Errors(was, 1, {})[0], Errors(is, 1, {})[0]);
   EXPECT_EQ(was.at(1, 0).p_WB, is.at(1, 0).p_WB);
@@ -1047,21 +1056,21 @@ INSTANTIATE_TEST_SUITE_P(
 
 // --- [[agents.override]] ----------------------------------------------------------------------------
 
-/// Overrides `key` by `value` for agent 2.
+/// A row that sets `key` to `value` for agent 2 alone.
 Row Overridden(const std::string& key, const std::string& value, const Claim& claim,
                std::vector<std::string> base = {}) {
   return {"agents.override", "[{ id = 2, " + key + " = " + value + " }]", claim, std::move(base),
           "agents.override." + key};
 }
 
-/// Replaces an override of agent 2, in words, by another.
+/// A row that replaces an override (TOML) by another; `what` names the difference.
 Row OtherOverride(const std::string& what, const std::string& was, const std::string& is, const Claim& claim,
                   std::vector<std::string> base = {}) {
   base.push_back("agents.override=[{ " + was + " }]");
   return {"agents.override", "[{ " + is + " }]", claim, std::move(base), "agents.override." + what};
 }
 
-/// Commands of agent 2 are those of this equation, those of the others of the usual one.
+/// Commands of agent 2 are those of this equation, commands of the others those of the usual one.
 Claim SecondObeys(const Equation& law) {
   return [=](const Flight& was, const Flight& is) {
     Obeys(law, [](int id, int) { return id == 2; })(was, is);
@@ -1069,7 +1078,7 @@ Claim SecondObeys(const Equation& law) {
   };
 }
 
-/// Nobody hears agent `off`, and it hears nobody, while `is_off(tick)`. It brakes then: it wants the velocity 0.
+/// While `is_off(tick)`, no agent hears agent `off`, and it hears none. It brakes then: it wants the velocity 0.
 Claim IsOff(int off, const std::function<bool(int)>& is_off) {
   return [=](const Flight& was, const Flight& is) {
     const Equation law{.weight = [=](const Flight&, int i, int j, int tick) {
@@ -1086,7 +1095,7 @@ Claim IsOff(int off, const std::function<bool(int)>& is_off) {
   };
 }
 
-/// Everybody hears of agent 2 that it is elsewhere.
+/// All others hear false positions of agent 2, `off_m(t_s)` (m) away from the true ones.
 Claim Lies(const std::function<Eigen::Vector3d(double t_s)>& off_m) {
   Equation law;
   law.lie = [=](int j, int tick) { return j == 2 ? off_m(tick * 0.01) : Eigen::Vector3d::Zero().eval(); };
@@ -1098,14 +1107,14 @@ constexpr double kPeriod_s = 5;  // unless another is given
 
 const std::string kLie = "id = 2, lie = { offset_m = [1.0, 0.0, 0.0]";
 
-/// Agent 2 does not slip sideways; those that fly do.
+/// Agent 2 does not slip sideways; agents with other bodies do.
 void OnlyTheSecondRolls(const Flight& was, const Flight& is) {
   EXPECT_GT(Slip(was, 2), 0.1);
   EXPECT_LT(Slip(is, 2), 0.02);
   EXPECT_GT(Slip(is, 1), 0.1);
 }
 
-/// Agent 2 has a force for an actuator, and the others rotors.
+/// Agent 2 is moved by a force, the others by rotors.
 void OnlyTheSecondIsPushed(const Flight& was, const Flight& is) {
   IsPushed(was, is, 2);
   EXPECT_GT(ActuatorOf(1, 0, 0)(is), 100) << "the others have rotors";

@@ -35,7 +35,8 @@ class IdealNetwork {
   double time_s() const { return experiment.time_s(tick); }
   Motion& agent(int id) { return motions[static_cast<std::size_t>(id - 1)]; }
 
-  /// Output of each agent's law at the current tick, along law.axes.
+  /// Output of each agent's law at the current tick, along law.axes, in W: acceleration (m/s^2) or velocity (m/s),
+  /// whichever the law wants.
   std::vector<Eigen::Vector3d> Wants() {
     std::vector<Eigen::Vector3d> wants_W;
     for (int id = 1; id <= experiment.size(); ++id) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Participants that do not belong to a run, for tests of what they can do to it.
+// Participants that do not belong to a run (strangers), for tests of what they can do to it.
 
 #include <string>
 
@@ -9,7 +9,7 @@
 
 namespace mascot::test {
 
-/// The DDS domain that `up` prints.
+/// The DDS domain of a run, as `up` has printed it.
 inline int DomainOf(const Running& up) {
   const std::string text = up.err();
   return std::stoi(text.substr(text.find("domain ") + 7));
@@ -24,8 +24,8 @@ inline DomainOptions Intruder(const Running& up, const std::string& name) {
   return options;
 }
 
-/// Writes this sample on `topic` again and again, as a participant of this name, until the run is over. Returns its
-/// exit code.
+/// Writes this sample on `topic` again and again, as a participant of this name, until the run is over. Returns the
+/// exit code of `up`.
 template <class PubSub>
 int Harass(Running& up, const std::string& name, const Topic& topic, typename PubSub::type sample) {
   Domain domain(Intruder(up, name), [] {});

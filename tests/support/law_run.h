@@ -34,7 +34,7 @@ struct LawRun {
     summary = nlohmann::json::parse(SummaryJson(run, 0, 0));
     text = SummaryText(run, IncidentsOf(meter, result, {}));
   }
-  /// A figure of the team's law, as measured and as predicted. Both must be numbers.
+  /// A figure of the team's law, as measured; then, as predicted. Throws a JSON error if it is no number.
   double Measured(const std::string& figure) const { return Law()[figure].get<double>(); }
   double Predicted(const std::string& figure) const { return Law()["predicted"][figure].get<double>(); }
   /// What summary.json says of the team's law.
@@ -43,7 +43,7 @@ struct LawRun {
   Experiment experiment;
   Prediction prediction;
   RunMeter meter;
-  Figures figures;  ///< their tables are not to be made: the run's result is gone
+  Figures figures;  ///< must not make tables (functions): these would use the run's result, which is gone
   nlohmann::json summary;
   std::string text;
 };

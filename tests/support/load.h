@@ -1,4 +1,4 @@
-// Experiments from a text in a test.
+// Reads an experiment from TOML text in a test.
 #pragma once
 
 #include <string>

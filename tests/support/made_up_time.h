@@ -1,4 +1,4 @@
-// The time at which tests start that make up the time: what they test is told it, and has no clock.
+// The time at which tests start that make up the time: the objects that they test have no clock, and are told the time.
 #pragma once
 
 #include <chrono>

@@ -27,8 +27,8 @@ inline std::string Config(const std::string& name) {
   return std::string(MASCOT_SOURCE_DIR) + "/configs/" + name + ".toml";
 }
 
-/// Sends a signal to a process that exists. To kill(2), process 0, a child that was not found, is all of our process
-/// group, and -1, a program that was not started, everybody.
+/// Sends a signal to a process; the test fails if there is none. A number of 0 (no such child) or -1 (not started) is
+/// never passed on: kill(2) takes them for our process group, and for every process.
 inline void SignalTo(pid_t process, int signal) {
   ASSERT_GT(process, 0) << "there is no such process";
   kill(process, signal);
@@ -98,7 +98,7 @@ class Up : public Running {
   const std::filesystem::path& path() const { return path_; }
   std::string File(const std::string& name) const { return ReadFile(path_ / name); }
   nlohmann::json Summary() const { return nlohmann::json::parse(File("summary.json")); }
-  /// What `orchestrator info` says of the recording.
+  /// What `orchestrator info` prints of the recording.
   std::string Info() const {
     return Shell("'" MASCOT_BINARY_DIR "/orchestrator' info '" + path_.string() + "'").output;
   }

@@ -6,7 +6,7 @@
 
 namespace mascot {
 
-/// `text` so many times: input that is nested deeply.
+/// `text`, `times` times in a row: makes input that is nested deeply.
 inline std::string Repeated(std::size_t times, std::string_view text) {
   std::string all;
   for (; times > 0; --times) all += text;

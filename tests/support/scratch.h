@@ -53,8 +53,9 @@ struct Ran {
   std::string output;  ///< stdout and stderr
 };
 
-/// Runs a command in a shell that has nothing to read. Throws if it, or what it has started and what writes where it
-/// does, goes on for longer than `patience`, and kills all of it.
+/// Runs a command in a shell whose standard input is /dev/null. If the shell goes on for longer than `patience`, or a
+/// process that it has started still has its output open by then, kills the process group and throws
+/// std::runtime_error. Throws it also if the shell cannot be started.
 inline Ran Shell(const std::string& command, std::chrono::milliseconds patience = std::chrono::seconds(200)) {
   const auto deadline = std::chrono::steady_clock::now() + patience;
   int ends[2];

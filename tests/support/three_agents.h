@@ -16,7 +16,7 @@ inline std::string Three(const std::string& lines, const std::string& agents = "
          agents + "[graph]\nedges = [[1, 2, 0.5], [1, 3]]\n[law]\n" + lines;
 }
 
-/// The error for `toml`; empty: it is valid.
+/// What the error for the experiment `toml` says; empty: it is valid.
 inline std::string Refusal(const std::string& toml) {
   try {
     Load(toml);

@@ -1,4 +1,4 @@
-// How tests wait: until something is so, or a deadline has passed; then the test fails and says what it waited for.
+// How tests wait: until a condition holds or a deadline has passed; then the test fails and says what it waited for.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -66,8 +66,8 @@ inline int AwaitEndOf(pid_t child, const std::string& what, std::chrono::millise
   return status;
 }
 
-/// For waits that cannot be left, as that for a thread: while this object lives longer than `patience`, the process
-/// ends and says what it waited for.
+/// For waits without a deadline of their own, such as joining a thread: if this object lives longer than `patience`,
+/// the process says what it waited for, and aborts.
 class Deadline {
  public:
   explicit Deadline(std::string what, std::chrono::milliseconds patience = kPatience)

@@ -1,4 +1,4 @@
-// Laws written in Python, of agent 1 of three.
+// Runs laws written in Python as that of agent 1 of three agents.
 #pragma once
 
 #include <stdexcept>
@@ -15,7 +15,7 @@ inline Experiment Custom(const std::string& python, const std::string& lines = "
 
 inline std::string LawRefusal(const std::string& lines) { return Refusal(Three(lines)); }
 
-/// Output of the law of agent 1 at tick 0.
+/// Output of the law of agent 1 at tick 0, in W: acceleration (m/s^2) or velocity (m/s), whichever it wants.
 inline Eigen::Vector3d Wants(const std::string& python, const std::string& lines = "") {
   Experiment experiment = Custom(python, lines);
   Agent agent(experiment, 1);

@@ -1,4 +1,4 @@
-// Recordings made by hand, for tests of mcap/.
+// MCAP files that tests write record by record.
 #pragma once
 
 #include <zstd.h>

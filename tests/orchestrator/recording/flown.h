@@ -16,7 +16,7 @@
 
 namespace mascot {
 
-/// What a run had at one tick.
+/// One tick of a run: its row, the state of each edge, the disagreement.
 struct FlownTick {
   DecodedRow row;
   std::vector<EdgeNow> edges;

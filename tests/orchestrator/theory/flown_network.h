@@ -34,7 +34,7 @@ class FlownNetwork {
   }
 
   const Motion& agent(int id) const { return motions[static_cast<std::size_t>(id - 1)]; }
-  /// x of all agents.
+  /// x of all agents (m, in W), by id.
   Eigen::VectorXd x() const {
     Eigen::VectorXd x(std::ssize(motions));
     for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = motions[static_cast<std::size_t>(i)].p_WB.x();
