@@ -40,7 +40,7 @@ PlaceList Circle(int count, double radius_m, double skew_m = 0) {
   return places;
 }
 
-/// Agents of `model` at these places, who all hear each other. `law`: lines from [law] on. `more`: tables in front.
+/// Agents of `model` at these places, which all hear each other. `law`: lines from [law] on. `more`: tables in front.
 std::string TeamOf(const std::string& model, const PlaceList& places, const std::string& law,
                    const std::string& more = "", const std::string& agents = "", double duration_s = 10) {
   return "[run]\nduration_s = " + ShortestFloat(duration_s) + "\n" + more +
@@ -60,7 +60,7 @@ Experiment Read(const std::string& toml) { return LoadExperiment(Section::FromTe
 
 double Distance_m(const IdealTeam& team, int i, int j) { return (team.p_W(i) - team.p_W(j)).norm(); }
 
-/// The smallest distance between two agents over all ticks of ideal bodies.
+/// The smallest distance (m) between two agents over all ticks, on ideal bodies.
 double MinDistance_m(const std::string& toml) {
   const Experiment experiment = Read(toml);
   IdealTeam team(experiment);

@@ -447,7 +447,7 @@ std::string UserName() {
   return entry != nullptr ? entry->pw_name : std::to_string(geteuid());
 }
 
-/// Has a tick, and throws when somebody wants to see it.
+/// Has a tick, and throws when a sample of it is asked for.
 class BrokenSource final : public RosSource {
  public:
   std::int64_t TakeNewest() override { return 1; }
@@ -494,7 +494,8 @@ TEST(DomainLock, IsFreeAgainWhenItsRunIsOver) {
   EXPECT_EQ(DomainLock(domain).domain(), domain);
 }
 
-/// Runs `test` in a thread with namespaces of its own (CLONE_NEWNET, ...). Returns why that is not allowed; else empty.
+/// Runs `test` in a thread with namespaces of its own (CLONE_NEWNET, ...). Returns why that is not allowed; empty: it
+/// is.
 std::string Apart(int namespaces, const std::function<void()>& test) {
   std::string trouble;
   std::thread([&] {
@@ -532,7 +533,7 @@ TEST(DomainLock, SaysWhoHasTheDomainsIfNoneIsFree) {
   if (!trouble.empty()) GTEST_SKIP() << trouble;
 }
 
-TEST(DomainLock, NeedsNoFile) {  // which somebody else may have made, or may not read
+TEST(DomainLock, NeedsNoFile) {  // which another user may have made, or may not read
   const std::string trouble = Apart(CLONE_NEWNS | CLONE_NEWNET, [] {
     ASSERT_EQ(mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr), 0) << std::strerror(errno);
     ASSERT_EQ(mount("none", "/tmp", "tmpfs", MS_RDONLY, nullptr), 0) << std::strerror(errno);

@@ -1,4 +1,5 @@
-// Peers decides whom a process of a run believes. No DDS here: participants are the names that DDS gives them.
+// Peers decides which participants a process of a run believes. No DDS here: participants are the names that DDS gives
+// them.
 #include "bus/peers.h"
 
 #include <gmock/gmock.h>
@@ -9,7 +10,8 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// As Fast DDS names participant `number` of a process of a host, which has drawn a random number.
+/// The name that Fast DDS gives participant `number` of a process of a host; the process has drawn a random number for
+/// it.
 ProcessKey::GuidPrefix ParticipantOf(int host, pid_t pid, int random = 7, int number = 0) {
   ProcessKey::GuidPrefix prefix;
   const int values[] = {1, 15, host, 0, pid & 255, (pid >> 8) & 255, random, 0, number, 0, 0, 0};

@@ -21,7 +21,7 @@ using ::testing::Pair;
 
 constexpr std::int64_t kTick = 50;  // of the events below: 0.5 s
 
-/// The first tick at which `of` of two runs differs; -1: none.
+/// The first tick at which `of` gives different values for two runs; -1: none.
 template <class Of>
 std::int64_t FirstDifference(const std::vector<DecodedRow>& a, const std::vector<DecodedRow>& b, Of of) {
   for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k)

@@ -51,7 +51,7 @@ TEST(Obstacles, NearestPointsMoveAsTheirDerivativeSays) {
   for (const Obstacle& obstacle : {kBox, kSphere, kCylinder})
     for (int n = 0; n < 300; ++n) {
       const Eigen::Vector3d p_W = Somewhere(random), v_W = Somewhere(random) / 3;
-      constexpr double kMoment_s = 1e-5;  // nobody passes an edge in it, but for a few
+      constexpr double kMoment_s = 1e-5;  // in it, all but a few points pass no edge
       const Eigen::Vector3d way_W =
           NearestPoint_W(obstacle, p_W + kMoment_s * v_W) - NearestPoint_W(obstacle, p_W - kMoment_s * v_W);
       EXPECT_LT((VelocityOfNearest_W(obstacle, p_W, v_W) - way_W / (2 * kMoment_s)).norm(), 1e-8) << n;

@@ -45,7 +45,7 @@ std::vector<std::vector<std::uint8_t>> MessagesOf(const std::string& path, McapC
   return messages;
 }
 
-/// What `read` throws is words for the user.
+/// Calls `read`; an exception from it must have words for the user.
 template <class Read>
 void InWords(const Read& read) try {
   read();

@@ -30,7 +30,7 @@ void EndIf(bool is_the_moment) {
   if (is_the_moment) kill(getpid(), SIGKILL);
 }
 
-/// As EndIf(), once what was given to `file` is written.
+/// Kills this process if `text` is what it waits for, once all that was given to `file` is written.
 void EndIfWritten(std::string_view text, FILE* file) {
   if (!IsTheMoment(text)) return;
   std::fflush(file);

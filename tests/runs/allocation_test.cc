@@ -61,8 +61,8 @@ void AwaitChunks(const std::filesystem::path& recording, int count, const Runnin
   EXPECT_TRUE(Await(std::to_string(count) + " chunks of a recording", are_there, kPatienceForRuns)) << up.err();
 }
 
-/// What is allocated while a run flies `ticks` ticks, to within 100. Neither its start nor its end counts, which take
-/// longer on a machine that has others to do, and look at all its processes.
+/// Allocations while a run flies `ticks` ticks, to within 100 ticks. Its start and end do not count: on a busy machine
+/// they take longer, and they look at all processes of the machine.
 Allocations AllocationsInFlight(const std::string& experiment, int ticks) {
   ScratchFolder folder;
   const std::filesystem::path counts = folder.path() / "counts", recording = folder.path() / "run/run.mcap";

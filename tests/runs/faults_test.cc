@@ -141,7 +141,7 @@ INSTANTIATE_TEST_SUITE_P(At, Orphaned,
                                          Moment{"Flying", "x real time"}, Moment{"Ending", "request: end"}),
                          NamedAsPrinted<Moment>);
 
-/// A command in whose processes of this name leaving the DDS domain never ends.
+/// A command in which leaving the DDS domain never ends, for processes with the name `process`.
 std::string Hanging(const std::string& process, const std::string& command) {
   return "MASCOT_HANGS=" + process + " LD_PRELOAD='" MASCOT_BINARY_DIR "/tests/preload/libhang_at_end.so' exec '" +
          MASCOT_BINARY_DIR "/" + process + "' " + command;
@@ -173,7 +173,7 @@ TEST(Faults, AProcessThatWasStartedByHandLeavesWithinItsTime) {
   EXPECT_EQ(agent.Wait(), 1);
   EXPECT_THAT(agent.err(), HasSubstr("error: no experiment came within 1 s"));
   EXPECT_THAT(agent.err(), HasSubstr("agent_3: the DDS library does not end: leaving by force\n"));
-  SweepSharedMemory(101);  // no run has this domain, so that nobody else removes its ports
+  SweepSharedMemory(101);  // no run has this domain, so that no other process removes its ports
 }
 
 TEST(Faults, NotEvenAStoppedAgentOutlivesAKilledOrchestrator) {

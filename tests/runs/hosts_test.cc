@@ -123,7 +123,7 @@ class Hosts : public testing::Test {
   TwoHosts hosts_;
 };
 
-/// Where the commands of two runs begin to differ: the tick, and whose do at that tick.
+/// Where the commands of two runs begin to differ: the tick, and the agents whose commands differ at it.
 struct Difference {
   std::int64_t tick = -1;  ///< -1: nowhere
   std::vector<int> agents = {};

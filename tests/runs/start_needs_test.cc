@@ -1,4 +1,5 @@
-// What the transport needs is asked before the start, and what users have set for other DDS programs is not heard.
+// `up` checks before the start what the transport needs, and takes no notice of what users have set for other DDS
+// programs.
 #include <gmock/gmock.h>
 
 #include "tests/support/intruder.h"
@@ -21,7 +22,7 @@ Ran ShortRun(const ScratchFolder& folder, const std::string& before, const std::
 
 bool MayMakeNetworks() { return Shell("unshare -n ip link show lo").exit_code == 0; }
 
-/// That question came where the network was wrong, after a minute.
+/// `up` does not ask this question, which it used to ask after a minute when the network was wrong.
 auto AsksNoWrongQuestion() { return Not(HasSubstr("is an orchestrator running in this domain?")); }
 
 TEST(StartNeeds, TheLoopbackInterfaceThatIsDownIsNamedBeforeTheStart) {

@@ -1,5 +1,5 @@
-// Runs over DDS, with the real processes, in a domain where others are, too: whatever they say changes nothing, and who
-// says it is named.
+// Runs over DDS, with the real processes, in a domain with strangers: nothing that these send changes the run, and a
+// stranger that sends something is named.
 
 #include <gmock/gmock.h>
 
@@ -41,9 +41,9 @@ class Strangers : public testing::Test {
   ScratchFolder folder_;
 };
 
-// --- what others write --------------------------------------------------------------------------------
+// --- what strangers write ----------------------------------------------------------------------------
 
-/// A sample that somebody else writes, and what is said of it.
+/// A sample that a stranger writes, and what the run says of it.
 struct Lie {
   const char* what;
   std::string name;  ///< of the participant
@@ -151,7 +151,7 @@ TEST_F(Strangers, OneOfAnotherVendorIsNamedByItsProcess) {
   EXPECT_THAT(up.err(), HasSubstr(") writes /agent_2/command, which only agent_2 may"));
 }
 
-// --- who listens --------------------------------------------------------------------------------------
+// --- which strangers listen --------------------------------------------------------------------------
 
 TEST_F(Strangers, ARunIsTheSameWhoeverListens) {
   const auto fly = [&](const std::string& name, const std::function<void(Up&)>& meanwhile) {

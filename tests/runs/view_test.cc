@@ -24,7 +24,7 @@ topology = "ring"
 name = "consensus"
 )";
 
-/// Where a run can be watched, as it says.
+/// The address at which a run can be watched, as `up` prints it.
 std::string UrlOf(const Running& up) {
   std::string url;
   EXPECT_TRUE(Until([&] {
@@ -79,7 +79,7 @@ TEST(UpWithView, IsReadByFoxglovesOwnPackagesOverDds) {
   up.Signal(SIGINT);
   EXPECT_EQ(up.Wait(), 130) << up.err();
   EXPECT_TRUE(watching.IsClosed());
-  EXPECT_THAT(WebClient(url).Get("/"), "");  // nobody listens any more
+  EXPECT_THAT(WebClient(url).Get("/"), "");  // no process listens any more
 }
 
 TEST(UpWithView, TakesTheNextPortIfAnotherRunHasTheFirst) {

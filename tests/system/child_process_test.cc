@@ -1,4 +1,4 @@
-// One child process: who may still send it a signal, and what is told of its end.
+// One child process: until when signals are sent to it, and what is told of its end.
 #include "system/child_process.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ class ChildProcessTest : public testing::Test {
   static bool IsThere(pid_t number) { return kill(number, 0) == 0; }
 
  private:
-  sighandler_t before_ = ::signal(SIGURG, [](int) { ++urgent; });  // whoever has no handler ignores this one
+  sighandler_t before_ = ::signal(SIGURG, [](int) { ++urgent; });  // a process without a handler ignores this one
 };
 
 TEST_F(ChildProcessTest, ItsEndIsToldOnceAndThenItHasNoNumber) {
@@ -51,8 +51,7 @@ TEST_F(ChildProcessTest, WhatRunsIsNotReaped) {
 }
 
 TEST_F(ChildProcessTest, NoSignalReachesWhoHasTheNumberOfAReapedChild) {
-  ChildProcess us(
-      getpid());  // waitpid takes us for no child of ours: as if somebody else had reaped one of this number
+  ChildProcess us(getpid());  // waitpid takes us for no child of ours: as if other code had reaped one of this number
   us.Signal(SIGURG);
   EXPECT_EQ(urgent, 1);
   EXPECT_EQ(us.ReapIfEnded(), kUnknownEnd);

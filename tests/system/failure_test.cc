@@ -1,4 +1,4 @@
-// What failed, in words, and exceptions that nobody catches.
+// What failed, in words, and exceptions that no code catches.
 #include "system/failure.h"
 
 #include <gtest/gtest.h>

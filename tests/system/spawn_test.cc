@@ -1,4 +1,4 @@
-// How other programs are started: what they find open, whom signals reach, and what is said if they cannot start.
+// How other programs are started: what they find open, which signals reach them, and what is said if they cannot start.
 // Tested with programs that every system has.
 #include "system/spawn.h"
 

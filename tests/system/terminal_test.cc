@@ -66,7 +66,7 @@ std::string ReadAll(int terminal) {
   return bytes;
 }
 
-/// All that comes from a descriptor until nobody has its other end any more.
+/// All that comes from a descriptor until no process has its other end any more.
 std::string ReadToEnd(int descriptor) {
   std::string bytes;
   char buffer[4096];

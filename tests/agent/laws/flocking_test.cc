@@ -162,7 +162,8 @@ TEST(Flocking, WithoutAGammaAgentTheMeanVelocityStays) {
 }
 
 TEST(Flocking, AgentsBeyondTheRangeDoNotMatter) {
-  // Each agent of the path 1 - 2 - 3 hears whom it is next to; in the complete graph also who is 3.8 m away.
+  // In the path 1 - 2 - 3 each agent hears those next to it; in the complete graph agents 1 and 3, 3.8 m apart, hear
+  // each other, too.
   const auto three = [](const std::string& graph) {
     return "[run]\nduration_s = 1\n[agents]\nmodel = 'double_integrator'\ncount = 3\nposition_m = [[0, 0, 1], [1.9, 0, "
            "1], [3.8, 0, 1]]\n[graph]\n" +

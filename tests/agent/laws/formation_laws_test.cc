@@ -106,7 +106,7 @@ TEST(Containment, TheoryNamesTheRateBelowWhichTheSampledTeamDiverges) {
 
 // --- cyclic pursuit -------------------------------------------------------------------------------------------
 
-/// A regular N-gon of radius 2 around (1, -1); `order`: 1 counterclockwise, -1 clockwise.
+/// Agents on a regular N-gon of radius 2 m around (1, -1); `order`: 1 counterclockwise, -1 clockwise.
 std::string Polygon(int count, int order = 1) {
   std::string points;
   for (int i = 0; i < count; ++i) {

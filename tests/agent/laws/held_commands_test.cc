@@ -254,7 +254,7 @@ TEST(HeldCommands, OfABoundTheWarningSaysThatItIsOne) {
 }
 
 TEST(HeldCommands, AnEvaderThatIsDrivenPastAnotherAgentIsCapturedSooner) {
-  // Agent 2 drives agent 1 along x to agent 3, who does not hear it, and stands still.
+  // Agent 2 drives agent 1 along x to agent 3, which hears no other and stands still.
   const std::string law = "name = 'pursuit_evasion'\nleader = 1\n", graph = "edges = [[2, 1], [1, 2]]";
   const LawRun past(Placed("[0, 0, 1], [-3, 0, 1], [2, 0.1, 1]", 10, graph, law));
   EXPECT_EQ(past.Law()["bounds"]["capture_time_s"], "at_most");

@@ -347,11 +347,11 @@ Vector3d ByAvoidance(const Now& now, std::size_t i) {  // balls of 0.1 m; a sphe
   return cut(cut(f) + push(now.p[i] - nearest, 0.1));
 }
 
-/// A printed equation, in the words of this file.
+/// A printed equation, and the same in C++.
 struct Equation {
   std::string name;  // of the case
   std::string law;
-  std::string printed;  // LawEntry::equation: whoever changes the one changes the other, and `value`
+  std::string printed;  // a copy of LawEntry::equation: if one is changed, so must be the other, and `value`
   std::string toml;
   Vector3d (*value)(const Now& now, std::size_t i);  // wanted acceleration or velocity; called for i = 0..3 in turn
   double tolerance = 1e-9;

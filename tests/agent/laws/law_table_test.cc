@@ -36,7 +36,7 @@ struct Setting {
   std::string changed;  ///< lines of [law] that differ in the parameter alone
 };
 
-/// How a law is tried.
+/// The settings with which a law is tried.
 struct Trial {
   std::string experiment;  ///< everything in front of the lines of [law]
   std::vector<Setting> settings;
@@ -165,7 +165,7 @@ std::optional<std::map<std::string, Value>> LiveDifference(const std::string& la
   return set;
 }
 
-/// Where agents are after three seconds, or why the experiment is none.
+/// Positions of all agents after three seconds, or why the experiment is not valid.
 std::string FlightOf(const std::function<Experiment()>& experiment) {
   try {
     IdealNetwork network(experiment());
@@ -273,7 +273,7 @@ void ForEachTrial(const std::function<void(const LawEntry& law, const std::strin
   }
 }
 
-/// The agents somewhere, and with some velocity, along law.axes.
+/// Puts the agents at random positions with random velocities, along law.axes.
 void PutAnywhere(IdealNetwork& network, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> coordinate(-5, 5);
@@ -291,7 +291,7 @@ TEST(LawTable, WantsWhatItsRowsSay) {
   });
 }
 
-/// What a linear form says that an agent wants.
+/// What an agent wants, by the linear form of its law.
 Eigen::Vector3d WantedByForm(const LinearForm& form, IdealNetwork& network, int id) {
   const std::span<const Eigen::Vector3d> places_W = PlacesOf(network.experiment.law);
   const auto q_W = [&](int k) -> Eigen::Vector3d {
@@ -356,7 +356,7 @@ TEST(LawTable, PursuesWithinTheBoundsAndOnTheTreeOfItsRows) {
   EXPECT_GT(pursuits, 0);
 }
 
-/// Places of all agents after some seconds, with another seed.
+/// Positions of all agents after some seconds, with another seed.
 std::vector<Eigen::Vector3d> FlownWith(const std::string& toml, int seed) {
   std::string text = toml;
   text.replace(text.find("[run]\n"), 6, "[run]\nseed = " + std::to_string(seed) + "\n");

@@ -1,5 +1,4 @@
-// Laws whose agents speak with each other, by messages of their own: closed forms and bounds, on the law alone and in
-// whole runs.
+// Laws whose agents send each other messages of their own: closed forms and bounds, on the law alone and in whole runs.
 #include <gmock/gmock.h>
 
 #include <Eigen/LU>
@@ -73,7 +72,7 @@ TEST(EventTriggered, NobodyIsFartherFromWhatItSaidThanTheThreshold) {
 }
 
 TEST(EventTriggered, WithAThresholdOfZeroItIsConsensusOneTickLate) {
-  // x(k) = p(k): v = -L p, but for tick 0, at which nobody has heard anything.
+  // x(k) = p(k): v = -L p, but for tick 0, at which no agent has heard anything.
   IdealNetwork network(Five(100, 5, kStatic + "c0_m = 0.0\nc1_m = 0.0\n"));
   const Eigen::MatrixXd m = Eigen::MatrixXd::Identity(5, 5) - 0.01 * network.experiment.graph.Laplacian();
   Eigen::VectorXd x(5);

@@ -17,7 +17,7 @@ using ::testing::IsEmpty;
 
 // --- robustness of graphs ---------------------------------------------------------------------------------
 
-/// By the definition: all pairs of disjoint groups.
+/// The robustness of a graph by its definition: all pairs of disjoint groups are tried.
 int RobustnessByPairs(const Graph& graph) {
   const unsigned all = 1u << graph.size();
   const auto reach = [&](unsigned group) {
@@ -168,8 +168,8 @@ TEST(Resilient, HonestAgentsAgreeInTheHullOfTheirStartsWhateverOneSays) {
   }
 }
 
-/// Nine who all hear each other, and four more of whom each hears five before it: 5-robust, with 92 of 156
-/// edges (LeBlanc et al., theorem on preferential attachment). Agents 3 and 8 lie.
+/// Nine agents that all hear each other, and four more, each of which hears five of those before it: 5-robust, with 92
+/// of 156 edges (LeBlanc et al., theorem on preferential attachment). Agents 3 and 8 lie.
 std::string Thirteen(int f) {
   std::string edges, places;
   for (int i = 1; i <= 13; ++i) {

@@ -1,4 +1,4 @@
-// What theory says exactly is true of numbers that are rounded: at large coordinates, at any instant, of what cancels.
+// Exact predictions hold in spite of rounding: at large coordinates, at any time, and for sums whose terms cancel.
 #include "agent/laws/parts/rounding.h"
 
 #include <gmock/gmock.h>

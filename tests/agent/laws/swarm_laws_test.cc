@@ -1,4 +1,4 @@
-// Laws of agents that hear whoever is near: their properties, on the law alone and in whole runs.
+// Laws of agents that hear all others that are near: their properties, on the law alone and in whole runs.
 #include <gmock/gmock.h>
 
 #include <cmath>

@@ -12,7 +12,7 @@
 namespace mascot {
 namespace {
 
-/// Five unicycles on a circle of `radius_m`, counterclockwise, who head along it. `law`: lines of [law].
+/// Five unicycles on a circle of `radius_m`, counterclockwise, that head along it. `law`: lines of [law].
 std::string Circle(double radius_m, const std::string& law, double duration_s = 60) {
   std::string positions, headings;
   for (int i = 0; i < 5; ++i) {

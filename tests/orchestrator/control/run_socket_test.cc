@@ -1,4 +1,5 @@
-// RunSocket and RunsAlive: which users reach a run on this machine, what it answers, and who is taken for a run.
+// RunSocket and RunsAlive: which users reach a run on this machine, what the run answers, and which processes are taken
+// for runs.
 #include "orchestrator/control/run_socket.h"
 
 #include <gmock/gmock.h>
@@ -58,12 +59,12 @@ class RunSocketTest : public testing::Test {
   const RunSocket socket_;
 };
 
-/// Another process, which listens under a name and does something with whoever connects.
+/// Another process, which listens under a name and calls `act` with each connection.
 class Listener {
  public:
   using Act = std::function<void(const Descriptor& client)>;
 
-  /// `name`: of the socket, from the process id.
+  /// `name`: gives the name of the socket for the process id.
   Listener(const std::function<std::string(pid_t)>& name, const Act& act, uid_t user = geteuid()) {
     int ready[2];
     if (pipe(ready) != 0) return;
@@ -77,7 +78,7 @@ class Listener {
       for (;;) act(Descriptor(accept4(socket.number(), nullptr, nullptr, SOCK_CLOEXEC)));
     }
     close(ready[1]);
-    AwaitInput(ready[0], "a process that listens");  // or has ended: then nobody has the pipe's other end
+    AwaitInput(ready[0], "a process that listens");  // or has ended: then no process has the other end of the pipe
     close(ready[0]);
   }
   ~Listener() {

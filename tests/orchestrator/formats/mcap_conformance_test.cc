@@ -165,7 +165,7 @@ void ExpectRead(const Example& example) {
   EXPECT_EQ(read.complete, example.damage().empty());
 }
 
-/// McapIndex gives the same, in any order.
+/// McapIndex gives the same messages, in any order.
 void ExpectReadByIndex(const Example& example) {
   McapIndex index(example.file);
   std::vector<Contents::Message> messages;
@@ -360,7 +360,7 @@ void ExpectRightPlaces(const std::string& file, const Records& records) {
   }
 }
 
-/// Forgets who wrote a file, how it is packed, and so what is where.
+/// Removes the fields that say which library wrote a file, how it is packed, and where its records are.
 Records Unplaced(Records records) {
   for (auto& [type, fields] : records) {
     for (const char* name :

@@ -1,4 +1,4 @@
-// What a run came up against: contacts, limits, lost samples, late commands, in events.csv, on the terminal and in
+// Incidents of a run (contacts, limits, lost samples, late commands) in events.csv, on the terminal and in
 // summary.json.
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ class MadeRow final : public FlownRow {
   DecodedRow row_;
 };
 
-/// What is told of three agents, whose agent 2 has these flags at these ticks.
+/// The incidents of three agents, of which agent 2 has these flags at these ticks.
 Incidents OfFlags(const std::map<std::int64_t, std::uint32_t>& flags) {
   const Experiment experiment = LoadThree();
   const LinkMeter links(experiment);

@@ -42,7 +42,7 @@ void ExpectTrue(const LawRun& run, int least, const std::string& what) {
 
 const std::string kFive = "position_m = [[3, 0, 1], [-1, 1, 2], [4, 2, 3], [1, 3, 4], [-5, 4, 5]]\n";
 
-/// Quadrotors, unless `agents` says otherwise.
+/// The text of an experiment with quadrotors, unless `agents` says otherwise.
 std::string Team(double duration_s, const std::string& agents, const std::string& law,
                  const std::string& graph = "topology = 'path'\n", const std::string& more = "") {
   return "[run]\nduration_s = " + ShortestFloat(duration_s) + "\n[agents]\ncount = 5\n" + kFive + agents + "[graph]\n" +

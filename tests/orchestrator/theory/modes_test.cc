@@ -15,7 +15,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// x of a mode from rest, by simulating its recursion tick by tick: an independent reference.
+/// x of a mode at each tick, from rest, by simulating its recursion: an independent reference.
 std::vector<Complex> FromRest(const LinearMode& mode, double h, int ticks) {
   std::vector<Complex> x = {1};
   Complex v = 0;

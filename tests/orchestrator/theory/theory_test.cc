@@ -376,7 +376,7 @@ TEST(Theory, WarnsOfBodiesThatWillTouch) {
               IsEmpty());
 }
 
-/// What is said of the ways of two agents that fly `law` past a pillar of 1 m and a ball.
+/// What theory says of the ways of two agents that fly `law` past a pillar of 1 m and a ball.
 std::vector<std::string> WarningsOfWays(const std::string& law, const std::string& more = "") {
   return Predict(LoadExperiment(
                      Section::FromText("[run]\nduration_s = 200\n[agents]\ncount = 2\nmodel = 'double_integrator'\n"

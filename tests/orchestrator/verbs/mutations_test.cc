@@ -1,7 +1,7 @@
 // Experiments and recordings, changed at random: every verb that reads them ends in order, with an exit code and words
 // that say where they are wrong. By hand, with many:
 //   MASCOT_MUTATIONS=10000 build/release/mutations_test
-// What is being read when a verb dies or hangs is left in mutant.toml or mutant.mcap of the build folder.
+// The file that a verb reads when it dies or hangs is left in the build folder, as mutant.toml or mutant.mcap.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -143,7 +143,8 @@ TEST(Mutations, AChangedExperimentIsReadOrRefusedWithAPlace) {
   EXPECT_GT(ends[kExitUsage], 0);
 }
 
-/// Recordings: of a real run; and one without checksums, of which every byte can be changed unnoticed.
+/// Recordings: of a real run, and two made-up ones without checksums, so that changes of their bytes are not noticed by
+/// these.
 std::vector<std::string> Recordings(const ScratchFolder& scratch) {
   WriteFile(scratch.File("two.toml"),
             "[run]\nduration_s = 0.2\n[agents]\ncount = 2\nmodel = 'double_integrator'\n[law]\nname = 'consensus'\n");

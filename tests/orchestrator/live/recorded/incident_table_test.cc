@@ -1,4 +1,4 @@
-// What the table beside a recording tells of its events.
+// What the events.csv beside a recording tells of the events in it.
 #include "orchestrator/live/recorded/incident_table.h"
 
 #include <gmock/gmock.h>
@@ -14,7 +14,8 @@ namespace {
 using testing::ElementsAre;
 using testing::Optional;
 
-/// What `table` says of events 1 to 4, which took effect at 0.01 to 0.04 s: who gave them.
+/// Whether events 1 to 4, which took effect at 0.01 to 0.04 s, were given by hand, according to `table`; nothing: it
+/// does not say.
 std::vector<std::optional<bool>> ByHand(const std::string& table) {
   const ScratchFolder folder;
   WriteFile(folder.File("events.csv"), "t_s,until_s,what,count,agent,with,detail\n" + table);

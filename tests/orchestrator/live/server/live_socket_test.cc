@@ -30,7 +30,7 @@ using ::testing::MatchesRegex;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-/// Sends every message back, "bad" apart, for which it drops the client, and tells everybody each period.
+/// Sends every message back, but drops the client for "bad"; sends a text to all clients each period.
 class Echo final : public SocketUser {
  public:
   explicit Echo(SocketOptions options = {}, std::size_t told_bytes = 0)
@@ -507,7 +507,7 @@ TEST(LiveSocket, TakesTheNextFreePort) {
   SocketOptions options{.port = static_cast<std::uint16_t>(taken)};
   const SocketServer second(options, echo, [](const std::string&) {});
   EXPECT_GT(std::stoi(second.url().substr(second.url().rfind(':') + 1)), taken);
-  options.address = "203.0.113.1";  // of nobody
+  options.address = "203.0.113.1";  // an address of no machine
   EXPECT_THAT([&] { SocketServer(options, echo, [](const std::string&) {}); },
               testing::ThrowsMessage<std::runtime_error>("cannot listen on 203.0.113.1:" + std::to_string(taken) +
                                                          ": Cannot assign requested address"));

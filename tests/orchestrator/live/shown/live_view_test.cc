@@ -1,4 +1,4 @@
-// A run as its viewers see it: fly in this process, watched by clients by hand and by Foxglove's own packages.
+// A run as its viewers see it: flown in this process, watched by our own test clients and by Foxglove's packages.
 
 #include "orchestrator/live/shown/live_view.h"
 
@@ -87,7 +87,7 @@ class Watched {
     sinks_.insert(sinks_.begin(), {&meter_, &view});
   }
 
-  /// Flies; before each tick that `go_on` is asked of, it may wait.
+  /// Flies; calls `before_tick` before each tick, which may wait.
   EngineResult Fly(const std::function<void(std::int64_t)>& before_tick = {}) {
     std::int64_t tick = 0;
     EngineResult result = RunInProcess(experiment, sinks_, [&] {
@@ -159,7 +159,7 @@ TEST(LiveView, ShowsTheTickThatTheRunStandsAt) {
   Watched run(Load(kThree));
   std::optional<Viewer> viewer;
   const EngineResult result = run.Fly([&](std::int64_t tick) {
-    if (tick != 100) return;  // 0 to 99 are flown, and the run stands still: who comes now sees the newest
+    if (tick != 100) return;  // 0 to 99 are flown, and the run stands still: a viewer that comes now sees the newest
     viewer.emplace(run.view.url());
     viewer->Subscribe("/ui/frame");
     const Json frame = viewer->FrameAt(99);
@@ -363,8 +363,8 @@ TEST(LiveView, TellsOfEvents) {
   EXPECT_EQ(event.toml(), "goto = {}");
 }
 
-/// What a viewer is told of it after each event is long: a hundred times that is far more than the system keeps for one
-/// that reads nothing.
+/// An experiment that makes what a viewer gets after each event long: a hundred times that is far more than the kernel
+/// keeps for a client that reads nothing.
 constexpr const char* kLarge =
     "[run]\nduration_s = 1.0\n[agents]\ncount = 400\nmodel = 'double_integrator'\nrandom = {}\n";
 
@@ -507,7 +507,7 @@ TEST(LiveView, AQuestionThatThrowsIsAnswered) {
   EXPECT_EQ(viewer.Ask({{"ask", "pause"}}), (Json{{"granted", false}, {"words", "made up"}}));
 }
 
-/// wscheck against a server; ends once it has seen all.
+/// Runs wscheck against a server; it ends once it has seen all that it expects.
 class WsCheck : public Running {
  public:
   WsCheck(const ScratchFolder& folder, const std::string& url)

@@ -92,7 +92,7 @@ TEST(Outcomes, TakeNoPredictionAndNoDeviationForLate) {
                      "consensus.deviation.settling_time_s", "laws.a.predicted.agreement_time_s"});
   outcomes.Add({"0", "1", "", "4.0", "5.0", "-1.0", "7.0"});
   outcomes.Add({"1", "2", "", "8.0", "5.0", "3.0", ""});
-  outcomes.Add({"2", "3", "", "", "5.0", "", ""});     // not settled, and so off by nobody knows how much
+  outcomes.Add({"2", "3", "", "", "5.0", "", ""});     // not settled: how far off it is, is not known
   outcomes.Add({"3", "4", "", "9.0", "", "", "9.0"});  // not predicted
   std::string csv;
   const std::vector<std::string> metrics = {"consensus.settling_time_s", "consensus.predicted.settling_time_s",

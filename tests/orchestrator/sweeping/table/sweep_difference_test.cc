@@ -1,4 +1,4 @@
-// In what a sweep differs from the one whose table it would go on with.
+// How a sweep differs from the one whose table it would go on with.
 #include <gmock/gmock.h>
 
 #include "orchestrator/sweeping/table/sweep_identity.h"
@@ -21,7 +21,7 @@ SweepIdentity IdentityOfWords(const SweepPlan::Words& typed) {
 
 const SweepPlan::Words kBegun = {.sets = {"law.p_gain=0.1,0.5", "graph.topology=ring"}, .randoms = {}, .seeds = "1..3"};
 
-/// In what a sweep of these words differs from that of kBegun.
+/// How a sweep with these options differs from that of kBegun.
 std::string DifferenceOf(const SweepPlan::Words& words) {
   return IdentityOfWords(words).DifferenceFrom(IdentityOfWords(kBegun).Text());
 }
