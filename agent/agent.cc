@@ -59,7 +59,7 @@ void Agent::Adopt(std::shared_ptr<const Experiment> now) {
   } else {
     law_->Adopt(*config_);
   }
-  now_ = std::move(now);  // the last one ends here: nobody refers to it any more
+  now_ = std::move(now);  // the last one ends here: nothing refers to it any more
 }
 
 Eigen::Vector3d Agent::AskLaw(std::int64_t tick, const Motion& measured, std::span<const Heard> heard) {

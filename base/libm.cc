@@ -3,7 +3,7 @@
 // 1 unit in the last place (erfc: 1.5).
 //
 // They are defined under the names of libm, and the programs export them: the dynamic linker then takes them for
-// Bullet, Python, NumPy and plug-in laws too, and nobody can call the others by mistake. SLEEF sets no errno, and
+// Bullet, Python, NumPy and plug-in laws too, and no code can call the others by mistake. SLEEF sets no errno, and
 // neither do these. Not here: what is exact or correctly rounded anyway (sqrt, fmod, floor, ...), long double, complex
 // functions.
 #include <sleef.h>

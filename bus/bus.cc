@@ -91,7 +91,7 @@ Handle<dds::Topic> Domain::MakeTopic(const Topic& topic, dds::TypeSupport type) 
                          [participant](auto* made) { participant->delete_topic(made); });
 }
 
-// --- who is matched -----------------------------------------------------------------------------------
+// --- which endpoints are matched ---------------------------------------------------------------------
 
 namespace {
 

@@ -62,7 +62,7 @@ std::optional<std::size_t> Peers::Find(const GuidPrefix& participant, std::strin
 std::optional<std::size_t> Peers::FindWriter(const Topic& topic, const GuidPrefix& writer) const {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const auto& [process, key, claimant] = entries_[i];
-    // Only the experiment says who the orchestrator is, to those that it has not started.
+    // Only the experiment says which participant is the orchestrator, to processes that it has not started.
     const bool fits = key.Fits(writer) && (!key.IsWildcard() || topic.kind == TopicKind::kExperiment);
     if (fits && MayWrite(process, topic)) return i;
   }
@@ -131,7 +131,7 @@ std::vector<std::string> Peers::Refusals() const {
                                 from.first.Name(), Text(from.second), why));
   };
   for (const auto& refused : refused_)
-    if (!FindWriter(refused.first.first, refused.first.second))  // it may have come before we were told who that is
+    if (!FindWriter(refused.first.first, refused.first.second))  // it may have come before we knew its process
       add(refused, "who may not write it");
   for (const auto& refused : seconds_) {
     const auto writer = FindWriter(refused.first.first, refused.first.second);

@@ -74,7 +74,7 @@ void Leave(const ProcessArgs& args, std::chrono::seconds limit, int code) {
   LeaveWithin(limit, {.code = code, .process = args.options.name, .on_signals = by_hand, .sweeps = by_hand});
 }
 
-/// At its end, prints what was not taken from whom.
+/// At its end, prints how many samples were not taken, and of which participants.
 class Refusals {
  public:
   explicit Refusals(const Peers& peers) : peers_(peers) {}

@@ -144,7 +144,7 @@ void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) 
   }
   // Fast DDS 2.9 creates its shared-memory sender when it first discovers a peer that has shared memory, and aborts (an
   // assertion in its statistics) if another thread is sending at that moment. With this initial peer the sender exists
-  // from the start; nobody listens at that address, and clients announce themselves to their server only.
+  // from the start; no process listens at that address, and clients announce themselves to their server only.
   Locator_t nobody(LOCATOR_KIND_SHM, 7400);
   nobody.address[0] = 'U';
   builtin.initialPeersList.push_back(nobody);

@@ -60,14 +60,16 @@ struct flock LockOf(int byte, short type) {
   return place;
 }
 
-/// Whether somebody has reserved this byte of a file (Reserve). Asks, and takes nothing.
+/// Whether another process, or another open file of this one, has reserved this byte of the file (Reserve()). Reserves
+/// nothing.
 bool IsReserved(int file, int byte) {
   struct flock place = LockOf(byte, F_WRLCK);
   return ::fcntl(file, F_OFD_GETLK, &place) != 0 || place.l_type != F_UNLCK;
 }
 
-/// Reserves a byte of a file, which can be locked for reading only; so everybody locks first, and then asks whether a
-/// lock for writing would be in somebody's way. Returns whether nobody else has it.
+/// Reserves a byte of a file, which can be locked for reading only; so every process locks first, and then asks whether
+/// another lock would be in the way of one for writing. Returns whether no other process has it. Throws
+/// std::runtime_error if the byte cannot be locked.
 bool Reserve(int file, int byte) {
   struct flock place = LockOf(byte, F_RDLCK);
   if (::fcntl(file, F_OFD_SETLK, &place) != 0) throw std::runtime_error(std::strerror(errno));

@@ -35,7 +35,7 @@ class LiveExperiment {
   /// is not live, a value that is not legal, an edge that the file does not declare, or an agent that flies no
   /// waypoints.
   void Take(const Event& event);
-  /// The experiment as it is now; null before the first event. Const and shared: whoever flies by it keeps it as long
+  /// The experiment as it is now; null before the first event. Const and shared: code that flies by it keeps it as long
   /// as needed. It is made when it is first asked for after an event, in the thread that asks. Its `resolved` and
   /// `events` are empty: ValueOf() knows its values.
   const std::shared_ptr<const Experiment>& now() const;
@@ -79,14 +79,14 @@ class LiveExperiment {
   /// Notes of which agents the law begins anew with a phase.
   void BeginLaws(const Event& phase);
   void CheckKey(const Event& event, const std::string& key) const;
-  /// Checks that the laws of those whom it concerns let their law.params change. `laws`: with the event.
+  /// Checks that the laws of the agents that the event concerns let their law.params change. `laws`: with the event.
   void CheckParams(const Event& event, const LawsAgain& laws) const;
   /// nullopt: the event changes no edges.
   std::optional<std::set<std::pair<int, int>>> CutAfter(const Event& event) const;
 
   const LawCatalog* laws_;
   Experiment now_;
-  mutable std::shared_ptr<const Experiment> shared_;  // a copy of now_; null: nobody has asked for it yet
+  mutable std::shared_ptr<const Experiment> shared_;  // a copy of now_; null: not asked for since the last event
   ValueTables tables_;
   std::vector<Own> own_;                                           // by index in agents.override
   std::vector<std::size_t> places_;                                // in own_, by id - 1; of agents without: any

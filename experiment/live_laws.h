@@ -23,8 +23,8 @@ struct LawsAgain {
 };
 
 /// Reads again the law tables of `touched`, or all of them (`all`), each by the reader of its own law; agents' own
-/// tables inherit from [law] as in the file. `laws` null: without parameters. `alone`: whose own tables inherit
-/// nothing. Mistakes are noted in `tables`.
+/// tables inherit from [law] as in the file. `laws` null: without parameters. `alone`: ids of the agents whose own
+/// tables inherit nothing. Mistakes are noted in `tables`.
 LawsAgain ReadLawsAgain(const TouchedTables& touched, bool all, Section& tables, const std::vector<int>& owners,
                         const std::set<int>& alone, const LawCatalog* laws, const Experiment& now);
 

@@ -36,7 +36,7 @@ struct TouchedTables {
 };
 
 /// Reads again those of `touched` that are no law, each by the reader that reads it in the file: run, physics, control,
-/// graph and link. `owners`: whose agents.override is, by index. Mistakes are noted in `tables`.
+/// graph and link. `owners`: the id of the agent of each agents.override, by its index. Mistakes are noted in `tables`.
 std::vector<Change> ReadAgain(const TouchedTables& touched, Section& tables, const std::vector<int>& owners,
                               const Experiment& now);
 

@@ -47,7 +47,7 @@ enum class TopicRhythm {
   kRare,    ///< when something happens
 };
 
-/// All that is known of the topics of one kind, but what they carry in C++ (bus/wire.h) and who reads them
+/// All that is known of the topics of one kind, but what they carry in C++ (bus/wire.h) and which processes read them
 /// (orchestrator/engines/dds/wire_audit.cc).
 struct TopicTraits {
   TopicKind kind;
@@ -58,7 +58,7 @@ struct TopicTraits {
   TopicRhythm rhythm;
   int writer_depth;               ///< samples that a writer keeps
   int reader_depth;               ///< samples that a reader keeps
-  bool for_late_joiners = false;  ///< who joins later receives the last sample, too
+  bool for_late_joiners = false;  ///< a reader that joins later receives the last sample, too
   bool is_large = false;          ///< a sample may need fragments
   bool is_recorded = false;       ///< run.mcap has it
   bool is_for_ros = false;        ///< only tools of ROS 2 read it (network.ros_view)

@@ -30,8 +30,8 @@ using RunsAnswer = nlohmann::ordered_json;
 using Voice = RunningRun::Voice;
 using LineTime = LocalLines::Time;
 
-/// How long a run may take to take a question; to answer who it is; to answer a request, since its laws may be slow;
-/// how long one that is stopped is waited for.
+/// How long a run may take to accept a question; to answer what it is; to answer a request, since its laws may be slow;
+/// and how long a stopped run is waited for.
 constexpr auto kQuestionLimit = 1s, kWhoLimit = 5s, kRequestLimit = 60s;
 constexpr auto kStoppedLimit = 250ms;
 constexpr std::size_t kLongestPath = 4096, kLongestName = 1000, kLongestWords = 100'000;
@@ -59,7 +59,7 @@ bool IsStopped(pid_t process) {
 /// Whether a process is called as we are. Any process can choose its name: this tells programs apart, not users.
 bool LooksLikeUs(pid_t process) { return FactsOf(process).name == FactsOf(::getpid()).name; }
 
-/// Whether a process runs the file that we run. For root, who can see it.
+/// Whether a process runs the file that we run. Only root can see it of every process.
 bool RunsOurProgram(pid_t process) {
   struct stat its {
   }, ours{};
@@ -115,7 +115,7 @@ std::optional<Said> AskAt(const std::string& name, pid_t process, const RunsAnsw
   Descriptor socket = MakeLocalSocket(SOCK_CLOEXEC | SOCK_NONBLOCK);
   if (!ConnectTo(name, socket)) {
     if (errno != EAGAIN) return std::nullopt;
-    struct stat folder {};  // so many wait already that nobody is let in: who it is cannot be told by the socket
+    struct stat folder {};  // so many wait already that no other is let in: the socket cannot tell the user
     if (::stat(("/proc/" + std::to_string(process)).c_str(), &folder) != 0) return std::nullopt;
     if (folder.st_uid != ::geteuid()) return Said{Voice::kOfOthers, folder.st_uid};
     return Said{IsStopped(process) ? Voice::kStopped : Voice::kSilent, folder.st_uid};

@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kConfig = "config.toml";
 
-// What cannot be read is no run: somebody else's folder, or one that is being removed.
+// What cannot be read is no run: the folder of another user, or one that is being removed.
 
 bool IsARun(const fs::path& folder) {
   std::error_code error;

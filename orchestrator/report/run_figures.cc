@@ -22,7 +22,7 @@ Json EdgesOf(const Graph& graph) {
   return edges;
 }
 
-/// Edges: who hears whom at any time and, if the graph switches, when.
+/// The edges of all phases of the graph together and, if it switches, those of each phase.
 Json GraphJson(const Experiment& experiment) {
   Json graph = {{"edges", EdgesOf(experiment.graph)}};
   if (experiment.schedule.phases().size() == 1) return graph;
@@ -32,7 +32,7 @@ Json GraphJson(const Experiment& experiment) {
   return graph;
 }
 
-/// The first contacts, each with when, who, with what and how fast.
+/// The first contacts, each with its time (s), the agent, what it touched and how fast (m/s).
 Json FirstContacts(const Experiment& experiment, const Contacts& contacts) {
   constexpr std::size_t kMost = 10;  // events.csv has more
   Json first = Json::array();

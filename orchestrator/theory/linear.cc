@@ -124,8 +124,8 @@ GainBound LinearCase::Gain() const {
   return {"law.beta", std::max(0.0, least - all.drag_b), own};
 }
 
-/// On a constant graph, the agent that hears nobody, is no leader, and is followed by all others, if it has no damping
-/// (b = 0): it goes on as it started. 0: there is none.
+/// On a constant graph, the agent that hears no other, is no leader, and is followed by all others, if it has no
+/// damping (b = 0): it goes on as it started. 0: there is none.
 int LinearCase::FreeRoot() const {
   if (!team_.Leaders().empty() || !timeline_.IsConstant()) return 0;
   const std::vector<int> roots = graph_.Roots();

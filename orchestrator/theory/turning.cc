@@ -3,7 +3,7 @@
 // small tilts the acceleration a of the body is proportional to its tilt, and obeys the law of the tilt:
 //   x' = v,  v' = a - drag v,  a' = w,  w' = c                      or, with rotors that take time, T w'' = c - w'
 // where c = kp (a* - a) - kd w,  a* = u + kp_ref (p* - x) + kd_ref (v* - v) + compensated drag v  is computed once in a
-// control period h and held, and p*'' = u likewise. The map over one period then has the eigenvalues of the mode.
+// control period h and held, as is p*'' = u. The map over one period then has the eigenvalues of the mode.
 #include "orchestrator/theory/turning.h"
 
 #include <fmt/format.h>

@@ -33,7 +33,7 @@ struct VerifyArgs {
   std::string engine = kInProcess;
 };
 
-/// A folder for the logs of the second flight, which nobody keeps.
+/// A folder for the logs of the second flight, which are not kept.
 class TemporaryFolder {
  public:
   TemporaryFolder() : path_((fs::temp_directory_path() / "mascot-verify-XXXXXX").string()) {
@@ -114,7 +114,7 @@ std::string FirstChange(const std::string& ours, const std::string& recorded) {
 }
 
 /// The experiment to fly: that of the recording, with the processes and the delivery of the run's own config.toml, and
-/// nobody who watches. Sets `change` if the two are not the same experiment. A recording that was cut knows of no event
+/// without viewers. Sets `change` if the two are not the same experiment. A recording that was cut knows of no event
 /// after the cut, and the config.toml of a run that was killed of none by hand.
 Experiment ExperimentOf(const std::string& run, const Subject& subject, std::string& change) {
   Experiment recorded = Load(subject.config(), subject.file + " (config.toml)", subject);

@@ -8,8 +8,8 @@
 
 namespace mascot {
 
-/// Who has joined at the start of a run: it knows which processes are ready, when to ask again, and which are missing
-/// when the time is up. No clock: the caller passes in the time.
+/// The processes that have joined at the start of a run: this object knows which of them are ready, when to ask again,
+/// and which are missing when the time is up. No clock: the caller passes in the time.
 class JoinList {
  public:
   using Time = std::chrono::steady_clock::time_point;

@@ -47,7 +47,7 @@ class AverageTracking final : public Law {
 
   Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> heard) override {
     for (const Heard& j : heard)
-      if (has_x_ && j.message.size() == 3)  // who has just begun has said nothing that j could take into account
+      if (has_x_ && j.message.size() == 3)  // if this agent has just begun, j has heard nothing of it yet
         q_W_ +=
             params_->period_s * params_->gain * j.weight * (Eigen::Map<const Eigen::Vector3d>(j.message.data()) - x_W_);
     const Eigen::Vector3d x_W = params_->inputs[i_].At(t_s) + q_W_;

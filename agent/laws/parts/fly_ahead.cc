@@ -51,7 +51,7 @@ void Move(Points& p_W, const Points& v_W, double period_s) {
 }
 
 /// Flies on a team that does not have the shape at the end of the run, up to tick `last`, until it has kept it for a
-/// fifth of its time. `rest_m_per_s`: who is slower rests.
+/// fifth of its time. An agent slower than `rest_m_per_s` rests.
 void FlyOn(const Experiment& experiment, const ShapeLaw& law, double rest_m_per_s, std::int64_t last,
            FlownAhead& ahead) {
   SettlingMeter settling(law.settled);

@@ -91,7 +91,7 @@ std::unique_ptr<Law> MakePlugin(const Experiment& experiment, int id) {
   }
 }
 
-/// Nobody can tell: it is given run.seed.
+/// MASCOT cannot tell whether the law draws random numbers: it is given run.seed.
 bool DrawsByPlugin(const LawConfig& /*law*/) { return true; }
 
 Wanted WantedByPlugin(const LawConfig& law) { return ParamsOf<PluginConfig>(law).wanted; }

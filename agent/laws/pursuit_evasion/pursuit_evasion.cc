@@ -5,7 +5,7 @@
 // along the axes of the law, and 0 within the capture radius. Each pursuer that hears the evader comes closer by at
 // least pursuer_speed - evader_speed, whatever the evader does, also while both hold their velocities for a tick T and
 // are farther apart than pursuer_speed T. Hence one captures after at most min_i (|p_e(0) - p_i(0)| - capture_radius) /
-// (pursuer_speed - evader_speed), and exactly then if a single pursuer drives it straight away, past nobody.
+// (pursuer_speed - evader_speed), and exactly then if a single pursuer drives it straight away, past no other agent.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,9 +1,9 @@
-// Rendezvous without losing anybody; Ji & Egerstedt (2007). Agents hear whoever is within D = graph.range_m:
+// Rendezvous without losing an agent; Ji & Egerstedt (2007). Agents hear all others within D = graph.range_m:
 //   v_i = gain sum_j (2 D - l_ij) / (D - l_ij)^2 (p_j - p_i),   l_ij = |p_j - p_i|
 // This is the gradient of a tension that grows beyond all bounds as an edge comes close to D: an edge that counts is
 // never lost, the mean stays, and a team that is connected meets there. A new neighbour counts from a distance of
-// D - margin_m on (the paper's hysteresis), because its tension would be unbounded at D; who counts for an agent also
-// counts the other way, since both see the same distance.
+// D - margin_m on (the paper's hysteresis), because its tension would be unbounded at D; if j counts for i, then i
+// counts for j, since both see the same distance.
 #include <memory>
 #include <optional>
 #include <set>

@@ -201,7 +201,8 @@ void DdsRun::Join() {
 }
 
 /// Shows the run to RViz2, by a participant of its own: without shared memory, which other versions of Fast DDS may not
-/// share with ours, and found without the discovery server. Whom that server does not know tells the audit.
+/// share with ours, and found without the discovery server. The audit is told what it discovers, which the server may
+/// not know.
 void DdsRun::ShowToRos() {
   DomainOptions options = Options("ros_view", DiscoveryRole::kPeer);
   options.transport = "udp";
@@ -448,7 +449,7 @@ void DdsRun::Do(const RunPhases::Actions& actions) {
   if (actions.kill) children_.Kill();
 }
 
-/// Simulated seconds a second to begin with; where nobody steers, lockstep goes as fast as it can.
+/// Simulated seconds a second to begin with; without RunRequests, lockstep goes as fast as it can.
 double DdsRun::Pace() const {
   if (run_requests_ != nullptr) return run_requests_->status().pace;
   return experiment_.run.mode == Mode::kRealtime ? experiment_.run.speed : 0;

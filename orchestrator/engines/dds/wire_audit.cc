@@ -153,7 +153,7 @@ bool WireAudit::IsProcess(const std::string& name) const {
 std::string WireAudit::ViolationOf(const Guid& guid, const Endpoint& endpoint) const {
   const auto& [topic, reads, owner] = endpoint;
   const bool is_ours = !owner.process.empty();
-  const std::string& process = is_ours ? owner.process : owner.name;  // of another who calls itself an agent, too
+  const std::string& process = is_ours ? owner.process : owner.name;  // also of a stranger that calls itself an agent
   const std::string alias = is_ours && !owner.name.empty() && owner.name != process ? " (as '" + owner.name + "')" : "";
   const std::string what = process + alias + (reads ? " reads " : " writes ") + topic.Name();
   if (const auto agents = AgentsOf(process)) {

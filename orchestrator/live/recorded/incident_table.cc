@@ -17,7 +17,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{1} << 28;  // of a table: nobody is told of what is beyond
+constexpr std::size_t kMaxBytes = std::size_t{1} << 28;  // of a table: what is beyond is left out
 
 /// At most so many bytes of the table beside the recording; empty: there is none.
 std::string TableBeside(const std::string& recording, std::size_t most) {

@@ -7,7 +7,7 @@ namespace mascot {
 namespace {
 
 constexpr auto kFramePeriod = std::chrono::milliseconds(33);
-/// So many rows are followed for the states of edges before somebody is asked what to show.
+/// So many rows at a time are followed for the states of edges, so that a frame, and a new request, are not late.
 constexpr int kRowsAtATime = 50;
 
 }  // namespace

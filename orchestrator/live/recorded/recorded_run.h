@@ -36,7 +36,7 @@ class RecordedRun {
   /// does not understand. This object keeps only some of these experiments; a caller that needs one for longer keeps
   /// it.
   std::shared_ptr<const Experiment> At(std::int64_t tick);
-  /// The live keys with their values at `tick`. Throws likewise.
+  /// The live keys with their values at `tick`. Throws as At() does.
   std::vector<ShownKey> KeysAt(std::int64_t tick);
   /// The row of `tick` as viewers see it, without its edges. Throws std::runtime_error if the file is damaged there.
   void Show(std::int64_t tick, ShownRow& row);

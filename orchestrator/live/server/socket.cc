@@ -41,7 +41,7 @@ constexpr int kPortsToTry = 100;
 constexpr int kMaxLines = 100;  // of the log: a hostile client could fill a disk
 constexpr auto kGoodbye = std::chrono::seconds(1);
 constexpr auto kGoodbyeLook = std::chrono::milliseconds(5);
-constexpr auto kFullPause = std::chrono::milliseconds(10);  // until somebody is let in, without descriptors
+constexpr auto kFullPause = std::chrono::milliseconds(10);  // until a client is let in, without descriptors
 constexpr auto kIdle = std::chrono::seconds(60);            // a client that does not even answer pings is gone
 /// The kernel's share of what waits for a client: small, so that a slow client is noticed and sees no old frames.
 constexpr int kSendBuffer_bytes = 256 << 10;
@@ -69,7 +69,7 @@ struct Server {
     if (lines > kMaxLines) return;
     log(++lines > kMaxLines ? "viewers: too many were dropped; no more lines about them" : line);
   }
-  /// Says who was not let in, and why.
+  /// Logs which client was not let in, and why.
   void LogRefusal(const std::string& name, const std::string& words) {
     if (const auto line = refusals.Line(words)) log(name + ": refused: " + *line);
   }
@@ -424,7 +424,7 @@ class SocketServer::Impl {
     });
   }
 
-  /// False if nobody can be let in now, because this process or the machine has no descriptor, or no memory, left.
+  /// False if no client can be let in now, because this process or the machine has no descriptor, or no memory, left.
   bool Accept() {
     const int socket = ::accept4(acceptor_.native_handle(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (socket < 0) return !HasNoRoom(errno);

@@ -128,7 +128,7 @@ void LiveView::SetExperiment(const Experiment& now, const std::vector<ShownKey>&
 }
 
 void LiveView::OnOpen(ClientId client, const std::string& subprotocol) {
-  if (foxglove_.clients().empty() && TakeNewest() && shown_.tick >= 0) Show();  // nobody watched: what it saw is old
+  if (foxglove_.clients().empty() && TakeNewest() && shown_.tick >= 0) Show();  // no viewer watched: shown_ is old
   foxglove_.OnOpen(client, subprotocol == kSubprotocols[0]);
 }
 

@@ -33,7 +33,7 @@ class RosChannels::Scene {
   void SetRow(const ShownRow& row) {
     ++rows_;
     if (const std::int64_t by = row.tick - std::exchange(tick_, row.tick); by < 0 || by > trail_ticks_)
-      markers_.ClearTrails();  // somebody sought another place of a recording
+      markers_.ClearTrails();  // a viewer sought another place of a recording
     if (rows_ % kRowsPerTrailPoint == 0) markers_.AddToTrails(row);
   }
   std::string Message(const ShownRow& row, std::uint64_t time_ns) const {

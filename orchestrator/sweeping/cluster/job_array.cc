@@ -69,7 +69,8 @@ std::string MergeOf(const JobArray& array) {
 }
 
 // Slurm tells the shell that its time is up, or the shell and all its processes that they are cancelled; the sweep ends
-// in order on the first signal, whoever sends it, and takes no notice of more. bash ends `wait` when a signal comes.
+// in order on the first signal, from whatever process, and takes no notice of more. bash ends `wait` when a signal
+// comes.
 constexpr char kBody[] = R"sh(
 cd {folder} || exit
 task=${{SLURM_ARRAY_JOB_ID}}_$SLURM_ARRAY_TASK_ID  # SLURM_JOB_ID is, in one of the tasks, the number of them all

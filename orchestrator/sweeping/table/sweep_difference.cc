@@ -1,4 +1,4 @@
-// In what two sweeps differ, for who wants to go on with the table of one by the command of the other.
+// How two sweeps differ, for a user who goes on with the table of one by the command of the other.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

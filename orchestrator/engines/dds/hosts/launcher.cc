@@ -72,7 +72,7 @@ struct Launcher::Remote {
   bool greeted = false;
   std::string machine = {};                     // as it says itself
   std::map<std::string, Descriptor> logs = {};  // of its processes, until they end: their lines go there
-  std::map<std::string, int> pids = {};         // to be compared with who joins the run
+  std::map<std::string, int> pids = {};         // to be compared with the participants that join the run
   std::set<std::string> ended = {};
 };
 
@@ -243,7 +243,7 @@ void Launcher::Greet(Remote& remote, const HostHello& hello) {
   remote.greeted = true;
 }
 
-/// Throws std::runtime_error if who joined as a process of this host is none that it has started.
+/// Throws std::runtime_error if a participant that joined as a process of this host is none that the host has started.
 void Launcher::CheckPids(const Remote& remote) const {
   if (remote.pids.empty()) return;
   for (const auto& [process, key] : peers_.Places()) {

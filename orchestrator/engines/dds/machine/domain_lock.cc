@@ -26,7 +26,7 @@ std::string NameOf(int domain) { return "mascot-domain-" + std::to_string(domain
 /// Reserves the domain in this network namespace, as long as the result is open; it is not if another run has it.
 Descriptor TakeName(int domain) {
   Descriptor name = MakeLocalSocket(0);             // without SOCK_CLOEXEC: children inherit it
-  if (ListenAs(NameOf(domain), name)) return name;  // it listens so that others learn who it is: HolderOf
+  if (ListenAs(NameOf(domain), name)) return name;  // it listens so that others learn which process has it: HolderOf
   if (errno == EADDRINUSE) return Descriptor();
   throw std::runtime_error(fmt::format("cannot reserve DDS domain {}: {}", domain, std::strerror(errno)));
 }
@@ -68,7 +68,8 @@ bool HasPortIn(const std::set<int>& ports, int first, int end) {
   return port != ports.end() && *port < end;
 }
 
-/// "other DDS programs have 1, user alice has 48": who has the domains that a run may choose from.
+/// "other DDS programs have 1, user alice has 48": which programs and users have the domains that a run may choose
+/// from.
 std::string Holders() {
   std::map<std::string, int> count;
   for (int domain = kFirstDomain; domain <= kLastDomain; domain += kDomainsPerRun) {

@@ -33,7 +33,7 @@ void Janitor::Start(int domain, std::span<const int> lock) {
 Janitor::~Janitor() { process_.Release(); }
 
 void Janitor::LeaveWords(const std::string& path, const std::string& text) const {
-  // If it has ended, nobody sweeps either, and that is all.
+  // If the janitor has ended, the file is not left, and that is all.
   static_cast<void>(WriteAll(lifeline_.number(), path + '\0' + text));
 }
 
