@@ -16,7 +16,7 @@ namespace mascot {
 /// A parsed TOML document and the mistakes noted in it so far.
 struct Section::Document {
   Document(std::string_view text, const std::string& document_name, std::span<const Override> overrides);
-  /// Of what is in no file: messages say `origin` in place of file, line and column.
+  /// A document that is in no file: messages say `origin` in place of file, line and column.
   explicit Document(std::string origin);
 
   /// Stores a mistake; noted again, it counts once (laws are made once per agent, and each may note it).

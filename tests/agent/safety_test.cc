@@ -439,7 +439,7 @@ TEST(SafetyKeys, MaySwitchTheFilterOnDuringARun) {
 
 // --- what check says --------------------------------------------------------------------------------------
 
-/// What is said of a team of four, with `more` lines in [law] or tables behind it.
+/// What theory says of a team of four. `more`: further lines of [law], and tables behind it.
 SafetyPrediction PredictionOf(const std::string& more, const std::string& front = "", const std::string& agents = "",
                               const PlaceList& places = Circle(4, 5), const std::string& model = "double_integrator") {
   const auto prediction = PredictSafety(Read(TeamOf(model, places, kMeetByForce + more, front, agents)));

@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Set("physics.wind.mean_m_per_s", "[1, 0, 0]", IsDraggedEast),
                     Set("physics.wind.gust_std_m_per_s", "1.0", IsGusty),
                     Set("physics.wind.gust_time_s", "3.0",
-                        // Of a process with time tau, E|g(tick + T) - g(tick)|^2 = 6 sigma^2 (1 - exp(-T/tau)).
+                        // Gusts with the time tau: E|g(tick + T) - g(tick)|^2 = 6 sigma^2 (1 - exp(-T/tau)).
                         ChangesAsRarely, {"physics.wind.gust_std_m_per_s=1.0"})),
     NameOf);
 

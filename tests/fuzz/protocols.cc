@@ -1,5 +1,5 @@
-// Fuzzer: any order of any events, at the plain objects that take samples from the wire. What they answer keeps their
-// promises. The first byte chooses the object, the rest is its events.
+// Fuzzer: any order of any events, at the plain objects that take samples from the wire. Their answers must keep the
+// promises of their headers. The first byte chooses the object, the rest is its events.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -25,14 +25,14 @@ using Time = std::chrono::steady_clock::time_point;
 
 constexpr std::int64_t kLastTick = 1'000'000'000;  // of any experiment
 
-/// Mostly a tick that could be, sometimes any number.
+/// Mostly a tick near `around`, sometimes any number.
 std::int64_t SomeTick(Events& events, std::int64_t around) {
   const std::int64_t next = std::clamp<std::int64_t>(around, -1, kLastTick);
   return events.ConsumeBool() ? next + events.ConsumeIntegralInRange<std::int64_t>(-3, 3)
                               : events.ConsumeIntegral<std::int64_t>();
 }
 
-/// As SomeTick, but one that a run has: what others say is checked before it becomes a View.
+/// As SomeTick(), but a tick that a run can have: what other processes send is checked before it becomes a View.
 std::int64_t TickOfRun(Events& events, std::int64_t around) {
   return std::clamp<std::int64_t>(SomeTick(events, around), -1, kLastTick);
 }

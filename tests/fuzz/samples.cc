@@ -1,5 +1,5 @@
-// Fuzzer: any bytes as a sample of each type of the wire. They are no such sample, or mean the same after they were
-// sent again. The first byte chooses the type.
+// Fuzzer: any bytes as a sample of each type of the wire. They are refused, or mean the same after they were sent
+// again. The first byte chooses the type.
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -19,7 +19,8 @@ void Use(const mascot_msgs::msg::AgentCommand& command) { FromWire(command); }
 void Use(const mascot_msgs::msg::AgentMessage& message) { Require(message.data().size() <= 64, "too long a message"); }
 void Use(const rosgraph_msgs::msg::Clock& /*clock*/) {}
 
-/// A type of recordings, by our own functions.
+/// A sample of a type that recordings have, by our own functions: once decoded, encoding and decoding it again changes
+/// nothing.
 template <class Sample>
 void FuzzRecorded(SampleBytes bytes) {
   Sample sample;
@@ -45,7 +46,7 @@ void FuzzStatus(SampleBytes bytes) {
   if (const auto topic = Topic::Parse(process)) Require(Topic::Parse(topic->Name()) == topic, process);
 }
 
-/// A type of the wire alone.
+/// A sample of a type that is on the wire alone: decoding it must not crash.
 template <class PubSub>
 void FuzzUnrecorded(SampleBytes bytes) {
   typename PubSub::type sample;

@@ -44,7 +44,7 @@ class SteeredRun : public Up {
     EXPECT_TRUE(Until([&] { return IsOver() || HasBegun(); })) << err();
   }
   Ran Send(const std::string& words) const { return Orchestrator("send --run '" + path().string() + "' " + words); }
-  /// What `ps` says of it; null if it does not know it.
+  /// What `ps` says of this run; null if `ps` does not list it.
   nlohmann::json Ps() const {
     for (const auto& run : nlohmann::json::parse(Orchestrator("ps --json").output))
       if (run.value("process", 0) == pid()) return run;

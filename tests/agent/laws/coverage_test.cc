@@ -25,7 +25,7 @@ TEST(Polygons, MomentsOfASquareAreThoseOfTheTextbook) {
   EXPECT_NEAR(MomentsOf(kSquare, {1, 1}).second, 16. / 6, 1e-12) << "a^4 / 6 about the centre";
 }
 
-/// The same integrals in units of 1.
+/// The moments in units of 1, not of e^log_unit.
 Moments InUnitsOfOne(Moments moments) {
   const double unit = std::exp(moments.log_unit);
   return {.mass = unit * moments.mass, .first = unit * moments.first, .second = unit * moments.second};
@@ -35,7 +35,7 @@ Moments PlainMomentsOf(const Polygon& polygon, const Eigen::Vector2d& o, const G
   return InUnitsOfOne(MomentsOf(polygon, o, std::span(&bump, 1)));
 }
 
-/// The largest difference, as a share of the second one's values.
+/// The largest difference between two moments, as a share of those of `b`.
 double Difference(const Moments& a, const Moments& b) {
   const double first = (a.first - b.first).norm() / std::max(b.first.norm(), std::sqrt(b.mass * b.second));
   return std::max({std::abs(a.mass / b.mass - 1), first, std::abs(a.second / b.second - 1)});

@@ -62,7 +62,7 @@ std::string Team(const std::string& more = {}, int agents = 4) {
          more;
 }
 
-/// One [[events]] a tick.
+/// One [[events]] for each tick.
 std::string Events(int count, const std::function<std::string(int)>& keys) {
   return Repeated(count, [&](int k) {
     return "[[events]]\nat_s = " + std::to_string(k / 100) + "." + std::to_string(k / 10 % 10) +
@@ -228,7 +228,7 @@ TEST(Limits, OfEventsHoldForARunToo) {
   EXPECT_EQ(answer.words, "event by hand: expected at most 100000 events in a run, got one more");
 }
 
-/// What a process of a run does with all events of a file.
+/// Bytes that a process of a run allocates when it takes all events of the file.
 double Taking(const Experiment& experiment) {
   LiveExperiment live(experiment, &LawTable(), /*checked=*/true);
   return BytesOf([&] {
@@ -274,11 +274,11 @@ TEST(Work, OfAnEventDoesNotGrowWithTheTeam) {
   }
 }
 
-/// Asks a run that stands still; what is granted takes effect at its next tick, the 7th.
+/// Sends events to a run that stands still; an event that is granted takes effect at the next tick, the 7th.
 class Asked {
  public:
   explicit Asked(const std::string& toml) : experiment_(Load(toml)), requests_(experiment_, 0) { requests_.Open(); }
-  /// What the orchestrator does until so many events are granted.
+  /// Bytes that the orchestrator allocates until `count` events are granted.
   double Work(const std::string& event, int count = 1) {
     return BytesOf([&] {
       for (int k = 0; k < count; ++k)
