@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/after_last.h"
 #include "experiment/live_keys.h"
 
 namespace mascot {
@@ -49,7 +50,7 @@ std::optional<std::string> MeantBy(const std::string& key, const std::vector<Liv
   std::vector<std::string_view> paths, names;
   for (const LiveKey& other : live) {
     paths.push_back(other.path);
-    names.push_back(paths.back().substr(paths.back().rfind('.') + 1));
+    names.push_back(AfterLast(paths.back(), '.'));
   }
   if (auto nearest = DidYouMean(key, paths)) return nearest;
   const auto nearest = DidYouMean(key, names);

@@ -110,7 +110,8 @@ bool Place(std::vector<AgentConfig>& agents, const Box& box, std::uint64_t seed)
              std::all_of(agents.begin(), agent, [&](const AgentConfig& other) { return Apart(*agent, other, box); });
     };
     do {
-      if (tries-- == 0) return false;
+      if (tries == 0) return false;
+      --tries;
       const Eigen::Vector3d point = PointIn(box, random);
       agent->p_W.head<2>() = point.head<2>();
       if (!box.in_z_alone && !Stands(*agent, box)) agent->p_W.z() = point.z();

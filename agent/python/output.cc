@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "agent/python/internal.h"
+#include "base/after_last.h"
 #include "base/utf8.h"
 
 namespace mascot {
@@ -49,7 +50,7 @@ class PythonOutput {
   void Add(const std::string& text) {
     const std::lock_guard lock(mutex_);
     line_ += text;
-    Print(line_.size() > kLongestLine ? line_.size() : line_.rfind('\n') + 1);  // npos + 1 is 0
+    Print(line_.size() > kLongestLine ? line_.size() : line_.size() - AfterLast(line_, '\n').size());
   }
   void Print(std::size_t bytes) {
     if (bytes == 0) return;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "agent/python/internal.h"
+#include "base/after_last.h"
 #include "base/utf8.h"
 
 namespace mascot {
@@ -137,7 +138,7 @@ PythonError Explain(py::error_already_set& error, const std::string& file) {
     return Shortened(joined, kLongestException);
   };
   const std::string only = text(traceback.attr("format_exception_only")(error.type(), error.value()));
-  const std::string summary = only.substr(only.rfind('\n') + 1);
+  const std::string summary(AfterLast(only, '\n'));
   const py::object trace = error.trace() ? error.trace() : py::none();  // a SyntaxError has none
   const py::object limit = IsDeep(trace) ? py::object(py::int_(-20)) : py::object(py::none());  // the last 20 calls
   const std::string full = text(traceback.attr("format_exception")(error.type(), error.value(), trace, limit));

@@ -39,7 +39,8 @@ std::optional<Placed> Split(std::string_view mistake, std::string_view name) {
 /// more than one makes it, the last of all. What takes keys out follows from others, and is no maker.
 const Override& MakerOf(const std::string& mistake, std::span<const Override> overrides,
                         const MistakesWith& mistakes_with) {
-  for (std::size_t k = overrides.size(); overrides.size() > 1 && k-- > 0;) {
+  for (std::size_t left = overrides.size(); overrides.size() > 1 && left > 0; --left) {
+    const std::size_t k = left - 1;
     if (overrides[k].removes) continue;
     std::vector<Override> others(overrides.begin(), overrides.end());
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));

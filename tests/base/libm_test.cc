@@ -77,7 +77,8 @@ std::uint64_t Bits() {
     std::mt19937_64 random(2);
     for (int k = 0; k < 1000; ++k) {
       const double x = f.from + (f.to - f.from) * (static_cast<double>(random() >> 11) + 0.5) * 0x1p-53;
-      hash = (hash ^ std::bit_cast<std::uint64_t>(f.ours(x))) * 0x100000001b3;
+      const unsigned __int128 product = hash ^ std::bit_cast<std::uint64_t>(f.ours(x));
+      hash = static_cast<std::uint64_t>(product * 0x100000001b3);
     }
   }
   return hash;

@@ -30,7 +30,7 @@ AlphaPair::AlphaPair(double distance_m, double range_m, double epsilon, double b
       first_knot_(std::asinh(bump * r_alpha_ - d_alpha_)),
       knot_step_((std::asinh(r_alpha_ - d_alpha_) - first_knot_) / kKnots),
       till_range_(kKnots + 1, 0) {
-  for (std::size_t n = kKnots; n-- > 0;) till_range_[n] = till_range_[n + 1] + Fading(Knot(n), Knot(n + 1));
+  for (std::size_t n = kKnots; n > 0; --n) till_range_[n - 1] = till_range_[n] + Fading(Knot(n - 1), Knot(n));
 }
 
 double AlphaPair::Action(double s) const {

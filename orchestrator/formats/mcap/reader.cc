@@ -160,7 +160,7 @@ void McapReader::Impl::ReadMessage(Fields body) {
   McapContents::ChannelInfo& channel = found->second;
   std::uint32_t& expected = next_sequence_[message_.channel];
   if (message_.sequence != expected) ++channel.gaps;
-  expected = message_.sequence + 1;
+  expected = static_cast<std::uint32_t>(std::uint64_t{message_.sequence} + 1);  // from the last number on to 0
   channel.first_time = channel.messages == 0 ? message_.log_time : std::min(channel.first_time, message_.log_time);
   channel.last_time = std::max(channel.last_time, message_.log_time);
   channel.bytes += message_.data.size();

@@ -9,6 +9,7 @@
 #include <cctype>
 #include <utility>
 
+#include "base/after_last.h"
 #include "base/number.h"
 #include "base/utf8.h"
 #include "experiment/toml/section.h"
@@ -62,7 +63,7 @@ std::optional<std::string> ReadName(std::string_view text) {
   const auto is_of_name = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '.'; };
   const bool is_name = !name.empty() && name.size() < 254 && std::ranges::all_of(name, is_of_name) &&
                        name.front() != '.' && name.back() != '.' && name.find("..") == name.npos;
-  const std::string_view last = std::string_view(name).substr(name.rfind('.') + 1);
+  const std::string_view last = AfterLast(name, '.');
   const bool is_number =
       last.starts_with("0x") || std::ranges::all_of(last, [](unsigned char c) { return std::isdigit(c) != 0; });
   return is_name && !is_number ? std::optional(std::move(name)) : std::nullopt;

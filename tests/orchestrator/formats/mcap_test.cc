@@ -269,7 +269,8 @@ void CutAtEveryByte(const std::string& path) {
   const std::vector<McapContents::Message> all = Messages(path);
   const std::vector<std::size_t> ends = MessageEnds(file);
   ASSERT_EQ(ends.size(), all.size());
-  for (std::size_t cut = file.size(); cut-- > 0;) {
+  for (std::size_t left = file.size(); left > 0; --left) {
+    const std::size_t cut = left - 1;
     std::filesystem::resize_file(path, cut);
     std::vector<McapContents::Message> read;
     const McapContents contents = ReadMcap(path, [&](const auto& message) { read.push_back(message); });

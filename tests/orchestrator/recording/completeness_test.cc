@@ -106,8 +106,9 @@ std::string Without(const std::string& path, const std::string& topic, bool fewe
     left[id] = channel.messages - (channel.topic == topic ? 1 : 0);
   }
   ReadMcap(path, [&](const McapContents::Message& message) {
-    if (channels.contains(message.channel) && left[message.channel]-- > 0)
-      writer.Write(channels[message.channel], message.log_time, message.data);
+    if (!channels.contains(message.channel) || left[message.channel] == 0) return;
+    --left[message.channel];
+    writer.Write(channels[message.channel], message.log_time, message.data);
   });
   writer.Close();
   return copy;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -59,10 +60,17 @@ inline bool IsSame(const DecodedRow& a, const DecodedRow& b) {
   for (std::size_t i = 0; i < a.motions.size(); ++i) {
     const Motion &x = a.motions[i], &y = b.motions[i];
     const Command &c = a.commands[i], &d = b.commands[i];
-    if (x.p_WB != y.p_WB || x.q_WB.coeffs() != y.q_WB.coeffs() || x.v_WB != y.v_WB) return false;
-    if (c.a_limited_W != d.a_limited_W || c.actuator != d.actuator || c.flags != d.flags) return false;
+    if (x.p_WB != y.p_WB || x.q_WB.coeffs() != y.q_WB.coeffs() || x.v_WB != y.v_WB || x.w_WB_B != y.w_WB_B ||
+        x.a_WB != y.a_WB)
+      return false;
+    if (c.a_law_W != d.a_law_W || c.a_limited_W != d.a_limited_W || c.actuator != d.actuator || c.flags != d.flags)
+      return false;
   }
-  return a.messages == b.messages && a.events_so_far == b.events_so_far && a.events.size() == b.events.size();
+  const auto same_event = [](const DecodedRow::RowEvent& e, const DecodedRow::RowEvent& f) {
+    return e.number == f.number && e.event.tick == f.event.tick && e.event.Toml() == f.event.Toml();
+  };
+  return a.messages == b.messages && a.events_so_far == b.events_so_far &&
+         std::ranges::equal(a.events, b.events, same_event);
 }
 
 }  // namespace mascot
