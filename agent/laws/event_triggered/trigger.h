@@ -1,7 +1,7 @@
 #pragma once
 
 #include <array>
-#include <cmath>
+#include <string_view>
 
 #include "experiment/experiment.h"
 
@@ -57,18 +57,7 @@ class Trigger {
   };
 
   /// True if the agent is to say at this tick where it will be. To be called once a tick.
-  bool Fires(const TriggerParams& params, const Next& next) {
-    if (!params.is_dynamic)
-      return std::sqrt(next.squared_error_m2) > params.c0_m + params.c1_m * std::exp(-params.alpha * next.t_s);
-    const double eta_m2 = has_eta_ ? eta_m2_ : params.eta0_m2;
-    eta_m2_ = eta_m2 - params.period_s * (params.beta * eta_m2 + surplus_m2_per_s_);
-    has_eta_ = true;
-    const double spared = params.gain * params.sigma / 4 * next.q_m2;
-    const double surplus = params.gain * next.degree * next.squared_error_m2 - spared;
-    const bool fires = params.theta_s * surplus > eta_m2_;
-    surplus_m2_per_s_ = fires ? -spared : surplus;
-    return fires;
-  }
+  bool Fires(const TriggerParams& params, const Next& next);
 
  private:
   bool has_eta_ = false;
