@@ -5,14 +5,14 @@
 #include "agent/laws/laws.h"
 #include "agent/process/node.h"
 #include "bus/foreign_settings.h"
-#include "bus/privileges.h"
 #include "bus/process_main.h"
+#include "bus/scheduling.h"
 #include "experiment/processes.h"
 #include "system/standard_streams.h"
 
 namespace {
 
-/// Index of this process among those of the run, for TakePrivileges(); the server's is 0.
+/// Index of this process among those of the run, for ApplyScheduling(); the server's is 0.
 int Place(const mascot::Experiment& experiment, mascot::AgentRange agents) {
   const auto processes = mascot::AgentProcesses(experiment);
   return 1 + static_cast<int>(std::ranges::find(processes, agents) - processes.begin());
@@ -45,7 +45,7 @@ class AgentRole : public mascot::Role {
 
   void Run() override {
     SayWhoIsHeard(experiment_, agents_);
-    mascot::TakePrivileges(experiment_, Place(experiment_, agents_));  // after all threads have started
+    mascot::ApplyScheduling(experiment_, Place(experiment_, agents_));  // after all threads have started
     node_.Run();
   }
 

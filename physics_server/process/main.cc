@@ -1,8 +1,8 @@
 #include <CLI/CLI.hpp>
 
 #include "bus/foreign_settings.h"
-#include "bus/privileges.h"
 #include "bus/process_main.h"
+#include "bus/scheduling.h"
 #include "experiment/read_experiment.h"
 #include "physics_server/process/server.h"
 #include "system/standard_streams.h"
@@ -17,7 +17,7 @@ class ServerRole : public mascot::Role {
         server_(domain, lifecycle, experiment_) {}
 
   void Run() override {
-    mascot::TakePrivileges(experiment_, 0);  // after all threads have started
+    mascot::ApplyScheduling(experiment_, 0);  // after all threads have started
     server_.Run();
     lifecycle_.Set(mascot::Life::kDone);
     for (;;) lifecycle_.Wait(std::chrono::seconds(1));  // stay until the run ends us: readers may need the last samples

@@ -1,4 +1,4 @@
-#include "bus/privileges.h"
+#include "bus/scheduling.h"
 
 #include <sched.h>
 #include <sys/mman.h>
@@ -47,7 +47,7 @@ bool SetPolicy(int policy, int priority) {
 
 }  // namespace
 
-void TakePrivileges(const Experiment& experiment, int place) {
+void ApplyScheduling(const Experiment& experiment, int place) {
   const auto& run = experiment.run;
   if (run.lock_memory && ::mlockall(MCL_CURRENT | MCL_FUTURE) != 0) Warn("lock_memory", "memory cannot be locked");
   if (run.pin_cores) {

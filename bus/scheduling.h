@@ -8,6 +8,6 @@ namespace mascot {
 /// included. In lockstep, threads run as SCHED_BATCH unless run.scheduler is "fifo". With pin_cores, the process takes
 /// the allowed core number `place`, modulo their number. A setting that the system does not permit is reported on
 /// stderr with its key, and the run goes on without it.
-void TakePrivileges(const Experiment& experiment, int place);
+void ApplyScheduling(const Experiment& experiment, int place);
 
 }  // namespace mascot
