@@ -149,16 +149,21 @@ void McapIndex::Impl::AddChunk(Fields body) {
   chunk.first_ns = body.U64();
   chunk.last_ns = body.U64();
   chunk.offset = body.U64();
-  const std::uint64_t length = body.U64(), end = chunk.offset + length;
-  if (chunk.offset < chunks_end_ || end < chunk.offset) throw Malformed("the index names a part of the file twice");
-  chunks_end_ = end;
+  const std::uint64_t length = body.U64();
+  if (chunk.offset > file_.size() || length > file_.size() - chunk.offset)
+    throw Malformed("the index points beyond the end of the file");
+  if (chunk.offset < chunks_end_) throw Malformed("the index names a part of the file twice");
+  chunks_end_ = chunk.offset + length;
   for (Fields places(body.Raw(body.U32())); !places.rest().empty(); places.U64())
     chunk.channels.push_back(places.U16());
   std::ranges::sort(chunk.channels);
-  chunk_bytes_ += length + body.U64();  // with its message indexes
+  const std::uint64_t index_bytes = body.U64();  // of the message indexes behind it
   const bool is_packed = !body.String().empty();
   const std::uint64_t stored_bytes = body.U64();
   chunk.bytes = body.U64();
+  if (index_bytes > file_.size() - chunks_end_ || stored_bytes > length || chunk.bytes > mcap::kMaxChunkBytes)
+    throw Malformed("the index has a chunk that cannot be");
+  chunk_bytes_ += length + index_bytes;
   if (chunk.channels.empty() && chunk.bytes >= kMinMessageBytes)
     throw Malformed("the index does not say which channels a chunk has");
   if (is_packed) limit_.Add(stored_bytes, chunk.bytes);

@@ -510,6 +510,50 @@ TEST(McapIndex, AFileCutAtAnyByteIsReadThroughAndGivesEveryWholeMessage) {
   }
 }
 
+/// Where the first chunk index of a file has its numbers, and the end of the file the CRC of the summary.
+struct ChunkIndexPlaces {
+  std::size_t offset = 0, length = 0, index_bytes = 0, stored_bytes = 0, bytes = 0, crc = 0;
+};
+
+ChunkIndexPlaces PlacesIn(const std::string& file) {
+  const auto number = [&file](std::size_t at, std::size_t bytes) {
+    std::uint64_t value = 0;
+    std::memcpy(&value, file.data() + at, bytes);
+    return static_cast<std::size_t>(value);
+  };
+  ChunkIndexPlaces places{.crc = file.size() - 8 - 4};
+  constexpr std::size_t kFrame = 9;
+  std::size_t at = number(places.crc - 16, 8);
+  while (file[at] != 0x08) at += kFrame + number(at + 1, 8);
+  places.offset = at + kFrame + 16;
+  places.length = places.offset + 8;
+  const std::size_t map = places.length + 8;
+  places.index_bytes = map + 4 + number(map, 4);
+  const std::size_t compression = places.index_bytes + 8;
+  places.stored_bytes = compression + 4 + number(compression, 4);
+  places.bytes = places.stored_bytes + 8;
+  return places;
+}
+
+TEST(McapIndex, NumbersThatCannotBeInTheIndexAreNotBelieved) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.File("x.mcap"), whole = WriteSmallFile(scratch.File("whole.mcap"));
+  const ChunkIndexPlaces places = PlacesIn(whole);
+  std::string without_crc = whole;
+  without_crc.replace(places.crc, 4, 4, '\0');
+  WriteFile(path, without_crc);
+  EXPECT_TRUE(McapIndex(path).is_indexed());
+  for (const std::size_t place : {places.offset, places.length, places.index_bytes, places.stored_bytes, places.bytes})
+    for (const std::uint64_t number : {~std::uint64_t{0}, ~std::uint64_t{0} - 40, std::uint64_t{1} << 62}) {
+      std::string file = without_crc;
+      std::memcpy(&file[place], &number, 8);
+      WriteFile(path, file);
+      McapIndex index(path);
+      EXPECT_FALSE(index.is_indexed()) << place << " " << number;
+      EXPECT_THAT(MessagesOf(index), testing::Pointwise(IsSameMessage(), Messages(path)));
+    }
+}
+
 TEST(McapIndex, OpensALongFileByReadingLittleOfIt) {
   const ScratchFolder scratch;
   const std::string path = scratch.File("long.mcap");
