@@ -44,15 +44,13 @@ std::vector<LateCommands> PaceMeter::Late() const {
 
 Pacing PaceMeter::Result() const {
   Pacing pacing{.late = Late()};
-  std::vector<double> sorted = lateness_s_;
-  std::ranges::sort(sorted);
   std::uint64_t used = 0;
   for (std::size_t age = 0; age < commands_.size(); ++age) {
     used += commands_[age];
     if (age > 0) pacing.misses += commands_[age];
   }
   for (std::size_t q = 0; q < 3; ++q) {
-    if (!sorted.empty()) pacing.tick_lateness_s[q] = sorted[Place(kQuantiles[q], sorted.size())];
+    pacing.tick_lateness_s[q] = lateness_.Quantile(kQuantiles[q]);
     std::uint64_t passed = 0;
     for (std::size_t age = 0; age < commands_.size() && used > 0; ++age) {
       passed += commands_[age];

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/pacing.h"
+#include "physics_server/process/time_histogram.h"
 
 namespace mascot {
 
@@ -13,7 +14,7 @@ class PaceMeter {
   explicit PaceMeter(double rate_hz) : rate_hz_(rate_hz) {}
 
   /// Notes that the states of a tick were sent `lateness_s` after the tick was due.
-  void AddTick(double lateness_s) { lateness_s_.push_back(lateness_s); }
+  void AddTick(double lateness_s) { lateness_.Add(lateness_s); }
   /// Notes that at `tick` the world is stepped with a command of `agent` that answered the states of `age` ticks ago.
   void AddCommand(int agent, std::int64_t tick, std::int64_t age);
   Pacing Result() const;
@@ -23,7 +24,7 @@ class PaceMeter {
   std::vector<LateCommands> Late() const;
 
   const double rate_hz_;
-  std::vector<double> lateness_s_;
+  TimeHistogram lateness_;
   std::vector<std::uint64_t> commands_;  // by age in ticks
   std::vector<LateCommands> late_;       // that are over
   std::vector<Episode> lasting_;         // by agent - 1
