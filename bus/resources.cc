@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -18,6 +17,7 @@
 #include <vector>
 
 #include "system/control_groups.h"
+#include "system/processes.h"
 
 namespace mascot {
 namespace {
@@ -115,15 +115,12 @@ int ThreadsIn(const std::string& stat) {
 /// The threads of our user that can be seen.
 int ThreadsOfUser() {
   int threads = 0;
-  std::error_code error;
-  for (fs::directory_iterator entry("/proc", error), end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename();
+  for (const pid_t pid : Processes()) {
+    const std::string process = "/proc/" + std::to_string(pid);
     struct stat info {};
-    if (!std::ranges::all_of(name, [](unsigned char c) { return std::isdigit(c); }) ||
-        ::stat(entry->path().c_str(), &info) != 0 || info.st_uid != getuid())
-      continue;
+    if (::stat(process.c_str(), &info) != 0 || info.st_uid != getuid()) continue;
     std::string stat;
-    std::getline(std::ifstream(entry->path() / "stat"), stat, '\0');
+    std::getline(std::ifstream(process + "/stat"), stat, '\0');
     threads += ThreadsIn(stat);
   }
   return threads;

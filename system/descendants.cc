@@ -9,19 +9,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <random>
 #include <sstream>
 #include <string>
 
-#include "base/number.h"
+#include "system/processes.h"
 
 namespace mascot {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct Kin {
   pid_t pid = 0;
@@ -32,15 +29,10 @@ struct Kin {
 /// All processes, by their parents.
 std::multimap<pid_t, Kin> ProcessesByParent() {
   std::multimap<pid_t, Kin> processes;
-  std::error_code error;
-  for (fs::directory_iterator entry("/proc", error), end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename();
-    Kin process;
-    const auto pid = NumberFrom<pid_t>(name);
-    if (!pid) continue;
-    process.pid = *pid;
+  for (const pid_t pid : Processes()) {
+    Kin process{.pid = pid};
     std::string stat;
-    std::getline(std::ifstream(entry->path() / "stat"), stat, '\0');
+    std::getline(std::ifstream("/proc/" + std::to_string(pid) + "/stat"), stat, '\0');
     const auto begin = stat.find('('), close = stat.rfind(')');
     if (begin == std::string::npos || close == std::string::npos) continue;
     std::istringstream fields(stat.substr(close + 1));

@@ -4,11 +4,11 @@
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <fstream>
 #include <system_error>
+
+#include "system/processes.h"
 
 namespace mascot {
 namespace {
@@ -43,10 +43,9 @@ FileId IdOf(const std::string& path) {
 
 std::set<FileId> FilesInUse(const std::string& prefix) {
   std::set<FileId> used;
-  for (const fs::path& process : PathsIn("/proc")) {
-    const std::string pid = process.filename();
-    if (pid == std::to_string(getpid())) continue;
-    if (!std::ranges::all_of(pid, [](unsigned char c) { return std::isdigit(c); })) continue;
+  for (const pid_t pid : Processes()) {
+    if (pid == getpid()) continue;
+    const fs::path process = "/proc/" + std::to_string(pid);
     AddOpen(process, prefix, used);
     AddMapped(process, prefix, used);
   }
