@@ -106,12 +106,19 @@ struct AgentConfig {
   double radius_m() const { return traits().has_airframe ? airframe.size_m.norm() / 2 : kBallRadius_m; }
 };
 
+/// Whether code that a user has written for a law may run: it does when the law is tried, made or loaded.
+enum class UserCode {
+  kMayRun,
+  kNeverRuns  ///< the experiment is looked at, and not flown: somebody else may have written it
+};
+
 /// One experiment: everything that the processes of a run must agree on. Field names are the TOML keys.
 struct Experiment {
   /// TOML text with every default: the file that reproduces the run.
   std::string resolved;
   /// True if the experiment was read before without a mistake: slow checks (which run the code of a law) are left out.
   bool checked = false;
+  UserCode user_code = UserCode::kMayRun;
   struct {
     std::string name;
     double duration_s = 0;

@@ -145,12 +145,11 @@ LawConfig ReadLaw(Section& section, std::optional<Section> team, int count, cons
   return law;
 }
 
-void ReadOwnLaw(AgentOverride& override, const Section& team, const std::set<int>& alone, int count,
-                const LawCatalog* laws, Experiment& experiment) {
+void ReadOwnLaw(AgentOverride& override, const Section& team, int count, const LawCatalog* laws,
+                Experiment& experiment) {
   if (!override.section.Has("law")) return;
   Section own = override.section.Child("law");
-  const bool same_law = !own.Has("name") || own.Text("name") == experiment.law.name;
-  const bool inherits = same_law && !alone.contains(override.id);
+  const bool inherits = !own.Has("name") || own.Text("name") == experiment.law.name;
   if (inherits) own.InheritFrom(team, {"schedule"});
   const LawConfig law = ReadLaw(own, inherits ? std::optional(team) : std::nullopt, count, laws);
   if (override.id == 0) return;

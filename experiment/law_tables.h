@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <set>
 #include <vector>
 
 #include "experiment/agents.h"
@@ -17,9 +16,9 @@ namespace mascot {
 /// `section`.
 LawConfig ReadLaw(Section& section, std::optional<Section> team, int count, const LawCatalog* laws);
 /// Reads an agent's own law table, if its override has one. Keys that the table leaves out are as in [law] (`team`), if
-/// the law is the same and the agent is not one of `alone`.
-void ReadOwnLaw(AgentOverride& override, const Section& team, const std::set<int>& alone, int count,
-                const LawCatalog* laws, Experiment& experiment);
+/// the law is the same.
+void ReadOwnLaw(AgentOverride& override, const Section& team, int count, const LawCatalog* laws,
+                Experiment& experiment);
 /// Reads the parameters of the team's law and of agents' own laws. Everything else of the experiment must have been
 /// read.
 void ReadLawParameters(const LawCatalog& laws, Section& team, std::vector<AgentOverride>& overrides,

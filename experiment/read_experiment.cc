@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "experiment/agents.h"
@@ -109,8 +108,8 @@ void ReadRun(Section& section, const std::string& default_name, Experiment& expe
 }
 
 /// Reads an override's own control and law tables; what they leave out is as in [control] and [law] (`team_law`).
-void FinishOverride(AgentOverride& override, Section& control, const Section& team_law, const std::set<int>& alone,
-                    int count, const LawCatalog* laws, Experiment& experiment) {
+void FinishOverride(AgentOverride& override, Section& control, const Section& team_law, int count,
+                    const LawCatalog* laws, Experiment& experiment) {
   Section& section = override.section;
   AgentConfig unknown;
   AgentConfig& agent = override.id > 0 ? experiment.agents[static_cast<std::size_t>(override.id - 1)] : unknown;
@@ -119,7 +118,7 @@ void FinishOverride(AgentOverride& override, Section& control, const Section& te
     own.InheritFrom(control);
     ReadControl(own, {&agent, 1});
   }
-  ReadOwnLaw(override, team_law, alone, count, laws, experiment);
+  ReadOwnLaw(override, team_law, count, laws, experiment);
   section.Done();
 }
 
@@ -203,7 +202,7 @@ void CheckEvents(const Experiment& experiment, const LawCatalog* laws) {
 
 /// Reads everything. `laws` null: the parameters of laws are not read.
 Experiment Read(Section document, const LawCatalog* laws, const std::string& default_name, bool checked,
-                const std::set<int>& alone) {
+                UserCode user_code) {
   document.Use(ExperimentKeys());
   CheckFormat(document);
   // Opened in the order of the resolved file; read below in the order in which one needs another.
@@ -214,6 +213,7 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
 
   Experiment experiment;
   experiment.checked = checked;
+  experiment.user_code = user_code;
   ReadRun(run, default_name, experiment);
   int count = static_cast<int>(agents.Integer("count"));
   if (agents.Wrong("count")) count = 0;
@@ -225,7 +225,7 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
   if (control.Has("python_memory_mb"))
     experiment.control.python_memory_mb = static_cast<int>(control.Integer("python_memory_mb"));
   ReadControl(control, experiment.agents);
-  for (AgentOverride& override : overrides) FinishOverride(override, control, law, alone, count, laws, experiment);
+  for (AgentOverride& override : overrides) FinishOverride(override, control, law, count, laws, experiment);
   CheckTime(run, physics, control, experiment);
   experiment.sensors = ReadSensors(sensors);
   std::vector<Eigen::Vector3d> p_W;
@@ -323,12 +323,12 @@ std::span<const Key> ExperimentKeys() {
 }
 
 Experiment ReadExperiment(Section document, const LawCatalog& laws, const std::string& default_name, bool checked,
-                          const std::set<int>& alone) {
-  return Read(std::move(document), &laws, default_name, checked, alone);
+                          UserCode user_code) {
+  return Read(std::move(document), &laws, default_name, checked, user_code);
 }
 
 Experiment ReadWithoutLaws(Section document, const std::string& default_name) {
-  return Read(std::move(document), nullptr, default_name, /*checked=*/true, /*alone=*/{});
+  return Read(std::move(document), nullptr, default_name, /*checked=*/true, UserCode::kNeverRuns);
 }
 
 }  // namespace mascot

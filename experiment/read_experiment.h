@@ -3,7 +3,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -49,10 +48,9 @@ class LawCatalog {
 };
 
 /// Reads a complete experiment. `default_name` is the default of run.name. `checked` says that the experiment was read
-/// before, without a mistake. `alone` lists agents whose own law tables are complete, and inherit nothing from [law].
-/// Throws ConfigError with all mistakes.
+/// before, without a mistake. Throws ConfigError with all mistakes.
 Experiment ReadExperiment(Section document, const LawCatalog& laws, const std::string& default_name, bool checked,
-                          const std::set<int>& alone = {});
+                          UserCode user_code = UserCode::kMayRun);
 /// Reads a resolved and checked experiment without the parameters of laws, for the physics server, which runs none.
 /// Throws ConfigError.
 Experiment ReadWithoutLaws(Section document, const std::string& default_name);

@@ -135,7 +135,10 @@ std::optional<PursuitForm> PursuitFormOf(const LawConfig& law) {
 }
 
 std::unique_ptr<Law> MakeLaw(const Experiment& experiment, int id) {
-  return EntryOf(experiment.agent(id).law).make(experiment, id);
+  const LawEntry& entry = EntryOf(experiment.agent(id).law);
+  if (entry.is_of_user && experiment.user_code == UserCode::kNeverRuns)
+    throw std::logic_error("the law of agent " + std::to_string(id) + " is of a user, and is not to be run");
+  return entry.make(experiment, id);
 }
 
 const LawCatalog& LawTable() {
@@ -143,13 +146,14 @@ const LawCatalog& LawTable() {
   return table;
 }
 
-Experiment LoadExperiment(Section document, const std::string& default_name, bool checked) {
-  return ReadExperiment(std::move(document), LawTable(), default_name, checked);
+Experiment LoadExperiment(Section document, const std::string& default_name, bool checked, UserCode user_code) {
+  return ReadExperiment(std::move(document), LawTable(), default_name, checked, user_code);
 }
 
-Experiment LoadExperiment(const std::string& text, const std::string& path, std::span<const Override> overrides) {
+Experiment LoadExperiment(const std::string& text, const std::string& path, std::span<const Override> overrides,
+                          UserCode user_code) {
   const auto load = [&](std::span<const Override> with) {
-    return LoadExperiment(Section::FromText(text, path, with), StemOfInput(path));
+    return LoadExperiment(Section::FromText(text, path, with), StemOfInput(path), /*checked=*/false, user_code);
   };
   const auto mistakes_with = [&](std::span<const Override> with) -> std::vector<std::string> {
     try {

@@ -123,17 +123,20 @@ std::span<const Eigen::Vector3d> WaypointsOf(const AgentConfig& agent);
 std::optional<LinearForm> LinearFormOf(const LawConfig& law);
 std::optional<PursuitForm> PursuitFormOf(const LawConfig& law);
 
-/// Makes the law of agent `id`. The experiment must outlive it.
+/// Makes the law of agent `id`. The experiment must outlive it. Throws std::logic_error if it is a user's, and the
+/// experiment was read with UserCode::kNeverRuns.
 std::unique_ptr<Law> MakeLaw(const Experiment& experiment, int id);
 
 /// The table of laws, for readers of experiments.
 const LawCatalog& LawTable();
 /// Reads a complete experiment with the laws of the table. `checked`: it was read before, without a mistake, so slow
 /// checks are left out. Throws ConfigError with all mistakes.
-Experiment LoadExperiment(Section document, const std::string& default_name, bool checked = false);
+Experiment LoadExperiment(Section document, const std::string& default_name, bool checked = false,
+                          UserCode user_code = UserCode::kMayRun);
 /// Reads `text`, the contents of the file `path`, with `overrides` in place of its keys. The name of the file is the
 /// default of run.name. For a mistake that the file alone does not have, the message names the override that made it.
-Experiment LoadExperiment(const std::string& text, const std::string& path, std::span<const Override> overrides);
+Experiment LoadExperiment(const std::string& text, const std::string& path, std::span<const Override> overrides,
+                          UserCode user_code = UserCode::kMayRun);
 
 /// The parameters of `law` as the type that its own file in agent/laws/ defines.
 template <class Params>

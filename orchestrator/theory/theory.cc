@@ -262,6 +262,8 @@ Prediction Predict(const Experiment& experiment) {
   if (PhasesOf(experiment).empty()) {
     Prediction prediction = PredictPhase(experiment, silent, /*is_last=*/true);
     WarnOfLatePhases(experiment, prediction);
+  if (experiment.user_code == UserCode::kNeverRuns && FliesCodeOfUsers(experiment))
+    return {.silent = "agents fly a law of a user, whose code does not run when it is only looked at"};
     return prediction;
   }
   const Experiment first =

@@ -27,14 +27,14 @@ void ConfigArgs::AddTo(CLI::App& command) {
   command.add_option("--seed", seed, "in place of run.seed")->type_name("N");
 }
 
-Experiment ConfigArgs::Load() {
+Experiment ConfigArgs::Load(UserCode user_code) {
   if (!text_) text_ = ReadInput(path);
   const std::string name = NameOfInput(path);
   std::vector<Override> all;
   for (const std::string& set : sets) all.push_back(ParseOverride(set));
   if (duration_s) all.push_back({"run.duration_s", *duration_s, "--duration-s " + *duration_s});
   if (seed) all.push_back({"run.seed", *seed, "--seed " + *seed});
-  return LoadExperiment(*text_, name, all);
+  return LoadExperiment(*text_, name, all, user_code);
 }
 
 }  // namespace mascot

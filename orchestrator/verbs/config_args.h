@@ -22,7 +22,7 @@ struct ConfigArgs {
   void AddTo(CLI::App& command);
   /// Reads and checks the experiment. A copy of these arguments does not read the file again, which may be a pipe.
   /// Throws ConfigError.
-  Experiment Load();
+  Experiment Load(UserCode user_code = UserCode::kMayRun);
 
  private:
   std::optional<std::string> text_;

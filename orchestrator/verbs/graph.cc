@@ -127,7 +127,7 @@ void Print(const Graph& graph, const GraphFacts& facts, const Schedule& schedule
 }
 
 int ShowGraph(ConfigArgs& args, bool json, bool dot) {
-  const Experiment experiment = args.Load();
+  const Experiment experiment = args.Load(UserCode::kNeverRuns);
   if (dot) {
     std::cout << ToDot(experiment.graph, experiment.law.leader, WhenEdgesWork(experiment.schedule));
     return 0;

@@ -32,6 +32,7 @@ struct VerifyArgs {
   std::string run;
   std::string engine = kInProcess;
 };
+  bool uses_hosts = false;
 
 /// A folder for the logs of the second flight, which are not kept.
 class TemporaryFolder {
@@ -85,8 +86,10 @@ Subject SubjectOf(const std::string& run) {
 
 /// Reads an experiment that is to fly no more ticks than the recording has: a run that ended early, or a recording that
 /// was cut, is flown to its end, with the events up to there.
-Experiment Load(const std::string& toml, const std::string& name, const Subject& subject) {
-  Experiment whole = LoadExperiment(Section::FromText(toml, name), subject.plan.name);
+Experiment Load(const std::string& toml, const std::string& name, const Subject& subject, bool uses_hosts) {
+  std::vector<Override> changes;
+  if (!uses_hosts) changes.push_back({.key = "hosts", .value = "", .removes = true});
+  Experiment whole = LoadExperiment(Section::FromText(toml, name, changes), subject.plan.name);
   if (subject.ticks >= subject.plan.ticks) return whole;
   const auto last = static_cast<std::int64_t>(std::max<std::uint64_t>(subject.ticks - 1, 1));
   std::string text = WithOverrides(whole, {{.key = "events", .value = "[]"}});
@@ -114,13 +117,14 @@ std::string FirstChange(const std::string& ours, const std::string& recorded) {
 }
 
 /// The experiment to fly: that of the recording, with the processes and the delivery of the run's own config.toml, and
-/// without viewers. Sets `change` if the two are not the same experiment. A recording that was cut knows of no event
-/// after the cut, and the config.toml of a run that was killed of none by hand.
-Experiment ExperimentOf(const std::string& run, const Subject& subject, std::string& change) {
-  Experiment recorded = Load(subject.config(), subject.file + " (config.toml)", subject);
-  const fs::path path = fs::path(run) / "config.toml";
-  if (!fs::is_directory(run) || !fs::exists(path)) return recorded;
-  Experiment ours = Load(ReadRegularFile(path.string()), path.string(), subject);
+/// without viewers. Its hosts have launch commands, which somebody else may have written. Sets `change` if the two are
+/// not the same experiment. A recording that was cut knows of no event after the cut, and the config.toml of a run that
+/// was killed of none by hand.
+Experiment ExperimentOf(const VerifyArgs& args, const Subject& subject, std::string& change) {
+  Experiment recorded = Load(subject.config(), subject.file + " (config.toml)", subject, args.uses_hosts);
+  const fs::path path = fs::path(args.run) / "config.toml";
+  if (!fs::is_directory(args.run) || !fs::exists(path)) return recorded;
+  Experiment ours = Load(ReadRegularFile(path.string()), path.string(), subject, args.uses_hosts);
   if (LossOf(subject.contents).empty()) {
     change = FirstChange(WithoutDelivery(ours), WithoutDelivery(recorded));
     ours.network.ros_view = false;
@@ -199,7 +203,7 @@ int Verify(const VerifyArgs& args) {
   StopSignal stop;
   const Subject subject = SubjectOf(args.run);
   std::string change;
-  const Experiment experiment = ExperimentOf(args.run, subject, change);
+  const Experiment experiment = ExperimentOf(args, subject, change);
   if (!change.empty()) {
     std::cout << subject.file << ": config.toml beside it is of another experiment: " << change << "\n"
               << "`orchestrator verify " << subject.file << "` checks the recording alone" << std::endl;
@@ -235,6 +239,8 @@ std::function<int()> SetUpVerify(CLI::App& command) {
   command.footer(
       "Flies the experiment that is attached to the recording, as far as the recording goes, and compares every\n"
       "message as it comes. Writes no file. Exit codes: 0 the same bits, 1 something differs or is damaged, 2 it is "
+  command.add_flag("--hosts", args->uses_hosts,
+                   "with --engine dds: agents fly on the hosts of the run's config.toml, by its launch commands");
       "no\n"
       "recording that could repeat, 3 the recording was cut, and what is left of it is the same.");
   return [args] { return Verify(*args); };

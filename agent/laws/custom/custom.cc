@@ -57,8 +57,13 @@ void ReadModules(const std::string& folder, Section& law, CustomParams& params) 
   }
 }
 
+/// Whether what only Python can tell of the law is to be found out.
+bool AsksPython(const Experiment& experiment) {
+  return !experiment.checked && experiment.user_code == UserCode::kMayRun;
+}
+
 /// Reads the text of the law, and the file and line for messages.
-void ReadText(bool checked, Section& law, CustomParams& params) {
+void ReadText(const Experiment& experiment, Section& law, CustomParams& params) {
   law.Supersede("file", {"python", "python_file", "python_line", "modules"});
   law.Supersede("python", {"file", "python_file", "python_line", "modules"});
   if (law.Has("python") == law.Has("file")) {
@@ -79,11 +84,11 @@ void ReadText(bool checked, Section& law, CustomParams& params) {
   params.file = law.Text("python_file", text.name);
   params.line = static_cast<int>(law.Integer("python_line", 1, 1'000'000, line));
   if (params.text.find('\0') != std::string::npos) law.Fail(TextKey(law), "expected text, got a NUL byte");
-  if (!law.Wrong("") && (law.Has("modules") || !checked)) ReadModules(text.folder, law, params);
+  if (!law.Wrong("") && (law.Has("modules") || AsksPython(experiment))) ReadModules(text.folder, law, params);
 }
 
-void ReadKeys(bool checked, Section& law, CustomParams& params) {
-  ReadText(checked, law, params);
+void ReadKeys(const Experiment& experiment, Section& law, CustomParams& params) {
+  ReadText(experiment, law, params);
   params.style = kPythonStyles.Value(law.OneOf("style"));
   params.wanted = kPythonOutputs.Value(law.OneOf("output"));
   if (law.Has("params") && law.Kind("params") != "table")
@@ -95,7 +100,8 @@ void ReadKeys(bool checked, Section& law, CustomParams& params) {
 /// Whether the law sends messages: as the key says, else whether the text defines message().
 bool SendsMessages(const Experiment& experiment, CustomParams& params, Section& law) {
   // A checked experiment has the key: reading it need not start Python.
-  if ((experiment.checked && law.Has("messages")) || law.Wrong("")) return law.Boolean("messages", false);
+  const bool is_known = experiment.checked && law.Has("messages");
+  if (is_known || experiment.user_code == UserCode::kNeverRuns || law.Wrong("")) return law.Boolean("messages", false);
   LawLimits limits = LimitsOfLaws(experiment);
   if (experiment.run.start_timeout_s < limits.limit_s) {
     limits.limit_s = experiment.run.start_timeout_s;
@@ -109,7 +115,7 @@ bool SendsMessages(const Experiment& experiment, CustomParams& params, Section& 
 
 std::shared_ptr<const LawParams> ReadCustom(const Experiment& experiment, const LawConfig& /*law*/, Section& section) {
   auto params = std::make_shared<CustomParams>();
-  ReadKeys(experiment.checked, section, *params);
+  ReadKeys(experiment, section, *params);
   params->sends_messages = SendsMessages(experiment, *params, section);
   return params;
 }

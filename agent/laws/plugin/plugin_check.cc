@@ -71,7 +71,8 @@ bool TryAll(const Experiment& experiment, const LawConfig& config, PluginConfig&
 /// Whether the law sends messages: as the key says, else whether it overrides Message().
 bool SendsMessages(const Experiment& experiment, const LawConfig& config, PluginConfig& plugin, Section& law) {
   // A checked experiment has the key: only a process that runs the law then needs the library.
-  if ((experiment.checked && law.Has("messages")) || law.Wrong("")) return law.Boolean("messages", false);
+  const bool is_known = experiment.checked && law.Has("messages");
+  if (is_known || experiment.user_code == UserCode::kNeverRuns || law.Wrong("")) return law.Boolean("messages", false);
   const bool can_send = TryAll(experiment, config, plugin, law);
   const bool sends = law.Boolean("messages", can_send);
   if (sends && !can_send && !law.Wrong("")) law.Fail("messages", "expected a law that overrides Message(), got none");

@@ -14,7 +14,7 @@ namespace mascot {
 RecordedRun::RecordedRun(const std::string& run)
     : rows_(run),
       experiment_(LoadExperiment(Section::FromText(rows_.config(), rows_.path() + " (config.toml)"), rows_.name(),
-                                 /*checked=*/true)),
+                                 /*checked=*/true, UserCode::kNeverRuns)),
       incidents_(FirstIncidentsBeside(rows_.path())),
       events_(rows_.Events()),
       live_(std::in_place, experiment_, &LawTable(), /*checked=*/true),
