@@ -258,7 +258,6 @@ void Serialize(rosgraph_msgs::msg::Clock& sample, std::vector<std::uint8_t>& byt
 }
 void Serialize(mascot_msgs::msg::Event& sample, std::vector<std::uint8_t>& bytes) {
   SerializeAs<EventType>(sample, bytes);
-  bytes.resize((bytes.size() + 3) / 4 * 4);  // as RTPS pads samples
 }
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentState& sample) {
   DeserializeAs<StateType>(bytes, sample);

@@ -1,5 +1,6 @@
 // Both engines, and repeated runs, give the same bytes for the same file.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sched.h>
 
@@ -444,6 +445,27 @@ TEST(Engines, EventsTakeEffectAtTheSameTickInBothAndAnotherFlightOfTheResolvedFi
   Up again(folder, "again", folder.File("inprocess/config.toml"), {"--engine", "inprocess"});
   ASSERT_EQ(again.Wait(), 0) << again.err();
   ExpectSameBytes(again, inprocess);
+}
+
+// Fast DDS sends more than 64 KB in fragments, and then does not pad the end.
+TEST(Engines, AnEventThatTravelsInFragmentsIsRecordedTheSame) {
+  ScratchFolder folder;
+  std::string edges;
+  for (int i = 1; i <= 110; ++i)
+    for (int j = 1; j <= 110; ++j)
+      if (i != j) edges += fmt::format("{}[{}, {}]", edges.empty() ? "" : ", ", i, j);
+  for (const char* end : {"", ", [1, 111]", ", [11, 111]", ", [111, 11]"}) {  // each leaves other bytes to pad
+    const std::string config = folder.File("edges.toml");
+    WriteFile(config,
+              "[run]\nduration_s = 0.05\n[agents]\ncount = 111\nmodel = 'double_integrator'\nrandom = { min_m = [0, 0, "
+              "1], max_m = [99, 99, 99] }\n[law]\np_gain = 0.01\n[[events]]\nat_s = 0.02\ngraph = { edges = [" +
+                  edges + end + "] }\n");
+    Up inprocess(folder, "inprocess", config, {"--force", "--engine", "inprocess"});
+    ASSERT_EQ(inprocess.Wait(), 0) << inprocess.err();
+    Up dds(folder, "dds", config, {"--force", "--set", "network.agents_per_process=37"});
+    ASSERT_EQ(dds.Wait(), 0) << dds.err();
+    EXPECT_TRUE(dds.File("run.mcap") == inprocess.File("run.mcap")) << end;
+  }
 }
 
 TEST(Engines, TwoRunsAtOnceDoNotDisturbEachOther) {
