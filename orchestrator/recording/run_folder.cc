@@ -1,6 +1,7 @@
 #include "orchestrator/recording/run_folder.h"
 
 #include <fmt/chrono.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <ctime>
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "experiment/read_experiment.h"
 #include "experiment/toml/section.h"
 #include "idl/topics.h"
 #include "orchestrator/formats/mcap/writer.h"
@@ -109,25 +111,51 @@ void RemoveEarlierRun(const fs::path& folder, const std::string& recording) {
   for (const fs::path& name : names) fs::remove(folder / name);
 }
 
-fs::path MakeGiven(const std::string& out, const std::string& recording, bool force) {
+fs::path MakeGiven(const std::string& out) {
   const fs::path path = out;
   if (fs::exists(path) && !fs::is_directory(path))
     throw ConfigError({"--out " + out + ": expected a folder, got a file"});
-  if (fs::exists(path) && !fs::is_empty(path)) {
-    if (!force)
-      throw ConfigError({"--out " + out +
-                         ": expected a new or empty folder, got one with files in it (--force replaces those of an "
-                         "earlier run, and keeps others)"});
-    RemoveEarlierRun(path, recording);
-  }
   fs::create_directories(path);
   return path;
+}
+
+/// Throws ConfigError if there is something in the folder; with `force`, if it is not of a run, which is removed.
+void Empty(const fs::path& folder, const std::string& recording, bool force) {
+  if (fs::is_empty(folder)) return;
+  if (!force)
+    throw ConfigError({"--out " + folder.string() +
+                       ": expected a new or empty folder, got one with files in it (--force replaces those of an "
+                       "earlier run, and keeps others)"});
+  RemoveEarlierRun(folder, recording);
+}
+
+/// "the run 'name'", by its config.toml.
+std::string NameOfRun(const fs::path& folder) {
+  try {
+    Section document = Section::FromText(ReadRegularFile((folder / "config.toml").string()), "config.toml");
+    document.Use(ExperimentKeys());
+    Section run = document.Child("run");
+    if (run.Has("name")) return "the run '" + run.Text("name") + "'";
+  } catch (const std::exception&) {  // it is being written
+  }
+  return "a run";
+}
+
+/// Throws ConfigError if another run writes to the folder.
+FolderLock Lock(const fs::path& folder) {
+  FolderLock lock(folder);
+  if (lock.is_ours()) return lock;
+  const pid_t holder = lock.Holder();
+  throw ConfigError(
+      {fmt::format("--out {}: expected a folder to which no run is writing, got that of {}{}", folder.string(),
+                   NameOfRun(folder), holder > 0 ? fmt::format(" (process {})", holder) : "")});
 }
 
 }  // namespace
 
 RunFolder::RunFolder(const std::optional<std::string>& out, const Experiment& experiment, bool force) try
-    : path_(out ? MakeGiven(*out, experiment.record.file, force) : MakeNew(fs::path("runs") / experiment.run.name)) {
+    : path_(out ? MakeGiven(*out) : MakeNew(fs::path("runs") / experiment.run.name)), lock_(Lock(path_)) {
+  if (out) Empty(path_, experiment.record.file, force);
   fs::create_directories(path_ / "logs");
 } catch (const fs::filesystem_error& error) {
   throw ConfigError({"--out: cannot make the run folder " + error.path1().string() + ": " + error.code().message()});

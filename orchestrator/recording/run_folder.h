@@ -5,15 +5,17 @@
 #include <string>
 
 #include "experiment/experiment.h"
+#include "system/folder_lock.h"
 
 namespace mascot {
 
-/// Folder for the results of a run: `runs/<name>/<time>/`, or the folder given with --out.
+/// Folder for the results of a run: `runs/<name>/<time>/`, or the folder given with --out. As long as this object
+/// lives, the folder is locked, and no other run of this machine takes it.
 class RunFolder {
  public:
-  /// Creates the folder. Throws ConfigError if that fails, or if `out` exists and is not empty. With `force`, the files
-  /// of an earlier run are removed from it instead, and no others; in a folder that no run has made, something with the
-  /// name of such a file is an error.
+  /// Creates the folder. Throws ConfigError if that fails, if another run writes to the folder, or if `out` exists and
+  /// is not empty. With `force`, the files of an earlier run are removed from it instead, and no others; in a folder
+  /// that no run has made, something with the name of such a file is an error.
   RunFolder(const std::optional<std::string>& out, const Experiment& experiment, bool force);
 
   const std::filesystem::path& path() const { return path_; }
@@ -25,6 +27,7 @@ class RunFolder {
 
  private:
   std::filesystem::path path_;
+  FolderLock lock_;
 };
 
 }  // namespace mascot

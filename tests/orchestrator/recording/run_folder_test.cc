@@ -127,5 +127,25 @@ TEST_F(RunFolderTest, WithoutForceAFolderMustBeEmpty) {
                                          "those of an earlier run, and keeps others)"));
 }
 
+TEST_F(RunFolderTest, AFolderToWhichARunIsWritingIsNobodyElses) {
+  const auto refused = [&](const std::string& run) {
+    for (const bool force : {false, true})
+      EXPECT_THAT([&] { RunFolder(folder_.string(), experiment_, force); },
+                  ThrowsMessage<ConfigError>("--out " + folder_.string() +
+                                             ": expected a folder to which no run is writing, got that of " + run +
+                                             " (process " + std::to_string(getpid()) + ")"));
+  };
+  {
+    const RunFolder ours(folder_.string(), experiment_, /*force=*/false);
+    refused("a run");
+    WriteRun();
+    const auto before = Files();
+    refused("the run 'a'");
+    EXPECT_EQ(Files(), before);
+  }
+  Force();
+  EXPECT_THAT(Files(), IsEmpty());
+}
+
 }  // namespace
 }  // namespace mascot
