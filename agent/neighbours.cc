@@ -14,26 +14,35 @@ bool IsOn(const AgentConfig& agent, double t_s) {
 
 Neighbours::Neighbours(const Experiment& experiment, int id)
     : experiment_(&experiment), id_(id), may_hear_(experiment.graph.HeardBy(id)) {
-  for (const Graph::Neighbour& neighbour : may_hear_) {
-    links_.emplace_back(experiment.links.Of(id, neighbour.id), experiment.control.rate_hz, experiment.run.seed, id,
-                        neighbour.id);
-    noises_.emplace_back(experiment.sensors.heard,
-                         Dice(experiment.run.seed, Dice::Stream::kHeardSensor, static_cast<std::uint64_t>(id),
-                              static_cast<std::uint64_t>(neighbour.id)));
-    const auto& lie = experiment.agent(neighbour.id).lie;
-    false_data_.push_back(lie ? std::optional<FalseData>(std::in_place, *lie, experiment.run.seed, neighbour.id)
-                              : std::nullopt);
-  }
   heard_.reserve(may_hear_.size());
   edge_states_.resize(may_hear_.size());
-  plain_ = IsPlain();
   plain_counts_.resize(may_hear_.size());
+  plain_ = IsPlain();
+  if (!plain_) MakeChannels();
+}
+
+void Neighbours::MakeChannels() {
+  const Experiment& experiment = *experiment_;
+  channels_.reserve(may_hear_.size());
+  for (const Graph::Neighbour& neighbour : may_hear_) {
+    const auto& lie = experiment.agent(neighbour.id).lie;
+    channels_.push_back(
+        {.link = Link(experiment.links.Of(id_, neighbour.id), experiment.control.rate_hz, experiment.run.seed, id_,
+                      neighbour.id),
+         .noise = Noise(experiment.sensors.heard,
+                        Dice(experiment.run.seed, Dice::Stream::kHeardSensor, static_cast<std::uint64_t>(id_),
+                             static_cast<std::uint64_t>(neighbour.id))),
+         .false_data =
+             lie ? std::optional<FalseData>(std::in_place, *lie, experiment.run.seed, neighbour.id) : std::nullopt});
+  }
 }
 
 void Neighbours::Adopt(const Experiment& experiment) {
   experiment_ = &experiment;
-  for (std::size_t k = 0; k < links_.size(); ++k) links_[k].Adopt(experiment.links.Of(id_, may_hear_[k].id));
-  plain_ = plain_ && IsPlain();  // once not, links may hold samples
+  for (std::size_t k = 0; k < channels_.size(); ++k) channels_[k].link.Adopt(experiment.links.Of(id_, may_hear_[k].id));
+  if (!plain_) return;  // once not, for ever: links may hold samples
+  plain_ = IsPlain();
+  if (!plain_) MakeChannels();
 }
 
 bool Neighbours::IsPlain() const {
@@ -83,7 +92,7 @@ std::span<const Heard> Neighbours::Hear(std::int64_t tick, const Motion& self, s
     edge_states_[k] = weight == 0 ? EdgeNow::State::kNoEdge
                       : in_range  ? EdgeNow::State::kLost
                                   : EdgeNow::State::kOutOfRange;
-    if (weight > 0 && in_range) links_[k].Send(tick, weight, SaidBy(k, tick, samples[k]));
+    if (weight > 0 && in_range) channels_[k].link.Send(tick, weight, SaidBy(k, tick, samples[k]));
     Deliver(k, tick);
   }
   return heard_;
@@ -91,7 +100,7 @@ std::span<const Heard> Neighbours::Hear(std::int64_t tick, const Motion& self, s
 
 Sample Neighbours::SaidBy(std::size_t k, std::int64_t tick, const Sample& truth) {
   const double t_s = experiment_->time_s(tick);
-  const std::optional<FalseData>& lie = false_data_[k];
+  const std::optional<FalseData>& lie = channels_[k].false_data;
   if (!lie || !lie->IsToldAt(t_s)) return truth;
   false_motion_ = *truth.motion;
   false_message_.assign(truth.message.begin(), truth.message.end());
@@ -100,20 +109,20 @@ Sample Neighbours::SaidBy(std::size_t k, std::int64_t tick, const Sample& truth)
 }
 
 void Neighbours::Deliver(std::size_t k, std::int64_t tick) {
-  const Link::Packet* packet = links_[k].Receive(tick);
+  const Link::Packet* packet = channels_[k].link.Receive(tick);
   if (packet == nullptr) return;
   heard_.push_back({.id = may_hear_[k].id,
                     .weight = packet->weight,
                     .motion = packet->motion,
                     .age_s = experiment_->time_s(tick - packet->sent),
                     .message = OfItsLaw(k, packet->sent - packet->message_age, packet->message)});
-  noises_[k].AddTo(heard_.back().motion, packet->sent);
+  channels_[k].noise.AddTo(heard_.back().motion, packet->sent);
 }
 
 EdgeNow Neighbours::EdgeAt(std::size_t k) const {
   if (tick_ < 0) return {};
   if (plain_) return {EdgeNow::State::kHeard, 0};
-  const Link::Packet* newest = links_[k].newest();
+  const Link::Packet* newest = channels_[k].link.newest();
   const double age_s = newest != nullptr ? experiment_->time_s(tick_ - newest->sent) : -1;
   if (std::ranges::binary_search(heard_, may_hear_[k].id, {}, &Heard::id)) return {EdgeNow::State::kHeard, age_s};
   const bool is_silent = newest == nullptr && edge_states_[k] == EdgeNow::State::kLost;
@@ -125,12 +134,13 @@ void Neighbours::AddEdgesTo(std::vector<EdgeNow>& edges) const {
 }
 
 void Neighbours::AddLossesTo(std::vector<std::uint64_t>& lost) const {
-  for (const Link& link : links_) lost.push_back(link.count().lost);
+  for (const Channel& channel : channels_) lost.push_back(channel.link.count().lost);
+  if (plain_) lost.insert(lost.end(), may_hear_.size(), 0);
 }
 
 std::vector<EdgeCount> Neighbours::counts() const {
   std::vector<EdgeCount> counts = plain_counts_;
-  for (std::size_t k = 0; k < links_.size(); ++k) counts[k] += links_[k].count();
+  for (std::size_t k = 0; k < channels_.size(); ++k) counts[k] += channels_[k].link.count();
   return counts;
 }
 

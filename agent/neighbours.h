@@ -46,6 +46,14 @@ class Neighbours {
   void AddLossesTo(std::vector<std::uint64_t>& lost) const;
 
  private:
+  /// What an edge needs as long as not every sample is heard at once as it was sent.
+  struct Channel {
+    Link link;
+    Noise noise;
+    std::optional<FalseData> false_data;
+  };
+
+  void MakeChannels();
   EdgeNow EdgeAt(std::size_t k) const;
   /// The weight of the edge from `source` at `t_s`; 0: there is no edge, or one of the agents is off.
   double WeightOf(const Graph& graph, double t_s, int source) const;
@@ -64,9 +72,7 @@ class Neighbours {
   const Experiment* experiment_;
   int id_;
   const std::vector<Graph::Neighbour> may_hear_;
-  std::vector<Link> links_;                           // by index in may_hear_
-  std::vector<Noise> noises_;                         // by index in may_hear_
-  std::vector<std::optional<FalseData>> false_data_;  // by index in may_hear_
+  std::vector<Channel> channels_;  // by index in may_hear_; empty as long as plain_: they take a kilobyte an edge
   Motion false_motion_;
   std::vector<double> false_message_;
   std::vector<Heard> heard_;

@@ -2,6 +2,8 @@
 #include <array>
 #include <cassert>
 #include <set>
+#include <stdexcept>
+#include <string>
 
 #include "base/random.h"
 #include "experiment/graph/graph.h"
@@ -9,13 +11,19 @@
 namespace mascot {
 namespace {
 
+void RequireFewEdges(std::size_t edges) {
+  if (edges > kMaxEdges) throw std::length_error("more than " + std::to_string(kMaxEdges) + " edges");
+}
+
 /// Edges of weight 1, added in any order.
 class Edges {
  public:
   explicit Edges(int count) : heard_(static_cast<std::size_t>(count)) {}
 
   void Hears(int i, int j) {
-    if (i != j) heard_[static_cast<std::size_t>(i - 1)].push_back({j, 1});
+    if (i == j) return;
+    RequireFewEdges(++edges_);
+    heard_[static_cast<std::size_t>(i - 1)].push_back({j, 1});
   }
   void Both(int i, int j) {
     Hears(i, j);
@@ -32,6 +40,7 @@ class Edges {
   }
 
  private:
+  std::size_t edges_ = 0;
   std::vector<std::vector<Graph::Neighbour>> heard_;
 };
 
@@ -141,6 +150,7 @@ Graph MakeGeometric(std::span<const Eigen::Vector3d> p_W, double radius_m) {
 // Watts & Strogatz, "Collective dynamics of 'small-world' networks", Nature 393 (1998): each edge of the ring, in turn,
 // gets with probability p another far end, drawn uniformly from all agents that its near end i does not hear yet.
 Graph MakeSmallWorld(int count, int k, double p, std::uint64_t seed) {
+  RequireFewEdges(static_cast<std::size_t>(count) * static_cast<std::size_t>(k));
   Random random(seed, Random::Stream::kGraph);
   std::set<std::pair<int, int>> pairs;  // lower id first
   std::vector<int> degree(static_cast<std::size_t>(count));

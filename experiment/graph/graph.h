@@ -59,6 +59,11 @@ class Graph {
   std::shared_ptr<const std::vector<std::vector<Neighbour>>> heard_;  // never null
 };
 
+/// The most edges that the graph, or all graphs of a schedule together, may have: 160 MB.
+inline constexpr std::size_t kMaxEdges = 10'000'000;
+
+// The functions that make graphs throw std::length_error for more than kMaxEdges, before they take the memory.
+
 /// A family of graphs: a value of `graph.topology`, and its meaning.
 struct Topology {
   std::string_view name;

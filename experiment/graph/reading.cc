@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <stdexcept>
 
 #include "experiment/graph/edge.h"
 #include "experiment/graph/graph.h"
@@ -162,9 +163,17 @@ Graph ReadGraph(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint6
   if (last == "laplacian") return Graph(FromLaplacian(graph, count));
   if (last == "adjacency") return Graph(FromAdjacency(graph, count));
   if (last == "edges") return Graph(FromEdges(graph, count));
-  if (last == "random") return FromRandom(graph, p_W, seed);
-  const std::string topology = graph.OneOf("topology");
-  return count > 0 ? MakeTopology(topology, count) : Graph(Heard{});  // 0: the count was wrong, which is noted
+  try {
+    if (last == "random") return FromRandom(graph, p_W, seed);
+    const std::string topology = graph.OneOf("topology");
+    return count > 0 ? MakeTopology(topology, count) : Graph(Heard{});  // 0: the count was wrong, which is noted
+  } catch (const std::length_error&) {
+    const std::string got = last == "random" ? "more" : "\"" + graph.OneOf("topology") + "\", which has more";
+    graph.Fail(last == "random" ? "random" : "topology", "expected a graph with at most " + std::to_string(kMaxEdges) +
+                                                             " edges for " + std::to_string(count) + " agents, got " +
+                                                             got);
+    return Graph(Heard(static_cast<std::size_t>(count)));
+  }
 }
 
 }  // namespace mascot

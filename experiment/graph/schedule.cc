@@ -10,7 +10,6 @@ namespace mascot {
 namespace {
 
 constexpr std::size_t kMaxGraphs = 10000;
-constexpr std::size_t kMaxEdgesInAll = 10000000;  // 160 MB
 
 /// The keys of one graph, and `more`.
 std::vector<Key> WithGraphKeys(std::initializer_list<Key> more) {
@@ -70,8 +69,8 @@ Schedule ReadSchedule(Section& graph, std::span<const Eigen::Vector3d> p_W, std:
     phases.push_back({at_s, ReadGraph(section, p_W, stage_seed += kNextStage)});
     section.Done();
     edges += phases.back().graph.edges();
-    if (edges <= kMaxEdgesInAll) continue;
-    section.Fail("", "expected at most " + std::to_string(kMaxEdgesInAll) + " edges in all graphs together, got more");
+    if (edges <= kMaxEdges) continue;
+    section.Fail("", "expected at most " + std::to_string(kMaxEdges) + " edges in all graphs together, got more");
     break;
   }
   double repeat_s = 0;

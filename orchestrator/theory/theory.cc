@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "agent/agent.h"
 #include "agent/laws/laws.h"
 #include "agent/python/python.h"
 #include "experiment/live_experiment.h"
 #include "experiment/phase.h"
+#include "orchestrator/team/exchange.h"
 #include "orchestrator/team/ideal_team.h"
-#include "orchestrator/team/team.h"
 #include "orchestrator/theory/crowding.h"
 #include "orchestrator/theory/flight_envelope.h"
 #include "orchestrator/theory/free_flight.h"
@@ -46,10 +47,13 @@ void PredictFirstCommand(const Experiment& experiment, Prediction& prediction) {
   const SuppressedPythonOutput suppressed;
   Experiment prompt = experiment;
   prompt.links = {};  // delays and losses only postpone the tick at which agents hear all their neighbours
-  Team team(prompt);
   const std::vector<Motion> motions = MotionsAtStart(experiment);
+  Exchange exchange(prompt);  // without messages: none has been sent before
   for (const AgentConfig& agent : experiment.agents) {
-    const Command command = team.Want(agent.id, 0, motions);
+    // One after the other: on a dense graph, all agents together take much memory.
+    const Command command =
+        Agent(prompt, agent.id)
+            .Want(0, motions[static_cast<std::size_t>(agent.id - 1)], exchange.SamplesFor(agent.id, motions));
     const bool velocity = IsCommandedByVelocity(agent);
     const double asked = Asked(command, velocity);
     const double limit = velocity ? agent.control.max_speed_m_per_s : agent.control.max_acceleration_m_per_s2;
@@ -258,12 +262,12 @@ std::string SilentFrom(const Experiment& experiment, std::int64_t tick) {
 }
 
 Prediction Predict(const Experiment& experiment) {
+  if (experiment.user_code == UserCode::kNeverRuns && FliesCodeOfUsers(experiment))
+    return {.silent = "agents fly a law of a user, whose code does not run when it is only looked at"};
   const std::string silent = SilencingEvent(experiment, 0);
   if (PhasesOf(experiment).empty()) {
     Prediction prediction = PredictPhase(experiment, silent, /*is_last=*/true);
     WarnOfLatePhases(experiment, prediction);
-  if (experiment.user_code == UserCode::kNeverRuns && FliesCodeOfUsers(experiment))
-    return {.silent = "agents fly a law of a user, whose code does not run when it is only looked at"};
     return prediction;
   }
   const Experiment first =

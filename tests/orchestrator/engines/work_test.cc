@@ -219,6 +219,37 @@ TEST(Limits, OfEdgesHoldForAllGraphsOfAScheduleTogether) {
 }
 
 TEST(Limits, OfEventsHoldForARunToo) {
+TEST(Limits, OfEdgesAreSaidBeforeTheyTakeMemory) {
+  const auto refusal = [](const std::string& graph) {
+    try {
+      Load("run.duration_s = 1\nagents.count = 5000\n" + graph);
+    } catch (const ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string limit = "expected a graph with at most 10000000 edges for 5000 agents, got ";
+  EXPECT_THAT(refusal(""), HasSubstr("graph.topology: " + limit + "\"complete\", which has more"));
+  EXPECT_THAT(refusal("graph.random = { kind = 'erdos_renyi', p = 0.9 }\n"),
+              HasSubstr("graph.random: " + limit + "more"));
+  EXPECT_THAT(refusal("graph.random = { kind = 'small_world', k = 4000, p = 0.1 }\n"),
+              HasSubstr("graph.random: " + limit + "more"));
+}
+
+TEST(Limits, OfAnEventsSizeIsSaid) {
+  const auto flies_with = [](int numbers) {
+    return Load(
+        "run.duration_s = 1\nagents.count = 2\n[law]\nname = 'custom'\npython = '''\ndef set(me, params): pass\n"
+        "def control(t, me, neighbours): return 0, 0\n'''\n[[events]]\nat_s = 0.5\n"
+        "set = { 'law.params' = { x = [" +
+        Repeated(numbers, [](int) { return "1000000, "; }) + "] } }\n");
+  };
+  EXPECT_EQ(flies_with(100'000).events.size(), 1);
+  EXPECT_THAT([&] { flies_with(200'000); },
+              ThrowsMessage<ConfigError>(
+                  HasSubstr(": expected an event of at most 1048576 bytes, as config.toml has it, got 1800")));
+}
+
   Experiment experiment = Load(Team());
   experiment.events.resize(100000);
   RunRequests requests(experiment, 0);
