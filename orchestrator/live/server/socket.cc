@@ -23,6 +23,8 @@
 #include <thread>
 
 #include "orchestrator/live/server/origin.h"
+#include "orchestrator/live/server/outgoing.h"
+#include "system/failure.h"
 #include "system/local_socket.h"
 
 namespace mascot {
@@ -60,6 +62,7 @@ struct Server {
   std::set<beast::tcp_stream*> streams = {};   // of all connections
   RefusalCount refusals = {};
   std::size_t connections = 0, by_websocket = 0;  // of both kinds; by WebSocket, also those that are being closed
+  OutgoingMemory waiting = {};
   ClientId last_id = 0;
   int lines = 0;
   bool ending = false;
@@ -91,6 +94,7 @@ class Session : public std::enable_shared_from_this<Session> {
     server_.streams.insert(&beast::get_lowest_layer(stream_));
   }
   ~Session() {
+    while (!out_.empty()) TakeOut(out_.begin());
     server_.streams.erase(&beast::get_lowest_layer(stream_));
     --server_.connections;
     --server_.by_websocket;
@@ -114,9 +118,11 @@ class Session : public std::enable_shared_from_this<Session> {
   void Send(Frame frame) {
     if (!open_) return;
     waiting_bytes_ += SizeOf(frame);
+    server_.waiting.Add(frame);
     out_.push_back(std::move(frame));
     if (waiting_bytes_ > server_.options.limits.waiting_bytes) return Drop("does not read what it asks for");
     if (out_.size() == 1) Write();
+    if (server_.waiting.bytes() > server_.options.limits.all_waiting_bytes) DropSlowest();
   }
   std::size_t waiting() const { return waiting_bytes_; }
   /// Closes the connection once everything is sent.
@@ -170,10 +176,21 @@ class Session : public std::enable_shared_from_this<Session> {
 
   void OnWritten(error_code error) {
     if (error) return Forget();
-    waiting_bytes_ -= SizeOf(out_.front());
-    out_.pop_front();
+    TakeOut(out_.begin());
     if (!out_.empty() && open_) return Write();
     if (goodbye_) Close(websocket::close_code::going_away, "");
+  }
+
+  void TakeOut(std::deque<Frame>::iterator frame) {
+    waiting_bytes_ -= SizeOf(*frame);
+    server_.waiting.Remove(*frame);
+    out_.erase(frame);
+  }
+
+  void DropSlowest() {
+    const auto slowest =
+        std::ranges::max_element(server_.sessions, {}, [](const auto& open) { return open.second->waiting_bytes_; });
+    slowest->second->Drop("the viewers do not read what they ask for, and this one leaves most of it");
   }
 
   void Drop(const std::string& why) {
@@ -194,6 +211,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void Forget() {
     open_ = false;
     server_.sessions.erase(id_);
+    while (out_.size() > 1) TakeOut(out_.end() - 1);  // the first is being written
     if (!std::exchange(told_, false)) return;
     asio::post(server_.io,
                [self = shared_from_this()] { self->Guard([&] { self->server_.user.OnClose(self->id_); }); });

@@ -35,7 +35,9 @@ struct SocketLimits {
   std::size_t connections = 256;                      ///< connections of both kinds; a further one is not answered
   std::size_t message_bytes = std::size_t{1} << 20;   ///< longest message of a client
   std::size_t waiting_bytes = std::size_t{64} << 20;  ///< a client that leaves more than this unread is dropped
-  std::chrono::seconds handshake{5};                  ///< time for a request to arrive
+  /// If all clients together leave more than this unread, as it lies in memory, the one that leaves most is dropped.
+  std::size_t all_waiting_bytes = std::size_t{256} << 20;
+  std::chrono::seconds handshake{5};  ///< time for a request to arrive
 };
 
 struct SocketOptions {

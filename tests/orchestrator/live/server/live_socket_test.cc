@@ -14,6 +14,7 @@
 
 #include "experiment/toml/section.h"
 #include "orchestrator/live/server/origin.h"
+#include "orchestrator/live/server/outgoing.h"
 #include "orchestrator/live/server/pages.h"
 #include "orchestrator/live/server/socket.h"
 #include "system/local_socket.h"
@@ -489,6 +490,40 @@ TEST(LiveSocket, AClientThatDoesNotReadIsDroppedAndHoldsUpNobody) {
   const std::int64_t before = echo.periods;
   EXPECT_TRUE(Until([&] { return echo.periods > before + 10; }));
   EXPECT_TRUE(quick.Next());
+}
+
+TEST(LiveSocket, ClientsThatDoNotReadAreDroppedBeforeTheyTakeMuchMemoryTogether) {
+  SocketOptions options;
+  options.limits.all_waiting_bytes = 20 << 20;
+  Echo echo(options);
+  WebClient quick(echo.url());
+  quick.Upgrade();
+  std::vector<std::unique_ptr<WebClient>> slow;
+  const std::string dropped = "dropped: the viewers do not read what they ask for, and this one leaves most of it\n";
+  for (int client = 0; client < 50 && echo.log().find(dropped) == std::string::npos; ++client) {
+    slow.push_back(std::make_unique<WebClient>(echo.url()));
+    slow.back()->Upgrade();
+    for (int k = 0; k < 20; ++k) slow.back()->Send(WebClient::kText, std::string(500'000, 'x'));
+    quick.Send(WebClient::kText, "ping " + std::to_string(client));
+    ASSERT_TRUE(quick.NextWith("ping " + std::to_string(client)));
+  }
+  EXPECT_TRUE(Until([&] { return echo.log().find(dropped) != std::string::npos; }));
+  EXPECT_THAT(slow.size(), AllOf(::testing::Ge(2), ::testing::Le(20)));
+  EXPECT_GE(echo.open, 2);  // the others stay
+}
+
+TEST(OutgoingMemory, CountsABodyOnceHoweverManyClientsWaitForIt) {
+  const auto body = std::make_shared<const std::string>(1000, 'x');
+  const Frame first{.head = "ab", .body = body}, second{.head = "abc", .body = body}, alone{.head = "abcd"};
+  OutgoingMemory memory;
+  for (const Frame* frame : {&first, &second, &alone}) memory.Add(*frame);
+  EXPECT_EQ(memory.bytes(), 3 * sizeof(Frame) + 9 + 1000);
+  memory.Remove(first);
+  EXPECT_EQ(memory.bytes(), 2 * sizeof(Frame) + 7 + 1000);
+  memory.Remove(second);
+  EXPECT_EQ(memory.bytes(), sizeof(Frame) + 4);
+  memory.Remove(alone);
+  EXPECT_EQ(memory.bytes(), 0);
 }
 
 TEST(LiveSocket, ClosesRequestsThatDoNotCome) {
