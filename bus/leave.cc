@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "bus/process_main.h"
+#include "system/end_now.h"
 #include "system/stop_signal.h"
 
 namespace mascot {
@@ -37,7 +38,7 @@ void LeaveByForce(int) {
     close_range(STDERR_FILENO + 1, ~0U, 0);
     execl("/proc/self/exe", "sweep", kSweep, leaving_code_text, nullptr);
   }
-  _exit(leaving_code);
+  EndNow(leaving_code);
 }
 
 void LeaveOn(int signal) {
@@ -65,7 +66,7 @@ void LeaveWithin(std::chrono::seconds limit, const Leaving& leaving) {
 void LeaveNow(const Leaving& leaving) {
   Prepare(leaving);
   LeaveByForce(0);
-  _exit(leaving.code);
+  EndNow(leaving.code);
 }
 
 }  // namespace mascot

@@ -1,11 +1,17 @@
 #include "system/failure.h"
 
+#include <cxxabi.h>
 #include <signal.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstdlib>
+#include <memory>
 #include <new>
 #include <system_error>
+
+#include "system/end_now.h"
 
 namespace mascot {
 namespace {
@@ -30,7 +36,7 @@ Words WordsFor(const std::exception& failure) {
 /// A signal handler, called once: then SIGBUS ends the process.
 void ExplainBusError(int signal) {
   constexpr char kWords[] = "error: /dev/shm is probably full: its memory cannot be had (SIGBUS)\n";
-  if (write(STDERR_FILENO, kWords, sizeof kWords - 1) < 0) _exit(128 + signal);
+  if (write(STDERR_FILENO, kWords, sizeof kWords - 1) < 0) EndNow(128 + signal);
   raise(signal);
 }
 
@@ -45,6 +51,22 @@ void PrintPlain(const char* text) {
   }
 }
 
+/// What is said of an exception that is no std::exception, before the name of its type.
+constexpr const char* kOther = "an exception of the C++ type ";
+
+/// The name of the type of the exception that is being handled: the compiler's, such as "i" for int, if there is no
+/// memory for another.
+class CaughtType {
+ public:
+  const char* name() const { return readable_ ? readable_.get() : mangled_; }
+
+ private:
+  const char* const mangled_ = abi::__cxa_current_exception_type()->name();
+  int status_ = 0;
+  const std::unique_ptr<char, void (*)(void*)> readable_{abi::__cxa_demangle(mangled_, nullptr, nullptr, &status_),
+                                                         std::free};
+};
+
 /// A terminate handler. There may be no memory for a string.
 [[noreturn]] void SayAndExit() {
   try {
@@ -54,9 +76,12 @@ void PrintPlain(const char* text) {
     const Words words = WordsFor(failure);
     for (const char* piece : {"error: ", words.before, failure.what(), words.after, "\n"}) PrintPlain(piece);
   } catch (...) {
-    std::fputs("error: an exception of unknown type\n", stderr);
+    const CaughtType type;
+    for (const char* piece : {"error: ", kOther, type.name(), ", which nothing in ",
+                              static_cast<const char*>(program_invocation_short_name), " has caught\n"})
+      PrintPlain(piece);
   }
-  _exit(1);
+  EndNow(1);
 }
 
 }  // namespace
@@ -72,6 +97,16 @@ void SayWhatIsUncaught() {
 std::string InWords(const std::exception& failure) {
   const Words words = WordsFor(failure);
   return std::string(words.before) + failure.what() + words.after;
+}
+
+std::string CaughtInWords() {
+  try {
+    throw;
+  } catch (const std::exception& failure) {
+    return InWords(failure);
+  } catch (...) {
+    return std::string(kOther) + CaughtType().name();
+  }
 }
 
 }  // namespace mascot

@@ -12,5 +12,7 @@ void SayWhatIsUncaught();
 /// What went wrong, in words: what() of most exceptions; for an exception because of missing memory or threads, words
 /// that say so.
 std::string InWords(const std::exception& failure);
+/// The exception that is being handled, in words; of one that is no std::exception, its type.
+std::string CaughtInWords();
 
 }  // namespace mascot

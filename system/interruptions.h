@@ -1,7 +1,6 @@
 #pragma once
 
 #include <signal.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -10,6 +9,8 @@
 #include <utility>
 
 #include "system/console.h"
+#include "system/descendants.h"
+#include "system/end_now.h"
 #include "system/stop_signal.h"
 
 namespace mascot {
@@ -41,7 +42,7 @@ class Interruptions {
       if (signal == 0) continue;
       if (signal_ != 0) {
         before_kill_(128 + signal);
-        _exit(128 + signal);  // without destructors, which would wait for the blocked thread
+        EndNow(128 + signal);  // without destructors, which would wait for the blocked thread
       }
       signal_ = signal;
       console_.Line("stopping (once more to kill)");
@@ -52,6 +53,32 @@ class Interruptions {
   Console& console_;
   const std::function<void(int)> before_kill_;
   std::atomic<int> signal_ = 0;
+  std::jthread thread_;
+};
+
+/// While this object lives, a signal ends the process at once, with exit code 128 + signal, in whatever its main thread
+/// hangs. For the time in which nothing has begun that would have to be ended in order.
+class EndsAtOnce {
+ public:
+  explicit EndsAtOnce(StopSignal& stop) : stop_(stop), thread_([this](const std::stop_token& over) { Listen(over); }) {}
+  ~EndsAtOnce() {
+    thread_.request_stop();
+    stop_.Wake();
+  }
+  EndsAtOnce(const EndsAtOnce&) = delete;
+  EndsAtOnce& operator=(const EndsAtOnce&) = delete;
+
+ private:
+  void Listen(const std::stop_token& over) const {
+    while (!over.stop_requested()) {
+      const int signal = stop_.Within(std::chrono::hours(1));
+      if (signal == 0) continue;
+      KillDescendants();  // what laws have started
+      EndNow(128 + signal);
+    }
+  }
+
+  StopSignal& stop_;
   std::jthread thread_;
 };
 

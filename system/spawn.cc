@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "system/end_now.h"
+
 extern char** environ;
 
 namespace mascot {
@@ -96,9 +98,9 @@ ChildProcess Fork(const std::function<void()>& work) {
   if (number < 0) throw std::system_error(errno, std::generic_category(), "cannot start a process");
   if (number > 0) return ChildProcess(number);
   setpgid(0, 0);
-  if (!DieWith(parent)) _exit(1);
+  if (!DieWith(parent)) EndNow(1);
   work();
-  _exit(0);
+  EndNow(0);
 }
 
 bool DieWith(pid_t parent) {

@@ -322,6 +322,7 @@ ONE_PLACE = [
      "a child process is owned by a ChildProcess (system/child_process.h)"),
     (r"\bPR_SET_PDEATHSIG\b", ["system/spawn.cc", "agent/user_code/law_at_work.cc"],
      "a process dies with another by DieWith() (system/spawn.h)"),
+    (r"(?<![\w.>])_[eE]xit\s*\(", ["agent/user_code/law_at_work.cc"], "a process is ended at once by EndNow() (system/end_now.h)"),
     (r"==\s*SIG_IGN\b", ["system/stop_signal.cc"], "IsIgnored() tells (system/stop_signal.h)"),
     (r"\bofstream\b|\bbasic_file_sink\w*", [],
      "files are written by what checks each write: WholeFile, OutputFile, LogFile, LeftFile"),
@@ -805,8 +806,8 @@ class Calls(Planted):
     def test_every_call(self):
         lines = ["if (fork() == 0) return;", "posix_spawnp(&pid, path, 0, 0, argv, environ);", 'FILE* p = popen("ls", "r");',
                  "::pipe2(ends, O_CLOEXEC);", "waitpid(pid, &status, 0);", "::kill(pid, SIGKILL);",
-                 "prctl(PR_SET_PDEATHSIG, SIGKILL);", "return action.sa_handler == SIG_IGN;", "std::ofstream file(path);"]
-        words = [0, 0, 0, 1, 2, 2, 3, 4, 5]
+                 "prctl(PR_SET_PDEATHSIG, SIGKILL);", "_exit(128 + signal);", "return action.sa_handler == SIG_IGN;", "std::ofstream file(path);"]
+        words = [0, 0, 0, 1, 2, 2, 3, 4, 5, 6]
         self.broken({"agent/b.cc": "\n".join(lines) + "\n"},
                     *(f"agent/b.cc:{number}: {ONE_PLACE[row][2]}" for number, row in enumerate(words, 1)))
 

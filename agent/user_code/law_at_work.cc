@@ -23,6 +23,7 @@
 
 #include "agent/user_code/last_words.h"
 #include "experiment/experiment.h"
+#include "system/end_now.h"
 #include "system/left_file.h"
 
 namespace mascot {
@@ -93,15 +94,11 @@ class SignalStack {
 
 // --- ends without a signal ----------------------------------------------------------------------------
 
-/// Ends the process at once: no handler, and none of a law's code, sees it.
-[[noreturn]] void EndNow(int code) {
-  syscall(SYS_exit_group, code);
-  __builtin_unreachable();
-}
+constexpr const char* kSomeLaw = "a law, or what it has called,";
 
 /// To be called by the thread that ends this process, through `call`. If that is `who`, the process says so and ends
 /// with an exit code that is not 0; null: it is no law. A process that a law has started may end as it likes.
-void ExplainEnd(int code, const char* call, const char* who = whose_law) {
+void ExplainEnd(int code, const char* call, const char* who) {
   if (who == nullptr || getpid() != this_process || IsForkedByLaw()) return;
   const char* const reason[] = {who, " has ended the process by ", call};
   SayError(reason);
@@ -110,11 +107,13 @@ void ExplainEnd(int code, const char* call, const char* who = whose_law) {
   EndNow(failure);
 }
 
-/// A handler of exit(), which our own code does not call while there are words to leave: then a thread that a law has
-/// started may have.
+/// The law that runs in this thread; a thread that a law has started does not know whose it is.
+const char* WhoseLaw() { return whose_law != nullptr ? whose_law : kSomeLaw; }
+
+/// A handler of exit(). Our own code calls that in the main thread alone, and not while there are words to leave.
 void OnExit(int code, void* /*nothing*/) {
-  const bool is_too_early = whose_law == nullptr && LastWords::Await();
-  ExplainEnd(code, "exit()", is_too_early ? "a law, or what it has called," : whose_law);
+  const bool is_ours = whose_law == nullptr && syscall(SYS_gettid) == getpid() && !LastWords::Await();
+  ExplainEnd(code, "exit()", is_ours ? nullptr : WhoseLaw());
 }
 
 /// In a process that was just forked. A law's dies with the thread that forked it.
@@ -130,7 +129,7 @@ void PrepareProcess() {
     ExplainCrashes();
     this_process = getpid();
     on_exit(OnExit, nullptr);
-    at_quick_exit([] { ExplainEnd(1, "quick_exit()"); });
+    at_quick_exit([] { ExplainEnd(1, "quick_exit()", WhoseLaw()); });
     pthread_atfork(nullptr, nullptr, OnFork);
     return true;
   }();
@@ -219,7 +218,7 @@ class LastResort {
     Say("error: " + words + ": the process ends\n");
     const char* const reason = words.c_str();
     LastWords::Leave(&reason, 1, 1);
-    _exit(1);
+    EndNow(1);
   }
 
   std::mutex mutex_;
@@ -234,7 +233,7 @@ LawAtWork::LawAtWork(const std::string& who, const LawLimits& limits) : who_(who
 }
 
 LawAtWork::~LawAtWork() {
-  if (IsForkedByLaw()) _exit(0);  // it was forked by the law, and is none of ours
+  if (IsForkedByLaw()) EndNow(0);  // it was forked by the law, and is none of ours
   LastResort::Get().End(*this);
   whose_law = before_;
 }
@@ -261,11 +260,11 @@ double OwnMemory_mb() {
 
 }  // namespace mascot
 
-// In place of libc's, for all libraries: code in C that a law calls may end the process by them. Our own code, and all
-// that runs when no law is at work, ends as it always does.
-// NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp): libc's names
+// In place of libc's, for all libraries: code in C that a law calls, or a thread that it has started, may end the
+// process by them. Our own code calls EndNow(). NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp):
+// libc's names
 extern "C" [[gnu::visibility("default")]] void _exit(int code) {
-  mascot::ExplainEnd(code, "_exit()");
+  mascot::ExplainEnd(code, "_exit()", mascot::WhoseLaw());
   mascot::EndNow(code);
 }
 extern "C" [[gnu::visibility("default")]] void _Exit(int code) { _exit(code); }

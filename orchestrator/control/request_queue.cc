@@ -1,7 +1,8 @@
 #include "orchestrator/control/request_queue.h"
 
-#include <exception>
 #include <utility>
+
+#include "system/failure.h"
 
 namespace mascot {
 
@@ -21,10 +22,8 @@ void RequestQueue::Run(const std::stop_token& over) {
     Answer answer;
     try {
       answer = control_.Ask(question.request);
-    } catch (const std::exception& failure) {
-      answer = {false, failure.what()};
     } catch (...) {
-      answer = {false, "an exception of unknown type"};
+      answer = {false, CaughtInWords()};
     }
     question.answered(answer);
   }

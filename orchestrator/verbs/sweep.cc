@@ -23,6 +23,7 @@
 #include "orchestrator/verbs/verb.h"
 #include "system/children.h"
 #include "system/script.h"
+#include "system/interruptions.h"
 #include "system/stop_signal.h"
 
 namespace mascot {
@@ -128,6 +129,7 @@ void PrintShare(const SweepArgs& args, const Shard& shard, const Sweeper::Outcom
 
 int Run(const SweepArgs& args) {
   StopSignal stop;
+  std::optional<EndsAtOnce> before_the_sweep(stop);
   if (args.config.empty()) throw ConfigError({"sweep: expected CONFIG, an experiment file, or merge FILE..."});
   CheckOut(args.out);
   CheckSlurm(args);
@@ -145,6 +147,7 @@ int Run(const SweepArgs& args) {
                                  .metric_file = metric_file,
                                  .force = args.force,
                                  .quiet = args.quiet};
+  before_the_sweep.reset();
   if (args.slurm) {
     const Sweeper::Outcome checked = sweeper.Check(options, stop);
     return checked.signal != 0 ? 128 + checked.signal : WriteJobArray(args, runs, stop);

@@ -25,7 +25,6 @@ struct MergeArgs {
 };
 
 int Run(const MergeArgs& args) {
-  StopSignal stop;
   std::vector<std::filesystem::path> tables;
   for (const std::string& word : args.files)
     for (const std::filesystem::path& table : TablesNamed(word)) tables.push_back(table);
@@ -35,6 +34,7 @@ int Run(const MergeArgs& args) {
   const bool drawable = args.picture.IsDrawable(plan);
   if (args.picture.metric) CheckPlotted(*args.picture.metric, identity.Metrics());
   const Merged merged = Merge(tables, out, args.force);
+  StopSignal stop;
   const int picture = drawable ? args.picture.Draw(out, plan, identity, stop) : kExitDone;
   if (args.quiet) return picture;
   std::cout << merged.runs << " runs of " << tables.size() << " tables: " << out << "\n";

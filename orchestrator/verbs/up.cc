@@ -35,6 +35,7 @@
 #include "orchestrator/verbs/viewers.h"
 #include "system/console.h"
 #include "system/failure.h"
+#include "system/interruptions.h"
 #include "system/slurm.h"
 #include "system/standard_streams.h"
 #include "system/stop_signal.h"
@@ -119,9 +120,11 @@ int Up(UpArgs& args) {
   StopSignal stop;
   if (!args.viewers.at && !args.viewers.allowed_origins.empty())
     throw ConfigError({"--allow-origin: expected --view with it"});
+  std::optional<EndsAtOnce> before_the_run(stop);
   const Experiment experiment = Load(args);
   RefuseEngine(args.engine, experiment);
   Prediction prediction = Predict(experiment);
+  before_the_run.reset();
 
   Console console(args.quiet || args.json);
   RunMeter meter(experiment);

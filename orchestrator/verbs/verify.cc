@@ -22,6 +22,7 @@
 #include "orchestrator/recording/recording.h"
 #include "orchestrator/verbs/fly.h"
 #include "orchestrator/verbs/verb.h"
+#include "system/interruptions.h"
 
 namespace mascot {
 namespace {
@@ -31,8 +32,8 @@ namespace fs = std::filesystem;
 struct VerifyArgs {
   std::string run;
   std::string engine = kInProcess;
-};
   bool uses_hosts = false;
+};
 
 /// A folder for the logs of the second flight, which are not kept.
 class TemporaryFolder {
@@ -201,6 +202,7 @@ int Report(const Subject& subject, const Comparison& comparison, const EngineRes
 
 int Verify(const VerifyArgs& args) {
   StopSignal stop;
+  std::optional<EndsAtOnce> before_the_run(stop);
   const Subject subject = SubjectOf(args.run);
   std::string change;
   const Experiment experiment = ExperimentOf(args, subject, change);
@@ -211,6 +213,7 @@ int Verify(const VerifyArgs& args) {
   }
   RefuseEngine(args.engine, experiment);
   PrintChanges(subject, experiment);
+  before_the_run.reset();
   const TemporaryFolder temporary;
   const RunFolder folder(temporary.path(), experiment, /*force=*/false);
   Console console(/*quiet=*/true);
@@ -236,11 +239,11 @@ std::function<int()> SetUpVerify(CLI::App& command) {
       .add_option("--engine", args->engine,
                   "inprocess (default): in one thread; dds: processes on a bus. Whichever recorded it")
       ->check(CLI::IsMember({kOverDds, kInProcess}));
+  command.add_flag("--hosts", args->uses_hosts,
+                   "with --engine dds: agents fly on the hosts of the run's config.toml, by its launch commands");
   command.footer(
       "Flies the experiment that is attached to the recording, as far as the recording goes, and compares every\n"
       "message as it comes. Writes no file. Exit codes: 0 the same bits, 1 something differs or is damaged, 2 it is "
-  command.add_flag("--hosts", args->uses_hosts,
-                   "with --engine dds: agents fly on the hosts of the run's config.toml, by its launch commands");
       "no\n"
       "recording that could repeat, 3 the recording was cut, and what is left of it is the same.");
   return [args] { return Verify(*args); };

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "orchestrator/verbs/verb.h"
 #include "orchestrator/verbs/viewers.h"
 #include "system/console.h"
+#include "system/interruptions.h"
 #include "system/script.h"
 #include "system/stop_signal.h"
 
@@ -38,10 +40,12 @@ int View(const ViewArgs& args) {
   StopSignal stop;
   Console console(/*quiet=*/false);
   const auto log = [&console](const std::string& line) { console.Line(line); };
+  std::optional<EndsAtOnce> before_the_view(stop);
   RecordedRun run(args.run);
   if (!run.rows().loss().empty())
     console.Line("warning: " + run.rows().path() + ": " + run.rows().loss() + "; it plays up to there");
   const Prediction prediction = Predict(run.experiment());
+  before_the_view.reset();
   Playback playback(run.experiment().control.rate_hz, run.last_tick());
   const LiveView::Options options{.address = args.at.address,
                                   .port = args.at.port,

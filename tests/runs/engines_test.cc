@@ -721,6 +721,24 @@ TEST(Up, MeasuresFidelityOfLawsThatLookAtTheirHeading) {
   EXPECT_GT(summary["fidelity"]["travelled_m"].get<double>(), 0.1);
 }
 
+TEST(Up, EndsAtASignalWhileALawHangsBeforeTheRun) {
+  const ScratchFolder folder;
+  const std::string hangs = folder.File("hangs");
+  WriteFile(
+      folder.File("law.toml"),
+      "[run]\nduration_s = 1.0\nagent_timeout_s = 3600.0\nstart_timeout_s = 3600.0\n[agents]\ncount = 1\n[law]\nname "
+      "= 'custom'\npython = '''\nopen('" +
+          hangs + "', 'w').close()\nwhile True: pass\n'''\n");
+  for (const auto& [signal, code] : {std::pair(SIGINT, 130), std::pair(SIGTERM, 143)}) {
+    std::filesystem::remove(hangs);
+    Up up(folder, "run", folder.File("law.toml"));
+    ASSERT_TRUE(Await("the law", [&] { return std::filesystem::exists(hangs); }));
+    up.Signal(signal);
+    EXPECT_EQ(up.Wait(), code) << up.err();
+    EXPECT_FALSE(std::filesystem::exists(up.path()));
+  }
+}
+
 TEST(Up, OutlivesAHangUpThatItWasToldToIgnore) {
   const ScratchFolder folder;
   Running up(

@@ -394,10 +394,8 @@ class SocketServer::Impl {
   void Run() {
     try {
       server_.io.run();
-    } catch (const std::exception& failure) {
-      GiveUp(failure.what());
     } catch (...) {
-      GiveUp("an exception of unknown type");
+      GiveUp(CaughtInWords());
     }
   }
 

@@ -1,23 +1,8 @@
 #include "orchestrator/live/shown/view_sink.h"
 
-#include <exception>
-#include <string>
+#include "system/failure.h"
 
 namespace mascot {
-namespace {
-
-/// What was thrown, in words.
-std::string Thrown() {
-  try {
-    throw;
-  } catch (const std::exception& failure) {
-    return failure.what();
-  } catch (...) {
-    return "an exception of unknown type";
-  }
-}
-
-}  // namespace
 
 void ViewSink::Adopt(const LiveExperiment& live, std::span<const Event> events) {
   if (broken_) return;
@@ -25,7 +10,7 @@ void ViewSink::Adopt(const LiveExperiment& live, std::span<const Event> events) 
     inner_.Adopt(live, events);
   } catch (...) {
     broken_ = true;
-    fail_(Thrown());
+    fail_(CaughtInWords());
   }
 }
 
@@ -35,7 +20,7 @@ void ViewSink::Add(const FlownRow& row) {
     inner_.Add(row);
   } catch (...) {
     broken_ = true;
-    fail_(Thrown());
+    fail_(CaughtInWords());
   }
 }
 

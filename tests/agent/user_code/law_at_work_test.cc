@@ -210,5 +210,15 @@ TEST_F(LawAtWorkDeathTest, AnEndByCodeInCIsNamedWithTheAgent) {
   }
 }
 
+TEST_F(LawAtWorkDeathTest, AnEndByAThreadThatALawHasStartedIsNamed) {
+  for (const std::string call : {"_exit", "exit", "quick_exit"}) {
+    SCOPED_TRACE(call);
+    const std::string in_a_thread = "import ctypes, threading\nthreading.Thread(target=ctypes.CDLL(None)." + call +
+                                    ", args=[0]).start()\nthreading.Event().wait()\n";
+    EXPECT_EXIT(Limited(in_a_thread), ExitedWithCode(1),
+                HasSubstr("error: a law, or what it has called, has ended the process by " + call + "()\n"));
+  }
+}
+
 }  // namespace
 }  // namespace mascot

@@ -475,7 +475,7 @@ TEST(LiveView, AnErrorOfTheViewEndsTheViewAndNotTheRun) {
       EXPECT_TRUE(Until([&] { return run.view.has_failed(); }));
       EXPECT_EQ(WebClient(run.view.url()).Get("/"), "") << "the port is closed";
       EXPECT_EQ(run.log(), "viewers: the view has ended because of an error of ours, and nothing else has: " +
-                               std::string(name == "unknown" ? "an exception of unknown type" : "made up") + "\n");
+                               std::string(name == "unknown" ? "an exception of the C++ type int" : "made up") + "\n");
     }
     return ReadFile(folder.File(name + "/run.mcap"));
   };
