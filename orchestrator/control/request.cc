@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "orchestrator/control/compact_json.h"
+#include "orchestrator/formats/compact_json.h"
 
 namespace mascot {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "base/utf8.h"
 #include "experiment/experiment.h"
-#include "orchestrator/control/compact_json.h"
+#include "orchestrator/formats/compact_json.h"
 #include "orchestrator/control/local_lines.h"
 #include "orchestrator/control/request.h"
 #include "orchestrator/control/run_socket.h"

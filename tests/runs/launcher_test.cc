@@ -222,6 +222,12 @@ class OnOtherHosts : public testing::Test {
   std::optional<Laboratory> laboratory_;
 };
 
+TEST(Host, GreetsWhateverItsEnvironmentHolds) {
+  const Ran ran = Shell("SSH_CONNECTION=\"$(printf '\\377')\" '" MASCOT_BINARY_DIR "/orchestrator' host");
+  EXPECT_THAT(ran.output, HasSubstr("{\"kind\":\"hello\",")) << "and then the end of its input";
+  EXPECT_THAT(ran.output, HasSubstr("\"seen_from\":\"\uFFFD\""));
+}
+
 TEST_F(OnOtherHosts, ThirtyAgentsLeaveTheRecordingOfOneHost) {
   Connect();
   const std::string config = Experiment(30, 1, laboratory_->Tables({"1-10", "11-15,21", "16-20,22-26"}));

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "orchestrator/control/compact_json.h"
+#include "orchestrator/formats/compact_json.h"
 #include "orchestrator/control/request.h"
 #include "orchestrator/formats/outside_json.h"
 

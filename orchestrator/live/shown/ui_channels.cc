@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "agent/laws/laws.h"
-#include "orchestrator/control/compact_json.h"
+#include "orchestrator/formats/compact_json.h"
 #include "orchestrator/formats/outside_json.h"
 
 namespace mascot {

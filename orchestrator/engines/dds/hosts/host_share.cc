@@ -8,6 +8,7 @@
 #include "base/utf8.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
+#include "orchestrator/formats/compact_json.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
 #include "system/build.h"
@@ -73,7 +74,7 @@ void HostShare::TellLine(const std::string& process, std::string_view line) {
 
 void HostShare::Tell(HostWords words) {
   words["node"] = node_;
-  output_.Write(words.dump());
+  output_.Write(CompactJson(words));
 }
 
 int HostShare::Run() {

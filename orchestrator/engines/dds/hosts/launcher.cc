@@ -14,6 +14,7 @@
 
 #include "base/utf8.h"
 #include "orchestrator/engines/dds/hosts/route.h"
+#include "orchestrator/formats/compact_json.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
 #include "system/build.h"
@@ -238,7 +239,7 @@ void Launcher::Greet(Remote& remote, const HostHello& hello) {
     remote.logs.emplace(process.name, logs_.Open(process.name, folder_.Log(process.name)));
   HostWords words = WordsOf(job);
   if (host.together) words["node"] = host.name;
-  remote.connection.output.Write(words.dump());
+  remote.connection.output.Write(CompactJson(words));
   remote.machine = hello.machine;
   remote.greeted = true;
 }
@@ -257,7 +258,7 @@ void Launcher::CheckPids(const Remote& remote) const {
 std::vector<Exit> Launcher::Reap() { return std::exchange(exits_, {}); }
 
 void Launcher::TellAll(const HostWords& words) {
-  for (const auto& connection : connections_) connection->output.Write(words.dump());
+  for (const auto& connection : connections_) connection->output.Write(CompactJson(words));
 }
 
 void Launcher::Kill() { TellAll({{"kind", "kill"}}); }
