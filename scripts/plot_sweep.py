@@ -22,6 +22,7 @@ import matplotlib.ticker
 import numpy as np
 import plain
 from figure_style import OKABE_ITO, size
+from regular_file import open_regular
 
 BLUE = OKABE_ITO[0]
 FAILED, MISSING = "x", "^"  # markers
@@ -49,7 +50,7 @@ csv.field_size_limit(2**31 - 1)  # a cell may hold a whole law
 
 def rows_of(path, columns=None, having=""):
     """The cells of these columns (of all, without them), row by row, of the lines that have this text in them."""
-    with open(path, newline="", encoding="utf-8") as file:
+    with open_regular(path, newline="", encoding="utf-8") as file:
         names = next(csv.reader([file.readline()]), [])
         for name in columns or ():
             if names.count(name) != 1:

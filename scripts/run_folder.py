@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+from regular_file import open_regular
 
 DRAWING = {"leader": "leader", "switches": False, "pictures": [], "telling": "paths", "hull": "", "cells": ""}
 ARRAYS = {"position": 3, "velocity": 3, "acceleration_command": 3}  # name -> numbers per agent and row
@@ -228,7 +229,8 @@ def check_format(path, contents):
 def read_text(path, parse):
     """The table in a file of TOML or JSON."""
     try:
-        table = parse(path.read_text(encoding="utf-8"))
+        with open_regular(path, encoding="utf-8") as file:
+            table = parse(file.read())
         if not isinstance(table, dict):
             raise RunError(f"{path}: expected a table, got a {type(table).__name__}")
         return check_format(path, table)
@@ -282,9 +284,9 @@ def check_states(path, arrays):
 
 def read_states(path):
     try:
-        with path.open("rb") as file:
+        with open_regular(path, "rb") as file:
             check_unpacked(path, file)
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as states:
+        with open_regular(path, "rb") as file, np.load(file, allow_pickle=False) as states:
             arrays = {name: states[name] for name in ["t", "id", *ARRAYS]}
             arrays["flags"] = states["flags"] if "flags" in states else None
     except KeyError as error:
@@ -320,7 +322,7 @@ def read_incidents(path, ids):
         return tuple(index[int(agent)] for agent in (row["agent"], other) if agent.isdigit() and int(agent) in index)
 
     try:
-        with path.open(encoding="utf-8", newline="") as file:
+        with open_regular(path, encoding="utf-8", newline="") as file:
             rows, found = csv.DictReader(file), []
             for row in rows:
                 if not row["agent"]:

@@ -966,6 +966,14 @@ class Errors(PlotTest):
         (self.folder / "config.toml").unlink()
         self.check(1, f"{self.folder}/config.toml: No such file or directory")
 
+    def test_a_pipe_in_the_place_of_a_file_is_refused(self):
+        for name in ("states.npz", "config.toml", "summary.json", "events.csv"):
+            self.write()
+            (self.folder / name).unlink(missing_ok=True)
+            os.mkfifo(self.folder / name)
+            self.check(1, f"{self.folder}/{name}: not a regular file")
+            (self.folder / name).unlink()
+
     def test_a_newer_format_is_refused(self):
         self.write(summary={"format": 2})
         self.check(2, f"{self.folder}/summary.json: it is of format 2, newer than the 1 that this version reads")

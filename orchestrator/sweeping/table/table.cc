@@ -164,10 +164,12 @@ void RowPlaces::ForEach(const std::function<void(std::size_t, std::uint64_t)>& t
     if (Has(run)) take(run, places_[run]);
 }
 
-TableRows::TableRows(const fs::path& path, const Cells& columns, bool lost, const SweepPlan* plan)
-    : file_(path, std::ios::binary) {
+TableRows::TableRows(const fs::path& path, const Cells& columns, bool lost, const SweepPlan* plan) {
+  if (fs::exists(path) && !fs::is_regular_file(path))  // the opening of a pipe would wait for somebody who writes to it
+    throw std::runtime_error(path.string() + ": cannot be read: not a regular file");
+  file_.open(path, std::ios::binary);
   std::string line;
-  if (!file_ || !fs::is_regular_file(path)) FailToRead(path);
+  if (!file_) FailToRead(path);
   if (!std::getline(file_, line) || file_.eof() || line + "\n" != SweepRow(columns))
     throw ConfigError({path.string() + ": expected the columns of this sweep, got others"});
   const auto error = static_cast<std::size_t>(std::ranges::find(columns, kErrorColumn) - columns.begin());

@@ -1,5 +1,6 @@
 // `orchestrator sweep --shard`, `--slurm` and `sweep merge`, end to end. A real Slurm: slurm_test.py.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include "tests/orchestrator/sweeping/sweep_table.h"
 
@@ -117,6 +118,11 @@ TEST_F(SweepShards, AreMergedOnlyIfTheyAreAllThereAndOfOneSweepAndBuild) {
             "error: sweep merge: expected tables of shares, each with its .plan beside it, got small.toml\n");
   EXPECT_EQ(refusal("sweep.csv --out sweep.2-of-3.csv --force"),
             "error: sweep merge: expected --out FILE that is none of the shares, got sweep.2-of-3.csv\n");
+  ASSERT_EQ(mkfifo(Folder("pipe.csv").c_str(), 0600), 0);
+  std::filesystem::copy(Folder("sweep.1-of-3.csv.plan"), Folder("pipe.csv.plan"));
+  const Ran pipe = Merge("pipe.csv sweep.2-of-3.csv sweep.3-of-3.csv --out sweep.csv");
+  EXPECT_EQ(pipe.exit_code, 1);
+  EXPECT_EQ(pipe.output, "error: pipe.csv: cannot be read: not a regular file\n");
   std::filesystem::copy(Folder("sweep.1-of-3.csv"), Folder("one"));
   std::filesystem::copy(Folder("sweep.1-of-3.csv.plan"), Folder("one.plan"));
   EXPECT_EQ(refusal("one"),
