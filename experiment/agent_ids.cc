@@ -26,4 +26,16 @@ std::vector<int> ReadAgentIds(Section& section, const std::string& key, int agen
   return ids;
 }
 
+std::string IdRanges(const std::vector<int>& ids) {
+  std::string text;
+  for (std::size_t i = 0; i < ids.size();) {
+    std::size_t last = i;
+    while (last + 1 < ids.size() && ids[last + 1] == ids[last] + 1) ++last;
+    text += (text.empty() ? "" : ", ") + std::to_string(ids[i]);
+    if (last > i) text += "-" + std::to_string(ids[last]);
+    i = last + 1;
+  }
+  return text;
+}
+
 }  // namespace mascot

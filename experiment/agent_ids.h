@@ -11,4 +11,7 @@ namespace mascot {
 /// to `agents` (0: unknown), each once. Returns them in increasing order. Mistakes are noted in `section`.
 std::vector<int> ReadAgentIds(Section& section, const std::string& key, int agents);
 
+/// Ids as text, with consecutive ids joined: "1-4, 7".
+std::string IdRanges(const std::vector<int>& ids);
+
 }  // namespace mascot

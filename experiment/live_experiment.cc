@@ -58,6 +58,14 @@ std::optional<std::string> MeantBy(const std::string& key, const std::vector<Liv
   return live[static_cast<std::size_t>(std::ranges::find(names, *nearest) - names.begin())].path;
 }
 
+/// Throws ConfigError for an event that the wire does not carry in a few seconds.
+void CheckSize(const Event& event) {
+  const std::size_t size = event.Toml().size();
+  if (size > LiveExperiment::kMaxEventBytes)
+    Refuse(event, "expected an event of at most " + std::to_string(LiveExperiment::kMaxEventBytes) +
+                      " bytes, as config.toml has it, got " + std::to_string(size));
+}
+
 /// The experiment without what an experiment that events have changed does not have.
 Experiment WithoutText(const Experiment& start) {
   Experiment now = start;
@@ -92,6 +100,7 @@ const std::shared_ptr<const Experiment>& LiveExperiment::now() const {
 
 // All was legal before the event: what is wrong now is its mistake, also where another key shows it.
 void LiveExperiment::Take(const Event& event) {
+  if (!now_.checked) CheckSize(event);
   const std::vector<Own> own = own_;
   const bool team_had_changed = team_has_changed_;
   try {

@@ -24,6 +24,7 @@ namespace mascot {
 class LiveExperiment {
  public:
   static constexpr int kMaxEvents = 100000;  ///< of a file, and of a run with those by hand, whose file holds them all
+  static constexpr std::size_t kMaxEventBytes = std::size_t{1} << 20;  ///< of Event::Toml()
 
   /// `laws` null: the parameters of laws are neither read nor checked (the physics server). `checked`: the events were
   /// taken before without a mistake: slow checks, which run the code of a law, are left out. `laws` must outlive this.
@@ -33,7 +34,7 @@ class LiveExperiment {
   void CheckAll() { now_.checked = false; }
   /// Takes the next event. Throws ConfigError, with event.where in front, and changes nothing, if it names a key that
   /// is not live, a value that is not legal, an edge that the file does not declare, or an agent that flies no
-  /// waypoints.
+  /// waypoints, or is larger than kMaxEventBytes.
   void Take(const Event& event);
   /// The experiment as it is now; null before the first event. Const and shared: code that flies by it keeps it as long
   /// as needed. It is made when it is first asked for after an event, in the thread that asks. Its `resolved` and

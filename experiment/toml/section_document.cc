@@ -152,8 +152,8 @@ void Section::Document::NoteText(const toml::source_region& place, const std::st
   Mistake mistake{overridden, overridden ? 0 : place.begin.line, overridden ? 0 : place.begin.column, text};
   if (mistakes_.size() < kMaxMistakes) {
     mistakes_.insert(std::move(mistake));
-  } else if (!mistakes_.contains(mistake)) {
-    left_out_ = true;
+  } else if (!left_out_ && !mistakes_.contains(mistake)) {
+    left_out_ = PlaceText(place);
   }
 }
 
@@ -161,7 +161,7 @@ void Section::Document::ThrowIfWrong() const {
   if (mistakes_.empty()) return;
   std::vector<std::string> texts;
   for (const Mistake& mistake : mistakes_) texts.push_back(mistake.text);
-  if (left_out_) texts.push_back(name + ": too many mistakes: these are the first found");
+  if (left_out_) texts.push_back(*left_out_ + ": too many mistakes: this one and others are left out");
   throw ConfigError(std::move(texts));
 }
 

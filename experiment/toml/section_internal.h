@@ -44,7 +44,7 @@ struct Section::Document {
     auto operator<=>(const Mistake&) const = default;
   };
   std::set<Mistake> mistakes_;
-  bool left_out_ = false;
+  std::optional<std::string> left_out_;  // place of the first mistake that is
 };
 
 /// One table: where it stands, and what was read from it. Shared by all copies of its Section.

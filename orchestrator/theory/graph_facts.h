@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "experiment/graph/graph.h"
@@ -21,7 +20,5 @@ struct GraphFacts {
 
 /// `leader`: 0 for none.
 GraphFacts FactsOf(const Graph& graph, int leader);
-/// Ids as text, with consecutive ids joined: "1-4, 7".
-std::string IdRanges(const std::vector<int>& ids);
 
 }  // namespace mascot

@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "experiment/agent_ids.h"
 #include "experiment/toml/input.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/report/json.h"

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <memory>
 
+#include "experiment/agent_ids.h"
 #include "orchestrator/report/dot.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/theory/graph_facts.h"

@@ -5,7 +5,7 @@
 
 namespace mascot {
 
-/// "agent 3" or "agents 2, 5", for messages.
+/// "agent 3" or "agents 2, 5-9", for messages.
 std::string AgentsText(const std::vector<int>& ids);
 
 }  // namespace mascot

@@ -36,6 +36,7 @@ std::atomic<std::size_t> g_bytes = 0;
 namespace mascot {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
@@ -218,7 +219,6 @@ TEST(Limits, OfEdgesHoldForAllGraphsOfAScheduleTogether) {
       ThrowsMessage<ConfigError>(HasSubstr(": expected at most 10000000 edges in all graphs together, got more")));
 }
 
-TEST(Limits, OfEventsHoldForARunToo) {
 TEST(Limits, OfEdgesAreSaidBeforeTheyTakeMemory) {
   const auto refusal = [](const std::string& graph) {
     try {
@@ -250,6 +250,7 @@ TEST(Limits, OfAnEventsSizeIsSaid) {
                   HasSubstr(": expected an event of at most 1048576 bytes, as config.toml has it, got 1800")));
 }
 
+TEST(Limits, OfEventsHoldForARunToo) {
   Experiment experiment = Load(Team());
   experiment.events.resize(100000);
   RunRequests requests(experiment, 0);

@@ -66,7 +66,7 @@ TEST(JoinList, IgnoresASecondReady) {
   list.OnRecorder(kReady);
   list.OnRecorder(kReady);
   EXPECT_EQ(list.Look(kT0 + 1ms, kMatched), Next::kWait);
-  EXPECT_EQ(list.Failure(), "not ready within run.start_timeout_s = 60.0 s: agents 2, 3");
+  EXPECT_EQ(list.Failure(), "not ready within run.start_timeout_s = 60.0 s: agents 2-3");
 }
 
 TEST(JoinList, WaitsAgainForAProcessThatIsNoLongerReady) {
@@ -85,7 +85,7 @@ TEST(JoinList, IgnoresUnknownAgents) {
   list.OnRecorder(kReady);
   for (const AgentRange strangers : {AgentRange{4, 9}, {0, 0}, {-7, 0}, {3, 2}, {5, -5}})
     list.OnAgents(strangers, kReady);
-  EXPECT_EQ(list.Failure(), "not ready within run.start_timeout_s = 60.0 s: agents 1, 2, 3");
+  EXPECT_EQ(list.Failure(), "not ready within run.start_timeout_s = 60.0 s: agents 1-3");
   list.OnAgents({-7, 99}, kReady);
   EXPECT_EQ(list.Look(kT0 + 1ms, kMatched), Next::kStart);
 }
@@ -114,7 +114,7 @@ TEST(JoinList, StartsIfAllAreReadyAtTheLastMoment) {
 TEST(JoinList, NamesTheProcessesThatAreMissing) {
   const std::string failure = "not ready within run.start_timeout_s = 60.0 s: ";
   JoinList list = Begun();
-  EXPECT_EQ(list.Failure(), failure + "agents 1, 2, 3 and the recorder");
+  EXPECT_EQ(list.Failure(), failure + "agents 1-3 and the recorder");
   list.OnAgents({1, 2}, kReady);
   EXPECT_EQ(list.Failure(), failure + "agent 3 and the recorder");
   list.OnAgents({3, 3}, kReady);
