@@ -14,10 +14,10 @@
 
 #include "base/utf8.h"
 #include "experiment/experiment.h"
-#include "orchestrator/formats/compact_json.h"
 #include "orchestrator/control/local_lines.h"
 #include "orchestrator/control/request.h"
 #include "orchestrator/control/run_socket.h"
+#include "orchestrator/formats/compact_json.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
 #include "system/local_socket.h"

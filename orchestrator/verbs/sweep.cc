@@ -22,8 +22,8 @@
 #include "orchestrator/verbs/sweep_picture.h"
 #include "orchestrator/verbs/verb.h"
 #include "system/children.h"
-#include "system/script.h"
 #include "system/interruptions.h"
+#include "system/script.h"
 #include "system/stop_signal.h"
 
 namespace mascot {

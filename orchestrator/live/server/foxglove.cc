@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "orchestrator/formats/compact_json.h"
 #include "orchestrator/control/request.h"
+#include "orchestrator/formats/compact_json.h"
 #include "orchestrator/formats/outside_json.h"
 
 namespace mascot {

@@ -135,8 +135,7 @@ TEST(Mutations, AChangedExperimentIsReadOrRefusedWithAPlace) {
     }
     if (said.exit_code != kExitUsage) continue;
     for (const std::string& line : Lines(said.err))
-      ASSERT_THAT(line, testing::ContainsRegex("^error: [^:]+:[0-9]+:[0-9]+: "))
-          << "mutation " << k;
+      ASSERT_THAT(line, testing::ContainsRegex("^error: [^:]+:[0-9]+:[0-9]+: ")) << "mutation " << k;
   }
   for (const auto& [code, count] : ends) RecordProperty("exit_" + std::to_string(code), count);
   EXPECT_GT(ends[kExitDone], 0);
