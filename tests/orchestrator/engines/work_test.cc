@@ -36,7 +36,6 @@ std::atomic<std::size_t> g_bytes = 0;
 namespace mascot {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
