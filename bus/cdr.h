@@ -11,31 +11,34 @@
 
 namespace mascot {
 
-/// A fastddsgen type whose padding bytes are zero on the wire, and whose samples end at a multiple of 4 bytes. Fast CDR
-/// leaves old memory in the padding, and Fast DDS pads the end of a sample only if it sends the sample in one piece:
-/// both would make recordings differ from run to run.
+/// A fastddsgen type whose padding bytes are zero on the wire. Fast CDR leaves old memory in them, which would make
+/// recordings differ from run to run.
 template <class PubSub>
 class ZeroPadded : public PubSub {
  public:
   bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override {
     std::memset(payload->data, 0, payload->max_size);
-    if (!PubSub::serialize(data, payload)) return false;
-    payload->length = Padded(payload->length);
-    return payload->length <= payload->max_size;
+    return PubSub::serialize(data, payload);
   }
-  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return [size = PubSub::getSerializedSizeProvider(data)] { return Padded(size()); };
-  }
-
- private:
-  static std::uint32_t Padded(std::uint32_t size) { return (size + 3) / 4 * 4; }
 };
 
-/// A type as our participants register it: samples that they write are ZeroPadded; samples that they receive stay bytes
-/// (a std::vector<std::uint8_t>) until it is known which process sent them.
+/// The size of a sample as RTPS sends it: up to the next multiple of 4.
+constexpr std::uint32_t PaddedSize(std::uint32_t size) { return (size + 3) / 4 * 4; }
+
+/// A type as our participants register it. Samples that they write are ZeroPadded, and end at a multiple of 4 bytes:
+/// Fast DDS sees to that itself only if it sends a sample in one piece, and not in fragments. Samples that they receive
+/// stay bytes (a std::vector<std::uint8_t>) until it is known which process sent them.
 template <class PubSub>
 class WireType : public ZeroPadded<PubSub> {
  public:
+  bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override {
+    if (!ZeroPadded<PubSub>::serialize(data, payload)) return false;
+    payload->length = PaddedSize(payload->length);
+    return payload->length <= payload->max_size;
+  }
+  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
+    return [size = PubSub::getSerializedSizeProvider(data)] { return PaddedSize(size()); };
+  }
   bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* bytes) override {
     static_cast<std::vector<std::uint8_t>*>(bytes)->assign(payload->data, payload->data + payload->length);
     return true;

@@ -258,6 +258,7 @@ void Serialize(rosgraph_msgs::msg::Clock& sample, std::vector<std::uint8_t>& byt
 }
 void Serialize(mascot_msgs::msg::Event& sample, std::vector<std::uint8_t>& bytes) {
   SerializeAs<EventType>(sample, bytes);
+  bytes.resize(PaddedSize(static_cast<std::uint32_t>(bytes.size())));
 }
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentState& sample) {
   DeserializeAs<StateType>(bytes, sample);
