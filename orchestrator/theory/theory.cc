@@ -262,8 +262,11 @@ std::string SilentFrom(const Experiment& experiment, std::int64_t tick) {
 }
 
 Prediction Predict(const Experiment& experiment) {
-  if (experiment.user_code == UserCode::kNeverRuns && FliesCodeOfUsers(experiment))
-    return {.silent = "agents fly a law of a user, whose code does not run when it is only looked at"};
+  if (experiment.user_code == UserCode::kNeverRuns && FliesCodeOfUsers(experiment)) {
+    Prediction none;
+    none.silent = "agents fly a law of a user, whose code does not run when it is only looked at";
+    return none;
+  }
   const std::string silent = SilencingEvent(experiment, 0);
   if (PhasesOf(experiment).empty()) {
     Prediction prediction = PredictPhase(experiment, silent, /*is_last=*/true);
