@@ -37,7 +37,11 @@ class WireType : public ZeroPadded<PubSub> {
     return payload->length <= payload->max_size;
   }
   std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return [size = PubSub::getSerializedSizeProvider(data)] { return PaddedSize(size()); };
+    return [data] {  // no copy of PubSub's function: it would take memory at each sample
+      using Sample = typename PubSub::type;
+      const std::size_t body = Sample::getCdrSerializedSize(*static_cast<const Sample*>(data));
+      return PaddedSize(static_cast<std::uint32_t>(body) + 4);  // with the encapsulation
+    };
   }
   bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* bytes) override {
     static_cast<std::vector<std::uint8_t>*>(bytes)->assign(payload->data, payload->data + payload->length);
