@@ -2,17 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <span>
 #include <stdexcept>
+
+#include "bus/sample_layout.h"
 
 namespace mascot {
 namespace {
-
-template <class Message>
-std::uint64_t BytesOf(Message sample) {
-  Row::Bytes bytes;
-  Serialize(sample, bytes);
-  return bytes.size();
-}
 
 /// `AnyRow` is Row or const Row.
 template <class AnyRow>
@@ -24,12 +21,28 @@ auto& SampleIn(AnyRow& row, const Topic& topic) {
                                              : row.clock;
 }
 
-/// Deserializes a sample of `row`. Throws std::runtime_error with tick and topic if it is none.
-template <class Sample>
-void DecodeSample(const Row& row, const Topic& topic, Sample& sample) try {
-  Deserialize(SampleIn(row, topic), sample);
-} catch (const std::runtime_error& error) {
-  throw std::runtime_error(fmt::format("tick {}: {}: {}", row.tick, topic.Name(), error.what()));
+/// Makes room in `bytes` for a sample of this size, and returns the place of its body.
+std::uint8_t* BodyIn(Row::Bytes& bytes, std::size_t body) {
+  bytes.resize(kEncapsulation.size() + body);
+  std::ranges::copy(kEncapsulation, bytes.begin());
+  return bytes.data() + kEncapsulation.size();
+}
+
+/// The body of a sample of `row`. Throws std::runtime_error with tick and topic if it has not this size.
+const std::uint8_t* BodyOf(const Row& row, const Topic& topic, std::size_t body) {
+  const Row::Bytes& bytes = SampleIn(row, topic);
+  if (bytes.size() != kEncapsulation.size() + body || !std::ranges::equal(kEncapsulation, std::span(bytes).first<4>()))
+    throw std::runtime_error(fmt::format("tick {}: {}: a sample of {} bytes is no {}", row.tick, topic.Name(),
+                                         bytes.size(), WireTypeName(topic.kind)));
+  return bytes.data() + kEncapsulation.size();
+}
+
+/// Likewise, of a message.
+const std::uint8_t* BodyOfMessage(const Row& row, const Topic& topic) {
+  const Row::Bytes& bytes = SampleIn(row, topic);
+  const bool has_head = bytes.size() >= kEncapsulation.size() + MessageBody(0);
+  const std::size_t numbers = has_head ? HeadOf(bytes.data() + kEncapsulation.size()).more : 0;
+  return BodyOf(row, topic, MessageBody(std::min(numbers, kMaxNumbers + 1)));
 }
 
 void DecodeEvents(const Row& row, DecodedRow& decoded) try {
@@ -50,51 +63,41 @@ Row::Bytes& SampleOf(Row& row, const Topic& topic) { return SampleIn(row, topic)
 const Row::Bytes& SampleOf(const Row& row, const Topic& topic) { return SampleIn(row, topic); }
 
 void Decode(const Row& row, DecodedRow& decoded) {
-  mascot_msgs::msg::AgentState state;
-  mascot_msgs::msg::AgentCommand command;
-  mascot_msgs::msg::AgentMessage message;
   DecodeEvents(row, decoded);
   for (std::size_t i = 0; i < decoded.motions.size(); ++i) {
     const int id = static_cast<int>(i) + 1;
-    DecodeSample(row, Topic::State(id), state);
-    decoded.motions[i] = FromWire(state);
-    decoded.events_so_far = static_cast<int>(state.events());
+    const std::uint8_t* const state = BodyOf(row, Topic::State(id), kStateBody);
+    GetState(state, decoded.motions[i]);
+    decoded.events_so_far = static_cast<int>(HeadOf(state).more);
     decoded.messages[i].clear();
-    if (!row.messages[i].empty()) {
-      DecodeSample(row, Topic::Message(id), message);
-      decoded.messages[i].assign(message.data().begin(), message.data().end());
-    }
-    if (row.commands[i].empty()) continue;
-    DecodeSample(row, Topic::Command(id), command);
-    decoded.commands[i] = FromWire(command);
+    if (!row.messages[i].empty()) GetMessage(BodyOfMessage(row, Topic::Message(id)), decoded.messages[i]);
+    if (!row.commands[i].empty()) GetCommand(BodyOf(row, Topic::Command(id), kCommandBody), decoded.commands[i]);
   }
 }
 
 const Row& RowEncoder::Encode(std::int64_t tick, const DecodedRow& decoded) {
   const int rate = experiment_.control.rate_hz;
   row_.tick = tick;
-  ToWire(tick, rate, clock_);
-  Serialize(clock_, row_.clock);
+  PutClock(tick, rate, BodyIn(row_.clock, kClockBody));
   row_.events.resize(decoded.events.size());
   for (std::size_t k = 0; k < decoded.events.size(); ++k) {
-    ToWire(tick, rate, decoded.events[k].number, decoded.events[k].event.Toml(), event_);
-    Serialize(event_, row_.events[k]);
+    mascot_msgs::msg::Event event;
+    ToWire(tick, rate, decoded.events[k].number, decoded.events[k].event.Toml(), event);
+    Serialize(event, row_.events[k]);
   }
   for (std::size_t i = 0; i < decoded.motions.size(); ++i) {
     const int id = static_cast<int>(i) + 1;
-    ToWire(tick, rate, id, decoded.events_so_far, decoded.motions[i], state_);
-    Serialize(state_, row_.states[i]);
-    ToWire(tick, rate, id, decoded.commands[i], command_);
-    Serialize(command_, row_.commands[i]);
+    PutState(tick, rate, id, decoded.events_so_far, decoded.motions[i], BodyIn(row_.states[i], kStateBody));
+    PutCommand(tick, rate, id, decoded.commands[i], BodyIn(row_.commands[i], kCommandBody));
     if (!experiment_.agents[i].sends_messages) continue;
-    ToWire(tick, rate, id, decoded.messages[i], message_);
-    Serialize(message_, row_.messages[i]);
+    const std::vector<double>& message = decoded.messages[i];
+    PutMessage(tick, rate, id, message, BodyIn(row_.messages[i], MessageBody(message.size())));
   }
   return row_;
 }
 
 SampleSizes SizesOfSamples() {
-  return {.state = BytesOf(mascot_msgs::msg::AgentState()), .message = BytesOf(mascot_msgs::msg::AgentMessage())};
+  return {.state = kEncapsulation.size() + kStateBody, .message = kEncapsulation.size() + MessageBody(0)};
 }
 
 }  // namespace mascot

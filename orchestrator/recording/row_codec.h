@@ -25,12 +25,7 @@ class RowEncoder {
 
  private:
   const Experiment& experiment_;
-  Row row_;  // row and samples are members to avoid allocations in each tick
-  rosgraph_msgs::msg::Clock clock_;
-  mascot_msgs::msg::AgentState state_;
-  mascot_msgs::msg::AgentCommand command_;
-  mascot_msgs::msg::AgentMessage message_;
-  mascot_msgs::msg::Event event_;
+  Row row_;  // a member to avoid allocations in each tick
 };
 
 /// Sizes of single samples on the wire (bytes).

@@ -1,0 +1,125 @@
+// The per-tick samples as we lay them out ourselves are those of Fast CDR, byte for byte.
+#include "bus/sample_layout.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <tuple>
+
+#include "bus/wire.h"
+
+namespace mascot {
+namespace {
+
+constexpr int kSamples = 1000;
+
+/// Numbers of all kinds: of any size, 0 with both signs, infinities, NaN.
+class Numbers {
+ public:
+  double Next() {
+    constexpr double kSpecial[] = {0.0, -0.0, std::numeric_limits<double>::infinity(),
+                                   std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::denorm_min()};
+    if (Below(10) == 0) return kSpecial[Below(std::size(kSpecial))];
+    return std::ldexp(std::uniform_real_distribution<double>(-1, 1)(engine_), static_cast<int>(Below(200)) - 100);
+  }
+  Eigen::Vector3d Vector() { return {Next(), Next(), Next()}; }
+  std::size_t Below(std::size_t bound) { return std::uniform_int_distribution<std::size_t>(0, bound - 1)(engine_); }
+  std::int64_t Tick() { return static_cast<std::int64_t>(Below(std::size_t{1} << 40)); }
+
+ private:
+  std::mt19937_64 engine_{7};
+};
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// A sample with its encapsulation, as `put` lays out its body of this size.
+template <class Put>
+Bytes Sample(std::size_t body, const Put& put) {
+  Bytes bytes(kEncapsulation.size() + body, 0xEE);
+  std::ranges::copy(kEncapsulation, bytes.begin());
+  put(bytes.data() + kEncapsulation.size());
+  return bytes;
+}
+
+template <class Message>
+Bytes ByFastCdr(Message& sample) {
+  Bytes bytes;
+  Serialize(sample, bytes);
+  return bytes;
+}
+
+bool Same(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::memcmp(a.data(), b.data(), 24) == 0; }
+
+TEST(SampleLayout, OfStatesIsThatOfFastCdr) {
+  Numbers numbers;
+  for (int k = 0; k < kSamples; ++k) {
+    Motion motion{
+        .p_WB = numbers.Vector(), .v_WB = numbers.Vector(), .w_WB_B = numbers.Vector(), .a_WB = numbers.Vector()};
+    motion.q_WB.coeffs() << numbers.Next(), numbers.Next(), numbers.Next(), numbers.Next();
+    const std::int64_t tick = numbers.Tick();
+    const int rate = 1 + static_cast<int>(numbers.Below(1000)), id = 1 + static_cast<int>(numbers.Below(10'000)),
+              events = static_cast<int>(numbers.Below(1000));
+    mascot_msgs::msg::AgentState sample;
+    ToWire(tick, rate, id, events, motion, sample);
+    const Bytes bytes = Sample(kStateBody, [&](auto* body) { PutState(tick, rate, id, events, motion, body); });
+    ASSERT_EQ(bytes, ByFastCdr(sample));
+    const std::uint8_t* const body = bytes.data() + kEncapsulation.size();
+    Motion back;
+    GetState(body, back);
+    EXPECT_TRUE(Same(back.p_WB, motion.p_WB) && Same(back.v_WB, motion.v_WB) && Same(back.w_WB_B, motion.w_WB_B) &&
+                Same(back.a_WB, motion.a_WB));
+    EXPECT_EQ(std::memcmp(back.q_WB.coeffs().data(), motion.q_WB.coeffs().data(), 32), 0);
+    const BodyHead head = HeadOf(body);
+    EXPECT_EQ(std::tuple(head.tick, head.agent, head.more),
+              std::tuple(static_cast<std::uint64_t>(tick), static_cast<std::uint32_t>(id),
+                         static_cast<std::uint32_t>(events)));
+  }
+}
+
+TEST(SampleLayout, OfCommandsIsThatOfFastCdr) {
+  Numbers numbers;
+  for (int k = 0; k < kSamples; ++k) {
+    const Command command{.actuator = {numbers.Next(), numbers.Next(), numbers.Next(), numbers.Next()},
+                          .a_law_W = numbers.Vector(),
+                          .a_limited_W = numbers.Vector(),
+                          .flags = static_cast<std::uint32_t>(numbers.Below(64))};
+    const std::int64_t tick = numbers.Tick();
+    const int id = 1 + static_cast<int>(numbers.Below(10'000));
+    mascot_msgs::msg::AgentCommand sample;
+    ToWire(tick, 100, id, command, sample);
+    const Bytes bytes = Sample(kCommandBody, [&](auto* body) { PutCommand(tick, 100, id, command, body); });
+    ASSERT_EQ(bytes, ByFastCdr(sample));
+    Command back;
+    back.v_law_W = back.v_limited_W = {1, 2, 3};
+    GetCommand(bytes.data() + kEncapsulation.size(), back);
+    EXPECT_TRUE(Same(back.a_law_W, command.a_law_W) && Same(back.a_limited_W, command.a_limited_W));
+    EXPECT_EQ(std::memcmp(&back.actuator, &command.actuator, sizeof back.actuator), 0);
+    EXPECT_EQ(back.flags, command.flags);
+    EXPECT_TRUE(back.v_law_W.isZero() && back.v_limited_W.isZero());
+  }
+}
+
+TEST(SampleLayout, OfMessagesAndTheClockIsThatOfFastCdr) {
+  Numbers numbers;
+  for (std::size_t size = 0; size <= kMaxNumbers; ++size) {
+    std::vector<double> message(size);
+    std::ranges::generate(message, [&] { return numbers.Next(); });
+    const std::int64_t tick = numbers.Tick();
+    mascot_msgs::msg::AgentMessage sample;
+    ToWire(tick, 30, 5, message, sample);
+    const Bytes bytes = Sample(MessageBody(size), [&](auto* body) { PutMessage(tick, 30, 5, message, body); });
+    ASSERT_EQ(bytes, ByFastCdr(sample));
+    std::vector<double> back{1, 2, 3};
+    GetMessage(bytes.data() + kEncapsulation.size(), back);
+    EXPECT_TRUE(back.size() == size && (size == 0 || std::memcmp(back.data(), message.data(), size * 8) == 0));
+    rosgraph_msgs::msg::Clock clock;
+    ToWire(tick, 30, clock);
+    EXPECT_EQ(Sample(kClockBody, [&](auto* body) { PutClock(tick, 30, body); }), ByFastCdr(clock));
+  }
+}
+
+}  // namespace
+}  // namespace mascot
