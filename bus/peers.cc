@@ -12,7 +12,7 @@ bool MayWrite(std::string_view process, const Topic& topic) {
       return process == kPhysicsServer;
     case TopicWriter::kAgent: {
       const auto agents = AgentsOf(process);
-      return agents && agents->Holds(topic.agent);
+      return agents && (topic.traits().per_process ? *agents == topic.agents() : agents->Holds(topic.agent));
     }
     case TopicWriter::kOrchestrator:
       return process == kOrchestrator;

@@ -17,7 +17,9 @@
 namespace mascot {
 
 using StateType = mascot_msgs::msg::AgentStatePubSubType;
-using BundleType = mascot_msgs::msg::AgentBundlePubSubType;
+using AnswersType = mascot_msgs::msg::AnswersPubSubType;
+using BundleType = mascot_msgs::msg::BundlePubSubType;
+using RowType = mascot_msgs::msg::TickRowPubSubType;
 using CommandType = mascot_msgs::msg::AgentCommandPubSubType;
 using MessageType = mascot_msgs::msg::AgentMessagePubSubType;
 using ClockType = rosgraph_msgs::msg::ClockPubSubType;
@@ -34,10 +36,6 @@ struct SequenceOf<MessageType> {
 template <>
 struct SequenceOf<StatusType> {
   static constexpr std::size_t kAt = 4, kElement = 44;
-};
-template <>
-struct SequenceOf<BundleType> {
-  static constexpr std::size_t kAt = 4, kElement = 152;
 };
 template <>
 struct SequenceOf<ExperimentType> {

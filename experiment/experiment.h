@@ -43,8 +43,10 @@ inline Eigen::Vector3d Along(Axes axes, Eigen::Vector3d v) {
 enum class Inversion { kSmallAngle, kExact };
 inline constexpr EnumNames<Inversion, 2> kInversions({{Inversion::kSmallAngle, "small_angle"},
                                                       {Inversion::kExact, "exact"}});
-enum class Delivery { kTopics, kBundled };
-inline constexpr EnumNames<Delivery, 2> kDeliveries({{Delivery::kTopics, "topics"}, {Delivery::kBundled, "bundled"}});
+enum class DeliveryMode { kAuto, kBundled, kTopics };
+inline constexpr EnumNames<DeliveryMode, 3> kDeliveries({{DeliveryMode::kAuto, "auto"},
+                                                         {DeliveryMode::kBundled, "bundled"},
+                                                         {DeliveryMode::kTopics, "topics"}});
 
 /// [control], or an agent's own control table.
 struct ControlConfig {
@@ -165,8 +167,11 @@ struct Experiment {
     int domain = -1;  ///< -1 = "auto"
     std::string transport;
     int agents_per_process = 1;
-    Delivery delivery = Delivery::kTopics;
+    DeliveryMode delivery = DeliveryMode::kAuto;
     bool ros_view = false;
+
+    /// Whether all that goes to a process at a tick goes in one sample, which is the faster way.
+    bool is_bundled() const { return delivery != DeliveryMode::kTopics; }
   } network;
   std::vector<HostConfig> hosts;      ///< besides the host of the physics server
   std::size_t phase = 0;              ///< number of phases of [[law.schedule]] that have begun after the first

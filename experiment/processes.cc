@@ -31,4 +31,16 @@ std::vector<int> HearingProcesses(const Experiment& experiment, bool heard_only)
   return count;
 }
 
+std::vector<int> SourcesOf(const Experiment& experiment, AgentRange process) {
+  std::set<int> others;
+  std::vector<int> sources;
+  for (int id = process.first; id <= process.last; ++id) {
+    sources.push_back(id);
+    for (const Graph::Neighbour& neighbour : experiment.graph.HeardBy(id))
+      if (!process.Holds(neighbour.id)) others.insert(neighbour.id);
+  }
+  sources.insert(sources.end(), others.begin(), others.end());
+  return sources;
+}
+
 }  // namespace mascot

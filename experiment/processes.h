@@ -14,4 +14,7 @@ std::vector<AgentRange> AgentProcesses(const Experiment& experiment);
 /// that may ever hear it. With `heard_only`, only processes with an agent that may hear it count.
 std::vector<int> HearingProcesses(const Experiment& experiment, bool heard_only);
 
+/// The agents whose states a process needs: its own, then the others that these may ever hear; both in increasing id.
+std::vector<int> SourcesOf(const Experiment& experiment, AgentRange process);
+
 }  // namespace mascot

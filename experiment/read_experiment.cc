@@ -290,13 +290,13 @@ std::span<const Key> ExperimentKeys() {
   static const Key network_keys[] = {
       DomainKey(),
       key::OneOf("transport", kTransports, "auto: shared memory on one host, UDP between hosts").Default("\"auto\""),
-      key::Integer("agents_per_process", 1, kMaxAgents,
-                   "how many agents share a process; each agent keeps its own topics")
-          .Default("1"),
-      key::OneOf("delivery", kDeliveries.names(),
-                 "topics: a process has a reader for each agent that its agents hear; bundled: the server sends each "
-                 "agent one sample with all states that it may hear, for dense graphs")
-          .Default("\"topics\""),
+      key::Integer("agents_per_process", 1, kMaxAgents, "how many agents share a process").Default("1"),
+      key::OneOf(
+          "delivery", kDeliveries.names(),
+          "bundled: the server sends each process one sample a tick, with what its agents may hear, and gets one "
+          "back; topics: each state, command and message has a topic of its own, for tools that listen; auto: "
+          "bundled")
+          .Default("\"auto\""),
       key::Boolean("ros_view", "publishes `/tf` and `/scene`, for RViz2").Default("false"),
   };
   static const Key keys[] = {

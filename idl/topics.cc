@@ -5,12 +5,21 @@
 namespace mascot {
 namespace {
 
-// In the order of TopicKind. The samples of a bundle are recorded, each for itself, as states.
+// In the order of TopicKind. The samples in answers, bundles and rows are recorded as those of the topics that they
+// stand for.
 constexpr TopicTraits kKinds[] = {
+    {.kind = TopicKind::kAnswers,
+     .name = "answers",
+     .per_process = true,
+     .type = "mascot_msgs/msg/Answers",
+     .writer = TopicWriter::kAgent,
+     .rhythm = TopicRhythm::kTick,
+     .writer_depth = 4,
+     .reader_depth = 4},
     {.kind = TopicKind::kBundle,
      .name = "bundle",
-     .per_agent = true,
-     .type = "mascot_msgs/msg/AgentBundle",
+     .per_process = true,
+     .type = "mascot_msgs/msg/Bundle",
      .writer = TopicWriter::kServer,
      .rhythm = TopicRhythm::kTick,
      .writer_depth = 4,
@@ -74,6 +83,13 @@ constexpr TopicTraits kKinds[] = {
      .rhythm = TopicRhythm::kRare,
      .writer_depth = 32,
      .reader_depth = 32},
+    {.kind = TopicKind::kRow,
+     .name = "row",
+     .type = "mascot_msgs/msg/TickRow",
+     .writer = TopicWriter::kServer,
+     .rhythm = TopicRhythm::kTick,
+     .writer_depth = kHistoryDepth,
+     .reader_depth = kHistoryDepth},
     {.kind = TopicKind::kScene,
      .name = "scene",
      .type = "visualization_msgs/msg/MarkerArray",
@@ -139,27 +155,26 @@ std::optional<AgentRange> AgentsOf(std::string_view process) {
 const TopicTraits& TraitsOf(TopicKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
 
 std::string Topic::Name() const {
-  return (traits().per_agent ? "/" + AgentName(agent) : "") + "/" + std::string(traits().name);
+  const std::string owner = traits().per_agent     ? "/" + AgentName(agent)
+                            : traits().per_process ? "/" + ProcessName(agents())
+                                                   : "";
+  return owner + "/" + std::string(traits().name);
 }
 
 std::optional<Topic> Topic::Parse(std::string_view name) {
   if (name.starts_with("rt/")) name.remove_prefix(2);
   if (!name.starts_with('/')) return std::nullopt;
   name.remove_prefix(1);
-  Topic topic;
   const auto slash = name.find('/');
-  const bool per_agent = slash != name.npos;
-  if (per_agent) {
-    const auto agent = AgentNumber(name.substr(0, slash));
-    if (!agent) return std::nullopt;
-    topic.agent = *agent;
-    name.remove_prefix(slash + 1);
+  const bool has_owner = slash != name.npos;
+  const auto owner = has_owner ? AgentsOf(name.substr(0, slash)) : std::nullopt;
+  if (has_owner) name.remove_prefix(slash + 1);
+  for (const TopicTraits& row : kKinds) {
+    if (row.name != name || (row.per_agent || row.per_process) != has_owner) continue;
+    if (!has_owner) return Topic{.kind = row.kind};
+    if (!owner || (row.per_agent && owner->size() > 1)) return std::nullopt;
+    return Topic{.kind = row.kind, .agent = owner->first, .last = row.per_process ? owner->last : 0};
   }
-  for (const TopicTraits& row : kKinds)
-    if (row.per_agent == per_agent && row.name == name) {
-      topic.kind = row.kind;
-      return topic;
-    }
   return std::nullopt;
 }
 

@@ -18,6 +18,7 @@ std::optional<AgentRange> AgentsOf(std::string_view process);
 
 /// What a topic carries. In a recording the topics of one agent are in this order, which is that of their names.
 enum class TopicKind {
+  kAnswers,
   kBundle,
   kCommand,
   kMessage,
@@ -26,6 +27,7 @@ enum class TopicKind {
   kEvent,
   kExperiment,
   kRequest,
+  kRow,
   kScene,
   kStatus,
   kTf
@@ -34,7 +36,7 @@ enum class TopicKind {
 /// Which process may write a topic.
 enum class TopicWriter {
   kServer,                ///< the physics server
-  kAgent,                 ///< the process of the agent whose number the topic has
+  kAgent,                 ///< the process of the agent, or of the agents, that the topic is named after
   kOrchestrator,          ///< the orchestrator
   kOrchestratorOrServer,  ///< both: the server asks for reports
   kEverybody,             ///< each process of the run
@@ -51,9 +53,10 @@ enum class TopicRhythm {
 /// (orchestrator/engines/dds/wire_audit.cc).
 struct TopicTraits {
   TopicKind kind;
-  std::string_view name;   ///< its last word: "state"
-  bool per_agent = false;  ///< one for each agent, under the agent's name
-  std::string_view type;   ///< the message type: "mascot_msgs/msg/AgentState"
+  std::string_view name;     ///< its last word: "state"
+  bool per_agent = false;    ///< one for each agent, under the agent's name
+  bool per_process = false;  ///< one for each process of agents, under the name of the process
+  std::string_view type;     ///< the message type: "mascot_msgs/msg/AgentState"
   TopicWriter writer;
   TopicRhythm rhythm;
   int writer_depth;               ///< samples that a writer keeps
@@ -73,12 +76,15 @@ const TopicTraits& TraitsOf(TopicKind kind);
 inline constexpr int kHistoryDepth = 128;
 inline constexpr int kRecorderWindow = 64;
 
-/// A topic of a run. `agent` is 1..N for the per-agent kinds, else 0.
+/// A topic of a run. `agent` is 1..N for the per-agent kinds, the first agent of the process for the per-process kinds,
+/// whose last is `last`, else 0.
 struct Topic {
   TopicKind kind = TopicKind::kClock;
   int agent = 0;
+  int last = 0;
 
-  static Topic Bundle(int agent) { return {TopicKind::kBundle, agent}; }
+  static Topic Answers(AgentRange agents) { return {TopicKind::kAnswers, agents.first, agents.last}; }
+  static Topic Bundle(AgentRange agents) { return {TopicKind::kBundle, agents.first, agents.last}; }
   static Topic State(int agent) { return {TopicKind::kState, agent}; }
   static Topic Command(int agent) { return {TopicKind::kCommand, agent}; }
   static Topic Message(int agent) { return {TopicKind::kMessage, agent}; }
@@ -86,12 +92,15 @@ struct Topic {
   static Topic Event() { return {TopicKind::kEvent, 0}; }
   static Topic Experiment() { return {TopicKind::kExperiment, 0}; }
   static Topic Request() { return {TopicKind::kRequest, 0}; }
+  static Topic Row() { return {TopicKind::kRow, 0}; }
   static Topic Scene() { return {TopicKind::kScene, 0}; }
   static Topic Status() { return {TopicKind::kStatus, 0}; }
   static Topic Tf() { return {TopicKind::kTf, 0}; }
 
   const TopicTraits& traits() const { return TraitsOf(kind); }
-  /// The ROS name: "/agent_3/state", "/clock".
+  /// The agents of a topic of a per-process kind.
+  AgentRange agents() const { return {agent, last}; }
+  /// The ROS name: "/agent_3/state", "/agents_1-50/bundle", "/clock".
   std::string Name() const;
   /// The DDS name that ROS 2 maps it to: "rt/agent_3/state".
   std::string DdsName() const { return "rt" + Name(); }

@@ -48,17 +48,6 @@ void AgentRunner::OnMessage(std::size_t source, std::int64_t tick, std::span<con
   if (const auto complete = inbox_.OnMessage(source, tick, data)) Answer(*complete);
 }
 
-void AgentRunner::OnBundle(const mascot_msgs::msg::AgentBundle& bundle) {
-  const std::lock_guard lock(mutex_);
-  states_.clear();
-  for (const mascot_msgs::msg::AgentState& state : bundle.states()) {
-    const Topic topic = Topic::State(static_cast<int>(state.agent()));
-    states_.push_back({state.agent(), CheckedTick(topic, state.agent(), state.tick(), experiment_.ticks()),
-                       FromWire(state), static_cast<int>(state.events())});
-  }
-  if (const auto complete = inbox_.OnBundle(states_)) Answer(*complete);
-}
-
 void AgentRunner::TakeEvents(int events) {
   std::shared_ptr<const Experiment> now;
   for (; !events_.empty() && events_.front().first <= events; events_.pop_front()) now = events_.front().second;

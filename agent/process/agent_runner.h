@@ -8,7 +8,6 @@
 #include <optional>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "agent/agent.h"
 #include "agent/process/tick_inbox.h"
@@ -19,7 +18,7 @@ namespace mascot {
 
 /// The DDS side of one agent: it collects the agent's samples (TickInbox), and answers each complete tick with a
 /// command and perhaps a message. The thread that receives the last sample of a tick decides and writes. Several
-/// runners may share a process (Node) and its readers.
+/// runners may share a process and its readers (AgentsOnTopics).
 class AgentRunner {
  public:
   /// `on_first_answer` is called once, in the thread that answers first.
@@ -31,13 +30,12 @@ class AgentRunner {
   bool has_answered() const { return has_answered_; }
 
   // Samples that arrive, as TickInbox takes them. `source`: 0 is the agent itself, then the agents that it may hear, in
-  // the order of graph.HeardBy(id). Called by the readers of Node, in their threads.
+  // the order of graph.HeardBy(id). Called by the readers of AgentsOnTopics, in
+  // their threads.
   void OnState(std::size_t source, std::int64_t tick, const Motion& motion, int events);
   void OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data);
   /// `now` is the experiment after event `number`.
   void OnEvent(int number, const std::shared_ptr<const Experiment>& now);
-  /// The bundle must hold the states of all sources, in order; else throws std::runtime_error.
-  void OnBundle(const mascot_msgs::msg::AgentBundle& bundle);
 
  private:
   /// Lets the agent adopt what the first `events` events have made of the experiment.
@@ -52,7 +50,6 @@ class AgentRunner {
   std::mutex mutex_;  // guards what is below except the endpoints: readers may call in different threads
   Agent agent_;
   TickInbox inbox_;
-  std::vector<TickInbox::State> states_;                                  // states in the last bundle
   std::deque<std::pair<int, std::shared_ptr<const Experiment>>> events_;  // not yet adopted, by number
   std::atomic<bool> has_answered_ = false;
   mascot_msgs::msg::AgentCommand command_;

@@ -28,12 +28,6 @@ std::optional<TickInbox::CompleteTick> TickInbox::OnMessage(std::size_t source, 
   return TakeIfComplete();
 }
 
-std::optional<TickInbox::CompleteTick> TickInbox::OnBundle(std::span<const State> states) {
-  CheckBundle(states);
-  for (std::size_t k = 0; k < states.size(); ++k) Take(sources_[k], states[k].tick, states[k].motion, states[k].events);
-  return TakeIfComplete();
-}
-
 std::optional<TickInbox::CompleteTick> TickInbox::OnEvent(int number) {
   events_ = number;
   return TakeIfComplete();
@@ -45,18 +39,6 @@ bool TickInbox::Take(Source& source, std::int64_t tick, const Motion& motion, in
   source.motion = motion;
   source.events = events;
   return true;
-}
-
-void TickInbox::CheckBundle(std::span<const State> states) const {
-  const int id = sources_.front().agent.id;
-  if (states.size() != sources_.size())
-    throw std::runtime_error("a bundle of " + std::to_string(states.size()) + " states came for agent " +
-                             std::to_string(id) + ", who hears " + std::to_string(samples_.size()));
-  for (std::size_t k = 0; k < states.size(); ++k)
-    if (std::cmp_not_equal(states[k].agent, sources_[k].agent.id))
-      throw std::runtime_error("a state of agent " + std::to_string(states[k].agent) + " came for agent " +
-                               std::to_string(id) + " in place of that of agent " +
-                               std::to_string(sources_[k].agent.id));
 }
 
 bool TickInbox::IsComplete(const Source& source, std::int64_t tick) const {

@@ -35,14 +35,6 @@ class TickInbox {
     int events = 0;  ///< how many events have taken effect up to this tick
   };
 
-  /// The state of one agent in a bundle.
-  struct State {
-    std::uint32_t agent = 0;
-    std::int64_t tick = -1;
-    Motion motion = {};
-    int events = 0;  ///< how many events have taken effect up to its tick
-  };
-
   TickInbox(int id, const std::vector<Peer>& peers, bool realtime);
 
   // Each takes what arrives and returns the tick that becomes complete with it, if any. `source`: 0 is the agent
@@ -51,8 +43,6 @@ class TickInbox {
   std::optional<CompleteTick> OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data);
   /// Call it when all events up to `number` have arrived.
   std::optional<CompleteTick> OnEvent(int number);
-  /// The states must be those of all sources, in order; else throws std::runtime_error.
-  std::optional<CompleteTick> OnBundle(std::span<const State> states);
 
  private:
   /// A message and the tick that its sender answered with it; -1 and empty: no message has arrived.
@@ -72,8 +62,6 @@ class TickInbox {
 
   /// Stores a state. Returns false if it is not newer than the one stored.
   static bool Take(Source& source, std::int64_t tick, const Motion& motion, int events);
-  /// Throws std::runtime_error unless the states are those of all sources, in order.
-  void CheckBundle(std::span<const State> states) const;
   std::optional<CompleteTick> TakeIfComplete();
   /// True if everything that `tick` needs of this source has arrived.
   bool IsComplete(const Source& source, std::int64_t tick) const;

@@ -11,7 +11,7 @@ namespace {
 /// The usual values of keys that change nothing in what is flown.
 std::vector<Override> UsualDelivery() {
   return {{.key = "network.domain", .value = "\"auto\""},     {.key = "network.agents_per_process", .value = "1"},
-          {.key = "network.delivery", .value = "\"topics\""}, {.key = "network.ros_view", .value = "false"},
+          {.key = "network.delivery", .value = "\"auto\""}, {.key = "network.ros_view", .value = "false"},
           {.key = "hosts", .value = "", .removes = true},     {.key = "run.pace", .value = "", .removes = true}};
 }
 
@@ -41,7 +41,7 @@ Experiment WithEvents(const Experiment& experiment, const std::vector<Event>& by
 std::string WithoutDelivery(const Experiment& experiment) {
   const auto& network = experiment.network;
   const bool is_usual = network.domain < 0 && network.agents_per_process == 1 &&
-                        network.delivery == Delivery::kTopics && !network.ros_view && !experiment.run.pace &&
+                        network.delivery == DeliveryMode::kAuto && !network.ros_view && !experiment.run.pace &&
                         experiment.hosts.empty();
   return is_usual ? experiment.resolved : WithOverrides(experiment, UsualDelivery());
 }

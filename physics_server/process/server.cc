@@ -35,29 +35,17 @@ Server::Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experimen
       live_(experiment, nullptr, /*checked=*/true),
       commands_(static_cast<std::size_t>(experiment.size())),
       pace_(experiment.control.rate_hz),
-      clock_(domain, Topic::Clock()),
       events_(domain, Topic::Event()),
       event_readers_(static_cast<int>(AgentProcesses(experiment).size()) + 1),
       requests_(domain, Topic::Request()),
+      delivery_(
+          MakeDelivery(domain, experiment, [this](std::span<const Delivery::Answer> answers) { OnAnswers(answers); })),
       status_reader_(
           domain, Topic::Status(),
           [this](const mascot_msgs::msg::Status& status, const Sender& sender) { OnStatus(status, sender.process); }),
       request_reader_(domain, Topic::Request(), [this](const mascot_msgs::msg::Request& request, const Sender& sender) {
         if (sender.process == kOrchestrator) OnRequest(request);
-      }) {
-  const bool bundled = experiment.network.delivery == Delivery::kBundled;
-  const int recorder = 1;
-  for (const int processes : HearingProcesses(experiment, /*heard_only=*/false))
-    state_readers_.push_back(recorder + (bundled ? 0 : processes));
-  samples_.resize(static_cast<std::size_t>(experiment.size()));
-  for (int id = 1; id <= experiment.size(); ++id) {
-    states_.push_back(std::make_unique<Writer<StateType>>(domain, Topic::State(id)));
-    if (bundled) bundles_.push_back(std::make_unique<Writer<BundleType>>(domain, Topic::Bundle(id)));
-    command_readers_.push_back(std::make_unique<Reader<CommandType>>(
-        domain, Topic::Command(id),
-        [this, id](const mascot_msgs::msg::AgentCommand& command) { OnCommand(id, command); }));
-  }
-}
+      }) {}
 
 void Server::Run() {
   AwaitEveryone();
@@ -76,6 +64,7 @@ void Server::Run() {
 
 void Server::Report() {
   const std::lock_guard lock(mutex_);
+  delivery_->Finish();
   lifecycle_.Report(static_cast<std::uint64_t>(std::max<std::int64_t>(ticks_.published(), 0)), pace_.Result(),
                     world_.contacts());
 }
@@ -113,10 +102,7 @@ void Server::AskForReports() {
 }
 
 bool Server::Matched() const {
-  if (clock_.matched() < 1 || request_reader_.matched() < 1 || events_.matched() < event_readers_) return false;
-  for (std::size_t i = 0; i < states_.size(); ++i)
-    if (states_[i]->matched() < state_readers_[i] || command_readers_[i]->matched() < 1) return false;
-  return std::ranges::all_of(bundles_, [](const auto& bundle) { return bundle->matched() >= 1; });
+  return request_reader_.matched() >= 1 && events_.matched() >= event_readers_ && delivery_->Matched();
 }
 
 void Server::OnStatus(const mascot_msgs::msg::Status& status, const std::string& from) {
@@ -137,22 +123,13 @@ void Server::OnStatus(const mascot_msgs::msg::Status& status, const std::string&
 void Server::Do(const TickProtocol::Actions& actions) {
   if (actions.step) world_.Step(commands_);
   if (actions.publish) Publish();
+  if (ticks_.finished()) delivery_->Finish();
   if (actions.wake) lifecycle_.Wake();
 }
 
 void Server::Publish() {
-  const std::int64_t tick = world_.tick();
-  const int rate = experiment_.control.rate_hz;
   PublishEvents();
-  rosgraph_msgs::msg::Clock clock;
-  ToWire(tick, rate, clock);
-  clock_.Write(clock);
-  for (int id = 1; id <= experiment_.size(); ++id) {
-    const auto i = static_cast<std::size_t>(id - 1);
-    ToWire(tick, rate, id, live_.count(), world_.State(id), samples_[i]);
-    states_[i]->Write(samples_[i]);
-  }
-  PublishBundles();
+  delivery_->Publish(world_, live_.count());
 }
 
 void Server::PublishEvents() {
@@ -226,23 +203,18 @@ void Server::ReportProgress() {
   lifecycle_.Report(progress);
 }
 
-void Server::PublishBundles() {
-  auto& states = bundle_.states();
-  for (std::size_t i = 0; i < bundles_.size(); ++i) {
-    states.clear();
-    states.push_back(samples_[i]);
-    for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(static_cast<int>(i) + 1))
-      states.push_back(samples_[static_cast<std::size_t>(heard.id - 1)]);
-    bundles_[i]->Write(bundle_);
-  }
-}
-
-void Server::OnCommand(int id, const mascot_msgs::msg::AgentCommand& command) {
-  const std::int64_t tick = CheckedTick(Topic::Command(id), command.agent(), command.tick(), experiment_.ticks());
+void Server::OnAnswers(std::span<const Delivery::Answer> answers) {
   const std::lock_guard lock(mutex_);
-  const auto actions = ticks_.OnCommand(id, tick, lifecycle_.stop_requested());
-  if (actions.take) commands_[static_cast<std::size_t>(id - 1)] = command.actuator();
-  Do(actions);
+  TickProtocol::Actions all;
+  for (const auto& [id, tick, actuator] : answers) {
+    const TickProtocol::Actions actions = ticks_.OnCommand(id, tick, lifecycle_.stop_requested());
+    if (actions.take) commands_[static_cast<std::size_t>(id - 1)] = actuator;
+    all.step |= actions.step;
+    all.publish |= actions.publish;
+    all.wake |= actions.wake;
+  }
+  Do(all);
+  if (!all.publish) delivery_->CompleteRow();
 }
 
 void Server::RunTicks() {

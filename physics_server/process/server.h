@@ -3,11 +3,12 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "bus/lifecycle.h"
 #include "experiment/live_experiment.h"
+#include "physics_server/process/delivery.h"
 #include "physics_server/process/join_list.h"
 #include "physics_server/process/pace_meter.h"
 #include "physics_server/process/tick_protocol.h"
@@ -15,10 +16,10 @@
 
 namespace mascot {
 
-/// The tick loop over DDS: it publishes every agent's state, gathers every agent's command, and steps the world. In
-/// lockstep, the reception thread that receives a tick's last command steps the world. In real time the thread that
-/// calls Run() paces the ticks, and a late agent's last command is held. JoinList and TickProtocol decide what to do
-/// when; Server does it.
+/// The tick loop over DDS: it publishes every agent's state (Delivery), gathers every agent's command, and steps the
+/// world. In lockstep, the reception thread that receives a tick's last command steps the world. In real time the
+/// thread that calls Run() paces the ticks, and a late agent's last command is held. JoinList and TickProtocol decide
+/// what to do when; Server does it.
 class Server {
  public:
   Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment);
@@ -44,7 +45,7 @@ class Server {
   /// Publishes how far the run has come: the answer to a request, and, while the gate holds a tick, a sign of life.
   void ReportProgress();
 
-  void OnCommand(int id, const mascot_msgs::msg::AgentCommand& command);
+  void OnAnswers(std::span<const Delivery::Answer> answers);
   void OnStatus(const mascot_msgs::msg::Status& status, const std::string& from);
   /// Carries out what people ask of the ticks. The orchestrator repeats a request until it is answered.
   void OnRequest(const mascot_msgs::msg::Request& request);
@@ -56,8 +57,6 @@ class Server {
   /// Publishes the events that take effect at the world's tick: those of the file, then those by hand.
   void PublishEvents();
   void PublishEvent(const Event& event);
-  /// Publishes to each agent one bundle with the states of samples_ that it may hear.
-  void PublishBundles();
   /// Notes the age of the commands with which the world is stepped.
   void MeasureCommands();
 
@@ -76,16 +75,10 @@ class Server {
   std::vector<Actuation> commands_;           // by id - 1: the commands with which the world is stepped
   PaceMeter pace_;
 
-  std::vector<std::unique_ptr<Writer<StateType>>> states_;
-  std::vector<int> state_readers_;                            // by id - 1: how many the writer must match
-  std::vector<std::unique_ptr<Writer<BundleType>>> bundles_;  // empty: states are delivered one by one
-  std::vector<mascot_msgs::msg::AgentState> samples_;         // the last states published, by id - 1
-  mascot_msgs::msg::AgentBundle bundle_;
-  Writer<ClockType> clock_;
   Writer<EventType> events_;
   int event_readers_;  // how many events_ must match
   Writer<RequestType> requests_;
-  std::vector<std::unique_ptr<Reader<CommandType>>> command_readers_;
+  std::unique_ptr<Delivery> delivery_;
   Reader<StatusType> status_reader_;
   Reader<RequestType> request_reader_;
 };

@@ -33,13 +33,16 @@ using testing::ThrowsMessage;
 
 TEST(Topic, IsMadeAndParsedAlike) {
   for (const Topic& topic :
-       {Topic::State(1), Topic::State(123), Topic::Bundle(4), Topic::Command(7), Topic::Message(12), Topic::Clock(),
-        Topic::Status(), Topic::Request(), Topic::Experiment(), Topic::Tf(), Topic::Scene()}) {
+       {Topic::State(1), Topic::State(123), Topic::Bundle({4, 4}), Topic::Bundle({1, 50}), Topic::Answers({7, 9}),
+        Topic::Row(), Topic::Command(7), Topic::Message(12), Topic::Clock(), Topic::Status(), Topic::Request(),
+        Topic::Experiment(), Topic::Tf(), Topic::Scene()}) {
     EXPECT_EQ(Topic::Parse(topic.Name()), topic);
     EXPECT_EQ(Topic::Parse(topic.DdsName()), topic);
   }
   EXPECT_EQ(Topic::State(3).DdsName(), "rt/agent_3/state");
   EXPECT_EQ(Topic::Clock().DdsName(), "rt/clock");
+  EXPECT_EQ(Topic::Bundle({4, 4}).Name(), "/agent_4/bundle");
+  EXPECT_EQ(Topic::Answers({1, 50}).Name(), "/agents_1-50/answers");
 }
 
 TEST(Topic, HasARowOfItsOwnForEachKindInTheOrderOfTheirNames) {
@@ -52,8 +55,9 @@ TEST(Topic, HasARowOfItsOwnForEachKindInTheOrderOfTheirNames) {
     EXPECT_GE(traits.reader_depth, 1) << traits.name;
     if (i == 0) continue;
     const TopicTraits& before = TraitsOf(static_cast<TopicKind>(i - 1));
-    EXPECT_GE(before.per_agent, traits.per_agent) << traits.name;
-    EXPECT_TRUE(before.per_agent != traits.per_agent || before.name < traits.name) << traits.name;
+    const bool has_owner = traits.per_agent || traits.per_process, had_owner = before.per_agent || before.per_process;
+    EXPECT_GE(had_owner, has_owner) << traits.name;
+    EXPECT_TRUE(had_owner != has_owner || before.name < traits.name) << traits.name;
   }
 }
 
@@ -72,7 +76,8 @@ TEST(Topic, AgentsAreNamedAndNumberedAlike) {
 TEST(Topic, IsNotParsedFromForeignNames) {
   for (const char* name :
        {"", "rt", "rt/", "/", "/agent_/state", "/agent_0/state", "/agent_03/state", "/agent_-1/state", "/agent_3",
-        "/agent_3/", "/agent_3/clock", "/state", "/agent_3/state2", "/tf_static", "rt/agent_x/state"})
+        "/agent_3/", "/agent_3/clock", "/state", "/agent_3/state2", "/tf_static", "/agents_1-3/state", "/bundle",
+        "/agents_3-1/bundle", "/agent_1/row", "rt/agent_x/state"})
     EXPECT_EQ(Topic::Parse(name), std::nullopt) << name;
 }
 
@@ -84,7 +89,9 @@ TEST(Wire, TypesHaveTheNamesThatRos2GivesThem) {
 }
 
 TEST(Wire, TypesHaveTheNamesOfTheirGeneratedCode) {
+  EXPECT_EQ(WireTypeName(TopicKind::kAnswers), AnswersType().getName());
   EXPECT_EQ(WireTypeName(TopicKind::kBundle), BundleType().getName());
+  EXPECT_EQ(WireTypeName(TopicKind::kRow), RowType().getName());
   EXPECT_EQ(WireTypeName(TopicKind::kCommand), CommandType().getName());
   EXPECT_EQ(WireTypeName(TopicKind::kMessage), MessageType().getName());
   EXPECT_EQ(WireTypeName(TopicKind::kState), StateType().getName());
@@ -295,17 +302,13 @@ TEST(Wire, ASequenceThatIsLongerThanItsSampleIsRefusedBeforeMemoryIsReserved) {
   EXPECT_TRUE(Decode<MessageType>(bytes, message));
   std::fill_n(bytes.begin() + 24, 4, std::uint8_t{0xff});  // the number of elements: 4 294 967 295 of 8 bytes
   EXPECT_FALSE(Decode<MessageType>(bytes, message));
-  mascot_msgs::msg::AgentBundle bundle;
-  bundle.states().resize(3);
-  EXPECT_TRUE(ComesBack<BundleType>(bundle));
   mascot_msgs::msg::Experiment experiment;
   experiment.processes().resize(3);
   EXPECT_TRUE(ComesBack<ExperimentType>(experiment)) << "names may be empty";
   bytes.assign({0, 1, 0, 0, 0xff, 0xff, 0xff, 0xff});
-  EXPECT_FALSE(Decode<BundleType>(bytes, bundle));
   EXPECT_FALSE(Decode<ExperimentType>(bytes, experiment));
   bytes.resize(3);
-  EXPECT_FALSE(Decode<BundleType>(bytes, bundle));
+  EXPECT_FALSE(Decode<ExperimentType>(bytes, experiment));
 }
 
 TEST(Wire, TicksAndAgentsThatCannotBeAreRefused) {

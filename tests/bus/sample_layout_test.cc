@@ -9,6 +9,7 @@
 #include <random>
 #include <tuple>
 
+#include "bus/bundle.h"
 #include "bus/wire.h"
 
 namespace mascot {
@@ -119,6 +120,112 @@ TEST(SampleLayout, OfMessagesAndTheClockIsThatOfFastCdr) {
     ToWire(tick, 30, clock);
     EXPECT_EQ(Sample(kClockBody, [&](auto* body) { PutClock(tick, 30, body); }), ByFastCdr(clock));
   }
+}
+
+// --- samples that carry samples -------------------------------------------------------------------------
+
+/// Adds bodies of states, commands or messages of these agents, and the same samples for Fast CDR.
+void AddStates(const std::vector<int>& ids, BundleWriter& ours, std::vector<mascot_msgs::msg::AgentState>& theirs) {
+  for (const int id : ids) {
+    const Motion motion{.p_WB = {1.0 * id, 2, 3}};
+    PutState(9, 100, id, 2, motion, ours.Add(kStateBody));
+    ToWire(9, 100, id, 2, motion, theirs.emplace_back());
+  }
+}
+void AddCommands(const std::vector<int>& ids, BundleWriter& ours, std::vector<mascot_msgs::msg::AgentCommand>& theirs) {
+  for (const int id : ids) {
+    const Command command{.actuator = {1.0 * id, 2, 3, 4}, .flags = 5};
+    PutCommand(8, 100, id, command, ours.Add(kCommandBody));
+    ToWire(8, 100, id, command, theirs.emplace_back());
+  }
+}
+void AddMessages(const std::vector<int>& ids, BundleWriter& ours, std::vector<mascot_msgs::msg::AgentMessage>& theirs) {
+  for (const int id : ids) {
+    const std::vector<double> numbers(static_cast<std::size_t>(id), 0.5);
+    PutMessage(8, 100, id, numbers, ours.Add(MessageBody(numbers.size())));
+    ToWire(8, 100, id, numbers, theirs.emplace_back());
+  }
+}
+
+template <class PubSub>
+Bytes CarriedByFastCdr(typename PubSub::type& sample) {
+  ZeroPadded<PubSub> type;
+  eprosima::fastrtps::rtps::SerializedPayload_t payload(type.getSerializedSizeProvider(&sample)());
+  EXPECT_TRUE(type.serialize(&sample, &payload));
+  return {payload.data, payload.data + payload.length};
+}
+
+TEST(Bundle, OfEveryKindIsThatOfFastCdr) {
+  for (const auto& [first, second] :
+       {std::pair<std::vector<int>, std::vector<int>>{{1, 2, 3}, {0, 4, 7}}, {{5}, {}}, {{}, {3}}, {{}, {}}}) {
+    BundleWriter ours;
+    mascot_msgs::msg::Bundle bundle;
+    ours.Begin(9);
+    bundle.tick(9);
+    ours.BeginSection(7);
+    bundle.own(7);
+    AddStates(first, ours, bundle.states());
+    ours.BeginSection();
+    AddMessages(second, ours, bundle.messages());
+    EXPECT_EQ(ours.bytes(), CarriedByFastCdr<BundleType>(bundle));
+    mascot_msgs::msg::Answers answers;
+    ours.Begin(8);
+    answers.tick(8);
+    ours.BeginSection();
+    AddCommands(first, ours, answers.commands());
+    ours.BeginSection();
+    AddMessages(second, ours, answers.messages());
+    EXPECT_EQ(ours.bytes(), CarriedByFastCdr<AnswersType>(answers));
+    mascot_msgs::msg::TickRow row;
+    ours.Begin(9);
+    row.tick(9);
+    ours.BeginSection();
+    AddStates(first, ours, row.states());
+    ours.BeginSection();
+    AddCommands(second, ours, row.commands());
+    ours.BeginSection();
+    AddMessages(first, ours, row.messages());
+    EXPECT_EQ(ours.bytes(), CarriedByFastCdr<RowType>(row));
+  }
+}
+
+TEST(Bundle, IsReadAsItWasWrittenAndNotBeyondItsEnd) {
+  BundleWriter writer;
+  std::vector<mascot_msgs::msg::AgentCommand> commands;
+  std::vector<mascot_msgs::msg::AgentMessage> messages;
+  writer.Begin(8);
+  writer.BeginSection(6);
+  AddCommands({3, 4}, writer, commands);
+  writer.BeginSection();
+  AddMessages({2, 1}, writer, messages);
+  const auto read = [](std::span<const std::uint8_t> bytes) {
+    BundleReader reader(bytes);
+    EXPECT_EQ(reader.tick(), 8);
+    const BundleReader::Section section = reader.Next(kCommandBody);
+    EXPECT_EQ(section.number, 6);
+    EXPECT_EQ(section.count, 2);
+    EXPECT_EQ(HeadOf(section[1].data()).agent, 4);
+    const auto bodies = reader.NextMessages();
+    EXPECT_EQ(bodies.size(), 2);
+    EXPECT_EQ(bodies[0].size(), MessageBody(2));
+    EXPECT_EQ(HeadOf(bodies[1].data()).agent, 1);
+    reader.End();
+  };
+  const Bytes whole = writer.bytes();
+  read(whole);
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_THROW(
+        {
+          BundleReader reader({whole.data(), size});
+          reader.Next(kCommandBody);
+          reader.NextMessages();
+          reader.End();
+        },
+        std::runtime_error)
+        << size;
+  Bytes huge = whole;
+  std::fill_n(huge.begin() + 16, 4, std::uint8_t{0xff});  // the count of commands
+  EXPECT_THROW(BundleReader(huge).Next(kCommandBody), std::runtime_error);
 }
 
 }  // namespace

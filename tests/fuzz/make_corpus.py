@@ -39,8 +39,8 @@ def head(tick, agent=1):
     return struct.pack("<iIQI", 0, tick * 10_000_000, tick, agent)
 
 
-def state(tick):
-    return head(tick) + bytes(4) + struct.pack("<16d", 1, 2, 3, 0, 0, 0, 1, *[0.5] * 9)
+def state(tick, agent=1):
+    return head(tick, agent) + bytes(4) + struct.pack("<16d", 1, 2, 3, 0, 0, 0, 1, *[0.5] * 9)
 
 
 def command(tick):
@@ -66,7 +66,7 @@ def status():
 
 def samples():
     """By the first byte, the type in the order of tests/fuzz/samples.cc."""
-    bundle = struct.pack("<II", 1, 0) + state(3)
+    bundle = struct.pack("<QII", 0, 2, 3) + b"".join(state(0, agent) for agent in (1, 2, 3)) + bytes(8)
     request = b"\x01\0\0\0" + text("stop")
     process = text("agent_1") + struct.pack("<QQ", 1, 0)
     experiment = struct.pack("<I", 1) + process + text("seed") + text(CONFIG.decode())

@@ -59,18 +59,10 @@ void FuzzTickInbox(Events& events) {
   while (events.remaining_bytes() > 0) {
     const auto source = events.ConsumeIntegralInRange<std::size_t>(0, 2);
     const std::int64_t tick = SomeTick(events, answered);
-    const int kind = events.ConsumeIntegralInRange<int>(0, 2);
-    if (kind == 0) judge(inbox.OnState(source, tick, Motion()));
-    if (kind == 1 && source > 0) judge(inbox.OnMessage(source, tick, data));
-    if (kind != 2) continue;
-    std::vector<TickInbox::State> bundle(events.ConsumeIntegralInRange<std::size_t>(0, 4));
-    for (std::size_t k = 0; k < bundle.size(); ++k)
-      bundle[k] = {
-          .agent = events.ConsumeBool() ? static_cast<std::uint32_t>(k + 1) : events.ConsumeIntegral<std::uint32_t>(),
-          .tick = SomeTick(events, tick)};
-    try {
-      judge(inbox.OnBundle(bundle));
-    } catch (const std::runtime_error&) {  // not what this agent may hear
+    if (events.ConsumeBool()) {
+      judge(inbox.OnState(source, tick, Motion()));
+    } else if (source > 0) {
+      judge(inbox.OnMessage(source, tick, data));
     }
   }
 }

@@ -4,7 +4,10 @@
 #include <stdexcept>
 #include <vector>
 
+#include "agent/laws/laws.h"
+#include "agent/process/bundle_inbox.h"
 #include "bus/cdr.h"
+#include "bus/sample_layout.h"
 #include "bus/wire.h"
 #include "idl/topics.h"
 #include "tests/fuzz/fuzz.h"
@@ -53,13 +56,33 @@ void FuzzUnrecorded(SampleBytes bytes) {
   Decode<PubSub>(bytes, sample);
 }
 
+/// A sample that carries samples: it is refused, or is what an agent's process may take.
+void FuzzBundle(SampleBytes bytes) {
+  static const Experiment experiment = [] {
+    const char* const talkers =
+        "[run]\nduration_s = 100000.0\n[agents]\ncount = 3\n[graph]\ntopology = 'ring'\n[law]\nname = "
+        "'event_triggered'\n";
+    return LoadExperiment(Section::FromText(talkers, "fuzz.toml"), "fuzz");
+  }();
+  BundleInbox inbox(experiment, {1, 2});
+  try {
+    if (inbox.OnBundle(bytes) != BundleInbox::News::kComplete) return;
+  } catch (const std::runtime_error&) {
+    return;
+  }
+  for (const int id : {1, 2})
+    for (const Sample& sample : inbox.SamplesOf(id))
+      Require(sample.motion != nullptr && sample.message.size() <= kMaxNumbers && sample.message_age > 0,
+              "a false sample");
+}
+
 constexpr void (*kFuzz[])(SampleBytes bytes) = {
     FuzzRecorded<mascot_msgs::msg::AgentState>,
     FuzzRecorded<mascot_msgs::msg::AgentCommand>,
     FuzzRecorded<mascot_msgs::msg::AgentMessage>,
     FuzzRecorded<rosgraph_msgs::msg::Clock>,
     FuzzStatus,
-    FuzzUnrecorded<BundleType>,
+    FuzzBundle,
     FuzzUnrecorded<RequestType>,
     FuzzUnrecorded<ExperimentType>,
 };

@@ -1,5 +1,5 @@
 // A law that breaks the rules: the process of agent 1 opens a second participant, which calls itself rviz, and listens
-// to agent 4.
+// to a topic that its agent may not hear.
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
@@ -17,11 +17,11 @@ namespace {
 
 namespace dds = eprosima::fastdds::dds;
 
-/// Matches the writers of states, and decodes nothing.
-class State : public dds::TopicDataType {
+/// Matches the writers of a type, and decodes nothing.
+class Anything : public dds::TopicDataType {
  public:
-  State() {
-    setName("mascot_msgs::msg::dds_::AgentState_");
+  explicit Anything(const std::string& type) {
+    setName(("mascot_msgs::msg::dds_::" + type + "_").c_str());
     m_typeSize = 256;
     m_isGetKeyDefined = false;
   }
@@ -44,15 +44,15 @@ int OwnDomain() {
   return at == words.npos ? -1 : std::stoi(words.substr(at + option.size()));
 }
 
-void Listen(int domain) {
+void Listen(int domain, const std::string& name, const std::string& type_name) {
   dds::DomainParticipantQos qos;
   qos.name("rviz");
   auto* participant =
       dds::DomainParticipantFactory::get_instance()->create_participant(static_cast<dds::DomainId_t>(domain), qos);
   if (participant == nullptr) return;
-  const dds::TypeSupport type(new State);
+  const dds::TypeSupport type(new Anything(type_name));
   type.register_type(participant);
-  auto* topic = participant->create_topic("rt/agent_4/state", type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
+  auto* topic = participant->create_topic("rt/" + name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
   auto* subscriber = participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
   if (topic != nullptr && subscriber != nullptr) subscriber->create_datareader(topic, dds::DATAREADER_QOS_DEFAULT);
 }
@@ -60,7 +60,8 @@ void Listen(int domain) {
 class Eavesdropper final : public mascot::Law {
  public:
   explicit Eavesdropper(const mascot::PluginSetup& setup) {
-    if (const int domain = OwnDomain(); setup.id == 1 && domain >= 0) Listen(domain);
+    const std::string topic = setup.params.String("topic"), type = setup.params.String("type");
+    if (const int domain = OwnDomain(); setup.id == 1 && domain >= 0) Listen(domain, topic, type);
   }
 
   Eigen::Vector3d Want_W(double /*t_s*/, const mascot::Motion& self, std::span<const mascot::Heard>) override {

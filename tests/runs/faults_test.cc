@@ -671,7 +671,7 @@ TEST(Faults, AnAgentProgramThatIsMissingIsNamed) {
 
 TEST(Faults, AnotherProgramMayReadButNotCommand) {
   ScratchFolder folder;
-  Up up = Endless(folder);
+  Up up = Endless(folder, {"--set", "network.delivery=topics"});
   ASSERT_TRUE(Flies(up));
   Domain domain(Intruder(up, "rviz"), [] {});
   std::atomic<int> heard = 0;

@@ -152,7 +152,7 @@ TEST_F(RosView, IsNotThereUnlessAskedFor) {
   Up up = Fly("run", "100000.0");
   ASSERT_TRUE(HasDomain(up));
   const RViz rviz(up, folder_.File("rviz"));
-  ASSERT_TRUE(Until([&] { return rviz.Discovers(Topic::Clock()); }));
+  ASSERT_TRUE(Until([&] { return rviz.Discovers(Topic::Status()); }));
   ASSERT_TRUE(Flies(up)) << up.err();
   up.Signal(SIGINT);
   EXPECT_EQ(up.Wait(), 130);

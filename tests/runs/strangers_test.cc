@@ -4,6 +4,11 @@
 #include <gmock/gmock.h>
 
 #include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <tuple>
 
 #include "bus/wire.h"
 #include "tests/support/intruder.h"
@@ -52,6 +57,9 @@ struct Lie {
   std::vector<std::string> more = {};  ///< arguments of `up`
 };
 
+const std::vector<std::string> kTopics{"--set", "network.delivery=topics"};
+const std::vector<std::string> kTopicsInRealTime{"--set", "network.delivery=topics", "--set", "run.mode=realtime"};
+
 void PrintTo(const Lie& lie, std::ostream* out) { *out << lie.what; }
 
 template <class PubSub>
@@ -65,6 +73,13 @@ Sample OfTick(std::uint64_t tick, std::uint32_t agent) {
   sample.tick(tick);
   sample.agent(agent);
   return sample;
+}
+
+mascot_msgs::msg::Answers AnswersOf(std::uint64_t tick, std::uint32_t agent) {
+  mascot_msgs::msg::Answers answers;
+  answers.tick(tick);
+  answers.commands().push_back(OfTick<mascot_msgs::msg::AgentCommand>(tick, agent));
+  return answers;
 }
 
 mascot_msgs::msg::Request RequestTo(Ask ask) {
@@ -89,16 +104,23 @@ std::vector<Lie> Lies() {
   return {
       {"a message of the largest tick", "rviz",
        Write<MessageType>(Topic::Message(2), OfTick<AgentMessage>(kLargest, 2)),
-       "'rviz' writes /agent_2/message, which only agent_2 may (process "},
+       "'rviz' writes /agent_2/message, which only agent_2 may (process ", kTopics},
       {"a state of tick 2^62", "physics_server",
-       Write<StateType>(Topic::State(1), OfTick<AgentState>(std::uint64_t{1} << 62, 1)), server_twice},
-      {"a state of the largest tick in real time",
-       "physics_server",
-       Write<StateType>(Topic::State(1), OfTick<AgentState>(kLargest, 1)),
-       server_twice,
-       {"--set", "run.mode=realtime"}},
+       Write<StateType>(Topic::State(1), OfTick<AgentState>(std::uint64_t{1} << 62, 1)), server_twice, kTopics},
+      {"answers of the largest tick", "rviz", Write<AnswersType>(Topic::Answers({2, 2}), AnswersOf(kLargest, 2)),
+       "'rviz' writes /agent_2/answers, which only agent_2 may (process "},
+      {"answers of another agent", "rviz", Write<AnswersType>(Topic::Answers({2, 2}), AnswersOf(3, 77)),
+       "'rviz' writes /agent_2/answers, which only agent_2 may (process "},
+      {"a bundle", "rviz", Write<BundleType>(Topic::Bundle({1, 1}), {}),
+       "'rviz' writes /agent_1/bundle, which only physics_server may (process "},
+      {"a bundle under the name of the server", "physics_server", Write<BundleType>(Topic::Bundle({1, 1}), {}),
+       server_twice},
+      {"a row", "rviz", Write<RowType>(Topic::Row(), {}),
+       "'rviz' writes /row, which only physics_server may (process "},
+      {"a state of the largest tick in real time", "physics_server",
+       Write<StateType>(Topic::State(1), OfTick<AgentState>(kLargest, 1)), server_twice, kTopicsInRealTime},
       {"a command of no agent", "rviz", Write<CommandType>(Topic::Command(2), OfTick<AgentCommand>(kLargest, 77)),
-       "'rviz' writes /agent_2/command, which only agent_2 may"},
+       "'rviz' writes /agent_2/command, which only agent_2 may", kTopics},
       {"the end of the server in real time",
        "physics_server",
        Write<StatusType>(Topic::Status(), StatusOf("physics_server", Life::kDone)),
@@ -153,43 +175,88 @@ TEST_F(Strangers, OneOfAnotherVendorIsNamedByItsProcess) {
 
 // --- which strangers listen --------------------------------------------------------------------------
 
-TEST_F(Strangers, ARunIsTheSameWhoeverListens) {
-  const auto fly = [&](const std::string& name, const std::function<void(Up&)>& meanwhile) {
-    Up up(folder_, name, folder_.File("endless.toml"), {"--duration-s", "2"});
+TEST_F(Strangers, ARunIsTheSameWhoeverListensAndInEveryDelivery) {
+  const auto fly = [&](const std::string& name, const std::string& delivery,
+                       const std::function<void(Up&)>& meanwhile) {
+    Up up(folder_, name, folder_.File("endless.toml"), {"--duration-s", "2", "--set", "network.delivery=" + delivery});
     meanwhile(up);
     EXPECT_EQ(up.Wait(), 0) << up.err();
     return up.File("run.mcap");
   };
   Endless().Signal(SIGKILL);  // writes the file
-  const std::string alone = fly("alone", [](Up&) {});
-  std::atomic<int> heard = 0;
-  const std::string watched = fly("watched", [&](Up& up) {
-    ASSERT_TRUE(Until([&] { return up.Said("domain "); }));
-    Domain domain(Intruder(up, "rviz"), [] {});  // it is there before the run starts, and to its end
-    Reader<StateType> states(domain, Topic::State(4), [&](const auto&) { ++heard; });
-    Reader<MessageType> messages(domain, Topic::Message(2), [](const auto&) {});
-    Reader<StatusType> statuses(domain, Topic::Status(), [](const auto&) {});
-    EXPECT_TRUE(Until([&] { return up.IsOver(); }));
-  });
-  EXPECT_TRUE(alone == watched) << "run.mcap differs";
-  EXPECT_GT(heard, 0);
+  const std::string alone = fly("alone", "auto", [](Up&) {});
+  for (const std::string delivery : {"topics", "bundled"}) {
+    std::atomic<int> heard = 0;
+    const std::string watched = fly(delivery, delivery, [&](Up& up) {
+      ASSERT_TRUE(Until([&] { return up.Said("domain "); }));
+      Domain domain(Intruder(up, "rviz"), [] {});  // it is there before the run starts, and to its end
+      Reader<StateType> states(domain, Topic::State(4), [&](const auto&) { ++heard; });
+      Reader<MessageType> messages(domain, Topic::Message(2), [](const auto&) {});
+      Reader<BundleType> bundles(domain, Topic::Bundle({4, 4}), [&](const auto&) { ++heard; });
+      Reader<RowType> rows(domain, Topic::Row(), [](const auto&) {});
+      Reader<StatusType> statuses(domain, Topic::Status(), [](const auto&) {});
+      EXPECT_TRUE(Until([&] { return up.IsOver(); }));
+    });
+    EXPECT_TRUE(alone == watched) << "run.mcap differs";
+    EXPECT_GT(heard, 0);
+  }
+}
+
+TEST_F(Strangers, WhatAProcessIsSentHasNoStateThatNoneOfItsAgentsMayHear) {
+  Up up = Endless({"--set", "network.agents_per_process=2"});
+  ASSERT_TRUE(Flies(up));
+  std::mutex mutex;
+  std::map<std::string, std::set<std::vector<std::uint32_t>>> sent;  // states and senders of messages, by process
+  Domain domain(Intruder(up, "rviz"), [] {});
+  std::vector<std::unique_ptr<Reader<BundleType>>> readers;
+  for (const AgentRange agents : {AgentRange{1, 2}, AgentRange{3, 4}})
+    readers.push_back(std::make_unique<Reader<BundleType>>(
+        domain, Topic::Bundle(agents), [&, name = ProcessName(agents)](const mascot_msgs::msg::Bundle& bundle) {
+          std::vector<std::uint32_t> states, senders;
+          for (const auto& state : bundle.states()) states.push_back(state.agent());
+          for (const auto& message : bundle.messages()) senders.push_back(message.agent());
+          const std::lock_guard lock(mutex);
+          sent[name + " states"].insert(states);
+          sent[name + " messages"].insert(senders);
+        }));
+  ASSERT_TRUE(Until([&] {
+    const std::lock_guard lock(mutex);
+    return sent.size() == 4;
+  }));
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130) << up.err();
+  using Ids = std::set<std::vector<std::uint32_t>>;
+  EXPECT_EQ(sent["agents_1-2 states"], (Ids{{1, 2, 3}}));
+  EXPECT_EQ(sent["agents_1-2 messages"], (Ids{{1, 2, 3}}));
+  EXPECT_EQ(sent["agents_3-4 states"], (Ids{{3, 4, 2}}));
+  EXPECT_EQ(sent["agents_3-4 messages"], (Ids{{3, 4, 2}}));
 }
 
 TEST_F(Strangers, OneThatListenedAsAnAgentFailsTheRunThoughItHasLeft) {
-  Up up = Endless();
-  ASSERT_TRUE(Flies(up));
-  {
-    std::atomic<bool> heard = false;
-    Domain domain(Intruder(up, "agent_1"), [] {});
-    Reader<StateType> peeking(domain, Topic::State(4), [&](const auto&) { heard = true; });
-    ASSERT_TRUE(Until([&] { return heard || up.IsOver(); }));  // it may be found first
+  for (const std::string delivery : {"topics", "bundled"}) {
+    Up up = Endless({"--force", "--set", "network.delivery=" + delivery});
+    ASSERT_TRUE(Flies(up));
+    {
+      std::atomic<bool> heard = false;
+      Domain domain(Intruder(up, "agent_1"), [] {});
+      Reader<StateType> peeking(domain, Topic::State(4), [&](const auto&) { heard = true; });
+      Reader<BundleType> bundles(domain, Topic::Bundle({4, 4}), [&](const auto&) { heard = true; });
+      ASSERT_TRUE(Until([&] { return heard || up.IsOver(); }));  // it may be found first
+    }
+    ExpectFailedBy(up, up.Wait(), "two processes say that they are agent_1 (process " + std::to_string(getpid()));
   }
-  ExpectFailedBy(up, up.Wait(), "two processes say that they are agent_1 (process " + std::to_string(getpid()));
 }
 
 TEST_F(Strangers, AnAgentThatHearsMoreThanTheGraphAllowsFailsTheRunThoughByASecondParticipant) {
-  Up up = Endless({}, "eavesdropper");
-  ExpectFailedBy(up, up.Wait(), "agent_1 (as 'rviz') reads /agent_4/state, which the graph does not let it");
+  for (const auto& [topic, type, delivery] :
+       {std::tuple("agent_4/state", "AgentState", "topics"), std::tuple("agent_4/bundle", "Bundle", "bundled"),
+        std::tuple("agent_4/answers", "Answers", "bundled"), std::tuple("row", "TickRow", "bundled")}) {
+    SCOPED_TRACE(topic);
+    const std::string params = std::string("law.params={ topic = '") + topic + "', type = '" + type + "' }";
+    Up up = Endless({"--force", "--set", std::string("network.delivery=") + delivery, "--set", params}, "eavesdropper");
+    ExpectFailedBy(up, up.Wait(),
+                   std::string("agent_1 (as 'rviz') reads /") + topic + ", which the graph does not let it");
+  }
 }
 
 // --- places of the run --------------------------------------------------------------------------------

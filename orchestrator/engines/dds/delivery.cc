@@ -6,26 +6,60 @@
 #include <map>
 #include <string>
 
+#include "bus/sample_layout.h"
 #include "experiment/processes.h"
+#include "idl/topics.h"
 
 namespace mascot {
 namespace {
 
-// Neighbours per agent, on average, from which on bundled delivery is faster (bench/: 2 times as fast at 15).
-constexpr double kDense = 10;
 // Agent processes on one host. The ports of one DDS domain suffice for 120 participants, which include the physics
 // server, the orchestrator and the discovery server.
 constexpr std::ptrdiff_t kMaxProcesses = 110;
+constexpr int kOthers = 2;  // every process talks to the physics server and the orchestrator
+constexpr std::size_t kTicksInFlight = 4, kBytesPerParticipant = 32 * 1024;  // which bus/qos.cc reserves
+constexpr std::size_t kMaxParticipants = 20000;
+
+int Participants(std::size_t bytes) {
+  return kOthers + static_cast<int>(std::min(bytes / kBytesPerParticipant + 1, kMaxParticipants - kOthers));
+}
+
+/// The most bytes that the messages of these agents take at a tick.
+std::size_t MessagesOf(const Experiment& experiment, const std::vector<int>& ids) {
+  const auto senders = std::ranges::count_if(ids, [&](int id) { return experiment.agent(id).sends_messages; });
+  return MessageBody(kMaxNumbers) * static_cast<std::size_t>(senders);
+}
 
 }  // namespace
 
+int ParticipantsOfServer(const Experiment& experiment) {
+  if (!experiment.network.is_bundled()) return experiment.size() + kOthers;
+  std::size_t bytes = 0;
+  for (const AgentRange& agents : AgentProcesses(experiment)) {
+    const std::vector<int> sources = SourcesOf(experiment, agents);
+    bytes += kStateBody * sources.size() + MessagesOf(experiment, sources);
+  }
+  std::vector<int> all;
+  for (const AgentConfig& agent : experiment.agents) all.push_back(agent.id);
+  const std::size_t row = (kStateBody + kCommandBody) * all.size() + MessagesOf(experiment, all);
+  return Participants(kTicksInFlight * bytes + kRecorderWindow * row);
+}
+
+int ParticipantsOfAgents(const Experiment& experiment, AgentRange agents) {
+  std::vector<int> own;
+  std::size_t topics = kOthers;
+  for (int id = agents.first; id <= agents.last; ++id) {
+    own.push_back(id);
+    topics += 2 + experiment.graph.HeardBy(id).size();
+  }
+  if (experiment.network.is_bundled())
+    return Participants(kTicksInFlight * (kCommandBody * own.size() + MessagesOf(experiment, own)));
+  return agents.size() == 1 ? kOthers : static_cast<int>(std::min<std::size_t>(topics, kMaxParticipants));
+}
+
 std::vector<std::string> DeliveryWarnings(const Experiment& experiment) {
-  const double heard = static_cast<double>(experiment.graph.edges()) / std::max(experiment.size(), 1);
-  if (experiment.network.delivery == Delivery::kBundled || heard < kDense) return {};
-  return {
-      fmt::format("network.delivery: each agent hears {:.3g} others on average, one sample each; over DDS \"bundled\", "
-                  "one sample with all of them, is faster",
-                  heard)};
+  if (experiment.network.is_bundled()) return {};
+  return {"network.delivery: \"topics\" is for tools that listen to them; \"auto\" is faster"};
 }
 
 void RefuseTooManyProcesses(const Experiment& experiment) {

@@ -3,9 +3,16 @@
 #include <string>
 #include <vector>
 
+#include "base/agent_range.h"
 #include "experiment/experiment.h"
 
 namespace mascot {
+
+/// DomainOptions::participants of the physics server and the orchestrator: it sizes their buffers, which must hold what
+/// is sent and not read yet.
+int ParticipantsOfServer(const Experiment& experiment);
+/// The same of a process of agents.
+int ParticipantsOfAgents(const Experiment& experiment, AgentRange agents);
 
 /// Warnings ("key: text") about keys of [network] that make a run over DDS slower than it could be.
 std::vector<std::string> DeliveryWarnings(const Experiment& experiment);

@@ -20,6 +20,7 @@
 #include "bus/shared_memory.h"
 #include "experiment/processes.h"
 #include "orchestrator/engines/dds/bounded_call.h"
+#include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/dds/hosts/launcher.h"
 #include "orchestrator/engines/dds/machine/domain_lock.h"
 #include "orchestrator/engines/dds/machine/janitor.h"
@@ -77,8 +78,6 @@ class DdsRun {
 
  private:
   DomainOptions Options(const std::string& name, DiscoveryRole role) const;
-  int PeersOf(AgentRange agents) const;
-  int BundleRoom() const;
   std::uint64_t SharedMemoryOf(const std::string& host) const;
   int ProcessesOn(const std::string& host) const;
   std::vector<std::string> ArgumentsOf(int participants) const;
@@ -217,7 +216,7 @@ DomainOptions DdsRun::Options(const std::string& name, DiscoveryRole role) const
   options.name = name;
   options.role = role;
   options.loopback = !reaches_others_;
-  options.participants = experiment_.size() + 2 + BundleRoom();
+  options.participants = ParticipantsOfServer(experiment_);
   const std::string host = role == DiscoveryRole::kServer && reaches_others_ ? "0.0.0.0" : "127.0.0.1";
   if (with_server_) options.server = host + ":" + std::to_string(lock_->discovery_port());
   return options;
@@ -245,7 +244,7 @@ std::vector<std::string> DdsRun::ArgumentsOf(int participants) const {
 
 /// The same of a process of agents.
 std::vector<std::string> DdsRun::ArgumentsOf(AgentRange agents) const {
-  std::vector<std::string> arguments = ArgumentsOf(PeersOf(agents));
+  std::vector<std::string> arguments = ArgumentsOf(ParticipantsOfAgents(experiment_, agents));
   arguments.insert(arguments.end(), {"--id", IdsText(agents)});
   return arguments;
 }
@@ -303,22 +302,6 @@ void DdsRun::Spawn() {
   launcher_->Start();
 }
 
-/// Value of --participants for a process of agents, which sizes its buffers: 2 for one agent; for more, about the
-/// number of topics that they read and write.
-int DdsRun::PeersOf(AgentRange agents) const {
-  if (agents.size() == 1) return 2;
-  std::size_t topics = 2;
-  for (int id = agents.first; id <= agents.last; ++id) topics += 2 + experiment_.graph.HeardBy(id).size();
-  return static_cast<int>(std::min<std::size_t>(topics, 20000));
-}
-
-/// Extra buffer space for bundles, in participants: all of a tick's bundles are in flight at once.
-int DdsRun::BundleRoom() const {
-  if (experiment_.network.delivery != Delivery::kBundled) return 0;
-  constexpr std::size_t kStatesPerPeer = 32 * 1024 / 176;  // bus/qos.cc reserves 32 KiB per participant
-  return static_cast<int>(std::min<std::size_t>(experiment_.graph.edges() / kStatesPerPeer, 10000));
-}
-
 /// Bytes of /dev/shm that the processes of the run on a host take together; "": on this one.
 std::uint64_t DdsRun::SharedMemoryOf(const std::string& host) const {
   DomainOptions options = Options("", DiscoveryRole::kPeer);
@@ -326,7 +309,7 @@ std::uint64_t DdsRun::SharedMemoryOf(const std::string& host) const {
   for (const AgentRange& agents : processes_) {
     const AgentConfig& agent = experiment_.agent(agents.first);
     if (agent.external || agent.host != host) continue;
-    options.participants = PeersOf(agents);
+    options.participants = ParticipantsOfAgents(experiment_, agents);
     need += SharedMemoryNeeded(options);
   }
   return need;

@@ -1,10 +1,13 @@
 #include "orchestrator/engines/dds/recorder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
 #include <string>
 
+#include "bus/bundle.h"
 #include "bus/wire.h"
 
 namespace mascot {
@@ -57,16 +60,39 @@ Recorder::Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed)
       feed_(feed),
       window_(WindowRules(experiment)),
       taken_(experiment.size()) {
-  const std::vector<Topic>& topics = window_.topics();
-  for (std::size_t index = 0; index < topics.size(); ++index)
-    readers_.push_back(std::make_unique<RawReader>(
-        domain, topics[index],
-        [this, index, topic = topics[index]](const RawReader::Bytes& bytes, const Sender& sender) {
-          OnSample(index, topic, bytes, sender.sequence);
-        }));
+  if (experiment.network.is_bundled())
+    ListenToRows();
+  else
+    ListenToTopics();
   readers_.push_back(std::make_unique<RawReader>(
       domain, Topic::Event(),
       [this](const RawReader::Bytes& bytes, const Sender& sender) { OnEvent(bytes, sender.sequence); }));
+}
+
+void Recorder::ListenToTopics() {
+  const std::vector<Topic>& topics = window_.topics();
+  for (std::size_t index = 0; index < topics.size(); ++index)
+    readers_.push_back(std::make_unique<RawReader>(
+        domain_, topics[index],
+        [this, index, topic = topics[index]](const RawReader::Bytes& bytes, const Sender& sender) {
+          OnSample(index, topic, bytes, sender.sequence);
+        }));
+}
+
+void Recorder::ListenToRows() {
+  const std::vector<Topic>& topics = window_.topics();
+  for (std::vector<std::size_t>* indices : {&states_, &commands_, &messages_})
+    indices->resize(experiment_.agents.size());
+  for (std::size_t index = 0; index < topics.size(); ++index)
+    if (const Topic& topic = topics[index]; topic.agent > 0) {
+      auto& indices = topic.kind == TopicKind::kState     ? states_
+                      : topic.kind == TopicKind::kCommand ? commands_
+                                                          : messages_;
+      indices[static_cast<std::size_t>(topic.agent - 1)] = index;
+    }
+  readers_.push_back(std::make_unique<RawReader>(
+      domain_, Topic::Row(),
+      [this](const RawReader::Bytes& bytes, const Sender& sender) { OnRow(bytes, sender.sequence); }));
 }
 
 bool Recorder::Matched() const {
@@ -88,10 +114,54 @@ void Recorder::OnSample(std::size_t index, const Topic& topic, const RawReader::
   const std::int64_t tick = TickOf(topic, bytes);
   const std::int64_t events = topic.kind == TopicKind::kState ? ReadAt<std::uint32_t>(bytes, kEvents) : 0;
   const std::lock_guard lock(mutex_);
+  window_.CheckSequence(index, sequence);
+  if (Take(index, tick, bytes, events)) domain_.Wake();
+}
+
+bool Recorder::Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t events) {
   const bool first = window_.newest_tick() < 0, in_time = tick >= window_.rows();
-  const bool wake = window_.Take(index, tick, bytes, sequence, events);
+  const bool wake = window_.Take(index, tick, bytes, events);
   if (first && in_time) started_ = WallClock::now();
-  if (topic.kind == TopicKind::kCommand && in_time) last_command_ = WallClock::now();
+  if (window_.topics()[index].kind == TopicKind::kCommand && in_time) last_command_ = WallClock::now();
+  return wake;
+}
+
+bool Recorder::TakeBody(std::size_t index, std::span<const std::uint8_t> body) {
+  const Topic& topic = window_.topics()[index];
+  const BodyHead head = HeadOf(body.data());
+  const std::int64_t tick = CheckedTick(topic, head.agent, head.tick, experiment_.ticks());
+  sample_.assign(kEncapsulation.begin(), kEncapsulation.end());
+  sample_.insert(sample_.end(), body.begin(), body.end());
+  return Take(index, tick, sample_, topic.kind == TopicKind::kState ? head.more : 0);
+}
+
+void Recorder::OnRow(const RawReader::Bytes& bytes, std::int64_t sequence) {
+  BundleReader row(bytes);
+  const BundleReader::Section states = row.Next(kStateBody), commands = row.Next(kCommandBody);
+  const auto messages = row.NextMessages();
+  row.End();
+  const auto index_of = [&](const std::vector<std::size_t>& indices, std::span<const std::uint8_t> body) {
+    const std::size_t i = HeadOf(body.data()).agent - std::size_t{1};
+    const std::size_t index = i < indices.size() ? indices[i] : 0;
+    if (index == 0) throw std::runtime_error(fmt::format("/row: a sample of agent {}, which sends none", i + 1));
+    return index;
+  };
+  const std::lock_guard lock(mutex_);
+  if (sequence != newest_row_ + 1)
+    throw std::runtime_error(
+        fmt::format("the recording is not complete: /row: sample {} came after sample {}", sequence, newest_row_));
+  newest_row_ = sequence;
+  bool wake = false;
+  for (std::size_t k = 0; k < commands.count; ++k) wake |= TakeBody(index_of(commands_, commands[k]), commands[k]);
+  for (const auto& message : messages) wake |= TakeBody(index_of(messages_, message), message);
+  if (states.count > 0) {
+    const auto tick = static_cast<std::int64_t>(row.tick());
+    sample_.resize(kEncapsulation.size() + kClockBody);
+    std::ranges::copy(kEncapsulation, sample_.begin());
+    PutClock(tick, experiment_.control.rate_hz, sample_.data() + kEncapsulation.size());
+    wake |= Take(/*index=*/0, tick, sample_, /*events=*/0);
+  }
+  for (std::size_t k = 0; k < states.count; ++k) wake |= TakeBody(index_of(states_, states[k]), states[k]);
   if (wake) domain_.Wake();
 }
 

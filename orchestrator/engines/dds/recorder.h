@@ -13,8 +13,8 @@
 
 namespace mascot {
 
-/// Receives every per-tick topic as raw bytes and assembles rows (RowWindow). Samples arrive in DDS threads; rows go to
-/// the feed in the thread that calls Drain.
+/// Receives every per-tick topic as raw bytes, or the samples that the server sends in one (network.delivery), and
+/// assembles rows (RowWindow). Samples arrive in DDS threads; rows go to the feed in the thread that calls Drain.
 class Recorder {
  public:
   Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed);
@@ -37,9 +37,16 @@ class Recorder {
  private:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// `index` is the index of the topic's reader in readers_.
+  void ListenToTopics();
+  void ListenToRows();
   void OnEvent(const RawReader::Bytes& bytes, std::int64_t sequence);
+  /// `index`: of the topic in the rules of window_.
   void OnSample(std::size_t index, const Topic& topic, const RawReader::Bytes& bytes, std::int64_t sequence);
+  void OnRow(const RawReader::Bytes& bytes, std::int64_t sequence);
+  /// Takes a sample without its encapsulation. Returns whether to wake the loop. Called with mutex_ held.
+  bool TakeBody(std::size_t index, std::span<const std::uint8_t> body);
+  /// Returns whether to wake the loop. Called with mutex_ held.
+  bool Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t events);
   /// Throws std::runtime_error unless the sample is of this topic's agent and of a tick of the run.
   std::int64_t TickOf(const Topic& topic, const RawReader::Bytes& bytes) const;
 
@@ -49,6 +56,9 @@ class Recorder {
   mutable std::mutex mutex_;  // guards window_, started_ and last_command_
   RowWindow window_;
   Time started_{}, last_command_{};
+  std::int64_t newest_row_ = 0;                            // sequence number of the newest sample of /row
+  RawReader::Bytes sample_;                                // one of a row, with its encapsulation
+  std::vector<std::size_t> states_, commands_, messages_;  // indices of topics, by id - 1; messages_: 0 for none
 
   Row taken_;                                        // used only by the thread that calls Drain
   std::vector<std::unique_ptr<RawReader>> readers_;  // last: their callbacks use the members above

@@ -42,9 +42,7 @@ void RowWindow::Begin(Slot& slot, std::int64_t tick) const {
   for (auto& message : slot.row.messages) message.clear();
 }
 
-bool RowWindow::Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t sequence,
-                     std::int64_t events) {
-  CheckSequence(index, sequence);
+bool RowWindow::Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t events) {
   if (tick < rows_) {  // its row was taken without it: only in real time
     ++lost_;
     return false;

@@ -11,7 +11,7 @@
 namespace mascot {
 
 /// Assembles rows from the samples of all per-tick topics. Samples come in order on each topic, in any order between
-/// topics. The sequence numbers of each writer prove that no sample is lost.
+/// topics. The sequence numbers of each writer prove that no sample is lost (CheckSequence).
 ///
 /// Without DDS, clock or lock: Recorder passes in the samples and takes the rows.
 class RowWindow {
@@ -30,13 +30,14 @@ class RowWindow {
 
   const std::vector<Topic>& topics() const { return rules_.topics; }
 
-  /// Takes a sample of topic `index` of the rules; `sequence` is its writer's sequence number, from 1. Returns whether
-  /// rows should be taken without delay. Throws std::runtime_error if an earlier sample of the topic is missing (but
-  /// for commands and messages in real time), if the sample came twice, or if its tick is too far ahead. For a state,
-  /// `events` is the number of events that have taken effect up to its tick; the row of that tick is complete only with
-  /// these events.
-  bool Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t sequence,
-            std::int64_t events = 0);
+  /// Notes that the sample of topic `index` that comes next has this sequence number of its writer, from 1. Throws
+  /// std::runtime_error if an earlier sample of the topic is missing (but for commands and messages in real time), or
+  /// if the sample came twice.
+  void CheckSequence(std::size_t index, std::int64_t sequence);
+  /// Takes a sample of topic `index` of the rules. Returns whether rows should be taken without delay. Throws
+  /// std::runtime_error if its tick is too far ahead. For a state, `events` is the number of events that have taken
+  /// effect up to its tick; the row of that tick is complete only with these events.
+  bool Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t events = 0);
   /// Takes event number `sequence`, which takes effect at `tick`. Returns and throws as Take() does.
   bool TakeEvent(std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t sequence);
   /// Swaps the next row into `row` if it is complete; in real time also if it only lacks commands or messages and has
@@ -60,7 +61,6 @@ class RowWindow {
     Row row;
   };
 
-  void CheckSequence(std::size_t index, std::int64_t sequence);
   Slot& SlotOf(std::int64_t tick) { return slots_[static_cast<std::size_t>(tick) % slots_.size()]; }
   /// Clears `slot` for `tick`. Throws std::runtime_error if its row is not taken yet, or `tick` is too far ahead.
   void Begin(Slot& slot, std::int64_t tick) const;

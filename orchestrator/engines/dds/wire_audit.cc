@@ -30,17 +30,21 @@ bool MayHear(const Experiment& experiment, AgentRange agents, int other) {
 /// Whether the process of `agents` may have a reader (`reads`) or writer on `topic`.
 bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic, bool reads) {
   const bool own = agents.Holds(topic.agent);
-  const bool bundled = experiment.network.delivery == Delivery::kBundled;
+  const bool bundled = experiment.network.is_bundled();
   switch (topic.kind) {
+    case TopicKind::kAnswers:
+      return !reads && bundled && topic.agents() == agents;
     case TopicKind::kBundle:
-      return reads && own && bundled;
+      return reads && bundled && topic.agents() == agents;
     case TopicKind::kState:
       return reads && !bundled && (own || MayHear(experiment, agents, topic.agent));
     case TopicKind::kCommand:
-      return !reads && own;
+      return !reads && !bundled && own;
     case TopicKind::kMessage:
-      return (reads ? MayHear(experiment, agents, topic.agent) : own) && experiment.agent(topic.agent).sends_messages;
+      return !bundled && (reads ? MayHear(experiment, agents, topic.agent) : own) &&
+             experiment.agent(topic.agent).sends_messages;
     case TopicKind::kClock:
+      return reads && !bundled;
     case TopicKind::kEvent:
     case TopicKind::kExperiment:
       return reads;
@@ -48,6 +52,7 @@ bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic
       return true;
     case TopicKind::kStatus:
       return !reads;
+    case TopicKind::kRow:
     case TopicKind::kScene:
     case TopicKind::kTf:  // all agents are on them
       return false;
@@ -185,15 +190,17 @@ bool WireAudit::IsComplete() const {
     const auto agents = AgentsOf(endpoint.owner.process);
     if (agents) (endpoint.reads ? reading : writing).emplace(*agents, endpoint.topic);
   }
-  const bool bundled = experiment_.network.delivery == Delivery::kBundled;
+  const bool bundled = experiment_.network.is_bundled();
   for (const AgentRange& process : AgentProcesses(experiment_)) {
     const auto reads = [&](const Topic& topic) { return reading.contains({process, topic}); };
     const auto writes = [&](const Topic& topic) { return writing.contains({process, topic}); };
+    if (bundled && !(reads(Topic::Bundle(process)) && writes(Topic::Answers(process)))) return false;
+    if (bundled) continue;
     for (int id = process.first; id <= process.last; ++id) {
-      if (!reads(bundled ? Topic::Bundle(id) : Topic::State(id)) || !writes(Topic::Command(id))) return false;
+      if (!reads(Topic::State(id)) || !writes(Topic::Command(id))) return false;
       if (experiment_.agent(id).sends_messages && !writes(Topic::Message(id))) return false;
       for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(id)) {
-        if (!bundled && !reads(Topic::State(heard.id))) return false;
+        if (!reads(Topic::State(heard.id))) return false;
         if (experiment_.agent(heard.id).sends_messages && !reads(Topic::Message(heard.id))) return false;
       }
     }

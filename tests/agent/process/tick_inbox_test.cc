@@ -13,7 +13,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using Peer = TickInbox::Peer;
-using State = TickInbox::State;
 
 constexpr std::int64_t kFirst = std::numeric_limits<std::int64_t>::min();
 constexpr bool kRealtime = true;
@@ -37,7 +36,6 @@ class Inbox {
   std::int64_t Message(std::size_t source, std::int64_t tick, double number) {
     return Keep(inbox_.OnMessage(source, tick, std::vector<double>{number}));
   }
-  std::int64_t Bundle(const std::vector<TickInbox::State>& states) { return Keep(inbox_.OnBundle(states)); }
 
   // Contents of the last complete tick.
   double self_x() const { return complete_.value().self->p_WB.x(); }
@@ -291,70 +289,6 @@ TEST(TickInbox, DoesNotAnswerWithStatesOfDifferentTicksInRealTime) {
   EXPECT_EQ(inbox.State(2, 3), -1);
   inbox.State(2, 4);
   EXPECT_EQ(inbox.State(0, 4), 4);
-}
-
-// --- bundles --------------------------------------------------------------------------------------------
-
-TEST(TickInbox, CompletesATickWithABundle) {
-  Inbox inbox(kTwo);
-  EXPECT_EQ(inbox.Bundle({{1, 0, At(1.0)}, {2, 0, At(2.0)}, {5, 0, At(5.0)}}), 0);
-  EXPECT_EQ(inbox.self_x(), 1.0);
-  EXPECT_THAT(inbox.xs(), ElementsAre(2.0, 5.0));
-  EXPECT_EQ(inbox.Bundle({{1, 0, At(1.0)}, {2, 0, At(2.0)}, {5, 0, At(5.0)}}), -1) << "doubled";
-}
-
-TEST(TickInbox, WaitsForMessagesAfterABundleToo) {
-  Inbox inbox(kTalker);
-  EXPECT_EQ(inbox.Bundle({{1, 0, At(0)}, {2, 0, At(0)}}), 0);
-  EXPECT_EQ(inbox.Bundle({{1, 1, At(0)}, {2, 1, At(0)}}), -1);
-  EXPECT_EQ(inbox.Message(1, 0, 0.5), 1);
-}
-
-TEST(TickInbox, DoesNotAnswerABundleOfDifferentTicks) {
-  Inbox inbox(kTwo);
-  EXPECT_EQ(inbox.Bundle({{1, 1, At(0)}, {2, 0, At(0)}, {5, 1, At(0)}}), -1);
-  EXPECT_EQ(inbox.Bundle({{1, 2, At(0)}, {2, 2, At(0)}, {5, 2, At(0)}}), 2);
-}
-
-TEST(TickInbox, IgnoresALateBundle) {
-  Inbox inbox(kTalker);
-  inbox.Bundle({{1, 0, At(0)}, {2, 0, At(0)}});
-  EXPECT_EQ(inbox.Bundle({{1, 1, At(1)}, {2, 1, At(2)}}), -1);
-  EXPECT_EQ(inbox.Bundle({{1, 0, At(99)}, {2, 0, At(99)}}), -1);
-  EXPECT_EQ(inbox.Bundle({{1, -5, At(99)}, {2, kFirst, At(99)}}), -1);
-  EXPECT_EQ(inbox.Message(1, 0, 0.5), 1);
-  EXPECT_EQ(inbox.self_x(), 1);
-  EXPECT_THAT(inbox.xs(), ElementsAre(2));
-}
-
-/// The error for a bundle for agent 1, which hears 2 and 5; "taken": none.
-std::string BundleRefusal(const std::vector<State>& states) {
-  Inbox inbox(kTwo);
-  try {
-    inbox.Bundle(states);
-  } catch (const std::runtime_error& refused) {
-    return refused.what();
-  }
-  return "taken";
-}
-
-TEST(TickInbox, RefusesABundleThatIsNotItsOwn) {
-  EXPECT_EQ(BundleRefusal({}), "a bundle of 0 states came for agent 1, who hears 2");
-  EXPECT_EQ(BundleRefusal({{1}, {2}}), "a bundle of 2 states came for agent 1, who hears 2");
-  EXPECT_EQ(BundleRefusal({{1}, {2}, {5}, {6}}), "a bundle of 4 states came for agent 1, who hears 2");
-  EXPECT_EQ(BundleRefusal({{1}, {5}, {2}}), "a state of agent 5 came for agent 1 in place of that of agent 2");
-  EXPECT_EQ(BundleRefusal({{3}, {2}, {5}}), "a state of agent 3 came for agent 1 in place of that of agent 1");
-  EXPECT_EQ(BundleRefusal({{1}, {2}, {4294967295u}}),
-            "a state of agent 4294967295 came for agent 1 in place of that of agent 5");
-}
-
-TEST(TickInbox, TakesNothingFromABundleThatItRefuses) {
-  Inbox inbox(kTwo);
-  inbox.State(0, 0);
-  inbox.State(2, 0);
-  EXPECT_THROW(inbox.Bundle({{1, 1, At(9)}, {2, 0, At(9)}, {6, 0, At(9)}}), std::runtime_error);
-  EXPECT_EQ(inbox.State(1, 0, 2.0), 0);
-  EXPECT_THAT(inbox.xs(), ElementsAre(2.0, 0.0));
 }
 
 }  // namespace

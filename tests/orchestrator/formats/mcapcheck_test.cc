@@ -165,7 +165,7 @@ TEST(Schemas, MatchTheSerialisedBytes) {
   status.paused(true);
   status.pace(0.5);
   status.reason("none");
-  mascot_msgs::msg::AgentBundle bundle;
+  mascot_msgs::msg::Bundle bundle;
   bundle.states({SomeState()});
   mascot_msgs::msg::Request request;
   request.kind(2);
@@ -181,7 +181,7 @@ TEST(Schemas, MatchTheSerialisedBytes) {
   experiment.name("n");
   experiment.toml("[run]");
   write("/state", "mascot_msgs/msg/AgentState", OnTheWire<StateType>(SomeState()));
-  write("/bundle", "mascot_msgs/msg/AgentBundle", OnTheWire<BundleType>(bundle));
+  write("/bundle", "mascot_msgs/msg/Bundle", OnTheWire<BundleType>(bundle));
   write("/command", "mascot_msgs/msg/AgentCommand", OnTheWire<CommandType>(SomeCommand()));
   write("/clock", "rosgraph_msgs/msg/Clock", OnTheWire<ClockType>(clock));
   write("/status", "mascot_msgs/msg/Status", OnTheWire<StatusType>(status));

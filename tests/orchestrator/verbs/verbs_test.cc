@@ -278,18 +278,17 @@ TEST_F(Verbs, GraphDrawsItselfForGraphviz) {
       ::testing::ThrowsMessage<CLI::ParseError>("--json excludes --dot"));
 }
 
-TEST(Check, RecommendsBundlesForDenseGraphs) {
-  const auto checked = [](const std::string& more) {
+TEST(Check, SaysThatTopicsAreSlower) {
+  const auto checked = [](const std::string& delivery) {
     ScratchFolder folder;
-    WriteFile(folder.File("dense.toml"), "run.duration_s = 1\nagents.count = 12\n" + more);
-    return Printed(SetUpCheck, {folder.File("dense.toml")});
+    WriteFile(folder.File("a.toml"), "run.duration_s = 1\nagents.count = 3\nnetwork.delivery = '" + delivery + "'\n");
+    return Printed(SetUpCheck, {folder.File("a.toml")});
   };
-  const std::string warning =
-      "warning: network.delivery: each agent hears 11 others on average, one sample each; over DDS \"bundled\", one "
-      "sample with all of them, is faster\n";
-  EXPECT_THAT(checked(""), HasSubstr(warning));
-  EXPECT_THAT(checked("network.delivery = 'bundled'\n"), ::testing::Not(HasSubstr("network.delivery")));
-  EXPECT_THAT(checked("graph.topology = 'ring'\n"), ::testing::Not(HasSubstr("network.delivery")));
+  EXPECT_THAT(
+      checked("topics"),
+      HasSubstr("warning: network.delivery: \"topics\" is for tools that listen to them; \"auto\" is faster\n"));
+  for (const char* delivery : {"auto", "bundled"})
+    EXPECT_THAT(checked(delivery), ::testing::Not(HasSubstr("network.delivery")));
 }
 
 TEST(Tables, LawsShowEveryLawWithEquationAndEveryParameter) {

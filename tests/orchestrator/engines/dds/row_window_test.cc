@@ -36,7 +36,8 @@ class RowWindowTest : public testing::Test {
   /// Passes the next sample of a topic; its bytes are tick and topic.
   bool Send(std::size_t topic, std::int64_t tick) {
     const std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(tick), static_cast<std::uint8_t>(topic)};
-    return window_.Take(topic, tick, bytes, ++sent_[topic]);
+    window_.CheckSequence(topic, ++sent_[topic]);
+    return window_.Take(topic, tick, bytes);
   }
   bool SendTick(std::int64_t tick) {
     bool wake = false;
@@ -123,14 +124,14 @@ TEST_F(RowWindowTest, TheLastTickIsToBeTakenAtOnce) {
 TEST_F(RowWindowTest, ASampleThatIsMissingFailsTheRecording) {
   Send(kState1, 0);
   EXPECT_THAT(
-      [&] { window_.Take(kState1, 2, {}, 3); },
+      [&] { window_.CheckSequence(kState1, 3); },
       ThrowsMessage<std::runtime_error>("the recording is not complete: /agent_1/state: sample 3 came after sample 1"));
   EXPECT_EQ(window_.lost(), 1u);
 }
 
 TEST_F(RowWindowTest, ASampleThatComesTwiceFailsTheRecording) {
   Send(kCommand2, 0);
-  EXPECT_THAT([&] { window_.Take(kCommand2, 0, {}, 1); },
+  EXPECT_THAT([&] { window_.CheckSequence(kCommand2, 1); },
               ThrowsMessage<std::runtime_error>(
                   "the recording is not complete: /agent_2/command: sample 1 came after sample 1"));
 }
@@ -182,10 +183,10 @@ TEST_F(RealtimeRowWindowTest, ARowWithoutAStateIsNeverReady) {
 
 TEST_F(RealtimeRowWindowTest, CommandsThatWereOverwrittenAreCountedAndStatesMayNotBe) {
   Send(kCommand1, 0);
-  EXPECT_NO_THROW(window_.Take(kCommand1, 3, {}, 4));
+  EXPECT_NO_THROW(window_.CheckSequence(kCommand1, 4));
   EXPECT_EQ(window_.lost(), 2u);
   Send(kState1, 0);
-  EXPECT_THROW(window_.Take(kState1, 2, {}, 3), std::runtime_error);
+  EXPECT_THROW(window_.CheckSequence(kState1, 3), std::runtime_error);
 }
 
 TEST_F(RealtimeRowWindowTest, ACommandIsNotTakenForAnotherTicks) {

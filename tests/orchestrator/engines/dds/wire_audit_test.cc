@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <tuple>
+
 #include "agent/laws/laws.h"
 
 namespace mascot {
@@ -18,7 +20,10 @@ WireAudit::GuidPrefix Participant(int process, int number = 0) {
   return prefix;
 }
 
-Experiment Load(const std::string& toml) { return LoadExperiment(Section::FromText(toml, "a.toml"), "a"); }
+Experiment Load(const std::string& toml, const std::string& delivery = "topics") {
+  const Override how{.key = "network.delivery", .value = "'" + delivery + "'"};
+  return LoadExperiment(Section::FromText(toml, "a.toml", {&how, 1}), "a");
+}
 
 /// A run of three agents on a path: 1 - 2 - 3. The server is process 100, the agents are 101 to 103.
 class WireAuditTest : public testing::Test {
@@ -157,7 +162,8 @@ struct Voice {
 };
 
 TEST_F(WireAuditTest, StrangersAreNamedOnEveryTopicOfTheRun) {
-  for (const Voice& voice : {Voice{Topic::State(1), "physics_server"}, Voice{Topic::Bundle(1), "physics_server"},
+  for (const Voice& voice : {Voice{Topic::State(1), "physics_server"}, Voice{Topic::Bundle({1, 1}), "physics_server"},
+                             Voice{Topic::Row(), "physics_server"}, Voice{Topic::Answers({1, 1}), "agent_1"},
                              Voice{Topic::Clock(), "physics_server"}, Voice{Topic::Command(1), "agent_1"},
                              Voice{Topic::Message(1), "agent_1"}, Voice{Topic::Experiment(), "orchestrator"},
                              Voice{Topic::Request(), "orchestrator"}, Voice{Topic::Status(), "processes of the run"}}) {
@@ -198,37 +204,72 @@ TEST_F(WireAuditTest, AProcessOfTheRunMayNotWriteForAnother) {
   EXPECT_EQ(another.Violation(), "'physics_server' writes /experiment, which only orchestrator may");
 }
 
-/// What is found if the process of agents 1 and 2, on a path of four agents, reads this topic.
-std::string IfAgentsOneAndTwoRead(const Topic& topic, const std::string& network) {
+/// What is found if the process of agents 1 and 2, on a path of four agents, is on this topic.
+std::string IfAgentsOneAndTwo(bool reads, const Topic& topic, const std::string& delivery) {
   const Experiment experiment = Load(
       "[run]\nduration_s = 1.0\n[agents]\ncount = 4\n[graph]\ntopology = \"path\"\n[law]\nname = \"consensus\"\n"
-      "[network]\nagents_per_process = 2\n" +
-      network);
+      "[network]\nagents_per_process = 2\n",
+      delivery);
   Peers peers;
   peers.Know("agents_1-2", ProcessKey::WithPid(100));
   WireAudit audit(experiment, peers);
   audit.OnParticipant(Participant(100), "agents_1-2", "");
   WireAudit::Guid guid;
   guid.guidPrefix = Participant(100);
-  audit.OnEndpoint(guid, topic.DdsName(), /*reads=*/true);
+  audit.OnEndpoint(guid, topic.DdsName(), reads);
   return audit.Violation();
+}
+std::string IfAgentsOneAndTwoRead(const Topic& topic, const std::string& delivery) {
+  return IfAgentsOneAndTwo(/*reads=*/true, topic, delivery);
 }
 
 TEST(WireAudit, AProcessOfSeveralAgentsMayHearWhatOneOfThemMayAndNoMore) {
-  EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::State(3), ""), "") << "agent 2 may hear it";
-  EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::State(4), ""),
+  EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::State(3), "topics"), "") << "agent 2 may hear it";
+  EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::State(4), "topics"),
             "agents_1-2 reads /agent_4/state, which the graph does not let it");
-  EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::Bundle(1), ""),
-            "agents_1-2 reads /agent_1/bundle, which the graph does not let it");
+  EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::Bundle({1, 2}), "topics"),
+            "agents_1-2 reads /agents_1-2/bundle, which the graph does not let it");
 }
 
-TEST(WireAudit, AnAgentThatIsSentBundlesMayHearNothingElse) {
-  const std::string bundled = "delivery = \"bundled\"\n";
-  EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::Bundle(2), bundled), "");
-  EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::Bundle(3), bundled),
-            "agents_1-2 reads /agent_3/bundle, which the graph does not let it");
-  EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::State(1), bundled),
-            "agents_1-2 reads /agent_1/state, which the graph does not let it");
+TEST(WireAudit, AProcessThatIsSentBundlesMayHearItsOwnAndNothingElse) {
+  for (const char* delivery : {"bundled", "auto"}) {
+    EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::Bundle({1, 2}), delivery), "");
+    EXPECT_EQ(IfAgentsOneAndTwoRead(Topic::Event(), delivery), "");
+    for (const Topic& topic : {Topic::Bundle({3, 4}), Topic::Bundle({1, 1}), Topic::Answers({1, 2}), Topic::Row(),
+                               Topic::State(1), Topic::State(2), Topic::Command(1), Topic::Clock()})
+      EXPECT_EQ(IfAgentsOneAndTwoRead(topic, delivery),
+                "agents_1-2 reads " + topic.Name() + ", which the graph does not let it");
+  }
+}
+
+TEST(WireAudit, AProcessThatIsSentBundlesMayWriteItsOwnAnswersAndNothingElse) {
+  EXPECT_EQ(IfAgentsOneAndTwo(/*reads=*/false, Topic::Answers({1, 2}), "bundled"), "");
+  for (const Topic& topic :
+       {Topic::Answers({3, 4}), Topic::Answers({1, 1}), Topic::Bundle({1, 2}), Topic::Row(), Topic::Command(1)})
+    EXPECT_EQ(IfAgentsOneAndTwo(/*reads=*/false, topic, "bundled"),
+              "agents_1-2 writes " + topic.Name() + ", which the graph does not let it");
+}
+
+TEST(WireAudit, OfBundlesIsCompleteWithBothStreamsOfEachProcess) {
+  const Experiment experiment =
+      Load("[run]\nduration_s = 1.0\n[agents]\ncount = 3\n[network]\nagents_per_process = 2\n", "bundled");
+  Peers peers;
+  peers.Know("agents_1-2", ProcessKey::WithPid(100));
+  peers.Know("agent_3", ProcessKey::WithPid(101));
+  WireAudit audit(experiment, peers);
+  std::uint8_t number = 0;
+  for (const auto& [pid, topic, reads] :
+       {std::tuple(100, Topic::Bundle({1, 2}), true), std::tuple(100, Topic::Answers({1, 2}), false),
+        std::tuple(101, Topic::Bundle({3, 3}), true), std::tuple(101, Topic::Answers({3, 3}), false)}) {
+    EXPECT_FALSE(audit.IsComplete());
+    audit.OnParticipant(Participant(pid), pid == 100 ? "agents_1-2" : "agent_3", "");
+    WireAudit::Guid guid;
+    guid.guidPrefix = Participant(pid);
+    guid.entityId.value[0] = ++number;
+    audit.OnEndpoint(guid, topic.DdsName(), reads);
+  }
+  EXPECT_TRUE(audit.IsComplete());
+  EXPECT_EQ(audit.Violation(), "");
 }
 
 TEST(WireAudit, IsNotCompleteWithoutEveryReaderOfMessages) {

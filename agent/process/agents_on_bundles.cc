@@ -1,0 +1,70 @@
+#include "agent/process/agents_on_bundles.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace mascot {
+
+static_assert(kMaxMessage == kMaxNumbers);
+
+AgentsOnBundles::AgentsOnBundles(Domain& domain, const Experiment& experiment, AgentRange agents,
+                                 std::function<void()> on_first_answer)
+    : experiment_(experiment),
+      on_first_answer_(std::move(on_first_answer)),
+      inbox_(experiment, agents),
+      answers_(domain, Topic::Answers(agents)),
+      bundles_(domain, Topic::Bundle(agents),
+               [this](const RawReader::Bytes& bytes, const Sender& /*sender*/) { OnBundle(bytes); }) {
+  const std::lock_guard lock(mutex_);
+  for (int id = agents.first; id <= agents.last; ++id) agents_.push_back(std::make_unique<Agent>(experiment, id));
+}
+
+void AgentsOnBundles::OnBundle(const RawReader::Bytes& bytes) {
+  const std::lock_guard lock(mutex_);
+  switch (inbox_.OnBundle(bytes)) {
+    case BundleInbox::News::kComplete:
+      return Answer();
+    case BundleInbox::News::kAgain:
+      return answers_.Write(sample_.bytes());
+    case BundleInbox::News::kOld:
+    case BundleInbox::News::kWaits:
+      return;
+  }
+}
+
+void AgentsOnBundles::OnEvent(int number, const std::shared_ptr<const Experiment>& now) {
+  const std::lock_guard lock(mutex_);
+  events_.emplace_back(number, now);
+  if (inbox_.OnEvent(number)) Answer();
+}
+
+void AgentsOnBundles::TakeEvents(int events) {
+  std::shared_ptr<const Experiment> now;
+  for (; !events_.empty() && events_.front().first <= events; events_.pop_front()) now = events_.front().second;
+  if (!now) return;
+  for (const auto& agent : agents_) agent->Adopt(now);
+}
+
+void AgentsOnBundles::Answer() {
+  const std::int64_t tick = inbox_.tick();
+  const int rate_hz = experiment_.control.rate_hz;
+  TakeEvents(inbox_.events());
+  sample_.Begin(tick);
+  sample_.BeginSection();
+  for (const auto& agent : agents_) {
+    const int id = agent->id();
+    const Command command = agent->Decide(tick, inbox_.MotionOf(id), inbox_.SamplesOf(id));
+    PutCommand(tick, rate_hz, id, command, sample_.Add(kCommandBody));
+  }
+  sample_.BeginSection();
+  for (const auto& agent : agents_) {
+    if (!experiment_.agent(agent->id()).sends_messages) continue;
+    const std::span<const double> message = agent->message();
+    PutMessage(tick, rate_hz, agent->id(), message, sample_.Add(MessageBody(message.size())));
+  }
+  inbox_.Answered();
+  answers_.Write(sample_.bytes());
+  if (!has_answered_.exchange(true)) on_first_answer_();
+}
+
+}  // namespace mascot

@@ -1,0 +1,100 @@
+#include "agent/process/bundle_inbox.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "bus/bundle.h"
+#include "experiment/processes.h"
+
+namespace mascot {
+
+BundleInbox::BundleInbox(const Experiment& experiment, AgentRange agents)
+    : agents_(agents),
+      last_tick_(experiment.ticks()),
+      realtime_(experiment.run.mode == Mode::kRealtime),
+      sources_(SourcesOf(experiment, agents)),
+      motions_(sources_.size()),
+      messages_(sources_.size()) {
+  for (std::size_t k = 0; k < sources_.size(); ++k) index_[sources_[k]] = k;
+  std::vector<bool> is_heard(sources_.size());
+  for (int id = agents.first; id <= agents.last; ++id) {
+    std::vector<std::size_t>& heard = heard_.emplace_back();
+    for (const Graph::Neighbour& neighbour : experiment.graph.HeardBy(id)) heard.push_back(index_.at(neighbour.id));
+    for (const std::size_t k : heard) is_heard[k] = true;
+  }
+  for (std::size_t k = 0; k < sources_.size(); ++k)
+    if (is_heard[k] && experiment.agent(sources_[k]).sends_messages) senders_.push_back(sources_[k]);
+}
+
+BundleInbox::News BundleInbox::OnBundle(std::span<const std::uint8_t> bytes) {
+  BundleReader bundle(bytes);
+  const BundleReader::Section states = bundle.Next(kStateBody);
+  const auto messages = bundle.NextMessages();
+  bundle.End();
+  if (std::cmp_greater(bundle.tick(), last_tick_))
+    throw std::runtime_error(fmt::format("a bundle of tick {}, the last one is {}", bundle.tick(), last_tick_));
+  if (states.count != sources_.size() || std::cmp_not_equal(states.number, agents_.size()))
+    throw std::runtime_error(fmt::format("a bundle of {} states, {} of them of its own agents; expected {} and {}",
+                                         states.count, states.number, sources_.size(), agents_.size()));
+  for (std::size_t k = 0; k < sources_.size(); ++k)
+    if (const BodyHead head = HeadOf(states[k].data());
+        std::cmp_not_equal(head.agent, sources_[k]) || head.tick != bundle.tick())
+      throw std::runtime_error(
+          fmt::format("a bundle of tick {} with a state of agent {} at tick {} in the place of agent "
+                      "{}'s",
+                      bundle.tick(), head.agent, head.tick, sources_[k]));
+  const auto tick = static_cast<std::int64_t>(bundle.tick());
+  if (tick < tick_) return News::kOld;
+  if (tick == tick_) return tick == answered_ ? News::kAgain : News::kWaits;
+  RequireMessages(tick, messages);
+  tick_ = tick;
+  events_ = static_cast<int>(HeadOf(states[0].data()).more);
+  for (std::size_t k = 0; k < sources_.size(); ++k) GetState(states[k].data(), motions_[k]);
+  for (const auto& body : messages) {
+    const BodyHead head = HeadOf(body.data());
+    Message& message = messages_[index_.at(static_cast<int>(head.agent))];
+    if (std::cmp_less_equal(head.tick, message.tick)) continue;
+    message.tick = static_cast<std::int64_t>(head.tick);
+    GetMessage(body.data(), message.data);
+  }
+  return IsComplete() ? News::kComplete : News::kWaits;
+}
+
+void BundleInbox::RequireMessages(std::int64_t tick, std::span<const std::span<const std::uint8_t>> messages) const {
+  const auto refuse = [tick](const BodyHead& message) {
+    throw std::runtime_error(
+        fmt::format("a bundle of tick {} with a message of agent {} at tick {}", tick, message.agent, message.tick));
+  };
+  if (!realtime_ && messages.size() != (tick > 0 ? senders_.size() : 0))
+    throw std::runtime_error(fmt::format("a bundle of tick {} with {} messages, expected {}", tick, messages.size(),
+                                         tick > 0 ? senders_.size() : 0));
+  for (std::size_t k = 0; k < messages.size(); ++k) {
+    const BodyHead head = HeadOf(messages[k].data());
+    const bool fits = realtime_ ? std::ranges::find(senders_, static_cast<int>(head.agent)) != senders_.end() &&
+                                      std::cmp_less(head.tick, tick)
+                                : std::cmp_equal(head.agent, senders_[k]) && std::cmp_equal(head.tick, tick - 1);
+    if (!fits) refuse(head);
+  }
+}
+
+bool BundleInbox::OnEvent(int number) {
+  known_events_ = number;
+  return IsComplete();
+}
+
+std::span<const Sample> BundleInbox::SamplesOf(int id) {
+  samples_.clear();
+  for (const std::size_t k : heard_[static_cast<std::size_t>(id - agents_.first)]) {
+    const Message& message = messages_[k];
+    if (message.tick < 0)
+      samples_.push_back({.motion = &motions_[k]});
+    else
+      samples_.push_back({.motion = &motions_[k], .message = message.data, .message_age = tick_ - message.tick});
+  }
+  return samples_;
+}
+
+}  // namespace mascot

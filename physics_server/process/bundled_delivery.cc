@@ -1,0 +1,141 @@
+#include "physics_server/process/bundled_delivery.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "experiment/processes.h"
+
+namespace mascot {
+namespace {
+
+/// Ids of the agents that are heard in a process, in the order of its sources.
+std::vector<int> HeardIn(const Experiment& experiment, AgentRange agents, const std::vector<int>& sources) {
+  std::set<int> heard;
+  for (int id = agents.first; id <= agents.last; ++id)
+    for (const Graph::Neighbour& neighbour : experiment.graph.HeardBy(id)) heard.insert(neighbour.id);
+  std::vector<int> in_order;
+  std::ranges::copy_if(sources, std::back_inserter(in_order), [&](int id) { return heard.contains(id); });
+  return in_order;
+}
+
+std::span<const std::uint8_t> BodyAt(const SampleBodies& bodies, std::size_t k, std::size_t size) {
+  return std::span(bodies.bytes).subspan(k * size, size);
+}
+
+}  // namespace
+
+BundledDelivery::BundledDelivery(Domain& domain, const Experiment& experiment, OnAnswers on_answers)
+    : experiment_(experiment),
+      on_answers_(std::move(on_answers)),
+      rows_(domain, Topic::Row()),
+      sent_(experiment.agents.size()),
+      commanded_(experiment.agents.size(), -1),
+      said_(experiment.agents.size(), -1) {
+  for (const AgentRange& agents : AgentProcesses(experiment)) {
+    Process& process = *processes_.emplace_back(std::make_unique<Process>(Process{.agents = agents}));
+    process.sources = SourcesOf(experiment, agents);
+    process.heard = HeardIn(experiment, agents, process.sources);
+    process.bundles = std::make_unique<RawWriter>(domain, Topic::Bundle(agents));
+    process.reader = std::make_unique<RawReader>(
+        domain, Topic::Answers(agents),
+        [this, &process](const RawReader::Bytes& bytes, const Sender& /*sender*/) { OnSample(process, bytes); });
+  }
+}
+
+bool BundledDelivery::Matched() const {
+  return rows_.matched() >= 1 && std::ranges::all_of(processes_, [](const auto& process) {
+           return process->bundles->matched() >= 1 && process->reader->matched() >= 1;
+         });
+}
+
+void BundledDelivery::Publish(const World& world, int events) {
+  states_.Clear();
+  states_.count = static_cast<std::uint32_t>(experiment_.size());
+  states_.bytes.resize(kStateBody * states_.count);
+  for (int id = 1; id <= experiment_.size(); ++id)
+    PutState(world.tick(), experiment_.control.rate_hz, id, events, world.State(id),
+             states_.bytes.data() + kStateBody * static_cast<std::size_t>(id - 1));
+  const std::lock_guard lock(mutex_);
+  for (const auto& process : processes_) {
+    bundle_.Begin(world.tick());
+    bundle_.BeginSection(static_cast<std::uint32_t>(process->agents.size()));
+    for (const int id : process->sources) bundle_.Add(BodyAt(states_, static_cast<std::size_t>(id - 1), kStateBody));
+    bundle_.BeginSection();
+    for (const int id : process->heard) bundle_.Add(sent_[static_cast<std::size_t>(id - 1)]);
+    process->bundles->Write(bundle_.bytes());
+  }
+  WriteRow(world.tick(), states_);
+  for (SampleBodies& sent : sent_) sent.Clear();
+  published_ = world.tick();
+  answered_ = 0;
+}
+
+void BundledDelivery::CompleteRow() {
+  const std::lock_guard lock(mutex_);
+  if (answered_ == processes_.size() && commands_.count > 0) WriteRow(published_ + 1, {});
+}
+
+void BundledDelivery::Finish() {
+  const std::lock_guard lock(mutex_);
+  if (commands_.count > 0) WriteRow(published_ + 1, {});
+}
+
+void BundledDelivery::WriteRow(std::int64_t tick, const SampleBodies& states) {
+  row_.Begin(tick);
+  for (const SampleBodies* bodies : std::initializer_list<const SampleBodies*>{&states, &commands_, &messages_}) {
+    row_.BeginSection();
+    row_.Add(*bodies);
+  }
+  rows_.Write(row_.bytes());
+  commands_.Clear();
+  messages_.Clear();
+}
+
+void BundledDelivery::OnSample(Process& process, const RawReader::Bytes& bytes) {
+  BundleReader sample(bytes);
+  const BundleReader::Section commands = sample.Next(kCommandBody);
+  const auto messages = sample.NextMessages();
+  sample.End();
+  const auto topic = [&process] { return Topic::Answers(process.agents).Name(); };
+  if (std::cmp_greater(sample.tick(), experiment_.ticks()) || std::cmp_not_equal(commands.count, process.agents.size()))
+    throw std::runtime_error(fmt::format("{}: expected a tick of 0 to {} and {} commands, got tick {} and {}", topic(),
+                                         experiment_.ticks(), process.agents.size(), sample.tick(), commands.count));
+  const auto require = [&](const BodyHead& head, bool fits) {
+    if (!fits || head.tick != sample.tick())
+      throw std::runtime_error(fmt::format("{}: an answer of agent {} to tick {} among those to tick {}", topic(),
+                                           head.agent, head.tick, sample.tick()));
+  };
+  const auto tick = static_cast<std::int64_t>(sample.tick());
+  process.answers.clear();
+  for (std::size_t k = 0; k < commands.count; ++k) {
+    const int id = process.agents.first + static_cast<int>(k);
+    const BodyHead head = HeadOf(commands[k].data());
+    require(head, std::cmp_equal(head.agent, id));
+    process.answers.push_back({.id = id, .tick = tick, .actuator = ActuationOf(commands[k].data())});
+  }
+  for (const auto& message : messages) {
+    const BodyHead head = HeadOf(message.data());
+    require(head, std::cmp_greater_equal(head.agent, process.agents.first) &&
+                      std::cmp_less_equal(head.agent, process.agents.last));
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    const auto is_new = [tick](std::int64_t& newest) { return tick > newest && (newest = tick, true); };
+    if (tick == published_ && tick > commanded_[static_cast<std::size_t>(process.agents.first - 1)]) ++answered_;
+    for (std::size_t k = 0; k < commands.count; ++k)
+      if (is_new(commanded_[static_cast<std::size_t>(process.answers[k].id - 1)])) commands_.Add(commands[k]);
+    for (const auto& message : messages) {
+      const std::size_t sender = HeadOf(message.data()).agent - 1;
+      if (!is_new(said_[sender])) continue;
+      messages_.Add(message);
+      sent_[sender].Add(message);
+    }
+  }
+  on_answers_(process.answers);
+}
+
+}  // namespace mascot

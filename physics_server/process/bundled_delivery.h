@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "base/agent_range.h"
+#include "bus/bundle.h"
+#include "physics_server/process/delivery.h"
+
+namespace mascot {
+
+/// network.delivery = "bundled": one sample to each process, with the states and messages that its agents may hear; one
+/// back from each process, with the answers of all its agents; and one to the recorder, with all states of the tick and
+/// all that was answered since the tick before.
+class BundledDelivery final : public Delivery {
+ public:
+  BundledDelivery(Domain& domain, const Experiment& experiment, OnAnswers on_answers);
+
+  bool Matched() const override;
+  void Publish(const World& world, int events) override;
+  void CompleteRow() override;
+  void Finish() override;
+
+ private:
+  /// What is sent to a process of agents, and comes from it.
+  struct Process {
+    AgentRange agents;
+    std::vector<int> sources = {};  ///< ids: SourcesOf()
+    std::vector<int> heard = {};    ///< of the sources, those that are heard there: their messages go with the states
+    std::vector<Answer> answers = {};  ///< in the newest sample
+    std::unique_ptr<RawWriter> bundles = {};
+    std::unique_ptr<RawReader> reader = {};
+  };
+
+  void OnSample(Process& process, const RawReader::Bytes& bytes);
+  /// Writes a row for the recorder: these states, and what was answered since the last row.
+  /// Called with mutex_ held.
+  void WriteRow(std::int64_t tick, const SampleBodies& states);
+
+  const Experiment& experiment_;
+  const OnAnswers on_answers_;
+  RawWriter rows_;
+  SampleBodies states_;  // of the tick that is published
+  BundleWriter bundle_, row_;
+
+  std::mutex mutex_;                  // guards what is below, which is of the time since the last Publish()
+  SampleBodies commands_, messages_;  // as they came
+  std::vector<SampleBodies> sent_;    // messages, by id - 1
+  std::int64_t published_ = -1;  // the newest tick
+  std::size_t answered_ = 0;     // number of processes that have answered it
+  // By id - 1: the newest tick of which a command and a message were kept. An agent may answer twice.
+  std::vector<std::int64_t> commanded_, said_;
+
+  std::vector<std::unique_ptr<Process>> processes_;  // last: their readers use the members above
+};
+
+}  // namespace mascot
