@@ -133,6 +133,8 @@ void ProcessArgs::AddTo(CLI::App& app) {
   app.add_flag("--loopback", options.loopback, "Use only 127.0.0.1: everything runs on this host");
   app.add_option("--participants", options.participants, "How many processes this one talks to, about; sizes buffers")
       ->check(CLI::Range(1, 20000));
+  app.add_option("--participant", options.number, "Number of this process among those of its host: its ports")
+      ->check(CLI::Range(0, 119));
   app.add_option("--parent", parent, "Process id of the program that spawned this process: end when it dies");
   app.add_option("--orchestrator", orchestrator, "Process id of the orchestrator, if it is on another host");
   app.add_option("--address", options.address, "IPv4 address of the interface to use (default: all)");

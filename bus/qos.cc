@@ -148,6 +148,7 @@ void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) 
   Locator_t nobody(LOCATOR_KIND_SHM, 7400);
   nobody.address[0] = 'U';
   builtin.initialPeersList.push_back(nobody);
+  builtin.discovery_config.discoveryServer_client_syncperiod = Duration_t(0, 50'000'000);  // it is 450 ms
   const bool client = options.role == DiscoveryRole::kClient;
   builtin.discovery_config.discoveryProtocol = client ? DiscoveryProtocol::CLIENT : DiscoveryProtocol::SUPER_CLIENT;
   eprosima::fastdds::rtps::RemoteServerAttributes server;
@@ -199,6 +200,7 @@ std::uint64_t SharedMemoryNeeded(const DomainOptions& options) {
 dds::DomainParticipantQos ParticipantQos(const DomainOptions& options) {
   dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
   qos.name(options.name);
+  qos.wire_protocol().participant_id = options.number;
   qos.transport().use_builtin_transports = false;
   if (UsesSharedMemory(options)) qos.transport().user_transports.push_back(SharedMemory(options));
   if (TransportOf(options).udp || options.role != DiscoveryRole::kPeer)

@@ -30,6 +30,9 @@ struct DomainOptions {
   bool loopback = false;     ///< use 127.0.0.1 only; off if agents run on other hosts
   std::string address = {};  ///< IPv4 address of the interface to use, besides 127.0.0.1; empty: all interfaces
   int participants = 2;      ///< about how many processes this one talks to; sizes buffers
+  /// Number of this participant among those of its host: it has the ports of this number, if they are free. -1: Fast
+  /// DDS tries one number after the other, which takes long where there are many.
+  int number = -1;
 };
 
 /// The legal values of DomainOptions::transport.

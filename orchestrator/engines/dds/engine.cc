@@ -42,6 +42,8 @@ using WallClock = std::chrono::steady_clock;
 
 /// Participants up to which peer-to-peer discovery is used; beyond, a discovery server is faster (50: 2 s, not 5 s).
 constexpr int kMaxPeers = 20;
+/// DomainOptions::number: agents have the numbers from kFirstAgents on.
+constexpr int kOwnNumber = 0, kServersNumber = 1, kDiscoveryNumber = 2, kFirstAgents = 3;
 /// How long children may take to exit by themselves at the end; longer as long as other hosts tell what theirs printed.
 constexpr auto kExitGrace = 5s, kLastWords = 60s;
 /// File descriptors of the orchestrator: with viewers; and for each process of the run (2 were counted).
@@ -205,6 +207,7 @@ void DdsRun::Join() {
 void DdsRun::ShowToRos() {
   DomainOptions options = Options("ros_view", DiscoveryRole::kPeer);
   options.transport = "udp";
+  options.number = -1;
   ros_publisher_.emplace(
       options, *ros_, [this](const std::string& line) { console_.Line(line); }, with_server_ ? &audit_ : nullptr);
 }
@@ -215,6 +218,7 @@ DomainOptions DdsRun::Options(const std::string& name, DiscoveryRole role) const
   options.transport = experiment_.network.transport;
   options.name = name;
   options.role = role;
+  options.number = role == DiscoveryRole::kServer ? kDiscoveryNumber : kOwnNumber;
   options.loopback = !reaches_others_;
   options.participants = ParticipantsOfServer(experiment_);
   const std::string host = role == DiscoveryRole::kServer && reaches_others_ ? "0.0.0.0" : "127.0.0.1";
@@ -273,8 +277,11 @@ void DdsRun::Spawn() {
   console_.Line("DDS domain " + std::to_string(options.domain) +
                 (with_server_ ? ", discovery server " + options.server : ""));
 
+  int number = kFirstAgents;
   const auto spawn = [&](const std::string& process, const std::string& program, std::vector<std::string> arguments) {
+    const int participant = process == kPhysicsServer ? kServersNumber : number++;
     arguments.insert(arguments.end(), common.begin(), common.end());
+    arguments.insert(arguments.end(), {"--participant", std::to_string(participant)});
     const pid_t pid = children_.Spawn(process, ProgramFolder() / program, arguments, folder_.Log(process));
     peers_.Know(process, ProcessKey::WithPid(pid));
   };
