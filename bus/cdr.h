@@ -38,8 +38,8 @@ class WireType : public ZeroPadded<PubSub> {
   }
   std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
     return [data] {  // no copy of PubSub's function: it would take memory at each sample
-      using Sample = typename PubSub::type;
-      const std::size_t body = Sample::getCdrSerializedSize(*static_cast<const Sample*>(data));
+      const auto& sample = *static_cast<const typename PubSub::type*>(data);
+      const std::size_t body = PubSub::type::getCdrSerializedSize(sample);
       return PaddedSize(static_cast<std::uint32_t>(body) + 4);  // with the encapsulation
     };
   }
