@@ -167,13 +167,13 @@ std::optional<Topic> Topic::Parse(std::string_view name) {
   name.remove_prefix(1);
   const auto slash = name.find('/');
   const bool has_owner = slash != name.npos;
-  const auto owner = has_owner ? AgentsOf(name.substr(0, slash)) : std::nullopt;
+  const AgentRange owner = has_owner ? AgentsOf(name.substr(0, slash)).value_or(AgentRange{}) : AgentRange{};
   if (has_owner) name.remove_prefix(slash + 1);
   for (const TopicTraits& row : kKinds) {
     if (row.name != name || (row.per_agent || row.per_process) != has_owner) continue;
     if (!has_owner) return Topic{.kind = row.kind};
-    if (!owner || (row.per_agent && owner->size() > 1)) return std::nullopt;
-    return Topic{.kind = row.kind, .agent = owner->first, .last = row.per_process ? owner->last : 0};
+    if (owner.first < 1 || (row.per_agent && owner.size() > 1)) return std::nullopt;
+    return Topic{.kind = row.kind, .agent = owner.first, .last = row.per_process ? owner.last : 0};
   }
   return std::nullopt;
 }
