@@ -20,40 +20,44 @@ std::string Described(const McapReader& reader, const McapContents::Message& mes
 
 }  // namespace
 
-Comparison::Comparison(const std::string& recording, const RecordingPlan& plan) : reader_(recording), plan_(plan) {}
+Comparison::Comparison(const std::string& recording, const RecordingPlan& plan) : reader_(recording), plan_(plan) {
+  for (const Topic& topic : plan_.topics) names_.push_back(topic.Name());
+}
 
 void Comparison::Add(const FlownRow& row) {
   bool first = true;
   const Row& bytes = row.bytes();
-  for (const Topic& topic : plan_.topics) {
+  for (std::size_t index = 0; index < plan_.topics.size(); ++index) {
+    const Topic& topic = plan_.topics[index];
     if (topic.kind == TopicKind::kEvent) {
-      for (const Row::Bytes& event : bytes.events) AddSample(topic, row.tick(), events_++, event, first);
+      for (const Row::Bytes& event : bytes.events) AddSample(index, row.tick(), events_++, event, first);
     } else {
-      AddSample(topic, row.tick(), row.tick(), SampleOf(bytes, topic), first);
+      AddSample(index, row.tick(), row.tick(), SampleOf(bytes, topic), first);
     }
     first = false;
   }
   if (!over_) ++ticks_;
 }
 
-void Comparison::AddSample(const Topic& topic, std::int64_t tick, std::int64_t sequence, const Row::Bytes& flown,
+void Comparison::AddSample(std::size_t index, std::int64_t tick, std::int64_t sequence, const Row::Bytes& flown,
                            bool first_of_tick) {
   if (over_) return;
-  const std::string place =
-      fmt::format("{} at tick {} (t = {} s)", topic.Name(), tick, static_cast<double>(tick) / plan_.rate_hz);
+  const auto place = [&] {
+    return fmt::format("{} at tick {} (t = {} s)", names_[index], tick, static_cast<double>(tick) / plan_.rate_hz);
+  };
   const McapContents::Message* recorded = reader_.Next();
   if (recorded == nullptr) {
-    if (!first_of_tick && LossOf(reader_.contents()).empty()) Differ(place + " is missing: the recording ends there");
+    if (!first_of_tick && LossOf(reader_.contents()).empty()) Differ(place() + " is missing: the recording ends there");
     over_ = true;
     return;
   }
-  if (reader_.contents().channels.at(recorded->channel).topic != topic.Name() ||
+  if (reader_.contents().channels.at(recorded->channel).topic != names_[index] ||
       recorded->log_time != StampNs(tick, plan_.rate_hz))
-    Differ(place + " is missing: the recording has " + Described(reader_, *recorded) + " there");
+    Differ(place() + " is missing: the recording has " + Described(reader_, *recorded) + " there");
   if (recorded->sequence != static_cast<std::uint32_t>(sequence))
-    Differ(fmt::format("{} has sequence number {} in the recording, {} flown", place, recorded->sequence, sequence));
-  if (const auto difference = FirstDifference(topic.kind, recorded->data, flown))
-    Differ(fmt::format("{}: {} is {} in the recording, {} flown", place, difference->field, difference->first,
+    Differ(fmt::format("{} has sequence number {} in the recording, {} flown", place(), recorded->sequence, sequence));
+  if (const auto difference = FirstDifference(plan_.topics[index].kind, recorded->data, flown))
+    Differ(fmt::format("{}: {} is {} in the recording, {} flown", place(), difference->field, difference->first,
                        difference->second));
   ++messages_;
 }

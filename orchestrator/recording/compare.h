@@ -31,13 +31,15 @@ class Comparison final : public RowSink {
 
  private:
   /// Compares the topic's sample number `sequence`, from 0 on.
-  void AddSample(const Topic& topic, std::int64_t tick, std::int64_t sequence, const Row::Bytes& flown,
+  /// `index`: of the topic in the plan.
+  void AddSample(std::size_t index, std::int64_t tick, std::int64_t sequence, const Row::Bytes& flown,
                  bool first_of_tick);
   [[noreturn]] void Differ(const std::string& how);
 
   McapReader reader_;
   const RecordingPlan plan_;
-  bool over_ = false;  // the recording has ended, or differs
+  std::vector<std::string> names_;  // of its topics
+  bool over_ = false;               // the recording has ended, or differs
   std::string difference_;
   std::uint64_t messages_ = 0;
   std::int64_t ticks_ = 0;
