@@ -4,8 +4,15 @@
 #include <signal.h>
 #include <sys/wait.h>
 
+#include <algorithm>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
 #include <utility>
 
+#include "system/descriptor.h"
+#include "system/left_file.h"
+#include "system/nursery.h"
 #include "system/spawn.h"
 
 namespace mascot {
@@ -43,6 +50,41 @@ pid_t Children::Spawn(const std::string& process, const std::string& program, co
   const pid_t number = child.number();
   running_.push_back({process, std::move(child)});
   return number;
+}
+
+std::vector<pid_t> Children::SpawnCopies(const std::string& program, const std::vector<CopyOf>& copies) {
+  if (copies.empty()) return {};
+  std::vector<Descriptor> outputs;
+  std::vector<Copy> orders;
+  for (const CopyOf& copy : copies) {
+    outputs.push_back(logs_.Open(copy.process, copy.log));
+    orders.push_back({.words = {program}, .output = outputs.back().number()});
+    orders.back().words.insert(orders.back().words.end(), copy.arguments.begin(), copy.arguments.end());
+  }
+  std::vector<int> shared = shared_;
+  for (const Descriptor& output : outputs) shared.push_back(output.number());
+  Pipe order = MakePipe(), numbers = MakePipe();
+  ChildProcess nursery = mascot::Spawn({.words = {program, kNursery, NurseryRoom(orders)},
+                                        .group = Program::Group::kOwn,
+                                        .signals = Program::Signals::kDefault,
+                                        .input = order.reads.number(),
+                                        .output = numbers.writes.number(),
+                                        .errors = outputs.front().number(),
+                                        .shared = shared});
+  order.reads = Descriptor();
+  numbers.writes = Descriptor();
+  const bool told = WriteAll(order.writes.number(), NurseryOrder(orders, shared_));
+  order.writes = Descriptor();
+  std::istringstream born(ReadToEnd(numbers.reads.number()));
+  std::vector<pid_t> ids;
+  for (pid_t number = 0; born >> number;) ids.push_back(number);
+  const std::optional<int> end = nursery.Reap();  // then they are ours
+  for (std::size_t k = 0; k < std::min(ids.size(), copies.size()); ++k)
+    running_.push_back({copies[k].process, ChildProcess(ids[k])});
+  if (!told || ids.size() != copies.size())
+    throw std::runtime_error("cannot start " + program + " " + std::to_string(copies.size()) + " times: it " +
+                             EndText(end.value_or(kUnknownEnd)));
+  return ids;
 }
 
 std::vector<Exit> Children::Reap() {

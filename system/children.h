@@ -49,6 +49,16 @@ class Children {
   };
   pid_t Spawn(const std::string& process, const std::string& program, const std::vector<std::string>& arguments,
               const std::filesystem::path& log, const Streams& streams);
+  /// A child of SpawnCopies().
+  struct CopyOf {
+    std::string process;
+    std::vector<std::string> arguments;
+    std::filesystem::path log;
+  };
+  /// Starts `program` many times, as Spawn() does, but as copies of one process of it (system/nursery.h), which it must
+  /// know how to make. Returns their process ids, in the order of `copies`. This process must have adopted its
+  /// descendants. Throws std::runtime_error if they cannot be started.
+  std::vector<pid_t> SpawnCopies(const std::string& program, const std::vector<CopyOf>& copies);
   /// Reaps children. Returns those that have ended since the last call.
   std::vector<Exit> Reap();
   /// Waits at most `grace` until all children have ended, and reaps them. Returns whether all have.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <utility>
 
 namespace mascot {
@@ -21,6 +22,9 @@ class Descriptor {
  private:
   int number_;
 };
+
+/// Reads until there is nothing more to come. Throws std::system_error.
+std::string ReadToEnd(int descriptor);
 
 /// The two ends of a pipe. Children do not inherit them, but for what Program gives them.
 struct Pipe {

@@ -103,6 +103,12 @@ ChildProcess Fork(const std::function<void()>& work) {
   EndNow(0);
 }
 
+pid_t SplitProcess() {
+  const pid_t number = fork();
+  if (number < 0) throw std::system_error(errno, std::generic_category(), "cannot start a process");
+  return number;
+}
+
 bool DieWith(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   return getppid() == parent;

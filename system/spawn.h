@@ -41,6 +41,10 @@ ChildProcess Spawn(const Program& program);
 /// them. Throws std::system_error.
 ChildProcess Fork(const std::function<void()>& work);
 
+/// Starts a copy of this process, which goes on here with the return value 0; in this process it is the copy's id. For
+/// processes without other threads, whose copies nobody need own (system/nursery.h). Throws std::system_error.
+pid_t SplitProcess();
+
 /// From now on the kernel kills this process when the thread that started it ends. Returns whether `parent` still is
 /// its parent; if not, `parent` had ended before.
 [[nodiscard]] bool DieWith(pid_t parent);

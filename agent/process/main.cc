@@ -1,6 +1,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
+#include <string>
+#include <vector>
 
 #include "agent/laws/laws.h"
 #include "agent/process/node.h"
@@ -8,6 +10,8 @@
 #include "bus/process_main.h"
 #include "bus/scheduling.h"
 #include "experiment/processes.h"
+#include "system/failure.h"
+#include "system/nursery.h"
 #include "system/standard_streams.h"
 
 namespace {
@@ -58,13 +62,18 @@ class AgentRole : public mascot::Role {
 }  // namespace
 
 int main(int argc, char** argv) {
+  mascot::SayWhatIsUncaught();
+  std::vector<std::string> words = mascot::WordsOrCopies(argc, argv);  // before anything else: copies have all of it
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
   mascot::OpenStandardStreams();
   mascot::FitStandardStreams();
   mascot::ForgetForeignSettings();
   mascot::StopSignal stop;  // before anything that starts threads: they must inherit the mask
   CLI::App app("MASCOT agent: hears its neighbours, runs its law and its low-level stack, commands its actuators.");
   mascot::ProcessArgs args(/*agent_process=*/true);
-  return mascot::ProcessMain(app, argc, argv, args, stop, [&args](auto& domain, auto& lifecycle, const auto& message) {
-    return std::make_unique<AgentRole>(domain, lifecycle, message, args.agents);
-  });
+  return mascot::ProcessMain(app, static_cast<int>(words.size()), arguments.data(), args, stop,
+                             [&args](auto& domain, auto& lifecycle, const auto& message) {
+                               return std::make_unique<AgentRole>(domain, lifecycle, message, args.agents);
+                             });
 }

@@ -277,27 +277,32 @@ void DdsRun::Spawn() {
   console_.Line("DDS domain " + std::to_string(options.domain) +
                 (with_server_ ? ", discovery server " + options.server : ""));
 
-  int number = kFirstAgents;
-  const auto spawn = [&](const std::string& process, const std::string& program, std::vector<std::string> arguments) {
-    const int participant = process == kPhysicsServer ? kServersNumber : number++;
+  const auto complete = [&common](std::vector<std::string> arguments, int number) {
     arguments.insert(arguments.end(), common.begin(), common.end());
-    arguments.insert(arguments.end(), {"--participant", std::to_string(participant)});
-    const pid_t pid = children_.Spawn(process, ProgramFolder() / program, arguments, folder_.Log(process));
-    peers_.Know(process, ProcessKey::WithPid(pid));
+    arguments.insert(arguments.end(), {"--participant", std::to_string(number)});
+    return arguments;
   };
-  spawn(kPhysicsServer, "physics_server", ArgumentsOf(options.participants));
+  const pid_t server =
+      children_.Spawn(kPhysicsServer, ProgramFolder() / "physics_server",
+                      complete(ArgumentsOf(options.participants), kServersNumber), folder_.Log(kPhysicsServer));
+  peers_.Know(kPhysicsServer, ProcessKey::WithPid(server));
+  std::vector<Children::CopyOf> here;
   for (const AgentRange& agents : processes_) {
     const AgentConfig& agent = experiment_.agent(agents.first);
+    const std::string process = ProcessName(agents);
     if (!agent.external && agent.host.empty()) {
-      spawn(ProcessName(agents), "agent", ArgumentsOf(agents));
+      const int number = kFirstAgents + static_cast<int>(here.size());
+      here.push_back({process, complete(ArgumentsOf(agents), number), folder_.Log(process)});
       continue;
     }
-    peers_.Know(ProcessName(agents), ProcessKey());  // the first that says it is that
+    peers_.Know(process, ProcessKey());  // the first that says it is that
     if (agent.external)
       console_.Line("waiting for: agent --id " + IdsText(agents) + " --domain " + std::to_string(options.domain) +
                     (options.transport == DomainOptions().transport ? "" : " --transport " + options.transport) +
                     (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_->discovery_port()) : ""));
   }
+  const std::vector<pid_t> ids = children_.SpawnCopies(ProgramFolder() / "agent", here);
+  for (std::size_t k = 0; k < ids.size(); ++k) peers_.Know(here[k].process, ProcessKey::WithPid(ids[k]));
   if (experiment_.hosts.empty()) return;
   launcher_.emplace(
       experiment_, folder_,

@@ -1,0 +1,64 @@
+// Copies of one process of the program `agent`.
+#include "system/nursery.h"
+
+#include <gmock/gmock.h>
+
+#include <map>
+
+#include "system/children.h"
+#include "system/descendants.h"
+#include "tests/support/orchestrator.h"
+
+namespace mascot::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+class Nursery : public testing::Test {
+ protected:
+  void SetUp() override { AdoptDescendants(); }
+  Children::CopyOf Copy(const std::string& process, const std::vector<std::string>& arguments) const {
+    return {process, arguments, folder_.File(process + ".log")};
+  }
+
+  ScratchFolder folder_;
+  ChildLogs logs_{[](const std::string&, const std::string&) {}, [](const std::string&) {}};
+  Children children_{logs_};
+};
+
+TEST_F(Nursery, MakesChildrenOfOursWithArgumentsAndLogsOfTheirOwn) {
+  const std::vector<pid_t> ids = children_.SpawnCopies(
+      MASCOT_BINARY_DIR "/agent", {Copy("helps", {"--help"}), Copy("refuses", {"--id", "3", "--domain", "none"})});
+  ASSERT_EQ(ids.size(), 2);
+  EXPECT_NE(ids[0], ids[1]);
+  std::map<std::string, std::string> ends;
+  Await("the end of both", [&] {
+    for (const Exit& exit : children_.Reap()) ends[exit.process] = exit.Text();
+    return ends.size() == 2;
+  });
+  EXPECT_EQ(ends["helps"], "exited with code 0");
+  EXPECT_EQ(ends["refuses"], "exited with code 2");
+  for (const char* process : {"helps", "refuses"}) logs_.LastLines(process);
+  EXPECT_THAT(ReadFile(folder_.File("helps.log")), HasSubstr("MASCOT agent: hears its neighbours"));
+  EXPECT_THAT(ReadFile(folder_.File("refuses.log")), HasSubstr("error: --domain: "));
+}
+
+TEST_F(Nursery, OfAProgramThatMakesNoCopiesIsAnError) {
+  EXPECT_THAT(
+      [&] {
+        children_.SpawnCopies("/bin/true", {Copy("a", {}), Copy("b", {})});
+      },
+      ThrowsMessage<std::runtime_error>("cannot start /bin/true 2 times: it exited with code 0"));
+  EXPECT_THAT([&] { children_.SpawnCopies("/no/agent", {Copy("c", {})}); },
+              ThrowsMessage<std::runtime_error>("cannot start /no/agent: No such file or directory"));
+}
+
+TEST_F(Nursery, AnOrderThatEndsTooEarlyIsRefused) {
+  const Ran ran = Shell("printf '0\\0002\\0001' | '" MASCOT_BINARY_DIR "/agent' --nursery '       '");
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_THAT(ran.output, HasSubstr("error: --nursery: an order that ends too early"));
+}
+
+}  // namespace
+}  // namespace mascot::test
