@@ -10,9 +10,9 @@ namespace {
 
 /// The usual values of keys that change nothing in what is flown.
 std::vector<Override> UsualDelivery() {
-  return {{.key = "network.domain", .value = "\"auto\""},     {.key = "network.agents_per_process", .value = "1"},
+  return {{.key = "network.domain", .value = "\"auto\""},   {.key = "network.agents_per_process", .value = "1"},
           {.key = "network.delivery", .value = "\"auto\""}, {.key = "network.ros_view", .value = "false"},
-          {.key = "hosts", .value = "", .removes = true},     {.key = "run.pace", .value = "", .removes = true}};
+          {.key = "hosts", .value = "", .removes = true},   {.key = "run.pace", .value = "", .removes = true}};
 }
 
 }  // namespace

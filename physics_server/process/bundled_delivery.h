@@ -48,8 +48,8 @@ class BundledDelivery final : public Delivery {
   std::mutex mutex_;                  // guards what is below, which is of the time since the last Publish()
   SampleBodies commands_, messages_;  // as they came
   std::vector<SampleBodies> sent_;    // messages, by id - 1
-  std::int64_t published_ = -1;  // the newest tick
-  std::size_t answered_ = 0;     // number of processes that have answered it
+  std::int64_t published_ = -1;       // the newest tick
+  std::size_t answered_ = 0;          // number of processes that have answered it
   // By id - 1: the newest tick of which a command and a message were kept. An agent may answer twice.
   std::vector<std::int64_t> commanded_, said_;
 
