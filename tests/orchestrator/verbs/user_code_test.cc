@@ -42,7 +42,7 @@ class RunWithCode : public ::testing::TestWithParam<const char*> {
 };
 
 INSTANTIATE_TEST_SUITE_P(UserCode, RunWithCode, ::testing::Values("Python", "SharedLibrary"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& run) { return std::string(run.param); });
 
 TEST_P(RunWithCode, VerbsThatFlyOrCheckRunIt) {
   for (const char* words : {"verify run", "check two.toml",
