@@ -17,7 +17,7 @@ namespace {
 // server, the orchestrator and the discovery server.
 constexpr std::ptrdiff_t kMaxProcesses = 110;
 constexpr int kOthers = 2;  // every process talks to the physics server and the orchestrator
-constexpr std::size_t kTicksInFlight = 4, kBytesPerParticipant = 32 * 1024;  // which bus/qos.cc reserves
+constexpr std::size_t kTicksInFlight = 4, kBytesPerParticipant = std::size_t{32} * 1024;  // which bus/qos.cc reserves
 constexpr std::size_t kMaxParticipants = 20000;
 
 int Participants(std::size_t bytes) {
