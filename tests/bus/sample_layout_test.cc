@@ -29,7 +29,7 @@ class Numbers {
   }
   Eigen::Vector3d Vector() { return {Next(), Next(), Next()}; }
   std::size_t Below(std::size_t bound) { return std::uniform_int_distribution<std::size_t>(0, bound - 1)(engine_); }
-  std::int64_t Tick() { return static_cast<std::int64_t>(Below(std::size_t{1} << 40)); }
+  std::int64_t Tick() { return static_cast<std::int64_t>(Below(std::size_t{1} << 33)); }  // 270 years at 1 Hz
 
  private:
   std::mt19937_64 engine_{7};
