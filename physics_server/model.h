@@ -8,6 +8,7 @@
 
 #include "base/motion.h"
 #include "experiment/experiment.h"
+#include "physics_server/rotors.h"
 
 namespace mascot {
 
@@ -36,6 +37,15 @@ struct BodyNow {
   Eigen::Vector3d v_WB;  ///< m/s, in W
 };
 
+/// The most that a model does to its body at each step of a tick. A bound: it may be too large, never too small.
+struct PushLimit {
+  double force_n = 0;  ///< besides gravity and drag
+  double torque_nm = 0;
+  double drag_kg_per_s = 0;  ///< force per airspeed
+  /// If set, the model sets the velocity, to at most this, and what it is at the tick does not count.
+  std::optional<double> speed_m_per_s = std::nullopt;
+};
+
 /// How an agent's actuators move its body. One object per agent; may own internal state (rotor speeds).
 class Model {
  public:
@@ -50,6 +60,11 @@ class Model {
   /// Advances the actuators by one step and returns how they move the body. `command`: the model's four inputs
   /// (ModelTraits::actuator).
   virtual Push Apply(const Actuation& command, const BodyNow& self, const Surroundings& around) = 0;
+  /// What Apply() with this command does at most.
+  virtual PushLimit LimitOf(const Actuation& command) const = 0;
+  /// If the body is driven by rotors and feels gravity, and Apply() is what `Rotors` describes: these, which World may
+  /// then turn itself, for many bodies at once. Else null.
+  virtual Rotors* rotors() { return nullptr; }
 };
 
 /// The model of agent `id`. Throws std::invalid_argument for an unknown model.

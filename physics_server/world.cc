@@ -9,12 +9,15 @@
 //
 // In most steps nothing touches, but Bullet's broadphase, islands and solver still cost most of the step. While the
 // boxes around all bodies are apart (Clearance), we move each body by itself, with exactly the operations of a whole
-// step, so that the bits are the same.
+// step, so that the bits are the same: through a whole tick if the boxes that the bodies cannot leave meanwhile
+// (SweptBox) are apart, else step by step. In whole ticks, bodies with rotors are flown several at once (RotorBodies),
+// which then have their numbers, and Bullet has not.
 #include "physics_server/world.h"
 
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -24,7 +27,9 @@
 #include <vector>
 
 #include "physics_server/clearance.h"
+#include "physics_server/lanes/rotor_bodies.h"
 #include "physics_server/model.h"
+#include "physics_server/swept_box.h"
 #include "physics_server/wind.h"
 
 namespace mascot {
@@ -62,6 +67,7 @@ struct Body {
   btVector3 v_before_W;  // at the start of the running step
   bool driven_by_velocity = false;
   double reach_of_contacts_m = 0;
+  SweptBody swept;
 };
 
 struct FixedBody {
@@ -118,6 +124,7 @@ Body MakeBody(const Experiment& experiment, const AgentConfig& agent) {
   body.rigid->setActivationState(DISABLE_DEACTIVATION);
   body.rigid->setUserIndex(agent.id);
   body.reach_of_contacts_m = ReachOfContacts_m(*body.shape);
+  body.swept = MakeSweptBody(*body.model, experiment.physics.gravity_m_per_s2, body.reach_of_contacts_m);
   if (!body.model->feels_gravity()) body.rigid->setFlags(body.rigid->getFlags() | BT_DISABLE_WORLD_GRAVITY);
   if (!body.model->touches_ground()) {
     body.rigid->setLinearFactor({1, 1, 0});
@@ -165,6 +172,64 @@ void StepFreely(btRigidBody& rigid, double dt_s) {
   rigid.predictIntegratedTransform(dt_s, next);
   rigid.proceedToTransform(next);
   rigid.clearForces();
+}
+
+/// Takes back what Bullet puts the body ahead by in a step.
+void CorrectPlace(Body& body, double dt_s) {
+  if (body.driven_by_velocity) return;
+  body.rigid->getWorldTransform().getOrigin() -= (dt_s / 2) * (body.rigid->getLinearVelocity() - body.v_before_W);
+}
+
+/// Places of a body's numbers in RotorBodies.
+using F = RotorField;
+
+void PutVector(const btVector3& v, RotorBodies& bodies, std::size_t i, int field) {
+  for (int k = 0; k < 3; ++k) bodies.At(i, field + k) = v[k];
+}
+btVector3 VectorAt(const RotorBodies& bodies, std::size_t i, int field) {
+  return {bodies.At(i, field), bodies.At(i, field + 1), bodies.At(i, field + 2)};
+}
+
+/// Writes what stays of a body's numbers.
+void PutConstants(const Body& body, double dt_s, double gravity_m_per_s2, RotorBodies& bodies, std::size_t i) {
+  const Rotors& rotors = *body.model->rotors();
+  for (int row = 0; row < 4; ++row)
+    for (int k = 0; k < 4; ++k) bodies.At(i, F::kAllocation + 4 * row + k) = rotors.allocation(row, k);
+  bodies.At(i, F::kMaxRotorSpeed) = rotors.max_speed_rad_per_s;
+  bodies.At(i, F::kFollowed) = rotors.Followed(dt_s);
+  bodies.At(i, F::kDrag) = rotors.drag_kg_per_s;
+  bodies.At(i, F::kInverseMass) = body.rigid->getInvMass();
+  bodies.At(i, F::kWeight) = -gravity_m_per_s2 * (1 / body.rigid->getInvMass());  // as btRigidBody::setGravity
+  PutVector(body.rigid->getLocalInertia(), bodies, i, F::kInertia);
+  PutVector(body.rigid->getInvInertiaDiagLocal(), bodies, i, F::kInverseInertia);
+}
+
+/// Moves the numbers of a body out of Bullet, and back.
+void MoveOutOfBullet(Body& body, RotorBodies& bodies, std::size_t i) {
+  const btTransform& X_WB = body.rigid->getWorldTransform();
+  PutVector(X_WB.getOrigin(), bodies, i, F::kP);
+  for (int row = 0; row < 3; ++row) PutVector(X_WB.getBasis()[row], bodies, i, F::kR + 3 * row);
+  PutVector(body.rigid->getLinearVelocity(), bodies, i, F::kV);
+  PutVector(body.rigid->getAngularVelocity(), bodies, i, F::kW);
+  for (int k = 0; k < 4; ++k) bodies.At(i, F::kRotors + k) = body.model->rotors()->speed_rad_per_s[k];
+}
+void MoveIntoBullet(const RotorBodies& bodies, std::size_t i, Body& body) {
+  btMatrix3x3 R_WB;
+  for (int row = 0; row < 3; ++row) R_WB[row] = VectorAt(bodies, i, F::kR + 3 * row);
+  body.rigid->setLinearVelocity(VectorAt(bodies, i, F::kV));
+  body.rigid->setAngularVelocity(VectorAt(bodies, i, F::kW));
+  body.rigid->proceedToTransform(btTransform(R_WB, VectorAt(bodies, i, F::kP)));
+  for (int k = 0; k < 4; ++k) body.model->rotors()->speed_rad_per_s[k] = bodies.At(i, F::kRotors + k);
+}
+
+/// The motion of a body in RotorBodies now. a_WB is left at 0.
+Motion Now(const RotorBodies& bodies, std::size_t i) {
+  Motion now;
+  now.p_WB = ToEigen(VectorAt(bodies, i, F::kP));
+  for (int k = 0; k < 4; ++k) now.q_WB.coeffs()[k] = bodies.At(i, F::kQ + k);
+  now.v_WB = ToEigen(VectorAt(bodies, i, F::kV));
+  now.w_WB_B = ToEigen(VectorAt(bodies, i, F::kWInB));
+  return now;
 }
 
 /// Applies `push` to the body for the next step.
@@ -265,18 +330,26 @@ class ContactCounter {
 }  // namespace
 
 struct World::Impl {
-  Impl(const Experiment& experiment, LookForContacts look_for_contacts);
-  void Step(std::span<const Actuation> commands);
+  Impl(const Experiment& experiment, LookForContacts look_for_contacts, int max_lanes);
+  void Tick(std::span<const Actuation> commands);
+  bool IsFreeTick(std::span<const Actuation> commands);
+  void FlyFreely(std::span<const Actuation> commands);
+  void FlyInLanes(std::span<const Actuation> commands);
+  void FlyAlone(Body& body, const Actuation& command);
+  void FlyByBullet(std::span<const Actuation> commands);
   bool MayTouch();
+  void TakeFromBullet();
+  void GiveToBullet();
   void EndTick();
+  Surroundings Around(int step) const;
 
   int rate_hz;
   double dt_s;
   double control_rate_hz;
   int steps_per_tick;
-  std::int64_t steps = 0;
   std::int64_t tick = 0;
   Wind wind;
+  std::vector<std::array<double, 3>> wind_W;  // by step of this tick
   LookForContacts look;
   ContactCounter contacts;
   bool any_contact = false;  // Bullet keeps contact points
@@ -293,15 +366,20 @@ struct World::Impl {
   btSequentialImpulseConstraintSolver solver;
   btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &collision};
   std::optional<Clearance> clearance;
-  std::vector<Clearance::Box> boxes;  // by body, at this step
+  std::vector<Clearance::Box> boxes;  // by body, at this step or of this tick
+
+  std::vector<std::size_t> with_rotors;     // bodies
+  std::optional<RotorBodies> rotor_bodies;  // those, in this order
+  bool in_lanes = false;                    // rotor_bodies has their numbers, and Bullet has not
 };
 
-World::Impl::Impl(const Experiment& experiment, LookForContacts look_for_contacts)
+World::Impl::Impl(const Experiment& experiment, LookForContacts look_for_contacts, int max_lanes)
     : rate_hz(experiment.physics.rate_hz),
       dt_s(1.0 / rate_hz),
       control_rate_hz(experiment.control.rate_hz),
       steps_per_tick(experiment.steps_per_tick()),
       wind(experiment.physics.wind, experiment.run.seed, dt_s),
+      wind_W(static_cast<std::size_t>(steps_per_tick)),
       look(look_for_contacts),
       contacts(experiment.agents.size()) {
   collision.setPlaneConvexMultipointIterations();  // a box then stands on four points at once
@@ -335,22 +413,100 @@ World::Impl::Impl(const Experiment& experiment, LookForContacts look_for_contact
   }
   clearance.emplace(std::move(scene));
   boxes.resize(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (bodies[i].model->rotors() != nullptr) with_rotors.push_back(i);
+  rotor_bodies.emplace(with_rotors.size(), max_lanes);
+  for (std::size_t k = 0; k < with_rotors.size(); ++k)
+    PutConstants(bodies[with_rotors[k]], dt_s, experiment.physics.gravity_m_per_s2, *rotor_bodies, k);
 }
 
-void World::Impl::Step(std::span<const Actuation> commands) {
-  const Surroundings around{.t_s = static_cast<double>(steps++) / rate_hz, .dt_s = dt_s, .wind_W = wind.Next()};
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    Apply(bodies[i].model->Apply(commands[i], AtStep(*bodies[i].rigid), around), bodies[i]);
-  if (MayTouch()) {
-    world.stepSimulation(dt_s, 0);
-    any_contact = contacts.Update(dispatcher, tick, bodies);
-    ++steps_with_contacts;
-  } else {
-    for (Body& body : bodies) StepFreely(*body.rigid, dt_s);
+void World::Impl::Tick(std::span<const Actuation> commands) {
+  for (std::array<double, 3>& now : wind_W) Eigen::Vector3d::Map(now.data()) = wind.Next();
+  if (IsFreeTick(commands))
+    FlyFreely(commands);
+  else
+    FlyByBullet(commands);
+  EndTick();
+}
+
+Surroundings World::Impl::Around(int step) const {
+  return {.t_s = static_cast<double>(tick * steps_per_tick + step) / rate_hz,
+          .dt_s = dt_s,
+          .wind_W = Eigen::Vector3d::Map(wind_W[static_cast<std::size_t>(step)].data())};
+}
+
+/// True if no body can come close to another one, or to what is fixed, within this tick, and no rotor fails in it.
+bool World::Impl::IsFreeTick(std::span<const Actuation> commands) {
+  if (look == LookForContacts::kAlways || any_contact) return false;
+  double max_wind = 0;
+  for (const std::array<double, 3>& now : wind_W)
+    max_wind = std::max(max_wind, Eigen::Vector3d::Map(now.data()).norm());
+  const double first_s = Around(0).t_s, last_s = Around(steps_per_tick - 1).t_s;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Rotors* rotors = bodies[i].model->rotors();
+    if (rotors != nullptr && rotors->FailuresBegun(first_s) != rotors->FailuresBegun(last_s)) return false;
+    boxes[i] = SweptBox(bodies[i].state, bodies[i].swept, bodies[i].model->LimitOf(commands[i]), max_wind,
+                        steps_per_tick * dt_s);
   }
-  for (Body& body : bodies)
-    if (!body.driven_by_velocity)
-      body.rigid->getWorldTransform().getOrigin() -= (dt_s / 2) * (body.rigid->getLinearVelocity() - body.v_before_W);
+  return clearance->IsClear(boxes);
+}
+
+/// Flies each body through the tick by itself.
+void World::Impl::FlyFreely(std::span<const Actuation> commands) {
+  FlyInLanes(commands);
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (bodies[i].model->rotors() == nullptr) FlyAlone(bodies[i], commands[i]);
+}
+
+/// Flies the bodies with rotors through the tick.
+void World::Impl::FlyInLanes(std::span<const Actuation> commands) {
+  if (!in_lanes) TakeFromBullet();
+  const double t_s = Around(0).t_s;
+  for (std::size_t k = 0; k < with_rotors.size(); ++k) {
+    const std::size_t i = with_rotors[k];
+    const Eigen::Vector4d remaining = bodies[i].model->rotors()->Remaining(t_s);
+    for (int r = 0; r < 4; ++r) {
+      rotor_bodies->At(k, F::kCommand + r) = commands[i][static_cast<std::size_t>(r)];
+      rotor_bodies->At(k, F::kRemaining + r) = remaining[r];
+    }
+  }
+  rotor_bodies->Fly({.dt_s = dt_s, .wind_W = wind_W});
+}
+
+void World::Impl::FlyAlone(Body& body, const Actuation& command) {
+  for (int step = 0; step < steps_per_tick; ++step) {
+    Apply(body.model->Apply(command, AtStep(*body.rigid), Around(step)), body);
+    StepFreely(*body.rigid, dt_s);
+    CorrectPlace(body, dt_s);
+  }
+}
+
+/// Flies the bodies through the tick step by step, with contacts where there may be some.
+void World::Impl::FlyByBullet(std::span<const Actuation> commands) {
+  if (in_lanes) GiveToBullet();
+  for (int step = 0; step < steps_per_tick; ++step) {
+    const Surroundings around = Around(step);
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      Apply(bodies[i].model->Apply(commands[i], AtStep(*bodies[i].rigid), around), bodies[i]);
+    if (MayTouch()) {
+      world.stepSimulation(dt_s, 0);
+      any_contact = contacts.Update(dispatcher, tick, bodies);
+      ++steps_with_contacts;
+    } else {
+      for (Body& body : bodies) StepFreely(*body.rigid, dt_s);
+    }
+    for (Body& body : bodies) CorrectPlace(body, dt_s);
+  }
+}
+
+void World::Impl::TakeFromBullet() {
+  for (std::size_t k = 0; k < with_rotors.size(); ++k) MoveOutOfBullet(bodies[with_rotors[k]], *rotor_bodies, k);
+  in_lanes = true;
+}
+
+void World::Impl::GiveToBullet() {
+  for (std::size_t k = 0; k < with_rotors.size(); ++k) MoveIntoBullet(*rotor_bodies, k, bodies[with_rotors[k]]);
+  in_lanes = false;
 }
 
 /// True if bodies are so close that Bullet could make a contact in this step, or if it still keeps one.
@@ -362,8 +518,10 @@ bool World::Impl::MayTouch() {
 
 void World::Impl::EndTick() {
   ++tick;
+  std::size_t in_rotor_bodies = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Motion now = Now(*bodies[i].rigid);
+    const bool is_in_lanes = in_lanes && bodies[i].model->rotors() != nullptr;
+    Motion now = is_in_lanes ? Now(*rotor_bodies, in_rotor_bodies++) : Now(*bodies[i].rigid);
     Motion& state = bodies[i].state;
     if (!IsFinite(now)) throw std::runtime_error(At(tick, i) + "its state is not finite");
     if (now.q_WB.dot(state.q_WB) < 0) now.q_WB.coeffs() *= -1;  // q and -q are the same rotation: take the nearer one
@@ -372,7 +530,8 @@ void World::Impl::EndTick() {
   }
 }
 
-World::World(const Experiment& experiment, LookForContacts look) : impl_(std::make_unique<Impl>(experiment, look)) {}
+World::World(const Experiment& experiment, LookForContacts look, int max_lanes)
+    : impl_(std::make_unique<Impl>(experiment, look, max_lanes)) {}
 World::~World() = default;
 
 void World::Adopt(const Experiment& now) { impl_->wind.Adopt(now.physics.wind); }
@@ -382,8 +541,7 @@ Motion World::State(int id) const { return impl_->bodies[static_cast<std::size_t
 void World::Step(std::span<const Actuation> commands) {
   if (commands.size() != impl_->bodies.size()) throw std::invalid_argument("World::Step: one command per agent");
   CheckFinite(commands, impl_->tick);
-  for (int i = 0; i < impl_->steps_per_tick; ++i) impl_->Step(commands);
-  impl_->EndTick();
+  impl_->Tick(commands);
 }
 
 std::int64_t World::tick() const { return impl_->tick; }

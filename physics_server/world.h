@@ -17,8 +17,12 @@ class World {
   /// When to run Bullet's contact detection and solver: at steps at which bodies are close enough to touch, or at every
   /// step. As long as nothing touches, both give the same bits.
   enum class LookForContacts { kWhenClose, kAlways };
-  /// Bodies start exactly at their configured state.
-  explicit World(const Experiment& experiment, LookForContacts look = LookForContacts::kWhenClose);
+  /// For how many bodies at once: what the processor can do.
+  static constexpr int kAllLanes = 64;
+  /// Bodies start exactly at their configured state. `max_lanes`: how many bodies to compute at once at most; the bits
+  /// do not depend on it.
+  explicit World(const Experiment& experiment, LookForContacts look = LookForContacts::kWhenClose,
+                 int max_lanes = kAllLanes);
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;

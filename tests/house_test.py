@@ -297,6 +297,11 @@ def faults_of_linking(program, libraries):
             yield f"{program.name} holds {len(shared)} functions of {library.name}, such as {min(shared)}"
 
 
+def shared_functions(path):
+    """Functions of an object of which the linker takes one for the whole program, out of whichever object."""
+    return re.findall(r"^[0-9a-f]+ [WVuw] (.+)$", output_of("nm", "-C", "--defined-only", path), re.M)
+
+
 # --- text from outside ------------------------------------------------------------------------------------
 
 JSON_READER = "orchestrator/formats/outside_json.cc"
@@ -519,6 +524,13 @@ class Programs(HouseTest):
 
     def test_the_physics_server_links_neither_laws_nor_python(self):
         self.check(faults_of_linking(self.folder / "physics_server", self.libraries))
+
+    def test_programs_run_without_avx(self):
+        objects = sorted(self.folder.glob("CMakeFiles/mascot_*.dir/**/*.cc.o"))
+        self.assertTrue(any(shared_functions(path) for path in objects))
+        for_avx = [path for path in objects if path.name.endswith("_avx.cc.o")]
+        self.assertTrue(for_avx)
+        self.assertEqual([(path.name, shared_functions(path)) for path in for_avx if shared_functions(path)], [])
 
     def test_programs_take_no_function_from_libm_whose_bits_depend_on_the_processor(self):
         libm = names_of_libm("--defined-only", re.search(r"libm\.so\.6 => (\S+)", output_of("ldd", self.folder / "agent"))[1])

@@ -10,6 +10,9 @@ class DoubleIntegrator final : public Ball {
   Push Apply(const Actuation& command, const BodyNow& /*self*/, const Surroundings& /*around*/) override {
     return {.f_W = {command[0], command[1], command[2]}};
   }
+  PushLimit LimitOf(const Actuation& command) const override {
+    return {.force_n = Eigen::Vector3d(command[0], command[1], command[2]).norm()};
+  }
 };
 
 }  // namespace

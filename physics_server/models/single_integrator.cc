@@ -9,6 +9,9 @@ class SingleIntegrator final : public Ball {
   Push Apply(const Actuation& command, const BodyNow& /*self*/, const Surroundings& /*around*/) override {
     return {.velocity = Push::Velocity{{command[0], command[1], command[2]}, Eigen::Vector3d::Zero()}};
   }
+  PushLimit LimitOf(const Actuation& command) const override {
+    return {.speed_m_per_s = Eigen::Vector3d(command[0], command[1], command[2]).norm()};
+  }
 };
 
 }  // namespace

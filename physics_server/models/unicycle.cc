@@ -22,6 +22,7 @@ class Unicycle final : public Ball {
     const double speed = half_turn == 0 ? v : v * std::sin(half_turn) / half_turn;
     return {.velocity = Push::Velocity{{speed * std::cos(chord), speed * std::sin(chord), 0}, {0, 0, w}}};
   }
+  PushLimit LimitOf(const Actuation& command) const override { return {.speed_m_per_s = std::abs(command[0])}; }
 };
 
 }  // namespace

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <cstring>
+#include <memory>
 #include <random>
 
+#include "physics_server/lanes/rotor_bodies.h"
 #include "physics_server/world.h"
 #include "tests/physics_server/one_body.h"
 
@@ -42,7 +44,7 @@ struct Twins {
   int count;
 };
 
-/// Agents of all models in wind, with crossing paths, some of them on the ground.
+/// Agents of all models in wind, with crossing paths, some of them on the ground. Rotors fail, at a tick or within one.
 Experiment Swarm(unsigned seed, int count) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> place(-4, 4), height(0.5, 4), speed(-3, 3);
@@ -58,6 +60,9 @@ Experiment Swarm(unsigned seed, int count) {
     if (agent.id % 4 == 2) agent.model = "single_integrator";
     if (agent.id % 4 == 3) agent.model = "unicycle";
     if (agent.id % 8 == 0) agent.airframe = Built("crazyflie");
+    if (agent.id % 5 == 0)
+      e.physics.rotor_failures.push_back(
+          {.agent = agent.id, .rotor = 1 + agent.id % 4, .at_s = 0.001 * (agent.id % 17), .remaining = 0.99});
   }
   return e;
 }
@@ -163,6 +168,59 @@ TEST(FreeSteps, DetectNoContactsForHoveringTeams) {
   const std::vector<Actuation> commands(3, Actuation{hover, hover, hover, hover});
   for (int tick = 0; tick < 500; ++tick) world.Step(commands);
   EXPECT_EQ(world.steps_with_contacts(), 0);
+}
+
+TEST(FreeSteps, GiveTheSameBitsWithAnyNumberOfLanes) {
+  std::int64_t with_contacts = 0, steps = 0, contacts = 0;
+  for (unsigned seed = 200; seed < 220; ++seed) {
+    // Any number of bodies with rotors fills the last lanes or does not.
+    const int count = 5 + static_cast<int>(seed % 7);
+    Experiment e = Swarm(seed, count);
+    if (seed % 2 == 0)
+      for (AgentConfig& agent : e.agents) agent.model = "quadrotor";
+    World one(e, Look::kWhenClose, 1);
+    std::vector<std::unique_ptr<World>> others;
+    for (const int lanes : LanesOfRotors()) others.push_back(std::make_unique<World>(e, Look::kWhenClose, lanes));
+    std::mt19937_64 random(seed);
+    for (int tick = 0; tick < 300; ++tick) {
+      const std::vector<Actuation> commands = RandomCommands(e, random);
+      one.Step(commands);
+      for (const auto& other : others) {
+        other->Step(commands);
+        ASSERT_TRUE(SameBits(Numbers(one, count), Numbers(*other, count))) << "seed " << seed << ", tick " << tick;
+      }
+    }
+    with_contacts += one.steps_with_contacts();
+    contacts += one.collisions();
+    steps += 3000;
+  }
+  EXPECT_GT(contacts, 20);
+  EXPECT_GT(with_contacts, steps / 20);
+  EXPECT_LT(with_contacts, steps * 19 / 20);
+}
+
+TEST(FreeSteps, OfBodiesThatSpinOrLieOnTheirBacksAreThoseOfBullet) {
+  Airframe airframe = WithoutDrag();
+  airframe.inertia_kg_m2 *= 0.005;
+  const Experiment e =
+      Bodies("quadrotor", {{0, 0, 500}, {50, 0, 500}, {100, 0, 500}, {150, 0, 500}, {200, 0, 500}}, airframe);
+  Twins twins(e);
+  std::mt19937_64 random(1);
+  double most_turned = 1, fastest = 0;
+  for (int tick = 0; tick < 200; ++tick) {
+    // One rotor alone turns its body over, and faster and faster, beyond what Bullet turns a body by in a step.
+    std::vector<Actuation> commands(5, Actuation{});
+    for (std::size_t i = 0; i < 4; ++i) commands[i][i] = 1e4;
+    twins.Step(commands);
+    ASSERT_TRUE(twins.Same()) << "tick " << tick;
+    for (int id = 1; id <= 5; ++id) {
+      most_turned = std::min(most_turned, twins.ours.State(id).q_WB.toRotationMatrix()(2, 2));
+      fastest = std::max(fastest, twins.ours.State(id).w_WB_B.norm());
+    }
+  }
+  EXPECT_LT(most_turned, -0.9);
+  EXPECT_GT(fastest, 785);
+  EXPECT_EQ(twins.ours.steps_with_contacts(), 0);
 }
 
 }  // namespace
