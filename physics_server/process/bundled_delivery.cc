@@ -40,16 +40,17 @@ BundledDelivery::BundledDelivery(Domain& domain, const Experiment& experiment, O
     process.sources = SourcesOf(experiment, agents);
     process.heard = HeardIn(experiment, agents, process.sources);
     process.bundles = std::make_unique<RawWriter>(domain, Topic::Bundle(agents));
-    process.reader = std::make_unique<RawReader>(
-        domain, Topic::Answers(agents),
-        [this, &process](const RawReader::Bytes& bytes, const Sender& /*sender*/) { OnSample(process, bytes); });
   }
+  for (const auto& process : processes_)
+    readers_.push_back(std::make_unique<RawReader>(
+        domain, Topic::Answers(process->agents),
+        [this, &process](const RawReader::Bytes& bytes, const Sender& /*sender*/) { OnSample(*process, bytes); }));
 }
 
 bool BundledDelivery::Matched() const {
-  return rows_.matched() >= 1 && std::ranges::all_of(processes_, [](const auto& process) {
-           return process->bundles->matched() >= 1 && process->reader->matched() >= 1;
-         });
+  return rows_.matched() >= 1 &&
+         std::ranges::all_of(processes_, [](const auto& process) { return process->bundles->matched() >= 1; }) &&
+         std::ranges::all_of(readers_, [](const auto& reader) { return reader->matched() >= 1; });
 }
 
 void BundledDelivery::Publish(const World& world, int events) {

@@ -31,7 +31,6 @@ class BundledDelivery final : public Delivery {
     std::vector<int> heard = {};    ///< of the sources, those that are heard there: their messages go with the states
     std::vector<Answer> answers = {};  ///< in the newest sample
     std::unique_ptr<RawWriter> bundles = {};
-    std::unique_ptr<RawReader> reader = {};
   };
 
   void OnSample(Process& process, const RawReader::Bytes& bytes);
@@ -53,7 +52,9 @@ class BundledDelivery final : public Delivery {
   // By id - 1: the newest tick of which a command and a message were kept. An agent may answer twice.
   std::vector<std::int64_t> commanded_, said_;
 
-  std::vector<std::unique_ptr<Process>> processes_;  // last: their readers use the members above
+  std::vector<std::unique_ptr<Process>> processes_;
+  // By process. Last, so that they end first: what they hear may be written on to any process.
+  std::vector<std::unique_ptr<RawReader>> readers_;
 };
 
 }  // namespace mascot
