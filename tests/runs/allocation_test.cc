@@ -110,7 +110,8 @@ TEST_P(AllocationsOverDds, AreNeverMadeByOurCodeInATick) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Experiments, AllocationsOverDds,
-                         testing::Values(Setup{"topics", "[graph]\ntopology = 'ring'\n"},
+                         testing::Values(Setup{"topics",
+                                               "[graph]\ntopology = 'ring'\n[network]\ndelivery = 'topics'\n"},
                                          Setup{"bundled in processes of 2",
                                                "[graph]\ntopology = 'ring'\n[network]\ndelivery = 'bundled'\n"
                                                "agents_per_process = 2\n"}),
