@@ -58,8 +58,11 @@ void LeaveWithin(std::chrono::seconds limit, const Leaving& leaving) {
   alarm(0);
   Prepare(leaving);
   LeaveOn(SIGALRM);
-  if (leaving.on_signals)
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) LeaveOn(signal);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP})
+    if (leaving.on_signals)
+      LeaveOn(number);
+    else
+      signal(number, SIG_IGN);  // it ends anyway, and in order
   alarm(static_cast<unsigned>(limit.count()));
 }
 

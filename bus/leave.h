@@ -9,7 +9,7 @@ namespace mascot {
 struct Leaving {
   int code = 0;
   std::string process;      ///< its name
-  bool on_signals = false;  ///< SIGINT, SIGTERM and SIGHUP also end the process by force
+  bool on_signals = false;  ///< SIGINT, SIGTERM and SIGHUP also end the process by force; else it does not heed them
   bool says_so = true;      ///< the process prints that the DDS library does not end
   /// The process replaces itself by one that removes its shared memory (kSweep), because no other process does that.
   bool sweeps = false;

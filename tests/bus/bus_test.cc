@@ -323,6 +323,19 @@ TEST(Wire, TicksAndAgentsThatCannotBeAreRefused) {
                 ThrowsMessage<std::runtime_error>(HasSubstr("got tick 0 of agent " + std::to_string(agent))));
 }
 
+/// Leaves, is asked to end by SIGTERM, and ends by itself with code 7.
+[[noreturn]] void LeaveInSpiteOf(bool on_signals) {
+  LeaveWithin(std::chrono::seconds(60), {.code = 3, .process = "agent_1", .on_signals = on_signals, .says_so = false});
+  raise(SIGTERM);
+  std::exit(7);
+}
+
+TEST(Leaving, HeedsNoSignalUnlessItIsToEndByForce) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(LeaveInSpiteOf(false), testing::ExitedWithCode(7), "");
+  EXPECT_EXIT(LeaveInSpiteOf(true), testing::ExitedWithCode(3), "");
+}
+
 /// Bytes of the files of Fast DDS in /dev/shm that this process maps.
 std::uint64_t MappedSharedMemory() {
   std::set<std::string> files;
