@@ -11,6 +11,7 @@
 // linker could share with the rest of the program, which runs on processors without AVX.
 #include <sleef.h>
 
+#include <cstddef>
 #include <cstring>
 
 #if defined(__SSE2__)
@@ -20,14 +21,14 @@
 #define MASCOT_IN_LANES [[gnu::always_inline]] inline
 
 namespace mascot {
-namespace {
+namespace {  // NOLINT(google-build-namespaces): on purpose, see above
 
 #if defined(__AVX__)
-constexpr int kLanes = 4;
+constexpr std::ptrdiff_t kLanes = 4;
 #elif defined(__SSE2__)
-constexpr int kLanes = 2;
+constexpr std::ptrdiff_t kLanes = 2;
 #else
-constexpr int kLanes = 1;
+constexpr std::ptrdiff_t kLanes = 1;
 #endif
 
 /// A number in each lane. + - * / and comparisons work lane by lane; a double beside it stands for itself in each lane.
@@ -44,7 +45,7 @@ MASCOT_IN_LANES void Store(Real all, double* numbers) { std::memcpy(numbers, &al
 MASCOT_IN_LANES Real InEach(double number) { return number - Real{}; }  // -0 stays -0
 
 MASCOT_IN_LANES bool AllOf(Mask mask) {
-  for (int lane = 0; lane < kLanes; ++lane)
+  for (std::ptrdiff_t lane = 0; lane < kLanes; ++lane)
     if (mask[lane] == 0) return false;
   return true;
 }

@@ -10,7 +10,7 @@
 #include "physics_server/lanes/rotor_bodies.h"
 
 namespace mascot {
-namespace {
+namespace {  // NOLINT(google-build-namespaces): as in base/lanes.h
 
 struct Vector {
   Real x, y, z;
@@ -83,7 +83,7 @@ MASCOT_IN_LANES Rotation RotationOf(const Matrix& m) {
     return {(m.row[2].y - m.row[1].z) * s, (m.row[0].z - m.row[2].x) * s, (m.row[1].x - m.row[0].y) * s, root * 0.5};
   }
   Rotation all;
-  for (int lane = 0; lane < kLanes; ++lane) {
+  for (std::ptrdiff_t lane = 0; lane < kLanes; ++lane) {
     double one[3][3], q[4];
     for (int r = 0; r < 3; ++r) {
       one[r][0] = m.row[r].x[lane];
