@@ -1,5 +1,6 @@
 #include "system/children.h"
 
+#include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -23,6 +24,19 @@ using WallClock = std::chrono::steady_clock;
 namespace {
 
 constexpr auto kLongestDeath = 10s;  // of a child that was killed: then it is given up
+constexpr int kAskEvery_ms = 20;         // from one look whether to go on to the next
+
+enum class Wait { kOver, kInterrupted, kTooLong };
+
+/// Waits until there is something to read, or the end.
+Wait AwaitInput(int descriptor, const Children::Patience& patience) {
+  const auto deadline = WallClock::now() + std::chrono::duration<double>(patience.limit_s);
+  for (pollfd input{descriptor, POLLIN, 0}; poll(&input, 1, kAskEvery_ms) <= 0;) {
+    if (!patience.go_on()) return Wait::kInterrupted;
+    if (WallClock::now() > deadline) return Wait::kTooLong;
+  }
+  return Wait::kOver;
+}
 
 }  // namespace
 
@@ -52,7 +66,8 @@ pid_t Children::Spawn(const std::string& process, const std::string& program, co
   return number;
 }
 
-std::vector<pid_t> Children::SpawnCopies(const std::string& program, const std::vector<CopyOf>& copies) {
+std::vector<pid_t> Children::SpawnCopies(const std::string& program, const std::vector<CopyOf>& copies,
+                                         const Patience& patience) {
   if (copies.empty()) return {};
   std::vector<Descriptor> outputs;
   std::vector<Copy> orders;
@@ -61,29 +76,36 @@ std::vector<pid_t> Children::SpawnCopies(const std::string& program, const std::
     orders.push_back({.words = {program}, .output = outputs.back().number()});
     orders.back().words.insert(orders.back().words.end(), copy.arguments.begin(), copy.arguments.end());
   }
+  Pipe order = MakePipe(), numbers = MakePipe();
   std::vector<int> shared = shared_;
   for (const Descriptor& output : outputs) shared.push_back(output.number());
-  Pipe order = MakePipe(), numbers = MakePipe();
+  shared.push_back(numbers.writes.number());
   ChildProcess nursery = mascot::Spawn({.words = {program, kNursery, NurseryRoom(orders)},
                                         .group = Program::Group::kOwn,
                                         .signals = Program::Signals::kDefault,
                                         .input = order.reads.number(),
-                                        .output = numbers.writes.number(),
+                                        .output = outputs.front().number(),
                                         .errors = outputs.front().number(),
                                         .shared = shared});
   order.reads = Descriptor();
-  numbers.writes = Descriptor();
-  const bool told = WriteAll(order.writes.number(), NurseryOrder(orders, shared_));
+  const bool told = WriteAll(order.writes.number(), NurseryOrder(orders, numbers.writes.number()));
   order.writes = Descriptor();
+  numbers.writes = Descriptor();
+  const std::string cannot = "cannot start " + program + " " + std::to_string(copies.size()) + " times: it ";
+  switch (AwaitInput(numbers.reads.number(), patience)) {
+    case Wait::kOver:
+      break;
+    case Wait::kInterrupted:
+      return {};
+    case Wait::kTooLong:
+      throw std::runtime_error(cannot + fmt::format("has not made its copies within {:g} s", patience.limit_s));
+  }
   std::istringstream born(ReadToEnd(numbers.reads.number()));
   std::vector<pid_t> ids;
   for (pid_t number = 0; born >> number;) ids.push_back(number);
   const std::optional<int> end = nursery.Reap();  // then they are ours
-  for (std::size_t k = 0; k < std::min(ids.size(), copies.size()); ++k)
-    running_.push_back({copies[k].process, ChildProcess(ids[k])});
-  if (!told || ids.size() != copies.size())
-    throw std::runtime_error("cannot start " + program + " " + std::to_string(copies.size()) + " times: it " +
-                             EndText(end.value_or(kUnknownEnd)));
+  if (!told || ids.size() != copies.size()) throw std::runtime_error(cannot + EndText(end.value_or(kUnknownEnd)));
+  for (std::size_t k = 0; k < ids.size(); ++k) running_.push_back({copies[k].process, ChildProcess(ids[k])});
   return ids;
 }
 

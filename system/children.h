@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,10 +56,16 @@ class Children {
     std::vector<std::string> arguments;
     std::filesystem::path log;
   };
+  /// How long to wait until copies are made: `limit_s`, and as long as `go_on` returns true.
+  struct Patience {
+    double limit_s = 0;
+    std::function<bool()> go_on;
+  };
   /// Starts `program` many times, as Spawn() does, but as copies of one process of it (system/nursery.h), which it must
-  /// know how to make. Returns their process ids, in the order of `copies`. This process must have adopted its
-  /// descendants. Throws std::runtime_error if they cannot be started.
-  std::vector<pid_t> SpawnCopies(const std::string& program, const std::vector<CopyOf>& copies);
+  /// know how to make. Returns their process ids, in the order of `copies`; none if `go_on` returned false. This
+  /// process must have adopted its descendants. Throws std::runtime_error if they cannot be started.
+  std::vector<pid_t> SpawnCopies(const std::string& program, const std::vector<CopyOf>& copies,
+                                 const Patience& patience);
   /// Reaps children. Returns those that have ended since the last call.
   std::vector<Exit> Reap();
   /// Waits at most `grace` until all children have ended, and reaps them. Returns whether all have.

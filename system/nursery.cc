@@ -50,17 +50,6 @@ void TakeCommandLine(const std::vector<std::string>& words, int argc, char** arg
   std::ranges::copy(line, begin);
 }
 
-/// Closes all descriptors but the standard ones and `kept`.
-void CloseOthers(std::vector<int> kept) {
-  std::ranges::sort(kept);
-  unsigned next = STDERR_FILENO + 1;
-  for (const int descriptor : kept) {
-    if (std::cmp_greater(descriptor, next)) close_range(next, static_cast<unsigned>(descriptor) - 1, 0);
-    next = std::max(next, static_cast<unsigned>(descriptor) + 1);
-  }
-  close_range(next, ~0U, 0);
-}
-
 /// Waits until `parent`, of which this process is a copy, has ended, and another process has adopted this one. The end
 /// of a pipe would not do: descriptors are closed before that.
 void AwaitAdoption(pid_t parent) {
@@ -71,24 +60,44 @@ void AwaitAdoption(pid_t parent) {
   }
 }
 
-/// In a copy of `parent` that was just made: leaves what belongs to that, and waits for its end.
-void Settle(const Copy& copy, const std::vector<int>& shared, pid_t parent) {
+/// What a process that makes copies is told.
+struct Order {
+  int numbers = -1;  // descriptor for their process ids
+  std::vector<Copy> copies;
+};
+
+Order ReadOrder() {
+  OrderReader reader(ReadToEnd(STDIN_FILENO));
+  Order order;
+  order.numbers = reader.NextNumber();
+  order.copies.resize(static_cast<std::size_t>(reader.NextNumber()));
+  for (Copy& copy : order.copies) {
+    copy.output = reader.NextNumber();
+    copy.words.resize(static_cast<std::size_t>(reader.NextNumber()));
+    for (std::string& word : copy.words) word = reader.Next();
+  }
+  return order;
+}
+
+/// In a copy of `parent` that was just made: leaves what belongs to that and to the other copies, and waits for the end
+/// of `parent`.
+void Settle(const Copy& copy, const Order& order, pid_t parent) {
   setpgid(0, 0);
-  const int nothing = open("/dev/null", O_RDONLY);
-  dup2(nothing, STDIN_FILENO);
+  const Descriptor nothing(open("/dev/null", O_RDONLY | O_CLOEXEC));
+  dup2(nothing.number(), STDIN_FILENO);
   dup2(copy.output, STDOUT_FILENO);
   dup2(copy.output, STDERR_FILENO);
-  CloseOthers(shared);
+  close(order.numbers);
+  for (const Copy& any : order.copies) close(any.output);
   AwaitAdoption(parent);
 }
 
 }  // namespace
 
-std::string NurseryOrder(const std::vector<Copy>& copies, const std::vector<int>& shared) {
+std::string NurseryOrder(const std::vector<Copy>& copies, int numbers) {
   std::string order;
   const auto add = [&order](const std::string& word) { order.append(word).push_back('\0'); };
-  add(std::to_string(shared.size()));
-  for (const int descriptor : shared) add(std::to_string(descriptor));
+  add(std::to_string(numbers));
   add(std::to_string(copies.size()));
   for (const Copy& copy : copies) {
     add(std::to_string(copy.output));
@@ -110,26 +119,19 @@ std::string NurseryRoom(const std::vector<Copy>& copies) {
 
 std::vector<std::string> WordsOrCopies(int argc, char** argv) {
   if (argc < 3 || argv[1] != std::string_view(kNursery)) return {argv, argv + argc};
-  OrderReader order(ReadToEnd(STDIN_FILENO));
-  std::vector<int> shared(static_cast<std::size_t>(order.NextNumber()));
-  for (int& descriptor : shared) descriptor = order.NextNumber();
-  const auto copies = static_cast<std::size_t>(order.NextNumber());
+  const Order order = ReadOrder();
   const pid_t us = getpid();
   std::string numbers;
-  for (std::size_t k = 0; k < copies; ++k) {
-    Copy copy;
-    copy.output = order.NextNumber();
-    copy.words.resize(static_cast<std::size_t>(order.NextNumber()));
-    for (std::string& word : copy.words) word = order.Next();
+  for (const Copy& copy : order.copies) {
     const pid_t number = SplitProcess();
     if (number == 0) {
       TakeCommandLine(copy.words, argc, argv);
-      Settle(copy, shared, us);
+      Settle(copy, order, us);
       return copy.words;
     }
     numbers += std::to_string(number) + "\n";
   }
-  EndNow(WriteAll(STDOUT_FILENO, numbers) ? 0 : 1);
+  EndNow(WriteAll(order.numbers, numbers) ? 0 : 1);
 }
 
 }  // namespace mascot

@@ -20,14 +20,15 @@ struct Copy {
   int output = -1;                 ///< descriptor for its standard output and errors
 };
 
-/// What the process is told on its standard input. `shared`: further descriptors that all copies keep.
-std::string NurseryOrder(const std::vector<Copy>& copies, const std::vector<int>& shared);
+/// What the process is told on its standard input. `numbers`: the descriptor to which it writes their process ids, all
+/// at once, a line each.
+std::string NurseryOrder(const std::vector<Copy>& copies, int numbers);
 /// A second argument that is long enough for these copies.
 std::string NurseryRoom(const std::vector<Copy>& copies);
 
-/// To be called first in main(). If this process is to make copies, it does, prints their process ids, a line each, and
-/// ends. In each copy it returns the copy's command line, in a process group of its own, once that is a child of the
-/// process that started this one. In any other process it returns the command line that the process has.
+/// To be called first in main(). If this process is to make copies, it does, and ends. In each copy it returns the
+/// copy's command line, in a process group of its own, once that is a child of the process that started this one. In
+/// any other process it returns the command line that the process has.
 std::vector<std::string> WordsOrCopies(int argc, char** argv);
 
 }  // namespace mascot

@@ -15,11 +15,21 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
+const Children::Patience kPatient{.limit_s = 60, .go_on = [] { return true; }};
+
 class Nursery : public testing::Test {
  protected:
   void SetUp() override { AdoptDescendants(); }
   Children::CopyOf Copy(const std::string& process, const std::vector<std::string>& arguments) const {
     return {process, arguments, folder_.File(process + ".log")};
+  }
+
+  /// A program of these lines of sh.
+  std::string Script(const std::string& lines) const {
+    const std::string path = folder_.File("script");
+    WriteFile(path, "#!/bin/sh\n" + lines + "\n");
+    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+    return path;
   }
 
   ScratchFolder folder_;
@@ -28,8 +38,9 @@ class Nursery : public testing::Test {
 };
 
 TEST_F(Nursery, MakesChildrenOfOursWithArgumentsAndLogsOfTheirOwn) {
-  const std::vector<pid_t> ids = children_.SpawnCopies(
-      MASCOT_BINARY_DIR "/agent", {Copy("helps", {"--help"}), Copy("refuses", {"--id", "3", "--domain", "none"})});
+  const std::vector<pid_t> ids =
+      children_.SpawnCopies(MASCOT_BINARY_DIR "/agent",
+                            {Copy("helps", {"--help"}), Copy("refuses", {"--id", "3", "--domain", "none"})}, kPatient);
   ASSERT_EQ(ids.size(), 2);
   EXPECT_NE(ids[0], ids[1]);
   std::map<std::string, std::string> ends;
@@ -47,11 +58,29 @@ TEST_F(Nursery, MakesChildrenOfOursWithArgumentsAndLogsOfTheirOwn) {
 TEST_F(Nursery, OfAProgramThatMakesNoCopiesIsAnError) {
   EXPECT_THAT(
       [&] {
-        children_.SpawnCopies("/bin/true", {Copy("a", {}), Copy("b", {})});
+        children_.SpawnCopies("/bin/true", {Copy("a", {}), Copy("b", {})}, kPatient);
       },
       ThrowsMessage<std::runtime_error>("cannot start /bin/true 2 times: it exited with code 0"));
-  EXPECT_THAT([&] { children_.SpawnCopies("/no/agent", {Copy("c", {})}); },
+  EXPECT_THAT([&] { children_.SpawnCopies("/no/agent", {Copy("c", {})}, kPatient); },
               ThrowsMessage<std::runtime_error>("cannot start /no/agent: No such file or directory"));
+}
+
+TEST_F(Nursery, ThatHangsIsWaitedForNoLongerThanOneMay) {
+  const std::string hangs = Script("exec sleep 1000");
+  EXPECT_THAT([&] { children_.SpawnCopies(hangs, {Copy("a", {})}, {.limit_s = 0.05, .go_on = [] { return true; }}); },
+              ThrowsMessage<std::runtime_error>("cannot start " + hangs +
+                                                " 1 times: it has not made its copies within 0.05 s"));
+  EXPECT_THAT(children_.SpawnCopies(hangs, {Copy("b", {})}, {.limit_s = 60, .go_on = [] { return false; }}),
+              testing::IsEmpty());
+  EXPECT_TRUE(children_.empty());
+}
+
+TEST_F(Nursery, MayPrintWhatItLikes) {
+  const std::string talks = Script("echo 1 2 3\nexec " MASCOT_BINARY_DIR "/agent \"$@\"");
+  ASSERT_EQ(children_.SpawnCopies(talks, {Copy("talks", {"--help"})}, kPatient).size(), 1);
+  Await("its end", [&] { return !children_.Reap().empty(); });
+  logs_.LastLines("talks");
+  EXPECT_THAT(ReadFile(folder_.File("talks.log")), testing::StartsWith("1 2 3\nMASCOT agent: hears"));
 }
 
 TEST_F(Nursery, AnOrderThatEndsTooEarlyIsRefused) {

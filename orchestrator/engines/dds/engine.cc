@@ -301,9 +301,13 @@ void DdsRun::Spawn() {
                     (options.transport == DomainOptions().transport ? "" : " --transport " + options.transport) +
                     (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_->discovery_port()) : ""));
   }
-  const std::vector<pid_t> ids = children_.SpawnCopies(ProgramFolder() / "agent", here);
+  const std::vector<pid_t> ids =
+      children_.SpawnCopies(ProgramFolder() / "agent", here, {experiment_.run.start_timeout_s, [this] {
+                                                                OnSignal(stop_.Within(0ms));
+                                                                return phases_.in_order();
+                                                              }});
   for (std::size_t k = 0; k < ids.size(); ++k) peers_.Know(here[k].process, ProcessKey::WithPid(ids[k]));
-  if (experiment_.hosts.empty()) return;
+  if (experiment_.hosts.empty() || !phases_.in_order()) return;
   launcher_.emplace(
       experiment_, folder_,
       Launcher::Rules{
