@@ -19,7 +19,10 @@ const Children::Patience kPatient{.limit_s = 60, .go_on = [] { return true; }};
 
 class Nursery : public testing::Test {
  protected:
-  void SetUp() override { AdoptDescendants(); }
+  void SetUp() override {
+    AdoptDescendants();
+    signal(SIGPIPE, SIG_IGN);  // as the orchestrator does
+  }
   Children::CopyOf Copy(const std::string& process, const std::vector<std::string>& arguments) const {
     return {process, arguments, folder_.File(process + ".log")};
   }
