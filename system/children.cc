@@ -24,7 +24,7 @@ using WallClock = std::chrono::steady_clock;
 namespace {
 
 constexpr auto kLongestDeath = 10s;  // of a child that was killed: then it is given up
-constexpr int kAskEvery_ms = 20;         // from one look whether to go on to the next
+constexpr int kAskEvery_ms = 20;     // from one look whether to go on to the next
 
 enum class Wait { kOver, kInterrupted, kTooLong };
 

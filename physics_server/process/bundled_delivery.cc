@@ -38,6 +38,7 @@ BundledDelivery::BundledDelivery(Domain& domain, const Experiment& experiment, O
   for (const AgentRange& agents : AgentProcesses(experiment)) {
     Process& process = *processes_.emplace_back(std::make_unique<Process>(Process{.agents = agents}));
     process.sources = SourcesOf(experiment, agents);
+    for (int id = agents.first; id <= agents.last; ++id) process.senders += experiment.agent(id).sends_messages ? 1 : 0;
     process.heard = HeardIn(experiment, agents, process.sources);
     process.bundles = std::make_unique<RawWriter>(domain, Topic::Bundle(agents));
   }
@@ -121,10 +122,17 @@ void BundledDelivery::OnSample(Process& process, const RawReader::Bytes& bytes) 
   for (const auto& message : messages) {
     const BodyHead head = HeadOf(message.data());
     require(head, std::cmp_greater_equal(head.agent, process.agents.first) &&
-                      std::cmp_less_equal(head.agent, process.agents.last));
+                      std::cmp_less_equal(head.agent, process.agents.last) &&
+                      experiment_.agent(static_cast<int>(head.agent)).sends_messages);
   }
+  // Those that hear them would fail for what this process has left out.
+  if (experiment_.run.mode == Mode::kLockstep && std::cmp_not_equal(messages.size(), process.senders))
+    throw std::runtime_error(
+        fmt::format("{}: {} messages to tick {}, expected {}", topic(), messages.size(), tick, process.senders));
   {
     const std::lock_guard lock(mutex_);
+    if (tick > published_)
+      throw std::runtime_error(fmt::format("{}: answers to tick {}, of which there are no states yet", topic(), tick));
     const auto is_new = [tick](std::int64_t& newest) { return tick > newest && (newest = tick, true); };
     if (tick == published_ && tick > commanded_[static_cast<std::size_t>(process.agents.first - 1)]) ++answered_;
     for (std::size_t k = 0; k < commands.count; ++k)

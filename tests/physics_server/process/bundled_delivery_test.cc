@@ -1,7 +1,7 @@
 // The server's side of network.delivery = "bundled", against processes of agents that this test plays.
 #include "physics_server/process/bundled_delivery.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <atomic>
 #include <memory>
@@ -18,13 +18,9 @@ namespace {
 
 constexpr int kAgents = 6;
 
-/// Answers of process `id`, of one agent, to a tick.
-std::vector<std::uint8_t>& Answers(std::int64_t tick, int id, BundleWriter& writer) {
-  writer.Begin(tick);
-  writer.BeginSection();
-  PutCommand(tick, 100, id, {}, writer.Add(kCommandBody));
-  writer.BeginSection();
-  return writer.bytes();
+Experiment Team(const std::string& law) {
+  return Load("[run]\nduration_s = 1000.0\n[agents]\ncount = " + std::to_string(kAgents) +
+              "\n[graph]\ntopology = 'ring'\n[law]\nname = '" + law + "'\n");
 }
 
 class ServerAndAgents : public testing::Test {
@@ -36,42 +32,100 @@ class ServerAndAgents : public testing::Test {
     options.loopback = true;
     return options;
   }
+
   DomainLock lock_{-1};
   Domain server_{Options("server"), [] {}};
   Domain agents_{Options("agents"), [] {}};
-  Experiment experiment_ = Load("[run]\nduration_s = 1000.0\n[agents]\ncount = " + std::to_string(kAgents) +
-                                "\n[graph]\ntopology = 'ring'\n");
-  World world_{experiment_};
+};
+
+/// Writes the answers of one agent to a tick.
+class Agent {
+ public:
+  Agent(Domain& domain, int id) : id_(id), answers_(domain, Topic::Answers({id, id})) {}
+  void Answer(std::int64_t tick, int messages = 0) {
+    writer_.Begin(tick);
+    writer_.BeginSection();
+    PutCommand(tick, 100, id_, {}, writer_.Add(kCommandBody));
+    writer_.BeginSection();
+    for (int k = 0; k < messages; ++k) PutMessage(tick, 100, id_, {}, writer_.Add(MessageBody(0)));
+    answers_.Write(writer_.bytes());
+  }
+
+ private:
+  int id_;
+  RawWriter answers_;
+  BundleWriter writer_;
 };
 
 TEST_F(ServerAndAgents, AnswersThatComeWhileTheServerLeavesAreWrittenToNobodyThatIsGone) {
-  std::vector<std::unique_ptr<RawWriter>> answers;
-  for (int id = 1; id <= kAgents; ++id)
-    answers.push_back(std::make_unique<RawWriter>(agents_, Topic::Answers({id, id})));
+  const Experiment experiment = Team("consensus");
+  const World world(experiment);
   std::atomic<bool> ends = false;
   std::thread agents([&] {
-    BundleWriter writer;
-    for (std::int64_t tick = 0; !ends; ++tick)
-      for (int id = 1; id <= kAgents; ++id)
-        answers[static_cast<std::size_t>(id - 1)]->Write(Answers(tick % 1000, id, writer));
+    std::vector<std::unique_ptr<Agent>> all;
+    for (int id = 1; id <= kAgents; ++id) all.push_back(std::make_unique<Agent>(agents_, id));
+    while (!ends)
+      for (const auto& agent : all) agent->Answer(0);
   });
-  for (int leaves = 0; leaves < 30; ++leaves) {
+  for (int leaves = 0; leaves < 10; ++leaves) {
     std::mutex mutex;
     std::atomic<int> taken = 0;
     std::atomic<BundledDelivery*> there = nullptr;
     // As the server does, which publishes the next tick as soon as the last agent has answered.
-    auto delivery = std::make_unique<BundledDelivery>(server_, experiment_, [&](auto) {
+    auto delivery = std::make_unique<BundledDelivery>(server_, experiment, [&](auto) {
       const std::lock_guard lock(mutex);
       if (there == nullptr) return;
       ++taken;
-      there.load()->Publish(world_, 0);
+      there.load()->Publish(world, 0);
     });
+    delivery->Publish(world, 0);
     there = delivery.get();
     EXPECT_TRUE(Until([&] { return taken > 20; }));
     delivery.reset();
   }
   ends = true;
   agents.join();
+}
+
+/// What the server says of an answer of agent 2 to tick `tick`, with so many messages.
+class Refused : public ServerAndAgents {
+ protected:
+  std::string Says(const std::string& law, std::int64_t tick, int messages) {
+    const Experiment experiment = Team(law);
+    const World world(experiment);
+    std::atomic<int> taken = 0;
+    BundledDelivery delivery(server_, experiment, [&](auto) { ++taken; });
+    Agent agent(agents_, 2);
+    delivery.Publish(world, 0);
+    std::string said;
+    Until([&] {
+      agent.Answer(tick, messages);
+      try {
+        server_.RethrowFailure();
+      } catch (const std::exception& failure) {
+        said = failure.what();
+      }
+      return taken > 0 || !said.empty();
+    });
+    return said;
+  }
+};
+
+TEST_F(Refused, AreAnswersToATickThatIsNotPublished) {
+  EXPECT_EQ(Says("consensus", 1, 0), "/agent_2/answers: answers to tick 1, of which there are no states yet");
+}
+
+TEST_F(Refused, AreMessagesOfAnAgentThatSendsNone) {
+  EXPECT_EQ(Says("consensus", 0, 1), "/agent_2/answers: an answer of agent 2 to tick 0 among those to tick 0");
+}
+
+TEST_F(Refused, AreAnswersWithoutAMessageThatIsHeard) {
+  EXPECT_EQ(Says("event_triggered", 0, 0), "/agent_2/answers: 0 messages to tick 0, expected 1");
+}
+
+TEST_F(Refused, IsNothingThatIsAsItShouldBe) {
+  EXPECT_EQ(Says("consensus", 0, 0), "");
+  EXPECT_EQ(Says("event_triggered", 0, 1), "");
 }
 
 }  // namespace
