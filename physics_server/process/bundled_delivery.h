@@ -29,7 +29,6 @@ class BundledDelivery final : public Delivery {
     AgentRange agents;
     std::vector<int> sources = {};  ///< ids: SourcesOf()
     std::vector<int> heard = {};    ///< of the sources, those that are heard there: their messages go with the states
-    int senders = 0;                ///< of the agents, those that send messages
     std::vector<Answer> answers = {};  ///< in the newest sample
     std::unique_ptr<RawWriter> bundles = {};
   };
