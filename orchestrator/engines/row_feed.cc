@@ -13,6 +13,7 @@ class FromTheWire final : public FlownRow {
   std::int64_t tick() const override { return bytes_.tick; }
   const DecodedRow& decoded() const override { return decoded_; }
   const Row& bytes() const override { return bytes_; }
+  const Row* received() const override { return &bytes_; }
 
  private:
   const Row& bytes_;
@@ -29,6 +30,7 @@ class FromThisProcess final : public FlownRow {
     if (bytes_ == nullptr) bytes_ = &encoder_.Encode(tick_, decoded_);
     return *bytes_;
   }
+  const Row* received() const override { return nullptr; }
 
  private:
   std::int64_t tick_;

@@ -16,6 +16,8 @@ class FlownRow {
   virtual const DecodedRow& decoded() const = 0;
   /// The samples as sent over DDS; for a run in one process, as they would have been sent. Encoded at the first call.
   virtual const Row& bytes() const = 0;
+  /// bytes(), if they were sent over DDS; null for a run in one process.
+  virtual const Row* received() const = 0;
 };
 
 /// Receives every row of a run, in tick order: the writer of the run's files, the meters, the progress line.

@@ -22,6 +22,7 @@
 #include "orchestrator/live/shown/view_sink.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/recording/attached_experiment.h"
+#include "orchestrator/recording/background_sink.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/run_writer.h"
 #include "orchestrator/report/ending.h"
@@ -139,12 +140,13 @@ int Up(UpArgs& args) {
   if (args.engine == kOverDds)
     for (const std::string& warning : DeliveryWarnings(experiment)) console.Line("warning: " + warning);
   RunWriter writer(experiment, folder, WithoutEvents(experiment));
+  BackgroundSink writes(experiment, writer);
   ExplainCrashes();
   const std::string summary_file = std::filesystem::absolute(folder.File("summary.json")).string();
   std::optional<LastWords> last_words(
       std::in_place, summary_file, SummaryIfKilled(experiment, args.engine, LastWords::kExitCode, LastWords::kReason));
   Progress progress(experiment, meter, console);
-  std::vector<RowSink*> sinks{&writer, &meter, &progress, &requests};
+  std::vector<RowSink*> sinks{&writes, &meter, &progress, &requests};
   viewers.AddTo(sinks);
   std::optional<RosView> ros_view;
   std::optional<ViewSink> ros_sink;
@@ -167,6 +169,7 @@ int Up(UpArgs& args) {
       folder.Write("config.toml", flown.resolved);
       prediction = Predict(flown);
     }
+    writes.Finish();
     writer.Close(WithoutDelivery(flown));
   } catch (const std::exception& failure) {
     if (result.failure.empty()) result.failure = InWords(failure);

@@ -34,6 +34,7 @@ class MadeRow final : public FlownRow {
   std::int64_t tick() const override { return tick_; }
   const DecodedRow& decoded() const override { return row_; }
   const Row& bytes() const override { throw std::logic_error("no bytes"); }
+  const Row* received() const override { return nullptr; }
 
  private:
   std::int64_t tick_;

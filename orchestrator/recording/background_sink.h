@@ -1,0 +1,58 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "orchestrator/recording/row_codec.h"
+#include "orchestrator/team/row_sink.h"
+
+namespace mascot {
+
+/// Passes rows on to a sink in a thread of its own, in their order: while that writes some, the run flies the next. It
+/// keeps a few rows, and lets the run wait if the sink is slower. Adopt() is not passed on.
+class BackgroundSink final : public RowSink {
+ public:
+  /// Both must outlive this object. Throws std::system_error if there can be no thread.
+  BackgroundSink(const Experiment& experiment, RowSink& sink);
+  ~BackgroundSink();  ///< drops rows that have not been passed on
+  BackgroundSink(const BackgroundSink&) = delete;
+  BackgroundSink& operator=(const BackgroundSink&) = delete;
+
+  /// Copies the row. Throws what the sink threw for an earlier row.
+  void Add(const FlownRow& row) override;
+  /// Waits until the sink has all rows. Throws what it threw.
+  void Finish();
+
+ private:
+  /// A row that is kept: what came over the wire, or what is to be encoded.
+  struct Kept {
+    explicit Kept(int agents) : decoded(agents), received(agents) {}
+    std::int64_t tick = 0;
+    DecodedRow decoded;
+    bool is_received = false;
+    Row received;
+  };
+  class AsFlown;
+
+  void Run();
+
+  RowSink& sink_;
+  RowEncoder encoder_;  // for the thread
+  std::size_t batch_;   // rows for which it is worth to wake the thread
+
+  std::mutex mutex_;
+  std::condition_variable added_, taken_;
+  std::vector<std::unique_ptr<Kept>> rows_;  // a ring
+  std::size_t first_ = 0, count_ = 0;        // of rows_, those that the sink does not have yet
+  bool is_finishing_ = false, is_ending_ = false;
+  std::exception_ptr failure_;
+  std::thread thread_;  // last: it uses the others
+};
+
+}  // namespace mascot
