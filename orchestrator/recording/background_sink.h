@@ -20,7 +20,7 @@ class BackgroundSink final : public RowSink {
  public:
   /// Both must outlive this object. Throws std::system_error if there can be no thread.
   BackgroundSink(const Experiment& experiment, RowSink& sink);
-  ~BackgroundSink();  ///< drops rows that have not been passed on
+  ~BackgroundSink() override;  ///< drops rows that have not been passed on
   BackgroundSink(const BackgroundSink&) = delete;
   BackgroundSink& operator=(const BackgroundSink&) = delete;
 
