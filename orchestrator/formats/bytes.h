@@ -1,6 +1,6 @@
 #pragma once
 
-#include <zlib.h>
+#include <libdeflate.h>
 
 #include <bit>
 #include <cstdint>
@@ -40,7 +40,7 @@ void Append(Bytes& out, T number) { Append(out, AsBytes(std::span<const T>(&numb
 
 /// CRC-32 (ISO-HDLC, as in zip and MCAP). Continues `crc`, the CRC of the bytes before `bytes`; start with 0.
 inline std::uint32_t Crc32(std::uint32_t crc, ByteSpan bytes) {
-  return static_cast<std::uint32_t>(::crc32_z(crc, bytes.data(), bytes.size()));
+  return libdeflate_crc32(crc, bytes.data(), bytes.size());  // several times as fast as zlib's, where there is PCLMUL
 }
 
 }  // namespace mascot
