@@ -57,7 +57,7 @@ class Checks final : public RowSink {
  public:
   explicit Checks(const Experiment& experiment) : encoder_(experiment) {}
   void Add(const FlownRow& row) override {
-    while (holds) std::this_thread::yield();
+    test::Until([&] { return !holds; });
     if (row.tick() == fails_at) throw std::runtime_error("the disk is full");
     const NumberedRow made(row.tick(), row.received() != nullptr, encoder_);
     if (row.tick() != rows || !Same(row.bytes(), made.bytes()) ||
