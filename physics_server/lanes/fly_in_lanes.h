@@ -1,8 +1,8 @@
 #pragma once
 
 // Bodies with rotors that touch nothing, several at once: one step is Quadrotor::Apply (physics_server/models), then
-// StepFreely and the correction of the place (physics_server/world.cc), with Bullet's operations in Bullet's order, so
-// that the bits are the same. To be included by sources that are compiled for lanes (base/lanes.h).
+// StepFreely and the correction of the place (physics_server/bullet/body.cc), with Bullet's operations in Bullet's
+// order, so that the bits are the same. To be included by sources that are compiled for lanes (base/lanes.h).
 #include <cstddef>
 #include <numbers>
 

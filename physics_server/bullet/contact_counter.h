@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/contacts.h"
+#include "physics_server/bullet/body.h"
+
+class btDispatcher;
+
+namespace mascot {
+
+// Bullet user indices of bodies that are no agents; an agent has its id.
+constexpr int kGroundIndex = Contact::kGround;
+constexpr int kObstacleIndex = -1;  // the first obstacle; the next is one less, and so on
+
+/// Counts contacts when they begin. A contact begins when two surfaces touch, and ends when Bullet drops all its
+/// points, some millimetres apart (20 at most). So resting, sliding and rattling count once.
+class ContactCounter {
+ public:
+  explicit ContactCounter(std::size_t bodies);
+  /// To be called after each step. `tick`: the one before the step; `bodies`: the agents', by id - 1. Returns true if
+  /// any two bodies are so close that Bullet keeps contact points for them.
+  bool Update(btDispatcher& dispatcher, std::int64_t tick, std::span<const Body> bodies);
+  const Contacts& begun() const { return begun_; }
+
+ private:
+  using Pair = std::pair<int, int>;  // user indices, in order; at least one is an agent's
+
+  void Begin(const Pair& pair, std::int64_t tick, std::span<const Body> bodies);
+
+  std::vector<Pair> lasting_, now_;  // sorted; buffers with capacity, so that a step allocates nothing
+  Contacts begun_;
+};
+
+}  // namespace mascot
