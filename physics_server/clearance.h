@@ -1,19 +1,20 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace mascot {
 
-/// Finds out cheaply that no body can touch anything. Each body has an upright bounding box. A check of all pairs puts
-/// a larger free box around it, which meets no other free box, nothing fixed and not the floor. As long as every body's
-/// box stays in its free box nothing can touch, and knowing that costs six comparisons per body. When a box leaves its
-/// free box, the next check is due.
+/// Finds out cheaply which bodies may touch something. Each body has an upright bounding box; what counts is which of
+/// the boxes meet. A list of the pairs that are near each other serves until a box has moved by some decimetres, so
+/// that most looks compare few of them.
 class Clearance {
  public:
   /// Aligned with the axes of W; low <= high in x, y, z (m). Wide enough that bodies whose boxes are apart do not act
-  /// on each other.
+  /// on each other. May be infinite.
   struct Box {
     Eigen::Array3d low, high;
   };
@@ -26,22 +27,30 @@ class Clearance {
   };
   explicit Clearance(Scene scene);
 
-  /// True if all `boxes`, by body, are apart from each other and from fixed boxes, as far as the scene lets them touch.
-  bool IsClear(std::span<const Box> boxes);
+  /// Finds which of these boxes, by body, meet each other, something fixed or the floor, as far as the scene lets them
+  /// touch.
+  void Look(std::span<const Box> boxes);
+  /// Whether the body's box met something at the last Look().
+  bool MetSomething(std::size_t body) const { return met_[body]; }
+  /// Whether any of what met at the last Look() meets with these boxes, too; the others may be anything.
+  bool DoMeet(std::span<const Box> boxes) const;
 
  private:
-  /// True if no box has left its free box.
-  bool AreInFreeBoxes(std::span<const Box> boxes) const;
-  /// Compares all boxes, and makes new free boxes. Returns true if no boxes meet.
-  bool Check(std::span<const Box> boxes);
-  bool CheckFixed(std::span<const Box> boxes);
-  bool CheckPairs(std::span<const Box> boxes);
+  using Pair = std::pair<std::size_t, std::size_t>;  // of bodies, or of a body and something fixed
+
+  /// True if no box has left the room that the lists leave it.
+  bool AreInTheirRooms(std::span<const Box> boxes) const;
+  void List(std::span<const Box> boxes);
 
   Scene scene_;
-  bool has_free_boxes_ = false;    // free_boxes_ are valid
-  std::vector<Box> free_boxes_;    // by body
-  std::vector<double> margin_m_;   // by body: how far its free box exceeds its box
-  std::vector<std::size_t> by_x_;  // bodies, in order of low.x at the last check
+  bool is_listed_ = false;
+  std::vector<Box> rooms_;         // by body: as long as each box is in its room, no pairs meet that are not listed
+  std::vector<std::size_t> by_x_;  // bodies, in order of low.x when they were listed
+  std::vector<Pair> near_bodies_, near_fixed_;
+
+  std::vector<char> met_;  // by body
+  std::vector<Pair> met_bodies_, met_fixed_;
+  std::vector<std::size_t> met_floor_;
 };
 
 }  // namespace mascot

@@ -1,8 +1,8 @@
-// In most steps nothing touches, but Bullet's broadphase, islands and solver still cost most of the step. While the
-// boxes around all bodies are apart (Clearance), we move each body by itself, with exactly the operations of a whole
-// step, so that the bits are the same: through a whole tick if the boxes that the bodies cannot leave meanwhile
-// (SweptBox) are apart, else step by step. In whole ticks, bodies with rotors are flown several at once (RotorBodies),
-// which then have their numbers, and Bullet has not.
+// In most ticks most bodies touch nothing, but Bullet's broadphase, islands and solver would cost most of the step. So
+// Bullet gets those bodies only that may touch something within the tick: whose boxes (SweptBox), which they cannot
+// leave in it, meet each other, an obstacle or the ground (Clearance). Even for these it looks for contacts only in
+// steps in which their boxes at that step meet. Every other body we move by itself, with exactly the operations of a
+// whole step, so that the bits are the same; bodies with rotors several at once (RotorBodies).
 #include "physics_server/world.h"
 
 #include <algorithm>
@@ -49,17 +49,21 @@ void CheckFinite(std::span<const Actuation> commands, std::int64_t tick) {
 
 }  // namespace
 
+/// What flies a body, and has its numbers.
+enum class By { kBullet, kItself, kLanes };
+
 struct World::Impl {
   Impl(const Experiment& experiment, LookForContacts look_for_contacts, int max_lanes);
   void Tick(std::span<const Actuation> commands);
-  bool IsFreeTick(std::span<const Actuation> commands);
-  void FlyFreely(std::span<const Actuation> commands);
-  void FlyInLanes(std::span<const Actuation> commands);
-  void FlyAlone(Body& body, const Actuation& command);
+  void DecideWhoFlies(std::span<const Actuation> commands);
+  By DecideFor(std::size_t i) const;
+  Clearance::Box SweptBoxOf(std::size_t i, const Motion& now, const Actuation& command) const;
+  void GiveTo(By by, std::size_t i);
   void FlyByBullet(std::span<const Actuation> commands);
   bool MayTouch();
-  void TakeFromBullet();
-  void GiveToBullet();
+  void PullIn(std::span<const Actuation> commands, int steps);
+  void FlyAlone(Body& body, const Actuation& command, int steps);
+  void FlyInLanes(std::span<const Actuation> commands);
   void EndTick();
   Surroundings Around(int step) const;
 
@@ -72,17 +76,22 @@ struct World::Impl {
   std::vector<std::array<double, 3>> wind_W;  // by step of this tick
   LookForContacts look;
   ContactCounter contacts;
-  bool any_contact = false;  // Bullet keeps contact points
   std::int64_t steps_with_contacts = 0;
 
   std::vector<Body> bodies;
-  Scene scene;  // after the bodies that it holds
+  Scene scene;                      // after the bodies that it holds
+  std::vector<By> by;               // body
+  std::vector<char> is_in_contact;  // by body: Bullet keeps contact points for it
+  std::vector<std::size_t> by_bullet;
+  double max_wind_m_per_s = 0;  // in this tick
+
   std::optional<Clearance> clearance;
-  std::vector<Clearance::Box> boxes;  // by body, at this step or of this tick
+  std::vector<Clearance::Box> swept_boxes;  // by body: of this tick
+  std::vector<Clearance::Box> boxes;        // by body: at this step, of those flown by Bullet
 
   std::vector<std::size_t> with_rotors;     // bodies
   std::optional<RotorBodies> rotor_bodies;  // those, in this order
-  bool in_lanes = false;                    // rotor_bodies has their numbers, and Bullet has not
+  std::vector<std::size_t> lane_of;         // by body, if it has rotors: its place in rotor_bodies
 };
 
 World::Impl::Impl(const Experiment& experiment, LookForContacts look_for_contacts, int max_lanes)
@@ -101,24 +110,37 @@ World::Impl::Impl(const Experiment& experiment, LookForContacts look_for_contact
   bodies.reserve(experiment.agents.size());
   for (const AgentConfig& agent : experiment.agents) {
     Body& body = bodies.emplace_back(MakeBody(experiment, agent));
-    scene.Add(body);
     what_touches.can_touch_floor.push_back(experiment.physics.ground && body.model->touches_ground());
   }
   clearance.emplace(std::move(what_touches));
+  by.resize(bodies.size(), By::kItself);
+  is_in_contact.resize(bodies.size());
+  by_bullet.reserve(bodies.size());
   boxes.resize(bodies.size());
+  swept_boxes.resize(bodies.size());
+  lane_of.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (bodies[i].model->rotors() != nullptr) with_rotors.push_back(i);
+    if (bodies[i].model->rotors() != nullptr) {
+      lane_of[i] = with_rotors.size();
+      with_rotors.push_back(i);
+    }
   rotor_bodies.emplace(with_rotors.size(), max_lanes);
   for (std::size_t k = 0; k < with_rotors.size(); ++k)
     PutConstants(bodies[with_rotors[k]], dt_s, experiment.physics.gravity_m_per_s2, *rotor_bodies, k);
 }
 
 void World::Impl::Tick(std::span<const Actuation> commands) {
-  for (std::array<double, 3>& now : wind_W) Eigen::Vector3d::Map(now.data()) = wind.Next();
-  if (IsFreeTick(commands))
-    FlyFreely(commands);
-  else
-    FlyByBullet(commands);
+  max_wind_m_per_s = 0;
+  for (std::array<double, 3>& now : wind_W) {
+    const Eigen::Vector3d w = wind.Next();
+    Eigen::Vector3d::Map(now.data()) = w;
+    max_wind_m_per_s = std::max(max_wind_m_per_s, w.norm());
+  }
+  DecideWhoFlies(commands);
+  FlyByBullet(commands);
+  FlyInLanes(commands);
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (by[i] == By::kItself) FlyAlone(bodies[i], commands[i], steps_per_tick);
   EndTick();
 }
 
@@ -128,35 +150,104 @@ Surroundings World::Impl::Around(int step) const {
           .wind_W = Eigen::Vector3d::Map(wind_W[static_cast<std::size_t>(step)].data())};
 }
 
-/// True if no body can come close to another one, or to what is fixed, within this tick, and no rotor fails in it.
-bool World::Impl::IsFreeTick(std::span<const Actuation> commands) {
-  if (look == LookForContacts::kAlways || any_contact) return false;
-  double max_wind = 0;
-  for (const std::array<double, 3>& now : wind_W)
-    max_wind = std::max(max_wind, Eigen::Vector3d::Map(now.data()).norm());
-  const double first_s = Around(0).t_s, last_s = Around(steps_per_tick - 1).t_s;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Rotors* rotors = bodies[i].model->rotors();
-    if (rotors != nullptr && rotors->FailuresBegun(first_s) != rotors->FailuresBegun(last_s)) return false;
-    boxes[i] = SweptBox(bodies[i].state, bodies[i].swept, bodies[i].model->LimitOf(commands[i]), max_wind,
-                        steps_per_tick * dt_s);
+Clearance::Box World::Impl::SweptBoxOf(std::size_t i, const Motion& now, const Actuation& command) const {
+  const Body& body = bodies[i];
+  return SweptBox(now, body.swept, body.model->LimitOf(command), max_wind_m_per_s, steps_per_tick * dt_s);
+}
+
+void World::Impl::DecideWhoFlies(std::span<const Actuation> commands) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) swept_boxes[i] = SweptBoxOf(i, bodies[i].state, commands[i]);
+  clearance->Look(swept_boxes);
+  std::ranges::fill(is_in_contact, char{false});
+  for (const ContactCounter::Pair& pair : contacts.kept())
+    for (const int index : {pair.first, pair.second})
+      if (index > 0) is_in_contact[static_cast<std::size_t>(index - 1)] = true;
+  by_bullet.clear();
+  for (std::size_t i = 0; i < bodies.size(); ++i) GiveTo(DecideFor(i), i);
+}
+
+By World::Impl::DecideFor(std::size_t i) const {
+  if (look == LookForContacts::kAlways || clearance->MetSomething(i) || is_in_contact[i]) return By::kBullet;
+  const Rotors* rotors = bodies[i].model->rotors();
+  if (rotors == nullptr) return By::kItself;
+  const bool fails_within =
+      rotors->FailuresBegun(Around(0).t_s) != rotors->FailuresBegun(Around(steps_per_tick - 1).t_s);
+  return fails_within ? By::kItself : By::kLanes;
+}
+
+void World::Impl::GiveTo(By next, std::size_t i) {
+  if (next == By::kBullet) by_bullet.push_back(i);
+  if (by[i] == next) return;
+  if (by[i] == By::kBullet) scene.Remove(bodies[i]);
+  if (by[i] == By::kLanes) MoveIntoBullet(*rotor_bodies, lane_of[i], bodies[i]);
+  if (next == By::kBullet) scene.Add(bodies[i]);
+  if (next == By::kLanes) MoveOutOfBullet(bodies[i], *rotor_bodies, lane_of[i]);
+  if (bodies[i].model->rotors() != nullptr) rotor_bodies->SetFlown(lane_of[i], next == By::kLanes);
+  by[i] = next;
+}
+
+/// Flies the bodies that may touch something through the tick step by step, with contacts where there may be some.
+void World::Impl::FlyByBullet(std::span<const Actuation> commands) {
+  if (by_bullet.empty()) return;
+  for (int step = 0; step < steps_per_tick; ++step) {
+    const Surroundings around = Around(step);
+    for (const std::size_t i : by_bullet) PushBody(bodies[i], commands[i], around);
+    const bool may_touch = MayTouch();
+    if (may_touch) {
+      scene.Step(dt_s);
+      contacts.Update(scene.dispatcher(), tick, bodies);
+      ++steps_with_contacts;
+    } else {
+      for (const std::size_t i : by_bullet) StepFreely(bodies[i], dt_s);
+    }
+    for (const std::size_t i : by_bullet) CorrectPlace(bodies[i], dt_s);
+    if (may_touch) PullIn(commands, step + 1);
   }
-  return clearance->IsClear(boxes);
 }
 
-/// Flies each body through the tick by itself.
-void World::Impl::FlyFreely(std::span<const Actuation> commands) {
-  FlyInLanes(commands);
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (bodies[i].model->rotors() == nullptr) FlyAlone(bodies[i], commands[i]);
+/// True if bodies are so close that Bullet could make a contact in this step, or if it still keeps one.
+bool World::Impl::MayTouch() {
+  if (look == LookForContacts::kAlways || !contacts.kept().empty()) return true;
+  for (const std::size_t i : by_bullet) boxes[i] = BoxAround(bodies[i]);
+  return clearance->DoMeet(boxes);
 }
 
-/// Flies the bodies with rotors through the tick.
+/// A contact may throw a body out of its box. If it did after this many steps, Bullet gets those that the body may
+/// reach now.
+void World::Impl::PullIn(std::span<const Actuation> commands, int steps) {
+  bool was_thrown = false;
+  for (const std::size_t i : by_bullet) {
+    const Clearance::Box now = BoxAround(bodies[i]);
+    Clearance::Box& box = swept_boxes[i];
+    if ((now.low >= box.low).all() && (now.high <= box.high).all()) continue;
+    const Clearance::Box next = SweptBoxOf(i, Now(*bodies[i].rigid), commands[i]);
+    box = {box.low.min(next.low), box.high.max(next.high)};
+    was_thrown = true;
+  }
+  if (!was_thrown) return;
+  clearance->Look(swept_boxes);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (by[i] == By::kBullet || !clearance->MetSomething(i)) continue;
+    GiveTo(By::kItself, i);
+    FlyAlone(bodies[i], commands[i], steps);
+    GiveTo(By::kBullet, i);
+  }
+}
+
+void World::Impl::FlyAlone(Body& body, const Actuation& command, int steps) {
+  for (int step = 0; step < steps; ++step) {
+    PushBody(body, command, Around(step));
+    StepFreely(body, dt_s);
+    CorrectPlace(body, dt_s);
+  }
+}
+
+/// Flies the bodies with rotors that touch nothing through the tick.
 void World::Impl::FlyInLanes(std::span<const Actuation> commands) {
-  if (!in_lanes) TakeFromBullet();
   const double t_s = Around(0).t_s;
   for (std::size_t k = 0; k < with_rotors.size(); ++k) {
     const std::size_t i = with_rotors[k];
+    if (by[i] != By::kLanes) continue;
     const Eigen::Vector4d remaining = bodies[i].model->rotors()->Remaining(t_s);
     for (int r = 0; r < 4; ++r) {
       rotor_bodies->At(k, RotorField::kCommand + r) = commands[i][static_cast<std::size_t>(r)];
@@ -166,54 +257,10 @@ void World::Impl::FlyInLanes(std::span<const Actuation> commands) {
   rotor_bodies->Fly({.dt_s = dt_s, .wind_W = wind_W});
 }
 
-void World::Impl::FlyAlone(Body& body, const Actuation& command) {
-  for (int step = 0; step < steps_per_tick; ++step) {
-    PushBody(body, command, Around(step));
-    StepFreely(*body.rigid, dt_s);
-    CorrectPlace(body, dt_s);
-  }
-}
-
-/// Flies the bodies through the tick step by step, with contacts where there may be some.
-void World::Impl::FlyByBullet(std::span<const Actuation> commands) {
-  if (in_lanes) GiveToBullet();
-  for (int step = 0; step < steps_per_tick; ++step) {
-    const Surroundings around = Around(step);
-    for (std::size_t i = 0; i < bodies.size(); ++i) PushBody(bodies[i], commands[i], around);
-    if (MayTouch()) {
-      scene.Step(dt_s);
-      any_contact = contacts.Update(scene.dispatcher(), tick, bodies);
-      ++steps_with_contacts;
-    } else {
-      for (Body& body : bodies) StepFreely(*body.rigid, dt_s);
-    }
-    for (Body& body : bodies) CorrectPlace(body, dt_s);
-  }
-}
-
-void World::Impl::TakeFromBullet() {
-  for (std::size_t k = 0; k < with_rotors.size(); ++k) MoveOutOfBullet(bodies[with_rotors[k]], *rotor_bodies, k);
-  in_lanes = true;
-}
-
-void World::Impl::GiveToBullet() {
-  for (std::size_t k = 0; k < with_rotors.size(); ++k) MoveIntoBullet(*rotor_bodies, k, bodies[with_rotors[k]]);
-  in_lanes = false;
-}
-
-/// True if bodies are so close that Bullet could make a contact in this step, or if it still keeps one.
-bool World::Impl::MayTouch() {
-  if (look == LookForContacts::kAlways || any_contact) return true;
-  for (std::size_t i = 0; i < bodies.size(); ++i) boxes[i] = BoxAround(*bodies[i].rigid, bodies[i].reach_of_contacts_m);
-  return !clearance->IsClear(boxes);
-}
-
 void World::Impl::EndTick() {
   ++tick;
-  std::size_t in_rotor_bodies = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const bool is_in_lanes = in_lanes && bodies[i].model->rotors() != nullptr;
-    Motion now = is_in_lanes ? Now(*rotor_bodies, in_rotor_bodies++) : Now(*bodies[i].rigid);
+    Motion now = by[i] == By::kLanes ? Now(*rotor_bodies, lane_of[i]) : Now(*bodies[i].rigid);
     Motion& state = bodies[i].state;
     if (!IsFinite(now)) throw std::runtime_error(At(tick, i) + "its state is not finite");
     if (now.q_WB.dot(state.q_WB) < 0) now.q_WB.coeffs() *= -1;  // q and -q are the same rotation: take the nearer one

@@ -40,7 +40,7 @@ class World {
   /// Contacts begun so far.
   const Contacts& contacts() const;
   std::int64_t collisions() const { return contacts().total(); }
-  /// Physics steps so far at which Bullet looked for contacts.
+  /// Physics steps so far at which Bullet looked for contacts, of all bodies or of some.
   std::int64_t steps_with_contacts() const;
 
  private:

@@ -46,7 +46,10 @@ Body MakeBody(const Experiment& experiment, const AgentConfig& agent) {
   body.rigid->setUserIndex(agent.id);
   body.reach_of_contacts_m = ReachOfContacts_m(*body.shape);
   body.swept = MakeSweptBody(*body.model, experiment.physics.gravity_m_per_s2, body.reach_of_contacts_m);
-  if (!body.model->feels_gravity()) body.rigid->setFlags(body.rigid->getFlags() | BT_DISABLE_WORLD_GRAVITY);
+  if (body.model->feels_gravity())
+    body.rigid->setGravity({0, 0, -experiment.physics.gravity_m_per_s2});
+  else
+    body.rigid->setFlags(body.rigid->getFlags() | BT_DISABLE_WORLD_GRAVITY);
   if (!body.model->touches_ground()) {
     body.rigid->setLinearFactor({1, 1, 0});
     body.rigid->setAngularFactor({0, 0, 1});
@@ -67,6 +70,8 @@ Motion Now(const btRigidBody& rigid) {
   return now;
 }
 
+Clearance::Box BoxAround(const Body& body) { return BoxAround(*body.rigid, body.reach_of_contacts_m); }
+
 Clearance::Box BoxAround(const btRigidBody& rigid, double reach_m) {
   btVector3 low, high;
   rigid.getAabb(low, high);
@@ -86,7 +91,8 @@ void PushBody(Body& body, const Actuation& command, const Surroundings& around) 
   body.v_before_W = body.rigid->getLinearVelocity();
 }
 
-void StepFreely(btRigidBody& rigid, double dt_s) {
+void StepFreely(Body& body, double dt_s) {
+  btRigidBody& rigid = *body.rigid;
   const btVector3 of_contacts(0, 0, 0);  // the solver adds this, too: -0 + 0 is 0
   rigid.applyGravity();
   const btVector3 dv_W = rigid.getTotalForce() * rigid.getInvMass() * dt_s;

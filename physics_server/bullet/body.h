@@ -34,13 +34,14 @@ double ReachOfContacts_m(const btCollisionShape& shape);
 
 /// The body's bounding box, with `reach_m` added on every side: outside of it the body gets no contact point.
 Clearance::Box BoxAround(const btRigidBody& rigid, double reach_m);
+Clearance::Box BoxAround(const Body& body);  ///< by its own reach
 
 /// Begins a step: the body's model pushes it, as `command` says.
 void PushBody(Body& body, const Actuation& command, const Surroundings& around);
 
 /// One step of a body that touches nothing: gravity, forces, torques, the gyroscopic term, then the move, in the order
 /// and with the rounding errors of btDiscreteDynamicsWorld and its solver.
-void StepFreely(btRigidBody& rigid, double dt_s);
+void StepFreely(Body& body, double dt_s);
 
 /// Ends a step: takes back what Bullet puts the body ahead by.
 void CorrectPlace(Body& body, double dt_s);

@@ -22,17 +22,20 @@ constexpr int kObstacleIndex = -1;  // the first obstacle; the next is one less,
 class ContactCounter {
  public:
   explicit ContactCounter(std::size_t bodies);
-  /// To be called after each step. `tick`: the one before the step; `bodies`: the agents', by id - 1. Returns true if
-  /// any two bodies are so close that Bullet keeps contact points for them.
-  bool Update(btDispatcher& dispatcher, std::int64_t tick, std::span<const Body> bodies);
+  using Pair = std::pair<int, int>;  ///< user indices, in order; at least one is an agent's
+
+  /// To be called after each step. `tick`: the one before the step; `bodies`: the agents', by id - 1.
+  void Update(btDispatcher& dispatcher, std::int64_t tick, std::span<const Body> bodies);
   const Contacts& begun() const { return begun_; }
+  /// Those that are so close that Bullet kept contact points for them after the last step.
+  std::span<const Pair> kept() const { return kept_; }
 
  private:
-  using Pair = std::pair<int, int>;  // user indices, in order; at least one is an agent's
+  void Begin(const Pair& pair, std::int64_t tick, std::span<const Body> bodies, bool tells);
 
-  void Begin(const Pair& pair, std::int64_t tick, std::span<const Body> bodies);
-
-  std::vector<Pair> lasting_, now_;  // sorted; buffers with capacity, so that a step allocates nothing
+  // Buffers with capacity, so that a step allocates nothing.
+  std::vector<Pair> kept_;
+  std::vector<Pair> lasting_, now_;  // sorted
   Contacts begun_;
 };
 

@@ -59,6 +59,8 @@ Scene::Scene(const Experiment& experiment) : do_agents_collide_(experiment.physi
 }
 
 void Scene::Add(Body& body) {
+  // Bullet numbers bodies as they come, and takes pairs in the order of these numbers.
+  broadphase_.m_gid = 1 + static_cast<int>(obstacles_.size()) + body.rigid->getUserIndex() - 1;
   const int ground_if_touched = body.model->touches_ground() ? kGround : 0;
   world_.addRigidBody(body.rigid.get(), kAgents, ground_if_touched | (do_agents_collide_ ? kAgents | kObstacles : 0));
 }

@@ -11,15 +11,18 @@
 
 namespace mascot {
 
-/// The Bullet world: the ground, the obstacles and the bodies that are added to it.
+/// The Bullet world: the ground, the obstacles, and those bodies that are in it now. What it does with them depends
+/// neither on when they came nor on which others are in it, as long as these do not touch them.
 class Scene {
  public:
   explicit Scene(const Experiment& experiment);
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  /// Adds a body, which must outlive the scene.
+  /// Adds a body, which must outlive the scene, or be removed.
   void Add(Body& body);
+  /// Removes a body that touches nothing.
+  void Remove(Body& body) { world_.removeRigidBody(body.rigid.get()); }
   /// Flies all bodies that were added through one step.
   void Step(double dt_s) { world_.stepSimulation(dt_s, 0); }
   btDispatcher& dispatcher() { return dispatcher_; }

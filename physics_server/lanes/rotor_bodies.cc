@@ -31,6 +31,8 @@ RotorBodies::RotorBodies(std::size_t bodies, int max_lanes) : bodies_(bodies) {
   fly_ = kernel.fly;
   const std::size_t blocks = (bodies + lanes_ - 1) / lanes_;
   numbers_.resize(blocks * RotorField::kCount * lanes_);
+  is_flown_.resize(bodies);
+  flown_.resize(blocks);
   for (std::size_t i = 0; i < blocks * lanes_; ++i)  // also those that only fill up the last block
     for (const int field :
          std::initializer_list<int>{RotorField::kR, RotorField::kR + 4, RotorField::kR + 8, RotorField::kInertia,
@@ -38,8 +40,18 @@ RotorBodies::RotorBodies(std::size_t bodies, int max_lanes) : bodies_(bodies) {
       At(i, field) = 1;
 }
 
+void RotorBodies::SetFlown(std::size_t body, bool is_flown) {
+  flown_[body / lanes_] += static_cast<int>(is_flown) - static_cast<int>(is_flown_[body] != 0);
+  is_flown_[body] = is_flown;
+}
+
 void RotorBodies::Fly(const TickOfRotorBodies& tick) {
-  fly_(numbers_.data(), numbers_.size() / (RotorField::kCount * lanes_), tick);
+  for (std::size_t first = 0; first < flown_.size();) {
+    std::size_t end = first;
+    while (end < flown_.size() && flown_[end] > 0) ++end;
+    if (end > first) fly_(numbers_.data() + first * RotorField::kCount * lanes_, end - first, tick);
+    first = end + 1;
+  }
 }
 
 std::vector<int> LanesOfRotors() {

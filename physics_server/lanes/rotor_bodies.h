@@ -49,7 +49,9 @@ class RotorBodies {
   std::size_t size() const { return bodies_; }
   double& At(std::size_t body, int field) { return numbers_[Place(body, field)]; }
   double At(std::size_t body, int field) const { return numbers_[Place(body, field)]; }
-  /// Flies all bodies through a tick.
+  /// Whether Fly() is to fly this body. At first it is not.
+  void SetFlown(std::size_t body, bool is_flown);
+  /// Flies these bodies through a tick. The others' numbers say nothing afterwards.
   void Fly(const TickOfRotorBodies& tick);
 
  private:
@@ -61,6 +63,8 @@ class RotorBodies {
   std::size_t lanes_;
   void (*fly_)(double* numbers, std::size_t blocks, const TickOfRotorBodies& tick);
   std::vector<double> numbers_;  // by block of as many bodies as there are lanes, then field, then lane
+  std::vector<char> is_flown_;   // by body
+  std::vector<int> flown_;       // by block: how many of its bodies are flown
 };
 
 /// Flies `blocks` blocks of `lanes` bodies through a tick.

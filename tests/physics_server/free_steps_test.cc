@@ -145,6 +145,65 @@ TEST(FreeSteps, LeaveStackedBodiesToBullet) {
     EXPECT_LT((twins.ours.State(id).p_WB - twins.bullet.State(id).p_WB).norm(), 1e-3) << id;
 }
 
+// Bullet gets only those bodies that may touch something, and they come and go. What it does with some must not depend
+// on the others.
+TEST(FreeSteps, OfSomeDoNotDependOnOthersFarAway) {
+  constexpr int kCount = 8;
+  std::int64_t contacts = 0, alone = 0;
+  for (unsigned seed = 300; seed < 320; ++seed) {
+    Experiment one = Swarm(seed, kCount), other = Swarm(seed + 1000, kCount);
+    one.physics.rotor_failures.clear();  // of both, by numbers that are not those of the team
+    one.physics.wind = other.physics.wind = {};
+    Experiment both = one;
+    both.agents.clear();
+    for (int i = 0; i < kCount; ++i) {
+      both.agents.push_back(one.agents[static_cast<std::size_t>(i)]);
+      both.agents.push_back(other.agents[static_cast<std::size_t>(i)]);
+      both.agents.back().p_W.x() += 1000;
+    }
+    for (int id = 1; id <= 2 * kCount; ++id) both.agents[static_cast<std::size_t>(id - 1)].id = id;
+    World alone_world(one), world(both);
+    std::mt19937_64 random(seed);
+    for (int tick = 0; tick < 300; ++tick) {
+      const std::vector<Actuation> commands = RandomCommands(one, random), of_others = RandomCommands(other, random);
+      std::vector<Actuation> of_all;
+      for (std::size_t i = 0; i < kCount; ++i) of_all.insert(of_all.end(), {commands[i], of_others[i]});
+      alone_world.Step(commands);
+      world.Step(of_all);
+      for (int id = 1; id <= kCount; ++id)
+        ASSERT_TRUE(alone_world.State(id).p_WB == world.State(2 * id - 1).p_WB &&
+                    alone_world.State(id).q_WB.coeffs() == world.State(2 * id - 1).q_WB.coeffs())
+            << "seed " << seed << ", tick " << tick << ", agent " << id;
+    }
+    contacts += alone_world.collisions();
+    alone += world.collisions() - alone_world.collisions();
+  }
+  EXPECT_GT(contacts, 50);
+  EXPECT_GT(alone, 20) << "the others touch each other, and come and go, too";
+}
+
+TEST(FreeSteps, SeeABodyThatIsThrownOutOfItsBox) {
+  // A heavy body takes a light one, which lay still, along before itself. In the same tick that hits another one, to
+  // which the heavy body does not come.
+  Airframe light = Built("crazyflie");
+  light.size_m.x() = 0.3;
+  const double speed = 30, half_m = Built("mascot").size_m.x() / 2;
+  const double front_m = -0.2, reached_m = front_m + speed * 0.01;
+  int beyond_reach = 0;
+  for (double rear_m = 0.2; rear_m < 0.45; rear_m += 0.01) {
+    Experiment e = Bodies("quadrotor", {{front_m - half_m, 0, 10}, {0, 0, 10}, {rear_m + 0.15, 0, 10}}, light);
+    e.agents[0].airframe = Built("mascot");
+    e.agents[0].v_W = {speed, 0, 0};
+    Twins twins(e);
+    const std::vector<Actuation> nothing(3);
+    twins.Step(nothing);
+    EXPECT_EQ(twins.ours.contacts().agents, twins.bullet.contacts().agents) << rear_m;
+    EXPECT_TRUE(twins.Same()) << rear_m;
+    beyond_reach += twins.ours.contacts().agents == 2 && rear_m > std::max(reached_m, 0.15) + 0.05;
+  }
+  EXPECT_GT(beyond_reach, 5);
+}
+
 TEST(FreeSteps, AreTakenAgainWhenBodiesHaveSeparated) {
   Experiment e = Bodies("double_integrator", {{-1, 0, 10}, {1, 0, 10}});
   e.agents[0].v_W = {2, 0, 0};
