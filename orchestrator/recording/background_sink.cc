@@ -54,11 +54,15 @@ void BackgroundSink::Add(const FlownRow& row) {
   std::unique_lock lock(mutex_);
   taken_.wait(lock, [this] { return count_ < rows_.size() || failure_; });
   if (failure_) std::rethrow_exception(failure_);
+  const Row* const received = row.received();
+  if (received != nullptr && !has_room_for_received_) {  // the first row: all get the room that it takes
+    for (const std::unique_ptr<Kept>& each : rows_) each->received = *received;
+    has_room_for_received_ = true;
+  }
   Kept& kept = *rows_[(first_ + count_) % rows_.size()];
   lock.unlock();  // the thread does not look at this one yet
   kept.tick = row.tick();
   kept.decoded = row.decoded();
-  const Row* const received = row.received();
   kept.is_received = received != nullptr;
   if (received != nullptr) kept.received = *received;
   lock.lock();

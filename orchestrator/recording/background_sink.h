@@ -50,6 +50,7 @@ class BackgroundSink final : public RowSink {
   std::condition_variable added_, taken_;
   std::vector<std::unique_ptr<Kept>> rows_;  // a ring
   std::size_t first_ = 0, count_ = 0;        // of rows_, those that the sink does not have yet
+  bool has_room_for_received_ = false;
   bool is_finishing_ = false, is_ending_ = false;
   std::exception_ptr failure_;
   std::thread thread_;  // last: it uses the others
