@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <utility>
 
 #include "agent/laws/laws.h"
@@ -19,10 +18,7 @@ std::int64_t CommandedByAcceleration(const Experiment& experiment) {
 
 }  // namespace
 
-Metrics::Metrics(const Experiment& experiment)
-    : experiment_(experiment),
-      min_separation2_(std::numeric_limits<double>::infinity()),
-      min_separation_along_axes2_(min_separation2_) {
+Metrics::Metrics(const Experiment& experiment) : experiment_(experiment) {
   const SuppressedPythonOutput suppressed;  // the laws run a second time; discard what they print
   if (experiment.output.fidelity) ideal_.emplace(experiment);
   accelerated_ = CommandedByAcceleration(experiment);
@@ -45,7 +41,7 @@ void Metrics::Adopt(std::shared_ptr<const Experiment> now) {
 
 void Metrics::Add(const DecodedRow& row) {
   MeasureControl(row.commands);
-  MeasureSeparation(row.motions);
+  separation_.Add(row.motions, axes_);
   MeasureFidelity(row.motions);
   MeasurePath(row.motions);
   ++rows_;
@@ -64,23 +60,6 @@ void Metrics::MeasureControl(std::span<const Command> commands) {
     is_feasible = is_feasible && (command.flags & kSafetyInfeasible) == 0;
   }
   infeasible_ticks_ += !is_feasible;
-}
-
-/// Updates the smallest separations; that along axes is never the larger one. Agents are sorted by x, so that the inner
-/// loop ends where x alone differs by more.
-void Metrics::MeasureSeparation(std::span<const Motion> motions) {
-  by_x_.clear();
-  for (std::size_t i = 0; i < motions.size(); ++i) by_x_.push_back({motions[i].p_WB, axes_[i] == Axes::kXy});
-  std::sort(by_x_.begin(), by_x_.end(), [](const Place& a, const Place& b) { return a.p_W.x() < b.p_W.x(); });
-  for (std::size_t i = 0; i < by_x_.size(); ++i)
-    for (std::size_t j = i + 1; j < by_x_.size(); ++j) {
-      const Eigen::Vector3d dp_W = by_x_[j].p_W - by_x_[i].p_W;
-      if (dp_W.x() * dp_W.x() >= min_separation2_) break;
-      const double in_space2 = dp_W.squaredNorm();
-      const double along_axes2 = by_x_[i].in_plane || by_x_[j].in_plane ? dp_W.head<2>().squaredNorm() : in_space2;
-      min_separation2_ = std::min(min_separation2_, in_space2);
-      min_separation_along_axes2_ = std::min(min_separation_along_axes2_, along_axes2);
-    }
 }
 
 // A law may fail on ideal bodies only, for example because two agents are at exactly the same position. The run goes
@@ -121,8 +100,8 @@ Measured Metrics::Result() const {
   result.tilt_limited_fraction = static_cast<double>(tilt_limited_) / samples;
   result.rotor_limited_fraction = static_cast<double>(rotor_limited_) / samples;
   if (experiment_.size() > 1) {
-    result.min_separation_m = std::sqrt(min_separation2_);
-    result.min_separation_along_axes_m = std::sqrt(min_separation_along_axes2_);
+    result.min_separation_m = separation_.in_space_m();
+    result.min_separation_along_axes_m = separation_.along_axes_m();
   }
   if (has_safety_) {
     result.filtered_fraction = static_cast<double>(filtered_) / samples;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
+#include "orchestrator/measuring/separation.h"
 #include "orchestrator/team/ideal_team.h"
 #include "orchestrator/team/row.h"
 
@@ -53,7 +54,6 @@ class Metrics {
  private:
   void Take(const Experiment& experiment);
   void MeasureControl(std::span<const Command> commands);
-  void MeasureSeparation(std::span<const Motion> motions);
   void MeasureFidelity(std::span<const Motion> motions);
   void StepIdeal();
   void MeasurePath(std::span<const Motion> motions);
@@ -68,18 +68,12 @@ class Metrics {
   std::int64_t saturated_ = 0, tilt_limited_ = 0, rotor_limited_ = 0;
   bool has_safety_ = false;  // some agent has, or had, law.safety
   std::int64_t filtered_ = 0, infeasible_ticks_ = 0;
-  double min_separation2_, min_separation_along_axes2_;
+  Separation separation_;
   double squared_deviation_ = 0;
   double max_deviation2_ = 0;
   double path_m_ = 0;
   std::vector<Eigen::Vector3d> last_p_W_;
-  /// Where an agent is, and whether its law is in the plane alone.
-  struct Place {
-    Eigen::Vector3d p_W;
-    bool in_plane = false;
-  };
-  std::vector<Axes> axes_;   // of the agents' laws, by id - 1
-  std::vector<Place> by_x_;  // scratch
+  std::vector<Axes> axes_;  // of the agents' laws, by id - 1
 };
 
 }  // namespace mascot
