@@ -441,7 +441,7 @@ RunPhases::View DdsRun::Look() const {
 
 void DdsRun::Do(const RunPhases::Actions& actions) {
   if (actions.say_ready) links_->SayReady(Pace());
-  if (actions.ask_to_stop)
+  if (actions.ask_to_stop && links_)  // else nobody can be asked yet: processes are being started
     links_->Ask(Ask::kStop, phases_.signal() != 0 ? strsignal(phases_.signal()) : "asked to stop");
   if (actions.ask_to_end) AskToEnd();
   if (actions.kill && launcher_) launcher_->Kill();
