@@ -518,7 +518,7 @@ TEST(Faults, ACtrlCBeforeTheFirstTickEndsToo) {
   Up up = Endless(folder, {"--set", "agents.override=[{id = 1, host = \"external\"}]"});
   ASSERT_TRUE(Until([&] { return up.Said("waiting for: agent --id 1"); }));
   up.Signal(SIGINT);
-  EXPECT_EQ(up.Wait(), 130);
+  EXPECT_EQ(up.Wait(), 130) << up.err();
   EXPECT_TRUE(NothingIsLeft(up));
 }
 

@@ -188,6 +188,7 @@ void DdsRun::Join() {
   children_.Share(janitor_->lifeline());
   for (const int descriptor : lock_->descriptors()) children_.Share(descriptor);
   Spawn();
+  if (!phases_.in_order()) return;  // a signal came first; End() ends whom Spawn() has started
   LowerPriority();
   auto wake = [this] { stop_.Wake(); };
   if (with_server_) discovery_server_.emplace(Options("discovery_server", DiscoveryRole::kServer), [] {});
