@@ -130,6 +130,7 @@ class DdsRun {
   std::optional<DomainLock> lock_;
   std::optional<Janitor> janitor_;
   std::pair<std::string, std::string> last_words_;  // a file, and what it gets if we are killed
+  bool joins_ = false;  // this process has begun to join the domain
   bool library_hangs_ = false;
   ChildLogs logs_;
   Children children_;
@@ -189,6 +190,7 @@ void DdsRun::Join() {
   for (const int descriptor : lock_->descriptors()) children_.Share(descriptor);
   Spawn();
   if (!phases_.in_order()) return;  // a signal came first; End() ends whom Spawn() has started
+  joins_ = true;
   LowerPriority();
   auto wake = [this] { stop_.Wake(); };
   if (with_server_) discovery_server_.emplace(Options("discovery_server", DiscoveryRole::kServer), [] {});
@@ -530,7 +532,7 @@ bool DdsRun::End() {
   if (phases_.in_order() || others) AwaitChildren();
   children_.Stop(2s);
   KillDescendants({janitor_ ? janitor_->process() : 0});
-  const bool is_half_made = janitor_ && !domain_;
+  const bool is_half_made = joins_ && !domain_;
   CallLibrary([this] { LeaveDomain(); });
   if (library_hangs_) return false;
   if (is_half_made) return true;  // a participant that failed to join has files open until our end: the janitor sweeps
