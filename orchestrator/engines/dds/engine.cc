@@ -130,7 +130,7 @@ class DdsRun {
   std::optional<DomainLock> lock_;
   std::optional<Janitor> janitor_;
   std::pair<std::string, std::string> last_words_;  // a file, and what it gets if we are killed
-  bool joins_ = false;  // this process has begun to join the domain
+  bool joins_ = false;                              // this process has begun to join the domain
   bool library_hangs_ = false;
   ChildLogs logs_;
   Children children_;
