@@ -40,7 +40,6 @@ Agent::Agent(const Experiment& experiment, int id)
       rate_hz_(experiment.control.rate_hz),
       holds_altitude_(config_->law.axes == Axes::kXy),
       law_(MakeLaw(experiment, id)),
-      controller_(MakeController(experiment, id)),
       driven_by_(config_->traits().driven_by),
       neighbours_(experiment, id),
       safety_(experiment, id),
@@ -144,15 +143,6 @@ Command Agent::Want(std::int64_t tick, const Motion& self, std::span<const Sampl
   else
     LimitAcceleration(w_W, command);
   v_integrated_W_ = command.v_limited_W;
-  return command;
-}
-
-Command Agent::Decide(std::int64_t tick, const Motion& self, std::span<const Sample> samples) {
-  Command command = Want(tick, self, samples);
-  const Controller::Output output =
-      controller_->Actuate(measured_, driven_by_ == Wanted::kVelocity ? command.v_limited_W : command.a_limited_W);
-  command.actuator = output.actuator;
-  command.flags |= output.flags;
   return command;
 }
 

@@ -13,23 +13,25 @@
 
 namespace mascot {
 
-/// One agent without its communication: it decides what the agent hears and measures, and runs its law, its limits and
-/// its low-level stack. Both engines run this class. The experiment must outlive it.
+/// One agent without its communication and its low-level stack (LowLevel): it decides what the agent hears and
+/// measures, and runs its law and its limits. Both engines run this class. The experiment must outlive it.
 class Agent {
  public:
   Agent(const Experiment& experiment, int id);
 
   int id() const { return id_; }
-  /// Call it when events have changed the experiment: from the next Want() or Decide() on, the experiment is `now`.
+  /// Call it when events have changed the experiment: from the next Want() on, the experiment is `now`.
   void Adopt(std::shared_ptr<const Experiment> now);
   /// Evaluates the law and its limits: fills in the command's accelerations, velocities and their flags. `self` is the
   /// true motion at `tick`, `samples` are what the agents in graph.HeardBy(id) sent at this tick, in that order. Ticks
   /// increase from call to call. Throws std::runtime_error naming agent and tick if the law fails or its answer is not
   /// finite.
   Command Want(std::int64_t tick, const Motion& self, std::span<const Sample> samples);
-  /// Want() and then the low-level stack: the complete command. Throws as Want() does.
-  Command Decide(std::int64_t tick, const Motion& self, std::span<const Sample> samples);
-  /// The message that the law sends after the last Want() or Decide(); empty: none. Valid until the next call.
+  /// What the low-level stack gets for `command`, which the last Want() returned. Valid until the next call.
+  Controller::Input Driven(const Command& command) const {
+    return {&measured_, driven_by_ == Wanted::kVelocity ? command.v_limited_W : command.a_limited_W};
+  }
+  /// The message that the law sends after the last Want(); empty: none. Valid until the next call.
   std::span<const double> message() const { return message_; }
   /// Counters of the edges from graph.HeardBy(id), in that order.
   std::vector<EdgeCount> counts() const { return neighbours_.counts(); }
@@ -53,7 +55,6 @@ class Agent {
   bool holds_altitude_;
   std::shared_ptr<const Experiment> law_made_for_;  // what law_ may refer to; null: the experiment of the start
   std::unique_ptr<Law> law_;
-  std::unique_ptr<Controller> controller_;
   Wanted driven_by_;
   Wanted wanted_ = Wanted::kAcceleration;  // what the last AskLaw() returned
   Neighbours neighbours_;

@@ -6,7 +6,7 @@
 
 namespace mascot {
 
-using ControllerFactory = std::unique_ptr<Controller>(const Experiment& experiment, int id);
+using ControllerFactory = std::unique_ptr<Controller>(const Experiment& experiment, std::span<const int> ids);
 ControllerFactory MakeQuadrotorController, MakeDoubleIntegratorController, MakeSingleIntegratorController,
     MakeUnicycleController;  // each in agent/controllers/<model>.cc
 
@@ -26,11 +26,11 @@ constexpr ControllerEntry kControllers[] = {
 
 }  // namespace
 
-std::unique_ptr<Controller> MakeController(const Experiment& experiment, int id) {
-  const std::string& model = experiment.agent(id).model;
+std::unique_ptr<Controller> MakeController(const Experiment& experiment, std::span<const int> ids) {
+  const std::string& model = experiment.agent(ids.front()).model;
   const ControllerEntry* entry = std::ranges::find(kControllers, model, &ControllerEntry::model);
   if (entry == std::end(kControllers)) throw std::invalid_argument("no controller for the model: " + model);
-  return entry->make(experiment, id);
+  return entry->make(experiment, ids);
 }
 
 }  // namespace mascot

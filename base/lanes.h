@@ -44,10 +44,27 @@ MASCOT_IN_LANES Real Load(const double* numbers) {
 MASCOT_IN_LANES void Store(Real all, double* numbers) { std::memcpy(numbers, &all, sizeof all); }
 MASCOT_IN_LANES Real InEach(double number) { return number - Real{}; }  // -0 stays -0
 
+/// The fields of one block of LaneNumbers (base/lane_numbers.h): those of `kLanes` things.
+class Block {
+ public:
+  explicit Block(double* numbers) : numbers_(numbers) {}
+  Real Get(int field) const { return Load(numbers_ + field * kLanes); }
+  void Set(int field, Real value) const { Store(value, numbers_ + field * kLanes); }
+
+ private:
+  double* numbers_;
+};
+
 MASCOT_IN_LANES bool AllOf(Mask mask) {
   for (std::ptrdiff_t lane = 0; lane < kLanes; ++lane)
     if (mask[lane] == 0) return false;
   return true;
+}
+
+MASCOT_IN_LANES bool AnyOf(Mask mask) {
+  for (std::ptrdiff_t lane = 0; lane < kLanes; ++lane)
+    if (mask[lane] != 0) return true;
+  return false;
 }
 
 /// As std::max and std::min take them: `a` where they are equal or one is NaN.

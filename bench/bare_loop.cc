@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "agent/controller.h"
 #include "agent/laws/laws.h"
+#include "agent/low_level.h"
 #include "physics_server/world.h"
 
 namespace {
@@ -30,14 +30,18 @@ int main(int argc, char** argv) {
                            "\nrandom = { min_m = [-99, -99, 1], max_m = [99, 99, " + top + "] }\n";
   const Experiment experiment = LoadExperiment(Section::FromText(text, "bench.toml"), "bench");
   World world(experiment, World::LookForContacts::kAlways);
-  std::vector<std::unique_ptr<Controller>> controllers;
-  for (int id = 1; id <= agents; ++id) controllers.push_back(MakeController(experiment, id));
+  LowLevel low_level(experiment, {1, agents});
+  std::vector<Motion> motions(static_cast<std::size_t>(agents));
+  std::vector<Controller::Input> inputs;
+  for (const Motion& motion : motions) inputs.push_back({&motion, Eigen::Vector3d::Zero()});
+  std::vector<Command> answers(motions.size());
   std::vector<Actuation> commands(static_cast<std::size_t>(agents));
   const auto start = WallClock::now();
   const std::chrono::duration<double> limit(std::atof(argv[2]));
   while (WallClock::now() - start < limit) {
-    for (std::size_t i = 0; i < controllers.size(); ++i)
-      commands[i] = controllers[i]->Actuate(world.State(static_cast<int>(i) + 1), Eigen::Vector3d::Zero()).actuator;
+    for (int id = 1; id <= agents; ++id) motions[static_cast<std::size_t>(id - 1)] = world.State(id);
+    low_level.Actuate(inputs, answers);
+    for (std::size_t i = 0; i < commands.size(); ++i) commands[i] = answers[i].actuator;
     world.Step(commands);
   }
   const std::chrono::duration<double> wall = WallClock::now() - start;

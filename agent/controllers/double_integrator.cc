@@ -4,17 +4,17 @@
 namespace mascot {
 namespace {
 
-class DoubleIntegratorController final : public Controller {
+class DoubleIntegratorStack {
  public:
-  DoubleIntegratorController(PdGains altitude, double height_m, bool holds_altitude)
-      : altitude_(altitude), height_m_(height_m), holds_altitude_(holds_altitude) {}
+  explicit DoubleIntegratorStack(const AgentConfig& agent)
+      : altitude_(agent.airframe.altitude), height_m_(agent.p_W.z()), holds_altitude_(agent.law.axes == Axes::kXy) {}
 
-  Output Actuate(const Motion& self, const Eigen::Vector3d& a_W) override {
+  Actuation Actuate(const Motion& self, const Eigen::Vector3d& a_W) const {
     Eigen::Vector3d f_W = kDoubleIntegratorMass_kg * a_W;
     if (holds_altitude_)
       f_W.z() =
           kDoubleIntegratorMass_kg * (altitude_.kp * (height_m_ - self.p_WB.z()) + altitude_.kd * (0 - self.v_WB.z()));
-    return {.actuator = {f_W.x(), f_W.y(), f_W.z(), 0}, .flags = 0};
+    return {f_W.x(), f_W.y(), f_W.z(), 0};
   }
 
  private:
@@ -25,10 +25,10 @@ class DoubleIntegratorController final : public Controller {
 
 }  // namespace
 
-std::unique_ptr<Controller> MakeDoubleIntegratorController(const Experiment& experiment, int id) {
-  const AgentConfig& agent = experiment.agent(id);
-  return std::make_unique<DoubleIntegratorController>(agent.airframe.altitude, agent.p_W.z(),
-                                                      agent.law.axes == Axes::kXy);
+std::unique_ptr<Controller> MakeDoubleIntegratorController(const Experiment& experiment, std::span<const int> ids) {
+  std::vector<DoubleIntegratorStack> stacks;
+  for (const int id : ids) stacks.emplace_back(experiment.agent(id));
+  return std::make_unique<EachByItself<DoubleIntegratorStack>>(std::move(stacks));
 }
 
 }  // namespace mascot

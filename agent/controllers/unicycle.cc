@@ -13,16 +13,16 @@
 namespace mascot {
 namespace {
 
-class UnicycleController final : public Controller {
+class UnicycleStack {
  public:
-  explicit UnicycleController(double look_ahead_m) : look_ahead_m_(look_ahead_m) {}
+  explicit UnicycleStack(const AgentConfig& agent) : look_ahead_m_(agent.control.look_ahead_m) {}
 
-  Output Actuate(const Motion& self, const Eigen::Vector3d& u_W) override {
+  Actuation Actuate(const Motion& self, const Eigen::Vector3d& u_W) const {
     const Eigen::Vector3d forward_W = self.q_WB * Eigen::Vector3d::UnitX();
     const Eigen::Vector2d ahead = forward_W.head<2>().normalized();
     const double v = u_W.x() * ahead.x() + u_W.y() * ahead.y();
     const double w = (u_W.y() * ahead.x() - u_W.x() * ahead.y()) / look_ahead_m_;
-    return {.actuator = {v, w, 0, 0}, .flags = 0};
+    return {v, w, 0, 0};
   }
 
  private:
@@ -31,8 +31,10 @@ class UnicycleController final : public Controller {
 
 }  // namespace
 
-std::unique_ptr<Controller> MakeUnicycleController(const Experiment& experiment, int id) {
-  return std::make_unique<UnicycleController>(experiment.agent(id).control.look_ahead_m);
+std::unique_ptr<Controller> MakeUnicycleController(const Experiment& experiment, std::span<const int> ids) {
+  std::vector<UnicycleStack> stacks;
+  for (const int id : ids) stacks.emplace_back(experiment.agent(id));
+  return std::make_unique<EachByItself<UnicycleStack>>(std::move(stacks));
 }
 
 }  // namespace mascot

@@ -19,6 +19,7 @@ AgentRunner::AgentRunner(Domain& domain, const Experiment& experiment, int id, s
       id_(id),
       on_first_answer_(std::move(on_first_answer)),
       agent_(experiment, id),
+      low_level_(experiment, {id, id}),
       inbox_(id, PeersOf(experiment, id), experiment.run.mode == Mode::kRealtime),
       commands_(domain, Topic::Command(id)) {
   if (!experiment.agent(id).sends_messages) return;
@@ -57,7 +58,9 @@ void AgentRunner::TakeEvents(int events) {
 void AgentRunner::Answer(const TickInbox::CompleteTick& complete) {
   const std::int64_t tick = complete.tick;
   TakeEvents(complete.events);
-  const Command command = agent_.Decide(tick, *complete.self, complete.samples);
+  Command command = agent_.Want(tick, *complete.self, complete.samples);
+  const Controller::Input driven = agent_.Driven(command);
+  low_level_.Actuate({&driven, 1}, {&command, 1});
   if (messages_) {  // before the command: the next tick, which the command brings, needs it
     ToWire(tick, experiment_.control.rate_hz, id_, agent_.message(), message_);
     messages_->Write(message_);

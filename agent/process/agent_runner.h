@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "agent/agent.h"
+#include "agent/low_level.h"
 #include "agent/process/tick_inbox.h"
 #include "bus/bus.h"
 #include "bus/wire.h"
@@ -49,6 +50,7 @@ class AgentRunner {
 
   std::mutex mutex_;  // guards what is below except the endpoints: readers may call in different threads
   Agent agent_;
+  LowLevel low_level_;
   TickInbox inbox_;
   std::deque<std::pair<int, std::shared_ptr<const Experiment>>> events_;  // not yet adopted, by number
   std::atomic<bool> has_answered_ = false;

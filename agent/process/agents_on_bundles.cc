@@ -11,6 +11,9 @@ AgentsOnBundles::AgentsOnBundles(Domain& domain, const Experiment& experiment, A
                                  std::function<void()> on_first_answer)
     : experiment_(experiment),
       on_first_answer_(std::move(on_first_answer)),
+      low_level_(experiment, agents),
+      driven_(static_cast<std::size_t>(agents.size())),
+      commands_(driven_.size()),
       inbox_(experiment, agents),
       answers_(domain, Topic::Answers(agents)),
       bundles_(domain, Topic::Bundle(agents),
@@ -49,13 +52,16 @@ void AgentsOnBundles::Answer() {
   const std::int64_t tick = inbox_.tick();
   const int rate_hz = experiment_.control.rate_hz;
   TakeEvents(inbox_.events());
+  for (std::size_t i = 0; i < agents_.size(); ++i) {
+    const int id = agents_[i]->id();
+    commands_[i] = agents_[i]->Want(tick, inbox_.MotionOf(id), inbox_.SamplesOf(id));
+    driven_[i] = agents_[i]->Driven(commands_[i]);
+  }
+  low_level_.Actuate(driven_, commands_);
   sample_.Begin(tick);
   sample_.BeginSection();
-  for (const auto& agent : agents_) {
-    const int id = agent->id();
-    const Command command = agent->Decide(tick, inbox_.MotionOf(id), inbox_.SamplesOf(id));
-    PutCommand(tick, rate_hz, id, command, sample_.Add(kCommandBody));
-  }
+  for (std::size_t i = 0; i < agents_.size(); ++i)
+    PutCommand(tick, rate_hz, agents_[i]->id(), commands_[i], sample_.Add(kCommandBody));
   sample_.BeginSection();
   for (const auto& agent : agents_) {
     if (!experiment_.agent(agent->id()).sends_messages) continue;

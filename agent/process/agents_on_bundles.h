@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "agent/agent.h"
+#include "agent/low_level.h"
 #include "agent/process/agents_on_wire.h"
 #include "agent/process/bundle_inbox.h"
 #include "bus/bundle.h"
@@ -41,6 +42,9 @@ class AgentsOnBundles final : public AgentsOnWire {
 
   std::mutex mutex_;  // guards what is below except the endpoints: readers may call in different threads
   std::vector<std::unique_ptr<Agent>> agents_;
+  LowLevel low_level_;
+  std::vector<Controller::Input> driven_;  // by agent
+  std::vector<Command> commands_;
   BundleInbox inbox_;
   std::deque<std::pair<int, std::shared_ptr<const Experiment>>> events_;  // not yet adopted, by number
   BundleWriter sample_;

@@ -35,16 +35,15 @@ class Flight {
     TakeEvents(tick);
     for (const AgentConfig& agent : experiment_.agents)
       row_.motions[static_cast<std::size_t>(agent.id - 1)] = world_.State(agent.id);
+    team_.Decide(tick, row_.motions, row_.commands);
     for (const AgentConfig& agent : experiment_.agents) {
       const auto i = static_cast<std::size_t>(agent.id - 1);
-      row_.commands[i] = team_.Decide(agent.id, tick, row_.motions);
       row_.commands[i].v_law_W.setZero();  // as over DDS, where velocities are not sent
       row_.commands[i].v_limited_W.setZero();
       actuation_[i] = row_.commands[i].actuator;
       const std::span<const double> message = team_.message(agent.id);
       row_.messages[i].assign(message.begin(), message.end());
     }
-    team_.EndTick();
     return row_;
   }
 

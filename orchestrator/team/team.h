@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "agent/agent.h"
+#include "agent/low_level.h"
 #include "experiment/experiment.h"
 #include "orchestrator/team/exchange.h"
 
 namespace mascot {
 
-/// All agents of an experiment in one process. At each tick, call Decide or Want once per agent, then EndTick.
+/// All agents of an experiment in one process. At each tick, call Decide, or Want once per agent and then EndTick.
 class Team {
  public:
   explicit Team(const Experiment& experiment);
@@ -19,9 +20,9 @@ class Team {
   void Adopt(const std::shared_ptr<const Experiment>& now) {
     for (const auto& agent : agents_) agent->Adopt(now);
   }
-  /// Calls Agent::Decide of agent `id`. `motions`: states of all agents at this tick, by id - 1.
-  Command Decide(int id, std::int64_t tick, std::span<const Motion> motions);
-  /// Calls Agent::Want of agent `id` in the same way.
+  /// The complete commands of all agents, by id - 1. `motions`: their states at this tick. Ends the tick.
+  void Decide(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands);
+  /// Calls Agent::Want of agent `id`.
   Command Want(int id, std::int64_t tick, std::span<const Motion> motions);
   /// The message that agent `id` sent last.
   std::span<const double> message(int id) const { return agents_[static_cast<std::size_t>(id - 1)]->message(); }
@@ -30,6 +31,8 @@ class Team {
 
  private:
   std::vector<std::unique_ptr<Agent>> agents_;
+  LowLevel low_level_;
+  std::vector<Controller::Input> driven_;  // by id - 1
   Exchange exchange_;
 };
 

@@ -109,23 +109,6 @@ MASCOT_IN_LANES Matrix MatrixOf(const Rotation& q) {
       {{1.0 - (yy + zz), xy - wz, xz + wy}, {xy + wz, 1.0 - (xx + zz), yz - wx}, {xz - wy, yz + wx, 1.0 - (xx + yy)}}};
 }
 
-/// The fields of one block: those of `kLanes` bodies.
-class Block {
- public:
-  explicit Block(double* numbers) : numbers_(numbers) {}
-  Real Get(int field) const { return Load(numbers_ + field * kLanes); }
-  void Set(int field, Real value) const { Store(value, numbers_ + field * kLanes); }
-  Vector GetVector(int field) const { return {Get(field), Get(field + 1), Get(field + 2)}; }
-  void SetVector(int field, const Vector& v) const {
-    Set(field, v.x);
-    Set(field + 1, v.y);
-    Set(field + 2, v.z);
-  }
-
- private:
-  double* numbers_;
-};
-
 constexpr double kEpsilon = 2.2204460492503131e-16;  // SIMD_EPSILON
 constexpr double kMaxTurn = std::numbers::pi / 4;    // ANGULAR_MOTION_THRESHOLD: in one step
 
@@ -175,13 +158,22 @@ MASCOT_IN_LANES Matrix Turned(const Rotation& q, const Vector& w, double dt) {
   return MatrixOf(next);
 }
 
+MASCOT_IN_LANES Vector GetVector(const Block& block, int field) {
+  return {block.Get(field), block.Get(field + 1), block.Get(field + 2)};
+}
+MASCOT_IN_LANES void SetVector(const Block& block, int field, const Vector& v) {
+  block.Set(field, v.x);
+  block.Set(field + 1, v.y);
+  block.Set(field + 2, v.z);
+}
+
 /// Flies one block of bodies through a tick.
 MASCOT_IN_LANES void FlyBlock(const Block& block, const TickOfRotorBodies& tick) {
   using F = RotorField;
   const double dt = tick.dt_s;
   const Real zero = {};
-  Vector p = block.GetVector(F::kP), v = block.GetVector(F::kV), w = block.GetVector(F::kW);
-  Matrix R{{block.GetVector(F::kR), block.GetVector(F::kR + 3), block.GetVector(F::kR + 6)}};
+  Vector p = GetVector(block, F::kP), v = GetVector(block, F::kV), w = GetVector(block, F::kW);
+  Matrix R{{GetVector(block, F::kR), GetVector(block, F::kR + 3), GetVector(block, F::kR + 6)}};
   Real rotor[4], wanted[4], remaining[4], allocation[4][4];
   for (int k = 0; k < 4; ++k) {
     rotor[k] = block.Get(F::kRotors + k);
@@ -191,7 +183,7 @@ MASCOT_IN_LANES void FlyBlock(const Block& block, const TickOfRotorBodies& tick)
   }
   const Real followed = block.Get(F::kFollowed), minus_drag = -block.Get(F::kDrag);
   const Real inverse_mass = block.Get(F::kInverseMass), weight = block.Get(F::kWeight);
-  const Vector inertia = block.GetVector(F::kInertia), inverse_inertia = block.GetVector(F::kInverseInertia);
+  const Vector inertia = GetVector(block, F::kInertia), inverse_inertia = GetVector(block, F::kInverseInertia);
 
   for (const std::array<double, 3>& wind : tick.wind_W) {
     Real squared[4], wrench[4];
@@ -220,16 +212,16 @@ MASCOT_IN_LANES void FlyBlock(const Block& block, const TickOfRotorBodies& tick)
   }
 
   for (int k = 0; k < 4; ++k) block.Set(F::kRotors + k, rotor[k]);
-  block.SetVector(F::kP, p);
-  block.SetVector(F::kV, v);
-  block.SetVector(F::kW, w);
-  for (int r = 0; r < 3; ++r) block.SetVector(F::kR + 3 * r, R.row[r]);
+  SetVector(block, F::kP, p);
+  SetVector(block, F::kV, v);
+  SetVector(block, F::kW, w);
+  for (int r = 0; r < 3; ++r) SetVector(block, F::kR + 3 * r, R.row[r]);
   const Rotation q = RotationOf(R);
   block.Set(F::kQ, q.x);
   block.Set(F::kQ + 1, q.y);
   block.Set(F::kQ + 2, q.z);
   block.Set(F::kQ + 3, q.w);
-  block.SetVector(F::kWInB, w * R);
+  SetVector(block, F::kWInB, w * R);
 }
 
 /// Flies blocks of bodies through a tick.

@@ -1,6 +1,5 @@
 #include "physics_server/lanes/rotor_bodies.h"
 
-#include <algorithm>
 #include <initializer_list>
 
 namespace mascot {
@@ -16,24 +15,14 @@ std::vector<RotorKernel> Kernels() {
   return kernels;
 }
 
-RotorKernel KernelWith(int max_lanes) {
-  const std::vector<RotorKernel> kernels = Kernels();
-  const auto kernel =
-      std::ranges::find_if(kernels, [max_lanes](const RotorKernel& one) { return one.lanes <= max_lanes; });
-  return kernel == kernels.end() ? kernels.back() : *kernel;
-}
-
 }  // namespace
 
-RotorBodies::RotorBodies(std::size_t bodies, int max_lanes) : bodies_(bodies) {
-  const RotorKernel kernel = KernelWith(max_lanes);
-  lanes_ = static_cast<std::size_t>(kernel.lanes);
-  fly_ = kernel.fly;
-  const std::size_t blocks = (bodies + lanes_ - 1) / lanes_;
-  numbers_.resize(blocks * RotorField::kCount * lanes_);
-  is_flown_.resize(bodies);
-  flown_.resize(blocks);
-  for (std::size_t i = 0; i < blocks * lanes_; ++i)  // also those that only fill up the last block
+RotorBodies::RotorBodies(std::size_t bodies, int max_lanes)
+    : kernel_(KernelWith(Kernels(), max_lanes)),
+      numbers_(bodies, RotorField::kCount, kernel_.lanes),
+      is_flown_(bodies),
+      flown_(numbers_.blocks()) {
+  for (std::size_t i = 0; i < numbers_.blocks() * numbers_.lanes(); ++i)  // also those that only fill up the last block
     for (const int field :
          std::initializer_list<int>{RotorField::kR, RotorField::kR + 4, RotorField::kR + 8, RotorField::kInertia,
                                     RotorField::kInertia + 1, RotorField::kInertia + 2})
@@ -41,7 +30,7 @@ RotorBodies::RotorBodies(std::size_t bodies, int max_lanes) : bodies_(bodies) {
 }
 
 void RotorBodies::SetFlown(std::size_t body, bool is_flown) {
-  flown_[body / lanes_] += static_cast<int>(is_flown) - static_cast<int>(is_flown_[body] != 0);
+  flown_[body / numbers_.lanes()] += static_cast<int>(is_flown) - static_cast<int>(is_flown_[body] != 0);
   is_flown_[body] = is_flown;
 }
 
@@ -49,15 +38,11 @@ void RotorBodies::Fly(const TickOfRotorBodies& tick) {
   for (std::size_t first = 0; first < flown_.size();) {
     std::size_t end = first;
     while (end < flown_.size() && flown_[end] > 0) ++end;
-    if (end > first) fly_(numbers_.data() + first * RotorField::kCount * lanes_, end - first, tick);
+    if (end > first) kernel_.fly(numbers_.Block(first), end - first, tick);
     first = end + 1;
   }
 }
 
-std::vector<int> LanesOfRotors() {
-  std::vector<int> lanes;
-  for (const RotorKernel& kernel : Kernels()) lanes.push_back(kernel.lanes);
-  return lanes;
-}
+std::vector<int> LanesOfRotors() { return LanesOf(Kernels()); }
 
 }  // namespace mascot

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "base/lane_numbers.h"
+
 namespace mascot {
 
 /// The numbers of a body in RotorBodies. Vectors take three fields, R (takes B to W) nine, by rows, and the allocation
@@ -38,6 +40,14 @@ struct TickOfRotorBodies {
   std::span<const std::array<double, 3>> wind_W;  ///< m/s, by step
 };
 
+/// Flies `blocks` blocks of `lanes` bodies through a tick.
+struct RotorKernel {
+  int lanes;
+  void (*fly)(double* numbers, std::size_t blocks, const TickOfRotorBodies& tick);
+};
+RotorKernel RotorsByDefault();  ///< for every processor
+RotorKernel RotorsByAvx();
+
 /// Bodies driven by rotors, which touch nothing and are flown several at once, in the lanes of the processor's vector
 /// registers. The bits of the results do not depend on the number of lanes.
 class RotorBodies {
@@ -46,34 +56,19 @@ class RotorBodies {
   /// of inertia of 1, and else zeros.
   RotorBodies(std::size_t bodies, int max_lanes);
 
-  std::size_t size() const { return bodies_; }
-  double& At(std::size_t body, int field) { return numbers_[Place(body, field)]; }
-  double At(std::size_t body, int field) const { return numbers_[Place(body, field)]; }
+  double& At(std::size_t body, int field) { return numbers_.At(body, field); }
+  double At(std::size_t body, int field) const { return numbers_.At(body, field); }
   /// Whether Fly() is to fly this body. At first it is not.
   void SetFlown(std::size_t body, bool is_flown);
   /// Flies these bodies through a tick. The others' numbers say nothing afterwards.
   void Fly(const TickOfRotorBodies& tick);
 
  private:
-  std::size_t Place(std::size_t body, int field) const {
-    return (body / lanes_ * RotorField::kCount + static_cast<std::size_t>(field)) * lanes_ + body % lanes_;
-  }
-
-  std::size_t bodies_;
-  std::size_t lanes_;
-  void (*fly_)(double* numbers, std::size_t blocks, const TickOfRotorBodies& tick);
-  std::vector<double> numbers_;  // by block of as many bodies as there are lanes, then field, then lane
-  std::vector<char> is_flown_;   // by body
-  std::vector<int> flown_;       // by block: how many of its bodies are flown
+  RotorKernel kernel_;
+  LaneNumbers numbers_;
+  std::vector<char> is_flown_;  // by body
+  std::vector<int> flown_;      // by block: how many of its bodies are flown
 };
-
-/// Flies `blocks` blocks of `lanes` bodies through a tick.
-struct RotorKernel {
-  int lanes;
-  void (*fly)(double* numbers, std::size_t blocks, const TickOfRotorBodies& tick);
-};
-RotorKernel RotorsByDefault();  ///< for every processor
-RotorKernel RotorsByAvx();
 
 /// The numbers of lanes that this processor can have, the largest first.
 std::vector<int> LanesOfRotors();

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "agent/laws/laws.h"
+#include "agent/low_level.h"
 
 namespace mascot {
 namespace {
@@ -31,6 +32,15 @@ Motion At(double x, double y, double z) {
   Motion motion;
   motion.p_WB = {x, y, z};
   return motion;
+}
+
+/// The complete command of agent 1.
+Command Decide(const Experiment& experiment, const Motion& self, const std::vector<Sample>& heard) {
+  Agent agent(experiment, 1);
+  Command command = agent.Want(0, self, heard);
+  const Controller::Input driven = agent.Driven(command);
+  LowLevel(experiment, {1, 1}).Actuate({&driven, 1}, {&command, 1});
+  return command;
 }
 
 TEST(Agent, LimitsTheLawPerAxisAndSaysSo) {
@@ -76,7 +86,7 @@ TEST(Agent, CommandsNoAccelerationToAModelThatTakesAVelocity) {
   const Experiment experiment = Two("name = 'velocity_consensus'", "max_speed_m_per_s = 4.0", "single_integrator");
   const Motion other = At(10, -1, 0);
   const std::vector<Sample> heard = Other(other);
-  const Command command = Agent(experiment, 1).Decide(0, At(0, 0, 0), heard);
+  const Command command = Decide(experiment, At(0, 0, 0), heard);
   EXPECT_EQ(command.a_law_W, Eigen::Vector3d::Zero());
   EXPECT_EQ(command.a_limited_W, Eigen::Vector3d::Zero());
   EXPECT_EQ(command.flags, kSpeedLimited);
@@ -124,7 +134,7 @@ TEST(Agent, DecidesWhatItWantsAndActuatesIt) {
   const Motion other = At(1, -0.5, 2);
   const std::vector<Sample> heard = Other(other);
   const Command wanted = Agent(experiment, 1).Want(0, At(0, 0, 1), heard);
-  const Command command = Agent(experiment, 1).Decide(0, At(0, 0, 1), heard);
+  const Command command = Decide(experiment, At(0, 0, 1), heard);
   EXPECT_EQ(command.a_law_W, wanted.a_law_W);
   EXPECT_EQ(command.a_limited_W, wanted.a_limited_W);
   EXPECT_GT(command.actuator[0], 0);
@@ -140,7 +150,7 @@ TEST(Agent, EndsTheRunNamingTickAndAgentWhenTheLawIsNotFinite) {
   const auto want = [&agent](double x, double y) {
     const Motion other = At(x, y, 0);
     const std::vector<Sample> heard = Other(other);
-    agent.Decide(4, At(0, 0, 1), heard);
+    agent.Want(4, At(0, 0, 1), heard);
   };
   EXPECT_THAT([&] { want(nan, 0); },
               ThrowsMessage<std::runtime_error>("tick 4: agent 1: the law's acceleration is not finite (nan, 0, 0)"));

@@ -8,7 +8,8 @@
 #include <numeric>
 #include <random>
 
-#include "agent/controllers/mixer.h"
+#include "agent/controllers/quadrotor.h"
+#include "agent/low_level.h"
 #include "physics_server/model.h"
 #include "physics_server/world.h"
 #include "tests/physics_server/one_body.h"
@@ -32,7 +33,7 @@ Motion AtStart(const Experiment& e) {
 }
 
 Controller::Output First(const Experiment& e, const Motion& self, const Vector3d& a_W = Vector3d::Zero()) {
-  return MakeController(e, 1)->Actuate(self, a_W);
+  return ControllerOfOne(e, 1).Actuate(self, a_W);
 }
 
 /// Thrust (N) and torques (N m) of a command.
@@ -65,13 +66,14 @@ Motion Tilted(const Experiment& e, double roll, double pitch, double yaw) {
 // --- the table --------------------------------------------------------------------------------------
 
 TEST(MakeController, HasOneForEveryModel) {
-  for (const ModelTraits& model : Models()) EXPECT_NE(MakeController(Bodies(model.name, {{0, 0, 1}}), 1), nullptr);
+  for (const ModelTraits& model : Models())
+    EXPECT_NO_THROW(ControllerOfOne(Bodies(model.name, {{0, 0, 1}}), 1)) << model.name;
 }
 
 TEST(MakeController, NamesTheModelItHasNoneFor) {
   EXPECT_THAT(
       [] {
-        MakeController(Bodies("submarine", {{0, 0, 1}}), 1);
+        ControllerOfOne(Bodies("submarine", {{0, 0, 1}}), 1);
       },
       ThrowsMessage<std::invalid_argument>("no controller for the model: submarine"));
 }
@@ -229,26 +231,26 @@ TEST(QuadrotorController, CatchesUpWithTheIdealDoubleIntegratorOfItsLaw) {
   Airframe body = Soft();
   body.position = {0.5, 0.25};
   const Experiment e = One(body);
-  const auto controller = MakeController(e, 1);
-  controller->Actuate(AtStart(e), {2, 0, 0});  // the reference is now ahead of the body, which has not moved
+  ControllerOfOne controller(e, 1);
+  controller.Actuate(AtStart(e), {2, 0, 0});  // the reference is now ahead of the body, which has not moved
   const double h = e.period_s();
-  const Eigen::Vector4d wrench = WrenchOf(e, controller->Actuate(AtStart(e), {0, 0, 0}));
+  const Eigen::Vector4d wrench = WrenchOf(e, controller.Actuate(AtStart(e), {0, 0, 0}));
   const double correction = 0.5 * (h * h / 2 * 2) + 0.25 * (h * 2);
   EXPECT_NEAR(wrench[2], body.inertia_kg_m2.y() * body.attitude.kp * correction / kG, 1e-9);
 }
 
 TEST(QuadrotorController, ForgetsAReferenceThatTheBodyWasHeldBackFrom) {
   const Experiment e = One();
-  const auto controller = MakeController(e, 1);
-  for (int tick = 0; tick < 1000; ++tick) controller->Actuate(AtStart(e), {1, 0, 0});  // held for 10 s
+  ControllerOfOne controller(e, 1);
+  for (int tick = 0; tick < 1000; ++tick) controller.Actuate(AtStart(e), {1, 0, 0});  // held for 10 s
   const Airframe& body = e.agents[0].airframe;
-  const double pitch_torque = WrenchOf(e, controller->Actuate(AtStart(e), {-1, 0, 0}))[2];
+  const double pitch_torque = WrenchOf(e, controller.Actuate(AtStart(e), {-1, 0, 0}))[2];
   EXPECT_LT(pitch_torque, 0.0) << "it follows its law at once";
   Experiment soft = One(Soft());
-  const auto pushed = MakeController(soft, 1);
+  ControllerOfOne pushed(soft, 1);
   Motion away = AtStart(soft);
   away.p_WB.x() += 5;
-  const Eigen::Vector4d wrench = WrenchOf(soft, pushed->Actuate(away, {0, 0, 0}));
+  const Eigen::Vector4d wrench = WrenchOf(soft, pushed.Actuate(away, {0, 0, 0}));
   EXPECT_NEAR(wrench[2], 0, 1e-9) << "where to go after a push is the law's business";
   EXPECT_NEAR(wrench[0], body.mass_kg * kG, 1e-9);
 }
@@ -326,18 +328,28 @@ TEST(FramesDoc, SaysWhatTheLowLevelStackDoes) {
 
 // --- mixer ------------------------------------------------------------------------------------------
 
-/// Thrust (N) and torques (N m) of the mixed rotor speeds.
-Eigen::Vector4d Mixed(double thrust_n, const Vector3d& tau_B) {
-  const Controller::Output output = Mixer(Built("mascot")).Mix(thrust_n, tau_B);
-  return Built("mascot").Allocation() * Eigen::Vector4d::Map(output.actuator.data()).cwiseAbs2();
+/// What the mixer makes of a thrust (N) and torques (N m): the answer of a stack that wants just these, of a level body
+/// without gains but for the rates.
+Controller::Output Mix(double thrust_n, const Vector3d& tau_B) {
+  Airframe airframe = WithoutDrag();
+  airframe.position = airframe.altitude = {0, 0};
+  airframe.attitude = airframe.heading = {0, 1};
+  Experiment e = One(airframe);
+  e.agents[0].law.axes = Axes::kXyz;
+  Motion self = AtStart(e);
+  self.w_WB_B = -tau_B.cwiseQuotient(airframe.inertia_kg_m2);
+  return First(e, self, {0, 0, thrust_n / airframe.mass_kg - kG});
 }
+
+/// Thrust (N) and torques (N m) of the mixed rotor speeds.
+Eigen::Vector4d Mixed(double thrust_n, const Vector3d& tau_B) { return WrenchOf(One(), Mix(thrust_n, tau_B)); }
 
 TEST(Mixer, GivesWhatTheRotorsCan) {
   const Vector3d tau_B(0.5, -0.7, 0.05);
   const Eigen::Vector4d mixed = Mixed(14, tau_B);
   EXPECT_NEAR(mixed[0], 14, 1e-9);
   EXPECT_LT((mixed.tail<3>() - tau_B).norm(), 1e-9);
-  EXPECT_EQ(Mixer(Built("mascot")).Mix(14, tau_B).flags, 0u);
+  EXPECT_EQ(Mix(14, tau_B).flags, 0u);
 }
 
 TEST(Mixer, KeepsThrustAndTheDirectionOfATiltThatIsTooMuch) {
@@ -345,7 +357,7 @@ TEST(Mixer, KeepsThrustAndTheDirectionOfATiltThatIsTooMuch) {
   EXPECT_NEAR(mixed[0], 14, 1e-9);
   EXPECT_NEAR(mixed[1] / mixed[2], -3, 1e-9);
   EXPECT_NEAR(mixed[1], 14.0 / 4 * 2 * Built("mascot").arm_m, 1e-9) << "the right rotor stands still";
-  EXPECT_EQ(Mixer(Built("mascot")).Mix(14, {30, -10, 0}).flags, kRotorLimited);
+  EXPECT_EQ(Mix(14, {30, -10, 0}).flags, kRotorLimited);
 }
 
 TEST(Mixer, GivesUpYawBeforeTilt) {
@@ -362,6 +374,121 @@ TEST(Mixer, LeavesTheTiltSomeAuthorityAtAnyThrust) {
   EXPECT_NEAR(Mixed(100, {0.1, 0, 0})[1], 0.1, 1e-9);
 }
 
+// --- several at once --------------------------------------------------------------------------------
+
+/// Quadrotors that differ in whatever a stack knows, and any motions of them.
+struct Different {
+  explicit Different(unsigned seed, int count) : random(seed) {
+    e = Bodies("quadrotor", std::vector<Vector3d>(static_cast<std::size_t>(count), {1, 2, 3}));
+    for (AgentConfig& agent : e.agents) {
+      agent.airframe = Built(std::vector{"mascot", "crazyflie", "mascot_published"}[random() % 3]);
+      agent.law.axes = random() % 2 == 0 ? Axes::kXy : Axes::kXyz;
+      agent.control.inversion = random() % 2 == 0 ? Inversion::kExact : Inversion::kSmallAngle;
+      agent.control.heading_rad = random() % 4 == 0 ? 50 : 3;
+      agent.control.drag_compensation = random() % 2 == 0;
+    }
+    motions.resize(e.agents.size());
+    wanted_W.resize(e.agents.size());
+  }
+  void Draw() {
+    std::normal_distribution<double> normal;
+    const auto draw = [&](double scale) -> Vector3d {
+      return Vector3d(normal(random), normal(random), normal(random)) * scale;
+    };
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      motions[i].p_WB = e.agents[i].p_W + draw(0.05);
+      motions[i].v_WB = draw(0.3);
+      motions[i].w_WB_B = draw(1);
+      motions[i].q_WB =
+          Eigen::Quaterniond(1, 0.3 * normal(random), 0.3 * normal(random), 3 * normal(random)).normalized();
+      wanted_W[i] = draw(2);
+    }
+  }
+
+  std::mt19937_64 random;
+  Experiment e;
+  std::vector<Motion> motions;
+  std::vector<Vector3d> wanted_W;
+};
+
+TEST(QuadrotorController, GivesTheSameBitsWithAnyNumberOfLanes) {
+  int tilt_limited = 0, rotor_limited = 0, free = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const int count = 1 + static_cast<int>(seed) % 9;
+    Different different(seed, count);
+    std::vector<int> ids(different.motions.size());
+    std::iota(ids.begin(), ids.end(), 1);
+    std::vector<ControllerOfOne> alone;
+    for (const int id : ids) alone.emplace_back(different.e, id);
+    std::vector<std::unique_ptr<Controller>> together;
+    for (const int lanes : LanesOfQuadrotors()) together.push_back(MakeQuadrotorController(different.e, ids, lanes));
+    for (int tick = 0; tick < 50; ++tick) {
+      different.Draw();
+      std::vector<Controller::Input> inputs;
+      for (std::size_t i = 0; i < ids.size(); ++i) inputs.push_back({&different.motions[i], different.wanted_W[i]});
+      std::vector<Controller::Output> expected;
+      for (std::size_t i = 0; i < ids.size(); ++i)
+        expected.push_back(alone[i].Actuate(different.motions[i], different.wanted_W[i]));
+      for (const auto& controller : together) {
+        std::vector<Controller::Output> outputs(ids.size());
+        controller->Actuate(inputs, outputs);
+        for (std::size_t i = 0; i < ids.size(); ++i) {
+          ASSERT_EQ(outputs[i].actuator, expected[i].actuator) << "seed " << seed << ", agent " << ids[i];
+          ASSERT_EQ(outputs[i].flags, expected[i].flags) << "seed " << seed << ", agent " << ids[i];
+        }
+      }
+      for (const Controller::Output& output : expected) {
+        tilt_limited += (output.flags & kTiltLimited) != 0;
+        rotor_limited += (output.flags & kRotorLimited) != 0;
+        free += output.flags == 0;
+      }
+    }
+  }
+  EXPECT_GT(tilt_limited, 100);
+  EXPECT_GT(rotor_limited, 100);
+  EXPECT_GT(free, 100);
+}
+
+TEST(QuadrotorController, TurnsTheShorterWayToAnyHeading) {
+  for (const double heading_rad : {-400.0, -9.0, -3.0, 0.1, 2.0, 3.1, 6.0, 50.0}) {
+    Airframe airframe = WithoutDrag();
+    airframe.position = airframe.altitude = {0, 0};
+    airframe.heading = {1, 0};
+    Experiment e = One(airframe);
+    e.agents[0].control.heading_rad = heading_rad;
+    Motion self = AtStart(e);
+    self.q_WB = Eigen::AngleAxisd(-0.5, Vector3d::UnitZ());
+    const double expected = std::remainder(heading_rad + 0.5, 2 * std::numbers::pi);
+    // As far as the rotors go: it turns that way.
+    const double torque = WrenchOf(e, First(e, self))[3] / airframe.inertia_kg_m2.z();
+    EXPECT_EQ(torque > 0, expected > 0) << heading_rad;
+    EXPECT_LE(std::abs(torque), std::abs(expected) + 1e-9) << heading_rad;
+  }
+}
+
+TEST(LowLevel, ActuatesEachAgentByItsModel) {
+  Experiment e = Bodies("quadrotor", {{0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {3, 0, 1}, {4, 0, 1}});
+  e.agents[1].model = "double_integrator";
+  e.agents[2].model = "unicycle";
+  e.agents[4].model = "single_integrator";
+  const std::vector<int> ids = {2, 3, 4, 5};
+  LowLevel low_level(e, {2, 5});
+  std::vector<Motion> motions(ids.size());
+  std::vector<Controller::Input> inputs;
+  std::vector<Command> commands(ids.size());
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    motions[k].p_WB = e.agent(ids[k]).p_W;
+    inputs.push_back({&motions[k], {1, 0.1, 0}});
+    commands[k].flags = kSpeedLimited;
+  }
+  low_level.Actuate(inputs, commands);
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    const Controller::Output alone = ControllerOfOne(e, ids[k]).Actuate(motions[k], {1, 0.1, 0});
+    EXPECT_EQ(commands[k].actuator, alone.actuator) << ids[k];
+    EXPECT_EQ(commands[k].flags, alone.flags | kSpeedLimited) << ids[k];
+  }
+}
+
 // --- closed loop ------------------------------------------------------------------------------------
 
 using LawOfAll = std::function<Vector3d(std::size_t i, const std::vector<Motion>& all)>;
@@ -376,10 +503,10 @@ struct Flight {
 Flight Fly(const Experiment& e, double duration_s, double limit, const LawOfAll& law) {
   World world(e);
   const auto n = e.agents.size();
-  std::vector<std::unique_ptr<Controller>> controllers;
+  std::vector<ControllerOfOne> controllers;
   std::vector<Motion> all, ideal;
   for (const AgentConfig& agent : e.agents) {
-    controllers.push_back(MakeController(e, agent.id));
+    controllers.emplace_back(e, agent.id);
     all.push_back(world.State(agent.id));
   }
   ideal = all;
@@ -395,7 +522,7 @@ Flight Fly(const Experiment& e, double duration_s, double limit, const LawOfAll&
     std::vector<Actuation> commands(n);
     std::vector<Vector3d> u(n);
     for (std::size_t i = 0; i < n; ++i) {
-      commands[i] = controllers[i]->Actuate(all[i], limited(law(i, all))).actuator;
+      commands[i] = controllers[i].Actuate(all[i], limited(law(i, all))).actuator;
       u[i] = limited(law(i, ideal));
     }
     world.Step(commands);

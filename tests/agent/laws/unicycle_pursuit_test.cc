@@ -35,14 +35,14 @@ TEST(UnicyclePursuit, TellsTheWheelsTheSpeedAndTheTurningSpeedOfThePaper) {
               "test.toml"),
           "test");
       const auto law = MakeLaw(experiment, 1);
-      const auto controller = MakeController(experiment, 1);
+      ControllerOfOne controller(experiment, 1);
       Motion self, other;
       const double heading = 0.8, distance_m = 2.5;
       self.p_WB = {1, -2, 1};
       self.q_WB = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ());
       other.p_WB = self.p_WB + distance_m * Eigen::Vector3d(std::cos(heading + angle), std::sin(heading + angle), 0);
       const Heard heard{.id = 2, .weight = 1, .motion = other, .age_s = 0, .message = {}};
-      const Actuation told = controller->Actuate(self, law->Want_W(0, self, {&heard, 1})).actuator;
+      const Actuation told = controller.Actuate(self, law->Want_W(0, self, {&heard, 1})).actuator;
       EXPECT_NEAR(told[0], pursuit == "constant_speed" ? 0.6 : 0.3 * distance_m, 1e-12) << angle;
       EXPECT_NEAR(told[1], 0.7 * angle, 1e-12) << pursuit;
     }

@@ -18,14 +18,14 @@ class FlownNetwork {
         world(experiment),
         team(experiment),
         motions(experiment.agents.size()),
+        commands(experiment.agents.size()),
         actuation(experiment.agents.size()) {
     Look();
   }
 
   void Step() {
-    for (const AgentConfig& agent : experiment.agents)
-      actuation[static_cast<std::size_t>(agent.id - 1)] = team.Decide(agent.id, world.tick(), motions).actuator;
-    team.EndTick();
+    team.Decide(world.tick(), motions, commands);
+    for (std::size_t i = 0; i < commands.size(); ++i) actuation[i] = commands[i].actuator;
     world.Step(actuation);
     Look();
   }
@@ -45,6 +45,7 @@ class FlownNetwork {
   World world;
   Team team;
   std::vector<Motion> motions;
+  std::vector<Command> commands;
   std::vector<Actuation> actuation;
 
  private:

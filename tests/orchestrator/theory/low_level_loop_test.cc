@@ -30,13 +30,13 @@ struct Apart {
 Apart FlyBoth(const std::string& toml, const Wanted& request, double duration_s, const LoopError& error = {}) {
   const Experiment experiment = Load(toml);
   World world(experiment);
-  const auto controller = MakeController(experiment, 1);
+  ControllerOfOne controller(experiment, 1);
   LowLevelLoop loop(experiment, experiment.agent(1), error);
   Apart apart;
   for (std::int64_t tick = 0; experiment.time_s(tick) < duration_s; ++tick) {
     Command command;
     command.a_limited_W = request(experiment.time_s(tick));
-    const Actuation actuation[] = {controller->Actuate(world.State(1), command.a_limited_W).actuator};
+    const Actuation actuation[] = {controller.Actuate(world.State(1), command.a_limited_W).actuator};
     world.Step(actuation);
     loop.Step(command);
     const Motion body = world.State(1), model = loop.motion();
