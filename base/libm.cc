@@ -6,12 +6,17 @@
 // Bullet, Python, NumPy and plug-in laws too, and no code can call the others by mistake. SLEEF sets no errno, and
 // neither do these. Not here: what is exact or correctly rounded anyway (sqrt, fmod, floor, ...), long double, complex
 // functions.
+//
+// Of some functions, SLEEF's form for several numbers is faster than that for one, if all are the same, and has the same
+// bits: those are taken from base/lanes.h.
 #include <sleef.h>
+
+#include "base/lanes.h"
 
 extern "C" {
 
-double sin(double x) noexcept { return Sleef_cinz_sind1_u10purec(x); }
-double cos(double x) noexcept { return Sleef_cinz_cosd1_u10purec(x); }
+double sin(double x) noexcept { return mascot::Sin(mascot::InEach(x))[0]; }
+double cos(double x) noexcept { return mascot::Cos(mascot::InEach(x))[0]; }
 double tan(double x) noexcept { return Sleef_cinz_tand1_u10purec(x); }
 double asin(double x) noexcept { return Sleef_cinz_asind1_u10purec(x); }
 double acos(double x) noexcept { return Sleef_cinz_acosd1_u10purec(x); }
@@ -34,7 +39,7 @@ double cbrt(double x) noexcept { return Sleef_cinz_cbrtd1_u10purec(x); }
 double erf(double x) noexcept { return Sleef_cinz_erfd1_u10purec(x); }
 double erfc(double x) noexcept { return Sleef_cinz_erfcd1_u15purec(x); }
 double tgamma(double x) noexcept { return Sleef_cinz_tgammad1_u10purec(x); }
-double atan2(double y, double x) noexcept { return Sleef_cinz_atan2d1_u10purec(y, x); }
+double atan2(double y, double x) noexcept { return mascot::Atan2(mascot::InEach(y), mascot::InEach(x))[0]; }
 double pow(double x, double y) noexcept { return Sleef_cinz_powd1_u10purec(x, y); }
 double hypot(double x, double y) noexcept { return Sleef_cinz_hypotd1_u05purec(x, y); }
 

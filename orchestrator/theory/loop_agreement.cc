@@ -25,19 +25,20 @@ void Silence(std::string why, Prediction& prediction) {
   if (prediction.silent.empty()) prediction.silent = std::move(why);
 }
 
-/// Whether what a flight comes to hangs on no more than is known of the bodies: flights `beside` it come to the same.
-bool IsSure(const Experiment& experiment, const LoopAgreement& flown, const std::vector<LoopFlight>& beside) {
+/// Whether what a flight comes to hangs on no more than is known of the bodies: flights beside it come to the same.
+bool IsSure(const Experiment& experiment, const LoopAgreement& flown) {
   const auto alike = [](const std::optional<double>& a, const std::optional<double>& b, double share, double least) {
     if (!a || !b) return a.has_value() == b.has_value();
     return std::abs(*a - *b) <= share * std::abs(*a) + least;
   };
-  return std::ranges::all_of(beside, [&](const LoopFlight& flight) {
+  const auto comes_to_the_same = [&](const LoopFlight& flight) {
     if (!flight.silent.empty()) return false;
     const LoopAgreement& other = flight.agreement;
     const double apart_m = (other.mean_W - flown.mean_W).head(CountOf(experiment.law.axes)).norm();
     return apart_m <= kValueSpread * flown.first_m && alike(flown.rate_per_s, other.rate_per_s, kRateSpread, 0) &&
            alike(flown.settling_time_s, other.settling_time_s, kSettlingSpread, 2 * experiment.period_s());
-  });
+  };
+  return comes_to_the_same(FlyBeside(experiment, comes_to_the_same).back());
 }
 
 /// Takes the times and the rate of the flight where those predicted are off. Returns whether any was.
@@ -83,8 +84,7 @@ void JudgeAgreementOnLoops(const Experiment& experiment, Prediction& prediction)
     const bool is_elsewhere = JudgeValue(experiment, flight.agreement, prediction);
     if (flight.is_tilt_cut && is_elsewhere)  // how it is cut is what the model knows least
       silent = "the limit of the tilt cuts what quadrotors are commanded, and moves where they meet";
-    else if ((is_late || is_elsewhere || flight.is_tilt_cut) &&
-             !IsSure(experiment, flight.agreement, FlyBeside(experiment)))
+    else if ((is_late || is_elsewhere || flight.is_tilt_cut) && !IsSure(experiment, flight.agreement))
       silent = "where and when quadrotors meet hangs on more than is known of them";
   }
   if (silent.empty()) return;

@@ -75,7 +75,8 @@ Flights Fly(const Experiment& experiment) {
   Flights flights;
   flights.flown.push_back(FlyLoops(experiment, {.turn = 0, .push = 0}));
   if (flights.flown.front().silent.empty())
-    for (LoopFlight& flight : FlyBeside(experiment)) flights.flown.push_back(std::move(flight));
+    for (LoopFlight& flight : FlyBeside(experiment, [](const LoopFlight& one) { return one.silent.empty(); }))
+      flights.flown.push_back(std::move(flight));
   if (!flights.flown.back().silent.empty()) return {.silent = std::move(flights.flown.back().silent), .flown = {}};
   return flights;
 }
@@ -135,11 +136,11 @@ PredictedFigure Band(const Flights& flights, std::size_t figure, std::string_vie
 
 }  // namespace
 
-std::vector<LoopFlight> FlyBeside(const Experiment& experiment) {
+std::vector<LoopFlight> FlyBeside(const Experiment& experiment, const std::function<bool(const LoopFlight&)>& goes_on) {
   std::vector<LoopFlight> flights;
   for (const LoopError& share : kErrors) {
     flights.push_back(FlyLoops(experiment, Scaled(share, experiment)));
-    if (!flights.back().silent.empty()) break;
+    if (!goes_on(flights.back())) break;
   }
   return flights;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,8 @@ namespace mascot {
 void PredictOnLoops(const Experiment& experiment, Prediction& prediction);
 
 /// Flights of bodies that turn and accelerate somewhat more or less than their model: all, or those up to the first
-/// that is silent.
-std::vector<LoopFlight> FlyBeside(const Experiment& experiment);
+/// after which `goes_on` returns false.
+std::vector<LoopFlight> FlyBeside(const Experiment& experiment, const std::function<bool(const LoopFlight&)>& goes_on);
 
 /// Why LowLevelLoops do not describe the bodies; empty: they may.
 std::string WhyNotLoops(const Experiment& experiment);

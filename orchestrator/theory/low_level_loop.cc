@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/sines.h"
+
 namespace mascot {
 namespace {
 
@@ -112,9 +114,8 @@ Eigen::Vector2d LowLevelLoop::TurnAccel(const Eigen::Vector2d& target_rad, doubl
 }
 
 Eigen::Vector3d LowLevelLoop::ThrustDirection_W() const {
-  const double roll = tilt_rad_.x(), pitch = tilt_rad_.y();
-  return R_WH_ * Eigen::Vector3d((1 + error_.push) * std::cos(roll) * std::sin(pitch),
-                                 -(1 + error_.push) * std::sin(roll), std::cos(roll) * std::cos(pitch));
+  const auto [sin, cos] = SinesAndCosinesOf(tilt_rad_);  // roll, pitch
+  return R_WH_ * Eigen::Vector3d((1 + error_.push) * cos.x() * sin.y(), -(1 + error_.push) * sin.x(), cos.x() * cos.y());
 }
 
 void LowLevelLoop::Move(double thrust_n, const Eigen::Vector2d& turn_accel) {

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "base/sines.h"
+
 namespace mascot {
 namespace {
 
@@ -85,6 +87,19 @@ std::uint64_t Bits() {
 }
 
 TEST(LibmOf, EveryProcessorGivesTheseBits) { EXPECT_EQ(Bits(), 11286657497132857937u); }
+
+TEST(LibmOf, TwoAnglesHasTheBitsOfEach) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> small(-2, 2), any(-1e6, 1e6);
+  for (int k = 0; k < 100'000; ++k) {
+    const Eigen::Vector2d angles(small(random), k % 2 == 0 ? small(random) : any(random));
+    const SinesAndCosines of = SinesAndCosinesOf(angles);
+    for (int i = 0; i < 2; ++i) {
+      ASSERT_EQ(of.sin[i], std::sin(angles[i])) << angles[i];
+      ASSERT_EQ(of.cos[i], std::cos(angles[i])) << angles[i];
+    }
+  }
+}
 
 TEST(LibmOf, ThisProgramIsThatOfItsSharedLibrariesToo) {
   Dl_info program, info;
