@@ -29,53 +29,47 @@ class LoopTeam {
   LoopTeam(const Experiment& experiment, const LoopError& error)
       : experiment_(experiment),
         team_(experiment),
+        bodies_(experiment, error),
         commands_(experiment.agents.size()),
         messages_(commands_.size()),
         agreed_W_(commands_.size()),
-        watch_(experiment, kMargin_m) {
-    bodies_.reserve(experiment.agents.size());
-    for (const AgentConfig& agent : experiment.agents) bodies_.emplace_back(experiment, agent, error);
-    for (const LowLevelLoop& body : bodies_) motions_.push_back(body.motion());
-  }
+        watch_(experiment, kMargin_m) {}
 
   /// The motions of this tick, and the commands and messages that answer them. Throws what a law throws.
   TeamRow Decide() {
     for (const AgentConfig& agent : experiment_.agents) {
       const auto i = static_cast<std::size_t>(agent.id - 1);
-      commands_[i] = team_.Want(agent.id, tick_, motions_);
+      commands_[i] = team_.Want(agent.id, tick_, bodies_.motions());
       const std::span<const double> message = team_.message(agent.id);
       messages_[i].assign(message.begin(), message.end());
     }
     team_.EndTick();
-    return {.tick = tick_, .motions = motions_, .commands = commands_, .messages = messages_};
+    return {.tick = tick_, .motions = bodies_.motions(), .commands = commands_, .messages = messages_};
   }
 
   void Move() {
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      bodies_[i].Step(commands_[i]);
-      tilts_cut_ += bodies_[i].is_tilt_cut() ? 1 : 0;
-      motions_[i] = bodies_[i].motion();
-    }
+    bodies_.Step(commands_);
+    tilts_cut_ += bodies_.tilts_cut();
     ++tick_;
   }
 
   /// Why the bodies are not where the model has them; empty: they are.
   std::string Astray() const {
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      if (!(motions_[i].p_WB.cwiseAbs().maxCoeff() < kFarthest_m)) return Agent(i) + " is carried off";
-      if (bodies_[i].tilt_rad() > kSteepest_rad) return Agent(i) + " tilts by more than 0.6 rad";
+    for (std::size_t i = 0; i < commands_.size(); ++i) {
+      if (!(bodies_.motions()[i].p_WB.cwiseAbs().maxCoeff() < kFarthest_m)) return Agent(i) + " is carried off";
+      if (bodies_.tilt_rad(i) > kSteepest_rad) return Agent(i) + " tilts by more than 0.6 rad";
     }
     return "";
   }
 
   /// What might touch what; empty: nothing.
-  std::string MayTouch() { return watch_.WhatMayTouch(motions_); }
+  std::string MayTouch() { return watch_.WhatMayTouch(bodies_.motions()); }
 
   /// What agents agree on: their positions, less their places in a formation.
   const std::vector<Eigen::Vector3d>& WithoutPlaces() {
     const std::span<const Eigen::Vector3d> places_W = PlacesOf(experiment_.law);
-    for (std::size_t i = 0; i < motions_.size(); ++i) {
-      agreed_W_[i] = motions_[i].p_WB;
+    for (std::size_t i = 0; i < agreed_W_.size(); ++i) {
+      agreed_W_[i] = bodies_.motions()[i].p_WB;
       if (i < places_W.size()) agreed_W_[i] -= places_W[i];
     }
     return agreed_W_;
@@ -84,7 +78,7 @@ class LoopTeam {
   /// Why the limits were reached too often for the model; empty: they were not.
   std::string Cut() const {
     const double ticks = std::min(static_cast<double>(tick_), kLongestCounted_s * experiment_.control.rate_hz);
-    const double commands = ticks * static_cast<double>(bodies_.size());
+    const double commands = ticks * static_cast<double>(commands_.size());
     return static_cast<double>(tilts_cut_) > kMaxTiltsCut * commands
                ? "the limit of the tilt cuts more than 2 % of what quadrotors are commanded"
                : "";
@@ -98,8 +92,7 @@ class LoopTeam {
 
   const Experiment& experiment_;
   Team team_;
-  std::vector<LowLevelLoop> bodies_;
-  std::vector<Motion> motions_;
+  LowLevelLoops bodies_;
   std::vector<Command> commands_;
   std::vector<std::vector<double>> messages_;
   std::vector<Eigen::Vector3d> agreed_W_;  // scratch

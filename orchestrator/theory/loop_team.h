@@ -7,7 +7,7 @@
 
 #include "agent/laws/law_figures.h"
 #include "experiment/experiment.h"
-#include "orchestrator/theory/low_level_loop.h"
+#include "orchestrator/theory/low_level_loops.h"
 
 namespace mascot {
 
