@@ -97,14 +97,12 @@ using Spectrum = std::function<Eigen::VectorXcd(double theta)>;
 /// The eigenvalues of M(e^(i theta)) as a function of theta, sorted by decreasing magnitude.
 Spectrum SpectrumOf(const Loop& loop) {
   const auto sorted = [](Eigen::VectorXcd values) {
-    std::ranges::sort(values, std::greater<>(), [](Complex value) { return std::abs(value); });
+    std::ranges::sort(values, std::greater<>(), [](Complex value) { return std::norm(value); });
     return values;
   };
   if (loop.IsRegular()) {
-    const Eigen::VectorXcd of_adjacency = Eigenvalues(loop.adjacency);
-    return [&loop, of_adjacency, sorted](double theta) -> Eigen::VectorXcd {
-      return sorted(loop.Gain(0, theta) * of_adjacency);
-    };
+    const Eigen::VectorXcd of_adjacency = sorted(Eigenvalues(loop.adjacency));
+    return [&loop, of_adjacency](double theta) -> Eigen::VectorXcd { return loop.Gain(0, theta) * of_adjacency; };
   }
   return [&loop, sorted](double theta) -> Eigen::VectorXcd {
     Eigen::VectorXcd gains(loop.degree.size());
