@@ -1,12 +1,14 @@
 #include "orchestrator/recording/background_sink.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 namespace mascot {
 namespace {
 
 constexpr std::size_t kKeptBytes = std::size_t{4} << 20, kMinKept = 8, kMaxKept = 512;
+constexpr auto kLongestKept = std::chrono::milliseconds(50);  // where rows come slowly, or no more
 constexpr std::size_t kBatches = 8;  // of the rows that are kept: one is taken while the next ones come
 
 std::size_t RowsKept(const Experiment& experiment) {
@@ -80,8 +82,10 @@ void BackgroundSink::Finish() {
 
 void BackgroundSink::Run() {
   for (std::unique_lock lock(mutex_);;) {
-    added_.wait(lock, [this] { return is_ending_ || count_ >= batch_ || (is_finishing_ && count_ > 0); });
+    added_.wait_for(lock, kLongestKept,
+                    [this] { return is_ending_ || count_ >= batch_ || (is_finishing_ && count_ > 0); });
     if (is_ending_) return;
+    if (count_ == 0) continue;
     const std::size_t taken = count_;
     lock.unlock();
     std::exception_ptr failure;

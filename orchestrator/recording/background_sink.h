@@ -15,7 +15,7 @@
 namespace mascot {
 
 /// Passes rows on to a sink in a thread of its own, in their order: while that writes some, the run flies the next. It
-/// keeps a few rows, and lets the run wait if the sink is slower. Adopt() is not passed on.
+/// keeps a few rows, none for longer than 50 ms, and lets the run wait if the sink is slower. Adopt() is not passed on.
 class BackgroundSink final : public RowSink {
  public:
   /// Both must outlive this object. Throws std::system_error if there can be no thread.

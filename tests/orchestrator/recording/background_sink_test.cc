@@ -120,15 +120,28 @@ TEST(BackgroundSink, SaysWhatTheSinkHasThrown) {
   EXPECT_EQ(checks.rows, 100) << "none after the one that failed";
 }
 
+TEST(BackgroundSink, PassesOnARowAfterWhichNoneComes) {
+  const Experiment experiment = ThreeThatSend();
+  RowEncoder encoder(experiment);
+  Checks checks(experiment);
+  BackgroundSink sink(experiment, checks);
+  sink.Add(NumberedRow(0, false, encoder));
+  EXPECT_TRUE(test::Until([&] { return checks.rows == 1; }));
+  EXPECT_EQ(checks.wrong, 0);
+}
+
 TEST(BackgroundSink, EndsWithoutPassingOnWhatIsLeft) {
   const Experiment experiment = ThreeThatSend();
   RowEncoder encoder(experiment);
   Checks checks(experiment);
+  checks.holds = true;
   {
     BackgroundSink sink(experiment, checks);
-    sink.Add(NumberedRow(0, false, encoder));
+    for (std::int64_t tick = 0; tick < 200; ++tick) sink.Add(NumberedRow(tick, false, encoder));
+    checks.fails_at = 0;
+    checks.holds = false;
   }
-  EXPECT_EQ(checks.rows, 0) << "one row is not worth to wake the thread";
+  EXPECT_EQ(checks.rows, 0);
 }
 
 }  // namespace
