@@ -15,9 +15,9 @@ using F = LoopField;
 /// The rotors follow what is held; thrust and drag move the body, torques turn it. With z_B = (cos(roll) sin(pitch),
 /// -sin(roll), cos(roll) cos(pitch)) in the heading frame.
 MASCOT_IN_LANES void MoveBlock(const Block& block, const StepsOfLoops& steps) {
-  Real p[3], v[3], R[9], wind[3], tilt[2], tilt_rate[2], turning[2], turn[2];
-  for (int k = 0; k < 9; ++k) R[k] = block.Get(F::kR + k);
+  Real p[3], v[3], R[3][3], wind[3], tilt[2], tilt_rate[2], turning[2], turn[2];
   for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 3; ++i) R[k][i] = block.Get(F::kR + 3 * k + i);
     p[k] = block.Get(F::kP + k);
     v[k] = block.Get(F::kV + k);
     wind[k] = block.Get(F::kWind + k);
@@ -40,7 +40,7 @@ MASCOT_IN_LANES void MoveBlock(const Block& block, const StepsOfLoops& steps) {
     const Real up[3] = {more_push * cos_roll * sin_pitch, -more_push * sin_roll, cos_roll * cos_pitch};
     const Real push = lift / mass;
     for (int k = 0; k < 3; ++k) {
-      const Real up_W = R[3 * k] * up[0] + R[3 * k + 1] * up[1] + R[3 * k + 2] * up[2];
+      const Real up_W = R[k][0] * up[0] + R[k][1] * up[1] + R[k][2] * up[2];
       Real a = push * up_W - drag_per_s * (v[k] - wind[k]);
       if (k == 2) a = a - steps.gravity_m_per_s2;
       p[k] = p[k] + (dt * v[k] + dt * dt / 2 * a);
