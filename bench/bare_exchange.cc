@@ -1,7 +1,8 @@
-// The bare exchange, a baseline for the DDS engine: the processes, topics, readers, messages and bus of a run, but no
-// physics, law and recording. The server publishes the states of all agents. An agent that has received its own state
-// and its neighbours' states of a tick answers with a command. The last command starts the next tick.
-//   bare_exchange AGENTS ring|complete SECONDS [batch]     prints one line of JSON: ticks per second
+// The bare exchange, a baseline for the DDS engine: the processes and the bus of a run, and samples as large as those
+// of network.delivery = "bundled", but no physics, law and recording. The server sends each process the states of its
+// agents and of those that they hear. A process that has received them answers with commands. The last one starts the
+// next tick.
+//   bare_exchange AGENTS ring|complete SECONDS [AGENTS-PER-PROCESS [batch]]   prints one line of JSON: ticks per second
 // batch: all processes run with SCHED_BATCH, as in lockstep runs.
 #include <sched.h>
 #include <signal.h>
@@ -18,10 +19,13 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "base/agent_range.h"
+#include "bus/bundle.h"
 #include "bus/bus.h"
 #include "bus/shared_memory.h"
 #include "bus/wire.h"
@@ -37,13 +41,14 @@ using namespace mascot;
 using WallClock = std::chrono::steady_clock;
 
 constexpr int kMaxPeers = 20;  // as in orchestrator/engines/dds/engine.cc
-constexpr std::uint64_t kWarmUpTicks = 50;
+constexpr std::int64_t kWarmUpTicks = 50;
 
 struct Setting {
   int agents = 0;
-  std::string graph;
+  std::string graph = {};
   int domain = 0;
-  std::string discovery;  // "": none
+  std::string discovery = {};  // "": none
+  std::vector<AgentRange> processes = {};
 };
 
 DomainOptions Options(const Setting& setting, const std::string& name, int participants) {
@@ -65,52 +70,69 @@ void Await(const Condition& condition) {
 
 // --- agents -----------------------------------------------------------------------------------------
 
-[[noreturn]] void RunAgent(const Setting& setting, int id) {
+[[noreturn]] void RunAgents(const Setting& setting, AgentRange agents) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  const Graph graph = MakeTopology(setting.graph, setting.agents);
-  Domain domain(Options(setting, AgentName(id), 2), [] {});
-  Writer<CommandType> commands(domain, Topic::Command(id));
-  mascot_msgs::msg::AgentCommand command;
-  std::mutex mutex;
-  std::vector<std::uint64_t> ticks(graph.HeardBy(id).size() + 1, 0);  // newest tick by source; ticks start at 1
-  std::vector<std::unique_ptr<Reader<StateType>>> readers;
-  const auto listen = [&](std::size_t source, int from) {
-    readers.push_back(std::make_unique<Reader<StateType>>(
-        domain, Topic::State(from), [&, source](const mascot_msgs::msg::AgentState& state) {
-          const std::lock_guard lock(mutex);
-          ticks[source] = state.tick();
-          if (std::ranges::any_of(ticks, [&](std::uint64_t tick) { return tick != ticks[0]; })) return;
-          command.tick(ticks[0]);
-          commands.Write(command);
-        }));
-  };
-  listen(0, id);
-  for (std::size_t k = 0; k < graph.HeardBy(id).size(); ++k) listen(k + 1, graph.HeardBy(id)[k].id);
+  Domain domain(Options(setting, ProcessName(agents), 2), [] {});
+  RawWriter answers(domain, Topic::Answers(agents));
+  BundleWriter answer;
+  const RawReader bundles(domain, Topic::Bundle(agents), [&](const RawReader::Bytes& bytes, const Sender& /*sender*/) {
+    answer.Begin(static_cast<std::int64_t>(BundleReader(bytes).tick()));
+    answer.BeginSection();
+    for (int id = agents.first; id <= agents.last; ++id) answer.Add(kCommandBody);
+    answers.Write(answer.bytes());
+  });
   for (;;) pause();
 }
 
 // --- server -----------------------------------------------------------------------------------------
 
+/// A process of agents, as the server sees it.
+struct Process {
+  AgentRange agents;
+  std::size_t states = 0;  // that it gets at each tick
+  std::unique_ptr<RawWriter> bundles;
+  std::unique_ptr<RawReader> answers;
+  std::int64_t answered = 0;
+};
+
+/// How many states a process gets: those of its agents, and of those that they hear.
+std::size_t StatesOf(const Graph& graph, AgentRange agents) {
+  std::set<int> sources;
+  for (int id = agents.first; id <= agents.last; ++id) {
+    sources.insert(id);
+    for (const Graph::Neighbour& heard : graph.HeardBy(id)) sources.insert(heard.id);
+  }
+  return sources.size();
+}
+
 class Server {
  public:
   explicit Server(const Setting& setting)
-      : domain_(Options(setting, "server", setting.agents + 2), [] {}),
-        answered_(static_cast<std::size_t>(setting.agents), 0),
-        hearers_(static_cast<std::size_t>(setting.agents), 1) {
+      : domain_(Options(setting, "server", static_cast<int>(setting.processes.size()) + 2), [] {}) {
     const Graph graph = MakeTopology(setting.graph, setting.agents);
-    for (int id = 1; id <= setting.agents; ++id) {
-      for (const Graph::Neighbour& heard : graph.HeardBy(id)) ++hearers_[static_cast<std::size_t>(heard.id - 1)];
-      states_.push_back(std::make_unique<Writer<StateType>>(domain_, Topic::State(id)));
-      commands_.push_back(std::make_unique<Reader<CommandType>>(
-          domain_, Topic::Command(id),
-          [this, id](const mascot_msgs::msg::AgentCommand& command) { OnCommand(id, command.tick()); }));
+    for (const AgentRange& agents : setting.processes) {
+      Process& process = *processes_.emplace_back(std::make_unique<Process>());
+      process.states = StatesOf(graph, agents);
+      process.bundles = std::make_unique<RawWriter>(domain_, Topic::Bundle(agents));
     }
+    for (std::size_t k = 0; k < processes_.size(); ++k)
+      processes_[k]->answers = std::make_unique<RawReader>(
+          domain_, Topic::Answers(setting.processes[k]),
+          [this, &process = *processes_[k]](const RawReader::Bytes& bytes, const Sender& /*sender*/) {
+            OnAnswers(process, static_cast<std::int64_t>(BundleReader(bytes).tick()));
+          });
   }
 
+  ~Server() {
+    for (const auto& process : processes_) process->answers.reset();  // their callbacks write to all processes
+  }
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
   bool Matched() const {
-    for (std::size_t i = 0; i < states_.size(); ++i)
-      if (states_[i]->matched() < hearers_[i] || commands_[i]->matched() < 1) return false;
-    return true;
+    return std::ranges::all_of(processes_, [](const auto& process) {
+      return process->bundles->matched() >= 1 && process->answers->matched() >= 1;
+    });
   }
 
   /// Measures ticks per second over `seconds`.
@@ -121,46 +143,45 @@ class Server {
     }
     Await([&] { return tick_ > kWarmUpTicks; });
     const auto start = WallClock::now();
-    const std::uint64_t first = tick_;
+    const std::int64_t first = tick_;
     std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-    const std::uint64_t last = tick_;
+    const std::int64_t last = tick_;
     return static_cast<double>(last - first) / std::chrono::duration<double>(WallClock::now() - start).count();
   }
 
  private:
   void Publish() {
     ++tick_;
-    missing_ = static_cast<int>(states_.size());
-    sample_.tick(tick_);
-    for (const auto& state : states_) state->Write(sample_);
+    missing_ = processes_.size();
+    for (const auto& process : processes_) {
+      sample_.Begin(tick_);
+      sample_.BeginSection(static_cast<std::uint32_t>(process->agents.size()));
+      for (std::size_t k = 0; k < process->states; ++k) sample_.Add(kStateBody);
+      process->bundles->Write(sample_.bytes());
+    }
   }
-  void OnCommand(int id, std::uint64_t tick) {
+  void OnAnswers(Process& process, std::int64_t tick) {
     const std::lock_guard lock(mutex_);
-    std::uint64_t& last = answered_[static_cast<std::size_t>(id - 1)];
-    if (tick != tick_ || last == tick) return;
-    last = tick;
+    if (tick != tick_ || process.answered == tick) return;
+    process.answered = tick;
     if (--missing_ == 0) Publish();
   }
 
   Domain domain_;
   std::mutex mutex_;
-  std::atomic<std::uint64_t> tick_ = 0;
-  int missing_ = 0;
-  std::vector<std::uint64_t> answered_;
-  std::vector<int> hearers_;
-  mascot_msgs::msg::AgentState sample_;
-  std::vector<std::unique_ptr<Writer<StateType>>> states_;
-  std::vector<std::unique_ptr<Reader<CommandType>>> commands_;
+  std::atomic<std::int64_t> tick_ = 0;
+  std::size_t missing_ = 0;
+  BundleWriter sample_;
+  std::vector<std::unique_ptr<Process>> processes_;
 };
 
-pid_t Spawn(const Setting& setting, int id) {
+pid_t Spawn(const Setting& setting, AgentRange agents) {
   std::vector<std::string> words{"bare_exchange",
-                                 "agent",
-                                 std::to_string(setting.agents),
-                                 setting.graph,
+                                 "agents",
                                  std::to_string(setting.domain),
                                  setting.discovery,
-                                 std::to_string(id)};
+                                 std::to_string(agents.first),
+                                 std::to_string(agents.last)};
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
@@ -172,22 +193,28 @@ pid_t Spawn(const Setting& setting, int id) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc == 7 && std::string(argv[1]) == "agent")
-    RunAgent({std::atoi(argv[2]), argv[3], std::atoi(argv[4]), argv[5]}, std::atoi(argv[6]));
-  const bool batch = argc == 5 && std::string(argv[4]) == "batch";
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.size() == 5 && words[0] == "agents")
+    RunAgents({.agents = 0, .graph = "", .domain = std::stoi(words[1]), .discovery = words[2]},
+              {std::stoi(words[3]), std::stoi(words[4])});
+  const int share = words.size() < 4 ? 1 : std::atoi(words[3].c_str());
+  const bool batch = words.size() == 5 && words[4] == "batch";
   const bool known =
-      argc >= 4 && std::atoi(argv[1]) > 0 && (std::string(argv[2]) == "ring" || std::string(argv[2]) == "complete");
-  if (!known || (argc != 4 && !batch)) {
-    std::fprintf(stderr, "usage: bare_exchange AGENTS ring|complete SECONDS [batch]\n");
+      words.size() >= 3 && std::atoi(words[0].c_str()) > 0 && (words[1] == "ring" || words[1] == "complete");
+  if (!known || share < 1 || (words.size() > 4 && !batch)) {
+    std::fprintf(stderr, "usage: bare_exchange AGENTS ring|complete SECONDS [AGENTS-PER-PROCESS [batch]]\n");
     return 2;
   }
   const sched_param no_priority{};
   if (batch && sched_setscheduler(0, SCHED_BATCH, &no_priority) != 0) return 1;
   const DomainLock lock(-1);
-  Setting setting{std::atoi(argv[1]), argv[2], lock.domain(), ""};
-  if (setting.agents + 2 > kMaxPeers) setting.discovery = "127.0.0.1:" + std::to_string(lock.discovery_port());
+  Setting setting{.agents = std::stoi(words[0]), .graph = words[1], .domain = lock.domain()};
+  for (int first = 1; first <= setting.agents; first += share)
+    setting.processes.push_back({first, std::min(first + share - 1, setting.agents)});
+  if (std::ssize(setting.processes) + 2 > kMaxPeers)
+    setting.discovery = "127.0.0.1:" + std::to_string(lock.discovery_port());
   std::vector<pid_t> agents;
-  for (int id = 1; id <= setting.agents; ++id) agents.push_back(Spawn(setting, id));
+  for (const AgentRange& process : setting.processes) agents.push_back(Spawn(setting, process));
   {
     std::optional<Domain> discovery;
     if (!setting.discovery.empty()) {
@@ -198,7 +225,7 @@ int main(int argc, char** argv) {
     Server server(setting);
     Await([&] { return server.Matched(); });
     std::this_thread::sleep_for(300ms);  // until the agents have matched too
-    std::printf("{\"ticks_per_s\": %.1f}\n", server.Measure(std::atof(argv[3])));
+    std::printf("{\"ticks_per_s\": %.1f}\n", server.Measure(std::atof(words[2].c_str())));
   }
   for (const pid_t agent : agents) {
     kill(agent, SIGKILL);

@@ -1,6 +1,6 @@
 // Lower bound set by the operating system: the same lockstep over Unix sockets, with one message to each agent process
-// and one back, without DDS.
-//   socket_exchange AGENTS SECONDS     prints one line of JSON: ticks per second
+// and one back, without DDS. They are as large as in a ring.
+//   socket_exchange AGENTS SECONDS [AGENTS-PER-PROCESS]     prints one line of JSON: ticks per second
 #include <poll.h>
 #include <signal.h>
 #include <sys/epoll.h>
@@ -9,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -20,22 +20,22 @@ namespace {
 
 using WallClock = std::chrono::steady_clock;
 
-struct States {  // what an agent of a ring hears: three states of 168 bytes
-  std::uint64_t tick;
-  std::array<char, 496> rest;
-};
-struct Answer {  // a command
-  std::uint64_t tick;
-  std::array<char, 100> rest;
-};
+constexpr std::size_t kStateBytes = 152, kCommandBytes = 104;  // as bodies in bundles
 
-[[noreturn]] void RunAgent(int socket) {
+/// A sample begins with its tick; the rest is only its size.
+using Sample = std::vector<std::uint64_t>;
+Sample SampleOf(std::size_t bytes) { return Sample(1 + bytes / sizeof(std::uint64_t)); }
+std::size_t BytesOf(const Sample& sample) { return sample.size() * sizeof(std::uint64_t); }
+bool Send(int socket, const Sample& sample) { return send(socket, sample.data(), BytesOf(sample), MSG_NOSIGNAL) > 0; }
+bool Receive(int socket, Sample& sample) {
+  return recv(socket, sample.data(), BytesOf(sample), 0) == static_cast<ssize_t>(BytesOf(sample));
+}
+
+[[noreturn]] void RunAgents(int socket, Sample states, Sample answer) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  States states;
-  Answer answer{};
-  while (recv(socket, &states, sizeof states, 0) == sizeof states) {
-    answer.tick = states.tick;
-    if (send(socket, &answer, sizeof answer, MSG_NOSIGNAL) < 0) break;
+  while (Receive(socket, states)) {
+    answer[0] = states[0];
+    if (!Send(socket, answer)) break;
   }
   _exit(0);
 }
@@ -43,21 +43,25 @@ struct Answer {  // a command
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fprintf(stderr, "usage: socket_exchange AGENTS SECONDS\n");
+  if (argc != 3 && argc != 4) {
+    std::fprintf(stderr, "usage: socket_exchange AGENTS SECONDS [AGENTS-PER-PROCESS]\n");
     return 2;
   }
-  const int agents = std::atoi(argv[1]);
+  const int agents = std::atoi(argv[1]), share = argc == 4 ? std::atoi(argv[3]) : 1;
+  if (agents < 1 || share < 1) return 2;
+  const int processes = (agents + share - 1) / share;
+  const auto heard = static_cast<std::size_t>(std::min(agents, share + 2));
+  Sample states = SampleOf(kStateBytes * heard), answer = SampleOf(kCommandBytes * static_cast<std::size_t>(share));
   const int poll_fd = epoll_create1(0);
   std::vector<int> sockets;
   std::vector<pid_t> pids;
-  for (int i = 0; i < agents; ++i) {
+  for (int i = 0; i < processes; ++i) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends) != 0) return 1;
     const pid_t pid = fork();
     if (pid == 0) {
       close(ends[0]);
-      RunAgent(ends[1]);
+      RunAgents(ends[1], states, answer);
     }
     close(ends[1]);
     epoll_event event{EPOLLIN, {.fd = ends[0]}};
@@ -65,23 +69,20 @@ int main(int argc, char** argv) {
     sockets.push_back(ends[0]);
     pids.push_back(pid);
   }
-  States states{};
-  Answer answer;
-  std::vector<epoll_event> events(static_cast<std::size_t>(agents));
+  std::vector<epoll_event> events(static_cast<std::size_t>(processes));
   const auto start = WallClock::now();
   const std::chrono::duration<double> limit(std::atof(argv[2]));
   while (WallClock::now() - start < limit) {
-    ++states.tick;
+    ++states[0];
     for (const int socket : sockets)
-      if (send(socket, &states, sizeof states, 0) < 0) return 1;
-    for (int missing = agents; missing > 0;) {
-      const int ready = epoll_wait(poll_fd, events.data(), agents, -1);
-      for (int k = 0; k < ready; ++k)
-        missing -= recv(events[static_cast<std::size_t>(k)].data.fd, &answer, sizeof answer, 0) == sizeof answer;
+      if (!Send(socket, states)) return 1;
+    for (int missing = processes; missing > 0;) {
+      const int ready = epoll_wait(poll_fd, events.data(), processes, -1);
+      for (int k = 0; k < ready; ++k) missing -= Receive(events[static_cast<std::size_t>(k)].data.fd, answer) ? 1 : 0;
     }
   }
   const std::chrono::duration<double> wall = WallClock::now() - start;
-  std::printf("{\"ticks_per_s\": %.1f}\n", static_cast<double>(states.tick) / wall.count());
+  std::printf("{\"ticks_per_s\": %.1f}\n", static_cast<double>(states[0]) / wall.count());
   for (const pid_t pid : pids) {
     kill(pid, SIGKILL);
     waitpid(pid, nullptr, 0);
