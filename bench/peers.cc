@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <chrono>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -150,11 +151,12 @@ class MujocoLoop {
   MujocoLoop& operator=(const MujocoLoop&) = delete;
 
   void Step() {
-    for (int i = 0; i + 1 < model_->nbody; ++i) {
+    for (std::ptrdiff_t i = 0; i + 1 < model_->nbody; ++i) {
       const double *p = data_->qpos + 7 * i, *v = data_->qvel + 6 * i;  // v: linear in W, angular in B
       const Eigen::Quaterniond q(p[3], p[4], p[5], p[6]);
       const Eigen::Matrix3d R_WB = q.toRotationMatrix();
-      const Wrench wrench = Pd(Vector3d::Map(p), Vector3d::Map(v), R_WB, Vector3d::Map(v + 3), Height_m(i));
+      const Wrench wrench =
+          Pd(Vector3d::Map(p), Vector3d::Map(v), R_WB, Vector3d::Map(v + 3), Height_m(static_cast<int>(i)));
       Vector3d::Map(data_->xfrc_applied + 6 * (i + 1)) = wrench.f_W;
       Vector3d::Map(data_->xfrc_applied + 6 * (i + 1) + 3) = R_WB * wrench.tau_B;
     }
