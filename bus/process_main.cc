@@ -135,6 +135,10 @@ void ProcessArgs::AddTo(CLI::App& app) {
       ->check(CLI::Range(1, 20000));
   app.add_option("--participant", options.number, "Number of this process among those of its host: its ports")
       ->check(CLI::Range(0, 119));
+  app.add_option("--peers", options.peers,
+                 "Numbers of the processes to announce this one to (default: by multicast, to all)")
+      ->delimiter(',')
+      ->check(CLI::Range(0, 119));
   app.add_option("--parent", parent, "Process id of the program that spawned this process: end when it dies");
   app.add_option("--orchestrator", orchestrator, "Process id of the orchestrator, if it is on another host");
   app.add_option("--address", options.address, "IPv4 address of the interface to use (default: all)");

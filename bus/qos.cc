@@ -124,6 +124,15 @@ eprosima::fastrtps::rtps::GuidPrefix_t ServerPrefix(const Locator_t& server) {
   return prefix;
 }
 
+/// Fast DDS 2.9 creates its shared-memory sender when it first discovers a peer that has shared memory, and aborts (an
+/// assertion in its statistics) if another thread is sending at that moment. With this initial peer the sender exists
+/// from the start; no process listens at that address.
+Locator_t NobodyInSharedMemory() {
+  Locator_t nobody(LOCATOR_KIND_SHM, 7400);
+  nobody.address[0] = 'U';
+  return nobody;
+}
+
 void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) {
   auto& builtin = qos.wire_protocol().builtin;
   builtin.mutation_tries = 1000;  // with the default, 100, the 101st participant of a host receives nothing
@@ -133,6 +142,15 @@ void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) 
     // Announce often at first, so that the start does not wait for the regular period of seconds.
     builtin.discovery_config.initial_announcements.count = 20;
     builtin.discovery_config.initial_announcements.period = Duration_t(0, 100'000'000);
+    if (options.peers.empty()) return;
+    builtin.discovery_config.initial_announcements.period = Duration_t(0, 50'000'000);  // they go to these few only
+    builtin.initialPeersList.push_back(NobodyInSharedMemory());
+    for (const int number : options.peers) {
+      Locator_t peer;
+      IPLocator::setIPv4(peer, "127.0.0.1");
+      IPLocator::setPhysicalPort(peer, DiscoveryPort(options.domain, number));
+      if (number != options.number) builtin.initialPeersList.push_back(peer);
+    }
     return;
   }
   const Locator_t locator = ServerLocator(options.server);
@@ -142,12 +160,7 @@ void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) 
     builtin.metatrafficUnicastLocatorList.push_back(locator);
     return;
   }
-  // Fast DDS 2.9 creates its shared-memory sender when it first discovers a peer that has shared memory, and aborts (an
-  // assertion in its statistics) if another thread is sending at that moment. With this initial peer the sender exists
-  // from the start; no process listens at that address, and clients announce themselves to their server only.
-  Locator_t nobody(LOCATOR_KIND_SHM, 7400);
-  nobody.address[0] = 'U';
-  builtin.initialPeersList.push_back(nobody);
+  builtin.initialPeersList.push_back(NobodyInSharedMemory());  // clients announce themselves to their server only
   builtin.discovery_config.discoveryServer_client_syncperiod = Duration_t(0, 50'000'000);  // it is 450 ms
   const bool client = options.role == DiscoveryRole::kClient;
   builtin.discovery_config.discoveryProtocol = client ? DiscoveryProtocol::CLIENT : DiscoveryProtocol::SUPER_CLIENT;
@@ -158,6 +171,11 @@ void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) 
 }
 
 }  // namespace
+
+// The specification of RTPS, 9.6.1.1: PB + DG * domain + d1 + PG * number.
+std::uint16_t DiscoveryPort(int domain, int number) {
+  return static_cast<std::uint16_t>(7400 + 250 * domain + 10 + 2 * number);
+}
 
 std::span<const std::string_view> TransportNames() {
   static const std::vector<std::string_view> names = [] {

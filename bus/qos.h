@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "idl/topics.h"
 
@@ -14,7 +15,7 @@ namespace mascot {
 
 /// Role of a participant in DDS discovery.
 enum class DiscoveryRole {
-  kPeer,      ///< finds all others by multicast; fine up to about 20 participants
+  kPeer,      ///< finds others by multicast, which is fine up to about 20 participants, or by their numbers
   kClient,    ///< asks the discovery server, learns of the endpoints that match its own
   kObserver,  ///< asks the discovery server, learns of all endpoints (Fast DDS: SUPER_CLIENT)
   kServer,    ///< is the discovery server
@@ -33,7 +34,13 @@ struct DomainOptions {
   /// Number of this participant among those of its host: it has the ports of this number, if they are free. -1: Fast
   /// DDS tries one number after the other, which takes long where there are many.
   int number = -1;
+  /// For kPeer: the numbers of the participants of this host to which this one announces itself; they answer. Empty: it
+  /// announces itself by multicast, to all of the domain.
+  std::vector<int> peers = {};
 };
+
+/// The UDP port at which the participant with this number is announced to, if it has got its ports.
+std::uint16_t DiscoveryPort(int domain, int number);
 
 /// The legal values of DomainOptions::transport.
 std::span<const std::string_view> TransportNames();

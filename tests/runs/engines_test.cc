@@ -480,19 +480,25 @@ TEST(Engines, TwoRunsAtOnceDoNotDisturbEachOther) {
   ExpectSameBytes(one, alone);
 }
 
-TEST(Engines, FiftyAgentsFlyThroughADiscoveryServer) {
+void FlyFifty(const std::string& delivery, bool with_server) {
   ScratchFolder folder;
-  const std::vector<std::string> fifty = {"--duration-s",        "0.5",   "--set",           "agents.count=50", "--set",
-                                          "graph.topology=ring", "--set", "agents.random={}"};
+  const std::vector<std::string> fifty = {"--duration-s", "0.5",
+                                          "--set",        "agents.count=50",
+                                          "--set",        "graph.topology=ring",
+                                          "--set",        "agents.random={}",
+                                          "--set",        "network.delivery=" + delivery};
   Up dds(folder, "dds", Config("leaderless"), fifty);
   EXPECT_EQ(dds.Wait(), 0) << dds.err();
-  EXPECT_THAT(dds.err(), HasSubstr("discovery server 127.0.0.1:"));
+  EXPECT_EQ(dds.Said("discovery server 127.0.0.1:"), with_server) << dds.err();
   auto inprocess_words = fifty;
   inprocess_words.insert(inprocess_words.end(), {"--engine", "inprocess"});
   Up inprocess(folder, "inprocess", Config("leaderless"), inprocess_words);
   EXPECT_EQ(inprocess.Wait(), 0) << inprocess.err();
   ExpectSameBytes(dds, inprocess);
 }
+
+TEST(Engines, FiftyAgentsOfTopicsFlyThroughADiscoveryServer) { FlyFifty("topics", true); }
+TEST(Engines, FiftyAgentsOfBundlesAnnounceThemselvesToTheServerAndTheOrchestrator) { FlyFifty("bundled", false); }
 
 TEST(Engines, ReportContactsByKindAlike) {
   ScratchFolder folder;

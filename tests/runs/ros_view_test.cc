@@ -174,9 +174,10 @@ TEST_F(RosView, WhoComesLateToARunThatStandsStillSeesTheLastTick) {
 }
 
 TEST_F(RosView, ChangesNoBitOfTheRecordingAlsoIfItsReaderHangs) {
-  Up without = Fly("without", "30.0");
+  const std::string long_enough_s = "200.0";  // for a reader to join
+  Up without = Fly("without", long_enough_s);
   EXPECT_EQ(without.Wait(), 0) << without.err();
-  Up with = Fly("with", "30.0", kOn);
+  Up with = Fly("with", long_enough_s, kOn);
   ASSERT_TRUE(HasDomain(with));
   const RViz rviz(with, folder_.File("rviz"));
   ASSERT_TRUE(Until([&] { return rviz.Sees("transforms") || with.IsOver(); }));
@@ -188,7 +189,9 @@ TEST_F(RosView, ChangesNoBitOfTheRecordingAlsoIfItsReaderHangs) {
 }
 
 TEST_F(RosView, IsFoundWithoutTheDiscoveryServerOfALargeRun) {
-  Up up = Fly("run", "100000.0", kOn, 20);
+  std::vector<std::string> on_topics = kOn;  // with bundles, the run would need none
+  on_topics.insert(on_topics.end(), {"--set", "network.delivery=topics"});
+  Up up = Fly("run", "100000.0", on_topics, 20);
   ASSERT_TRUE(HasDomain(up));
   EXPECT_TRUE(up.Said("discovery server"));
   const RViz rviz(up, folder_.File("rviz"));

@@ -42,8 +42,11 @@ using WallClock = std::chrono::steady_clock;
 
 /// Participants up to which peer-to-peer discovery is used; beyond, a discovery server is faster (50: 2 s, not 5 s).
 constexpr int kMaxPeers = 20;
-/// DomainOptions::number: agents have the numbers from kFirstAgents on.
-constexpr int kOwnNumber = 0, kServersNumber = 1, kDiscoveryNumber = 2, kFirstAgents = 3;
+/// Above this number of processes, the ports of a domain do not suffice for a number for each.
+constexpr int kMaxNumbered = 110;
+/// DomainOptions::number: agents have the numbers from kFirstAgents on. Programs of others take the lowest that are
+/// free: the two by which a star is found have the highest.
+constexpr int kDiscoveryNumber = 2, kFirstAgents = 3, kOwnNumber = 118, kServersNumber = 119;
 /// How long children may take to exit by themselves at the end; longer as long as other hosts tell what theirs printed.
 constexpr auto kExitGrace = 5s, kLastWords = 60s;
 /// File descriptors of the orchestrator: with viewers; and for each process of the run (2 were counted).
@@ -89,6 +92,7 @@ class DdsRun {
   std::string PlacedName(const std::string& process) const;
   RunPhases::Rules Rules();
   void Join();
+  void LookAtPorts();
   void ShowToRos();
   void Spawn();
   void Loop();
@@ -125,7 +129,9 @@ class DdsRun {
   bool is_asked_ = false;             // it is that of the order that run_requests_ has now
 
   const std::vector<AgentRange> processes_;
-  const bool with_server_;
+  /// Every process announces itself to this one and the physics server only: others have nothing to tell each other.
+  bool is_star_;
+  bool with_server_;  // a discovery server
   const RunFolder& folder_;
   std::optional<DomainLock> lock_;
   std::optional<Janitor> janitor_;
@@ -156,7 +162,9 @@ DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std:
       external_(std::ranges::any_of(experiment.agents, &AgentConfig::external)),
       reaches_others_(external_ || !std::ranges::all_of(experiment.hosts, &HostConfig::is_here)),
       processes_(AgentProcesses(experiment)),
-      with_server_(std::ssize(processes_) + 2 > kMaxPeers || !experiment.hosts.empty()),
+      is_star_(experiment.network.is_bundled() && experiment.hosts.empty() && !external_ &&
+               experiment.network.transport != "shm" && std::ssize(processes_) <= kMaxNumbered),
+      with_server_(!is_star_ && (std::ssize(processes_) + 2 > kMaxPeers || !experiment.hosts.empty())),
       folder_(folder),
       logs_([this](const std::string& process,
                    const std::string& line) { console_.ChildLine(PlacedName(process), line); },
@@ -179,6 +187,7 @@ RunPhases::Rules DdsRun::Rules() {
 void DdsRun::Join() {
   lock_.emplace(experiment_.network.domain);
   if (run_requests_ != nullptr) run_requests_->SetDomain(lock_->domain());
+  LookAtPorts();
   SweepSharedMemory(lock_->domain());  // left by runs of which also the janitor was killed
   RequireAddresses(Options(kOrchestrator, with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer));
   RequireResources({.shared_memory = SharedMemoryOf(""),
@@ -204,6 +213,13 @@ void DdsRun::Join() {
   if (ros_ != nullptr) ShowToRos();
 }
 
+/// Other DDS programs in the domain, if the file names it, may have the ports on which a star relies.
+void DdsRun::LookAtPorts() {
+  for (const int number : {kOwnNumber, kServersNumber})
+    if (IsUdpPortInUse(DiscoveryPort(lock_->domain(), number))) is_star_ = false;
+  if (!is_star_ && std::ssize(processes_) + 2 > kMaxPeers) with_server_ = true;
+}
+
 /// Shows the run to RViz2, by a participant of its own: without shared memory, which other versions of Fast DDS may not
 /// share with ours, and found without the discovery server. The audit is told what it discovers, which the server may
 /// not know.
@@ -223,6 +239,7 @@ DomainOptions DdsRun::Options(const std::string& name, DiscoveryRole role) const
   options.role = role;
   options.number = role == DiscoveryRole::kServer ? kDiscoveryNumber : kOwnNumber;
   options.loopback = !reaches_others_;
+  if (is_star_) options.peers = {kOwnNumber, kServersNumber};
   options.participants = ParticipantsOfServer(experiment_);
   const std::string host = role == DiscoveryRole::kServer && reaches_others_ ? "0.0.0.0" : "127.0.0.1";
   if (with_server_) options.server = host + ":" + std::to_string(lock_->discovery_port());
@@ -277,6 +294,8 @@ void DdsRun::Spawn() {
   std::vector<std::string> common{"--parent", std::to_string(getpid())};
   if (options.loopback) common.push_back("--loopback");
   if (with_server_) common.insert(common.end(), {"--discovery", options.server});
+  if (is_star_)
+    common.insert(common.end(), {"--peers", std::to_string(kOwnNumber) + "," + std::to_string(kServersNumber)});
   console_.Line("DDS domain " + std::to_string(options.domain) +
                 (with_server_ ? ", discovery server " + options.server : ""));
 

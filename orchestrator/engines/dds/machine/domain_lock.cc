@@ -63,6 +63,12 @@ std::set<int> UdpPortsInUse() {
   return ports;
 }
 
+}  // namespace
+
+bool IsUdpPortInUse(int port) { return UdpPortsInUse().contains(port); }
+
+namespace {
+
 bool HasPortIn(const std::set<int>& ports, int first, int end) {
   const auto port = ports.lower_bound(first);
   return port != ports.end() && *port < end;

@@ -6,6 +6,9 @@
 
 namespace mascot {
 
+/// Whether a program of this machine, or of this network namespace, has this UDP port.
+bool IsUdpPortInUse(int port);
+
 /// Reserves a DDS domain, so that no other run on this machine uses it, of this user or another: neither in the network
 /// namespace, by the name of a socket, nor in /dev/shm, which several of them may share, by a lock on a byte of that
 /// folder. It lasts as long as this object, or a process that inherited its descriptors (Janitor), and leaves nothing.
