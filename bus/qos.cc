@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/number.h"
+#include "bus/ports.h"
 #include "idl/schemas.h"
 
 namespace mascot {
@@ -126,9 +127,10 @@ eprosima::fastrtps::rtps::GuidPrefix_t ServerPrefix(const Locator_t& server) {
 
 /// Fast DDS 2.9 creates its shared-memory sender when it first discovers a peer that has shared memory, and aborts (an
 /// assertion in its statistics) if another thread is sending at that moment. With this initial peer the sender exists
-/// from the start; no process listens at that address.
-Locator_t NobodyInSharedMemory() {
-  Locator_t nobody(LOCATOR_KIND_SHM, 7400);
+/// from the start. No process listens there: it is the last port of the domain, so that what a killed process leaves of
+/// it is swept with the rest.
+Locator_t NobodyInSharedMemory(int domain) {
+  Locator_t nobody(LOCATOR_KIND_SHM, static_cast<std::uint32_t>(FirstPort(domain) + kPortsPerDomain - 1));
   nobody.address[0] = 'U';
   return nobody;
 }
@@ -144,7 +146,7 @@ void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) 
     builtin.discovery_config.initial_announcements.period = Duration_t(0, 100'000'000);
     if (options.peers.empty()) return;
     builtin.discovery_config.initial_announcements.period = Duration_t(0, 50'000'000);  // they go to these few only
-    builtin.initialPeersList.push_back(NobodyInSharedMemory());
+    builtin.initialPeersList.push_back(NobodyInSharedMemory(options.domain));
     for (const int number : options.peers) {
       Locator_t peer;
       IPLocator::setIPv4(peer, "127.0.0.1");
@@ -160,7 +162,8 @@ void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) 
     builtin.metatrafficUnicastLocatorList.push_back(locator);
     return;
   }
-  builtin.initialPeersList.push_back(NobodyInSharedMemory());  // clients announce themselves to their server only
+  builtin.initialPeersList.push_back(
+      NobodyInSharedMemory(options.domain));  // clients announce themselves to their server only
   builtin.discovery_config.discoveryServer_client_syncperiod = Duration_t(0, 50'000'000);  // it is 450 ms
   const bool client = options.role == DiscoveryRole::kClient;
   builtin.discovery_config.discoveryProtocol = client ? DiscoveryProtocol::CLIENT : DiscoveryProtocol::SUPER_CLIENT;
@@ -174,7 +177,7 @@ void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) 
 
 // The specification of RTPS, 9.6.1.1: PB + DG * domain + d1 + PG * number.
 std::uint16_t DiscoveryPort(int domain, int number) {
-  return static_cast<std::uint16_t>(7400 + 250 * domain + 10 + 2 * number);
+  return static_cast<std::uint16_t>(FirstPort(domain) + 10 + 2 * number);
 }
 
 std::span<const std::string_view> TransportNames() {

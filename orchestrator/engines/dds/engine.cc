@@ -46,7 +46,7 @@ constexpr int kMaxPeers = 20;
 constexpr int kMaxNumbered = 110;
 /// DomainOptions::number: agents have the numbers from kFirstAgents on. Programs of others take the lowest that are
 /// free: the two by which a star is found have the highest.
-constexpr int kDiscoveryNumber = 2, kFirstAgents = 3, kOwnNumber = 118, kServersNumber = 119;
+constexpr int kDiscoveryNumber = 2, kFirstAgents = 3, kOwnNumber = 117, kServersNumber = 118;
 /// How long children may take to exit by themselves at the end; longer as long as other hosts tell what theirs printed.
 constexpr auto kExitGrace = 5s, kLastWords = 60s;
 /// File descriptors of the orchestrator: with viewers; and for each process of the run (2 were counted).
