@@ -32,15 +32,15 @@ class LaneNumbers {
   std::vector<double> numbers_;
 };
 
-/// Of kernels for this processor, which have a number of `lanes` each, the one with most lanes first: that with at most
-/// `max_lanes`, or else the last.
+/// The first kernel that has at most `max_lanes` lanes, or the last one if none has so few. `kernels`: those that this
+/// processor can run, the one with most `lanes` first.
 template <class Kernel>
 Kernel KernelWith(const std::vector<Kernel>& kernels, int max_lanes) {
   const auto kernel = std::ranges::find_if(kernels, [max_lanes](const Kernel& one) { return one.lanes <= max_lanes; });
   return kernel == kernels.end() ? kernels.back() : *kernel;
 }
 
-/// Their numbers of lanes.
+/// The number of lanes of each kernel.
 template <class Kernel>
 std::vector<int> LanesOf(const std::vector<Kernel>& kernels) {
   std::vector<int> lanes;

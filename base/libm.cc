@@ -7,8 +7,8 @@
 // neither do these. Not here: what is exact or correctly rounded anyway (sqrt, fmod, floor, ...), long double, complex
 // functions.
 //
-// Of some functions, SLEEF's form for several numbers is faster than that for one, if all are the same, and has the
-// same bits: those are taken from base/lanes.h.
+// SLEEF computes some functions faster for two equal numbers at once than for one, and to the same bits. These
+// functions are taken from base/lanes.h.
 #include <sleef.h>
 
 #include "base/lanes.h"

@@ -8,7 +8,7 @@ struct SinesAndCosines {
   Eigen::Vector2d sin, cos;
 };
 
-/// Of two angles (rad) at once, with the bits of std::sin and std::cos, in half of their time.
+/// The sines and cosines of two angles (rad), computed at once. They have the bits of std::sin and std::cos.
 SinesAndCosines SinesAndCosinesOf(const Eigen::Vector2d& angles_rad);
 
 }  // namespace mascot

@@ -25,7 +25,7 @@ namespace {
 
 using F = StackField;
 
-/// Those that this processor can run, the one with most lanes first.
+/// The kernels that this processor can run, the one with most lanes first.
 std::vector<QuadrotorKernel> Kernels() {
   std::vector<QuadrotorKernel> kernels;
 #ifdef MASCOT_AVX

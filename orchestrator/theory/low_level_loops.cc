@@ -19,7 +19,7 @@ constexpr int kMaxStepsOfPeriod = 10;
 
 double PdAccel(PdGains gains, double error, double rate) { return gains.kp * error + gains.kd * rate; }
 
-/// Those that this processor can run, the one with most lanes first.
+/// The kernels that this processor can run, the one with most lanes first.
 std::vector<LoopKernel> Kernels() {
   std::vector<LoopKernel> kernels;
 #ifdef MASCOT_AVX

@@ -45,7 +45,7 @@ class LowLevelLoops {
     const AgentConfig& agent;
     Eigen::Matrix3d R_WH;  // the heading frame: x ahead, y left
     bool holds_altitude;
-    // Of a quadrotor:
+    // The members below are used for quadrotors only.
     std::size_t place = 0;  // in numbers_
     Eigen::Vector3d p_ref_W, v_ref_W;
   };

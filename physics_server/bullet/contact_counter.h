@@ -27,7 +27,7 @@ class ContactCounter {
   /// To be called after each step. `tick`: the one before the step; `bodies`: the agents', by id - 1.
   void Update(btDispatcher& dispatcher, std::int64_t tick, std::span<const Body> bodies);
   const Contacts& begun() const { return begun_; }
-  /// Those that are so close that Bullet kept contact points for them after the last step.
+  /// The pairs of bodies that are so close that Bullet kept contact points for them after the last step.
   std::span<const Pair> kept() const { return kept_; }
 
  private:

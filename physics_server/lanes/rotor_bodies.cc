@@ -5,7 +5,7 @@
 namespace mascot {
 namespace {
 
-/// Those that this processor can run, the one with most lanes first.
+/// The kernels that this processor can run, the one with most lanes first.
 std::vector<RotorKernel> Kernels() {
   std::vector<RotorKernel> kernels;
 #ifdef MASCOT_AVX
