@@ -215,6 +215,7 @@ void DdsRun::Join() {
 
 /// Other DDS programs in the domain, if the file names it, may have the ports on which a star relies.
 void DdsRun::LookAtPorts() {
+  if (!is_star_) return;
   for (const int number : {kOwnNumber, kServersNumber})
     if (IsUdpPortInUse(DiscoveryPort(lock_->domain(), number))) is_star_ = false;
   if (!is_star_ && std::ssize(processes_) + 2 > kMaxPeers) with_server_ = true;
