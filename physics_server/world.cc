@@ -53,7 +53,7 @@ void CheckFinite(std::span<const Actuation> commands, std::int64_t tick) {
 enum class By { kBullet, kItself, kLanes };
 
 struct World::Impl {
-  Impl(const Experiment& experiment, LookForContacts look_for_contacts, int max_lanes);
+  Impl(const Experiment& experiment, LookForContacts look_for_contacts, int max_lanes, Crew& crew);
   void Tick(std::span<const Actuation> commands);
   void DecideWhoFlies(std::span<const Actuation> commands);
   By DecideFor(std::size_t i) const;
@@ -63,10 +63,11 @@ struct World::Impl {
   bool MayTouch();
   void PullIn(std::span<const Actuation> commands, int steps);
   void FlyAlone(Body& body, const Actuation& command, int steps);
-  void FlyInLanes(std::span<const Actuation> commands);
-  void EndTick();
+  void FlyInLanes(std::span<const Actuation> commands, std::size_t first_block, std::size_t end_block);
+  void EndTick(std::size_t i);
   Surroundings Around(int step) const;
 
+  Crew& crew;
   int rate_hz;
   double dt_s;
   double control_rate_hz;
@@ -94,8 +95,9 @@ struct World::Impl {
   std::vector<std::size_t> lane_of;         // by body, if it has rotors: its place in rotor_bodies
 };
 
-World::Impl::Impl(const Experiment& experiment, LookForContacts look_for_contacts, int max_lanes)
-    : rate_hz(experiment.physics.rate_hz),
+World::Impl::Impl(const Experiment& experiment, LookForContacts look_for_contacts, int max_lanes, Crew& crew_of_run)
+    : crew(crew_of_run),
+      rate_hz(experiment.physics.rate_hz),
       dt_s(1.0 / rate_hz),
       control_rate_hz(experiment.control.rate_hz),
       steps_per_tick(experiment.steps_per_tick()),
@@ -138,10 +140,15 @@ void World::Impl::Tick(std::span<const Actuation> commands) {
   }
   DecideWhoFlies(commands);
   FlyByBullet(commands);
-  FlyInLanes(commands);
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (by[i] == By::kItself) FlyAlone(bodies[i], commands[i], steps_per_tick);
-  EndTick();
+  crew.Share(rotor_bodies->blocks(), std::size_t{kMinAgentsPerThread} / rotor_bodies->lanes(),
+             [&](std::size_t first, std::size_t end) { FlyInLanes(commands, first, end); });
+  crew.Share(bodies.size(), std::size_t{kMinAgentsPerThread}, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      if (by[i] == By::kItself) FlyAlone(bodies[i], commands[i], steps_per_tick);
+      EndTick(i);
+    }
+  });
+  ++tick;
 }
 
 Surroundings World::Impl::Around(int step) const {
@@ -156,7 +163,9 @@ Clearance::Box World::Impl::SweptBoxOf(std::size_t i, const Motion& now, const A
 }
 
 void World::Impl::DecideWhoFlies(std::span<const Actuation> commands) {
-  for (std::size_t i = 0; i < bodies.size(); ++i) swept_boxes[i] = SweptBoxOf(i, bodies[i].state, commands[i]);
+  crew.Share(bodies.size(), std::size_t{kMinAgentsPerThread}, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) swept_boxes[i] = SweptBoxOf(i, bodies[i].state, commands[i]);
+  });
   clearance->Look(swept_boxes);
   std::ranges::fill(is_in_contact, char{false});
   for (const ContactCounter::Pair& pair : contacts.kept())
@@ -242,10 +251,11 @@ void World::Impl::FlyAlone(Body& body, const Actuation& command, int steps) {
   }
 }
 
-/// Flies the bodies with rotors that touch nothing through the tick.
-void World::Impl::FlyInLanes(std::span<const Actuation> commands) {
+/// Flies those bodies with rotors through the tick that touch nothing, of these blocks of rotor_bodies.
+void World::Impl::FlyInLanes(std::span<const Actuation> commands, std::size_t first_block, std::size_t end_block) {
   const double t_s = Around(0).t_s;
-  for (std::size_t k = 0; k < with_rotors.size(); ++k) {
+  const std::size_t end = std::min(end_block * rotor_bodies->lanes(), with_rotors.size());
+  for (std::size_t k = first_block * rotor_bodies->lanes(); k < end; ++k) {
     const std::size_t i = with_rotors[k];
     if (by[i] != By::kLanes) continue;
     const Eigen::Vector4d remaining = bodies[i].model->rotors()->Remaining(t_s);
@@ -254,23 +264,20 @@ void World::Impl::FlyInLanes(std::span<const Actuation> commands) {
       rotor_bodies->At(k, RotorField::kRemaining + r) = remaining[r];
     }
   }
-  rotor_bodies->Fly({.dt_s = dt_s, .wind_W = wind_W});
+  rotor_bodies->Fly({.dt_s = dt_s, .wind_W = wind_W}, first_block, end_block);
 }
 
-void World::Impl::EndTick() {
-  ++tick;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Motion now = by[i] == By::kLanes ? Now(*rotor_bodies, lane_of[i]) : Now(*bodies[i].rigid);
-    Motion& state = bodies[i].state;
-    if (!IsFinite(now)) throw std::runtime_error(At(tick, i) + "its state is not finite");
-    if (now.q_WB.dot(state.q_WB) < 0) now.q_WB.coeffs() *= -1;  // q and -q are the same rotation: take the nearer one
-    now.a_WB = (now.v_WB - state.v_WB) * control_rate_hz;
-    state = now;
-  }
+void World::Impl::EndTick(std::size_t i) {
+  Motion now = by[i] == By::kLanes ? Now(*rotor_bodies, lane_of[i]) : Now(*bodies[i].rigid);
+  Motion& state = bodies[i].state;
+  if (!IsFinite(now)) throw std::runtime_error(At(tick + 1, i) + "its state is not finite");
+  if (now.q_WB.dot(state.q_WB) < 0) now.q_WB.coeffs() *= -1;  // q and -q are the same rotation: take the nearer one
+  now.a_WB = (now.v_WB - state.v_WB) * control_rate_hz;
+  state = now;
 }
 
-World::World(const Experiment& experiment, LookForContacts look, int max_lanes)
-    : impl_(std::make_unique<Impl>(experiment, look, max_lanes)) {}
+World::World(const Experiment& experiment, LookForContacts look, int max_lanes, Crew& crew)
+    : impl_(std::make_unique<Impl>(experiment, look, max_lanes, crew)) {}
 World::~World() = default;
 
 void World::Adopt(const Experiment& now) { impl_->wind.Adopt(now.physics.wind); }

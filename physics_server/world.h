@@ -5,6 +5,7 @@
 #include <span>
 
 #include "base/contacts.h"
+#include "base/crew.h"
 #include "base/motion.h"
 #include "experiment/experiment.h"
 
@@ -19,10 +20,10 @@ class World {
   enum class LookForContacts { kWhenClose, kAlways };
   /// For how many bodies at once: what the processor can do.
   static constexpr int kAllLanes = 64;
-  /// Bodies start exactly at their configured state. `max_lanes`: how many bodies to compute at once at most; the bits
-  /// do not depend on it.
+  /// Bodies start exactly at their configured state. `max_lanes`: how many bodies a thread computes at once at most.
+  /// `crew`: the threads that compute; it must outlive the world. The bits depend on neither.
   explicit World(const Experiment& experiment, LookForContacts look = LookForContacts::kWhenClose,
-                 int max_lanes = kAllLanes);
+                 int max_lanes = kAllLanes, Crew& crew = Crew::Alone());
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;

@@ -22,10 +22,10 @@ using WallClock = std::chrono::steady_clock;
 /// World, agents and buffers of a run; the buffers are reused, so that ticks do not allocate.
 class Flight {
  public:
-  explicit Flight(const Experiment& experiment)
+  Flight(const Experiment& experiment, Crew& crew)
       : experiment_(experiment),
-        world_(experiment),
-        team_(experiment),
+        world_(experiment, World::LookForContacts::kWhenClose, World::kAllLanes, crew),
+        team_(experiment, crew),
         actuation_(static_cast<std::size_t>(experiment.size())),
         row_(experiment.size()) {}
 
@@ -175,14 +175,14 @@ class Steering {
 }  // namespace
 
 EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSink*>& sinks,
-                          const std::function<bool()>& go_on, RunRequests* requests) {
+                          const std::function<bool()>& go_on, RunRequests* requests, Crew& crew) {
   EngineResult result;
   const auto launched = WallClock::now();
   auto start = launched;
   std::optional<Flight> flight;
   std::optional<Steering> steering;
   try {
-    flight.emplace(experiment);
+    flight.emplace(experiment, crew);
     if (requests != nullptr) steering.emplace(experiment, *requests, *flight);
     RowFeed feed(experiment, sinks);
     start = WallClock::now();

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "base/crew.h"
 #include "experiment/experiment.h"
 #include "orchestrator/control/run_requests.h"
 #include "orchestrator/engines/engine.h"
@@ -11,11 +12,12 @@
 
 namespace mascot {
 
-/// Runs the experiment in one thread of this process, without DDS, with the same World and Agent classes as the
-/// processes of the other engine. Every sink gets every row, in tick order. `go_on` is called at each tick, and while a
-/// tick waits; the run ends early, in order, when it returns false. People steer the run by `requests`; null: they
-/// cannot, and the run flies as fast as the machine can. A failure during a tick is reported in the result.
+/// Runs the experiment in the threads of `crew` in this process, without DDS, with the same World and Agent classes as
+/// the processes of the other engine. Every sink gets every row, in tick order. `go_on` is called at each tick, and
+/// while a tick waits; the run ends early, in order, when it returns false. People steer the run by `requests`; null:
+/// they cannot, and the run flies as fast as the machine can. A failure during a tick is reported in the result.
 EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSink*>& sinks,
-                          const std::function<bool()>& go_on, RunRequests* requests = nullptr);
+                          const std::function<bool()>& go_on, RunRequests* requests = nullptr,
+                          Crew& crew = Crew::Alone());
 
 }  // namespace mascot

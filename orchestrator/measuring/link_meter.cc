@@ -49,7 +49,7 @@ void LinkMeter::Add(std::int64_t tick, const DecodedRow& row) {
       sent_numbers_[i] += said_[i];
       said_[i] = row.messages[i].size();
     } else {
-      neighbours_[i].Hear(tick, row.motions[i], exchange_.SamplesFor(agent.id, row.motions));
+      neighbours_[i].Hear(tick, row.motions[i], exchange_.SamplesFor(agent.id, row.motions, samples_));
     }
   }
   if (plain_) return;

@@ -48,6 +48,7 @@ class LinkMeter {
   std::vector<std::uint64_t> said_, sent_numbers_;  // if plain_, by id - 1: numbers in the last message; in all sent
   std::vector<Neighbours> neighbours_;              // if not plain_, by id - 1
   Exchange exchange_;
+  std::vector<Sample> samples_;  // scratch
 };
 
 }  // namespace mascot

@@ -18,9 +18,9 @@ std::int64_t CommandedByAcceleration(const Experiment& experiment) {
 
 }  // namespace
 
-Metrics::Metrics(const Experiment& experiment) : experiment_(experiment) {
+Metrics::Metrics(const Experiment& experiment, Crew& crew) : experiment_(experiment) {
   const SuppressedPythonOutput suppressed;  // the laws run a second time; discard what they print
-  if (experiment.output.fidelity) ideal_.emplace(experiment);
+  if (experiment.output.fidelity) ideal_.emplace(experiment, crew);
   accelerated_ = CommandedByAcceleration(experiment);
   Take(experiment);
 }

@@ -44,7 +44,8 @@ struct Measured {
 /// Measures a run row by row. Memory does not grow with the number of rows.
 class Metrics {
  public:
-  explicit Metrics(const Experiment& experiment);
+  /// `crew`: as for Team, in the ideal team.
+  explicit Metrics(const Experiment& experiment, Crew& crew = Crew::Alone());
   /// Call it when events have changed the experiment: from the next row on, the experiment is `now`.
   void Adopt(std::shared_ptr<const Experiment> now);
   /// Adds the next tick.

@@ -6,8 +6,12 @@
 
 namespace mascot {
 
-RunMeter::RunMeter(const Experiment& experiment)
-    : experiment_(experiment), metrics_(experiment), links_(experiment), incidents_(experiment), laws_(experiment) {
+RunMeter::RunMeter(const Experiment& experiment, Crew& crew)
+    : experiment_(experiment),
+      metrics_(experiment, crew),
+      links_(experiment),
+      incidents_(experiment),
+      laws_(experiment) {
   Begin(experiment, 0, MotionsAtStart(experiment));
 }
 

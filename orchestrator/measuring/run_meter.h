@@ -20,7 +20,8 @@ namespace mascot {
 /// reached.
 class RunMeter final : public RowSink {
  public:
-  explicit RunMeter(const Experiment& experiment);
+  /// `crew`: as for Metrics.
+  explicit RunMeter(const Experiment& experiment, Crew& crew = Crew::Alone());
 
   void Adopt(const LiveExperiment& live, std::span<const Event> events) override;
   void Add(const FlownRow& row) override;

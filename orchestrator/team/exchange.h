@@ -15,15 +15,17 @@ class Exchange {
   explicit Exchange(const Experiment& experiment)
       : experiment_(experiment), messages_(experiment.agents.size()), next_messages_(experiment.agents.size()) {}
 
+  // Within a tick, threads may call these two for agents of their own.
+
   /// The samples of the neighbours of agent `id` at this tick, with their motions (`motions` has those of all agents,
-  /// by id - 1) and their messages of the previous tick. Valid until the next call.
-  std::span<const Sample> SamplesFor(int id, std::span<const Motion> motions) {
-    samples_.clear();
+  /// by id - 1) and their messages of the previous tick. `samples` holds them. Valid until the tick ends.
+  std::span<const Sample> SamplesFor(int id, std::span<const Motion> motions, std::vector<Sample>& samples) const {
+    samples.clear();
     for (const Graph::Neighbour& neighbour : experiment_.graph.HeardBy(id)) {
       const auto i = static_cast<std::size_t>(neighbour.id - 1);
-      samples_.push_back({&motions[i], messages_[i]});
+      samples.push_back({&motions[i], messages_[i]});
     }
-    return samples_;
+    return samples;
   }
   /// Sends `message` from agent `id` at this tick. Its neighbours get it at the next tick.
   void Send(int id, std::span<const double> message) {
@@ -34,7 +36,6 @@ class Exchange {
  private:
   const Experiment& experiment_;
   std::vector<std::vector<double>> messages_, next_messages_;  // by id - 1
-  std::vector<Sample> samples_;
 };
 
 }  // namespace mascot

@@ -16,9 +16,9 @@ void Move(Wanted driven_by, const Command& command, double h, Motion& motion) {
 
 }  // namespace
 
-IdealTeam::IdealTeam(const Experiment& experiment)
+IdealTeam::IdealTeam(const Experiment& experiment, Crew& crew)
     : experiment_(experiment),
-      team_(experiment),
+      team_(experiment, crew),
       motions_(static_cast<std::size_t>(experiment.size())),
       commands_(static_cast<std::size_t>(experiment.size())) {
   for (const AgentConfig& config : experiment.agents) {
@@ -31,11 +31,7 @@ IdealTeam::IdealTeam(const Experiment& experiment)
 }
 
 void IdealTeam::Step() {
-  for (const AgentConfig& config : experiment_.agents) {
-    const auto i = static_cast<std::size_t>(config.id - 1);
-    commands_[i] = team_.Want(config.id, tick_, motions_);
-  }
-  team_.EndTick();
+  team_.Want(tick_, motions_, commands_);
   for (const AgentConfig& config : experiment_.agents) {
     const auto i = static_cast<std::size_t>(config.id - 1);
     Move(config.traits().driven_by, commands_[i], experiment_.period_s(), motions_[i]);

@@ -15,7 +15,8 @@ namespace mascot {
 /// (p+ = p + h v + h^2 u / 2, v+ = v + h u), a model driven by velocity a single integrator (p+ = p + h u).
 class IdealTeam {
  public:
-  explicit IdealTeam(const Experiment& experiment);
+  /// `crew`: as for Team.
+  explicit IdealTeam(const Experiment& experiment, Crew& crew = Crew::Alone());
   /// Position of agent `id` at the current tick, in W (m).
   const Eigen::Vector3d& p_W(int id) const { return motions_[static_cast<std::size_t>(id - 1)].p_WB; }
   /// Motions of all agents at the current tick, by id - 1.

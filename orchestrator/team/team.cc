@@ -1,26 +1,60 @@
 #include "orchestrator/team/team.h"
 
+#include "agent/laws/laws.h"
+
 namespace mascot {
 
-Team::Team(const Experiment& experiment)
-    : low_level_(experiment, {1, experiment.size()}), driven_(experiment.agents.size()), exchange_(experiment) {
+Team::Part::Part(const Experiment& experiment, AgentRange agents)
+    : ids(agents), low_level(experiment, agents), driven(static_cast<std::size_t>(agents.last - agents.first + 1)) {}
+
+Team::Team(const Experiment& experiment, Crew& crew)
+    : crew_(crew), takes_turns_(FliesCodeOfUsers(experiment)), exchange_(experiment) {
+  const std::size_t agents = experiment.agents.size(), parts = crew.PartsOf(agents, kMinAgentsPerThread);
   for (const AgentConfig& config : experiment.agents) agents_.push_back(std::make_unique<Agent>(experiment, config.id));
+  for (std::size_t k = 0; k < parts; ++k)
+    parts_.emplace_back(
+        experiment, AgentRange{static_cast<int>(k * agents / parts) + 1, static_cast<int>((k + 1) * agents / parts)});
+}
+
+void Team::Adopt(const std::shared_ptr<const Experiment>& now) {
+  takes_turns_ = FliesCodeOfUsers(*now);
+  for (const auto& agent : agents_) agent->Adopt(now);
+}
+
+template <class Work>
+void Team::ForEachPart(Work&& work) {
+  if (takes_turns_)
+    for (Part& part : parts_) work(part);
+  else
+    crew_.Do(parts_.size(), [&](std::size_t k) { work(parts_[k]); });
+  exchange_.EndTick();
 }
 
 void Team::Decide(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands) {
-  for (std::size_t i = 0; i < agents_.size(); ++i) {
-    commands[i] = Want(agents_[i]->id(), tick, motions);
-    driven_[i] = agents_[i]->Driven(commands[i]);
-  }
-  low_level_.Actuate(driven_, commands);
-  EndTick();
+  ForEachPart([&](Part& part) {
+    Want(tick, motions, commands, part);
+    Actuate(commands, part);
+  });
 }
 
-Command Team::Want(int id, std::int64_t tick, std::span<const Motion> motions) {
-  const auto i = static_cast<std::size_t>(id - 1);
-  Command command = agents_[i]->Want(tick, motions[i], exchange_.SamplesFor(id, motions));
-  exchange_.Send(id, agents_[i]->message());
-  return command;
+void Team::Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands) {
+  ForEachPart([&](Part& part) { Want(tick, motions, commands, part); });
+}
+
+void Team::Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands, Part& part) {
+  for (int id = part.ids.first; id <= part.ids.last; ++id) {
+    const auto i = static_cast<std::size_t>(id - 1);
+    Agent& agent = *agents_[i];
+    commands[i] = agent.Want(tick, motions[i], exchange_.SamplesFor(id, motions, part.samples));
+    exchange_.Send(id, agent.message());
+  }
+}
+
+void Team::Actuate(std::span<Command> commands, Part& part) {
+  const auto first = static_cast<std::size_t>(part.ids.first - 1);
+  const std::span<Command> own = commands.subspan(first, part.driven.size());
+  for (std::size_t k = 0; k < own.size(); ++k) part.driven[k] = agents_[first + k]->Driven(own[k]);
+  part.low_level.Actuate(part.driven, own);
 }
 
 }  // namespace mascot

@@ -1,38 +1,54 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "agent/agent.h"
 #include "agent/low_level.h"
+#include "base/crew.h"
 #include "experiment/experiment.h"
 #include "orchestrator/team/exchange.h"
 
 namespace mascot {
 
-/// All agents of an experiment in one process. At each tick, call Decide, or Want once per agent and then EndTick.
+/// All agents of an experiment in one process. At each tick, call Decide or Want.
 class Team {
  public:
-  explicit Team(const Experiment& experiment);
+  /// `crew`: the threads that compute, unless agents fly laws of users; it must outlive the team. The bits do not
+  /// depend on it.
+  explicit Team(const Experiment& experiment, Crew& crew = Crew::Alone());
 
   /// Call it when events have changed the experiment: from the next tick on, the experiment is `now`.
-  void Adopt(const std::shared_ptr<const Experiment>& now) {
-    for (const auto& agent : agents_) agent->Adopt(now);
-  }
-  /// The complete commands of all agents, by id - 1. `motions`: their states at this tick. Ends the tick.
+  void Adopt(const std::shared_ptr<const Experiment>& now);
+  /// The complete commands of all agents, by id - 1. `motions`: their states at this tick. Messages that are sent
+  /// during this tick arrive at the next one. Throws what Agent::Want throws, for the first agent that fails.
   void Decide(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands);
-  /// Calls Agent::Want of agent `id`.
-  Command Want(int id, std::int64_t tick, std::span<const Motion> motions);
+  /// As Decide, but without the low-level stacks: the commands are those of Agent::Want.
+  void Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands);
   /// The message that agent `id` sent last.
   std::span<const double> message(int id) const { return agents_[static_cast<std::size_t>(id - 1)]->message(); }
-  /// Ends the tick: messages that were sent during it arrive at the next tick.
-  void EndTick() { exchange_.EndTick(); }
 
  private:
+  /// Agents that one thread computes.
+  struct Part {
+    Part(const Experiment& experiment, AgentRange agents);
+    AgentRange ids;
+    LowLevel low_level;
+    std::vector<Controller::Input> driven;
+    std::vector<Sample> samples;  // scratch
+  };
+
+  template <class Work>
+  void ForEachPart(Work&& work);
+  void Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands, Part& part);
+  void Actuate(std::span<Command> commands, Part& part);
+
+  Crew& crew_;
+  bool takes_turns_;
   std::vector<std::unique_ptr<Agent>> agents_;
-  LowLevel low_level_;
-  std::vector<Controller::Input> driven_;  // by id - 1
+  std::vector<Part> parts_;
   Exchange exchange_;
 };
 

@@ -37,13 +37,11 @@ class LoopTeam {
 
   /// The motions of this tick, and the commands and messages that answer them. Throws what a law throws.
   TeamRow Decide() {
+    team_.Want(tick_, bodies_.motions(), commands_);
     for (const AgentConfig& agent : experiment_.agents) {
-      const auto i = static_cast<std::size_t>(agent.id - 1);
-      commands_[i] = team_.Want(agent.id, tick_, bodies_.motions());
       const std::span<const double> message = team_.message(agent.id);
-      messages_[i].assign(message.begin(), message.end());
+      messages_[static_cast<std::size_t>(agent.id - 1)].assign(message.begin(), message.end());
     }
-    team_.EndTick();
     return {.tick = tick_, .motions = bodies_.motions(), .commands = commands_, .messages = messages_};
   }
 

@@ -49,11 +49,12 @@ void PredictFirstCommand(const Experiment& experiment, Prediction& prediction) {
   prompt.links = {};  // delays and losses only postpone the tick at which agents hear all their neighbours
   const std::vector<Motion> motions = MotionsAtStart(experiment);
   Exchange exchange(prompt);  // without messages: none has been sent before
+  std::vector<Sample> samples;
   for (const AgentConfig& agent : experiment.agents) {
     // One after the other: on a dense graph, all agents together take much memory.
     const Command command =
         Agent(prompt, agent.id)
-            .Want(0, motions[static_cast<std::size_t>(agent.id - 1)], exchange.SamplesFor(agent.id, motions));
+            .Want(0, motions[static_cast<std::size_t>(agent.id - 1)], exchange.SamplesFor(agent.id, motions, samples));
     const bool velocity = IsCommandedByVelocity(agent);
     const double asked = Asked(command, velocity);
     const double limit = velocity ? agent.control.max_speed_m_per_s : agent.control.max_acceleration_m_per_s2;

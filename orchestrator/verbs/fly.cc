@@ -1,5 +1,11 @@
 #include "orchestrator/verbs/fly.h"
 
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <thread>
+
 #include "agent/laws/laws.h"
 #include "agent/user_code/last_words.h"
 #include "bus/leave.h"
@@ -8,18 +14,40 @@
 #include "system/interruptions.h"
 
 namespace mascot {
-void RefuseEngine(const std::string& engine, const Experiment& experiment) {
-  if (engine == kOverDds) return RefuseTooManyProcesses(experiment);
+namespace {
+
+constexpr int kMaxThreads = 1024;
+
+}  // namespace
+
+void EngineArgs::AddTo(CLI::App& command, const std::string& help) {
+  command.add_option("--engine", name, help)->check(CLI::IsMember({kOverDds, kInProcess}));
+  command.add_option(
+      "--threads", threads,
+      "with --engine inprocess: how many threads fly a large team (default: one per core that the recording leaves)");
+}
+
+void EngineArgs::Refuse(const Experiment& experiment) const {
+  if (threads && name != kInProcess) throw ConfigError({"--threads: expected --engine inprocess with it"});
+  if (threads && (*threads < 1 || *threads > kMaxThreads))
+    throw ConfigError({fmt::format("--threads: expected 1 to {}, got {}", kMaxThreads, *threads)});
+  if (name == kOverDds) return RefuseTooManyProcesses(experiment);
   if (experiment.run.mode == Mode::kRealtime)  // in one process there is no pacing
     throw ConfigError({"--engine inprocess: expected run.mode = \"lockstep\", got \"realtime\""});
   if (experiment.network.ros_view)  // there is no DDS
     throw ConfigError({"--engine inprocess: expected network.ros_view = false, got true"});
 }
 
+int EngineArgs::CrewMembers(const Experiment& experiment, int others) const {
+  if (name != kInProcess) return 1;
+  const int members = threads.value_or(static_cast<int>(std::thread::hardware_concurrency()) - others);
+  return std::clamp(members, 1, std::max(1, experiment.size() / kMinAgentsPerThread));
+}
+
 Flight::Flight(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
                const std::vector<RowSink*>& sinks, RunRequests* requests, Console& console, StopSignal& stop,
-               RosSource* ros)
-    : experiment_(experiment), sinks_(sinks), requests_(requests), console_(console), stop_(stop) {
+               Crew& crew, RosSource* ros)
+    : experiment_(experiment), sinks_(sinks), requests_(requests), console_(console), stop_(stop), crew_(crew) {
   if (engine == kOverDds)
     dds_.emplace(experiment, folder, sinks, requests, console, stop, ros);
   else if (FliesCodeOfUsers(experiment))
@@ -38,7 +66,7 @@ EngineResult Flight::Fly() {
     LastWords::Leave(&reason, 1, code);
   });
   EngineResult result = RunInProcess(
-      experiment_, sinks_, [&] { return interruptions.signal() == 0; }, requests_);
+      experiment_, sinks_, [&] { return interruptions.signal() == 0; }, requests_, crew_);
   result.signal = interruptions.signal();
   return result;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/crew.h"
 #include "experiment/experiment.h"
 #include "orchestrator/control/run_requests.h"
 #include "orchestrator/engines/dds/engine.h"
@@ -12,6 +13,10 @@
 #include "orchestrator/recording/run_folder.h"
 #include "system/console.h"
 #include "system/stop_signal.h"
+
+namespace CLI {
+class App;
+}
 
 namespace mascot {
 
@@ -22,16 +27,29 @@ class RowSink;
 inline constexpr const char* kOverDds = "dds";
 inline constexpr const char* kInProcess = "inprocess";
 
-/// Throws ConfigError if this engine cannot fly the experiment.
-void RefuseEngine(const std::string& engine, const Experiment& experiment);
+/// --engine and --threads.
+struct EngineArgs {
+  std::string name;
+  std::optional<int> threads;
+
+  /// Declares both; `help` is that of --engine. `*this` must outlive the parsing.
+  void AddTo(CLI::App& command, const std::string& help);
+  /// Throws ConfigError if this engine cannot fly the experiment, or not so.
+  void Refuse(const Experiment& experiment) const;
+  /// How many threads are to fly the run, with the one that calls: as many as were asked for, or as there are cores
+  /// but for `others` threads that work beside them; no more than a team of this size keeps busy. Over DDS, only the
+  /// one that calls.
+  int CrewMembers(const Experiment& experiment, int others) const;
+};
 
 /// One experiment on one engine.
 class Flight {
  public:
   /// Every sink gets every row, in tick order. `requests`: what people ask of the run, also one of the sinks; null:
-  /// they cannot ask anything. `ros`, if given, is published for RViz2. All arguments must outlive this object.
+  /// they cannot ask anything. `crew`: computes a run in this process. `ros`, if given, is published for RViz2. All
+  /// arguments must outlive this object.
   Flight(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
-         const std::vector<RowSink*>& sinks, RunRequests* requests, Console& console, StopSignal& stop,
+         const std::vector<RowSink*>& sinks, RunRequests* requests, Console& console, StopSignal& stop, Crew& crew,
          RosSource* ros = nullptr);
 
   /// Sets the contents that the file `path` gets if this process is killed during a run over DDS, or during one with
@@ -51,6 +69,7 @@ class Flight {
   RunRequests* const requests_;
   Console& console_;
   StopSignal& stop_;
+  Crew& crew_;
   std::optional<DdsEngine> dds_;    // absent: in this process
   std::optional<Janitor> janitor_;  // in this process, with laws of users
   bool hangs_ = false;

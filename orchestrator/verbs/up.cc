@@ -50,10 +50,13 @@ struct UpArgs {
   ConfigArgs config;
   std::optional<std::string> out;
   ViewerArgs viewers;
-  std::string engine = kOverDds;
+  EngineArgs engine{.name = kOverDds, .threads = {}};
   bool force = false, json = false, quiet = false;
   bool slurm = false;
 };
+
+/// How many threads the recording keeps busy: what encodes and writes rows, and what compresses them.
+int ThreadsOfRecording(const Experiment& experiment) { return experiment.record.topics.empty() ? 0 : 2; }
 
 int ExitCode(const EngineResult& result) {
   if (!result.failure.empty()) return 1;
@@ -110,7 +113,7 @@ Experiment Load(UpArgs& args) {
   if (!args.slurm) return experiment;
   if (!experiment.hosts.empty())
     throw ConfigError({"--slurm: expected a file without hosts, because the job's nodes are the hosts"});
-  if (args.engine != kOverDds) throw ConfigError({"--slurm: expected --engine dds, got " + args.engine});
+  if (args.engine.name != kOverDds) throw ConfigError({"--slurm: expected --engine dds, got " + args.engine.name});
   ConfigArgs on_nodes = args.config;
   on_nodes.sets.push_back(HostsOfTheJob(experiment.size()));
   return on_nodes.Load();
@@ -123,28 +126,30 @@ int Up(UpArgs& args) {
     throw ConfigError({"--allow-origin: expected --view with it"});
   std::optional<EndsAtOnce> before_the_run(stop);
   const Experiment experiment = Load(args);
-  RefuseEngine(args.engine, experiment);
+  args.engine.Refuse(experiment);
   Prediction prediction = Predict(experiment);
   before_the_run.reset();
 
   Console console(args.quiet || args.json);
-  RunMeter meter(experiment);
+  Crew crew(args.engine.CrewMembers(experiment, ThreadsOfRecording(experiment)));
+  RunMeter meter(experiment, crew);
   RunRequests requests(experiment, experiment.run.pace.value_or(args.viewers.at ? 1 : 0));
-  Viewers viewers(args.viewers, args.engine, experiment, prediction, meter, requests, console);
+  Viewers viewers(args.viewers, args.engine.name, experiment, prediction, meter, requests, console);
 
   const RunFolder folder(args.out, experiment, args.force);
   viewers.LogTo(folder);
   folder.Write("config.toml", experiment.resolved);
-  console.Line(FirstLine(experiment, args.engine, folder));
+  console.Line(FirstLine(experiment, args.engine.name, folder));
   for (const std::string& warning : prediction.warnings) console.Line("warning: " + warning);
-  if (args.engine == kOverDds)
+  if (args.engine.name == kOverDds)
     for (const std::string& warning : DeliveryWarnings(experiment)) console.Line("warning: " + warning);
   RunWriter writer(experiment, folder, WithoutEvents(experiment));
   BackgroundSink writes(experiment, writer);
   ExplainCrashes();
   const std::string summary_file = std::filesystem::absolute(folder.File("summary.json")).string();
   std::optional<LastWords> last_words(
-      std::in_place, summary_file, SummaryIfKilled(experiment, args.engine, LastWords::kExitCode, LastWords::kReason));
+      std::in_place, summary_file,
+      SummaryIfKilled(experiment, args.engine.name, LastWords::kExitCode, LastWords::kReason));
   Progress progress(experiment, meter, console);
   std::vector<RowSink*> sinks{&writes, &meter, &progress, &requests};
   viewers.AddTo(sinks);
@@ -154,11 +159,12 @@ int Up(UpArgs& args) {
     ros_view.emplace(experiment, meter);
     sinks.push_back(&ros_sink.emplace(*ros_view, [&ros_view](const std::string& why) { ros_view->Fail(why); }));
   }
-  const RunSocket socket(experiment, std::filesystem::absolute(folder.path()).string(), args.engine, viewers.url(),
+  const RunSocket socket(experiment, std::filesystem::absolute(folder.path()).string(), args.engine.name, viewers.url(),
                          requests);
-  Flight flight(args.engine, experiment, folder, sinks, &requests, console, stop, ros_view ? &*ros_view : nullptr);
+  Flight flight(args.engine.name, experiment, folder, sinks, &requests, console, stop, crew,
+                ros_view ? &*ros_view : nullptr);
   flight.LeaveIfKilled(summary_file,
-                       SummaryIfKilled(experiment, args.engine, std::nullopt,
+                       SummaryIfKilled(experiment, args.engine.name, std::nullopt,
                                        "the orchestrator was killed (SIGKILL: by somebody, or for want of memory), or "
                                        "code in C of a law has ended it"));
   EngineResult result = flight.Fly();
@@ -184,7 +190,7 @@ int Up(UpArgs& args) {
                        .prediction = prediction,
                        .meter = meter,
                        .engine = result,
-                       .engine_name = args.engine,
+                       .engine_name = args.engine.name,
                        .topics = writer.topics(),
                        .samples = writer.samples()};
   const RunFigures figures(flown);
@@ -214,8 +220,7 @@ std::function<int()> SetUpUp(CLI::App& command) {
   auto args = std::make_shared<UpArgs>();
   args->config.AddTo(command);
   command.add_option("--out", args->out, "folder for the results (default: runs/NAME/TIME)")->type_name("DIR");
-  command.add_option("--engine", args->engine, "dds: processes on a bus; inprocess: the same in one thread")
-      ->check(CLI::IsMember({kOverDds, kInProcess}));
+  args->engine.AddTo(command, "dds: processes on a bus; inprocess: the same in one process");
   command
       .add_option_function<std::string>(
           "--view", [args](const std::string& address) { args->viewers.at = ReadLiveAddress(address); },

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 
 struct VerifyArgs {
   std::string run;
-  std::string engine = kInProcess;
+  EngineArgs engine{.name = kInProcess, .threads = {}};
   bool uses_hosts = false;
 };
 
@@ -211,7 +211,7 @@ int Verify(const VerifyArgs& args) {
               << "`orchestrator verify " << subject.file << "` checks the recording alone" << std::endl;
     return kExitFailed;
   }
-  RefuseEngine(args.engine, experiment);
+  args.engine.Refuse(experiment);
   PrintChanges(subject, experiment);
   before_the_run.reset();
   const TemporaryFolder temporary;
@@ -219,7 +219,8 @@ int Verify(const VerifyArgs& args) {
   Console console(/*quiet=*/true);
   Comparison comparison(subject.file, subject.plan);
   const std::vector<RowSink*> sinks{&comparison};
-  Flight flight(args.engine, experiment, folder, sinks, nullptr, console, stop);
+  Crew crew(args.engine.CrewMembers(experiment, /*others=*/0));
+  Flight flight(args.engine.name, experiment, folder, sinks, nullptr, console, stop, crew);
   const EngineResult result = flight.Fly();
   if (result.failure.empty() && result.signal == 0) comparison.Finish();
   const int code = Report(subject, comparison, result);
@@ -235,10 +236,7 @@ std::function<int()> SetUpVerify(CLI::App& command) {
   command.add_option("run", args->run, "a run folder, a folder of runs or 'latest' for the newest, or an .mcap file")
       ->required()
       ->type_name("RUN");
-  command
-      .add_option("--engine", args->engine,
-                  "inprocess (default): in one thread; dds: processes on a bus. Whichever recorded it")
-      ->check(CLI::IsMember({kOverDds, kInProcess}));
+  args->engine.AddTo(command, "inprocess (default): in one process; dds: processes on a bus. Whichever recorded it");
   command.add_flag("--hosts", args->uses_hosts,
                    "with --engine dds: agents fly on the hosts of the run's config.toml, by its launch commands");
   command.footer(

@@ -34,12 +34,12 @@ void RotorBodies::SetFlown(std::size_t body, bool is_flown) {
   is_flown_[body] = is_flown;
 }
 
-void RotorBodies::Fly(const TickOfRotorBodies& tick) {
-  for (std::size_t first = 0; first < flown_.size();) {
-    std::size_t end = first;
-    while (end < flown_.size() && flown_[end] > 0) ++end;
-    if (end > first) kernel_.fly(numbers_.Block(first), end - first, tick);
-    first = end + 1;
+void RotorBodies::Fly(const TickOfRotorBodies& tick, std::size_t first, std::size_t end) {
+  while (first < end) {
+    std::size_t next = first;
+    while (next < end && flown_[next] > 0) ++next;
+    if (next > first) kernel_.fly(numbers_.Block(first), next - first, tick);
+    first = next + 1;
   }
 }
 

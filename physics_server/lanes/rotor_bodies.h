@@ -60,8 +60,12 @@ class RotorBodies {
   double At(std::size_t body, int field) const { return numbers_.At(body, field); }
   /// Whether Fly() is to fly this body. At first it is not.
   void SetFlown(std::size_t body, bool is_flown);
-  /// Flies these bodies through a tick. The others' numbers say nothing afterwards.
-  void Fly(const TickOfRotorBodies& tick);
+  /// How many bodies are computed at once, and how many blocks of so many there are.
+  std::size_t lanes() const { return numbers_.lanes(); }
+  std::size_t blocks() const { return numbers_.blocks(); }
+  /// Flies the bodies of the blocks `first` to `end` - 1 through a tick. The numbers of those that are not to be flown
+  /// say nothing afterwards. Threads may call it for other blocks meanwhile.
+  void Fly(const TickOfRotorBodies& tick, std::size_t first, std::size_t end);
 
  private:
   RotorKernel kernel_;

@@ -14,6 +14,8 @@ namespace mascot {
 namespace {
 
 using Eigen::Vector3d;
+using ::testing::MatchesRegex;
+using ::testing::ThrowsMessage;
 using Look = World::LookForContacts;
 
 std::vector<double> Numbers(const World& world, int count) {
@@ -45,9 +47,9 @@ struct Twins {
 };
 
 /// Agents of all models in wind, with crossing paths, some of them on the ground. Rotors fail, at a tick or within one.
-Experiment Swarm(unsigned seed, int count) {
+Experiment Swarm(unsigned seed, int count, double half_m = 4) {
   std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> place(-4, 4), height(0.5, 4), speed(-3, 3);
+  std::uniform_real_distribution<double> place(-half_m, half_m), height(0.5, 4), speed(-3, 3);
   std::vector<Vector3d> places;
   for (int i = 0; i < count; ++i) places.push_back({place(random), place(random), height(random)});
   Experiment e = Bodies("quadrotor", places);
@@ -256,6 +258,44 @@ TEST(FreeSteps, GiveTheSameBitsWithAnyNumberOfLanes) {
   EXPECT_GT(contacts, 20);
   EXPECT_GT(with_contacts, steps / 20);
   EXPECT_LT(with_contacts, steps * 19 / 20);
+}
+
+TEST(FreeSteps, GiveTheSameBitsWithAnyNumberOfThreads) {
+  std::int64_t contacts = 0;
+  for (unsigned seed = 400; seed < 404; ++seed) {
+    const int count = 3 * kMinAgentsPerThread + static_cast<int>(seed % 7);
+    const Experiment e = Swarm(seed, count, 6);
+    Crew two(2), three(3);
+    World one(e);
+    World others[] = {World(e, Look::kWhenClose, World::kAllLanes, two), World(e, Look::kWhenClose, 1, three)};
+    std::mt19937_64 random(seed);
+    for (int tick = 0; tick < 150; ++tick) {
+      const std::vector<Actuation> commands = RandomCommands(e, random);
+      one.Step(commands);
+      for (World& other : others) {
+        other.Step(commands);
+        ASSERT_TRUE(SameBits(Numbers(one, count), Numbers(other, count))) << "seed " << seed << ", tick " << tick;
+      }
+    }
+    contacts += one.collisions();
+  }
+  EXPECT_GT(contacts, 40);
+}
+
+TEST(FreeSteps, OfSeveralThreadsNameTheFirstAgentThatFails) {
+  std::vector<Vector3d> places;
+  for (int i = 0; i < 3 * kMinAgentsPerThread; ++i) places.push_back({2.0 * i, 0, 2});
+  for (const int members : {1, 2, 3}) {
+    Crew crew(members);
+    World world(Bodies("double_integrator", places), Look::kWhenClose, World::kAllLanes, crew);
+    std::vector<Actuation> commands(places.size());
+    for (const std::size_t i : {41, 50, 90}) commands[i][0] = 1e308;
+    EXPECT_THAT(
+        [&] {
+          for (int tick = 0; tick < 1000; ++tick) world.Step(commands);
+        },
+        ThrowsMessage<std::runtime_error>(MatchesRegex("tick [0-9]+: agent 42: its state is not finite")));
+  }
 }
 
 TEST(FreeSteps, OfBodiesThatSpinOrLieOnTheirBacksAreThoseOfBullet) {

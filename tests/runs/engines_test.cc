@@ -653,6 +653,32 @@ TEST(Realtime, CountsWhatIsLostWhereTheMachineCannotKeepUp) {
   }
 }
 
+TEST(Engines, FlyALargeTeamInAnyNumberOfThreadsToTheSameBytes) {
+  ScratchFolder folder;
+  const auto large = [](const char* threads) -> std::vector<std::string> {
+    return {"--engine", "inprocess", "--threads",        threads, "--duration-s",
+            "1",        "--set",     "agents.count=100", "--set", "agents.random.max_m=[10, 10, 60]"};
+  };
+  Up one(folder, "one", Config("leaderless"), large("1"));
+  ASSERT_EQ(one.Wait(), 0) << one.err();
+  Up three(folder, "three", Config("leaderless"), large("3"));
+  ASSERT_EQ(three.Wait(), 0) << three.err();
+  ExpectSameBytes(one, three);
+}
+
+TEST(Engines, RefuseThreadsThatTheyCannotHave) {
+  ScratchFolder folder;
+  const auto refusal = [&](const std::vector<std::string>& args) {
+    Up up(folder, "run", Config("leaderless"), args);
+    EXPECT_EQ(up.Wait(), 2);
+    return up.err();
+  };
+  EXPECT_EQ(refusal({"--threads", "2"}), "error: --threads: expected --engine inprocess with it\n");
+  EXPECT_EQ(refusal({"--engine", "inprocess", "--threads", "0"}), "error: --threads: expected 1 to 1024, got 0\n");
+  EXPECT_EQ(refusal({"--engine", "inprocess", "--threads", "1025"}),
+            "error: --threads: expected 1 to 1024, got 1025\n");
+}
+
 TEST(Realtime, IsRefusedInOneProcess) {
   ScratchFolder folder;
   Up up(folder, "run", Config("leaderless"), {"--engine", "inprocess", "--set", "run.mode=realtime"});
