@@ -30,13 +30,16 @@ int CreateFile(const std::string& path, int access) {
   for (int tries = 0;; ++tries) {
     const int fd = ::open(path.c_str(), access | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (fd >= 0) return fd;
-    const int error = errno;
-    struct stat there {};
-    if (error != EEXIST || tries > 0) Refuse(path, Why(error));
-    if (::lstat(path.c_str(), &there) != 0) continue;  // it has gone again
-    if (!S_ISREG(there.st_mode)) Refuse(path, Named(there.st_mode));
-    if (::unlink(path.c_str()) != 0) Refuse(path, Why(errno));
+    if (errno != EEXIST || tries > 0) Refuse(path, Why(errno));
+    RemoveFile(path);
   }
+}
+
+void RemoveFile(const std::string& path) {
+  struct stat there {};
+  if (::lstat(path.c_str(), &there) != 0) return;
+  if (!S_ISREG(there.st_mode)) Refuse(path, Named(there.st_mode));
+  if (::unlink(path.c_str()) != 0) Refuse(path, Why(errno));
 }
 
 void RequireReplaceable(const std::string& path) {

@@ -44,10 +44,7 @@ Bytes Zip64Extra(std::initializer_list<std::uint64_t> values) {
 
 }  // namespace
 
-ZipWriter::ZipWriter(const std::string& path, std::uint64_t zip64_from) : file_(path), zip64_from_(zip64_from) {}
-
-void ZipWriter::Begin(const std::string& name, std::uint64_t size, std::uint32_t crc) {
-  const std::uint64_t offset = file_.size();
+Bytes ZipRecords::Add(const std::string& name, std::uint64_t offset, std::uint64_t size, std::uint32_t crc) {
   const bool zip64 = std::max(size, offset) >= zip64_from_;
 
   const Bytes local_extra = zip64 ? Zip64Extra({size, size}) : Bytes();
@@ -56,7 +53,6 @@ void ZipWriter::Begin(const std::string& name, std::uint64_t size, std::uint32_t
   AppendEntry(header, name, size, crc, zip64, local_extra.size());
   Append(header, AsBytes(name));
   Append(header, ByteSpan(local_extra));
-  file_.Write(header);
 
   const Bytes extra = zip64 ? Zip64Extra({size, size, offset}) : Bytes();
   Append(directory_, kDirectoryHeader);
@@ -69,21 +65,21 @@ void ZipWriter::Begin(const std::string& name, std::uint64_t size, std::uint32_t
   Append(directory_, AsBytes(name));
   Append(directory_, ByteSpan(extra));
   ++entries_;
+  return header;
 }
 
-void ZipWriter::Close() {
-  const std::uint64_t start = file_.size();
+Bytes ZipRecords::End(std::uint64_t offset) {
   const std::uint64_t size = directory_.size();
-  const std::uint64_t zip64_end = start + size;
+  const std::uint64_t zip64_end = offset + size;
   const bool zip64 = entries_ >= kSeeZip64Count || zip64_end >= zip64_from_;
-  Bytes& out = directory_;
+  Bytes out = directory_;
   if (zip64) {
     Append(out, kZip64End);
     Append(out, std::uint64_t{44});  // bytes that follow in this record
     Append(out, kVersionZip64);
     Append(out, kVersionZip64);
     Append(out, std::uint64_t{0});  // this disk; disk of the directory
-    for (const std::uint64_t value : {entries_, entries_, size, start}) Append(out, value);
+    for (const std::uint64_t value : {entries_, entries_, size, offset}) Append(out, value);
     Append(out, kZip64Locator);
     Append(out, std::uint32_t{0});  // disk of the zip64 end
     Append(out, zip64_end);
@@ -95,10 +91,9 @@ void ZipWriter::Close() {
   Append(out, count);
   Append(out, count);
   Append(out, Low(size, zip64));
-  Append(out, Low(start, zip64));
+  Append(out, Low(offset, zip64));
   Append(out, std::uint16_t{0});  // comment length
-  file_.Write(out);
-  file_.SyncAndClose();
+  return out;
 }
 
 }  // namespace mascot

@@ -34,7 +34,7 @@ void ForEachStateRow(const Recording& recording, const std::function<void(std::i
 }
 
 void WriteNpz(const Recording& recording, const std::string& path) {
-  StatesNpz npz(path, recording.agents(), recording.has_commands());
+  StatesNpz npz(path, recording.agents(), recording.ticks(), recording.has_commands());
   ForEachStateRow(recording, [&](std::int64_t, const StateRow& row) { npz.Append(row); });
   npz.Close();
 }

@@ -26,7 +26,7 @@ RunWriter::RunWriter(const Experiment& experiment, const RunFolder& folder, cons
   clock_ = AddChannel(Topic::Clock());
   event_ = AddChannel(Topic::Event());
   if (experiment.output.save_data || experiment.output.wants_pictures())  // which are made of it
-    npz_.emplace(folder.File("states.npz"), experiment.size());
+    npz_.emplace(folder.File("states.npz"), experiment.size(), experiment.ticks() + 1);
 }
 
 std::optional<std::uint16_t> RunWriter::AddChannel(const Topic& topic) {

@@ -4,7 +4,8 @@
 
 namespace mascot {
 
-StatesNpz::StatesNpz(const std::string& path, int agents, bool commands) : npz_(path) {
+StatesNpz::StatesNpz(const std::string& path, int agents, std::int64_t max_rows, bool commands)
+    : npz_(path, static_cast<std::uint64_t>(max_rows)) {
   for (std::size_t a = 0; a < kStateArrays.size(); ++a) {
     const StateArray& array = kStateArrays[a];
     if (array.of_command && !commands) continue;

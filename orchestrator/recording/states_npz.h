@@ -11,8 +11,8 @@ namespace mascot {
 /// Writes states.npz row by row: the arrays of kStateArrays, and `id` (1 .. N). Failures throw std::runtime_error.
 class StatesNpz {
  public:
-  /// `commands`: whether to write the arrays with of_command.
-  StatesNpz(const std::string& path, int agents, bool commands = true);
+  /// `max_rows`: how many rows may come. `commands`: whether to write the arrays with of_command.
+  StatesNpz(const std::string& path, int agents, std::int64_t max_rows, bool commands = true);
 
   void Append(const StateRow& row);
   /// Completes the file. Without it there is no file.

@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
+#include <string_view>
 
+#include "orchestrator/formats/unnamed_file.h"
 #include "orchestrator/formats/zip.h"
 #include "tests/support/scratch.h"
 
@@ -22,8 +25,9 @@ std::string Python(const std::string& path, const std::string& code) {
   return Shell("/usr/bin/python3 '" + script + "' '" + path + "'").output;
 }
 
-void WriteExample(const std::string& path, int rows) {
-  NpzWriter writer(path);
+/// `max_rows`: how many rows the writer expects at most; 0: as many as come.
+void WriteExample(const std::string& path, int rows, int max_rows = 0) {
+  NpzWriter writer(path, static_cast<std::uint64_t>(std::max(rows, max_rows)));
   const int t = writer.AddArray("t", {});
   writer.AddConstant("id", std::vector<std::int64_t>{1, 2});
   const int position = writer.AddArray("position", {2, 3});
@@ -92,7 +96,7 @@ TEST(Npz, EqualCallsGiveEqualBytes) {
 TEST(Npz, OnlyACompleteFileIsEverThere) {
   const ScratchFolder scratch;
   {
-    NpzWriter writer(scratch.File("states.npz"));
+    NpzWriter writer(scratch.File("states.npz"), 10000);
     const int t = writer.AddArray("t", {});
     for (int k = 0; k < 10000; ++k) writer.Append(t, std::vector<double>{0.0});
     EXPECT_THAT(Names(scratch), ElementsAre());
@@ -110,31 +114,73 @@ TEST(Npz, AFullDiskIsAnErrorThatNamesTheFile) {
   const rlimit small{100'000, before.rlim_max};
   ::setrlimit(RLIMIT_FSIZE, &small);
   const std::string path = scratch.File("states.npz");
-  EXPECT_THAT([&] { WriteExample(path, 100'000); },
-              ThrowsMessage<std::runtime_error>("cannot write " + path + ".2.part: File too large"));
-  // Each array fits, but the joined file does not.
-  EXPECT_THAT([&] { WriteExample(path, 2000); },
-              ThrowsMessage<std::runtime_error>("cannot write " + path + ".part: File too large"));
+  for (const int rows : {100'000, 2000})  // while rows come, and at the end
+    EXPECT_THAT([&] { WriteExample(path, rows); },
+                ThrowsMessage<std::runtime_error>("cannot write " + path + ".part: File too large"));
   ::setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_THAT(Names(scratch), ElementsAre());
 }
 
 TEST(Npz, AFolderThatIsNotThereIsAnError) {
-  NpzWriter writer("/nowhere/states.npz");
-  EXPECT_THAT([&] { writer.AddArray("t", {}); },
-              ThrowsMessage<std::runtime_error>("cannot create /nowhere/states.npz.0.part: No such file or directory"));
+  EXPECT_THAT([] { NpzWriter("/nowhere/states.npz", 1); },
+              ThrowsMessage<std::runtime_error>("cannot create /nowhere/states.npz.part: No such file or directory"));
+}
+
+TEST(Npz, ARunThatEndsEarlyGivesTheBytesOfAShorterOne) {
+  const ScratchFolder scratch;
+  for (const int rows : {0, 1, 9, 10'000, 29'999}) {  // in buffers only, and partly on disk
+    WriteExample(scratch.File("planned.npz"), rows);
+    WriteExample(scratch.File("ended.npz"), rows, 30'000);
+    EXPECT_TRUE(ReadFile(scratch.File("planned.npz")) == ReadFile(scratch.File("ended.npz"))) << rows;
+  }
+}
+
+TEST(Npz, ARowBeyondThoseExpectedIsAFault) {
+  const ScratchFolder scratch;
+  NpzWriter writer(scratch.File("states.npz"), 1);
+  const int t = writer.AddArray("t", {});
+  writer.Append(t, std::vector<double>{0});
+  EXPECT_THAT([&] { writer.Append(t, std::vector<double>{1}); },
+              ThrowsMessage<std::logic_error>("NpzWriter: array t has its 1 rows"));
+}
+
+TEST(UnnamedFile, HasItsNameOnceItIsComplete) {
+  const ScratchFolder scratch;
+  using Without = UnnamedFile::WithoutName;
+  for (const Without without : {Without::kIfPossible, Without::kNever}) {
+    WriteFile(scratch.File("x"), "earlier");
+    WriteFile(scratch.File("x.part"), "left by a process that was killed");
+    const bool is_named = without == Without::kNever;
+    {
+      UnnamedFile file(scratch.File("x"), without);
+      file.WriteAt(3, AsBytes(std::string_view("defgh")));
+      EXPECT_EQ(ReadFile(scratch.File("x")), "earlier");
+      EXPECT_EQ(std::filesystem::exists(scratch.File("x.part")), is_named) << "the file system has such files";
+      file.WriteAt(0, AsBytes(std::string_view("abc")));
+      file.MoveDown(6, 5, 2);
+      file.Commit(7);
+    }
+    EXPECT_EQ(ReadFile(scratch.File("x")), "abcdegh");
+    EXPECT_THAT(Names(scratch), ElementsAre("x"));
+    { const UnnamedFile dropped(scratch.File("x"), without); }
+    EXPECT_EQ(ReadFile(scratch.File("x")), "abcdegh");
+    EXPECT_THAT(Names(scratch), ElementsAre("x"));
+  }
 }
 
 TEST(Zip, EntriesBeyondTheOldLimitsAreWrittenTheZip64Way) {
   const ScratchFolder scratch;
   const std::string path = scratch.File("x.zip");
-  ZipWriter zip(path, /*zip64_from=*/40);
+  ZipRecords zip(/*zip64_from=*/40);
+  Bytes file;
   const std::vector<std::string> contents = {"small, and first", "small, but far into the file", std::string(100, 'x')};
   for (const std::string& content : contents) {
-    zip.Begin("entry" + std::to_string(content.size()), content.size(), Crc32(0, AsBytes(content)));
-    zip.Write(AsBytes(content));
+    Append(file,
+           zip.Add("entry" + std::to_string(content.size()), file.size(), content.size(), Crc32(0, AsBytes(content))));
+    Append(file, AsBytes(content));
   }
-  zip.Close();
+  Append(file, zip.End(file.size()));
+  WriteFile(path, {file.begin(), file.end()});
   EXPECT_EQ(Python(path, R"(
 z = zipfile.ZipFile(path)
 print(z.testzip(), [(i.filename, i.file_size, i.extract_version) for i in z.infolist()])
@@ -148,9 +194,11 @@ print(b"PK\x06\x06" in open(path, "rb").read())
 
 TEST(Zip, MoreEntriesThanSixteenBitsCountAreReadBack) {
   const ScratchFolder scratch;
-  ZipWriter zip(scratch.File("x.zip"));
-  for (int i = 0; i < 70000; ++i) zip.Begin(std::to_string(i), 0, 0);
-  zip.Close();
+  ZipRecords zip;
+  Bytes file;
+  for (int i = 0; i < 70000; ++i) Append(file, zip.Add(std::to_string(i), file.size(), 0, 0));
+  Append(file, zip.End(file.size()));
+  WriteFile(scratch.File("x.zip"), {file.begin(), file.end()});
   EXPECT_EQ(Python(scratch.File("x.zip"), "print(len(zipfile.ZipFile(path).namelist()))\n"), "70000\n");
 }
 
