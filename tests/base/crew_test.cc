@@ -13,6 +13,14 @@
 #include <thread>
 #include <vector>
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)  // g++
+#define MASCOT_SANITIZED
+#elif defined(__has_feature)  // clang++
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define MASCOT_SANITIZED
+#endif
+#endif
+
 namespace mascot {
 namespace {
 
@@ -101,7 +109,7 @@ TEST(Crew, ThrowsWhatTheFirstPartThrows) {
   EXPECT_EQ(calls, 2) << "a failure is told once";
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which need memory for a thread themselves
+#ifndef MASCOT_SANITIZED  // sanitizers need memory for a thread themselves
 TEST(CrewDeathTest, SaysWhichThreadCannotStart) {
   const auto without_memory = [] {
     const rlimit none{0, 0};
