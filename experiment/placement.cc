@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/motion.h"
 #include "base/random.h"
@@ -67,6 +68,7 @@ Eigen::Vector3d Size_m(const AgentConfig& agent, double yaw_rad) {
 Eigen::Vector3d Size_m(const AgentConfig& agent) { return Size_m(agent, agent.heading_rad); }
 
 bool Touch(const AgentConfig& a, const AgentConfig& b) {
+  if (std::abs(a.p_W.z() - b.p_W.z()) >= (a.size_m().z() + b.size_m().z()) / 2) return false;  // spares sines
   return ((a.p_W - b.p_W).cwiseAbs().array() < (Size_m(a) + Size_m(b)).array() / 2).all();
 }
 
@@ -98,24 +100,49 @@ bool Apart(const AgentConfig& agent, const AgentConfig& other, const Box& box) {
   return (in_z || (agent.p_W - other.p_W).norm() >= box.separation_m) && (box.may_touch || !Touch(agent, other));
 }
 
+/// Agents that have their places, along the longest axis of their box, so that another one is compared with few.
+class PlacedAgents {
+ public:
+  PlacedAgents(const std::vector<AgentConfig>& agents, const Box& box) : box_(box) {
+    (box.max_m - box.min_m).maxCoeff(&axis_);
+    for (const AgentConfig& agent : agents) reach_m_ = std::max(reach_m_, agent.size_m().norm());
+    reach_m_ = std::max(reach_m_, box.separation_m) * (1 + 1e-9);  // however a difference is rounded
+  }
+  void Add(const AgentConfig& agent) { along_axis_.emplace(agent.p_W[axis_], &agent); }
+  /// True if `agent` is far enough from all of them.
+  bool AreApartFrom(const AgentConfig& agent) const {
+    const auto end = along_axis_.upper_bound(agent.p_W[axis_] + reach_m_);
+    for (auto other = along_axis_.lower_bound(agent.p_W[axis_] - reach_m_); other != end; ++other)
+      if (!Apart(agent, *other->second, box_)) return false;
+    return true;
+  }
+
+ private:
+  const Box& box_;
+  Eigen::Index axis_ = 0;
+  double reach_m_ = 0;
+  std::multimap<double, const AgentConfig*> along_axis_;
+};
+
 }  // namespace
 
 bool Place(std::vector<AgentConfig>& agents, const Box& box, std::uint64_t seed) {
   std::size_t tries = 10000 + 20 * agents.size();  // for all agents together: ten thousand give up in seconds
   Random random(seed, Random::Stream::kPositions);
   if (!SetHeights(agents, box, random)) return false;
-  for (auto agent = agents.begin(); agent != agents.end(); ++agent) {
+  PlacedAgents placed(agents, box);
+  for (AgentConfig& agent : agents) {
     const auto is_free = [&] {
-      return (box.may_touch || !TouchesAny(*agent, box.obstacles)) &&
-             std::all_of(agents.begin(), agent, [&](const AgentConfig& other) { return Apart(*agent, other, box); });
+      return (box.may_touch || !TouchesAny(agent, box.obstacles)) && placed.AreApartFrom(agent);
     };
     do {
       if (tries == 0) return false;
       --tries;
       const Eigen::Vector3d point = PointIn(box, random);
-      agent->p_W.head<2>() = point.head<2>();
-      if (!box.in_z_alone && !Stands(*agent, box)) agent->p_W.z() = point.z();
+      agent.p_W.head<2>() = point.head<2>();
+      if (!box.in_z_alone && !Stands(agent, box)) agent.p_W.z() = point.z();
     } while (!is_free());
+    placed.Add(agent);
   }
   return true;
 }
