@@ -8,7 +8,7 @@
 namespace mascot {
 
 namespace {
-constexpr auto kAskEvery = std::chrono::milliseconds(250);
+constexpr auto kAskEvery = std::chrono::milliseconds(100);
 }  // namespace
 
 JoinList::JoinList(int agents, double start_timeout_s)
