@@ -52,7 +52,7 @@ dds::DomainParticipant* CreateParticipant(const DomainOptions& options, dds::Dom
 
 Domain::Domain(const DomainOptions& options, std::function<void()> wake, Peers* peers,
                dds::DomainParticipantListener* discovery)
-    : wake_(std::move(wake)), peers_(peers) {
+    : wake_(std::move(wake)), peers_(peers), medium_(options.loopback ? Medium::kLossless : Medium::kNetwork) {
   DisableIntraprocessDelivery();
   participant_ =
       Own<dds::DomainParticipant>(CreateParticipant(options, discovery),
@@ -157,8 +157,8 @@ class WriterBase::Listener : public dds::DataWriterListener {
 WriterBase::WriterBase(Domain& domain, const Topic& topic, dds::TypeSupport type)
     : name_(topic.Name()), listener_(std::make_unique<Listener>(domain)), topic_(domain.MakeTopic(topic, type)) {
   auto* publisher = domain.publisher_.get();
-  writer_ = Own<dds::DataWriter>(publisher->create_datawriter(topic_.get(), WriterQos(topic.kind), listener_.get(),
-                                                              dds::StatusMask::publication_matched()),
+  writer_ = Own<dds::DataWriter>(publisher->create_datawriter(topic_.get(), WriterQos(topic.kind, domain.medium()),
+                                                              listener_.get(), dds::StatusMask::publication_matched()),
                                  "writer for " + name_, [publisher](auto* writer) {
                                    writer->set_listener(nullptr);
                                    publisher->delete_datawriter(writer);
@@ -286,8 +286,8 @@ class RawType : public dds::TopicDataType {
 }  // namespace
 
 RawReader::RawReader(Domain& domain, const Topic& topic, OnBytes on_sample)
-    : ReaderBase(domain, topic, dds::TypeSupport(new RawType(WireTypeName(topic.kind))), RecorderQos(topic),
-                 std::move(on_sample)) {}
+    : ReaderBase(domain, topic, dds::TypeSupport(new RawType(WireTypeName(topic.kind))),
+                 RecorderQos(topic, domain.medium()), std::move(on_sample)) {}
 
 RawWriter::RawWriter(Domain& domain, const Topic& topic)
     : WriterBase(domain, topic, dds::TypeSupport(new RawType(WireTypeName(topic.kind)))) {}

@@ -51,6 +51,8 @@ class Domain {
   /// Rethrows the first exception given to Fail(), if any.
   void RethrowFailure() const;
   void Wake() const { wake_(); }
+  /// What lies between this process and the others.
+  Medium medium() const { return medium_; }
   /// The name that DDS has given this participant.
   const Peers::GuidPrefix& guid_prefix() const { return participant_->guid().guidPrefix; }
   /// Stores a callback's exception, if it is the first, and wakes the loop. Thread-safe.
@@ -63,6 +65,7 @@ class Domain {
 
   std::function<void()> wake_;
   Peers* peers_;
+  Medium medium_;
   mutable std::mutex mutex_;
   std::exception_ptr failure_;
   Handle<eprosima::fastdds::dds::DomainParticipant> participant_;  // parents first: destroyed in reverse order
@@ -147,7 +150,8 @@ class Reader : public ReaderBase {
       : Reader(domain, topic,
                [on_sample = std::move(on_sample)](const Sample& sample, const Sender&) { on_sample(sample); }) {}
   Reader(Domain& domain, const Topic& topic, CallbackWithSender on_sample)
-      : ReaderBase(domain, topic, eprosima::fastdds::dds::TypeSupport(new WireType<PubSub>), ReaderQos(topic),
+      : ReaderBase(domain, topic, eprosima::fastdds::dds::TypeSupport(new WireType<PubSub>),
+                   ReaderQos(topic, domain.medium()),
                    [topic, sample = std::make_shared<Sample>(), on_sample = std::move(on_sample)](
                        const Bytes& bytes, const Sender& sender) {
                      if (!Decode<PubSub>(bytes, *sample)) ThrowNoSample(topic, bytes.size(), PubSub().getName());

@@ -52,12 +52,17 @@ std::int16_t ReaderNumber(const Topic& topic) {
   return static_cast<std::int16_t>(kFirst + kAgents * static_cast<int>(topic.kind) + topic.agent);
 }
 
-dds::DataReaderQos MakeReaderQos(const Topic& topic, int depth) {
+dds::DataReaderQos MakeReaderQos(const Topic& topic, int depth, Medium medium) {
   dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
   SetCommon(qos, topic.traits(), depth);
   qos.endpoint().entity_id = ReaderNumber(topic);
+  if (medium == Medium::kNetwork) qos.reliable_reader_qos().times.heartbeatResponseDelay = Duration_t(0, 0);
   return qos;
 }
+
+// --- lost samples --------------------------------------------------------------------------------------
+
+const Duration_t kSlowRepair(0, 200'000'000), kFastRepair(0, 20'000'000), kBelievedOnItsWay(0, 5'000'000);
 
 // --- transports: one row each -------------------------------------------------------------------------
 
@@ -205,6 +210,21 @@ bool UsesSharedMemory(const DomainOptions& options) {
   return TransportOf(options).shared_memory && options.role != DiscoveryRole::kServer;
 }
 
+// How a writer finds out that a sample was lost, and when it sends the sample again: once a heartbeat asked the reader,
+// which comes periodically while a sample is not confirmed, and once the writer no longer believes that the sample is
+// on its way. In lockstep, a tick waits for this.
+void SetRepair(const TopicTraits& traits, Medium medium, dds::RTPSReliableWriterQos& reliable) {
+  reliable.times.heartbeatPeriod = kSlowRepair;
+  if (traits.rhythm == TopicRhythm::kRare) return;
+  // 0 would wake the event thread at every write, and so does a short time. Where nothing gets lost, it may be long.
+  reliable.times.nackSupressionDuration = Duration_t(1, 0);
+  reliable.disable_heartbeat_piggyback = true;
+  if (medium == Medium::kLossless) return;
+  reliable.times.nackSupressionDuration = kBelievedOnItsWay;
+  reliable.times.nackResponseDelay = Duration_t(0, 0);
+  if (traits.per_process) reliable.times.heartbeatPeriod = kFastRepair;  // topics of agents are too many
+}
+
 }  // namespace
 
 std::uint64_t SharedMemoryNeeded(const DomainOptions& options) {
@@ -230,25 +250,23 @@ dds::DomainParticipantQos ParticipantQos(const DomainOptions& options) {
   return qos;
 }
 
-dds::DataWriterQos WriterQos(TopicKind kind) {
+dds::DataWriterQos WriterQos(TopicKind kind, Medium medium) {
   const TopicTraits& traits = TraitsOf(kind);
   dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
   SetCommon(qos, traits, traits.writer_depth);
   qos.publish_mode().kind = traits.is_large ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
   const std::string type = fmt::format("typehash={};", SchemaOf(kind).type_hash);  // as ROS 2 tells it
   qos.user_data().setValue({type.begin(), type.end()});
-  auto& reliable = qos.reliable_writer_qos();
-  reliable.times.heartbeatPeriod = Duration_t(0, 200'000'000);  // repairs a lost last sample; see per_tick
-  if (traits.rhythm != TopicRhythm::kRare) {
-    // 0 would wake the event thread at every write. A sample that a network lost is sent again after 1 s.
-    reliable.times.nackSupressionDuration = Duration_t(1, 0);
-    reliable.disable_heartbeat_piggyback = true;
-  }
+  SetRepair(traits, medium, qos.reliable_writer_qos());
   return qos;
 }
 
-dds::DataReaderQos ReaderQos(const Topic& topic) { return MakeReaderQos(topic, topic.traits().reader_depth); }
+dds::DataReaderQos ReaderQos(const Topic& topic, Medium medium) {
+  return MakeReaderQos(topic, topic.traits().reader_depth, medium);
+}
 
-dds::DataReaderQos RecorderQos(const Topic& topic) { return MakeReaderQos(topic, topic.traits().writer_depth); }
+dds::DataReaderQos RecorderQos(const Topic& topic, Medium medium) {
+  return MakeReaderQos(topic, topic.traits().writer_depth, medium);
+}
 
 }  // namespace mascot

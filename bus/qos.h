@@ -51,9 +51,14 @@ std::uint64_t SharedMemoryNeeded(const DomainOptions& options);
 
 /// Throws std::invalid_argument for an unknown transport or an unreadable server address.
 eprosima::fastdds::dds::DomainParticipantQos ParticipantQos(const DomainOptions& options);
-eprosima::fastdds::dds::DataWriterQos WriterQos(TopicKind kind);
-eprosima::fastdds::dds::DataReaderQos ReaderQos(const Topic& topic);
+/// What lies between the processes of a run.
+enum class Medium {
+  kLossless,  ///< shared memory or the loopback interface
+  kNetwork,   ///< which may lose datagrams
+};
+eprosima::fastdds::dds::DataWriterQos WriterQos(TopicKind kind, Medium medium);
+eprosima::fastdds::dds::DataReaderQos ReaderQos(const Topic& topic, Medium medium);
 /// As ReaderQos(), but as deep as the writers' history: for the recorder.
-eprosima::fastdds::dds::DataReaderQos RecorderQos(const Topic& topic);
+eprosima::fastdds::dds::DataReaderQos RecorderQos(const Topic& topic, Medium medium);
 
 }  // namespace mascot

@@ -348,6 +348,20 @@ std::uint64_t MappedSharedMemory() {
   return bytes;
 }
 
+TEST(Repair, ComesSoonOverANetworkThatMayLoseSamples) {
+  const auto ms = [](const eprosima::fastrtps::Duration_t& time) { return static_cast<double>(time.to_ns()) / 1e6; };
+  const auto times = [](TopicKind kind, Medium medium) { return WriterQos(kind, medium).reliable_writer_qos().times; };
+  for (const TopicKind kind : {TopicKind::kBundle, TopicKind::kAnswers, TopicKind::kState, TopicKind::kCommand}) {
+    EXPECT_EQ(ms(times(kind, Medium::kLossless).nackSupressionDuration), 1000);
+    EXPECT_LE(ms(times(kind, Medium::kNetwork).nackSupressionDuration), 5);
+    EXPECT_EQ(ms(times(kind, Medium::kNetwork).nackResponseDelay), 0);
+    EXPECT_EQ(ms(ReaderQos({kind, 1, 1}, Medium::kNetwork).reliable_reader_qos().times.heartbeatResponseDelay), 0);
+  }
+  for (const TopicKind kind : {TopicKind::kBundle, TopicKind::kAnswers})
+    EXPECT_LE(ms(times(kind, Medium::kNetwork).heartbeatPeriod), 20) << "one for each process";
+  EXPECT_GE(ms(times(TopicKind::kState, Medium::kNetwork).heartbeatPeriod), 200) << "many for each process";
+}
+
 TEST(SharedMemoryNeed, IsKnownBeforeAParticipantIsMade) {
   const DomainLock lock(-1);
   for (const int peers : {2, 100}) {
