@@ -61,6 +61,8 @@ void Agent::Adopt(std::shared_ptr<const Experiment> now) {
   now_ = std::move(now);  // the last one ends here: nothing refers to it any more
 }
 
+bool Agent::AsksCodeOfUser() const { return EntryOf(config_->law).is_of_user; }
+
 Eigen::Vector3d Agent::AskLaw(std::int64_t tick, const Motion& measured, std::span<const Heard> heard) {
   const double t_s = static_cast<double>(tick) / rate_hz_;
   message_ = {};

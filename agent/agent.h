@@ -20,6 +20,8 @@ class Agent {
   Agent(const Experiment& experiment, int id);
 
   int id() const { return id_; }
+  /// Whether the law runs code that a user has written.
+  bool AsksCodeOfUser() const;
   /// Call it when events have changed the experiment: from the next Want() on, the experiment is `now`.
   void Adopt(std::shared_ptr<const Experiment> now);
   /// Evaluates the law and its limits: fills in the command's accelerations, velocities and their flags. `self` is the

@@ -1,24 +1,28 @@
 #include "orchestrator/team/team.h"
 
-#include "agent/laws/laws.h"
+#include <algorithm>
 
 namespace mascot {
 
 Team::Part::Part(const Experiment& experiment, AgentRange agents)
     : ids(agents), low_level(experiment, agents), driven(static_cast<std::size_t>(agents.last - agents.first + 1)) {}
 
-Team::Team(const Experiment& experiment, Crew& crew)
-    : crew_(crew), takes_turns_(FliesCodeOfUsers(experiment)), exchange_(experiment) {
+Team::Team(const Experiment& experiment, Crew& crew) : crew_(crew), exchange_(experiment) {
   const std::size_t agents = experiment.agents.size(), parts = crew.PartsOf(agents, kMinAgentsPerThread);
   for (const AgentConfig& config : experiment.agents) agents_.push_back(std::make_unique<Agent>(experiment, config.id));
+  takes_turns_ = AnyAsksCodeOfUser();
   for (std::size_t k = 0; k < parts; ++k)
     parts_.emplace_back(
         experiment, AgentRange{static_cast<int>(k * agents / parts) + 1, static_cast<int>((k + 1) * agents / parts)});
 }
 
 void Team::Adopt(const std::shared_ptr<const Experiment>& now) {
-  takes_turns_ = FliesCodeOfUsers(*now);
   for (const auto& agent : agents_) agent->Adopt(now);
+  takes_turns_ = AnyAsksCodeOfUser();
+}
+
+bool Team::AnyAsksCodeOfUser() const {
+  return std::ranges::any_of(agents_, [](const auto& agent) { return agent->AsksCodeOfUser(); });
 }
 
 template <class Work>

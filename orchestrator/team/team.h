@@ -40,13 +40,14 @@ class Team {
     std::vector<Sample> samples;  // scratch
   };
 
+  bool AnyAsksCodeOfUser() const;
   template <class Work>
   void ForEachPart(Work&& work);
   void Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands, Part& part);
   void Actuate(std::span<Command> commands, Part& part);
 
   Crew& crew_;
-  bool takes_turns_;
+  bool takes_turns_ = false;
   std::vector<std::unique_ptr<Agent>> agents_;
   std::vector<Part> parts_;
   Exchange exchange_;
