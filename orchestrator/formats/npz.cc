@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cassert>
 #include <functional>
 #include <numeric>
@@ -22,9 +23,9 @@ struct Array {
   std::string name;
   std::string dtype;
   std::vector<std::size_t> row_shape;
-  std::uint64_t max_rows;
+  bool is_constant;
 
-  std::uint64_t rows = 0;
+  std::uint64_t max_rows = 0, rows = 0;
   std::uint64_t begin = 0;  // of its rows, in the file
   std::uint64_t flushed = 0;
   std::uint32_t crc = 0;  // of the bytes flushed
@@ -57,14 +58,26 @@ Bytes NpyHeader(const Array& array, std::uint64_t rows) {
 
 struct NpzWriter::Impl {
   UnnamedFile file;
-  std::uint64_t max_rows;
+  std::string path;
+  std::uint64_t max_rows, max_bytes;
   std::vector<Array> arrays = {};
   bool has_rows = false;
 
+  /// Gives each array room for its rows: for as many as may come, or as fit into the largest file.
+  void MakeRoom();
   /// Gives each array its place. It has all the rows that it may have, or those that have come.
   void Place(std::uint64_t Array::*rows);
   void Flush(Array& array);
 };
+
+void NpzWriter::Impl::MakeRoom() {
+  std::uint64_t row_bytes = 0;
+  for (const Array& array : arrays)
+    if (!array.is_constant) row_bytes += array.Size(1);
+  for (Array& array : arrays)
+    array.max_rows = array.is_constant ? array.rows : std::min(max_rows, max_bytes / row_bytes);
+  Place(&Array::max_rows);
+}
 
 void NpzWriter::Impl::Place(std::uint64_t Array::*rows) {
   ZipRecords zip;
@@ -84,19 +97,19 @@ void NpzWriter::Impl::Flush(Array& array) {
   array.buffer.clear();
 }
 
-NpzWriter::NpzWriter(const std::string& path, std::uint64_t max_rows)
-    : impl_(new Impl{.file = UnnamedFile(path), .max_rows = max_rows}) {}
+NpzWriter::NpzWriter(const std::string& path, std::uint64_t max_rows, std::uint64_t max_bytes)
+    : impl_(new Impl{.file = UnnamedFile(path), .path = path, .max_rows = max_rows, .max_bytes = max_bytes}) {}
 NpzWriter::~NpzWriter() = default;
 
 int NpzWriter::AddArray(const std::string& name, std::vector<std::size_t> row_shape) {
   assert(!impl_->has_rows);
-  impl_->arrays.push_back({name, "<f8", std::move(row_shape), impl_->max_rows});
+  impl_->arrays.push_back({name, "<f8", std::move(row_shape), false});
   return static_cast<int>(impl_->arrays.size()) - 1;
 }
 
 void NpzWriter::AddConstant(const std::string& name, std::span<const std::int64_t> values) {
   assert(!impl_->has_rows);
-  Array& array = impl_->arrays.emplace_back(Array{name, "<i8", {}, values.size()});
+  Array& array = impl_->arrays.emplace_back(Array{name, "<i8", {}, true});
   array.rows = values.size();
   mascot::Append(array.buffer, AsBytes(values));
 }
@@ -104,9 +117,12 @@ void NpzWriter::AddConstant(const std::string& name, std::span<const std::int64_
 void NpzWriter::Append(int array, std::span<const double> row) {
   Array& target = impl_->arrays.at(static_cast<std::size_t>(array));
   assert(row.size() == target.row_values());
-  if (target.rows == target.max_rows)
+  if (!std::exchange(impl_->has_rows, true)) impl_->MakeRoom();
+  if (target.rows == impl_->max_rows)
     throw std::logic_error("NpzWriter: array " + target.name + " has its " + std::to_string(target.rows) + " rows");
-  if (!std::exchange(impl_->has_rows, true)) impl_->Place(&Array::max_rows);
+  if (target.rows == target.max_rows)
+    throw std::runtime_error("cannot write " + impl_->path + ": it has " + std::to_string(target.rows) +
+                             " rows, and no room for more");
   ++target.rows;
   mascot::Append(target.buffer, AsBytes(row));
   if (target.buffer.size() >= kNpzBufferBytes) impl_->Flush(target);

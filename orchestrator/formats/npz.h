@@ -14,8 +14,10 @@ namespace mascot {
 /// file (UnnamedFile). Failures throw std::runtime_error.
 class NpzWriter {
  public:
-  /// `max_rows`: how many rows an array has at most.
-  NpzWriter(const std::string& path, std::uint64_t max_rows);
+  /// How large a file may become.
+  static constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 40;
+  /// `max_rows`: how many rows an array has at most. `max_bytes`: about how large all rows may be.
+  NpzWriter(const std::string& path, std::uint64_t max_rows, std::uint64_t max_bytes = kMaxBytes);
   ~NpzWriter();
   NpzWriter(const NpzWriter&) = delete;
   NpzWriter& operator=(const NpzWriter&) = delete;

@@ -535,14 +535,25 @@ TEST(Faults, AnAgentThatNeverComesIsNamedAfterTheStartTimeout) {
 TEST(Faults, AFullDiskFailsTheRun) {
   ScratchFolder folder;
   for (const std::string engine : {"dds", "inprocess"}) {
-    const Ran run =
-        Shell("ulimit -f 4000; '" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") +
-              " --duration-s 400 --set output.save_plot=false --engine " + engine + " --out " + folder.File(engine));
+    const Ran run = Shell("ulimit -f 4000; '" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") +
+                          " --duration-s 400 --set output.save_plot=false --set output.save_data=false --engine " +
+                          engine + " --out " + folder.File(engine));
     EXPECT_EQ(run.exit_code, 1) << run.output;
     EXPECT_THAT(run.output, HasSubstr("error: cannot write " + folder.File(engine + "/run.mcap") + ": File too large"));
     EXPECT_GT(nlohmann::json::parse(ReadFile(folder.File(engine + "/summary.json")))["ticks"], 0);
     EXPECT_TRUE(NothingIsLeft(run.output));
   }
+}
+
+TEST(Faults, StatesThatDoNotFitOnTheDiskFailTheRun) {
+  ScratchFolder folder;
+  const Ran run =
+      Shell("ulimit -f 4000; '" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") +
+            " --duration-s 400 --set output.save_plot=false --engine inprocess --out " + folder.File("run"));
+  EXPECT_EQ(run.exit_code, 1) << run.output;
+  EXPECT_THAT(run.output, HasSubstr("error: cannot write " + folder.File("run/states.npz.part") + ": File too large"));
+  EXPECT_TRUE(std::filesystem::exists(folder.File("run/run.mcap")));
+  EXPECT_FALSE(std::filesystem::exists(folder.File("run/states.npz.part")));
 }
 
 TEST(Faults, ALogThatCannotBeWrittenIsSaidAndTheRunGoesOn) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <limits>
 #include <string_view>
 
 #include "orchestrator/formats/unnamed_file.h"
@@ -142,6 +143,22 @@ TEST(Npz, ARowBeyondThoseExpectedIsAFault) {
   writer.Append(t, std::vector<double>{0});
   EXPECT_THAT([&] { writer.Append(t, std::vector<double>{1}); },
               ThrowsMessage<std::logic_error>("NpzWriter: array t has its 1 rows"));
+}
+
+TEST(Npz, ARunWithoutEndHasRoomForWhatALargeFileHolds) {
+  const ScratchFolder scratch;
+  WriteExample(scratch.File("planned.npz"), 5000);
+  WriteExample(scratch.File("endless.npz"), 5000, std::numeric_limits<int>::max());
+  EXPECT_TRUE(ReadFile(scratch.File("planned.npz")) == ReadFile(scratch.File("endless.npz")));
+
+  NpzWriter writer(scratch.File("small.npz"), std::uint64_t{1} << 60, /*max_bytes=*/80);
+  const int pairs = writer.AddArray("pairs", {2});
+  for (int k = 0; k < 5; ++k) writer.Append(pairs, std::vector<double>{0, 0});
+  EXPECT_THAT(([&] {
+                writer.Append(pairs, std::vector<double>{0, 0});
+              }),
+              ThrowsMessage<std::runtime_error>("cannot write " + scratch.File("small.npz") +
+                                                ": it has 5 rows, and no room for more"));
 }
 
 TEST(UnnamedFile, HasItsNameOnceItIsComplete) {
