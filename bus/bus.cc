@@ -52,7 +52,7 @@ dds::DomainParticipant* CreateParticipant(const DomainOptions& options, dds::Dom
 
 Domain::Domain(const DomainOptions& options, std::function<void()> wake, Peers* peers,
                dds::DomainParticipantListener* discovery)
-    : wake_(std::move(wake)), peers_(peers), medium_(options.loopback ? Medium::kLossless : Medium::kNetwork) {
+    : wake_(std::move(wake)), peers_(peers), redelivery_(options.loopback ? Redelivery::kSeldom : Redelivery::kOften) {
   DisableIntraprocessDelivery();
   participant_ =
       Own<dds::DomainParticipant>(CreateParticipant(options, discovery),
@@ -154,10 +154,10 @@ class WriterBase::Listener : public dds::DataWriterListener {
   Matches matches_;
 };
 
-WriterBase::WriterBase(Domain& domain, const Topic& topic, dds::TypeSupport type)
+WriterBase::WriterBase(Domain& domain, const Topic& topic, dds::TypeSupport type, Redelivery redelivery)
     : name_(topic.Name()), listener_(std::make_unique<Listener>(domain)), topic_(domain.MakeTopic(topic, type)) {
   auto* publisher = domain.publisher_.get();
-  writer_ = Own<dds::DataWriter>(publisher->create_datawriter(topic_.get(), WriterQos(topic.kind, domain.medium()),
+  writer_ = Own<dds::DataWriter>(publisher->create_datawriter(topic_.get(), WriterQos(topic.kind, redelivery),
                                                               listener_.get(), dds::StatusMask::publication_matched()),
                                  "writer for " + name_, [publisher](auto* writer) {
                                    writer->set_listener(nullptr);
@@ -179,6 +179,19 @@ void WriterBase::WriteAny(void* sample) {
 }
 
 // --- readers ------------------------------------------------------------------------------------------
+
+namespace {
+
+/// Where this reader reads shared memory; nullopt: nowhere.
+std::optional<eprosima::fastdds::rtps::Locator> SharedMemoryOf(const dds::DataReader& reader) {
+  eprosima::fastdds::rtps::LocatorList all;
+  if (reader.get_listening_locators(all) != ReturnCode_t::RETCODE_OK) return std::nullopt;
+  for (const auto& locator : all)
+    if (locator.kind == LOCATOR_KIND_SHM) return locator;
+  return std::nullopt;
+}
+
+}  // namespace
 
 class ReaderBase::Listener : public dds::DataReaderListener {
  public:
@@ -230,16 +243,20 @@ class ReaderBase::Listener : public dds::DataReaderListener {
   std::string process_;  // whose writer that is
 };
 
-ReaderBase::ReaderBase(Domain& domain, const Topic& topic, dds::TypeSupport type, const dds::DataReaderQos& qos,
+ReaderBase::ReaderBase(Domain& domain, const Topic& topic, dds::TypeSupport type, dds::DataReaderQos qos,
                        OnBytes on_bytes)
     : listener_(std::make_unique<Listener>(domain, topic, std::move(on_bytes))), topic_(domain.MakeTopic(topic, type)) {
   auto* subscriber = domain.subscriber_.get();
+  // With best effort, Fast DDS sends to all addresses of a reader: also by UDP to one that it reaches by shared memory.
+  if (qos.reliability().kind == dds::BEST_EFFORT_RELIABILITY_QOS && domain.shared_memory_)
+    qos.endpoint().unicast_locator_list.push_back(*domain.shared_memory_);
   const dds::StatusMask mask = dds::StatusMask::subscription_matched() << dds::StatusMask::data_available();
   reader_ = Own<dds::DataReader>(subscriber->create_datareader(topic_.get(), qos, listener_.get(), mask),
                                  "reader for " + topic.Name(), [subscriber](auto* reader) {
                                    reader->set_listener(nullptr);
                                    subscriber->delete_datareader(reader);
                                  });
+  if (!domain.shared_memory_) domain.shared_memory_ = SharedMemoryOf(*reader_);
 }
 
 ReaderBase::~ReaderBase() = default;
@@ -285,11 +302,11 @@ class RawType : public dds::TopicDataType {
 
 }  // namespace
 
-RawReader::RawReader(Domain& domain, const Topic& topic, OnBytes on_sample)
-    : ReaderBase(domain, topic, dds::TypeSupport(new RawType(WireTypeName(topic.kind))),
-                 RecorderQos(topic, domain.medium()), std::move(on_sample)) {}
+RawReader::RawReader(Domain& domain, const Topic& topic, OnBytes on_sample, Redelivery redelivery)
+    : ReaderBase(domain, topic, dds::TypeSupport(new RawType(WireTypeName(topic.kind))), RecorderQos(topic, redelivery),
+                 std::move(on_sample)) {}
 
-RawWriter::RawWriter(Domain& domain, const Topic& topic)
-    : WriterBase(domain, topic, dds::TypeSupport(new RawType(WireTypeName(topic.kind)))) {}
+RawWriter::RawWriter(Domain& domain, const Topic& topic, Redelivery redelivery)
+    : WriterBase(domain, topic, dds::TypeSupport(new RawType(WireTypeName(topic.kind))), redelivery) {}
 
 }  // namespace mascot

@@ -51,8 +51,8 @@ class Domain {
   /// Rethrows the first exception given to Fail(), if any.
   void RethrowFailure() const;
   void Wake() const { wake_(); }
-  /// What lies between this process and the others.
-  Medium medium() const { return medium_; }
+  /// How samples come again that are lost between this process and the others.
+  Redelivery redelivery() const { return redelivery_; }
   /// The name that DDS has given this participant.
   const Peers::GuidPrefix& guid_prefix() const { return participant_->guid().guidPrefix; }
   /// Stores a callback's exception, if it is the first, and wakes the loop. Thread-safe.
@@ -65,7 +65,8 @@ class Domain {
 
   std::function<void()> wake_;
   Peers* peers_;
-  Medium medium_;
+  Redelivery redelivery_;
+  std::optional<eprosima::fastdds::rtps::Locator> shared_memory_;  // where readers read it; known once there is one
   mutable std::mutex mutex_;
   std::exception_ptr failure_;
   Handle<eprosima::fastdds::dds::DomainParticipant> participant_;  // parents first: destroyed in reverse order
@@ -83,7 +84,7 @@ class WriterBase {
   bool AwaitReaders(std::chrono::milliseconds timeout);
 
  protected:
-  WriterBase(Domain& domain, const Topic& topic, eprosima::fastdds::dds::TypeSupport type);
+  WriterBase(Domain& domain, const Topic& topic, eprosima::fastdds::dds::TypeSupport type, Redelivery redelivery);
   ~WriterBase();
   void WriteAny(void* sample);
 
@@ -115,7 +116,7 @@ class ReaderBase {
   /// topic that only one process may write, only the first writer of that process is believed. `type` must hand out
   /// samples as Bytes.
   ReaderBase(Domain& domain, const Topic& topic, eprosima::fastdds::dds::TypeSupport type,
-             const eprosima::fastdds::dds::DataReaderQos& qos, OnBytes on_bytes);
+             eprosima::fastdds::dds::DataReaderQos qos, OnBytes on_bytes);
 
  private:
   class Listener;
@@ -132,7 +133,7 @@ template <class PubSub>
 class Writer : public WriterBase {
  public:
   Writer(Domain& domain, const Topic& topic)
-      : WriterBase(domain, topic, eprosima::fastdds::dds::TypeSupport(new WireType<PubSub>)) {}
+      : WriterBase(domain, topic, eprosima::fastdds::dds::TypeSupport(new WireType<PubSub>), domain.redelivery()) {}
   /// Throws BusError if Fast DDS does not accept the sample.
   void Write(typename PubSub::type& sample) { WriteAny(&sample); }
 };
@@ -151,7 +152,7 @@ class Reader : public ReaderBase {
                [on_sample = std::move(on_sample)](const Sample& sample, const Sender&) { on_sample(sample); }) {}
   Reader(Domain& domain, const Topic& topic, CallbackWithSender on_sample)
       : ReaderBase(domain, topic, eprosima::fastdds::dds::TypeSupport(new WireType<PubSub>),
-                   ReaderQos(topic, domain.medium()),
+                   ReaderQos(topic, domain.redelivery()),
                    [topic, sample = std::make_shared<Sample>(), on_sample = std::move(on_sample)](
                        const Bytes& bytes, const Sender& sender) {
                      if (!Decode<PubSub>(bytes, *sample)) ThrowNoSample(topic, bytes.size(), PubSub().getName());
@@ -163,14 +164,18 @@ class Reader : public ReaderBase {
 /// the recorder.
 class RawReader : public ReaderBase {
  public:
-  RawReader(Domain& domain, const Topic& topic, OnBytes on_sample);
+  RawReader(Domain& domain, const Topic& topic, OnBytes on_sample)
+      : RawReader(domain, topic, std::move(on_sample), domain.redelivery()) {}
+  /// `redelivery`: that of the writers.
+  RawReader(Domain& domain, const Topic& topic, OnBytes on_sample, Redelivery redelivery);
 };
 
 /// Publishes samples that are bytes already: the 4-byte encapsulation header, then CDR. Thread-safe.
 class RawWriter : public WriterBase {
  public:
   using Bytes = ReaderBase::Bytes;
-  RawWriter(Domain& domain, const Topic& topic);
+  RawWriter(Domain& domain, const Topic& topic) : RawWriter(domain, topic, domain.redelivery()) {}
+  RawWriter(Domain& domain, const Topic& topic, Redelivery redelivery);
   /// Throws BusError if Fast DDS does not accept the sample.
   void Write(Bytes& sample) { WriteAny(&sample); }
 };

@@ -27,8 +27,9 @@ using eprosima::fastrtps::rtps::Locator_t;
 // --- topics: what their table says (idl/topics.cc) -------------------------------------------------------
 
 template <class Qos>
-void SetCommon(Qos& qos, const TopicTraits& traits, int depth) {
-  qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
+void SetCommon(Qos& qos, const TopicTraits& traits, int depth, Redelivery redelivery) {
+  qos.reliability().kind =
+      redelivery == Redelivery::kOnDemand ? dds::BEST_EFFORT_RELIABILITY_QOS : dds::RELIABLE_RELIABILITY_QOS;
   qos.durability().kind = traits.for_late_joiners ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = depth;
@@ -52,17 +53,17 @@ std::int16_t ReaderNumber(const Topic& topic) {
   return static_cast<std::int16_t>(kFirst + kAgents * static_cast<int>(topic.kind) + topic.agent);
 }
 
-dds::DataReaderQos MakeReaderQos(const Topic& topic, int depth, Medium medium) {
+dds::DataReaderQos MakeReaderQos(const Topic& topic, int depth, Redelivery redelivery) {
   dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
-  SetCommon(qos, topic.traits(), depth);
+  SetCommon(qos, topic.traits(), depth, redelivery);
   qos.endpoint().entity_id = ReaderNumber(topic);
-  if (medium == Medium::kNetwork) qos.reliable_reader_qos().times.heartbeatResponseDelay = Duration_t(0, 0);
+  if (redelivery == Redelivery::kOften) qos.reliable_reader_qos().times.heartbeatResponseDelay = Duration_t(0, 0);
   return qos;
 }
 
 // --- lost samples --------------------------------------------------------------------------------------
 
-const Duration_t kSlowRepair(0, 200'000'000), kFastRepair(0, 20'000'000), kBelievedOnItsWay(0, 5'000'000);
+const Duration_t kSeldomAsked(0, 200'000'000), kOftenAsked(0, 20'000'000), kBelievedOnItsWay(0, 5'000'000);
 
 // --- transports: one row each -------------------------------------------------------------------------
 
@@ -213,16 +214,16 @@ bool UsesSharedMemory(const DomainOptions& options) {
 // How a writer finds out that a sample was lost, and when it sends the sample again: once a heartbeat asked the reader,
 // which comes periodically while a sample is not confirmed, and once the writer no longer believes that the sample is
 // on its way. In lockstep, a tick waits for this.
-void SetRepair(const TopicTraits& traits, Medium medium, dds::RTPSReliableWriterQos& reliable) {
-  reliable.times.heartbeatPeriod = kSlowRepair;
+void SetRedelivery(const TopicTraits& traits, Redelivery redelivery, dds::RTPSReliableWriterQos& reliable) {
+  reliable.times.heartbeatPeriod = kSeldomAsked;
   if (traits.rhythm == TopicRhythm::kRare) return;
   // 0 would wake the event thread at every write, and so does a short time. Where nothing gets lost, it may be long.
   reliable.times.nackSupressionDuration = Duration_t(1, 0);
   reliable.disable_heartbeat_piggyback = true;
-  if (medium == Medium::kLossless) return;
+  if (redelivery != Redelivery::kOften) return;
   reliable.times.nackSupressionDuration = kBelievedOnItsWay;
   reliable.times.nackResponseDelay = Duration_t(0, 0);
-  if (traits.per_process) reliable.times.heartbeatPeriod = kFastRepair;  // topics of agents are too many
+  if (traits.per_process) reliable.times.heartbeatPeriod = kOftenAsked;  // topics of agents are too many
 }
 
 }  // namespace
@@ -250,23 +251,23 @@ dds::DomainParticipantQos ParticipantQos(const DomainOptions& options) {
   return qos;
 }
 
-dds::DataWriterQos WriterQos(TopicKind kind, Medium medium) {
+dds::DataWriterQos WriterQos(TopicKind kind, Redelivery redelivery) {
   const TopicTraits& traits = TraitsOf(kind);
   dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
-  SetCommon(qos, traits, traits.writer_depth);
+  SetCommon(qos, traits, traits.writer_depth, redelivery);
   qos.publish_mode().kind = traits.is_large ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
   const std::string type = fmt::format("typehash={};", SchemaOf(kind).type_hash);  // as ROS 2 tells it
   qos.user_data().setValue({type.begin(), type.end()});
-  SetRepair(traits, medium, qos.reliable_writer_qos());
+  SetRedelivery(traits, redelivery, qos.reliable_writer_qos());
   return qos;
 }
 
-dds::DataReaderQos ReaderQos(const Topic& topic, Medium medium) {
-  return MakeReaderQos(topic, topic.traits().reader_depth, medium);
+dds::DataReaderQos ReaderQos(const Topic& topic, Redelivery redelivery) {
+  return MakeReaderQos(topic, topic.traits().reader_depth, redelivery);
 }
 
-dds::DataReaderQos RecorderQos(const Topic& topic, Medium medium) {
-  return MakeReaderQos(topic, topic.traits().writer_depth, medium);
+dds::DataReaderQos RecorderQos(const Topic& topic, Redelivery redelivery) {
+  return MakeReaderQos(topic, topic.traits().writer_depth, redelivery);
 }
 
 }  // namespace mascot

@@ -51,14 +51,16 @@ std::uint64_t SharedMemoryNeeded(const DomainOptions& options);
 
 /// Throws std::invalid_argument for an unknown transport or an unreadable server address.
 eprosima::fastdds::dds::DomainParticipantQos ParticipantQos(const DomainOptions& options);
-/// What lies between the processes of a run.
-enum class Medium {
-  kLossless,  ///< shared memory or the loopback interface
-  kNetwork,   ///< which may lose datagrams
+
+/// How a sample that was lost comes again.
+enum class Redelivery {
+  kSeldom,    ///< the writer asks seldom what has arrived: shared memory and the loopback interface lose nothing
+  kOften,     ///< the writer asks often: a network may lose datagrams
+  kOnDemand,  ///< the writer does not ask: who lacks an answer asks for it (best effort in DDS)
 };
-eprosima::fastdds::dds::DataWriterQos WriterQos(TopicKind kind, Medium medium);
-eprosima::fastdds::dds::DataReaderQos ReaderQos(const Topic& topic, Medium medium);
+eprosima::fastdds::dds::DataWriterQos WriterQos(TopicKind kind, Redelivery redelivery);
+eprosima::fastdds::dds::DataReaderQos ReaderQos(const Topic& topic, Redelivery redelivery);
 /// As ReaderQos(), but as deep as the writers' history: for the recorder.
-eprosima::fastdds::dds::DataReaderQos RecorderQos(const Topic& topic, Medium medium);
+eprosima::fastdds::dds::DataReaderQos RecorderQos(const Topic& topic, Redelivery redelivery);
 
 }  // namespace mascot

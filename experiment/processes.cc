@@ -1,5 +1,6 @@
 #include "experiment/processes.h"
 
+#include <algorithm>
 #include <set>
 
 namespace mascot {
@@ -29,6 +30,12 @@ std::vector<int> HearingProcesses(const Experiment& experiment, bool heard_only)
     for (const int id : heard) ++count[static_cast<std::size_t>(id - 1)];
   }
   return count;
+}
+
+bool AsksAgain(const Experiment& experiment) {
+  return experiment.run.mode == Mode::kLockstep && experiment.network.is_bundled() &&
+         std::ranges::none_of(experiment.agents,
+                              [](const AgentConfig& agent) { return agent.external || !agent.host.empty(); });
 }
 
 std::vector<int> SourcesOf(const Experiment& experiment, AgentRange process) {

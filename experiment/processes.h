@@ -14,6 +14,10 @@ std::vector<AgentRange> AgentProcesses(const Experiment& experiment);
 /// that may ever hear it. With `heard_only`, only processes with an agent that may hear it count.
 std::vector<int> HearingProcesses(const Experiment& experiment, bool heard_only);
 
+/// Whether the server asks again for answers that do not come, so that bundles and answers need no other care: in
+/// lockstep, if the run has started all processes of agents, on this host.
+bool AsksAgain(const Experiment& experiment);
+
 /// The agents whose states a process needs: its own, then the others that these may ever hear; both in increasing id.
 std::vector<int> SourcesOf(const Experiment& experiment, AgentRange process);
 

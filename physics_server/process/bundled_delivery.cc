@@ -31,20 +31,23 @@ std::span<const std::uint8_t> BodyAt(const SampleBodies& bodies, std::size_t k, 
 BundledDelivery::BundledDelivery(Domain& domain, const Experiment& experiment, OnAnswers on_answers)
     : experiment_(experiment),
       on_answers_(std::move(on_answers)),
+      asks_again_(AsksAgain(experiment)),
       rows_(domain, Topic::Row()),
       sent_(experiment.agents.size()),
       commanded_(experiment.agents.size(), -1),
       said_(experiment.agents.size(), -1) {
+  const Redelivery redelivery = asks_again_ ? Redelivery::kOnDemand : domain.redelivery();
   for (const AgentRange& agents : AgentProcesses(experiment)) {
     Process& process = *processes_.emplace_back(std::make_unique<Process>(Process{.agents = agents}));
     process.sources = SourcesOf(experiment, agents);
     process.heard = HeardIn(experiment, agents, process.sources);
-    process.bundles = std::make_unique<RawWriter>(domain, Topic::Bundle(agents));
+    process.bundles = std::make_unique<RawWriter>(domain, Topic::Bundle(agents), redelivery);
   }
   for (const auto& process : processes_)
     readers_.push_back(std::make_unique<RawReader>(
         domain, Topic::Answers(process->agents),
-        [this, &process](const RawReader::Bytes& bytes, const Sender& /*sender*/) { OnSample(*process, bytes); }));
+        [this, &process](const RawReader::Bytes& bytes, const Sender& /*sender*/) { OnSample(*process, bytes); },
+        redelivery));
 }
 
 bool BundledDelivery::Matched() const {
@@ -62,17 +65,26 @@ void BundledDelivery::Publish(const World& world, int events) {
              states_.bytes.data() + kStateBody * static_cast<std::size_t>(id - 1));
   const std::lock_guard lock(mutex_);
   for (const auto& process : processes_) {
-    bundle_.Begin(world.tick());
-    bundle_.BeginSection(static_cast<std::uint32_t>(process->agents.size()));
-    for (const int id : process->sources) bundle_.Add(BodyAt(states_, static_cast<std::size_t>(id - 1), kStateBody));
-    bundle_.BeginSection();
-    for (const int id : process->heard) bundle_.Add(sent_[static_cast<std::size_t>(id - 1)]);
-    process->bundles->Write(bundle_.bytes());
+    BundleWriter& bundle = process->bundle;
+    bundle.Begin(world.tick());
+    bundle.BeginSection(static_cast<std::uint32_t>(process->agents.size()));
+    for (const int id : process->sources) bundle.Add(BodyAt(states_, static_cast<std::size_t>(id - 1), kStateBody));
+    bundle.BeginSection();
+    for (const int id : process->heard) bundle.Add(sent_[static_cast<std::size_t>(id - 1)]);
+    process->bundles->Write(bundle.bytes());
   }
   WriteRow(world.tick(), states_);
   for (SampleBodies& sent : sent_) sent.Clear();
   published_ = world.tick();
   answered_ = 0;
+}
+
+void BundledDelivery::AskAgain() {
+  if (!asks_again_) return;
+  const std::lock_guard lock(mutex_);
+  for (const auto& process : processes_)
+    if (commanded_[static_cast<std::size_t>(process->agents.first - 1)] < published_)
+      process->bundles->Write(process->bundle.bytes());
 }
 
 void BundledDelivery::CompleteRow() {

@@ -20,6 +20,7 @@ class BundledDelivery final : public Delivery {
 
   bool Matched() const override;
   void Publish(const World& world, int events) override;
+  void AskAgain() override;
   void CompleteRow() override;
   void Finish() override;
 
@@ -30,6 +31,7 @@ class BundledDelivery final : public Delivery {
     std::vector<int> sources = {};  ///< ids: SourcesOf()
     std::vector<int> heard = {};    ///< of the sources, those that are heard there: their messages go with the states
     std::vector<Answer> answers = {};  ///< in the newest sample
+    BundleWriter bundle = {};          ///< of the newest tick
     std::unique_ptr<RawWriter> bundles = {};
   };
 
@@ -40,9 +42,10 @@ class BundledDelivery final : public Delivery {
 
   const Experiment& experiment_;
   const OnAnswers on_answers_;
+  const bool asks_again_;
   RawWriter rows_;
   SampleBodies states_;  // of the tick that is published
-  BundleWriter bundle_, row_;
+  BundleWriter row_;
 
   std::mutex mutex_;                  // guards what is below, which is of the time since the last Publish()
   SampleBodies commands_, messages_;  // as they came

@@ -30,6 +30,9 @@ class Delivery {
   virtual bool Matched() const = 0;
   /// Publishes the states of the world's tick, of which `events` events have taken effect.
   virtual void Publish(const World& world, int events) = 0;
+  /// Sends the states of the newest tick again to processes that have not answered it, if nothing else sees to it that
+  /// what was lost comes again.
+  virtual void AskAgain() = 0;
   /// The next tick is not published yet, after answers have come: if all agents have answered, the recorder gets the
   /// answers now. With the next tick it would get them late, because that is held: by people, or by the clock.
   virtual void CompleteRow() = 0;

@@ -123,6 +123,7 @@ void Server::OnStatus(const mascot_msgs::msg::Status& status, const std::string&
 void Server::Do(const TickProtocol::Actions& actions) {
   if (actions.step) world_.Step(commands_);
   if (actions.publish) Publish();
+  if (actions.ask) delivery_->AskAgain();
   if (ticks_.finished()) delivery_->Finish();
   if (actions.wake) lifecycle_.Wake();
 }

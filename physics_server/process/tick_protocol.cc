@@ -1,6 +1,7 @@
 #include "physics_server/process/tick_protocol.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "experiment/toml/section.h"
 #include "physics_server/process/agents_text.h"
@@ -11,6 +12,8 @@ namespace {
 constexpr auto kLookEvery = std::chrono::milliseconds(50);
 /// The same while the gate holds a tick. It is also how often others learn that the run is held, not stuck.
 constexpr auto kLookWhileHeldEvery = std::chrono::milliseconds(500);
+/// Long beside a tick, and short beside run.agent_timeout_s.
+constexpr auto kAskAgainEvery = std::chrono::milliseconds(200);
 }  // namespace
 
 TickProtocol::TickProtocol(const Rules& rules)
@@ -105,7 +108,15 @@ TickProtocol::Turn TickProtocol::Watch(Time now) {
   const ProgressWatch::Seconds grace(AwaitsRecorder() ? (rules_.agents - 1) * rules_.agent_timeout_s : 0);
   const std::int64_t progress = tick_ + published_;  // agents have their time from a tick's publication
   const bool overdue = watch_.IsOverdue(progress, now, grace);
-  return {.next_deadline = now + kLookEvery, .failure = overdue ? WhoIsLate() : ""};
+  return {.actions = {.ask = AsksAgain(now)}, .next_deadline = now + kLookEvery, .failure = overdue ? WhoIsLate() : ""};
+}
+
+bool TickProtocol::AsksAgain(Time now) {
+  if (rules_.realtime || AwaitsPublication()) return false;
+  if (std::exchange(asked_, published_) != published_) asked_at_ = now;
+  if (now - asked_at_ < kAskAgainEvery) return false;
+  asked_at_ = now;
+  return true;
 }
 
 TickProtocol::Turn TickProtocol::EndTick(Time due, Time now, bool stop_requested) {

@@ -39,6 +39,7 @@ class TickProtocol {
     bool take = false;     ///< hold this command in place of the agent's last one
     bool step = false;     ///< step the world to its next tick, with the commands held
     bool publish = false;  ///< publish the states of the world's tick
+    bool ask = false;      ///< ask agents again that have not answered the newest tick
     bool wake = false;     ///< wake the loop, so that it calls Look() at once
     bool operator==(const Actions&) const = default;
   };
@@ -90,6 +91,8 @@ class TickProtocol {
   Actions Step();
   /// Look() at a tick that waits for all commands, or for the recorder: fails if nothing has moved for too long.
   Turn Watch(Time now);
+  /// Whether it is time to ask again for the answers to the newest tick: in lockstep, which waits for them.
+  bool AsksAgain(Time now);
   /// Look() in lockstep at a tick whose states wait for nothing but the gate.
   Turn LookAtGate(Time now, bool stop_requested);
   /// Look() in real time between the first and the last tick.
@@ -114,6 +117,8 @@ class TickProtocol {
   TickBarrier barrier_;                 // waits for the newest tick published
   std::vector<std::int64_t> answered_;  // by id - 1: the last tick answered
   ProgressWatch watch_;
+  std::int64_t asked_ = -1;  // the tick whose answers Watch() awaits,
+  Time asked_at_;            // and since when, or when they were asked for again
   TickGate gate_;
 };
 

@@ -16,6 +16,7 @@ class TopicDelivery final : public Delivery {
 
   bool Matched() const override;
   void Publish(const World& world, int events) override;
+  void AskAgain() override {}
   void CompleteRow() override {}
   void Finish() override {}
 

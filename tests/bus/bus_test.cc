@@ -348,18 +348,32 @@ std::uint64_t MappedSharedMemory() {
   return bytes;
 }
 
-TEST(Repair, ComesSoonOverANetworkThatMayLoseSamples) {
+TEST(Redelivery, ComesSoonOverANetworkThatMayLoseSamples) {
   const auto ms = [](const eprosima::fastrtps::Duration_t& time) { return static_cast<double>(time.to_ns()) / 1e6; };
-  const auto times = [](TopicKind kind, Medium medium) { return WriterQos(kind, medium).reliable_writer_qos().times; };
+  const auto times = [](TopicKind kind, Redelivery redelivery) {
+    return WriterQos(kind, redelivery).reliable_writer_qos().times;
+  };
   for (const TopicKind kind : {TopicKind::kBundle, TopicKind::kAnswers, TopicKind::kState, TopicKind::kCommand}) {
-    EXPECT_EQ(ms(times(kind, Medium::kLossless).nackSupressionDuration), 1000);
-    EXPECT_LE(ms(times(kind, Medium::kNetwork).nackSupressionDuration), 5);
-    EXPECT_EQ(ms(times(kind, Medium::kNetwork).nackResponseDelay), 0);
-    EXPECT_EQ(ms(ReaderQos({kind, 1, 1}, Medium::kNetwork).reliable_reader_qos().times.heartbeatResponseDelay), 0);
+    EXPECT_EQ(ms(times(kind, Redelivery::kSeldom).nackSupressionDuration), 1000);
+    EXPECT_LE(ms(times(kind, Redelivery::kOften).nackSupressionDuration), 5);
+    EXPECT_EQ(ms(times(kind, Redelivery::kOften).nackResponseDelay), 0);
+    EXPECT_EQ(ms(ReaderQos({kind, 1, 1}, Redelivery::kOften).reliable_reader_qos().times.heartbeatResponseDelay), 0);
   }
   for (const TopicKind kind : {TopicKind::kBundle, TopicKind::kAnswers})
-    EXPECT_LE(ms(times(kind, Medium::kNetwork).heartbeatPeriod), 20) << "one for each process";
-  EXPECT_GE(ms(times(TopicKind::kState, Medium::kNetwork).heartbeatPeriod), 200) << "many for each process";
+    EXPECT_LE(ms(times(kind, Redelivery::kOften).heartbeatPeriod), 20) << "one for each process";
+  EXPECT_GE(ms(times(TopicKind::kState, Redelivery::kOften).heartbeatPeriod), 200) << "many for each process";
+}
+
+TEST(Redelivery, OnDemandIsBestEffort) {
+  const Topic topic = Topic::Bundle({1, 1});
+  for (const auto& [redelivery, kind] :
+       {std::pair(Redelivery::kOnDemand, eprosima::fastdds::dds::BEST_EFFORT_RELIABILITY_QOS),
+        std::pair(Redelivery::kSeldom, eprosima::fastdds::dds::RELIABLE_RELIABILITY_QOS),
+        std::pair(Redelivery::kOften, eprosima::fastdds::dds::RELIABLE_RELIABILITY_QOS)}) {
+    EXPECT_EQ(WriterQos(topic.kind, redelivery).reliability().kind, kind);
+    EXPECT_EQ(ReaderQos(topic, redelivery).reliability().kind, kind);
+    EXPECT_EQ(RecorderQos(topic, redelivery).reliability().kind, kind);
+  }
 }
 
 TEST(SharedMemoryNeed, IsKnownBeforeAParticipantIsMade) {

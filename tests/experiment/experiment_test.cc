@@ -616,5 +616,17 @@ TEST(ResolvedExperiment, IsTheSameAgainWhenRead) {
   }
 }
 
+TEST(AsksAgain, InLockstepIfTheRunHasStartedAllProcessesOnThisHost) {
+  const std::string three = "run.duration_s = 1\nagents.count = 3\ngraph.topology = 'ring'\n";
+  EXPECT_TRUE(AsksAgain(Load(three)));
+  EXPECT_TRUE(AsksAgain(Load(three + "network.agents_per_process = 3\n")));
+  EXPECT_FALSE(AsksAgain(Load(three + "run.mode = 'realtime'\n")));
+  EXPECT_FALSE(AsksAgain(Load(three + "network.delivery = 'topics'\n")));
+  EXPECT_FALSE(
+      AsksAgain(Load("run.duration_s = 1\nagents = { count = 3, override = [{ id = 2, host = 'external' }] }\n"
+                     "graph.topology = 'ring'\n")));
+  EXPECT_FALSE(AsksAgain(Load(three + "[[hosts]]\nname = 'pi'\nagents = '3'\n")));
+}
+
 }  // namespace
 }  // namespace mascot

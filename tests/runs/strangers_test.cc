@@ -17,6 +17,9 @@
 namespace mascot::test {
 namespace {
 
+// A reader that asks for no more than best effort hears all writers.
+constexpr Redelivery kAnyWriter = Redelivery::kOnDemand;
+
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -192,7 +195,8 @@ TEST_F(Strangers, ARunIsTheSameWhoeverListensAndInEveryDelivery) {
       Domain domain(Intruder(up, "rviz"), [] {});  // it is there before the run starts, and to its end
       Reader<StateType> states(domain, Topic::State(4), [&](const auto&) { ++heard; });
       Reader<MessageType> messages(domain, Topic::Message(2), [](const auto&) {});
-      Reader<BundleType> bundles(domain, Topic::Bundle({4, 4}), [&](const auto&) { ++heard; });
+      const RawReader bundles(
+          domain, Topic::Bundle({4, 4}), [&](const auto&, const auto&) { ++heard; }, kAnyWriter);
       Reader<RowType> rows(domain, Topic::Row(), [](const auto&) {});
       Reader<StatusType> statuses(domain, Topic::Status(), [](const auto&) {});
       EXPECT_TRUE(Until([&] { return up.IsOver(); }));
@@ -208,17 +212,21 @@ TEST_F(Strangers, WhatAProcessIsSentHasNoStateThatNoneOfItsAgentsMayHear) {
   std::mutex mutex;
   std::map<std::string, std::set<std::vector<std::uint32_t>>> sent;  // states and senders of messages, by process
   Domain domain(Intruder(up, "rviz"), [] {});
-  std::vector<std::unique_ptr<Reader<BundleType>>> readers;
+  std::vector<std::unique_ptr<RawReader>> readers;
   for (const AgentRange agents : {AgentRange{1, 2}, AgentRange{3, 4}})
-    readers.push_back(std::make_unique<Reader<BundleType>>(
-        domain, Topic::Bundle(agents), [&, name = ProcessName(agents)](const mascot_msgs::msg::Bundle& bundle) {
+    readers.push_back(std::make_unique<RawReader>(
+        domain, Topic::Bundle(agents),
+        [&, name = ProcessName(agents)](const RawReader::Bytes& bytes, const Sender& /*sender*/) {
+          mascot_msgs::msg::Bundle bundle;
+          ASSERT_TRUE(Decode<BundleType>(bytes, bundle));
           std::vector<std::uint32_t> states, senders;
           for (const auto& state : bundle.states()) states.push_back(state.agent());
           for (const auto& message : bundle.messages()) senders.push_back(message.agent());
           const std::lock_guard lock(mutex);
           sent[name + " states"].insert(states);
           sent[name + " messages"].insert(senders);
-        }));
+        },
+        kAnyWriter));
   ASSERT_TRUE(Until([&] {
     const std::lock_guard lock(mutex);
     return sent.size() == 4;
@@ -240,7 +248,8 @@ TEST_F(Strangers, OneThatListenedAsAnAgentFailsTheRunThoughItHasLeft) {
       std::atomic<bool> heard = false;
       Domain domain(Intruder(up, "agent_1"), [] {});
       Reader<StateType> peeking(domain, Topic::State(4), [&](const auto&) { heard = true; });
-      Reader<BundleType> bundles(domain, Topic::Bundle({4, 4}), [&](const auto&) { heard = true; });
+      const RawReader bundles(
+          domain, Topic::Bundle({4, 4}), [&](const auto&, const auto&) { heard = true; }, kAnyWriter);
       ASSERT_TRUE(Until([&] { return heard || up.IsOver(); }));  // it may be found first
     }
     ExpectFailedBy(up, up.Wait(), "two processes say that they are agent_1 (process " + std::to_string(getpid()));

@@ -41,7 +41,7 @@ class ServerAndAgents : public testing::Test {
 /// Writes the answers of one agent to a tick.
 class Agent {
  public:
-  Agent(Domain& domain, int id) : id_(id), answers_(domain, Topic::Answers({id, id})) {}
+  Agent(Domain& domain, int id) : id_(id), answers_(domain, Topic::Answers({id, id}), Redelivery::kOnDemand) {}
   void Answer(std::int64_t tick, int messages = 0) {
     writer_.Begin(tick);
     writer_.BeginSection();
@@ -85,6 +85,76 @@ TEST_F(ServerAndAgents, AnswersThatComeWhileTheServerLeavesAreWrittenToNobodyTha
   }
   ends = true;
   agents.join();
+}
+
+TEST_F(ServerAndAgents, ASilentProcessIsAskedAgainWithTheSameBytes) {
+  const Experiment experiment = Team();
+  const World world(experiment);
+  std::atomic<int> taken = 0;
+  std::mutex mutex;
+  std::vector<std::vector<RawReader::Bytes>> came(2);  // to agents 1 and 2
+  const auto count = [&](std::size_t agent) {
+    const std::lock_guard lock(mutex);
+    return came[agent].size();
+  };
+  std::vector<std::unique_ptr<RawReader>> readers;
+  for (int id = 1; id <= 2; ++id)
+    readers.push_back(std::make_unique<RawReader>(
+        agents_, Topic::Bundle({id, id}),
+        [&, id](const RawReader::Bytes& bytes, const Sender&) {
+          const std::lock_guard lock(mutex);
+          came[static_cast<std::size_t>(id - 1)].push_back(bytes);
+        },
+        Redelivery::kOnDemand));
+  std::vector<std::unique_ptr<Agent>> all;
+  for (int id = 1; id <= kAgents; ++id) all.push_back(std::make_unique<Agent>(agents_, id));
+  BundledDelivery delivery(server_, experiment, [&](auto answers) { taken += static_cast<int>(answers.size()); });
+  delivery.Publish(world, 0);
+  ASSERT_TRUE(Until([&] {  // until all have found each other
+    delivery.AskAgain();
+    return count(0) > 0 && count(1) > 0;
+  }));
+  ASSERT_TRUE(Until([&] {
+    all[0]->Answer(0);
+    return taken > 0;
+  }));
+  const std::size_t before = count(1);
+  ASSERT_TRUE(Until([&] {
+    delivery.AskAgain();
+    return count(1) > before + 5;
+  }));
+  const std::lock_guard lock(mutex);
+  EXPECT_THAT(came[1], testing::Each(came[1][0]));
+}
+
+TEST_F(ServerAndAgents, AProcessThatHasAnsweredIsNotAskedAgain) {
+  const Experiment experiment = Team();
+  const World world(experiment);
+  std::atomic<int> taken = 0, bundles = 0, others = 0;
+  const auto reader = [&](int id, std::atomic<int>& counter) {
+    return std::make_unique<RawReader>(
+        agents_, Topic::Bundle({id, id}), [&counter](const RawReader::Bytes&, const Sender&) { ++counter; },
+        Redelivery::kOnDemand);
+  };
+  const auto first = reader(1, bundles), second = reader(2, others);
+  Agent agent(agents_, 1);
+  BundledDelivery delivery(server_, experiment, [&](auto) { ++taken; });
+  delivery.Publish(world, 0);
+  ASSERT_TRUE(Until([&] {
+    agent.Answer(0);
+    return taken > 0;
+  }));
+  ASSERT_TRUE(Until([&] {
+    delivery.AskAgain();
+    return others > 0;
+  }));
+  const int before = bundles;
+  const int seen = others;
+  ASSERT_TRUE(Until([&] {
+    delivery.AskAgain();
+    return others > seen + 20;
+  }));
+  EXPECT_EQ(bundles, before) << "while agent 2, which is silent, got more";
 }
 
 /// What the server says of an answer of agent 2 to tick `tick`, with so many messages.

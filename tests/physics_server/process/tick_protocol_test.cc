@@ -11,7 +11,7 @@ namespace mascot {
 
 void PrintTo(const TickProtocol::Actions& actions, std::ostream* out) {
   *out << "{" << (actions.take ? " take" : "") << (actions.step ? " step" : "") << (actions.publish ? " publish" : "")
-       << (actions.wake ? " wake" : "") << " }";
+       << (actions.ask ? " ask" : "") << (actions.wake ? " wake" : "") << " }";
 }
 
 namespace {
@@ -248,14 +248,24 @@ TEST(TickProtocol, GivesAgentsTheirTimeFromWhenTheTickIsPublished) {
             "tick 64: no command from agents 1-3 within run.agent_timeout_s = 5.0 s");
 }
 
-TEST(TickProtocol, LooksTwentyTimesASecondInLockstepAndDoesNothing) {
-  Exchange exchange = Lockstep(1);
-  for (const Time now : {kT0, kT0 + 1s, kT0 + 2s}) {
-    const Turn turn = exchange.Look(now);
-    EXPECT_EQ(turn.actions, kNothing);
-    EXPECT_EQ(turn.next_deadline, now + 50ms);
-    EXPECT_EQ(turn.due, std::nullopt);
+TEST(TickProtocol, LooksTwentyTimesASecondInLockstepAndAsksAgainFiveTimes) {
+  Exchange exchange = Lockstep(2);
+  for (const std::int64_t tick : {0, 1}) {
+    exchange.OnCommand(1, tick);
+    for (int look = 0; look < 20; ++look) {
+      const Time now = kT0 + tick * 10s + look * 50ms;
+      const Turn turn = exchange.Look(now);
+      EXPECT_EQ(turn.actions, look > 0 && look % 4 == 0 ? Actions{.ask = true} : kNothing) << look;
+      EXPECT_EQ(turn.next_deadline, now + 50ms);
+      EXPECT_EQ(turn.due, std::nullopt);
+    }
+    exchange.OnCommand(2, tick);
   }
+}
+
+TEST(TickProtocol, AsksNobodyAgainWhileItWaitsForTheRecorder) {
+  Exchange exchange = BeyondTheWindow(3);
+  for (const auto later : {0s, 1s, 2s}) EXPECT_EQ(exchange.Look(kT0 + later).actions, kNothing);
 }
 
 // --- real time ------------------------------------------------------------------------------------------
