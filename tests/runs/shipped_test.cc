@@ -250,6 +250,21 @@ TEST(Published, FliesTheSetUpOfThePublishedTestbed) {
 
 // --- check's warnings -----------------------------------------------------------------------------------
 
+TEST(Check, SaysWhenAgentsShouldShareProcesses) {
+  const auto check = [](const std::string& sets) {
+    return Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("leaderless") +
+                 " --set 'agents.random.max_m=[10, 10, 60]' " + sets)
+        .output;
+  };
+  EXPECT_THAT(check("--set agents.count=33"),
+              testing::HasSubstr(
+                  "  processes      33 of agents over DDS; where agents share them (network.agents_per_process), "
+                  "the same bytes fly faster\n"));
+  EXPECT_THAT(check("--set agents.count=32"), testing::Not(testing::HasSubstr("processes")));
+  EXPECT_THAT(check("--set agents.count=33 --set network.agents_per_process=2"),
+              testing::Not(testing::HasSubstr("processes")));
+}
+
 TEST(Check, WarnsWhenTheFirstCommandWouldSaturate) {
   const Ran run =
       Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("leaderless") + " --set law.p_gain=1.0");
