@@ -34,15 +34,17 @@ void AwaitChange(const std::atomic<std::uint32_t>& number, std::uint32_t old) {
 
 }  // namespace
 
-Crew::Crew(int members) {
-  for (int part = 1; part < members; ++part) {
-    Member& member = *others_.emplace_back(std::make_unique<Member>());
+Crew::Crew(int members, Size size) {
+  for (int part = 1; part < members; ++part) others_.push_back(std::make_unique<Member>());
+  for (std::size_t started = 0; started < others_.size(); ++started) {
+    Member& member = *others_[started];
     try {
-      member.thread = std::thread([this, &member, part] { Work(member, static_cast<std::size_t>(part)); });
+      member.thread = std::thread([this, &member, started] { Work(member, started + 1); });
     } catch (const std::system_error& failure) {
-      others_.pop_back();
+      others_.resize(started);
+      if (size == Size::kAtMost) return;
       End();
-      throw std::runtime_error("cannot start thread " + std::to_string(part + 1) + " of " + std::to_string(members) +
+      throw std::runtime_error("cannot start thread " + std::to_string(started + 2) + " of " + std::to_string(members) +
                                " that are to compute the run: " + failure.code().message());
     }
   }

@@ -20,9 +20,10 @@ inline constexpr int kMinAgentsPerThread = 32;
 /// at a time, and do not allocate.
 class Crew {
  public:
-  /// `members`: how many threads work, with the one that calls; less than 1 is 1. Throws
-  /// std::runtime_error if a thread cannot start.
-  explicit Crew(int members = 1);
+  enum class Size { kExactly, kAtMost };
+  /// `members`: how many threads work, with the one that calls; less than 1 is 1. If one cannot start: throws
+  /// std::runtime_error, or takes those that have started.
+  explicit Crew(int members = 1, Size size = Size::kExactly);
   ~Crew();
   Crew(const Crew&) = delete;
   Crew& operator=(const Crew&) = delete;

@@ -34,8 +34,9 @@ std::vector<int> HearingProcesses(const Experiment& experiment, bool heard_only)
 
 bool AsksAgain(const Experiment& experiment) {
   return experiment.run.mode == Mode::kLockstep && experiment.network.is_bundled() &&
-         std::ranges::none_of(experiment.agents,
-                              [](const AgentConfig& agent) { return agent.external || !agent.host.empty(); });
+         experiment.network.transport != "udp" && std::ranges::none_of(experiment.agents, [](const AgentConfig& agent) {
+           return agent.external || !agent.host.empty();
+         });
 }
 
 std::vector<int> SourcesOf(const Experiment& experiment, AgentRange process) {

@@ -15,7 +15,7 @@ std::vector<AgentRange> AgentProcesses(const Experiment& experiment);
 std::vector<int> HearingProcesses(const Experiment& experiment, bool heard_only);
 
 /// Whether the server asks again for answers that do not come, so that bundles and answers need no other care: in
-/// lockstep, if the run has started all processes of agents, on this host.
+/// lockstep, if the run has started all processes of agents, on this host, where they share memory.
 bool AsksAgain(const Experiment& experiment);
 
 /// The agents whose states a process needs: its own, then the others that these may ever hear; both in increasing id.

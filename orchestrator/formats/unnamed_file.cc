@@ -18,10 +18,17 @@ namespace {
 
 constexpr std::uint64_t kMovedAtOnce = std::uint64_t{1} << 20;
 
-/// Opens a file without a name in the folder of `path`; -1 if the file system has none, or there is no such folder.
+/// Where an open file can be found to give it a name.
+std::string NameOf(int fd) { return "/proc/self/fd/" + std::to_string(fd); }
+
+/// Opens a file without a name in the folder of `path`; -1 if the file system has none, if there is no such folder, or
+/// if it could not be named later.
 int OpenUnnamed(const std::string& path) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  return ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+  const int fd = ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+  if (fd < 0 || ::access(NameOf(fd).c_str(), F_OK) == 0) return fd;
+  ::close(fd);
+  return -1;
 }
 
 /// Calls pread or pwrite until all of `bytes` are through.
@@ -69,9 +76,8 @@ void UnnamedFile::Commit(std::uint64_t size) {
   if (::ftruncate(fd_, static_cast<off_t>(size)) != 0) Fail("write");
   if (::fsync(fd_) != 0) Fail("flush");
   if (!has_name_) {
-    const std::string ours = "/proc/self/fd/" + std::to_string(fd_);
     RemoveFile(part_.name());
-    if (::linkat(AT_FDCWD, ours.c_str(), AT_FDCWD, part_.name().c_str(), AT_SYMLINK_FOLLOW) != 0) Fail("create");
+    if (::linkat(AT_FDCWD, NameOf(fd_).c_str(), AT_FDCWD, part_.name().c_str(), AT_SYMLINK_FOLLOW) != 0) Fail("create");
   }
   if (::close(std::exchange(fd_, -1)) != 0) Fail("close");
   part_.Commit();

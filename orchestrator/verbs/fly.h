@@ -40,6 +40,8 @@ struct EngineArgs {
   /// but for `others` threads that work beside them; no more than a team of this size keeps busy. Over DDS, only the
   /// one that calls.
   int CrewMembers(const Experiment& experiment, int others) const;
+  /// Whether there must be so many: if somebody has asked for them.
+  Crew::Size CrewSize() const { return threads ? Crew::Size::kExactly : Crew::Size::kAtMost; }
 };
 
 /// One experiment on one engine.

@@ -12,8 +12,9 @@ namespace {
 constexpr auto kLookEvery = std::chrono::milliseconds(50);
 /// The same while the gate holds a tick. It is also how often others learn that the run is held, not stuck.
 constexpr auto kLookWhileHeldEvery = std::chrono::milliseconds(500);
-/// Long beside a tick, and short beside run.agent_timeout_s.
-constexpr auto kAskAgainEvery = std::chrono::milliseconds(200);
+/// Long beside most ticks, and short beside run.agent_timeout_s. After twice the time they are asked once more, and so
+/// on: laws may be slow.
+constexpr auto kAskAgainAfter = std::chrono::milliseconds(200);
 }  // namespace
 
 TickProtocol::TickProtocol(const Rules& rules)
@@ -113,9 +114,13 @@ TickProtocol::Turn TickProtocol::Watch(Time now) {
 
 bool TickProtocol::AsksAgain(Time now) {
   if (rules_.realtime || AwaitsPublication()) return false;
-  if (std::exchange(asked_, published_) != published_) asked_at_ = now;
-  if (now - asked_at_ < kAskAgainEvery) return false;
+  if (std::exchange(asked_, published_) != published_) {
+    asked_at_ = now;
+    ask_after_ = kAskAgainAfter;
+  }
+  if (now - asked_at_ < ask_after_) return false;
   asked_at_ = now;
+  ask_after_ *= 2;
   return true;
 }
 

@@ -117,8 +117,9 @@ class TickProtocol {
   TickBarrier barrier_;                 // waits for the newest tick published
   std::vector<std::int64_t> answered_;  // by id - 1: the last tick answered
   ProgressWatch watch_;
-  std::int64_t asked_ = -1;  // the tick whose answers Watch() awaits,
-  Time asked_at_;            // and since when, or when they were asked for again
+  std::int64_t asked_ = -1;                          // the tick whose answers Watch() awaits,
+  Time asked_at_;                                    // since when, or when they were asked for again,
+  std::chrono::steady_clock::duration ask_after_{};  // and after which time they will be
   TickGate gate_;
 };
 
