@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bus/wire.h"
+#include "experiment/processes.h"
 
 namespace mascot {
 namespace {
@@ -131,6 +132,10 @@ class Matches {
 };
 
 }  // namespace
+
+Redelivery RedeliveryOfBundles(const Domain& domain, const Experiment& experiment) {
+  return AsksAgain(experiment) ? Redelivery::kOnDemand : domain.redelivery();
+}
 
 // --- writers ------------------------------------------------------------------------------------------
 

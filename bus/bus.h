@@ -22,6 +22,7 @@
 #include "bus/cdr.h"
 #include "bus/peers.h"
 #include "bus/qos.h"
+#include "experiment/experiment.h"
 #include "idl/topics.h"
 
 namespace mascot {
@@ -73,6 +74,9 @@ class Domain {
   Handle<eprosima::fastdds::dds::Publisher> publisher_;
   Handle<eprosima::fastdds::dds::Subscriber> subscriber_;
 };
+
+/// How bundles and answers come again that are lost. Both ends must take the same.
+Redelivery RedeliveryOfBundles(const Domain& domain, const Experiment& experiment);
 
 /// The part of Writer<PubSub> that does not depend on the type of the sample.
 class WriterBase {

@@ -61,10 +61,6 @@ dds::DataReaderQos MakeReaderQos(const Topic& topic, int depth, Redelivery redel
   return qos;
 }
 
-// --- lost samples --------------------------------------------------------------------------------------
-
-const Duration_t kSeldomAsked(0, 200'000'000), kOftenAsked(0, 20'000'000), kBelievedOnItsWay(0, 5'000'000);
-
 // --- transports: one row each -------------------------------------------------------------------------
 
 /// Bytes for samples that are sent and not read yet. The recorder may be 64 ticks behind: an agent's commands and
@@ -210,6 +206,8 @@ const Transport& TransportOf(const DomainOptions& options) {
 bool UsesSharedMemory(const DomainOptions& options) {
   return TransportOf(options).shared_memory && options.role != DiscoveryRole::kServer;
 }
+
+const Duration_t kSeldomAsked(0, 200'000'000), kOftenAsked(0, 20'000'000), kBelievedOnItsWay(0, 5'000'000);
 
 // How a writer finds out that a sample was lost, and when it sends the sample again: once a heartbeat asked the reader,
 // which comes periodically while a sample is not confirmed, and once the writer no longer believes that the sample is

@@ -3,16 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "experiment/processes.h"
-
 namespace mascot {
-namespace {
-
-Redelivery RedeliveryOf(const Domain& domain, const Experiment& experiment) {
-  return AsksAgain(experiment) ? Redelivery::kOnDemand : domain.redelivery();
-}
-
-}  // namespace
 
 static_assert(kMaxMessage == kMaxNumbers);
 
@@ -24,11 +15,11 @@ AgentsOnBundles::AgentsOnBundles(Domain& domain, const Experiment& experiment, A
       driven_(static_cast<std::size_t>(agents.size())),
       commands_(driven_.size()),
       inbox_(experiment, agents),
-      answers_(domain, Topic::Answers(agents), RedeliveryOf(domain, experiment)),
+      answers_(domain, Topic::Answers(agents), RedeliveryOfBundles(domain, experiment)),
       bundles_(
           domain, Topic::Bundle(agents),
           [this](const RawReader::Bytes& bytes, const Sender& /*sender*/) { OnBundle(bytes); },
-          RedeliveryOf(domain, experiment)) {
+          RedeliveryOfBundles(domain, experiment)) {
   const std::lock_guard lock(mutex_);
   for (int id = agents.first; id <= agents.last; ++id) agents_.push_back(std::make_unique<Agent>(experiment, id));
 }

@@ -5,7 +5,7 @@
 namespace mascot {
 
 Team::Part::Part(const Experiment& experiment, AgentRange agents)
-    : ids(agents), low_level(experiment, agents), driven(static_cast<std::size_t>(agents.last - agents.first + 1)) {}
+    : ids(agents), low_level(experiment, agents), driven(static_cast<std::size_t>(agents.size())) {}
 
 Team::Team(const Experiment& experiment, Crew& crew) : crew_(crew), exchange_(experiment) {
   const std::size_t agents = experiment.agents.size(), parts = crew.PartsOf(agents, kMinAgentsPerThread);

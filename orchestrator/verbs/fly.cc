@@ -38,10 +38,11 @@ void EngineArgs::Refuse(const Experiment& experiment) const {
     throw ConfigError({"--engine inprocess: expected network.ros_view = false, got true"});
 }
 
-int EngineArgs::CrewMembers(const Experiment& experiment, int others) const {
-  if (name != kInProcess) return 1;
+Crew EngineArgs::MakeCrew(const Experiment& experiment, int others) const {
+  if (name != kInProcess) return Crew();
   const int members = threads.value_or(static_cast<int>(std::thread::hardware_concurrency()) - others);
-  return std::clamp(members, 1, std::max(1, experiment.size() / kMinAgentsPerThread));
+  return Crew(std::clamp(members, 1, std::max(1, experiment.size() / kMinAgentsPerThread)),
+              threads ? Crew::Size::kExactly : Crew::Size::kAtMost);
 }
 
 Flight::Flight(const std::string& engine, const Experiment& experiment, const RunFolder& folder,

@@ -36,12 +36,10 @@ struct EngineArgs {
   void AddTo(CLI::App& command, const std::string& help);
   /// Throws ConfigError if this engine cannot fly the experiment, or not so.
   void Refuse(const Experiment& experiment) const;
-  /// How many threads are to fly the run, with the one that calls: as many as were asked for, or as there are cores
-  /// but for `others` threads that work beside them; no more than a team of this size keeps busy. Over DDS, only the
-  /// one that calls.
-  int CrewMembers(const Experiment& experiment, int others) const;
-  /// Whether there must be so many: if somebody has asked for them.
-  Crew::Size CrewSize() const { return threads ? Crew::Size::kExactly : Crew::Size::kAtMost; }
+  /// The threads that are to fly the run, with the one that calls: exactly as many as were asked for, or at most as
+  /// many as there are cores but for `others` threads that work beside them; no more than a team of this size keeps
+  /// busy. Over DDS, only the one that calls. Throws what Crew throws.
+  Crew MakeCrew(const Experiment& experiment, int others) const;
 };
 
 /// One experiment on one engine.

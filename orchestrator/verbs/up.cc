@@ -131,7 +131,7 @@ int Up(UpArgs& args) {
   before_the_run.reset();
 
   Console console(args.quiet || args.json);
-  Crew crew(args.engine.CrewMembers(experiment, ThreadsOfRecording(experiment)), args.engine.CrewSize());
+  Crew crew = args.engine.MakeCrew(experiment, ThreadsOfRecording(experiment));
   RunMeter meter(experiment, crew);
   RunRequests requests(experiment, experiment.run.pace.value_or(args.viewers.at ? 1 : 0));
   Viewers viewers(args.viewers, args.engine.name, experiment, prediction, meter, requests, console);

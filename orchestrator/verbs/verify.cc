@@ -219,7 +219,7 @@ int Verify(const VerifyArgs& args) {
   Console console(/*quiet=*/true);
   Comparison comparison(subject.file, subject.plan);
   const std::vector<RowSink*> sinks{&comparison};
-  Crew crew(args.engine.CrewMembers(experiment, /*others=*/0), args.engine.CrewSize());
+  Crew crew = args.engine.MakeCrew(experiment, /*others=*/0);
   Flight flight(args.engine.name, experiment, folder, sinks, nullptr, console, stop, crew);
   const EngineResult result = flight.Fly();
   if (result.failure.empty() && result.signal == 0) comparison.Finish();

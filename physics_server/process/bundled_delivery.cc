@@ -36,7 +36,7 @@ BundledDelivery::BundledDelivery(Domain& domain, const Experiment& experiment, O
       sent_(experiment.agents.size()),
       commanded_(experiment.agents.size(), -1),
       said_(experiment.agents.size(), -1) {
-  const Redelivery redelivery = asks_again_ ? Redelivery::kOnDemand : domain.redelivery();
+  const Redelivery redelivery = RedeliveryOfBundles(domain, experiment);
   for (const AgentRange& agents : AgentProcesses(experiment)) {
     Process& process = *processes_.emplace_back(std::make_unique<Process>(Process{.agents = agents}));
     process.sources = SourcesOf(experiment, agents);
