@@ -1,5 +1,8 @@
 #include "system/control_groups.h"
 
+#include <sched.h>
+
+#include <algorithm>
 #include <fstream>
 #include <string>
 
@@ -48,6 +51,23 @@ std::optional<GroupMemory> MemoryOfGroup(const fs::path& group) {
       if (!counts_twice) memory.used += bytes;
     }
   return memory;
+}
+
+std::optional<double> ProcessorsOfGroup(const fs::path& group) {
+  std::ifstream both(group / "cpu.max"), quota(group / "cpu.cfs_quota_us"), period(group / "cpu.cfs_period_us");
+  double used = 0, of = 0;  // microseconds; "max" and -1 say that there is no limit
+  if ((both >> used >> of || (quota >> used && period >> of)) && used > 0 && of > 0) return used / of;
+  return std::nullopt;
+}
+
+int UsableProcessors() {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  int processors = ::sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? CPU_COUNT(&allowed) : 1;
+  for (const fs::path& group : ControlGroups("cpu"))
+    if (const auto limit = ProcessorsOfGroup(group); limit && *limit < processors)
+      processors = static_cast<int>(*limit);
+  return std::max(1, processors);
 }
 
 }  // namespace mascot

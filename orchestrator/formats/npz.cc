@@ -17,6 +17,7 @@ namespace mascot {
 namespace {
 
 constexpr std::size_t kNpzBufferBytes = std::size_t{64} << 10;
+constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 62;  // no file system has larger ones
 static_assert(sizeof(double) == sizeof(std::int64_t));
 
 struct Array {
@@ -25,8 +26,8 @@ struct Array {
   std::vector<std::size_t> row_shape;
   bool is_constant;
 
-  std::uint64_t max_rows = 0, rows = 0;
-  std::uint64_t begin = 0;  // of its rows, in the file
+  std::uint64_t rows = 0, room = 0;  // that it has, and that it has a place for
+  std::uint64_t begin = 0;           // of its rows, in the file
   std::uint64_t flushed = 0;
   std::uint32_t crc = 0;  // of the bytes flushed
   Bytes buffer = {};
@@ -57,37 +58,66 @@ Bytes NpyHeader(const Array& array, std::uint64_t rows) {
 }  // namespace
 
 struct NpzWriter::Impl {
-  UnnamedFile file;
-  std::string path;
-  std::uint64_t max_rows, max_bytes;
-  std::vector<Array> arrays = {};
-  bool has_rows = false;
+  /// Where everything is in the file.
+  struct Layout {
+    struct Entry {
+      std::uint64_t begin = 0;
+      Bytes headers = {};  // of zip and of npy; the rows follow
+      std::uint64_t rows() const { return begin + headers.size(); }
+    };
+    std::vector<Entry> entries = {};  // of the arrays
+    std::uint64_t end = 0;            // of the last one
+    ZipRecords zip = ZipRecords();
+  };
 
-  /// Gives each array room for its rows: for as many as may come, or as fit into the largest file.
+  UnnamedFile file;
+  std::uint64_t max_rows;
+  std::vector<Array> arrays = {};
+  bool has_places = false;
+  std::uint64_t room = 0;  // of each array that grows, in rows
+
+  /// Makes room for all rows that may come, or for as many as the file system grants.
   void MakeRoom();
-  /// Gives each array its place. It has all the rows that it may have, or those that have come.
-  void Place(std::uint64_t Array::*rows);
+  /// The places of the arrays, each with the rows that it has or has room for.
+  Layout LayOut(std::uint64_t Array::*rows) const;
+  void Move(Array& array, const Layout::Entry& to);
   void Flush(Array& array);
 };
 
 void NpzWriter::Impl::MakeRoom() {
-  std::uint64_t row_bytes = 0;
-  for (const Array& array : arrays)
-    if (!array.is_constant) row_bytes += array.Size(1);
-  for (Array& array : arrays)
-    array.max_rows = array.is_constant ? array.rows : std::min(max_rows, max_bytes / row_bytes);
-  Place(&Array::max_rows);
+  std::uint64_t row_bytes = 1;
+  for (const Array& array : arrays) row_bytes += array.is_constant ? 0 : array.Size(1);
+  const std::uint64_t largest = std::min(max_rows, kLargestFile / row_bytes);
+  std::uint64_t more = room == 0 ? largest : std::min(room, largest - room);
+  const auto with_more = [&] {
+    for (Array& array : arrays) array.room = array.is_constant ? array.rows : room + more;
+    return LayOut(&Array::room);
+  };
+  while (more > 1 && !file.TryResize(with_more().end)) more /= 2;
+  const Layout layout = with_more();
+  file.Resize(layout.end);
+  for (std::size_t i = arrays.size(); i-- > 0;) Move(arrays[i], layout.entries[i]);
+  room += more;
+  has_places = true;
 }
 
-void NpzWriter::Impl::Place(std::uint64_t Array::*rows) {
-  ZipRecords zip;
-  std::uint64_t end = 0;
-  for (Array& array : arrays) {
-    const std::uint64_t header = NpyHeader(array, array.*rows).size(), size = array.Size(array.*rows);
-    const std::uint64_t begin = end + zip.Add(array.name + ".npy", end, header + size, 0).size() + header;
-    file.MoveDown(std::exchange(array.begin, begin), begin, array.flushed);
-    end = begin + size;
+NpzWriter::Impl::Layout NpzWriter::Impl::LayOut(std::uint64_t Array::*rows) const {
+  Layout layout;
+  for (const Array& array : arrays) {
+    const Bytes npy = NpyHeader(array, array.*rows);
+    const auto crc =
+        static_cast<std::uint32_t>(::crc32_combine(Crc32(0, npy), array.crc, static_cast<z_off_t>(array.flushed)));
+    const std::uint64_t size = array.Size(array.*rows);
+    Layout::Entry& entry = layout.entries.emplace_back(Layout::Entry{.begin = layout.end});
+    entry.headers = layout.zip.Add(array.name + ".npy", entry.begin, npy.size() + size, crc);
+    mascot::Append(entry.headers, npy);
+    layout.end = entry.rows() + size;
   }
+  return layout;
+}
+
+void NpzWriter::Impl::Move(Array& array, const Layout::Entry& to) {
+  file.Move(std::exchange(array.begin, to.rows()), to.rows(), array.flushed);
 }
 
 void NpzWriter::Impl::Flush(Array& array) {
@@ -97,18 +127,18 @@ void NpzWriter::Impl::Flush(Array& array) {
   array.buffer.clear();
 }
 
-NpzWriter::NpzWriter(const std::string& path, std::uint64_t max_rows, std::uint64_t max_bytes)
-    : impl_(new Impl{.file = UnnamedFile(path), .path = path, .max_rows = max_rows, .max_bytes = max_bytes}) {}
+NpzWriter::NpzWriter(const std::string& path, std::uint64_t max_rows)
+    : impl_(new Impl{.file = UnnamedFile(path), .max_rows = max_rows}) {}
 NpzWriter::~NpzWriter() = default;
 
 int NpzWriter::AddArray(const std::string& name, std::vector<std::size_t> row_shape) {
-  assert(!impl_->has_rows);
+  assert(!impl_->has_places);
   impl_->arrays.push_back({name, "<f8", std::move(row_shape), false});
   return static_cast<int>(impl_->arrays.size()) - 1;
 }
 
 void NpzWriter::AddConstant(const std::string& name, std::span<const std::int64_t> values) {
-  assert(!impl_->has_rows);
+  assert(!impl_->has_places);
   Array& array = impl_->arrays.emplace_back(Array{name, "<i8", {}, true});
   array.rows = values.size();
   mascot::Append(array.buffer, AsBytes(values));
@@ -117,35 +147,26 @@ void NpzWriter::AddConstant(const std::string& name, std::span<const std::int64_
 void NpzWriter::Append(int array, std::span<const double> row) {
   Array& target = impl_->arrays.at(static_cast<std::size_t>(array));
   assert(row.size() == target.row_values());
-  if (!std::exchange(impl_->has_rows, true)) impl_->MakeRoom();
   if (target.rows == impl_->max_rows)
     throw std::logic_error("NpzWriter: array " + target.name + " has its " + std::to_string(target.rows) + " rows");
-  if (target.rows == target.max_rows)
-    throw std::runtime_error("cannot write " + impl_->path + ": it has " + std::to_string(target.rows) +
-                             " rows, and no room for more");
+  if (!impl_->has_places || target.rows == impl_->room) impl_->MakeRoom();
   ++target.rows;
   mascot::Append(target.buffer, AsBytes(row));
   if (target.buffer.size() >= kNpzBufferBytes) impl_->Flush(target);
 }
 
 void NpzWriter::Close() {
-  Impl& npz = *impl_;
-  npz.Place(&Array::rows);
-  ZipRecords zip;
-  std::uint64_t end = 0;
-  for (Array& array : npz.arrays) {
-    npz.Flush(array);
-    const Bytes npy = NpyHeader(array, array.rows);
-    const auto crc =
-        static_cast<std::uint32_t>(::crc32_combine(Crc32(0, npy), array.crc, static_cast<z_off_t>(array.flushed)));
-    Bytes header = zip.Add(array.name + ".npy", end, npy.size() + array.flushed, crc);
-    mascot::Append(header, npy);
-    npz.file.WriteAt(end, header);
-    end = array.begin + array.flushed;
+  if (!impl_->has_places) impl_->MakeRoom();
+  for (Array& array : impl_->arrays) impl_->Flush(array);
+  UnnamedFile& file = impl_->file;
+  Impl::Layout layout = impl_->LayOut(&Array::rows);
+  for (std::size_t i = 0; i < layout.entries.size(); ++i) {
+    impl_->Move(impl_->arrays[i], layout.entries[i]);
+    file.WriteAt(layout.entries[i].begin, layout.entries[i].headers);
   }
-  const Bytes records = zip.End(end);
-  npz.file.WriteAt(end, records);
-  npz.file.Commit(end + records.size());
+  const Bytes records = layout.zip.End(layout.end);
+  file.WriteAt(layout.end, records);
+  file.Commit(layout.end + records.size());
 }
 
 }  // namespace mascot

@@ -9,15 +9,13 @@
 namespace mascot {
 
 /// Writes a NumPy .npz (uncompressed zip of .npy, zip64 where needed) whose arrays grow row by row on disk, so that
-/// memory does not grow with the run. Byte-deterministic. np.load reads it without pickle. Each array has room for all
-/// its rows from the start; if there come less, Close() moves together what was written. Without Close() there is no
-/// file (UnnamedFile). Failures throw std::runtime_error.
+/// memory does not grow with the run. Byte-deterministic. np.load reads it without pickle. From the first row on, each
+/// array has room in the file for all its rows, or for as many as the file system grants; full arrays are moved apart,
+/// and Close() moves all together. Without Close() there is no file (UnnamedFile). Failures throw std::runtime_error.
 class NpzWriter {
  public:
-  /// How large a file may become.
-  static constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 40;
-  /// `max_rows`: how many rows an array has at most. `max_bytes`: about how large all rows may be.
-  NpzWriter(const std::string& path, std::uint64_t max_rows, std::uint64_t max_bytes = kMaxBytes);
+  /// `max_rows`: how many rows an array has at most.
+  NpzWriter(const std::string& path, std::uint64_t max_rows);
   ~NpzWriter();
   NpzWriter(const NpzWriter&) = delete;
   NpzWriter& operator=(const NpzWriter&) = delete;

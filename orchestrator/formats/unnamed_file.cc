@@ -62,18 +62,26 @@ void UnnamedFile::WriteAt(std::uint64_t offset, std::span<const std::uint8_t> by
   if (!Fully(::pwrite, fd_, bytes, offset)) Fail("write");
 }
 
-void UnnamedFile::MoveDown(std::uint64_t from, std::uint64_t to, std::uint64_t size) {
+void UnnamedFile::Resize(std::uint64_t size) {
+  if (!TryResize(size)) Fail("write");
+}
+
+bool UnnamedFile::TryResize(std::uint64_t size) { return ::ftruncate(fd_, static_cast<off_t>(size)) == 0; }
+
+void UnnamedFile::Move(std::uint64_t from, std::uint64_t to, std::uint64_t size) {
   if (from == to) return;
   std::vector<std::uint8_t> bytes;
   for (std::uint64_t done = 0; done < size; done += bytes.size()) {
     bytes.resize(std::min(kMovedAtOnce, size - done));
-    if (!Fully(::pread, fd_, std::span(bytes), from + done)) Fail("read");
-    WriteAt(to + done, bytes);
+    const std::uint64_t at =
+        to < from ? done : size - done - bytes.size();  // no byte is written that is still to be read
+    if (!Fully(::pread, fd_, std::span(bytes), from + at)) Fail("read");
+    WriteAt(to + at, bytes);
   }
 }
 
 void UnnamedFile::Commit(std::uint64_t size) {
-  if (::ftruncate(fd_, static_cast<off_t>(size)) != 0) Fail("write");
+  Resize(size);
   if (::fsync(fd_) != 0) Fail("flush");
   if (!has_name_) {
     RemoveFile(part_.name());

@@ -21,8 +21,12 @@ class UnnamedFile {
   UnnamedFile& operator=(const UnnamedFile&) = delete;
 
   void WriteAt(std::uint64_t offset, std::span<const std::uint8_t> bytes);
-  /// Moves `size` bytes from `from` to `to`, which is not larger.
-  void MoveDown(std::uint64_t from, std::uint64_t to, std::uint64_t size);
+  /// Makes the file longer or shorter. What is added are zeros, without room on disk where the file system can do so.
+  void Resize(std::uint64_t size);
+  /// False, with errno, if the system refuses it.
+  bool TryResize(std::uint64_t size);
+  /// Moves `size` bytes from `from` to `to`. The two may overlap.
+  void Move(std::uint64_t from, std::uint64_t to, std::uint64_t size);
   /// Ends the file after `size` bytes, flushes it to disk and gives it its name, in place of any earlier file.
   void Commit(std::uint64_t size);
 

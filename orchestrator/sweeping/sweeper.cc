@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
-#include <thread>
 #include <utility>
 
 #include "base/utf8.h"
@@ -21,6 +20,7 @@
 #include "orchestrator/sweeping/table/table.h"
 #include "system/build.h"
 #include "system/console.h"
+#include "system/control_groups.h"
 #include "system/worker_pool.h"
 
 namespace mascot {
@@ -116,8 +116,7 @@ Sweeper::Outcome Sweeper::Do(const Options& options, bool fly, StopSignal& stop)
   const LawAxis laws(Section::FromText(text_, name_), plan_);
   Sweep sweep{name_, text_, plan_, laws, options.metric_file};
   if (!options.metric_file.path.empty()) sweep.own = std::make_shared<std::optional<PythonMetrics>>();
-  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  WorkerPool pool(options.jobs > 0 ? options.jobs : cores, WorkOf(sweep));
+  WorkerPool pool(options.jobs > 0 ? options.jobs : UsableProcessors(), WorkOf(sweep));
   SweepChecks checks(sweep, pool, stop);
   Outcome outcome;
   try {

@@ -4,13 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <thread>
 
 #include "agent/laws/laws.h"
 #include "agent/user_code/last_words.h"
 #include "bus/leave.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/inprocess.h"
+#include "system/control_groups.h"
 #include "system/interruptions.h"
 
 namespace mascot {
@@ -40,7 +40,7 @@ void EngineArgs::Refuse(const Experiment& experiment) const {
 
 Crew EngineArgs::MakeCrew(const Experiment& experiment, int others) const {
   if (name != kInProcess) return Crew();
-  const int members = threads.value_or(static_cast<int>(std::thread::hardware_concurrency()) - others);
+  const int members = threads.value_or(UsableProcessors() - others);
   return Crew(std::clamp(members, 1, std::max(1, experiment.size() / kMinAgentsPerThread)),
               threads ? Crew::Size::kExactly : Crew::Size::kAtMost);
 }

@@ -2,6 +2,7 @@
 #include "system/control_groups.h"
 
 #include <gmock/gmock.h>
+#include <sched.h>
 
 #include "bus/resources.h"
 #include "tests/support/scratch.h"
@@ -38,6 +39,37 @@ TEST(ControlGroups, OfVersionOneCountWhatIsInside) {
   WriteFile(folder.File("memory.limit_in_bytes"), "1048576\n");
   WriteFile(folder.File("memory.stat"), "cache 7\nrss 1\nshmem 2\ntotal_cache 70\ntotal_rss 10\ntotal_shmem 20\n");
   EXPECT_EQ(MemoryOfGroup(folder.path())->used, 30U);
+}
+
+TEST(ControlGroups, GiveTimeOfProcessors) {
+  const ScratchFolder v2, v1;
+  EXPECT_FALSE(ProcessorsOfGroup(v2.path())) << "no such file";
+  for (const char* text : {"max 100000\n", "", "0 100000\n", "50000\n", "x y\n"}) {
+    WriteFile(v2.File("cpu.max"), text);
+    EXPECT_FALSE(ProcessorsOfGroup(v2.path())) << text;
+  }
+  WriteFile(v2.File("cpu.max"), "250000 100000\n");
+  EXPECT_EQ(ProcessorsOfGroup(v2.path()), 2.5);
+  WriteFile(v1.File("cpu.cfs_period_us"), "50000\n");
+  WriteFile(v1.File("cpu.cfs_quota_us"), "-1\n");
+  EXPECT_FALSE(ProcessorsOfGroup(v1.path()));
+  WriteFile(v1.File("cpu.cfs_quota_us"), "25000\n");
+  EXPECT_EQ(ProcessorsOfGroup(v1.path()), 0.5);
+}
+
+TEST(ControlGroups, UsableProcessorsAreThoseOfTheAffinity) {
+  const int all = UsableProcessors();
+  EXPECT_GE(all, 1);
+  cpu_set_t before, one;
+  ASSERT_EQ(::sched_getaffinity(0, sizeof before, &before), 0);
+  EXPECT_LE(all, CPU_COUNT(&before));
+  CPU_ZERO(&one);
+  for (std::size_t cpu = 0; CPU_COUNT(&one) == 0; ++cpu)
+    if (CPU_ISSET(cpu, &before)) CPU_SET(cpu, &one);
+  ASSERT_EQ(::sched_setaffinity(0, sizeof one, &one), 0);
+  EXPECT_EQ(UsableProcessors(), 1);
+  ASSERT_EQ(::sched_setaffinity(0, sizeof before, &before), 0);
+  EXPECT_EQ(UsableProcessors(), all);
 }
 
 TEST(ControlGroups, WithoutATableOrWithNonsenseHaveNoNumber) {

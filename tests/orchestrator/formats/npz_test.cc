@@ -27,8 +27,8 @@ std::string Python(const std::string& path, const std::string& code) {
 }
 
 /// `max_rows`: how many rows the writer expects at most; 0: as many as come.
-void WriteExample(const std::string& path, int rows, int max_rows = 0) {
-  NpzWriter writer(path, static_cast<std::uint64_t>(std::max(rows, max_rows)));
+void WriteExample(const std::string& path, int rows, std::int64_t max_rows = 0) {
+  NpzWriter writer(path, static_cast<std::uint64_t>(std::max<std::int64_t>(rows, max_rows)));
   const int t = writer.AddArray("t", {});
   writer.AddConstant("id", std::vector<std::int64_t>{1, 2});
   const int position = writer.AddArray("position", {2, 3});
@@ -145,20 +145,26 @@ TEST(Npz, ARowBeyondThoseExpectedIsAFault) {
               ThrowsMessage<std::logic_error>("NpzWriter: array t has its 1 rows"));
 }
 
-TEST(Npz, ARunWithoutEndHasRoomForWhatALargeFileHolds) {
+TEST(Npz, ARunThatMayBecomeLongerThanAnyFileGrowsAsFarAsFilesCan) {
   const ScratchFolder scratch;
-  WriteExample(scratch.File("planned.npz"), 5000);
-  WriteExample(scratch.File("endless.npz"), 5000, std::numeric_limits<int>::max());
-  EXPECT_TRUE(ReadFile(scratch.File("planned.npz")) == ReadFile(scratch.File("endless.npz")));
+  const std::string planned = scratch.File("planned.npz"), endless = scratch.File("endless.npz");
+  WriteExample(planned, 17'000);  // 952 kB
+  constexpr std::int64_t kEndless = std::numeric_limits<std::int64_t>::max();
+  WriteExample(endless, 17'000, kEndless);
+  EXPECT_TRUE(ReadFile(planned) == ReadFile(endless));
 
-  NpzWriter writer(scratch.File("small.npz"), std::uint64_t{1} << 60, /*max_bytes=*/80);
-  const int pairs = writer.AddArray("pairs", {2});
-  for (int k = 0; k < 5; ++k) writer.Append(pairs, std::vector<double>{0, 0});
-  EXPECT_THAT(([&] {
-                writer.Append(pairs, std::vector<double>{0, 0});
-              }),
-              ThrowsMessage<std::runtime_error>("cannot write " + scratch.File("small.npz") +
-                                                ": it has 5 rows, and no room for more"));
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{1'000'000, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  for (const std::int64_t rows : {17'001L, 30'000L, kEndless}) {
+    WriteExample(endless, 17'000, rows);
+    EXPECT_TRUE(ReadFile(planned) == ReadFile(endless)) << rows;
+  }
+  EXPECT_THAT([&] { WriteExample(endless, 18'000, kEndless); },
+              ThrowsMessage<std::runtime_error>("cannot write " + endless + ".part: File too large"));
+  ::setrlimit(RLIMIT_FSIZE, &before);
 }
 
 TEST(UnnamedFile, HasItsNameOnceItIsComplete) {
@@ -174,13 +180,16 @@ TEST(UnnamedFile, HasItsNameOnceItIsComplete) {
       EXPECT_EQ(ReadFile(scratch.File("x")), "earlier");
       EXPECT_EQ(std::filesystem::exists(scratch.File("x.part")), is_named) << "the file system has such files";
       file.WriteAt(0, AsBytes(std::string_view("abc")));
-      file.MoveDown(6, 5, 2);
-      file.Commit(7);
+      file.Move(6, 5, 2);  // abcdeghh
+      file.Move(0, 1, 4);  // aabcdghh
+      file.Resize(7);
+      file.Resize(8);
+      file.Commit(8);
     }
-    EXPECT_EQ(ReadFile(scratch.File("x")), "abcdegh");
+    EXPECT_EQ(ReadFile(scratch.File("x")), std::string("aabcdgh\0", 8));
     EXPECT_THAT(Names(scratch), ElementsAre("x"));
     { const UnnamedFile dropped(scratch.File("x"), without); }
-    EXPECT_EQ(ReadFile(scratch.File("x")), "abcdegh");
+    EXPECT_EQ(ReadFile(scratch.File("x")), std::string("aabcdgh\0", 8));
     EXPECT_THAT(Names(scratch), ElementsAre("x"));
   }
 }
