@@ -96,7 +96,7 @@ void NpzWriter::Impl::MakeRoom() {
   while (more > 1 && !file.TryResize(with_more().end)) more /= 2;
   const Layout layout = with_more();
   file.Resize(layout.end);
-  for (std::size_t i = arrays.size(); i-- > 0;) Move(arrays[i], layout.entries[i]);
+  for (std::size_t i = arrays.size(); i > 0; --i) Move(arrays[i - 1], layout.entries[i - 1]);
   room += more;
   has_places = true;
 }
