@@ -160,12 +160,14 @@ FromStart FlyFromStart(const Experiment& experiment, const LinearTeam& team, con
   const double longest = longest_s * experiment.control.rate_hz;
   if (longest * flight.size() > kMaxSteps) return {};
   AgreementMeter meter(experiment);
+  ResponseRecorder response;
   meter.Add(flight.q());
   const double first_m = meter.disagreement_m();
   if (first_m <= kRoundedShare * LargestStart_m(experiment)) {
     while (static_cast<double>(flight.tick()) < longest) flight.Step();  // together
     return {.is_flown = true, .agrees = true, .is_cut = flight.is_cut()};
   }
+  response.Add(first_m);
   constexpr double kAgreed = 1e-7;   // of the first disagreement
   std::int64_t tick = 0, apart = 0;  // apart: the newest tick with more disagreement
   FromStart by_the_end;              // of the run, whose rows are those that are measured
@@ -173,6 +175,7 @@ FromStart FlyFromStart(const Experiment& experiment, const LinearTeam& team, con
     flight.Step();
     ++tick;
     meter.Add(flight.q());
+    if (tick <= experiment.ticks()) response.Add(meter.disagreement_m());
     if (meter.disagreement_m() > kAgreed * first_m) apart = tick;
     if (tick == experiment.ticks())
       by_the_end = {.settling_time_s = meter.settling_time_s(), .rate_per_s = meter.rate_per_s()};
@@ -184,7 +187,8 @@ FromStart FlyFromStart(const Experiment& experiment, const LinearTeam& team, con
           .settling_time_s = by_the_end.settling_time_s ? by_the_end.settling_time_s : meter.settling_time_s(),
           .rate_per_s = by_the_end.rate_per_s ? by_the_end.rate_per_s : meter.rate_per_s(),
           .is_cut = flight.is_cut(),
-          .value_m = met ? std::optional(meter.mean_W()) : std::nullopt};
+          .value_m = met ? std::optional(meter.mean_W()) : std::nullopt,
+          .response = response.Take()};
 }
 
 }  // namespace mascot

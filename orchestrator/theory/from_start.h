@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "orchestrator/theory/linear_team.h"
+#include "orchestrator/theory/response.h"
 #include "orchestrator/theory/timeline.h"
 
 namespace mascot {
@@ -18,6 +19,7 @@ struct FromStart {
   bool agrees = false;                         ///< the agents agree when they start: there is nothing to settle
   bool is_cut = false;                         ///< a limit of acceleration or speed has cut what the laws want
   std::optional<Eigen::Vector3d> value_m = {};  ///< mean of q = p - d at the end, in W (m); nothing: they have not met
+  Response response = {};  ///< up to the end of the run, or until they agree; of those who agree at the start, empty
 };
 
 /// Steps the sampled team (sampled_team.h) tick by tick, with the limits of acceleration and speed, until it agrees for

@@ -307,6 +307,7 @@ void LinearCase::PredictFromStart() {
     Silent("agents agree when they start: there is nothing to settle");
   }
   if (from_start.is_cut && !TakeLimited(from_start)) return;
+  if (from_start.is_flown && !from_start.agrees) prediction_.response = from_start.response;
   if (!from_start.settling_time_s) {
     if (!prediction_.settling_time_s && prediction_.silent.empty())
       Silent(from_start.is_flown ? "the team, which is flown ahead from its start, does not settle soon"

@@ -22,6 +22,7 @@ void Silence(std::string why, Prediction& prediction) {
   prediction.settling_time_s.reset();
   prediction.rate_per_s.reset();
   prediction.from_start = false;
+  prediction.response.reset();
   if (prediction.silent.empty()) prediction.silent = std::move(why);
 }
 
@@ -87,7 +88,10 @@ void JudgeAgreementOnLoops(const Experiment& experiment, Prediction& prediction)
     else if ((is_late || is_elsewhere || flight.is_tilt_cut) && !IsSure(experiment, flight.agreement))
       silent = "where and when quadrotors meet hangs on more than is known of them";
   }
-  if (silent.empty()) return;
+  if (silent.empty()) {
+    prediction.response = flight.agreement.response;
+    return;
+  }
   if (experiment.law.leader == 0) prediction.value_m.reset();
   Silence(std::move(silent), prediction);
 }

@@ -106,6 +106,7 @@ LoopFlight FlyLoops(const Experiment& experiment, const LoopError& error) {
   const std::vector<int> ids = AgentsWith(law, experiment);
   const std::unique_ptr<LawMeter> meter = law.meter == nullptr ? nullptr : law.meter(experiment, ids);
   AgreementMeter agreement(experiment);
+  ResponseRecorder response;
   LoopFlight flight;
   LoopTeam team(experiment, error);
   try {
@@ -117,6 +118,7 @@ LoopFlight FlyLoops(const Experiment& experiment, const LoopError& error) {
       const TeamRow row = team.Decide();
       if (meter) meter->Add(row);
       agreement.Add(team.WithoutPlaces());
+      response.Add(agreement.disagreement_m());
       if (team.tick() == 0) flight.agreement.first_m = agreement.disagreement_m();
       if (team.tick() == experiment.ticks()) break;
       team.Move();
@@ -131,6 +133,7 @@ LoopFlight FlyLoops(const Experiment& experiment, const LoopError& error) {
   flight.agreement.rate_per_s = agreement.rate_per_s();
   flight.agreement.mean_W = agreement.mean_W();
   flight.agreement.last_m = agreement.disagreement_m();
+  flight.agreement.response = response.Take();
   return flight;
 }
 

@@ -8,6 +8,7 @@
 #include "agent/laws/law_figures.h"
 #include "experiment/experiment.h"
 #include "orchestrator/theory/low_level_loops.h"
+#include "orchestrator/theory/response.h"
 
 namespace mascot {
 
@@ -16,6 +17,7 @@ struct LoopAgreement {
   std::optional<double> settling_time_s = {}, rate_per_s = {};
   Eigen::Vector3d mean_W = Eigen::Vector3d::Zero();  ///< at the end
   double first_m = 0, last_m = 0;                    ///< disagreement at the start and at the end
+  Response response = {};
 };
 
 /// What is measured of a flight on LowLevelLoops, or why this flight does not describe the experiment's.

@@ -11,6 +11,7 @@
 #include "experiment/experiment.h"
 #include "orchestrator/theory/delay_margin.h"
 #include "orchestrator/theory/persistence.h"
+#include "orchestrator/theory/response.h"
 #include "orchestrator/theory/safety.h"
 
 namespace mascot {
@@ -60,6 +61,8 @@ struct Prediction {
   /// Otherwise there is no rate, and the time is that until the slowest mode has decayed from rest to 2 %; along
   /// directed chains agents settle later than that, because the modes of a directed graph are not orthogonal.
   bool from_start = false;
+  /// The disagreement over time, of the same team from the same start, up to the end of the run.
+  std::optional<Response> response;
   /// The time from which on the law's predictions about the end hold (short_phase.h).
   std::optional<HoldsFrom> holds_from;
   std::optional<double> control_period_bound_s;    ///< the loop is unstable from this control period on, without delays
@@ -92,9 +95,10 @@ struct LaterPhase {
   std::shared_ptr<const Experiment> experiment;
   Prediction prediction;  ///< times count from the beginning of the phase
 };
-/// The prediction for phase `index`; 0 is the first.
+/// The prediction for phase `index`; 0 is the first. If theory looks at no phase, because the run is a user's code that
+/// does not run here, what it says of the whole run.
 inline const Prediction& PredictionOf(const Prediction& run, std::size_t index) {
-  return index == 0 ? run : run.later.at(index - 1).prediction;
+  return index == 0 || run.later.empty() ? run : run.later.at(index - 1).prediction;
 }
 
 /// Why theory is silent about a run that events change from `tick` on.
