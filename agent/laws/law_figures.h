@@ -33,6 +33,15 @@ struct LawFigure {
   std::string_view unpredicted = {};  ///< why theory never predicts it, in words that follow "because"; empty: it may
 };
 
+/// What tells, tick by tick, how a law fares: its own curve on the page of a run.
+struct LawCurve {
+  std::string_view name;         ///< "distance to the evader"
+  std::string_view unit;         ///< "m"; empty: a count
+  std::string_view meaning;      ///< "of the nearest pursuer"
+  bool decays = true;            ///< to 0, so that a logarithmic axis tells most
+  std::string_view figure = {};  ///< the LawFigure whose prediction is about these values; empty: none is
+};
+
 /// The values of a LawFigure: one, or one for each entry of its list. Absent: there is none, or none yet.
 using FigureValues = std::vector<std::optional<double>>;
 
@@ -54,6 +63,8 @@ class LawMeter {
   virtual void Add(const TeamRow& row) = 0;
   /// The values so far, in the order of LawEntry::figures.
   virtual std::vector<FigureValues> Figures() const = 0;
+  /// The value of LawEntry::curve in the newest row; nothing: it has none there, or the law has no curve.
+  virtual std::optional<double> Curve() const { return std::nullopt; }
 };
 
 /// A figure as theory predicts it.

@@ -64,6 +64,7 @@ struct LawEntry {
   std::string_view source;                  ///< paper
   std::span<const Key> parameters;          ///< its own keys in [law], besides LawKeys()
   std::span<const LawFigure> figures = {};  ///< what it measures beyond the figures that all laws share
+  std::optional<LawCurve> curve = {};       ///< absent: disagreement tells most
   Axes axes = Axes::kXy;                    ///< default of law.axes
   bool agrees = false;                      ///< agents agree by what they hear, which needs a spanning tree
   bool gathers = false;                     ///< agents meet in one place, where only their heights keep them apart

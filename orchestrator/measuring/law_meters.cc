@@ -50,6 +50,11 @@ void LawMeters::Add(std::int64_t tick, const DecodedRow& row) {
         {.tick = tick - meter.from, .motions = row.motions, .commands = row.commands, .messages = row.messages});
 }
 
+std::optional<double> LawMeters::CurveOf(const LawEntry& law) const {
+  const auto meter = std::ranges::find(meters_, &law, &Meter::law);
+  return meter == meters_.end() ? std::nullopt : meter->meter->Curve();
+}
+
 std::vector<LawMeasured> LawMeters::Result() const {
   std::vector<LawMeasured> measured;
   for (const Meter& meter : meters_) {

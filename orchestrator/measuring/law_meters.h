@@ -30,6 +30,8 @@ class LawMeters {
   void Adopt(const Experiment& now);
   /// Adds the next tick.
   void Add(std::int64_t tick, const DecodedRow& row);
+  /// The value of the curve of `law` in the newest row; nothing: it has none, or no agent flies the law.
+  std::optional<double> CurveOf(const LawEntry& law) const;
   /// One entry for each law that has figures, in the order of LawsIn().
   std::vector<LawMeasured> Result() const;
 

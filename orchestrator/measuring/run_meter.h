@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "agent/laws/laws.h"
 #include "experiment/experiment.h"
 #include "orchestrator/measuring/incident_meter.h"
 #include "orchestrator/measuring/law_meters.h"
@@ -38,6 +39,8 @@ class RunMeter final : public RowSink {
   Incidents IncidentsWith(const Contacts& contacts, const std::vector<LateCommands>& late) const {
     return incidents_.Result(contacts, late);
   }
+  /// The curve of the team's law in the newest row (LawMeters::CurveOf).
+  std::optional<double> curve() const { return laws_.CurveOf(EntryOf(now_ ? now_->law : experiment_.law)); }
   /// Disagreement in the newest row (m), for the progress line and for viewers.
   double disagreement_m() const { return phases_.back().disagreement_m(); }
 

@@ -78,6 +78,7 @@ class AffineFormationMeter final : public LawMeter {
     largest_m_ = std::max(largest_m_, error_m_);
   }
   std::vector<FigureValues> Figures() const override { return {{error_m_}, {largest_m_}}; }
+  std::optional<double> Curve() const override { return error_m_; }
 
  private:
   const AffineFormationParams& params() const { return ParamsOf<AffineFormationParams>(*law_); }
@@ -105,6 +106,7 @@ LawEntry AffineFormationLaw() {
       .source = "Zhao, Affine formation maneuver control of multiagent systems, IEEE Trans. Autom. Control 63 (2018)",
       .parameters = kAffineFormationParameters,
       .figures = kAffineFormationFigures,
+      .curve = LawCurve{.name = "place error", .unit = "m", .meaning = "of the farthest follower"},
       .drawing = {.pictures = {}, .hull = kLeadersKey.name},
       .read = ReadAffineFormation,
       .make = MakeWithPeriod<AffineFormation>,

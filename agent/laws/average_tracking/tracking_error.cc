@@ -86,6 +86,7 @@ std::vector<PredictedFigure> PredictTrackingError(const Experiment& experiment, 
 }
 
 void TrackingErrorMeter::Add(const TeamRow& row) {
+  now_m_.reset();
   Eigen::Vector3d sum_W = Eigen::Vector3d::Zero(), sum_r_W = sum_W;
   std::vector<Eigen::Vector3d> estimates_W;
   for (const int id : ids_) {
@@ -96,9 +97,10 @@ void TrackingErrorMeter::Add(const TeamRow& row) {
     sum_r_W += inputs_[static_cast<std::size_t>(id - 1)].At(experiment_.time_s(row.tick));
   }
   sum_off_m_ = std::max(sum_off_m_, (sum_W - sum_r_W).norm());
-  if (row.tick < SecondHalf(experiment_)) return;
+  now_m_ = 0;
   for (const Eigen::Vector3d& x_W : estimates_W)
-    error_m_ = std::max(error_m_, Along(axes_, x_W - sum_r_W / static_cast<double>(ids_.size())).norm());
+    now_m_ = std::max(*now_m_, Along(axes_, x_W - sum_r_W / static_cast<double>(ids_.size())).norm());
+  if (row.tick >= SecondHalf(experiment_)) error_m_ = std::max(error_m_, *now_m_);
 }
 
 }  // namespace mascot

@@ -34,12 +34,14 @@ class TrackingErrorMeter final : public LawMeter {
 
   void Add(const TeamRow& row) override;
   std::vector<FigureValues> Figures() const override { return {{error_m_}, {sum_off_m_}}; }
+  std::optional<double> Curve() const override { return now_m_; }
 
  private:
   const Experiment& experiment_;
   std::vector<Input> inputs_;
   Axes axes_;
   std::vector<int> ids_;
+  std::optional<double> now_m_;  // error in the newest row
   double error_m_ = 0, sum_off_m_ = 0;
 };
 

@@ -142,6 +142,7 @@ LawEntry AvoidanceLaw() {
               "(1986)",
           .parameters = kAvoidanceParameters,
           .figures = kGoalFigures,
+          .curve = kGoalCurve,
           .axes = Axes::kXyz,
           .sees_obstacles = true,
           .drawing = {},

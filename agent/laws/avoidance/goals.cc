@@ -37,14 +37,16 @@ void GoalMeter::Adopt(const Experiment& now) {
 }
 
 void GoalMeter::Add(const TeamRow& row) {
+  now_m_.reset();
   for (std::size_t i = 0; i < ids_.size(); ++i) {
     const AgentConfig& agent = experiment_->agent(ids_[i]);
     const Eigen::Vector3d& p_W = row.motions[static_cast<std::size_t>(agent.id - 1)].p_WB;
-    if (const auto now_m = Clearance_m(agent, p_W, experiment_->physics.obstacles))
-      clearance_m_ = std::min(clearance_m_.value_or(*now_m), *now_m);
+    if (const auto own_m = Clearance_m(agent, p_W, experiment_->physics.obstacles))
+      now_m_ = std::min(now_m_.value_or(*own_m), *own_m);
     const double distance_m = Along(agent.law.axes, goal_of_(agent) - p_W).norm();
     if (!arrived_s_[i] && distance_m <= kAtGoal_m) arrived_s_[i] = experiment_->time_s(row.tick);
   }
+  if (now_m_) clearance_m_ = std::min(*now_m_, clearance_m_.value_or(*now_m_));
 }
 
 std::vector<FigureValues> GoalMeter::Figures() const {

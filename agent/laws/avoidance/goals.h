@@ -30,6 +30,13 @@ inline constexpr LawFigure kGoalFigures[] = {
      .unpredicted = "nothing is promised about arrival"},
 };
 
+/// The curve of a GoalMeter.
+inline constexpr LawCurve kGoalCurve = {.name = "clearance",
+                                        .unit = "m",
+                                        .meaning = "of the ball around a body to the nearest obstacle, the smallest",
+                                        .decays = false,
+                                        .figure = "clearance_m"};
+
 /// Measures how near agents come to obstacles on the way to their goals, and when they arrive. If an event moves a
 /// goal, its agent must reach it anew.
 class GoalMeter final : public LawMeter {
@@ -39,13 +46,14 @@ class GoalMeter final : public LawMeter {
   void Adopt(const Experiment& now) override;
   void Add(const TeamRow& row) override;
   std::vector<FigureValues> Figures() const override;
+  std::optional<double> Curve() const override { return now_m_; }
 
  private:
   const Experiment* experiment_;
   std::vector<int> ids_;
   GoalOf* goal_of_;                               // in W (m)
   std::vector<std::optional<double>> arrived_s_;  // by index in ids_
-  std::optional<double> clearance_m_;
+  std::optional<double> now_m_, clearance_m_;     // in the newest row, and the smallest of all
 };
 
 }  // namespace mascot

@@ -88,6 +88,7 @@ class BearingFormationMeter final : public LawMeter {
             {Along(axes(), drift_W).norm()},
             {from ? std::optional(now_->time_s(*from)) : std::nullopt}};
   }
+  std::optional<double> Curve() const override { return error_deg_; }
 
  private:
   Axes axes() const { return now_->agent(id_).law.axes; }
@@ -116,6 +117,7 @@ LawEntry BearingFormationLaw() {
           "Control 61 (2016)",
       .parameters = kBearingFormationParameters,
       .figures = kBearingFormationFigures,
+      .curve = LawCurve{.name = "bearing error", .unit = "deg", .meaning = "the largest"},
       .drawing = {},
       .read = ReadBearingFormation,
       .make = MakeOf<BearingFormation>,

@@ -114,6 +114,7 @@ class ContainmentMeter final : public LawMeter {
     if (shares_.size() > 0) lag_m_ = LargestLag(team(), shares_, law_.axes, row.motions);
   }
   std::vector<FigureValues> Figures() const override { return {{lag_m_}}; }
+  std::optional<double> Curve() const override { return lag_m_; }
 
  private:
   const LedTeam& team() const { return ParamsOf<ContainmentParams>(law_).team; }
@@ -139,6 +140,7 @@ LawEntry ContainmentLaw() {
           "53 (2008)",
       .parameters = kContainmentParameters,
       .figures = kContainmentFigures,
+      .curve = LawCurve{.name = "lag", .unit = "m", .meaning = "of the farthest follower behind its place"},
       .drawing = {.pictures = {}, .hull = kLeadersKey.name},
       .read = ReadContainment,
       .make = MakeOf<Containment>,

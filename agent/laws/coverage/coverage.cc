@@ -84,6 +84,7 @@ class CoverageMeter final : public LawMeter {
     if (before_m2) increase_m2_ = std::max(increase_m2_.value_or(*now_m2_ - *before_m2), *now_m2_ - *before_m2);
   }
   std::vector<FigureValues> Figures() const override { return {{start_m2_}, {now_m2_}, {increase_m2_}}; }
+  std::optional<double> Curve() const override { return now_m2_; }
 
  private:
   CoverageParams params_;
@@ -110,6 +111,11 @@ LawEntry CoverageLaw() {
           "Automation 20 (2004)",
       .parameters = kCoverageParameters,
       .figures = kCoverageFigures,
+      .curve = LawCurve{.name = "coverage cost",
+                        .unit = "m^2",
+                        .meaning = "mean square distance of the region to the nearest agent",
+                        .decays = false,
+                        .figure = "cost_end_m2"},
       .drawing = {.pictures = {}, .cells = "region_m"},
       .read = ReadCoverage,
       .make = MakeOf<Coverage>,

@@ -139,6 +139,9 @@ LawEntry CyclicPursuitLaw() {
           "Dyn. Syst. Meas. Control 129 (2007)",
       .parameters = kCyclicPursuitParameters,
       .figures = kRingFigures,
+      .curve =
+          LawCurve{
+              .name = "radius", .unit = "m", .meaning = "rms distance from the centre in x and y", .decays = false},
       .drawing = {.pictures = kDisagreementPicture},
       .read = ReadCyclicPursuit,
       .make = MakeCyclicPursuit,

@@ -32,6 +32,7 @@ class RingMeter final : public LawMeter {
     if (start_m_ < kRoundedRadius_m) return {{motion_.radius_m}, {{}}, {{}}};
     return {{motion_.radius_m}, {motion_.radius_m / start_m_}, {motion_.turn_rate_rad_per_s}};
   }
+  std::optional<double> Curve() const override { return motion_.radius_m; }
 
  private:
   double period_s_;

@@ -81,6 +81,7 @@ class DistanceFormationMeter final : public LawMeter {
     const auto from = settling_.from();
     return {{error_m_}, {drift_m_}, {from ? std::optional(now_->time_s(*from)) : std::nullopt}};
   }
+  std::optional<double> Curve() const override { return error_m_; }
 
  private:
   const Experiment* now_;
@@ -105,6 +106,7 @@ LawEntry DistanceFormationLaw() {
               "Int. J. Control 82 (2009)",
           .parameters = kDistanceFormationParameters,
           .figures = kDistanceFormationFigures,
+          .curve = LawCurve{.name = "distance error", .unit = "m", .meaning = "the largest between neighbours"},
           .drawing = {},
           .read = ReadDistanceFormation,
           .make = MakeOf<DistanceFormation>,

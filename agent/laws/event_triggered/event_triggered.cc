@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -120,6 +121,7 @@ class EventTriggeredMeter final : public LawMeter {
       sent_[k] += !row.messages[static_cast<std::size_t>(ids_[k] - 1)].empty();
   }
   std::vector<FigureValues> Figures() const override { return {{d_m_}, FigureValues(sent_.begin(), sent_.end())}; }
+  std::optional<double> Curve() const override { return std::accumulate(sent_.begin(), sent_.end(), 0.0); }
 
  private:
   Axes axes_;
@@ -154,6 +156,7 @@ LawEntry EventTriggeredLaw() {
           "self-triggered control for multi-agent systems, ibid. 64 (2019)",
       .parameters = kEventTriggeredParameters,
       .figures = kEventTriggeredFigures,
+      .curve = LawCurve{.name = "messages", .unit = "", .meaning = "sent so far, by all agents", .decays = false},
       .agrees = true,
       .gathers = true,
       .drawing = {.pictures = kDisagreementPicture, .telling = "disagreement"},

@@ -89,19 +89,27 @@ double FlockMeter::Groups() const {
   return static_cast<double>(Graph(std::move(near)).Components().size() - (newest_.size() - ids_.size()));
 }
 
+double FlockMeter::VelocityOff(const FlockCentre& centre) const {
+  double off = 0;
+  for (const int id : ids_)
+    off = std::max(off, (Along(axes(), newest_[static_cast<std::size_t>(id - 1)].v_WB) - centre.v_W).norm());
+  return off;
+}
+
+std::optional<double> FlockMeter::Curve() const {
+  return newest_.empty() ? std::nullopt : std::optional(VelocityOff(CentreOf(newest_, ids_, axes())));
+}
+
 std::vector<FigureValues> FlockMeter::Figures() const {
   if (newest_.empty()) return std::vector<FigureValues>(std::size(kFlockFigures), FigureValues{std::nullopt});
   const FlockCentre centre = CentreOf(newest_, ids_, axes());
   Eigen::Vector3d directions = Eigen::Vector3d::Zero();
-  double velocity_off = 0;
-  for (const int id : ids_) {
-    const Eigen::Vector3d v_W = Along(axes(), newest_[static_cast<std::size_t>(id - 1)].v_WB);
-    directions += v_W.normalized() / static_cast<double>(ids_.size());
-    velocity_off = std::max(velocity_off, (v_W - centre.v_W).norm());
-  }
+  for (const int id : ids_)
+    directions +=
+        Along(axes(), newest_[static_cast<std::size_t>(id - 1)].v_WB).normalized() / static_cast<double>(ids_.size());
   const auto share = growth_ && *first_energy_ > 0 ? std::optional(*growth_ / *first_energy_) : std::nullopt;
   return {{directions.norm()},
-          {velocity_off},
+          {VelocityOff(centre)},
           {least_distance_m_},
           {Groups()},
           {std::sqrt(squares_ / ticks_)},

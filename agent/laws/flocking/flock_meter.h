@@ -46,11 +46,14 @@ class FlockMeter final : public LawMeter {
   void Adopt(const Experiment& now) override;
   void Add(const TeamRow& row) override;
   std::vector<FigureValues> Figures() const override;
+  std::optional<double> Curve() const override;
 
  private:
   const FlockParams& params() const;
   Axes axes() const { return experiment_->agent(ids_.front()).law.axes; }
   double Groups() const;
+  /// The most that a velocity is off that of the centre (m/s).
+  double VelocityOff(const FlockCentre& centre) const;
 
   const Experiment* experiment_;
   std::vector<int> ids_;

@@ -146,6 +146,7 @@ LawEntry FlockingLaw() {
           "Control 51 (2006)",
       .parameters = kFlockingParameters,
       .figures = kFlockFigures,
+      .curve = LawCurve{.name = "velocity mismatch", .unit = "m/s", .meaning = "the largest, from the mean velocity"},
       .sees_obstacles = true,
       .drawing = {},
       .read = ReadFlocking,

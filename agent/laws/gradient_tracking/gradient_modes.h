@@ -55,6 +55,7 @@ class GradientMeter final : public LawMeter {
       : experiment_(experiment), ids_(ids.begin(), ids.end()), minimum_W_(minimum_W) {}
   void Add(const TeamRow& row) override;
   std::vector<FigureValues> Figures() const override;
+  std::optional<double> Curve() const override { return ticks_.newest_m(); }
 
  private:
   const Experiment& experiment_;

@@ -144,6 +144,7 @@ LawEntry GradientTrackingLaw() {
               "graphs, SIAM J. Optimization 27 (2017)",
           .parameters = kGradientTrackingParameters,
           .figures = kGradientTrackingFigures,
+          .curve = LawCurve{.name = "distance to the minimum", .unit = "m", .meaning = "of the farthest estimate"},
           .agrees = true,
           .gathers = true,
           .drawing = {.pictures = kDisagreementPicture},

@@ -37,10 +37,12 @@ SwingMeter::SwingMeter(const Experiment& experiment, std::span<const int> ids, d
 
 void SwingMeter::Add(const TeamRow& row) {
   const auto x = [&](int id) { return row.motions[static_cast<std::size_t>(id - 1)].p_WB.x(); };
+  gap_m_.reset();
   for (const int id : followers_) {
     const double gap_m = forward_ * (x(id - 1) - x(id));
-    least_gap_m_ = std::min(gap_m, least_gap_m_.value_or(gap_m));
+    gap_m_ = std::min(gap_m, gap_m_.value_or(gap_m));
   }
+  if (gap_m_) least_gap_m_ = std::min(*gap_m_, least_gap_m_.value_or(*gap_m_));
   const int half = w_ > 0 ? HalfOf(row.tick, *experiment_, w_) : -1;
   if (half < 0) return;
   const double angle_rad = w_ * experiment_->time_s(row.tick);

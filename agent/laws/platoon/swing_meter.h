@@ -42,6 +42,7 @@ class SwingMeter final : public LawMeter {
   void Adopt(const Experiment& now) override { experiment_ = &now; }
   void Add(const TeamRow& row) override;
   std::vector<FigureValues> Figures() const override;
+  std::optional<double> Curve() const override { return gap_m_; }
 
  private:
   /// The swing of an agent at the end; nullopt: there is none, or it still changes.
@@ -51,7 +52,7 @@ class SwingMeter final : public LawMeter {
   double w_, forward_;
   std::vector<int> followers_;
   std::vector<std::array<SwingFit, 2>> fits_;  // of all agents, by id - 1, in the periods before and in the last ones
-  std::optional<double> least_gap_m_;
+  std::optional<double> gap_m_, least_gap_m_;  // the smallest of the newest row, and of all
 };
 
 }  // namespace mascot

@@ -110,19 +110,22 @@ class CaptureMeter final : public LawMeter {
   void Add(const TeamRow& row) override {
     const LawConfig& law = experiment_->agent(ids_.front()).law;
     const auto p_W = [&](int id) { return Along(law.axes, row.motions[static_cast<std::size_t>(id - 1)].p_WB); };
+    now_m_ = std::numeric_limits<double>::infinity();
     for (const int id : ids_)
-      if (id != law.leader) closest_m_ = std::min(closest_m_, (p_W(id) - p_W(law.leader)).norm());
+      if (id != law.leader) now_m_ = std::min(now_m_, (p_W(id) - p_W(law.leader)).norm());
+    closest_m_ = std::min(closest_m_, now_m_);
     if (!captured_s_ && closest_m_ <= ParamsOf<PursuitEvasionParams>(law).radius_m)
       captured_s_ = experiment_->time_s(row.tick);
   }
   std::vector<FigureValues> Figures() const override {
     return {{captured_s_}, {std::isinf(closest_m_) ? std::nullopt : std::optional(closest_m_)}};
   }
+  std::optional<double> Curve() const override { return std::isinf(now_m_) ? std::nullopt : std::optional(now_m_); }
 
  private:
   const Experiment* experiment_;
   std::vector<int> ids_;
-  double closest_m_ = std::numeric_limits<double>::infinity();
+  double now_m_ = std::numeric_limits<double>::infinity(), closest_m_ = now_m_;
   std::optional<double> captured_s_;
 };
 
@@ -147,6 +150,11 @@ LawEntry PursuitEvasionLaw() {
               "pursuit of a maneuvering target using dynamic Voronoi diagrams, Automatica 48 (2012)",
           .parameters = kPursuitEvasionParameters,
           .figures = kPursuitEvasionFigures,
+          .curve = LawCurve{.name = "distance to the evader",
+                            .unit = "m",
+                            .meaning = "of the nearest pursuer",
+                            .decays = false,
+                            .figure = "closest_m"},
           .drawing = {.leader = "evader", .pictures = {}},
           .read = ReadPursuitEvasion,
           .make = MakeOf<PursuitEvasion>,

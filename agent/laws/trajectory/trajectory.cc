@@ -78,19 +78,25 @@ class TrajectoryMeter final : public LawMeter {
   void Adopt(const Experiment& now) override { experiment_ = &now; }
   void Add(const TeamRow& row) override {
     const double t_s = experiment_->time_s(row.tick), end_s = experiment_->time_s(experiment_->ticks());
+    error_m_.reset();
     for (const int id : ids_) {
       const AgentConfig& agent = experiment_->agent(id);
       const auto& params = ParamsOf<TrajectoryParams>(agent.law);
-      if (t_s < agent.start_s || t_s >= agent.stop_s || t_s <= end_s - params.path.period_s) continue;
+      if (t_s < agent.start_s || t_s >= agent.stop_s) continue;
       const Eigen::Vector3d q_W = row.motions[static_cast<std::size_t>(id - 1)].p_WB - params.place_W(id);
+      const double own_m = Along(agent.law.axes, params.path.At(t_s).p_W - q_W).norm();
+      error_m_ = std::max(own_m, error_m_.value_or(own_m));
+      if (t_s <= end_s - params.path.period_s) continue;
       meter_.Add(params.path.At(t_s), q_W, agent.law.axes);
     }
   }
   std::vector<FigureValues> Figures() const override { return meter_.Figures().List(); }
+  std::optional<double> Curve() const override { return error_m_; }
 
  private:
   const Experiment* experiment_;
   std::vector<int> ids_;
+  std::optional<double> error_m_;  // the largest in the newest row
   TrackingMeter meter_;
 };
 
@@ -140,6 +146,9 @@ LawEntry TrajectoryLaw() {
               "& McClamroch, Geometric tracking control of a quadrotor UAV on SE(3), CDC 2010",
           .parameters = kTrajectoryParameters,
           .figures = kTrackingFigures,
+          .curve = LawCurve{.name = "tracking error",
+                            .unit = "m",
+                            .meaning = "of the agent that is farthest from its place on the path"},
           .axes = Axes::kXyz,
           .drawing = {},
           .read = ReadTrajectory,

@@ -99,6 +99,12 @@ class WaypointMeter final : public LawMeter {
     }
   }
   std::vector<FigureValues> Figures() const override { return WaypointTrack::FiguresOf(tracks_); }
+  std::optional<double> Curve() const override {
+    std::optional<double> farthest_m;
+    for (const WaypointTrack& track : tracks_)
+      if (const auto own_m = track.distance_m()) farthest_m = std::max(*own_m, farthest_m.value_or(*own_m));
+    return farthest_m;
+  }
 
  private:
   const Experiment* experiment_;
@@ -146,6 +152,9 @@ LawEntry WaypointLaw() {
               "Control Conference 2022",
           .parameters = kWaypointParameters,
           .figures = kWaypointFigures,
+          .curve = LawCurve{.name = "distance to target",
+                            .unit = "m",
+                            .meaning = "of the agent that is farthest from the waypoint to which it flies"},
           .axes = Axes::kXyz,
           .gathers = true,
           .drawing = {.pictures = kErrorPicture},

@@ -40,10 +40,12 @@ void WaypointTrack::Begin(std::size_t target, double t_s, const Eigen::Vector3d&
 
 void WaypointTrack::Add(double t_s, const Eigen::Vector3d& p_W) {
   const std::optional<std::size_t> target = flight_.Target(t_s, p_W);
+  distance_m_.reset();
   if (!target) return;
   if (target != target_) Begin(*target, t_s, p_W);
   const Eigen::Vector3d to_W = Along(axes_, params_.waypoints_W[*target] - p_W);
   const double distance_m = to_W.norm(), way_m = way_W_.norm();
+  distance_m_ = distance_m;
   squares_m2_ += distance_m * distance_m;
   ++ticks_;
   const double radius_m = params_.times_s.empty() ? params_.arrival_radius_m : kArrivedByTime_m;

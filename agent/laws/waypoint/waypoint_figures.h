@@ -16,6 +16,8 @@ class WaypointTrack {
   /// Flies by other parameters from now on. Another list of waypoints begins anew.
   void Adopt(const WaypointParams& params);
   void Add(double t_s, const Eigen::Vector3d& p_W);
+  /// From the newest place to the waypoint that is flown to (m); absent: none is.
+  std::optional<double> distance_m() const { return distance_m_; }
   /// Since when the agent stays within 2 % of the way to its last waypoint; absent: it does not yet.
   std::optional<double> there_s() const;
   /// The figures of several flights: latest arrival at each waypoint, largest overshoot, latest settling, rms distance.
@@ -32,7 +34,7 @@ class WaypointTrack {
   double begun_s_ = 0;                               // when it became the target ...
   Eigen::Vector3d way_W_ = Eigen::Vector3d::Zero();  // ... and the way to it from where the agent then was
   std::vector<std::optional<double>> arrivals_s_;    // by waypoint
-  std::optional<double> settled_s_{};
+  std::optional<double> settled_s_{}, distance_m_{};
   double overshoot_m_ = 0, squares_m2_ = 0, ticks_ = 0;
 };
 
