@@ -16,7 +16,7 @@ const TYPES = {
   ".css": "text/css; charset=utf-8",
   ".svg": "image/svg+xml"
 };
-const CHANNELS = ["/ui/experiment", "/ui/frame", "/ui/events"];
+const CHANNELS = ["/ui/experiment", "/ui/frame", "/ui/events", "/ui/curves"];
 const SERVICE = 7;
 
 async function serve({url}, response) {
@@ -88,6 +88,7 @@ export async function startFake({port = 0, session = "1", frame_ms = 100, ...opt
     for (const {id, channelId} of subscriptions) client.subscriptions.set(channelId, id);
     send(client, "/ui/experiment", run.experiment());
     send(client, "/ui/events", run.events);
+    send(client, "/ui/curves", {rows: run.curves});
     send(client, "/ui/frame", run.frame());
   }
 

@@ -15,6 +15,7 @@ export class MadeUpRun {
   pace = 1;
   events = [];
   waiting = [];
+  past = [];  // rows of the curves of a run
   gains = {p_gain: 0.35, beta: 1.1};
 
   constructor({
@@ -30,6 +31,9 @@ export class MadeUpRun {
     disagreement_m = null,  // as it is, unless given
     rate_per_s = 0.19,      // that theory predicts from the start
     why = "",               // it is silent of the rest
+    responses = [],         // disagreement that theory predicts: {from_s, until_s, every_s, value_m}
+    curve = null,           // of the law: {name, unit, meaning, decays, agrees, since_s, predicted}
+    law_value = null,       // its value at a time
     places_m = 0,           // radius of a circle that the agents are to form; 0: none
     waits = false           // what is granted while the run is paused takes effect when it goes on
   } = {}) {
@@ -45,6 +49,9 @@ export class MadeUpRun {
       disagreement_m,
       rate_per_s,
       why,
+      responses,
+      curve,
+      law_value,
       places_m,
       waits,
       leader: Math.min(leader, agents)
@@ -98,6 +105,8 @@ export class MadeUpRun {
                                   ],
       wind_m_per_s: [3, 1.5, 0],
       prediction: {
+        from_s: 0,
+        of_agreement: true,
         stable: true,
         value_m: this.home[this.leader - 1],
         rate_per_s: this.rate_per_s,
@@ -105,6 +114,8 @@ export class MadeUpRun {
         settling_time_s: 21,
         why: this.why
       },
+      responses: this.responses,
+      curve: this.curve,
       live_keys: [
         live("law.safety.distance_m", "", null, 1e6), live("law.p_gain", "1/s^2", this.gains.p_gain, 1000),
         live("law.beta", "1/s", this.gains.beta, 1000), live("law.reach_m", "m", [0.5, 1, 1.5], 1000),
@@ -169,6 +180,7 @@ export class MadeUpRun {
       this.#show(Math.min(this.rows.length - 1, Math.floor(this.tick / 10)));
     else
       this.#fly(1 / RATE_HZ);
+    if (!this.rows && this.tick % 10 === 0) this.past.push(this.#curveRow(this.t_s, this.p, this.v));
     if (this.tick >= RATE_HZ * this.end_s) this.state = this.source === "recording" ? "paused" : "done";
   }
 
@@ -226,11 +238,27 @@ export class MadeUpRun {
     this.#show(Math.min(this.rows.length - 1, Math.floor(this.tick / 10)));
   }
 
+  /** Rows of the curves: of a recording all, of a run up to now. */
+  get curves() {
+    if (!this.rows) return this.past;
+    return this.rows.slice(0, Math.floor(10 * this.end_s) + 1).map(({p, v}, k) => this.#curveRow(k / 10, p, v));
+  }
+
+  #curveRow(t_s, p, v) {
+    const speeds = v.map((each) => Math.hypot(...each)), mean = speeds.reduce((sum, x) => sum + x, 0) / speeds.length;
+    const shown = speeds.length > 8 ? [Math.max(...speeds), mean, Math.min(...speeds)] : speeds;
+    return [t_s, this.#disagreement(p), this.law_value?.(t_s) ?? null, ...shown];
+  }
+
+  #disagreement(p) {
+    const middle = this.home[this.leader - 1];
+    return this.disagreement_m ?? Math.max(...p.map(([x, y]) => Math.hypot(x - middle[0], y - middle[1])));
+  }
+
   #show(k) { Object.assign(this, structuredClone(this.rows[k])); }
 
   frame() {
     const lost = (k) => this.losing.has(k) || (this.lossy && dice(k + 7.7 * Math.floor(this.tick / 12)) < 0.15);
-    const middle = this.home[this.leader - 1], away = this.p.map((p) => Math.hypot(p[0] - middle[0], p[1] - middle[1]));
     const length = ([x, y]) => Math.hypot(this.p[x - 1][0] - this.p[y - 1][0], this.p[x - 1][1] - this.p[y - 1][1]);
     const states = this.edges.map(
         (edge, k) =>
@@ -258,7 +286,8 @@ export class MadeUpRun {
               (state === 4     ? -1 :
                    state === 1 ? 0.01 :
                                  round(0.03 + 0.1 * dice(k)))),
-      disagreement_m: this.disagreement_m ?? Math.max(...away),
+      disagreement_m: this.#disagreement(this.p),
+      curve: this.rows ? null : this.law_value?.(this.t_s) ?? null,
       speed_m_per_s: this.v.map((v) => round(Math.hypot(...v))),
       contacts: 0,
     };

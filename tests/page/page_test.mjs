@@ -185,6 +185,7 @@ test(
     () => watching({run: {disagreement_m: 1e-9}}, async ({page, fake}) => {
       await page.keyboard.press("Space");
       await isPaused(page);
+      fake.run.past.length = 0;  // as of a run that is paused before its first tick
       await page.reload();
       await isPaused(page);
       for (const id of ["disagreement", "speed"])
@@ -463,14 +464,93 @@ test("the first look shows where a formation will be, though all start near its 
 });
 
 test(
-    "a rate that theory has of the slowest mode alone is said, and no line is drawn",
+    "a rate that theory has of the slowest mode alone is said, and drawn by this name from where the curve begins",
     () => watching({run: {rate_per_s: null, why: "agents settle after their leader"}}, async ({page}) => {
       await until(page, () => mascot.drawn.disagreement?.length > 0);
       assert.equal(await page.textContent("#prediction"), "Theory: in the long run decays at 0.150 1/s or faster");
-      const [, measured, theory] = await page.evaluate(() => mascot.drawn.disagreement);
-      assert.ok(measured > 0);
-      assert.equal(theory, null);
+      const [, measured, theory, ideal, mode] = await page.evaluate(() => mascot.drawn.disagreement);
+      assert.ok(measured > 0 && mode > 0);
+      assert.deepEqual([theory, ideal], [null, null]);
     }));
+
+test("theory's response is drawn phase by phase, and where there is none, none", async () => {
+  const responses = [
+    {from_s: 0, until_s: 20, every_s: 1, of_ideal_bodies: false, value_m: [8, 4, 2, 1, 0.5, 0.25]},
+    {from_s: 20, until_s: 30, every_s: 10, of_ideal_bodies: true, value_m: [3, 0.03]}
+  ];
+  await watching({run: {source: "recording", responses}}, async ({page}) => {
+    await until(page, () => mascot.drawn.chartRows > 500);
+    const at = (t_s) => page.evaluate((t) => mascot.drawn.disagreementAt(t).slice(2), t_s);
+    const near = (values, wanted) => values.forEach(
+        (value, k) => assert.ok(wanted[k] === null ? value === null : Math.abs(value - wanted[k]) < 1e-9, `${values}`));
+    near(await at(3), [1, null, null]);
+    near(await at(0.5), [8 * Math.SQRT1_2, null, null]);
+    near(await at(6), [null, null, null]);
+    near(await at(25), [null, 0.3, null]);
+    const [mode] = (await at(40)).slice(2);
+    assert.ok(mode > 0, "after the last response the slowest mode goes on");
+  });
+});
+
+test(
+    "a law's own figure comes first, with its unit, its prediction and, where agents do not agree, nothing else",
+    async () => {
+      const curve = {
+        name: "coverage cost",
+        unit: "m^2",
+        meaning: "mean square distance",
+        decays: false,
+        agrees: false,
+        since_s: 0,
+        predicted: {value: 20, bound: "at_most"}
+      };
+      await watching({run: {curve, law_value: (t_s) => 20 / (1 + t_s)}}, async ({page}) => {
+        await until(page, () => document.querySelectorAll("#law canvas").length > 0);
+        assert.equal(await page.textContent("#law-name"), "Coverage cost");
+        assert.match(await page.textContent("#law-now"), /^\d+\.\d+ m²$/);
+        assert.equal(await page.textContent("#law-words"), "Theory: at most 20.00 m²");
+        const [t_s, value, predicted] = await page.evaluate(() => mascot.drawn.curve);
+        assert.ok(Math.abs(value - 20 / (1 + t_s)) < 1e-6);
+        assert.equal(predicted, 20);
+        assert.ok(await page.isHidden("#disagreement-chart"));
+        const [law, speed] = await page.evaluate(
+            () => ["law-chart", "speed-chart"].map((id) => document.getElementById(id).getBoundingClientRect().top));
+        assert.ok(law < speed);
+      });
+      await watching({run: {curve: {...curve, agrees: true}, law_value: () => 3}}, async ({page}) => {
+        await until(page, () => document.querySelectorAll("#law canvas, #disagreement canvas").length > 1);
+      });
+    });
+
+test("the curve of a law that took over from another begins with it", async () => {
+  const curve = {name: "lag", unit: "m", meaning: "", decays: true, agrees: false, since_s: 20, predicted: null};
+  await watching({run: {source: "recording", curve, law_value: (t_s) => 1 + t_s}}, async ({page}) => {
+    await until(page, () => mascot.drawn.chartRows > 500);
+    assert.deepEqual(await page.evaluate(() => mascot.drawn.curveFrom), [20, 21, null]);
+  });
+});
+
+test("the curves of a recording are whole at once, and a line marks the time that is shown", async () => {
+  await watching({run: {source: "recording"}}, async ({page}) => {
+    await until(page, () => mascot.drawn.chartRows > 500 && document.querySelectorAll("#speed canvas").length > 0);
+    assert.equal(await page.evaluate(() => mascot.t_s), 0);
+    const cursor = () => page.evaluate(() => mascot.drawn.cursor);
+    assert.equal(await cursor(), 0);
+    await page.locator("#scene").focus();
+    await page.keyboard.press("PageDown");
+    await until(page, () => mascot.t_s > 0 && mascot.drawn.cursor === mascot.t_s);
+  });
+});
+
+test("a page that is opened late has the curves from the start", async () => {
+  await watching({}, async ({page, fake}) => {
+    await until(page, () => mascot.t_s > 1);
+    const late = await open(browser, fake.url);
+    await until(late.page, () => mascot.drawn.chartRows > 5);
+    assert.ok(await late.page.evaluate(() => mascot.drawn.firstRow_s) < 0.2);
+    await late.page.context().close();
+  });
+});
 
 test("a lost connection is said, and mended by itself, also to another run", async () => {
   const first = await startFake({agents: 5});

@@ -31,6 +31,9 @@ export function figure(x, digits = 3) {
       .replace("-", "−");
 }
 
+/** A unit as it is typeset: m² for m^2. */
+export const typeset = (unit) => unit.replace("^2", "²").replace("^3", "³");
+
 /** A number with so many decimals, and a minus that is as wide as a digit. */
 export function fixed(x, decimals = 2) {
   if (!Number.isFinite(x)) return "–";

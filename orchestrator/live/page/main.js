@@ -27,6 +27,7 @@ const connection = new Connection(
     `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/`, {
       "/ui/experiment": (bytes) => model.setExperiment(parse(bytes)),
       "/ui/events": (bytes) => model.setEvents(parse(bytes)),
+      "/ui/curves": (bytes) => model.setCurves(parse(bytes)),
       "/ui/frame": (bytes) => {
         newestRow = bytes;
       },
@@ -129,8 +130,7 @@ window.mascot = {
       agents: view.layers.bodies?.radii_m.length ?? 0,
       edges: view.layers.edges?.count ?? 0,
       trails: view.layers.trails?.count ?? 0,
-      chartRows: charts.rows,
-      disagreement: charts.newest,
+      ...charts.drawn,
       pictures: view.renders
     };
   },

@@ -27,6 +27,7 @@ export class Model {
   connected = false;
   experiment = null;
   frame = null;
+  curves = {rows: []};  // of a run up to when the page was opened, of a recording as far as it has been read
   events = [];
   #expected = [];     // granted here: {tick, words, toml}
   selected = 0;       // number of an agent, 0: none
@@ -36,7 +37,7 @@ export class Model {
 
   /**
    * Calls `listener` after each change of a kind: "connection", "run" (another run, or other agents), "experiment" (a
-   *  value of it), "frame", "events", "selected".
+   *  value of it), "frame", "curves", "events", "selected".
    */
   on(kind, listener) { (this.#listeners[kind] ??= []).push(listener); }
 
@@ -66,6 +67,7 @@ export class Model {
 
   #forget() {
     this.experiment = this.frame = null;
+    this.curves = {rows: []};
     this.events = [];
     this.#expected = [];
   }
@@ -85,6 +87,11 @@ export class Model {
     if (!this.experiment || frame.p.length !== 3 * this.size) return;  // a row of a run that is not described yet
     this.frame = frame;
     this.#tell("frame");
+  }
+
+  setCurves(curves) {
+    this.curves = curves;
+    this.#tell("curves");
   }
 
   setEvents(events) {

@@ -27,6 +27,7 @@ void Projector::Run(const std::stop_token& over) {
       if (now != shown) Show(now);
       while (!has_edges_ && Playback::WallClock::now() < frame_ends && !over.stop_requested())
         if ((has_edges_ = FollowEdges())) Publish();
+      FollowCurves(frame_ends);
     } catch (const std::exception& error) {
       log_(std::string("error: ") + error.what());
       playback_.Ask({.kind = Request::Kind::kPause});
@@ -34,7 +35,8 @@ void Projector::Run(const std::stop_token& over) {
       has_edges_ = true;
     }
     shown = now;
-    if (has_edges_) playback_.Wait(over, now.plays ? frame_ends : frame_ends + std::chrono::hours(1));
+    if (has_edges_ && run_.curves().is_whole())
+      playback_.Wait(over, now.plays ? frame_ends : frame_ends + std::chrono::hours(1));
   }
 }
 
@@ -52,6 +54,21 @@ bool Projector::FollowEdges() try {
   if (!lacks_rows_) log_(std::string("warning: ") + error.what() + ": states of edges are not known from there on");
   lacks_rows_ = true;
   return true;
+}
+
+/// Goes on with the curves until the time of this frame is up.
+void Projector::FollowCurves(Playback::WallClock::time_point until) {
+  if (run_.curves().is_whole()) return;
+  constexpr auto kBetween = std::chrono::seconds(1);
+  try {
+    while (!run_.curves().is_whole() && Playback::WallClock::now() < until) run_.FollowCurves(kRowsAtATime);
+  } catch (const std::exception& error) {
+    log_(std::string("warning: ") + error.what() + ": curves end there");
+  }
+  const auto now = Playback::WallClock::now();
+  if (!run_.curves().is_whole() && now < curves_shown_ + kBetween) return;
+  view_.SetCurves(run_.curves().curves());
+  curves_shown_ = now;
 }
 
 void Projector::Publish() {

@@ -24,6 +24,7 @@ class Projector {
   void Run(const std::stop_token& over);
   void Show(const Playback::PlaybackState& now);
   bool FollowEdges();
+  void FollowCurves(Playback::WallClock::time_point until);
   void Publish();
 
   RecordedRun& run_;
@@ -34,6 +35,7 @@ class Projector {
   std::shared_ptr<const Experiment> experiment_;  // that viewers know
   bool has_edges_ = true;                         // row_.edges are known, or never will be
   bool lacks_rows_ = false;                       // edges cannot be followed everywhere: the file is damaged
+  Playback::WallClock::time_point curves_shown_;  // how far the curves are known, viewers were told last
   std::jthread thread_;                           // last: it uses the others
 };
 

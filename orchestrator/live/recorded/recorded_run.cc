@@ -25,11 +25,11 @@ RecordedRun::RecordedRun(const std::string& run)
                     const std::size_t count = EventsUpTo(tick);
                     return count > EventsUpTo(tick - 1) ? StateAfter(count) : nullptr;
                   },
-              .next_change =
-                  [this](std::int64_t tick) {
-                    const std::size_t count = EventsUpTo(tick);
-                    return count < events_.size() ? events_[count].tick : INT64_MAX;
-                  }}) {}
+              .next_change = [this](std::int64_t tick) { return NextChange(tick); }}),
+      curves_(experiment_, last_tick(),
+              {.read = [this](std::int64_t tick, DecodedRow& row) { rows_.Read(tick, row); },
+               .at = [this](std::int64_t tick) { return At(tick); },
+               .next_change = [this](std::int64_t tick) { return NextChange(tick); }}) {}
 
 std::vector<ShownEvent> RecordedRun::Events() const {
   std::vector<ShownEvent> shown;
@@ -41,6 +41,11 @@ std::vector<ShownEvent> RecordedRun::Events() const {
 std::size_t RecordedRun::EventsUpTo(std::int64_t tick) const {
   const auto later = std::ranges::upper_bound(events_, tick, {}, &IndexedRows::EventAt::tick);
   return static_cast<std::size_t>(later - events_.begin());
+}
+
+std::int64_t RecordedRun::NextChange(std::int64_t tick) const {
+  const std::size_t count = EventsUpTo(tick);
+  return count < events_.size() ? events_[count].tick : INT64_MAX;
 }
 
 std::shared_ptr<const Experiment> RecordedRun::StateAfter(std::size_t events) {

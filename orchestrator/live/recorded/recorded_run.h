@@ -8,6 +8,7 @@
 
 #include "experiment/experiment.h"
 #include "experiment/live_experiment.h"
+#include "orchestrator/live/recorded/curve_history.h"
 #include "orchestrator/live/recorded/edge_history.h"
 #include "orchestrator/live/shown/ui_channels.h"
 #include "orchestrator/recording/indexed_rows.h"
@@ -44,12 +45,18 @@ class RecordedRun {
   /// whether row.edges are known now, or never will be because there are more than kMaxEdgesShown. Throws as Show()
   /// does.
   bool FollowEdges(ShownRow& row, int rows);
+  /// The curves from the start, as far as FollowCurves() has come.
+  const CurveHistory& curves() const { return curves_; }
+  /// Goes on to compute them, by at most this many rows. Throws as Show() does; the curves then end there.
+  void FollowCurves(int rows) { curves_.Follow(rows); }
 
  private:
   /// The experiment from this event on; null: that of the start.
   std::shared_ptr<const Experiment> StateAfter(std::size_t events);
   /// How many events have taken effect up to and at `tick`.
   std::size_t EventsUpTo(std::int64_t tick) const;
+  /// The first tick after this one at which an event takes effect; INT64_MAX: none.
+  std::int64_t NextChange(std::int64_t tick) const;
 
   IndexedRows rows_;
   const Experiment experiment_;
@@ -59,6 +66,7 @@ class RecordedRun {
   std::optional<LiveExperiment> live_;  // after the events that were asked for last; never empty
   std::vector<LiveExperiment> marks_;   // as it was before the first event and every kBetweenMarks events later
   EdgeHistory edges_;
+  CurveHistory curves_;
 };
 
 }  // namespace mascot

@@ -60,7 +60,7 @@ Foxglove::About AboutTheRun(const Experiment& experiment, std::vector<Foxglove::
                         .session = NewSession(),
                         .end_ns = StampNs(last_tick, experiment.control.rate_hz),
                         .channels = {JsonChannel("/ui/experiment", "object"), JsonChannel("/ui/frame", "object"),
-                                     JsonChannel("/ui/events", "array")},
+                                     JsonChannel("/ui/events", "array"), JsonChannel("/ui/curves", "object")},
                         .connections = [&experiment] { return ConnectionsOf(experiment); },
                         .service = kServiceName,
                         .request = {"mascot/Wish", "jsonschema", std::string(kRequestSchema)},

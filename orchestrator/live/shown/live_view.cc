@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "bus/wire.h"
+#include "experiment/phase.h"
 #include "idl/topics.h"
 #include "orchestrator/formats/outside_json.h"
 
@@ -40,6 +42,7 @@ LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, c
                    RunControl& control, const Options& options, std::function<void(const std::string&)> log)
     : experiment_(experiment),
       prediction_(prediction),
+      responses_(ResponsesOf(experiment, prediction)),
       meter_(meter),
       source_(options.source),
       pages_(options.page),
@@ -49,7 +52,7 @@ LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, c
       shown_state_(state_),
       ros_(experiment),
       ros_channels_(ros_.channels().size()),
-      latched_{Shared(ExperimentJson(experiment, prediction, source_, {})), nullptr,
+      latched_{Shared(ExperimentJson(experiment, TheoryOf(experiment), source_, {})), nullptr,
                Shared(EventsJson(experiment, {}))},
       foxglove_(
           AboutTheRun(experiment, ros_.channels(), source_.recorded ? source_.recorded->last_tick : experiment.ticks()),
@@ -64,6 +67,8 @@ void LiveView::Add(const FlownRow& row) {
   newest_.tick = row.tick();
   newest_.decoded = row.decoded();
   newest_.disagreement_m = meter_->disagreement_m();
+  newest_.curve = meter_->curve();
+  curves_.Add(row.tick(), newest_.disagreement_m, newest_.curve, newest_.decoded.motions);
   if (experiment_.graph.edges() <= kMaxEdgesShown) meter_->EdgesNow(newest_.edges);
   row_is_new_ = is_new_ = true;
 }
@@ -81,7 +86,7 @@ void LiveView::SetState(const RunState& state) {
 }
 
 void LiveView::OnEvent(const ShownEvent& event, const Experiment& now, const std::vector<ShownKey>& keys) {
-  if (event.by_hand && !silenced_) silenced_.emplace().silent = SilentFrom(experiment_, event.tick);
+  if (event.by_hand.value_or(false) && !silenced_) SilenceTheory(event.tick);
   SetExperiment(now, keys);
   server_.Post([this, event] {
     events_.push_back(event);
@@ -93,11 +98,34 @@ void LiveView::OnEvent(const ShownEvent& event, const Experiment& now, const std
   });
 }
 
+void LiveView::SilenceTheory(std::int64_t tick) {
+  silenced_.emplace().silent = SilentFrom(experiment_, tick);
+  std::erase_if(responses_, [tick](const PartResponse& part) { return part.from >= tick; });
+  if (!responses_.empty()) responses_.back().until = std::min(responses_.back().until, tick);
+}
+
+ShownTheory LiveView::TheoryOf(const Experiment& now) const {
+  const std::vector<std::int64_t> begins = PhasesOf(experiment_);
+  const auto begin_of = [&](std::size_t phase) { return phase == 0 ? 0 : begins.at(phase - 1); };
+  const auto& later = prediction_.later;  // empty if theory does not look at the run at all
+  std::size_t first = now.phase;
+  while (first > 0 && first <= later.size() &&
+         (first == 1 ? experiment_ : *later[first - 2].experiment).law.name == now.law.name)
+    --first;
+  return {silenced_ ? *silenced_ : PredictionOf(prediction_, now.phase), responses_, begin_of(now.phase),
+          begin_of(first)};
+}
+
 void LiveView::SetEvents(std::vector<ShownEvent> events) {
   server_.Post([this, events = std::move(events)]() mutable {
     events_ = std::move(events);
     PublishEvents();
   });
+}
+
+void LiveView::SetCurves(const Curves& curves) {
+  server_.Post(
+      [this, json = CurvesJson(experiment_, curves)]() mutable { PublishLatched(kCurvesChannel, std::move(json)); });
 }
 
 void LiveView::PublishEvents() { PublishLatched(kEventsChannel, EventsJson(experiment_, events_)); }
@@ -118,8 +146,7 @@ void LiveView::SendMissed() {  // no newer message may come
 }
 
 void LiveView::SetExperiment(const Experiment& now, const std::vector<ShownKey>& keys) {
-  const Prediction& prediction = silenced_ ? *silenced_ : PredictionOf(prediction_, now.phase);
-  server_.Post([this, json = ExperimentJson(now, prediction, source_, keys), keys]() mutable {
+  server_.Post([this, json = ExperimentJson(now, TheoryOf(now), source_, keys), keys]() mutable {
     PublishLatched(kExperimentChannel, std::move(json));
     std::vector<Foxglove::Parameter> parameters;
     for (const ShownKey& key : keys) parameters.push_back({key.name, JsonOrNull<Foxglove::Json>(key.value)});
@@ -147,6 +174,10 @@ std::uint64_t LiveView::shown_ns() const {
 }
 
 void LiveView::OnSubscribe(ClientId client, Foxglove::ChannelId channel) {
+  if (channel == kCurvesChannel && meter_ != nullptr) {
+    const std::lock_guard lock(mutex_);
+    latched_[channel] = Shared(CurvesJson(experiment_, curves_));  // a viewer adds the rows that follow
+  }
   if (channel < kFirstOfRos && latched_[channel] != nullptr)
     foxglove_.PublishTo(client, channel, shown_ns(), latched_[channel]);
   else if (channel >= kFirstOfRos && shown_.tick >= 0 && channel != kFirstOfRos + ros_.event_channel())

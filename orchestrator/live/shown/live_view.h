@@ -63,8 +63,10 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   /// Sets the experiment to `now`.
   void SetExperiment(const Experiment& now, const std::vector<ShownKey>& keys);
   /// An event has taken effect: `now` is the experiment with it, `keys` are all that may be changed.
-  /// From the first event by hand on, theory is silent.
+  /// From the first event by hand on, theory is silent, and its responses end.
   void OnEvent(const ShownEvent& event, const Experiment& now, const std::vector<ShownKey>& keys);
+  /// Sets the curves of a recording: as far as they are known, if it is not read to its end yet.
+  void SetCurves(const Curves& curves);
   /// Sets the list of all events.
   void SetEvents(std::vector<ShownEvent> events);
 
@@ -88,6 +90,8 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   void Ask(const Request& request, Foxglove::Reply reply) override;
   void AskForGoal(const Goal& goal, Foxglove::Reply reply) override;
 
+  void SilenceTheory(std::int64_t tick);
+  ShownTheory TheoryOf(const Experiment& now) const;
   void PublishEvents();
   void PublishLatched(UiChannel channel, std::string json);
   void SendMissed();
@@ -99,8 +103,9 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
 
   const Experiment& experiment_;
   const Prediction& prediction_;
-  std::optional<Prediction> silenced_;  // once an event by hand has changed the run; of the thread that calls OnEvent
-  const RunMeter* meter_;               // null: of a recording
+  std::optional<Prediction> silenced_;   // once an event by hand has changed the run; of the thread that calls OnEvent
+  std::vector<PartResponse> responses_;  // of that thread, too
+  const RunMeter* meter_;                // null: of a recording
   const ShownSource source_;
   const Pages pages_;
 
@@ -108,6 +113,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   ShownRow newest_;          // guarded by mutex_
   bool row_is_new_ = false;  // guarded by mutex_: newest_ has changed
   bool is_new_ = false;      // guarded by mutex_: newest_ or state_ has changed
+  Curves curves_;            // guarded by mutex_: of a run
   RunState state_;           // guarded by mutex_
 
   // The server's thread alone.

@@ -1,5 +1,6 @@
 #include "orchestrator/live/shown/ui_channels.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iterator>
@@ -100,6 +101,54 @@ Json KeysJson(const std::vector<ShownKey>& keys) {
   return json;
 }
 
+Json PredictionJson(const Experiment& experiment, const Prediction& prediction, std::int64_t since) {
+  return {{"from_s", experiment.time_s(since)},
+          {"of_agreement", prediction.of_agreement},
+          {"stable", OrNull(prediction.stable)},
+          {"value_m", prediction.value_m ? ToJson(*prediction.value_m) : Json(nullptr)},
+          {"rate_per_s", OrNull(prediction.rate_per_s)},
+          {"slowest_rate_per_s", OrNull(prediction.slowest_rate_per_s)},
+          {"settling_time_s", OrNull(prediction.settling_time_s)},
+          {"why", prediction.silent}};
+}
+
+/// The prediction that is about the values of a curve; null: there is none.
+Json PredictedJson(const LawEntry& law, const Prediction& prediction) {
+  const auto figure = std::ranges::find(law.figures, law.curve->figure, &LawFigure::name);
+  const auto index = static_cast<std::size_t>(figure - law.figures.begin());
+  if (index >= prediction.law_figures.size()) return nullptr;
+  const PredictedFigure& predicted = prediction.law_figures[index];
+  if (predicted.values.size() != 1 || !predicted.values.front()) return nullptr;
+  return {{"value", *predicted.values.front()}, {"bound", kBounds.Name(predicted.bound)}};
+}
+
+/// The curve of the team's law; null: it has none.
+Json CurveJson(const Experiment& experiment, const ShownTheory& theory) {
+  const LawEntry& law = EntryOf(experiment.law);
+  if (!law.curve) return nullptr;
+  return {{"name", law.curve->name},
+          {"unit", law.curve->unit},
+          {"meaning", law.curve->meaning},
+          {"decays", law.curve->decays},
+          {"agrees", law.agrees},
+          {"since_s", experiment.time_s(theory.law_since)},
+          {"predicted", PredictedJson(law, theory.prediction)}};
+}
+
+Json ResponsesJson(const Experiment& experiment, const std::vector<PartResponse>& responses) {
+  Json json = Json::array();
+  for (const PartResponse& part : responses) {
+    Json values = Json::array();
+    for (const double value_m : part.response.value_m) values.push_back(static_cast<float>(value_m));
+    json.push_back({{"from_s", experiment.time_s(part.from)},
+                    {"until_s", experiment.time_s(part.until)},
+                    {"every_s", experiment.time_s(part.response.every)},
+                    {"of_ideal_bodies", part.of_ideal_bodies},
+                    {"value_m", std::move(values)}});
+  }
+  return json;
+}
+
 /// Writes numbers into JSON, quickly: a frame may have tens of thousands.
 class Numbers {
  public:
@@ -143,7 +192,7 @@ void AddEdges(std::string& out, const Experiment& experiment, const std::vector<
 
 }  // namespace
 
-std::string ExperimentJson(const Experiment& experiment, const Prediction& prediction, const ShownSource& source,
+std::string ExperimentJson(const Experiment& experiment, const ShownTheory& theory, const ShownSource& source,
                            const std::vector<ShownKey>& keys) {
   Json agents = Json::array();
   for (const AgentConfig& agent : experiment.agents) agents.push_back(AgentJson(agent));
@@ -161,13 +210,9 @@ std::string ExperimentJson(const Experiment& experiment, const Prediction& predi
                       {"range_m", experiment.schedule.range_m()},
                       {"obstacles", ObstaclesJson(experiment.physics.obstacles)},
                       {"wind_m_per_s", ToJson(experiment.physics.wind.mean_m_per_s)},
-                      {"prediction",
-                       {{"stable", OrNull(prediction.stable)},
-                        {"value_m", prediction.value_m ? ToJson(*prediction.value_m) : Json(nullptr)},
-                        {"rate_per_s", OrNull(prediction.rate_per_s)},
-                        {"slowest_rate_per_s", OrNull(prediction.slowest_rate_per_s)},
-                        {"settling_time_s", OrNull(prediction.settling_time_s)},
-                        {"why", prediction.silent}}},
+                      {"prediction", PredictionJson(experiment, theory.prediction, theory.since)},
+                      {"responses", ResponsesJson(experiment, theory.responses)},
+                      {"curve", CurveJson(experiment, theory)},
                       {"live_keys", KeysJson(keys)}});
 }
 
@@ -180,6 +225,7 @@ std::string FrameJson(const Experiment& experiment, const ShownRow& row, const R
                      {"pace", state.pace},
                      {"real_time_factor", state.real_time_factor},
                      {"disagreement_m", row.disagreement_m},
+                     {"curve", OrNull(row.curve)},
                      {"contacts", OrNull(state.contacts)}};
   std::string out = CompactJson(head);
   out.pop_back();  // the closing brace
@@ -196,6 +242,21 @@ std::string FrameJson(const Experiment& experiment, const ShownRow& row, const R
   AddList(out, "flags", commands, [](Numbers& to, const Command& command) { to.Add(std::int64_t{command.flags}); });
   AddEdges(out, experiment, row.edges);
   return out += '}';
+}
+
+std::string CurvesJson(const Experiment& experiment, const Curves& curves) {
+  std::string out = R"({"rows":[)";
+  for (const Curves::Point& point : curves.points()) {
+    if (out.back() != '[') out += ',';
+    out += '[';
+    Numbers numbers(out);
+    numbers.Add(experiment.time_s(point.tick));
+    numbers.Add(point.disagreement_m);
+    numbers.Add(point.of_law.value_or(NAN));  // null
+    for (const double speed : point.speeds) numbers.Add(speed);
+    out += ']';
+  }
+  return out += "]}";
 }
 
 std::string EventsJson(const Experiment& experiment, const std::vector<ShownEvent>& events) {

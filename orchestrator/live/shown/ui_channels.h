@@ -9,6 +9,7 @@
 #include "agent/neighbours.h"
 #include "experiment/experiment.h"
 #include "experiment/toml/key.h"
+#include "orchestrator/live/shown/curves.h"
 #include "orchestrator/team/row.h"
 #include "orchestrator/theory/theory.h"
 
@@ -27,6 +28,7 @@ struct ShownRow {
   DecodedRow decoded;
   std::vector<EdgeNow> edges;  ///< in increasing order of hearer, then of heard; empty beyond kMaxEdgesShown
   double disagreement_m = 0;
+  std::optional<double> curve;  ///< of the team's law (LawEntry::curve)
 };
 
 /// How a run goes.
@@ -66,11 +68,21 @@ struct ShownSource {
   std::optional<RecordedPart> recorded = {};  ///< absent: a run
 };
 
+/// What theory says of a run at one time.
+struct ShownTheory {
+  const Prediction& prediction;                ///< for the phase of that time
+  const std::vector<PartResponse>& responses;  ///< of the whole run
+  std::int64_t since = 0;                      ///< tick at which the phase has begun
+  std::int64_t law_since = 0;                  ///< tick at which the team's law has begun, maybe phases ago
+};
+
 /// /ui/experiment
-std::string ExperimentJson(const Experiment& experiment, const Prediction& prediction, const ShownSource& source,
+std::string ExperimentJson(const Experiment& experiment, const ShownTheory& theory, const ShownSource& source,
                            const std::vector<ShownKey>& keys);
 /// /ui/frame
 std::string FrameJson(const Experiment& experiment, const ShownRow& row, const RunState& state);
+/// /ui/curves
+std::string CurvesJson(const Experiment& experiment, const Curves& curves);
 /// /ui/events
 std::string EventsJson(const Experiment& experiment, const std::vector<ShownEvent>& events);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,12 @@
 
 namespace mascot {
 
-/// One tick of a run: its row, the state of each edge, the disagreement.
+/// One tick of a run: its row, the state of each edge, the disagreement, the curve of the team's law.
 struct FlownTick {
   DecodedRow row;
   std::vector<EdgeNow> edges;
   double disagreement_m = 0;
+  std::optional<double> curve = {};
 };
 
 /// Flies `toml`, records it below `folder`, and keeps each tick.
@@ -45,7 +47,7 @@ class Flown final : private RowSink {
 
  private:
   void Add(const FlownRow& row) override {
-    ticks_.push_back({row.decoded(), {}, meter_.disagreement_m()});
+    ticks_.push_back({row.decoded(), {}, meter_.disagreement_m(), meter_.curve()});
     meter_.EdgesNow(ticks_.back().edges);
   }
 

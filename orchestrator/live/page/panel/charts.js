@@ -1,50 +1,34 @@
-// Disagreement on a logarithmic axis, with theory's line beside it, and speeds; both since the page was opened.
+// The curves: that of the law, disagreement on a logarithmic axis, each beside what theory predicts, and speeds. Those
+// of a recording are whole; a line marks the time that is shown.
 import {agentColours, styleColour} from "../colours.js";
-import {byId, element, figure, setText, throttled} from "../dom.js";
+import {byId, element, figure, setText, throttled, typeset} from "../dom.js";
 
-const MOST_ROWS = 1200;
-const LEAST_M = 1e-6;  // bottom of the logarithmic axis: curves end there
-const MOST_LINES = 8;  // speeds of more agents are shown as fastest, mean, slowest and the selected one
+import {History, MOST_SPEEDS, speedsOf} from "./history.js";
+import {curveWords, disagreementWords, modeOf, responseAt, valueAt, withUnit} from "./theory.js";
+
+const LEAST = 1e-6;  // bottom of a logarithmic axis: curves end there
+const SLOW = 1e-3;   // the top of an axis of speeds is not below
 const DRAW_EVERY_MS = 120;
-const JUMP_S = 8;
-
-/** Rows of time and values, thinned out by half whenever there are too many. */
-class History {
-  rows = [];
-  #every = 1;
-  #seen = 0;
-
-  add(row) {
-    if (this.rows.length && row[0] <= this.rows.at(-1)[0]) this.clear();
-    if (this.#seen++ % this.#every) return;
-    this.rows.push(row);
-    if (this.rows.length < MOST_ROWS) return;
-    this.rows = this.rows.filter((_, k) => k % 2 === 0);
-    this.#every *= 2;
-  }
-
-  clear() {
-    this.rows = [];
-    this.#every = 1;
-    this.#seen = 0;
-  }
-}
+const FIRST_SPEED = 3;  // in a row
 
 export class Charts {
   #model;
-  #disagreement = new History();
-  #speeds = new History();
+  #history = new History();
+  #selected = new History();  // speeds of the selected agent, as far as they were seen
   #charts = {};
-  #anchor = null;  // where theory's line begins: {t_s, value_m, rate_per_s}
-  #last_s = null;
+  #cursor_s = null;
   #draw = throttled(DRAW_EVERY_MS, () => this.#redraw());
 
   constructor(model) {
     this.#model = model;
     model.on("run", () => this.#restart());
-    model.on("experiment", () => this.#onPrediction());
+    model.on("experiment", () => this.#onExperiment());
+    model.on("curves", ({curves}) => this.#onCurves(curves));
     model.on("frame", ({frame}) => this.#onFrame(frame));
-    model.on("selected", () => this.#draw());
+    model.on("selected", () => {
+      this.#selected.clear();
+      this.#draw();
+    });
   }
 
   paint() {
@@ -53,76 +37,132 @@ export class Charts {
     if (this.#model.experiment) this.#redraw();
   }
 
-  get rows() { return this.#disagreement.rows.length; }
-
-  /** The newest point of the curves of disagreement: time, measured, theory; null: out of the chart. */
-  get newest() { return this.#disagreement.rows.at(-1) ?? null; }
+  /**
+   * What is drawn: rows of disagreement [time, measured, theory, ideal bodies, slowest mode] and of the law's curve
+   * [time, measured, theory], and the time that is marked. Null: nothing is.
+   */
+  get drawn() {
+    const disagreement = this.#model.experiment ? this.#disagreementRows() : [];
+    const ofLaw = this.#model.experiment ? this.#lawRows() : [];
+    return {
+      chartRows: this.#history.rows.length,
+      firstRow_s: this.#history.rows[0]?.[0] ?? null,
+      disagreement: disagreement.at(-1) ?? null,
+      disagreementAt: (t_s) => disagreement.findLast((row) => row[0] <= t_s + 1e-9),
+      curve: ofLaw.at(-1) ?? null,
+      curveFrom: ofLaw[0] ?? null,
+      cursor: this.#cursor_s
+    };
+  }
 
   // --- what is collected ---
 
   #restart() {
-    this.#forget();
-    this.#last_s = null;
+    this.#history.set(this.#model.curves.rows);
+    this.#selected.clear();
     this.paint();
   }
 
-  #forget() {
-    this.#disagreement.clear();
-    this.#speeds.clear();
-    this.#anchor = null;
-  }
-
-  #onFrame({t_s, disagreement_m, speed_m_per_s}) {
-    if (t_s === this.#last_s) return;
-    if (t_s < this.#last_s) this.#anchor = null;
-    if (this.#model.isRecording && t_s > this.#last_s + JUMP_S) this.#forget();  // somebody looked elsewhere
-    this.#last_s = t_s;
-    this.#disagreement.add([t_s, this.#level(disagreement_m), this.#theory(t_s, disagreement_m)]);
-    this.#speeds.add([t_s, ...this.#speedsOf(speed_m_per_s)]);
+  #onCurves({rows}) {
+    this.#history.set(rows);
     this.#draw();
   }
 
-  #level(value_m) { return value_m === null || value_m < LEAST_M ? null : value_m; }
-
-  #theory(t_s, value_m) {
-    const {prediction} = this.#model.experiment;
-    if (!prediction?.rate_per_s || value_m === null) return null;
-    this.#anchor ??= {t_s, value_m, rate_per_s: prediction.rate_per_s};
-    return this.#level(this.#anchor.value_m * Math.exp(-this.#anchor.rate_per_s * (t_s - this.#anchor.t_s)));
+  #onFrame({t_s, disagreement_m, curve, speed_m_per_s}) {
+    const {isRecording, selected} = this.#model;
+    if (!isRecording && t_s > (this.#history.rows.at(-1)?.[0] ?? -1))
+      this.#history.add([t_s, disagreement_m, curve, ...speedsOf(speed_m_per_s)]);
+    if (selected && t_s !== this.#selected.rows.at(-1)?.[0]) this.#selected.add([t_s, speed_m_per_s[selected - 1]]);
+    this.#draw();
   }
 
-  #speedsOf(speeds) {
-    if (speeds.length <= MOST_LINES) return speeds;
-    const mean = speeds.reduce((sum, v) => sum + v, 0) / speeds.length;
-    return [
-      Math.max(...speeds), mean, Math.min(...speeds), this.#model.selected ? speeds[this.#model.selected - 1] : null
-    ];
+  #onExperiment() {
+    const {curve, prediction, responses = []} = this.#model.experiment;
+    byId("law-chart").hidden = !curve;
+    byId("disagreement-chart").hidden = Boolean(curve) && !curve.agrees;
+    byId("prediction").classList.toggle("has-line", responses.length > 0 || Boolean(modeOf(this.#model.experiment)));
+    setText(byId("prediction"), disagreementWords(prediction));
+    if (curve) this.#onCurve(curve, prediction);
+    this.#draw();
   }
 
-  // A rate that an event has changed is compared from then on.
-  #onPrediction() {
-    const prediction = this.#model.experiment.prediction ?? {}, {rate_per_s} = prediction;
-    if (this.#anchor && this.#anchor.rate_per_s !== rate_per_s) this.#anchor = null;
-    byId("prediction").classList.toggle("has-line", Boolean(rate_per_s));
-    setText(byId("prediction"), wordsOf(prediction));
+  #onCurve(curve, prediction) {
+    const name = curve.name[0].toUpperCase() + curve.name.slice(1);
+    if (byId("law-name").textContent !== name) this.#forget("law");
+    setText(byId("law-name"), name);
+    byId("law-name").title = curve.meaning;
+    byId("law-words").classList.toggle("has-line", Boolean(curve.predicted));
+    setText(byId("law-words"), curveWords(curve) || (curve.agrees ? "" : disagreementWords(prediction)));
+  }
+
+  #forget(id) {
+    this.#charts[id]?.destroy();
+    delete this.#charts[id];
   }
 
   // --- what is drawn ---
 
+  #disagreementRows() {
+    const {experiment} = this.#model, rate_per_s = modeOf(experiment), from_s = experiment.prediction?.from_s ?? 0;
+    let anchor = null;  // where the line of the slowest mode begins
+    return this.#history.rows.map(([t_s, disagreement_m]) => {
+      const measured = level(disagreement_m), response = responseAt(experiment, t_s);
+      if (response) {
+        const value = level(valueAt(response, t_s));
+        return response.of_ideal_bodies ? [t_s, measured, null, value, null] : [t_s, measured, value, null, null];
+      }
+      if (!rate_per_s || t_s < from_s) return [t_s, measured, null, null, null];
+      anchor ??= measured === null ? null : {t_s, measured};
+      return [t_s, measured, null, null, level(anchor && anchor.measured * Math.exp(-rate_per_s * (t_s - anchor.t_s)))];
+    });
+  }
+
+  #lawRows() {
+    const {curve} = this.#model.experiment;
+    if (!curve) return [];
+    const shown = curve.decays ? level : (value) => value;
+    const predicted = curve.predicted ? shown(curve.predicted.value) : null;
+    return this.#history.rows.filter(([t_s]) => t_s >= curve.since_s).map(([t_s, ,
+                                                                            value]) => [t_s, shown(value), predicted]);
+  }
+
+  #speedRows() {
+    if (this.#model.size <= MOST_SPEEDS) return this.#history.rows.map((row) => [row[0], ...row.slice(FIRST_SPEED)]);
+    const first_s = this.#selected.rows[0]?.[0] ?? Infinity, last_s = this.#selected.rows.at(-1)?.[0] ?? -Infinity;
+    return this.#history.rows.map((row) => {
+      const seen = row[0] >= first_s && row[0] <= last_s ? this.#selected.at(row[0])[1] : null;
+      return [row[0], ...row.slice(FIRST_SPEED), seen];
+    });
+  }
+
   #redraw() {
-    const {frame} = this.#model;
-    if (!frame) return;
+    const {frame, experiment} = this.#model;
+    if (!frame || !experiment) return;
+    const {curve} = experiment;
+    if (curve) {
+      const rows = this.#lawRows(), range = curve.decays ? {valueRange: decadesOf(rows)} : {};
+      const now = frame.curve ?? this.#history.at(frame.t_s)?.[2] ?? null;
+      setText(byId("law-now"), now === null ? "" : withUnit(now, curve.unit));
+      this.#show("law", rows, range, () => this.#lawLook(curve));
+    }
     setText(byId("disagreement-now"), frame.disagreement_m === null ? "" : `${figure(frame.disagreement_m)} m`);
     setText(byId("speed-now"), `up to ${figure(Math.max(...frame.speed_m_per_s))} m/s`);
-    const {rows} = this.#disagreement;
-    this.#show("disagreement", rows, {valueRange: decadesOf(rows)}, () => this.#disagreementLook());
-    this.#show("speed", this.#speeds.rows, {}, () => this.#speedLook());
+    if (!byId("disagreement-chart").hidden) {
+      const rows = this.#disagreementRows();
+      this.#show("disagreement", rows, {valueRange: decadesOf(rows)}, () => this.#disagreementLook());
+    }
+    const speeds = this.#speedRows();
+    this.#show("speed", speeds, {valueRange: [0, topOf(speeds)]}, () => this.#speedLook());
   }
 
   #show(id, rows, ranges, look) {
-    if (rows.length < 2) return this.#say(id, "The curve begins here when time goes on.");
+    if (rows.length < 2) {
+      const {isRecording} = this.#model;
+      return this.#say(id, isRecording ? "The recording is being read." : "The curve begins here when time goes on.");
+    }
     if (rows.every(([, ...values]) => values.every((value) => value === null)))
-      return this.#say(id, `Nothing above ${figure(LEAST_M)} m yet.`);
+      return this.#say(id, id === "law" ? "No value yet." : `Nothing above ${figure(LEAST)} m yet.`);
+    if (this.#model.isRecording) ranges = {...ranges, dateWindow: [0, this.#model.end_s]};
     if (this.#charts[id])
       this.#charts[id].updateOptions({file: rows, ...ranges});
     else
@@ -131,8 +171,7 @@ export class Charts {
 
   // Where there is no curve, as on a page that is opened while the run is paused.
   #say(id, words) {
-    this.#charts[id]?.destroy();
-    delete this.#charts[id];
+    this.#forget(id);
     byId(id).replaceChildren(element("p", {className: "muted hint", textContent: words}));
   }
 
@@ -148,6 +187,7 @@ export class Charts {
       interactionModel: {},
       animatedZooms: false,
       legendFormatter: legend,
+      underlayCallback: (context, area, chart) => this.#drawCursor(context, area, chart),
       xRangePad: 4,
       rightGap: 8,
       axes: {
@@ -161,35 +201,68 @@ export class Charts {
     };
   }
 
-  #disagreementLook() {
-    return {
-      labels: ["t", "measured (m)", "theory (m)"],
-      logscale: true,
-      axes: {...this.#look().axes, y: {...this.#look().axes.y, ticker: powersOfTen}},
+  /** A line at the time that is shown of a recording. */
+  #drawCursor(context, area, chart) {
+    const {isRecording, frame} = this.#model;
+    this.#cursor_s = isRecording && frame ? frame.t_s : null;
+    if (this.#cursor_s === null) return;
+    context.fillStyle = styleColour("muted");
+    context.fillRect(Math.round(chart.toDomXCoord(frame.t_s)), area.y, 1, area.h);
+  }
+
+  #logarithmic(look) {
+    return {...look, logscale: true, axes: {...this.#look().axes, y: {...this.#look().axes.y, ticker: powersOfTen}}};
+  }
+
+  #lawLook({name, unit, decays}) {
+    const measured = `${name}${unit ? ` (${typeset(unit)})` : ""}`;
+    const look = {
+      labels: ["t", measured, "theory"],
       colors: [styleColour("accent"), styleColour("muted")],
-      series: {"measured (m)": {strokeWidth: 2}, "theory (m)": {strokePattern: [5, 4]}},
+      series: {[measured]: {strokeWidth: 2}, theory: {strokePattern: [5, 4]}}
     };
+    return decays ? this.#logarithmic(look) : look;
+  }
+
+  #disagreementLook() {
+    return this.#logarithmic({
+      labels: ["t", "measured (m)", "theory (m)", "ideal bodies (m)", "slowest mode (m)"],
+      colors: [styleColour("accent"), styleColour("muted"), styleColour("muted"), styleColour("muted")],
+      series: {
+        "measured (m)": {strokeWidth: 2},
+        "theory (m)": {strokePattern: [5, 4]},
+        "ideal bodies (m)": {strokePattern: [8, 3, 2, 3]},
+        "slowest mode (m)": {strokePattern: [1, 3]}
+      },
+    });
   }
 
   #speedLook() {
-    const {size} = this.#model, many = size > MOST_LINES;
+    const {size} = this.#model, many = size > MOST_SPEEDS;
     const names =
         many ? ["fastest", "mean", "slowest", "selected"] : Array.from({length: size}, (_, k) => `agent ${k + 1}`);
     const colors = many ? ["accent", "text", "muted", "velocity"].map(styleColour) : agentColours(size);
-    return {labels: ["t", ...names], colors, includeZero: true};
+    return {labels: ["t", ...names], colors};
   }
 }
+
+/** A value as a logarithmic axis shows it; null: below it. */
+function level(value) { return value === null || value === undefined || value < LEAST ? null : value; }
+
+/** The top of an axis of speeds. */
+function topOf(rows) { return 1.1 * rows.reduce((top, [, ...speeds]) => Math.max(top, ...speeds), SLOW); }
 
 /**
  * A range for a logarithmic axis: what is measured, with some room, at least a factor of 5; and what is predicted, as
  * far as a decade below that.
  */
 function decadesOf(rows) {
-  let low = Infinity, least = Infinity, high = LEAST_M;
-  for (const [, measured, theory] of rows) {
+  let low = Infinity, least = Infinity, high = LEAST;
+  for (const [, measured, ...predicted] of rows) {
+    const known = predicted.filter((value) => value !== null);
     low = Math.min(low, measured ?? Infinity);
-    least = Math.min(least, measured ?? Infinity, theory ?? Infinity);
-    high = Math.max(high, measured ?? 0, theory ?? 0);
+    least = Math.min(least, measured ?? Infinity, ...known);
+    high = Math.max(high, measured ?? 0, ...known);
   }
   low = Math.max(least, low / 10);
   return [Math.min(low / 1.2, high / 5), high * 1.2];
@@ -208,17 +281,6 @@ function powersOfTen(low, high) {
 function shortLabel(m, k) {
   if (k >= -3 && k <= 3) return String(Number((m * 10 ** k).toPrecision(2)));
   return `${m === 1 ? "" : `${m}·`}10${[...String(k)].map((c) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] ?? "⁻").join("")}`;
-}
-
-/** What theory says of the disagreement. */
-function wordsOf({stable, rate_per_s, slowest_rate_per_s, settling_time_s, why}) {
-  if (rate_per_s) {
-    const settles = settling_time_s ? `, settled (2 %) after ${figure(settling_time_s, 2)} s` : "";
-    return `Theory: decays at ${figure(rate_per_s)} 1/s${settles}`;
-  }
-  if (stable === false) return `Theory: does not agree${why ? `: ${why}` : ""}`;
-  if (slowest_rate_per_s) return `Theory: in the long run decays at ${figure(slowest_rate_per_s)} 1/s or faster`;
-  return why ? `No prediction: ${why}` : "";
 }
 
 /** The values under the pointer. */

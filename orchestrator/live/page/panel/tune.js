@@ -1,7 +1,7 @@
 // The live keys: a control for each, with its range and unit. A control asks when it is let go, and shows what the
 // server says the value is, whatever was asked for.
 import {setToml} from "../asking.js";
-import {byId, element, figure, setText} from "../dom.js";
+import {byId, element, figure, setText, typeset} from "../dom.js";
 
 import {Scale} from "./scale.js";
 
@@ -44,7 +44,8 @@ export class Tune {
     const rows = keys.map(({key, unit}) => {
       const value = element("b");
       this.#controls.set(key, {show: (now) => setText(value, now === null ? "–" : show(now))});
-      const row = element("div", {className: "reading"}, key, value, element("small", {className: "muted"}, unit));
+      const row =
+          element("div", {className: "reading"}, key, value, element("small", {className: "muted"}, typeset(unit)));
       row.dataset.key = key;
       return row;
     });
@@ -65,7 +66,7 @@ export class Tune {
     const {body, show} = CONTROLS[controlOf(key)](key, ask);
     const name = element(
         "label", {title: key.meaning ?? "", htmlFor: `key-${key.key}`}, key.key,
-        element("small", {className: "muted", textContent: key.unit ? ` ${key.unit}` : ""}));
+        element("small", {className: "muted", textContent: key.unit ? ` ${typeset(key.unit)}` : ""}));
     this.#controls.set(key.key, {show});
     const row = element("div", {className: "key"}, name, ...body, words);
     row.dataset.key = key.key;
@@ -74,8 +75,8 @@ export class Tune {
 
   async #ask({key, unit}, value, words) {
     const agents = this.only.checked ? [this.#model.selected] : [];
-    const answer =
-        await this.#asking.event(setToml(key, value, agents), `${key} = ${show(value)}${unit ? ` ${unit}` : ""}`);
+    const answer = await this.#asking.event(
+        setToml(key, value, agents), `${key} = ${show(value)}${unit ? ` ${typeset(unit)}` : ""}`);
     setText(words, answer.granted ? "" : answer.words);
     if (!answer.granted)
       this.#controls.get(key)?.show(this.#model.experiment.live_keys.find((live) => live.key === key)?.value);
@@ -125,7 +126,8 @@ function number(key, ask) {
       latest = value;
       if (document.activeElement !== box) showInBox();
       if (!slider.matches(":active")) slider.value = scale.place(value ?? key.min);
-      slider.setAttribute("aria-valuetext", value === null ? "not given" : `${figure(value)} ${key.unit ?? ""}`);
+      slider.setAttribute(
+          "aria-valuetext", value === null ? "not given" : `${figure(value)} ${typeset(key.unit ?? "")}`);
     },
   };
 }

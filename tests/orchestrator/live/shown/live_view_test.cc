@@ -363,6 +363,82 @@ TEST(LiveView, TellsOfEvents) {
   EXPECT_EQ(event.toml(), "goto = {}");
 }
 
+/// Two points that meet, and from 1 s on twice as fast.
+constexpr const char* kTwoPhases =
+    "[run]\nduration_s = 3.0\n[agents]\ncount = 2\nmodel = 'single_integrator'\n"
+    "position_m = [[-1, 0, 1], [1, 0, 1]]\n[graph]\ntopology = 'ring'\n[law]\nname = 'velocity_consensus'\n"
+    "p_gain = 0.5\n[[law.schedule]]\nat_s = 1.0\np_gain = 1.0\n";
+
+TEST(LiveView, TheorySpeaksOnAfterAPhaseAndIsSilentAfterAnEventByHand) {
+  Watched run{Load(kTwoPhases)};
+  Viewer viewer(run.view.url());
+  viewer.Subscribe("/ui/experiment");
+  const auto spans = [](const Json& experiment) {
+    std::vector<std::pair<double, double>> all;
+    for (const Json& part : experiment["responses"]) all.emplace_back(part["from_s"], part["until_s"]);
+    return all;
+  };
+  using Spans = std::vector<std::pair<double, double>>;
+  const Json first = viewer.NextJsonOf("/ui/experiment");
+  EXPECT_EQ(spans(first), (Spans{{0, 1}, {1, 3}}));
+  EXPECT_EQ(first["responses"][0]["every_s"], 0.01);
+  EXPECT_EQ(first["responses"][0]["value_m"][0], 1.0);
+  EXPECT_EQ(first["prediction"]["from_s"], 0.0);
+  LiveExperiment live(run.experiment, &LawTable(), /*checked=*/true);
+  live.Take(run.experiment.events.at(0));
+  run.view.OnEvent({.number = 1, .tick = 100, .toml = "phase", .by_hand = false}, *live.now(), {});
+  const Json second = viewer.NextJsonOf("/ui/experiment");
+  EXPECT_EQ(second["prediction"]["why"], "");
+  EXPECT_EQ(second["prediction"]["from_s"], 1.0);
+  EXPECT_GT(second["prediction"]["rate_per_s"], 0);
+  EXPECT_EQ(spans(second), (Spans{{0, 1}, {1, 3}}));
+  run.view.OnEvent({.number = 2, .tick = 250, .toml = "set = {}", .by_hand = true}, *live.now(), {});
+  const Json third = viewer.NextJsonOf("/ui/experiment");
+  EXPECT_EQ(third["prediction"]["why"], "events change the run, from 2.5 s on");
+  EXPECT_EQ(spans(third), (Spans{{0, 1}, {1, 2.5}})) << "what was predicted before the event still holds up to it";
+}
+
+TEST(LiveView, WhoComesLateGetsTheCurvesFromTheStart) {
+  Watched run{Load(kTwoPhases)};
+  run.Fly();
+  Viewer viewer(run.view.url());
+  viewer.Subscribe("/ui/curves");
+  const Json rows = viewer.NextJsonOf("/ui/curves")["rows"];
+  ASSERT_EQ(rows.size(), 301U);
+  EXPECT_EQ(rows[0][0], 0.0);
+  EXPECT_NEAR(rows[0][1], 1, 1e-6);
+  EXPECT_EQ(rows[0][2], nullptr) << "disagreement is the curve of these laws";
+  EXPECT_EQ(rows[0].size(), 5U) << "and two speeds";
+  EXPECT_NEAR(rows[99][1], std::pow(0.99, 99), 1e-6);
+  EXPECT_EQ(rows[300][0], 3.0);
+}
+
+TEST(LiveView, NamesTheCurveOfTheLawAndWhatTheoryPredictsOfIt) {
+  Watched run{
+      Load("[run]\nduration_s = 1.0\n[agents]\ncount = 2\nmodel = 'single_integrator'\n"
+           "position_m = [[0, 0, 1], [2, 0, 1]]\n[graph]\ntopology = 'complete'\n"
+           "[law]\nname = 'coverage'\nregion_m = [[0, 0], [4, 0], [4, 4], [0, 4]]\n"
+           "[[law.schedule]]\nat_s = 0.5\ngain = 2.0\n")};
+  Viewer viewer(run.view.url());
+  viewer.Subscribe("/ui/experiment");
+  viewer.Subscribe("/ui/frame");
+  const Json curve = viewer.NextJsonOf("/ui/experiment")["curve"];
+  EXPECT_EQ(curve["name"], "coverage cost");
+  EXPECT_EQ(curve["unit"], "m^2");
+  EXPECT_EQ(curve["decays"], false);
+  EXPECT_EQ(curve["agrees"], false);
+  EXPECT_EQ(curve["since_s"], 0.0);
+  EXPECT_EQ(curve["predicted"]["bound"], "at_most");
+  LiveExperiment live(run.experiment, &LawTable(), /*checked=*/true);
+  live.Take(run.experiment.events.at(0));
+  run.view.OnEvent({.number = 1, .tick = 50, .toml = "phase", .by_hand = false}, *live.now(), {});
+  EXPECT_EQ(viewer.NextJsonOf("/ui/experiment")["curve"]["since_s"], 0.0) << "the law goes on";
+  run.Fly();
+  const Json last = viewer.FrameAt(100);
+  EXPECT_GT(last["curve"], 0);
+  EXPECT_LT(last["curve"], curve["predicted"]["value"]);
+}
+
 /// An experiment that makes what a viewer gets after each event long: a hundred times that is far more than the kernel
 /// keeps for a client that reads nothing.
 constexpr const char* kLarge =
