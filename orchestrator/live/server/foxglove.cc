@@ -191,27 +191,28 @@ void Foxglove::OnUnadvertise(ClientId id, const Json& message) {
 
 void Foxglove::OnGetParameters(ClientId id, const Json& message) {
   const Json& names = List(message, "parameterNames");
-  SendParameters(
-      id,
-      [&](const Parameter& parameter) {
-        return names.empty() || std::ranges::find(names, Json(parameter.name)) != names.end();
-      },
-      RequestOf(message));
+  std::vector<Parameter> sent;
+  std::ranges::copy_if(parameters_, std::back_inserter(sent), [&](const Parameter& parameter) {
+    return names.empty() || std::ranges::find(names, Json(parameter.name)) != names.end();
+  });
+  SendParameters(id, sent, RequestOf(message));
 }
 
 void Foxglove::OnSetParameters(ClientId id, const Json& message) {
   std::vector<Request> requests;
-  std::set<std::string> names;
+  std::map<std::string, Json> asked;
   for (const Json& parameter : List(message, "parameters")) {
-    names.insert(Text(parameter, "name"));
-    requests.push_back(
-        SetKey(Text(parameter, "name"), parameter.is_object() ? parameter.value("value", Json()) : Json()));
+    Json& value = asked[Text(parameter, "name")] = parameter.is_object() ? parameter.value("value", Json()) : Json();
+    requests.push_back(SetKey(Text(parameter, "name"), value));
   }
   if (requests.size() > kMaxQuestions) return SendStatus(id, kError, "setParameters: too many at once");
-  AskAll(id, std::move(requests), [this, id, names, request = RequestOf(message)](const Answer& answer) {
+  AskAll(id, std::move(requests), [this, id, asked, request = RequestOf(message)](const Answer& answer) {
     if (!answer.granted) SendStatus(id, kError, "setParameters: " + answer.words);
-    SendParameters(
-        id, [&](const Parameter& parameter) { return names.contains(parameter.name); }, request);
+    std::vector<Parameter> now;
+    for (const Parameter& parameter : parameters_)
+      if (const auto it = asked.find(parameter.name); it != asked.end())
+        now.push_back({parameter.name, answer.granted ? it->second : parameter.value});  // granted for the next tick
+    SendParameters(id, now, request);
   });
 }
 
@@ -366,10 +367,11 @@ void Foxglove::SetParameters(std::vector<Parameter> parameters) {
   };
   if (std::ranges::none_of(parameters_, has_changed)) return;
   for (const auto& [id, client] : clients_) {
-    const auto wanted = [&names = client.parameters, &has_changed](const Parameter& parameter) {
-      return names.contains(parameter.name) && has_changed(parameter);
-    };
-    if (std::ranges::any_of(parameters_, wanted)) SendParameters(id, wanted, nullptr);
+    std::vector<Parameter> changed;
+    std::ranges::copy_if(parameters_, std::back_inserter(changed), [&](const Parameter& parameter) {
+      return client.parameters.contains(parameter.name) && has_changed(parameter);
+    });
+    if (!changed.empty()) SendParameters(id, changed, nullptr);
   }
 }
 
@@ -389,14 +391,13 @@ void Foxglove::SendStatus(ClientId id, int level, const std::string& words) {
   SendText(id, {{"op", "status"}, {"level", level}, {"message", words}});
 }
 
-void Foxglove::SendParameters(ClientId id, const std::function<bool(const Parameter&)>& wanted, const Json& request) {
+void Foxglove::SendParameters(ClientId id, std::span<const Parameter> sent, const Json& request) {
   Json parameters = Json::array();
-  for (const Parameter& parameter : parameters_)
-    if (wanted(parameter)) {
-      parameters.push_back({{"name", parameter.name}, {"value", parameter.value}});
-      if (parameter.value.is_number()) parameters.back()["type"] = "float64";
-      if (parameter.value.is_array()) parameters.back()["type"] = "float64_array";
-    }
+  for (const Parameter& parameter : sent) {
+    parameters.push_back({{"name", parameter.name}, {"value", parameter.value}});
+    if (parameter.value.is_number()) parameters.back()["type"] = "float64";
+    if (parameter.value.is_array()) parameters.back()["type"] = "float64_array";
+  }
   Json message = {{"op", "parameterValues"}, {"parameters", parameters}};
   if (!request.is_null()) message["id"] = request;
   SendText(id, message);

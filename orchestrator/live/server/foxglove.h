@@ -134,7 +134,7 @@ class Foxglove {
   void SendText(ClientId id, const Json& message);
   void SendBytes(ClientId id, std::string message);
   void SendStatus(ClientId id, int level, const std::string& words);
-  void SendParameters(ClientId id, const std::function<bool(const Parameter&)>& wanted, const Json& request);
+  void SendParameters(ClientId id, std::span<const Parameter> sent, const Json& request);
   void SendPlayback(ClientId id, const std::string& request);
 
   const About about_;

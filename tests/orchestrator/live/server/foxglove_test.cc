@@ -255,12 +255,16 @@ TEST(Foxglove, SetsParametersByEventsAndTellsWhoWantsToKnow) {
                 R"({"name":"physics.wind.mean_m_per_s","value":[0,0,0],"type":"float64_array"}],"id":"all"})")});
   server.Say(R"({"op":"setParameters","parameters":[{"name":"law.p_gain","value":0.5}],"id":"set"})");
   EXPECT_EQ(server.requests.at(0).toml, R"(set = { "law.p_gain" = 0.5 })");
-  server.foxglove->SetParameters({{"law.p_gain", 0.5}, {"physics.wind.mean_m_per_s", {0, 0, 0}}});
   server.Reply({true, ""});
-  EXPECT_EQ(server.Texts(1, "parameterValues")[1]["parameters"][0]["value"], 0.5);
+  EXPECT_EQ(server.Texts(1, "parameterValues")[1]["parameters"][0]["value"], 0.5) << "though it is so at the next tick";
+  server.foxglove->SetParameters({{"law.p_gain", 0.5}, {"physics.wind.mean_m_per_s", {0, 0, 0}}});
   EXPECT_EQ(server.Texts(1, "parameterValues")[1]["id"], "set");
   ASSERT_THAT(server.Texts(2, "parameterValues"), SizeIs(1));
   EXPECT_THAT(server.Texts(2, "parameterValues")[0]["parameters"], SizeIs(1));
+  server.Say(R"({"op":"setParameters","parameters":[{"name":"law.p_gain","value":-1}],"id":"bad"})");
+  server.Reply({false, "law.p_gain: expected more"});
+  EXPECT_EQ(server.Texts(1, "parameterValues").back()["parameters"][0]["value"], 0.5) << "what it is";
+  server.Forget();
   server.Say(R"({"op":"setParameters","parameters":[{"name":"law.q","value":1}]})");
   server.Reply({false, "law.q: unknown key"});
   EXPECT_EQ(server.Texts(1, "status").at(0)["message"], "setParameters: law.q: unknown key");
