@@ -266,7 +266,7 @@ inOneWindow("the view is touched:", {
     await page.keyboard.press(".");
     await showsAs(1, 0.7, 1);
     await clickEdge(page, index);
-    await showsAs(0, 0.1, 0.45);
+    await showsAs(0, 0.1, 0.69);
     await clickEdge(page, index);
     await showsAs(1, 0.7, 1);
     assert.deepEqual(events(fake), [`cut = [[${pair}]]`, `mend = [[${pair}]]`]);
@@ -370,21 +370,90 @@ inOneWindow("keys are tuned:", {
 });
 
 test(
-    "what is granted while the run is paused waits in the list of events until it goes on",
+    "what is granted while the run is paused is pending in the list of events until it goes on",
     () => watching({run: {waits: true}}, async ({page}) => {
       await pausedFromAbove(page);
       await page.click("#tab-events");
       await clickEdge(page, await edgeInTheOpen(page));
       await until(page, () => document.querySelectorAll("#events .event").length === 1);
       const words = await page.textContent("#events");
-      assert.match(words, /^waiting takes effect at tick \d+/);
+      assert.match(words, /^pending takes effect at tick \d+/);
       assert.ok(words.includes("cut = [["));
+      assert.equal(await page.textContent("#event-count"), "1 pending");
       await page.keyboard.press("Space");
       await until(page, () => mascot.events.length === 1);
       assert.match(await page.textContent("#events"), /tick \d+/);
-      assert.ok(!(await page.textContent("#events")).includes("waiting"));
+      assert.ok(!(await page.textContent("#events")).includes("pending"));
       assert.equal(await page.locator("#events .event").count(), 1);
+      assert.equal(await page.textContent("#event-count"), "1");
     }));
+
+test(
+    "a second click on an edge undoes the first, also while that is pending",
+    () => watching({run: {waits: true}}, async ({page, fake}) => {
+      await pausedFromAbove(page);
+      const index = await edgeInTheOpen(page);
+      const place = await placeOf(page, "edgeOnScreen", index);
+      for (const clicks of [1, 2, 3]) {
+        await page.mouse.click(...place);
+        await until(
+            page, (words) => document.getElementById("tip").textContent.endsWith(words),
+            clicks % 2 ? ", will be cut: click to mend" : ", will be mended: click to cut");
+        assert.equal(await page.textContent("#event-count"), `${clicks} pending`);
+      }
+      assert.deepEqual(events(fake).map((toml) => toml.split(" ")[0]), ["cut", "mend", "cut"]);
+    }));
+
+test("the menu of layers closes by Escape, which keeps the chosen agent, and by a press anywhere else", async () => {
+  await watching({}, async ({page}) => {
+    await page.keyboard.press("2");
+    const isOpen = () => page.evaluate(() => document.getElementById("layers").open);
+    for (const close of [() => page.keyboard.press("Escape"), () => page.click("#agents"), () => page.click("#name")]) {
+      await page.click("#layers summary");
+      assert.ok(await isOpen());
+      await page.click("#layer-list label");
+      assert.ok(await isOpen(), "a layer is chosen in it");
+      await close();
+      assert.ok(!await isOpen());
+    }
+    await page.keyboard.press("2");
+    await page.click("#layers summary");
+    await page.keyboard.press("Escape");
+    assert.equal(await page.evaluate(() => mascot.selected), 2);
+    await page.keyboard.press("Escape");
+    assert.equal(await page.evaluate(() => mascot.selected), 0);
+  });
+});
+
+test("the labels of an axis all differ, however little the values do", async () => {
+  const curve = {name: "messages", unit: "", meaning: "", decays: false, agrees: false, since_s: 0, predicted: null};
+  for (const [base, swing] of [[5.4, 1e-3], [1e-3, 1e-4], [120, 40]])
+    await watching(
+        {run: {source: "recording", curve, law_value: (t_s) => base + swing * Math.sin(t_s)}}, async ({page}) => {
+          await until(page, () => document.querySelectorAll("#law .dygraph-axis-label-y").length > 1);
+          const labels = await page.locator("#law .dygraph-axis-label-y").allTextContents();
+          assert.equal(new Set(labels).size, labels.length, `${labels}`);
+          const times = await page.locator("#law .dygraph-axis-label-x").allTextContents();
+          assert.equal(new Set(times).size, times.length, `${times}`);
+        });
+});
+
+test(
+    "places of a formation are drawn around its leader",
+    () => watching({run: {places_m: 3}}, async ({page}) => {
+      await until(page, () => mascot.tick > 0);
+      const [place, leader] = await page.evaluate(() => [mascot.placeOf(4), mascot.positions.slice(9, 12)]);
+      place.forEach((x, axis) => assert.ok(Math.abs(x - leader[axis]) < 1e-9, `${place} and ${leader}`));
+    }));
+
+test("three speeds of many agents are named by their colours", async () => {
+  for (const [agents, words] of [[8, null], [9, "fastestmeanslowestselected"]])
+    await watching({run: {agents}}, async ({page}) => {
+      await until(page, () => mascot.tick > 0);
+      const names = page.locator("#speed-names");
+      assert.equal(await names.isVisible() ? await names.textContent() : null, words);
+    });
+});
 
 // --- recordings and connections ----------------------------------------------------------------------------
 

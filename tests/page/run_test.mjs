@@ -51,7 +51,7 @@ const TOUCHES = {
   async "a click cuts an edge, which darkens, and another click mends it"({page}) {
     await pausedFromAbove(page);
     const index = await edgeInTheOpen(page);
-    for (const [verb, state, low, high] of [["cut", 0, 0.1, 0.45], ["mend", 1, 0.7, 1]]) {
+    for (const [verb, state, low, high] of [["cut", 0, 0.1, 0.69], ["mend", 1, 0.7, 1]]) {
       await clickEdge(page, index);
       await until(
           page, (asked) => mascot.lastAnswer.granted && mascot.lastAnswer.request.toml?.startsWith(asked), verb);

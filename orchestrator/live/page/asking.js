@@ -45,10 +45,10 @@ export class Asking {
     return answer;
   }
 
-  /** Asks for an event: the keys of one [[events]] table. */
-  async event(toml, say) {
+  /** Asks for an event: the keys of one [[events]] table. `edge`: as for Model.expect(). */
+  async event(toml, say, edge = null) {
     const answer = await this.ask({ask: "event", toml}, say);
-    if (answer.granted) this.#model.expect(toml, answer.words);
+    if (answer.granted) this.#model.expect(toml, answer.words, edge);
     return answer;
   }
 

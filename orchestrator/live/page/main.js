@@ -15,6 +15,7 @@ import {bindTabs} from "./panel/tabs.js";
 import {Transport} from "./panel/transport.js";
 import {Tune} from "./panel/tune.js";
 import {Hand} from "./scene/hand.js";
+import {places} from "./scene/overlay.js";
 import {View} from "./scene/view.js";
 
 const model = new Model();
@@ -65,9 +66,9 @@ function follow() {
 byId("view-fit").addEventListener("click", () => view.fit());
 byId("view-top").addEventListener("click", () => view.top());
 byId("view-follow").addEventListener("click", follow);
-byId("scene").addEventListener("pointerdown", () => {
-  byId("layers").open = false;
-});
+addEventListener("pointerdown", ({target}) => {
+  if (!byId("layers").contains(target)) byId("layers").open = false;
+}, true);
 model.on("selected", () => view.eye.followed && view.eye.follow(model.selected));
 
 // --- colours ---
@@ -134,6 +135,7 @@ window.mascot = {
       pictures: view.renders
     };
   },
+  placeOf: (number) => places(model.experiment.agents, model.frame.p).find(([, id]) => id === number)[0],
   agentOnScreen: (number) => [...view.screen.subarray(3 * number - 3, 3 * number - 1)],
   radiusOnScreen: (number) => view.radiusPx(number),
   edgeOnScreen(index) {  // its middle

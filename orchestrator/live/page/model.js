@@ -29,7 +29,7 @@ export class Model {
   frame = null;
   curves = {rows: []};  // of a run up to when the page was opened, of a recording as far as it has been read
   events = [];
-  #expected = [];     // granted here: {tick, words, toml}
+  #expected = [];     // granted here: {tick, words, toml, edge}
   selected = 0;       // number of an agent, 0: none
   lastAnswer = null;  // the server's last answer: {request, granted, words}
   #session = null;
@@ -99,15 +99,24 @@ export class Model {
     this.#tell("events");
   }
 
-  /** An event was granted: it takes effect at a later tick, of which the answer tells. */
-  expect(toml, words) {
+  /**
+   * An event was granted: it takes effect at a later tick, of which the answer tells. `edge`: {index, works} of an edge
+   *  that it cuts or mends.
+   */
+  expect(toml, words, edge = null) {
     const tick = Number(/tick (\d+)/.exec(words)?.[1] ?? 0);
-    this.#expected.push({tick, words, toml});
+    this.#expected.push({tick, words, toml, edge});
     this.#tell("events");
   }
 
   /** What was granted here and has not taken effect yet; all that waits for a tick comes with it. */
   get expected() { return this.#expected.filter(({tick}) => !this.events.some((event) => event.tick >= tick)); }
+
+  /** What waits to become of an edge: true, it will be mended, false, cut; null: nothing waits. */
+  pendingEdge(index) { return this.expected.findLast(({edge}) => edge?.index === index)?.edge.works ?? null; }
+
+  /** Whether an edge is there, once all that waits has taken effect. */
+  edgeWillWork(index) { return this.pendingEdge(index) ?? this.frame?.edge?.[index] !== EDGE.NONE; }
 
   select(number) {
     this.selected = number >= 1 && number <= this.size ? number : 0;

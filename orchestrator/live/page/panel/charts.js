@@ -1,7 +1,7 @@
 // The curves: that of the law, disagreement on a logarithmic axis, each beside what theory predicts, and speeds. Those
 // of a recording are whole; a line marks the time that is shown.
 import {agentColours, styleColour} from "../colours.js";
-import {byId, element, figure, setText, throttled, typeset} from "../dom.js";
+import {byId, element, figure, fixed, setText, throttled, typeset} from "../dom.js";
 
 import {History, MOST_SPEEDS, speedsOf} from "./history.js";
 import {curveWords, disagreementWords, modeOf, responseAt, valueAt, withUnit} from "./theory.js";
@@ -10,6 +10,7 @@ const LEAST = 1e-6;  // bottom of a logarithmic axis: curves end there
 const SLOW = 1e-3;   // the top of an axis of speeds is not below
 const DRAW_EVERY_MS = 120;
 const FIRST_SPEED = 3;  // in a row
+const OF_MANY = ["fastest", "mean", "slowest", "selected"];
 
 export class Charts {
   #model;
@@ -21,6 +22,9 @@ export class Charts {
 
   constructor(model) {
     this.#model = model;
+    byId("speed-names")
+        .replaceChildren(
+            ...OF_MANY.map((name) => element("span", {}, element("i", {className: `line ${name}`}), name)));
     model.on("run", () => this.#restart());
     model.on("experiment", () => this.#onExperiment());
     model.on("curves", ({curves}) => this.#onCurves(curves));
@@ -79,6 +83,7 @@ export class Charts {
   #onExperiment() {
     const {curve, prediction, responses = []} = this.#model.experiment;
     byId("law-chart").hidden = !curve;
+    byId("speed-names").hidden = this.#model.size <= MOST_SPEEDS;
     byId("disagreement-chart").hidden = Boolean(curve) && !curve.agrees;
     byId("prediction").classList.toggle("has-line", responses.length > 0 || Boolean(modeOf(this.#model.experiment)));
     setText(byId("prediction"), disagreementWords(prediction));
@@ -176,7 +181,7 @@ export class Charts {
   }
 
   #look() {
-    const number = (x) => figure(x, 2).replace(/\.?0+$/, "");
+    const along = (x, range) => fixed(x, decimalsOf(range));
     return {
       axisLineColor: styleColour("border"),
       gridLineColor: styleColour("border"),
@@ -192,11 +197,16 @@ export class Charts {
       rightGap: 8,
       axes: {
         x: {
-          axisLabelFormatter: (t) => `${number(t)} s`,
+          axisLabelFormatter: (t, _granularity, _options, chart) => `${along(t, chart.xAxisRange())} s`,
           pixelsPerLabel: 70,
           valueFormatter: (t) => `${figure(t, 2)} s`
         },
-        y: {axisLabelWidth: 46, pixelsPerLabel: 26, axisLabelFormatter: number, valueFormatter: (x) => figure(x)}
+        y: {
+          axisLabelWidth: 46,
+          pixelsPerLabel: 26,
+          axisLabelFormatter: (x, _granularity, _options, chart) => along(x, chart.yAxisRange()),
+          valueFormatter: (x) => figure(x)
+        }
       },
     };
   }
@@ -239,8 +249,7 @@ export class Charts {
 
   #speedLook() {
     const {size} = this.#model, many = size > MOST_SPEEDS;
-    const names =
-        many ? ["fastest", "mean", "slowest", "selected"] : Array.from({length: size}, (_, k) => `agent ${k + 1}`);
+    const names = many ? OF_MANY : Array.from({length: size}, (_, k) => `agent ${k + 1}`);
     const colors = many ? ["accent", "text", "muted", "velocity"].map(styleColour) : agentColours(size);
     return {labels: ["t", ...names], colors};
   }
@@ -248,6 +257,9 @@ export class Charts {
 
 /** A value as a logarithmic axis shows it; null: below it. */
 function level(value) { return value === null || value === undefined || value < LEAST ? null : value; }
+
+/** With how many decimals the labels of an axis all differ. */
+function decimalsOf([low, high]) { return Math.min(8, Math.max(0, Math.ceil(0.5 - Math.log10(high - low)))); }
 
 /** The top of an axis of speeds. */
 function topOf(rows) { return 1.1 * rows.reduce((top, [, ...speeds]) => Math.max(top, ...speeds), SLOW); }

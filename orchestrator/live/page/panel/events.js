@@ -14,9 +14,10 @@ export class Events {
 
   #show() {
     const {events, expected, isRecording} = this.#model;
-    setText(byId("event-count"), events.length ? String(events.length) : "");
-    const waiting = expected.toReversed().map((event) => this.#waitingRow(event));
-    if (waiting.length > 0 && events.length === 0) return byId("events").replaceChildren(...waiting);
+    const counts = [events.length || "", expected.length ? `${expected.length} pending` : ""];
+    setText(byId("event-count"), counts.filter(Boolean).join(" + "));
+    const pending = expected.toReversed().map((event) => this.#pendingRow(event));
+    if (pending.length > 0 && events.length === 0) return byId("events").replaceChildren(...pending);
     if (events.length === 0)
       return byId("events").replaceChildren(element("p", {
         className: "muted hint",
@@ -27,15 +28,15 @@ export class Events {
     const all =
         button("Copy all as TOML", () => this.#copy(events.map(({toml}) => toml.trimEnd()).join("\n\n") + "\n"));
     byId("events").replaceChildren(
-        element("div", {className: "row-end"}, all), ...waiting,
+        element("div", {className: "row-end"}, all), ...pending,
         ...events.toReversed().map((event) => this.#row(event)));
   }
 
-  #waitingRow({toml, words}) {
+  #pendingRow({toml, words}) {
     return element(
         "article", {className: "event"},
         element(
-            "header", {}, element("b", {textContent: "waiting"}),
+            "header", {}, element("b", {textContent: "pending"}),
             element("span", {className: "muted", textContent: ` ${words}`})),
         element("pre", {textContent: toml.trim()}));
   }

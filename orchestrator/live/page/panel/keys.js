@@ -8,7 +8,7 @@ const SHEET = [
   ["Page ↑ ↓", "in a recording ten seconds back or on"],
   ["↑ ↓", "choose the agent before or after"],
   ["1 – 9", "choose agent 1 to 9"],
-  ["Esc", "choose none"],
+  ["Esc", "close the menu; choose none"],
   ["f", "follow the chosen agent"],
   ["a", "look at all"],
   ["t", "look from above"],
@@ -36,7 +36,12 @@ export function bindKeys({model, view, transport, follow, layers}) {
     PageDown: () => model.isRecording && transport.seekBy(10),
     ArrowUp: () => model.select(model.selected > 1 ? model.selected - 1 : model.size),
     ArrowDown: () => model.select(model.selected < model.size ? model.selected + 1 : 1),
-    Escape: () => model.select(0),
+    Escape: () => {
+      if (byId("layers").open)
+        byId("layers").open = false;
+      else
+        model.select(0);
+    },
     f: follow,
     a: () => view.fit(),
     t: () => view.top(),

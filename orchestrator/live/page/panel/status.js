@@ -7,7 +7,8 @@ const LAYERS = [
   ["acceleration", "Commanded acceleration"], ["plan", "Waypoints, places, prediction"], ["tree", "Tree of pursuit"],
   ["heights", "Heights"]
 ];
-const LEGEND = [["heard", "heard"], ["lost", "lost"], ["far", "out of range"], ["none", "no edge"]];
+const LEGEND =
+    [["heard", "heard"], ["lost", "lost"], ["far", "out of range"], ["none", "no edge"], ["tree", "pursues"]];
 
 export class Status {
   #model;
@@ -49,8 +50,12 @@ export class Status {
     setText(byId("source"), !isRecording ? experiment.engine : loss ? "recording, cut" : "recording");
     byId("source").title = loss;
     this.#showWind(experiment.wind_m_per_s ?? [0, 0, 0]);
+    const hide = (name, isHidden) => {
+      byId("legend").querySelector(`.${name}`).parentElement.hidden = isHidden;
+    };
     byId("legend").hidden = experiment.edges.length === 0;
-    byId("legend").querySelector(".far").parentElement.hidden = !(experiment.range_m > 0);
+    hide("far", !(experiment.range_m > 0));
+    hide("tree", !experiment.agents.some(({parent}) => parent > 0));
   }
 
   #showWind([x, y, z]) {

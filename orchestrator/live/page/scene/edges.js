@@ -10,7 +10,7 @@ const EASE = 0.35;  // part of the way to its new look that an edge goes in a ro
 
 // Of each state: colour in the style sheet, alpha, width, dash (px).
 const LOOKS = {
-  [EDGE.NONE]: ["edge-none", 0.35, 1, 3],
+  [EDGE.NONE]: ["edge-none", 0.65, 1.5, 4],
   [EDGE.HEARD]: ["edge-heard", 0.9, 2, 0],
   [EDGE.LOST]: ["edge-lost", 0.55, 1.3, 0],
   [EDGE.FAR]: ["edge-far", 0.4, 1.2, 6],

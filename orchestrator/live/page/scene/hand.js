@@ -38,6 +38,9 @@ export class Hand {
     on("pointerup", (event) => this.#onUp(event));
     on("pointercancel", () => this.#letGo());
     on("pointerleave", () => this.#point(0, -1, null));
+    this.#model.on("events", () => {
+      if (!this.#tip.hidden && view.pointed.edge >= 0) this.#tip.textContent = this.#edgeWords(view.pointed.edge);
+    });
   }
 
   // --- finding ---
@@ -181,9 +184,12 @@ export class Hand {
   }
 
   #edgeWords(index) {
-    const [hearer, heard] = this.#model.experiment.edges[index], state = this.#state(index);
-    const action = this.#model.isRecording ? "" : state === EDGE.NONE ? ": click to mend" : ": click to cut";
-    return `${hearer} hears ${heard}, ${EDGE_WORDS[state]}${action}`;
+    const [hearer, heard] = this.#model.experiment.edges[index], waits = this.#model.pendingEdge(index);
+    const action = this.#model.isRecording ? "" :
+        this.#model.edgeWillWork(index)    ? ": click to cut" :
+                                             ": click to mend";
+    const pending = waits === null ? "" : waits ? ", will be mended" : ", will be cut";
+    return `${hearer} hears ${heard}, ${EDGE_WORDS[this.#state(index)]}${pending}${action}`;
   }
 
   #state(index) { return this.#model.frame?.edge?.[index] ?? EDGE.UNKNOWN; }
@@ -206,7 +212,7 @@ export class Hand {
     const words = Object.assign(document.createElement("span"), {textContent: this.#edgeWords(edge).split(":")[0]});
     const button = Object.assign(
         document.createElement("button"),
-        {type: "button", textContent: this.#state(edge) === EDGE.NONE ? "Mend" : "Cut"});
+        {type: "button", textContent: this.#model.edgeWillWork(edge) ? "Cut" : "Mend"});
     button.addEventListener("click", () => {
       this.#card.hidden = true;
       cutOrMend(this.#asking, this.#model, edge);
@@ -218,9 +224,10 @@ export class Hand {
   }
 }
 
-/** Asks to cut an edge that works, or to mend one that does not. */
+/** Asks to cut an edge that works, or to mend one that does not, as it will be by what waits. */
 export function cutOrMend(asking, model, index) {
-  const [hearer, heard] = model.experiment.edges[index];
-  const verb = model.frame?.edge?.[index] === EDGE.NONE ? "mend" : "cut";
-  return asking.event(edgesToml(verb, [[hearer, heard]]), `${verb === "cut" ? "Cut" : "Mend"} ${heard} → ${hearer}`);
+  const [hearer, heard] = model.experiment.edges[index], works = !model.edgeWillWork(index);
+  return asking.event(
+      edgesToml(works ? "mend" : "cut", [[hearer, heard]]), `${works ? "Mend" : "Cut"} ${heard} → ${hearer}`,
+      {index, works});
 }

@@ -154,12 +154,13 @@ export class Overlay {
   }
 }
 
-/** [place, agent] of a formation: it has no place of its own, so it is drawn around the agents' mean. */
+/** [place, agent] of a formation: it has no place of its own, so it is drawn around the leader or the agents' mean. */
 export function places(agents, p) {
-  const placed = agents.filter(({place_m}) => place_m);
+  const placed = agents.filter(({place_m}) => place_m), leaders = placed.filter(({leads}) => leads);
   if (placed.length === 0) return [];
+  const anchors = leaders.length === 1 ? leaders : placed;
   const middle = [0, 1, 2].map(
-      (i) => placed.reduce((sum, {id, place_m}) => sum + p[3 * (id - 1) + i] - place_m[i], 0) / placed.length);
+      (i) => anchors.reduce((sum, {id, place_m}) => sum + p[3 * (id - 1) + i] - place_m[i], 0) / anchors.length);
   return placed.map(({id, place_m}) => [place_m.map((x, i) => (i === 2 ? p[3 * id - 1] : x + middle[i])), id]);
 }
 
