@@ -80,4 +80,11 @@ void RequireAddresses(const DomainOptions& options) {
                   AddressesText(interfaces)));
 }
 
+std::vector<std::string> AddressesForOthers() {
+  std::vector<std::string> addresses;
+  for (const Interface& each : Interfaces())
+    if (each.is_up && !each.address.empty() && !each.address.starts_with("127.")) addresses.push_back(each.address);
+  return addresses;
+}
+
 }  // namespace mascot

@@ -14,6 +14,8 @@ class Console {
   explicit Console(bool quiet);
   ~Console() { EndProgress(); }
 
+  /// Whether somebody sees lines on a terminal.
+  bool is_on_terminal() const { return terminal_ && !quiet_; }
   /// Prints a line.
   void Line(const std::string& text);
   /// Prints a line also if the console is quiet: something is lost.

@@ -124,6 +124,7 @@ int Up(UpArgs& args) {
   StopSignal stop;
   if (!args.viewers.at && !args.viewers.allowed_origins.empty())
     throw ConfigError({"--allow-origin: expected --view with it"});
+  if (!args.viewers.at && args.viewers.watch_only) throw ConfigError({"--watch-only: expected --view with it"});
   std::optional<EndsAtOnce> before_the_run(stop);
   const Experiment experiment = Load(args);
   args.engine.Refuse(experiment);
@@ -229,6 +230,7 @@ std::function<int()> SetUpUp(CLI::App& command) {
       ->expected(0, 1)
       ->type_name("[ADDRESS:PORT]");
   AddAllowOrigin(command, args->viewers.allowed_origins);
+  AddWatchOnly(command, args->viewers.watch_only);
   command.add_flag("--slurm", args->slurm,
                    "inside of a Slurm job: spread the agents evenly over its nodes, by one srun");
   command.add_flag("--force", args->force,

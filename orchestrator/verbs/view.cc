@@ -26,6 +26,7 @@ struct ViewArgs {
   std::string run;
   LiveAddress at;
   std::vector<std::string> allowed_origins;
+  bool watch_only = false;
 };
 
 /// Returns the exit code: a signal ends the view, or an error of ours has.
@@ -52,7 +53,8 @@ int View(const ViewArgs& args) {
                                   .allowed_origins = args.allowed_origins,
                                   .page = FindShared("page", "orchestrator/live"),
                                   .source = {.recorded = run.part()},
-                                  .pace = 1};
+                                  .pace = 1,
+                                  .steering = args.watch_only ? Steering::By::kToken : Steering::By::kAll};
   const auto view = [&] {
     try {
       return std::make_unique<LiveView>(run.experiment(), prediction, playback, options, log);
@@ -61,7 +63,7 @@ int View(const ViewArgs& args) {
     }
   }();
   const Projector projector(run, playback, *view, log);
-  console.Line("view           " + view->url());
+  PrintAddresses(*view, console);
   return WaitForTheEnd(stop, *view);
 }
 
@@ -78,6 +80,7 @@ std::function<int()> SetUpView(CLI::App& command) {
           "where to listen (default: 127.0.0.1:8765, or the next free port)")
       ->type_name("ADDRESS:PORT");
   AddAllowOrigin(command, args->allowed_origins);
+  AddWatchOnly(command, args->watch_only);
   command.footer(
       "Serves the page of a run, and Foxglove's protocol, until Ctrl-C. Only the recording is read, and of it the "
       "parts\nthat are looked at; what was cut short plays up to the cut. docs/live.md says what is to be seen.");

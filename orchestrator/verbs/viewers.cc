@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "base/utf8.h"
+#include "bus/addresses.h"
 #include "orchestrator/live/server/origin.h"
+#include "orchestrator/live/server/qr_code.h"
 #include "orchestrator/live/shown/shown_keys.h"
 #include "system/script.h"
 
@@ -25,6 +27,31 @@ void AddAllowOrigin(CLI::App& command, std::vector<std::string>& origins) {
       ->allow_extra_args(false);  // otherwise it would take CONFIG as a second value
 }
 
+void AddWatchOnly(CLI::App& command, bool& watch_only) {
+  command.add_flag("--watch-only", watch_only,
+                   "let viewers only watch; the address that is printed as 'steer' is for those who may do more");
+}
+
+std::vector<std::string> AddressesOf(const std::string& url) {
+  std::vector<std::string> addresses;
+  for (const std::string_view any : {"http://0.0.0.0:", "http://[::]:"})
+    if (url.starts_with(any))
+      for (const std::string& address : AddressesForOthers())
+        addresses.push_back("http://" + address + ":" + url.substr(any.size()));
+  return addresses.empty() ? std::vector{url} : addresses;
+}
+
+void PrintAddresses(const LiveView& view, Console& console) {
+  const std::vector<std::string> addresses = AddressesOf(view.url());
+  const std::string suffix = view.steering_suffix();
+  for (const std::string& address : addresses) console.Line("view           " + address);
+  if (!suffix.empty()) console.Line("steer          " + addresses.front() + suffix);
+  const bool is_for_others =
+      !addresses.front().starts_with("http://127.") && !addresses.front().starts_with("http://[::1]");
+  if (!is_for_others || !console.is_on_terminal()) return;
+  for (const std::string& line : QrCode(addresses.front())) console.Line(line);
+}
+
 Viewers::Viewers(const ViewerArgs& args, const std::string& engine, const Experiment& experiment,
                  const Prediction& prediction, const RunMeter& meter, RunRequests& requests, Console& console) try
     : requests_(requests), console_(console) {
@@ -35,7 +62,8 @@ Viewers::Viewers(const ViewerArgs& args, const std::string& engine, const Experi
                                   .allowed_origins = args.allowed_origins,
                                   .page = FindShared("page", "orchestrator/live"),
                                   .source = {.engine = engine},
-                                  .pace = requests.status().pace},
+                                  .pace = requests.status().pace,
+                                  .steering = args.watch_only ? Steering::By::kToken : Steering::By::kAll},
                 [this](const std::string& line) { Log(line); });
   view_->SetExperiment(experiment, ShownKeysOf(experiment));
   events_.emplace(*view_, requests);
@@ -43,7 +71,7 @@ Viewers::Viewers(const ViewerArgs& args, const std::string& engine, const Experi
     const auto phase = status.paused ? RunState::Phase::kPaused : RunState::Phase::kRunning;
     view_->SetState({.phase = phase, .pace = status.pace});
   });
-  console.Line("view           " + view_->url());
+  PrintAddresses(*view_, console);
 } catch (const std::runtime_error& failure) {
   throw ConfigError({std::string("--view: ") + failure.what()});
 }

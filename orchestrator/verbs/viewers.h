@@ -24,14 +24,24 @@ class App;
 
 namespace mascot {
 
-/// What --view and --allow-origin ask for.
+/// What --view, --allow-origin and --watch-only ask for.
 struct ViewerArgs {
   std::optional<LiveAddress> at;
   std::vector<std::string> allowed_origins = {};
+  bool watch_only = false;
 };
 
 /// Adds the option --allow-origin, which may be given several times.
 void AddAllowOrigin(CLI::App& command, std::vector<std::string>& origins);
+/// Adds the flag --watch-only.
+void AddWatchOnly(CLI::App& command, bool& watch_only);
+
+/// The addresses at which a server at `url`, "http://0.0.0.0:8765", is reached: `url`, or, if it listens at every
+/// address of this machine, those that others may type.
+std::vector<std::string> AddressesOf(const std::string& url);
+/// Prints where the page is, and, if not all may steer, the address for those who may. If other machines may reach it,
+/// and the output is a terminal, prints a QR code of it, too.
+void PrintAddresses(const LiveView& view, Console& console);
 
 /// The live view of a run of `up`, if the user asked for --view; else an object that does nothing.
 class Viewers {
@@ -45,7 +55,7 @@ class Viewers {
   Viewers& operator=(const Viewers&) = delete;
 
   /// Address of the page; empty: there is none.
-  std::string url() const { return view_ ? view_->url() : ""; }
+  std::string url() const { return view_ ? AddressesOf(view_->url()).front() : ""; }
 
   /// From now on, lines about viewers are also written to logs/viewers.log; the first line creates the file.
   void LogTo(const RunFolder& folder);

@@ -32,7 +32,7 @@ class FuzzedServer final : public Foxglove::Host {
                    .request = {},
                    .response = {}},
                   *this) {
-    foxglove_.OnOpen(kClient, /*controls_playback=*/true);
+    foxglove_.OnOpen(kClient, {.has_playback = true});
     foxglove_.SetParameters({{"law.p_gain", 1.0}, {"law.name", "x"}});
   }
 

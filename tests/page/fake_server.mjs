@@ -37,8 +37,11 @@ async function serve({url}, response) {
 const POLICY = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; " +
     "font-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/** Starts a server on a free port, with a row each `frame_ms`. `asked` has all that clients asked for. */
-export async function startFake({port = 0, session = "1", frame_ms = 100, ...options} = {}) {
+/**
+ * Starts a server on a free port, with a row each `frame_ms`. `asked` has all that clients asked for. `steer`: the
+ * token without which clients only watch; null: all steer.
+ */
+export async function startFake({port = 0, session = "1", frame_ms = 100, steer = null, ...options} = {}) {
   const run = new MadeUpRun(options), clients = new Set(), asked = [];
   const server = createServer(serve);
   server.on("upgrade", (request, socket) => {
@@ -50,10 +53,11 @@ export async function startFake({port = 0, session = "1", frame_ms = 100, ...opt
     if (!client.socket) return;
     clients.add(client);
     const text = (message) => client.socket.send(JSON.stringify(message));
+    const maySteer = steer === null || request.url === `/?steer=${steer}`;
     text({
       op: "serverInfo",
       name: "made up",
-      capabilities: ["services"],
+      capabilities: maySteer ? ["services"] : [],
       supportedEncodings: ["json"],
       sessionId: session
     });
@@ -63,10 +67,11 @@ export async function startFake({port = 0, session = "1", frame_ms = 100, ...opt
           (topic, k) =>
               ({id: k + 1, topic, encoding: "json", schemaName: topic, schema: "{}", schemaEncoding: "jsonschema"}))
     });
-    text({
-      op: "advertiseServices",
-      services: [{id: SERVICE, name: "/mascot/ask", type: "ask", requestSchema: "", responseSchema: ""}]
-    });
+    if (maySteer)
+      text({
+        op: "advertiseServices",
+        services: [{id: SERVICE, name: "/mascot/ask", type: "ask", requestSchema: "", responseSchema: ""}]
+      });
   });
 
   const send = (client, topic, json) => {

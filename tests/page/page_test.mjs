@@ -455,6 +455,31 @@ test("three speeds of many agents are named by their colours", async () => {
     });
 });
 
+test("who only watches sees everything, is told so, and can change nothing", async () => {
+  const fake = await startFake({steer: "t0k"});
+  const {page} = await open(browser, fake.url);
+  await until(page, () => mascot.tick > 0 && !document.getElementById("watching").hidden);
+  for (const id of ["play", "step", "pace", "stop"])
+    assert.ok(await page.evaluate((name) => document.getElementById(name).disabled, id), id);
+  await page.click("#tab-tune");
+  assert.match(await page.textContent("#tune"), /^This page only watches\. At this time the run has:law\./);
+  assert.equal(await page.locator("#tune input").count(), 0);
+  const [x, y] = await placeOf(page, "edgeOnScreen", await edgeInTheOpen(page));
+  await page.mouse.click(x, y);
+  await page.keyboard.press("Space");
+  await until(page, () => document.querySelector(".notice.refused")?.textContent.includes("this view only watches"));
+  assert.deepEqual(fake.asked, []);
+  await page.context().close();
+
+  const steering = await open(browser, `${fake.url}#steer=t0k`);
+  await until(steering.page, () => mascot.tick > 0 && document.getElementById("watching").hidden);
+  await steering.page.keyboard.press("Space");
+  await isPaused(steering.page);
+  assert.deepEqual(fake.asked, [{ask: "pause"}]);
+  await steering.page.context().close();
+  await fake.stop();
+});
+
 // --- recordings and connections ----------------------------------------------------------------------------
 
 test(

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "bus/addresses.h"
 #include "tests/orchestrator/live/shown/viewer.h"
 #include "tests/support/orchestrator.h"
 #include "tests/support/repeated.h"
@@ -188,6 +189,38 @@ TEST(UpWithView, SaysWhatAnOriginIs) {
   Up alone(folder, "run", Config("leaderless"), {"--allow-origin", "https://app.foxglove.dev"});
   EXPECT_EQ(alone.Wait(), 2);
   EXPECT_EQ(alone.err(), "error: --allow-origin: expected --view with it\n");
+}
+
+TEST(UpWithView, LetsOthersWatchOnlyAndSaysWhereToSteer) {
+  const ScratchFolder folder;
+  WriteFile(folder.File("run.toml"), kRecordedRun);
+  Up up(folder, "run", folder.File("run.toml"),
+        {"--engine", "inprocess", "--set", "run.mode='lockstep'", "--view", "127.0.0.1:0", "--watch-only"});
+  ASSERT_TRUE(Says(up, "steer          http://127.0.0.1:"));
+  const std::string said = up.err(), url = UrlOf(up), steer = said.substr(said.find("/#steer=") + 8, 32);
+  EXPECT_THAT(said, HasSubstr("view           " + url + "\n"));
+  {
+    Viewer watches(url), steers(url, "/?steer=" + steer);
+    EXPECT_EQ(watches.Ask({{"ask", "stop"}})["words"], "this view only watches");
+    EXPECT_EQ(steers.Ask({{"ask", "stop"}})["granted"], true);
+  }
+  EXPECT_EQ(up.Wait(), 0);
+  Up alone(folder, "alone", Config("leaderless"), {"--watch-only"});
+  EXPECT_EQ(alone.Wait(), 2);
+  EXPECT_EQ(alone.err(), "error: --watch-only: expected --view with it\n");
+}
+
+TEST(UpWithView, AtAllAddressesNamesThoseThatOthersMayType) {
+  const std::vector<std::string> addresses = AddressesForOthers();
+  const ScratchFolder folder;
+  WriteFile(folder.File("run.toml"), kRecordedRun);
+  Up up(folder, "run", folder.File("run.toml"),
+        {"--engine", "inprocess", "--set", "run.mode='lockstep'", "--view", "0.0.0.0:0"});
+  const std::string first = addresses.empty() ? "0.0.0.0" : addresses.front();
+  EXPECT_TRUE(Says(up, "view           http://" + first + ":")) << up.err();
+  EXPECT_THAT(up.err(), testing::Not(HasSubstr("█"))) << "a QR code is for terminals";
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130);
 }
 
 TEST(UpWithView, SaysWhatAnAddressIs) {

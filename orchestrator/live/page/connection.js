@@ -16,7 +16,7 @@ export const parse = (bytes) => JSON.parse(decoder.decode(bytes));
 export class Connection {
   #url;
   #topics;   // topic -> function of the bytes of each message
-  #changed;  // told "open" or "lost"
+  #changed;  // told "open", with the session and whether this page may steer, or "lost"
   #socket = null;
   #subscriptions = new Map();  // subscription id -> topic
   #services = new Map();       // name -> id
@@ -62,7 +62,7 @@ export class Connection {
   #onText(message) {
     if (message.op === "serverInfo") {
       this.#retry_ms = FIRST_RETRY_MS;
-      this.#changed("open", message.sessionId);
+      this.#changed("open", message.sessionId, message.capabilities.includes("services"));
     } else if (message.op === "advertise") {
       this.#subscribe(message.channels.filter(({topic, encoding}) => encoding === ENCODING && topic in this.#topics));
     } else if (message.op === "advertiseServices") {

@@ -24,8 +24,12 @@ let newestRow = null;  // bytes of a row that nobody has looked at: only the new
 const prefersDark = matchMedia("(prefers-color-scheme: dark)");
 setScheme(prefersDark.matches ? "dark" : "light");
 
+// Who may steer, where not all may, has a token behind the address.
+const token = new URLSearchParams(location.hash.slice(1)).get("steer");
 const connection = new Connection(
-    `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/`, {
+    `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/${
+        token ? `?steer=${encodeURIComponent(token)}` : ""}`,
+    {
       "/ui/experiment": (bytes) => model.setExperiment(parse(bytes)),
       "/ui/events": (bytes) => model.setEvents(parse(bytes)),
       "/ui/curves": (bytes) => model.setCurves(parse(bytes)),
@@ -33,7 +37,7 @@ const connection = new Connection(
         newestRow = bytes;
       },
     },
-    (state, session) => model.setConnection(state === "open", session));
+    (state, session, maySteer) => model.setConnection(state === "open", session, maySteer));
 
 /** The view; without WebGL there is no page, and it says so. */
 function makeView() {

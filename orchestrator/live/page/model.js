@@ -25,6 +25,7 @@ export const shortLimitWords = (flags) => limitsOf(flags).map(([, , word]) => wo
 
 export class Model {
   connected = false;
+  maySteer = true;  // false: this page only watches
   experiment = null;
   frame = null;
   curves = {rows: []};  // of a run up to when the page was opened, of a recording as far as it has been read
@@ -58,7 +59,11 @@ export class Model {
   /** What a recorded run came up against, but for events: {t_s, words}. */
   get incidents() { return incidentsIn(this.experiment?.recorded?.incidents ?? ""); }
 
-  setConnection(connected, session = null) {
+  /** Whether this page may change what it shows: a run that it may steer. */
+  get canChange() { return this.maySteer && !this.isRecording; }
+
+  setConnection(connected, session = null, maySteer = this.maySteer) {
+    this.maySteer = maySteer;
     if (connected && session !== this.#session) this.#forget();
     if (connected) this.#session = session;
     this.connected = connected;

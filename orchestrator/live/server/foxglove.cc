@@ -20,8 +20,9 @@ constexpr int kWarning = 1, kError = 2;
 constexpr std::string_view kGoalTopic = "/goal";
 constexpr std::string_view kGoalType = "geometry_msgs/msg/PoseStamped", kOldGoalType = "geometry_msgs/PoseStamped";
 constexpr std::string_view kEncodings[] = {"cdr", "json"};
-constexpr std::string_view kCapabilities[] = {"time",     "parameters",    "parametersSubscribe",
-                                              "services", "clientPublish", "connectionGraph"};
+constexpr std::string_view kWatching[] = {"time", "parameters", "parametersSubscribe", "connectionGraph"};
+constexpr std::string_view kSteering[] = {"services", "clientPublish"};
+constexpr const char* kOnlyWatches = "this view only watches";
 constexpr std::uint32_t kServiceId = 0;
 constexpr std::size_t kLongestEcho = 200;  // of what a client sent
 
@@ -68,10 +69,13 @@ Json NodesJson(const Foxglove::Connections::Nodes& nodes, const char* ids) {
 
 }  // namespace
 
-void Foxglove::OnOpen(ClientId id, bool controls_playback) {
-  clients_[id].controls_playback = controls_playback;
-  Json capabilities = kCapabilities;
-  if (controls_playback) capabilities.push_back("playbackControl");
+void Foxglove::OnOpen(ClientId id, const Permits& permits) {
+  clients_[id].permits = permits;
+  Json capabilities = kWatching;
+  if (permits.may_steer) {
+    for (const std::string_view capability : kSteering) capabilities.push_back(capability);
+    if (permits.has_playback) capabilities.push_back("playbackControl");
+  }
   SendText(id, {{"op", "serverInfo"},
                 {"name", about_.name},
                 {"capabilities", capabilities},
@@ -94,7 +98,7 @@ void Foxglove::OnOpen(ClientId id, bool controls_playback) {
                         {"type", about_.service},
                         {"request", SchemaJson(about_.request)},
                         {"response", SchemaJson(about_.response)}};
-  SendText(id, {{"op", "advertiseServices"}, {"services", Json::array({service})}});
+  if (permits.may_steer) SendText(id, {{"op", "advertiseServices"}, {"services", Json::array({service})}});
   SendPlayback(id, "");
 }
 
@@ -316,6 +320,7 @@ void Foxglove::AskAll(ClientId id, std::vector<Request> requests, Reply reply) {
 }
 
 void Foxglove::Question(ClientId id, Reply reply, const std::function<void(Reply)>& ask) {
+  if (!clients_[id].permits.may_steer) return reply({false, kOnlyWatches});
   if (clients_[id].questions >= kMaxQuestions) return reply({false, "too many requests are not answered yet"});
   ++clients_[id].questions;
   ask([this, id, reply = std::move(reply)](const Answer& answer) {
@@ -404,7 +409,7 @@ void Foxglove::SendParameters(ClientId id, std::span<const Parameter> sent, cons
 }
 
 void Foxglove::SendPlayback(ClientId id, const std::string& request) {
-  if (!clients_[id].controls_playback) return;
+  if (!clients_[id].permits.has_playback) return;
   std::string message = Begin(FromServer::kPlayback);
   message += static_cast<char>(playback_.status);
   PutBytes(message, playback_.time_ns);

@@ -77,8 +77,11 @@ class Foxglove {
   /// `host` must outlive this object.
   Foxglove(About about, Host& host) : about_(std::move(about)), host_(host) {}
 
-  /// `controls_playback` says that the client speaks foxglove.sdk.v1, which has more kinds of messages.
-  void OnOpen(ClientId client, bool controls_playback);
+  struct Permits {
+    bool has_playback = false;  ///< the client speaks foxglove.sdk.v1, which has more kinds of messages
+    bool may_steer = true;      ///< false: it may only watch, and all else that it asks for is refused
+  };
+  void OnOpen(ClientId client, const Permits& permits);
   /// Returns why to drop the client; empty: it stays.
   std::string OnMessage(ClientId client, bool is_text, std::span<const std::uint8_t> message);
   void OnClose(ClientId client) { clients_.erase(client); }
@@ -106,7 +109,7 @@ class Foxglove {
     std::map<std::uint32_t, Channel> channels;         // that it publishes, by its own number
     std::set<std::string> parameters;                  // whose changes it wants to know
     std::size_t questions = 0;                         // not answered yet
-    bool controls_playback = false;
+    Permits permits;
   };
   using Bytes = std::span<const std::uint8_t>;
 

@@ -111,8 +111,9 @@ class Session : public std::enable_shared_from_this<Session> {
     }));
     stream_.auto_fragment(false);  // a message is one frame: it is in memory anyway
     stream_.read_message_max(server_.options.limits.message_bytes);
-    stream_.async_accept(
-        request, [self = shared_from_this(), subprotocol](error_code error) { self->OnAccept(error, subprotocol); });
+    stream_.async_accept(request,
+                         [self = shared_from_this(), subprotocol, target = std::string(View(request.target()))](
+                             error_code error) { self->OnAccept(error, subprotocol, target); });
   }
 
   void Send(Frame frame) {
@@ -134,11 +135,11 @@ class Session : public std::enable_shared_from_this<Session> {
  private:
   static std::size_t SizeOf(const Frame& frame) { return frame.head.size() + (frame.body ? frame.body->size() : 0); }
 
-  void OnAccept(error_code error, const std::string& subprotocol) {
+  void OnAccept(error_code error, const std::string& subprotocol, const std::string& target) {
     if (error) return Forget();
     open_ = true;
     told_ = true;
-    Guard([&] { server_.user.OnOpen(id_, subprotocol); });
+    Guard([&] { server_.user.OnOpen(id_, subprotocol, target); });
     if (server_.ending) SayGoodbye();
     Read();
   }

@@ -57,8 +57,9 @@ class SocketUser {
   virtual ~SocketUser() = default;
   /// The answer to GET `target`, a path and perhaps a query, as sent.
   virtual HttpAnswer Get(std::string_view target) = 0;
-  /// `subprotocol`: that of SocketOptions::subprotocols on which both sides agreed.
-  virtual void OnOpen(ClientId client, const std::string& subprotocol) = 0;
+  /// `subprotocol`: that of SocketOptions::subprotocols on which both sides agreed. `target`: what the client asked
+  /// for, a path and perhaps a query, as sent.
+  virtual void OnOpen(ClientId client, const std::string& subprotocol, std::string_view target) = 0;
   /// Called for a message, text in UTF-8 or bytes. Returns why to drop the client; empty: it stays.
   virtual std::string OnMessage(ClientId client, bool is_text, std::span<const std::uint8_t> message) = 0;
   virtual void OnClose(ClientId client) = 0;

@@ -46,6 +46,7 @@ LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, c
       meter_(meter),
       source_(options.source),
       pages_(options.page),
+      steering_(options.steering),
       newest_(experiment.size()),
       state_{.pace = options.pace},
       shown_(experiment.size()),
@@ -154,9 +155,9 @@ void LiveView::SetExperiment(const Experiment& now, const std::vector<ShownKey>&
   });
 }
 
-void LiveView::OnOpen(ClientId client, const std::string& subprotocol) {
+void LiveView::OnOpen(ClientId client, const std::string& subprotocol, std::string_view target) {
   if (foxglove_.clients().empty() && TakeNewest() && shown_.tick >= 0) Show();  // no viewer watched: shown_ is old
-  foxglove_.OnOpen(client, subprotocol == kSubprotocols[0]);
+  foxglove_.OnOpen(client, {.has_playback = subprotocol == kSubprotocols[0], .may_steer = steering_.IsGranted(target)});
 }
 
 std::string LiveView::OnMessage(ClientId client, bool is_text, std::span<const std::uint8_t> message) {

@@ -14,6 +14,7 @@
 #include "orchestrator/live/server/foxglove.h"
 #include "orchestrator/live/server/pages.h"
 #include "orchestrator/live/server/socket.h"
+#include "orchestrator/live/server/steering.h"
 #include "orchestrator/live/shown/about.h"
 #include "orchestrator/live/shown/ros_channels.h"
 #include "orchestrator/live/shown/ui_channels.h"
@@ -35,6 +36,8 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
     std::filesystem::path page;  ///< folder of index.html
     ShownSource source = {};
     double pace = 0;  ///< simulated seconds per second that the run shall fly; 0: as fast as the machine can
+    /// Who may steer; others only watch.
+    Steering::By steering = Steering::By::kAll;
   };
 
   /// Listens from now on; all arguments but `options` must outlive this object. `meter` must get each row before this
@@ -48,6 +51,8 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
 
   /// Address of the page.
   std::string url() const { return server_.url(); }
+  /// What to append to an address so that who opens it may steer; empty: nothing, all may.
+  std::string steering_suffix() const { return steering_.token().empty() ? "" : "/#steer=" + steering_.token(); }
   /// Takes the next row, from the run's thread.
   void Add(const FlownRow& row) override;
 
@@ -78,7 +83,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
 
   // SocketUser, in the server's thread.
   HttpAnswer Get(std::string_view target) override { return pages_.Get(target); }
-  void OnOpen(ClientId client, const std::string& subprotocol) override;
+  void OnOpen(ClientId client, const std::string& subprotocol, std::string_view target) override;
   std::string OnMessage(ClientId client, bool is_text, std::span<const std::uint8_t> message) override;
   void OnClose(ClientId client) override;
   void OnTimer() override;
@@ -108,6 +113,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   const RunMeter* meter_;                // null: of a recording
   const ShownSource source_;
   const Pages pages_;
+  const Steering steering_;
 
   std::mutex mutex_;
   ShownRow newest_;          // guarded by mutex_

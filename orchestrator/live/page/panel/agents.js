@@ -142,7 +142,7 @@ class Detail {
   #heardRow({index, heard, weight}) {
     const button = element("button", {type: "button", className: "small"});
     button.addEventListener("click", () => cutOrMend(this.#asking, this.#model, index));
-    button.hidden = this.#model.isRecording;
+    button.hidden = !this.#model.canChange;
     return element(
         "div", {className: "ear"}, element("i", {className: "state"}), element("span", {textContent: `agent ${heard}`}),
         element("span", {className: "muted", textContent: weight === 1 ? "" : `weight ${figure(weight, 2)}`}),

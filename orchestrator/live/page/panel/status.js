@@ -27,6 +27,7 @@ export class Status {
     const state = !connected && !isOver ? (experiment ? "lost" : "connecting") : frame?.state ?? "waiting";
     byId("state").dataset.state = state;
     setText(byId("state"), {lost: "no connection", waiting: "waiting"}[state] ?? state);
+    byId("watching").hidden = this.#model.maySteer || !experiment;
     byId("banner").hidden = connected || !experiment;
     setText(
         byId("banner"),

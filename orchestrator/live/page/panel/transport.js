@@ -112,11 +112,11 @@ export class Transport {
 
   // What cannot be asked for now is grey.
   #enable() {
-    const {connected, frame, isRecording} = this.#model;
+    const {connected, frame, isRecording, maySteer} = this.#model;
     const isOver = frame?.state === "done" || frame?.state === "failed";
-    const canGoOn = connected && (!isOver || isRecording);
+    const canGoOn = connected && maySteer && (!isOver || isRecording);
     byId("play").disabled = byId("step").disabled = byId("pace").disabled = byId("seek").disabled = !canGoOn;
-    byId("stop").disabled = !connected || isOver;
+    byId("stop").disabled = !connected || !maySteer || isOver;
   }
 
   #showPace() {

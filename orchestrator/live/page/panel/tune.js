@@ -21,7 +21,7 @@ export class Tune {
   #onExperiment() {
     const keys = (this.#model.experiment.live_keys ?? []).filter(({key}) => key !== "run.pace");  // has its own control
     const wanted = JSON.stringify(keys.map(({value, ...key}) => ({...key, control: controlOf({...key, value})}))) +
-        this.#model.isRecording;
+        this.#model.canChange;
     if (wanted !== this.#drawn) this.#make(sorted(keys));
     this.#drawn = wanted;
     for (const {key, value} of keys) this.#controls.get(key)?.show(value);
@@ -31,6 +31,7 @@ export class Tune {
     this.#controls.clear();
     const hint = (textContent) => element("p", {className: "muted hint", textContent});
     if (this.#model.isRecording) return this.#list(keys, hint("A recording cannot be changed. At this time it has:"));
+    if (!this.#model.maySteer) return this.#list(keys, hint("This page only watches. At this time the run has:"));
     if (keys.length === 0)
       return byId("tune").replaceChildren(hint("This run has no keys that can be changed while it goes on."));
     this.only = element("input", {type: "checkbox", id: "tune-only"});

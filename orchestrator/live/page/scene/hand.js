@@ -84,7 +84,7 @@ export class Hand {
     this.#card.hidden = true;
     if (button !== 0 || !isPrimary || !this.#model.frame) return;
     const agent = this.#agentAt(x, y, pointerType);
-    const canGo = agent > 0 && this.#model.agent(agent).goto && !this.#model.isRecording;
+    const canGo = agent > 0 && this.#model.agent(agent).goto && this.#model.canChange;
     this.#down = {x, y, at: [x, y], agent, canGo, moved: false, p: agent ? this.#model.vector("p", agent) : null};
     if (!canGo) return;
     this.#view.eye.free = false;
@@ -175,7 +175,7 @@ export class Hand {
     if (at) this.#tip.style.transform = `translate(${at[0] + 14}px, ${at[1] + 14}px)`;
   }
 
-  #canGo(number) { return this.#model.agent(number).goto && !this.#model.isRecording; }
+  #canGo(number) { return this.#model.agent(number).goto && this.#model.canChange; }
 
   #agentWords(number) {
     const {model, leads} = this.#model.agent(number);
@@ -185,9 +185,7 @@ export class Hand {
 
   #edgeWords(index) {
     const [hearer, heard] = this.#model.experiment.edges[index], waits = this.#model.pendingEdge(index);
-    const action = this.#model.isRecording ? "" :
-        this.#model.edgeWillWork(index)    ? ": click to cut" :
-                                             ": click to mend";
+    const action = !this.#model.canChange ? "" : this.#model.edgeWillWork(index) ? ": click to cut" : ": click to mend";
     const pending = waits === null ? "" : waits ? ", will be mended" : ", will be cut";
     return `${hearer} hears ${heard}, ${EDGE_WORDS[this.#state(index)]}${pending}${action}`;
   }
@@ -199,7 +197,7 @@ export class Hand {
     const agent = this.#agentAt(x, y, pointerType), edge = agent ? -1 : this.#edgeAt(x, y, pointerType);
     if (edge < 0)
       this.#model.select(agent);
-    else if (this.#model.isRecording)
+    else if (!this.#model.canChange)
       return;
     else if (pointerType === "mouse")
       cutOrMend(this.#asking, this.#model, edge);

@@ -47,8 +47,8 @@ class Server final : public Foxglove::Host {
         .request = {"Wish", "jsonschema", "{}"},
         .response = {"Answer", "jsonschema", "{}"}};
     foxglove.emplace(std::move(about), *this);
-    foxglove->OnOpen(1, /*controls_playback=*/true);
-    foxglove->OnOpen(2, /*controls_playback=*/false);
+    foxglove->OnOpen(1, {.has_playback = true});
+    foxglove->OnOpen(2, {});
   }
 
   void Send(ClientId client, Frame frame) override {
@@ -119,7 +119,7 @@ TEST(Foxglove, IntroducesItselfFirst) {
 
 TEST(Foxglove, ToldOldClientsNothingOfPlayback) {
   Server server;
-  EXPECT_EQ(Json::parse(server.texts[2][0])["capabilities"].back(), "connectionGraph");
+  EXPECT_THAT(Json::parse(server.texts[2][0])["capabilities"], testing::Not(testing::Contains("playbackControl")));
   EXPECT_THAT(server.binaries[1], SizeIs(1));
   EXPECT_THAT(server.binaries[2], IsEmpty());
 }
@@ -268,6 +268,30 @@ TEST(Foxglove, SetsParametersByEventsAndTellsWhoWantsToKnow) {
   server.Say(R"({"op":"setParameters","parameters":[{"name":"law.q","value":1}]})");
   server.Reply({false, "law.q: unknown key"});
   EXPECT_EQ(server.Texts(1, "status").at(0)["message"], "setParameters: law.q: unknown key");
+}
+
+TEST(Foxglove, RefusesWhoMayOnlyWatchAndOffersThemNothingElse) {
+  Server server;
+  server.foxglove->OnOpen(3, {.has_playback = true, .may_steer = false});
+  EXPECT_EQ(server.Texts(3, "serverInfo").at(0)["capabilities"],
+            Json::parse(R"(["time","parameters","parametersSubscribe","connectionGraph"])"));
+  EXPECT_THAT(server.Texts(3, "advertiseServices"), IsEmpty());
+  EXPECT_THAT(server.Texts(1, "advertiseServices"), SizeIs(1));
+  server.foxglove->SetParameters({{"law.p_gain", 1.0}});
+  const auto say = [&](const std::string& text) { return server.foxglove->OnMessage(3, true, AsBytes(text)); };
+  const auto say_bytes = [&](const std::string& text) { return server.foxglove->OnMessage(3, false, AsBytes(text)); };
+  say(R"({"op":"setParameters","parameters":[{"name":"law.p_gain","value":0.5}],"id":"set"})");
+  EXPECT_EQ(server.Texts(3, "parameterValues").at(0)["parameters"][0]["value"], 1.0) << "they may read it";
+  EXPECT_EQ(server.Texts(3, "status").at(0)["message"], "setParameters: this view only watches");
+  EXPECT_EQ(say_bytes(Bytes('\2', 0u, 5u, 4u) + R"(json{"ask":"pause"})"), "");
+  EXPECT_THAT(server.binaries[3].back(), testing::EndsWith(R"({"granted":false,"words":"this view only watches"})"));
+  say_bytes(Bytes('\3', '\1', 2.0f, '\0', std::uint64_t{0}, 0u));
+  EXPECT_EQ(server.Texts(3, "status").at(1)["message"], "this view only watches");
+  say(R"({"op":"advertise","channels":[{"id":1,"topic":"/goal","encoding":"json",)"
+      R"("schemaName":"geometry_msgs/msg/PoseStamped"}]})");
+  say_bytes(Bytes('\1', 1u) + R"({"header":{"frame_id":"agent_2"},"pose":{"position":{"x":1,"y":2,"z":3}}})");
+  EXPECT_THAT(server.requests, IsEmpty());
+  EXPECT_THAT(server.goals, IsEmpty());
 }
 
 TEST(Foxglove, WritesNothingButTheValueIntoAnEvent) {

@@ -50,7 +50,7 @@ class Echo final : public SocketUser {
     server_->Start();
   }
   HttpAnswer Get(std::string_view target) override { return Pages(folder_.path()).Get(target); }
-  void OnOpen(ClientId client, const std::string& subprotocol) override {
+  void OnOpen(ClientId client, const std::string& subprotocol, std::string_view /*target*/) override {
     ++open;
     clients_.push_back(client);
     server_->Send(client,

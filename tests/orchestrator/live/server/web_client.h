@@ -60,8 +60,9 @@ class WebClient {
     return answer;
   }
   /// Becomes a WebSocket. Returns the answer.
-  std::string Upgrade(const std::string& subprotocol = "foxglove.sdk.v1", const std::string& headers = "") {
-    return Get("/",
+  std::string Upgrade(const std::string& subprotocol = "foxglove.sdk.v1", const std::string& headers = "",
+                      const std::string& target = "/") {
+    return Get(target,
                "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: "
                "dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: " +
                    subprotocol + "\r\n" + headers);

@@ -439,6 +439,21 @@ TEST(LiveView, NamesTheCurveOfTheLawAndWhatTheoryPredictsOfIt) {
   EXPECT_LT(last["curve"], curve["predicted"]["value"]);
 }
 
+TEST(LiveView, WhoHasTheTokenSteersAndOthersWatch) {
+  const Experiment experiment = Load(kThree);
+  const Prediction prediction;
+  const RunMeter meter(experiment);
+  Control control;
+  LiveView view(experiment, prediction, meter, control, {.port = 0, .page = {}, .steering = Steering::By::kToken},
+                [](const std::string&) {});
+  const std::string suffix = view.steering_suffix();
+  ASSERT_THAT(suffix, testing::StartsWith("/#steer="));
+  Viewer watches(view.url()), steers(view.url(), "/?steer=" + suffix.substr(8));
+  EXPECT_EQ(watches.Ask({{"ask", "pause"}}), Json::parse(R"({"granted":false,"words":"this view only watches"})"));
+  EXPECT_EQ(steers.Ask({{"ask", "pause"}})["granted"], true);
+  EXPECT_EQ(control.requests().size(), 1U);
+}
+
 /// An experiment that makes what a viewer gets after each event long: a hundred times that is far more than the kernel
 /// keeps for a client that reads nothing.
 constexpr const char* kLarge =

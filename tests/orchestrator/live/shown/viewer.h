@@ -20,8 +20,8 @@ namespace mascot::test {
 /// A viewer by hand: foxglove.sdk.v1.
 class Viewer : public WebClient {
  public:
-  explicit Viewer(const std::string& url) : WebClient(url) {
-    EXPECT_THAT(Upgrade(), ::testing::StartsWith("HTTP/1.1 101"));
+  explicit Viewer(const std::string& url, const std::string& target = "/") : WebClient(url) {
+    EXPECT_THAT(Upgrade("foxglove.sdk.v1", "", target), ::testing::StartsWith("HTTP/1.1 101"));
     const auto advertised = NextWith(R"("op":"advertise")");
     if (!advertised) return;
     const nlohmann::json message = nlohmann::json::parse(advertised->payload);
