@@ -373,9 +373,10 @@ void Foxglove::SetParameters(std::vector<Parameter> parameters) {
   if (std::ranges::none_of(parameters_, has_changed)) return;
   for (const auto& [id, client] : clients_) {
     std::vector<Parameter> changed;
-    std::ranges::copy_if(parameters_, std::back_inserter(changed), [&](const Parameter& parameter) {
-      return client.parameters.contains(parameter.name) && has_changed(parameter);
-    });
+    std::ranges::copy_if(parameters_, std::back_inserter(changed),
+                         [&has_changed, &names = client.parameters](const Parameter& parameter) {
+                           return names.contains(parameter.name) && has_changed(parameter);
+                         });
     if (!changed.empty()) SendParameters(id, changed, nullptr);
   }
 }
