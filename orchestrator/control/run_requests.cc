@@ -153,7 +153,7 @@ Answer RunRequests::AnswerTo(const Order& order, std::optional<std::int64_t> tic
       return {true, order.number > 0 ? fmt::format("{} simulated seconds a second", ShortestFloat(order.number))
                                      : "as fast as it goes"};
     case Request::Kind::kStop:
-      return {true, "stops"};
+      return {true, "the run stops, and its results are written"};
     default:
       return {true, "takes effect at " + at(*tick)};
   }

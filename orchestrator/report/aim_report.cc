@@ -103,7 +103,7 @@ std::string AimText(const Experiment& experiment, const Aim& m, const Prediction
   if (rate && m.minmax_edges.empty())
     text += Line("decayed        at {:.4f} 1/s", *rate);
   else if (of_rate)
-    text += "decayed        not far enough, or not for good, to say how fast\n";
+    text += "decayed        at no rate that can be measured: the disagreement fell too little, or rose again\n";
   if (of_rate)
     text += Line("  predicted    {:.4f} 1/s ({}){}", *predicted_rate, RateBasis(prediction),
                  DeviationText(figure("deviation.rate_per_s"), predicted_rate));

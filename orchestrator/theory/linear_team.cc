@@ -54,8 +54,7 @@ std::string Unicycles(const Experiment& experiment) {
 /// Why theory does not apply to the law of an agent; empty: all laws are linear.
 std::string UnknownLaw(const Experiment& experiment) {
   for (const AgentConfig& agent : experiment.agents)
-    if (!LinearFormOf(agent.law))
-      return "theory does not know the law " + agent.law.name + " of agent " + std::to_string(agent.id);
+    if (!LinearFormOf(agent.law)) return WhyUnknown(agent.law) + " (agent " + std::to_string(agent.id) + ")";
   return "";
 }
 
@@ -95,6 +94,12 @@ LinearAgent FollowingAgent(const AgentConfig& agent, const LinearForm& form, Wan
 
 LinearAgent FlyingAgent(const AgentConfig& agent, const LinearForm& form) {
   return Driven(agent, form, Wanted::kAcceleration);
+}
+
+std::string WhyUnknown(const LawConfig& law) {
+  return "the law " + law.name +
+         (EntryOf(law).is_of_user ? " is code of a user, of which theory has no model"
+                                  : " is one of which theory has no model");
 }
 
 Linearity LinearTeamOf(const Experiment& experiment) {

@@ -56,6 +56,8 @@ struct Linearity {
 };
 
 Linearity LinearTeamOf(const Experiment& experiment);
+/// Why theory says nothing of a law: it has no model of it.
+std::string WhyUnknown(const LawConfig& law);
 /// Dynamics of an agent that is not a leader, under a law of this form, whose output is `wanted`.
 LinearAgent FollowingAgent(const AgentConfig& agent, const LinearForm& form, Wanted wanted);
 /// Dynamics of an agent that flies to its target by itself, under a law of this form that does not listen.

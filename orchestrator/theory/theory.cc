@@ -121,7 +121,7 @@ void PredictLaw(const Experiment& experiment, Prediction& prediction) {
     return;
   }
   if (!linear && !pursuit && !predicts) {
-    prediction.silent = "theory does not know the law " + experiment.law.name;
+    prediction.silent = WhyUnknown(experiment.law);
     return;
   }
   if (!timeline) {

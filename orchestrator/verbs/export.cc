@@ -9,6 +9,7 @@
 
 #include "orchestrator/recording/exporters.h"
 #include "orchestrator/verbs/new_file.h"
+#include "orchestrator/verbs/one_of.h"
 #include "orchestrator/verbs/verb.h"
 
 namespace mascot {
@@ -48,7 +49,7 @@ std::function<int()> SetUpExport(CLI::App& command) {
                   "csv: one table, a line per tick and agent: t, id, position_x, ...\n"
                   "mat: MATLAB variables: position(k, i, axis), ..., and the experiment")
       ->required()
-      ->check(CLI::IsMember(formats));
+      ->check(OneOf(formats));
   command
       .add_option("--out", args->out, "file, or folder to put it into (default: beside the recording, states.FORMAT)")
       ->type_name("FILE_OR_DIR");

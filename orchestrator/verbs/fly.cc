@@ -10,6 +10,7 @@
 #include "bus/leave.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/inprocess.h"
+#include "orchestrator/verbs/one_of.h"
 #include "system/control_groups.h"
 #include "system/interruptions.h"
 
@@ -21,7 +22,7 @@ constexpr int kMaxThreads = 1024;
 }  // namespace
 
 void EngineArgs::AddTo(CLI::App& command, const std::string& help) {
-  command.add_option("--engine", name, help)->check(CLI::IsMember({kOverDds, kInProcess}));
+  command.add_option("--engine", name, help)->check(OneOf({kOverDds, kInProcess}));
   command.add_option(
       "--threads", threads,
       "with --engine inprocess: how many threads fly a large team (default: one per core that the recording leaves)");

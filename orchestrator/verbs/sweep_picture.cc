@@ -11,6 +11,7 @@
 #include "orchestrator/sweeping/table/metrics.h"
 #include "orchestrator/sweeping/table/outcomes.h"
 #include "orchestrator/sweeping/table/table.h"
+#include "orchestrator/verbs/one_of.h"
 #include "system/script.h"
 
 namespace mascot {
@@ -41,7 +42,7 @@ void SweepPicture::SetUp(CLI::App& command) {
       ->check(CLI::Validator(MistakeInFormats, ""))
       ->type_name("LIST");
   command.add_option("--size", size, "size of the picture: screen, column or page, as of orchestrator plot (screen)")
-      ->check(CLI::IsMember({"screen", "column", "page"}))
+      ->check(OneOf({"screen", "column", "page"}))
       ->type_name("SIZE");
   command.add_flag("--no-plot", none, "draw no picture");
 }

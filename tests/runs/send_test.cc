@@ -144,7 +144,7 @@ TEST(Send, SaysWhyTheRunRefuses) {
   EXPECT_EQ(usage("set law.beta=1 law.beta=2"), "error: send: expected each key once, got 'law.beta=2'\n");
   EXPECT_EQ(usage("cut 21"), "error: send: expected an edge HEARER,HEARD, such as 2,1, got '21'\n");
   EXPECT_EQ(usage("--agents 1 pause"), "error: send: --agents: expected with set only, got it with pause\n");
-  EXPECT_EQ(run.Send("stop").output, "stops\n");
+  EXPECT_EQ(run.Send("stop").output, "the run stops, and its results are written\n");
   EXPECT_EQ(run.Wait(), 0) << run.err();
   const Ran over = run.Send("pause");
   EXPECT_EQ(over.exit_code, 2);

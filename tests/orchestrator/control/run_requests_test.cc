@@ -107,7 +107,7 @@ TEST(RunRequests, AnswersWhatWillHappen) {
   says({.kind = Kind::kStep, .number = 3}, "pauses after tick " + std::to_string(at + 3) + " (" + seconds(at + 3));
   says({.kind = Kind::kPace, .number = 2.5}, "2.5 simulated seconds a second");
   says({.kind = Kind::kPace, .number = 0}, "as fast as it goes");
-  says({.kind = Kind::kStop}, "stops");
+  says({.kind = Kind::kStop}, "the run stops, and its results are written");
 }
 
 TEST(RunRequests, RefusesInTheWordsOfTheFileAndChangesNothing) {

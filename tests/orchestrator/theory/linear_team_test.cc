@@ -75,7 +75,7 @@ TEST(LinearTeam, SaysWhyATeamIsNotLinear) {
       LinearityOf(Two("[[agents.override]]\nid = 2\nlaw = { name = 'custom', python = 'def control(t, me, neighbours): "
                       "return 0, 0' }\n[law]\nname = 'consensus'\n"))
           .why_not,
-      "theory does not know the law custom of agent 2");
+      "the law custom is code of a user, of which theory has no model (agent 2)");
   EXPECT_EQ(LinearityOf(Two("[[agents.override]]\nid = 2\nlaw = { spacing_m = 5.0 }\n[law]\nname = 'formation'\n"
                             "shape = 'line'\n"))
                 .why_not,

@@ -713,7 +713,7 @@ TEST(Theory, SaysWhyItIsSilent) {
   EXPECT_EQ(Of(consensus + "[[agents.override]]\nid = 5\nstop_s = 3.0\n").silent,
             "agents.override.stop_s: agent 5 stays behind");
   EXPECT_EQ(Of(kFive + "[law]\nname = 'custom'\npython = 'def control(t, me, neighbours): return 0, 0'\n").silent,
-            "theory does not know the law custom");
+            "the law custom is code of a user, of which theory has no model");
   EXPECT_EQ(Of(kFive + "[graph]\nedges = [[1, 2]]\nrepeat_s = 0.1234567\n[[graph.schedule]]\nat_s = 0.1\n"
                        "topology = 'path'\n[law]\nname = 'consensus'\n")
                 .silent,

@@ -406,7 +406,7 @@ TEST(Export, AnUnknownFormatIsAUsageError) {
       [] {
         Export({"run", "--format", "xls"});
       },
-      ThrowsMessage<CLI::ParseError>("--format: xls not in {npz,csv,mat}"));
+      ThrowsMessage<CLI::ParseError>("--format: expected one of npz, csv, mat, got xls"));
   EXPECT_THAT([] { Export({"run"}); }, ThrowsMessage<CLI::ParseError>("--format is required"));
 }
 

@@ -115,8 +115,9 @@ class Detail {
 
   #make(selected) {
     if (!selected)
-      return byId("detail").replaceChildren(
-          element("p", {className: "muted hint"}, "Choose an agent in the view or in the table for all about it."));
+      return byId("detail").replaceChildren(element(
+          "p", {className: "muted hint"},
+          "Click an agent, in the view or in the table, to see its state, its command, its limits and its neighbours."));
     const agent = this.#model.agent(selected);
     const title =
         element("h3", {}, element("i", {className: "dot"}), `Agent ${selected}`, element("small", {
