@@ -25,6 +25,7 @@
 #include "orchestrator/recording/background_sink.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/run_writer.h"
+#include "orchestrator/report/assertion.h"
 #include "orchestrator/report/ending.h"
 #include "orchestrator/report/incident_report.h"
 #include "orchestrator/report/summary.h"
@@ -51,6 +52,7 @@ struct UpArgs {
   std::optional<std::string> out;
   ViewerArgs viewers;
   EngineArgs engine{.name = kOverDds, .threads = {}};
+  std::vector<std::string> claims;  // --assert
   bool force = false, json = false, quiet = false;
   bool slurm = false;
 };
@@ -119,6 +121,27 @@ Experiment Load(UpArgs& args) {
   return on_nodes.Load();
 }
 
+/// Reads claims about figures that a run of this experiment has.
+std::vector<Assertion> ReadClaims(const std::vector<std::string>& texts, const Experiment& experiment,
+                                  const Prediction& prediction, const RunMeter& meter) {
+  std::vector<Assertion> claims;
+  if (texts.empty()) return claims;
+  const EngineResult nothing;
+  const FlownRun unflown{.experiment = experiment, .prediction = prediction, .meter = meter, .engine = nothing};
+  const RunFigures figures(unflown);
+  for (const std::string& text : texts) ExpectFigure(claims.emplace_back(ReadAssertion(text)), figures.all());
+  return claims;
+}
+
+/// Which of the claims do not hold, in words; empty: all do.
+std::string FailedClaims(const std::vector<Assertion>& claims, const Figures& figures) {
+  std::string failed;
+  for (const Assertion& claim : claims)
+    if (const std::string why = WhyItFails(claim, figures); !why.empty())
+      failed += (failed.empty() ? "" : "; ") + ("--assert " + claim.text + ": " + why);
+  return failed;
+}
+
 int Up(UpArgs& args) {
   const auto launched = WallClock::now();
   StopSignal stop;
@@ -134,6 +157,7 @@ int Up(UpArgs& args) {
   Console console(args.quiet || args.json);
   Crew crew = args.engine.MakeCrew(experiment, ThreadsOfRecording(experiment));
   RunMeter meter(experiment, crew);
+  const std::vector<Assertion> claims = ReadClaims(args.claims, experiment, prediction, meter);
   RunRequests requests(experiment, experiment.run.pace.value_or(args.viewers.at ? 1 : 0));
   Viewers viewers(args.viewers, args.engine.name, experiment, prediction, meter, requests, console);
 
@@ -183,10 +207,6 @@ int Up(UpArgs& args) {
   }
   result.failure = Plain(result.failure);
   last_words.reset();
-  viewers.SayHowItEnded(result);
-  if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
-
-  const Incidents incidents = IncidentsOf(meter, result, requests.numbers_by_hand());
   const FlownRun flown{.experiment = experiment,
                        .prediction = prediction,
                        .meter = meter,
@@ -194,6 +214,11 @@ int Up(UpArgs& args) {
                        .engine_name = args.engine.name,
                        .topics = writer.topics(),
                        .samples = writer.samples()};
+  if (!claims.empty() && ExitCode(result) == 0) result.failure = FailedClaims(claims, RunFigures(flown).all());
+  viewers.SayHowItEnded(result);
+  if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
+
+  const Incidents incidents = IncidentsOf(meter, result, requests.numbers_by_hand());
   const RunFigures figures(flown);
   const auto summary = [&](std::optional<int> exit) {
     return SummaryJson(figures, exit, std::chrono::duration<double>(WallClock::now() - launched).count());
@@ -231,6 +256,12 @@ std::function<int()> SetUpUp(CLI::App& command) {
       ->type_name("[ADDRESS:PORT]");
   AddAllowOrigin(command, args->viewers.allowed_origins);
   AddWatchOnly(command, args->viewers.watch_only);
+  command
+      .add_option("--assert", args->claims,
+                  "fail, with exit code 1, unless this holds of summary.json when the run is over: "
+                  "'consensus.settling_time_s < 10'; may be given several times")
+      ->type_name("CLAIM")
+      ->allow_extra_args(false);
   command.add_flag("--slurm", args->slurm,
                    "inside of a Slurm job: spread the agents evenly over its nodes, by one srun");
   command.add_flag("--force", args->force,
