@@ -191,6 +191,7 @@ std::vector<AgentOverride> ReadAgents(Section& agents, int count, Experiment& ex
     overrides.push_back(ReadOverride(section, experiment.agents, seen));
 
   ReadHeadings(agents, experiment.agents);
+  agents.TakeOneOf({"position_m", "random"});
   if (agents.Has("position_m") && agents.Has("random"))
     agents.Fail("random", "expected one of position_m, random, got both");
   else if (agents.Has("position_m"))

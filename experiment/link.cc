@@ -62,8 +62,7 @@ GilbertElliott ReadBursts(Section section) {
 
 LinkConfig ReadLink(Section& section) {
   LinkConfig link;
-  section.Supersede("loss", {"gilbert_elliott"});
-  section.Supersede("gilbert_elliott", {"loss"});
+  section.TakeOneOf({"loss", "gilbert_elliott"});
   link.loss = section.Number("loss");
   if (section.Has("gilbert_elliott")) {
     if (link.loss > 0) section.Fail("gilbert_elliott", "expected only one of loss, gilbert_elliott, got both");

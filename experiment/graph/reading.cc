@@ -150,6 +150,7 @@ std::span<const Key> GraphKeys() {
 
 Graph ReadGraph(Section& graph, std::span<const Eigen::Vector3d> p_W, std::uint64_t seed) {
   const int count = static_cast<int>(p_W.size());
+  graph.TakeOneOf({"topology", "laplacian", "adjacency", "edges", "random"});
   std::string given, last;
   for (const std::string_view source : {"topology", "laplacian", "adjacency", "edges", "random"}) {
     if (!graph.Has(source)) continue;

@@ -234,8 +234,26 @@ void Section::InheritFrom(const Section& base, std::initializer_list<std::string
   table_->superseded.insert(own.begin(), own.end());
 }
 
-void Section::Supersede(std::string_view key, std::initializer_list<std::string_view> others) {
-  if (table_->Has(key)) table_->superseded.insert(others.begin(), others.end());
+void Section::TakeOneOf(std::initializer_list<std::string_view> keys) {
+  for (const std::string_view key : keys) {
+    std::vector<std::string_view> others;
+    std::ranges::copy_if(keys, std::back_inserter(others), [key](std::string_view other) { return other != key; });
+    Supersede(key, others);
+  }
+}
+
+void Section::Supersede(std::string_view key, std::span<const std::string_view> others) {
+  if (!table_->Has(key)) return;
+  table_->superseded.insert(others.begin(), others.end());
+  const auto is_on_command_line = [&](std::string_view of) {
+    return document_->origin.empty() && document_->OriginOf(table_->PlaceOf(of)).has_value();
+  };
+  if (!is_on_command_line(key)) return;
+  for (const std::string_view other : others)
+    if (table_->Has(other) && !is_on_command_line(other)) {
+      table_->known.emplace(other);
+      table_->left_out.emplace(other);
+    }
 }
 
 Value Section::Free(std::string_view key, const Value& absent) {
@@ -281,8 +299,10 @@ void Section::Done() {
   for (const auto& [key, node] : *table_->toml) {
     if (table_->known.contains(key.str())) continue;
     const auto nearest = DidYouMean(key.str(), known);
-    document_->Note(key.source(), table_->PathOf(key.str()),
-                    "unknown key" + (nearest ? " (did you mean \"" + *nearest + "\"?)" : std::string()));
+    if (nearest)
+      document_->Note(key.source(), table_->PathOf(key.str()), "unknown key (did you mean \"" + *nearest + "\"?)");
+    else
+      document_->NoteUnknown(key.source(), table_->PathOf(key.str()), std::string(key.str()));
   }
 }
 
@@ -298,7 +318,10 @@ Value::Table Section::AsRead() const {
 }
 
 Value::Table Section::InTheFile() const {
-  return table_->toml == nullptr ? Value::Table() : std::get<Value::Table>(ToValue(*table_->toml).data);
+  Value::Table values = table_->toml == nullptr ? Value::Table() : std::get<Value::Table>(ToValue(*table_->toml).data);
+  for (const std::string& key : table_->left_out)
+    std::erase_if(values, [&](const auto& entry) { return entry.first == key; });
+  return values;
 }
 
 }  // namespace mascot

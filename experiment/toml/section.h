@@ -120,8 +120,12 @@ class Section {
   /// reader of `base`.
   void InheritFrom(const Section& base, std::initializer_list<std::string_view> own = {});
   /// If this table itself has `key`, it does not inherit `others` from now on: they contradict `key`, or belong to what
-  /// it replaces.
-  void Supersede(std::string_view key, std::initializer_list<std::string_view> others);
+  /// it replaces. If `key` is given on the command line, the table does not have them either, unless they are, too.
+  void Supersede(std::string_view key, std::initializer_list<std::string_view> others) {
+    Supersede(key, std::span(others.begin(), others.size()));
+  }
+  /// Each of these keys, of which a table has one at most, supersedes the others.
+  void TakeOneOf(std::initializer_list<std::string_view> keys);
   /// The value of `key`, of any kind; `absent` if there is none.
   Value Free(std::string_view key, const Value& absent = {});
 
@@ -149,6 +153,7 @@ class Section {
   struct Document;
   struct Table;
   Section(std::shared_ptr<Document> document, std::shared_ptr<Table> table);
+  void Supersede(std::string_view key, std::span<const std::string_view> others);
   /// The table of the document's root.
   static Section Of(const std::shared_ptr<Document>& document);
   std::shared_ptr<Document> document_;

@@ -148,8 +148,18 @@ void Section::Document::Note(const toml::source_region& place, const std::string
 }
 
 void Section::Document::NoteText(const toml::source_region& place, const std::string& text) {
-  const bool overridden = OriginOf(place).has_value();
-  Mistake mistake{overridden, overridden ? 0 : place.begin.line, overridden ? 0 : place.begin.column, text};
+  Add(place, {.text = text});
+}
+
+void Section::Document::NoteUnknown(const toml::source_region& place, const std::string& path, const std::string& key) {
+  const bool is_in_list = path.find('[') != path.npos;
+  Add(place, {.text = PlaceText(place) + ": " + path + ": unknown key", .unknown = is_in_list ? "" : key});
+}
+
+void Section::Document::Add(const toml::source_region& place, Mistake mistake) {
+  mistake.overridden = OriginOf(place).has_value();
+  mistake.line = mistake.overridden ? 0 : place.begin.line;
+  mistake.column = mistake.overridden ? 0 : place.begin.column;
   if (mistakes_.size() < kMaxMistakes) {
     mistakes_.insert(std::move(mistake));
   } else if (!left_out_ && !mistakes_.contains(mistake)) {
@@ -160,7 +170,10 @@ void Section::Document::NoteText(const toml::source_region& place, const std::st
 void Section::Document::ThrowIfWrong() const {
   if (mistakes_.empty()) return;
   std::vector<std::string> texts;
-  for (const Mistake& mistake : mistakes_) texts.push_back(mistake.text);
+  for (const Mistake& mistake : mistakes_) {
+    const std::string elsewhere = mistake.unknown.empty() ? "" : top->PathWith(mistake.unknown);
+    texts.push_back(mistake.text + (elsewhere.empty() ? "" : " (did you mean \"" + elsewhere + "\"?)"));
+  }
   if (left_out_) texts.push_back(*left_out_ + ": too many mistakes: this one and others are left out");
   throw ConfigError(std::move(texts));
 }

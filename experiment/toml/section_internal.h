@@ -21,6 +21,9 @@ struct Section::Document {
 
   /// Stores a mistake; noted again, it counts once (laws are made once per agent, and each may note it).
   void Note(const toml::source_region& place, const std::string& path, const std::string& message);
+  /// Notes that the table has no key `key`. If another table has one, the message will name it, unless this one is in a
+  /// list, where keys mean less than elsewhere.
+  void NoteUnknown(const toml::source_region& place, const std::string& path, const std::string& key);
   /// As Note(), for a `text` that names its place already; listed as if at `place`.
   void NoteText(const toml::source_region& place, const std::string& text);
   void ThrowIfWrong() const;
@@ -41,8 +44,11 @@ struct Section::Document {
     unsigned line = 0;
     unsigned column = 0;
     std::string text;
+    std::string unknown = {};  ///< a key that its table does not have
     auto operator<=>(const Mistake&) const = default;
   };
+  void Add(const toml::source_region& place, Mistake mistake);
+
   std::set<Mistake> mistakes_;
   std::optional<std::string> left_out_;  // place of the first mistake that is
 };
@@ -65,6 +71,7 @@ struct Section::Table {
   Document* document = nullptr;
   const Table* base = nullptr;                    ///< gives the keys that this table lacks; of the same document
   std::set<std::string, std::less<>> superseded;  ///< keys that the base does not give
+  std::set<std::string, std::less<>> left_out;    ///< keys of the file in whose place the command line gives others
   std::set<std::string, std::less<>> known;       ///< keys that were asked for
   std::set<std::string, std::less<>> wrong;       ///< keys with a mistake noted
   std::vector<Entry> entries;                     ///< in reading order
@@ -80,7 +87,7 @@ struct Section::Table {
   std::string PathOf(std::string_view key) const;
   toml::source_region PlaceOf(std::string_view key) const;
   /// True if the table has `key` itself, not from the base.
-  bool Has(std::string_view key) const { return toml != nullptr && toml->contains(key); }
+  bool Has(std::string_view key) const { return toml != nullptr && toml->contains(key) && !left_out.contains(key); }
   /// The value of `key`, here or in the base; null if absent.
   const toml::node* Get(std::string_view key) const;
   /// True if `key` is not here but in the base, whose reader notes its mistakes.
@@ -88,6 +95,9 @@ struct Section::Table {
   /// As Get(); from now on `key` is a known key.
   const toml::node* Find(std::string_view key);
   bool Wrong(std::string_view key) const;
+  /// The path of the first key of this name that was asked for of this table or of one within it, but for those of
+  /// lists; empty: none was.
+  std::string PathWith(std::string_view key) const;
   /// The entry of `key`, or null.
   Entry* Recorded(std::string_view key);
   /// Stores `value` as the entry of `key`.

@@ -117,6 +117,16 @@ const toml::node* Section::Table::Find(std::string_view key) {
   return Get(key);
 }
 
+std::string Section::Table::PathWith(std::string_view key) const {
+  if (known.contains(key)) return PathOf(key);
+  for (const Entry& entry : entries) {
+    if (entry.is_list) continue;
+    for (const std::shared_ptr<Table>& table : entry.tables)
+      if (std::string found = table->PathWith(key); !found.empty()) return found;
+  }
+  return "";
+}
+
 bool Section::Table::Wrong(std::string_view key) const {
   if (broken || (key.empty() ? !wrong.empty() : wrong.contains(key))) return true;
   return std::any_of(entries.begin(), entries.end(), [&](const Entry& entry) {

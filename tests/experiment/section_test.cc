@@ -530,6 +530,56 @@ TEST(Section, OverridesReachIntoLists) {
   EXPECT_THAT(Mistakes(file, read, set), IsEmpty());
 }
 
+TEST(Section, AKeyOfAnotherTableIsOfferedItsPlace) {
+  const auto read = [](Section& root) {
+    Section run = root.Child("run"), law = root.Child("law");
+    run.Integer("seed", 0, 9, 1);
+    law.Number("beta", 0, 9, 1.0);
+    Section inner = law.Child("inner");
+    inner.Number("depth", 0, 9, 1.0);
+    for (Section& each : root.Children("list")) each.Number("width", 0, 9, 1.0);
+    inner.Done();
+    run.Done();
+    law.Done();
+    root.Done();
+  };
+  EXPECT_THAT(Mistakes("[law]\nseed = 3\n[run]\ndepth = 1\n", read),
+              ElementsAre("a.toml:2:1: law.seed: unknown key (did you mean \"run.seed\"?)",
+                          "a.toml:4:1: run.depth: unknown key (did you mean \"law.inner.depth\"?)"));
+  EXPECT_THAT(Mistakes("", read, {{"beta", "1"}}),
+              ElementsAre("--set beta=1: beta: unknown key (did you mean \"law.beta\"?)"));
+  EXPECT_THAT(Mistakes("[[list]]\n[law]\nwidth = 3\nsede = 1\nbeat = 1\n", read),
+              ElementsAre("a.toml:3:1: law.width: unknown key", "a.toml:4:1: law.sede: unknown key",
+                          "a.toml:5:1: law.beat: unknown key (did you mean \"beta\"?)"))
+      << "not of lists, and what is near in the same table comes first";
+}
+
+TEST(Section, AKeyOfTheCommandLineTakesThePlaceOfOthersOfTheFile) {
+  const auto read_one = [](std::string_view wanted, double value) {
+    return [wanted, value](Section& root) {
+      root.TakeOneOf({"a", "b", "c"});
+      for (const std::string_view key : {"a", "b", "c"}) EXPECT_EQ(root.Has(key), key == wanted) << key;
+      EXPECT_EQ(root.Number(wanted, 0, 9), value);
+      EXPECT_EQ(root.InTheFile().size(), 1U);
+      root.Done();
+    };
+  };
+  EXPECT_THAT(Mistakes("a = 1\n", read_one("b", 2), {{"b", "2"}}), IsEmpty());
+  EXPECT_THAT(Mistakes("a = 1\nb = 3\n", read_one("c", 2), {{"c", "2"}}), IsEmpty());
+  EXPECT_THAT(Mistakes("a = 1\n", read_one("a", 2), {{"a", "2"}}), IsEmpty());
+  const auto has = [](std::vector<std::string> wanted) {
+    return [wanted](Section& root) {
+      root.TakeOneOf({"a", "b", "c"});
+      std::vector<std::string> keys;
+      for (const char* key : {"a", "b", "c"})
+        if (root.Has(key)) keys.emplace_back(key);
+      EXPECT_EQ(keys, wanted);
+    };
+  };
+  Mistakes("a = 1\nb = 2\n", has({"a", "b"}));
+  Mistakes("c = 1\n", has({"a", "b"}), {{"a", "1"}, {"b", "2"}});
+}
+
 TEST(Section, OverridesTakeKeysOut) {
   const auto read = [](Section& root) {
     EXPECT_FALSE(root.Has("a"));

@@ -57,9 +57,6 @@ TEST(MistakesOfSet, StandAtSet) {
        "law.name: expected graph.range_m, within which agents hear each other, for the law "
        "rendezvous, got none"},
       {"law.name=waypoint", "law.waypoints_m: expected "},
-      {"graph.edges=[[1, 2]]",
-       "graph.edges: expected one of topology, laplacian, adjacency, edges, random, got topology "
-       "and edges"},
       {"events=[{at_s=1}]", "events[0]: expected one of set, goto, graph, cut, mend, got none"},
   };
   for (const Row& row : rows) {
@@ -81,6 +78,16 @@ TEST(MistakesOfSet, SayWhereTheKeyOfTheFileStandsThatTheyContradict) {
                          {{"run.seed", "1"}, {"physics.rate_hz", "77"}, {"law.p_gain", "2"}}),
               ElementsAre("--set physics.rate_hz=77: control.rate_hz: expected a divisor of physics.rate_hz (77), got "
                           "100 (small.toml:3:19)"));
+}
+
+TEST(MistakesOfSet, AreNoneWhereAKeyTakesThePlaceOfOneInTheFile) {
+  EXPECT_THAT(MistakesOf(kSmall, {{"graph.edges", "[[1, 2], [2, 3], [3, 4], [4, 1]]"}}), IsEmpty()) << "of topology";
+  EXPECT_THAT(MistakesOf(kSmall, {{"graph.random", "{kind = 'erdos_renyi', p = 0.9}"}}), IsEmpty());
+  EXPECT_THAT(MistakesOf(kSmall, {{"agents.position_m", "[[0,0,1],[3,0,1],[6,0,1],[9,0,1]]"}}), IsEmpty());
+  EXPECT_THAT(
+      MistakesOf(kSmall, {{"graph.edges", "[[1, 2]]"}, {"graph.topology", "ring"}}),
+      ElementsAre(testing::HasSubstr(
+          "graph.edges: expected one of topology, laplacian, adjacency, edges, random, got topology and edges")));
 }
 
 TEST(MistakesOfSet, LeaveThoseOfTheFileAtTheFile) {

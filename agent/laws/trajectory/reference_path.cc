@@ -11,8 +11,7 @@ namespace {
 
 /// The samples, from where they stand or from a file; nullopt after a mistake.
 std::optional<PathSamples> ReadSamples(Section& law) {
-  law.Supersede("file", {"samples"});
-  law.Supersede("samples", {"file"});
+  law.TakeOneOf({"file", "samples"});
   const bool in_file = law.Has("file");
   if (in_file == law.Has("samples")) {
     law.Fail(in_file ? "file" : "path",
