@@ -30,6 +30,7 @@ export class MadeUpRun {
     incidents = "",
     disagreement_m = null,  // as it is, unless given
     rate_per_s = 0.19,      // that theory predicts from the start
+    slowest_per_s = 0.15,   // of the slowest mode
     why = "",               // it is silent of the rest
     responses = [],         // disagreement that theory predicts: {from_s, until_s, every_s, value_m}
     curve = null,           // of the law: {name, unit, meaning, decays, agrees, since_s, predicted}
@@ -48,6 +49,7 @@ export class MadeUpRun {
       incidents,
       disagreement_m,
       rate_per_s,
+      slowest_per_s,
       why,
       responses,
       curve,
@@ -110,7 +112,7 @@ export class MadeUpRun {
         stable: true,
         value_m: this.home[this.leader - 1],
         rate_per_s: this.rate_per_s,
-        slowest_rate_per_s: 0.15,
+        slowest_rate_per_s: this.slowest_per_s,
         settling_time_s: 21,
         why: this.why
       },

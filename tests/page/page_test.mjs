@@ -581,8 +581,24 @@ test("theory's response is drawn phase by phase, and where there is none, none",
     near(await at(0.5), [8 * Math.SQRT1_2, null, null]);
     near(await at(6), [null, null, null]);
     near(await at(25), [null, 0.3, null]);
+    assert.match(await page.textContent("#prediction"), /^Theory: decays at /);
     const [mode] = (await at(40)).slice(2);
     assert.ok(mode > 0, "after the last response the slowest mode goes on");
+  });
+});
+
+test("what is drawn beside disagreement is named, also where theory has no rate", async () => {
+  const responses = [{from_s: 0, until_s: 60, every_s: 60, of_ideal_bodies: true, value_m: [3, 0.03]}];
+  await watching({run: {responses, rate_per_s: null, slowest_per_s: null}}, async ({page}) => {
+    await until(page, () => mascot.tick > 0);
+    assert.equal(await page.textContent("#prediction"), "Ideal bodies, flown ahead by the same laws");
+  });
+});
+
+test("a curve that counts has no decimals", async () => {
+  const curve = {name: "messages", unit: "", meaning: "", decays: false, agrees: true, since_s: 0, predicted: null};
+  await watching({run: {curve, law_value: () => 57}}, async ({page}) => {
+    await until(page, () => document.getElementById("law-now").textContent === "57");
   });
 });
 
@@ -596,13 +612,13 @@ test(
         decays: false,
         agrees: false,
         since_s: 0,
-        predicted: {value: 20, bound: "at_most"}
+        predicted: {figure: "cost_end_m2", value: 20, bound: "at_most"}
       };
       await watching({run: {curve, law_value: (t_s) => 20 / (1 + t_s)}}, async ({page}) => {
         await until(page, () => document.querySelectorAll("#law canvas").length > 0);
         assert.equal(await page.textContent("#law-name"), "Coverage cost");
         assert.match(await page.textContent("#law-now"), /^\d+\.\d+ m²$/);
-        assert.equal(await page.textContent("#law-words"), "Theory: at most 20.00 m²");
+        assert.equal(await page.textContent("#law-words"), "Theory: cost_end_m2 at most 20.00 m²");
         const [t_s, value, predicted] = await page.evaluate(() => mascot.drawn.curve);
         assert.ok(Math.abs(value - 20 / (1 + t_s)) < 1e-6);
         assert.equal(predicted, 20);

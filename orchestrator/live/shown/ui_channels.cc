@@ -119,7 +119,7 @@ Json PredictedJson(const LawEntry& law, const Prediction& prediction) {
   if (index >= prediction.law_figures.size()) return nullptr;
   const PredictedFigure& predicted = prediction.law_figures[index];
   if (predicted.values.size() != 1 || !predicted.values.front()) return nullptr;
-  return {{"value", *predicted.values.front()}, {"bound", kBounds.Name(predicted.bound)}};
+  return {{"figure", figure->name}, {"value", *predicted.values.front()}, {"bound", kBounds.Name(predicted.bound)}};
 }
 
 /// The curve of the team's law; null: it has none.

@@ -86,7 +86,7 @@ export class Charts {
     byId("speed-names").hidden = this.#model.size <= MOST_SPEEDS;
     byId("disagreement-chart").hidden = Boolean(curve) && !curve.agrees;
     byId("prediction").classList.toggle("has-line", responses.length > 0 || Boolean(modeOf(this.#model.experiment)));
-    setText(byId("prediction"), disagreementWords(prediction));
+    setText(byId("prediction"), disagreementWords(prediction, responses));
     if (curve) this.#onCurve(curve, prediction);
     this.#draw();
   }

@@ -26,25 +26,29 @@ export function modeOf({prediction}) {
   return prediction?.of_agreement && prediction.stable !== false ? prediction.slowest_rate_per_s : null;
 }
 
-/** What theory says of the disagreement. */
-export function disagreementWords(prediction = {}) {
-  const {of_agreement, stable, rate_per_s, slowest_rate_per_s, why} = prediction;
+/** What theory says of the disagreement, or of each agent's flight to its target. */
+export function disagreementWords(prediction = {}, responses = []) {
+  const {from_s = 0, of_agreement, stable, rate_per_s, slowest_rate_per_s, settling_time_s, why} = prediction;
+  if (rate_per_s && of_agreement === false)
+    return `Theory: each flight decays at ${figure(rate_per_s)} 1/s${
+        settling_time_s ? `, and settles (2 %) within ${figure(settling_time_s, 2)} s` : ""}`;
   if (rate_per_s)
-    return `Theory: ${of_agreement === false ? "each flight " : ""}decays at ${figure(rate_per_s)} 1/s${
-        settles(prediction)}`;
+    return `Theory: decays at ${figure(rate_per_s)} 1/s${
+        settling_time_s ? `, settled (2 %) at ${figure(from_s + settling_time_s, 2)} s` : ""}`;
   if (stable === false) return `Theory: does not agree${why ? `: ${why}` : ""}`;
   if (slowest_rate_per_s) return `Theory: in the long run decays at ${figure(slowest_rate_per_s)} 1/s or faster`;
-  return why ? `No prediction: ${why}` : "";
+  if (why) return `No prediction: ${why}`;
+  if (responses.length === 0) return "";
+  return responses.at(-1).of_ideal_bodies ? "Ideal bodies, flown ahead by the same laws" : "Theory";
 }
 
-function settles({from_s = 0, settling_time_s}) {
-  return settling_time_s ? `, settled (2 %) at ${figure(from_s + settling_time_s, 2)} s` : "";
-}
+/** A number for people, with its unit; a count without decimals. */
+export const withUnit = (x, unit) =>
+    (unit ? `${figure(x)} ${typeset(unit)}` :
+         Number.isInteger(x) ? String(x) :
+                               figure(x));
 
-/** A number for people, with its unit. */
-export const withUnit = (x, unit) => `${figure(x)}${unit ? ` ${typeset(unit)}` : ""}`;
-
-/** What theory says of the curve of the law. */
+/** What theory says of the curve of the law: of the figure of summary.json that is about it. */
 export function curveWords({unit, predicted}) {
-  return predicted ? `Theory: ${BOUNDS[predicted.bound]}${withUnit(predicted.value, unit)}` : "";
+  return predicted ? `Theory: ${predicted.figure} ${BOUNDS[predicted.bound]}${withUnit(predicted.value, unit)}` : "";
 }

@@ -429,6 +429,7 @@ TEST(LiveView, NamesTheCurveOfTheLawAndWhatTheoryPredictsOfIt) {
   EXPECT_EQ(curve["agrees"], false);
   EXPECT_EQ(curve["since_s"], 0.0);
   EXPECT_EQ(curve["predicted"]["bound"], "at_most");
+  EXPECT_EQ(curve["predicted"]["figure"], "cost_end_m2");
   LiveExperiment live(run.experiment, &LawTable(), /*checked=*/true);
   live.Take(run.experiment.events.at(0));
   run.view.OnEvent({.number = 1, .tick = 50, .toml = "phase", .by_hand = false}, *live.now(), {});
