@@ -535,6 +535,19 @@ test("what a recorded run came up against is marked on its time line, and is sou
   });
 });
 
+test("incidents that are near each other share a mark of the time line", async () => {
+  const rows = Array.from({length: 3000}, (_, k) => `${(k / 50).toFixed(2)},${(k / 50).toFixed(2)},late_command,1,3,,`);
+  const incidents = `t_s,until_s,what,count,agent,with,detail\n${rows.join("\n")}\n`;
+  await watching({run: {source: "recording", incidents}}, async ({page}) => {
+    const marks = page.locator("#marks i.incident");
+    assert.equal(await marks.count(), 150);
+    const lines = (await marks.nth(1).getAttribute("title")).split("\n");
+    assert.equal(lines.length, 6);
+    assert.equal(lines[0], "0.40 s: late command of agent 3");
+    assert.equal(lines[5], "and 15 more until 0.78 s");
+  });
+});
+
 test(
     "a recording that was cut says so, and its time line ends at the cut",
     () => watching({run: {source: "recording", end_s: 40, loss: "the file ends inside a record"}}, async ({page}) => {

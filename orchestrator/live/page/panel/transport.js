@@ -4,6 +4,8 @@ import {byId, element, figure, setText} from "../dom.js";
 const PACES = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
 const AS_FAST_AS_IT_GOES = 0;
 const SEEK_EVERY_MS = 80;
+const MOST_MARKS = 150;  // of incidents on the time line; those that are nearer share one
+const MOST_WORDS = 5;    // of incidents in the title of a mark
 
 export class Transport {
   #model;
@@ -130,7 +132,7 @@ export class Transport {
     const {events, incidents, experiment, end_s} = this.#model;
     if (!experiment) return;
     const marks = [
-      ...incidents.map(({t_s, words}) => ({t_s, title: `${t_s.toFixed(2)} s: ${words}`, className: "incident"})),
+      ...thinned(incidents, end_s).map(incidentMark),
       ...events.map(({t_s, number, toml, by_hand}) => ({
                       t_s,
                       title: `event ${number}${by_hand ? " by hand" : ""}\n${toml}`,
@@ -146,4 +148,21 @@ export class Transport {
       return mark;
     }));
   }
+}
+
+/** Incidents in groups, in order of time: those of the same part of the time line are one. */
+function thinned(incidents, end_s) {
+  const groups = new Map();
+  for (const incident of incidents) {
+    const part = Math.floor(MOST_MARKS * incident.t_s / end_s);
+    groups.set(part, [...(groups.get(part) ?? []), incident]);
+  }
+  return [...groups.values()];
+}
+
+function incidentMark(group) {
+  const lines = group.slice(0, MOST_WORDS).map(({t_s, words}) => `${t_s.toFixed(2)} s: ${words}`);
+  if (group.length > MOST_WORDS)
+    lines.push(`and ${group.length - MOST_WORDS} more until ${group.at(-1).t_s.toFixed(2)} s`);
+  return {t_s: group[0].t_s, title: lines.join("\n"), className: "incident"};
 }
