@@ -36,6 +36,7 @@ export class MadeUpRun {
     curve = null,           // of the law: {name, unit, meaning, decays, agrees, since_s, predicted}
     law_value = null,       // its value at a time
     places_m = 0,           // radius of a circle that the agents are to form; 0: none
+    drift_m_per_s = 0,      // at which all are shown to go east
     waits = false           // what is granted while the run is paused takes effect when it goes on
   } = {}) {
     Object.assign(this, {
@@ -55,6 +56,7 @@ export class MadeUpRun {
       curve,
       law_value,
       places_m,
+      drift_m_per_s,
       waits,
       leader: Math.min(leader, agents)
     });
@@ -276,7 +278,7 @@ export class MadeUpRun {
       state: this.state,
       pace: this.pace,
       real_time_factor: this.state === "running" ? (this.pace || 20) * 0.998 : 0,
-      p: this.p.flat().map(round),
+      p: this.p.flatMap(([x, y, z]) => [x + this.drift_m_per_s * this.t_s, y, z]).map(round),
       v: this.v.flat().map(round),
       a: this.a.flat().map(round),
       q: this.a.flatMap((a, k) => this.#attitude(k, a)).map(round),

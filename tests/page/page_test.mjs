@@ -535,6 +535,29 @@ test("what a recorded run came up against is marked on its time line, and is sou
   });
 });
 
+test("a team that has left the picture is looked at again", async () => {
+  const isSeen = (page) => page.evaluate(() => {
+    const {clientWidth, clientHeight} = document.getElementById("scene");
+    return mascot.experiment.agents.some(({id}) => {
+      const [x, y] = mascot.agentOnScreen(id);
+      return x >= 0 && x <= clientWidth && y >= 0 && y <= clientHeight;
+    });
+  });
+  const sees = async (page, wanted) => {
+    for (const end = Date.now() + 60_000; Date.now() < end && await isSeen(page) !== wanted;)
+      await page.evaluate(() => new Promise(requestAnimationFrame));
+    assert.equal(await isSeen(page), wanted);
+  };
+  await watching({run: {source: "recording", drift_m_per_s: 50}}, async ({page}) => {
+    await until(page, () => mascot.drawn.pictures > 1);
+    await sees(page, true);
+    await page.locator("#scene").focus();
+    await page.keyboard.press("PageDown");
+    await until(page, () => mascot.t_s === 10);
+    await sees(page, true);
+  });
+});
+
 test("incidents that are near each other share a mark of the time line", async () => {
   const rows = Array.from({length: 3000}, (_, k) => `${(k / 50).toFixed(2)},${(k / 50).toFixed(2)},late_command,1,3,,`);
   const incidents = `t_s,until_s,what,count,agent,with,detail\n${rows.join("\n")}\n`;

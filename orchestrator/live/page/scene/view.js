@@ -39,8 +39,10 @@ export class View {
   #stale = true;    // something has changed since the last picture
   #newRow = false;  // a row has come since
   #place = new Vector3();
-  #isFitted = false;  // to the first row of the run
-  layers = {};        // by name; rebuilt for each run
+  #isFitted = false;   // to the first row of the run
+  #wasInView = false;  // an agent, in the picture before
+  #lastFrame = null;   // that was drawn
+  layers = {};         // by name; rebuilt for each run
   shown = {...SHOWN};
   renders = 0;
   screen = new Float32Array(0);  // x, y (px) and depth of each agent; depth > 1: behind the camera
@@ -155,6 +157,21 @@ export class View {
     const moved = this.eye.update(now_ms);
     if (frame && this.#newRow) this.#takeRow(frame);
     if (moved || this.#stale) this.#render(frame);
+    if (frame) this.#keepInView(frame !== this.#lastFrame && !moved);
+    this.#lastFrame = frame;
+  }
+
+  // A team that leaves the picture by its own motion, or by a jump in time, is looked at again; one from which somebody
+  // has turned the eye away is not.
+  #keepInView(mayLeave) {
+    const {clientWidth: width, clientHeight: height} = this.canvas;
+    let inView = false;
+    for (let k = 0; k < this.screen.length && !inView; k += 3) {
+      const [x, y, depth] = this.screen.subarray(k, k + 3);
+      inView = depth <= 1 && x >= 0 && x <= width && y >= 0 && y <= height;
+    }
+    if (mayLeave && this.#wasInView && !inView) this.fit();
+    this.#wasInView = inView;
   }
 
   #firstLook() {
