@@ -23,8 +23,8 @@ constexpr std::pair<std::string_view, Relation> kRelations[] = {{"<=", Relation:
                                                                 {"<", Relation::kLess},    {">", Relation::kGreater}};
 
 std::string_view Trimmed(std::string_view text) {
-  const std::size_t begin = std::min(text.find_first_not_of(' '), text.size());
-  return text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
+  const std::size_t begin = text.find_first_not_of(' ');
+  return begin == text.npos ? "" : text.substr(begin, text.find_last_not_of(' ') - begin + 1);
 }
 
 std::optional<double> NumberIn(std::string_view text) {
