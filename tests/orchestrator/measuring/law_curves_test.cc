@@ -107,8 +107,9 @@ TEST(LawCurve, ArePartOfTheTableOrNot) {
     ++with;
     EXPECT_NE(law.meter, nullptr) << law.name;
     EXPECT_FALSE(law.curve->name.empty()) << law.name;
-    if (!law.curve->figure.empty())
+    if (!law.curve->figure.empty()) {
       EXPECT_NE(std::ranges::find(law.figures, law.curve->figure, &LawFigure::name), law.figures.end()) << law.name;
+    }
     EXPECT_TRUE(law.curve->decays || !law.agrees || law.name == "event_triggered") << law.name;
   }
   EXPECT_EQ(with, std::ssize(kCurveCases) + 2) << "waypoint and trajectory have tests of their own";
