@@ -46,9 +46,8 @@ void PrintAddresses(const LiveView& view, Console& console) {
   const std::string suffix = view.steering_suffix();
   for (const std::string& address : addresses) console.Line("view           " + address);
   if (!suffix.empty()) console.Line("steer          " + addresses.front() + suffix);
-  const bool is_for_others =
-      !addresses.front().starts_with("http://127.") && !addresses.front().starts_with("http://[::1]");
-  if (!is_for_others || !console.is_on_terminal()) return;
+  const auto at = ReadHostAndPort(std::string_view(addresses.front()).substr(std::string_view("http://").size()));
+  if (!console.is_on_terminal() || !at || IsLoopback(at->host)) return;
   for (const std::string& line : QrCode(addresses.front())) console.Line(line);
 }
 

@@ -32,8 +32,10 @@ void CurveHistory::Follow(int rows) {
     source_.read(tick, row_);
     if (tick >= changes_at_) TakeChanges(tick);
     if (has_curve_) meters_.Add(tick, row_);
-    const auto of_law = has_curve_ ? meters_.CurveOf(EntryOf(now_->law)) : std::nullopt;
-    curves_.Add(tick, DisagreementOf(*now_, row_.motions), of_law, row_.motions);
+    if (curves_.Wants(tick)) {
+      const auto of_law = has_curve_ ? meters_.CurveOf(EntryOf(now_->law)) : std::nullopt;
+      curves_.Add(tick, DisagreementOf(*now_, row_.motions), of_law, row_.motions);
+    }
     const std::int64_t step = has_curve_ ? 1 : curves_.every();
     next_ = (tick / step + 1) * step;
   }

@@ -69,10 +69,6 @@ std::optional<std::string> ReadName(std::string_view text) {
   return is_name && !is_number ? std::optional(std::move(name)) : std::nullopt;
 }
 
-bool IsLoopback(const std::string& host) {
-  return host == "localhost" || host == "[::1]" || (IsIpV4(host) && host.starts_with("127."));
-}
-
 std::string NameOfThisMachine() {
   std::array<char, 256> name{};
   return gethostname(name.data(), name.size() - 1) == 0 ? Lower(name.data()) : "";
@@ -95,6 +91,10 @@ bool IsSame(std::string_view origin, const HostAndPort& ours) {
 }
 
 }  // namespace
+
+bool IsLoopback(const std::string& host) {
+  return host == "localhost" || host == "[::1]" || (IsIpV4(host) && host.starts_with("127."));
+}
 
 std::optional<HostAndPort> ReadHostAndPort(std::string_view text) {
   const auto end_of_host = text.starts_with('[') ? text.find(']') : text.find(':');

@@ -18,6 +18,9 @@ struct HostAndPort {
 /// or an address; a port from 1 to 65535. Nothing for any other text.
 std::optional<HostAndPort> ReadHostAndPort(std::string_view text);
 
+/// Whether a host, as in HostAndPort, is reached from this machine alone.
+bool IsLoopback(const std::string& host);
+
 /// The origin of a web page (RFC 6454), "https://app.foxglove.dev", as browsers write it: in lower case, without the
 /// scheme's own port. Nothing unless it is a scheme http or https with a host and perhaps a port.
 std::optional<std::string> ReadOrigin(std::string_view text);
