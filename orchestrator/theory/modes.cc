@@ -50,23 +50,25 @@ class FromRest {
  public:
   FromRest(const LinearMode& mode, double h) : poles_(Poles(mode, h)), h_(h) {
     if (Log(poles_[0], h).real() < Log(poles_[1], h).real()) std::swap(poles_[0], poles_[1]);
+    for (std::size_t k = 0; k < 2; ++k) logs_[k] = Log(poles_[k], h);
     first_ = poles_[0] + mode.hold * h * mode.stiffness;
   }
 
   /// x after n ticks.
   Complex At(double n) const {
-    const Complex slow = std::exp(n * Log(poles_[0], h_));
+    const Complex slow = std::exp(n * logs_[0]);
     const Complex gap = poles_[0] - poles_[1];
     if (std::abs(gap) * n * h_ < 1e-4) return slow * (1.0 - first_ * n * h_ / (1.0 + h_ * poles_[0]));  // a double pole
-    return slow - first_ * (slow - std::exp(n * Log(poles_[1], h_))) / gap;
+    return slow - first_ * (slow - std::exp(n * logs_[1])) / gap;
   }
   /// Upper bound of |At(n)|; decreases for n h > 1 / rate.
   double Bound(double n) const {
-    return (1 + std::abs(first_) * n * h_ / std::abs(1.0 + h_ * poles_[0])) * std::exp(n * Log(poles_[0], h_).real());
+    return (1 + std::abs(first_) * n * h_ / std::abs(1.0 + h_ * poles_[0])) * std::exp(n * logs_[0].real());
   }
 
  private:
   std::array<Complex, 2> poles_;  // the slower first, as (z - 1) / h
+  std::array<Complex, 2> logs_;   // ln z of each
   double h_;
   Complex first_;  // (z of the slower pole - At(1)) / h
 };
