@@ -53,10 +53,13 @@ dds::DomainParticipant* CreateParticipant(const DomainOptions& options, dds::Dom
 
 Domain::Domain(const DomainOptions& options, std::function<void()> wake, Peers* peers,
                dds::DomainParticipantListener* discovery)
-    : wake_(std::move(wake)), peers_(peers), redelivery_(options.loopback ? Redelivery::kSeldom : Redelivery::kOften) {
+    : wake_(std::move(wake)),
+      peers_(peers),
+      redelivery_(options.loopback ? Redelivery::kSeldom : Redelivery::kOften),
+      discoveries_(std::make_unique<Discoveries>(*this, discovery)) {
   DisableIntraprocessDelivery();
   participant_ =
-      Own<dds::DomainParticipant>(CreateParticipant(options, discovery),
+      Own<dds::DomainParticipant>(CreateParticipant(options, discoveries_.get()),
                                   "participant in domain " + std::to_string(options.domain), [](auto* participant) {
                                     participant->set_listener(nullptr);
                                     dds::DomainParticipantFactory::get_instance()->delete_participant(participant);
@@ -66,6 +69,25 @@ Domain::Domain(const DomainOptions& options, std::function<void()> wake, Peers* 
                                    [participant](auto* publisher) { participant->delete_publisher(publisher); });
   subscriber_ = Own<dds::Subscriber>(participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT), "subscriber",
                                      [participant](auto* subscriber) { participant->delete_subscriber(subscriber); });
+}
+
+void Domain::Discoveries::on_participant_discovery(dds::DomainParticipant* participant,
+                                                   eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) {
+  using Info = eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
+  if (info.status == Info::DISCOVERED_PARTICIPANT) ++participants_;
+  if (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT) --participants_;
+  if (next_ != nullptr) next_->on_participant_discovery(participant, std::move(info));
+  domain_.Wake();
+}
+
+void Domain::Discoveries::on_subscriber_discovery(dds::DomainParticipant* participant,
+                                                  eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) {
+  if (next_ != nullptr) next_->on_subscriber_discovery(participant, std::move(info));
+}
+
+void Domain::Discoveries::on_publisher_discovery(dds::DomainParticipant* participant,
+                                                 eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) {
+  if (next_ != nullptr) next_->on_publisher_discovery(participant, std::move(info));
 }
 
 void Domain::Fail(std::exception_ptr failure) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <exception>
@@ -37,18 +38,25 @@ class BusError : public std::runtime_error {
 template <class Entity>
 using Handle = std::unique_ptr<Entity, std::function<void(Entity*)>>;
 
+/// How long a process waits, before it makes readers and writers, until it has discovered those that it talks to.
+/// Endpoints are told at once to participants that are known; those that come later ask for them, and Fast DDS answers
+/// after 0.1 s, with a heartbeat to all for each.
+inline constexpr std::chrono::seconds kTimeToDiscover(2);
+
 /// A process's participant, publisher and subscriber in the DDS domain of a run. Must outlive every reader and writer
 /// made in it.
 class Domain {
  public:
-  /// `wake` is called, from any thread, when a waiting loop should check again: a reader or writer was matched or
-  /// unmatched, a callback failed, or Wake() was called. `peers` are the processes of the run: readers take samples
-  /// only from these, and only these count as matched. Without `peers`, all participants are believed, which is right
-  /// for a process that only listens. `discovery`, if given, is told of every discovered participant and endpoint. Both
-  /// must outlive this object. Throws BusError, and what ParticipantQos() throws.
+  /// `wake` is called, from any thread, when a waiting loop should check again: a participant was discovered, a reader
+  /// or writer was matched or unmatched, a callback failed, or Wake() was called. `peers` are the processes of the run:
+  /// readers take samples only from these, and only these count as matched. Without `peers`, all participants are
+  /// believed, which is right for a process that only listens. `discovery`, if given, is told of every discovered
+  /// participant and endpoint. Both must outlive this object. Throws BusError, and what ParticipantQos() throws.
   Domain(const DomainOptions& options, std::function<void()> wake, Peers* peers = nullptr,
          eprosima::fastdds::dds::DomainParticipantListener* discovery = nullptr);
 
+  /// Number of other participants that have been discovered and have not gone.
+  int discovered() const { return discoveries_->participants(); }
   /// Rethrows the first exception given to Fail(), if any.
   void RethrowFailure() const;
   void Wake() const { wake_(); }
@@ -64,12 +72,33 @@ class Domain {
   friend class ReaderBase;
   Handle<eprosima::fastdds::dds::Topic> MakeTopic(const Topic& topic, eprosima::fastdds::dds::TypeSupport type);
 
+  /// Counts participants, and passes on what discovery tells.
+  class Discoveries : public eprosima::fastdds::dds::DomainParticipantListener {
+   public:
+    Discoveries(const Domain& domain, eprosima::fastdds::dds::DomainParticipantListener* next)
+        : domain_(domain), next_(next) {}
+    int participants() const { return participants_; }
+
+    void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
+                                  eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+    void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
+                                 eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+    void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
+                                eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+
+   private:
+    const Domain& domain_;
+    eprosima::fastdds::dds::DomainParticipantListener* next_;
+    std::atomic<int> participants_ = 0;
+  };
+
   std::function<void()> wake_;
   Peers* peers_;
   Redelivery redelivery_;
   std::optional<eprosima::fastdds::rtps::Locator> shared_memory_;  // where readers read it; known once there is one
   mutable std::mutex mutex_;
   std::exception_ptr failure_;
+  std::unique_ptr<Discoveries> discoveries_;
   Handle<eprosima::fastdds::dds::DomainParticipant> participant_;  // parents first: destroyed in reverse order
   Handle<eprosima::fastdds::dds::Publisher> publisher_;
   Handle<eprosima::fastdds::dds::Subscriber> subscriber_;

@@ -1,6 +1,7 @@
 #include "bus/lifecycle.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/utf8.h"
 
@@ -25,6 +26,7 @@ Lifecycle::Lifecycle(Domain& domain, Peers& peers, StopSignal& stop, const std::
 
 mascot_msgs::msg::Experiment Lifecycle::AwaitExperiment(std::chrono::seconds timeout) {
   const auto deadline = Clock::now() + timeout;
+  int listeners = 0;
   for (auto ask_again = Clock::now(); Clock::now() < deadline;) {
     {
       const std::lock_guard lock(mutex_);
@@ -33,7 +35,8 @@ mascot_msgs::msg::Experiment Lifecycle::AwaitExperiment(std::chrono::seconds tim
         return *experiment_;
       }
     }
-    if (Clock::now() >= ask_again) {
+    const int before = std::exchange(listeners, status_writer_.matched());
+    if (listeners > before || Clock::now() >= ask_again) {
       Set(Life::kWaiting);
       ask_again = Clock::now() + 200ms;
     }

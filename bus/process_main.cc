@@ -88,6 +88,17 @@ class Refusals {
   const Peers& peers_;
 };
 
+/// Waits until so many participants are discovered, at most kTimeToDiscover. Returns a signal that came, or 0.
+int AwaitParticipants(const Domain& domain, int awaited, StopSignal& stop) {
+  const auto deadline = std::chrono::steady_clock::now() + kTimeToDiscover;
+  while (domain.discovered() < awaited) {
+    const auto left = deadline - std::chrono::steady_clock::now();
+    if (left <= left.zero()) return 0;
+    if (const int signal = stop.Within(left); signal != 0) return signal;
+  }
+  return 0;
+}
+
 /// Joins the domain and runs its role. Publishes a failure before it leaves. Returns the exit code.
 int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role) {
   Peers peers;
@@ -96,6 +107,7 @@ int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role
   Domain domain(
       args.options, [&stop] { stop.Wake(); }, &peers);
   const Refusals refusals(peers);
+  if (const int signal = AwaitParticipants(domain, args.awaited, stop); signal != 0) return 128 + signal;
   Lifecycle lifecycle(domain, peers, stop, args.options.name, args.agents.size() == 1 ? args.agents.first : 0);
   std::unique_ptr<Role> role;  // destroyed after the exit code is known: that may hang
   std::optional<mascot_msgs::msg::Experiment> experiment;
@@ -139,6 +151,8 @@ void ProcessArgs::AddTo(CLI::App& app) {
                  "Numbers of the processes to announce this one to (default: by multicast, to all)")
       ->delimiter(',')
       ->check(CLI::Range(0, 119));
+  app.add_option("--awaits", awaited, "How many participants this one waits for before it makes readers and writers")
+      ->check(CLI::Range(0, 20000));
   app.add_option("--parent", parent, "Process id of the program that spawned this process: end when it dies");
   app.add_option("--orchestrator", orchestrator, "Process id of the orchestrator, if it is on another host");
   app.add_option("--address", options.address, "IPv4 address of the interface to use (default: all)");

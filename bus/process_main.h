@@ -21,6 +21,7 @@ struct ProcessArgs {
   DomainOptions options;
   AgentRange agents;  ///< the agents of this process; 0..0: none (the physics server)
   int wait_s = 60;    ///< how long to wait for the experiment
+  int awaited = 0;  ///< how many participants to discover before readers and writers are made, at most kTimeToDiscover
   /// Pid of the process that started this one, which ends with it; 0: this one was started by hand.
   int parent = 0;
   int orchestrator = 0;  ///< pid of the orchestrator, if that is not the parent but on another host

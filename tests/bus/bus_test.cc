@@ -230,6 +230,18 @@ TEST_F(Bus, ASecondWriterOfAProcessIsCountedAndNotHeardBesideTheFirst) {
                                             ", a second writer of physics_server"));
 }
 
+TEST_F(Bus, ADomainCountsTheParticipantsThatItHasDiscovered) {
+  std::atomic<int> wakes = 0;
+  const Domain domain(Options("agent_1"), [&] { ++wakes; });
+  ASSERT_TRUE(Until([&] { return domain.discovered() == 2; })) << domain.discovered();
+  EXPECT_GE(wakes, 2) << "who waits for them looks again";
+  {
+    const Domain third(Options("agent_2"), [] {});
+    ASSERT_TRUE(Until([&] { return domain.discovered() == 3; })) << domain.discovered();
+  }
+  EXPECT_TRUE(Until([&] { return domain.discovered() == 2; })) << domain.discovered();
+}
+
 TEST_F(Bus, AWriterCountsTheProcessesOfTheRunThatHearIt) {
   Peers peers;
   Domain server(

@@ -532,6 +532,28 @@ TEST(Faults, AnAgentThatNeverComesIsNamedAfterTheStartTimeout) {
   EXPECT_TRUE(NothingIsLeft(up));
 }
 
+TEST(Faults, AnAgentThatWaitsForParticipantsThatDoNotComeFliesAllTheSame) {
+  ScratchFolder folder;
+  Up up(folder, "run", Config("leaderless"),
+        {"--duration-s", "0.2", "--set", "agents.override=[{id = 1, host = \"external\"}]"});
+  ASSERT_TRUE(Until([&] { return up.Said("waiting for: agent --id 1"); }));
+  Running agent(std::string(MASCOT_BINARY_DIR) + "/agent",
+                {"--id", "1", "--domain", std::to_string(DomainOf(up)), "--awaits", "1000"}, folder.File("agent"));
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  EXPECT_EQ(agent.Wait(), 0) << agent.err();
+}
+
+TEST(Faults, AnAgentThatWaitsForParticipantsEndsByASignal) {
+  ScratchFolder folder;
+  Running agent(std::string(MASCOT_BINARY_DIR) + "/agent",
+                {"--id", "1", "--domain", "231", "--loopback", "--awaits", "1000"}, folder.File("agent"));
+  const std::string threads = "/proc/" + std::to_string(agent.pid()) + "/task";
+  ASSERT_TRUE(Until([&] { return std::distance(std::filesystem::directory_iterator(threads), {}) > 3; }))
+      << "it has joined the domain";
+  agent.Signal(SIGINT);
+  EXPECT_EQ(agent.Wait(), 130) << agent.err();
+}
+
 TEST(Faults, AFullDiskFailsTheRun) {
   ScratchFolder folder;
   for (const std::string engine : {"dds", "inprocess"}) {

@@ -92,6 +92,7 @@ class DdsRun {
   std::string PlacedName(const std::string& process) const;
   RunPhases::Rules Rules();
   void Join();
+  void AwaitParticipants();
   void LookAtPorts();
   void ShowToRos();
   void Spawn();
@@ -206,11 +207,21 @@ void DdsRun::Join() {
   domain_.emplace(Options(kOrchestrator, with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake, &peers_,
                   &audit_);
   peers_.Know(kOrchestrator, ProcessKey::Of(domain_->guid_prefix()));
+  if (is_star_) AwaitParticipants();
   links_.emplace(*domain_, peers_, experiment_,
                  LogFile(folder_.Log("orchestrator"), [this](const std::string& words) { console_.Warning(words); }),
                  wake);
   recorder_.emplace(*domain_, experiment_, feed_);
   if (ros_ != nullptr) ShowToRos();
+}
+
+/// Waits until all processes are discovered, at most kTimeToDiscover; not for those of which one has ended.
+void DdsRun::AwaitParticipants() {
+  const auto deadline = WallClock::now() + kTimeToDiscover;
+  while (domain_->discovered() < 1 + std::ssize(processes_) && phases_.in_order() && WallClock::now() < deadline) {
+    OnSignal(stop_.Within(deadline - WallClock::now()));
+    Reap();
+  }
 }
 
 /// Other DDS programs in the domain, if the file names it, may have the ports on which a star relies.
@@ -300,14 +311,16 @@ void DdsRun::Spawn() {
   console_.Line("DDS domain " + std::to_string(options.domain) +
                 (with_server_ ? ", discovery server " + options.server : ""));
 
-  const auto complete = [&common](std::vector<std::string> arguments, int number) {
+  const auto complete = [&common, this](std::vector<std::string> arguments, int number, std::ptrdiff_t awaits) {
     arguments.insert(arguments.end(), common.begin(), common.end());
     arguments.insert(arguments.end(), {"--participant", std::to_string(number)});
+    if (is_star_) arguments.insert(arguments.end(), {"--awaits", std::to_string(awaits)});
     return arguments;
   };
   const pid_t server =
       children_.Spawn(kPhysicsServer, ProgramFolder() / "physics_server",
-                      complete(ArgumentsOf(options.participants), kServersNumber), folder_.Log(kPhysicsServer));
+                      complete(ArgumentsOf(options.participants), kServersNumber, std::ssize(processes_) + 1),
+                      folder_.Log(kPhysicsServer));
   peers_.Know(kPhysicsServer, ProcessKey::WithPid(server));
   std::vector<Children::CopyOf> here;
   for (const AgentRange& agents : processes_) {
@@ -315,7 +328,7 @@ void DdsRun::Spawn() {
     const std::string process = ProcessName(agents);
     if (!agent.external && agent.host.empty()) {
       const int number = kFirstAgents + static_cast<int>(here.size());
-      here.push_back({process, complete(ArgumentsOf(agents), number), folder_.Log(process)});
+      here.push_back({process, complete(ArgumentsOf(agents), number, 2), folder_.Log(process)});
       continue;
     }
     peers_.Know(process, ProcessKey());  // the first that says it is that
