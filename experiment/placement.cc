@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
+#include <optional>
 
 #include "base/motion.h"
 #include "base/random.h"
@@ -11,13 +13,66 @@
 namespace mascot {
 namespace {
 
-Eigen::Vector3d PointIn(const Box& box, Random& random) {
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// A unit vector, uniform on the sphere (Archimedes: its height is uniform).
+Eigen::Vector3d Direction(Random& random) {
+  const double z = random.In(-1, 1), angle = random.In(0, kTurn), r = std::sqrt(1 - z * z);
+  return {r * std::cos(angle), r * std::sin(angle), z};
+}
+
+Eigen::Vector3d InBox(const StartRegion& region, Random& random) {
   Eigen::Vector3d point;
-  for (int axis = 0; axis < 3; ++axis) point[axis] = random.In(box.min_m[axis], box.max_m[axis]);
+  for (int axis = 0; axis < 3; ++axis) point[axis] = random.In(region.min_m[axis], region.max_m[axis]);
   return point;
 }
 
-bool Stands(const AgentConfig& agent, const Box& box) { return box.has_ground && agent.traits().rolls; }
+/// The points of the smallest square grid that has room for so many agents, in random order.
+std::vector<Eigen::Vector3d> GridPoints(std::size_t count, const StartRegion& region, Random& random) {
+  const int side = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count))));
+  std::vector<Eigen::Vector3d> points;
+  for (int row = 0; row < side; ++row)
+    for (int column = 0; column < side; ++column)
+      points.emplace_back(region.center_m +
+                          region.spacing_m * Eigen::Vector3d(column - (side - 1) / 2.0, row - (side - 1) / 2.0, 0));
+  for (std::size_t k = points.size(); k > 1; --k) std::swap(points[k - 1], points[random.Below(k)]);
+  return points;
+}
+
+/// Draws one place after another.
+class Places {
+ public:
+  Places(std::size_t count, const StartRegion& region, Random& random) : region_(region), random_(random) {
+    if (region.shape == StartShape::kGrid) grid_ = GridPoints(count, region, random);
+  }
+  /// Nothing: there is none left.
+  std::optional<Eigen::Vector3d> Next() {
+    switch (region_.shape) {
+      case StartShape::kBox:
+      case StartShape::kPlane:
+        return InBox(region_, random_);
+      case StartShape::kCircle: {
+        const double angle = random_.In(0, kTurn);
+        return region_.center_m + region_.radius_m * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
+      }
+      case StartShape::kSphere:
+        return region_.center_m + region_.radius_m * Direction(random_);
+      case StartShape::kGrid:
+        if (grid_.empty()) return std::nullopt;
+        const Eigen::Vector3d point = grid_.back();
+        grid_.pop_back();
+        return point;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const StartRegion& region_;
+  Random& random_;
+  std::vector<Eigen::Vector3d> grid_;  // the points that are left
+};
+
+bool Stands(const AgentConfig& agent, const StartRegion& region) { return region.has_ground && agent.traits().rolls; }
 
 /// Heights from `min_m` to `max_m`, at least `separation_m` apart, in random order; nullopt: there is no room. Random
 /// offsets, sorted, share the height that the separations leave over.
@@ -39,18 +94,18 @@ std::optional<std::vector<double>> Heights(std::size_t count, double min_m, doub
 /// Sets the heights that are not drawn together with x and y: those of standing agents and, with separation in z alone,
 /// those of all agents. Flying agents then also keep the separation above standing ones. Returns false if there is no
 /// room.
-bool SetHeights(std::vector<AgentConfig>& agents, const Box& box, Random& random) {
+bool SetHeights(std::vector<AgentConfig>& agents, const StartRegion& region, Random& random) {
   std::vector<AgentConfig*> flying;
   for (AgentConfig& agent : agents) {
-    if (Stands(agent, box))
+    if (Stands(agent, region))
       agent.p_W.z() = kBallRadius_m;
     else
       flying.push_back(&agent);
   }
-  if (!box.in_z_alone) return true;
-  const double clear_m = flying.size() < agents.size() ? kBallRadius_m + box.separation_m : box.min_m.z();
+  if (!region.in_z_alone) return true;
+  const double clear_m = flying.size() < agents.size() ? kBallRadius_m + region.separation_m : region.min_m.z();
   const auto heights =
-      Heights(flying.size(), std::max(box.min_m.z(), clear_m), box.max_m.z(), box.separation_m, random);
+      Heights(flying.size(), std::max(region.min_m.z(), clear_m), region.max_m.z(), region.separation_m, random);
   if (!heights) return false;
   for (std::size_t k = 0; k < flying.size(); ++k) flying[k]->p_W.z() = (*heights)[k];
   return true;
@@ -95,30 +150,30 @@ bool TouchesAny(const AgentConfig& agent, const std::vector<Obstacle>& obstacles
 }
 
 /// True if `agent` is far enough from `other`, which has its place already.
-bool Apart(const AgentConfig& agent, const AgentConfig& other, const Box& box) {
-  const bool in_z = box.in_z_alone && !(Stands(agent, box) && Stands(other, box));
-  return (in_z || (agent.p_W - other.p_W).norm() >= box.separation_m) && (box.may_touch || !Touch(agent, other));
+bool Apart(const AgentConfig& agent, const AgentConfig& other, const StartRegion& region) {
+  const bool in_z = region.in_z_alone && !(Stands(agent, region) && Stands(other, region));
+  return (in_z || (agent.p_W - other.p_W).norm() >= region.separation_m) && (region.may_touch || !Touch(agent, other));
 }
 
 /// Agents that have their places, along the longest axis of their box, so that another one is compared with few.
 class PlacedAgents {
  public:
-  PlacedAgents(const std::vector<AgentConfig>& agents, const Box& box) : box_(box) {
-    (box.max_m - box.min_m).maxCoeff(&axis_);
+  PlacedAgents(const std::vector<AgentConfig>& agents, const StartRegion& region) : region_(region) {
+    (region.max_m - region.min_m).maxCoeff(&axis_);
     for (const AgentConfig& agent : agents) reach_m_ = std::max(reach_m_, agent.size_m().norm());
-    reach_m_ = std::max(reach_m_, box.separation_m) * (1 + 1e-9);  // however a difference is rounded
+    reach_m_ = std::max(reach_m_, region.separation_m) * (1 + 1e-9);  // however a difference is rounded
   }
   void Add(const AgentConfig& agent) { along_axis_.emplace(agent.p_W[axis_], &agent); }
   /// True if `agent` is far enough from all of them.
   bool AreApartFrom(const AgentConfig& agent) const {
     const auto end = along_axis_.upper_bound(agent.p_W[axis_] + reach_m_);
     for (auto other = along_axis_.lower_bound(agent.p_W[axis_] - reach_m_); other != end; ++other)
-      if (!Apart(agent, *other->second, box_)) return false;
+      if (!Apart(agent, *other->second, region_)) return false;
     return true;
   }
 
  private:
-  const Box& box_;
+  const StartRegion& region_;
   Eigen::Index axis_ = 0;
   double reach_m_ = 0;
   std::multimap<double, const AgentConfig*> along_axis_;
@@ -126,25 +181,47 @@ class PlacedAgents {
 
 }  // namespace
 
-bool Place(std::vector<AgentConfig>& agents, const Box& box, std::uint64_t seed) {
+bool Place(std::vector<AgentConfig>& agents, const StartRegion& region, std::uint64_t seed) {
   std::size_t tries = 10000 + 20 * agents.size();  // for all agents together: ten thousand give up in seconds
   Random random(seed, Random::Stream::kPositions);
-  if (!SetHeights(agents, box, random)) return false;
-  PlacedAgents placed(agents, box);
+  if (!SetHeights(agents, region, random)) return false;
+  PlacedAgents placed(agents, region);
+  Places places(agents.size(), region, random);
   for (AgentConfig& agent : agents) {
     const auto is_free = [&] {
-      return (box.may_touch || !TouchesAny(agent, box.obstacles)) && placed.AreApartFrom(agent);
+      return (region.may_touch || !TouchesAny(agent, region.obstacles)) && placed.AreApartFrom(agent);
     };
     do {
       if (tries == 0) return false;
       --tries;
-      const Eigen::Vector3d point = PointIn(box, random);
-      agent.p_W.head<2>() = point.head<2>();
-      if (!box.in_z_alone && !Stands(agent, box)) agent.p_W.z() = point.z();
+      const std::optional<Eigen::Vector3d> point = places.Next();
+      if (!point) return false;
+      agent.p_W.head<2>() = point->head<2>();
+      if (!region.in_z_alone && !Stands(agent, region)) agent.p_W.z() = point->z();
     } while (!is_free());
     placed.Add(agent);
   }
   return true;
+}
+
+void DrawVelocities(std::vector<AgentConfig>& agents, double max_speed_m_per_s, bool level, std::uint64_t seed) {
+  Random random(seed, Random::Stream::kVelocities);
+  for (AgentConfig& agent : agents) {
+    const Eigen::Vector3d direction = Direction(random);
+    const double share = random.Unit(), angle = agent.heading_rad;
+    if (agent.traits().rolls)
+      agent.v_W = max_speed_m_per_s * (2 * share - 1) * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
+    else if (level)
+      agent.v_W = max_speed_m_per_s * std::sqrt(share) *
+                  Eigen::Vector3d(direction.x(), direction.y(), 0).normalized();  // area grows as radius squared
+    else
+      agent.v_W = max_speed_m_per_s * std::cbrt(share) * direction;
+  }
+}
+
+void DrawHeadings(std::vector<AgentConfig>& agents, std::uint64_t seed) {
+  Random random(seed, Random::Stream::kHeadings);
+  for (AgentConfig& agent : agents) agent.heading_rad = random.In(-std::numbers::pi, std::numbers::pi);
 }
 
 std::optional<std::pair<int, int>> FirstTouching(const std::vector<AgentConfig>& agents) {

@@ -32,6 +32,8 @@ bool DrawsEdges(Section graph) {
 void AddOnReading(Random::Stream stream, Section& document, Keys& keys) {
   switch (stream) {
     case Random::Stream::kPositions:
+    case Random::Stream::kVelocities:
+    case Random::Stream::kHeadings:
       return AddOnce("agents.random", document.Child("agents").Has("random"), keys);
     case Random::Stream::kGraph: {
       Section graph = document.Child("graph");
@@ -109,7 +111,8 @@ std::vector<std::string> DrawsOf(const Experiment& experiment) {
   Keys keys;
   Section document = Section::FromText(experiment.resolved, "the resolved experiment");
   using enum Random::Stream;
-  for (const Random::Stream stream : {kPositions, kGraph, kSweep}) AddOnReading(stream, document, keys);
+  for (const Random::Stream stream : {kPositions, kVelocities, kHeadings, kGraph, kSweep})
+    AddOnReading(stream, document, keys);
   AddAll(experiment, keys);
   const bool laws_draw = AnyLawDraws(experiment);
   const auto may_draw = [&](const Event& event) { return MayDraw(event, laws_draw); };

@@ -115,6 +115,20 @@ std::string SeedText(const Experiment& experiment) {
          (keys.empty() ? ", without effect: nothing is drawn at random" : ", for " + keys);
 }
 
+/// The corners of the box in which the agents start, in W.
+std::pair<Eigen::Vector3d, Eigen::Vector3d> StartBox(const Experiment& experiment) {
+  std::pair<Eigen::Vector3d, Eigen::Vector3d> box(experiment.agents.front().p_W, experiment.agents.front().p_W);
+  for (const AgentConfig& agent : experiment.agents)
+    box = {box.first.cwiseMin(agent.p_W), box.second.cwiseMax(agent.p_W)};
+  return box;
+}
+
+std::string StartsText(const Experiment& experiment) {
+  const auto [min_m, max_m] = StartBox(experiment);
+  return fmt::format("x {:.1f} to {:.1f} m, y {:.1f} to {:.1f} m, z {:.1f} to {:.1f} m", min_m.x(), max_m.x(),
+                     min_m.y(), max_m.y(), min_m.z(), max_m.z());
+}
+
 /// Says when agents should share processes: a tick over DDS costs about 10 us for each process, and 1 us for each
 /// agent.
 void PrintProcesses(const Experiment& experiment) {
@@ -133,6 +147,7 @@ void PrintExperiment(const Experiment& experiment) {
   }
   PrintLine("experiment", experiment.run.name);
   PrintLine("agents", models);
+  PrintLine("starts", StartsText(experiment));
   PrintProcesses(experiment);
   PrintLine("law", LawText(experiment.law));
   PrintLine("duration", fmt::format("{:g} s, {} ticks at {} Hz", experiment.run.duration_s, experiment.ticks(),

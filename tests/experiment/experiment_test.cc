@@ -6,10 +6,13 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
+#include <set>
 
 #include "agent/laws/laws.h"
 #include "experiment/placement.h"
 #include "experiment/processes.h"
+#include "tests/support/scratch.h"
 
 namespace mascot {
 namespace {
@@ -389,7 +392,9 @@ TEST(RandomStart, GivesUpAfterABoundedNumberOfTries) {
   EXPECT_THAT(
       Mistakes("run.duration_s = 1\nlaw.axes = 'xyz'\n"
                "agents = { count = 9, random = { min_m = [0, 0, 0], max_m = [1, 1, 1], min_separation_m = 2 } }\n"),
-      ElementsAre("e.toml:3:32: agents.random: expected room for 9 agents 2.0 m apart, got too small a box"));
+      ElementsAre("e.toml:3:32: agents.random: expected room for 9 agents 2.0 m apart, got too small a box; what helps "
+                  "is a larger one (min_m, "
+                  "max_m) or less min_separation_m"));
 }
 
 /// Two unicycles and two quadrotors, followed by `text`.
@@ -437,15 +442,179 @@ TEST(RandomStart, AvoidsObstaclesUnlessCollisionsAreOff) {
   EXPECT_TRUE(inside("physics.collisions = false\n"));
 }
 
+/// `count` agents that start as `random` says, by `seed`.
+Experiment Started(int count, const std::string& random, int seed = 1, const std::string& more = "") {
+  return Load("run = { duration_s = 1, seed = " + std::to_string(seed) + " }\ngraph.topology = 'path'\n" +
+              "agents = { count = " + std::to_string(count) + ", random = { " + random + " } }\n" + more);
+}
+
+TEST(RandomStart, HasRoomInEveryShapeForAnyNumberByDefault) {
+  for (const std::string shape : {"plane", "circle", "grid", "sphere"})
+    for (const int count : {1, 2, 30, 300}) {
+      const Experiment e = Started(count, "shape = '" + shape + "'");
+      EXPECT_EQ(FirstTouching(e.agents), std::nullopt) << shape << count;
+      for (const AgentConfig& agent : e.agents) EXPECT_GE(agent.p_W.z(), 1) << shape;
+    }
+}
+
+TEST(RandomStart, InAPlaneIsApartInXAndY) {
+  const Experiment e = Started(50, "shape = 'plane', min_m = [0, 0, 3], max_m = [20, 20, 8], min_separation_m = 1");
+  for (int i = 1; i <= e.size(); ++i) {
+    EXPECT_EQ(e.agent(i).p_W.z(), 3);
+    EXPECT_TRUE((e.agent(i).p_W.head<2>().array() >= 0).all() && (e.agent(i).p_W.head<2>().array() <= 20).all());
+    for (int j = 1; j < i; ++j) EXPECT_GE((e.agent(i).p_W - e.agent(j).p_W).norm(), 1);
+  }
+}
+
+TEST(RandomStart, OnASphereIsUniform) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double squares = 0;
+  int count = 0;
+  for (int seed = 1; seed <= 20; ++seed) {
+    const Experiment e =
+        Started(100, "shape = 'sphere', radius_m = 40, center_m = [0, 0, 50], min_separation_m = 0", seed);
+    for (const AgentConfig& agent : e.agents) {
+      const Eigen::Vector3d away = (agent.p_W - Eigen::Vector3d(0, 0, 50)) / 40;
+      EXPECT_NEAR(away.norm(), 1, 1e-12);
+      sum += away;
+      squares += away.z() * away.z();
+      ++count;
+    }
+  }
+  const double sigma = 1 / std::sqrt(3.0 * count);  // of the mean of one coordinate, whose variance is 1/3
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(sum[axis] / count, 0, 4 * sigma);
+  EXPECT_NEAR(squares / count, 1.0 / 3, 4 * std::sqrt(4.0 / 45 / count)) << "z is uniform";
+}
+
+TEST(RandomStart, OnAGridTakesEachPointOnce) {
+  std::set<std::pair<double, double>> points;
+  const Experiment e = Started(9, "shape = 'grid', grid_spacing_m = 2, center_m = [10, 0, 5]");
+  for (const AgentConfig& agent : e.agents) points.emplace(agent.p_W.x(), agent.p_W.y());
+  EXPECT_THAT(points,
+              ElementsAre(std::pair(8, -2), std::pair(8, 0), std::pair(8, 2), std::pair(10, -2), std::pair(10, 0),
+                          std::pair(10, 2), std::pair(12, -2), std::pair(12, 0), std::pair(12, 2)));
+  EXPECT_NE(e.agent(1).p_W, Started(9, "shape = 'grid', grid_spacing_m = 2, center_m = [10, 0, 5]", 2).agent(1).p_W)
+      << "who stands where is drawn";
+}
+
+TEST(RandomStart, DrawsVelocitiesUniformInTheBallAndYaws) {
+  const Experiment e = Started(400, "max_speed_m_per_s = 3, heading = true", 1, "law.axes = 'xyz'\n");
+  double cubes = 0, turns = 0;
+  for (const AgentConfig& agent : e.agents) {
+    EXPECT_LE(agent.v_W.norm(), 3);
+    EXPECT_LE(std::abs(agent.heading_rad), std::numbers::pi);
+    cubes += std::pow(agent.v_W.norm() / 3, 3);
+    turns += agent.heading_rad;
+  }
+  const double sigma = 1 / std::sqrt(12.0 * 400);  // of the mean of numbers that are uniform in [0, 1]
+  EXPECT_NEAR(cubes / 400, 0.5, 4 * sigma);
+  EXPECT_NEAR(turns / 400, 0, 4 * sigma * 2 * std::numbers::pi);
+}
+
+TEST(RandomStart, SendsUnicyclesAlongTheirHeadings) {
+  const Experiment e = Load(
+      "run.duration_s = 1\ngraph.topology = 'path'\n"
+      "agents = { count = 20, model = 'unicycle', random = { max_speed_m_per_s = 3, heading = true } }\n");
+  for (const AgentConfig& agent : e.agents) {
+    const Eigen::Vector3d side(-std::sin(agent.heading_rad), std::cos(agent.heading_rad), 0);
+    EXPECT_NEAR(agent.v_W.dot(side), 0, 1e-12);
+  }
+}
+
+TEST(RandomStart, SaysWhichKeysBelongToAShape) {
+  const auto mistakes = [](const std::string& random) {
+    return Mistakes("run.duration_s = 1\nagents = { count = 4, random = { " + random + " } }\n");
+  };
+  const auto only = [](const std::string& words) { return ElementsAre(testing::EndsWith(words)); };
+  EXPECT_THAT(mistakes("radius_m = 3"),
+              only("agents.random.radius_m: expected shape = \"circle\" or \"sphere\" with it, got \"box\""));
+  EXPECT_THAT(mistakes("shape = 'grid', min_separation_m = 3"),
+              only("agents.random.min_separation_m: expected shape = \"box\" or \"plane\" or \"circle\" or \"sphere\" "
+                   "with it, got \"grid\""));
+  EXPECT_THAT(mistakes("shape = 'circle', max_m = [3, 3, 3]"),
+              only("agents.random.max_m: expected shape = \"box\" or \"plane\" with it, got \"circle\""));
+  EXPECT_THAT(mistakes("shape = 'sphere', center_m = [0, 0, 2]"),
+              only("agents.random.center_m: expected z >= 5 (physics.ground), got 2.0"));
+  EXPECT_THAT(mistakes("shape = 'ball'"),
+              only("agents.random.shape: expected one of box, plane, circle, grid, sphere, got 'ball'"));
+  EXPECT_THAT(mistakes("shape = 'circle', radius_m = 0.1"),
+              only("got too small a circle; what helps is a larger radius_m or less min_separation_m"));
+  EXPECT_THAT(mistakes("shape = 'grid', grid_spacing_m = 0.01"),
+              only("expected room for 4 agents that do not touch, got too small a grid; what helps is a larger "
+                   "grid_spacing_m"));
+  EXPECT_THAT(Mistakes("run.duration_s = 1\nagents = { count = 2, model = 'unicycle', random.shape = 'sphere' }\n"),
+              only("expected another one than \"sphere\", because unicycles stand on the ground"));
+  EXPECT_THAT(Mistakes("run.duration_s = 1\nagents = { count = 2, heading_rad = [0, 1], random.heading = true }\n"),
+              only("agents.random.heading: expected one of heading_rad, random.heading, got both"));
+  EXPECT_THAT(Mistakes("run.duration_s = 1\nagents = { count = 2, velocity_m_per_s = [[0, 0, 0], [1, 0, 0]], "
+                       "random.max_speed_m_per_s = 1 }\n"),
+              only("expected one of velocity_m_per_s, random.max_speed_m_per_s, got both"));
+}
+
+// --- starts from a table ------------------------------------------------------------------------------
+
+TEST(Starts, ComeFromAFileWhichTheRunKeeps) {
+  ScratchFolder folder;
+  WriteFile(folder.File("starts.csv"), "x,y,z,vx,vy,vz,heading\n0, 0, 1, 0.5, 0, 0, 1.5\r\n\n3,0,2,0,0,0,0\n");
+  WriteFile(folder.File("e.toml"), "run.duration_s = 1\nagents = { count = 2, starts_file = 'starts.csv' }\n");
+  const Experiment e = LoadExperiment(Section::FromFile(folder.File("e.toml")), "e");
+  EXPECT_EQ(e.agent(1).p_W, Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(e.agent(1).v_W, Eigen::Vector3d(0.5, 0, 0));
+  EXPECT_EQ(e.agent(1).heading_rad, 1.5);
+  EXPECT_EQ(e.agent(2).p_W, Eigen::Vector3d(3, 0, 2));
+  const Experiment again = Load(e.resolved);
+  EXPECT_EQ(again.agent(1).v_W, e.agent(1).v_W);
+  EXPECT_EQ(again.resolved, e.resolved);
+}
+
+TEST(Starts, SaysWhereATableIsWrong) {
+  const auto mistakes = [](const std::string& lines, const std::string& more = "") {
+    ScratchFolder folder;
+    WriteFile(folder.File("starts.csv"), lines);
+    WriteFile(folder.File("e.toml"),
+              "run.duration_s = 1\nagents = { count = 2, starts_file = 'starts.csv' " + more + "}\n");
+    try {
+      LoadExperiment(Section::FromFile(folder.File("e.toml")), "e");
+    } catch (const ConfigError& error) {
+      return error.mistakes();
+    }
+    return std::vector<std::string>();
+  };
+  const auto only = [](const std::string& words) { return ElementsAre(testing::EndsWith(words)); };
+  EXPECT_THAT(mistakes("0,0,1\n1,x,1\n"), only("starts.csv:2:3: agents.starts_file: expected 3, 6 or 7 numbers in "
+                                               "[-1e+06, 1e+06], x,y,z,vx,vy,vz,heading, got '1,x,1'"));
+  EXPECT_THAT(mistakes("0,0,1\n1,0\n"), only("starts.csv:2:4: agents.starts_file: expected 3, 6 or 7 numbers in "
+                                             "[-1e+06, 1e+06], x,y,z,vx,vy,vz,heading, got '1,0'"));
+  EXPECT_THAT(mistakes("0,0,1\n1,0,1,2,3,4,5,6\n"), only("got '1,0,1,2,3,4,5,6'"));
+  EXPECT_THAT(mistakes("0,0,1\n"), only("starts.csv:1:1: agents.starts_file: expected 2 lines, one per agent, got 1"));
+  EXPECT_THAT(mistakes("0,0,1\n0,0,-1\n"),
+              only("starts.csv:2:1: agents.starts_file: expected z >= 0 (physics.ground), got -1.0"));
+  EXPECT_THAT(mistakes("0,0,1\n0,0,1\n"), only("starts.csv:2:1: agents.starts_file: expected agents apart "
+                                               "(physics.collisions), got agent 2 touching agent 1"));
+  EXPECT_THAT(mistakes("0,0,1,0,0,0\n3,0,1,0,0,0\n", ", velocity_m_per_s = [[0, 0, 0], [0, 0, 0]]"),
+              only("expected x,y,z alone beside velocity_m_per_s, got '0,0,1,0,0,0'"));
+  EXPECT_THAT(mistakes("0,0,1,0,0,0,1\n3,0,1,0,0,0,1\n", ", heading_rad = [0, 0]"),
+              only("expected no heading beside heading_rad, got '0,0,1,0,0,0,1'"));
+  EXPECT_THAT(mistakes("0,0,1\n3,0,1\n", ", random = {}"),
+              only("agents.starts_file: expected one of position_m, random, starts_file, starts, got both random and "
+                   "starts_file"));
+  EXPECT_THAT(Mistakes("run.duration_s = 1\nagents = { count = 2, starts = '0,0' }\n"),
+              only("agents.starts: line 1, column 4: expected 3, 6 or 7 numbers in [-1e+06, 1e+06], "
+                   "x,y,z,vx,vy,vz,heading, got '0,0'"));
+}
+
 TEST(RandomStart, SaysWhatThereIsNoRoomFor) {
-  EXPECT_THAT(Mistakes(Mixed("agents.random.max_m = [10, 10, 3]\nagents.random.min_m = [-10, -10, 1]\n")),
-              ElementsAre("e.toml:4:8: agents.random: expected room for 4 agents 3.0 m apart in z "
-                          "(law.axes = \"xy\"; unicycles in x, y), got too small a box"));
+  EXPECT_THAT(
+      Mistakes(Mixed("agents.random.max_m = [10, 10, 3]\nagents.random.min_m = [-10, -10, 1]\n")),
+      ElementsAre("e.toml:4:8: agents.random: expected room for 4 agents 3.0 m apart in z "
+                  "(law.axes = \"xy\"; unicycles in x, y), got too small a box; what helps is a higher one (max_m), "
+                  "less min_separation_m, or shape = \"plane\""));
   EXPECT_THAT(Mistakes(Config("law.axes = 'xyz'\nagents.random.min_separation_m = 0.0\n"
                               "physics.obstacles = [{ shape = 'sphere', position_m = [0, 0, 0], "
                               "size_m = [99, 99, 99] }]\n")),
               ElementsAre("e.toml:4:8: agents.random: expected room for 4 agents 0.0 m apart, clear of obstacles "
-                          "(physics.obstacles), got too small a box"));
+                          "(physics.obstacles), got too small a box; what helps is a larger one (min_m, max_m) or less "
+                          "min_separation_m"));
 }
 
 TEST(GivenStart, OfAUnicycleIsTakenAsItIs) {

@@ -418,6 +418,53 @@ void StartsFartherApart(const Flight& was, const Flight& is) {
   EXPECT_GE(NearestInHeight()(is), 6);
 }
 
+/// Agents start on a horizontal circle, or on a sphere, of this radius about this centre.
+Claim StartsAround(const Eigen::Vector3d& center_m, double radius_m, bool is_sphere = false) {
+  return [=](const Flight& /*was*/, const Flight& is) {
+    for (int id = 1; id <= 4; ++id) {
+      const Eigen::Vector3d away_m = is.at(id, 0).p_WB - center_m;
+      EXPECT_NEAR(away_m.norm(), radius_m, 1e-9);
+      if (!is_sphere) {
+        EXPECT_NEAR(away_m.z(), 0, 1e-9);
+      }
+    }
+  };
+}
+
+/// Agents start on the four points of a grid with this spacing about [0, 0, 2].
+Claim StartsOnGrid(double spacing_m) {
+  return [=](const Flight& /*was*/, const Flight& is) {
+    for (int id = 1; id <= 4; ++id) {
+      EXPECT_NEAR(std::abs(is.at(id, 0).p_WB.x()), spacing_m / 2, 1e-9);
+      EXPECT_NEAR(std::abs(is.at(id, 0).p_WB.y()), spacing_m / 2, 1e-9);
+      EXPECT_NEAR(is.at(id, 0).p_WB.z(), 2, 1e-9);
+    }
+  };
+}
+
+/// Agents start at one height.
+void StartsAtOneHeight(const Flight& /*was*/, const Flight& is) {
+  for (int id = 1; id <= 4; ++id) EXPECT_EQ(is.at(id, 0).p_WB.z(), 1);
+}
+
+/// Agents start at rest before, and then with different horizontal velocities up to 2 m/s.
+void StartsInMotion(const Flight& was, const Flight& is) {
+  for (int id = 1; id <= 4; ++id) {
+    EXPECT_EQ(was.at(id, 0).v_WB.norm(), 0);
+    EXPECT_GT(is.at(id, 0).v_WB.norm(), 0);
+    EXPECT_LE(is.at(id, 0).v_WB.norm(), 2);
+    EXPECT_EQ(is.at(id, 0).v_WB.z(), 0);
+    EXPECT_EQ(was.at(id, 0).p_WB, is.at(id, 0).p_WB) << "the places are drawn by themselves";
+  }
+  EXPECT_NE(is.at(1, 0).v_WB, is.at(2, 0).v_WB);
+}
+
+/// Agents start with different yaws.
+void StartsTurned(const Flight& was, const Flight& is) {
+  EXPECT_EQ(HeadingOf(1)(was), HeadingOf(2)(was));
+  EXPECT_NE(HeadingOf(1)(is), HeadingOf(2)(is));
+}
+
 INSTANTIATE_TEST_SUITE_P(
     RunAndAgents, Key,
     testing::Values(
@@ -434,6 +481,19 @@ INSTANTIATE_TEST_SUITE_P(
         Set("agents.random", "{ min_m = [0, 0, 2] }", StartsWithin({0, 0, 2}, kHigh + Eigen::Vector3d(0, 0, 1)), {},
             "agents.random.min_m"),
         Set("agents.random", "{ min_separation_m = 6.0 }", StartsFartherApart, {}, "agents.random.min_separation_m"),
+        Set("agents.random", "{ shape = 'plane' }", StartsAtOneHeight, {}, "agents.random.shape"),
+        Set("agents.random", "{ shape = 'circle', radius_m = 7.0 }", StartsAround({0, 0, 2}, 7), {},
+            "agents.random.radius_m"),
+        Set("agents.random", "{ shape = 'circle', center_m = [1, 2, 3] }", StartsAround({1, 2, 3}, 5), {},
+            "agents.random.center_m"),
+        Set("agents.random", "{ shape = 'sphere' }", StartsAround({0, 0, 6}, 5, true), {},
+            "agents.random.shape to sphere"),
+        Set("agents.random", "{ shape = 'grid', grid_spacing_m = 3.0 }", StartsOnGrid(3), {},
+            "agents.random.grid_spacing_m"),
+        Set("agents.random", "{ max_speed_m_per_s = 2.0 }", StartsInMotion, {}, "agents.random.max_speed_m_per_s"),
+        Set("agents.random", "{ heading = true }", StartsTurned, {}, "agents.random.heading"),
+        Set("agents", "{ count = 4, starts = \"0,0,1\\n1,0,2\\n2,0,3\\n3,0,4\\n\" }",
+            Both(Becomes(PlaceOf(1, 0, 0), 0, 1e-9), Becomes(PlaceOf(4, 0, 2), 4, 1e-9)), {}, "agents.starts"),
         Set("agents", "{ count = 4, position_m = [[0,0,1],[1,0,2],[2,0,3],[3,0,4]] }",
             Both(Becomes(PlaceOf(1, 0, 0), 0, 1e-9), Becomes(PlaceOf(4, 0, 2), 4, 1e-9)), {}, "agents.position_m"),
         Set("agents.velocity_m_per_s", "[[1,0,0],[0,0,0],[0,0,0],[0,0,0]]", Goes(VelocityOf(1, 0, 0), 0, 1, 1e-12)),

@@ -1,66 +1,28 @@
 #include "agent/laws/trajectory/path_samples.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <optional>
-#include <sstream>
-#include <string_view>
-
-#include "base/number.h"
-#include "base/utf8.h"
+#include <vector>
 
 namespace mascot {
 namespace {
 
-constexpr double kLargestSample = 1e6;
-constexpr std::size_t kLongestSampleQuote = 60;
-
-bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-
-/// Reads the four numbers of a line "t,x,y,z", with blanks around them, into `numbers`. Returns at which character of
-/// the line it is something else; nothing: it is that.
-std::optional<std::size_t> ReadFour(std::string_view line, std::array<double, 4>& numbers) {
-  std::size_t begin = 0;
-  for (std::size_t n = 0; n < numbers.size(); ++n) {
-    const std::size_t end = n + 1 < numbers.size() ? line.find(',', begin) : line.size();
-    std::string_view cell = line.substr(begin, std::min(end, line.size()) - begin);
-    const std::size_t at = begin + static_cast<std::size_t>(std::ranges::find_if_not(cell, IsBlank) - cell.begin());
-    cell.remove_prefix(std::min(at - begin, cell.size()));
-    while (!cell.empty() && IsBlank(cell.back())) cell.remove_suffix(1);
-    const auto number = NumberFrom<double>(cell);
-    if (!number || !(std::abs(*number) <= kLargestSample)) return at;
-    if (end == line.npos) return line.size();
-    numbers[n] = *number;
-    begin = end + 1;
-  }
-  return std::nullopt;
-}
-
-/// A line as a message quotes it.
-std::string Quote(std::string_view line) { return "'" + std::string(CutUtf8(line, kLongestSampleQuote)) + "'"; }
+constexpr std::size_t kWidth[] = {4};
 
 }  // namespace
 
-std::string PathSamples::Read(const std::string& text, Place& place) {
-  std::istringstream lines(text);
-  place = {};
-  for (std::string row; std::getline(lines, row);) {
-    ++place.line;
-    place.column = 1;
-    if (std::ranges::all_of(row, IsBlank)) continue;
-    std::array<double, 4> numbers{};
-    const auto wrong = ReadFour(row, numbers);
-    if (wrong && knots_.empty() && row.find_first_of("0123456789") == std::string::npos) continue;  // a heading
-    if (wrong) {
-      place.column = static_cast<int>(*wrong) + 1;
-      return "expected four numbers in [-1e+06, 1e+06], t,x,y,z, got " + Quote(row);
+std::string PathSamples::Read(const std::string& text, TextPlace& place) {
+  std::vector<NumberRow> rows;
+  if (std::string mistake = ReadNumberRows(text, kWidth, "four numbers in [-1e+06, 1e+06], t,x,y,z", rows, place);
+      !mistake.empty())
+    return mistake;
+  for (const NumberRow& row : rows) {
+    const double t_s = row.numbers[0];
+    if (!knots_.empty() && t_s <= knots_.back().t_s) {
+      place = {.line = row.line};
+      return "expected times that increase, got " + row.text;
     }
-    const auto& [t_s, x, y, z] = numbers;
-    if (!knots_.empty() && t_s <= knots_.back().t_s) return "expected times that increase, got " + Quote(row);
-    knots_.push_back({.t_s = t_s, .p_W = {x, y, z}});
+    knots_.push_back({.t_s = t_s, .p_W = {row.numbers[1], row.numbers[2], row.numbers[3]}});
   }
-  place.line = std::max(place.line, 1);  // of an empty text, too
   if (knots_.size() < 2) return "expected at least two lines t,x,y,z, got " + std::to_string(knots_.size());
   FindVelocities();
   return "";

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/number_rows.h"
+
 namespace mascot {
 
 /// Position (m), velocity (m/s) and acceleration (m/s^2) of a reference at some time, in W.
@@ -16,14 +18,9 @@ struct PathPoint {
 /// the first and the last sample. At these two the reference is at rest; before and after them it stays there.
 class PathSamples {
  public:
-  /// A place in a text; both count from 1.
-  struct Place {
-    int line = 0, column = 1;
-  };
-
   /// Reads text of lines "t,x,y,z" (s, m), of which the first may be a heading. Returns an empty text if it was read;
   /// else the mistake and, in `place`, where the mistake is.
-  std::string Read(const std::string& text, Place& place);
+  std::string Read(const std::string& text, TextPlace& place);
   PathPoint At(double t_s) const;
   /// Time from the first to the last sample. At least two samples must have been read.
   double duration_s() const { return knots_.back().t_s - knots_.front().t_s; }

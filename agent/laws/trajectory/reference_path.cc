@@ -22,7 +22,7 @@ std::optional<PathSamples> ReadSamples(Section& law) {
       in_file ? law.TextOfFile("file", "samples") : Section::FileText{law.Text("samples"), ""};
   if (law.Wrong(in_file ? "file" : "samples")) return std::nullopt;
   PathSamples samples;
-  PathSamples::Place at;
+  TextPlace at;
   const std::string mistake = samples.Read(text.text, at);
   if (mistake.empty()) return samples;
   if (in_file)
