@@ -29,6 +29,8 @@ constexpr VerbEntry kVerbs[] = {
     {"laws", "the control laws: equation, source, parameters", SetUpLaws},
     {"models", "the agent models", SetUpModels},
     {"airframes", "the built-in quadrotors: parameters, gains, limits", SetUpAirframes},
+    {"keys", "the keys of an experiment file: value, default, meaning", SetUpKeys},
+    {"new", "write a commented experiment with a law, to begin with", SetUpNew},
     {"info", "what a recording holds, and whether it is complete, with the proof", SetUpInfo},
     {"plot", "draw the pictures of a run again", SetUpPlot},
     {"view", "play a recording on the page of a run", SetUpView},

@@ -109,6 +109,13 @@ std::string SectionOf(const LawEntry& law, const ShownBy* show) {
 
 }  // namespace
 
+fs::path ExampleOf(std::string_view law, const fs::path& configs) {
+  const std::vector<ShownBy> shipped = Shipped(configs);
+  const ShownBy* show = ShowOf(law, shipped);
+  if (show == nullptr) throw std::runtime_error("no experiment in " + configs.string() + " shows " + std::string(law));
+  return configs / (show->config + ".toml");
+}
+
 std::string LawPage(const std::string& page, const fs::path& configs) {
   const std::size_t begin = page.find(kBegin), end = page.find(kEnd);
   if (begin == std::string::npos || end == std::string::npos || end < begin)

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <utility>
 
 #include "experiment/airframe.h"
 #include "experiment/experiment.h"
 #include "orchestrator/report/json.h"
+#include "orchestrator/verbs/one_of.h"
+#include "orchestrator/verbs/print_wrapped.h"
 #include "orchestrator/verbs/verb.h"
 
 namespace mascot {
@@ -83,12 +86,13 @@ std::string ToToml(const Json& value) {
 }
 
 void PrintEntry(std::string_view name, const std::string& value, std::string_view meaning) {
-  std::cout << fmt::format("    {:<52}{}\n", fmt::format("{} = {}", name, value), meaning);
+  constexpr std::size_t kIndent = 36;
+  const std::string entry = fmt::format("    {} = {} ", name, value);
+  PrintWrapped(entry, meaning, entry.size() <= kIndent ? kIndent : 8);
 }
 
 void Print(const Airframe& airframe) {
-  std::cout << fmt::format("{0}\n  keys of an airframe table of your own: airframe = {{ base = \"{0}\", ... }}\n",
-                           airframe.name);
+  std::cout << fmt::format("{0}\n  keys of a table of your own: airframe = {{ base = \"{0}\", ... }}\n", airframe.name);
   for (const Parameter& parameter : kParameters)
     PrintEntry(parameter.name, ToToml(parameter.value(airframe)), MeaningOf(parameter.name));
   std::cout << fmt::format("  derived, at {:g} m/s^2\n", Gravity());
@@ -96,13 +100,16 @@ void Print(const Airframe& airframe) {
     PrintEntry(derived.name, fmt::format("{:.4g}", derived.value(airframe).get<double>()), derived.meaning);
 }
 
-int ShowAirframes(bool json) {
+int ShowAirframes(const std::string& name, bool json) {
+  if (!name.empty()) RequireOneOf("airframes", "an airframe", name, AirframeNames());
   Json table = Json::array();
+  bool first = true;
   for (const Airframe& airframe : Airframes()) {
+    if (!name.empty() && airframe.name != name) continue;
     if (json) {
       table.push_back(ToJson(airframe));
     } else {
-      std::cout << (airframe.name == Airframes().front().name ? "" : "\n");
+      std::cout << (std::exchange(first, false) ? "" : "\n");
       Print(airframe);
     }
   }
@@ -113,9 +120,11 @@ int ShowAirframes(bool json) {
 }  // namespace
 
 std::function<int()> SetUpAirframes(CLI::App& command) {
+  const auto name = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
+  command.add_option("name", *name, "the airframe to show (default: all)")->type_name("NAME");
   command.add_flag("--json", *json, "print JSON and nothing else");
-  return [json] { return ShowAirframes(*json); };
+  return [name, json] { return ShowAirframes(*name, *json); };
 }
 
 }  // namespace mascot

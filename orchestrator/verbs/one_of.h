@@ -5,9 +5,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
+
+#include "experiment/toml/section.h"
 
 namespace mascot {
 
@@ -20,6 +24,16 @@ inline CLI::Validator OneOf(std::vector<std::string> names) {
         return fmt::format("expected one of {}, got {}", fmt::join(names, ", "), given);
       },
       shown);
+}
+
+/// For names that are looked up later: throws ConfigError, "laws: expected the name of a law, got 'x' (did you mean
+/// ...?)", if `given` is none of `names`. `what`: "a law".
+inline void RequireOneOf(std::string_view verb, std::string_view what, std::string_view given,
+                         std::span<const std::string_view> names) {
+  if (std::ranges::find(names, given) != names.end()) return;
+  const auto nearest = DidYouMean(given, names);
+  throw ConfigError({fmt::format("{}: expected the name of {}, got '{}'{}", verb, what, given,
+                                 nearest ? fmt::format(" (did you mean \"{}\"?)", *nearest) : "")});
 }
 
 }  // namespace mascot

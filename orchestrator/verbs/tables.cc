@@ -9,6 +9,8 @@
 #include "agent/laws/laws.h"
 #include "experiment/model_traits.h"
 #include "orchestrator/report/json.h"
+#include "orchestrator/verbs/one_of.h"
+#include "orchestrator/verbs/print_wrapped.h"
 #include "orchestrator/verbs/verb.h"
 
 namespace mascot {
@@ -32,38 +34,22 @@ Json ToJson(const LawEntry& law) {
           {"figures", figures}};
 }
 
-/// Prints `label`, then `text` from column `indent` on, broken between words at column 110.
-void PrintWrapped(std::string_view label, std::string_view text, std::size_t indent) {
-  constexpr std::size_t kWidth = 110;
-  std::string line = fmt::format("{:<{}}", label, indent);
-  for (std::size_t start = 0; start < text.size();) {
-    const std::size_t end = std::min(text.find(' ', start), text.size());
-    const std::string_view word = text.substr(start, end - start);
-    if (line.size() + word.size() > kWidth && line.size() > indent) {
-      std::cout << line.substr(0, line.size() - 1) << "\n";
-      line = std::string(indent, ' ');
-    }
-    line.append(word).append(" ");
-    start = end + 1;
-  }
-  line.pop_back();
-  std::cout << line << "\n";
-}
-
 void Print(const LawEntry& law) {
   std::cout << law.name << "\n";
-  PrintWrapped("  ", law.summary, 2);
+  PrintWrapped("", law.summary, 2);
   PrintWrapped("  equation", law.equation, 12);
   for (const std::string_view paragraph : DetailsOf(law)) PrintWrapped("", paragraph, 12);
   PrintWrapped("  theory", law.theory, 12);
   PrintWrapped("  source", law.source, 12);
-  std::cout << fmt::format("  keys of [law]; axes = \"{}\" unless said otherwise; * required, ~ live\n",
-                           kAxes.Name(law.axes));
+  PrintWrapped(
+      "", fmt::format("keys of [law]; axes = \"{}\" unless said otherwise; * required, ~ live", kAxes.Name(law.axes)),
+      2);
   for (const Key& parameter : law.parameters) {
     const std::string_view mark = parameter.required ? "*" : parameter.fallback.empty() ? "" : " = ";
     const std::string key =
         fmt::format("{}{}{}{}", parameter.name, parameter.live ? "~" : "", mark, parameter.fallback);
-    PrintWrapped(fmt::format("    {:<30} {:<21} ", key, ValueText(parameter)), parameter.meaning, 58);
+    PrintWrapped("", fmt::format("{:<30} {}", key, ValueText(parameter)), 4);
+    PrintWrapped("", parameter.meaning, 8);
   }
   if (!law.figures.empty()) std::cout << "  figures of its own, in summary.json and sweeps\n";
   for (const LawFigure& figure : law.figures) {
@@ -75,11 +61,8 @@ void Print(const LawEntry& law) {
 /// The laws to show: the one called `name`, or all if that is empty. Throws ConfigError for a name that is none.
 std::span<const LawEntry> LawsCalled(const std::string& name) {
   if (name.empty()) return Laws();
-  const auto law = std::ranges::find(Laws(), name, &LawEntry::name);
-  if (law != Laws().end()) return {law, 1};
-  const auto nearest = DidYouMean(name, LawNames());
-  throw ConfigError({"laws: expected the name of a law, got '" + name + "'" +
-                     (nearest ? " (did you mean \"" + *nearest + "\"?)" : "")});
+  RequireOneOf("laws", "a law", name, LawNames());
+  return {std::ranges::find(Laws(), name, &LawEntry::name), 1};
 }
 
 int ShowLaws(const std::string& name, bool json) {

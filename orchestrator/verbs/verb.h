@@ -32,6 +32,8 @@ std::function<int()> SetUpGraph(CLI::App& command);      // graph.cc
 std::function<int()> SetUpLaws(CLI::App& command);       // tables.cc
 std::function<int()> SetUpModels(CLI::App& command);     // tables.cc
 std::function<int()> SetUpAirframes(CLI::App& command);  // airframes.cc
+std::function<int()> SetUpKeys(CLI::App& command);       // keys.cc
+std::function<int()> SetUpNew(CLI::App& command);        // keys.cc
 std::function<int()> SetUpInfo(CLI::App& command);       // info.cc
 std::function<int()> SetUpPlot(CLI::App& command);       // plot.cc
 std::function<int()> SetUpExport(CLI::App& command);     // export.cc

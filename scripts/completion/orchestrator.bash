@@ -38,12 +38,18 @@ _orchestrator_offer() {
         *) _orchestrator_files "$1" / ;;
       esac
       ;;
-    NAME)  # of a law, if the verb lists laws
+    NAME | LAW)  # of a law, or of what the verb lists
       name='^    "name": "([^"]+)"'
+      [ "$2" = NAME ] || verb=laws
       while IFS= read -r line; do
         [[ ! $line =~ $name ]] || COMPREPLY+=("${BASH_REMATCH[1]}")
       done < <("$program" "$verb" --json 2>/dev/null </dev/null)
       mapfile -t COMPREPLY < <(compgen -W "${COMPREPLY[*]}" -- "$1")
+      ;;
+    KEY=VALUE | PREFIX)
+      [ "$2" = PREFIX ] || compopt -o nospace 2>/dev/null
+      mapfile -t COMPREPLY < <("$program" keys --names "$1" 2>/dev/null </dev/null)
+      [ "$2" = PREFIX ] || COMPREPLY=("${COMPREPLY[@]/%/=}")
       ;;
     VERB) mapfile -t COMPREPLY < <(compgen -W "$(_orchestrator_names Subcommands "$main")" -- "$1") ;;
     WHAT)  # "pause | step [TICKS] | ...": the first word of each

@@ -319,6 +319,70 @@ TEST(Tables, LawsShowOneLawIfItIsNamed) {
                   "laws: expected the name of a law, got 'finitetime' (did you mean \"finite_time\"?)"));
 }
 
+TEST(Tables, AreWithin80Columns) {
+  for (const std::string& text : {Printed(SetUpLaws, {}), Printed(SetUpAirframes, {}), Printed(SetUpKeys, {})}) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(line.size(), 80u) << line;
+      EXPECT_FALSE(line.ends_with(' ')) << line;
+    }
+  }
+}
+
+TEST(Tables, AirframesShowOneIfItIsNamed) {
+  const std::string text = Printed(SetUpAirframes, {"crazyflie"});
+  EXPECT_THAT(text, AllOf(StartsWith("crazyflie\n"), ::testing::Not(HasSubstr("mascot\n"))));
+  EXPECT_THAT([] { Printed(SetUpAirframes, {"crazyfly"}); },
+              testing::ThrowsMessage<ConfigError>(
+                  "airframes: expected the name of an airframe, got 'crazyfly' (did you mean \"crazyflie\"?)"));
+}
+
+TEST(Keys, ShowThoseThatBeginAsAsked) {
+  const std::string text = Printed(SetUpKeys, {"agents.random.h"});
+  EXPECT_EQ(text,
+            "agents.random.heading           true | false; default false\n"
+            "    whether each agent starts with a random yaw\n");
+  EXPECT_THAT(Printed(SetUpKeys, {"law.beta"}),
+              AllOf(HasSubstr("    damping of the agent's own velocity; of consensus, formation\n"),
+                    HasSubstr("    dynamic: how fast the memory decays; of event_triggered\n")));
+  EXPECT_EQ(Printed(SetUpKeys, {"law.bet", "--names"}), "law.beta\n") << "each name once";
+  EXPECT_THAT([] { Printed(SetUpKeys, {"agents.randm"}); },
+              testing::ThrowsMessage<ConfigError>(
+                  "keys: expected the beginning of a key, got 'agents.randm' (did you mean \"agents.random\"?)"));
+}
+
+TEST(Keys, AreThoseThatTheReaderTakes) {
+  const Json keys = Json::parse(Printed(SetUpKeys, {"--json"}));
+  std::size_t parameters = 0;
+  for (const LawEntry& law : Laws()) parameters += law.parameters.size();
+  std::size_t listed = 0;
+  for (const Json& key : keys) listed += key["laws"].size();
+  EXPECT_EQ(listed, parameters) << "each parameter of each law, once";
+}
+
+TEST(New, WritesAnExperimentOfEachLawThatIsShipped) {
+  ScratchFolder folder;
+  for (const LawEntry& law : Laws()) {
+    const std::string file = folder.File(std::string(law.name) + ".toml");
+    const auto write = [&] { return Printed(SetUpNew, {std::string(law.name), file}); };
+    if (law.name == "plugin") {
+      EXPECT_THAT(write, testing::ThrowsMessage<std::runtime_error>(HasSubstr("shows plugin")));
+      continue;
+    }
+    EXPECT_EQ(write(),
+              file + ": an experiment with " + std::string(law.name) + "; next: orchestrator up " + file + "\n");
+    EXPECT_EQ(LoadExperiment(Section::FromFile(file), "e").law.name, law.name);
+    for (const Key& parameter : law.parameters)
+      EXPECT_THAT(ReadRegularFile(file), HasSubstr(std::string(parameter.name))) << law.name;
+    EXPECT_THAT(write, testing::ThrowsMessage<ConfigError>(
+                           file + ": expected a new file, got one that exists (--force replaces it)"));
+    EXPECT_NO_THROW(Printed(SetUpNew, {std::string(law.name), file, "--force"}));
+  }
+  EXPECT_THAT([] { Printed(SetUpNew, {"consensu"}); },
+              testing::ThrowsMessage<ConfigError>(
+                  "new: expected the name of a law, got 'consensu' (did you mean \"consensus\"?)"));
+}
+
 TEST(Tables, ModelsShowEveryModelWithItsActuators) {
   const std::string text = Printed(SetUpModels, {});
   for (const ModelTraits& model : Models())
@@ -329,11 +393,11 @@ TEST(Tables, ModelsShowEveryModelWithItsActuators) {
 TEST(Tables, AirframesShowEveryAirframeWithItsKeysAndWhatFollowsFromThem) {
   const std::string text = Printed(SetUpAirframes, {});
   for (const Airframe& airframe : Airframes())
-    EXPECT_THAT(text, HasSubstr(airframe.name + "\n  keys of an airframe table of your own: airframe = { base = \"" +
+    EXPECT_THAT(text, HasSubstr(airframe.name + "\n  keys of a table of your own: airframe = { base = \"" +
                                 airframe.name + "\", ... }\n"));
   EXPECT_THAT(text, AllOf(HasSubstr("    mass_kg = 1.477 "), HasSubstr("    size_m = [0.7, 0.7, 0.12] "),
-                          HasSubstr("    altitude = { kp = 25.0, kd = 10.0 } "),
-                          HasSubstr("    hover_rotor_speed_rad_per_s = 549.4 ")));
+                          HasSubstr("    altitude = { kp = 25.0, kd = 10.0 }\n"),
+                          HasSubstr("    hover_rotor_speed_rad_per_s = 549.4\n")));
   const Json json = Json::parse(Printed(SetUpAirframes, {"--json"}));
   ASSERT_EQ(json.size(), Airframes().size());
   EXPECT_EQ(json[2]["name"], "crazyflie");
