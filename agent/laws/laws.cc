@@ -97,6 +97,19 @@ std::vector<std::string_view> DetailsOf(const LawEntry& law) {
   return paragraphs;
 }
 
+std::vector<std::string> FormulasOf(const LawEntry& law) {
+  constexpr std::string_view kBetween = "\\\\\n";
+  std::vector<std::string> formulas;
+  for (std::string_view rest = law.tex; !rest.empty();) {
+    const std::size_t end = std::min(rest.find(kBetween), rest.size());
+    std::string_view formula = rest.substr(0, end);
+    while (formula.ends_with(' ')) formula.remove_suffix(1);
+    formulas.emplace_back(formula);
+    rest.remove_prefix(std::min(end + kBetween.size(), rest.size()));
+  }
+  return formulas;
+}
+
 std::vector<int> AgentsWith(const LawEntry& law, const Experiment& experiment) {
   std::vector<int> ids;
   for (const AgentConfig& agent : experiment.agents)

@@ -52,12 +52,22 @@ struct Drawing {
   std::string_view cells = {};                 ///< the key of a region that agents divide by nearness; empty: none
 };
 
+/// A letter of a typeset equation that stands for a key of the law.
+struct KeySymbol {
+  std::string_view key, tex;
+};
+
 /// A row of the table of laws: everything that other libraries may know about a law. `orchestrator laws` prints the
 /// texts. Each law's file in agent/laws/ makes its own row; agent/laws/laws.cc lists them.
 struct LawEntry {
   std::string_view name;
   std::string_view summary;
   std::string_view equation;
+  /// The equation as TeX, for the documentation and the handout: formulas, which `\\` separates.
+  std::string_view tex;
+  std::vector<KeySymbol> symbols = {};
+  /// The graph that the law needs for what theory says of it, in words.
+  std::string_view graph;
   /// What the program does that the equation leaves out, one paragraph in each line. Empty: nothing.
   std::string_view details = {};
   std::string_view theory;                  ///< known results on convergence
@@ -107,6 +117,8 @@ std::vector<const LawEntry*> LawsIn(const Experiment& experiment);
 bool FliesCodeOfUsers(const Experiment& experiment);
 /// LawEntry::details, paragraph by paragraph.
 std::vector<std::string_view> DetailsOf(const LawEntry& law);
+/// LawEntry::tex, formula by formula.
+std::vector<std::string> FormulasOf(const LawEntry& law);
 /// The agents that fly `law`, in increasing id.
 std::vector<int> AgentsWith(const LawEntry& law, const Experiment& experiment);
 std::span<const std::string_view> LawNames();

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -56,14 +57,31 @@ const ShownBy* ShowOf(std::string_view law, const std::vector<ShownBy>& shipped)
   return found;
 }
 
-/// An equation with its parts, which two spaces separate, on lines of their own.
-std::string Lines(std::string equation) {
-  for (std::size_t at = equation.find(";  "); at != std::string::npos; at = equation.find(";  ", at))
-    equation.replace(at, 3, "\n");
-  return equation;
+/// The typeset equation as a block, which GitHub and scripts/site show as mathematics.
+std::string Displayed(const LawEntry& law) {
+  const std::vector<std::string> formulas = FormulasOf(law);
+  if (formulas.size() == 1) return fmt::format("```math\n{}\n```\n", formulas[0]);
+  return fmt::format("```math\n\\begin{{aligned}}\n& {}\n\\end{{aligned}}\n```\n", fmt::join(formulas, " \\\\\n& "));
 }
 
-/// Formulas for a cell of a table: no sign means anything to Markdown, and lines stay lines.
+/// The typeset equation within a line, which may break where the formulas have a wide space.
+std::string Inline(const LawEntry& law) {
+  const std::regex wide(R"(, \\q?quad )");
+  std::string text;
+  for (const std::string& formula : FormulasOf(law))
+    text += fmt::format("{}$`{}`$", text.empty() ? "" : " <br> ", std::regex_replace(formula, wide, "`$$, $$`"));
+  return text;
+}
+
+/// Which letter of the equation is which key.
+std::string Letters(const LawEntry& law) {
+  std::string text;
+  for (const KeySymbol& symbol : law.symbols)
+    text += fmt::format("{}$`{}`$ is `{}`", text.empty() ? "" : ", ", symbol.tex, symbol.key);
+  return text.empty() ? "" : fmt::format("\n{}.\n", text);
+}
+
+/// Text for a cell of a table: no sign means anything to Markdown.
 std::string FormulaCell(std::string_view text) {
   std::string cell;
   for (const char c : text) {
@@ -80,8 +98,8 @@ std::string Overview() {
   std::string text =
       "\n### All laws on one page\n\n| law | equation | what theory says of it | source |\n|---|---|---|---|\n";
   for (const LawEntry& law : Laws())
-    text += fmt::format("| [{0}](#{0}) | <code>{1}</code> | {2} | {3} |\n", law.name,
-                        FormulaCell(Lines(std::string(law.equation))), FormulaCell(law.theory), Cell(law.source));
+    text += fmt::format("| [{0}](#{0}) | {1} | {2} | {3} |\n", law.name, Inline(law), FormulaCell(law.theory),
+                        Cell(law.source));
   return text;
 }
 
@@ -94,10 +112,10 @@ std::string TableOfFigures(std::span<const LawFigure> figures) {
 }
 
 std::string SectionOf(const LawEntry& law, const ShownBy* show) {
-  std::string text = fmt::format("\n### {}\n\n{} Default of `axes`: `\"{}\"`.\n\n```\n{}\n```\n\n", law.name,
-                                 Sentence(law.summary), kAxes.Name(law.axes), Lines(std::string(law.equation)));
+  std::string text = fmt::format("\n### {}\n\n{} Default of `axes`: `\"{}\"`.\n\n{}{}\n", law.name,
+                                 Sentence(law.summary), kAxes.Name(law.axes), Displayed(law), Letters(law));
   for (const std::string_view paragraph : DetailsOf(law)) text += fmt::format("{}\n\n", paragraph);
-  text += fmt::format("* Theory: {}.\n* Source: {}.\n", law.theory, law.source);
+  text += fmt::format("* Graph: {}.\n* Theory: {}.\n* Source: {}.\n", law.graph, law.theory, law.source);
   if (show != nullptr)
     text += fmt::format(
         "* Experiment: [configs/{0}.toml](../configs/{0}.toml). {1}\n\n![Run of {0}.toml](pictures/laws/{2}.png)\n",

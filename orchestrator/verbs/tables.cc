@@ -17,9 +17,14 @@ namespace mascot {
 namespace {
 
 Json ToJson(const LawEntry& law) {
+  const auto symbol_of = [&](const Key& parameter) -> Json {
+    const auto symbol = std::ranges::find(law.symbols, parameter.name, &KeySymbol::key);
+    return symbol == law.symbols.end() ? Json() : Json(symbol->tex);
+  };
   Json parameters = Json::array();
   for (const Key& parameter : law.parameters) {
     parameters.push_back({{"name", parameter.name},
+                          {"symbol", symbol_of(parameter)},
                           {"required", parameter.required},
                           {"default", DefaultJson(parameter)},
                           {"range", ValueText(parameter)},
@@ -29,9 +34,10 @@ Json ToJson(const LawEntry& law) {
   Json figures = Json::array();
   for (const LawFigure& figure : law.figures)
     figures.push_back({{"name", figure.name}, {"each", figure.each}, {"meaning", figure.meaning}});
-  return {{"name", law.name},     {"summary", law.summary}, {"equation", law.equation},     {"details", law.details},
-          {"theory", law.theory}, {"source", law.source},   {"axes", kAxes.Name(law.axes)}, {"parameters", parameters},
-          {"figures", figures}};
+  return {{"name", law.name},         {"summary", law.summary}, {"equation", law.equation},
+          {"tex", FormulasOf(law)},   {"graph", law.graph},     {"details", law.details},
+          {"theory", law.theory},     {"source", law.source},   {"axes", kAxes.Name(law.axes)},
+          {"parameters", parameters}, {"figures", figures}};
 }
 
 void Print(const LawEntry& law) {
@@ -39,6 +45,7 @@ void Print(const LawEntry& law) {
   PrintWrapped("", law.summary, 2);
   PrintWrapped("  equation", law.equation, 12);
   for (const std::string_view paragraph : DetailsOf(law)) PrintWrapped("", paragraph, 12);
+  PrintWrapped("  graph", law.graph, 12);
   PrintWrapped("  theory", law.theory, 12);
   PrintWrapped("  source", law.source, 12);
   PrintWrapped(

@@ -96,6 +96,12 @@ LawEntry AffineFormationLaw() {
       .name = "affine_formation",
       .summary = "a few leaders turn, stretch, shear and shift a whole formation",
       .equation = "follower: v_i = -gain sum_j omega_ij (p_i - p_j);  leader: to P_i(t) = A(t) r_i + b(t)",
+      .tex = R"(\text{follower: } v_i = -k \sum_j \omega_{ij} (p_i - p_j) \\
+\text{leader: to } P_i(t) = A(t)\, r_i + b(t))",
+      .symbols = {{"gain", "k"}, {"offsets_m", "r_i"}},
+      .graph =
+          "undirected, with a positive semidefinite stress matrix of rank N - d - 1 for places in d dimensions, which "
+          "those of the leaders span",
       .details =
           "omega is the stress matrix that projections by turns find, beginning at the identity, or, where they find "
           "none, a semidefinite program, whose answer has the largest smallest eigenvalue, to a tenth of it; it is "

@@ -103,6 +103,10 @@ LawEntry AverageTrackingLaw() {
       .name = "average_tracking",
       .summary = "agents follow the average of inputs that change, of which each knows its own: by messages",
       .equation = "x_i = r_i + q_i,  dq_i/dt = gain sum_j a_ij (x_j - x_i);  v_i = p_gain (x_i + d_i - p_i) + dx_i/dt",
+      .tex = R"(x_i = r_i + q_i, \quad \dot q_i = k \sum_j a_{ij} (x_j - x_i) \\
+v_i = k_p (x_i + d_i - p_i) + \dot x_i)",
+      .symbols = {{"gain", "k"}, {"p_gain", "k_p"}, {"offsets_m", "d_i"}},
+      .graph = "undirected and connected",
       .details =
           "Sampled: q_i(k+1) = q_i(k) + h gain sum_j a_ij (x_j(k) - x_i(k)), q_i(0) = 0, with the estimates "
           "x_j of the tick before, which messages bring. dx_i/dt is the backward difference (x_i(k) - "

@@ -122,37 +122,42 @@ std::unique_ptr<LawMeter> MeterOfAvoidance(const Experiment& experiment, std::sp
 }  // namespace
 
 LawEntry AvoidanceLaw() {
-  return {.name = "avoidance",
-          .summary =
-              "each agent flies to its goal, repelled by obstacles that it sees and agents that it hears: the law "
-              "wants a velocity",
-          .equation = "v_i = [[gain (w_i - p_i) + sum_j push]_s + sum_k push]_s,  push = repulsion (1/c - 1/c0) / c^2",
-          .details =
-              "[.]_s is cut to the length speed_m_per_s. c is the clearance: the distance less the radius R_i "
-              "of the own body from the nearest point of an obstacle, less 2 R_i from an agent. It counts as 1 "
-              "mm at least. c0 is influence_m less the same radii, and there is no push from c0 on, nor within "
-              "an obstacle, where there is no way out to point along.\n"
-              "Obstacles push that are seen, within sensors.range_m, and agents that are heard. Distances are "
-              "in space; pushes and the pull towards the goal act along law.axes.",
-          .theory =
-              "where one obstacle pushes at a time, the clearance stays above a bound: for single integrators, where "
-              "the push is s; nothing is promised about arrival: the potential may have local minima",
-          .source =
-              "Khatib, Real-time obstacle avoidance for manipulators and mobile robots, Int. J. Robotics Research 5 "
-              "(1986)",
-          .parameters = kAvoidanceParameters,
-          .figures = kGoalFigures,
-          .curve = kGoalCurve,
-          .axes = Axes::kXyz,
-          .sees_obstacles = true,
-          .drawing = {},
-          .read = ReadAvoidance,
-          .make = MakeOf<Avoidance>,
-          .wanted = WantsVelocity,
-          .go_to = GoToOfAvoidance,
-          .waypoints_W = WaypointOfAvoidance,
-          .predict = PredictAvoidance,
-          .meter = MeterOfAvoidance};
+  return {
+      .name = "avoidance",
+      .summary =
+          "each agent flies to its goal, repelled by obstacles that it sees and agents that it hears: the law "
+          "wants a velocity",
+      .equation = "v_i = [[gain (w_i - p_i) + sum_j push]_s + sum_k push]_s,  push = repulsion (1/c - 1/c0) / c^2",
+      .tex =
+          R"(v_i = \Bigl[ \bigl[ k (w_i - p_i) + \sum_j f_{ij} \bigr]_s + \sum_o f_{io} \Bigr]_s, \quad \lvert f \rvert = \frac{\mu}{c^2} \Bigl( \frac{1}{c} - \frac{1}{c_0} \Bigr) \text{, away from agent } j \text{ or obstacle } o)",
+      .symbols = {{"gain", "k"}, {"goals_m", "w_i"}, {"speed_m_per_s", "s"}, {"repulsion", R"(\mu)"}},
+      .graph = "any: agents keep clear of those that they hear",
+      .details =
+          "[.]_s is cut to the length speed_m_per_s. c is the clearance: the distance less the radius R_i "
+          "of the own body from the nearest point of an obstacle, less 2 R_i from an agent. It counts as 1 "
+          "mm at least. c0 is influence_m less the same radii, and there is no push from c0 on, nor within "
+          "an obstacle, where there is no way out to point along.\n"
+          "Obstacles push that are seen, within sensors.range_m, and agents that are heard. Distances are "
+          "in space; pushes and the pull towards the goal act along law.axes.",
+      .theory =
+          "where one obstacle pushes at a time, the clearance stays above a bound: for single integrators, where "
+          "the push is s; nothing is promised about arrival: the potential may have local minima",
+      .source =
+          "Khatib, Real-time obstacle avoidance for manipulators and mobile robots, Int. J. Robotics Research 5 "
+          "(1986)",
+      .parameters = kAvoidanceParameters,
+      .figures = kGoalFigures,
+      .curve = kGoalCurve,
+      .axes = Axes::kXyz,
+      .sees_obstacles = true,
+      .drawing = {},
+      .read = ReadAvoidance,
+      .make = MakeOf<Avoidance>,
+      .wanted = WantsVelocity,
+      .go_to = GoToOfAvoidance,
+      .waypoints_W = WaypointOfAvoidance,
+      .predict = PredictAvoidance,
+      .meter = MeterOfAvoidance};
 }
 
 }  // namespace mascot

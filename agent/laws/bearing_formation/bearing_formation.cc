@@ -106,6 +106,9 @@ LawEntry BearingFormationLaw() {
       .name = "bearing_formation",
       .summary = "agents reach the directions of a formation, with its scale and place as they were",
       .equation = "v_i = -gain sum_j a_ij P(g_ij) g*_ij,  P(g) = I - g g'",
+      .tex = R"(v_i = -k \sum_j a_{ij} P(g_{ij})\, g^*_{ij}, \quad P(g) = I - g g^\top)",
+      .symbols = {{"gain", "k"}},
+      .graph = "undirected, and infinitesimally bearing rigid in the wanted shape",
       .details =
           "g_ij is the direction from i to j and g*_ij that from the place of i to the place of j, along "
           "law.axes. Of an agent in the same place, g_ij = 0.",

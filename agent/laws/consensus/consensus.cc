@@ -79,6 +79,10 @@ LawEntry ConsensusLaw() {
           .summary = "agents meet, or gather at a leader, by what they hear of their neighbours",
           .equation =
               "a_i = sum_j a_ij [p_gain (p_j - p_i) + v_gain (v_j - v_i)] - beta v_i;  leader: a = 0, or its waypoints",
+          .tex = R"(a_i = \sum_j a_{ij} \bigl[ k_p (p_j - p_i) + k_v (v_j - v_i) \bigr] - \beta v_i \\
+\text{leader: } a_i = 0 \text{, or its waypoints})",
+          .symbols = {{"p_gain", "k_p"}, {"v_gain", "k_v"}, {"beta", R"(\beta)"}},
+          .graph = "a directed spanning tree, with a leader one rooted at it",
           .details =
               "Position and velocity of j are the newest that i has heard; an agent that is not heard at a tick does "
               "not pull.\n"

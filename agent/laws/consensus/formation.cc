@@ -71,31 +71,37 @@ std::span<const Eigen::Vector3d> FormationPlaces_W(const LawConfig& law) { retur
 }  // namespace
 
 LawEntry FormationLaw() {
-  return {.name = "formation",
-          .summary = "agents keep given displacements from each other, alone or behind a leader",
-          .equation =
-              "a_i = -sum_j a_ij [p_gain ((p_i - p_j) - (d_i - d_j)) + v_gain (v_i - v_j)] - beta v_i;  leader: a = "
-              "0, or its waypoints",
-          .details =
-              "d_i is the agent's place, from offsets_m or shape.\n"
-              "A leader uses nothing of what it hears. Without leader_waypoints_m it wants the acceleration 0; "
-              "with them it flies as the law waypoint does, with leader_p_gain and leader_d_gain.",
-          .theory =
-              "consensus on p_i - d_i: the formation's point meets at the mean of p(0) - d plus that of v(0) / beta "
-              "(undirected)",
-          .source =
-              "Oh, Park & Ahn, A survey of multi-agent formation control, Automatica 53 (2015); with v_gain: Ren & "
-              "Atkins, Distributed multi-vehicle coordinated control via local information exchange, Int. J. Robust "
-              "Nonlinear Control 17 (2007)",
-          .parameters = kFormationParameters,
-          .agrees = true,
-          .drawing = {.pictures = kDisagreementPicture},
-          .read = ReadFormation,
-          .make = MakeFormation,
-          .places_W = FormationPlaces_W,
-          .go_to = GoToOf<FlightOfLeader>,
-          .waypoints_W = LeaderWaypointsOf<FlightOfLeader>,
-          .linear = LinearFormation};
+  return {
+      .name = "formation",
+      .summary = "agents keep given displacements from each other, alone or behind a leader",
+      .equation =
+          "a_i = -sum_j a_ij [p_gain ((p_i - p_j) - (d_i - d_j)) + v_gain (v_i - v_j)] - beta v_i;  leader: a = "
+          "0, or its waypoints",
+      .tex =
+          R"(a_i = -\sum_j a_{ij} \bigl[ k_p \bigl( (p_i - p_j) - (d_i - d_j) \bigr) + k_v (v_i - v_j) \bigr] - \beta v_i \\
+\text{leader: } a_i = 0 \text{, or its waypoints})",
+      .symbols = {{"p_gain", "k_p"}, {"v_gain", "k_v"}, {"beta", R"(\beta)"}, {"offsets_m", "d_i"}},
+      .graph = "a directed spanning tree, with a leader one rooted at it",
+      .details =
+          "d_i is the agent's place, from offsets_m or shape.\n"
+          "A leader uses nothing of what it hears. Without leader_waypoints_m it wants the acceleration 0; "
+          "with them it flies as the law waypoint does, with leader_p_gain and leader_d_gain.",
+      .theory =
+          "consensus on p_i - d_i: the formation's point meets at the mean of p(0) - d plus that of v(0) / beta "
+          "(undirected)",
+      .source =
+          "Oh, Park & Ahn, A survey of multi-agent formation control, Automatica 53 (2015); with v_gain: Ren & "
+          "Atkins, Distributed multi-vehicle coordinated control via local information exchange, Int. J. Robust "
+          "Nonlinear Control 17 (2007)",
+      .parameters = kFormationParameters,
+      .agrees = true,
+      .drawing = {.pictures = kDisagreementPicture},
+      .read = ReadFormation,
+      .make = MakeFormation,
+      .places_W = FormationPlaces_W,
+      .go_to = GoToOf<FlightOfLeader>,
+      .waypoints_W = LeaderWaypointsOf<FlightOfLeader>,
+      .linear = LinearFormation};
 }
 
 }  // namespace mascot

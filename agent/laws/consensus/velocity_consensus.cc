@@ -52,6 +52,9 @@ LawEntry VelocityConsensusLaw() {
       .name = "velocity_consensus",
       .summary = "single integrators meet: the law wants a velocity",
       .equation = "v_i = p_gain sum_j a_ij (p_j - p_i)",
+      .tex = R"(v_i = k_p \sum_j a_{ij} (p_j - p_i))",
+      .symbols = {{"p_gain", "k_p"}},
+      .graph = "a directed spanning tree, with a leader one rooted at it",
       .details = "A leader wants the velocity 0.",
       .theory =
           "meets at g'p(0), g the left null vector of L, if a spanning tree exists; sampled with period T: p(k+1) = "

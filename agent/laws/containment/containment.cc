@@ -131,6 +131,10 @@ LawEntry ContainmentLaw() {
       .name = "containment",
       .summary = "followers go to places within the convex hull of several leaders, which rest or move",
       .equation = "follower: v_i = gain sum_j a_ij (p_j - p_i);  leader: v_i = its own, 0 by default",
+      .tex = R"(\text{follower: } v_i = k \sum_j a_{ij} (p_j - p_i) \\
+\text{leader: } v_i = \text{its own velocity, 0 by default})",
+      .symbols = {{"gain", "k"}},
+      .graph = "each follower hears a leader, directly or by way of other followers",
       .details = "A leader flies its velocity of leader_velocities_m_per_s, and uses nothing of what it hears.",
       .theory =
           "p_F tends to M p_L, M = -L_FF^-1 L_FL, which is in the leaders' hull; leaders with constant velocities are "

@@ -99,6 +99,10 @@ LawEntry CoverageLaw() {
       .name = "coverage",
       .summary = "agents spread over a region, each to the centroid of what is nearest to it: the law wants a velocity",
       .equation = "v_i = -gain (p_i - C_i), C_i the centroid of i's Voronoi cell among what it hears",
+      .tex =
+          R"(v_i = -k (p_i - C_i), \quad C_i = \frac{\int_{V_i} q\, \rho(q)\, dq}{\int_{V_i} \rho(q)\, dq}, \quad V_i \text{ the Voronoi cell of agent } i \text{ among what it hears})",
+      .symbols = {{"gain", "k"}, {"density", R"(\rho)"}},
+      .graph = "complete",
       .details =
           "Positions count in x and y alone. The cell is that part of the region which is at least as near "
           "to i as to every agent that i hears; an agent whose cell is empty wants the velocity 0. C_i is that of the "

@@ -140,6 +140,8 @@ LawEntry CustomLaw() {
           .summary =
               "your own law, in Python: what one agent wants, from what it knows of itself and heard of its neighbours",
           .equation = "control(t, me, neighbours) -> [a_x, a_y, a_z] or [a_x, a_y]",
+          .tex = R"(\texttt{control(t, me, neighbours)} \to [a_x, a_y, a_z] \text{ or } [a_x, a_y])",
+          .graph = "what the code needs",
           .theory = "none: check knows only built-in laws",
           .source = "docs/laws.md",
           .parameters = kCustomParameters,

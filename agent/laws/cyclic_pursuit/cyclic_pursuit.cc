@@ -119,6 +119,11 @@ LawEntry CyclicPursuitLaw() {
       .equation =
           "linear: v_i = gain R(alpha) (p_{i+1} - p_i), R(alpha) a turn to the right in x and y;  unicycles: at "
           "speed_m_per_s, or gain |p_{i+1} - p_i|, and turning by turn_gain times the angle to the next",
+      .tex =
+          R"(\text{linear: } v_i = k\, R(\alpha) (p_{i+1} - p_i), \quad R(\alpha) = \begin{pmatrix} \cos\alpha & \sin\alpha \cr -\sin\alpha & \cos\alpha \end{pmatrix} \\
+\text{unicycles: speed } s \text{ or } k\, \lvert p_{i+1} - p_i \rvert, \text{ turning by } k_\omega \text{ times the angle to the next})",
+      .symbols = {{"gain", "k"}, {"alpha_deg", R"(\alpha)"}, {"speed_m_per_s", "s"}, {"turn_gain", R"(k_\omega)"}},
+      .graph = "a directed ring: agent i hears agent i + 1, and the last one the first",
       .details =
           "Weights of the graph do not count, and neither does any agent but the next one; while it is not heard, i "
           "wants the velocity 0.\n"

@@ -97,6 +97,9 @@ LawEntry DistanceFormationLaw() {
   return {.name = "distance_formation",
           .summary = "agents keep the distances of a formation, at any place and turned somehow",
           .equation = "v_i = -gain sum_j a_ij (|z|^2 - d_ij^2) z,  z = p_i - p_j",
+          .tex = R"(v_i = -k \sum_j a_{ij} \bigl( \lvert z \rvert^2 - d_{ij}^2 \bigr) z, \quad z = p_i - p_j)",
+          .symbols = {{"gain", "k"}},
+          .graph = "undirected, and infinitesimally rigid in the wanted shape",
           .details = "d_ij is the distance between the places of i and j. Distances are along law.axes.",
           .theory =
               "infinitesimally rigid: the distances are reached exponentially from near the shape; the centroid stays; "

@@ -137,6 +137,10 @@ LawEntry EventTriggeredLaw() {
       .name = "event_triggered",
       .summary = "single integrators meet, and speak only when they have something to say: the law wants a velocity",
       .equation = "v_i = gain sum_j a_ij (x_j - x_i);  i says x_i = p_i when |x_i - p_i| > c0 + c1 exp(-alpha t)",
+      .tex = R"(v_i = k \sum_j a_{ij} (x_j - x_i) \\
+\text{agent } i \text{ says } x_i = p_i \text{ when } \lvert x_i - p_i \rvert > c_0 + c_1 e^{-\alpha t})",
+      .symbols = {{"gain", "k"}, {"c0_m", "c_0"}, {"c1_m", "c_1"}, {"alpha", R"(\alpha)"}},
+      .graph = "undirected and connected",
       .details =
           "x_i is what i said last, also for i itself. A message takes one tick: it says where i will be by "
           "then, p_i + h v_i, and i is compared with what it said there, too. There v_i is what the law "

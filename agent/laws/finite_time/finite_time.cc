@@ -127,6 +127,11 @@ LawEntry FiniteTimeLaw() {
       .name = "finite_time",
       .summary = "single integrators meet in finite time, but for a trembling: the law wants a velocity",
       .equation = "v_i = gain sum_j a_ij sig(p_j - p_i)^alpha, per axis;  or  v_i = -gain sgn(sum_j a_ij (p_i - p_j))",
+      .tex =
+          R"(\text{power: } v_i = k \sum_j a_{ij}\, \mathrm{sig}(p_j - p_i)^\alpha \text{, per axis}, \quad \mathrm{sig}(x)^\alpha = \mathrm{sgn}(x)\, \lvert x \rvert^\alpha \\
+\text{sign: } v_i = -k\, \mathrm{sgn} \Bigl( \sum_j a_{ij} (p_i - p_j) \Bigr))",
+      .symbols = {{"gain", "k"}, {"alpha", R"(\alpha)"}},
+      .graph = "undirected and connected",
       .details =
           "sig(x)^alpha = sgn(x) |x|^alpha and sgn(0) = 0. Both forms are per axis; with sign, the weighted "
           "sum is taken first and its sign then.",

@@ -125,6 +125,17 @@ LawEntry FlockingLaw() {
           "a_i = sum_j a_ij [c1_alpha phi_alpha(|p_j - p_i|_s) n_ij + c2_alpha rho_h(|p_j - p_i|_s / r_alpha) "
           "(v_j - v_i)] + sum_k [c1_beta phi_beta(|q_k - p_i|_s) n_ik + c2_beta rho_h(|q_k - p_i|_s / d_beta) "
           "(p_k - v_i)] - c1_gamma (p_i - q_r) - c2_gamma (v_i - p_r)",
+      .tex =
+          R"(a_i = \sum_j a_{ij} \bigl[ c_1^\alpha\, \phi_\alpha(\lvert p_j - p_i \rvert_s)\, n_{ij} + c_2^\alpha\, \rho_h(\lvert p_j - p_i \rvert_s / r_\alpha)\, (v_j - v_i) \bigr] \\
+\quad {} + \sum_k \bigl[ c_1^\beta\, \phi_\beta(\lvert q_k - p_i \rvert_s)\, n_{ik} + c_2^\beta\, \rho_h(\lvert q_k - p_i \rvert_s / d_\beta)\, (p_k - v_i) \bigr] \\
+\quad {} - c_1^\gamma (p_i - q_r) - c_2^\gamma (v_i - p_r))",
+      .symbols = {{"c1_alpha", R"(c_1^\alpha)"},
+                  {"c2_alpha", R"(c_2^\alpha)"},
+                  {"c1_beta", R"(c_1^\beta)"},
+                  {"c2_beta", R"(c_2^\beta)"},
+                  {"c1_gamma", R"(c_1^\gamma)"},
+                  {"c2_gamma", R"(c_2^\gamma)"}},
+      .graph = "undirected: agents that are near each other hear each other, as with graph.range_m",
       .details =
           "|z|_s = (sqrt(1 + epsilon |z|^2) - 1) / epsilon, n_ij = (p_j - p_i) / sqrt(1 + epsilon |p_j - p_i|^2), "
           "r_alpha "

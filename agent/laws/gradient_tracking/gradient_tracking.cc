@@ -131,6 +131,10 @@ LawEntry GradientTrackingLaw() {
           .equation =
               "x_i+ = sum_j w_ij x_j - step y_i,  y_i+ = sum_j w_ij y_j + Q_i (x_i+ - x_i);  v_i = p_gain (x_i - "
               "p_i)",
+          .tex = R"(x_i^+ = \sum_j w_{ij} x_j - \eta\, y_i, \quad y_i^+ = \sum_j w_{ij} y_j + Q_i (x_i^+ - x_i) \\
+v_i = k_p (x_i - p_i))",
+          .symbols = {{"step", R"(\eta)"}, {"p_gain", "k_p"}, {"weights", "Q_i"}},
+          .graph = "undirected and connected",
           .details =
               "x_i and y_i start as the agent's position and Q_i (x_i - b_i). An iteration takes a tick: x_j "
               "and y_j are those of the message of the tick before.\n"

@@ -127,33 +127,39 @@ PursuitForm PursuitOfMinmax(const LawConfig& law) { return ParamsOf<MinmaxParams
 
 LawEntry MinmaxLaw() {
   static constexpr std::string_view kPursuitPictures[] = {"disagreement", "tracking"};
-  return {.name = "minmax",
-          .summary = "min-max time consensus tracking on a spanning tree of the graph",
-          .equation =
-              "a_c = -beta_c sgn(2 (beta_c - beta_p) z + w |w|),  z = p_c - p_p,  w = v_c - v_p, per axis;  root: a = "
-              "0, or its waypoints",
-          .details =
-              "sgn(0) = 0. p is c's parent in a tree: the agent with the lowest number, of those that c hears, "
-              "that is one step nearer to the root. beta_p is the parent's own beta, or with weak_edges = "
-              "\"root\" the root's.\n"
-              "A child that does not hear its parent at a tick wants the acceleration 0. The root's waypoints "
-              "are flown within the root's own beta, per axis.\n"
-              "With boundary_layer = l > 0: a_c = -beta_c sat((w + f(z)) / s), s = sqrt(alpha l / 2), alpha = "
-              "beta_c - beta_p, where f(z) = z sqrt(alpha / (2 l)) for |z| <= l and sgn(z) (sqrt(2 alpha |z|) - "
-              "s) beyond; sat is cut to -1..1 (Workman, Kosut & Franklin, ACC 1987).",
-          .theory =
-              "a child meets a resting parent after sqrt(2 z (1/alpha + 1/beta_c)), any parent within 2 sqrt(z / "
-              "alpha), from rest, alpha = beta_c - beta_p > 0",
-          .source = "Mulla et al. (2017): reference 19 of Pandit, Njattuvetty & Mulla, MASCOT (2022)",
-          .parameters = kMinmaxParameters,
-          .agrees = true,
-          .gathers = true,
-          .drawing = {.leader = "root", .switches = true, .pictures = kPursuitPictures, .telling = "tracking"},
-          .read = ReadMinmax,
-          .make = MakeMinmax,
-          .go_to = GoToOf<FlightOfRoot>,
-          .waypoints_W = LeaderWaypointsOf<FlightOfRoot>,
-          .pursuit = PursuitOfMinmax};
+  return {
+      .name = "minmax",
+      .summary = "min-max time consensus tracking on a spanning tree of the graph",
+      .equation =
+          "a_c = -beta_c sgn(2 (beta_c - beta_p) z + w |w|),  z = p_c - p_p,  w = v_c - v_p, per axis;  root: a = "
+          "0, or its waypoints",
+      .tex =
+          R"(a_c = -\beta_c\, \mathrm{sgn}\bigl( 2 (\beta_c - \beta_p) z + w \lvert w \rvert \bigr), \quad z = p_c - p_p, \quad w = v_c - v_p \text{, per axis} \\
+\text{root: } a = 0 \text{, or its waypoints})",
+      .symbols = {{"beta", R"(\beta_c)"}},
+      .graph = "a directed spanning tree rooted at the leader; each agent follows its parent in it",
+      .details =
+          "sgn(0) = 0. p is c's parent in a tree: the agent with the lowest number, of those that c hears, "
+          "that is one step nearer to the root. beta_p is the parent's own beta, or with weak_edges = "
+          "\"root\" the root's.\n"
+          "A child that does not hear its parent at a tick wants the acceleration 0. The root's waypoints "
+          "are flown within the root's own beta, per axis.\n"
+          "With boundary_layer = l > 0: a_c = -beta_c sat((w + f(z)) / s), s = sqrt(alpha l / 2), alpha = "
+          "beta_c - beta_p, where f(z) = z sqrt(alpha / (2 l)) for |z| <= l and sgn(z) (sqrt(2 alpha |z|) - "
+          "s) beyond; sat is cut to -1..1 (Workman, Kosut & Franklin, ACC 1987).",
+      .theory =
+          "a child meets a resting parent after sqrt(2 z (1/alpha + 1/beta_c)), any parent within 2 sqrt(z / "
+          "alpha), from rest, alpha = beta_c - beta_p > 0",
+      .source = "Mulla et al. (2017): reference 19 of Pandit, Njattuvetty & Mulla, MASCOT (2022)",
+      .parameters = kMinmaxParameters,
+      .agrees = true,
+      .gathers = true,
+      .drawing = {.leader = "root", .switches = true, .pictures = kPursuitPictures, .telling = "tracking"},
+      .read = ReadMinmax,
+      .make = MakeMinmax,
+      .go_to = GoToOf<FlightOfRoot>,
+      .waypoints_W = LeaderWaypointsOf<FlightOfRoot>,
+      .pursuit = PursuitOfMinmax};
 }
 
 }  // namespace mascot

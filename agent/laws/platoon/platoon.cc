@@ -98,6 +98,19 @@ LawEntry PlatoonLaw() {
           "headway u_i' = -u_i + p_gain e_i + d_gain e_i' + dd_gain e_i'' + u_{i-1}(t - theta), e_i = x_{i-1} - x_i - "
           "spacing - headway v_i;  tau a_i' = -a_i + u_i(t - phi);  agent 1: u_1 = v_r' + tau v_r'' + d_gain (v_r - "
           "v_1)",
+      .tex =
+          R"(h_w \dot u_i = -u_i + k_p e_i + k_d \dot e_i + k_{dd} \ddot e_i + u_{i-1}(t - \theta), \quad e_i = x_{i-1} - x_i - r - h_w v_i \\
+\tau \dot a_i = -a_i + u_i(t - \varphi) \\
+\text{agent 1: } u_1 = \dot v_r + \tau \ddot v_r + k_d (v_r - v_1))",
+      .symbols = {{"headway_s", "h_w"},
+                  {"p_gain", "k_p"},
+                  {"d_gain", "k_d"},
+                  {"dd_gain", "k_{dd}"},
+                  {"spacing_m", "r"},
+                  {"message_delay_s", R"(\theta)"},
+                  {"actuator_lag_s", R"(\tau)"},
+                  {"actuator_delay_s", R"(\varphi)"}},
+      .graph = "a directed path: agent i hears agent i - 1",
       .details =
           "Sampled: what a controller knows is held for a tick, of which u goes the share 1 - exp(-h / headway) to "
           "where "

@@ -102,6 +102,8 @@ LawEntry PluginLaw() {
   return {.name = "plugin",
           .summary = "your own law, in C++: a shared library that is loaded when the experiment is read",
           .equation = "Want_W(t_s, self, heard) -> acceleration or velocity",
+          .tex = R"(\texttt{Want\_W(t\_s, self, heard)} \to \text{acceleration or velocity})",
+          .graph = "what the code needs",
           .theory = "none: check knows only built-in laws",
           .source = "docs/plugin_law.md",
           .parameters = kPluginParameters,

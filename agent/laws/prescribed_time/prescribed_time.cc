@@ -130,6 +130,10 @@ LawEntry PrescribedTimeLaw() {
   return {.name = "prescribed_time",
           .summary = "single integrators meet at a time that is given, wherever they start: the law wants a velocity",
           .equation = "v_i = (gain + exponent / (T - t)) sum_j a_ij (p_j - p_i);  from T on v_i = gain sum_j ...",
+          .tex = R"(v_i = \Bigl( k + \frac{c}{T - t} \Bigr) \sum_j a_{ij} (p_j - p_i) \text{ for } t < T \\
+v_i = k \sum_j a_{ij} (p_j - p_i) \text{ for } t \ge T)",
+          .symbols = {{"gain", "k"}, {"exponent", "c"}, {"time_s", "T"}},
+          .graph = "undirected and connected",
           .details =
               "The factor in front of the sum is at most 1 / (2 h d), h the control period and d the largest "
               "sum_j a_ij of an agent: in a tick no agent goes more than half the way to its neighbours.",

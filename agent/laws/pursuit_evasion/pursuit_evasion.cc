@@ -132,35 +132,40 @@ class CaptureMeter final : public LawMeter {
 }  // namespace
 
 LawEntry PursuitEvasionLaw() {
-  return {.name = "pursuit_evasion",
-          .summary = "pursuers fly towards an evader, which flies away from the nearest: the law wants a velocity",
-          .equation =
-              "v_i = pursuer_speed (p_e - p_i) / |p_e - p_i|;  evader: v_e = evader_speed (p_e - p_j) / |p_e - p_j|",
-          .details =
-              "e is the agent law.leader. It flees from j, the nearest agent that it hears, pursuer or not. "
-              "Distances are along law.axes.\n"
-              "An agent within capture_radius_m of the agent that it pursues, or flees from, stops; so does a "
-              "pursuer that does not hear the evader, and an evader that hears no agent.",
-          .theory =
-              "a pursuer captures after at most min_i (|p_e - p_i| - capture_radius) / (pursuer_speed - evader_speed), "
-              "over those that hear the evader; a single one that does not drive it past another agent captures "
-              "exactly then",
-          .source =
-              "Isaacs, Differential games, Wiley 1965 (simple motion); several pursuers: Bakolas & Tsiotras, Relay "
-              "pursuit of a maneuvering target using dynamic Voronoi diagrams, Automatica 48 (2012)",
-          .parameters = kPursuitEvasionParameters,
-          .figures = kPursuitEvasionFigures,
-          .curve = LawCurve{.name = "distance to the evader",
-                            .unit = "m",
-                            .meaning = "of the nearest pursuer",
-                            .decays = false,
-                            .figure = "closest_m"},
-          .drawing = {.leader = "evader", .pictures = {}},
-          .read = ReadPursuitEvasion,
-          .make = MakeOf<PursuitEvasion>,
-          .wanted = WantsVelocity,
-          .predict = PredictPursuitEvasion,
-          .meter = MeterOf<CaptureMeter>};
+  return {
+      .name = "pursuit_evasion",
+      .summary = "pursuers fly towards an evader, which flies away from the nearest: the law wants a velocity",
+      .equation =
+          "v_i = pursuer_speed (p_e - p_i) / |p_e - p_i|;  evader: v_e = evader_speed (p_e - p_j) / |p_e - p_j|",
+      .tex =
+          R"(\text{pursuer: } v_i = s_p \frac{p_e - p_i}{\lvert p_e - p_i \rvert}, \qquad \text{evader: } v_e = s_e \frac{p_e - p_j}{\lvert p_e - p_j \rvert})",
+      .symbols = {{"pursuer_speed_m_per_s", "s_p"}, {"evader_speed_m_per_s", "s_e"}},
+      .graph = "a pursuer hears the evader; the evader hears the agents from which it flees",
+      .details =
+          "e is the agent law.leader. It flees from j, the nearest agent that it hears, pursuer or not. "
+          "Distances are along law.axes.\n"
+          "An agent within capture_radius_m of the agent that it pursues, or flees from, stops; so does a "
+          "pursuer that does not hear the evader, and an evader that hears no agent.",
+      .theory =
+          "a pursuer captures after at most min_i (|p_e - p_i| - capture_radius) / (pursuer_speed - evader_speed), "
+          "over those that hear the evader; a single one that does not drive it past another agent captures "
+          "exactly then",
+      .source =
+          "Isaacs, Differential games, Wiley 1965 (simple motion); several pursuers: Bakolas & Tsiotras, Relay "
+          "pursuit of a maneuvering target using dynamic Voronoi diagrams, Automatica 48 (2012)",
+      .parameters = kPursuitEvasionParameters,
+      .figures = kPursuitEvasionFigures,
+      .curve = LawCurve{.name = "distance to the evader",
+                        .unit = "m",
+                        .meaning = "of the nearest pursuer",
+                        .decays = false,
+                        .figure = "closest_m"},
+      .drawing = {.leader = "evader", .pictures = {}},
+      .read = ReadPursuitEvasion,
+      .make = MakeOf<PursuitEvasion>,
+      .wanted = WantsVelocity,
+      .predict = PredictPursuitEvasion,
+      .meter = MeterOf<CaptureMeter>};
 }
 
 }  // namespace mascot

@@ -124,30 +124,35 @@ class RendezvousMeter final : public LawMeter {
 }  // namespace
 
 LawEntry RendezvousLaw() {
-  return {.name = "rendezvous",
-          .summary = "single integrators that hear each other within graph.range_m meet, and lose no neighbour",
-          .equation = "v_i = gain sum_j (2 D - l) / (D - l)^2 (p_j - p_i),  l = |p_j - p_i|, D = graph.range_m",
-          .details =
-              "l and D are distances in space, also where law.axes is \"xy\" and agents only move in the plane: "
-              "heights count. Weights of the graph do not.\n"
-              "j counts for i from the moment at which l < D - margin_m, and then as long as it is heard, which "
-              "is up to D.",
-          .theory =
-              "undirected and connected: meets at the mean of p(0); no edge that counts is lost, because its tension "
-              "grows beyond all bounds at D; sampled: for periods short against (D - l)^2 / (gain (2 D - l))",
-          .source =
-              "Ji & Egerstedt, Distributed coordination control of multiagent systems while preserving connectedness, "
-              "IEEE Trans. Robotics 23 (2007)",
-          .parameters = kRendezvousParameters,
-          .figures = kRendezvousFigures,
-          .agrees = true,
-          .gathers = true,
-          .drawing = {.pictures = kDisagreementPicture},
-          .read = ReadRendezvous,
-          .make = MakeOf<Rendezvous>,
-          .wanted = WantsVelocity,
-          .predict = PredictRendezvous,
-          .meter = MeterOf<RendezvousMeter>};
+  return {
+      .name = "rendezvous",
+      .summary = "single integrators that hear each other within graph.range_m meet, and lose no neighbour",
+      .equation = "v_i = gain sum_j (2 D - l) / (D - l)^2 (p_j - p_i),  l = |p_j - p_i|, D = graph.range_m",
+      .tex =
+          R"(v_i = k \sum_j \frac{2 D - \ell}{(D - \ell)^2}\, (p_j - p_i), \quad \ell = \lvert p_j - p_i \rvert, \quad D = \texttt{graph.range\_m})",
+      .symbols = {{"gain", "k"}},
+      .graph = "undirected, and connected at the start by edges shorter than graph.range_m - margin_m",
+      .details =
+          "l and D are distances in space, also where law.axes is \"xy\" and agents only move in the plane: "
+          "heights count. Weights of the graph do not.\n"
+          "j counts for i from the moment at which l < D - margin_m, and then as long as it is heard, which "
+          "is up to D.",
+      .theory =
+          "undirected and connected: meets at the mean of p(0); no edge that counts is lost, because its tension "
+          "grows beyond all bounds at D; sampled: for periods short against (D - l)^2 / (gain (2 D - l))",
+      .source =
+          "Ji & Egerstedt, Distributed coordination control of multiagent systems while preserving connectedness, "
+          "IEEE Trans. Robotics 23 (2007)",
+      .parameters = kRendezvousParameters,
+      .figures = kRendezvousFigures,
+      .agrees = true,
+      .gathers = true,
+      .drawing = {.pictures = kDisagreementPicture},
+      .read = ReadRendezvous,
+      .make = MakeOf<Rendezvous>,
+      .wanted = WantsVelocity,
+      .predict = PredictRendezvous,
+      .meter = MeterOf<RendezvousMeter>};
 }
 
 }  // namespace mascot

@@ -120,6 +120,10 @@ LawEntry ResilientLaw() {
       .name = "resilient",
       .summary = "single integrators meet in spite of agents that lie: the law wants a velocity",
       .equation = "v_i = gain sum_j a_ij (p_j - p_i), per axis without the F largest above and the F smallest below",
+      .tex = R"(v_i = k \sum_{j \in R_i} a_{ij} (p_j - p_i) \text{, per axis} \\
+R_i \text{: what } i \text{ hears, without the } F \text{ largest above and the } F \text{ smallest below})",
+      .symbols = {{"gain", "k"}, {"f", "F"}},
+      .graph = "(2F + 1)-robust",
       .details =
           "Of the positions above its own, an agent leaves out the F farthest, or all if there are fewer, and so it "
           "does of the positions below. Positions equal to its own are never left out.",

@@ -133,6 +133,10 @@ LawEntry TrajectoryLaw() {
   return {.name = "trajectory",
           .summary = "agents follow a circle, a figure eight or samples over time, alone or in formation",
           .equation = "a_i = a_r + p_gain (r + d_i - p_i) + d_gain (v_r - v_i);  a_r only with feed_forward",
+          .tex = R"(a_i = a_r + k_p (r + d_i - p_i) + k_d (v_r - v_i) \\
+\text{without feed-forward, } a_r = 0)",
+          .symbols = {{"p_gain", "k_p"}, {"d_gain", "k_d"}, {"offsets_m", "d_i"}},
+          .graph = "none: agents do not listen",
           .details =
               "r and v_r are those of the time t of the tick; a_r is that of t + h / 2, the middle of the tick "
               "over which it is held.\n"

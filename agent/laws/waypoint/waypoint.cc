@@ -141,6 +141,9 @@ LawEntry WaypointLaw() {
   return {.name = "waypoint",
           .summary = "every agent flies the same list of waypoints, by arrival or by time",
           .equation = "a_i = p_gain (w - p_i) - d_gain v_i",
+          .tex = R"(a_i = k_p (w - p_i) - k_d v_i)",
+          .symbols = {{"p_gain", "k_p"}, {"d_gain", "k_d"}},
+          .graph = "none: agents do not listen",
           .details =
               "w is the first waypoint. It becomes the next one when the agent has been within arrival_radius_m "
               "of w, along law.axes, for dwell_s without a break; the last one stays.\n"

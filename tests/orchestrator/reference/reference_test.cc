@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -81,6 +82,8 @@ TEST(LawPage, HasASectionOfEachLawAndItsPicture) {
     const std::size_t begin = page.find("\n### " + name + "\n");
     ASSERT_NE(begin, std::string::npos) << name;
     const std::string section = page.substr(begin, page.find("\n### ", begin + 1) - begin);
+    for (const std::string& formula : FormulasOf(law)) EXPECT_THAT(section, HasSubstr(formula));
+    EXPECT_THAT(section, HasSubstr("* Graph: " + std::string(law.graph)));
     EXPECT_THAT(section, HasSubstr(law.theory));
     EXPECT_THAT(section, HasSubstr(law.source));
     for (const Key& key : law.parameters) EXPECT_THAT(section, HasSubstr("| `" + std::string(key.name) + "` |"));
@@ -106,10 +109,39 @@ TEST(LawPage, HasATableOfAllLawsWhoseCellsAreNotCutByTheirFormulas) {
     if (line.starts_with("| [")) rows.push_back(line);
   ASSERT_EQ(rows.size(), Laws().size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    EXPECT_THAT(rows[i], testing::StartsWith(fmt::format("| [{0}](#{0}) | <code>", Laws()[i].name)));
+    EXPECT_THAT(rows[i], testing::StartsWith(fmt::format("| [{0}](#{0}) | $`", Laws()[i].name)));
     EXPECT_THAT(rows[i], HasSubstr(Laws()[i].source));
     EXPECT_EQ(std::ranges::count(rows[i], '|'), 5) << rows[i];
   }
+}
+
+/// Whether an equation in plain text names a key, with or without its unit.
+bool Names(std::string_view equation, std::string_view key) {
+  const std::string name(key), without_unit = std::regex_replace(name, std::regex("_(m_per_s|m|s|deg)$"), "");
+  return std::regex_search(std::string(equation), std::regex("\\b(" + name + "|" + without_unit + ")\\b"));
+}
+
+TEST(LawPage, TypesetsEachEquationWithALetterForEachNumberThatThePlainOneNames) {
+  for (const LawEntry& law : Laws()) {
+    EXPECT_THAT(FormulasOf(law), Not(IsEmpty())) << law.name;
+    EXPECT_THAT(law.graph, Not(IsEmpty())) << law.name;
+    EXPECT_EQ(law.tex.find_first_of("|`$"), std::string_view::npos) << law.name << ": Markdown reads these itself";
+    for (const KeySymbol& symbol : law.symbols) {
+      EXPECT_THAT(law.tex, HasSubstr(symbol.tex)) << law.name;
+      EXPECT_THAT(law.parameters, testing::Contains(testing::Field(&Key::name, symbol.key))) << law.name;
+    }
+    for (const Key& key : law.parameters) {
+      if (key.kind != ValueKind::kNumber || !Names(law.equation, key.name)) continue;
+      EXPECT_THAT(law.symbols, testing::Contains(testing::Field(&KeySymbol::key, key.name))) << law.name;
+    }
+  }
+}
+
+TEST(LawPage, BreaksTheEquationOfAFewFormulasIntoLines) {
+  LawEntry two{};
+  two.tex = "a = b \\\\\nc = d";
+  EXPECT_THAT(FormulasOf(two), testing::ElementsAre("a = b", "c = d"));
+  EXPECT_THAT(ReadFile(kSource / "docs/laws.md"), HasSubstr("\n```math\n\\begin{aligned}\n& "));
 }
 
 TEST(LawPage, HasNoPictureOfAnotherLaw) {
