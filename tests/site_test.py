@@ -1,16 +1,20 @@
 #!/usr/bin/python3
-"""The documentation as a site, built by scripts/site: all links lead somewhere, nothing comes from other hosts. Code that
-pages quote is that of its file, and the files and tests that they name are there."""
+"""The documentation as a site, built by scripts/site: all links lead somewhere, nothing comes from other hosts, all equations
+are set in type. Code that pages quote is that of its file, and the files and tests that they name are there."""
 
 import html.parser
 import pathlib
 import re
 import subprocess
+import sys
 import tempfile
 import unittest
 import urllib.parse
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.dont_write_bytecode = True  # the folder of the scripts may be read-only
+sys.path.insert(0, str(ROOT / "scripts"))
+import equations
 LIMIT_S = 240  # of a command; ctest ends the test after 300 s, without a word
 
 
@@ -36,6 +40,8 @@ class Page(html.parser.HTMLParser):
 class Site:
     def __init__(self, folder):
         self.pages = {path: Page(path.read_text()) for path in sorted(folder.rglob("*.html"))}
+        self.styles = {path: re.findall(r"""(?:url\(|@import )["']?([^"')]+)""", path.read_text())
+                       for path in sorted(folder.rglob("*.css"))}
 
     def broken(self):
         """(page, link) of the links to this site that lead nowhere."""
@@ -50,12 +56,14 @@ class Site:
                 place = urllib.parse.unquote(parts.fragment)
                 if not target.is_file() or place and target in self.pages and place not in self.pages[target].places:
                     found.append((path.name, link))
+        found += [(path.name, load) for path, loads in self.styles.items() for load in loads
+                  if not load.startswith("data:") and not (path.parent / load.split("#")[0].split("?")[0]).is_file()]
         return found
 
     def from_elsewhere(self):
-        """(page, address) of what pages load from other hosts."""
-        return [(path.name, load) for path, page in self.pages.items() for load in page.loads
-                if urllib.parse.urlsplit(load).netloc]
+        """(page, address) of what pages and their styles load from other hosts."""
+        loads = {path: page.loads for path, page in self.pages.items()} | self.styles
+        return [(path.name, load) for path in loads for load in loads[path] if urllib.parse.urlsplit(load).netloc]
 
 
 class Checks(unittest.TestCase):
@@ -67,9 +75,11 @@ class Checks(unittest.TestCase):
                 '<a href="no.html"></a><img src="no.png"><script src="https://example.org/x.js"></script>'
                 '<a href="https://example.org">may be</a>')
             (folder / "two.html").write_text('<p id="here">')
+            (folder / "a.css").write_text("a { b: url(a.css), url('no.woff') } c { d: url(//example.org/e) }")
             site = Site(folder)
-            self.assertEqual(site.broken(), [("index.html", link) for link in ("two.html#there", "no.html", "no.png")])
-            self.assertEqual(site.from_elsewhere(), [("index.html", "https://example.org/x.js")])
+            self.assertEqual(site.broken(), [("index.html", link) for link in ("two.html#there", "no.html", "no.png")] +
+                             [("a.css", load) for load in ("no.woff", "//example.org/e")])
+            self.assertEqual(site.from_elsewhere(), [("index.html", "https://example.org/x.js"), ("a.css", "//example.org/e")])
 
 
 def quotations(text):
@@ -137,6 +147,39 @@ class Names(unittest.TestCase):
         self.assertEqual(selections(page), ["A.B", "^C", "D"])
 
 
+def sections(page, heading):
+    """{identifier: HTML} of the sections of a page, which begin with such headings."""
+    parts = re.split(rf'<{heading} id="([^"]+)">', page)
+    return dict(zip(parts[1::2], parts[2::2]))
+
+
+class Equations(unittest.TestCase):
+    def test_are_set_in_type_where_markdown_left_them(self):
+        page = equations.with_equations('<pre class="math"><code>x &lt; \\alpha_1</code></pre><p>if $<code>y^2</code>$ and <code>z</code>')
+        self.assertEqual(page.count('class="katex-display '), 1)
+        self.assertEqual(page.count('class="katex"'), 2)
+        self.assertIn('<annotation encoding="application/x-tex">x &lt; \\alpha_1</annotation>', page)
+        self.assertTrue(page.endswith("and <code>z</code>"))
+        self.assertEqual(equations.with_equations("<p>no $ here</p>"), "<p>no $ here</p>")
+
+    def test_with_an_unknown_macro_are_refused(self):
+        for tex in (r"a + \nomacro", r"\frac{1}{2", "é"):
+            with self.assertRaises(equations.BadEquation):
+                equations.typeset([("x", False), (tex, True)])
+
+    def test_with_an_unknown_macro_end_the_build(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "docs").mkdir()
+            (folder / "docs/index.md").write_text("# One\n\n```math\na + \\nomacro\n```\n")
+            (folder / "mkdocs.yml").write_text(
+                f"INHERIT: {ROOT}/mkdocs.yml\ndocs_dir: docs\nsite_dir: site\nhooks: [{ROOT}/scripts/equations.py]\n"
+                "extra_css: []\nnav: [index.md]\n")
+            built = subprocess.run(["mkdocs", "build"], cwd=folder, capture_output=True, text=True, timeout=LIMIT_S)
+            self.assertNotEqual(built.returncode, 0)
+            self.assertIn("index.md: KaTeX parse error: Undefined control sequence: \\nomacro", built.stdout + built.stderr)
+
+
 class Documentation(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -152,6 +195,20 @@ class Documentation(unittest.TestCase):
 
     def test_nothing_is_loaded_from_other_hosts(self):
         self.assertEqual(self.site.from_elsewhere(), [])
+
+    def test_every_law_has_its_equation_set_in_type(self):
+        laws = re.findall(r"^\| \[`(\w+)`\]\(#", (ROOT / "docs/laws.md").read_text(), re.M)
+        self.assertGreater(len(laws), 20)
+        shown = sections((self.folder / "docs/laws.html").read_text(), "h3")
+        for law in laws:
+            self.assertTrue('class="katex-display ' in shown[law], f"{law} has no equation")
+        overview = shown["all-laws-on-one-page"]
+        self.assertEqual(sorted(re.findall(r'<td><a href="#(\w+)">\w+</a></td>\s*<td><span (?:style="[^"]*"><span )?class="katex">', overview)), sorted(laws))
+
+    def test_no_equation_is_left_as_code(self):
+        for path in self.site.pages:
+            left = re.search(r'class="math"|\$<code>|</code>\$|katex-error', path.read_text())
+            self.assertFalse(left, f"{path.name}: {left and left[0]}")
 
     def test_every_page_is_shown_and_in_the_navigation(self):
         start = self.folder / "index.html"
