@@ -245,9 +245,13 @@ Verdict Taplo(const std::vector<fs::path>& files, bool by_our_schema) {
 }
 
 TEST(Schema, IsNamedByTheShippedExperimentsAndAcceptsThem) {
-  const std::vector<fs::path> files = TomlFiles(kSource / "configs");
+  std::vector<fs::path> files = TomlFiles(kSource / "configs");
   for (const fs::path& path : files)
     EXPECT_THAT(ReadFile(path), testing::StartsWith("#:schema ../docs/mascot.schema.json\n"));
+  for (const fs::path& path : TomlFiles(kSource / "configs/exercises")) {
+    EXPECT_THAT(ReadFile(path), testing::StartsWith("#:schema ../../docs/mascot.schema.json\n"));
+    files.push_back(path);
+  }
   const Verdict verdict = Taplo(files, false);
   EXPECT_THAT(verdict.refused, IsEmpty()) << verdict.output;
 }
