@@ -20,6 +20,7 @@ COLOURS = [*OKABE_ITO[:-1], "#882255", "#5C2D00", OKABE_ITO[-1]]
 # With more lines than colours, each colour but the palest comes in these; dashes are left for other uses.
 LINE_STYLES = ["-", ":", "-.", (0, (7, 1.5, 1, 1.5, 1, 1.5))]
 DASHED = "--"
+RUN_STYLES = ["-", DASHED, ":", "-.", (0, (7, 1.5, 1, 1.5, 1, 1.5)), (0, (2, 3))]  # of runs, whose agents may not lie dashed
 LOOKS_MAX = (len(COLOURS) - 1) * len(LINE_STYLES)  # more lines than this share a colour bar
 # Their colours: viridis without its palest end.
 MANY = matplotlib.colors.ListedColormap(plt.get_cmap("viridis")(np.linspace(0, 0.95, 256)), "many")
@@ -127,6 +128,13 @@ def looks(count):
     if len(COLOURS) < count <= LOOKS_MAX:
         return [(colour, style) for style in LINE_STYLES for colour in COLOURS[:-1]][:count]
     return [(colour, "-") for colour in fills(count)]
+
+
+def looks_of_runs(count):
+    """Colours and line styles of so many runs. Neighbours differ in both, so that grey print tells them apart."""
+    colours = fills(count) if count <= len(COLOURS) or count > LOOKS_MAX else COLOURS[:-1]
+    found = [divmod(k, len(colours)) for k in range(count)]
+    return [(colours[k], RUN_STYLES[(k + again) % len(RUN_STYLES)]) for again, k in found]
 
 
 def shades(palette, most=16):

@@ -1,11 +1,11 @@
-"""Several runs in one picture: the agents of a run share its colour and its kind of line."""
+"""Several runs in one picture: the agents of a run share its colour and its kind of line, which both tell runs apart."""
 
 import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
 from pictures import (
-    AXIS_NAMES, FLOOR_M, LEAST_RANGE, PICTURES, draw_obstacles, drawn, in_a_word, map_axis, panel_grid, seen_from,
-    square_figure, time_axis, widen,
+    AXIS_NAMES, LEAST_RANGE, PICTURES, above, draw_obstacles, drawn, floor_of, in_a_word, map_axis, name_floor,
+    panel_grid, seen_from, square_figure, time_axis, widen,
 )
 from run_folder import RunError, disagreement
 
@@ -20,7 +20,7 @@ def names_of(folders, runs):
 
 def each(names, runs):
     """The runs, each with how to draw its lines; the label is for the first of them."""
-    for name, run, (colour, line) in zip(names, runs, style.looks(len(runs))):
+    for name, run, (colour, line) in zip(names, runs, style.looks_of_runs(len(runs))):
         yield run, {"color": colour, "linestyle": line}, name
 
 
@@ -73,10 +73,12 @@ def over_time(what, symbol, unit, values_of, axes_of):
 
 def disagreements(names, runs):
     figure, axis = plt.subplots(figsize=(style.size().width, style.size().single))
+    floor, curves = max(map(floor_of, runs)), []
     for run, look, name in each(names, runs):
-        largest_m = np.maximum(disagreement(run)[:, run.honest].max(axis=1), FLOOR_M)
-        plot_lines(axis, run.t, largest_m[:, None], name, look)
+        curves.append(disagreement(run)[:, run.honest].max(axis=1))
+        plot_lines(axis, run.t, above(floor, curves[-1])[:, None], name, look)
     style.log_axis(axis)
+    name_floor(axis, floor, *curves)
     axis.set_ylabel(f"largest distance to {in_a_word([name for run in runs for name in seen_from(run)])} (m)")
     all_time(axis, runs)
     return finished(figure, axis, "disagreement")

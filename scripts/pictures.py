@@ -20,7 +20,9 @@ DRAWN_MAX = 200  # more lines than this are unreadable: only every n-th agent is
 ROWS_MAX = 6  # of names of events; what does not fit is marked, and not named
 GRAPHS_MAX = 12  # more graphs than this do not fit into a picture
 LEAST_RANGE = 0.02  # m, m/s or m/s²: least range of a y axis, so that a held height is a flat line
-FLOOR_M = 1e-6  # bottom of log axes
+FLOOR = 1e-6  # m, or another SI unit: bottom of log axes, below which nothing is drawn
+ROUNDING = 64 * np.finfo(float).eps  # of the largest coordinate: what is below may be rounding and nothing else
+DEPARTURE = 0.5  # of the disagreement at the start: a leader that moves farther leaves
 SMOOTHING_S = 0.5  # window for the mean of a switching acceleration
 AXIS_NAMES = "xyz"
 GREY = "0.6"
@@ -108,17 +110,25 @@ def in_rows(labels, from_s, to_s, width_pt, letter_pt):
     return rows
 
 
-def mark_changes(axes, run, laws=None):
-    """Draws a line where each phase of [[law.schedule]] begins and where an event changed something, and says above the
-    first panel what: the phases in the lowest row. `laws`: what to call the phases, if not by their laws. Returns the
-    height of all rows (pt), by which the figure grows."""
-    phases = [(span.at_s, law) for span, law in zip(run.spans, laws or [phase["law"] for phase in run.phases])]
-    events = {}
-    for at_s, words in run.events:
-        events[at_s] = f"{events[at_s]}, {words}" if at_s in events else words
+def joined(changes):
+    """(time, words) with the words of one time in one text."""
+    found = {}
+    for at_s, words in changes:
+        found[at_s] = f"{found[at_s]}, {words}" if at_s in found else words
+    return found
+
+
+def mark_changes(axes, run, names=None):
+    """Draws a line where each phase of [[law.schedule]] or [[graph.schedule]] begins and where an event changed something,
+    and says above the first panel what: the phases in the lowest row. `names`: what to call the phases of the law, if not
+    by what changed. Returns the height of all rows (pt), by which the figure grows."""
+    of_law = list(zip((span.at_s for span in run.spans), names or run.names_of_spans))
+    phases = sorted(joined([*(of_law if names or len(of_law) > 1 else []), *run.graph_phases]).items())
+    events = joined(run.events)
     for axis in axes:
-        for at_s, _ in phases[1:]:
-            axis.axvline(at_s, color="0.5", linewidth=0.8, zorder=1)
+        for at_s, _ in phases:
+            if at_s > run.t[0]:
+                axis.axvline(at_s, color="0.5", linewidth=0.8, zorder=1)
         for at_s in events:
             axis.axvline(at_s, color="0.5", linewidth=0.8, zorder=1, linestyle=(0, (1, 1.5)))
     size = style.size()
@@ -335,12 +345,37 @@ def acceleration(run):
     return figure
 
 
+def floor_of(run):
+    """What is not drawn on a log axis, because it is less: a bound that is far below what bodies can keep, or, of agents
+    far from the origin, what rounding makes of their positions."""
+    return max(FLOOR, ROUNDING * np.abs(run.position).max())
+
+
+def above(floor, values):
+    """The values, and no number in place of those that are not above the floor: a curve ends there."""
+    return np.where(values > floor, values, np.nan)
+
+
+def floor_name(floor):
+    words = "floor" if floor <= FLOOR else "floor of rounding"
+    return f"{words}: {floor:.0e} m".replace("e-0", "e-")
+
+
+def name_floor(axis, floor, *curves):
+    """Draws the floor of a log axis, with its name, if one of the curves goes down to it."""
+    if any(np.any(curve <= floor) for curve in curves):
+        axis.axhline(floor, color="0.3", linewidth=0.8, linestyle=(0, (1, 1)), label=floor_name(floor))
+        axis.set_ylim(bottom=0.6 * floor)
+
+
 def log_panel(run, distance_m, what, ylabel):
     """Plots distances (T, N) over time on a log axis."""
     figure, axis = plt.subplots(figsize=(style.size().width, style.size().single))
-    visible = [k for k in drawn(run) if np.any(distance_m[:, k] > FLOOR_M)] or [0]
-    plot_agents(axis, run, run.t, np.maximum(distance_m, FLOOR_M), visible)
+    floor = floor_of(run)
+    visible = [k for k in drawn(run) if np.any(distance_m[:, k] > floor)]
+    plot_agents(axis, run, run.t, above(floor, distance_m), visible)
     style.log_axis(axis)
+    name_floor(axis, floor, distance_m)
     axis.set_ylabel(ylabel)
     time_axis(axis, run.t[0], run.t[-1])
     titled(figure, run, what)
@@ -348,8 +383,10 @@ def log_panel(run, distance_m, what, ylabel):
 
 
 def mark_time(axis, t_s, label):
+    """Marks a time that was measured or predicted: unlike an event, by a bold line from a triangle, dash-dotted."""
     if t_s is not None:
-        axis.axvline(t_s, color="0.3", linestyle=":", linewidth=1.2, label=f"{label} {t_s:.2f} s")
+        axis.axvline(t_s, color="0.2", linestyle="-.", linewidth=1.2, marker="^", markersize=6, markevery=[0],
+                     clip_on=False, label=f"{label} {t_s:.2f} s")
 
 
 def seen_from(run):
@@ -363,6 +400,13 @@ def in_a_word(names):
     return names[0] if len(set(names)) == 1 else "the mean or the leader"
 
 
+def departs(run, span, leader, start_m):
+    """Whether the leader of a phase leaves its place by much of the disagreement at the start, `start_m`: that is then no
+    measure of how far the agents have come."""
+    p = run.position[span.rows, leader][:, run.axes]
+    return np.linalg.norm(p - p[0], axis=1).max() > DEPARTURE * start_m
+
+
 def disagreement_figure(run):
     distance_m = disagreement(run)
     leaders = [run.leader_of(span.law) for span in run.spans]
@@ -374,14 +418,16 @@ def disagreement_figure(run):
         if leader is not None:
             shown_m[span.rows, leader] = np.nan
     figure, axis = log_panel(run, shown_m, f"disagreement ({what})", f"{what} (m)")
-    mark_changes([axis], run, [f"{span.law['name']}, to {name}" for span, name in zip(run.spans, names)]
+    mark_changes([axis], run, [f"{change}, to {name}" for change, name in zip(run.names_of_spans, names)]
                  if len(set(names)) > 1 else None)
-    largest_m = np.maximum(distance_m[:, run.honest].max(axis=1), FLOOR_M)
-    axis.plot(run.t, largest_m, color="0.1", linewidth=3, alpha=0.25, zorder=1, label="largest")
+    largest_m = distance_m[:, run.honest].max(axis=1)
+    axis.plot(run.t, above(floor_of(run), largest_m), color="0.1", linewidth=3, alpha=0.25, zorder=1, label="largest")
     label = "2 % of the start"
-    for span in run.spans:
-        t = run.t[span.rows]
-        axis.hlines(0.02 * largest_m[span.rows][0], t[0], t[-1], color="0.3", linestyle="--", linewidth=1, label=label)
+    for span, leader in zip(run.spans, leaders):
+        t, start_m = run.t[span.rows], largest_m[span.rows][0]
+        if leader is not None and departs(run, span, leader, start_m):
+            continue
+        axis.hlines(0.02 * start_m, t[0], t[-1], color="0.3", linestyle="--", linewidth=1, label=label)
         label = None
         settled_s = (span.summary.get("consensus") or {}).get("settling_time_s")
         if settled_s is not None and "disagreement" in span.drawing["pictures"]:

@@ -15,6 +15,7 @@ DRAWING = {"leader": "leader", "switches": False, "pictures": [], "telling": "pa
 ARRAYS = {"position": 3, "velocity": 3, "acceleration_command": 3}  # name -> numbers per agent and row
 UNPACKED_FREE, UNPACKED_TIMES = 256 << 20, 300  # bytes that a file may unpack to, and then so many times its own
 NUMBERS_AT_ONCE = 1 << 14  # in one array of a computation over rows, so that it stays in the cache
+WORDS_MAX = 2  # changes that the name of a phase says
 FILTERED, INFEASIBLE = 16, 32  # bits of flags: law.safety changed the command; it found no safe one
 
 
@@ -83,6 +84,13 @@ class Run:
         return [Span(table["at_s"], (self.t >= table["at_s"]) & (self.t < end), table,
                      DRAWING | phase.get("drawing", self.summary.get("drawing", {})), phase)
                 for table, end, phase in zip(tables, ends, told)]
+
+    @property
+    def names_of_spans(self):
+        """What to call each phase of the law: the first by its law, each other one by what it changed."""
+        laws = [span.law for span in self.spans]
+        changes = [words_of_change(before, now) or "the same again" for before, now in zip(laws, laws[1:])]
+        return [laws[0].get("name", ""), *changes]
 
     @property
     def law(self):
@@ -166,6 +174,16 @@ class Run:
         return sorted(((at_s, words) for at_s, words in told if words and at_s <= self.t[-1]), key=lambda of: of[0])
 
     @property
+    def graph_phases(self):
+        """(time, words) of the phases of [[graph.schedule]] that have begun, without the first; none of a schedule that
+        repeats, which has too many to be told."""
+        first = self.config.get("graph", {})
+        tables = [] if first.get("repeat_s") else [table for table in first.get("schedule", [])
+                                                   if table["at_s"] <= self.t[-1]]
+        return [(now["at_s"], f"topology = {now['topology']}" if "topology" in now else "another graph")
+                for now in tables]
+
+    @property
     def places(self):
         """(T, N, 3): the agents' places in their formation in each row; zero for other laws."""
         places = np.zeros((self.t.size, self.size, 3))
@@ -196,6 +214,18 @@ def cut_by(event, cut, declared):
 
 def number(value):
     return f"{value:g}" if isinstance(value, (int, float)) and not isinstance(value, bool) else str(value)
+
+
+def words_of_change(before, now):
+    """What a phase of [[law.schedule]] or of [[graph.schedule]] changes, in few words: its new values of what both phases
+    have, or else what one of them lacks. A phase with another law is called by this law."""
+    if now.get("name") != before.get("name"):
+        return now["name"]
+    both = [key for key in now if key in before and key not in ("at_s", "schedule") and now[key] != before[key]]
+    keys = both or [key for key in now if key not in before and key != "at_s"]
+    words = [key if isinstance(now[key], (list, dict)) else f"{key} = {number(now[key])}" for key in keys]
+    words = words or [f"no {key}" for key in before if key not in now and key not in ("at_s", "schedule")]
+    return ", ".join(words[:WORDS_MAX]) + (f" and {len(words) - WORDS_MAX} more" if len(words) > WORDS_MAX else "")
 
 
 def words_of(event):

@@ -263,6 +263,19 @@ class WhatIsInThem(PlotTest):
         self.assertEqual((axis.get_yscale(), axis.get_ylabel()), ("log", "distance to the mean (m)"))
         np.testing.assert_allclose(self.lines(axis)["largest"].get_ydata(), 5 * np.exp(-arrays()["t"]), rtol=1e-12)
 
+    def test_curves_end_at_the_floor_which_has_a_name(self):
+        states = arrays(rows=301)  # from 5 m to 5e-13 m
+        axis = self.figure("disagreement", states=states).axes[0]
+        lines = self.lines(axis)
+        for name in ("agent 1", "largest"):
+            drawn = lines[name].get_ydata()
+            self.assertEqual(np.isnan(drawn).tolist(), (5 * np.exp(-states["t"]) <= 1e-6).tolist())
+        self.assertEqual(lines["floor: 1e-6 m"].get_ydata()[0], 1e-6)
+        self.assertNotIn("floor: 1e-6 m", self.lines(self.figure("disagreement").axes[0]), "no curve comes to it")
+        far = arrays(rows=101)
+        far["position"] = far["position"] + 1e11  # what rounding leaves of them is worse
+        self.assertIn("floor of rounding: 1e-3 m", self.lines(self.figure("disagreement", states=far).axes[0]))
+
     def test_disagreement_of_a_formation_leaves_the_places_out(self):
         config = '[law]\nname = "formation"\n'
         states = arrays()
@@ -489,7 +502,7 @@ class Changes(PlotTest):
                     self.assertTrue(np.isnan(found).all(), "a leader is not far from itself")
                 else:
                     np.testing.assert_allclose(found, expected, rtol=1e-12)
-        self.assertEqual(self.marks(axis), ["chase, to agent 1", "chase, to agent 3", "flee, to the mean"])
+        self.assertEqual(self.marks(axis), ["chase, to agent 1", "leader = 3, to agent 3", "flee, to the mean"])
         self.assertEqual(axis.get_ylabel(), "distance to the mean or the leader (m)")
         self.assertLessEqual({"settled at 1.50 s", "settled at 4.50 s"}, lines.keys())
 
@@ -510,10 +523,51 @@ class Changes(PlotTest):
         for name in ("position", "velocity", "acceleration"):
             axes = self.figure(name, config=config, summary=self.TOLD).axes
             self.assertEqual(self.marks(axes[0]), [
-                "chase", "chase", "flee", "p_gain = 0.25, of 1, 2", "goto 3, cut 1,2 and 2 more", "mend 1,2",
+                "chase", "leader = 3", "flee", "p_gain = 0.25, of 1, 2", "goto 3, cut 1,2 and 2 more", "mend 1,2",
                 "another graph"])
             for axis in axes:
                 self.assertEqual(self.vertical(axis), [1, 2, 3, 3.5, 4, 4.5])
+
+    def test_phases_are_called_by_what_changed(self):
+        first = {"name": "chase", "at_s": 0, "beta": 1.0, "gains": [1], "leader": 0, "axes": "xy"}
+        for change, words in (({"beta": 2.0}, "beta = 2"), ({"axes": "xyz", "leader": 1}, "leader = 1, axes = xyz"),
+                              ({"gains": [2]}, "gains"), ({"beta": 3, "leader": 2, "axes": "xyz"}, "beta = 3, leader = 2 and 1 more"),
+                              ({"slack_m": 0.5}, "slack_m = 0.5"), ({"name": "flee", "beta": 9}, "flee"), ({}, "")):
+            self.assertEqual(run_folder.words_of_change(first, first | change | {"at_s": 5}), words)
+        self.assertEqual(run_folder.words_of_change(first | {"slack_m": 1}, first), "no slack_m")
+        config = CONSENSUS + "".join(f"[[law.schedule]]\nat_s = {at_s}\nname = 'consensus'\n{more}" for at_s, more in
+                                     ((1, "p_gain = 2\n"), (2, "p_gain = 2\n")))
+        told = {"phases": [{"at_s": at_s, "law": "consensus", "drawing": AGREEMENT} for at_s in range(3)]}
+        self.assertEqual(self.marks(self.figure("velocity", config=config, summary=told).axes[0]),
+                         ["consensus", "p_gain = 2", "the same again"])
+
+    def test_phases_of_the_graph_are_called_by_their_topology(self):
+        phases = "".join(f"[[graph.schedule]]\nat_s = {at_s}\n{graph}\n" for at_s, graph in
+                         ((1, 'topology = "ring"'), (3, "edges = [[1, 2]]"), (9, 'topology = "path"')))
+        axis = self.figure("velocity", config=CONSENSUS + '[graph]\ntopology = "complete"\n' + phases).axes[0]
+        self.assertEqual((self.marks(axis), self.vertical(axis)), (["topology = ring", "another graph"], [1, 3]))
+        repeats = self.figure("velocity", config=CONSENSUS + "[graph]\nrepeat_s = 4.0\n" + phases).axes[0]
+        self.assertEqual((self.marks(repeats), self.vertical(repeats)), ([], []))
+
+    def test_an_event_a_phase_and_a_time_that_was_measured_look_different(self):
+        axis = self.figure("disagreement", config=self.PHASES + "[[events]]\nat_s = 1.0\ncut = [[1, 2]]\n",
+                           summary=self.TOLD).axes[0]
+        lines = {line.get_xdata()[0]: line for line in axis.get_lines() if list(line.get_ydata()) == [0, 1]}
+        event, phase, settled = (lines[at_s] for at_s in (1, 2, 1.5))
+        self.assertEqual(len({str(line._dash_pattern) for line in (event, phase, settled)}), 3)
+        self.assertEqual([line.get_marker() for line in (event, phase, settled)], ["None", "None", "^"])
+
+    def test_no_line_is_drawn_at_two_percent_of_the_start_of_a_leader_that_departs(self):
+        def levels(axis):
+            return [line.get_segments()[0][0][1] for line in axis.collections if len(line.get_segments()) == 1]
+        states = arrays()
+        states["position"][:, 0, :2] = [1, 2]  # agent 1 stays
+        self.assertEqual(len(levels(self.figure("disagreement", config=CONSENSUS + "leader = 1\n", states=states).axes[0])), 1)
+        states["position"][:, 0, 0] += np.linspace(0, 3, 51)  # by 3 m, and all others started 5 m away
+        told = {"consensus": {"settling_time_s": 2.0}}
+        axis = self.figure("disagreement", config=CONSENSUS + "leader = 1\n", states=states, summary=told).axes[0]
+        self.assertEqual(levels(axis), [])
+        self.assertEqual([name for name in axis.get_legend_handles_labels()[1] if "settled" in name or "%" in name], [])
 
     def test_names_of_changes_do_not_cover_each_other(self):
         events = "".join(f'[[events]]\nat_s = {at_s}\nset = {{ "law.a_long_name" = 1 }}\n'
@@ -706,12 +760,27 @@ class Overlays(PlotTest):
         lines = figures["position"].axes[0].get_lines()
         blue, orange = figure_style.OKABE_ITO[:2]
         self.assertEqual([line.get_color() for line in lines], [blue] * 3 + [orange] * 4)
+        self.assertEqual([line.get_linestyle() for line in lines], ["-"] * 3 + ["--"] * 4, "grey print tells them apart, too")
         np.testing.assert_array_equal(lines[4].get_ydata(), runs[1].position[:, 1, 0])
         names = [text.get_text() for text in figures["position"].legends[0].get_texts()]
         self.assertEqual(names, ["slow", "fast"], "the runs have the same name: those of their folders")
         (slow, fast) = figures["disagreement"].axes[0].get_lines()
         np.testing.assert_allclose(slow.get_ydata(), 5 * np.exp(-runs[0].t), rtol=1e-12)
         self.assertEqual(figures["disagreement"].axes[0].get_ylabel(), "largest distance to the mean (m)")
+
+    def test_no_two_runs_look_alike_and_neighbours_differ_in_their_kind_of_line(self):
+        for count in (2, 6, 10, 11, 30, 36):
+            looks = figure_style.looks_of_runs(count)
+            self.assertEqual(len(set(map(str, looks))), count)
+            self.assertTrue(all(one[1] != other[1] for one, other in zip(looks, looks[1:])), count)
+
+    def test_curves_of_several_runs_end_at_the_floor(self):
+        self.write_two(states=(arrays(rows=301), arrays()))
+        runs = [run_folder.read_run(folder) for folder in self.folders]
+        figure, = dict(overlay.draw_overlay(self.folders, runs, ["disagreement"])).values()
+        lines = {line.get_label(): line.get_ydata() for line in figure.axes[0].get_lines()}
+        self.assertEqual([int(np.isnan(lines[name]).sum()) for name in ("slow", "fast")], [146, 0])
+        self.assertIn("floor: 1e-6 m", lines)
 
     def test_disagreement_is_labelled_by_what_it_is_measured_against(self):
         self.write_two((CONSENSUS, LEADER))
