@@ -145,10 +145,15 @@ def shades(palette, most=16):
     return np.rint(255 * np.concatenate(rows)).astype(np.uint8)
 
 
+def few_decades():
+    """Names more of a log axis of less than two decades than its powers of ten, for these may be one or none."""
+    return matplotlib.ticker.LogFormatterSciNotation(minor_thresholds=(2, 0.5))
+
+
 def log_axis(axis):
-    """Makes y logarithmic. Below two decades, more than its powers of ten is named, for these may be one or none."""
+    """Makes y logarithmic."""
     axis.set_yscale("log")
-    axis.yaxis.set_minor_formatter(matplotlib.ticker.LogFormatterSciNotation(minor_thresholds=(2, 0.5)))
+    axis.yaxis.set_minor_formatter(few_decades())
 
 
 def title(figure, text):

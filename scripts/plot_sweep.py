@@ -70,6 +70,17 @@ def is_wide(values):
     return bool(finite) and min(finite) > 0 and max(finite) / min(finite) >= 10**DECADES
 
 
+def unevenness(places):
+    """How far sorted places are from being evenly spaced, as a part of their range."""
+    return np.abs((places - places[0]) / (places[-1] - places[0]) - np.linspace(0, 1, places.size)).max()
+
+
+def is_log_spaced(values):
+    """Whether positive values are spaced by factors and not by differences: 1, 2, 4, 8, or drawn evenly from a log range."""
+    places = np.unique([v for v in values if v is not None and np.isfinite(v)])
+    return places.size > 2 and places[0] > 0 and 2 * unevenness(np.log(places)) < unevenness(places)
+
+
 class Table:
     """The rows of the sweep, and of its statistics of one column."""
 
@@ -125,7 +136,7 @@ class Axis:
         self.cells = sorted(set(cells), key=lambda cell: (number(cell), cell)) if self.is_numeric else list(dict.fromkeys(cells))
         self.is_grid = False  # a heat map with cells around each place, and a tick at each
         self.places = [number(cell) for cell in self.cells] if self.is_numeric else list(range(len(self.cells)))
-        self.is_log = self.is_numeric and is_wide(self.places)
+        self.is_log = self.is_numeric and (is_wide(self.places) or is_log_spaced(self.places))
         self.place_of = dict(zip(self.cells, self.places))
 
     def of(self, cell):
@@ -143,13 +154,19 @@ class Axis:
         edges = np.array([first, *between, last])
         return np.exp(edges) if self.is_log else edges
 
+    def has_tick_each(self):
+        """Whether each value has its own tick: words, and few numbers in cells or on an axis that is otherwise hard to read."""
+        is_hard_to_read = self.is_log and not is_wide(self.places)
+        return not self.is_numeric or len(self.cells) <= TICKS_MAX and (self.is_grid or is_hard_to_read)
+
     def dress(self, axis):
         axis.set_label_text(self.text)
         if self.is_log:
             getattr(axis.axes, f"set_{axis.axis_name}scale")("log")
-            if self.is_grid:
+            axis.set_minor_formatter(figure_style.few_decades())
+            if self.has_tick_each():
                 axis.set_minor_locator(matplotlib.ticker.NullLocator())
-        if not self.is_numeric or self.is_grid and len(self.cells) <= TICKS_MAX:
+        if self.has_tick_each():
             axis.set_ticks(self.places, [cell.strip("\"'") for cell in self.cells])
 
 

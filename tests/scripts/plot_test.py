@@ -1257,6 +1257,27 @@ class SweepTableTest(unittest.TestCase):
         self.assertEqual(legend.get_title().get_text(), "law.name")
         self.assertLess(legend.get_window_extent().y1, axis.xaxis.label.get_window_extent().y0)
 
+    def drawn_over(self, values):
+        """The axis of keys of the picture of a sweep over these values of a gain."""
+        header = "law.beta,metric,runs,failed,without_value,mean,mean_low_95,mean_high_95,median,decile_1,decile_9"
+        table = self.table_of([f"run,law.beta,error,{self.COLUMN},sim_s", *(f"0,{x},,{5 + x},1" for x in values)],
+                              [header, *(f"{x},{self.COLUMN},1,0,0,{5 + x},,,{5 + x},," for x in values)], "law.beta")
+        plot_sweep.figure_style.use("screen")
+        figure = plot_sweep.draw(table)
+        self.addCleanup(plot.plt.close, "all")
+        figure.draw_without_rendering()
+        return figure.axes[0].xaxis
+
+    def test_values_that_are_spaced_by_factors_have_a_log_axis(self):
+        drawn = np.random.default_rng(1).uniform(0, 1, 60)
+        for values, scale in (([0.1, 0.2, 0.4, 0.8], "log"), ([1, 2, 5, 10], "log"), ([0.01, 1, 100], "log"),
+                              (10**drawn, "log"), ([0.1, 0.2, 0.3, 0.4], "linear"), ([1, 2], "linear"), ([-1, 1, 4], "linear"),
+                              ([0, 1, 2, 4], "linear"), (1 + 9 * drawn, "linear"), ([3, 3, 3], "linear")):
+            self.assertEqual(self.drawn_over(list(values)).get_scale(), scale, values)
+        axis = self.drawn_over([0.1, 0.2, 0.4, 0.8])
+        self.assertEqual([label.get_text() for label in axis.get_ticklabels(which="both") if label.get_text()],
+                         ["0.1", "0.2", "0.4", "0.8"])
+
     def test_equal_numbers_in_other_words_stand_in_one_order(self):
         cells = ["1.00", "1", "1.0", "0.5"]
         table = self.table_of([f"run,law.beta,error,{self.COLUMN},sim_s", *(f"0,{cell},,1,1" for cell in cells)],
