@@ -50,6 +50,7 @@ class Film:
     def __init__(self, run, scale, pace):
         self.run, self.told_s = run, TOLD_S * pace
         self.p = run.position[:, :, :2]
+        self.seen = self.p[run.rows]
         self.spans, self.events = run.spans, run.events
         self.graphs = [(begin, in_order(edges)) for begin, _, edges in run.graphs]
         self.range_m = run.config.get("graph", {}).get("range_m") or np.inf
@@ -65,8 +66,8 @@ class Film:
         draw_places(axis, run)
         name_edges(axis, set(run.edges))
         for indices, label, look in self.kinds():
-            axis.plot([], [], color="0.4", linestyle="", label=label, **look)
-        axis.plot(*np.array([self.p.min(axis=(0, 1)), self.p.max(axis=(0, 1))]).T, alpha=0)  # what the axes have to hold
+            axis.plot([], [], color=style.grey(0.4), linestyle="", label=label, **look)
+        axis.plot(*np.array([self.seen.min(axis=(0, 1)), self.seen.max(axis=(0, 1))]).T, alpha=0)  # what the axes have to hold
         hidden = area_artists(axis, run, self.p[0]) if self.has_areas else []
         map_axis(axis)
         self.text = axis.text(0, 1.01, "t\nt" if self.events else "t", transform=axis.transAxes, va="bottom")
@@ -101,7 +102,7 @@ class Film:
         self.marks = [axis.plot([], [], color=palette[k], zorder=4, **look)[0]
                       for indices, _, look in self.kinds() for k in indices]
         self.order = [k for indices, _, _ in self.kinds() for k in indices]
-        named = self.run.size <= style.LOOKS_MAX
+        named = self.run.size <= style.looks_max()
         self.names = [axis.annotate(str(self.run.id[k]), (0, 0), xytext=(5, 4), textcoords="offset points", zorder=5,
                                     annotation_clip=True, **style.small()) for k in self.order] if named else []
 
@@ -162,12 +163,15 @@ def write_palette(path, run):
     plt.imsave(path, square.reshape(16, 16, 3))
 
 
-def film(run, path, pace):
-    """Writes the film. Of the same run, and with the same ffmpeg, the same bytes."""
+def film(run, path, pace, check_words=lambda: None):
+    """Writes the film. Of the same run, and with the same ffmpeg, the same bytes. `check_words`: is called when all texts are
+    known, and nothing is written yet."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
-    rows, pace = rows_of_frames(run.t, pace)
+    rows, pace = rows_of_frames(run.t[run.rows], pace)
+    rows += run.rows.start
     drawing = Film(run, GIF_SCALE if path.suffix == ".gif" else 1, pace)
     try:
+        check_words()
         with style.new_file(path) as part, tempfile.TemporaryDirectory() as scratch:
             palette = os.path.join(scratch, "palette.png")
             write_palette(palette, run)

@@ -11,6 +11,9 @@ import matplotlib
 import matplotlib.pyplot as plt
 import matplotlib.ticker
 import numpy as np
+import pgf_picture
+import picture_table
+from wording import Wording, did_you_mean
 
 # Palette of Okabe and Ito, which colour-blind readers can distinguish; the palest colours last.
 OKABE_ITO = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442"]
@@ -34,6 +37,7 @@ STYLE = {
     "axes.titlesize": 10,
     "figure.constrained_layout.use": True,
     "figure.dpi": 120,
+    "figure.max_open_warning": 0,  # pictures may wait for each other
     "figure.titlesize": 11,
     "font.size": 9,
     "grid.color": "0.9",
@@ -78,7 +82,9 @@ SIZES = {
     "column": Size(3.5, panel=1.15, single=2.3, square=3, small_pt=8, is_narrow=True),  # of IEEE's journals
     "page": Size(7.16, panel=1.35, single=2.8, square=4.6, small_pt=8),  # both columns
 }
-FORMATS = ("png", "pdf", "svg")
+IMAGES = ("png", "pdf", "svg")
+TEXTS = {"pgf": pgf_picture.write, "csv": picture_table.write}  # of what is drawn; how each is written
+FORMATS = (*IMAGES, *TEXTS)
 NO_DATES = {"png": {"Software": None}, "svg": {"Creator": None, "Date": None},
             "pdf": {"Creator": None, "Producer": None, "CreationDate": None}}
 
@@ -88,26 +94,46 @@ def named(option, text, names):
     chosen = list(dict.fromkeys(text.split(",")))
     for name in chosen:
         if name not in names:
-            raise ValueError(f"{option}: expected one or more of {', '.join(names)}, with commas between, got '{name}'")
+            raise ValueError(f"{option}: expected one or more of {', '.join(names)}, with commas between, got '{name}'"
+                             f"{did_you_mean(name, names)}")
     return chosen
 
 
 def formats(text):
-    """Names of FORMATS in a list with commas. Raises ValueError."""
-    return named("--format", text, FORMATS)
+    """Names of IMAGES in a list with commas. Raises ValueError."""
+    return named("--format", text, IMAGES)
 
 
 class Chosen:
-    """The size in use."""
+    """The size, the colours of lines, and the words in use."""
 
     size = SIZES["screen"]
+    colours = COLOURS
+    wording = Wording()
 
 
-def use(name):
-    """Draws in this size from now on, whatever the user's own matplotlibrc says."""
+def use(name, sheet=None, wording=None):
+    """Draws in this size from now on, whatever the user's own matplotlibrc says. `sheet`: settings of a style sheet, which
+    go before ours; if it has a cycle of colours, lines are drawn in these. `wording`: texts that stand in place of
+    others."""
     Chosen.size = SIZES[name]
     paper = PAPER if Chosen.size.is_paper else {}
-    matplotlib.rcParams.update(matplotlib.rcParamsDefault | STYLE | paper | {"backend": plt.get_backend()})
+    sheet = sheet or {}
+    matplotlib.rcParams.update(matplotlib.rcParamsDefault | STYLE | paper | sheet | {"backend": plt.get_backend()})
+    cycle = matplotlib.rcParams["axes.prop_cycle"].by_key().get("color") if "axes.prop_cycle" in sheet else None
+    Chosen.colours = list(dict.fromkeys(cycle)) if cycle else COLOURS
+    Chosen.wording = wording or Wording()
+
+
+def word(text):
+    """A text as it stands in a picture."""
+    return Chosen.wording.of(text) if text else text
+
+
+def grey(level):
+    """A grey between the colour of letters (0) and that of the ground (1): black and white, if no style sheet says else."""
+    letters, ground = (np.array(matplotlib.colors.to_rgb(plt.rcParams[key])) for key in ("text.color", "axes.facecolor"))
+    return tuple(letters + level * (ground - letters))
 
 
 def size():
@@ -115,24 +141,31 @@ def size():
 
 
 def small():
-    return {"fontsize": size().small_pt, "color": "0.3"}
+    return {"fontsize": size().small_pt, "color": grey(0.3)}
 
 
 def fills(count):
     """Colours of so many areas, which have no kinds of line."""
-    return COLOURS[:count] if count <= len(COLOURS) else [MANY(k / (count - 1)) for k in range(count)]
+    colours = Chosen.colours
+    return colours[:count] if count <= len(colours) else [MANY(k / (count - 1)) for k in range(count)]
+
+
+def looks_max():
+    """How many lines have a look of their own; more share a colour bar."""
+    return max(1, len(Chosen.colours) - 1) * len(LINE_STYLES)
 
 
 def looks(count):
     """Colours and line styles of so many lines."""
-    if len(COLOURS) < count <= LOOKS_MAX:
-        return [(colour, style) for style in LINE_STYLES for colour in COLOURS[:-1]][:count]
+    colours = Chosen.colours
+    if len(colours) < count <= looks_max():
+        return [(colour, style) for style in LINE_STYLES for colour in colours[:-1] or colours][:count]
     return [(colour, "-") for colour in fills(count)]
 
 
 def looks_of_runs(count):
     """Colours and line styles of so many runs. Neighbours differ in both, so that grey print tells them apart."""
-    colours = fills(count) if count <= len(COLOURS) or count > LOOKS_MAX else COLOURS[:-1]
+    colours = fills(count) if count <= len(Chosen.colours) or count > looks_max() else Chosen.colours[:-1] or Chosen.colours
     found = [divmod(k, len(colours)) for k in range(count)]
     return [(colours[k], RUN_STYLES[(k + again) % len(RUN_STYLES)]) for again, k in found]
 
@@ -159,7 +192,21 @@ def log_axis(axis):
 def title(figure, text):
     """Names the picture, where no caption does."""
     if not size().is_paper:
-        figure.suptitle(text, x=0.01, ha="left")
+        figure.suptitle(word(text), x=0.01, ha="left")
+
+
+def put_words(figure):
+    """Puts other words in place of those of axes, panels, curves and marks, where some are wanted."""
+    for axis in figure.axes:
+        for artist in axis.get_children():
+            label = artist.get_label()  # of an axis of coordinates: an artist, too
+            if isinstance(label, str) and not label.startswith("_"):
+                artist.set_label(word(label) or label)  # without a word it stays in the table
+        axis.set_xlabel(word(axis.get_xlabel()))
+        axis.set_ylabel(word(axis.get_ylabel()))
+        for side in ("left", "center", "right"):
+            if text := axis.get_title(loc=side):
+                getattr(axis, {"left": "_left_title", "center": "title", "right": "_right_title"}[side]).set_text(word(text))
 
 
 def keep_free(figure, right=0.0, below=0.0):
@@ -171,8 +218,10 @@ def keep_free(figure, right=0.0, below=0.0):
 def add_legend(figure, handles, labels, is_below=False, heading=None):
     """Adds a legend beside the panels, or below them, in as many columns as fit, and keeps its place free. A legend
     below makes the figure higher: the panels keep their height."""
+    put_words(figure)
     if not handles:
         return
+    labels = [word(label) for label in labels]
     width, height = figure.get_size_inches()
 
     def legend(columns, **where):
@@ -220,8 +269,13 @@ def wrap_labels(figure):
 def save(figure, path):
     """Writes the picture in the format that the ending of its name says: for the same run, the same bytes."""
     kind = path.suffix[1:]
-    with new_file(path) as part, part.open("wb") as file:
-        figure.savefig(file, format=kind, metadata=NO_DATES[kind])
+    with new_file(path) as part:
+        if kind in TEXTS:
+            with part.open("w", encoding="utf-8", newline="") as file:
+                TEXTS[kind](figure, file)
+        else:
+            with part.open("wb") as file:
+                figure.savefig(file, format=kind, metadata=NO_DATES[kind])
 
 
 @contextlib.contextmanager

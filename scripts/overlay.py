@@ -24,9 +24,11 @@ def each(names, runs):
         yield run, {"color": colour, "linestyle": line}, name
 
 
-def plot_lines(axis, x, y, name, look):
-    """One line per column of y, all alike."""
+def plot_lines(axis, x, y, name, look, agents=None):
+    """One line per column of y, all alike. `agents`: the numbers of theirs, if each has one."""
     lines = axis.plot(x, y, **look, alpha=0.5 + 0.5 / y.shape[1])
+    for line, number in zip(lines, () if agents is None else agents):
+        line.told = f"{style.word(name)}, agent {number}"
     lines[0].set_label(name)
 
 
@@ -39,19 +41,20 @@ def finished(figure, axis, what):
 
 
 def all_time(axis, runs):
-    time_axis(axis, min(run.t[0] for run in runs), max(run.t[-1] for run in runs))
+    time_axis(axis, min(run.begin_s for run in runs), max(run.end_s for run in runs))
 
 
 def paths(names, runs):
     figure, axis = square_figure()
     draw_obstacles(axis, runs[0])
+    start, end = ("first", "last") if any(np.isfinite([run.from_s, run.to_s]).any() for run in runs) else ("start", "end")
     for run, look, name in each(names, runs):
-        p = run.position[:, drawn(run), :2]
-        plot_lines(axis, p[:, :, 0], p[:, :, 1], name, look)
-        axis.plot(*p[0].T, "o", markersize=4, color=look["color"], markerfacecolor="white", zorder=4)
+        p = run.position[run.rows, :, :2][:, drawn(run)]
+        plot_lines(axis, p[:, :, 0], p[:, :, 1], name, look, run.id[drawn(run)])
+        axis.plot(*p[0].T, "o", markersize=4, color=look["color"], markerfacecolor=style.grey(1), zorder=4)
         axis.plot(*p[-1].T, "x", markersize=4, color=look["color"], zorder=4)
-    axis.plot([], [], "o", color="0.3", markersize=4, markerfacecolor="white", label="start")
-    axis.plot([], [], "x", color="0.3", markersize=4, label="end")
+    axis.plot([], [], "o", color=style.grey(0.3), markersize=4, markerfacecolor=style.grey(1), label=start)
+    axis.plot([], [], "x", color=style.grey(0.3), markersize=4, label=end)
     map_axis(axis)
     return finished(figure, axis, "paths seen from above")
 
@@ -62,7 +65,8 @@ def over_time(what, symbol, unit, values_of, axes_of):
         figure, grid = panel_grid(len(axes))
         for panel, k in zip(grid, axes):
             for run, look, name in each(names, runs):
-                plot_lines(panel, run.t, values_of(run)[:, drawn(run), k], name, look)
+                plot_lines(panel, run.t[run.rows], values_of(run)[run.rows, :, k][:, drawn(run)], name, look,
+                           run.id[drawn(run)])
             panel.set_ylabel(f"{symbol.format(AXIS_NAMES[k])} ({unit})")
             widen(panel, LEAST_RANGE)
         all_time(grid[-1], runs)
@@ -75,8 +79,8 @@ def disagreements(names, runs):
     figure, axis = plt.subplots(figsize=(style.size().width, style.size().single))
     floor, curves = max(map(floor_of, runs)), []
     for run, look, name in each(names, runs):
-        curves.append(disagreement(run)[:, run.honest].max(axis=1))
-        plot_lines(axis, run.t, above(floor, curves[-1])[:, None], name, look)
+        curves.append(disagreement(run)[run.rows][:, run.honest].max(axis=1))
+        plot_lines(axis, run.t[run.rows], above(floor, curves[-1])[:, None], name, look)
     style.log_axis(axis)
     name_floor(axis, floor, *curves)
     axis.set_ylabel(f"largest distance to {in_a_word([name for run in runs for name in seen_from(run)])} (m)")
@@ -101,6 +105,7 @@ def draw_overlay(folders, runs, only):
         against = [(folder, PICTURES[name].applies(run)) for folder, run in zip(folders, runs)]
         against = [(folder, reason) for folder, reason in against if reason]
         if not against:
+            style.Chosen.wording.begin(name)
             yield name, OVERLAYS[name](names, runs)
         elif only:
             raise RunError(f"--only {name}: {against[0][0]}: {against[0][1]}", code=2)

@@ -10,7 +10,7 @@ import figure_style as style
 import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
-from figure_style import COLOURS, DASHED, LOOKS_MAX, MANY, OKABE_ITO, small
+from figure_style import DASHED, MANY, OKABE_ITO, grey, small
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import Circle, Polygon, Rectangle
 from run_folder import FILTERED, INFEASIBLE, cells, disagreement, hull, separation, spanning_tree, waypoint_targets
@@ -25,7 +25,7 @@ ROUNDING = 64 * np.finfo(float).eps  # of the largest coordinate: what is below 
 DEPARTURE = 0.5  # of the disagreement at the start: a leader that moves farther leaves
 SMOOTHING_S = 0.5  # window for the mean of a switching acceleration
 AXIS_NAMES = "xyz"
-GREY = "0.6"
+EDGES = 0.6  # grey of edges
 TOUCHES = "#D00000"  # no agent has this colour
 
 
@@ -37,7 +37,9 @@ def colours(run):
 
 
 def drawn(run):
-    return np.unique(np.linspace(0, run.size - 1, min(run.size, DRAWN_MAX)).astype(int))
+    """Indices of the agents whose lines are drawn."""
+    shown = np.array(run.shown)
+    return shown[np.unique(np.linspace(0, shown.size - 1, min(shown.size, DRAWN_MAX)).astype(int))]
 
 
 def agent_label(run, index):
@@ -46,23 +48,25 @@ def agent_label(run, index):
 
 
 def titled(figure, run, what):
-    some = f" ({len(drawn(run))} of {run.size} agents drawn)" if run.size > DRAWN_MAX else ""
+    shown = len(run.shown)
+    some = f" ({len(drawn(run))} of {shown} agents drawn)" if len(drawn(run)) < shown else ""
     style.title(figure, f"{run.name}: {what}{some}" if run.name else f"{what}{some}")
 
 
-def name_agents(figure, axes, run, most=LOOKS_MAX):
-    """Adds a legend or, for more agents than `most`, a colour bar beside all panels. To be called last: it keeps free
-    the place that it needs."""
+def name_agents(figure, axes, run, most=None):
+    """Adds a legend or, for more agents than `most` (than have looks of their own, by default), a colour bar beside all
+    panels. To be called last: it keeps free the place that it needs."""
+    is_many = len(drawn(run)) > (most or style.looks_max())
     found = {}
     for axis in axes:
         for handle, label in zip(*axis.get_legend_handles_labels()):
             found.setdefault(label, handle)
-    if run.size > most:
+    if is_many:
         scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(run.id[0], run.id[-1]), MANY)
         figure.colorbar(scale, ax=list(axes), label="agent", pad=0.02, aspect=40)
         found = {label: handle for label, handle in found.items()
                  if not label.startswith("agent ") or label.endswith(")")}
-    style.add_legend(figure, list(found.values()), list(found), is_below=run.size > most)
+    style.add_legend(figure, list(found.values()), list(found), is_below=is_many)
     style.wrap_labels(figure)
 
 
@@ -71,12 +75,14 @@ def line_width(run, leads=False):
 
 
 def plot_agents(axis, run, x, y, indices=None):
-    """Plots one line per agent; y is (T, N). Lines of leaders are thicker and on top, those of liars dashed."""
+    """Plots one line per agent; y is (T, N), of which the rows of the window are drawn. Lines of leaders are thicker and
+    on top, those of liars dashed."""
     looks, leaders, liars = style.looks(run.size), run.leads, run.liars
     for k in drawn(run) if indices is None else indices:
         colour, line = looks[k]
         leads = k in leaders
-        axis.plot(x if x.ndim == 1 else x[:, k], y[:, k], color=colour, label=agent_label(run, k),
+        along = x if x.ndim == 1 else x[:, k]
+        axis.plot(along[run.rows], y[run.rows, k], color=colour, label=agent_label(run, k),
                   linewidth=line_width(run, leads) * (1 if line == "-" else 1.3), zorder=3 if leads else 2,
                   linestyle=DASHED if k in liars else line)
 
@@ -118,23 +124,34 @@ def joined(changes):
     return found
 
 
+def in_window(run, changes, goes_on=False):
+    """(time, words) of the changes in the window, in order. `goes_on`: also of what begins before it and goes on in it, at
+    its beginning."""
+    before = [words for at_s, words in sorted(changes.items()) if at_s <= run.begin_s] if goes_on else []
+    inside = [(at_s, style.word(words)) for at_s, words in sorted(changes.items())
+              if run.shows(at_s) and not (before and at_s <= run.begin_s)]
+    return [*((run.begin_s, style.word(words)) for words in before[-1:]), *inside]
+
+
 def mark_changes(axes, run, names=None):
     """Draws a line where each phase of [[law.schedule]] or [[graph.schedule]] begins and where an event changed something,
     and says above the first panel what: the phases in the lowest row. `names`: what to call the phases of the law, if not
     by what changed. Returns the height of all rows (pt), by which the figure grows."""
     of_law = list(zip((span.at_s for span in run.spans), names or run.names_of_spans))
-    phases = sorted(joined([*(of_law if names or len(of_law) > 1 else []), *run.graph_phases]).items())
-    events = joined(run.events)
+    phases = in_window(run, joined([*(of_law if names or len(of_law) > 1 else []), *run.graph_phases]), goes_on=True)
+    events = in_window(run, joined(run.events))
+    axes[0].figure.told = {"change: time (s)": [at_s for at_s, _ in [*phases, *events]],
+                    "change": [words for _, words in [*phases, *events]]} if phases or events else {}
     for axis in axes:
         for at_s, _ in phases:
-            if at_s > run.t[0]:
-                axis.axvline(at_s, color="0.5", linewidth=0.8, zorder=1)
-        for at_s in events:
-            axis.axvline(at_s, color="0.5", linewidth=0.8, zorder=1, linestyle=(0, (1, 1.5)))
+            if at_s > run.begin_s:
+                axis.axvline(at_s, color=grey(0.5), linewidth=0.8, zorder=1)
+        for at_s, _ in events:
+            axis.axvline(at_s, color=grey(0.5), linewidth=0.8, zorder=1, linestyle=(0, (1, 1.5)))
     size = style.size()
     begin, end = axes[0].get_xlim()
     first = 0
-    for labels in (phases, sorted(events.items())):
+    for labels in (phases, events):
         rows = in_rows(labels, begin, end, 72 * (size.width - (0.6 if size.is_narrow else 2)), 0.58 * size.small_pt)
         named = [(label, place) for label, place in zip(labels, rows) if place[0] < ROWS_MAX]
         for (at_s, words), (row, ends_there) in named:
@@ -162,7 +179,7 @@ def panels(run, values, symbol, unit, what, axes):
         plot_agents(panel, run, run.t, values[:, :, k])
         panel.set_ylabel(f"{symbol.format(AXIS_NAMES[k])} ({unit})")
         widen(panel, LEAST_RANGE)
-    time_axis(grid[-1], run.t[0], run.t[-1])
+    time_axis(grid[-1], run.begin_s, run.end_s)
     marks_pt = mark_changes(grid, run)
     figure.align_ylabels()
     titled(figure, run, what)
@@ -182,7 +199,7 @@ def edge_artists(axis, at, edges, alpha=None):
     shown = ~mutual | (hearer < heard)
     lines, arrows = edges[shown], edges[~mutual]
     alpha = alpha or max(0.15, min(0.8, 40 / max(1, len(lines))))
-    artists = [axis.add_collection(LineCollection(at[lines], colors=GREY, alpha=alpha, linewidths=0.8, zorder=1))]
+    artists = [axis.add_collection(LineCollection(at[lines], colors=grey(EDGES), alpha=alpha, linewidths=0.8, zorder=1))]
     if len(arrows):
         hearer, heard = arrows.T
         artists.append(arrow_heads(axis, at[heard], at[hearer], min(1, 1.5 * alpha)))
@@ -196,35 +213,44 @@ def arrow_heads(axis, begin, end, alpha):
     along = np.divide(way, long, out=np.zeros_like(way), where=long > 0)
     return axis.quiver(*(begin + 0.62 * way).T, *along.T, angles="xy", scale_units="inches", scale=12, units="inches",
                        width=1 / 84, headlength=7, headaxislength=7, headwidth=5.5, minlength=0, pivot="mid",
-                       color=GREY, alpha=alpha, zorder=1.1)
+                       color=grey(EDGES), alpha=alpha, zorder=1.1)
 
 
 def name_edges(axis, edges):
     """Adds the kinds of edges to the legend."""
     if any(edge[::-1] in edges for edge in edges):
-        axis.plot([], [], color=GREY, linewidth=0.8, label="hear each other")
+        axis.plot([], [], color=grey(EDGES), linewidth=0.8, label="hear each other")
     if any(edge[::-1] not in edges for edge in edges):
-        axis.plot([], [], color=GREY, linewidth=0.8, marker=">", markersize=4, label="arrow to who hears")
+        axis.plot([], [], color=grey(EDGES), linewidth=0.8, marker=">", markersize=4, label="arrow to who hears")
 
 
 def draw_graph(axis, run, p):
-    """Draws all edges that the graph ever has: between initial positions if the agents end close together, else between
-    final positions."""
+    """Draws all edges that the graph ever has between agents that are drawn: between initial positions if the agents end
+    close together, else between final positions."""
     spread = [np.ptp(p[row], axis=0).max() for row in (0, -1)]
-    edge_artists(axis, p[-1] if spread[1] > 0.3 * spread[0] else p[0], in_order(set(run.edges)))
-    name_edges(axis, set(run.edges))
+    edges = {edge for edge in run.edges if run.only is None or set(edge) <= set(run.only)}
+    lines = edge_artists(axis, p[-1] if spread[1] > 0.3 * spread[0] else p[0], in_order(edges))[0]
+    tell_edges(lines, run, edges)
+    name_edges(axis, edges)
+
+
+def tell_edges(lines, run, edges, when=""):
+    """Says of the lines of edges, for the table of the picture, which agents hear which."""
+    hearer, heard = in_order(edges).T
+    lines.told = {f"edge{when}: agent": run.id[hearer], f"edge{when}: hears agent": run.id[heard]} if edges else {}
 
 
 def draw_obstacles(axis, run):
     """Draws the obstacles as seen from above."""
-    look = {"facecolor": "0.85", "edgecolor": "0.6", "zorder": 0.5}
-    for obstacle in run.obstacles:
+    look = {"facecolor": grey(0.85), "edgecolor": grey(0.6), "zorder": 0.5}
+    for number, obstacle in enumerate(run.obstacles, 1):
         (x, y), (width, depth) = obstacle["position_m"][:2], obstacle["size_m"][:2]
         if obstacle["shape"] == "box":
             shape = axis.add_patch(Rectangle((x - width / 2, y - depth / 2), width, depth, rotation_point="center",
                                              angle=np.degrees(obstacle.get("heading_rad", 0)), **look))
         else:
             shape = axis.add_patch(Circle((x, y), width / 2, **look))
+        shape.told = f"obstacle {number}"
     if run.obstacles:
         shape.set_label("obstacles")
 
@@ -232,12 +258,14 @@ def draw_obstacles(axis, run):
 def area_artists(axis, run, p):
     """Adds the areas of the law while agents are at p (N, 2): the hull of its leaders, the cells into which agents
     divide a region."""
-    look = {"facecolor": "none", "edgecolor": "0.55", "zorder": 1.2}
+    look = {"facecolor": "none", "edgecolor": grey(0.55), "zorder": 1.2}
     areas = []
     if run.drawing["hull"]:
         areas.append(Polygon(hull(p[run.leads]), linestyle="--", label="hull of leaders", **look))
     if run.drawing["cells"]:
         areas += [Polygon(part, **look) for part in cells(run.law[run.drawing["cells"]], p)]
+        for number, area in zip(run.id, areas[-run.size:]):
+            area.told = f"cell of agent {number}"
         areas[-1].set_label("cells")
     return [axis.add_patch(area) for area in areas]
 
@@ -246,12 +274,12 @@ def draw_places(axis, run):
     """Draws the waypoints and the predicted meeting point."""
     points = np.asarray(run.law.get("waypoints_m", run.law.get("leader_waypoints_m", [])), dtype=float).reshape(-1, 3)
     if len(points):
-        axis.plot(points[:, 0], points[:, 1], "D", color="0.35", ms=5, mfc="none", zorder=1.5, label="waypoints")
+        axis.plot(points[:, 0], points[:, 1], "D", color=grey(0.35), ms=5, mfc="none", zorder=1.5, label="waypoints")
     for n, point in enumerate(points, start=1):
-        axis.annotate(str(n), point[:2], xytext=(6, 6), textcoords="offset points", color="0.35")
+        axis.annotate(str(n), point[:2], xytext=(6, 6), textcoords="offset points", color=grey(0.35))
     value_m = ((run.summary.get("consensus") or {}).get("predicted") or {}).get("value_m")
     if value_m:
-        axis.plot(*value_m[:2], "*", color="0.2", ms=13, mfc="none", mew=1.2, zorder=5, label="predicted")
+        axis.plot(*value_m[:2], "*", color=grey(0.2), ms=13, mfc="none", mew=1.2, zorder=5, label="predicted")
 
 
 def square_figure():
@@ -272,23 +300,25 @@ def map_axis(axis):
 
 def paths(run):
     figure, axis = square_figure()
-    p = run.position[:, :, :2]
+    whole = run.position[:, :, :2]
+    p = whole[run.rows]
     draw_graph(axis, run, p)
     draw_obstacles(axis, run)
     area_artists(axis, run, p[-1])
-    plot_agents(axis, run, p[:, :, 0], p[:, :, 1])
+    plot_agents(axis, run, whole[:, :, 0], whole[:, :, 1])
     shown, palette = drawn(run), colours(run)
     marks = {"s": mark_area(run), "zorder": 4}
     edges = [palette[k] for k in shown]
-    axis.scatter(*p[0, shown].T, marker="o", facecolors="white", edgecolors=edges, **marks)
+    axis.scatter(*p[0, shown].T, marker="o", facecolors=grey(1), edgecolors=edges, **marks)
     axis.scatter(*p[-1, shown].T, marker="x", c=edges, **marks)
     draw_places(axis, run)
-    if touched := [p[np.searchsorted(run.t, one.t_s), k] for one in run.incidents if one.what == "contact"
-                   and one.t_s <= run.t[-1] for k in one.indices]:
-        axis.scatter(*np.transpose(touched), marker="*", s=3 * marks["s"], c=TOUCHES, edgecolors="white", linewidths=0.5,
+    if touched := [whole[np.searchsorted(run.t, one.t_s), k] for one in run.incidents if one.what == "contact"
+                   and run.shows(one.t_s) for k in one.indices if k in run.shown]:
+        axis.scatter(*np.transpose(touched), marker="*", s=3 * marks["s"], c=TOUCHES, edgecolors=grey(1), linewidths=0.5,
                      zorder=5, label="contact")
-    axis.plot([], [], "o", color="0.3", mfc="white", label="start")
-    axis.plot([], [], "x", color="0.3", label="end")
+    begins, ends = np.isclose(run.t[[0, -1]], [run.begin_s, run.end_s], atol=1e-9)
+    axis.plot([], [], "o", color=grey(0.3), mfc=grey(1), label="start" if begins else f"at {run.begin_s:g} s")
+    axis.plot([], [], "x", color=grey(0.3), label="end" if ends else f"at {run.end_s:g} s")
     map_axis(axis)
     titled(figure, run, "paths seen from above")
     name_agents(figure, [axis], run)
@@ -324,21 +354,23 @@ def acceleration(run):
     figure, grid, marks_pt = panels(run, values, "$a_{}$", "m/s²", what, run.axes)
     for k, panel in zip(run.axes, grid) if switches else ():
         colors = [colours(run)[n] for n in drawn(run)]
-        lines = [np.stack([run.t, run.acceleration_command[:, n, k]], axis=1) for n in drawn(run)]
-        panel.add_collection(LineCollection(lines, colors=colors, linewidths=0.5, alpha=0.2, zorder=1))
+        lines = [np.stack([run.t, run.acceleration_command[:, n, k]], axis=1)[run.rows] for n in drawn(run)]
+        panel.add_collection(LineCollection(lines, colors=colors, linewidths=0.5, alpha=0.2, zorder=1)).told = {
+            f"{style.word(agent_label(run, n))}, no mean: a_{AXIS_NAMES[k]} (m/s²)": line[:, 1]
+            for n, line in zip(drawn(run), lines)}
         panel.autoscale_view()
     limit = run.config.get("control", {}).get("max_acceleration_m_per_s2", 3.0)
     label = f"limit ±{limit:g} m/s²"
     for k, panel in zip(run.axes, grid):
         note = {"loc": "right", "pad": 2 + (marks_pt if panel is grid[0] else 0), **small()}
-        peak = np.abs(run.acceleration_command[:, :, k]).max()
+        peak = np.abs(run.acceleration_command[run.rows, :, k]).max()
         if not run.acceleration_command.any():
             panel.set_title("none is commanded", **note)
         elif peak > limit * (1 + 1e-9):
             panel.set_title("some agents have other limits", **note)
         elif peak >= 0.25 * limit:
             for side in (-limit, limit):
-                panel.axhline(side, color="0.3", linestyle="--", linewidth=1, label=label if side > 0 else None)
+                panel.axhline(side, color=grey(0.3), linestyle="--", linewidth=1, label=label if side > 0 else None)
         else:
             panel.set_title(f"{label}, out of view", **note)
     name_agents(figure, grid, run)
@@ -364,7 +396,7 @@ def floor_name(floor):
 def name_floor(axis, floor, *curves):
     """Draws the floor of a log axis, with its name, if one of the curves goes down to it."""
     if any(np.any(curve <= floor) for curve in curves):
-        axis.axhline(floor, color="0.3", linewidth=0.8, linestyle=(0, (1, 1)), label=floor_name(floor))
+        axis.axhline(floor, color=grey(0.3), linewidth=0.8, linestyle=(0, (1, 1)), label=floor_name(floor))
         axis.set_ylim(bottom=0.6 * floor)
 
 
@@ -372,20 +404,20 @@ def log_panel(run, distance_m, what, ylabel):
     """Plots distances (T, N) over time on a log axis."""
     figure, axis = plt.subplots(figsize=(style.size().width, style.size().single))
     floor = floor_of(run)
-    visible = [k for k in drawn(run) if np.any(distance_m[:, k] > floor)]
+    visible = [k for k in drawn(run) if np.any(distance_m[run.rows, k] > floor)]
     plot_agents(axis, run, run.t, above(floor, distance_m), visible)
     style.log_axis(axis)
-    name_floor(axis, floor, distance_m)
+    name_floor(axis, floor, distance_m[run.rows][:, drawn(run)])
     axis.set_ylabel(ylabel)
-    time_axis(axis, run.t[0], run.t[-1])
+    time_axis(axis, run.begin_s, run.end_s)
     titled(figure, run, what)
     return figure, axis
 
 
-def mark_time(axis, t_s, label):
+def mark_time(axis, run, t_s, label):
     """Marks a time that was measured or predicted: unlike an event, by a bold line from a triangle, dash-dotted."""
-    if t_s is not None:
-        axis.axvline(t_s, color="0.2", linestyle="-.", linewidth=1.2, marker="^", markersize=6, markevery=[0],
+    if t_s is not None and run.shows(t_s):
+        axis.axvline(t_s, color=grey(0.2), linestyle="-.", linewidth=1.2, marker="^", markersize=6, markevery=[0],
                      clip_on=False, label=f"{label} {t_s:.2f} s")
 
 
@@ -421,17 +453,20 @@ def disagreement_figure(run):
     mark_changes([axis], run, [f"{change}, to {name}" for change, name in zip(run.names_of_spans, names)]
                  if len(set(names)) > 1 else None)
     largest_m = distance_m[:, run.honest].max(axis=1)
-    axis.plot(run.t, above(floor_of(run), largest_m), color="0.1", linewidth=3, alpha=0.25, zorder=1, label="largest")
+    axis.plot(run.t[run.rows], above(floor_of(run), largest_m)[run.rows], color=grey(0.1), linewidth=3, alpha=0.25, zorder=1,
+              label="largest")
     label = "2 % of the start"
     for span, leader in zip(run.spans, leaders):
         t, start_m = run.t[span.rows], largest_m[span.rows][0]
-        if leader is not None and departs(run, span, leader, start_m):
+        t = t[(t >= run.begin_s) & (t <= run.end_s)]
+        if not t.size or leader is not None and departs(run, span, leader, start_m):
             continue
-        axis.hlines(0.02 * start_m, t[0], t[-1], color="0.3", linestyle="--", linewidth=1, label=label)
+        axis.hlines(0.02 * start_m, t[0], t[-1], color=grey(0.3), linestyle="--", linewidth=1, label=label).told = \
+            style.word("2 % of the start")
         label = None
         settled_s = (span.summary.get("consensus") or {}).get("settling_time_s")
         if settled_s is not None and "disagreement" in span.drawing["pictures"]:
-            mark_time(axis, span.at_s + settled_s, "settled at")
+            mark_time(axis, run, span.at_s + settled_s, "settled at")
     name_agents(figure, [axis], run)
     return figure
 
@@ -443,7 +478,7 @@ def error(run):
     mark_changes([axis], run)
     if not run.law.get("times_s"):
         radius_m = run.law.get("arrival_radius_m", 0.2)
-        axis.axhline(radius_m, color="0.3", linestyle="--", linewidth=1, label=f"arrival radius {radius_m:g} m")
+        axis.axhline(radius_m, color=grey(0.3), linestyle="--", linewidth=1, label=f"arrival radius {radius_m:g} m")
     name_agents(figure, [axis], run)
     return figure
 
@@ -465,8 +500,8 @@ def tracking(run):
         for panel, k in zip(row, run.axes):
             plot_agents(panel, run, run.t, relative[:, :, k], [c for c in drawn(run) if c in tree])
             panel.set_ylabel(label.format(AXIS_NAMES[k]))
-            mark_time(panel, bound_s, "predicted")
-            time_axis(panel, run.t[0], run.t[-1])
+            mark_time(panel, run, bound_s, "predicted")
+            time_axis(panel, run.begin_s, run.end_s)
             if across > 1 and panel not in grid[-1] or across == 1 and panel is not grid[-1, -1]:
                 panel.set_xlabel("")
     mark_changes(list(grid.flat), run)
@@ -478,7 +513,7 @@ def tracking(run):
 
 def span_text(spans, run, repeats):
     """Words for the times at which a graph works; `spans` are pairs (begin, end)."""
-    if len(spans) == 1 and spans[0] == (run.t[0], run.t[-1]):
+    if len(spans) == 1 and spans[0] == (run.begin_s, run.end_s):
         return "at any time"
     if repeats:
         repeat_s = run.config["graph"]["repeat_s"]
@@ -492,9 +527,12 @@ def graph(run):
     """Who hears whom: a panel for each distinct graph, with the times at which it works."""
     spans = {}
     for begin, end, edges in run.graphs:
-        spans.setdefault(edges, []).append((begin, end))
+        if end >= run.begin_s and begin <= run.end_s and (end > run.begin_s or len(run.graphs) == 1):
+            spans.setdefault(edges, []).append((max(begin, run.begin_s), min(end, run.end_s)))
     by_event = any({"cut", "mend", "graph"} & event.keys() for event in run.config.get("events", []))
-    repeats = bool(run.config.get("graph", {}).get("repeat_s")) and not by_event and len(run.graphs) > len(spans)
+    is_whole = run.begin_s == run.t[0] and run.end_s == run.t[-1]
+    can_repeat = bool(run.config.get("graph", {}).get("repeat_s")) and is_whole and not by_event
+    repeats = can_repeat and len(run.graphs) > len(spans)
     shown = list(spans)[:GRAPHS_MAX]
     range_m = run.config.get("graph", {}).get("range_m")
     letter = plt.rcParams["legend.fontsize"]
@@ -509,7 +547,7 @@ def graph(run):
     for axis in grid.flat:
         axis.set_axis_off()
     for axis, edges in zip(grid.flat, shown):
-        edge_artists(axis, at, in_order(edges))
+        tell_edges(edge_artists(axis, at, in_order(edges))[0], run, edges, f" {span_text(spans[edges], run, repeats)}")
         name_edges(axis, edges)
         draw_nodes(axis, run, at, side)
         axis.set_title(span_text(spans[edges], run, repeats) + near, loc="center", fontsize=letter)
@@ -530,7 +568,7 @@ def draw_nodes(axis, run, at, side):
     numbered = room_pt > 1.9 * letter
     mark = min(2.4 * letter, 0.85 * room_pt) if numbered else max(2, min(letter, 0.6 * room_pt))
     for k, colour in enumerate(colours(run)):
-        axis.plot(*at[k], "o", markersize=mark, markerfacecolor="white" if numbered else colour, markeredgecolor=colour,
+        axis.plot(*at[k], "o", markersize=mark, markerfacecolor=grey(1) if numbered else colour, markeredgecolor=colour,
                   markeredgewidth=2 if k in run.leads else 1, zorder=3)
         if numbered:
             axis.annotate(str(run.id[k]), at[k], ha="center", va="center_baseline", fontsize=letter, zorder=4)
@@ -546,25 +584,28 @@ def safety(run):
     """The smallest distance between agents, and when law.safety changed commands, agent by agent."""
     size = style.size()
     figure, (near, when) = plt.subplots(2, 1, sharex=True, figsize=(size.width, 0.5 + 2.2 * size.panel))
-    near.plot(run.t, separation(run), color=OKABE_ITO[0], label="smallest distance")
+    near.plot(run.t[run.rows], separation(run)[run.rows], color=style.Chosen.colours[0], label="smallest distance")
     for at_m in sorted({span.law["safety"]["distance_m"] for span in run.spans if "safety" in span.law}):
-        near.axhline(at_m, color="0.3", linestyle="--", linewidth=1, label=f"to be kept: {at_m:g} m")
+        near.axhline(at_m, color=grey(0.3), linestyle="--", linewidth=1, label=f"to be kept: {at_m:g} m")
     near.set_ylabel("distance (m)")
     near.set_ylim(bottom=0)
     tick_s = run.t[1] - run.t[0] if run.t.size > 1 else 1
     for bit, colour, label, order in ((FILTERED, OKABE_ITO[5], "changed by law.safety", 2),
                                       (INFEASIBLE, OKABE_ITO[1], "no safe command", 3)):
-        if not np.any(run.flags & bit):
+        flags, t = run.flags[run.rows] & bit, run.t[run.rows]
+        if not np.any(flags):
             continue
-        for k in range(run.size):
-            bars = [(run.t[begin], run.t[end - 1] - run.t[begin] + tick_s)
-                    for begin, end in stretches(run.flags[:, k] & bit != 0)]
-            when.broken_barh(bars, (run.id[k] - 0.4, 0.8), facecolor=colour, edgecolor=colour, linewidth=0.4,
-                             zorder=order)
+        for k in run.shown:
+            bars = [(t[begin], t[end - 1] - t[begin] + tick_s) for begin, end in stretches(flags[:, k] != 0)]
+            boxes = when.broken_barh(bars, (run.id[k] - 0.4, 0.8), facecolor=colour, edgecolor=colour, linewidth=0.4,
+                                     zorder=order)
+            name = f"{style.word(agent_label(run, k))}, {style.word(label)}"
+            begins, ends = [at for at, _ in bars], [sum(bar) for bar in bars]
+            boxes.told = {f"{name}: from (s)": begins, f"{name}: until (s)": ends} if bars else {}
         when.bar(0, 0, color=colour, label=label)
     when.set(ylabel="agent", ylim=(run.size + 0.6, 0.4))
     when.yaxis.set_major_locator(matplotlib.ticker.MaxNLocator(8 if size.is_paper else 12, integer=True, min_n_ticks=1))
-    time_axis(when, run.t[0], run.t[-1])
+    time_axis(when, run.begin_s, run.end_s)
     mark_changes([near, when], run)
     figure.align_ylabels()
     titled(figure, run, "distance kept, and commands that law.safety changed")
@@ -580,24 +621,26 @@ def incidents(run):
     figure, axis = plt.subplots(figsize=(size.width, 0.6 + 0.5 * len(kinds)))
     tick_s = run.t[1] - run.t[0] if run.t.size > 1 else 1
     lane = 0.8 / run.size
-    palette, boxes, moments = style.fills(run.size), [], []
-    for incident in run.incidents:
+    palette, boxes, moments, rows = style.fills(run.size), [], [], []
+    for incident in (one for one in run.incidents if one.until_s >= run.begin_s and one.t_s <= run.end_s):
         begin, end = incident.t_s, incident.until_s + tick_s
-        for k in incident.indices:
+        for k in (k for k in incident.indices if k in run.shown):
+            rows.append((incident.what, int(run.id[k]), begin, end))
             low = kinds.index(incident.what) - 0.4 + lane * k
             boxes.append((k, [(begin, low), (end, low), (end, low + lane), (begin, low + lane)]))
             if end - begin < 0.01 * run.t[-1]:  # a box would hardly be seen
                 moments.append((k, [(begin, low), (begin, low + lane)]))
-    axis.add_collection(PolyCollection([box for _, box in boxes], facecolors=[palette[k] for k, _ in boxes]))
+    lanes = axis.add_collection(PolyCollection([box for _, box in boxes], facecolors=[palette[k] for k, _ in boxes]))
+    lanes.told = dict(zip(("what", "agent", "from (s)", "until (s)"), zip(*rows)))
     axis.add_collection(LineCollection([line for _, line in moments], colors=[palette[k] for k, _ in moments]))
     for k in sorted({k for k, _ in boxes}):
         axis.plot([], [], "s", color=palette[k], label=agent_label(run, k))
-    axis.set_yticks(range(len(kinds)), [kind.replace("_", " ") for kind in kinds])
+    axis.set_yticks(range(len(kinds)), [style.word(kind.replace("_", " ")) for kind in kinds])
     axis.set_ylim(len(kinds) - 0.4, -0.6)
-    time_axis(axis, run.t[0], run.t[-1])
+    time_axis(axis, run.begin_s, run.end_s)
     mark_changes([axis], run)
     titled(figure, run, "what the run came up against")
-    name_agents(figure, [axis], run, most=len(COLOURS))
+    name_agents(figure, [axis], run, most=len(style.Chosen.colours))
     return figure
 
 

@@ -59,6 +59,9 @@ class Run:
     config: dict
     summary: dict
     incidents: list = field(default_factory=list)  # in order, without events; empty also if there is no events.csv
+    only: tuple = None  # indices of the agents to be drawn, in order; None: all
+    from_s: float = -np.inf  # the window of time to be drawn
+    to_s: float = np.inf
 
     @property
     def size(self):
@@ -67,6 +70,29 @@ class Run:
     @property
     def name(self):
         return self.config.get("run", {}).get("name", "")
+
+    @property
+    def shown(self):
+        """Indices of the agents to be drawn."""
+        return range(self.size) if self.only is None else self.only
+
+    @cached_property
+    def rows(self):
+        """The rows to be drawn."""
+        return slice(*np.searchsorted(self.t, [self.from_s - 1e-9, self.to_s + 1e-9]))
+
+    @property
+    def begin_s(self):
+        """The first time to be drawn."""
+        return self.t[self.rows][0]
+
+    @property
+    def end_s(self):
+        """The last time to be drawn."""
+        return self.t[self.rows][-1]
+
+    def shows(self, t_s):
+        return self.begin_s - 1e-9 <= t_s <= self.end_s + 1e-9
 
     @property
     def phases(self):

@@ -41,7 +41,7 @@ constexpr std::string_view kFiles[] = {"config.toml", "summary.json", "events.cs
 /// Pictures of a run (scripts/pictures.py), and the formats in which `plot` draws them.
 constexpr std::string_view kPictures[] = {"paths", "position", "velocity", "acceleration", "disagreement",
                                           "error", "tracking", "graph",    "safety",       "incidents"};
-constexpr std::string_view kPictureFormats[] = {".png", ".pdf", ".svg"};
+constexpr std::string_view kPictureFormats[] = {".png", ".pdf", ".svg", ".pgf", ".csv"};
 
 /// True for regular files only: not for links to them, not for folders.
 bool IsFile(const fs::path& path) { return fs::is_regular_file(fs::symlink_status(path)); }

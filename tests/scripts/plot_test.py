@@ -3,6 +3,7 @@
 they are, and error messages."""
 
 import contextlib
+import csv
 import importlib.machinery
 import importlib.util
 import io
@@ -29,6 +30,8 @@ import plain
 import plot
 import plot_sweep
 import run_folder
+import style_sheet
+import wording
 import matplotlib
 from matplotlib.quiver import Quiver
 
@@ -727,6 +730,322 @@ class Paper(PlotTest):
         self.assertEqual(self.pictures(), [])
 
 
+class Options(PlotTest):
+    """--style, --agents, --from-s, --to-s, --label, and the formats that are text."""
+
+    def figure_with(self, name, *options, **what):
+        """The figure that these options make of a picture."""
+        self.write(**what)
+        finished = {}
+        with mock.patch.object(plot, "finish", lambda figure, folder, made, formats, keep: finished.update({made: figure})):
+            self.assertEqual(self.run_plot("--only", name, *options), (0, ""))
+        return finished[name]
+
+    def table(self, name, *options, **what):
+        """{header: cells} of the CSV of a picture, without the empty cells after each column's end."""
+        self.write(**what)
+        self.assertEqual(self.run_plot("--only", name, "--format", "csv", *options), (0, ""))
+        with (self.folder / f"{name}.csv").open(newline="") as file:
+            header, *rows = csv.reader(file)
+        columns = {}
+        for title, cells in zip(header, zip(*rows)):
+            while cells and not cells[-1]:
+                cells = cells[:-1]
+            columns[title] = list(cells)
+        self.assertEqual(len(columns), len(header), "no header stands twice")
+        return columns
+
+    def lines(self, axis):
+        return {line.get_label(): line for line in axis.get_lines()}
+
+    def sheet(self, text):
+        path = self.folder.parent / "mine.mplstyle"
+        path.write_text(text)
+        return path
+
+    # --- --style
+
+    def test_a_style_sheet_goes_before_our_style_and_its_colours_are_those_of_agents(self):
+        sheet = self.sheet('# mine\nlines.linewidth: 3  # bold\naxes.prop_cycle: cycler("color", ["#111111", "777777"])\n'
+                           'axes.grid: False\naxes.facecolor: "#eeeeee"\n\n')
+        figure = self.figure_with("position", "--style", str(sheet))
+        lines = self.lines(figure.axes[0])
+        self.assertEqual([lines[f"agent {k}"].get_linewidth() for k in (1, 3)], [3, 3 * 1.3])
+        self.assertEqual([lines[f"agent {k}"].get_color() for k in (1, 2, 3)], ["#111111", "#111111", "#111111"])
+        self.assertEqual([lines[f"agent {k}"].get_linestyle() for k in (1, 2, 3)], ["-", ":", "-."])
+        self.assertEqual(figure.axes[0].get_facecolor()[:3], (0xee / 255,) * 3)
+        two = self.figure_with("position", "--style", str(sheet), states=arrays(2))
+        self.assertEqual([line.get_color() for line in two.axes[0].get_lines()], ["#111111", "#777777"])
+        usual = self.lines(self.figure_with("position").axes[0])["agent 1"]
+        self.assertEqual((usual.get_linewidth(), usual.get_color()), (1.2, figure_style.OKABE_ITO[0]), "the next picture is ours")
+
+    def test_a_style_of_matplotlib_has_a_name_and_letters_can_be_read_on_its_ground(self):
+        figure = self.figure_with("disagreement", "--style", "dark_background")
+        self.assertEqual(figure.axes[0].get_facecolor(), (0, 0, 0, 1))
+        np.testing.assert_allclose(matplotlib.colors.to_rgb(self.lines(figure.axes[0])["largest"].get_color()), [0.9] * 3)
+        self.assertEqual(figure_style.grey(0.3), (0.7,) * 3)
+        figure_style.use("screen")
+        self.assertEqual(figure_style.grey(0.3), (0.3,) * 3)
+
+    def test_a_style_keeps_sizes_and_bytes(self):
+        self.write()
+        options = ("--only", "velocity", "--format", "svg", "--size", "column", "--style", "ggplot")
+        self.assertEqual(self.run_plot(*options), (0, ""))
+        first = (self.folder / "velocity.svg").read_bytes()
+        self.assertIn(b'width="252pt"', first)
+        self.run_plot(*options)
+        self.assertEqual((self.folder / "velocity.svg").read_bytes(), first)
+
+    def test_a_style_that_is_not_there_or_says_nonsense(self):
+        self.write()
+        names = ", ".join(style_sheet.names())
+        self.check(2, f"--style: expected a file FILE.mplstyle or a style of matplotlib ({names}), got 'gplot' (did you mean "
+                      "\"ggplot\"?)", "--style", "gplot")
+        self.check(2, f"{self.folder}/my.mplstyle: no such file", "--style", f"{self.folder}/my.mplstyle")
+        self.check(2, f"{self.folder}: Is a directory", "--style", str(self.folder))
+        for text, message in (
+                ("lines.linewdth: 2\n", '1: lines.linewdth: unknown key (did you mean "lines.linewidth"?)'),
+                ("# a\n\nlines.linewidth: thick\n", "3: lines.linewidth: matplotlib takes no 'thick': Could not convert "
+                                                     "'thick' to float"),
+                ("backend: Agg\n", "1: backend: it says nothing about how a picture looks"),
+                ("grid\n", "1: expected KEY: VALUE, got 'grid'")):
+            sheet = self.sheet(text)
+            self.check(2, f"{sheet}:{message}", "--style", str(sheet))
+        sheet = self.sheet("text.usetex: True\n")
+        with mock.patch.dict(os.environ, {"PATH": str(self.folder)}):
+            self.check(2, f"{sheet}:1: text.usetex: it needs the program latex, which is not installed (Debian: apt-get install "
+                          "texlive-latex-extra cm-super dvipng)", "--style", str(sheet))
+        sheet.write_bytes(b"\xff")
+        self.check(2, f"{sheet}: it is no text in UTF-8", "--style", str(sheet))
+
+    # --- --agents
+
+    def test_only_the_agents_that_it_names_are_drawn_in_the_colours_that_they_have_among_all(self):
+        whole = self.lines(self.figure_with("position", states=arrays(5)).axes[0])
+        for listed, names in (("1,4", (1, 4)), ("2-4", (2, 3, 4)), ("5,1-2,2", (1, 2, 5))):
+            for name in ("position", "paths", "disagreement", "acceleration"):
+                lines = self.lines(self.figure_with(name, "--agents", listed, states=arrays(5)).axes[0])
+                self.assertEqual([label for label in lines if label.startswith("agent")], [f"agent {k}" for k in names])
+                self.assertEqual(lines["agent 1" if 1 in names else "agent 2"].get_color(),
+                                 whole["agent 1" if 1 in names else "agent 2"].get_color())
+        p = arrays(5)["position"]
+        marks = self.figure_with("paths", "--agents", "1,4", states=arrays(5)).axes[0].collections
+        np.testing.assert_array_equal(marks[-1].get_offsets(), p[-1, [0, 3], :2])
+
+    def test_edges_join_agents_that_are_drawn_and_the_largest_disagreement_is_that_of_all(self):
+        axis = self.figure_with("paths", "--agents", "1,2", summary=PATH).axes[0]
+        self.assertEqual(len(axis.collections[0].get_segments()), 1)
+        states = arrays()
+        states["position"][:, 2, :2] *= 3
+        axis = self.figure_with("disagreement", "--agents", "1,2", states=states).axes[0]
+        p = states["position"][0, :, :2]
+        self.assertAlmostEqual(self.lines(axis)["largest"].get_ydata()[0], np.linalg.norm(p - p.mean(axis=0), axis=1).max())
+
+    def test_of_many_agents_a_few_have_a_legend(self):
+        figure = self.figure_with("velocity", "--agents", "7,60-61", states=arrays(100))
+        self.assertEqual([text.get_text() for text in figure.legends[0].get_texts()], ["agent 7", "agent 60", "agent 61"])
+
+    def test_lanes_and_contacts_are_those_of_the_agents_that_are_drawn(self):
+        (self.folder / "events.csv").write_text(Changes.EVENTS)
+        axis, = self.figure_with("incidents", "--agents", "1").axes
+        self.assertEqual(axis.get_legend_handles_labels()[1], ["agent 1"])
+        axis, = self.figure_with("paths", "--agents", "1").axes
+        stars, = [marks for marks in axis.collections if marks.get_label() == "contact"]
+        self.assertEqual(len(stars.get_offsets()), 1)
+
+    def test_agents_that_are_not_there(self):
+        self.write()
+        expected = "--agents: expected numbers of agents and ranges of them, with commas between, such as 1,4 or 1-3"
+        for text in ("one", "1,", "1-2-3", "-1", "1;2", "1.5"):
+            self.check(2, f"{expected}, got '{text}'", f"--agents={text}")
+        self.check(2, f"{expected}, got '3-1', which ends before it begins", "--agents", "1,3-1")
+        self.check(2, f"--agents: {self.folder}: expected numbers from 1 to 3, got 4", "--agents", "1,4")
+        self.check(2, f"--agents: {self.folder}: expected numbers from 1 to 3, got 9", "--agents", "1-9")
+
+    # --- --from-s, --to-s
+
+    def test_a_window_of_time_has_the_rows_within_it_and_what_is_measured_stays(self):
+        window = ("--from-s", "1", "--to-s", "2.5")
+        for name in ("position", "velocity", "acceleration", "disagreement"):
+            axes = self.figure_with(name, *window).axes
+            self.assertEqual(axes[-1].get_xlim(), (1, 2.5))
+            np.testing.assert_allclose(self.lines(axes[0])["agent 1"].get_xdata(), np.arange(10, 26) / 10)
+        axis = self.figure_with("disagreement", *window).axes[0]
+        level, = [line.get_segments()[0] for line in axis.collections]
+        np.testing.assert_allclose(level, [[1, 0.1], [2.5, 0.1]], err_msg="of the start of the run, not of the window")
+        axis = self.figure_with("paths", *window).axes[0]
+        p = arrays()["position"]
+        np.testing.assert_array_equal([marks.get_offsets() for marks in axis.collections[-2:]], p[[10, 25], :, :2])
+        self.assertLessEqual({"at 1 s", "at 2.5 s"}, self.lines(axis).keys())
+        self.assertLessEqual({"start", "at 2.5 s"}, self.lines(self.figure_with("paths", "--to-s", "2.5").axes[0]).keys())
+
+    def test_a_window_names_the_phase_in_which_it_begins_and_changes_within_it(self):
+        config = Changes.PHASES + "".join(f"[[events]]\nat_s = {at_s}\ncut = [[1, {k}]]\n" for at_s, k in ((1, 2), (3, 3)))
+        axis = self.figure_with("velocity", "--from-s", "2.5", config=config, summary=Changes.TOLD).axes[0]
+        self.assertEqual([text.get_text() for text in axis.texts], ["leader = 3", "flee", "cut 1,3"])
+        axis = self.figure_with("disagreement", "--to-s", "3", config=config, summary=Changes.TOLD).axes[0]
+        named = axis.get_legend_handles_labels()[1]
+        self.assertEqual([name for name in named if "settled" in name], ["settled at 1.50 s"])
+
+    def test_a_window_shows_the_graphs_bars_and_incidents_within_it(self):
+        figure = self.figure_with("graph", "--from-s", "2.5", summary=Graphs.TWO)
+        self.assertEqual([axis.get_title() for axis in figure.axes], ["at any time"])
+        figure = self.figure_with("graph", "--from-s", "1", "--to-s", "2", summary=Graphs.TWO)
+        self.assertEqual([axis.get_title() for axis in figure.axes], ["1 to 1.5 s", "1.5 to 2 s"])
+        states = arrays() | {"flags": np.zeros((51, 3))}
+        states["flags"][[5, 20], 1] = 16
+        _, when = self.figure_with("safety", "--from-s", "1", states=states).axes
+        self.assertEqual([len(bars.get_paths()) for bars in when.collections], [0, 1, 0])
+        (self.folder / "events.csv").write_text(Changes.EVENTS)
+        axis, = self.figure_with("incidents", "--from-s", "1.5", "--to-s", "2.5").axes
+        self.assertEqual(len(axis.collections[0].get_paths()), 1)
+
+    def test_a_film_shows_the_window(self):
+        self.write()
+        run = run_folder.read_run(self.folder)
+        run.from_s, run.to_s = 1, 3
+        with mock.patch.object(animation, "encode") as encode:
+            path = self.folder / "film.gif"
+            animation.film(run, path, 1.0)
+        self.assertEqual((encode.call_args.args[1][0], encode.call_args.args[1][-1]), (10, 30))
+
+    def test_windows_that_are_none(self):
+        self.write()
+        self.check(2, "--from-s: expected a number of seconds, got 'soon'", "--from-s", "soon")
+        self.check(2, "--to-s: expected a number of seconds, got 'nan'", "--to-s", "nan")
+        self.check(2, "--to-s: expected a time after that of --from-s, 3 s, got 2", "--from-s", "3", "--to-s", "2")
+        none = "expected a window of time with rows of the run, which is from 0 to 5 s, got"
+        self.check(2, f"--from-s: {self.folder}: {none} 6", "--from-s", "6")
+        self.check(2, f"--to-s: {self.folder}: {none} -1", "--to-s=-1")
+        self.check(2, f"--from-s: {self.folder}: {none} 1.01 to 1.02", "--from-s", "1.01", "--to-s", "1.02")
+
+    # --- --label
+
+    def test_texts_are_called_otherwise_in_all_pictures_or_in_one(self):
+        options = ("--label", "agent 2 (leader)=the \"scout\"", "--label", "time (s)=Zeit (s)", "--label", "velocity.agent 1=first")
+        self.write(LEADER)
+        finished = {}
+        with mock.patch.object(plot, "finish", lambda figure, folder, name, formats, keep: finished.update({name: figure})):
+            self.assertEqual(self.run_plot("--only", "position,velocity", *options), (0, ""))
+        for name, first in (("position", "agent 1"), ("velocity", "first")):
+            self.assertEqual([text.get_text() for text in finished[name].legends[0].get_texts()], [first, 'the "scout"', "agent 3"])
+            self.assertEqual(finished[name].axes[-1].get_xlabel(), "Zeit (s)")
+
+    def test_every_kind_of_text_may_be_another(self):
+        events = "[[events]]\nat_s = 1.0\ncut = [[1, 2]]\n"
+        (self.folder / "events.csv").write_text(Changes.EVENTS)
+        for name, text in (("position", "demo: position"), ("position", "$v_x$ (m/s)"), ("velocity", "cut 1,2"), ("paths", "start"),
+                           ("graph", "0 to 1 s"), ("disagreement", "distance to the mean (m)"), ("incidents", "contact"),
+                           ("acceleration", "limit ±3 m/s², out of view"), ("safety", "smallest distance")):
+            with self.subTest(text=text):
+                states = arrays() | {"flags": np.full((51, 3), 16)}
+                if text.startswith("$"):
+                    name = "velocity"
+                if text.startswith("limit"):
+                    states["acceleration_command"] *= 0.1
+                figure = self.figure_with(name, "--label", f"{text}=another = text", config=CONSENSUS + events, summary=PATH,
+                                          states=states)
+                figure.draw_without_rendering()
+                shown = {found.get_text() for found in figure.findobj(matplotlib.text.Text)}
+                self.assertIn("another = text", shown)
+                self.assertNotIn(text, shown)
+
+    def test_a_long_text_is_broken_and_its_legend_has_room(self):
+        with laid_out():
+            self.write()
+            figure_style.use("column", wording=wording.Wording({"agent 1": "the agent that was the first one", "distance to the mean (m)":
+                                                                "how far apart from all of the others together this one is (m)"}))
+            figure = pictures.PICTURES["disagreement"].draw(run_folder.read_run(self.folder))
+            figure.canvas.draw()
+            self.assertIn("\n", figure.axes[0].get_ylabel())
+            box = figure.legends[0].get_window_extent()
+            self.assertGreaterEqual(box.x0, -1)
+            self.assertLessEqual(box.x1, figure.bbox.width + 1)
+
+    def test_a_text_that_is_in_no_picture_is_refused_before_one_is_written(self):
+        self.write()
+        for key, near in (("agnet 1", 'agent 1'), ("velocity.agent 1", "position.agent 1")):
+            self.check(2, f"--label: '{key}' is no text of the pictures (did you mean \"{near}\"?)", "--only", "position",
+                       "--label", f"{key}=x")
+        self.check(2, "--label: 'qqqq' is no text of the pictures", "--label", "qqqq=x")
+        self.assertEqual(self.pictures(), [])
+        self.check(2, "--label: 'qqqq' is no text of the pictures", "--label", "qqqq=x", "--animate", f"{self.folder}/film.gif")
+        self.check(2, "--label: expected KEY=TEXT, got 'agent 1'", "--label", "agent 1")
+        self.check(2, "--label: expected KEY=TEXT, got '=x'", "--label", "=x")
+        self.check(2, "--label: expected another text for 'agent 1' once, got 2", "--label", "agent 1=a", "--label", "agent 1=b")
+
+    # --- --format csv
+
+    def test_a_table_has_what_was_drawn_with_names_and_units(self):
+        table = self.table("position")
+        self.assertEqual(list(table), ["time (s)", *(f"agent {k}: {axis} (m)" for axis in "xyz" for k in (1, 2, 3))])
+        self.assertEqual([float(cell) for cell in table["agent 2: y (m)"]], arrays()["position"][:, 1, 1].tolist(), "to the bit")
+        self.assertEqual([float(cell) for cell in table["time (s)"]], arrays()["t"].tolist())
+        table = self.table("velocity", "--agents", "3", "--from-s", "1", "--to-s", "2", "--label", "agent 3=last")
+        self.assertEqual(list(table), ["time (s)", "last: v_x (m/s)", "last: v_y (m/s)", "last: v_z (m/s)"])
+        self.assertEqual(len(table["time (s)"]), 11)
+
+    def test_the_table_of_paths_has_edges_marks_and_areas(self):
+        config = CONSENSUS + '[[physics.obstacles]]\nshape = "box"\nposition_m = [1, 2, 0]\nsize_m = [2, 4, 1]\n'
+        table = self.table("paths", config=config, summary=PATH)
+        self.assertEqual([table["edge: agent"], table["edge: hears agent"]], [["1", "2", "2", "3"], ["2", "1", "3", "2"]])
+        self.assertEqual(sorted(map(float, table["obstacle 1: y, north (m)"])), [0, 0, 0, 4, 4])
+        self.assertEqual(len(table["agent 3: x, east (m)"]), 51)
+
+    def test_the_table_of_disagreement_ends_where_curves_do_and_has_lines_and_changes(self):
+        table = self.table("disagreement", config=Changes.PHASES, summary=Changes.TOLD)
+        to = "distance to the mean or the leader (m)"
+        self.assertAlmostEqual(float(table[f"2 % of the start: {to}"][0]), 0.02 * 5 * np.sqrt(3))
+        self.assertEqual(table["settled at 1.50 s: time (s)"], ["1.5"])
+        self.assertEqual(list(zip(table["change: time (s)"], table["change"])),
+                         [("0.0", "chase, to agent 1"), ("2.0", "leader = 3, to agent 3"), ("4.0", "flee, to the mean")])
+        self.assertEqual(table[f"agent 1: {to}"][:20], [""] * 20, "a leader is not far from itself")
+        table = self.table("disagreement", states=arrays(rows=301))
+        self.assertEqual(len(table["agent 1: distance to the mean (m)"]), 301 - 146)
+        self.assertEqual(table["floor: 1e-6 m: distance to the mean (m)"], ["1e-06"])
+
+    def test_tables_of_pictures_without_curves(self):
+        table = self.table("graph", summary=Graphs.TWO)
+        self.assertEqual(table["edge 0 to 1.5 s: agent"], ["1", "2"])
+        self.assertEqual(table["edge 1.5 to 5 s: hears agent"], ["2"])
+        (self.folder / "events.csv").write_text(Changes.EVENTS)
+        table = self.table("incidents")
+        self.assertEqual([table[name][1] for name in ("what", "agent", "from (s)", "until (s)")], ["contact", "1", "1.0", "1.1"])
+        states = arrays() | {"flags": np.zeros((51, 3))}
+        states["flags"][10:20, 1] = 16
+        table = self.table("safety", states=states)
+        self.assertEqual(len(table["smallest distance: distance (m)"]), 51)
+        self.assertEqual([float(table[f"agent 2, changed by law.safety: {at} (s)"][0]) for at in ("from", "until")], [1, 2])
+
+    def test_every_curve_of_an_acceleration_that_switches_is_in_its_table(self):
+        table = self.table("acceleration", config=MINMAX)
+        self.assertEqual(len(table["agent 2, no mean: a_x (m/s²)"]), 51)
+        self.assertEqual(float(table["agent 2, no mean: a_x (m/s²)"][7]), arrays()["acceleration_command"][7, 1, 0])
+        self.assertNotEqual(table["agent 2: a_x (m/s²)"], table["agent 2, no mean: a_x (m/s²)"])
+
+    # --- --format pgf
+
+    def test_pgf_is_text_for_latex_in_which_nothing_is_a_command_by_chance(self):
+        self.write(CONSENSUS.replace("demo", "a_b & {c} 50 %#") + "[[events]]\nat_s = 1.0\nset = { \"law.p_gain\" = 2 }\n")
+        self.assertEqual(self.run_plot("--only", "velocity", "--format", "pgf"), (0, ""))
+        first = (self.folder / "velocity.pgf").read_text()
+        self.assertIn("a\\_b \\& \\{c\\} 50 \\%\\#: velocity", first)
+        self.assertIn("p\\_gain = 2", first)
+        self.assertIn("\\(\\displaystyle v_x\\) (m/s)", first)
+        for command in ("\\begin{pgfpicture}", "\\end{pgfpicture}", "\\pgfqpoint{8.000000in}{"):
+            self.assertIn(command, first)
+        self.assertNotIn("mathdefault", first)
+        self.assertNotRegex(first, r"Matplotlib|matplotlib", "no version")
+        self.run_plot("--only", "velocity", "--format", "pgf")
+        self.assertEqual((self.folder / "velocity.pgf").read_text(), first)
+
+    def test_pgf_of_many_agents_needs_no_image_beside_it(self):
+        self.write(states=arrays(50, 2))
+        self.assertEqual(self.run_plot("--only", "position", "--format", "pgf,png"), (0, ""))
+        self.assertEqual(sorted(path.name for path in self.folder.glob("position*")), ["position.pgf", "position.png"])
+        self.assertNotIn("includegraphics", (self.folder / "position.pgf").read_text())
+
+
 class Overlays(PlotTest):
     def setUp(self):
         super().setUp()
@@ -773,6 +1092,18 @@ class Overlays(PlotTest):
             looks = figure_style.looks_of_runs(count)
             self.assertEqual(len(set(map(str, looks))), count)
             self.assertTrue(all(one[1] != other[1] for one, other in zip(looks, looks[1:])), count)
+
+    def test_options_are_about_all_runs(self):
+        self.write_two(states=(arrays(3), arrays(4)))
+        options = ("--out", str(self.out), "--only", "position", "--format", "csv", "--agents", "1-2", "--from-s", "4.9", "--label",
+                   "slow=without")
+        self.assertEqual(self.overlay(*options), (0, ""))
+        header, *rows = csv.reader((self.out / "position.csv").read_text().splitlines())
+        self.assertEqual(header[:5], ["time (s)", "without, agent 1: x (m)", "without, agent 2: x (m)", "fast, agent 1: x (m)",
+                                      "fast, agent 2: x (m)"])
+        self.assertEqual([row[0] for row in rows], ["4.9", "5.0"])
+        self.assertEqual(self.overlay("--out", str(self.out), "--agents", "4"),
+                         (2, f"error: --agents: {self.folders[0]}: expected numbers from 1 to 3, got 4\n"))
 
     def test_curves_of_several_runs_end_at_the_floor(self):
         self.write_two(states=(arrays(rows=301), arrays()))
@@ -885,6 +1216,7 @@ class Films(PlotTest):
                  "--animate: expected a file whose name ends in .mp4 or .gif, got 'film.avi'"),
                 ((*film, "--only", "paths"), 2, "--animate: it draws a film and nothing else, got --only too"),
                 ((*film, "--format", "svg"), 2, "--animate: it draws a film and nothing else, got --format too"),
+                ((*film, "--agents", "1"), 2, "--animate: it draws a film and nothing else, got --agents too"),
                 ((*film, "--show"), 2, "--animate: it draws a film and nothing else, got --show too"),
                 ((*film, "--pace", "0"), 2, "--pace: expected a number above 0, got '0'"),
                 ((*film, "--pace", "fast"), 2, "--pace: expected a number above 0, got 'fast'"),
@@ -1058,8 +1390,11 @@ class Errors(PlotTest):
         self.check(2, "--only error: it needs a law that flies to waypoints, from start to end", "--only", "error")
         self.check(2, "--only tracking: it needs a law of pursuit, from start to end, and the graph in summary.json", "--only", "tracking")
         self.check(2, "unrecognized arguments: --fast", "--fast")
-        self.check(2, "--format: expected one or more of png, pdf, svg, with commas between, got 'bmp'",
+        self.check(2, "--only: expected one or more of paths, position, velocity, disagreement, acceleration, tracking, error, "
+                      "graph, safety, incidents, with commas between, got 'pathes' (did you mean \"paths\"?)", "--only", "pathes")
+        self.check(2, "--format: expected one or more of png, pdf, svg, pgf, csv, with commas between, got 'bmp'",
                    "--format", "pdf,bmp")
+        self.check(2, "--size: expected one of screen, column, page, got 'colum' (did you mean \"column\"?)", "--size", "colum")
         self.check(2, "--size: expected one of screen, column, page, got 'poster'", "--size", "poster")
         self.check(2, "--out: expected one run, or --overlay, got 2 runs, whose pictures have the same names",
                    str(self.folder), "--out", "x")
