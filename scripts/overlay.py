@@ -4,10 +4,10 @@ import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
 from pictures import (
-    AXIS_NAMES, LEAST_RANGE, PICTURES, above, draw_obstacles, drawn, floor_of, in_a_word, map_axis, name_floor,
-    panel_grid, seen_from, square_figure, time_axis, widen,
+    AXIS_NAMES, LEAST_RANGE, PICTURES, above, curve_floor, curve_label, draw_obstacles, drawn, floor_of, in_a_word,
+    map_axis, name_floor, panel_grid, seen_from, square_figure, time_axis, widen,
 )
-from run_folder import RunError, disagreement
+from run_folder import RunError, curve_of_last_law, disagreement
 
 
 def names_of(folders, runs):
@@ -88,8 +88,32 @@ def disagreements(names, runs):
     return finished(figure, axis, "disagreement")
 
 
+def curves(names, runs):
+    """The curves of the laws, if all are of one name."""
+    figure, axis = plt.subplots(figsize=(style.size().width, style.size().single))
+    found = [curve_of_last_law(run) for run in runs]
+    told = found[0][0]
+    floor = curve_floor(told, runs, np.concatenate([values for _, _, values in found]))
+    for (run, look, name), (_, t, values) in zip(each(names, runs), found):
+        seen = (t >= run.begin_s - 1e-9) & (t <= run.end_s + 1e-9)
+        plot_lines(axis, t[seen], above(floor, values)[seen][:, None], name, look)
+    if floor > 0:
+        style.log_axis(axis)
+        name_floor(axis, floor, *(values for _, _, values in found), unit=told["unit"].replace("^2", "²"))
+    axis.set_ylabel(curve_label(told))
+    all_time(axis, runs)
+    return finished(figure, axis, f"{told['name']} ({told['meaning']})")
+
+
+def differs(runs):
+    """Why the curves of runs do not belong into one picture, or None."""
+    labels = dict.fromkeys(curve_label(curve_of_last_law(run)[0]) for run in runs)
+    return None if len(labels) == 1 else f"expected laws with the same curve, got {', '.join(labels)}"
+
+
 OVERLAYS = {
     "paths": paths,
+    "curve": curves,
     "position": over_time("position", "{}", "m", lambda run: run.position, lambda run: (0, 1, 2)),
     "velocity": over_time("velocity", "$v_{}$", "m/s", lambda run: run.velocity, lambda run: (0, 1, 2)),
     "acceleration": over_time("commanded acceleration", "$a_{}$", "m/s²", lambda run: run.acceleration_command,
@@ -104,6 +128,8 @@ def draw_overlay(folders, runs, only):
     for name in only or OVERLAYS:
         against = [(folder, PICTURES[name].applies(run)) for folder, run in zip(folders, runs)]
         against = [(folder, reason) for folder, reason in against if reason]
+        if not against and name == "curve" and (reason := differs(runs)):
+            against = [(folders[0], reason)]
         if not against:
             style.Chosen.wording.begin(name)
             yield name, OVERLAYS[name](names, runs)

@@ -4,6 +4,7 @@ They are those of the MASCOT paper (paths in the x-y plane, position, velocity, 
 more that help to judge a run. PICTURES lists them.
 """
 
+import re
 from dataclasses import dataclass
 
 import figure_style as style
@@ -13,7 +14,10 @@ import numpy as np
 from figure_style import DASHED, MANY, OKABE_ITO, grey, small
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import Circle, Polygon, Rectangle
-from run_folder import FILTERED, INFEASIBLE, cells, disagreement, hull, separation, spanning_tree, waypoint_targets
+from run_folder import (
+    FILTERED, INFEASIBLE, cells, curve_of_last_law, disagreement, hull, is_on_a_line, predicted_of_curve, separation,
+    spanning_tree, waypoint_targets,
+)
 
 CROWD = 10  # more agents than this have smaller marks and thinner lines
 DRAWN_MAX = 200  # more lines than this are unreadable: only every n-th agent is drawn
@@ -388,15 +392,15 @@ def above(floor, values):
     return np.where(values > floor, values, np.nan)
 
 
-def floor_name(floor):
+def floor_name(floor, unit):
     words = "floor" if floor <= FLOOR else "floor of rounding"
-    return f"{words}: {floor:.0e} m".replace("e-0", "e-")
+    return f"{words}: {floor:.0e} {unit}".replace("e-0", "e-")
 
 
-def name_floor(axis, floor, *curves):
+def name_floor(axis, floor, *curves, unit="m"):
     """Draws the floor of a log axis, with its name, if one of the curves goes down to it."""
     if any(np.any(curve <= floor) for curve in curves):
-        axis.axhline(floor, color=grey(0.3), linewidth=0.8, linestyle=(0, (1, 1)), label=floor_name(floor))
+        axis.axhline(floor, color=grey(0.3), linewidth=0.8, linestyle=(0, (1, 1)), label=floor_name(floor, unit))
         axis.set_ylim(bottom=0.6 * floor)
 
 
@@ -469,6 +473,57 @@ def disagreement_figure(run):
             mark_time(axis, run, span.at_s + settled_s, "settled at")
     name_agents(figure, [axis], run)
     return figure
+
+
+PREDICTED = {"equal": "predicted", "within": "predicted", "at_most": "predicted: at most", "at_least": "predicted: at least"}
+UNIT_AT_END = re.compile(r"_(m2?|s|deg|rad|(m|rad)_per_s)$")
+
+
+def without_unit(figure):
+    """The name of a figure in words: "least gap" of least_gap_m."""
+    return UNIT_AT_END.sub("", figure).replace("_", " ")
+
+
+def curve_floor(told, runs, values):
+    """The floor of a curve on a log axis; -inf if its axis is linear, because it does not decay or is not above the floor."""
+    floor = max(map(floor_of, runs)) if told["unit"] == "m" else FLOOR
+    return floor if told["decays"] and np.any(values > floor) else -np.inf
+
+
+def curve_label(told):
+    unit = told["unit"].replace("^2", "²")
+    return f"{told['name']} ({unit})" if unit else told["name"]
+
+
+def curve(run):
+    """The law's own curve: what tells, tick by tick, how it fares."""
+    told, t, values = curve_of_last_law(run)
+    figure, axis = plt.subplots(figsize=(style.size().width, style.size().single))
+    seen = (t >= run.begin_s - 1e-9) & (t <= run.end_s + 1e-9)
+    unit = told["unit"].replace("^2", "²")
+    floor = curve_floor(told, [run], values[seen])
+    axis.plot(t[seen], above(floor, values)[seen], color=style.fills(1)[0], zorder=2.5, label=told["name"])
+    if floor > 0:
+        style.log_axis(axis)
+        name_floor(axis, floor, values[seen], unit=unit)
+    for begin, end, value, bound in predictions_in_window(run, told):
+        axis.hlines(value, begin, end, color=grey(0.3), linestyle=DASHED, linewidth=1,
+                    label=f"{without_unit(told['figure'])}, {PREDICTED[bound]} {value:.4g} {unit}".rstrip())
+    axis.set_ylabel(curve_label(told))
+    time_axis(axis, run.begin_s, run.end_s)
+    mark_changes([axis], run)
+    titled(figure, run, f"{told['name']} ({told['meaning']})")
+    name_agents(figure, [axis], run, most=np.inf)
+    return figure
+
+
+def predictions_in_window(run, told):
+    """(begin, end, value, bound) of what theory predicts of the curve, phase by phase."""
+    ends = [*(span.at_s for span in run.spans[1:]), run.t[-1]]
+    for span, end in zip(run.spans, ends):
+        begin, end = max(span.at_s, run.begin_s), min(end, run.end_s)
+        if span.drawing["curve"] == told and begin < end and (predicted := predicted_of_curve(run, span)):
+            yield begin, end, *predicted
 
 
 def error(run):
@@ -658,9 +713,22 @@ def only_if(condition, reason):
     return lambda run: None if condition(run) else reason
 
 
+def usual(run):
+    """Names of the pictures that a run gets, what tells most of its law first: of those that apply, all but paths along one
+    line where the law has a curve of its own and nothing but agents is to be seen from above."""
+    names = [name for name, picture in PICTURES.items() if not picture.applies(run)]
+    telling = run.drawing["telling"]
+    if telling != "paths" and "curve" in names and is_on_a_line(run) and not run.obstacles:
+        names.remove("paths")
+    return sorted(names, key=lambda name: name != telling)
+
+
 ALWAYS = only_if(lambda run: True, "")
 PICTURES = {
     "paths": Picture(paths, "position_plot", ALWAYS),
+    "curve": Picture(curve, "position_plot", only_if(
+        lambda run: curve_of_last_law(run) is not None,
+        "it needs a law with a curve of its own, and the run's law_curve.csv")),
     "position": Picture(position, "position_plot", ALWAYS),
     "velocity": Picture(velocity, "velocity_plot", ALWAYS),
     "disagreement": Picture(disagreement_figure, "position_plot", only_if(

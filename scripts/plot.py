@@ -19,7 +19,7 @@ import matplotlib.pyplot as plt
 import plain
 import style_sheet
 from overlay import OVERLAYS, draw_overlay
-from pictures import PICTURES
+from pictures import PICTURES, usual
 from run_folder import RunError, read_run
 from wording import Wording, did_you_mean
 
@@ -35,7 +35,7 @@ def choose(run, only):
     for name in only or ():
         if PICTURES[name].applies(run):
             wrong(f"--only {name}: {PICTURES[name].applies(run)}")
-    names = only or [name for name, picture in PICTURES.items() if not picture.applies(run)]
+    names = only or usual(run)
     return [name for name in names if run.output(PICTURES[name].switch)]
 
 

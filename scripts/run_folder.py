@@ -11,7 +11,8 @@ from functools import cached_property
 import numpy as np
 from regular_file import open_regular
 
-DRAWING = {"leader": "leader", "switches": False, "pictures": [], "telling": "paths", "hull": "", "cells": ""}
+DRAWING = {"leader": "leader", "switches": False, "pictures": [], "telling": "paths", "hull": "", "cells": "",
+           "curve": None}
 ARRAYS = {"position": 3, "velocity": 3, "acceleration_command": 3}  # name -> numbers per agent and row
 UNPACKED_FREE, UNPACKED_TIMES = 256 << 20, 300  # bytes that a file may unpack to, and then so many times its own
 NUMBERS_AT_ONCE = 1 << 14  # in one array of a computation over rows, so that it stays in the cache
@@ -59,6 +60,7 @@ class Run:
     config: dict
     summary: dict
     incidents: list = field(default_factory=list)  # in order, without events; empty also if there is no events.csv
+    law_curve: tuple = ()  # times and values of the curve of the law; empty: it has none
     only: tuple = None  # indices of the agents to be drawn, in order; None: all
     from_s: float = -np.inf  # the window of time to be drawn
     to_s: float = np.inf
@@ -397,6 +399,23 @@ def read_incidents(path, ids):
         raise RunError(f"{path}: damaged, or not a table of events") from None
 
 
+def read_curve(path):
+    """Times and values of law_curve.csv; nothing if there is no such file."""
+    try:
+        with open_regular(path, encoding="utf-8", newline="") as file:
+            rows = csv.DictReader(file)
+            found = np.array([(float(row["t_s"]), float(row["value"])) for row in rows]).reshape(-1, 2).T
+    except FileNotFoundError:
+        return ()
+    except OSError as error:
+        raise RunError(f"{path}: {error.strerror}") from None
+    except (ValueError, TypeError, KeyError, csv.Error):
+        raise RunError(f"{path}: damaged, or not a table of times and values") from None
+    if not np.isfinite(found).all() or (np.diff(found[0]) <= 0).any():
+        raise RunError(f"{path}: expected times that increase and numbers, got others")
+    return tuple(found) if found.size else ()
+
+
 def read_run(folder):
     if not folder.is_dir():
         raise RunError(f"{folder}: no such folder", code=2)
@@ -404,7 +423,8 @@ def read_run(folder):
     config = read_text(folder / "config.toml", tomllib.loads)
     summary = folder / "summary.json"
     return Run(**states, config=config, summary=read_text(summary, json.loads) if summary.exists() else {},
-               incidents=read_incidents(folder / "events.csv", states["id"]))
+               incidents=read_incidents(folder / "events.csv", states["id"]),
+               law_curve=read_curve(folder / "law_curve.csv"))
 
 
 def disagreement(run):
@@ -419,6 +439,37 @@ def disagreement(run):
             reference = of[:, run.honest].mean(axis=1, keepdims=True) if leader is None else of[:, [leader]]
             distance[span.rows] = np.linalg.norm(of - reference, axis=2)
     return distance
+
+
+def curve_of_last_law(run):
+    """What the curve of the law is called, as the row of the law says, and its (times, values), of the phases that have
+    it: those of the last phase with a curve. None: there is none."""
+    told = [span.drawing["curve"] for span in run.spans]
+    of_last = next((curve for curve in reversed(told) if curve), None)
+    if not of_last or not run.law_curve:
+        return None
+    t, values = run.law_curve
+    ends = [*(span.at_s for span in run.spans[1:]), np.inf]
+    is_its = np.zeros(t.size, dtype=bool)
+    for span, end, curve in zip(run.spans, ends, told):
+        if curve == of_last:
+            is_its |= (t >= span.at_s) & (t < end)
+    return of_last, t, np.where(is_its, values, np.nan)
+
+
+def predicted_of_curve(run, span):
+    """(number, bound) that theory predicts of the values of the curve in a phase, or None."""
+    law = span.summary.get("laws", {}).get(span.law.get("name"), {})
+    figure = (span.drawing["curve"] or {}).get("figure")
+    value = law.get("predicted", {}).get(figure)
+    return (value, law.get("bounds", {}).get(figure)) if isinstance(value, (int, float)) else None
+
+
+def is_on_a_line(run):
+    """Whether all agents keep to one straight line, seen from above."""
+    p = run.position[:, :, :2].reshape(-1, 2)
+    along, across = np.linalg.svd((p - p.mean(axis=0)).T @ (p - p.mean(axis=0)), compute_uv=False)
+    return across <= 1e-4 * along  # of squares: one part in 100
 
 
 def separation(run):

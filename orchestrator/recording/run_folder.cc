@@ -37,9 +37,9 @@ fs::path MakeNew(const fs::path& parent) {
 }
 
 /// Files that a run writes, beside its recording, its pictures and its logs.
-constexpr std::string_view kFiles[] = {"config.toml", "summary.json", "events.csv", "states.npz"};
+constexpr std::string_view kFiles[] = {"config.toml", "summary.json", "events.csv", "law_curve.csv", "states.npz"};
 /// Pictures of a run (scripts/pictures.py), and the formats in which `plot` draws them.
-constexpr std::string_view kPictures[] = {"paths", "position", "velocity", "acceleration", "disagreement",
+constexpr std::string_view kPictures[] = {"paths", "position", "velocity", "acceleration", "disagreement", "curve",
                                           "error", "tracking", "graph",    "safety",       "incidents"};
 constexpr std::string_view kPictureFormats[] = {".png", ".pdf", ".svg", ".pgf", ".csv"};
 

@@ -115,13 +115,24 @@ void AddLinks(const RunMeter& meter, Figures& figures) {
   figures.Add("links.edges", [&meter] { return EdgesJson(meter.Traffic()); });
 }
 
-Json ToJson(const Drawing& drawing) {
+Json ToJson(const LawCurve& curve) {
+  return {{"name", curve.name},
+          {"unit", curve.unit},
+          {"meaning", curve.meaning},
+          {"decays", curve.decays},
+          {"figure", curve.figure}};
+}
+
+/// What the pictures of a law need to know of it.
+Json DrawingJson(const LawEntry& law) {
+  const Drawing& drawing = law.drawing;
   return {{"leader", drawing.leader},
           {"switches", drawing.switches},
           {"pictures", std::vector<std::string_view>(drawing.pictures.begin(), drawing.pictures.end())},
           {"telling", drawing.telling},
           {"hull", drawing.hull},
-          {"cells", drawing.cells}};
+          {"cells", drawing.cells},
+          {"curve", law.curve ? ToJson(*law.curve) : Json()}};
 }
 
 /// What each phase has come to. `phases`: as long as it is.
@@ -130,7 +141,7 @@ Json PhasesJson(const Experiment& experiment, const std::vector<PhaseFigures>& p
   for (const PhaseFigures& phase : phases) {
     Json json = {{"at_s", experiment.time_s(phase.meter->from())},
                  {"law", phase.experiment().law.name},
-                 {"drawing", ToJson(EntryOf(phase.experiment().law).drawing)}};
+                 {"drawing", DrawingJson(EntryOf(phase.experiment().law))}};
     AddTo(json, phase.figures);
     list.push_back(std::move(json));
   }
@@ -187,7 +198,7 @@ RunFigures::RunFigures(const FlownRun& run) : run_(run) {
   all_.Add("samples.lost", Whole(run.engine.lost));
   all_.Add("wire.matches_graph", run.engine.wire_matches_graph);
   all_.Add("graph", [&run = run_] { return GraphJson(run.experiment); });
-  all_.Add("drawing", [&last = phases_.back()] { return ToJson(EntryOf(last.experiment().law).drawing); });
+  all_.Add("drawing", [&last = phases_.back()] { return DrawingJson(EntryOf(last.experiment().law)); });
   all_.Add(phases_.back().figures);
   if (phases_.size() > 1) all_.Add("phases", [this] { return PhasesJson(run_.experiment, phases_); });
   all_.Add("control.effort", measured.effort_m2_per_s3);

@@ -26,7 +26,7 @@ struct PlotOption {
 };
 
 constexpr PlotOption kOptions[] = {
-    {"--only", "LIST:{paths,position,velocity,disagreement,acceleration,tracking,error,graph,safety,incidents}",
+    {"--only", "LIST:{paths,curve,position,velocity,disagreement,acceleration,tracking,error,graph,safety,incidents}",
      "several with commas between (all that apply)"},
     {"--format", "LIST:{png,pdf,svg,pgf,csv}",
      "several with commas between (png); pgf: for LaTeX, in its letters; csv: the numbers that are drawn"},

@@ -20,6 +20,7 @@
 #include "orchestrator/live/server/address.h"
 #include "orchestrator/live/shown/ros_view.h"
 #include "orchestrator/live/shown/view_sink.h"
+#include "orchestrator/measuring/law_curve.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/recording/attached_experiment.h"
 #include "orchestrator/recording/background_sink.h"
@@ -176,7 +177,8 @@ int Up(UpArgs& args) {
       std::in_place, summary_file,
       SummaryIfKilled(experiment, args.engine.name, LastWords::kExitCode, LastWords::kReason));
   Progress progress(experiment, meter, console);
-  std::vector<RowSink*> sinks{&writes, &meter, &progress, &requests};
+  LawCurveRecord curve(experiment, meter);
+  std::vector<RowSink*> sinks{&writes, &meter, &curve, &progress, &requests};
   viewers.AddTo(sinks);
   std::optional<RosView> ros_view;
   std::optional<ViewSink> ros_sink;
@@ -233,6 +235,7 @@ int Up(UpArgs& args) {
   const auto draw = [&] {
     flight.End();  // after the first summary: the DDS library may not let us end in order
     folder.Write("events.csv", IncidentsCsv(experiment, incidents));
+    if (curve.has_values()) folder.Write("law_curve.csv", curve.Csv());
     return MakeOutput(experiment, folder, writer.rows() > 1, stop);
   };
   const int code = EndRun(folder, ExitCode(result), {.summary = summary, .draw = draw, .print = print});

@@ -181,6 +181,94 @@ class Pictures(PlotTest):
         self.assertNotIn(b"tEXt", first["paths.png"])
 
 
+class LawCurves(PlotTest):
+    """The picture `curve`: the law's own."""
+
+    GAP = {"name": "smallest gap", "unit": "m", "meaning": "between neighbours", "decays": False, "figure": "least_gap_m"}
+    MISS = {"name": "miss", "unit": "m^2", "meaning": "of the farthest", "decays": True, "figure": ""}
+
+    def write_run(self, curve=GAP, values=None, config=CONSENSUS, states=None, **told):
+        values = np.linspace(5, 3, 51) if values is None else values
+        (self.folder / "law_curve.csv").write_text("t_s,value\n" + "".join(f"{k / 10},{v}\n" for k, v in enumerate(values)))
+        self.write(config, {"drawing": AGREEMENT | {"curve": curve}} | told, states)
+        figure_style.use("screen")
+        return run_folder.read_run(self.folder)
+
+    def draw(self, *run, **what):
+        axis, = pictures.PICTURES["curve"].draw(*run or [self.write_run(**what)]).axes
+        return axis, {line.get_label(): line for line in [*axis.get_lines(), *axis.collections]}
+
+    def test_it_is_drawn_with_its_name_its_unit_and_what_theory_predicts_of_it(self):
+        laws = {"consensus": {"predicted": {"least_gap_m": 2.5}, "bounds": {"least_gap_m": "at_least"}}}
+        axis, lines = self.draw(laws=laws)
+        self.assertEqual((axis.get_ylabel(), axis.get_yscale()), ("smallest gap (m)", "linear"))
+        np.testing.assert_allclose(lines["smallest gap"].get_data(), [arrays()["t"], np.linspace(5, 3, 51)])
+        self.assertEqual(lines["least gap, predicted: at least 2.5 m"].get_segments()[0].tolist(), [[0, 2.5], [5, 2.5]])
+        laws["consensus"]["predicted"]["least_gap_m"] = None
+        self.assertEqual(list(self.draw(laws=laws)[1]), ["smallest gap"])
+
+    def test_a_curve_that_decays_has_a_log_axis_and_ends_at_the_floor(self):
+        axis, lines = self.draw(curve=self.MISS, values=10.0 ** -np.linspace(0, 10, 51))
+        self.assertEqual((axis.get_ylabel(), axis.get_yscale()), ("miss (m²)", "log"))
+        self.assertEqual(int(np.isnan(lines["miss"].get_ydata()).sum()), 21)
+        self.assertIn("floor: 1e-6 m²", lines)
+
+    def test_of_a_schedule_the_curve_of_the_last_phase_is_drawn_where_it_is_flown(self):
+        told = [{"at_s": at_s, "law": law, "drawing": AGREEMENT | {"curve": curve}, "laws": {law: laws}}
+                for at_s, law, curve, laws in ((0, "chase", None, {}), (2, "chase", self.MISS, {}), (4, "flee", self.GAP, {
+                    "predicted": {"least_gap_m": 4}, "bounds": {"least_gap_m": "equal"}}))]
+        axis, lines = self.draw(config=Changes.PHASES, phases=told)
+        self.assertEqual(np.isnan(lines["smallest gap"].get_ydata()).tolist(), [True] * 40 + [False] * 11)
+        self.assertEqual(lines["least gap, predicted 4 m"].get_segments()[0].tolist(), [[4, 4], [5, 4]])
+        self.assertEqual([text.get_text() for text in axis.texts], ["chase", "leader = 3", "flee"])
+
+    def test_a_window_of_time_and_a_table(self):
+        run = self.write_run(laws={"consensus": {"predicted": {"least_gap_m": 2.5}, "bounds": {"least_gap_m": "at_least"}}})
+        run.from_s, run.to_s = 1.0, 2.0
+        self.assertEqual(self.draw(run)[1]["smallest gap"].get_xdata().size, 11)
+        self.assertEqual(self.run_plot("--only", "curve", "--format", "csv"), (0, ""))
+        header, *rows = csv.reader((self.folder / "curve.csv").read_text().splitlines())
+        least = "least gap, predicted: at least 2.5 m"
+        self.assertEqual(header, ["time (s)", "smallest gap: smallest gap (m)", f"{least}: time (s)", f"{least}: smallest gap (m)"])
+        self.assertEqual(rows[:3], [["0.0", "5.0", "0.0", "2.5"], ["0.1", "4.96", "5.0", "2.5"], ["0.2", "4.92", "", ""]])
+
+    def test_what_tells_most_of_the_law_comes_first(self):
+        run = self.write_run()
+        self.assertEqual(pictures.usual(run), ["paths", "curve", "position", "velocity", "disagreement", "acceleration"])
+        run.summary["drawing"]["telling"] = "velocity"
+        run.__dict__.pop("spans", None)
+        self.assertEqual(pictures.usual(run)[0], "velocity")
+
+    def test_paths_along_one_line_give_way_to_the_curve(self):
+        states = arrays()
+        states["position"][:, :, 1] = 0
+        run = self.write_run(states=states)
+        self.assertIn("paths", pictures.usual(run), "the law says that they tell most")
+        run.summary["drawing"]["telling"] = "velocity"
+        self.assertNotIn("paths", pictures.usual(run))
+        self.assertEqual(plot.choose(run, ["paths"]), ["paths"], "if it is asked for")
+        run.law_curve = ()
+        self.assertIn("paths", pictures.usual(run), "there is nothing else")
+        run = self.write_run(states=states, config=CONSENSUS + '[[physics.obstacles]]\nshape = "sphere"\nposition_m = [9, 9, 1]\n'
+                             'size_m = [2, 2, 2]\n')
+        run.summary["drawing"]["telling"] = "velocity"
+        self.assertIn("paths", pictures.usual(run))
+
+    def test_a_run_without_a_curve_and_a_damaged_one(self):
+        self.write()
+        none = "--only curve: it needs a law with a curve of its own, and the run's law_curve.csv"
+        self.check(2, none, "--only", "curve")
+        self.write_run(curve=None)
+        self.check(2, none, "--only", "curve")
+        path = self.folder / "law_curve.csv"
+        for text, why in (("t_s,value\n0,x\n", "damaged, or not a table of times and values"),
+                          ("a,b\n1,2\n", "damaged, or not a table of times and values"),
+                          ("t_s,value\n1,2\n1,3\n", "expected times that increase and numbers, got others"),
+                          ("t_s,value\n1,nan\n", "expected times that increase and numbers, got others")):
+            path.write_text(text)
+            self.check(1, f"{path}: {why}")
+
+
 class Switches(PlotTest):
     def test_position_plot_off_leaves_velocity_and_acceleration(self):
         self.write(CONSENSUS + "[output]\nposition_plot = false\n")
@@ -1093,6 +1181,24 @@ class Overlays(PlotTest):
             self.assertEqual(len(set(map(str, looks))), count)
             self.assertTrue(all(one[1] != other[1] for one, other in zip(looks, looks[1:])), count)
 
+    def test_curves_of_laws_are_drawn_if_they_are_of_one_kind(self):
+        self.write_two()
+        told = [LawCurves.MISS, LawCurves.MISS | {"name": "lag"}]
+
+        def runs(*curves):
+            for folder, curve in zip(self.folders, curves):
+                (folder / "law_curve.csv").write_text("t_s,value\n0,1\n1,0.1\n2,1e-9\n")
+                (folder / "summary.json").write_text(json.dumps({"drawing": AGREEMENT | {"curve": curve}}))
+            return [run_folder.read_run(folder) for folder in self.folders]
+
+        figure = dict(overlay.draw_overlay(self.folders, runs(told[0], told[0]), None))["curve"]
+        lines = {line.get_label(): line.get_ydata() for line in figure.axes[0].get_lines()}
+        self.assertEqual(list(lines), ["slow", "fast", "floor: 1e-6 m²"])
+        np.testing.assert_array_equal(lines["fast"], [1, 0.1, np.nan])
+        self.assertNotIn("curve", dict(overlay.draw_overlay(self.folders, runs(*told), None)))
+        self.assertEqual(self.overlay("--out", str(self.out), "--only", "curve"), (
+            2, f"error: --only curve: {self.folders[0]}: expected laws with the same curve, got miss (m²), lag (m²)\n"))
+
     def test_options_are_about_all_runs(self):
         self.write_two(states=(arrays(3), arrays(4)))
         options = ("--out", str(self.out), "--only", "position", "--format", "csv", "--agents", "1-2", "--from-s", "4.9", "--label",
@@ -1131,7 +1237,7 @@ class Overlays(PlotTest):
         out = ("--out", str(self.out))
         for options, message in (
                 ((), "--overlay: it needs --out FOLDER, for the pictures belong to no single run"),
-                ((*out, "--only", "graph"), "--only graph: expected one of paths, position, velocity, acceleration, "
+                ((*out, "--only", "graph"), "--only graph: expected one of paths, curve, position, velocity, acceleration, "
                                             "disagreement with --overlay"),
                 ((*out, "--only", "disagreement"),
                  f"--only disagreement: {self.folders[1]}: it needs several agents and a law of agreement")):
@@ -1368,7 +1474,7 @@ class Errors(PlotTest):
         self.check(1, f"{self.folder}/config.toml: No such file or directory")
 
     def test_a_pipe_in_the_place_of_a_file_is_refused(self):
-        for name in ("states.npz", "config.toml", "summary.json", "events.csv"):
+        for name in ("states.npz", "config.toml", "summary.json", "events.csv", "law_curve.csv"):
             self.write()
             (self.folder / name).unlink(missing_ok=True)
             os.mkfifo(self.folder / name)
@@ -1385,12 +1491,12 @@ class Errors(PlotTest):
         self.write()
         code, errors = self.run_plot("--only", "speed")
         self.assertEqual(code, 2)
-        self.assertEqual(errors, "error: --only: expected one or more of paths, position, velocity, disagreement, acceleration, "
+        self.assertEqual(errors, "error: --only: expected one or more of paths, curve, position, velocity, disagreement, acceleration, "
                                  "tracking, error, graph, safety, incidents, with commas between, got 'speed'\n")
         self.check(2, "--only error: it needs a law that flies to waypoints, from start to end", "--only", "error")
         self.check(2, "--only tracking: it needs a law of pursuit, from start to end, and the graph in summary.json", "--only", "tracking")
         self.check(2, "unrecognized arguments: --fast", "--fast")
-        self.check(2, "--only: expected one or more of paths, position, velocity, disagreement, acceleration, tracking, error, "
+        self.check(2, "--only: expected one or more of paths, curve, position, velocity, disagreement, acceleration, tracking, error, "
                       "graph, safety, incidents, with commas between, got 'pathes' (did you mean \"paths\"?)", "--only", "pathes")
         self.check(2, "--format: expected one or more of png, pdf, svg, pgf, csv, with commas between, got 'bmp'",
                    "--format", "pdf,bmp")

@@ -147,7 +147,7 @@ LawEntry CyclicPursuitLaw() {
       .curve =
           LawCurve{
               .name = "radius", .unit = "m", .meaning = "rms distance from the centre in x and y", .decays = false},
-      .drawing = {.pictures = kDisagreementPicture},
+      .drawing = {},
       .read = ReadCyclicPursuit,
       .make = MakeCyclicPursuit,
       .wanted = WantsVelocity,

@@ -1,4 +1,5 @@
 // The curve of each law that has one: a value in each tick, which comes to what the law's figures say of the run.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 
 #include "agent/laws/laws.h"
 #include "orchestrator/engines/inprocess.h"
+#include "orchestrator/measuring/law_curve.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "tests/support/param_name.h"
 
@@ -98,6 +100,37 @@ TEST(LawCurve, OfFlightsToTargetsAreTheDistanceThatIsLeft) {
   const Experiment trajectory = ShippedFor("trajectory", "5.0");
   RunMeter other(trajectory);
   EXPECT_EQ(std::ssize(CurveIn(trajectory, other)), trajectory.ticks() + 1);
+}
+
+TEST(LawCurveRecord, HasAValueOfEveryTickThatHasOne) {
+  const Experiment experiment = ShippedFor("platoon", "0.03");
+  RunMeter meter(experiment);
+  LawCurveRecord record(experiment, meter);
+  CurveOfRun curve(meter);
+  EXPECT_FALSE(record.has_values());
+  ASSERT_EQ(RunInProcess(experiment, {&meter, &record, &curve}, [] { return true; }).failure, "");
+  ASSERT_EQ(curve.values.size(), 4);
+  EXPECT_EQ(record.Csv(), fmt::format("t_s,value\n0,{}\n0.01,{}\n0.02,{}\n0.03,{}\n", *curve.values[0],
+                                      *curve.values[1], *curve.values[2], *curve.values[3]));
+}
+
+TEST(LawCurveRecord, IsThinnedEvenlyInALongRun) {
+  const Experiment experiment = ShippedFor("platoon", "100.0");  // 10001 rows
+  RunMeter meter(experiment);
+  LawCurveRecord record(experiment, meter);
+  ASSERT_EQ(RunInProcess(experiment, {&meter, &record}, [] { return true; }).failure, "");
+  const std::string csv = record.Csv();
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 1 + 2501) << "every fourth, with the last";
+  EXPECT_THAT(csv, testing::HasSubstr("\n0.04,"));
+  EXPECT_THAT(csv, testing::HasSubstr("\n100,"));
+}
+
+TEST(LawCurveRecord, IsEmptyOfALawWithoutACurve) {
+  const Experiment experiment = ShippedFor("leaderless", "0.1");
+  RunMeter meter(experiment);
+  LawCurveRecord record(experiment, meter);
+  ASSERT_EQ(RunInProcess(experiment, {&meter, &record}, [] { return true; }).failure, "");
+  EXPECT_FALSE(record.has_values());
 }
 
 TEST(LawCurve, ArePartOfTheTableOrNot) {

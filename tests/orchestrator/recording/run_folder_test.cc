@@ -29,7 +29,8 @@ class RunFolderTest : public testing::Test {
     Write("config.toml", experiment_.resolved);
     for (const char* name :
          {"summary.json", "summary.json.part", "states.npz", "error.png", "error.png.part", "graph.svg", "safety.pdf",
-          "logs/agents_1-50.log", "logs/agent_3.log", "logs/physics_server.log", "logs/orchestrator.log"})
+          "law_curve.csv", "curve.png", "paths.pgf", "position.csv", "logs/agents_1-50.log", "logs/agent_3.log",
+          "logs/physics_server.log", "logs/orchestrator.log"})
       Write(name);
     WriteRecording("run.mcap");
   }
