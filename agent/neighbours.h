@@ -24,6 +24,8 @@ struct EdgeNow {
   };
   State state = State::kNothingYet;
   double age_s = -1;  ///< simulated time since the newest sample that has arrived was sent; -1: none has
+  /// Axes along which the law does not use the sample (LawEntry::left_out): bit k for axis k. LeftOutMeter sets it.
+  std::uint8_t left_out = 0;
 };
 
 /// Decides what one agent hears of its neighbours: it applies start and stop times, the schedule of graphs, the range,

@@ -75,16 +75,29 @@ std::vector<const LawEntry*> LawsIn(const Experiment& experiment) {
   return laws;
 }
 
-bool FliesCodeOfUsers(const Experiment& experiment) {
-  const auto is_of_user = [](std::string_view name) {
-    return std::ranges::any_of(Laws(), [&](const LawEntry& law) { return law.is_of_user && law.name == name; });
+namespace {
+
+/// Whether agents fly a law that `is` true of, at the start or in a later phase.
+bool EverFlies(const Experiment& experiment, bool (*is)(const LawEntry& law)) {
+  const auto is_name = [&](std::string_view name) {
+    return std::ranges::any_of(Laws(), [&](const LawEntry& law) { return law.name == name && is(law); });
   };
   const auto begins_one = [&](const Event& event) {
     const auto* name = event.law && event.law->contains("name") ? &event.law->at("name").data : nullptr;
-    return name != nullptr && std::holds_alternative<std::string>(*name) && is_of_user(std::get<std::string>(*name));
+    return name != nullptr && std::holds_alternative<std::string>(*name) && is_name(std::get<std::string>(*name));
   };
-  return std::ranges::any_of(LawsIn(experiment), &LawEntry::is_of_user) ||
+  return std::ranges::any_of(LawsIn(experiment), [&](const LawEntry* law) { return is(*law); }) ||
          std::ranges::any_of(experiment.events, begins_one);
+}
+
+}  // namespace
+
+bool FliesCodeOfUsers(const Experiment& experiment) {
+  return EverFlies(experiment, [](const LawEntry& law) { return law.is_of_user; });
+}
+
+bool EverLeavesOut(const Experiment& experiment) {
+  return EverFlies(experiment, [](const LawEntry& law) { return law.left_out != nullptr; });
 }
 
 std::vector<std::string_view> DetailsOf(const LawEntry& law) {
@@ -135,6 +148,16 @@ std::span<const Eigen::Vector3d> WaypointsOf(const AgentConfig& agent) {
   const LawEntry& entry = EntryOf(agent.law);
   const bool flies = agent.law.leader == 0 || agent.law.leader == agent.id;
   return entry.waypoints_W != nullptr && flies ? entry.waypoints_W(agent) : std::span<const Eigen::Vector3d>();
+}
+
+std::span<const int> HullOf(const LawConfig& law) {
+  const auto of = EntryOf(law).drawing.hull.of;
+  return of != nullptr ? of(law) : std::span<const int>();
+}
+
+std::span<const Eigen::Vector2d> RegionOf(const LawConfig& law) {
+  const auto of = EntryOf(law).drawing.cells.of;
+  return of != nullptr ? of(law) : std::span<const Eigen::Vector2d>();
 }
 
 std::optional<LinearForm> LinearFormOf(const LawConfig& law) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cassert>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -42,14 +43,22 @@ inline constexpr double kCaughtUp_m = 0.05;
 /// The picture (Drawing::pictures) that shows how fast agents agree.
 inline constexpr std::string_view kDisagreementPicture[] = {"disagreement"};
 
-/// Plot settings of a law: summary.json passes them to scripts/plot.py.
+/// A key of a law whose value is drawn. Scripts read the key in config.toml; this program asks `of`.
+template <class Item>
+struct DrawnKey {
+  std::string_view key = {};                                    ///< empty: the law has no such key
+  std::span<const Item> (*of)(const LawConfig& law) = nullptr;  ///< the value, valid as long as `law`; null: no key
+};
+
+/// How runs of a law are drawn: summary.json passes it to scripts/plot.py, /ui/experiment to the page.
 struct Drawing {
   std::string_view leader = "leader";          ///< word for the agent law.leader
   bool switches = false;                       ///< commands jump between limits: show their moving mean, too
   std::span<const std::string_view> pictures;  ///< pictures besides positions and velocities
   std::string_view telling = "paths";          ///< the picture that shows most of the law: docs/laws.md has it
-  std::string_view hull = {};                  ///< the key that lists the agents whose hull is drawn; empty: none
-  std::string_view cells = {};                 ///< the key of a region that agents divide by nearness; empty: none
+  DrawnKey<int> hull = {};                     ///< the agents whose convex hull is drawn, in increasing id
+  DrawnKey<Eigen::Vector2d> cells = {};        ///< corners, in x and y of W (m), counterclockwise, of a convex region
+                                               ///< that agents divide by nearness
 };
 
 /// A letter of a typeset equation that stands for a key of the law.
@@ -98,6 +107,10 @@ struct LawEntry {
   std::map<std::string, Value> (*go_to)(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s) = nullptr;
   /// The targets of an agent, in W (m); only the leader has some, if there is a leader. Null: no agent has targets.
   std::span<const Eigen::Vector3d> (*waypoints_W)(const AgentConfig& agent) = nullptr;
+  /// What the law leaves out: for each entry of `heard`, the axes along which it is not used, bit k for axis k. `self`
+  /// and `heard` are as for Law::Want_W(). Null: the law uses all that it hears.
+  std::vector<std::uint8_t> (*left_out)(const LawConfig& law, const Motion& self,
+                                        std::span<const Heard> heard) = nullptr;
   /// Null: the law is not linear.
   LinearForm (*linear)(const LawConfig& law) = nullptr;
   /// Null: the law is not a pursuit on a tree.
@@ -115,6 +128,8 @@ std::span<const LawEntry> Laws();
 std::vector<const LawEntry*> LawsIn(const Experiment& experiment);
 /// Whether agents fly a law that runs code of a user, at the start or later.
 bool FliesCodeOfUsers(const Experiment& experiment);
+/// Whether agents fly a law that leaves out some of what it hears (LawEntry::left_out), at the start or later.
+bool EverLeavesOut(const Experiment& experiment);
 /// LawEntry::details, paragraph by paragraph.
 std::vector<std::string_view> DetailsOf(const LawEntry& law);
 /// LawEntry::tex, formula by formula.
@@ -133,6 +148,10 @@ bool IsCommandedByVelocity(const AgentConfig& agent);
 std::span<const Eigen::Vector3d> PlacesOf(const LawConfig& law);
 /// The targets to which this agent flies, in W (m); empty: it flies to none. Valid as long as `agent`.
 std::span<const Eigen::Vector3d> WaypointsOf(const AgentConfig& agent);
+/// The agents among which this law keeps the others: Drawing::hull; empty: none. Valid as long as `law`.
+std::span<const int> HullOf(const LawConfig& law);
+/// The region that agents with this law divide: Drawing::cells; empty: none. Valid as long as `law`.
+std::span<const Eigen::Vector2d> RegionOf(const LawConfig& law);
 std::optional<LinearForm> LinearFormOf(const LawConfig& law);
 std::optional<PursuitForm> PursuitFormOf(const LawConfig& law);
 

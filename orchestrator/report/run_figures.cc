@@ -130,8 +130,8 @@ Json DrawingJson(const LawEntry& law) {
           {"switches", drawing.switches},
           {"pictures", std::vector<std::string_view>(drawing.pictures.begin(), drawing.pictures.end())},
           {"telling", drawing.telling},
-          {"hull", drawing.hull},
-          {"cells", drawing.cells},
+          {"hull", drawing.hull.key},
+          {"cells", drawing.cells.key},
           {"curve", law.curve ? ToJson(*law.curve) : Json()}};
 }
 

@@ -113,7 +113,7 @@ LawEntry AffineFormationLaw() {
       .parameters = kAffineFormationParameters,
       .figures = kAffineFormationFigures,
       .curve = LawCurve{.name = "place error", .unit = "m", .meaning = "of the farthest follower"},
-      .drawing = {.pictures = {}, .hull = kLeadersKey.name},
+      .drawing = {.pictures = {}, .hull = kHullOfLeaders<AffineFormationParams>},
       .read = ReadAffineFormation,
       .make = MakeWithPeriod<AffineFormation>,
       .wanted = WantsVelocity,

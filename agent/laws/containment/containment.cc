@@ -145,7 +145,7 @@ LawEntry ContainmentLaw() {
       .parameters = kContainmentParameters,
       .figures = kContainmentFigures,
       .curve = LawCurve{.name = "lag", .unit = "m", .meaning = "of the farthest follower behind its place"},
-      .drawing = {.pictures = {}, .hull = kLeadersKey.name},
+      .drawing = {.pictures = {}, .hull = kHullOfLeaders<ContainmentParams>},
       .read = ReadContainment,
       .make = MakeOf<Containment>,
       .wanted = WantsVelocity,

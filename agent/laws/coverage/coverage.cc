@@ -92,6 +92,8 @@ class CoverageMeter final : public LawMeter {
   std::optional<double> start_m2_, now_m2_, increase_m2_;
 };
 
+std::span<const Eigen::Vector2d> CoverageRegion(const LawConfig& law) { return ParamsOf<CoverageParams>(law).region; }
+
 }  // namespace
 
 LawEntry CoverageLaw() {
@@ -120,7 +122,7 @@ LawEntry CoverageLaw() {
                         .meaning = "mean square distance of the region to the nearest agent",
                         .decays = false,
                         .figure = "cost_end_m2"},
-      .drawing = {.pictures = {}, .cells = "region_m"},
+      .drawing = {.pictures = {}, .cells = {"region_m", CoverageRegion}},
       .read = ReadCoverage,
       .make = MakeOf<Coverage>,
       .wanted = WantsVelocity,

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "agent/laws/laws.h"
 #include "experiment/experiment.h"
 
 namespace mascot {
@@ -23,6 +24,11 @@ struct LedTeam {
 
   std::vector<int> leaders, followers;
 };
+
+/// Drawing::hull for a law whose parameters have a `team`.
+template <class Params>
+inline constexpr DrawnKey<int> kHullOfLeaders = {
+    kLeadersKey.name, [](const LawConfig& law) -> std::span<const int> { return ParamsOf<Params>(law).team.leaders; }};
 
 /// Reads law.leaders. At least one agent is left to follow, or a mistake is noted in `section`.
 std::vector<int> ReadLeaders(const Experiment& experiment, Section& section);

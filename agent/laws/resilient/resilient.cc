@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -44,6 +45,29 @@ struct ResilientParams final : LawParams {
   double gain = 0;  ///< 1/s
 };
 
+/// A neighbour along an axis: how far from the agent it says that it is, and its index in what the agent hears.
+struct Way {
+  double away_m = 0;
+  double weight = 0;
+  std::size_t index = 0;
+};
+
+void PutWays(std::vector<Way>& ways, Eigen::Index axis, const Motion& self, std::span<const Heard> heard) {
+  ways.clear();
+  for (const Heard& j : heard) ways.push_back({j.motion.p_WB[axis] - self.p_WB[axis], j.weight, ways.size()});
+}
+
+/// W-MSR: sorts `ways`, and returns them without the `f` farthest on either side, or all of a side that has fewer.
+std::span<const Way> Rest(std::vector<Way>& ways, std::size_t f) {
+  std::ranges::stable_sort(ways, {}, &Way::away_m);
+  const auto below =
+      static_cast<std::size_t>(std::ranges::count_if(ways, [](const Way& way) { return way.away_m < 0; }));
+  const auto above =
+      static_cast<std::size_t>(std::ranges::count_if(ways, [](const Way& way) { return way.away_m > 0; }));
+  const std::size_t first = std::min(f, below), end = ways.size() - std::min(f, above);
+  return std::span(ways).subspan(first, end - first);
+}
+
 class Resilient final : public Law {
  public:
   explicit Resilient(const AgentConfig& agent) { Adopt(agent); }
@@ -53,22 +77,29 @@ class Resilient final : public Law {
   Eigen::Vector3d Want_W(double /*t_s*/, const Motion& self, std::span<const Heard> heard) override {
     Eigen::Vector3d v_W = Eigen::Vector3d::Zero();
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      ways_.clear();
-      for (const Heard& j : heard) ways_.emplace_back(j.motion.p_WB[axis] - self.p_WB[axis], j.weight);
-      std::ranges::stable_sort(ways_, {}, &std::pair<double, double>::first);
-      const auto below = std::ranges::count_if(ways_, [](const auto& way) { return way.first < 0; });
-      const auto above = std::ranges::count_if(ways_, [](const auto& way) { return way.first > 0; });
-      const auto f = static_cast<std::ptrdiff_t>(params_->f);
-      for (auto way = ways_.begin() + std::min(f, below); way != ways_.end() - std::min(f, above); ++way)
-        v_W[axis] += params_->gain * way->second * way->first;
+      PutWays(ways_, axis, self, heard);
+      for (const Way& way : Rest(ways_, params_->f)) v_W[axis] += params_->gain * way.weight * way.away_m;
     }
     return v_W;
   }
 
  private:
-  const ResilientParams* params_ = nullptr;      // the experiment owns them
-  std::vector<std::pair<double, double>> ways_;  // to each neighbour along an axis, with its weight
+  const ResilientParams* params_ = nullptr;  // the experiment owns them
+  std::vector<Way> ways_;                    // scratch
 };
+
+std::vector<std::uint8_t> LeftOutByResilient(const LawConfig& law, const Motion& self, std::span<const Heard> heard) {
+  std::vector<std::uint8_t> left_out(heard.size());
+  std::vector<Way> ways;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    PutWays(ways, axis, self, heard);
+    std::vector<bool> is_used(heard.size());
+    for (const Way& way : Rest(ways, ParamsOf<ResilientParams>(law).f)) is_used[way.index] = true;
+    for (std::size_t k = 0; k < heard.size(); ++k)
+      if (!is_used[k]) left_out[k] = static_cast<std::uint8_t>(left_out[k] | 1u << axis);
+  }
+  return left_out;
+}
 
 std::shared_ptr<const LawParams> ReadResilient(const Experiment& /*experiment*/, const LawConfig& /*law*/,
                                                Section& section) {
@@ -141,6 +172,7 @@ R_i \text{: what } i \text{ hears, without the } F \text{ largest above and the 
       .read = ReadResilient,
       .make = MakeOf<Resilient>,
       .wanted = WantsVelocity,
+      .left_out = LeftOutByResilient,
       .predict = PredictResilient,
       .meter = MeterOf<ResilientMeter>};
 }

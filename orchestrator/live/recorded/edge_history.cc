@@ -20,15 +20,15 @@ EdgeHistory::EdgeHistory(const Experiment& experiment, std::int64_t last_tick, S
     : source_(std::move(source)),
       row_(experiment.size()),
       keep_every_(last_tick / PlacesFor(experiment) + 1),
-      meter_(std::make_unique<LinkMeter>(experiment)) {
-  kept_.emplace(0, std::make_unique<LinkMeter>(*meter_));
+      meters_(std::make_unique<Meters>(experiment)) {
+  kept_.emplace(0, std::make_unique<Meters>(*meters_));
 }
 
 /// Goes back to a place that is kept, or ahead to one, if that is nearer to `tick`.
 void EdgeHistory::GoNear(std::int64_t tick) {
   const auto place = std::prev(kept_.upper_bound(tick + 1));
   if (next_ <= tick + 1 && next_ >= place->first) return;
-  meter_ = std::make_unique<LinkMeter>(*place->second);
+  meters_ = std::make_unique<Meters>(*place->second);
   next_ = place->first;
 }
 
@@ -36,18 +36,23 @@ bool EdgeHistory::Follow(std::int64_t tick, int rows, std::vector<EdgeNow>& edge
   GoNear(tick);
   while (next_ <= tick) {
     if (rows <= 0) return false;
-    if (const auto now = source_.adopted_at(next_)) meter_->Adopt(now);
-    if (meter_->plain()) {
-      meter_->Add(next_, row_);
+    if (const auto now = source_.adopted_at(next_)) {
+      meters_->links.Adopt(now);
+      meters_->left_out.Adopt(now);
+    }
+    if (meters_->links.plain() && !meters_->left_out.is_needed()) {
+      meters_->links.Add(next_, row_);
       next_ = std::min(tick + 1, source_.next_change(next_));
       continue;
     }
     --rows;
     source_.read(next_, row_);
-    meter_->Add(next_++, row_);
-    if (next_ % keep_every_ == 0) kept_.try_emplace(next_, std::make_unique<LinkMeter>(*meter_));
+    meters_->links.Add(next_, row_);
+    meters_->left_out.Add(next_++, row_.motions);
+    if (next_ % keep_every_ == 0) kept_.try_emplace(next_, std::make_unique<Meters>(*meters_));
   }
-  meter_->EdgesNow(edges);
+  meters_->links.EdgesNow(edges);
+  meters_->left_out.Mark(edges);
   return true;
 }
 

@@ -6,14 +6,15 @@
 #include <memory>
 #include <vector>
 
+#include "orchestrator/measuring/left_out_meter.h"
 #include "orchestrator/measuring/link_meter.h"
 
 namespace mascot {
 
 /// The state of each edge at any tick of a recording. What a link delivers depends on its past (samples on their way,
 /// samples that it holds, bursts of losses), so the states of a tick follow from all rows up to it. They are computed
-/// from the start, or from one of some ticks whose states are kept. As long as every sample arrives at once, no row is
-/// needed.
+/// from the start, or from one of some ticks whose states are kept. As long as every sample arrives at once, and no law
+/// leaves out what it hears, no row is needed.
 class EdgeHistory {
  public:
   /// Where rows and changes come from.
@@ -32,14 +33,20 @@ class EdgeHistory {
   bool Follow(std::int64_t tick, int rows, std::vector<EdgeNow>& edges);
 
  private:
+  struct Meters {
+    explicit Meters(const Experiment& experiment) : links(experiment), left_out(experiment) {}
+    LinkMeter links;
+    LeftOutMeter left_out;
+  };
+
   void GoNear(std::int64_t tick);
 
   Source source_;
   DecodedRow row_;
-  std::int64_t keep_every_;                                  // ticks
-  std::map<std::int64_t, std::unique_ptr<LinkMeter>> kept_;  // by the next tick to add; one is before tick 0
-  std::unique_ptr<LinkMeter> meter_;
-  std::int64_t next_ = 0;  // tick to add to meter_
+  std::int64_t keep_every_;                               // ticks
+  std::map<std::int64_t, std::unique_ptr<Meters>> kept_;  // by the next tick to add; one is before tick 0
+  std::unique_ptr<Meters> meters_;
+  std::int64_t next_ = 0;  // tick to add to meters_
 };
 
 }  // namespace mascot

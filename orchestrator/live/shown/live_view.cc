@@ -44,6 +44,7 @@ LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, c
       prediction_(prediction),
       responses_(ResponsesOf(experiment, prediction)),
       meter_(meter),
+      left_out_(experiment),
       source_(options.source),
       pages_(options.page),
       steering_(options.steering),
@@ -63,14 +64,20 @@ LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, c
   server_.Start();
 }
 
+void LiveView::Adopt(const LiveExperiment& live, std::span<const Event> /*events*/) { left_out_.Adopt(live.now()); }
+
 void LiveView::Add(const FlownRow& row) {
+  left_out_.Add(row.tick(), row.decoded().motions);
   const std::lock_guard lock(mutex_);
   newest_.tick = row.tick();
   newest_.decoded = row.decoded();
   newest_.disagreement_m = meter_->disagreement_m();
   newest_.curve = meter_->curve();
   curves_.Add(row.tick(), newest_.disagreement_m, newest_.curve, newest_.decoded.motions);
-  if (experiment_.graph.edges() <= kMaxEdgesShown) meter_->EdgesNow(newest_.edges);
+  if (experiment_.graph.edges() <= kMaxEdgesShown) {
+    meter_->EdgesNow(newest_.edges);
+    left_out_.Mark(newest_.edges);
+  }
   row_is_new_ = is_new_ = true;
 }
 

@@ -18,6 +18,7 @@
 #include "orchestrator/live/shown/about.h"
 #include "orchestrator/live/shown/ros_channels.h"
 #include "orchestrator/live/shown/ui_channels.h"
+#include "orchestrator/measuring/left_out_meter.h"
 #include "orchestrator/measuring/run_meter.h"
 #include "orchestrator/team/row_sink.h"
 #include "orchestrator/theory/theory.h"
@@ -53,6 +54,8 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   std::string url() const { return server_.url(); }
   /// What to append to an address so that who opens it may steer; empty: nothing, all may.
   std::string steering_suffix() const { return steering_.token().empty() ? "" : "/#steer=" + steering_.token(); }
+  /// From the run's thread.
+  void Adopt(const LiveExperiment& live, std::span<const Event> events) override;
   /// Takes the next row, from the run's thread.
   void Add(const FlownRow& row) override;
 
@@ -111,6 +114,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   std::optional<Prediction> silenced_;   // once an event by hand has changed the run; of the thread that calls OnEvent
   std::vector<PartResponse> responses_;  // of that thread, too
   const RunMeter* meter_;                // null: of a recording
+  LeftOutMeter left_out_;                // of a run, and of its thread
   const ShownSource source_;
   const Pages pages_;
   const Steering steering_;

@@ -40,13 +40,15 @@ Json OrNull(const std::optional<Value>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
+Json ToJson(const Eigen::Vector2d& v) { return {v.x(), v.y()}; }
+
 Json AgentJson(const AgentConfig& agent) {
   const auto places_W = PlacesOf(agent.law);
   const auto pursuit = PursuitFormOf(agent.law);
   const auto i = static_cast<std::size_t>(agent.id - 1);
   Json waypoints = Json::array();
   for (const Eigen::Vector3d& waypoint : WaypointsOf(agent)) waypoints.push_back(ToJson(waypoint));
-  const bool leads = agent.law.leader == agent.id;
+  const bool is_leader = agent.law.leader == agent.id;
   return {{"id", agent.id},
           {"model", agent.model},
           {"rolls", agent.traits().rolls},
@@ -54,11 +56,62 @@ Json AgentJson(const AgentConfig& agent) {
           {"size_m", ToJson(agent.size_m())},
           {"arm_m", agent.traits().has_airframe ? agent.airframe.arm_m : 0.0},
           {"law", agent.law.name},
-          {"leads", leads},
+          {"leads", is_leader || std::ranges::binary_search(HullOf(agent.law), agent.id)},
+          {"lies_from_s", agent.lie ? Json(agent.lie->from_s) : Json(nullptr)},
           {"waypoints_m", waypoints},
           {"place_m", places_W.empty() ? Json(nullptr) : ToJson(places_W[i])},
           {"parent", pursuit ? pursuit->parent[i] : 0},
-          {"goto", leads || !waypoints.empty()}};
+          {"goto", is_leader || !waypoints.empty()}};
+}
+
+/// Agents of which the same is drawn: `of` has it.
+template <class Item>
+struct DrawnTogether {
+  std::span<const Item> of;
+  Axes axes;
+  std::vector<int> agents;
+};
+
+/// What `of` says of the laws of the agents, once for all that agree, with these agents.
+template <class Item>
+std::vector<DrawnTogether<Item>> Together(const Experiment& experiment,
+                                          std::span<const Item> (*of)(const LawConfig& law)) {
+  std::vector<DrawnTogether<Item>> all;
+  for (const AgentConfig& agent : experiment.agents) {
+    const std::span<const Item> own = of(agent.law);
+    if (own.empty()) continue;
+    const auto same = std::ranges::find_if(all, [&](const DrawnTogether<Item>& other) {
+      return other.axes == agent.law.axes && std::ranges::equal(other.of, own);
+    });
+    if (same != all.end())
+      same->agents.push_back(agent.id);
+    else
+      all.push_back({own, agent.law.axes, {agent.id}});
+  }
+  return all;
+}
+
+/// The regions that agents divide by nearness, each with its agents.
+Json CellsJson(const Experiment& experiment) {
+  Json json = Json::array();
+  for (const auto& [region, axes, agents] : Together(experiment, RegionOf)) {
+    Json corners = Json::array();
+    for (const Eigen::Vector2d& corner : region) corners.push_back(ToJson(corner));
+    json.push_back({{"region_m", corners}, {"agents", agents}});
+  }
+  return json;
+}
+
+/// The agents, as groups, whose convex hull is drawn.
+Json HullsJson(const Experiment& experiment) {
+  Json json = Json::array();
+  for (const auto& [leaders, axes, agents] : Together(experiment, HullOf))
+    json.push_back({{"agents", std::vector<int>(leaders.begin(), leaders.end())}, {"axes", kAxes.Name(axes)}});
+  return json;
+}
+
+bool LeavesOut(const Experiment& experiment) {
+  return std::ranges::any_of(LawsIn(experiment), [](const LawEntry* law) { return law->left_out != nullptr; });
 }
 
 Json EdgesJson(const Graph& graph) {
@@ -188,6 +241,8 @@ void AddEdges(std::string& out, const Experiment& experiment, const std::vector<
   }
   AddList(out, "edge", edges, [](Numbers& to, const EdgeNow& edge) { to.Add(static_cast<std::int64_t>(edge.state)); });
   AddList(out, "age_s", edges, [](Numbers& to, const EdgeNow& edge) { to.Add(edge.age_s); });
+  if (std::ranges::any_of(edges, [](const EdgeNow& edge) { return edge.left_out != 0; }))
+    AddList(out, "left_out", edges, [](Numbers& to, const EdgeNow& edge) { to.Add(std::int64_t{edge.left_out}); });
 }
 
 }  // namespace
@@ -208,6 +263,9 @@ std::string ExperimentJson(const Experiment& experiment, const ShownTheory& theo
                       {"agents", agents},
                       {"edges", EdgesJson(experiment.graph)},
                       {"range_m", experiment.schedule.range_m()},
+                      {"cells", CellsJson(experiment)},
+                      {"hulls", HullsJson(experiment)},
+                      {"leaves_out", LeavesOut(experiment)},
                       {"obstacles", ObstaclesJson(experiment.physics.obstacles)},
                       {"wind_m_per_s", ToJson(experiment.physics.wind.mean_m_per_s)},
                       {"prediction", PredictionJson(experiment, theory.prediction, theory.since)},

@@ -162,6 +162,55 @@ TEST(RecordedRun, ShowsEachTickAsTheRunDidInWhateverOrder) {
   }
 }
 
+TEST(RecordedRun, KnowsWhatWasLeftOutAtEachTickInWhateverOrder) {
+  const std::string toml = R"(
+[run]
+duration_s = 2.0
+[agents]
+count = 5
+model = "single_integrator"
+position_m = [[3, 0, 1], [-1, 1, 2], [4, 2, 3], [1, 3, 4], [-5, 4, 5]]
+[[agents.override]]
+id = 5
+lie = { kind = "random", from_s = 0.5, offset_m = [5.0, 5.0, 0.0] }
+[graph]
+topology = "complete"
+[sensors.own]
+delay_s = 0.05
+[law]
+name = "velocity_consensus"
+[[law.schedule]]
+at_s = 1.0
+name = "resilient"
+gain = 0.3
+)";
+  const ScratchFolder folder;
+  for (const auto& [name, more] : {std::pair("perfect", ""), {"lossy", "[link]\nloss = 0.3\n"}}) {
+    const Flown run(folder, toml + more, name);
+    LiveExperiment live(run.experiment(), &LawTable(), /*checked=*/true);
+    LeftOutMeter meter(run.experiment());
+    std::vector<std::vector<std::uint8_t>> left_out;
+    for (std::int64_t tick = 0; tick <= run.last_tick(); ++tick) {
+      if (tick == 100) meter.Adopt(live.After(run.experiment().events.at(0)));
+      meter.Add(tick, run.at(tick).row.motions);
+      std::vector<EdgeNow> edges = run.at(tick).edges;
+      meter.Mark(edges);
+      for (left_out.emplace_back(); const EdgeNow& edge : edges) left_out.back().push_back(edge.left_out);
+      const auto some = std::ranges::count_if(left_out.back(), [](auto axes) { return axes != 0; });
+      EXPECT_EQ(some > 0, tick >= 100) << tick;
+    }
+    RecordedRun recorded(run.path());
+    ShownRow row(5);
+    for (const std::int64_t tick : {200, 99, 100, 150, 149, 10, 101}) {
+      recorded.Show(tick, row);
+      while (!recorded.FollowEdges(row, 7)) EXPECT_TRUE(row.edges.empty());
+      std::vector<std::uint8_t> shown;
+      for (const EdgeNow& edge : row.edges) shown.push_back(edge.left_out);
+      EXPECT_EQ(shown, left_out.at(static_cast<std::size_t>(tick))) << name << " at tick " << tick;
+    }
+  }
+}
+
 TEST(RecordedRun, ReadsNoRowForEdgesOnWhichNothingIsLost) {
   const ScratchFolder folder;
   std::string toml(kThree);

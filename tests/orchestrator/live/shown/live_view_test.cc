@@ -155,6 +155,93 @@ TEST(LiveView, SaysWhichBodiesRoll) {
   EXPECT_EQ(agent["actuator"], "forward speed (m/s), turning speed (rad/s), unused, unused");
 }
 
+/// What a viewer is told of an experiment of six ideal agents under this law, of which 6 lies from 1 s on.
+Json DescribedWith(const std::string& law) {
+  Watched run(
+      Load("[run]\nduration_s = 0.1\n[agents]\ncount = 6\nmodel = 'single_integrator'\n"
+           "position_m = [[0, 0, 1], [4, 0, 1], [0, 4, 2], [1, 1, 1], [2, 1, 1], [1, 2, 1]]\n"
+           "[[agents.override]]\nid = 6\nlie = { from_s = 1.0, offset_m = [9.0, 0.0, 0.0] }\n"
+           "[graph]\ntopology = 'complete'\n[law]\n" +
+           law));
+  Viewer viewer(run.view.url());
+  viewer.Subscribe("/ui/experiment");
+  return viewer.NextJsonOf("/ui/experiment");
+}
+
+std::vector<int> Leading(const Json& experiment) {
+  std::vector<int> ids;
+  for (const Json& agent : experiment["agents"])
+    if (agent["leads"]) ids.push_back(agent["id"]);
+  return ids;
+}
+
+TEST(LiveView, TellsWhatIsDrawnOfALaw) {
+  const Json none = Json::array();
+  const Json covering = DescribedWith("name = 'coverage'\nregion_m = [[0, 0], [5, 0], [5, 5], [0, 5]]\n");
+  EXPECT_EQ(covering["cells"],
+            Json::parse(R"([{"region_m":[[0.0,0.0],[5.0,0.0],[5.0,5.0],[0.0,5.0]],"agents":[1,2,3,4,5,6]}])"));
+  EXPECT_EQ(covering["hulls"], none);
+  EXPECT_EQ(covering["leaves_out"], false);
+  EXPECT_THAT(Leading(covering), testing::IsEmpty());
+
+  const Json contained = DescribedWith("name = 'containment'\nleaders = [1, 2, 3]\n");
+  EXPECT_EQ(contained["cells"], none);
+  EXPECT_EQ(contained["hulls"], Json::parse(R"([{"agents":[1,2,3],"axes":"xy"}])"));
+  EXPECT_THAT(Leading(contained), ElementsAre(1, 2, 3));
+  EXPECT_EQ(contained["agents"][0]["goto"], false) << "its leaders fly no waypoints";
+
+  const Json resilient = DescribedWith("name = 'resilient'\n");
+  EXPECT_EQ(resilient["cells"], none);
+  EXPECT_EQ(resilient["hulls"], none);
+  EXPECT_EQ(resilient["leaves_out"], true);
+  EXPECT_EQ(resilient["agents"][4]["lies_from_s"], nullptr);
+  EXPECT_EQ(resilient["agents"][5]["lies_from_s"], 1.0);
+}
+
+TEST(Laws, NameAKeyForWhatIsDrawnOfThemIfAndOnlyIfTheyHaveItsValue) {
+  for (const LawEntry& law : Laws()) {
+    EXPECT_EQ(law.drawing.hull.key.empty(), law.drawing.hull.of == nullptr) << law.name;
+    EXPECT_EQ(law.drawing.cells.key.empty(), law.drawing.cells.of == nullptr) << law.name;
+  }
+}
+
+TEST(LiveView, TellsWhatALawLeavesOutOfWhatItHears) {
+  // On a line along x, at different heights, which the law does not control. From tick 2 on 4 says that it is at -17.
+  Watched run(Load(R"(
+[run]
+duration_s = 0.1
+[agents]
+count = 4
+model = "single_integrator"
+position_m = [[0, 0, 1], [1, 0, 2], [2, 0, 3], [3, 0, 4]]
+[[agents.override]]
+id = 4
+lie = { from_s = 0.02, offset_m = [-20.0, 0.0, 0.0] }
+[graph]
+topology = "complete"
+[law]
+name = "resilient"
+f = 1
+gain = 0.1
+)"));
+  Viewer viewer(run.view.url());
+  viewer.Subscribe("/ui/frame");
+  run.Fly([&](std::int64_t tick) {  // 1 hears 2, 3, 4; 2 hears 1, 3, 4; ...
+    if (tick == 2)
+      EXPECT_EQ(viewer.FrameAt(1)["left_out"], Json::parse("[0,0,1, 1,0,1, 1,0,1, 1,0,0]"));
+    else if (tick == 4)
+      EXPECT_EQ(viewer.FrameAt(3)["left_out"], Json::parse("[0,1,1, 0,1,1, 0,0,1, 1,0,0]"));
+  });
+}
+
+TEST(LiveView, SaysNothingOfLeavingOutWhereNoLawDoes) {
+  Watched run(Load(kThree));
+  run.Fly();
+  Viewer viewer(run.view.url());
+  viewer.Subscribe("/ui/frame");
+  EXPECT_FALSE(viewer.NextJsonOf("/ui/frame").contains("left_out"));
+}
+
 TEST(LiveView, ShowsTheTickThatTheRunStandsAt) {
   Watched run(Load(kThree));
   std::optional<Viewer> viewer;
