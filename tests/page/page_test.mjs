@@ -192,7 +192,7 @@ test(
         await until(page, (chart) => document.getElementById(chart).textContent.includes("begins here"), id);
       await page.keyboard.press("Space");
       await until(page, () => document.querySelectorAll("#speed canvas").length > 0 && mascot.drawn.chartRows > 2);
-      await until(page, () => disagreement.textContent === "Nothing above 1.0e−6 m yet.");
+      await until(page, () => disagreement.textContent === "Nothing above 10⁻⁶ m yet.");
       const [, measured, theory] = await page.evaluate(() => mascot.drawn.disagreement);
       assert.deepEqual([measured, theory], [null, null]);
       fake.run.disagreement_m = null;
@@ -225,6 +225,91 @@ test(
       await until(page, () => document.querySelector("#tab-events").getAttribute("aria-selected") === "true");
       assert.equal(fake.asked.length, 6);
     }));
+
+// --- texts and numbers -------------------------------------------------------------------------------------
+
+/** Pairs of labels of a chart that stand on each other. */
+const collisions = (page) => page.evaluate(() => {
+  const hits = (texts) => texts.flatMap(
+      ({text, box: [l, t, r, b]}, k) => texts.slice(k + 1)
+                                            .filter(({box: [l2, t2, r2, b2]}) => l < r2 && l2 < r && t < b2 && t2 < b)
+                                            .map((other) => [text, other.text]));
+  const boxOf = (element) => {
+    const range = document.createRange();  // of the text: an element may be wider
+    range.selectNodeContents(element);
+    const {left, top, right, bottom} = range.getBoundingClientRect();
+    return {text: element.textContent, box: [left, top, right, bottom]};
+  };
+  return ["law", "disagreement", "speed"].flatMap(
+      (id) => hits([...document.querySelectorAll(`#${id} .dygraph-axis-label`)].map(boxOf)));
+});
+
+test("labels of a logarithmic axis have room, whatever its range is", async () => {
+  for (const [from, to] of [[25, 5], [11, 4], [9.5, 3], [1000, 1e-5], [0.3, 0.2], [1e-6, 1e-7]])
+    await watching(
+        {
+          run: {
+            source: "recording",
+            curve: {name: "lag", unit: "m", meaning: "", decays: true, agrees: false, since_s: 0, predicted: null},
+            law_value: (t_s) => from * (to / from) ** (t_s / 60)
+          }
+        },
+        async ({page}) => {
+          await until(page, () => document.querySelectorAll("#law .dygraph-axis-label-x").length > 1);
+          assert.deepEqual(await collisions(page), [], `${from} to ${to}`);
+          assert.ok(await page.locator("#law .dygraph-axis-label-y").count() >= 1, `${from} to ${to}`);
+        });
+});
+
+test("axes and figures do not dwell on what rounding leaves of a zero", async () => {
+  for (const decays of [true, false])
+    await watching(
+        {
+          run: {
+            source: "recording",
+            disagreement_m: 1.3e-13,
+            curve: {name: "lag", unit: "m", meaning: "", decays, agrees: true, since_s: 0, predicted: null},
+            law_value: (t_s) => (decays && t_s < 1 ? 1 : 1e-13 * (1 + Math.sin(t_s)))
+          }
+        },
+        async ({page}) => {
+          await until(page, () => document.querySelectorAll("#law .dygraph-axis-label-y").length > 0);
+          const labels = await page.locator("#law .dygraph-axis-label-y").allTextContents();
+          for (const label of labels) assert.ok(!/10⁻(?:[7-9]|¹)|0\.00000/.test(label), `${labels}`);
+          await page.locator("#seek").fill("30");
+          await until(
+              page, (words) => document.getElementById("law-now").textContent === words,
+              decays ? "< 10⁻⁶ m" : "0.000 m");
+          assert.equal(await page.textContent("#disagreement-now"), "< 10⁻⁶ m");
+        });
+});
+
+test("a number is written in one way, wherever it stands", async () => {
+  await watching({}, async ({page}) => {
+    const wrote = await page.evaluate(async () => {
+      const {exact, figure, fixed, seconds} = await import("/numbers.js");
+      return {
+        figures: [0, 1e-13, 2.345e-5, 0.25, 12.345, 678.9, 54321, 1.5e6, -0.5, null].map(figure),
+        exact: [0, 0.1 + 0.2, 1e6, -200, 1.5e-7, 12345.678, -1e-6].map(exact),
+        fixed: [fixed(-0.001), fixed(-2.5), fixed(1 / 3, 1)],
+        seconds: [seconds(0), seconds(12.345), seconds(600)]
+      };
+    });
+    assert.deepEqual(wrote, {
+      figures: ["0.000", "0.000", "2.3·10⁻⁵", "0.250", "12.35", "678.90", "54321", "1.5·10⁶", "−0.500", "–"],
+      exact: ["0", "0.3", "10⁶", "−200", "1.5·10⁻⁷", "12345.7", "−10⁻⁶"],
+      fixed: ["0.00", "−2.50", "0.3"],
+      seconds: ["0.00 s", "12.35 s", "600.00 s"]
+    });
+    await page.keyboard.press("2");
+    for (const tab of ["agents", "tune"]) {
+      await page.click(`#tab-${tab}`);
+      const text = await page.innerText("#panel");
+      assert.doesNotMatch(text, /\d[eE][+−-]?\d/);
+      assert.doesNotMatch(text, /(?:^|\s)-\d/);
+    }
+  });
+});
 
 // --- what it asks for --------------------------------------------------------------------------------------
 
@@ -513,7 +598,7 @@ test(
       await until(page, () => mascot.t_s > 40);
       await page.click("#tab-tune");
       assert.match(await page.textContent("#tune"), /cannot be changed/);
-      assert.match(await page.textContent("[data-key='law.p_gain']"), /0\.350/);
+      assert.match(await page.textContent("[data-key='law.p_gain']"), /0\.35/);
       assert.equal(await page.locator("#tune input").count(), 0);
       assert.deepEqual(events(fake), []);
     }));
@@ -576,7 +661,7 @@ test(
     () => watching({run: {source: "recording", end_s: 40, loss: "the file ends inside a record"}}, async ({page}) => {
       assert.equal(await page.textContent("#source"), "recording, cut");
       assert.equal(await page.getAttribute("#source", "title"), "the file ends inside a record");
-      assert.equal(await page.textContent("#duration"), "/ 40.0 s of 60.0 s");
+      assert.equal(await page.textContent("#duration"), "/ 40.00 s of 60.00 s");
       await page.locator("#scene").focus();
       for (let k = 0; k < 5; ++k) await page.keyboard.press("PageDown");
       await until(page, () => mascot.t_s === 40);

@@ -149,14 +149,14 @@ test("the page of a recording goes where it is asked to, and shows what was so a
     const first = await page.evaluate(() => mascot.positions);
     assert.equal(await page.locator("#marks i:not(.incident)").count(), 2);
     const gain = () => page.textContent("[data-key='law.p_gain'] b");
-    assert.equal(await gain(), "0.100");
+    assert.equal(await gain(), "0.1");
     await page.locator("#seek").fill("15");
     await shows(() => mascot.tick === 1500 && mascot.edgeStates[1] === 0);
-    await shows(() => document.querySelector("[data-key='law.p_gain'] b").textContent === "0.300");
+    await shows(() => document.querySelector("[data-key='law.p_gain'] b").textContent === "0.3");
     await page.locator("#scene").focus();
     await page.keyboard.press("ArrowLeft");
     await shows(() => mascot.tick === 1499);
-    await shows(() => document.querySelector("[data-key='law.p_gain'] b").textContent === "0.100");
+    await shows(() => document.querySelector("[data-key='law.p_gain'] b").textContent === "0.1");
     await page.selectOption("#pace", "100");
     await page.keyboard.press("Space");
     await shows(() => mascot.tick === 2000 && mascot.state === "paused");

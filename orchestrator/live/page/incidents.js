@@ -1,5 +1,7 @@
 // The table of a run's incidents, events.csv.
 
+import {seconds} from "./numbers.js";
+
 /** What happened, but for events, which have marks of their own: {t_s, words}. */
 export function incidentsIn(csv) {
   const [names, ...rows] = rowsOf(csv);
@@ -9,7 +11,7 @@ export function incidentsIn(csv) {
 }
 
 function wordsFor({what, t_s, until_s, agent, detail, with: other}) {
-  const until = until_s === t_s ? "" : `until ${Number(until_s).toFixed(2)} s`;
+  const until = until_s === t_s ? "" : `until ${seconds(Number(until_s))}`;
   return [`${what.replaceAll("_", " ")} of agent ${agent}`, other, detail, until].filter(Boolean).join(", ");
 }
 

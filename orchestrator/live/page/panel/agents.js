@@ -1,7 +1,8 @@
 // The table of agents, of which only the rows in sight exist, and all about the selected one.
 import {agentColours} from "../colours.js";
-import {byId, element, figure, fixed, setText, throttled} from "../dom.js";
+import {byId, element, setText, throttled} from "../dom.js";
 import {EDGE, EDGE_WORDS, limitWords, shortLimitWords} from "../model.js";
+import {exact, fixed, seconds} from "../numbers.js";
 import {cutOrMend} from "../scene/hand.js";
 
 const ROW_PX = 28;
@@ -146,7 +147,7 @@ class Detail {
     button.hidden = !this.#model.canChange;
     return element(
         "div", {className: "ear"}, element("i", {className: "state"}), element("span", {textContent: `agent ${heard}`}),
-        element("span", {className: "muted", textContent: weight === 1 ? "" : `weight ${figure(weight, 2)}`}),
+        element("span", {className: "muted", textContent: weight === 1 ? "" : `weight ${exact(weight)}`}),
         element("span", {className: "words"}), button);
   }
 
@@ -158,7 +159,7 @@ class Detail {
       velocity: `${vector("v")} m/s`,
       attitude: attitude(frame.q.slice(4 * selected - 4, 4 * selected)),
       commands: `${vector("a")} m/s²`,
-      actuators: actuators.map((x) => fixed(x, 1)).join("  "),
+      actuators: actuators.map((x) => fixed(x)).join("  "),
       limits: limitWords(frame.flags[selected - 1]) || "none reached",
     };
     for (const [name, text] of Object.entries(texts)) setText(this.#values[name], text);
@@ -168,7 +169,7 @@ class Detail {
 
   #fillHeard(row, state, age_s) {
     row.dataset.state = state;
-    setText(row.querySelector(".words"), `${EDGE_WORDS[state]}${age_s >= 0 ? `, ${figure(age_s, 2)} s old` : ""}`);
+    setText(row.querySelector(".words"), `${EDGE_WORDS[state]}${age_s >= 0 ? `, ${seconds(age_s)} old` : ""}`);
     setText(row.lastChild, state === EDGE.NONE ? "Mend" : "Cut");
   }
 }

@@ -1,13 +1,15 @@
 // The curves: that of the law, disagreement on a logarithmic axis, each beside what theory predicts, and speeds. Those
 // of a recording are whole; a line marks the time that is shown.
 import {agentColours, styleColour} from "../colours.js";
-import {byId, element, figure, fixed, setText, throttled, typeset} from "../dom.js";
+import {byId, element, setText, throttled} from "../dom.js";
+import {decayed, exact, figure, fixed, FLOOR, powerOfTen, seconds, typeset} from "../numbers.js";
 
 import {History, MOST_SPEEDS, speedsOf} from "./history.js";
 import {curveWords, disagreementWords, modeOf, responseAt, valueAt, withUnit} from "./theory.js";
 
-const LEAST = 1e-6;  // bottom of a logarithmic axis: curves end there
-const SLOW = 1e-3;   // the top of an axis of speeds is not below
+const SLOW = 1e-3;         // the top of an axis of speeds is not below
+const LEAST_RANGE = 1e-3;  // of an axis of other values, which shows a value that is held as a straight line
+const LEAST_GAP_PX = 17;   // between labels of an axis, one above another
 const DRAW_EVERY_MS = 120;
 const FIRST_SPEED = 3;  // in a row
 const OF_MANY = ["fastest", "mean", "slowest", "selected"];
@@ -145,12 +147,12 @@ export class Charts {
     if (!frame || !experiment) return;
     const {curve} = experiment;
     if (curve) {
-      const rows = this.#lawRows(), range = curve.decays ? {valueRange: decadesOf(rows)} : {};
+      const rows = this.#lawRows(), range = {valueRange: curve.decays ? decadesOf(rows) : rangeOf(rows)};
       const now = frame.curve ?? this.#history.at(frame.t_s)?.[2] ?? null;
-      setText(byId("law-now"), now === null ? "" : withUnit(now, curve.unit));
+      setText(byId("law-now"), now === null ? "" : withUnit(now, curve));
       this.#show("law", rows, range, () => this.#lawLook(curve));
     }
-    setText(byId("disagreement-now"), frame.disagreement_m === null ? "" : `${figure(frame.disagreement_m)} m`);
+    setText(byId("disagreement-now"), frame.disagreement_m === null ? "" : `${decayed(frame.disagreement_m)} m`);
     setText(byId("speed-now"), `up to ${figure(Math.max(...frame.speed_m_per_s))} m/s`);
     if (!byId("disagreement-chart").hidden) {
       const rows = this.#disagreementRows();
@@ -166,7 +168,7 @@ export class Charts {
       return this.#say(id, isRecording ? "The recording is being read." : "The curve begins here when time goes on.");
     }
     if (rows.every(([, ...values]) => values.every((value) => value === null)))
-      return this.#say(id, id === "law" ? "No value yet." : `Nothing above ${figure(LEAST)} m yet.`);
+      return this.#say(id, id === "law" ? "No value yet." : `Nothing above ${exact(FLOOR)} m yet.`);
     if (this.#model.isRecording) ranges = {...ranges, dateWindow: [0, this.#model.end_s]};
     if (this.#charts[id])
       this.#charts[id].updateOptions({file: rows, ...ranges});
@@ -194,16 +196,17 @@ export class Charts {
       legendFormatter: legend,
       underlayCallback: (context, area, chart) => this.#drawCursor(context, area, chart),
       xRangePad: 4,
+      xAxisHeight: 22,
       rightGap: 8,
       axes: {
         x: {
           axisLabelFormatter: (t, _granularity, _options, chart) => `${along(t, chart.xAxisRange())} s`,
           pixelsPerLabel: 70,
-          valueFormatter: (t) => `${figure(t, 2)} s`
+          valueFormatter: (t) => seconds(t)
         },
         y: {
           axisLabelWidth: 46,
-          pixelsPerLabel: 26,
+          pixelsPerLabel: 20,
           axisLabelFormatter: (x, _granularity, _options, chart) => along(x, chart.yAxisRange()),
           valueFormatter: (x) => figure(x)
         }
@@ -255,8 +258,8 @@ export class Charts {
   }
 }
 
-/** A value as a logarithmic axis shows it; null: below it. */
-function level(value) { return value === null || value === undefined || value < LEAST ? null : value; }
+/** A value as a logarithmic axis shows it; null: below its floor. */
+function level(value) { return value === null || value === undefined || value < FLOOR ? null : value; }
 
 /** With how many decimals the labels of an axis all differ. */
 function decimalsOf([low, high]) { return Math.min(8, Math.max(0, Math.ceil(0.5 - Math.log10(high - low)))); }
@@ -269,7 +272,7 @@ function topOf(rows) { return 1.1 * rows.reduce((top, [, ...speeds]) => Math.max
  * far as a decade below that.
  */
 function decadesOf(rows) {
-  let low = Infinity, least = Infinity, high = LEAST;
+  let low = Infinity, least = Infinity, high = FLOOR;
   for (const [, measured, ...predicted] of rows) {
     const known = predicted.filter((value) => value !== null);
     low = Math.min(low, measured ?? Infinity);
@@ -277,22 +280,43 @@ function decadesOf(rows) {
     high = Math.max(high, measured ?? 0, ...known);
   }
   low = Math.max(least, low / 10);
-  return [Math.min(low / 1.2, high / 5), high * 1.2];
+  return [Math.max(FLOOR, Math.min(low / 1.2, high / 5)), Math.max(5 * FLOOR, high * 1.2)];
 }
 
-function powersOfTen(low, high) {
+/** A range for any other axis: what is measured and predicted, with some room, and at least LEAST_RANGE. */
+function rangeOf(rows) {
+  const values = rows.flatMap(([, ...each]) => each.filter((value) => value !== null));
+  if (values.length === 0) return [null, null];
+  const low = Math.min(...values), high = Math.max(...values), room = 0.05 * (high - low);
+  if (high - low >= LEAST_RANGE) return [low - room, high + room];
+  return [(low + high - LEAST_RANGE) / 2, (low + high + LEAST_RANGE) / 2];
+}
+
+/**
+ * Labels of a logarithmic axis that is so many pixels high: 1, 2, 3, ... times powers of ten, as far as there is room.
+ */
+function powersOfTen(low, high, height_px) {
   const first = Math.floor(Math.log10(low)), last = Math.ceil(Math.log10(high)), decades = Math.log10(high / low);
   const between = decades < 0.7 ? [1, 2, 3, 4, 5, 6, 7, 8, 9] : decades < 2 ? [1, 2, 5] : [1];
   const every = Math.max(1, Math.ceil((last - first) / 5)), ticks = [];
   for (let k = first; k <= last; k += every)
-    for (const m of between) ticks.push({v: m * 10 ** k, label: shortLabel(m, k)});
-  return ticks.filter(({v}) => v >= low && v <= high);
+    for (const m of between) ticks.push({v: m * 10 ** k, label: shortLabel(m, k), m});
+  return withRoom(ticks.filter(({v}) => v >= low && v <= high), height_px / decades);
+}
+
+/** Those of the ticks that have room, powers of ten first, then 5 and 2 times them. */
+function withRoom(ticks, px_per_decade) {
+  const rank = ({m}) => [1, 5, 2].indexOf(m) + 1 || 4, kept = [];
+  const isApart = (a) => (b) => Math.abs(Math.log10(a.v / b.v)) * px_per_decade >= LEAST_GAP_PX;
+  for (const tick of ticks.toSorted((a, b) => rank(a) - rank(b)))
+    if (kept.every(isApart(tick))) kept.push(tick);
+  return kept.toSorted((a, b) => a.v - b.v);
 }
 
 /** m times ten to the k. */
 function shortLabel(m, k) {
-  if (k >= -3 && k <= 3) return String(Number((m * 10 ** k).toPrecision(2)));
-  return `${m === 1 ? "" : `${m}·`}10${[...String(k)].map((c) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] ?? "⁻").join("")}`;
+  if (k >= -3 && k <= 3) return exact(m * 10 ** k);
+  return `${m === 1 ? "" : `${m}·`}${powerOfTen(k)}`;
 }
 
 /** The values under the pointer. */

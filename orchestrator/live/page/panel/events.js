@@ -1,5 +1,6 @@
 // The events of the run: when, what, and by whom, if that is known; to be copied into an experiment file.
 import {byId, element, setText} from "../dom.js";
+import {seconds} from "../numbers.js";
 
 export class Events {
   #model;
@@ -47,7 +48,7 @@ export class Events {
         "article", {className: "event"},
         element(
             "header", {}, element("b", {textContent: `tick ${tick}`}),
-            element("span", {className: "muted", textContent: ` ${t_s.toFixed(2)} s`}),
+            element("span", {className: "muted", textContent: ` ${seconds(t_s)}`}),
             ...(by_hand === null ? [] :
                                    [element("span", {className: "badge", textContent: by_hand ? "by hand" : "file"})]),
             copy),

@@ -1,6 +1,7 @@
 // What is said about the run as a whole: its name, its state, a lost connection, the wind, the colours of edges, and
 // which layers of the view are shown.
-import {byId, element, figure, setText} from "../dom.js";
+import {byId, element, setText} from "../dom.js";
+import {figure} from "../numbers.js";
 
 const LAYERS = [
   ["trails", "Trails"], ["edges", "Edges: who hears whom"], ["numbers", "Numbers"], ["velocity", "Velocity"],
@@ -62,7 +63,7 @@ export class Status {
   #showWind([x, y, z]) {
     const speed = Math.hypot(x, y, z);
     byId("wind").hidden = speed === 0;
-    setText(byId("wind-words"), `wind ${figure(speed, 1)} m/s`);
+    setText(byId("wind-words"), `wind ${figure(speed)} m/s`);
   }
 
   /**

@@ -1,5 +1,5 @@
 // What theory says beside the curves, as lines and in words.
-import {figure, typeset} from "../dom.js";
+import {decayed, figure, fixed, seconds, typeset} from "../numbers.js";
 
 const BOUNDS = {
   equal: "",
@@ -31,10 +31,10 @@ export function disagreementWords(prediction = {}, responses = []) {
   const {from_s = 0, of_agreement, stable, rate_per_s, slowest_rate_per_s, settling_time_s, why} = prediction;
   if (rate_per_s && of_agreement === false)
     return `Theory: each flight decays at ${figure(rate_per_s)} 1/s${
-        settling_time_s ? `, and settles (2 %) within ${figure(settling_time_s, 2)} s` : ""}`;
+        settling_time_s ? `, and settles (2 %) within ${seconds(settling_time_s)}` : ""}`;
   if (rate_per_s)
     return `Theory: decays at ${figure(rate_per_s)} 1/s${
-        settling_time_s ? `, settled (2 %) at ${figure(from_s + settling_time_s, 2)} s` : ""}`;
+        settling_time_s ? `, settled (2 %) at ${seconds(from_s + settling_time_s)}` : ""}`;
   if (stable === false) return `Theory: does not agree${why ? `: ${why}` : ""}`;
   if (slowest_rate_per_s) return `Theory: in the long run decays at ${figure(slowest_rate_per_s)} 1/s or faster`;
   if (why) return `No prediction: ${why}`;
@@ -42,13 +42,14 @@ export function disagreementWords(prediction = {}, responses = []) {
   return responses.at(-1).of_ideal_bodies ? "Ideal bodies, flown ahead by the same laws" : "Theory";
 }
 
-/** A number for people, with its unit; a count without decimals. */
-export const withUnit = (x, unit) =>
-    (unit ? `${figure(x)} ${typeset(unit)}` :
-         Number.isInteger(x) ? String(x) :
-                               figure(x));
+/** A value of the curve of the law, with its unit; a count without decimals. */
+export function withUnit(x, {unit, decays}) {
+  if (!unit && Number.isInteger(x)) return fixed(x, 0);
+  const text = decays ? decayed(x) : figure(x);
+  return unit ? `${text} ${typeset(unit)}` : text;
+}
 
 /** What theory says of the curve of the law: of the figure of summary.json that is about it. */
 export function curveWords({unit, predicted}) {
-  return predicted ? `Theory: ${predicted.figure} ${BOUNDS[predicted.bound]}${withUnit(predicted.value, unit)}` : "";
+  return predicted ? `Theory: ${predicted.figure} ${BOUNDS[predicted.bound]}${withUnit(predicted.value, {unit})}` : "";
 }

@@ -1,5 +1,6 @@
 // Time: what it is, how fast it goes, pause, step, stop; of a recording a time line.
-import {byId, element, figure, setText} from "../dom.js";
+import {byId, element, setText} from "../dom.js";
+import {exact, fixed, seconds} from "../numbers.js";
 
 const PACES = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
 const AS_FAST_AS_IT_GOES = 0;
@@ -88,10 +89,10 @@ export class Transport {
     byId("seek").max = end_s;
     byId("stop").hidden = isRecording;
     setText(byId("pace-label"), isRecording ? "Speed" : "Pace");
-    const planned = end_s < experiment.duration_s ? ` of ${figure(experiment.duration_s, 2)} s` : "";
-    setText(byId("duration"), `/ ${figure(end_s, 2)} s${planned}`);
+    const planned = end_s < experiment.duration_s ? ` of ${seconds(experiment.duration_s)}` : "";
+    setText(byId("duration"), `/ ${seconds(end_s)}${planned}`);
     const paces =
-        [...PACES.map((pace) => [pace, `× ${pace}`]), ...(isRecording ? [] : [[AS_FAST_AS_IT_GOES, "fastest"]])];
+        [...PACES.map((pace) => [pace, `× ${exact(pace)}`]), ...(isRecording ? [] : [[AS_FAST_AS_IT_GOES, "fastest"]])];
     byId("pace").replaceChildren(...paces.map(([value, textContent]) => element("option", {value, textContent})));
     this.#showPace();
     this.#mark();
@@ -101,9 +102,9 @@ export class Transport {
     const {frame, end_s} = this.#model;
     if (this.#seeks === 0) this.#aim_s = null;
     const isRunning = frame.state === "running";
-    setText(byId("time"), `${frame.t_s.toFixed(2)} s`);
+    setText(byId("time"), seconds(frame.t_s));
     setText(byId("tick"), `tick ${frame.tick}`);
-    setText(byId("factor"), isRunning ? `${figure(frame.real_time_factor, 2)} × real time` : "");
+    setText(byId("factor"), isRunning ? `${fixed(frame.real_time_factor)} × real time` : "");
     setText(byId("play-words"), isRunning ? "Pause" : this.#model.isRecording ? "Play" : "Resume");
     byId("play").dataset.running = isRunning;
     this.#enable();
@@ -124,7 +125,7 @@ export class Transport {
   #showPace() {
     const pace = this.#model.frame?.pace ?? 1, select = byId("pace");
     if (![...select.options].some(({value}) => Number(value) === pace))
-      select.append(element("option", {value: pace, textContent: `× ${figure(pace, 2)}`}));
+      select.append(element("option", {value: pace, textContent: `× ${exact(pace)}`}));
     select.value = String(pace);
   }
 
@@ -161,8 +162,7 @@ function thinned(incidents, end_s) {
 }
 
 function incidentMark(group) {
-  const lines = group.slice(0, MOST_WORDS).map(({t_s, words}) => `${t_s.toFixed(2)} s: ${words}`);
-  if (group.length > MOST_WORDS)
-    lines.push(`and ${group.length - MOST_WORDS} more until ${group.at(-1).t_s.toFixed(2)} s`);
+  const lines = group.slice(0, MOST_WORDS).map(({t_s, words}) => `${seconds(t_s)}: ${words}`);
+  if (group.length > MOST_WORDS) lines.push(`and ${group.length - MOST_WORDS} more until ${seconds(group.at(-1).t_s)}`);
   return {t_s: group[0].t_s, title: lines.join("\n"), className: "incident"};
 }

@@ -1,7 +1,8 @@
 // The live keys: a control for each, with its range and unit. A control asks when it is let go, and shows what the
 // server says the value is, whatever was asked for.
 import {setToml} from "../asking.js";
-import {byId, element, figure, setText, typeset} from "../dom.js";
+import {byId, element, setText} from "../dom.js";
+import {exact, rounded, typeset} from "../numbers.js";
 
 import {Scale} from "./scale.js";
 
@@ -90,14 +91,13 @@ function sorted(keys) {
   return keys.toSorted((a, b) => rank(a) - rank(b));
 }
 
+/** A value in words: numbers as they were set, a list of points as such. */
 const show = (value) =>
-    (typeof value === "number" ? figure(value) :
-         Array.isArray(value)  ? value.map((x) => figure(x)).join(", ") :
-                                 String(value));
+    (typeof value === "number" ? exact(value) :
+         Array.isArray(value)  ? value.map((x) => (Array.isArray(x) ? `(${show(x)})` : show(x))).join(", ") :
+                                                                      String(value));
 const idOf = ({key}) => `key-${key}`;
-const boundsOf = ({min, max, open_min}) =>
-    ({low: `${open_min ? "> " : ""}${shortNumber(min)}`, high: shortNumber(max)});
-const shortNumber = (x) => (Math.abs(x) >= 1e4 ? x.toExponential(0).replace("e+", "e") : String(x));
+const boundsOf = ({min, max, open_min}) => ({low: `${open_min ? "> " : ""}${exact(min)}`, high: exact(max)});
 
 // --- a control for each kind of value: what is shown, and a function that takes the value ------------------
 
@@ -114,7 +114,7 @@ function number(key, ask) {
   box.addEventListener("change", () => box.value !== "" && ask(Number(box.value)));
   let latest = key.value;
   const showInBox = () => {
-    box.value = latest === null ? "" : Number(Number(latest).toPrecision(6));
+    box.value = latest === null ? "" : rounded(latest);
   };
   box.addEventListener("blur", showInBox);
   return {
@@ -128,7 +128,7 @@ function number(key, ask) {
       if (document.activeElement !== box) showInBox();
       if (!slider.matches(":active")) slider.value = scale.place(value ?? key.min);
       slider.setAttribute(
-          "aria-valuetext", value === null ? "not given" : `${figure(value)} ${typeset(key.unit ?? "")}`);
+          "aria-valuetext", value === null ? "not given" : `${exact(value)} ${typeset(key.unit ?? "")}`);
     },
   };
 }
@@ -166,10 +166,12 @@ function vector3(key, ask) {
   return {
     body: [element("div", {className: "vector"}, ...boxes)],
     show: (value) => boxes.forEach((box, k) => {
-      if (document.activeElement !== box) box.value = value[k];
+      if (document.activeElement !== box) box.value = value === null ? "" : rounded(value[k]);
     }),
   };
 }
+
+const shortly = (_key, value) => (typeof value === "number" ? rounded(value) : value);
 
 /** Any other value, as JSON, which TOML reads alike for numbers, texts and lists of them. */
 function other(key, ask) {
@@ -186,7 +188,7 @@ function other(key, ask) {
   return {
     body: [box],
     show: (value) => {
-      if (document.activeElement !== box) box.value = (value ?? null) === null ? "" : JSON.stringify(value);
+      if (document.activeElement !== box) box.value = (value ?? null) === null ? "" : JSON.stringify(value, shortly);
     }
   };
 }

@@ -3,6 +3,7 @@
 import {Color, DoubleSide, Mesh, PlaneBufferGeometry, ShaderMaterial} from "/vendor/three/build/three.module.js";
 
 import {styleColour} from "../colours.js";
+import {exact} from "../numbers.js";
 
 const VERTEX = `
   varying vec2 vPlace;
@@ -93,7 +94,7 @@ export class Ground extends Mesh {
   }
 }
 
-const metres = (x) => `${String(Number(x.toPrecision(6))).replace("-", "−")} m`;
+const metres = (x) => `${exact(x)} m`;
 
 // The next of ..., 0.1, 0.2, 1, 2, 10, 20, ...: five times each is a round number, too.
 function roundStep(x) {

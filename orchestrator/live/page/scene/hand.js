@@ -3,8 +3,8 @@
 import {Plane, Raycaster, Vector2, Vector3} from "/vendor/three/build/three.module.js";
 
 import {edgesToml, gotoToml} from "../asking.js";
-import {fixed} from "../dom.js";
 import {EDGE, EDGE_WORDS} from "../model.js";
+import {fixed} from "../numbers.js";
 
 const AGENT_PX = {
   mouse: 14,
@@ -152,7 +152,7 @@ export class Hand {
   }
 
   #send({agent, p}) {
-    return this.#asking.event(gotoToml(agent, p), `Send agent ${agent} to ${p.map((x) => fixed(x, 1)).join(", ")} m`);
+    return this.#asking.event(gotoToml(agent, p), `Send agent ${agent} to ${p.map((x) => fixed(x)).join(", ")} m`);
   }
 
   // --- pointing and clicking ---

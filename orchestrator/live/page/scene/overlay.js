@@ -1,7 +1,7 @@
 // Texts and marks of constant size, above the picture: numbers of agents, the scale of the ground, waypoints, formation
 // places, the predicted meeting point, and where an agent is being sent.
 import {agentColours, styleColour} from "../colours.js";
-import {fixed} from "../dom.js";
+import {fixed} from "../numbers.js";
 
 const FONT = '12px system-ui, "Segoe UI", "DejaVu Sans", sans-serif';
 const MOST_NUMBERS = 60;  // with more agents, only those of interest and those near the camera
@@ -99,7 +99,7 @@ export class Overlay {
     this.#line([x, y], to, colour, [6, 4]);
     this.#line(to, foot, styleColour("muted"), [2, 3]);
     this.#mark(p, colour, cross(8));
-    this.#text(p, p.map((c) => fixed(c, 1)).join(", ") + " m", styleColour("text"), 12, -8);
+    this.#text(p, p.map((c) => fixed(c)).join(", ") + " m", styleColour("text"), 12, -8);
   }
 
   // --- how ---
