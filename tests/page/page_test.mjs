@@ -228,20 +228,53 @@ test(
 
 // --- texts and numbers -------------------------------------------------------------------------------------
 
-/** Pairs of labels of a chart that stand on each other. */
+/** Pairs of texts of the view, of what stands above it, and of the labels of each chart, that stand on each other. */
 const collisions = (page) => page.evaluate(() => {
   const hits = (texts) => texts.flatMap(
       ({text, box: [l, t, r, b]}, k) => texts.slice(k + 1)
                                             .filter(({box: [l2, t2, r2, b2]}) => l < r2 && l2 < r && t < b2 && t2 < b)
                                             .map((other) => [text, other.text]));
-  const boxOf = (element) => {
+  const stage = scene.getBoundingClientRect();
+  const boxOf = (element, range = element) => {
+    const {left, top, right, bottom} = range.getBoundingClientRect();
+    return {
+      text: element.textContent,
+      box: [left - stage.left, top - stage.top, right - stage.left, bottom - stage.top]
+    };
+  };
+  const textIn = (element) => {
     const range = document.createRange();  // of the text: an element may be wider
     range.selectNodeContents(element);
-    const {left, top, right, bottom} = range.getBoundingClientRect();
-    return {text: element.textContent, box: [left, top, right, bottom]};
+    return boxOf(element, range);
   };
-  return ["law", "disagreement", "speed"].flatMap(
-      (id) => hits([...document.querySelectorAll(`#${id} .dygraph-axis-label`)].map(boxOf)));
+  const above = [...document.querySelectorAll(".views, #wind, #legend")].filter(({hidden}) => !hidden);
+  return [
+    ...hits([...mascot.texts, ...above.map((element) => boxOf(element))]),
+    ...["law", "disagreement", "speed"].flatMap(
+        (id) => hits([...document.querySelectorAll(`#${id} .dygraph-axis-label`)].map(textIn)))
+  ];
+});
+
+test("no text stands on another, wherever agents, waypoints and axes are, in wide and narrow windows", async () => {
+  for (const run of [{}, {agents: 40}])
+    await watching({run}, async ({page, fake}) => {
+      for (const size of [WIDE, PHONE])
+        for (const look of ["a", "t"]) {
+          await page.setViewportSize(size);
+          await page.keyboard.press(look);
+          await until(page, (tick) => mascot.tick > tick + 20, await page.evaluate(() => mascot.tick));
+          assert.deepEqual(await collisions(page), [], JSON.stringify([run, size, look]));
+          assert.ok(await page.evaluate(() => mascot.texts.length) > 5);
+        }
+      // All at one place: those numbers are left out that have none.
+      fake.run.p.forEach((p) => p.splice(0, 3, 1, 1, 1));
+      fake.run.v.forEach((v) => v.fill(0));
+      await page.keyboard.press(".");
+      await until(page, () => Math.abs(mascot.positions[0] - mascot.positions[3]) < 0.1);
+      await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+      assert.deepEqual(await collisions(page), []);
+      assert.ok(await page.evaluate(() => mascot.texts.some(({text}) => text === "4 leads")));
+    });
 });
 
 test("labels of a logarithmic axis have room, whatever its range is", async () => {

@@ -127,6 +127,7 @@ window.mascot = {
   get positions() { return model.frame?.p ?? []; },
   get edgeStates() { return model.frame?.edge ?? []; },
   get events() { return model.events; },
+  get texts() { return view.texts; },  // {text, box: [left, top, right, bottom]}
   get selected() { return model.selected; },
   get followed() { return view.eye.followed; },
   get lastAnswer() { return model.lastAnswer; },

@@ -3,17 +3,30 @@
 import {agentColours, styleColour} from "../colours.js";
 import {fixed} from "../numbers.js";
 
+import {around, at, Labels} from "./labels.js";
+
 const FONT = '12px system-ui, "Segoe UI", "DejaVu Sans", sans-serif';
 const MOST_NUMBERS = 60;  // with more agents, only those of interest and those near the camera
 const NEAR_PX = 26;       // on the screen, between neighbouring numbers of a crowd
 const BESIDE = 0.65;      // of a body's radius to the right and up is where its number stands, between the arms
 const LEAST_RING_PX = 11;
+const FURNITURE = ".views, #wind, #legend";  // what stands above the view, and holds texts of its own
+
+// What takes its place before what: of numbers, those of interest come before the others.
+const RANK = {
+  GHOST: 0,
+  OF_INTEREST: 1,
+  NUMBER: 2,
+  PLAN: 3,
+  AXIS_NAME: 4,
+  AXIS: 5
+};
 
 export class Overlay {
   #view;
   #canvas;
   #pen;
-  numbers = 0;  // drawn
+  #labels = new Labels();
 
   constructor(canvas, view) {
     this.#canvas = canvas;
@@ -26,26 +39,42 @@ export class Overlay {
     this.#pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   }
 
+  /** The texts of the picture: {text, box: [left, top, right, bottom]}. */
+  get texts() { return this.#labels.drawn; }
+
   draw(frame) {
     const {clientWidth: width, clientHeight: height} = this.#canvas;
     this.#pen.clearRect(0, 0, width, height);
-    this.#pen.font = FONT;
     this.#pen.lineJoin = "round";
+    this.#labels.begin(width, height, this.#furniture());
     this.#ground();
     const {experiment} = this.#view.model;
-    if (!experiment || !frame) return;
-    if (this.#view.shown.plan) this.#plan(experiment, frame);
+    if (experiment && frame) this.#marks(experiment, frame);
+    this.#labels.end((text, {bold}) => this.#widthOf(text, bold), (x, y, text, look) => this.#write(x, y, text, look));
+  }
+
+  #marks(experiment, frame) {
+    const {shown, ghost} = this.#view;
+    if (shown.plan) this.#plan(experiment, frame);
     this.#rings(experiment);
-    this.numbers = this.#view.shown.numbers ? this.#numbers(experiment) : 0;
-    if (this.#view.ghost) this.#ghost(this.#view.ghost);
+    if (shown.numbers) this.#numbers(experiment);
+    if (ghost) this.#ghost(ghost);
+  }
+
+  /** The boxes of what stands above the view. */
+  #furniture() {
+    return [...this.#canvas.parentElement.querySelectorAll(FURNITURE)]
+        .filter(({hidden}) => !hidden)
+        .map(({offsetLeft: x, offsetTop: y, offsetWidth: w, offsetHeight: h}) => [x, y, x + w, y + h]);
   }
 
   // --- what is drawn ---
 
   #ground() {
     const {ground, eye} = this.#view;
-    for (const [p, text] of ground.labels(eye.target)) this.#text(p, text, styleColour("muted"), 5, 12);
-    for (const [p, text, colour] of ground.names()) this.#text(p, text, colour, 5, -6);
+    for (const [p, text] of ground.labels(eye.target))
+      this.#text(`on the ground ${p}`, RANK.AXIS, p, text, at(5, 12), {colour: styleColour("muted")});
+    for (const [p, text, colour] of ground.names()) this.#text(text, RANK.AXIS_NAME, p, text, at(5, -6), {colour});
   }
 
   #plan({agents, prediction}, {p}) {
@@ -53,12 +82,13 @@ export class Overlay {
     for (const {id, waypoints_m} of agents)
       (waypoints_m ?? []).forEach((place, k) => {
         this.#mark(place, colours[id - 1], diamond(6));
-        this.#text(place, String(k + 1), styleColour("muted"), 9, -6);
+        const name = `waypoint ${k + 1} of ${id}`;
+        this.#text(name, RANK.PLAN, place, String(k + 1), around(9, 10), {colour: styleColour("muted")});
       });
     for (const [place, id] of places(agents, p)) this.#mark(place, colours[id - 1], ring(8), [2, 3]);
     if (!prediction?.value_m) return;
     this.#mark(prediction.value_m, ink, star(9));
-    this.#text(prediction.value_m, "predicted", ink, 13, 4);
+    this.#text("predicted", RANK.PLAN, prediction.value_m, "predicted", around(13, 12), {colour: ink});
   }
 
   #rings({agents}) {
@@ -75,22 +105,23 @@ export class Overlay {
 
   #numbers({agents}) {
     const {model, pointed, screen} = this.#view, isCrowd = agents.length > MOST_NUMBERS, taken = new Set();
-    let drawn = 0;
-    const write = ({id, leads}) => {
+    const write = ({id, leads}, rank) => {
       const [x, y, depth] = screen.subarray(3 * (id - 1), 3 * id);
       const cell = `${Math.round(x / NEAR_PX)} ${Math.round(y / NEAR_PX)}`;
       if (depth > 1 || (isCrowd && taken.has(cell))) return;
       taken.add(cell);
-      ++drawn;
       const away = BESIDE * this.#view.radiusPx(id);
-      this.#write(
-          x + Math.max(10, away), y - Math.max(9, away), leads ? `${id} leads` : String(id), styleColour("text"),
-          id === model.selected || leads);
+      this.#labels.want(
+          `agent ${id}`, rank, [x, y], leads ? `${id} leads` : String(id),
+          around(Math.max(10, away), Math.max(12, away)),
+          {colour: styleColour("text"), bold: id === model.selected || leads});
     };
     const isOfInterest = ({id, leads}) => id === model.selected || id === pointed.agent || leads;
-    agents.filter(isOfInterest).forEach(write);
-    if (!isCrowd || this.#view.eye.distance() < 40) agents.filter((agent) => !isOfInterest(agent)).forEach(write);
-    return drawn;
+    for (const agent of agents)
+      if (isOfInterest(agent)) write(agent, RANK.OF_INTEREST);
+    if (isCrowd && this.#view.eye.distance() >= 40) return;
+    for (const agent of agents)
+      if (!isOfInterest(agent)) write(agent, RANK.NUMBER);
   }
 
   #ghost({agent, p}) {
@@ -99,7 +130,9 @@ export class Overlay {
     this.#line([x, y], to, colour, [6, 4]);
     this.#line(to, foot, styleColour("muted"), [2, 3]);
     this.#mark(p, colour, cross(8));
-    this.#text(p, p.map((c) => fixed(c)).join(", ") + " m", styleColour("text"), 12, -8);
+    this.#text(
+        "ghost", RANK.GHOST, p, `${p.map((c) => fixed(c)).join(", ")} m`, around(12, 14),
+        {colour: styleColour("text")});
   }
 
   // --- how ---
@@ -109,12 +142,17 @@ export class Overlay {
     return depth <= 1 ? [x, y] : null;
   }
 
-  #text(p, text, colour, dx, dy) {
-    const at = this.#at(p);
-    if (at) this.#write(at[0] + dx, at[1] + dy, text, colour);
+  #text(name, rank, p, text, places, look) {
+    const place = this.#at(p);
+    if (place) this.#labels.want(name, rank, place, text, places, look);
   }
 
-  #write(x, y, text, colour, bold = false) {
+  #widthOf(text, bold) {
+    this.#pen.font = bold ? `600 ${FONT}` : FONT;
+    return this.#pen.measureText(text).width;
+  }
+
+  #write(x, y, text, {colour, bold}) {
     this.#pen.font = bold ? `600 ${FONT}` : FONT;
     Object.assign(this.#pen, {lineWidth: 3, strokeStyle: styleColour("stage"), fillStyle: colour});
     this.#pen.strokeText(text, x, y);

@@ -73,6 +73,7 @@ export class View {
   get camera() { return this.#camera; }
   get model() { return this.#model; }
   get ground() { return this.#ground; }
+  get texts() { return this.#overlay.texts; }
 
   /** Says that the picture is no longer right. */
   touch() { this.#stale = true; }
