@@ -98,6 +98,14 @@ const std::shared_ptr<const Experiment>& LiveExperiment::now() const {
   return shared_;
 }
 
+std::map<int, Value> LiveExperiment::OwnValuesOf(const std::string& key, std::size_t most) const {
+  std::map<int, Value> values;
+  if (!IsOfAgents(key)) return values;
+  for (std::size_t k = 0; k < own_.size() && values.size() < most; ++k)
+    if (auto value = tables_.Get(OverrideKey(k) + key)) values.emplace(own_[k].id, *std::move(value));
+  return values;
+}
+
 // All was legal before the event: what is wrong now is its mistake, also where another key shows it.
 void LiveExperiment::Take(const Event& event) {
   if (!now_.checked) CheckSize(event);

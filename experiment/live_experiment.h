@@ -49,6 +49,8 @@ class LiveExperiment {
   }
   /// The value of a live key now, dotted: the team's; nullopt: the experiment has none.
   std::optional<Value> ValueOf(const std::string& key) const { return tables_.Get(key); }
+  /// The values of a live key that agents have of their own now, by the file or by events, by id; at most `most`.
+  std::map<int, Value> OwnValuesOf(const std::string& key, std::size_t most) const;
   /// How many events were taken so far.
   int count() const { return count_; }
 

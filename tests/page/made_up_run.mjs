@@ -36,6 +36,7 @@ export class MadeUpRun {
     curve = null,           // of the law: {name, unit, meaning, decays, agrees, since_s, predicted}
     law_value = null,       // its value at a time
     places_m = 0,           // radius of a circle that the agents are to form; 0: none
+    own = {},               // key -> values that agents have of their own: {agent, value}
     drift_m_per_s = 0,      // at which all are shown to go east
     waits = false           // what is granted while the run is paused takes effect when it goes on
   } = {}) {
@@ -56,6 +57,7 @@ export class MadeUpRun {
       curve,
       law_value,
       places_m,
+      own,
       drift_m_per_s,
       waits,
       leader: Math.min(leader, agents)
@@ -86,8 +88,18 @@ export class MadeUpRun {
   }
 
   experiment() {
-    const live = (key, unit, value, max) =>
-        ({key, kind: "number", unit, min: 0, max, open_min: false, names: [], value, meaning: `${key} of all agents`});
+    const live = (key, unit, value, max) => ({
+      key,
+      kind: "number",
+      unit,
+      min: 0,
+      max,
+      open_min: false,
+      names: [],
+      value,
+      own: this.own[key] ?? [],
+      meaning: `${key} of all agents`
+    });
     return {
       name: this.name,
       source: this.source,
@@ -132,6 +144,7 @@ export class MadeUpRun {
           open_min: false,
           names: [],
           value: [3, 1.5, 0],
+          own: [],
           meaning: "in W"
         },
         {
@@ -143,6 +156,7 @@ export class MadeUpRun {
           open_min: false,
           names: [],
           value: true,
+          own: [],
           meaning: "bodies touch"
         }
       ],

@@ -476,6 +476,22 @@ inOneWindow("keys are tuned:", {
     assert.equal(await row.locator("input[type=number]").inputValue(), "0.5");
     assert.equal(await page.evaluate(() => mascot.events.length), 2);
   },
+  async "what single agents have of their own is told, and is shown for the agent that is tuned alone"({page, fake}) {
+    const row = page.locator("[data-key='law.beta']"), own = row.locator(".own"),
+          box = row.locator("input[type=number]");
+    assert.ok(await own.isHidden());
+    fake.run.own["law.beta"] = [{agent: 2, value: 0.25}, {agent: 4, value: 3}];
+    await page.uncheck("#tune-only");
+    await page.locator("[data-key='law.p_gain'] input[type=number]").fill("0.6");
+    await page.keyboard.press("Enter");
+    await until(page, () => mascot.events.length === 3);
+    assert.equal(await own.textContent(), "agent 2: 0.25; agent 4: 3");
+    assert.equal(await box.inputValue(), "1.1");
+    await page.check("#tune-only");  // 2 is chosen
+    assert.equal(await box.inputValue(), "0.25");
+    await page.uncheck("#tune-only");
+    assert.equal(await box.inputValue(), "1.1");
+  },
   async "events are listed with their ticks, to be copied as TOML"({page, fake}) {
     await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
     await page.click("#tab-events");
@@ -602,39 +618,41 @@ test("who only watches sees everything, is told so, and can change nothing", asy
 
 test(
     "a recording is played, sought and not changed",
-    () => watching({run: {source: "recording"}}, async ({page, fake}) => {
-      assert.equal(await page.locator("#marks i").count(), 2);
-      const title = (k) => page.locator("#marks i").nth(k).getAttribute("title");
-      assert.match(await title(0), /^event 1\n/);
-      assert.match(await title(1), /^event 2 by hand\n/);
-      const widths = await page.locator("#marks i").evaluateAll((marks) => marks.map(({offsetWidth}) => offsetWidth));
-      assert.ok(widths[1] > 2 * widths[0], `a dot and a bar: ${widths}`);
-      assert.deepEqual(await page.locator("#events .event .badge").allTextContents(), ["by hand", "file"]);
-      fake.run.events[1].by_hand = null;
-      fake.tellEvents();
-      await until(page, () => document.querySelectorAll("#events .event .badge").length === 1);
-      assert.match(await title(1), /^event 2\n/);
-      assert.ok(await page.locator("#stop").isHidden());
-      await page.locator("#seek").fill("30");
-      await until(page, () => Math.abs(mascot.t_s - 30) < 0.02);
-      await page.locator("#scene").focus();
-      await page.keyboard.press("Shift+ArrowRight");
-      await until(page, () => mascot.tick === 3100);
-      await page.keyboard.press("ArrowLeft");
-      await until(page, () => mascot.tick === 3099);
-      await page.keyboard.press("PageUp");
-      await until(page, () => mascot.tick === 2099);
-      await page.locator("#marks i").nth(1).click();
-      await until(page, () => mascot.tick === 3200);
-      await page.selectOption("#pace", "100");
-      await page.keyboard.press("Space");
-      await until(page, () => mascot.t_s > 40);
-      await page.click("#tab-tune");
-      assert.match(await page.textContent("#tune"), /cannot be changed/);
-      assert.match(await page.textContent("[data-key='law.p_gain']"), /0\.35/);
-      assert.equal(await page.locator("#tune input").count(), 0);
-      assert.deepEqual(events(fake), []);
-    }));
+    () =>
+        watching({run: {source: "recording", own: {"law.p_gain": [{agent: 2, value: 0.5}]}}}, async ({page, fake}) => {
+          assert.equal(await page.locator("#marks i").count(), 2);
+          const title = (k) => page.locator("#marks i").nth(k).getAttribute("title");
+          assert.match(await title(0), /^event 1\n/);
+          assert.match(await title(1), /^event 2 by hand\n/);
+          const widths =
+              await page.locator("#marks i").evaluateAll((marks) => marks.map(({offsetWidth}) => offsetWidth));
+          assert.ok(widths[1] > 2 * widths[0], `a dot and a bar: ${widths}`);
+          assert.deepEqual(await page.locator("#events .event .badge").allTextContents(), ["by hand", "file"]);
+          fake.run.events[1].by_hand = null;
+          fake.tellEvents();
+          await until(page, () => document.querySelectorAll("#events .event .badge").length === 1);
+          assert.match(await title(1), /^event 2\n/);
+          assert.ok(await page.locator("#stop").isHidden());
+          await page.locator("#seek").fill("30");
+          await until(page, () => Math.abs(mascot.t_s - 30) < 0.02);
+          await page.locator("#scene").focus();
+          await page.keyboard.press("Shift+ArrowRight");
+          await until(page, () => mascot.tick === 3100);
+          await page.keyboard.press("ArrowLeft");
+          await until(page, () => mascot.tick === 3099);
+          await page.keyboard.press("PageUp");
+          await until(page, () => mascot.tick === 2099);
+          await page.locator("#marks i").nth(1).click();
+          await until(page, () => mascot.tick === 3200);
+          await page.selectOption("#pace", "100");
+          await page.keyboard.press("Space");
+          await until(page, () => mascot.t_s > 40);
+          await page.click("#tab-tune");
+          assert.match(await page.textContent("#tune"), /cannot be changed/);
+          assert.match(await page.textContent("[data-key='law.p_gain']"), /0\.35.*agent 2: 0\.5$/);
+          assert.equal(await page.locator("#tune input").count(), 0);
+          assert.deepEqual(events(fake), []);
+        }));
 
 test("what a recorded run came up against is marked on its time line, and is sought by a click", () => {
   const incidents = `t_s,until_s,what,count,agent,with,detail

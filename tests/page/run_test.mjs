@@ -47,6 +47,13 @@ const TOUCHES = {
     await page.keyboard.press("Space");
     await until(page, ([x, y]) => mascot.positions[0] > x + 0.5 && mascot.positions[1] > y + 0.2, [x, y]);
     await until(page, () => mascot.events.length === 1);
+    // Tune has the place to which it was sent, beside what the file says of the team.
+    const toml = await page.evaluate(() => mascot.events[0].toml);
+    const sentTo = toml.match(/position_m = \[(.*)\]/)[1].split(", ").map((x) => Number(Number(x).toPrecision(6)));
+    const words = `agent 1: (${sentTo.map(String).join(", ").replaceAll("-", "−")})`;
+    await until(
+        page, (wanted) => document.querySelector("[data-key='law.leader_waypoints_m'] .own").textContent === wanted,
+        words);
   },
   async "a click cuts an edge, which darkens, and another click mends it"({page}) {
     await pausedFromAbove(page);

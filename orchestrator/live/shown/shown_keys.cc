@@ -31,8 +31,10 @@ std::string JsonOf(const Key& row, const std::optional<Value>& value) {
 
 std::vector<ShownKey> ShownKeysOf(const LiveExperiment& live) {
   std::vector<ShownKey> keys;
-  for (const LiveKey& key : LiveKeysOf(live.current(), LawTable()))
-    keys.push_back({key.path, key.row, JsonOf(key.row, live.ValueOf(key.path))});
+  for (const LiveKey& key : LiveKeysOf(live.current(), LawTable())) {
+    ShownKey& shown = keys.emplace_back(ShownKey{key.path, key.row, JsonOf(key.row, live.ValueOf(key.path))});
+    for (const auto& [id, value] : live.OwnValuesOf(key.path, kMaxOwnShown)) shown.own[id] = JsonOf(key.row, value);
+  }
   return keys;
 }
 

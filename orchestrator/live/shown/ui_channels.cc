@@ -141,6 +141,8 @@ Json KeysJson(const std::vector<ShownKey>& keys) {
   for (const ShownKey& key : keys) {
     const bool is_integer = key.row.kind == ValueKind::kInteger;
     const std::vector<std::string> names(key.row.names.begin(), key.row.names.end());
+    Json own = Json::array();
+    for (const auto& [id, value] : key.own) own.push_back({{"agent", id}, {"value", JsonOrNull<Json>(value)}});
     json.push_back({{"key", key.name},
                     {"kind", kKinds.Name(key.row.kind)},
                     {"unit", key.row.unit},
@@ -149,6 +151,7 @@ Json KeysJson(const std::vector<ShownKey>& keys) {
                     {"open_min", key.row.range.open_min},
                     {"names", names},
                     {"value", JsonOrNull<Json>(key.value)},
+                    {"own", own},
                     {"meaning", key.row.meaning}});
   }
   return json;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +20,9 @@ namespace mascot {
 
 /// Edges beyond which a frame says nothing about them.
 inline constexpr std::size_t kMaxEdgesShown = 20000;
+
+/// Agents of which a live key shows their own values.
+inline constexpr std::size_t kMaxOwnShown = 100;
 
 /// One tick of a run, as viewers see it.
 struct ShownRow {
@@ -45,7 +49,10 @@ struct RunState {
 struct ShownKey {
   std::string name;  ///< "law.p_gain"
   Key row;
-  std::string value;  ///< as JSON
+  std::string value;  ///< of the team, as JSON
+  /// As JSON, of each agent that has a value of its own, by the file or by an event (`agents`, `goto`): by id, at most
+  /// kMaxOwnShown.
+  std::map<int, std::string> own = {};
 };
 
 /// An event that has taken effect.

@@ -6,6 +6,8 @@ import {exact, rounded, typeset} from "../numbers.js";
 
 import {Scale} from "./scale.js";
 
+const MOST_OWN = 3;  // agents whose own values are listed below a control
+
 export class Tune {
   #model;
   #asking;
@@ -25,17 +27,30 @@ export class Tune {
         this.#model.canChange;
     if (wanted !== this.#drawn) this.#make(sorted(keys));
     this.#drawn = wanted;
-    for (const {key, value} of keys) this.#controls.get(key)?.show(value);
+    this.#showAll();
   }
+
+  // What the controls are for: the team, or the chosen agent alone, which may have a value of its own.
+  #showAll() {
+    for (const {key, value, own} of this.#model.experiment?.live_keys ?? []) {
+      const ownHere = this.#isForOne ? own.find(({agent}) => agent === this.#model.selected) : null;
+      this.#controls.get(key)?.show(ownHere ? ownHere.value : value);
+      this.#controls.get(key)?.showOwn(own);
+    }
+  }
+
+  get #isForOne() { return Boolean(this.only?.checked); }
 
   #make(keys) {
     this.#controls.clear();
+    this.only = this.onlyLabel = null;
     const hint = (textContent) => element("p", {className: "muted hint", textContent});
     if (this.#model.isRecording) return this.#list(keys, hint("A recording cannot be changed. At this time it has:"));
     if (!this.#model.maySteer) return this.#list(keys, hint("This page only watches. At this time the run has:"));
     if (keys.length === 0)
       return byId("tune").replaceChildren(hint("This run has no keys that can be changed while it goes on."));
     this.only = element("input", {type: "checkbox", id: "tune-only"});
+    this.only.addEventListener("change", () => this.#showAll());
     this.onlyLabel = element("label", {className: "only", htmlFor: "tune-only"}, this.only, element("span"));
     byId("tune").replaceChildren(this.onlyLabel, ...keys.map((key) => this.#row(key)));
     this.#nameTarget();
@@ -44,10 +59,10 @@ export class Tune {
   // What the keys are, to be read only.
   #list(keys, hint) {
     const rows = keys.map(({key, unit}) => {
-      const value = element("b");
-      this.#controls.set(key, {show: (now) => setText(value, now === null ? "–" : show(now))});
-      const row =
-          element("div", {className: "reading"}, key, value, element("small", {className: "muted"}, typeset(unit)));
+      const value = element("b"), own = ownValues();
+      this.#controls.set(key, {show: (now) => setText(value, now === null ? "–" : show(now)), showOwn: own.show});
+      const row = element(
+          "div", {className: "reading"}, key, value, element("small", {className: "muted"}, typeset(unit)), own.body);
       row.dataset.key = key;
       return row;
     });
@@ -59,6 +74,7 @@ export class Tune {
     const {selected} = this.#model;
     this.only.disabled = !selected;
     if (!selected) this.only.checked = false;
+    this.#showAll();
     setText(this.onlyLabel.lastChild, selected ? `only for agent ${selected}` : "only for one agent: choose it first");
   }
 
@@ -69,19 +85,19 @@ export class Tune {
     const name = element(
         "label", {title: key.meaning ?? "", htmlFor: `key-${key.key}`}, key.key,
         element("small", {className: "muted", textContent: key.unit ? ` ${typeset(key.unit)}` : ""}));
-    this.#controls.set(key.key, {show});
-    const row = element("div", {className: "key"}, name, ...body, words);
+    const own = ownValues();
+    this.#controls.set(key.key, {show, showOwn: own.show});
+    const row = element("div", {className: "key"}, name, ...body, own.body, words);
     row.dataset.key = key.key;
     return row;
   }
 
   async #ask({key, unit}, value, words) {
-    const agents = this.only.checked ? [this.#model.selected] : [];
+    const agents = this.#isForOne ? [this.#model.selected] : [];
     const answer = await this.#asking.event(
         setToml(key, value, agents), `${key} = ${show(value)}${unit ? ` ${typeset(unit)}` : ""}`);
     setText(words, answer.granted ? "" : answer.words);
-    if (!answer.granted)
-      this.#controls.get(key)?.show(this.#model.experiment.live_keys.find((live) => live.key === key)?.value);
+    if (!answer.granted) this.#showAll();
   }
 }
 
@@ -96,6 +112,21 @@ const show = (value) =>
     (typeof value === "number" ? exact(value) :
          Array.isArray(value)  ? value.map((x) => (Array.isArray(x) ? `(${show(x)})` : show(x))).join(", ") :
                                                                       String(value));
+
+/** A line below a control: the values that agents have of their own, which events with `agents` and drags give them. */
+function ownValues() {
+  const body = element("p", {className: "own", hidden: true});
+  return {
+    body,
+    show(own) {
+      const named = own.slice(0, MOST_OWN).map(({agent, value}) => `agent ${agent}: ${show(value)}`);
+      if (own.length > MOST_OWN) named.push(`and ${own.length - MOST_OWN} more`);
+      body.hidden = own.length === 0;
+      setText(body, named.join("; "));
+    }
+  };
+}
+
 const idOf = ({key}) => `key-${key}`;
 const boundsOf = ({min, max, open_min}) => ({low: `${open_min ? "> " : ""}${exact(min)}`, high: exact(max)});
 

@@ -230,6 +230,25 @@ std::string ValueOf(const std::string& key, const std::vector<ShownKey>& keys) {
   return "there is no " + key;
 }
 
+std::map<int, std::string> OwnValuesOf(const std::string& key, const std::vector<ShownKey>& keys) {
+  for (const ShownKey& shown : keys)
+    if (shown.name == key) return shown.own;
+  return {{0, "there is no " + key}};
+}
+
+TEST(RecordedRun, HasTheValuesThatAgentsHaveOfTheirOwn) {
+  using Own = std::map<int, std::string>;
+  const ScratchFolder folder;
+  const Flown run(folder,
+                  std::string(kThree) + "[[events]]\nat_s = 2.2\nagents = [2, 3]\nset = { \"law.p_gain\" = 2 }\n");
+  RecordedRun recorded(run.path());
+  EXPECT_EQ(OwnValuesOf("law.leader_waypoints_m", recorded.KeysAt(199)), Own());
+  EXPECT_EQ(OwnValuesOf("law.leader_waypoints_m", recorded.KeysAt(200)), (Own{{1, "[[5.0, 5.0, 2.0]]"}}));
+  EXPECT_EQ(OwnValuesOf("law.p_gain", recorded.KeysAt(219)), Own());
+  EXPECT_EQ(OwnValuesOf("law.p_gain", recorded.KeysAt(220)), (Own{{2, "2.0"}, {3, "2.0"}}));
+  EXPECT_EQ(ValueOf("law.p_gain", recorded.KeysAt(220)), "0.3") << "the team's";
+}
+
 TEST(RecordedRun, HasTheExperimentOfEachTick) {
   const ScratchFolder folder;
   const Flown run(folder, kThree);

@@ -440,7 +440,7 @@ TEST(LiveView, TellsOfEvents) {
   EXPECT_EQ(experiment["agents"][0]["waypoints_m"], Json::parse("[[7.0,8.0,1.0]]"));
   EXPECT_EQ(experiment["prediction"]["why"], "events change the run, from 0.5 s on") << "what it said held before";
   EXPECT_EQ(experiment["live_keys"], Json::parse(R"([{"key":"law.p_gain","kind":"number","unit":"1/s^2","min":0.0,
-    "max":10.0,"open_min":true,"names":[],"value":0.5,"meaning":"pull"}])"));
+    "max":10.0,"open_min":true,"names":[],"value":0.5,"own":[],"meaning":"pull"}])"));
   EXPECT_EQ(viewer.NextJsonOf("/ui/events"),
             Json::parse(R"([{"number":1,"tick":50,"t_s":0.5,"toml":"goto = {}","by_hand":true}])"));
   const mascot_msgs::msg::Event event = EventIn(listener.NextOf("/event"));
