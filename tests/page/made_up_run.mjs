@@ -36,6 +36,10 @@ export class MadeUpRun {
     curve = null,           // of the law: {name, unit, meaning, decays, agrees, since_s, predicted}
     law_value = null,       // its value at a time
     places_m = 0,           // radius of a circle that the agents are to form; 0: none
+    cells = [],             // {region_m, agents}: regions that agents divide
+    hulls = [],             // {agents, axes}: agents whose hull is drawn, which lead
+    liars = {},             // number of an agent -> time from which on it lies
+    left_out = null,        // of each edge at a time: bit k for axis k; null: no law leaves anything out
     own = {},               // key -> values that agents have of their own: {agent, value}
     drift_m_per_s = 0,      // at which all are shown to go east
     waits = false           // what is granted while the run is paused takes effect when it goes on
@@ -57,6 +61,10 @@ export class MadeUpRun {
       curve,
       law_value,
       places_m,
+      cells,
+      hulls,
+      liars,
+      left_out,
       own,
       drift_m_per_s,
       waits,
@@ -113,6 +121,9 @@ export class MadeUpRun {
       agents: this.p.map((_, k) => this.#agent(k + 1)),
       edges: this.edges,
       range_m: this.range_m,
+      cells: this.cells,
+      hulls: this.hulls,
+      leaves_out: this.left_out !== null,
       obstacles: this.size > 20 ? [] :
                                   [
                                     {kind: "box", position_m: [5, 4, 1], size_m: [2, 1, 2], heading_rad: 0.5},
@@ -176,7 +187,8 @@ export class MadeUpRun {
       size_m: isQuadrotor ? [0.5, 0.5, 0.1] : [0.4, 0.4, 0.4],
       arm_m: isQuadrotor ? 0.25 : 0,
       law: "consensus",
-      leads: id === this.leader,
+      leads: id === this.leader || this.hulls.some(({agents}) => agents.includes(id)),
+      lies_from_s: this.liars[id] ?? null,
       waypoints_m: id === this.leader ? [this.home[id - 1], [6, -2, 3]] : [],
       place_m: this.places_m ? [this.places_m * Math.cos(id), this.places_m * Math.sin(id), 0] : null,
       parent: 0,
@@ -304,6 +316,7 @@ export class MadeUpRun {
               (state === 4     ? -1 :
                    state === 1 ? 0.01 :
                                  round(0.03 + 0.1 * dice(k)))),
+      ...(this.left_out ? {left_out: this.left_out(this.t_s)} : {}),
       disagreement_m: this.#disagreement(this.p),
       curve: this.rows ? null : this.law_value?.(this.t_s) ?? null,
       speed_m_per_s: this.v.map((v) => round(Math.hypot(...v))),

@@ -226,6 +226,161 @@ test(
       assert.equal(fake.asked.length, 6);
     }));
 
+// --- what is drawn of a law --------------------------------------------------------------------------------
+
+const REGION = [[-9, -9], [9, -9], [9, 9], [0, 12], [-9, 9]];
+const ALL = Array.from({length: 10}, (_, k) => k + 1);
+
+/** The words of the legend, and of the menu of layers, that can be seen. */
+const offered = (page) => page.evaluate(() => {
+  const seen = (list) => [...list.children].filter(({hidden}) => !hidden).map(({textContent}) => textContent);
+  return {legend: seen(legend), menu: seen(document.getElementById("layer-list"))};
+});
+
+/** Hides or shows a layer by its words in the menu. */
+async function toggle(page, words) {
+  await page.click("#layers summary");
+  await page.click(`#layer-list label:has-text("${words}")`);
+  await page.keyboard.press("Escape");
+}
+
+/** The picture of what is known now is drawn before the second of these. */
+const nextPicture = (page) =>
+    page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+
+test(
+    "a run has only what its law has: no cells, no hull, no liars, nothing left out",
+    () => watching({}, async ({page}) => {
+      await until(page, () => mascot.tick > 0);
+      const drawn = await page.evaluate(() => [mascot.cells, mascot.hulls, mascot.liars, mascot.leftOut]);
+      assert.deepEqual(drawn, [null, null, [], []]);
+      const {legend, menu} = await offered(page);
+      assert.deepEqual(legend, ["heard", "lost", "out of range", "no edge"]);
+      for (const words of ["What laws leave out", "Who lies", "Cells of the region", "Hull of the leaders"])
+        assert.ok(!menu.includes(words), words);
+    }));
+
+test("the cells of a region are its parts that are nearest to each agent, and follow the agents", async () => {
+  await watching({run: {cells: [{region_m: REGION, agents: ALL}], drift_m_per_s: 1}}, async ({page}) => {
+    await until(page, () => mascot.cells?.length === 10);
+    const seen = await page.evaluate((region) => {
+      const area = (corners) => corners.reduce((sum, [x, y], k) => {
+        const [u, v] = corners[(k + 1) % corners.length];
+        return sum + (x * v - y * u) / 2;
+      }, 0);
+      const isIn = (corners, [px, py]) => corners.length > 2 && corners.every(([x, y], k) => {
+        const [u, v] = corners[(k + 1) % corners.length];
+        return (u - x) * (py - y) - (v - y) * (px - x) > -1e-9;
+      });
+      const {cells, positions: p} = mascot;
+      const nearest = (q) =>
+          cells.map(({agent}) => [Math.hypot(p[3 * agent - 3] - q[0], p[3 * agent - 2] - q[1]), agent])
+              .sort(([a], [b]) => a - b)[0][1];
+      const wrong = [];
+      for (let x = -8.7; x < 9; x += 0.61)
+        for (let y = -8.7; y < 9; y += 0.61)
+          if (!isIn(cells.find(({agent}) => agent === nearest([x, y])).corners, [x, y])) wrong.push([x, y]);
+      return {wrong, areas: cells.map(({corners}) => area(corners)), whole: area(region), cells};
+    }, REGION);
+    assert.deepEqual(seen.wrong, []);
+    assert.ok(Math.abs(seen.areas.reduce((a, b) => a + b) - seen.whole) < 1e-9, `${seen.areas} of ${seen.whole}`);
+    await until(page, (before) => JSON.stringify(mascot.cells) !== before, JSON.stringify(seen.cells));
+    const {legend} = await offered(page);
+    assert.ok(legend.includes("cells"), legend);
+    await toggle(page, "Cells of the region");
+    await until(page, () => mascot.cells === null);
+  });
+});
+
+test("the convex hull of leaders is drawn through them, in the plane or in space, and follows them", async () => {
+  const leaders = [2, 4, 5, 7, 9];
+  for (const [axes, least] of [["xy", 3], ["xyz", 4]])
+    await watching({run: {hulls: [{agents: leaders, axes}]}}, async ({page, fake}) => {
+      await until(page, () => mascot.hulls?.[0].length > 2);
+      const {corners, places} = await page.evaluate((ids) => {
+        const round = (x) => x.toFixed(3);
+        return {
+          corners: mascot.hulls[0].map((p) => p.map(round).join()),
+          places: ids.map((id) => mascot.positions.slice(3 * id - 3, 3 * id).map(round).join())
+        };
+      }, leaders);
+      assert.ok(corners.length >= least, `${corners}`);
+      for (const corner of corners) assert.ok(places.includes(corner), `${corner} is none of ${places}`);
+      await until(page, (before) => mascot.hulls[0].map(String).join() !== before, corners.join());
+      await until(page, () => /2 leads.*9 leads/s.test(document.getElementById("table").textContent));
+      assert.ok((await offered(page)).legend.includes("hull of leaders"));
+      await drag(page, 2);
+      assert.deepEqual(events(fake), [], "a leader that flies no waypoints is not sent");
+      await toggle(page, "Hull of the leaders");
+      await until(page, () => mascot.hulls === null);
+    });
+});
+
+test("the hull of leaders that stand in a line, or at one place, is drawn as far as there is one", async () => {
+  await watching({}, async ({page}) => {
+    const drawn = await page.evaluate(async () => {
+      const {Hulls} = await import("/scene/areas.js");
+      const hullOf = (axes, ...points) => {
+        const layer = new Hulls([{agents: points.map((_, k) => k + 1), axes}]);
+        layer.update({p: points.flat()});
+        return layer.drawn[0].length;
+      };
+      return {
+        line: hullOf("xyz", [0, 0, 1], [1, 1, 1], [2, 2, 1]),
+        place: hullOf("xy", [3, 3, 1], [3, 3, 1]),
+        square: hullOf("xyz", [0, 0, 1], [4, 0, 1], [4, 4, 1], [0, 4, 1]),
+        tetrahedron: hullOf("xyz", [0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.1, 0.1, 0.1]),
+      };
+    });
+    assert.deepEqual(drawn, {line: 2, place: 1, square: 4, tetrahedron: 4});
+  });
+});
+
+test("who lies is marked and named from the time on at which it lies", async () => {
+  await watching({run: {source: "recording", liars: {3: 20}}}, async ({page}) => {
+    const isNamed = () => page.evaluate(() => mascot.texts.some(({text}) => text === "3 lies"));
+    const seek = async (t_s) => {
+      await page.locator("#seek").fill(String(t_s));
+      await until(page, (t) => Math.abs(mascot.t_s - t) < 0.02, t_s);
+      await nextPicture(page);
+    };
+    await seek(19);
+    assert.deepEqual(await page.evaluate(() => mascot.liars), []);
+    assert.ok(!await isNamed());
+    assert.ok((await offered(page)).legend.includes("lies"));
+    await seek(20);
+    assert.deepEqual(await page.evaluate(() => mascot.liars), [3]);
+    assert.ok(await isNamed());
+    await page.locator("#scene").focus();
+    await page.keyboard.press("3");
+    await until(page, () => document.querySelector("#detail h3")?.textContent.endsWith(", lies"));
+    await until(page, () => document.querySelector("#table .row[data-agent='3']").textContent.startsWith("3 lies"));
+    await toggle(page, "Who lies");
+    await nextPicture(page);
+    assert.ok(!await isNamed());
+  });
+});
+
+test("what a law leaves out of what it hears looks so, and is told with its axes", async () => {
+  await watching({run: {left_out: () => [0, 3, 0, 4]}}, async ({page, fake}) => {
+    const looks = (k, l, same) => until(page, ([k, l, same]) => {
+      const [a, b] = [k, l].map((edge) => mascot.edgeLook(edge).slice(0, 3));
+      return (Math.max(...a.map((x, i) => Math.abs(x - b[i]))) < 0.05) === same;
+    }, [k, l, same]);
+    await looks(1, 3, true);
+    await looks(1, 0, false);
+    const [hearer] = fake.run.edges[1];
+    await page.keyboard.press(String(hearer));
+    await until(
+        page,
+        () => /heard, left out along x, y, 0\.01 s old/.test(document.querySelector("#detail .heard")?.textContent));
+    assert.ok((await offered(page)).legend.includes("left out"));
+    await page.keyboard.press("Escape");
+    await toggle(page, "What laws leave out");
+    await looks(1, 0, true);
+  });
+});
+
 // --- texts and numbers -------------------------------------------------------------------------------------
 
 /** Pairs of texts of the view, of what stands above it, and of the labels of each chart, that stand on each other. */
@@ -256,7 +411,7 @@ const collisions = (page) => page.evaluate(() => {
 });
 
 test("no text stands on another, wherever agents, waypoints and axes are, in wide and narrow windows", async () => {
-  for (const run of [{}, {agents: 40}])
+  for (const run of [{}, {agents: 40}, {hulls: [{agents: ALL, axes: "xy"}], liars: {1: 0, 2: 0}}])
     await watching({run}, async ({page, fake}) => {
       for (const size of [WIDE, PHONE])
         for (const look of ["a", "t"]) {

@@ -177,6 +177,96 @@ test("the page of a recording goes where it is asked to, and shows what was so a
   }
 });
 
+/** Serves the recording of an experiment of configs/; `body` gets its page, and `at`, which goes to a time. */
+async function watchRecording(config, body) {
+  const browser = await launch(), recording = await startRecording(await textOf(config));
+  try {
+    const {page, troubles} = await open(browser, recording.url);
+    await until(page, () => mascot.experiment.live_keys.length > 0 && mascot.state === "paused");
+    const at = async (t_s) => {
+      await page.locator("#seek").fill(String(t_s));
+      await until(page, (t) => mascot.t_s === t && mascot.edgeStates?.length > 0, t_s);
+      // The picture of this row is drawn before the second of these.
+      await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+    };
+    await body({page, at});
+    assert.deepEqual(troubles, []);
+  } finally {
+    await recording.stop();
+    await browser.close();
+  }
+}
+
+test(
+    "coverage is drawn with the cells of its region, which follow the agents",
+    () => watchRecording("coverage.toml", async ({page, at}) => {
+      const areaOf = ({corners}) => corners.reduce((sum, [x, y], k) => {
+        const [u, v] = corners[(k + 1) % corners.length];
+        return sum + (x * v - y * u) / 2;
+      }, 0);
+      const least = [];  // area of a cell (m²)
+      for (const t_s of [0, 10]) {
+        await at(t_s);
+        const cells = await page.evaluate(() => mascot.cells), areas = cells.map(areaOf);
+        assert.deepEqual(cells.map(({agent}) => agent), [1, 2, 3, 4, 5, 6]);
+        assert.ok(Math.abs(areas.reduce((a, b) => a + b) - 65) < 1e-9, "the region has 65 m²");
+        least.push(Math.min(...areas));
+      }
+      assert.ok(least[1] > 3 * least[0], `the smallest cell grows: ${least}`);
+      assert.equal(await page.evaluate(() => mascot.hulls), null);
+      assert.deepEqual(await page.evaluate(() => [mascot.liars, mascot.leftOut]), [[], []]);
+    }));
+
+test(
+    "containment is drawn with the hull of its leaders, which moves with them",
+    () => watchRecording("containment.toml", async ({page, at}) => {
+      for (const t_s of [0, 10]) {
+        await at(t_s);
+        const {hulls, leaders} = await page.evaluate(
+            () => ({hulls: mascot.hulls, leaders: [0, 3, 6].map((k) => mascot.positions.slice(k, k + 3))}));
+        assert.deepEqual(hulls.map((corners) => corners.map(String).sort()), [leaders.map(String).sort()]);
+      }
+      assert.equal(await page.evaluate(() => mascot.cells), null);
+      await until(page, () => /1 leads.*2 leads.*3 leads/s.test(document.getElementById("table").textContent));
+    }));
+
+/** Which edges of a page's run are left out along x, as "hearer heard". */
+const leftOutAlongX = (page) => page.evaluate(
+    () =>
+        mascot.experiment.edges.filter((_, k) => mascot.leftOut[k] & 1).map(([hearer, heard]) => `${hearer} ${heard}`));
+const LIAR_IS_LEFT_OUT = [1, 2, 3, 4, 5, 6].map((hearer) => `${hearer} 7`);
+
+test(
+    "a resilient law is drawn with who lies, and with what each agent leaves out",
+    () => watchRecording("resilient.toml", async ({page, at}) => {
+      await at(0.5);
+      assert.deepEqual(await page.evaluate(() => mascot.liars), []);
+      const honest = await leftOutAlongX(page);
+      assert.ok(honest.includes("7 5") && !honest.includes("2 7"), `from the starts: ${honest}`);
+      await at(2);
+      assert.deepEqual(await page.evaluate(() => mascot.liars), [7]);
+      const left = await leftOutAlongX(page);
+      for (const edge of LIAR_IS_LEFT_OUT) assert.ok(left.includes(edge), `${edge} of ${left}`);
+      assert.ok(left.length < 42, "not all is left out");
+      assert.deepEqual(await page.evaluate(() => [mascot.cells, mascot.hulls]), [null, null]);
+    }));
+
+test("a run that goes on tells who lies and what is left out, as its recording does", async () => {
+  const browser = await launch(), run = await startRun("resilient.toml", "--engine", "inprocess");
+  try {
+    const {page} = await open(browser, run.url);
+    await until(page, () => mascot.liars.length === 1);
+    assert.deepEqual(await page.evaluate(() => mascot.liars), [7]);
+    await until(page, (wanted) => {
+      const {leftOut, experiment} = mascot;
+      return wanted.every((edge) => leftOut[experiment.edges.findIndex(([i, j]) => `${i} ${j}` === edge)] & 1);
+    }, LIAR_IS_LEFT_OUT);
+  } finally {
+    await run.stop();
+    await browser.close();
+  }
+});
+
 const PHASES = `
 [run]
 name = "phases"

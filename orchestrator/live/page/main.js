@@ -114,6 +114,12 @@ function picture(now_ms) {
 }
 requestAnimationFrame(picture);
 
+/** What a layer of areas has drawn; null: it is not there, or not shown. */
+function drawnBy(name) {
+  const layer = view.layers[name];
+  return layer?.visible ? layer.drawn : null;
+}
+
 /**
  * What the page shows and knows. Positions are flat, by agent; places on the screen are [x, y] in pixels of the view.
  */
@@ -127,7 +133,11 @@ window.mascot = {
   get positions() { return model.frame?.p ?? []; },
   get edgeStates() { return model.frame?.edge ?? []; },
   get events() { return model.events; },
-  get texts() { return view.texts; },  // {text, box: [left, top, right, bottom]}
+  get leftOut() { return model.frame?.left_out ?? []; },  // by edge: bit k for axis k
+  get liars() { return model.liars; },                    // numbers of agents
+  get cells() { return drawnBy("cells"); },               // {agent, corners [x, y]}
+  get hulls() { return drawnBy("hulls"); },               // lists of points [x, y, z]
+  get texts() { return view.texts; },                     // {text, box: [left, top, right, bottom]}
   get selected() { return model.selected; },
   get followed() { return view.eye.followed; },
   get lastAnswer() { return model.lastAnswer; },

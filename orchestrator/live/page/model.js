@@ -12,7 +12,11 @@ export const EDGE = {
   SILENT: 4,
   UNKNOWN: 5  // of a recording: it is still being found out
 };
-export const EDGE_WORDS = ["no edge now", "heard", "lost", "out of range", "nothing arrived yet", "not known yet"];
+const EDGE_WORDS = ["no edge now", "heard", "lost", "out of range", "nothing arrived yet", "not known yet"];
+
+/** The axes along which a law does not use what was heard on an edge, from the bits of a row; empty: none. */
+const leftOutWords = (bits) =>
+    (bits ? `left out along ${["x", "y", "z"].filter((_, k) => bits >> k & 1).join(", ")}` : "");
 
 /** Bits of a command's flags, in words. */
 const LIMITS = [
@@ -130,14 +134,39 @@ export class Model {
 
   agent(number) { return this.experiment?.agents[number - 1]; }
 
+  /** Numbers of the agents of which others hear what is false at the time of the row. */
+  get liars() {
+    const t_s = this.frame?.t_s ?? -1, lies = ({lies_from_s: from_s}) => from_s !== null && t_s >= from_s - 1e-9;
+    return (this.experiment?.agents ?? []).filter(lies).map(({id}) => id);
+  }
+
+  /** What an agent is beside the others: "leads", "lies". */
+  rolesOf(number) {
+    return [...(this.agent(number).leads ? ["leads"] : []), ...(this.liars.includes(number) ? ["lies"] : [])];
+  }
+
+  /** The number of an agent, and what it is. */
+  nameOf(number) { return [number, ...this.rolesOf(number)].join(" "); }
+
+  /** What became of an edge at the tick of the row, in words. */
+  edgeWords(index) {
+    const words = EDGE_WORDS[this.frame?.edge?.[index] ?? EDGE.UNKNOWN];
+    return [words, leftOutWords(this.frame?.left_out?.[index])].filter(Boolean).join(", ");
+  }
+
   /** Three numbers of an agent in a flat array of the row: "p", "v" or "a". */
   vector(name, number) { return this.frame[name].slice(3 * number - 3, 3 * number); }
 
-  /** Edges on which an agent hears: {index, heard, weight, state, age_s}. */
+  /** Edges on which an agent hears: {index, heard, weight, state, words, age_s}. */
   heardBy(number) {
-    return this.experiment.edges.flatMap(([hearer, heard, weight], index) => hearer !== number ? [] : [
-      {index, heard, weight, state: this.frame?.edge?.[index] ?? EDGE.UNKNOWN, age_s: this.frame?.age_s?.[index] ?? -1}
-    ]);
+    return this.experiment.edges.flatMap(([hearer, heard, weight], index) => hearer !== number ? [] : [{
+                                           index,
+                                           heard,
+                                           weight,
+                                           state: this.frame?.edge?.[index] ?? EDGE.UNKNOWN,
+                                           words: this.edgeWords(index),
+                                           age_s: this.frame?.age_s?.[index] ?? -1
+                                         }]);
   }
 }
 

@@ -1,7 +1,7 @@
 // The table of agents, of which only the rows in sight exist, and all about the selected one.
 import {agentColours} from "../colours.js";
 import {byId, element, setText, throttled} from "../dom.js";
-import {EDGE, EDGE_WORDS, limitWords, shortLimitWords} from "../model.js";
+import {EDGE, limitWords, shortLimitWords} from "../model.js";
 import {exact, fixed, seconds} from "../numbers.js";
 import {cutOrMend} from "../scene/hand.js";
 
@@ -71,13 +71,13 @@ export class Agents {
   }
 
   #fillRow(row, index) {
-    const {frame, selected} = this.#model, number = index + 1, agent = this.#model.agent(number);
+    const {frame, selected} = this.#model, number = index + 1;
     row.dataset.agent = number;
     row.style.transform = `translateY(${ROW_PX * index}px)`;
     row.setAttribute("aria-selected", number === selected);
     const [name, ...cells] = row.children;
     name.firstChild.style.background = this.#colours[index];
-    setText(name.lastChild, `${number}${agent.leads ? " leads" : ""}`);
+    setText(name.lastChild, this.#model.nameOf(number));
     const values = [...this.#model.vector("p", number), frame.speed_m_per_s[index]].map((x) => fixed(x));
     [...values, shortLimitWords(frame.flags[index])].forEach((text, k) => setText(cells[k], text));
     cells.at(-1).title = limitWords(frame.flags[index]);
@@ -107,8 +107,8 @@ class Detail {
   update() {
     const {selected, frame, experiment} = this.#model;
     if (!experiment || !frame || byId("agents").hidden) return;
-    const {law, leads} = this.#model.agent(selected) ?? {};  // an event may change both
-    const wanted = `${selected} ${experiment.edges.length} ${experiment.name} ${law} ${leads}`;
+    const {law} = this.#model.agent(selected) ?? {};  // an event may change it, and who leads
+    const wanted = `${experiment.edges.length} ${experiment.name} ${law} ${selected && this.#model.nameOf(selected)}`;
     if (wanted !== this.#drawn) this.#make(selected);
     this.#drawn = wanted;
     if (selected) this.#fill(selected);
@@ -120,11 +120,11 @@ class Detail {
           "p", {className: "muted hint"},
           "Click an agent, in the view or in the table, to see its state, its command, its limits and its neighbours."));
     const agent = this.#model.agent(selected);
-    const title =
-        element("h3", {}, element("i", {className: "dot"}), `Agent ${selected}`, element("small", {
-                  className: "muted",
-                  textContent: ` ${agent.model.replaceAll("_", " ")}, ${agent.law}${agent.leads ? ", leads" : ""}`
-                }));
+    const title = element("h3", {}, element("i", {className: "dot"}), `Agent ${selected}`, element("small", {
+                            className: "muted",
+                            textContent: ` ${agent.model.replaceAll("_", " ")}, ${agent.law}${
+                                this.#model.rolesOf(selected).map((role) => `, ${role}`).join("")}`
+                          }));
     title.firstChild.style.background = agentColours(this.#model.size)[selected - 1];
     const list = element("dl");
     this.#values =
@@ -164,12 +164,12 @@ class Detail {
     };
     for (const [name, text] of Object.entries(texts)) setText(this.#values[name], text);
     this.#values.limits.classList.toggle("warn", frame.flags[selected - 1] !== 0);
-    this.#model.heardBy(selected).forEach(({state, age_s}, k) => this.#fillHeard(this.#heard[k], state, age_s));
+    this.#model.heardBy(selected).forEach((edge, k) => this.#fillHeard(this.#heard[k], edge));
   }
 
-  #fillHeard(row, state, age_s) {
+  #fillHeard(row, {state, words, age_s}) {
     row.dataset.state = state;
-    setText(row.querySelector(".words"), `${EDGE_WORDS[state]}${age_s >= 0 ? `, ${seconds(age_s)} old` : ""}`);
+    setText(row.querySelector(".words"), `${words}${age_s >= 0 ? `, ${seconds(age_s)} old` : ""}`);
     setText(row.lastChild, state === EDGE.NONE ? "Mend" : "Cut");
   }
 }

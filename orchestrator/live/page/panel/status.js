@@ -3,13 +3,30 @@
 import {byId, element, setText} from "../dom.js";
 import {figure} from "../numbers.js";
 
+// What an experiment may have, or not.
+const HAS = {
+  edges: ({edges}) => edges.length > 0,
+  range: ({edges, range_m}) => edges.length > 0 && range_m > 0,
+  tree: ({agents}) => agents.some(({parent}) => parent > 0),
+  cells: ({cells}) => cells.length > 0,
+  hulls: ({hulls}) => hulls.length > 0,
+  liars: ({agents}) => agents.some(({lies_from_s}) => lies_from_s !== null),
+  leftOut: ({leaves_out}) => leaves_out
+};
+// Layer, words, what an experiment must have for it; nothing: it is there in all.
 const LAYERS = [
-  ["trails", "Trails"], ["edges", "Edges: who hears whom"], ["numbers", "Numbers"], ["velocity", "Velocity"],
-  ["acceleration", "Commanded acceleration"], ["plan", "Waypoints, places, prediction"], ["tree", "Tree of pursuit"],
-  ["heights", "Heights"]
+  ["trails", "Trails"], ["edges", "Edges: who hears whom"], ["leftOut", "What laws leave out", HAS.leftOut],
+  ["liars", "Who lies", HAS.liars], ["cells", "Cells of the region", HAS.cells],
+  ["hulls", "Hull of the leaders", HAS.hulls], ["numbers", "Numbers"], ["velocity", "Velocity"],
+  ["acceleration", "Commanded acceleration"], ["plan", "Waypoints, places, prediction"],
+  ["tree", "Tree of pursuit", HAS.tree], ["heights", "Heights"]
 ];
-const LEGEND =
-    [["heard", "heard"], ["lost", "lost"], ["far", "out of range"], ["none", "no edge"], ["tree", "pursues"]];
+// Look in the style sheet, words, what an experiment must have.
+const LEGEND = [
+  ["heard", "heard", HAS.edges], ["lost", "lost", HAS.edges], ["left-out", "left out", HAS.leftOut],
+  ["far", "out of range", HAS.range], ["none", "no edge", HAS.edges], ["tree", "pursues", HAS.tree],
+  ["cells", "cells", HAS.cells], ["hulls", "hull of leaders", HAS.hulls], ["lies", "lies", HAS.liars]
+];
 
 export class Status {
   #model;
@@ -52,12 +69,9 @@ export class Status {
     setText(byId("source"), !isRecording ? experiment.engine : loss ? "recording, cut" : "recording");
     byId("source").title = loss;
     this.#showWind(experiment.wind_m_per_s ?? [0, 0, 0]);
-    const hide = (name, isHidden) => {
-      byId("legend").querySelector(`.${name}`).parentElement.hidden = isHidden;
-    };
-    byId("legend").hidden = experiment.edges.length === 0;
-    hide("far", !(experiment.range_m > 0));
-    hide("tree", !experiment.agents.some(({parent}) => parent > 0));
+    for (const [name, , isIn] of LEGEND)
+      byId("legend").querySelector(`.${name}`).parentElement.hidden = !isIn(experiment);
+    byId("legend").hidden = LEGEND.every(([, , isIn]) => !isIn(experiment));
   }
 
   #showWind([x, y, z]) {
@@ -85,6 +99,9 @@ export class Layers {
 
   constructor(view, list) {
     this.#view = view;
+    view.model.on("experiment", ({experiment}) => {
+      for (const [name, , isIn] of LAYERS) this.#boxes[name].parentElement.hidden = isIn ? !isIn(experiment) : false;
+    });
     for (const [name, words] of LAYERS) {
       const box = element("input", {type: "checkbox", checked: view.shown[name]});
       box.addEventListener("change", () => view.show(name, box.checked));

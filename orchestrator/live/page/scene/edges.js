@@ -6,7 +6,8 @@ import {EDGE} from "../model.js";
 import {Ribbons} from "./ribbons.js";
 
 const MOST_EDGES = 20_000;
-const EASE = 0.35;  // part of the way to its new look that an edge goes in a row
+const LEFT_OUT = "left out";  // it was heard, and the law of the hearer does not use it
+const EASE = 0.35;            // part of the way to its new look that an edge goes in a row
 
 // Of each state: colour in the style sheet, alpha, width, dash (px).
 const LOOKS = {
@@ -16,6 +17,7 @@ const LOOKS = {
   [EDGE.FAR]: ["edge-far", 0.4, 1.2, 6],
   [EDGE.SILENT]: ["edge-far", 0.3, 1, 0],
   [EDGE.UNKNOWN]: ["edge-far", 0.3, 1, 0],
+  [LEFT_OUT]: ["left-out", 0.85, 1.6, 3],
 };
 
 const wanted = new Float32Array(5);  // what an edge goes to
@@ -46,16 +48,17 @@ export class Edges extends Ribbons {
       this.#looks[state] = {colour: rgb(styleColour(name)), alpha, width, dash};
   }
 
-  /** `pointed`: index of the edge under the pointer, -1: none. Returns true while a look still changes. */
-  update({p, edge}, {pointed = -1, selected = 0, radius = 0} = {}) {
+  /**
+   * `pointed`: index of the edge under the pointer, -1: none; `showsLeftOut`: what laws leave out looks so. Returns
+   * true while a look still changes.
+   */
+  update({p, edge, left_out}, {pointed = -1, selected = 0, radius = 0, showsLeftOut = true} = {}) {
     this.uniform("radius", radius);
     let moving = false;
     this.#edges.forEach(([hearer, heard], k) => {
       this.place(k, p, 3 * (heard - 1), p, 3 * (hearer - 1));
-      moving = this.#ease(
-                   k, this.#looks[edge?.[k] ?? EDGE.UNKNOWN], k === pointed, selected === hearer || selected === heard,
-                   selected) ||
-          moving;
+      const look = this.#looks[showsLeftOut && left_out?.[k] ? LEFT_OUT : edge?.[k] ?? EDGE.UNKNOWN];
+      moving = this.#ease(k, look, k === pointed, selected === hearer || selected === heard, selected) || moving;
     });
     this.send(["start", "end", "tint", "form"]);
     return moving;

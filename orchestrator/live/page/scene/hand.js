@@ -3,7 +3,6 @@
 import {Plane, Raycaster, Vector2, Vector3} from "/vendor/three/build/three.module.js";
 
 import {edgesToml, gotoToml} from "../asking.js";
-import {EDGE, EDGE_WORDS} from "../model.js";
 import {fixed} from "../numbers.js";
 
 const AGENT_PX = {
@@ -178,8 +177,8 @@ export class Hand {
   #canGo(number) { return this.#model.agent(number).goto && this.#model.canChange; }
 
   #agentWords(number) {
-    const {model, leads} = this.#model.agent(number);
-    return `agent ${number}, ${model.replace("_", " ")}${leads ? ", leads" : ""}${
+    const {model} = this.#model.agent(number);
+    return `${["agent " + number, model.replaceAll("_", " "), ...this.#model.rolesOf(number)].join(", ")}${
         this.#canGo(number) ? ": drag it to send it" : ""}`;
   }
 
@@ -187,10 +186,8 @@ export class Hand {
     const [hearer, heard] = this.#model.experiment.edges[index], waits = this.#model.pendingEdge(index);
     const action = !this.#model.canChange ? "" : this.#model.edgeWillWork(index) ? ": click to cut" : ": click to mend";
     const pending = waits === null ? "" : waits ? ", will be mended" : ", will be cut";
-    return `${hearer} hears ${heard}, ${EDGE_WORDS[this.#state(index)]}${pending}${action}`;
+    return `${hearer} hears ${heard}, ${this.#model.edgeWords(index)}${pending}${action}`;
   }
-
-  #state(index) { return this.#model.frame?.edge?.[index] ?? EDGE.UNKNOWN; }
 
   #click({offsetX: x, offsetY: y, pointerType}) {
     if (!this.#model.frame) return;

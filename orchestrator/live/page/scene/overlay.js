@@ -1,5 +1,5 @@
 // Texts and marks of constant size, above the picture: numbers of agents, the scale of the ground, waypoints, formation
-// places, the predicted meeting point, and where an agent is being sent.
+// places, the predicted meeting point, who lies, and where an agent is being sent.
 import {agentColours, styleColour} from "../colours.js";
 import {fixed} from "../numbers.js";
 
@@ -57,6 +57,7 @@ export class Overlay {
     const {shown, ghost} = this.#view;
     if (shown.plan) this.#plan(experiment, frame);
     this.#rings(experiment);
+    if (shown.liars) this.#liars();
     if (shown.numbers) this.#numbers(experiment);
     if (ghost) this.#ghost(ghost);
   }
@@ -103,20 +104,33 @@ export class Overlay {
     }
   }
 
+  #liars() {
+    for (const id of this.#view.model.liars) {
+      const [x, y, depth] = this.#view.screen.subarray(3 * (id - 1), 3 * id);
+      const r = this.#squareOf(id);
+      if (depth <= 1) this.#stroke(() => this.#pen.rect(x - r, y - r, 2 * r, 2 * r), styleColour("lies"), 2, [5, 3]);
+    }
+  }
+
+  /** Half a side of the square around an agent that lies. */
+  #squareOf(id) { return Math.max(LEAST_RING_PX, this.#view.radiusPx(id)) + 2; }
+
   #numbers({agents}) {
-    const {model, pointed, screen} = this.#view, isCrowd = agents.length > MOST_NUMBERS, taken = new Set();
+    const {model, pointed, screen, shown} = this.#view, isCrowd = agents.length > MOST_NUMBERS, taken = new Set();
+    const liars = new Set(shown.liars ? model.liars : []);
     const write = ({id, leads}, rank) => {
+      const lies = liars.has(id);
       const [x, y, depth] = screen.subarray(3 * (id - 1), 3 * id);
       const cell = `${Math.round(x / NEAR_PX)} ${Math.round(y / NEAR_PX)}`;
       if (depth > 1 || (isCrowd && taken.has(cell))) return;
       taken.add(cell);
-      const away = BESIDE * this.#view.radiusPx(id);
+      const away = lies ? this.#squareOf(id) + 3 : BESIDE * this.#view.radiusPx(id);
       this.#labels.want(
-          `agent ${id}`, rank, [x, y], leads ? `${id} leads` : String(id),
+          `agent ${id}`, rank, [x, y], [id, leads ? "leads" : "", lies ? "lies" : ""].filter(Boolean).join(" "),
           around(Math.max(10, away), Math.max(12, away)),
-          {colour: styleColour("text"), bold: id === model.selected || leads});
+          {colour: styleColour(lies ? "lies" : "text"), bold: id === model.selected || leads || lies});
     };
-    const isOfInterest = ({id, leads}) => id === model.selected || id === pointed.agent || leads;
+    const isOfInterest = ({id, leads}) => id === model.selected || id === pointed.agent || leads || liars.has(id);
     for (const agent of agents)
       if (isOfInterest(agent)) write(agent, RANK.OF_INTEREST);
     if (isCrowd && this.#view.eye.distance() >= 40) return;

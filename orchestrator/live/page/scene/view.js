@@ -4,6 +4,7 @@ import {Color, DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vect
 
 import {styleColour} from "../colours.js";
 
+import {Cells, Hulls} from "./areas.js";
 import {Arrows, Plumbs, Tree} from "./arrows.js";
 import {Bodies} from "./bodies.js";
 import {Edges} from "./edges.js";
@@ -25,6 +26,10 @@ const SHOWN = {
   acceleration: false,
   numbers: true,
   tree: true,
+  cells: true,
+  hulls: true,
+  liars: true,
+  leftOut: true,
   plan: true,
   heights: true
 };
@@ -114,8 +119,10 @@ export class View {
   }
 
   #rebuildMarks() {
-    const {agents, obstacles} = this.#model.experiment;
+    const {agents, obstacles, cells, hulls} = this.#model.experiment;
     this.#replace("tree", new Tree(agents));
+    this.#replace("cells", cells.length > 0 ? new Cells(cells, agents.length) : null);
+    this.#replace("hulls", hulls.length > 0 ? new Hulls(hulls) : null);
     this.#replace("obstacles", new Obstacles(obstacles));
     this.#replace("plan", new WaypointPaths(agents));
     this.#newRow = true;
@@ -188,7 +195,8 @@ export class View {
       if (name !== "edges" && layer.update) layer.update(frame);
     }
     this.#newRow = layers.edges.visible &&
-        layers.edges.update(frame, {pointed: pointed.edge, selected, radius: layers.bodies.radius_m});
+        layers.edges.update(
+            frame, {pointed: pointed.edge, selected, radius: layers.bodies.radius_m, showsLeftOut: this.shown.leftOut});
   }
 
   #render(frame) {
@@ -238,6 +246,7 @@ export class View {
     if (frame) points.push(...places(experiment?.agents ?? [], frame.p).map(([place]) => place));
     for (const {waypoints_m} of experiment?.agents ?? []) points.push(...(waypoints_m ?? []));
     for (const {position_m} of experiment?.obstacles ?? []) points.push(position_m);
+    for (const {region_m} of experiment?.cells ?? []) points.push(...region_m.map(([x, y]) => [x, y, 0]));
     if (experiment?.prediction?.value_m) points.push(experiment.prediction.value_m);
     return points;
   }
