@@ -433,7 +433,7 @@ test("no text stands on another, wherever agents, waypoints and axes are, in wid
 });
 
 test("labels of a logarithmic axis have room, whatever its range is", async () => {
-  for (const [from, to] of [[25, 5], [11, 4], [9.5, 3], [1000, 1e-5], [0.3, 0.2], [1e-6, 1e-7]])
+  for (const [from, to] of [[25, 5], [11, 4], [9.5, 3], [9.02, 0.161], [1000, 1e-5], [0.3, 0.2], [1e-6, 1e-7]])
     await watching(
         {
           run: {

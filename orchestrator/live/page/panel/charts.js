@@ -10,6 +10,7 @@ import {curveWords, disagreementWords, modeOf, responseAt, valueAt, withUnit} fr
 const SLOW = 1e-3;         // the top of an axis of speeds is not below
 const LEAST_RANGE = 1e-3;  // of an axis of other values, which shows a value that is held as a straight line
 const LEAST_GAP_PX = 17;   // between labels of an axis, one above another
+const HIGHEST_PX = 7;      // below the top of a chart is the middle of a label; dygraphs moves higher ones down to it
 const DRAW_EVERY_MS = 120;
 const FIRST_SPEED = 3;  // in a row
 const OF_MANY = ["fastest", "mean", "slowest", "selected"];
@@ -301,13 +302,14 @@ function powersOfTen(low, high, height_px) {
   const every = Math.max(1, Math.ceil((last - first) / 5)), ticks = [];
   for (let k = first; k <= last; k += every)
     for (const m of between) ticks.push({v: m * 10 ** k, label: shortLabel(m, k), m});
-  return withRoom(ticks.filter(({v}) => v >= low && v <= high), height_px / decades);
+  return withRoom(ticks.filter(({v}) => v >= low && v <= high), high, height_px / decades);
 }
 
 /** Those of the ticks that have room, powers of ten first, then 5 and 2 times them. */
-function withRoom(ticks, px_per_decade) {
+function withRoom(ticks, high, px_per_decade) {
   const rank = ({m}) => [1, 5, 2].indexOf(m) + 1 || 4, kept = [];
-  const isApart = (a) => (b) => Math.abs(Math.log10(a.v / b.v)) * px_per_decade >= LEAST_GAP_PX;
+  const placeOf = ({v}) => Math.max(HIGHEST_PX, Math.log10(high / v) * px_per_decade);
+  const isApart = (a) => (b) => Math.abs(placeOf(a) - placeOf(b)) >= LEAST_GAP_PX;
   for (const tick of ticks.toSorted((a, b) => rank(a) - rank(b)))
     if (kept.every(isApart(tick))) kept.push(tick);
   return kept.toSorted((a, b) => a.v - b.v);
