@@ -10,6 +10,11 @@ namespace mascot {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
+std::string NoExperiment(std::chrono::seconds timeout) {
+  return "no experiment came within " + std::to_string(timeout.count()) +
+         " s: is an orchestrator running in this domain?";
+}
+
 Lifecycle::Lifecycle(Domain& domain, Peers& peers, StopSignal& stop, const std::string& process, int agent)
     : stop_(stop),
       domain_(domain),
@@ -42,8 +47,7 @@ mascot_msgs::msg::Experiment Lifecycle::AwaitExperiment(std::chrono::seconds tim
     }
     Wait(ask_again - Clock::now());
   }
-  throw std::runtime_error("no experiment came within " + std::to_string(timeout.count()) +
-                           " s: is an orchestrator running in this domain?");
+  throw std::runtime_error(NoExperiment(timeout));
 }
 
 void Lifecycle::Set(Life life, const std::string& reason) {

@@ -34,6 +34,9 @@ struct RunProgress {
   double pace = 0;  ///< simulated seconds per second; 0: as fast as the machine can
 };
 
+/// The message of a process that has waited so long for an experiment.
+std::string NoExperiment(std::chrono::seconds timeout);
+
 /// The life cycle of a process of a run (the server or agents; the orchestrator has none). It publishes the state of
 /// the process on /status, and again on a REPORT request; receives the experiment on /experiment; ends the process on
 /// an END request or a signal. Nothing relies on a match event or a single delivery: a process that lacks something
@@ -45,8 +48,8 @@ class Lifecycle {
   /// processes of the run.
   Lifecycle(Domain& domain, Peers& peers, StopSignal& stop, const std::string& process, int agent);
 
-  /// Publishes WAITING every 0.2 s until the experiment comes. Throws std::runtime_error after `timeout`, and what
-  /// Wait() throws.
+  /// Publishes WAITING every 0.2 s, and as soon as somebody listens, until the experiment comes. Throws
+  /// std::runtime_error after `timeout`, and what Wait() throws.
   mascot_msgs::msg::Experiment AwaitExperiment(std::chrono::seconds timeout);
   /// Publishes a new state. Thread-safe.
   void Set(Life life, const std::string& reason = {});

@@ -5,20 +5,25 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "bus/addresses.h"
 #include "bus/leave.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
 #include "experiment/experiment.h"
+#include "experiment/processes.h"
 #include "system/descendants.h"
 #include "system/failure.h"
 #include "system/left_file.h"
@@ -97,6 +102,86 @@ int AwaitParticipants(const Domain& domain, int awaited, StopSignal& stop) {
     if (const int signal = stop.Within(left); signal != 0) return signal;
   }
   return 0;
+}
+
+/// Listens to the experiment of a domain under a name that no process of a run has, which disturbs nobody.
+class PlacesOfTheRun {
+ public:
+  PlacesOfTheRun(DomainOptions options, StopSignal& stop)
+      : stop_(stop),
+        domain_(WithName(std::move(options)), [this] { stop_.Wake(); }),
+        reader_(domain_, Topic::Experiment(),
+                [this](const mascot_msgs::msg::Experiment& experiment) { Take(experiment); }) {}
+
+  /// The processes of the run. Throws Ended after a signal, std::runtime_error if no experiment comes.
+  std::vector<Peers::Place> Await(std::chrono::seconds timeout) {
+    const auto deadline = std::chrono::steady_clock::now() + timeout;
+    for (;;) {
+      {
+        const std::lock_guard lock(mutex_);
+        if (places_) return *places_;
+      }
+      const auto left = deadline - std::chrono::steady_clock::now();
+      if (left <= left.zero()) throw std::runtime_error(NoExperiment(timeout));
+      if (const int signal = stop_.Within(left); signal != 0) throw Ended(signal);
+    }
+  }
+
+ private:
+  static DomainOptions WithName(DomainOptions options) {
+    options.name = "listener";
+    return options;
+  }
+  void Take(const mascot_msgs::msg::Experiment& experiment) {
+    const std::lock_guard lock(mutex_);
+    places_.emplace();
+    for (const auto& process : experiment.processes())
+      places_->emplace_back(process.name().to_string(), ProcessKey(process.bits(), process.mask()));
+    stop_.Wake();
+  }
+
+  StopSignal& stop_;
+  std::mutex mutex_;
+  std::optional<std::vector<Peers::Place>> places_;  // guarded by mutex_
+  Domain domain_;
+  Reader<ExperimentType> reader_;
+};
+
+/// Why a run with these processes does not wait for this agent, which was started by hand; empty: it does.
+std::string WhyNotAwaited(const ProcessArgs& args, const std::vector<Peers::Place>& places) {
+  std::string awaited;
+  bool is_there = false;
+  for (const auto& [process, key] : places) {
+    is_there = is_there || process == args.options.name;
+    const auto agents = AgentsOf(process);
+    if (!agents || !key.IsNobody()) continue;
+    if (process == args.options.name) return "";
+    awaited += (awaited.empty() ? "" : ", ") + IdsText(*agents);
+  }
+  return "--id " + IdsText(args.agents) + ": expected " +
+         (awaited.empty() ? "no agent, because the run waits for none"
+                          : "an agent for which the run waits (" + awaited + ")") +
+         ", got one that " + (is_there ? "is there already" : "the run does not have");
+}
+
+/// An agent that was started by hand looks first whether the run waits for it: as one that is not awaited, it would end
+/// the run of all others. Returns the exit code with which it ends; nothing: it goes on.
+std::optional<int> RefuseIfNotAwaited(const ProcessArgs& args, StopSignal& stop) {
+  PlacesOfTheRun run(args.options, stop);
+  int code = 1;
+  std::string error;
+  try {
+    error = WhyNotAwaited(args, run.Await(std::chrono::seconds(args.wait_s)));
+    if (error.empty()) return std::nullopt;
+    code = 2;
+  } catch (const Ended& ended) {
+    code = 128 + ended.signal();
+  } catch (const std::exception& failure) {
+    error = InWords(failure);
+  }
+  if (!error.empty()) std::cerr << "error: " << error << std::endl;
+  Leave(args, kTimeToLeave, code);
+  return code;
 }
 
 /// Joins the domain and runs its role. Publishes a failure before it leaves. Returns the exit code.
@@ -182,6 +267,9 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
   try {
     RequireAddresses(args.options);
     if (args.parent == 0) RequireResources({.shared_memory = SharedMemoryNeeded(args.options)});  // else it was asked
+    const bool by_hand = args.parent == 0 && args.orchestrator == 0;
+    if (by_hand && args.is_agent)
+      if (const auto code = RefuseIfNotAwaited(args, stop)) return *code;
     return Join(args, stop, make_role);
   } catch (const std::invalid_argument& usage) {
     std::cerr << "error: " << usage.what() << std::endl;

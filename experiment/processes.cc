@@ -51,4 +51,8 @@ std::vector<int> SourcesOf(const Experiment& experiment, AgentRange process) {
   return sources;
 }
 
+std::string IdsText(AgentRange agents) {
+  return std::to_string(agents.first) + (agents.size() > 1 ? "-" + std::to_string(agents.last) : "");
+}
+
 }  // namespace mascot

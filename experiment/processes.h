@@ -21,4 +21,7 @@ bool AsksAgain(const Experiment& experiment);
 /// The agents whose states a process needs: its own, then the others that these may ever hear; both in increasing id.
 std::vector<int> SourcesOf(const Experiment& experiment, AgentRange process);
 
+/// The agents of a process as `agent --id` takes them: "3", "1-50".
+std::string IdsText(AgentRange agents);
+
 }  // namespace mascot

@@ -529,6 +529,9 @@ TEST(Faults, AnAgentThatNeverComesIsNamedAfterTheStartTimeout) {
       Endless(folder, {"--set", "agents.override=[{id = 2, host = \"external\"}]", "--set", "run.start_timeout_s=2.0"});
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(up.err(), HasSubstr("not ready within run.start_timeout_s = 2.0 s: agent 2"));
+  EXPECT_THAT(up.err(), testing::ContainsRegex("still waiting: nothing was heard of agent_2\n"
+                                               "waiting for: agent --id 2 --domain [0-9]+\n"))
+      << "somebody who comes late is told what to type";
   EXPECT_TRUE(NothingIsLeft(up));
 }
 
@@ -589,26 +592,6 @@ TEST(Faults, ALogThatCannotBeWrittenIsSaidAndTheRunGoesOn) {
     EXPECT_THAT(run.output, HasSubstr("warning: cannot write " + folder.File("run/logs/") + agent +
                                       ".log: File too large: this log ends here, and what would follow is lost\n"));
   EXPECT_EQ(nlohmann::json::parse(ReadFile(folder.File("run/summary.json")))["ticks"], 100);
-}
-
-TEST(Faults, ASecondAgentWithTheSameIdEndsTheRun) {
-  ScratchFolder folder;
-  Up up = Endless(folder);
-  ASSERT_TRUE(Flies(up));
-  Running twin(std::string(MASCOT_BINARY_DIR) + "/agent",
-               {"--id", "2", "--loopback", "--domain", std::to_string(DomainOf(up))}, folder.File("twin"));
-  EXPECT_EQ(up.Wait(), 1);
-  EXPECT_THAT(up.err(), HasSubstr("two processes say that they are agent_2"));
-}
-
-TEST(Faults, AnAgentWithAnUnknownIdEndsTheRun) {
-  ScratchFolder folder;
-  Up up = Endless(folder);
-  ASSERT_TRUE(Flies(up));
-  Running ninth(std::string(MASCOT_BINARY_DIR) + "/agent",
-                {"--id", "9", "--loopback", "--domain", std::to_string(DomainOf(up))}, folder.File("ninth"));
-  EXPECT_EQ(up.Wait(), 1);
-  EXPECT_THAT(up.err(), HasSubstr("agent_9 writes /status, but there are only agents 1 to 4"));
 }
 
 TEST(Faults, AnAgentWhoseLawHangsSaysSoWhenItIsInterrupted) {

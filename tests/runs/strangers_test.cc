@@ -277,7 +277,28 @@ TEST_F(Strangers, ThePlaceOfAnAgentStartedByHandIsTheFirstOnes) {
   Running first(MASCOT_BINARY_DIR "/agent", words, folder_.File("first"));
   ASSERT_TRUE(Flies(up)) << up.err() << first.err();
   Running second(MASCOT_BINARY_DIR "/agent", words, folder_.File("second"));
-  ExpectFailedBy(up, up.Wait(), "two processes say that they are agent_2 (process " + std::to_string(second.pid()));
+  EXPECT_EQ(second.Wait(), 2);
+  EXPECT_EQ(second.err(),
+            "error: --id 2: expected no agent, because the run waits for none, got one that is there already\n");
+  EXPECT_FALSE(up.IsOver()) << "nobody has heard the second";
+}
+
+TEST_F(Strangers, AnAgentByHandThatTheRunDoesNotWaitForIsNotHeard) {
+  Up up = Endless({"--set", "agents.override=[{id = 2, host = \"external\"},{id = 3, host = \"external\"}]"});
+  ASSERT_TRUE(Until([&] { return up.Said("waiting for: agent --id 3"); }));
+  const auto refusal = [&](const std::string& id) {
+    Running agent(MASCOT_BINARY_DIR "/agent", {"--id", id, "--loopback", "--domain", std::to_string(DomainOf(up))},
+                  folder_.File("agent" + id));
+    EXPECT_EQ(agent.Wait(), 2);
+    return agent.err();
+  };
+  EXPECT_EQ(refusal("9"),
+            "error: --id 9: expected an agent for which the run waits (2, 3), got one that the run does "
+            "not have\n");
+  EXPECT_EQ(refusal("1"),
+            "error: --id 1: expected an agent for which the run waits (2, 3), got one that is there "
+            "already\n");
+  EXPECT_FALSE(up.IsOver()) << up.err();
 }
 
 TEST_F(Strangers, ThePlaceOfAnAgentThatLeftBeforeTheStartIsFree) {

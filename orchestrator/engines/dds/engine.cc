@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <functional>
+#include <map>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -56,11 +58,6 @@ constexpr auto kLibraryGrace = 5s;
 /// A host is lost before its agents are: within this part of run.agent_timeout_s. A host is more patient with us.
 constexpr double kShareOfTimeout = 0.6, kMinSilence_s = 2, kHostPatience_s = 10;
 
-/// Agent ids as `agent --id` takes them: "3" or "3-5".
-std::string IdsText(AgentRange agents) {
-  return std::to_string(agents.first) + (agents.size() > 1 ? "-" + std::to_string(agents.last) : "");
-}
-
 /// Lowers the priority of this thread, and of those that it starts, below that of the other processes of the run. The
 /// recorder receives every sample and may lag behind by its window; it must not take the processor from a process that
 /// the next tick waits for. (With a much larger nice value it starves until the window is full.)
@@ -102,6 +99,8 @@ class DdsRun {
   bool HearHosts();
   void AwaitChildren();
   void CheckWire();
+  void Remind();
+  WallClock::duration BetweenReminders() const;
   void Steer();
   RunPhases::View Record();
   RunPhases::View Look() const;
@@ -122,8 +121,10 @@ class DdsRun {
   StopSignal& stop_;
   RosSource* const ros_;
   const WallClock::time_point launched_ = WallClock::now();
-  const bool external_;        // some agents are started by hand
-  const bool reaches_others_;  // agents may be on other hosts
+  WallClock::time_point next_reminder_ = launched_ + BetweenReminders();
+  std::map<std::string, std::string> by_hand_;  // processes that are started by hand: what to type
+  const bool external_;                         // some agents are started by hand
+  const bool reaches_others_;                   // agents may be on other hosts
   EngineResult result_;
   std::int64_t confirmed_ = 0;        // rows recorded so far
   std::uint32_t request_number_ = 0;  // number of the newest request to the physics server
@@ -332,10 +333,11 @@ void DdsRun::Spawn() {
       continue;
     }
     peers_.Know(process, ProcessKey());  // the first that says it is that
-    if (agent.external)
-      console_.Line("waiting for: agent --id " + IdsText(agents) + " --domain " + std::to_string(options.domain) +
-                    (options.transport == DomainOptions().transport ? "" : " --transport " + options.transport) +
-                    (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_->discovery_port()) : ""));
+    if (!agent.external) continue;
+    by_hand_[process] = "agent --id " + IdsText(agents) + " --domain " + std::to_string(options.domain) +
+                        (options.transport == DomainOptions().transport ? "" : " --transport " + options.transport) +
+                        (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_->discovery_port()) : "");
+    console_.Line("waiting for: " + by_hand_[process]);
   }
   const std::vector<pid_t> ids =
       children_.SpawnCopies(ProgramFolder() / "agent", here, {experiment_.run.start_timeout_s, [this] {
@@ -397,10 +399,26 @@ void DdsRun::Loop() {
     Reap();
     links_->HandOutExperiment();
     CheckWire();
+    Remind();
     const RunPhases::View view = Record();
     Do(phases_.Look(view, WallClock::now()));
     if (run_requests_ != nullptr && phases_.phase() == RunPhases::Phase::kFlying) Steer();
   }
+}
+
+/// While the run waits for processes, says now and then for which, and what to type for agents that are started by
+/// hand.
+void DdsRun::Remind() {
+  if (phases_.phase() != RunPhases::Phase::kStarting || WallClock::now() < next_reminder_) return;
+  next_reminder_ = WallClock::now() + BetweenReminders();
+  console_.Line("still waiting: " + links_->Missing());
+  for (const auto& [process, command] : by_hand_)
+    if (!links_->StatusOf(process)) console_.Line("waiting for: " + command);
+}
+
+/// A reader of the terminal is patient for ten seconds; a run with a short time-out is reminded at least three times.
+WallClock::duration DdsRun::BetweenReminders() const {
+  return std::chrono::milliseconds(std::lround(1000 * std::min(10.0, experiment_.run.start_timeout_s / 4)));
 }
 
 /// Passes an order on to the physics server, and its answer back.
