@@ -53,4 +53,17 @@ std::string WithoutEvents(const Experiment& experiment) {
   return WithOverrides(experiment, changes);
 }
 
+std::string StoppedAfter(const Experiment& experiment, std::int64_t ticks) {
+  const double duration_s = experiment.time_s(ticks);
+  std::vector<Override> changes{{.key = "run.duration_s", .value = ShortestFloat(duration_s)}};
+  const Value file{Section::FromText(experiment.resolved, "config.toml").InTheFile()};
+  if (const Value* events = file.Find("events")) {
+    Value::List flown;
+    for (const Value& event : std::get<Value::List>(events->data))
+      if (event.Find("at_s")->Number() <= duration_s) flown.push_back(event);
+    changes.push_back({.key = "events", .value = ToToml(Value{flown})});
+  }
+  return WithOverrides(experiment, changes);
+}
+
 }  // namespace mascot

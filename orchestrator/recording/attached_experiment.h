@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -22,5 +23,9 @@ std::vector<Override> DeliveryOverrides(const Experiment& experiment);
 std::string WithOverrides(const Experiment& experiment, const std::vector<Override>& changes);
 /// The experiment with these events, given by hand, behind its own. Throws as WithOverrides() does.
 Experiment WithEvents(const Experiment& experiment, const std::vector<Event>& by_hand);
+
+/// The resolved experiment of a run that was stopped after so many ticks, at least 1: it repeats what was flown. Events
+/// that were still to come are left out. Throws as WithOverrides() does.
+std::string StoppedAfter(const Experiment& experiment, std::int64_t ticks);
 
 }  // namespace mascot

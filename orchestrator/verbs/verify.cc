@@ -93,13 +93,7 @@ Experiment Load(const std::string& toml, const std::string& name, const Subject&
   Experiment whole = LoadExperiment(Section::FromText(toml, name, changes), subject.plan.name);
   if (subject.ticks >= subject.plan.ticks) return whole;
   const auto last = static_cast<std::int64_t>(std::max<std::uint64_t>(subject.ticks - 1, 1));
-  std::string text = WithOverrides(whole, {{.key = "events", .value = "[]"}});
-  for (const Event& event : whole.events)
-    if (event.tick <= last && !event.law)
-      text = WithEvent(std::move(text), event.tick, subject.plan.rate_hz, event.Toml());
-  const std::string duration_s = ShortestFloat(static_cast<double>(last) / subject.plan.rate_hz);
-  const Override shorter[] = {{.key = "run.duration_s", .value = duration_s}};
-  return LoadExperiment(Section::FromText(text, name, shorter), subject.plan.name, /*checked=*/true);
+  return LoadExperiment(Section::FromText(StoppedAfter(whole, last), name), subject.plan.name, /*checked=*/true);
 }
 
 /// The first line in which two resolved experiments differ, with its table: "[law] p_gain = 0.3, the recording's says

@@ -151,6 +151,26 @@ TEST(Send, SaysWhyTheRunRefuses) {
   EXPECT_THAT(over.output, StartsWith("error: send: "));
 }
 
+TEST(Send, TheConfigOfAStoppedRunRepeatsIt) {
+  const ScratchFolder folder;
+  SteeredRun run(folder, "stopped",
+                 {"--engine", "inprocess", "--duration-s", "1000", "--set",
+                  "events=[{ at_s = 0.02, cut = [[1, 2]] }, { at_s = 900.0, mend = [[1, 2]] }]"});
+  EXPECT_EQ(run.Send("stop").output, "the run stops, and its results are written\n");
+  EXPECT_EQ(run.Wait(), 0) << run.err();
+  const std::int64_t ticks = run.Summary()["ticks"];
+  const std::string config = (run.path() / "config.toml").string(), again = folder.File("again");
+  const Ran repeated = Shell("'" MASCOT_BINARY_DIR "/orchestrator' up '" + config +
+                             "' --engine inprocess --quiet --out '" + again + "' --set output.save_plot=false");
+  ASSERT_EQ(repeated.exit_code, 0) << repeated.output;
+  EXPECT_EQ(nlohmann::json::parse(ReadFile(again + "/summary.json"))["ticks"], ticks);
+  EXPECT_EQ(ReadFile(again + "/states.npz"), ReadFile((run.path() / "states.npz").string()));
+  for (const std::string& path : {run.path().string(), again}) {
+    const Ran verified = Shell("'" MASCOT_BINARY_DIR "/orchestrator' verify '" + path + "'");
+    EXPECT_EQ(verified.exit_code, 0) << verified.output;
+  }
+}
+
 TEST(Send, WantsToKnowWhichOfSeveralRuns) {
   const ScratchFolder folder;
   SteeredRun one(folder, "one"), two(folder, "two", {"--engine", "inprocess"});
