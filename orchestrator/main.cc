@@ -32,6 +32,7 @@ constexpr VerbEntry kVerbs[] = {
     {"keys", "the keys of an experiment file: value, default, meaning", SetUpKeys},
     {"new", "write a commented experiment with a law, to begin with", SetUpNew},
     {"info", "what a recording holds, and whether it is complete, with the proof", SetUpInfo},
+    {"runs", "list the runs in a folder, remove some, keep notes", SetUpRuns},
     {"plot", "draw the pictures of a run again", SetUpPlot},
     {"view", "play a recording on the page of a run", SetUpView},
     {"sweep", "run an experiment over values of its keys and seeds: a table, a picture", SetUpSweep},

@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kConfig = "config.toml";
 
-// What cannot be read is no run: the folder of another user, or one that is being removed.
+}  // namespace
 
 bool IsARun(const fs::path& folder) {
   std::error_code error;
@@ -31,30 +31,34 @@ bool IsARun(const fs::path& folder) {
   return false;
 }
 
-/// When its config.toml, or else the folder, was written last.
 fs::file_time_type WrittenAt(const fs::path& folder) {
   std::error_code error;
   const fs::file_time_type config = fs::last_write_time(folder / kConfig, error);
   return error ? fs::last_write_time(folder, error) : config;
 }
 
-}  // namespace
+std::vector<fs::path> RunsIn(const fs::path& folder) {
+  if (IsARun(folder)) return {folder};
+  std::vector<fs::path> runs;
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error), end;
+       !error && entry != end; entry.increment(error)) {
+    if (std::error_code unknown; !entry->is_directory(unknown)) continue;
+    const bool is_run = IsARun(entry->path());
+    if (is_run || entry.depth() == 1) entry.disable_recursion_pending();
+    if (is_run) runs.push_back(entry->path());
+  }
+  return runs;
+}
 
 std::string FindRun(const std::string& run) {
   const fs::path named = run == "latest" && !fs::exists(run) ? "runs" : run;
   if (named != run && !fs::is_directory(named))
     throw ConfigError({run + ": expected the newest run in the folder runs, which is not here"});
-  if (!fs::is_directory(named) || IsARun(named)) return named.string();
-  std::optional<fs::path> newest;
-  std::error_code error;
-  for (fs::recursive_directory_iterator entry(named, fs::directory_options::skip_permission_denied, error), end;
-       !error && entry != end; entry.increment(error)) {
-    if (std::error_code unknown; !entry->is_directory(unknown)) continue;
-    const bool is_run = IsARun(entry->path());
-    if (is_run || entry.depth() == 1) entry.disable_recursion_pending();
-    if (is_run && (!newest || WrittenAt(*newest) < WrittenAt(entry->path()))) newest = entry->path();
-  }
-  return newest.value_or(named).string();
+  if (!fs::is_directory(named)) return named.string();
+  const std::vector<fs::path> runs = RunsIn(named);
+  const auto newest = std::ranges::max_element(runs, {}, WrittenAt);
+  return (newest == runs.end() ? named : *newest).string();
 }
 
 std::string FindRecording(const std::string& named) {

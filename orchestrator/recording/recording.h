@@ -1,14 +1,25 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/recording/completeness.h"
 #include "orchestrator/team/row.h"
 
 namespace mascot {
+
+// What cannot be read is no run: the folder of another user, or one that is being removed.
+
+/// Whether a folder is that of a run: it has a config.toml or a recording.
+bool IsARun(const std::filesystem::path& folder);
+/// When the config.toml of a run, or else its folder, was written last.
+std::filesystem::file_time_type WrittenAt(const std::filesystem::path& folder);
+/// The folders of runs in a folder, at most two folders deep (`runs`, `runs/NAME`); that folder itself, if it is one.
+std::vector<std::filesystem::path> RunsIn(const std::filesystem::path& folder);
 
 /// The path of the run that a user means by `run`: `run` itself if it is a run folder or a file; if it is a folder with
 /// runs in it, at most two folders deep (`runs`, `runs/NAME`), the newest of them; for "latest", unless something has

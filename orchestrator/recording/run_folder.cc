@@ -37,7 +37,8 @@ fs::path MakeNew(const fs::path& parent) {
 }
 
 /// Files that a run writes, beside its recording, its pictures and its logs.
-constexpr std::string_view kFiles[] = {"config.toml", "summary.json", "events.csv", "law_curve.csv", "states.npz"};
+constexpr std::string_view kFiles[] = {"config.toml",   "summary.json", "events.csv",
+                                       "law_curve.csv", "states.npz",   kNoteFile};
 /// Pictures of a run (scripts/pictures.py), and the formats in which `plot` draws them.
 constexpr std::string_view kPictures[] = {"paths", "position", "velocity", "acceleration", "disagreement", "curve",
                                           "error", "tracking", "graph",    "safety",       "incidents"};
@@ -94,9 +95,10 @@ std::vector<fs::path> NamesOfARun(const fs::path& folder, const std::string& rec
   return names;
 }
 
-/// Removes the files of an earlier run. Throws ConfigError, and removes nothing, if something has the name of such a
-/// file and is none.
-void RemoveEarlierRun(const fs::path& folder, const std::string& recording) {
+/// Removes the files of a run. `words`, `hint`: how a message begins and ends. Throws ConfigError, and removes nothing,
+/// if something has the name of such a file and is none.
+void RemoveFiles(const fs::path& folder, const std::string& recording, const std::string& words,
+                 const std::string& hint) {
   const bool of_a_run = IsOfARun(folder);
   const std::vector<fs::path> names = NamesOfARun(folder, recording);
   std::string others;
@@ -106,8 +108,8 @@ void RemoveEarlierRun(const fs::path& folder, const std::string& recording) {
     others += (others.empty() ? "" : ", ") + name.string();
   }
   if (!others.empty())
-    throw ConfigError({"--out " + folder.string() + ": expected the files of an earlier run, got " + others +
-                       ", which no run has made (--force replaces nothing else)"});
+    throw ConfigError(
+        {words + ": expected the files of an earlier run, got " + others + ", which no run has made" + hint});
   for (const fs::path& name : names) fs::remove(folder / name);
 }
 
@@ -126,7 +128,7 @@ void Empty(const fs::path& folder, const std::string& recording, bool force) {
     throw ConfigError({"--out " + folder.string() +
                        ": expected a new or empty folder, got one with files in it (--force replaces those of an "
                        "earlier run, and keeps others)"});
-  RemoveEarlierRun(folder, recording);
+  RemoveFiles(folder, recording, "--out " + folder.string(), " (--force replaces nothing else)");
 }
 
 /// "the run 'name'", by its config.toml.
@@ -141,24 +143,48 @@ std::string NameOfRun(const fs::path& folder) {
   return "a run";
 }
 
-/// Throws ConfigError if another run writes to the folder.
-FolderLock Lock(const fs::path& folder) {
+/// Throws ConfigError if another run writes to the folder. `words`: the folder, as the message begins.
+FolderLock Lock(const fs::path& folder, const std::string& words) {
   FolderLock lock(folder);
   if (lock.is_ours()) return lock;
   const pid_t holder = lock.Holder();
-  throw ConfigError(
-      {fmt::format("--out {}: expected a folder to which no run is writing, got that of {}{}", folder.string(),
-                   NameOfRun(folder), holder > 0 ? fmt::format(" (process {})", holder) : "")});
+  throw ConfigError({fmt::format("{}: expected a folder to which no run is writing, got that of {}{}", words,
+                                 NameOfRun(folder), holder > 0 ? fmt::format(" (process {})", holder) : "")});
+}
+
+/// The recording in a folder, by its name; "run.mcap" if there is none, or are several.
+std::string NameOfRecording(const fs::path& folder) {
+  std::vector<std::string> found;
+  for (const fs::path& path : fs::directory_iterator(folder))
+    if (IsRecording(path)) found.push_back(path.filename().string());
+  return found.size() == 1 ? found.front() : "run.mcap";
 }
 
 }  // namespace
 
 RunFolder::RunFolder(const std::optional<std::string>& out, const Experiment& experiment, bool force) try
-    : path_(out ? MakeGiven(*out) : MakeNew(fs::path("runs") / experiment.run.name)), lock_(Lock(path_)) {
+    : path_(out ? MakeGiven(*out) : MakeNew(fs::path("runs") / experiment.run.name)),
+      lock_(Lock(path_, "--out " + path_.string())) {
   if (out) Empty(path_, experiment.record.file, force);
   fs::create_directories(path_ / "logs");
 } catch (const fs::filesystem_error& error) {
   throw ConfigError({"--out: cannot make the run folder " + error.path1().string() + ": " + error.code().message()});
+}
+
+std::vector<std::string> PicturesIn(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const std::string_view picture : kPictures)
+    for (const char* format : {".png", ".svg"})
+      if (const std::string name = std::string(picture) + format; IsFile(folder / name)) {
+        names.push_back(name);
+        break;
+      }
+  return names;
+}
+
+void RemoveRunFiles(const fs::path& folder) {
+  const FolderLock lock = Lock(folder, folder.string());
+  RemoveFiles(folder, NameOfRecording(folder), folder.string(), "");
 }
 
 void RunFolder::Write(const std::string& name, const std::string& text) const { WriteWhole(File(name).string(), text); }

@@ -3,11 +3,22 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "experiment/experiment.h"
 #include "system/folder_lock.h"
 
 namespace mascot {
+
+/// The file of a run folder that has the user's note (run_list.h).
+inline constexpr const char* kNoteFile = "note.txt";
+
+/// Removes the files of a run from its folder, and no others. Throws ConfigError if a process writes to the folder, or
+/// if something that no run has made has the name of such a file.
+void RemoveRunFiles(const std::filesystem::path& folder);
+
+/// Names of the pictures of a run that a browser can show, in the order in which they are drawn.
+std::vector<std::string> PicturesIn(const std::filesystem::path& folder);
 
 /// Folder for the results of a run: `runs/<name>/<time>/`, or the folder given with --out. As long as this object
 /// lives, the folder is locked, and no other run of this machine takes it.

@@ -35,6 +35,7 @@ std::function<int()> SetUpAirframes(CLI::App& command);  // airframes.cc
 std::function<int()> SetUpKeys(CLI::App& command);       // keys.cc
 std::function<int()> SetUpNew(CLI::App& command);        // keys.cc
 std::function<int()> SetUpInfo(CLI::App& command);       // info.cc
+std::function<int()> SetUpRuns(CLI::App& command);       // runs.cc
 std::function<int()> SetUpPlot(CLI::App& command);       // plot.cc
 std::function<int()> SetUpExport(CLI::App& command);     // export.cc
 std::function<int()> SetUpRecover(CLI::App& command);    // recover.cc

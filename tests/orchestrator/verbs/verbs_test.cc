@@ -360,6 +360,30 @@ TEST(Keys, AreThoseThatTheReaderTakes) {
   EXPECT_EQ(listed, parameters) << "each parameter of each law, once";
 }
 
+TEST(Runs, ListsRemovesAndKeepsNotes) {
+  ScratchFolder scratch;
+  const std::string run = scratch.File("runs/a/b");
+  std::filesystem::create_directories(run);
+  std::ofstream(run + "/config.toml") << "format = 1\n[run]\nname = 'a'\n";
+  std::ofstream(run + "/summary.json") << R"({"sim_s": 1.5, "exit": 130})";
+  EXPECT_EQ(Printed(SetUpRuns, {run, "--note", "stopped by hand"}), "");
+  const std::string text = Printed(SetUpRuns, {scratch.File("runs")});
+  EXPECT_THAT(text, AllOf(StartsWith("written              name                 flown     size  exit  folder\n"),
+                          HasSubstr("  a                    1.5 s     "),
+                          HasSubstr(" B   130  " + run + "  # stopped by hand\n")));
+  const Json json = Json::parse(Printed(SetUpRuns, {scratch.File("runs"), "--json"}));
+  EXPECT_EQ(json[0]["exit"], 130);
+  EXPECT_EQ(json[0]["note"], "stopped by hand");
+  std::filesystem::create_directories(scratch.File("empty"));
+  EXPECT_EQ(Printed(SetUpRuns, {scratch.File("empty")}), "no run in " + scratch.File("empty") + "\n");
+  EXPECT_THAT(
+      [&] {
+        Printed(SetUpRuns, {"--remove", run});
+      },
+      testing::ThrowsMessage<ConfigError>(HasSubstr("which no run has made")))
+      << "it has no recording";
+}
+
 TEST(New, WritesAnExperimentOfEachLawThatIsShipped) {
   ScratchFolder folder;
   for (const LawEntry& law : Laws()) {
