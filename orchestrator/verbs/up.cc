@@ -149,6 +149,7 @@ int Up(UpArgs& args) {
   if (!args.viewers.at && !args.viewers.allowed_origins.empty())
     throw ConfigError({"--allow-origin: expected --view with it"});
   if (!args.viewers.at && args.viewers.watch_only) throw ConfigError({"--watch-only: expected --view with it"});
+  if (!args.viewers.at && args.viewers.stay) throw ConfigError({"--stay: expected --view with it"});
   std::optional<EndsAtOnce> before_the_run(stop);
   const Experiment experiment = Load(args);
   args.engine.Refuse(experiment);
@@ -242,6 +243,7 @@ int Up(UpArgs& args) {
     return MakeOutput(experiment, folder, writer.rows() > 1, stop);
   };
   const int code = EndRun(folder, ExitCode(result), {.summary = summary, .draw = draw, .print = print});
+  if (code < 128 && writer.samples() > 0 && viewers.Stay()) viewers.ShowRecording(folder, stop);
   flight.LeaveIfItHangs(code);
   return code;
 }
@@ -262,6 +264,9 @@ std::function<int()> SetUpUp(CLI::App& command) {
       ->type_name("[ADDRESS:PORT]");
   AddAllowOrigin(command, args->viewers.allowed_origins);
   AddWatchOnly(command, args->viewers.watch_only);
+  command.add_flag("--stay", args->viewers.stay,
+                   "with --view: show the recording at the same address when the run has ended, until Ctrl-C; on a "
+                   "terminal it is shown anyway if somebody watches");
   command
       .add_option("--assert", args->claims,
                   "fail, with exit code 1, unless this holds of summary.json when the run is over: "

@@ -1,23 +1,12 @@
 // `orchestrator view RUN`: serves the page of a run on its recording, with a time line.
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "orchestrator/live/recorded/playback.h"
-#include "orchestrator/live/recorded/projector.h"
-#include "orchestrator/live/recorded/recorded_run.h"
-#include "orchestrator/live/server/address.h"
-#include "orchestrator/live/shown/live_view.h"
-#include "orchestrator/theory/theory.h"
+#include "orchestrator/verbs/show_recording.h"
 #include "orchestrator/verbs/verb.h"
 #include "orchestrator/verbs/viewers.h"
-#include "system/console.h"
-#include "system/interruptions.h"
-#include "system/script.h"
-#include "system/stop_signal.h"
 
 namespace mascot {
 namespace {
@@ -29,42 +18,13 @@ struct ViewArgs {
   bool watch_only = false;
 };
 
-/// Returns the exit code: a signal ends the view, or an error of ours has.
-int WaitForTheEnd(StopSignal& stop, const LiveView& view) {
-  constexpr auto kLook = std::chrono::milliseconds(200);
-  while (!view.has_failed())
-    if (const int signal = stop.Within(kLook); signal != 0) return 128 + signal;
-  return 1;
-}
-
 int View(const ViewArgs& args) {
   StopSignal stop;
   Console console(/*quiet=*/false);
-  const auto log = [&console](const std::string& line) { console.Line(line); };
-  std::optional<EndsAtOnce> before_the_view(stop);
-  RecordedRun run(args.run);
-  if (!run.rows().loss().empty())
-    console.Line("warning: " + run.rows().path() + ": " + run.rows().loss() + "; it plays up to there");
-  const Prediction prediction = Predict(run.experiment());
-  before_the_view.reset();
-  Playback playback(run.experiment().control.rate_hz, run.last_tick());
-  const LiveView::Options options{.address = args.at.address,
-                                  .port = args.at.port,
-                                  .allowed_origins = args.allowed_origins,
-                                  .page = FindShared("page", "orchestrator/live"),
-                                  .source = {.recorded = run.part()},
-                                  .pace = 1,
-                                  .steering = args.watch_only ? Steering::By::kToken : Steering::By::kAll};
-  const auto view = [&] {
-    try {
-      return std::make_unique<LiveView>(run.experiment(), prediction, playback, options, log);
-    } catch (const std::runtime_error& failure) {
-      throw ConfigError({std::string("--at: ") + failure.what()});
-    }
-  }();
-  const Projector projector(run, playback, *view, log);
-  PrintAddresses(*view, console);
-  return WaitForTheEnd(stop, *view);
+  const Showing showing{
+      .at = args.at, .allowed_origins = args.allowed_origins, .steering = Steering(WhoSteers(args.watch_only))};
+  const int signal = ShowRecording(args.run, showing, "--at", stop, console);
+  return signal == 0 ? kExitFailed : 128 + signal;
 }
 
 }  // namespace

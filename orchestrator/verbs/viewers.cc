@@ -10,6 +10,7 @@
 #include "orchestrator/live/server/origin.h"
 #include "orchestrator/live/server/qr_code.h"
 #include "orchestrator/live/shown/shown_keys.h"
+#include "orchestrator/verbs/show_recording.h"
 #include "system/script.h"
 
 namespace mascot {
@@ -32,6 +33,8 @@ void AddWatchOnly(CLI::App& command, bool& watch_only) {
                    "let viewers only watch; the address that is printed as 'steer' is for those who may do more");
 }
 
+Steering::By WhoSteers(bool watch_only) { return watch_only ? Steering::By::kToken : Steering::By::kAll; }
+
 std::vector<std::string> AddressesOf(const std::string& url) {
   std::vector<std::string> addresses;
   for (const std::string_view any : {"http://0.0.0.0:", "http://[::]:"})
@@ -53,7 +56,7 @@ void PrintAddresses(const LiveView& view, Console& console) {
 
 Viewers::Viewers(const ViewerArgs& args, const std::string& engine, const Experiment& experiment,
                  const Prediction& prediction, const RunMeter& meter, RunRequests& requests, Console& console) try
-    : requests_(requests), console_(console) {
+    : args_(args), requests_(requests), console_(console) {
   if (!args.at) return;
   view_.emplace(experiment, prediction, meter, requests,
                 LiveView::Options{.address = args.at->address,
@@ -62,7 +65,7 @@ Viewers::Viewers(const ViewerArgs& args, const std::string& engine, const Experi
                                   .page = FindShared("page", "orchestrator/live"),
                                   .source = {.engine = engine},
                                   .pace = requests.status().pace,
-                                  .steering = args.watch_only ? Steering::By::kToken : Steering::By::kAll},
+                                  .steering = Steering(WhoSteers(args.watch_only))},
                 [this](const std::string& line) { Log(line); });
   view_->SetExperiment(experiment, ShownKeysOf(experiment));
   events_.emplace(*view_, requests);
@@ -113,6 +116,27 @@ void Viewers::SayHowItEnded(const EngineResult& result) {
   RunState state{.phase = phase, .pace = requests_.status().pace};
   if (result.contacts) state.contacts = static_cast<std::uint64_t>(result.contacts->total());
   view_->SetState(state);
+}
+
+bool Viewers::Stay() const {
+  return view_ && !view_->has_failed() && (args_.stay || (console_.is_on_terminal() && view_->is_watched()));
+}
+
+void Viewers::ShowRecording(const RunFolder& folder, StopSignal& stop) try {
+  const std::string url = view_->url();
+  const auto at = ReadHostAndPort(std::string_view(url).substr(std::string_view("http://").size()));
+  const auto port = at && at->port ? static_cast<std::uint16_t>(*at->port) : args_.at->port;
+  const Showing showing{.at = {.address = args_.at->address, .port = port},
+                        .allowed_origins = args_.allowed_origins,
+                        .steering = view_->steering()};
+  requests_.CallWhenChanged(nullptr);
+  sinks_.clear();
+  events_.reset();
+  view_.reset();  // it has the port
+  console_.Line("the recording is shown until Ctrl-C");
+  mascot::ShowRecording(folder.path().string(), showing, "--view", stop, console_);
+} catch (const std::exception& failure) {
+  console_.Warning("the recording is not shown: " + std::string(failure.what()));
 }
 
 void Viewers::Events::Adopt(const LiveExperiment& live, std::span<const Event> /*events*/) {

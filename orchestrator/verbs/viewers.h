@@ -24,17 +24,21 @@ class App;
 
 namespace mascot {
 
-/// What --view, --allow-origin and --watch-only ask for.
+/// What --view, --allow-origin, --watch-only and --stay ask for.
 struct ViewerArgs {
   std::optional<LiveAddress> at;
   std::vector<std::string> allowed_origins = {};
   bool watch_only = false;
+  bool stay = false;
 };
 
 /// Adds the option --allow-origin, which may be given several times.
 void AddAllowOrigin(CLI::App& command, std::vector<std::string>& origins);
 /// Adds the flag --watch-only.
 void AddWatchOnly(CLI::App& command, bool& watch_only);
+
+/// Who may steer, with --watch-only or without.
+Steering::By WhoSteers(bool watch_only);
 
 /// The addresses at which a server at `url`, "http://0.0.0.0:8765", is reached: `url`, or, if it listens at every
 /// address of this machine, those that others may type.
@@ -46,7 +50,7 @@ void PrintAddresses(const LiveView& view, Console& console);
 /// The live view of a run of `up`, if the user asked for --view; else an object that does nothing.
 class Viewers {
  public:
-  /// Listens at `args.at`, if it is given, and prints where. All arguments but the first two must outlive this object.
+  /// Listens at `args.at`, if it is given, and prints where. All arguments but `engine` must outlive this object.
   /// Throws ConfigError if no viewer could watch.
   Viewers(const ViewerArgs& args, const std::string& engine, const Experiment& experiment, const Prediction& prediction,
           const RunMeter& meter, RunRequests& requests, Console& console);
@@ -62,8 +66,14 @@ class Viewers {
   /// Adds sinks that show viewers the rows and the events of the run. The RunRequests must be among `sinks` already,
   /// because they know which events were given by hand.
   void AddTo(std::vector<RowSink*>& sinks);
-  /// Viewers see how the run ended until this object ends, which closes their connections.
+  /// Viewers see how the run ended until this object ends, or shows the recording.
   void SayHowItEnded(const EngineResult& result);
+  /// Whether viewers shall see the recording when the run has ended: if --stay says so, or somebody watches and the
+  /// terminal is there to end it.
+  bool Stay() const;
+  /// Closes the connections, and shows the recording of the run at the same address, to the same viewers, until a
+  /// signal. An error ends it with a warning.
+  void ShowRecording(const RunFolder& folder, StopSignal& stop);
 
  private:
   /// Tells viewers of the events that rows bring.
@@ -85,6 +95,7 @@ class Viewers {
   /// Adds a line to the log, or to `lines_` until there is one. The caller holds `mutex_`.
   void Keep(const std::string& line);
 
+  const ViewerArgs& args_;
   RunRequests& requests_;
   Console& console_;
   std::mutex mutex_;                // guards what follows

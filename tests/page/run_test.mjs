@@ -147,6 +147,29 @@ at_s = 15.0
 set = { "law.p_gain" = 0.3 }
 `;
 
+test("the page of a run becomes that of its recording when the run has ended, with pictures and summary", async () => {
+  const browser = await launch();
+  const run = await startRunOf(FLOWN, "--engine", "inprocess", "--set", "run.pace=20", "--stay");
+  try {
+    const {page, troubles} = await open(browser, run.url);
+    await until(page, () => mascot.tick > 0 && mascot.state === "running");
+    assert.ok(await page.isHidden("#tab-results"), "a run that goes on has no results");
+    await until(page, () => mascot.experiment.source === "recording" && mascot.state === "paused");
+    await page.click("#tab-results");
+    await until(page, () => [...document.querySelectorAll("#results img")].some((image) => image.naturalWidth > 100));
+    assert.ok((await page.locator("#results img").count()) >= 3);
+    await until(page, () => document.querySelectorAll("#results tr").length > 20);
+    const row = page.locator("#results tr").filter({has: page.locator("th", {hasText: /^sim_s$/})});
+    assert.equal(await row.locator("td").textContent(), "20.00");
+    await page.locator("#seek").fill("10");
+    await until(page, () => mascot.tick === 1000);
+    assert.deepEqual(troubles.filter((words) => !words.includes("WebSocket")), []);
+  } finally {
+    await run.stop();
+    await browser.close();
+  }
+});
+
 test("the page of a recording goes where it is asked to, and shows what was so at that time", async () => {
   const browser = await launch(), recording = await startRecording(FLOWN);
   try {

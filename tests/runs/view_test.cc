@@ -83,6 +83,49 @@ TEST(UpWithView, IsReadByFoxglovesOwnPackagesOverDds) {
   EXPECT_THAT(WebClient(url).Get("/"), "");  // no process listens any more
 }
 
+TEST(UpWithView, BecomesTheRecordingAtTheSameAddressIfItShallStay) {
+  const ScratchFolder folder;
+  WriteFile(folder.File("run.toml"), kRecordedRun);
+  Up up(folder, "run", folder.File("run.toml"),
+        {"--view", "127.0.0.1:0", "--stay", "--watch-only", "--engine", "inprocess", "--duration-s", "0.2", "--set",
+         "run.mode='lockstep'", "--set", "output.save_plot=true"});
+  const std::string url = UrlOf(up);
+  ASSERT_THAT(url, StartsWith("http://127.0.0.1:")) << up.err();
+  const std::string steer = up.err().substr(up.err().find("steer"));
+  ASSERT_TRUE(Until([&] { return up.Said("the recording is shown until Ctrl-C") || up.IsOver(); }));
+  const std::string again = up.err().substr(up.err().find("the recording is shown"));
+  ASSERT_TRUE(Until([&] { return up.Said("the recording is shown until Ctrl-C\nview           " + url); })) << again;
+  ASSERT_TRUE(Until([&] { return WebClient(url).Get("/results/summary.json").starts_with("HTTP/1.1 200"); }));
+  EXPECT_THAT(WebClient(url).Get("/results/paths.png"), StartsWith("HTTP/1.1 200"));
+  Viewer viewer(url);
+  viewer.Subscribe("/ui/experiment");
+  const nlohmann::json shown = viewer.NextJsonOf("/ui/experiment");
+  EXPECT_EQ(shown["source"], "recording");
+  EXPECT_EQ(shown["recorded"]["has_summary"], true);
+  EXPECT_THAT(shown["recorded"]["pictures"], testing::Contains("paths.png"));
+  EXPECT_EQ(up.Summary()["exit"], 0);
+  const std::string token = steer.substr(steer.find("#steer="), std::string("#steer=").size() + 32);
+  EXPECT_TRUE(Until([&] { return up.err().find(token) != up.err().rfind(token); })) << "the token stays " << up.err();
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 0) << "the exit code is that of the run";
+}
+
+TEST(UpWithView, EndsWithTheRunElsewhere) {
+  const ScratchFolder folder;
+  WriteFile(folder.File("run.toml"), kRecordedRun);
+  Up up(folder, "run", folder.File("run.toml"),
+        {"--view", "127.0.0.1:0", "--engine", "inprocess", "--duration-s", "0.2", "--set", "run.mode='lockstep'"});
+  WebClient watching(UrlOf(up));
+  watching.Upgrade();
+  EXPECT_EQ(up.Wait(), 0) << "there is no terminal";
+}
+
+TEST(UpWithView, RefusesToStayWithoutIt) {
+  const Ran run = Shell("'" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") + " --stay");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.output, HasSubstr("error: --stay: expected --view with it\n"));
+}
+
 TEST(UpWithView, TakesTheNextPortIfAnotherRunHasTheFirst) {
   const ScratchFolder folder;
   WriteFile(folder.File("run.toml"), kRecordedRun);

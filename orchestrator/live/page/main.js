@@ -10,6 +10,7 @@ import {Charts} from "./panel/charts.js";
 import {Events} from "./panel/events.js";
 import {bindKeys, fillHelp} from "./panel/keys.js";
 import {Notices} from "./panel/notices.js";
+import {Results} from "./panel/results.js";
 import {Layers, Status} from "./panel/status.js";
 import {bindTabs} from "./panel/tabs.js";
 import {Transport} from "./panel/transport.js";
@@ -58,6 +59,7 @@ const charts = new Charts(model);
 const agents = new Agents(model, asking);
 const tune = new Tune(model, asking);
 const events = new Events(model, notices);
+const results = new Results(model);
 const hand = new Hand(view, asking, byId("tip"), byId("card"));
 const layers = new Layers(view, byId("layer-list"));
 

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <utility>
 
 #include "agent/laws/laws.h"
 #include "orchestrator/live/recorded/incident_table.h"
 #include "orchestrator/live/shown/shown_keys.h"
 #include "orchestrator/measuring/agreement_meter.h"
+#include "orchestrator/recording/run_folder.h"
 
 namespace mascot {
 
@@ -30,6 +32,15 @@ RecordedRun::RecordedRun(const std::string& run)
               {.read = [this](std::int64_t tick, DecodedRow& row) { rows_.Read(tick, row); },
                .at = [this](std::int64_t tick) { return At(tick); },
                .next_change = [this](std::int64_t tick) { return NextChange(tick); }}) {}
+
+RecordedPart RecordedRun::part() const {
+  const std::filesystem::path folder = std::filesystem::path(rows_.path()).parent_path();
+  return {.last_tick = last_tick(),
+          .loss = rows_.loss(),
+          .incidents = incidents_,
+          .pictures = PicturesIn(folder),
+          .has_summary = std::filesystem::is_regular_file(folder / "summary.json")};
+}
 
 std::vector<ShownEvent> RecordedRun::Events() const {
   std::vector<ShownEvent> shown;

@@ -28,7 +28,7 @@ class RecordedRun {
   const Experiment& experiment() const { return experiment_; }
   const IndexedRows& rows() const { return rows_; }
   std::int64_t last_tick() const { return rows_.ticks() - 1; }
-  RecordedPart part() const { return {last_tick(), rows_.loss(), incidents_}; }
+  RecordedPart part() const;
   /// All events. The events.csv beside the recording says which of them were given by hand. The recording does not say
   /// it: it is the same, byte for byte, when the run is flown again from its config.toml.
   std::vector<ShownEvent> Events() const;

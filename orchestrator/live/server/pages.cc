@@ -75,15 +75,26 @@ HttpAnswer Serve(const fs::path& file, std::string why_not) {
           .body = std::move(*contents)};
 }
 
+/// Whether a name is that of a picture or of the summary, in the folder of a run itself.
+bool IsResult(const fs::path& name) {
+  const auto suffix = name.extension();
+  return !name.has_parent_path() && (suffix == ".png" || suffix == ".svg" || name == "summary.json");
+}
+
 }  // namespace
 
 HttpAnswer Pages::Get(std::string_view target) const {
-  constexpr std::string_view kVendor = "vendor/";
+  constexpr std::string_view kVendor = "vendor/", kResults = "results/";
   std::string_view path = target.substr(0, target.find('?'));
   if (!path.starts_with('/')) return NotFound("expected a path");
   path.remove_prefix(1);
   if (path.empty()) path = "index.html";
   if (!IsPlain(path)) return NotFound("there is no such file");
+  if (path.starts_with(kResults)) {
+    const fs::path name = path.substr(kResults.size());
+    const bool is_there = !results_.empty() && IsResult(name) && !fs::is_symlink(results_ / name);
+    return is_there ? Serve(results_ / name, "there is no such result") : NotFound("there is no such result");
+  }
   if (!path.starts_with(kVendor)) return Serve(page_ / path, "there is no such file");
   path.remove_prefix(kVendor.size());
   for (const Vendor& vendor : kVendors)

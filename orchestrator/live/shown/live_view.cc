@@ -46,7 +46,7 @@ LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, c
       meter_(meter),
       left_out_(experiment),
       source_(options.source),
-      pages_(options.page),
+      pages_(options.page, options.results),
       steering_(options.steering),
       newest_(experiment.size()),
       state_{.pace = options.pace},
@@ -163,6 +163,7 @@ void LiveView::SetExperiment(const Experiment& now, const std::vector<ShownKey>&
 }
 
 void LiveView::OnOpen(ClientId client, const std::string& subprotocol, std::string_view target) {
+  ++viewers_;
   if (foxglove_.clients().empty() && TakeNewest() && shown_.tick >= 0) Show();  // no viewer watched: shown_ is old
   foxglove_.OnOpen(client, {.has_playback = subprotocol == kSubprotocols[0], .may_steer = steering_.IsGranted(target)});
 }
@@ -172,6 +173,7 @@ std::string LiveView::OnMessage(ClientId client, bool is_text, std::span<const s
 }
 
 void LiveView::OnClose(ClientId client) {
+  --viewers_;
   foxglove_.OnClose(client);
   slow_.erase(client);
   for (auto& missed : missed_) missed.erase(client);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -34,11 +35,12 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
     std::uint16_t port = 8765;
     /// Origins of further pages that may watch and steer (live/server/origin.h).
     std::vector<std::string> allowed_origins = {};
-    std::filesystem::path page;  ///< folder of index.html
+    std::filesystem::path page;          ///< folder of index.html
+    std::filesystem::path results = {};  ///< of a recording: the folder of its pictures and summary; empty: none
     ShownSource source = {};
     double pace = 0;  ///< simulated seconds per second that the run shall fly; 0: as fast as the machine can
     /// Who may steer; others only watch.
-    Steering::By steering = Steering::By::kAll;
+    Steering steering = Steering(Steering::By::kAll);
   };
 
   /// Listens from now on; all arguments but `options` must outlive this object. `meter` must get each row before this
@@ -56,6 +58,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   std::string steering_suffix() const { return steering_.token().empty() ? "" : "/#steer=" + steering_.token(); }
   /// From the run's thread.
   void Adopt(const LiveExperiment& live, std::span<const Event> events) override;
+  const Steering& steering() const { return steering_; }
   /// Takes the next row, from the run's thread.
   void Add(const FlownRow& row) override;
 
@@ -64,6 +67,8 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   void Fail(const std::string& why) { server_.Fail(why); }
   /// Whether an error in our own code has ended the view.
   bool has_failed() const { return server_.has_failed(); }
+  /// Whether somebody watches.
+  bool is_watched() const { return viewers_ > 0; }
   /// Shows this row from now on, whether it is later or earlier than the one before.
   void Take(const ShownRow& row);
   /// Says how the run goes. real_time_factor is not used: it is measured here.
@@ -118,6 +123,8 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   const ShownSource source_;
   const Pages pages_;
   const Steering steering_;
+
+  std::atomic<int> viewers_ = 0;
 
   std::mutex mutex_;
   ShownRow newest_;          // guarded by mutex_

@@ -133,7 +133,11 @@ Json ObstaclesJson(const std::vector<Obstacle>& obstacles) {
 }
 
 Json RecordedJson(const Experiment& experiment, const RecordedPart& recorded) {
-  return {{"end_s", experiment.time_s(recorded.last_tick)}, {"loss", recorded.loss}, {"incidents", recorded.incidents}};
+  return {{"end_s", experiment.time_s(recorded.last_tick)},
+          {"loss", recorded.loss},
+          {"incidents", recorded.incidents},
+          {"pictures", recorded.pictures},
+          {"has_summary", recorded.has_summary}};
 }
 
 Json KeysJson(const std::vector<ShownKey>& keys) {

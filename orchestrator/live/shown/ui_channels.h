@@ -65,8 +65,10 @@ struct ShownEvent {
 /// What is there of a recording.
 struct RecordedPart {
   std::int64_t last_tick = 0;
-  std::string loss = {};       ///< why later ticks may be missing; empty: there are none
-  std::string incidents = {};  ///< the first lines of the events.csv beside it; empty: there is none
+  std::string loss = {};                   ///< why later ticks may be missing; empty: there are none
+  std::string incidents = {};              ///< the first lines of the events.csv beside it; empty: there is none
+  std::vector<std::string> pictures = {};  ///< names of the pictures beside it
+  bool has_summary = false;                ///< whether its summary.json is beside it
 };
 
 /// Where rows come from.

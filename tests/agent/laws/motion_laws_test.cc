@@ -219,7 +219,7 @@ TEST(PathSamples, AreFourFiniteNumbersInEachLineAndElseItsPlaceIsNamed) {
   };
   const std::string good = "t,x,y,z\n 0 , 0,\t0,1 \r\n\n", longer(100, '1');
   for (const Case& wrong : std::vector<Case>{{"1,2,3\n", 4, 6, "'1,2,3'"},
-                                             {"1,2,3,4,5\n", 4, 7, "'1,2,3,4,5'"},
+                                             {"1,2,3,4,5\n", 4, 9, "'1,2,3,4,5'"},
                                              {"1 0,2,3,4\n", 4, 1, "'1 0,2,3,4'"},
                                              {"1,2,nan,4\n", 4, 5, "'1,2,nan,4'"},
                                              {"1,2,3,inf\n", 4, 7, "'1,2,3,inf'"},
@@ -235,7 +235,7 @@ TEST(PathSamples, AreFourFiniteNumbersInEachLineAndElseItsPlaceIsNamed) {
                                              {"0,2,3,4\n", 4, 1, "times that increase, got '0,2,3,4'"},
                                              {"", 3, 1, "two lines t,x,y,z, got 1"}}) {
     PathSamples samples;
-    PathSamples::Place place;
+    TextPlace place;
     const std::string mistake = samples.Read(good + wrong.text, place);
     EXPECT_THAT(mistake, HasSubstr(wrong.got)) << wrong.text;
     EXPECT_LT(mistake.size(), 150U) << wrong.text;
@@ -243,7 +243,7 @@ TEST(PathSamples, AreFourFiniteNumbersInEachLineAndElseItsPlaceIsNamed) {
     EXPECT_EQ(place.column, wrong.column) << wrong.text;
   }
   PathSamples samples;
-  PathSamples::Place place;
+  TextPlace place;
   EXPECT_EQ(samples.Read(good + "1.5,-2e-1,3,4", place), "");
   EXPECT_EQ(samples.duration_s(), 1.5);
 }

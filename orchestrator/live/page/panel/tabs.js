@@ -13,9 +13,10 @@ export function bindTabs(list, onChange) {
   };
   list.addEventListener("click", ({target}) => target.closest("[role=tab]") && choose(target.closest("[role=tab]")));
   list.addEventListener("keydown", ({key}) => {
-    const by = key === "ArrowRight" ? 1 : key === "ArrowLeft" ? -1 : 0, at = tabs.indexOf(document.activeElement);
+    const there = tabs.filter(({hidden}) => !hidden);
+    const by = key === "ArrowRight" ? 1 : key === "ArrowLeft" ? -1 : 0, at = there.indexOf(document.activeElement);
     if (!by || at < 0) return;
-    const next = tabs[(at + by + tabs.length) % tabs.length];
+    const next = there[(at + by + there.length) % there.length];
     next.focus();
     choose(next);
   });

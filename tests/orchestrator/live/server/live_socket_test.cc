@@ -342,6 +342,27 @@ TEST(LiveSocket, ServesFilesOfThePageAndNoOthers) {
   EXPECT_THAT(WebClient(echo.url()).Ask("POST / HTTP/1.1\r\nHost: localhost\r\n\r\n"), StartsWith("HTTP/1.1 405"));
 }
 
+TEST(Pages, ServesPicturesAndTheSummaryOfARunAndNothingElseOfItsFolder) {
+  const ScratchFolder page, run;
+  WriteFile(page.File("index.html"), "<p>here</p>");
+  WriteFile(run.File("paths.png"), "a picture");
+  WriteFile(run.File("summary.json"), "{}");
+  WriteFile(run.File("config.toml"), "secret");
+  WriteFile(run.File("other.json"), "secret");
+  WriteFile(run.File(".hidden.png"), "secret");
+  std::filesystem::create_directories(run.File("logs"));
+  WriteFile(run.File("logs/inner.png"), "secret");
+  std::filesystem::create_symlink("/etc/hostname", run.File("link.png"));
+  const Pages pages(page.path(), run.path());
+  EXPECT_EQ(pages.Get("/results/paths.png").body, "a picture");
+  EXPECT_EQ(pages.Get("/results/summary.json").body, "{}");
+  for (const char* path :
+       {"/results/", "/results/config.toml", "/results/other.json", "/results/.hidden.png", "/results/logs/inner.png",
+        "/results/../index.html", "/results/link.png", "/results/no.png", "/paths.png"})
+    EXPECT_EQ(pages.Get(path).status, 404) << path;
+  EXPECT_EQ(Pages(page.path()).Get("/results/paths.png").status, 404) << "a run that goes on has no results";
+}
+
 TEST(LiveSocket, RefusesAForeignHostAndAForeignOrigin) {
   Echo echo;
   const auto ask = [&](const std::string& host, const std::string& more) {

@@ -227,10 +227,11 @@ gain = 0.1
   Viewer viewer(run.view.url());
   viewer.Subscribe("/ui/frame");
   run.Fly([&](std::int64_t tick) {  // 1 hears 2, 3, 4; 2 hears 1, 3, 4; ...
-    if (tick == 2)
+    if (tick == 2) {
       EXPECT_EQ(viewer.FrameAt(1)["left_out"], Json::parse("[0,0,1, 1,0,1, 1,0,1, 1,0,0]"));
-    else if (tick == 4)
+    } else if (tick == 4) {
       EXPECT_EQ(viewer.FrameAt(3)["left_out"], Json::parse("[0,1,1, 0,1,1, 0,0,1, 1,0,0]"));
+    }
   });
 }
 
@@ -532,8 +533,8 @@ TEST(LiveView, WhoHasTheTokenSteersAndOthersWatch) {
   const Prediction prediction;
   const RunMeter meter(experiment);
   Control control;
-  LiveView view(experiment, prediction, meter, control, {.port = 0, .page = {}, .steering = Steering::By::kToken},
-                [](const std::string&) {});
+  LiveView view(experiment, prediction, meter, control,
+                {.port = 0, .page = {}, .steering = Steering(Steering::By::kToken)}, [](const std::string&) {});
   const std::string suffix = view.steering_suffix();
   ASSERT_THAT(suffix, testing::StartsWith("/#steer="));
   Viewer watches(view.url()), steers(view.url(), "/?steer=" + suffix.substr(8));
