@@ -20,6 +20,20 @@ void AppendCell(std::string_view cell, std::string& row) {
   row += '"';
 }
 
+/// Takes a quoted cell off `text`, up to what follows its last quote. Returns whether it has that quote.
+bool TakeQuoted(std::string_view& text, std::string& cell) {
+  for (text.remove_prefix(1); !text.empty(); text.remove_prefix(1)) {
+    if (text.starts_with("\"\""))
+      text.remove_prefix(1);
+    else if (text[0] == '"')
+      break;
+    cell += text[0];
+  }
+  if (text.empty()) return false;
+  text.remove_prefix(1);
+  return true;
+}
+
 }  // namespace
 
 std::string CsvRow(std::span<const std::string> cells) {
@@ -47,6 +61,23 @@ std::vector<std::string> TakeCsvRow(std::string_view& text) {
   }
   text.remove_prefix(std::min(at + 1, text.size()));
   return cells;
+}
+
+std::string_view TakeForeignCsvRow(std::string_view& text, std::vector<std::string>& cells) {
+  for (;;) {
+    std::string& cell = cells.emplace_back();
+    const bool is_quoted = text.starts_with('"');
+    if (is_quoted && !TakeQuoted(text, cell)) return "no second quote";
+    const std::string_view bare = text.substr(0, text.find_first_of(",\n"));
+    text.remove_prefix(bare.size());
+    const bool ends = text.empty() || text[0] == '\n';
+    const std::string_view rest = ends && bare.ends_with('\r') ? bare.substr(0, bare.size() - 1) : bare;
+    if (is_quoted && !rest.empty()) return "a character behind the second quote";
+    if (rest.find('"') != rest.npos) return "a quote in a cell without quotes";
+    cell += rest;
+    if (!text.empty()) text.remove_prefix(1);
+    if (ends) return {};
+  }
 }
 
 std::string_view WholeCsvRows(std::string_view text) {

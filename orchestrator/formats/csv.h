@@ -20,6 +20,9 @@ std::string CsvRow(std::span<const std::string> cells);
 /// Takes the next row off `text`, as its cells. In quotes, commas and line breaks are of the cell. Rows that no program
 /// should write, such as one with a quote inside a cell without quotes, are read as well as may be.
 std::vector<std::string> TakeCsvRow(std::string_view& text);
+/// As TakeCsvRow, of a table that somebody else wrote: lines may end in CR LF, and the last one without. Returns what
+/// is wrong with the last of `cells`, "a quote in a cell without quotes"; empty: nothing.
+std::string_view TakeForeignCsvRow(std::string_view& text, std::vector<std::string>& cells);
 /// The cells of a row that stands alone, with or without its line feed.
 inline std::vector<std::string> CsvCells(std::string_view row) { return TakeCsvRow(row); }
 /// The beginning of `text` that is whole rows, each with its line feed.

@@ -96,6 +96,45 @@ TEST(Csv, ATableThatIsCutAnywhereHasTheRowsThatEndBeforeTheCut) {
   }
 }
 
+TEST(Csv, RowsOfOthersReadBackTheSame) {
+  const Rows rows = HardRows();
+  std::string table;
+  for (const auto& row : rows) table += CsvRow(row);
+  std::string_view text = table;
+  for (const auto& row : rows) {
+    std::vector<std::string> cells;
+    ASSERT_EQ(TakeForeignCsvRow(text, cells), "");
+    ASSERT_EQ(cells, row);
+  }
+  EXPECT_EQ(text, "");
+}
+
+/// The cells of all rows of a table that somebody else wrote, and what is wrong with the last of them.
+std::pair<Rows, std::string> Foreign(std::string_view text) {
+  Rows rows;
+  while (!text.empty()) {
+    const std::string_view mistake = TakeForeignCsvRow(text, rows.emplace_back());
+    if (!mistake.empty()) return {rows, std::string(mistake)};
+  }
+  return {rows, ""};
+}
+
+TEST(Csv, RowsOfOthersMayEndInACarriageReturnAndTheLastWithoutAnything) {
+  using Read = std::pair<Rows, std::string>;
+  EXPECT_EQ(Foreign("a,\"b\"\r\n\r\n,c"), (Read{{{"a", "b"}, {""}, {"", "c"}}, ""}));
+  EXPECT_EQ(Foreign("a,\"b\r\n\"\"\""), (Read{{{"a", "b\r\n\""}}, ""}));
+  EXPECT_EQ(Foreign("a,\n"), (Read{{{"a", ""}}, ""}));
+  EXPECT_EQ(Foreign("a\r,b\n"), (Read{{{"a\r", "b"}}, ""})) << "it is of the cell, but at the end of a line";
+}
+
+TEST(Csv, RowsOfOthersWithQuotesThatSayNothingAreRefused) {
+  using Read = std::pair<Rows, std::string>;
+  EXPECT_EQ(Foreign("a,b\"c\"\n"), (Read{{{"a", ""}}, "a quote in a cell without quotes"}));
+  EXPECT_EQ(Foreign("a, \"b\"\n"), (Read{{{"a", ""}}, "a quote in a cell without quotes"}));
+  EXPECT_EQ(Foreign("\"a\"b,c\n"), (Read{{{"a"}}, "a character behind the second quote"}));
+  EXPECT_EQ(Foreign("\"a\"\"b\n"), (Read{{{"a\"b\n"}}, "no second quote"}));
+}
+
 TEST(Csv, NamesOfColumnsMayBeAnyText) {
   const std::vector<std::string> columns = {"a,b", "\"c\"", "d\ne"};
   const ScratchFolder scratch;
