@@ -8,7 +8,10 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace mascot {
 namespace {
@@ -26,10 +29,11 @@ void ExecuteTasks(std::span<const std::size_t> tasks, WorkerPool& pool, StopSign
 
 /// The values in which a trial differs from the first run: "law.name = rendezvous".
 std::string DifferenceOf(const SweepPoint& trial, const SweepPoint& first) {
+  std::string text;
   for (std::size_t k = 0; k < trial.overrides.size(); ++k)
-    if (trial.overrides[k].value != first.overrides[k].value)
-      return trial.overrides[k].key + " = " + trial.overrides[k].value;
-  return "";
+    if (const Override& set = trial.overrides[k]; set.value != first.overrides[k].value)
+      text.append(text.empty() ? "" : ", ").append(set.key).append(" = ").append(set.value);
+  return text;
 }
 
 }  // namespace
@@ -90,7 +94,7 @@ std::vector<PythonMetric> SweepChecks::Metrics(const std::vector<std::string>& o
 }
 
 void SweepChecks::CheckTrials() {
-  std::vector<std::size_t> tasks(sweep_.plan.trials().size());
+  std::vector<std::size_t> tasks(sweep_.plan.TrialCount());
   std::iota(tasks.begin(), tasks.end(), tasks_.CheckOfTrial(0));
   std::map<std::size_t, std::string> mistakes;
   ExecuteTasks(tasks, pool_, stop_, [&](const WorkerPool::Done& done) {
@@ -100,7 +104,7 @@ void SweepChecks::CheckTrials() {
   if (mistakes.empty()) return;
   const auto& [trial, text] = *mistakes.begin();
   throw ConfigError({fmt::format("sweep: the first run with {}: {} (--force flies the other runs)",
-                                 DifferenceOf(sweep_.plan.trials()[trial], sweep_.plan[0]), text)});
+                                 DifferenceOf(sweep_.plan.Trial(trial), sweep_.plan[0]), text)});
 }
 
 void SweepChecks::CheckSeeds(const CheckedRun& first) {
@@ -112,12 +116,13 @@ void SweepChecks::CheckSeeds(const CheckedRun& first) {
     draws = done.failure.empty() && !CheckedRunFrom(done.answer).draws.empty();
     return !draws;
   });
+  const std::span<const std::string> seeds = sweep_.plan.ValuesOf(kSeedKey);
   if (!draws)
     throw ConfigError(
         {fmt::format("sweep: expected one run.seed, because every seed gives the same run (nothing is "
                      "drawn: no places, edges, loss, jitter, noise, gusts or lies at random, no law that "
                      "draws), got {} (--force flies them all)",
-                     sweep_.plan.size() / runs.size())});
+                     std::set<std::string>(seeds.begin(), seeds.end()).size())});
 }
 
 }  // namespace mascot

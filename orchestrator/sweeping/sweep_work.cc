@@ -75,7 +75,7 @@ WorkerPool::Work WorkOf(const Sweep& sweep) {
     }
     const bool of_run = task < tasks.CheckOfTrial(0);
     const Experiment experiment =
-        sweep.Load(of_run ? sweep.plan[tasks.RunOfCheck(task)] : sweep.plan.trials()[task - tasks.CheckOfTrial(0)]);
+        sweep.Load(of_run ? sweep.plan[tasks.RunOfCheck(task)] : sweep.plan.Trial(task - tasks.CheckOfTrial(0)));
     return nlohmann::json(
                {{"resolved", experiment.resolved}, {"draws", DrawsOf(experiment)}, {"laws", LawsAtTheEnd(experiment)}})
         .dump();

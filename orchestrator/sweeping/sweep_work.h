@@ -46,7 +46,7 @@ struct CheckedRun {
 /// the other tasks check a run or a trial, or list the user's metrics.
 class SweepTasks {
  public:
-  explicit SweepTasks(const SweepPlan& plan) : runs_(plan.size()), trials_(plan.trials().size()) {}
+  explicit SweepTasks(const SweepPlan& plan) : runs_(plan.size()), trials_(plan.TrialCount()) {}
 
   std::size_t CheckOfRun(std::size_t run) const { return runs_ + run; }
   std::size_t CheckOfTrial(std::size_t trial) const { return 2 * runs_ + trial; }

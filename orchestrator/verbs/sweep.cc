@@ -59,6 +59,7 @@ std::vector<std::string> CommandOf(const SweepArgs& args) {
   for (const std::string& word : args.words.randoms) words.insert(words.end(), {"--random", word});
   if (!args.words.randoms.empty()) words.insert(words.end(), {"--samples", std::to_string(args.words.samples)});
   if (!args.words.seeds.empty()) words.insert(words.end(), {"--seeds", args.words.seeds});
+  if (args.words.zip) words.emplace_back("--zip");
   if (!args.metric_file.empty()) words.insert(words.end(), {"--metric", AsWord(args.metric_file)});
   words.insert(words.end(), {"--out", AsWord(args.out)});
   return words;
@@ -193,6 +194,9 @@ std::function<int()> SetUpSweep(CLI::App& command) {
   samples->needs(random);
   command.add_option("--seeds", args->words.seeds, "fly each combination with each of these seeds: A..B or A,B,...")
       ->type_name("SEEDS");
+  command.add_flag("--zip", args->words.zip,
+                   "fly the values of the --set keys row by row, the first of each key, the second of each, ..., and "
+                   "not every combination");
   command.add_option("--jobs", args->jobs, "processes that fly at the same time (default: one per core)")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");

@@ -41,7 +41,8 @@ std::string Unquoted(const std::string& value) {
 }
 
 LawAxis::LawAxis(Section document, const SweepPlan& plan) {
-  for (const std::string& value : plan.ValuesOf(kLawKey)) laws_.push_back(Unquoted(value));
+  for (const std::string& value : plan.ValuesOf(kLawKey))  // rows may have a law more than once
+    if (std::ranges::find(laws_, Unquoted(value)) == laws_.end()) laws_.push_back(Unquoted(value));
   std::erase_if(laws_, [](const std::string& law) { return std::ranges::find(LawNames(), law) == LawNames().end(); });
   if (laws_.empty() || document.Kind("law") != "table") return;
   Section table = document.Child("law");

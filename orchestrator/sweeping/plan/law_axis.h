@@ -20,7 +20,7 @@ class LawAxis {
   /// `document`: the experiment file, parsed.
   LawAxis(Section document, const SweepPlan& plan);
 
-  /// The values of law.name; empty: the sweep does not set it.
+  /// The values of law.name, each once; empty: the sweep does not set it.
   const std::vector<std::string>& laws() const { return laws_; }
   /// The overrides of a run, without the keys that its law does not know, and with orders to remove these from the
   /// file's table.

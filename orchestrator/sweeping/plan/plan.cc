@@ -66,6 +66,13 @@ std::vector<std::string> Split(std::string_view text, char separator) {
   return parts;
 }
 
+/// A value of PlainValue() as one that --set takes for one: a string without quotes may look like several values, or
+/// like a range.
+std::string Typed(const std::string& value) {
+  const bool is_word = std::isalpha(static_cast<unsigned char>(value.front())) != 0;
+  return is_word && value.find_first_of(",:[]{}\"'") != std::string::npos ? ToToml({value}) : value;
+}
+
 /// Splits KEY=VALUES at the first equals sign.
 std::pair<std::string, std::string> SplitKey(const std::string& option, const std::string& word) {
   const auto equals = word.find('=');
@@ -138,6 +145,25 @@ std::string SeedsText(const std::vector<std::string>& seeds) {
   for (std::size_t k = 0; k < seeds.size(); ++k)
     if (ToSeed(seeds[k]) != first + static_cast<std::int64_t>(k)) return fmt::format("{}", fmt::join(seeds, ","));
   return fmt::format("{}..{}", seeds.front(), seeds.back());
+}
+
+/// A key, and how many values it is given.
+struct ValueCount {
+  std::string key;
+  std::size_t values;
+};
+
+/// Throws ConfigError unless --zip has several keys to take the values of together, all with as many. `counts`: of the
+/// keys of several values.
+void CheckZip(const std::vector<ValueCount>& counts) {
+  if (counts.size() < 2)
+    throw ConfigError({fmt::format("--zip: expected at least 2 keys with --set KEY=VALUES of several values, got {}",
+                                   counts.empty() ? "none" : "1, " + counts.front().key)});
+  const auto is_other = [&](const ValueCount& count) { return count.values != counts.front().values; };
+  if (std::ranges::none_of(counts, is_other)) return;
+  std::vector<std::string> texts;
+  for (const auto& [key, values] : counts) texts.push_back(fmt::format("{} of {}", values, key));
+  throw ConfigError({fmt::format("--zip: expected as many values of each key, got {}", fmt::join(texts, ", "))});
 }
 
 /// Whether `key` is `table` itself, or a key or list element in it.
@@ -215,6 +241,7 @@ void SweepPlan::Multiply(std::size_t by) {
   if (size_ > kMaxRuns / std::max<std::size_t>(by, 1))
     throw ConfigError({"sweep: expected at most 10000000 runs, got more"});
   size_ *= by;
+  row_stride_ *= by;
   for (Axis& axis : axes_) axis.stride *= by;
 }
 
@@ -222,19 +249,82 @@ void SweepPlan::Multiply(std::size_t by) {
 void SweepPlan::AddTrials(std::size_t sets) {
   for (std::size_t k = 0; k < sets; ++k) {
     const Axis& axis = axes_[k];
-    for (std::size_t i = axis.is_range ? std::max<std::size_t>(axis.size() - 1, 1) : 1; i < axis.size(); ++i) {
-      trials_.push_back((*this)[0]);
-      trials_.back().overrides[k].value = axis.Value(i);
-    }
+    for (std::size_t i = axis.is_range ? std::max<std::size_t>(axis.size() - 1, 1) : 1; i < axis.size(); ++i)
+      trials_.push_back({.axis = k, .number = i});
   }
 }
 
-SweepPlan::SweepPlan(const Words& words) {
-  for (const std::string& word : words.sets) {
-    Axis axis = ParseSet(word);
+void SweepPlan::AddTrialsOfRows(std::size_t sets) {
+  const auto is_range = [](const Axis& axis) { return axis.is_range || axis.size() == 1; };
+  const bool last_alone = std::ranges::all_of(std::span(axes_).first(sets), is_range);
+  const std::size_t first = last_alone ? std::max<std::size_t>(rows_ - 1, 1) : 1;
+  for (std::size_t row = first; row < rows_; ++row) trials_.push_back({.axis = {}, .number = row});
+}
+
+SweepPoint SweepPlan::Trial(std::size_t number) const {
+  const TrialPlace& trial = trials_[number];
+  if (!trial.axis) return (*this)[trial.number * row_stride_];
+  SweepPoint point = (*this)[0];
+  point.overrides[*trial.axis].value = axes_[*trial.axis].Value(trial.number);
+  return point;
+}
+
+void SweepPlan::AddProduct(std::vector<Axis> sets) {
+  for (Axis& axis : sets) {
     KeepEachOnce(axis);
     Multiply(axis.size());
     AddAxis(axis);
+  }
+}
+
+/// Leaves the first of equal rows, and says so.
+void SweepPlan::KeepEachRowOnce(std::vector<Axis>& sets, std::size_t rows) {
+  std::unordered_set<std::string> there;
+  std::vector<std::size_t> kept;
+  for (std::size_t row = 0; row < rows; ++row) {
+    std::string text;
+    for (const Axis& axis : sets)
+      if (axis.size() > 1) text.append(axis.values[row]).push_back('\0');
+    if (there.insert(std::move(text)).second) kept.push_back(row);
+  }
+  rows_ = kept.size();
+  if (rows_ == rows) return;
+  notes_.push_back(fmt::format("--zip: {} of the {} rows are equal to others: each is flown once", rows - rows_, rows));
+  const auto keep = [&](auto& list) {
+    for (std::size_t k = 0; k < kept.size(); ++k) list[k] = list[kept[k]];
+    list.resize(kept.size());
+  };
+  for (Axis& axis : sets) {
+    if (axis.size() == 1) continue;
+    keep(axis.values);
+    axis.is_range = false;
+  }
+}
+
+/// Keys with several values have as many as there are rows.
+void SweepPlan::AddRows(std::vector<Axis> sets) {
+  std::size_t rows = 1;
+  for (const Axis& axis : sets) rows = std::max(rows, axis.size());
+  KeepEachRowOnce(sets, rows);
+  for (Axis& axis : sets)
+    if (std::ranges::adjacent_find(axis.values, std::not_equal_to<>()) == axis.values.end()) axis.values.resize(1);
+  Multiply(rows_);
+  row_stride_ = 1;  // what is added from now on changes faster
+  for (const Axis& axis : sets) AddAxis(axis);
+  is_zipped_ = std::ranges::count_if(sets, [](const Axis& axis) { return axis.size() > 1; }) > 1;
+}
+
+SweepPlan::SweepPlan(const Words& words) {
+  std::vector<Axis> sets;
+  for (const std::string& word : words.sets) sets.push_back(ParseSet(word));
+  if (words.zip) {
+    std::vector<ValueCount> counts;
+    for (const Axis& axis : sets)
+      if (axis.size() > 1) counts.push_back({axis.key, axis.size()});
+    CheckZip(counts);
+    AddRows(std::move(sets));
+  } else {
+    AddProduct(std::move(sets));
   }
   std::vector<Axis> drawn;
   for (std::size_t k = 0; k < words.randoms.size(); ++k)
@@ -249,7 +339,10 @@ SweepPlan::SweepPlan(const Words& words) {
     Multiply(seeds.size());
     AddAxis(seeds);
   }
-  AddTrials(words.sets.size());
+  if (words.zip)
+    AddTrialsOfRows(words.sets.size());
+  else
+    AddTrials(words.sets.size());
 }
 
 std::string SweepPlan::Axis::Value(std::size_t k) const { return drawn.empty() ? values[k] : ShortestFloat(drawn[k]); }
@@ -269,12 +362,8 @@ SweepPoint SweepPlan::operator[](std::size_t run) const {
 }
 
 SweepPlan::Words SweepPlan::words() const {
-  // A string without quotes, as it stands in the table, may look like several values, or like a range.
-  const auto typed = [](const std::string& value) {
-    const bool is_word = std::isalpha(static_cast<unsigned char>(value.front())) != 0;
-    return is_word && value.find_first_of(",:[]{}\"'") != std::string::npos ? ToToml({value}) : value;
-  };
   Words words;
+  words.zip = is_zipped_;
   for (const Axis& axis : axes_) {
     if (!axis.drawn.empty()) {
       words.randoms.push_back(axis.key + "=" + axis.range);
@@ -283,7 +372,7 @@ SweepPlan::Words SweepPlan::words() const {
       words.seeds = SeedsText(axis.values);
     } else {
       std::string values;
-      for (const std::string& value : axis.values) values += (values.empty() ? "" : ",") + typed(value);
+      for (const std::string& value : axis.values) values += (values.empty() ? "" : ",") + Typed(value);
       words.sets.push_back(axis.key + "=" + (axis.is_range ? axis.range : values));
     }
   }
@@ -295,7 +384,7 @@ std::string SweepPlan::Text() const {
   for (const Axis& axis : axes_)
     text += axis.drawn.empty() ? fmt::format("{}={}\n", axis.key, fmt::join(axis.values, ","))
                                : fmt::format("{}={}, {} samples\n", axis.key, axis.range, axis.drawn.size());
-  return text;
+  return text + (is_zipped_ ? "row by row\n" : "");
 }
 
 std::string SweepPlan::SettingOf(std::string_view key) const {
@@ -340,12 +429,12 @@ SweepPlan::Representatives SweepPlan::RepresentativesOf(Alike alike) const {
 }
 
 std::vector<std::size_t> SweepPlan::WithFirstSeed() const {
-  const auto place = static_cast<std::size_t>(std::ranges::find(keys_, kSeedKey) - keys_.begin());
-  if (place == keys_.size() || axes_[place].size() < 2) return {};
+  if (std::ranges::find(keys_, kSeedKey) == keys_.end()) return {};
+  const Representatives representatives = RepresentativesOf(Alike::kInValues);
   std::vector<std::size_t> runs;
   for (std::size_t run = 0; run < size_; ++run)
-    if (run / axes_[place].stride % axes_[place].size() == 0) runs.push_back(run);
-  return runs;
+    if (representatives[run] == run) runs.push_back(run);
+  return runs.size() < size_ ? runs : std::vector<std::size_t>{};
 }
 
 }  // namespace mascot

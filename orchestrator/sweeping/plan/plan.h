@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,7 +25,8 @@ struct SweepPoint {
 };
 
 /// The runs of a sweep: every combination of key values, random samples and seeds, in this order; seeds change fastest.
-/// The same options give the same plan. A run is made when it is asked for: a plan keeps only the values of its keys.
+/// With --zip, the values of a row belong together: every combination of rows, samples and seeds is flown. The same
+/// options give the same plan. A run is made when it is asked for: a plan keeps only the values of its keys.
 class SweepPlan {
  public:
   /// Command-line options, as typed.
@@ -33,6 +35,7 @@ class SweepPlan {
     std::vector<std::string> randoms;  ///< --random KEY=MIN:MAX[:log]
     std::int64_t samples = 1;          ///< --samples: how often all random keys are drawn
     std::string seeds;                 ///< --seeds A..B | A,B,...; "": the seed of the file
+    bool zip = false;                  ///< --zip: the k-th values of all --set keys of several values are a row
     bool operator==(const Words&) const = default;
   };
   /// Throws ConfigError for an invalid option, naming the option and what was expected.
@@ -53,9 +56,11 @@ class SweepPlan {
   const std::vector<std::string>& varied() const { return varied_; }
   /// The values of a key, in plain text (values.h); empty if neither --set nor --seeds sets it.
   std::span<const std::string> ValuesOf(std::string_view key) const;
-  /// For each value but the first that --set gives a key, the first run that has it. Of the values of A:STEP:B, only
-  /// the last one counts.
-  const std::vector<SweepPoint>& trials() const { return trials_; }
+  /// The trials, by number: for each value but the first that --set gives a key, the first run that has it; for each
+  /// row but the first, its first run. Of the values of A:STEP:B, and of rows
+  /// with no other values, only the last one counts.
+  std::size_t TrialCount() const { return trials_.size(); }
+  SweepPoint Trial(std::size_t number) const;
   /// Which runs count as alike: those that set the same values (kInValues), or the same values of the keys whose values
   /// are not all numbers (kInWords). run.seed may differ in both.
   enum class Alike { kInValues, kInWords };
@@ -74,8 +79,10 @@ class SweepPlan {
     std::vector<Digit> digits_;
   };
   Representatives RepresentativesOf(Alike alike) const;
-  /// The runs with the first value of run.seed, if it has several; else none.
+  /// The first of all runs that differ in run.seed alone, for each such set of runs; none if no two runs do.
   std::vector<std::size_t> WithFirstSeed() const;
+  /// Whether keys change together, row by row.
+  bool IsZipped() const { return is_zipped_; }
   /// A line for each key with its values, by which plans are compared.
   std::string Text() const;
   /// What a key is set to, in words: "0.1, 0.5", "0.1:1, 20 samples"; empty: it is not set.
@@ -93,13 +100,22 @@ class SweepPlan {
     std::size_t size() const { return drawn.empty() ? values.size() : drawn.size(); }
     std::string Value(std::size_t k) const;
   };
+  /// A run that is checked before the sweep: that of a row, or the first one with another value of one key.
+  struct TrialPlace {
+    std::optional<std::size_t> axis = {};  ///< nothing: a row
+    std::size_t number = 0;                ///< of the value, or of the row
+  };
   static Axis ParseSet(const std::string& word);
   static Axis ParseRandom(const std::string& word, std::uint64_t place, std::int64_t samples);
   void AddAxis(const Axis& axis);
   void KeepEachOnce(Axis& axis);
   void KeepOneIfEqual(std::vector<Axis>& drawn);
   void Multiply(std::size_t by);
+  void AddProduct(std::vector<Axis> sets);
+  void AddRows(std::vector<Axis> sets);
+  void KeepEachRowOnce(std::vector<Axis>& sets, std::size_t rows);
   void AddTrials(std::size_t sets);
+  void AddTrialsOfRows(std::size_t sets);
   bool IsOfSeeds(const Axis& axis) const { return has_seeds_ && &axis == &axes_.back(); }
 
   std::vector<std::string> keys_;
@@ -108,7 +124,10 @@ class SweepPlan {
   std::vector<std::string> varied_;
   std::vector<std::string> notes_;
   std::size_t size_ = 1;
-  std::vector<SweepPoint> trials_;
+  std::vector<TrialPlace> trials_;
+  bool is_zipped_ = false;      // keys change together
+  std::size_t rows_ = 1;        // that --zip gives
+  std::size_t row_stride_ = 1;  // the row changes after so many runs
 };
 
 }  // namespace mascot

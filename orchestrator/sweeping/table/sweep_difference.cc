@@ -46,6 +46,9 @@ void AddPlans(const SweepPlan::Words& there_words, const SweepPlan::Words& here_
       parts.push_back(
           BothText(OptionOf(is_here ? here_words : there_words, key), there.SettingOf(key), here.SettingOf(key)));
   }
+  const auto combined = [](const SweepPlan& plan) { return plan.IsZipped() ? "row by row" : "each with each"; };
+  if (parts.size() == before && there.IsZipped() != here.IsZipped())
+    parts.push_back(BothText("how values are combined", combined(there), combined(here)));
   if (parts.size() == before && there.keys() != here.keys())
     parts.push_back(BothText("the order of what is set", fmt::format("{}", fmt::join(there.keys(), ", ")),
                              fmt::format("{}", fmt::join(here.keys(), ", "))));

@@ -10,11 +10,11 @@
 
 namespace mascot {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepPlan::Words, sets, randoms, samples, seeds)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepPlan::Words, sets, randoms, samples, seeds, zip)
 
 namespace {
 
-constexpr int kPlanFormat = 1;
+constexpr int kPlanFormat = 2;
 
 /// Known laws, each with the runs that have it: there may be many runs, but of few laws.
 nlohmann::json ToJson(const KnownLaws& known) {

@@ -190,6 +190,28 @@ TEST_F(SweepShards, BecomeTheTasksOfAJobArray) {
   EXPECT_THAT(Table(folder + "/s.csv").rows, SizeIs(9));
 }
 
+TEST_F(SweepShards, HaveTheRowsOfZip) {
+  const std::string words = "--zip --set law.p_gain=0.1,0.2,0.3 --set graph.topology=ring,path,ring --seeds 1..2";
+  ASSERT_EQ(Sweep(words).exit_code, 0);
+  const Table whole(out_);
+  const std::string statistics = ReadFile(Folder("sweep.stats.csv")), picture = ReadFile(Folder("sweep.png"));
+  for (const char* name : {"sweep.csv", "sweep.csv.plan", "sweep.stats.csv", "sweep.png"})
+    std::filesystem::remove(Folder(name));
+  FlyShares(2, words);
+  const Ran merged = Merge("sweep.csv");
+  ASSERT_EQ(merged.exit_code, 0) << merged.output;
+  EXPECT_EQ(Table(out_).Repeatable(), whole.Repeatable());
+  EXPECT_EQ(ReadFile(Folder("sweep.stats.csv")), statistics);
+  EXPECT_EQ(ReadFile(Folder("sweep.png")), picture);
+}
+
+TEST_F(SweepShards, OfZipAreTasksOfAJobArray) {
+  ASSERT_EQ(Sweep("--set law.p_gain=1,2 --set law.beta=1,2 --zip --slurm").exit_code, 0);
+  EXPECT_THAT(ReadFile(Folder("sweep.sbatch")), HasSubstr(" --zip "));
+  ASSERT_EQ(Shell("SLURM_ARRAY_TASK_ID=1 bash " + Folder("sweep.sbatch")).exit_code, 0);
+  EXPECT_THAT(Table(Folder("sweep.1-of-1.csv")).rows, SizeIs(2));
+}
+
 TEST_F(SweepShards, ATaskWhoseTimeIsUpIsQueuedAgain) {
   WriteFile(Folder("scontrol"), "#!/bin/sh\necho \"$@\" > " + Folder("asked") + "\n");
   std::filesystem::permissions(Folder("scontrol"), std::filesystem::perms::owner_all);

@@ -228,6 +228,55 @@ TEST_F(SweepTest, RefusesSeveralSeedsIfNothingDependsOnThem) {
   EXPECT_EQ(Sweep(words + "--seeds 3").exit_code, 0);
 }
 
+TEST_F(SweepTest, FliesTheValuesOfKeysRowByRowWithZip) {
+  const std::string words = "--set law.p_gain=0.1,0.2,0.4 --set law.beta=1,0.5,0.1 --seeds 4..5 ";
+  const Ran ran = Sweep(words + "--zip --jobs 1");
+  ASSERT_EQ(ran.exit_code, 0) << ran.output;
+  EXPECT_THAT(ran.output, HasSubstr("6 runs: " + out_));
+  const Table table(out_);
+  ASSERT_THAT(table.rows, SizeIs(6));
+  EXPECT_THAT(Cells(table.rows[3].begin(), table.rows[3].begin() + 5),
+              testing::ElementsAre("3", "0.2", "0.5", "5", ""));
+  EXPECT_THAT(Table(folder_.File("sweep.stats.csv")).rows[2],
+              testing::IsSupersetOf({testing::StrEq("0.4"), testing::StrEq("0.1"), testing::StrEq("2")}))
+      << "statistics of a row over its seeds";
+  const std::string picture = ReadFile(folder_.File("sweep.png")),
+                    statistics = ReadFile(folder_.File("sweep.stats.csv"));
+  EXPECT_THAT(picture, testing::StartsWith("\x89PNG"));
+
+  EXPECT_THAT(Sweep(words + "--zip").output, HasSubstr("6 runs, none flown now: "));
+  const Ran product = Sweep(words);
+  EXPECT_EQ(product.exit_code, 2);
+  EXPECT_THAT(product.output, HasSubstr("which differs in how values are combined: row by row there and each with each "
+                                        "here (--force begins anew)"));
+  ASSERT_EQ(Sweep(words + "--zip --force --jobs 3").exit_code, 0);
+  EXPECT_EQ(Table(out_).Repeatable(), table.Repeatable());
+  EXPECT_EQ(ReadFile(folder_.File("sweep.stats.csv")), statistics);
+  EXPECT_EQ(ReadFile(folder_.File("sweep.png")), picture);
+  ASSERT_EQ(Sweep(words + "--force").exit_code, 0);
+  const auto every = Table(out_).Repeatable();
+  ASSERT_THAT(every, SizeIs(18)) << "every combination";
+  const Cells pair = table.Repeatable()[3];
+  EXPECT_EQ(Cells(every[9].begin() + 1, every[9].end()), Cells(pair.begin() + 1, pair.end()))
+      << "among which the same run has the same numbers";
+}
+
+TEST_F(SweepTest, RefusesWhatZipCannotTakeTogether) {
+  const auto refuses = [&](const std::string& words, const std::string& text) {
+    const Ran ran = Sweep(words + " --zip");
+    EXPECT_EQ(ran.exit_code, 2) << ran.output;
+    EXPECT_EQ(ran.output, "error: " + text + "\n");
+    EXPECT_FALSE(std::filesystem::exists(out_));
+  };
+  refuses("--set law.p_gain=0.1,0.2,0.3 --set law.beta=1,2",
+          "--zip: expected as many values of each key, got 3 of law.p_gain, 2 of law.beta");
+  refuses("--set law.p_gain=0.1,0.2 --seeds 1..2",
+          "--zip: expected at least 2 keys with --set KEY=VALUES of several values, got 1, law.p_gain");
+  refuses("--set law.p_gain=0.1,0.2,-1 --set law.beta=1,2,3",
+          "sweep: the first run with law.p_gain = -1, law.beta = 3: --set law.p_gain=-1: law.p_gain: expected a number "
+          "in [0, 1000], got -1 (--force flies the other runs)");
+}
+
 TEST_F(SweepTest, FliesLawsSideBySideEachWithTheKeysThatItHas) {
   WriteFile(config_,
             "[run]\nduration_s = 1.0\n[agents]\ncount = 3\n[graph]\ntopology = 'ring'\n[law]\nname = "

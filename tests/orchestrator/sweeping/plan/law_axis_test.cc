@@ -32,6 +32,17 @@ TEST(LawAxis, ChangesNothingWithoutASweepOverLaws) {
   EXPECT_THAT(axis.Notes(), IsEmpty());
 }
 
+TEST(LawAxis, HasALawOnceThatSeveralRowsName) {
+  const SweepPlan plan({.sets = {"law.name=consensus,velocity_consensus,velocity_consensus", "law.p_gain=1,1,2"},
+                        .randoms = {},
+                        .samples = 1,
+                        .seeds = "",
+                        .zip = true});
+  const LawAxis axis = AxisOf(kFile, plan);
+  EXPECT_THAT(axis.laws(), ElementsAre("consensus", "velocity_consensus"));
+  EXPECT_THAT(axis.Notes(), ElementsAre("law.name = velocity_consensus: without law.beta, which it does not have"));
+}
+
 TEST(LawAxis, LeavesOutWhatOnlyOtherLawsKnow) {
   const SweepPlan plan = PlanOf({"law.name=consensus,\"velocity_consensus\"", "law.v_gain=0.1", "law.p_gain=1,2"});
   const LawAxis axis = AxisOf(kFile, plan);

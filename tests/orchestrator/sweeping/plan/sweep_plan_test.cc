@@ -4,6 +4,7 @@
 #include <set>
 
 #include "orchestrator/sweeping/plan/plan.h"
+#include "tests/orchestrator/sweeping/plan/runs.h"
 
 namespace mascot {
 namespace {
@@ -12,17 +13,6 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 using Words = SweepPlan::Words;
-
-/// The runs of a plan, each as "value value ...".
-std::vector<std::string> Runs(const SweepPlan& plan) {
-  std::vector<std::string> runs;
-  for (std::size_t i = 0; i < plan.size(); ++i) {
-    std::string run;
-    for (const Override& override : plan[i].overrides) run += (run.empty() ? "" : " ") + override.value;
-    runs.push_back(run);
-  }
-  return runs;
-}
 
 Words Sets(std::vector<std::string> sets) { return {.sets = std::move(sets), .randoms = {}, .seeds = ""}; }
 
@@ -78,11 +68,92 @@ TEST(SweepPlan, TriesEachValueOfAListAndTheLastOfARange) {
   words.seeds = "7..8";
   std::vector<std::string> trials;
   const SweepPlan plan(words);
-  for (const SweepPoint& trial : plan.trials()) {
+  for (std::size_t k = 0; k < plan.TrialCount(); ++k) {
     trials.emplace_back();
-    for (const Override& override : trial.overrides) trials.back() += override.value + " ";
+    for (const Override& override : plan.Trial(k).overrides) trials.back() += override.value + " ";
   }
   EXPECT_THAT(trials, ElementsAre("2 0 5 7 ", "1 9 5 7 "));
+}
+
+/// The trials of a plan, each as "value value ...".
+std::vector<std::string> Trials(const SweepPlan& plan) {
+  std::vector<std::string> trials;
+  for (std::size_t k = 0; k < plan.TrialCount(); ++k) {
+    std::string trial;
+    for (const Override& override : plan.Trial(k).overrides) trial += (trial.empty() ? "" : " ") + override.value;
+    trials.push_back(trial);
+  }
+  return trials;
+}
+
+/// --zip with these --set options.
+Words Zip(std::vector<std::string> sets, const std::string& seeds = "") {
+  return {.sets = std::move(sets), .randoms = {}, .samples = 1, .seeds = seeds, .zip = true};
+}
+
+TEST(SweepPlan, TakesTheValuesOfKeysTogetherWithZip) {
+  const SweepPlan plan(Zip({"a=1,2,3", "b=x", "c=0.1:0.1:0.3"}, "7..8"));
+  EXPECT_THAT(Runs(plan), ElementsAre("1 x 0.1 7", "1 x 0.1 8", "2 x 0.2 7", "2 x 0.2 8", "3 x 0.3 7", "3 x 0.3 8"));
+  EXPECT_THAT(plan.keys(), ElementsAre("a", "b", "c", "run.seed"));
+  EXPECT_THAT(plan.varied(), ElementsAre("a", "c"));
+  EXPECT_EQ(plan.Text(), "a=1,2,3\nb=x\nc=0.1,0.2,0.3\nrun.seed=7,8\nrow by row\n");
+  EXPECT_THAT(Trials(plan), ElementsAre("2 x 0.2 7", "3 x 0.3 7"));
+  EXPECT_THAT(Trials(SweepPlan(Zip({"a=1:1:3", "b=x", "c=0.1:0.1:0.3"}))), ElementsAre("3 x 0.3"));
+  EXPECT_THAT(plan.WithFirstSeed(), ElementsAre(0, 2, 4));
+}
+
+TEST(SweepPlan, FliesEachRowWithEachSample) {
+  const SweepPlan plan({.sets = {"a=1,2", "b=x,y"}, .randoms = {"c=0:1"}, .samples = 2, .seeds = "5,6", .zip = true});
+  ASSERT_EQ(plan.size(), 8u);
+  const auto values = [&](std::size_t run) {
+    const SweepPoint point = plan[run];
+    return std::vector{point.overrides[0].value, point.overrides[1].value, point.overrides[3].value};
+  };
+  EXPECT_THAT(values(3), ElementsAre("1", "x", "6"));
+  EXPECT_THAT(values(4), ElementsAre("2", "y", "5"));
+  EXPECT_EQ(plan[0].overrides[2].value, plan[1].overrides[2].value);
+  EXPECT_NE(plan[1].overrides[2].value, plan[2].overrides[2].value);
+  EXPECT_EQ(plan[2].overrides[2].value, plan[6].overrides[2].value) << "each row sees the same samples";
+  EXPECT_THAT(Trials(plan), ElementsAre(testing::StartsWith("2 y ")));
+}
+
+TEST(SweepPlan, FliesEqualRowsOnceAndRowsOfWhichOneValueIsEqualEach) {
+  const SweepPlan plan(Zip({"law.p_gain=0.1,0.10,0.2,1e-1", "law.beta=1,2,2,1"}));
+  EXPECT_THAT(Runs(plan), ElementsAre("0.1 1", "0.1 2", "0.2 2"));
+  EXPECT_THAT(plan.notes(), ElementsAre("--zip: 1 of the 4 rows are equal to others: each is flown once"));
+  const SweepPlan one(Zip({"a=1,1", "b=2,2"}));
+  EXPECT_THAT(Runs(one), ElementsAre("1 2"));
+  EXPECT_THAT(one.varied(), IsEmpty());
+  const SweepPlan seeds(Zip({"a=1,1,2", "run.seed=5,6,5"}));
+  EXPECT_THAT(Runs(seeds), ElementsAre("1 5", "1 6", "2 5"));
+  EXPECT_THAT(seeds.WithFirstSeed(), ElementsAre(0, 2)) << "the second run differs from the first in its seed alone";
+  EXPECT_THAT(SweepPlan(Zip({"a=1,2,3", "run.seed=5,6,5"})).WithFirstSeed(), IsEmpty());
+}
+
+TEST(SweepPlan, KnowsWhichRowsAreAlike) {
+  const auto representatives = [](const SweepPlan& plan, SweepPlan::Alike alike) {
+    std::vector<std::size_t> all;
+    for (std::size_t run = 0; run < plan.size(); ++run) all.push_back(plan.RepresentativesOf(alike)[run]);
+    return all;
+  };
+  const SweepPlan plan(Zip({"a=x,y,x", "b=1,2,3"}, "1..2"));
+  EXPECT_THAT(representatives(plan, SweepPlan::Alike::kInValues), ElementsAre(0, 0, 2, 2, 4, 4));
+  EXPECT_THAT(representatives(plan, SweepPlan::Alike::kInWords), ElementsAre(0, 0, 2, 2, 0, 0));
+}
+
+TEST(SweepPlan, SaysWhatZipExpected) {
+  const auto of = [](const Words& words) { return [words] { SweepPlan plan(words); }; };
+  EXPECT_THAT(
+      of(Zip({"law.p_gain=0.1,0.2,0.3", "a=1", "law.beta=1,2"})),
+      ThrowsMessage<ConfigError>("--zip: expected as many values of each key, got 3 of law.p_gain, 2 of law.beta"));
+  EXPECT_THAT(of(Zip({"a=1:1:4", "b=x,y", "c=1,2,3,4"})),
+              ThrowsMessage<ConfigError>("--zip: expected as many values of each key, got 4 of a, 2 of b, 4 of c"));
+  EXPECT_THAT(of(Zip({"law.p_gain=0.1,0.2", "a=1"})),
+              ThrowsMessage<ConfigError>("--zip: expected at least 2 keys with --set KEY=VALUES of several values, "
+                                         "got 1, law.p_gain"));
+  EXPECT_THAT(of(Zip({})), ThrowsMessage<ConfigError>("--zip: expected at least 2 keys with --set KEY=VALUES of "
+                                                      "several values, got none"));
+  EXPECT_THAT(of(Zip({"a=1,2", "a=3,4"})), ThrowsMessage<ConfigError>("sweep: expected each key once, got a again"));
 }
 
 TEST(SweepPlan, KnowsWhichRunsHaveTheFirstSeed) {
@@ -175,7 +246,11 @@ TEST(SweepPlan, HasWordsThatGiveItAgain) {
                                     Sets({"a=0.1:0.1:0.3", "run.name='a,b','c:d:e','f\"g','h[i'"}),
                                     Sets({"law={name='consensus',p_gain=1.0},{name='minmax'}"}),
                                     {.sets = {"a=1"}, .randoms = {"b=1.0:1e1:log"}, .samples = 7, .seeds = "5,6,7"},
-                                    {.sets = {"run.seed=1,2"}, .randoms = {}, .seeds = ""}};
+                                    {.sets = {"run.seed=1,2"}, .randoms = {}, .seeds = ""},
+                                    Zip({"law.p_gain=0.10,1,1.0", "law.name='consensus',minmax,'minmax'", "b=1"}, "3"),
+                                    Zip({"law.p_gain=0.10,1", "law.name=minmax,'minmax'"}),
+                                    Zip({"a=1,1.0", "b='x',\"x\""}),
+                                    Zip({"a=0:1e-16:2e-16", "b=1,2,3"})};
   for (const Words& words : typed) {
     const SweepPlan plan(words), again(plan.words());
     EXPECT_EQ(again.Text(), plan.Text());

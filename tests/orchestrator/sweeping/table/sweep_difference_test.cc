@@ -55,6 +55,16 @@ TEST(SweepDifference, NamesTheKeyThatIsSetOtherwise) {
       "here");
 }
 
+TEST(SweepDifference, SaysThatValuesAreCombinedInAnotherWay) {
+  SweepPlan::Words words{.sets = {"law.p_gain=0.1,0.5", "law.beta=1,2"}, .randoms = {}, .seeds = ""};
+  const SweepIdentity product = IdentityOfWords(words);
+  words.zip = true;
+  const SweepIdentity zipped = IdentityOfWords(words);
+  EXPECT_EQ(zipped.DifferenceFrom(zipped.Text()), "");
+  EXPECT_EQ(zipped.DifferenceFrom(product.Text()), "how values are combined: each with each there and row by row here");
+  EXPECT_EQ(product.DifferenceFrom(zipped.Text()), "how values are combined: row by row there and each with each here");
+}
+
 TEST(SweepDifference, NamesTheKeyOfTheFileAndTheBuild) {
   const std::string begun = IdentityOfWords(kBegun).Text();
   SweepIdentity now = IdentityOfWords(kBegun);
