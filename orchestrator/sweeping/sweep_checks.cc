@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,39 @@ std::string DifferenceOf(const SweepPoint& trial, const SweepPoint& first) {
       text.append(text.empty() ? "" : ", ").append(set.key).append(" = ").append(set.value);
   return text;
 }
+
+/// Mistakes of the rows of a table. Those that have the same text, but for the row, count as one.
+class RowMistakes {
+ public:
+  /// Adds a mistake, a line of text, of a row.
+  void Add(const SweepPoint& row, const std::string& mistake) {
+    std::string same = mistake;
+    for (std::size_t k = 0; k < row.overrides.size(); ++k)
+      if (const std::string place = row.overrides[k].origin + ": "; mistake.starts_with(place))
+        same = fmt::format("{} {}", k, mistake.substr(place.size()));
+    const auto [place, is_new] = place_of_.emplace(same, list_.size());
+    if (is_new) list_.push_back({.text = mistake});
+    ++list_[place->second].rows;
+  }
+
+  std::vector<std::string> Texts() const {
+    constexpr std::size_t kMaxMistakes = 20;  // that are named
+    std::vector<std::string> texts;
+    for (const Mistake& mistake : std::span(list_).first(std::min(list_.size(), kMaxMistakes)))
+      texts.push_back(mistake.text + (mistake.rows > 1 ? fmt::format(" (and in {} more rows)", mistake.rows - 1) : ""));
+    if (list_.size() > kMaxMistakes)
+      texts.push_back(fmt::format("sweep: {} more mistakes", list_.size() - kMaxMistakes));
+    return texts;
+  }
+
+ private:
+  struct Mistake {
+    std::string text;
+    std::size_t rows = 0;
+  };
+  std::vector<Mistake> list_;
+  std::map<std::string, std::size_t> place_of_;  // in list_, by text without the row
+};
 
 }  // namespace
 
@@ -93,7 +127,7 @@ std::vector<PythonMetric> SweepChecks::Metrics(const std::vector<std::string>& o
   return list;
 }
 
-void SweepChecks::CheckTrials() {
+std::map<std::size_t, std::string> SweepChecks::MistakesOfTrials() {
   std::vector<std::size_t> tasks(sweep_.plan.TrialCount());
   std::iota(tasks.begin(), tasks.end(), tasks_.CheckOfTrial(0));
   std::map<std::size_t, std::string> mistakes;
@@ -101,10 +135,25 @@ void SweepChecks::CheckTrials() {
     if (!done.failure.empty()) mistakes[done.task - tasks.front()] = done.failure;
     return true;
   });
+  return mistakes;
+}
+
+void SweepChecks::CheckTrials() {
+  const std::map<std::size_t, std::string> mistakes = MistakesOfTrials();
   if (mistakes.empty()) return;
   const auto& [trial, text] = *mistakes.begin();
   throw ConfigError({fmt::format("sweep: the first run with {}: {} (--force flies the other runs)",
                                  DifferenceOf(sweep_.plan.Trial(trial), sweep_.plan[0]), text)});
+}
+
+void SweepChecks::CheckRows() {
+  RowMistakes mistakes;
+  for (const auto& [trial, text] : MistakesOfTrials()) {
+    const SweepPoint row = sweep_.plan.Trial(trial);
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) mistakes.Add(row, line);
+  }
+  if (const std::vector<std::string> texts = mistakes.Texts(); !texts.empty()) throw ConfigError(texts);
 }
 
 void SweepChecks::CheckSeeds(const CheckedRun& first) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -36,10 +38,16 @@ class SweepChecks {
   std::vector<PythonMetric> Metrics(const std::vector<std::string>& other_columns);
   /// Throws ConfigError with the mistakes of the first trial of the plan that is not valid.
   void CheckTrials();
+  /// Throws ConfigError with the mistakes of all rows of a table, each once: what several rows get wrong in the same
+  /// column is said of the first of them.
+  void CheckRows();
   /// Throws ConfigError if the sweep goes over several seeds, but no run depends on its seed. `first`: FirstValid().
   void CheckSeeds(const CheckedRun& first);
 
  private:
+  /// The mistakes of the trials that are not valid, each as text, by the number of the trial.
+  std::map<std::size_t, std::string> MistakesOfTrials();
+
   const Sweep& sweep_;
   SweepTasks tasks_;
   WorkerPool& pool_;

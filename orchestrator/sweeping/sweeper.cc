@@ -105,8 +105,8 @@ void CheckBuild(const std::optional<SweepIdentity>& begun, const SweepIdentity& 
 
 }  // namespace
 
-Sweeper::Sweeper(std::string name, std::string text, const SweepPlan::Words& words)
-    : name_(std::move(name)), text_(std::move(text)), plan_(words) {}
+Sweeper::Sweeper(std::string name, std::string text, SweepPlan plan)
+    : name_(std::move(name)), text_(std::move(text)), plan_(std::move(plan)) {}
 
 Sweeper::Outcome Sweeper::Fly(const Options& options, StopSignal& stop) const { return Do(options, true, stop); }
 
@@ -122,6 +122,7 @@ Sweeper::Outcome Sweeper::Do(const Options& options, bool fly, StopSignal& stop)
   try {
     const auto begun = BegunAt(options.out);
     const bool strict = !options.force && !IsBegun(begun, text_, plan_);
+    if (strict && plan_.IsOfTable()) checks.CheckRows();
     const CheckedRun first = checks.FirstValid(strict);
     SweepIdentity& identity = outcome.identity;
     identity = {.build = BuildText(),
@@ -138,7 +139,7 @@ Sweeper::Outcome Sweeper::Do(const Options& options, bool fly, StopSignal& stop)
     identity.own = checks.Metrics(SweepColumns(plan_, SweepMetricNames(identity.law_names)));
     const std::vector<std::string> metrics = identity.Metrics();
     if (!options.metric.empty()) CheckPlotted(options.metric, metrics);
-    if (strict) checks.CheckTrials();
+    if (strict && !plan_.IsOfTable()) checks.CheckTrials();
     if (strict) checks.CheckSeeds(first);
     if (!fly) return outcome;
     if (!options.force) CheckBuild(begun, identity, options.out);

@@ -36,7 +36,7 @@ class Sweeper {
 
   /// `name`: path of the experiment file as typed. `text`: its contents, read once, so that later edits have no effect.
   /// (Files that the experiment names are read for each run.)
-  Sweeper(std::string name, std::string text, const SweepPlan::Words& words);
+  Sweeper(std::string name, std::string text, SweepPlan plan);
 
   /// Executes every run that is missing in the table. Only the table of a whole sweep gets statistics beside it. Throws
   /// ConfigError if no run is a valid experiment (with the mistakes of the first run), if the table would not have the

@@ -16,6 +16,7 @@
 #include "orchestrator/formats/whole_file.h"
 #include "orchestrator/sweeping/cluster/job_array.h"
 #include "orchestrator/sweeping/cluster/shard.h"
+#include "orchestrator/sweeping/plan/plan_table.h"
 #include "orchestrator/sweeping/sweeper.h"
 #include "orchestrator/sweeping/table/table.h"
 #include "orchestrator/verbs/sweep_merge.h"
@@ -34,6 +35,7 @@ namespace fs = std::filesystem;
 struct SweepArgs {
   std::string config;
   SweepPlan::Words words;
+  std::optional<std::string> plan_file;  ///< a table of runs
   int jobs = 0;
   std::string out = "sweep.csv";
   std::string metric_file;
@@ -60,6 +62,7 @@ std::vector<std::string> CommandOf(const SweepArgs& args) {
   if (!args.words.randoms.empty()) words.insert(words.end(), {"--samples", std::to_string(args.words.samples)});
   if (!args.words.seeds.empty()) words.insert(words.end(), {"--seeds", args.words.seeds});
   if (args.words.zip) words.emplace_back("--zip");
+  if (args.plan_file) words.insert(words.end(), {"--plan", AsWord(*args.plan_file)});
   if (!args.metric_file.empty()) words.insert(words.end(), {"--metric", AsWord(args.metric_file)});
   words.insert(words.end(), {"--out", AsWord(args.out)});
   return words;
@@ -98,11 +101,20 @@ void CheckSlurm(const SweepArgs& args) {
   if (!args.slurm) return;
   if (!args.shard.empty())
     throw ConfigError({"--slurm: expected no --shard, because each task of the job array has its own"});
-  if (DescriptorOf(args.config))
-    throw ConfigError(
-        {"--slurm: expected a file, which each task of the job array reads, got " + NameOfInput(args.config)});
+  for (const std::string& file : {args.config, args.plan_file.value_or("")})
+    if (DescriptorOf(file))
+      throw ConfigError({"--slurm: expected a file, which each task of the job array reads, got " + NameOfInput(file)});
   if (args.force)
     throw ConfigError({"--slurm: expected no --force, because a task that is queued again goes on with what is there"});
+}
+
+/// The runs that the options give.
+SweepPlan PlanOf(const SweepArgs& args) {
+  if (!args.plan_file) return SweepPlan(args.words);
+  const std::string& path = *args.plan_file;
+  if (DescriptorOf(path) && DescriptorOf(path) == DescriptorOf(args.config))
+    throw ConfigError({"--plan: expected another input than CONFIG, got " + NameOfInput(path) + " for both"});
+  return {args.words, ReadPlanTable(ReadInput(path), NameOfInput(path))};
 }
 
 /// The share of the runs to fly; nothing: all.
@@ -136,7 +148,7 @@ int Run(const SweepArgs& args) {
   CheckSlurm(args);
   const std::optional<Shard> shard = ShardOf(args);
   const std::string out = shard ? TableOfShard(args.out, *shard).string() : args.out;
-  const Sweeper sweeper(NameOfInput(args.config), ReadInput(args.config), args.words);
+  const Sweeper sweeper(NameOfInput(args.config), ReadInput(args.config), PlanOf(args));
   const std::size_t runs = sweeper.plan().size();
   MetricFile metric_file{args.metric_file, ""};
   if (!args.metric_file.empty()) metric_file.text = ReadRegularFile(args.metric_file);
@@ -197,6 +209,10 @@ std::function<int()> SetUpSweep(CLI::App& command) {
   command.add_flag("--zip", args->words.zip,
                    "fly the values of the --set keys row by row, the first of each key, the second of each, ..., and "
                    "not every combination");
+  command
+      .add_option("--plan", args->plan_file,
+                  "a table of the runs (CSV): the first line has keys, each other line their values in one run")
+      ->type_name("FILE");
   command.add_option("--jobs", args->jobs, "processes that fly at the same time (default: one per core)")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");

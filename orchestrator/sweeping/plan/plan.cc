@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <unordered_map>
@@ -16,6 +17,7 @@
 
 #include "base/number.h"
 #include "base/random.h"
+#include "orchestrator/sweeping/plan/plan_table.h"
 #include "orchestrator/sweeping/plan/values.h"
 
 namespace mascot {
@@ -166,12 +168,21 @@ void CheckZip(const std::vector<ValueCount>& counts) {
   throw ConfigError({fmt::format("--zip: expected as many values of each key, got {}", fmt::join(texts, ", "))});
 }
 
-/// Whether `key` is `table` itself, or a key or list element in it.
-bool IsInside(std::string_view key, std::string_view table) {
-  return key.starts_with(table) && (key.size() == table.size() || key[table.size()] == '.' || key[table.size()] == '[');
+/// Throws ConfigError for options that say otherwise than the rows of a table.
+void CheckBesideTable(const SweepPlan::Words& words, const PlanTable& table) {
+  if (words.zip)
+    throw ConfigError({fmt::format("--zip: expected no --plan, because a row of {} is a run already", table.name)});
+  const bool has_seeds = std::ranges::find(table.keys, kSeedKey) != table.keys.end();
+  if (has_seeds && !words.seeds.empty())
+    throw ConfigError({fmt::format("--seeds: expected no column {} in {}, which gives each run its seed, got both",
+                                   kSeedKey, table.name)});
 }
 
 }  // namespace
+
+bool IsInside(std::string_view key, std::string_view table) {
+  return key.starts_with(table) && (key.size() == table.size() || key[table.size()] == '.' || key[table.size()] == '[');
+}
 
 SweepPlan::Axis SweepPlan::ParseSet(const std::string& word) {
   const auto [key, text] = SplitKey("--set", word);
@@ -256,8 +267,8 @@ void SweepPlan::AddTrials(std::size_t sets) {
 
 void SweepPlan::AddTrialsOfRows(std::size_t sets) {
   const auto is_range = [](const Axis& axis) { return axis.is_range || axis.size() == 1; };
-  const bool last_alone = std::ranges::all_of(std::span(axes_).first(sets), is_range);
-  const std::size_t first = last_alone ? std::max<std::size_t>(rows_ - 1, 1) : 1;
+  const bool last_alone = !IsOfTable() && std::ranges::all_of(std::span(axes_).first(sets), is_range);
+  const std::size_t first = IsOfTable() ? 0 : last_alone ? std::max<std::size_t>(rows_ - 1, 1) : 1;
   for (std::size_t row = first; row < rows_; ++row) trials_.push_back({.axis = {}, .number = row});
 }
 
@@ -277,8 +288,20 @@ void SweepPlan::AddProduct(std::vector<Axis> sets) {
   }
 }
 
-/// Leaves the first of equal rows, and says so.
-void SweepPlan::KeepEachRowOnce(std::vector<Axis>& sets, std::size_t rows) {
+/// The columns of a table, with a value for each row.
+std::vector<SweepPlan::Axis> SweepPlan::ColumnsOf(const PlanTable& table) {
+  std::vector<Axis> columns;
+  for (std::size_t k = 0; k < table.keys.size(); ++k) {
+    Axis& axis = columns.emplace_back();
+    axis.key = table.keys[k];
+    axis.column = k + 1;
+    for (const PlanTable::Row& row : table.rows) axis.values.push_back(row.values[k]);
+  }
+  return columns;
+}
+
+/// Leaves the first of equal rows, and says so. `option`: what gave the rows.
+void SweepPlan::KeepEachRowOnce(std::vector<Axis>& sets, std::size_t rows, const std::string& option) {
   std::unordered_set<std::string> there;
   std::vector<std::size_t> kept;
   for (std::size_t row = 0; row < rows; ++row) {
@@ -289,11 +312,13 @@ void SweepPlan::KeepEachRowOnce(std::vector<Axis>& sets, std::size_t rows) {
   }
   rows_ = kept.size();
   if (rows_ == rows) return;
-  notes_.push_back(fmt::format("--zip: {} of the {} rows are equal to others: each is flown once", rows - rows_, rows));
+  notes_.push_back(
+      fmt::format("{}: {} of the {} rows are equal to others: each is flown once", option, rows - rows_, rows));
   const auto keep = [&](auto& list) {
     for (std::size_t k = 0; k < kept.size(); ++k) list[k] = list[kept[k]];
     list.resize(kept.size());
   };
+  if (IsOfTable()) keep(lines_);
   for (Axis& axis : sets) {
     if (axis.size() == 1) continue;
     keep(axis.values);
@@ -301,11 +326,11 @@ void SweepPlan::KeepEachRowOnce(std::vector<Axis>& sets, std::size_t rows) {
   }
 }
 
-/// Keys with several values have as many as there are rows.
-void SweepPlan::AddRows(std::vector<Axis> sets) {
+/// Keys with several values have as many as there are rows. `option`: what gave the rows.
+void SweepPlan::AddRows(std::vector<Axis> sets, const std::string& option) {
   std::size_t rows = 1;
   for (const Axis& axis : sets) rows = std::max(rows, axis.size());
-  KeepEachRowOnce(sets, rows);
+  KeepEachRowOnce(sets, rows, option);
   for (Axis& axis : sets)
     if (std::ranges::adjacent_find(axis.values, std::not_equal_to<>()) == axis.values.end()) axis.values.resize(1);
   Multiply(rows_);
@@ -314,15 +339,29 @@ void SweepPlan::AddRows(std::vector<Axis> sets) {
   is_zipped_ = std::ranges::count_if(sets, [](const Axis& axis) { return axis.size() > 1; }) > 1;
 }
 
-SweepPlan::SweepPlan(const Words& words) {
+SweepPlan::SweepPlan(const Words& words) : SweepPlan(words, nullptr) {}
+
+SweepPlan::SweepPlan(const Words& words, const PlanTable& table) : SweepPlan(words, &table) {}
+
+SweepPlan::SweepPlan(const Words& words, const PlanTable* table) {
   std::vector<Axis> sets;
   for (const std::string& word : words.sets) sets.push_back(ParseSet(word));
-  if (words.zip) {
+  const std::size_t set_keys = sets.size() + (table != nullptr ? table->keys.size() : 0);
+  if (table != nullptr) {
+    CheckBesideTable(words, *table);
+    for (std::size_t k = 0; k < sets.size(); ++k)
+      if (sets[k].size() > 1)
+        Refuse("--set", fmt::format("one value of a key beside the rows of {}", table->name), words.sets[k]);
+    table_ = table->name;
+    for (const PlanTable::Row& row : table->rows) lines_.push_back(row.line);
+    std::ranges::move(ColumnsOf(*table), std::back_inserter(sets));
+    AddRows(std::move(sets), table_);
+  } else if (words.zip) {
     std::vector<ValueCount> counts;
     for (const Axis& axis : sets)
       if (axis.size() > 1) counts.push_back({axis.key, axis.size()});
     CheckZip(counts);
-    AddRows(std::move(sets));
+    AddRows(std::move(sets), "--zip");
   } else {
     AddProduct(std::move(sets));
   }
@@ -339,10 +378,10 @@ SweepPlan::SweepPlan(const Words& words) {
     Multiply(seeds.size());
     AddAxis(seeds);
   }
-  if (words.zip)
-    AddTrialsOfRows(words.sets.size());
+  if (words.zip || table != nullptr)
+    AddTrialsOfRows(set_keys);
   else
-    AddTrials(words.sets.size());
+    AddTrials(set_keys);
 }
 
 std::string SweepPlan::Axis::Value(std::size_t k) const { return drawn.empty() ? values[k] : ShortestFloat(drawn[k]); }
@@ -357,6 +396,8 @@ SweepPoint SweepPlan::operator[](std::size_t run) const {
       set.origin = fmt::format("--random {}={} ({})", axis.key, axis.range, set.value);
     else if (IsOfSeeds(axis))
       set.origin = "--seeds " + set.value;
+    else if (axis.column != 0)
+      set.origin = fmt::format("{}:{}:{}", table_, lines_[run / row_stride_ % rows_], axis.column);
   }
   return point;
 }
@@ -435,6 +476,16 @@ std::vector<std::size_t> SweepPlan::WithFirstSeed() const {
   for (std::size_t run = 0; run < size_; ++run)
     if (representatives[run] == run) runs.push_back(run);
   return runs.size() < size_ ? runs : std::vector<std::size_t>{};
+}
+
+bool IsOneValue(const std::string& value) {
+  if (value.empty()) return false;
+  const std::string typed = Typed(value);
+  // A bracket or a quote that stays open would take what follows with it.
+  return std::ranges::all_of(std::string_view(",:"), [&](char separator) {
+    const std::vector<std::string> parts = Split(typed + separator + "0", separator);
+    return parts.size() == 2 && parts[0] == typed;
+  });
 }
 
 }  // namespace mascot

@@ -24,9 +24,12 @@ struct SweepPoint {
   std::vector<Override> overrides;  ///< in the order of SweepPlan::keys()
 };
 
+struct PlanTable;
+
 /// The runs of a sweep: every combination of key values, random samples and seeds, in this order; seeds change fastest.
-/// With --zip, the values of a row belong together: every combination of rows, samples and seeds is flown. The same
-/// options give the same plan. A run is made when it is asked for: a plan keeps only the values of its keys.
+/// With --zip, or with a table of rows (plan_table.h), the values of a row belong together: every combination of rows,
+/// samples and seeds is flown. The same options give the same plan. A run is made when it is asked for: a plan keeps
+/// only the values of its keys.
 class SweepPlan {
  public:
   /// Command-line options, as typed.
@@ -40,9 +43,12 @@ class SweepPlan {
   };
   /// Throws ConfigError for an invalid option, naming the option and what was expected.
   explicit SweepPlan(const Words& words);
+  /// The rows of `table` are flown: `words` may set a key to one value, and not zip. A mistake that a value of the
+  /// table makes is reported with its place: "plan.csv:3:2".
+  SweepPlan(const Words& words, const PlanTable& table);
 
   /// The options that give the same plan, however they were typed: with values as PlainValue() (values.h) has them,
-  /// each once.
+  /// each once. Those of a table are --set and --zip.
   Words words() const;
   /// Lines for the terminal: the keys to which equal values were given more than once.
   const std::vector<std::string>& notes() const { return notes_; }
@@ -57,10 +63,12 @@ class SweepPlan {
   /// The values of a key, in plain text (values.h); empty if neither --set nor --seeds sets it.
   std::span<const std::string> ValuesOf(std::string_view key) const;
   /// The trials, by number: for each value but the first that --set gives a key, the first run that has it; for each
-  /// row but the first, its first run. Of the values of A:STEP:B, and of rows
+  /// row but the first, its first run; for each row of a table, its first run. Of the values of A:STEP:B, and of rows
   /// with no other values, only the last one counts.
   std::size_t TrialCount() const { return trials_.size(); }
   SweepPoint Trial(std::size_t number) const;
+  /// Whether the trials are the rows of a table.
+  bool IsOfTable() const { return !lines_.empty(); }
   /// Which runs count as alike: those that set the same values (kInValues), or the same values of the keys whose values
   /// are not all numbers (kInWords). run.seed may differ in both.
   enum class Alike { kInValues, kInWords };
@@ -95,6 +103,7 @@ class SweepPlan {
     bool is_range = false;   ///< of A:STEP:B
     std::string range = {};  ///< "0.1:0.1:1", or of --random "0.1:1:log", which has `drawn` in the place of values
     std::vector<double> drawn = {};
+    std::size_t column = 0;  ///< of the table that the values are from, counted from 1; 0: they are from none
     std::size_t stride = 1;  ///< the value changes after so many runs
 
     std::size_t size() const { return drawn.empty() ? values.size() : drawn.size(); }
@@ -105,15 +114,17 @@ class SweepPlan {
     std::optional<std::size_t> axis = {};  ///< nothing: a row
     std::size_t number = 0;                ///< of the value, or of the row
   };
+  SweepPlan(const Words& words, const PlanTable* table);
   static Axis ParseSet(const std::string& word);
+  static std::vector<Axis> ColumnsOf(const PlanTable& table);
   static Axis ParseRandom(const std::string& word, std::uint64_t place, std::int64_t samples);
   void AddAxis(const Axis& axis);
   void KeepEachOnce(Axis& axis);
   void KeepOneIfEqual(std::vector<Axis>& drawn);
   void Multiply(std::size_t by);
   void AddProduct(std::vector<Axis> sets);
-  void AddRows(std::vector<Axis> sets);
-  void KeepEachRowOnce(std::vector<Axis>& sets, std::size_t rows);
+  void AddRows(std::vector<Axis> sets, const std::string& option);
+  void KeepEachRowOnce(std::vector<Axis>& sets, std::size_t rows, const std::string& option);
   void AddTrials(std::size_t sets);
   void AddTrialsOfRows(std::size_t sets);
   bool IsOfSeeds(const Axis& axis) const { return has_seeds_ && &axis == &axes_.back(); }
@@ -125,9 +136,17 @@ class SweepPlan {
   std::vector<std::string> notes_;
   std::size_t size_ = 1;
   std::vector<TrialPlace> trials_;
-  bool is_zipped_ = false;      // keys change together
-  std::size_t rows_ = 1;        // that --zip gives
-  std::size_t row_stride_ = 1;  // the row changes after so many runs
+  bool is_zipped_ = false;          // keys change together
+  std::size_t rows_ = 1;            // that --zip or a table gives
+  std::size_t row_stride_ = 1;      // the row changes after so many runs
+  std::string table_ = {};          // name of the table that the rows are from
+  std::vector<std::size_t> lines_;  // of the rows in the table; empty: there is none
 };
+
+/// Whether `key` is `table` itself, or a key or list element in it.
+bool IsInside(std::string_view key, std::string_view table);
+/// Whether --set takes a value of PlainValue() for one value: it is no range, has no commas outside of brackets and
+/// quotes, and these are closed.
+bool IsOneValue(const std::string& value);
 
 }  // namespace mascot

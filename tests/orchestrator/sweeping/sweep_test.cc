@@ -277,6 +277,97 @@ TEST_F(SweepTest, RefusesWhatZipCannotTakeTogether) {
           "in [0, 1000], got -1 (--force flies the other runs)");
 }
 
+TEST_F(SweepTest, FliesTheRowsOfATable) {
+  const std::string plan = folder_.File("plan.csv"), words = "--plan " + plan + " ";
+  WriteFile(plan, "law.p_gain,graph.topology,run.seed\n0.10,ring,4\n0.2,path,5\n0.2,ring,7\n");
+  const Ran ran = Sweep(words + "--jobs 1");
+  ASSERT_EQ(ran.exit_code, 0) << ran.output;
+  const Table table(out_);
+  ASSERT_THAT(table.rows, SizeIs(3));
+  EXPECT_THAT(Cells(table.rows[1].begin(), table.rows[1].begin() + 5),
+              testing::ElementsAre("1", "0.2", "path", "5", ""));
+  EXPECT_TRUE(std::filesystem::exists(folder_.File("sweep.png")));
+  Up up(folder_, "up", config_,
+        {"--engine", "inprocess", "--set", "law.p_gain=0.2", "--set", "graph.topology=path", "--seed", "5"});
+  ASSERT_EQ(up.Wait(), 0);
+  EXPECT_EQ(std::stod(table.At(1, "consensus.final_disagreement_m")),
+            up.Summary()["consensus"]["final_disagreement_m"]);
+
+  ASSERT_EQ(Sweep(words + "--force --jobs 3").exit_code, 0);
+  EXPECT_EQ(Table(out_).Repeatable(), table.Repeatable());
+  EXPECT_THAT(Sweep("--plan - < " + plan).output, HasSubstr("3 runs, none flown now: ")) << "from standard input";
+  EXPECT_THAT(
+      Sweep("--zip --set law.p_gain=0.1,0.2,0.2 --set graph.topology=ring,path,ring --set run.seed=4,5,7").output,
+      HasSubstr("3 runs, none flown now: "))
+      << "the same runs, typed";
+  WriteFile(plan, "law.p_gain,graph.topology,run.seed\n0.10,ring,4\n0.2,path,5\n0.2,ring,8\n");
+  EXPECT_THAT(Sweep(words).output, HasSubstr("which differs in --set run.seed: 4, 5, 7 there and 4, 5, 8 here"));
+
+  WriteFile(plan, "law.p_gain\n0.1\n0.2\n");
+  ASSERT_EQ(Sweep(words + "--seeds 4..6 --set graph.topology=path --force").exit_code, 0);
+  const Table seeds(out_);
+  ASSERT_THAT(seeds.rows, SizeIs(6));
+  EXPECT_THAT(Cells(seeds.rows[4].begin() + 1, seeds.rows[4].begin() + 4), testing::ElementsAre("path", "0.2", "5"));
+  EXPECT_EQ(seeds.At(4, "consensus.final_disagreement_m"), table.At(1, "consensus.final_disagreement_m"));
+}
+
+TEST_F(SweepTest, SaysWhereATableIsWrongBeforeAnythingFlies) {
+  const std::string plan = folder_.File("plan.csv");
+  const auto refuses = [&](const std::string& text, const std::string& words, const std::string& mistakes) {
+    WriteFile(plan, text);
+    const Ran ran = Sweep("--plan " + plan + " " + words);
+    EXPECT_EQ(ran.exit_code, 2) << ran.output;
+    EXPECT_EQ(ran.output, "error: " + mistakes + "\n");
+    EXPECT_FALSE(std::filesystem::exists(out_));
+  };
+  refuses("law.p_gain,law.beta,graph.topology\n0.1,1,ring\n0.2,fast,ring\n-3,1,rnig\n0.1,2,ring\n", "",
+          plan + ":3:2: law.beta: expected a number in [0, 1000], got 'fast'\nerror: " + plan +
+              ":4:1: law.p_gain: expected a number in [0, 1000], got -3\nerror: " + plan +
+              ":4:3: graph.topology: expected one of complete, ring, path, star, wheel, binary_tree, directed_ring, "
+              "directed_path, directed_star, directed_tree, got 'rnig' (did you mean \"ring\"?)");
+  refuses("law.p_gain,law.bta\n0.1,1\n0.2,1\n0.3,1\n", "",
+          plan + ":2:2: law.bta: unknown key (did you mean \"beta\"?) (and in 2 more rows)");
+  refuses("law.p_gain\n1\n\"2\n", "",
+          plan + ":3:1: expected quotes around a whole cell, and in it two for each one, got no second quote");
+  refuses("law.p_gain,law.beta\n1,2\n1\n", "", plan + ":3:1: expected 2 cells, as there are keys, got 1");
+  refuses("law.p_gain\n1\n2\n", "--set law.beta=1,2",
+          "--set: expected one value of a key beside the rows of " + plan + ", got 'law.beta=1,2'");
+  refuses("law.p_gain,run.seed\n1,1\n2,2\n", "--seeds 1..2",
+          "--seeds: expected no column run.seed in " + plan + ", which gives each run its seed, got both");
+  refuses("law.p_gain,law.beta\n1,1\n2,2\n", "--zip",
+          "--zip: expected no --plan, because a row of " + plan + " is a run already");
+  std::string many = "law.p_gain\n", mistakes;
+  for (int gain = -22; gain < 0; ++gain) many.append(std::to_string(gain)).append("\n");
+  for (int row = 0; row < 20; ++row)
+    mistakes += (row == 0 ? "" : "\nerror: ") + plan + ":" + std::to_string(row + 2) +
+                ":1: law.p_gain: expected a number in [0, 1000], got " + std::to_string(row - 22);
+  refuses(many, "", mistakes + "\nerror: sweep: 2 more mistakes");
+  const Ran both = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator sweep - --plan - < " + config_);
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_EQ(both.output, "error: --plan: expected another input than CONFIG, got <stdin> for both\n");
+  EXPECT_EQ(Sweep("--plan ''").exit_code, 2);
+  const Ran nothing = Sweep("--plan " + folder_.File("none.csv"));
+  EXPECT_EQ(nothing.exit_code, 2);
+  EXPECT_EQ(nothing.output, "error: " + folder_.File("none.csv") + ": cannot be read: No such file or directory\n");
+
+  WriteFile(plan, "law.p_gain,law.beta\n1,1\n2,fast\n");
+  const Ran forced = Sweep("--force --no-plot --plan " + plan);
+  EXPECT_EQ(forced.exit_code, 0) << forced.output;
+  EXPECT_EQ(Table(out_).At(0, "error"), "");
+  EXPECT_EQ(Table(out_).At(1, "error"), plan + ":3:2: law.beta: expected a number in [0, 1000], got 'fast'");
+}
+
+TEST_F(SweepTest, RefusesSeedsOfATableThatChangeNothing) {
+  const std::string plan = folder_.File("plan.csv");
+  const std::string words = "--no-plot --set 'agents.position_m=[[0, 0, 1], [1, 1, 2], [2, 2, 3]]' --plan " + plan;
+  WriteFile(plan, "law.p_gain,run.seed\n0.1,1\n0.2,2\n");
+  EXPECT_EQ(Sweep(words).exit_code, 0) << "no two runs differ in their seed alone";
+  WriteFile(plan, "law.p_gain,run.seed\n0.1,1\n0.2,2\n0.1,3\n");
+  const Ran refused = Sweep(words);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.output, HasSubstr("no law that draws), got 3 (--force flies them all)"));
+}
+
 TEST_F(SweepTest, FliesLawsSideBySideEachWithTheKeysThatItHas) {
   WriteFile(config_,
             "[run]\nduration_s = 1.0\n[agents]\ncount = 3\n[graph]\ntopology = 'ring'\n[law]\nname = "
