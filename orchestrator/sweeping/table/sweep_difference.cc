@@ -17,11 +17,25 @@ namespace {
 constexpr std::size_t kMaxKeys = 3;          // named, of those that differ
 constexpr std::size_t kLongestSetting = 60;  // of the characters of a value
 
-/// "NAME: 0.1, 0.5 there and 0.1, 0.7 here"; "nothing" stands for what is not set.
+/// A value as it is shown; "nothing" stands for what is not set.
+std::string ShownSetting(const std::string& setting) {
+  if (setting.empty()) return "nothing";
+  return setting.size() <= kLongestSetting ? setting : std::string(CutUtf8(setting, kLongestSetting)) + "...";
+}
+
+/// Where the first part of two lists begins that differs: parts have ", " between. If one list is the beginning of the
+/// other, it is its last part.
+std::size_t FirstDifference(const std::string& there, const std::string& here) {
+  const auto same = std::ranges::mismatch(there, here).in1 - there.begin();
+  const auto before = there.substr(0, static_cast<std::size_t>(same)).rfind(", ");
+  return before == std::string::npos ? 0 : before + 2;
+}
+
+/// "NAME: 0.1, 0.5 there and 0.1, 0.7 here". Long lists that begin alike are shown from where they differ.
 std::string BothText(const std::string& name, const std::string& there, const std::string& here) {
-  const auto shown = [](const std::string& setting) {
-    if (setting.empty()) return std::string("nothing");
-    return setting.size() <= kLongestSetting ? setting : std::string(CutUtf8(setting, kLongestSetting)) + "...";
+  const std::size_t begin = ShownSetting(there) == ShownSetting(here) ? FirstDifference(there, here) : 0;
+  const auto shown = [&](const std::string& setting) {
+    return (begin > 0 ? "..., " : "") + ShownSetting(setting.substr(begin));
   };
   return fmt::format("{}: {} there and {} here", name, shown(there), shown(here));
 }

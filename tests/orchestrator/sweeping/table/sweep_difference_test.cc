@@ -55,6 +55,22 @@ TEST(SweepDifference, NamesTheKeyThatIsSetOtherwise) {
       "here");
 }
 
+TEST(SweepDifference, ShowsLongListsFromWhereTheyDiffer) {
+  const auto gains = [](int last, const std::string& more) {
+    std::string word = "law.beta=0";
+    for (int gain = 1; gain <= last; ++gain) word += "," + std::to_string(gain);
+    return IdentityOfWords({.sets = {word + more}, .randoms = {}, .seeds = ""});
+  };
+  const std::string begun = gains(40, ",50,60").Text();
+  EXPECT_EQ(gains(40, ",50,61").DifferenceFrom(begun), "--set law.beta: ..., 60 there and ..., 61 here");
+  EXPECT_EQ(gains(40, ",55,60").DifferenceFrom(begun), "--set law.beta: ..., 50, 60 there and ..., 55, 60 here");
+  EXPECT_EQ(gains(40, ",50,60,70").DifferenceFrom(begun), "--set law.beta: ..., 60 there and ..., 60, 70 here");
+  EXPECT_EQ(gains(40, ",50").DifferenceFrom(begun), "--set law.beta: ..., 50, 60 there and ..., 50 here");
+  EXPECT_EQ(
+      gains(40, ",50,61,62,63,64,65,66,67,68,69,70,71,72,73,74,75,76,77,78,79,80").DifferenceFrom(begun),
+      "--set law.beta: ..., 60 there and ..., 61, 62, 63, 64, 65, 66, 67, 68, 69, 70, 71, 72, 73, 74, 75, ... here");
+}
+
 TEST(SweepDifference, SaysThatValuesAreCombinedInAnotherWay) {
   SweepPlan::Words words{.sets = {"law.p_gain=0.1,0.5", "law.beta=1,2"}, .randoms = {}, .seeds = ""};
   const SweepIdentity product = IdentityOfWords(words);
