@@ -275,7 +275,8 @@ TEST(Check, WarnsWhenTheFirstCommandWouldSaturate) {
 }
 
 TEST(Check, PredictsFiniteValuesForEveryShippedExperiment) {
-  for (const auto& entry : std::filesystem::directory_iterator(MASCOT_SOURCE_DIR "/configs")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(MASCOT_SOURCE_DIR "/configs")) {
+    if (entry.path().extension() != ".toml") continue;
     const Ran run = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check --json " + entry.path().string());
     ASSERT_EQ(run.exit_code, 0) << entry.path();
     const auto check = nlohmann::json::parse(run.output);

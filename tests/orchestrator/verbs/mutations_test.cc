@@ -104,8 +104,8 @@ bool IsLarge(const std::string& toml) try {
 
 std::vector<std::string> Configs() {
   std::vector<std::string> configs;
-  for (const auto& entry : std::filesystem::directory_iterator(MASCOT_SOURCE_DIR "/configs"))
-    configs.push_back(ReadFile(entry.path().string()));
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(MASCOT_SOURCE_DIR "/configs"))
+    if (entry.path().extension() == ".toml") configs.push_back(ReadFile(entry.path().string()));
   std::sort(configs.begin(), configs.end());
   return configs;
 }
